@@ -1,0 +1,53 @@
+use sbbk_core::tree::{BuildOptions, LayerPlan};
+
+/// Which code turns a pair of triangles within the prediction distance into contact points.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum ContactGenerator {
+    /// SBBK's own ([`sbbk_core::contact`]): exact at every scale, and faster.
+    #[default]
+    Exact,
+    /// Parry's (GJK, EPA and clipping), called as stock Parry calls it: on a first query the contacts are
+    /// bit-identical to stock's for each pair of triangles within the prediction distance. For comparison, and
+    /// for whoever depends on these bits. Its tolerances are absolute: triangles much smaller than 0.1 units get
+    /// wrong depths.
+    Parry,
+}
+
+/// How an [`SbbkDispatcher`](crate::SbbkDispatcher) builds trees and contacts.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SbbkConfig {
+    /// The volume of each layer of the trees.
+    pub layers: LayerPlan,
+    /// Who generates the contacts of a pair of triangles.
+    pub contacts: ContactGenerator,
+    /// Memory that trees may keep while no pair of colliders uses them, in bytes. A mesh that leaves all contacts and comes
+    /// back finds its tree here; with 0 it is built again each time.
+    pub idle_tree_bytes: usize,
+    /// Whether queries are counted in [`SbbkStats`](crate::SbbkStats). Costs some percent, more with many
+    /// threads.
+    pub count_queries: bool,
+}
+
+impl Default for SbbkConfig {
+    fn default() -> Self {
+        Self {
+            layers: LayerPlan::SBBK,
+            contacts: ContactGenerator::Exact,
+            idle_tree_bytes: 64 << 20,
+            count_queries: false,
+        }
+    }
+}
+
+impl SbbkConfig {
+    /// The comparison of the SBBK paper: the same code with AABBs in every layer, no sphere at the root and no
+    /// k-DOPs below.
+    pub fn aabb_only() -> Self {
+        Self { layers: LayerPlan::AABB_ONLY, ..Self::default() }
+    }
+
+    pub(crate) fn build_options(&self) -> BuildOptions {
+        BuildOptions { layers: self.layers, ..BuildOptions::default() }
+    }
+}

@@ -1,0 +1,229 @@
+use std::fmt;
+use std::sync::Arc;
+
+use parry3d::math::{Pose, Real, Vector};
+use parry3d::query::details::{NormalConstraints, ShapeCastOptions};
+use parry3d::query::{
+    ClosestPoints, Contact, ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher,
+    NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher, ShapeCastHit, ShapeDistance,
+    ShapeIntersection, Unsupported,
+};
+use parry3d::shape::{CompositeShape, Shape, TriMesh};
+use sbbk_core::traverse::DescentCounts;
+use sbbk_core::tree::BuildError;
+
+use crate::mesh::{PreparedMesh, TreeCache};
+use crate::pair::{Answer, MeshPair, contact_manifolds};
+use crate::stats::QueryCounters;
+use crate::{SbbkConfig, SbbkStats};
+
+/// A query dispatcher that answers the contacts of every pair of triangle meshes from SBBK trees, and leaves all else to
+/// Parry's [`DefaultQueryDispatcher`].
+///
+/// Trees are built when two meshes first come close and shared by all colliders with equal geometry. Clones of a
+/// dispatcher share their trees.
+#[derive(Clone)]
+pub struct SbbkDispatcher {
+    config: SbbkConfig,
+    cache: Arc<TreeCache>,
+    counters: Arc<QueryCounters>,
+}
+
+impl SbbkDispatcher {
+    /// A dispatcher with no trees yet.
+    pub fn new(config: SbbkConfig) -> Self {
+        let cache = TreeCache::new(config.build_options(), config.idle_tree_bytes);
+        Self { config, cache: Arc::new(cache), counters: Arc::default() }
+    }
+
+    /// The configuration this dispatcher was made with.
+    pub fn config(&self) -> &SbbkConfig {
+        &self.config
+    }
+
+    /// Whether a mesh can be answered from a tree. Builds the tree and drops it again: for tools and start-up checks.
+    ///
+    /// A dispatcher cannot report trouble in a query (Rapier ignores its errors), so a mesh that fails here is
+    /// answered by Parry, as without SBBK, and counted in [`SbbkStats::unsupported_queries`].
+    ///
+    /// # Errors
+    /// What is wrong with the mesh, for example a vertex that is NaN.
+    pub fn check(&self, mesh: &TriMesh) -> Result<(), BuildError> {
+        PreparedMesh::new(mesh, &self.config.build_options()).map(drop)
+    }
+
+    /// Counts of trees and queries.
+    pub fn stats(&self) -> SbbkStats {
+        self.counters.stats(self.cache.counts())
+    }
+
+    /// Drops the trees that no pair of colliders uses, see [`SbbkConfig::idle_tree_bytes`].
+    pub fn release_idle_trees(&self) {
+        self.cache.release_idle();
+    }
+
+    /// The contacts of a pair of meshes; `Unsupported` if Parry must answer.
+    fn mesh_contacts<M, C>(
+        &self,
+        pair: MeshPair<'_>,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Answer
+    where
+        M: Default + Clone + Send + Sync + 'static,
+        C: Default + Copy + Send + Sync + 'static,
+    {
+        let contacts = self.config.contacts;
+        let answer = if self.config.count_queries {
+            let mut counts = DescentCounts::default();
+            let answer =
+                contact_manifolds(pair, &self.cache, contacts, &mut counts, manifolds, workspace);
+            self.counters.add(&counts);
+            answer
+        } else {
+            contact_manifolds(pair, &self.cache, contacts, (), manifolds, workspace)
+        };
+        if answer == Answer::Unsupported {
+            self.counters.add_unsupported();
+        }
+        answer
+    }
+}
+
+impl Default for SbbkDispatcher {
+    fn default() -> Self {
+        Self::new(SbbkConfig::default())
+    }
+}
+
+impl fmt::Debug for SbbkDispatcher {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SbbkDispatcher")
+            .field("config", &self.config)
+            .field("stats", &self.stats())
+            .finish()
+    }
+}
+
+/// The mesh that SBBK answers for. Meshes that deform between queries are Parry's.
+fn rigid_mesh(shape: &dyn Shape) -> Option<&TriMesh> {
+    shape.as_trimesh().filter(|mesh| !mesh.is_deformable())
+}
+
+impl<M, C> PersistentQueryDispatcher<M, C> for SbbkDispatcher
+where
+    M: Default + Clone + Send + Sync + 'static,
+    C: Default + Copy + Send + Sync + 'static,
+{
+    fn contact_manifolds(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: Real,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Result<(), Unsupported> {
+        if let (Some(mesh1), Some(mesh2)) = (rigid_mesh(g1), rigid_mesh(g2)) {
+            let pair = MeshPair { pos12, mesh1, mesh2, prediction };
+            if self.mesh_contacts(pair, manifolds, workspace) == Answer::Done {
+                return Ok(());
+            }
+        }
+        DefaultQueryDispatcher.contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace)
+    }
+
+    fn contact_manifold_convex_convex(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        normal_constraints1: Option<&dyn NormalConstraints>,
+        normal_constraints2: Option<&dyn NormalConstraints>,
+        prediction: Real,
+        manifold: &mut ContactManifold<M, C>,
+    ) -> Result<(), Unsupported> {
+        DefaultQueryDispatcher.contact_manifold_convex_convex(
+            pos12,
+            g1,
+            g2,
+            normal_constraints1,
+            normal_constraints2,
+            prediction,
+            manifold,
+        )
+    }
+}
+
+/// All queries without manifolds are Parry's.
+impl QueryDispatcher for SbbkDispatcher {
+    fn intersection_test(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+    ) -> Result<ShapeIntersection, Unsupported> {
+        DefaultQueryDispatcher.intersection_test(pos12, g1, g2)
+    }
+
+    fn distance(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+    ) -> Result<ShapeDistance, Unsupported> {
+        DefaultQueryDispatcher.distance(pos12, g1, g2)
+    }
+
+    fn contact(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: Real,
+    ) -> Result<Option<Contact>, Unsupported> {
+        DefaultQueryDispatcher.contact(pos12, g1, g2, prediction)
+    }
+
+    fn closest_points(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        max_dist: Real,
+    ) -> Result<ClosestPoints, Unsupported> {
+        DefaultQueryDispatcher.closest_points(pos12, g1, g2, max_dist)
+    }
+
+    fn cast_shapes(
+        &self,
+        pos12: &Pose,
+        local_vel12: Vector,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        options: ShapeCastOptions,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        DefaultQueryDispatcher.cast_shapes(pos12, local_vel12, g1, g2, options)
+    }
+
+    fn cast_shapes_nonlinear(
+        &self,
+        motion1: &NonlinearRigidMotion,
+        g1: &dyn Shape,
+        motion2: &NonlinearRigidMotion,
+        g2: &dyn Shape,
+        start_time: Real,
+        end_time: Real,
+        stop_at_penetration: bool,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        DefaultQueryDispatcher.cast_shapes_nonlinear(
+            motion1,
+            g1,
+            motion2,
+            g2,
+            start_time,
+            end_time,
+            stop_at_penetration,
+        )
+    }
+}

@@ -1,0 +1,12 @@
+//! SBBK for Rapier: a query dispatcher that answers triangle-mesh pairs from SBBK trees.
+
+mod config;
+mod dispatcher;
+mod mesh;
+mod pair;
+mod stats;
+
+pub use config::{ContactGenerator, SbbkConfig};
+pub use dispatcher::SbbkDispatcher;
+pub use sbbk_core;
+pub use stats::SbbkStats;

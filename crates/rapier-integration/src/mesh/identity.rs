@@ -1,0 +1,70 @@
+//! What "the same mesh" means.
+//!
+//! A dispatcher sees a `&TriMesh` and nothing else: no handle, no generation. Its address proves nothing, since
+//! freed memory is used again and `SharedShape::make_mut` edits in place. So there are two notions:
+//!
+//! * [`ContentHash`], 128 bits over all vertices, all indices and the flags that concern contacts. Meshes with equal hashes share one
+//!   tree, wherever they are: clones, copies restored from a snapshot, the same file loaded twice. It reads the
+//!   whole mesh (about 1 µs for 1000 triangles), so it is asked for only when a pair of colliders gets its first
+//!   contact query that passes the root boxes.
+//! * [`MeshToken`], constant time, checked on every later query of the pair: addresses and sizes of the buffers,
+//!   the flags, the root box of Parry's own hierarchy, and a few sampled vertices and triangles. If it changed, the
+//!   hash is asked again.
+//!
+//! Between two queries of one pair a mesh may change unseen by the token only if its buffers stay in place, the root
+//! box stays equal and no sample moves: an edit of single vertices by `TriMesh::update_vertices`. Rapier
+//! drops the pair's workspace when a shape was edited (`ColliderChanges::SHAPE`, set by `shape_mut` and
+//! `set_shape`), and with it the token; other hosts must do the same, as Parry asks for its own workspaces too.
+//! Meshes that are meant to deform (`TriMeshFlags::DEFORMABLE`) do not come here.
+
+use std::hash::Hasher;
+
+use parry3d::shape::{TriMesh, TriMeshFlags};
+use xxhash_rust::xxh3::{Xxh3, xxh3_64};
+
+/// Names a mesh by its content.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct ContentHash(u128);
+
+impl ContentHash {
+    pub(crate) fn of(mesh: &TriMesh) -> Self {
+        let mut hasher = Xxh3::new();
+        hasher.write_usize(mesh.vertices().len());
+        let normals = TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED | TriMeshFlags::FIX_INTERNAL_EDGES;
+        hasher.write_u16((mesh.flags() & normals).bits());
+        hasher.update(bytemuck::cast_slice(mesh.vertices()));
+        hasher.update(bytemuck::cast_slice(mesh.indices()));
+        Self(hasher.digest128())
+    }
+}
+
+/// Tells in constant time that a mesh is most likely still the one it was.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(crate) struct MeshToken(u64);
+
+impl MeshToken {
+    /// Vertices and triangles looked at, evenly spread.
+    const SAMPLES: usize = 4;
+
+    pub(crate) fn of(mesh: &TriMesh) -> Self {
+        let (vertices, triangles) = (mesh.vertices(), mesh.indices());
+        let root = mesh.bvh().root_aabb();
+        let sample = |i: usize, count: usize| i * count / Self::SAMPLES;
+        let mut words = [0u32; 6 + 6 + 6 * Self::SAMPLES];
+        let addresses = [vertices.as_ptr() as u64, triangles.as_ptr() as u64];
+        words[0..4].copy_from_slice(bytemuck::cast_slice(&addresses));
+        words[4] = vertices.len() as u32 ^ (triangles.len() as u32).rotate_left(16);
+        words[5] = u32::from(mesh.flags().bits());
+        words[6..9].copy_from_slice(bytemuck::cast_slice(&[root.mins]));
+        words[9..12].copy_from_slice(bytemuck::cast_slice(&[root.maxs]));
+        for (i, words) in words[12..].chunks_exact_mut(6).enumerate() {
+            if let Some(vertex) = vertices.get(sample(i, vertices.len())) {
+                words[..3].copy_from_slice(bytemuck::cast_slice(std::slice::from_ref(vertex)));
+            }
+            if let Some(triangle) = triangles.get(sample(i, triangles.len())) {
+                words[3..].copy_from_slice(triangle);
+            }
+        }
+        Self(xxh3_64(bytemuck::cast_slice(&words)))
+    }
+}

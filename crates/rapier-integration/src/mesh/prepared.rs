@@ -1,0 +1,47 @@
+use parry3d::shape::{TriMesh, TriMeshFlags, TrianglePseudoNormals};
+use sbbk_core::tree::{BuildError, BuildOptions, Tree};
+
+/// All that is computed once a mesh.
+pub(crate) struct PreparedMesh {
+    pub(crate) tree: Tree,
+    /// For each triangle its place in the order in which Parry's own hierarchy lists them, which is the order of
+    /// stock manifolds.
+    ranks: Vec<u32>,
+    /// The pseudo-normals that constrain contact normals, if the mesh asks for them
+    /// (`TriMeshFlags::FIX_INTERNAL_EDGES`); for degenerate triangles none. Parry computes them anew for each pair of
+    /// triangles.
+    normal_constraints: Vec<Option<TrianglePseudoNormals>>,
+}
+
+impl PreparedMesh {
+    pub(crate) fn new(mesh: &TriMesh, options: &BuildOptions) -> Result<Self, BuildError> {
+        let tree = Tree::build(mesh.vertices(), mesh.indices(), options)?;
+        let mut ranks = vec![0; mesh.indices().len()];
+        for (rank, triangle) in mesh.bvh().leaves(|_| true).enumerate() {
+            ranks[triangle as usize] = rank as u32;
+        }
+        let triangles = 0..mesh.indices().len() as u32;
+        let normal_constraints = if mesh.flags().contains(TriMeshFlags::FIX_INTERNAL_EDGES) {
+            triangles.map(|i| mesh.triangle_normal_constraints(i)).collect()
+        } else {
+            Vec::new()
+        };
+        Ok(Self { tree, ranks, normal_constraints })
+    }
+
+    /// The place of a triangle in stock order. A number that is not a triangle's sorts last.
+    pub(crate) fn rank(&self, triangle: u32) -> u32 {
+        self.ranks.get(triangle as usize).copied().unwrap_or(u32::MAX)
+    }
+
+    pub(crate) fn normal_constraints(&self, triangle: u32) -> Option<&TrianglePseudoNormals> {
+        self.normal_constraints.get(triangle as usize)?.as_ref()
+    }
+
+    /// Memory, without the mesh itself.
+    pub(crate) fn bytes(&self) -> usize {
+        self.tree.stats().bytes()
+            + self.ranks.len() * size_of::<u32>()
+            + self.normal_constraints.len() * size_of::<Option<TrianglePseudoNormals>>()
+    }
+}

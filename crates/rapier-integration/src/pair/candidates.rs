@@ -1,0 +1,92 @@
+use sbbk_core::leaf::LeafTest;
+use sbbk_core::traverse::{
+    Counters, Descent, DescentScratch, PairFrame, Verdict, Visitor, descend,
+};
+use sbbk_core::tree::LeafBatch;
+
+use super::coherence::KnownCandidate;
+use crate::mesh::PreparedMesh;
+
+/// A pair of triangles, by index in their meshes, that may come within the prediction distance.
+#[derive(Copy, Clone, Debug)]
+pub(super) struct Candidate {
+    pub(super) key: OrderKey,
+    pub(super) triangle1: u32,
+    pub(super) triangle2: u32,
+}
+
+/// The place of a pair of triangles in the order of stock manifolds.
+///
+/// Parry walks the hierarchy of the mesh with the larger box and, for each triangle there, the hierarchy of the other. The
+/// order of ours depends on the two meshes only: not on the descent, a thread, or what happened before.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct OrderKey(u64);
+
+impl OrderKey {
+    pub(super) fn new(
+        prepared: [&PreparedMesh; 2],
+        flipped: bool,
+        [triangle1, triangle2]: [u32; 2],
+    ) -> Self {
+        let ranks = [prepared[0].rank(triangle1), prepared[1].rank(triangle2)];
+        let [major, minor] = if flipped { [ranks[1], ranks[0]] } else { ranks };
+        Self(u64::from(major) << 32 | u64::from(minor))
+    }
+}
+
+/// Memory of one query, kept by each thread: after the first few queries none allocates here.
+#[derive(Default)]
+pub(crate) struct Scratch {
+    descent: DescentScratch,
+    pub(super) candidates: Vec<Candidate>,
+    /// Places of the previous manifolds, in stock order.
+    pub(super) previous: Vec<(OrderKey, u32)>,
+}
+
+impl Scratch {
+    /// Those of the known candidates whose triangles were at most `reach` apart.
+    pub(super) fn take(&mut self, known: &[KnownCandidate], reach: f64) {
+        self.candidates.clear();
+        let near = known.iter().filter(|known| known.distance <= reach);
+        self.candidates.extend(near.map(|known| known.candidate));
+    }
+}
+
+/// Fills `scratch.candidates` with all pairs of triangles within the margin of `frame`, and few others, in stock order.
+pub(super) fn collect(
+    prepared: [&PreparedMesh; 2],
+    frame: &mut PairFrame,
+    flipped: bool,
+    counters: impl Counters,
+    scratch: &mut Scratch,
+) {
+    scratch.candidates.clear();
+    let mut collector = Collector {
+        prepared,
+        flipped,
+        test: LeafTest::new(frame),
+        candidates: &mut scratch.candidates,
+    };
+    let trees = (&prepared[0].tree, &prepared[1].tree);
+    descend(trees, frame, Descent::Simultaneous, &mut scratch.descent, counters, &mut collector);
+    scratch.candidates.sort_unstable_by_key(|candidate| candidate.key);
+}
+
+struct Collector<'a> {
+    prepared: [&'a PreparedMesh; 2],
+    flipped: bool,
+    test: LeafTest,
+    candidates: &'a mut Vec<Candidate>,
+}
+
+impl Visitor for Collector<'_> {
+    #[inline]
+    fn leaves(&mut self, _: u32, batch1: &LeafBatch, _: u32, batch2: &LeafBatch) -> Verdict {
+        self.test.survivors(batch1, batch2, |lane1, lane2| {
+            let [triangle1, triangle2] = [batch1.triangles()[lane1], batch2.triangles()[lane2]];
+            let key = OrderKey::new(self.prepared, self.flipped, [triangle1, triangle2]);
+            self.candidates.push(Candidate { key, triangle1, triangle2 });
+        });
+        Verdict::Descend
+    }
+}

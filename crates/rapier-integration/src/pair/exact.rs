@@ -1,0 +1,133 @@
+//! One manifold from the exact contact of two triangles.
+
+use glamx::DVec3;
+use parry3d::math::{Pose, Vector};
+use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
+use parry3d::query::{ContactManifold, TrackedContact};
+use parry3d::shape::{PackedFeatureId, Triangle, TrianglePseudoNormals};
+use sbbk_core::contact::{
+    Feature, FeaturePair, ManifoldPoint, ManifoldPoints, TriangleContact, clip, contact,
+    contact_from, push_closest,
+};
+use sbbk_core::traverse::PairFrame;
+
+/// Two triangles in frame 1, relative to a corner of the first one: all their digits are about each other.
+pub(super) struct LocalTriangles {
+    origin: Vector,
+    corners: [[DVec3; 3]; 2],
+}
+
+impl LocalTriangles {
+    pub(super) fn new(frame: &PairFrame, triangle1: &Triangle, triangle2: &Triangle) -> Self {
+        let origin = triangle1.a;
+        let relative = |x: Vector| x.as_dvec3() - origin.as_dvec3();
+        let corners = [
+            [triangle1.a, triangle1.b, triangle1.c].map(relative),
+            [triangle2.a, triangle2.b, triangle2.c].map(|x| frame.to_frame1(x, origin)),
+        ];
+        Self { origin, corners }
+    }
+
+    /// The contact within the margin of the frame, tried first with the features of the step before.
+    pub(super) fn contact(
+        &self,
+        frame: &PairFrame,
+        last: Option<FeaturePair>,
+    ) -> Option<TriangleContact> {
+        let [t1, t2] = &self.corners;
+        let margin = f64::from(frame.margin());
+        match last {
+            Some(last) => contact_from(t1, t2, margin, last),
+            None => contact(t1, t2, margin),
+        }
+    }
+}
+
+/// Fills `manifold` with the points of a contact, as Parry would: the normal is projected into the cones of both
+/// triangles, where they have them, and points keep their data by their feature ids.
+///
+/// May leave the manifold without points, where the constraints reject the contact.
+pub(super) fn fill<M, C: Default + Copy>(
+    (frame, pos12): (&PairFrame, &Pose),
+    triangles: &LocalTriangles,
+    contact: &TriangleContact,
+    constraints: [Option<&TrianglePseudoNormals>; 2],
+    previous_points: &mut Vec<TrackedContact<C>>,
+    manifold: &mut ContactManifold<M, C>,
+) {
+    std::mem::swap(&mut manifold.points, previous_points);
+    manifold.points.clear();
+    let Some(normal1) = constrained_normal(contact, constraints, pos12) else {
+        return;
+    };
+    let normal =
+        if normal1.is_changed { normal1.normal.as_dvec3().normalize() } else { contact.normal };
+
+    let [t1, t2] = &triangles.corners;
+    let mut points = ManifoldPoints::new();
+    clip(t1, t2, normal, &mut points);
+    if !normal1.is_changed {
+        push_closest(t1, t2, contact, &mut points);
+    }
+    let is_constrained = constraints.iter().any(Option::is_some);
+    for point in points.iter().filter(|point| !is_constrained || is_plausible(point, contact)) {
+        manifold.points.push(tracked(frame, triangles.origin, point, previous_points));
+    }
+    manifold.local_n1 = normal1.normal;
+    manifold.local_n2 = pos12.rotation.inverse() * -normal1.normal;
+}
+
+struct ConstrainedNormal {
+    normal: Vector,
+    is_changed: bool,
+}
+
+/// The normal in the cones of both triangles; `None` if they exclude it.
+fn constrained_normal(
+    contact: &TriangleContact,
+    constraints: [Option<&TrianglePseudoNormals>; 2],
+    pos12: &Pose,
+) -> Option<ConstrainedNormal> {
+    let free = contact.normal.as_vec3();
+    let mut normal = free;
+    if constraints.iter().any(Option::is_some) {
+        let [cone1, cone2] =
+            constraints.map(|cone| cone.map(|cone| cone as &dyn NormalConstraints));
+        let mut normal2 = pos12.rotation.inverse() * -free;
+        if !(cone1, cone2).project_local_normals(pos12, &mut normal, &mut normal2) {
+            return None;
+        }
+    }
+    Some(ConstrainedNormal { normal, is_changed: normal != free })
+}
+
+/// Parry drops points that a constrained normal puts more than five times as deep as the contact is without
+/// constraints.
+fn is_plausible(point: &ManifoldPoint, contact: &TriangleContact) -> bool {
+    contact.distance >= 0.0 || point.distance >= 0.0 || point.distance >= 5.0 * contact.distance
+}
+
+fn tracked<C: Default + Copy>(
+    frame: &PairFrame,
+    origin: Vector,
+    point: &ManifoldPoint,
+    previous: &[TrackedContact<C>],
+) -> TrackedContact<C> {
+    let fid1 = packed(point.features.feature1());
+    let fid2 = packed(point.features.feature2());
+    let local_p1 = (origin.as_dvec3() + point.point1).as_vec3();
+    let local_p2 = frame.to_frame2(point.point2, origin).as_vec3();
+    let mut tracked = TrackedContact::new(local_p1, local_p2, fid1, fid2, point.distance as f32);
+    if let Some(known) = previous.iter().find(|old| old.fid1 == fid1 && old.fid2 == fid2) {
+        tracked.data = known.data;
+    }
+    tracked
+}
+
+fn packed(feature: Feature) -> PackedFeatureId {
+    match feature {
+        Feature::Vertex(i) => PackedFeatureId::vertex(u32::from(i)),
+        Feature::Edge(i) => PackedFeatureId::edge(u32::from(i)),
+        Feature::Face => PackedFeatureId::face(0),
+    }
+}

@@ -1,0 +1,132 @@
+use std::cell::RefCell;
+use std::sync::Arc;
+
+use parry3d::bounding_volume::BoundingVolume;
+use parry3d::math::{Pose, Real};
+use parry3d::query::{ContactManifold, ContactManifoldsWorkspace};
+use parry3d::shape::TriMesh;
+use sbbk_core::traverse::{Counters, PairFrame};
+
+use super::candidates::{Scratch, collect};
+use super::coherence::{Coherence, Plan};
+use super::manifolds::Generator;
+use super::state::{KnownMeshes, PairState};
+use crate::ContactGenerator;
+use crate::mesh::{MeshToken, PreparedRef, TreeCache};
+
+/// The question: which contacts do two meshes have?
+#[derive(Copy, Clone)]
+pub(crate) struct MeshPair<'a> {
+    /// The pose of mesh 2 in the frame of mesh 1.
+    pub(crate) pos12: &'a Pose,
+    pub(crate) mesh1: &'a TriMesh,
+    pub(crate) mesh2: &'a TriMesh,
+    pub(crate) prediction: Real,
+}
+
+/// How a query went.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Answer {
+    /// The manifolds are up to date.
+    Done,
+    /// A mesh cannot have a tree: somebody else must answer.
+    Unsupported,
+}
+
+thread_local! {
+    static SCRATCH: RefCell<Scratch> = RefCell::default();
+}
+
+impl MeshPair<'_> {
+    fn tokens(&self) -> [MeshToken; 2] {
+        [self.mesh1, self.mesh2].map(MeshToken::of)
+    }
+
+    /// Whether the boxes around the meshes meet, as stock Parry tests them first. Asked before there are trees.
+    fn root_boxes_meet(&self) -> bool {
+        let [root1, root2] = [self.mesh1, self.mesh2].map(|mesh| mesh.bvh().root_aabb());
+        let rounding = 1e-5 * (root1.half_extents().length() + root1.center().length());
+        let moved = root2.transform_by(self.pos12).loosened(self.prediction.max(0.0) + rounding);
+        root1.intersects(&moved)
+    }
+
+    /// Whether Parry walks mesh 2 first: it does so if its box is larger.
+    fn is_flipped(&self) -> bool {
+        let [size1, size2] = [self.mesh1, self.mesh2]
+            .map(|mesh| mesh.bvh().root_aabb().half_extents().length_squared());
+        size1 < size2
+    }
+
+    /// The trees of both meshes, from the state if they are known and still valid. Else what was seen of the
+    /// old ones is forgotten.
+    fn trees<'s>(
+        &self,
+        cache: &Arc<TreeCache>,
+        known: &'s mut KnownMeshes,
+        coherence: &mut Coherence,
+    ) -> Option<&'s [PreparedRef; 2]> {
+        let tokens = self.tokens();
+        let is_valid = match known {
+            KnownMeshes::None => false,
+            KnownMeshes::Trees(valid, _) | KnownMeshes::Unsupported(valid) => *valid == tokens,
+        };
+        if !is_valid {
+            coherence.clear();
+            let prepared = [self.mesh1, self.mesh2].map(|mesh| cache.prepare(mesh));
+            *known = match prepared {
+                [Ok(one), Ok(two)] => KnownMeshes::Trees(tokens, [one, two]),
+                _ => KnownMeshes::Unsupported(tokens),
+            };
+        }
+        match known {
+            KnownMeshes::Trees(_, prepared) => Some(prepared),
+            _ => None,
+        }
+    }
+}
+
+/// Brings the manifolds of a pair of meshes up to date.
+pub(crate) fn contact_manifolds<M, C>(
+    pair: MeshPair<'_>,
+    cache: &Arc<TreeCache>,
+    contacts: ContactGenerator,
+    counters: impl Counters,
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) -> Answer
+where
+    M: Default + Clone + Send + Sync + 'static,
+    C: Default + Copy + Send + Sync + 'static,
+{
+    let PairState { meshes, coherence, history } = PairState::of(workspace, manifolds);
+    if matches!(meshes, KnownMeshes::None) && !pair.root_boxes_meet() {
+        manifolds.clear();
+        return Answer::Done;
+    }
+    let Some(prepared) = pair.trees(cache, meshes, coherence) else {
+        return Answer::Unsupported;
+    };
+    let prepared = prepared.each_ref().map(PreparedRef::get);
+    let trees = (&prepared[0].tree, &prepared[1].tree);
+    let plan = coherence.plan(trees.1, pair.pos12, pair.prediction);
+    if plan == Plan::Nothing && history.is_of(manifolds) {
+        return Answer::Done;
+    }
+    let margin = match plan {
+        Plan::Descend { margin } => margin,
+        Plan::Nothing | Plan::Reuse { .. } => pair.prediction,
+    };
+    let mut frame = PairFrame::new(trees.0, trees.1, pair.pos12, margin);
+    let flipped = pair.is_flipped();
+    SCRATCH.with_borrow_mut(|scratch| {
+        if let Plan::Reuse { reach } = plan {
+            scratch.take(coherence.candidates(), reach);
+        } else {
+            collect(prepared, &mut frame, flipped, counters, scratch);
+        }
+        let generator = Generator { pair, prepared, frame: &frame, flipped, contacts };
+        let is_descent = matches!(plan, Plan::Descend { .. });
+        generator.update(scratch, is_descent.then_some(coherence), history, manifolds);
+    });
+    Answer::Done
+}

@@ -1,0 +1,72 @@
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use sbbk_core::traverse::DescentCounts;
+
+use crate::mesh::CacheCounts;
+
+/// What a dispatcher and its clones did so far.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct SbbkStats {
+    /// Meshes that have a tree at present.
+    pub trees: usize,
+    /// Of these, how many no pair of colliders uses.
+    pub idle_trees: usize,
+    /// Memory of all of them.
+    pub tree_bytes: usize,
+    /// Trees built.
+    pub tree_builds: u64,
+    /// How often a pair of colliders needed a tree that was there.
+    pub tree_hits: u64,
+    /// Mesh pairs that Parry had to answer as a mesh cannot have a tree: see
+    /// [`SbbkDispatcher::check`](crate::SbbkDispatcher::check).
+    pub unsupported_queries: u64,
+    /// Mesh pairs answered from trees. Counted, like the following, if
+    /// [`SbbkConfig::count_queries`](crate::SbbkConfig::count_queries) is set.
+    pub queries: u64,
+    /// The work of their descents.
+    pub descent: DescentCounts,
+}
+
+#[derive(Default)]
+pub(crate) struct QueryCounters {
+    queries: AtomicU64,
+    unsupported: AtomicU64,
+    sphere_tests: AtomicU64,
+    aabb_tests: AtomicU64,
+    kdop_tests: AtomicU64,
+    leaf_pairs: AtomicU64,
+}
+
+impl QueryCounters {
+    pub(crate) fn add_unsupported(&self) {
+        self.unsupported.fetch_add(1, Ordering::Relaxed);
+    }
+
+    pub(crate) fn add(&self, counts: &DescentCounts) {
+        self.queries.fetch_add(1, Ordering::Relaxed);
+        self.sphere_tests.fetch_add(counts.sphere_tests, Ordering::Relaxed);
+        self.aabb_tests.fetch_add(counts.aabb_tests, Ordering::Relaxed);
+        self.kdop_tests.fetch_add(counts.kdop_tests, Ordering::Relaxed);
+        self.leaf_pairs.fetch_add(counts.leaf_pairs, Ordering::Relaxed);
+    }
+
+    pub(crate) fn stats(&self, cache: CacheCounts) -> SbbkStats {
+        let load = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
+        SbbkStats {
+            trees: cache.trees,
+            idle_trees: cache.idle_trees,
+            tree_bytes: cache.bytes,
+            tree_builds: cache.builds,
+            tree_hits: cache.hits,
+            unsupported_queries: load(&self.unsupported),
+            queries: load(&self.queries),
+            descent: DescentCounts {
+                sphere_tests: load(&self.sphere_tests),
+                aabb_tests: load(&self.aabb_tests),
+                kdop_tests: load(&self.kdop_tests),
+                leaf_pairs: load(&self.leaf_pairs),
+            },
+        }
+    }
+}

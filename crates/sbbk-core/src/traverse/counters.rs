@@ -1,0 +1,62 @@
+/// Counts the work of a descent. `()` counts nothing and compiles to nothing.
+pub trait Counters {
+    /// The root spheres were compared.
+    fn sphere_test(&mut self) {}
+    /// `count` pairs of nodes were compared by their boxes.
+    fn aabb_tests(&mut self, _count: u32) {}
+    /// Of these, `count` were then compared by their k-DOPs as well.
+    fn kdop_tests(&mut self, _count: u32) {}
+    /// A pair of leaves was reached.
+    fn leaf_pair(&mut self) {}
+}
+
+impl Counters for () {}
+
+/// The work of one or more descents.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct DescentCounts {
+    /// Pairs of root spheres compared.
+    pub sphere_tests: u64,
+    /// Pairs of nodes compared, all of them first by their boxes.
+    pub aabb_tests: u64,
+    /// Pairs of nodes whose boxes met, compared by their k-DOPs too.
+    pub kdop_tests: u64,
+    /// Pairs of leaves handed to the visitor.
+    pub leaf_pairs: u64,
+}
+
+impl Counters for DescentCounts {
+    fn sphere_test(&mut self) {
+        self.sphere_tests += 1;
+    }
+
+    fn aabb_tests(&mut self, count: u32) {
+        self.aabb_tests += u64::from(count);
+    }
+
+    fn kdop_tests(&mut self, count: u32) {
+        self.kdop_tests += u64::from(count);
+    }
+
+    fn leaf_pair(&mut self) {
+        self.leaf_pairs += 1;
+    }
+}
+
+impl<C: Counters> Counters for &mut C {
+    fn sphere_test(&mut self) {
+        (**self).sphere_test();
+    }
+
+    fn aabb_tests(&mut self, count: u32) {
+        (**self).aabb_tests(count);
+    }
+
+    fn kdop_tests(&mut self, count: u32) {
+        (**self).kdop_tests(count);
+    }
+
+    fn leaf_pair(&mut self) {
+        (**self).leaf_pair();
+    }
+}

@@ -1,0 +1,176 @@
+//! The descent: both trees at once.
+//!
+//! A pair of nodes that meet is replaced by the pairs of their children, all four compared in one SIMD test
+//! (the paper's simultaneous descent, section 3.2). Where one side is a leaf, the other goes on alone.
+//!
+//! For complete trees of n levels in which everything meets, the paper counts `(2^(2(n-1)) - 1)/3` tests
+//! between inner nodes and `2^(2(n-1))` between leaves, against `2^(2n-1) - 1` in all when one side
+//! descends at a time ([`Descent::Single`]).
+
+use super::counters::Counters;
+use super::frame::PairFrame;
+use super::overlap::{Inner, Outer, Same, Spread};
+use super::visitor::{NodePair, Verdict, Visitor};
+use crate::tree::{Children, Link, Slot, Tree};
+use crate::volumes::{DirectionSet, Directions};
+
+/// In which order the trees go down.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum Descent {
+    /// Both at once.
+    #[default]
+    Simultaneous,
+    /// One at a time, taking turns. For comparison only.
+    Single,
+}
+
+/// Memory of the descent, kept by the caller: after the first few queries nothing is allocated.
+///
+/// The stack holds at most 3 pairs a level of both trees in sum; it grows as needed and nothing is ever
+/// dropped.
+#[derive(Clone, Debug, Default)]
+pub struct DescentScratch {
+    stack: Vec<NodePair>,
+}
+
+/// Visits all pairs of leaves whose volumes, and those of all their ancestors, come within the margin.
+///
+/// Finds every pair of triangles within the margin: volumes contain what is below them and tests
+/// are conservative, see [`PairFrame`]. The order of visits depends on the trees only.
+pub fn descend<const AXES: usize, V: Visitor, C: Counters>(
+    (tree1, tree2): (&Tree<AXES>, &Tree<AXES>),
+    frame: &mut PairFrame<AXES>,
+    descent: Descent,
+    scratch: &mut DescentScratch,
+    mut counters: C,
+    visitor: &mut V,
+) where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    if tree1.sphere().is_some() && tree2.sphere().is_some() {
+        counters.sphere_test();
+        if !frame.spheres_meet(tree1, tree2) {
+            return;
+        }
+    }
+    counters.aabb_tests(1);
+    let roots = (tree1.children(0), tree2.children(0));
+    if frame.boxes_meet((&roots.0, Same(0)), (&roots.1, Same(0))) == 0 {
+        return;
+    }
+
+    let stack = &mut scratch.stack;
+    stack.clear();
+    stack.push(NodePair { slot1: Slot::ROOT, slot2: Slot::ROOT, depth: 0 });
+    while let Some(pair) = stack.pop() {
+        let links = (tree1.link(pair.slot1), tree2.link(pair.slot2));
+        let verdict = if links.0.is_leaf() && links.1.is_leaf() {
+            counters.leaf_pair();
+            let (leaf1, leaf2) = (links.0.index(), links.1.index());
+            match visitor.leaves(leaf1, tree1.leaf(leaf1), leaf2, tree2.leaf(leaf2)) {
+                Verdict::Stop => Verdict::Stop,
+                _ => Verdict::Prune,
+            }
+        } else {
+            visitor.nodes(pair)
+        };
+        match verdict {
+            Verdict::Stop => return,
+            Verdict::Prune => {}
+            Verdict::Descend => {
+                let sides = sides(descent, pair.depth, links);
+                expand((tree1, tree2), frame, &mut counters, pair, links, sides, stack);
+            }
+        }
+    }
+}
+
+/// Which sides of a pair go down.
+#[derive(Copy, Clone)]
+enum Sides {
+    Both,
+    First,
+    Second,
+}
+
+fn sides(descent: Descent, depth: u32, links: (Link, Link)) -> Sides {
+    match (links.0.is_leaf(), links.1.is_leaf()) {
+        (true, _) => Sides::Second,
+        (_, true) => Sides::First,
+        _ => match descent {
+            Descent::Simultaneous => Sides::Both,
+            Descent::Single if depth.is_multiple_of(2) => Sides::First,
+            Descent::Single => Sides::Second,
+        },
+    }
+}
+
+/// Compares the pairs of children and pushes those that meet.
+#[inline(always)]
+fn expand<const AXES: usize>(
+    (tree1, tree2): (&Tree<AXES>, &Tree<AXES>),
+    frame: &mut PairFrame<AXES>,
+    counters: &mut impl Counters,
+    pair: NodePair,
+    links: (Link, Link),
+    sides: Sides,
+    stack: &mut Vec<NodePair>,
+) where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    // The inner node that holds the volumes of each side: the node's own children, or itself in its parent.
+    let (node1, node2) = match sides {
+        Sides::Both => (links.0.index(), links.1.index()),
+        Sides::First => (links.0.index(), pair.slot2.node()),
+        Sides::Second => (pair.slot1.node(), links.1.index()),
+    };
+    let (children1, children2) = (tree1.children(node1), tree2.children(node2));
+    let depth = pair.depth + 1;
+    let mut push = |slot1, slot2| stack.push(NodePair { slot1, slot2, depth });
+    match sides {
+        Sides::Both => {
+            let mask = meet(frame, counters, (&children1, Outer), (&children2, Inner), 0b1111);
+            for lane in (0..4).filter(|lane| mask >> lane & 1 != 0) {
+                push(Slot::new(node1, lane >> 1), Slot::new(node2, lane & 1));
+            }
+        }
+        Sides::First => {
+            let same = Same(pair.slot2.lane());
+            let mask = meet(frame, counters, (&children1, Outer), (&children2, same), 0b0101);
+            for lane in (0..2).filter(|lane| mask >> (2 * lane) & 1 != 0) {
+                push(Slot::new(node1, lane), pair.slot2);
+            }
+        }
+        Sides::Second => {
+            let same = Same(pair.slot1.lane());
+            let mask = meet(frame, counters, (&children1, same), (&children2, Inner), 0b0011);
+            for lane in (0..2).filter(|lane| mask >> lane & 1 != 0) {
+                push(pair.slot1, Slot::new(node2, lane));
+            }
+        }
+    }
+}
+
+/// The lanes of `lanes` whose volumes come within the margin: boxes first, then k-DOPs where both sides have them.
+#[inline(always)]
+fn meet<const AXES: usize>(
+    frame: &mut PairFrame<AXES>,
+    counters: &mut impl Counters,
+    side1: (&Children<'_, AXES>, impl Spread),
+    side2: (&Children<'_, AXES>, impl Spread),
+    lanes: u32,
+) -> u32
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    counters.aabb_tests(lanes.count_ones());
+    let meeting = frame.boxes_meet(side1, side2) & lanes;
+    let (Some(kdops1), Some(kdops2)) = (side1.0.kdop, side2.0.kdop) else {
+        return meeting;
+    };
+    if meeting == 0 {
+        return 0;
+    }
+    counters.kdop_tests(meeting.count_ones());
+    frame.correspondence().kdops_meet((kdops1, side1.1), (kdops2, side2.1), meeting)
+}

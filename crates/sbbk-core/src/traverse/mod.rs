@@ -1,0 +1,18 @@
+//! Two trees against each other.
+//!
+//! [`PairFrame`] holds what depends on the pair's pose, computed once; [`descend`] goes down both trees at
+//! once and hands pairs of leaves to a [`Visitor`]; [`Counters`] count the tests, or cost nothing.
+
+mod correspondence;
+mod counters;
+mod descend;
+mod frame;
+mod overlap;
+mod placement;
+mod visitor;
+
+pub use counters::{Counters, DescentCounts};
+pub use descend::{Descent, DescentScratch, descend};
+pub use frame::PairFrame;
+pub use placement::Placement;
+pub use visitor::{LeafPairs, NodePair, Verdict, Visitor};

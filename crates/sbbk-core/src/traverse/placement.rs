@@ -1,0 +1,41 @@
+use glamx::{DMat3, DPose3, DVec3, Pose3, Vec3};
+
+/// A pose as the linear map that it is, in f64.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Placement {
+    /// The linear part. Parry rotates a point `v` by a quaternion `q` as `q v q*`, which scales by `|q|²`: a
+    /// quaternion slightly off unit length is taken as it is, not normalised.
+    pub rotation: DMat3,
+    /// Where the origin goes.
+    pub translation: DVec3,
+}
+
+impl Placement {
+    /// The map of `pose`, exact but for the rounding of f64.
+    pub fn new(pose: &Pose3) -> Self {
+        let linear = DPose3 { rotation: pose.rotation.as_dquat(), translation: DVec3::ZERO };
+        let column = |axis| linear.transform_point(axis);
+        Self {
+            rotation: DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z)),
+            translation: pose.translation.as_dvec3(),
+        }
+    }
+
+    /// An upper bound of how far any point of a ball has moved from one placement to another.
+    ///
+    /// With `c` the ball's centre and `r` its radius, a point `x` in it moved by
+    /// `(R' - R)(x - c) + (R' c + t') - (R c + t)`: at most `‖R' - R‖·r` plus the motion of the centre. The
+    /// Frobenius norm stands for the spectral one, which it is never below. The last term covers f64 rounding, a
+    /// few 1e-16 of the terms.
+    pub fn motion_bound(&self, earlier: &Self, centre: Vec3, radius: f32) -> f64 {
+        let (centre, radius) = (centre.as_dvec3(), f64::from(radius));
+        let turn = self.rotation - earlier.rotation;
+        let frobenius = (turn.x_axis.length_squared()
+            + turn.y_axis.length_squared()
+            + turn.z_axis.length_squared())
+        .sqrt();
+        let shift = turn * centre + (self.translation - earlier.translation);
+        let magnitude = centre.length() + radius + self.translation.length();
+        frobenius * radius + shift.length() + 1e-14 * magnitude
+    }
+}

@@ -1,0 +1,217 @@
+//! The runtime layout of a tree.
+//!
+//! An inner node stores the volumes of its *two children* side by side, lane by lane: a simultaneous
+//! descent compares the children of two nodes all at once, so these four volumes are what it needs
+//! next to each other. A node's own volume is therefore in its parent, and [`Slot`] names it there.
+
+use glamx::Vec3;
+
+use crate::volumes::rounding::centre_extent;
+use crate::volumes::{Aabb, Kdop, Slabs};
+
+/// Triangles in a leaf at most, and lanes of the triangle test.
+pub const BATCH: usize = 4;
+
+/// What a slot leads to: an inner node or a leaf. A packed word.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Link(u32);
+
+impl Link {
+    const LEAF_BIT: u32 = 1 << 31;
+    /// The largest node or leaf number. Two bits are spare: a [`Slot`] doubles node numbers.
+    pub const MAX_INDEX: u32 = (1 << 30) - 1;
+    /// Of a lane that holds no child.
+    pub(super) const NONE: Self = Self(u32::MAX);
+
+    pub(super) fn inner(node: u32) -> Self {
+        debug_assert!(node <= Self::MAX_INDEX);
+        Self(node)
+    }
+
+    pub(super) fn leaf(leaf: u32) -> Self {
+        debug_assert!(leaf <= Self::MAX_INDEX);
+        Self(leaf | Self::LEAF_BIT)
+    }
+
+    /// Whether this is a leaf.
+    pub fn is_leaf(self) -> bool {
+        self.0 & Self::LEAF_BIT != 0
+    }
+
+    /// The number of the leaf or the inner node.
+    pub fn index(self) -> u32 {
+        self.0 & !Self::LEAF_BIT
+    }
+}
+
+/// A node, named by the place of its volume: the inner node that holds it and the lane there.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Slot(u32);
+
+impl Slot {
+    /// The root of any tree.
+    pub const ROOT: Self = Self(0);
+
+    pub(crate) fn new(node: u32, lane: usize) -> Self {
+        Self(node << 1 | lane as u32)
+    }
+
+    /// The inner node that holds the volume.
+    pub(crate) fn node(self) -> u32 {
+        self.0 >> 1
+    }
+
+    /// The lane of the volume in that node.
+    pub(crate) fn lane(self) -> usize {
+        (self.0 & 1) as usize
+    }
+}
+
+/// Two values, one for each child.
+pub(crate) type Lanes = [f32; 2];
+
+/// The children of an inner node in an AABB layer: one cache line.
+#[derive(Copy, Clone, Debug)]
+#[repr(C, align(64))]
+pub(super) struct AabbPair {
+    pub(super) centre: [Lanes; 3], // 24
+    pub(super) extent: [Lanes; 3], // 24
+    pub(super) links: [Link; 2],   // 8
+}
+const _: () = assert!(size_of::<AabbPair>() == 64);
+
+/// The children of an inner node in a k-DOP layer. The first three slabs are the box.
+#[derive(Copy, Clone, Debug)]
+#[repr(C, align(16))]
+pub(super) struct KdopPair<const AXES: usize> {
+    pub(super) centre: [Lanes; AXES], // 8 · AXES
+    pub(super) extent: [Lanes; AXES], // 8 · AXES
+    pub(super) links: [Link; 2],      // 8
+}
+const _: () = assert!(size_of::<KdopPair<9>>() == 160);
+
+impl AabbPair {
+    pub(super) const EMPTY: Self =
+        Self { centre: [[0.0; 2]; 3], extent: [[f32::NEG_INFINITY; 2]; 3], links: [Link::NONE; 2] };
+
+    pub(super) fn set(&mut self, lane: usize, link: Link, aabb: &Aabb) {
+        self.links[lane] = link;
+        for axis in 0..3 {
+            let (centre, extent) = centre_extent(aabb.min[axis], aabb.max[axis]);
+            self.centre[axis][lane] = centre;
+            self.extent[axis][lane] = extent;
+        }
+    }
+}
+
+impl<const AXES: usize> KdopPair<AXES> {
+    pub(super) const EMPTY: Self = Self {
+        centre: [[0.0; 2]; AXES],
+        extent: [[f32::NEG_INFINITY; 2]; AXES],
+        links: [Link::NONE; 2],
+    };
+
+    pub(super) fn set(&mut self, lane: usize, link: Link, kdop: &Kdop<AXES>) {
+        self.links[lane] = link;
+        for axis in 0..AXES {
+            let (centre, extent) = centre_extent(kdop.min[axis], kdop.max[axis]);
+            self.centre[axis][lane] = centre;
+            self.extent[axis][lane] = extent;
+        }
+    }
+}
+
+/// The children of an inner node of either layer.
+#[derive(Copy, Clone, Debug)]
+pub struct Children<'a, const AXES: usize> {
+    /// Centres of the boxes, axis by axis, child by child.
+    pub(crate) centre: &'a [Lanes; 3],
+    /// Half-lengths of the boxes.
+    pub(crate) extent: &'a [Lanes; 3],
+    /// Centres and half-lengths of all slabs, in the k-DOP layers.
+    pub(crate) kdop: Option<(&'a [Lanes; AXES], &'a [Lanes; AXES])>,
+    pub(crate) links: &'a [Link; 2],
+}
+
+impl<'a, const AXES: usize> Children<'a, AXES> {
+    pub(super) fn from_aabbs(pair: &'a AabbPair) -> Self {
+        Self { centre: &pair.centre, extent: &pair.extent, kdop: None, links: &pair.links }
+    }
+
+    pub(super) fn from_kdops(pair: &'a KdopPair<AXES>) -> Self {
+        let box_of = |slabs: &'a [Lanes; AXES]| {
+            slabs.first_chunk::<3>().expect("every direction set starts with x, y and z")
+        };
+        Self {
+            centre: box_of(&pair.centre),
+            extent: box_of(&pair.extent),
+            kdop: Some((&pair.centre, &pair.extent)),
+            links: &pair.links,
+        }
+    }
+
+    /// The box of one child.
+    pub fn aabb(&self, lane: usize) -> Aabb {
+        let read = |lanes: &[Lanes; 3]| Vec3::from_array(lanes.map(|l| l[lane]));
+        let (centre, extent) = (read(self.centre), read(self.extent));
+        Aabb { min: centre - extent, max: centre + extent }
+    }
+
+    /// The k-DOP of one child, in the k-DOP layers.
+    pub fn kdop(&self, lane: usize) -> Option<Kdop<AXES>> {
+        self.kdop.map(|(centre, extent)| {
+            let slab = |sign: f32| -> Slabs<AXES> {
+                std::array::from_fn(|axis| centre[axis][lane] + sign * extent[axis][lane])
+            };
+            Kdop { min: slab(-1.0), max: slab(1.0) }
+        })
+    }
+}
+
+/// Up to [`BATCH`] triangles, lane by lane. Unused lanes repeat the last triangle.
+#[derive(Copy, Clone, Debug)]
+#[repr(C, align(16))]
+pub struct LeafBatch {
+    /// `corners[corner][axis][lane]`.
+    pub(crate) corners: [[[f32; BATCH]; 3]; 3], // 144
+    /// Indices of the triangles in the mesh.
+    pub(crate) triangles: [u32; BATCH], // 16
+    pub(crate) count: u32, // 4
+}
+const _: () = assert!(size_of::<LeafBatch>() == 176);
+
+impl LeafBatch {
+    pub(super) fn new(members: &[u32], vertices: &[Vec3], triangles: &[[u32; 3]]) -> Self {
+        debug_assert!((1..=BATCH).contains(&members.len()));
+        let mut batch = Self {
+            corners: [[[0.0; BATCH]; 3]; 3],
+            triangles: [0; BATCH],
+            count: members.len() as u32,
+        };
+        for lane in 0..BATCH {
+            let triangle = members[lane.min(members.len() - 1)];
+            batch.triangles[lane] = triangle;
+            for (corner, &vertex) in triangles[triangle as usize].iter().enumerate() {
+                for axis in 0..3 {
+                    batch.corners[corner][axis][lane] = vertices[vertex as usize][axis];
+                }
+            }
+        }
+        batch
+    }
+
+    /// Number of triangles.
+    pub fn count(&self) -> usize {
+        self.count as usize
+    }
+
+    /// Indices of the triangles in the mesh.
+    pub fn triangles(&self) -> &[u32] {
+        &self.triangles[..self.count()]
+    }
+
+    /// The corners of the triangle in `lane`.
+    pub fn corners(&self, lane: usize) -> [Vec3; 3] {
+        self.corners.map(|corner| Vec3::from_array(corner.map(|axis| axis[lane])))
+    }
+}

@@ -1,0 +1,152 @@
+//! From the tree of the build to the arrays of the descent.
+//!
+//! Upper nodes are numbered breadth first, so that the ones every descent visits share cache lines; the k-DOP
+//! layers follow in the order of the build (depth first, siblings adjacent).
+
+use glamx::Vec3;
+
+use super::Tree;
+use super::build::{BuildNode, BuildOptions, BuildTree, Content};
+use super::node::{AabbPair, KdopPair, LeafBatch, Link};
+use super::stats::BuildStats;
+use crate::volumes::{DirectionSet, Directions, Kdop, Sphere, Volume};
+
+pub(super) fn pack<const AXES: usize>(
+    built: BuildTree,
+    vertices: &[Vec3],
+    triangles: &[[u32; 3]],
+    options: &BuildOptions,
+) -> Tree<AXES>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    let layers = options.layers;
+    let (leaves, leaf_links) = leaves(&built, vertices, triangles);
+    let kdops = kdops::<AXES>(&built, vertices, triangles, options);
+    let numbers = number_nodes(&built.nodes, options);
+
+    // Entry 0 holds the root itself, in lane 0.
+    let mut aabb_pairs = vec![AabbPair::EMPTY; 1 + numbers.aabb_count];
+    let mut kdop_pairs = vec![KdopPair::EMPTY; numbers.kdop_count];
+    let link_of = |place: usize| match built.nodes[place].content {
+        Content::Inner(_) => Link::inner(numbers.of_place[place]),
+        Content::Leaf(_) => leaf_links[place],
+    };
+    aabb_pairs[0].set(0, link_of(0), &built.nodes[0].aabb);
+    for (place, node) in built.nodes.iter().enumerate() {
+        let Content::Inner(children) = node.content else {
+            continue;
+        };
+        let number = numbers.of_place[place] as usize;
+        for (lane, child) in children.into_iter().enumerate() {
+            let child = child as usize;
+            if layers.is_kdop(node.depth + 1) {
+                let pair = &mut kdop_pairs[number - aabb_pairs.len()];
+                pair.set(lane, link_of(child), &kdops[child]);
+            } else {
+                aabb_pairs[number].set(lane, link_of(child), &built.nodes[child].aabb);
+            }
+        }
+    }
+
+    let mut tree = Tree {
+        sphere: layers.sphere_root.then(|| Sphere::fit(&used_vertices(vertices, triangles))),
+        aabb_pairs,
+        kdop_pairs,
+        leaves,
+        triangle_count: triangles.len() as u32,
+        magnitude: built.nodes[0].aabb.magnitude(),
+        stats: BuildStats::default(),
+    };
+    tree.stats = BuildStats::of(&tree, &built, vertices, triangles);
+    tree
+}
+
+/// The batches of triangles, and for each place of the built tree the link to its batch.
+fn leaves(
+    built: &BuildTree,
+    vertices: &[Vec3],
+    triangles: &[[u32; 3]],
+) -> (Vec<LeafBatch>, Vec<Link>) {
+    let mut leaves = Vec::with_capacity(built.nodes.len() / 2 + 1);
+    let mut links = vec![Link::NONE; built.nodes.len()];
+    for (place, node) in built.nodes.iter().enumerate() {
+        if let Content::Leaf(range) = &node.content {
+            links[place] = Link::leaf(leaves.len() as u32);
+            let members = &built.order[range.start as usize..range.end as usize];
+            leaves.push(LeafBatch::new(members, vertices, triangles));
+        }
+    }
+    (leaves, links)
+}
+
+/// The k-DOPs of the nodes in the k-DOP layers, bottom up; empty ones above.
+fn kdops<const AXES: usize>(
+    built: &BuildTree,
+    vertices: &[Vec3],
+    triangles: &[[u32; 3]],
+    options: &BuildOptions,
+) -> Vec<Kdop<AXES>>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    if options.layers.kdop_from_depth.is_none() {
+        return Vec::new();
+    }
+    let mut kdops = vec![Kdop::EMPTY; built.nodes.len()];
+    for (place, node) in built.nodes.iter().enumerate().rev() {
+        if !options.layers.is_kdop(node.depth) {
+            continue;
+        }
+        kdops[place] = match &node.content {
+            Content::Inner([first, second]) => {
+                kdops[*first as usize].merge(&kdops[*second as usize])
+            }
+            Content::Leaf(range) => built.order[range.start as usize..range.end as usize]
+                .iter()
+                .flat_map(|&triangle| triangles[triangle as usize])
+                .fold(Kdop::EMPTY, |kdop, v| kdop.with_point(vertices[v as usize])),
+        };
+    }
+    kdops
+}
+
+/// Runtime numbers of the inner nodes.
+struct Numbers {
+    /// By place in the built tree; leaves have none.
+    of_place: Vec<u32>,
+    aabb_count: usize,
+    kdop_count: usize,
+}
+
+fn number_nodes(nodes: &[BuildNode], options: &BuildOptions) -> Numbers {
+    let children_are_kdops = |node: &BuildNode| options.layers.is_kdop(node.depth + 1);
+    let is_inner = |node: &BuildNode| matches!(node.content, Content::Inner(_));
+
+    let mut upper: Vec<u32> = (0..nodes.len() as u32)
+        .filter(|&i| is_inner(&nodes[i as usize]) && !children_are_kdops(&nodes[i as usize]))
+        .collect();
+    upper.sort_by_key(|&i| nodes[i as usize].depth);
+
+    let mut of_place = vec![u32::MAX; nodes.len()];
+    for (number, &place) in upper.iter().enumerate() {
+        of_place[place as usize] = 1 + number as u32;
+    }
+    let mut next = 1 + upper.len() as u32;
+    for (place, node) in nodes.iter().enumerate() {
+        if is_inner(node) && children_are_kdops(node) {
+            of_place[place] = next;
+            next += 1;
+        }
+    }
+    Numbers { of_place, aabb_count: upper.len(), kdop_count: next as usize - 1 - upper.len() }
+}
+
+/// The vertices that triangles use: others must not widen the sphere.
+fn used_vertices(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+    let mut used = vec![false; vertices.len()];
+    for &vertex in triangles.iter().flatten() {
+        used[vertex as usize] = true;
+    }
+    vertices.iter().zip(used).filter_map(|(&v, used)| used.then_some(v)).collect()
+}

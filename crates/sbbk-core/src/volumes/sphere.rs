@@ -1,0 +1,140 @@
+use glamx::{Pose3, Vec3};
+
+use super::rounding::gamma;
+use super::{DirectionSet, Directions, Volume};
+
+/// A ball.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Sphere {
+    /// The middle of the ball.
+    pub centre: Vec3,
+    /// Half of its diameter; negative if the sphere is empty.
+    pub radius: f32,
+}
+
+/// How many times the extremal points are searched anew along the direction to the farthest point.
+/// Each costs one pass over the points; after 8 the radius is within 1 % of the minimum on the
+/// measured meshes (test: within 5 % on random ones).
+const REFINEMENTS: usize = 8;
+
+impl Sphere {
+    /// The farthest of `points` from the centre, and its distance.
+    fn farthest(&self, points: &[Vec3]) -> (Vec3, f32) {
+        let mut farthest = (self.centre, 0.0);
+        for &point in points {
+            let distance_squared = self.centre.distance_squared(point);
+            if distance_squared > farthest.1 {
+                farthest = (point, distance_squared);
+            }
+        }
+        (farthest.0, farthest.1.sqrt())
+    }
+
+    /// The sphere grown just enough to touch `point`, which is `distance` away from its centre.
+    fn grown_to(&self, point: Vec3, distance: f32) -> Self {
+        if distance <= self.radius {
+            return *self;
+        }
+        let radius = 0.5 * (self.radius + distance);
+        let centre = self.centre + (point - self.centre) * ((distance - radius) / distance);
+        Self { centre, radius }
+    }
+}
+
+impl Volume for Sphere {
+    const EMPTY: Self = Self { centre: Vec3::ZERO, radius: -1.0 };
+
+    /// Near-minimal. Starts from the widest of the 13 diameters of the k-DOP directions (Larsson, *Fast and
+    /// Tight Fitting Bounding Spheres*, 2008), then walks the centre towards the farthest point by a
+    /// shrinking step (Bădoiu and Clarkson, *Smaller Core-Sets for Balls*, 2003) and keeps the best.
+    /// Linear in the number of points.
+    ///
+    /// Rounding: a distance is a sum of three squared differences and a root, γ_5 in all, relative to the
+    /// difference of coordinates, which is itself rounded by u of the coordinates.
+    fn fit(points: &[Vec3]) -> Self {
+        let Some(&first) = points.first() else {
+            return Self::EMPTY;
+        };
+        let mut ends = [(first, first); 13];
+        for &point in points {
+            for (end, direction) in ends.iter_mut().zip(Directions::<13>::DIRECTIONS) {
+                if point.dot(direction) < end.0.dot(direction) {
+                    end.0 = point;
+                }
+                if point.dot(direction) > end.1.dot(direction) {
+                    end.1 = point;
+                }
+            }
+        }
+        let length = |ends: &(Vec3, Vec3)| ends.0.distance_squared(ends.1);
+        let widest = ends.iter().copied().max_by(|a, b| length(a).total_cmp(&length(b)));
+        let (p, q) = widest.unwrap_or((first, first));
+
+        let mut sphere = Self { centre: 0.5 * p + 0.5 * q, radius: 0.5 * p.distance(q) };
+        for (p, q) in ends {
+            for point in [p, q] {
+                sphere = sphere.grown_to(point, sphere.centre.distance(point));
+            }
+        }
+        let mut best = Self { radius: f32::INFINITY, ..sphere };
+        for step in 0..=REFINEMENTS {
+            let (point, distance) = sphere.farthest(points);
+            if distance < best.radius {
+                best = Self { radius: distance, ..sphere };
+            }
+            sphere.radius = 0.99 * best.radius * (1.0 - 0.1 / (step + 1) as f32);
+            sphere = sphere.grown_to(point, distance);
+        }
+        let magnitude = best.centre.abs().max_element() + best.radius;
+        Self { radius: best.radius * (1.0 + gamma(6)) + gamma(2) * magnitude, ..best }
+    }
+
+    fn merge(&self, other: &Self) -> Self {
+        if other.radius < 0.0 {
+            return *self;
+        }
+        if self.radius < 0.0 {
+            return *other;
+        }
+        let distance = self.centre.distance(other.centre);
+        if distance + other.radius <= self.radius {
+            return *self;
+        }
+        if distance + self.radius <= other.radius {
+            return *other;
+        }
+        let radius = 0.5 * (distance + self.radius + other.radius);
+        let centre =
+            self.centre + (other.centre - self.centre) * ((radius - self.radius) / distance);
+        let magnitude = centre.abs().max_element() + radius;
+        Self { centre, radius: radius + gamma(12) * magnitude }
+    }
+
+    fn overlaps(&self, other: &Self, margin: f32) -> bool {
+        // The differences round by u of the coordinates, the squares and sums by γ_5, the radii by γ_3.
+        let magnitude = self.centre.abs().max_element() + other.centre.abs().max_element();
+        let reach = (self.radius + other.radius + margin) * (1.0 + gamma(8)) + gamma(4) * magnitude;
+        self.radius >= 0.0
+            && other.radius >= 0.0
+            && self.centre.distance_squared(other.centre) <= reach * reach
+    }
+
+    /// Rounding: the rotated centre is off by at most γ_12·(3·|c| + |t|) an axis (see
+    /// [`Aabb`](super::Aabb)), twice that in length.
+    fn transformed(&self, pose: &Pose3) -> Self {
+        if self.radius < 0.0 {
+            return *self;
+        }
+        let magnitude = 3.0 * self.centre.abs().max_element()
+            + pose.translation.abs().max_element()
+            + self.radius;
+        Self {
+            centre: pose.transform_point(self.centre),
+            radius: self.radius + 2.0 * gamma(12) * magnitude,
+        }
+    }
+
+    fn contains(&self, point: Vec3) -> bool {
+        self.overlaps(&Self { centre: point, radius: 0.0 }, 0.0)
+    }
+}

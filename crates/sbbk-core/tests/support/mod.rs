@@ -1,0 +1,104 @@
+//! Inputs for the tests of this crate: small meshes, poses, and a seeded random source.
+#![allow(dead_code)] // Each test binary uses a part.
+
+use glamx::{Pose3, Quat, Vec3};
+
+/// A mesh as the tree takes it.
+#[derive(Clone, Debug)]
+pub struct Soup {
+    pub vertices: Vec<Vec3>,
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// SplitMix64: enough for test inputs, the same on every machine.
+#[derive(Clone, Debug)]
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// In `[low, high)`.
+    pub fn range(&mut self, low: f32, high: f32) -> f32 {
+        low + (high - low) * ((self.bits() >> 40) as f32 / (1u64 << 24) as f32)
+    }
+
+    pub fn vector(&mut self, size: f32) -> Vec3 {
+        Vec3::new(self.range(-size, size), self.range(-size, size), self.range(-size, size))
+    }
+
+    pub fn rotation(&mut self) -> Quat {
+        loop {
+            let q = Quat::from_xyzw(
+                self.range(-1.0, 1.0),
+                self.range(-1.0, 1.0),
+                self.range(-1.0, 1.0),
+                self.range(-1.0, 1.0),
+            );
+            if q.length_squared() > 0.1 && q.length_squared() < 1.0 {
+                return q.normalize();
+            }
+        }
+    }
+
+    pub fn pose(&mut self, distance: f32) -> Pose3 {
+        Pose3::from_parts(self.vector(distance), self.rotation())
+    }
+}
+
+/// A bumpy ball of radius about 1: `2 · rings · (2 · rings)` triangles less the poles.
+pub fn bumpy_ball(rings: u32, bumps: f32) -> Soup {
+    let segments = 2 * rings;
+    let mut vertices = Vec::new();
+    for ring in 0..=rings {
+        for segment in 0..segments {
+            let polar = std::f32::consts::PI * ring as f32 / rings as f32;
+            let azimuth = std::f32::consts::TAU * segment as f32 / segments as f32;
+            let direction =
+                Vec3::new(polar.sin() * azimuth.cos(), polar.sin() * azimuth.sin(), polar.cos());
+            let radius = 1.0 + bumps * (5.0 * azimuth).sin() * (4.0 * polar).sin();
+            vertices.push(direction * radius);
+        }
+    }
+    let mut triangles = Vec::new();
+    for ring in 0..rings {
+        for segment in 0..segments {
+            let at = |r: u32, s: u32| r * segments + s % segments;
+            let (a, b) = (at(ring, segment), at(ring, segment + 1));
+            let (c, d) = (at(ring + 1, segment), at(ring + 1, segment + 1));
+            if ring > 0 {
+                triangles.push([a, c, b]);
+            }
+            if ring + 1 < rings {
+                triangles.push([b, c, d]);
+            }
+        }
+    }
+    Soup { vertices, triangles }
+}
+
+/// Triangles with no connection, of edges up to `size`, in a cube of half-length 1.
+pub fn soup(random: &mut Random, count: u32, size: f32) -> Soup {
+    let mut vertices = Vec::new();
+    for _ in 0..count {
+        let centre = random.vector(1.0);
+        for _ in 0..3 {
+            vertices.push(centre + random.vector(size));
+        }
+    }
+    let triangles = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    Soup { vertices, triangles }
+}
+
+/// Triangles with corners on the integer lattice `0..=side`; some are degenerate.
+pub fn lattice_soup(random: &mut Random, count: u32, side: u64) -> Soup {
+    let mut corner = || Vec3::from_array([0; 3].map(|_| (random.bits() % (side + 1)) as f32));
+    let vertices = (0..3 * count).map(|_| corner()).collect();
+    let triangles = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    Soup { vertices, triangles }
+}
