@@ -15,7 +15,7 @@ use sbbk_core::tree::BuildError;
 use crate::mesh::{PreparedMesh, TreeCache};
 use crate::pair::{Answer, MeshPair, contact_manifolds};
 use crate::stats::QueryCounters;
-use crate::{SbbkConfig, SbbkStats};
+use crate::{ContactGenerator, SbbkConfig, SbbkStats, TriangleContacts};
 
 /// A query dispatcher that answers the contacts of every pair of triangle meshes from SBBK trees, and leaves all else to
 /// Parry's [`DefaultQueryDispatcher`].
@@ -78,7 +78,7 @@ impl SbbkDispatcher {
             let mut counts = DescentCounts::default();
             let answer =
                 contact_manifolds(pair, &self.cache, contacts, &mut counts, manifolds, workspace);
-            self.counters.add(&counts);
+            self.counters.add(answer, &counts);
             answer
         } else {
             contact_manifolds(pair, &self.cache, contacts, (), manifolds, workspace)
@@ -126,7 +126,7 @@ where
     ) -> Result<(), Unsupported> {
         if let (Some(mesh1), Some(mesh2)) = (rigid_mesh(g1), rigid_mesh(g2)) {
             let pair = MeshPair { pos12, mesh1, mesh2, prediction };
-            if self.mesh_contacts(pair, manifolds, workspace) == Answer::Done {
+            if self.mesh_contacts(pair, manifolds, workspace) != Answer::Unsupported {
                 return Ok(());
             }
         }
@@ -143,6 +143,14 @@ where
         prediction: Real,
         manifold: &mut ContactManifold<M, C>,
     ) -> Result<(), Unsupported> {
+        if let (ContactGenerator::Exact, Some(triangle1), Some(triangle2)) =
+            (self.config.contacts, g1.as_triangle(), g2.as_triangle())
+        {
+            let constraints = [normal_constraints1, normal_constraints2];
+            let triangles = [triangle1, triangle2];
+            TriangleContacts::default().update(pos12, triangles, constraints, prediction, manifold);
+            return Ok(());
+        }
         DefaultQueryDispatcher.contact_manifold_convex_convex(
             pos12,
             g1,

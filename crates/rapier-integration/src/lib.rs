@@ -8,5 +8,6 @@ mod stats;
 
 pub use config::{ContactGenerator, SbbkConfig};
 pub use dispatcher::SbbkDispatcher;
+pub use pair::TriangleContacts;
 pub use sbbk_core;
 pub use stats::SbbkStats;

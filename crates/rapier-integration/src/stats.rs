@@ -3,6 +3,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use sbbk_core::traverse::DescentCounts;
 
 use crate::mesh::CacheCounts;
+use crate::pair::Answer;
 
 /// What a dispatcher and its clones did so far.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
@@ -24,13 +25,22 @@ pub struct SbbkStats {
     /// Mesh pairs answered from trees. Counted, like the following, if
     /// [`SbbkConfig::count_queries`](crate::SbbkConfig::count_queries) is set.
     pub queries: u64,
-    /// The work of their descents.
+    /// Of these, how many found nothing moved since the last query of the pair.
+    pub unchanged_queries: u64,
+    /// How many tested the candidates of an earlier descent.
+    pub reused_queries: u64,
+    /// How many descended. The rest was apart by the boxes of the whole meshes.
+    pub descended_queries: u64,
+    /// The work of the descents.
     pub descent: DescentCounts,
 }
 
 #[derive(Default)]
 pub(crate) struct QueryCounters {
     queries: AtomicU64,
+    unchanged: AtomicU64,
+    reused: AtomicU64,
+    descended: AtomicU64,
     unsupported: AtomicU64,
     sphere_tests: AtomicU64,
     aabb_tests: AtomicU64,
@@ -43,8 +53,16 @@ impl QueryCounters {
         self.unsupported.fetch_add(1, Ordering::Relaxed);
     }
 
-    pub(crate) fn add(&self, counts: &DescentCounts) {
-        self.queries.fetch_add(1, Ordering::Relaxed);
+    pub(crate) fn add(&self, answer: Answer, counts: &DescentCounts) {
+        if answer != Answer::Unsupported {
+            self.queries.fetch_add(1, Ordering::Relaxed);
+        }
+        match answer {
+            Answer::Unchanged => self.unchanged.fetch_add(1, Ordering::Relaxed),
+            Answer::Reused => self.reused.fetch_add(1, Ordering::Relaxed),
+            Answer::Descended => self.descended.fetch_add(1, Ordering::Relaxed),
+            Answer::Apart | Answer::Unsupported => return,
+        };
         self.sphere_tests.fetch_add(counts.sphere_tests, Ordering::Relaxed);
         self.aabb_tests.fetch_add(counts.aabb_tests, Ordering::Relaxed);
         self.kdop_tests.fetch_add(counts.kdop_tests, Ordering::Relaxed);
@@ -61,6 +79,9 @@ impl QueryCounters {
             tree_hits: cache.hits,
             unsupported_queries: load(&self.unsupported),
             queries: load(&self.queries),
+            unchanged_queries: load(&self.unchanged),
+            reused_queries: load(&self.reused),
+            descended_queries: load(&self.descended),
             descent: DescentCounts {
                 sphere_tests: load(&self.sphere_tests),
                 aabb_tests: load(&self.aabb_tests),

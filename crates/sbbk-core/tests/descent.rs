@@ -177,7 +177,7 @@ fn finds_every_pair_under_denormalised_rotations() {
     for scale in [0.999, 1.0001, 1.01] {
         for _ in 0..10 {
             let mut pose = random.pose(1.2);
-            pose.rotation = pose.rotation * scale;
+            pose.rotation *= scale;
             total += check::<9>(&ball, &ball, &pose, 0.01);
         }
     }

@@ -1,15 +1,18 @@
 //! One manifold from the exact contact of two triangles.
 
 use glamx::DVec3;
-use parry3d::math::{Pose, Vector};
+use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d::query::{ContactManifold, TrackedContact};
-use parry3d::shape::{PackedFeatureId, Triangle, TrianglePseudoNormals};
+use parry3d::shape::{PackedFeatureId, Triangle};
 use sbbk_core::contact::{
     Feature, FeaturePair, ManifoldPoint, ManifoldPoints, TriangleContact, clip, contact,
     contact_from, push_closest,
 };
-use sbbk_core::traverse::PairFrame;
+use sbbk_core::traverse::Placement;
+
+/// The cones that the normals of both triangles must be in.
+pub(super) type Constraints<'a> = [Option<&'a dyn NormalConstraints>; 2];
 
 /// Two triangles in frame 1, relative to a corner of the first one: all their digits are about each other.
 pub(super) struct LocalTriangles {
@@ -18,24 +21,24 @@ pub(super) struct LocalTriangles {
 }
 
 impl LocalTriangles {
-    pub(super) fn new(frame: &PairFrame, triangle1: &Triangle, triangle2: &Triangle) -> Self {
+    pub(super) fn new(placement: &Placement, triangle1: &Triangle, triangle2: &Triangle) -> Self {
         let origin = triangle1.a;
         let relative = |x: Vector| x.as_dvec3() - origin.as_dvec3();
         let corners = [
             [triangle1.a, triangle1.b, triangle1.c].map(relative),
-            [triangle2.a, triangle2.b, triangle2.c].map(|x| frame.to_frame1(x, origin)),
+            [triangle2.a, triangle2.b, triangle2.c].map(|x| placement.to_frame1(x, origin)),
         ];
         Self { origin, corners }
     }
 
-    /// The contact within the margin of the frame, tried first with the features of the step before.
+    /// The contact within the margin, tried first with the features of the step before.
     pub(super) fn contact(
         &self,
-        frame: &PairFrame,
+        margin: Real,
         last: Option<FeaturePair>,
     ) -> Option<TriangleContact> {
         let [t1, t2] = &self.corners;
-        let margin = f64::from(frame.margin());
+        let margin = f64::from(margin);
         match last {
             Some(last) => contact_from(t1, t2, margin, last),
             None => contact(t1, t2, margin),
@@ -48,10 +51,10 @@ impl LocalTriangles {
 ///
 /// May leave the manifold without points, where the constraints reject the contact.
 pub(super) fn fill<M, C: Default + Copy>(
-    (frame, pos12): (&PairFrame, &Pose),
+    (placement, pos12): (&Placement, &Pose),
     triangles: &LocalTriangles,
     contact: &TriangleContact,
-    constraints: [Option<&TrianglePseudoNormals>; 2],
+    constraints: Constraints<'_>,
     previous_points: &mut Vec<TrackedContact<C>>,
     manifold: &mut ContactManifold<M, C>,
 ) {
@@ -71,7 +74,7 @@ pub(super) fn fill<M, C: Default + Copy>(
     }
     let is_constrained = constraints.iter().any(Option::is_some);
     for point in points.iter().filter(|point| !is_constrained || is_plausible(point, contact)) {
-        manifold.points.push(tracked(frame, triangles.origin, point, previous_points));
+        manifold.points.push(tracked(placement, triangles.origin, point, previous_points));
     }
     manifold.local_n1 = normal1.normal;
     manifold.local_n2 = pos12.rotation.inverse() * -normal1.normal;
@@ -85,16 +88,14 @@ struct ConstrainedNormal {
 /// The normal in the cones of both triangles; `None` if they exclude it.
 fn constrained_normal(
     contact: &TriangleContact,
-    constraints: [Option<&TrianglePseudoNormals>; 2],
+    constraints: Constraints<'_>,
     pos12: &Pose,
 ) -> Option<ConstrainedNormal> {
     let free = contact.normal.as_vec3();
     let mut normal = free;
     if constraints.iter().any(Option::is_some) {
-        let [cone1, cone2] =
-            constraints.map(|cone| cone.map(|cone| cone as &dyn NormalConstraints));
         let mut normal2 = pos12.rotation.inverse() * -free;
-        if !(cone1, cone2).project_local_normals(pos12, &mut normal, &mut normal2) {
+        if !<(_, _)>::from(constraints).project_local_normals(pos12, &mut normal, &mut normal2) {
             return None;
         }
     }
@@ -108,7 +109,7 @@ fn is_plausible(point: &ManifoldPoint, contact: &TriangleContact) -> bool {
 }
 
 fn tracked<C: Default + Copy>(
-    frame: &PairFrame,
+    placement: &Placement,
     origin: Vector,
     point: &ManifoldPoint,
     previous: &[TrackedContact<C>],
@@ -116,7 +117,7 @@ fn tracked<C: Default + Copy>(
     let fid1 = packed(point.features.feature1());
     let fid2 = packed(point.features.feature2());
     let local_p1 = (origin.as_dvec3() + point.point1).as_vec3();
-    let local_p2 = frame.to_frame2(point.point2, origin).as_vec3();
+    let local_p2 = placement.to_frame2(point.point2, origin).as_vec3();
     let mut tracked = TrackedContact::new(local_p1, local_p2, fid1, fid2, point.distance as f32);
     if let Some(known) = previous.iter().find(|old| old.fid1 == fid1 && old.fid2 == fid2) {
         tracked.data = known.data;
@@ -129,5 +130,51 @@ fn packed(feature: Feature) -> PackedFeatureId {
         Feature::Vertex(i) => PackedFeatureId::vertex(u32::from(i)),
         Feature::Edge(i) => PackedFeatureId::edge(u32::from(i)),
         Feature::Face => PackedFeatureId::face(0),
+    }
+}
+
+/// The contacts of two triangles from step to step, without meshes: for hosts with a midphase of their own.
+///
+/// Exact at every scale, see [`sbbk_core::contact`].
+#[derive(Clone, Debug)]
+pub struct TriangleContacts<C> {
+    features: Option<FeaturePair>,
+    previous_points: Vec<TrackedContact<C>>,
+}
+
+impl<C> Default for TriangleContacts<C> {
+    fn default() -> Self {
+        Self { features: None, previous_points: Vec::new() }
+    }
+}
+
+impl<C: Default + Copy> TriangleContacts<C> {
+    /// Brings the manifold of two triangles up to date, `triangle2` at `pos12` in the frame of `triangle1`.
+    ///
+    /// The manifold has no points if the triangles are farther apart than `prediction`, if the normal
+    /// constraints reject the contact, or if a number is not finite.
+    pub fn update<M>(
+        &mut self,
+        pos12: &Pose,
+        [triangle1, triangle2]: [&Triangle; 2],
+        normal_constraints: [Option<&dyn NormalConstraints>; 2],
+        prediction: Real,
+        manifold: &mut ContactManifold<M, C>,
+    ) {
+        let placement = Placement::new(pos12);
+        let triangles = LocalTriangles::new(&placement, triangle1, triangle2);
+        let contact = triangles.contact(prediction, self.features);
+        self.features = contact.map(|contact| contact.features);
+        match contact {
+            Some(contact) => fill(
+                (&placement, pos12),
+                &triangles,
+                &contact,
+                normal_constraints,
+                &mut self.previous_points,
+                manifold,
+            ),
+            None => manifold.points.clear(),
+        }
     }
 }

@@ -8,7 +8,7 @@ use sbbk_core::traverse::PairFrame;
 
 use super::candidates::{Candidate, OrderKey, Scratch};
 use super::coherence::Coherence;
-use super::exact::{LocalTriangles, fill};
+use super::exact::{Constraints, LocalTriangles, fill};
 use super::query::MeshPair;
 use super::state::History;
 use crate::ContactGenerator;
@@ -113,8 +113,8 @@ impl Generator<'_> {
         let MeshPair { pos12, mesh1, mesh2, prediction } = self.pair;
         let triangle1 = mesh1.triangle(candidate.triangle1);
         let triangle2 = mesh2.triangle(candidate.triangle2);
-        let triangles = LocalTriangles::new(self.frame, &triangle1, &triangle2);
-        let contact = triangles.contact(self.frame, features);
+        let triangles = LocalTriangles::new(self.frame.placement(), &triangle1, &triangle2);
+        let contact = triangles.contact(self.frame.margin(), features);
         if let (Some(contact), Some(coherence)) = (&contact, descent) {
             coherence.keep(*candidate, contact.distance);
         }
@@ -123,13 +123,10 @@ impl Generator<'_> {
             manifold.points.clear();
             return Kept { manifold, features: None };
         };
-        let constraints = [
-            self.prepared[0].normal_constraints(candidate.triangle1),
-            self.prepared[1].normal_constraints(candidate.triangle2),
-        ];
+        let constraints = self.constraints(candidate);
         match self.contacts {
             ContactGenerator::Exact => fill(
-                (self.frame, pos12),
+                (self.frame.placement(), pos12),
                 &triangles,
                 &contact,
                 constraints,
@@ -137,21 +134,27 @@ impl Generator<'_> {
                 &mut manifold,
             ),
             ContactGenerator::Parry => {
-                let [cone1, cone2] =
-                    constraints.map(|cone| cone.map(|cone| cone as &dyn NormalConstraints));
                 // Two triangles are a pair that Parry supports.
                 let _ = DefaultQueryDispatcher.contact_manifold_convex_convex(
                     &self.parrys_pose(),
                     &triangle1,
                     &triangle2,
-                    cone1,
-                    cone2,
+                    constraints[0],
+                    constraints[1],
                     prediction,
                     &mut manifold,
                 );
             }
         }
         Kept { manifold, features: Some(contact.features) }
+    }
+
+    fn constraints(&self, candidate: &Candidate) -> Constraints<'_> {
+        let cone = |mesh: usize, triangle: u32| {
+            let cone = self.prepared[mesh].normal_constraints(triangle);
+            cone.map(|cone| cone as &dyn NormalConstraints)
+        };
+        [cone(0, candidate.triangle1), cone(1, candidate.triangle2)]
     }
 
     /// The pose that stock Parry passes on: bit for bit, it inverts the pose twice if it does not swap the meshes.

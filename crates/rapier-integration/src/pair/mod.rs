@@ -10,4 +10,5 @@ mod manifolds;
 mod query;
 mod state;
 
+pub use exact::TriangleContacts;
 pub(crate) use query::{Answer, MeshPair, contact_manifolds};

@@ -24,12 +24,18 @@ pub(crate) struct MeshPair<'a> {
     pub(crate) prediction: Real,
 }
 
-/// How a query went.
+/// How a query was answered.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Answer {
-    /// The manifolds are up to date.
-    Done,
-    /// A mesh cannot have a tree: somebody else must answer.
+    /// By the boxes of the whole meshes alone.
+    Apart,
+    /// By what the last query left: nothing has moved.
+    Unchanged,
+    /// From the candidates of an earlier descent.
+    Reused,
+    /// By a descent.
+    Descended,
+    /// Not at all: a mesh cannot have a tree, and somebody else must answer.
     Unsupported,
 }
 
@@ -101,7 +107,7 @@ where
     let PairState { meshes, coherence, history } = PairState::of(workspace, manifolds);
     if matches!(meshes, KnownMeshes::None) && !pair.root_boxes_meet() {
         manifolds.clear();
-        return Answer::Done;
+        return Answer::Apart;
     }
     let Some(prepared) = pair.trees(cache, meshes, coherence) else {
         return Answer::Unsupported;
@@ -110,7 +116,7 @@ where
     let trees = (&prepared[0].tree, &prepared[1].tree);
     let plan = coherence.plan(trees.1, pair.pos12, pair.prediction);
     if plan == Plan::Nothing && history.is_of(manifolds) {
-        return Answer::Done;
+        return Answer::Unchanged;
     }
     let margin = match plan {
         Plan::Descend { margin } => margin,
@@ -128,5 +134,8 @@ where
         let is_descent = matches!(plan, Plan::Descend { .. });
         generator.update(scratch, is_descent.then_some(coherence), history, manifolds);
     });
-    Answer::Done
+    match plan {
+        Plan::Reuse { .. } => Answer::Reused,
+        Plan::Nothing | Plan::Descend { .. } => Answer::Descended,
+    }
 }

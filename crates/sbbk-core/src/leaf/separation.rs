@@ -33,10 +33,11 @@ pub(super) struct LeafFrame {
 
 impl LeafFrame {
     pub(super) fn new<const AXES: usize>(frame: &PairFrame<AXES>) -> Self {
+        let placement = frame.placement();
         let margin = (frame.margin().max(0.0) + 5.0 * frame.rounding) * (1.0 + gamma(16));
         Self {
-            rotation: [0, 1, 2].map(|i| frame.rotation.row(i).as_vec3().to_array()),
-            translation: frame.translation.as_vec3().to_array(),
+            rotation: [0, 1, 2].map(|i| placement.rotation.row(i).as_vec3().to_array()),
+            translation: placement.translation.as_vec3().to_array(),
             margin,
         }
     }

@@ -1,6 +1,6 @@
-use glamx::{DMat3, DVec3};
 use wide::f32x4;
 
+use super::placement::Placement;
 use crate::volumes::{DirectionSet, Directions};
 
 /// For each slab direction of tree 1, three adjacent slabs of tree 2 that bound it: see
@@ -33,15 +33,15 @@ where
     /// each term goes through 5 roundings (the coefficient's own included) and the extents through 3 more:
     /// `γ_9·(3·M1) + γ_6·3·T + γ_14·(10.4·s·M2)`. Six times the bound of the boxes, `γ_16·(6·M1 + 6·T + 12·s·M2)`,
     /// is more.
-    pub(super) fn new(rotation: &DMat3, translation: DVec3, margin: f32, rounding: f32) -> Self {
-        let to_frame2 = rotation.transpose();
+    pub(super) fn new(placement: &Placement, margin: f32, rounding: f32) -> Self {
+        let to_frame2 = placement.rotation.transpose();
         let slabs = <Directions<AXES> as DirectionSet<AXES>>::DIRECTIONS.map(|direction| {
             let direction = direction.as_dvec3();
             let terms = Directions::<AXES>::correspondence(to_frame2 * direction);
             let coefficients = terms.map(|(_, coefficient)| coefficient as f32);
             let margin = f64::from(margin) * direction.length() + 6.0 * f64::from(rounding);
             CorrespondingSlabs {
-                offset: f32x4::splat(direction.dot(translation) as f32),
+                offset: f32x4::splat(direction.dot(placement.translation) as f32),
                 coefficients: coefficients.map(f32x4::splat),
                 absolute_coefficients: coefficients.map(|c| f32x4::splat(c.abs())),
                 indices: terms.map(|(slab, _)| slab),

@@ -1,4 +1,4 @@
-use glamx::{DMat3, DVec3, Pose3};
+use glamx::{DMat3, Pose3};
 use wide::f32x4;
 
 use super::correspondence::Correspondence;
@@ -25,10 +25,7 @@ use crate::volumes::{DirectionSet, Directions};
 /// by that. A pose that is not finite gives NaN everywhere, and no test passes.
 #[derive(Clone, Debug)]
 pub struct PairFrame<const AXES: usize = 9> {
-    /// `x1 = rotation · x2 + translation`.
-    pub(crate) rotation: DMat3,
-    pub(crate) translation: DVec3,
-    inverse: DMat3,
+    pub(crate) placement: Placement,
     margin: f32,
     /// The rounding bound above, frame 1.
     pub(crate) rounding: f32,
@@ -63,8 +60,8 @@ impl<const AXES: usize> PairFrame<AXES> {
     /// The frame of `tree2` placed at `pos12` in the frame of `tree1`. Triangles within `margin` of each other
     /// will be found.
     pub fn new(tree1: &Tree<AXES>, tree2: &Tree<AXES>, pos12: &Pose3, margin: f32) -> Self {
-        let Placement { rotation, translation } = Placement::new(pos12);
-        let inverse = rotation.inverse();
+        let placement = Placement::new(pos12);
+        let Placement { rotation, inverse, .. } = placement;
         // A row of the inverse is 1/s long: distances along it shrink by that.
         let inverse_scale =
             [0, 1, 2].map(|i| inverse.row(i).length()).into_iter().fold(0.0, f64::max);
@@ -76,9 +73,7 @@ impl<const AXES: usize> PairFrame<AXES> {
         let rounding2 = gamma(16) * (m2 + 2.0 * inverse_scale as f32 * (m1 + t));
         let margin2 = (f64::from(margin) * inverse_scale) as f32;
         Self {
-            rotation,
-            translation,
-            inverse,
+            placement,
             margin,
             rounding,
             translation_lanes: pos12.translation.to_array().map(f32x4::splat),
@@ -93,16 +88,9 @@ impl<const AXES: usize> PairFrame<AXES> {
         self.margin
     }
 
-    /// `x`, a point of mesh 2, in frame 1 and relative to `origin` there; exact up to f64 rounding.
-    pub fn to_frame1(&self, x: glamx::Vec3, origin: glamx::Vec3) -> DVec3 {
-        // The translations meet first: they are what cancels when two bodies touch far from the origin.
-        self.rotation * x.as_dvec3() + (self.translation - origin.as_dvec3())
-    }
-
-    /// The reverse of [`to_frame1`](Self::to_frame1): a point of frame 1, relative to `origin` there, in the frame
-    /// of mesh 2.
-    pub fn to_frame2(&self, x: DVec3, origin: glamx::Vec3) -> DVec3 {
-        self.inverse * (x - (self.translation - origin.as_dvec3()))
+    /// Where mesh 2 is in the frame of mesh 1.
+    pub fn placement(&self) -> &Placement {
+        &self.placement
     }
 
     /// Whether the root spheres come within the margin; `true` where a tree has none.
@@ -110,8 +98,8 @@ impl<const AXES: usize> PairFrame<AXES> {
         let (Some(sphere1), Some(sphere2)) = (tree1.sphere(), tree2.sphere()) else {
             return true;
         };
-        let centre2 = self.to_frame1(sphere2.centre, sphere1.centre);
-        let scale = self.rotation.x_axis.length();
+        let centre2 = self.placement.to_frame1(sphere2.centre, sphere1.centre);
+        let scale = self.placement.rotation.x_axis.length();
         let reach =
             f64::from(sphere1.radius) + scale * f64::from(sphere2.radius) + f64::from(self.margin);
         // f64 rounds far below the spheres' own f32 slack.
@@ -126,8 +114,7 @@ where
     /// The correspondence of the slabs, computed once.
     #[inline(always)]
     pub(super) fn correspondence(&mut self) -> &Correspondence<AXES> {
-        self.correspondence.get_or_insert_with(|| {
-            Correspondence::new(&self.rotation, self.translation, self.margin, self.rounding)
-        })
+        self.correspondence
+            .get_or_insert_with(|| Correspondence::new(&self.placement, self.margin, self.rounding))
     }
 }

@@ -8,6 +8,8 @@ pub struct Placement {
     pub rotation: DMat3,
     /// Where the origin goes.
     pub translation: DVec3,
+    /// The inverse of the linear part; not finite if there is none.
+    pub inverse: DMat3,
 }
 
 impl Placement {
@@ -15,10 +17,19 @@ impl Placement {
     pub fn new(pose: &Pose3) -> Self {
         let linear = DPose3 { rotation: pose.rotation.as_dquat(), translation: DVec3::ZERO };
         let column = |axis| linear.transform_point(axis);
-        Self {
-            rotation: DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z)),
-            translation: pose.translation.as_dvec3(),
-        }
+        let rotation = DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z));
+        Self { rotation, translation: pose.translation.as_dvec3(), inverse: rotation.inverse() }
+    }
+
+    /// `x`, a point of frame 2, in frame 1 and relative to `origin` there.
+    pub fn to_frame1(&self, x: Vec3, origin: Vec3) -> DVec3 {
+        // The translations meet first: they are what cancels when two bodies touch far from the origin.
+        self.rotation * x.as_dvec3() + (self.translation - origin.as_dvec3())
+    }
+
+    /// The reverse of [`to_frame1`](Self::to_frame1): a point of frame 1, relative to `origin` there, in frame 2.
+    pub fn to_frame2(&self, x: DVec3, origin: Vec3) -> DVec3 {
+        self.inverse * (x - (self.translation - origin.as_dvec3()))
     }
 
     /// An upper bound of how far any point of a ball has moved from one placement to another.

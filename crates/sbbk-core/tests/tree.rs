@@ -1,0 +1,122 @@
+//! Building: every triangle once, every volume around what is below it, every fault of the input reported.
+
+mod support;
+
+use glamx::Vec3;
+use sbbk_core::tree::{BATCH, BuildError, BuildOptions, LayerPlan, Tree};
+use sbbk_core::volumes::{DirectionSet, Directions};
+use support::{Random, Soup, bumpy_ball, lattice_soup, soup};
+
+fn options(kdop_from_depth: Option<u32>, leaf_size: usize) -> BuildOptions {
+    BuildOptions { layers: LayerPlan { sphere_root: true, kdop_from_depth }, leaf_size }
+}
+
+fn check<const AXES: usize>(soup: &Soup, options: &BuildOptions) -> Tree<AXES>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    let tree = Tree::<AXES>::build(&soup.vertices, &soup.triangles, options).unwrap();
+    assert_eq!(tree.validate(), Ok(()));
+    assert_eq!(tree.triangle_count() as usize, soup.triangles.len());
+    for leaf in 0..tree.leaf_count() {
+        let batch = tree.leaf(leaf);
+        assert!((1..=options.leaf_size.clamp(1, BATCH)).contains(&batch.count()));
+        for (lane, &triangle) in batch.triangles().iter().enumerate() {
+            let corners = soup.triangles[triangle as usize].map(|v| soup.vertices[v as usize]);
+            assert_eq!(batch.corners(lane), corners, "the leaf holds another triangle");
+        }
+    }
+    tree
+}
+
+/// Each size from one triangle up, so that every shape of small tree occurs.
+#[test]
+fn trees_of_all_small_sizes_are_valid() {
+    let mut random = Random(21);
+    for count in 1..=70 {
+        for leaf_size in 1..=BATCH {
+            let soup = soup(&mut random, count, 0.3);
+            check::<9>(&soup, &options(Some(1 + count % 5), leaf_size));
+            check::<7>(&soup, &options(None, leaf_size));
+            check::<13>(&soup, &options(Some(3), leaf_size));
+        }
+    }
+}
+
+#[test]
+fn large_tree_is_valid_and_shallow() {
+    let ball = bumpy_ball(60, 0.1);
+    let tree = check::<9>(&ball, &BuildOptions::default());
+    assert!(ball.triangles.len() > 14_000 && tree.stats().depth < 25, "{:?}", tree.stats());
+}
+
+/// Equal centroids cannot be separated by a plane: halving keeps the depth logarithmic.
+#[test]
+fn equal_triangles_make_a_balanced_tree() {
+    let soup =
+        Soup { vertices: vec![Vec3::ZERO, Vec3::X, Vec3::Y], triangles: vec![[0, 1, 2]; 4096] };
+    assert_eq!(check::<9>(&soup, &options(Some(4), 1)).stats().depth, 12);
+}
+
+/// Zero area, zero extent, lattice ties, and coordinates of very different size are all kept.
+#[test]
+fn degenerate_triangles_are_kept_and_counted() {
+    let mut random = Random(22);
+    let mut soup = lattice_soup(&mut random, 200, 2);
+    soup.triangles.push([0, 0, 0]);
+    soup.triangles.push([0, 1, 0]);
+    let flat = |t: &&[u32; 3]| {
+        let [a, b, c] = t.map(|v| soup.vertices[v as usize]);
+        (b - a).cross(c - a) == Vec3::ZERO
+    };
+    let expected = soup.triangles.iter().filter(flat).count() as u32;
+    let tree = check::<9>(&soup, &BuildOptions::default());
+    assert_eq!(tree.stats().degenerate_count, expected);
+    assert!(expected > 2);
+
+    for vertex in &mut soup.vertices {
+        *vertex *= random.range(0.0, 1.0).powi(40) * 1e5;
+    }
+    check::<9>(&soup, &BuildOptions::default());
+}
+
+#[test]
+fn faults_are_reported_with_their_place() {
+    let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(0.0, f32::NAN, 0.0)];
+    let build = |triangles: &[[u32; 3]], options: &BuildOptions| {
+        Tree::<9>::build(&vertices, triangles, options).err()
+    };
+    let fine = BuildOptions::default();
+    assert_eq!(build(&[], &fine), Some(BuildError::NoTriangles));
+    assert_eq!(
+        build(&[[0, 1, 2], [0, 4, 2]], &fine),
+        Some(BuildError::IndexOutOfRange { triangle: 1, vertex: 4, vertex_count: 4 })
+    );
+    let nan = build(&[[0, 1, 3]], &fine).expect("a NaN vertex");
+    assert!(matches!(nan, BuildError::NotFinite { vertex: 3, .. }));
+    assert_eq!(nan.to_string(), "vertex 3 is not finite: (0, NaN, 0)");
+    assert_eq!(
+        build(&[[0, 1, 2]], &options(Some(0), 4)),
+        Some(BuildError::KdopAtRoot { depth: 0 })
+    );
+    // A bad vertex that no triangle uses does no harm.
+    assert_eq!(build(&[[0, 1, 2]], &fine), None);
+}
+
+/// The memory by kind adds up, and plans without a kind have none of it.
+#[test]
+fn statistics_follow_the_plan() {
+    let ball = bumpy_ball(20, 0.1);
+    let sbbk = *check::<9>(&ball, &options(Some(4), 4)).stats();
+    let boxes =
+        *check::<9>(&ball, &BuildOptions { layers: LayerPlan::AABB_ONLY, leaf_size: 4 }).stats();
+    assert_eq!((boxes.sphere_bytes, boxes.kdop_bytes), (0, 0));
+    assert!(sbbk.sphere_bytes > 0 && sbbk.kdop_bytes > sbbk.aabb_bytes);
+    assert_eq!(sbbk.leaf_bytes, boxes.leaf_bytes);
+    assert_eq!(
+        sbbk.bytes(),
+        sbbk.sphere_bytes + sbbk.aabb_bytes + sbbk.kdop_bytes + sbbk.leaf_bytes
+    );
+    assert_eq!(sbbk.inner_count + 1, sbbk.leaf_count);
+    assert!(sbbk.sah_cost > 1.0 && sbbk.sah_cost == boxes.sah_cost);
+}

@@ -1,0 +1,240 @@
+//! One suite of properties for every volume, and the exact minimal sphere.
+
+mod support;
+
+use glamx::{DVec3, Pose3, Quat, Vec3};
+use nalgebra::{Matrix3, Vector3};
+use proptest::prelude::*;
+use sbbk_core::volumes::{Aabb, DirectionSet, Directions, Kdop14, Kdop18, Kdop26, Sphere, Volume};
+use support::Random;
+
+fn coordinate() -> impl Strategy<Value = f32> {
+    prop_oneof![
+        -10.0f32..10.0,
+        (-4i8..=4).prop_map(f32::from),
+        -1e-3f32..1e-3,
+        (-1.0f32..1.0).prop_map(|x| 1e5 + x),
+    ]
+}
+
+fn point() -> impl Strategy<Value = Vec3> {
+    [coordinate(), coordinate(), coordinate()].prop_map(Vec3::from_array)
+}
+
+fn points() -> impl Strategy<Value = Vec<Vec3>> {
+    prop::collection::vec(point(), 1..20)
+}
+
+fn pose() -> impl Strategy<Value = Pose3> {
+    let quarter = (0u8..4, 0usize..3).prop_map(|(turns, axis)| {
+        let axis = [Vec3::X, Vec3::Y, Vec3::Z][axis];
+        Quat::from_axis_angle(axis, f32::from(turns) * std::f32::consts::FRAC_PI_2)
+    });
+    let any = any::<u64>().prop_map(|seed| Random(seed).rotation());
+    (point(), prop_oneof![quarter, any])
+        .prop_map(|(translation, rotation)| Pose3::from_parts(translation, rotation))
+}
+
+/// The closest distance of two point sets, exactly enough: what no overlap test may deny.
+fn distance(points1: &[Vec3], points2: &[Vec3]) -> f64 {
+    let pairs = points1.iter().flat_map(|p| points2.iter().map(move |q| (p, q)));
+    pairs.map(|(p, q)| p.as_dvec3().distance(q.as_dvec3())).fold(f64::INFINITY, f64::min)
+}
+
+/// The properties every volume must have. A volume that misses a point, a merge that forgets a side, a margin
+/// in the wrong unit, a transform that rounds inwards: each fails here.
+fn check_volume<V: Volume + std::fmt::Debug>(
+    points1: &[Vec3],
+    points2: &[Vec3],
+    pose: &Pose3,
+) -> Result<(), TestCaseError> {
+    let (one, two) = (V::fit(points1), V::fit(points2));
+    for &p in points1 {
+        prop_assert!(one.contains(p), "fit: {one:?} lacks {p:?}");
+    }
+    let merged = one.merge(&two);
+    for &p in points1.iter().chain(points2) {
+        prop_assert!(merged.contains(p), "merge: {merged:?} lacks {p:?}");
+    }
+    let margin = (distance(points1, points2) as f32).next_up();
+    prop_assert!(one.overlaps(&two, margin), "{one:?} and {two:?} are within {margin}");
+    prop_assert!(two.overlaps(&one, margin));
+
+    let moved = one.transformed(pose);
+    let exact = glamx::DPose3 {
+        rotation: pose.rotation.as_dquat(),
+        translation: pose.translation.as_dvec3(),
+    };
+    for &p in points1 {
+        // The f32 nearest to the exact place is at most half a unit in the last place off: allow for
+        // that by a tiny margin around it.
+        let place = exact.transform_point(p.as_dvec3());
+        let around = Sphere { centre: place.as_vec3(), radius: 0.0 };
+        let slack = 1e-7 * place.abs().max_element() as f32;
+        let image = V::fit(&[around.centre]);
+        prop_assert!(moved.overlaps(&image, slack), "transform: {moved:?} lacks {place:?}");
+    }
+    prop_assert!(!V::EMPTY.overlaps(&one, 1e6) && !one.overlaps(&V::EMPTY, 1e6));
+    prop_assert!(V::EMPTY.merge(&one).contains(points1[0]));
+    Ok(())
+}
+
+proptest! {
+    #[test]
+    fn spheres(a in points(), b in points(), pose in pose()) {
+        check_volume::<Sphere>(&a, &b, &pose)?;
+    }
+
+    #[test]
+    fn aabbs(a in points(), b in points(), pose in pose()) {
+        check_volume::<Aabb>(&a, &b, &pose)?;
+    }
+
+    #[test]
+    fn kdops(a in points(), b in points(), pose in pose()) {
+        check_volume::<Kdop14>(&a, &b, &pose)?;
+        check_volume::<Kdop18>(&a, &b, &pose)?;
+        check_volume::<Kdop26>(&a, &b, &pose)?;
+    }
+
+    /// Zachmann's correspondence: non-negative coefficients of three of the set's directions that add up to the
+    /// direction, hence conservative for any points by LP weak duality; and tight where the three are adjacent: the
+    /// direction itself, if it is in the set, gets coefficient 1.
+    #[test]
+    fn correspondence_is_conservative(seed in any::<u64>(), cloud in points()) {
+        check_correspondence::<7>(seed, &cloud)?;
+        check_correspondence::<9>(seed, &cloud)?;
+        check_correspondence::<13>(seed, &cloud)?;
+    }
+}
+
+fn check_correspondence<const AXES: usize>(seed: u64, cloud: &[Vec3]) -> Result<(), TestCaseError>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    let directions = <Directions<AXES> as DirectionSet<AXES>>::DIRECTIONS;
+    let mut random = Random(seed);
+    let rotation = random.rotation().as_dquat();
+    let lattice = DVec3::from_array([0; 3].map(|_| (random.bits() % 5) as f64 - 2.0));
+    let rotated = directions.map(|d| rotation * d.as_dvec3());
+    for direction in rotated.into_iter().chain([lattice]) {
+        let terms = Directions::<AXES>::correspondence(direction);
+        let sum: DVec3 = terms.iter().map(|&(slab, c)| directions[slab].as_dvec3() * c).sum();
+        prop_assert!((sum - direction).length() < 1e-12, "{terms:?} is not {direction:?}");
+        // The slab's interval times the signed coefficient bounds from above what `direction` sees.
+        let seen = |d: DVec3| cloud.iter().map(|p| d.dot(p.as_dvec3())).fold(f64::MIN, f64::max);
+        let bound: f64 = terms
+            .iter()
+            .map(|&(slab, c)| c.abs() * seen(directions[slab].as_dvec3() * c.signum()))
+            .sum();
+        prop_assert!(bound >= seen(direction) - 1e-6, "{bound} < {}", seen(direction));
+    }
+    for (slab, direction) in directions.into_iter().enumerate() {
+        let terms = Directions::<AXES>::correspondence(direction.as_dvec3());
+        let used: Vec<_> = terms.into_iter().filter(|&(_, c)| c != 0.0).collect();
+        prop_assert_eq!(used, vec![(slab, 1.0)]);
+    }
+    Ok(())
+}
+
+/// The coefficients must be non-negative for the *signed* directions they stand for: the cone of the table
+/// in `directions.rs` must contain every direction.
+#[test]
+fn cones_contain_their_directions() {
+    let mut random = Random(11);
+    for _ in 0..10_000 {
+        let mut sorted = random.vector(1.0).abs().as_dvec3().to_array();
+        sorted.sort_by(|a, b| b.total_cmp(a));
+        let sorted = DVec3::from_array(sorted);
+        let cones = [
+            Directions::<7>::cone(sorted),
+            Directions::<9>::cone(sorted),
+            Directions::<13>::cone(sorted),
+        ];
+        for (_, coefficient) in cones.into_iter().flatten() {
+            assert!(coefficient >= -1e-15, "{sorted:?}");
+        }
+    }
+}
+
+/// Spheres touch at the exact distance, boxes at the exact gap: inclusive, and not one unit more.
+#[test]
+fn touching_is_inclusive_and_exact_on_the_lattice() {
+    let at = |x: f32| Vec3::new(x, 0.0, 0.0);
+    let box1 = Aabb::fit(&[at(0.0), at(1.0)]);
+    let box2 = Aabb::fit(&[at(3.0), at(4.0)]);
+    assert!(box1.overlaps(&box2, 2.0) && !box1.overlaps(&box2, 2.0f32.next_down()));
+    let kdop1 = Kdop18::fit(&[at(0.0), at(1.0)]);
+    let kdop2 = Kdop18::fit(&[at(3.0), at(4.0)]);
+    assert!(kdop1.overlaps(&kdop2, 2.0) && !kdop1.overlaps(&kdop2, 1.999));
+    let ball = |x: f32| Sphere { centre: at(x), radius: 1.0 };
+    assert!(ball(0.0).overlaps(&ball(4.0), 2.0) && !ball(0.0).overlaps(&ball(4.0), 1.999));
+}
+
+#[test]
+fn nan_overlaps_nothing() {
+    let bad = Vec3::new(f32::NAN, 0.0, 0.0);
+    let aabb = Aabb { min: bad, max: bad };
+    assert!(!aabb.overlaps(&Aabb::fit(&[Vec3::ZERO]), 1e9));
+    let sphere = Sphere { centre: bad, radius: 1.0 };
+    assert!(!sphere.overlaps(&Sphere::fit(&[Vec3::ZERO]), 1e9));
+}
+
+/// The sphere through at most four support points, by Welzl's algorithm in f64: the exact minimum.
+fn minimal_sphere(points: &[DVec3], support: &mut Vec<DVec3>) -> (DVec3, f64) {
+    if points.is_empty() || support.len() == 4 {
+        return sphere_through(support);
+    }
+    let (last, rest) = points.split_last().expect("not empty");
+    let (centre, radius) = minimal_sphere(rest, support);
+    if centre.distance(*last) <= radius + 1e-9 {
+        return (centre, radius);
+    }
+    support.push(*last);
+    let sphere = minimal_sphere(rest, support);
+    support.pop();
+    sphere
+}
+
+fn sphere_through(support: &[DVec3]) -> (DVec3, f64) {
+    let Some((&first, rest)) = support.split_first() else { return (DVec3::ZERO, -1.0) };
+    // The centre is first + Σ λ_i e_i with 2 e_j·(centre - first) = e_j².
+    let edges: Vec<_> = rest.iter().map(|&p| p - first).collect();
+    let mut gram = Matrix3::identity();
+    let mut right = Vector3::zeros();
+    for (i, a) in edges.iter().enumerate() {
+        for (j, b) in edges.iter().enumerate() {
+            gram[(i, j)] = 2.0 * a.dot(*b);
+        }
+        right[i] = a.length_squared();
+    }
+    let weights = gram.lu().solve(&right).unwrap_or_else(Vector3::zeros);
+    let offset: DVec3 = edges.iter().enumerate().map(|(i, &e)| e * weights[i]).sum();
+    (first + offset, offset.length())
+}
+
+/// "Within 5 % of the exact minimal sphere."
+#[test]
+fn spheres_are_near_minimal() {
+    let mut random = Random(12);
+    let mut worst = 1.0f64;
+    for i in 0..300 {
+        let count = 1 + (random.bits() % 60) as usize;
+        let stretch = [Vec3::ONE, Vec3::new(1.0, 0.2, 0.05), Vec3::new(1.0, 1.0, 0.01)][i % 3];
+        let cloud: Vec<Vec3> = (0..count)
+            .map(|_| match i % 4 {
+                0 => random.vector(1.0).normalize_or(Vec3::X) * stretch,
+                _ => random.vector(1.0) * stretch,
+            })
+            .collect();
+        let sphere = Sphere::fit(&cloud);
+        let mut exact: Vec<DVec3> = cloud.iter().map(|p| p.as_dvec3()).collect();
+        exact.dedup();
+        let (_, minimum) = minimal_sphere(&exact, &mut Vec::new());
+        if minimum > 0.0 {
+            worst = worst.max(f64::from(sphere.radius) / minimum);
+        }
+    }
+    assert!(worst < 1.05, "the worst sphere is {worst} times the minimum");
+    assert!(worst > 1.0, "no sphere was compared");
+}
