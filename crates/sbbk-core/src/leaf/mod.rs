@@ -13,7 +13,7 @@ use wide::f32x4;
 use crate::traverse::PairFrame;
 use crate::tree::{BATCH, LeafBatch};
 use lane::each;
-use separation::{Batch, LeafFrame, Triangle};
+use separation::{Corners, LeafFrame, near};
 
 /// Tests pairs of leaves at one pose. Made once a query.
 #[derive(Copy, Clone)]
@@ -34,11 +34,12 @@ impl LeafTest {
         batch2: &LeafBatch,
         mut found: impl FnMut(usize, usize),
     ) {
-        let batch = Batch::new(&self.0, lanes(&batch2.corners, f32x4::new));
+        let frame = &self.0;
+        let two = Corners::from_frame2(frame, lanes(&batch2.corners, f32x4::new));
         let used = (1 << batch2.count()) - 1;
         for lane1 in 0..batch1.count() {
-            let corners = lanes(&batch1.corners, |axis| f32x4::splat(axis[lane1]));
-            let mut near = batch.near(&Triangle::new(corners)).to_bitmask() & used;
+            let one = Corners::new(lanes(&batch1.corners, |axis| f32x4::splat(axis[lane1])));
+            let mut near = near(frame, &one, &two).to_bitmask() & used;
             while near != 0 {
                 found(lane1, near.trailing_zeros() as usize);
                 near &= near - 1;
@@ -53,11 +54,11 @@ impl LeafTest {
         batch2: &LeafBatch,
         mut found: impl FnMut(usize, usize),
     ) {
+        let one_lane = |batch: &LeafBatch, lane| batch.corners(lane).map(|c| c.to_array());
         for lane1 in 0..batch1.count() {
-            let triangle = Triangle::new(batch1.corners(lane1).map(|c| c.to_array()));
+            let one = Corners::new(one_lane(batch1, lane1));
             for lane2 in 0..batch2.count() {
-                let corners = batch2.corners(lane2).map(|c| c.to_array());
-                if Batch::new(&self.0, corners).near(&triangle) {
+                if near(&self.0, &one, &Corners::from_frame2(&self.0, one_lane(batch2, lane2))) {
                     found(lane1, lane2);
                 }
             }

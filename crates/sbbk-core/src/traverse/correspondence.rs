@@ -1,6 +1,5 @@
-use wide::f32x4;
-
 use super::placement::Placement;
+use crate::leaf::lane::each;
 use crate::volumes::{DirectionSet, Directions};
 
 /// For each slab direction of tree 1, three adjacent slabs of tree 2 that bound it: see
@@ -13,14 +12,14 @@ pub(super) struct Correspondence<const AXES: usize> {
     pub(super) slabs: [CorrespondingSlabs; AXES],
 }
 
+/// Scalars, spread over lanes where they are used: a query sets these up once and may test few nodes.
 #[derive(Copy, Clone, Debug)]
 pub(super) struct CorrespondingSlabs {
-    pub(super) offset: f32x4,
-    pub(super) coefficients: [f32x4; 3],
-    pub(super) absolute_coefficients: [f32x4; 3],
-    pub(super) indices: [usize; 3],
+    pub(super) offset: f32,
+    pub(super) coefficients: [f32; 3],
+    pub(super) indices: [u8; 3],
     /// The margin times the length of the direction, plus the rounding.
-    pub(super) margin: f32x4,
+    pub(super) margin: f32,
 }
 
 impl<const AXES: usize> Correspondence<AXES>
@@ -35,17 +34,16 @@ where
     /// is more.
     pub(super) fn new(placement: &Placement, margin: f32, rounding: f32) -> Self {
         let to_frame2 = placement.rotation.transpose();
-        let slabs = <Directions<AXES> as DirectionSet<AXES>>::DIRECTIONS.map(|direction| {
-            let direction = direction.as_dvec3();
+        let directions = <Directions<AXES> as DirectionSet<AXES>>::DIRECTIONS;
+        let slabs = std::array::from_fn(|axis| {
+            let direction = directions[axis].as_dvec3();
             let terms = Directions::<AXES>::correspondence(to_frame2 * direction);
-            let coefficients = terms.map(|(_, coefficient)| coefficient as f32);
             let margin = f64::from(margin) * direction.length() + 6.0 * f64::from(rounding);
             CorrespondingSlabs {
-                offset: f32x4::splat(direction.dot(placement.translation) as f32),
-                coefficients: coefficients.map(f32x4::splat),
-                absolute_coefficients: coefficients.map(|c| f32x4::splat(c.abs())),
-                indices: terms.map(|(slab, _)| slab),
-                margin: f32x4::splat((margin as f32).next_up()),
+                offset: direction.dot(placement.translation) as f32,
+                coefficients: each(|i| terms[i].1 as f32),
+                indices: each(|i| terms[i].0 as u8),
+                margin: (margin as f32).next_up(),
             }
         });
         Self { slabs }

@@ -96,12 +96,13 @@ impl<const AXES: usize> Correspondence<AXES> {
     ) -> u32 {
         let mut remaining = candidates;
         for (axis, slab) in self.slabs.iter().enumerate() {
-            let mut gap = slab.offset - spread1.spread(&kdops1.0[axis]);
-            let mut reach = slab.margin + spread1.spread(&kdops1.1[axis]);
+            let mut gap = f32x4::splat(slab.offset) - spread1.spread(&kdops1.0[axis]);
+            let mut reach = f32x4::splat(slab.margin) + spread1.spread(&kdops1.1[axis]);
             for term in 0..3 {
-                let index = slab.indices[term];
-                gap += slab.coefficients[term] * spread2.spread(&kdops2.0[index]);
-                reach += slab.absolute_coefficients[term] * spread2.spread(&kdops2.1[index]);
+                let index = usize::from(slab.indices[term]);
+                let coefficient = f32x4::splat(slab.coefficients[term]);
+                gap += coefficient * spread2.spread(&kdops2.0[index]);
+                reach += coefficient.abs() * spread2.spread(&kdops2.1[index]);
             }
             remaining &= gap.abs().simd_le(reach).to_bitmask();
             if remaining == 0 {

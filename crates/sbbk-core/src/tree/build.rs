@@ -1,16 +1,17 @@
 //! Top-down build by the binned surface area heuristic.
 //!
 //! Wald, *On Fast Construction of SAH-based Bounding Volume Hierarchies*, 2007: the triangles' centroids fall
-//! into a fixed number of bins an axis; the split between two bins with the least
+//! into a fixed number of bins along their longest axis; the split between two bins with the least
 //! `area(1)·count(1) + area(2)·count(2)` wins. Where no split separates anything (equal centroids) the
-//! triangles are halved by number, so the depth stays logarithmic for any input.
+//! triangles are halved by number, so the depth stays logarithmic for any input. Trying all three axes was dropped:
+//! 3 % fewer node tests for twice the build time.
 
-use glamx::Vec3;
+use glamx::{Vec3, Vec3A};
 
 use super::LayerPlan;
-use super::bins::{BINS, Bin, BinMapping};
+use super::bins::{BinMapping, Bins, Bounds};
 use super::node::BATCH;
-use crate::volumes::{Aabb, Volume};
+use crate::volumes::Aabb;
 
 /// How a tree is built.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -51,8 +52,8 @@ pub(super) enum Content {
 
 #[derive(Copy, Clone)]
 struct Primitive {
-    aabb: Aabb,
-    centroid: Vec3,
+    bounds: Bounds,
+    centroid: Vec3A,
     triangle: u32,
 }
 
@@ -71,7 +72,7 @@ pub(super) fn build(
     let mut primitives = primitives(vertices, triangles);
     let mut nodes = Vec::with_capacity(triangles.len());
     nodes.push(BuildNode {
-        aabb: bounds(&primitives),
+        aabb: bounds(&primitives).aabb(),
         depth: 0,
         content: Content::Leaf(0..triangles.len() as u32),
     });
@@ -81,14 +82,14 @@ pub(super) fn build(
             nodes[node as usize].content = Content::Leaf(range.start as u32..range.end as u32);
             continue;
         }
-        let (middle, aabbs) = split(&mut primitives[range.clone()]);
+        let (middle, bounds) = split(&mut primitives[range.clone()]);
         let middle = range.start + middle;
         let depth = nodes[node as usize].depth + 1;
         let first = nodes.len() as u32;
         let children = [range.start..middle, middle..range.end];
-        for (child, aabb) in children.into_iter().zip(aabbs) {
+        for (child, bounds) in children.into_iter().zip(bounds) {
             tasks.push(Task { node: nodes.len() as u32, range: child });
-            nodes.push(BuildNode { aabb, depth, content: Content::Leaf(0..0) });
+            nodes.push(BuildNode { aabb: bounds.aabb(), depth, content: Content::Leaf(0..0) });
         }
         nodes[node as usize].content = Content::Inner([first, first + 1]);
     }
@@ -96,62 +97,34 @@ pub(super) fn build(
 }
 
 fn primitives(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Primitive> {
-    triangles
-        .iter()
-        .enumerate()
-        .map(|(triangle, indices)| {
-            let aabb = Aabb::fit(&indices.map(|v| vertices[v as usize]));
-            Primitive { aabb, centroid: aabb.centre(), triangle: triangle as u32 }
-        })
-        .collect()
+    let primitive = |(triangle, [a, b, c]): (usize, &[u32; 3])| {
+        let corner = |vertex: &u32| vertices[*vertex as usize];
+        let bounds = Bounds::of_corners([corner(a), corner(b), corner(c)]);
+        Primitive { bounds, centroid: bounds.centre(), triangle: triangle as u32 }
+    };
+    triangles.iter().enumerate().map(primitive).collect()
 }
 
-fn bounds(primitives: &[Primitive]) -> Aabb {
-    primitives.iter().fold(Aabb::EMPTY, |all, p| all.merge(&p.aabb))
+fn bounds(primitives: &[Primitive]) -> Bounds {
+    primitives.iter().fold(Bounds::EMPTY, |all, p| all.merge(&p.bounds))
 }
 
 /// Reorders the primitives so that the two halves of the best split follow each other. Returns where the second
 /// starts, never at an end, and the boxes of both.
-fn split(primitives: &mut [Primitive]) -> (usize, [Aabb; 2]) {
-    let centroids = primitives.iter().fold(Aabb::EMPTY, |all, p| all.with_point(p.centroid));
-    let mapping = BinMapping::new(&centroids);
-    if let Some((axis, bin, aabbs)) = best_split(primitives, &mapping) {
-        let middle = partition(primitives, |p| mapping.bins(p.centroid)[axis] < bin);
-        return (middle, aabbs);
+fn split(primitives: &mut [Primitive]) -> (usize, [Bounds; 2]) {
+    let centroids = primitives.iter().fold(Bounds::EMPTY, |all, p| all.with_point(p.centroid));
+    if let Some(mapping) = BinMapping::new(&centroids, primitives.len()) {
+        let mut bins = Bins::new(&mapping);
+        for primitive in &*primitives {
+            bins.add(mapping.bin(primitive.centroid), &primitive.bounds);
+        }
+        if let Some(split) = bins.best_split() {
+            let middle = partition(primitives, |p| mapping.bin(p.centroid) < split.bin);
+            return (middle, split.bounds);
+        }
     }
     let middle = primitives.len() / 2;
     (middle, [bounds(&primitives[..middle]), bounds(&primitives[middle..])])
-}
-
-/// The axis and first bin of the right side of the cheapest split that has triangles on both sides.
-fn best_split(primitives: &[Primitive], mapping: &BinMapping) -> Option<(usize, usize, [Aabb; 2])> {
-    let mut bins = [[Bin::EMPTY; BINS]; 3];
-    for primitive in primitives {
-        for (axis, bin) in mapping.bins(primitive.centroid).into_iter().enumerate() {
-            let bin = &mut bins[axis][bin];
-            bin.aabb = bin.aabb.merge(&primitive.aabb);
-            bin.count += 1;
-        }
-    }
-    let mut best = None;
-    let mut best_cost = f32::INFINITY;
-    for axis in (0..3).filter(|&axis| !mapping.is_flat(axis)) {
-        let mut above = [Bin::EMPTY; BINS];
-        above[BINS - 1] = bins[axis][BINS - 1];
-        for bin in (0..BINS - 1).rev() {
-            above[bin] = bins[axis][bin].merge(&above[bin + 1]);
-        }
-        let mut below = Bin::EMPTY;
-        for bin in 1..BINS {
-            below = below.merge(&bins[axis][bin - 1]);
-            let cost = below.cost() + above[bin].cost();
-            if below.count > 0 && above[bin].count > 0 && cost < best_cost {
-                best_cost = cost;
-                best = Some((axis, bin, [below.aabb, above[bin].aabb]));
-            }
-        }
-    }
-    best
 }
 
 /// Moves the primitives for which `first` holds to the front; returns how many there are.

@@ -49,13 +49,8 @@ pub fn pairs_within(
         // Rounding moves a coordinate by 1e-16 of its magnitude: this is far more.
         let reach = margin + 1.0e-12 * (margin + box1.min.abs().max(box1.max.abs()).max_element());
         let first = boxes2.partition_point(|b| b.min.x < box1.min.x - longest2 - reach);
-        for box2 in boxes2[first..]
-            .iter()
-            .take_while(|b| b.min.x <= box1.max.x + reach)
-        {
-            let gap = (box1.min - box2.max)
-                .max(box2.min - box1.max)
-                .max(DVec3::ZERO);
+        for box2 in boxes2[first..].iter().take_while(|b| b.min.x <= box1.max.x + reach) {
+            let gap = (box1.min - box2.max).max(box2.min - box1.max).max(DVec3::ZERO);
             if gap.length() > reach {
                 continue;
             }
@@ -82,12 +77,7 @@ fn boxes(triangles: &[[u32; 3]], vertex: impl Fn(u32) -> DVec3) -> Vec<Boxed> {
             triangle[0].min(triangle[1]).min(triangle[2]),
             triangle[0].max(triangle[1]).max(triangle[2]),
         );
-        Boxed {
-            triangle,
-            index: index as u32,
-            min,
-            max,
-        }
+        Boxed { triangle, index: index as u32, min, max }
     };
     triangles.iter().enumerate().map(boxed).collect()
 }

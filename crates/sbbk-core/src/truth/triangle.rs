@@ -70,28 +70,17 @@ fn edges(t: &Triangle) -> [[Vector; 2]; 3] {
 }
 
 fn size(t: &Triangle) -> f64 {
-    edges(t)
-        .map(|[a, b]| (b - a).norm())
-        .into_iter()
-        .fold(0.0, f64::max)
+    edges(t).map(|[a, b]| (b - a).norm()).into_iter().fold(0.0, f64::max)
 }
 
 fn closest_points(t1: &Triangle, t2: &Triangle) -> [Vector; 2] {
-    let edge_pairs = edges(t1)
-        .into_iter()
-        .flat_map(|e1| edges(t2).map(|e2| edge_edge(e1, e2)));
+    let edge_pairs = edges(t1).into_iter().flat_map(|e1| edges(t2).map(|e2| edge_edge(e1, e2)));
     let vertices1 = t1.iter().map(|&v| [v, closest_in_face(v, t2)]);
     let vertices2 = t2.iter().map(|&v| [closest_in_face(v, t1), v]);
     let by_distance = |a: &[Vector; 2], b: &[Vector; 2]| {
-        (a[1] - a[0])
-            .norm_squared()
-            .total_cmp(&(b[1] - b[0]).norm_squared())
+        (a[1] - a[0]).norm_squared().total_cmp(&(b[1] - b[0]).norm_squared())
     };
-    edge_pairs
-        .chain(vertices1)
-        .chain(vertices2)
-        .min_by(by_distance)
-        .expect("15 candidates")
+    edge_pairs.chain(vertices1).chain(vertices2).min_by(by_distance).expect("15 candidates")
 }
 
 /// The weights of two columns that come nearest to `target`; none when the columns are parallel.
@@ -110,11 +99,7 @@ fn closest_on_edge(point: Vector, [a, b]: [Vector; 2]) -> Vector {
     }
     let direction = (b - a) / length;
     let along = (point - a).dot(&direction);
-    if along >= length {
-        b
-    } else {
-        a + direction * along.max(0.0)
-    }
+    if along >= length { b } else { a + direction * along.max(0.0) }
 }
 
 fn edge_edge(e1: [Vector; 2], e2: [Vector; 2]) -> [Vector; 2] {
@@ -126,12 +111,7 @@ fn edge_edge(e1: [Vector; 2], e2: [Vector; 2]) -> [Vector; 2] {
     let ends2 = e2.map(|v| [closest_on_edge(v, e1), v]);
     let by_distance =
         |a: &[Vector; 2], b: &[Vector; 2]| (a[1] - a[0]).norm().total_cmp(&(b[1] - b[0]).norm());
-    crossing
-        .into_iter()
-        .chain(ends1)
-        .chain(ends2)
-        .min_by(by_distance)
-        .expect("4 or 5 candidates")
+    crossing.into_iter().chain(ends1).chain(ends2).min_by(by_distance).expect("4 or 5 candidates")
 }
 
 /// The foot of the perpendicular when it lies in the triangle, else a vertex (which the edges
@@ -166,9 +146,7 @@ fn perpendicular(u: Vector, v: Vector) -> Option<Vector> {
 fn least_translation(t1: &Triangle, t2: &Triangle, size: f64) -> TruthContact {
     let directions = |t: &Triangle| edges(t).map(|[a, b]| b - a);
     let (d1, d2) = (directions(t1), directions(t2));
-    let faces = [d1, d2]
-        .into_iter()
-        .flat_map(|d| [(d[0], d[1]), (d[1], d[2]), (d[2], d[0])]);
+    let faces = [d1, d2].into_iter().flat_map(|d| [(d[0], d[1]), (d[1], d[2]), (d[2], d[0])]);
     let products = d1.into_iter().flat_map(|u| d2.map(|v| (u, v)));
     let axes: ArrayVec<(f64, DVec3), 30> = faces
         .chain(products)
@@ -178,15 +156,8 @@ fn least_translation(t1: &Triangle, t2: &Triangle, size: f64) -> TruthContact {
         .collect();
     // Without any axis both lie on one line: the least translation is sideways, by nothing.
     let sideways = d1[0].cross(&Vector::x()) + d1[0].cross(&Vector::y());
-    let flat = (
-        0.0,
-        plain(sideways.try_normalize(0.0).unwrap_or(Vector::z())),
-    );
-    let best = axes
-        .iter()
-        .copied()
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .unwrap_or(flat);
+    let flat = (0.0, plain(sideways.try_normalize(0.0).unwrap_or(Vector::z())));
+    let best = axes.iter().copied().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or(flat);
     let rivals =
         |&(s, n): &(f64, DVec3)| s > best.0 - UNCLEAR * size && n.dot(best.1) < 1.0 - 1.0e-7;
     TruthContact {

@@ -40,31 +40,63 @@ mod sealed {
 /// One value a slab.
 pub type Slabs<const AXES: usize> = [f32; AXES];
 
+/// A member of a direction set: components in {-1, 0, 1}.
+pub type Member = [i8; 3];
+
+/// The slab of a direction and its sign there; by [`member_index`].
+type SlabTable = [(u8, i8); 27];
+
 /// A set of directions that is closed under the symmetries of the cube. Sealed: an unsupported k does
 /// not compile.
 pub trait DirectionSet<const AXES: usize>: sealed::Sealed {
     /// The slabs' directions, one of each opposite two. The first three are x, y and z.
     const DIRECTIONS: [Vec3; AXES];
 
+    #[doc(hidden)]
+    const SLABS: SlabTable = slab_table(&Self::DIRECTIONS);
+
     /// The cone of three adjacent directions that contains the direction with components
     /// `x >= y >= z >= 0`, with their coefficients.
-    fn cone(sorted: DVec3) -> [(DVec3, f64); 3];
+    fn cone(sorted: DVec3) -> [(Member, f64); 3];
 
     /// `direction` as a non-negative combination of three adjacent directions of the set: for each the
     /// slab's index and the coefficient, negative where the slab's opposite direction is meant.
+    #[inline]
     fn correspondence(direction: DVec3) -> [(usize, f64); 3] {
-        let order = descending_order(direction.abs());
-        let sign = |axis: usize| if direction[axis] < 0.0 { -1.0 } else { 1.0 };
-        let sorted = DVec3::from_array(order.map(|axis| direction[axis].abs()));
-        Self::cone(sorted).map(|(canonical, coefficient)| {
-            let mut member = DVec3::ZERO;
-            for (rank, axis) in order.into_iter().enumerate() {
-                member[axis] = canonical[rank] * sign(axis);
+        let magnitude = direction.abs().to_array();
+        let order = descending_order(magnitude);
+        let [x, y, z] = order;
+        let cone = Self::cone(DVec3::new(magnitude[x], magnitude[y], magnitude[z]));
+        let signs = direction.to_array().map(|component| if component < 0.0 { -1 } else { 1 });
+        let term = |i: usize| {
+            let (canonical, coefficient) = cone[i];
+            let mut member = [0; 3];
+            for rank in 0..3 {
+                member[order[rank]] = canonical[rank] * signs[order[rank]];
             }
-            let (slab, sign) = slab_of(&Self::DIRECTIONS, member.as_vec3());
-            (slab, sign * coefficient)
-        })
+            let (slab, sign) = Self::SLABS[member_index(member)];
+            (usize::from(slab), f64::from(sign) * coefficient)
+        };
+        [term(0), term(1), term(2)]
     }
+}
+
+/// Where a member stands in a [`SlabTable`].
+const fn member_index([x, y, z]: Member) -> usize {
+    (9 * (x + 1) + 3 * (y + 1) + (z + 1)) as usize
+}
+
+const fn slab_table(directions: &[Vec3]) -> SlabTable {
+    let mut table = [(0, 0); 27];
+    let mut slab = 0;
+    while slab < directions.len() {
+        let d = directions[slab];
+        let member = [d.x as i8, d.y as i8, d.z as i8];
+        table[member_index(member)] = (slab as u8, 1);
+        table[member_index([-member[0], -member[1], -member[2]])] = (slab as u8, -1);
+        slab += 1;
+    }
+    table
 }
 
 const fn d(x: i8, y: i8, z: i8) -> Vec3 {
@@ -97,27 +129,25 @@ const fn concatenate<const AXES: usize>(sets: [&[Vec3]; 3]) -> [Vec3; AXES] {
 impl DirectionSet<7> for Directions<7> {
     const DIRECTIONS: [Vec3; 7] = concatenate([&FACES, &CORNERS, &[]]);
 
-    fn cone(s: DVec3) -> [(DVec3, f64); 3] {
-        [
-            (DVec3::new(1.0, 0.0, 0.0), s.x - s.y),
-            (DVec3::new(1.0, 1.0, 1.0), 0.5 * (s.y + s.z)),
-            (DVec3::new(1.0, 1.0, -1.0), 0.5 * (s.y - s.z)),
-        ]
+    #[inline]
+    fn cone(s: DVec3) -> [(Member, f64); 3] {
+        [([1, 0, 0], s.x - s.y), ([1, 1, 1], 0.5 * (s.y + s.z)), ([1, 1, -1], 0.5 * (s.y - s.z))]
     }
 }
 
 impl DirectionSet<9> for Directions<9> {
     const DIRECTIONS: [Vec3; 9] = concatenate([&FACES, &EDGES, &[]]);
 
-    fn cone(s: DVec3) -> [(DVec3, f64); 3] {
-        let (edge_xy, edge_xz) = (DVec3::new(1.0, 1.0, 0.0), DVec3::new(1.0, 0.0, 1.0));
+    #[inline]
+    fn cone(s: DVec3) -> [(Member, f64); 3] {
+        let (edge_xy, edge_xz) = ([1, 1, 0], [1, 0, 1]);
         if s.x >= s.y + s.z {
-            [(DVec3::new(1.0, 0.0, 0.0), s.x - s.y - s.z), (edge_xy, s.y), (edge_xz, s.z)]
+            [([1, 0, 0], s.x - s.y - s.z), (edge_xy, s.y), (edge_xz, s.z)]
         } else {
             [
                 (edge_xy, 0.5 * (s.x + s.y - s.z)),
                 (edge_xz, 0.5 * (s.x + s.z - s.y)),
-                (DVec3::new(0.0, 1.0, 1.0), 0.5 * (s.y + s.z - s.x)),
+                ([0, 1, 1], 0.5 * (s.y + s.z - s.x)),
             ]
         }
     }
@@ -126,31 +156,20 @@ impl DirectionSet<9> for Directions<9> {
 impl DirectionSet<13> for Directions<13> {
     const DIRECTIONS: [Vec3; 13] = concatenate([&FACES, &EDGES, &CORNERS]);
 
-    fn cone(s: DVec3) -> [(DVec3, f64); 3] {
-        [
-            (DVec3::new(1.0, 0.0, 0.0), s.x - s.y),
-            (DVec3::new(1.0, 1.0, 0.0), s.y - s.z),
-            (DVec3::new(1.0, 1.0, 1.0), s.z),
-        ]
+    #[inline]
+    fn cone(s: DVec3) -> [(Member, f64); 3] {
+        [([1, 0, 0], s.x - s.y), ([1, 1, 0], s.y - s.z), ([1, 1, 1], s.z)]
     }
 }
 
-/// The axes from the largest component to the smallest.
-fn descending_order(v: DVec3) -> [usize; 3] {
+/// The axes from the largest component to the smallest. Not sorted if one is NaN: then nothing overlaps anyway.
+#[inline]
+fn descending_order(v: [f64; 3]) -> [usize; 3] {
     let mut order = [0, 1, 2];
-    order.sort_by(|&i, &j| v[j].total_cmp(&v[i]));
-    order
-}
-
-/// The slab whose direction is `member` or its opposite, and which of the two (1 or -1).
-fn slab_of(directions: &[Vec3], member: Vec3) -> (usize, f64) {
-    let length_squared = member.length_squared();
-    for (slab, direction) in directions.iter().enumerate() {
-        let dot = direction.dot(member);
-        if dot.abs() == length_squared && direction.length_squared() == length_squared {
-            return (slab, f64::from(dot.signum()));
+    for (i, j) in [(0, 1), (1, 2), (0, 1)] {
+        if v[order[i]] < v[order[j]] {
+            order.swap(i, j);
         }
     }
-    // Reached for NaN directions only, where nothing overlaps anyway.
-    (0, f64::NAN)
+    order
 }

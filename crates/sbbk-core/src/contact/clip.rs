@@ -1,0 +1,154 @@
+//! The contact points between two triangles that face each other along a normal.
+//!
+//! Seen along the normal, the overlap of two triangles is a polygon whose corners are vertices
+//! of one triangle inside the other and crossings of two edges. On its corners the distance
+//! along the normal takes its extremes, since it is linear over the polygon. One table of signs,
+//! on which side of each edge of one triangle each vertex of the other lies, gives all corners.
+//!
+//! **Capacity.** A vertex is inside when its three signs do not differ; two edges cross when the
+//! ends of each have strictly opposite signs against the other. Let `a` and `b` count the
+//! vertices inside and `c` the crossings. Three signs around a triangle change strictly at most
+//! twice, so an edge has at most two crossings, and none if both its ends are inside: `c` is at
+//! most 6, 6, 4, 0 for `a` of 0, 1, 2, 3, and the same for `b`. Hence `a + b + c <= 8`, reached
+//! at most for `a`, `b` of 1, 1 or 2, 2, whatever rounding does to the signs (without rounding:
+//! 6). The closest points make nine.
+
+use super::feature::{Feature, FeaturePair};
+use super::generate::TriangleContact;
+use super::sides::Sides;
+use super::triangle::Triangle;
+use arrayvec::ArrayVec;
+use glamx::DVec3;
+
+/// Least sine between the normal and a triangle's plane at which points are projected to that
+/// plane. Lower: points slide far along a triangle that is seen edge-on. Higher: steep triangles
+/// lose points, and only their edges are left.
+const EDGE_ON: f64 = 1.0e-5;
+
+/// Closest points within this fraction of the smaller triangle's size are the same point.
+const SAME_POINT: f64 = 1.0e-6;
+
+/// Points that a manifold of two triangles can have.
+pub const MANIFOLD_CAPACITY: usize = 9;
+
+/// The contact points of two triangles.
+pub type ManifoldPoints = ArrayVec<ManifoldPoint, MANIFOLD_CAPACITY>;
+
+/// A point on each triangle, both on one line along the normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ManifoldPoint {
+    /// The point on triangle 1.
+    pub point1: DVec3,
+    /// The point on triangle 2, in the same frame.
+    pub point2: DVec3,
+    /// From point 1 to point 2 along the normal; negative when triangle 2 is behind triangle 1.
+    pub distance: f64,
+    /// What meets here: a vertex and a face, or two edges. The closest points, pushed by
+    /// [`push_closest`], may have any features. Unique among the points of a manifold and stable
+    /// while the triangles slide.
+    pub features: FeaturePair,
+}
+
+/// Fills `out` with the corners of the overlap of both triangles, seen along `normal` (a unit
+/// vector from triangle 1 to triangle 2): vertices of triangle 1, of triangle 2, then edge
+/// crossings. At all distances: the caller drops those beyond its margin. Empty when the
+/// triangles do not overlap in this view.
+pub fn clip(t1: &[DVec3; 3], t2: &[DVec3; 3], normal: DVec3, out: &mut ManifoldPoints) {
+    clip_triangles(&Triangle::new(t1), &Triangle::new(t2), normal, out);
+}
+
+/// Adds the closest points of `contact` unless the manifold already has them.
+pub fn push_closest(
+    t1: &[DVec3; 3],
+    t2: &[DVec3; 3],
+    contact: &TriangleContact,
+    out: &mut ManifoldPoints,
+) {
+    let size = Triangle::new(t1).size.min(Triangle::new(t2).size);
+    let is_same = |a: DVec3, b: DVec3| (a - b).abs().max_element() <= SAME_POINT * size;
+    let known =
+        out.iter().any(|p| is_same(p.point1, contact.point1) && is_same(p.point2, contact.point2));
+    if !known {
+        out.push(ManifoldPoint {
+            point1: contact.point1,
+            point2: contact.point2,
+            distance: contact.distance,
+            features: contact.features,
+        });
+    }
+}
+
+pub(super) fn clip_triangles(
+    t1: &Triangle,
+    t2: &Triangle,
+    normal: DVec3,
+    out: &mut ManifoldPoints,
+) {
+    out.clear();
+    let sides = Sides::new(t1, t2, normal);
+    let inside = sides.inside();
+    for k in 0..2 {
+        push_vertices([t1, t2], k, inside[k], normal, out);
+    }
+    let mut crossings = sides.crossings();
+    while crossings != 0 {
+        let (i, j, along) = sides.crossing(crossings.trailing_zeros() as usize);
+        let point1 = t1.vertices[i] + t1.edges[i] * along[0];
+        let point2 = t2.vertices[j] + t2.edges[j] * along[1];
+        let distance = (point2 - point1).dot(normal);
+        let features = FeaturePair::new(Feature::Edge(i as u8), Feature::Edge(j as u8));
+        out.push(ManifoldPoint { point1, point2, distance, features });
+        crossings &= crossings - 1;
+    }
+}
+
+/// Adds the vertices of triangle `k` (0 or 1) whose bits are set, each with the point in line
+/// with it in the plane of the other triangle.
+#[inline(always)]
+fn push_vertices(
+    triangles: [&Triangle; 2],
+    k: usize,
+    vertices: u32,
+    normal: DVec3,
+    out: &mut ManifoldPoints,
+) {
+    if vertices == 0 {
+        return;
+    }
+    let Some(plane) = Plane::of(triangles[1 - k], normal) else { return };
+    for v in (0..3).filter(|v| vertices >> v & 1 != 0) {
+        out.push(plane.point(triangles[k].vertices[v], v, normal, k));
+    }
+}
+
+/// The plane of a triangle that is not seen edge-on: `(p - vertex) . slope` is the distance from
+/// the plane to `p`, measured along the normal of view.
+struct Plane {
+    vertex: DVec3,
+    slope: DVec3,
+}
+
+impl Plane {
+    #[inline(always)]
+    fn of(t: &Triangle, normal: DVec3) -> Option<Self> {
+        let face = t.area_vector();
+        let cosine = face.dot(normal);
+        (cosine * cosine > EDGE_ON * EDGE_ON * face.length_squared())
+            .then(|| Self { vertex: t.vertices[0], slope: face * (1.0 / cosine) })
+    }
+
+    /// Vertex `v` of triangle `k` and the point of this plane, of the other triangle, in line with
+    /// it.
+    #[inline(always)]
+    fn point(&self, vertex: DVec3, v: usize, normal: DVec3, k: usize) -> ManifoldPoint {
+        let height = (vertex - self.vertex).dot(self.slope);
+        let foot = vertex - normal * height;
+        let features = FeaturePair::new(Feature::Vertex(v as u8), Feature::Face);
+        if k == 0 {
+            ManifoldPoint { point1: vertex, point2: foot, distance: -height, features }
+        } else {
+            let features = features.swapped();
+            ManifoldPoint { point1: foot, point2: vertex, distance: height, features }
+        }
+    }
+}

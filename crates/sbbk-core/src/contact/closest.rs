@@ -1,0 +1,159 @@
+//! The closest points of two given features, and the proof that no others are closer.
+//!
+//! The proof is duality. A direction along which all of triangle 2 lies at least `d` beyond
+//! triangle 1 shows that the distance is not below `d`; two points at distance `d` show that it
+//! is not above. So points of the two features are the closest points of the triangles exactly
+//! when each triangle stays on its own side of the plane through its feature, perpendicular to
+//! the direction between them. This needs four dot products, whatever the features are.
+
+use super::feature::{Feature, FeaturePair};
+use super::triangle::{NEAR_PARALLEL, Triangle};
+use glamx::DVec3;
+
+/// How far, in triangle sizes, a vertex may lie beyond the plane that should bound it. Covers
+/// rounding. Higher: features that only nearly realise the contact are kept from the last step,
+/// and distances are off by as much. Lower: flat contacts, where many features tie, lose the
+/// short way.
+pub(super) const TIE: f64 = 1.0e-13;
+
+/// Closest points of two features and the direction from the first to the second.
+#[derive(Clone, Copy)]
+pub(super) struct Closest {
+    pub point1: DVec3,
+    pub point2: DVec3,
+    pub normal: DVec3,
+    pub distance: f64,
+}
+
+impl Closest {
+    pub fn between(point1: DVec3, point2: DVec3, difference: DVec3) -> Self {
+        let distance = difference.length();
+        Self { point1, point2, normal: difference / distance, distance }
+    }
+
+    fn swapped(self) -> Self {
+        Self { point1: self.point2, point2: self.point1, normal: -self.normal, ..self }
+    }
+}
+
+/// The closest points of two features of the pair: of their lines and planes, and none when
+/// those fall outside the features. When the features touch, the normal may be NaN.
+#[inline(always)]
+pub(super) fn closest(t1: &Triangle, t2: &Triangle, features: FeaturePair) -> Option<Closest> {
+    use Feature::{Edge, Face, Vertex};
+    match (features.feature1(), features.feature2()) {
+        (Vertex(i), Vertex(j)) => {
+            let (p, q) = (t1.vertices[i as usize], t2.vertices[j as usize]);
+            Some(Closest::between(p, q, q - p))
+        }
+        (Vertex(i), Edge(j)) => vertex_edge(t1.vertices[i as usize], t2, j as usize),
+        (Edge(i), Vertex(j)) => {
+            vertex_edge(t2.vertices[j as usize], t1, i as usize).map(Closest::swapped)
+        }
+        (Edge(i), Edge(j)) => edge_edge(t1, i as usize, t2, j as usize),
+        (Vertex(i), Face) => vertex_face(t1.vertices[i as usize], t2),
+        (Face, Vertex(j)) => vertex_face(t2.vertices[j as usize], t1).map(Closest::swapped),
+        (Face, Edge(_) | Face) | (Edge(_), Face) => None,
+    }
+}
+
+#[inline(always)]
+fn vertex_edge(vertex: DVec3, t: &Triangle, j: usize) -> Option<Closest> {
+    let (start, edge) = (t.vertices[j], t.edges[j]);
+    let along = (vertex - start).dot(edge) / edge.length_squared();
+    let point = start + edge * along;
+    let difference = (start - vertex) + edge * along;
+    within(along).then(|| Closest::between(vertex, point, difference))
+}
+
+#[inline(always)]
+fn vertex_face(vertex: DVec3, t: &Triangle) -> Option<Closest> {
+    let normal = t.normal();
+    if !is_over(vertex, t, normal) {
+        return None;
+    }
+    let height = (t.vertices[0] - vertex).dot(normal);
+    let normal = if height < 0.0 { -normal } else { normal };
+    let point2 = vertex + normal * height.abs();
+    Some(Closest { point1: vertex, point2, normal, distance: height.abs() })
+}
+
+/// Whether the foot of the perpendicular from `point` lies in the triangle, border included.
+/// `normal` is the triangle's, with either sign. Never so for a triangle without area.
+#[inline(always)]
+pub(super) fn is_over(point: DVec3, t: &Triangle, normal: DVec3) -> bool {
+    let area_beside = |i: usize| t.edges[i].cross(point - t.vertices[i]).dot(normal);
+    let areas = [area_beside(0), area_beside(1), area_beside(2)];
+    let area = (areas[0] + areas[1] + areas[2]).abs();
+    if !has_one_sign(areas) || area == 0.0 {
+        return false;
+    }
+    // Rounding moves the tip of a thin triangle along it, by 1e-16 over its aspect.
+    area > NEAR_PARALLEL * t.size * t.size || is_beside(point, t)
+}
+
+/// Whether the values are all positive or zero, or all negative or zero.
+#[inline(always)]
+pub(super) fn has_one_sign([a, b, c]: [f64; 3]) -> bool {
+    a.min(b).min(c) >= 0.0 || a.max(b).max(c) <= 0.0
+}
+
+/// Whether the point lies between the ends of the triangle's longest edge.
+#[cold]
+fn is_beside(point: DVec3, t: &Triangle) -> bool {
+    let i = t.longest_edge();
+    let along = (point - t.vertices[i]).dot(t.edges[i]);
+    (0.0..=t.edges[i].length_squared()).contains(&along)
+}
+
+#[inline(always)]
+fn edge_edge(t1: &Triangle, i: usize, t2: &Triangle, j: usize) -> Option<Closest> {
+    let (e1, e2) = (t1.edges[i], t2.edges[j]);
+    let between = t2.vertices[j] - t1.vertices[i];
+    let cross = e1.cross(e2);
+    let area = cross.length_squared();
+    let [along1, along2] = crossing(between, e1, e2, cross, area);
+    if !(within(along1) && within(along2)) {
+        return None;
+    }
+    let point1 = t1.vertices[i] + e1 * along1;
+    let point2 = t2.vertices[j] + e2 * along2;
+    let apart = between.dot(cross);
+    // The direction of the cross product is off by 1e-16 |e1| |e2| / |cross|, that of the
+    // difference by 1e-16 (|e1| + |e2|) / distance: the less uncertain one is taken.
+    let lengths = e1.length_squared() * e2.length_squared();
+    let reach = e1.length_squared() + e2.length_squared();
+    if lengths * apart * apart > area * area * reach {
+        return Some(Closest::between(point1, point2, between + e2 * along2 - e1 * along1));
+    }
+    let scale = apart.signum() / area.sqrt();
+    Some(Closest { point1, point2, normal: cross * scale, distance: apart * scale })
+}
+
+/// Where two lines are closest, as fractions of the edges; NaN or infinite for parallel ones.
+#[inline(always)]
+pub(super) fn crossing(between: DVec3, e1: DVec3, e2: DVec3, cross: DVec3, area: f64) -> [f64; 2] {
+    [between.cross(e2).dot(cross) / area, between.cross(e1).dot(cross) / area]
+}
+
+/// `along` clamped to 0 to 1; a NaN gives 0.
+#[inline(always)]
+pub(super) fn within_edge(along: f64) -> f64 {
+    if along > 0.0 { along.min(1.0) } else { 0.0 }
+}
+
+fn within(along: f64) -> bool {
+    (0.0..=1.0).contains(&along)
+}
+
+/// Whether these closest points of two features are the closest points of the triangles.
+#[inline(always)]
+pub(super) fn is_proved(
+    t1: &Triangle,
+    t2: &Triangle,
+    features: FeaturePair,
+    closest: &Closest,
+) -> bool {
+    t1.beyond(features.feature1(), closest.normal) <= TIE * t1.size
+        && t2.beyond(features.feature2(), -closest.normal) <= TIE * t2.size
+}

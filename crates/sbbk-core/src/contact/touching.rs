@@ -1,0 +1,101 @@
+//! Triangles that no axis clearly separates and no axis clearly lets overlap: they touch, or lie
+//! in one plane or on one line.
+//!
+//! Rare, so the slow and complete way is taken: all fifteen feature distances, and the axes in
+//! the planes of the triangles besides the other eleven. Triangles that cross by a depth `d` touch
+//! once one moves by `d`, so two features were at most `d` apart: triangles whose features are
+//! farther apart than the depth do not cross.
+
+use super::axes::Axis;
+use super::clip::{ManifoldPoints, clip_triangles};
+use super::closest::{Closest, closest};
+use super::edges::closest_edges;
+use super::feature::{Feature, FeaturePair};
+use super::generate::TriangleContact;
+use super::triangle::Triangle;
+use glamx::DVec3;
+
+/// What rounding can do to a distance or gap, in triangle sizes. Higher: triangles this close count
+/// as touching. Lower: the normal of triangles that touch is noise.
+const ROUNDING: f64 = 1.0e-12;
+
+/// The contact of two triangles whose best axis has a gap of nearly nothing, or does not exist.
+#[cold]
+pub(super) fn touching(t1: &Triangle, t2: &Triangle, best: Axis) -> TriangleContact {
+    let (features, nearest) = nearest_features(t1, t2);
+    let axis = in_plane_axes(t1, t2).fold(best, |a, b| if b.gap > a.gap { b } else { a });
+    let exists = axis.normal != DVec3::ZERO;
+    let depth = if exists { (-axis.gap).max(0.0) } else { 0.0 };
+    if nearest.distance > depth + ROUNDING * (t1.size + t2.size) {
+        TriangleContact::new(features, nearest)
+    } else if exists {
+        let Closest { point1, point2, .. } = nearest;
+        let Axis { normal, gap: distance, .. } = axis;
+        let contact = TriangleContact { normal, distance, point1, point2, features };
+        at_axis(t1, t2, &axis).unwrap_or(contact)
+    } else {
+        on_one_line(t1, t2, features, &nearest)
+    }
+}
+
+/// The contact on an axis where many features tie: the deepest of the points seen along it. None
+/// when no point is as deep as the gap says.
+pub(super) fn at_axis(t1: &Triangle, t2: &Triangle, axis: &Axis) -> Option<TriangleContact> {
+    let mut points = ManifoldPoints::new();
+    clip_triangles(t1, t2, axis.normal, &mut points);
+    let deepest = points.into_iter().min_by(|a, b| a.distance.total_cmp(&b.distance))?;
+    if (deepest.distance - axis.gap).abs() > ROUNDING * (t1.size + t2.size) {
+        return None;
+    }
+    Some(TriangleContact {
+        normal: axis.normal,
+        distance: axis.gap,
+        point1: deepest.point1,
+        point2: deepest.point2,
+        features: deepest.features,
+    })
+}
+
+/// The least of the distances of nine edge pairs and six vertices over the other's face.
+fn nearest_features(t1: &Triangle, t2: &Triangle) -> (FeaturePair, Closest) {
+    let mut nearest = closest_edges(t1, t2);
+    for i in (0..3).map(Feature::Vertex) {
+        for features in [FeaturePair::new(i, Feature::Face), FeaturePair::new(Feature::Face, i)] {
+            if let Some(candidate) = closest(t1, t2, features)
+                && candidate.distance < nearest.1.distance
+            {
+                nearest = (features, candidate);
+            }
+        }
+    }
+    nearest
+}
+
+/// The normals of the edges in the planes of their triangles.
+fn in_plane_axes(t1: &Triangle, t2: &Triangle) -> impl Iterator<Item = Axis> {
+    let edge = move |k: usize, i: usize| {
+        let t = [t1, t2][k];
+        let normal = t.edges[i].cross(t.normal()).try_normalize()?;
+        let features = FeaturePair::new(Feature::Edge(i as u8), Feature::Face);
+        let features = if k == 0 { features } else { features.swapped() };
+        Some(Axis::along(t1, t2, normal, features))
+    };
+    (0..2).flat_map(move |k| (0..3).filter_map(move |i| edge(k, i)))
+}
+
+/// Segments and points on one line, which touch: any direction across the line separates them.
+fn on_one_line(
+    t1: &Triangle,
+    t2: &Triangle,
+    features: FeaturePair,
+    nearest: &Closest,
+) -> TriangleContact {
+    let along = t1.edges.into_iter().chain(t2.edges).find_map(DVec3::try_normalize);
+    TriangleContact {
+        normal: along.map_or(DVec3::Z, DVec3::any_orthonormal_vector),
+        distance: 0.0,
+        point1: nearest.point1,
+        point2: nearest.point2,
+        features,
+    }
+}

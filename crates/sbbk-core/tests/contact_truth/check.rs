@@ -1,0 +1,102 @@
+//! What a contact must fulfil, whatever the triangles are.
+
+use glamx::DVec3;
+use sbbk_core::contact::{TriangleContact, contact};
+use sbbk_core::truth;
+
+/// Distances and depths may be off by this many triangle sizes.
+pub const TOLERANCE: f64 = 1.0e-9;
+
+/// Angle between normals, in degrees, where only one is right.
+const NORMAL_TOLERANCE: f64 = 0.1;
+
+pub type Triangle = [DVec3; 3];
+
+pub fn size(t: &Triangle) -> f64 {
+    (0..3).map(|i| t[i].distance(t[(i + 1) % 3])).fold(0.0, f64::max)
+}
+
+/// Checks the contact of two triangles against the truth and returns the truth.
+///
+/// Would catch a wrong distance or depth, a wrong decision at the margin, a normal that does not
+/// separate or has the wrong sign, points off the triangles, and a difference between the sides.
+pub fn check(t1: &Triangle, t2: &Triangle) -> truth::TruthContact {
+    let size = size(t1).max(size(t2));
+    let reach = t1.iter().chain(t2).map(|v| v.length()).fold(0.0, f64::max);
+    let tolerance = TOLERANCE * size + 1.0e-15 * reach;
+    let expected = truth::contact(t1, t2);
+    let at = |margin| contact(t1, t2, margin);
+    let within = at(expected.distance + tolerance);
+    let context = || format!("{t1:?}\n{t2:?}\n{expected:?}\n{:?}", at(f64::INFINITY));
+    let found = within.unwrap_or_else(|| panic!("missed inside the margin: {}", context()));
+    assert!(
+        at(expected.distance - tolerance).is_none(),
+        "phantom beyond the margin: {}",
+        context()
+    );
+
+    let error = (found.distance - expected.distance).abs();
+    assert!(error <= tolerance, "distance is off by {error:e}: {}", context());
+    assert!((found.normal.length() - 1.0).abs() < 1.0e-12, "normal: {}", context());
+    let gap = truth::separation(t1, t2, found.normal);
+    // The difference of two points is rounded: its direction is off by that over the distance.
+    let close = 1.0e-12 * size;
+    let tilt = if found.distance > close { 1.0e-15 * size / found.distance } else { 0.0 };
+    let least = found.distance - tolerance - tilt * size;
+    assert!(gap >= least, "the normal leaves {gap:e} only: {}", context());
+    if expected.normal_is_unique {
+        let degrees = found.normal.angle_between(expected.normal).to_degrees();
+        assert!(degrees <= NORMAL_TOLERANCE, "normal is off by {degrees} degrees: {}", context());
+    }
+    check_points(t1, t2, &found, tolerance).unwrap_or_else(|e| panic!("{e}: {}", context()));
+    check_mirrored(t1, t2, &found, tolerance, expected.normal_is_unique)
+        .unwrap_or_else(|e| panic!("{e}: {}", context()));
+    expected
+}
+
+fn check_points(
+    t1: &Triangle,
+    t2: &Triangle,
+    found: &TriangleContact,
+    tolerance: f64,
+) -> Result<(), String> {
+    let mismatch = (found.point2 - found.point1 - found.distance * found.normal).length();
+    if mismatch > tolerance {
+        return Err(format!("point2 - point1 is off by {mismatch:e}"));
+    }
+    for (point, triangle) in [(found.point1, t1), (found.point2, t2)] {
+        let off = truth::contact(&[point; 3], triangle).distance;
+        // Closer than rounding a point may count as behind the triangle.
+        if off.abs() > tolerance {
+            return Err(format!("a point is off its triangle by {off:e}"));
+        }
+    }
+    Ok(())
+}
+
+fn check_mirrored(
+    t1: &Triangle,
+    t2: &Triangle,
+    found: &TriangleContact,
+    tolerance: f64,
+    is_unique: bool,
+) -> Result<(), String> {
+    let mirrored = contact(t2, t1, f64::INFINITY).ok_or("none when swapped")?;
+    if (mirrored.distance - found.distance).abs() > tolerance {
+        return Err(format!("distance {:e} when swapped", mirrored.distance));
+    }
+    let degrees = mirrored.normal.angle_between(-found.normal).to_degrees();
+    if is_unique && degrees > NORMAL_TOLERANCE {
+        return Err(format!("normal turns by {degrees} degrees when swapped"));
+    }
+    Ok(())
+}
+
+/// How far two triangles in the plane z = 0 reach into each other, negative when apart.
+pub fn in_plane_overlap(t1: &Triangle, t2: &Triangle) -> f64 {
+    let axes = [t1, t2].into_iter().flat_map(|t| (0..3).map(|i| t[(i + 1) % 3] - t[i]));
+    let gaps = axes
+        .map(|e| e.cross(DVec3::Z).normalize())
+        .flat_map(|n| [truth::separation(t1, t2, n), truth::separation(t1, t2, -n)]);
+    -gaps.fold(f64::NEG_INFINITY, f64::max)
+}
