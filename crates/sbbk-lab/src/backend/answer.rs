@@ -1,0 +1,66 @@
+//! What a dispatcher answered for one pair of meshes, kept for judging it afterwards.
+
+use rapier3d::math::{Pose, Real};
+use rapier3d::parry::query::ContactManifold;
+use rapier3d::parry::shape::Shape;
+
+/// One pair of triangles reported as touching.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reported {
+    /// Triangle of the first mesh.
+    pub triangle1: u32,
+    /// Triangle of the second mesh.
+    pub triangle2: u32,
+    /// Smallest signed distance among the points of the pair: negative when it penetrates.
+    pub distance: Real,
+}
+
+/// What a call of `contact_manifolds` asks about two meshes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Question {
+    /// [`shape_address`] of both meshes.
+    pub shapes: [usize; 2],
+    /// Pose of the second mesh in the first one's frame.
+    pub pos12: Pose,
+    /// The prediction distance of the call.
+    pub prediction: Real,
+}
+
+/// One call of `contact_manifolds` for two meshes: the question, and the triangle pairs of its
+/// answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    /// What was asked.
+    pub question: Question,
+    /// Triangle pairs with a point no farther than the prediction distance. Points beyond it are
+    /// left out: stock Parry keeps those of an earlier pose, and the solver ignores them.
+    pub reported: Vec<Reported>,
+}
+
+impl Question {
+    /// The question about two shapes.
+    pub fn new(pos12: &Pose, shapes: [&dyn Shape; 2], prediction: Real) -> Self {
+        Self { shapes: shapes.map(shape_address), pos12: *pos12, prediction }
+    }
+}
+
+impl Answer {
+    /// The answer held by `manifolds` after the call.
+    pub fn new<M, C>(question: Question, manifolds: &[ContactManifold<M, C>]) -> Self {
+        let reported = manifolds.iter().filter_map(|manifold| {
+            let distances = manifold.points.iter().map(|point| point.dist);
+            let distance = distances.reduce(Real::min)?;
+            (distance <= question.prediction).then_some(Reported {
+                triangle1: manifold.subshape1,
+                triangle2: manifold.subshape2,
+                distance,
+            })
+        });
+        Self { reported: reported.collect(), question }
+    }
+}
+
+/// Where a shape is stored: tells apart the shapes of a world for as long as it owns them.
+pub fn shape_address(shape: &dyn Shape) -> usize {
+    std::ptr::from_ref(shape).cast::<()>().addr()
+}

@@ -1,0 +1,83 @@
+//! The backends that are compared.
+
+use std::fmt;
+use std::sync::Arc;
+
+use clap::ValueEnum;
+use rapier_integration::{ContactGenerator, SbbkConfig, SbbkDispatcher};
+use rapier3d::geometry::{ContactData, ContactManifoldData};
+use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
+use rapier3d::pipeline::PhysicsWorld;
+use serde::Serialize;
+
+use super::{Primed, Probe, Timed};
+
+/// A dispatcher as Rapier takes it.
+pub type SharedDispatcher = Arc<dyn PersistentQueryDispatcher<ContactManifoldData, ContactData>>;
+
+/// Who answers the contact queries of a world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Backend {
+    /// Parry's own dispatcher, which Rapier installs when it is told nothing.
+    Stock,
+    /// SBBK's code with AABBs in every layer: what the paper compares with.
+    AabbOnly,
+    /// SBBK as a user gets it.
+    Sbbk,
+    /// SBBK's trees, with Parry generating the contacts of the triangles they find.
+    SbbkParry,
+}
+
+impl Backend {
+    /// All backends, stock first.
+    pub const ALL: [Self; 4] = [Self::Stock, Self::AabbOnly, Self::Sbbk, Self::SbbkParry];
+
+    /// A fresh dispatcher, with nothing cached.
+    pub fn dispatcher(self) -> SharedDispatcher {
+        let mut config = SbbkConfig::default();
+        match self {
+            Self::Stock => return Arc::new(DefaultQueryDispatcher),
+            Self::AabbOnly => config = SbbkConfig::aabb_only(),
+            Self::Sbbk => {}
+            Self::SbbkParry => config.contacts = ContactGenerator::Parry,
+        }
+        Arc::new(SbbkDispatcher::new(config))
+    }
+
+    /// Makes a fresh, timed dispatcher the one that answers `world`'s narrow phase. It is
+    /// [`primed`](Primed) with the meshes that are in the world.
+    pub fn install(self, world: &mut PhysicsWorld) -> Installed {
+        let dispatcher = self.dispatcher();
+        let shapes = world.colliders.iter().map(|(_, collider)| collider.shared_shape());
+        let installed = Installed {
+            primed: Primed::new(&dispatcher, shapes),
+            dispatcher,
+            probe: Probe::default(),
+        };
+        let timed = Timed::new(installed.dispatcher.clone(), installed.probe.clone());
+        world.narrow_phase.set_query_dispatcher(timed);
+        installed
+    }
+}
+
+impl fmt::Display for Backend {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Stock => "stock",
+            Self::AabbOnly => "aabb-only",
+            Self::Sbbk => "sbbk",
+            Self::SbbkParry => "sbbk-parry",
+        })
+    }
+}
+
+/// What [`Backend::install`] put into a world.
+pub struct Installed {
+    /// The dispatcher, untimed, with the trees that the world's queries use: for asking it afresh.
+    pub dispatcher: SharedDispatcher,
+    /// Times and answers of the world's own queries.
+    pub probe: Probe,
+    /// Keeps the trees from being dropped while nothing touches.
+    pub primed: Primed,
+}

@@ -1,0 +1,37 @@
+//! Trees built ahead of the first query that is timed.
+
+use rapier3d::geometry::{ContactManifold, SharedShape, TriMesh};
+use rapier3d::math::Pose;
+use rapier3d::parry::query::ContactManifoldsWorkspace;
+
+use super::{SharedDispatcher, shape_address};
+
+/// What a dispatcher remembers after it was asked about each of some meshes: SBBK builds the tree
+/// of a mesh when it first meets it, and may drop it when no pair needs it any more. Building is
+/// measured on its own, so that times of queries and steps should not hold it.
+pub struct Primed(#[expect(dead_code, reason = "kept alive")] Vec<ContactManifoldsWorkspace>);
+
+impl Primed {
+    /// Asks `dispatcher` about each distinct mesh among `shapes`, against itself.
+    pub fn new<'a>(
+        dispatcher: &SharedDispatcher,
+        shapes: impl IntoIterator<Item = &'a SharedShape>,
+    ) -> Self {
+        let is_mesh = |shape: &&&SharedShape| shape.as_shape::<TriMesh>().is_some();
+        let meshes = shapes.into_iter();
+        let mut meshes: Vec<&SharedShape> = meshes.filter(|shape| is_mesh(&shape)).collect();
+        meshes.sort_by_key(|shape| shape_address(&***shape));
+        meshes.dedup_by_key(|shape| shape_address(&***shape));
+        let ask = |mesh: &SharedShape| {
+            let (mut manifolds, mut workspace) = (Vec::<ContactManifold>::new(), None);
+            // Far enough apart for no contact.
+            let reach = mesh.compute_local_bounding_sphere().radius;
+            let pos12 = Pose::translation(3.0 * reach, 0.0, 0.0);
+            dispatcher
+                .contact_manifolds(&pos12, &**mesh, &**mesh, 0.0, &mut manifolds, &mut workspace)
+                .ok()?;
+            workspace
+        };
+        Self(meshes.into_iter().filter_map(ask).collect())
+    }
+}

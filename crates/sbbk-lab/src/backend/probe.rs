@@ -1,0 +1,129 @@
+//! Shared counters of the time spent in contact queries, and a recorder of their answers.
+
+use std::ops::Index;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use rapier3d::parry::shape::{Shape, TriMesh};
+
+use super::Answer;
+
+/// What the two shapes of a pair are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PairKind {
+    /// Two triangle meshes.
+    MeshMesh,
+    /// A triangle mesh and anything else.
+    MeshOther,
+    /// No triangle mesh.
+    Other,
+}
+
+impl PairKind {
+    const COUNT: usize = 3;
+
+    /// The kind of a pair of shapes.
+    pub fn of(shape1: &dyn Shape, shape2: &dyn Shape) -> Self {
+        match [shape1, shape2].map(|shape| shape.as_shape::<TriMesh>().is_some()) {
+            [true, true] => Self::MeshMesh,
+            [false, false] => Self::Other,
+            _ => Self::MeshOther,
+        }
+    }
+}
+
+/// Calls of one kind, and the time they took together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Number of calls.
+    pub calls: u64,
+    /// Summed wall time, one [`clock_cost`] a call included. With Rapier's `parallel` feature the
+    /// sum runs over all threads.
+    pub time: Duration,
+}
+
+/// [`Tally`] of each [`PairKind`], by index.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct QueryTimes([Tally; PairKind::COUNT]);
+
+impl Index<PairKind> for QueryTimes {
+    type Output = Tally;
+
+    fn index(&self, kind: PairKind) -> &Tally {
+        &self.0[kind as usize]
+    }
+}
+
+/// Handle on the counters of one [`Timed`](super::Timed) dispatcher; clones share them.
+#[derive(Clone, Debug, Default)]
+pub struct Probe(Arc<Shared>);
+
+#[derive(Debug, Default)]
+struct Shared {
+    calls: [AtomicU64; PairKind::COUNT],
+    nanoseconds: [AtomicU64; PairKind::COUNT],
+    is_recording: AtomicBool,
+    answers: Mutex<Vec<Answer>>,
+}
+
+impl Probe {
+    /// Time and calls since the last [`Self::reset`].
+    pub fn times(&self) -> QueryTimes {
+        QueryTimes(std::array::from_fn(|kind| Tally {
+            calls: self.0.calls[kind].load(Relaxed),
+            time: Duration::from_nanos(self.0.nanoseconds[kind].load(Relaxed)),
+        }))
+    }
+
+    /// Sets time and calls to zero.
+    pub fn reset(&self) {
+        for counter in self.0.calls.iter().chain(&self.0.nanoseconds) {
+            counter.store(0, Relaxed);
+        }
+    }
+
+    /// Keeps the answer of each mesh-mesh call from now on, until [`Self::take_answers`]. Off at
+    /// first: recording allocates, so steps that record are not steps to time.
+    pub fn start_recording(&self) {
+        self.0.is_recording.store(true, Relaxed);
+    }
+
+    /// Stops recording; the answers since [`Self::start_recording`], in the order of the calls.
+    pub fn take_answers(&self) -> Vec<Answer> {
+        self.0.is_recording.store(false, Relaxed);
+        std::mem::take(&mut *self.0.answers.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    pub(super) fn add(&self, kind: PairKind, time: Duration) {
+        self.0.calls[kind as usize].fetch_add(1, Relaxed);
+        self.0.nanoseconds[kind as usize].fetch_add(time.as_nanos() as u64, Relaxed);
+    }
+
+    pub(super) fn record(&self, answer: impl FnOnce() -> Answer) {
+        if self.0.is_recording.load(Relaxed) {
+            let answer = answer();
+            let mut answers = self.0.answers.lock().unwrap_or_else(PoisonError::into_inner);
+            answers.push(answer);
+        }
+    }
+}
+
+/// What the clock adds to the time of each call: the mean of 10,000 empty measurements.
+pub fn clock_cost() -> Duration {
+    const REPEATS: u32 = 10_000;
+    let total: Duration = (0..REPEATS).map(|_| Instant::now().elapsed()).sum();
+    total / REPEATS
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Would catch a clock so coarse or slow that times of single calls (tens of microseconds)
+    /// mean nothing.
+    #[test]
+    fn the_clock_costs_less_than_a_microsecond() {
+        assert!(clock_cost() < Duration::from_micros(1));
+    }
+}

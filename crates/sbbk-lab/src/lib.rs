@@ -1,0 +1,15 @@
+//! Scenes, meshes, measurements and pictures shared by the examples, tests and benchmarks of SBBK
+//! for Rapier.
+//!
+//! [`mesh`] makes and loads meshes, [`scene`] builds worlds from them, [`backend`] chooses who
+//! answers a world's contact queries, [`metrics`] measures one run, [`study`] compares the
+//! backends on the paper's experiments, [`report`] shows the results, and [`picture`] draws a world.
+
+pub mod backend;
+pub mod cli;
+pub mod mesh;
+pub mod metrics;
+pub mod picture;
+pub mod report;
+pub mod scene;
+pub mod study;

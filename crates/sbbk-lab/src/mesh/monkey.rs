@@ -1,0 +1,173 @@
+//! A monkey head, for piles of concave objects that are easy to recognise.
+//!
+//! A sphere is shaped by a list of features, one after the other. Feature `f` has a centre `c` on
+//! the unit sphere and a weight `w(u) = (1 - t^a)^b`, where `t = |(u - c) / spread|^2 < 1` and
+//! `[a, b]` is its profile, and moves the point `p` that stands for direction `u` to
+//!
+//! ```text
+//! p + w(u) * (pull + stretch * (p - anchor)),    anchor: where f's centre came to lie before f
+//! ```
+//!
+//! `pull` makes bumps and hollows, `stretch` flattens and widens them: that is how a bump at the
+//! side of the head becomes an ear. Features off the middle act on both sides alike.
+//! Only arithmetic and square roots are used, so that the head is the same on all machines.
+
+use glamx::Vec3;
+
+use super::Mesh;
+use super::grids::octasphere;
+
+/// One step of the shaping, in the words of the formula above.
+struct Feature {
+    /// A direction, of any length.
+    centre: Vec3,
+    /// Reach from the centre along each axis, on the unit sphere.
+    spread: Vec3,
+    /// Powers `a` and `b`: a large `a` makes a plateau, a large `b` a soft rim.
+    profile: [i32; 2],
+    pull: Vec3,
+    stretch: Vec3,
+}
+
+/// Half axes of the skull before the features, `x` across, `y` up, `z` to the face.
+const SKULL: Vec3 = Vec3::new(0.80, 0.88, 0.84);
+
+/// Multiplies the directions of the vertices: gathers them at the ears, whose thin rims need them
+/// most. Smaller `y` and `z`: more at the ears, fewer elsewhere.
+const SIDE_FOCUS: Vec3 = Vec3::new(1.0, 0.65, 0.75);
+
+/// Added to the directions of the vertices then: gathers them on the face, as the back of the head
+/// is smooth. Must stay below the smallest part of [`SIDE_FOCUS`], or the sphere would fold.
+const FACE_FOCUS: Vec3 = Vec3::new(0.0, 0.0, 0.45);
+
+/// From large to small: later features shape what the earlier ones have made.
+const FEATURES: [Feature; 10] = [
+    // Jaw, narrower than the skull.
+    Feature {
+        centre: Vec3::new(0.0, -0.85, 0.35),
+        spread: Vec3::splat(0.9),
+        profile: [2, 2],
+        pull: Vec3::new(0.0, -0.05, 0.10),
+        stretch: Vec3::new(-0.25, 0.0, 0.0),
+    },
+    // Flat face below the forehead.
+    Feature {
+        centre: Vec3::new(0.0, 0.1, 1.0),
+        spread: Vec3::new(0.75, 0.55, 0.75),
+        profile: [2, 2],
+        pull: Vec3::new(0.0, 0.0, -0.08),
+        stretch: Vec3::ZERO,
+    },
+    // Muzzle.
+    Feature {
+        centre: Vec3::new(0.0, -0.50, 0.86),
+        spread: Vec3::new(0.60, 0.45, 0.60),
+        profile: [2, 2],
+        pull: Vec3::new(0.0, -0.06, 0.36),
+        stretch: Vec3::new(0.30, 0.15, 0.0),
+    },
+    // Ears.
+    Feature {
+        centre: Vec3::new(0.98, 0.12, -0.05),
+        spread: Vec3::splat(0.42),
+        profile: [1, 1],
+        pull: Vec3::new(0.52, 0.08, -0.12),
+        stretch: Vec3::new(0.0, 1.0, -0.68),
+    },
+    // Hollow of the ears.
+    Feature {
+        centre: Vec3::new(0.92, 0.12, 0.24),
+        spread: Vec3::splat(0.26),
+        profile: [2, 2],
+        pull: Vec3::new(-0.07, 0.0, -0.09),
+        stretch: Vec3::ZERO,
+    },
+    // Brow, highest above each eye.
+    Feature {
+        centre: Vec3::new(0.26, 0.46, 0.86),
+        spread: Vec3::new(0.45, 0.24, 0.45),
+        profile: [2, 2],
+        pull: Vec3::new(0.0, 0.0, 0.13),
+        stretch: Vec3::ZERO,
+    },
+    // Eye sockets.
+    Feature {
+        centre: Vec3::new(0.30, 0.12, 0.93),
+        spread: Vec3::new(0.26, 0.26, 0.4),
+        profile: [2, 2],
+        pull: Vec3::new(0.0, 0.0, -0.20),
+        stretch: Vec3::ZERO,
+    },
+    // Eyeballs.
+    Feature {
+        centre: Vec3::new(0.30, 0.12, 0.93),
+        spread: Vec3::new(0.17, 0.17, 0.4),
+        profile: [2, 2],
+        pull: Vec3::new(0.0, 0.0, 0.14),
+        stretch: Vec3::ZERO,
+    },
+    // Nose.
+    Feature {
+        centre: Vec3::new(0.0, -0.25, 0.97),
+        spread: Vec3::new(0.14, 0.11, 0.3),
+        profile: [2, 2],
+        pull: Vec3::new(0.0, 0.0, 0.08),
+        stretch: Vec3::ZERO,
+    },
+    // Mouth.
+    Feature {
+        centre: Vec3::new(0.0, -0.47, 0.88),
+        spread: Vec3::new(0.50, 0.13, 0.6),
+        profile: [2, 2],
+        pull: Vec3::new(0.0, 0.0, -0.13),
+        stretch: Vec3::ZERO,
+    },
+];
+
+/// The monkey head in its usual resolution: 968 triangles, 486 vertices.
+pub fn monkey_head() -> Mesh {
+    monkey_head_with(11)
+}
+
+/// A monkey head of `8 * detail * detail` triangles (`detail` at least 1; from about 6 it looks
+/// like one), about the origin, 2 units across its longest side, facing `z`. Closed and oriented,
+/// with concave eye sockets and ears.
+pub fn monkey_head_with(detail: u32) -> Mesh {
+    let features = anchored_features();
+    octasphere(detail)
+        .mapped(|point| {
+            let mirror = Vec3::new(1f32.copysign(point.x), 1.0, 1.0);
+            let direction = (point * mirror * SIDE_FOCUS + FACE_FOCUS).normalize();
+            shaped(direction, &features) * mirror
+        })
+        .centred()
+        .scaled_to(2.0)
+        .named("monkey head")
+}
+
+/// The features in order, each with its anchor.
+fn anchored_features() -> Vec<(&'static Feature, Vec3)> {
+    let mut anchored = Vec::with_capacity(FEATURES.len());
+    for feature in &FEATURES {
+        let anchor = shaped(feature.centre.normalize(), &anchored);
+        anchored.push((feature, anchor));
+    }
+    anchored
+}
+
+/// Where a direction with `x >= 0` comes to lie after these features.
+fn shaped(direction: Vec3, features: &[(&Feature, Vec3)]) -> Vec3 {
+    features.iter().fold(direction * SKULL, |point, (feature, anchor)| {
+        let change = feature.pull + feature.stretch * (point - anchor);
+        point + feature.weight(direction) * change
+    })
+}
+
+impl Feature {
+    /// How much of the feature a unit direction feels, in 0..1.
+    fn weight(&self, direction: Vec3) -> f32 {
+        let [plateau, rim] = self.profile;
+        let t = ((direction - self.centre.normalize()) / self.spread).length_squared();
+        (1.0 - t.powi(plateau)).max(0.0).powi(rim)
+    }
+}

@@ -1,0 +1,21 @@
+//! Measuring instruments: times, the state of a world, and the error against the f64 truth.
+//!
+//! Times and error are always taken from the same run. What is timed, and which contacts are
+//! judged at which poses, is said at [`run`] and [`PosePairs`]; what counts as an error, at
+//! [`ErrorCount`].
+
+mod environment;
+mod error;
+mod pose_pairs;
+mod run;
+mod statistics;
+mod step;
+mod world_state;
+
+pub use environment::Environment;
+pub use error::{ErrorCount, Judge, Truth, sample_indices};
+pub use pose_pairs::{PosePairs, Sweep};
+pub use run::{Run, RunPlan, Sample, run};
+pub use statistics::{Summary, ratio};
+pub use step::{StepTimes, timed_step};
+pub use world_state::WorldState;

@@ -1,0 +1,142 @@
+//! The same pairs of meshes at the same poses for every backend.
+//!
+//! Two runs of one scene on different backends drift apart: contacts that differ in the last bit
+//! soon lead to other trajectories. Times of whole runs therefore compare different questions.
+//! Here one run supplies the questions, and every backend answers all of them.
+
+use std::time::{Duration, Instant};
+
+use rapier3d::geometry::{ColliderHandle, ContactManifold, SharedShape, TriMesh};
+use rapier3d::math::{Pose, Real};
+use rapier3d::parry::query::ContactManifoldsWorkspace;
+use rapier3d::pipeline::PhysicsWorld;
+
+use crate::backend::{Answer, Question, SharedDispatcher};
+
+/// The mesh-mesh pairs proposed by a world's broad phase, at its poses after two steps in a row.
+///
+/// Every pair is asked twice: *fresh* at the first pose, with nothing known about it, and
+/// *steady* at the second, with the manifolds and the workspace of the first. A pair is asked
+/// whether or not Rapier would have recycled its contacts.
+#[derive(Debug)]
+pub struct PosePairs {
+    prediction: Real,
+    pairs: Vec<Pair>,
+}
+
+#[derive(Debug)]
+struct Pair {
+    handles: [ColliderHandle; 2],
+    shapes: [SharedShape; 2],
+    pos12: [Pose; 2],
+}
+
+/// What Rapier keeps for a pair from step to step.
+#[derive(Default)]
+struct PairMemory {
+    manifolds: Vec<ContactManifold>,
+    workspace: Option<ContactManifoldsWorkspace>,
+}
+
+/// Time of all queries, one after the other on one thread.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sweep {
+    /// All pairs at their first poses. The time to free the manifolds is not in it.
+    pub fresh: Duration,
+    /// All pairs again at their second poses.
+    pub steady: Duration,
+}
+
+impl PosePairs {
+    /// Collects the pairs of `world` and their poses now, then lets `step` step it once, and
+    /// collects the poses again.
+    pub fn capture(world: &mut PhysicsWorld, step: impl FnOnce(&mut PhysicsWorld)) -> Self {
+        let mut pairs: Vec<Pair> = Vec::new();
+        for pair in world.narrow_phase.contact_pairs() {
+            let handles = [pair.collider1, pair.collider2];
+            let shapes = handles.map(|handle| world.colliders[handle].shared_shape().clone());
+            if shapes.iter().all(|shape| shape.as_shape::<TriMesh>().is_some()) {
+                let pos12 = [pos12(world, handles); 2];
+                pairs.push(Pair { handles, shapes, pos12 });
+            }
+        }
+        step(world);
+        for pair in &mut pairs {
+            pair.pos12[1] = pos12(world, pair.handles);
+        }
+        let prediction = world.integration_parameters.prediction_distance();
+        Self { prediction, pairs }
+    }
+
+    /// Number of pairs.
+    pub fn pair_count(&self) -> usize {
+        self.pairs.len()
+    }
+
+    /// Asks `dispatcher` about every pair, fresh and steady, and takes the time.
+    pub fn sweep(&self, dispatcher: &SharedDispatcher) -> Sweep {
+        let mut memories: Vec<PairMemory> = Vec::new();
+        memories.resize_with(self.pairs.len(), PairMemory::default);
+        let [fresh, steady] = [0, 1].map(|pose_index| {
+            let start = Instant::now();
+            for (pair, memory) in self.pairs.iter().zip(&mut memories) {
+                pair.ask(dispatcher, self.prediction, pose_index, memory);
+            }
+            start.elapsed()
+        });
+        Sweep { fresh, steady }
+    }
+
+    /// The fresh (0) or steady (1) question about a pair. Panics when `index` is out of range.
+    pub fn question(&self, index: usize, pose_index: usize) -> Question {
+        let Pair { shapes, pos12, .. } = &self.pairs[index];
+        let shapes = [&*shapes[0], &*shapes[1]];
+        Question::new(&pos12[pose_index], shapes, self.prediction)
+    }
+
+    /// The answers of `dispatcher` to the fresh and the steady question about a pair. Panics when
+    /// `index` is out of range.
+    pub fn answers(&self, dispatcher: &SharedDispatcher, index: usize) -> [Answer; 2] {
+        let mut memory = PairMemory::default();
+        [0, 1].map(|pose_index| {
+            self.pairs[index].ask(dispatcher, self.prediction, pose_index, &mut memory);
+            Answer::new(self.question(index, pose_index), &memory.manifolds)
+        })
+    }
+
+    /// The meshes of a pair. Panics when `index` is out of range.
+    pub fn meshes(&self, index: usize) -> [&TriMesh; 2] {
+        let shapes = self.pairs[index].shapes.each_ref();
+        shapes.map(|shape| shape.as_trimesh().expect("only meshes are captured"))
+    }
+
+    /// All shapes, those shared by several colliders repeated.
+    pub fn shapes(&self) -> impl Iterator<Item = &SharedShape> {
+        self.pairs.iter().flat_map(|pair| &pair.shapes)
+    }
+}
+
+impl Pair {
+    fn ask(
+        &self,
+        dispatcher: &SharedDispatcher,
+        prediction: Real,
+        pose_index: usize,
+        memory: &mut PairMemory,
+    ) {
+        // As in Rapier, an unsupported pair keeps what it had: nothing.
+        let _ = dispatcher.contact_manifolds(
+            &self.pos12[pose_index],
+            &*self.shapes[0],
+            &*self.shapes[1],
+            prediction,
+            &mut memory.manifolds,
+            &mut memory.workspace,
+        );
+    }
+}
+
+fn pos12(world: &PhysicsWorld, handles: [ColliderHandle; 2]) -> Pose {
+    let [pos1, pos2] = handles.map(|handle| world.colliders[handle].position());
+    pos1.inv_mul(pos2)
+}

@@ -1,0 +1,134 @@
+//! A whole run of a scene on one backend.
+
+use serde::Serialize;
+
+use super::{ErrorCount, Judge, PosePairs, StepTimes, WorldState, sample_indices, timed_step};
+use crate::backend::{Answer, Backend, Installed};
+use crate::scene::{Scene, SceneError, SceneWorld};
+
+/// How long to run, and what to look at.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RunPlan {
+    /// Steps at the start that are neither timed nor sampled.
+    pub warm_up: usize,
+    /// Number of steps after them.
+    pub steps: usize,
+    /// Steps between two samples of state and error; 0 for none. Sampled steps are not timed.
+    pub sample_every: usize,
+    /// At most this many mesh pairs are judged in each sampled step and way (fresh, updated).
+    pub sample_size: usize,
+}
+
+/// What [`run`] measured.
+#[derive(Debug, Serialize)]
+pub struct Run {
+    /// The backend.
+    pub backend: Backend,
+    /// Times of the steps that were not sampled, in order.
+    pub times: Vec<StepTimes>,
+    /// The sampled steps, in order.
+    pub samples: Vec<Sample>,
+}
+
+/// What was seen in a sampled step.
+///
+/// Both errors are judged at the poses at the start of the step, where Rapier asks.
+#[derive(Debug, Serialize)]
+pub struct Sample {
+    /// Number of the step.
+    pub step: usize,
+    /// The world after the step.
+    pub state: WorldState,
+    /// Error of fresh answers: pairs sampled from all those of the broad phase, asked with
+    /// nothing known about them.
+    pub fresh: ErrorCount,
+    /// Error of the answers that Rapier got: pairs sampled from those that it updated in this
+    /// step, with their manifolds and workspace of earlier steps. Pairs that Rapier recycled were
+    /// not asked; their contacts are up to 0.05 units old on any backend, and not judged.
+    pub updated: ErrorCount,
+    /// The pairs, for asking other backends.
+    #[serde(skip)]
+    pub pairs: PosePairs,
+}
+
+impl Run {
+    /// Steps a second, over the timed steps.
+    pub fn frames_per_second(&self) -> f64 {
+        let total: f64 = self.times.iter().map(|times| times.step).sum();
+        1e3 * self.times.len() as f64 / total
+    }
+
+    /// Mean over the timed steps, in milliseconds; NaN when there are none.
+    pub fn mean(&self, time: impl Fn(&StepTimes) -> f64) -> f64 {
+        self.times.iter().map(time).sum::<f64>() / self.times.len() as f64
+    }
+
+    /// Errors of all samples together.
+    pub fn total(&self, error: impl Fn(&Sample) -> ErrorCount) -> ErrorCount {
+        self.samples.iter().map(error).sum()
+    }
+}
+
+/// Runs `scene` on `backend`; `on_step` is called after each step.
+///
+/// Errors: the scene cannot be built.
+pub fn run(
+    scene: &dyn Scene,
+    backend: Backend,
+    plan: &RunPlan,
+    on_step: &mut dyn FnMut(&SceneWorld),
+) -> Result<Run, SceneError> {
+    let mut built = scene.build()?;
+    let installed = backend.install(&mut built.world);
+    let mut run = Run { backend, times: Vec::with_capacity(plan.steps), samples: Vec::new() };
+    for step in 1..=plan.warm_up + plan.steps {
+        if step <= plan.warm_up {
+            built.world.step();
+        } else if plan.sample_every > 0 && step % plan.sample_every == 0 {
+            let sample = sampled_step(&mut built, &installed, step, plan.sample_size);
+            run.samples.push(sample);
+        } else {
+            let times = timed_step(&mut built.world, &installed.probe);
+            run.times.push(times);
+        }
+        on_step(&built);
+    }
+    Ok(run)
+}
+
+fn sampled_step(
+    SceneWorld { world, watched }: &mut SceneWorld,
+    installed: &Installed,
+    step: usize,
+    limit: usize,
+) -> Sample {
+    let Installed { dispatcher, probe, .. } = installed;
+    probe.start_recording();
+    let pairs = PosePairs::capture(world, |world| world.step());
+    let updated = probe.take_answers();
+    let shapes = world.colliders.iter().map(|(_, collider)| collider.shared_shape());
+    let judge = Judge::new(shapes);
+    let fresh = |index| pairs.answers(dispatcher, index)[0].clone();
+    Sample {
+        step,
+        state: WorldState::of(world, watched),
+        fresh: judged(&judge, fresh, pairs.pair_count(), limit),
+        updated: judged(&judge, |index| updated[index].clone(), updated.len(), limit),
+        pairs,
+    }
+}
+
+/// Judges at most `limit` of `count` answers.
+fn judged(
+    judge: &Judge,
+    answer: impl Fn(usize) -> Answer,
+    count: usize,
+    limit: usize,
+) -> ErrorCount {
+    let sampled = sample_indices(count, limit).into_iter();
+    let errors = sampled.map(|index| {
+        let answer = answer(index);
+        judge.truth(&answer.question).judge(&answer)
+    });
+    ErrorCount { sampled_from: count, ..errors.sum() }
+}

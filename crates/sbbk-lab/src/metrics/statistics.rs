@@ -1,0 +1,71 @@
+//! The few numbers that stand for many.
+
+use serde::Serialize;
+
+/// Least, middle and mean of some values. Times are reported by minimum and median: the minimum
+/// is the least disturbed by whatever else the machine does, the median is what a user sees.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// How many values.
+    pub count: usize,
+    /// The smallest.
+    pub min: f64,
+    /// The middle one, or the mean of the middle two.
+    pub median: f64,
+    /// The arithmetic mean.
+    pub mean: f64,
+    /// The largest.
+    pub max: f64,
+}
+
+impl Summary {
+    /// Sums up `values`; `None` when there are none. NaN counts as larger than all numbers.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let mut sorted: Vec<f64> = values.into_iter().collect();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let count = sorted.len();
+        let (&min, &max) = (sorted.first()?, sorted.last()?);
+        Some(Self {
+            count,
+            min,
+            median: 0.5 * (sorted[(count - 1) / 2] + sorted[count / 2]),
+            mean: sorted.iter().sum::<f64>() / count as f64,
+            max,
+        })
+    }
+}
+
+/// `numerator / denominator`; `None` unless both are finite and the denominator is positive, so
+/// that no table shows a ratio to nothing.
+pub fn ratio(numerator: f64, denominator: f64) -> Option<f64> {
+    let is_defined = numerator.is_finite() && denominator.is_finite() && denominator > 0.0;
+    is_defined.then(|| numerator / denominator)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Would catch a median off by one place, or one that forgets to sort.
+    #[test]
+    fn median_of_odd_and_even_counts() {
+        let odd = Summary::of([9.0, 1.0, 4.0]).unwrap();
+        assert_eq!((odd.min, odd.median, odd.max), (1.0, 4.0, 9.0));
+        let even = Summary::of([9.0, 1.0, 4.0, 2.0]).unwrap();
+        assert_eq!((even.count, even.median, even.mean), (4, 3.0, 4.0));
+        assert_eq!(Summary::of([7.0]).unwrap().median, 7.0);
+        assert_eq!(Summary::of([]), None);
+    }
+
+    /// Would catch a table that shows "inf times faster" where nothing was measured.
+    #[test]
+    fn no_ratio_to_nothing() {
+        assert_eq!(ratio(71.8, 35.9), Some(2.0));
+        assert_eq!(ratio(0.0, 2.0), Some(0.0));
+        for (numerator, denominator) in
+            [(1.0, 0.0), (0.0, 0.0), (f64::NAN, 1.0), (1.0, f64::INFINITY)]
+        {
+            assert_eq!(ratio(numerator, denominator), None);
+        }
+    }
+}

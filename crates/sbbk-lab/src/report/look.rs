@@ -1,0 +1,45 @@
+//! Colours and markers of the plots.
+
+use std::f64::consts::TAU;
+
+use plotters::style::RGBColor;
+
+use crate::backend::Backend;
+
+/// How a series is drawn. The colours are of Okabe and Ito's palette, which the colour-blind can
+/// tell apart; the markers do for black and white.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Look {
+    Backend(Backend),
+    Paper,
+}
+
+impl Look {
+    pub fn colour(self) -> RGBColor {
+        match self {
+            Self::Backend(Backend::Stock) => RGBColor(0, 0, 0),
+            Self::Backend(Backend::AabbOnly) => RGBColor(213, 94, 0),
+            Self::Backend(Backend::Sbbk) => RGBColor(0, 114, 178),
+            Self::Backend(Backend::SbbkParry) => RGBColor(0, 158, 115),
+            Self::Paper => RGBColor(204, 121, 167),
+        }
+    }
+
+    /// The marker about the origin, in pixels: a regular polygon.
+    pub fn marker(self, radius: f64) -> Vec<(i32, i32)> {
+        // Number of corners, and the first one's direction as a share of a turn from the right.
+        let (corners, start) = match self {
+            Self::Backend(Backend::Stock) => (4, 0.125),
+            Self::Backend(Backend::AabbOnly) => (3, 0.75),
+            Self::Backend(Backend::Sbbk) => (16, 0.0),
+            Self::Backend(Backend::SbbkParry) => (4, 0.0),
+            Self::Paper => (3, 0.25),
+        };
+        (0..corners)
+            .map(|corner| {
+                let (sin, cos) = (TAU * (start + f64::from(corner) / f64::from(corners))).sin_cos();
+                ((radius * cos).round() as i32, (radius * sin).round() as i32)
+            })
+            .collect()
+    }
+}

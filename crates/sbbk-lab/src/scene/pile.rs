@@ -1,0 +1,124 @@
+//! The paper's second experiment (section 4.2, figure 8): many monkey heads dropped at once.
+
+use glamx::{Pose3, Vec3};
+use oorandom::Rand32;
+use rapier3d::dynamics::RigidBodyBuilder;
+use rapier3d::geometry::ColliderBuilder;
+use rapier3d::math::{Real, Vector};
+use rapier3d::pipeline::PhysicsWorld;
+
+use super::random::rotation;
+use super::{Scene, SceneError, SceneWorld, Solid};
+use crate::mesh::{self, Mesh};
+
+/// Heads released at once from a loose grid above a floor, so that they fall and collide with it
+/// and with each other.
+///
+/// The grid has [`Self::layers`] layers, each about square. Cells are cubes of
+/// [`Self::spacing`] times the diameter of the head's sphere about its origin: no two heads touch
+/// at the start, whatever their orientation, which is random. The lowest layer is half a cell
+/// above the floor, a fixed cuboid wide enough for the pile to spread. With the default head the
+/// pile is in full contact after about 90 steps (1.5 seconds).
+#[derive(Clone, Debug)]
+pub struct MonkeyPile {
+    /// Number of heads; the paper has 2000.
+    pub heads: usize,
+    /// The head, shared by all: 2 units across.
+    pub mesh: Mesh,
+    /// Side of a grid cell in head diameters. Below 1 heads may touch at the start; raised, they
+    /// fall longer before they meet.
+    pub spacing: Real,
+    /// Number of layers. More layers give a deeper pile, which takes longer to settle.
+    pub layers: usize,
+    /// Seed of the orientations.
+    pub seed: u64,
+    /// Rapier's contact recycling: pairs that moved little are not asked again (its default).
+    pub contact_recycling: bool,
+}
+
+/// Longest side of a head, in units.
+const HEAD_SIZE: f32 = 2.0;
+
+impl MonkeyPile {
+    /// `heads` monkey heads.
+    pub fn with_heads(heads: usize) -> Self {
+        Self::of(heads, mesh::monkey_head())
+    }
+
+    /// `heads` heads of another kind, centred and scaled to the size of the monkey.
+    pub fn of(heads: usize, mesh: Mesh) -> Self {
+        Self {
+            heads,
+            mesh: mesh.centred().scaled_to(HEAD_SIZE),
+            spacing: 1.02,
+            layers: 5,
+            seed: 1,
+            contact_recycling: true,
+        }
+    }
+
+    /// The starting poses of the heads.
+    pub fn poses(&self) -> Vec<Pose3> {
+        let mut random = Rand32::new(self.seed);
+        let cell = self.cell();
+        let columns = self.columns();
+        let layer_size = columns * columns;
+        let centre = 0.5 * (columns as f32 - 1.0);
+        (0..self.heads)
+            .map(|index| {
+                let [x, z] = [index % columns, index / columns % columns];
+                let coordinates = Vec3::new(
+                    x as f32 - centre,
+                    (index / layer_size) as f32 + 1.0,
+                    z as f32 - centre,
+                );
+                Pose3::from_parts(cell * coordinates, rotation(&mut random))
+            })
+            .collect()
+    }
+
+    /// Side of a grid cell, in units.
+    fn cell(&self) -> f32 {
+        let farthest = (self.mesh.vertices.iter()).map(|vertex| vertex.length_squared());
+        self.spacing * 2.0 * farthest.fold(0.0, f32::max).sqrt()
+    }
+
+    /// Number of grid columns along each side.
+    fn columns(&self) -> usize {
+        let layer = self.heads.div_ceil(self.layers.max(1));
+        (layer as f64).sqrt().ceil().max(1.0) as usize
+    }
+}
+
+impl Default for MonkeyPile {
+    /// The paper's 2000 heads.
+    fn default() -> Self {
+        Self::with_heads(2000)
+    }
+}
+
+impl Scene for MonkeyPile {
+    fn name(&self) -> String {
+        let triangle_count = self.mesh.triangle_count();
+        format!("{} heads of {triangle_count} triangles", self.heads)
+    }
+
+    fn build(&self) -> Result<SceneWorld, SceneError> {
+        let mut world = PhysicsWorld::new();
+        world.integration_parameters.contact_recycling = self.contact_recycling;
+        let cell = self.cell();
+        // As much room beside the grid as it is wide or high.
+        let side = 2.0 * cell * self.columns().max(self.layers) as f32;
+        world.insert(
+            RigidBodyBuilder::fixed().translation(Vector::Y * -cell),
+            ColliderBuilder::cuboid(side, cell, side),
+        );
+        let solid = Solid::new(&self.mesh)?;
+        let watched = self.poses().into_iter().map(|pose| {
+            let body = RigidBodyBuilder::dynamic().pose(pose);
+            world.insert(body, solid.collider()).0
+        });
+        let watched = watched.collect();
+        Ok(SceneWorld { world, watched })
+    }
+}

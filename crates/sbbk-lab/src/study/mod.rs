@@ -1,0 +1,29 @@
+//! The experiments: the paper's two scenes on all backends, and what lies behind their times.
+//!
+//! [`compare`] does all of them; each can be run on its own. Results are plain data, which
+//! [`report`](crate::report) turns into tables, files and plots.
+//!
+//! Times of whole runs are taken in one process, backends in turn, the first step of each run
+//! left out. Two runs of one scene soon differ, as chaos makes a different last bit of a contact
+//! into a different trajectory; so the same pairs at the same poses are timed as well
+//! ([`PileStudy::same_poses`]).
+
+mod comparison;
+mod cut;
+mod error;
+mod helicopter;
+mod meshes;
+mod outline;
+mod pile;
+mod progress;
+mod same_poses;
+mod turns;
+
+pub use comparison::{ComparePlan, Comparison, compare};
+pub use cut::{CutRow, CutStudy, Hierarchy, cut};
+pub use error::StudyError;
+pub use helicopter::{HelicopterPlan, HelicopterRow, helicopter};
+pub use meshes::{MeshRow, meshes};
+pub use pile::{PilePlan, PileRow, PileStudy, pile};
+pub use progress::Progress;
+pub use same_poses::{SamePosesPlan, SamePosesRow, same_poses};

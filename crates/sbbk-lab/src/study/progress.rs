@@ -1,0 +1,52 @@
+//! Progress bars on the error stream.
+
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// One bar after the other: what is being done, how far it is, and how long it will take.
+///
+/// Nothing is drawn when the error stream is not a terminal.
+#[derive(Clone, Debug)]
+pub struct Progress(Option<ProgressBar>);
+
+impl Progress {
+    /// Bars on the error stream.
+    pub fn visible() -> Self {
+        let style = "{elapsed:>4} {bar:30} {pos:>6}/{len:6} {wide_msg}";
+        let bar = ProgressBar::no_length();
+        if let Ok(style) = ProgressStyle::with_template(style) {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(Duration::from_millis(500));
+        Self(Some(bar))
+    }
+
+    /// No bars.
+    pub fn hidden() -> Self {
+        Self(None)
+    }
+
+    /// Starts the bar of a new phase of `length` steps.
+    pub fn phase(&self, message: impl Into<String>, length: usize) {
+        if let Some(bar) = &self.0 {
+            bar.reset();
+            bar.set_length(length as u64);
+            bar.set_message(message.into());
+        }
+    }
+
+    /// One step of the phase is done.
+    pub fn step(&self) {
+        if let Some(bar) = &self.0 {
+            bar.inc(1);
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        if let Some(bar) = &self.0 {
+            bar.finish_and_clear();
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! Stock Rapier beside SBBK: both scenes of the paper on all backends, with the paper's numbers
+//! among ours.
+//!
+//! ```text
+//! cargo run --release --example compare
+//! cargo run --release --example compare -- --quick --plot compare.svg
+//! ```
+
+use std::error::Error;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Parser;
+use sbbk_lab::cli::{exit_code, print};
+use sbbk_lab::mesh;
+use sbbk_lab::report::{tables, write_csv, write_json, write_plot};
+use sbbk_lab::study::{ComparePlan, Progress, compare};
+
+/// Compares stock Rapier, SBBK, and SBBK with AABBs only, in speed and error.
+#[derive(Parser)]
+struct Arguments {
+    /// Small scenes and few repeats: half a minute instead of three
+    #[arg(long)]
+    quick: bool,
+    /// Sizes of the piles of heads, the largest last [default: 100,200,500,1000,2000]
+    #[arg(long, value_delimiter = ',', value_name = "N,N,...")]
+    heads: Vec<usize>,
+    /// The head: an OBJ, STL or glTF file instead of the built-in monkey
+    #[arg(long, value_name = "FILE")]
+    mesh: Option<PathBuf>,
+    /// Writes all numbers to a JSON file
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Writes all numbers to a CSV file, one a line
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Writes Diagram 1, and time against error, to an SVG file
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+}
+
+fn main() -> ExitCode {
+    exit_code(run(&Arguments::parse()))
+}
+
+fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let mut plan = if arguments.quick { ComparePlan::quick() } else { ComparePlan::standard() };
+    plan.head = arguments.mesh.as_deref().map(mesh::load).transpose()?;
+    if !arguments.heads.is_empty() {
+        plan.heads.clone_from(&arguments.heads);
+    }
+    let comparison = compare(&plan, &Progress::visible())?;
+    print(&comparison.environment)?;
+    for table in tables::all(&comparison) {
+        print(format_args!("\n{table}"))?;
+    }
+    if let Some(path) = &arguments.json {
+        write_json(&comparison, path)?;
+    }
+    if let Some(path) = &arguments.csv {
+        write_csv(&comparison, path)?;
+    }
+    if let Some(path) = &arguments.plot {
+        write_plot(&comparison, path)?;
+    }
+    Ok(())
+}
