@@ -10,9 +10,9 @@ use parry3d::query::{
 };
 use parry3d::shape::{CompositeShape, Shape, TriMesh};
 use sbbk_core::traverse::DescentCounts;
-use sbbk_core::tree::BuildError;
+use sbbk_core::tree::{BuildError, Tree};
 
-use crate::mesh::{PreparedMesh, TreeCache};
+use crate::mesh::{PreparedRef, TreeCache};
 use crate::pair::{Answer, MeshPair, contact_manifolds};
 use crate::stats::QueryCounters;
 use crate::{ContactGenerator, SbbkConfig, SbbkStats, TriangleContacts};
@@ -41,15 +41,24 @@ impl SbbkDispatcher {
         &self.config
     }
 
-    /// Whether a mesh can be answered from a tree. Builds the tree and drops it again: for tools and start-up checks.
+    /// Builds the tree of a mesh now, or finds it built: at load time rather than in the step in which the mesh first comes
+    /// close to another. The tree stays for as long as the returned value lives.
     ///
-    /// A dispatcher cannot report trouble in a query (Rapier ignores its errors), so a mesh that fails here is
-    /// answered by Parry, as without SBBK, and counted in [`SbbkStats::unsupported_queries`].
+    /// A query cannot report trouble (Rapier ignores a dispatcher's errors), so a mesh that fails here is answered
+    /// by Parry, as without SBBK, and counted in [`SbbkStats::unsupported_queries`].
     ///
     /// # Errors
     /// What is wrong with the mesh, for example a vertex that is NaN.
+    pub fn prepare(&self, mesh: &TriMesh) -> Result<PreparedTree, BuildError> {
+        self.cache.prepare(mesh).map(PreparedTree)
+    }
+
+    /// Whether a mesh can be answered from a tree: [`prepare`](Self::prepare) without keeping it.
+    ///
+    /// # Errors
+    /// As `prepare`.
     pub fn check(&self, mesh: &TriMesh) -> Result<(), BuildError> {
-        PreparedMesh::new(mesh, &self.config.build_options()).map(drop)
+        self.prepare(mesh).map(drop)
     }
 
     /// Counts of trees and queries.
@@ -102,6 +111,23 @@ impl fmt::Debug for SbbkDispatcher {
             .field("config", &self.config)
             .field("stats", &self.stats())
             .finish()
+    }
+}
+
+/// Keeps the tree of a mesh, see [`SbbkDispatcher::prepare`].
+#[derive(Clone)]
+pub struct PreparedTree(PreparedRef);
+
+impl PreparedTree {
+    /// The tree itself.
+    pub fn tree(&self) -> &Tree {
+        &self.0.get().tree
+    }
+}
+
+impl fmt::Debug for PreparedTree {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("PreparedTree").field(self.tree().stats()).finish()
     }
 }
 

@@ -1,4 +1,48 @@
-//! SBBK for Rapier: a query dispatcher that answers triangle-mesh pairs from SBBK trees.
+//! SBBK for Rapier: fast and exact contacts between triangle meshes, as a drop-in query dispatcher.
+//!
+//! ```
+//! use rapier_integration::SbbkDispatcher;
+//! use rapier3d::prelude::*;
+//!
+//! let mut world = PhysicsWorld::new();
+//! world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default()); // the one line
+//! ```
+//!
+//! Nothing else in a scene changes: colliders stay plain triangle meshes. Each pair of meshes is answered from
+//! [trees](sbbk_core::tree) of a bounding sphere, AABBs and k-DOPs, descended together, with
+//! [exact contacts](sbbk_core::contact) of the triangles they find; every other pair goes to Parry's own
+//! dispatcher. Rapier's behaviour stays that of Rapier: prediction distance, contact skins, internal edges,
+//! recycling and clustering work as before.
+//!
+//! * [`SbbkConfig`]: the layers of the trees, whose contact generator, how much memory unused trees may keep.
+//! * [`SbbkDispatcher::prepare`] builds a tree at load time; [`SbbkDispatcher::stats`] says what was built and done.
+//! * [`TriangleContacts`]: the contact generator alone, for hosts with a midphase of their own.
+//!
+//! # Who answers
+//!
+//! | pair | contacts | state kept between steps |
+//! |---|---|---|
+//! | mesh and mesh | SBBK | candidates, features, manifolds |
+//! | mesh and deformable mesh (`TriMeshFlags::DEFORMABLE`) | Parry | Parry's |
+//! | mesh and anything else | Parry | Parry's |
+//! | all else | Parry | Parry's |
+//!
+//! Queries without manifolds (distance, casts, intersection tests) are Parry's, for all pairs.
+//!
+//! # Hosts
+//!
+//! The dispatcher is generic over manifold and contact data, so any host of Parry can use it. A host must drop a pair's
+//! workspace when it edits one of its shapes, as Rapier does and as Parry's own workspaces need too. Queries from many
+//! threads at once are fine: no lock is taken by a pair whose trees are known.
+//!
+//! A snapshot of a Rapier world can be taken and restored, with or without this crate. As Rapier does not store its
+//! dispatcher, set it again after restoring.
+//!
+//! # Features
+//!
+//! * `rapier3d` (default): Rapier as a dependency, for the example above and for the features below to reach it. Without it this is a
+//!   plain Parry dispatcher.
+//! * `parallel`, `enhanced-determinism`, `serde-serialize`: Rapier's and Parry's features of these names.
 
 mod config;
 mod dispatcher;
@@ -7,7 +51,21 @@ mod pair;
 mod stats;
 
 pub use config::{ContactGenerator, SbbkConfig};
-pub use dispatcher::SbbkDispatcher;
+pub use dispatcher::{PreparedTree, SbbkDispatcher};
 pub use pair::TriangleContacts;
 pub use sbbk_core;
 pub use stats::SbbkStats;
+
+/// Fails to compile if the dispatcher stops being one that Rapier takes.
+#[cfg(feature = "rapier3d")]
+const _: fn() = || {
+    use rapier3d::geometry::{ContactData, ContactManifoldData};
+    use rapier3d::parry::query::PersistentQueryDispatcher;
+
+    fn is_for_rapier<D>()
+    where
+        D: PersistentQueryDispatcher<ContactManifoldData, ContactData> + Clone + Default + 'static,
+    {
+    }
+    is_for_rapier::<SbbkDispatcher>();
+};

@@ -1,3 +1,4 @@
+use sbbk_core::contact::FeaturePair;
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::traverse::{
     Counters, Descent, DescentScratch, PairFrame, Verdict, Visitor, descend,
@@ -13,6 +14,8 @@ pub(super) struct Candidate {
     pub(super) key: OrderKey,
     pub(super) triangle1: u32,
     pub(super) triangle2: u32,
+    /// What was closest when this was last known, to be tried first.
+    pub(super) features: Option<FeaturePair>,
 }
 
 /// The place of a pair of triangles in the order of stock manifolds.
@@ -85,7 +88,7 @@ impl Visitor for Collector<'_> {
         self.test.survivors(batch1, batch2, |lane1, lane2| {
             let [triangle1, triangle2] = [batch1.triangles()[lane1], batch2.triangles()[lane2]];
             let key = OrderKey::new(self.prepared, self.flipped, [triangle1, triangle2]);
-            self.candidates.push(Candidate { key, triangle1, triangle2 });
+            self.candidates.push(Candidate { key, triangle1, triangle2, features: None });
         });
         Verdict::Descend
     }

@@ -7,6 +7,7 @@
 //! touch gets the exact test, so the contacts are those of a descent.
 
 use parry3d::math::{Pose, Real};
+use sbbk_core::contact::TriangleContact;
 use sbbk_core::traverse::Placement;
 use sbbk_core::tree::Tree;
 
@@ -92,9 +93,10 @@ impl Coherence {
     }
 
     /// Keeps a candidate of the descent under way.
-    pub(super) fn keep(&mut self, candidate: Candidate, distance: f64) {
+    pub(super) fn keep(&mut self, candidate: &Candidate, contact: &TriangleContact) {
         if self.descent.is_some() {
-            self.candidates.push(KnownCandidate { candidate, distance });
+            let candidate = Candidate { features: Some(contact.features), ..*candidate };
+            self.candidates.push(KnownCandidate { candidate, distance: contact.distance });
         }
     }
 

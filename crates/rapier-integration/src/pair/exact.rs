@@ -1,5 +1,7 @@
 //! One manifold from the exact contact of two triangles.
 
+use std::sync::LazyLock;
+
 use glamx::DVec3;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
@@ -24,9 +26,11 @@ impl LocalTriangles {
     pub(super) fn new(placement: &Placement, triangle1: &Triangle, triangle2: &Triangle) -> Self {
         let origin = triangle1.a;
         let relative = |x: Vector| x.as_dvec3() - origin.as_dvec3();
+        let placed = |x: Vector| placement.to_frame1(x, origin);
+        // Written out, as `array::map` is not always inlined.
         let corners = [
-            [triangle1.a, triangle1.b, triangle1.c].map(relative),
-            [triangle2.a, triangle2.b, triangle2.c].map(|x| placement.to_frame1(x, origin)),
+            [DVec3::ZERO, relative(triangle1.b), relative(triangle1.c)],
+            [placed(triangle2.a), placed(triangle2.b), placed(triangle2.c)],
         ];
         Self { origin, corners }
     }
@@ -126,12 +130,18 @@ fn tracked<C: Default + Copy>(
 }
 
 fn packed(feature: Feature) -> PackedFeatureId {
-    match feature {
+    PACKED[usize::from(feature.to_bits())]
+}
+
+/// Parry's names of the features, by [`Feature::to_bits`]: made once, as Parry's own constructors are not inlined
+/// and took a twentieth of a query.
+static PACKED: LazyLock<[PackedFeatureId; 1 << Feature::BITS]> = LazyLock::new(|| {
+    std::array::from_fn(|bits| match Feature::from_bits(bits as u8) {
         Feature::Vertex(i) => PackedFeatureId::vertex(u32::from(i)),
         Feature::Edge(i) => PackedFeatureId::edge(u32::from(i)),
         Feature::Face => PackedFeatureId::face(0),
-    }
-}
+    })
+});
 
 /// The contacts of two triangles from step to step, without meshes: for hosts with a midphase of their own.
 ///

@@ -2,8 +2,11 @@
 
 use parry3d::math::Pose;
 use parry3d::query::details::NormalConstraints;
-use parry3d::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
-use sbbk_core::contact::FeaturePair;
+use parry3d::query::{
+    ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, TrackedContact,
+};
+use parry3d::shape::Triangle;
+use sbbk_core::contact::{FeaturePair, TriangleContact};
 use sbbk_core::traverse::PairFrame;
 
 use super::candidates::{Candidate, OrderKey, Scratch};
@@ -23,10 +26,11 @@ pub(super) struct Generator<'a> {
     pub(super) contacts: ContactGenerator,
 }
 
-/// The manifold of a pair of triangles, and the features of the step before if they are known.
-struct Kept<M, C> {
-    manifold: ContactManifold<M, C>,
-    features: Option<FeaturePair>,
+/// Two triangles that touch.
+struct Touching {
+    triangles: [Triangle; 2],
+    local: LocalTriangles,
+    contact: TriangleContact,
 }
 
 impl Generator<'_> {
@@ -53,24 +57,25 @@ impl Generator<'_> {
             let mut kept = None;
             while let Some(&&(key, place)) = previous.peek().filter(|old| old.0 <= candidate.key) {
                 previous.next();
-                let manifold = std::mem::take(&mut manifolds[place as usize]);
                 if key == candidate.key && kept.is_none() {
-                    kept = Some(Kept { manifold, features: history.features[place as usize] });
+                    kept = Some(place as usize);
                 } else {
-                    history.retire(manifold);
+                    history.retire(std::mem::take(&mut manifolds[place as usize]));
                 }
             }
-            let kept = kept.unwrap_or_else(|| Kept {
-                manifold: history.manifold(candidate.triangle1, candidate.triangle2),
-                features: None,
-            });
-            let Kept { manifold, features } =
-                self.generate(candidate, kept, &mut descent, &mut history.previous_points);
-            if manifold.points.is_empty() {
-                history.retire(manifold);
-            } else {
-                history.next.push(manifold);
-                history.next_features.push(features);
+            let features = kept.and_then(|place| history.features[place]).or(candidate.features);
+            let touching = self.touching(candidate, features, &mut descent);
+            let mut manifold = match kept {
+                Some(place) => std::mem::take(&mut manifolds[place]),
+                None if touching.is_none() => continue,
+                None => history.manifold(candidate.triangle1, candidate.triangle2),
+            };
+            match touching {
+                Some(touching) => {
+                    self.fill(candidate, &touching, &mut history.previous_points, &mut manifold);
+                    history.keep(manifold, touching.contact.features);
+                }
+                None => history.retire(manifold),
             }
         }
         for &(_, place) in previous {
@@ -98,55 +103,56 @@ impl Generator<'_> {
         }
     }
 
-    /// The manifold of a candidate at the present pose; without points if it is beyond the prediction distance.
-    fn generate<M, C>(
+    /// The contact of a candidate at the present pose, if it is within the prediction distance.
+    fn touching(
         &self,
         candidate: &Candidate,
-        Kept { mut manifold, features }: Kept<M, C>,
+        features: Option<FeaturePair>,
         descent: &mut Option<&mut Coherence>,
-        previous_points: &mut Vec<parry3d::query::TrackedContact<C>>,
-    ) -> Kept<M, C>
-    where
+    ) -> Option<Touching> {
+        let MeshPair { mesh1, mesh2, prediction, .. } = self.pair;
+        let triangles = [mesh1.triangle(candidate.triangle1), mesh2.triangle(candidate.triangle2)];
+        let local = LocalTriangles::new(self.frame.placement(), &triangles[0], &triangles[1]);
+        let contact = local.contact(self.frame.margin(), features)?;
+        if let Some(coherence) = descent {
+            coherence.keep(candidate, &contact);
+        }
+        // A descent with slack finds pairs that are farther apart than the prediction distance.
+        let is_near = contact.distance <= f64::from(prediction);
+        is_near.then_some(Touching { triangles, local, contact })
+    }
+
+    /// Gives the manifold of a candidate its points; none if the normal constraints reject the contact.
+    fn fill<M, C>(
+        &self,
+        candidate: &Candidate,
+        touching: &Touching,
+        previous_points: &mut Vec<TrackedContact<C>>,
+        manifold: &mut ContactManifold<M, C>,
+    ) where
         M: Default + Clone + Send + Sync,
         C: Default + Copy + Send + Sync,
     {
-        let MeshPair { pos12, mesh1, mesh2, prediction } = self.pair;
-        let triangle1 = mesh1.triangle(candidate.triangle1);
-        let triangle2 = mesh2.triangle(candidate.triangle2);
-        let triangles = LocalTriangles::new(self.frame.placement(), &triangle1, &triangle2);
-        let contact = triangles.contact(self.frame.margin(), features);
-        if let (Some(contact), Some(coherence)) = (&contact, descent) {
-            coherence.keep(*candidate, contact.distance);
-        }
-        // A descent with slack finds pairs that are farther apart than the prediction distance.
-        let Some(contact) = contact.filter(|c| c.distance <= f64::from(prediction)) else {
-            manifold.points.clear();
-            return Kept { manifold, features: None };
-        };
+        let Touching { triangles: [triangle1, triangle2], local, contact } = touching;
         let constraints = self.constraints(candidate);
         match self.contacts {
-            ContactGenerator::Exact => fill(
-                (self.frame.placement(), pos12),
-                &triangles,
-                &contact,
-                constraints,
-                previous_points,
-                &mut manifold,
-            ),
+            ContactGenerator::Exact => {
+                let placed = (self.frame.placement(), self.pair.pos12);
+                fill(placed, local, contact, constraints, previous_points, manifold);
+            }
             ContactGenerator::Parry => {
                 // Two triangles are a pair that Parry supports.
                 let _ = DefaultQueryDispatcher.contact_manifold_convex_convex(
                     &self.parrys_pose(),
-                    &triangle1,
-                    &triangle2,
+                    triangle1,
+                    triangle2,
                     constraints[0],
                     constraints[1],
-                    prediction,
-                    &mut manifold,
+                    self.pair.prediction,
+                    manifold,
                 );
             }
         }
-        Kept { manifold, features: Some(contact.features) }
     }
 
     fn constraints(&self, candidate: &Candidate) -> Constraints<'_> {

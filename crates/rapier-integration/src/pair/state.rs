@@ -112,6 +112,16 @@ where
         manifold
     }
 
+    /// Adds a manifold to those of this query, if it has points.
+    pub(super) fn keep(&mut self, manifold: ContactManifold<M, C>, features: FeaturePair) {
+        if manifold.points.is_empty() {
+            self.retire(manifold);
+        } else {
+            self.next.push(manifold);
+            self.next_features.push(Some(features));
+        }
+    }
+
     /// Takes back a manifold that is no longer used. Nothing of it but its memory survives.
     pub(super) fn retire(&mut self, mut manifold: ContactManifold<M, C>) {
         if self.spare.len() < Self::SPARE {

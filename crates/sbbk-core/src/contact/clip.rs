@@ -5,13 +5,11 @@
 //! along the normal takes its extremes, since it is linear over the polygon. One table of signs,
 //! on which side of each edge of one triangle each vertex of the other lies, gives all corners.
 //!
-//! **Capacity.** A vertex is inside when its three signs do not differ; two edges cross when the
-//! ends of each have strictly opposite signs against the other. Let `a` and `b` count the
-//! vertices inside and `c` the crossings. Three signs around a triangle change strictly at most
-//! twice, so an edge has at most two crossings, and none if both its ends are inside: `c` is at
-//! most 6, 6, 4, 0 for `a` of 0, 1, 2, 3, and the same for `b`. Hence `a + b + c <= 8`, reached
-//! at most for `a`, `b` of 1, 1 or 2, 2, whatever rounding does to the signs (without rounding:
-//! 6). The closest points make nine.
+//! **Capacity.** Each triangle has three vertices. An edge crosses those edges of the other
+//! triangle whose ends lie on strictly opposite sides of it, and of three signs around a triangle
+//! at most two neighbours differ: that makes six crossings at most, and twelve points, whatever
+//! rounding does to the signs (without rounding six, the corners of the polygon, or as many pairs
+//! of vertices that coincide). The closest points are the thirteenth.
 
 use super::feature::{Feature, FeaturePair};
 use super::generate::TriangleContact;
@@ -29,7 +27,7 @@ const EDGE_ON: f64 = 1.0e-5;
 const SAME_POINT: f64 = 1.0e-6;
 
 /// Points that a manifold of two triangles can have.
-pub const MANIFOLD_CAPACITY: usize = 9;
+pub const MANIFOLD_CAPACITY: usize = 13;
 
 /// The contact points of two triangles.
 pub type ManifoldPoints = ArrayVec<ManifoldPoint, MANIFOLD_CAPACITY>;

@@ -172,3 +172,74 @@ fn edges_at(t1: &Triangle, i: usize, t2: &Triangle, j: usize, axis: &Axis) -> (D
     let fits = along == [s1, s2] && slack <= TIE * (t1.size + t2.size);
     (t1.vertices[i] + e1 * s1, t2.vertices[j] + e2 * s2, fits)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glamx::DQuat;
+    use proptest::prelude::*;
+
+    fn point() -> impl Strategy<Value = DVec3> {
+        prop::array::uniform3(-1.0..1.0).prop_map(DVec3::from_array)
+    }
+
+    fn triangle() -> impl Strategy<Value = [DVec3; 3]> {
+        prop::array::uniform3(point())
+    }
+
+    /// Two contacts of one pair, found in different ways.
+    fn assert_same(cold: Option<TriangleContact>, warm: Option<TriangleContact>) {
+        let (cold, warm) = match (cold, warm) {
+            (None, None) => return,
+            (Some(cold), Some(warm)) => (cold, warm),
+            different => panic!("{different:?}"),
+        };
+        assert!((cold.distance - warm.distance).abs() < 1.0e-11, "{cold:?} {warm:?}");
+        if cold.distance > 1.0e-6 {
+            assert!(cold.normal.angle_between(warm.normal) < 1.0e-6, "{cold:?} {warm:?}");
+        }
+    }
+
+    /// A triangle drifts and turns through another. Would catch a proof that accepts features which
+    /// are no longer the closest; the counts, that no step took the short way.
+    #[test]
+    fn the_steady_way_gives_the_same_contact() {
+        let (mut apart, mut kept, mut crossing) = (0, 0, 0);
+        let mut runner = proptest::test_runner::TestRunner::deterministic();
+        let walks = (triangle(), triangle(), point(), point());
+        for _ in 0..500 {
+            let tree = walks.new_tree(&mut runner).unwrap();
+            let (t1, mut t2, drift, turn) = proptest::strategy::ValueTree::current(&tree);
+            t2 = t2.map(|v| v - drift);
+            let turn = DQuat::from_scaled_axis(0.02 * turn);
+            let mut last = contact(&t1, &t2, f64::INFINITY).unwrap().features;
+            for _ in 0..100 {
+                t2 = t2.map(|v| turn * v + 0.02 * drift);
+                let cold = contact(&t1, &t2, f64::INFINITY).unwrap();
+                let warm = contact_from(&t1, &t2, f64::INFINITY, last).unwrap();
+                assert_same(Some(cold), Some(warm));
+                assert_same(contact(&t1, &t2, 0.3), contact_from(&t1, &t2, 0.3, last));
+                apart += u32::from(cold.distance > 0.0);
+                crossing += u32::from(cold.distance < 0.0);
+                kept += u32::from(still(&Triangle::new(&t1), &Triangle::new(&t2), last).is_some());
+                last = warm.features;
+            }
+        }
+        assert!(crossing > 1000 && apart > 10_000, "{crossing} {apart}");
+        assert!(kept > apart * 9 / 10, "only {kept} of {apart} steps apart kept their features");
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(1000))]
+
+        /// "Whatever `last` is, the contact is that of `contact`".
+        #[test]
+        fn any_last_features(t1 in triangle(), t2 in triangle(), offset in point()) {
+            let t2 = t2.map(|v| v + 1.5 * offset);
+            let cold = contact(&t1, &t2, 0.5);
+            for bits in 0..=FeaturePair::MASK {
+                assert_same(cold, contact_from(&t1, &t2, 0.5, FeaturePair::from_bits(bits)));
+            }
+        }
+    }
+}

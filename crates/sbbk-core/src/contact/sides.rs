@@ -101,3 +101,35 @@ fn swapped(lanes: f64x2) -> f64x2 {
     let [a, b] = lanes.to_array();
     f64x2::new([b, a])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::MANIFOLD_CAPACITY;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        /// The capacity must hold for any signs, also those that no triangles have: rounding may
+        /// give them. And the operations on words must say what the definitions say.
+        #[test]
+        fn any_signs(signs in prop::array::uniform18(-1_i32..=1)) {
+            let mask = |sign: i32| (0..18).filter(|&bit| signs[bit] == sign).fold(0, |m, b| m | 1 << b);
+            let sides = Sides { area: Default::default(), left: mask(1), right: mask(-1) };
+            let sign = |edge: usize, vertex: usize, lane: usize| signs[6 * edge + 2 * vertex + lane];
+            let is_inside = |v: usize, lane: usize| {
+                (0..3).all(|e| sign(e, v, lane) >= 0) || (0..3).all(|e| sign(e, v, lane) <= 0)
+            };
+            let splits = |e: usize, v: usize, lane: usize| sign(e, v, lane) * sign(e, NEXT[v], lane) < 0;
+            let inside = [0, 1].map(|lane| (0..3).filter(|&v| is_inside(v, lane)).fold(0, |m, v| m | 1 << v));
+            prop_assert_eq!(sides.inside(), inside);
+            let crossings = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)))
+                .filter(|&(i, j)| splits(j, i, 0) && splits(i, j, 1))
+                .fold(0, |m, (i, j)| m | 1 << (6 * j + 2 * i));
+            prop_assert_eq!(sides.crossings(), crossings);
+            let count = inside[0].count_ones() + inside[1].count_ones() + crossings.count_ones();
+            prop_assert!((count as usize) < MANIFOLD_CAPACITY);
+        }
+    }
+}

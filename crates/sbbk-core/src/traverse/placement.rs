@@ -22,12 +22,14 @@ impl Placement {
     }
 
     /// `x`, a point of frame 2, in frame 1 and relative to `origin` there.
+    #[inline]
     pub fn to_frame1(&self, x: Vec3, origin: Vec3) -> DVec3 {
         // The translations meet first: they are what cancels when two bodies touch far from the origin.
         self.rotation * x.as_dvec3() + (self.translation - origin.as_dvec3())
     }
 
     /// The reverse of [`to_frame1`](Self::to_frame1): a point of frame 1, relative to `origin` there, in frame 2.
+    #[inline]
     pub fn to_frame2(&self, x: DVec3, origin: Vec3) -> DVec3 {
         self.inverse * (x - (self.translation - origin.as_dvec3()))
     }

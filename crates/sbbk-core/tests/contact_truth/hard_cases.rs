@@ -16,7 +16,7 @@ fn angle(a: DVec3, b: DVec3) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(4000))]
+    #![proptest_config(ProptestConfig::with_cases(2000))]
 
     /// In one plane all products of two edges are parallel to the normal, so that the eleven axes
     /// say "touching" although the triangles may be far apart. Overlapping ones have depth 0

@@ -8,7 +8,7 @@ use sbbk_core::contact::contact;
 use sbbk_core::truth;
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(20_000))]
+    #![proptest_config(ProptestConfig::with_cases(8_000))]
 
     #[test]
     fn same_size(t1 in triangle(), t2 in triangle(), offset in point()) {
