@@ -3,14 +3,14 @@
 //! The lock is taken when a pair of colliders first needs its trees and when the last pair that used a tree ends, not by
 //! a query of a pair that has them. Trees are built outside of it; threads that want the same one wait for it alone.
 
-use std::collections::{HashMap, VecDeque};
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::collections::{HashMap, HashSet, VecDeque};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use parry3d::shape::TriMesh;
 use sbbk_core::tree::{BuildError, BuildOptions};
 
-use super::identity::ContentHash;
+use super::identity::{ContentHash, MeshToken};
 use super::prepared::PreparedMesh;
 
 pub(crate) struct TreeCache {
@@ -20,7 +20,15 @@ pub(crate) struct TreeCache {
     entries: Mutex<Entries>,
     builds: AtomicU64,
     hits: AtomicU64,
+    /// Meshes that cannot have a tree: not asked about again. By token, so a mesh that is taken for one of them by
+    /// mistake is answered by Parry, correctly if slowly.
+    unsupported: Mutex<HashSet<MeshToken>>,
+    /// Whether there are any, so that nobody takes the lock where there are none.
+    has_unsupported: AtomicBool,
 }
+
+/// Unsupported meshes remembered at most; then all are forgotten, and asked about once more.
+const UNSUPPORTED: usize = 256;
 
 #[derive(Default)]
 struct Entries {
@@ -64,6 +72,8 @@ impl TreeCache {
             entries: Mutex::default(),
             builds: AtomicU64::new(0),
             hits: AtomicU64::new(0),
+            unsupported: Mutex::default(),
+            has_unsupported: AtomicBool::new(false),
         }
     }
 
@@ -85,6 +95,25 @@ impl TreeCache {
             Ok(_) => Ok(prepared),
             Err(error) => Err(error.clone()),
         }
+    }
+
+    /// Remembers a mesh for which [`prepare`](Self::prepare) failed.
+    pub(crate) fn note_unsupported(&self, mesh: &TriMesh) {
+        let mut unsupported = self.unsupported.lock().unwrap_or_else(PoisonError::into_inner);
+        if unsupported.len() >= UNSUPPORTED {
+            unsupported.clear();
+        }
+        unsupported.insert(MeshToken::of(mesh));
+        self.has_unsupported.store(true, Ordering::Release);
+    }
+
+    /// Whether one of the meshes is known not to have a tree.
+    pub(crate) fn is_unsupported(&self, meshes: [&TriMesh; 2]) -> bool {
+        if !self.has_unsupported.load(Ordering::Acquire) {
+            return false;
+        }
+        let unsupported = self.unsupported.lock().unwrap_or_else(PoisonError::into_inner);
+        meshes.iter().any(|mesh| unsupported.contains(&MeshToken::of(mesh)))
     }
 
     fn acquire(self: &Arc<Self>, content: ContentHash) -> PreparedRef {

@@ -39,7 +39,7 @@ impl ContentHash {
 }
 
 /// Tells in constant time that a mesh is most likely still the one it was.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct MeshToken(u64);
 
 impl MeshToken {

@@ -74,19 +74,25 @@ impl MeshPair<'_> {
         let tokens = self.tokens();
         let is_valid = match known {
             KnownMeshes::None => false,
-            KnownMeshes::Trees(valid, _) | KnownMeshes::Unsupported(valid) => *valid == tokens,
+            KnownMeshes::Trees(valid, _) => *valid == tokens,
         };
         if !is_valid {
             coherence.clear();
-            let prepared = [self.mesh1, self.mesh2].map(|mesh| cache.prepare(mesh));
-            *known = match prepared {
-                [Ok(one), Ok(two)] => KnownMeshes::Trees(tokens, [one, two]),
-                _ => KnownMeshes::Unsupported(tokens),
+            let prepare = |mesh| match cache.prepare(mesh) {
+                Ok(prepared) => Some(prepared),
+                Err(_) => {
+                    cache.note_unsupported(mesh);
+                    None
+                }
+            };
+            *known = match [self.mesh1, self.mesh2].map(prepare) {
+                [Some(one), Some(two)] => KnownMeshes::Trees(tokens, [one, two]),
+                _ => KnownMeshes::None,
             };
         }
         match known {
             KnownMeshes::Trees(_, prepared) => Some(prepared),
-            _ => None,
+            KnownMeshes::None => None,
         }
     }
 }
@@ -104,6 +110,9 @@ where
     M: Default + Clone + Send + Sync + 'static,
     C: Default + Copy + Send + Sync + 'static,
 {
+    if cache.is_unsupported([pair.mesh1, pair.mesh2]) {
+        return Answer::Unsupported;
+    }
     let PairState { meshes, coherence, history } = PairState::of(workspace, manifolds);
     if matches!(meshes, KnownMeshes::None) && !pair.root_boxes_meet() {
         manifolds.clear();

@@ -26,8 +26,6 @@ pub(super) enum KnownMeshes {
     None,
     /// Valid while the tokens are.
     Trees([MeshToken; 2], [PreparedRef; 2]),
-    /// One of them cannot have a tree: Parry answers, while the tokens are valid.
-    Unsupported([MeshToken; 2]),
 }
 
 /// What the manifolds of the last query leave behind for the next: their features, and buffers, as a fresh manifold
