@@ -7,13 +7,14 @@
 //! ```
 
 use std::error::Error;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
 use sbbk_lab::cli::{exit_code, print};
 use sbbk_lab::mesh;
-use sbbk_lab::report::{tables, write_csv, write_json, write_plot};
+use sbbk_lab::report::{reserve, tables, write_csv, write_json, write_plot};
 use sbbk_lab::study::{ComparePlan, Progress, compare};
 
 /// Compares stock Rapier, SBBK, and SBBK with AABBs only, in speed and error.
@@ -24,7 +25,7 @@ struct Arguments {
     quick: bool,
     /// Sizes of the piles of heads, the largest last [default: 100,200,500,1000,2000]
     #[arg(long, value_delimiter = ',', value_name = "N,N,...")]
-    heads: Vec<usize>,
+    heads: Vec<NonZeroUsize>,
     /// The head: an OBJ, STL or glTF file instead of the built-in monkey
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
@@ -47,20 +48,22 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let mut plan = if arguments.quick { ComparePlan::quick() } else { ComparePlan::standard() };
     plan.head = arguments.mesh.as_deref().map(mesh::load).transpose()?;
     if !arguments.heads.is_empty() {
-        plan.heads.clone_from(&arguments.heads);
+        plan.heads = arguments.heads.iter().copied().map(NonZeroUsize::get).collect();
     }
+    let Arguments { json, csv, plot, .. } = arguments;
+    [json, csv, plot].into_iter().flatten().try_for_each(|path| reserve(path))?;
     let comparison = compare(&plan, &Progress::visible())?;
     print(&comparison.environment)?;
     for table in tables::all(&comparison) {
         print(format_args!("\n{table}"))?;
     }
-    if let Some(path) = &arguments.json {
+    if let Some(path) = json {
         write_json(&comparison, path)?;
     }
-    if let Some(path) = &arguments.csv {
+    if let Some(path) = csv {
         write_csv(&comparison, path)?;
     }
-    if let Some(path) = &arguments.plot {
+    if let Some(path) = plot {
         write_plot(&comparison, path)?;
     }
     Ok(())

@@ -6,6 +6,7 @@
 //! ```
 
 use std::error::Error;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -14,7 +15,7 @@ use sbbk_lab::backend::Backend;
 use sbbk_lab::cli::{exit_code, print};
 use sbbk_lab::mesh;
 use sbbk_lab::metrics::Environment;
-use sbbk_lab::report::tables;
+use sbbk_lab::report::{reserve, tables};
 use sbbk_lab::scene::{BallKind, HelicopterBallDrop, Scene};
 use sbbk_lab::study::{HelicopterPlan, Progress, cut, helicopter};
 
@@ -31,11 +32,11 @@ struct Arguments {
     #[arg(long, value_enum, value_delimiter = ',', default_value = "stock,aabb-only,sbbk")]
     backend: Vec<Backend>,
     /// Steps of a sixtieth of a second in each run
-    #[arg(long, default_value_t = 120)]
-    steps: usize,
+    #[arg(long, default_value = "120")]
+    steps: NonZeroUsize,
     /// Runs of each backend; the paper has 30
-    #[arg(long, default_value_t = 30)]
-    repeats: usize,
+    #[arg(long, default_value = "30")]
+    repeats: NonZeroUsize,
     /// Saves a picture of the moment of contact to a PNG file
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
@@ -50,19 +51,20 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     if let Some(path) = &arguments.mesh {
         scene.helicopter = mesh::load(path)?;
     }
-    let plan = HelicopterPlan { repeats: arguments.repeats, steps: arguments.steps };
+    let plan = HelicopterPlan { repeats: arguments.repeats.get(), steps: arguments.steps.get() };
+    arguments.picture.as_deref().map(reserve).transpose()?;
     let progress = Progress::visible();
     let rows = helicopter(&scene, &arguments.backend, &plan, &progress)?;
     let cut = cut(&scene)?;
     progress.finish();
-    print(format_args!("{}\n\n{}", Environment::detect(), tables::frames(&rows)))?;
+    print(format_args!("{}\n\n{}\n", Environment::detect(), tables::frames(&rows)))?;
     match &cut {
         Some(cut) => print(tables::overlapping_area(cut))?,
         None => print("The ball does not meet the helicopter within four seconds.")?,
     }
     if let Some(path) = &arguments.picture {
         let mut built = scene.build()?;
-        for _ in 0..cut.map_or(arguments.steps, |cut| cut.step) {
+        for _ in 0..cut.map_or(plan.steps, |cut| cut.step) {
             built.world.step();
         }
         built.portrait(1280, 720).save(path)?;

@@ -6,6 +6,7 @@
 //! ```
 
 use std::error::Error;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -14,7 +15,7 @@ use sbbk_lab::backend::Backend;
 use sbbk_lab::cli::{exit_code, print};
 use sbbk_lab::mesh;
 use sbbk_lab::metrics::{Environment, RunPlan};
-use sbbk_lab::report::tables;
+use sbbk_lab::report::{reserve, tables};
 use sbbk_lab::scene::MonkeyPile;
 use sbbk_lab::study::{PilePlan, Progress, pile};
 
@@ -22,12 +23,12 @@ use sbbk_lab::study::{PilePlan, Progress, pile};
 #[derive(Parser)]
 struct Arguments {
     /// Number of heads
-    #[arg(default_value_t = 2000)]
-    heads: usize,
-    /// Steps of a sixtieth of a second
-    #[arg(long, default_value_t = 80)]
-    steps: usize,
-    /// Who answers the contact queries; several are run one after the other
+    #[arg(default_value = "2000")]
+    heads: NonZeroUsize,
+    /// Steps of a sixtieth of a second after the free fall
+    #[arg(long, default_value = "53")]
+    steps: NonZeroUsize,
+    /// Who answers the contact queries; several run side by side
     #[arg(long, value_enum, value_delimiter = ',', default_value = "sbbk")]
     backend: Vec<Backend>,
     /// Asks about every pair in every step, also about pairs that hardly moved
@@ -41,7 +42,7 @@ struct Arguments {
     picture: Option<PathBuf>,
 }
 
-/// Until then the heads fall freely.
+/// Steps until the lowest heads land.
 const FREE_FALL: usize = 27;
 
 fn main() -> ExitCode {
@@ -49,12 +50,13 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let mut scene = MonkeyPile::with_heads(arguments.heads);
+    let mut scene = MonkeyPile::with_heads(arguments.heads.get());
     if let Some(path) = &arguments.mesh {
-        scene = MonkeyPile::of(arguments.heads, mesh::load(path)?);
+        scene = MonkeyPile::of(arguments.heads.get(), mesh::load(path)?);
     }
     scene.contact_recycling = !arguments.no_recycling;
-    let steps = arguments.steps.saturating_sub(FREE_FALL);
+    arguments.picture.as_deref().map(reserve).transpose()?;
+    let steps = arguments.steps.get();
     let plan = PilePlan {
         backends: arguments.backend.clone(),
         repeats: 1,
@@ -66,13 +68,14 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         },
         same_poses: None,
     };
-    let (mut step, mut picture) = (0, None);
-    let study = pile(&scene, &plan, &Progress::visible(), &mut |world| {
-        step += 1;
-        if step == FREE_FALL + steps && arguments.picture.is_some() {
-            picture = Some(world.portrait(1280, 720));
+    let mut picture = None;
+    let progress = Progress::visible();
+    let study = pile(&scene, &plan, &progress, &mut |world| {
+        if arguments.picture.is_some() {
+            picture.get_or_insert_with(|| world.portrait(1280, 720));
         }
     })?;
+    progress.finish();
     print(Environment::detect())?;
     print(format_args!("\n{}\n{}", tables::runs(&study), tables::accuracy(&[study])))?;
     if let (Some(path), Some(picture)) = (&arguments.picture, picture) {

@@ -62,17 +62,22 @@ pub fn push_closest(
     contact: &TriangleContact,
     out: &mut ManifoldPoints,
 ) {
-    let size = Triangle::new(t1).size.min(Triangle::new(t2).size);
-    let is_same = |a: DVec3, b: DVec3| (a - b).abs().max_element() <= SAME_POINT * size;
-    let known =
-        out.iter().any(|p| is_same(p.point1, contact.point1) && is_same(p.point2, contact.point2));
-    if !known {
-        out.push(ManifoldPoint {
-            point1: contact.point1,
-            point2: contact.point2,
-            distance: contact.distance,
-            features: contact.features,
-        });
+    push_closest_points(&Triangle::new(t1), &Triangle::new(t2), contact, out);
+}
+
+pub(super) fn push_closest_points(
+    t1: &Triangle,
+    t2: &Triangle,
+    contact: &TriangleContact,
+    out: &mut ManifoldPoints,
+) {
+    let reach = SAME_POINT * if t1.size < t2.size { t1.size } else { t2.size };
+    let is_same = |a: DVec3, b: DVec3| (a - b).length_squared() <= reach * reach;
+    let is_known =
+        |p: &ManifoldPoint| is_same(p.point1, contact.point1) && is_same(p.point2, contact.point2);
+    if !out.iter().any(is_known) {
+        let TriangleContact { point1, point2, distance, features, .. } = *contact;
+        out.push(ManifoldPoint { point1, point2, distance, features });
     }
 }
 

@@ -95,7 +95,8 @@ pub(super) fn is_over(point: DVec3, t: &Triangle, normal: DVec3) -> bool {
 /// Whether the values are all positive or zero, or all negative or zero.
 #[inline(always)]
 pub(super) fn has_one_sign([a, b, c]: [f64; 3]) -> bool {
-    a.min(b).min(c) >= 0.0 || a.max(b).max(c) <= 0.0
+    // No branches: the sign is anyone's guess.
+    ((a >= 0.0) & (b >= 0.0) & (c >= 0.0)) | ((a <= 0.0) & (b <= 0.0) & (c <= 0.0))
 }
 
 /// Whether the point lies between the ends of the triangle's longest edge.
@@ -139,7 +140,8 @@ pub(super) fn crossing(between: DVec3, e1: DVec3, e2: DVec3, cross: DVec3, area:
 /// `along` clamped to 0 to 1; a NaN gives 0.
 #[inline(always)]
 pub(super) fn within_edge(along: f64) -> f64 {
-    if along > 0.0 { along.min(1.0) } else { 0.0 }
+    let at_least_0 = if along > 0.0 { along } else { 0.0 };
+    if at_least_0 < 1.0 { at_least_0 } else { 1.0 }
 }
 
 fn within(along: f64) -> bool {
@@ -154,6 +156,6 @@ pub(super) fn is_proved(
     features: FeaturePair,
     closest: &Closest,
 ) -> bool {
-    t1.beyond(features.feature1(), closest.normal) <= TIE * t1.size
-        && t2.beyond(features.feature2(), -closest.normal) <= TIE * t2.size
+    t1.is_behind(features.feature1(), closest.normal, TIE * t1.size)
+        && t2.is_behind(features.feature2(), -closest.normal, TIE * t2.size)
 }

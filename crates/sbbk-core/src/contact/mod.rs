@@ -43,11 +43,10 @@ mod closest;
 mod edges;
 mod feature;
 mod generate;
-mod lanes;
 mod sides;
 mod touching;
 mod triangle;
 
 pub use clip::{MANIFOLD_CAPACITY, ManifoldPoint, ManifoldPoints, clip, push_closest};
 pub use feature::{Feature, FeaturePair};
-pub use generate::{TriangleContact, contact, contact_from};
+pub use generate::{TriangleContact, contact, contact_from, manifold};

@@ -69,17 +69,17 @@ impl<'a> Triangle<'a> {
         perpendicular(longest, shorter).map_or(DVec3::ZERO, |normal| normal * area)
     }
 
-    /// How far the triangle reaches in front of the plane through a feature that faces a
-    /// direction, or how far that feature is from lying in the plane.
+    /// Whether the triangle lies behind the plane through a feature that faces a direction, and
+    /// the feature in the plane, up to `slack`.
     #[inline(always)]
-    pub fn beyond(&self, feature: Feature, direction: DVec3) -> f64 {
+    pub fn is_behind(&self, feature: Feature, direction: DVec3, slack: f64) -> bool {
         let i = feature.vertex();
         let next = self.edges[i].dot(direction);
         let previous = -self.edges[PREVIOUS[i]].dot(direction);
         match feature {
-            Feature::Vertex(_) => next.max(previous),
-            Feature::Edge(_) => next.abs().max(previous),
-            Feature::Face => next.abs().max(previous.abs()),
+            Feature::Vertex(_) => next <= slack && previous <= slack,
+            Feature::Edge(_) => next.abs() <= slack && previous <= slack,
+            Feature::Face => next.abs() <= slack && previous.abs() <= slack,
         }
     }
 

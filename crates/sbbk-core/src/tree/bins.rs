@@ -45,6 +45,10 @@ impl Bounds {
         Aabb { min: self.min.into(), max: self.max.into() }
     }
 
+    pub(super) fn longest_axis(&self) -> usize {
+        Vec3::from(self.max - self.min).max_position()
+    }
+
     #[inline]
     fn half_area(&self) -> f32 {
         let d = self.max - self.min;
@@ -68,8 +72,8 @@ impl BinMapping {
     /// For `count` triangles, along the longest axis of their centroids. `None` if they cannot be told apart
     /// there.
     pub(super) fn new(centroids: &Bounds, count: usize) -> Option<Self> {
-        let size = Vec3::from(centroids.max - centroids.min);
-        let axis = size.max_position();
+        let size = centroids.max - centroids.min;
+        let axis = centroids.longest_axis();
         let bin_count = count.clamp(LEAST_BINS, MOST_BINS);
         let scale = bin_count as f32 / size[axis];
         // The reciprocal of a size below 1/f32::MAX is infinite: such an axis is as good as flat.

@@ -37,12 +37,13 @@ where
     #[must_use]
     pub fn with_point(mut self, point: Vec3) -> Self {
         let slack = gamma(3) * (point.x.abs() + point.y.abs() + point.z.abs());
+        let projections = <Directions<AXES> as DirectionSet<AXES>>::project(point);
         for axis in 0..AXES {
-            let direction = Self::DIRECTIONS[axis];
-            let projection = point.x * direction.x + point.y * direction.y + point.z * direction.z;
             let slack = if axis < 3 { 0.0 } else { slack };
-            self.min[axis] = self.min[axis].min(projection - slack);
-            self.max[axis] = self.max[axis].max(projection + slack);
+            // Comparisons, as `f32::min` has to care about NaN; a NaN is left out here.
+            let (low, high) = (projections[axis] - slack, projections[axis] + slack);
+            self.min[axis] = if low < self.min[axis] { low } else { self.min[axis] };
+            self.max[axis] = if high > self.max[axis] { high } else { self.max[axis] };
         }
         self
     }
@@ -66,8 +67,9 @@ where
     fn merge(&self, other: &Self) -> Self {
         let mut merged = *self;
         for axis in 0..AXES {
-            merged.min[axis] = merged.min[axis].min(other.min[axis]);
-            merged.max[axis] = merged.max[axis].max(other.max[axis]);
+            let (min, max) = (other.min[axis], other.max[axis]);
+            merged.min[axis] = if min < merged.min[axis] { min } else { merged.min[axis] };
+            merged.max[axis] = if max > merged.max[axis] { max } else { merged.max[axis] };
         }
         merged
     }

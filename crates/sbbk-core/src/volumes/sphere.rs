@@ -13,9 +13,9 @@ pub struct Sphere {
 }
 
 /// How many times the extremal points are searched anew along the direction to the farthest point.
-/// Each costs one pass over the points; after 8 the radius is within 1 % of the minimum on the
-/// measured meshes (test: within 5 % on random ones).
-const REFINEMENTS: usize = 8;
+/// Each costs one pass over the points. With 4 the radius is within 5 % of the minimum on thousands of random
+/// clouds (a test); more gain a percent and cost build time.
+const REFINEMENTS: usize = 4;
 
 impl Sphere {
     /// The farthest of `points` from the centre, and its distance.
@@ -56,13 +56,15 @@ impl Volume for Sphere {
             return Self::EMPTY;
         };
         let mut ends = [(first, first); 13];
+        let (mut low, mut high) = ([f32::INFINITY; 13], [f32::NEG_INFINITY; 13]);
         for &point in points {
-            for (end, direction) in ends.iter_mut().zip(Directions::<13>::DIRECTIONS) {
-                if point.dot(direction) < end.0.dot(direction) {
-                    end.0 = point;
+            let projections = Directions::<13>::project(point);
+            for (axis, &projection) in projections.iter().enumerate() {
+                if projection < low[axis] {
+                    (low[axis], ends[axis].0) = (projection, point);
                 }
-                if point.dot(direction) > end.1.dot(direction) {
-                    end.1 = point;
+                if projection > high[axis] {
+                    (high[axis], ends[axis].1) = (projection, point);
                 }
             }
         }

@@ -2,7 +2,7 @@
 //! shadow at the edges of the other (I. Sutherland, G. Hodgman, 1974).
 
 use crate::check::{TOLERANCE, Triangle, size};
-use crate::strategies::{point, triangle};
+use crate::strategies::{at_least, point, triangle};
 use glamx::{DVec2, DVec3};
 use proptest::prelude::*;
 use sbbk_core::contact::{Feature, ManifoldPoint, ManifoldPoints, clip, contact, push_closest};
@@ -75,7 +75,7 @@ fn check_point(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(8_000))]
+    #![proptest_config(at_least(8_000))]
 
     /// Would catch a corner that is missed, found twice or misplaced, a wrong name of a corner,
     /// and a wrong distance.

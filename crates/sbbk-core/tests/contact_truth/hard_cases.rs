@@ -1,7 +1,7 @@
 //! Cases where generators of contacts go wrong, each with its reason.
 
 use crate::check::{Triangle, check, size};
-use crate::strategies::{decades, flat_triangle, point, rotation, triangle};
+use crate::strategies::{at_least, decades, flat_triangle, point, rotation, triangle};
 use glamx::{DQuat, DVec2, DVec3};
 use proptest::prelude::*;
 use sbbk_core::contact::{contact, contact_from};
@@ -16,7 +16,7 @@ fn angle(a: DVec3, b: DVec3) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(at_least(2000))]
 
     /// In one plane all products of two edges are parallel to the normal, so that the eleven axes
     /// say "touching" although the triangles may be far apart. Overlapping ones have depth 0

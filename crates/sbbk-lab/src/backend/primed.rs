@@ -24,9 +24,9 @@ impl Primed {
         meshes.dedup_by_key(|shape| shape_address(&***shape));
         let ask = |mesh: &SharedShape| {
             let (mut manifolds, mut workspace) = (Vec::<ContactManifold>::new(), None);
-            // Far enough apart for no contact.
-            let reach = mesh.compute_local_bounding_sphere().radius;
-            let pos12 = Pose::translation(3.0 * reach, 0.0, 0.0);
+            // The boxes touch, or SBBK would not need the tree; hardly any triangles do.
+            let width = mesh.compute_local_aabb().extents().x;
+            let pos12 = Pose::translation(width, 0.0, 0.0);
             dispatcher
                 .contact_manifolds(&pos12, &**mesh, &**mesh, 0.0, &mut manifolds, &mut workspace)
                 .ok()?;

@@ -13,9 +13,10 @@ use crate::backend::clock_cost;
 pub struct Environment {
     /// Model of the processor, or its architecture where the system does not tell.
     pub cpu: String,
-    /// Hardware threads that the process may use. Rapier runs on one unless it is built with its
-    /// `parallel` feature.
+    /// Hardware threads that the process may use.
     pub cores: usize,
+    /// Whether Rapier uses one of them or all: its `parallel` feature.
+    pub rapier: &'static str,
     /// Version of the compiler.
     pub rustc: &'static str,
     /// Optimised, or with debug assertions.
@@ -32,6 +33,7 @@ impl Environment {
         Self {
             cpu: cpu_model().unwrap_or_else(|| std::env::consts::ARCH.to_owned()),
             cores: available_parallelism().map_or(1, usize::from),
+            rapier: if cfg!(feature = "parallel") { "parallel" } else { "on one thread" },
             rustc: env!("SBBK_LAB_RUSTC"),
             profile: if cfg!(debug_assertions) { "debug assertions" } else { "release" },
             simd: match () {
@@ -48,8 +50,11 @@ impl Environment {
 
 impl fmt::Display for Environment {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { cpu, cores, rustc, profile, simd, clock_ns } = self;
-        write!(f, "{cpu}, {cores} cores; {rustc}; {profile}, {simd}; clock {clock_ns} ns a query")
+        let Self { cpu, cores, rapier, rustc, profile, simd, clock_ns } = self;
+        write!(
+            f,
+            "{cpu}, {cores} cores; Rapier {rapier}; {rustc}; {profile}, {simd}; clock {clock_ns} ns a query"
+        )
     }
 }
 

@@ -7,9 +7,10 @@ use std::ops::AddAssign;
 use glamx::{DPose3, DVec3};
 use rapier3d::geometry::SharedShape;
 use rapier3d::math::Real;
-use sbbk_core::truth::pairs_within;
+use sbbk_core::truth::{TruthPair, pairs_within};
 use serde::Serialize;
 
+use super::near::near_parts;
 use super::ratio;
 use crate::backend::{Answer, Question, shape_address};
 
@@ -88,7 +89,7 @@ struct TruthMesh {
 
 /// Every triangle pair of one question within the prediction distance and its band.
 pub struct Truth {
-    distances: HashMap<(u32, u32), f64>,
+    contacts: HashMap<(u32, u32), TruthPair>,
 }
 
 impl Judge {
@@ -113,24 +114,38 @@ impl Judge {
     ///
     /// Panics when the question is about a mesh that this judge was not given.
     pub fn truth(&self, question: &Question) -> Truth {
-        let [mesh1, mesh2] = question.shapes.map(|address| &self.meshes[&address]);
-        let pairs = pairs_within(
-            &mesh1.vertices,
-            &mesh1.triangles,
-            &mesh2.vertices,
-            &mesh2.triangles,
-            DPose3::from(question.pos12),
-            f64::from(question.prediction) * (1.0 + SET_BAND),
-        );
-        let distances = pairs.iter().map(|p| ((p.triangle1, p.triangle2), p.distance));
-        Truth { distances: distances.collect() }
+        let meshes = question.shapes.map(|address| &self.meshes[&address]);
+        let pose = DPose3::from(question.pos12);
+        let margin = f64::from(question.prediction) * (1.0 + SET_BAND);
+        let surfaces = meshes.map(|mesh| (&*mesh.vertices, &*mesh.triangles));
+        let [part1, part2] = near_parts(surfaces, pose, margin);
+        let [(vertices1, _), (vertices2, _)] = surfaces;
+        let pairs =
+            pairs_within(vertices1, &part1.triangles, vertices2, &part2.triangles, pose, margin);
+        let contacts = pairs.into_iter().map(|pair| {
+            let triangle1 = part1.indices[pair.triangle1 as usize];
+            let triangle2 = part2.indices[pair.triangle2 as usize];
+            ((triangle1, triangle2), TruthPair { triangle1, triangle2, ..pair })
+        });
+        Truth { contacts: contacts.collect() }
     }
 }
 
 impl Truth {
     /// The triangle pairs, in no particular order.
     pub fn pairs(&self) -> impl Iterator<Item = (u32, u32)> {
-        self.distances.keys().copied()
+        self.contacts.keys().copied()
+    }
+
+    /// Distance and normal of all triangle pairs, in no particular order.
+    pub fn contacts(&self) -> impl Iterator<Item = &TruthPair> {
+        self.contacts.values()
+    }
+
+    /// Distance and normal of a triangle of the first mesh and one of the second; `None` if they
+    /// are farther apart than the prediction distance and its band.
+    pub fn contact(&self, triangle1: u32, triangle2: u32) -> Option<&TruthPair> {
+        self.contacts.get(&(triangle1, triangle2))
     }
 
     /// Counts what is wrong in an answer to the question that this is the truth of.
@@ -146,21 +161,27 @@ impl Truth {
         for pair in &answer.reported {
             let key = (pair.triangle1, pair.triangle2);
             let is_repeated = reported.insert(key, pair.distance).is_some();
-            match self.distances.get(&key) {
-                Some(distance) if !is_repeated => {
-                    let off = (f64::from(pair.distance) - distance).abs();
-                    errors.wrong_depth += usize::from(off > DEPTH_BAND * prediction);
+            match self.contacts.get(&key) {
+                Some(contact) if !is_repeated => {
+                    let is_wrong =
+                        !is_right_depth(pair.distance, contact, answer.question.prediction);
+                    errors.wrong_depth += usize::from(is_wrong);
                 }
                 _ => errors.phantom += 1,
             }
         }
-        for (key, &distance) in &self.distances {
-            errors.true_pairs += usize::from(distance <= prediction);
-            let is_certain = distance <= (1.0 - SET_BAND) * prediction;
+        for (key, contact) in &self.contacts {
+            errors.true_pairs += usize::from(contact.distance <= prediction);
+            let is_certain = contact.distance <= (1.0 - SET_BAND) * prediction;
             errors.missed += usize::from(is_certain && !reported.contains_key(key));
         }
         errors
     }
+}
+
+/// Whether a distance or depth is that of the truth, but for 5 % of the prediction distance.
+pub fn is_right_depth(distance: Real, truth: &TruthPair, prediction: Real) -> bool {
+    (f64::from(distance) - truth.distance).abs() <= DEPTH_BAND * f64::from(prediction)
 }
 
 /// At most `limit` indices below `count`, evenly spread.

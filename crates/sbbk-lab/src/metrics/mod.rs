@@ -6,6 +6,7 @@
 
 mod environment;
 mod error;
+mod near;
 mod pose_pairs;
 mod run;
 mod statistics;
@@ -13,9 +14,9 @@ mod step;
 mod world_state;
 
 pub use environment::Environment;
-pub use error::{ErrorCount, Judge, Truth, sample_indices};
+pub use error::{ErrorCount, Judge, Truth, is_right_depth, sample_indices};
 pub use pose_pairs::{PosePairs, Sweep};
-pub use run::{Run, RunPlan, Sample, run};
-pub use statistics::{Summary, ratio};
+pub use run::{Run, RunPlan, Runner, Sample, run};
+pub use statistics::{Summary, geometric_mean, ratio};
 pub use step::{StepTimes, timed_step};
 pub use world_state::WorldState;

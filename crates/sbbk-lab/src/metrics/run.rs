@@ -1,4 +1,4 @@
-//! A whole run of a scene on one backend.
+//! Whole runs of a scene on one backend.
 
 use serde::Serialize;
 
@@ -17,6 +17,13 @@ pub struct RunPlan {
     pub sample_every: usize,
     /// At most this many mesh pairs are judged in each sampled step and way (fresh, updated).
     pub sample_size: usize,
+}
+
+impl RunPlan {
+    /// All steps, the warm-up included.
+    pub fn step_count(&self) -> usize {
+        self.warm_up + self.steps
+    }
 }
 
 /// What [`run`] measured.
@@ -69,31 +76,55 @@ impl Run {
     }
 }
 
-/// Runs `scene` on `backend`; `on_step` is called after each step.
+/// A run under way, step by step: several runs can take turns.
+pub struct Runner {
+    built: SceneWorld,
+    installed: Installed,
+    plan: RunPlan,
+    step: usize,
+    run: Run,
+}
+
+impl Runner {
+    /// A run of `scene` on `backend` before its first step.
+    ///
+    /// Errors: the scene cannot be built.
+    pub fn new(scene: &dyn Scene, backend: Backend, plan: RunPlan) -> Result<Self, SceneError> {
+        let mut built = scene.build()?;
+        let installed = backend.install(&mut built.world);
+        let run = Run { backend, times: Vec::with_capacity(plan.steps), samples: Vec::new() };
+        Ok(Self { built, installed, plan, step: 0, run })
+    }
+
+    /// Steps once: untimed in the warm-up, else timed or sampled.
+    pub fn step(&mut self) {
+        self.step += 1;
+        // Steps are counted from one, and only zero is a multiple of zero.
+        let is_sampled = self.step.is_multiple_of(self.plan.sample_every);
+        if self.step <= self.plan.warm_up {
+            self.built.world.step();
+        } else if is_sampled {
+            let limit = self.plan.sample_size;
+            let sample = sampled_step(&mut self.built, &self.installed, self.step, limit);
+            self.run.samples.push(sample);
+        } else {
+            self.run.times.push(timed_step(&mut self.built.world, &self.installed.probe));
+        }
+    }
+
+    /// The world and the measurements.
+    pub fn finish(self) -> (SceneWorld, Run) {
+        (self.built, self.run)
+    }
+}
+
+/// Runs `scene` on `backend` from start to end.
 ///
 /// Errors: the scene cannot be built.
-pub fn run(
-    scene: &dyn Scene,
-    backend: Backend,
-    plan: &RunPlan,
-    on_step: &mut dyn FnMut(&SceneWorld),
-) -> Result<Run, SceneError> {
-    let mut built = scene.build()?;
-    let installed = backend.install(&mut built.world);
-    let mut run = Run { backend, times: Vec::with_capacity(plan.steps), samples: Vec::new() };
-    for step in 1..=plan.warm_up + plan.steps {
-        if step <= plan.warm_up {
-            built.world.step();
-        } else if plan.sample_every > 0 && step % plan.sample_every == 0 {
-            let sample = sampled_step(&mut built, &installed, step, plan.sample_size);
-            run.samples.push(sample);
-        } else {
-            let times = timed_step(&mut built.world, &installed.probe);
-            run.times.push(times);
-        }
-        on_step(&built);
-    }
-    Ok(run)
+pub fn run(scene: &dyn Scene, backend: Backend, plan: RunPlan) -> Result<Run, SceneError> {
+    let mut runner = Runner::new(scene, backend, plan)?;
+    (0..plan.step_count()).for_each(|_| runner.step());
+    Ok(runner.finish().1)
 }
 
 fn sampled_step(

@@ -42,6 +42,13 @@ pub fn ratio(numerator: f64, denominator: f64) -> Option<f64> {
     is_defined.then(|| numerator / denominator)
 }
 
+/// The geometric mean, which is that of ratios; `None` when there are no values. A value that is
+/// not positive makes it 0 or NaN.
+pub fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let logarithms = Summary::of(values.into_iter().map(f64::ln))?;
+    Some(logarithms.mean.exp())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -67,5 +74,15 @@ mod tests {
         {
             assert_eq!(ratio(numerator, denominator), None);
         }
+    }
+
+    /// Would catch a mean of ratios that twice and half as fast do not bring back to one.
+    #[test]
+    fn ratios_have_a_geometric_mean() {
+        let mean = geometric_mean([2.0, 0.5]).unwrap();
+        assert!((mean - 1.0).abs() < 1e-12);
+        let mean = geometric_mean([1.0, 10.0, 100.0]).unwrap();
+        assert!((mean - 10.0).abs() < 1e-12);
+        assert_eq!(geometric_mean([]), None);
     }
 }

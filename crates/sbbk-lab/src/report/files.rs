@@ -9,6 +9,15 @@ use serde_json::Value;
 use super::ReportError;
 use crate::study::Comparison;
 
+/// Creates an empty file, so that a path that cannot be written is noticed before the measurement
+/// that is to be written there.
+///
+/// Errors: the file cannot be created.
+pub fn reserve(path: &Path) -> Result<(), ReportError> {
+    File::create(path).map_err(|cause| ReportError::new(path, cause))?;
+    Ok(())
+}
+
 /// Writes all results as one JSON object.
 ///
 /// Errors: the file cannot be written.

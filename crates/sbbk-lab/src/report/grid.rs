@@ -28,7 +28,7 @@ impl fmt::Display for Grid {
         for column in table.column_iter_mut().skip(self.text_columns) {
             column.set_cell_alignment(CellAlignment::Right);
         }
-        writeln!(f, "{}\n{table}", self.title)?;
-        self.notes.iter().try_for_each(|note| writeln!(f, "  {note}"))
+        write!(f, "{}\n{table}", self.title)?;
+        self.notes.iter().try_for_each(|note| write!(f, "\n  {note}"))
     }
 }

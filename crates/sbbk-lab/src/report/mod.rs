@@ -11,7 +11,7 @@ mod plot;
 pub mod tables;
 
 pub use error::ReportError;
-pub use files::{write_csv, write_json};
+pub use files::{reserve, write_csv, write_json};
 pub use grid::Grid;
 pub use paper::{PAPER, Paper};
 pub use plot::write_plot;

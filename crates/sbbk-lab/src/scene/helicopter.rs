@@ -94,7 +94,7 @@ impl Scene for HelicopterBallDrop {
             BallKind::Primitive => "primitive ball".to_owned(),
         };
         let triangle_count = self.helicopter.triangle_count();
-        format!("helicopter of {triangle_count} triangles, {ball}")
+        format!("{ball}, helicopter of {triangle_count} triangles")
     }
 
     fn build(&self) -> Result<SceneWorld, SceneError> {

@@ -13,8 +13,8 @@ use crate::scene::{BallKind, HelicopterBallDrop, Scene, SceneError};
 pub struct HelicopterPlan {
     /// Timed runs of each backend; the paper has 30.
     pub repeats: usize,
-    /// Steps of each run: the fall takes about 20, the bounces and the roll over the rotor the
-    /// next 100.
+    /// Steps of each run: the fall takes about 30, the bounces and the roll over the rotor the
+    /// rest of the first two seconds.
     pub steps: usize,
 }
 
@@ -55,11 +55,11 @@ pub fn helicopter(
     let judged = RunPlan { sample_every: 2, sample_size: 1, ..timed };
     let runs = in_turn(backends, plan.repeats, |&backend, _| {
         progress.step();
-        run(scene, backend, &timed, &mut |_| ())
+        run(scene, backend, timed)
     })?;
     let mut rows = Vec::new();
     for (&backend, runs) in backends.iter().zip(&runs) {
-        let judged = run(scene, backend, &judged, &mut |_| ())?;
+        let judged = run(scene, backend, judged)?;
         progress.step();
         rows.extend(row(scene.ball, runs, &judged));
     }

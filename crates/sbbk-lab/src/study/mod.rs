@@ -3,12 +3,13 @@
 //! [`compare`] does all of them; each can be run on its own. Results are plain data, which
 //! [`report`](crate::report) turns into tables, files and plots.
 //!
-//! Times of whole runs are taken in one process, backends in turn, the first step of each run
-//! left out. Two runs of one scene soon differ, as chaos makes a different last bit of a contact
+//! Times are taken in one process, backends in turn, and without what happens only once: trees are
+//! built before. Two runs of one scene soon differ, as chaos makes a different last bit of a contact
 //! into a different trajectory; so the same pairs at the same poses are timed as well
-//! ([`PileStudy::same_poses`]).
+//! ([`same_poses`]).
 
 mod comparison;
+pub mod contacts;
 mod cut;
 mod error;
 mod helicopter;

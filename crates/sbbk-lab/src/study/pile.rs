@@ -2,10 +2,9 @@
 
 use serde::Serialize;
 
-use super::turns::in_turn;
 use super::{Progress, SamePosesPlan, SamePosesRow, same_poses};
 use crate::backend::Backend;
-use crate::metrics::{ErrorCount, Run, RunPlan, StepTimes, Summary, WorldState, run};
+use crate::metrics::{ErrorCount, Run, RunPlan, Runner, StepTimes, Summary, WorldState};
 use crate::scene::{MonkeyPile, Scene, SceneError, SceneWorld};
 
 /// How often and how long to run a pile.
@@ -66,25 +65,26 @@ pub struct PileRow {
     pub updated: ErrorCount,
 }
 
-/// Runs `scene` on the backends of `plan`, in turn; `on_step` sees the world after each step.
+/// Runs `scene` on the backends of `plan`; `at_end` sees each world after its last step.
 ///
 /// Errors: the scene cannot be built.
 pub fn pile(
     scene: &MonkeyPile,
     plan: &PilePlan,
     progress: &Progress,
-    on_step: &mut dyn FnMut(&SceneWorld),
+    at_end: &mut dyn FnMut(&SceneWorld),
 ) -> Result<PileStudy, SceneError> {
-    let runs = in_turn(&plan.backends, plan.repeats, |&backend, repeat| {
-        let steps = plan.run.warm_up + plan.run.steps;
-        progress.phase(format!("{}, {backend}", scene.name()), steps);
+    let mut runs: Vec<Vec<Run>> = plan.backends.iter().map(|_| Vec::new()).collect();
+    for repeat in 0..plan.repeats {
+        progress.phase(scene.name(), plan.run.step_count());
         let sample_every = if repeat == 0 { plan.run.sample_every } else { 0 };
-        let plan = RunPlan { sample_every, ..plan.run };
-        run(scene, backend, &plan, &mut |world| {
-            progress.step();
-            on_step(world);
-        })
-    })?;
+        let run_plan = RunPlan { sample_every, ..plan.run };
+        let ended = side_by_side(scene, &plan.backends, run_plan, progress)?;
+        for ((world, run), runs) in ended.into_iter().zip(&mut runs) {
+            at_end(&world);
+            runs.push(run);
+        }
+    }
     let sample = runs.first().and_then(|runs| runs.first()?.samples.last());
     let same_poses = sample.zip(plan.same_poses.as_ref()).map(|(sample, plan)| {
         let message = format!("{}, same poses", scene.name());
@@ -98,6 +98,27 @@ pub fn pile(
         runs: runs.iter().filter_map(|runs| row(runs)).collect(),
         same_poses: same_poses.unwrap_or_default(),
     })
+}
+
+/// One run on each backend, all at the same time: each step is done by one world after the other,
+/// so that a slow spell of the machine meets all backends. The first one changes from step to
+/// step.
+fn side_by_side(
+    scene: &MonkeyPile,
+    backends: &[Backend],
+    plan: RunPlan,
+    progress: &Progress,
+) -> Result<Vec<(SceneWorld, Run)>, SceneError> {
+    let runners = backends.iter().map(|&backend| Runner::new(scene, backend, plan));
+    let mut runners = runners.collect::<Result<Vec<Runner>, _>>()?;
+    for step in 0..plan.step_count() {
+        for turn in 0..runners.len() {
+            let index = (step + turn) % runners.len();
+            runners[index].step();
+        }
+        progress.step();
+    }
+    Ok(runners.into_iter().map(Runner::finish).collect())
 }
 
 /// `None` without runs.

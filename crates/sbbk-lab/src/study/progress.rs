@@ -13,7 +13,7 @@ pub struct Progress(Option<ProgressBar>);
 impl Progress {
     /// Bars on the error stream.
     pub fn visible() -> Self {
-        let style = "{elapsed:>4} {bar:30} {pos:>6}/{len:6} {wide_msg}";
+        let style = "{elapsed:>4} {bar:20} {pos:>5}/{len:<5} {msg}";
         let bar = ProgressBar::no_length();
         if let Ok(style) = ProgressStyle::with_template(style) {
             bar.set_style(style);

@@ -58,7 +58,7 @@ pub fn runs(pile: &PileStudy) -> Grid {
                 "mean of the {steps} steps after the first heads land; {TIME_NOTE} ({repeats})"
             ),
             format!(
-                "contact recycling {}; each backend on its own trajectory; manifolds, points and \
+                "contact recycling {}; backends side by side, each on its own trajectory; manifolds, points and \
                  height after the last sampled step",
                 if pile.contact_recycling { "on (Rapier's default)" } else { "off" }
             ),
