@@ -7,7 +7,7 @@
 //! 3 % fewer node tests for twice the build time. Two leaves' worth of triangles are halved at the median: as good, and
 //! half of all splits are such.
 
-use glamx::{Vec3, Vec3A};
+use glamx::Vec3;
 
 use super::LayerPlan;
 use super::bins::{BinMapping, Bins, Bounds};
@@ -54,7 +54,6 @@ pub(super) enum Content {
 #[derive(Copy, Clone)]
 struct Primitive {
     bounds: Bounds,
-    centroid: Vec3A,
     triangle: u32,
 }
 
@@ -101,7 +100,7 @@ fn primitives(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Primitive> {
     let primitive = |(triangle, [a, b, c]): (usize, &[u32; 3])| {
         let corner = |vertex: &u32| vertices[*vertex as usize];
         let bounds = Bounds::of_corners([corner(a), corner(b), corner(c)]);
-        Primitive { bounds, centroid: bounds.centre(), triangle: triangle as u32 }
+        Primitive { bounds, triangle: triangle as u32 }
     };
     triangles.iter().enumerate().map(primitive).collect()
 }
@@ -113,19 +112,21 @@ fn bounds(primitives: &[Primitive]) -> Bounds {
 /// Reorders the primitives so that the two halves of the best split follow each other. Returns where the second
 /// starts, never at an end, and the boxes of both.
 fn split(primitives: &mut [Primitive], leaf_size: usize) -> (usize, [Bounds; 2]) {
-    let centroids = primitives.iter().fold(Bounds::EMPTY, |all, p| all.with_point(p.centroid));
+    let centroids =
+        primitives.iter().fold(Bounds::EMPTY, |all, p| all.with_point(p.bounds.centre()));
     if primitives.len() <= 2 * leaf_size {
         let axis = centroids.longest_axis();
-        primitives.sort_unstable_by(|a, b| a.centroid[axis].total_cmp(&b.centroid[axis]));
+        primitives
+            .sort_unstable_by(|a, b| a.bounds.centre()[axis].total_cmp(&b.bounds.centre()[axis]));
         return halves(primitives);
     }
     if let Some(mapping) = BinMapping::new(&centroids, primitives.len()) {
         let mut bins = Bins::new(&mapping);
         for primitive in &*primitives {
-            bins.add(mapping.bin(primitive.centroid), &primitive.bounds);
+            bins.add(mapping.bin(primitive.bounds.centre()), &primitive.bounds);
         }
         if let Some(split) = bins.best_split() {
-            let middle = partition(primitives, |p| mapping.bin(p.centroid) < split.bin);
+            let middle = partition(primitives, |p| mapping.bin(p.bounds.centre()) < split.bin);
             return (middle, split.bounds);
         }
     }

@@ -41,7 +41,7 @@ pub fn check(t1: &Triangle, t2: &Triangle) -> truth::TruthContact {
     let gap = truth::separation(t1, t2, found.normal);
     // The difference of two points is rounded: its direction is off by that over the distance.
     let close = 1.0e-12 * size;
-    let tilt = if found.distance > close { 1.0e-15 * size / found.distance } else { 0.0 };
+    let tilt = if found.distance > close { 3.0e-14 * size / found.distance } else { 0.0 };
     let least = found.distance - tolerance - tilt * size;
     assert!(gap >= least, "the normal leaves {gap:e} only: {}", context());
     if expected.normal_is_unique {
