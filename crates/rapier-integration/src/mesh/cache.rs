@@ -199,6 +199,11 @@ pub(crate) struct PreparedRef {
 }
 
 impl PreparedRef {
+    /// Whether this cache made it.
+    pub(crate) fn is_from(&self, cache: &Arc<TreeCache>) -> bool {
+        Arc::ptr_eq(&self.cache, cache)
+    }
+
     pub(crate) fn get(&self) -> &PreparedMesh {
         match self.entry.prepared.get() {
             Some(Ok(prepared)) => prepared,

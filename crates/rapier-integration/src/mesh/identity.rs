@@ -3,7 +3,8 @@
 //! A dispatcher sees a `&TriMesh` and nothing else: no handle, no generation. Its address proves nothing, since
 //! freed memory is used again and `SharedShape::make_mut` edits in place. So there are two notions:
 //!
-//! * [`ContentHash`], 128 bits over all vertices, all indices and the flags that concern contacts. Meshes with equal hashes share one
+//! * [`ContentHash`], 128 bits over all vertices, all indices, the flags that concern contacts and the first leaves of
+//!   Parry's hierarchy. Meshes with equal hashes share one
 //!   tree, wherever they are: clones, copies restored from a snapshot, the same file loaded twice. It reads the
 //!   whole mesh (about 1 µs for 1000 triangles), so it is asked for only when a pair of colliders gets its first
 //!   contact query that passes the root boxes.
@@ -27,6 +28,10 @@ use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 pub(crate) struct ContentHash(u128);
 
 impl ContentHash {
+    /// Leaves of Parry's hierarchy looked at. Equal meshes with other hierarchies (one was edited and refitted) have
+    /// another stock order; they differ among the first leaves, as good as always.
+    const LEAVES: usize = 16;
+
     pub(crate) fn of(mesh: &TriMesh) -> Self {
         let mut hasher = Xxh3::new();
         hasher.write_usize(mesh.vertices().len());
@@ -34,6 +39,9 @@ impl ContentHash {
         hasher.write_u16((mesh.flags() & normals).bits());
         hasher.update(bytemuck::cast_slice(mesh.vertices()));
         hasher.update(bytemuck::cast_slice(mesh.indices()));
+        for leaf in mesh.bvh().leaves(|_| true).take(Self::LEAVES) {
+            hasher.write_u32(leaf);
+        }
         Self(hasher.digest128())
     }
 }

@@ -83,6 +83,7 @@ impl Generator<'_> {
         }
         manifolds.clear();
         std::mem::swap(manifolds, &mut history.next);
+        history.settle(manifolds.len());
         history.features.clear();
         std::mem::swap(&mut history.features, &mut history.next_features);
     }

@@ -63,21 +63,32 @@ impl MeshPair<'_> {
         size1 < size2
     }
 
-    /// The trees of both meshes, from the state if they are known and still valid. Else what was seen of the
-    /// old ones is forgotten.
-    fn trees<'s>(
+    /// The trees of both meshes, from the state if they are known and still valid.
+    ///
+    /// If they are not, what is known of the pair is forgotten. Its manifolds as well, if a mesh was edited while the
+    /// host kept the workspace. If only another dispatcher was here before, the manifolds keep their data, but no
+    /// generator must take their points for its own.
+    fn trees<'s, M, C>(
         &self,
         cache: &Arc<TreeCache>,
         known: &'s mut KnownMeshes,
         coherence: &mut Coherence,
-    ) -> Option<&'s [PreparedRef; 2]> {
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+    ) -> Option<&'s [PreparedRef; 2]>
+    where
+        C: Default + Copy,
+    {
         let tokens = self.tokens();
         let is_valid = match known {
             KnownMeshes::None => false,
-            KnownMeshes::Trees(valid, _) => *valid == tokens,
+            KnownMeshes::Trees(valid, [one, _]) => *valid == tokens && one.is_from(cache),
         };
         if !is_valid {
             coherence.clear();
+            match known {
+                KnownMeshes::Trees(old, _) if *old != tokens => manifolds.clear(),
+                _ => manifolds.iter_mut().for_each(ContactManifold::mark_shapes_deformed),
+            }
             let prepare = |mesh| match cache.prepare(mesh) {
                 Ok(prepared) => Some(prepared),
                 Err(_) => {
@@ -118,7 +129,7 @@ where
         manifolds.clear();
         return Answer::Apart;
     }
-    let Some(prepared) = pair.trees(cache, meshes, coherence) else {
+    let Some(prepared) = pair.trees(cache, meshes, coherence, manifolds) else {
         return Answer::Unsupported;
     };
     let prepared = prepared.each_ref().map(PreparedRef::get);

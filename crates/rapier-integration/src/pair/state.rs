@@ -38,6 +38,10 @@ pub(super) struct History<M, C> {
     pub(super) next_features: Vec<Option<FeaturePair>>,
     pub(super) previous_points: Vec<TrackedContact<C>>,
     spare: Vec<ContactManifold<M, C>>,
+    /// Manifolds that the pair has had at once of late: as many are kept, in use or spare.
+    peak: usize,
+    /// Queries since it had as many.
+    age: u8,
 }
 
 impl<M, C> Default for PairState<M, C> {
@@ -58,6 +62,8 @@ impl<M, C> Default for History<M, C> {
             next_features: Vec::new(),
             previous_points: Vec::new(),
             spare: Vec::new(),
+            peak: 0,
+            age: 0,
         }
     }
 }
@@ -93,9 +99,20 @@ where
     M: Default,
     C: Default + Copy,
 {
-    /// Buffers kept at most beside those of the pair's present manifolds. Each keeps a few hundred bytes; fewer make
-    /// more allocations where contacts come and go.
-    const SPARE: usize = 16;
+    /// Queries after which the memory of more manifolds than the pair now has is given back, a quarter at a time.
+    /// More: memory is kept longer. Fewer: allocations where contacts come and go.
+    const PATIENCE: u8 = 64;
+
+    /// Ends a query: remembers how many manifolds the pair has had of late.
+    pub(super) fn settle(&mut self, count: usize) {
+        self.age += 1;
+        if count >= self.peak {
+            (self.peak, self.age) = (count, 0);
+        } else if self.age >= Self::PATIENCE {
+            (self.peak, self.age) = (count.max(self.peak - self.peak.div_ceil(4)), 0);
+            self.spare.truncate(self.peak - count);
+        }
+    }
 
     /// Whether these are the manifolds that the last query left.
     pub(super) fn is_of(&self, manifolds: &[ContactManifold<M, C>]) -> bool {
@@ -122,7 +139,7 @@ where
 
     /// Takes back a manifold that is no longer used. Nothing of it but its memory survives.
     pub(super) fn retire(&mut self, mut manifold: ContactManifold<M, C>) {
-        if self.spare.len() < Self::SPARE {
+        if self.next.len() + self.spare.len() < self.peak {
             manifold.points.clear();
             manifold.local_n1 = Default::default();
             manifold.local_n2 = Default::default();

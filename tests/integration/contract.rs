@@ -1,0 +1,264 @@
+use std::sync::Arc;
+
+use oorandom::Rand32;
+use rapier_integration::{ContactGenerator, SbbkDispatcher};
+use rapier3d::geometry::{ContactData, ContactManifoldData};
+use rapier3d::math::{Pose, Real, Vector};
+use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
+use rapier3d::parry::shape::{PackedFeatureId, TriMesh};
+use sbbk_lab::mesh;
+
+use crate::support::{
+    Manifold, Pair, Query, TrianglePair, assert_same, by_triangles, fresh, generating, nudge,
+    rebuilt, sequence, shape, stock, touching, triangles,
+};
+
+/// Marks manifolds and points, to see which of them survive.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Marker(u32);
+
+type MarkedPair = Pair<Marker, Marker>;
+
+impl MarkedPair {
+    /// Gives each manifold and each point another mark; mark 0 is left for new ones.
+    fn mark(&mut self) {
+        let mut next = 1..;
+        for manifold in &mut self.manifolds {
+            manifold.data = Marker(next.next().unwrap());
+            for point in &mut manifold.points {
+                point.data = Marker(next.next().unwrap());
+            }
+        }
+    }
+}
+
+/// Meshes whose triangles are large against Parry's tolerances, the first with the smaller box: about their origins,
+/// 2.6 and 4 units across, triangles of about 0.5 units.
+fn rings() -> [TriMesh; 2] {
+    [shape(&mesh::torus(1.0, 0.3, 12, 6)), shape(&mesh::torus(1.4, 0.6, 16, 9))]
+}
+
+fn nowhere() -> Pose {
+    Pose::translation(Real::NAN, 0.0, 0.0)
+}
+
+/// Would catch a query that leaves the host without a workspace: Rapier takes this for a pair whose manifolds never
+/// change places, and keeps pointers to those that are gone.
+#[test]
+fn there_is_a_workspace_after_every_query() {
+    let [one, two] = rings();
+    let query = Query::new(&one, &two, touching(&mut Rand32::new(1), [&one, &two], 0.05));
+    let far = Pose::translation(100.0, 0.0, 0.0);
+    for first in [far, nowhere(), query.pos12] {
+        let mut pair: Pair = Pair::default();
+        for pos12 in [first, far, query.pos12, query.pos12, nowhere(), far] {
+            assert!(pair.ask(&SbbkDispatcher::default(), &query.at(pos12)).workspace.is_some());
+            assert_eq!(pair.manifolds.is_empty(), pos12 != query.pos12);
+        }
+    }
+}
+
+/// Would catch another order than stock's, which Rapier's clusters and a user's eyes depend on, empty manifolds,
+/// and meshes that change places: the larger box decides which one Parry walks first.
+#[test]
+fn manifolds_come_in_stock_order_and_none_is_empty() {
+    let [one, two] = rings();
+    let mut random = Rand32::new(2);
+    let dispatcher = SbbkDispatcher::default();
+    let mut manifold_count = 0;
+    for _ in 0..30 {
+        let query = Query::new(&one, &two, touching(&mut random, [&one, &two], 0.1));
+        for query in [query, query.swapped()] {
+            let mut pair: Pair = Pair::default();
+            for _ in 0..3 {
+                let query = query.at(nudge(&mut random, 0.005) * query.pos12);
+                let found = &pair.ask(&dispatcher, &query).manifolds;
+                assert!(found.iter().all(|manifold| !manifold.points.is_empty()));
+                assert_eq!(sequence(found), sequence(&stock(&query)));
+                manifold_count += found.len();
+            }
+        }
+    }
+    assert!(manifold_count > 1000, "{manifold_count}");
+}
+
+/// Would catch an order that comes from another mesh: these two are equal, but Parry's hierarchies of them are not,
+/// since one was built for other vertices and refitted.
+#[test]
+fn each_of_two_equal_meshes_has_its_own_stock_order() {
+    let [one, two] = rings();
+    let mut refitted = rebuilt(&one);
+    refitted.transform_vertices(&Pose::rotation(Vector::new(0.0, 0.0, 1.5)));
+    refitted.set_vertices(one.vertices());
+    let query = Query::new(&one, &two, touching(&mut Rand32::new(3), [&one, &two], 0.1));
+    let other = Query { meshes: [&refitted, &two], ..query };
+    assert_ne!(sequence(&stock(&query)), sequence(&stock(&other)));
+    let dispatcher = SbbkDispatcher::default();
+    for query in [query, other] {
+        assert_eq!(sequence(&fresh(&dispatcher, &query)), sequence(&stock(&query)));
+    }
+}
+
+/// Would catch contacts kept over a change of shape: Rapier then takes the workspace away and leaves the manifolds.
+#[test]
+fn without_a_workspace_no_manifold_survives() {
+    let [one, two] = rings();
+    let query = Query::new(&one, &two, touching(&mut Rand32::new(4), [&one, &two], 0.1));
+    let dispatcher = SbbkDispatcher::default();
+    let mut pair = MarkedPair::default();
+    pair.ask(&dispatcher, &query).mark();
+    pair.workspace = None;
+    pair.ask(&dispatcher, &query);
+    assert_same(&pair.manifolds, &fresh(&dispatcher, &query), 0.0);
+    assert_eq!(marks(&pair), [Marker(0)].repeat(marks(&pair).len()));
+}
+
+fn marks(pair: &MarkedPair) -> Vec<Marker> {
+    let of_points = pair.manifolds.iter().flat_map(|m| &m.points).map(|point| point.data);
+    pair.manifolds.iter().map(|manifold| manifold.data).chain(of_points).collect()
+}
+
+/// Would catch impulses lost when a dispatcher takes over a running world: the manifolds of stock, or of a restored
+/// snapshot, stay those of their triangles.
+#[test]
+fn with_a_foreign_workspace_manifolds_keep_their_data() {
+    let [one, two] = rings();
+    let query = Query::new(&one, &two, touching(&mut Rand32::new(5), [&one, &two], 0.1));
+    let mut pair = MarkedPair::default();
+    pair.ask(&DefaultQueryDispatcher, &query).mark();
+    let before = pair.manifolds.clone();
+    let before = by_triangles(&before);
+    pair.ask(&SbbkDispatcher::default(), &query);
+    assert_same(&pair.manifolds, &fresh(&SbbkDispatcher::default(), &query), 0.0);
+    let mut kept_points = 0;
+    for manifold in &pair.manifolds {
+        let old = before[&triangles(manifold)];
+        assert_eq!(manifold.data, old.data);
+        for point in &manifold.points {
+            let is_same = |p: &&_| fids(*p) == fids(point);
+            let known = old.points.iter().find(is_same);
+            assert_eq!(point.data, known.map_or(Marker(0), |point| point.data));
+            kept_points += usize::from(known.is_some());
+        }
+    }
+    assert!(kept_points > 0, "no point has the feature ids that stock gives");
+}
+
+type FeatureIds = [PackedFeatureId; 2];
+
+fn fids<C>(point: &rapier3d::parry::query::TrackedContact<C>) -> FeatureIds {
+    [point.fid1, point.fid2]
+}
+
+/// Would catch impulses that go to another point, or are lost, as bodies move: points with equal triangles and features
+/// are the same point, all others are new.
+#[test]
+fn points_keep_their_data_by_their_features() {
+    let [one, two] = rings();
+    let mut random = Rand32::new(6);
+    let dispatcher = SbbkDispatcher::default();
+    let mut query = Query::new(&one, &two, touching(&mut random, [&one, &two], 0.05));
+    let mut pair = MarkedPair::default();
+    pair.ask(&dispatcher, &query);
+    let [mut kept, mut new] = [0, 0];
+    for _ in 0..300 {
+        pair.mark();
+        let before = pair.manifolds.clone();
+        let before = by_triangles(&before);
+        query.pos12 = nudge(&mut random, 0.003) * query.pos12;
+        for manifold in &pair.ask(&dispatcher, &query).manifolds {
+            let old = before.get(&triangles(manifold));
+            assert_eq!(manifold.data, old.map_or(Marker(0), |old| old.data));
+            for point in &manifold.points {
+                let known = old.and_then(|old| old.points.iter().find(|p| fids(*p) == fids(point)));
+                assert_eq!(point.data, known.map_or(Marker(0), |point| point.data));
+                *(if known.is_some() { &mut kept } else { &mut new }) += 1;
+            }
+            let distinct: std::collections::HashSet<_> =
+                manifold.points.iter().map(|p| fids(p).map(|fid| fid.0)).collect();
+            assert_eq!(distinct.len(), manifold.points.len(), "two points of the same features");
+        }
+    }
+    assert!(kept > 20 * new && new > 10, "{kept} points kept, {new} new");
+}
+
+/// Would catch a prediction distance that is remembered: soft CCD and contact skins change it from step to step.
+#[test]
+fn the_prediction_distance_may_change_at_every_query() {
+    let head = shape(&mesh::monkey_head());
+    let dispatcher = SbbkDispatcher::default();
+    let pos12 = touching(&mut Rand32::new(7), [&head, &head], 0.005);
+    let mut pair: Pair = Pair::default();
+    let mut sizes = Vec::new();
+    for prediction in [0.02, 0.0, 0.001, 0.3, 0.02, 0.1, 0.1, 0.0005, 1.0, 0.02] {
+        for shift in [0.0, 1e-4, 2e-4] {
+            let pos12 = Pose::translation(shift, 0.0, 0.0) * pos12;
+            let query = Query::new(&head, &head, pos12).within(prediction);
+            pair.ask(&dispatcher, &query);
+            assert_same(&pair.manifolds, &fresh(&dispatcher, &query), 1e-6);
+        }
+        sizes.push(pair.manifolds.len());
+    }
+    assert!(sizes[1] < sizes[0] && sizes[0] < sizes[5] && sizes[5] < sizes[3], "{sizes:?}");
+    assert_eq!([sizes[4], sizes[9]], [sizes[0]; 2]);
+}
+
+/// Would catch a dispatcher that takes over the contacts of another one where nothing moved.
+#[test]
+fn another_generator_makes_its_own_contacts() {
+    let [one, two] = rings();
+    let query = Query::new(&one, &two, touching(&mut Rand32::new(8), [&one, &two], 0.05));
+    let [exact, parry] = [ContactGenerator::Exact, ContactGenerator::Parry].map(generating);
+    let mut pair: Pair = Pair::default();
+    pair.ask(&parry, &query);
+    pair.ask(&exact, &query);
+    assert_same(&pair.manifolds, &fresh(&exact, &query), 1e-6);
+    pair.ask(&parry, &query);
+    assert_same(&pair.manifolds, &fresh(&parry, &query), 1e-6);
+}
+
+/// Would catch a dispatcher that serves Rapier's types only.
+#[test]
+fn any_data_will_do() {
+    #[derive(Clone, Default)]
+    struct Name(String);
+    let [one, two] = rings();
+    let query = Query::new(&one, &two, touching(&mut Rand32::new(9), [&one, &two], 0.05));
+    let dispatcher = SbbkDispatcher::default();
+    let expected: Vec<Manifold> = fresh(&dispatcher, &query);
+    let mut named = Pair::<Name, f64>::default();
+    named.ask(&dispatcher, &query).manifolds[0].data = Name("first".into());
+    named.ask(&dispatcher, &query.at(Pose::translation(1e-6, 0.0, 0.0) * query.pos12));
+    assert_eq!(named.manifolds[0].data.0, "first");
+    named.ask(&dispatcher, &query);
+    assert_same(&named.manifolds, &expected, 1e-6);
+
+    // As Rapier holds it.
+    let shared: Arc<dyn PersistentQueryDispatcher<ContactManifoldData, ContactData>> =
+        Arc::new(dispatcher);
+    let (mut manifolds, mut workspace) = (Vec::new(), None);
+    shared
+        .contact_manifolds(&query.pos12, &one, &two, 0.02, &mut manifolds, &mut workspace)
+        .unwrap();
+    assert_same(&manifolds, &expected, 0.0);
+}
+
+/// Would catch manifolds left over for callers that keep nothing, as Rapier's character controller does: it passes
+/// an empty workspace, and the manifolds of whatever it asked before.
+#[test]
+fn callers_without_memory_get_fresh_answers() {
+    let [one, two] = rings();
+    let mut random = Rand32::new(10);
+    let dispatcher = SbbkDispatcher::default();
+    let mut manifolds: Vec<Manifold> = Vec::new();
+    let mut seen: Vec<Vec<TrianglePair>> = Vec::new();
+    for _ in 0..10 {
+        let query = Query::new(&one, &two, touching(&mut random, [&one, &two], 0.05));
+        dispatcher
+            .contact_manifolds(&query.pos12, &one, &two, 0.02, &mut manifolds, &mut None)
+            .unwrap();
+        assert_same(&manifolds, &fresh(&dispatcher, &query), 0.0);
+        seen.push(sequence(&manifolds));
+    }
+    assert!(seen.windows(2).all(|two| two[0] != two[1]));
+}

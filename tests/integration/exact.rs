@@ -1,0 +1,126 @@
+use oorandom::Rand32;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::math::{Pose, Real, Vector};
+use rapier3d::parry::shape::TriMesh;
+use sbbk_lab::mesh::{self, Mesh};
+
+use crate::like_stock;
+use crate::support::{Query, fresh, shape, touching};
+use crate::truth::Tally;
+
+/// Meshes whose triangles have edges of about a unit, 20 to 40 units across: stock Parry is right there.
+fn large_meshes() -> Vec<TriMesh> {
+    let meshes = [
+        mesh::monkey_head_with(6).scaled_to(20.0),
+        mesh::monkey_head().scaled_to(30.0),
+        mesh::torus(12.0, 5.0, 40, 20),
+        mesh::ball(20.0, 25),
+        mesh::cuboid(Vector::new(10.0, 14.0, 12.0), 8),
+    ];
+    meshes.iter().map(shape).collect()
+}
+
+/// Would catch contacts that differ from stock's where stock is right: a triangle pair too few or too many, another
+/// depth, another normal, other points.
+#[test]
+fn contacts_are_stocks_where_triangles_are_large() {
+    let dispatcher = SbbkDispatcher::default();
+    let meshes = large_meshes();
+    let mut random = Rand32::new(1);
+    let [mut contacts, mut excused] = [0; 2];
+    for (one, two) in meshes.iter().flat_map(|one| meshes.iter().map(move |two| (one, two))) {
+        for depth in [-0.015, -0.005, 0.0, 0.01, 0.05, 0.2, 1.0, 4.0] {
+            let query = Query::new(one, two, touching(&mut random, [one, two], depth));
+            let compared = like_stock::check(&query, &fresh(&dispatcher, &query));
+            contacts += compared.contacts;
+            excused += compared.excused;
+        }
+    }
+    assert!(contacts > 3000, "{contacts}");
+    assert!(100 * excused < contacts, "{excused} closest points of {contacts} contacts excused");
+}
+
+/// Sizes of meshes and prediction distances at which contacts must be right.
+const SIZES: [Real; 3] = [0.1, 2.0, 40.0];
+const PREDICTIONS: [Real; 3] = [0.001, 0.002, 0.02];
+
+/// Depths of poses, as shares of the size: just apart, touching, a step's fall, and deep.
+const DEPTHS: [Real; 4] = [-0.0005, 0.0005, 0.01, 0.2];
+
+fn judge(seed: u64, meshes: [&Mesh; 2], least_contacts: usize) {
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(seed);
+    let mut tally = Tally::default();
+    for size in SIZES {
+        let [one, two] = meshes.map(|mesh| shape(&mesh.clone().scaled_to(size)));
+        for (prediction, depth) in PREDICTIONS.into_iter().flat_map(|p| DEPTHS.map(|d| (p, d))) {
+            let pos12 = touching(&mut random, [&one, &two], depth * size);
+            let query = Query::new(&one, &two, pos12).within(prediction);
+            tally.add(&query, &fresh(&dispatcher, &query));
+        }
+    }
+    tally.check_all_right(least_contacts);
+}
+
+/// Would catch what stock gets wrong: contacts missed, invented, or with wrong depths where triangles are small.
+#[test]
+fn heads_touch_as_the_truth_says() {
+    let head = mesh::monkey_head();
+    judge(2, [&head, &head], 1000);
+}
+
+#[test]
+fn a_head_and_a_ring_touch_as_the_truth_says() {
+    judge(3, [&mesh::monkey_head_with(7), &mesh::torus(1.0, 0.4, 60, 30)], 1000);
+}
+
+/// Many small triangles: 8192 on a ball.
+#[test]
+fn fine_balls_touch_as_the_truth_says() {
+    judge(4, [&mesh::ball(1.0, 32), &mesh::ball(1.0, 20)], 1000);
+}
+
+/// Edges and faces that are exactly parallel, and vertices that meet exactly.
+#[test]
+fn aligned_boxes_touch_as_the_truth_says() {
+    let dispatcher = SbbkDispatcher::default();
+    let mut tally = Tally::default();
+    for size in SIZES {
+        let cube = shape(&mesh::cuboid(Vector::splat(0.5 * size), 4));
+        for gap in [-0.1, -0.0005, 0.0, 0.0005, 0.0009, 0.015] {
+            for shift in [[0.0, 0.0], [0.25, 0.0], [0.1, 0.3], [1.0, 0.0]] {
+                let [x, z] = shift.map(|shift| shift * size);
+                let query = Query::new(&cube, &cube, Pose::translation(x, size + gap, z));
+                for prediction in PREDICTIONS {
+                    let query = query.within(prediction);
+                    tally.add(&query, &fresh(&dispatcher, &query));
+                }
+            }
+        }
+    }
+    tally.check_all_right(10_000);
+}
+
+/// Would catch f32 coordinates that lose the contact where bodies, or the vertices of their meshes, are far from
+/// an origin: contacts are about differences, which the poses know well.
+#[test]
+fn distant_meshes_touch_as_the_truth_says() {
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(6);
+    let mut tally = Tally::default();
+    let head = mesh::monkey_head_with(7);
+    let near = shape(&head);
+    for offset in [10.0, 100.0, 1000.0] {
+        let shift = Vector::new(offset, -0.5 * offset, 0.25 * offset);
+        let away = shape(&head.clone().mapped(|vertex| vertex + shift));
+        for depth in DEPTHS {
+            let pos12 =
+                touching(&mut random, [&near, &near], depth) * Pose::from_translation(-shift);
+            let query = Query::new(&near, &away, pos12);
+            tally.add(&query, &fresh(&dispatcher, &query));
+            let query = query.swapped();
+            tally.add(&query, &fresh(&dispatcher, &query));
+        }
+    }
+    tally.check_all_right(200);
+}

@@ -1,0 +1,35 @@
+//! The dispatcher inside Rapier and Parry, judged from outside: by stock Parry, by brute force in
+//! f64, and by itself asked afresh.
+
+/// A steady contact allocates nothing.
+mod allocation;
+/// Contacts that Parry generates are stock's, bit for bit.
+mod bits;
+/// What a host may expect of calls that follow each other.
+mod contract;
+/// A mesh that changes while pairs know it.
+mod edited_mesh;
+/// SBBK's own contacts against the truth, and against stock where stock is right.
+mod exact;
+/// Contacts beside those of stock.
+mod like_stock;
+/// Motion that never loses a contact: random walks against fresh queries.
+mod motion;
+/// Contact normals constrained at internal edges.
+mod normals;
+/// Bodies at rest, and sliding, beside stock Rapier.
+mod rest;
+/// Which meshes share a tree, and what happens when they change.
+mod same_mesh;
+/// The paper's scenes beside stock Rapier.
+mod scenes;
+/// Worlds that are saved and restored.
+mod snapshot;
+/// Asking, comparing, meshes and poses.
+mod support;
+/// Motion beside that of stock Rapier: as close as chaos allows.
+mod trajectories;
+/// Brute force in f64.
+mod truth;
+/// Meshes that cannot have a tree, or must not.
+mod unsupported;

@@ -1,0 +1,119 @@
+use std::collections::BTreeMap;
+
+use oorandom::Rand32;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::math::Vector;
+use rapier3d::parry::query::details::NormalConstraints;
+use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
+use sbbk_lab::mesh::{self, Mesh};
+
+use crate::like_stock;
+use crate::support::{
+    Manifold, Query, TrianglePair, by_triangles, fresh, shape, shape_with, touching,
+};
+
+const FREE: TriMeshFlags = TriMeshFlags::empty();
+const ONE_SIDED: TriMeshFlags = TriMeshFlags::FIX_INTERNAL_EDGES;
+const TWO_SIDED: TriMeshFlags = TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED;
+
+/// Meshes with triangles of about a unit and sharp as well as flat edges.
+fn meshes() -> [Mesh; 2] {
+    [mesh::monkey_head_with(7).scaled_to(20.0), mesh::torus(8.0, 3.0, 24, 12)]
+}
+
+/// The same mesh with other flags. Panics if the flags renumber it.
+fn flagged(mesh: &Mesh, flags: TriMeshFlags) -> TriMesh {
+    let (free, flagged) = (shape(mesh), shape_with(mesh, flags));
+    assert_eq!((free.vertices(), free.indices()), (flagged.vertices(), flagged.indices()));
+    flagged
+}
+
+/// Where each pair of triangles has its normal, in the frame of mesh `k` (0 or 1), away from that mesh.
+fn normals(manifolds: &[Manifold], k: usize) -> BTreeMap<TrianglePair, Vector> {
+    let manifolds = by_triangles(manifolds).into_iter();
+    manifolds.map(|(pair, m)| (pair, [m.local_n1, m.local_n2][k])).collect()
+}
+
+/// Checks the answers about meshes of which mesh `k` alone has constraints.
+///
+/// Would catch a normal outside of the cone of its triangle, one that is pushed though it was inside, a contact kept
+/// that the cone rejects, and one dropped that it does not reject.
+fn check_cone(k: usize, flags: TriMeshFlags) {
+    let meshes = meshes();
+    let free = [0, 1].map(|i| flagged(&meshes[i], FREE));
+    let fixed = [0, 1].map(|i| flagged(&meshes[i], if i == k { flags } else { FREE }));
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(1);
+    let [mut pushed, mut untouched, mut rejected] = [0; 3];
+    for depth in [-0.01, 0.0, 0.1, 0.5, 2.0].repeat(4) {
+        let pos12 = touching(&mut random, [&free[0], &free[1]], depth);
+        let ask = |[one, two]: &[TriMesh; 2]| fresh(&dispatcher, &Query::new(one, two, pos12));
+        let (answer, constrained) = (ask(&free), ask(&fixed));
+        let constrained = normals(&constrained, k);
+        for (pair, normal) in normals(&answer, k) {
+            let cone = fixed[k].triangle_normal_constraints(pair[k]).unwrap();
+            match (cone.project_local_normal(normal), constrained.get(&pair)) {
+                (None, found) => {
+                    assert_eq!(found, None, "{pair:?} is rejected by the cone");
+                    rejected += 1;
+                }
+                (Some(expected), Some(&found)) => {
+                    let off = (found - expected).length();
+                    assert!(off < 1e-5, "{pair:?}: {found} instead of {expected}");
+                    *(if expected == normal { &mut untouched } else { &mut pushed }) += 1;
+                }
+                // A normal turned so far that the triangles do not face each other along it.
+                (Some(expected), None) => {
+                    assert!((expected - normal).length() > 0.05, "{pair:?} was lost");
+                }
+            }
+        }
+        let missing = constrained.keys().find(|pair| !normals(&answer, k).contains_key(*pair));
+        assert_eq!(missing, None, "constraints make no contacts");
+    }
+    assert!(pushed > 50 && untouched > 50, "{pushed} pushed, {untouched} not, {rejected} rejected");
+    assert_eq!(rejected > 50, flags == ONE_SIDED, "{rejected} rejected");
+}
+
+#[test]
+fn normals_lie_in_the_cones_of_mesh_1() {
+    check_cone(0, ONE_SIDED);
+}
+
+#[test]
+fn normals_lie_in_the_cones_of_mesh_2() {
+    check_cone(1, ONE_SIDED);
+}
+
+#[test]
+fn two_sided_cones_reject_nothing() {
+    check_cone(0, TWO_SIDED);
+    check_cone(1, TWO_SIDED);
+}
+
+/// Would catch cones applied in another order or frame than stock's, other points kept or dropped, and depths measured
+/// along the free normal.
+#[test]
+fn constrained_contacts_are_stocks() {
+    let meshes = meshes();
+    let dispatcher = SbbkDispatcher::default();
+    let mut contact_count = 0;
+    let all = [
+        [ONE_SIDED, FREE],
+        [FREE, TWO_SIDED],
+        [ONE_SIDED; 2],
+        [TWO_SIDED; 2],
+        [TWO_SIDED, ONE_SIDED],
+    ];
+    for (seed, flags) in all.into_iter().enumerate() {
+        let [one, two] = [0, 1].map(|i| flagged(&meshes[i], flags[i]));
+        let mut random = Rand32::new(seed as u64);
+        for depth in [-0.01, 0.0, 0.05, 0.2, 1.0].repeat(3) {
+            let query = Query::new(&one, &two, touching(&mut random, [&one, &two], depth));
+            for query in [query, query.swapped()] {
+                contact_count += like_stock::check(&query, &fresh(&dispatcher, &query)).contacts;
+            }
+        }
+    }
+    assert!(contact_count > 1000, "{contact_count} contacts compared");
+}

@@ -1,0 +1,233 @@
+use std::sync::Barrier;
+
+use rapier_integration::{SbbkConfig, SbbkDispatcher, SbbkStats};
+use rapier3d::math::{Pose, Vector};
+use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
+use sbbk_lab::mesh;
+
+use crate::support::{Pair, Query, assert_same, fresh, rebuilt, shape, shape_with};
+
+/// Two of them touch when a bit more than a radius apart.
+fn ball() -> TriMesh {
+    shape(&mesh::ball(1.0, 6))
+}
+
+fn near() -> Pose {
+    Pose::translation(1.6, 0.3, 0.2)
+}
+
+/// Asks about two meshes that touch; the state of the pair must be kept by the caller.
+fn touch(dispatcher: &SbbkDispatcher, mesh1: &TriMesh, mesh2: &TriMesh) -> Pair {
+    let mut pair = Pair::default();
+    pair.ask(dispatcher, &Query::new(mesh1, mesh2, near()));
+    assert!(!pair.manifolds.is_empty());
+    pair
+}
+
+fn with_idle_bytes(limit: usize) -> SbbkDispatcher {
+    let mut config = SbbkConfig::default();
+    config.idle_tree_bytes = limit;
+    SbbkDispatcher::new(config)
+}
+
+/// Trees, those of them that are idle, and how often one was built and found.
+fn counts(dispatcher: &SbbkDispatcher) -> [u64; 4] {
+    let SbbkStats { trees, idle_trees, tree_builds, tree_hits, .. } = dispatcher.stats();
+    [trees as u64, idle_trees as u64, tree_builds, tree_hits]
+}
+
+/// Would catch a tree for each collider, or an identity that is an address: a clone and a mesh built again lie
+/// elsewhere in memory.
+#[test]
+fn clones_and_equal_meshes_share_one_tree() {
+    let dispatcher = SbbkDispatcher::default();
+    let mesh = ball();
+    let (clone, equal) = (mesh.clone(), rebuilt(&mesh));
+    let _pairs = [touch(&dispatcher, &mesh, &clone), touch(&dispatcher, &equal, &mesh)];
+    assert_eq!(counts(&dispatcher), [1, 0, 1, 3]);
+    assert!(dispatcher.stats().tree_bytes > 0);
+}
+
+/// Would catch 2000 trees, or 2000 builds, for a pile restored from a snapshot, where each collider has its own
+/// copy of the mesh.
+#[test]
+fn two_thousand_copies_share_one_tree() {
+    let dispatcher = SbbkDispatcher::default();
+    let mesh = ball();
+    let copies: Vec<TriMesh> = (0..2000).map(|_| mesh.clone()).collect();
+    let pairs: Vec<Pair> =
+        copies.windows(2).map(|two| touch(&dispatcher, &two[0], &two[1])).collect();
+    assert_eq!(counts(&dispatcher), [1, 0, 1, 2 * 1999 - 1]);
+    let bytes = dispatcher.stats().tree_bytes;
+    drop(pairs);
+    assert_eq!(counts(&dispatcher), [1, 1, 1, 2 * 1999 - 1]);
+    assert_eq!(dispatcher.stats().tree_bytes, bytes);
+}
+
+/// Would catch a tree used for another size of the same mesh, and one shared by meshes whose contact normals
+/// are constrained and not.
+#[test]
+fn another_scale_or_other_normals_are_another_mesh() {
+    let dispatcher = SbbkDispatcher::default();
+    let mesh = ball();
+    let larger = mesh.clone().scaled(Vector::splat(1.25));
+    let fixed = shape_with(&mesh::ball(1.0, 6), TriMeshFlags::FIX_INTERNAL_EDGES);
+    assert_eq!((mesh.vertices(), mesh.indices()), (fixed.vertices(), fixed.indices()));
+    for (other, trees) in [(&larger, 2), (&fixed, 3)] {
+        let pair = touch(&dispatcher, &mesh, other);
+        assert_eq!(dispatcher.stats().trees, trees);
+        let expected = fresh(&SbbkDispatcher::default(), &Query::new(&mesh, other, near()));
+        assert_same(&pair.manifolds, &expected, 0.0);
+    }
+}
+
+/// Would catch clones that build their own trees: Rapier and the user may each hold one.
+#[test]
+fn clones_of_a_dispatcher_share_their_trees() {
+    let dispatcher = SbbkDispatcher::default();
+    let mesh = ball();
+    let _pair = touch(&dispatcher.clone(), &mesh, &mesh);
+    let _other = touch(&dispatcher, &mesh, &mesh);
+    assert_eq!(counts(&dispatcher), [1, 0, 1, 3]);
+}
+
+/// Would catch trees built for pairs that never come close: a world is full of them.
+#[test]
+fn meshes_far_apart_need_no_tree() {
+    let dispatcher = SbbkDispatcher::default();
+    let mesh = ball();
+    let far = Query::new(&mesh, &mesh, Pose::translation(2.1, 0.0, 0.0));
+    let mut pair: Pair = Pair::default();
+    pair.ask(&dispatcher, &far);
+    assert_eq!(counts(&dispatcher), [0, 0, 0, 0]);
+    pair.ask(&dispatcher, &far.at(near()));
+    assert_eq!(counts(&dispatcher), [1, 0, 1, 1]);
+}
+
+/// Would catch memory that is never given back, and a tree in use that is.
+#[test]
+fn idle_trees_go_when_there_is_no_room() {
+    let mesh = ball();
+    let none_idle = with_idle_bytes(0);
+    let pairs = [touch(&none_idle, &mesh, &mesh), touch(&none_idle, &mesh, &mesh)];
+    let [one, other] = pairs;
+    drop(one);
+    assert_eq!(counts(&none_idle), [1, 0, 1, 3]);
+    drop(other);
+    assert_eq!(counts(&none_idle), [0, 0, 1, 3]);
+    assert_eq!(none_idle.stats().tree_bytes, 0);
+}
+
+/// Would catch a limit that counts wrongly, and a cache that drops the newest tree first: there is room for two
+/// of three.
+#[test]
+fn the_oldest_idle_tree_goes_first() {
+    let meshes = [1.0, 1.1, 1.2].map(|radius| shape(&mesh::ball(radius, 6)));
+    let one = {
+        let dispatcher = SbbkDispatcher::default();
+        let _pair = touch(&dispatcher, &meshes[0], &meshes[0]);
+        dispatcher.stats().tree_bytes
+    };
+    let dispatcher = with_idle_bytes(5 * one / 2);
+    for mesh in &meshes {
+        drop(touch(&dispatcher, mesh, mesh));
+    }
+    assert_eq!(counts(&dispatcher), [2, 2, 3, 3]);
+    for mesh in meshes[1..].iter().rev() {
+        drop(touch(&dispatcher, mesh, mesh));
+    }
+    assert_eq!(counts(&dispatcher), [2, 2, 3, 7]);
+    drop(touch(&dispatcher, &meshes[0], &meshes[0]));
+    // The one before last is the oldest now: touching a tree makes it young again.
+    drop(touch(&dispatcher, &meshes[1], &meshes[1]));
+    assert_eq!(counts(&dispatcher), [2, 2, 4, 10]);
+}
+
+/// Would catch a release that takes trees from living pairs, or leaves some behind.
+#[test]
+fn releasing_idle_trees_leaves_those_in_use() {
+    let dispatcher = SbbkDispatcher::default();
+    let (mesh, other) = (ball(), shape(&mesh::ball(1.1, 6)));
+    let mut pair = touch(&dispatcher, &mesh, &mesh);
+    drop(touch(&dispatcher, &other, &other));
+    assert_eq!(counts(&dispatcher)[..2], [2, 1]);
+    dispatcher.release_idle_trees();
+    assert_eq!(counts(&dispatcher)[..2], [1, 0]);
+    let query = Query::new(&mesh, &mesh, Pose::translation(1.7, 0.2, 0.1));
+    pair.ask(&dispatcher, &query);
+    assert_same(&pair.manifolds, &fresh(&SbbkDispatcher::default(), &query), 0.0);
+    drop(pair);
+    dispatcher.release_idle_trees();
+    assert_eq!(counts(&dispatcher)[..2], [0, 0]);
+}
+
+/// Would catch a tree of a living pair dropped with a clone of the pair (Rapier's narrow phase is `Clone`).
+#[test]
+fn a_cloned_pair_keeps_its_trees() {
+    let dispatcher = with_idle_bytes(0);
+    let mesh = ball();
+    let mut pair = touch(&dispatcher, &mesh, &mesh);
+    let clone =
+        Pair::<(), ()> { manifolds: pair.manifolds.clone(), workspace: pair.workspace.clone() };
+    drop(clone);
+    assert_eq!(counts(&dispatcher)[..2], [1, 0]);
+    let clone =
+        Pair::<(), ()> { manifolds: pair.manifolds.clone(), workspace: pair.workspace.clone() };
+    let query = Query::new(&mesh, &mesh, Pose::translation(1.7, 0.2, 0.1));
+    pair.ask(&dispatcher, &query);
+    drop(pair);
+    assert_eq!(counts(&dispatcher)[..2], [1, 0]);
+    drop(clone);
+    assert_eq!(counts(&dispatcher), [0, 0, 1, 1]);
+}
+
+/// Would catch a tree built by several threads, one seen half built, or a deadlock: eight threads meet the same
+/// meshes for the first time at once.
+#[test]
+fn threads_build_one_tree_and_agree() {
+    const THREADS: usize = 8;
+    let head = shape(&mesh::monkey_head());
+    let torus = shape(&mesh::torus(1.0, 0.4, 24, 12));
+    let query = Query::new(&head, &torus, Pose::translation(1.2, 0.5, 0.3));
+    let expected = fresh(&SbbkDispatcher::default(), &query);
+    assert!(!expected.is_empty());
+    for _ in 0..10 {
+        let dispatcher = SbbkDispatcher::default();
+        let together = Barrier::new(THREADS);
+        let ask = || {
+            together.wait();
+            let mut pair: Pair = Pair::default();
+            pair.ask(&dispatcher, &query);
+            // No pair ends before all have begun.
+            together.wait();
+            pair.manifolds
+        };
+        std::thread::scope(|scope| {
+            let threads: Vec<_> = (0..THREADS).map(|_| scope.spawn(ask)).collect();
+            for thread in threads {
+                assert_same(&thread.join().unwrap(), &expected, 0.0);
+            }
+        });
+        assert_eq!(counts(&dispatcher), [2, 2, 2, 2 * (THREADS as u64 - 1)]);
+    }
+}
+
+/// Would catch users counted wrongly when pairs come and go on many threads: a tree lost, or one that stays.
+#[test]
+fn threads_come_and_go() {
+    let mesh = ball();
+    let dispatcher = with_idle_bytes(0);
+    let expected = fresh(&SbbkDispatcher::default(), &Query::new(&mesh, &mesh, near()));
+    std::thread::scope(|scope| {
+        for _ in 0..8 {
+            scope.spawn(|| {
+                for _ in 0..200 {
+                    let pair = touch(&dispatcher, &mesh, &mesh);
+                    assert_same(&pair.manifolds, &expected, 0.0);
+                }
+            });
+        }
+    });
+    assert_eq!(counts(&dispatcher)[..2], [0, 0]);
+    assert_eq!(dispatcher.stats().tree_builds + dispatcher.stats().tree_hits, 2 * 8 * 200);
+}

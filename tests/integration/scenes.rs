@@ -1,0 +1,105 @@
+use rapier_integration::SbbkDispatcher;
+use rapier3d::geometry::{Collider, ColliderHandle, ContactPair};
+use rapier3d::math::Real;
+use rapier3d::pipeline::PhysicsWorld;
+use sbbk_lab::scene::{HelicopterBallDrop, MonkeyPile, Scene, SceneWorld};
+
+use crate::support::{Query, assert_same, fresh};
+use crate::truth::Tally;
+
+/// A pair of meshes as Rapier asks about it at the start of a step.
+struct Asked {
+    handles: [ColliderHandle; 2],
+    colliders: [Collider; 2],
+    prediction: Real,
+}
+
+impl Asked {
+    fn query(&self) -> Query<'_> {
+        let [one, two] = &self.colliders;
+        let [mesh1, mesh2] = [one, two].map(|c| c.shape().as_trimesh().expect("a mesh"));
+        let pos12 = one.position().inv_mul(two.position());
+        Query::new(mesh1, mesh2, pos12).within(self.prediction)
+    }
+}
+
+/// The pairs of meshes that the broad phase has proposed, at their present poses.
+fn mesh_pairs(world: &PhysicsWorld) -> Vec<Asked> {
+    let asked = |pair: &ContactPair| {
+        let handles = [pair.collider1, pair.collider2];
+        let colliders = handles.map(|handle| world.colliders[handle].clone());
+        let prediction = world.integration_parameters.prediction_distance();
+        let are_meshes = colliders.iter().all(|c| c.shape().as_trimesh().is_some());
+        are_meshes.then_some(Asked { handles, colliders, prediction })
+    };
+    world.contact_pairs().filter_map(asked).collect()
+}
+
+fn scenes(contact_recycling: bool) -> [(Box<dyn Scene>, [usize; 4]); 2] {
+    let pile = MonkeyPile { contact_recycling, ..MonkeyPile::with_heads(40) };
+    // Steps at which to look: the ball on the rotor, and the pile from its first contacts on.
+    [
+        (Box::new(HelicopterBallDrop::default()), [21, 24, 35, 50]),
+        (Box::new(pile), [41, 55, 75, 100]),
+    ]
+}
+
+fn build(scene: &dyn Scene, contact_recycling: bool) -> SceneWorld {
+    let mut built = scene.build().expect("the meshes of this scene have triangles");
+    built.world.integration_parameters.contact_recycling = contact_recycling;
+    built
+}
+
+/// Would catch contacts missed, invented or wrong at the poses that occur in the paper's scenes, moved by stock Rapier.
+fn check_contacts(contact_recycling: bool) {
+    let dispatcher = SbbkDispatcher::default();
+    for (scene, looks) in scenes(contact_recycling) {
+        let SceneWorld { mut world, .. } = build(&*scene, contact_recycling);
+        let mut tally = Tally::default();
+        for step in 0..=looks[3] {
+            if looks.contains(&step) {
+                for asked in mesh_pairs(&world).iter().step_by(3) {
+                    let query = asked.query();
+                    tally.add(&query, &fresh(&dispatcher, &query));
+                }
+            }
+            world.step();
+        }
+        tally.check_all_right(200);
+    }
+}
+
+#[test]
+fn contacts_in_stocks_scenes_are_the_truths() {
+    check_contacts(true);
+}
+
+#[test]
+fn contacts_in_stocks_scenes_are_the_truths_without_recycling() {
+    check_contacts(false);
+}
+
+/// Would catch contacts that Rapier gets from an earlier pose, or that its own bookkeeping mixes up: where it asks in each
+/// step (no recycling), what it then holds is what a fresh query gives.
+#[test]
+fn rapier_holds_the_contacts_of_a_fresh_query() {
+    for (scene, looks) in scenes(false) {
+        let SceneWorld { mut world, .. } = build(&*scene, false);
+        world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
+        let unaware = SbbkDispatcher::default();
+        let mut contact_count = 0;
+        for step in 0..=looks[3] {
+            let asked = if step % 5 == 0 { mesh_pairs(&world) } else { Vec::new() };
+            world.step();
+            for asked in asked {
+                let [one, two] = asked.handles;
+                // The broad phase may have dropped the pair in this step.
+                let Some(pair) = world.contact_pair(one, two) else { continue };
+                assert_eq!([pair.collider1, pair.collider2], asked.handles);
+                assert_same(pair.manifolds(), &fresh(&unaware, &asked.query()), 1e-5);
+                contact_count += pair.manifolds().len();
+            }
+        }
+        assert!(contact_count > 500, "{contact_count}");
+    }
+}

@@ -1,0 +1,215 @@
+//! What the tests share: asking a dispatcher, comparing answers, meshes and poses.
+
+use std::collections::BTreeMap;
+use std::f32::consts::TAU;
+
+use glamx::{Pose3, Quat, Vec3};
+use oorandom::Rand32;
+use rapier_integration::{ContactGenerator, SbbkConfig, SbbkDispatcher};
+use rapier3d::math::{Pose, Real};
+use rapier3d::parry::query::{
+    ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
+    QueryDispatcher,
+};
+use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
+use sbbk_lab::mesh::Mesh;
+
+/// Manifolds without data, as hosts other than Rapier may have them.
+pub type Manifold = ContactManifold<(), ()>;
+/// Indices of a triangle of mesh 1 and one of mesh 2.
+pub type TrianglePair = [u32; 2];
+
+/// A dispatcher of either kind, stock or SBBK.
+pub trait Dispatcher<M, C>: PersistentQueryDispatcher<M, C> {}
+
+impl<M, C, D: PersistentQueryDispatcher<M, C>> Dispatcher<M, C> for D {}
+
+/// What is asked: the contacts of two meshes.
+#[derive(Clone, Copy)]
+pub struct Query<'a> {
+    pub meshes: [&'a TriMesh; 2],
+    /// The pose of mesh 2 in the frame of mesh 1.
+    pub pos12: Pose,
+    pub prediction: Real,
+}
+
+impl Query<'_> {
+    pub fn new<'a>(mesh1: &'a TriMesh, mesh2: &'a TriMesh, pos12: Pose) -> Query<'a> {
+        Query { meshes: [mesh1, mesh2], pos12, prediction: 0.02 }
+    }
+
+    pub fn at(self, pos12: Pose) -> Self {
+        Self { pos12, ..self }
+    }
+
+    pub fn within(self, prediction: Real) -> Self {
+        Self { prediction, ..self }
+    }
+
+    /// The same question with the meshes in the other order.
+    pub fn swapped(self) -> Self {
+        let [mesh1, mesh2] = self.meshes;
+        Self { meshes: [mesh2, mesh1], pos12: self.pos12.inverse(), ..self }
+    }
+}
+
+/// What a host keeps of a pair of shapes from query to query.
+pub struct Pair<M = (), C = ()> {
+    pub manifolds: Vec<ContactManifold<M, C>>,
+    pub workspace: Option<ContactManifoldsWorkspace>,
+}
+
+impl<M, C> Default for Pair<M, C> {
+    fn default() -> Self {
+        Self { manifolds: Vec::new(), workspace: None }
+    }
+}
+
+impl<M, C> Pair<M, C> {
+    pub fn ask(&mut self, dispatcher: &impl Dispatcher<M, C>, query: &Query) -> &mut Self {
+        let Query { meshes: [mesh1, mesh2], pos12, prediction } = query;
+        let Self { manifolds, workspace } = self;
+        dispatcher
+            .contact_manifolds(pos12, *mesh1, *mesh2, *prediction, manifolds, workspace)
+            .expect("two meshes are supported");
+        self
+    }
+}
+
+/// The answer to a question of a host that knows nothing of the pair.
+pub fn fresh(dispatcher: &impl Dispatcher<(), ()>, query: &Query) -> Vec<Manifold> {
+    std::mem::take(&mut Pair::default().ask(dispatcher, query).manifolds)
+}
+
+/// Stock Parry's answer; manifolds without points are left out.
+pub fn stock(query: &Query) -> Vec<Manifold> {
+    let mut manifolds = fresh(&DefaultQueryDispatcher, query);
+    manifolds.retain(|manifold| !manifold.points.is_empty());
+    manifolds
+}
+
+/// A dispatcher that counts its queries.
+pub fn counting() -> SbbkDispatcher {
+    let mut config = SbbkConfig::default();
+    config.count_queries = true;
+    SbbkDispatcher::new(config)
+}
+
+/// A dispatcher whose contacts come from `contacts`.
+pub fn generating(contacts: ContactGenerator) -> SbbkDispatcher {
+    let mut config = SbbkConfig::default();
+    config.contacts = contacts;
+    SbbkDispatcher::new(config)
+}
+
+pub fn triangles<M, C>(manifold: &ContactManifold<M, C>) -> TrianglePair {
+    [manifold.subshape1, manifold.subshape2]
+}
+
+/// The triangle pairs of manifolds in their order.
+pub fn sequence<M, C>(manifolds: &[ContactManifold<M, C>]) -> Vec<TrianglePair> {
+    manifolds.iter().map(triangles).collect()
+}
+
+/// The manifolds by their triangles. Panics when two have the same.
+pub fn by_triangles<M, C>(
+    manifolds: &[ContactManifold<M, C>],
+) -> BTreeMap<TrianglePair, &ContactManifold<M, C>> {
+    let map: BTreeMap<_, _> = manifolds.iter().map(|m| (triangles(m), m)).collect();
+    assert_eq!(map.len(), manifolds.len(), "two manifolds of one pair of triangles");
+    map
+}
+
+/// The least signed distance of the points of a manifold.
+pub fn distance<M, C>(manifold: &ContactManifold<M, C>) -> Real {
+    manifold.points.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min)
+}
+
+/// Panics unless both answers have the same triangle pairs in the same order, equal normals, and
+/// as many points at equal distances and places, up to `tolerance` units (for normals, radians).
+pub fn assert_same<M1, C1, M2, C2>(
+    left: &[ContactManifold<M1, C1>],
+    right: &[ContactManifold<M2, C2>],
+    tolerance: Real,
+) {
+    assert_eq!(sequence(left), sequence(right));
+    for (left, right) in left.iter().zip(right) {
+        let pair = triangles(left);
+        let normals = (left.local_n1 - right.local_n1).length();
+        assert!(normals <= tolerance, "normals of {pair:?} differ by {normals}");
+        assert_eq!(left.points.len(), right.points.len(), "number of points of {pair:?}");
+        for (p, q) in left.points.iter().zip(&right.points) {
+            let off = [
+                (p.dist - q.dist).abs(),
+                (p.local_p1 - q.local_p1).length(),
+                (p.local_p2 - q.local_p2).length(),
+            ];
+            assert!(off.iter().all(|&x| x <= tolerance), "points of {pair:?} differ by {off:?}");
+        }
+    }
+}
+
+/// Parry's mesh of a mesh of the laboratory.
+pub fn shape(mesh: &Mesh) -> TriMesh {
+    shape_with(mesh, TriMeshFlags::empty())
+}
+
+pub fn shape_with(mesh: &Mesh, flags: TriMeshFlags) -> TriMesh {
+    mesh.trimesh(flags).expect("the meshes of these tests are valid")
+}
+
+/// The same mesh built again: equal content, other memory.
+pub fn rebuilt(mesh: &TriMesh) -> TriMesh {
+    TriMesh::with_flags(mesh.vertices().to_vec(), mesh.indices().to_vec(), mesh.flags()).unwrap()
+}
+
+/// Uniform over all rotations.
+pub fn rotation(random: &mut Rand32) -> Quat {
+    let [split, angle1, angle2] = std::array::from_fn(|_| random.rand_float());
+    let (radius1, radius2) = ((1.0 - split).sqrt(), split.sqrt());
+    let [(sin1, cos1), (sin2, cos2)] = [angle1, angle2].map(|angle| (TAU * angle).sin_cos());
+    Quat::from_xyzw(radius1 * sin1, radius1 * cos1, radius2 * sin2, radius2 * cos2).normalize()
+}
+
+/// Uniform over all unit vectors.
+pub fn direction(random: &mut Rand32) -> Vec3 {
+    rotation(random) * Vec3::Y
+}
+
+/// A small motion: a shift and a turn, both of at most `size` (units, radians).
+pub fn nudge(random: &mut Rand32, size: f32) -> Pose3 {
+    let shift = direction(random) * size * random.rand_float();
+    let turn = direction(random) * size * random.rand_float();
+    Pose3::from_parts(shift, Quat::from_scaled_axis(turn))
+}
+
+/// A pose at random, at which mesh 2 has come along a straight line towards the origin until it met mesh 1, and
+/// then `depth` farther (units).
+pub fn touching(random: &mut Rand32, meshes: [&TriMesh; 2], depth: Real) -> Pose {
+    let pose = (0..100).find_map(|_| approach(meshes, rotation(random), direction(random), depth));
+    pose.expect("most lines through the origin make the meshes meet")
+}
+
+/// None when mesh 2 passes through a hole of mesh 1.
+fn approach(meshes: [&TriMesh; 2], rotation: Quat, from: Vec3, depth: Real) -> Option<Pose> {
+    let at = |distance: Real| Pose::from_parts(from * distance, rotation);
+    let meet = |distance: Real| {
+        let answer = DefaultQueryDispatcher.intersection_test(&at(distance), meshes[0], meshes[1]);
+        answer.unwrap().intersecting
+    };
+    let farthest: Real = meshes.iter().map(|mesh| reach(mesh)).sum();
+    let step = farthest / 64.0;
+    let mut inside =
+        (0..64).map(|i| farthest - step * i as Real).find(|&distance| meet(distance))?;
+    let mut outside = inside + step;
+    while outside - inside > 1e-5 * farthest {
+        let middle = 0.5 * (inside + outside);
+        *(if meet(middle) { &mut inside } else { &mut outside }) = middle;
+    }
+    Some(at(inside - depth))
+}
+
+/// Radius of the ball about the origin that holds a mesh.
+pub fn reach(mesh: &TriMesh) -> Real {
+    mesh.vertices().iter().map(|vertex| vertex.length()).fold(0.0, Real::max)
+}

@@ -1,0 +1,69 @@
+//! Brute force in f64, asked in the words of these tests.
+
+use std::collections::BTreeMap;
+
+use glamx::{DPose3, DVec3};
+use rapier3d::parry::query::ContactManifold;
+use rapier3d::parry::shape::TriMesh;
+use sbbk_core::truth::{self, TruthPair};
+
+use crate::support::{Query, TrianglePair, by_triangles, distance};
+
+/// Every pair of triangles at a distance of at most `margin`.
+pub fn pairs_within(query: &Query, margin: f64) -> BTreeMap<TrianglePair, TruthPair> {
+    let vertices = |mesh: &TriMesh| -> Vec<DVec3> {
+        mesh.vertices().iter().map(|vertex| vertex.as_dvec3()).collect()
+    };
+    let [mesh1, mesh2] = query.meshes;
+    let pairs = truth::pairs_within(
+        &vertices(mesh1),
+        mesh1.indices(),
+        &vertices(mesh2),
+        mesh2.indices(),
+        DPose3::from(query.pos12),
+        margin,
+    );
+    pairs.into_iter().map(|pair| ([pair.triangle1, pair.triangle2], pair)).collect()
+}
+
+/// What was judged, and what was wrong.
+#[derive(Debug, Default, PartialEq)]
+pub struct Tally {
+    contacts: usize,
+    missed: usize,
+    phantom: usize,
+    wrong_depth: usize,
+    wrong_normal: usize,
+}
+
+impl Tally {
+    /// Judges a fresh answer.
+    pub fn add<M, C>(&mut self, query: &Query, found: &[ContactManifold<M, C>]) {
+        let prediction = f64::from(query.prediction);
+        let truth = pairs_within(query, 1.01 * prediction);
+        let found = by_triangles(found);
+        for (pair, manifold) in &found {
+            let Some(truth) = truth.get(pair) else {
+                self.phantom += 1;
+                continue;
+            };
+            let off = (f64::from(distance(manifold)) - truth.distance).abs();
+            self.wrong_depth += usize::from(off > 0.05 * prediction);
+            let normal = manifold.local_n1.as_dvec3();
+            let is_off = normal.angle_between(truth.normal) > 0.1_f64.to_radians();
+            self.wrong_normal += usize::from(truth.normal_is_unique && is_off);
+        }
+        let is_missed = |(pair, truth): &(&_, &TruthPair)| {
+            truth.distance <= 0.99 * prediction && !found.contains_key(*pair)
+        };
+        self.missed += truth.iter().filter(is_missed).count();
+        self.contacts += found.len();
+    }
+
+    /// Panics unless all was right, and there were contacts to judge.
+    pub fn check_all_right(&self, least_contacts: usize) {
+        let right = Self { contacts: self.contacts, ..Self::default() };
+        assert_eq!(*self, right);
+        assert!(self.contacts >= least_contacts, "{} contacts", self.contacts);
+    }
+}
