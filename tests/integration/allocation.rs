@@ -13,8 +13,8 @@ const POSES: usize = 20;
 /// Rounds before allocations are counted: all buffers have reached their size.
 const WARM_UP: usize = 20;
 
-/// A pair that stays in contact and moves by at most `stride` from query to query; with Rapier's own manifold
-/// data. The stats of the counted queries. Panics when one of them allocates.
+/// A pair that stays in contact and moves by at most `stride` from query to query; with Rapier's
+/// own manifold data. The stats of the counted queries. Panics when one of them allocates.
 fn steady(meshes: [&TriMesh; 2], stride: Real) -> SbbkStats {
     let dispatcher = counting();
     let mut random = Rand32::new(1);
@@ -53,8 +53,8 @@ fn the_first_query_allocates() {
     assert!(measure(|| _ = pair.ask(&dispatcher, &query)).count_total > 10);
 }
 
-/// Would catch manifolds, points or lists made anew for a body at rest, which jitters by micrometres: candidates are
-/// kept.
+/// Would catch manifolds, points or lists made anew for a body at rest, which jitters by
+/// micrometres: candidates are kept.
 #[test]
 fn a_body_at_rest_allocates_nothing() {
     let head = shape(&mesh::monkey_head());
@@ -62,7 +62,8 @@ fn a_body_at_rest_allocates_nothing() {
     assert!(stats.reused_queries > 9 * stats.queries / 10, "{stats:?}");
 }
 
-/// The same where a descent runs each time, since the body moves by more than half the prediction distance.
+/// The same where a descent runs each time, since the body moves by more than half the prediction
+/// distance.
 #[test]
 fn a_moving_body_allocates_nothing() {
     let head = shape(&mesh::monkey_head_with(6));
@@ -70,8 +71,8 @@ fn a_moving_body_allocates_nothing() {
     assert!(stats.descended_queries > stats.queries / 2, "{stats:?}");
 }
 
-/// Would catch buffers that are given back and made again where a body shakes so much that tens of contacts come and
-/// go from query to query.
+/// Would catch buffers that are given back and made again where a body shakes so much that tens of
+/// contacts come and go from query to query.
 #[test]
 fn contacts_that_come_and_go_allocate_nothing() {
     let head = shape(&mesh::monkey_head());

@@ -44,8 +44,8 @@ fn all_bits(manifolds: &[Manifold]) -> BTreeMap<TrianglePair, Bits> {
     bits.map(|(pair, manifold)| (pair, Bits::of(manifold))).collect()
 }
 
-/// Distances this close to the prediction distance, as a share of it, may go either way: f32 poses and vertices are
-/// exact in f64, what remains is its rounding.
+/// Distances this close to the prediction distance, as a share of it, may go either way: f32 poses
+/// and vertices are exact in f64, what remains is its rounding.
 const BAND: f64 = 1e-9;
 
 /// Compares one fresh answer with stock's; the number of pairs of triangles that have contacts.
@@ -81,8 +81,8 @@ fn check_poses(seed: u64, size: f32, meshes: [&Mesh; 2], flags: [TriMeshFlags; 2
     assert!(pair_count > 100, "{pair_count} contacts in all");
 }
 
-/// Would catch another pose, other normals or other arguments than stock passes to Parry, and pairs of triangles lost
-/// or invented on the way there.
+/// Would catch another pose, other normals or other arguments than stock passes to Parry, and pairs
+/// of triangles lost or invented on the way there.
 #[test]
 fn parrys_contacts_are_stocks() {
     let (head, ring) = (mesh::monkey_head(), mesh::torus(0.8, 0.35, 20, 10));
@@ -94,7 +94,8 @@ fn parrys_contacts_are_stocks() {
     }
 }
 
-/// Would catch cones that are not those of the triangle, not on the right side, or computed with other bits.
+/// Would catch cones that are not those of the triangle, not on the right side, or computed with
+/// other bits.
 #[test]
 fn parrys_constrained_contacts_are_stocks() {
     let (head, ring) = (mesh::monkey_head(), mesh::torus(0.8, 0.35, 20, 10));

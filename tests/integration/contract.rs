@@ -32,8 +32,8 @@ impl MarkedPair {
     }
 }
 
-/// Meshes whose triangles are large against Parry's tolerances, the first with the smaller box: about their origins,
-/// 2.6 and 4 units across, triangles of about 0.5 units.
+/// Meshes whose triangles are large against Parry's tolerances, the first with the smaller box:
+/// about their origins, 2.6 and 4 units across, triangles of about 0.5 units.
 fn rings() -> [TriMesh; 2] {
     [shape(&mesh::torus(1.0, 0.3, 12, 6)), shape(&mesh::torus(1.4, 0.6, 16, 9))]
 }
@@ -42,8 +42,8 @@ fn nowhere() -> Pose {
     Pose::translation(Real::NAN, 0.0, 0.0)
 }
 
-/// Would catch a query that leaves the host without a workspace: Rapier takes this for a pair whose manifolds never
-/// change places, and keeps pointers to those that are gone.
+/// Would catch a query that leaves the host without a workspace: Rapier takes this for a pair whose
+/// manifolds never change places, and keeps pointers to those that are gone.
 #[test]
 fn there_is_a_workspace_after_every_query() {
     let [one, two] = rings();
@@ -58,8 +58,9 @@ fn there_is_a_workspace_after_every_query() {
     }
 }
 
-/// Would catch another order than stock's, which Rapier's clusters and a user's eyes depend on, empty manifolds,
-/// and meshes that change places: the larger box decides which one Parry walks first.
+/// Would catch another order than stock's, which Rapier's clusters and a user's eyes depend on,
+/// empty manifolds, and meshes that change places: the larger box decides which one Parry walks
+/// first.
 #[test]
 fn manifolds_come_in_stock_order_and_none_is_empty() {
     let [one, two] = rings();
@@ -82,8 +83,8 @@ fn manifolds_come_in_stock_order_and_none_is_empty() {
     assert!(manifold_count > 1000, "{manifold_count}");
 }
 
-/// Would catch an order that comes from another mesh: these two are equal, but Parry's hierarchies of them are not,
-/// since one was built for other vertices and refitted.
+/// Would catch an order that comes from another mesh: these two are equal, but Parry's hierarchies
+/// of them are not, since one was built for other vertices and refitted.
 #[test]
 fn each_of_two_equal_meshes_has_its_own_stock_order() {
     let [one, two] = rings();
@@ -99,7 +100,8 @@ fn each_of_two_equal_meshes_has_its_own_stock_order() {
     }
 }
 
-/// Would catch contacts kept over a change of shape: Rapier then takes the workspace away and leaves the manifolds.
+/// Would catch contacts kept over a change of shape: Rapier then takes the workspace away and
+/// leaves the manifolds.
 #[test]
 fn without_a_workspace_no_manifold_survives() {
     let [one, two] = rings();
@@ -118,8 +120,8 @@ fn marks(pair: &MarkedPair) -> Vec<Marker> {
     pair.manifolds.iter().map(|manifold| manifold.data).chain(of_points).collect()
 }
 
-/// Would catch impulses lost when a dispatcher takes over a running world: the manifolds of stock, or of a restored
-/// snapshot, stay those of their triangles.
+/// Would catch impulses lost when a dispatcher takes over a running world: the manifolds of stock,
+/// or of a restored snapshot, stay those of their triangles.
 #[test]
 fn with_a_foreign_workspace_manifolds_keep_their_data() {
     let [one, two] = rings();
@@ -150,8 +152,8 @@ fn fids<C>(point: &rapier3d::parry::query::TrackedContact<C>) -> FeatureIds {
     [point.fid1, point.fid2]
 }
 
-/// Would catch impulses that go to another point, or are lost, as bodies move: points with equal triangles and features
-/// are the same point, all others are new.
+/// Would catch impulses that go to another point, or are lost, as bodies move: points with equal
+/// triangles and features are the same point, all others are new.
 #[test]
 fn points_keep_their_data_by_their_features() {
     let [one, two] = rings();
@@ -182,7 +184,8 @@ fn points_keep_their_data_by_their_features() {
     assert!(kept > 20 * new && new > 10, "{kept} points kept, {new} new");
 }
 
-/// Would catch a prediction distance that is remembered: soft CCD and contact skins change it from step to step.
+/// Would catch a prediction distance that is remembered: soft CCD and contact skins change it from
+/// step to step.
 #[test]
 fn the_prediction_distance_may_change_at_every_query() {
     let head = shape(&mesh::monkey_head());
@@ -243,8 +246,8 @@ fn any_data_will_do() {
     assert_same(&manifolds, &expected, 0.0);
 }
 
-/// Would catch manifolds left over for callers that keep nothing, as Rapier's character controller does: it passes
-/// an empty workspace, and the manifolds of whatever it asked before.
+/// Would catch manifolds left over for callers that keep nothing, as Rapier's character controller
+/// does: it passes an empty workspace, and the manifolds of whatever it asked before.
 #[test]
 fn callers_without_memory_get_fresh_answers() {
     let [one, two] = rings();

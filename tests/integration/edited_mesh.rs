@@ -33,10 +33,11 @@ fn is_same(left: &[Manifold], right: &[Manifold]) -> bool {
             .all(|(l, r)| l.local_n1 == r.local_n1 && distance(l) == distance(r))
 }
 
-/// A pair that knew a mesh must answer for the edited one, though mesh and buffers stay where they are and the
-/// host kept the workspace.
+/// A pair that knew a mesh must answer for the edited one, though mesh and buffers stay where they
+/// are and the host kept the workspace.
 ///
-/// Would catch a tree, candidates, contact points or normal constraints of the mesh before the edit.
+/// Would catch a tree, candidates, contact points or normal constraints of the mesh before the
+/// edit.
 fn check_edit(flags: TriMeshFlags, edit: impl Fn(&mut TriMesh)) {
     let other = torus();
     for contacts in GENERATORS {
@@ -65,8 +66,8 @@ fn check_edit(flags: TriMeshFlags, edit: impl Fn(&mut TriMesh)) {
     }
 }
 
-/// Parry's points depend on where its iterations start: only the triangles and the least distances are the
-/// same, within what its tolerances make of these triangles of about 0.2 units.
+/// Parry's points depend on where its iterations start: only the triangles and the least distances
+/// are the same, within what its tolerances make of these triangles of about 0.2 units.
 fn assert_close(found: &[Manifold], expected: &[Manifold]) {
     assert_eq!(sequence(found), sequence(expected));
     for (found, expected) in found.iter().zip(expected) {
@@ -82,7 +83,8 @@ fn moved_vertices_are_seen() {
     });
 }
 
-/// Would catch a token that looks at rounded or few properties: the whole mesh moves by a few millimetres.
+/// Would catch a token that looks at rounded or few properties: the whole mesh moves by a few
+/// millimetres.
 #[test]
 fn slightly_moved_vertices_are_seen() {
     check_edit(TriMeshFlags::empty(), |mesh| {
@@ -103,8 +105,8 @@ fn reversed_triangles_are_seen() {
     check_edit(TriMeshFlags::FIX_INTERNAL_EDGES, TriMesh::reverse);
 }
 
-/// Would catch a mesh known by its address: another mesh of the same size is put where a freed one was, and the
-/// host keeps what it knew of the pair.
+/// Would catch a mesh known by its address: another mesh of the same size is put where a freed one
+/// was, and the host keeps what it knew of the pair.
 #[test]
 fn a_freed_address_does_not_stand_for_the_freed_mesh() {
     let other = torus();
@@ -173,8 +175,8 @@ impl Overlap {
 
 /// Lets Rapier meet the pair, edits one vertex, and checks the next step.
 ///
-/// Would catch a tree or contacts kept where one vertex has moved: too small a change to be seen without
-/// reading the whole mesh, which is why Rapier says when a shape was edited.
+/// Would catch a tree or contacts kept where one vertex has moved: too small a change to be seen
+/// without reading the whole mesh, which is why Rapier says when a shape was edited.
 fn check_edit_in_world(edit: impl Fn(&mut PhysicsWorld, ColliderHandle, usize)) {
     let mut overlap = Overlap::new();
     let (found, expected) = overlap.step();

@@ -8,7 +8,8 @@ use crate::like_stock;
 use crate::support::{Query, fresh, shape, touching};
 use crate::truth::Tally;
 
-/// Meshes whose triangles have edges of about a unit, 20 to 40 units across: stock Parry is right there.
+/// Meshes whose triangles have edges of about a unit, 20 to 40 units across: stock Parry is right
+/// there.
 fn large_meshes() -> Vec<TriMesh> {
     let meshes = [
         mesh::monkey_head_with(6).scaled_to(20.0),
@@ -20,8 +21,8 @@ fn large_meshes() -> Vec<TriMesh> {
     meshes.iter().map(shape).collect()
 }
 
-/// Would catch contacts that differ from stock's where stock is right: a triangle pair too few or too many, another
-/// depth, another normal, other points.
+/// Would catch contacts that differ from stock's where stock is right: a triangle pair too few or
+/// too many, another depth, another normal, other points.
 #[test]
 fn contacts_are_stocks_where_triangles_are_large() {
     let dispatcher = SbbkDispatcher::default();
@@ -62,7 +63,8 @@ fn judge(seed: u64, meshes: [&Mesh; 2], least_contacts: usize) {
     tally.check_all_right(least_contacts);
 }
 
-/// Would catch what stock gets wrong: contacts missed, invented, or with wrong depths where triangles are small.
+/// Would catch what stock gets wrong: contacts missed, invented, or with wrong depths where
+/// triangles are small.
 #[test]
 fn heads_touch_as_the_truth_says() {
     let head = mesh::monkey_head();
@@ -101,8 +103,8 @@ fn aligned_boxes_touch_as_the_truth_says() {
     tally.check_all_right(10_000);
 }
 
-/// Would catch f32 coordinates that lose the contact where bodies, or the vertices of their meshes, are far from
-/// an origin: contacts are about differences, which the poses know well.
+/// Would catch f32 coordinates that lose the contact where bodies, or the vertices of their meshes,
+/// are far from an origin: contacts are about differences, which the poses know well.
 #[test]
 fn distant_meshes_touch_as_the_truth_says() {
     let dispatcher = SbbkDispatcher::default();

@@ -1,4 +1,5 @@
-//! SBBK's contacts beside stock's, where stock is right: triangles of about a unit, coordinates of at most 20.
+//! SBBK's contacts beside stock's, where stock is right: triangles of about a unit, coordinates of
+//! at most 20.
 
 use rapier3d::math::{Real, Vector};
 use rapier3d::parry::query::TrackedContact;
@@ -39,15 +40,18 @@ fn triangle_size(query: &Query, manifold: &Manifold) -> Real {
 
 /// Depth, normal and points may differ from stock's by this share of the triangle size.
 const TOLERANCE: Real = 1e-4;
-/// How well stock knows the ends of a contact, in units: three times the step from one f32 to the next at 20 units. The
-/// direction from one end to the other is then uncertain by as much, divided by their distance.
+/// How well stock knows the ends of a contact, in units: three times the step from one f32 to the
+/// next at 20 units. The direction from one end to the other is then uncertain by as much, divided
+/// by their distance.
 const STOCK_ROUNDING: Real = 6e-6;
 
-/// Checks that two manifolds of the same triangles are equal: least distance, normal, and the points within the
-/// prediction distance as a set. The number of points of stock's that are excused.
+/// Checks that two manifolds of the same triangles are equal: least distance, normal, and the
+/// points within the prediction distance as a set. The number of points of stock's that are
+/// excused.
 ///
-/// One point may be missing: the closest points as stock's GJK finds them. Where edges or faces are nearly parallel
-/// the place of these is not well determined, and ours are at the end of the range. It must be as close.
+/// One point may be missing: the closest points as stock's GJK finds them. Where edges or faces are
+/// nearly parallel the place of these is not well determined, and ours are at the end of the range.
+/// It must be as close.
 fn check_equal(query: &Query, found: &Manifold, stock: &Manifold) -> usize {
     let tolerance = TOLERANCE * triangle_size(query, found);
     let context = || format!("{found:?}\n{stock:?}");

@@ -9,7 +9,8 @@ use crate::support::{
     shape, shape_with, touching,
 };
 
-/// How far a step may go, in units and radians: far below any slack, about as much, and farther than any.
+/// How far a step may go, in units and radians: far below any slack, about as much, and farther
+/// than any.
 const STRIDES: [Real; 6] = [0.0, 1e-6, 1e-4, 1e-3, 5e-3, 3e-2];
 const PREDICTIONS: [Real; 5] = [0.0, 0.001, 0.01, 0.02, 0.06];
 
@@ -60,8 +61,9 @@ impl<'a> Walk<'a> {
 
 /// Walks, and compares each answer with that of a dispatcher which knows nothing.
 ///
-/// Would catch candidates kept too long (a missed contact), contacts that are not brought up to date, and
-/// anything else that depends on where the pair was before. Proves that candidates were kept.
+/// Would catch candidates kept too long (a missed contact), contacts that are not brought up to
+/// date, and anything else that depends on where the pair was before. Proves that candidates were
+/// kept.
 fn walk(seed: u64, steps: usize, meshes: [&TriMesh; 2]) {
     let kept = counting();
     let unaware = SbbkDispatcher::default();
@@ -95,7 +97,8 @@ fn heads_walk() {
     walk(1, 3000, [&head, &head]);
 }
 
-/// Hollow, of very different sizes, in both orders: bounds that hold for one mesh and not for the other.
+/// Hollow, of very different sizes, in both orders: bounds that hold for one mesh and not for the
+/// other.
 #[test]
 fn a_ring_walks_about_a_ball() {
     let ring = shape(&mesh::torus(3.0, 0.3, 40, 8));
@@ -128,8 +131,8 @@ fn fine_balls_walk() {
     walk(6, 1500, [&ball, &ball]);
 }
 
-/// With Parry's contacts the triangle pairs must be those of a fresh query as well; where in them Parry sees the
-/// contact depends on where it looked before.
+/// With Parry's contacts the triangle pairs must be those of a fresh query as well; where in them
+/// Parry sees the contact depends on where it looked before.
 #[test]
 fn kept_candidates_serve_parrys_contacts_too() {
     let mut config = SbbkConfig::default();
@@ -156,7 +159,8 @@ fn kept_candidates_serve_parrys_contacts_too() {
     assert!(stats.reused_queries > 200 && stats.unchanged_queries > 20, "{stats:?}");
 }
 
-/// Would catch a pair at rest that is worked on: same pose, same prediction distance, nothing to do.
+/// Would catch a pair at rest that is worked on: same pose, same prediction distance, nothing to
+/// do.
 #[test]
 fn nothing_is_done_where_nothing_moved() {
     let head = shape(&mesh::monkey_head_with(6));
@@ -175,7 +179,8 @@ fn nothing_is_done_where_nothing_moved() {
     assert_same(&pair.manifolds, &fresh(&dispatcher, &query), 1e-6);
 }
 
-/// Would catch slack that is used up and not noticed: a long way in equal steps, each far shorter than the slack.
+/// Would catch slack that is used up and not noticed: a long way in equal steps, each far shorter
+/// than the slack.
 #[test]
 fn many_short_steps_are_a_long_way() {
     let head = shape(&mesh::monkey_head());

@@ -28,7 +28,8 @@ fn flagged(mesh: &Mesh, flags: TriMeshFlags) -> TriMesh {
     flagged
 }
 
-/// Where each pair of triangles has its normal, in the frame of mesh `k` (0 or 1), away from that mesh.
+/// Where each pair of triangles has its normal, in the frame of mesh `k` (0 or 1), away from that
+/// mesh.
 fn normals(manifolds: &[Manifold], k: usize) -> BTreeMap<TrianglePair, Vector> {
     let manifolds = by_triangles(manifolds).into_iter();
     manifolds.map(|(pair, m)| (pair, [m.local_n1, m.local_n2][k])).collect()
@@ -36,8 +37,8 @@ fn normals(manifolds: &[Manifold], k: usize) -> BTreeMap<TrianglePair, Vector> {
 
 /// Checks the answers about meshes of which mesh `k` alone has constraints.
 ///
-/// Would catch a normal outside of the cone of its triangle, one that is pushed though it was inside, a contact kept
-/// that the cone rejects, and one dropped that it does not reject.
+/// Would catch a normal outside of the cone of its triangle, one that is pushed though it was
+/// inside, a contact kept that the cone rejects, and one dropped that it does not reject.
 fn check_cone(k: usize, flags: TriMeshFlags) {
     let meshes = meshes();
     let free = [0, 1].map(|i| flagged(&meshes[i], FREE));
@@ -91,8 +92,8 @@ fn two_sided_cones_reject_nothing() {
     check_cone(1, TWO_SIDED);
 }
 
-/// Would catch cones applied in another order or frame than stock's, other points kept or dropped, and depths measured
-/// along the free normal.
+/// Would catch cones applied in another order or frame than stock's, other points kept or dropped,
+/// and depths measured along the free normal.
 #[test]
 fn constrained_contacts_are_stocks() {
     let meshes = meshes();

@@ -36,8 +36,8 @@ fn counts(dispatcher: &SbbkDispatcher) -> [u64; 4] {
     [trees as u64, idle_trees as u64, tree_builds, tree_hits]
 }
 
-/// Would catch a tree for each collider, or an identity that is an address: a clone and a mesh built again lie
-/// elsewhere in memory.
+/// Would catch a tree for each collider, or an identity that is an address: a clone and a mesh
+/// built again lie elsewhere in memory.
 #[test]
 fn clones_and_equal_meshes_share_one_tree() {
     let dispatcher = SbbkDispatcher::default();
@@ -48,8 +48,8 @@ fn clones_and_equal_meshes_share_one_tree() {
     assert!(dispatcher.stats().tree_bytes > 0);
 }
 
-/// Would catch 2000 trees, or 2000 builds, for a pile restored from a snapshot, where each collider has its own
-/// copy of the mesh.
+/// Would catch 2000 trees, or 2000 builds, for a pile restored from a snapshot, where each collider
+/// has its own copy of the mesh.
 #[test]
 fn two_thousand_copies_share_one_tree() {
     let dispatcher = SbbkDispatcher::default();
@@ -64,8 +64,8 @@ fn two_thousand_copies_share_one_tree() {
     assert_eq!(dispatcher.stats().tree_bytes, bytes);
 }
 
-/// Would catch a tree used for another size of the same mesh, and one shared by meshes whose contact normals
-/// are constrained and not.
+/// Would catch a tree used for another size of the same mesh, and one shared by meshes whose
+/// contact normals are constrained and not.
 #[test]
 fn another_scale_or_other_normals_are_another_mesh() {
     let dispatcher = SbbkDispatcher::default();
@@ -118,8 +118,8 @@ fn idle_trees_go_when_there_is_no_room() {
     assert_eq!(none_idle.stats().tree_bytes, 0);
 }
 
-/// Would catch a limit that counts wrongly, and a cache that drops the newest tree first: there is room for two
-/// of three.
+/// Would catch a limit that counts wrongly, and a cache that drops the newest tree first: there is
+/// room for two of three.
 #[test]
 fn the_oldest_idle_tree_goes_first() {
     let meshes = [1.0, 1.1, 1.2].map(|radius| shape(&mesh::ball(radius, 6)));
@@ -161,7 +161,8 @@ fn releasing_idle_trees_leaves_those_in_use() {
     assert_eq!(counts(&dispatcher)[..2], [0, 0]);
 }
 
-/// Would catch a tree of a living pair dropped with a clone of the pair (Rapier's narrow phase is `Clone`).
+/// Would catch a tree of a living pair dropped with a clone of the pair (Rapier's narrow phase is
+/// `Clone`).
 #[test]
 fn a_cloned_pair_keeps_its_trees() {
     let dispatcher = with_idle_bytes(0);
@@ -181,8 +182,8 @@ fn a_cloned_pair_keeps_its_trees() {
     assert_eq!(counts(&dispatcher), [0, 0, 1, 1]);
 }
 
-/// Would catch a tree built by several threads, one seen half built, or a deadlock: eight threads meet the same
-/// meshes for the first time at once.
+/// Would catch a tree built by several threads, one seen half built, or a deadlock: eight threads
+/// meet the same meshes for the first time at once.
 #[test]
 fn threads_build_one_tree_and_agree() {
     const THREADS: usize = 8;
@@ -212,7 +213,8 @@ fn threads_build_one_tree_and_agree() {
     }
 }
 
-/// Would catch users counted wrongly when pairs come and go on many threads: a tree lost, or one that stays.
+/// Would catch users counted wrongly when pairs come and go on many threads: a tree lost, or one
+/// that stays.
 #[test]
 fn threads_come_and_go() {
     let mesh = ball();

@@ -50,7 +50,8 @@ fn build(scene: &dyn Scene, contact_recycling: bool) -> SceneWorld {
     built
 }
 
-/// Would catch contacts missed, invented or wrong at the poses that occur in the paper's scenes, moved by stock Rapier.
+/// Would catch contacts missed, invented or wrong at the poses that occur in the paper's scenes,
+/// moved by stock Rapier.
 fn check_contacts(contact_recycling: bool) {
     let dispatcher = SbbkDispatcher::default();
     for (scene, looks) in scenes(contact_recycling) {
@@ -79,8 +80,8 @@ fn contacts_in_stocks_scenes_are_the_truths_without_recycling() {
     check_contacts(false);
 }
 
-/// Would catch contacts that Rapier gets from an earlier pose, or that its own bookkeeping mixes up: where it asks in each
-/// step (no recycling), what it then holds is what a fresh query gives.
+/// Would catch contacts that Rapier gets from an earlier pose, or that its own bookkeeping mixes
+/// up: where it asks in each step (no recycling), what it then holds is what a fresh query gives.
 #[test]
 fn rapier_holds_the_contacts_of_a_fresh_query() {
     for (scene, looks) in scenes(false) {

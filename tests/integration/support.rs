@@ -183,8 +183,8 @@ pub fn nudge(random: &mut Rand32, size: f32) -> Pose3 {
     Pose3::from_parts(shift, Quat::from_scaled_axis(turn))
 }
 
-/// A pose at random, at which mesh 2 has come along a straight line towards the origin until it met mesh 1, and
-/// then `depth` farther (units).
+/// A pose at random, at which mesh 2 has come along a straight line towards the origin until it met
+/// mesh 1, and then `depth` farther (units).
 pub fn touching(random: &mut Rand32, meshes: [&TriMesh; 2], depth: Real) -> Pose {
     let pose = (0..100).find_map(|_| approach(meshes, rotation(random), direction(random), depth));
     pose.expect("most lines through the origin make the meshes meet")

@@ -51,8 +51,8 @@ fn is_touching(world: &SceneWorld) -> bool {
 struct Divergence {
     /// Stock and SBBK.
     sbbk: Vec<Real>,
-    /// Stock and stock with its bodies displaced at the start, by the step between neighbouring coordinates (1e-6 at the
-    /// 10 units of these scenes) or ten of them: whichever is farther.
+    /// Stock and stock with its bodies displaced at the start, by the step between neighbouring
+    /// coordinates (1e-6 at the 10 units of these scenes) or ten of them: whichever is farther.
     displaced: Vec<Real>,
     /// The first step at which meshes touch.
     first_contact: usize,
@@ -82,11 +82,12 @@ impl Divergence {
     }
 }
 
-/// Would catch forces that differ from stock's: heads on SBBK leave the trajectories of stock as soon and as fast as
-/// heads on stock do that started a last digit elsewhere.
+/// Would catch forces that differ from stock's: heads on SBBK leave the trajectories of stock as
+/// soon and as fast as heads on stock do that started a last digit elsewhere.
 ///
-/// Until meshes touch both are equal to the bit. Then distances grow tenfold in about five steps, from rounding to
-/// the spaces between heads: five steps later displaced stock must be half as far from stock as SBBK is.
+/// Until meshes touch both are equal to the bit. Then distances grow tenfold in about five steps,
+/// from rounding to the spaces between heads: five steps later displaced stock must be half as far
+/// from stock as SBBK is.
 fn check_pile(seed: u64, contact_recycling: bool) {
     const LATER: usize = 5;
     let scene = MonkeyPile { seed, contact_recycling, ..MonkeyPile::with_heads(40) };
@@ -115,10 +116,11 @@ fn drops(scale: Real) -> impl Iterator<Item = HelicopterBallDrop> {
     })
 }
 
-/// The same for the ball on the rotor, in the mean over drops: one ball's path depends on single contacts.
+/// The same for the ball on the rotor, in the mean over drops: one ball's path depends on single
+/// contacts.
 ///
-/// Eight times as large as in the paper's scene, so that triangles have edges of 0.2 units: at the scene's own size
-/// stock gets some normals wrong.
+/// Eight times as large as in the paper's scene, so that triangles have edges of 0.2 units: at the
+/// scene's own size stock gets some normals wrong.
 #[test]
 fn balls_on_the_rotor_diverge_as_stock_does_from_itself() {
     let runs: Vec<Divergence> = drops(8.0).map(|drop| Divergence::of(&drop, 90, 8e-6)).collect();
@@ -153,7 +155,8 @@ impl Means {
         self.samples += 1.0;
     }
 
-    /// Panics if height, energy, number of touching pairs or penetration differ by more than these shares.
+    /// Panics if height, energy, number of touching pairs or penetration differ by more than these
+    /// shares.
     fn check_close(&self, stock: &Self, shares: [f64; 4]) {
         assert_eq!(self.samples, stock.samples);
         for (index, share) in shares.into_iter().enumerate() {
@@ -184,9 +187,9 @@ fn check_means(
     sbbk.check_close(&stock, shares);
 }
 
-/// Would catch piles that are looser, deeper or livelier than stock's once chaos has made them different. From
-/// seed to seed stock's own mean height varies by 4 % and its penetration by 12 %, so that means over four seeds differ by
-/// about 3 % and 8 % by chance; the energy hardly varies.
+/// Would catch piles that are looser, deeper or livelier than stock's once chaos has made them
+/// different. From seed to seed stock's own mean height varies by 4 % and its penetration by 12 %,
+/// so that means over four seeds differ by about 3 % and 8 % by chance; the energy hardly varies.
 #[test]
 fn piles_settle_as_under_stock() {
     let scenes = (1..=4).map(|seed| MonkeyPile {
@@ -197,8 +200,9 @@ fn piles_settle_as_under_stock() {
     check_means(scenes, 60..130, [0.04, 0.02, 0.04, 0.08]);
 }
 
-/// The same for the ball that bounces on the rotor: how high it bounces, how much energy the blow takes, how long it
-/// touches and how deep. Means over twelve drops, of which one ball more or less may have left the rotor.
+/// The same for the ball that bounces on the rotor: how high it bounces, how much energy the blow
+/// takes, how long it touches and how deep. Means over twelve drops, of which one ball more or less
+/// may have left the rotor.
 #[test]
 fn balls_bounce_as_under_stock() {
     check_means(drops(1.0), 25..60, [0.01, 0.01, 0.05, 0.1]);

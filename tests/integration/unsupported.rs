@@ -46,8 +46,8 @@ fn a_mesh_that_is_not_finite_is_answered_by_stock_and_counted() {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Impulse(u32);
 
-/// Asks about a ball that sinks slowly, where each contact point counts the queries it has lived through: for
-/// each query how many points have which age.
+/// Asks about a ball that sinks slowly, where each contact point counts the queries it has lived
+/// through: for each query how many points have which age.
 fn ages(
     dispatcher: &impl Dispatcher<(), Impulse>,
     meshes: [&TriMesh; 2],
@@ -66,8 +66,8 @@ fn ages(
     (0..5).map(ages).collect()
 }
 
-/// Would catch contacts of such a mesh that lose their impulses in every step, so that bodies on it jitter or
-/// sink where they rest under stock Rapier.
+/// Would catch contacts of such a mesh that lose their impulses in every step, so that bodies on it
+/// jitter or sink where they rest under stock Rapier.
 #[test]
 fn contacts_answered_by_stock_keep_their_data() {
     let (broken, whole) = (broken_ball(), shape(&mesh::ball(1.0, 4)));
@@ -101,8 +101,8 @@ fn a_pair_changes_hands() {
     let (broken, whole) = (broken_ball(), shape(&mesh::ball(1.0, 4)));
     let soft = shape_with(&mesh::ball(1.0, 4), TriMeshFlags::DEFORMABLE);
     let mut pair: Pair = Pair::default();
-    // A host that changes a shape and keeps the workspace is right only where SBBK answers before or after: between
-    // two meshes that are Parry's, Parry itself would reuse its points.
+    // A host that changes a shape and keeps the workspace is right only where SBBK answers before
+    // or after: between two meshes that are Parry's, Parry itself would reuse its points.
     for mesh in [&whole, &broken, &whole, &soft, &whole, &broken, &whole, &soft, &whole] {
         let query = Query::new(mesh, &whole, above(1.9));
         pair.ask(&dispatcher, &query);

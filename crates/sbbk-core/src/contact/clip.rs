@@ -11,6 +11,7 @@
 //! rounding does to the signs (without rounding six, the corners of the polygon, or as many pairs
 //! of vertices that coincide). The closest points are the thirteenth.
 
+use super::closest::within_edge;
 use super::feature::{Feature, FeaturePair};
 use super::generate::TriangleContact;
 use super::sides::Sides;
@@ -55,7 +56,8 @@ pub fn clip(t1: &[DVec3; 3], t2: &[DVec3; 3], normal: DVec3, out: &mut ManifoldP
     clip_triangles(&Triangle::new(t1), &Triangle::new(t2), normal, out);
 }
 
-/// Adds the closest points of `contact` unless the manifold already has them.
+/// Adds the closest points of `contact` unless the manifold already has them, by place or by
+/// features.
 pub fn push_closest(
     t1: &[DVec3; 3],
     t2: &[DVec3; 3],
@@ -73,10 +75,12 @@ pub(super) fn push_closest_points(
 ) {
     let reach = SAME_POINT * if t1.size < t2.size { t1.size } else { t2.size };
     let is_same = |a: DVec3, b: DVec3| (a - b).length_squared() <= reach * reach;
-    let is_known =
-        |p: &ManifoldPoint| is_same(p.point1, contact.point1) && is_same(p.point2, contact.point2);
+    let TriangleContact { point1, point2, distance, .. } = *contact;
+    let features = FeaturePair::new(contact.features.feature1(), contact.features.feature2());
+    let is_known = |p: &ManifoldPoint| {
+        p.features == features || is_same(p.point1, point1) && is_same(p.point2, point2)
+    };
     if !out.iter().any(is_known) {
-        let TriangleContact { point1, point2, distance, features, .. } = *contact;
         out.push(ManifoldPoint { point1, point2, distance, features });
     }
 }
@@ -95,14 +99,33 @@ pub(super) fn clip_triangles(
     }
     let mut crossings = sides.crossings();
     while crossings != 0 {
-        let (i, j, along) = sides.crossing(crossings.trailing_zeros() as usize);
-        let point1 = t1.vertices[i] + t1.edges[i] * along[0];
-        let point2 = t2.vertices[j] + t2.edges[j] * along[1];
-        let distance = (point2 - point1).dot(normal);
-        let features = FeaturePair::new(Feature::Edge(i as u8), Feature::Edge(j as u8));
-        out.push(ManifoldPoint { point1, point2, distance, features });
+        out.push(crossing_point(
+            t1,
+            t2,
+            sides.crossing(crossings.trailing_zeros() as usize),
+            normal,
+        ));
         crossings &= crossings - 1;
     }
+}
+
+/// Where edge `i` of triangle 1, at `along1`, is in line with edge `j` of triangle 2. That point is
+/// sought from the first one, so that both are in line when the edges are near parallel.
+#[inline(always)]
+fn crossing_point(
+    t1: &Triangle,
+    t2: &Triangle,
+    (i, j, along1): (usize, usize, f64),
+    normal: DVec3,
+) -> ManifoldPoint {
+    let edge2 = t2.edges[j];
+    let shadow2 = edge2 - normal * edge2.dot(normal);
+    let point1 = t1.vertices[i] + t1.edges[i] * along1;
+    let along2 = (point1 - t2.vertices[j]).dot(shadow2) / shadow2.length_squared();
+    let point2 = t2.vertices[j] + edge2 * within_edge(along2);
+    let distance = (point2 - point1).dot(normal);
+    let features = FeaturePair::new(Feature::Edge(i as u8), Feature::Edge(j as u8));
+    ManifoldPoint { point1, point2, distance, features }
 }
 
 /// Adds the vertices of triangle `k` (0 or 1) whose bits are set, each with the point in line
@@ -118,40 +141,27 @@ fn push_vertices(
     if vertices == 0 {
         return;
     }
-    let Some(plane) = Plane::of(triangles[1 - k], normal) else { return };
+    let (own, other) = (triangles[k], triangles[1 - k]);
+    let face = other.area_vector();
+    let (area_squared, cosine) = (face.length_squared(), face.dot(normal));
+    if cosine * cosine <= EDGE_ON * EDGE_ON * area_squared {
+        return;
+    }
+    let is_thin = other.is_thin(area_squared.sqrt());
+    let slope = face * (1.0 / cosine);
     for v in (0..3).filter(|v| vertices >> v & 1 != 0) {
-        out.push(plane.point(triangles[k].vertices[v], v, normal, k));
-    }
-}
-
-/// The plane of a triangle that is not seen edge-on: `(p - vertex) . slope` is the distance from
-/// the plane to `p`, measured along the normal of view.
-struct Plane {
-    vertex: DVec3,
-    slope: DVec3,
-}
-
-impl Plane {
-    #[inline(always)]
-    fn of(t: &Triangle, normal: DVec3) -> Option<Self> {
-        let face = t.area_vector();
-        let cosine = face.dot(normal);
-        (cosine * cosine > EDGE_ON * EDGE_ON * face.length_squared())
-            .then(|| Self { vertex: t.vertices[0], slope: face * (1.0 / cosine) })
-    }
-
-    /// Vertex `v` of triangle `k` and the point of this plane, of the other triangle, in line with
-    /// it.
-    #[inline(always)]
-    fn point(&self, vertex: DVec3, v: usize, normal: DVec3, k: usize) -> ManifoldPoint {
-        let height = (vertex - self.vertex).dot(self.slope);
+        let vertex = own.vertices[v];
+        let height = (vertex - other.vertices[0]).dot(slope);
         let foot = vertex - normal * height;
+        if is_thin && !other.is_beside(foot) {
+            continue;
+        }
         let features = FeaturePair::new(Feature::Vertex(v as u8), Feature::Face);
-        if k == 0 {
+        out.push(if k == 0 {
             ManifoldPoint { point1: vertex, point2: foot, distance: -height, features }
         } else {
             let features = features.swapped();
             ManifoldPoint { point1: foot, point2: vertex, distance: height, features }
-        }
+        });
     }
 }

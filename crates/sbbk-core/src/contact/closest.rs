@@ -7,7 +7,7 @@
 //! the direction between them. This needs four dot products, whatever the features are.
 
 use super::feature::{Feature, FeaturePair};
-use super::triangle::{NEAR_PARALLEL, Triangle};
+use super::triangle::Triangle;
 use glamx::DVec3;
 
 /// How far, in triangle sizes, a vertex may lie beyond the plane that should bound it. Covers
@@ -85,11 +85,7 @@ pub(super) fn is_over(point: DVec3, t: &Triangle, normal: DVec3) -> bool {
     let area_beside = |i: usize| t.edges[i].cross(point - t.vertices[i]).dot(normal);
     let areas = [area_beside(0), area_beside(1), area_beside(2)];
     let area = (areas[0] + areas[1] + areas[2]).abs();
-    if !has_one_sign(areas) || area == 0.0 {
-        return false;
-    }
-    // Rounding moves the tip of a thin triangle along it, by 1e-16 over its aspect.
-    area > NEAR_PARALLEL * t.size * t.size || is_beside(point, t)
+    has_one_sign(areas) && area > 0.0 && (!t.is_thin(area) || t.is_beside(point))
 }
 
 /// Whether the values are all positive or zero, or all negative or zero.
@@ -97,14 +93,6 @@ pub(super) fn is_over(point: DVec3, t: &Triangle, normal: DVec3) -> bool {
 pub(super) fn has_one_sign([a, b, c]: [f64; 3]) -> bool {
     // No branches: the sign is anyone's guess.
     ((a >= 0.0) & (b >= 0.0) & (c >= 0.0)) | ((a <= 0.0) & (b <= 0.0) & (c <= 0.0))
-}
-
-/// Whether the point lies between the ends of the triangle's longest edge.
-#[cold]
-fn is_beside(point: DVec3, t: &Triangle) -> bool {
-    let i = t.longest_edge();
-    let along = (point - t.vertices[i]).dot(t.edges[i]);
-    (0.0..=t.edges[i].length_squared()).contains(&along)
 }
 
 #[inline(always)]
@@ -131,10 +119,13 @@ fn edge_edge(t1: &Triangle, i: usize, t2: &Triangle, j: usize) -> Option<Closest
     Some(Closest { point1, point2, normal: cross * scale, distance: apart * scale })
 }
 
-/// Where two lines are closest, as fractions of the edges; NaN or infinite for parallel ones.
+/// Where two lines are closest, as fractions of the edges; NaN or infinite for parallel ones. The
+/// second point is the foot of the first on its line, so that both are off by the same when the
+/// lines are near parallel.
 #[inline(always)]
 pub(super) fn crossing(between: DVec3, e1: DVec3, e2: DVec3, cross: DVec3, area: f64) -> [f64; 2] {
-    [between.cross(e2).dot(cross) / area, between.cross(e1).dot(cross) / area]
+    let along1 = between.cross(e2).dot(cross) / area;
+    [along1, (along1 * e1.dot(e2) - between.dot(e2)) / e2.length_squared()]
 }
 
 /// `along` clamped to 0 to 1; a NaN gives 0.

@@ -10,8 +10,8 @@ use super::triangle::Triangle;
 use glamx::DVec3;
 
 /// A gap or overlap below this many triangle sizes does not prove that triangles are apart or
-/// that they cross; the choice of the best axis is exact to a tenth of it. Higher: more pairs take the slow way of
-/// [`touching`], with the same result. Lower: rounding decides.
+/// that they cross; the choice of the best axis is exact to a tenth of it. Higher: more pairs take
+/// the slow way of [`touching`], with the same result. Lower: rounding decides.
 pub(super) const TOUCHING: f64 = 1.0e-9;
 
 /// How two triangles meet: their closest points when apart, the least translation that separates
@@ -45,13 +45,14 @@ impl TriangleContact {
 /// origin gives the most digits. Triangles may be segments or points. Coordinates between 1e-38
 /// and 1e38 are safe from overflow. None when a coordinate is not finite.
 ///
-/// 60 to 200 ns.
+/// About 70 ns when two vertices or edges are closest, 120 when a vertex and a face are, 150 when
+/// the triangles cross.
 pub fn contact(t1: &[DVec3; 3], t2: &[DVec3; 3], margin: f64) -> Option<TriangleContact> {
     find(&Triangle::new(t1), &Triangle::new(t2), margin, None)
 }
 
 /// As [`contact`](fn@contact), given the features that made the contact in the step before: 20 to
-/// 60 ns when they still do, apart. Whatever `last` is, the contact is that of `contact`, up to
+/// 45 ns when they still do, apart; 120 when crossing. Whatever `last` is, the contact is that of `contact`, up to
 /// rounding; where several features are equally close (parallel edges and faces), `last` chooses
 /// among them.
 pub fn contact_from(
@@ -81,6 +82,7 @@ pub fn manifold(
     Some(contact)
 }
 
+/// Inlined, and with early returns, so that no contact is copied: that took as long as finding it.
 #[inline(always)]
 fn find(
     t1: &Triangle,
@@ -91,7 +93,7 @@ fn find(
     if !(t1.size + t2.size).is_finite() {
         return None;
     }
-    // The triangles are known not to cross as long as one of these two ways succeeds.
+    // Both ways find triangles apart only.
     if !last.is_some_and(FeaturePair::is_crossing) {
         if let Some(contact) = last.and_then(|last| still(t1, t2, last)) {
             return (contact.distance <= margin).then_some(contact);
@@ -118,7 +120,7 @@ fn apart(t1: &Triangle, t2: &Triangle) -> Option<TriangleContact> {
     is_clear.then(|| TriangleContact::new(features, closest))
 }
 
-/// The contact of any triangles.
+/// The contact of any triangles, by their faces and axes.
 fn search(t1: &Triangle, t2: &Triangle, margin: f64) -> Option<TriangleContact> {
     let size = t1.size + t2.size;
     let faces = FaceAxes::new(t1, t2);

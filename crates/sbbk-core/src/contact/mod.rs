@@ -21,19 +21,23 @@
 //!
 //! # How
 //!
-//! The triangles are apart exactly when a face normal or a cross product of two edges separates
-//! them, so these eleven axes ([`axes`]) decide. The best axis also names the closest features,
-//! if these are a vertex and a face or two edges; else a vertex is closest to a vertex or edge,
-//! and the nine edge pairs ([`edges`]) find it. When triangles cross, the best axis is the least
-//! translation. Only where neither is clear, since they touch or lie in one plane, all
-//! features and all axes are tried ([`touching`]).
+//! 1. The two edges that face each other are tried first (`edges.rs`): four dot products prove,
+//!    or not, that nothing is closer than their closest points. This settles most small
+//!    triangles, which are near by a vertex or edge.
+//! 2. If a face separates the triangles, its nearest vertex is closest if it lies over the face;
+//!    else the walk over edge pairs goes on.
+//! 3. If no face does, the cross products of edges decide (`axes.rs`). The best of all axes
+//!    either separates the triangles and names the closest edges, or it is the least translation
+//!    of triangles that cross.
+//! 4. Where neither is clear, since the triangles touch or lie in one plane, all features and
+//!    axes are tried (`touching.rs`).
 //!
-//! From step to step the features rarely change. Four dot products prove that the ones of the
-//! step before are still the closest ([`closest`]); no search is needed then.
+//! From step to step the features rarely change. The proof of the first step, made for the
+//! features of the step before (`closest.rs`), then replaces the search.
 //!
 //! # Accuracy
 //!
-//! Arithmetic is f64; no tolerance has a unit. Distances and depths are exact to 1e-11 of the
+//! Arithmetic is f64; no tolerance has a unit. Distances and depths are exact to 1e-10 of the
 //! larger triangle, as a rule to 1e-15. No fused multiply-add, no random order: equal input gives
 //! equal bits on every machine.
 

@@ -39,11 +39,12 @@ impl Sides {
         sides
     }
 
-    /// For each triangle, the vertices inside the other one or on its border.
+    /// For each triangle, the vertices inside the other one or on its border. A vertex on all three
+    /// lines does not count: the other shadow has no width.
     #[inline(always)]
     pub fn inside(&self) -> [u32; 2] {
         let any = |sides: u32| sides | sides >> 6 | sides >> 12;
-        let inside = !(any(self.left) & any(self.right));
+        let inside = any(self.left) ^ any(self.right);
         let vertices =
             |k: u32| (inside >> k & 1) | (inside >> k & 4) >> 1 | (inside >> k & 16) >> 2;
         [vertices(0), vertices(1)]
@@ -60,15 +61,12 @@ impl Sides {
         split & transposed(split >> 1) & LANE_0
     }
 
-    /// The edges of one of the crossings and where they cross, from 0 to 1 along each.
+    /// The edges of one of the crossings, and where they cross on that of triangle 1, from 0 to 1.
     #[inline(always)]
-    pub fn crossing(&self, bit: usize) -> (usize, usize, [f64; 2]) {
+    pub fn crossing(&self, bit: usize) -> (usize, usize, f64) {
         let (i, j) = (bit % 6 / 2, bit / 6);
-        let along = |edge: usize, vertex: usize, lane: usize| {
-            let [start, end] = [vertex, NEXT[vertex]].map(|v| self.area[edge][v].as_array()[lane]);
-            start / (start - end)
-        };
-        (i, j, [along(j, i, 0), along(i, j, 1)])
+        let [start, end] = [i, NEXT[i]].map(|v| self.area[j][v].as_array()[0]);
+        (i, j, start / (start - end))
     }
 }
 
@@ -119,7 +117,7 @@ mod tests {
             let sides = Sides { area: Default::default(), left: mask(1), right: mask(-1) };
             let sign = |edge: usize, vertex: usize, lane: usize| signs[6 * edge + 2 * vertex + lane];
             let is_inside = |v: usize, lane: usize| {
-                (0..3).all(|e| sign(e, v, lane) >= 0) || (0..3).all(|e| sign(e, v, lane) <= 0)
+                (0..3).all(|e| sign(e, v, lane) >= 0) != (0..3).all(|e| sign(e, v, lane) <= 0)
             };
             let splits = |e: usize, v: usize, lane: usize| sign(e, v, lane) * sign(e, NEXT[v], lane) < 0;
             let inside = [0, 1].map(|lane| (0..3).filter(|&v| is_inside(v, lane)).fold(0, |m, v| m | 1 << v));

@@ -83,6 +83,21 @@ impl<'a> Triangle<'a> {
         }
     }
 
+    /// Whether a triangle with twice this area is so thin that rounding moves its ends: by 1e-16
+    /// of its length over its aspect.
+    #[inline(always)]
+    pub fn is_thin(&self, area: f64) -> bool {
+        area < NEAR_PARALLEL * self.size * self.size
+    }
+
+    /// Whether a point lies between the ends of the longest edge.
+    #[cold]
+    pub fn is_beside(&self, point: DVec3) -> bool {
+        let i = self.longest_edge();
+        let along = (point - self.vertices[i]).dot(self.edges[i]);
+        (0.0..=self.edges[i].length_squared()).contains(&along)
+    }
+
     /// Index of the longest edge.
     pub fn longest_edge(&self) -> usize {
         let lengths = self.edges.map(DVec3::length_squared);

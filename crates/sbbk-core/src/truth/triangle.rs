@@ -19,6 +19,9 @@ type Triangle = [Vector; 3];
 /// two depths too close to say which is less.
 const UNCLEAR: f64 = 1.0e-8;
 
+/// Triangles this close, as a fraction of the size of the pair, are taken to touch or cross.
+const TOUCHING: f64 = 1.0e-13;
+
 /// How two triangles lie to each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TruthContact {
@@ -41,7 +44,8 @@ pub fn contact(triangle1: &[DVec3; 3], triangle2: &[DVec3; 3]) -> TruthContact {
     let size = [t1, t2].map(|t| size(&t)).into_iter().fold(0.0, f64::max);
     let [p1, p2] = closest_points(&t1, &t2);
     let distance = (p2 - p1).norm();
-    if distance == 0.0 || pierces(&t1, &t2) || pierces(&t2, &t1) {
+    // An edge may pass through the border exactly, where rounding hides that it pierces.
+    if distance <= TOUCHING * size || pierces(&t1, &t2) || pierces(&t2, &t1) {
         return least_translation(&t1, &t2, size);
     }
     TruthContact {

@@ -66,8 +66,9 @@ fn check_points(
     }
     for (point, triangle) in [(found.point1, t1), (found.point2, t2)] {
         let off = truth::contact(&[point; 3], triangle).distance;
-        // Closer than rounding a point may count as behind the triangle.
-        if off.abs() > tolerance {
+        // Where axes tie at a tiny depth, rounding may pick the one whose point lies beside.
+        let beside = (-found.distance).clamp(0.0, 1.0e-6 * size(t1).max(size(t2)));
+        if off.abs() > tolerance + beside {
             return Err(format!("a point is off its triangle by {off:e}"));
         }
     }
@@ -90,13 +91,4 @@ fn check_mirrored(
         return Err(format!("normal turns by {degrees} degrees when swapped"));
     }
     Ok(())
-}
-
-/// How far two triangles in the plane z = 0 reach into each other, negative when apart.
-pub fn in_plane_overlap(t1: &Triangle, t2: &Triangle) -> f64 {
-    let axes = [t1, t2].into_iter().flat_map(|t| (0..3).map(|i| t[(i + 1) % 3] - t[i]));
-    let gaps = axes
-        .map(|e| e.cross(DVec3::Z).normalize())
-        .flat_map(|n| [truth::separation(t1, t2, n), truth::separation(t1, t2, -n)]);
-    -gaps.fold(f64::NEG_INFINITY, f64::max)
 }

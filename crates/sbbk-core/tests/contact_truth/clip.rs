@@ -2,10 +2,12 @@
 //! shadow at the edges of the other (I. Sutherland, G. Hodgman, 1974).
 
 use crate::check::{TOLERANCE, Triangle, size};
-use crate::strategies::{at_least, point, triangle};
+use crate::strategies::{point, triangle};
 use glamx::{DVec2, DVec3};
 use proptest::prelude::*;
-use sbbk_core::contact::{Feature, ManifoldPoint, ManifoldPoints, clip, contact, push_closest};
+use sbbk_core::contact::{
+    Feature, ManifoldPoint, ManifoldPoints, clip, contact, contact_from, manifold, push_closest,
+};
 use sbbk_core::truth;
 use std::collections::HashSet;
 
@@ -75,7 +77,7 @@ fn check_point(
 }
 
 proptest! {
-    #![proptest_config(at_least(8_000))]
+    #![proptest_config(ProptestConfig::with_cases(20_000))]
 
     /// Would catch a corner that is missed, found twice or misplaced, a wrong name of a corner,
     /// and a wrong distance.
@@ -106,6 +108,22 @@ proptest! {
         let count = points.len();
         push_closest(&t1, &t2, &found, &mut points);
         prop_assert_eq!(points.len(), count, "the closest points were added twice");
+        let names: HashSet<_> = points.iter().map(|p| p.features).collect();
+        prop_assert_eq!(names.len(), points.len());
+
+        // "contact or contact_from; then clip along the normal and push_closest".
+        for last in [None, Some(found.features)] {
+            let mut at_once = ManifoldPoints::new();
+            let from = last.map_or(Some(found), |last| contact_from(&t1, &t2, 1.0, last));
+            let mut one_by_one = ManifoldPoints::new();
+            clip(&t1, &t2, from.unwrap().normal, &mut one_by_one);
+            push_closest(&t1, &t2, &from.unwrap(), &mut one_by_one);
+            prop_assert_eq!(manifold(&t1, &t2, 1.0, last, &mut at_once), from);
+            prop_assert_eq!(at_once, one_by_one);
+        }
+        let mut none = points.clone();
+        prop_assert_eq!(manifold(&t1, &t2, found.distance.next_down(), None, &mut none), None);
+        prop_assert!(none.is_empty());
     }
 
     /// Along any direction, not only the normal: the caller may have turned it. Nothing may be

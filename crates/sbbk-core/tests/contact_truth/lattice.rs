@@ -3,7 +3,6 @@
 //! lie in one plane or have no area.
 
 use crate::check::check;
-use crate::strategies::at_least;
 use glamx::DVec3;
 use proptest::prelude::*;
 use std::cmp::Ordering;
@@ -124,7 +123,7 @@ fn triangle() -> impl Strategy<Value = Triangle> {
 }
 
 proptest! {
-    #![proptest_config(at_least(20_000))]
+    #![proptest_config(ProptestConfig::with_cases(20_000))]
 
     /// Would catch an error in the reference too, and one that both share.
     #[test]

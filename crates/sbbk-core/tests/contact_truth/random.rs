@@ -1,14 +1,14 @@
 //! Random triangles of all shapes, sizes and distances.
 
 use crate::check::{check, size};
-use crate::strategies::{at_least, decades, point, triangle};
+use crate::strategies::{decades, point, triangle};
 use glamx::DVec3;
 use proptest::prelude::*;
 use sbbk_core::contact::contact;
 use sbbk_core::truth;
 
 proptest! {
-    #![proptest_config(at_least(8_000))]
+    #![proptest_config(ProptestConfig::with_cases(20_000))]
 
     #[test]
     fn same_size(t1 in triangle(), t2 in triangle(), offset in point()) {

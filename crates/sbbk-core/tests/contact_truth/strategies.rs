@@ -4,12 +4,6 @@ use crate::check::Triangle;
 use glamx::{DQuat, DVec3, DVec4};
 use proptest::prelude::*;
 
-/// At least so many cases; more if the environment variable `PROPTEST_CASES` asks for more.
-pub fn at_least(cases: u32) -> ProptestConfig {
-    let config = ProptestConfig::default();
-    ProptestConfig { cases: config.cases.max(cases), ..config }
-}
-
 /// A point in the cube from -1 to 1.
 pub fn point() -> impl Strategy<Value = DVec3> {
     prop::array::uniform3(-1.0..1.0).prop_map(DVec3::from_array)

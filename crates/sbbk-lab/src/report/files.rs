@@ -18,12 +18,42 @@ pub fn reserve(path: &Path) -> Result<(), ReportError> {
     Ok(())
 }
 
+/// Results that can become a file.
+pub trait Results: Serialize {
+    /// Their rows, of all tables.
+    fn rows(&self) -> Vec<ResultRow>;
+}
+
+/// One row of results, of which the numbers become lines of a CSV file.
+#[derive(Clone, Debug)]
+pub struct ResultRow {
+    /// Which study.
+    pub study: &'static str,
+    /// What was measured.
+    pub scene: String,
+    /// Whether Rapier recycled contacts; `None` where Rapier had no part.
+    pub contact_recycling: Option<bool>,
+    /// An object; its numbers, and those of the objects in it, count.
+    pub values: Value,
+}
+
+impl ResultRow {
+    pub(super) fn new(study: &'static str, scene: String, values: &impl Serialize) -> Self {
+        let values = serde_json::to_value(values).unwrap_or_default();
+        Self { study, scene, contact_recycling: None, values }
+    }
+
+    fn recycling(self, contact_recycling: bool) -> Self {
+        Self { contact_recycling: Some(contact_recycling), ..self }
+    }
+}
+
 /// Writes all results as one JSON object.
 ///
 /// Errors: the file cannot be written.
-pub fn write_json(comparison: &Comparison, path: &Path) -> Result<(), ReportError> {
+pub fn write_json(results: &impl Results, path: &Path) -> Result<(), ReportError> {
     let file = File::create(path).map_err(|cause| ReportError::new(path, cause))?;
-    serde_json::to_writer_pretty(file, comparison).map_err(|cause| ReportError::new(path, cause))
+    serde_json::to_writer_pretty(file, results).map_err(|cause| ReportError::new(path, cause))
 }
 
 /// One number in the CSV file.
@@ -41,68 +71,68 @@ struct Measurement {
 /// Writes all results as CSV, one number a line: study, scene, backend, quantity, statistic, value.
 ///
 /// Errors: the file cannot be written.
-pub fn write_csv(comparison: &Comparison, path: &Path) -> Result<(), ReportError> {
+pub fn write_csv(results: &impl Results, path: &Path) -> Result<(), ReportError> {
     let mut writer = csv::Writer::from_path(path).map_err(|e| ReportError::new(path, e))?;
-    for measurement in measurements(comparison) {
+    for measurement in results.rows().iter().flat_map(measurements) {
         writer.serialize(measurement).map_err(|e| ReportError::new(path, e))?;
     }
     writer.flush().map_err(|e| ReportError::new(path, e))
 }
 
-fn measurements(comparison: &Comparison) -> Vec<Measurement> {
-    let mut all = Vec::new();
-    let mut add = |study, scene: String, contact_recycling, row: Value| {
-        all.extend(numbers(study, scene, contact_recycling, row));
-    };
-    for row in &comparison.helicopter {
-        add("helicopter", format!("{} ball", row.ball), Some(true), json(row));
-    }
-    for pile in &comparison.piles {
-        for row in &pile.runs {
-            add("pile, whole runs", pile.scene.clone(), Some(pile.contact_recycling), json(row));
+impl Results for Comparison {
+    fn rows(&self) -> Vec<ResultRow> {
+        let mut rows = Vec::new();
+        for row in &self.helicopter {
+            let scene = format!("{} ball", row.ball);
+            rows.push(ResultRow::new("helicopter", scene, row).recycling(true));
         }
-        for row in &pile.same_poses {
-            add("pile, same poses", pile.scene.clone(), None, json(row));
+        for pile in &self.piles {
+            let scene = || pile.scene.clone();
+            rows.extend(pile.runs.iter().map(|row| {
+                ResultRow::new("pile, whole runs", scene(), row).recycling(pile.contact_recycling)
+            }));
+            let same_poses = pile.same_poses.iter();
+            rows.extend(same_poses.map(|row| ResultRow::new("pile, same poses", scene(), row)));
         }
+        for row in self.cut.iter().flat_map(|cut| &cut.rows) {
+            rows.push(ResultRow::new("cut at depth", "mesh ball".to_owned(), row));
+        }
+        for row in &self.meshes {
+            rows.push(ResultRow::new("trees and first queries", row.mesh.clone(), row));
+        }
+        rows
     }
-    for row in comparison.cut.iter().flat_map(|cut| &cut.rows) {
-        add("cut at depth", "mesh ball".to_owned(), None, json(row));
-    }
-    for row in &comparison.meshes {
-        add("trees and first queries", row.mesh.clone(), None, json(row));
-    }
-    all
 }
 
-fn json(row: &impl Serialize) -> Value {
-    serde_json::to_value(row).unwrap_or_default()
-}
-
-/// The numbers of a row: its own, and those of the objects in it.
-fn numbers(
-    study: &'static str,
-    scene: String,
-    contact_recycling: Option<bool>,
-    row: Value,
-) -> Vec<Measurement> {
-    let text = |key| row.get(key).and_then(Value::as_str);
-    let backend = text("backend").or(text("hierarchy")).unwrap_or_default().to_owned();
+/// The numbers of a row: its own, and those of the objects in it, whose statistic is then the path
+/// to the number.
+fn measurements(row: &ResultRow) -> Vec<Measurement> {
+    let text = |key| row.values.get(key).and_then(Value::as_str);
+    let backend = text("backend").or(text("hierarchy")).unwrap_or_default();
     let mut numbers = Vec::new();
-    for (quantity, value) in row.as_object().into_iter().flatten() {
-        let own = value.as_f64().map(|value| ("value", value));
-        let nested = value.as_object().into_iter().flatten();
-        let nested = nested.filter_map(|(key, value)| Some((key.as_str(), value.as_f64()?)));
-        numbers.extend(own.into_iter().chain(nested).map(|(statistic, value)| Measurement {
-            study,
-            scene: scene.clone(),
-            contact_recycling,
-            backend: backend.clone(),
+    for (quantity, value) in row.values.as_object().into_iter().flatten() {
+        let mut found = Vec::new();
+        collect(value, String::new(), &mut found);
+        numbers.extend(found.into_iter().map(|(statistic, value)| Measurement {
+            study: row.study,
+            scene: row.scene.clone(),
+            contact_recycling: row.contact_recycling,
+            backend: backend.to_owned(),
             quantity: quantity.clone(),
-            statistic: statistic.to_owned(),
+            statistic: if statistic.is_empty() { "value".to_owned() } else { statistic },
             value,
         }));
     }
     numbers
+}
+
+/// Adds the numbers in `value`, each with its path below `path`.
+fn collect(value: &Value, path: String, found: &mut Vec<(String, f64)>) {
+    for (key, value) in value.as_object().into_iter().flatten() {
+        let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+        collect(value, path, found);
+    }
+    found.extend(value.as_f64().map(|number| (path, number)));
 }
 
 #[cfg(test)]
@@ -114,15 +144,18 @@ mod tests {
     /// Would catch numbers lost on the way to the file, or attributed to another backend.
     #[test]
     fn every_number_becomes_a_line() {
-        let row = json!({
+        let values = json!({
             "backend": "sbbk",
             "steps": 3,
             "step": { "min": 1.5, "median": 2.0 },
+            "steady": { "time": { "min": 0.5 } },
         });
-        let lines = numbers("study", "scene".to_owned(), Some(false), row);
+        let row = ResultRow::new("study", "scene".to_owned(), &values).recycling(false);
+        let lines = measurements(&row);
         let found: Vec<_> =
             lines.iter().map(|m| (&*m.backend, &*m.quantity, &*m.statistic, m.value)).collect();
         let expected = [
+            ("sbbk", "steady", "time.min", 0.5),
             ("sbbk", "step", "median", 2.0),
             ("sbbk", "step", "min", 1.5),
             ("sbbk", "steps", "value", 3.0),

@@ -1,5 +1,6 @@
 //! Results as tables, files and plots, beside the paper's own.
 
+mod contacts;
 mod error;
 mod files;
 mod format;
@@ -10,8 +11,9 @@ mod paper;
 mod plot;
 pub mod tables;
 
+pub use contacts::write_contacts_plot;
 pub use error::ReportError;
-pub use files::{reserve, write_csv, write_json};
+pub use files::{ResultRow, Results, reserve, write_csv, write_json};
 pub use grid::Grid;
 pub use paper::{PAPER, Paper};
 pub use plot::write_plot;

@@ -1,8 +1,10 @@
-//! One diagram of several: series over linear axes from zero.
+//! One diagram of several: series over linear axes from zero, or over logarithmic ones.
 
+use std::ops::Range;
 use std::path::Path;
 
 use plotters::coord::Shift;
+use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
 
 use super::ReportError;
@@ -24,7 +26,18 @@ pub(super) struct Panel {
     pub title: String,
     pub x_label: String,
     pub y_label: String,
+    pub scale: Scale,
     pub series: Vec<Series>,
+}
+
+/// What the axes are like.
+#[derive(Clone, Copy)]
+pub(super) enum Scale {
+    /// Linear, from zero to the largest value.
+    FromZero,
+    /// Logarithmic, over whole powers of ten. Points up to `zero` are drawn there, where the
+    /// vertical axis says 0.
+    Logarithmic { zero: f64 },
 }
 
 /// Points of one kind. Points that are not finite are left out.
@@ -53,18 +66,50 @@ impl Panel {
     }
 
     fn draw<'a>(&self, area: &DrawingArea<SVGBackend<'a>, Shift>) -> DrawResult<'a> {
-        let limit = |headroom, coordinate: fn(&(f64, f64)) -> f64| {
-            let points = self.series.iter().flat_map(Series::finite_points);
-            let largest = points.map(|point| coordinate(&point)).fold(0.0, f64::max);
-            if largest > 0.0 { headroom * largest } else { 1.0 }
-        };
-        let ranges = (limit(HEADROOM.0, |p| p.0), limit(HEADROOM.1, |p| p.1));
+        let points = || self.series.iter().flat_map(Series::finite_points);
+        let (xs, ys) = (points().map(|point| point.0), points().map(|point| self.height(point.1)));
+        match self.scale {
+            Scale::FromZero => {
+                let [x, y] = [limit(xs, HEADROOM.0), limit(ys, HEADROOM.1)];
+                let labels = (|value: &f64| plain(*value, x), |value: &f64| plain(*value, y));
+                self.draw_over(area, (0.0..x, 0.0..y), labels)
+            }
+            Scale::Logarithmic { zero } => {
+                // Half a power of ten below leaves room for the markers of zero.
+                let (x, y) = (decades(xs), 0.3 * zero..decades(ys).end);
+                let is_zero = |value: f64| value < 3.0 * zero;
+                let y_label =
+                    |&value: &f64| if is_zero(value) { plain(0.0, 10.0) } else { power(value) };
+                let axes = (x.log_scale(), y.log_scale());
+                self.draw_over(area, axes, (|&value: &f64| power(value), y_label))
+            }
+        }
+    }
+
+    /// Where a value stands on the vertical axis.
+    fn height(&self, value: f64) -> f64 {
+        match self.scale {
+            Scale::FromZero => value,
+            Scale::Logarithmic { zero } => value.max(zero),
+        }
+    }
+
+    fn draw_over<'a, X, Y>(
+        &self,
+        area: &DrawingArea<SVGBackend<'a>, Shift>,
+        axes: (X, Y),
+        labels: (impl Fn(&f64) -> String, impl Fn(&f64) -> String),
+    ) -> DrawResult<'a>
+    where
+        X: AsRangedCoord<Value = f64, CoordDescType: ValueFormatter<f64>>,
+        Y: AsRangedCoord<Value = f64, CoordDescType: ValueFormatter<f64>>,
+    {
         let mut chart = ChartBuilder::on(area)
             .caption(&self.title, ("sans-serif", TITLE_SIZE))
             .margin(14)
             .y_label_area_size(LABEL_AREA.0)
             .x_label_area_size(LABEL_AREA.1)
-            .build_cartesian_2d(0.0..ranges.0, 0.0..ranges.1)?;
+            .build_cartesian_2d(axes.0, axes.1)?;
         chart
             .configure_mesh()
             .light_line_style(TRANSPARENT)
@@ -73,8 +118,8 @@ impl Panel {
             .y_desc(&self.y_label)
             .x_labels(6)
             .y_labels(7)
-            .x_label_formatter(&|value| plain(*value, ranges.0))
-            .y_label_formatter(&|value| plain(*value, ranges.1))
+            .x_label_formatter(&labels.0)
+            .y_label_formatter(&labels.1)
             .label_style(("sans-serif", TEXT_SIZE))
             .draw()?;
         for series in self.series.iter().filter(|series| series.finite_points().next().is_some()) {
@@ -86,11 +131,11 @@ impl Panel {
             };
             let marker = series.look.marker(MARKER_RADIUS);
             let mark = |at| EmptyElement::at(at) + Polygon::new(marker.clone(), colour.filled());
+            let points = || series.finite_points().map(|(x, y)| (x, self.height(y)));
             if series.is_connected {
-                let line = LineSeries::new(series.finite_points(), colour.stroke_width(2));
-                chart.draw_series(line)?;
+                chart.draw_series(LineSeries::new(points(), colour.stroke_width(2)))?;
             }
-            chart.draw_series(series.finite_points().map(mark))?.label(&series.label).legend(key);
+            chart.draw_series(points().map(mark))?.label(&series.label).legend(key);
         }
         chart
             .configure_series_labels()
@@ -107,6 +152,32 @@ impl Series {
         let is_finite = |(x, y): &(f64, f64)| x.is_finite() && y.is_finite();
         self.points.iter().copied().filter(is_finite)
     }
+}
+
+/// The largest value and some space above.
+fn limit(values: impl Iterator<Item = f64>, headroom: f64) -> f64 {
+    let largest = values.fold(0.0, f64::max);
+    if largest > 0.0 { headroom * largest } else { 1.0 }
+}
+
+/// The powers of ten between which all values lie.
+fn decades(values: impl Iterator<Item = f64>) -> Range<f64> {
+    let logarithms = values.filter(|value| *value > 0.0).map(f64::log10);
+    let [least, largest] = logarithms.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], value| {
+        [a.min(value.floor()), b.max(value.ceil())]
+    });
+    if least < largest { 10f64.powf(least)..10f64.powf(largest) } else { 1.0..10.0 }
+}
+
+/// A power of ten as a label.
+fn power(value: f64) -> String {
+    let exponent = value.log10().round() as i32;
+    if (-3..=3).contains(&exponent) {
+        return format!("{}", 10f64.powi(exponent));
+    }
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let superscript = |c: char| c.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize]);
+    format!("10{}", exponent.to_string().chars().map(superscript).collect::<String>())
 }
 
 /// A label of an axis that ends at `limit`: without decimals where they would all be zero.

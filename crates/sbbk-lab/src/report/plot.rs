@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::look::Look;
-use super::panel::{Panel, Series};
+use super::panel::{Panel, Scale, Series};
 use super::{PAPER, ReportError};
 use crate::backend::Backend;
 use crate::metrics::{ErrorCount, Summary, ratio};
@@ -36,6 +36,7 @@ fn times(piles: &[&PileStudy]) -> Panel {
         title: "Broad and narrow phase".to_owned(),
         x_label: "monkey heads".to_owned(),
         y_label: "ms a step, whole runs".to_owned(),
+        scale: Scale::FromZero,
         series: series.into(),
     }
 }
@@ -63,6 +64,7 @@ fn ratios(piles: &[&PileStudy]) -> Panel {
         title: "Diagram 1: how many times faster".to_owned(),
         x_label: "monkey heads".to_owned(),
         y_label: "ratio of times, broad and narrow phase".to_owned(),
+        scale: Scale::FromZero,
         series: series.into_iter().chain([paper]).collect(),
     }
 }
@@ -78,6 +80,7 @@ fn time_against_error(rows: &[MeshRow]) -> Panel {
         title: "Time against error, first queries".to_owned(),
         x_label: "µs for each true triangle pair".to_owned(),
         y_label: "wrong triangle pairs for 100 true ones".to_owned(),
+        scale: Scale::FromZero,
         series: vec![
             series(Backend::Stock, |row| point(row.stock_queries, row.stock_error)),
             series(Backend::Sbbk, |row| point(row.sbbk_queries, row.sbbk_error)),
