@@ -33,3 +33,26 @@ fn no_point_moves_farther_than_the_bound() {
     }
     assert!(tightest < 1.5, "the bound is never better than {tightest} times the motion");
 }
+
+/// The map is Parry's, `q v q*`, for quaternions off unit length too; and the inverse undoes it.
+#[test]
+fn the_map_is_that_of_the_quaternion() {
+    let mut random = Random(32);
+    for scale in [1.0, 0.9, 1.001] {
+        for _ in 0..1_000 {
+            let mut pose = random.pose(5.0);
+            pose.rotation *= scale;
+            let (x, origin) = (random.vector(3.0), random.vector(3.0));
+            let exact = glamx::DPose3 {
+                rotation: pose.rotation.as_dquat(),
+                translation: pose.translation.as_dvec3(),
+            };
+            let placement = Placement::new(&pose);
+            let moved = placement.to_frame1(x, origin);
+            let expected = exact.transform_point(x.as_dvec3()) - origin.as_dvec3();
+            assert!(moved.distance(expected) < 1e-13, "{moved:?} {expected:?}");
+            let back = placement.to_frame2(moved, origin);
+            assert!(back.distance(x.as_dvec3()) < 1e-13, "{back:?} {x:?}");
+        }
+    }
+}

@@ -7,7 +7,7 @@
 //! the direction between them. This needs four dot products, whatever the features are.
 
 use super::feature::{Feature, FeaturePair};
-use super::triangle::Triangle;
+use super::triangle::{NEAR_PARALLEL, Triangle};
 use glamx::DVec3;
 
 /// How far, in triangle sizes, a vertex may lie beyond the plane that should bound it. Covers
@@ -107,14 +107,13 @@ fn edge_edge(t1: &Triangle, i: usize, t2: &Triangle, j: usize) -> Option<Closest
     }
     let point1 = t1.vertices[i] + e1 * along1;
     let point2 = t2.vertices[j] + e2 * along2;
-    let apart = between.dot(cross);
-    // The direction of the cross product is off by 1e-16 |e1| |e2| / |cross|, that of the
-    // difference by 1e-16 (|e1| + |e2|) / distance: the less uncertain one is taken.
+    // The direction of the cross product is off by 1e-16 over the sine, that of the difference by
+    // 1e-16 over the distance, and the distance by the direction times its length.
     let lengths = e1.length_squared() * e2.length_squared();
-    let reach = e1.length_squared() + e2.length_squared();
-    if lengths * apart * apart > area * area * reach {
+    if area < NEAR_PARALLEL * NEAR_PARALLEL * lengths {
         return Some(Closest::between(point1, point2, between + e2 * along2 - e1 * along1));
     }
+    let apart = between.dot(cross);
     let scale = apart.signum() / area.sqrt();
     Some(Closest { point1, point2, normal: cross * scale, distance: apart * scale })
 }

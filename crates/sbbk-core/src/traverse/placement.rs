@@ -1,4 +1,4 @@
-use glamx::{DMat3, DPose3, DVec3, Pose3, Vec3};
+use glamx::{DMat3, DQuat, DVec3, Pose3, Vec3};
 
 /// A pose as the linear map that it is, in f64.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -14,11 +14,25 @@ pub struct Placement {
 
 impl Placement {
     /// The map of `pose`, exact but for the rounding of f64.
+    ///
+    /// With `q = (b, w)`: `q v q* = (w² - b²) v + 2 (b·v) b + 2 w b × v`, which is `|q|²` times a rotation, so the
+    /// inverse is the transpose over `|q|⁴`.
     pub fn new(pose: &Pose3) -> Self {
-        let linear = DPose3 { rotation: pose.rotation.as_dquat(), translation: DVec3::ZERO };
-        let column = |axis| linear.transform_point(axis);
-        let rotation = DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z));
-        Self { rotation, translation: pose.translation.as_dvec3(), inverse: rotation.inverse() }
+        let DQuat { x, y, z, w } = pose.rotation.as_dquat();
+        let (xx, yy, zz, ww) = (x * x, y * y, z * z, w * w);
+        let (xy, xz, yz) = (2.0 * x * y, 2.0 * x * z, 2.0 * y * z);
+        let (wx, wy, wz) = (2.0 * w * x, 2.0 * w * y, 2.0 * w * z);
+        let rotation = DMat3::from_cols(
+            DVec3::new(ww + xx - yy - zz, xy + wz, xz - wy),
+            DVec3::new(xy - wz, ww + yy - xx - zz, yz + wx),
+            DVec3::new(xz + wy, yz - wx, ww + zz - xx - yy),
+        );
+        let scale = xx + yy + zz + ww;
+        Self {
+            rotation,
+            translation: pose.translation.as_dvec3(),
+            inverse: rotation.transpose() * (1.0 / (scale * scale)),
+        }
     }
 
     /// `x`, a point of frame 2, in frame 1 and relative to `origin` there.
