@@ -8,8 +8,7 @@ use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::{PackedFeatureId, Triangle};
 use sbbk_core::contact::{
-    Feature, FeaturePair, ManifoldPoint, ManifoldPoints, TriangleContact, clip, contact,
-    contact_from, push_closest,
+    Feature, FeaturePair, ManifoldPoint, ManifoldPoints, TriangleContact, clip, manifold,
 };
 use sbbk_core::traverse::Placement;
 
@@ -35,29 +34,26 @@ impl LocalTriangles {
         Self { origin, corners }
     }
 
-    /// The contact within the margin, tried first with the features of the step before.
+    /// The contact within the margin and its points, tried first with the features of the step before.
     pub(super) fn contact(
         &self,
         margin: Real,
         last: Option<FeaturePair>,
+        points: &mut ManifoldPoints,
     ) -> Option<TriangleContact> {
         let [t1, t2] = &self.corners;
-        let margin = f64::from(margin);
-        match last {
-            Some(last) => contact_from(t1, t2, margin, last),
-            None => contact(t1, t2, margin),
-        }
+        manifold(t1, t2, f64::from(margin), last, points)
     }
 }
 
-/// Fills `manifold` with the points of a contact, as Parry would: the normal is projected into the cones of both
+/// Fills `manifold` with the `points` of a contact, as Parry would: the normal is projected into the cones of both
 /// triangles, where they have them, and points keep their data by their feature ids.
 ///
 /// May leave the manifold without points, where the constraints reject the contact.
 pub(super) fn fill<M, C: Default + Copy>(
     (placement, pos12): (&Placement, &Pose),
     triangles: &LocalTriangles,
-    contact: &TriangleContact,
+    (contact, points): (&TriangleContact, &mut ManifoldPoints),
     constraints: Constraints<'_>,
     previous_points: &mut Vec<TrackedContact<C>>,
     manifold: &mut ContactManifold<M, C>,
@@ -67,14 +63,9 @@ pub(super) fn fill<M, C: Default + Copy>(
     let Some(normal1) = constrained_normal(contact, constraints, pos12) else {
         return;
     };
-    let normal =
-        if normal1.is_changed { normal1.normal.as_dvec3().normalize() } else { contact.normal };
-
-    let [t1, t2] = &triangles.corners;
-    let mut points = ManifoldPoints::new();
-    clip(t1, t2, normal, &mut points);
-    if !normal1.is_changed {
-        push_closest(t1, t2, contact, &mut points);
+    if normal1.is_changed {
+        let [t1, t2] = &triangles.corners;
+        clip(t1, t2, normal1.normal.as_dvec3().normalize(), points);
     }
     let is_constrained = constraints.iter().any(Option::is_some);
     for point in points.iter().filter(|point| !is_constrained || is_plausible(point, contact)) {
@@ -173,13 +164,14 @@ impl<C: Default + Copy> TriangleContacts<C> {
     ) {
         let placement = Placement::new(pos12);
         let triangles = LocalTriangles::new(&placement, triangle1, triangle2);
-        let contact = triangles.contact(prediction, self.features);
+        let mut points = ManifoldPoints::new();
+        let contact = triangles.contact(prediction, self.features, &mut points);
         self.features = contact.map(|contact| contact.features);
         match contact {
             Some(contact) => fill(
                 (&placement, pos12),
                 &triangles,
-                &contact,
+                (&contact, &mut points),
                 normal_constraints,
                 &mut self.previous_points,
                 manifold,

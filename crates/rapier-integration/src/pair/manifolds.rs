@@ -6,7 +6,7 @@ use parry3d::query::{
     ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, TrackedContact,
 };
 use parry3d::shape::Triangle;
-use sbbk_core::contact::{FeaturePair, TriangleContact};
+use sbbk_core::contact::{FeaturePair, ManifoldPoints, TriangleContact};
 use sbbk_core::traverse::PairFrame;
 
 use super::candidates::{Candidate, OrderKey, Scratch};
@@ -52,6 +52,7 @@ impl Generator<'_> {
             history.features.clear();
             history.features.resize(manifolds.len(), None);
         }
+        let mut points = ManifoldPoints::new();
         let mut previous = scratch.previous.iter().peekable();
         for candidate in &scratch.candidates {
             let mut kept = None;
@@ -64,7 +65,7 @@ impl Generator<'_> {
                 }
             }
             let features = kept.and_then(|place| history.features[place]).or(candidate.features);
-            let touching = self.touching(candidate, features, &mut descent);
+            let touching = self.touching(candidate, features, &mut descent, &mut points);
             let mut manifold = match kept {
                 Some(place) => std::mem::take(&mut manifolds[place]),
                 None if touching.is_none() => continue,
@@ -72,7 +73,8 @@ impl Generator<'_> {
             };
             match touching {
                 Some(touching) => {
-                    self.fill(candidate, &touching, &mut history.previous_points, &mut manifold);
+                    let answer = (&touching, &mut points);
+                    self.fill(candidate, answer, &mut history.previous_points, &mut manifold);
                     history.keep(manifold, touching.contact.features);
                 }
                 None => history.retire(manifold),
@@ -104,17 +106,18 @@ impl Generator<'_> {
         }
     }
 
-    /// The contact of a candidate at the present pose, if it is within the prediction distance.
+    /// The contact of a candidate at the present pose, if it is within the prediction distance, and its points.
     fn touching(
         &self,
         candidate: &Candidate,
         features: Option<FeaturePair>,
         descent: &mut Option<&mut Coherence>,
+        points: &mut ManifoldPoints,
     ) -> Option<Touching> {
         let MeshPair { mesh1, mesh2, prediction, .. } = self.pair;
         let triangles = [mesh1.triangle(candidate.triangle1), mesh2.triangle(candidate.triangle2)];
         let local = LocalTriangles::new(self.frame.placement(), &triangles[0], &triangles[1]);
-        let contact = local.contact(self.frame.margin(), features)?;
+        let contact = local.contact(self.frame.margin(), features, points)?;
         if let Some(coherence) = descent {
             coherence.keep(candidate, &contact);
         }
@@ -127,7 +130,7 @@ impl Generator<'_> {
     fn fill<M, C>(
         &self,
         candidate: &Candidate,
-        touching: &Touching,
+        (touching, points): (&Touching, &mut ManifoldPoints),
         previous_points: &mut Vec<TrackedContact<C>>,
         manifold: &mut ContactManifold<M, C>,
     ) where
@@ -139,7 +142,7 @@ impl Generator<'_> {
         match self.contacts {
             ContactGenerator::Exact => {
                 let placed = (self.frame.placement(), self.pair.pos12);
-                fill(placed, local, contact, constraints, previous_points, manifold);
+                fill(placed, local, (contact, points), constraints, previous_points, manifold);
             }
             ContactGenerator::Parry => {
                 // Two triangles are a pair that Parry supports.

@@ -107,8 +107,8 @@ fn edge_edge(t1: &Triangle, i: usize, t2: &Triangle, j: usize) -> Option<Closest
     }
     let point1 = t1.vertices[i] + e1 * along1;
     let point2 = t2.vertices[j] + e2 * along2;
-    // The direction of the cross product is off by 1e-16 over the sine, that of the difference by
-    // 1e-16 over the distance, and the distance by the direction times its length.
+    // A direction from the cross product is off by 1e-16 over the sine and spoils the distance by
+    // as much of the length; one from the difference is off by 1e-16 over the distance.
     let lengths = e1.length_squared() * e2.length_squared();
     if area < NEAR_PARALLEL * NEAR_PARALLEL * lengths {
         return Some(Closest::between(point1, point2, between + e2 * along2 - e1 * along1));

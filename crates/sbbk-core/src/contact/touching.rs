@@ -29,8 +29,8 @@ pub(super) fn touching(t1: &Triangle, t2: &Triangle, best: Axis) -> TriangleCont
     if nearest.distance > depth + ROUNDING * (t1.size + t2.size) {
         TriangleContact::new(features, nearest)
     } else if exists {
-        let Closest { point1, point2, .. } = nearest;
-        let Axis { normal, gap: distance, .. } = axis;
+        let (Axis { normal, gap: distance, .. }, point1) = (axis, nearest.point1);
+        let point2 = point1 + normal * distance;
         let contact = TriangleContact { normal, distance, point1, point2, features };
         at_axis(t1, t2, &axis).unwrap_or(contact)
     } else {
