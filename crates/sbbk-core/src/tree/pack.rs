@@ -50,7 +50,7 @@ where
     }
 
     let mut tree = Tree {
-        sphere: layers.sphere_root.then(|| Sphere::fit(&used_vertices(vertices, triangles))),
+        sphere: layers.sphere_root.then(|| sphere(vertices, triangles)),
         aabb_pairs,
         kdop_pairs,
         leaves,
@@ -142,11 +142,16 @@ fn number_nodes(nodes: &[BuildNode], options: &BuildOptions) -> Numbers {
     Numbers { of_place, aabb_count: upper.len(), kdop_count: next as usize - 1 - upper.len() }
 }
 
-/// The vertices that triangles use: others must not widen the sphere.
-fn used_vertices(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+/// The sphere of the vertices that triangles use: others must not widen it.
+fn sphere(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Sphere {
     let mut used = vec![false; vertices.len()];
     for &vertex in triangles.iter().flatten() {
         used[vertex as usize] = true;
     }
-    vertices.iter().zip(used).filter_map(|(&v, used)| used.then_some(v)).collect()
+    if used.iter().all(|&used| used) {
+        return Sphere::fit(vertices);
+    }
+    let used: Vec<Vec3> =
+        vertices.iter().zip(used).filter_map(|(&v, used)| used.then_some(v)).collect();
+    Sphere::fit(&used)
 }

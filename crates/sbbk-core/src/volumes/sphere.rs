@@ -44,7 +44,7 @@ impl Sphere {
 impl Volume for Sphere {
     const EMPTY: Self = Self { centre: Vec3::ZERO, radius: -1.0 };
 
-    /// Near-minimal. Starts from the widest of the 13 diameters of the k-DOP directions (Larsson, *Fast and
+    /// Near-minimal. Starts from the widest of the 7 diameters of the 14-DOP's directions (Larsson, *Fast and
     /// Tight Fitting Bounding Spheres*, 2008), then walks the centre towards the farthest point by a
     /// shrinking step (Bădoiu and Clarkson, *Smaller Core-Sets for Balls*, 2003) and keeps the best.
     /// Linear in the number of points.
@@ -55,10 +55,10 @@ impl Volume for Sphere {
         let Some(&first) = points.first() else {
             return Self::EMPTY;
         };
-        let mut ends = [(first, first); 13];
-        let (mut low, mut high) = ([f32::INFINITY; 13], [f32::NEG_INFINITY; 13]);
+        let mut ends = [(first, first); 7];
+        let (mut low, mut high) = ([f32::INFINITY; 7], [f32::NEG_INFINITY; 7]);
         for &point in points {
-            let projections = Directions::<13>::project(point);
+            let projections = Directions::<7>::project(point);
             for (axis, &projection) in projections.iter().enumerate() {
                 if projection < low[axis] {
                     (low[axis], ends[axis].0) = (projection, point);
