@@ -41,6 +41,10 @@ fn check_bytes(bytes: &[u8]) -> Result<()> {
     }
     let (t1, t2) =
         ([vertices[0], vertices[2], vertices[4]], [vertices[1], vertices[3], vertices[5]]);
+    // Of a triangle far smaller than its coordinates, the coordinates are the rounding.
+    if [t1, t2].iter().any(|t| (f64::MIN_POSITIVE..1.0e-3).contains(&check::size(t))) {
+        return Ok(());
+    }
     check::check(&t1, &t2);
     let last = FeaturePair::from_bits(input.arbitrary()?);
     let cold = contact(&t1, &t2, f64::INFINITY).expect("finite");

@@ -1,28 +1,33 @@
 //! Time per triangle pair of the contact generator, over the pairs of two bumpy spheres that
 //! truly lie within the margin: `cargo bench -p sbbk-core --bench contact`.
 //!
-//! *coarse* has triangles far larger than the margin (most contacts cross or meet face to
-//! vertex), *fine* far smaller ones (most are vertex to vertex or edge).
+//! *coarse* has triangles far larger than the margin, most of which cross or meet edge to edge;
+//! *fine* has triangles about as large as the margin, most of which meet vertex to edge.
+//! *search* is a first contact, *steady* one that keeps its features, *manifold* the steady one
+//! with all its points.
 
 mod pairs;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use pairs::{Kind, Pair, bumpy_spheres};
-use sbbk_core::contact::{ManifoldPoints, clip, contact, contact_from};
+use sbbk_core::contact::{ManifoldPoints, contact, contact_from, manifold};
 use std::hint::black_box;
 use std::time::Duration;
 
 fn each_kind(c: &mut Criterion) {
-    for (name, subdivisions) in [("coarse", 12), ("fine", 80)] {
+    for (name, subdivisions) in [("coarse", 24), ("fine", 80)] {
         let all = bumpy_spheres(subdivisions, 0.02);
         for kind in Kind::ALL {
             let pairs: Vec<_> = all.iter().copied().filter(|p| kind.holds(p)).collect();
-            eprintln!("{name} {kind:?}: {} pairs of {}", pairs.len(), all.len());
+            if pairs.is_empty() {
+                continue;
+            }
             let mut group = c.benchmark_group(format!("{name} {kind:?}"));
             group.throughput(Throughput::Elements(pairs.len() as u64));
             group.bench_function("search", |b| b.iter(|| pairs.iter().map(search).sum::<f64>()));
             group.bench_function("steady", |b| b.iter(|| pairs.iter().map(steady).sum::<f64>()));
-            group.bench_function("clip", |b| b.iter(|| pairs.iter().map(points).sum::<usize>()));
+            group
+                .bench_function("manifold", |b| b.iter(|| pairs.iter().map(points).sum::<usize>()));
         }
     }
 }
@@ -38,16 +43,18 @@ fn steady(pair: &Pair) -> f64 {
 
 fn points(pair: &Pair) -> usize {
     let mut points = ManifoldPoints::new();
-    clip(&pair.t1, &pair.t2, pair.contact.normal, &mut points);
+    manifold(&pair.t1, &pair.t2, pair.margin, Some(pair.contact.features), &mut points);
     black_box(&points).len()
 }
 
 criterion_group! {
     name = benches;
     config = Criterion::default()
-        .warm_up_time(Duration::from_millis(200))
-        .measurement_time(Duration::from_millis(800))
-        .sample_size(20);
+        .warm_up_time(Duration::from_millis(100))
+        .measurement_time(Duration::from_millis(300))
+        .sample_size(20)
+        .nresamples(1000)
+        .without_plots();
     targets = each_kind
 }
 criterion_main!(benches);

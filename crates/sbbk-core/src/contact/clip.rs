@@ -14,8 +14,8 @@
 use super::closest::within_edge;
 use super::feature::{Feature, FeaturePair};
 use super::generate::TriangleContact;
-use super::sides::Sides;
-use super::triangle::Triangle;
+use super::sides::{Crossing, Sides};
+use super::triangle::{NEAR_PARALLEL, Triangle};
 use arrayvec::ArrayVec;
 use glamx::DVec3;
 
@@ -99,33 +99,36 @@ pub(super) fn clip_triangles(
     }
     let mut crossings = sides.crossings();
     while crossings != 0 {
-        out.push(crossing_point(
-            t1,
-            t2,
-            sides.crossing(crossings.trailing_zeros() as usize),
-            normal,
-        ));
+        let crossing = sides.crossing(crossings.trailing_zeros() as usize);
+        out.push(crossing_point(t1, t2, &crossing, normal));
         crossings &= crossings - 1;
     }
 }
 
-/// Where edge `i` of triangle 1, at `along1`, is in line with edge `j` of triangle 2. That point is
-/// sought from the first one, so that both are in line when the edges are near parallel.
 #[inline(always)]
 fn crossing_point(
     t1: &Triangle,
     t2: &Triangle,
-    (i, j, along1): (usize, usize, f64),
+    crossing: &Crossing,
     normal: DVec3,
 ) -> ManifoldPoint {
-    let edge2 = t2.edges[j];
-    let shadow2 = edge2 - normal * edge2.dot(normal);
+    let ([i, j], [along1, mut along2]) = (crossing.edges, crossing.along);
     let point1 = t1.vertices[i] + t1.edges[i] * along1;
-    let along2 = (point1 - t2.vertices[j]).dot(shadow2) / shadow2.length_squared();
-    let point2 = t2.vertices[j] + edge2 * within_edge(along2);
+    if crossing.area < NEAR_PARALLEL * t1.size * t2.size {
+        along2 = along_in_line(point1, t2, j, normal);
+    }
+    let point2 = t2.vertices[j] + t2.edges[j] * along2;
     let distance = (point2 - point1).dot(normal);
     let features = FeaturePair::new(Feature::Edge(i as u8), Feature::Edge(j as u8));
     ManifoldPoint { point1, point2, distance, features }
+}
+
+/// Where an edge comes closest to being in line with a point. Both places of a crossing are
+/// uncertain when the edges are near parallel; this one fits the other.
+#[cold]
+fn along_in_line(point: DVec3, t: &Triangle, j: usize, normal: DVec3) -> f64 {
+    let shadow = t.edges[j] - normal * t.edges[j].dot(normal);
+    within_edge((point - t.vertices[j]).dot(shadow) / shadow.length_squared())
 }
 
 /// Adds the vertices of triangle `k` (0 or 1) whose bits are set, each with the point in line
@@ -147,7 +150,7 @@ fn push_vertices(
     if cosine * cosine <= EDGE_ON * EDGE_ON * area_squared {
         return;
     }
-    let is_thin = other.is_thin(area_squared.sqrt());
+    let is_thin = other.is_thin(area_squared);
     let slope = face * (1.0 / cosine);
     for v in (0..3).filter(|v| vertices >> v & 1 != 0) {
         let vertex = own.vertices[v];

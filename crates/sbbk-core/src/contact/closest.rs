@@ -85,7 +85,7 @@ pub(super) fn is_over(point: DVec3, t: &Triangle, normal: DVec3) -> bool {
     let area_beside = |i: usize| t.edges[i].cross(point - t.vertices[i]).dot(normal);
     let areas = [area_beside(0), area_beside(1), area_beside(2)];
     let area = (areas[0] + areas[1] + areas[2]).abs();
-    has_one_sign(areas) && area > 0.0 && (!t.is_thin(area) || t.is_beside(point))
+    has_one_sign(areas) && area > 0.0 && (!t.is_thin(area * area) || t.is_beside(point))
 }
 
 /// Whether the values are all positive or zero, or all negative or zero.

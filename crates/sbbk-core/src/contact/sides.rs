@@ -61,13 +61,26 @@ impl Sides {
         split & transposed(split >> 1) & LANE_0
     }
 
-    /// The edges of one of the crossings, and where they cross on that of triangle 1, from 0 to 1.
+    /// One of the crossings.
     #[inline(always)]
-    pub fn crossing(&self, bit: usize) -> (usize, usize, f64) {
+    pub fn crossing(&self, bit: usize) -> Crossing {
         let (i, j) = (bit % 6 / 2, bit / 6);
-        let [start, end] = [i, NEXT[i]].map(|v| self.area[j][v].as_array()[0]);
-        (i, j, start / (start - end))
+        let area =
+            |edge: usize, vertex: usize, lane: usize| self.area[edge][vertex].as_array()[lane];
+        let (start1, end1) = (area(j, i, 0), area(j, NEXT[i], 0));
+        let (start2, end2) = (area(i, j, 1), area(i, NEXT[j], 1));
+        let along = [start1 / (start1 - end1), start2 / (start2 - end2)];
+        Crossing { edges: [i, j], along, area: (start1 - end1).abs() }
     }
+}
+
+/// Where the shadows of two edges cross.
+pub(super) struct Crossing {
+    pub edges: [usize; 2],
+    /// From 0 to 1 on each edge.
+    pub along: [f64; 2],
+    /// Of the parallelogram of both shadows; small when they are near parallel.
+    pub area: f64,
 }
 
 const LANE_0: u32 = 0b010101 * 0b1_000001_000001;

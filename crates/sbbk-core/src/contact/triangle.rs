@@ -83,11 +83,12 @@ impl<'a> Triangle<'a> {
         }
     }
 
-    /// Whether a triangle with twice this area is so thin that rounding moves its ends: by 1e-16
-    /// of its length over its aspect.
+    /// Whether a triangle is so thin that rounding moves its ends, by 1e-16 of its length over its
+    /// aspect; given the square of twice its area.
     #[inline(always)]
-    pub fn is_thin(&self, area: f64) -> bool {
-        area < NEAR_PARALLEL * self.size * self.size
+    pub fn is_thin(&self, area_squared: f64) -> bool {
+        let thin = NEAR_PARALLEL * self.size * self.size;
+        area_squared < thin * thin
     }
 
     /// Whether a point lies between the ends of the longest edge.

@@ -81,3 +81,49 @@ fn boxes(triangles: &[[u32; 3]], vertex: impl Fn(u32) -> DVec3) -> Vec<Boxed> {
     };
     triangles.iter().enumerate().map(boxed).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glamx::DQuat;
+
+    /// Triangles of sizes 0.1 to 1 strewn over a cube, and one as large as all.
+    fn strewn(seed: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let noise =
+            |i: u32, k: f64| ((f64::from(i) * 12.9898 + k * 78.233 + seed).sin() * 43758.5).fract();
+        let corner =
+            |i: u32, scale: f64| scale * DVec3::new(noise(i, 1.0), noise(i, 2.0), noise(i, 3.0));
+        let place =
+            |i: u32| if i < 3 { corner(i, 4.0) } else { corner(i / 3, 0.5) + corner(i, 0.5) };
+        ((0..240).map(place).collect(), (0..80).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect())
+    }
+
+    /// Would catch a pair lost in the sweep or by its boxes, a wrong order and a turned pose.
+    #[test]
+    fn the_sweep_finds_what_two_loops_find() {
+        let ((vertices1, triangles1), (vertices2, triangles2)) = (strewn(0.1), strewn(0.7));
+        let pose = DPose3::from_parts(DVec3::new(0.3, -0.2, 0.5), DQuat::from_rotation_y(0.8));
+        for margin in [0.0, 0.1, 1.0] {
+            let mut expected = Vec::new();
+            for (i, t1) in (0..).zip(&triangles1) {
+                for (j, t2) in (0..).zip(&triangles2) {
+                    let t1 = t1.map(|v| vertices1[v as usize]);
+                    let found = contact(&t1, &t2.map(|v| pose * vertices2[v as usize]));
+                    if found.distance <= margin {
+                        expected.push((i, j, found.distance));
+                    }
+                }
+            }
+            let pairs =
+                pairs_within(&vertices1, &triangles1, &vertices2, &triangles2, pose, margin);
+            let found: Vec<_> =
+                pairs.iter().map(|p| (p.triangle1, p.triangle2, p.distance)).collect();
+            assert_eq!(found, expected);
+            assert!(
+                expected.len() > 50 && expected.iter().any(|p| p.2 < 0.0),
+                "{}",
+                expected.len()
+            );
+        }
+    }
+}

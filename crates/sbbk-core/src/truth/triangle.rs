@@ -171,3 +171,28 @@ fn least_translation(t1: &Triangle, t2: &Triangle, size: f64) -> TruthContact {
         closest_points: None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FLOOR: [DVec3; 3] = [DVec3::ZERO, DVec3::X, DVec3::Y];
+
+    /// The plain cases, by hand: a reference that is wrong here would condemn right code.
+    #[test]
+    fn plain_cases() {
+        let over = contact(&FLOOR, &FLOOR.map(|v| v + DVec3::Z * 0.5));
+        assert_eq!((over.distance, over.normal, over.normal_is_unique), (0.5, DVec3::Z, true));
+        let beside = contact(&FLOOR, &FLOOR.map(|v| v - DVec3::X * 3.0));
+        assert_eq!((beside.distance, beside.normal), (2.0, -DVec3::X));
+        assert_eq!(beside.closest_points, Some([DVec3::ZERO, -DVec3::X * 2.0]));
+        let crossed = [[0.2, 0.2, -0.1], [0.2, 0.3, 1.0], [0.3, 0.2, 1.0]].map(DVec3::from_array);
+        let crossed = contact(&FLOOR, &crossed);
+        assert!((crossed.distance + 0.1).abs() < 1.0e-15 && crossed.normal == DVec3::Z);
+        assert!(crossed.normal_is_unique && crossed.closest_points.is_none());
+        let in_plane = contact(&FLOOR, &FLOOR.map(|v| v * 0.5));
+        assert_eq!((in_plane.distance, in_plane.normal.abs()), (0.0, DVec3::Z));
+        assert!(!in_plane.normal_is_unique);
+        assert_eq!(separation(&FLOOR, &FLOOR.map(|v| v + DVec3::X * 3.0), DVec3::X), 2.0);
+    }
+}

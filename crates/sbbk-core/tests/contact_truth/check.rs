@@ -85,7 +85,7 @@ fn check_points(
     // The end of a sliver is less certain than the distance, and where axes tie at a tiny depth,
     // rounding may pick the one whose point lies beside.
     let size = size(t1).max(size(t2));
-    let beside = 1.0e-7 * size + (-found.distance).clamp(0.0, 1.0e-6 * size);
+    let beside = 1.0e-6 * size + (-found.distance).clamp(0.0, 1.0e-6 * size);
     for (point, triangle) in [(found.point1, t1), (found.point2, t2)] {
         let off = truth::contact(&[point; 3], triangle).distance;
         if off.abs() > tolerance + beside {
