@@ -52,7 +52,8 @@ impl<'a> Walk<'a> {
         }
         // From far away, or nowhere, the next step comes back.
         let limit = self.query.meshes.map(reach).iter().sum::<Real>();
-        if !(self.query.pos12.translation.length() < limit) && self.random.rand_float() < 0.5 {
+        let is_near = self.query.pos12.translation.length() < limit;
+        if !is_near && self.random.rand_float() < 0.5 {
             self.query.pos12 = touching(&mut self.random, self.query.meshes, 0.01);
         }
         Event::None

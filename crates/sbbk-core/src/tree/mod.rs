@@ -1,8 +1,8 @@
 //! The bounding volume hierarchy of one mesh: a sphere at the root, AABBs below, then k-DOPs, and
 //! batches of triangles in the leaves.
 //!
-//! A tree is built in a comfortable form ([`build`]: binned SAH over primitives, one node after the
-//! other) and packed once into the flat arrays that the descent reads ([`pack`]). It is immutable
+//! A tree is built in a comfortable form (`build.rs`: binned SAH over primitives, one node after the
+//! other) and packed once into the flat arrays that the descent reads (`pack.rs`). It is immutable
 //! then.
 //!
 //! ```

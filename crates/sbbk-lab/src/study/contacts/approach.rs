@@ -25,7 +25,7 @@ pub(super) const PLACE_COUNT: usize = 5;
 /// Where there would be more contacts than these, the approach ends earlier: two meshes of 70,000
 /// triangles, a tenth of a unit long, have tens of millions within 0.02 units. Higher: minutes and
 /// gigabytes for the same verdict. Lower: meshes touch and cross in fewer cases.
-pub(super) const PAIR_LIMIT: usize = 40_000;
+pub const PAIR_LIMIT: usize = 40_000;
 /// The way to a place is halved at most so often to stay below the limit.
 const HALVINGS: i32 = 7;
 /// Steps of the coarse search for the first touch. Fewer: thin parts pass through each other, and

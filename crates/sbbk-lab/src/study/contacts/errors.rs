@@ -140,9 +140,13 @@ mod tests {
             (errors.judged_normals, errors.wrong_normal, errors.wrong())
         };
         let right = [turned(0.0), turned(0.09), 5.0 * turned(-0.09)];
-        right.map(|normal| assert_eq!(judged(&truth, normal, -0.01), (1, 0, 0), "{normal}"));
+        for normal in right {
+            assert_eq!(judged(&truth, normal, -0.01), (1, 0, 0), "{normal}");
+        }
         let wrong = [turned(0.11), turned(-0.11), -turned(0.0), Vec3::ZERO, Vec3::NAN];
-        wrong.map(|normal| assert_eq!(judged(&truth, normal, -0.01), (1, 1, 1), "{normal}"));
+        for normal in wrong {
+            assert_eq!(judged(&truth, normal, -0.01), (1, 1, 1), "{normal}");
+        }
         // A wrong depth is one error, not two.
         assert_eq!(judged(&truth, turned(90.0), -0.02), (0, 0, 1));
         // Beyond the prediction distance nothing is reported: the pair is missed.

@@ -21,6 +21,7 @@ mod report;
 mod speed;
 mod triangles;
 
+pub use approach::PAIR_LIMIT;
 pub use case::ContactCase;
 pub use contest::CONTESTANTS;
 pub use errors::ContactErrors;
