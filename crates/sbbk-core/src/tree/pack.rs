@@ -3,11 +3,12 @@
 //! Upper nodes are numbered breadth first, so that the ones every descent visits share cache lines; the k-DOP
 //! layers follow in the order of the build (depth first, siblings adjacent).
 
+use arrayvec::ArrayVec;
 use glamx::Vec3;
 
 use super::Tree;
 use super::build::{BuildNode, BuildOptions, BuildTree, Content};
-use super::node::{AabbPair, KdopPair, LeafBatch, Link};
+use super::node::{AabbPair, BATCH, KdopPair, LeafBatch, Link};
 use super::stats::BuildStats;
 use crate::volumes::{DirectionSet, Directions, Kdop, Sphere, Volume};
 
@@ -102,10 +103,13 @@ where
             Content::Inner([first, second]) => {
                 kdops[*first as usize].merge(&kdops[*second as usize])
             }
-            Content::Leaf(range) => built.order[range.start as usize..range.end as usize]
-                .iter()
-                .flat_map(|&triangle| triangles[triangle as usize])
-                .fold(Kdop::EMPTY, |kdop, v| kdop.with_point(vertices[v as usize])),
+            Content::Leaf(range) => {
+                let members = &built.order[range.start as usize..range.end as usize];
+                let corners = members.iter().flat_map(|&triangle| triangles[triangle as usize]);
+                let points: ArrayVec<Vec3, { 3 * BATCH }> =
+                    corners.map(|vertex| vertices[vertex as usize]).collect();
+                Kdop::fit(&points)
+            }
         };
     }
     kdops
