@@ -41,13 +41,11 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let plan = if arguments.quick { ContactsPlan::quick() } else { ContactsPlan::standard() };
     let Arguments { json, csv, plot, .. } = arguments;
     [json, csv, plot].into_iter().flatten().try_for_each(|path| reserve(path))?;
-    let t = std::time::Instant::now();
     let contacts = contacts(&plan, &Progress::visible())?;
     print(&contacts.environment)?;
     for table in tables::contacts(&contacts) {
         print(format_args!("\n{table}"))?;
     }
-    eprintln!("{:?}", t.elapsed());
     if let Some(path) = json {
         write_json(&contacts, path)?;
     }

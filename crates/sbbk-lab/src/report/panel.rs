@@ -18,6 +18,8 @@ const TEXT_SIZE: u32 = 15;
 const LABEL_AREA: (u32, u32) = (62, 44);
 /// Radius of a marker, in pixels.
 const MARKER_RADIUS: f64 = 6.0;
+/// The legend above the line of zero, in pixels from the upper left of the axes.
+const LOW_LEGEND: (i32, i32) = (8, 228);
 /// Space above the largest value, as a factor: room for the legend as well.
 const HEADROOM: (f64, f64) = (1.08, 1.3);
 
@@ -86,6 +88,17 @@ impl Panel {
         }
     }
 
+    /// Curves that rise from zero leave the upper left free; on logarithmic axes nothing is between
+    /// zero and the smallest other values.
+    fn legend(&self) -> SeriesLabelPosition {
+        match self.scale {
+            Scale::FromZero => SeriesLabelPosition::UpperLeft,
+            Scale::Logarithmic { .. } => {
+                SeriesLabelPosition::Coordinate(LOW_LEGEND.0, LOW_LEGEND.1)
+            }
+        }
+    }
+
     /// Where a value stands on the vertical axis.
     fn height(&self, value: f64) -> f64 {
         match self.scale {
@@ -139,7 +152,7 @@ impl Panel {
         }
         chart
             .configure_series_labels()
-            .position(SeriesLabelPosition::UpperLeft)
+            .position(self.legend())
             .background_style(WHITE.mix(0.8))
             .border_style(BLACK.mix(0.3))
             .label_font(("sans-serif", TEXT_SIZE))
