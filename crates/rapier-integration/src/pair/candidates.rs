@@ -5,7 +5,6 @@ use sbbk_core::traverse::{
 };
 use sbbk_core::tree::LeafBatch;
 
-use super::coherence::KnownCandidate;
 use crate::mesh::PreparedMesh;
 
 /// A pair of triangles, by index in their meshes, that may come within the prediction distance.
@@ -16,6 +15,17 @@ pub(super) struct Candidate {
     pub(super) triangle2: u32,
     /// What was closest when this was last known, to be tried first.
     pub(super) features: Option<FeaturePair>,
+    /// The distance when it was last known, plus the travel of the pair then: as much less than this is at most left.
+    pub(super) clear: f64,
+    /// Place among the candidates that the pair keeps.
+    pub(super) place: u32,
+}
+
+impl Candidate {
+    /// Found just now.
+    fn new(key: OrderKey, [triangle1, triangle2]: [u32; 2]) -> Self {
+        Self { key, triangle1, triangle2, features: None, clear: 0.0, place: u32::MAX }
+    }
 }
 
 /// The place of a pair of triangles in the order of stock manifolds.
@@ -44,15 +54,6 @@ pub(crate) struct Scratch {
     pub(super) candidates: Vec<Candidate>,
     /// Places of the previous manifolds, in stock order.
     pub(super) previous: Vec<(OrderKey, u32)>,
-}
-
-impl Scratch {
-    /// Those of the known candidates whose triangles were at most `reach` apart.
-    pub(super) fn take(&mut self, known: &[KnownCandidate], reach: f64) {
-        self.candidates.clear();
-        let near = known.iter().filter(|known| known.distance <= reach);
-        self.candidates.extend(near.map(|known| known.candidate));
-    }
 }
 
 /// Fills `scratch.candidates` with all pairs of triangles within the margin of `frame`, and few others, in stock order.
@@ -88,7 +89,7 @@ impl Visitor for Collector<'_> {
         self.test.survivors(batch1, batch2, |lane1, lane2| {
             let [triangle1, triangle2] = [batch1.triangles()[lane1], batch2.triangles()[lane2]];
             let key = OrderKey::new(self.prepared, self.flipped, [triangle1, triangle2]);
-            self.candidates.push(Candidate { key, triangle1, triangle2, features: None });
+            self.candidates.push(Candidate::new(key, [triangle1, triangle2]));
         });
         Verdict::Descend
     }

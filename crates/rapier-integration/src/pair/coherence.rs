@@ -28,14 +28,9 @@ pub(super) struct Coherence {
     last: Option<Seen>,
     /// The descent that found the candidates, and its margin.
     descent: Option<Seen>,
-    candidates: Vec<KnownCandidate>,
-}
-
-/// A candidate and how far apart its triangles were at the time of the descent.
-#[derive(Copy, Clone, Debug)]
-pub(super) struct KnownCandidate {
-    pub(super) candidate: Candidate,
-    pub(super) distance: f64,
+    candidates: Vec<Candidate>,
+    /// Motion from query to query, summed up since the descent.
+    travel: f64,
 }
 
 #[derive(Copy, Clone, Debug)]
@@ -50,10 +45,10 @@ struct Seen {
 pub(super) enum Plan {
     /// Nothing: same pose, same prediction distance.
     Nothing,
-    /// Test the known candidates whose triangles were at most this far apart.
+    /// Test the known candidates, up to this margin.
     Reuse {
-        /// The prediction distance plus the motion since the descent.
-        reach: f64,
+        /// That of the descent.
+        margin: Real,
     },
     /// Descend, with this margin.
     Descend {
@@ -79,30 +74,47 @@ impl Coherence {
             let ball = tree2.bounding_ball();
             now.placement.motion_bound(&seen.placement, ball.centre, ball.radius)
         };
+        let step = last.map_or(0.0, motion_since);
+        self.travel += step;
         if let Some(descent) = self.descent {
             let reach = f64::from(prediction) + motion_since(descent);
             if reach <= f64::from(descent.margin) {
-                return Plan::Reuse { reach };
+                return Plan::Reuse { margin: descent.margin };
             }
         }
-        let slack = last.map_or(0.0, |last| slack(motion_since(last), f64::from(prediction)));
+        let slack = last.map_or(0.0, |_| slack(step, f64::from(prediction)));
         let margin = prediction + slack as Real;
         self.candidates.clear();
+        self.travel = 0.0;
         self.descent = (margin > prediction).then_some(Seen { margin, ..now });
         Plan::Descend { margin }
     }
 
-    /// Keeps a candidate of the descent under way.
-    pub(super) fn keep(&mut self, candidate: &Candidate, contact: &TriangleContact) {
-        if self.descent.is_some() {
-            let candidate = Candidate { features: Some(contact.features), ..*candidate };
-            self.candidates.push(KnownCandidate { candidate, distance: contact.distance });
-        }
+    /// The candidates of the last descent that may have come within the prediction distance, in stock order.
+    pub(super) fn near(&self, prediction: Real, near: &mut Vec<Candidate>) {
+        let reach = f64::from(prediction) + self.travel;
+        let is_near = |known: &&Candidate| known.clear <= reach;
+        near.clear();
+        near.extend(self.candidates.iter().filter(is_near));
     }
 
-    /// The candidates of the last descent, in stock order.
-    pub(super) fn candidates(&self) -> &[KnownCandidate] {
-        &self.candidates
+    /// Remembers what was found for a candidate, of the descent under way or one of [`near`](Self::near).
+    #[inline]
+    pub(super) fn note(&mut self, candidate: &Candidate, contact: Option<&TriangleContact>) {
+        let Some(descent) = self.descent else {
+            return;
+        };
+        let features = contact.map_or(candidate.features, |contact| Some(contact.features));
+        let distance = contact.map_or(f64::from(descent.margin), |contact| contact.distance);
+        let clear = distance + self.travel;
+        match self.candidates.get_mut(candidate.place as usize) {
+            Some(known) => (known.features, known.clear) = (features, clear),
+            None if contact.is_some() => {
+                let place = self.candidates.len() as u32;
+                self.candidates.push(Candidate { features, clear, place, ..*candidate });
+            }
+            None => {}
+        }
     }
 }
 

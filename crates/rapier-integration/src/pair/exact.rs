@@ -22,7 +22,8 @@ pub(super) struct LocalTriangles {
 }
 
 impl LocalTriangles {
-    pub(super) fn new(placement: &Placement, triangle1: &Triangle, triangle2: &Triangle) -> Self {
+    #[inline(always)]
+    pub(super) fn new(placement: &Placement, [triangle1, triangle2]: &[Triangle; 2]) -> Self {
         let origin = triangle1.a;
         let relative = |x: Vector| x.as_dvec3() - origin.as_dvec3();
         let placed = |x: Vector| placement.to_frame1(x, origin);
@@ -34,15 +35,17 @@ impl LocalTriangles {
         Self { origin, corners }
     }
 
-    /// The contact within the margin and its points, tried first with the features of the step before.
+    /// The contact within the margin and, within the prediction distance, its points; tried first with the features of
+    /// the step before.
+    #[inline(always)]
     pub(super) fn contact(
         &self,
-        margin: Real,
+        (margin, prediction): (Real, Real),
         last: Option<FeaturePair>,
         points: &mut ManifoldPoints,
     ) -> Option<TriangleContact> {
         let [t1, t2] = &self.corners;
-        manifold(t1, t2, f64::from(margin), last, points)
+        manifold(t1, t2, (f64::from(margin), f64::from(prediction)), last, points)
     }
 }
 
@@ -58,18 +61,25 @@ pub(super) fn fill<M, C: Default + Copy>(
     previous_points: &mut Vec<TrackedContact<C>>,
     manifold: &mut ContactManifold<M, C>,
 ) {
-    std::mem::swap(&mut manifold.points, previous_points);
-    manifold.points.clear();
     let Some(normal1) = constrained_normal(contact, constraints, pos12) else {
+        manifold.points.clear();
         return;
     };
     if normal1.is_changed {
         let [t1, t2] = &triangles.corners;
         clip(t1, t2, normal1.normal.as_dvec3().normalize(), points);
     }
-    let is_constrained = constraints.iter().any(Option::is_some);
-    for point in points.iter().filter(|point| !is_constrained || is_plausible(point, contact)) {
-        manifold.points.push(tracked(placement, triangles.origin, point, previous_points));
+    if constraints.iter().any(Option::is_some) {
+        points.retain(|point| is_plausible(point, contact));
+    }
+    let names = &*NAMES;
+    if !have_names(&manifold.points, points, names) {
+        rename(&mut manifold.points, points, names, previous_points);
+    }
+    for (point, tracked) in points.iter().zip(&mut manifold.points) {
+        tracked.local_p1 = (triangles.origin.as_dvec3() + point.point1).as_vec3();
+        tracked.local_p2 = placement.to_frame2(point.point2, triangles.origin).as_vec3();
+        tracked.dist = point.distance as f32;
     }
     manifold.local_n1 = normal1.normal;
     manifold.local_n2 = pos12.rotation.inverse() * -normal1.normal;
@@ -103,34 +113,50 @@ fn is_plausible(point: &ManifoldPoint, contact: &TriangleContact) -> bool {
     contact.distance >= 0.0 || point.distance >= 0.0 || point.distance >= 5.0 * contact.distance
 }
 
-fn tracked<C: Default + Copy>(
-    placement: &Placement,
-    origin: Vector,
-    point: &ManifoldPoint,
-    previous: &[TrackedContact<C>],
-) -> TrackedContact<C> {
-    let fid1 = packed(point.features.feature1());
-    let fid2 = packed(point.features.feature2());
-    let local_p1 = (origin.as_dvec3() + point.point1).as_vec3();
-    let local_p2 = placement.to_frame2(point.point2, origin).as_vec3();
-    let mut tracked = TrackedContact::new(local_p1, local_p2, fid1, fid2, point.distance as f32);
-    if let Some(known) = previous.iter().find(|old| old.fid1 == fid1 && old.fid2 == fid2) {
-        tracked.data = known.data;
-    }
-    tracked
+/// Parry's names of the features of a point.
+fn names_of(point: &ManifoldPoint, names: &Names) -> [PackedFeatureId; 2] {
+    names[usize::from(point.features.to_bits() & FeaturePair::MASK)]
 }
 
-fn packed(feature: Feature) -> PackedFeatureId {
-    PACKED[usize::from(feature.to_bits())]
+/// Whether the points are those of the step before, in the same order: mostly they are.
+fn have_names<C>(tracked: &[TrackedContact<C>], points: &[ManifoldPoint], names: &Names) -> bool {
+    let is_same = |(old, new): (&TrackedContact<C>, &ManifoldPoint)| {
+        [old.fid1, old.fid2] == names_of(new, names)
+    };
+    tracked.len() == points.len() && tracked.iter().zip(points).all(is_same)
 }
 
-/// Parry's names of the features, by [`Feature::to_bits`]: made once, as Parry's own constructors are not inlined
-/// and took a twentieth of a query.
-static PACKED: LazyLock<[PackedFeatureId; 1 << Feature::BITS]> = LazyLock::new(|| {
-    std::array::from_fn(|bits| match Feature::from_bits(bits as u8) {
+/// Makes `tracked` the contacts of other points, of which some were there before and keep their data.
+fn rename<C: Default + Copy>(
+    tracked: &mut Vec<TrackedContact<C>>,
+    points: &[ManifoldPoint],
+    names: &Names,
+    previous: &mut Vec<TrackedContact<C>>,
+) {
+    std::mem::swap(tracked, previous);
+    tracked.clear();
+    tracked.extend(points.iter().map(|point| {
+        let [fid1, fid2] = names_of(point, names);
+        let is_this = |old: &&TrackedContact<C>| old.fid1 == fid1 && old.fid2 == fid2;
+        let fresh = || TrackedContact::new(Vector::ZERO, Vector::ZERO, fid1, fid2, 0.0);
+        previous.iter().find(is_this).copied().unwrap_or_else(fresh)
+    }));
+}
+
+/// By [`FeaturePair::to_bits`].
+type Names = [[PackedFeatureId; 2]; FeaturePair::MASK as usize + 1];
+
+/// Parry's names of the features: made once, as Parry's own constructors are not inlined and took a twentieth of a
+/// query.
+static NAMES: LazyLock<Names> = LazyLock::new(|| {
+    let name = |feature| match feature {
         Feature::Vertex(i) => PackedFeatureId::vertex(u32::from(i)),
         Feature::Edge(i) => PackedFeatureId::edge(u32::from(i)),
         Feature::Face => PackedFeatureId::face(0),
+    };
+    std::array::from_fn(|bits| {
+        let features = FeaturePair::from_bits(bits as u8);
+        [features.feature1(), features.feature2()].map(name)
     })
 });
 
@@ -157,15 +183,15 @@ impl<C: Default + Copy> TriangleContacts<C> {
     pub fn update<M>(
         &mut self,
         pos12: &Pose,
-        [triangle1, triangle2]: [&Triangle; 2],
+        triangles: [&Triangle; 2],
         normal_constraints: [Option<&dyn NormalConstraints>; 2],
         prediction: Real,
         manifold: &mut ContactManifold<M, C>,
     ) {
         let placement = Placement::new(pos12);
-        let triangles = LocalTriangles::new(&placement, triangle1, triangle2);
+        let triangles = LocalTriangles::new(&placement, &triangles.map(|triangle| *triangle));
         let mut points = ManifoldPoints::new();
-        let contact = triangles.contact(prediction, self.features, &mut points);
+        let contact = triangles.contact((prediction, prediction), self.features, &mut points);
         self.features = contact.map(|contact| contact.features);
         match contact {
             Some(contact) => fill(

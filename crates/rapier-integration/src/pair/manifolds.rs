@@ -26,20 +26,13 @@ pub(super) struct Generator<'a> {
     pub(super) contacts: ContactGenerator,
 }
 
-/// Two triangles that touch.
-struct Touching {
-    triangles: [Triangle; 2],
-    local: LocalTriangles,
-    contact: TriangleContact,
-}
-
 impl Generator<'_> {
     /// Replaces `manifolds` by those of the candidates that touch, in stock order. Manifolds of pairs of triangles
     /// that still do keep their data; none is left empty. The candidates of a descent are kept for later queries.
     pub(super) fn update<M, C>(
         &self,
         scratch: &mut Scratch,
-        mut descent: Option<&mut Coherence>,
+        coherence: &mut Coherence,
         history: &mut History<M, C>,
         manifolds: &mut Vec<ContactManifold<M, C>>,
     ) where
@@ -65,20 +58,23 @@ impl Generator<'_> {
                 }
             }
             let features = kept.and_then(|place| history.features[place]).or(candidate.features);
-            let touching = self.touching(candidate, features, &mut descent, &mut points);
-            let mut manifold = match kept {
-                Some(place) => std::mem::take(&mut manifolds[place]),
-                None if touching.is_none() => continue,
-                None => history.manifold(candidate.triangle1, candidate.triangle2),
-            };
-            match touching {
-                Some(touching) => {
-                    let answer = (&touching, &mut points);
-                    self.fill(candidate, answer, &mut history.previous_points, &mut manifold);
-                    history.keep(manifold, touching.contact.features);
+            let triangles = self.triangles(candidate);
+            let local = LocalTriangles::new(self.frame.placement(), &triangles);
+            let contact = self.contact(candidate, &local, features, coherence, &mut points);
+            let Some(contact) = contact else {
+                if let Some(place) = kept {
+                    history.retire(std::mem::take(&mut manifolds[place]));
                 }
-                None => history.retire(manifold),
-            }
+                continue;
+            };
+            let mut fresh = None;
+            let manifold = match kept {
+                Some(place) => &mut manifolds[place],
+                None => fresh.insert(history.manifold(candidate.triangle1, candidate.triangle2)),
+            };
+            let (answer, previous_points) = ((&contact, &mut points), &mut history.previous_points);
+            self.fill(candidate, (&triangles, &local), answer, previous_points, manifold);
+            history.keep(std::mem::take(manifold), contact.features);
         }
         for &(_, place) in previous {
             history.retire(std::mem::take(&mut manifolds[place as usize]));
@@ -106,43 +102,45 @@ impl Generator<'_> {
         }
     }
 
+    fn triangles(&self, candidate: &Candidate) -> [Triangle; 2] {
+        let MeshPair { mesh1, mesh2, .. } = self.pair;
+        [mesh1.triangle(candidate.triangle1), mesh2.triangle(candidate.triangle2)]
+    }
+
     /// The contact of a candidate at the present pose, if it is within the prediction distance, and its points.
-    fn touching(
+    #[inline(always)]
+    fn contact(
         &self,
         candidate: &Candidate,
+        local: &LocalTriangles,
         features: Option<FeaturePair>,
-        descent: &mut Option<&mut Coherence>,
+        coherence: &mut Coherence,
         points: &mut ManifoldPoints,
-    ) -> Option<Touching> {
-        let MeshPair { mesh1, mesh2, prediction, .. } = self.pair;
-        let triangles = [mesh1.triangle(candidate.triangle1), mesh2.triangle(candidate.triangle2)];
-        let local = LocalTriangles::new(self.frame.placement(), &triangles[0], &triangles[1]);
-        let contact = local.contact(self.frame.margin(), features, points)?;
-        if let Some(coherence) = descent {
-            coherence.keep(candidate, &contact);
-        }
+    ) -> Option<TriangleContact> {
+        let prediction = self.pair.prediction;
+        let contact = local.contact((self.frame.margin(), prediction), features, points);
+        coherence.note(candidate, contact.as_ref());
         // A descent with slack finds pairs that are farther apart than the prediction distance.
-        let is_near = contact.distance <= f64::from(prediction);
-        is_near.then_some(Touching { triangles, local, contact })
+        contact.filter(|contact| contact.distance <= f64::from(prediction))
     }
 
     /// Gives the manifold of a candidate its points; none if the normal constraints reject the contact.
     fn fill<M, C>(
         &self,
         candidate: &Candidate,
-        (touching, points): (&Touching, &mut ManifoldPoints),
+        ([triangle1, triangle2], local): (&[Triangle; 2], &LocalTriangles),
+        answer: (&TriangleContact, &mut ManifoldPoints),
         previous_points: &mut Vec<TrackedContact<C>>,
         manifold: &mut ContactManifold<M, C>,
     ) where
         M: Default + Clone + Send + Sync,
         C: Default + Copy + Send + Sync,
     {
-        let Touching { triangles: [triangle1, triangle2], local, contact } = touching;
         let constraints = self.constraints(candidate);
         match self.contacts {
             ContactGenerator::Exact => {
                 let placed = (self.frame.placement(), self.pair.pos12);
-                fill(placed, local, (contact, points), constraints, previous_points, manifold);
+                fill(placed, local, answer, constraints, previous_points, manifold);
             }
             ContactGenerator::Parry => {
                 // Two triangles are a pair that Parry supports.

@@ -139,20 +139,19 @@ where
         return Answer::Unchanged;
     }
     let margin = match plan {
-        Plan::Descend { margin } => margin,
-        Plan::Nothing | Plan::Reuse { .. } => pair.prediction,
+        Plan::Descend { margin } | Plan::Reuse { margin } => margin,
+        Plan::Nothing => pair.prediction,
     };
     let mut frame = PairFrame::new(trees.0, trees.1, pair.pos12, margin);
     let flipped = pair.is_flipped();
     SCRATCH.with_borrow_mut(|scratch| {
-        if let Plan::Reuse { reach } = plan {
-            scratch.take(coherence.candidates(), reach);
+        if let Plan::Reuse { .. } = plan {
+            coherence.near(pair.prediction, &mut scratch.candidates);
         } else {
             collect(prepared, &mut frame, flipped, counters, scratch);
         }
         let generator = Generator { pair, prepared, frame: &frame, flipped, contacts };
-        let is_descent = matches!(plan, Plan::Descend { .. });
-        generator.update(scratch, is_descent.then_some(coherence), history, manifolds);
+        generator.update(scratch, coherence, history, manifolds);
     });
     match plan {
         Plan::Reuse { .. } => Answer::Reused,

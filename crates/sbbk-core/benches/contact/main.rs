@@ -43,7 +43,13 @@ fn steady(pair: &Pair) -> f64 {
 
 fn points(pair: &Pair) -> usize {
     let mut points = ManifoldPoints::new();
-    manifold(&pair.t1, &pair.t2, pair.margin, Some(pair.contact.features), &mut points);
+    manifold(
+        &pair.t1,
+        &pair.t2,
+        (pair.margin, pair.margin),
+        Some(pair.contact.features),
+        &mut points,
+    );
     black_box(&points).len()
 }
 

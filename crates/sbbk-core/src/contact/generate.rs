@@ -65,20 +65,23 @@ pub fn contact_from(
 }
 
 /// [`contact`](fn@contact) or, given `last`, [`contact_from`]; then [`clip`](super::clip) along
-/// the normal and [`push_closest`](super::push_closest), at less cost than one by one. Without a
-/// contact `out` is left empty.
+/// the normal and [`push_closest`](super::push_closest), at less cost than one by one. `out` is left
+/// empty without a contact, and by one that is farther than `reach`, which only its distance is
+/// asked of.
 pub fn manifold(
     t1: &[DVec3; 3],
     t2: &[DVec3; 3],
-    margin: f64,
+    (margin, reach): (f64, f64),
     last: Option<FeaturePair>,
     out: &mut ManifoldPoints,
 ) -> Option<TriangleContact> {
     out.clear();
     let (t1, t2) = (Triangle::new(t1), Triangle::new(t2));
     let contact = find(&t1, &t2, margin, last)?;
-    clip_triangles(&t1, &t2, contact.normal, out);
-    push_closest_points(&t1, &t2, &contact, out);
+    if contact.distance <= reach {
+        clip_triangles(&t1, &t2, contact.normal, out);
+        push_closest_points(&t1, &t2, &contact, out);
+    }
     Some(contact)
 }
 
