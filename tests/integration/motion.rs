@@ -80,7 +80,7 @@ fn walk(seed: u64, steps: usize, meshes: [&TriMesh; 2]) {
         }
         pair.ask(&kept, &walk.query);
         let expected = fresh(&unaware, &walk.query);
-        assert_same(&pair.manifolds, &expected, 2e-6 * reach(meshes[0]).max(reach(meshes[1])));
+        assert_same(&pair.manifolds, &expected, 0.0);
         manifold_count += expected.len();
     }
     let stats = kept.stats();
@@ -177,7 +177,7 @@ fn nothing_is_done_where_nothing_moved() {
     // The host may have touched the manifolds.
     pair.manifolds.remove(0);
     pair.ask(&dispatcher, &query);
-    assert_same(&pair.manifolds, &fresh(&dispatcher, &query), 1e-6);
+    assert_same(&pair.manifolds, &fresh(&dispatcher, &query), 0.0);
 }
 
 /// Would catch slack that is used up and not noticed: a long way in equal steps, each far shorter
@@ -196,7 +196,7 @@ fn many_short_steps_are_a_long_way() {
         let query = Query::new(&head, &head, pos12);
         pair.ask(&dispatcher, &query);
         let expected = fresh(&unaware, &query);
-        assert_same(&pair.manifolds, &expected, 2e-6);
+        assert_same(&pair.manifolds, &expected, 0.0);
         sets.push(sequence(&expected));
     }
     sets.dedup();

@@ -64,8 +64,14 @@ impl Coherence {
     }
 
     /// Decides how to answer for this pose, and remembers it.
-    pub(super) fn plan(&mut self, tree2: &Tree, pos12: &Pose, prediction: Real) -> Plan {
-        let now = Seen { pos12: *pos12, placement: Placement::new(pos12), margin: prediction };
+    pub(super) fn plan(
+        &mut self,
+        tree2: &Tree,
+        pos12: &Pose,
+        placement: Placement,
+        prediction: Real,
+    ) -> Plan {
+        let now = Seen { pos12: *pos12, placement, margin: prediction };
         let last = self.last.replace(now);
         if last.is_some_and(|last| last.pos12 == *pos12 && last.margin == prediction) {
             return Plan::Nothing;

@@ -5,7 +5,7 @@ use parry3d::bounding_volume::BoundingVolume;
 use parry3d::math::{Pose, Real};
 use parry3d::query::{ContactManifold, ContactManifoldsWorkspace};
 use parry3d::shape::TriMesh;
-use sbbk_core::traverse::{Counters, PairFrame};
+use sbbk_core::traverse::{Counters, PairFrame, Placement};
 
 use super::candidates::{Scratch, collect};
 use super::coherence::{Coherence, Plan};
@@ -134,7 +134,8 @@ where
     };
     let prepared = prepared.each_ref().map(PreparedRef::get);
     let trees = (&prepared[0].tree, &prepared[1].tree);
-    let plan = coherence.plan(trees.1, pair.pos12, pair.prediction);
+    let placement = Placement::new(pair.pos12);
+    let plan = coherence.plan(trees.1, pair.pos12, placement, pair.prediction);
     if plan == Plan::Nothing && history.is_of(manifolds) {
         return Answer::Unchanged;
     }
@@ -142,7 +143,7 @@ where
         Plan::Descend { margin } | Plan::Reuse { margin } => margin,
         Plan::Nothing => pair.prediction,
     };
-    let mut frame = PairFrame::new(trees.0, trees.1, pair.pos12, margin);
+    let mut frame = PairFrame::at(trees, placement, margin);
     let flipped = pair.is_flipped();
     SCRATCH.with_borrow_mut(|scratch| {
         if let Plan::Reuse { .. } = plan {

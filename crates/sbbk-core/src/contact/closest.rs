@@ -16,6 +16,15 @@ use glamx::DVec3;
 /// short way.
 pub(super) const TIE: f64 = 1.0e-13;
 
+/// How far, in triangle sizes, other vertices must be behind the closest features for these to be known without looking
+/// at others, see [`proved`]. Higher: more pairs that nearly tie take the long way. Lower: the answer depends on the
+/// features that it was tried with.
+const CLEAR_WIN: f64 = 1.0e-9;
+
+/// How far from the border of its feature a closest point must be, as a share of the geometric mean of size and distance;
+/// likewise.
+const NEAR: f64 = 1.0e-5;
+
 /// Closest points of two features and the direction from the first to the second.
 #[derive(Clone, Copy)]
 pub(super) struct Closest {
@@ -138,14 +147,35 @@ fn within(along: f64) -> bool {
     (0.0..=1.0).contains(&along)
 }
 
-/// Whether these closest points of two features are the closest points of the triangles.
+/// The closest points of two features, if they are clearly the only closest points of the triangles, so that a search
+/// finds no other features, whatever rounding does to it.
+///
+/// A search is off by a few times `TIE` of the size in the distance. Points `y` to the side of the closest ones are
+/// farther by `y²/2d`, so the closest ones must be farther than `√(2d·TIE·size)` from the border of their features. A
+/// vertex that is `w` behind the plane puts the foot of a perpendicular `d·w/size` outside, which must be more than
+/// rounding. The constants are hundreds of times larger.
 #[inline(always)]
-pub(super) fn is_proved(
-    t1: &Triangle,
-    t2: &Triangle,
-    features: FeaturePair,
-    closest: &Closest,
-) -> bool {
-    t1.is_behind(features.feature1(), closest.normal, TIE * t1.size)
-        && t2.is_behind(features.feature2(), -closest.normal, TIE * t2.size)
+pub(super) fn proved(t1: &Triangle, t2: &Triangle, features: FeaturePair) -> Option<Closest> {
+    let closest = closest(t1, t2, features)?;
+    let Closest { point1, point2, normal, distance } = closest;
+    let (feature1, feature2) = (features.feature1(), features.feature2());
+    let size = t1.size + t2.size;
+    let win = CLEAR_WIN * size * (1.0 + NEAR * size / distance);
+    let border_squared = NEAR * NEAR * distance * (size + distance);
+    let is_proved = t1.is_behind(feature1, normal, TIE * t1.size, win)
+        && t2.is_behind(feature2, -normal, TIE * t2.size, win)
+        && t1.is_well_inside(feature1, point1, border_squared)
+        && t2.is_well_inside(feature2, point2, border_squared)
+        && !are_near_parallel(t1, feature1, t2, feature2);
+    is_proved.then_some(closest)
+}
+
+#[inline(always)]
+fn are_near_parallel(t1: &Triangle, feature1: Feature, t2: &Triangle, feature2: Feature) -> bool {
+    let (Feature::Edge(i), Feature::Edge(j)) = (feature1, feature2) else {
+        return false;
+    };
+    let (e1, e2) = (t1.edges[i as usize], t2.edges[j as usize]);
+    let lengths = e1.length_squared() * e2.length_squared();
+    e1.cross(e2).length_squared() < NEAR_PARALLEL * NEAR_PARALLEL * lengths
 }

@@ -105,7 +105,9 @@ impl FeaturePair {
 
     /// The reverse of [`to_bits`](Self::to_bits); any value is allowed, higher bits do not count.
     pub const fn from_bits(bits: u8) -> Self {
-        Self(bits & Self::MASK)
+        // `111` in one of both places, which is no feature, becomes the face.
+        let none = bits & bits >> 1 & bits >> 2 & 0b001001;
+        Self(bits & Self::MASK & !(none << 2))
     }
 }
 

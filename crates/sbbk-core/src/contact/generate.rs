@@ -2,7 +2,7 @@
 
 use super::axes::{Axis, FaceAxes, best_axis};
 use super::clip::{ManifoldPoints, clip_triangles, push_closest_points};
-use super::closest::{Closest, TIE, closest, crossing, is_over, is_proved, within_edge};
+use super::closest::{Closest, TIE, closest, crossing, is_over, proved, within_edge};
 use super::edges::{closest_edges, proved_edges};
 use super::feature::{Feature, FeaturePair};
 use super::touching::{at_axis, touching};
@@ -52,9 +52,8 @@ pub fn contact(t1: &[DVec3; 3], t2: &[DVec3; 3], margin: f64) -> Option<Triangle
 }
 
 /// As [`contact`](fn@contact), given the features that made the contact in the step before: 20 to
-/// 45 ns when they still do, apart; 120 when crossing. Whatever `last` is, the contact is that of `contact`, up to
-/// rounding; where several features are equally close (parallel edges and faces), `last` chooses
-/// among them.
+/// 45 ns when they still do, apart; 120 when crossing. Whatever `last` is, the contact is that of `contact`, bit for
+/// bit: what was before is a hint where to look, never a part of the answer.
 pub fn contact_from(
     t1: &[DVec3; 3],
     t2: &[DVec3; 3],
@@ -96,29 +95,43 @@ fn find(
     if !(t1.size + t2.size).is_finite() {
         return None;
     }
-    // Both ways find triangles apart only.
-    if !last.is_some_and(FeaturePair::is_crossing) {
-        if let Some(contact) = last.and_then(|last| still(t1, t2, last)) {
-            return (contact.distance <= margin).then_some(contact);
+    // Triangles that crossed probably still do: then the ways that find only triangles apart are not tried.
+    if last.is_some_and(FeaturePair::is_crossing) {
+        let contact = search(t1, t2, margin);
+        if contact.is_some_and(|contact| contact.features.is_crossing()) {
+            return contact;
         }
-        if let Some(contact) = apart(t1, t2) {
-            return (contact.distance <= margin).then_some(contact);
-        }
+    } else if let Some(last) = last
+        && let Some(contact) = still(t1, t2, last)
+    {
+        return (contact.distance <= margin).then_some(contact);
+    }
+    if let Some(contact) = apart(t1, t2) {
+        return (contact.distance <= margin).then_some(contact);
     }
     search(t1, t2, margin)
 }
 
-/// The contact of the given features if it can be proved that no others are closer.
+/// The contact of the given features if it can be proved that no others are as close.
 #[inline(always)]
 fn still(t1: &Triangle, t2: &Triangle, last: FeaturePair) -> Option<TriangleContact> {
-    let closest = closest(t1, t2, last)?;
-    is_proved(t1, t2, last, &closest).then(|| TriangleContact::new(last, closest))
+    clearly_apart(t1, t2, last, proved(t1, t2, last)?)
 }
 
 /// The contact of triangles whose closest features are edges or vertices that are found at once.
 #[inline(always)]
 fn apart(t1: &Triangle, t2: &Triangle) -> Option<TriangleContact> {
     let (features, closest) = proved_edges(t1, t2)?;
+    clearly_apart(t1, t2, features, closest)
+}
+
+#[inline(always)]
+fn clearly_apart(
+    t1: &Triangle,
+    t2: &Triangle,
+    features: FeaturePair,
+    closest: Closest,
+) -> Option<TriangleContact> {
     let is_clear = closest.distance > TOUCHING * (t1.size + t2.size);
     is_clear.then(|| TriangleContact::new(features, closest))
 }
@@ -141,7 +154,19 @@ fn search(t1: &Triangle, t2: &Triangle, margin: f64) -> Option<TriangleContact> 
             touching(t1, t2, best)
         }
     };
+    let contact = from_features(t1, t2, contact);
     (contact.distance <= margin).then_some(contact)
+}
+
+/// A contact of triangles apart as [`closest`] gives it, so that the same features give the same digits whichever
+/// way they were found.
+#[inline(always)]
+fn from_features(t1: &Triangle, t2: &Triangle, contact: TriangleContact) -> TriangleContact {
+    if contact.features.is_crossing() || contact.distance <= TOUCHING * (t1.size + t2.size) {
+        return contact;
+    }
+    let features = contact.features;
+    closest(t1, t2, features).map_or(contact, |closest| TriangleContact::new(features, closest))
 }
 
 /// Triangles that a face separates: its nearest vertex is closest if it is over the face. If both
@@ -209,7 +234,7 @@ fn edges_at(t1: &Triangle, i: usize, t2: &Triangle, j: usize, axis: &Axis) -> (D
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glamx::DQuat;
+    use glamx::{DQuat, DVec3};
     use proptest::prelude::*;
 
     fn point() -> impl Strategy<Value = DVec3> {
@@ -218,19 +243,6 @@ mod tests {
 
     fn triangle() -> impl Strategy<Value = [DVec3; 3]> {
         prop::array::uniform3(point())
-    }
-
-    /// Two contacts of one pair, found in different ways.
-    fn assert_same(cold: Option<TriangleContact>, warm: Option<TriangleContact>) {
-        let (cold, warm) = match (cold, warm) {
-            (None, None) => return,
-            (Some(cold), Some(warm)) => (cold, warm),
-            different => panic!("{different:?}"),
-        };
-        assert!((cold.distance - warm.distance).abs() < 1.0e-11, "{cold:?} {warm:?}");
-        if cold.distance > 1.0e-6 {
-            assert!(cold.normal.angle_between(warm.normal) < 1.0e-6, "{cold:?} {warm:?}");
-        }
     }
 
     /// A triangle drifts and turns through another. Would catch a proof that accepts features which
@@ -250,8 +262,8 @@ mod tests {
                 t2 = t2.map(|v| turn * v + 0.02 * drift);
                 let cold = contact(&t1, &t2, f64::INFINITY).unwrap();
                 let warm = contact_from(&t1, &t2, f64::INFINITY, last).unwrap();
-                assert_same(Some(cold), Some(warm));
-                assert_same(contact(&t1, &t2, 0.3), contact_from(&t1, &t2, 0.3, last));
+                assert_eq!(cold, warm);
+                assert_eq!(contact(&t1, &t2, 0.3), contact_from(&t1, &t2, 0.3, last));
                 apart += u32::from(cold.distance > 0.0);
                 crossing += u32::from(cold.distance < 0.0);
                 kept += u32::from(still(&Triangle::new(&t1), &Triangle::new(&t2), last).is_some());
@@ -271,7 +283,29 @@ mod tests {
             let t2 = t2.map(|v| v + 1.5 * offset);
             let cold = contact(&t1, &t2, 0.5);
             for bits in 0..=FeaturePair::MASK {
-                assert_same(cold, contact_from(&t1, &t2, 0.5, FeaturePair::from_bits(bits)));
+                let warm = contact_from(&t1, &t2, 0.5, FeaturePair::from_bits(bits));
+                prop_assert_eq!(cold, warm);
+            }
+        }
+
+        /// Where many features tie, nearly or to the last digit: corners on a small lattice, some a
+        /// little beside it, so that edges and faces are parallel, or nearly so.
+        #[test]
+        fn any_last_features_where_features_tie(
+            corners in prop::array::uniform6(prop::array::uniform3(-2_i8..=2)),
+            beside in prop::array::uniform6(prop::array::uniform3(-1_i8..=1)),
+            nudge in prop::sample::select(vec![0.0, 1e-15, 1e-12, 1e-10, 1e-9, 1e-8, 1e-6, 1e-3]),
+        ) {
+            let corner = |i: usize| {
+                let [x, y] = [corners[i], beside[i]].map(|c| DVec3::from_array(c.map(f64::from)));
+                x + nudge * y
+            };
+            let t1 = [0, 1, 2].map(corner);
+            let t2 = [3, 4, 5].map(corner);
+            let cold = contact(&t1, &t2, 10.0);
+            for bits in 0..=FeaturePair::MASK {
+                let warm = contact_from(&t1, &t2, 10.0, FeaturePair::from_bits(bits));
+                prop_assert_eq!(cold, warm);
             }
         }
     }

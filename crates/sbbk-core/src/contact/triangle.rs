@@ -69,17 +69,41 @@ impl<'a> Triangle<'a> {
         perpendicular(longest, shorter).map_or(DVec3::ZERO, |normal| normal * area)
     }
 
-    /// Whether the triangle lies behind the plane through a feature that faces a direction, and
-    /// the feature in the plane, up to `slack`.
+    /// Whether a feature lies in a plane that faces a direction, up to `slack`, and the rest of the triangle behind it by
+    /// at least `win`.
     #[inline(always)]
-    pub fn is_behind(&self, feature: Feature, direction: DVec3, slack: f64) -> bool {
+    pub fn is_behind(&self, feature: Feature, direction: DVec3, slack: f64, win: f64) -> bool {
         let i = feature.vertex();
         let next = self.edges[i].dot(direction);
         let previous = -self.edges[PREVIOUS[i]].dot(direction);
         match feature {
-            Feature::Vertex(_) => next <= slack && previous <= slack,
-            Feature::Edge(_) => next.abs() <= slack && previous <= slack,
+            Feature::Vertex(_) => next <= -win && previous <= -win,
+            Feature::Edge(_) => next.abs() <= slack && previous <= -win,
             Feature::Face => next.abs() <= slack && previous.abs() <= slack,
+        }
+    }
+
+    /// Whether a point of a feature is farther than some distance from the feature's border; never so in a thin triangle.
+    #[inline(always)]
+    pub fn is_well_inside(&self, feature: Feature, point: DVec3, border_squared: f64) -> bool {
+        match feature {
+            Feature::Vertex(_) => true,
+            Feature::Edge(_) => {
+                let i = feature.vertex();
+                let far = |v: usize| (point - self.vertices[v]).length_squared() > border_squared;
+                far(i) && far(NEXT[i])
+            }
+            Feature::Face => {
+                let normal = self.area_vector();
+                let area_squared = normal.length_squared();
+                // Twice the area beside an edge is the distance from it times its length.
+                let far = |i: usize| {
+                    let beside = self.edges[i].cross(point - self.vertices[i]).dot(normal);
+                    let least = border_squared * self.edges[i].length_squared() * area_squared;
+                    beside > 0.0 && beside * beside > least
+                };
+                far(0) && far(1) && far(2) && !self.is_thin(area_squared)
+            }
         }
     }
 

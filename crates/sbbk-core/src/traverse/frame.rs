@@ -60,15 +60,24 @@ impl<const AXES: usize> PairFrame<AXES> {
     /// The frame of `tree2` placed at `pos12` in the frame of `tree1`. Triangles within `margin` of each other
     /// will be found.
     pub fn new(tree1: &Tree<AXES>, tree2: &Tree<AXES>, pos12: &Pose3, margin: f32) -> Self {
-        let placement = Placement::new(pos12);
-        let Placement { rotation, inverse, .. } = placement;
+        Self::at((tree1, tree2), Placement::new(pos12), margin)
+    }
+
+    /// As [`new`](Self::new), for a pose that is known already.
+    pub fn at(
+        (tree1, tree2): (&Tree<AXES>, &Tree<AXES>),
+        placement: Placement,
+        margin: f32,
+    ) -> Self {
+        let Placement { rotation, translation, inverse } = placement;
+        let translation = translation.as_vec3();
         // A row of the inverse is 1/s long: distances along it shrink by that.
         let inverse_scale =
             [0, 1, 2].map(|i| inverse.row(i).length()).into_iter().fold(0.0, f64::max);
         let scale = [0, 1, 2].map(|i| rotation.row(i).length()).into_iter().fold(0.0, f64::max);
 
         let (m1, m2) = (tree1.magnitude(), tree2.magnitude());
-        let t = pos12.translation.abs().max_element();
+        let t = translation.abs().max_element();
         let rounding = gamma(16) * (m1 + t + 2.0 * scale as f32 * m2);
         let rounding2 = gamma(16) * (m2 + 2.0 * inverse_scale as f32 * (m1 + t));
         let margin2 = (f64::from(margin) * inverse_scale) as f32;
@@ -76,7 +85,7 @@ impl<const AXES: usize> PairFrame<AXES> {
             placement,
             margin,
             rounding,
-            translation_lanes: pos12.translation.to_array().map(f32x4::splat),
+            translation_lanes: translation.to_array().map(f32x4::splat),
             axes1: BoxAxes::new(rotation, (margin + rounding).next_up()),
             axes2: BoxAxes::new(inverse, (margin2 + rounding2).next_up()),
             correspondence: None,
