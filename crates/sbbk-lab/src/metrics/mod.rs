@@ -6,6 +6,7 @@
 
 mod environment;
 mod error;
+mod fingerprint;
 mod near;
 mod pose_pairs;
 mod run;
@@ -15,6 +16,7 @@ mod world_state;
 
 pub use environment::Environment;
 pub use error::{ErrorCount, Judge, Truth, is_right_depth, sample_indices};
+pub use fingerprint::Fingerprint;
 pub use pose_pairs::{PosePairs, Sweep};
 pub use run::{Run, RunPlan, Runner, Sample, run};
 pub use statistics::{Summary, geometric_mean, ratio};

@@ -11,6 +11,7 @@
 mod comparison;
 pub mod contacts;
 mod cut;
+pub mod determinism;
 mod error;
 mod helicopter;
 mod meshes;
