@@ -7,6 +7,8 @@ mod allocation;
 mod bits;
 /// What a host may expect of calls that follow each other.
 mod contract;
+/// Same inputs, same bits.
+mod determinism;
 /// A mesh that changes while pairs know it.
 mod edited_mesh;
 /// SBBK's own contacts against the truth, and against stock where stock is right.

@@ -19,6 +19,7 @@ mod outline;
 mod pile;
 mod progress;
 mod same_poses;
+pub mod soak;
 mod turns;
 
 pub use comparison::{ComparePlan, Comparison, compare};

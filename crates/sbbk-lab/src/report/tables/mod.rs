@@ -5,12 +5,14 @@ mod determinism;
 mod helicopter;
 mod meshes;
 mod pile;
+mod soak;
 
 pub use contacts::{by_mesh, by_size, contact_generators, contacts, queries};
 pub use determinism::{fingerprints, threads};
 pub use helicopter::{frames, overlapping_area};
 pub use meshes::costs;
 pub use pile::{accuracy, runs, same_poses, sizes};
+pub use soak::soak;
 
 use super::Grid;
 use crate::study::Comparison;

@@ -1,0 +1,249 @@
+//! A long run in which bodies and meshes come and go all the time: does anything grow, slow down
+//! or get lost?
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use glamx::Vec3;
+use memory_stats::memory_stats;
+use oorandom::Rand32;
+use rapier_integration::{SbbkConfig, SbbkDispatcher};
+use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
+use rapier3d::math::Vector;
+use rapier3d::pipeline::PhysicsWorld;
+use serde::Serialize;
+
+use super::{Progress, StudyError};
+use crate::backend::{Probe, Timed};
+use crate::mesh::{self, Mesh};
+use crate::metrics::{Environment, ErrorCount, Judge, Summary, sample_indices, timed_step};
+use crate::scene::Solid;
+
+/// How long, and how much at once.
+#[derive(Clone, Copy, Debug)]
+pub struct SoakPlan {
+    /// Steps in all.
+    pub steps: usize,
+    /// Steps between two new bodies.
+    pub spawn_every: usize,
+    /// Bodies at once: with one more, the oldest is taken away.
+    pub body_limit: usize,
+    /// Steps of one row of the table.
+    pub window: usize,
+    /// Steps between two samples.
+    pub sample_every: usize,
+    /// Mesh pairs judged in a sampled step at most.
+    pub sample_size: usize,
+}
+
+impl Default for SoakPlan {
+    /// 10,000 steps, 40 bodies at once, 2500 in all.
+    fn default() -> Self {
+        Self {
+            steps: 10_000,
+            spawn_every: 4,
+            body_limit: 40,
+            window: 1000,
+            sample_every: 100,
+            sample_size: 12,
+        }
+    }
+}
+
+/// What trees of meshes that are gone may keep: little, so that the bound is reached soon and memory must be flat from
+/// then on.
+const IDLE_TREE_BYTES: usize = 1 << 20;
+
+/// Some steps in a row.
+#[derive(Clone, Debug, Serialize)]
+pub struct SoakRow {
+    /// The last one of them.
+    pub step: usize,
+    /// Milliseconds a step, of those that were not sampled.
+    pub time: Summary,
+    /// Memory of the process at the end, in bytes; `None` where the system does not tell.
+    pub memory: Option<usize>,
+    /// Trees at the end.
+    pub trees: usize,
+    /// Those of them that no pair uses.
+    pub idle_trees: usize,
+    /// Memory of all trees, in bytes.
+    pub tree_bytes: usize,
+    /// Trees built since the start.
+    pub tree_builds: u64,
+    /// Answers judged in these steps.
+    pub errors: ErrorCount,
+}
+
+/// A whole run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Soak {
+    /// Where.
+    pub environment: Environment,
+    /// Bodies that there were at once.
+    pub body_limit: usize,
+    /// Bodies created in all.
+    pub body_count: usize,
+    /// The run, piece by piece.
+    pub rows: Vec<SoakRow>,
+    /// Trees left after all bodies were taken away and idle trees released.
+    pub trees_left: usize,
+}
+
+impl Soak {
+    /// All judged answers together.
+    pub fn errors(&self) -> ErrorCount {
+        self.rows.iter().map(|row| row.errors).sum()
+    }
+}
+
+/// Runs it.
+///
+/// Errors: a mesh of the scene has no triangles.
+pub fn soak(plan: &SoakPlan, progress: &Progress) -> Result<Soak, StudyError> {
+    let mut run = SoakRun::new()?;
+    let mut rows = Vec::new();
+    progress.phase("bodies come and go", plan.steps);
+    let mut window = (Vec::new(), ErrorCount::default());
+    for step in 1..=plan.steps {
+        if step % plan.spawn_every == 0 {
+            run.spawn(plan.body_limit)?;
+        }
+        if step % plan.sample_every == 0 {
+            window.1 += run.sampled_step(plan.sample_size);
+        } else {
+            window.0.push(timed_step(&mut run.world, &run.probe).step);
+        }
+        if step % plan.window == 0 {
+            let (times, errors) = std::mem::take(&mut window);
+            rows.extend(Summary::of(times).map(|time| run.row(step, time, errors)));
+        }
+        progress.step();
+    }
+    progress.finish();
+    let body_count = run.body_count;
+    let trees_left = run.clear();
+    let environment = Environment::detect();
+    Ok(Soak { environment, body_limit: plan.body_limit, body_count, rows, trees_left })
+}
+
+struct SoakRun {
+    world: PhysicsWorld,
+    dispatcher: Arc<SbbkDispatcher>,
+    probe: Probe,
+    random: Rand32,
+    /// Oldest first.
+    bodies: VecDeque<RigidBodyHandle>,
+    /// A mesh that many bodies share.
+    head: Solid,
+    body_count: usize,
+}
+
+impl SoakRun {
+    /// A mesh floor, and nothing on it.
+    fn new() -> Result<Self, StudyError> {
+        let mut world = PhysicsWorld::new();
+        let floor = Solid::new(&mesh::terrain(24.0, 24, 0.6))?;
+        world.insert(RigidBodyBuilder::fixed(), floor.collider());
+        let mut config = SbbkConfig::default();
+        config.idle_tree_bytes = IDLE_TREE_BYTES;
+        let dispatcher = Arc::new(SbbkDispatcher::new(config));
+        let probe = Probe::default();
+        world.narrow_phase.set_query_dispatcher(Timed::new(dispatcher.clone(), probe.clone()));
+        Ok(Self {
+            world,
+            dispatcher,
+            probe,
+            random: Rand32::new(1),
+            bodies: VecDeque::new(),
+            head: Solid::new(&mesh::monkey_head_with(6).centred().scaled_to(1.5))?,
+            body_count: 0,
+        })
+    }
+
+    /// One more body. Of each four, one has a mesh that it shares with others, two have a mesh of
+    /// their own, and one exchanges the mesh of a living body.
+    fn spawn(&mut self, limit: usize) -> Result<(), StudyError> {
+        self.body_count += 1;
+        let solid = match self.body_count % 4 {
+            0 => self.head.clone(),
+            _ => Solid::new(&self.new_mesh())?,
+        };
+        let collider = solid.collider().build();
+        if self.body_count % 4 == 1
+            && let Some(&body) = self.bodies.back()
+        {
+            let old = self.world.bodies[body].colliders()[0];
+            self.world.colliders[old].set_shape(collider.shared_shape().clone());
+        }
+        let place = Vector::new(self.between(-4.0, 4.0), 6.0, self.between(-4.0, 4.0));
+        let body = RigidBodyBuilder::dynamic().translation(place);
+        self.bodies.push_back(self.world.insert(body, collider).0);
+        while self.bodies.len() > limit {
+            self.remove_oldest();
+        }
+        Ok(())
+    }
+
+    fn remove_oldest(&mut self) {
+        if let Some(body) = self.bodies.pop_front() {
+            self.world.remove_body(body);
+        }
+    }
+
+    /// A mesh that never was before.
+    fn new_mesh(&mut self) -> Mesh {
+        let size = self.between(0.5, 1.5);
+        let stretch = Vec3::new(self.between(0.7, 1.3), self.between(0.7, 1.3), 1.0);
+        let detail = self.random.rand_range(4..12);
+        let mesh = match self.random.rand_range(0..3) {
+            0 => mesh::ball(0.5 * size, detail),
+            1 => mesh::torus(0.4 * size, 0.15 * size, 2 * detail, detail),
+            _ => mesh::monkey_head_with(detail / 2 + 2).centred().scaled_to(size),
+        };
+        mesh.mapped(|vertex| stretch * vertex)
+    }
+
+    fn between(&mut self, low: f32, high: f32) -> f32 {
+        low + (high - low) * self.random.rand_float()
+    }
+
+    /// Steps once and judges what Rapier was told.
+    fn sampled_step(&mut self, limit: usize) -> ErrorCount {
+        self.probe.start_recording();
+        self.world.step();
+        let answers = self.probe.take_answers();
+        let shapes = self.world.colliders.iter().map(|(_, collider)| collider.shared_shape());
+        let judge = Judge::new(shapes);
+        let sampled = sample_indices(answers.len(), limit).into_iter();
+        let errors =
+            sampled.map(|index| judge.truth(&answers[index].question).judge(&answers[index])).sum();
+        ErrorCount { sampled_from: answers.len(), ..errors }
+    }
+
+    fn row(&self, step: usize, time: Summary, errors: ErrorCount) -> SoakRow {
+        let stats = self.dispatcher.stats();
+        SoakRow {
+            step,
+            time,
+            memory: memory_stats().map(|memory| memory.physical_mem),
+            trees: stats.trees,
+            idle_trees: stats.idle_trees,
+            tree_bytes: stats.tree_bytes,
+            tree_builds: stats.tree_builds,
+            errors,
+        }
+    }
+
+    /// Takes everything away. The trees that are left.
+    fn clear(mut self) -> usize {
+        while !self.bodies.is_empty() {
+            self.remove_oldest();
+        }
+        for _ in 0..3 {
+            self.world.step();
+        }
+        self.dispatcher.release_idle_trees();
+        self.dispatcher.stats().trees
+    }
+}
