@@ -28,9 +28,9 @@ fn above(height: Real) -> Pose {
 fn a_mesh_that_is_not_finite_is_answered_by_stock_and_counted() {
     let dispatcher = SbbkDispatcher::default();
     let (broken, whole) = (broken_ball(), shape(&mesh::ball(1.0, 4)));
-    let reason = dispatcher.check(&broken).unwrap_err().to_string();
+    let reason = dispatcher.prepare(&broken).unwrap_err().to_string();
     assert!(reason.contains("is not finite") && reason.contains("NaN"), "{reason}");
-    assert_eq!(dispatcher.check(&whole), Ok(()));
+    assert!(dispatcher.prepare(&whole).is_ok());
     assert_eq!(dispatcher.stats().unsupported_queries, 0);
     let query = Query::new(&broken, &whole, above(1.9));
     for (count, query) in [query, query.swapped()].iter().enumerate() {

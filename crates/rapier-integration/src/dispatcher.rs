@@ -53,14 +53,6 @@ impl SbbkDispatcher {
         self.cache.prepare(mesh).map(PreparedTree)
     }
 
-    /// Whether a mesh can be answered from a tree: [`prepare`](Self::prepare) without keeping it.
-    ///
-    /// # Errors
-    /// As `prepare`.
-    pub fn check(&self, mesh: &TriMesh) -> Result<(), BuildError> {
-        self.prepare(mesh).map(drop)
-    }
-
     /// Counts of trees and queries.
     pub fn stats(&self) -> SbbkStats {
         self.counters.stats(self.cache.counts())

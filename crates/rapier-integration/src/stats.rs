@@ -20,7 +20,7 @@ pub struct SbbkStats {
     /// How often a pair of colliders needed a tree that was there.
     pub tree_hits: u64,
     /// Mesh pairs that Parry had to answer as a mesh cannot have a tree: see
-    /// [`SbbkDispatcher::check`](crate::SbbkDispatcher::check).
+    /// [`SbbkDispatcher::prepare`](crate::SbbkDispatcher::prepare).
     pub unsupported_queries: u64,
     /// Mesh pairs answered from trees. Counted, like the following, if
     /// [`SbbkConfig::count_queries`](crate::SbbkConfig::count_queries) is set.
