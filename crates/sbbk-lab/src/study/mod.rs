@@ -12,6 +12,7 @@ mod comparison;
 pub mod contacts;
 mod cut;
 mod error;
+pub mod front;
 mod helicopter;
 mod meshes;
 mod outline;

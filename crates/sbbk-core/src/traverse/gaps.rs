@@ -1,0 +1,258 @@
+//! How far apart four pairs of nodes are at least: the overlap test of [`overlap`](super::overlap) with the number
+//! instead of the answer.
+//!
+//! A gap is a lower bound of the distance, in frame 1 and without the margin, between whatever is in two volumes; it is
+//! negative or zero where the volumes meet. On an axis of unit length it is the distance of the projections; over the
+//! three face axes of one tree together, which are at right angles, the root of the sum of squares.
+//!
+//! # Rounding
+//!
+//! With the bound of [`PairFrame`], `r = γ_16·(M1 + T + 2·s·M2)`: that bound includes the addition of a margin, here of
+//! `r` itself. New are the difference of offset and reach, and the product with a length: two roundings of something
+//! that is at most `2·(M1 + T + 1.8·s·M2)`, less than `γ_4` of the sum in `r`. A gap is reduced by `21/16·r`, which is
+//! more than `γ_20` of it. The root of squares loses at most `γ_5` of itself.
+
+use glamx::Vec3;
+use wide::f32x4;
+
+use super::correspondence::Correspondence;
+use super::frame::PairFrame;
+use super::overlap::{Spread, dot};
+use crate::leaf::lane::each;
+use crate::tree::Children;
+use crate::volumes::rounding::gamma;
+use crate::volumes::{DirectionSet, Directions};
+
+/// The bound of the gaps over that of the overlap test.
+const ROUNDING: f32 = 21.0 / 16.0;
+
+/// What gaps need of a pair of trees beyond [`PairFrame`].
+#[derive(Copy, Clone, Debug)]
+pub(crate) struct GapFrame {
+    rounding1: f32x4,
+    rounding2: f32x4,
+    /// A unit of frame 2 in frame 1, rounded down.
+    unit2: f32x4,
+    /// Of the slabs.
+    slab_rounding: f32,
+}
+
+impl GapFrame {
+    pub(crate) fn new<const AXES: usize>(frame: &PairFrame<AXES>) -> Self {
+        let inverse = &frame.placement.inverse;
+        let scale = [0, 1, 2].map(|i| inverse.row(i).length()).into_iter().fold(0.0, f64::max);
+        Self {
+            rounding1: f32x4::splat(ROUNDING * frame.rounding),
+            rounding2: f32x4::splat(ROUNDING * frame.rounding2),
+            unit2: f32x4::splat((1.0 / scale) as f32 * (1.0 - gamma(2))),
+            slab_rounding: 6.0 * ROUNDING * frame.rounding,
+        }
+    }
+}
+
+/// An axis of separation, by number: the face axes of tree 1 and tree 2, then the slabs.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(crate) struct AxisIndex(pub(crate) u8);
+
+/// Gaps lane by lane, and one axis that alone shows all of those beyond the margin, if it was asked for and there is one.
+#[derive(Copy, Clone, Debug)]
+pub(crate) struct Gaps {
+    pub(crate) gaps: f32x4,
+    pub(crate) axis: Option<AxisIndex>,
+    /// Lanes that were compared by k-DOPs.
+    pub(crate) kdop_lanes: u32,
+}
+
+/// One side of four pairs: the nodes and how they lie over the lanes.
+pub(crate) type Side<'a, 'b, const AXES: usize, S> = (&'a Children<'b, AXES>, S);
+
+/// The lanes that each axis shows to be beyond the margin.
+struct AxisLanes([u32; 32]);
+
+impl AxisLanes {
+    fn first_with(&self, lanes: u32) -> Option<AxisIndex> {
+        let axis = self.0.iter().position(|&shown| lanes != 0 && shown & lanes == lanes);
+        axis.map(|axis| AxisIndex(axis as u8))
+    }
+}
+
+impl<const AXES: usize> PairFrame<AXES>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    /// The gaps of the pairs in `lanes`. Where the boxes of all of them are beyond the margin, k-DOPs are not asked.
+    #[inline(always)]
+    pub(crate) fn gaps<const AXIS: bool>(
+        &mut self,
+        with: &GapFrame,
+        side1: Side<'_, '_, AXES, impl Spread>,
+        side2: Side<'_, '_, AXES, impl Spread>,
+        lanes: u32,
+    ) -> Gaps {
+        let margin = f32x4::splat(self.margin());
+        let mut shown = AxisLanes([0; 32]);
+        let mut note = |axis: usize, gap: f32x4| {
+            if AXIS {
+                shown.0[axis] = gap.simd_gt(margin).to_bitmask();
+            }
+        };
+        let mut gaps = self.box_gaps(with, side1, side2, &mut note);
+        let meeting = !gaps.simd_gt(margin).to_bitmask() & lanes;
+        let mut kdop_lanes = 0;
+        if let (Some(kdops1), Some(kdops2)) = (side1.0.kdop, side2.0.kdop)
+            && meeting != 0
+        {
+            kdop_lanes = meeting;
+            let sides = ((kdops1, side1.1), (kdops2, side2.1));
+            for axis in 0..AXES {
+                let gap = self.correspondence().slab_gap(with, axis, sides.0, sides.1);
+                note(6 + axis, gap);
+                gaps = gaps.fast_max(gap);
+            }
+        }
+        let apart = gaps.simd_gt(margin).to_bitmask() & lanes;
+        let axis = if AXIS { shown.first_with(apart) } else { None };
+        Gaps { gaps, axis, kdop_lanes }
+    }
+
+    /// The gaps on one axis; `None` where it is a slab and a side has none.
+    #[inline(always)]
+    pub(crate) fn gaps_on(
+        &mut self,
+        with: &GapFrame,
+        AxisIndex(axis): AxisIndex,
+        side1: Side<'_, '_, AXES, impl Spread>,
+        side2: Side<'_, '_, AXES, impl Spread>,
+    ) -> Option<f32x4> {
+        let axis = usize::from(axis);
+        match axis {
+            0..3 => Some(self.gap1(with, axis, self.offset(axis, side1, side2), side1, side2)),
+            3..6 => {
+                let offset = each(|i| self.offset(i, side1, side2));
+                Some(self.gap2(with, axis - 3, &offset, side1, side2))
+            }
+            _ => {
+                let kdops = (side1.0.kdop?, side2.0.kdop?);
+                let sides = ((kdops.0, side1.1), (kdops.1, side2.1));
+                Some(self.correspondence().slab_gap(with, axis - 6, sides.0, sides.1))
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn box_gaps(
+        &self,
+        with: &GapFrame,
+        side1: Side<'_, '_, AXES, impl Spread>,
+        side2: Side<'_, '_, AXES, impl Spread>,
+        note: &mut impl FnMut(usize, f32x4),
+    ) -> f32x4 {
+        let offset = each(|axis| self.offset(axis, side1, side2));
+        let gaps1 = each(|axis| self.gap1(with, axis, offset[axis], side1, side2));
+        let gaps2 = each(|axis| self.gap2(with, axis, &offset, side1, side2));
+        for axis in 0..3 {
+            note(axis, gaps1[axis]);
+            note(3 + axis, gaps2[axis]);
+        }
+        combined(&gaps1).fast_max(combined(&gaps2))
+    }
+
+    /// Between the centres, along an axis of frame 1.
+    #[inline(always)]
+    fn offset(
+        &self,
+        axis: usize,
+        (children1, spread1): Side<'_, '_, AXES, impl Spread>,
+        (children2, spread2): Side<'_, '_, AXES, impl Spread>,
+    ) -> f32x4 {
+        let centre2 = each(|i| spread2.spread(&children2.centre[i]));
+        self.translation_lanes[axis] + dot(&self.axes1.rows[axis], &centre2)
+            - spread1.spread(&children1.centre[axis])
+    }
+
+    #[inline(always)]
+    fn gap1(
+        &self,
+        with: &GapFrame,
+        axis: usize,
+        offset: f32x4,
+        (children1, spread1): Side<'_, '_, AXES, impl Spread>,
+        (children2, spread2): Side<'_, '_, AXES, impl Spread>,
+    ) -> f32x4 {
+        let extent2 = each(|i| spread2.spread(&children2.extent[i]));
+        let reach = spread1.spread(&children1.extent[axis])
+            + dot(&self.axes1.absolute_rows[axis], &extent2)
+            + with.rounding1;
+        offset.abs() - reach
+    }
+
+    #[inline(always)]
+    fn gap2(
+        &self,
+        with: &GapFrame,
+        axis: usize,
+        offset: &[f32x4; 3],
+        (children1, spread1): Side<'_, '_, AXES, impl Spread>,
+        (children2, spread2): Side<'_, '_, AXES, impl Spread>,
+    ) -> f32x4 {
+        let extent1 = each(|i| spread1.spread(&children1.extent[i]));
+        let reach = spread2.spread(&children2.extent[axis])
+            + dot(&self.axes2.absolute_rows[axis], &extent1)
+            + with.rounding2;
+        (dot(&self.axes2.rows[axis], offset).abs() - reach) * with.unit2
+    }
+}
+
+/// Of gaps along three axes at right angles: the root of the sum of squares, or the largest if none is positive.
+#[inline(always)]
+fn combined(gaps: &[f32x4; 3]) -> f32x4 {
+    let zero = f32x4::splat(0.0);
+    let largest = gaps[0].fast_max(gaps[1]).fast_max(gaps[2]);
+    let [x, y, z] = each(|axis| gaps[axis].fast_max(zero));
+    let root = (x * x + y * y + z * z).sqrt() * f32x4::splat(1.0 - gamma(8));
+    largest.fast_max(root & largest.simd_gt(zero))
+}
+
+impl<const AXES: usize> Correspondence<AXES>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    /// Along a slab of tree 1, over its length. See [`Correspondence::new`] for the rounding.
+    #[inline(always)]
+    fn slab_gap(
+        &self,
+        with: &GapFrame,
+        axis: usize,
+        (kdops1, spread1): ((&[[f32; 2]; AXES], &[[f32; 2]; AXES]), impl Spread),
+        (kdops2, spread2): ((&[[f32; 2]; AXES], &[[f32; 2]; AXES]), impl Spread),
+    ) -> f32x4 {
+        let slab = &self.slabs[axis];
+        let mut gap = f32x4::splat(slab.offset) - spread1.spread(&kdops1.0[axis]);
+        let mut reach = f32x4::splat(with.slab_rounding) + spread1.spread(&kdops1.1[axis]);
+        for term in 0..3 {
+            let index = usize::from(slab.indices[term]);
+            let coefficient = f32x4::splat(slab.coefficients[term]);
+            gap += coefficient * spread2.spread(&kdops2.0[index]);
+            reach += coefficient.abs() * spread2.spread(&kdops2.1[index]);
+        }
+        let inverse_lengths =
+            const { inverse_lengths(&<Directions<AXES> as DirectionSet<AXES>>::DIRECTIONS) };
+        (gap.abs() - reach) * f32x4::splat(inverse_lengths[axis])
+    }
+}
+
+/// `1/|d|` of directions with components in {-1, 0, 1}, rounded down.
+const fn inverse_lengths<const AXES: usize>(directions: &[Vec3; AXES]) -> [f32; AXES] {
+    let mut inverse = [1.0; AXES];
+    let mut axis = 0;
+    while axis < AXES {
+        let d = directions[axis];
+        inverse[axis] = match (d.x * d.x + d.y * d.y + d.z * d.z) as u32 {
+            1 => 1.0,
+            2 => 0.707_106_7,
+            _ => 0.577_350_2,
+        };
+        axis += 1;
+    }
+    inverse
+}
