@@ -13,8 +13,9 @@ use super::opening::{Opening, SlotPair};
 use crate::traverse::AxisIndex;
 
 /// Pairs that meet are not asked to have parted before motion of this many times what it takes at least. More: fewer
-/// tests, and more pairs of leaves that have parted are handed out. 1, 2 and 4 were tried, see [`front`](super).
-pub(super) const PATIENCE: f32 = 2.0;
+/// tests, and more pairs of leaves that have parted are handed out. In slow motion of 2596 triangles: with 1, 695 node
+/// tests a query; with 2, 527; with 4, 418, and a fifth less time than with 2.
+pub(super) const PATIENCE: f32 = 4.0;
 
 /// A pair of nodes that met.
 #[derive(Copy, Clone, Debug)]

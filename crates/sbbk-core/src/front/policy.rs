@@ -4,7 +4,7 @@ use crate::tree::Tree;
 
 /// A front is given up when more than this share of its cells is to be tested. A test costs more than one of a fresh
 /// descent, as it measures; besides, the front is lowered below some of them.
-const WORTHWHILE: f64 = 0.3;
+const WORTHWHILE: f64 = 0.5;
 /// Motion from query to query at which a front is first tried, in sizes of a leaf. A wrong guess costs one building of
 /// a front.
 const FIRST_GUESS: f64 = 0.1;

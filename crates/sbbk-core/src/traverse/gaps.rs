@@ -1,16 +1,16 @@
 //! How far apart four pairs of nodes are at least: the overlap test of [`overlap`](super::overlap) with the number
 //! instead of the answer.
 //!
-//! A gap is a lower bound of the distance, in frame 1 and without the margin, between whatever is in two volumes; it is
-//! negative or zero where the volumes meet. On an axis of unit length it is the distance of the projections; over the
-//! three face axes of one tree together, which are at right angles, the root of the sum of squares.
+//! A gap is a lower bound of the distance, in frame 1 and without the margin, between whatever is in two volumes: the
+//! largest distance of their projections on an axis, negative where they meet on all. (Three face axes at right angles
+//! also bound the distance by the root of the sum of squares. That was tried: not one test in a thousand fewer.)
 //!
 //! # Rounding
 //!
 //! With the bound of [`PairFrame`], `r = γ_16·(M1 + T + 2·s·M2)`: that bound includes the addition of a margin, here of
 //! `r` itself. New are the difference of offset and reach, and the product with a length: two roundings of something
 //! that is at most `2·(M1 + T + 1.8·s·M2)`, less than `γ_4` of the sum in `r`. A gap is reduced by `21/16·r`, which is
-//! more than `γ_20` of it. The root of squares loses at most `γ_5` of itself.
+//! more than `γ_20` of it.
 
 use glamx::Vec3;
 use wide::f32x4;
@@ -80,7 +80,8 @@ impl<const AXES: usize> PairFrame<AXES>
 where
     Directions<AXES>: DirectionSet<AXES>,
 {
-    /// The gaps of the pairs in `lanes`. Where the boxes of all of them are beyond the margin, k-DOPs are not asked.
+    /// The gaps of the pairs in `lanes`. Once all of them are beyond the margin, no further slab is asked: they could
+    /// only be larger. Asking all saves 1 test in 50 later, and takes longer.
     #[inline(always)]
     pub(crate) fn gaps<const AXIS: bool>(
         &mut self,
@@ -108,6 +109,9 @@ where
                 let gap = self.correspondence().slab_gap(with, axis, sides.0, sides.1);
                 note(6 + axis, gap);
                 gaps = gaps.fast_max(gap);
+                if !gaps.simd_gt(margin).to_bitmask() & lanes == 0 {
+                    break;
+                }
             }
         }
         let apart = gaps.simd_gt(margin).to_bitmask() & lanes;
@@ -154,7 +158,8 @@ where
             note(axis, gaps1[axis]);
             note(3 + axis, gaps2[axis]);
         }
-        combined(&gaps1).fast_max(combined(&gaps2))
+        let largest = |gaps: &[f32x4; 3]| gaps[0].fast_max(gaps[1]).fast_max(gaps[2]);
+        largest(&gaps1).fast_max(largest(&gaps2))
     }
 
     /// Between the centres, along an axis of frame 1.
@@ -203,16 +208,6 @@ where
     }
 }
 
-/// Of gaps along three axes at right angles: the root of the sum of squares, or the largest if none is positive.
-#[inline(always)]
-fn combined(gaps: &[f32x4; 3]) -> f32x4 {
-    let zero = f32x4::splat(0.0);
-    let largest = gaps[0].fast_max(gaps[1]).fast_max(gaps[2]);
-    let [x, y, z] = each(|axis| gaps[axis].fast_max(zero));
-    let root = (x * x + y * y + z * z).sqrt() * f32x4::splat(1.0 - gamma(8));
-    largest.fast_max(root & largest.simd_gt(zero))
-}
-
 impl<const AXES: usize> Correspondence<AXES>
 where
     Directions<AXES>: DirectionSet<AXES>,
@@ -255,4 +250,70 @@ const fn inverse_lengths<const AXES: usize>(directions: &[Vec3; AXES]) -> [f32; 
         axis += 1;
     }
     inverse
+}
+
+#[cfg(test)]
+mod tests {
+    use glamx::{Pose3, Quat};
+
+    use super::*;
+    use crate::traverse::{Inner, Outer};
+    use crate::tree::{BuildOptions, LayerPlan, Tree};
+
+    fn noise(i: u32) -> f32 {
+        ((i as f32 * 12.9898).sin() * 43758.547).fract().abs()
+    }
+
+    fn point(i: u32) -> Vec3 {
+        Vec3::new(noise(3 * i), noise(3 * i + 1), noise(3 * i + 2))
+    }
+
+    /// Two triangles under their roots, and those of the other tree: no gap, over all axes or on one, is more than the distance of
+    /// the corners that it is between. Would catch a wrong sign, lane, length of a slab or unit, and a bound that is
+    /// of no use.
+    #[test]
+    fn gaps_are_below_distances_and_not_far_below() {
+        let mut tightest = 0.0f32;
+        for i in 0..2000 {
+            let plan = LayerPlan { sphere_root: true, kdop_from_depth: Some(1) };
+            let options = BuildOptions { layers: plan, leaf_size: 1 };
+            let triangles = [[0, 1, 2], [3, 4, 5]];
+            let meshes = [20 * i, 20 * i + 6].map(|first| {
+                let corner = |k: u32| 0.3 * point(first + k) + Vec3::X * (k / 3) as f32;
+                [0, 1, 2, 3, 4, 5].map(corner)
+            });
+            let trees = meshes.map(|mesh| Tree::<9>::build(&mesh, &triangles, &options).unwrap());
+            let scale = [1.0, 1.0, 0.9, 1.2][i as usize % 4];
+            let turn = Quat::from_scaled_axis(6.0 * point(20 * i + 12)) * scale;
+            let pos12 = Pose3::from_parts(4.0 * point(20 * i + 13) - Vec3::splat(2.0), turn);
+            let mut frame = PairFrame::new(&trees[0], &trees[1], &pos12, 0.01);
+            let with = GapFrame::new(&frame);
+            let nodes = [0, 1].map(|tree| trees[tree].link(crate::tree::Slot::ROOT).index());
+            let children = [0, 1].map(|tree| trees[tree].children(nodes[tree]));
+            let sides = ((&children[0], Outer), (&children[1], Inner));
+            let all = frame.gaps::<true>(&with, sides.0, sides.1, 0b1111).gaps.to_array();
+            let on_axis: Vec<[f32; 4]> = (0..15)
+                .map(|axis| frame.gaps_on(&with, AxisIndex(axis), sides.0, sides.1).unwrap())
+                .map(f32x4::to_array)
+                .collect();
+            for lane in 0..4 {
+                let leaf = |tree: usize, child: usize| {
+                    trees[tree].leaf(children[tree].links[child].index()).corners(0)
+                };
+                let (one, two) = (leaf(0, lane >> 1), leaf(1, lane & 1));
+                let distances = one
+                    .iter()
+                    .flat_map(|&x| two.map(|y| frame.placement().to_frame1(y, x).length() as f32));
+                let distance = distances.fold(f32::INFINITY, f32::min);
+                assert!(all[lane] <= distance, "{} {distance}", all[lane]);
+                for gaps in &on_axis {
+                    assert!(gaps[lane] <= distance, "{} {distance}", gaps[lane]);
+                }
+                let largest = on_axis.iter().map(|gaps| gaps[lane]).fold(f32::MIN, f32::max);
+                assert!(all[lane] <= largest, "{} {largest}", all[lane]);
+                tightest = tightest.max(largest / distance);
+            }
+        }
+        assert!((0.95..=1.0).contains(&tightest), "{tightest}");
+    }
 }
