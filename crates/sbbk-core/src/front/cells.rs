@@ -31,6 +31,8 @@ pub(super) struct Cell {
     below: [u32; 4],
 }
 
+const _: () = assert!(size_of::<Cell>() == 36);
+
 /// A pair of leaves that met.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub(super) struct LeafPair {
@@ -56,9 +58,11 @@ pub(super) struct Cells {
 impl Cells {
     /// Removes all.
     pub(super) fn clear(&mut self) {
-        let Self { cells, parted_until, met_until, free, leaf_pairs, stack } = self;
-        (cells.clear(), parted_until.clear(), met_until.clear());
-        (free.clear(), leaf_pairs.clear(), stack.clear());
+        self.cells.clear();
+        self.parted_until.clear();
+        self.met_until.clear();
+        self.free.clear();
+        self.leaf_pairs.clear();
     }
 
     /// Number of cells.

@@ -19,7 +19,7 @@ use super::correspondence::Correspondence;
 use super::frame::PairFrame;
 use super::overlap::{Spread, dot};
 use crate::leaf::lane::each;
-use crate::tree::Children;
+use crate::tree::{Children, Lanes};
 use crate::volumes::rounding::gamma;
 use crate::volumes::{DirectionSet, Directions};
 
@@ -65,6 +65,9 @@ pub(crate) struct Gaps {
 
 /// One side of four pairs: the nodes and how they lie over the lanes.
 pub(crate) type Side<'a, 'b, const AXES: usize, S> = (&'a Children<'b, AXES>, S);
+
+/// Centres and half-lengths of the slabs.
+type KdopLanes<'a, const AXES: usize> = (&'a [Lanes; AXES], &'a [Lanes; AXES]);
 
 /// The lanes that each axis shows to be beyond the margin.
 struct AxisLanes([u32; 32]);
@@ -218,8 +221,8 @@ where
         &self,
         with: &GapFrame,
         axis: usize,
-        (kdops1, spread1): ((&[[f32; 2]; AXES], &[[f32; 2]; AXES]), impl Spread),
-        (kdops2, spread2): ((&[[f32; 2]; AXES], &[[f32; 2]; AXES]), impl Spread),
+        (kdops1, spread1): (KdopLanes<'_, AXES>, impl Spread),
+        (kdops2, spread2): (KdopLanes<'_, AXES>, impl Spread),
     ) -> f32x4 {
         let slab = &self.slabs[axis];
         let mut gap = f32x4::splat(slab.offset) - spread1.spread(&kdops1.0[axis]);
@@ -244,7 +247,8 @@ const fn inverse_lengths<const AXES: usize>(directions: &[Vec3; AXES]) -> [f32; 
         let d = directions[axis];
         inverse[axis] = match (d.x * d.x + d.y * d.y + d.z * d.z) as u32 {
             1 => 1.0,
-            2 => 0.707_106_7,
+            // As f32 it is below 1/√2.
+            2 => std::f32::consts::FRAC_1_SQRT_2,
             _ => 0.577_350_2,
         };
         axis += 1;
