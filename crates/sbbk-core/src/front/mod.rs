@@ -30,16 +30,17 @@
 //! # What the parts are worth
 //!
 //! Two equal meshes of 288 to 12,168 triangles, 2 units across, margin 0.02; times fewer and times faster than fresh
-//! descents, geometric means (`cargo run --release --example front` prints them, mesh by mesh):
+//! descents, geometric means (`cargo run --release --example front` prints them, mesh by mesh;
+//! picture in `docs/front.svg`):
 //!
 //! | tests / traversal | slow | fast | resting, jitter | tumbling |
 //! |---|---|---|---|---|
-//! | the paper's front | 1.36 / 0.81 | 1.10 / 0.68 | 1.38 / 0.77 | 0.24 / 0.19 |
-//! | + raising | 1.00 / 0.70 | 0.99 / 0.69 | 1.00 / 0.66 | 0.88 / 0.51 |
-//! | + raising, cached axis | 1.00 / 0.66 | 0.99 / 0.61 | 1.00 / 0.62 | 0.87 / 0.45 |
-//! | + raising, motion bound | 8.25 / 2.75 | 2.28 / 1.05 | 12.0 / 3.95 | 1.02 / 0.45 |
-//! | + raising, both | 8.18 / 2.61 | 2.26 / 0.98 | 11.9 / 3.79 | 1.01 / 0.36 |
-//! | + raising, motion bound, adaptive: the default | 7.05 / 2.60 | 1.54 / 1.08 | 9.64 / 3.65 | 1.00 / 1.00 |
+//! | the paper's front | 1.36 / 0.82 | 1.10 / 0.68 | 1.38 / 0.82 | 0.24 / 0.22 |
+//! | + raising | 1.00 / 0.71 | 0.99 / 0.69 | 1.00 / 0.70 | 0.88 / 0.54 |
+//! | + raising, cached axis | 1.00 / 0.66 | 0.99 / 0.61 | 1.00 / 0.65 | 0.87 / 0.48 |
+//! | + raising, motion bound | 8.25 / 2.75 | 2.28 / 1.05 | 12.0 / 3.96 | 1.02 / 0.51 |
+//! | + raising, both | 8.18 / 2.60 | 2.26 / 0.97 | 11.9 / 3.77 | 1.01 / 0.47 |
+//! | + raising, motion bound, adaptive: the default | 7.05 / 2.59 | 1.54 / 1.07 | 9.64 / 3.64 | 1.00 / 0.98 |
 //!
 //! Slow is 0.001 units a step, fast 0.01, tumbling 0.08 radians. No pair of triangles differed. (With raising, the pairs
 //! above the front are tested along with those in it, and count.)
