@@ -8,6 +8,7 @@
 //! * [`volumes`]: [`Sphere`](volumes::Sphere), [`Aabb`](volumes::Aabb), [`Kdop`](volumes::Kdop).
 //! * [`tree`]: [`Tree`](tree::Tree), built from a mesh once.
 //! * [`traverse`]: [`descend`](traverse::descend) finds the pairs of leaves that may touch at a pose.
+//! * [`front`]: the same, from where the last descent stopped.
 //! * [`leaf`]: which triangles of two leaves may touch, over SIMD lanes.
 //! * [`contact`]: the exact contact of two triangles, and its manifold.
 //! * [`broad_phase`]: which of many moving objects are near each other.
@@ -49,6 +50,7 @@
 
 pub mod broad_phase;
 pub mod contact;
+pub mod front;
 pub mod leaf;
 #[cfg(feature = "nalgebra")]
 mod nalgebra_conversions;

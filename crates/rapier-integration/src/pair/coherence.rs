@@ -17,9 +17,11 @@ use super::candidates::Candidate;
 const SLACK_STEPS: f64 = 8.0;
 /// Least slack as a share of the prediction distance, for bodies at rest that jitter.
 const LEAST_SLACK: f64 = 0.1;
-/// Greatest slack, likewise. A pair that would use it up in fewer than two steps gets none: looking farther
-/// would not pay.
+/// Greatest slack, likewise.
 const GREATEST_SLACK: f64 = 1.0;
+/// A pair that would use up the greatest slack in fewer steps gets none: to look farther would not pay (with 2, queries
+/// that move by half a prediction distance took up to twice as long).
+const LEAST_STEPS: f64 = 6.0;
 
 /// The candidates of a descent and when they are still good.
 #[derive(Clone, Debug, Default)]
@@ -128,7 +130,7 @@ impl Coherence {
 /// query before. Not finite motion gives none.
 fn slack(step: f64, prediction: f64) -> f64 {
     let greatest = GREATEST_SLACK * prediction;
-    if 2.0 * step <= greatest {
+    if LEAST_STEPS * step <= greatest {
         (SLACK_STEPS * step).clamp(LEAST_SLACK * prediction, greatest)
     } else {
         0.0

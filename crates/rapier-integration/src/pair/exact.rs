@@ -91,6 +91,7 @@ struct ConstrainedNormal {
 }
 
 /// The normal in the cones of both triangles; `None` if they exclude it.
+#[inline(always)]
 fn constrained_normal(
     contact: &TriangleContact,
     constraints: Constraints<'_>,

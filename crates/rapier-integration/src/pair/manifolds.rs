@@ -102,6 +102,7 @@ impl Generator<'_> {
         }
     }
 
+    #[inline(always)]
     fn triangles(&self, candidate: &Candidate) -> [Triangle; 2] {
         let MeshPair { mesh1, mesh2, .. } = self.pair;
         [mesh1.triangle(candidate.triangle1), mesh2.triangle(candidate.triangle2)]
@@ -157,6 +158,7 @@ impl Generator<'_> {
         }
     }
 
+    #[inline(always)]
     fn constraints(&self, candidate: &Candidate) -> Constraints<'_> {
         let cone = |mesh: usize, triangle: u32| {
             let cone = self.prepared[mesh].normal_constraints(triangle);

@@ -128,6 +128,7 @@ where
     }
 
     /// Adds a manifold to those of this query, if it has points.
+    #[inline(always)]
     pub(super) fn keep(&mut self, manifold: ContactManifold<M, C>, features: FeaturePair) {
         if manifold.points.is_empty() {
             self.retire(manifold);

@@ -86,14 +86,25 @@ pub fn descend<const AXES: usize, V: Visitor, C: Counters>(
 }
 
 /// Which sides of a pair go down.
-#[derive(Copy, Clone)]
-enum Sides {
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Sides {
     Both,
     First,
     Second,
 }
 
-fn sides(descent: Descent, depth: u32, links: (Link, Link)) -> Sides {
+impl Sides {
+    /// The inner node that holds the volumes of each side: the node's own children, or itself in its parent.
+    pub(crate) fn nodes(self, (slot1, slot2): (Slot, Slot), links: (Link, Link)) -> (u32, u32) {
+        match self {
+            Self::Both => (links.0.index(), links.1.index()),
+            Self::First => (links.0.index(), slot2.node()),
+            Self::Second => (slot1.node(), links.1.index()),
+        }
+    }
+}
+
+pub(crate) fn sides(descent: Descent, depth: u32, links: (Link, Link)) -> Sides {
     match (links.0.is_leaf(), links.1.is_leaf()) {
         (true, _) => Sides::Second,
         (_, true) => Sides::First,
@@ -118,12 +129,7 @@ fn expand<const AXES: usize>(
 ) where
     Directions<AXES>: DirectionSet<AXES>,
 {
-    // The inner node that holds the volumes of each side: the node's own children, or itself in its parent.
-    let (node1, node2) = match sides {
-        Sides::Both => (links.0.index(), links.1.index()),
-        Sides::First => (links.0.index(), pair.slot2.node()),
-        Sides::Second => (pair.slot1.node(), links.1.index()),
-    };
+    let (node1, node2) = sides.nodes((pair.slot1, pair.slot2), links);
     let (children1, children2) = (tree1.children(node1), tree2.children(node2));
     let depth = pair.depth + 1;
     let mut push = |slot1, slot2| stack.push(NodePair { slot1, slot2, depth });

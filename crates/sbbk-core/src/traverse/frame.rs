@@ -29,6 +29,8 @@ pub struct PairFrame<const AXES: usize = 9> {
     margin: f32,
     /// The rounding bound above, frame 1.
     pub(crate) rounding: f32,
+    /// The same in frame 2.
+    pub(super) rounding2: f32,
     pub(super) translation_lanes: [f32x4; 3],
     pub(super) axes1: BoxAxes,
     pub(super) axes2: BoxAxes,
@@ -85,6 +87,7 @@ impl<const AXES: usize> PairFrame<AXES> {
             placement,
             margin,
             rounding,
+            rounding2,
             translation_lanes: translation.to_array().map(f32x4::splat),
             axes1: BoxAxes::new(rotation, (margin + rounding).next_up()),
             axes2: BoxAxes::new(inverse, (margin2 + rounding2).next_up()),
@@ -103,7 +106,7 @@ impl<const AXES: usize> PairFrame<AXES> {
     }
 
     /// Whether the root spheres come within the margin; `true` where a tree has none.
-    pub(super) fn spheres_meet(&self, tree1: &Tree<AXES>, tree2: &Tree<AXES>) -> bool {
+    pub(crate) fn spheres_meet(&self, tree1: &Tree<AXES>, tree2: &Tree<AXES>) -> bool {
         let (Some(sphere1), Some(sphere2)) = (tree1.sphere(), tree2.sphere()) else {
             return true;
         };

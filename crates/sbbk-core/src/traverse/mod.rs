@@ -7,12 +7,16 @@ mod correspondence;
 mod counters;
 mod descend;
 mod frame;
+mod gaps;
 mod overlap;
 mod placement;
 mod visitor;
 
 pub use counters::{Counters, DescentCounts};
 pub use descend::{Descent, DescentScratch, descend};
+pub(crate) use descend::{Sides, sides};
 pub use frame::PairFrame;
+pub(crate) use gaps::{AxisIndex, GapFrame, Gaps};
+pub(crate) use overlap::{Inner, Outer, Same};
 pub use placement::Placement;
 pub use visitor::{LeafPairs, NodePair, Verdict, Visitor};

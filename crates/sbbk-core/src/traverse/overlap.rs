@@ -8,21 +8,21 @@ use crate::leaf::lane::each;
 use crate::tree::{Children, Lanes};
 
 /// How the volumes of one tree's nodes are laid over the four lanes of a test.
-pub(super) trait Spread: Copy {
+pub(crate) trait Spread: Copy {
     fn spread(self, lanes: &Lanes) -> f32x4;
 }
 
 /// Children 0, 0, 1, 1: tree 1's side of all four pairs of children.
 #[derive(Copy, Clone)]
-pub(super) struct Outer;
+pub(crate) struct Outer;
 
 /// Children 0, 1, 0, 1: tree 2's side.
 #[derive(Copy, Clone)]
-pub(super) struct Inner;
+pub(crate) struct Inner;
 
 /// One node in all lanes: a leaf, while the other tree goes on.
 #[derive(Copy, Clone)]
-pub(super) struct Same(pub(super) usize);
+pub(crate) struct Same(pub(crate) usize);
 
 impl Spread for Outer {
     #[inline(always)]
@@ -86,7 +86,8 @@ impl<const AXES: usize> PairFrame<AXES> {
 impl<const AXES: usize> Correspondence<AXES> {
     /// Bit k: bit k of `candidates`, and lane k's k-DOPs come within the margin along the slabs of tree 1.
     ///
-    /// Testing the slabs of tree 2 as well prunes a tenth more nodes and costs more than that saves.
+    /// Testing the slabs of tree 2 as well prunes a tenth more nodes and costs more than that saves. So do the slabs along x, y
+    /// and z, which the boxes have been compared along: without them a descent takes a seventh fewer instructions.
     #[inline(always)]
     pub(super) fn kdops_meet(
         &self,
@@ -95,7 +96,7 @@ impl<const AXES: usize> Correspondence<AXES> {
         candidates: u32,
     ) -> u32 {
         let mut remaining = candidates;
-        for (axis, slab) in self.slabs.iter().enumerate() {
+        for (axis, slab) in self.slabs.iter().enumerate().skip(3) {
             let mut gap = f32x4::splat(slab.offset) - spread1.spread(&kdops1.0[axis]);
             let mut reach = f32x4::splat(slab.margin) + spread1.spread(&kdops1.1[axis]);
             for term in 0..3 {
@@ -114,6 +115,6 @@ impl<const AXES: usize> Correspondence<AXES> {
 }
 
 #[inline(always)]
-fn dot(row: &[f32x4; 3], v: &[f32x4; 3]) -> f32x4 {
+pub(super) fn dot(row: &[f32x4; 3], v: &[f32x4; 3]) -> f32x4 {
     row[0] * v[0] + row[1] * v[1] + row[2] * v[2]
 }

@@ -35,6 +35,11 @@ impl Placement {
         }
     }
 
+    /// Whether it is a map that can be undone: no entry, nor one of the inverse, is NaN or infinite.
+    pub fn is_finite(&self) -> bool {
+        self.rotation.is_finite() && self.translation.is_finite() && self.inverse.is_finite()
+    }
+
     /// `x`, a point of frame 2, in frame 1 and relative to `origin` there.
     #[inline]
     pub fn to_frame1(&self, x: Vec3, origin: Vec3) -> DVec3 {
@@ -51,18 +56,20 @@ impl Placement {
     /// An upper bound of how far any point of a ball has moved from one placement to another.
     ///
     /// With `c` the ball's centre and `r` its radius, a point `x` in it moved by
-    /// `(R' - R)(x - c) + (R' c + t') - (R c + t)`: at most `‖R' - R‖·r` plus the motion of the centre. The
-    /// Frobenius norm stands for the spectral one, which it is never below. The last term covers f64 rounding, a
-    /// few 1e-16 of the terms.
+    /// `(R' - R)(x - c) + (R' c + t') - (R c + t)`: at most `‖R' - R‖·r` plus the motion of the centre.
+    ///
+    /// The spectral norm is at most the Frobenius norm over √2: with `R = s·Q`, `R' = s'·Q'`, and `θ` the angle from
+    /// `Q` to `Q'`, `R' - R` has the singular values `|s'·exp(iθ) - s|` twice and `|s' - s|`, which is not more; so the
+    /// sum of squares is at least twice the largest. The last term covers f64 rounding, a few 1e-16 of the terms.
     pub fn motion_bound(&self, earlier: &Self, centre: Vec3, radius: f32) -> f64 {
         let (centre, radius) = (centre.as_dvec3(), f64::from(radius));
         let turn = self.rotation - earlier.rotation;
-        let frobenius = (turn.x_axis.length_squared()
+        let frobenius_squared = turn.x_axis.length_squared()
             + turn.y_axis.length_squared()
-            + turn.z_axis.length_squared())
-        .sqrt();
+            + turn.z_axis.length_squared();
+        let spectral = (0.5 * frobenius_squared).sqrt();
         let shift = turn * centre + (self.translation - earlier.translation);
         let magnitude = centre.length() + radius + self.translation.length();
-        frobenius * radius + shift.length() + 1e-14 * magnitude
+        spectral * radius + shift.length() + 1e-14 * magnitude
     }
 }

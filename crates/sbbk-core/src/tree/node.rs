@@ -206,11 +206,13 @@ impl LeafBatch {
     }
 
     /// Indices of the triangles in the mesh.
+    #[inline]
     pub fn triangles(&self) -> &[u32] {
         &self.triangles[..self.count()]
     }
 
     /// The corners of the triangle in `lane`.
+    #[inline]
     pub fn corners(&self, lane: usize) -> [Vec3; 3] {
         self.corners.map(|corner| Vec3::from_array(corner.map(|axis| axis[lane])))
     }

@@ -118,6 +118,7 @@ where
     }
 
     /// What a slot leads to.
+    #[inline]
     pub(crate) fn link(&self, slot: Slot) -> Link {
         self.children(slot.node()).links[slot.lane()]
     }

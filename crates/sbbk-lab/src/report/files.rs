@@ -43,6 +43,20 @@ impl ResultRow {
         Self { study, scene, contact_recycling: None, values }
     }
 
+    /// For what has no `backend` or `hierarchy` of its own, but a name.
+    pub(super) fn named(
+        study: &'static str,
+        scene: String,
+        name: String,
+        values: &impl Serialize,
+    ) -> Self {
+        let mut row = Self::new(study, scene, values);
+        if let Some(values) = row.values.as_object_mut() {
+            values.insert("backend".to_owned(), Value::String(name));
+        }
+        row
+    }
+
     fn recycling(self, contact_recycling: bool) -> Self {
         Self { contact_recycling: Some(contact_recycling), ..self }
     }

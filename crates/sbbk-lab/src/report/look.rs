@@ -12,7 +12,19 @@ use crate::backend::Backend;
 pub(super) enum Look {
     Backend(Backend),
     Paper,
+    /// One of a few that are neither, by number.
+    Other(usize),
 }
+
+/// Colours of the others; black first, as what is compared with comes first.
+const OTHERS: [RGBColor; 6] = [
+    RGBColor(0, 0, 0),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+];
 
 impl Look {
     pub fn colour(self) -> RGBColor {
@@ -22,6 +34,7 @@ impl Look {
             Self::Backend(Backend::Sbbk) => RGBColor(0, 114, 178),
             Self::Backend(Backend::SbbkParry) => RGBColor(0, 158, 115),
             Self::Paper => RGBColor(204, 121, 167),
+            Self::Other(number) => OTHERS[number % OTHERS.len()],
         }
     }
 
@@ -34,6 +47,7 @@ impl Look {
             Self::Backend(Backend::Sbbk) => (16, 0.0),
             Self::Backend(Backend::SbbkParry) => (4, 0.0),
             Self::Paper => (3, 0.25),
+            Self::Other(number) => (3 + number as u32 % 6, 0.25),
         };
         (0..corners)
             .map(|corner| {

@@ -22,6 +22,8 @@ const MARKER_RADIUS: f64 = 6.0;
 const LOW_LEGEND: (i32, i32) = (8, 228);
 /// Space above the largest value, as a factor: room for the legend as well.
 const HEADROOM: (f64, f64) = (1.08, 1.3);
+/// Series for whose legend there is room; each further one needs this much more.
+const LEGEND_ROOM: (usize, f64) = (4, 0.15);
 
 /// One diagram.
 pub(super) struct Panel {
@@ -72,7 +74,9 @@ impl Panel {
         let (xs, ys) = (points().map(|point| point.0), points().map(|point| self.height(point.1)));
         match self.scale {
             Scale::FromZero => {
-                let [x, y] = [limit(xs, HEADROOM.0), limit(ys, HEADROOM.1)];
+                let further = self.series.len().saturating_sub(LEGEND_ROOM.0);
+                let headroom = HEADROOM.1 + LEGEND_ROOM.1 * further as f64;
+                let [x, y] = [limit(xs, HEADROOM.0), limit(ys, headroom)];
                 let labels = (|value: &f64| plain(*value, x), |value: &f64| plain(*value, y));
                 self.draw_over(area, (0.0..x, 0.0..y), labels)
             }

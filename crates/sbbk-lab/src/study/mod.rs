@@ -13,6 +13,7 @@ pub mod contacts;
 mod cut;
 pub mod determinism;
 mod error;
+pub mod front;
 mod helicopter;
 mod meshes;
 mod outline;

@@ -2,6 +2,7 @@
 
 mod contacts;
 mod determinism;
+mod front;
 mod helicopter;
 mod meshes;
 mod pile;
@@ -9,6 +10,7 @@ mod soak;
 
 pub use contacts::{by_mesh, by_size, contact_generators, contacts, queries};
 pub use determinism::{fingerprints, threads};
+pub use front::front;
 pub use helicopter::{frames, overlapping_area};
 pub use meshes::costs;
 pub use pile::{accuracy, runs, same_poses, sizes};

@@ -12,7 +12,7 @@ use crate::scene::random;
 
 /// Where the second mesh is, and from where it came.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(in crate::study) struct Place {
     /// Pose of the second mesh in the frame of the first.
     pub pos12: Pose3,
     /// Unit vector from the first mesh, against the way that the second one came.
@@ -52,7 +52,7 @@ fn advances(size: Real, prediction: Real) -> [Real; PLACE_COUNT] {
 
 /// The places of one approach, in a random orientation and along a random direction, from apart to
 /// deep inside.
-pub(super) fn places(
+pub(in crate::study) fn places(
     contest: &Contest,
     shape: &SharedShape,
     (size, prediction): (Real, Real),

@@ -16,7 +16,7 @@ use crate::metrics::Summary;
 pub const CONTESTANTS: [Backend; 2] = [Backend::Stock, Backend::Sbbk];
 
 /// Both dispatchers, the trees of all meshes built.
-pub(super) struct Contest {
+pub(in crate::study) struct Contest {
     pub dispatchers: [SharedDispatcher; 2],
     _primed: [Primed; 2],
 }

@@ -22,10 +22,13 @@ mod speed;
 mod triangles;
 
 pub use approach::PAIR_LIMIT;
+pub(super) use approach::{Place, places};
 pub use case::ContactCase;
 pub use contest::CONTESTANTS;
+pub(super) use contest::Contest;
 pub use errors::ContactErrors;
 pub use exactness::{ExactnessRow, ExactnessSide};
+pub(super) use motion::motion;
 pub use motion::{FAST, SLOW, STEP_COUNT};
 pub use plan::{ApproachedMesh, ContactsPlan, SHORT_REPEATS};
 pub use report::{Contacts, SPEED_CASE, contacts};

@@ -13,22 +13,27 @@ pub const FAST: Real = 0.5;
 /// Steps of one motion, after its first query.
 pub const STEP_COUNT: usize = 16;
 
-/// Poses from before a place through it to as far behind it, [`STEP_COUNT`] equal steps: the mesh
+/// Poses from before a place through it to as far behind it, `step_count` equal steps: the mesh
 /// slides along a straight line and turns about its origin at once. Each of the two moves the
 /// point of the surface that it moves most by half of `step`; together they move no point farther
 /// than `step`, and some nearly so far.
-pub(super) fn motion(shape: &SharedShape, place: &Place, step: Real) -> Vec<Pose3> {
+pub(in crate::study) fn motion(
+    shape: &SharedShape,
+    place: &Place,
+    step: Real,
+    step_count: usize,
+) -> Vec<Pose3> {
     let (slide, axis) = place.motion();
     let local_axis = place.pos12.rotation.inverse() * axis;
     let angle = 0.5 * step / radius(shape, local_axis);
     let pose = |index: usize| {
-        let steps = index as Real - 0.5 * STEP_COUNT as Real;
+        let steps = index as Real - 0.5 * step_count as Real;
         Pose3::from_parts(
             place.pos12.translation + 0.5 * step * steps * slide,
             Quat::from_axis_angle(axis, angle * steps) * place.pos12.rotation,
         )
     };
-    (0..=STEP_COUNT).map(pose).collect()
+    (0..=step_count).map(pose).collect()
 }
 
 /// Largest distance of a vertex from an axis through the origin.
@@ -51,7 +56,7 @@ mod tests {
         let pos12 = Pose3::new(Vec3::new(0.4, 1.3, -0.6), Vec3::new(0.3, -1.2, 0.8));
         let place = Place { pos12, direction: Vec3::new(0.48, 0.6, -0.64) };
         for step in [0.001, 0.01] {
-            let poses = motion(&shape, &place, step);
+            let poses = motion(&shape, &place, step, STEP_COUNT);
             assert_eq!(poses.len(), STEP_COUNT + 1);
             let middle = poses[STEP_COUNT / 2];
             assert!((middle.translation - pos12.translation).length() < 1e-6);

@@ -91,7 +91,7 @@ pub(super) fn speed(
 pub(super) fn motions(posed: &PosedCase, share: Real) -> Vec<Vec<Pose3>> {
     let step = share * posed.case.prediction;
     let places = posed.places.iter().take(MOTION_LIMIT);
-    places.map(|place| motion(&posed.shape, place, step)).collect()
+    places.map(|place| motion(&posed.shape, place, step, STEP_COUNT)).collect()
 }
 
 /// Microseconds of a query in motion. The first one of each motion is not timed.

@@ -1,0 +1,163 @@
+//! What a front asks of two trees, apart from its own bookkeeping.
+
+use wide::f32x4;
+
+use crate::traverse::{
+    AxisIndex, Counters, Descent, GapFrame, Gaps, Inner, Outer, PairFrame, Same, Sides, sides,
+};
+use crate::tree::{Link, Slot, Tree};
+use crate::volumes::{DirectionSet, Directions};
+
+/// A pair of nodes.
+pub(super) type SlotPair = (Slot, Slot);
+
+/// The pairs below a pair of nodes, lane by lane, as a descent compares them.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(super) struct Opening {
+    /// The inner nodes that hold the volumes.
+    pub(super) nodes: (u32, u32),
+    pub(super) sides: Sides,
+    /// Of the side that stays.
+    pub(super) same_lane: u8,
+    /// Lanes that hold a pair.
+    pub(super) lanes: u8,
+    /// Those of them that hold a pair of leaves.
+    pub(super) leaves: u8,
+}
+
+impl Opening {
+    /// The pair in a lane.
+    pub(super) fn pair(&self, lane: usize) -> SlotPair {
+        let same = usize::from(self.same_lane);
+        let (lane1, lane2) = match self.sides {
+            Sides::Both => (lane >> 1, lane & 1),
+            Sides::First => (lane >> 1, same),
+            Sides::Second => (same, lane & 1),
+        };
+        (Slot::new(self.nodes.0, lane1), Slot::new(self.nodes.1, lane2))
+    }
+}
+
+/// Two trees at a pose, or what stands for them in a test.
+pub(super) trait PairTest {
+    /// The pair of roots, as the only lane.
+    fn roots(&self) -> Opening;
+    /// What is below a pair that is not a pair of leaves.
+    fn open(&self, pair: SlotPair) -> Opening;
+    /// The numbers of a pair of leaves.
+    fn leaves(&self, pair: SlotPair) -> (u32, u32);
+    /// The gaps of the pairs in `lanes`, and an axis of separation if `axis` says so.
+    fn gaps(&mut self, opening: &Opening, lanes: u8, axis: bool) -> Gaps;
+    /// The gaps on one axis.
+    fn gaps_on(&mut self, axis: AxisIndex, opening: &Opening, lanes: u8) -> Option<f32x4>;
+}
+
+/// Two trees at a pose.
+pub(super) struct TreePair<'a, C, const AXES: usize> {
+    trees: (&'a Tree<AXES>, &'a Tree<AXES>),
+    frame: &'a mut PairFrame<AXES>,
+    gap_frame: GapFrame,
+    counters: C,
+}
+
+impl<'a, C: Counters, const AXES: usize> TreePair<'a, C, AXES>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    pub(super) fn new(
+        trees: (&'a Tree<AXES>, &'a Tree<AXES>),
+        frame: &'a mut PairFrame<AXES>,
+        counters: C,
+    ) -> Self {
+        let gap_frame = GapFrame::new(frame);
+        Self { trees, frame, gap_frame, counters }
+    }
+
+    fn opening(&self, nodes: (u32, u32), sides: Sides, same_lane: usize, lanes: u8) -> Opening {
+        let mut opening = Opening { nodes, sides, same_lane: same_lane as u8, lanes, leaves: 0 };
+        for lane in (0..4).filter(|lane| lanes >> lane & 1 != 0) {
+            let links = self.links(opening.pair(lane));
+            opening.leaves |= u8::from(links.0.is_leaf() && links.1.is_leaf()) << lane;
+        }
+        opening
+    }
+
+    fn links(&self, (slot1, slot2): SlotPair) -> (Link, Link) {
+        (self.trees.0.link(slot1), self.trees.1.link(slot2))
+    }
+}
+
+/// Calls `$compare` with the two sides of an opening, for each way in which they lie over the lanes.
+macro_rules! with_sides {
+    ($opening:expr, $children:expr, |$side1:ident, $side2:ident| $compare:expr) => {{
+        let same = Same(usize::from($opening.same_lane));
+        let (children1, children2) = $children;
+        match $opening.sides {
+            Sides::Both => {
+                let ($side1, $side2) = ((&children1, Outer), (&children2, Inner));
+                $compare
+            }
+            Sides::First => {
+                let ($side1, $side2) = ((&children1, Outer), (&children2, same));
+                $compare
+            }
+            Sides::Second => {
+                let ($side1, $side2) = ((&children1, same), (&children2, Inner));
+                $compare
+            }
+        }
+    }};
+}
+
+impl<C: Counters, const AXES: usize> PairTest for TreePair<'_, C, AXES>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    fn roots(&self) -> Opening {
+        self.opening((Slot::ROOT.node(), Slot::ROOT.node()), Sides::Both, 0, 0b0001)
+    }
+
+    #[inline(always)]
+    fn open(&self, pair: SlotPair) -> Opening {
+        let links = self.links(pair);
+        // Taking both sides does not depend on the depth.
+        let sides = sides(Descent::Simultaneous, 0, links);
+        let (same_lane, lanes) = match sides {
+            Sides::Both => (0, 0b1111),
+            Sides::First => (pair.1.lane(), 0b0101),
+            Sides::Second => (pair.0.lane(), 0b0011),
+        };
+        self.opening(sides.nodes(pair, links), sides, same_lane, lanes)
+    }
+
+    #[inline(always)]
+    fn leaves(&self, pair: SlotPair) -> (u32, u32) {
+        let links = self.links(pair);
+        (links.0.index(), links.1.index())
+    }
+
+    #[inline(always)]
+    fn gaps(&mut self, opening: &Opening, lanes: u8, axis: bool) -> Gaps {
+        self.counters.aabb_tests(lanes.count_ones());
+        let (frame, with) = (&mut *self.frame, &self.gap_frame);
+        let (tree1, tree2) = self.trees;
+        let children = (tree1.children(opening.nodes.0), tree2.children(opening.nodes.1));
+        let lanes = u32::from(lanes);
+        let gaps = with_sides!(opening, children, |side1, side2| if axis {
+            frame.gaps::<true>(with, side1, side2, lanes)
+        } else {
+            frame.gaps::<false>(with, side1, side2, lanes)
+        });
+        self.counters.kdop_tests(gaps.kdop_lanes.count_ones());
+        gaps
+    }
+
+    #[inline(always)]
+    fn gaps_on(&mut self, axis: AxisIndex, opening: &Opening, lanes: u8) -> Option<f32x4> {
+        self.counters.aabb_tests(lanes.count_ones());
+        let (frame, with) = (&mut *self.frame, &self.gap_frame);
+        let (tree1, tree2) = self.trees;
+        let children = (tree1.children(opening.nodes.0), tree2.children(opening.nodes.1));
+        with_sides!(opening, children, |side1, side2| frame.gaps_on(with, axis, side1, side2))
+    }
+}

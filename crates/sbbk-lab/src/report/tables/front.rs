@@ -1,0 +1,94 @@
+//! The parts of a front, one after the other.
+
+use super::super::Grid;
+use super::super::format::{min_median, three_digits, times};
+use super::{TIME_NOTE, cells};
+use crate::metrics::{geometric_mean, ratio};
+use crate::study::front::{FrontMotion, FrontRow, FrontStudy, Variant, VariantRow};
+
+/// What the columns of errors hold.
+const DIFFERING_NOTE: &str = "differing: triangle pairs within the prediction distance, against \
+                              fresh descents; all queries together";
+
+/// Every variant on every mesh, and means over the meshes.
+pub fn front(study: &FrontStudy) -> Vec<Grid> {
+    vec![details(&study.rows), summary(&study.rows)]
+}
+
+/// Every variant on every mesh.
+fn details(rows: &[FrontRow]) -> Grid {
+    let cells = rows.iter().flat_map(|row| {
+        let fresh = &row.variants[0];
+        row.variants.iter().map(move |variant| {
+            let VariantRow { node_tests, leaf_pairs, traversal, query, .. } = variant;
+            cells![
+                row.motion,
+                row.triangle_count,
+                variant.variant,
+                three_digits(*node_tests),
+                three_digits(*leaf_pairs),
+                min_median(traversal),
+                times(ratio(fresh.traversal.min, traversal.min)),
+                min_median(query),
+                times(ratio(fresh.query.min, query.min)),
+                three_digits(variant.pairs),
+                variant.differing,
+            ]
+        })
+    });
+    Grid {
+        title: "Coherence: each variant, for one query on average".to_owned(),
+        header: vec![
+            "motion",
+            "triangles",
+            "variant",
+            "node tests",
+            "leaf pairs",
+            "traversal, µs",
+            "times faster",
+            "query, µs",
+            "times faster",
+            "true pairs",
+            "differing",
+        ],
+        text_columns: 3,
+        rows: cells.collect(),
+        notes: vec![format!("{TIME_NOTE}; times faster: of the minima"), DIFFERING_NOTE.to_owned()],
+    }
+}
+
+/// Geometric means over the meshes, against the fresh descent.
+fn summary(rows: &[FrontRow]) -> Grid {
+    let mean = |motion: FrontMotion, index: usize, value: fn(&VariantRow) -> f64| {
+        let rows = rows.iter().filter(|row| row.motion == motion);
+        geometric_mean(
+            rows.filter_map(|row| ratio(value(&row.variants[0]), value(&row.variants[index]))),
+        )
+    };
+    let cells = FrontMotion::ALL.into_iter().flat_map(|motion| {
+        Variant::ALL.into_iter().enumerate().map(move |(index, variant)| {
+            let differing: usize = rows
+                .iter()
+                .filter(|row| row.motion == motion)
+                .map(|row| row.variants[index].differing)
+                .sum();
+            cells![
+                motion,
+                variant,
+                times(mean(motion, index, |row| row.node_tests)),
+                times(mean(motion, index, |row| row.traversal.min)),
+                times(mean(motion, index, |row| row.query.min)),
+                differing,
+            ]
+        })
+    });
+    Grid {
+        title:
+            "Coherence: times fewer and faster than fresh descents, geometric means over the meshes"
+                .to_owned(),
+        header: vec!["motion", "variant", "node tests", "traversal", "query", "differing pairs"],
+        text_columns: 2,
+        rows: cells.collect(),
+        notes: vec!["of the minima of times".to_owned(), DIFFERING_NOTE.to_owned()],
+    }
+}

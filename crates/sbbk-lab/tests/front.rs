@@ -1,0 +1,63 @@
+//! The study of the front on a small scale, and what reports make of it.
+
+use std::fs;
+
+use sbbk_lab::mesh;
+use sbbk_lab::report::{tables, write_csv, write_front_plot, write_json};
+use sbbk_lab::study::Progress;
+use sbbk_lab::study::front::{FrontMotion, FrontPlan, STEP_COUNT, Variant, front};
+
+/// Would catch a variant that answers wrongly, motions in which nothing touches or that are not what they are called,
+/// parts of the front that do nothing, and reports that lose a column or a row.
+#[test]
+fn all_variants_agree_and_can_be_reported() {
+    let meshes = vec![mesh::ball(1.0, 6), mesh::torus(0.7, 0.3, 24, 12)];
+    let plan = FrontPlan { meshes, approach_count: 1, repeats: 1 };
+    let study = front(&plan, &Progress::hidden()).unwrap();
+    assert_eq!(study.rows.len(), 2 * FrontMotion::ALL.len());
+    for row in &study.rows {
+        assert_eq!(row.query_count, 5 * (STEP_COUNT + 1));
+        assert_eq!(row.variants.iter().map(|row| row.variant).collect::<Vec<_>>(), Variant::ALL);
+        let fresh = &row.variants[0];
+        assert!(fresh.pairs > 1.0 && fresh.node_tests > 10.0, "{row:?}");
+        for variant in &row.variants {
+            assert_eq!(variant.differing, 0, "{:?}: {variant:?}", row.motion);
+            assert_eq!(variant.pairs, fresh.pairs);
+            assert!(variant.leaf_pairs > 0.0 && variant.traversal.min > 0.0);
+        }
+        let tests =
+            |variant| row.variants.iter().find(|row| row.variant == variant).unwrap().node_tests;
+        match row.motion {
+            FrontMotion::Slow | FrontMotion::Resting => {
+                for variant in [Variant::MotionBound, Variant::Adaptive, Variant::Slack] {
+                    assert!(2.0 * tests(variant) < fresh.node_tests, "{row:?}");
+                }
+                assert!(tests(Variant::Paper) < fresh.node_tests);
+            }
+            FrontMotion::Fast | FrontMotion::Tumbling => {
+                assert!(tests(Variant::Adaptive) < 1.05 * fresh.node_tests, "{row:?}");
+                assert!(tests(Variant::Paper) > tests(Variant::MotionBound), "{row:?}");
+            }
+        }
+    }
+
+    let grids = tables::front(&study);
+    let row_counts: Vec<_> = grids.iter().map(|grid| grid.rows.len()).collect();
+    assert_eq!(row_counts, [8 * 9, 4 * 9]);
+    for grid in &grids {
+        assert!(grid.rows.iter().all(|row| row.len() == grid.header.len()), "{}", grid.title);
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let [json, csv, svg] =
+        ["json", "csv", "svg"].map(|end| folder.path().join("out").with_extension(end));
+    write_json(&study, &json).unwrap();
+    write_csv(&study, &csv).unwrap();
+    write_front_plot(&study, &svg).unwrap();
+    let value: serde_json::Value = serde_json::from_slice(&fs::read(json).unwrap()).unwrap();
+    assert_eq!(value["rows"][7]["variants"][8]["differing"], 0);
+    let lines = fs::read_to_string(csv).unwrap();
+    assert!(lines.contains("(i) slack + g,node_tests,value"), "{lines}");
+    assert_eq!(lines.lines().filter(|line| line.contains(",node_tests,")).count(), 72);
+    let picture = fs::read_to_string(svg).unwrap();
+    assert!(picture.starts_with("<svg") && picture.contains("Traversal, tumbling"));
+}
