@@ -35,6 +35,11 @@ impl OrderKey {
         let [major, minor] = if flipped { [ranks[1], ranks[0]] } else { ranks };
         Self(u64::from(major) << 32 | u64::from(minor))
     }
+
+    /// Of one triangle, whatever the other shape is: stock walks the hierarchy of the mesh.
+    pub(super) fn of_triangle(prepared: &PreparedMesh, triangle: u32) -> Self {
+        Self(u64::from(prepared.rank(triangle)))
+    }
 }
 
 /// Memory of one query, kept by each thread: after the first few queries none allocates here.
@@ -48,7 +53,7 @@ pub(crate) struct Scratch {
 
 impl Scratch {
     /// Those of the known candidates whose triangles were at most `reach` apart.
-    pub(super) fn take(&mut self, known: &[KnownCandidate], reach: f64) {
+    pub(super) fn take(&mut self, known: &[KnownCandidate<Candidate>], reach: f64) {
         self.candidates.clear();
         let near = known.iter().filter(|known| known.distance <= reach);
         self.candidates.extend(near.map(|known| known.candidate));

@@ -7,11 +7,8 @@
 //! touch gets the exact test, so the contacts are those of a descent.
 
 use parry3d::math::{Pose, Real};
-use sbbk_core::contact::TriangleContact;
 use sbbk_core::traverse::Placement;
-use sbbk_core::tree::Tree;
-
-use super::candidates::Candidate;
+use sbbk_core::volumes::Sphere;
 
 /// Slack in steps of the present motion. More: fewer descents, and more candidates that do not touch.
 const SLACK_STEPS: f64 = 8.0;
@@ -22,19 +19,19 @@ const LEAST_SLACK: f64 = 0.1;
 const GREATEST_SLACK: f64 = 1.0;
 
 /// The candidates of a descent and when they are still good.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Coherence {
+#[derive(Clone, Debug)]
+pub(super) struct Coherence<T> {
     /// The query before this one.
     last: Option<Seen>,
     /// The descent that found the candidates, and its margin.
     descent: Option<Seen>,
-    candidates: Vec<KnownCandidate>,
+    candidates: Vec<KnownCandidate<T>>,
 }
 
-/// A candidate and how far apart its triangles were at the time of the descent.
+/// A candidate and how far apart it was at the time of the descent, at least.
 #[derive(Copy, Clone, Debug)]
-pub(super) struct KnownCandidate {
-    pub(super) candidate: Candidate,
+pub(super) struct KnownCandidate<T> {
+    pub(super) candidate: T,
     pub(super) distance: f64,
 }
 
@@ -62,23 +59,33 @@ pub(super) enum Plan {
     },
 }
 
-impl Coherence {
-    /// Forgets everything: the meshes changed.
+impl<T> Default for Coherence<T> {
+    fn default() -> Self {
+        Self { last: None, descent: None, candidates: Vec::new() }
+    }
+}
+
+impl<T> Coherence<T> {
+    /// Forgets everything: a shape changed.
     pub(super) fn clear(&mut self) {
         *self = Self::default();
     }
 
-    /// Decides how to answer for this pose, and remembers it.
-    pub(super) fn plan(&mut self, tree2: &Tree, pos12: &Pose, prediction: Real) -> Plan {
-        let now = Seen { pos12: *pos12, placement: Placement::new(pos12), margin: prediction };
+    /// Decides how to answer for this pose, and remembers it. One of the shapes is in `ball` of its own frame, and that
+    /// is at `placement`, as `pos12` says, in the frame of the other.
+    pub(super) fn plan(
+        &mut self,
+        ball: Sphere,
+        (pos12, placement): (&Pose, Placement),
+        prediction: Real,
+    ) -> Plan {
+        let now = Seen { pos12: *pos12, placement, margin: prediction };
         let last = self.last.replace(now);
         if last.is_some_and(|last| last.pos12 == *pos12 && last.margin == prediction) {
             return Plan::Nothing;
         }
-        let motion_since = |seen: Seen| {
-            let ball = tree2.bounding_ball();
-            now.placement.motion_bound(&seen.placement, ball.centre, ball.radius)
-        };
+        let motion_since =
+            |seen: Seen| now.placement.motion_bound(&seen.placement, ball.centre, ball.radius);
         if let Some(descent) = self.descent {
             let reach = f64::from(prediction) + motion_since(descent);
             if reach <= f64::from(descent.margin) {
@@ -93,16 +100,20 @@ impl Coherence {
     }
 
     /// Keeps a candidate of the descent under way.
-    pub(super) fn keep(&mut self, candidate: &Candidate, contact: &TriangleContact) {
+    pub(super) fn keep(&mut self, candidate: T, distance: f64) {
         if self.descent.is_some() {
-            let candidate = Candidate { features: Some(contact.features), ..*candidate };
-            self.candidates.push(KnownCandidate { candidate, distance: contact.distance });
+            self.candidates.push(KnownCandidate { candidate, distance });
         }
     }
 
     /// The candidates of the last descent, in stock order.
-    pub(super) fn candidates(&self) -> &[KnownCandidate] {
+    pub(super) fn candidates(&self) -> &[KnownCandidate<T>] {
         &self.candidates
+    }
+
+    /// The same, to raise distances that turned out to be larger.
+    pub(super) fn candidates_mut(&mut self) -> &mut [KnownCandidate<T>] {
+        &mut self.candidates
     }
 }
 

@@ -12,6 +12,7 @@ use sbbk_core::traverse::PairFrame;
 use super::candidates::{Candidate, OrderKey, Scratch};
 use super::coherence::Coherence;
 use super::exact::{Constraints, LocalTriangles, fill};
+use super::previous::Previous;
 use super::query::MeshPair;
 use super::state::History;
 use crate::ContactGenerator;
@@ -39,32 +40,20 @@ impl Generator<'_> {
     pub(super) fn update<M, C>(
         &self,
         scratch: &mut Scratch,
-        mut descent: Option<&mut Coherence>,
-        history: &mut History<M, C>,
+        mut descent: Option<&mut Coherence<Candidate>>,
+        history: &mut History<M, C, FeaturePair>,
         manifolds: &mut Vec<ContactManifold<M, C>>,
     ) where
         M: Default + Clone + Send + Sync + 'static,
         C: Default + Copy + Send + Sync + 'static,
     {
-        self.order_previous(manifolds, &mut scratch.previous);
-        if !history.is_of(manifolds) {
-            // Somebody else's manifolds: their features are not known.
-            history.features.clear();
-            history.features.resize(manifolds.len(), None);
-        }
+        history.begin(manifolds);
+        let key = |triangles| OrderKey::new(self.prepared, self.flipped, triangles);
+        let mut previous = Previous::new(manifolds, key, &mut scratch.previous);
         let mut points = ManifoldPoints::new();
-        let mut previous = scratch.previous.iter().peekable();
         for candidate in &scratch.candidates {
-            let mut kept = None;
-            while let Some(&&(key, place)) = previous.peek().filter(|old| old.0 <= candidate.key) {
-                previous.next();
-                if key == candidate.key && kept.is_none() {
-                    kept = Some(place as usize);
-                } else {
-                    history.retire(std::mem::take(&mut manifolds[place as usize]));
-                }
-            }
-            let features = kept.and_then(|place| history.features[place]).or(candidate.features);
+            let kept = previous.find(candidate.key, manifolds, history);
+            let features = kept.and_then(|place| history.contacts[place]).or(candidate.features);
             let touching = self.touching(candidate, features, &mut descent, &mut points);
             let mut manifold = match kept {
                 Some(place) => std::mem::take(&mut manifolds[place]),
@@ -80,30 +69,8 @@ impl Generator<'_> {
                 None => history.retire(manifold),
             }
         }
-        for &(_, place) in previous {
-            history.retire(std::mem::take(&mut manifolds[place as usize]));
-        }
-        manifolds.clear();
-        std::mem::swap(manifolds, &mut history.next);
-        history.settle(manifolds.len());
-        history.features.clear();
-        std::mem::swap(&mut history.features, &mut history.next_features);
-    }
-
-    /// The previous manifolds in stock order, which they are in unless somebody else touched them.
-    fn order_previous<M, C>(
-        &self,
-        manifolds: &[ContactManifold<M, C>],
-        previous: &mut Vec<(OrderKey, u32)>,
-    ) {
-        previous.clear();
-        previous.extend(manifolds.iter().enumerate().map(|(place, manifold)| {
-            let triangles = [manifold.subshape1, manifold.subshape2];
-            (OrderKey::new(self.prepared, self.flipped, triangles), place as u32)
-        }));
-        if !previous.is_sorted() {
-            previous.sort_unstable();
-        }
+        previous.retire_rest(manifolds, history);
+        history.end(manifolds);
     }
 
     /// The contact of a candidate at the present pose, if it is within the prediction distance, and its points.
@@ -111,7 +78,7 @@ impl Generator<'_> {
         &self,
         candidate: &Candidate,
         features: Option<FeaturePair>,
-        descent: &mut Option<&mut Coherence>,
+        descent: &mut Option<&mut Coherence<Candidate>>,
         points: &mut ManifoldPoints,
     ) -> Option<Touching> {
         let MeshPair { mesh1, mesh2, prediction, .. } = self.pair;
@@ -119,7 +86,8 @@ impl Generator<'_> {
         let local = LocalTriangles::new(self.frame.placement(), &triangles[0], &triangles[1]);
         let contact = local.contact(self.frame.margin(), features, points)?;
         if let Some(coherence) = descent {
-            coherence.keep(candidate, &contact);
+            let candidate = Candidate { features: Some(contact.features), ..*candidate };
+            coherence.keep(candidate, contact.distance);
         }
         // A descent with slack finds pairs that are farther apart than the prediction distance.
         let is_near = contact.distance <= f64::from(prediction);

@@ -5,12 +5,13 @@ use parry3d::bounding_volume::BoundingVolume;
 use parry3d::math::{Pose, Real};
 use parry3d::query::{ContactManifold, ContactManifoldsWorkspace};
 use parry3d::shape::TriMesh;
-use sbbk_core::traverse::{Counters, PairFrame};
+use sbbk_core::contact::FeaturePair;
+use sbbk_core::traverse::{Counters, PairFrame, Placement};
 
-use super::candidates::{Scratch, collect};
+use super::candidates::{Candidate, Scratch, collect};
 use super::coherence::{Coherence, Plan};
 use super::manifolds::Generator;
-use super::state::{KnownMeshes, PairState};
+use super::state::{PairKind, PairState};
 use crate::ContactGenerator;
 use crate::mesh::{MeshToken, PreparedRef, TreeCache};
 
@@ -37,6 +38,26 @@ pub(crate) enum Answer {
     Descended,
     /// Not at all: a mesh cannot have a tree, and somebody else must answer.
     Unsupported,
+}
+
+/// Two meshes.
+#[derive(Clone)]
+struct TwoMeshes;
+
+impl PairKind for TwoMeshes {
+    type Shapes = KnownMeshes;
+    type Candidate = Candidate;
+    type Contact = FeaturePair;
+}
+
+/// The trees of the pair, as far as they are known.
+#[derive(Clone, Default)]
+enum KnownMeshes {
+    /// No query has needed them yet.
+    #[default]
+    None,
+    /// Valid while the tokens are.
+    Trees([MeshToken; 2], [PreparedRef; 2]),
 }
 
 thread_local! {
@@ -72,7 +93,7 @@ impl MeshPair<'_> {
         &self,
         cache: &Arc<TreeCache>,
         known: &'s mut KnownMeshes,
-        coherence: &mut Coherence,
+        coherence: &mut Coherence<Candidate>,
         manifolds: &mut Vec<ContactManifold<M, C>>,
     ) -> Option<&'s [PreparedRef; 2]>
     where
@@ -121,10 +142,11 @@ where
     M: Default + Clone + Send + Sync + 'static,
     C: Default + Copy + Send + Sync + 'static,
 {
-    if cache.is_unsupported([pair.mesh1, pair.mesh2]) {
+    if cache.is_unsupported(&[pair.mesh1, pair.mesh2]) {
         return Answer::Unsupported;
     }
-    let PairState { meshes, coherence, history } = PairState::of(workspace, manifolds);
+    let PairState::<_, _, TwoMeshes> { shapes: meshes, coherence, history } =
+        PairState::of(workspace, manifolds);
     if matches!(meshes, KnownMeshes::None) && !pair.root_boxes_meet() {
         manifolds.clear();
         return Answer::Apart;
@@ -134,7 +156,8 @@ where
     };
     let prepared = prepared.each_ref().map(PreparedRef::get);
     let trees = (&prepared[0].tree, &prepared[1].tree);
-    let plan = coherence.plan(trees.1, pair.pos12, pair.prediction);
+    let pose = (pair.pos12, Placement::new(pair.pos12));
+    let plan = coherence.plan(trees.1.bounding_ball(), pose, pair.prediction);
     if plan == Plan::Nothing && history.is_of(manifolds) {
         return Answer::Unchanged;
     }

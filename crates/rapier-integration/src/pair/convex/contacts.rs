@@ -1,0 +1,203 @@
+//! From candidates to manifolds, by Parry's contact routine.
+
+use glamx::DVec3;
+use parry3d::math::{Pose, Real};
+use parry3d::query::details::NormalConstraints;
+use parry3d::query::{
+    ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, TrackedContact,
+};
+use parry3d::shape::{TriMesh, Triangle};
+use sbbk_core::traverse::{Convex, Placement};
+
+use super::half_space::half_space_manifold;
+use super::shape::{ConvexShape, Kind};
+use crate::mesh::PreparedMesh;
+use crate::pair::candidates::OrderKey;
+use crate::pair::coherence::KnownCandidate;
+use crate::pair::previous::Previous;
+use crate::pair::state::History;
+
+/// A triangle of the mesh.
+#[derive(Copy, Clone, Debug)]
+pub(super) struct NearTriangle {
+    pub(super) key: OrderKey,
+    pub(super) triangle: u32,
+}
+
+/// One query, after its descent.
+pub(super) struct Generator<'a> {
+    pub(super) mesh: &'a TriMesh,
+    pub(super) shape: ConvexShape<'a>,
+    pub(super) prepared: &'a PreparedMesh,
+    /// Whether the mesh is shape 2.
+    pub(super) flipped: bool,
+    /// The pose that stock passes on, bit for bit.
+    pub(super) parrys_pose: Pose,
+    /// The mesh in the frame of the shape.
+    pub(super) placement: Placement,
+    pub(super) prediction: Real,
+}
+
+impl Generator<'_> {
+    /// Replaces `manifolds` by those of the candidates that touch, in stock order. Manifolds of triangles that still do
+    /// keep their data; none is left empty.
+    ///
+    /// Candidates that were farther than `reach` at the descent are skipped. `motion` is what the pair has moved since: of
+    /// a triangle that does not touch, Parry's routine often knows why, and its distance is corrected.
+    pub(super) fn update<M, C>(
+        &self,
+        candidates: &mut [KnownCandidate<NearTriangle>],
+        [reach, motion]: [f64; 2],
+        places: &mut Vec<(OrderKey, u32)>,
+        history: &mut History<M, C, ()>,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+    ) where
+        M: Default + Clone + Send + Sync + 'static,
+        C: Default + Copy + Send + Sync + 'static,
+    {
+        history.begin(manifolds);
+        let key = |triangles: [u32; 2]| {
+            OrderKey::of_triangle(self.prepared, triangles[usize::from(self.flipped)])
+        };
+        let mut previous = Previous::new(manifolds, key, places);
+        let mut unused = None;
+        for known in candidates.iter_mut().filter(|known| known.distance <= reach) {
+            let NearTriangle { key, triangle } = known.candidate;
+            let mut manifold = match previous.find(key, manifolds, history) {
+                Some(place) => std::mem::take(&mut manifolds[place]),
+                None => self.manifold(triangle, unused.take(), history),
+            };
+            let triangle = self.mesh.triangle(triangle);
+            self.refresh(&triangle, known.candidate, &mut history.previous_points, &mut manifold);
+            if manifold.points.is_empty() {
+                let gap = self.gap_along(&triangle, &manifold) - motion;
+                known.distance = known.distance.max(gap);
+                history.retire_unless_first(&mut unused, manifold);
+            } else {
+                history.keep(manifold, ());
+            }
+        }
+        if let Some(unused) = unused {
+            history.retire(unused);
+        }
+        previous.retire_rest(manifolds, history);
+        history.end(manifolds);
+    }
+
+    /// A manifold with nothing in it, for a triangle that had none.
+    fn manifold<M: Default, C: Default + Copy>(
+        &self,
+        triangle: u32,
+        unused: Option<ContactManifold<M, C>>,
+        history: &mut History<M, C, ()>,
+    ) -> ContactManifold<M, C> {
+        let mut manifold = unused.unwrap_or_else(|| history.manifold(0, 0));
+        let subshapes = if self.flipped { [0, triangle] } else { [triangle, 0] };
+        [manifold.subshape1, manifold.subshape2] = subshapes;
+        manifold
+    }
+
+    /// Brings the manifold of a triangle up to date.
+    ///
+    /// As Parry does it, but the points of the query before are in a buffer of ours meanwhile: Parry copies them into a new
+    /// one. For that, what its routine does first, it is asked to do on its own.
+    fn refresh<M, C>(
+        &self,
+        triangle: &Triangle,
+        candidate: NearTriangle,
+        previous_points: &mut Vec<TrackedContact<C>>,
+        manifold: &mut ContactManifold<M, C>,
+    ) where
+        M: Default + Clone + Send + Sync,
+        C: Default + Copy + Send + Sync,
+    {
+        match self.shape.kind {
+            // One point, whose data Parry keeps in place.
+            Kind::Ball(_) => self.ask_parry(triangle, candidate, manifold),
+            Kind::HalfSpace(half_space) => {
+                take_points(manifold, previous_points);
+                let inverse = self.parrys_pose.inverse();
+                let pose = if self.flipped { &self.parrys_pose } else { &inverse };
+                half_space_manifold(
+                    pose,
+                    half_space,
+                    triangle,
+                    self.prediction,
+                    !self.flipped,
+                    previous_points,
+                    manifold,
+                );
+            }
+            Kind::Features(..) => {
+                if manifold.try_update_contacts(&self.parrys_pose) {
+                    return;
+                }
+                take_points(manifold, previous_points);
+                self.ask_parry(triangle, candidate, manifold);
+                manifold.match_contacts(previous_points);
+            }
+        }
+    }
+
+    fn ask_parry<M, C>(
+        &self,
+        triangle: &Triangle,
+        candidate: NearTriangle,
+        manifold: &mut ContactManifold<M, C>,
+    ) where
+        M: Default + Clone + Send + Sync,
+        C: Default + Copy + Send + Sync,
+    {
+        let cone = self.prepared.normal_constraints(candidate.triangle);
+        let cone = cone.map(|cone| cone as &dyn NormalConstraints);
+        let shape = self.shape.shape;
+        // `ConvexShape` holds no kind that Parry does not support with a triangle.
+        let _ = if self.flipped {
+            DefaultQueryDispatcher.contact_manifold_convex_convex(
+                &self.parrys_pose,
+                shape,
+                triangle,
+                None,
+                cone,
+                self.prediction,
+                manifold,
+            )
+        } else {
+            DefaultQueryDispatcher.contact_manifold_convex_convex(
+                &self.parrys_pose,
+                triangle,
+                shape,
+                cone,
+                None,
+                self.prediction,
+                manifold,
+            )
+        };
+    }
+
+    /// A lower bound of the distance of a triangle that does not touch: GJK leaves the direction along which it saw that as
+    /// the manifold's normal. Whatever the direction is, the bound holds; none gives minus infinity.
+    fn gap_along<M, C>(&self, triangle: &Triangle, manifold: &ContactManifold<M, C>) -> f64 {
+        let left = manifold.local_n1.as_dvec3();
+        if !matches!(self.shape.kind, Kind::Features(..)) || left == DVec3::ZERO {
+            return f64::NEG_INFINITY;
+        }
+        let placement = &self.placement;
+        let toward_triangle =
+            if self.flipped { left } else { -(placement.rotation * left) }.normalize();
+        let corners = triangle.vertices().iter();
+        let lowest = corners
+            .map(|x| toward_triangle.dot(placement.rotation * x.as_dvec3() + placement.translation))
+            .fold(f64::INFINITY, f64::min);
+        lowest - self.shape.reach(toward_triangle)
+    }
+}
+
+/// Moves the points of a manifold away and leaves it the other buffer.
+fn take_points<M, C>(
+    manifold: &mut ContactManifold<M, C>,
+    previous_points: &mut Vec<TrackedContact<C>>,
+) {
+    std::mem::swap(&mut manifold.points, previous_points);
+    manifold.points.clear();
+}
