@@ -5,6 +5,8 @@
 mod allocation;
 /// Contacts that Parry generates are stock's, bit for bit.
 mod bits;
+/// Meshes against convex shapes.
+mod convex;
 /// What a host may expect of calls that follow each other.
 mod contract;
 /// A mesh that changes while pairs know it.

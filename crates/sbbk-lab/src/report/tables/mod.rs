@@ -1,11 +1,13 @@
 //! The tables of a comparison, with the paper's rows among ours.
 
 mod contacts;
+mod convex;
 mod helicopter;
 mod meshes;
 mod pile;
 
 pub use contacts::{by_mesh, by_size, contact_generators, contacts, queries};
+pub use convex::convex;
 pub use helicopter::{frames, overlapping_area};
 pub use meshes::costs;
 pub use pile::{accuracy, runs, same_poses, sizes};

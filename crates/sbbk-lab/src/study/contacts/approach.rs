@@ -12,7 +12,7 @@ use crate::scene::random;
 
 /// Where the second mesh is, and from where it came.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(in crate::study) struct Place {
     /// Pose of the second mesh in the frame of the first.
     pub pos12: Pose3,
     /// Unit vector from the first mesh, against the way that the second one came.

@@ -21,11 +21,14 @@ mod report;
 mod speed;
 mod triangles;
 
+pub(super) use approach::Place;
 pub use approach::PAIR_LIMIT;
 pub use case::ContactCase;
 pub use contest::CONTESTANTS;
+pub(super) use contest::{Contest, Memory};
 pub use errors::ContactErrors;
 pub use exactness::{ExactnessRow, ExactnessSide};
+pub(super) use motion::motion;
 pub use motion::{FAST, SLOW, STEP_COUNT};
 pub use plan::{ApproachedMesh, ContactsPlan, SHORT_REPEATS};
 pub use report::{Contacts, SPEED_CASE, contacts};

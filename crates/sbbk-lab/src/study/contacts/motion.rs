@@ -17,7 +17,7 @@ pub const STEP_COUNT: usize = 16;
 /// slides along a straight line and turns about its origin at once. Each of the two moves the
 /// point of the surface that it moves most by half of `step`; together they move no point farther
 /// than `step`, and some nearly so far.
-pub(super) fn motion(shape: &SharedShape, place: &Place, step: Real) -> Vec<Pose3> {
+pub(in crate::study) fn motion(shape: &SharedShape, place: &Place, step: Real) -> Vec<Pose3> {
     let (slide, axis) = place.motion();
     let local_axis = place.pos12.rotation.inverse() * axis;
     let angle = 0.5 * step / radius(shape, local_axis);
