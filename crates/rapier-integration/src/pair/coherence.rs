@@ -14,10 +14,6 @@ use sbbk_core::volumes::Sphere;
 const SLACK_STEPS: f64 = 8.0;
 /// Least slack as a share of the prediction distance, for bodies at rest that jitter.
 const LEAST_SLACK: f64 = 0.1;
-/// Greatest slack, likewise. A pair that would use it up in fewer than two steps gets none: looking farther
-/// would not pay.
-const GREATEST_SLACK: f64 = 1.0;
-
 /// The candidates of a descent and when they are still good.
 #[derive(Clone, Debug)]
 pub(super) struct Coherence<T> {
@@ -72,12 +68,14 @@ impl<T> Coherence<T> {
     }
 
     /// Decides how to answer for this pose, and remembers it. One of the shapes is in `ball` of its own frame, and that
-    /// is at `placement`, as `pos12` says, in the frame of the other.
+    /// is at `placement`, as `pos12` says, in the frame of the other. `greatest_slack` is a share of the prediction
+    /// distance. A pair that would use it up in fewer than two steps gets none: looking farther would not pay.
     pub(super) fn plan(
         &mut self,
         ball: Sphere,
         (pos12, placement): (&Pose, Placement),
         prediction: Real,
+        greatest_slack: f64,
     ) -> Plan {
         let now = Seen { pos12: *pos12, placement, margin: prediction };
         let last = self.last.replace(now);
@@ -92,7 +90,9 @@ impl<T> Coherence<T> {
                 return Plan::Reuse { reach };
             }
         }
-        let slack = last.map_or(0.0, |last| slack(motion_since(last), f64::from(prediction)));
+        let slack = last.map_or(0.0, |last| {
+            slack(motion_since(last), f64::from(prediction), greatest_slack)
+        });
         let margin = prediction + slack as Real;
         self.candidates.clear();
         self.descent = (margin > prediction).then_some(Seen { margin, ..now });
@@ -119,8 +119,8 @@ impl<T> Coherence<T> {
 
 /// How much farther than the prediction distance a descent should look, for a pair that moved by `step` since the
 /// query before. Not finite motion gives none.
-fn slack(step: f64, prediction: f64) -> f64 {
-    let greatest = GREATEST_SLACK * prediction;
+fn slack(step: f64, prediction: f64, greatest_slack: f64) -> f64 {
+    let greatest = greatest_slack * prediction;
     if 2.0 * step <= greatest {
         (SLACK_STEPS * step).clamp(LEAST_SLACK * prediction, greatest)
     } else {

@@ -40,6 +40,10 @@ pub(crate) enum Answer {
     Unsupported,
 }
 
+/// Greatest slack of candidates as a share of the prediction distance. More: pairs of triangles that do not touch get
+/// the exact test; fewer: more descents.
+const GREATEST_SLACK: f64 = 1.0;
+
 /// Two meshes.
 #[derive(Clone)]
 struct TwoMeshes;
@@ -157,7 +161,8 @@ where
     let prepared = prepared.each_ref().map(PreparedRef::get);
     let trees = (&prepared[0].tree, &prepared[1].tree);
     let pose = (pair.pos12, Placement::new(pair.pos12));
-    let plan = coherence.plan(trees.1.bounding_ball(), pose, pair.prediction);
+    let ball = trees.1.bounding_ball();
+    let plan = coherence.plan(ball, pose, pair.prediction, GREATEST_SLACK);
     if plan == Plan::Nothing && history.is_of(manifolds) {
         return Answer::Unchanged;
     }

@@ -5,8 +5,8 @@
 //! their distance. So each direction gives a lower bound, and the greatest counts. Tried over the lanes, in the shape's
 //! frame, against its [`Outline`], a box with rounded edges:
 //!
-//! * the axes of the box, the normal of the triangle, the products of axes and edges: all that tells a box and a triangle
-//!   apart that overlap or nearly do;
+//! * the axes of the box (the gaps along them add up as sides of a box do), the normal of the triangle, the products of
+//!   axes and edges: all that tells a box and a triangle apart that overlap or nearly do;
 //! * for each edge the direction to the point of the box next to it: between corners and edges the axes above give a bound
 //!   that is too low. For a ball this is the distance itself.
 //!
@@ -20,7 +20,7 @@
 //! the box's `γ_4·|n|₁·h`, and `|n|₁ <= √3·|n|`; with the difference below `γ_18·(W + h)·|n|`, and the quotient by `|n|`
 //! loses `γ_6` of a distance that is at most `2·W + h`: in all below `γ_32·(W + h + r)`, which is taken off each bound.
 
-use glamx::DVec3;
+use glamx::{DVec3, Vec3};
 use wide::f32x4;
 
 use super::lane::{Lane, V3, cross, dot, each, sub};
@@ -83,34 +83,47 @@ impl<'a, S: Convex> ProbeTest<'a, S> {
         }
     }
 
-    /// Calls `found(lane, distance)` for the triangles that no direction shows to be beyond the margin, with a distance that
-    /// is not more than the true one; negative where they overlap.
+    /// Calls `found(lane, distance, axis)` for the triangles that no direction shows to be beyond the margin, with a
+    /// distance that is not more than the true one, negative where they overlap, and the direction in the shape's frame, from
+    /// the shape to the triangle and of any length, that shows it; zero if there is none.
     #[inline]
-    pub fn survivors(&self, batch: &LeafBatch, mut found: impl FnMut(usize, f64)) {
+    pub fn survivors(&self, batch: &LeafBatch, mut found: impl FnMut(usize, f64, Vec3)) {
         let corners = self.placed(&lanes(&batch.corners, f32x4::new));
-        let distances = match &self.body {
+        let best = match &self.body {
             Body::RoundBox { half_lengths, radius } => {
                 let margin = self.margin + radius + self.rounding;
-                box_distances(&corners, half_lengths, margin) - f32x4::splat(*radius)
+                let best = box_distances(&corners, half_lengths, margin);
+                Best { distance: best.distance - f32x4::splat(*radius), ..best }
             }
             Body::HalfSpace { normal } => {
-                let [a, b, c] = each(|i| dot(corners[i], each(|axis| f32x4::splat(normal[axis]))));
-                a.smaller(b).smaller(c)
+                let axis = each(|i| f32x4::splat(normal[i]));
+                let [a, b, c] = each(|i| dot(corners[i], axis));
+                Best { distance: a.smaller(b).smaller(c), axis }
             }
         };
-        let distances = distances - f32x4::splat(self.rounding);
+        let distances = best.distance - f32x4::splat(self.rounding);
         let used = (1 << batch.count()) - 1;
         let mut near = distances.simd_le(f32x4::splat(self.margin)).to_bitmask() & used;
         while near != 0 {
             let lane = near.trailing_zeros() as usize;
             near &= near - 1;
+            let of_lane = |v: V3<f32x4>| Vec3::from_array(v.map(|x| x.to_array()[lane]));
             let mut distance = f64::from(distances.to_array()[lane]);
+            let mut axis = of_lane(best.axis);
             if !self.is_exact {
-                let corners = corners.map(|c| DVec3::from_array(c.map(|x| f64::from(x.to_array()[lane]))));
-                distance = distance.max(self.gap_along_normal(corners));
+                let corners = corners.map(|corner| of_lane(corner).as_dvec3());
+                let [a, b, c] = corners;
+                for direction in [axis.as_dvec3(), (b - a).cross(c - a)] {
+                    // Away from the middle of the shape.
+                    let direction = direction.normalize_or_zero() * direction.dot(a).signum();
+                    let gap = self.gap_along(direction, &corners);
+                    if gap > distance {
+                        (distance, axis) = (gap, direction.as_vec3());
+                    }
+                }
             }
             if distance <= f64::from(self.margin) {
-                found(lane, distance);
+                found(lane, distance, axis);
             }
         }
     }
@@ -126,69 +139,96 @@ impl<'a, S: Convex> ProbeTest<'a, S> {
         })
     }
 
-    /// A bound from the normal of a triangle, corners as of [`placed`](Self::placed). Not larger than anything if there is
-    /// no normal.
-    fn gap_along_normal(&self, [a, b, c]: [DVec3; 3]) -> f64 {
-        let normal = (b - a).cross(c - a).normalize_or_zero();
-        if normal == DVec3::ZERO {
+    /// A bound from a direction of length 1, corners as of [`placed`](Self::placed). Minus infinity if there is no direction.
+    fn gap_along(&self, direction: DVec3, corners: &[DVec3; 3]) -> f64 {
+        if direction == DVec3::ZERO {
             return f64::NEG_INFINITY;
         }
-        // Away from the middle of the shape.
-        let normal = if normal.dot(a) < 0.0 { -normal } else { normal };
-        let lowest = [a, b, c].into_iter().map(|x| normal.dot(x)).fold(f64::INFINITY, f64::min);
-        lowest + normal.dot(self.centre) - self.shape.reach(normal) - f64::from(self.rounding)
+        let along = corners.iter().map(|x| direction.dot(*x));
+        let lowest = along.fold(f64::INFINITY, f64::min) + direction.dot(self.centre);
+        lowest - self.shape.reach(direction) - f64::from(self.rounding)
+    }
+}
+
+/// The greatest bounds so far and the directions that gave them, from the box to the triangle.
+#[derive(Copy, Clone)]
+struct Best {
+    distance: f32x4,
+    axis: V3<f32x4>,
+}
+
+impl Best {
+    /// None of the four is within `margin`.
+    #[inline(always)]
+    fn is_far(&self, margin: f32) -> bool {
+        self.distance.simd_le(f32x4::splat(margin)).to_bitmask() == 0
+    }
+
+    /// With the gap along a direction.
+    #[inline(always)]
+    fn with(self, n: V3<f32x4>, corners: &[V3<f32x4>; 3], half: &V3<f32x4>) -> Self {
+        let [a, b, c] = each(|i| dot(n, corners[i]));
+        let (low, high) = (a.smaller(b).smaller(c), a.larger(b).larger(c));
+        let below = f32x4::ZERO - high;
+        let squared = dot(n, n);
+        let gap = low.larger(below) - dot(each(|axis| n[axis].abs()), *half);
+        let distance = gap / squared.sqrt();
+        // Where this is so, the triangle is on the other side.
+        let is_opposite = below.simd_gt(low);
+        let is_better =
+            squared.simd_gt(f32x4::splat(SHORTEST_SQUARED)) & distance.simd_gt(self.distance);
+        Self {
+            distance: is_better.select(distance, self.distance),
+            axis: each(|i| {
+                let toward = is_opposite.select(f32x4::ZERO - n[i], n[i]);
+                is_better.select(toward, self.axis[i])
+            }),
+        }
     }
 }
 
 /// Lower bounds of the distances of triangles to a box around the origin, without rounding. Not all directions are
 /// tried once all bounds are beyond `margin`.
 #[inline(always)]
-fn box_distances(corners: &[V3<f32x4>; 3], half_lengths: &[f32; 3], margin: f32) -> f32x4 {
+fn box_distances(corners: &[V3<f32x4>; 3], half_lengths: &[f32; 3], margin: f32) -> Best {
     let half = each(|axis| f32x4::splat(half_lengths[axis]));
-    let [a, b, c] = corners;
-    let along = |axis: usize| {
-        let low = a[axis].smaller(b[axis]).smaller(c[axis]);
-        let high = a[axis].larger(b[axis]).larger(c[axis]);
-        low.larger(f32x4::splat(0.0) - high) - half[axis]
-    };
-    let mut bound = along(0).larger(along(1)).larger(along(2));
-    let is_far = |bound: f32x4| bound.simd_le(f32x4::splat(margin)).to_bitmask() == 0;
-    if is_far(bound) {
-        return bound;
+    let mut best = along_axes(corners, &half);
+    if best.is_far(margin) {
+        return best;
     }
     let edges = each(|i| sub(corners[(i + 1) % 3], corners[i]));
-    bound = better(bound, cross(edges[0], edges[1]), corners, &half);
-    if is_far(bound) {
-        return bound;
+    best = best.with(cross(edges[0], edges[1]), corners, &half);
+    if best.is_far(margin) {
+        return best;
     }
-    for (i, edge) in edges.into_iter().enumerate() {
-        bound = better(bound, to_edge(corners[i], edge, &half), corners, &half);
+    for (start, edge) in corners.iter().zip(edges) {
+        best = best.with(to_edge(*start, edge, &half), corners, &half);
     }
-    if is_far(bound) {
-        return bound;
+    if best.is_far(margin) {
+        return best;
     }
-    let zero = f32x4::splat(0.0);
     for axis in (0..3).filter(|&axis| half_lengths[axis] > 0.0) {
-        let unit = each(|i| if i == axis { f32x4::splat(1.0) } else { zero });
+        let unit = each(|i| f32x4::splat(if i == axis { 1.0 } else { 0.0 }));
         for edge in edges {
-            bound = better(bound, cross(unit, edge), corners, &half);
+            best = best.with(cross(unit, edge), corners, &half);
         }
     }
-    bound
+    best
 }
 
-/// The greater of a bound and that along a direction.
+/// The gaps along the axes of the box add up as the sides of a box do; where there is none, the least overlap counts.
 #[inline(always)]
-fn better(bound: f32x4, n: V3<f32x4>, corners: &[V3<f32x4>; 3], half: &V3<f32x4>) -> f32x4 {
-    let [a, b, c] = each(|i| dot(n, corners[i]));
-    let low = a.smaller(b).smaller(c);
-    let high = a.larger(b).larger(c);
-    let reach = dot(each(|axis| n[axis].abs()), *half);
-    let squared = dot(n, n);
-    let gap = low.larger(f32x4::splat(0.0) - high) - reach;
-    let distance = gap / squared.sqrt();
-    let is_usable = squared.simd_gt(f32x4::splat(SHORTEST_SQUARED)) & distance.simd_gt(bound);
-    is_usable.select(distance, bound)
+fn along_axes(corners: &[V3<f32x4>; 3], half: &V3<f32x4>) -> Best {
+    let [a, b, c] = corners;
+    let zero = f32x4::ZERO;
+    let low = each(|i| a[i].smaller(b[i]).smaller(c[i]) - half[i]);
+    let high = each(|i| zero - a[i].larger(b[i]).larger(c[i]) - half[i]);
+    let largest = each(|i| low[i].larger(high[i]));
+    let largest = largest[0].larger(largest[1]).larger(largest[2]);
+    // At most one of the two is positive.
+    let axis = each(|i| low[i].larger(zero) - high[i].larger(zero));
+    let distance = largest.simd_gt(zero).select(dot(axis, axis).sqrt(), largest);
+    Best { distance, axis }
 }
 
 /// From the box to a point of an edge that is close to it: two steps of alternating projection.

@@ -73,7 +73,8 @@ pub struct Probe<'a, S, const AXES: usize = 9> {
     pub(crate) margin: f64,
     pub(crate) magnitude: f32,
     own: [OwnAxes; 2],
-    own_pairs: usize,
+    /// How far along the own axes together, squared: the margin and the outline's radius.
+    own_reach_squared: f32x4,
     boxes: Intervals<3>,
     /// Computed when a descent first reaches k-DOPs.
     kdops: Option<Intervals<AXES>>,
@@ -86,7 +87,7 @@ struct Intervals<const COUNT: usize> {
     half: [f32; COUNT],
 }
 
-/// Two of the shape's own directions, seen in the tree's frame, in lanes 0, 0, 1, 1.
+/// Two of the shape's own directions, seen in the tree's frame, in lanes 0, 0, 1, 1; none is zero everywhere.
 #[derive(Copy, Clone, Debug)]
 struct OwnAxes {
     direction: [f32x4; 3],
@@ -99,14 +100,22 @@ impl<'a, S: Convex, const AXES: usize> Probe<'a, S, AXES> {
     /// A shape in whose frame the tree is at `placement`, to find all triangles within `margin` of it.
     pub fn new(tree: &Tree<AXES>, placement: &Placement, shape: &'a S, margin: f64) -> Self {
         let sight = Sight { shape, placement, margin, magnitude: f64::from(tree.magnitude()) };
-        let outline = shape.outline();
-        let (own, own_pairs) = match outline {
-            Outline::RoundBox { .. } => {
-                ([sight.own_axes(DVec3::X, DVec3::Y), sight.own_axes(DVec3::Z, DVec3::Z)], 2)
-            }
-            Outline::HalfSpace { normal } => ([sight.own_axes(normal, normal); 2], 1),
-        };
         let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+        let outline = shape.outline();
+        let (own, radius) = match outline {
+            Outline::RoundBox { half_lengths, radius, .. } => {
+                // A ball has no axes: those of the tree leave no corners.
+                let is_ball = half_lengths == DVec3::ZERO;
+                let to_shape = placement.inverse.transpose();
+                let [x, y, z] =
+                    axes.map(|axis| if is_ball { (to_shape * axis).normalize() } else { axis });
+                ([sight.own_axes([x, y], radius), sight.own_axes([z, DVec3::ZERO], radius)], radius)
+            }
+            Outline::HalfSpace { normal } => {
+                ([[normal, DVec3::ZERO], [DVec3::ZERO; 2]].map(|d| sight.own_axes(d, 0.0)), 0.0)
+            }
+        };
+        let own_reach = ((margin + radius) * f64::from(1.0 + gamma(8))) as f32;
         Self {
             shape,
             outline,
@@ -114,7 +123,7 @@ impl<'a, S: Convex, const AXES: usize> Probe<'a, S, AXES> {
             margin,
             magnitude: tree.magnitude(),
             own,
-            own_pairs,
+            own_reach_squared: f32x4::splat(own_reach * own_reach),
             boxes: sight.intervals(|i| axes[i]),
             kdops: None,
         }
@@ -125,7 +134,8 @@ impl<'a, S: Convex, const AXES: usize> Probe<'a, S, AXES> {
         self.margin
     }
 
-    /// Bit k: child k's box comes within the margin along the axes of the tree and the shape's own.
+    /// Bit k: child k's box comes within the margin along the axes of the tree, and of the outline on all its own
+    /// axes together: these are at right angles, so the gaps along them add up as sides of a box do.
     #[inline(always)]
     pub(super) fn boxes_meet(&self, children: &Children<'_, AXES>) -> u32 {
         let mut meets = self.boxes.meet(children.centre, children.extent, 0, 1)
@@ -136,11 +146,14 @@ impl<'a, S: Convex, const AXES: usize> Probe<'a, S, AXES> {
         let both = |&[a, b]: &Lanes| f32x4::new([a, b, a, b]);
         let centre = each(|axis| both(&children.centre[axis]));
         let extent = each(|axis| both(&children.extent[axis]));
-        for own in &self.own[..self.own_pairs] {
-            let gap = dot(&own.direction, &centre) - own.middle;
+        let [gap1, gap2] = [0, 1].map(|pair| {
+            let own = &self.own[pair];
+            let gap = (dot(&own.direction, &centre) - own.middle).abs();
             let reach = dot(&own.magnitude, &extent) + own.half;
-            meets &= gap.abs().simd_le(reach);
-        }
+            f32x4::ZERO.fast_max(gap - reach)
+        });
+        let [a, b, c, d] = (gap1 * gap1 + gap2 * gap2).to_array();
+        meets &= f32x4::new([a + c, b + d, a + c, b + d]).simd_le(self.own_reach_squared);
         both_halves(meets)
     }
 }
@@ -218,19 +231,20 @@ impl<S: Convex> Sight<'_, S> {
         let mut intervals = Intervals { middle: [0.0; COUNT], half: [0.0; COUNT] };
         for i in 0..COUNT {
             let n = direction(i);
-            let interval = self.interval(n, to_shape * n);
+            let interval = self.interval(n, to_shape * n, self.margin);
             (intervals.middle[i], intervals.half[i]) = interval;
         }
         intervals
     }
 
-    /// Along two directions of the shape's frame.
-    fn own_axes(&self, d1: DVec3, d2: DVec3) -> OwnAxes {
+    /// Along two directions of the shape's frame, of length 1 or none, without the margin and a radius.
+    fn own_axes(&self, [d1, d2]: [DVec3; 2], radius: f64) -> OwnAxes {
         let to_tree = self.placement.rotation.transpose();
         let (n1, n2) = (to_tree * d1, to_tree * d2);
         let lanes = |a: f32, b: f32| f32x4::new([a, a, b, b]);
         let axis = |i: usize| (n1[i] as f32, n2[i] as f32);
-        let ((middle1, half1), (middle2, half2)) = (self.interval(n1, d1), self.interval(n2, d2));
+        let [(middle1, half1), (middle2, half2)] =
+            [(n1, d1), (n2, d2)].map(|(n, d)| self.interval(n, d, -radius));
         OwnAxes {
             direction: each(|i| lanes(axis(i).0, axis(i).1)),
             magnitude: each(|i| lanes(axis(i).0.abs(), axis(i).1.abs())),
@@ -240,18 +254,21 @@ impl<S: Convex> Sight<'_, S> {
     }
 
     /// Middle and half-length of the shape's interval along `n`, in the tree's frame, which is `d` in the shape's: `n·x`
-    /// is `d·y - d·t` for a point `x` of the tree that is `y = R x + t` there.
-    fn interval(&self, n: DVec3, d: DVec3) -> (f32, f32) {
+    /// is `d·y - d·t` for a point `x` of the tree that is `y = R x + t` there. It is `growth` longer on each side.
+    fn interval(&self, n: DVec3, d: DVec3, growth: f64) -> (f32, f32) {
+        if d == DVec3::ZERO {
+            return (0.0, 0.0);
+        }
         let offset = d.dot(self.placement.translation);
-        let margin = self.margin * d.length();
+        let growth = growth * d.length();
         let extent = n.abs().element_sum() * self.magnitude;
         if !extent.is_finite() {
             return (f32::NAN, f32::NAN);
         }
         let limit = 4.0 * extent + f64::from(f32::MIN_POSITIVE);
         // A NaN stays one, and passes no test.
-        let low = (-self.shape.reach(-d) - offset - margin).clamp(-limit, limit);
-        let high = (self.shape.reach(d) - offset + margin).clamp(-limit, limit);
+        let low = (-self.shape.reach(-d) - offset - growth).clamp(-limit, limit);
+        let high = (self.shape.reach(d) - offset + growth).clamp(-limit, limit);
         let rounding = f64::from(gamma(32)) * extent + f64::from(f32::MIN_POSITIVE);
         ((0.5 * (low + high)) as f32, (0.5 * (high - low) + rounding) as f32)
     }

@@ -1,6 +1,6 @@
 //! From candidates to manifolds, by Parry's contact routine.
 
-use glamx::DVec3;
+use glamx::{DVec3, Vec3};
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::NormalConstraints;
 use parry3d::query::{
@@ -22,6 +22,19 @@ use crate::pair::state::History;
 pub(super) struct NearTriangle {
     pub(super) key: OrderKey,
     pub(super) triangle: u32,
+    /// Of the shape's frame, from the shape to the triangle: along it they were last seen apart. Zero if they were not.
+    pub(super) axis: Vec3,
+}
+
+/// How far a query looks.
+#[derive(Copy, Clone, Debug)]
+pub(super) struct Limits {
+    /// The distance up to which Parry's routine may make contacts.
+    pub(super) sight: f64,
+    /// What the pair has moved since the descent.
+    pub(super) motion: f64,
+    /// Both together: candidates that were farther at the descent are out of sight.
+    pub(super) reach: f64,
 }
 
 /// One query, after its descent.
@@ -42,12 +55,12 @@ impl Generator<'_> {
     /// Replaces `manifolds` by those of the candidates that touch, in stock order. Manifolds of triangles that still do
     /// keep their data; none is left empty.
     ///
-    /// Candidates that were farther than `reach` at the descent are skipped. `motion` is what the pair has moved since: of
-    /// a triangle that does not touch, Parry's routine often knows why, and its distance is corrected.
+    /// Candidates out of sight are skipped, and so are those that still are apart along the axis along which they last were. Of
+    /// a triangle that does not touch, Parry's routine often knows such an axis.
     pub(super) fn update<M, C>(
         &self,
         candidates: &mut [KnownCandidate<NearTriangle>],
-        [reach, motion]: [f64; 2],
+        limits: Limits,
         places: &mut Vec<(OrderKey, u32)>,
         history: &mut History<M, C, ()>,
         manifolds: &mut Vec<ContactManifold<M, C>>,
@@ -61,17 +74,22 @@ impl Generator<'_> {
         };
         let mut previous = Previous::new(manifolds, key, places);
         let mut unused = None;
-        for known in candidates.iter_mut().filter(|known| known.distance <= reach) {
-            let NearTriangle { key, triangle } = known.candidate;
+        for known in candidates.iter_mut().filter(|known| known.distance <= limits.reach) {
+            let NearTriangle { key, triangle, .. } = known.candidate;
+            let corners = self.mesh.triangle(triangle);
+            if limits.motion > 0.0 && self.is_apart(&corners, known, limits) {
+                continue;
+            }
             let mut manifold = match previous.find(key, manifolds, history) {
                 Some(place) => std::mem::take(&mut manifolds[place]),
                 None => self.manifold(triangle, unused.take(), history),
             };
-            let triangle = self.mesh.triangle(triangle);
-            self.refresh(&triangle, known.candidate, &mut history.previous_points, &mut manifold);
+            self.refresh(&corners, known.candidate, &mut history.previous_points, &mut manifold);
             if manifold.points.is_empty() {
-                let gap = self.gap_along(&triangle, &manifold) - motion;
-                known.distance = known.distance.max(gap);
+                if let Some(axis) = self.axis_of(&manifold) {
+                    known.candidate.axis = axis;
+                    self.is_apart(&corners, known, limits);
+                }
                 history.retire_unless_first(&mut unused, manifold);
             } else {
                 history.keep(manifold, ());
@@ -175,21 +193,40 @@ impl Generator<'_> {
         };
     }
 
-    /// A lower bound of the distance of a triangle that does not touch: GJK leaves the direction along which it saw that as
-    /// the manifold's normal. Whatever the direction is, the bound holds; none gives minus infinity.
-    fn gap_along<M, C>(&self, triangle: &Triangle, manifold: &ContactManifold<M, C>) -> f64 {
-        let left = manifold.local_n1.as_dvec3();
-        if !matches!(self.shape.kind, Kind::Features(..)) || left == DVec3::ZERO {
-            return f64::NEG_INFINITY;
+    /// Where GJK sees that two shapes do not touch, it leaves the direction as the manifold's normal.
+    fn axis_of<M, C>(&self, manifold: &ContactManifold<M, C>) -> Option<Vec3> {
+        let left = manifold.local_n1;
+        if !matches!(self.shape.kind, Kind::Features(..)) || left == Vec3::ZERO {
+            return None;
         }
-        let placement = &self.placement;
-        let toward_triangle =
-            if self.flipped { left } else { -(placement.rotation * left) }.normalize();
-        let corners = triangle.vertices().iter();
-        let lowest = corners
-            .map(|x| toward_triangle.dot(placement.rotation * x.as_dvec3() + placement.translation))
-            .fold(f64::INFINITY, f64::min);
-        lowest - self.shape.reach(toward_triangle)
+        let axis = if self.flipped {
+            left
+        } else {
+            -(self.placement.rotation * left.as_dvec3()).as_vec3()
+        };
+        Some(axis)
+    }
+
+    /// Whether a triangle is out of sight along its axis; its distance at the descent is then raised to what that
+    /// tells. Whatever the axis is, this holds.
+    fn is_apart(
+        &self,
+        corners: &Triangle,
+        known: &mut KnownCandidate<NearTriangle>,
+        limits: Limits,
+    ) -> bool {
+        let axis = known.candidate.axis.as_dvec3().normalize_or_zero();
+        if axis == DVec3::ZERO {
+            return false;
+        }
+        let at_mesh = self.placement.rotation.transpose() * axis;
+        let lowest = corners.vertices().iter().map(|x| at_mesh.dot(x.as_dvec3()));
+        let lowest = lowest.fold(f64::INFINITY, f64::min) + axis.dot(self.placement.translation);
+        let gap = lowest - self.shape.reach(axis);
+        if gap > limits.sight {
+            known.distance = known.distance.max(gap - limits.motion);
+        }
+        gap > limits.sight
     }
 }
 

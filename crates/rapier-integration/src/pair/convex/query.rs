@@ -11,7 +11,7 @@ use sbbk_core::traverse::{
 };
 use sbbk_core::volumes::rounding::gamma;
 
-use super::contacts::{Generator, NearTriangle};
+use super::contacts::{Generator, Limits, NearTriangle};
 use super::shape::{ConvexShape, Fingerprint, Kind};
 use crate::mesh::{MeshToken, PreparedMesh, PreparedRef, TreeCache};
 use crate::pair::Answer;
@@ -55,6 +55,10 @@ enum KnownShapes {
 /// beyond the prediction distance contacts as well. Looking for them makes the contacts those of a test of all
 /// triangles.
 const GJK_TOLERANCE: Real = 1.2e-3;
+
+/// Greatest slack of candidates as a share of the prediction distance. A candidate out of reach costs next to nothing, so it
+/// can be more than for two meshes. More: descents that find much; fewer: descents in each step of a fast body.
+const GREATEST_SLACK: f64 = 4.0;
 
 /// Memory of one query, kept by each thread.
 #[derive(Default)]
@@ -157,10 +161,10 @@ impl ConvexPair<'_> {
         let mut probe = Probe::new(&prepared.tree, placement, &self.shape, f64::from(margin));
         let test = ProbeTest::new(&probe);
         descend_probe(&prepared.tree, &mut probe, descent, counters, |batch| {
-            test.survivors(batch, |lane, distance| {
+            test.survivors(batch, |lane, distance, axis| {
                 let triangle = batch.triangles()[lane];
                 let key = OrderKey::of_triangle(prepared, triangle);
-                let candidate = NearTriangle { key, triangle };
+                let candidate = NearTriangle { key, triangle, axis };
                 candidates.push(KnownCandidate { candidate, distance });
             });
             Verdict::Descend
@@ -196,7 +200,8 @@ where
     let prepared = prepared.get();
     let placement = pair.placement();
     let sight = pair.sight(prepared);
-    let plan = coherence.plan(prepared.tree.bounding_ball(), (pair.pos12, placement), sight);
+    let ball = prepared.tree.bounding_ball();
+    let plan = coherence.plan(ball, (pair.pos12, placement), sight, GREATEST_SLACK);
     if plan == Plan::Nothing && history.is_of(manifolds) {
         return Answer::Unchanged;
     }
@@ -211,7 +216,7 @@ where
     };
     SCRATCH.with_borrow_mut(|scratch| match plan {
         Plan::Reuse { reach } => {
-            let limits = [reach, reach - f64::from(sight)];
+            let limits = Limits { sight: f64::from(sight), reach, motion: reach - f64::from(sight) };
             let candidates = coherence.candidates_mut();
             generator.update(candidates, limits, &mut scratch.places, history, manifolds);
             Answer::Reused
@@ -220,7 +225,9 @@ where
             let margin = if let Plan::Descend { margin } = plan { margin } else { sight };
             pair.collect(prepared, &placement, margin, counters, scratch);
             let Scratch { candidates, places, .. } = scratch;
-            generator.update(candidates, [f64::from(sight), 0.0], places, history, manifolds);
+            let sight = f64::from(sight);
+            let limits = Limits { sight, reach: sight, motion: 0.0 };
+            generator.update(candidates, limits, places, history, manifolds);
             if matches!(plan, Plan::Descend { .. }) {
                 candidates.iter().for_each(|known| coherence.keep(known.candidate, known.distance));
             }
