@@ -2,10 +2,11 @@
 
 use glamx::{DVec3, Vec3};
 use parry3d::math::{Pose, Real};
-use parry3d::query::details::NormalConstraints;
-use parry3d::query::{
-    ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, TrackedContact,
+use parry3d::query::details::{
+    NormalConstraints, contact_manifold_convex_ball, contact_manifold_cuboid_triangle,
+    contact_manifold_pfm_pfm,
 };
+use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::{TriMesh, Triangle};
 use sbbk_core::traverse::{Convex, Placement};
 
@@ -44,8 +45,8 @@ pub(super) struct Generator<'a> {
     pub(super) prepared: &'a PreparedMesh,
     /// Whether the mesh is shape 2.
     pub(super) flipped: bool,
-    /// The pose that stock passes on, bit for bit.
-    pub(super) parrys_pose: Pose,
+    /// The pose that stock passes on, bit for bit, and its inverse.
+    pub(super) parrys_poses: [Pose; 2],
     /// The mesh in the frame of the shape.
     pub(super) placement: Placement,
     pub(super) prediction: Real,
@@ -118,7 +119,7 @@ impl Generator<'_> {
     /// Brings the manifold of a triangle up to date.
     ///
     /// As Parry does it, but the points of the query before are in a buffer of ours meanwhile: Parry copies them into a new
-    /// one. For that, what its routine does first, it is asked to do on its own.
+    /// one. For that, what most of its routines do first is done here.
     fn refresh<M, C>(
         &self,
         triangle: &Triangle,
@@ -126,71 +127,66 @@ impl Generator<'_> {
         previous_points: &mut Vec<TrackedContact<C>>,
         manifold: &mut ContactManifold<M, C>,
     ) where
-        M: Default + Clone + Send + Sync,
-        C: Default + Copy + Send + Sync,
+        M: Default,
+        C: Default + Copy,
     {
         match self.shape.kind {
             // One point, whose data Parry keeps in place.
-            Kind::Ball(_) => self.ask_parry(triangle, candidate, manifold),
-            Kind::HalfSpace(half_space) => {
-                take_points(manifold, previous_points);
-                let inverse = self.parrys_pose.inverse();
-                let pose = if self.flipped { &self.parrys_pose } else { &inverse };
-                half_space_manifold(
-                    pose,
-                    half_space,
-                    triangle,
-                    self.prediction,
-                    !self.flipped,
-                    previous_points,
-                    manifold,
-                );
-            }
-            Kind::Features(..) => {
-                if manifold.try_update_contacts(&self.parrys_pose) {
+            Kind::Ball(_) => return self.ask_parry(triangle, candidate, manifold),
+            Kind::HalfSpace(_) => {}
+            Kind::Cuboid(_) | Kind::Features(..) => {
+                if manifold.try_update_contacts(&self.parrys_poses[0]) {
                     return;
                 }
-                take_points(manifold, previous_points);
-                self.ask_parry(triangle, candidate, manifold);
-                manifold.match_contacts(previous_points);
             }
         }
+        std::mem::swap(&mut manifold.points, previous_points);
+        manifold.points.clear();
+        self.ask_parry(triangle, candidate, manifold);
+        manifold.match_contacts(previous_points);
     }
 
+    /// Parry's routine for the kind of shape, with the arguments that stock's calls end up with. Called by its own name:
+    /// through the dispatcher both shapes are taken apart and put together again for each triangle, and its GJK
+    /// asks a triangle for support points through a table. A tenth to a quarter of a query.
     fn ask_parry<M, C>(
         &self,
         triangle: &Triangle,
         candidate: NearTriangle,
         manifold: &mut ContactManifold<M, C>,
     ) where
-        M: Default + Clone + Send + Sync,
-        C: Default + Copy + Send + Sync,
+        M: Default,
+        C: Default + Copy,
     {
         let cone = self.prepared.normal_constraints(candidate.triangle);
         let cone = cone.map(|cone| cone as &dyn NormalConstraints);
-        let shape = self.shape.shape;
-        // `ConvexShape` holds no kind that Parry does not support with a triangle.
-        let _ = if self.flipped {
-            DefaultQueryDispatcher.contact_manifold_convex_convex(
-                &self.parrys_pose,
-                shape,
-                triangle,
-                None,
-                cone,
-                self.prediction,
-                manifold,
-            )
-        } else {
-            DefaultQueryDispatcher.contact_manifold_convex_convex(
-                &self.parrys_pose,
-                triangle,
-                shape,
-                cone,
-                None,
-                self.prediction,
-                manifold,
-            )
-        };
+        let (prediction, [pose, inverse]) = (self.prediction, &self.parrys_poses);
+        // The shape in the frame of the triangle, and the reverse.
+        let [to_triangle, to_shape] = if self.flipped { [inverse, pose] } else { [pose, inverse] };
+        match self.shape.kind {
+            Kind::Ball(ball) => {
+                let flipped = self.flipped;
+                contact_manifold_convex_ball(
+                    to_triangle, triangle, ball, cone, None, prediction, manifold, flipped,
+                );
+            }
+            Kind::Cuboid(cuboid) => {
+                let flipped = !self.flipped;
+                contact_manifold_cuboid_triangle(
+                    to_shape, to_triangle, cuboid, triangle, None, cone, prediction, manifold, flipped,
+                );
+            }
+            Kind::HalfSpace(half_space) => {
+                let flipped = !self.flipped;
+                half_space_manifold(to_shape, half_space, triangle, prediction, flipped, manifold);
+            }
+            Kind::Features(map, radius) if self.flipped => contact_manifold_pfm_pfm(
+                pose, map, radius, None, triangle, 0.0, cone, prediction, manifold,
+            ),
+            Kind::Features(map, radius) => contact_manifold_pfm_pfm(
+                pose, triangle, 0.0, cone, map, radius, None, prediction, manifold,
+            ),
+        }
     }
 
     /// Where GJK sees that two shapes do not touch, it leaves the direction as the manifold's normal.
@@ -228,13 +224,4 @@ impl Generator<'_> {
         }
         gap > limits.sight
     }
-}
-
-/// Moves the points of a manifold away and leaves it the other buffer.
-fn take_points<M, C>(
-    manifold: &mut ContactManifold<M, C>,
-    previous_points: &mut Vec<TrackedContact<C>>,
-) {
-    std::mem::swap(&mut manifold.points, previous_points);
-    manifold.points.clear();
 }

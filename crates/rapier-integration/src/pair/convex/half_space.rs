@@ -6,14 +6,13 @@ use parry3d::shape::{HalfSpace, PackedFeatureId, Triangle};
 /// triangle in the frame of the half-space; `flipped` if the triangle is shape 1.
 ///
 /// The formula leaves nothing to choose, so that the contacts are Parry's bit for bit. Parry's routine gives the manifold a
-/// new buffer each time, this one does not. `previous_points` are those of the query before.
+/// new buffer each time, this one does not.
 pub(super) fn half_space_manifold<M, C: Default + Copy>(
     pose: &Pose,
     half_space: &HalfSpace,
     triangle: &Triangle,
     prediction: Real,
     flipped: bool,
-    previous_points: &[TrackedContact<C>],
     manifold: &mut ContactManifold<M, C>,
 ) {
     let normal = half_space.normal;
@@ -33,6 +32,6 @@ pub(super) fn half_space_manifold<M, C: Default + Copy>(
         }
     }
     let normals = [normal, -normal_at_triangle];
-    [manifold.local_n1, manifold.local_n2] = if flipped { [normals[1], normals[0]] } else { normals };
-    manifold.match_contacts(previous_points);
+    [manifold.local_n1, manifold.local_n2] =
+        if flipped { [normals[1], normals[0]] } else { normals };
 }

@@ -73,9 +73,10 @@ thread_local! {
 }
 
 impl ConvexPair<'_> {
-    /// The pose that stock passes on: the inverse of an inverse where the mesh is shape 2.
-    fn parrys_pose(&self) -> Pose {
-        if self.flipped { self.pos12.inverse().inverse() } else { *self.pos12 }
+    /// The pose that stock passes on, the inverse of an inverse where the mesh is shape 2, and its inverse.
+    fn parrys_poses(&self) -> [Pose; 2] {
+        let pose = if self.flipped { self.pos12.inverse().inverse() } else { *self.pos12 };
+        [pose, pose.inverse()]
     }
 
     /// The mesh in the frame of the shape.
@@ -210,7 +211,7 @@ where
         shape: pair.shape,
         prepared,
         flipped: pair.flipped,
-        parrys_pose: pair.parrys_pose(),
+        parrys_poses: pair.parrys_poses(),
         placement,
         prediction: pair.prediction,
     };

@@ -2,7 +2,7 @@
 
 use glamx::{DVec3, Vec3};
 use parry3d::math::{Real, Vector};
-use parry3d::shape::{Ball, HalfSpace, PolygonalFeatureMap, Shape, ShapeType};
+use parry3d::shape::{Ball, Cuboid, HalfSpace, PolygonalFeatureMap, Shape, ShapeType};
 use sbbk_core::traverse::{Convex, Outline};
 use sbbk_core::volumes::rounding::gamma;
 
@@ -22,7 +22,9 @@ pub(super) enum Kind<'a> {
     Ball(&'a Ball),
     /// From the support feature of the triangle.
     HalfSpace(&'a HalfSpace),
-    /// From two support features, and a radius around the shape.
+    /// From separating axes.
+    Cuboid(&'a Cuboid),
+    /// From GJK and two support features, with a radius around the shape.
     Features(&'a dyn PolygonalFeatureMap, Real),
 }
 
@@ -48,8 +50,8 @@ impl<'a> ConvexShape<'a> {
         let kind = match shape.shape_type() {
             ShapeType::Ball => Kind::Ball(shape.as_ball()?),
             ShapeType::HalfSpace => Kind::HalfSpace(shape.as_halfspace()?),
-            ShapeType::Cuboid
-            | ShapeType::Capsule
+            ShapeType::Cuboid => Kind::Cuboid(shape.as_cuboid()?),
+            ShapeType::Capsule
             | ShapeType::Segment
             | ShapeType::Triangle
             | ShapeType::ConvexPolyhedron
@@ -90,6 +92,10 @@ impl Fingerprint {
         match kind {
             Kind::Ball(ball) => Self { radius: ball.radius, ..none },
             Kind::HalfSpace(half_space) => Self { skew: half_space.normal, ..none },
+            Kind::Cuboid(cuboid) => {
+                let corner = cuboid.half_extents;
+                Self { min: -corner, max: corner, ..none }
+            }
             Kind::Features(map, radius) => {
                 let end = |axis: Vector| map.local_support_point(axis);
                 Self {
@@ -115,6 +121,7 @@ impl Convex for ConvexShape<'_> {
                 let is_normal = direction == half_space.normal.as_dvec3();
                 if is_normal { 0.0 } else { f64::INFINITY }
             }
+            Kind::Cuboid(cuboid) => direction.abs().dot(cuboid.half_extents.as_dvec3()),
             Kind::Features(map, radius) => {
                 let point = map.local_support_point(direction.as_vec3()).as_dvec3();
                 let rounding = gamma(16) * self.magnitude();
