@@ -1,15 +1,23 @@
 use std::collections::BTreeMap;
+use std::f32::consts::FRAC_PI_2;
 
+use allocation_counter::measure;
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
+use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::details::NormalConstraints;
-use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher, QueryDispatcher};
+use rapier3d::parry::query::{
+    ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, QueryDispatcher,
+};
 use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshFlags};
+use rapier3d::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder};
 use sbbk_lab::mesh;
 
-use crate::support::{Dispatcher, Manifold, Pair, direction, nudge, rotation, shape_with};
+use crate::support::{
+    Dispatcher, Manifold, Pair, counting, direction, distance, nudge, rotation, shape_with,
+};
 
 /// A convex shape of each kind, about `size` across.
 fn shapes(size: Real) -> Vec<(&'static str, SharedShape)> {
@@ -82,7 +90,7 @@ impl Question<'_> {
         std::mem::take(&mut self.ask(dispatcher, &mut Pair::default()).manifolds)
     }
 
-    fn triangle_of<M, C>(&self, manifold: &rapier3d::parry::query::ContactManifold<M, C>) -> u32 {
+    fn triangle_of<M, C>(&self, manifold: &ContactManifold<M, C>) -> u32 {
         let [mesh, other] = if self.flipped {
             [manifold.subshape2, manifold.subshape1]
         } else {
@@ -167,7 +175,17 @@ fn check_fresh(name: &str, dispatcher: &SbbkDispatcher, question: &Question) -> 
     count
 }
 
-/// Poses at which a shape touches a mesh: on the surface, just apart, and inside, at random.
+/// The same for stock's dispatcher: its manifolds with a point within the prediction distance are ours.
+fn check_against_stock(name: &str, dispatcher: &SbbkDispatcher, question: &Question) {
+    let touching = |manifolds: Vec<Manifold>| -> BTreeMap<u32, Vec<u32>> {
+        let near = manifolds.into_iter().filter(|m| touches(m, question.prediction));
+        near.map(|m| (question.triangle_of(&m), bits(&m))).collect()
+    };
+    let stock = touching(question.fresh(&DefaultQueryDispatcher));
+    assert_eq!(touching(question.fresh(dispatcher)), stock, "{name}");
+}
+
+/// A pose at which a shape is about a triangle of the mesh: just apart, touching, inside.
 fn pose(random: &mut Rand32, mesh: &TriMesh, size: Real) -> Pose3 {
     let triangle = mesh.triangle(random.rand_range(0..mesh.indices().len() as u32));
     let turn = rotation(random);
@@ -175,25 +193,287 @@ fn pose(random: &mut Rand32, mesh: &TriMesh, size: Real) -> Pose3 {
     Pose3::from_parts(triangle.center() + away, turn)
 }
 
+/// A pose with a turn by multiples of 90 degrees and a shift by multiples of a sixteenth.
+fn lattice_pose(random: &mut Rand32) -> Pose3 {
+    let mut quarter = |axis| Quat::from_axis_angle(axis, FRAC_PI_2 * random.rand_range(0..4) as Real);
+    let turn = quarter(Vec3::X) * quarter(Vec3::Y) * quarter(Vec3::Z);
+    let [x, y, z] = [(); 3].map(|()| random.rand_range(0..33) as Real / 16.0 - 1.0);
+    Pose3::from_parts(Vec3::new(x, y, z), turn)
+}
+
+const PREDICTIONS: [Real; 4] = [0.0, 0.002, 0.02, 0.2];
+
+/// Would catch a triangle that the descent or the leaf test drops, one that is kept though Parry sees no contact, and any
+/// other pose, order, constraint or argument than stock passes.
 #[test]
 fn fresh_contacts_are_those_of_parrys_routine_on_all_triangles() {
     let dispatcher = SbbkDispatcher::default();
     let mut random = Rand32::new(1);
-    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
-    let constrained = shape_with(&mesh::monkey_head(), TriMeshFlags::FIX_INTERNAL_EDGES);
+    let [head, constrained] = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES]
+        .map(|flags| shape_with(&mesh::monkey_head(), flags));
     for size in [0.1, 0.6, 3.0] {
         for (name, shape) in shapes(size) {
             let mut count = 0;
-            for (i, prediction) in [0.0, 0.002, 0.02, 0.2].into_iter().cycle().take(16).enumerate() {
+            for (i, prediction) in PREDICTIONS.into_iter().cycle().take(16).enumerate() {
                 let mesh = if i % 8 < 4 { &head } else { &constrained };
-                let pose = pose(&mut random, mesh, size);
+                let is_lattice = i >= 12;
+                let pose = if is_lattice {
+                    lattice_pose(&mut random)
+                } else {
+                    pose(&mut random, mesh, size)
+                };
                 for flipped in [false, true] {
                     let question = Question { mesh, shape: &shape, pose, prediction, flipped };
                     count += check_fresh(name, &dispatcher, &question);
+                    check_against_stock(name, &dispatcher, &question);
                 }
             }
-            println!("{name} {size}: {count}");
             assert!(count > 10, "{name} of {size}: {count} contacts");
         }
+    }
+}
+
+/// Would catch rounding that grows with the floor and is not allowed for, and a floor that is cut off too early.
+#[test]
+fn a_huge_floor_loses_no_contact() {
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(2);
+    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
+    let mut count = 0;
+    for half in [50.0, 2000.0] {
+        let shape = SharedShape::cuboid(half, 0.25, half);
+        for i in 0..60 {
+            let turn = if i % 4 == 0 { Quat::IDENTITY } else { rotation(&mut random) };
+            let [x, z] = [(); 2].map(|()| 1.8 * half * (random.rand_float() - 0.5));
+            let at = Vec3::new(x, 0.25 + 0.9 * random.rand_float(), z);
+            // The head in the frame of the floor, and back.
+            let pose = Pose3::from_parts(at, turn).inverse();
+            let prediction = PREDICTIONS[i % 4];
+            for flipped in [false, true] {
+                let question = Question { mesh: &head, shape: &shape, pose, prediction, flipped };
+                count += check_fresh("floor", &dispatcher, &question);
+            }
+        }
+    }
+    assert!(count > 1000, "{count} contacts");
+}
+
+/// Points and whole manifolds that Parry keeps from step to step it only moves along, while they drift by up to a
+/// thousandth of a unit and a degree: distances this close to the prediction distance may go either way.
+const BAND: Real = 2e-3;
+/// How far a kept depth may be off for the same reason: a degree over a unit.
+const DEPTH: Real = 2e-2;
+
+/// A pair in motion: small steps, at times a jump, another prediction distance, or a workspace taken away.
+fn walk(name: &str, shape: &SharedShape, size: Real, flipped: bool, seed: u64) -> [u64; 4] {
+    let dispatcher = counting();
+    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
+    let mut random = Rand32::new(seed);
+    let mut question =
+        Question { mesh: &head, shape, pose: pose(&mut random, &head, size), prediction: 0.02, flipped };
+    let mut pair: Pair = Pair::default();
+    let mut stride = 1e-3;
+    for _ in 0..400 {
+        match random.rand_range(0..100) {
+            0..=2 => question.pose = pose(&mut random, &head, size),
+            3..=5 => question.prediction = PREDICTIONS[random.rand_range(0..4) as usize],
+            6 => pair.workspace = None,
+            7 => stride = [0.0, 1e-5, 1e-3, 1e-2][random.rand_range(0..4) as usize],
+            _ => question.pose = nudge(&mut random, stride) * question.pose,
+        }
+        question.ask(&dispatcher, &mut pair);
+        let wider = Question { prediction: question.prediction + BAND, ..question };
+        let all = wider.brute_force();
+        let mut found = BTreeMap::new();
+        for manifold in pair.manifolds.iter().filter(|m| touches(m, question.prediction)) {
+            let triangle = question.triangle_of(manifold);
+            assert!(found.insert(triangle, distance(manifold)).is_none(), "{name}: {triangle} twice");
+        }
+        for (triangle, near) in &found {
+            let expected = all.get(triangle).map(distance);
+            let off = expected.map_or(Real::INFINITY, |expected| (near - expected).abs());
+            assert!(off <= DEPTH, "{name}: {triangle} is {near} deep, fresh {expected:?}");
+        }
+        for (triangle, expected) in &all {
+            let is_in = distance(expected) < question.prediction - BAND;
+            assert!(!is_in || found.contains_key(triangle), "{name}: {triangle} is lost");
+        }
+    }
+    let stats = dispatcher.stats();
+    [stats.queries, stats.unchanged_queries, stats.reused_queries, stats.descended_queries]
+}
+
+/// Would catch candidates that are kept too long, bounds of distance that are too high, axes that do not hold at another
+/// pose, manifolds given to another triangle, and anything else that depends on where the pair was before. Proves
+/// that candidates were kept.
+#[test]
+fn motion_loses_no_contact() {
+    let floor = ("floor", floor());
+    for (seed, (name, shape)) in shapes(0.6).into_iter().chain([floor]).enumerate() {
+        for flipped in [false, true] {
+            let [all, unchanged, reused, descended] = walk(name, &shape, 0.6, flipped, seed as u64);
+            assert_eq!(all, 400);
+            assert!(reused >= 20 && descended > 10, "{name}: {reused} reused, {descended} descended");
+            assert!(unchanged + reused + descended <= all);
+        }
+    }
+}
+
+/// A pose at which a shape is `gap` away from the mesh, found by going towards it.
+fn near_pose(random: &mut Rand32, mesh: &TriMesh, shape: &SharedShape, gap: Real) -> Pose3 {
+    let turn = rotation(random);
+    let away = direction(random);
+    let at = |way: Real| Pose3::from_parts(way * away, turn);
+    let distance = |way| DefaultQueryDispatcher.distance(&at(way), mesh, &*shape.0).unwrap().distance;
+    let mut way = 4.0;
+    for _ in 0..100 {
+        way -= distance(way) - gap;
+    }
+    at(way)
+}
+
+/// Would catch a manifold, a list of points or of candidates that is made anew in each step, in Parry's routines too. The
+/// shapes do not overlap: Parry's EPA allocates.
+#[test]
+fn steady_contact_allocates_nothing() {
+    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::FIX_INTERNAL_EDGES);
+    let dispatcher = counting();
+    for (name, shape) in shapes(0.6).into_iter().chain([("floor", floor())]) {
+        let mut random = Rand32::new(5);
+        let question = |pose, flipped| Question { mesh: &head, shape: &shape, pose, prediction: 0.02, flipped };
+        for (flipped, stride) in [(false, 1e-4), (true, 1e-3), (false, 6e-3)] {
+            let starts = (0..200).map(|_| near_pose(&mut random, &head, &shape, 0.012));
+            let is_good = |&pose: &Pose| {
+                let found = question(pose, flipped).fresh(&dispatcher);
+                found.len() > 1 && found.iter().all(|manifold| distance(manifold) > 0.011)
+            };
+            let start = { starts }.find(is_good).expect("most ways end near the mesh");
+            let poses: Vec<Pose> = (0..20).map(|_| nudge(&mut random, stride) * start).collect();
+            let mut pair = Pair::<ContactManifoldData, ContactData>::default();
+            for &pose in poses.iter().cycle().take(20 * 25) {
+                question(pose, flipped).ask(&dispatcher, &mut pair);
+            }
+            for &pose in poses.iter().cycle().take(20 * 4) {
+                let question = question(pose, flipped);
+                let allocated = measure(|| _ = question.ask(&dispatcher, &mut pair));
+                assert_eq!(allocated.count_total, 0, "{name}, {stride}: {allocated:?}");
+            }
+        }
+    }
+}
+
+/// Would catch a panic in a descent or in Parry's routine, and contacts at poses that are none.
+#[test]
+fn poses_that_are_none_have_no_contacts() {
+    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
+    let dispatcher = SbbkDispatcher::default();
+    for (name, shape) in shapes(0.6) {
+        for broken in [Real::NAN, Real::INFINITY, -Real::INFINITY] {
+            let shift = Pose3::from_parts(Vec3::new(0.1, broken, 0.0), Quat::IDENTITY);
+            let turn = Pose3::from_parts(Vec3::ZERO, Quat::from_xyzw(broken, 0.0, 0.0, 1.0));
+            for (pose, flipped) in [(shift, false), (shift, true), (turn, false), (turn, true)] {
+                let mut question =
+                    Question { mesh: &head, shape: &shape, pose: Pose3::IDENTITY, prediction: 0.02, flipped };
+                let mut pair: Pair = Pair::default();
+                // With a tree and kept contacts, and as a first query.
+                question.ask(&dispatcher, &mut pair);
+                question.pose = pose;
+                // A half-space reaches to infinity on one side.
+                let is_in = name == "half-space" && broken.is_infinite();
+                let count = question.ask(&dispatcher, &mut pair).manifolds.len();
+                assert!(count == 0 || is_in, "{name}, {pose:?}: {count} contacts");
+                question.fresh(&dispatcher);
+            }
+        }
+    }
+    let (_, ball) = shapes(0.6).remove(0);
+    let pose = Pose3::IDENTITY;
+    let question = Question { mesh: &head, shape: &ball, pose, prediction: Real::NAN, flipped: false };
+    assert_eq!(question.fresh(&dispatcher).len(), 0);
+}
+
+/// Would catch candidates of a shape that is no longer there, where a host keeps the workspace of a pair over an edit.
+#[test]
+fn another_shape_with_the_same_workspace_is_noticed() {
+    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
+    let dispatcher = counting();
+    let mut random = Rand32::new(6);
+    let pose = pose(&mut random, &head, 0.6);
+    let mut pair: Pair = Pair::default();
+    for (name, shape) in shapes(0.6).into_iter().chain(shapes(0.7)) {
+        let question = Question { mesh: &head, shape: &shape, pose, prediction: 0.02, flipped: false };
+        for _ in 0..2 {
+            let found = question.ask(&dispatcher, &mut pair);
+            let found: Vec<_> = found.manifolds.iter().map(bits).collect();
+            let expected: Vec<_> = question.fresh(&dispatcher).iter().map(bits).collect();
+            assert_eq!(found, expected, "{name}");
+        }
+    }
+    let stats = dispatcher.stats();
+    assert_eq!(stats.unchanged_queries, 30, "{stats:?}");
+}
+
+/// Would catch manifolds of stock's that are taken for ours, or dropped with their data where the shapes are the same.
+#[test]
+fn stock_can_hand_over_a_pair() {
+    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(7);
+    for (name, shape) in shapes(0.6) {
+        let pose = pose(&mut random, &head, 0.5);
+        let question = Question { mesh: &head, shape: &shape, pose, prediction: 0.05, flipped: true };
+        let mut pair: Pair<(), u32> = Pair::default();
+        question.ask(&DefaultQueryDispatcher, &mut pair);
+        let points = pair.manifolds.iter_mut().flat_map(|manifold| &mut manifold.points);
+        points.enumerate().for_each(|(index, point)| point.data = index as u32 + 1);
+        question.ask(&dispatcher, &mut pair);
+        let expected: Vec<_> = question.fresh(&dispatcher).iter().map(|m| m.subshape2).collect();
+        let found: Vec<_> = pair.manifolds.iter().map(|m| m.subshape2).collect();
+        assert_eq!(found, expected, "{name}");
+        // Asked from another side, Parry may see other features at once.
+        let points = || pair.manifolds.iter().flat_map(|manifold| &manifold.points);
+        let kept = points().filter(|point| point.data > 0).count();
+        assert!(4 * kept >= 3 * points().count(), "{name}: {kept} of {}", points().count());
+    }
+}
+
+/// A head that falls on a floor and comes to rest: where it is, step by step.
+fn fall(floor: SharedShape, dispatcher: Option<SbbkDispatcher>) -> Vec<Pose> {
+    let mut world = PhysicsWorld::new();
+    if let Some(dispatcher) = dispatcher {
+        world.narrow_phase.set_query_dispatcher(dispatcher);
+    }
+    let fixed = world.bodies.insert(RigidBodyBuilder::fixed());
+    let floor = ColliderBuilder::new(floor).build();
+    world.colliders.insert_with_parent(floor, fixed, &mut world.bodies);
+    let start = RigidBodyBuilder::dynamic().translation(Vec3::new(0.3, 1.6, -0.2));
+    let start = start.angular_damping(2.0).build();
+    let body = world.bodies.insert(start);
+    let head = ColliderBuilder::new(mesh::monkey_head().shared_shape().unwrap()).density(1.0).build();
+    world.colliders.insert_with_parent(head, body, &mut world.bodies);
+    let step = |_| {
+        world.step();
+        *world.bodies[body].position()
+    };
+    (0..600).map(step).collect()
+}
+
+/// Would catch contacts that flicker, sink in or do not hold a body at rest: ten seconds on a floor, beside stock. A
+/// head rolls to where it likes, which is chaos; so heights and speeds are compared, not places.
+#[test]
+fn a_head_rests_on_a_floor_as_with_stock() {
+    for shape in [SharedShape::cuboid(50.0, 0.25, 50.0), SharedShape::halfspace(Vec3::Y)] {
+        let dispatcher = counting();
+        let stock = fall(shape.clone(), None);
+        let sbbk = fall(shape, Some(dispatcher.clone()));
+        let apart = |i: usize| (stock[i].translation - sbbk[i].translation).length();
+        assert!((0..40).all(|i| apart(i) < 1e-4), "apart at the first touch: {}", apart(39));
+        for poses in [&stock, &sbbk] {
+            let moved = (poses[599].translation - poses[540].translation).length();
+            assert!(moved < 0.02, "moves by {moved} in the last second");
+        }
+        let height = stock[599].translation.y - sbbk[599].translation.y;
+        assert!(height.abs() < 0.02, "{height} higher");
+        assert!(dispatcher.stats().queries > 30, "SBBK did not answer");
     }
 }

@@ -37,8 +37,11 @@ pub(super) struct History<M, C, K> {
     next_contacts: Vec<Option<K>>,
     pub(super) previous_points: Vec<TrackedContact<C>>,
     spare: Vec<ContactManifold<M, C>>,
-    /// Manifolds that the pair has had at once of late: as many are kept, in use or spare.
+    /// Manifolds that a query has needed at once of late: as many are kept, in use or spare. New ones come before old ones
+    /// go, so it can be more than the pair has had.
     peak: usize,
+    /// The fewest spare ones during this query.
+    least_spare: usize,
     /// Queries since it had as many.
     age: u8,
 }
@@ -62,6 +65,7 @@ impl<M, C, K> Default for History<M, C, K> {
             previous_points: Vec::new(),
             spare: Vec::new(),
             peak: 0,
+            least_spare: 0,
             age: 0,
         }
     }
@@ -105,6 +109,7 @@ where
 
     /// Begins a query. Of manifolds that are not those of the last query, somebody else's, nothing is known.
     pub(super) fn begin(&mut self, manifolds: &[ContactManifold<M, C>]) {
+        self.least_spare = self.spare.len();
         if !self.is_of(manifolds) {
             self.contacts.clear();
             self.contacts.resize(manifolds.len(), None);
@@ -120,13 +125,14 @@ where
         std::mem::swap(&mut self.contacts, &mut self.next_contacts);
     }
 
-    /// Remembers how many manifolds the pair has had of late.
+    /// Remembers how many manifolds the query has needed.
     fn settle(&mut self, count: usize) {
+        let needed = count.max((count + self.spare.len()).saturating_sub(self.least_spare));
         self.age += 1;
-        if count >= self.peak {
-            (self.peak, self.age) = (count, 0);
+        if needed >= self.peak {
+            (self.peak, self.age) = (needed, 0);
         } else if self.age >= Self::PATIENCE {
-            (self.peak, self.age) = (count.max(self.peak - self.peak.div_ceil(4)), 0);
+            (self.peak, self.age) = (needed.max(self.peak - self.peak.div_ceil(4)), 0);
             self.spare.truncate(self.peak - count);
         }
     }
@@ -138,7 +144,11 @@ where
 
     /// An empty manifold for a pair of triangles.
     pub(super) fn manifold(&mut self, triangle1: u32, triangle2: u32) -> ContactManifold<M, C> {
-        let mut manifold = self.spare.pop().unwrap_or_default();
+        let mut manifold = self.spare.pop().unwrap_or_else(|| {
+            self.peak += 1;
+            ContactManifold::default()
+        });
+        self.least_spare = self.least_spare.min(self.spare.len());
         manifold.subshape1 = triangle1;
         manifold.subshape2 = triangle2;
         manifold

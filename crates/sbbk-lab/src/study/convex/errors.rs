@@ -6,6 +6,7 @@ use glamx::Pose3;
 use rapier3d::geometry::{ContactManifold, SharedShape};
 use rapier3d::math::Real;
 use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
+use rapier3d::parry::shape::Shape;
 
 use crate::metrics::ErrorCount;
 
@@ -22,22 +23,26 @@ pub(super) struct Expected {
 }
 
 impl Expected {
-    /// `pos12` is the pose of the mesh in the frame of the shape. Flags of the mesh are left out of account.
-    pub fn new(mesh: &SharedShape, shape: &SharedShape, pos12: &Pose3, prediction: Real) -> Self {
+    /// `pos12` is the pose of the second in the frame of the first. In the other order Parry's routine may answer
+    /// otherwise, so it is asked in the same. Flags of the mesh are left out of account.
+    pub fn new(
+        mesh: &SharedShape,
+        shape: &SharedShape,
+        pos12: &Pose3,
+        prediction: Real,
+        is_mesh_first: bool,
+    ) -> Self {
         let triangles = mesh.as_trimesh().into_iter().flat_map(|mesh| mesh.triangles());
         let mut distances = BTreeMap::new();
         for (index, triangle) in triangles.enumerate() {
             let mut manifold = ContactManifold::new();
-            // A kind that Parry has no contacts for has none here either.
-            let _ = DefaultQueryDispatcher.contact_manifold_convex_convex(
-                pos12,
-                &*shape.0,
-                &triangle,
-                None,
-                None,
-                prediction,
-                &mut manifold,
-            );
+            let pair: [&dyn Shape; 2] =
+                if is_mesh_first { [&triangle, &*shape.0] } else { [&*shape.0, &triangle] };
+            DefaultQueryDispatcher
+                .contact_manifold_convex_convex(
+                    pos12, pair[0], pair[1], None, None, prediction, &mut manifold,
+                )
+                .expect("Parry has contacts of these shapes with triangles");
             if let Some(distance) = least(&manifold) {
                 distances.insert(index as u32, distance);
             }

@@ -86,7 +86,7 @@ pub fn convex(plan: &ConvexPlan, progress: &Progress) -> Result<Convex, StudyErr
     let named = |cause| SceneError { mesh: plan.mesh.name.clone(), cause };
     let shape = plan.mesh.shared_shape().map_err(named)?;
     let contest = Contest::new([&shape].into_iter());
-    let kinds: Vec<_> = kinds().into_iter().filter(|k| std::env::var("KIND").is_err() || std::env::var("KIND").unwrap() == k.name).collect();
+    let kinds = kinds();
     progress.phase("convex shapes", kinds.len());
     let rows = kinds.iter().enumerate().map(|(index, kind)| {
         let row = row(plan, &shape, kind, index as u64, &contest);

@@ -64,11 +64,8 @@ impl Course<'_> {
         pose: &Pose3,
     ) {
         let (mesh, shape) = (&*self.mesh.0, &*self.shape.0);
-        if is_mesh_first(index) {
-            memory.ask_pair(dispatcher, [mesh, shape], &pose.inverse(), self.prediction);
-        } else {
-            memory.ask_pair(dispatcher, [shape, mesh], pose, self.prediction);
-        }
+        let pair = if is_mesh_first(index) { [mesh, shape] } else { [shape, mesh] };
+        memory.ask_pair(dispatcher, pair, &pos12(index, pose), self.prediction);
     }
 
     fn judge(&self, contest: &Contest) -> [ErrorCount; 2] {
@@ -79,7 +76,9 @@ impl Course<'_> {
                 if is_mesh_first(index) { manifold.subshape1 } else { manifold.subshape2 }
             };
             for pose in poses {
-                let expected = Expected::new(self.mesh, self.shape, pose, self.prediction);
+                let (Self { mesh, shape, prediction, .. }, pos12) = (self, pos12(index, pose));
+                let expected =
+                    Expected::new(mesh, shape, &pos12, *prediction, is_mesh_first(index));
                 for side in 0..2 {
                     self.ask(&mut memories[side], &contest.dispatchers[side], index, pose);
                     errors[side] += expected.judge(&memories[side].manifolds, triangle);
@@ -88,6 +87,11 @@ impl Course<'_> {
         }
         errors
     }
+}
+
+/// The pose of the second shape in the frame of the first.
+fn pos12(index: usize, pose: &Pose3) -> Pose3 {
+    if is_mesh_first(index) { pose.inverse() } else { *pose }
 }
 
 fn is_mesh_first(index: usize) -> bool {
