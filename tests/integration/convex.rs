@@ -22,7 +22,11 @@ use crate::support::{
 /// A convex shape of each kind, about `size` across.
 fn shapes(size: Real) -> Vec<(&'static str, SharedShape)> {
     let half = 0.5 * size;
-    let [a, b, c] = [Vec3::new(-half, 0.0, 0.1 * size), Vec3::new(half, 0.2 * size, 0.0), Vec3::new(0.0, -0.3 * size, half)];
+    let [a, b, c] = [
+        Vec3::new(-half, 0.0, 0.1 * size),
+        Vec3::new(half, 0.2 * size, 0.0),
+        Vec3::new(0.0, -0.3 * size, half),
+    ];
     let mut random = Rand32::new(77);
     let cloud: Vec<Vec3> = (0..30).map(|_| half * direction(&mut random)).collect();
     let hull = |points: &[Vec3]| SharedShape::convex_hull(points).expect("a cloud has a hull");
@@ -113,11 +117,23 @@ impl Question<'_> {
             let answer = if self.flipped {
                 let pose = pos12.inverse().inverse();
                 parry.contact_manifold_convex_convex(
-                    &pose, shape, &triangle, None, cone, within, &mut manifold,
+                    &pose,
+                    shape,
+                    &triangle,
+                    None,
+                    cone,
+                    within,
+                    &mut manifold,
                 )
             } else {
                 parry.contact_manifold_convex_convex(
-                    &pos12, &triangle, shape, cone, None, within, &mut manifold,
+                    &pos12,
+                    &triangle,
+                    shape,
+                    cone,
+                    None,
+                    within,
+                    &mut manifold,
                 )
             };
             answer.expect("Parry knows contacts of all these shapes with triangles");
@@ -159,7 +175,8 @@ fn check_fresh(name: &str, dispatcher: &SbbkDispatcher, question: &Question) -> 
         found.iter().map(|manifold| (question.triangle_of(manifold), manifold)).collect();
     assert_eq!(by_triangle.len(), found.len(), "{name}: two manifolds of one triangle");
     for (triangle, manifold) in &by_triangle {
-        let expected = all.get(triangle).unwrap_or_else(|| panic!("{name}: {triangle} is invented"));
+        let expected =
+            all.get(triangle).unwrap_or_else(|| panic!("{name}: {triangle} is invented"));
         assert_eq!(bits(manifold), bits(expected), "{name}: {triangle}");
     }
     let mut count = 0;
@@ -168,7 +185,9 @@ fn check_fresh(name: &str, dispatcher: &SbbkDispatcher, question: &Question) -> 
             count += 1;
             assert!(
                 by_triangle.contains_key(triangle),
-                "{name}: {triangle} is lost, {:?} {}", expected.points, question.prediction
+                "{name}: {triangle} is lost, {:?} {}",
+                expected.points,
+                question.prediction
             );
         }
     }
@@ -195,7 +214,8 @@ fn pose(random: &mut Rand32, mesh: &TriMesh, size: Real) -> Pose3 {
 
 /// A pose with a turn by multiples of 90 degrees and a shift by multiples of a sixteenth.
 fn lattice_pose(random: &mut Rand32) -> Pose3 {
-    let mut quarter = |axis| Quat::from_axis_angle(axis, FRAC_PI_2 * random.rand_range(0..4) as Real);
+    let mut quarter =
+        |axis| Quat::from_axis_angle(axis, FRAC_PI_2 * random.rand_range(0..4) as Real);
     let turn = quarter(Vec3::X) * quarter(Vec3::Y) * quarter(Vec3::Z);
     let [x, y, z] = [(); 3].map(|()| random.rand_range(0..33) as Real / 16.0 - 1.0);
     Pose3::from_parts(Vec3::new(x, y, z), turn)
@@ -269,8 +289,13 @@ fn walk(name: &str, shape: &SharedShape, size: Real, flipped: bool, seed: u64) -
     let dispatcher = counting();
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
     let mut random = Rand32::new(seed);
-    let mut question =
-        Question { mesh: &head, shape, pose: pose(&mut random, &head, size), prediction: 0.02, flipped };
+    let mut question = Question {
+        mesh: &head,
+        shape,
+        pose: pose(&mut random, &head, size),
+        prediction: 0.02,
+        flipped,
+    };
     let mut pair: Pair = Pair::default();
     let mut stride = 1e-3;
     for _ in 0..400 {
@@ -287,7 +312,10 @@ fn walk(name: &str, shape: &SharedShape, size: Real, flipped: bool, seed: u64) -
         let mut found = BTreeMap::new();
         for manifold in pair.manifolds.iter().filter(|m| touches(m, question.prediction)) {
             let triangle = question.triangle_of(manifold);
-            assert!(found.insert(triangle, distance(manifold)).is_none(), "{name}: {triangle} twice");
+            assert!(
+                found.insert(triangle, distance(manifold)).is_none(),
+                "{name}: {triangle} twice"
+            );
         }
         for (triangle, near) in &found {
             let expected = all.get(triangle).map(distance);
@@ -313,7 +341,10 @@ fn motion_loses_no_contact() {
         for flipped in [false, true] {
             let [all, unchanged, reused, descended] = walk(name, &shape, 0.6, flipped, seed as u64);
             assert_eq!(all, 400);
-            assert!(reused >= 20 && descended > 10, "{name}: {reused} reused, {descended} descended");
+            assert!(
+                reused >= 20 && descended > 10,
+                "{name}: {reused} reused, {descended} descended"
+            );
             assert!(unchanged + reused + descended <= all);
         }
     }
@@ -324,7 +355,8 @@ fn near_pose(random: &mut Rand32, mesh: &TriMesh, shape: &SharedShape, gap: Real
     let turn = rotation(random);
     let away = direction(random);
     let at = |way: Real| Pose3::from_parts(way * away, turn);
-    let distance = |way| DefaultQueryDispatcher.distance(&at(way), mesh, &*shape.0).unwrap().distance;
+    let distance =
+        |way| DefaultQueryDispatcher.distance(&at(way), mesh, &*shape.0).unwrap().distance;
     let mut way = 4.0;
     for _ in 0..100 {
         way -= distance(way) - gap;
@@ -340,7 +372,13 @@ fn steady_contact_allocates_nothing() {
     let dispatcher = counting();
     for (name, shape) in shapes(0.6).into_iter().chain([("floor", floor())]) {
         let mut random = Rand32::new(5);
-        let question = |pose, flipped| Question { mesh: &head, shape: &shape, pose, prediction: 0.02, flipped };
+        let question = |pose, flipped| Question {
+            mesh: &head,
+            shape: &shape,
+            pose,
+            prediction: 0.02,
+            flipped,
+        };
         for (flipped, stride) in [(false, 1e-4), (true, 1e-3), (false, 6e-3)] {
             let starts = (0..200).map(|_| near_pose(&mut random, &head, &shape, 0.012));
             let is_good = |&pose: &Pose| {
@@ -372,8 +410,13 @@ fn poses_that_are_none_have_no_contacts() {
             let shift = Pose3::from_parts(Vec3::new(0.1, broken, 0.0), Quat::IDENTITY);
             let turn = Pose3::from_parts(Vec3::ZERO, Quat::from_xyzw(broken, 0.0, 0.0, 1.0));
             for (pose, flipped) in [(shift, false), (shift, true), (turn, false), (turn, true)] {
-                let mut question =
-                    Question { mesh: &head, shape: &shape, pose: Pose3::IDENTITY, prediction: 0.02, flipped };
+                let mut question = Question {
+                    mesh: &head,
+                    shape: &shape,
+                    pose: Pose3::IDENTITY,
+                    prediction: 0.02,
+                    flipped,
+                };
                 let mut pair: Pair = Pair::default();
                 // With a tree and kept contacts, and as a first query.
                 question.ask(&dispatcher, &mut pair);
@@ -388,7 +431,8 @@ fn poses_that_are_none_have_no_contacts() {
     }
     let (_, ball) = shapes(0.6).remove(0);
     let pose = Pose3::IDENTITY;
-    let question = Question { mesh: &head, shape: &ball, pose, prediction: Real::NAN, flipped: false };
+    let question =
+        Question { mesh: &head, shape: &ball, pose, prediction: Real::NAN, flipped: false };
     assert_eq!(question.fresh(&dispatcher).len(), 0);
 }
 
@@ -401,7 +445,8 @@ fn another_shape_with_the_same_workspace_is_noticed() {
     let pose = pose(&mut random, &head, 0.6);
     let mut pair: Pair = Pair::default();
     for (name, shape) in shapes(0.6).into_iter().chain(shapes(0.7)) {
-        let question = Question { mesh: &head, shape: &shape, pose, prediction: 0.02, flipped: false };
+        let question =
+            Question { mesh: &head, shape: &shape, pose, prediction: 0.02, flipped: false };
         for _ in 0..2 {
             let found = question.ask(&dispatcher, &mut pair);
             let found: Vec<_> = found.manifolds.iter().map(bits).collect();
@@ -421,7 +466,8 @@ fn stock_can_hand_over_a_pair() {
     let mut random = Rand32::new(7);
     for (name, shape) in shapes(0.6) {
         let pose = pose(&mut random, &head, 0.5);
-        let question = Question { mesh: &head, shape: &shape, pose, prediction: 0.05, flipped: true };
+        let question =
+            Question { mesh: &head, shape: &shape, pose, prediction: 0.05, flipped: true };
         let mut pair: Pair<(), u32> = Pair::default();
         question.ask(&DefaultQueryDispatcher, &mut pair);
         let points = pair.manifolds.iter_mut().flat_map(|manifold| &mut manifold.points);
@@ -449,7 +495,8 @@ fn fall(floor: SharedShape, dispatcher: Option<SbbkDispatcher>) -> Vec<Pose> {
     let start = RigidBodyBuilder::dynamic().translation(Vec3::new(0.3, 1.6, -0.2));
     let start = start.angular_damping(2.0).build();
     let body = world.bodies.insert(start);
-    let head = ColliderBuilder::new(mesh::monkey_head().shared_shape().unwrap()).density(1.0).build();
+    let head =
+        ColliderBuilder::new(mesh::monkey_head().shared_shape().unwrap()).density(1.0).build();
     world.colliders.insert_with_parent(head, body, &mut world.bodies);
     let step = |_| {
         world.step();

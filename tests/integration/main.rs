@@ -5,10 +5,10 @@
 mod allocation;
 /// Contacts that Parry generates are stock's, bit for bit.
 mod bits;
-/// Meshes against convex shapes.
-mod convex;
 /// What a host may expect of calls that follow each other.
 mod contract;
+/// Meshes against convex shapes.
+mod convex;
 /// A mesh that changes while pairs know it.
 mod edited_mesh;
 /// SBBK's own contacts against the truth, and against stock where stock is right.

@@ -90,9 +90,8 @@ impl<T> Coherence<T> {
                 return Plan::Reuse { reach };
             }
         }
-        let slack = last.map_or(0.0, |last| {
-            slack(motion_since(last), f64::from(prediction), greatest_slack)
-        });
+        let slack = last
+            .map_or(0.0, |last| slack(motion_since(last), f64::from(prediction), greatest_slack));
         let margin = prediction + slack as Real;
         self.candidates.clear();
         self.descent = (margin > prediction).then_some(Seen { margin, ..now });

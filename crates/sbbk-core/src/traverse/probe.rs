@@ -284,8 +284,8 @@ impl Outline {
     }
 }
 
-/// A shape given by corners: the convex hull of points.
-impl Convex for [Vec3] {
+/// The convex hull of points.
+impl<const COUNT: usize> Convex for [Vec3; COUNT] {
     fn reach(&self, direction: DVec3) -> f64 {
         self.iter().map(|x| direction.dot(x.as_dvec3())).fold(f64::NEG_INFINITY, f64::max)
     }

@@ -167,13 +167,28 @@ impl Generator<'_> {
             Kind::Ball(ball) => {
                 let flipped = self.flipped;
                 contact_manifold_convex_ball(
-                    to_triangle, triangle, ball, cone, None, prediction, manifold, flipped,
+                    to_triangle,
+                    triangle,
+                    ball,
+                    cone,
+                    None,
+                    prediction,
+                    manifold,
+                    flipped,
                 );
             }
             Kind::Cuboid(cuboid) => {
                 let flipped = !self.flipped;
                 contact_manifold_cuboid_triangle(
-                    to_shape, to_triangle, cuboid, triangle, None, cone, prediction, manifold, flipped,
+                    to_shape,
+                    to_triangle,
+                    cuboid,
+                    triangle,
+                    None,
+                    cone,
+                    prediction,
+                    manifold,
+                    flipped,
                 );
             }
             Kind::HalfSpace(half_space) => {
@@ -211,14 +226,14 @@ impl Generator<'_> {
         known: &mut KnownCandidate<NearTriangle>,
         limits: Limits,
     ) -> bool {
-        let axis = known.candidate.axis.as_dvec3().normalize_or_zero();
+        let axis = known.candidate.axis.as_dvec3();
         if axis == DVec3::ZERO {
             return false;
         }
         let at_mesh = self.placement.rotation.transpose() * axis;
         let lowest = corners.vertices().iter().map(|x| at_mesh.dot(x.as_dvec3()));
         let lowest = lowest.fold(f64::INFINITY, f64::min) + axis.dot(self.placement.translation);
-        let gap = lowest - self.shape.reach(axis);
+        let gap = (lowest - self.shape.reach(axis)) / axis.length();
         if gap > limits.sight {
             known.distance = known.distance.max(gap - limits.motion);
         }

@@ -103,8 +103,7 @@ impl ConvexPair<'_> {
             Kind::HalfSpace(_) => 0.0,
             _ => self.shape.outline().size() as Real,
         };
-        let largest =
-            prepared.tree.magnitude() + self.pos12.translation.abs().max_element() + size;
+        let largest = prepared.tree.magnitude() + self.pos12.translation.abs().max_element() + size;
         prediction + GJK_TOLERANCE * (prediction + self.shape.radius()) + gamma(64) * largest
     }
 
@@ -217,7 +216,8 @@ where
     };
     SCRATCH.with_borrow_mut(|scratch| match plan {
         Plan::Reuse { reach } => {
-            let limits = Limits { sight: f64::from(sight), reach, motion: reach - f64::from(sight) };
+            let limits =
+                Limits { sight: f64::from(sight), reach, motion: reach - f64::from(sight) };
             let candidates = coherence.candidates_mut();
             generator.update(candidates, limits, &mut scratch.places, history, manifolds);
             Answer::Reused

@@ -88,7 +88,8 @@ impl<'a> ConvexShape<'a> {
 
 impl Fingerprint {
     fn of(shape_type: ShapeType, kind: Kind<'_>) -> Self {
-        let none = Self { shape_type, radius: 0.0, min: Vec3::ZERO, max: Vec3::ZERO, skew: Vec3::ZERO };
+        let none =
+            Self { shape_type, radius: 0.0, min: Vec3::ZERO, max: Vec3::ZERO, skew: Vec3::ZERO };
         match kind {
             Kind::Ball(ball) => Self { radius: ball.radius, ..none },
             Kind::HalfSpace(half_space) => Self { skew: half_space.normal, ..none },

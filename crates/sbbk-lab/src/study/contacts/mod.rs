@@ -21,8 +21,8 @@ mod report;
 mod speed;
 mod triangles;
 
-pub(super) use approach::Place;
 pub use approach::PAIR_LIMIT;
+pub(super) use approach::Place;
 pub use case::ContactCase;
 pub use contest::CONTESTANTS;
 pub(super) use contest::{Contest, Memory};

@@ -40,7 +40,13 @@ impl Expected {
                 if is_mesh_first { [&triangle, &*shape.0] } else { [&*shape.0, &triangle] };
             DefaultQueryDispatcher
                 .contact_manifold_convex_convex(
-                    pos12, pair[0], pair[1], None, None, prediction, &mut manifold,
+                    pos12,
+                    pair[0],
+                    pair[1],
+                    None,
+                    None,
+                    prediction,
+                    &mut manifold,
                 )
                 .expect("Parry has contacts of these shapes with triangles");
             if let Some(distance) = least(&manifold) {

@@ -50,9 +50,9 @@ pub fn kinds() -> Vec<Kind> {
         ("round cone", Some(SharedShape::round_cone(0.4, 0.3, 0.1))),
         ("round polyhedron", round_hull),
     ];
-    let bodies = bodies.into_iter().filter_map(|(name, shape)| {
-        Some(Kind { name, shape: shape?, floor: None })
-    });
+    let bodies = bodies
+        .into_iter()
+        .filter_map(|(name, shape)| Some(Kind { name, shape: shape?, floor: None }));
     let floor = |name, shape, upright| Kind { name, shape, floor: Some(upright) };
     let floors = [
         floor("half-space", SharedShape::halfspace(up), Upright::No),

@@ -56,13 +56,7 @@ impl Course<'_> {
     }
 
     /// Every other sequence is asked with the mesh first.
-    fn ask(
-        &self,
-        memory: &mut Memory,
-        dispatcher: &SharedDispatcher,
-        index: usize,
-        pose: &Pose3,
-    ) {
+    fn ask(&self, memory: &mut Memory, dispatcher: &SharedDispatcher, index: usize, pose: &Pose3) {
         let (mesh, shape) = (&*self.mesh.0, &*self.shape.0);
         let pair = if is_mesh_first(index) { [mesh, shape] } else { [shape, mesh] };
         memory.ask_pair(dispatcher, pair, &pos12(index, pose), self.prediction);
