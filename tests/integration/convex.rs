@@ -104,6 +104,13 @@ impl Question<'_> {
         mesh
     }
 
+    /// Distance of a triangle and the shape, by Parry.
+    fn apart(&self, triangle: u32) -> Real {
+        let triangle = self.mesh.triangle(triangle);
+        let distance = DefaultQueryDispatcher.distance(&self.pose, &triangle, &*self.shape.0);
+        distance.expect("Parry knows the distance of all these shapes to triangles").distance
+    }
+
     /// Parry's routine on each triangle of the mesh, called as stock calls it; manifolds with points.
     fn brute_force(&self) -> BTreeMap<u32, Manifold> {
         let all = (0..self.mesh.indices().len() as u32).filter_map(|index| {
@@ -319,8 +326,13 @@ fn walk(name: &str, shape: &SharedShape, size: Real, flipped: bool, seed: u64) -
         }
         for (triangle, near) in &found {
             let expected = all.get(triangle).map(distance);
+            // Parry's GJK does not see every contact of a cylinder: its distance is another way to ask.
+            let is_unseen = expected.is_none() && question.apart(*triangle) <= wider.prediction;
             let off = expected.map_or(Real::INFINITY, |expected| (near - expected).abs());
-            assert!(off <= DEPTH, "{name}: {triangle} is {near} deep, fresh {expected:?}");
+            assert!(
+                is_unseen || off <= DEPTH,
+                "{name}: {triangle} is {near} deep, fresh {expected:?}"
+            );
         }
         for (triangle, expected) in &all {
             let is_in = distance(expected) < question.prediction - BAND;
@@ -476,10 +488,8 @@ fn stock_can_hand_over_a_pair() {
         let expected: Vec<_> = question.fresh(&dispatcher).iter().map(|m| m.subshape2).collect();
         let found: Vec<_> = pair.manifolds.iter().map(|m| m.subshape2).collect();
         assert_eq!(found, expected, "{name}");
-        // Asked from another side, Parry may see other features at once.
-        let points = || pair.manifolds.iter().flat_map(|manifold| &manifold.points);
-        let kept = points().filter(|point| point.data > 0).count();
-        assert!(4 * kept >= 3 * points().count(), "{name}: {kept} of {}", points().count());
+        let mut points = pair.manifolds.iter().flat_map(|manifold| &manifold.points);
+        assert!(points.all(|point| point.data > 0), "{name}: data is lost");
     }
 }
 

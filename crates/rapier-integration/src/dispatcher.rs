@@ -19,8 +19,8 @@ use crate::pair::{
 use crate::stats::QueryCounters;
 use crate::{ContactGenerator, SbbkConfig, SbbkStats, TriangleContacts};
 
-/// A query dispatcher that answers the contacts of every pair of triangle meshes from SBBK trees, and leaves all else to
-/// Parry's [`DefaultQueryDispatcher`].
+/// A query dispatcher that answers the contacts of triangle meshes with each other and with convex shapes from SBBK trees, and
+/// leaves all else to Parry's [`DefaultQueryDispatcher`].
 ///
 /// Trees are built when two meshes first come close and shared by all colliders with equal geometry. Clones of a
 /// dispatcher share their trees.

@@ -110,7 +110,8 @@ impl ConvexPair<'_> {
     /// The tree of the mesh, from the state if it is known and still valid.
     ///
     /// If it is not, what is known of the pair is forgotten. Its manifolds as well, if a shape was edited while the host
-    /// kept the workspace; if only another dispatcher was here before, the manifolds keep their data.
+    /// kept the workspace; if only another dispatcher was here before, or a snapshot was restored, the manifolds are as good as ours:
+    /// all are of Parry's routine.
     fn tree<'s, M, C: Default + Copy>(
         &self,
         cache: &Arc<TreeCache>,
@@ -127,11 +128,10 @@ impl ConvexPair<'_> {
         };
         if !is_valid {
             coherence.clear();
-            match known {
-                KnownShapes::Tree(token, fingerprint, _) if (*token, *fingerprint) != now => {
-                    manifolds.clear();
-                }
-                _ => manifolds.iter_mut().for_each(ContactManifold::mark_shapes_deformed),
+            if let KnownShapes::Tree(token, fingerprint, _) = known
+                && (*token, *fingerprint) != now
+            {
+                manifolds.clear();
             }
             *known = match cache.prepare(self.mesh) {
                 Ok(tree) => KnownShapes::Tree(now.0, now.1, tree),
