@@ -305,15 +305,19 @@ fn walk(name: &str, shape: &SharedShape, size: Real, flipped: bool, seed: u64) -
     };
     let mut pair: Pair = Pair::default();
     let mut stride = 1e-3;
+    // Parry's GJK sees or does not see contacts by where it begins: here where stock begins.
+    let mut stock: Pair = Pair::default();
+    let (mut contact_count, mut unseen_count) = (0, 0);
     for _ in 0..400 {
         match random.rand_range(0..100) {
             0..=2 => question.pose = pose(&mut random, &head, size),
             3..=5 => question.prediction = PREDICTIONS[random.rand_range(0..4) as usize],
-            6 => pair.workspace = None,
+            6 => (pair.workspace, stock.workspace) = (None, None),
             7 => stride = [0.0, 1e-5, 1e-3, 1e-2][random.rand_range(0..4) as usize],
             _ => question.pose = nudge(&mut random, stride) * question.pose,
         }
         question.ask(&dispatcher, &mut pair);
+        question.ask(&DefaultQueryDispatcher, &mut stock);
         let wider = Question { prediction: question.prediction + BAND, ..question };
         let all = wider.brute_force();
         let mut found = BTreeMap::new();
@@ -334,11 +338,20 @@ fn walk(name: &str, shape: &SharedShape, size: Real, flipped: bool, seed: u64) -
                 "{name}: {triangle} is {near} deep, fresh {expected:?}"
             );
         }
-        for (triangle, expected) in &all {
+        let has = |manifold: &Manifold, triangle| {
+            question.triangle_of(manifold) == triangle && touches(manifold, question.prediction)
+        };
+        for (&triangle, expected) in &all {
             let is_in = distance(expected) < question.prediction - BAND;
-            assert!(!is_in || found.contains_key(triangle), "{name}: {triangle} is lost");
+            contact_count += usize::from(is_in);
+            if is_in && !found.contains_key(&triangle) {
+                let is_stocks = stock.manifolds.iter().any(|manifold| has(manifold, triangle));
+                assert!(!is_stocks, "{name}: {triangle} is lost");
+                unseen_count += 1;
+            }
         }
     }
+    assert!(100 * unseen_count <= contact_count, "{name}: {unseen_count} of {contact_count}");
     let stats = dispatcher.stats();
     [stats.queries, stats.unchanged_queries, stats.reused_queries, stats.descended_queries]
 }

@@ -81,16 +81,19 @@ impl Generator<'_> {
             if limits.motion > 0.0 && self.is_apart(&corners, known, limits) {
                 continue;
             }
-            let mut manifold = match previous.find(key, manifolds, history) {
+            let kept = previous.find(key, manifolds, history);
+            let mut manifold = match kept {
                 Some(place) => std::mem::take(&mut manifolds[place]),
                 None => self.manifold(triangle, unused.take(), history),
             };
-            self.refresh(&corners, known.candidate, &mut history.previous_points, &mut manifold);
+            let previous_points = &mut history.previous_points;
+            self.refresh(&corners, known.candidate, previous_points, &mut manifold);
+            let is_explained = !manifold.points.is_empty()
+                || self.is_explained(&corners, known, &manifold, limits);
+            if kept.is_some() && !is_explained {
+                self.ask_afresh(&corners, known.candidate, previous_points, &mut manifold);
+            }
             if manifold.points.is_empty() {
-                if let Some(axis) = self.axis_of(&manifold) {
-                    known.candidate.axis = axis;
-                    self.is_apart(&corners, known, limits);
-                }
                 history.retire_unless_first(&mut unused, manifold);
             } else {
                 history.keep(manifold, ());
@@ -144,6 +147,39 @@ impl Generator<'_> {
         manifold.points.clear();
         self.ask_parry(triangle, candidate, manifold);
         manifold.match_contacts(previous_points);
+    }
+
+    /// Whether a triangle without contact is apart along the axis that Parry's routine leaves, which is then kept.
+    fn is_explained<M, C>(
+        &self,
+        corners: &Triangle,
+        known: &mut KnownCandidate<NearTriangle>,
+        manifold: &ContactManifold<M, C>,
+        limits: Limits,
+    ) -> bool {
+        self.axis_of(manifold).is_some_and(|axis| {
+            known.candidate.axis = axis;
+            self.is_apart(corners, known, limits)
+        })
+    }
+
+    /// Asks for the contact of a triangle as if nothing was known of it. Parry's GJK begins with the normal of the step
+    /// before, and where the cores of two shapes just touch it depends on that whether it sees a contact.
+    fn ask_afresh<M, C>(
+        &self,
+        triangle: &Triangle,
+        candidate: NearTriangle,
+        previous_points: &[TrackedContact<C>],
+        manifold: &mut ContactManifold<M, C>,
+    ) where
+        M: Default,
+        C: Default + Copy,
+    {
+        if matches!(self.shape.kind, Kind::Features(..)) {
+            manifold.local_n1 = Vec3::ZERO;
+            self.ask_parry(triangle, candidate, manifold);
+            manifold.match_contacts(previous_points);
+        }
     }
 
     /// Parry's routine for the kind of shape, with the arguments that stock's calls end up with. Called by its own name:
