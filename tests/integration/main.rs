@@ -7,6 +7,8 @@ mod allocation;
 mod bits;
 /// What a host may expect of calls that follow each other.
 mod contract;
+/// Meshes against convex shapes.
+mod convex;
 /// Same inputs, same bits.
 mod determinism;
 /// A mesh that changes while pairs know it.

@@ -13,12 +13,14 @@ use sbbk_core::traverse::DescentCounts;
 use sbbk_core::tree::{BuildError, Tree};
 
 use crate::mesh::{PreparedRef, TreeCache};
-use crate::pair::{Answer, MeshPair, contact_manifolds};
+use crate::pair::{
+    Answer, ConvexPair, ConvexShape, MeshPair, contact_manifolds, convex_contact_manifolds,
+};
 use crate::stats::QueryCounters;
 use crate::{ContactGenerator, SbbkConfig, SbbkStats, TriangleContacts};
 
-/// A query dispatcher that answers the contacts of every pair of triangle meshes from SBBK trees, and leaves all else to
-/// Parry's [`DefaultQueryDispatcher`].
+/// A query dispatcher that answers the contacts of triangle meshes with each other and with convex shapes from SBBK trees, and
+/// leaves all else to Parry's [`DefaultQueryDispatcher`].
 ///
 /// Trees are built when two meshes first come close and shared by all colliders with equal geometry. Clones of a
 /// dispatcher share their trees.
@@ -63,10 +65,28 @@ impl SbbkDispatcher {
         self.cache.release_idle();
     }
 
-    /// The contacts of a pair of meshes; `Unsupported` if Parry must answer.
-    fn mesh_contacts<M, C>(
+    /// The answer to a query, counted; `Unsupported` if Parry must answer.
+    fn counted(&self, answer: impl FnOnce(Option<&mut DescentCounts>) -> Answer) -> Answer {
+        let answer = if self.config.count_queries {
+            let mut counts = DescentCounts::default();
+            let answer = answer(Some(&mut counts));
+            self.counters.add(answer, &counts);
+            answer
+        } else {
+            answer(None)
+        };
+        if answer == Answer::Unsupported {
+            self.counters.add_unsupported();
+        }
+        answer
+    }
+
+    /// The contacts of a pair of shapes, if SBBK answers for them.
+    fn answer<M, C>(
         &self,
-        pair: MeshPair<'_>,
+        pos12: &Pose,
+        [g1, g2]: [&dyn Shape; 2],
+        prediction: Real,
         manifolds: &mut Vec<ContactManifold<M, C>>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Answer
@@ -74,20 +94,30 @@ impl SbbkDispatcher {
         M: Default + Clone + Send + Sync + 'static,
         C: Default + Copy + Send + Sync + 'static,
     {
-        let contacts = self.config.contacts;
-        let answer = if self.config.count_queries {
-            let mut counts = DescentCounts::default();
-            let answer =
-                contact_manifolds(pair, &self.cache, contacts, &mut counts, manifolds, workspace);
-            self.counters.add(answer, &counts);
-            answer
-        } else {
-            contact_manifolds(pair, &self.cache, contacts, (), manifolds, workspace)
+        let cache = &self.cache;
+        let (mesh, other, flipped) = match (rigid_mesh(g1), rigid_mesh(g2)) {
+            (Some(mesh1), Some(mesh2)) => {
+                let (pair, contacts) =
+                    (MeshPair { pos12, mesh1, mesh2, prediction }, self.config.contacts);
+                return self.counted(|counts| match counts {
+                    Some(counts) => {
+                        contact_manifolds(pair, cache, contacts, counts, manifolds, workspace)
+                    }
+                    None => contact_manifolds(pair, cache, contacts, (), manifolds, workspace),
+                });
+            }
+            (Some(mesh), None) => (mesh, g2, false),
+            (None, Some(mesh)) => (mesh, g1, true),
+            (None, None) => return Answer::Unsupported,
         };
-        if answer == Answer::Unsupported {
-            self.counters.add_unsupported();
-        }
-        answer
+        let Some(shape) = ConvexShape::of(other) else {
+            return Answer::Unsupported;
+        };
+        let pair = ConvexPair { pos12, mesh, shape, flipped, prediction };
+        self.counted(|counts| match counts {
+            Some(counts) => convex_contact_manifolds(pair, cache, counts, manifolds, workspace),
+            None => convex_contact_manifolds(pair, cache, (), manifolds, workspace),
+        })
     }
 }
 
@@ -142,11 +172,9 @@ where
         manifolds: &mut Vec<ContactManifold<M, C>>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
-        if let (Some(mesh1), Some(mesh2)) = (rigid_mesh(g1), rigid_mesh(g2)) {
-            let pair = MeshPair { pos12, mesh1, mesh2, prediction };
-            if self.mesh_contacts(pair, manifolds, workspace) != Answer::Unsupported {
-                return Ok(());
-            }
+        let answer = self.answer(pos12, [g1, g2], prediction, manifolds, workspace);
+        if answer != Answer::Unsupported {
+            return Ok(());
         }
         DefaultQueryDispatcher.contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace)
     }

@@ -19,10 +19,10 @@ pub struct SbbkStats {
     pub tree_builds: u64,
     /// How often a pair of colliders needed a tree that was there.
     pub tree_hits: u64,
-    /// Mesh pairs that Parry had to answer as a mesh cannot have a tree: see
+    /// Pairs of a mesh and a mesh or convex shape that Parry had to answer as a mesh cannot have a tree: see
     /// [`SbbkDispatcher::prepare`](crate::SbbkDispatcher::prepare).
     pub unsupported_queries: u64,
-    /// Mesh pairs answered from trees. Counted, like the following, if
+    /// Such pairs answered from trees. Counted, like the following, if
     /// [`SbbkConfig::count_queries`](crate::SbbkConfig::count_queries) is set.
     pub queries: u64,
     /// Of these, how many found nothing moved since the last query of the pair.

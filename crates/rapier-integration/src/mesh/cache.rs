@@ -108,7 +108,7 @@ impl TreeCache {
     }
 
     /// Whether one of the meshes is known not to have a tree.
-    pub(crate) fn is_unsupported(&self, meshes: [&TriMesh; 2]) -> bool {
+    pub(crate) fn is_unsupported(&self, meshes: &[&TriMesh]) -> bool {
         if !self.has_unsupported.load(Ordering::Acquire) {
             return false;
         }

@@ -15,8 +15,6 @@ pub(super) struct Candidate {
     pub(super) triangle2: u32,
     /// What was closest when this was last known, to be tried first.
     pub(super) features: Option<FeaturePair>,
-    /// The distance when it was last known, plus the travel of the pair then: as much less than this is at most left.
-    pub(super) clear: f64,
     /// Place among the candidates that the pair keeps.
     pub(super) place: u32,
 }
@@ -24,7 +22,7 @@ pub(super) struct Candidate {
 impl Candidate {
     /// Found just now.
     fn new(key: OrderKey, [triangle1, triangle2]: [u32; 2]) -> Self {
-        Self { key, triangle1, triangle2, features: None, clear: 0.0, place: u32::MAX }
+        Self { key, triangle1, triangle2, features: None, place: u32::MAX }
     }
 }
 
@@ -44,6 +42,11 @@ impl OrderKey {
         let ranks = [prepared[0].rank(triangle1), prepared[1].rank(triangle2)];
         let [major, minor] = if flipped { [ranks[1], ranks[0]] } else { ranks };
         Self(u64::from(major) << 32 | u64::from(minor))
+    }
+
+    /// Of one triangle, whatever the other shape is: stock walks the hierarchy of the mesh.
+    pub(super) fn of_triangle(prepared: &PreparedMesh, triangle: u32) -> Self {
+        Self(u64::from(prepared.rank(triangle)))
     }
 }
 

@@ -9,7 +9,7 @@
 use parry3d::math::{Pose, Real};
 use sbbk_core::contact::TriangleContact;
 use sbbk_core::traverse::Placement;
-use sbbk_core::tree::Tree;
+use sbbk_core::volumes::Sphere;
 
 use super::candidates::Candidate;
 
@@ -17,22 +17,29 @@ use super::candidates::Candidate;
 const SLACK_STEPS: f64 = 8.0;
 /// Least slack as a share of the prediction distance, for bodies at rest that jitter.
 const LEAST_SLACK: f64 = 0.1;
-/// Greatest slack, likewise.
-const GREATEST_SLACK: f64 = 1.0;
 /// A pair that would use up the greatest slack in fewer steps gets none: to look farther would not pay (with 2, queries
 /// that move by half a prediction distance took up to twice as long).
 const LEAST_STEPS: f64 = 6.0;
 
 /// The candidates of a descent and when they are still good.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Coherence {
+#[derive(Clone, Debug)]
+pub(super) struct Coherence<T> {
     /// The query before this one.
     last: Option<Seen>,
     /// The descent that found the candidates, and its margin.
     descent: Option<Seen>,
-    candidates: Vec<Candidate>,
+    candidates: Vec<KnownCandidate<T>>,
     /// Motion from query to query, summed up since the descent.
     travel: f64,
+}
+
+/// A candidate, and how much travel it stays out of reach.
+#[derive(Copy, Clone, Debug)]
+pub(super) struct KnownCandidate<T> {
+    pub(super) candidate: T,
+    /// Its distance when it was last known, or less, plus the travel of the pair then. The travel now subtracted, a lower
+    /// bound of its distance now is left.
+    pub(super) clear: f64,
 }
 
 #[derive(Copy, Clone, Debug)]
@@ -59,29 +66,35 @@ pub(super) enum Plan {
     },
 }
 
-impl Coherence {
-    /// Forgets everything: the meshes changed.
+impl<T> Default for Coherence<T> {
+    fn default() -> Self {
+        Self { last: None, descent: None, candidates: Vec::new(), travel: 0.0 }
+    }
+}
+
+impl<T> Coherence<T> {
+    /// Forgets everything: the shapes changed.
     pub(super) fn clear(&mut self) {
         *self = Self::default();
     }
 
-    /// Decides how to answer for this pose, and remembers it.
+    /// Decides how to answer for this pose, and remembers it. One of the shapes is in `ball` of its own frame, and that
+    /// is at `placement`, as `pos12` says, in the frame of the other. `greatest_slack` is a share of the prediction
+    /// distance.
     pub(super) fn plan(
         &mut self,
-        tree2: &Tree,
-        pos12: &Pose,
-        placement: Placement,
+        ball: Sphere,
+        (pos12, placement): (&Pose, Placement),
         prediction: Real,
+        greatest_slack: f64,
     ) -> Plan {
         let now = Seen { pos12: *pos12, placement, margin: prediction };
         let last = self.last.replace(now);
         if last.is_some_and(|last| last.pos12 == *pos12 && last.margin == prediction) {
             return Plan::Nothing;
         }
-        let motion_since = |seen: Seen| {
-            let ball = tree2.bounding_ball();
-            now.placement.motion_bound(&seen.placement, ball.centre, ball.radius)
-        };
+        let motion_since =
+            |seen: Seen| now.placement.motion_bound(&seen.placement, ball.centre, ball.radius);
         let step = last.map_or(0.0, motion_since);
         self.travel += step;
         if let Some(descent) = self.descent {
@@ -90,7 +103,7 @@ impl Coherence {
                 return Plan::Reuse { margin: descent.margin };
             }
         }
-        let slack = last.map_or(0.0, |_| slack(step, f64::from(prediction)));
+        let slack = last.map_or(0.0, |_| slack(step, f64::from(prediction), greatest_slack));
         let margin = prediction + slack as Real;
         self.candidates.clear();
         self.travel = 0.0;
@@ -98,12 +111,31 @@ impl Coherence {
         Plan::Descend { margin }
     }
 
+    /// What the pair has moved since the descent, along its path.
+    pub(super) fn travel(&self) -> f64 {
+        self.travel
+    }
+
+    /// Keeps the candidates of the descent under way, in stock order.
+    pub(super) fn keep(&mut self, candidates: impl IntoIterator<Item = KnownCandidate<T>>) {
+        if self.descent.is_some() {
+            self.candidates.extend(candidates);
+        }
+    }
+
+    /// The candidates of the last descent, to raise `clear` where more is known.
+    pub(super) fn candidates_mut(&mut self) -> &mut [KnownCandidate<T>] {
+        &mut self.candidates
+    }
+}
+
+impl Coherence<Candidate> {
     /// The candidates of the last descent that may have come within the prediction distance, in stock order.
     pub(super) fn near(&self, prediction: Real, near: &mut Vec<Candidate>) {
         let reach = f64::from(prediction) + self.travel;
-        let is_near = |known: &&Candidate| known.clear <= reach;
         near.clear();
-        near.extend(self.candidates.iter().filter(is_near));
+        let is_near = |known: &&KnownCandidate<Candidate>| known.clear <= reach;
+        near.extend(self.candidates.iter().filter(is_near).map(|known| known.candidate));
     }
 
     /// Remembers what was found for a candidate, of the descent under way or one of [`near`](Self::near).
@@ -116,10 +148,11 @@ impl Coherence {
         let distance = contact.map_or(f64::from(descent.margin), |contact| contact.distance);
         let clear = distance + self.travel;
         match self.candidates.get_mut(candidate.place as usize) {
-            Some(known) => (known.features, known.clear) = (features, clear),
+            Some(known) => (known.candidate.features, known.clear) = (features, clear),
             None if contact.is_some() => {
                 let place = self.candidates.len() as u32;
-                self.candidates.push(Candidate { features, clear, place, ..*candidate });
+                let candidate = Candidate { features, place, ..*candidate };
+                self.candidates.push(KnownCandidate { candidate, clear });
             }
             None => {}
         }
@@ -128,8 +161,8 @@ impl Coherence {
 
 /// How much farther than the prediction distance a descent should look, for a pair that moved by `step` since the
 /// query before. Not finite motion gives none.
-fn slack(step: f64, prediction: f64) -> f64 {
-    let greatest = GREATEST_SLACK * prediction;
+fn slack(step: f64, prediction: f64, greatest_slack: f64) -> f64 {
+    let greatest = greatest_slack * prediction;
     if LEAST_STEPS * step <= greatest {
         (SLACK_STEPS * step).clamp(LEAST_SLACK * prediction, greatest)
     } else {

@@ -12,6 +12,7 @@ use sbbk_core::traverse::PairFrame;
 use super::candidates::{Candidate, OrderKey, Scratch};
 use super::coherence::Coherence;
 use super::exact::{Constraints, LocalTriangles, fill};
+use super::previous::Previous;
 use super::query::MeshPair;
 use super::state::History;
 use crate::ContactGenerator;
@@ -32,32 +33,20 @@ impl Generator<'_> {
     pub(super) fn update<M, C>(
         &self,
         scratch: &mut Scratch,
-        coherence: &mut Coherence,
-        history: &mut History<M, C>,
+        coherence: &mut Coherence<Candidate>,
+        history: &mut History<M, C, FeaturePair>,
         manifolds: &mut Vec<ContactManifold<M, C>>,
     ) where
         M: Default + Clone + Send + Sync + 'static,
         C: Default + Copy + Send + Sync + 'static,
     {
-        self.order_previous(manifolds, &mut scratch.previous);
-        if !history.is_of(manifolds) {
-            // Somebody else's manifolds: their features are not known.
-            history.features.clear();
-            history.features.resize(manifolds.len(), None);
-        }
+        history.begin(manifolds);
+        let key = |triangles| OrderKey::new(self.prepared, self.flipped, triangles);
+        let mut previous = Previous::new(manifolds, key, &mut scratch.previous);
         let mut points = ManifoldPoints::new();
-        let mut previous = scratch.previous.iter().peekable();
         for candidate in &scratch.candidates {
-            let mut kept = None;
-            while let Some(&&(key, place)) = previous.peek().filter(|old| old.0 <= candidate.key) {
-                previous.next();
-                if key == candidate.key && kept.is_none() {
-                    kept = Some(place as usize);
-                } else {
-                    history.retire(std::mem::take(&mut manifolds[place as usize]));
-                }
-            }
-            let features = kept.and_then(|place| history.features[place]).or(candidate.features);
+            let kept = previous.find(candidate.key, manifolds, history);
+            let features = kept.and_then(|place| history.contacts[place]).or(candidate.features);
             let triangles = self.triangles(candidate);
             let local = LocalTriangles::new(self.frame.placement(), &triangles);
             let contact = self.contact(candidate, &local, features, coherence, &mut points);
@@ -76,30 +65,8 @@ impl Generator<'_> {
             self.fill(candidate, (&triangles, &local), answer, previous_points, manifold);
             history.keep(std::mem::take(manifold), contact.features);
         }
-        for &(_, place) in previous {
-            history.retire(std::mem::take(&mut manifolds[place as usize]));
-        }
-        manifolds.clear();
-        std::mem::swap(manifolds, &mut history.next);
-        history.settle(manifolds.len());
-        history.features.clear();
-        std::mem::swap(&mut history.features, &mut history.next_features);
-    }
-
-    /// The previous manifolds in stock order, which they are in unless somebody else touched them.
-    fn order_previous<M, C>(
-        &self,
-        manifolds: &[ContactManifold<M, C>],
-        previous: &mut Vec<(OrderKey, u32)>,
-    ) {
-        previous.clear();
-        previous.extend(manifolds.iter().enumerate().map(|(place, manifold)| {
-            let triangles = [manifold.subshape1, manifold.subshape2];
-            (OrderKey::new(self.prepared, self.flipped, triangles), place as u32)
-        }));
-        if !previous.is_sorted() {
-            previous.sort_unstable();
-        }
+        previous.retire_rest(manifolds, history);
+        history.end(manifolds);
     }
 
     #[inline(always)]
@@ -115,7 +82,7 @@ impl Generator<'_> {
         candidate: &Candidate,
         local: &LocalTriangles,
         features: Option<FeaturePair>,
-        coherence: &mut Coherence,
+        coherence: &mut Coherence<Candidate>,
         points: &mut ManifoldPoints,
     ) -> Option<TriangleContact> {
         let prediction = self.pair.prediction;

@@ -1,14 +1,18 @@
-//! A pair of meshes: from a pose to contact manifolds.
+//! A pair of shapes: from a pose to contact manifolds.
 //!
-//! [`query`] is the way of the data: the state of the pair ([`state`]), the descent that collects the pairs of
+//! [`query`] is the way of the data for two meshes: the state of the pair ([`state`]), the descent that collects the pairs of
 //! triangles that may touch ([`candidates`]), and one manifold for each pair that does ([`exact`], [`manifolds`]).
+//! [`convex`] is the same way for a mesh and a convex shape.
 
 mod candidates;
 mod coherence;
+mod convex;
 mod exact;
 mod manifolds;
+mod previous;
 mod query;
 mod state;
 
+pub(crate) use convex::{ConvexPair, ConvexShape, contact_manifolds as convex_contact_manifolds};
 pub use exact::TriangleContacts;
 pub(crate) use query::{Answer, MeshPair, contact_manifolds};

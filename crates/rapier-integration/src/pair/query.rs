@@ -5,12 +5,13 @@ use parry3d::bounding_volume::BoundingVolume;
 use parry3d::math::{Pose, Real};
 use parry3d::query::{ContactManifold, ContactManifoldsWorkspace};
 use parry3d::shape::TriMesh;
+use sbbk_core::contact::FeaturePair;
 use sbbk_core::traverse::{Counters, PairFrame, Placement};
 
-use super::candidates::{Scratch, collect};
+use super::candidates::{Candidate, Scratch, collect};
 use super::coherence::{Coherence, Plan};
 use super::manifolds::Generator;
-use super::state::{KnownMeshes, PairState};
+use super::state::{PairKind, PairState};
 use crate::ContactGenerator;
 use crate::mesh::{MeshToken, PreparedRef, TreeCache};
 
@@ -37,6 +38,30 @@ pub(crate) enum Answer {
     Descended,
     /// Not at all: a mesh cannot have a tree, and somebody else must answer.
     Unsupported,
+}
+
+/// Greatest slack of candidates as a share of the prediction distance. More: pairs of triangles that do not touch get
+/// the exact test; fewer: more descents.
+const GREATEST_SLACK: f64 = 1.0;
+
+/// Two meshes.
+#[derive(Clone)]
+struct TwoMeshes;
+
+impl PairKind for TwoMeshes {
+    type Shapes = KnownMeshes;
+    type Candidate = Candidate;
+    type Contact = FeaturePair;
+}
+
+/// The trees of the pair, as far as they are known.
+#[derive(Clone, Default)]
+enum KnownMeshes {
+    /// No query has needed them yet.
+    #[default]
+    None,
+    /// Valid while the tokens are.
+    Trees([MeshToken; 2], [PreparedRef; 2]),
 }
 
 thread_local! {
@@ -72,7 +97,7 @@ impl MeshPair<'_> {
         &self,
         cache: &Arc<TreeCache>,
         known: &'s mut KnownMeshes,
-        coherence: &mut Coherence,
+        coherence: &mut Coherence<Candidate>,
         manifolds: &mut Vec<ContactManifold<M, C>>,
     ) -> Option<&'s [PreparedRef; 2]>
     where
@@ -121,10 +146,11 @@ where
     M: Default + Clone + Send + Sync + 'static,
     C: Default + Copy + Send + Sync + 'static,
 {
-    if cache.is_unsupported([pair.mesh1, pair.mesh2]) {
+    if cache.is_unsupported(&[pair.mesh1, pair.mesh2]) {
         return Answer::Unsupported;
     }
-    let PairState { meshes, coherence, history } = PairState::of(workspace, manifolds);
+    let PairState::<_, _, TwoMeshes> { shapes: meshes, coherence, history } =
+        PairState::of(workspace, manifolds);
     if matches!(meshes, KnownMeshes::None) && !pair.root_boxes_meet() {
         manifolds.clear();
         return Answer::Apart;
@@ -135,7 +161,9 @@ where
     let prepared = prepared.each_ref().map(PreparedRef::get);
     let trees = (&prepared[0].tree, &prepared[1].tree);
     let placement = Placement::new(pair.pos12);
-    let plan = coherence.plan(trees.1, pair.pos12, placement, pair.prediction);
+    let ball = trees.1.bounding_ball();
+    let pose = (pair.pos12, placement);
+    let plan = coherence.plan(ball, pose, pair.prediction, GREATEST_SLACK);
     if plan == Plan::Nothing && history.is_of(manifolds) {
         return Answer::Unchanged;
     }

@@ -4,71 +4,74 @@ use parry3d::query::details::{
     TypedWorkspaceData, VoxelsShapeContactManifoldsWorkspace, WorkspaceData,
 };
 use parry3d::query::{ContactManifold, ContactManifoldsWorkspace, TrackedContact};
-use sbbk_core::contact::FeaturePair;
 
 use super::coherence::Coherence;
-use crate::mesh::{MeshToken, PreparedRef};
 
-/// What a pair of meshes keeps from query to query: the workspace that the host stores with the pair.
+/// What kind of shapes a pair has: two meshes, or a mesh and a convex shape.
+pub(super) trait PairKind: Clone + 'static {
+    /// What is known of the shapes; nothing by default.
+    type Shapes: Clone + Default + Send + Sync;
+    /// What may touch.
+    type Candidate: Clone + Send + Sync;
+    /// What is kept of a contact, beside its manifold.
+    type Contact: Copy + Send + Sync;
+}
+
+/// What a pair keeps from query to query: the workspace that the host stores with the pair.
 ///
 /// Everything in it can be lost at any time and costs only time then.
 #[derive(Clone)]
-pub(super) struct PairState<M, C> {
-    pub(super) meshes: KnownMeshes,
-    pub(super) coherence: Coherence,
-    pub(super) history: History<M, C>,
+pub(super) struct PairState<M, C, K: PairKind> {
+    pub(super) shapes: K::Shapes,
+    pub(super) coherence: Coherence<K::Candidate>,
+    pub(super) history: History<M, C, K::Contact>,
 }
 
-/// The trees of the pair, as far as they are known.
+/// What the manifolds of the last query leave behind for the next: what is known of their contacts, and buffers, as a
+/// fresh manifold costs ten times as much as a used one.
 #[derive(Clone)]
-pub(super) enum KnownMeshes {
-    /// No query has needed them yet.
-    None,
-    /// Valid while the tokens are.
-    Trees([MeshToken; 2], [PreparedRef; 2]),
-}
-
-/// What the manifolds of the last query leave behind for the next: their features, and buffers, as a fresh manifold
-/// costs ten times as much as a used one.
-#[derive(Clone)]
-pub(super) struct History<M, C> {
-    /// The features that made each of the manifolds, in their order.
-    pub(super) features: Vec<Option<FeaturePair>>,
-    pub(super) next: Vec<ContactManifold<M, C>>,
-    pub(super) next_features: Vec<Option<FeaturePair>>,
+pub(super) struct History<M, C, K> {
+    /// Of each of the manifolds, in their order.
+    pub(super) contacts: Vec<Option<K>>,
+    next: Vec<ContactManifold<M, C>>,
+    next_contacts: Vec<Option<K>>,
     pub(super) previous_points: Vec<TrackedContact<C>>,
     spare: Vec<ContactManifold<M, C>>,
-    /// Manifolds that the pair has had at once of late: as many are kept, in use or spare.
+    /// Manifolds that a query has needed at once of late: as many are kept, in use or spare. New ones come before old ones
+    /// go, so it can be more than the pair has had.
     peak: usize,
+    /// The fewest spare ones during this query.
+    least_spare: usize,
     /// Queries since it had as many.
     age: u8,
 }
 
-impl<M, C> Default for PairState<M, C> {
+impl<M, C, K: PairKind> Default for PairState<M, C, K> {
     fn default() -> Self {
         Self {
-            meshes: KnownMeshes::None,
+            shapes: K::Shapes::default(),
             coherence: Coherence::default(),
             history: History::default(),
         }
     }
 }
 
-impl<M, C> Default for History<M, C> {
+impl<M, C, K> Default for History<M, C, K> {
     fn default() -> Self {
         Self {
-            features: Vec::new(),
+            contacts: Vec::new(),
             next: Vec::new(),
-            next_features: Vec::new(),
+            next_contacts: Vec::new(),
             previous_points: Vec::new(),
             spare: Vec::new(),
             peak: 0,
+            least_spare: 0,
             age: 0,
         }
     }
 }
 
-impl<M, C> PairState<M, C>
+impl<M, C, K: PairKind> PairState<M, C, K>
 where
     M: Default + Clone + Send + Sync + 'static,
     C: Default + Copy + Send + Sync + 'static,
@@ -94,34 +97,58 @@ where
     }
 }
 
-impl<M, C> History<M, C>
+impl<M, C, K> History<M, C, K>
 where
     M: Default,
     C: Default + Copy,
+    K: Copy,
 {
     /// Queries after which the memory of more manifolds than the pair now has is given back, a quarter at a time.
     /// More: memory is kept longer. Fewer: allocations where contacts come and go.
     const PATIENCE: u8 = 64;
 
-    /// Ends a query: remembers how many manifolds the pair has had of late.
-    pub(super) fn settle(&mut self, count: usize) {
+    /// Begins a query. Of manifolds that are not those of the last query, somebody else's, nothing is known.
+    pub(super) fn begin(&mut self, manifolds: &[ContactManifold<M, C>]) {
+        self.least_spare = self.spare.len();
+        if !self.is_of(manifolds) {
+            self.contacts.clear();
+            self.contacts.resize(manifolds.len(), None);
+        }
+    }
+
+    /// Ends a query: `manifolds`, which hold nothing of use any more, become those that were kept.
+    pub(super) fn end(&mut self, manifolds: &mut Vec<ContactManifold<M, C>>) {
+        manifolds.clear();
+        std::mem::swap(manifolds, &mut self.next);
+        self.settle(manifolds.len());
+        self.contacts.clear();
+        std::mem::swap(&mut self.contacts, &mut self.next_contacts);
+    }
+
+    /// Remembers how many manifolds the query has needed.
+    fn settle(&mut self, count: usize) {
+        let needed = count.max((count + self.spare.len()).saturating_sub(self.least_spare));
         self.age += 1;
-        if count >= self.peak {
-            (self.peak, self.age) = (count, 0);
+        if needed >= self.peak {
+            (self.peak, self.age) = (needed, 0);
         } else if self.age >= Self::PATIENCE {
-            (self.peak, self.age) = (count.max(self.peak - self.peak.div_ceil(4)), 0);
+            (self.peak, self.age) = (needed.max(self.peak - self.peak.div_ceil(4)), 0);
             self.spare.truncate(self.peak - count);
         }
     }
 
     /// Whether these are the manifolds that the last query left.
     pub(super) fn is_of(&self, manifolds: &[ContactManifold<M, C>]) -> bool {
-        self.features.len() == manifolds.len()
+        self.contacts.len() == manifolds.len()
     }
 
     /// An empty manifold for a pair of triangles.
     pub(super) fn manifold(&mut self, triangle1: u32, triangle2: u32) -> ContactManifold<M, C> {
-        let mut manifold = self.spare.pop().unwrap_or_default();
+        let mut manifold = self.spare.pop().unwrap_or_else(|| {
+            self.peak += 1;
+            ContactManifold::default()
+        });
+        self.least_spare = self.least_spare.min(self.spare.len());
         manifold.subshape1 = triangle1;
         manifold.subshape2 = triangle2;
         manifold
@@ -129,26 +156,45 @@ where
 
     /// Adds a manifold to those of this query, if it has points.
     #[inline(always)]
-    pub(super) fn keep(&mut self, manifold: ContactManifold<M, C>, features: FeaturePair) {
+    pub(super) fn keep(&mut self, manifold: ContactManifold<M, C>, contact: K) {
         if manifold.points.is_empty() {
             self.retire(manifold);
         } else {
             self.next.push(manifold);
-            self.next_features.push(Some(features));
+            self.next_contacts.push(Some(contact));
         }
     }
 
     /// Takes back a manifold that is no longer used. Nothing of it but its memory survives.
     pub(super) fn retire(&mut self, mut manifold: ContactManifold<M, C>) {
         if self.next.len() + self.spare.len() < self.peak {
-            manifold.points.clear();
-            manifold.local_n1 = Default::default();
-            manifold.local_n2 = Default::default();
-            manifold.subshape_poses = None;
-            manifold.data = M::default();
+            reset(&mut manifold);
             self.spare.push(manifold);
         }
     }
+
+    /// The same, but the manifold goes to `unused`, at hand for the next triangle, if there is none.
+    pub(super) fn retire_unless_first(
+        &mut self,
+        unused: &mut Option<ContactManifold<M, C>>,
+        mut manifold: ContactManifold<M, C>,
+    ) {
+        if unused.is_none() {
+            reset(&mut manifold);
+            *unused = Some(manifold);
+        } else {
+            self.retire(manifold);
+        }
+    }
+}
+
+/// Leaves nothing of a manifold but its memory.
+fn reset<M: Default, C>(manifold: &mut ContactManifold<M, C>) {
+    manifold.points.clear();
+    manifold.local_n1 = Default::default();
+    manifold.local_n2 = Default::default();
+    manifold.subshape_poses = None;
+    manifold.data = M::default();
 }
 
 /// What a snapshot holds in place of our state.
@@ -158,7 +204,7 @@ where
 static PLACEHOLDER: LazyLock<VoxelsShapeContactManifoldsWorkspace<2>> =
     LazyLock::new(VoxelsShapeContactManifoldsWorkspace::new);
 
-impl<M, C> WorkspaceData for PairState<M, C>
+impl<M, C, K: PairKind> WorkspaceData for PairState<M, C, K>
 where
     M: Clone + Send + Sync + 'static,
     C: Clone + Send + Sync + 'static,

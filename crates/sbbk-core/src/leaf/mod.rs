@@ -3,10 +3,13 @@
 //! The test looks for a separating axis over SIMD lanes: one triangle of leaf 1 against the batch of
 //! leaf 2. It is conservative and nearly exact; what survives goes to the exact test in f64
 //! ([`contact`](crate::contact)). The same code runs over one lane for comparison:
-//! [`LeafTest::survivors_scalar`].
+//! [`LeafTest::survivors_scalar`]. [`ProbeTest`] does the same for triangles and a convex shape.
 
 pub(crate) mod lane;
+mod probe;
 mod separation;
+
+pub use probe::ProbeTest;
 
 use wide::f32x4;
 

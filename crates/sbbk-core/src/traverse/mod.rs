@@ -1,7 +1,9 @@
-//! Two trees against each other.
+//! Two trees against each other, and one against a convex shape.
 //!
 //! [`PairFrame`] holds what depends on the pair's pose, computed once; [`descend`] goes down both trees at
 //! once and hands pairs of leaves to a [`Visitor`]; [`Counters`] count the tests, or cost nothing.
+//!
+//! One tree against a [`Convex`] shape: [`Probe`] is the shape as the tree sees it, [`descend_probe`] finds the leaves near it.
 
 mod correspondence;
 mod counters;
@@ -10,6 +12,8 @@ mod frame;
 mod gaps;
 mod overlap;
 mod placement;
+mod probe;
+mod probe_descend;
 mod visitor;
 
 pub use counters::{Counters, DescentCounts};
@@ -19,4 +23,6 @@ pub use frame::PairFrame;
 pub(crate) use gaps::{AxisIndex, GapFrame, Gaps};
 pub(crate) use overlap::{Inner, Outer, Same};
 pub use placement::Placement;
+pub use probe::{Convex, Outline, Probe};
+pub use probe_descend::{ProbeScratch, descend_probe};
 pub use visitor::{LeafPairs, NodePair, Verdict, Visitor};

@@ -40,6 +40,16 @@ impl Placement {
         self.rotation.is_finite() && self.translation.is_finite() && self.inverse.is_finite()
     }
 
+    /// The placement of frame 1 in frame 2.
+    #[must_use]
+    pub fn inverted(&self) -> Self {
+        Self {
+            rotation: self.inverse,
+            translation: -(self.inverse * self.translation),
+            inverse: self.rotation,
+        }
+    }
+
     /// `x`, a point of frame 2, in frame 1 and relative to `origin` there.
     #[inline]
     pub fn to_frame1(&self, x: Vec3, origin: Vec3) -> DVec3 {

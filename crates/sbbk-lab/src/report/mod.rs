@@ -1,6 +1,7 @@
 //! Results as tables, files and plots, beside the paper's own.
 
 mod contacts;
+mod convex;
 mod error;
 mod files;
 mod format;
@@ -13,6 +14,7 @@ mod plot;
 pub mod tables;
 
 pub use contacts::write_contacts_plot;
+pub use convex::write_convex_plot;
 pub use error::ReportError;
 pub use files::{ResultRow, Results, reserve, write_csv, write_json};
 pub use front::write_front_plot;

@@ -10,6 +10,7 @@
 
 mod comparison;
 pub mod contacts;
+pub mod convex;
 mod cut;
 pub mod determinism;
 mod error;

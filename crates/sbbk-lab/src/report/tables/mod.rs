@@ -1,6 +1,7 @@
 //! The tables of a comparison, with the paper's rows among ours.
 
 mod contacts;
+mod convex;
 mod determinism;
 mod front;
 mod helicopter;
@@ -9,6 +10,7 @@ mod pile;
 mod soak;
 
 pub use contacts::{by_mesh, by_size, contact_generators, contacts, queries};
+pub use convex::convex;
 pub use determinism::{fingerprints, threads};
 pub use front::front;
 pub use helicopter::{frames, overlapping_area};

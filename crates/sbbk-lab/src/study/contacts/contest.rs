@@ -7,6 +7,7 @@ use glamx::Pose3;
 use rapier3d::geometry::{ContactManifold, SharedShape};
 use rapier3d::math::Real;
 use rapier3d::parry::query::ContactManifoldsWorkspace;
+use rapier3d::parry::shape::Shape;
 
 use super::super::turns::in_turn;
 use crate::backend::{Backend, Primed, SharedDispatcher};
@@ -62,7 +63,7 @@ pub(super) fn race<C>(
 
 /// What a host keeps of a pair of shapes from query to query.
 #[derive(Default)]
-pub(super) struct Memory {
+pub(in crate::study) struct Memory {
     pub manifolds: Vec<ContactManifold>,
     workspace: Option<ContactManifoldsWorkspace>,
 }
@@ -76,9 +77,20 @@ impl Memory {
         pos12: &Pose3,
         prediction: Real,
     ) {
+        self.ask_pair(dispatcher, [&**shape; 2], pos12, prediction);
+    }
+
+    /// Brings the manifolds of two shapes up to date.
+    pub fn ask_pair(
+        &mut self,
+        dispatcher: &SharedDispatcher,
+        [shape1, shape2]: [&dyn Shape; 2],
+        pos12: &Pose3,
+        prediction: Real,
+    ) {
         let Self { manifolds, workspace } = self;
         dispatcher
-            .contact_manifolds(pos12, &**shape, &**shape, prediction, manifolds, workspace)
-            .expect("every backend answers for two meshes");
+            .contact_manifolds(pos12, shape1, shape2, prediction, manifolds, workspace)
+            .expect("every backend answers for a mesh and any shape of these studies");
     }
 }

@@ -25,7 +25,7 @@ pub use approach::PAIR_LIMIT;
 pub(super) use approach::{Place, places};
 pub use case::ContactCase;
 pub use contest::CONTESTANTS;
-pub(super) use contest::Contest;
+pub(super) use contest::{Contest, Memory};
 pub use errors::ContactErrors;
 pub use exactness::{ExactnessRow, ExactnessSide};
 pub(super) use motion::motion;

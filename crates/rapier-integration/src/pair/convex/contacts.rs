@@ -1,0 +1,277 @@
+//! From candidates to manifolds, by Parry's contact routine.
+
+use glamx::{DVec3, Vec3};
+use parry3d::math::{Pose, Real};
+use parry3d::query::details::{
+    NormalConstraints, contact_manifold_convex_ball, contact_manifold_cuboid_triangle,
+    contact_manifold_pfm_pfm,
+};
+use parry3d::query::{ContactManifold, TrackedContact};
+use parry3d::shape::{TriMesh, Triangle};
+use sbbk_core::traverse::{Convex, Placement};
+
+use super::half_space::half_space_manifold;
+use super::shape::{ConvexShape, Kind};
+use crate::mesh::PreparedMesh;
+use crate::pair::candidates::OrderKey;
+use crate::pair::coherence::KnownCandidate;
+use crate::pair::previous::Previous;
+use crate::pair::state::History;
+
+/// A triangle of the mesh.
+#[derive(Copy, Clone, Debug)]
+pub(super) struct NearTriangle {
+    pub(super) key: OrderKey,
+    pub(super) triangle: u32,
+    /// Of the shape's frame, from the shape to the triangle: along it they were last seen apart. Zero if they were not.
+    pub(super) axis: Vec3,
+}
+
+/// How far a query looks.
+#[derive(Copy, Clone, Debug)]
+pub(super) struct Limits {
+    /// The distance up to which Parry's routine may make contacts.
+    pub(super) sight: f64,
+    /// What the pair has moved since the descent.
+    pub(super) travel: f64,
+}
+
+/// One query, after its descent.
+pub(super) struct Generator<'a> {
+    pub(super) mesh: &'a TriMesh,
+    pub(super) shape: ConvexShape<'a>,
+    pub(super) prepared: &'a PreparedMesh,
+    /// Whether the mesh is shape 2.
+    pub(super) flipped: bool,
+    /// The pose that stock passes on, bit for bit, and its inverse.
+    pub(super) parrys_poses: [Pose; 2],
+    /// The mesh in the frame of the shape.
+    pub(super) placement: Placement,
+    pub(super) prediction: Real,
+}
+
+impl Generator<'_> {
+    /// Replaces `manifolds` by those of the candidates that touch, in stock order. Manifolds of triangles that still do
+    /// keep their data; none is left empty.
+    ///
+    /// Candidates out of sight are skipped, and so are those that still are apart along the axis along which they last were. Of
+    /// a triangle that does not touch, Parry's routine often knows such an axis.
+    pub(super) fn update<M, C>(
+        &self,
+        candidates: &mut [KnownCandidate<NearTriangle>],
+        limits: Limits,
+        places: &mut Vec<(OrderKey, u32)>,
+        history: &mut History<M, C, ()>,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+    ) where
+        M: Default + Clone + Send + Sync + 'static,
+        C: Default + Copy + Send + Sync + 'static,
+    {
+        history.begin(manifolds);
+        let key = |triangles: [u32; 2]| {
+            OrderKey::of_triangle(self.prepared, triangles[usize::from(self.flipped)])
+        };
+        let mut previous = Previous::new(manifolds, key, places);
+        let mut unused = None;
+        let reach = limits.sight + limits.travel;
+        for known in candidates.iter_mut().filter(|known| known.clear <= reach) {
+            let NearTriangle { key, triangle, .. } = known.candidate;
+            let corners = self.mesh.triangle(triangle);
+            if limits.travel > 0.0 && self.is_apart(&corners, known, limits) {
+                continue;
+            }
+            let kept = previous.find(key, manifolds, history);
+            let mut manifold = match kept {
+                Some(place) => std::mem::take(&mut manifolds[place]),
+                None => self.manifold(triangle, unused.take(), history),
+            };
+            let previous_points = &mut history.previous_points;
+            self.refresh(&corners, known.candidate, previous_points, &mut manifold);
+            let is_explained = !manifold.points.is_empty()
+                || self.is_explained(&corners, known, &manifold, limits);
+            if kept.is_some() && !is_explained {
+                self.ask_afresh(&corners, known.candidate, previous_points, &mut manifold);
+            }
+            if manifold.points.is_empty() {
+                history.retire_unless_first(&mut unused, manifold);
+            } else {
+                history.keep(manifold, ());
+            }
+        }
+        if let Some(unused) = unused {
+            history.retire(unused);
+        }
+        previous.retire_rest(manifolds, history);
+        history.end(manifolds);
+    }
+
+    /// A manifold with nothing in it, for a triangle that had none.
+    fn manifold<M: Default, C: Default + Copy>(
+        &self,
+        triangle: u32,
+        unused: Option<ContactManifold<M, C>>,
+        history: &mut History<M, C, ()>,
+    ) -> ContactManifold<M, C> {
+        let mut manifold = unused.unwrap_or_else(|| history.manifold(0, 0));
+        let subshapes = if self.flipped { [0, triangle] } else { [triangle, 0] };
+        [manifold.subshape1, manifold.subshape2] = subshapes;
+        manifold
+    }
+
+    /// Brings the manifold of a triangle up to date.
+    ///
+    /// As Parry does it, but the points of the query before are in a buffer of ours meanwhile: Parry copies them into a new
+    /// one. For that, what most of its routines do first is done here.
+    fn refresh<M, C>(
+        &self,
+        triangle: &Triangle,
+        candidate: NearTriangle,
+        previous_points: &mut Vec<TrackedContact<C>>,
+        manifold: &mut ContactManifold<M, C>,
+    ) where
+        M: Default,
+        C: Default + Copy,
+    {
+        match self.shape.kind {
+            // One point, whose data Parry keeps in place.
+            Kind::Ball(_) => return self.ask_parry(triangle, candidate, manifold),
+            Kind::HalfSpace(_) => {}
+            Kind::Cuboid(_) | Kind::Features(..) => {
+                if manifold.try_update_contacts(&self.parrys_poses[0]) {
+                    return;
+                }
+            }
+        }
+        std::mem::swap(&mut manifold.points, previous_points);
+        manifold.points.clear();
+        self.ask_parry(triangle, candidate, manifold);
+        manifold.match_contacts(previous_points);
+    }
+
+    /// Whether a triangle without contact is apart along the axis that Parry's routine leaves, which is then kept.
+    fn is_explained<M, C>(
+        &self,
+        corners: &Triangle,
+        known: &mut KnownCandidate<NearTriangle>,
+        manifold: &ContactManifold<M, C>,
+        limits: Limits,
+    ) -> bool {
+        self.axis_of(manifold).is_some_and(|axis| {
+            known.candidate.axis = axis;
+            self.is_apart(corners, known, limits)
+        })
+    }
+
+    /// Asks for the contact of a triangle as if nothing was known of it. Parry's GJK begins with the normal of the step
+    /// before, and where the cores of two shapes just touch it depends on that whether it sees a contact.
+    fn ask_afresh<M, C>(
+        &self,
+        triangle: &Triangle,
+        candidate: NearTriangle,
+        previous_points: &[TrackedContact<C>],
+        manifold: &mut ContactManifold<M, C>,
+    ) where
+        M: Default,
+        C: Default + Copy,
+    {
+        if matches!(self.shape.kind, Kind::Features(..)) {
+            manifold.local_n1 = Vec3::ZERO;
+            self.ask_parry(triangle, candidate, manifold);
+            manifold.match_contacts(previous_points);
+        }
+    }
+
+    /// Parry's routine for the kind of shape, with the arguments that stock's calls end up with. Called by its own name:
+    /// through the dispatcher both shapes are taken apart and put together again for each triangle, and its GJK
+    /// asks a triangle for support points through a table. A tenth to a quarter of a query.
+    fn ask_parry<M, C>(
+        &self,
+        triangle: &Triangle,
+        candidate: NearTriangle,
+        manifold: &mut ContactManifold<M, C>,
+    ) where
+        M: Default,
+        C: Default + Copy,
+    {
+        let cone = self.prepared.normal_constraints(candidate.triangle);
+        let cone = cone.map(|cone| cone as &dyn NormalConstraints);
+        let (prediction, [pose, inverse]) = (self.prediction, &self.parrys_poses);
+        // The shape in the frame of the triangle, and the reverse.
+        let [to_triangle, to_shape] = if self.flipped { [inverse, pose] } else { [pose, inverse] };
+        match self.shape.kind {
+            Kind::Ball(ball) => {
+                let flipped = self.flipped;
+                contact_manifold_convex_ball(
+                    to_triangle,
+                    triangle,
+                    ball,
+                    cone,
+                    None,
+                    prediction,
+                    manifold,
+                    flipped,
+                );
+            }
+            Kind::Cuboid(cuboid) => {
+                let flipped = !self.flipped;
+                contact_manifold_cuboid_triangle(
+                    to_shape,
+                    to_triangle,
+                    cuboid,
+                    triangle,
+                    None,
+                    cone,
+                    prediction,
+                    manifold,
+                    flipped,
+                );
+            }
+            Kind::HalfSpace(half_space) => {
+                let flipped = !self.flipped;
+                half_space_manifold(to_shape, half_space, triangle, prediction, flipped, manifold);
+            }
+            Kind::Features(map, radius) if self.flipped => contact_manifold_pfm_pfm(
+                pose, map, radius, None, triangle, 0.0, cone, prediction, manifold,
+            ),
+            Kind::Features(map, radius) => contact_manifold_pfm_pfm(
+                pose, triangle, 0.0, cone, map, radius, None, prediction, manifold,
+            ),
+        }
+    }
+
+    /// Where GJK sees that two shapes do not touch, it leaves the direction as the manifold's normal.
+    fn axis_of<M, C>(&self, manifold: &ContactManifold<M, C>) -> Option<Vec3> {
+        let left = manifold.local_n1;
+        if !matches!(self.shape.kind, Kind::Features(..)) || left == Vec3::ZERO {
+            return None;
+        }
+        let axis = if self.flipped {
+            left
+        } else {
+            -(self.placement.rotation * left.as_dvec3()).as_vec3()
+        };
+        Some(axis)
+    }
+
+    /// Whether a triangle is out of sight along its axis; what it can move until it is not is then raised to what that
+    /// tells. Whatever the axis is, this holds.
+    fn is_apart(
+        &self,
+        corners: &Triangle,
+        known: &mut KnownCandidate<NearTriangle>,
+        limits: Limits,
+    ) -> bool {
+        let axis = known.candidate.axis.as_dvec3();
+        if axis == DVec3::ZERO {
+            return false;
+        }
+        let at_mesh = self.placement.rotation.transpose() * axis;
+        let lowest = corners.vertices().iter().map(|x| at_mesh.dot(x.as_dvec3()));
+        let lowest = lowest.fold(f64::INFINITY, f64::min) + axis.dot(self.placement.translation);
+        let gap = (lowest - self.shape.reach(axis)) / axis.length();
+        if gap > limits.sight {
+            known.clear = known.clear.max(gap + limits.travel);
+        }
+        gap > limits.sight
+    }
+}

@@ -1,0 +1,15 @@
+//! A mesh and a convex shape: from a pose to contact manifolds.
+//!
+//! Stock Parry asks the mesh's tree with the shape's box in the mesh's frame, which for a large floor is the whole mesh, and
+//! runs its contact routine on every triangle found, in every step. Here a descent compares the mesh with the shape itself
+//! ([`shape`] says how far it reaches), and [`query`] keeps what it found with a lower bound of each triangle's distance:
+//! a triangle is not looked at again until the pair has moved so far that it could touch. The contacts are those of
+//! Parry's routine ([`contacts`]), called as stock calls it.
+
+mod contacts;
+mod half_space;
+mod query;
+mod shape;
+
+pub(crate) use query::{ConvexPair, contact_manifolds};
+pub(crate) use shape::ConvexShape;

@@ -1,0 +1,63 @@
+//! The shapes.
+
+use glamx::Vec3;
+use oorandom::Rand32;
+use rapier3d::geometry::SharedShape;
+
+use crate::scene::random;
+
+/// A convex shape and how a mesh comes to it.
+#[derive(Clone)]
+pub struct Kind {
+    /// Its name in tables.
+    pub name: &'static str,
+    /// The shape, at the size of a body beside a head of two units, or a floor.
+    pub shape: SharedShape,
+    /// Whether the mesh comes from above, to anywhere on it, and upright or turned as it is asked.
+    pub floor: Option<Upright>,
+}
+
+/// How a mesh stands on a floor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Upright {
+    /// Along the axes of the floor.
+    Yes,
+    /// In any orientation: so the box around a large floor, in the frame of the mesh, holds all of the mesh.
+    No,
+}
+
+/// Every kind that Rapier has, a unit or so across, and a floor of 100 units.
+pub fn kinds() -> Vec<Kind> {
+    let mut random = Rand32::new(3);
+    let cloud: Vec<Vec3> = (0..40).map(|_| 0.5 * random::direction(&mut random)).collect();
+    let hull = SharedShape::convex_hull(&cloud);
+    let round_hull = SharedShape::round_convex_hull(&cloud, 0.1);
+    let [a, b, c] =
+        [Vec3::new(-0.5, 0.0, 0.1), Vec3::new(0.5, 0.2, 0.0), Vec3::new(0.0, -0.3, 0.5)];
+    let up = Vec3::Y;
+    let bodies = [
+        ("ball", Some(SharedShape::ball(0.5))),
+        ("cuboid", Some(SharedShape::cuboid(0.5, 0.35, 0.25))),
+        ("capsule", Some(SharedShape::capsule_y(0.4, 0.2))),
+        ("cylinder", Some(SharedShape::cylinder(0.5, 0.3))),
+        ("cone", Some(SharedShape::cone(0.5, 0.4))),
+        ("convex polyhedron", hull),
+        ("triangle", Some(SharedShape::triangle(a, b, c))),
+        ("segment", Some(SharedShape::segment(a, b))),
+        ("round cuboid", Some(SharedShape::round_cuboid(0.4, 0.3, 0.2, 0.1))),
+        ("round triangle", Some(SharedShape::round_triangle(a, b, c, 0.1))),
+        ("round cylinder", Some(SharedShape::round_cylinder(0.4, 0.2, 0.1))),
+        ("round cone", Some(SharedShape::round_cone(0.4, 0.3, 0.1))),
+        ("round polyhedron", round_hull),
+    ];
+    let bodies = bodies
+        .into_iter()
+        .filter_map(|(name, shape)| Some(Kind { name, shape: shape?, floor: None }));
+    let floor = |name, shape, upright| Kind { name, shape, floor: Some(upright) };
+    let floors = [
+        floor("half-space", SharedShape::halfspace(up), Upright::No),
+        floor("large floor", SharedShape::cuboid(50.0, 0.25, 50.0), Upright::Yes),
+        floor("large floor, turned", SharedShape::cuboid(50.0, 0.25, 50.0), Upright::No),
+    ];
+    bodies.chain(floors).collect()
+}
