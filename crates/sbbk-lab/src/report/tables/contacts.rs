@@ -10,7 +10,7 @@ use crate::study::contacts::{
 };
 
 /// What the columns of errors hold.
-const ERROR_NOTE: &str =
+pub(super) const ERROR_NOTE: &str =
     "errors: missed + phantom + wrong depth + wrong normal, of the true pairs judged";
 
 /// Who was asked.
@@ -242,7 +242,7 @@ fn race<R>((name, description, measured): &Mode<R>, rows: &[R]) -> Vec<Vec<Strin
     table
 }
 
-fn errors(errors: &ContactErrors) -> String {
+pub(super) fn errors(errors: &ContactErrors) -> String {
     let ContactErrors { pairs, wrong_normal, .. } = errors;
     let [missed, phantom, wrong_depth] = [pairs.missed, pairs.phantom, pairs.wrong_depth];
     format!("{missed}+{phantom}+{wrong_depth}+{wrong_normal} of {}", pairs.true_pairs)

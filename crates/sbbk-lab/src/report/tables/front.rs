@@ -2,9 +2,9 @@
 
 use super::super::Grid;
 use super::super::format::{min_median, three_digits, times};
-use super::{TIME_NOTE, cells};
+use super::{TIME_NOTE, cells, contacts};
 use crate::metrics::{geometric_mean, ratio};
-use crate::study::front::{FrontMotion, FrontRow, FrontStudy, Variant, VariantRow};
+use crate::study::front::{FrontMotion, FrontRow, FrontStudy, JourneyRow, Variant, VariantRow};
 
 /// What the columns of errors hold.
 const DIFFERING_NOTE: &str = "differing: triangle pairs within the prediction distance, against \
@@ -12,7 +12,53 @@ const DIFFERING_NOTE: &str = "differing: triangle pairs within the prediction di
 
 /// Every variant on every mesh, and means over the meshes.
 pub fn front(study: &FrontStudy) -> Vec<Grid> {
-    vec![details(&study.rows), summary(&study.rows)]
+    vec![details(&study.rows), summary(&study.rows), journeys(&study.journeys)]
+}
+
+/// Whole queries of stock and SBBK in coherent motion with teleports.
+fn journeys(rows: &[JourneyRow]) -> Grid {
+    let times_faster = |row: &JourneyRow| ratio(row.sides[0].time.min, row.sides[1].time.min);
+    let mut table: Vec<Vec<String>> = Vec::new();
+    table.extend(rows.iter().map(|row| {
+        let [stock, sbbk] = &row.sides;
+        cells![
+            row.mesh,
+            row.triangle_count,
+            row.query_count,
+            row.teleport_count,
+            min_median(&stock.time),
+            min_median(&sbbk.time),
+            times(times_faster(row)),
+            contacts::errors(&stock.errors),
+            contacts::errors(&sbbk.errors),
+            row.differing,
+        ]
+    }));
+    let mean = geometric_mean(rows.iter().filter_map(times_faster));
+    let differing: usize = rows.iter().map(|row| row.differing).sum();
+    table.push(cells!["geometric mean", "", "", "", "", "", times(mean), "", "", differing]);
+    Grid {
+        title: "The dispatcher in slow motion with teleports: microseconds a query".to_owned(),
+        header: vec![
+            "mesh",
+            "triangles",
+            "queries",
+            "teleports",
+            "stock",
+            "sbbk",
+            "ratio",
+            "errors, stock",
+            "errors, sbbk",
+            "differing",
+        ],
+        text_columns: 1,
+        rows: table,
+        notes: vec![
+            format!("{TIME_NOTE}; ratio: of the minima; 0.05 prediction distances a step"),
+            contacts::ERROR_NOTE.to_owned(),
+            "differing: manifolds of sbbk that differ from a fresh query's in any bit".to_owned(),
+        ],
+    }
 }
 
 /// Every variant on every mesh.

@@ -28,7 +28,11 @@ pub struct ContactErrors {
 
 impl ContactErrors {
     /// Judges the manifolds that answer a question against its truth.
-    pub(super) fn of(truth: &Truth, question: Question, manifolds: &[ContactManifold]) -> Self {
+    pub(in crate::study) fn of(
+        truth: &Truth,
+        question: Question,
+        manifolds: &[ContactManifold],
+    ) -> Self {
         let pairs = truth.judge(&Answer::new(question, manifolds));
         let normals = manifolds.iter().filter_map(|manifold| {
             let truth = truth.contact(manifold.subshape1, manifold.subshape2)?;

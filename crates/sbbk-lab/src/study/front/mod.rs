@@ -5,7 +5,11 @@
 //! of the *traversal*, until the pairs of leaves are known, the frame of the pose included; and of the whole
 //! *query*, until the pairs of triangles within the prediction distance are known, exactly. These pairs are
 //! compared with those of fresh descents.
+//!
+//! Besides, the dispatcher as a user has it makes a *journey* through all places of a mesh in slow motion, with a teleport
+//! from each place to the next, beside stock.
 
+mod journey;
 mod motion;
 mod plan;
 mod report;
@@ -13,6 +17,7 @@ mod search;
 mod slack;
 mod variant;
 
+pub use journey::{JourneyRow, JourneySide};
 pub use motion::{FrontMotion, STEP_COUNT};
 pub use plan::FrontPlan;
 pub use report::{FrontRow, FrontStudy, VariantRow, front};

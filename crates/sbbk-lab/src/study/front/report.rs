@@ -10,6 +10,7 @@ use serde::Serialize;
 
 use super::super::turns::in_turn;
 use super::super::{Progress, StudyError};
+use super::journey::{JourneyRow, journey};
 use super::motion::{FrontMotion, STEP_COUNT};
 use super::plan::{FrontPlan, PREDICTION, Posed};
 use super::search::Search;
@@ -23,6 +24,8 @@ pub struct FrontStudy {
     pub environment: Environment,
     /// Motion by motion, mesh by mesh.
     pub rows: Vec<FrontRow>,
+    /// The dispatcher and stock, mesh by mesh.
+    pub journeys: Vec<JourneyRow>,
 }
 
 /// One mesh against itself in one kind of motion.
@@ -66,7 +69,7 @@ pub struct VariantRow {
 /// Errors: a mesh has no triangles.
 pub fn front(plan: &FrontPlan, progress: &Progress) -> Result<FrontStudy, StudyError> {
     let meshes = plan.posed()?;
-    progress.phase("front", meshes.len() * FrontMotion::ALL.len());
+    progress.phase("front", meshes.len() * (FrontMotion::ALL.len() + 1));
     let mut rows = Vec::new();
     for motion in FrontMotion::ALL {
         for posed in &meshes {
@@ -74,8 +77,13 @@ pub fn front(plan: &FrontPlan, progress: &Progress) -> Result<FrontStudy, StudyE
             progress.step();
         }
     }
+    let journeys = meshes.iter().map(|posed| {
+        progress.step();
+        journey(posed, plan.repeats)
+    });
+    let journeys = journeys.collect();
     progress.finish();
-    Ok(FrontStudy { environment: Environment::detect(), rows })
+    Ok(FrontStudy { environment: Environment::detect(), rows, journeys })
 }
 
 fn measure(motion: FrontMotion, posed: &Posed, repeats: usize) -> FrontRow {
