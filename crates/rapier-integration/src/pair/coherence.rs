@@ -5,6 +5,10 @@
 //! Fluids*, 1967, does so for particles). Until then no tree and no leaf is touched, and candidates that were too far
 //! apart to have come within the prediction distance are not looked at either. Every candidate that could
 //! touch gets the exact test, so the contacts are those of a descent.
+//!
+//! Dropped in a pile of 1000 heads: a separating plane between the hulls of 64 boxes of each mesh (Gilbert's algorithm)
+//! before a descent halves the number of descents and takes as long, as those that find nothing end after a few tests; a
+//! larger slack for pairs that do not touch makes their queries up to 1.5 times slower.
 
 use parry3d::math::{Pose, Real};
 use sbbk_core::contact::TriangleContact;
