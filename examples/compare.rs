@@ -12,9 +12,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use sbbk_lab::cli::{exit_code, print};
+use sbbk_lab::cli::{Output, exit_code};
 use sbbk_lab::mesh;
-use sbbk_lab::report::{reserve, tables, write_csv, write_json, write_plot};
+use sbbk_lab::report::{tables, write_plot};
 use sbbk_lab::study::{ComparePlan, Progress, compare};
 
 /// Compares stock Rapier, SBBK, and SBBK with AABBs only, in speed and error.
@@ -29,15 +29,8 @@ struct Arguments {
     /// The head: an OBJ, STL or glTF file instead of the built-in monkey
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
-    /// Writes all numbers to a JSON file
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
-    /// Writes all numbers to a CSV file, one a line
-    #[arg(long, value_name = "FILE")]
-    csv: Option<PathBuf>,
-    /// Writes Diagram 1, and time against error, to an SVG file
-    #[arg(long, value_name = "FILE")]
-    plot: Option<PathBuf>,
+    #[command(flatten)]
+    output: Output,
 }
 
 fn main() -> ExitCode {
@@ -50,21 +43,8 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     if !arguments.heads.is_empty() {
         plan.heads = arguments.heads.iter().copied().map(NonZeroUsize::get).collect();
     }
-    let Arguments { json, csv, plot, .. } = arguments;
-    [json, csv, plot].into_iter().flatten().try_for_each(|path| reserve(path))?;
+    arguments.output.reserve()?;
     let comparison = compare(&plan, &Progress::visible())?;
-    print(&comparison.environment)?;
-    for table in tables::all(&comparison) {
-        print(format_args!("\n{table}"))?;
-    }
-    if let Some(path) = json {
-        write_json(&comparison, path)?;
-    }
-    if let Some(path) = csv {
-        write_csv(&comparison, path)?;
-    }
-    if let Some(path) = plot {
-        write_plot(&comparison, path)?;
-    }
-    Ok(())
+    let tables = tables::all(&comparison);
+    arguments.output.publish(&comparison, &comparison.environment, &tables, write_plot)
 }
