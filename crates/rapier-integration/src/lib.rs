@@ -36,6 +36,9 @@
 //! workspace when it edits one of its shapes, as Rapier does and as Parry's own workspaces need too. Queries from many
 //! threads at once are fine: no lock is taken by a pair whose trees are known.
 //!
+//! Runs repeat bit for bit. The contacts of two meshes are a function of their pose and triangles, and their order of the
+//! meshes: not of what was remembered from earlier steps, of threads, or of when a tree was built.
+//!
 //! A snapshot of a Rapier world can be taken and restored, with or without this crate. As Rapier does not store its
 //! dispatcher, set it again after restoring.
 //!
