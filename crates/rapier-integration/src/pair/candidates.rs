@@ -34,6 +34,9 @@ impl Candidate {
 pub(super) struct OrderKey(u64);
 
 impl OrderKey {
+    /// Behind all others.
+    pub(super) const LAST: Self = Self(u64::MAX);
+
     pub(super) fn new(
         prepared: [&PreparedMesh; 2],
         flipped: bool,

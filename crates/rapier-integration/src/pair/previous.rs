@@ -24,7 +24,20 @@ impl<'a> Previous<'a> {
         if !places.is_sorted() {
             places.sort_unstable();
         }
+        // Of several manifolds of the same triangles, which nobody should make, the first.
+        places.dedup_by_key(|old| old.0);
         Self(places.iter().peekable())
+    }
+
+    /// The next manifold, if it comes before `wanted`.
+    pub(super) fn next_before(&mut self, wanted: OrderKey) -> Option<(OrderKey, usize)> {
+        let &(key, place) = self.0.next_if(|old| old.0 < wanted)?;
+        Some((key, place as usize))
+    }
+
+    /// The place of the next manifold, if it is that of `wanted`.
+    pub(super) fn next_of(&mut self, wanted: OrderKey) -> Option<usize> {
+        self.0.next_if(|old| old.0 == wanted).map(|&(_, place)| place as usize)
     }
 
     /// The place of the manifold of a candidate, if there is one. To be asked in ascending order; manifolds between are

@@ -18,6 +18,10 @@ use crate::pair::coherence::KnownCandidate;
 use crate::pair::previous::Previous;
 use crate::pair::state::History;
 
+/// Points that were kept go beyond so many times the sight. Less than twice: some that Parry's routines for
+/// cuboids make anew, a little out of sight, would come and go. More: points that mean nothing live longer.
+const FAR: f64 = 2.0;
+
 /// A triangle of the mesh.
 #[derive(Copy, Clone, Debug)]
 pub(super) struct NearTriangle {
@@ -51,11 +55,14 @@ pub(super) struct Generator<'a> {
 }
 
 impl Generator<'_> {
-    /// Replaces `manifolds` by those of the candidates that touch, in stock order. Manifolds of triangles that still do
+    /// Replaces `manifolds` by those of the triangles that touch, in stock order. Manifolds of triangles that still do
     /// keep their data; none is left empty.
     ///
     /// Candidates out of sight are skipped, and so are those that still are apart along the axis along which they last were. Of
     /// a triangle that does not touch, Parry's routine often knows such an axis.
+    ///
+    /// A triangle that has a manifold is not skipped, and needs not be a candidate: what becomes of a manifold is for Parry
+    /// to say, from the manifold and the pose. So nothing depends on what else is remembered.
     pub(super) fn update<M, C>(
         &self,
         candidates: &mut [KnownCandidate<NearTriangle>],
@@ -74,35 +81,98 @@ impl Generator<'_> {
         let mut previous = Previous::new(manifolds, key, places);
         let mut unused = None;
         let reach = limits.sight + limits.travel;
-        for known in candidates.iter_mut().filter(|known| known.clear <= reach) {
-            let NearTriangle { key, triangle, .. } = known.candidate;
-            let corners = self.mesh.triangle(triangle);
-            if limits.travel > 0.0 && self.is_apart(&corners, known, limits) {
-                continue;
-            }
-            let kept = previous.find(key, manifolds, history);
-            let mut manifold = match kept {
-                Some(place) => std::mem::take(&mut manifolds[place]),
-                None => self.manifold(triangle, unused.take(), history),
+        for known in candidates {
+            self.update_before(known.candidate.key, limits, &mut previous, history, manifolds);
+            let corners = self.mesh.triangle(known.candidate.triangle);
+            let manifold = match previous.next_of(known.candidate.key) {
+                Some(place) => {
+                    self.kept(known, limits, history, std::mem::take(&mut manifolds[place]))
+                }
+                None if known.clear > reach => continue,
+                None if limits.travel > 0.0 && self.is_apart(&corners, known, limits) => continue,
+                None => {
+                    let mut manifold =
+                        self.manifold(known.candidate.triangle, unused.take(), history);
+                    self.refresh(
+                        &corners,
+                        known.candidate,
+                        &mut history.previous_points,
+                        &mut manifold,
+                    );
+                    if manifold.points.is_empty() {
+                        self.is_explained(&corners, known, &manifold, limits);
+                    }
+                    manifold
+                }
             };
-            let previous_points = &mut history.previous_points;
-            self.refresh(&corners, known.candidate, previous_points, &mut manifold);
-            let is_explained = !manifold.points.is_empty()
-                || self.is_explained(&corners, known, &manifold, limits);
-            if kept.is_some() && !is_explained {
-                self.ask_afresh(&corners, known.candidate, previous_points, &mut manifold);
-            }
             if manifold.points.is_empty() {
                 history.retire_unless_first(&mut unused, manifold);
             } else {
                 history.keep(manifold, ());
             }
         }
+        self.update_before(OrderKey::LAST, limits, &mut previous, history, manifolds);
         if let Some(unused) = unused {
             history.retire(unused);
         }
         previous.retire_rest(manifolds, history);
         history.end(manifolds);
+    }
+
+    /// Updates the manifolds that come before a candidate, which are of triangles that are none.
+    fn update_before<M, C>(
+        &self,
+        wanted: OrderKey,
+        limits: Limits,
+        previous: &mut Previous<'_>,
+        history: &mut History<M, C, ()>,
+        manifolds: &mut [ContactManifold<M, C>],
+    ) where
+        M: Default + Clone + Send + Sync + 'static,
+        C: Default + Copy + Send + Sync + 'static,
+    {
+        while let Some((key, place)) = previous.next_before(wanted) {
+            let manifold = std::mem::take(&mut manifolds[place]);
+            let triangle = [manifold.subshape1, manifold.subshape2][usize::from(self.flipped)];
+            let is_triangle = (triangle as usize) < self.mesh.indices().len();
+            if !is_triangle {
+                history.retire(manifold);
+                continue;
+            }
+            let candidate = NearTriangle { key, triangle, axis: Vec3::ZERO };
+            let mut known = KnownCandidate { candidate, clear: 0.0 };
+            let manifold = self.kept(&mut known, limits, history, manifold);
+            if manifold.points.is_empty() {
+                history.retire(manifold);
+            } else {
+                history.keep(manifold, ());
+            }
+        }
+    }
+
+    /// What becomes of the manifold of a triangle. Parry keeps points however far they have moved away along the normal; here
+    /// they go when all are far out of sight.
+    fn kept<M, C>(
+        &self,
+        known: &mut KnownCandidate<NearTriangle>,
+        limits: Limits,
+        history: &mut History<M, C, ()>,
+        mut manifold: ContactManifold<M, C>,
+    ) -> ContactManifold<M, C>
+    where
+        M: Default + Clone + Send + Sync + 'static,
+        C: Default + Copy + Send + Sync + 'static,
+    {
+        let corners = self.mesh.triangle(known.candidate.triangle);
+        let previous_points = &mut history.previous_points;
+        self.refresh(&corners, known.candidate, previous_points, &mut manifold);
+        if manifold.points.is_empty() && !self.is_explained(&corners, known, &manifold, limits) {
+            self.ask_afresh(&corners, known.candidate, previous_points, &mut manifold);
+        }
+        if manifold.points.iter().all(|point| f64::from(point.dist) > FAR * limits.sight) {
+            manifold.points.clear();
+        }
+        manifold
     }
 
     /// A manifold with nothing in it, for a triangle that had none.
