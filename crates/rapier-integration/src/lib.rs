@@ -48,6 +48,7 @@ mod config;
 mod dispatcher;
 mod mesh;
 mod pair;
+mod query;
 mod stats;
 
 pub use config::{ContactGenerator, SbbkConfig};

@@ -10,6 +10,7 @@
 //! * [`traverse`]: [`descend`](traverse::descend) finds the pairs of leaves that may touch at a pose.
 //! * [`leaf`]: which triangles of two leaves may touch, over SIMD lanes.
 //! * [`contact`]: the exact contact of two triangles, and its manifold.
+//! * [`query`]: the nearest or deepest triangles of two meshes, and when moving meshes first meet.
 //! * [`broad_phase`]: which of many moving objects are near each other.
 //! * `truth` (feature `truth`): brute force in f64, to test against.
 //!
@@ -52,6 +53,7 @@ pub mod contact;
 pub mod leaf;
 #[cfg(feature = "nalgebra")]
 mod nalgebra_conversions;
+pub mod query;
 pub mod traverse;
 pub mod tree;
 #[cfg(feature = "truth")]

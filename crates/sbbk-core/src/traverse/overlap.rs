@@ -8,21 +8,21 @@ use crate::leaf::lane::each;
 use crate::tree::{Children, Lanes};
 
 /// How the volumes of one tree's nodes are laid over the four lanes of a test.
-pub(super) trait Spread: Copy {
+pub(crate) trait Spread: Copy {
     fn spread(self, lanes: &Lanes) -> f32x4;
 }
 
 /// Children 0, 0, 1, 1: tree 1's side of all four pairs of children.
 #[derive(Copy, Clone)]
-pub(super) struct Outer;
+pub(crate) struct Outer;
 
 /// Children 0, 1, 0, 1: tree 2's side.
 #[derive(Copy, Clone)]
-pub(super) struct Inner;
+pub(crate) struct Inner;
 
 /// One node in all lanes: a leaf, while the other tree goes on.
 #[derive(Copy, Clone)]
-pub(super) struct Same(pub(super) usize);
+pub(crate) struct Same(pub(crate) usize);
 
 impl Spread for Outer {
     #[inline(always)]
@@ -114,6 +114,6 @@ impl<const AXES: usize> Correspondence<AXES> {
 }
 
 #[inline(always)]
-fn dot(row: &[f32x4; 3], v: &[f32x4; 3]) -> f32x4 {
+pub(super) fn dot(row: &[f32x4; 3], v: &[f32x4; 3]) -> f32x4 {
     row[0] * v[0] + row[1] * v[1] + row[2] * v[2]
 }

@@ -35,6 +35,11 @@ impl Placement {
         }
     }
 
+    /// Whether all numbers are finite, those of the inverse too.
+    pub fn is_finite(&self) -> bool {
+        self.rotation.is_finite() && self.translation.is_finite() && self.inverse.is_finite()
+    }
+
     /// `x`, a point of frame 2, in frame 1 and relative to `origin` there.
     #[inline]
     pub fn to_frame1(&self, x: Vec3, origin: Vec3) -> DVec3 {
