@@ -9,6 +9,7 @@ mod look;
 mod panel;
 mod paper;
 mod plot;
+mod queries;
 pub mod tables;
 
 pub use contacts::write_contacts_plot;
@@ -17,3 +18,4 @@ pub use files::{ResultRow, Results, reserve, write_csv, write_json};
 pub use grid::Grid;
 pub use paper::{PAPER, Paper};
 pub use plot::write_plot;
+pub use queries::write_queries_plot;

@@ -5,6 +5,7 @@ mod determinism;
 mod helicopter;
 mod meshes;
 mod pile;
+mod queries;
 mod soak;
 
 pub use contacts::{by_mesh, by_size, contact_generators, contacts, queries};
@@ -12,6 +13,7 @@ pub use determinism::{fingerprints, threads};
 pub use helicopter::{frames, overlapping_area};
 pub use meshes::costs;
 pub use pile::{accuracy, runs, same_poses, sizes};
+pub use queries::one_answer;
 pub use soak::soak;
 
 use super::Grid;
