@@ -43,6 +43,11 @@ impl Query {
         Self::Contacts,
     ];
 
+    /// The largest mesh that is asked about: stock takes seconds for a nonlinear cast of larger ones.
+    pub fn largest_mesh(self) -> usize {
+        if self == Self::NonlinearCast { 1000 } else { usize::MAX }
+    }
+
     /// Where it is asked.
     pub fn places(self) -> &'static [Place] {
         use Place::{Crossing, Far, HardlyApart, Near};

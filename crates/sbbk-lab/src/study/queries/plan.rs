@@ -20,13 +20,13 @@ impl QueriesPlan {
     /// Meshes of 288 to 20,000 triangles, within two minutes.
     pub fn standard() -> Self {
         let meshes = [
-            (mesh::monkey_head_with(6), 40),
-            (mesh::monkey_head_with(11), 40),
-            (mesh::helicopter(), 20),
-            (mesh::torus(0.7, 0.3, 72, 35), 20),
-            (mesh::monkey_head_with(50), 10),
+            (mesh::monkey_head_with(6), 20),
+            (mesh::monkey_head_with(11), 12),
+            (mesh::helicopter(), 6),
+            (mesh::torus(0.7, 0.3, 72, 35), 5),
+            (mesh::monkey_head_with(50), 3),
         ];
-        Self { meshes: meshes.into(), judged: 10, repeats: 5 }
+        Self { meshes: meshes.into(), judged: 4, repeats: 3 }
     }
 
     /// The two smallest meshes, for trying.

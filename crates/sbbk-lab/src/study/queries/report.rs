@@ -104,7 +104,8 @@ pub fn queries(plan: &QueriesPlan, progress: &Progress) -> Result<Queries, Study
         let named = |cause| SceneError { mesh: mesh.name.clone(), cause };
         let asked = Asked::new(sized.shared_shape().map_err(named)?);
         let judge = Judge::new(&asked.shape, SIZE);
-        for query in Query::ALL {
+        let is_asked = |query: &Query| mesh.triangle_count() <= query.largest_mesh();
+        for query in Query::ALL.into_iter().filter(is_asked) {
             for &place in query.places() {
                 let poses = asked.poses(place, *pose_count);
                 rows.push(QueryRow {
