@@ -143,9 +143,14 @@ where
         self.gaps.counts.leaf_pairs += 1;
         if self.gaps.limit < WIDEST_LEAF_MARGIN {
             let test = self.test.within(self.gaps.limit);
-            test.far_survivors(batch1, batch2, |lane1, lane2| {
-                self.triangles((batch1, lane1), (batch2, lane2));
-            });
+            // The axis of far triangles tells nothing about those that touch.
+            let is_far = self.best > 0.0;
+            let found = |lane1, lane2| self.triangles((batch1, lane1), (batch2, lane2));
+            if is_far {
+                test.far_survivors(batch1, batch2, found);
+            } else {
+                test.survivors(batch1, batch2, found);
+            }
         } else {
             for lane1 in 0..batch1.count() {
                 for lane2 in 0..batch2.count() {
