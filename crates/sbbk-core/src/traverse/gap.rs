@@ -6,6 +6,9 @@
 //! below them cross: the least translation of two triangles is no longer than their overlap along any axis, and that
 //! no longer than the overlap of their volumes.
 //!
+//! The slabs pay more here than in the overlap test: without them distances took 1.1 to 1.6 times as long on heads of 288
+//! and 968 triangles, intersection tests up to 1.9 times.
+//!
 //! # Rounding
 //!
 //! Gaps along axes are too small by the margin of [`PairFrame`], never too large. What follows (the subtraction, a
