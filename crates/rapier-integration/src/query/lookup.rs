@@ -1,8 +1,7 @@
 //! The trees of two meshes, for queries that come without a workspace.
 //!
 //! Nothing tells such a query that a mesh was edited, and the [`MeshToken`] of the contact queries misses an edit of
-//! single vertices in place. So all vertices are hashed each time: 12 bytes a vertex of sequential memory, a
-//! tenth of a microsecond for 500 vertices. Parry has no way to edit single *indices*: what changes
+//! single vertices in place. So all vertices are hashed each time: 12 bytes a vertex of sequential memory. Parry has no way to edit single *indices*: what changes
 //! them (`reverse`, `append`, `set_flags`) changes all of them, the number of vertices, or the flags, which are in the
 //! token.
 //!
