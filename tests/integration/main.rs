@@ -21,6 +21,8 @@ mod like_stock;
 mod motion;
 /// Contact normals constrained at internal edges.
 mod normals;
+/// Queries without manifolds.
+mod queries;
 /// Bodies at rest, and sliding, beside stock Rapier.
 mod rest;
 /// Which meshes share a tree, and what happens when they change.

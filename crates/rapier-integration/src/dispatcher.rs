@@ -16,11 +16,12 @@ use crate::mesh::{PreparedRef, TreeCache};
 use crate::pair::{
     Answer, ConvexPair, ConvexShape, MeshPair, contact_manifolds, convex_contact_manifolds,
 };
+use crate::query::{Nonlinear, Trees};
 use crate::stats::QueryCounters;
 use crate::{ContactGenerator, SbbkConfig, SbbkStats, TriangleContacts};
 
-/// A query dispatcher that answers the contacts of triangle meshes with each other and with convex shapes from SBBK trees, and
-/// leaves all else to Parry's [`DefaultQueryDispatcher`].
+/// A query dispatcher that answers every pair of triangle meshes, and the contacts of meshes with convex shapes, from SBBK
+/// trees, and leaves all else to Parry's [`DefaultQueryDispatcher`].
 ///
 /// Trees are built when two meshes first come close and shared by all colliders with equal geometry. Clones of a
 /// dispatcher share their trees.
@@ -63,6 +64,15 @@ impl SbbkDispatcher {
     /// Drops the trees that no pair of colliders uses, see [`SbbkConfig::idle_tree_bytes`].
     pub fn release_idle_trees(&self) {
         self.cache.release_idle();
+    }
+
+    /// The trees for a query without manifolds; `None` if Parry must answer.
+    fn trees(&self, g1: &dyn Shape, g2: &dyn Shape) -> Option<Trees> {
+        let trees = Trees::of(&self.cache, [rigid_mesh(g1)?, rigid_mesh(g2)?]);
+        if trees.is_none() {
+            self.counters.add_unsupported();
+        }
+        trees
     }
 
     /// The answer to a query, counted; `Unsupported` if Parry must answer.
@@ -209,7 +219,7 @@ where
     }
 }
 
-/// All queries without manifolds are Parry's.
+/// Queries without manifolds: of two rigid meshes from their trees, all others Parry's.
 impl QueryDispatcher for SbbkDispatcher {
     fn intersection_test(
         &self,
@@ -217,7 +227,10 @@ impl QueryDispatcher for SbbkDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
-        DefaultQueryDispatcher.intersection_test(pos12, g1, g2)
+        match self.trees(g1, g2) {
+            Some(trees) => Ok(trees.intersection(pos12)),
+            None => DefaultQueryDispatcher.intersection_test(pos12, g1, g2),
+        }
     }
 
     fn distance(
@@ -226,7 +239,10 @@ impl QueryDispatcher for SbbkDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeDistance, Unsupported> {
-        DefaultQueryDispatcher.distance(pos12, g1, g2)
+        match self.trees(g1, g2) {
+            Some(trees) => Ok(trees.distance(pos12)),
+            None => DefaultQueryDispatcher.distance(pos12, g1, g2),
+        }
     }
 
     fn contact(
@@ -236,7 +252,10 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
         prediction: Real,
     ) -> Result<Option<Contact>, Unsupported> {
-        DefaultQueryDispatcher.contact(pos12, g1, g2, prediction)
+        match self.trees(g1, g2) {
+            Some(trees) => Ok(trees.contact(pos12, prediction)),
+            None => DefaultQueryDispatcher.contact(pos12, g1, g2, prediction),
+        }
     }
 
     fn closest_points(
@@ -246,7 +265,10 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
         max_dist: Real,
     ) -> Result<ClosestPoints, Unsupported> {
-        DefaultQueryDispatcher.closest_points(pos12, g1, g2, max_dist)
+        match self.trees(g1, g2) {
+            Some(trees) => Ok(trees.closest_points(pos12, max_dist)),
+            None => DefaultQueryDispatcher.closest_points(pos12, g1, g2, max_dist),
+        }
     }
 
     fn cast_shapes(
@@ -257,7 +279,10 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
         options: ShapeCastOptions,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        DefaultQueryDispatcher.cast_shapes(pos12, local_vel12, g1, g2, options)
+        match self.trees(g1, g2) {
+            Some(trees) => Ok(trees.cast(pos12, local_vel12, options)),
+            None => DefaultQueryDispatcher.cast_shapes(pos12, local_vel12, g1, g2, options),
+        }
     }
 
     fn cast_shapes_nonlinear(
@@ -270,6 +295,13 @@ impl QueryDispatcher for SbbkDispatcher {
         end_time: Real,
         stop_at_penetration: bool,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        if let Some(trees) = self.trees(g1, g2) {
+            let times = (start_time, end_time);
+            let cast = trees.cast_nonlinear([motion1, motion2], times, stop_at_penetration);
+            if let Nonlinear::Answer(hit) = cast {
+                return Ok(hit);
+            }
+        }
         DefaultQueryDispatcher.cast_shapes_nonlinear(
             motion1,
             g1,

@@ -28,7 +28,12 @@
 //! | mesh and anything else (height field, compound, polyline, voxels, custom shape) | Parry | Parry's |
 //! | all else | Parry | Parry's |
 //!
-//! Queries without manifolds (distance, casts, intersection tests) are Parry's, for all pairs.
+//! Queries without manifolds (distance, closest points, intersection, contact, casts) of two rigid meshes are answered from
+//! trees too, of surfaces as stock does: a mesh inside another one does not meet it. Hosts keep no state for them, so each
+//! hashes the vertices of its meshes to know their trees, in time that grows with their number; the first one builds the trees,
+//! unless [`SbbkDispatcher::prepare`] did, and each thread keeps those of the last eight meshes it asked about. A pose that is
+//! not finite finds nothing. All other pairs are Parry's, and so is one case of meshes: a nonlinear cast that starts
+//! in contact with `stop_at_penetration` off.
 //!
 //! # Hosts
 //!
@@ -52,6 +57,7 @@ mod config;
 mod dispatcher;
 mod mesh;
 mod pair;
+mod query;
 mod stats;
 
 pub use config::{ContactGenerator, SbbkConfig};

@@ -11,6 +11,7 @@
 //! * [`front`]: the same, from where the last descent stopped.
 //! * [`leaf`]: which triangles of two leaves may touch, over SIMD lanes.
 //! * [`contact`]: the exact contact of two triangles, and its manifold.
+//! * [`query`]: the nearest or deepest triangles of two meshes, and when moving meshes first meet.
 //! * [`broad_phase`]: which of many moving objects are near each other.
 //! * `truth` (feature `truth`): brute force in f64, to test against.
 //!
@@ -54,6 +55,7 @@ pub mod front;
 pub mod leaf;
 #[cfg(feature = "nalgebra")]
 mod nalgebra_conversions;
+pub mod query;
 pub mod traverse;
 pub mod tree;
 #[cfg(feature = "truth")]

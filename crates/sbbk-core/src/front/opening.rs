@@ -2,9 +2,7 @@
 
 use wide::f32x4;
 
-use crate::traverse::{
-    AxisIndex, Counters, Descent, GapFrame, Gaps, Inner, Outer, PairFrame, Same, Sides, sides,
-};
+use crate::traverse::{AxisIndex, Counters, GapFrame, Gaps, Inner, Outer, PairFrame, Same, Sides};
 use crate::tree::{Link, Slot, Tree};
 use crate::volumes::{DirectionSet, Directions};
 
@@ -120,8 +118,7 @@ where
     #[inline(always)]
     fn open(&self, pair: SlotPair) -> Opening {
         let links = self.links(pair);
-        // Taking both sides does not depend on the depth.
-        let sides = sides(Descent::Simultaneous, 0, links);
+        let sides = Sides::of(links);
         let (same_lane, lanes) = match sides {
             Sides::Both => (0, 0b1111),
             Sides::First => (pair.1.lane(), 0b0101),

@@ -30,18 +30,26 @@ const UNDERFLOW: f32 = f32::MIN_POSITIVE;
 pub(super) struct LeafFrame {
     rotation: [[f32; 3]; 3],
     translation: [f32; 3],
+    rounding: f32,
     margin: f32,
 }
 
 impl LeafFrame {
     pub(super) fn new<const AXES: usize>(frame: &PairFrame<AXES>) -> Self {
         let placement = frame.placement();
-        let margin = (frame.margin().max(0.0) + 5.0 * frame.rounding) * (1.0 + gamma(16));
-        Self {
+        let unmargined = Self {
             rotation: [0, 1, 2].map(|i| placement.rotation.row(i).as_vec3().to_array()),
             translation: placement.translation.as_vec3().to_array(),
-            margin,
-        }
+            rounding: frame.rounding,
+            margin: 0.0,
+        };
+        unmargined.within(frame.margin())
+    }
+
+    /// The same pose with another margin.
+    #[inline(always)]
+    pub(super) fn within(self, margin: f32) -> Self {
+        Self { margin: (margin.max(0.0) + 5.0 * self.rounding) * (1.0 + gamma(16)), ..self }
     }
 }
 
@@ -84,6 +92,21 @@ impl<L: Lane> Corners<L> {
         };
         near(0) & near(1) & near(2)
     }
+}
+
+/// Which triangles are no more than the margin apart along the line through their centroids, lane by lane: the axis
+/// that tells most about triangles that are far apart for their size.
+#[inline(always)]
+pub(super) fn near_by_centroids<L: Lane>(
+    frame: &LeafFrame,
+    one: &Corners<L>,
+    two: &Corners<L>,
+) -> L::Mask {
+    let origin = one.corners[0];
+    let corners = [one, two].map(|triangle| each(|i| sub(triangle.corners[i], origin)));
+    // Three times as long, which does not matter.
+    let sums = corners.map(|[a, b, c]| each(|axis| a[axis] + b[axis] + c[axis]));
+    axis_near(sub(sums[1], sums[0]), &corners, L::splat(frame.margin * frame.margin))
 }
 
 /// Which triangles no axis separates by more than the margin, lane by lane.

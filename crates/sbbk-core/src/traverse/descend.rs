@@ -8,8 +8,9 @@
 //! descends at a time ([`Descent::Single`]).
 
 use super::counters::Counters;
+use super::expand::{Compare, Sides, expand};
 use super::frame::PairFrame;
-use super::overlap::{Inner, Outer, Same, Spread};
+use super::overlap::{Same, Spread};
 use super::visitor::{NodePair, Verdict, Visitor};
 use crate::tree::{Children, Link, Slot, Tree};
 use crate::volumes::{DirectionSet, Directions};
@@ -78,105 +79,65 @@ pub fn descend<const AXES: usize, V: Visitor, C: Counters>(
             Verdict::Stop => return,
             Verdict::Prune => {}
             Verdict::Descend => {
+                let mut compare = Overlap { frame, counters: &mut counters };
                 let sides = sides(descent, pair.depth, links);
-                expand((tree1, tree2), frame, &mut counters, pair, links, sides, stack);
+                let depth = pair.depth + 1;
+                expand(
+                    (tree1, tree2),
+                    (pair.slot1, pair.slot2),
+                    sides,
+                    &mut compare,
+                    |slots, ()| {
+                        stack.push(NodePair { slot1: slots.0, slot2: slots.1, depth });
+                    },
+                );
             }
         }
     }
 }
 
-/// Which sides of a pair go down.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Sides {
-    Both,
-    First,
-    Second,
-}
-
-impl Sides {
-    /// The inner node that holds the volumes of each side: the node's own children, or itself in its parent.
-    pub(crate) fn nodes(self, (slot1, slot2): (Slot, Slot), links: (Link, Link)) -> (u32, u32) {
-        match self {
-            Self::Both => (links.0.index(), links.1.index()),
-            Self::First => (links.0.index(), slot2.node()),
-            Self::Second => (slot1.node(), links.1.index()),
+fn sides(descent: Descent, depth: u32, links: (Link, Link)) -> Sides {
+    match descent {
+        Descent::Single if !links.0.is_leaf() && !links.1.is_leaf() => {
+            if depth.is_multiple_of(2) {
+                Sides::First
+            } else {
+                Sides::Second
+            }
         }
+        _ => Sides::of(links),
     }
 }
 
-pub(crate) fn sides(descent: Descent, depth: u32, links: (Link, Link)) -> Sides {
-    match (links.0.is_leaf(), links.1.is_leaf()) {
-        (true, _) => Sides::Second,
-        (_, true) => Sides::First,
-        _ => match descent {
-            Descent::Simultaneous => Sides::Both,
-            Descent::Single if depth.is_multiple_of(2) => Sides::First,
-            Descent::Single => Sides::Second,
-        },
-    }
+/// Keeps the children whose volumes come within the margin: boxes first, then k-DOPs where both sides have them.
+struct Overlap<'a, const AXES: usize, C> {
+    frame: &'a mut PairFrame<AXES>,
+    counters: &'a mut C,
 }
 
-/// Compares the pairs of children and pushes those that meet.
-#[inline(always)]
-fn expand<const AXES: usize>(
-    (tree1, tree2): (&Tree<AXES>, &Tree<AXES>),
-    frame: &mut PairFrame<AXES>,
-    counters: &mut impl Counters,
-    pair: NodePair,
-    links: (Link, Link),
-    sides: Sides,
-    stack: &mut Vec<NodePair>,
-) where
-    Directions<AXES>: DirectionSet<AXES>,
-{
-    let (node1, node2) = sides.nodes((pair.slot1, pair.slot2), links);
-    let (children1, children2) = (tree1.children(node1), tree2.children(node2));
-    let depth = pair.depth + 1;
-    let mut push = |slot1, slot2| stack.push(NodePair { slot1, slot2, depth });
-    match sides {
-        Sides::Both => {
-            let mask = meet(frame, counters, (&children1, Outer), (&children2, Inner), 0b1111);
-            for lane in (0..4).filter(|lane| mask >> lane & 1 != 0) {
-                push(Slot::new(node1, lane >> 1), Slot::new(node2, lane & 1));
-            }
-        }
-        Sides::First => {
-            let same = Same(pair.slot2.lane());
-            let mask = meet(frame, counters, (&children1, Outer), (&children2, same), 0b0101);
-            for lane in (0..2).filter(|lane| mask >> (2 * lane) & 1 != 0) {
-                push(Slot::new(node1, lane), pair.slot2);
-            }
-        }
-        Sides::Second => {
-            let same = Same(pair.slot1.lane());
-            let mask = meet(frame, counters, (&children1, same), (&children2, Inner), 0b0011);
-            for lane in (0..2).filter(|lane| mask >> lane & 1 != 0) {
-                push(pair.slot1, Slot::new(node2, lane));
-            }
-        }
-    }
-}
-
-/// The lanes of `lanes` whose volumes come within the margin: boxes first, then k-DOPs where both sides have them.
-#[inline(always)]
-fn meet<const AXES: usize>(
-    frame: &mut PairFrame<AXES>,
-    counters: &mut impl Counters,
-    side1: (&Children<'_, AXES>, impl Spread),
-    side2: (&Children<'_, AXES>, impl Spread),
-    lanes: u32,
-) -> u32
+impl<const AXES: usize, C: Counters> Compare<AXES> for Overlap<'_, AXES, C>
 where
     Directions<AXES>: DirectionSet<AXES>,
 {
-    counters.aabb_tests(lanes.count_ones());
-    let meeting = frame.boxes_meet(side1, side2) & lanes;
-    let (Some(kdops1), Some(kdops2)) = (side1.0.kdop, side2.0.kdop) else {
-        return meeting;
-    };
-    if meeting == 0 {
-        return 0;
+    type Key = ();
+
+    #[inline(always)]
+    fn compare(
+        &mut self,
+        side1: (&Children<'_, AXES>, impl Spread),
+        side2: (&Children<'_, AXES>, impl Spread),
+        lanes: u32,
+    ) -> (u32, [(); 4]) {
+        self.counters.aabb_tests(lanes.count_ones());
+        let meeting = self.frame.boxes_meet(side1, side2) & lanes;
+        let (Some(kdops1), Some(kdops2)) = (side1.0.kdop, side2.0.kdop) else {
+            return (meeting, [(); 4]);
+        };
+        if meeting == 0 {
+            return (0, [(); 4]);
+        }
+        self.counters.kdop_tests(meeting.count_ones());
+        let sides = ((kdops1, side1.1), (kdops2, side2.1));
+        (self.frame.correspondence().kdops_meet(sides.0, sides.1, meeting), [(); 4])
     }
-    counters.kdop_tests(meeting.count_ones());
-    frame.correspondence().kdops_meet((kdops1, side1.1), (kdops2, side2.1), meeting)
 }

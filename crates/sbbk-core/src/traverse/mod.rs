@@ -8,21 +8,25 @@
 mod correspondence;
 mod counters;
 mod descend;
+mod expand;
 mod frame;
 mod gaps;
 mod overlap;
 mod placement;
 mod probe;
 mod probe_descend;
+mod signed_gaps;
 mod visitor;
 
 pub use counters::{Counters, DescentCounts};
 pub use descend::{Descent, DescentScratch, descend};
-pub(crate) use descend::{Sides, sides};
+pub(crate) use expand::{Compare, Sides, expand};
 pub use frame::PairFrame;
 pub(crate) use gaps::{AxisIndex, GapFrame, Gaps};
-pub(crate) use overlap::{Inner, Outer, Same};
+pub(crate) use overlap::{Inner, Outer, Same, Spread};
 pub use placement::Placement;
 pub use probe::{Convex, Outline, Probe};
 pub use probe_descend::{ProbeScratch, descend_probe};
+pub use signed_gaps::GapCounts;
+pub(crate) use signed_gaps::SignedGaps;
 pub use visitor::{LeafPairs, NodePair, Verdict, Visitor};

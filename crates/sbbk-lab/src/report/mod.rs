@@ -11,6 +11,7 @@ mod look;
 mod panel;
 mod paper;
 mod plot;
+mod queries;
 pub mod tables;
 
 pub use contacts::write_contacts_plot;
@@ -21,3 +22,4 @@ pub use front::write_front_plot;
 pub use grid::Grid;
 pub use paper::{PAPER, Paper};
 pub use plot::write_plot;
+pub use queries::write_queries_plot;

@@ -20,6 +20,7 @@ mod meshes;
 mod outline;
 mod pile;
 mod progress;
+pub mod queries;
 mod same_poses;
 pub mod soak;
 mod turns;

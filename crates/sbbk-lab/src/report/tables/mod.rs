@@ -7,6 +7,7 @@ mod front;
 mod helicopter;
 mod meshes;
 mod pile;
+mod queries;
 mod soak;
 
 pub use contacts::{by_mesh, by_size, contact_generators, contacts, queries};
@@ -16,6 +17,7 @@ pub use front::front;
 pub use helicopter::{frames, overlapping_area};
 pub use meshes::costs;
 pub use pile::{accuracy, runs, same_poses, sizes};
+pub use queries::one_answer;
 pub use soak::soak;
 
 use super::Grid;

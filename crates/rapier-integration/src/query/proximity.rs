@@ -1,0 +1,58 @@
+//! Distance, closest points, intersection and the deepest contact.
+
+use parry3d::math::{Pose, Real};
+use parry3d::query::{ClosestPoints, Contact, ShapeDistance, ShapeIntersection};
+use sbbk_core::query::{FoundPair, Goal, nearest};
+use sbbk_core::traverse::Placement;
+
+use super::lookup::Trees;
+
+impl Trees {
+    fn nearest(&self, placement: Placement, limit: Real, goal: Goal) -> Option<FoundPair> {
+        let limit = if limit == Real::MAX { f64::INFINITY } else { f64::from(limit) };
+        self.search(|scratch| nearest(self.both(), placement, limit, goal, scratch))
+    }
+
+    /// The distance; `Real::MAX` at a pose that is not finite, as Parry has it for shapes without parts.
+    pub(crate) fn distance(&self, pos12: &Pose) -> ShapeDistance {
+        match self.nearest(Placement::new(pos12), Real::MAX, Goal::Nearest) {
+            Some(pair) => {
+                let distance = pair.contact.distance.max(0.0) as Real;
+                ShapeDistance::new(distance).with_subshapes(pair.triangle1, pair.triangle2)
+            }
+            None => ShapeDistance::new(Real::MAX),
+        }
+    }
+
+    /// Whether the surfaces meet, and where: one of the pairs of triangles that do.
+    pub(crate) fn intersection(&self, pos12: &Pose) -> ShapeIntersection {
+        match self.nearest(Placement::new(pos12), 0.0, Goal::Nearest) {
+            Some(FoundPair { triangle1, triangle2, .. }) => {
+                ShapeIntersection::new(true).with_subshapes(triangle1, triangle2)
+            }
+            None => ShapeIntersection::new(false),
+        }
+    }
+
+    /// The closest points, each in the frame of its mesh.
+    pub(crate) fn closest_points(&self, pos12: &Pose, max_distance: Real) -> ClosestPoints {
+        let placement = Placement::new(pos12);
+        match self.nearest(placement, max_distance, Goal::Nearest) {
+            Some(pair) if pair.is_touching => ClosestPoints::Intersecting,
+            Some(pair) => ClosestPoints::WithinMargin(pair.point1(), pair.point2(&placement)),
+            None => ClosestPoints::Disjoint,
+        }
+    }
+
+    /// The contact of the deepest pair of triangles or, where none cross, of the nearest.
+    pub(crate) fn contact(&self, pos12: &Pose, prediction: Real) -> Option<Contact> {
+        let placement = Placement::new(pos12);
+        let pair = self.nearest(placement, prediction, Goal::Deepest)?;
+        let points = (pair.point1(), pair.point2(&placement));
+        let normals = (pair.normal1(), pair.normal2(&placement));
+        let distance = pair.contact.distance as Real;
+        let mut contact = Contact::new(points.0, points.1, normals.0, normals.1, distance);
+        (contact.subshape1, contact.subshape2) = (pair.triangle1, pair.triangle2);
+        Some(contact)
+    }
+}

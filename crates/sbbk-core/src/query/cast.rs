@@ -1,0 +1,226 @@
+//! When two meshes, moving along a line against each other, first come within a distance.
+//!
+//! For two triangles the distance is a convex function of time, as triangles are convex: Newton's method from the
+//! start,
+//!
+//! ```text
+//! t ← t + (d(t) - target) / -(n(t)·v),    n: from the closest point of triangle 1 to that of triangle 2
+//! ```
+//!
+//! never passes the first time of impact, and where the distance no longer falls there is none. While the closest
+//! features stay the same and one of them is a face, or both are edges, the distance is linear in time and one step
+//! arrives. Over two meshes the earliest of all pairs is sought with the bounds of `sweep.rs`.
+
+use glamx::{DVec3, Vec3};
+
+use crate::contact::{TriangleContact, contact};
+use crate::traverse::{Compare, GapCounts, PairFrame, Placement, SignedGaps, Spread};
+use crate::tree::{Children, LeafBatch, Tree};
+use crate::volumes::rounding::gamma;
+use crate::volumes::{DirectionSet, Directions};
+
+use super::seek::{Bounds, FOUND, SearchScratch, seek};
+use super::sweep::Sweep;
+use super::triangles::{FoundPair, LocalPair};
+
+/// What counts as an impact.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct CastOptions {
+    /// The latest time of interest.
+    pub max_time: f32,
+    /// How close counts as an impact; zero or more.
+    pub target_distance: f32,
+    /// Whether triangles that are within the target distance at the start count if they do not come any closer.
+    pub stop_at_penetration: bool,
+}
+
+/// An impact.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Cast {
+    /// When, as a multiple of the velocity.
+    pub time: f64,
+    /// The triangles and their contact then, mesh 2 *moved*.
+    pub pair: FoundPair,
+    /// Whether the triangles are closer than the target distance, or cross, at the start.
+    pub is_penetrating: bool,
+}
+
+/// A triangle pair has come as close as the target if it is this much farther, as a share of edges and travel. Higher:
+/// impacts are early by as much. Lower: rounding keeps them from being noticed.
+const ARRIVED: f64 = 1.0e-12;
+
+/// Steps of Newton's method. Grazing impacts gain a binary digit a step; others take two or three steps.
+const STEP_LIMIT: usize = 100;
+
+/// The first impact of mesh 2, placed at `placement` in the frame of mesh 1 and moving by `velocity` there; `None` if
+/// there is none until `options.max_time`, or if a number is NaN or infinite.
+pub fn cast<const AXES: usize>(
+    trees: (&Tree<AXES>, &Tree<AXES>),
+    placement: Placement,
+    velocity: Vec3,
+    options: CastOptions,
+    scratch: &mut SearchScratch,
+) -> Option<Cast>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    let CastOptions { max_time, target_distance, .. } = options;
+    let is_possible = max_time >= 0.0 && target_distance >= 0.0 && target_distance.is_finite();
+    if !is_possible || !velocity.is_finite() || !placement.is_finite() {
+        return None;
+    }
+    let mut frame = PairFrame::at(trees, placement, 0.0);
+    let counts = GapCounts::default();
+    let speed = velocity.as_dvec3().length();
+    let sweep = Sweep {
+        gaps: SignedGaps { frame: &mut frame, limit: f32::INFINITY, counts },
+        velocity,
+        inverse_speed: ((1.0 / speed) as f32) * (1.0 - gamma(4)),
+        target: target_distance * (1.0 + gamma(4)),
+        limit: max_time.min(f32::MAX),
+    };
+    let latest = f64::from(max_time);
+    let mut search =
+        Search { sweep, placement, velocity: velocity.as_dvec3(), options, latest, found: None };
+    seek(trees, &mut search, scratch);
+    search.found
+}
+
+struct Search<'a, const AXES: usize> {
+    sweep: Sweep<'a, AXES>,
+    placement: Placement,
+    velocity: DVec3,
+    options: CastOptions,
+    /// Only earlier impacts matter.
+    latest: f64,
+    found: Option<Cast>,
+}
+
+impl<const AXES: usize> Search<'_, AXES> {
+    fn triangles(&mut self, side1: (&LeafBatch, usize), side2: (&LeafBatch, usize)) {
+        let pair = LocalPair::new(&self.placement, side1, side2);
+        let target = f64::from(self.options.target_distance);
+        if !self.boxes_meet(&pair, target) {
+            return;
+        }
+        self.sweep.gaps.counts.triangle_pairs += 1;
+        let cast = TriangleCast { pair: &pair, velocity: self.velocity, target };
+        let Some((time, contact)) = cast.first(self.options.stop_at_penetration, self.latest)
+        else {
+            return;
+        };
+        if self.found.is_some_and(|found| time >= found.time) {
+            return;
+        }
+        let [triangle1, triangle2] = [side1, side2].map(|(batch, lane)| batch.triangles()[lane]);
+        let is_penetrating = time == 0.0 && contact.distance < target;
+        let is_touching = contact.distance <= pair.touching_distance();
+        let pair = FoundPair { triangle1, triangle2, contact, origin: pair.origin, is_touching };
+        self.found = Some(Cast { time, pair, is_penetrating });
+        self.latest = time;
+        self.sweep.limit = if time > 0.0 { (time as f32).next_up() } else { FOUND };
+    }
+
+    /// Whether the boxes of the triangles come within the target distance early enough.
+    fn boxes_meet(&self, pair: &LocalPair, target: f64) -> bool {
+        let [(min1, max1), (min2, max2)] =
+            pair.corners.map(|[a, b, c]| (a.min(b).min(c), a.max(b).max(c)));
+        let slack = target + 1.0e-12 * ((max1 - min1) + (max2 - min2)).element_sum();
+        let (near, far) = (min1 - max2 - slack, max1 - min2 + slack);
+        let (mut start, mut end) = (0.0, self.latest);
+        for axis in 0..3 {
+            let speed = self.velocity[axis];
+            if speed == 0.0 {
+                if near[axis] > 0.0 || far[axis] < 0.0 {
+                    return false;
+                }
+                continue;
+            }
+            let (a, b) = (near[axis] / speed, far[axis] / speed);
+            start = f64::max(start, a.min(b));
+            end = f64::min(end, a.max(b));
+        }
+        start <= end * (1.0 + 1.0e-12)
+    }
+}
+
+/// Two triangles, the second one moving.
+struct TriangleCast<'a> {
+    pair: &'a LocalPair,
+    velocity: DVec3,
+    target: f64,
+}
+
+impl TriangleCast<'_> {
+    /// The time of impact and the contact then.
+    fn first(&self, stop_at_penetration: bool, latest: f64) -> Option<(f64, TriangleContact)> {
+        let [t1, t2] = &self.pair.corners;
+        let edges = self.pair.touching_distance() / ARRIVED;
+        let mut time = 0.0;
+        let mut last: Option<TriangleContact> = None;
+        for _ in 0..STEP_LIMIT {
+            let travel = self.velocity * time;
+            let mut contact = contact(t1, &t2.map(|v| v + travel), f64::INFINITY)?;
+            let approach = -contact.normal.dot(self.velocity);
+            let left = contact.distance - self.target;
+            if left <= ARRIVED * (edges + travel.abs().element_sum()) {
+                let Some(last) = last else {
+                    let counts = stop_at_penetration || approach > 0.0;
+                    return counts.then_some((0.0, contact));
+                };
+                // That of triangles just apart: those that touch have no better one.
+                contact.normal = last.normal;
+                return Some((time, contact));
+            }
+            if approach <= 0.0 {
+                return None;
+            }
+            time += left / approach;
+            // Not "later than": a NaN is no time.
+            let in_time = time <= latest;
+            if !in_time {
+                return None;
+            }
+            last = Some(contact);
+        }
+        last.map(|contact| (time, contact))
+    }
+}
+
+impl<const AXES: usize> Compare<AXES> for Search<'_, AXES>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    type Key = f32;
+
+    #[inline(always)]
+    fn compare(
+        &mut self,
+        side1: (&Children<'_, AXES>, impl Spread),
+        side2: (&Children<'_, AXES>, impl Spread),
+        lanes: u32,
+    ) -> (u32, [f32; 4]) {
+        self.sweep.compare(side1, side2, lanes)
+    }
+}
+
+impl<const AXES: usize> Bounds<AXES> for Search<'_, AXES>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.sweep.limit
+    }
+
+    fn leaves(&mut self, batch1: &LeafBatch, batch2: &LeafBatch) {
+        self.sweep.gaps.counts.leaf_pairs += 1;
+        for lane1 in 0..batch1.count() {
+            for lane2 in 0..batch2.count() {
+                if self.sweep.limit != FOUND {
+                    self.triangles((batch1, lane1), (batch2, lane2));
+                }
+            }
+        }
+    }
+}

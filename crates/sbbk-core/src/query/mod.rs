@@ -1,0 +1,41 @@
+//! Questions about two meshes at a pose that need one answer, not all contacts: the nearest or the deepest pair of
+//! triangles, whether any pair meets, when moving meshes first meet.
+//!
+//! All of them are one search ([`seek`](seek::seek)): both trees are descended at once, the pair of nodes with the
+//! least lower bound first, and whatever cannot beat the best pair of triangles so far is left out. What the bound is
+//! differs: the signed distance of volumes for [`nearest`], the earliest time at which they come close for [`cast`].
+//! Pairs of triangles are compared exactly, in f64 ([`contact`](mod@crate::contact)).
+//!
+//! ```
+//! use glamx::{Pose3, Vec3};
+//! use sbbk_core::query::{Goal, SearchScratch, nearest};
+//! use sbbk_core::traverse::{PairFrame, Placement};
+//! use sbbk_core::tree::{BuildOptions, Tree};
+//!
+//! let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+//! let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+//! let tree: Tree = Tree::build(&vertices, &triangles, &BuildOptions::default())?;
+//!
+//! let placement = Placement::new(&Pose3::translation(0.0, 0.0, 3.0));
+//! let mut scratch = SearchScratch::default();
+//! let found = nearest((&tree, &tree), placement, f64::INFINITY, Goal::Nearest, &mut scratch);
+//! assert_eq!(found.expect("no limit").contact.distance, 2.0);
+//! # Ok::<(), sbbk_core::tree::BuildError>(())
+//! ```
+//!
+//! Surfaces are what counts: a mesh inside another one is apart from it. A pose or velocity that is not finite has no
+//! answer. Answers depend on the trees and the pose only.
+
+mod advance;
+mod cast;
+mod nearest;
+mod seek;
+mod sweep;
+mod triangles;
+
+pub use crate::traverse::GapCounts;
+pub use advance::{Advance, AdvanceOptions, advance};
+pub use cast::{Cast, CastOptions, cast};
+pub use nearest::{Goal, nearest, nearest_counted};
+pub use seek::SearchScratch;
+pub use triangles::FoundPair;

@@ -1,0 +1,162 @@
+//! The nearest or the deepest pair of triangles.
+
+use crate::contact::contact;
+use crate::leaf::LeafTest;
+use crate::traverse::{Compare, GapCounts, PairFrame, Placement, SignedGaps, Spread};
+use crate::tree::{Children, LeafBatch, Tree};
+use crate::volumes::{DirectionSet, Directions};
+
+use super::seek::{Bounds, FOUND, SearchScratch, seek};
+use super::triangles::{FoundPair, LocalPair};
+
+/// Which pair of triangles is sought.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Goal {
+    /// The nearest one. If several touch or cross, any of them.
+    Nearest,
+    /// The nearest one; if several touch or cross, the deepest.
+    Deepest,
+}
+
+/// Margins of the leaf test whose squares would overflow are no use.
+const WIDEST_LEAF_MARGIN: f32 = 1.0e15;
+
+/// The pair of triangles sought, mesh 2 placed at `placement` in the frame of mesh 1; `None` if all pairs are farther
+/// apart than `limit`, or if the placement is not finite.
+///
+/// Triangles touch up to 1e-12 of their size. With a limit of zero this is the test whether the surfaces meet.
+pub fn nearest<const AXES: usize>(
+    trees: (&Tree<AXES>, &Tree<AXES>),
+    placement: Placement,
+    limit: f64,
+    goal: Goal,
+    scratch: &mut SearchScratch,
+) -> Option<FoundPair>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    nearest_counted(trees, placement, limit, goal, scratch).0
+}
+
+/// As [`nearest`], with the work that was done.
+pub fn nearest_counted<const AXES: usize>(
+    trees: (&Tree<AXES>, &Tree<AXES>),
+    placement: Placement,
+    limit: f64,
+    goal: Goal,
+    scratch: &mut SearchScratch,
+) -> (Option<FoundPair>, GapCounts)
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    // Not `limit < 0`: a limit that is NaN admits nothing.
+    let admits = limit >= 0.0;
+    if !admits || !placement.is_finite() {
+        return (None, GapCounts::default());
+    }
+    let mut frame = PairFrame::at(trees, placement, 0.0);
+    let best = limit.min(some_distance(trees, &placement));
+    let test = LeafTest::new(&frame);
+    let gaps = SignedGaps { frame: &mut frame, limit: above(best), counts: GapCounts::default() };
+    let mut search = Search { gaps, placement, test, goal, best, found: None };
+    seek(trees, &mut search, scratch);
+    (search.found, search.gaps.counts)
+}
+
+/// The distance of two vertices: the least is not above it.
+fn some_distance<const AXES: usize>(
+    (tree1, tree2): (&Tree<AXES>, &Tree<AXES>),
+    placement: &Placement,
+) -> f64 {
+    let [vertex1, vertex2] = [tree1, tree2].map(|tree| tree.leaf(0).corners(0)[0]);
+    let distance = placement.to_frame1(vertex2, vertex1).length();
+    distance * (1.0 + 1.0e-9)
+}
+
+/// The f32 above.
+fn above(x: f64) -> f32 {
+    (x as f32).next_up()
+}
+
+struct Search<'a, const AXES: usize> {
+    gaps: SignedGaps<'a, AXES>,
+    placement: Placement,
+    test: LeafTest,
+    goal: Goal,
+    /// The signed distance to beat.
+    best: f64,
+    found: Option<FoundPair>,
+}
+
+impl<const AXES: usize> Search<'_, AXES> {
+    fn triangles(&mut self, side1: (&LeafBatch, usize), side2: (&LeafBatch, usize)) {
+        if self.gaps.limit == FOUND {
+            return;
+        }
+        self.gaps.counts.triangle_pairs += 1;
+        let pair = LocalPair::new(&self.placement, side1, side2);
+        let touching = pair.touching_distance();
+        let margin = if self.best >= 0.0 { self.best.max(touching) } else { self.best };
+        let [t1, t2] = &pair.corners;
+        let Some(contact) = contact(t1, t2, margin) else {
+            return;
+        };
+        if self.found.is_some() && contact.distance >= self.best {
+            return;
+        }
+        let [triangle1, triangle2] = [side1, side2].map(|(batch, lane)| batch.triangles()[lane]);
+        let (origin, is_touching) = (pair.origin, contact.distance <= touching);
+        self.found = Some(FoundPair { triangle1, triangle2, contact, origin, is_touching });
+        self.best = contact.distance;
+        let is_last = self.goal == Goal::Nearest && is_touching;
+        self.gaps.limit = if is_last { FOUND } else { above(contact.distance) };
+    }
+}
+
+impl<const AXES: usize> Compare<AXES> for Search<'_, AXES>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    type Key = f32;
+
+    #[inline(always)]
+    fn compare(
+        &mut self,
+        side1: (&Children<'_, AXES>, impl Spread),
+        side2: (&Children<'_, AXES>, impl Spread),
+        lanes: u32,
+    ) -> (u32, [f32; 4]) {
+        self.gaps.compare(side1, side2, lanes)
+    }
+}
+
+impl<const AXES: usize> Bounds<AXES> for Search<'_, AXES>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.gaps.limit
+    }
+
+    fn leaves(&mut self, batch1: &LeafBatch, batch2: &LeafBatch) {
+        self.gaps.counts.leaf_pairs += 1;
+        if self.gaps.limit < WIDEST_LEAF_MARGIN {
+            let test = self.test.within(self.gaps.limit);
+            // The axis of far triangles tells nothing about those that touch.
+            let is_far = self.best > 0.0;
+            let found = |lane1, lane2| self.triangles((batch1, lane1), (batch2, lane2));
+            if is_far {
+                test.far_survivors(batch1, batch2, found);
+            } else {
+                test.survivors(batch1, batch2, found);
+            }
+        } else {
+            for lane1 in 0..batch1.count() {
+                for lane2 in 0..batch2.count() {
+                    self.triangles((batch1, lane1), (batch2, lane2));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! The search: depth first, the nearest pair first, with a bound.
+//!
+//! A pair of nodes is replaced by those pairs of its children whose lower bound does not exceed the best value so far;
+//! of these the least is looked at next. The first leaves that are reached are near the answer, so the bound is tight
+//! from then on.
+
+use crate::traverse::{Compare, Sides, expand};
+use crate::tree::{LeafBatch, Slot, Tree};
+use crate::volumes::{DirectionSet, Directions};
+
+/// Lower bounds of what is sought, for pairs of nodes.
+pub(super) trait Bounds<const AXES: usize>: Compare<AXES, Key = f32> {
+    /// Pairs whose bound is above this cannot matter.
+    fn limit(&self) -> f32;
+
+    /// Compares the triangles of two leaves; may lower the limit.
+    fn leaves(&mut self, batch1: &LeafBatch, batch2: &LeafBatch);
+}
+
+/// Memory of a search, kept by the caller: after the first few nothing is allocated.
+#[derive(Clone, Debug, Default)]
+pub struct SearchScratch {
+    stack: Vec<Candidate>,
+}
+
+/// A pair of nodes and its bound.
+#[derive(Copy, Clone, Debug)]
+struct Candidate {
+    key: f32,
+    slots: (Slot, Slot),
+}
+
+/// The limit that ends a search.
+pub(super) const FOUND: f32 = f32::NEG_INFINITY;
+
+/// Goes through all pairs of leaves that may matter.
+pub(super) fn seek<const AXES: usize, B: Bounds<AXES>>(
+    (tree1, tree2): (&Tree<AXES>, &Tree<AXES>),
+    bounds: &mut B,
+    scratch: &mut SearchScratch,
+) where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    let stack = &mut scratch.stack;
+    stack.clear();
+    stack.push(Candidate { key: f32::NEG_INFINITY, slots: (Slot::ROOT, Slot::ROOT) });
+    while let Some(Candidate { key, slots }) = stack.pop() {
+        if bounds.limit() == FOUND {
+            return;
+        }
+        // Not "at most": a bound that is NaN bounds nothing.
+        if key > bounds.limit() {
+            continue;
+        }
+        let links = (tree1.link(slots.0), tree2.link(slots.1));
+        if links.0.is_leaf() && links.1.is_leaf() {
+            bounds.leaves(tree1.leaf(links.0.index()), tree2.leaf(links.1.index()));
+            continue;
+        }
+        let first = stack.len();
+        expand((tree1, tree2), slots, Sides::of(links), bounds, |slots, key| {
+            stack.push(Candidate { key, slots });
+        });
+        nearest_last(&mut stack[first..]);
+    }
+}
+
+/// Sorts up to four pairs, so that the one with the least bound is popped first; equal ones in the order they have.
+#[inline(always)]
+fn nearest_last(pairs: &mut [Candidate]) {
+    for end in 1..pairs.len() {
+        for i in (0..end).rev() {
+            if pairs[i].key < pairs[i + 1].key {
+                pairs.swap(i, i + 1);
+            } else {
+                break;
+            }
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! The earliest time at which pairs of moving nodes may come within a distance, over SIMD lanes.
+//!
+//! Two bounds, of which the later counts. Boxes that move along a line against each other overlap on each axis of
+//! frame 1 during an interval, on all three during the intersection of these (the slabs of a ray against the
+//! Minkowski sum). And volumes that are a gap apart need at least the gap over the speed.
+//!
+//! # Rounding
+//!
+//! The offset and the reach are those of [`SignedGaps`], conservative by the margin of the frame. The velocity is exact in
+//! frame 1. A quotient loses at most `γ_4`, the target distance added to the reach `γ_2`; times are made earlier at
+//! their start and later at their end by `γ_8`.
+
+use glamx::Vec3;
+use wide::f32x4;
+
+use crate::traverse::{Compare, SignedGaps, Spread};
+use crate::tree::Children;
+use crate::volumes::rounding::gamma;
+use crate::volumes::{DirectionSet, Directions};
+
+/// Lower bounds of times of impact. The limit of `gaps` is not used.
+pub(super) struct Sweep<'a, const AXES: usize> {
+    pub(super) gaps: SignedGaps<'a, AXES>,
+    /// Of mesh 2 against mesh 1, in frame 1.
+    pub(super) velocity: Vec3,
+    /// One over the length of the velocity, not more; infinite if that is zero.
+    pub(super) inverse_speed: f32,
+    /// How close counts as an impact, not less.
+    pub(super) target: f32,
+    /// Later impacts do not matter. Finite, or minus infinity.
+    pub(super) limit: f32,
+}
+
+impl<const AXES: usize> Sweep<'_, AXES>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    /// The earliest times, infinite where the nodes pass each other.
+    #[inline(always)]
+    fn times(
+        &mut self,
+        side1: (&Children<'_, AXES>, impl Spread),
+        side2: (&Children<'_, AXES>, impl Spread),
+    ) -> f32x4 {
+        let target = f32x4::splat(self.target);
+        let apart = self.gaps.signed(side1, side2) - target;
+        let mut start = (apart * f32x4::splat(self.inverse_speed)).fast_max(f32x4::ZERO);
+        let mut end = f32x4::splat(f32::INFINITY);
+        let (offset, reach) = self.gaps.offset_and_reach(side1, side2);
+        for axis in 0..3 {
+            let speed = self.velocity[axis];
+            let inverse = f32x4::splat(1.0 / speed.abs());
+            let ahead = offset[axis] * f32x4::splat(1.0_f32.copysign(speed));
+            let reach = reach[axis] + target;
+            start = ((-reach - ahead) * inverse).fast_max(start);
+            end = ((reach - ahead) * inverse).fast_min(end);
+        }
+        let start = start * f32x4::splat(1.0 - gamma(8));
+        let passes = (end * f32x4::splat(1.0 + gamma(8))).simd_lt(start);
+        passes.bitselect(f32x4::splat(f32::INFINITY), start)
+    }
+}
+
+impl<const AXES: usize> Compare<AXES> for Sweep<'_, AXES>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    type Key = f32;
+
+    #[inline(always)]
+    fn compare(
+        &mut self,
+        side1: (&Children<'_, AXES>, impl Spread),
+        side2: (&Children<'_, AXES>, impl Spread),
+        lanes: u32,
+    ) -> (u32, [f32; 4]) {
+        self.gaps.counts.node_pairs += u64::from(lanes.count_ones());
+        let times = self.times(side1, side2);
+        // A time that overflowed to NaN is kept.
+        let late = times.simd_gt(f32x4::splat(self.limit)).to_bitmask();
+        (lanes & !late, times.to_array())
+    }
+}

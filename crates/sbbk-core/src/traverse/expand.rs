@@ -1,0 +1,87 @@
+//! From a pair of nodes to the pairs of their children, whatever these are compared by.
+
+use super::overlap::{Inner, Outer, Same, Spread};
+use crate::tree::{Children, Link, Slot, Tree};
+use crate::volumes::{DirectionSet, Directions};
+
+/// Which sides of a pair go down.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Sides {
+    Both,
+    First,
+    Second,
+}
+
+impl Sides {
+    /// Both at once, or the one that is not a leaf.
+    #[inline(always)]
+    pub(crate) fn of(links: (Link, Link)) -> Self {
+        match (links.0.is_leaf(), links.1.is_leaf()) {
+            (true, _) => Self::Second,
+            (_, true) => Self::First,
+            _ => Self::Both,
+        }
+    }
+
+    /// The inner node that holds the volumes of each side: the node's own children, or itself in its parent.
+    #[inline(always)]
+    pub(crate) fn nodes(self, (slot1, slot2): (Slot, Slot), links: (Link, Link)) -> (u32, u32) {
+        match self {
+            Self::Both => (links.0.index(), links.1.index()),
+            Self::First => (links.0.index(), slot2.node()),
+            Self::Second => (slot1.node(), links.1.index()),
+        }
+    }
+}
+
+/// How the children of two nodes are compared, up to four pairs at a time.
+pub(crate) trait Compare<const AXES: usize> {
+    /// What is found about a pair.
+    type Key: Copy;
+
+    /// The lanes of `lanes` whose pairs matter, as a mask, and what is known about each lane.
+    fn compare(
+        &mut self,
+        side1: (&Children<'_, AXES>, impl Spread),
+        side2: (&Children<'_, AXES>, impl Spread),
+        lanes: u32,
+    ) -> (u32, [Self::Key; 4]);
+}
+
+/// Compares the pairs of children and hands on those that matter.
+#[inline(always)]
+pub(crate) fn expand<const AXES: usize, C: Compare<AXES>>(
+    (tree1, tree2): (&Tree<AXES>, &Tree<AXES>),
+    (slot1, slot2): (Slot, Slot),
+    sides: Sides,
+    compare: &mut C,
+    mut push: impl FnMut((Slot, Slot), C::Key),
+) where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    let links = (tree1.link(slot1), tree2.link(slot2));
+    let (node1, node2) = sides.nodes((slot1, slot2), links);
+    let (children1, children2) = (tree1.children(node1), tree2.children(node2));
+    match sides {
+        Sides::Both => {
+            let (mask, keys) = compare.compare((&children1, Outer), (&children2, Inner), 0b1111);
+            for lane in (0..4).filter(|lane| mask >> lane & 1 != 0) {
+                push((Slot::new(node1, lane >> 1), Slot::new(node2, lane & 1)), keys[lane]);
+            }
+        }
+        Sides::First => {
+            let same = Same(slot2.lane());
+            let (mask, keys) = compare.compare((&children1, Outer), (&children2, same), 0b0101);
+            for lane in (0..2).filter(|lane| mask >> (2 * lane) & 1 != 0) {
+                push((Slot::new(node1, lane), slot2), keys[2 * lane]);
+            }
+        }
+        Sides::Second => {
+            let same = Same(slot1.lane());
+            let (mask, keys) = compare.compare((&children1, same), (&children2, Inner), 0b0011);
+            for lane in (0..2).filter(|lane| mask >> lane & 1 != 0) {
+                push((slot1, Slot::new(node2, lane)), keys[lane]);
+            }
+        }
+    }
+}

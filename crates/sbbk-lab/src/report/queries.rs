@@ -1,0 +1,55 @@
+//! The study of queries as files and as a picture.
+
+use std::path::Path;
+
+use super::look::Look;
+use super::panel::{Panel, Scale, Series};
+use super::{ReportError, ResultRow, Results};
+use crate::study::contacts::CONTESTANTS;
+use crate::study::queries::{Place, Queries, Query};
+
+/// Writes an SVG picture: time by number of triangles, for the distance of meshes that are near, for the intersection
+/// test of meshes that hardly miss each other, and for casts.
+///
+/// Errors: the file cannot be written.
+pub fn write_queries_plot(queries: &Queries, path: &Path) -> Result<(), ReportError> {
+    let panels = [
+        panel(queries, Query::Distance, Place::Near),
+        panel(queries, Query::Intersection, Place::HardlyApart),
+        panel(queries, Query::Cast, Place::Far),
+    ];
+    Panel::write_all(&panels, path)
+}
+
+fn panel(queries: &Queries, query: Query, place: Place) -> Panel {
+    let rows = || queries.rows.iter().filter(move |row| (row.query, row.place) == (query, place));
+    let series = [0, 1].map(|side| Series {
+        label: CONTESTANTS[side].to_string(),
+        look: Look::Backend(CONTESTANTS[side]),
+        is_connected: true,
+        points: rows()
+            .map(|row| (row.triangle_count as f64, row.sides[side].time.median))
+            .collect(),
+    });
+    // A tenth of a microsecond is less than any query takes.
+    Panel {
+        title: format!("{query}, {place}"),
+        x_label: "triangles of each mesh".to_owned(),
+        y_label: "µs a query".to_owned(),
+        scale: Scale::Logarithmic { zero: 0.1 },
+        series: series.into(),
+    }
+}
+
+impl Results for Queries {
+    fn rows(&self) -> Vec<ResultRow> {
+        let rows = self.rows.iter().flat_map(|row| {
+            let scene = format!(
+                "{}, {}, {} of {} triangles",
+                row.query, row.place, row.mesh, row.triangle_count
+            );
+            row.sides.iter().map(move |side| ResultRow::new("queries, µs", scene.clone(), side))
+        });
+        rows.collect()
+    }
+}

@@ -1,0 +1,343 @@
+//! Queries without manifolds: the dispatcher beside brute force, and beside stock Parry where stock is right.
+
+use glamx::{DPose3, DVec3, Pose3, Vec3};
+use oorandom::Rand32;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::parry::query::details::ShapeCastOptions;
+use rapier3d::parry::query::{
+    ClosestPoints, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastStatus,
+};
+use rapier3d::parry::shape::{Cuboid, TriMesh, TriMeshFlags};
+use rapier3d::prelude::*;
+use sbbk_core::truth::{TruthPair, pairs_within};
+use sbbk_lab::mesh;
+
+use super::support::{direction, reach, rotation, shape, shape_with};
+
+/// In sizes of the meshes.
+const TOLERANCE: f32 = 1e-5;
+
+/// All pairs of triangles up to a distance.
+fn truth(meshes: [&TriMesh; 2], pos12: &Pose3, margin: f32) -> Vec<TruthPair> {
+    let [(v1, t1), (v2, t2)] = meshes.map(|mesh| {
+        let vertices: Vec<DVec3> = mesh.vertices().iter().map(|v| v.as_dvec3()).collect();
+        (vertices, mesh.indices())
+    });
+    let rotation = pos12.rotation.as_dquat().normalize();
+    let pose = DPose3::from_parts(pos12.translation.as_dvec3(), rotation);
+    pairs_within(&v1, t1, &v2, t2, pose, f64::from(margin))
+}
+
+/// The least signed distance up to a margin, infinite beyond.
+fn least(meshes: [&TriMesh; 2], pos12: &Pose3, margin: f32) -> f32 {
+    let pairs = truth(meshes, pos12, margin);
+    pairs.iter().map(|pair| pair.distance as f32).fold(f32::INFINITY, f32::min)
+}
+
+/// A small and a larger mesh at several sizes, and poses from crossing to far apart.
+fn cases() -> impl Iterator<Item = ([TriMesh; 2], Vec<Pose3>)> {
+    [0.01, 1.0, 100.0].into_iter().map(|size| {
+        let head = shape(&mesh::monkey_head_with(6).centred().scaled_to(2.0 * size));
+        let ring = shape(&mesh::torus(0.7, 0.3, 12, 7).centred().scaled_to(1.5 * size));
+        let mut random = Rand32::new(size.to_bits().into());
+        let poses = (0..24).map(|i| {
+            let distance = size * (0.2 + 0.12 * i as f32);
+            Pose3::from_parts(direction(&mut random) * distance, rotation(&mut random))
+        });
+        let poses = poses.collect();
+        ([head, ring], poses)
+    })
+}
+
+/// Distance, closest points, intersection and contact, in both orders, against brute force. Would catch points in the
+/// wrong frame, normals the wrong way round, numbers of triangles of the other mesh, a limit that is not kept.
+#[test]
+fn proximity_is_true() {
+    let dispatcher = SbbkDispatcher::default();
+    let (mut crossing, mut apart) = (0, 0);
+    for (meshes, poses) in cases() {
+        let [head, ring] = &meshes;
+        let size = reach(head) + reach(ring);
+        for pos12 in poses {
+            for (meshes, pos12) in [([head, ring], pos12), ([ring, head], pos12.inverse())] {
+                let [mesh1, mesh2] = meshes;
+                let reported = dispatcher.distance(&pos12, mesh1, mesh2).unwrap().distance;
+                // Were the distance less than the truth, this would be infinite.
+                let truth = least(meshes, &pos12, 0.21 * size + 1.01 * reported);
+                check_proximity(&dispatcher, meshes, &pos12, truth, size);
+                *(if truth < 0.0 { &mut crossing } else { &mut apart }) += 1;
+            }
+        }
+    }
+    assert!(crossing > 20 && apart > 60, "{crossing} crossing, {apart} apart");
+}
+
+fn check_proximity(
+    dispatcher: &SbbkDispatcher,
+    [mesh1, mesh2]: [&TriMesh; 2],
+    pos12: &Pose3,
+    truth: f32,
+    size: f32,
+) {
+    let slack = TOLERANCE * size;
+    let distance = dispatcher.distance(pos12, mesh1, mesh2).unwrap();
+    assert!((distance.distance - truth.max(0.0)).abs() < slack);
+    let meet = dispatcher.intersection_test(pos12, mesh1, mesh2).unwrap();
+    assert!(meet.intersecting == (truth < 0.0) || truth.abs() < slack);
+    if meet.intersecting {
+        let triangles = (meet.subshape1, meet.subshape2);
+        let meeting = self::truth([mesh1, mesh2], pos12, slack);
+        assert!(meeting.iter().any(|pair| (pair.triangle1, pair.triangle2) == triangles));
+    }
+
+    match dispatcher.closest_points(pos12, mesh1, mesh2, 2.0 * size).unwrap() {
+        ClosestPoints::Intersecting => assert!(truth < slack),
+        ClosestPoints::WithinMargin(p1, p2) => {
+            assert!(((pos12 * p2 - p1).length() - truth).abs() < slack);
+            let off = mesh1.triangle(distance.subshape1).distance_to_local_point(p1, true);
+            assert!(off < slack, "the point is {off} beside its triangle");
+            let off = mesh2.triangle(distance.subshape2).distance_to_local_point(p2, true);
+            assert!(off < slack, "the point is {off} beside its triangle");
+        }
+        ClosestPoints::Disjoint => assert!(truth > 1.9 * size),
+    }
+    let contact = dispatcher.contact(pos12, mesh1, mesh2, 0.2 * size).unwrap();
+    assert_eq!(contact.is_some(), truth <= 0.2 * size);
+    let Some(contact) = contact else { return };
+    assert!((contact.dist - truth).abs() < slack);
+    assert!((pos12.rotation * contact.normal2 + contact.normal1).length() < 1e-5);
+    let along = (pos12 * contact.point2 - contact.point1).dot(contact.normal1);
+    assert!((along - truth).abs() < slack, "points {along} apart along the normal, not {truth}");
+}
+
+/// Beside stock where stock is right: meshes of a unit. Would catch an answer with a meaning of its own: another sign,
+/// a limit understood otherwise, `Intersecting` for a mesh inside another.
+#[test]
+fn proximity_is_like_stock() {
+    let (stock, ours) = (DefaultQueryDispatcher, SbbkDispatcher::default());
+    let ([head, ring], poses) = cases().nth(1).expect("the size of one unit");
+    for pos12 in &poses {
+        let pair = (pos12, &head, &ring);
+        let [a, b] = [&stock as &dyn QueryDispatcher, &ours].map(|dispatcher| {
+            let (pos12, head, ring) = pair;
+            let distance = dispatcher.distance(pos12, head, ring).unwrap().distance;
+            let meet = dispatcher.intersection_test(pos12, head, ring).unwrap().intersecting;
+            let points = dispatcher.closest_points(pos12, head, ring, 0.5).unwrap();
+            let contact = dispatcher.contact(pos12, head, ring, 0.1).unwrap();
+            (distance, meet, points, contact)
+        });
+        assert!((a.0 - b.0).abs() < 1e-4);
+        assert_eq!(a.1, b.1);
+        assert_eq!(std::mem::discriminant(&a.2), std::mem::discriminant(&b.2));
+        assert_eq!(a.3.is_some(), b.3.is_some());
+        if let (Some(a), Some(b)) = (a.3, b.3) {
+            assert!((a.dist - b.dist).abs() < 1e-3, "{a:?} {b:?}");
+        }
+    }
+}
+
+/// "Surfaces are what counts", as for stock: a small mesh inside a large one does not meet it.
+#[test]
+fn inside_is_not_intersecting() {
+    let outer = shape(&mesh::ball(4.0, 16));
+    let inner = shape(&mesh::ball(1.0, 8));
+    let pos12 = Pose3::translation(0.5, 0.0, 0.0);
+    for dispatcher in [&DefaultQueryDispatcher as &dyn QueryDispatcher, &SbbkDispatcher::default()]
+    {
+        assert!(!dispatcher.intersection_test(&pos12, &outer, &inner).unwrap().intersecting);
+        assert!(dispatcher.distance(&pos12, &outer, &inner).unwrap().distance > 1.0);
+        assert!(dispatcher.contact(&pos12, &outer, &inner, 0.1).unwrap().is_none());
+    }
+}
+
+/// Linear casts against a march with brute force, and against stock; witnesses where Parry documents them: on each
+/// mesh in its own frame, meeting when mesh 2 has moved.
+#[test]
+fn casts_stop_at_the_first_impact() {
+    let (stock, ours) = (DefaultQueryDispatcher, SbbkDispatcher::default());
+    let ([head, ring], _) = cases().nth(1).expect("the size of one unit");
+    let mut random = Rand32::new(5);
+    let mut hits = 0;
+    for case in 0..40 {
+        let target_distance = [0.0, 0.1][case % 2];
+        let from = direction(&mut random) * 4.0;
+        let pos12 = Pose3::from_parts(from, rotation(&mut random));
+        let velocity = -0.5 * from + 0.6 * direction(&mut random);
+        let options =
+            ShapeCastOptions { target_distance, ..ShapeCastOptions::with_max_time_of_impact(4.0) };
+        let hit = ours.cast_shapes(&pos12, velocity, &head, &ring, options).unwrap();
+        let other = stock.cast_shapes(&pos12, velocity, &head, &ring, options).unwrap();
+        assert_eq!(hit.is_some(), other.is_some(), "stock {other:?}, ours {hit:?}");
+        let at = |time: f32| Pose3 { translation: pos12.translation + velocity * time, ..pos12 };
+        let end = hit.map_or(4.0, |hit| hit.time_of_impact);
+        for step in 0..50 {
+            let left = least([&head, &ring], &at(end * step as f32 / 50.0), target_distance);
+            assert!(left > target_distance - 1e-4, "{left} left before the impact");
+        }
+        let Some(hit) = hit else { continue };
+        hits += 1;
+        let other = other.expect("as many as ours");
+        assert!((hit.time_of_impact - other.time_of_impact).abs() < 1e-3);
+        assert_eq!(hit.status, ShapeCastStatus::Converged);
+        let left = least([&head, &ring], &at(end), target_distance + 0.01);
+        assert!((left - target_distance).abs() < 1e-5, "{left} left at the impact");
+        let apart = at(end) * hit.witness2 - hit.witness1;
+        assert!((apart - target_distance * hit.normal1).length() < 1e-4);
+        assert!((pos12.rotation * hit.normal2 + hit.normal1).length() < 1e-5);
+
+        // The other order: the same impact.
+        let (inverse, back) = (pos12.inverse(), -(pos12.rotation.inverse() * velocity));
+        let swapped = ours.cast_shapes(&inverse, back, &ring, &head, options).unwrap().unwrap();
+        assert!((swapped.time_of_impact - hit.time_of_impact).abs() < 1e-5);
+        let early = ShapeCastOptions { max_time_of_impact: 0.99 * end, ..options };
+        assert!(ours.cast_shapes(&pos12, velocity, &head, &ring, early).unwrap().is_none());
+    }
+    assert!((10..40).contains(&hits), "{hits} hits");
+}
+
+/// Starts that cross: stock's statuses, and the way out.
+#[test]
+fn casts_that_start_inside() {
+    let head = shape(&mesh::monkey_head_with(6));
+    let pos12 = Pose3::translation(0.3, 0.2, 0.1);
+    let options = ShapeCastOptions::with_max_time_of_impact(1.0);
+    for dispatcher in [&DefaultQueryDispatcher as &dyn QueryDispatcher, &SbbkDispatcher::default()]
+    {
+        let hit = dispatcher.cast_shapes(&pos12, Vec3::X, &head, &head, options).unwrap();
+        let hit = hit.expect("starts crossing");
+        assert_eq!(hit.time_of_impact, 0.0);
+        assert_eq!(hit.status, ShapeCastStatus::PenetratingOrWithinTargetDist);
+    }
+}
+
+/// Casts along curved ways: nothing meets before, and the meshes are together then.
+#[test]
+fn nonlinear_casts_stop_at_the_first_impact() {
+    let dispatcher = SbbkDispatcher::default();
+    let ([head, ring], _) = cases().nth(1).expect("the size of one unit");
+    let mut random = Rand32::new(9);
+    let mut hits = 0;
+    for _ in 0..30 {
+        let from = direction(&mut random) * 4.0;
+        let start = Pose3::from_parts(from, rotation(&mut random));
+        let velocity = -0.5 * from + 0.9 * direction(&mut random);
+        let motion1 = NonlinearRigidMotion::new(
+            Pose3::IDENTITY,
+            0.2 * direction(&mut random),
+            0.1 * direction(&mut random),
+            direction(&mut random),
+        );
+        let spin = 3.0 * direction(&mut random);
+        let motion2 = NonlinearRigidMotion::new(start, Vec3::ZERO, velocity, spin);
+        let hit = dispatcher
+            .cast_shapes_nonlinear(&motion1, &head, &motion2, &ring, 0.0, 4.0, true)
+            .unwrap();
+        let at =
+            |time: f32| motion1.position_at_time(time).inv_mul(&motion2.position_at_time(time));
+        let end = hit.map_or(4.0, |hit| hit.time_of_impact);
+        for step in 0..20 {
+            let left = least([&head, &ring], &at(end * step as f32 / 20.0), 0.0);
+            assert!(left > 0.0, "{left} left before the impact");
+        }
+        if let Some(hit) = hit {
+            hits += 1;
+            assert_eq!(hit.status, ShapeCastStatus::Converged);
+            assert!(least([&head, &ring], &at(end), 0.01).abs() < 1e-5);
+            assert!((at(end) * hit.witness2 - hit.witness1).length() < 1e-5);
+        }
+    }
+    assert!((3..30).contains(&hits), "{hits} hits");
+}
+
+/// Sensors in worlds: the same pairs intersect at each step as in stock's world.
+#[test]
+fn sensors_see_what_stock_sees() {
+    let worlds = [false, true].map(|is_ours| {
+        let mut world = PhysicsWorld::new();
+        if is_ours {
+            world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
+        }
+        let head = SharedShape::new(shape(&mesh::monkey_head_with(6)));
+        let ring = SharedShape::new(shape(&mesh::torus(0.7, 0.3, 12, 7)));
+        world.insert_collider(ColliderBuilder::new(ring).sensor(true), None);
+        let mut heads = Vec::new();
+        for i in 0..6 {
+            let place = Vec3::new(0.7 * i as f32 - 2.0, 2.0 + 0.3 * i as f32, 0.0);
+            let body = RigidBodyBuilder::dynamic().translation(place).rotation(Vec3::splat(0.4));
+            let (_, collider) = world.insert(body, ColliderBuilder::new(head.clone()).sensor(true));
+            heads.push(collider);
+        }
+        let mut seen = Vec::new();
+        for _ in 0..120 {
+            world.step();
+            let pairs = world.narrow_phase.intersection_pairs();
+            let mut pairs: Vec<_> = pairs
+                .map(|(a, b, meet)| {
+                    let (a, b) = (a.into_raw_parts(), b.into_raw_parts());
+                    (a.min(b), a.max(b), meet)
+                })
+                .collect();
+            pairs.sort_unstable();
+            seen.push(pairs);
+        }
+        seen
+    });
+    let [stock, ours] = worlds;
+    assert_eq!(stock, ours);
+    let met = ours.iter().flatten().filter(|pair| pair.2).count();
+    assert!(met > 20 && met < ours.iter().flatten().count(), "{met} met");
+}
+
+/// Meshes that change in place, between queries that have no workspace to lose: one vertex, inside the box.
+#[test]
+fn an_edited_mesh_is_seen() {
+    let dispatcher = SbbkDispatcher::default();
+    let mut edited = shape(&mesh::ball(1.0, 16));
+    let probe = shape(&mesh::cuboid(Vec3::splat(0.05), 1));
+    let place = Pose3::translation(0.3, 0.25, 0.2);
+    let before = dispatcher.distance(&place, &edited, &probe).unwrap().distance;
+    let vertex = edited.vertices().len() / 3 + 1;
+    edited.update_vertices(|vertices| vertices[vertex] = place.translation);
+    let after = dispatcher.distance(&place, &edited, &probe).unwrap().distance;
+    assert!(before > 0.3 && after < before - 0.2, "{before} before, {after} after");
+    let truth = least([&edited, &probe], &place, 1.0).max(0.0);
+    assert!((after - truth).abs() < 1e-5);
+}
+
+/// Poses and velocities that are no numbers: the same as stock, which finds nothing.
+#[test]
+fn numbers_that_are_none() {
+    let head = shape(&mesh::monkey_head_with(6));
+    for bad in [f32::NAN, f32::INFINITY] {
+        let pos12 = Pose3::translation(bad, 0.0, 0.0);
+        let dispatcher = SbbkDispatcher::default();
+        assert!(!dispatcher.intersection_test(&pos12, &head, &head).unwrap().intersecting);
+        assert_eq!(dispatcher.distance(&pos12, &head, &head).unwrap().distance, f32::MAX);
+        let points = dispatcher.closest_points(&pos12, &head, &head, 1.0).unwrap();
+        assert_eq!(points, ClosestPoints::Disjoint);
+        assert!(dispatcher.contact(&pos12, &head, &head, 1.0).unwrap().is_none());
+        let options = ShapeCastOptions::with_max_time_of_impact(1.0);
+        let hit = dispatcher.cast_shapes(&pos12, Vec3::X, &head, &head, options).unwrap();
+        assert!(hit.is_none());
+        let motion = NonlinearRigidMotion::constant_position(pos12);
+        let still = NonlinearRigidMotion::identity();
+        let hit = dispatcher.cast_shapes_nonlinear(&still, &head, &motion, &head, 0.0, 1.0, true);
+        assert!(hit.unwrap().is_none());
+    }
+}
+
+/// Everything else is Parry's: other shapes, and meshes that deform.
+#[test]
+fn others_are_stocks() {
+    let (stock, ours) = (DefaultQueryDispatcher, SbbkDispatcher::default());
+    let head = shape(&mesh::monkey_head_with(6));
+    let soft = shape_with(&mesh::monkey_head_with(6), TriMeshFlags::DEFORMABLE);
+    let cuboid = Cuboid::new(Vec3::ONE);
+    let pos12 = Pose3::translation(2.3, 0.4, 0.1);
+    for (g1, g2) in [(&head as &dyn Shape, &cuboid as &dyn Shape), (&soft, &head), (&head, &soft)] {
+        let [a, b] = [&stock as &dyn QueryDispatcher, &ours]
+            .map(|dispatcher| dispatcher.distance(&pos12, g1, g2).unwrap());
+        assert_eq!(a, b);
+    }
+    assert_eq!(ours.stats().tree_builds, 0);
+}
