@@ -121,7 +121,8 @@ fn row(
     };
     let fresh = measure(places.iter().map(|place| vec![place.pos12]).collect());
     let [slow, fast] = [SLOW, FAST].map(|share| {
-        let motions = places.iter().map(|place| motion(mesh, place, share * prediction, STEP_COUNT));
+        let motions =
+            places.iter().map(|place| motion(mesh, place, share * prediction, STEP_COUNT));
         measure(motions.collect())
     });
     ConvexRow {
