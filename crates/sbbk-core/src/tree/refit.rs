@@ -24,7 +24,7 @@ pub struct RefitCost {
 }
 
 impl RefitCost {
-    /// Growth of the cost from which on a build is advised. A build takes about as long as twenty refits. Lower: builds that
+    /// Growth of the cost from which on a build is advised. A build takes about as long as twelve refits. Lower: builds that
     /// save little; higher: descents that visit more nodes than needed, in proportion.
     pub const REBUILD_AT: f32 = 2.0;
 
@@ -149,7 +149,9 @@ where
         let Some(pair) = self.aabb_pairs.get(index) else {
             return self.kdop_pair(index - self.aabb_pairs.len()).aabb();
         };
-        let children = pair.links.map(|child| self.aabb(child));
+        let [first, second] = pair.links;
+        let second = self.aabb(second);
+        let children = [self.aabb(first), second];
         self.aabb_pairs[index].refit(&children);
         self.charged(children[0].merge(&children[1]), 2)
     }
@@ -169,7 +171,9 @@ where
     /// The k-DOP around both children of an inner node of the k-DOP layers.
     fn kdop_pair(&mut self, pair: usize) -> Kdop<AXES> {
         let [first, second] = self.kdop_pairs[pair].links;
-        let children = [self.kdop(first), self.kdop(second)];
+        // The build goes on with the second child, so its nodes come first in memory.
+        let second = self.kdop(second);
+        let children = [self.kdop(first), second];
         self.kdop_pairs[pair].refit(&children);
         let merged = children[0].merge(&children[1]);
         self.charged(merged.aabb(), 2);
@@ -191,17 +195,23 @@ where
         project: impl Fn([f32x4; 3]) -> [f32x4; N],
     ) -> [[f32; N]; 2] {
         let batch = &mut self.leaves[leaf];
-        let members = batch.triangles.map(|triangle| self.triangles[triangle as usize]);
+        // Written out, here and below: `array::map` is not inlined, and its way over the stack was a third of a refit.
+        let [a, b, c, d] = batch.triangles;
+        let triangle = |triangle: u32| self.triangles[triangle as usize];
+        let members = [triangle(a), triangle(b), triangle(c), triangle(d)];
         let (mut low, mut high) =
             ([f32x4::splat(f32::INFINITY); N], [f32x4::splat(f32::NEG_INFINITY); N]);
         for corner in 0..3 {
-            let points = members.map(|triangle| self.vertices[triangle[corner] as usize]);
-            let axes: [f32x4; 3] =
-                std::array::from_fn(|axis| f32x4::new(points.map(|point| point[axis])));
-            batch.corners[corner] = axes.map(f32x4::to_array);
-            let [x, y, z] = std::array::from_fn(|axis| axes[axis] - self.centre[axis]);
-            self.farthest_squared = self.farthest_squared.fast_max(x * x + y * y + z * z);
-            let projections = project(axes);
+            let point = |lane: usize| {
+                let Vec3 { x, y, z } = self.vertices[members[lane][corner] as usize];
+                f32x4::new([x, y, z, 0.0])
+            };
+            let [x, y, z, _] = f32x4::transpose([point(0), point(1), point(2), point(3)]);
+            batch.corners[corner] = [x.to_array(), y.to_array(), z.to_array()];
+            let [cx, cy, cz] = self.centre;
+            let (dx, dy, dz) = (x - cx, y - cy, z - cz);
+            self.farthest_squared = self.farthest_squared.fast_max(dx * dx + dy * dy + dz * dz);
+            let projections = project([x, y, z]);
             for axis in 0..N {
                 low[axis] = low[axis].fast_min(projections[axis]);
                 high[axis] = high[axis].fast_max(projections[axis]);

@@ -23,8 +23,7 @@ pub fn centre_extent(min: f32, max: f32) -> (f32, f32) {
     (centre, extent.next_up())
 }
 
-/// [`centre_extent`] of an interval with `min <= max`, or a NaN, without branches: it is vectorised in loops over
-/// slabs. `f32::next_up` is not, and was a third of a refit.
+/// [`centre_extent`] of an interval with `min <= max`, or a NaN, without the branches of `f32::next_up`.
 #[inline(always)]
 pub(crate) fn ordered_centre_extent(min: f32, max: f32) -> (f32, f32) {
     let centre = 0.5 * min + 0.5 * max;
