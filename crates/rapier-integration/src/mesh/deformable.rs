@@ -30,7 +30,10 @@ struct Address {
 
 impl Address {
     fn of(mesh: &TriMesh) -> Self {
-        Self { vertices: mesh.vertices().as_ptr().addr(), triangles: mesh.indices().as_ptr().addr() }
+        Self {
+            vertices: mesh.vertices().as_ptr().addr(),
+            triangles: mesh.indices().as_ptr().addr(),
+        }
     }
 }
 
