@@ -22,6 +22,7 @@ mod pile;
 mod progress;
 mod same_poses;
 pub mod soak;
+pub mod soft;
 mod turns;
 
 pub use comparison::{ComparePlan, Comparison, compare};
