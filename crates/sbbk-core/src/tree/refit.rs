@@ -24,7 +24,7 @@ pub struct RefitCost {
 }
 
 impl RefitCost {
-    /// Growth of the cost from which on a build is advised. A build takes about as long as twelve refits. Lower: builds that
+    /// Growth of the cost from which on a build is advised. A build takes about as long as eleven refits. Lower: builds that
     /// save little; higher: descents that visit more nodes than needed, in proportion.
     pub const REBUILD_AT: f32 = 2.0;
 

@@ -36,7 +36,7 @@ impl SoftHeads {
         Self { heads, head, helicopter: mesh::helicopter(), seed: 7 }
     }
 
-    /// The starting poses, in two rows of the longest side of the helicopter.
+    /// The starting poses, in a row along the longest side of the helicopter.
     fn poses(&self) -> Vec<Pose3> {
         let mut random = Rand32::new(self.seed);
         let bounds = self.helicopter.bounds();
