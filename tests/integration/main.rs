@@ -9,6 +9,8 @@ mod bits;
 mod contract;
 /// Meshes against convex shapes.
 mod convex;
+/// Meshes that move their vertices between queries.
+mod deformable;
 /// Same inputs, same bits.
 mod determinism;
 /// A mesh that changes while pairs know it.
@@ -37,5 +39,5 @@ mod support;
 mod trajectories;
 /// Brute force in f64.
 mod truth;
-/// Meshes that cannot have a tree, or must not.
+/// Meshes that cannot have a tree.
 mod unsupported;

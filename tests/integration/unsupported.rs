@@ -76,24 +76,6 @@ fn contacts_answered_by_stock_keep_their_data() {
     assert_eq!(ages(&SbbkDispatcher::default(), [&broken, &whole]), expected);
 }
 
-/// Would catch trees for meshes that move their vertices between queries with nothing to tell it.
-#[test]
-fn a_deformable_mesh_is_stocks() {
-    let dispatcher = SbbkDispatcher::default();
-    let mut soft = shape_with(&mesh::ball(1.0, 4), TriMeshFlags::DEFORMABLE);
-    let whole = shape(&mesh::ball(1.0, 4));
-    let [mut pair, mut stock]: [Pair; 2] = Default::default();
-    for step in 0..3 {
-        let query = Query::new(&soft, &whole, above(1.9));
-        pair.ask(&dispatcher, &query);
-        stock.ask(&DefaultQueryDispatcher, &query);
-        assert!(stock.manifolds.iter().any(|manifold| !manifold.points.is_empty()));
-        assert_same(&pair.manifolds, &stock.manifolds, 0.0);
-        soft.update_vertices(|vertices| vertices[step].y += 0.01);
-    }
-    assert_eq!(dispatcher.stats(), SbbkDispatcher::default().stats());
-}
-
 /// Would catch a state that a mesh which became rigid, or whole, cannot leave.
 #[test]
 fn a_pair_changes_hands() {

@@ -8,7 +8,7 @@ use parry3d::query::{
     NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher, ShapeCastHit, ShapeDistance,
     ShapeIntersection, Unsupported,
 };
-use parry3d::shape::{CompositeShape, Shape, TriMesh};
+use parry3d::shape::{Shape, TriMesh};
 use sbbk_core::traverse::DescentCounts;
 use sbbk_core::tree::{BuildError, Tree};
 
@@ -45,7 +45,8 @@ impl SbbkDispatcher {
     }
 
     /// Builds the tree of a mesh now, or finds it built: at load time rather than in the step in which the mesh first comes
-    /// close to another. The tree stays for as long as the returned value lives.
+    /// close to another. The tree stays for as long as the returned value lives. Of no use for a mesh that deforms: its tree is
+    /// built by the first query and follows it from then on.
     ///
     /// A query cannot report trouble (Rapier ignores a dispatcher's errors), so a mesh that fails here is answered
     /// by Parry, as without SBBK, and counted in [`SbbkStats::unsupported_queries`].
@@ -105,7 +106,7 @@ impl SbbkDispatcher {
         C: Default + Copy + Send + Sync + 'static,
     {
         let cache = &self.cache;
-        let (mesh, other, flipped) = match (rigid_mesh(g1), rigid_mesh(g2)) {
+        let (mesh, other, flipped) = match (g1.as_trimesh(), g2.as_trimesh()) {
             (Some(mesh1), Some(mesh2)) => {
                 let (pair, contacts) =
                     (MeshPair { pos12, mesh1, mesh2, prediction }, self.config.contacts);
@@ -161,11 +162,6 @@ impl fmt::Debug for PreparedTree {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("PreparedTree").field(self.tree().stats()).finish()
     }
-}
-
-/// The mesh that SBBK answers for. Meshes that deform between queries are Parry's.
-fn rigid_mesh(shape: &dyn Shape) -> Option<&TriMesh> {
-    shape.as_trimesh().filter(|mesh| !mesh.is_deformable())
 }
 
 impl<M, C> PersistentQueryDispatcher<M, C> for SbbkDispatcher

@@ -23,7 +23,7 @@
 //! | pair | contacts | state kept between steps |
 //! |---|---|---|
 //! | mesh and mesh | SBBK | candidates, features, manifolds |
-//! | mesh and deformable mesh (`TriMeshFlags::DEFORMABLE`) | Parry | Parry's |
+//! | deformable mesh (`TriMeshFlags::DEFORMABLE`) and any mesh, or any of the shapes below | as for the mesh that it is at present; its tree is refitted by the first query after its vertices moved, for all pairs (two soft bodies: Rapier itself, no dispatcher is asked) | manifolds; candidates while no vertex moves |
 //! | mesh and cuboid, ball, capsule, segment, triangle, cylinder, cone, convex polyhedron, their round kinds, or half-space, in either order | SBBK's trees, Parry's contact routines: on a first query Parry's contacts of all triangles, bit for bit | candidates with distances and separating axes, manifolds |
 //! | mesh and anything else (height field, compound, polyline, voxels, custom shape) | Parry | Parry's |
 //! | all else | Parry | Parry's |
@@ -39,7 +39,8 @@
 //!
 //! The dispatcher is generic over manifold and contact data, so any host of Parry can use it. A host must drop a pair's
 //! workspace when it edits one of its shapes, as Rapier does and as Parry's own workspaces need too. Queries from many
-//! threads at once are fine: no lock is taken by a pair whose trees are known.
+//! threads at once are fine: no lock is taken by a pair of rigid meshes whose trees are known. A deformable mesh may be edited in place at
+//! any time between queries, and the workspaces kept: each query reads all of it (about 1 µs for 1000 triangles).
 //!
 //! Runs repeat bit for bit. The contacts of two meshes are a function of their pose and triangles, and their order of the
 //! meshes: not of what was remembered from earlier steps, of threads, or of when a tree was built.

@@ -3,15 +3,17 @@
 //! The lock is taken when a pair of colliders first needs its trees and when the last pair that used a tree ends, not by
 //! a query of a pair that has them. Trees are built outside of it; threads that want the same one wait for it alone.
 
-use std::collections::{HashMap, HashSet, VecDeque};
-use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::collections::{HashMap, VecDeque};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-use parry3d::shape::TriMesh;
+use parry3d::shape::{CompositeShape, TriMesh};
 use sbbk_core::tree::{BuildError, BuildOptions};
 
-use super::identity::{ContentHash, MeshToken};
+use super::deformable::{DeformableCounts, DeformableTree, DeformableTrees};
+use super::identity::{ContentHash, DeformedContent};
 use super::prepared::PreparedMesh;
+use super::unsupported::Unsupported;
 
 pub(crate) struct TreeCache {
     options: BuildOptions,
@@ -20,15 +22,11 @@ pub(crate) struct TreeCache {
     entries: Mutex<Entries>,
     builds: AtomicU64,
     hits: AtomicU64,
-    /// Meshes that cannot have a tree: not asked about again. By token, so a mesh that is taken for one of them by
-    /// mistake is answered by Parry, correctly if slowly.
-    unsupported: Mutex<HashSet<MeshToken>>,
-    /// Whether there are any, so that nobody takes the lock where there are none.
-    has_unsupported: AtomicBool,
+    /// Trees that are not shared by content.
+    deformable: Arc<DeformableTrees>,
+    unsupported_rigid: Unsupported,
+    unsupported_deformable: Unsupported,
 }
-
-/// Unsupported meshes remembered at most; then all are forgotten, and asked about once more.
-const UNSUPPORTED: usize = 256;
 
 #[derive(Default)]
 struct Entries {
@@ -62,6 +60,7 @@ pub(crate) struct CacheCounts {
     pub(crate) bytes: usize,
     pub(crate) builds: u64,
     pub(crate) hits: u64,
+    pub(crate) deformable: DeformableCounts,
 }
 
 impl TreeCache {
@@ -72,8 +71,9 @@ impl TreeCache {
             entries: Mutex::default(),
             builds: AtomicU64::new(0),
             hits: AtomicU64::new(0),
-            unsupported: Mutex::default(),
-            has_unsupported: AtomicBool::new(false),
+            deformable: Arc::default(),
+            unsupported_rigid: Unsupported::default(),
+            unsupported_deformable: Unsupported::default(),
         }
     }
 
@@ -97,23 +97,42 @@ impl TreeCache {
         }
     }
 
-    /// Remembers a mesh for which [`prepare`](Self::prepare) failed.
-    pub(crate) fn note_unsupported(&self, mesh: &TriMesh) {
-        let mut unsupported = self.unsupported.lock().unwrap_or_else(PoisonError::into_inner);
-        if unsupported.len() >= UNSUPPORTED {
-            unsupported.clear();
-        }
-        unsupported.insert(MeshToken::of(mesh));
-        self.has_unsupported.store(true, Ordering::Release);
+    /// The result of preparing a mesh, which is remembered if there is no tree for it.
+    pub(crate) fn noting<T>(&self, mesh: &TriMesh, result: Result<T, BuildError>) -> Option<T> {
+        result.map_err(|_| self.unsupported(mesh).note(mesh)).ok()
     }
 
     /// Whether one of the meshes is known not to have a tree.
     pub(crate) fn is_unsupported(&self, meshes: &[&TriMesh]) -> bool {
-        if !self.has_unsupported.load(Ordering::Acquire) {
-            return false;
-        }
-        let unsupported = self.unsupported.lock().unwrap_or_else(PoisonError::into_inner);
-        meshes.iter().any(|mesh| unsupported.contains(&MeshToken::of(mesh)))
+        meshes.iter().any(|mesh| self.unsupported(mesh).contains(mesh))
+    }
+
+    /// A mesh that deforms may be broken for a step: the others must not take a lock for it for ever after.
+    fn unsupported(&self, mesh: &TriMesh) -> &Unsupported {
+        if mesh.is_deformable() { &self.unsupported_deformable } else { &self.unsupported_rigid }
+    }
+
+    /// The place of the tree of a deformable mesh. Takes a lock.
+    pub(super) fn deformable(&self, mesh: &TriMesh) -> Arc<DeformableTree> {
+        DeformableTree::of(mesh, &self.deformable)
+    }
+
+    /// Whether `tree` is what [`deformable`](Self::deformable) returns for the mesh.
+    pub(super) fn is_place_of(&self, tree: &DeformableTree, mesh: &TriMesh) -> bool {
+        tree.is_of(mesh, &self.deformable)
+    }
+
+    /// The tree of a deformable mesh as it is now, see [`DeformableTree::current`].
+    pub(super) fn refitted(
+        &self,
+        tree: &DeformableTree,
+        mesh: &TriMesh,
+        content: DeformedContent,
+    ) -> Result<Arc<PreparedMesh>, BuildError> {
+        tree.current(mesh, content, || {
+            self.builds.fetch_add(1, Ordering::Relaxed);
+            PreparedMesh::new(mesh, &self.options)
+        })
     }
 
     fn acquire(self: &Arc<Self>, content: ContentHash) -> PreparedRef {
@@ -167,6 +186,7 @@ impl TreeCache {
             bytes: entries.by_content.values().map(|entry| entry.bytes()).sum(),
             builds: self.builds.load(Ordering::Relaxed),
             hits: self.hits.load(Ordering::Relaxed),
+            deformable: self.deformable.counts(),
         }
     }
 

@@ -16,12 +16,14 @@
 //! box stays equal and no sample moves: an edit of single vertices by `TriMesh::update_vertices`. Rapier
 //! drops the pair's workspace when a shape was edited (`ColliderChanges::SHAPE`, set by `shape_mut` and
 //! `set_shape`), and with it the token; other hosts must do the same, as Parry asks for its own workspaces too.
-//! Meshes that are meant to deform (`TriMeshFlags::DEFORMABLE`) do not come here.
+//!
+//! A mesh that is meant to deform (`TriMeshFlags::DEFORMABLE`) may change at any time and is read in full by each query:
+//! [`DeformedContent`].
 
 use std::hash::Hasher;
 
 use parry3d::shape::{TriMesh, TriMeshFlags};
-use xxhash_rust::xxh3::{Xxh3, xxh3_64};
+use xxhash_rust::xxh3::{Xxh3, xxh3_64, xxh3_128};
 
 /// Names a mesh by its content.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Hash)]
@@ -34,15 +36,37 @@ impl ContentHash {
 
     pub(crate) fn of(mesh: &TriMesh) -> Self {
         let mut hasher = Xxh3::new();
+        hasher.update(bytemuck::cast_slice(mesh.vertices()));
+        Self::add_topology(mesh, &mut hasher);
+        Self(hasher.digest128())
+    }
+
+    /// All but where the vertices are.
+    fn add_topology(mesh: &TriMesh, hasher: &mut Xxh3) {
         hasher.write_usize(mesh.vertices().len());
         let normals = TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED | TriMeshFlags::FIX_INTERNAL_EDGES;
         hasher.write_u16((mesh.flags() & normals).bits());
-        hasher.update(bytemuck::cast_slice(mesh.vertices()));
         hasher.update(bytemuck::cast_slice(mesh.indices()));
         for leaf in mesh.bvh().leaves(|_| true).take(Self::LEAVES) {
             hasher.write_u32(leaf);
         }
-        Self(hasher.digest128())
+    }
+}
+
+/// What a deformable mesh is at present: what never changes while it is the same mesh, and where its vertices are.
+/// Costs as much as a [`ContentHash`]; a refit takes about thirty times as long.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(crate) struct DeformedContent {
+    pub(super) topology: u128,
+    vertices: u128,
+}
+
+impl DeformedContent {
+    pub(crate) fn of(mesh: &TriMesh) -> Self {
+        let mut hasher = Xxh3::new();
+        ContentHash::add_topology(mesh, &mut hasher);
+        let vertices = xxh3_128(bytemuck::cast_slice(mesh.vertices()));
+        Self { topology: hasher.digest128(), vertices }
     }
 }
 

@@ -1,9 +1,12 @@
 //! Triangle meshes and their trees: what is the same mesh, and where its tree is kept.
 
 mod cache;
+mod deformable;
 mod identity;
+mod known;
 mod prepared;
+mod unsupported;
 
 pub(crate) use cache::{CacheCounts, PreparedRef, TreeCache};
-pub(crate) use identity::MeshToken;
+pub(crate) use known::{Change, Held, KnownMesh};
 pub(crate) use prepared::PreparedMesh;

@@ -1,5 +1,5 @@
-use parry3d::shape::{TriMesh, TriMeshFlags, TrianglePseudoNormals};
-use sbbk_core::tree::{BuildError, BuildOptions, Tree};
+use parry3d::shape::{CompositeShape, TriMesh, TriMeshFlags, TrianglePseudoNormals};
+use sbbk_core::tree::{BuildError, BuildOptions, RefitCost, Tree};
 
 /// All that is computed once a mesh.
 pub(crate) struct PreparedMesh {
@@ -9,8 +9,9 @@ pub(crate) struct PreparedMesh {
     ranks: Vec<u32>,
     /// The pseudo-normals that constrain contact normals, if the mesh asks for them
     /// (`TriMeshFlags::FIX_INTERNAL_EDGES`); for degenerate triangles none. Parry computes them anew for each pair of
-    /// triangles.
+    /// triangles. Empty for a deformable mesh, whose normals turn.
     normal_constraints: Vec<Option<TrianglePseudoNormals>>,
+    normals_turn: bool,
 }
 
 impl PreparedMesh {
@@ -21,12 +22,22 @@ impl PreparedMesh {
             ranks[triangle as usize] = rank as u32;
         }
         let triangles = 0..mesh.indices().len() as u32;
-        let normal_constraints = if mesh.flags().contains(TriMeshFlags::FIX_INTERNAL_EDGES) {
+        let has_constraints = mesh.flags().contains(TriMeshFlags::FIX_INTERNAL_EDGES);
+        let normals_turn = has_constraints && mesh.is_deformable();
+        let normal_constraints = if has_constraints && !normals_turn {
             triangles.map(|i| mesh.triangle_normal_constraints(i)).collect()
         } else {
             Vec::new()
         };
-        Ok(Self { tree, ranks, normal_constraints })
+        Ok(Self { tree, ranks, normal_constraints, normals_turn })
+    }
+
+    /// Fits the tree to a mesh whose vertices have moved.
+    ///
+    /// # Errors
+    /// Those of [`Tree::refit`].
+    pub(super) fn refit(&mut self, mesh: &TriMesh) -> Result<RefitCost, BuildError> {
+        self.tree.refit(mesh.vertices(), mesh.indices())
     }
 
     /// The place of a triangle in stock order. A number that is not a triangle's sorts last.
@@ -34,7 +45,18 @@ impl PreparedMesh {
         self.ranks.get(triangle as usize).copied().unwrap_or(u32::MAX)
     }
 
-    pub(crate) fn normal_constraints(&self, triangle: u32) -> Option<&TrianglePseudoNormals> {
+    /// The cone of a triangle of `mesh`; made in `fresh` if the mesh deforms.
+    #[inline]
+    pub(crate) fn normal_constraints<'a>(
+        &'a self,
+        mesh: &TriMesh,
+        triangle: u32,
+        fresh: &'a mut Option<TrianglePseudoNormals>,
+    ) -> Option<&'a TrianglePseudoNormals> {
+        if self.normals_turn {
+            *fresh = mesh.triangle_normal_constraints(triangle);
+            return fresh.as_ref();
+        }
         self.normal_constraints.get(triangle as usize)?.as_ref()
     }
 

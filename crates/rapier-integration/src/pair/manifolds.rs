@@ -5,7 +5,7 @@ use parry3d::query::details::NormalConstraints;
 use parry3d::query::{
     ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, TrackedContact,
 };
-use parry3d::shape::Triangle;
+use parry3d::shape::{Triangle, TrianglePseudoNormals};
 use sbbk_core::contact::{FeaturePair, ManifoldPoints, TriangleContact};
 use sbbk_core::traverse::PairFrame;
 
@@ -104,7 +104,8 @@ impl Generator<'_> {
         M: Default + Clone + Send + Sync,
         C: Default + Copy + Send + Sync,
     {
-        let constraints = self.constraints(candidate);
+        let mut fresh = [None, None];
+        let constraints = self.constraints(candidate, &mut fresh);
         match self.contacts {
             ContactGenerator::Exact => {
                 let placed = (self.frame.placement(), self.pair.pos12);
@@ -126,12 +127,16 @@ impl Generator<'_> {
     }
 
     #[inline(always)]
-    fn constraints(&self, candidate: &Candidate) -> Constraints<'_> {
-        let cone = |mesh: usize, triangle: u32| {
-            let cone = self.prepared[mesh].normal_constraints(triangle);
-            cone.map(|cone| cone as &dyn NormalConstraints)
-        };
-        [cone(0, candidate.triangle1), cone(1, candidate.triangle2)]
+    fn constraints<'a>(
+        &'a self,
+        candidate: &Candidate,
+        [fresh1, fresh2]: &'a mut [Option<TrianglePseudoNormals>; 2],
+    ) -> Constraints<'a> {
+        let [prepared1, prepared2] = self.prepared;
+        let MeshPair { mesh1, mesh2, .. } = self.pair;
+        let cone1 = prepared1.normal_constraints(mesh1, candidate.triangle1, fresh1);
+        let cone2 = prepared2.normal_constraints(mesh2, candidate.triangle2, fresh2);
+        [cone1, cone2].map(|cone| cone.map(|cone| cone as &dyn NormalConstraints))
     }
 
     /// The pose that stock Parry passes on: bit for bit, it inverts the pose twice if it does not swap the meshes.

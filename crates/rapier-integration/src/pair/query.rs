@@ -13,7 +13,7 @@ use super::coherence::{Coherence, Plan};
 use super::manifolds::Generator;
 use super::state::{PairKind, PairState};
 use crate::ContactGenerator;
-use crate::mesh::{MeshToken, PreparedRef, TreeCache};
+use crate::mesh::{Change, Held, KnownMesh, TreeCache};
 
 /// The question: which contacts do two meshes have?
 #[derive(Copy, Clone)]
@@ -49,19 +49,9 @@ const GREATEST_SLACK: f64 = 1.0;
 struct TwoMeshes;
 
 impl PairKind for TwoMeshes {
-    type Shapes = KnownMeshes;
+    type Shapes = [KnownMesh; 2];
     type Candidate = Candidate;
     type Contact = FeaturePair;
-}
-
-/// The trees of the pair, as far as they are known.
-#[derive(Clone, Default)]
-enum KnownMeshes {
-    /// No query has needed them yet.
-    #[default]
-    None,
-    /// Valid while the tokens are.
-    Trees([MeshToken; 2], [PreparedRef; 2]),
 }
 
 thread_local! {
@@ -69,10 +59,6 @@ thread_local! {
 }
 
 impl MeshPair<'_> {
-    fn tokens(&self) -> [MeshToken; 2] {
-        [self.mesh1, self.mesh2].map(MeshToken::of)
-    }
-
     /// Whether the boxes around the meshes meet, as stock Parry tests them first. Asked before there are trees.
     fn root_boxes_meet(&self) -> bool {
         let [root1, root2] = [self.mesh1, self.mesh2].map(|mesh| mesh.bvh().root_aabb());
@@ -88,48 +74,35 @@ impl MeshPair<'_> {
         size1 < size2
     }
 
-    /// The trees of both meshes, from the state if they are known and still valid.
+    /// The trees of both meshes, from the state if they are known and still valid, refitted if a mesh has deformed.
     ///
-    /// If they are not, what is known of the pair is forgotten. Its manifolds as well, if a mesh was edited while the
-    /// host kept the workspace. If only another dispatcher was here before, the manifolds keep their data, but no
-    /// generator must take their points for its own.
+    /// If anything has changed, the candidates are forgotten. The manifolds as well, if a mesh was edited while the
+    /// host kept the workspace. If only vertices moved or another dispatcher was here before, the manifolds keep their data, but
+    /// no generator must take their points for its own.
     fn trees<'s, M, C>(
         &self,
         cache: &Arc<TreeCache>,
-        known: &'s mut KnownMeshes,
+        [known1, known2]: &'s mut [KnownMesh; 2],
         coherence: &mut Coherence<Candidate>,
         manifolds: &mut Vec<ContactManifold<M, C>>,
-    ) -> Option<&'s [PreparedRef; 2]>
+    ) -> Option<[Held<'s>; 2]>
     where
         C: Default + Copy,
     {
-        let tokens = self.tokens();
-        let is_valid = match known {
-            KnownMeshes::None => false,
-            KnownMeshes::Trees(valid, [one, _]) => *valid == tokens && one.is_from(cache),
-        };
-        if !is_valid {
+        let (change1, tree1) = cache.noting(self.mesh1, known1.update(self.mesh1, cache))?;
+        let (change2, tree2) = cache.noting(self.mesh2, known2.update(self.mesh2, cache))?;
+        let change = change1.max(change2);
+        if change != Change::None {
             coherence.clear();
-            match known {
-                KnownMeshes::Trees(old, _) if *old != tokens => manifolds.clear(),
-                _ => manifolds.iter_mut().for_each(ContactManifold::mark_shapes_deformed),
+        }
+        match change {
+            Change::None => {}
+            Change::Unknown | Change::Deformed => {
+                manifolds.iter_mut().for_each(ContactManifold::mark_shapes_deformed);
             }
-            let prepare = |mesh| match cache.prepare(mesh) {
-                Ok(prepared) => Some(prepared),
-                Err(_) => {
-                    cache.note_unsupported(mesh);
-                    None
-                }
-            };
-            *known = match [self.mesh1, self.mesh2].map(prepare) {
-                [Some(one), Some(two)] => KnownMeshes::Trees(tokens, [one, two]),
-                _ => KnownMeshes::None,
-            };
+            Change::Replaced => manifolds.clear(),
         }
-        match known {
-            KnownMeshes::Trees(_, prepared) => Some(prepared),
-            KnownMeshes::None => None,
-        }
+        Some([tree1, tree2])
     }
 }
 
@@ -151,14 +124,14 @@ where
     }
     let PairState::<_, _, TwoMeshes> { shapes: meshes, coherence, history } =
         PairState::of(workspace, manifolds);
-    if matches!(meshes, KnownMeshes::None) && !pair.root_boxes_meet() {
+    if meshes.iter().any(KnownMesh::is_unknown) && !pair.root_boxes_meet() {
         manifolds.clear();
         return Answer::Apart;
     }
     let Some(prepared) = pair.trees(cache, meshes, coherence, manifolds) else {
         return Answer::Unsupported;
     };
-    let prepared = prepared.each_ref().map(PreparedRef::get);
+    let prepared = prepared.each_ref().map(|held| &**held);
     let trees = (&prepared[0].tree, &prepared[1].tree);
     let placement = Placement::new(pair.pos12);
     let ball = trees.1.bounding_ball();

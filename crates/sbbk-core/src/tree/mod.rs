@@ -2,8 +2,8 @@
 //! batches of triangles in the leaves.
 //!
 //! A tree is built in a comfortable form (`build.rs`: binned SAH over primitives, one node after the
-//! other) and packed once into the flat arrays that the descent reads (`pack.rs`). It is immutable
-//! then.
+//! other) and packed once into the flat arrays that the descent reads (`pack.rs`). For a mesh that deforms its volumes can
+//! be fitted anew in place ([`Tree::refit`]); else it is immutable then.
 //!
 //! ```
 //! use glamx::Vec3;
@@ -22,6 +22,7 @@ mod build;
 mod layers;
 mod node;
 mod pack;
+mod refit;
 mod stats;
 mod validate;
 
@@ -29,6 +30,7 @@ pub use build::BuildOptions;
 pub use layers::LayerPlan;
 pub use node::{BATCH, LeafBatch, Link, Slot};
 pub(crate) use node::{Children, Lanes};
+pub use refit::RefitCost;
 pub use stats::BuildStats;
 pub use validate::Violation;
 
@@ -88,6 +90,14 @@ pub enum BuildError {
         vertex: u32,
         /// Its coordinates.
         position: Vec3,
+    },
+    /// A tree can be fitted only to as many triangles as it was built of.
+    #[error("the mesh has {count} triangles, but the tree was built of {tree_count}")]
+    OtherTriangleCount {
+        /// The mesh's triangle count.
+        count: usize,
+        /// The tree's.
+        tree_count: u32,
     },
     /// The layers cannot be ordered as asked.
     #[error(

@@ -6,7 +6,7 @@
 
 use glamx::Vec3;
 
-use crate::volumes::rounding::centre_extent;
+use crate::volumes::rounding::{centre_extent, ordered_centre_extent};
 use crate::volumes::{Aabb, Kdop, Slabs};
 
 /// Triangles in a leaf at most, and lanes of the triangle test.
@@ -102,6 +102,22 @@ impl AabbPair {
             self.extent[axis][lane] = extent;
         }
     }
+
+    /// Puts other boxes in the place of both children's.
+    pub(super) fn refit(&mut self, children: &[Aabb; 2]) {
+        let ends = |axis: usize| children.map(|child| (child.min[axis], child.max[axis]));
+        for axis in 0..3 {
+            (self.centre[axis], self.extent[axis]) = lanes(ends(axis));
+        }
+    }
+}
+
+/// The intervals of two children, as centres and half-lengths.
+#[inline(always)]
+fn lanes([one, two]: [(f32, f32); 2]) -> (Lanes, Lanes) {
+    let (centre1, extent1) = ordered_centre_extent(one.0, one.1);
+    let (centre2, extent2) = ordered_centre_extent(two.0, two.1);
+    ([centre1, centre2], [extent1, extent2])
 }
 
 impl<const AXES: usize> KdopPair<AXES> {
@@ -117,6 +133,16 @@ impl<const AXES: usize> KdopPair<AXES> {
             let (centre, extent) = centre_extent(kdop.min[axis], kdop.max[axis]);
             self.centre[axis][lane] = centre;
             self.extent[axis][lane] = extent;
+        }
+    }
+
+    /// Puts other k-DOPs in the place of both children's.
+    #[inline(always)]
+    pub(super) fn refit(&mut self, children: &[Kdop<AXES>; 2]) {
+        let [one, two] = children;
+        for axis in 0..AXES {
+            let ends = [(one.min[axis], one.max[axis]), (two.min[axis], two.max[axis])];
+            (self.centre[axis], self.extent[axis]) = lanes(ends);
         }
     }
 }

@@ -24,6 +24,8 @@
 //! | 18 | (1,1,0), (1,0,1), (0,1,1) else | `(x + y - z)/2`, `(x + z - y)/2`, `(y + z - x)/2` |
 //! | 26 | (1,0,0), (1,1,0), (1,1,1) | `x - y`, `y - z`, `z` |
 
+use std::ops::{Add, Sub};
+
 use glamx::{DVec3, Vec3};
 
 /// Marker for the slab counts that have a direction set: 7, 9 and 13 (k = 14, 18, 26).
@@ -57,7 +59,13 @@ pub trait DirectionSet<const AXES: usize>: sealed::Sealed {
 
     /// The projections of a point on all directions. Written out, as `x·0 + y·1 + z·1` costs three products that no
     /// compiler may leave out; fitting k-DOPs was a tenth of a build.
-    fn project(point: Vec3) -> Slabs<AXES>;
+    #[inline]
+    fn project(point: Vec3) -> Slabs<AXES> {
+        Self::project_components(point.to_array())
+    }
+
+    /// The same for one point or a lane of several.
+    fn project_components<T: Component>(components: [T; 3]) -> [T; AXES];
 
     /// The cone of three adjacent directions that contains the direction with components
     /// `x >= y >= z >= 0`, with their coefficients.
@@ -84,6 +92,11 @@ pub trait DirectionSet<const AXES: usize>: sealed::Sealed {
         [term(0), term(1), term(2)]
     }
 }
+
+/// A coordinate of one point, or of several in lanes.
+pub trait Component: Copy + Add<Output = Self> + Sub<Output = Self> {}
+
+impl<T: Copy + Add<Output = Self> + Sub<Output = Self>> Component for T {}
 
 /// Where a member stands in a [`SlabTable`].
 const fn member_index([x, y, z]: Member) -> usize {
@@ -133,8 +146,8 @@ const fn concatenate<const AXES: usize>(sets: [&[Vec3]; 3]) -> [Vec3; AXES] {
 impl DirectionSet<7> for Directions<7> {
     const DIRECTIONS: [Vec3; 7] = concatenate([&FACES, &CORNERS, &[]]);
 
-    #[inline]
-    fn project(Vec3 { x, y, z }: Vec3) -> Slabs<7> {
+    #[inline(always)]
+    fn project_components<T: Component>([x, y, z]: [T; 3]) -> [T; 7] {
         let [a, b] = [x + y, x - y];
         [x, y, z, a + z, a - z, b + z, b - z]
     }
@@ -148,8 +161,8 @@ impl DirectionSet<7> for Directions<7> {
 impl DirectionSet<9> for Directions<9> {
     const DIRECTIONS: [Vec3; 9] = concatenate([&FACES, &EDGES, &[]]);
 
-    #[inline]
-    fn project(Vec3 { x, y, z }: Vec3) -> Slabs<9> {
+    #[inline(always)]
+    fn project_components<T: Component>([x, y, z]: [T; 3]) -> [T; 9] {
         [x, y, z, x + y, x - y, x + z, x - z, y + z, y - z]
     }
 
@@ -171,8 +184,8 @@ impl DirectionSet<9> for Directions<9> {
 impl DirectionSet<13> for Directions<13> {
     const DIRECTIONS: [Vec3; 13] = concatenate([&FACES, &EDGES, &CORNERS]);
 
-    #[inline]
-    fn project(Vec3 { x, y, z }: Vec3) -> Slabs<13> {
+    #[inline(always)]
+    fn project_components<T: Component>([x, y, z]: [T; 3]) -> [T; 13] {
         let [a, b] = [x + y, x - y];
         [x, y, z, a, b, x + z, x - z, y + z, y - z, a + z, a - z, b + z, b - z]
     }

@@ -1,7 +1,7 @@
 use glamx::{Pose3, Vec3};
 
 use super::rounding::gamma;
-use super::{DirectionSet, Directions, Slabs, Volume};
+use super::{Aabb, DirectionSet, Directions, Slabs, Volume};
 
 /// A discrete oriented polytope of `AXES` slabs, k = 2·`AXES` half-spaces.
 ///
@@ -48,6 +48,26 @@ where
         self
     }
 
+    /// The k-DOP of points whose projections have these ends.
+    ///
+    /// One slack for all directions but the axes, that of the largest coordinates, for what the projections round.
+    pub(crate) fn of_projections(min: Slabs<AXES>, max: Slabs<AXES>) -> Self {
+        let mut kdop = Self { min, max };
+        let magnitude = |axis: usize| min[axis].abs().max(max[axis].abs());
+        let slack = gamma(3) * (magnitude(0) + magnitude(1) + magnitude(2));
+        for axis in 3..AXES {
+            kdop.min[axis] -= slack;
+            kdop.max[axis] += slack;
+        }
+        kdop
+    }
+
+    /// The box of the first three slabs.
+    pub(crate) fn aabb(&self) -> Aabb {
+        let corner = |slabs: &Slabs<AXES>| Vec3::new(slabs[0], slabs[1], slabs[2]);
+        Aabb { min: corner(&self.min), max: corner(&self.max) }
+    }
+
     /// The largest absolute slab bound.
     fn magnitude(&self) -> f32 {
         self.min.iter().chain(&self.max).fold(0.0, |m: f32, x| m.max(x.abs()))
@@ -63,7 +83,6 @@ where
     /// As point by point, but with one slack for all, that of the largest coordinates: half the time.
     fn fit(points: &[Vec3]) -> Self {
         let mut kdop = Self::EMPTY;
-        let mut magnitude = Vec3::ZERO;
         for &point in points {
             let projections = <Directions<AXES> as DirectionSet<AXES>>::project(point);
             for axis in 0..AXES {
@@ -72,14 +91,8 @@ where
                 kdop.min[axis] = if projection < min { projection } else { min };
                 kdop.max[axis] = if projection > max { projection } else { max };
             }
-            magnitude = magnitude.max(point.abs());
         }
-        let slack = gamma(3) * magnitude.element_sum();
-        for axis in 3..AXES {
-            kdop.min[axis] -= slack;
-            kdop.max[axis] += slack;
-        }
-        kdop
+        Self::of_projections(kdop.min, kdop.max)
     }
 
     fn merge(&self, other: &Self) -> Self {

@@ -22,3 +22,14 @@ pub fn centre_extent(min: f32, max: f32) -> (f32, f32) {
     let extent = (max - centre).max(centre - min);
     (centre, extent.next_up())
 }
+
+/// [`centre_extent`] of an interval with `min <= max`, or a NaN, without the branches of `f32::next_up`.
+#[inline(always)]
+pub(crate) fn ordered_centre_extent(min: f32, max: f32) -> (f32, f32) {
+    let centre = 0.5 * min + 0.5 * max;
+    let (above, below) = (max - centre, centre - min);
+    let extent = if above > below { above } else { below };
+    // Of a number that is not negative the next one has the next bits.
+    let up = f32::from_bits(extent.to_bits() + 1);
+    (centre, if extent < f32::INFINITY { up } else { extent })
+}

@@ -17,7 +17,20 @@ pub struct Sphere {
 /// clouds (a test); more gain a percent and cost build time.
 const REFINEMENTS: usize = 4;
 
+/// What a distance may lose where the squares of its coordinates underflow: the root of some times 2^-149.
+const UNDERFLOW: f32 = 1e-22;
+
 impl Sphere {
+    /// The sphere that contains all points whose computed distance from `centre` is `distance` or less.
+    ///
+    /// Rounding: a distance is a sum of three squared differences and a root, γ_5 in all, relative to the
+    /// difference of coordinates, which is itself rounded by u of the coordinates.
+    pub(crate) fn reaching(centre: Vec3, distance: f32) -> Self {
+        let magnitude = centre.abs().max_element() + distance;
+        let radius = distance * (1.0 + gamma(6)) + gamma(2) * magnitude + UNDERFLOW;
+        Self { centre, radius }
+    }
+
     /// The farthest of `points` from the centre, and its distance.
     fn farthest(&self, points: &[Vec3]) -> (Vec3, f32) {
         let mut farthest = (self.centre, 0.0);
@@ -48,9 +61,6 @@ impl Volume for Sphere {
     /// Tight Fitting Bounding Spheres*, 2008), then walks the centre towards the farthest point by a
     /// shrinking step (Bădoiu and Clarkson, *Smaller Core-Sets for Balls*, 2003) and keeps the best.
     /// Linear in the number of points.
-    ///
-    /// Rounding: a distance is a sum of three squared differences and a root, γ_5 in all, relative to the
-    /// difference of coordinates, which is itself rounded by u of the coordinates.
     fn fit(points: &[Vec3]) -> Self {
         let Some(&first) = points.first() else {
             return Self::EMPTY;
@@ -87,8 +97,7 @@ impl Volume for Sphere {
             sphere.radius = 0.99 * best.radius * (1.0 - 0.1 / (step + 1) as f32);
             sphere = sphere.grown_to(point, distance);
         }
-        let magnitude = best.centre.abs().max_element() + best.radius;
-        Self { radius: best.radius * (1.0 + gamma(6)) + gamma(2) * magnitude, ..best }
+        Self::reaching(best.centre, best.radius)
     }
 
     fn merge(&self, other: &Self) -> Self {

@@ -84,7 +84,7 @@ struct TruthMesh {
     vertices: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     /// Keeps the address, which is the key, from being used for another shape.
-    _shape: SharedShape,
+    _shape: Option<SharedShape>,
 }
 
 /// Every triangle pair of one question within the prediction distance and its band.
@@ -95,6 +95,16 @@ pub struct Truth {
 impl Judge {
     /// A judge of the meshes among `shapes`; each is converted once, however often it is shared.
     pub fn new<'a>(shapes: impl IntoIterator<Item = &'a SharedShape>) -> Self {
+        Self::holding(shapes, true)
+    }
+
+    /// A judge of meshes that deform, as they are now. It does not hold them, as they would be copied then before their
+    /// vertices move: it must not outlive them.
+    pub fn of_present<'a>(shapes: impl IntoIterator<Item = &'a SharedShape>) -> Self {
+        Self::holding(shapes, false)
+    }
+
+    fn holding<'a>(shapes: impl IntoIterator<Item = &'a SharedShape>, is_held: bool) -> Self {
         let mut judge = Self::default();
         for shape in shapes {
             if let Some(mesh) = shape.as_trimesh() {
@@ -102,7 +112,7 @@ impl Judge {
                 judge.meshes.entry(address).or_insert_with(|| TruthMesh {
                     vertices: mesh.vertices().iter().map(|v| v.as_dvec3()).collect(),
                     triangles: mesh.indices().to_vec(),
-                    _shape: shape.clone(),
+                    _shape: is_held.then(|| shape.clone()),
                 });
             }
         }

@@ -20,6 +20,7 @@ mod helicopter;
 mod pile;
 mod portrait;
 pub(crate) mod random;
+mod soft_heads;
 mod solid;
 mod two_meshes;
 
@@ -28,5 +29,6 @@ pub use built::{Scene, SceneError, SceneWorld};
 pub use head_on_slope::HeadOnSlope;
 pub use helicopter::{BallKind, HelicopterBallDrop};
 pub use pile::MonkeyPile;
+pub use soft_heads::SoftHeads;
 pub use solid::Solid;
 pub use two_meshes::TwoMeshes;

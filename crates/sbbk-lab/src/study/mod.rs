@@ -23,6 +23,7 @@ mod progress;
 pub mod queries;
 mod same_poses;
 pub mod soak;
+pub mod soft;
 mod turns;
 
 pub use comparison::{ComparePlan, Comparison, compare};

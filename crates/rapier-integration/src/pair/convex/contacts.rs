@@ -263,7 +263,8 @@ impl Generator<'_> {
         M: Default,
         C: Default + Copy,
     {
-        let cone = self.prepared.normal_constraints(candidate.triangle);
+        let mut fresh = None;
+        let cone = self.prepared.normal_constraints(self.mesh, candidate.triangle, &mut fresh);
         let cone = cone.map(|cone| cone as &dyn NormalConstraints);
         let (prediction, [pose, inverse]) = (self.prediction, &self.parrys_poses);
         // The shape in the frame of the triangle, and the reverse.

@@ -13,7 +13,7 @@ use sbbk_core::volumes::rounding::gamma;
 
 use super::contacts::{Generator, Limits, NearTriangle};
 use super::shape::{ConvexShape, Fingerprint, Kind};
-use crate::mesh::{MeshToken, PreparedMesh, PreparedRef, TreeCache};
+use crate::mesh::{Change, Held, KnownMesh, PreparedMesh, TreeCache};
 use crate::pair::Answer;
 use crate::pair::candidates::OrderKey;
 use crate::pair::coherence::{Coherence, KnownCandidate, Plan};
@@ -41,15 +41,8 @@ impl PairKind for MeshAndConvex {
     type Contact = ();
 }
 
-/// The tree of the mesh, as far as it is known, and the shape that the candidates are for.
-#[derive(Clone, Default)]
-enum KnownShapes {
-    /// No query has needed it yet.
-    #[default]
-    None,
-    /// Valid while token and fingerprint are.
-    Tree(MeshToken, Fingerprint, PreparedRef),
-}
+/// The mesh, as far as it is known, and the shape that the candidates are for.
+type KnownShapes = (KnownMesh, Option<Fingerprint>);
 
 /// Parry's GJK ends when it knows a distance, radii not counted, to this share; it calls triangles that are so much
 /// beyond the prediction distance contacts as well. Looking for them makes the contacts those of a test of all
@@ -108,44 +101,34 @@ impl ConvexPair<'_> {
         prediction + GJK_TOLERANCE * (prediction + self.shape.radius()) + gamma(64) * largest
     }
 
-    /// The tree of the mesh, from the state if it is known and still valid.
+    /// The tree of the mesh, from the state if it is known and still valid, refitted if the mesh has deformed.
     ///
-    /// If it is not, what is known of the pair is forgotten. Its manifolds as well, if a shape was edited while the host
+    /// If anything has changed, the candidates are forgotten. The manifolds as well, if a shape was edited while the host
     /// kept the workspace; if only another dispatcher was here before, or a snapshot was restored, the manifolds are as good as ours:
-    /// all are of Parry's routine.
+    /// all are of Parry's routine. If vertices have moved, it must not use their points again.
     fn tree<'s, M, C: Default + Copy>(
         &self,
         cache: &Arc<TreeCache>,
-        known: &'s mut KnownShapes,
+        (known, known_shape): &'s mut KnownShapes,
         coherence: &mut Coherence<NearTriangle>,
         manifolds: &mut Vec<ContactManifold<M, C>>,
-    ) -> Option<&'s PreparedRef> {
-        let now = (MeshToken::of(self.mesh), self.shape.fingerprint());
-        let is_valid = match known {
-            KnownShapes::None => false,
-            KnownShapes::Tree(token, fingerprint, tree) => {
-                (*token, *fingerprint) == now && tree.is_from(cache)
-            }
-        };
-        if !is_valid {
+    ) -> Option<Held<'s>> {
+        let (mut change, tree) = cache.noting(self.mesh, known.update(self.mesh, cache))?;
+        let fingerprint = self.shape.fingerprint();
+        if known_shape.replace(fingerprint).is_some_and(|known| known != fingerprint) {
+            change = Change::Replaced;
+        }
+        if change != Change::None {
             coherence.clear();
-            if let KnownShapes::Tree(token, fingerprint, _) = known
-                && (*token, *fingerprint) != now
-            {
-                manifolds.clear();
+        }
+        match change {
+            Change::None | Change::Unknown => {}
+            Change::Deformed => {
+                manifolds.iter_mut().for_each(ContactManifold::mark_shapes_deformed);
             }
-            *known = match cache.prepare(self.mesh) {
-                Ok(tree) => KnownShapes::Tree(now.0, now.1, tree),
-                Err(_) => {
-                    cache.note_unsupported(self.mesh);
-                    KnownShapes::None
-                }
-            };
+            Change::Replaced => manifolds.clear(),
         }
-        match known {
-            KnownShapes::Tree(_, _, tree) => Some(tree),
-            KnownShapes::None => None,
-        }
+        Some(tree)
     }
 
     /// Fills `scratch.candidates` with all triangles within `margin`, and few others, in stock order.
@@ -191,14 +174,14 @@ where
     }
     let PairState::<_, _, MeshAndConvex> { shapes, coherence, history } =
         PairState::of(workspace, manifolds);
-    if matches!(shapes, KnownShapes::None) && !pair.root_boxes_meet() {
+    if shapes.0.is_unknown() && !pair.root_boxes_meet() {
         manifolds.clear();
         return Answer::Apart;
     }
     let Some(prepared) = pair.tree(cache, shapes, coherence, manifolds) else {
         return Answer::Unsupported;
     };
-    let prepared = prepared.get();
+    let prepared = &*prepared;
     let placement = pair.placement();
     let sight = pair.sight(prepared);
     let ball = prepared.tree.bounding_ball();

@@ -9,6 +9,7 @@ mod meshes;
 mod pile;
 mod queries;
 mod soak;
+mod soft;
 
 pub use contacts::{by_mesh, by_size, contact_generators, contacts, queries};
 pub use convex::convex;
@@ -19,6 +20,7 @@ pub use meshes::costs;
 pub use pile::{accuracy, runs, same_poses, sizes};
 pub use queries::one_answer;
 pub use soak::soak;
+pub use soft::{refit, soft_heads};
 
 use super::Grid;
 use crate::study::Comparison;
