@@ -15,6 +15,8 @@ mod determinism;
 mod edited_mesh;
 /// SBBK's own contacts against the truth, and against stock where stock is right.
 mod exact;
+/// Meshes against height fields.
+mod heightfield;
 /// Contacts beside those of stock.
 mod like_stock;
 /// Motion that never loses a contact: random walks against fresh queries.

@@ -14,7 +14,8 @@ use sbbk_core::tree::{BuildError, Tree};
 
 use crate::mesh::{PreparedRef, TreeCache};
 use crate::pair::{
-    Answer, ConvexPair, ConvexShape, MeshPair, contact_manifolds, convex_contact_manifolds,
+    Answer, ConvexPair, ConvexShape, FieldPair, MeshPair, contact_manifolds,
+    convex_contact_manifolds, field_contact_manifolds,
 };
 use crate::stats::QueryCounters;
 use crate::{ContactGenerator, SbbkConfig, SbbkStats, TriangleContacts};
@@ -110,6 +111,16 @@ impl SbbkDispatcher {
             (None, Some(mesh)) => (mesh, g1, true),
             (None, None) => return Answer::Unsupported,
         };
+        if let Some(field) = other.as_heightfield() {
+            let pair = FieldPair { pos12, mesh, field, flipped, prediction };
+            let contacts = self.config.contacts;
+            return self.counted(|counts| match counts {
+                Some(counts) => {
+                    field_contact_manifolds(pair, cache, contacts, counts, manifolds, workspace)
+                }
+                None => field_contact_manifolds(pair, cache, contacts, (), manifolds, workspace),
+            });
+        }
         let Some(shape) = ConvexShape::of(other) else {
             return Answer::Unsupported;
         };

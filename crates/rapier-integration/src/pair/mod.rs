@@ -2,12 +2,13 @@
 //!
 //! [`query`] is the way of the data for two meshes: the state of the pair ([`state`]), the descent that collects the pairs of
 //! triangles that may touch ([`candidates`]), and one manifold for each pair that does ([`exact`], [`manifolds`]).
-//! [`convex`] is the same way for a mesh and a convex shape.
+//! [`convex`] is the same way for a mesh and a convex shape, [`heightfield`] for a mesh and a height field.
 
 mod candidates;
 mod coherence;
 mod convex;
 mod exact;
+mod heightfield;
 mod manifolds;
 mod previous;
 mod query;
@@ -15,4 +16,5 @@ mod state;
 
 pub(crate) use convex::{ConvexPair, ConvexShape, contact_manifolds as convex_contact_manifolds};
 pub use exact::TriangleContacts;
+pub(crate) use heightfield::{FieldPair, contact_manifolds as field_contact_manifolds};
 pub(crate) use query::{Answer, MeshPair, contact_manifolds};
