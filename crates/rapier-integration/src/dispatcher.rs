@@ -14,8 +14,8 @@ use sbbk_core::tree::{BuildError, Tree};
 
 use crate::mesh::{PreparedRef, TreeCache};
 use crate::pair::{
-    Answer, ConvexPair, ConvexShape, FieldPair, MeshPair, contact_manifolds,
-    convex_contact_manifolds, field_contact_manifolds,
+    Answer, CompoundPair, ConvexPair, ConvexShape, FieldPair, MeshPair, compound_contact_manifolds,
+    contact_manifolds, convex_contact_manifolds, field_contact_manifolds,
 };
 use crate::stats::QueryCounters;
 use crate::{ContactGenerator, SbbkConfig, SbbkStats, TriangleContacts};
@@ -121,10 +121,22 @@ impl SbbkDispatcher {
                 None => field_contact_manifolds(pair, cache, contacts, (), manifolds, workspace),
             });
         }
+        if let Some(compound) = other.as_compound() {
+            if !CompoundPair::is_known(compound) {
+                return Answer::Unsupported;
+            }
+            let pair = CompoundPair { pos12, mesh, compound, flipped, prediction };
+            return self.counted(|counts| match counts {
+                Some(counts) => {
+                    compound_contact_manifolds(pair, cache, counts, manifolds, workspace)
+                }
+                None => compound_contact_manifolds(pair, cache, (), manifolds, workspace),
+            });
+        }
         let Some(shape) = ConvexShape::of(other) else {
             return Answer::Unsupported;
         };
-        let pair = ConvexPair { pos12, mesh, shape, flipped, prediction };
+        let pair = ConvexPair::new(pos12, (mesh, shape), flipped, prediction);
         self.counted(|counts| match counts {
             Some(counts) => convex_contact_manifolds(pair, cache, counts, manifolds, workspace),
             None => convex_contact_manifolds(pair, cache, (), manifolds, workspace),

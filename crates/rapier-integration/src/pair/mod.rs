@@ -2,10 +2,12 @@
 //!
 //! [`query`] is the way of the data for two meshes: the state of the pair ([`state`]), the descent that collects the pairs of
 //! triangles that may touch ([`candidates`]), and one manifold for each pair that does ([`exact`], [`manifolds`]).
-//! [`convex`] is the same way for a mesh and a convex shape, [`heightfield`] for a mesh and a height field.
+//! [`convex`] is the same way for a mesh and a convex shape, [`heightfield`] for a mesh and a height field,
+//! [`compound`] for a mesh and convex shapes put together.
 
 mod candidates;
 mod coherence;
+mod compound;
 mod convex;
 mod exact;
 mod heightfield;
@@ -14,6 +16,7 @@ mod previous;
 mod query;
 mod state;
 
+pub(crate) use compound::{CompoundPair, contact_manifolds as compound_contact_manifolds};
 pub(crate) use convex::{ConvexPair, ConvexShape, contact_manifolds as convex_contact_manifolds};
 pub use exact::TriangleContacts;
 pub(crate) use heightfield::{FieldPair, contact_manifolds as field_contact_manifolds};

@@ -40,6 +40,20 @@ pub(crate) enum Answer {
     Unsupported,
 }
 
+impl Answer {
+    /// The one of two answers, for parts of a pair, that took more.
+    pub(super) fn or_harder(self, other: Self) -> Self {
+        let effort = |answer| match answer {
+            Self::Apart => 0,
+            Self::Unchanged => 1,
+            Self::Reused => 2,
+            Self::Descended => 3,
+            Self::Unsupported => 4,
+        };
+        if effort(self) < effort(other) { other } else { self }
+    }
+}
+
 /// Greatest slack of candidates as a share of the prediction distance. More: pairs of triangles that do not touch get
 /// the exact test; fewer: more descents.
 const GREATEST_SLACK: f64 = 1.0;
