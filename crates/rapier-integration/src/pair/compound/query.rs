@@ -44,7 +44,9 @@ impl CompoundPair<'_> {
             + root.center().length()
             + pose.translation.length();
         let prediction = self.prediction.max(0.0);
-        root.transform_by(&pose).loosened(prediction + SIGHT_SHARE * (prediction + size))
+        let reach = prediction + SIGHT_SHARE * (prediction + size);
+        // A pose that is not a number is nowhere.
+        if reach >= 0.0 { root.transform_by(&pose).loosened(reach) } else { Aabb::new_invalid() }
     }
 
     /// Whether stock walks shape 2 first: it does so if its box is larger.
