@@ -20,7 +20,7 @@ use crate::pair::{
 use crate::stats::QueryCounters;
 use crate::{ContactGenerator, SbbkConfig, SbbkStats, TriangleContacts};
 
-/// A query dispatcher that answers the contacts of triangle meshes with each other and with convex shapes from SBBK trees, and
+/// A query dispatcher that answers the contacts of triangle meshes with each other, with convex shapes, compounds and height fields from SBBK trees, and
 /// leaves all else to Parry's [`DefaultQueryDispatcher`].
 ///
 /// Trees are built when two meshes first come close and shared by all colliders with equal geometry. Clones of a

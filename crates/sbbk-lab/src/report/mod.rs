@@ -12,6 +12,7 @@ mod panel;
 mod paper;
 mod plot;
 pub mod tables;
+mod terrain;
 
 pub use contacts::write_contacts_plot;
 pub use convex::write_convex_plot;

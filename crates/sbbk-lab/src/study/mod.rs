@@ -22,6 +22,7 @@ mod pile;
 mod progress;
 mod same_poses;
 pub mod soak;
+pub mod terrain;
 mod turns;
 
 pub use comparison::{ComparePlan, Comparison, compare};

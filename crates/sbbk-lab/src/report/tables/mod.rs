@@ -8,6 +8,7 @@ mod helicopter;
 mod meshes;
 mod pile;
 mod soak;
+mod terrain;
 
 pub use contacts::{by_mesh, by_size, contact_generators, contacts, queries};
 pub use convex::convex;
@@ -17,6 +18,7 @@ pub use helicopter::{frames, overlapping_area};
 pub use meshes::costs;
 pub use pile::{accuracy, runs, same_poses, sizes};
 pub use soak::soak;
+pub use terrain::terrain;
 
 use super::Grid;
 use crate::study::Comparison;
