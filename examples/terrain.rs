@@ -58,8 +58,8 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         let mut world = scene.build()?;
         backend.install(&mut world.world);
         (0..STEPS).for_each(|_| world.world.step());
-        let is_on = |&&body: &&_| world.world.bodies[body].translation().y > -2.0;
-        let count = world.watched.iter().filter(is_on).count();
+        let heights = world.watched.iter().map(|&body| world.world.bodies[body].translation().y);
+        let count = heights.filter(|&height| height > -2.0).count();
         print(format_args!("{backend}, {}: {count} still there", scene.name()))?;
         last = Some(world);
     }

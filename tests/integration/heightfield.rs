@@ -52,7 +52,7 @@ impl Terrain {
             for j in 0..cells[1] {
                 let bits = [random.rand_range(0..2), u32::from(random.rand_range(0..8) == 0)];
                 let status = HeightFieldCellStatus::from_bits_truncate(
-                    (bits[0] | bits[1] * (2 << random.rand_range(0..2))) as u8,
+                    (bits[0] | (bits[1] * (2 << random.rand_range(0..2)))) as u8,
                 );
                 field.set_cell_status(i, j, status);
             }

@@ -97,14 +97,14 @@ impl<'a, F: HeightGrid> FieldFrame<'a, F> {
 
     /// Whether the corners of the cells are neither all above nor all below. A NaN is neither.
     fn are_met(&self, cells: &Cells, counters: &mut impl Counters) -> bool {
-        let (mut are_above, mut are_below) = (true, true);
+        let (mut is_one_below, mut is_one_above) = (false, false);
         for column in cells.columns.start..=cells.columns.end {
             counters.cells(cells.rows.len());
             for &height in &self.field.heights(column)[cells.rows.start..=cells.rows.end] {
-                are_above &= !(height <= cells.high);
-                are_below &= !(height >= cells.low);
+                is_one_below |= height <= cells.high;
+                is_one_above |= height >= cells.low;
             }
-            if !are_above && !are_below {
+            if is_one_below && is_one_above {
                 return true;
             }
         }
