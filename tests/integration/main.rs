@@ -5,6 +5,8 @@
 mod allocation;
 /// Contacts that Parry generates are stock's, bit for bit.
 mod bits;
+/// Meshes against compounds of convex shapes.
+mod compound;
 /// What a host may expect of calls that follow each other.
 mod contract;
 /// Meshes against convex shapes.
@@ -17,6 +19,8 @@ mod determinism;
 mod edited_mesh;
 /// SBBK's own contacts against the truth, and against stock where stock is right.
 mod exact;
+/// Meshes against height fields.
+mod heightfield;
 /// Contacts beside those of stock.
 mod like_stock;
 /// Motion that never loses a contact: random walks against fresh queries.

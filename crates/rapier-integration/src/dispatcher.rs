@@ -8,20 +8,21 @@ use parry3d::query::{
     NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher, ShapeCastHit, ShapeDistance,
     ShapeIntersection, Unsupported,
 };
-use parry3d::shape::{Shape, TriMesh};
+use parry3d::shape::{CompositeShape, Shape, TriMesh};
 use sbbk_core::traverse::DescentCounts;
 use sbbk_core::tree::{BuildError, Tree};
 
 use crate::mesh::{PreparedRef, TreeCache};
 use crate::pair::{
-    Answer, ConvexPair, ConvexShape, MeshPair, contact_manifolds, convex_contact_manifolds,
+    Answer, CompoundPair, ConvexPair, ConvexShape, FieldPair, MeshPair, compound_contact_manifolds,
+    contact_manifolds, convex_contact_manifolds, field_contact_manifolds,
 };
 use crate::query::{Nonlinear, Trees};
 use crate::stats::QueryCounters;
 use crate::{ContactGenerator, SbbkConfig, SbbkStats, TriangleContacts};
 
-/// A query dispatcher that answers every pair of triangle meshes, and the contacts of meshes with convex shapes, from SBBK
-/// trees, and leaves all else to Parry's [`DefaultQueryDispatcher`].
+/// A query dispatcher that answers every pair of triangle meshes, and the contacts of meshes with convex shapes, compounds and
+/// height fields, from SBBK trees, and leaves all else to Parry's [`DefaultQueryDispatcher`].
 ///
 /// Trees are built when two meshes first come close and shared by all colliders with equal geometry. Clones of a
 /// dispatcher share their trees.
@@ -121,10 +122,37 @@ impl SbbkDispatcher {
             (None, Some(mesh)) => (mesh, g1, true),
             (None, None) => return Answer::Unsupported,
         };
+        if mesh.is_deformable()
+            && (other.as_heightfield().is_some() || other.as_compound().is_some())
+        {
+            return Answer::Unsupported;
+        }
+        if let Some(field) = other.as_heightfield() {
+            let pair = FieldPair { pos12, mesh, field, flipped, prediction };
+            let contacts = self.config.contacts;
+            return self.counted(|counts| match counts {
+                Some(counts) => {
+                    field_contact_manifolds(pair, cache, contacts, counts, manifolds, workspace)
+                }
+                None => field_contact_manifolds(pair, cache, contacts, (), manifolds, workspace),
+            });
+        }
+        if let Some(compound) = other.as_compound() {
+            if !CompoundPair::is_known(compound) {
+                return Answer::Unsupported;
+            }
+            let pair = CompoundPair { pos12, mesh, compound, flipped, prediction };
+            return self.counted(|counts| match counts {
+                Some(counts) => {
+                    compound_contact_manifolds(pair, cache, counts, manifolds, workspace)
+                }
+                None => compound_contact_manifolds(pair, cache, (), manifolds, workspace),
+            });
+        }
         let Some(shape) = ConvexShape::of(other) else {
             return Answer::Unsupported;
         };
-        let pair = ConvexPair { pos12, mesh, shape, flipped, prediction };
+        let pair = ConvexPair::new(pos12, (mesh, shape), flipped, prediction);
         self.counted(|counts| match counts {
             Some(counts) => convex_contact_manifolds(pair, cache, counts, manifolds, workspace),
             None => convex_contact_manifolds(pair, cache, (), manifolds, workspace),
@@ -162,6 +190,11 @@ impl fmt::Debug for PreparedTree {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("PreparedTree").field(self.tree().stats()).finish()
     }
+}
+
+/// The mesh that queries without manifolds are answered for. Meshes that deform between queries are Parry's.
+fn rigid_mesh(shape: &dyn Shape) -> Option<&TriMesh> {
+    shape.as_trimesh().filter(|mesh| !mesh.is_deformable())
 }
 
 impl<M, C> PersistentQueryDispatcher<M, C> for SbbkDispatcher

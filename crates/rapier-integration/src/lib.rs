@@ -11,7 +11,7 @@
 //! Nothing else in a scene changes: colliders stay plain triangle meshes. Each pair of meshes is answered from
 //! [trees](sbbk_core::tree) of a bounding sphere, AABBs and k-DOPs, descended together, with
 //! [exact contacts](sbbk_core::contact) of the triangles they find; a mesh and a convex shape from the mesh's tree, with
-//! Parry's contacts; every other pair goes to Parry's own dispatcher. Rapier's behaviour stays that of Rapier: prediction distance, contact skins, internal edges,
+//! Parry's contacts; a mesh and a height field from the mesh's tree and the cells under it; every other pair goes to Parry's own dispatcher. Rapier's behaviour stays that of Rapier: prediction distance, contact skins, internal edges,
 //! recycling and clustering work as before.
 //!
 //! * [`SbbkConfig`]: the layers of the trees, whose contact generator, how much memory unused trees may keep.
@@ -25,7 +25,9 @@
 //! | mesh and mesh | SBBK | candidates, features, manifolds |
 //! | deformable mesh (`TriMeshFlags::DEFORMABLE`) and any mesh, or any of the shapes below | as for the mesh that it is at present; its tree is refitted by the first query after its vertices moved, for all pairs (two soft bodies: Rapier itself, no dispatcher is asked) | manifolds; candidates while no vertex moves |
 //! | mesh and cuboid, ball, capsule, segment, triangle, cylinder, cone, convex polyhedron, their round kinds, or half-space, in either order | SBBK's trees, Parry's contact routines: on a first query Parry's contacts of all triangles, bit for bit | candidates with distances and separating axes, manifolds |
-//! | mesh and anything else (height field, compound, polyline, voxels, custom shape) | Parry | Parry's |
+//! | mesh and height field, in either order | SBBK; stock Rapier has none, bodies fall through | candidates, features, manifolds |
+//! | mesh and compound of the convex kinds above, in either order | part by part as above: on a first query stock's contacts, bit for bit and in stock order | the same of each part |
+//! | mesh and anything else (polyline, voxels, custom shape, a compound with parts of other kinds) | Parry | Parry's |
 //! | all else | Parry | Parry's |
 //!
 //! Queries without manifolds (distance, closest points, intersection, contact, casts) of two rigid meshes are answered from

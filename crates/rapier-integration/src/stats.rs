@@ -55,6 +55,7 @@ pub(crate) struct QueryCounters {
     aabb_tests: AtomicU64,
     kdop_tests: AtomicU64,
     leaf_pairs: AtomicU64,
+    cells: AtomicU64,
 }
 
 impl QueryCounters {
@@ -76,6 +77,7 @@ impl QueryCounters {
         self.aabb_tests.fetch_add(counts.aabb_tests, Ordering::Relaxed);
         self.kdop_tests.fetch_add(counts.kdop_tests, Ordering::Relaxed);
         self.leaf_pairs.fetch_add(counts.leaf_pairs, Ordering::Relaxed);
+        self.cells.fetch_add(counts.cells, Ordering::Relaxed);
     }
 
     pub(crate) fn stats(&self, cache: CacheCounts) -> SbbkStats {
@@ -100,6 +102,7 @@ impl QueryCounters {
                 aabb_tests: load(&self.aabb_tests),
                 kdop_tests: load(&self.kdop_tests),
                 leaf_pairs: load(&self.leaf_pairs),
+                cells: load(&self.cells),
             },
         }
     }

@@ -9,6 +9,7 @@
 //! * [`tree`]: [`Tree`](tree::Tree), built from a mesh once.
 //! * [`traverse`]: [`descend`](traverse::descend) finds the pairs of leaves that may touch at a pose.
 //! * [`front`]: the same, from where the last descent stopped.
+//! * [`field`]: the triangles of a height field that may touch a mesh.
 //! * [`leaf`]: which triangles of two leaves may touch, over SIMD lanes.
 //! * [`contact`]: the exact contact of two triangles, and its manifold.
 //! * [`query`]: the nearest or deepest triangles of two meshes, and when moving meshes first meet.
@@ -51,6 +52,7 @@
 
 pub mod broad_phase;
 pub mod contact;
+pub mod field;
 pub mod front;
 pub mod leaf;
 #[cfg(feature = "nalgebra")]

@@ -8,5 +8,6 @@ mod prepared;
 mod unsupported;
 
 pub(crate) use cache::{CacheCounts, PreparedRef, TreeCache};
+pub(crate) use identity::MeshToken;
 pub(crate) use known::{Change, Held, KnownMesh};
 pub(crate) use prepared::PreparedMesh;

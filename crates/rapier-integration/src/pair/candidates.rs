@@ -21,7 +21,7 @@ pub(super) struct Candidate {
 
 impl Candidate {
     /// Found just now.
-    fn new(key: OrderKey, [triangle1, triangle2]: [u32; 2]) -> Self {
+    pub(super) fn new(key: OrderKey, [triangle1, triangle2]: [u32; 2]) -> Self {
         Self { key, triangle1, triangle2, features: None, place: u32::MAX }
     }
 }
@@ -43,7 +43,11 @@ impl OrderKey {
         [triangle1, triangle2]: [u32; 2],
     ) -> Self {
         let ranks = [prepared[0].rank(triangle1), prepared[1].rank(triangle2)];
-        let [major, minor] = if flipped { [ranks[1], ranks[0]] } else { ranks };
+        Self::of_ranks(if flipped { [ranks[1], ranks[0]] } else { ranks })
+    }
+
+    /// Of a pair with these places in the orders of the shape walked first and the other.
+    pub(super) fn of_ranks([major, minor]: [u32; 2]) -> Self {
         Self(u64::from(major) << 32 | u64::from(minor))
     }
 

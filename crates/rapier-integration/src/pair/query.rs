@@ -10,7 +10,7 @@ use sbbk_core::traverse::{Counters, PairFrame, Placement};
 
 use super::candidates::{Candidate, Scratch, collect};
 use super::coherence::{Coherence, Plan};
-use super::manifolds::Generator;
+use super::manifolds::{Generator, Meshes};
 use super::state::{PairKind, PairState};
 use crate::ContactGenerator;
 use crate::mesh::{Change, Held, KnownMesh, TreeCache};
@@ -38,6 +38,20 @@ pub(crate) enum Answer {
     Descended,
     /// Not at all: a mesh cannot have a tree, and somebody else must answer.
     Unsupported,
+}
+
+impl Answer {
+    /// The one of two answers, for parts of a pair, that took more.
+    pub(super) fn or_harder(self, other: Self) -> Self {
+        let effort = |answer| match answer {
+            Self::Apart => 0,
+            Self::Unchanged => 1,
+            Self::Reused => 2,
+            Self::Descended => 3,
+            Self::Unsupported => 4,
+        };
+        if effort(self) < effort(other) { other } else { self }
+    }
 }
 
 /// Greatest slack of candidates as a share of the prediction distance. More: pairs of triangles that do not touch get
@@ -72,6 +86,11 @@ impl MeshPair<'_> {
         let [size1, size2] = [self.mesh1, self.mesh2]
             .map(|mesh| mesh.bvh().root_aabb().half_extents().length_squared());
         size1 < size2
+    }
+
+    /// The pose that stock Parry passes on: bit for bit, it inverts the pose twice if it does not swap the meshes.
+    fn parrys_pose(&self) -> Pose {
+        if self.is_flipped() { *self.pos12 } else { self.pos12.inverse().inverse() }
     }
 
     /// The trees of both meshes, from the state if they are known and still valid, refitted if a mesh has deformed.
@@ -152,7 +171,15 @@ where
         } else {
             collect(prepared, &mut frame, flipped, counters, scratch);
         }
-        let generator = Generator { pair, prepared, frame: &frame, flipped, contacts };
+        let generator = Generator {
+            shapes: Meshes { pair, prepared, flipped },
+            pos12: pair.pos12,
+            placement: frame.placement(),
+            margin: frame.margin(),
+            prediction: pair.prediction,
+            parrys_pose: pair.parrys_pose(),
+            contacts,
+        };
         generator.update(scratch, coherence, history, manifolds);
     });
     match plan {

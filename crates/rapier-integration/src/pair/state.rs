@@ -76,25 +76,33 @@ where
     M: Default + Clone + Send + Sync + 'static,
     C: Default + Copy + Send + Sync + 'static,
 {
-    /// The state in `workspace`, made anew where there is none.
-    ///
-    /// The manifolds of a pair *without* a workspace are dropped: the host has taken it away since a shape changed, and
-    /// the numbers of triangles in them may mean others now. With the workspace of somebody else (a restored
-    /// snapshot, a dispatcher that was here before) the manifolds are kept: the shapes are the same.
+    /// The state in `workspace`, see [`state_in`].
     pub(super) fn of<'a>(
         workspace: &'a mut Option<ContactManifoldsWorkspace>,
         manifolds: &mut Vec<ContactManifold<M, C>>,
     ) -> &'a mut Self {
-        if workspace.is_none() {
-            manifolds.clear();
-        }
-        let is_ours = |workspace: &ContactManifoldsWorkspace| workspace.0.is::<Self>();
-        if !workspace.as_ref().is_some_and(is_ours) {
-            *workspace = Some(Self::default().into());
-        }
-        let state = workspace.as_mut().and_then(|workspace| workspace.0.downcast_mut());
-        state.expect("the workspace was made of this type just now")
+        state_in(workspace, manifolds)
     }
+}
+
+/// The state in `workspace`, made anew where there is none.
+///
+/// The manifolds of a pair *without* a workspace are dropped: the host has taken it away since a shape changed, and
+/// the numbers of triangles in them may mean others now. With the workspace of somebody else (a restored
+/// snapshot, a dispatcher that was here before) the manifolds are kept: the shapes are the same.
+pub(super) fn state_in<'a, S: WorkspaceData + Default, M, C>(
+    workspace: &'a mut Option<ContactManifoldsWorkspace>,
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+) -> &'a mut S {
+    if workspace.is_none() {
+        manifolds.clear();
+    }
+    let is_ours = |workspace: &ContactManifoldsWorkspace| workspace.0.is::<S>();
+    if !workspace.as_ref().is_some_and(is_ours) {
+        *workspace = Some(S::default().into());
+    }
+    let state = workspace.as_mut().and_then(|workspace| workspace.0.downcast_mut());
+    state.expect("the workspace was made of this type just now")
 }
 
 impl<M, C, K> History<M, C, K>
@@ -188,12 +196,11 @@ where
     }
 }
 
-/// Leaves nothing of a manifold but its memory.
+/// Leaves nothing of a manifold but its memory, that of the pose of a part among it: whoever has parts sets it anew.
 fn reset<M: Default, C>(manifold: &mut ContactManifold<M, C>) {
     manifold.points.clear();
     manifold.local_n1 = Default::default();
     manifold.local_n2 = Default::default();
-    manifold.subshape_poses = None;
     manifold.data = M::default();
 }
 
@@ -204,13 +211,18 @@ fn reset<M: Default, C>(manifold: &mut ContactManifold<M, C>) {
 static PLACEHOLDER: LazyLock<VoxelsShapeContactManifoldsWorkspace<2>> =
     LazyLock::new(VoxelsShapeContactManifoldsWorkspace::new);
 
+/// What stands for any state of ours in a snapshot.
+pub(super) fn placeholder() -> TypedWorkspaceData<'static> {
+    TypedWorkspaceData::VoxelsShapeContactManifoldsWorkspace(&PLACEHOLDER)
+}
+
 impl<M, C, K: PairKind> WorkspaceData for PairState<M, C, K>
 where
     M: Clone + Send + Sync + 'static,
     C: Clone + Send + Sync + 'static,
 {
     fn as_typed_workspace_data(&self) -> TypedWorkspaceData<'_> {
-        TypedWorkspaceData::VoxelsShapeContactManifoldsWorkspace(&PLACEHOLDER)
+        placeholder()
     }
 
     fn clone_dyn(&self) -> Box<dyn WorkspaceData> {

@@ -57,10 +57,7 @@ impl Memory {
             Some(0) => {}
             Some(place) => self.recent[..=place].rotate_right(1),
             None => {
-                let Ok(prepared) = cache.prepare(mesh) else {
-                    cache.note_unsupported(mesh);
-                    return None;
-                };
+                let prepared = cache.noting(mesh, cache.prepare(mesh))?;
                 self.recent.truncate(REMEMBERED - 1);
                 self.recent.insert(0, (key, prepared));
             }

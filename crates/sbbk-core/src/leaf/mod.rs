@@ -6,9 +6,11 @@
 //! [`LeafTest::survivors_scalar`]. [`ProbeTest`] does the same for triangles and a convex shape.
 
 pub(crate) mod lane;
+mod placed;
 mod probe;
 mod separation;
 
+pub(crate) use placed::PlacedTest;
 pub use probe::ProbeTest;
 
 use wide::f32x4;

@@ -18,7 +18,7 @@
 //! with `(m + 5·r)·|n|`, squared, whose own roundings (γ_8) the last r and a factor cover.
 
 use super::lane::{Lane, V3, cross, dot, each, sub};
-use crate::traverse::PairFrame;
+use crate::traverse::{PairFrame, Placement};
 use crate::volumes::rounding::gamma;
 
 /// What products of tiny numbers lose to underflow: a few times 2⁻¹⁴⁹ a term, in the squares next to
@@ -36,20 +36,29 @@ pub(super) struct LeafFrame {
 
 impl LeafFrame {
     pub(super) fn new<const AXES: usize>(frame: &PairFrame<AXES>) -> Self {
-        let placement = frame.placement();
-        let unmargined = Self {
+        Self::at(frame.placement()).with_margin(frame.margin().max(0.0), frame.rounding)
+    }
+
+    /// Without a margin.
+    pub(super) fn at(placement: &Placement) -> Self {
+        Self {
             rotation: [0, 1, 2].map(|i| placement.rotation.row(i).as_vec3().to_array()),
             translation: placement.translation.as_vec3().to_array(),
-            rounding: frame.rounding,
+            rounding: 0.0,
             margin: 0.0,
-        };
-        unmargined.within(frame.margin())
+        }
     }
 
     /// The same pose with another margin.
     #[inline(always)]
     pub(super) fn within(self, margin: f32) -> Self {
-        Self { margin: (margin.max(0.0) + 5.0 * self.rounding) * (1.0 + gamma(16)), ..self }
+        self.with_margin(margin.max(0.0), self.rounding)
+    }
+
+    /// With the margin, and `r` of the module's documentation.
+    #[inline(always)]
+    pub(super) fn with_margin(self, margin: f32, rounding: f32) -> Self {
+        Self { margin: (margin + 5.0 * rounding) * (1.0 + gamma(16)), rounding, ..self }
     }
 }
 

@@ -8,6 +8,8 @@ pub trait Counters {
     fn kdop_tests(&mut self, _count: u32) {}
     /// A pair of leaves was reached.
     fn leaf_pair(&mut self) {}
+    /// `count` cells of a height field were looked at.
+    fn cells(&mut self, _count: usize) {}
 }
 
 impl Counters for () {}
@@ -23,6 +25,8 @@ pub struct DescentCounts {
     pub kdop_tests: u64,
     /// Pairs of leaves handed to the visitor.
     pub leaf_pairs: u64,
+    /// Cells of height fields whose heights were read, each as often as that happened.
+    pub cells: u64,
 }
 
 impl Counters for DescentCounts {
@@ -41,6 +45,10 @@ impl Counters for DescentCounts {
     fn leaf_pair(&mut self) {
         self.leaf_pairs += 1;
     }
+
+    fn cells(&mut self, count: usize) {
+        self.cells += count as u64;
+    }
 }
 
 impl<C: Counters> Counters for &mut C {
@@ -58,5 +66,9 @@ impl<C: Counters> Counters for &mut C {
 
     fn leaf_pair(&mut self) {
         (**self).leaf_pair();
+    }
+
+    fn cells(&mut self, count: usize) {
+        (**self).cells(count);
     }
 }

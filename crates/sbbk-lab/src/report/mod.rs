@@ -13,6 +13,7 @@ mod paper;
 mod plot;
 mod queries;
 pub mod tables;
+mod terrain;
 
 pub use contacts::write_contacts_plot;
 pub use convex::write_convex_plot;

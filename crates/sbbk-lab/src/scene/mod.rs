@@ -16,6 +16,7 @@
 mod box_stack;
 mod built;
 mod head_on_slope;
+mod heads_on_terrain;
 mod helicopter;
 mod pile;
 mod portrait;
@@ -27,6 +28,7 @@ mod two_meshes;
 pub use box_stack::BoxStack;
 pub use built::{Scene, SceneError, SceneWorld};
 pub use head_on_slope::HeadOnSlope;
+pub use heads_on_terrain::{Ground, HeadsOnTerrain};
 pub use helicopter::{BallKind, HelicopterBallDrop};
 pub use pile::MonkeyPile;
 pub use soft_heads::SoftHeads;

@@ -66,6 +66,10 @@ fn drawn_mesh(collider: &Collider) -> Option<Mesh> {
         TypedShape::TriMesh(mesh) => {
             Some(Mesh::new("collider", mesh.vertices().to_vec(), mesh.indices().to_vec()))
         }
+        TypedShape::HeightField(field) => {
+            let (vertices, indices) = field.to_trimesh();
+            Some(Mesh::new("terrain", vertices, indices))
+        }
         TypedShape::Ball(ball) => Some(mesh::ball(ball.radius, BALL_DETAIL)),
         _ => None,
     }

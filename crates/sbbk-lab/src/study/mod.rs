@@ -24,6 +24,7 @@ pub mod queries;
 mod same_poses;
 pub mod soak;
 pub mod soft;
+pub mod terrain;
 mod turns;
 
 pub use comparison::{ComparePlan, Comparison, compare};

@@ -7,7 +7,7 @@ use parry3d::query::details::{
     contact_manifold_pfm_pfm,
 };
 use parry3d::query::{ContactManifold, TrackedContact};
-use parry3d::shape::{TriMesh, Triangle};
+use parry3d::shape::{CompoundPseudoNormals, TriMesh, Triangle};
 use sbbk_core::traverse::{Convex, Placement};
 
 use super::half_space::half_space_manifold;
@@ -24,7 +24,7 @@ const FAR: f64 = 2.0;
 
 /// A triangle of the mesh.
 #[derive(Copy, Clone, Debug)]
-pub(super) struct NearTriangle {
+pub(in crate::pair) struct NearTriangle {
     pub(super) key: OrderKey,
     pub(super) triangle: u32,
     /// Of the shape's frame, from the shape to the triangle: along it they were last seen apart. Zero if they were not.
@@ -44,6 +44,8 @@ pub(super) struct Limits {
 pub(super) struct Generator<'a> {
     pub(super) mesh: &'a TriMesh,
     pub(super) shape: ConvexShape<'a>,
+    /// The cones that contact normals of the shape must be in.
+    pub(super) cone: Option<&'a CompoundPseudoNormals>,
     pub(super) prepared: &'a PreparedMesh,
     /// Whether the mesh is shape 2.
     pub(super) flipped: bool,
@@ -266,6 +268,7 @@ impl Generator<'_> {
         let mut fresh = None;
         let cone = self.prepared.normal_constraints(self.mesh, candidate.triangle, &mut fresh);
         let cone = cone.map(|cone| cone as &dyn NormalConstraints);
+        let cone_of_shape = self.cone.map(|cone| cone as &dyn NormalConstraints);
         let (prediction, [pose, inverse]) = (self.prediction, &self.parrys_poses);
         // The shape in the frame of the triangle, and the reverse.
         let [to_triangle, to_shape] = if self.flipped { [inverse, pose] } else { [pose, inverse] };
@@ -277,7 +280,7 @@ impl Generator<'_> {
                     triangle,
                     ball,
                     cone,
-                    None,
+                    cone_of_shape,
                     prediction,
                     manifold,
                     flipped,
@@ -290,7 +293,7 @@ impl Generator<'_> {
                     to_triangle,
                     cuboid,
                     triangle,
-                    None,
+                    cone_of_shape,
                     cone,
                     prediction,
                     manifold,
@@ -302,10 +305,26 @@ impl Generator<'_> {
                 half_space_manifold(to_shape, half_space, triangle, prediction, flipped, manifold);
             }
             Kind::Features(map, radius) if self.flipped => contact_manifold_pfm_pfm(
-                pose, map, radius, None, triangle, 0.0, cone, prediction, manifold,
+                pose,
+                map,
+                radius,
+                cone_of_shape,
+                triangle,
+                0.0,
+                cone,
+                prediction,
+                manifold,
             ),
             Kind::Features(map, radius) => contact_manifold_pfm_pfm(
-                pose, triangle, 0.0, cone, map, radius, None, prediction, manifold,
+                pose,
+                triangle,
+                0.0,
+                cone,
+                map,
+                radius,
+                cone_of_shape,
+                prediction,
+                manifold,
             ),
         }
     }

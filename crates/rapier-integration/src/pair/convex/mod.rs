@@ -11,5 +11,7 @@ mod half_space;
 mod query;
 mod shape;
 
+pub(super) use contacts::NearTriangle;
 pub(crate) use query::{ConvexPair, contact_manifolds};
 pub(crate) use shape::ConvexShape;
+pub(super) use shape::Fingerprint;

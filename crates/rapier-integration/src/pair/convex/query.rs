@@ -4,7 +4,7 @@ use std::sync::Arc;
 use parry3d::bounding_volume::BoundingVolume;
 use parry3d::math::{Pose, Real};
 use parry3d::query::{ContactManifold, ContactManifoldsWorkspace};
-use parry3d::shape::TriMesh;
+use parry3d::shape::{CompoundPseudoNormals, TriMesh};
 use sbbk_core::leaf::ProbeTest;
 use sbbk_core::traverse::{
     Convex, Counters, Placement, Probe, ProbeScratch, Verdict, descend_probe,
@@ -17,7 +17,7 @@ use crate::mesh::{Change, Held, KnownMesh, PreparedMesh, TreeCache};
 use crate::pair::Answer;
 use crate::pair::candidates::OrderKey;
 use crate::pair::coherence::{Coherence, KnownCandidate, Plan};
-use crate::pair::state::{PairKind, PairState};
+use crate::pair::state::{History, PairKind, PairState};
 
 /// The question: which contacts do a mesh and a convex shape have?
 #[derive(Copy, Clone)]
@@ -26,9 +26,13 @@ pub(crate) struct ConvexPair<'a> {
     pub(crate) pos12: &'a Pose,
     pub(crate) mesh: &'a TriMesh,
     pub(crate) shape: ConvexShape<'a>,
+    /// The cones that contact normals of the shape must be in.
+    pub(crate) cone: Option<&'a CompoundPseudoNormals>,
     /// Whether the mesh is shape 2.
     pub(crate) flipped: bool,
     pub(crate) prediction: Real,
+    /// `pos12` as stock passes it on, bit for bit.
+    pub(crate) parrys_pose: Pose,
 }
 
 /// A mesh and a convex shape, as a kind of pair.
@@ -66,11 +70,16 @@ thread_local! {
     static SCRATCH: RefCell<Scratch> = RefCell::default();
 }
 
-impl ConvexPair<'_> {
-    /// The pose that stock passes on, the inverse of an inverse where the mesh is shape 2, and its inverse.
-    fn parrys_poses(&self) -> [Pose; 2] {
-        let pose = if self.flipped { self.pos12.inverse().inverse() } else { *self.pos12 };
-        [pose, pose.inverse()]
+impl<'a> ConvexPair<'a> {
+    /// The whole of two colliders: stock passes on the inverse of an inverse where the mesh is shape 2.
+    pub(crate) fn new(
+        pos12: &'a Pose,
+        (mesh, shape): (&'a TriMesh, ConvexShape<'a>),
+        flipped: bool,
+        prediction: Real,
+    ) -> Self {
+        let parrys_pose = if flipped { pos12.inverse().inverse() } else { *pos12 };
+        Self { pos12, mesh, shape, cone: None, flipped, prediction, parrys_pose }
     }
 
     /// The mesh in the frame of the shape.
@@ -155,6 +164,56 @@ impl ConvexPair<'_> {
         });
         candidates.sort_unstable_by_key(|known| known.candidate.key);
     }
+
+    /// Brings the manifolds up to date from what is known of the pair and the tree of the mesh.
+    pub(in crate::pair) fn update<M, C>(
+        &self,
+        prepared: &PreparedMesh,
+        (coherence, history): (&mut Coherence<NearTriangle>, &mut History<M, C, ()>),
+        counters: impl Counters,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+    ) -> Answer
+    where
+        M: Default + Clone + Send + Sync + 'static,
+        C: Default + Copy + Send + Sync + 'static,
+    {
+        let placement = self.placement();
+        let sight = self.sight(prepared);
+        let ball = prepared.tree.bounding_ball();
+        let plan = coherence.plan(ball, (self.pos12, placement), sight, GREATEST_SLACK);
+        if plan == Plan::Nothing && history.is_of(manifolds) {
+            return Answer::Unchanged;
+        }
+        let generator = Generator {
+            mesh: self.mesh,
+            shape: self.shape,
+            cone: self.cone,
+            prepared,
+            flipped: self.flipped,
+            parrys_poses: [self.parrys_pose, self.parrys_pose.inverse()],
+            placement,
+            prediction: self.prediction,
+        };
+        SCRATCH.with_borrow_mut(|scratch| match plan {
+            Plan::Reuse { .. } => {
+                let limits = Limits { sight: f64::from(sight), travel: coherence.travel() };
+                let candidates = coherence.candidates_mut();
+                generator.update(candidates, limits, &mut scratch.places, history, manifolds);
+                Answer::Reused
+            }
+            Plan::Nothing | Plan::Descend { .. } => {
+                let margin = if let Plan::Descend { margin } = plan { margin } else { sight };
+                self.collect(prepared, &placement, margin, counters, scratch);
+                let Scratch { candidates, places, .. } = scratch;
+                let limits = Limits { sight: f64::from(sight), travel: 0.0 };
+                generator.update(candidates, limits, places, history, manifolds);
+                if matches!(plan, Plan::Descend { .. }) {
+                    coherence.keep(candidates.iter().copied());
+                }
+                Answer::Descended
+            }
+        })
+    }
 }
 
 /// Brings the manifolds of a mesh and a convex shape up to date.
@@ -181,40 +240,5 @@ where
     let Some(prepared) = pair.tree(cache, shapes, coherence, manifolds) else {
         return Answer::Unsupported;
     };
-    let prepared = &*prepared;
-    let placement = pair.placement();
-    let sight = pair.sight(prepared);
-    let ball = prepared.tree.bounding_ball();
-    let plan = coherence.plan(ball, (pair.pos12, placement), sight, GREATEST_SLACK);
-    if plan == Plan::Nothing && history.is_of(manifolds) {
-        return Answer::Unchanged;
-    }
-    let generator = Generator {
-        mesh: pair.mesh,
-        shape: pair.shape,
-        prepared,
-        flipped: pair.flipped,
-        parrys_poses: pair.parrys_poses(),
-        placement,
-        prediction: pair.prediction,
-    };
-    SCRATCH.with_borrow_mut(|scratch| match plan {
-        Plan::Reuse { .. } => {
-            let limits = Limits { sight: f64::from(sight), travel: coherence.travel() };
-            let candidates = coherence.candidates_mut();
-            generator.update(candidates, limits, &mut scratch.places, history, manifolds);
-            Answer::Reused
-        }
-        Plan::Nothing | Plan::Descend { .. } => {
-            let margin = if let Plan::Descend { margin } = plan { margin } else { sight };
-            pair.collect(prepared, &placement, margin, counters, scratch);
-            let Scratch { candidates, places, .. } = scratch;
-            let limits = Limits { sight: f64::from(sight), travel: 0.0 };
-            generator.update(candidates, limits, places, history, manifolds);
-            if matches!(plan, Plan::Descend { .. }) {
-                coherence.keep(candidates.iter().copied());
-            }
-            Answer::Descended
-        }
-    })
+    pair.update(&prepared, (coherence, history), counters, manifolds)
 }

@@ -33,7 +33,7 @@ pub(super) enum Kind<'a> {
 ///
 /// A host drops the workspace of a pair when it edits a shape, see [`crate::mesh`]; this is for those that do not.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub(super) struct Fingerprint {
+pub(in crate::pair) struct Fingerprint {
     shape_type: ShapeType,
     radius: Real,
     min: Vec3,
@@ -45,23 +45,34 @@ pub(super) struct Fingerprint {
 const SKEW: Vec3 = Vec3::new(0.267, 0.535, 0.802);
 
 impl<'a> ConvexShape<'a> {
+    /// Whether shapes of this type are among them.
+    pub(crate) fn is_known(shape_type: ShapeType) -> bool {
+        matches!(
+            shape_type,
+            ShapeType::Ball
+                | ShapeType::HalfSpace
+                | ShapeType::Cuboid
+                | ShapeType::Capsule
+                | ShapeType::Segment
+                | ShapeType::Triangle
+                | ShapeType::ConvexPolyhedron
+                | ShapeType::Cylinder
+                | ShapeType::Cone
+                | ShapeType::RoundCuboid
+                | ShapeType::RoundTriangle
+                | ShapeType::RoundCylinder
+                | ShapeType::RoundCone
+                | ShapeType::RoundConvexPolyhedron
+        )
+    }
+
     /// `None` if the shape is of another kind.
     pub(crate) fn of(shape: &'a dyn Shape) -> Option<Self> {
         let kind = match shape.shape_type() {
             ShapeType::Ball => Kind::Ball(shape.as_ball()?),
             ShapeType::HalfSpace => Kind::HalfSpace(shape.as_halfspace()?),
             ShapeType::Cuboid => Kind::Cuboid(shape.as_cuboid()?),
-            ShapeType::Capsule
-            | ShapeType::Segment
-            | ShapeType::Triangle
-            | ShapeType::ConvexPolyhedron
-            | ShapeType::Cylinder
-            | ShapeType::Cone
-            | ShapeType::RoundCuboid
-            | ShapeType::RoundTriangle
-            | ShapeType::RoundCylinder
-            | ShapeType::RoundCone
-            | ShapeType::RoundConvexPolyhedron => {
+            other if Self::is_known(other) => {
                 let (map, radius) = shape.as_polygonal_feature_map()?;
                 Kind::Features(map, radius)
             }
@@ -70,7 +81,7 @@ impl<'a> ConvexShape<'a> {
         Some(Self { shape, kind, fingerprint: Fingerprint::of(shape.shape_type(), kind) })
     }
 
-    pub(super) fn fingerprint(&self) -> Fingerprint {
+    pub(in crate::pair) fn fingerprint(&self) -> Fingerprint {
         self.fingerprint
     }
 

@@ -10,6 +10,7 @@ mod pile;
 mod queries;
 mod soak;
 mod soft;
+mod terrain;
 
 pub use contacts::{by_mesh, by_size, contact_generators, contacts, queries};
 pub use convex::convex;
@@ -21,6 +22,7 @@ pub use pile::{accuracy, runs, same_poses, sizes};
 pub use queries::one_answer;
 pub use soak::soak;
 pub use soft::{refit, soft_heads};
+pub use terrain::terrain;
 
 use super::Grid;
 use crate::study::Comparison;

@@ -1,0 +1,186 @@
+use std::cell::RefCell;
+use std::sync::Arc;
+
+use parry3d::math::{Pose, Real};
+use parry3d::query::{ContactManifold, ContactManifoldsWorkspace};
+use parry3d::shape::{HeightField, TriMesh};
+use sbbk_core::contact::FeaturePair;
+use sbbk_core::field::{FieldFrame, FieldScratch, descend_field};
+use sbbk_core::traverse::{Counters, Placement};
+use sbbk_core::volumes::Aabb;
+
+use super::field::{Field, FieldToken};
+use super::shapes::MeshAndField;
+use crate::ContactGenerator;
+use crate::mesh::{MeshToken, PreparedMesh, PreparedRef, TreeCache};
+use crate::pair::Answer;
+use crate::pair::candidates::{Candidate, Scratch};
+use crate::pair::coherence::{Coherence, Plan};
+use crate::pair::manifolds::{Generator, TriangleShapes};
+use crate::pair::state::{PairKind, PairState};
+
+/// The question: which contacts do a mesh and a height field have?
+#[derive(Copy, Clone)]
+pub(crate) struct FieldPair<'a> {
+    /// The pose of shape 2 in the frame of shape 1.
+    pub(crate) pos12: &'a Pose,
+    pub(crate) mesh: &'a TriMesh,
+    pub(crate) field: &'a HeightField,
+    /// Whether the mesh is shape 2.
+    pub(crate) flipped: bool,
+    pub(crate) prediction: Real,
+}
+
+/// A mesh and a height field, as a kind of pair.
+#[derive(Clone)]
+struct MeshAndHeightField;
+
+impl PairKind for MeshAndHeightField {
+    type Shapes = KnownShapes;
+    type Candidate = Candidate;
+    type Contact = FeaturePair;
+}
+
+/// The tree of the mesh, as far as it is known, and the field that the candidates are for.
+#[derive(Clone, Default)]
+enum KnownShapes {
+    /// No query has needed it yet.
+    #[default]
+    None,
+    /// Valid while the tokens are.
+    Tree((MeshToken, FieldToken), PreparedRef),
+}
+
+/// Greatest slack of candidates as a share of the prediction distance, as for two meshes.
+const GREATEST_SLACK: f64 = 1.0;
+
+thread_local! {
+    static SCRATCH: RefCell<(FieldScratch, Scratch)> = RefCell::default();
+}
+
+impl<'a> FieldPair<'a> {
+    /// The mesh in the frame of the field, and shape 2 in the frame of shape 1.
+    fn placements(&self) -> [Placement; 2] {
+        let placement = Placement::new(self.pos12);
+        [if self.flipped { placement } else { placement.inverted() }, placement]
+    }
+
+    /// Whether the box around the mesh meets the ground. Asked before there is a tree.
+    fn root_box_meets(&self, mesh_at: &Placement, counters: impl Counters) -> bool {
+        let root = self.mesh.bvh().root_aabb();
+        let field = Field(self.field);
+        let frame = FieldFrame::new(&field, mesh_at, self.prediction);
+        frame.meets(&Aabb { min: root.mins, max: root.maxs }, counters)
+    }
+
+    /// The tree of the mesh, from the state if it is known and still valid.
+    ///
+    /// If it is not, what is known of the pair is forgotten, and its manifolds as well if a shape was edited while the host kept
+    /// the workspace. If only another dispatcher was here before, they keep their data, but their points are not ours.
+    fn tree<'s, M, C: Default + Copy>(
+        &self,
+        cache: &Arc<TreeCache>,
+        known: &'s mut KnownShapes,
+        coherence: &mut Coherence<Candidate>,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+    ) -> Option<&'s PreparedRef> {
+        let now = (MeshToken::of(self.mesh), FieldToken::of(self.field));
+        let is_valid = match known {
+            KnownShapes::None => false,
+            KnownShapes::Tree(tokens, tree) => *tokens == now && tree.is_from(cache),
+        };
+        if !is_valid {
+            coherence.clear();
+            match known {
+                KnownShapes::Tree(tokens, _) if *tokens != now => manifolds.clear(),
+                _ => manifolds.iter_mut().for_each(ContactManifold::mark_shapes_deformed),
+            }
+            *known = KnownShapes::None;
+            *known = KnownShapes::Tree(now, cache.noting(self.mesh, cache.prepare(self.mesh))?);
+        }
+        match known {
+            KnownShapes::Tree(_, tree) => Some(tree),
+            KnownShapes::None => None,
+        }
+    }
+
+    /// Fills `scratch.candidates` with all pairs of triangles within the margin, and few others, in order.
+    fn collect(
+        &self,
+        (prepared, shapes): (&PreparedMesh, &MeshAndField<'a>),
+        (mesh_at, margin): (&Placement, Real),
+        counters: impl Counters,
+        (descent, scratch): (&mut FieldScratch, &mut Scratch),
+    ) {
+        let field = Field(self.field);
+        let candidates = &mut scratch.candidates;
+        candidates.clear();
+        let frame = FieldFrame::new(&field, mesh_at, margin);
+        descend_field(&prepared.tree, &frame, descent, counters, |triangle, of_mesh| {
+            let triangles = shapes.ordered([of_mesh, field.id(triangle)]);
+            candidates.push(Candidate::new(shapes.key(triangles), triangles));
+        });
+        candidates.sort_unstable_by_key(|candidate| candidate.key);
+    }
+}
+
+/// Brings the manifolds of a mesh and a height field up to date.
+pub(crate) fn contact_manifolds<M, C>(
+    pair: FieldPair<'_>,
+    cache: &Arc<TreeCache>,
+    contacts: ContactGenerator,
+    mut counters: impl Counters,
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) -> Answer
+where
+    M: Default + Clone + Send + Sync + 'static,
+    C: Default + Copy + Send + Sync + 'static,
+{
+    if cache.is_unsupported(&[pair.mesh]) {
+        return Answer::Unsupported;
+    }
+    let PairState::<_, _, MeshAndHeightField> { shapes: known, coherence, history } =
+        PairState::of(workspace, manifolds);
+    let [mesh_at, placement] = pair.placements();
+    if matches!(known, KnownShapes::None) && !pair.root_box_meets(&mesh_at, &mut counters) {
+        manifolds.clear();
+        return Answer::Apart;
+    }
+    let Some(prepared) = pair.tree(cache, known, coherence, manifolds) else {
+        return Answer::Unsupported;
+    };
+    let prepared = prepared.get();
+    let ball = prepared.tree.bounding_ball();
+    let plan = coherence.plan(ball, (pair.pos12, mesh_at), pair.prediction, GREATEST_SLACK);
+    if plan == Plan::Nothing && history.is_of(manifolds) {
+        return Answer::Unchanged;
+    }
+    let margin = match plan {
+        Plan::Descend { margin } | Plan::Reuse { margin } => margin,
+        Plan::Nothing => pair.prediction,
+    };
+    let shapes = MeshAndField::new((pair.mesh, prepared), Field(pair.field), !pair.flipped);
+    SCRATCH.with_borrow_mut(|(descent, scratch)| {
+        if let Plan::Reuse { .. } = plan {
+            coherence.near(pair.prediction, &mut scratch.candidates);
+        } else {
+            let found = (prepared, &shapes);
+            pair.collect(found, (&mesh_at, margin), &mut counters, (descent, scratch));
+        }
+        let generator = Generator {
+            shapes,
+            pos12: pair.pos12,
+            placement: &placement,
+            margin,
+            prediction: pair.prediction,
+            parrys_pose: *pair.pos12,
+            contacts,
+        };
+        generator.update(scratch, coherence, history, manifolds);
+    });
+    match plan {
+        Plan::Reuse { .. } => Answer::Reused,
+        Plan::Nothing | Plan::Descend { .. } => Answer::Descended,
+    }
+}

@@ -1,0 +1,151 @@
+//! Boxes of a mesh against ranges of cells.
+//!
+//! # Rounding
+//!
+//! With `n` cells along an axis, line `c` computed in f32 as `(c·fl(1/n) - 1/2)·scale`, in any order, is off by less than
+//! `γ_4·|scale|`: ranges are taken wider by `γ_8` of the whole. A height times its scale loses `γ_1` of the product, and
+//! [`MIN_POSITIVE`](f32::MIN_POSITIVE) to underflow: bounds of heights are wider by `γ_4`. Boxes are turned in f64, a dozen
+//! roundings of `2⁻⁵³`: they grow by `1e-14` of their coordinates.
+
+use std::ops::Range;
+
+use glamx::{DMat3, DVec3, Vec3};
+
+use super::grid::HeightGrid;
+use crate::traverse::{Counters, Placement};
+use crate::volumes::Aabb;
+use crate::volumes::rounding::gamma;
+
+/// Cells under a node up to which their heights are read; a node above more is taken apart at once. More: whole parts of a mesh
+/// above the ground are ruled out sooner. Fewer: less is read twice where they are not.
+const READ_LIMIT: usize = 1024;
+
+/// A mesh and a height field at one pose: which cells a part of the mesh can touch.
+pub struct FieldFrame<'a, F> {
+    pub(super) field: &'a F,
+    pub(super) placement: Placement,
+    pub(super) margin: f32,
+    absolute: DMat3,
+    /// The margin in the frame of the field.
+    reach: f64,
+}
+
+/// A range of cells and the heights at which it can touch.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Cells {
+    pub(super) columns: Range<usize>,
+    pub(super) rows: Range<usize>,
+    /// Not yet scaled.
+    low: f32,
+    high: f32,
+}
+
+impl<'a, F: HeightGrid> FieldFrame<'a, F> {
+    /// For a mesh at `placement` in the frame of the field. Triangles within `margin`, in either frame, will be found. A pose
+    /// that is not finite is nowhere.
+    pub fn new(field: &'a F, placement: &Placement, margin: f32) -> Self {
+        let rotation = placement.rotation;
+        let absolute =
+            DMat3::from_cols(rotation.x_axis.abs(), rotation.y_axis.abs(), rotation.z_axis.abs());
+        let scale = [0, 1, 2].map(|i| rotation.row(i).length()).into_iter().fold(1.0, f64::max);
+        let reach = f64::from(margin) * scale * (1.0 + 1e-12);
+        Self { field, placement: *placement, margin, absolute, reach }
+    }
+
+    /// Whether anything in a box of the mesh's frame may touch the field. Conservative.
+    pub fn meets(&self, aabb: &Aabb, mut counters: impl Counters) -> bool {
+        let (centre, extent) = (0.5 * (aabb.min + aabb.max), 0.5 * (aabb.max - aabb.min));
+        // The middle is rounded: what it loses is a part of the half-lengths.
+        let lost = gamma(4) * aabb.magnitude();
+        self.node_meets(centre, extent + Vec3::splat(lost), &mut counters)
+    }
+
+    /// The same of a node.
+    pub(super) fn node_meets(
+        &self,
+        centre: Vec3,
+        extent: Vec3,
+        counters: &mut impl Counters,
+    ) -> bool {
+        let middle = self.placed(centre);
+        let half = self.absolute * extent.as_dvec3();
+        let cells = self.cells_between(middle - half, middle + half);
+        cells.is_some_and(|cells| cells.count() > READ_LIMIT || self.are_met(&cells, counters))
+    }
+
+    /// A point of the mesh in the frame of the field.
+    pub(super) fn placed(&self, x: Vec3) -> DVec3 {
+        self.placement.rotation * x.as_dvec3() + self.placement.translation
+    }
+
+    /// The cells that may come within the margin of a box of the field's frame.
+    pub(super) fn cells_between(&self, low: DVec3, high: DVec3) -> Option<Cells> {
+        let coordinates = low.abs().max(high.abs()).element_sum()
+            + self.placement.translation.abs().element_sum();
+        let reach = self.reach + 1e-14 * coordinates;
+        let (low, high) = (low - reach, high + reach);
+        let scale = self.field.scale().as_dvec3();
+        let [columns, rows] = self.field.cell_counts();
+        let [bottom, top] = heights(low.y, high.y, scale.y);
+        Some(Cells {
+            columns: lines(low.x, high.x, scale.x, columns)?,
+            rows: lines(low.z, high.z, scale.z, rows)?,
+            low: bottom,
+            high: top,
+        })
+    }
+
+    /// Whether the corners of the cells are neither all above nor all below. A NaN is neither.
+    fn are_met(&self, cells: &Cells, counters: &mut impl Counters) -> bool {
+        let (mut is_one_below, mut is_one_above) = (false, false);
+        for column in cells.columns.start..=cells.columns.end {
+            counters.cells(cells.rows.len());
+            for &height in &self.field.heights(column)[cells.rows.start..=cells.rows.end] {
+                is_one_below |= height <= cells.high;
+                is_one_above |= height >= cells.low;
+            }
+            if is_one_below && is_one_above {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+impl Cells {
+    fn count(&self) -> usize {
+        self.columns.len() * self.rows.len()
+    }
+
+    /// Whether a cell with these corners can be touched, as of [`FieldFrame::are_met`].
+    pub(super) fn is_met(&self, corners: [f32; 4]) -> bool {
+        corners.iter().any(|&height| height <= self.high)
+            && corners.iter().any(|&height| height >= self.low)
+    }
+}
+
+/// The cells along an axis that an interval meets.
+fn lines(low: f64, high: f64, scale: f64, count: usize) -> Option<Range<usize>> {
+    if scale == 0.0 {
+        return (low <= 0.0 && high >= 0.0).then_some(0..count);
+    }
+    let (a, b) = (low / scale + 0.5, high / scale + 0.5);
+    let slack = f64::from(gamma(8));
+    let cells = count as f64;
+    let first = ((a.min(b) - slack) * cells).floor();
+    let last = ((a.max(b) + slack) * cells).floor();
+    let is_inside = low <= high && first < cells && last >= 0.0;
+    is_inside.then(|| first.max(0.0) as usize..last.min(cells - 1.0) as usize + 1)
+}
+
+/// The interval of y in heights before scaling, rounded outwards.
+fn heights(low: f64, high: f64, scale: f64) -> [f32; 2] {
+    if scale == 0.0 {
+        let is_inside = low <= 0.0 && high >= 0.0;
+        return if is_inside { [f32::NEG_INFINITY, f32::INFINITY] } else { [f32::NAN; 2] };
+    }
+    let (a, b) = (low / scale, high / scale);
+    let slack =
+        f64::from(gamma(4)) * a.abs().max(b.abs()) + (f64::from(f32::MIN_POSITIVE) / scale).abs();
+    [((a.min(b) - slack) as f32).next_down(), ((a.max(b) + slack) as f32).next_up()]
+}

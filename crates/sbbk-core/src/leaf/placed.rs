@@ -1,0 +1,66 @@
+//! The triangles of a leaf, placed in another frame once, against triangles there that come one at a time.
+//!
+//! # Rounding
+//!
+//! As in [`separation`](super::separation), but all coordinates are relative to an origin near the mesh, so that a triangle of
+//! a wide terrain is tested as sharply as one at its middle. Taking the origin away rounds once more: `γ_18` for
+//! `γ_16`. `M1` is that of the one triangle.
+
+use glamx::{DVec3, Vec3};
+use wide::f32x4;
+
+use super::lanes;
+use super::separation::{Corners, LeafFrame, near};
+use crate::traverse::Placement;
+use crate::tree::LeafBatch;
+use crate::volumes::rounding::gamma;
+
+/// Tests leaves of a tree against triangles of another frame. Made once a query.
+#[derive(Copy, Clone)]
+pub(crate) struct PlacedTest {
+    frame: LeafFrame,
+    origin: Vec3,
+    margin: f32,
+    /// `T + 2·s·M2`.
+    size2: f32,
+}
+
+/// A leaf, placed.
+pub(crate) struct PlacedBatch<'a> {
+    test: &'a PlacedTest,
+    corners: Corners<f32x4>,
+    used: u32,
+}
+
+impl PlacedTest {
+    /// For a tree with coordinates up to `magnitude`, at `placement`, around `centre` of its own frame.
+    pub(crate) fn new(placement: &Placement, centre: Vec3, magnitude: f32, margin: f32) -> Self {
+        let origin = placement.to_frame1(centre, Vec3::ZERO).as_vec3();
+        let translation: DVec3 = placement.translation - origin.as_dvec3();
+        let local = Placement { translation, ..*placement };
+        let scale =
+            [0, 1, 2].map(|i| local.rotation.row(i).length()).into_iter().fold(0.0, f64::max);
+        let size2 = translation.abs().max_element() as f32 + 2.0 * scale as f32 * magnitude;
+        Self { frame: LeafFrame::at(&local), origin, margin: margin.max(0.0), size2 }
+    }
+
+    /// Places a leaf.
+    #[inline]
+    pub(crate) fn place(&self, batch: &LeafBatch) -> PlacedBatch<'_> {
+        let corners = Corners::from_frame2(&self.frame, lanes(&batch.corners, f32x4::new));
+        PlacedBatch { test: self, corners, used: (1 << batch.count()) - 1 }
+    }
+}
+
+impl PlacedBatch<'_> {
+    /// The triangles of the leaf, as bits, that no axis separates from `triangle` by more than the margin.
+    #[inline]
+    pub(crate) fn near(&self, triangle: &[Vec3; 3]) -> u32 {
+        let PlacedTest { frame, origin, margin, size2 } = self.test;
+        let corners = triangle.map(|corner| corner - origin);
+        let size1 = corners[0].abs().max(corners[1].abs()).max(corners[2].abs()).max_element();
+        let frame = frame.with_margin(*margin, gamma(18) * (size1 + size2));
+        let one = Corners::new(corners.map(|corner| corner.to_array().map(f32x4::splat)));
+        near(&frame, &one, &self.corners).to_bitmask() & self.used
+    }
+}

@@ -1,0 +1,391 @@
+use std::collections::BTreeMap;
+
+use allocation_counter::measure;
+use glamx::{Quat, Vec3};
+use oorandom::Rand32;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::geometry::{ContactData, ContactManifoldData};
+use rapier3d::math::{Pose, Real};
+use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
+use rapier3d::parry::shape::{
+    Compound, CompoundFlags, HeightField, Shape, SharedShape, TriMesh, TriMeshFlags,
+};
+use rapier3d::parry::utils::Array2;
+use rapier3d::pipeline::PhysicsWorld;
+use rapier3d::prelude::{ColliderBuilder, RigidBodyBuilder, RigidBodyHandle};
+use sbbk_lab::mesh;
+
+use crate::support::{
+    Dispatcher, Manifold, Pair, TrianglePair, assert_same, counting, direction, distance, nudge,
+    rotation, shape_with, triangles,
+};
+
+/// Compounds of parts of every kind, of boxes that share faces, of one part, and one that reaches far.
+fn compounds(size: Real) -> Vec<(&'static str, Compound)> {
+    let mut random = Rand32::new(1);
+    let half = 0.25 * size;
+    let cloud: Vec<Vec3> = (0..20).map(|_| half * direction(&mut random)).collect();
+    let parts = [
+        SharedShape::ball(half),
+        SharedShape::cuboid(half, 0.7 * half, 0.5 * half),
+        SharedShape::capsule_y(half, 0.4 * half),
+        SharedShape::cylinder(half, 0.6 * half),
+        SharedShape::cone(half, 0.6 * half),
+        SharedShape::convex_hull(&cloud).expect("a cloud has a hull"),
+        SharedShape::round_cuboid(half, 0.5 * half, 0.5 * half, 0.1 * size),
+        SharedShape::triangle(cloud[0], cloud[1], cloud[2]),
+    ];
+    let mut place =
+        |spread: Real| Pose::from_parts(spread * direction(&mut random), rotation(&mut random));
+    let mixed = parts.iter().map(|part| (place(0.5 * size), part.clone())).collect();
+    let wide = (0..40).map(|i| (place(3.0 * size), parts[i % parts.len()].clone())).collect();
+    let row = |flags| {
+        let part = |i: i32| {
+            let at = Pose::translation(2.0 * half * (i - 2) as Real, 0.0, 0.0);
+            (at, SharedShape::cuboid(half, half, half))
+        };
+        Compound::with_flags((0..5).map(part).collect(), flags, None)
+    };
+    vec![
+        ("mixed", Compound::new(mixed)),
+        ("wide", Compound::new(wide)),
+        ("row", row(CompoundFlags::empty())),
+        ("row without inner faces", row(CompoundFlags::FIX_INTERNAL_EDGES)),
+        ("one part", Compound::new(vec![(place(0.1), parts[1].clone())])),
+    ]
+}
+
+/// What is asked: the contacts of a mesh and a compound.
+#[derive(Clone, Copy)]
+struct Question<'a> {
+    mesh: &'a TriMesh,
+    compound: &'a Compound,
+    /// The pose of the compound in the frame of the mesh.
+    pose: Pose,
+    prediction: Real,
+    /// Whether the compound comes first.
+    flipped: bool,
+}
+
+impl Question<'_> {
+    fn ask<'p, M, C>(
+        &self,
+        dispatcher: &impl Dispatcher<M, C>,
+        pair: &'p mut Pair<M, C>,
+    ) -> &'p mut Pair<M, C> {
+        let (mesh, compound): (&dyn Shape, &dyn Shape) = (self.mesh, self.compound);
+        let (pos12, one, two) = if self.flipped {
+            (self.pose.inverse(), compound, mesh)
+        } else {
+            (self.pose, mesh, compound)
+        };
+        let Pair { manifolds, workspace } = pair;
+        dispatcher
+            .contact_manifolds(&pos12, one, two, self.prediction, manifolds, workspace)
+            .expect("the pair is supported");
+        pair
+    }
+
+    /// The answer to one who knows nothing of the pair: what touches.
+    fn fresh(&self, dispatcher: &impl Dispatcher<(), ()>) -> Vec<Manifold> {
+        let mut manifolds =
+            std::mem::take(&mut self.ask(dispatcher, &mut Pair::default()).manifolds);
+        manifolds.retain(|manifold| distance(manifold) <= self.prediction);
+        manifolds
+    }
+}
+
+/// A pose at which the compound is `gap` away from the mesh, or about as deep in it if negative.
+fn near_pose(random: &mut Rand32, mesh: &TriMesh, compound: &Compound, gap: Real) -> Pose {
+    const START: Real = 30.0;
+    let mut approach = || {
+        let (turn, away) = (rotation(random), direction(random));
+        let at = |way: Real| Pose::from_parts(way * away, turn);
+        let apart =
+            |way| DefaultQueryDispatcher.distance(&at(way), mesh, compound).unwrap().distance;
+        let mut way = START;
+        for _ in 0..100 {
+            way -= apart(way) - gap.max(0.001);
+        }
+        (way.abs() < START).then(|| at(way + gap.min(0.0)))
+    };
+    (0..100).find_map(|_| approach()).expect("most ways end at the mesh")
+}
+
+fn assert_like_stock(ours: &[Manifold], stock: &[Manifold]) {
+    assert_same(ours, stock, 0.0);
+    for (ours, stock) in ours.iter().zip(stock) {
+        assert_eq!(ours.local_n2, stock.local_n2);
+        assert_eq!(ours.subshape_pos1(), stock.subshape_pos1());
+        assert_eq!(ours.subshape_pos2(), stock.subshape_pos2());
+        for (p, q) in ours.points.iter().zip(&stock.points) {
+            assert_eq!([p.fid1, p.fid2], [q.fid1, q.fid2]);
+        }
+    }
+}
+
+/// Would catch parts that are not looked at, poses or roundings other than stock's, the poses and numbers of parts mixed up,
+/// cones of parts left out, and another order: bit for bit what stock says.
+#[test]
+fn fresh_contacts_are_those_of_stock() {
+    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
+    let constrained = shape_with(&mesh::monkey_head(), TriMeshFlags::FIX_INTERNAL_EDGES);
+    for size in [0.6, 3.0] {
+        for (name, compound) in compounds(size) {
+            let dispatcher = counting();
+            let mut random = Rand32::new(2);
+            let (mut count, mut part_count) = (0, 0);
+            for i in 0..24 {
+                let mesh = if i % 4 < 2 { &head } else { &constrained };
+                let depth = [0.0, -0.05, -0.3, 0.01][i % 4];
+                let pose = near_pose(&mut random, mesh, &compound, depth);
+                let prediction = [0.02, 0.1, 0.02][i % 3];
+                for flipped in [false, true] {
+                    let question =
+                        Question { mesh, compound: &compound, pose, prediction, flipped };
+                    let found = question.fresh(&dispatcher);
+                    assert_like_stock(&found, &question.fresh(&DefaultQueryDispatcher));
+                    count += found.len();
+                    let part = |m: &Manifold| if flipped { m.subshape1 } else { m.subshape2 };
+                    let parts: BTreeMap<u32, ()> = found.iter().map(|m| (part(m), ())).collect();
+                    part_count = part_count.max(parts.len());
+                }
+            }
+            assert!(count > 50, "{name} of {size}: {count} contacts");
+            assert!(part_count > 1 || name == "one part", "{name}: one part at a time");
+            let stats = dispatcher.stats();
+            assert!(stats.descended_queries >= 40 && stats.unsupported_queries == 0, "{stats:?}");
+        }
+    }
+}
+
+/// How far kept points may drift before Parry asks again, as for single convex shapes.
+const BAND: Real = 2e-3;
+/// How far a kept depth may be off for the same reason.
+const DEPTH: Real = 2e-2;
+
+/// Would catch state that is given to another part, manifolds of parts that went away and came back, and candidates kept too long.
+/// Proves that candidates were kept.
+#[test]
+fn motion_loses_no_contact() {
+    let head = shape_with(&mesh::monkey_head_with(6), TriMeshFlags::empty());
+    for (seed, (name, compound)) in compounds(1.0).into_iter().enumerate() {
+        let dispatcher = counting();
+        let unaware = SbbkDispatcher::default();
+        let _tree = unaware.prepare(&head).unwrap();
+        let mut random = Rand32::new(seed as u64);
+        let pose = near_pose(&mut random, &head, &compound, 0.0);
+        let flipped = seed % 2 == 1;
+        let mut question =
+            Question { mesh: &head, compound: &compound, pose, prediction: 0.02, flipped };
+        let mut pair: Pair = Pair::default();
+        let (mut stride, mut count, mut unseen) = (1e-3, 0, 0);
+        for _ in 0..500 {
+            match random.rand_range(0..100) {
+                0..=2 => question.pose = near_pose(&mut random, &head, &compound, -0.03),
+                3..=5 => question.prediction = [0.01, 0.02, 0.06][random.rand_range(0..3) as usize],
+                6 => pair.workspace = None,
+                7..=8 => stride = [0.0, 1e-5, 1e-3, 1e-2][random.rand_range(0..4) as usize],
+                9 => question.pose.translation *= 5.0,
+                _ => question.pose = nudge(&mut random, stride) * question.pose,
+            }
+            if question.pose.translation.length() > 8.0 {
+                assert!(question.ask(&dispatcher, &mut pair).manifolds.is_empty());
+                question.pose = near_pose(&mut random, &head, &compound, -0.01);
+            }
+            question.ask(&dispatcher, &mut pair);
+            let wider = Question { prediction: question.prediction + BAND, ..question };
+            let of = |manifolds: &[Manifold]| -> BTreeMap<TrianglePair, Real> {
+                manifolds.iter().map(|manifold| (triangles(manifold), distance(manifold))).collect()
+            };
+            let all = of(&wider.fresh(&unaware));
+            let found = of(&pair.manifolds);
+            assert_eq!(found.len(), pair.manifolds.len(), "{name}: a pair twice");
+            for (pair, near) in found.iter().filter(|(_, near)| **near <= question.prediction) {
+                // Parry's GJK sees or misses a few contacts by where it begins.
+                let Some(expected) = all.get(pair) else {
+                    unseen += 1;
+                    continue;
+                };
+                assert!((near - expected).abs() <= DEPTH, "{name}: {near} for {expected}");
+            }
+            let inner = all.iter().filter(|(_, near)| **near < question.prediction - BAND);
+            for (pair, _) in inner {
+                count += 1;
+                unseen += usize::from(!found.contains_key(pair));
+            }
+        }
+        let stats = dispatcher.stats();
+        assert!(count > 500 && 100 * unseen <= count, "{name}: {unseen} unseen of {count}");
+        assert!(stats.reused_queries > 50 && stats.descended_queries > 30, "{name}: {stats:?}");
+        assert!(stats.unchanged_queries > 0, "{name}: {stats:?}");
+    }
+}
+
+/// Would catch lists of parts, manifolds and the boxes of their poses that are made anew in each step.
+#[test]
+fn steady_contact_allocates_nothing() {
+    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
+    let dispatcher = counting();
+    for (name, compound) in compounds(1.0) {
+        let mut random = Rand32::new(5);
+        for (flipped, stride) in [(false, 1e-4), (true, 1e-3), (false, 6e-3)] {
+            let question = |pose| Question {
+                mesh: &head,
+                compound: &compound,
+                pose,
+                prediction: 0.02,
+                flipped,
+            };
+            // Not overlapping: Parry's EPA allocates.
+            let starts = (0..200).map(|_| near_pose(&mut random, &head, &compound, 0.012));
+            let is_good = |&pose: &Pose| {
+                let found = question(pose).fresh(&dispatcher);
+                found.len() > 1 && found.iter().all(|manifold| distance(manifold) > 0.011)
+            };
+            let start = { starts }.find(is_good).expect("most ways end near the mesh");
+            let poses: Vec<Pose> = (0..20).map(|_| nudge(&mut random, stride) * start).collect();
+            let mut pair = Pair::<ContactManifoldData, ContactData>::default();
+            for &pose in poses.iter().cycle().take(20 * 25) {
+                question(pose).ask(&dispatcher, &mut pair);
+            }
+            for &pose in poses.iter().cycle().take(20 * 4) {
+                let allocated = measure(|| _ = question(pose).ask(&dispatcher, &mut pair));
+                assert_eq!(allocated.count_total, 0, "{name}, {stride}: {allocated:?}");
+            }
+        }
+    }
+}
+
+/// Would catch a panic, and contacts at poses that are none.
+#[test]
+fn poses_that_are_none_have_no_contacts() {
+    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
+    let dispatcher = SbbkDispatcher::default();
+    let (_, compound) = compounds(1.0).remove(0);
+    for broken in [Real::NAN, Real::INFINITY, -Real::INFINITY] {
+        let shift = Pose::from_parts(Vec3::new(0.1, broken, 0.0), Quat::IDENTITY);
+        let turn = Pose::from_parts(Vec3::ZERO, Quat::from_xyzw(broken, 0.0, 0.0, 1.0));
+        for (pose, flipped) in [(shift, false), (shift, true), (turn, false), (turn, true)] {
+            let at = |pose| Question {
+                mesh: &head,
+                compound: &compound,
+                pose,
+                prediction: 0.02,
+                flipped,
+            };
+            let mut pair: Pair = Pair::default();
+            let start = Pose::translation(0.9, 0.0, 0.0);
+            assert!(!at(start).ask(&dispatcher, &mut pair).manifolds.is_empty());
+            assert!(at(pose).ask(&dispatcher, &mut pair).manifolds.is_empty());
+            assert!(at(pose).fresh(&dispatcher).is_empty());
+        }
+    }
+}
+
+/// A part of a kind that SBBK does not answer for: the whole pair is stock's, not half of it.
+#[test]
+fn other_parts_leave_the_pair_to_stock() {
+    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
+    let field = HeightField::new(Array2::repeat(4, 4, 0.0), Vec3::splat(2.0));
+    let parts = vec![
+        (Pose::translation(0.0, -0.9, 0.0), SharedShape::new(field)),
+        (Pose::translation(0.9, 0.0, 0.0), SharedShape::ball(0.6)),
+    ];
+    let compound = Compound::new(parts);
+    let dispatcher = counting();
+    let pose = Pose::IDENTITY;
+    let question =
+        Question { mesh: &head, compound: &compound, pose, prediction: 0.02, flipped: false };
+    let found = question.fresh(&dispatcher);
+    assert!(!found.is_empty());
+    assert_like_stock(&found, &question.fresh(&DefaultQueryDispatcher));
+    assert_eq!(dispatcher.stats().queries, 0);
+}
+
+/// Would catch candidates of a compound that is no longer there, where a host keeps the workspace over an edit.
+#[test]
+fn another_compound_with_the_same_workspace_is_noticed() {
+    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
+    let dispatcher = counting();
+    let pose = Pose::translation(0.9, 0.0, 0.0);
+    let mut pair: Pair = Pair::default();
+    let all: Vec<_> = compounds(1.0).into_iter().chain(compounds(1.1)).collect();
+    for (name, compound) in &all {
+        let question = Question { mesh: &head, compound, pose, prediction: 0.02, flipped: false };
+        for _ in 0..2 {
+            let mut found = question.ask(&dispatcher, &mut pair).manifolds.clone();
+            found.retain(|manifold| distance(manifold) <= 0.02);
+            let expected = question.fresh(&DefaultQueryDispatcher);
+            assert_eq!(found.len(), expected.len(), "{name}");
+            assert_like_stock(&found, &expected);
+        }
+    }
+}
+
+/// Three dumbbells above a mesh terrain.
+fn world(dispatcher: Option<SbbkDispatcher>) -> (PhysicsWorld, Vec<RigidBodyHandle>) {
+    let mut world = PhysicsWorld::new();
+    if let Some(dispatcher) = dispatcher {
+        world.narrow_phase.set_query_dispatcher(dispatcher);
+    }
+    let fixed = world.bodies.insert(RigidBodyBuilder::fixed());
+    let ground = mesh::terrain(12.0, 24, 0.4).shared_shape().unwrap();
+    let ground = ColliderBuilder::new(ground).build();
+    world.colliders.insert_with_parent(ground, fixed, &mut world.bodies);
+    let bar = SharedShape::cuboid(0.6, 0.1, 0.1);
+    let end = SharedShape::cuboid(0.3, 0.3, 0.3);
+    let dumbbell = SharedShape::compound(vec![
+        (Pose::IDENTITY, bar),
+        (Pose::translation(-0.7, 0.0, 0.0), end.clone()),
+        (Pose::translation(0.7, 0.0, 0.0), end),
+    ]);
+    let bodies = (0..3).map(|i| {
+        let at = Vec3::new(3.0 * (i as Real - 1.0), 1.2, 0.3 * i as Real);
+        let body = RigidBodyBuilder::dynamic().translation(at).angular_damping(2.0).build();
+        let body = world.bodies.insert(body);
+        let collider = ColliderBuilder::new(dumbbell.clone()).density(1.0).build();
+        world.colliders.insert_with_parent(collider, body, &mut world.bodies);
+        body
+    });
+    let bodies = bodies.collect();
+    (world, bodies)
+}
+
+fn poses(world: &PhysicsWorld, bodies: &[RigidBodyHandle]) -> Vec<Pose> {
+    bodies.iter().map(|&body| *world.bodies[body].position()).collect()
+}
+
+/// Would catch contacts that flicker, sink in or do not hold a body at rest, and a world that cannot be saved in the middle of
+/// it or goes on otherwise.
+#[test]
+fn compounds_rest_on_a_mesh_as_with_stock() {
+    let dispatcher = counting();
+    let (mut stock, stock_bodies) = world(None);
+    let (mut sbbk, bodies) = world(Some(dispatcher.clone()));
+    for _ in 0..300 {
+        stock.step();
+        sbbk.step();
+    }
+    let bytes = postcard::to_stdvec(&sbbk).expect("a world with SBBK can be saved");
+    let mut copy: PhysicsWorld = postcard::from_bytes(&bytes).expect("and loaded");
+    copy.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
+    let before = poses(&sbbk, &bodies);
+    for _ in 0..100 {
+        stock.step();
+        sbbk.step();
+        copy.step();
+    }
+    assert_eq!(poses(&sbbk, &bodies), poses(&copy, &bodies), "the copy goes on otherwise");
+    for ((before, after), stock) in
+        before.iter().zip(poses(&sbbk, &bodies)).zip(poses(&stock, &stock_bodies))
+    {
+        let moved = (before.translation - after.translation).length();
+        assert!(moved < 0.02, "moves by {moved}");
+        let apart = (stock.translation - after.translation).length();
+        assert!(apart < 0.3, "{apart} from where it rests with stock");
+        assert!(after.translation.y > 0.0, "{after:?}");
+    }
+    let stats = dispatcher.stats();
+    assert!(stats.queries > 50 && stats.unsupported_queries == 0, "SBBK did not answer: {stats:?}");
+}
