@@ -1,7 +1,7 @@
 //! Questions about two meshes at a pose that need one answer, not all contacts: the nearest or the deepest pair of
 //! triangles, whether any pair meets, when moving meshes first meet.
 //!
-//! All of them are one search ([`seek`](seek::seek)): both trees are descended at once, the pair of nodes with the
+//! All of them are one search (`seek.rs`): both trees are descended at once, the pair of nodes with the
 //! least lower bound first, and whatever cannot beat the best pair of triangles so far is left out. What the bound is
 //! differs: the signed distance of volumes for [`nearest`], the earliest time at which they come close for [`cast`].
 //! Pairs of triangles are compared exactly, in f64 ([`contact`](mod@crate::contact)).
