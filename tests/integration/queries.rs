@@ -304,7 +304,7 @@ fn an_edited_mesh_is_seen() {
     assert!((after - truth).abs() < 1e-5);
 }
 
-/// Poses and velocities that are no numbers: the same as stock, which finds nothing.
+/// Poses and velocities that are no numbers: nothing is found, and nothing panics.
 #[test]
 fn numbers_that_are_none() {
     let head = shape(&mesh::monkey_head_with(6));

@@ -274,6 +274,22 @@ mod tests {
         assert!(kept > apart * 9 / 10, "only {kept} of {apart} steps apart kept their features");
     }
 
+    /// Triangles that are points or segments have many features in one place: fuzzing found that the last ones
+    /// were taken.
+    #[test]
+    fn any_last_features_of_points_and_segments() {
+        let [a, b, c] =
+            [DVec3::new(-1.5, 1.625, 0.5), DVec3::splat(0.5), DVec3::new(2.0, 0.5, 0.5)];
+        let [point1, point2, segment] = [[a; 3], [b; 3], [b, c, b]];
+        for (t1, t2) in [(point1, point2), (point1, segment), (segment, point1), (segment, segment)]
+        {
+            for bits in 0..=FeaturePair::MASK {
+                let warm = contact_from(&t1, &t2, 10.0, FeaturePair::from_bits(bits));
+                assert_eq!(contact(&t1, &t2, 10.0), warm);
+            }
+        }
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(1000))]
 

@@ -77,8 +77,8 @@ impl<'a> Triangle<'a> {
         let next = self.edges[i].dot(direction);
         let previous = -self.edges[PREVIOUS[i]].dot(direction);
         match feature {
-            Feature::Vertex(_) => next <= -win && previous <= -win,
-            Feature::Edge(_) => next.abs() <= slack && previous <= -win,
+            Feature::Vertex(_) => next < -win && previous < -win,
+            Feature::Edge(_) => next.abs() <= slack && previous < -win,
             Feature::Face => next.abs() <= slack && previous.abs() <= slack,
         }
     }

@@ -41,8 +41,8 @@ where
     /// Fits all volumes to the mesh with its vertices where they are now; the triangles must be those of the build.
     /// Linear in the size of the mesh, and nothing is allocated.
     ///
-    /// Boxes and k-DOPs are exactly as tight as those of a build with this hierarchy. The sphere is centred in the box of the vertices: at
-    /// most a third larger than a minimal one in practice. [`Tree::stats`] stays that of the build.
+    /// Boxes and k-DOPs are exactly as tight as those of a build with this hierarchy. The sphere is centred in the box of the
+    /// vertices, and somewhat larger than a build's. [`Tree::stats`] stays that of the build.
     ///
     /// ```
     /// # use glamx::Vec3;
