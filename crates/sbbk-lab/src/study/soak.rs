@@ -86,7 +86,7 @@ pub struct Soak {
     pub body_count: usize,
     /// The run, piece by piece.
     pub rows: Vec<SoakRow>,
-    /// Trees left after all bodies were taken away and idle trees released.
+    /// Trees left after all bodies were taken away, the world dropped and idle trees released.
     pub trees_left: usize,
 }
 
@@ -235,7 +235,8 @@ impl SoakRun {
         }
     }
 
-    /// Takes everything away. The trees that are left.
+    /// Takes everything away, and the world last: Rapier keeps the pairs that it has retired, with what they hold, until it
+    /// needs a new one. The trees that are left.
     fn clear(mut self) -> usize {
         while !self.bodies.is_empty() {
             self.remove_oldest();
@@ -243,6 +244,7 @@ impl SoakRun {
         for _ in 0..3 {
             self.world.step();
         }
+        drop(self.world);
         self.dispatcher.release_idle_trees();
         self.dispatcher.stats().trees
     }

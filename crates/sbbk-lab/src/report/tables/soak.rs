@@ -38,7 +38,9 @@ pub fn soak(soak: &Soak) -> Grid {
         text_columns: 0,
         rows: rows.collect(),
         notes: vec![
-            format!("trees left after all bodies went and idle trees were released: {trees_left}"),
+            format!(
+                "trees left after all bodies and the world went and idle trees were released: {trees_left}"
+            ),
             "times: min / median".to_owned(),
             ERROR_NOTE.to_owned(),
         ],
