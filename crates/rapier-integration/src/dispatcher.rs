@@ -13,10 +13,7 @@ use sbbk_core::traverse::DescentCounts;
 use sbbk_core::tree::{BuildError, Tree};
 
 use crate::mesh::{PreparedRef, TreeCache};
-use crate::pair::{
-    Answer, CompoundPair, ConvexPair, ConvexShape, FieldPair, MeshPair, compound_contact_manifolds,
-    contact_manifolds, convex_contact_manifolds, field_contact_manifolds,
-};
+use crate::pair::{Answer, CompoundPair, ConvexPair, ConvexShape, FieldPair, MeshPair, Question};
 use crate::query::{Nonlinear, Trees};
 use crate::stats::QueryCounters;
 use crate::{ContactGenerator, SbbkConfig, SbbkStats, TriangleContacts};
@@ -77,22 +74,6 @@ impl SbbkDispatcher {
         trees
     }
 
-    /// The answer to a query, counted; `Unsupported` if Parry must answer.
-    fn counted(&self, answer: impl FnOnce(Option<&mut DescentCounts>) -> Answer) -> Answer {
-        let answer = if self.config.count_queries {
-            let mut counts = DescentCounts::default();
-            let answer = answer(Some(&mut counts));
-            self.counters.add(answer, &counts);
-            answer
-        } else {
-            answer(None)
-        };
-        if answer == Answer::Unsupported {
-            self.counters.add_unsupported();
-        }
-        answer
-    }
-
     /// The contacts of a pair of shapes, if SBBK answers for them.
     fn answer<M, C>(
         &self,
@@ -106,57 +87,55 @@ impl SbbkDispatcher {
         M: Default + Clone + Send + Sync + 'static,
         C: Default + Copy + Send + Sync + 'static,
     {
-        let cache = &self.cache;
+        let contacts = self.config.contacts;
         let (mesh, other, flipped) = match (g1.as_trimesh(), g2.as_trimesh()) {
             (Some(mesh1), Some(mesh2)) => {
-                let (pair, contacts) =
-                    (MeshPair { pos12, mesh1, mesh2, prediction }, self.config.contacts);
-                return self.counted(|counts| match counts {
-                    Some(counts) => {
-                        contact_manifolds(pair, cache, contacts, counts, manifolds, workspace)
-                    }
-                    None => contact_manifolds(pair, cache, contacts, (), manifolds, workspace),
-                });
+                let pair = MeshPair { pos12, mesh1, mesh2, prediction, contacts };
+                return self.ask(pair, manifolds, workspace);
             }
             (Some(mesh), None) => (mesh, g2, false),
             (None, Some(mesh)) => (mesh, g1, true),
             (None, None) => return Answer::Unsupported,
         };
-        if mesh.is_deformable()
-            && (other.as_heightfield().is_some() || other.as_compound().is_some())
-        {
-            return Answer::Unsupported;
-        }
-        if let Some(field) = other.as_heightfield() {
-            let pair = FieldPair { pos12, mesh, field, flipped, prediction };
-            let contacts = self.config.contacts;
-            return self.counted(|counts| match counts {
-                Some(counts) => {
-                    field_contact_manifolds(pair, cache, contacts, counts, manifolds, workspace)
-                }
-                None => field_contact_manifolds(pair, cache, contacts, (), manifolds, workspace),
-            });
-        }
-        if let Some(compound) = other.as_compound() {
-            if !CompoundPair::is_known(compound) {
-                return Answer::Unsupported;
-            }
+        if let Some(shape) = ConvexShape::of(other) {
+            let pair = ConvexPair::new(pos12, (mesh, shape), flipped, prediction);
+            self.ask(pair, manifolds, workspace)
+        } else if mesh.is_deformable() {
+            Answer::Unsupported
+        } else if let Some(field) = other.as_heightfield() {
+            let pair = FieldPair { pos12, mesh, field, flipped, prediction, contacts };
+            self.ask(pair, manifolds, workspace)
+        } else if let Some(compound) = other.as_compound().filter(|c| CompoundPair::is_known(c)) {
             let pair = CompoundPair { pos12, mesh, compound, flipped, prediction };
-            return self.counted(|counts| match counts {
-                Some(counts) => {
-                    compound_contact_manifolds(pair, cache, counts, manifolds, workspace)
-                }
-                None => compound_contact_manifolds(pair, cache, (), manifolds, workspace),
-            });
+            self.ask(pair, manifolds, workspace)
+        } else {
+            Answer::Unsupported
         }
-        let Some(shape) = ConvexShape::of(other) else {
-            return Answer::Unsupported;
+    }
+
+    /// The answer to a question, counted; `Unsupported` if Parry must answer.
+    fn ask<M, C>(
+        &self,
+        question: impl Question,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Answer
+    where
+        M: Default + Clone + Send + Sync + 'static,
+        C: Default + Copy + Send + Sync + 'static,
+    {
+        let answer = if self.config.count_queries {
+            let mut counts = DescentCounts::default();
+            let answer = question.contact_manifolds(&self.cache, &mut counts, manifolds, workspace);
+            self.counters.add(answer, &counts);
+            answer
+        } else {
+            question.contact_manifolds(&self.cache, (), manifolds, workspace)
         };
-        let pair = ConvexPair::new(pos12, (mesh, shape), flipped, prediction);
-        self.counted(|counts| match counts {
-            Some(counts) => convex_contact_manifolds(pair, cache, counts, manifolds, workspace),
-            None => convex_contact_manifolds(pair, cache, (), manifolds, workspace),
-        })
+        if answer == Answer::Unsupported {
+            self.counters.add_unsupported();
+        }
+        answer
     }
 }
 

@@ -11,11 +11,13 @@
 //! larger slack for pairs that do not touch makes their queries up to 1.5 times slower.
 
 use parry3d::math::{Pose, Real};
+use parry3d::query::ContactManifold;
 use sbbk_core::contact::TriangleContact;
 use sbbk_core::traverse::Placement;
 use sbbk_core::volumes::Sphere;
 
 use super::candidates::Candidate;
+use crate::mesh::Change;
 
 /// Slack in steps of the present motion. More: fewer descents, and more candidates that do not touch.
 const SLACK_STEPS: f64 = 8.0;
@@ -113,6 +115,26 @@ impl<T> Coherence<T> {
         self.travel = 0.0;
         self.descent = (margin > prediction).then_some(Seen { margin, ..now });
         Plan::Descend { margin }
+    }
+
+    /// Forgets what a change of the shapes makes worthless: the candidates, and the manifolds if their triangles are others
+    /// now. If vertices moved or another dispatcher was here before, the manifolds keep their data, but no generator must take
+    /// their points for its own.
+    pub(super) fn follow<M, C: Default + Copy>(
+        &mut self,
+        change: Change,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+    ) {
+        if change != Change::None {
+            self.clear();
+        }
+        match change {
+            Change::None => {}
+            Change::Unknown | Change::Deformed => {
+                manifolds.iter_mut().for_each(ContactManifold::mark_shapes_deformed);
+            }
+            Change::Replaced => manifolds.clear(),
+        }
     }
 
     /// What the pair has moved since the descent, along its path.

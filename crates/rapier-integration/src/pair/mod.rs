@@ -14,10 +14,12 @@ mod heightfield;
 mod manifolds;
 mod previous;
 mod query;
+mod question;
 mod state;
 
-pub(crate) use compound::{CompoundPair, contact_manifolds as compound_contact_manifolds};
-pub(crate) use convex::{ConvexPair, ConvexShape, contact_manifolds as convex_contact_manifolds};
+pub(crate) use compound::CompoundPair;
+pub(crate) use convex::{ConvexPair, ConvexShape};
 pub use exact::TriangleContacts;
-pub(crate) use heightfield::{FieldPair, contact_manifolds as field_contact_manifolds};
-pub(crate) use query::{Answer, MeshPair, contact_manifolds};
+pub(crate) use heightfield::FieldPair;
+pub(crate) use query::MeshPair;
+pub(crate) use question::{Answer, Question};

@@ -53,16 +53,10 @@ impl<'a> Previous<'a> {
         C: Default + Copy,
         K: Copy,
     {
-        let mut found = None;
-        while let Some(&&(key, place)) = self.0.peek().filter(|old| old.0 <= wanted) {
-            self.0.next();
-            if key == wanted && found.is_none() {
-                found = Some(place as usize);
-            } else {
-                history.retire(std::mem::take(&mut manifolds[place as usize]));
-            }
+        while let Some((_, place)) = self.next_before(wanted) {
+            history.retire(std::mem::take(&mut manifolds[place]));
         }
-        found
+        self.next_of(wanted)
     }
 
     /// Retires the manifolds that are left.

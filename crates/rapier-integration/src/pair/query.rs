@@ -11,9 +11,10 @@ use sbbk_core::traverse::{Counters, PairFrame, Placement};
 use super::candidates::{Candidate, Scratch, collect};
 use super::coherence::{Coherence, Plan};
 use super::manifolds::{Generator, Meshes};
-use super::state::{PairKind, PairState};
+use super::question::{Answer, Question};
+use super::state::{PairKind, PairState, state_in};
 use crate::ContactGenerator;
-use crate::mesh::{Change, Held, KnownMesh, TreeCache};
+use crate::mesh::{Held, KnownMesh, TreeCache};
 
 /// The question: which contacts do two meshes have?
 #[derive(Copy, Clone)]
@@ -23,35 +24,7 @@ pub(crate) struct MeshPair<'a> {
     pub(crate) mesh1: &'a TriMesh,
     pub(crate) mesh2: &'a TriMesh,
     pub(crate) prediction: Real,
-}
-
-/// How a query was answered.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Answer {
-    /// By the boxes of the whole meshes alone.
-    Apart,
-    /// By what the last query left: nothing has moved.
-    Unchanged,
-    /// From the candidates of an earlier descent.
-    Reused,
-    /// By a descent.
-    Descended,
-    /// Not at all: a mesh cannot have a tree, and somebody else must answer.
-    Unsupported,
-}
-
-impl Answer {
-    /// The one of two answers, for parts of a pair, that took more.
-    pub(super) fn or_harder(self, other: Self) -> Self {
-        let effort = |answer| match answer {
-            Self::Apart => 0,
-            Self::Unchanged => 1,
-            Self::Reused => 2,
-            Self::Descended => 3,
-            Self::Unsupported => 4,
-        };
-        if effort(self) < effort(other) { other } else { self }
-    }
+    pub(crate) contacts: ContactGenerator,
 }
 
 /// Greatest slack of candidates as a share of the prediction distance. More: pairs of triangles that do not touch get
@@ -94,10 +67,6 @@ impl MeshPair<'_> {
     }
 
     /// The trees of both meshes, from the state if they are known and still valid, refitted if a mesh has deformed.
-    ///
-    /// If anything has changed, the candidates are forgotten. The manifolds as well, if a mesh was edited while the
-    /// host kept the workspace. If only vertices moved or another dispatcher was here before, the manifolds keep their data, but
-    /// no generator must take their points for its own.
     fn trees<'s, M, C>(
         &self,
         cache: &Arc<TreeCache>,
@@ -110,80 +79,70 @@ impl MeshPair<'_> {
     {
         let (change1, tree1) = cache.noting(self.mesh1, known1.update(self.mesh1, cache))?;
         let (change2, tree2) = cache.noting(self.mesh2, known2.update(self.mesh2, cache))?;
-        let change = change1.max(change2);
-        if change != Change::None {
-            coherence.clear();
-        }
-        match change {
-            Change::None => {}
-            Change::Unknown | Change::Deformed => {
-                manifolds.iter_mut().for_each(ContactManifold::mark_shapes_deformed);
-            }
-            Change::Replaced => manifolds.clear(),
-        }
+        coherence.follow(change1.max(change2), manifolds);
         Some([tree1, tree2])
     }
 }
 
-/// Brings the manifolds of a pair of meshes up to date.
-pub(crate) fn contact_manifolds<M, C>(
-    pair: MeshPair<'_>,
-    cache: &Arc<TreeCache>,
-    contacts: ContactGenerator,
-    counters: impl Counters,
-    manifolds: &mut Vec<ContactManifold<M, C>>,
-    workspace: &mut Option<ContactManifoldsWorkspace>,
-) -> Answer
-where
-    M: Default + Clone + Send + Sync + 'static,
-    C: Default + Copy + Send + Sync + 'static,
-{
-    if cache.is_unsupported(&[pair.mesh1, pair.mesh2]) {
-        return Answer::Unsupported;
-    }
-    let PairState::<_, _, TwoMeshes> { shapes: meshes, coherence, history } =
-        PairState::of(workspace, manifolds);
-    if meshes.iter().any(KnownMesh::is_unknown) && !pair.root_boxes_meet() {
-        manifolds.clear();
-        return Answer::Apart;
-    }
-    let Some(prepared) = pair.trees(cache, meshes, coherence, manifolds) else {
-        return Answer::Unsupported;
-    };
-    let prepared = prepared.each_ref().map(|held| &**held);
-    let trees = (&prepared[0].tree, &prepared[1].tree);
-    let placement = Placement::new(pair.pos12);
-    let ball = trees.1.bounding_ball();
-    let pose = (pair.pos12, placement);
-    let plan = coherence.plan(ball, pose, pair.prediction, GREATEST_SLACK);
-    if plan == Plan::Nothing && history.is_of(manifolds) {
-        return Answer::Unchanged;
-    }
-    let margin = match plan {
-        Plan::Descend { margin } | Plan::Reuse { margin } => margin,
-        Plan::Nothing => pair.prediction,
-    };
-    let mut frame = PairFrame::at(trees, placement, margin);
-    let flipped = pair.is_flipped();
-    SCRATCH.with_borrow_mut(|scratch| {
-        if let Plan::Reuse { .. } = plan {
-            coherence.near(pair.prediction, &mut scratch.candidates);
-        } else {
-            collect(prepared, &mut frame, flipped, counters, scratch);
+impl Question for MeshPair<'_> {
+    fn contact_manifolds<M, C>(
+        self,
+        cache: &Arc<TreeCache>,
+        counters: impl Counters,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Answer
+    where
+        M: Default + Clone + Send + Sync + 'static,
+        C: Default + Copy + Send + Sync + 'static,
+    {
+        if cache.is_unsupported(&[self.mesh1, self.mesh2]) {
+            return Answer::Unsupported;
         }
-        let generator = Generator {
-            shapes: Meshes { pair, prepared, flipped },
-            pos12: pair.pos12,
-            placement: frame.placement(),
-            margin: frame.margin(),
-            prediction: pair.prediction,
-            parrys_pose: pair.parrys_pose(),
-            contacts,
+        let PairState::<_, _, TwoMeshes> { shapes: meshes, coherence, history } =
+            state_in(workspace, manifolds);
+        if meshes.iter().any(KnownMesh::is_unknown) && !self.root_boxes_meet() {
+            manifolds.clear();
+            return Answer::Apart;
+        }
+        let Some(prepared) = self.trees(cache, meshes, coherence, manifolds) else {
+            return Answer::Unsupported;
         };
-        generator.update(scratch, coherence, history, manifolds);
-    });
-    match plan {
-        Plan::Reuse { .. } => Answer::Reused,
-        Plan::Nothing | Plan::Descend { .. } => Answer::Descended,
+        let prepared = prepared.each_ref().map(|held| &**held);
+        let trees = (&prepared[0].tree, &prepared[1].tree);
+        let placement = Placement::new(self.pos12);
+        let ball = trees.1.bounding_ball();
+        let pose = (self.pos12, placement);
+        let plan = coherence.plan(ball, pose, self.prediction, GREATEST_SLACK);
+        if plan == Plan::Nothing && history.is_of(manifolds) {
+            return Answer::Unchanged;
+        }
+        let margin = match plan {
+            Plan::Descend { margin } | Plan::Reuse { margin } => margin,
+            Plan::Nothing => self.prediction,
+        };
+        let mut frame = PairFrame::at(trees, placement, margin);
+        let flipped = self.is_flipped();
+        SCRATCH.with_borrow_mut(|scratch| {
+            if let Plan::Reuse { .. } = plan {
+                coherence.near(self.prediction, &mut scratch.candidates);
+            } else {
+                collect(prepared, &mut frame, flipped, counters, scratch);
+            }
+            let generator = Generator {
+                shapes: Meshes { pair: self, prepared, flipped },
+                pos12: self.pos12,
+                placement: frame.placement(),
+                margin: frame.margin(),
+                prediction: self.prediction,
+                parrys_pose: self.parrys_pose(),
+                contacts: self.contacts,
+            };
+            generator.update(scratch, coherence, history, manifolds);
+        });
+        match plan {
+            Plan::Reuse { .. } => Answer::Reused,
+            Plan::Nothing | Plan::Descend { .. } => Answer::Descended,
+        }
     }
 }

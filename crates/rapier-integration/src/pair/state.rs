@@ -71,38 +71,28 @@ impl<M, C, K> Default for History<M, C, K> {
     }
 }
 
-impl<M, C, K: PairKind> PairState<M, C, K>
-where
-    M: Default + Clone + Send + Sync + 'static,
-    C: Default + Copy + Send + Sync + 'static,
-{
-    /// The state in `workspace`, see [`state_in`].
-    pub(super) fn of<'a>(
-        workspace: &'a mut Option<ContactManifoldsWorkspace>,
-        manifolds: &mut Vec<ContactManifold<M, C>>,
-    ) -> &'a mut Self {
-        state_in(workspace, manifolds)
-    }
-}
-
 /// The state in `workspace`, made anew where there is none.
 ///
 /// The manifolds of a pair *without* a workspace are dropped: the host has taken it away since a shape changed, and
 /// the numbers of triangles in them may mean others now. With the workspace of somebody else (a restored
 /// snapshot, a dispatcher that was here before) the manifolds are kept: the shapes are the same.
-pub(super) fn state_in<'a, S: WorkspaceData + Default, M, C>(
+pub(super) fn state_in<'a, S, M, C>(
     workspace: &'a mut Option<ContactManifoldsWorkspace>,
     manifolds: &mut Vec<ContactManifold<M, C>>,
-) -> &'a mut S {
+) -> &'a mut S
+where
+    S: Clone + Default + Send + Sync + 'static,
+{
     if workspace.is_none() {
         manifolds.clear();
     }
-    let is_ours = |workspace: &ContactManifoldsWorkspace| workspace.0.is::<S>();
+    let is_ours = |workspace: &ContactManifoldsWorkspace| workspace.0.is::<Kept<S>>();
     if !workspace.as_ref().is_some_and(is_ours) {
-        *workspace = Some(S::default().into());
+        *workspace = Some(Kept(S::default()).into());
     }
     let state = workspace.as_mut().and_then(|workspace| workspace.0.downcast_mut());
-    state.expect("the workspace was made of this type just now")
+    let Kept(state) = state.expect("the workspace was made of this type just now");
+    state
 }
 
 impl<M, C, K> History<M, C, K>
@@ -211,18 +201,13 @@ fn reset<M: Default, C>(manifold: &mut ContactManifold<M, C>) {
 static PLACEHOLDER: LazyLock<VoxelsShapeContactManifoldsWorkspace<2>> =
     LazyLock::new(VoxelsShapeContactManifoldsWorkspace::new);
 
-/// What stands for any state of ours in a snapshot.
-pub(super) fn placeholder() -> TypedWorkspaceData<'static> {
-    TypedWorkspaceData::VoxelsShapeContactManifoldsWorkspace(&PLACEHOLDER)
-}
+/// The state of a pair of any kind, as the host keeps it.
+#[derive(Clone)]
+struct Kept<S>(S);
 
-impl<M, C, K: PairKind> WorkspaceData for PairState<M, C, K>
-where
-    M: Clone + Send + Sync + 'static,
-    C: Clone + Send + Sync + 'static,
-{
+impl<S: Clone + Send + Sync + 'static> WorkspaceData for Kept<S> {
     fn as_typed_workspace_data(&self) -> TypedWorkspaceData<'_> {
-        placeholder()
+        TypedWorkspaceData::VoxelsShapeContactManifoldsWorkspace(&PLACEHOLDER)
     }
 
     fn clone_dyn(&self) -> Box<dyn WorkspaceData> {

@@ -7,4 +7,4 @@
 mod query;
 mod state;
 
-pub(crate) use query::{CompoundPair, contact_manifolds};
+pub(crate) use query::CompoundPair;

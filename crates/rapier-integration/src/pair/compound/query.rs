@@ -6,11 +6,11 @@ use parry3d::query::{ContactManifold, ContactManifoldsWorkspace};
 use parry3d::shape::{Compound, TriMesh};
 use sbbk_core::traverse::Counters;
 
-use super::state::{CompoundState, CompoundToken, PartState};
-use crate::mesh::{MeshToken, PreparedMesh, PreparedRef, TreeCache};
-use crate::pair::Answer;
+use super::state::{CompoundState, CompoundToken, KnownShapes, PartState, PartStates};
+use crate::mesh::{Change, Held, PreparedMesh, TreeCache};
 use crate::pair::convex::{ConvexPair, ConvexShape};
 use crate::pair::state::state_in;
+use crate::pair::{Answer, Question};
 
 /// The question: which contacts do a mesh and a compound have?
 #[derive(Copy, Clone)]
@@ -73,28 +73,28 @@ impl CompoundPair<'_> {
         if self.flipped { [two, one] } else { [one, two] }
     }
 
-    /// The tree of the mesh, known to be valid. Else what is known of the pair is forgotten, and its manifolds as well if a
-    /// shape was edited while the host kept the workspace. Those of another dispatcher are of Parry's routine too.
-    fn recognise<M, C>(
+    /// The tree of the mesh, from the state if it is known and still valid. Else what is known of the parts is forgotten, and
+    /// the manifolds as well if a shape was edited while the host kept the workspace. Those of another dispatcher are of
+    /// Parry's routine too.
+    fn tree<'s, M, C>(
         &self,
         cache: &Arc<TreeCache>,
-        state: &mut CompoundState<M, C>,
+        (known, known_compound): &'s mut KnownShapes,
+        parts: &mut PartStates<M, C>,
         manifolds: &mut Vec<ContactManifold<M, C>>,
-    ) -> Option<()> {
-        let now = (MeshToken::of(self.mesh), CompoundToken::of(self.compound));
-        let before = state.known.as_ref().map(|(mesh, compound, _)| (*mesh, *compound));
-        let is_from = |(_, _, tree): &(_, _, PreparedRef)| tree.is_from(cache);
-        if before == Some(now) && state.known.as_ref().is_some_and(is_from) {
-            return Some(());
+    ) -> Option<Held<'s>> {
+        let (mut change, tree) = cache.noting(self.mesh, known.update(self.mesh, cache))?;
+        let compound = CompoundToken::of(self.compound);
+        if known_compound.replace(compound).is_some_and(|known| known != compound) {
+            change = Change::Replaced;
         }
-        *state = CompoundState::default();
-        if before.is_some_and(|before| before != now) {
+        if change != Change::None {
+            *parts = PartStates::of_count(self.compound.shapes().len());
+        }
+        if change == Change::Replaced {
             manifolds.clear();
         }
-        let tree = cache.noting(self.mesh, cache.prepare(self.mesh))?;
-        state.known = Some((now.0, now.1, tree));
-        state.parts.resize_with(self.compound.shapes().len(), PartState::default);
-        Some(())
+        Some(tree)
     }
 
     /// Brings the manifolds of a part up to date.
@@ -160,55 +160,54 @@ impl CompoundPair<'_> {
     }
 }
 
-/// Brings the manifolds of a mesh and a compound up to date.
-pub(crate) fn contact_manifolds<M, C>(
-    pair: CompoundPair<'_>,
-    cache: &Arc<TreeCache>,
-    mut counters: impl Counters,
-    manifolds: &mut Vec<ContactManifold<M, C>>,
-    workspace: &mut Option<ContactManifoldsWorkspace>,
-) -> Answer
-where
-    M: Default + Clone + Send + Sync + 'static,
-    C: Default + Copy + Send + Sync + 'static,
-{
-    if cache.is_unsupported(&[pair.mesh]) {
-        return Answer::Unsupported;
-    }
-    let state: &mut CompoundState<M, C> = state_in(workspace, manifolds);
-    let mesh_box = pair.mesh_box();
-    if state.known.is_none() && pair.compound.bvh().intersect_aabb(&mesh_box).next().is_none() {
-        manifolds.clear();
-        return Answer::Apart;
-    }
-    if pair.recognise(cache, state, manifolds).is_none() {
-        return Answer::Unsupported;
-    }
-    let CompoundState { known: Some((_, _, tree)), last, near, parts } = state else {
-        return Answer::Unsupported;
-    };
-    if *last == Some((*pair.pos12, pair.prediction, manifolds.len())) {
-        return Answer::Unchanged;
-    }
-    for manifold in manifolds.drain(..) {
-        let [_, part] = pair.subshapes(&manifold);
-        if let Some(part) = parts.get_mut(part as usize) {
-            part.manifolds.push(manifold);
+impl Question for CompoundPair<'_> {
+    fn contact_manifolds<M, C>(
+        self,
+        cache: &Arc<TreeCache>,
+        mut counters: impl Counters,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Answer
+    where
+        M: Default + Clone + Send + Sync + 'static,
+        C: Default + Copy + Send + Sync + 'static,
+    {
+        if cache.is_unsupported(&[self.mesh]) {
+            return Answer::Unsupported;
         }
+        let CompoundState { shapes, parts } = state_in(workspace, manifolds);
+        let mesh_box = self.mesh_box();
+        let is_alone = || self.compound.bvh().intersect_aabb(&mesh_box).next().is_none();
+        if shapes.0.is_unknown() && is_alone() {
+            manifolds.clear();
+            return Answer::Apart;
+        }
+        let Some(prepared) = self.tree(cache, shapes, parts, manifolds) else {
+            return Answer::Unsupported;
+        };
+        let PartStates { last, near, parts } = parts;
+        if *last == Some((*self.pos12, self.prediction, manifolds.len())) {
+            return Answer::Unchanged;
+        }
+        for manifold in manifolds.drain(..) {
+            let [_, part] = self.subshapes(&manifold);
+            if let Some(part) = parts.get_mut(part as usize) {
+                part.manifolds.push(manifold);
+            }
+        }
+        near.clear();
+        near.extend(self.compound.bvh().intersect_aabb(&mesh_box));
+        parts.iter_mut().for_each(|part| part.place = u32::MAX);
+        let mut answer = Answer::Apart;
+        for (place, &index) in near.iter().enumerate() {
+            let part = &mut parts[index as usize];
+            part.place = place as u32;
+            let of_part = self.update_part(index, &prepared, part, &mut counters);
+            answer = answer.max(of_part);
+        }
+        parts.iter_mut().filter(|part| part.place == u32::MAX).for_each(PartState::leave);
+        self.gather(&prepared, (near, parts), manifolds);
+        *last = Some((*self.pos12, self.prediction, manifolds.len()));
+        answer
     }
-    let prepared = tree.get();
-    near.clear();
-    near.extend(pair.compound.bvh().intersect_aabb(&mesh_box));
-    parts.iter_mut().for_each(|part| part.place = u32::MAX);
-    let mut answer = Answer::Apart;
-    for (place, &index) in near.iter().enumerate() {
-        let part = &mut parts[index as usize];
-        part.place = place as u32;
-        let of_part = pair.update_part(index, prepared, part, &mut counters);
-        answer = answer.or_harder(of_part);
-    }
-    parts.iter_mut().filter(|part| part.place == u32::MAX).for_each(PartState::leave);
-    pair.gather(prepared, (near, parts), manifolds);
-    *last = Some((*pair.pos12, pair.prediction, manifolds.len()));
-    answer
 }

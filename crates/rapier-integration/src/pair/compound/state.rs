@@ -1,19 +1,26 @@
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Pose, Real};
 use parry3d::query::ContactManifold;
-use parry3d::query::details::{TypedWorkspaceData, WorkspaceData};
 use parry3d::shape::Compound;
 
-use crate::mesh::{MeshToken, PreparedRef};
+use crate::mesh::KnownMesh;
 use crate::pair::coherence::Coherence;
 use crate::pair::convex::{Fingerprint, NearTriangle};
-use crate::pair::state::{History, placeholder};
+use crate::pair::state::History;
 
 /// What the pair keeps from query to query.
 #[derive(Clone)]
 pub(super) struct CompoundState<M, C> {
-    /// The tree of the mesh and what it is valid for; `None` until a query needs it.
-    pub(super) known: Option<(MeshToken, CompoundToken, PreparedRef)>,
+    pub(super) shapes: KnownShapes,
+    pub(super) parts: PartStates<M, C>,
+}
+
+/// The mesh, as far as it is known, and the compound that the states of the parts are for.
+pub(super) type KnownShapes = (KnownMesh, Option<CompoundToken>);
+
+/// What is known of the parts.
+#[derive(Clone)]
+pub(super) struct PartStates<M, C> {
     /// Pose and prediction distance of the last query, and how many manifolds it left.
     pub(super) last: Option<(Pose, Real, usize)>,
     /// The parts near the mesh, in the order of the compound's hierarchy.
@@ -57,7 +64,16 @@ impl CompoundToken {
 
 impl<M, C> Default for CompoundState<M, C> {
     fn default() -> Self {
-        Self { known: None, last: None, near: Vec::new(), parts: Vec::new() }
+        Self { shapes: KnownShapes::default(), parts: PartStates::of_count(0) }
+    }
+}
+
+impl<M, C> PartStates<M, C> {
+    /// Of so many parts nothing is known.
+    pub(super) fn of_count(count: usize) -> Self {
+        let mut parts = Vec::new();
+        parts.resize_with(count, PartState::default);
+        Self { last: None, near: Vec::new(), parts }
     }
 }
 
@@ -90,19 +106,5 @@ impl<M: Default, C: Default + Copy> PartState<M, C> {
             self.manifolds.drain(..).for_each(|manifold| self.history.retire(manifold));
             self.history.end(&mut self.manifolds);
         }
-    }
-}
-
-impl<M, C> WorkspaceData for CompoundState<M, C>
-where
-    M: Clone + Send + Sync + 'static,
-    C: Clone + Send + Sync + 'static,
-{
-    fn as_typed_workspace_data(&self) -> TypedWorkspaceData<'_> {
-        placeholder()
-    }
-
-    fn clone_dyn(&self) -> Box<dyn WorkspaceData> {
-        Box::new(self.clone())
     }
 }

@@ -12,6 +12,6 @@ mod query;
 mod shape;
 
 pub(super) use contacts::NearTriangle;
-pub(crate) use query::{ConvexPair, contact_manifolds};
+pub(crate) use query::ConvexPair;
 pub(crate) use shape::ConvexShape;
 pub(super) use shape::Fingerprint;

@@ -14,10 +14,10 @@ use sbbk_core::volumes::rounding::gamma;
 use super::contacts::{Generator, Limits, NearTriangle};
 use super::shape::{ConvexShape, Fingerprint, Kind};
 use crate::mesh::{Change, Held, KnownMesh, PreparedMesh, TreeCache};
-use crate::pair::Answer;
 use crate::pair::candidates::OrderKey;
 use crate::pair::coherence::{Coherence, KnownCandidate, Plan};
-use crate::pair::state::{History, PairKind, PairState};
+use crate::pair::state::{History, PairKind, PairState, state_in};
+use crate::pair::{Answer, Question};
 
 /// The question: which contacts do a mesh and a convex shape have?
 #[derive(Copy, Clone)]
@@ -112,9 +112,8 @@ impl<'a> ConvexPair<'a> {
 
     /// The tree of the mesh, from the state if it is known and still valid, refitted if the mesh has deformed.
     ///
-    /// If anything has changed, the candidates are forgotten. The manifolds as well, if a shape was edited while the host
-    /// kept the workspace; if only another dispatcher was here before, or a snapshot was restored, the manifolds are as good as ours:
-    /// all are of Parry's routine. If vertices have moved, it must not use their points again.
+    /// If only another dispatcher was here before, or a snapshot was restored, the manifolds are as good as ours: all are of
+    /// Parry's routine.
     fn tree<'s, M, C: Default + Copy>(
         &self,
         cache: &Arc<TreeCache>,
@@ -127,15 +126,9 @@ impl<'a> ConvexPair<'a> {
         if known_shape.replace(fingerprint).is_some_and(|known| known != fingerprint) {
             change = Change::Replaced;
         }
-        if change != Change::None {
-            coherence.clear();
-        }
         match change {
-            Change::None | Change::Unknown => {}
-            Change::Deformed => {
-                manifolds.iter_mut().for_each(ContactManifold::mark_shapes_deformed);
-            }
-            Change::Replaced => manifolds.clear(),
+            Change::Unknown => coherence.clear(),
+            _ => coherence.follow(change, manifolds),
         }
         Some(tree)
     }
@@ -216,29 +209,30 @@ impl<'a> ConvexPair<'a> {
     }
 }
 
-/// Brings the manifolds of a mesh and a convex shape up to date.
-pub(crate) fn contact_manifolds<M, C>(
-    pair: ConvexPair<'_>,
-    cache: &Arc<TreeCache>,
-    counters: impl Counters,
-    manifolds: &mut Vec<ContactManifold<M, C>>,
-    workspace: &mut Option<ContactManifoldsWorkspace>,
-) -> Answer
-where
-    M: Default + Clone + Send + Sync + 'static,
-    C: Default + Copy + Send + Sync + 'static,
-{
-    if cache.is_unsupported(&[pair.mesh]) {
-        return Answer::Unsupported;
+impl Question for ConvexPair<'_> {
+    fn contact_manifolds<M, C>(
+        self,
+        cache: &Arc<TreeCache>,
+        counters: impl Counters,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Answer
+    where
+        M: Default + Clone + Send + Sync + 'static,
+        C: Default + Copy + Send + Sync + 'static,
+    {
+        if cache.is_unsupported(&[self.mesh]) {
+            return Answer::Unsupported;
+        }
+        let PairState::<_, _, MeshAndConvex> { shapes, coherence, history } =
+            state_in(workspace, manifolds);
+        if shapes.0.is_unknown() && !self.root_boxes_meet() {
+            manifolds.clear();
+            return Answer::Apart;
+        }
+        let Some(prepared) = self.tree(cache, shapes, coherence, manifolds) else {
+            return Answer::Unsupported;
+        };
+        self.update(&prepared, (coherence, history), counters, manifolds)
     }
-    let PairState::<_, _, MeshAndConvex> { shapes, coherence, history } =
-        PairState::of(workspace, manifolds);
-    if shapes.0.is_unknown() && !pair.root_boxes_meet() {
-        manifolds.clear();
-        return Answer::Apart;
-    }
-    let Some(prepared) = pair.tree(cache, shapes, coherence, manifolds) else {
-        return Answer::Unsupported;
-    };
-    pair.update(&prepared, (coherence, history), counters, manifolds)
 }

@@ -18,4 +18,4 @@ mod field;
 mod query;
 mod shapes;
 
-pub(crate) use query::{FieldPair, contact_manifolds};
+pub(crate) use query::FieldPair;

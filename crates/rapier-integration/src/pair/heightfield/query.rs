@@ -12,12 +12,12 @@ use sbbk_core::volumes::Aabb;
 use super::field::{Field, FieldToken};
 use super::shapes::MeshAndField;
 use crate::ContactGenerator;
-use crate::mesh::{MeshToken, PreparedMesh, PreparedRef, TreeCache};
-use crate::pair::Answer;
+use crate::mesh::{Change, Held, KnownMesh, PreparedMesh, TreeCache};
 use crate::pair::candidates::{Candidate, Scratch};
 use crate::pair::coherence::{Coherence, Plan};
 use crate::pair::manifolds::{Generator, TriangleShapes};
-use crate::pair::state::{PairKind, PairState};
+use crate::pair::state::{PairKind, PairState, state_in};
+use crate::pair::{Answer, Question};
 
 /// The question: which contacts do a mesh and a height field have?
 #[derive(Copy, Clone)]
@@ -29,6 +29,7 @@ pub(crate) struct FieldPair<'a> {
     /// Whether the mesh is shape 2.
     pub(crate) flipped: bool,
     pub(crate) prediction: Real,
+    pub(crate) contacts: ContactGenerator,
 }
 
 /// A mesh and a height field, as a kind of pair.
@@ -41,15 +42,8 @@ impl PairKind for MeshAndHeightField {
     type Contact = FeaturePair;
 }
 
-/// The tree of the mesh, as far as it is known, and the field that the candidates are for.
-#[derive(Clone, Default)]
-enum KnownShapes {
-    /// No query has needed it yet.
-    #[default]
-    None,
-    /// Valid while the tokens are.
-    Tree((MeshToken, FieldToken), PreparedRef),
-}
+/// The mesh, as far as it is known, and the field that the candidates are for.
+type KnownShapes = (KnownMesh, Option<FieldToken>);
 
 /// Greatest slack of candidates as a share of the prediction distance, as for two meshes.
 const GREATEST_SLACK: f64 = 1.0;
@@ -74,34 +68,20 @@ impl<'a> FieldPair<'a> {
     }
 
     /// The tree of the mesh, from the state if it is known and still valid.
-    ///
-    /// If it is not, what is known of the pair is forgotten, and its manifolds as well if a shape was edited while the host kept
-    /// the workspace. If only another dispatcher was here before, they keep their data, but their points are not ours.
     fn tree<'s, M, C: Default + Copy>(
         &self,
         cache: &Arc<TreeCache>,
-        known: &'s mut KnownShapes,
+        (known, known_field): &'s mut KnownShapes,
         coherence: &mut Coherence<Candidate>,
         manifolds: &mut Vec<ContactManifold<M, C>>,
-    ) -> Option<&'s PreparedRef> {
-        let now = (MeshToken::of(self.mesh), FieldToken::of(self.field));
-        let is_valid = match known {
-            KnownShapes::None => false,
-            KnownShapes::Tree(tokens, tree) => *tokens == now && tree.is_from(cache),
-        };
-        if !is_valid {
-            coherence.clear();
-            match known {
-                KnownShapes::Tree(tokens, _) if *tokens != now => manifolds.clear(),
-                _ => manifolds.iter_mut().for_each(ContactManifold::mark_shapes_deformed),
-            }
-            *known = KnownShapes::None;
-            *known = KnownShapes::Tree(now, cache.noting(self.mesh, cache.prepare(self.mesh))?);
+    ) -> Option<Held<'s>> {
+        let (mut change, tree) = cache.noting(self.mesh, known.update(self.mesh, cache))?;
+        let field = FieldToken::of(self.field);
+        if known_field.replace(field).is_some_and(|known| known != field) {
+            change = Change::Replaced;
         }
-        match known {
-            KnownShapes::Tree(_, tree) => Some(tree),
-            KnownShapes::None => None,
-        }
+        coherence.follow(change, manifolds);
+        Some(tree)
     }
 
     /// Fills `scratch.candidates` with all pairs of triangles within the margin, and few others, in order.
@@ -124,63 +104,63 @@ impl<'a> FieldPair<'a> {
     }
 }
 
-/// Brings the manifolds of a mesh and a height field up to date.
-pub(crate) fn contact_manifolds<M, C>(
-    pair: FieldPair<'_>,
-    cache: &Arc<TreeCache>,
-    contacts: ContactGenerator,
-    mut counters: impl Counters,
-    manifolds: &mut Vec<ContactManifold<M, C>>,
-    workspace: &mut Option<ContactManifoldsWorkspace>,
-) -> Answer
-where
-    M: Default + Clone + Send + Sync + 'static,
-    C: Default + Copy + Send + Sync + 'static,
-{
-    if cache.is_unsupported(&[pair.mesh]) {
-        return Answer::Unsupported;
-    }
-    let PairState::<_, _, MeshAndHeightField> { shapes: known, coherence, history } =
-        PairState::of(workspace, manifolds);
-    let [mesh_at, placement] = pair.placements();
-    if matches!(known, KnownShapes::None) && !pair.root_box_meets(&mesh_at, &mut counters) {
-        manifolds.clear();
-        return Answer::Apart;
-    }
-    let Some(prepared) = pair.tree(cache, known, coherence, manifolds) else {
-        return Answer::Unsupported;
-    };
-    let prepared = prepared.get();
-    let ball = prepared.tree.bounding_ball();
-    let plan = coherence.plan(ball, (pair.pos12, mesh_at), pair.prediction, GREATEST_SLACK);
-    if plan == Plan::Nothing && history.is_of(manifolds) {
-        return Answer::Unchanged;
-    }
-    let margin = match plan {
-        Plan::Descend { margin } | Plan::Reuse { margin } => margin,
-        Plan::Nothing => pair.prediction,
-    };
-    let shapes = MeshAndField::new((pair.mesh, prepared), Field(pair.field), !pair.flipped);
-    SCRATCH.with_borrow_mut(|(descent, scratch)| {
-        if let Plan::Reuse { .. } = plan {
-            coherence.near(pair.prediction, &mut scratch.candidates);
-        } else {
-            let found = (prepared, &shapes);
-            pair.collect(found, (&mesh_at, margin), &mut counters, (descent, scratch));
+impl Question for FieldPair<'_> {
+    fn contact_manifolds<M, C>(
+        self,
+        cache: &Arc<TreeCache>,
+        mut counters: impl Counters,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Answer
+    where
+        M: Default + Clone + Send + Sync + 'static,
+        C: Default + Copy + Send + Sync + 'static,
+    {
+        if cache.is_unsupported(&[self.mesh]) {
+            return Answer::Unsupported;
         }
-        let generator = Generator {
-            shapes,
-            pos12: pair.pos12,
-            placement: &placement,
-            margin,
-            prediction: pair.prediction,
-            parrys_pose: *pair.pos12,
-            contacts,
+        let PairState::<_, _, MeshAndHeightField> { shapes: known, coherence, history } =
+            state_in(workspace, manifolds);
+        let [mesh_at, placement] = self.placements();
+        if known.0.is_unknown() && !self.root_box_meets(&mesh_at, &mut counters) {
+            manifolds.clear();
+            return Answer::Apart;
+        }
+        let Some(prepared) = self.tree(cache, known, coherence, manifolds) else {
+            return Answer::Unsupported;
         };
-        generator.update(scratch, coherence, history, manifolds);
-    });
-    match plan {
-        Plan::Reuse { .. } => Answer::Reused,
-        Plan::Nothing | Plan::Descend { .. } => Answer::Descended,
+        let prepared = &*prepared;
+        let ball = prepared.tree.bounding_ball();
+        let plan = coherence.plan(ball, (self.pos12, mesh_at), self.prediction, GREATEST_SLACK);
+        if plan == Plan::Nothing && history.is_of(manifolds) {
+            return Answer::Unchanged;
+        }
+        let margin = match plan {
+            Plan::Descend { margin } | Plan::Reuse { margin } => margin,
+            Plan::Nothing => self.prediction,
+        };
+        let shapes = MeshAndField::new((self.mesh, prepared), Field(self.field), !self.flipped);
+        SCRATCH.with_borrow_mut(|(descent, scratch)| {
+            if let Plan::Reuse { .. } = plan {
+                coherence.near(self.prediction, &mut scratch.candidates);
+            } else {
+                let found = (prepared, &shapes);
+                self.collect(found, (&mesh_at, margin), &mut counters, (descent, scratch));
+            }
+            let generator = Generator {
+                shapes,
+                pos12: self.pos12,
+                placement: &placement,
+                margin,
+                prediction: self.prediction,
+                parrys_pose: *self.pos12,
+                contacts: self.contacts,
+            };
+            generator.update(scratch, coherence, history, manifolds);
+        });
+        match plan {
+            Plan::Reuse { .. } => Answer::Reused,
+            Plan::Nothing | Plan::Descend { .. } => Answer::Descended,
+        }
     }
 }
