@@ -110,14 +110,18 @@ impl<S: TriangleShapes> Generator<'_, S> {
                 }
                 continue;
             };
-            let mut fresh = None;
-            let manifold = match kept {
-                Some(place) => &mut manifolds[place],
-                None => fresh.insert(history.manifold(candidate.triangle1, candidate.triangle2)),
+            let mut fill = |previous_points: &mut _, manifold: &mut _| {
+                let answer = (&contact, &mut points);
+                self.fill(candidate, (&triangles, &local), answer, previous_points, manifold);
             };
-            let (answer, previous_points) = ((&contact, &mut points), &mut history.previous_points);
-            self.fill(candidate, (&triangles, &local), answer, previous_points, manifold);
-            history.keep(std::mem::take(manifold), contact.features);
+            if let Some(place) = kept {
+                fill(&mut history.previous_points, &mut manifolds[place]);
+                history.keep_at(place, contact.features, manifolds);
+            } else {
+                let mut manifold = history.manifold(candidate.triangle1, candidate.triangle2);
+                fill(&mut history.previous_points, &mut manifold);
+                history.keep(manifold, contact.features, manifolds);
+            }
         }
         previous.retire_rest(manifolds, history);
         history.end(manifolds);

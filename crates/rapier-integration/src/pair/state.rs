@@ -33,6 +33,8 @@ pub(super) struct PairState<M, C, K: PairKind> {
 pub(super) struct History<M, C, K> {
     /// Of each of the manifolds, in their order.
     pub(super) contacts: Vec<Option<K>>,
+    /// So many of the old manifolds, from the first, stay where they are. None once there are next ones: then those are all.
+    in_place: usize,
     next: Vec<ContactManifold<M, C>>,
     next_contacts: Vec<Option<K>>,
     pub(super) previous_points: Vec<TrackedContact<C>>,
@@ -60,6 +62,7 @@ impl<M, C, K> Default for History<M, C, K> {
     fn default() -> Self {
         Self {
             contacts: Vec::new(),
+            in_place: 0,
             next: Vec::new(),
             next_contacts: Vec::new(),
             previous_points: Vec::new(),
@@ -114,10 +117,12 @@ where
         }
     }
 
-    /// Ends a query: `manifolds`, which hold nothing of use any more, become those that were kept.
+    /// Ends a query: `manifolds`, which hold nothing else of use any more, become those that were kept.
     pub(super) fn end(&mut self, manifolds: &mut Vec<ContactManifold<M, C>>) {
-        manifolds.clear();
-        std::mem::swap(manifolds, &mut self.next);
+        manifolds.truncate(std::mem::take(&mut self.in_place));
+        if !self.next.is_empty() {
+            std::mem::swap(manifolds, &mut self.next);
+        }
         self.settle(manifolds.len());
         self.contacts.clear();
         std::mem::swap(&mut self.contacts, &mut self.next_contacts);
@@ -152,20 +157,53 @@ where
         manifold
     }
 
-    /// Adds a manifold to those of this query, if it has points.
+    /// Adds a new manifold to those of this query, if it has points.
     #[inline(always)]
-    pub(super) fn keep(&mut self, manifold: ContactManifold<M, C>, contact: K) {
+    pub(super) fn keep(
+        &mut self,
+        manifold: ContactManifold<M, C>,
+        contact: K,
+        manifolds: &mut [ContactManifold<M, C>],
+    ) {
         if manifold.points.is_empty() {
             self.retire(manifold);
         } else {
+            self.move_out(manifolds);
             self.next.push(manifold);
             self.next_contacts.push(Some(contact));
         }
     }
 
+    /// The same for an old one. As long as nothing comes or goes it stays in its place: to move a manifold takes as
+    /// long as to update its distances.
+    #[inline(always)]
+    pub(super) fn keep_at(
+        &mut self,
+        place: usize,
+        contact: K,
+        manifolds: &mut [ContactManifold<M, C>],
+    ) {
+        if manifolds[place].points.is_empty() {
+            return self.retire(std::mem::take(&mut manifolds[place]));
+        }
+        if self.next.is_empty() && place == self.in_place {
+            self.in_place += 1;
+        } else {
+            self.move_out(manifolds);
+            self.next.push(std::mem::take(&mut manifolds[place]));
+        }
+        self.next_contacts.push(Some(contact));
+    }
+
+    /// From here on the manifolds of this query are no longer the old ones.
+    fn move_out(&mut self, manifolds: &mut [ContactManifold<M, C>]) {
+        let stayed = &mut manifolds[..std::mem::take(&mut self.in_place)];
+        self.next.extend(stayed.iter_mut().map(std::mem::take));
+    }
+
     /// Takes back a manifold that is no longer used. Nothing of it but its memory survives.
     pub(super) fn retire(&mut self, mut manifold: ContactManifold<M, C>) {
-        if self.next.len() + self.spare.len() < self.peak {
+        if self.in_place + self.next.len() + self.spare.len() < self.peak {
             reset(&mut manifold);
             self.spare.push(manifold);
         }

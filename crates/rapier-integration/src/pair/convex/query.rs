@@ -177,16 +177,7 @@ impl<'a> ConvexPair<'a> {
         if plan == Plan::Nothing && history.is_of(manifolds) {
             return Answer::Unchanged;
         }
-        let generator = Generator {
-            mesh: self.mesh,
-            shape: self.shape,
-            cone: self.cone,
-            prepared,
-            flipped: self.flipped,
-            parrys_poses: [self.parrys_pose, self.parrys_pose.inverse()],
-            placement,
-            prediction: self.prediction,
-        };
+        let generator = Generator::new(self, prepared, placement);
         SCRATCH.with_borrow_mut(|scratch| match plan {
             Plan::Reuse { .. } => {
                 let limits = Limits { sight: f64::from(sight), travel: coherence.travel() };
