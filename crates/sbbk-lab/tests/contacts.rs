@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 
 use sbbk_lab::backend::Backend;
 use sbbk_lab::mesh;
-use sbbk_lab::report::{tables, write_contacts_plot, write_csv, write_json};
+use sbbk_lab::report::{tables, write_csv, write_json, write_plot};
 use sbbk_lab::study::Progress;
 use sbbk_lab::study::contacts::{ApproachedMesh, Contacts, ContactsPlan, contacts};
 
@@ -91,7 +91,7 @@ fn the_study_can_be_reported() {
         ["json", "csv", "svg"].map(|end| folder.path().join("out").with_extension(end));
     write_json(contacts, &json).unwrap();
     write_csv(contacts, &csv).unwrap();
-    write_contacts_plot(contacts, &svg).unwrap();
+    write_plot(contacts, &svg).unwrap();
     let value: serde_json::Value = serde_json::from_slice(&fs::read(json).unwrap()).unwrap();
     assert_eq!(value["exactness"][17]["sides"][1]["errors"]["missed"], 0);
     let mut lines = csv::Reader::from_path(csv).unwrap();

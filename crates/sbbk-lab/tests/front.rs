@@ -3,7 +3,7 @@
 use std::fs;
 
 use sbbk_lab::mesh;
-use sbbk_lab::report::{tables, write_csv, write_front_plot, write_json};
+use sbbk_lab::report::{tables, write_csv, write_json, write_plot};
 use sbbk_lab::study::Progress;
 use sbbk_lab::study::front::{FrontMotion, FrontPlan, STEP_COUNT, Variant, front};
 
@@ -60,7 +60,7 @@ fn all_variants_agree_and_can_be_reported() {
         ["json", "csv", "svg"].map(|end| folder.path().join("out").with_extension(end));
     write_json(&study, &json).unwrap();
     write_csv(&study, &csv).unwrap();
-    write_front_plot(&study, &svg).unwrap();
+    write_plot(&study, &svg).unwrap();
     let value: serde_json::Value = serde_json::from_slice(&fs::read(json).unwrap()).unwrap();
     assert_eq!(value["rows"][7]["variants"][8]["differing"], 0);
     let lines = fs::read_to_string(csv).unwrap();

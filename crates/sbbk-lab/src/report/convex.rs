@@ -1,29 +1,14 @@
 //! The study of convex shapes as files and as a picture.
 
-use std::path::Path;
-
 use super::look::Look;
 use super::panel::{Panel, Scale, Series};
-use super::{ReportError, ResultRow, Results};
-use crate::metrics::ratio;
+use super::{Grid, ResultRow, Results, tables};
+use crate::metrics::{Environment, ratio};
 use crate::study::contacts::{CONTESTANTS, FAST, SLOW};
 use crate::study::convex::{Convex, ConvexRow, ConvexSide, Measured};
 
 /// Stands for no wrong contact in the plot, in wrong contacts for 100 true ones.
 const NONE_WRONG: f64 = 1e-3;
-
-/// Writes an SVG picture of three diagrams, time against error over logarithmic axes: first queries, and slow and
-/// faster motion. A point is one kind of shape.
-///
-/// Errors: the file cannot be written.
-pub fn write_convex_plot(study: &Convex, path: &Path) -> Result<(), ReportError> {
-    let panels = [
-        panel("First queries".to_owned(), &study.rows, |side| side.fresh),
-        panel(format!("{SLOW} prediction distances a step"), &study.rows, |side| side.slow),
-        panel(format!("{FAST} prediction distances a step"), &study.rows, |side| side.fast),
-    ];
-    Panel::write_all(&panels, path)
-}
 
 fn panel(title: String, rows: &[ConvexRow], measured: fn(&ConvexSide) -> Measured) -> Panel {
     let point = |side: &ConvexSide| {
@@ -41,12 +26,20 @@ fn panel(title: String, rows: &[ConvexRow], measured: fn(&ConvexSide) -> Measure
         title,
         x_label: "µs a query".to_owned(),
         y_label: "wrong contacts for 100 true ones".to_owned(),
-        scale: Scale::Logarithmic { zero: NONE_WRONG },
+        scale: Scale::Logarithmic { zero: Some(NONE_WRONG) },
         series: series.into(),
     }
 }
 
 impl Results for Convex {
+    fn environment(&self) -> &Environment {
+        &self.environment
+    }
+
+    fn tables(&self) -> Vec<Grid> {
+        vec![tables::convex(self)]
+    }
+
     fn rows(&self) -> Vec<ResultRow> {
         let row = |row: &ConvexRow| {
             let scene = format!("{} and {}", self.mesh, row.kind);
@@ -54,5 +47,15 @@ impl Results for Convex {
             row.sides.iter().map(side).collect::<Vec<_>>()
         };
         self.rows.iter().flat_map(row).collect()
+    }
+
+    /// Time against error over logarithmic axes: first queries, and slow and faster motion. A point is one kind of
+    /// shape.
+    fn panels(&self) -> Vec<Panel> {
+        vec![
+            panel("First queries".to_owned(), &self.rows, |side| side.fresh),
+            panel(format!("{SLOW} prediction distances a step"), &self.rows, |side| side.slow),
+            panel(format!("{FAST} prediction distances a step"), &self.rows, |side| side.fast),
+        ]
     }
 }

@@ -22,7 +22,7 @@ pub use pile::{accuracy, runs, same_poses, sizes};
 pub use queries::one_answer;
 pub use soak::soak;
 pub use soft::{refit, soft_heads};
-pub use terrain::terrain;
+pub use terrain::terrains;
 
 use super::Grid;
 use crate::study::Comparison;
