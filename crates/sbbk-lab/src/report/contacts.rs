@@ -2,36 +2,10 @@
 
 use serde_json::json;
 
-use super::look::Look;
-use super::panel::{Panel, Scale, Series};
-use super::{Grid, ResultRow, Results, tables};
-use crate::metrics::{Environment, Summary};
-use crate::study::contacts::{CONTESTANTS, ContactErrors, Contacts, ExactnessRow, SpeedRow};
-
-/// Stands for no wrong contact at all in the plot, in wrong contacts for 100 true ones: less than
-/// one contact of all, so that nothing else is drawn there.
-const NONE_WRONG: f64 = 1e-4;
-
-/// A point for each measurement, by contestant.
-fn panel(title: String, measurements: impl Fn(usize) -> Vec<(Summary, ContactErrors)>) -> Panel {
-    // The last one drawn is on top: stock's small squares leave SBBK's circles to be seen.
-    let series = [1, 0].map(|side| Series {
-        label: CONTESTANTS[side].to_string(),
-        look: Look::Backend(CONTESTANTS[side]),
-        is_connected: false,
-        points: measurements(side)
-            .into_iter()
-            .filter_map(|(time, errors)| Some((time.median, 100.0 * errors.share()?)))
-            .collect(),
-    });
-    Panel {
-        title,
-        x_label: "µs a query".to_owned(),
-        y_label: "wrong contacts for 100 true ones".to_owned(),
-        scale: Scale::Logarithmic { zero: Some(NONE_WRONG) },
-        series: series.into(),
-    }
-}
+use super::against::time_against_error;
+use super::{Grid, Panel, ResultRow, Results, tables};
+use crate::metrics::Environment;
+use crate::study::contacts::{Contacts, ExactnessRow, ExactnessSide, Mode, SpeedRow};
 
 impl Results for Contacts {
     fn environment(&self) -> &Environment {
@@ -66,24 +40,25 @@ impl Results for Contacts {
         rows
     }
 
-    /// Time against error over logarithmic axes: first queries in all cases, and the queries of the
-    /// speed tables in motion.
+    /// Time against error: first queries in all cases, and the queries of the speed tables in motion.
     fn panels(&self) -> Vec<Panel> {
         let fresh = |side: usize| {
-            let side = move |row: &ExactnessRow| (row.sides[side].query, row.sides[side].errors);
+            let side = move |row: &ExactnessRow| {
+                let ExactnessSide { query, errors, .. } = &row.sides[side];
+                (*query, errors.share())
+            };
             self.exactness.iter().map(side).collect()
         };
         let steady = |side: usize| {
             let side = move |row: &SpeedRow| {
-                let side = &row.sides[side];
-                [side.slow, side.fast].map(|measured| (measured.time, measured.errors))
+                let modes = [Mode::Slow, Mode::Fast].map(|mode| row.sides[side].measured(mode));
+                modes.map(|measured| (measured.time, measured.errors.share()))
             };
             self.speed.iter().flat_map(side).collect()
         };
-        let case_count = self.exactness.len();
-        vec![
-            panel(format!("First queries: {case_count} cases of mesh, size and distance"), fresh),
-            panel("Queries in motion, 2 units across, distance 0.02".to_owned(), steady),
-        ]
+        let first =
+            format!("First queries: {} cases of mesh, size and distance", self.exactness.len());
+        let motion = "Queries in motion, 2 units across, distance 0.02".to_owned();
+        vec![time_against_error(first, fresh), time_against_error(motion, steady)]
     }
 }

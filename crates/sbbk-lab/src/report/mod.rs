@@ -1,5 +1,6 @@
 //! Results as tables, files and plots, beside the paper's own.
 
+mod against;
 mod comparison;
 mod contacts;
 mod convex;

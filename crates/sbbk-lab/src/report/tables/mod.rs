@@ -8,6 +8,7 @@ mod helicopter;
 mod meshes;
 mod pile;
 mod queries;
+mod race;
 mod soak;
 mod soft;
 mod terrain;

@@ -12,5 +12,4 @@ mod plan;
 mod race;
 
 pub use kinds::{Kind, kinds};
-pub use plan::{Convex, ConvexPlan, ConvexRow, ConvexSide, convex};
-pub use race::Measured;
+pub use plan::{Convex, ConvexPlan, ConvexRow, convex};

@@ -7,12 +7,11 @@ use serde::Serialize;
 
 use super::kinds::{Kind, kinds};
 use super::places::places;
-use super::race::{Course, Measured};
-use crate::backend::Backend;
+use super::race::Course;
 use crate::mesh::{self, Mesh};
-use crate::metrics::Environment;
+use crate::metrics::{Environment, ErrorCount};
 use crate::scene::SceneError;
-use crate::study::contacts::{CONTESTANTS, Contest, FAST, Place, SLOW, STEP_COUNT, motion};
+use crate::study::contacts::{Contest, FAST, Place, SLOW, STEP_COUNT, Side, motion};
 use crate::study::{Progress, StudyError};
 
 /// What to compare, and how thoroughly.
@@ -51,20 +50,7 @@ pub struct ConvexRow {
     /// Poses of the first queries, and motions through them.
     pub place_count: usize,
     /// Stock and SBBK.
-    pub sides: [ConvexSide; 2],
-}
-
-/// One dispatcher.
-#[derive(Clone, Debug, Serialize)]
-pub struct ConvexSide {
-    /// Who answered.
-    pub backend: Backend,
-    /// With nothing known of the pair; the tree is built. To free the manifolds is part of the time.
-    pub fresh: Measured,
-    /// In motion by [`SLOW`] prediction distances a step, with what the query before left.
-    pub slow: Measured,
-    /// In motion by [`FAST`] prediction distances a step.
-    pub fast: Measured,
+    pub sides: [Side<ErrorCount>; 2],
 }
 
 impl ConvexPlan {
@@ -125,14 +111,5 @@ fn row(
             places.iter().map(|place| motion(mesh, place, share * prediction, STEP_COUNT));
         measure(motions.collect())
     });
-    ConvexRow {
-        kind: kind.name,
-        place_count: places.len(),
-        sides: [0, 1].map(|i| ConvexSide {
-            backend: CONTESTANTS[i],
-            fresh: fresh[i],
-            slow: slow[i],
-            fast: fast[i],
-        }),
-    }
+    ConvexRow { kind: kind.name, place_count: places.len(), sides: Side::both([fresh, slow, fast]) }
 }
