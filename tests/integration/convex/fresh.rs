@@ -3,7 +3,6 @@ use std::collections::BTreeMap;
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
-use rapier3d::math::Real;
 use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::{SharedShape, TriMeshFlags};
 use sbbk_lab::mesh;

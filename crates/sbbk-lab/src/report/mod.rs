@@ -13,6 +13,7 @@ mod look;
 mod panel;
 mod paper;
 mod queries;
+mod soft;
 pub mod tables;
 mod terrain;
 

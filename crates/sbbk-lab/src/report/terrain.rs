@@ -86,7 +86,7 @@ fn falls(falls: &[Fall]) -> Panel {
 }
 
 /// Steps from one marker to the next.
-const STEPS_A_POINT: usize = 6;
+const STEPS_A_POINT: usize = 12;
 
 fn label(backend: Backend, ground: Ground) -> String {
     format!("{backend}, {ground}")

@@ -30,6 +30,8 @@ fn queries(study: &Terrain) -> Grid {
         rows: rows.collect(),
         notes: vec![
             "stock Rapier has no contacts of a mesh and a height field".to_owned(),
+            "first, on a mesh: with the hash of its vertices and triangles, by which its tree is found"
+                .to_owned(),
             "cells read: by a first query, each as often as its heights are read".to_owned(),
             TIME_NOTE.to_owned(),
             ERROR_NOTE.to_owned(),
