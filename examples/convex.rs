@@ -1,5 +1,5 @@
-//! A mesh against convex shapes of every kind and against a large floor: what queries cost, and
-//! whether a contact is lost, stock Parry beside SBBK.
+//! A mesh against convex shapes of every kind, compounds of them and a large floor: what queries
+//! cost, and whether a contact is lost, stock Parry beside SBBK.
 //!
 //! ```text
 //! cargo run --release --example convex
@@ -12,7 +12,7 @@ use clap::Parser;
 use sbbk_lab::cli::{StudyArguments, exit_code};
 use sbbk_lab::study::convex::{ConvexPlan, convex};
 
-/// Compares the contacts of a mesh and convex shapes, and their times.
+/// Compares the contacts of a mesh and convex shapes or compounds, and their times.
 #[derive(Parser)]
 struct Arguments {
     #[command(flatten)]

@@ -12,7 +12,7 @@ impl Results for Convex {
     }
 
     fn tables(&self) -> Vec<Grid> {
-        vec![tables::convex(self)]
+        tables::convex(self).into()
     }
 
     fn rows(&self) -> Vec<ResultRow> {

@@ -1,4 +1,4 @@
-//! A mesh against convex shapes.
+//! A mesh against convex shapes and compounds.
 
 use super::super::Grid;
 use super::super::format::errors;
@@ -8,12 +8,17 @@ use crate::metrics::ErrorCount;
 use crate::study::contacts::{Mode, Side};
 use crate::study::convex::{Convex, ConvexRow};
 
-/// Times and errors of first and steady queries, kind by kind.
-pub fn convex(study: &Convex) -> Grid {
-    let Convex { mesh, triangle_count, prediction, rows, .. } = study;
+/// Times and errors of first and steady queries, kind by kind: of convex shapes, and of compounds.
+pub fn convex(study: &Convex) -> [Grid; 2] {
+    let (compounds, convex) = study.rows.iter().cloned().partition(|row| row.part_count.is_some());
+    [of_kinds(study, "convex shapes", convex), of_kinds(study, "compounds", compounds)]
+}
+
+fn of_kinds(study: &Convex, kinds: &str, rows: Vec<ConvexRow>) -> Grid {
+    let Convex { mesh, triangle_count, prediction, .. } = study;
     Grid {
         title: format!(
-            "A mesh against convex shapes: {mesh} of {triangle_count} triangles, prediction \
+            "A mesh against {kinds}: {mesh} of {triangle_count} triangles, prediction \
              distance {prediction}; microseconds a query"
         ),
         notes: vec![
@@ -22,11 +27,11 @@ pub fn convex(study: &Convex) -> Grid {
             "every other place or motion is asked with the mesh first".to_owned(),
             ratio_note(),
             "errors: lost + added + wrong depth, of the true contacts in all answers, against \
-             Parry's routine run afresh on every triangle; 1 % of the prediction distance may go \
+             Parry's routine run afresh on every triangle (and part); 1 % of the prediction distance may go \
              either way, depths are wrong from 5 % on"
                 .to_owned(),
         ],
-        ..race(&["shape", "places or motions"], rows)
+        ..race(&["shape", "places or motions"], &rows)
     }
 }
 

@@ -47,6 +47,8 @@ pub struct Convex {
 pub struct ConvexRow {
     /// Name of the shape's kind.
     pub kind: &'static str,
+    /// Convex parts, if it is a compound.
+    pub part_count: Option<usize>,
     /// Poses of the first queries, and motions through them.
     pub place_count: usize,
     /// Stock and SBBK.
@@ -73,7 +75,7 @@ pub fn convex(plan: &ConvexPlan, progress: &Progress) -> Result<Convex, StudyErr
     let shape = plan.mesh.shared_shape().map_err(named)?;
     let contest = Contest::new([&shape].into_iter());
     let kinds = kinds();
-    progress.phase("convex shapes", kinds.len());
+    progress.phase("convex shapes and compounds", kinds.len());
     let rows = kinds.iter().enumerate().map(|(index, kind)| {
         let row = row(plan, &shape, kind, index as u64, &contest);
         progress.step();
@@ -111,5 +113,10 @@ fn row(
             places.iter().map(|place| motion(mesh, place, share * prediction, STEP_COUNT));
         measure(motions.collect())
     });
-    ConvexRow { kind: kind.name, place_count: places.len(), sides: Side::both([fresh, slow, fast]) }
+    ConvexRow {
+        kind: kind.name,
+        part_count: kind.shape.as_compound().map(|compound| compound.shapes().len()),
+        place_count: places.len(),
+        sides: Side::both([fresh, slow, fast]),
+    }
 }

@@ -55,8 +55,9 @@ impl Course<'_> {
         let mut errors = [ErrorCount::default(); 2];
         for (index, poses) in self.sequences.iter().enumerate() {
             let mut memories = [Memory::default(), Memory::default()];
-            let triangle = |manifold: &ContactManifold| {
-                if is_mesh_first(index) { manifold.subshape1 } else { manifold.subshape2 }
+            let subshapes = |manifold: &ContactManifold| {
+                let (one, two) = (manifold.subshape1, manifold.subshape2);
+                if is_mesh_first(index) { (one, two) } else { (two, one) }
             };
             for pose in poses {
                 let (Self { mesh, shape, prediction, .. }, pos12) = (self, pos12(index, pose));
@@ -64,7 +65,7 @@ impl Course<'_> {
                     Expected::new(mesh, shape, &pos12, *prediction, is_mesh_first(index));
                 for side in 0..2 {
                     self.ask(&mut memories[side], &contest.dispatchers[side], index, pose);
-                    errors[side] += expected.judge(&memories[side].manifolds, triangle);
+                    errors[side] += expected.judge(&memories[side].manifolds, subshapes);
                 }
             }
         }
