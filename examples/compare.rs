@@ -12,17 +12,13 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use sbbk_lab::cli::{Output, exit_code};
+use sbbk_lab::cli::{StudyArguments, exit_code};
 use sbbk_lab::mesh;
-use sbbk_lab::report::{tables, write_plot};
-use sbbk_lab::study::{ComparePlan, Progress, compare};
+use sbbk_lab::study::{ComparePlan, compare};
 
 /// Compares stock Rapier, SBBK, and SBBK with AABBs only, in speed and error.
 #[derive(Parser)]
 struct Arguments {
-    /// Small scenes and few repeats: half a minute instead of three
-    #[arg(long)]
-    quick: bool,
     /// Sizes of the piles of heads, the largest last [default: 100,200,500,1000,2000]
     #[arg(long, value_delimiter = ',', value_name = "N,N,...")]
     heads: Vec<NonZeroUsize>,
@@ -30,7 +26,7 @@ struct Arguments {
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
     #[command(flatten)]
-    output: Output,
+    study: StudyArguments,
 }
 
 fn main() -> ExitCode {
@@ -38,13 +34,11 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let mut plan = if arguments.quick { ComparePlan::quick() } else { ComparePlan::standard() };
+    let mut plan = arguments.study.plan(ComparePlan::standard, ComparePlan::quick);
     plan.head = arguments.mesh.as_deref().map(mesh::load).transpose()?;
     if !arguments.heads.is_empty() {
         plan.heads = arguments.heads.iter().copied().map(NonZeroUsize::get).collect();
     }
-    arguments.output.reserve()?;
-    let comparison = compare(&plan, &Progress::visible())?;
-    let tables = tables::all(&comparison);
-    arguments.output.publish(&comparison, &comparison.environment, &tables, write_plot)
+    arguments.study.run(&plan, compare)?;
+    Ok(())
 }

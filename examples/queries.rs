@@ -11,19 +11,14 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use sbbk_lab::cli::{Output, exit_code};
-use sbbk_lab::report::{tables, write_queries_plot};
-use sbbk_lab::study::Progress;
+use sbbk_lab::cli::{StudyArguments, exit_code};
 use sbbk_lab::study::queries::{QueriesPlan, export, queries};
 
 /// Compares the queries of stock Parry and SBBK with brute force, and their times.
 #[derive(Parser)]
 struct Arguments {
-    /// Two small meshes and few poses
-    #[arg(long)]
-    quick: bool,
     #[command(flatten)]
-    output: Output,
+    study: StudyArguments,
     /// Writes meshes, poses, times and answers for `benches/coal_fcl/compare.py`
     #[arg(long, value_name = "DIR")]
     export: Option<PathBuf>,
@@ -34,11 +29,8 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let plan = if arguments.quick { QueriesPlan::quick() } else { QueriesPlan::standard() };
-    arguments.output.reserve()?;
-    let found = queries(&plan, &Progress::visible())?;
-    let tables = tables::one_answer(&found);
-    arguments.output.publish(&found, &found.environment, &tables, write_queries_plot)?;
+    let plan = arguments.study.plan(QueriesPlan::standard, QueriesPlan::quick);
+    let found = arguments.study.run(&plan, queries)?;
     if let Some(folder) = &arguments.export {
         export(&plan, &found, folder)?;
     }

@@ -10,42 +10,41 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
+use rapier3d::math::Vec3;
 use sbbk_lab::backend::Backend;
-use sbbk_lab::cli::{exit_code, print};
-use sbbk_lab::report::{reserve, tables};
+use sbbk_lab::cli::{StudyArguments, exit_code};
+use sbbk_lab::report::reserve;
 use sbbk_lab::scene::{Scene, SoftHeads};
-use sbbk_lab::study::Progress;
 use sbbk_lab::study::soft::{SoftPlan, soft};
 
 /// Measures soft heads on a helicopter and refits of a large mesh.
 #[derive(Parser)]
 struct Arguments {
-    /// Fewer heads, frames and repeats: some seconds
-    #[arg(long)]
-    quick: bool,
-    /// Saves a picture of the heads on the helicopter to a PNG file
+    #[command(flatten)]
+    study: StudyArguments,
+    /// Saves a picture of very soft heads on the helicopter to a PNG file
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
 }
+
+/// The step of the picture.
+const SQUASHED_AT: usize = 31;
 
 fn main() -> ExitCode {
     exit_code(run(&Arguments::parse()))
 }
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let plan = if arguments.quick { SoftPlan::quick() } else { SoftPlan::standard() };
+    let plan = arguments.study.plan(SoftPlan::standard, SoftPlan::quick);
     arguments.picture.as_deref().map(reserve).transpose()?;
-    let study = soft(&plan, &Progress::visible())?;
-    print(&study.environment)?;
-    print(format_args!("\n{}\n\n{}", tables::soft_heads(&study), tables::refit(&study)))?;
+    arguments.study.run(&plan, soft)?;
     if let Some(path) = &arguments.picture {
-        let mut built = SoftHeads::with_heads(plan.heads).build()?;
+        // Softer than those that are measured, and seen while the rotor squashes them most.
+        let scene = SoftHeads { stiffness: 4.0, seed: 3, ..SoftHeads::with_heads(4) };
+        let mut built = scene.build()?;
         let _installed = Backend::Sbbk.install(&mut built.world);
-        // Later most heads have slid off.
-        for _ in 0..plan.steps / 2 {
-            built.world.step();
-        }
-        built.portrait(1280, 720).save(path)?;
+        (0..SQUASHED_AT).for_each(|_| built.world.step());
+        built.close_up(1280, 720, Vec3::new(-0.35, -0.45, -1.0)).save(path)?;
     }
     Ok(())
 }

@@ -11,14 +11,13 @@ use rapier3d::parry::shape::{
     Compound, CompoundFlags, HeightField, Shape, SharedShape, TriMesh, TriMeshFlags,
 };
 use rapier3d::parry::utils::Array2;
-use rapier3d::pipeline::PhysicsWorld;
-use rapier3d::prelude::{ColliderBuilder, RigidBodyBuilder, RigidBodyHandle};
 use sbbk_lab::mesh;
 
 use crate::support::{
     Dispatcher, Manifold, Pair, TrianglePair, assert_same, counting, direction, distance, nudge,
     rotation, shape_with, triangles,
 };
+use crate::worlds::Bodies;
 
 /// Compounds of parts of every kind, of boxes that share faces, of one part, and one that reaches far.
 fn compounds(size: Real) -> Vec<(&'static str, Compound)> {
@@ -324,15 +323,8 @@ fn another_compound_with_the_same_workspace_is_noticed() {
 }
 
 /// Three dumbbells above a mesh terrain.
-fn world(dispatcher: Option<SbbkDispatcher>) -> (PhysicsWorld, Vec<RigidBodyHandle>) {
-    let mut world = PhysicsWorld::new();
-    if let Some(dispatcher) = dispatcher {
-        world.narrow_phase.set_query_dispatcher(dispatcher);
-    }
-    let fixed = world.bodies.insert(RigidBodyBuilder::fixed());
+fn dumbbells(dispatcher: Option<SbbkDispatcher>) -> Bodies {
     let ground = mesh::terrain(12.0, 24, 0.4).shared_shape().unwrap();
-    let ground = ColliderBuilder::new(ground).build();
-    world.colliders.insert_with_parent(ground, fixed, &mut world.bodies);
     let bar = SharedShape::cuboid(0.6, 0.1, 0.1);
     let end = SharedShape::cuboid(0.3, 0.3, 0.3);
     let dumbbell = SharedShape::compound(vec![
@@ -340,20 +332,8 @@ fn world(dispatcher: Option<SbbkDispatcher>) -> (PhysicsWorld, Vec<RigidBodyHand
         (Pose::translation(-0.7, 0.0, 0.0), end.clone()),
         (Pose::translation(0.7, 0.0, 0.0), end),
     ]);
-    let bodies = (0..3).map(|i| {
-        let at = Vec3::new(3.0 * (i as Real - 1.0), 1.2, 0.3 * i as Real);
-        let body = RigidBodyBuilder::dynamic().translation(at).angular_damping(2.0).build();
-        let body = world.bodies.insert(body);
-        let collider = ColliderBuilder::new(dumbbell.clone()).density(1.0).build();
-        world.colliders.insert_with_parent(collider, body, &mut world.bodies);
-        body
-    });
-    let bodies = bodies.collect();
-    (world, bodies)
-}
-
-fn poses(world: &PhysicsWorld, bodies: &[RigidBodyHandle]) -> Vec<Pose> {
-    bodies.iter().map(|&body| *world.bodies[body].position()).collect()
+    let place = |i| Vec3::new(3.0 * (i as Real - 1.0), 1.2, 0.3 * i as Real);
+    Bodies::above(ground, &dumbbell, (0..3).map(place), 2.0, dispatcher)
 }
 
 /// Would catch contacts that flicker, sink in or do not hold a body at rest, and a world that cannot be saved in the middle of
@@ -361,25 +341,17 @@ fn poses(world: &PhysicsWorld, bodies: &[RigidBodyHandle]) -> Vec<Pose> {
 #[test]
 fn compounds_rest_on_a_mesh_as_with_stock() {
     let dispatcher = counting();
-    let (mut stock, stock_bodies) = world(None);
-    let (mut sbbk, bodies) = world(Some(dispatcher.clone()));
-    for _ in 0..300 {
-        stock.step();
-        sbbk.step();
+    let mut stock = dumbbells(None);
+    let mut sbbk = dumbbells(Some(dispatcher.clone()));
+    stock.step(300);
+    sbbk.step(300);
+    let mut copy = sbbk.restored();
+    let before = sbbk.poses();
+    for world in [&mut stock, &mut sbbk, &mut copy] {
+        world.step(100);
     }
-    let bytes = postcard::to_stdvec(&sbbk).expect("a world with SBBK can be saved");
-    let mut copy: PhysicsWorld = postcard::from_bytes(&bytes).expect("and loaded");
-    copy.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
-    let before = poses(&sbbk, &bodies);
-    for _ in 0..100 {
-        stock.step();
-        sbbk.step();
-        copy.step();
-    }
-    assert_eq!(poses(&sbbk, &bodies), poses(&copy, &bodies), "the copy goes on otherwise");
-    for ((before, after), stock) in
-        before.iter().zip(poses(&sbbk, &bodies)).zip(poses(&stock, &stock_bodies))
-    {
+    assert_eq!(sbbk.poses(), copy.poses(), "the copy goes on otherwise");
+    for ((before, after), stock) in before.iter().zip(sbbk.poses()).zip(stock.poses()) {
         let moved = (before.translation - after.translation).length();
         assert!(moved < 0.02, "moves by {moved}");
         let apart = (stock.translation - after.translation).length();

@@ -45,3 +45,5 @@ mod trajectories;
 mod truth;
 /// Meshes that cannot have a tree.
 mod unsupported;
+/// Bodies above a ground.
+mod worlds;

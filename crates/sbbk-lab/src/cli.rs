@@ -3,17 +3,49 @@
 use std::error::Error;
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
 
-use crate::metrics::Environment;
-use crate::report::{Grid, ReportError, Results, reserve, write_csv, write_json};
+use crate::report::{ReportError, Results, reserve, write_csv, write_json, write_plot};
+use crate::study::{Progress, StudyError};
+
+/// What every study can be asked for.
+#[derive(Args, Clone, Debug, Default)]
+pub struct StudyArguments {
+    /// Measures less, within half a minute: for trying, not for quoting
+    #[arg(long)]
+    quick: bool,
+    #[command(flatten)]
+    output: Output,
+}
+
+impl StudyArguments {
+    /// The plan that is wanted.
+    pub fn plan<P>(&self, standard: fn() -> P, quick: fn() -> P) -> P {
+        if self.quick { quick() } else { standard() }
+    }
+
+    /// Carries out a study under progress bars, prints what it found and writes the files, which
+    /// are tried before the work begins.
+    ///
+    /// Errors: the study's own, or the output or a file cannot be written.
+    pub fn run<P, R: Results>(
+        &self,
+        plan: &P,
+        study: impl FnOnce(&P, &Progress) -> Result<R, StudyError>,
+    ) -> Result<R, Box<dyn Error>> {
+        self.output.reserve()?;
+        let results = study(plan, &Progress::visible())?;
+        self.output.publish(&results)?;
+        Ok(results)
+    }
+}
 
 /// Files for the results of a study.
 #[derive(Args, Clone, Debug, Default)]
-pub struct Output {
+struct Output {
     /// Writes all numbers to a JSON file
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -27,25 +59,15 @@ pub struct Output {
 
 impl Output {
     /// Makes sure, before the work begins, that the files can be written.
-    ///
-    /// Errors: one cannot.
-    pub fn reserve(&self) -> Result<(), ReportError> {
+    fn reserve(&self) -> Result<(), ReportError> {
         let Self { json, csv, plot } = self;
         [json, csv, plot].into_iter().flatten().try_for_each(|path| reserve(path))
     }
 
-    /// Prints where and what was measured, and writes the files; `plot` draws the picture.
-    ///
-    /// Errors: the output or a file cannot be written.
-    pub fn publish<R: Results>(
-        &self,
-        results: &R,
-        environment: &Environment,
-        tables: &[Grid],
-        plot: impl FnOnce(&R, &Path) -> Result<(), ReportError>,
-    ) -> Result<(), Box<dyn Error>> {
-        print(environment)?;
-        for table in tables {
+    /// Prints where and what was measured, and writes the files.
+    fn publish(&self, results: &impl Results) -> Result<(), Box<dyn Error>> {
+        print(results.environment())?;
+        for table in results.tables() {
             print(format_args!("\n{table}"))?;
         }
         if let Some(path) = &self.json {
@@ -55,7 +77,7 @@ impl Output {
             write_csv(results, path)?;
         }
         if let Some(path) = &self.plot {
-            plot(results, path)?;
+            write_plot(results, path)?;
         }
         Ok(())
     }
@@ -72,9 +94,9 @@ pub fn print(text: impl Display) -> io::Result<()> {
 }
 
 /// The exit code of a program: 1 after printing the error, if there is one.
-pub fn exit_code(result: Result<(), Box<dyn Error>>) -> ExitCode {
+pub fn exit_code<T>(result: Result<T, Box<dyn Error>>) -> ExitCode {
     match result {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(_) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");
             ExitCode::FAILURE

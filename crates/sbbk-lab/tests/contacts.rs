@@ -1,12 +1,13 @@
 //! The contact study on a small scale, and what reports make of it.
 
+mod support;
+
 use std::collections::HashSet;
-use std::fs;
 use std::sync::LazyLock;
 
 use sbbk_lab::backend::Backend;
 use sbbk_lab::mesh;
-use sbbk_lab::report::{tables, write_contacts_plot, write_csv, write_json};
+use sbbk_lab::report::tables;
 use sbbk_lab::study::Progress;
 use sbbk_lab::study::contacts::{ApproachedMesh, Contacts, ContactsPlan, contacts};
 
@@ -82,21 +83,11 @@ fn the_study_can_be_reported() {
     // Nine sizes and distances, two meshes, and twice three ways to ask of two meshes each.
     let row_counts: Vec<_> = grids.iter().map(|grid| grid.rows.len()).collect();
     assert_eq!(row_counts, [10, 3, 9, 9]);
-    for grid in &grids {
-        assert!(grid.rows.iter().all(|row| row.len() == grid.header.len()), "{}", grid.title);
-    }
 
-    let folder = tempfile::tempdir().unwrap();
-    let [json, csv, svg] =
-        ["json", "csv", "svg"].map(|end| folder.path().join("out").with_extension(end));
-    write_json(contacts, &json).unwrap();
-    write_csv(contacts, &csv).unwrap();
-    write_contacts_plot(contacts, &svg).unwrap();
-    let value: serde_json::Value = serde_json::from_slice(&fs::read(json).unwrap()).unwrap();
-    assert_eq!(value["exactness"][17]["sides"][1]["errors"]["missed"], 0);
-    let mut lines = csv::Reader::from_path(csv).unwrap();
-    let lines: Vec<csv::StringRecord> = lines.records().map(Result::unwrap).collect();
-    let scenes: HashSet<_> = lines
+    let report = support::report(contacts);
+    assert_eq!(report.json["exactness"][17]["sides"][1]["errors"]["missed"], 0);
+    let scenes: HashSet<_> = report
+        .csv
         .iter()
         .filter(|line| &line[0] == "contacts: exactness")
         .map(|line| line[1].to_owned())
@@ -104,7 +95,6 @@ fn the_study_can_be_reported() {
     assert_eq!(scenes.len(), 18, "{scenes:?}");
     let is_steady =
         |line: &&csv::StringRecord| &line[4] == "slow" && &line[5] == "errors.wrong_normal";
-    assert_eq!(lines.iter().filter(is_steady).count(), 8);
-    let picture = fs::read_to_string(svg).unwrap();
-    assert!(picture.starts_with("<svg") && picture.contains("wrong contacts"));
+    assert_eq!(report.csv.iter().filter(is_steady).count(), 8);
+    assert!(report.svg.contains("wrong contacts"));
 }

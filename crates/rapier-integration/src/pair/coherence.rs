@@ -1,8 +1,7 @@
 //! Candidates kept from query to query.
 //!
-//! Bodies move little between steps. So a descent may look farther than the prediction distance, by a slack: what it
-//! finds stays complete until a point has moved farther than that (Verlet, *Computer "Experiments" on Classical
-//! Fluids*, 1967, does so for particles). Until then no tree and no leaf is touched, and candidates that were too far
+//! A descent may look farther than the prediction distance, and what it finds then serves for several queries:
+//! [`Slack`] says for how long. Until then no tree and no leaf is touched, and candidates that were too far
 //! apart to have come within the prediction distance are not looked at either. Every candidate that could
 //! touch gets the exact test, so the contacts are those of a descent.
 //!
@@ -13,30 +12,20 @@
 use parry3d::math::{Pose, Real};
 use parry3d::query::ContactManifold;
 use sbbk_core::contact::TriangleContact;
-use sbbk_core::traverse::Placement;
+use sbbk_core::traverse::{Placement, Slack, SlackPlan};
 use sbbk_core::volumes::Sphere;
 
 use super::candidates::Candidate;
 use crate::mesh::Change;
 
-/// Slack in steps of the present motion. More: fewer descents, and more candidates that do not touch.
-const SLACK_STEPS: f64 = 8.0;
-/// Least slack as a share of the prediction distance, for bodies at rest that jitter.
-const LEAST_SLACK: f64 = 0.1;
-/// A pair that would use up the greatest slack in fewer steps gets none: to look farther would not pay (with 2, queries
-/// that move by half a prediction distance took up to twice as long).
-const LEAST_STEPS: f64 = 6.0;
-
 /// The candidates of a descent and when they are still good.
 #[derive(Clone, Debug)]
 pub(super) struct Coherence<T> {
-    /// The query before this one.
-    last: Option<Seen>,
-    /// The descent that found the candidates, and its margin.
-    descent: Option<Seen>,
+    /// Pose and prediction distance of the query before this one.
+    last: Option<(Pose, Real)>,
+    /// Whether the candidates are still good.
+    slack: Slack,
     candidates: Vec<KnownCandidate<T>>,
-    /// Motion from query to query, summed up since the descent.
-    travel: f64,
 }
 
 /// A candidate, and how much travel it stays out of reach.
@@ -46,13 +35,6 @@ pub(super) struct KnownCandidate<T> {
     /// Its distance when it was last known, or less, plus the travel of the pair then. The travel now subtracted, a lower
     /// bound of its distance now is left.
     pub(super) clear: f64,
-}
-
-#[derive(Copy, Clone, Debug)]
-struct Seen {
-    pos12: Pose,
-    placement: Placement,
-    margin: Real,
 }
 
 /// What a query has to do.
@@ -74,7 +56,7 @@ pub(super) enum Plan {
 
 impl<T> Default for Coherence<T> {
     fn default() -> Self {
-        Self { last: None, descent: None, candidates: Vec::new(), travel: 0.0 }
+        Self { last: None, slack: Slack::default(), candidates: Vec::new() }
     }
 }
 
@@ -94,27 +76,17 @@ impl<T> Coherence<T> {
         prediction: Real,
         greatest_slack: f64,
     ) -> Plan {
-        let now = Seen { pos12: *pos12, placement, margin: prediction };
-        let last = self.last.replace(now);
-        if last.is_some_and(|last| last.pos12 == *pos12 && last.margin == prediction) {
+        let now = (*pos12, prediction);
+        if self.last.replace(now) == Some(now) {
             return Plan::Nothing;
         }
-        let motion_since =
-            |seen: Seen| now.placement.motion_bound(&seen.placement, ball.centre, ball.radius);
-        let step = last.map_or(0.0, motion_since);
-        self.travel += step;
-        if let Some(descent) = self.descent {
-            let reach = f64::from(prediction) + motion_since(descent);
-            if reach <= f64::from(descent.margin) {
-                return Plan::Reuse { margin: descent.margin };
+        match self.slack.plan(ball, &placement, prediction, greatest_slack) {
+            SlackPlan::Reuse { margin, .. } => Plan::Reuse { margin },
+            SlackPlan::Descend { margin } => {
+                self.candidates.clear();
+                Plan::Descend { margin }
             }
         }
-        let slack = last.map_or(0.0, |_| slack(step, f64::from(prediction), greatest_slack));
-        let margin = prediction + slack as Real;
-        self.candidates.clear();
-        self.travel = 0.0;
-        self.descent = (margin > prediction).then_some(Seen { margin, ..now });
-        Plan::Descend { margin }
     }
 
     /// Forgets what a change of the shapes makes worthless: the candidates, and the manifolds if their triangles are others
@@ -139,12 +111,12 @@ impl<T> Coherence<T> {
 
     /// What the pair has moved since the descent, along its path.
     pub(super) fn travel(&self) -> f64 {
-        self.travel
+        self.slack.travel()
     }
 
     /// Keeps the candidates of the descent under way, in stock order.
     pub(super) fn keep(&mut self, candidates: impl IntoIterator<Item = KnownCandidate<T>>) {
-        if self.descent.is_some() {
+        if self.slack.margin().is_some() {
             self.candidates.extend(candidates);
         }
     }
@@ -158,7 +130,7 @@ impl<T> Coherence<T> {
 impl Coherence<Candidate> {
     /// The candidates of the last descent that may have come within the prediction distance, in stock order.
     pub(super) fn near(&self, prediction: Real, near: &mut Vec<Candidate>) {
-        let reach = f64::from(prediction) + self.travel;
+        let reach = f64::from(prediction) + self.travel();
         near.clear();
         let is_near = |known: &&KnownCandidate<Candidate>| known.clear <= reach;
         near.extend(self.candidates.iter().filter(is_near).map(|known| known.candidate));
@@ -167,12 +139,12 @@ impl Coherence<Candidate> {
     /// Remembers what was found for a candidate, of the descent under way or one of [`near`](Self::near).
     #[inline]
     pub(super) fn note(&mut self, candidate: &Candidate, contact: Option<&TriangleContact>) {
-        let Some(descent) = self.descent else {
+        let Some(margin) = self.slack.margin() else {
             return;
         };
         let features = contact.map_or(candidate.features, |contact| Some(contact.features));
-        let distance = contact.map_or(f64::from(descent.margin), |contact| contact.distance);
-        let clear = distance + self.travel;
+        let distance = contact.map_or(f64::from(margin), |contact| contact.distance);
+        let clear = distance + self.travel();
         match self.candidates.get_mut(candidate.place as usize) {
             Some(known) => (known.candidate.features, known.clear) = (features, clear),
             None if contact.is_some() => {
@@ -182,16 +154,5 @@ impl Coherence<Candidate> {
             }
             None => {}
         }
-    }
-}
-
-/// How much farther than the prediction distance a descent should look, for a pair that moved by `step` since the
-/// query before. Not finite motion gives none.
-fn slack(step: f64, prediction: f64, greatest_slack: f64) -> f64 {
-    let greatest = greatest_slack * prediction;
-    if LEAST_STEPS * step <= greatest {
-        (SLACK_STEPS * step).clamp(LEAST_SLACK * prediction, greatest)
-    } else {
-        0.0
     }
 }

@@ -6,7 +6,7 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::{ContactManifold, ContactManifoldsWorkspace};
 use parry3d::shape::TriMesh;
 use sbbk_core::contact::FeaturePair;
-use sbbk_core::traverse::{Counters, PairFrame, Placement};
+use sbbk_core::traverse::{Counters, GREATEST_SLACK, PairFrame, Placement};
 
 use super::candidates::{Candidate, Scratch, collect};
 use super::coherence::{Coherence, Plan};
@@ -26,10 +26,6 @@ pub(crate) struct MeshPair<'a> {
     pub(crate) prediction: Real,
     pub(crate) contacts: ContactGenerator,
 }
-
-/// Greatest slack of candidates as a share of the prediction distance. More: pairs of triangles that do not touch get
-/// the exact test; fewer: more descents.
-const GREATEST_SLACK: f64 = 1.0;
 
 /// Two meshes.
 #[derive(Clone)]

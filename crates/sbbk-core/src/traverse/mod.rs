@@ -3,6 +3,8 @@
 //! [`PairFrame`] holds what depends on the pair's pose, computed once; [`descend`] goes down both trees at
 //! once and hands pairs of leaves to a [`Visitor`]; [`Counters`] count the tests, or cost nothing.
 //!
+//! [`Slack`] says when a descent can be spared, as the last one looked far enough.
+//!
 //! One tree against a [`Convex`] shape: [`Probe`] is the shape as the tree sees it, [`descend_probe`] finds the leaves near it.
 
 mod correspondence;
@@ -16,6 +18,7 @@ mod placement;
 mod probe;
 mod probe_descend;
 mod signed_gaps;
+mod slack;
 mod visitor;
 
 pub use counters::{Counters, DescentCounts};
@@ -29,4 +32,5 @@ pub use probe::{Convex, Outline, Probe};
 pub use probe_descend::{ProbeScratch, descend_probe};
 pub use signed_gaps::GapCounts;
 pub(crate) use signed_gaps::SignedGaps;
+pub use slack::{GREATEST_SLACK, Slack, SlackPlan};
 pub use visitor::{LeafPairs, NodePair, Verdict, Visitor};

@@ -1,65 +1,21 @@
 //! The contact study as files and as a picture.
 
-use std::path::Path;
-
 use serde_json::json;
 
-use super::look::Look;
-use super::panel::{Panel, Scale, Series};
-use super::{ReportError, ResultRow, Results};
-use crate::metrics::Summary;
-use crate::study::contacts::{CONTESTANTS, ContactErrors, Contacts, ExactnessRow, SpeedRow};
-
-/// Stands for no wrong contact at all in the plot, in wrong contacts for 100 true ones: less than
-/// one contact of all, so that nothing else is drawn there.
-const NONE_WRONG: f64 = 1e-4;
-
-/// Writes an SVG picture of two diagrams, time against error over logarithmic axes: first queries
-/// in all cases, and the queries of the speed tables in motion.
-///
-/// Errors: the file cannot be written.
-pub fn write_contacts_plot(contacts: &Contacts, path: &Path) -> Result<(), ReportError> {
-    let fresh = |side: usize| {
-        let side = move |row: &ExactnessRow| (row.sides[side].query, row.sides[side].errors);
-        contacts.exactness.iter().map(side).collect()
-    };
-    let steady = |side: usize| {
-        let side = move |row: &SpeedRow| {
-            let side = &row.sides[side];
-            [side.slow, side.fast].map(|measured| (measured.time, measured.errors))
-        };
-        contacts.speed.iter().flat_map(side).collect()
-    };
-    let case_count = contacts.exactness.len();
-    let panels = [
-        panel(format!("First queries: {case_count} cases of mesh, size and distance"), fresh),
-        panel("Queries in motion, 2 units across, distance 0.02".to_owned(), steady),
-    ];
-    Panel::write_all(&panels, path)
-}
-
-/// A point for each measurement, by contestant.
-fn panel(title: String, measurements: impl Fn(usize) -> Vec<(Summary, ContactErrors)>) -> Panel {
-    // The last one drawn is on top: stock's small squares leave SBBK's circles to be seen.
-    let series = [1, 0].map(|side| Series {
-        label: CONTESTANTS[side].to_string(),
-        look: Look::Backend(CONTESTANTS[side]),
-        is_connected: false,
-        points: measurements(side)
-            .into_iter()
-            .filter_map(|(time, errors)| Some((time.median, 100.0 * errors.share()?)))
-            .collect(),
-    });
-    Panel {
-        title,
-        x_label: "µs a query".to_owned(),
-        y_label: "wrong contacts for 100 true ones".to_owned(),
-        scale: Scale::Logarithmic { zero: NONE_WRONG },
-        series: series.into(),
-    }
-}
+use super::against::time_against_error;
+use super::{Grid, Panel, ResultRow, Results, tables};
+use crate::metrics::Environment;
+use crate::study::contacts::{Contacts, ExactnessRow, ExactnessSide, Mode, SpeedRow};
 
 impl Results for Contacts {
+    fn environment(&self) -> &Environment {
+        &self.environment
+    }
+
+    fn tables(&self) -> Vec<Grid> {
+        tables::contacts(self)
+    }
+
     fn rows(&self) -> Vec<ResultRow> {
         let mut rows = Vec::new();
         for row in &self.exactness {
@@ -82,5 +38,27 @@ impl Results for Contacts {
             rows.extend(sides.map(|side| ResultRow::new("contacts: pairs, ns", scene(), side)));
         }
         rows
+    }
+
+    /// Time against error: first queries in all cases, and the queries of the speed tables in motion.
+    fn panels(&self) -> Vec<Panel> {
+        let fresh = |side: usize| {
+            let side = move |row: &ExactnessRow| {
+                let ExactnessSide { query, errors, .. } = &row.sides[side];
+                (*query, errors.share())
+            };
+            self.exactness.iter().map(side).collect()
+        };
+        let steady = |side: usize| {
+            let side = move |row: &SpeedRow| {
+                let modes = [Mode::Slow, Mode::Fast].map(|mode| row.sides[side].measured(mode));
+                modes.map(|measured| (measured.time, measured.errors.share()))
+            };
+            self.speed.iter().flat_map(side).collect()
+        };
+        let first =
+            format!("First queries: {} cases of mesh, size and distance", self.exactness.len());
+        let motion = "Queries in motion, 2 units across, distance 0.02".to_owned();
+        vec![time_against_error(first, fresh), time_against_error(motion, steady)]
     }
 }

@@ -1,52 +1,20 @@
 //! The study of convex shapes as files and as a picture.
 
-use std::path::Path;
-
-use super::look::Look;
-use super::panel::{Panel, Scale, Series};
-use super::{ReportError, ResultRow, Results};
-use crate::metrics::ratio;
-use crate::study::contacts::{CONTESTANTS, FAST, SLOW};
-use crate::study::convex::{Convex, ConvexRow, ConvexSide, Measured};
-
-/// Stands for no wrong contact in the plot, in wrong contacts for 100 true ones.
-const NONE_WRONG: f64 = 1e-3;
-
-/// Writes an SVG picture of three diagrams, time against error over logarithmic axes: first queries, and slow and
-/// faster motion. A point is one kind of shape.
-///
-/// Errors: the file cannot be written.
-pub fn write_convex_plot(study: &Convex, path: &Path) -> Result<(), ReportError> {
-    let panels = [
-        panel("First queries".to_owned(), &study.rows, |side| side.fresh),
-        panel(format!("{SLOW} prediction distances a step"), &study.rows, |side| side.slow),
-        panel(format!("{FAST} prediction distances a step"), &study.rows, |side| side.fast),
-    ];
-    Panel::write_all(&panels, path)
-}
-
-fn panel(title: String, rows: &[ConvexRow], measured: fn(&ConvexSide) -> Measured) -> Panel {
-    let point = |side: &ConvexSide| {
-        let Measured { time, errors } = measured(side);
-        let share = ratio(errors.wrong() as f64, errors.true_pairs as f64)?;
-        Some((time.median, 100.0 * share))
-    };
-    let series = [1, 0].map(|side| Series {
-        label: CONTESTANTS[side].to_string(),
-        look: Look::Backend(CONTESTANTS[side]),
-        is_connected: false,
-        points: rows.iter().filter_map(|row| point(&row.sides[side])).collect(),
-    });
-    Panel {
-        title,
-        x_label: "µs a query".to_owned(),
-        y_label: "wrong contacts for 100 true ones".to_owned(),
-        scale: Scale::Logarithmic { zero: NONE_WRONG },
-        series: series.into(),
-    }
-}
+use super::against::time_against_error;
+use super::{Grid, Panel, ResultRow, Results, tables};
+use crate::metrics::Environment;
+use crate::study::contacts::{FAST, Mode, SLOW};
+use crate::study::convex::{Convex, ConvexRow};
 
 impl Results for Convex {
+    fn environment(&self) -> &Environment {
+        &self.environment
+    }
+
+    fn tables(&self) -> Vec<Grid> {
+        tables::convex(self).into()
+    }
+
     fn rows(&self) -> Vec<ResultRow> {
         let row = |row: &ConvexRow| {
             let scene = format!("{} and {}", self.mesh, row.kind);
@@ -54,5 +22,21 @@ impl Results for Convex {
             row.sides.iter().map(side).collect::<Vec<_>>()
         };
         self.rows.iter().flat_map(row).collect()
+    }
+
+    /// Time against error: first queries, and slow and faster motion. A point is one kind of shape.
+    fn panels(&self) -> Vec<Panel> {
+        let panel = |mode: Mode| {
+            let title = match mode {
+                Mode::Fresh => "First queries".to_owned(),
+                Mode::Slow => format!("{SLOW} prediction distances a step"),
+                Mode::Fast => format!("{FAST} prediction distances a step"),
+            };
+            time_against_error(title, |side| {
+                let rows = self.rows.iter().map(|row| row.sides[side].measured(mode));
+                rows.map(|measured| (measured.time, measured.errors.share())).collect()
+            })
+        };
+        Mode::ALL.map(panel).into()
     }
 }

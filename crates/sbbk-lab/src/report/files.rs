@@ -6,8 +6,8 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::ReportError;
-use crate::study::Comparison;
+use super::{Grid, Panel, ReportError};
+use crate::metrics::Environment;
 
 /// Creates an empty file, so that a path that cannot be written is noticed before the measurement
 /// that is to be written there.
@@ -18,10 +18,16 @@ pub fn reserve(path: &Path) -> Result<(), ReportError> {
     Ok(())
 }
 
-/// Results that can become a file.
+/// Results that can be shown, and become files.
 pub trait Results: Serialize {
+    /// Where they were measured.
+    fn environment(&self) -> &Environment;
+    /// For the terminal.
+    fn tables(&self) -> Vec<Grid>;
     /// Their rows, of all tables.
     fn rows(&self) -> Vec<ResultRow>;
+    /// Their picture, from left to right.
+    fn panels(&self) -> Vec<Panel>;
 }
 
 /// One row of results, of which the numbers become lines of a CSV file.
@@ -33,7 +39,7 @@ pub struct ResultRow {
     pub scene: String,
     /// Whether Rapier recycled contacts; `None` where Rapier had no part.
     pub contact_recycling: Option<bool>,
-    /// An object; its numbers, and those of the objects in it, count.
+    /// An object; its numbers, and those of the objects and lists in it, count.
     pub values: Value,
 }
 
@@ -57,7 +63,7 @@ impl ResultRow {
         row
     }
 
-    fn recycling(self, contact_recycling: bool) -> Self {
+    pub(super) fn recycling(self, contact_recycling: bool) -> Self {
         Self { contact_recycling: Some(contact_recycling), ..self }
     }
 }
@@ -93,33 +99,15 @@ pub fn write_csv(results: &impl Results, path: &Path) -> Result<(), ReportError>
     writer.flush().map_err(|e| ReportError::new(path, e))
 }
 
-impl Results for Comparison {
-    fn rows(&self) -> Vec<ResultRow> {
-        let mut rows = Vec::new();
-        for row in &self.helicopter {
-            let scene = format!("{} ball", row.ball);
-            rows.push(ResultRow::new("helicopter", scene, row).recycling(true));
-        }
-        for pile in &self.piles {
-            let scene = || pile.scene.clone();
-            rows.extend(pile.runs.iter().map(|row| {
-                ResultRow::new("pile, whole runs", scene(), row).recycling(pile.contact_recycling)
-            }));
-            let same_poses = pile.same_poses.iter();
-            rows.extend(same_poses.map(|row| ResultRow::new("pile, same poses", scene(), row)));
-        }
-        for row in self.cut.iter().flat_map(|cut| &cut.rows) {
-            rows.push(ResultRow::new("cut at depth", "mesh ball".to_owned(), row));
-        }
-        for row in &self.meshes {
-            rows.push(ResultRow::new("trees and first queries", row.mesh.clone(), row));
-        }
-        rows
-    }
+/// Draws all results into an SVG picture.
+///
+/// Errors: the file cannot be written.
+pub fn write_plot(results: &impl Results, path: &Path) -> Result<(), ReportError> {
+    Panel::write_all(&results.panels(), path)
 }
 
-/// The numbers of a row: its own, and those of the objects in it, whose statistic is then the path
-/// to the number.
+/// The numbers of a row: its own, and those of the objects and lists in it, whose statistic is then
+/// the path to the number.
 fn measurements(row: &ResultRow) -> Vec<Measurement> {
     let text = |key| row.values.get(key).and_then(Value::as_str);
     let backend = text("backend").or(text("hierarchy")).unwrap_or_default();
@@ -142,9 +130,12 @@ fn measurements(row: &ResultRow) -> Vec<Measurement> {
 
 /// Adds the numbers in `value`, each with its path below `path`.
 fn collect(value: &Value, path: String, found: &mut Vec<(String, f64)>) {
+    let below = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
     for (key, value) in value.as_object().into_iter().flatten() {
-        let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-        collect(value, path, found);
+        collect(value, below(key), found);
+    }
+    for (index, value) in value.as_array().into_iter().flatten().enumerate() {
+        collect(value, below(&index.to_string()), found);
     }
     found.extend(value.as_f64().map(|number| (path, number)));
 }
@@ -163,12 +154,15 @@ mod tests {
             "steps": 3,
             "step": { "min": 1.5, "median": 2.0 },
             "steady": { "time": { "min": 0.5 } },
+            "counts": [7, 8],
         });
         let row = ResultRow::new("study", "scene".to_owned(), &values).recycling(false);
         let lines = measurements(&row);
         let found: Vec<_> =
             lines.iter().map(|m| (&*m.backend, &*m.quantity, &*m.statistic, m.value)).collect();
         let expected = [
+            ("sbbk", "counts", "0", 7.0),
+            ("sbbk", "counts", "1", 8.0),
             ("sbbk", "steady", "time.min", 0.5),
             ("sbbk", "step", "median", 2.0),
             ("sbbk", "step", "min", 1.5),

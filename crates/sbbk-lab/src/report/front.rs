@@ -1,11 +1,9 @@
 //! The study of the front as files and as a picture.
 
-use std::path::Path;
-
 use super::look::Look;
 use super::panel::{Panel, Scale, Series};
-use super::{ReportError, ResultRow, Results};
-use crate::metrics::ratio;
+use super::{Grid, ResultRow, Results, tables};
+use crate::metrics::{Environment, ratio};
 use crate::study::front::{FrontMotion, FrontRow, FrontStudy, Variant};
 
 /// The variants that are drawn; the others nearly cover one of these.
@@ -18,28 +16,21 @@ const DRAWN: [Variant; 6] = [
     Variant::Slack,
 ];
 
-/// Writes an SVG picture of a diagram for each kind of motion: how many times faster than a fresh descent the variants
-/// are, by the size of the mesh.
-///
-/// Errors: the file cannot be written.
-pub fn write_front_plot(study: &FrontStudy, path: &Path) -> Result<(), ReportError> {
-    let panels = FrontMotion::ALL.map(|motion| {
-        let rows = || study.rows.iter().filter(move |row| row.motion == motion);
-        let series = DRAWN.into_iter().enumerate().map(|(number, variant)| Series {
-            label: variant.to_string(),
-            look: Look::Other(number),
-            is_connected: true,
-            points: rows().filter_map(|row| point(row, variant)).collect(),
-        });
-        Panel {
-            title: format!("Traversal, {motion}"),
-            x_label: "triangles of each mesh".to_owned(),
-            y_label: "times faster than fresh descents".to_owned(),
-            scale: Scale::FromZero,
-            series: series.collect(),
-        }
+fn panel(study: &FrontStudy, motion: FrontMotion) -> Panel {
+    let rows = || study.rows.iter().filter(move |row| row.motion == motion);
+    let series = DRAWN.into_iter().enumerate().map(|(number, variant)| Series {
+        label: variant.to_string(),
+        look: Look::Other(number),
+        is_connected: true,
+        points: rows().filter_map(|row| point(row, variant)).collect(),
     });
-    Panel::write_all(&panels, path)
+    Panel {
+        title: format!("Traversal, {motion}"),
+        x_label: "triangles of each mesh".to_owned(),
+        y_label: "times faster than fresh descents".to_owned(),
+        scale: Scale::FromZero,
+        series: series.collect(),
+    }
 }
 
 fn point(row: &FrontRow, variant: Variant) -> Option<(f64, f64)> {
@@ -50,6 +41,14 @@ fn point(row: &FrontRow, variant: Variant) -> Option<(f64, f64)> {
 }
 
 impl Results for FrontStudy {
+    fn environment(&self) -> &Environment {
+        &self.environment
+    }
+
+    fn tables(&self) -> Vec<Grid> {
+        tables::front(self)
+    }
+
     fn rows(&self) -> Vec<ResultRow> {
         let rows = self.rows.iter().flat_map(|row| {
             row.variants.iter().map(move |variant| {
@@ -59,5 +58,10 @@ impl Results for FrontStudy {
             })
         });
         rows.collect()
+    }
+
+    /// How many times faster than a fresh descent the variants are, by the size of the mesh, for each kind of motion.
+    fn panels(&self) -> Vec<Panel> {
+        FrontMotion::ALL.map(|motion| panel(self, motion)).into()
     }
 }

@@ -1,20 +1,26 @@
 //! Colours and markers of the plots.
 
 use std::f64::consts::TAU;
+use std::ops::Add;
 
-use plotters::style::RGBColor;
+use plotters::prelude::*;
 
 use crate::backend::Backend;
 
 /// How a series is drawn. The colours are of Okabe and Ito's palette, which the colour-blind can
 /// tell apart; the markers do for black and white.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Look {
+pub enum Look {
+    /// One of those that answer.
     Backend(Backend),
+    /// The paper's figures.
     Paper,
     /// One of a few that are neither, by number.
     Other(usize),
 }
+
+/// A polygon in pixels about a place of an area.
+type Mark<C, B> = <EmptyElement<C, B> as Add<Polygon<(i32, i32)>>>::Output;
 
 /// Colours of the others; black first, as what is compared with comes first.
 const OTHERS: [RGBColor; 6] = [
@@ -27,7 +33,7 @@ const OTHERS: [RGBColor; 6] = [
 ];
 
 impl Look {
-    pub fn colour(self) -> RGBColor {
+    pub(super) fn colour(self) -> RGBColor {
         match self {
             Self::Backend(Backend::Stock) => RGBColor(0, 0, 0),
             Self::Backend(Backend::AabbOnly) => RGBColor(213, 94, 0),
@@ -38,8 +44,13 @@ impl Look {
         }
     }
 
-    /// The marker about the origin, in pixels: a regular polygon.
-    pub fn marker(self, radius: f64) -> Vec<(i32, i32)> {
+    /// The marker at a place of an area: a regular polygon, with a radius in pixels.
+    pub(super) fn mark<C, B: DrawingBackend>(self, at: C, radius: f64) -> Mark<C, B> {
+        EmptyElement::at(at) + Polygon::new(self.corners(radius), self.colour().filled())
+    }
+
+    /// The corners of the marker about the origin, in pixels.
+    fn corners(self, radius: f64) -> Vec<(i32, i32)> {
         // Number of corners, and the first one's direction as a share of a turn from the right.
         let (corners, start) = match self {
             Self::Backend(Backend::Stock) => (4, 0.125),

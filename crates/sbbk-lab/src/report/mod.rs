@@ -1,5 +1,7 @@
 //! Results as tables, files and plots, beside the paper's own.
 
+mod against;
+mod comparison;
 mod contacts;
 mod convex;
 mod error;
@@ -10,17 +12,14 @@ mod grid;
 mod look;
 mod panel;
 mod paper;
-mod plot;
 mod queries;
+mod soft;
 pub mod tables;
 mod terrain;
 
-pub use contacts::write_contacts_plot;
-pub use convex::write_convex_plot;
 pub use error::ReportError;
-pub use files::{ResultRow, Results, reserve, write_csv, write_json};
-pub use front::write_front_plot;
+pub use files::{ResultRow, Results, reserve, write_csv, write_json, write_plot};
 pub use grid::Grid;
+pub use look::Look;
+pub use panel::{Panel, Scale, Series};
 pub use paper::{PAPER, Paper};
-pub use plot::write_plot;
-pub use queries::write_queries_plot;

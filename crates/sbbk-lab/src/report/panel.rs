@@ -6,6 +6,7 @@ use std::path::Path;
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::ReportError;
 use super::look::Look;
@@ -18,38 +19,51 @@ const TEXT_SIZE: u32 = 15;
 const LABEL_AREA: (u32, u32) = (62, 44);
 /// Radius of a marker, in pixels.
 const MARKER_RADIUS: f64 = 6.0;
-/// The legend above the line of zero, in pixels from the upper left of the axes.
-const LOW_LEGEND: (i32, i32) = (8, 228);
-/// Space above the largest value, as a factor: room for the legend as well.
-const HEADROOM: (f64, f64) = (1.08, 1.3);
-/// Series for whose legend there is room; each further one needs this much more.
-const LEGEND_ROOM: (usize, f64) = (4, 0.15);
+/// Space beyond the largest value, as a factor.
+const HEADROOM: f64 = 1.08;
+/// The legend below the axes: entries side by side, height of a row, and where its text starts, in pixels.
+const LEGEND_COLUMNS: usize = 2;
+const LEGEND_ROW: u32 = 22;
+const LEGEND_LEFT: u32 = 74;
 
 /// One diagram.
-pub(super) struct Panel {
+#[derive(Clone, Debug)]
+pub struct Panel {
+    /// Above it.
     pub title: String,
+    /// What the horizontal axis shows.
     pub x_label: String,
+    /// What the vertical axis shows.
     pub y_label: String,
+    /// What both axes are like.
     pub scale: Scale,
+    /// What is drawn, the last one on top.
     pub series: Vec<Series>,
 }
 
 /// What the axes are like.
-#[derive(Clone, Copy)]
-pub(super) enum Scale {
+#[derive(Clone, Copy, Debug)]
+pub enum Scale {
     /// Linear, from zero to the largest value.
     FromZero,
-    /// Logarithmic, over whole powers of ten. Points up to `zero` are drawn there, where the
-    /// vertical axis says 0.
-    Logarithmic { zero: f64 },
+    /// Logarithmic, over whole powers of ten.
+    Logarithmic {
+        /// Less than all values but zero, if they may be zero: such points are drawn here, where the
+        /// vertical axis says 0.
+        zero: Option<f64>,
+    },
 }
 
 /// Points of one kind. Points that are not finite are left out.
-pub(super) struct Series {
+#[derive(Clone, Debug)]
+pub struct Series {
+    /// Its name in the legend.
     pub label: String,
+    /// Its colour and marker.
     pub look: Look,
     /// Whether a line runs through the points.
     pub is_connected: bool,
+    /// From left to right.
     pub points: Vec<(f64, f64)>,
 }
 
@@ -60,8 +74,10 @@ impl Panel {
     /// Writes panels side by side as an SVG picture.
     ///
     /// Errors: the file cannot be written.
-    pub fn write_all(panels: &[Self], path: &Path) -> Result<(), ReportError> {
-        let size = (PANEL_SIZE.0 * panels.len() as u32, PANEL_SIZE.1);
+    pub(super) fn write_all(panels: &[Self], path: &Path) -> Result<(), ReportError> {
+        let rows = panels.iter().map(|panel| panel.drawn().count().div_ceil(LEGEND_COLUMNS));
+        let legend_height = LEGEND_ROW * rows.max().unwrap_or(0) as u32 + LEGEND_ROW / 2;
+        let size = (PANEL_SIZE.0 * panels.len() as u32, PANEL_SIZE.1 + legend_height);
         // The backend would only report an unwritable file by panicking when it is dropped.
         let mut picture = String::new();
         draw_all(panels, &SVGBackend::with_string(&mut picture, size).into_drawing_area())
@@ -74,16 +90,15 @@ impl Panel {
         let (xs, ys) = (points().map(|point| point.0), points().map(|point| self.height(point.1)));
         match self.scale {
             Scale::FromZero => {
-                let further = self.series.len().saturating_sub(LEGEND_ROOM.0);
-                let headroom = HEADROOM.1 + LEGEND_ROOM.1 * further as f64;
-                let [x, y] = [limit(xs, HEADROOM.0), limit(ys, headroom)];
+                let [x, y] = [limit(xs), limit(ys)];
                 let labels = (|value: &f64| plain(*value, x), |value: &f64| plain(*value, y));
                 self.draw_over(area, (0.0..x, 0.0..y), labels)
             }
             Scale::Logarithmic { zero } => {
+                let (x, mut y) = (decades(xs), decades(ys));
                 // Half a power of ten below leaves room for the markers of zero.
-                let (x, y) = (decades(xs), 0.3 * zero..decades(ys).end);
-                let is_zero = |value: f64| value < 3.0 * zero;
+                y.start = zero.map_or(y.start, |zero| 0.3 * zero);
+                let is_zero = |value: f64| zero.is_some_and(|zero| value < 3.0 * zero);
                 let y_label =
                     |&value: &f64| if is_zero(value) { plain(0.0, 10.0) } else { power(value) };
                 let axes = (x.log_scale(), y.log_scale());
@@ -92,22 +107,11 @@ impl Panel {
         }
     }
 
-    /// Curves that rise from zero leave the upper left free; on logarithmic axes nothing is between
-    /// zero and the smallest other values.
-    fn legend(&self) -> SeriesLabelPosition {
-        match self.scale {
-            Scale::FromZero => SeriesLabelPosition::UpperLeft,
-            Scale::Logarithmic { .. } => {
-                SeriesLabelPosition::Coordinate(LOW_LEGEND.0, LOW_LEGEND.1)
-            }
-        }
-    }
-
     /// Where a value stands on the vertical axis.
     fn height(&self, value: f64) -> f64 {
         match self.scale {
             Scale::FromZero => value,
-            Scale::Logarithmic { zero } => value.max(zero),
+            Scale::Logarithmic { zero } => zero.map_or(value, |zero| value.max(zero)),
         }
     }
 
@@ -139,28 +143,35 @@ impl Panel {
             .y_label_formatter(&labels.1)
             .label_style(("sans-serif", TEXT_SIZE))
             .draw()?;
-        for series in self.series.iter().filter(|series| series.finite_points().next().is_some()) {
-            let colour = series.look.colour();
-            let marker = series.look.marker(MARKER_RADIUS);
-            let key = move |(x, y)| {
-                let corners = marker.iter().map(|(dx, dy)| (x + 8 + dx, y + dy));
-                Polygon::new(corners.collect::<Vec<_>>(), colour.filled())
-            };
-            let marker = series.look.marker(MARKER_RADIUS);
-            let mark = |at| EmptyElement::at(at) + Polygon::new(marker.clone(), colour.filled());
+        for series in self.drawn() {
             let points = || series.finite_points().map(|(x, y)| (x, self.height(y)));
             if series.is_connected {
-                chart.draw_series(LineSeries::new(points(), colour.stroke_width(2)))?;
+                let line = series.look.colour().stroke_width(2);
+                chart.draw_series(LineSeries::new(points(), line))?;
             }
-            chart.draw_series(points().map(mark))?.label(&series.label).legend(key);
+            chart.draw_series(points().map(|at| series.look.mark(at, MARKER_RADIUS)))?;
         }
-        chart
-            .configure_series_labels()
-            .position(self.legend())
-            .background_style(WHITE.mix(0.8))
-            .border_style(BLACK.mix(0.3))
-            .label_font(("sans-serif", TEXT_SIZE))
-            .draw()
+        Ok(())
+    }
+
+    /// Where nothing of the data can be.
+    fn draw_legend<'a>(&self, area: &DrawingArea<SVGBackend<'a>, Shift>) -> DrawResult<'a> {
+        let column_width = (PANEL_SIZE.0 - LEGEND_LEFT) / LEGEND_COLUMNS as u32;
+        for (index, series) in self.drawn().enumerate() {
+            let [row, column] = [index / LEGEND_COLUMNS, index % LEGEND_COLUMNS];
+            let left = (LEGEND_LEFT + column as u32 * column_width) as i32;
+            let middle = (row as u32 * LEGEND_ROW + LEGEND_ROW / 2) as i32;
+            let style = ("sans-serif", TEXT_SIZE).into_text_style(area);
+            let style = style.pos(Pos::new(HPos::Left, VPos::Center));
+            area.draw(&series.look.mark((left, middle), MARKER_RADIUS))?;
+            area.draw(&Text::new(series.label.clone(), (left + 14, middle), style))?;
+        }
+        Ok(())
+    }
+
+    /// The series that have points.
+    fn drawn(&self) -> impl Iterator<Item = &Series> {
+        self.series.iter().filter(|series| series.finite_points().next().is_some())
     }
 }
 
@@ -172,9 +183,9 @@ impl Series {
 }
 
 /// The largest value and some space above.
-fn limit(values: impl Iterator<Item = f64>, headroom: f64) -> f64 {
+fn limit(values: impl Iterator<Item = f64>) -> f64 {
     let largest = values.fold(0.0, f64::max);
-    if largest > 0.0 { headroom * largest } else { 1.0 }
+    if largest > 0.0 { HEADROOM * largest } else { 1.0 }
 }
 
 /// The powers of ten between which all values lie.
@@ -206,7 +217,9 @@ fn plain(value: f64, limit: f64) -> String {
 fn draw_all<'a>(panels: &[Panel], area: &DrawingArea<SVGBackend<'a>, Shift>) -> DrawResult<'a> {
     area.fill(&WHITE)?;
     for (panel, area) in panels.iter().zip(area.split_evenly((1, panels.len()))) {
-        panel.draw(&area)?;
+        let (axes, legend) = area.split_vertically(PANEL_SIZE.1);
+        panel.draw(&axes)?;
+        panel.draw_legend(&legend)?;
     }
     area.present()
 }

@@ -1,25 +1,11 @@
 //! The study of queries as files and as a picture.
 
-use std::path::Path;
-
 use super::look::Look;
 use super::panel::{Panel, Scale, Series};
-use super::{ReportError, ResultRow, Results};
+use super::{Grid, ResultRow, Results, tables};
+use crate::metrics::Environment;
 use crate::study::contacts::CONTESTANTS;
 use crate::study::queries::{Place, Queries, Query};
-
-/// Writes an SVG picture: time by number of triangles, for the distance of meshes that are near, for the intersection
-/// test of meshes that hardly miss each other, and for casts.
-///
-/// Errors: the file cannot be written.
-pub fn write_queries_plot(queries: &Queries, path: &Path) -> Result<(), ReportError> {
-    let panels = [
-        panel(queries, Query::Distance, Place::Near),
-        panel(queries, Query::Intersection, Place::HardlyApart),
-        panel(queries, Query::Cast, Place::Far),
-    ];
-    Panel::write_all(&panels, path)
-}
 
 fn panel(queries: &Queries, query: Query, place: Place) -> Panel {
     let rows = || queries.rows.iter().filter(move |row| (row.query, row.place) == (query, place));
@@ -31,17 +17,24 @@ fn panel(queries: &Queries, query: Query, place: Place) -> Panel {
             .map(|row| (row.triangle_count as f64, row.sides[side].time.median))
             .collect(),
     });
-    // A tenth of a microsecond is less than any query takes.
     Panel {
         title: format!("{query}, {place}"),
         x_label: "triangles of each mesh".to_owned(),
         y_label: "µs a query".to_owned(),
-        scale: Scale::Logarithmic { zero: 0.1 },
+        scale: Scale::Logarithmic { zero: None },
         series: series.into(),
     }
 }
 
 impl Results for Queries {
+    fn environment(&self) -> &Environment {
+        &self.environment
+    }
+
+    fn tables(&self) -> Vec<Grid> {
+        tables::one_answer(self).into()
+    }
+
     fn rows(&self) -> Vec<ResultRow> {
         let rows = self.rows.iter().flat_map(|row| {
             let scene = format!(
@@ -51,5 +44,15 @@ impl Results for Queries {
             row.sides.iter().map(move |side| ResultRow::new("queries, µs", scene.clone(), side))
         });
         rows.collect()
+    }
+
+    /// Time by number of triangles, for the distance of meshes that are near, for the intersection test of meshes that
+    /// hardly miss each other, and for casts.
+    fn panels(&self) -> Vec<Panel> {
+        vec![
+            panel(self, Query::Distance, Place::Near),
+            panel(self, Query::Intersection, Place::HardlyApart),
+            panel(self, Query::Cast, Place::Far),
+        ]
     }
 }

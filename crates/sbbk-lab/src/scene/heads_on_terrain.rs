@@ -1,5 +1,7 @@
 //! Heads that fall on a terrain.
 
+use std::fmt;
+
 use glamx::Vec3;
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::{ColliderBuilder, HeightField, SharedShape};
@@ -7,17 +9,27 @@ use rapier3d::math::{Real, Vector};
 use rapier3d::parry::shape::HeightFieldCellStatus;
 use rapier3d::parry::utils::Array2;
 use rapier3d::pipeline::PhysicsWorld;
+use serde::Serialize;
 
 use super::{Scene, SceneError, SceneWorld, Solid};
 use crate::mesh::{self, Mesh};
 
 /// What a terrain is made of. The surface is the same, triangle by triangle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Ground {
     /// A height field. Under stock Rapier meshes fall through it.
     HeightField,
     /// A triangle mesh.
     Mesh,
+}
+
+impl fmt::Display for Ground {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::HeightField => "height field",
+            Self::Mesh => "mesh",
+        })
+    }
 }
 
 /// Heads of two units in a square grid above rolling hills.
@@ -55,7 +67,7 @@ impl HeadsOnTerrain {
 impl Scene for HeadsOnTerrain {
     fn name(&self) -> String {
         let Self { side_count, cells, ground } = self;
-        format!("{} heads on {cells} × {cells} cells ({ground:?})", side_count * side_count)
+        format!("{} heads on {cells} × {cells} cells ({ground})", side_count * side_count)
     }
 
     fn build(&self) -> Result<SceneWorld, SceneError> {

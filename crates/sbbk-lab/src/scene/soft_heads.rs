@@ -3,7 +3,7 @@
 
 use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
-use rapier3d::dynamics::{RigidBodyBuilder, SoftBodyBuilder};
+use rapier3d::dynamics::{RigidBodyBuilder, SoftBodyBuilder, SoftBodyMaterial, SpringCoefficients};
 use rapier3d::parry::shape::TriMeshBuilderError;
 use rapier3d::pipeline::PhysicsWorld;
 
@@ -22,10 +22,14 @@ pub struct SoftHeads {
     pub helicopter: Mesh,
     /// Seed of the heads' rotations.
     pub seed: u64,
+    /// How fast a head springs back to its shape, in Hz; less is softer.
+    pub stiffness: f32,
 }
 
 /// Size of a head across, in units: some span a rotor blade, none fits a cabin window.
 const HEAD_SIZE: f32 = 0.7;
+/// Rapier's default for soft bodies, in Hz. Lower: heads that deform more.
+const STIFFNESS: f32 = 10.0;
 /// Gap between the helicopter's top and the heads, in units.
 const DROP_HEIGHT: f32 = 0.05;
 
@@ -33,7 +37,7 @@ impl SoftHeads {
     /// This many monkeys.
     pub fn with_heads(heads: usize) -> Self {
         let head = mesh::monkey_head().centred().scaled_to(HEAD_SIZE);
-        Self { heads, head, helicopter: mesh::helicopter(), seed: 7 }
+        Self { heads, head, helicopter: mesh::helicopter(), seed: 7, stiffness: STIFFNESS }
     }
 
     /// The starting poses, in a row along the longest side of the helicopter.
@@ -63,6 +67,12 @@ impl Scene for SoftHeads {
         let mut world = PhysicsWorld::new();
         let helicopter = Solid::new(&self.helicopter)?;
         world.insert(RigidBodyBuilder::fixed(), helicopter.collider());
+        let softness = SpringCoefficients::new(self.stiffness, 1.0);
+        let material = SoftBodyMaterial {
+            bend_softness: softness,
+            shape_matching_softness: softness,
+            ..SoftBodyMaterial::default()
+        };
         let mut watched = Vec::new();
         for pose in self.poses() {
             let head = self.head.clone().posed(&pose);
@@ -71,7 +81,7 @@ impl Scene for SoftHeads {
                 mesh: self.head.name.clone(),
                 cause: TriMeshBuilderError::EmptyIndices,
             })?;
-            let body = world.insert_soft_body(soft);
+            let body = world.insert_soft_body(soft.material(material));
             watched.push(world.soft_bodies[body].root_body());
         }
         Ok(SceneWorld { world, watched })

@@ -1,12 +1,11 @@
 //! Contacts of mesh pairs at every scale.
 
 use super::super::Grid;
-use super::super::format::{min_median, times};
-use super::{TIME_NOTE, cells};
-use crate::metrics::{geometric_mean, ratio};
+use super::cells;
+use super::race::{FRESH_NOTE, Raced, Shown, motion_note, race, ratio_note};
 use crate::study::contacts::{
-    ContactErrors, Contacts, ExactnessRow, FAST, GeneratorRow, Measured, PAIR_LIMIT, SLOW,
-    SPEED_CASE, STEP_COUNT, SpeedRow,
+    ContactErrors, Contacts, ExactnessRow, GeneratorRow, Mode, PAIR_LIMIT, SPEED_CASE, Side,
+    SpeedRow,
 };
 
 /// What the columns of errors hold.
@@ -110,140 +109,77 @@ fn sums<'a>(rows: impl Iterator<Item = &'a ExactnessRow> + Clone) -> Vec<String>
     truth.into_iter().chain(errors.concat()).map(|count| count.to_string()).collect()
 }
 
-/// A way to ask, and its measurement in the rows `R`.
-type Mode<R> = (String, fn(&R) -> Vec<String>, fn(&R) -> [Measured; 2]);
-
-/// The three ways to ask.
-fn modes() -> [String; 3] {
-    let motion = |share| format!("steady, {share} a step");
-    ["fresh".to_owned(), motion(SLOW), motion(FAST)]
-}
-
 /// First and steady queries.
 pub fn queries(rows: &[SpeedRow]) -> Grid {
-    let [fresh, slow, fast] = modes();
-    let motions = |row: &SpeedRow| cells![row.mesh, row.triangle_count, row.motion_count];
-    let modes: [Mode<SpeedRow>; 3] = [
-        (
-            fresh,
-            |row| cells![row.mesh, row.triangle_count, row.pose_count],
-            |row| row.sides.each_ref().map(|side| side.fresh),
-        ),
-        (slow, motions, |row| row.sides.each_ref().map(|side| side.slow)),
-        (fast, motions, |row| row.sides.each_ref().map(|side| side.fast)),
-    ];
     let [size, prediction] = SPEED_CASE;
     Grid {
         title: format!(
             "Speed of mesh pairs: {size} units across, prediction distance {prediction}; \
              microseconds a query"
         ),
-        header: vec![
-            "query",
-            "mesh",
-            "triangles",
-            "poses or motions",
-            "stock",
-            "sbbk",
-            "ratio",
-            "errors, stock",
-            "errors, sbbk",
-        ],
-        text_columns: 2,
-        rows: modes.iter().flat_map(|mode| race(mode, rows)).collect(),
         notes: vec![
-            "fresh: nothing known about the pair, trees built; to free the manifolds is part of it"
-                .to_owned(),
-            motion_note("of its middle and its end"),
-            format!("{TIME_NOTE}, both in turn; ratio: of minima; mean: geometric"),
+            FRESH_NOTE.to_owned(),
+            motion_note("its middle and its end"),
+            ratio_note(),
             ERROR_NOTE.to_owned(),
             DIRECT_NOTE.to_owned(),
         ],
+        ..race(&["mesh", "triangles", "poses or motions"], rows)
+    }
+}
+
+impl Raced for SpeedRow {
+    type Errors = ContactErrors;
+
+    fn sides(&self) -> &[Side<ContactErrors>; 2] {
+        &self.sides
+    }
+
+    fn description(&self, mode: Mode) -> Vec<String> {
+        let is_fresh = mode == Mode::Fresh;
+        let count = if is_fresh { self.pose_count } else { self.motion_count };
+        cells![self.mesh, self.triangle_count, count]
     }
 }
 
 /// The contact generators alone.
 pub fn contact_generators(rows: &[GeneratorRow]) -> Grid {
-    let [fresh, slow, fast] = modes();
-    let slow_pairs = |row: &GeneratorRow| {
-        cells![row.mesh, row.triangle_count, row.slow_pairs, row.slow_crossing]
-    };
-    let modes: [Mode<GeneratorRow>; 3] = [
-        (fresh, slow_pairs, |row| row.sides.each_ref().map(|side| side.fresh)),
-        (slow, slow_pairs, |row| row.sides.each_ref().map(|side| side.slow)),
-        (
-            fast,
-            |row| cells![row.mesh, row.triangle_count, row.fast_pairs, row.fast_crossing],
-            |row| row.sides.each_ref().map(|side| side.fast),
-        ),
-    ];
     Grid {
-        title: "Contact generators: the same true pairs of triangles, nanoseconds a pair"
+        title: "Contact generators, Parry's and SBBK's: the same true pairs of triangles, \
+                nanoseconds a pair"
             .to_owned(),
-        header: vec![
-            "contacts",
-            "mesh",
-            "triangles",
-            "pairs",
-            "crossing",
-            "parry",
-            "sbbk",
-            "ratio",
-            "errors, parry",
-            "errors, sbbk",
-        ],
-        text_columns: 2,
-        rows: modes.iter().flat_map(|mode| race(mode, rows)).collect(),
         notes: vec![
             "pairs of the motions above that are within the prediction distance throughout; \
              fresh: a new manifold for each, allocated and freed, in the middle of the motion"
                 .to_owned(),
-            motion_note("of its end"),
-            format!("{TIME_NOTE}, both in turn; ratio: of minima; mean: geometric"),
+            motion_note("its end"),
+            ratio_note(),
             ERROR_NOTE.to_owned(),
         ],
+        ..race(&["mesh", "triangles", "pairs", "crossing"], rows)
     }
 }
 
-fn motion_note(judged: &str) -> String {
-    format!(
-        "steady: {STEP_COUNT} steps in a straight line while turning, which move the surface by up \
-         to {SLOW} or {FAST} prediction distances each, with what the query before left; errors \
-         {judged}"
-    )
+impl Raced for GeneratorRow {
+    type Errors = ContactErrors;
+
+    fn sides(&self) -> &[Side<ContactErrors>; 2] {
+        &self.sides
+    }
+
+    fn description(&self, mode: Mode) -> Vec<String> {
+        let [pairs, crossing] = match mode {
+            Mode::Fresh | Mode::Slow => [self.slow_pairs, self.slow_crossing],
+            Mode::Fast => [self.fast_pairs, self.fast_crossing],
+        };
+        cells![self.mesh, self.triangle_count, pairs, crossing]
+    }
 }
 
-/// A row for each mesh, and one for the geometric mean of the ratios.
-fn race<R>((name, description, measured): &Mode<R>, rows: &[R]) -> Vec<Vec<String>> {
-    let ratio_of = |row: &R| {
-        let [stock, sbbk] = measured(row);
-        ratio(stock.time.min, sbbk.time.min)
-    };
-    let mut table: Vec<Vec<String>> = rows
-        .iter()
-        .map(|row| {
-            let [stock, sbbk] = measured(row);
-            let results = cells![
-                min_median(&stock.time),
-                min_median(&sbbk.time),
-                times(ratio_of(row)),
-                errors(&stock.errors),
-                errors(&sbbk.errors),
-            ];
-            [vec![name.clone()], description(row), results].concat()
-        })
-        .collect();
-    let totals = [0, 1].map(|side| rows.iter().map(|row| measured(row)[side].errors).sum());
-    let [stock, sbbk] = totals.map(|total: ContactErrors| errors(&total));
-    let mean = times(geometric_mean(rows.iter().filter_map(ratio_of)));
-    let blank_count = rows.first().map_or(0, |row| description(row).len() + 1);
-    let blanks = vec![String::new(); blank_count];
-    table.push([cells![name, "mean, or all"], blanks, cells![mean, stock, sbbk]].concat());
-    table
-}
-
-pub(super) fn errors(errors: &ContactErrors) -> String {
-    let ContactErrors { pairs, wrong_normal, .. } = errors;
-    let [missed, phantom, wrong_depth] = [pairs.missed, pairs.phantom, pairs.wrong_depth];
-    format!("{missed}+{phantom}+{wrong_depth}+{wrong_normal} of {}", pairs.true_pairs)
+impl Shown for ContactErrors {
+    fn shown(&self) -> String {
+        let Self { pairs, wrong_normal, .. } = self;
+        let [missed, phantom, wrong_depth] = [pairs.missed, pairs.phantom, pairs.wrong_depth];
+        format!("{missed}+{phantom}+{wrong_depth}+{wrong_normal} of {}", pairs.true_pairs)
+    }
 }

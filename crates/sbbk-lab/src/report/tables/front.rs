@@ -2,6 +2,7 @@
 
 use super::super::Grid;
 use super::super::format::{min_median, three_digits, times};
+use super::race::Shown;
 use super::{TIME_NOTE, cells, contacts};
 use crate::metrics::{geometric_mean, ratio};
 use crate::study::front::{FrontMotion, FrontRow, FrontStudy, JourneyRow, Variant, VariantRow};
@@ -29,8 +30,8 @@ fn journeys(rows: &[JourneyRow]) -> Grid {
             min_median(&stock.time),
             min_median(&sbbk.time),
             times(times_faster(row)),
-            contacts::errors(&stock.errors),
-            contacts::errors(&sbbk.errors),
+            stock.errors.shown(),
+            sbbk.errors.shown(),
             row.differing,
         ]
     }));

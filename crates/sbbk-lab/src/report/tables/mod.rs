@@ -8,6 +8,7 @@ mod helicopter;
 mod meshes;
 mod pile;
 mod queries;
+mod race;
 mod soak;
 mod soft;
 mod terrain;
@@ -22,7 +23,7 @@ pub use pile::{accuracy, runs, same_poses, sizes};
 pub use queries::one_answer;
 pub use soak::soak;
 pub use soft::{refit, soft_heads};
-pub use terrain::terrain;
+pub use terrain::terrains;
 
 use super::Grid;
 use crate::study::Comparison;

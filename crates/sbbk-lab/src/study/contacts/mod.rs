@@ -18,6 +18,7 @@ mod generator;
 mod motion;
 mod plan;
 mod report;
+mod side;
 mod speed;
 mod triangles;
 
@@ -32,5 +33,6 @@ pub(super) use motion::motion;
 pub use motion::{FAST, SLOW, STEP_COUNT};
 pub use plan::{ApproachedMesh, ContactsPlan, SHORT_REPEATS};
 pub use report::{Contacts, SPEED_CASE, contacts};
-pub use speed::{Measured, SpeedRow, SpeedSide};
-pub use triangles::{GeneratorRow, GeneratorSide};
+pub use side::{Measured, Mode, Side};
+pub use speed::SpeedRow;
+pub use triangles::GeneratorRow;

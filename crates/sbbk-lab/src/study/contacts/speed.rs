@@ -9,11 +9,12 @@ use serde::Serialize;
 
 use super::super::Progress;
 use super::case::PosedCase;
-use super::contest::{CONTESTANTS, Contest, Memory};
+use super::contest::{Contest, Memory};
 use super::errors::ContactErrors;
 use super::exactness::{ExactnessRow, race_fresh};
 use super::motion::{FAST, SLOW, STEP_COUNT, motion};
-use crate::backend::{Backend, Question, SharedDispatcher};
+use super::side::{Measured, Side};
+use crate::backend::{Question, SharedDispatcher};
 use crate::metrics::{Judge, Summary};
 
 /// One mesh against itself: first queries, and queries in motion.
@@ -28,29 +29,7 @@ pub struct SpeedRow {
     /// Motions of [`STEP_COUNT`] steps each, through some of these poses.
     pub motion_count: usize,
     /// Stock and SBBK.
-    pub sides: [SpeedSide; 2],
-}
-
-/// One dispatcher.
-#[derive(Clone, Debug, Serialize)]
-pub struct SpeedSide {
-    /// Who answered.
-    pub backend: Backend,
-    /// With nothing known; to free the manifolds is part of the time.
-    pub fresh: Measured,
-    /// In motion by [`SLOW`] prediction distances a step, with what the query before left.
-    pub slow: Measured,
-    /// In motion by [`FAST`] prediction distances a step.
-    pub fast: Measured,
-}
-
-/// Time and error of the same queries.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Measured {
-    /// Microseconds a query or nanoseconds a pair of triangles, summed up over the repeats.
-    pub time: Summary,
-    /// Errors of all first answers, or of those in the middle and at the end of each motion.
-    pub errors: ContactErrors,
+    pub sides: [Side<ContactErrors>; 2],
 }
 
 /// At most this many motions a mesh: those through the places of the first four approaches.
@@ -66,24 +45,20 @@ pub(super) fn speed(
 ) -> SpeedRow {
     let fresh = race_fresh(posed, contest, repeats);
     progress.step();
+    let errors = judged.sides.each_ref().map(|side| side.errors);
+    let fresh = Measured::both(fresh, errors);
     let [slow, fast] = [SLOW, FAST].map(|share| {
         let motions = motions(posed, share);
         let times = race_steady(posed, &motions, contest, repeats);
         progress.step();
-        let errors = judge_steady(posed, &motions, contest);
-        [0, 1].map(|i| Measured { time: times[i], errors: errors[i] })
+        Measured::both(times, judge_steady(posed, &motions, contest))
     });
     SpeedRow {
         mesh: posed.case.mesh.clone(),
         triangle_count: posed.case.triangle_count,
         pose_count: posed.places.len(),
         motion_count: posed.places.len().min(MOTION_LIMIT),
-        sides: [0, 1].map(|i| SpeedSide {
-            backend: CONTESTANTS[i],
-            fresh: Measured { time: fresh[i], errors: judged.sides[i].errors },
-            slow: slow[i],
-            fast: fast[i],
-        }),
+        sides: Side::both([fresh, slow, fast]),
     }
 }
 

@@ -12,13 +12,13 @@ use serde::Serialize;
 
 use super::super::Progress;
 use super::case::PosedCase;
-use super::contest::{CONTESTANTS, Contest, Memory, race};
+use super::contest::{Contest, Memory, race};
 use super::errors::ContactErrors;
 use super::generator::{Generator, Parrys, Sbbks};
 use super::motion::{FAST, SLOW, STEP_COUNT};
 use super::plan::SHORT_REPEATS;
-use super::speed::{Measured, motions};
-use crate::backend::Backend;
+use super::side::{Measured, Side};
+use super::speed::motions;
 use crate::metrics::sample_indices;
 
 /// Contact pairs of one mesh through both generators.
@@ -36,21 +36,9 @@ pub struct GeneratorRow {
     pub fast_pairs: usize,
     /// Those of them that touch or cross in the middle of the motion.
     pub fast_crossing: usize,
-    /// Parry's generator and SBBK's.
-    pub sides: [GeneratorSide; 2],
-}
-
-/// One generator; times are nanoseconds a pair.
-#[derive(Clone, Debug, Serialize)]
-pub struct GeneratorSide {
-    /// Whose generator: stock is Parry's.
-    pub backend: Backend,
-    /// A new manifold for each pair, allocated and freed.
-    pub fresh: Measured,
-    /// The manifold kept, in motion by [`SLOW`] prediction distances a step.
-    pub slow: Measured,
-    /// The manifold kept, in motion by [`FAST`] prediction distances a step.
-    pub fast: Measured,
+    /// Parry's generator and SBBK's; times are nanoseconds a pair. Fresh: a new manifold for each pair, allocated and
+    /// freed; else it is kept.
+    pub sides: [Side<ContactErrors>; 2],
 }
 
 /// At most this many pairs of each motion: enough for a mean, and the truth of each is worked out
@@ -94,19 +82,15 @@ pub(super) fn generators(
         slow_crossing: slow.iter().map(Moving::crossing_count).sum(),
         fast_pairs: pair_count(&fast),
         fast_crossing: fast.iter().map(Moving::crossing_count).sum(),
-        sides: [0, 1].map(|i| {
-            let [fresh, slow, fast] = measured.map(|sides| sides[i]);
-            GeneratorSide { backend: CONTESTANTS[i], fresh, slow, fast }
-        }),
+        sides: Side::both(measured),
     }
 }
 
 /// Times and errors of both generators; each sweep asks about each pair `queries` times.
-fn measure(sweeps: [Sweep; 2], all: &[Moving], queries: usize) -> [Measured; 2] {
+fn measure(sweeps: [Sweep; 2], all: &[Moving], queries: usize) -> [Measured<ContactErrors>; 2] {
     let count = queries * pair_count(all);
     let times = race(&sweeps, SHORT_REPEATS, 1e9 / count as f64, |sweep| sweep(all));
-    let errors = [judge::<Parrys>(all), judge::<Sbbks>(all)];
-    [0, 1].map(|i| Measured { time: times[i], errors: errors[i] })
+    Measured::both(times, [judge::<Parrys>(all), judge::<Sbbks>(all)])
 }
 
 fn pair_count(all: &[Moving]) -> usize {

@@ -1,4 +1,4 @@
-//! Contacts lost and added, against Parry's routine on every triangle.
+//! Contacts lost and added, against Parry's routine on every triangle and every part of the shape.
 
 use std::collections::BTreeMap;
 
@@ -16,9 +16,12 @@ const SET_BAND: Real = 0.01;
 /// A depth off by more than this share of the prediction distance is wrong.
 const DEPTH_BAND: Real = 0.05;
 
-/// The least distance of each triangle that Parry's routine gives points, at one pose.
+/// A triangle of the mesh and a part of the shape, 0 if it has no parts.
+pub(super) type Subshapes = (u32, u32);
+
+/// The least distance of each triangle and part that Parry's routine gives points, at one pose.
 pub(super) struct Expected {
-    distances: BTreeMap<u32, Real>,
+    distances: BTreeMap<Subshapes, Real>,
     prediction: Real,
 }
 
@@ -32,35 +35,26 @@ impl Expected {
         prediction: Real,
         is_mesh_first: bool,
     ) -> Self {
-        let triangles = mesh.as_trimesh().into_iter().flat_map(|mesh| mesh.triangles());
         let mut distances = BTreeMap::new();
-        for (index, triangle) in triangles.enumerate() {
-            let mut manifold = ContactManifold::new();
-            let pair: [&dyn Shape; 2] =
-                if is_mesh_first { [&triangle, &*shape.0] } else { [&*shape.0, &triangle] };
-            DefaultQueryDispatcher
-                .contact_manifold_convex_convex(
-                    pos12,
-                    pair[0],
-                    pair[1],
-                    None,
-                    None,
-                    prediction,
-                    &mut manifold,
-                )
-                .expect("Parry has contacts of these shapes with triangles");
-            if let Some(distance) = least(&manifold) {
-                distances.insert(index as u32, distance);
+        for (part_index, (pose, part)) in (0..).zip(parts(shape)) {
+            let pos12 = if is_mesh_first { pos12 * pose } else { pose.inverse() * pos12 };
+            let triangles = mesh.as_trimesh().into_iter().flat_map(|mesh| mesh.triangles());
+            for (triangle_index, triangle) in (0..).zip(triangles) {
+                let pair: [&dyn Shape; 2] =
+                    if is_mesh_first { [&triangle, part] } else { [part, &triangle] };
+                if let Some(distance) = distance(&pos12, pair, prediction) {
+                    distances.insert((triangle_index, part_index), distance);
+                }
             }
         }
         Self { distances, prediction }
     }
 
-    /// Judges the manifolds of an answer; `triangle` tells the triangle of each.
+    /// Judges the manifolds of an answer; `subshapes` tells the triangle and the part of each.
     pub fn judge(
         &self,
         manifolds: &[ContactManifold],
-        triangle: impl Fn(&ContactManifold) -> u32,
+        subshapes: impl Fn(&ContactManifold) -> Subshapes,
     ) -> ErrorCount {
         let band = SET_BAND * self.prediction;
         let mut errors = ErrorCount { mesh_pairs: 1, sampled_from: 1, ..ErrorCount::default() };
@@ -70,9 +64,9 @@ impl Expected {
                 continue;
             };
             errors.reported += 1;
-            let expected = self.distances.get(&triangle(manifold)).copied();
+            let expected = self.distances.get(&subshapes(manifold)).copied();
             let is_true = expected.is_some_and(|expected| expected <= self.prediction + band);
-            let is_repeated = reported.insert(triangle(manifold), distance).is_some();
+            let is_repeated = reported.insert(subshapes(manifold), distance).is_some();
             // Just within here, just beyond there.
             let is_doubtful = distance > self.prediction - band;
             errors.phantom += usize::from(is_repeated || !is_true && !is_doubtful);
@@ -80,13 +74,38 @@ impl Expected {
                 .is_some_and(|expected| (expected - distance).abs() > DEPTH_BAND * self.prediction);
             errors.wrong_depth += usize::from(is_true && is_off);
         }
-        for (triangle, &distance) in &self.distances {
+        for (subshapes, &distance) in &self.distances {
             errors.true_pairs += usize::from(distance <= self.prediction);
             let must = distance < self.prediction - band;
-            errors.missed += usize::from(must && !reported.contains_key(triangle));
+            errors.missed += usize::from(must && !reported.contains_key(subshapes));
         }
         errors
     }
+}
+
+/// The convex parts of a shape and their poses in its frame.
+fn parts(shape: &SharedShape) -> Vec<(Pose3, &dyn Shape)> {
+    match shape.as_compound() {
+        Some(compound) => compound.shapes().iter().map(|(pose, part)| (*pose, &*part.0)).collect(),
+        None => vec![(Pose3::IDENTITY, &*shape.0)],
+    }
+}
+
+/// The least distance of the points that Parry's routine gives two convex shapes.
+fn distance(pos12: &Pose3, pair: [&dyn Shape; 2], prediction: Real) -> Option<Real> {
+    let mut manifold: ContactManifold = ContactManifold::new();
+    DefaultQueryDispatcher
+        .contact_manifold_convex_convex(
+            pos12,
+            pair[0],
+            pair[1],
+            None,
+            None,
+            prediction,
+            &mut manifold,
+        )
+        .expect("Parry has contacts of these shapes with triangles");
+    least(&manifold)
 }
 
 fn least(manifold: &ContactManifold) -> Option<Real> {

@@ -1,12 +1,12 @@
 //! The shapes.
 
-use glamx::Vec3;
+use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
 use rapier3d::geometry::SharedShape;
 
 use crate::scene::random;
 
-/// A convex shape and how a mesh comes to it.
+/// A convex shape, or a compound of some, and how a mesh comes to it.
 #[derive(Clone)]
 pub struct Kind {
     /// Its name in tables.
@@ -26,7 +26,8 @@ pub enum Upright {
     No,
 }
 
-/// Every kind that Rapier has, a unit or so across, and a floor of 100 units.
+/// Every convex kind that Rapier has, a unit or so across, and a floor of 100 units; then compounds. There are none of
+/// meshes: Parry does not allow them.
 pub fn kinds() -> Vec<Kind> {
     let mut random = Rand32::new(3);
     let cloud: Vec<Vec3> = (0..40).map(|_| 0.5 * random::direction(&mut random)).collect();
@@ -59,5 +60,33 @@ pub fn kinds() -> Vec<Kind> {
         floor("large floor", SharedShape::cuboid(50.0, 0.25, 50.0), Upright::Yes),
         floor("large floor, turned", SharedShape::cuboid(50.0, 0.25, 50.0), Upright::No),
     ];
-    bodies.chain(floors).collect()
+    bodies.chain(floors).chain(compounds()).collect()
+}
+
+/// A dumbbell; and balls, cuboids, capsules and hulls about a centre, a few and many.
+fn compounds() -> [Kind; 3] {
+    let end = |x| (Pose3::translation(x, 0.0, 0.0), SharedShape::cuboid(0.2, 0.25, 0.25));
+    let bar = (Pose3::IDENTITY, SharedShape::cuboid(0.5, 0.08, 0.08));
+    let compound = |name, parts| Kind { name, shape: SharedShape::compound(parts), floor: None };
+    [
+        compound("dumbbell of 3 cuboids", vec![bar, end(-0.5), end(0.5)]),
+        compound("cluster of 8 parts", cluster(8, 0.5)),
+        compound("cluster of 24 parts", cluster(24, 1.0)),
+    ]
+}
+
+fn cluster(count: usize, radius: f32) -> Vec<(Pose3, SharedShape)> {
+    let mut random = Rand32::new(count as u64);
+    let cloud: Vec<Vec3> = (0..20).map(|_| 0.25 * random::direction(&mut random)).collect();
+    let shapes = [
+        Some(SharedShape::ball(0.2)),
+        Some(SharedShape::cuboid(0.25, 0.18, 0.12)),
+        Some(SharedShape::capsule_y(0.15, 0.1)),
+        SharedShape::convex_hull(&cloud),
+    ];
+    let part = |shape: &SharedShape| {
+        let place = radius * random::direction(&mut random);
+        (Pose3::from_parts(place, random::rotation(&mut random)), shape.clone())
+    };
+    shapes.iter().flatten().cycle().take(count).map(part).collect()
 }

@@ -7,12 +7,11 @@ use serde::Serialize;
 
 use super::kinds::{Kind, kinds};
 use super::places::places;
-use super::race::{Course, Measured};
-use crate::backend::Backend;
+use super::race::Course;
 use crate::mesh::{self, Mesh};
-use crate::metrics::Environment;
+use crate::metrics::{Environment, ErrorCount};
 use crate::scene::SceneError;
-use crate::study::contacts::{CONTESTANTS, Contest, FAST, Place, SLOW, STEP_COUNT, motion};
+use crate::study::contacts::{Contest, FAST, Place, SLOW, STEP_COUNT, Side, motion};
 use crate::study::{Progress, StudyError};
 
 /// What to compare, and how thoroughly.
@@ -48,23 +47,12 @@ pub struct Convex {
 pub struct ConvexRow {
     /// Name of the shape's kind.
     pub kind: &'static str,
+    /// Convex parts, if it is a compound.
+    pub part_count: Option<usize>,
     /// Poses of the first queries, and motions through them.
     pub place_count: usize,
     /// Stock and SBBK.
-    pub sides: [ConvexSide; 2],
-}
-
-/// One dispatcher.
-#[derive(Clone, Debug, Serialize)]
-pub struct ConvexSide {
-    /// Who answered.
-    pub backend: Backend,
-    /// With nothing known of the pair; the tree is built. To free the manifolds is part of the time.
-    pub fresh: Measured,
-    /// In motion by [`SLOW`] prediction distances a step, with what the query before left.
-    pub slow: Measured,
-    /// In motion by [`FAST`] prediction distances a step.
-    pub fast: Measured,
+    pub sides: [Side<ErrorCount>; 2],
 }
 
 impl ConvexPlan {
@@ -87,7 +75,7 @@ pub fn convex(plan: &ConvexPlan, progress: &Progress) -> Result<Convex, StudyErr
     let shape = plan.mesh.shared_shape().map_err(named)?;
     let contest = Contest::new([&shape].into_iter());
     let kinds = kinds();
-    progress.phase("convex shapes", kinds.len());
+    progress.phase("convex shapes and compounds", kinds.len());
     let rows = kinds.iter().enumerate().map(|(index, kind)| {
         let row = row(plan, &shape, kind, index as u64, &contest);
         progress.step();
@@ -127,12 +115,8 @@ fn row(
     });
     ConvexRow {
         kind: kind.name,
+        part_count: kind.shape.as_compound().map(|compound| compound.shapes().len()),
         place_count: places.len(),
-        sides: [0, 1].map(|i| ConvexSide {
-            backend: CONTESTANTS[i],
-            fresh: fresh[i],
-            slow: slow[i],
-            fast: fast[i],
-        }),
+        sides: Side::both([fresh, slow, fast]),
     }
 }

@@ -5,21 +5,11 @@ use std::time::{Duration, Instant};
 use glamx::Pose3;
 use rapier3d::geometry::{ContactManifold, SharedShape};
 use rapier3d::math::Real;
-use serde::Serialize;
 
 use super::errors::Expected;
 use crate::backend::SharedDispatcher;
-use crate::metrics::{ErrorCount, Summary};
-use crate::study::contacts::{Contest, Memory};
-
-/// Time and error of the same queries.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Measured {
-    /// Microseconds a query, by repeat.
-    pub time: Summary,
-    /// Contacts lost, added and wrong, of all answers.
-    pub errors: ErrorCount,
-}
+use crate::metrics::ErrorCount;
+use crate::study::contacts::{Contest, Measured, Memory};
 
 /// A mesh and a shape, and sequences of poses of the mesh in the shape's frame.
 pub(super) struct Course<'a> {
@@ -32,11 +22,10 @@ pub(super) struct Course<'a> {
 
 impl Course<'_> {
     /// Times and judges both sides.
-    pub fn measure(&self, contest: &Contest, repeats: usize) -> [Measured; 2] {
+    pub fn measure(&self, contest: &Contest, repeats: usize) -> [Measured<ErrorCount>; 2] {
         let timed = self.sequences.iter().map(|poses| (poses.len() - 1).max(1)).sum();
         let times = contest.race(repeats, timed, |dispatcher| self.sweep(dispatcher));
-        let errors = self.judge(contest);
-        [0, 1].map(|i| Measured { time: times[i], errors: errors[i] })
+        Measured::both(times, self.judge(contest))
     }
 
     fn sweep(&self, dispatcher: &SharedDispatcher) -> Duration {
@@ -66,8 +55,9 @@ impl Course<'_> {
         let mut errors = [ErrorCount::default(); 2];
         for (index, poses) in self.sequences.iter().enumerate() {
             let mut memories = [Memory::default(), Memory::default()];
-            let triangle = |manifold: &ContactManifold| {
-                if is_mesh_first(index) { manifold.subshape1 } else { manifold.subshape2 }
+            let subshapes = |manifold: &ContactManifold| {
+                let (one, two) = (manifold.subshape1, manifold.subshape2);
+                if is_mesh_first(index) { (one, two) } else { (two, one) }
             };
             for pose in poses {
                 let (Self { mesh, shape, prediction, .. }, pos12) = (self, pos12(index, pose));
@@ -75,7 +65,7 @@ impl Course<'_> {
                     Expected::new(mesh, shape, &pos12, *prediction, is_mesh_first(index));
                 for side in 0..2 {
                     self.ask(&mut memories[side], &contest.dispatchers[side], index, pose);
-                    errors[side] += expected.judge(&memories[side].manifolds, triangle);
+                    errors[side] += expected.judge(&memories[side].manifolds, subshapes);
                 }
             }
         }

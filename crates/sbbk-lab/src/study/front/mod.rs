@@ -14,7 +14,6 @@ mod motion;
 mod plan;
 mod report;
 mod search;
-mod slack;
 mod variant;
 
 pub use journey::{JourneyRow, JourneySide};

@@ -5,11 +5,11 @@ use sbbk_core::contact::contact;
 use sbbk_core::front::Front;
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::traverse::{
-    Counters, Descent, DescentScratch, PairFrame, Placement, Verdict, Visitor, descend,
+    Counters, Descent, DescentScratch, GREATEST_SLACK, PairFrame, Placement, Slack, SlackPlan,
+    Verdict, Visitor, descend,
 };
 use sbbk_core::tree::{LeafBatch, Tree};
 
-use super::slack::{Plan, Slack};
 use super::variant::Variant;
 
 /// What a variant remembers of a pair of equal meshes, and its answers.
@@ -48,10 +48,10 @@ impl Search {
         self.front.as_ref()
     }
 
-    fn plan(&mut self, tree: &Tree, pos12: &Pose3, prediction: f32) -> Plan {
+    fn plan(&mut self, tree: &Tree, placement: &Placement, prediction: f32) -> SlackPlan {
         match &mut self.slack {
-            Some(slack) => slack.plan(tree, pos12, prediction),
-            None => Plan::Descend { margin: prediction },
+            Some(slack) => slack.plan(tree.bounding_ball(), placement, prediction, GREATEST_SLACK),
+            None => SlackPlan::Descend { margin: prediction },
         }
     }
 
@@ -77,8 +77,9 @@ impl Search {
         prediction: f32,
         counters: impl Counters,
     ) {
-        if let Plan::Descend { margin } = self.plan(tree, pos12, prediction) {
-            let mut frame = PairFrame::new(tree, tree, pos12, margin);
+        let placement = Placement::new(pos12);
+        if let SlackPlan::Descend { margin } = self.plan(tree, &placement, prediction) {
+            let mut frame = PairFrame::at((tree, tree), placement, margin);
             let mut collected = Collected(std::mem::take(&mut self.leaf_pairs));
             collected.0.clear();
             self.visit(tree, &mut frame, counters, &mut collected);
@@ -89,9 +90,9 @@ impl Search {
     /// Finds the pairs of triangles within the prediction distance.
     pub fn query(&mut self, tree: &Tree, pos12: &Pose3, prediction: f32, counters: impl Counters) {
         self.pairs.clear();
-        match self.plan(tree, pos12, prediction) {
-            Plan::Reuse { reach } => {
-                let placement = Placement::new(pos12);
+        let placement = Placement::new(pos12);
+        match self.plan(tree, &placement, prediction) {
+            SlackPlan::Reuse { reach, .. } => {
                 for known in self.known.iter().filter(|known| known.distance <= reach) {
                     let [(leaf1, lane1), (leaf2, lane2)] = known.places;
                     let batches = [tree.leaf(leaf1), tree.leaf(leaf2)];
@@ -105,11 +106,11 @@ impl Search {
                     }
                 }
             }
-            Plan::Descend { margin } => {
-                let mut frame = PairFrame::new(tree, tree, pos12, margin);
+            SlackPlan::Descend { margin } => {
+                let mut frame = PairFrame::at((tree, tree), placement, margin);
                 let mut tested = Tested {
                     test: LeafTest::new(&frame),
-                    placement: *frame.placement(),
+                    placement,
                     margin: f64::from(margin),
                     prediction: f64::from(prediction),
                     keeps: self.slack.is_some(),

@@ -1,22 +1,50 @@
-//! Diagram 1, and time against error, as one picture for print.
-
-use std::path::Path;
+//! The comparison as files and as a picture: Diagram 1, and time against error.
 
 use super::look::Look;
 use super::panel::{Panel, Scale, Series};
-use super::{PAPER, ReportError};
+use super::{Grid, PAPER, ResultRow, Results, tables};
 use crate::backend::Backend;
-use crate::metrics::{ErrorCount, Summary, ratio};
+use crate::metrics::{Environment, ErrorCount, Summary, ratio};
 use crate::study::{Comparison, MeshRow, PileStudy};
 
-/// Writes an SVG picture of three diagrams: time of collision detection and the ratios of these
-/// times by number of heads, and time against error for meshes of several sizes.
-///
-/// Errors: the file cannot be written.
-pub fn write_plot(comparison: &Comparison, path: &Path) -> Result<(), ReportError> {
-    let piles: Vec<&PileStudy> = comparison.piles.iter().filter(|p| p.contact_recycling).collect();
-    let panels = [times(&piles), ratios(&piles), time_against_error(&comparison.meshes)];
-    Panel::write_all(&panels, path)
+impl Results for Comparison {
+    fn environment(&self) -> &Environment {
+        &self.environment
+    }
+
+    fn tables(&self) -> Vec<Grid> {
+        tables::all(self)
+    }
+
+    fn rows(&self) -> Vec<ResultRow> {
+        let mut rows = Vec::new();
+        for row in &self.helicopter {
+            let scene = format!("{} ball", row.ball);
+            rows.push(ResultRow::new("helicopter", scene, row).recycling(true));
+        }
+        for pile in &self.piles {
+            let scene = || pile.scene.clone();
+            rows.extend(pile.runs.iter().map(|row| {
+                ResultRow::new("pile, whole runs", scene(), row).recycling(pile.contact_recycling)
+            }));
+            let same_poses = pile.same_poses.iter();
+            rows.extend(same_poses.map(|row| ResultRow::new("pile, same poses", scene(), row)));
+        }
+        for row in self.cut.iter().flat_map(|cut| &cut.rows) {
+            rows.push(ResultRow::new("cut at depth", "mesh ball".to_owned(), row));
+        }
+        for row in &self.meshes {
+            rows.push(ResultRow::new("trees and first queries", row.mesh.clone(), row));
+        }
+        rows
+    }
+
+    /// Time of collision detection and the ratios of these times by number of heads, and time
+    /// against error for meshes of several sizes.
+    fn panels(&self) -> Vec<Panel> {
+        let piles: Vec<&PileStudy> = self.piles.iter().filter(|p| p.contact_recycling).collect();
+        vec![times(&piles), ratios(&piles), time_against_error(&self.meshes)]
+    }
 }
 
 /// Median time of broad and narrow phase in whole runs; NaN where a backend did not run.

@@ -1,0 +1,54 @@
+use oorandom::Rand32;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::parry::query::DefaultQueryDispatcher;
+use rapier3d::parry::shape::TriMeshFlags;
+use sbbk_lab::mesh;
+
+use super::question::{Question, bits};
+use super::shapes::{pose, shapes};
+use crate::support::{Pair, counting, shape_with};
+
+/// Would catch candidates of a shape that is no longer there, where a host keeps the workspace of a pair over an edit.
+#[test]
+fn another_shape_with_the_same_workspace_is_noticed() {
+    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
+    let dispatcher = counting();
+    let mut random = Rand32::new(6);
+    let pose = pose(&mut random, &head, 0.6);
+    let mut pair: Pair = Pair::default();
+    for (name, shape) in shapes(0.6).into_iter().chain(shapes(0.7)) {
+        let question =
+            Question { mesh: &head, shape: &shape, pose, prediction: 0.02, flipped: false };
+        for _ in 0..2 {
+            let found = question.ask(&dispatcher, &mut pair);
+            let found: Vec<_> = found.manifolds.iter().map(bits).collect();
+            let expected: Vec<_> = question.fresh(&dispatcher).iter().map(bits).collect();
+            assert_eq!(found, expected, "{name}");
+        }
+    }
+    let stats = dispatcher.stats();
+    assert_eq!(stats.unchanged_queries, 30, "{stats:?}");
+}
+
+/// Would catch manifolds of stock's that are taken for ours, or dropped with their data where the shapes are the same.
+#[test]
+fn stock_can_hand_over_a_pair() {
+    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(7);
+    for (name, shape) in shapes(0.6) {
+        let pose = pose(&mut random, &head, 0.5);
+        let question =
+            Question { mesh: &head, shape: &shape, pose, prediction: 0.05, flipped: true };
+        let mut pair: Pair<(), u32> = Pair::default();
+        question.ask(&DefaultQueryDispatcher, &mut pair);
+        let points = pair.manifolds.iter_mut().flat_map(|manifold| &mut manifold.points);
+        points.enumerate().for_each(|(index, point)| point.data = index as u32 + 1);
+        question.ask(&dispatcher, &mut pair);
+        let expected: Vec<_> = question.fresh(&dispatcher).iter().map(|m| m.subshape2).collect();
+        let found: Vec<_> = pair.manifolds.iter().map(|m| m.subshape2).collect();
+        assert_eq!(found, expected, "{name}");
+        let mut points = pair.manifolds.iter().flat_map(|manifold| &manifold.points);
+        assert!(points.all(|point| point.data > 0), "{name}: data is lost");
+    }
+}

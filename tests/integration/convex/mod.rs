@@ -1,0 +1,16 @@
+//! What Parry's routine says of each triangle alone is expected of the whole mesh.
+
+/// Shapes that change between queries, and pairs taken over from stock.
+mod change;
+/// Memory allocated.
+mod cost;
+/// First queries, bit for bit.
+mod fresh;
+/// Motion against fresh queries.
+mod motion;
+/// What is asked, and Parry's answer triangle by triangle.
+mod question;
+/// A head at rest on a floor.
+mod rest;
+/// A shape of each kind, and where it meets a mesh.
+mod shapes;

@@ -1,0 +1,127 @@
+use std::collections::BTreeMap;
+
+use rapier3d::math::{Pose, Real};
+use rapier3d::parry::query::details::NormalConstraints;
+use rapier3d::parry::query::{
+    ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, QueryDispatcher,
+};
+use rapier3d::parry::shape::{SharedShape, TriMesh};
+
+use crate::support::{Dispatcher, Manifold, Pair};
+
+/// What is asked: the contacts of a mesh and a convex shape.
+#[derive(Clone, Copy)]
+pub(super) struct Question<'a> {
+    pub mesh: &'a TriMesh,
+    pub shape: &'a SharedShape,
+    /// The pose of the shape in the frame of the mesh.
+    pub pose: Pose,
+    pub prediction: Real,
+    /// Whether the shape comes first.
+    pub flipped: bool,
+}
+
+impl Question<'_> {
+    /// The pose of the second shape in the frame of the first.
+    pub fn pos12(&self) -> Pose {
+        if self.flipped { self.pose.inverse() } else { self.pose }
+    }
+
+    pub fn ask<'p, M, C>(
+        &self,
+        dispatcher: &impl Dispatcher<M, C>,
+        pair: &'p mut Pair<M, C>,
+    ) -> &'p mut Pair<M, C> {
+        let Pair { manifolds, workspace } = &mut *pair;
+        let (mesh, shape) = (self.mesh, &*self.shape.0);
+        let pos12 = self.pos12();
+        let answer = if self.flipped {
+            dispatcher.contact_manifolds(&pos12, shape, mesh, self.prediction, manifolds, workspace)
+        } else {
+            dispatcher.contact_manifolds(&pos12, mesh, shape, self.prediction, manifolds, workspace)
+        };
+        answer.expect("a mesh and a convex shape are supported");
+        pair
+    }
+
+    pub fn fresh(&self, dispatcher: &impl Dispatcher<(), ()>) -> Vec<Manifold> {
+        std::mem::take(&mut self.ask(dispatcher, &mut Pair::default()).manifolds)
+    }
+
+    pub fn triangle_of<M, C>(&self, manifold: &ContactManifold<M, C>) -> u32 {
+        let [mesh, other] = if self.flipped {
+            [manifold.subshape2, manifold.subshape1]
+        } else {
+            [manifold.subshape1, manifold.subshape2]
+        };
+        assert_eq!(other, 0, "the convex shape has no subshapes");
+        mesh
+    }
+
+    /// Distance of a triangle and the shape, by Parry.
+    pub fn apart(&self, triangle: u32) -> Real {
+        let triangle = self.mesh.triangle(triangle);
+        let distance = DefaultQueryDispatcher.distance(&self.pose, &triangle, &*self.shape.0);
+        distance.expect("Parry knows the distance of all these shapes to triangles").distance
+    }
+
+    /// Parry's routine on each triangle of the mesh, called as stock calls it; manifolds with points.
+    pub fn brute_force(&self) -> BTreeMap<u32, Manifold> {
+        let all = (0..self.mesh.indices().len() as u32).filter_map(|index| {
+            let subshapes = if self.flipped { [0, index] } else { [index, 0] };
+            let mut manifold = Manifold::with_data(subshapes[0], subshapes[1], ());
+            let triangle = self.mesh.triangle(index);
+            let cone = self.mesh.triangle_normal_constraints(index);
+            let cone = cone.as_ref().map(|cone| cone as &dyn NormalConstraints);
+            let (shape, parry) = (&*self.shape.0, DefaultQueryDispatcher);
+            let (pos12, within) = (self.pos12(), self.prediction);
+            let answer = if self.flipped {
+                let pose = pos12.inverse().inverse();
+                parry.contact_manifold_convex_convex(
+                    &pose,
+                    shape,
+                    &triangle,
+                    None,
+                    cone,
+                    within,
+                    &mut manifold,
+                )
+            } else {
+                parry.contact_manifold_convex_convex(
+                    &pos12,
+                    &triangle,
+                    shape,
+                    cone,
+                    None,
+                    within,
+                    &mut manifold,
+                )
+            };
+            answer.expect("Parry knows contacts of all these shapes with triangles");
+            (!manifold.points.is_empty()).then_some((index, manifold))
+        });
+        all.collect()
+    }
+}
+
+/// All of a manifold that a user can see. Bits, but a zero has no sign.
+pub(super) fn bits(manifold: &Manifold) -> Vec<u32> {
+    let mut bits = Vec::new();
+    let mut push = |x: f32| bits.push((x + 0.0).to_bits());
+    for normal in [manifold.local_n1, manifold.local_n2] {
+        normal.to_array().into_iter().for_each(&mut push);
+    }
+    for point in &manifold.points {
+        for p in [point.local_p1, point.local_p2] {
+            p.to_array().into_iter().for_each(&mut push);
+        }
+        push(point.dist);
+    }
+    let features = manifold.points.iter().flat_map(|point| [point.fid1.0, point.fid2.0]);
+    bits.extend(features.collect::<Vec<_>>());
+    bits
+}
+
+pub(super) fn touches(manifold: &Manifold, prediction: Real) -> bool {
+    manifold.points.iter().any(|point| point.dist <= prediction)
+}

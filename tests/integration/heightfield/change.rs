@@ -1,0 +1,59 @@
+use glamx::Vec3;
+use oorandom::Rand32;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::math::Pose;
+use rapier3d::parry::query::DefaultQueryDispatcher;
+use rapier3d::parry::shape::{HeightFieldCellStatus, HeightFieldFlags};
+use sbbk_lab::mesh;
+
+use super::question::Question;
+use super::terrain::{Terrain, place, rolling};
+use crate::support::{Manifold, Pair, assert_same, nudge, shape};
+
+/// Would catch answers for a field that is no longer there, where a host keeps the workspace over an edit.
+#[test]
+fn an_edited_field_is_noticed() {
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(7);
+    let mut terrain = Terrain::random(&mut random, [14, 17], Vec3::new(6.0, 1.0, 4.0));
+    let head = shape(&mesh::monkey_head());
+    let pose = place(&mut random, &terrain, &head, 0.1);
+    let mut pair: Pair = Pair::default();
+    let check = |terrain: &Terrain, pair: &mut Pair| {
+        let question = Question::new(terrain, &head, pose);
+        let expected = question.fresh(&dispatcher);
+        assert_same(&question.ask(&dispatcher, pair).manifolds, &expected, 0.0);
+        expected.len()
+    };
+    assert!(check(&terrain, &mut pair) > 0);
+    terrain.field.set_scale(Vec3::new(5.0, 1.1, 4.5));
+    assert!(check(&terrain, &mut pair) > 0);
+    terrain.field.set_flags(HeightFieldFlags::FIX_INTERNAL_EDGES);
+    check(&terrain, &mut pair);
+    terrain = Terrain::random(&mut random, [14, 17], Vec3::new(6.0, 1.0, 4.0));
+    check(&terrain, &mut pair);
+    // A hole where the contacts are, seen at the next motion.
+    for manifold in Question::new(&terrain, &head, pose).fresh(&dispatcher) {
+        let cell = manifold.subshape1 as usize % (14 * 17);
+        terrain.field.set_cell_status(cell % 14, cell / 14, HeightFieldCellStatus::CELL_REMOVED);
+    }
+    let moved = Question::new(&terrain, &head, nudge(&mut random, 1e-5) * pose);
+    let expected = moved.fresh(&dispatcher);
+    assert_same(&moved.ask(&dispatcher, &mut pair).manifolds, &expected, 0.0);
+}
+
+/// Would catch manifolds of stock's own for this pair, should it have any, that are taken for ours. Stock has none.
+#[test]
+fn stock_has_no_contacts_to_hand_over() {
+    let terrain = Terrain::new(rolling(6.0, 20, 0.5));
+    let head = shape(&mesh::monkey_head());
+    let question = Question::new(&terrain, &head, Pose::IDENTITY);
+    let mut pair: Pair = Pair::default();
+    question.ask(&DefaultQueryDispatcher, &mut pair);
+    let has_points = |manifold: &Manifold| !manifold.points.is_empty();
+    assert!(!pair.manifolds.iter().any(has_points));
+    let dispatcher = SbbkDispatcher::default();
+    let expected = question.fresh(&dispatcher);
+    assert!(!expected.is_empty());
+    assert_same(&question.ask(&dispatcher, &mut pair).manifolds, &expected, 0.0);
+}

@@ -1,0 +1,18 @@
+//! The same terrain is always at hand as a mesh: what brute force and the pair of meshes say of it is expected of the field.
+
+/// Fields and manifolds that change between queries.
+mod change;
+/// Cells visited and memory allocated.
+mod cost;
+/// Contact normals constrained at internal edges of the field.
+mod edges;
+/// Motion against fresh queries.
+mod motion;
+/// What is asked.
+mod question;
+/// Heads at rest, and worlds that are saved.
+mod rest;
+/// Fields as meshes, and places on them.
+mod terrain;
+/// Brute force over all triangles.
+mod truth;

@@ -1,0 +1,107 @@
+use glamx::{Quat, Vec3};
+use oorandom::Rand32;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::math::{Pose, Real};
+use rapier3d::parry::shape::{HeightField, TriMeshFlags};
+use sbbk_lab::mesh;
+
+use super::question::Question;
+use super::terrain::{Terrain, heights, place, terrains};
+use crate::support::{assert_same, fresh, shape, shape_with};
+use crate::truth::Tally;
+
+/// Would catch cells that are cut off too early, triangles that are taken for others, holes that are filled, contacts in
+/// the frame of the other shape, and rounding that is not allowed for. Against brute force over all triangles in f64.
+#[test]
+fn contacts_are_those_of_brute_force() {
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(2);
+    let meshes = [mesh::monkey_head_with(6), mesh::ball(0.7, 6), mesh::cuboid(Vec3::splat(0.6), 1)];
+    let meshes = meshes.map(|mesh| shape(&mesh));
+    for (index, terrain) in terrains().iter().enumerate() {
+        let mut tally = Tally::default();
+        for i in 0..36 {
+            let mesh = &meshes[i % 3];
+            let pose = place(&mut random, terrain, mesh, 0.03);
+            let prediction = [0.02, 0.002, 0.1, 0.02][i % 4];
+            let question = Question { prediction, ..Question::new(terrain, mesh, pose) };
+            let question = Question { is_mesh_first: i % 2 == 1, ..question };
+            let found = question.renumbered(&question.fresh(&dispatcher));
+            tally.add(&question.of_meshes(), &found);
+        }
+        assert!(!terrain.ids.is_empty(), "{index}");
+        tally.check_all_right(300);
+    }
+}
+
+/// Poses on a lattice against heights on a lattice: faces in one plane, edges on edges.
+#[test]
+fn lattice_contacts_are_those_of_brute_force() {
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(3);
+    let terrain = Terrain::lattice(&mut random);
+    let cuboid = shape(&mesh::cuboid(Vec3::splat(0.5), 2));
+    let mut tally = Tally::default();
+    for i in 0..60 {
+        let mut coordinate =
+            |range: u32| (random.rand_range(0..range) as Real - 0.5 * range as Real) * 0.25;
+        let at = Vec3::new(coordinate(30), coordinate(4) + 0.75, coordinate(20));
+        let turn = Quat::from_rotation_y(std::f32::consts::FRAC_PI_2 * (i % 4) as Real);
+        let question = Question::new(&terrain, &cuboid, Pose::from_parts(at, turn));
+        let question = Question { is_mesh_first: i % 2 == 1, prediction: 0.021, ..question };
+        let found = question.renumbered(&question.fresh(&dispatcher));
+        tally.add(&question.of_meshes(), &found);
+    }
+    tally.check_all_right(1000);
+}
+
+/// Would catch any difference between a terrain and the same terrain: the contacts are those of two meshes, bit for bit,
+/// but for the order.
+#[test]
+fn contacts_equal_those_of_the_terrain_as_a_mesh() {
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(4);
+    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::FIX_INTERNAL_EDGES);
+    let mut count = 0;
+    for terrain in &terrains() {
+        for i in 0..20 {
+            let pose = place(&mut random, terrain, &head, 0.05);
+            let question = Question::new(terrain, &head, pose);
+            let question = Question { is_mesh_first: i % 2 == 1, ..question };
+            let mut found = question.renumbered(&question.fresh(&dispatcher));
+            let mut expected = fresh(&dispatcher, &question.of_meshes());
+            for manifolds in [&mut found, &mut expected] {
+                manifolds.sort_by_key(|manifold| [manifold.subshape1, manifold.subshape2]);
+            }
+            assert_same(&found, &expected, 0.0);
+            count += found.len();
+        }
+    }
+    assert!(count > 5000, "{count} contacts");
+}
+
+/// A triangle with a height that is NaN or infinite is a hole; its neighbours are not.
+#[test]
+fn heights_that_are_none_make_holes() {
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(5);
+    let ball = shape(&mesh::ball(0.7, 6));
+    for broken in [Real::NAN, Real::INFINITY, -Real::INFINITY] {
+        let heights = heights([14, 14], |_, _| match random.rand_range(0..6) {
+            0 => broken,
+            _ => 0.3 * random.rand_float(),
+        });
+        let terrain = Terrain::new(HeightField::new(heights, Vec3::new(4.0, 1.0, 4.0)));
+        assert!(terrain.ids.len() < 300);
+        let mut tally = Tally::default();
+        for i in 0..20 {
+            let [x, z] = [(); 2].map(|()| 3.0 * random.rand_float() - 1.5);
+            let pose = Pose::translation(x, 0.8, z);
+            let question = Question::new(&terrain, &ball, pose);
+            let question = Question { is_mesh_first: i % 2 == 1, ..question };
+            let found = question.renumbered(&question.fresh(&dispatcher));
+            tally.add(&question.of_meshes(), &found);
+        }
+        tally.check_all_right(50);
+    }
+}
