@@ -1,17 +1,12 @@
 //! From candidates to manifolds, by Parry's contact routine.
 
-use glamx::{DVec3, Vec3};
+use glamx::Vec3;
 use parry3d::math::{Pose, Real};
-use parry3d::query::details::{
-    NormalConstraints, contact_manifold_convex_ball, contact_manifold_cuboid_triangle,
-    contact_manifold_pfm_pfm,
-};
-use parry3d::query::{ContactManifold, TrackedContact};
-use parry3d::shape::{CompoundPseudoNormals, TriMesh, Triangle};
-use sbbk_core::traverse::{Convex, Placement};
+use parry3d::query::ContactManifold;
+use parry3d::shape::{CompoundPseudoNormals, TriMesh};
+use sbbk_core::traverse::Placement;
 
 use super::face::OverFace;
-use super::half_space::half_space_manifold;
 use super::query::ConvexPair;
 use super::shape::{ConvexShape, Kind};
 use crate::mesh::PreparedMesh;
@@ -44,20 +39,20 @@ pub(super) struct Limits {
 
 /// One query, after its descent.
 pub(super) struct Generator<'a> {
-    mesh: &'a TriMesh,
-    shape: ConvexShape<'a>,
+    pub(super) mesh: &'a TriMesh,
+    pub(super) shape: ConvexShape<'a>,
     /// The cones that contact normals of the shape must be in.
-    cone: Option<&'a CompoundPseudoNormals>,
-    prepared: &'a PreparedMesh,
+    pub(super) cone: Option<&'a CompoundPseudoNormals>,
+    pub(super) prepared: &'a PreparedMesh,
     /// Whether the mesh is shape 2.
-    flipped: bool,
+    pub(super) flipped: bool,
     /// The pose that stock passes on, bit for bit, and its inverse.
-    parrys_poses: [Pose; 2],
+    pub(super) parrys_poses: [Pose; 2],
     /// The mesh in the frame of the shape.
-    placement: Placement,
-    prediction: Real,
+    pub(super) placement: Placement,
+    pub(super) prediction: Real,
     /// If the shape is a cuboid, the face that the mesh is over.
-    over_face: Option<OverFace<'a>>,
+    pub(super) over_face: Option<OverFace<'a>>,
 }
 
 impl<'a> Generator<'a> {
@@ -124,15 +119,15 @@ impl<'a> Generator<'a> {
                 history.keep_at(place, (), manifolds);
                 continue;
             }
-            if known.clear > reach || limits.travel > 0.0 && self.is_apart(&corners, known, limits)
+            if known.clear > reach
+                || limits.travel > 0.0 && self.gap(&corners, known, limits) > limits.sight
             {
                 continue;
             }
             let mut manifold = self.manifold(known.candidate.triangle, unused.take(), history);
             let previous_points = &mut history.previous_points;
-            self.refresh(&corners, known.candidate, previous_points, &mut manifold);
+            self.refresh(&corners, known, limits, None, previous_points, &mut manifold);
             if manifold.points.is_empty() {
-                self.is_explained(&corners, known, &manifold, limits);
                 history.retire_unless_first(&mut unused, manifold);
             } else {
                 history.keep(manifold, (), manifolds);
@@ -186,11 +181,8 @@ impl<'a> Generator<'a> {
         C: Default + Copy + Send + Sync + 'static,
     {
         let corners = self.mesh.triangle(known.candidate.triangle);
-        let previous_points = &mut history.previous_points;
-        self.refresh(&corners, known.candidate, previous_points, manifold);
-        if manifold.points.is_empty() && !self.is_explained(&corners, known, manifold, limits) {
-            self.ask_afresh(&corners, known.candidate, previous_points, manifold);
-        }
+        let (hint, previous_points) = (Some(manifold.local_n1), &mut history.previous_points);
+        self.refresh(&corners, known, limits, hint, previous_points, manifold);
         if manifold.points.iter().all(|point| f64::from(point.dist) > FAR * limits.sight) {
             manifold.points.clear();
         }
@@ -208,197 +200,4 @@ impl<'a> Generator<'a> {
         [manifold.subshape1, manifold.subshape2] = subshapes;
         manifold
     }
-
-    /// Brings the manifold of a triangle up to date.
-    ///
-    /// As Parry does it, but the points of the query before are in a buffer of ours meanwhile: Parry copies them into a new
-    /// one. For that, what most of its routines do first is done here.
-    fn refresh<M, C>(
-        &self,
-        triangle: &Triangle,
-        candidate: NearTriangle,
-        previous_points: &mut Vec<TrackedContact<C>>,
-        manifold: &mut ContactManifold<M, C>,
-    ) where
-        M: Default,
-        C: Default + Copy,
-    {
-        match self.shape.kind {
-            // One point, whose data Parry keeps in place.
-            Kind::Ball(_) => return self.ask_parry(triangle, candidate, manifold),
-            Kind::HalfSpace(_) => {}
-            Kind::Cuboid(_) | Kind::Features(..) => {
-                if try_update(manifold, &self.parrys_poses[0]) {
-                    return;
-                }
-            }
-        }
-        std::mem::swap(&mut manifold.points, previous_points);
-        manifold.points.clear();
-        self.ask_parry(triangle, candidate, manifold);
-        manifold.match_contacts(previous_points);
-    }
-
-    /// Whether a triangle without contact is apart along the axis that Parry's routine leaves, which is then kept.
-    fn is_explained<M, C>(
-        &self,
-        corners: &Triangle,
-        known: &mut KnownCandidate<NearTriangle>,
-        manifold: &ContactManifold<M, C>,
-        limits: Limits,
-    ) -> bool {
-        self.axis_of(manifold).is_some_and(|axis| {
-            known.candidate.axis = axis;
-            self.is_apart(corners, known, limits)
-        })
-    }
-
-    /// Asks for the contact of a triangle as if nothing was known of it. Parry's GJK begins with the normal of the step
-    /// before, and where the cores of two shapes just touch it depends on that whether it sees a contact.
-    fn ask_afresh<M, C>(
-        &self,
-        triangle: &Triangle,
-        candidate: NearTriangle,
-        previous_points: &[TrackedContact<C>],
-        manifold: &mut ContactManifold<M, C>,
-    ) where
-        M: Default,
-        C: Default + Copy,
-    {
-        if matches!(self.shape.kind, Kind::Features(..)) {
-            manifold.local_n1 = Vec3::ZERO;
-            self.ask_parry(triangle, candidate, manifold);
-            manifold.match_contacts(previous_points);
-        }
-    }
-
-    /// Parry's routine for the kind of shape, with the arguments that stock's calls end up with. Called by its own name:
-    /// through the dispatcher both shapes are taken apart and put together again for each triangle, and its GJK
-    /// asks a triangle for support points through a table. A tenth to a quarter of a query.
-    fn ask_parry<M, C>(
-        &self,
-        triangle: &Triangle,
-        candidate: NearTriangle,
-        manifold: &mut ContactManifold<M, C>,
-    ) where
-        M: Default,
-        C: Default + Copy,
-    {
-        let mut fresh = None;
-        let cone = self.prepared.normal_constraints(self.mesh, candidate.triangle, &mut fresh);
-        let cone = cone.map(|cone| cone as &dyn NormalConstraints);
-        let cone_of_shape = self.cone.map(|cone| cone as &dyn NormalConstraints);
-        let (prediction, [pose, inverse]) = (self.prediction, &self.parrys_poses);
-        // The shape in the frame of the triangle, and the reverse.
-        let [to_triangle, to_shape] = if self.flipped { [inverse, pose] } else { [pose, inverse] };
-        match self.shape.kind {
-            Kind::Ball(ball) => {
-                let flipped = self.flipped;
-                contact_manifold_convex_ball(
-                    to_triangle,
-                    triangle,
-                    ball,
-                    cone,
-                    cone_of_shape,
-                    prediction,
-                    manifold,
-                    flipped,
-                );
-            }
-            Kind::Cuboid(cuboid) => {
-                let flipped = !self.flipped;
-                let is_free = cone.is_none() && cone_of_shape.is_none();
-                let over_face = self.over_face.filter(|_| is_free);
-                if over_face
-                    .is_some_and(|face| face.contacts(triangle, prediction, flipped, manifold))
-                {
-                    return;
-                }
-                contact_manifold_cuboid_triangle(
-                    to_shape,
-                    to_triangle,
-                    cuboid,
-                    triangle,
-                    cone_of_shape,
-                    cone,
-                    prediction,
-                    manifold,
-                    flipped,
-                );
-            }
-            Kind::HalfSpace(half_space) => {
-                let flipped = !self.flipped;
-                half_space_manifold(to_shape, half_space, triangle, prediction, flipped, manifold);
-            }
-            Kind::Features(map, radius) if self.flipped => contact_manifold_pfm_pfm(
-                pose,
-                map,
-                radius,
-                cone_of_shape,
-                triangle,
-                0.0,
-                cone,
-                prediction,
-                manifold,
-            ),
-            Kind::Features(map, radius) => contact_manifold_pfm_pfm(
-                pose,
-                triangle,
-                0.0,
-                cone,
-                map,
-                radius,
-                cone_of_shape,
-                prediction,
-                manifold,
-            ),
-        }
-    }
-
-    /// Where GJK sees that two shapes do not touch, it leaves the direction as the manifold's normal.
-    fn axis_of<M, C>(&self, manifold: &ContactManifold<M, C>) -> Option<Vec3> {
-        let left = manifold.local_n1;
-        if !matches!(self.shape.kind, Kind::Features(..)) || left == Vec3::ZERO {
-            return None;
-        }
-        let axis = if self.flipped {
-            left
-        } else {
-            -(self.placement.rotation * left.as_dvec3()).as_vec3()
-        };
-        Some(axis)
-    }
-
-    /// Whether a triangle is out of sight along its axis; what it can move until it is not is then raised to what that
-    /// tells. Whatever the axis is, this holds.
-    fn is_apart(
-        &self,
-        corners: &Triangle,
-        known: &mut KnownCandidate<NearTriangle>,
-        limits: Limits,
-    ) -> bool {
-        let axis = known.candidate.axis.as_dvec3();
-        if axis == DVec3::ZERO {
-            return false;
-        }
-        let at_mesh = self.placement.rotation.transpose() * axis;
-        let lowest = corners.vertices().iter().map(|x| at_mesh.dot(x.as_dvec3()));
-        let lowest = lowest.fold(f64::INFINITY, f64::min) + axis.dot(self.placement.translation);
-        let gap = (lowest - self.shape.reach(axis)) / axis.length();
-        if gap > limits.sight {
-            known.clear = known.clear.max(gap + limits.travel);
-        }
-        gap > limits.sight
-    }
-}
-
-/// Parry's test whether the points may stay; their distances then are those of the new pose.
-///
-/// A 16-byte load takes `local_n2` and the number after it, `subshape1`. Few triangles make that subnormal as a float,
-/// and though nobody wants it, each of the four products with it stalls the processor: 40 % of a query about a floor.
-fn try_update<M, C: Default + Copy>(manifold: &mut ContactManifold<M, C>, pose: &Pose) -> bool {
-    let subshape1 = std::mem::take(&mut manifold.subshape1);
-    let is_updated = manifold.try_update_contacts(pose);
-    manifold.subshape1 = subshape1;
-    is_updated
 }
