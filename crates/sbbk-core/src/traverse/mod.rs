@@ -28,5 +28,5 @@ pub use placement::Placement;
 pub use probe::{Convex, Outline, Probe};
 pub use probe_descend::{ProbeScratch, descend_probe};
 pub use signed_gaps::GapCounts;
-pub(crate) use signed_gaps::SignedGaps;
+pub(crate) use signed_gaps::{Cutoff, SignedGaps};
 pub use visitor::{LeafPairs, NodePair, Verdict, Visitor};
