@@ -28,6 +28,7 @@
 
 mod advance;
 mod cast;
+mod guess;
 mod nearest;
 mod seek;
 mod sweep;

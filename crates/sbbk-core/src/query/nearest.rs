@@ -1,11 +1,14 @@
 //! The nearest or the deepest pair of triangles.
 
+use glamx::DVec3;
+
 use crate::contact::contact;
 use crate::leaf::LeafTest;
-use crate::traverse::{Cutoff, GapCounts, PairFrame, Placement, SignedGaps};
+use crate::traverse::{Cutoff, GapCounts, PairFrame, Placement, SignedGaps, Toward};
 use crate::tree::{LeafBatch, Tree};
 use crate::volumes::{DirectionSet, Directions};
 
+use super::guess::near_leaves;
 use super::seek::{Bounds, FOUND, SearchScratch, seek};
 use super::triangles::{FoundPair, LocalPair};
 
@@ -57,8 +60,13 @@ where
     let mut frame = PairFrame::at(trees, placement, 0.0);
     let best = limit.min(some_distance(trees, &placement));
     let test = LeafTest::new(&frame);
-    let gaps = SignedGaps { frame: &mut frame, cutoff: Cutoff::at(above(best)) };
+    let gaps = SignedGaps { frame: &mut frame, cutoff: Cutoff::at(above(best)), toward: None };
     let mut search = Search { gaps, placement, test, goal, best, found: None };
+    // A limit of zero cannot be lowered: the search ends with the first pair that meets.
+    if limit > 0.0 {
+        let (leaf1, leaf2) = near_leaves(trees, search.gaps.frame);
+        search.leaves(leaf1, leaf2);
+    }
     seek(trees, &mut search, scratch);
     (search.found, search.gaps.cutoff.counts)
 }
@@ -88,7 +96,10 @@ struct Search<'a, const AXES: usize> {
     found: Option<FoundPair>,
 }
 
-impl<const AXES: usize> Search<'_, AXES> {
+impl<const AXES: usize> Search<'_, AXES>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
     fn triangles(&mut self, side1: (&LeafBatch, usize), side2: (&LeafBatch, usize)) {
         if self.gaps.cutoff.limit == FOUND {
             return;
@@ -110,6 +121,17 @@ impl<const AXES: usize> Search<'_, AXES> {
         self.best = contact.distance;
         let is_last = self.goal == Goal::Nearest && is_touching;
         self.gaps.cutoff.limit = if is_last { FOUND } else { above(contact.distance) };
+        self.look_along(contact.normal);
+    }
+
+    /// Bounds along the normal of the best pair from now on. Rare, and long: kept out of the way.
+    #[inline(never)]
+    fn look_along(&mut self, normal: DVec3) {
+        // Where triangles cross, the normal tells nothing about the others.
+        self.gaps.toward = None;
+        if self.best > 0.0 {
+            self.gaps.toward = Toward::new(self.gaps.frame, normal);
+        }
     }
 }
 
@@ -131,6 +153,10 @@ where
 
     fn leaves(&mut self, batch1: &LeafBatch, batch2: &LeafBatch) {
         self.gaps.cutoff.counts.leaf_pairs += 1;
+        let toward = self.gaps.toward.as_ref();
+        if toward.is_some_and(|t| t.gap_of_leaves(batch1, batch2) > self.gaps.cutoff.limit) {
+            return;
+        }
         if self.gaps.cutoff.limit < WIDEST_LEAF_MARGIN {
             let test = self.test.within(self.gaps.cutoff.limit);
             // The axis of far triangles tells nothing about those that touch.

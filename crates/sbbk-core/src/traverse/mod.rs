@@ -16,6 +16,7 @@ mod placement;
 mod probe;
 mod probe_descend;
 mod signed_gaps;
+mod toward;
 mod visitor;
 
 pub use counters::{Counters, DescentCounts};
@@ -29,4 +30,5 @@ pub use probe::{Convex, Outline, Probe};
 pub use probe_descend::{ProbeScratch, descend_probe};
 pub use signed_gaps::GapCounts;
 pub(crate) use signed_gaps::{Cutoff, SignedGaps};
+pub(crate) use toward::Toward;
 pub use visitor::{LeafPairs, NodePair, Verdict, Visitor};
