@@ -16,7 +16,7 @@ pub(super) trait Bounds<const AXES: usize> {
     /// See there.
     fn compare(&mut self) -> &mut Self::Compare;
 
-    /// Pairs whose bound is above this cannot matter.
+    /// Pairs whose bound is above this cannot matter; [`FOUND`] ends the search.
     fn limit(&self) -> f32;
 
     /// Compares the triangles of two leaves; may lower the limit.
