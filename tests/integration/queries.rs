@@ -304,6 +304,35 @@ fn an_edited_mesh_is_seen() {
     assert!((after - truth).abs() < 1e-5);
 }
 
+/// A vertex that moves within the boxes of all its triangles, forth and back: nothing else of the mesh changes. Would catch a
+/// mesh that is known by its boxes or by samples, and an answer from the tree of the other state.
+#[test]
+fn edits_forth_and_back_are_seen() {
+    let dispatcher = SbbkDispatcher::default();
+    let mut edited = shape(&mesh::ball(1.0, 16));
+    let probe = shape(&mesh::cuboid(Vec3::splat(0.05), 1));
+    // In a triangle, the middle one of three corners along each axis is on no side of its box.
+    let corners = [Vec3::ZERO, Vec3::new(0.5, 0.5, 0.1), Vec3::ONE].map(|c| c + Vec3::X * 3.0);
+    edited.append(&TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap());
+    let vertex = edited.vertices().len() - 2;
+    let boxes = |mesh: &TriMesh| {
+        mesh.bvh().leaves(|_| true).map(|i| mesh.triangle(i).local_aabb()).collect::<Vec<_>>()
+    };
+    let place = Pose3::translation(3.8, 0.2, 0.3);
+    let mut seen = Vec::new();
+    for height in [0.1, 0.9, 0.1, 0.9, 0.5] {
+        let before = boxes(&edited);
+        edited.update_vertices(|vertices| vertices[vertex].z = height);
+        assert_eq!(boxes(&edited), before);
+        let distance = dispatcher.distance(&place, &edited, &probe).unwrap().distance;
+        let truth = least([&edited, &probe], &place, 2.0).max(0.0);
+        assert!((distance - truth).abs() < 1e-5, "{distance}, truth {truth}");
+        seen.push(distance);
+    }
+    assert_eq!(seen[..2], seen[2..4]);
+    assert!((seen[0] - seen[1]).abs() > 0.01, "{seen:?}");
+}
+
 /// Poses and velocities that are no numbers: nothing is found, and nothing panics.
 #[test]
 fn numbers_that_are_none() {

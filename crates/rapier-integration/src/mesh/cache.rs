@@ -7,6 +7,7 @@ use std::collections::{HashMap, VecDeque};
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
+use parry3d::math::Vector;
 use parry3d::shape::{CompositeShape, TriMesh};
 use sbbk_core::tree::{BuildError, BuildOptions};
 
@@ -39,6 +40,8 @@ struct Entries {
 struct Entry {
     content: ContentHash,
     prepared: OnceLock<Result<PreparedMesh, BuildError>>,
+    /// For [`PreparedRef::has_vertices_of`], from when it is first asked.
+    vertices: OnceLock<Box<[Vector]>>,
     /// Living [`PreparedRef`]s. Rises from zero under the lock only.
     users: AtomicUsize,
 }
@@ -46,7 +49,9 @@ struct Entry {
 impl Entry {
     fn bytes(&self) -> usize {
         match self.prepared.get() {
-            Some(Ok(prepared)) => prepared.bytes(),
+            Some(Ok(prepared)) => {
+                prepared.bytes() + self.vertices.get().map_or(0, |v| size_of_val(&**v))
+            }
             _ => 0,
         }
     }
@@ -138,7 +143,8 @@ impl TreeCache {
     fn acquire(self: &Arc<Self>, content: ContentHash) -> PreparedRef {
         let mut entries = self.lock();
         let entry = entries.by_content.entry(content).or_insert_with(|| {
-            Arc::new(Entry { content, prepared: OnceLock::new(), users: AtomicUsize::new(0) })
+            let (prepared, vertices) = (OnceLock::new(), OnceLock::new());
+            Arc::new(Entry { content, prepared, vertices, users: AtomicUsize::new(0) })
         });
         let entry = Arc::clone(entry);
         if entry.users.fetch_add(1, Ordering::AcqRel) == 0
@@ -222,6 +228,17 @@ impl PreparedRef {
     /// Whether this cache made it.
     pub(crate) fn is_from(&self, cache: &Arc<TreeCache>) -> bool {
         Arc::ptr_eq(&self.cache, cache)
+    }
+
+    /// Copies the vertices of the mesh that this has just been prepared for, if nobody has yet.
+    pub(crate) fn keep_vertices(&self, mesh: &TriMesh) {
+        self.entry.vertices.get_or_init(|| mesh.vertices().into());
+    }
+
+    /// Whether the vertices of a mesh are, bit for bit, those kept by [`keep_vertices`](Self::keep_vertices).
+    pub(crate) fn has_vertices_of(&self, mesh: &TriMesh) -> bool {
+        let bytes = |vertices| -> &[u8] { bytemuck::cast_slice::<Vector, u8>(vertices) };
+        self.entry.vertices.get().is_some_and(|kept| bytes(kept) == bytes(mesh.vertices()))
     }
 
     pub(crate) fn get(&self) -> &PreparedMesh {

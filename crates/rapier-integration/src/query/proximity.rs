@@ -2,7 +2,7 @@
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::{ClosestPoints, Contact, ShapeDistance, ShapeIntersection};
-use sbbk_core::query::{FoundPair, Goal, nearest};
+use sbbk_core::query::{FoundPair, Goal, meeting, nearest};
 use sbbk_core::traverse::Placement;
 
 use super::lookup::Trees;
@@ -26,7 +26,8 @@ impl Trees {
 
     /// Whether the surfaces meet, and where: one of the pairs of triangles that do.
     pub(crate) fn intersection(&self, pos12: &Pose) -> ShapeIntersection {
-        match self.nearest(Placement::new(pos12), 0.0, Goal::Nearest) {
+        let placement = Placement::new(pos12);
+        match self.search(|scratch| meeting(self.both(), placement, scratch)) {
             Some(FoundPair { triangle1, triangle2, .. }) => {
                 ShapeIntersection::new(true).with_subshapes(triangle1, triangle2)
             }

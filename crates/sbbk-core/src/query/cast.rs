@@ -14,8 +14,8 @@
 use glamx::{DVec3, Vec3};
 
 use crate::contact::{TriangleContact, contact};
-use crate::traverse::{Compare, GapCounts, PairFrame, Placement, SignedGaps, Spread};
-use crate::tree::{Children, LeafBatch, Tree};
+use crate::traverse::{Cutoff, PairFrame, Placement};
+use crate::tree::{LeafBatch, Tree};
 use crate::volumes::rounding::gamma;
 use crate::volumes::{DirectionSet, Directions};
 
@@ -70,14 +70,13 @@ where
         return None;
     }
     let mut frame = PairFrame::at(trees, placement, 0.0);
-    let counts = GapCounts::default();
     let speed = velocity.as_dvec3().length();
     let sweep = Sweep {
-        gaps: SignedGaps { frame: &mut frame, limit: f32::INFINITY, counts },
+        frame: &mut frame,
         velocity,
         inverse_speed: ((1.0 / speed) as f32) * (1.0 - gamma(4)),
         target: target_distance * (1.0 + gamma(4)),
-        limit: max_time.min(f32::MAX),
+        cutoff: Cutoff::at(max_time.min(f32::MAX)),
     };
     let latest = f64::from(max_time);
     let mut search =
@@ -103,7 +102,7 @@ impl<const AXES: usize> Search<'_, AXES> {
         if !self.boxes_meet(&pair, target) {
             return;
         }
-        self.sweep.gaps.counts.triangle_pairs += 1;
+        self.sweep.cutoff.counts.triangle_pairs += 1;
         let cast = TriangleCast { pair: &pair, velocity: self.velocity, target };
         let Some((time, contact)) = cast.first(self.options.stop_at_penetration, self.latest)
         else {
@@ -118,7 +117,7 @@ impl<const AXES: usize> Search<'_, AXES> {
         let pair = FoundPair { triangle1, triangle2, contact, origin: pair.origin, is_touching };
         self.found = Some(Cast { time, pair, is_penetrating });
         self.latest = time;
-        self.sweep.limit = if time > 0.0 { (time as f32).next_up() } else { FOUND };
+        self.sweep.cutoff.limit = if time > 0.0 { (time as f32).next_up() } else { FOUND };
     }
 
     /// Whether the boxes of the triangles come within the target distance early enough.
@@ -187,37 +186,27 @@ impl TriangleCast<'_> {
     }
 }
 
-impl<const AXES: usize> Compare<AXES> for Search<'_, AXES>
+impl<'a, const AXES: usize> Bounds<AXES> for Search<'a, AXES>
 where
     Directions<AXES>: DirectionSet<AXES>,
 {
-    type Key = f32;
+    type Compare = Sweep<'a, AXES>;
 
     #[inline(always)]
-    fn compare(
-        &mut self,
-        side1: (&Children<'_, AXES>, impl Spread),
-        side2: (&Children<'_, AXES>, impl Spread),
-        lanes: u32,
-    ) -> (u32, [f32; 4]) {
-        self.sweep.compare(side1, side2, lanes)
+    fn compare(&mut self) -> &mut Self::Compare {
+        &mut self.sweep
     }
-}
 
-impl<const AXES: usize> Bounds<AXES> for Search<'_, AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
     #[inline(always)]
     fn limit(&self) -> f32 {
-        self.sweep.limit
+        self.sweep.cutoff.limit
     }
 
     fn leaves(&mut self, batch1: &LeafBatch, batch2: &LeafBatch) {
-        self.sweep.gaps.counts.leaf_pairs += 1;
+        self.sweep.cutoff.counts.leaf_pairs += 1;
         for lane1 in 0..batch1.count() {
             for lane2 in 0..batch2.count() {
-                if self.sweep.limit != FOUND {
+                if self.sweep.cutoff.limit != FOUND {
                     self.triangles((batch1, lane1), (batch2, lane2));
                 }
             }

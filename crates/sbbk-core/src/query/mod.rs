@@ -3,7 +3,8 @@
 //!
 //! All of them are one search (`seek.rs`): both trees are descended at once, the pair of nodes with the
 //! least lower bound first, and whatever cannot beat the best pair of triangles so far is left out. What the bound is
-//! differs: the signed distance of volumes for [`nearest`], the earliest time at which they come close for [`cast`].
+//! differs: the signed distance of volumes for [`nearest`], the earliest time at which they come close for [`cast`]; for
+//! [`meeting`] there is none.
 //! Pairs of triangles are compared exactly, in f64 ([`contact`](mod@crate::contact)).
 //!
 //! ```
@@ -28,6 +29,8 @@
 
 mod advance;
 mod cast;
+mod guess;
+mod meet;
 mod nearest;
 mod seek;
 mod sweep;
@@ -36,6 +39,7 @@ mod triangles;
 pub use crate::traverse::GapCounts;
 pub use advance::{Advance, AdvanceOptions, advance};
 pub use cast::{Cast, CastOptions, cast};
+pub use meet::meeting;
 pub use nearest::{Goal, nearest, nearest_counted};
 pub use seek::SearchScratch;
 pub use triangles::FoundPair;

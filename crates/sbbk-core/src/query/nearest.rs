@@ -1,11 +1,14 @@
 //! The nearest or the deepest pair of triangles.
 
+use glamx::DVec3;
+
 use crate::contact::contact;
 use crate::leaf::LeafTest;
-use crate::traverse::{Compare, GapCounts, PairFrame, Placement, SignedGaps, Spread};
-use crate::tree::{Children, LeafBatch, Tree};
+use crate::traverse::{Cutoff, GapCounts, PairFrame, Placement, SignedGaps, Toward};
+use crate::tree::{LeafBatch, Tree};
 use crate::volumes::{DirectionSet, Directions};
 
+use super::guess::near_leaves;
 use super::seek::{Bounds, FOUND, SearchScratch, seek};
 use super::triangles::{FoundPair, LocalPair};
 
@@ -57,10 +60,15 @@ where
     let mut frame = PairFrame::at(trees, placement, 0.0);
     let best = limit.min(some_distance(trees, &placement));
     let test = LeafTest::new(&frame);
-    let gaps = SignedGaps { frame: &mut frame, limit: above(best), counts: GapCounts::default() };
+    let gaps = SignedGaps { frame: &mut frame, cutoff: Cutoff::at(above(best)), toward: None };
     let mut search = Search { gaps, placement, test, goal, best, found: None };
+    // A limit of zero cannot be lowered: the search ends with the first pair that meets.
+    if limit > 0.0 {
+        let (leaf1, leaf2) = near_leaves(trees, search.gaps.frame);
+        search.leaves(leaf1, leaf2);
+    }
     seek(trees, &mut search, scratch);
-    (search.found, search.gaps.counts)
+    (search.found, search.gaps.cutoff.counts)
 }
 
 /// The distance of two vertices: the least is not above it.
@@ -88,12 +96,15 @@ struct Search<'a, const AXES: usize> {
     found: Option<FoundPair>,
 }
 
-impl<const AXES: usize> Search<'_, AXES> {
+impl<const AXES: usize> Search<'_, AXES>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
     fn triangles(&mut self, side1: (&LeafBatch, usize), side2: (&LeafBatch, usize)) {
-        if self.gaps.limit == FOUND {
+        if self.gaps.cutoff.limit == FOUND {
             return;
         }
-        self.gaps.counts.triangle_pairs += 1;
+        self.gaps.cutoff.counts.triangle_pairs += 1;
         let pair = LocalPair::new(&self.placement, side1, side2);
         let touching = pair.touching_distance();
         let margin = if self.best >= 0.0 { self.best.max(touching) } else { self.best };
@@ -109,40 +120,45 @@ impl<const AXES: usize> Search<'_, AXES> {
         self.found = Some(FoundPair { triangle1, triangle2, contact, origin, is_touching });
         self.best = contact.distance;
         let is_last = self.goal == Goal::Nearest && is_touching;
-        self.gaps.limit = if is_last { FOUND } else { above(contact.distance) };
+        self.gaps.cutoff.limit = if is_last { FOUND } else { above(contact.distance) };
+        self.look_along(contact.normal);
+    }
+
+    /// Bounds along the normal of the best pair from now on. Rare, and long: kept out of the way.
+    #[inline(never)]
+    fn look_along(&mut self, normal: DVec3) {
+        // Where triangles cross, the normal tells nothing about the others.
+        self.gaps.toward = None;
+        if self.best > 0.0 {
+            self.gaps.toward = Toward::new(self.gaps.frame, normal);
+        }
     }
 }
 
-impl<const AXES: usize> Compare<AXES> for Search<'_, AXES>
+impl<'a, const AXES: usize> Bounds<AXES> for Search<'a, AXES>
 where
     Directions<AXES>: DirectionSet<AXES>,
 {
-    type Key = f32;
+    type Compare = SignedGaps<'a, AXES>;
 
     #[inline(always)]
-    fn compare(
-        &mut self,
-        side1: (&Children<'_, AXES>, impl Spread),
-        side2: (&Children<'_, AXES>, impl Spread),
-        lanes: u32,
-    ) -> (u32, [f32; 4]) {
-        self.gaps.compare(side1, side2, lanes)
+    fn compare(&mut self) -> &mut Self::Compare {
+        &mut self.gaps
     }
-}
 
-impl<const AXES: usize> Bounds<AXES> for Search<'_, AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
     #[inline(always)]
     fn limit(&self) -> f32 {
-        self.gaps.limit
+        self.gaps.cutoff.limit
     }
 
     fn leaves(&mut self, batch1: &LeafBatch, batch2: &LeafBatch) {
-        self.gaps.counts.leaf_pairs += 1;
-        if self.gaps.limit < WIDEST_LEAF_MARGIN {
-            let test = self.test.within(self.gaps.limit);
+        self.gaps.cutoff.counts.leaf_pairs += 1;
+        let toward = self.gaps.toward.as_ref();
+        if toward.is_some_and(|t| t.gap_of_leaves(batch1, batch2) > self.gaps.cutoff.limit) {
+            return;
+        }
+        if self.gaps.cutoff.limit < WIDEST_LEAF_MARGIN {
+            let test = self.test.within(self.gaps.cutoff.limit);
             // The axis of far triangles tells nothing about those that touch.
             let is_far = self.best > 0.0;
             let found = |lane1, lane2| self.triangles((batch1, lane1), (batch2, lane2));

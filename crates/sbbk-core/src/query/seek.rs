@@ -8,9 +8,15 @@ use crate::traverse::{Compare, Sides, expand};
 use crate::tree::{LeafBatch, Slot, Tree};
 use crate::volumes::{DirectionSet, Directions};
 
-/// Lower bounds of what is sought, for pairs of nodes.
-pub(super) trait Bounds<const AXES: usize>: Compare<AXES, Key = f32> {
-    /// Pairs whose bound is above this cannot matter.
+/// What is sought.
+pub(super) trait Bounds<const AXES: usize> {
+    /// Finds lower bounds for pairs of nodes.
+    type Compare: Compare<AXES, Key = f32>;
+
+    /// See there.
+    fn compare(&mut self) -> &mut Self::Compare;
+
+    /// Pairs whose bound is above this cannot matter; [`FOUND`] ends the search.
     fn limit(&self) -> f32;
 
     /// Compares the triangles of two leaves; may lower the limit.
@@ -58,7 +64,7 @@ pub(super) fn seek<const AXES: usize, B: Bounds<AXES>>(
             continue;
         }
         let first = stack.len();
-        expand((tree1, tree2), slots, Sides::of(links), bounds, |slots, key| {
+        expand((tree1, tree2), slots, Sides::of(links), bounds.compare(), |slots, key| {
             stack.push(Candidate { key, slots });
         });
         nearest_last(&mut stack[first..]);

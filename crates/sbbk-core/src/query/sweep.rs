@@ -6,21 +6,21 @@
 //!
 //! # Rounding
 //!
-//! The offset and the reach are those of [`SignedGaps`], conservative by the margin of the frame. The velocity is exact in
+//! The offset and the reach are those of [`PairFrame`], conservative by the margin of the frame. The velocity is exact in
 //! frame 1. A quotient loses at most `γ_4`, the target distance added to the reach `γ_2`; times are made earlier at
 //! their start and later at their end by `γ_8`.
 
 use glamx::Vec3;
 use wide::f32x4;
 
-use crate::traverse::{Compare, SignedGaps, Spread};
+use crate::traverse::{Compare, Cutoff, PairFrame, Spread};
 use crate::tree::Children;
 use crate::volumes::rounding::gamma;
 use crate::volumes::{DirectionSet, Directions};
 
-/// Lower bounds of times of impact. The limit of `gaps` is not used.
+/// Lower bounds of times of impact. Needs a frame whose margin is zero.
 pub(super) struct Sweep<'a, const AXES: usize> {
-    pub(super) gaps: SignedGaps<'a, AXES>,
+    pub(super) frame: &'a mut PairFrame<AXES>,
     /// Of mesh 2 against mesh 1, in frame 1.
     pub(super) velocity: Vec3,
     /// One over the length of the velocity, not more; infinite if that is zero.
@@ -28,7 +28,7 @@ pub(super) struct Sweep<'a, const AXES: usize> {
     /// How close counts as an impact, not less.
     pub(super) target: f32,
     /// Later impacts do not matter. Finite, or minus infinity.
-    pub(super) limit: f32,
+    pub(super) cutoff: Cutoff,
 }
 
 impl<const AXES: usize> Sweep<'_, AXES>
@@ -43,10 +43,10 @@ where
         side2: (&Children<'_, AXES>, impl Spread),
     ) -> f32x4 {
         let target = f32x4::splat(self.target);
-        let apart = self.gaps.signed(side1, side2) - target;
+        let apart = self.frame.signed_gaps(side1, side2) - target;
         let mut start = (apart * f32x4::splat(self.inverse_speed)).fast_max(f32x4::ZERO);
         let mut end = f32x4::splat(f32::INFINITY);
-        let (offset, reach) = self.gaps.offset_and_reach(side1, side2);
+        let (offset, reach) = self.frame.offset_and_reach(side1, side2);
         for axis in 0..3 {
             let speed = self.velocity[axis];
             let inverse = f32x4::splat(1.0 / speed.abs());
@@ -74,10 +74,7 @@ where
         side2: (&Children<'_, AXES>, impl Spread),
         lanes: u32,
     ) -> (u32, [f32; 4]) {
-        self.gaps.counts.node_pairs += u64::from(lanes.count_ones());
         let times = self.times(side1, side2);
-        // A time that overflowed to NaN is kept.
-        let late = times.simd_gt(f32x4::splat(self.limit)).to_bitmask();
-        (lanes & !late, times.to_array())
+        self.cutoff.keep(times, lanes)
     }
 }

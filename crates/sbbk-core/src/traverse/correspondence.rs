@@ -1,6 +1,14 @@
+use glamx::Vec3;
+use wide::f32x4;
+
+use super::overlap::Spread;
 use super::placement::Placement;
 use crate::leaf::lane::each;
+use crate::tree::Lanes;
 use crate::volumes::{DirectionSet, Directions};
+
+/// Centres and half-lengths of the slabs of two nodes.
+pub(super) type KdopLanes<'a, const AXES: usize> = (&'a [Lanes; AXES], &'a [Lanes; AXES]);
 
 /// For each slab direction of tree 1, three adjacent slabs of tree 2 that bound it: see
 /// [`DirectionSet::correspondence`].
@@ -48,4 +56,44 @@ where
         });
         Self { slabs }
     }
+}
+
+impl CorrespondingSlabs {
+    /// Along slab `axis` of tree 1, lane by lane: where the centre of the node of tree 2 is, seen from that of tree 1, and how
+    /// far both reach together, `slack` included.
+    #[inline(always)]
+    pub(super) fn offset_and_reach<const AXES: usize>(
+        &self,
+        axis: usize,
+        slack: f32,
+        (kdops1, spread1): (KdopLanes<'_, AXES>, impl Spread),
+        (kdops2, spread2): (KdopLanes<'_, AXES>, impl Spread),
+    ) -> (f32x4, f32x4) {
+        let mut offset = f32x4::splat(self.offset) - spread1.spread(&kdops1.0[axis]);
+        let mut reach = f32x4::splat(slack) + spread1.spread(&kdops1.1[axis]);
+        for term in 0..3 {
+            let index = usize::from(self.indices[term]);
+            let coefficient = f32x4::splat(self.coefficients[term]);
+            offset += coefficient * spread2.spread(&kdops2.0[index]);
+            reach += coefficient.abs() * spread2.spread(&kdops2.1[index]);
+        }
+        (offset, reach)
+    }
+}
+
+/// `1/|d|` of directions with components in {-1, 0, 1}, rounded down.
+pub(super) const fn inverse_lengths<const AXES: usize>(directions: &[Vec3; AXES]) -> [f32; AXES] {
+    let mut inverse = [1.0; AXES];
+    let mut axis = 0;
+    while axis < AXES {
+        let d = directions[axis];
+        inverse[axis] = match (d.x * d.x + d.y * d.y + d.z * d.z) as u32 {
+            1 => 1.0,
+            // As f32 it is below 1/√2.
+            2 => std::f32::consts::FRAC_1_SQRT_2,
+            _ => 0.577_350_2,
+        };
+        axis += 1;
+    }
+    inverse
 }

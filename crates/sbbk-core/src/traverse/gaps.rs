@@ -12,14 +12,13 @@
 //! that is at most `2·(M1 + T + 1.8·s·M2)`, less than `γ_4` of the sum in `r`. A gap is reduced by `21/16·r`, which is
 //! more than `γ_20` of it.
 
-use glamx::Vec3;
 use wide::f32x4;
 
-use super::correspondence::Correspondence;
+use super::correspondence::{Correspondence, KdopLanes, inverse_lengths};
 use super::frame::PairFrame;
 use super::overlap::{Spread, dot};
 use crate::leaf::lane::each;
-use crate::tree::{Children, Lanes};
+use crate::tree::Children;
 use crate::volumes::rounding::gamma;
 use crate::volumes::{DirectionSet, Directions};
 
@@ -65,9 +64,6 @@ pub(crate) struct Gaps {
 
 /// One side of four pairs: the nodes and how they lie over the lanes.
 pub(crate) type Side<'a, 'b, const AXES: usize, S> = (&'a Children<'b, AXES>, S);
-
-/// Centres and half-lengths of the slabs.
-type KdopLanes<'a, const AXES: usize> = (&'a [Lanes; AXES], &'a [Lanes; AXES]);
 
 /// The lanes that each axis shows to be beyond the margin.
 struct AxisLanes([u32; 32]);
@@ -221,44 +217,20 @@ where
         &self,
         with: &GapFrame,
         axis: usize,
-        (kdops1, spread1): (KdopLanes<'_, AXES>, impl Spread),
-        (kdops2, spread2): (KdopLanes<'_, AXES>, impl Spread),
+        side1: (KdopLanes<'_, AXES>, impl Spread),
+        side2: (KdopLanes<'_, AXES>, impl Spread),
     ) -> f32x4 {
-        let slab = &self.slabs[axis];
-        let mut gap = f32x4::splat(slab.offset) - spread1.spread(&kdops1.0[axis]);
-        let mut reach = f32x4::splat(with.slab_rounding) + spread1.spread(&kdops1.1[axis]);
-        for term in 0..3 {
-            let index = usize::from(slab.indices[term]);
-            let coefficient = f32x4::splat(slab.coefficients[term]);
-            gap += coefficient * spread2.spread(&kdops2.0[index]);
-            reach += coefficient.abs() * spread2.spread(&kdops2.1[index]);
-        }
+        let (offset, reach) =
+            self.slabs[axis].offset_and_reach(axis, with.slab_rounding, side1, side2);
         let inverse_lengths =
             const { inverse_lengths(&<Directions<AXES> as DirectionSet<AXES>>::DIRECTIONS) };
-        (gap.abs() - reach) * f32x4::splat(inverse_lengths[axis])
+        (offset.abs() - reach) * f32x4::splat(inverse_lengths[axis])
     }
-}
-
-/// `1/|d|` of directions with components in {-1, 0, 1}, rounded down.
-const fn inverse_lengths<const AXES: usize>(directions: &[Vec3; AXES]) -> [f32; AXES] {
-    let mut inverse = [1.0; AXES];
-    let mut axis = 0;
-    while axis < AXES {
-        let d = directions[axis];
-        inverse[axis] = match (d.x * d.x + d.y * d.y + d.z * d.z) as u32 {
-            1 => 1.0,
-            // As f32 it is below 1/√2.
-            2 => std::f32::consts::FRAC_1_SQRT_2,
-            _ => 0.577_350_2,
-        };
-        axis += 1;
-    }
-    inverse
 }
 
 #[cfg(test)]
 mod tests {
-    use glamx::{Pose3, Quat};
+    use glamx::{Pose3, Quat, Vec3};
 
     use super::*;
     use crate::traverse::{Inner, Outer};

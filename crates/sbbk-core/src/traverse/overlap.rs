@@ -2,7 +2,7 @@
 
 use wide::f32x4;
 
-use super::correspondence::Correspondence;
+use super::correspondence::{Correspondence, KdopLanes};
 use super::frame::PairFrame;
 use crate::leaf::lane::each;
 use crate::tree::{Children, Lanes};
@@ -91,21 +91,14 @@ impl<const AXES: usize> Correspondence<AXES> {
     #[inline(always)]
     pub(super) fn kdops_meet(
         &self,
-        (kdops1, spread1): ((&[Lanes; AXES], &[Lanes; AXES]), impl Spread),
-        (kdops2, spread2): ((&[Lanes; AXES], &[Lanes; AXES]), impl Spread),
+        side1: (KdopLanes<'_, AXES>, impl Spread),
+        side2: (KdopLanes<'_, AXES>, impl Spread),
         candidates: u32,
     ) -> u32 {
         let mut remaining = candidates;
         for (axis, slab) in self.slabs.iter().enumerate().skip(3) {
-            let mut gap = f32x4::splat(slab.offset) - spread1.spread(&kdops1.0[axis]);
-            let mut reach = f32x4::splat(slab.margin) + spread1.spread(&kdops1.1[axis]);
-            for term in 0..3 {
-                let index = usize::from(slab.indices[term]);
-                let coefficient = f32x4::splat(slab.coefficients[term]);
-                gap += coefficient * spread2.spread(&kdops2.0[index]);
-                reach += coefficient.abs() * spread2.spread(&kdops2.1[index]);
-            }
-            remaining &= gap.abs().simd_le(reach).to_bitmask();
+            let (offset, reach) = slab.offset_and_reach(axis, slab.margin, side1, side2);
+            remaining &= offset.abs().simd_le(reach).to_bitmask();
             if remaining == 0 {
                 break;
             }

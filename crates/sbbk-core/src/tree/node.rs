@@ -6,6 +6,7 @@
 
 use glamx::Vec3;
 
+use crate::leaf::lane::each;
 use crate::volumes::rounding::{centre_extent, ordered_centre_extent};
 use crate::volumes::{Aabb, Kdop, Slabs};
 
@@ -240,6 +241,9 @@ impl LeafBatch {
     /// The corners of the triangle in `lane`.
     #[inline]
     pub fn corners(&self, lane: usize) -> [Vec3; 3] {
-        self.corners.map(|corner| Vec3::from_array(corner.map(|axis| axis[lane])))
+        each(|corner| {
+            let [x, y, z] = &self.corners[corner];
+            Vec3::new(x[lane], y[lane], z[lane])
+        })
     }
 }

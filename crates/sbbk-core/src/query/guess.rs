@@ -1,0 +1,57 @@
+//! Where to look first: a pair of leaves that is probably near the answer.
+//!
+//! A search prunes by the best pair of triangles so far, so a good one at the start is worth more than any later.
+
+use wide::f32x4;
+
+use crate::leaf::lane::each;
+use crate::traverse::{Compare, PairFrame, Sides, Spread, expand};
+use crate::tree::{Children, LeafBatch, Slot, Tree};
+use crate::volumes::{DirectionSet, Directions};
+
+/// Down both trees from the roots, always to the children whose centres are nearest to each other.
+pub(super) fn near_leaves<'a, const AXES: usize>(
+    (tree1, tree2): (&'a Tree<AXES>, &'a Tree<AXES>),
+    frame: &PairFrame<AXES>,
+) -> (&'a LeafBatch, &'a LeafBatch)
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    let mut slots = (Slot::ROOT, Slot::ROOT);
+    loop {
+        let links = (tree1.link(slots.0), tree2.link(slots.1));
+        if links.0.is_leaf() && links.1.is_leaf() {
+            return (tree1.leaf(links.0.index()), tree2.leaf(links.1.index()));
+        }
+        let mut nearest = f32::INFINITY;
+        let pair = slots;
+        expand((tree1, tree2), pair, Sides::of(links), &mut Centres(frame), |children, squared| {
+            // The first one even if all are NaN.
+            if slots == pair || squared < nearest {
+                (slots, nearest) = (children, squared);
+            }
+        });
+    }
+}
+
+/// Compares nodes by the squared distance of their centres.
+struct Centres<'a, const AXES: usize>(&'a PairFrame<AXES>);
+
+impl<const AXES: usize> Compare<AXES> for Centres<'_, AXES>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    type Key = f32;
+
+    #[inline(always)]
+    fn compare(
+        &mut self,
+        side1: (&Children<'_, AXES>, impl Spread),
+        side2: (&Children<'_, AXES>, impl Spread),
+        lanes: u32,
+    ) -> (u32, [f32; 4]) {
+        let (offset, _) = self.0.offset_and_reach(side1, side2);
+        let [x, y, z]: [f32x4; 3] = each(|axis| offset[axis] * offset[axis]);
+        (lanes, (x + y + z).to_array())
+    }
+}
