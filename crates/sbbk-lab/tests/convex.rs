@@ -36,6 +36,7 @@ fn every_kind_has_contacts_and_first_ones_are_right() {
     let [shapes, compounds] = tables::convex(&study);
     assert_eq!((shapes.rows.len(), compounds.rows.len()), (3 * 17, 3 * 4));
     let report = support::report(&study);
+    assert_eq!(report.json["rows"][18]["part_count"], 24);
     let lost = report.csv.iter().filter(|line| &line[5] == "errors.missed");
     assert_eq!(lost.count(), 19 * 3 * 2);
 }

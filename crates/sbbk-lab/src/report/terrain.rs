@@ -29,7 +29,7 @@ impl Results for Terrain {
         self.rows.iter().map(row).chain(self.falls.iter().map(fall)).collect()
     }
 
-    /// Time of a query by number of cells, and how many heads stay on a terrain.
+    /// Least time of a query by number of cells, and how many heads stay on a terrain.
     fn panels(&self) -> Vec<Panel> {
         vec![
             times(self, "First queries", |row| row.fresh),
@@ -42,7 +42,7 @@ impl Results for Terrain {
 fn times(study: &Terrain, title: &str, time: fn(&TerrainRow) -> Summary) -> Panel {
     let mut series: Vec<Series> = Vec::new();
     for row in &study.rows {
-        let point = (f64::from(row.cells).powi(2), time(row).median);
+        let point = (f64::from(row.cells).powi(2), time(row).min);
         let label = label(row.backend, row.ground);
         match series.iter_mut().find(|series| series.label == label) {
             Some(series) => series.points.push(point),
