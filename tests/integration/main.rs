@@ -37,6 +37,8 @@ mod same_mesh;
 mod scenes;
 /// Worlds that are saved and restored.
 mod snapshot;
+/// Meshes that move their vertices, against height fields and compounds.
+mod soft_pairs;
 /// Asking, comparing, meshes and poses.
 mod support;
 /// Motion beside that of stock Rapier: as close as chaos allows.

@@ -100,8 +100,6 @@ impl SbbkDispatcher {
         if let Some(shape) = ConvexShape::of(other) {
             let pair = ConvexPair::new(pos12, (mesh, shape), flipped, prediction);
             self.ask(pair, manifolds, workspace)
-        } else if mesh.is_deformable() {
-            Answer::Unsupported
         } else if let Some(field) = other.as_heightfield() {
             let pair = FieldPair { pos12, mesh, field, flipped, prediction, contacts };
             self.ask(pair, manifolds, workspace)

@@ -23,11 +23,11 @@
 //! | pair | contacts | state kept between steps |
 //! |---|---|---|
 //! | mesh and mesh | SBBK | candidates, features, manifolds |
-//! | deformable mesh (`TriMeshFlags::DEFORMABLE`) and any mesh, or any of the convex shapes below | as for the mesh that it is at present; its tree is refitted by the first query after its vertices moved, for all pairs (two soft bodies: Rapier itself, no dispatcher is asked) | manifolds; candidates while no vertex moves |
+//! | deformable mesh (`TriMeshFlags::DEFORMABLE`) and any mesh, or any shape below that SBBK answers for | as for the mesh that it is at present; its tree is refitted by the first query after its vertices moved, for all pairs (two soft bodies: Rapier itself, no dispatcher is asked) | manifolds; candidates while no vertex moves |
 //! | mesh and cuboid, ball, capsule, segment, triangle, cylinder, cone, convex polyhedron, their round kinds, or half-space, in either order | SBBK's trees, Parry's contact routines: on a first query Parry's contacts of all triangles, bit for bit | candidates with distances and separating axes, manifolds |
 //! | mesh and height field, in either order | SBBK; stock Rapier has none, bodies fall through | candidates, features, manifolds |
 //! | mesh and compound of the convex kinds above, in either order | part by part as above: on a first query stock's contacts, bit for bit and in stock order | the same of each part |
-//! | mesh and anything else (polyline, voxels, custom shape, a compound with parts of other kinds; a deformable mesh and a height field or compound) | Parry | Parry's |
+//! | mesh and anything else (polyline, voxels, custom shape, a compound with parts of other kinds) | Parry | Parry's |
 //! | all else | Parry | Parry's |
 //!
 //! Queries without manifolds (distance, closest points, intersection, contact, casts) of two rigid meshes are answered from

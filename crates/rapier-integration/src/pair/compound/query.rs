@@ -73,10 +73,11 @@ impl CompoundPair<'_> {
         if self.flipped { [two, one] } else { [one, two] }
     }
 
-    /// The tree of the mesh, from the state if it is known and still valid. Else what is known of the parts is forgotten, and
-    /// the manifolds as well if a shape was edited while the host kept the workspace. Those of another dispatcher are of
-    /// Parry's routine too.
-    fn tree<'s, M, C>(
+    /// The tree of the mesh, from the state if it is known and still valid, refitted if the mesh has deformed. Unless nothing
+    /// has changed, what is known of the parts is forgotten; the manifolds as well if a shape was edited while the host kept the
+    /// workspace. Those of another dispatcher are of Parry's routine too, and those of a mesh that has deformed keep their
+    /// data, but not their points.
+    fn tree<'s, M, C: Default + Copy>(
         &self,
         cache: &Arc<TreeCache>,
         (known, known_compound): &'s mut KnownShapes,
@@ -89,10 +90,14 @@ impl CompoundPair<'_> {
             change = Change::Replaced;
         }
         if change != Change::None {
-            *parts = PartStates::of_count(self.compound.shapes().len());
+            parts.forget(self.compound.shapes().len());
         }
-        if change == Change::Replaced {
-            manifolds.clear();
+        match change {
+            Change::None | Change::Unknown => {}
+            Change::Deformed => {
+                manifolds.iter_mut().for_each(ContactManifold::mark_shapes_deformed)
+            }
+            Change::Replaced => manifolds.clear(),
         }
         Some(tree)
     }
