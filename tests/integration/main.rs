@@ -25,6 +25,8 @@ mod heightfield;
 mod like_stock;
 /// Motion that never loses a contact: random walks against fresh queries.
 mod motion;
+/// Nonlinear casts that start in contact.
+mod nonlinear;
 /// Contact normals constrained at internal edges.
 mod normals;
 /// Queries without manifolds.

@@ -28,6 +28,7 @@
 
 mod advance;
 mod cast;
+mod departure;
 mod nearest;
 mod seek;
 mod sweep;
@@ -36,6 +37,7 @@ mod triangles;
 pub use crate::traverse::GapCounts;
 pub use advance::{Advance, AdvanceOptions, advance};
 pub use cast::{Cast, CastOptions, cast};
+pub use departure::advance_from_contact;
 pub use nearest::{Goal, nearest, nearest_counted};
 pub use seek::SearchScratch;
 pub use triangles::FoundPair;
