@@ -49,3 +49,5 @@ mod trajectories;
 mod truth;
 /// Meshes that cannot have a tree.
 mod unsupported;
+/// Who answers for which pair, and that the documentation says so.
+mod who_answers;
