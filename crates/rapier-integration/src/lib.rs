@@ -45,8 +45,10 @@
 //! | a compound of convex kinds | the same | the same | `soft_pairs`: `contacts_with_a_compound_are_those_of_a_mesh_built_anew`, `a_soft_mesh_keeps_its_contacts_with_a_compound`, `a_soft_body_rests_on_a_compound_as_with_stock` |
 //! | anything else | Parry | Parry's | `who_answers`: `contacts_of_each_kind` |
 //!
-//! A mesh that cannot have a tree, as a vertex is NaN or infinite, is Parry's (`a_mesh_that_is_not_finite_is_answered_by_stock_and_counted`),
-//! which may panic where such triangles come near. Pairs without a mesh are Parry's.
+//! Some vertices of a deformable mesh may be NaN or infinite: triangles without one touch as before, the others touch nothing
+//! (`whole_triangles_touch_and_broken_ones_do_not`). A rigid mesh with such a vertex cannot have a tree and is Parry's
+//! (`a_mesh_that_is_not_finite_is_answered_by_stock_and_counted`), as is a deformable one of which nothing is left; Parry can panic
+//! where such triangles come near. Pairs without a mesh are Parry's.
 //!
 //! Queries without manifolds, of two rigid meshes: SBBK. They keep no state. Surfaces are what counts, as for stock: a mesh inside another
 //! one does not meet it. A pose that is not finite finds nothing.

@@ -7,7 +7,7 @@ use parry3d::shape::{Compound, TriMesh};
 use sbbk_core::traverse::Counters;
 
 use super::state::{CompoundState, CompoundToken, KnownShapes, PartState, PartStates};
-use crate::mesh::{Change, Held, PreparedMesh, TreeCache};
+use crate::mesh::{Change, Held, PreparedMesh, TreeCache, root_box};
 use crate::pair::convex::{ConvexPair, ConvexShape};
 use crate::pair::state::state_in;
 use crate::pair::{Answer, Question};
@@ -34,9 +34,12 @@ impl CompoundPair<'_> {
         compound.shapes().iter().all(|(_, part)| ConvexShape::is_known(part.shape_type()))
     }
 
-    /// The box around the mesh in the frame of the compound, as far as its parts can touch it.
+    /// The box around the mesh in the frame of the compound, as far as its parts can touch it; around all of them, if the mesh is
+    /// broken.
     fn mesh_box(&self) -> Aabb {
-        let root = self.mesh.bvh().root_aabb();
+        let Some(root) = root_box(self.mesh) else {
+            return *self.compound.local_aabb();
+        };
         let pose = if self.flipped { *self.pos12 } else { self.pos12.inverse() };
         let parts = self.compound.local_aabb();
         let size = parts.half_extents().length()
@@ -99,6 +102,7 @@ impl CompoundPair<'_> {
             }
             Change::Replaced => manifolds.clear(),
         }
+        tree.drop_broken(manifolds, |manifold| self.subshapes(manifold)[0]);
         Some(tree)
     }
 
