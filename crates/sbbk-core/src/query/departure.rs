@@ -20,7 +20,7 @@ use super::nearest::{Goal, nearest_besides};
 use super::seek::SearchScratch;
 use super::triangles::{FoundPair, LocalPair};
 
-/// The first impact of two meshes that may touch at the start, as of [`advance`](super::advance) but for the pairs of triangles
+/// The first impact of two meshes that may touch at the start, as of [`advance`](fn@super::advance) but for the pairs of triangles
 /// within the tolerance of each other at the start. Of these, those that `approaches` says are impacts at the start; the deepest
 /// one is returned. The others do not count, whatever becomes of them.
 ///

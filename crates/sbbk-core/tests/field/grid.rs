@@ -55,7 +55,7 @@ impl Grid {
 
     fn with_holes(mut self, random: &mut Random) -> Self {
         for status in &mut self.statuses {
-            let missing = if random.bits() % 6 == 0 { random.bits() % 4 } else { 0 };
+            let missing = if random.bits().is_multiple_of(6) { random.bits() % 4 } else { 0 };
             *status = (missing | (random.bits() % 2) << 2) as u8;
         }
         self
