@@ -25,6 +25,8 @@ mod heightfield;
 mod like_stock;
 /// Motion that never loses a contact: random walks against fresh queries.
 mod motion;
+/// Nonlinear casts that start in contact.
+mod nonlinear;
 /// Contact normals constrained at internal edges.
 mod normals;
 /// Queries without manifolds.
@@ -37,6 +39,8 @@ mod same_mesh;
 mod scenes;
 /// Worlds that are saved and restored.
 mod snapshot;
+/// Meshes that move their vertices, against height fields and compounds.
+mod soft_pairs;
 /// Asking, comparing, meshes and poses.
 mod support;
 /// Motion beside that of stock Rapier: as close as chaos allows.
@@ -45,5 +49,7 @@ mod trajectories;
 mod truth;
 /// Meshes that cannot have a tree.
 mod unsupported;
+/// Who answers for which pair, and that the documentation says so.
+mod who_answers;
 /// Bodies above a ground.
 mod worlds;

@@ -14,7 +14,7 @@ use sbbk_core::tree::{BuildError, Tree};
 
 use crate::mesh::{PreparedRef, TreeCache};
 use crate::pair::{Answer, CompoundPair, ConvexPair, ConvexShape, FieldPair, MeshPair, Question};
-use crate::query::{Nonlinear, Trees};
+use crate::query::Trees;
 use crate::stats::QueryCounters;
 use crate::{ContactGenerator, SbbkConfig, SbbkStats, TriangleContacts};
 
@@ -100,8 +100,6 @@ impl SbbkDispatcher {
         if let Some(shape) = ConvexShape::of(other) {
             let pair = ConvexPair::new(pos12, (mesh, shape), flipped, prediction);
             self.ask(pair, manifolds, workspace)
-        } else if mesh.is_deformable() {
-            Answer::Unsupported
         } else if let Some(field) = other.as_heightfield() {
             let pair = FieldPair { pos12, mesh, field, flipped, prediction, contacts };
             self.ask(pair, manifolds, workspace)
@@ -305,10 +303,7 @@ impl QueryDispatcher for SbbkDispatcher {
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
         if let Some(trees) = self.trees(g1, g2) {
             let times = (start_time, end_time);
-            let cast = trees.cast_nonlinear([motion1, motion2], times, stop_at_penetration);
-            if let Nonlinear::Answer(hit) = cast {
-                return Ok(hit);
-            }
+            return Ok(trees.cast_nonlinear([motion1, motion2], times, stop_at_penetration));
         }
         DefaultQueryDispatcher.cast_shapes_nonlinear(
             motion1,

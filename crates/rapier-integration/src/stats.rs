@@ -26,7 +26,7 @@ pub struct SbbkStats {
     pub deformable_tree_bytes: usize,
     /// How often the tree of a deformable mesh was fitted to vertices that had moved.
     pub tree_refits: u64,
-    /// How often such a tree had become so bad that it was built anew.
+    /// How often such a tree had become so bad that it was built anew, or the mesh had vertices that are NaN or infinite.
     pub tree_rebuilds: u64,
     /// Pairs of a mesh and a mesh or convex shape that Parry had to answer as a mesh cannot have a tree: see
     /// [`SbbkDispatcher::prepare`](crate::SbbkDispatcher::prepare).

@@ -134,9 +134,10 @@ impl DeformableTree {
         mesh: &TriMesh,
         build: &impl Fn() -> Result<PreparedMesh, BuildError>,
     ) -> Result<Arc<PreparedMesh>, BuildError> {
-        // A host that edits a mesh during a query is answered as well, if slowly.
-        if let Some(unused) = Arc::get_mut(&mut prepared) {
-            let cost = unused.refit(mesh)?;
+        // A host that edits a mesh during a query is answered as well, if slowly. So is a broken mesh.
+        if let Some(unused) = Arc::get_mut(&mut prepared)
+            && let Ok(cost) = unused.refit(mesh)
+        {
             self.owner.refits.fetch_add(1, Ordering::Relaxed);
             if !cost.needs_rebuild() {
                 return Ok(prepared);

@@ -1,5 +1,6 @@
 //! Triangle meshes and their trees: what is the same mesh, and where its tree is kept.
 
+mod broken;
 mod cache;
 mod deformable;
 mod identity;
@@ -7,6 +8,7 @@ mod known;
 mod prepared;
 mod unsupported;
 
+pub(crate) use broken::root_box;
 pub(crate) use cache::{CacheCounts, PreparedRef, TreeCache};
 pub(crate) use identity::MeshToken;
 pub(crate) use known::{Change, Held, KnownMesh};

@@ -1,5 +1,8 @@
+use parry3d::query::ContactManifold;
 use parry3d::shape::{CompositeShape, TriMesh, TriMeshFlags, TrianglePseudoNormals};
 use sbbk_core::tree::{BuildError, BuildOptions, RefitCost, Tree};
+
+use super::broken;
 
 /// All that is computed once a mesh.
 pub(crate) struct PreparedMesh {
@@ -12,11 +15,18 @@ pub(crate) struct PreparedMesh {
     /// triangles. Empty for a deformable mesh, whose normals turn.
     normal_constraints: Vec<Option<TrianglePseudoNormals>>,
     normals_turn: bool,
+    /// Triangles of a deformable mesh with a corner that is NaN or infinite, in ascending order: they touch nothing.
+    broken: Vec<u32>,
 }
 
 impl PreparedMesh {
     pub(crate) fn new(mesh: &TriMesh, options: &BuildOptions) -> Result<Self, BuildError> {
-        let tree = Tree::build(mesh.vertices(), mesh.indices(), options)?;
+        let (tree, broken) = match Tree::build(mesh.vertices(), mesh.indices(), options) {
+            Err(BuildError::NotFinite { .. }) if mesh.is_deformable() => {
+                broken::build(mesh, options)?
+            }
+            built => (built?, Vec::new()),
+        };
         let mut ranks = vec![0; mesh.indices().len()];
         for (rank, triangle) in mesh.bvh().leaves(|_| true).enumerate() {
             ranks[triangle as usize] = rank as u32;
@@ -29,15 +39,34 @@ impl PreparedMesh {
         } else {
             Vec::new()
         };
-        Ok(Self { tree, ranks, normal_constraints, normals_turn })
+        Ok(Self { tree, ranks, normal_constraints, normals_turn, broken })
     }
 
     /// Fits the tree to a mesh whose vertices have moved.
     ///
     /// # Errors
-    /// Those of [`Tree::refit`].
+    /// Those of [`Tree::refit`]: a broken mesh needs a build.
     pub(super) fn refit(&mut self, mesh: &TriMesh) -> Result<RefitCost, BuildError> {
-        self.tree.refit(mesh.vertices(), mesh.indices())
+        let cost = self.tree.refit(mesh.vertices(), mesh.indices())?;
+        self.broken.clear();
+        Ok(cost)
+    }
+
+    /// Whether a triangle is broken and touches nothing, wherever the tree has it.
+    #[inline]
+    pub(crate) fn is_broken(&self, triangle: u32) -> bool {
+        !self.broken.is_empty() && self.broken.binary_search(&triangle).is_ok()
+    }
+
+    /// Drops the manifolds of triangles that are broken, which Parry's routines must not be asked to bring up to date.
+    pub(crate) fn drop_broken<M, C>(
+        &self,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        triangle: impl Fn(&ContactManifold<M, C>) -> u32,
+    ) {
+        if !self.broken.is_empty() {
+            manifolds.retain(|manifold| !self.is_broken(triangle(manifold)));
+        }
     }
 
     /// The place of a triangle in stock order. A number that is not a triangle's sorts last.
@@ -63,7 +92,7 @@ impl PreparedMesh {
     /// Memory, without the mesh itself.
     pub(crate) fn bytes(&self) -> usize {
         self.tree.stats().bytes()
-            + self.ranks.len() * size_of::<u32>()
+            + (self.ranks.len() + self.broken.len()) * size_of::<u32>()
             + self.normal_constraints.len() * size_of::<Option<TrianglePseudoNormals>>()
     }
 }

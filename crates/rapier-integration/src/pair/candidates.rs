@@ -98,6 +98,10 @@ impl Visitor for Collector<'_> {
     fn leaves(&mut self, _: u32, batch1: &LeafBatch, _: u32, batch2: &LeafBatch) -> Verdict {
         self.test.survivors(batch1, batch2, |lane1, lane2| {
             let [triangle1, triangle2] = [batch1.triangles()[lane1], batch2.triangles()[lane2]];
+            let [prepared1, prepared2] = self.prepared;
+            if prepared1.is_broken(triangle1) || prepared2.is_broken(triangle2) {
+                return;
+            }
             let key = OrderKey::new(self.prepared, self.flipped, [triangle1, triangle2]);
             self.candidates.push(Candidate::new(key, [triangle1, triangle2]));
         });

@@ -14,7 +14,7 @@ use super::manifolds::{Generator, Meshes};
 use super::question::{Answer, Question};
 use super::state::{PairKind, PairState, state_in};
 use crate::ContactGenerator;
-use crate::mesh::{Held, KnownMesh, TreeCache};
+use crate::mesh::{Held, KnownMesh, TreeCache, root_box};
 
 /// The question: which contacts do two meshes have?
 #[derive(Copy, Clone)]
@@ -44,7 +44,9 @@ thread_local! {
 impl MeshPair<'_> {
     /// Whether the boxes around the meshes meet, as stock Parry tests them first. Asked before there are trees.
     fn root_boxes_meet(&self) -> bool {
-        let [root1, root2] = [self.mesh1, self.mesh2].map(|mesh| mesh.bvh().root_aabb());
+        let [Some(root1), Some(root2)] = [self.mesh1, self.mesh2].map(root_box) else {
+            return true;
+        };
         let rounding = 1e-5 * (root1.half_extents().length() + root1.center().length());
         let moved = root2.transform_by(self.pos12).loosened(self.prediction.max(0.0) + rounding);
         root1.intersects(&moved)

@@ -3,7 +3,9 @@
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::ShapeCastOptions;
 use parry3d::query::{NonlinearRigidMotion, ShapeCastHit, ShapeCastStatus};
-use sbbk_core::query::{Advance, AdvanceOptions, Cast, CastOptions, FoundPair, advance, cast};
+use sbbk_core::query::{
+    Advance, AdvanceOptions, Cast, CastOptions, FoundPair, advance, advance_from_contact, cast,
+};
 use sbbk_core::traverse::Placement;
 use sbbk_core::tree::Tree;
 
@@ -15,15 +17,6 @@ const TOLERANCE: f64 = 1.0e-6;
 
 /// Steps of a nonlinear cast. Head-on motions take 10 to 30, turning ones up to some hundred.
 const STEP_LIMIT: usize = 2000;
-
-/// How a nonlinear cast ended.
-pub(crate) enum Nonlinear {
-    /// With this answer.
-    Answer(Option<ShapeCastHit>),
-    /// The meshes meet at the start and the caller wants to know whether they then come closer: Parry's question to
-    /// each pair of parts, and for Parry to answer.
-    PenetratesAtStart,
-}
 
 impl Trees {
     /// The first impact of mesh 2, moving by `velocity12` in the frame of mesh 1.
@@ -53,12 +46,16 @@ impl Trees {
     }
 
     /// The first impact of two meshes on their ways.
+    ///
+    /// If contacts at the start are not to stop the cast, Parry asks of each pair of triangles that touches then whether its
+    /// velocities approach, and leaves it out for good if they do not. (For thicker shapes it goes on to look at times between; the
+    /// thickness of a triangle is zero.) Here too; "approach" is to come closer, until the end, by more than the tolerance.
     pub(crate) fn cast_nonlinear(
         &self,
         [motion1, motion2]: [&NonlinearRigidMotion; 2],
         (start, end): (Real, Real),
         stop_at_penetration: bool,
-    ) -> Nonlinear {
+    ) -> Option<ShapeCastHit> {
         let (tree1, tree2) = self.both();
         let placement_at = |time: f64| {
             let [pos1, pos2] =
@@ -74,20 +71,27 @@ impl Trees {
             tolerance: TOLERANCE * f64::from(size),
             step_limit: STEP_LIMIT,
         };
-        let found = self.search(|scratch| advance((tree1, tree2), placement_at, options, scratch));
-        let Some(Advance { time, pair, placement, has_converged }) = found else {
-            return Nonlinear::Answer(None);
-        };
+        let trees = (tree1, tree2);
+        let found = self.search(|scratch| {
+            if stop_at_penetration {
+                return advance(trees, placement_at, options, scratch);
+            }
+            let approaches = |pair: &FoundPair, placement: &Placement| {
+                let speed = approach_speed([motion1, motion2], start, pair, placement);
+                speed * (options.end - options.start) > options.tolerance
+            };
+            advance_from_contact(trees, placement_at, options, approaches, scratch)
+        });
+        let Advance { time, pair, placement, has_converged } = found?;
         let is_at_start = time == f64::from(start);
-        if has_converged && is_at_start && !stop_at_penetration {
-            return Nonlinear::PenetratesAtStart;
-        }
-        let status = match (has_converged, is_at_start) {
-            (false, _) => ShapeCastStatus::OutOfIterations,
-            (true, true) => ShapeCastStatus::PenetratingOrWithinTargetDist,
-            (true, false) => ShapeCastStatus::Converged,
+        let status = if !has_converged {
+            ShapeCastStatus::OutOfIterations
+        } else if is_at_start && stop_at_penetration {
+            ShapeCastStatus::PenetratingOrWithinTargetDist
+        } else {
+            ShapeCastStatus::Converged
         };
-        Nonlinear::Answer(Some(hit(&pair, &placement, time, status)))
+        Some(hit(&pair, &placement, time, status))
     }
 }
 
@@ -114,4 +118,20 @@ fn turning_speed(motion: &NonlinearRigidMotion, tree: &Tree) -> f64 {
     let ball = tree.bounding_ball();
     let reach = (motion.local_center - ball.centre).as_dvec3().length() + f64::from(ball.radius);
     motion.angvel.as_dvec3().length() * reach
+}
+
+/// How fast two triangles approach along the normal of their contact, at a time of their motions.
+fn approach_speed(
+    [motion1, motion2]: [&NonlinearRigidMotion; 2],
+    time: Real,
+    pair: &FoundPair,
+    placement: &Placement,
+) -> f64 {
+    let rotation = |motion: &NonlinearRigidMotion| motion.position_at_time(time).rotation;
+    let velocity = |motion: &NonlinearRigidMotion, point: Vector| {
+        let arm = rotation(motion) * (point - motion.local_center);
+        motion.linvel + motion.angvel.cross(arm)
+    };
+    let relative = velocity(motion2, pair.point2(placement)) - velocity(motion1, pair.point1());
+    -f64::from(relative.dot(rotation(motion1) * pair.normal1()))
 }

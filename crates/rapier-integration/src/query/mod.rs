@@ -7,5 +7,4 @@ mod casts;
 mod lookup;
 mod proximity;
 
-pub(crate) use casts::Nonlinear;
 pub(crate) use lookup::Trees;

@@ -51,6 +51,17 @@ pub fn advance<const AXES: usize>(
 where
     Directions<AXES>: DirectionSet<AXES>,
 {
+    advance_by(placement_at, options, |placement, reach| {
+        nearest(trees, placement, reach, Goal::Nearest, scratch)
+    })
+}
+
+/// The same with the nearest pair up to a distance from `nearest`.
+pub(super) fn advance_by(
+    placement_at: impl Fn(f64) -> Placement,
+    options: AdvanceOptions,
+    mut nearest: impl FnMut(Placement, f64) -> Option<FoundPair>,
+) -> Option<Advance> {
     let AdvanceOptions { start, end, speed_bound, tolerance, step_limit } = options;
     let mut time = start;
     let mut last = None;
@@ -58,7 +69,7 @@ where
         // Beyond what can be travelled until the end nothing matters.
         let reach = speed_bound * (end - time) + tolerance;
         let placement = placement_at(time);
-        let pair = nearest(trees, placement, reach, Goal::Nearest, scratch)?;
+        let pair = nearest(placement, reach)?;
         let distance = pair.contact.distance;
         let has_converged = distance <= tolerance;
         last = Some(Advance { time, pair, placement, has_converged });

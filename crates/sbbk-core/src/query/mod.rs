@@ -29,6 +29,7 @@
 
 mod advance;
 mod cast;
+mod departure;
 mod guess;
 mod meet;
 mod nearest;
@@ -39,6 +40,7 @@ mod triangles;
 pub use crate::traverse::GapCounts;
 pub use advance::{Advance, AdvanceOptions, advance};
 pub use cast::{Cast, CastOptions, cast};
+pub use departure::advance_from_contact;
 pub use meet::meeting;
 pub use nearest::{Goal, nearest, nearest_counted};
 pub use seek::SearchScratch;

@@ -52,18 +52,35 @@ pub fn nearest_counted<const AXES: usize>(
 where
     Directions<AXES>: DirectionSet<AXES>,
 {
-    // Not `limit < 0`: a limit that is NaN admits nothing.
-    let admits = limit >= 0.0;
+    // Not `min`: a limit that is NaN stays, and admits nothing.
+    let some = some_distance(trees, &placement);
+    let best = if some < limit { some } else { limit };
+    nearest_besides(trees, placement, best, goal, &[], scratch)
+}
+
+/// The same of all pairs of triangles but some, which are given in ascending order.
+pub(super) fn nearest_besides<const AXES: usize>(
+    trees: (&Tree<AXES>, &Tree<AXES>),
+    placement: Placement,
+    best: f64,
+    goal: Goal,
+    besides: &[[u32; 2]],
+    scratch: &mut SearchScratch,
+) -> (Option<FoundPair>, GapCounts)
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    // Not `best < 0`: a limit that is NaN admits nothing.
+    let admits = best >= 0.0;
     if !admits || !placement.is_finite() {
         return (None, GapCounts::default());
     }
     let mut frame = PairFrame::at(trees, placement, 0.0);
-    let best = limit.min(some_distance(trees, &placement));
     let test = LeafTest::new(&frame);
     let gaps = SignedGaps { frame: &mut frame, cutoff: Cutoff::at(above(best)), toward: None };
-    let mut search = Search { gaps, placement, test, goal, best, found: None };
+    let mut search = Search { gaps, placement, test, goal, besides, best, found: None };
     // A limit of zero cannot be lowered: the search ends with the first pair that meets.
-    if limit > 0.0 {
+    if best > 0.0 {
         let (leaf1, leaf2) = near_leaves(trees, search.gaps.frame);
         search.leaves(leaf1, leaf2);
     }
@@ -91,6 +108,8 @@ struct Search<'a, const AXES: usize> {
     placement: Placement,
     test: LeafTest,
     goal: Goal,
+    /// Pairs of triangles that do not count, in ascending order.
+    besides: &'a [[u32; 2]],
     /// The signed distance to beat.
     best: f64,
     found: Option<FoundPair>,
@@ -104,6 +123,10 @@ where
         if self.gaps.cutoff.limit == FOUND {
             return;
         }
+        let [triangle1, triangle2] = [side1, side2].map(|(batch, lane)| batch.triangles()[lane]);
+        if !self.besides.is_empty() && self.besides.binary_search(&[triangle1, triangle2]).is_ok() {
+            return;
+        }
         self.gaps.cutoff.counts.triangle_pairs += 1;
         let pair = LocalPair::new(&self.placement, side1, side2);
         let touching = pair.touching_distance();
@@ -115,7 +138,6 @@ where
         if self.found.is_some() && contact.distance >= self.best {
             return;
         }
-        let [triangle1, triangle2] = [side1, side2].map(|(batch, lane)| batch.triangles()[lane]);
         let (origin, is_touching) = (pair.origin, contact.distance <= touching);
         self.found = Some(FoundPair { triangle1, triangle2, contact, origin, is_touching });
         self.best = contact.distance;

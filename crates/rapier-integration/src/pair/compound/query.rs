@@ -7,7 +7,7 @@ use parry3d::shape::{Compound, TriMesh};
 use sbbk_core::traverse::Counters;
 
 use super::state::{CompoundState, CompoundToken, KnownShapes, PartState, PartStates};
-use crate::mesh::{Change, Held, PreparedMesh, TreeCache};
+use crate::mesh::{Change, Held, PreparedMesh, TreeCache, root_box};
 use crate::pair::convex::{ConvexPair, ConvexShape};
 use crate::pair::state::state_in;
 use crate::pair::{Answer, Question};
@@ -34,9 +34,12 @@ impl CompoundPair<'_> {
         compound.shapes().iter().all(|(_, part)| ConvexShape::is_known(part.shape_type()))
     }
 
-    /// The box around the mesh in the frame of the compound, as far as its parts can touch it.
+    /// The box around the mesh in the frame of the compound, as far as its parts can touch it; around all of them, if the mesh is
+    /// broken.
     fn mesh_box(&self) -> Aabb {
-        let root = self.mesh.bvh().root_aabb();
+        let Some(root) = root_box(self.mesh) else {
+            return *self.compound.local_aabb();
+        };
         let pose = if self.flipped { *self.pos12 } else { self.pos12.inverse() };
         let parts = self.compound.local_aabb();
         let size = parts.half_extents().length()
@@ -73,10 +76,11 @@ impl CompoundPair<'_> {
         if self.flipped { [two, one] } else { [one, two] }
     }
 
-    /// The tree of the mesh, from the state if it is known and still valid. Else what is known of the parts is forgotten, and
-    /// the manifolds as well if a shape was edited while the host kept the workspace. Those of another dispatcher are of
-    /// Parry's routine too.
-    fn tree<'s, M, C>(
+    /// The tree of the mesh, from the state if it is known and still valid, refitted if the mesh has deformed. Unless nothing
+    /// has changed, what is known of the parts is forgotten; the manifolds as well if a shape was edited while the host kept the
+    /// workspace. Those of another dispatcher are of Parry's routine too, and those of a mesh that has deformed keep their
+    /// data, but not their points.
+    fn tree<'s, M, C: Default + Copy>(
         &self,
         cache: &Arc<TreeCache>,
         (known, known_compound): &'s mut KnownShapes,
@@ -89,11 +93,16 @@ impl CompoundPair<'_> {
             change = Change::Replaced;
         }
         if change != Change::None {
-            *parts = PartStates::of_count(self.compound.shapes().len());
+            parts.forget(self.compound.shapes().len());
         }
-        if change == Change::Replaced {
-            manifolds.clear();
+        match change {
+            Change::None | Change::Unknown => {}
+            Change::Deformed => {
+                manifolds.iter_mut().for_each(ContactManifold::mark_shapes_deformed)
+            }
+            Change::Replaced => manifolds.clear(),
         }
+        tree.drop_broken(manifolds, |manifold| self.subshapes(manifold)[0]);
         Some(tree)
     }
 

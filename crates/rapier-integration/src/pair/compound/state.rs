@@ -64,16 +64,20 @@ impl CompoundToken {
 
 impl<M, C> Default for CompoundState<M, C> {
     fn default() -> Self {
-        Self { shapes: KnownShapes::default(), parts: PartStates::of_count(0) }
+        let parts = PartStates { last: None, near: Vec::new(), parts: Vec::new() };
+        Self { shapes: KnownShapes::default(), parts }
     }
 }
 
 impl<M, C> PartStates<M, C> {
-    /// Of so many parts nothing is known.
-    pub(super) fn of_count(count: usize) -> Self {
-        let mut parts = Vec::new();
-        parts.resize_with(count, PartState::default);
-        Self { last: None, near: Vec::new(), parts }
+    /// Leaves nothing of what is known but memory, of so many parts.
+    pub(super) fn forget(&mut self, count: usize) {
+        self.last = None;
+        self.parts.resize_with(count, PartState::default);
+        for part in &mut self.parts {
+            part.shape = None;
+            part.coherence.clear();
+        }
     }
 }
 

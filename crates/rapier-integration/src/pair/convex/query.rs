@@ -13,7 +13,7 @@ use sbbk_core::volumes::rounding::gamma;
 
 use super::contacts::{Generator, Limits, NearTriangle};
 use super::shape::{ConvexShape, Fingerprint, Kind};
-use crate::mesh::{Change, Held, KnownMesh, PreparedMesh, TreeCache};
+use crate::mesh::{Change, Held, KnownMesh, PreparedMesh, TreeCache, root_box};
 use crate::pair::candidates::OrderKey;
 use crate::pair::coherence::{Coherence, KnownCandidate, Plan};
 use crate::pair::state::{History, PairKind, PairState, state_in};
@@ -90,7 +90,9 @@ impl<'a> ConvexPair<'a> {
 
     /// Whether the boxes meet, as stock tests them. Asked before there is a tree.
     fn root_boxes_meet(&self) -> bool {
-        let root = self.mesh.bvh().root_aabb();
+        let Some(root) = root_box(self.mesh) else {
+            return true;
+        };
         let pose = if self.flipped { &self.pos12.inverse() } else { self.pos12 };
         let rounding = 1e-5 * (root.half_extents().length() + root.center().length());
         let moved = self.shape.shape.compute_aabb(pose);
@@ -130,6 +132,9 @@ impl<'a> ConvexPair<'a> {
             Change::Unknown => coherence.clear(),
             _ => coherence.follow(change, manifolds),
         }
+        tree.drop_broken(manifolds, |manifold| {
+            [manifold.subshape1, manifold.subshape2][usize::from(self.flipped)]
+        });
         Some(tree)
     }
 
@@ -149,6 +154,9 @@ impl<'a> ConvexPair<'a> {
         descend_probe(&prepared.tree, &mut probe, descent, counters, |batch| {
             test.survivors(batch, |lane, distance, axis| {
                 let triangle = batch.triangles()[lane];
+                if prepared.is_broken(triangle) {
+                    return;
+                }
                 let key = OrderKey::of_triangle(prepared, triangle);
                 let candidate = NearTriangle { key, triangle, axis };
                 candidates.push(KnownCandidate { candidate, clear: distance });

@@ -12,7 +12,7 @@ use sbbk_core::volumes::Aabb;
 use super::field::{Field, FieldToken};
 use super::shapes::MeshAndField;
 use crate::ContactGenerator;
-use crate::mesh::{Change, Held, KnownMesh, PreparedMesh, TreeCache};
+use crate::mesh::{Change, Held, KnownMesh, PreparedMesh, TreeCache, root_box};
 use crate::pair::candidates::{Candidate, Scratch};
 use crate::pair::coherence::{Coherence, Plan};
 use crate::pair::manifolds::{Generator, TriangleShapes};
@@ -61,7 +61,9 @@ impl<'a> FieldPair<'a> {
 
     /// Whether the box around the mesh meets the ground. Asked before there is a tree.
     fn root_box_meets(&self, mesh_at: &Placement, counters: impl Counters) -> bool {
-        let root = self.mesh.bvh().root_aabb();
+        let Some(root) = root_box(self.mesh) else {
+            return true;
+        };
         let field = Field(self.field);
         let frame = FieldFrame::new(&field, mesh_at, self.prediction);
         frame.meets(&Aabb { min: root.mins, max: root.maxs }, counters)
@@ -97,6 +99,9 @@ impl<'a> FieldPair<'a> {
         candidates.clear();
         let frame = FieldFrame::new(&field, mesh_at, margin);
         descend_field(&prepared.tree, &frame, descent, counters, |triangle, of_mesh| {
+            if prepared.is_broken(of_mesh) {
+                return;
+            }
             let triangles = shapes.ordered([of_mesh, field.id(triangle)]);
             candidates.push(Candidate::new(shapes.key(triangles), triangles));
         });

@@ -1,0 +1,71 @@
+use glamx::{Pose3, Quat, Vec3};
+use sbbk_core::field::FieldFrame;
+use sbbk_core::traverse::Placement;
+use sbbk_core::volumes::Aabb;
+
+use crate::grid::Grid;
+use crate::oracle::{Tally, found, tree};
+use crate::support::{Random, bumpy_ball, soup};
+
+const BAD: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
+
+fn plain() -> Grid {
+    Grid::new([10, 10], Vec3::new(5.0, 1.0, 5.0), |column, row| 0.01 * (column * row % 7) as f32)
+}
+
+/// Nothing is found at poses and margins that are none, and nothing panics; where all is well something is.
+#[test]
+fn poses_and_margins_that_are_none() {
+    let (grid, tree) = (plain(), tree(&bumpy_ball(5, 0.1)));
+    let whole = Aabb { min: Vec3::splat(-1.2), max: Vec3::splat(1.2) };
+    assert!(found(&grid, &tree, &Pose3::IDENTITY, 0.02).0.len() > 30);
+    let shifts = BAD.into_iter().flat_map(|bad| {
+        let zero = Vec3::ZERO;
+        [zero.with_x(bad), zero.with_y(bad), zero.with_z(bad)].map(Pose3::from_translation)
+    });
+    let turns = BAD.map(|bad| Pose3::from_parts(Vec3::ZERO, Quat::from_xyzw(0.0, bad, 0.0, 1.0)));
+    for pose in shifts.chain(turns) {
+        assert!(found(&grid, &tree, &pose, 0.02).0.is_empty(), "{pose:?}");
+        let placement = Placement::new(&pose);
+        assert!(!FieldFrame::new(&grid, &placement, 0.02).meets(&whole, ()), "{pose:?}");
+    }
+    assert!(found(&grid, &tree, &Pose3::IDENTITY, f32::NAN).0.is_empty());
+    let no_map = Pose3::from_parts(Vec3::ZERO, Quat::from_xyzw(0.0, 0.0, 0.0, 0.0));
+    found(&grid, &tree, &no_map, 0.02);
+}
+
+/// A triangle with a corner that is NaN or infinite is a hole, its neighbours are not. Would catch a range ruled out as one of its
+/// heights compares with nothing.
+#[test]
+fn heights_that_are_none_are_holes() {
+    let mut tally = Tally::default();
+    for seed in 0..60 {
+        let random = &mut Random(seed);
+        let bad = BAD[seed as usize % 3];
+        let grid = Grid::new([12, 12], Vec3::new(5.0, 1.0, 5.0), |_, _| match random.bits() % 5 {
+            0 => bad,
+            _ => random.range(-0.3, 0.3),
+        });
+        let mesh = soup(random, 40, 0.4);
+        tally.check(&grid, &mesh, &random.pose(1.0), 0.05).unwrap();
+    }
+    tally.finish(1000);
+}
+
+/// Fields of no width or no height, and whole fields of holes.
+#[test]
+fn scales_that_are_nothing() {
+    for scale in [Vec3::new(5.0, 0.0, 5.0), Vec3::new(0.0, 1.0, 5.0), Vec3::new(5.0, 1.0, 0.0)] {
+        let mut tally = Tally::default();
+        for seed in 0..40 {
+            let random = &mut Random(seed);
+            let grid = Grid::hills(random, [6, 6], scale);
+            let mesh = soup(random, 30, 0.5);
+            tally.check(&grid, &mesh, &random.pose(0.5), 0.05).unwrap();
+        }
+        tally.finish(300);
+    }
+    let mut grid = plain();
+    grid.statuses.fill(3);
+    assert!(found(&grid, &tree(&bumpy_ball(5, 0.1)), &Pose3::IDENTITY, 0.1).0.is_empty());
+}

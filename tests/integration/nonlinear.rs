@@ -1,0 +1,216 @@
+use glamx::{DPose3, DVec3, Pose3, Quat, Vec3};
+use oorandom::Rand32;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::parry::query::{
+    DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus,
+};
+use rapier3d::parry::shape::TriMesh;
+use sbbk_core::truth::{TruthPair, pairs_within};
+use sbbk_lab::mesh;
+
+use crate::support::{direction, reach, rotation, shape};
+
+/// Two meshes on their ways, until the time of one unit.
+struct Cast<'a> {
+    meshes: [&'a TriMesh; 2],
+    motions: [NonlinearRigidMotion; 2],
+}
+
+impl Cast<'_> {
+    fn ask(&self, dispatcher: &dyn QueryDispatcher) -> Option<ShapeCastHit> {
+        let ([mesh1, mesh2], [motion1, motion2]) = (self.meshes, &self.motions);
+        let hit = dispatcher.cast_shapes_nonlinear(motion1, mesh1, motion2, mesh2, 0.0, 1.0, false);
+        hit.expect("two meshes are supported")
+    }
+
+    fn pos12(&self, time: f32) -> Pose3 {
+        let [pos1, pos2] = self.motions.each_ref().map(|motion| motion.position_at_time(time));
+        pos1.inv_mul(&pos2)
+    }
+
+    /// All pairs of triangles up to a distance, by brute force in f64.
+    fn truth(&self, time: f32, distance: f32) -> Vec<TruthPair> {
+        let [(v1, t1), (v2, t2)] = self.meshes.map(|mesh| {
+            let vertices: Vec<DVec3> = mesh.vertices().iter().map(|v| v.as_dvec3()).collect();
+            (vertices, mesh.indices())
+        });
+        let pos12 = self.pos12(time);
+        let rotation = pos12.rotation.as_dquat().normalize();
+        let pose = DPose3::from_parts(pos12.translation.as_dvec3(), rotation);
+        pairs_within(&v1, t1, &v2, t2, pose, f64::from(distance))
+    }
+
+    /// How fast a pair that touches at the start approaches, at the middle of its first triangle, and by how much that may be off
+    /// anywhere on both.
+    fn approach(&self, pair: &TruthPair) -> (f32, f32) {
+        let [motion1, motion2] = &self.motions;
+        let [triangle1, triangle2] =
+            [self.meshes[0].triangle(pair.triangle1), self.meshes[1].triangle(pair.triangle2)];
+        let start1 = motion1.position_at_time(0.0);
+        let point = start1 * triangle1.center();
+        let velocity = |motion: &NonlinearRigidMotion| {
+            let centre = motion.start * motion.local_center;
+            motion.linvel + motion.angvel.cross(point - centre)
+        };
+        let normal = start1.rotation * pair.normal.as_vec3();
+        let sizes = [triangle1, triangle2].map(|t| t.local_aabb().extents().length());
+        let spin = (motion2.angvel - motion1.angvel).length();
+        let speed = -(velocity(motion2) - velocity(motion1)).dot(normal);
+        (speed, spin * (sizes[0] + sizes[1]) + 1e-3)
+    }
+
+    /// Whether a pair approaches at the start, and the pairs that touch then; `None` where the truth is not clear.
+    fn start(&self, slack: f32) -> Option<(bool, Vec<[u32; 2]>)> {
+        let near = self.truth(0.0, 10.0 * slack);
+        let is_touching = |pair: &TruthPair| pair.distance < f64::from(0.01 * slack);
+        let clear = |pair: &TruthPair| {
+            let (speed, doubt) = self.approach(pair);
+            pair.normal_is_unique && speed.abs() > doubt
+        };
+        let approaches = |pair: &TruthPair| self.approach(pair).0 > 0.0;
+        let is_sure = |pair: &TruthPair| is_touching(pair) && clear(pair);
+        let names = near.iter().map(|pair| [pair.triangle1, pair.triangle2]).collect();
+        if near.iter().any(|pair| is_sure(pair) && approaches(pair)) {
+            return Some((true, names));
+        }
+        near.iter().all(is_sure).then_some((false, names))
+    }
+}
+
+/// Triangles here and there about the origin: meshes that can leave each other.
+fn scattered(random: &mut Rand32, count: u32) -> TriMesh {
+    let mut corners = Vec::new();
+    for _ in 0..count {
+        let middle = 0.6 * direction(random);
+        corners.extend([(); 3].map(|()| middle + 0.5 * direction(random)));
+    }
+    TriMesh::new(corners, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect()).unwrap()
+}
+
+fn motion(random: &mut Rand32, start: Pose3, spin: f32) -> NonlinearRigidMotion {
+    let [centre, velocity, spin] = [0.2, 1.5, spin].map(|size| size * direction(random));
+    NonlinearRigidMotion::new(start, centre, velocity, spin)
+}
+
+/// Casts that start in contact and are not to stop there, from 1 cm to 100 units: against brute force in f64, at the start where a pair
+/// of triangles that touches approaches, else at the first touch of a pair that did not touch, within 1e-5 of the size. Would catch velocities
+/// of the wrong point, in the wrong frame or of the other sign, and pairs forgotten.
+#[test]
+fn casts_from_contact_are_true() {
+    let dispatcher = SbbkDispatcher::default();
+    let (mut at_start, mut later, mut never, mut unclear) = (0, 0, 0, 0);
+    for seed in 0..400 {
+        let random = &mut Rand32::new(seed);
+        let size = [0.01, 1.0, 100.0][seed as usize % 3];
+        let scaled = |mesh: TriMesh| mesh.scaled(Vec3::splat(size));
+        let meshes = [5, 4].map(|count| scaled(scattered(random, count)));
+        let start = Pose3::from_parts(0.5 * direction(random), rotation(random));
+        let mut motions = [Pose3::from_parts(Vec3::ONE, rotation(random)), start];
+        motions[1] = motions[0] * motions[1];
+        let motions = motions.map(|start| {
+            let mut motion = motion(random, start, 0.2);
+            motion.start.translation *= size;
+            motion.local_center *= size;
+            motion.linvel *= size;
+            motion
+        });
+        let cast = Cast { meshes: meshes.each_ref(), motions };
+        let slack = 1e-5 * meshes.iter().map(reach).sum::<f32>();
+        let Some((approaches, touching)) = cast.start(slack) else {
+            unclear += 1;
+            continue;
+        };
+        let hit = cast.ask(&dispatcher);
+        if approaches {
+            let hit = hit.expect("a pair approaches");
+            assert_eq!((hit.time_of_impact, hit.status), (0.0, ShapeCastStatus::Converged));
+            assert!(touching.contains(&[hit.subshape1, hit.subshape2]));
+            at_start += 1;
+            continue;
+        }
+        let others = |time: f32, distance: f32| -> Vec<TruthPair> {
+            let is_other = |pair: &TruthPair| !touching.contains(&[pair.triangle1, pair.triangle2]);
+            cast.truth(time, distance).into_iter().filter(is_other).collect()
+        };
+        let end = hit.map_or(1.0, |hit| hit.time_of_impact);
+        for step in 0..50 {
+            let met = others(end * step as f32 / 50.0, 0.0);
+            assert!(met.is_empty(), "case {seed}: {met:?} before {hit:?}");
+        }
+        let Some(hit) = hit else {
+            never += 1;
+            continue;
+        };
+        assert_eq!(hit.status, ShapeCastStatus::Converged);
+        let found = [hit.subshape1, hit.subshape2];
+        let near = others(end, slack);
+        assert!(near.iter().any(|pair| [pair.triangle1, pair.triangle2] == found), "case {seed}");
+        assert!((cast.pos12(end) * hit.witness2 - hit.witness1).length() < 2.0 * slack);
+        later += usize::from(!touching.is_empty());
+    }
+    assert!(at_start > 60 && later > 20 && never > 10, "{at_start} {later} {never}");
+    assert!(unclear < 160, "{unclear} unclear");
+}
+
+/// Beside stock where stock is right: triangles of about a unit. Would catch a meaning of our own.
+#[test]
+fn casts_from_contact_are_like_stock() {
+    let dispatcher = SbbkDispatcher::default();
+    let (mut same, mut both, mut count) = (0, 0, 0);
+    for seed in 0..300 {
+        let random = &mut Rand32::new(1000 + seed);
+        let meshes = [7, 5].map(|count| scattered(random, count));
+        let starts = [(); 2].map(|()| Pose3::from_parts(0.3 * direction(random), rotation(random)));
+        let motions = starts.map(|start| motion(random, start, 1.0));
+        let cast = Cast { meshes: meshes.each_ref(), motions };
+        if cast.truth(0.0, 0.0).is_empty() {
+            continue;
+        }
+        let [ours, stock] = [&dispatcher as &dyn QueryDispatcher, &DefaultQueryDispatcher]
+            .map(|dispatcher| cast.ask(dispatcher).map(|hit| hit.time_of_impact));
+        count += 1;
+        both += usize::from(ours.is_some() && stock.is_some());
+        same += usize::from(match (ours, stock) {
+            (Some(ours), Some(stock)) => (ours - stock).abs() < 1e-3,
+            (ours, stock) => ours == stock,
+        });
+    }
+    // The rest is up to EPA's normals.
+    assert!(count > 100 && both > 50 && 10 * same >= 9 * count, "{same} of {count}, {both} hit");
+}
+
+/// What it is for: a box that stands on a floor and slides is stopped by the wall, not by the floor; pressed into the floor it is
+/// stopped at once, lifted off it is not.
+#[test]
+fn a_box_slides_along_a_floor_to_a_wall() {
+    let corner = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
+    let vertices = vec![
+        corner(-40.0, 0.0, -20.0),
+        corner(30.0, 0.0, -20.0),
+        corner(-5.0, 0.0, 60.0),
+        corner(2.0, -1.0, -9.0),
+        corner(2.0, -1.0, 9.0),
+        corner(2.0, 9.0, 0.0),
+    ];
+    let room = TriMesh::new(vertices, vec![[0, 2, 1], [3, 4, 5]]).unwrap();
+    let cube = shape(&mesh::cuboid(Vec3::splat(0.5), 1));
+    let dispatcher = SbbkDispatcher::default();
+    for height in [0.5, 0.49] {
+        let cast = |velocity: Vec3| {
+            let start = Pose3::from_parts(Vec3::new(0.0, height, 0.0), Quat::IDENTITY);
+            let moving = NonlinearRigidMotion::new(start, Vec3::ZERO, velocity, Vec3::ZERO);
+            let still = NonlinearRigidMotion::constant_position(Pose3::IDENTITY);
+            let meshes = [&room, &cube];
+            Cast { meshes, motions: [still, moving] }.ask(&dispatcher)
+        };
+        let slid = cast(Vec3::new(2.0, 0.0, 0.0)).expect("meets the wall");
+        assert!((slid.time_of_impact - 0.75).abs() < 1e-4, "{slid:?}");
+        assert_eq!(slid.subshape1, 1);
+        // Where it is sunk in, its bottom comes through the floor from below: what counts are pairs of triangles.
+        let lifted = cast(Vec3::new(-2.0, 0.5, 0.0)).map(|hit| hit.time_of_impact);
+        assert_eq!(lifted.is_some(), height < 0.5, "{lifted:?}");
+        assert!(lifted.is_none_or(|time| (time - 0.02).abs() < 1e-4), "{lifted:?}");
+        let pressed = cast(Vec3::new(0.0, -2.0, 0.0)).expect("the floor is in the way");
+        assert!(pressed.time_of_impact < 1e-4 && pressed.subshape1 == 0, "{pressed:?}");
+    }
+}

@@ -1,0 +1,197 @@
+use std::collections::BTreeSet;
+
+use glamx::Vec3;
+use oorandom::Rand32;
+use rapier_integration::{ContactGenerator, SbbkDispatcher};
+use rapier3d::math::{Pose, Real};
+use rapier3d::parry::query::DefaultQueryDispatcher;
+use rapier3d::parry::shape::{HeightField, Shape, SharedShape, TriMesh, TriMeshFlags};
+use sbbk_lab::mesh;
+
+use super::question::{PREDICTION, Question, assert_same_set, furniture, hills};
+use crate::support::{
+    Manifold, Pair, Query, by_triangles, counting, distance, fresh, generating, sequence,
+    shape_with,
+};
+use crate::truth::Tally;
+
+fn soft_ball() -> TriMesh {
+    shape_with(&mesh::ball(0.7, 5), TriMeshFlags::DEFORMABLE)
+}
+
+/// Dents that wander over a mesh, from where its vertices are at rest.
+fn deform(mesh: &mut TriMesh, rest: &[Vec3], frame: usize) {
+    let phase = 0.07 * frame as Real;
+    mesh.update_vertices(|vertices| {
+        for (vertex, &rest) in vertices.iter_mut().zip(rest) {
+            let dent = (4.0 * rest.x + phase).sin() * (3.0 * rest.z - 2.0 * phase).cos();
+            *vertex = rest * (1.0 + 0.15 * dent);
+        }
+    });
+}
+
+/// A soft ball and another shape through hundreds of frames: of every twelve, five leave the vertices, two the pose, and one both
+/// as they were. Both orders are asked; `check` gets the question and the answer. Proves that the tree was built once and refitted
+/// once a deformation, for both, and that candidates were kept where it was not.
+fn run(other: &dyn Shape, height: Real, check: &mut dyn FnMut(&Question, &[Manifold], bool)) {
+    let dispatcher = counting();
+    let mut soft = soft_ball();
+    let rest = soft.vertices().to_vec();
+    let mut pairs: [Pair; 2] = Default::default();
+    let mut pose = Pose::translation(0.05, height, 0.1);
+    let (mut deformations, frames) = (0, 240);
+    for frame in 0..frames {
+        let is_deformed = frame % 12 < 7;
+        if is_deformed {
+            deform(&mut soft, &rest, frame);
+            deformations += 1;
+        }
+        if !matches!(frame % 12, 4 | 11) {
+            pose.translation.x += 1e-3 * (0.1 * frame as Real).sin();
+        }
+        for (pair, is_mesh_first) in pairs.iter_mut().zip([false, true]) {
+            let question = Question { mesh: &soft, other, pose, is_mesh_first };
+            check(&question, &question.ask(&dispatcher, pair).manifolds, is_deformed);
+        }
+    }
+    let stats = dispatcher.stats();
+    assert_eq!((stats.tree_builds, stats.tree_refits), (1, deformations - 1), "{stats:?}");
+    assert_eq!((stats.tree_rebuilds, stats.deformable_trees), (0, 1), "{stats:?}");
+    assert_eq!((stats.unsupported_queries, stats.queries), (0, 2 * frames as u64), "{stats:?}");
+    assert!(stats.unchanged_queries >= 2 * frames as u64 / 12, "{stats:?}");
+    assert!(stats.reused_queries >= 2 * frames as u64 / 6, "{stats:?}");
+    drop(pairs);
+    assert_eq!(dispatcher.stats().deformable_trees, 0, "the tree goes with the last pair");
+}
+
+/// The triangles of a field as a mesh, and the number in the field of each, ascending.
+fn as_mesh(field: &HeightField) -> (TriMesh, Vec<u32>) {
+    let all = 0..2 * (field.nrows() * field.ncols()) as u32;
+    let triangles = all.filter_map(|id| Some((id, *field.triangle_at_id(id)?.vertices())));
+    let (ids, corners): (Vec<_>, Vec<_>) = triangles.unzip();
+    let indices = (0..ids.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
+    (TriMesh::new(corners.concat(), indices.collect()).unwrap(), ids)
+}
+
+/// Would catch a lost or invented contact, and a field that is asked with the mesh as it was: each answer is judged by brute force in
+/// f64 over all pairs of triangles, and equal to that of a mesh built anew bit for bit.
+#[test]
+fn a_soft_mesh_keeps_its_contacts_with_a_height_field() {
+    let field = hills(&mut Rand32::new(3));
+    let (ground, ids) = as_mesh(&field);
+    let mut tally = Tally::default();
+    run(&field, 0.75, &mut |question, found, _| {
+        assert_same_set(found, &question.anew(&SbbkDispatcher::default()));
+        let mut found = found.to_vec();
+        for manifold in &mut found {
+            let Manifold { subshape1, subshape2, .. } = manifold;
+            let id = if question.is_mesh_first { subshape2 } else { subshape1 };
+            *id = ids.binary_search(id).expect("a triangle of the field") as u32;
+        }
+        let meshes = [&ground, question.mesh];
+        let meshes = if question.is_mesh_first { [meshes[1], meshes[0]] } else { meshes };
+        tally.add(&Query::new(meshes[0], meshes[1], question.pos12()), &found);
+    });
+    tally.check_all_right(10_000);
+}
+
+/// The same against stock, which answers for compounds, afresh on a mesh built anew.
+#[test]
+fn a_soft_mesh_keeps_its_contacts_with_a_compound() {
+    let furniture = furniture(SharedShape::capsule_x(0.5, 0.1));
+    let mut contacts = 0;
+    run(&furniture, 0.78, &mut |question, found, is_deformed| {
+        let clear = |manifolds: &[Manifold], limit: Real| -> BTreeSet<[u32; 2]> {
+            let near = manifolds.iter().filter(|manifold| distance(manifold) < limit);
+            near.map(|manifold| [manifold.subshape1, manifold.subshape2]).collect()
+        };
+        let expected = question.anew(&DefaultQueryDispatcher);
+        // What Parry's iterations leave open: where vertices moved, a thousandth of the prediction distance.
+        let band = if is_deformed { 1e-3 * PREDICTION } else { 2e-3 };
+        let [inner, outer] = [PREDICTION - band, PREDICTION + band];
+        assert!(clear(found, inner).is_subset(&clear(&expected, outer)));
+        assert!(clear(&expected, inner).is_subset(&clear(found, outer)));
+        contacts += expected.len();
+    });
+    assert!(contacts > 5_000, "{contacts} contacts");
+}
+
+/// Parry's generator, too, is told that vertices have moved where the pose has not. Would catch manifolds that are not marked.
+#[test]
+fn parrys_generator_is_told_of_moved_vertices() {
+    let dispatcher = generating(ContactGenerator::Parry);
+    let field = hills(&mut Rand32::new(3));
+    let mut soft = soft_ball();
+    let rest = soft.vertices().to_vec();
+    let mut pair: Pair = Pair::default();
+    let mut compared = 0;
+    for frame in 0..60 {
+        deform(&mut soft, &rest, frame);
+        let pose = Pose::translation(0.05, 0.75, 0.1);
+        let question = Question { mesh: &soft, other: &field, pose, is_mesh_first: false };
+        question.ask(&dispatcher, &mut pair);
+        let afresh = question.fresh(&generating(ContactGenerator::Parry));
+        let afresh = by_triangles(&afresh);
+        for (triangles, manifold) in by_triangles(&pair.manifolds) {
+            let off = afresh.get(&triangles).map(|m| (distance(m) - distance(manifold)).abs());
+            assert!(off.is_none_or(|off| off < 2e-3), "{frame}, {triangles:?}: off by {off:?}");
+            compared += usize::from(off.is_some());
+        }
+    }
+    assert!(compared > 600, "{compared} compared");
+}
+
+/// What a host stores with each contact point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Impulse(u32);
+
+/// Would catch impulses lost where a mesh deforms a little: soft bodies would jitter.
+#[test]
+fn contacts_keep_their_data_while_a_mesh_deforms() {
+    let (field, furniture) =
+        (hills(&mut Rand32::new(3)), furniture(SharedShape::capsule_x(0.5, 0.1)));
+    for (other, height) in [(&field as &dyn Shape, 0.8), (&furniture, 0.78)] {
+        let dispatcher = SbbkDispatcher::default();
+        let mut soft = soft_ball();
+        let mut pair = Pair::<(), Impulse>::default();
+        for _ in 0..6 {
+            soft.update_vertices(|vertices| vertices.iter_mut().for_each(|v| *v *= 1.00001));
+            let pose = Pose::translation(0.05, height, 0.1);
+            let question = Question { mesh: &soft, other, pose, is_mesh_first: true };
+            question.ask(&dispatcher, &mut pair);
+            for point in pair.manifolds.iter_mut().flat_map(|manifold| &mut manifold.points) {
+                point.data.0 += 1;
+            }
+        }
+        let points = || pair.manifolds.iter().flat_map(|manifold| &manifold.points);
+        let (old, all) = (points().filter(|point| point.data.0 == 6).count(), points().count());
+        assert!(all > 10 && 10 * old > 8 * all, "{old} of {all}");
+    }
+}
+
+/// The tree of a mesh is one, whatever it meets: another soft mesh, a field and a compound share each refit.
+#[test]
+fn pairs_of_all_kinds_share_one_refit() {
+    let dispatcher = counting();
+    let (field, furniture) =
+        (hills(&mut Rand32::new(3)), furniture(SharedShape::capsule_x(0.5, 0.1)));
+    let mut soft = soft_ball();
+    let rest = soft.vertices().to_vec();
+    let mut pairs: [Pair; 2] = Default::default();
+    let mut of_meshes: Pair = Pair::default();
+    let ring = shape_with(&mesh::torus(0.6, 0.2, 12, 8), TriMeshFlags::empty());
+    for frame in 0..30 {
+        deform(&mut soft, &rest, frame);
+        for (pair, other) in pairs.iter_mut().zip([&field as &dyn Shape, &furniture]) {
+            let pose = Pose::translation(0.05, 0.75, 0.1);
+            let question = Question { mesh: &soft, other, pose, is_mesh_first: false };
+            assert!(!question.ask(&dispatcher, pair).manifolds.is_empty());
+        }
+        let query = Query::new(&ring, &soft, Pose::translation(0.5, 0.4, 0.0));
+        let found = sequence(&of_meshes.ask(&dispatcher, &query).manifolds);
+        assert_eq!(found, sequence(&fresh(&SbbkDispatcher::default(), &query)));
+        assert!(!found.is_empty());
+    }
+    let stats = dispatcher.stats();
+    assert_eq!((stats.tree_refits, stats.deformable_trees), (29, 1), "{stats:?}");
+}

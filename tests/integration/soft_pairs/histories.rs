@@ -1,0 +1,232 @@
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+use glamx::{Quat, Vec3};
+use oorandom::Rand32;
+use proptest::prelude::*;
+use proptest::test_runner::{Config, TestRunner};
+use rapier_integration::SbbkDispatcher;
+use rapier3d::math::{Pose, Real};
+use rapier3d::parry::query::DefaultQueryDispatcher;
+use rapier3d::parry::shape::{Shape, SharedShape, TriMesh, TriMeshFlags};
+use sbbk_lab::mesh;
+
+use super::question::{PREDICTION, Question, assert_same_set, furniture, hills, steps};
+use crate::support::{Manifold, Pair, assert_same, distance, rotation, shape_with};
+
+/// What happens to a pair between two queries.
+#[derive(Clone, Copy, Debug)]
+enum Event {
+    /// Nothing.
+    Rest,
+    /// All vertices move by up to this in any direction from where they were made.
+    Noise(Real),
+    /// All vertices go to a lattice of this spacing.
+    Snap(Real),
+    /// The mesh moves by up to this.
+    Move(Real),
+    /// Both.
+    NoiseAndMove(Real, Real),
+    /// The host loses the state of the pair.
+    Lose,
+    /// Another dispatcher answers in between.
+    Stock,
+    /// The host copies the mesh, as it must to edit a shared one.
+    Copy,
+}
+
+fn event() -> impl Strategy<Value = Event> {
+    let noise = prop_oneof![Just(1e-6), Just(1e-3), Just(0.03), Just(0.3)];
+    let shift = prop_oneof![Just(1e-5), Just(1e-3), Just(0.05)];
+    prop_oneof![
+        1 => Just(Event::Rest),
+        4 => noise.clone().prop_map(Event::Noise),
+        1 => prop_oneof![Just(0.25), Just(0.125)].prop_map(Event::Snap),
+        2 => shift.clone().prop_map(Event::Move),
+        2 => (noise, shift).prop_map(|(noise, shift)| Event::NoiseAndMove(noise, shift)),
+        1 => Just(Event::Lose),
+        1 => Just(Event::Stock),
+        1 => Just(Event::Copy),
+    ]
+}
+
+/// A pair and what becomes of it.
+#[derive(Clone, Debug)]
+struct History {
+    seed: u64,
+    has_fixed_edges: bool,
+    is_mesh_first: bool,
+    is_lattice: bool,
+    events: Vec<Event>,
+}
+
+fn history() -> impl Strategy<Value = History> {
+    let events = prop::collection::vec(event(), 12);
+    (any::<u64>(), any::<[bool; 3]>(), events).prop_map(|(seed, bools, events)| {
+        let [has_fixed_edges, is_mesh_first, is_lattice] = bools;
+        History { seed, has_fixed_edges, is_mesh_first, is_lattice, events }
+    })
+}
+
+/// A mesh under way through a history.
+struct Walk {
+    random: Rand32,
+    mesh: TriMesh,
+    rest: Vec<Vec3>,
+    pose: Pose,
+}
+
+impl Walk {
+    fn new(history: &History) -> Self {
+        let mut random = Rand32::new(history.seed);
+        let flags = if history.has_fixed_edges {
+            TriMeshFlags::DEFORMABLE | TriMeshFlags::FIX_INTERNAL_EDGES
+        } else {
+            TriMeshFlags::DEFORMABLE
+        };
+        let solids = [mesh::ball(0.6, 4), mesh::torus(0.5, 0.2, 10, 6), mesh::monkey_head_with(5)];
+        let solid = solids[random.rand_range(0..3) as usize].clone();
+        let mesh = shape_with(&solid.centred().scaled_to(1.2), flags);
+        let turn = if history.is_lattice { Quat::IDENTITY } else { rotation(&mut random) };
+        let rest = mesh.vertices().to_vec();
+        Self { random, mesh, rest, pose: Pose::from_parts(Vec3::Y * 0.5, turn) }
+    }
+
+    fn shift(&mut self, size: Real) -> Vec3 {
+        size * Vec3::from_array([(); 3].map(|()| 2.0 * self.random.rand_float() - 1.0))
+    }
+
+    fn move_by(&mut self, size: Real) {
+        let shift = self.shift(size);
+        self.pose.translation += shift;
+    }
+
+    fn add_noise(&mut self, size: Real) {
+        let moved: Vec<Vec3> =
+            (0..self.rest.len()).map(|i| self.rest[i] + self.shift(size)).collect();
+        self.mesh.set_vertices(&moved);
+    }
+
+    /// Does what concerns the mesh and its pose.
+    fn take(&mut self, event: Event) {
+        match event {
+            Event::Rest | Event::Lose | Event::Stock => {}
+            // A mesh built anew with fixed edges would merge the vertices that meet.
+            Event::Snap(size) if self.mesh.flags().contains(TriMeshFlags::FIX_INTERNAL_EDGES) => {
+                self.add_noise(size);
+            }
+            Event::Snap(size) => {
+                let to_lattice = |&vertex: &Vec3| (vertex / size).round() * size;
+                let moved: Vec<Vec3> = self.rest.iter().map(to_lattice).collect();
+                self.mesh.set_vertices(&moved);
+            }
+            Event::Noise(size) => self.add_noise(size),
+            Event::Move(size) => self.move_by(size),
+            Event::NoiseAndMove(noise, shift) => {
+                self.add_noise(noise);
+                self.move_by(shift);
+            }
+            Event::Copy => self.mesh = self.mesh.clone(),
+        }
+    }
+}
+
+/// What all cases together came to.
+#[derive(Default)]
+struct Sums {
+    contacts: AtomicU64,
+    refits: AtomicU64,
+    reused: AtomicU64,
+}
+
+impl Sums {
+    fn check(&self, least_contacts: u64, least_refits: u64) {
+        let [contacts, refits] = [&self.contacts, &self.refits].map(|sum| sum.load(Relaxed));
+        assert!(contacts >= least_contacts, "only {contacts} contacts");
+        assert!(refits >= least_refits, "only {refits} refits");
+    }
+}
+
+/// Runs a history and compares each answer by `check`: whether vertices have moved, what the pair has then, and the question.
+fn run(
+    history: &History,
+    other: &dyn Shape,
+    dispatcher: &SbbkDispatcher,
+    sums: &Sums,
+    check: impl Fn(bool, &[Manifold], &Question),
+) {
+    let mut walk = Walk::new(history);
+    let mut pair: Pair = Pair::default();
+    for &event in &history.events {
+        let before = walk.mesh.vertices().to_vec();
+        walk.take(event);
+        let is_deformed = walk.mesh.vertices() != before;
+        let Walk { mesh, pose, .. } = &walk;
+        let question = Question { mesh, other, pose: *pose, is_mesh_first: history.is_mesh_first };
+        match event {
+            Event::Lose => pair.workspace = None,
+            Event::Stock => _ = question.ask(&DefaultQueryDispatcher, &mut pair),
+            _ => {}
+        }
+        check(is_deformed, &question.ask(dispatcher, &mut pair).manifolds, &question);
+        sums.contacts.fetch_add(pair.manifolds.len() as u64, Relaxed);
+    }
+    let stats = dispatcher.stats();
+    sums.refits.fetch_add(stats.tree_refits, Relaxed);
+    sums.reused.fetch_add(stats.reused_queries, Relaxed);
+    assert_eq!((stats.unsupported_queries, stats.trees), (0, 0), "{stats:?}");
+}
+
+fn runner(cases: u32) -> TestRunner {
+    let config = Config { failure_persistence: None, ..Config::with_cases(cases) };
+    TestRunner::new(config)
+}
+
+/// Would catch a tree, candidates, features or cones of vertices that are no more, and anything else that depends on the past: the
+/// manifolds are those of the mesh built anew, bit for bit, and in the order of a dispatcher that knows nothing.
+#[test]
+fn contacts_with_a_height_field_are_those_of_a_mesh_built_anew() {
+    let sums = Sums::default();
+    let case = |history: History| {
+        let random = &mut Rand32::new(history.seed);
+        let field = if history.is_lattice { steps(random) } else { hills(random) };
+        run(&history, &field, &SbbkDispatcher::default(), &sums, |_, found, question| {
+            assert_same(found, &question.fresh(&SbbkDispatcher::default()), 0.0);
+            assert_same_set(found, &question.anew(&SbbkDispatcher::default()));
+        });
+        Ok(())
+    };
+    runner(150).run(&history(), case).unwrap();
+    sums.check(20_000, 500);
+}
+
+/// The same against boxes and balls, whose contacts are Parry's: where vertices have moved bit for bit, as no point of a query
+/// before may be kept then, which would catch manifolds that are not marked. Where only the mesh has moved Parry keeps points, and
+/// contacts of other kinds come from iterations that begin where they ended.
+#[test]
+fn contacts_with_a_compound_are_those_of_a_mesh_built_anew() {
+    let sums = Sums::default();
+    let furniture = furniture(SharedShape::cuboid(0.5, 0.1, 0.1));
+    let case = |history: History| {
+        run(
+            &history,
+            &furniture,
+            &SbbkDispatcher::default(),
+            &sums,
+            |is_deformed, found, question| {
+                let [found, expected] = [found, &question.anew(&DefaultQueryDispatcher)].map(near);
+                if is_deformed {
+                    assert_same_set(&found, &expected);
+                }
+            },
+        );
+        Ok(())
+    };
+    runner(150).run(&history(), case).unwrap();
+    sums.check(20_000, 500);
+}
+
+/// What is within the prediction distance: Parry makes some contacts beyond.
+fn near(manifolds: &[Manifold]) -> Vec<Manifold> {
+    let is_near = |manifold: &&Manifold| distance(manifold) <= PREDICTION;
+    manifolds.iter().filter(is_near).cloned().collect()
+}

@@ -1,0 +1,101 @@
+use glamx::Vec3;
+use oorandom::Rand32;
+use rapier3d::math::{Pose, Real};
+use rapier3d::parry::shape::{
+    Compound, HeightField, HeightFieldCellStatus, Shape, SharedShape, TriMesh,
+};
+use rapier3d::parry::utils::Array2;
+
+use crate::support::{Dispatcher, Manifold, Pair, assert_same, rebuilt, triangles};
+
+/// A pair of a mesh and another shape, in either order.
+#[derive(Clone, Copy)]
+pub struct Question<'a> {
+    pub mesh: &'a TriMesh,
+    pub other: &'a dyn Shape,
+    /// The pose of the mesh in the frame of the other shape.
+    pub pose: Pose,
+    pub is_mesh_first: bool,
+}
+
+/// In units.
+pub const PREDICTION: Real = 0.02;
+
+impl Question<'_> {
+    pub fn pos12(&self) -> Pose {
+        if self.is_mesh_first { self.pose.inverse() } else { self.pose }
+    }
+
+    pub fn ask<'p, M, C>(
+        &self,
+        dispatcher: &impl Dispatcher<M, C>,
+        pair: &'p mut Pair<M, C>,
+    ) -> &'p mut Pair<M, C> {
+        let (g1, g2): (&dyn Shape, &dyn Shape) =
+            if self.is_mesh_first { (self.mesh, self.other) } else { (self.other, self.mesh) };
+        let Pair { manifolds, workspace } = pair;
+        dispatcher
+            .contact_manifolds(&self.pos12(), g1, g2, PREDICTION, manifolds, workspace)
+            .expect("the pair is supported");
+        pair
+    }
+
+    /// The answer to one who knows nothing of the pair: manifolds with points.
+    pub fn fresh(&self, dispatcher: &impl Dispatcher<(), ()>) -> Vec<Manifold> {
+        let mut manifolds =
+            std::mem::take(&mut self.ask(dispatcher, &mut Pair::default()).manifolds);
+        manifolds.retain(|manifold| !manifold.points.is_empty());
+        manifolds
+    }
+
+    /// The same of the mesh built anew, which has a hierarchy, and so an order, of its own.
+    pub fn anew(&self, dispatcher: &impl Dispatcher<(), ()>) -> Vec<Manifold> {
+        Question { mesh: &rebuilt(self.mesh), ..*self }.fresh(dispatcher)
+    }
+}
+
+/// Panics unless both have the same manifolds, in any order, bit for bit but for the sign of a zero.
+pub fn assert_same_set(found: &[Manifold], expected: &[Manifold]) {
+    assert_same(&sorted(found), &sorted(expected), 0.0);
+}
+
+/// By triangles.
+pub fn sorted(manifolds: &[Manifold]) -> Vec<Manifold> {
+    let mut manifolds = manifolds.to_vec();
+    manifolds.sort_by_key(triangles);
+    manifolds
+}
+
+/// Hills over four units, with holes and cells divided either way.
+pub fn hills(random: &mut Rand32) -> HeightField {
+    let heights = (0..17 * 15).map(|_| 0.3 * random.rand_float()).collect();
+    field(random, [17, 15], heights)
+}
+
+/// Steps and plains: heights that are whole multiples of a quarter, cells of a quarter.
+pub fn steps(random: &mut Rand32) -> HeightField {
+    let heights = (0..17 * 17).map(|_| 0.25 * random.rand_range(0..2) as Real).collect();
+    field(random, [17, 17], heights)
+}
+
+fn field(random: &mut Rand32, lines: [usize; 2], heights: Vec<Real>) -> HeightField {
+    let heights = Array2::new(lines[0], lines[1], heights);
+    let mut field = HeightField::new(heights, Vec3::new(4.0, 1.0, 4.0));
+    for status in field.cells_statuses_mut().data_mut() {
+        let hole = if random.rand_range(0..8) == 0 { 2 << random.rand_range(0..2) } else { 0 };
+        let bits = hole | random.rand_range(0..2) as u8;
+        *status = HeightFieldCellStatus::from_bits_truncate(bits);
+    }
+    field
+}
+
+/// A floor of boxes, with balls and a bar on it.
+pub fn furniture(bar: SharedShape) -> Compound {
+    let mut parts = Vec::new();
+    for (x, z) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)] {
+        parts.push((Pose::translation(x, -0.1, z), SharedShape::cuboid(1.0, 0.2, 1.0)));
+        parts.push((Pose::translation(0.4 * x, 0.1, 0.4 * z), SharedShape::ball(0.2)));
+    }
+    parts.push((Pose::translation(0.1, 0.2, 0.0), bar));
+    Compound::new(parts)
+}

@@ -1,0 +1,185 @@
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use glamx::Vec3;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::math::Pose;
+use rapier3d::parry::query::details::ShapeCastOptions;
+use rapier3d::parry::query::{
+    DefaultQueryDispatcher, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher,
+};
+use rapier3d::parry::shape::{HeightField, Shape, SharedShape, TriMeshFlags};
+use rapier3d::parry::utils::Array2;
+use sbbk_lab::mesh;
+
+use crate::support::{Pair, counting, shape, shape_with};
+
+/// Who answers for a pair.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Who {
+    Sbbk,
+    Parry,
+}
+
+fn field() -> SharedShape {
+    let heights = Array2::from_fn(5, 5, |i, j| 0.1 * ((i * j) % 3) as f32);
+    SharedShape::new(HeightField::new(heights, Vec3::new(4.0, 1.0, 4.0)))
+}
+
+/// What a mesh can meet, and who answers for its contacts.
+fn kinds() -> Vec<(&'static str, SharedShape, Who)> {
+    use Who::{Parry, Sbbk};
+    let [a, b, c] = [Vec3::X, Vec3::Y, Vec3::Z];
+    let ball = mesh::ball(0.7, 3);
+    let hull = SharedShape::convex_hull(&ball.vertices).expect("a ball has a hull");
+    let round_hull = SharedShape::round_convex_hull(&ball.vertices, 0.1).expect("as above");
+    let part = |shape: SharedShape| vec![(Pose::translation(0.1, 0.0, 0.0), shape)];
+    let soft = shape_with(&ball, TriMeshFlags::DEFORMABLE);
+    let line = vec![-a, a, b];
+    vec![
+        ("mesh", SharedShape::new(shape(&ball)), Sbbk),
+        ("deformable mesh", SharedShape::new(soft), Sbbk),
+        ("ball", SharedShape::ball(0.5), Sbbk),
+        ("cuboid", SharedShape::cuboid(0.5, 0.4, 0.6), Sbbk),
+        ("capsule", SharedShape::capsule_y(0.4, 0.2), Sbbk),
+        ("segment", SharedShape::segment(a, b), Sbbk),
+        ("triangle", SharedShape::triangle(a, b, c), Sbbk),
+        ("cylinder", SharedShape::cylinder(0.4, 0.3), Sbbk),
+        ("cone", SharedShape::cone(0.4, 0.3), Sbbk),
+        ("convex polyhedron", hull, Sbbk),
+        ("round cuboid", SharedShape::round_cuboid(0.5, 0.4, 0.6, 0.1), Sbbk),
+        ("round triangle", SharedShape::round_triangle(a, b, c, 0.1), Sbbk),
+        ("round cylinder", SharedShape::round_cylinder(0.4, 0.3, 0.1), Sbbk),
+        ("round cone", SharedShape::round_cone(0.4, 0.3, 0.1), Sbbk),
+        ("round convex polyhedron", round_hull, Sbbk),
+        ("half-space", SharedShape::halfspace(Vec3::Y), Sbbk),
+        ("height field", field(), Sbbk),
+        ("compound", SharedShape::compound(part(SharedShape::ball(0.5))), Sbbk),
+        ("compound of another kind", SharedShape::compound(part(field())), Parry),
+        ("polyline", SharedShape::polyline(line, None), Parry),
+        ("voxels", SharedShape::voxels_from_points(Vec3::splat(0.3), &ball.vertices), Parry),
+    ]
+}
+
+/// The contacts of each kind, in both orders, with a rigid and with a deformable mesh: counted as answered from trees, or equal to Parry's
+/// and not counted. Would catch a kind that the table of the documentation has in the wrong row, and an order that is forgotten.
+#[test]
+fn contacts_of_each_kind() {
+    let pos12 = Pose::translation(0.15, 0.6, 0.1);
+    for flags in [TriMeshFlags::empty(), TriMeshFlags::DEFORMABLE] {
+        let mesh = shape_with(&mesh::ball(0.8, 4), flags);
+        for (name, other, who) in kinds() {
+            let orders: [[&dyn Shape; 2]; 2] = [[&mesh, &*other], [&*other, &mesh]];
+            for [g1, g2] in orders {
+                let dispatcher = counting();
+                let [mut pair, mut parrys]: [Pair; 2] = Default::default();
+                let ask = |dispatcher: &dyn PersistentQueryDispatcher, pair: &mut Pair| {
+                    let Pair { manifolds, workspace } = pair;
+                    dispatcher
+                        .contact_manifolds(&pos12, g1, g2, 0.02, manifolds, workspace)
+                        .expect("supported");
+                };
+                ask(&dispatcher, &mut pair);
+                let stats = dispatcher.stats();
+                assert_eq!(stats.queries, u64::from(who == Who::Sbbk), "{name}: {stats:?}");
+                assert_eq!(stats.unsupported_queries, 0, "{name}: {stats:?}");
+                if who == Who::Sbbk {
+                    assert_eq!(stats.descended_queries, 1, "{name} touches: {stats:?}");
+                    continue;
+                }
+                ask(&DefaultQueryDispatcher, &mut parrys);
+                let [ours, parrys] = [&pair, &parrys].map(|pair| format!("{:?}", pair.manifolds));
+                assert_eq!(ours, parrys, "{name}");
+            }
+        }
+    }
+}
+
+/// Each query without manifolds: of two rigid meshes from trees, which it needs; of all else Parry's answer, without a tree.
+#[test]
+fn queries_of_each_kind() {
+    let pos12 = Pose::translation(2.5, 0.2, 0.1);
+    let still = NonlinearRigidMotion::identity();
+    let moving = NonlinearRigidMotion::new(pos12, Vec3::ZERO, -Vec3::X, 0.1 * Vec3::Y);
+    type Ask<'a> = &'a dyn Fn(&dyn QueryDispatcher, &dyn Shape, &dyn Shape) -> String;
+    let options = ShapeCastOptions::with_max_time_of_impact(2.0);
+    let queries: [(&str, Ask); 6] = [
+        ("intersection_test", &|d, g1, g2| format!("{:?}", d.intersection_test(&pos12, g1, g2))),
+        ("distance", &|d, g1, g2| format!("{:?}", d.distance(&pos12, g1, g2))),
+        ("closest_points", &|d, g1, g2| format!("{:?}", d.closest_points(&pos12, g1, g2, 9.0))),
+        ("contact", &|d, g1, g2| format!("{:?}", d.contact(&pos12, g1, g2, 9.0))),
+        ("cast_shapes", &|d, g1, g2| {
+            format!("{:?}", d.cast_shapes(&pos12, -Vec3::X, g1, g2, options))
+        }),
+        ("cast_shapes_nonlinear", &|d, g1, g2| {
+            let casts = [true, false]
+                .map(|stop| d.cast_shapes_nonlinear(&still, g1, &moving, g2, 0.0, 2.0, stop));
+            format!("{casts:?}")
+        }),
+    ];
+    let rigid = shape(&mesh::ball(0.8, 4));
+    let soft = shape_with(&mesh::ball(0.8, 4), TriMeshFlags::DEFORMABLE);
+    for (query, ask) in queries {
+        for (name, other, _) in kinds() {
+            for mesh in [&rigid, &soft] {
+                let dispatcher = SbbkDispatcher::default();
+                let answer = ask(&dispatcher, mesh, &*other);
+                let is_ours = name == "mesh" && std::ptr::eq(mesh, &rigid);
+                let trees = dispatcher.stats().tree_builds;
+                assert_eq!(trees, if is_ours { 2 } else { 0 }, "{query} of {name}");
+                if !is_ours {
+                    assert_eq!(
+                        answer,
+                        ask(&DefaultQueryDispatcher, mesh, &*other),
+                        "{query} of {name}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// The names of all functions in Rust files below a folder.
+fn functions_below(folder: &Path, names: &mut BTreeSet<String>) {
+    for entry in fs::read_dir(folder).expect("the folder of the tests") {
+        let path = entry.expect("readable").path();
+        if path.is_dir() {
+            functions_below(&path, names);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            let text = fs::read_to_string(&path).expect("readable");
+            let name =
+                |line: &str| Some(line.trim().strip_prefix("fn ")?.split('(').next()?.to_owned());
+            names.extend(text.lines().filter_map(name));
+        }
+    }
+}
+
+/// Would catch tests that were renamed or removed and stay in the documentation: each row of its tables names some, and all exist.
+#[test]
+fn the_tests_that_the_tables_name_exist() {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    let mut functions = BTreeSet::new();
+    functions_below(&root.join("tests/integration"), &mut functions);
+    let documentation = fs::read_to_string(root.join("crates/rapier-integration/src/lib.rs"))
+        .expect("the documentation of the crate");
+    let rows = documentation.lines().filter(|line| line.starts_with("//! | "));
+    let mut named = 0;
+    for row in rows.filter(|row| !row.ends_with("tested by |")) {
+        let tests = row.trim_end_matches(" |").rsplit(" | ").next().expect("a last column");
+        let quoted: Vec<&str> = tests.split('`').skip(1).step_by(2).collect();
+        assert!(!quoted.is_empty(), "no test in {row}");
+        for name in quoted {
+            let is_module = tests.contains(&format!("`{name}`:"));
+            let file = root.join("tests/integration").join(name);
+            let exists = if is_module {
+                file.is_dir() || file.with_extension("rs").is_file()
+            } else {
+                functions.contains(name)
+            };
+            assert!(exists, "there is no {name}");
+            named += usize::from(!is_module);
+        }
+    }
+    assert!(named > 25, "only {named} tests are named");
+}
