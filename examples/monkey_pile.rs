@@ -17,7 +17,7 @@ use sbbk_lab::mesh;
 use sbbk_lab::metrics::{Environment, RunPlan};
 use sbbk_lab::report::{reserve, tables};
 use sbbk_lab::scene::MonkeyPile;
-use sbbk_lab::study::{PilePlan, Progress, pile};
+use sbbk_lab::study::{PILE_QUERY_STRIDE, PilePlan, Progress, pile};
 
 /// Drops monkey heads in a pile, and says where the time goes.
 #[derive(Parser)]
@@ -65,6 +65,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             steps,
             sample_every: steps.div_ceil(3),
             sample_size: 30,
+            query_stride: PILE_QUERY_STRIDE,
         },
         same_poses: None,
     };

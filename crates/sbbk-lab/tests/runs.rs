@@ -7,7 +7,8 @@ use sbbk_lab::backend::{Backend, PairKind, Probe, SharedDispatcher, Timed};
 use sbbk_lab::metrics::{PosePairs, RunPlan, WorldState, run};
 use sbbk_lab::scene::{BoxStack, MonkeyPile, Scene, TwoMeshes};
 
-const PLAN: RunPlan = RunPlan { warm_up: 5, steps: 35, sample_every: 10, sample_size: 20 };
+const PLAN: RunPlan =
+    RunPlan { warm_up: 5, steps: 35, sample_every: 10, sample_size: 20, query_stride: 1 };
 
 /// Would catch timers that are never started (Rapier's `profiler` feature is off), sampled steps
 /// that are timed, and a backend that is not installed.

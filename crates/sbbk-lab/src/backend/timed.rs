@@ -1,7 +1,6 @@
 //! A dispatcher that times another one.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::details::{NormalConstraints, ShapeCastOptions};
@@ -16,8 +15,8 @@ use super::{Answer, PairKind, Probe, Question};
 
 /// Passes every query on unchanged, and counts and times `contact_manifolds` by [`PairKind`].
 ///
-/// Cost: two readings of the clock a call (see [`clock_cost`](super::clock_cost)), two additions
-/// to shared counters, and one virtual call.
+/// Cost: two readings of the clock a timed call (see [`clock_cost`](super::clock_cost) and
+/// [`Probe::time_every`]), one or two additions to shared counters, and one virtual call.
 pub struct Timed<D: ?Sized> {
     probe: Probe,
     inner: Arc<D>,
@@ -94,10 +93,9 @@ where
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
         let kind = PairKind::of(g1, g2);
-        let start = Instant::now();
-        let result =
-            (self.inner).contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
-        self.probe.add(kind, start.elapsed());
+        let result = self.probe.measure(kind, || {
+            (self.inner).contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace)
+        });
         if kind == PairKind::MeshMesh {
             let question = Question::new(pos12, [g1, g2], prediction);
             self.probe.record(|| Answer::new(question, manifolds));
@@ -118,6 +116,8 @@ where
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use rapier3d::parry::query::DefaultQueryDispatcher;
     use rapier3d::parry::shape::{Ball, Cuboid};
 
@@ -160,6 +160,28 @@ mod tests {
                 assert_eq!(tally.time.is_zero(), other != kind);
             }
         }
+    }
+
+    /// Would catch calls that are not counted because they are not timed, and times that are not made up for them.
+    #[test]
+    fn one_call_in_some_is_timed_and_stands_for_all() {
+        const SLEEP: Duration = Duration::from_millis(2);
+        let probe = Probe::default();
+        probe.time_every(4);
+        let mut slept = 0;
+        for call in 0..10 {
+            // Calls 0, 4 and 8 are timed.
+            probe.measure(PairKind::MeshMesh, || {
+                if call % 4 == 0 {
+                    std::thread::sleep(SLEEP);
+                    slept += 1;
+                }
+            });
+        }
+        assert_eq!(slept, 3);
+        let tally = probe.times()[PairKind::MeshMesh];
+        assert_eq!(tally.calls, 10);
+        assert!(tally.time >= 10 * SLEEP && tally.time < 1000 * SLEEP, "{:?}", tally.time);
     }
 
     /// Would catch a recorder that keeps recording, loses answers or sees other pairs than

@@ -17,6 +17,9 @@ pub struct RunPlan {
     pub sample_every: usize,
     /// At most this many mesh pairs are judged in each sampled step and way (fresh, updated).
     pub sample_size: usize,
+    /// Of so many queries one is timed; all if 0. More where they are so many that the clock would
+    /// be a part of the step ([`Probe::time_every`](crate::backend::Probe::time_every)).
+    pub query_stride: u64,
 }
 
 impl RunPlan {
@@ -92,6 +95,7 @@ impl Runner {
     pub fn new(scene: &dyn Scene, backend: Backend, plan: RunPlan) -> Result<Self, SceneError> {
         let mut built = scene.build()?;
         let installed = backend.install(&mut built.world);
+        installed.probe.time_every(plan.query_stride.max(1));
         let run = Run { backend, times: Vec::with_capacity(plan.steps), samples: Vec::new() };
         Ok(Self { built, installed, plan, step: 0, run })
     }

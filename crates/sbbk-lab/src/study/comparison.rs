@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::{
-    CutStudy, HelicopterPlan, HelicopterRow, MeshRow, PilePlan, PileStudy, Progress, SamePosesPlan,
-    StudyError, cut, helicopter, meshes, pile,
+    CutStudy, HelicopterPlan, HelicopterRow, MeshRow, PILE_QUERY_STRIDE, PilePlan, PileStudy,
+    Progress, SamePosesPlan, StudyError, cut, helicopter, meshes, pile,
 };
 use crate::backend::Backend;
 use crate::mesh::{self, Mesh};
@@ -43,7 +43,13 @@ impl ComparePlan {
                 backends: vec![Backend::Stock, Backend::AabbOnly, Backend::Sbbk],
                 repeats: 2,
                 // The lowest heads reach the floor at step 27.
-                run: RunPlan { warm_up: 27, steps: 43, sample_every: 21, sample_size: 100 },
+                run: RunPlan {
+                    warm_up: 27,
+                    steps: 43,
+                    sample_every: 21,
+                    sample_size: 100,
+                    query_stride: PILE_QUERY_STRIDE,
+                },
                 same_poses: Some(SamePosesPlan {
                     backends: Backend::ALL,
                     repeats: 3,

@@ -32,6 +32,6 @@ pub use cut::{CutRow, CutStudy, Hierarchy, cut};
 pub use error::StudyError;
 pub use helicopter::{HelicopterPlan, HelicopterRow, helicopter};
 pub use meshes::{MeshRow, meshes};
-pub use pile::{PilePlan, PileRow, PileStudy, pile};
+pub use pile::{PILE_QUERY_STRIDE, PilePlan, PileRow, PileStudy, pile};
 pub use progress::Progress;
 pub use same_poses::{SamePosesPlan, SamePosesRow, same_poses};

@@ -7,6 +7,9 @@ use crate::backend::Backend;
 use crate::metrics::{ErrorCount, Run, RunPlan, Runner, StepTimes, Summary, WorldState};
 use crate::scene::{MonkeyPile, Scene, SceneError, SceneWorld};
 
+/// Of so many queries of a pile one is timed: thousands are left in each step of the large piles.
+pub const PILE_QUERY_STRIDE: u64 = 8;
+
 /// How often and how long to run a pile.
 #[derive(Clone, Debug)]
 pub struct PilePlan {
