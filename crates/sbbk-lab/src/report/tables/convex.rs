@@ -27,8 +27,8 @@ fn of_kinds(study: &Convex, kinds: &str, rows: Vec<ConvexRow>) -> Grid {
             "every other place or motion is asked with the mesh first".to_owned(),
             ratio_note(),
             "errors: lost + added + wrong depth, of the true contacts in all answers, against \
-             Parry's routine run afresh on every triangle (and part); 1 % of the prediction distance may go \
-             either way, depths are wrong from 5 % on"
+             Parry's routine run afresh on every triangle (and part); added is what Parry's own distance denies, too; \
+             1 % of the prediction distance may go either way, depths are wrong from 5 % on"
                 .to_owned(),
         ],
         ..race(&["shape", "places or motions"], &rows)

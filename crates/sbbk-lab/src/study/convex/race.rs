@@ -6,7 +6,7 @@ use glamx::Pose3;
 use rapier3d::geometry::{ContactManifold, SharedShape};
 use rapier3d::math::Real;
 
-use super::errors::Expected;
+use super::errors::{Expected, Posed};
 use crate::backend::SharedDispatcher;
 use crate::metrics::ErrorCount;
 use crate::study::contacts::{Contest, Measured, Memory};
@@ -60,9 +60,10 @@ impl Course<'_> {
                 if is_mesh_first(index) { (one, two) } else { (two, one) }
             };
             for pose in poses {
-                let (Self { mesh, shape, prediction, .. }, pos12) = (self, pos12(index, pose));
+                let &Self { mesh, shape, prediction, .. } = self;
+                let (pos12, is_mesh_first) = (pos12(index, pose), is_mesh_first(index));
                 let expected =
-                    Expected::new(mesh, shape, &pos12, *prediction, is_mesh_first(index));
+                    Expected::new(Posed { mesh, shape, pos12, is_mesh_first }, prediction);
                 for side in 0..2 {
                     self.ask(&mut memories[side], &contest.dispatchers[side], index, pose);
                     errors[side] += expected.judge(&memories[side].manifolds, subshapes);
