@@ -333,6 +333,28 @@ fn edits_forth_and_back_are_seen() {
     assert!((seen[0] - seen[1]).abs() > 0.01, "{seen:?}");
 }
 
+/// Would catch an answer that is proved by triangles that have moved, or denied by a tree of other vertices: bumps that come and go
+/// on a ball, all over it, and a probe that meets some of them.
+#[test]
+fn bumps_come_and_go_under_a_sensor() {
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(5);
+    let smooth = shape(&mesh::ball(1.0, 8));
+    let (mut edited, probe) = (smooth.clone(), shape(&mesh::ball(0.3, 3)));
+    let place = Pose3::translation(1.35, 0.0, 0.0);
+    let (mut met, mut missed) = (0, 0);
+    for _ in 0..300 {
+        let vertex = random.rand_range(0..smooth.vertices().len() as u32) as usize;
+        let height = if random.rand_float() < 0.3 { 1.2 } else { 1.0 };
+        edited.update_vertices(|vertices| vertices[vertex] = height * smooth.vertices()[vertex]);
+        let answer = dispatcher.intersection_test(&place, &edited, &probe).unwrap();
+        let truth = least([&edited, &probe], &place, 0.01) <= 0.0;
+        assert_eq!(answer.intersecting, truth);
+        *(if truth { &mut met } else { &mut missed }) += 1;
+    }
+    assert!(met > 20 && missed > 20, "{met} met, {missed} missed");
+}
+
 /// Poses and velocities that are no numbers: nothing is found, and nothing panics.
 #[test]
 fn numbers_that_are_none() {

@@ -14,7 +14,7 @@ use sbbk_core::tree::{BuildError, Tree};
 
 use crate::mesh::{PreparedRef, TreeCache};
 use crate::pair::{Answer, CompoundPair, ConvexPair, ConvexShape, FieldPair, MeshPair, Question};
-use crate::query::Trees;
+use crate::query::{Trees, intersection};
 use crate::stats::QueryCounters;
 use crate::{ContactGenerator, SbbkConfig, SbbkStats, TriangleContacts};
 
@@ -67,11 +67,20 @@ impl SbbkDispatcher {
 
     /// The trees for a query without manifolds; `None` if Parry must answer.
     fn trees(&self, g1: &dyn Shape, g2: &dyn Shape) -> Option<Trees> {
-        let trees = Trees::of(&self.cache, [rigid_mesh(g1)?, rigid_mesh(g2)?]);
-        if trees.is_none() {
+        self.of_rigid_meshes([g1, g2], Trees::of)
+    }
+
+    /// What a query without manifolds finds about two rigid meshes; `None` if Parry must answer.
+    fn of_rigid_meshes<T>(
+        &self,
+        [g1, g2]: [&dyn Shape; 2],
+        find: impl FnOnce(&Arc<TreeCache>, [&TriMesh; 2]) -> Option<T>,
+    ) -> Option<T> {
+        let found = find(&self.cache, [rigid_mesh(g1)?, rigid_mesh(g2)?]);
+        if found.is_none() {
             self.counters.add_unsupported();
         }
-        trees
+        found
     }
 
     /// The contacts of a pair of shapes, if SBBK answers for them.
@@ -233,8 +242,10 @@ impl QueryDispatcher for SbbkDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
-        match self.trees(g1, g2) {
-            Some(trees) => Ok(trees.intersection(pos12)),
+        let found =
+            self.of_rigid_meshes([g1, g2], |cache, meshes| intersection(cache, meshes, pos12));
+        match found {
+            Some(answer) => Ok(answer),
             None => DefaultQueryDispatcher.intersection_test(pos12, g1, g2),
         }
     }

@@ -241,6 +241,20 @@ impl PreparedRef {
         self.entry.vertices.get().is_some_and(|kept| bytes(kept) == bytes(mesh.vertices()))
     }
 
+    /// Whether the corners of one triangle are those kept.
+    pub(crate) fn has_triangle_of(&self, mesh: &TriMesh, triangle: u32) -> bool {
+        let corner = |vertices: &[Vector], index: u32| {
+            vertices.get(index as usize).map(|x| x.to_array().map(f32::to_bits))
+        };
+        let is_kept = |kept: &[Vector], index| {
+            corner(kept, index).is_some() && corner(kept, index) == corner(mesh.vertices(), index)
+        };
+        let corners = mesh.indices().get(triangle as usize);
+        self.entry.vertices.get().zip(corners).is_some_and(|(kept, corners)| {
+            kept.len() == mesh.vertices().len() && corners.iter().all(|&i| is_kept(kept, i))
+        })
+    }
+
     pub(crate) fn get(&self) -> &PreparedMesh {
         match self.entry.prepared.get() {
             Some(Ok(prepared)) => prepared,

@@ -9,6 +9,9 @@
 //! Comparing 10,000 vertices takes 2.7 µs, 24 bytes a vertex of sequential memory. A hash (xxh3, built for SSE2) reads half of that and took
 //! 7 µs; the boolean query of two heads of 20,000 triangles that are near takes 2.4.
 //!
+//! Two triangles that meet need no such comparison: if both are where they were, they meet in the meshes of now, whatever other vertices
+//! have done. So a query that such a pair answers asks the trees first ([`Trees::remembered`]).
+//!
 //! Each thread remembers the last few meshes it asked about. Only a mesh that is not among
 //! them costs a hash of all content and the lock of the cache, or its tree.
 
@@ -38,23 +41,31 @@ thread_local! {
 }
 
 impl Memory {
-    /// The prepared mesh, at the front of the memory; `None` if it cannot have a tree.
-    fn recall(&mut self, cache: &Arc<TreeCache>, mesh: &TriMesh) -> Option<PreparedRef> {
-        let token = MeshToken::of(mesh);
+    /// A prepared mesh with this token that fits, then at the front of the memory.
+    fn recall(
+        &mut self,
+        cache: &Arc<TreeCache>,
+        token: MeshToken,
+        fits: impl Fn(&PreparedRef) -> bool,
+    ) -> Option<PreparedRef> {
         let is_it = |(known, prepared): &(MeshToken, PreparedRef)| {
-            *known == token && prepared.is_from(cache) && prepared.has_vertices_of(mesh)
+            *known == token && prepared.is_from(cache) && fits(prepared)
         };
-        match self.recent.iter().position(is_it) {
-            Some(0) => {}
-            Some(place) => self.recent[..=place].rotate_right(1),
-            None => {
-                let prepared = cache.noting(mesh, cache.prepare(mesh))?;
-                self.recent.truncate(REMEMBERED - 1);
-                prepared.keep_vertices(mesh);
-                self.recent.insert(0, (token, prepared));
-            }
-        }
+        let place = self.recent.iter().position(is_it)?;
+        self.recent[..=place].rotate_right(1);
         Some(self.recent[0].1.clone())
+    }
+
+    /// The prepared mesh; `None` if it cannot have a tree.
+    fn prepare(&mut self, cache: &Arc<TreeCache>, mesh: &TriMesh) -> Option<PreparedRef> {
+        let token = MeshToken::of(mesh);
+        self.recall(cache, token, |prepared| prepared.has_vertices_of(mesh)).or_else(|| {
+            let prepared = cache.noting(mesh, cache.prepare(mesh))?;
+            prepared.keep_vertices(mesh);
+            self.recent.truncate(REMEMBERED - 1);
+            self.recent.insert(0, (token, prepared.clone()));
+            Some(prepared)
+        })
     }
 }
 
@@ -67,15 +78,36 @@ impl Trees {
         if cache.is_unsupported(&meshes) {
             return None;
         }
+        Self::each(meshes, |memory, mesh| memory.prepare(cache, mesh))
+    }
+
+    /// The trees that the meshes had of late. Vertices may have moved since.
+    pub(super) fn remembered(cache: &Arc<TreeCache>, meshes: [&TriMesh; 2]) -> Option<Self> {
+        Self::each(meshes, |memory, mesh| memory.recall(cache, MeshToken::of(mesh), |_| true))
+    }
+
+    fn each(
+        [mesh1, mesh2]: [&TriMesh; 2],
+        tree_of: impl Fn(&mut Memory, &TriMesh) -> Option<PreparedRef>,
+    ) -> Option<Self> {
         MEMORY.with_borrow_mut(|memory| {
-            let tree1 = memory.recall(cache, meshes[0])?;
-            let tree2 = if std::ptr::eq(meshes[0], meshes[1]) {
-                tree1.clone()
-            } else {
-                memory.recall(cache, meshes[1])?
-            };
+            let tree1 = tree_of(memory, mesh1)?;
+            let is_same = std::ptr::eq(mesh1, mesh2);
+            let tree2 = if is_same { tree1.clone() } else { tree_of(memory, mesh2)? };
             Some(Self([tree1, tree2]))
         })
+    }
+
+    /// Whether the trees are of the vertices that the meshes have now.
+    pub(super) fn are_of(&self, [mesh1, mesh2]: [&TriMesh; 2]) -> bool {
+        let [tree1, tree2] = &self.0;
+        let is_same = std::ptr::eq(mesh1, mesh2);
+        tree1.has_vertices_of(mesh1) && (is_same || tree2.has_vertices_of(mesh2))
+    }
+
+    /// Whether these triangles of the meshes are where they are in the trees.
+    pub(super) fn have(&self, meshes: [&TriMesh; 2], triangles: [u32; 2]) -> bool {
+        (0..2).all(|i| self.0[i].has_triangle_of(meshes[i], triangles[i]))
     }
 
     /// Both trees.

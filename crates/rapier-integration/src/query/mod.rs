@@ -8,3 +8,4 @@ mod lookup;
 mod proximity;
 
 pub(crate) use lookup::Trees;
+pub(crate) use proximity::intersection;

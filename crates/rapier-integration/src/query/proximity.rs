@@ -1,11 +1,44 @@
 //! Distance, closest points, intersection and the deepest contact.
 
+use std::sync::Arc;
+
 use parry3d::math::{Pose, Real};
 use parry3d::query::{ClosestPoints, Contact, ShapeDistance, ShapeIntersection};
+use parry3d::shape::TriMesh;
 use sbbk_core::query::{FoundPair, Goal, meeting, nearest};
 use sbbk_core::traverse::Placement;
 
 use super::lookup::Trees;
+use crate::mesh::TreeCache;
+
+/// Whether the surfaces of two meshes meet, and where: one of the pairs of triangles that do. `None` if a mesh cannot have a tree.
+pub(crate) fn intersection(
+    cache: &Arc<TreeCache>,
+    meshes: [&TriMesh; 2],
+    pos12: &Pose,
+) -> Option<ShapeIntersection> {
+    let placement = Placement::new(pos12);
+    if let Some(trees) = Trees::remembered(cache, meshes) {
+        let pair = trees.meeting(placement);
+        let holds = match &pair {
+            Some(pair) => trees.have(meshes, [pair.triangle1, pair.triangle2]),
+            None => trees.are_of(meshes),
+        };
+        if holds {
+            return Some(answer(pair));
+        }
+    }
+    Some(answer(Trees::of(cache, meshes)?.meeting(placement)))
+}
+
+fn answer(meeting: Option<FoundPair>) -> ShapeIntersection {
+    match meeting {
+        Some(FoundPair { triangle1, triangle2, .. }) => {
+            ShapeIntersection::new(true).with_subshapes(triangle1, triangle2)
+        }
+        None => ShapeIntersection::new(false),
+    }
+}
 
 impl Trees {
     fn nearest(&self, placement: Placement, limit: Real, goal: Goal) -> Option<FoundPair> {
@@ -24,15 +57,8 @@ impl Trees {
         }
     }
 
-    /// Whether the surfaces meet, and where: one of the pairs of triangles that do.
-    pub(crate) fn intersection(&self, pos12: &Pose) -> ShapeIntersection {
-        let placement = Placement::new(pos12);
-        match self.search(|scratch| meeting(self.both(), placement, scratch)) {
-            Some(FoundPair { triangle1, triangle2, .. }) => {
-                ShapeIntersection::new(true).with_subshapes(triangle1, triangle2)
-            }
-            None => ShapeIntersection::new(false),
-        }
+    fn meeting(&self, placement: Placement) -> Option<FoundPair> {
+        self.search(|scratch| meeting(self.both(), placement, scratch))
     }
 
     /// The closest points, each in the frame of its mesh.
