@@ -44,7 +44,7 @@ thread_local! {
 impl MeshPair<'_> {
     /// Whether the boxes around the meshes meet, as stock Parry tests them first. Asked before there are trees.
     fn root_boxes_meet(&self) -> bool {
-        let [Some(root1), Some(root2)] = [self.mesh1, self.mesh2].map(root_box) else {
+        let (Some(root1), Some(root2)) = (root_box(self.mesh1), root_box(self.mesh2)) else {
             return true;
         };
         let rounding = 1e-5 * (root1.half_extents().length() + root1.center().length());
@@ -54,9 +54,8 @@ impl MeshPair<'_> {
 
     /// Whether Parry walks mesh 2 first: it does so if its box is larger.
     fn is_flipped(&self) -> bool {
-        let [size1, size2] = [self.mesh1, self.mesh2]
-            .map(|mesh| mesh.bvh().root_aabb().half_extents().length_squared());
-        size1 < size2
+        let size = |mesh: &TriMesh| mesh.bvh().root_aabb().half_extents().length_squared();
+        size(self.mesh1) < size(self.mesh2)
     }
 
     /// The pose that stock Parry passes on: bit for bit, it inverts the pose twice if it does not swap the meshes.

@@ -9,6 +9,7 @@
 use glamx::{DVec3, Vec3};
 use wide::f32x4;
 
+use super::lane::each;
 use super::lanes;
 use super::separation::{Corners, LeafFrame, near};
 use crate::traverse::Placement;
@@ -38,8 +39,7 @@ impl PlacedTest {
         let origin = placement.to_frame1(centre, Vec3::ZERO).as_vec3();
         let translation: DVec3 = placement.translation - origin.as_dvec3();
         let local = Placement { translation, ..*placement };
-        let scale =
-            [0, 1, 2].map(|i| local.rotation.row(i).length()).into_iter().fold(0.0, f64::max);
+        let scale = each(|i| local.rotation.row(i).length()).into_iter().fold(0.0, f64::max);
         let size2 = translation.abs().max_element() as f32 + 2.0 * scale as f32 * magnitude;
         Self { frame: LeafFrame::at(&local), origin, margin: margin.max(0.0), size2 }
     }
@@ -57,10 +57,10 @@ impl PlacedBatch<'_> {
     #[inline]
     pub(crate) fn near(&self, triangle: &[Vec3; 3]) -> u32 {
         let PlacedTest { frame, origin, margin, size2 } = self.test;
-        let corners = triangle.map(|corner| corner - origin);
+        let corners = each(|i| triangle[i] - origin);
         let size1 = corners[0].abs().max(corners[1].abs()).max(corners[2].abs()).max_element();
         let frame = frame.with_margin(*margin, gamma(18) * (size1 + size2));
-        let one = Corners::new(corners.map(|corner| corner.to_array().map(f32x4::splat)));
+        let one = Corners::new(each(|i| each(|axis| f32x4::splat(corners[i][axis]))));
         near(&frame, &one, &self.corners).to_bitmask() & self.used
     }
 }

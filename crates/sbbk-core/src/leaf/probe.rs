@@ -58,7 +58,7 @@ impl<'a, S: Convex> ProbeTest<'a, S> {
         let (body, centre, is_exact, size) = match probe.outline {
             Outline::RoundBox { centre, half_lengths, radius, is_exact } => {
                 // Rounded up, so that the body still contains the shape.
-                let half_lengths = half_lengths.to_array().map(|x| (x as f32).next_up());
+                let half_lengths = each(|i| (half_lengths[i] as f32).next_up());
                 let radius = (radius as f32).next_up();
                 let size = half_lengths.into_iter().fold(radius, |sum, x| sum + x);
                 (Body::RoundBox { half_lengths, radius }, centre, is_exact, size)
@@ -73,7 +73,7 @@ impl<'a, S: Convex> ProbeTest<'a, S> {
         let largest = offset.abs().max_element() as f32 + 2.0 * scale * probe.magnitude;
         Self {
             shape: probe.shape,
-            rows: [0, 1, 2].map(|i| rotation.row(i).as_vec3().to_array()),
+            rows: each(|i| rotation.row(i).as_vec3().to_array()),
             offset: offset.as_vec3().to_array(),
             body,
             is_exact,
@@ -107,11 +107,11 @@ impl<'a, S: Convex> ProbeTest<'a, S> {
         while near != 0 {
             let lane = near.trailing_zeros() as usize;
             near &= near - 1;
-            let of_lane = |v: V3<f32x4>| Vec3::from_array(v.map(|x| x.to_array()[lane]));
+            let of_lane = |v: V3<f32x4>| Vec3::from_array(each(|i| v[i].to_array()[lane]));
             let mut distance = f64::from(distances.to_array()[lane]);
             let mut axis = of_lane(best.axis);
             if !self.is_exact {
-                let corners = corners.map(|corner| of_lane(corner).as_dvec3());
+                let corners = each(|i| of_lane(corners[i]).as_dvec3());
                 let [a, b, c] = corners;
                 for direction in [axis.as_dvec3(), (b - a).cross(c - a)] {
                     // Away from the middle of the shape.

@@ -42,7 +42,7 @@ impl LeafFrame {
     /// Without a margin.
     pub(super) fn at(placement: &Placement) -> Self {
         Self {
-            rotation: [0, 1, 2].map(|i| placement.rotation.row(i).as_vec3().to_array()),
+            rotation: each(|i| placement.rotation.row(i).as_vec3().to_array()),
             translation: placement.translation.as_vec3().to_array(),
             rounding: 0.0,
             margin: 0.0,

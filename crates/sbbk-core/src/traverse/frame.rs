@@ -3,6 +3,7 @@ use wide::f32x4;
 
 use super::correspondence::Correspondence;
 use super::placement::Placement;
+use crate::leaf::lane::each;
 use crate::tree::Tree;
 use crate::volumes::rounding::gamma;
 use crate::volumes::{DirectionSet, Directions};
@@ -49,10 +50,10 @@ pub(super) struct BoxAxes {
 
 impl BoxAxes {
     fn new(matrix: DMat3, margin: f32) -> Self {
-        let rows = [0, 1, 2].map(|i| matrix.row(i).as_vec3().to_array());
+        let rows = each(|i| matrix.row(i).as_vec3().to_array());
         Self {
-            rows: rows.map(|row| row.map(f32x4::splat)),
-            absolute_rows: rows.map(|row| row.map(|x| f32x4::splat(x.abs()))),
+            rows: each(|i| each(|j| f32x4::splat(rows[i][j]))),
+            absolute_rows: each(|i| each(|j| f32x4::splat(rows[i][j].abs()))),
             margin: f32x4::splat(margin),
         }
     }
@@ -74,9 +75,8 @@ impl<const AXES: usize> PairFrame<AXES> {
         let Placement { rotation, translation, inverse } = placement;
         let translation = translation.as_vec3();
         // A row of the inverse is 1/s long: distances along it shrink by that.
-        let inverse_scale =
-            [0, 1, 2].map(|i| inverse.row(i).length()).into_iter().fold(0.0, f64::max);
-        let scale = [0, 1, 2].map(|i| rotation.row(i).length()).into_iter().fold(0.0, f64::max);
+        let inverse_scale = each(|i| inverse.row(i).length()).into_iter().fold(0.0, f64::max);
+        let scale = each(|i| rotation.row(i).length()).into_iter().fold(0.0, f64::max);
 
         let (m1, m2) = (tree1.magnitude(), tree2.magnitude());
         let t = translation.abs().max_element();
@@ -88,7 +88,7 @@ impl<const AXES: usize> PairFrame<AXES> {
             margin,
             rounding,
             rounding2,
-            translation_lanes: translation.to_array().map(f32x4::splat),
+            translation_lanes: each(|i| f32x4::splat(translation[i])),
             axes1: BoxAxes::new(rotation, (margin + rounding).next_up()),
             axes2: BoxAxes::new(inverse, (margin2 + rounding2).next_up()),
             correspondence: None,
