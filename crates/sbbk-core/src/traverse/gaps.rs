@@ -233,16 +233,9 @@ mod tests {
     use glamx::{Pose3, Quat, Vec3};
 
     use super::*;
+    use crate::traverse::noise::point;
     use crate::traverse::{Inner, Outer};
     use crate::tree::{BuildOptions, LayerPlan, Tree};
-
-    fn noise(i: u32) -> f32 {
-        ((i as f32 * 12.9898).sin() * 43758.547).fract().abs()
-    }
-
-    fn point(i: u32) -> Vec3 {
-        Vec3::new(noise(3 * i), noise(3 * i + 1), noise(3 * i + 2))
-    }
 
     /// Two triangles under their roots, and those of the other tree: no gap, over all axes or on one, is more than the distance of
     /// the corners that it is between. Would catch a wrong sign, lane, length of a slab or unit, and a bound that is

@@ -13,6 +13,8 @@ mod descend;
 mod expand;
 mod frame;
 mod gaps;
+#[cfg(test)]
+mod noise;
 mod ordered_overlap;
 mod overlap;
 mod placement;

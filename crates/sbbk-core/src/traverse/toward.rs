@@ -120,16 +120,9 @@ mod tests {
     use glamx::{Pose3, Quat, Vec3};
 
     use super::*;
+    use crate::traverse::noise::point;
     use crate::traverse::{Inner, Outer};
     use crate::tree::{BuildOptions, LayerPlan, Slot, Tree};
-
-    fn noise(i: u32) -> f32 {
-        ((i as f32 * 12.9898).sin() * 43758.547).fract().abs()
-    }
-
-    fn point(i: u32) -> Vec3 {
-        Vec3::new(noise(3 * i), noise(3 * i + 1), noise(3 * i + 2))
-    }
 
     /// Gaps of nodes and of leaves along any direction are no more than what the corners below them are apart along it, computed
     /// in f64. Would catch a wrong sign, slab, lane or frame, a rounding that is too small, and a bound of no use.
