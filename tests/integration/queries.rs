@@ -355,6 +355,28 @@ fn bumps_come_and_go_under_a_sensor() {
     assert!(met > 20 && missed > 20, "{met} met, {missed} missed");
 }
 
+/// Would catch a mesh that is taken for one that is gone, whose memory it got: the same vertices, and a triangle, not the same each time,
+/// that lies elsewhere.
+#[test]
+fn a_mesh_in_the_place_of_another_is_not_that_one() {
+    let dispatcher = SbbkDispatcher::default();
+    let ball = mesh::ball(1.0, 8);
+    let probe = shape(&mesh::ball(0.3, 3));
+    for i in 0..60 {
+        let smooth = shape(&ball);
+        let mut triangles = smooth.indices().to_vec();
+        let moved = (7 * i) % triangles.len();
+        triangles[moved] = triangles[(moved + triangles.len() / 2) % triangles.len()];
+        let holed = TriMesh::new(smooth.vertices().to_vec(), triangles).unwrap();
+        // Before the middle of the triangle that is missing.
+        let at = smooth.triangle(moved as u32).center() * 1.31;
+        let place = Pose3::from_translation(at);
+        let distance = dispatcher.distance(&place, &holed, &probe).unwrap().distance;
+        let truth = least([&holed, &probe], &place, 0.5).max(0.0);
+        assert!((distance - truth).abs() < 1e-5, "{distance}, truth {truth}");
+    }
+}
+
 /// Poses and velocities that are no numbers: nothing is found, and nothing panics.
 #[test]
 fn numbers_that_are_none() {

@@ -11,8 +11,9 @@
 //! Nothing else in a scene changes: colliders stay plain triangle meshes. Each pair of meshes is answered from
 //! [trees](sbbk_core::tree) of a bounding sphere, AABBs and k-DOPs, descended together, with
 //! [exact contacts](sbbk_core::contact) of the triangles they find; a mesh and a convex shape from the mesh's tree, with
-//! Parry's contacts; a mesh and a height field from the mesh's tree and the cells under it; every other pair goes to Parry's own dispatcher. Rapier's behaviour stays that of Rapier: prediction distance, contact skins, internal edges,
-//! recycling and clustering work as before.
+//! Parry's contacts; a mesh and a compound part by part; a mesh and a height field from the mesh's tree and the cells
+//! under it; every other pair goes to Parry's own dispatcher. Rapier's behaviour stays that of Rapier: prediction distance,
+//! contact skins, internal edges, recycling and clustering work as before.
 //!
 //! * [`SbbkConfig`]: the layers of the trees, whose contact generator, how much memory unused trees may keep.
 //! * [`SbbkDispatcher::prepare`] builds a tree at load time; [`SbbkDispatcher::stats`] says what was built and done.
@@ -62,7 +63,8 @@
 //! | `cast_shapes_nonlinear` | the same | `queries`: `nonlinear_casts_stop_at_the_first_impact`; `nonlinear`: `casts_from_contact_are_true`, `casts_from_contact_are_like_stock` |
 //!
 //! Of all other pairs, deformable meshes among them, these queries are Parry's (`others_are_stocks`). As hosts keep no state for them, each
-//! hashes the vertices of its meshes to know their trees, in time that grows with their number; the first one builds the trees,
+//! compares vertices and triangles of its meshes with copies to know their trees, in time that grows with their number (a positive
+//! `intersection_test` only those two that meet); the first one builds the trees,
 //! unless [`SbbkDispatcher::prepare`] did, and each thread keeps those of the last eight meshes it asked about.
 //!
 //! # Hosts

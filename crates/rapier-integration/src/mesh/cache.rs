@@ -7,12 +7,11 @@ use std::collections::{HashMap, VecDeque};
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-use parry3d::math::Vector;
 use parry3d::shape::{CompositeShape, TriMesh};
 use sbbk_core::tree::{BuildError, BuildOptions};
 
 use super::deformable::{DeformableCounts, DeformableTree, DeformableTrees};
-use super::identity::{ContentHash, DeformedContent};
+use super::identity::{ContentCopy, ContentHash, DeformedContent};
 use super::prepared::PreparedMesh;
 use super::unsupported::Unsupported;
 
@@ -40,8 +39,8 @@ struct Entries {
 struct Entry {
     content: ContentHash,
     prepared: OnceLock<Result<PreparedMesh, BuildError>>,
-    /// For [`PreparedRef::has_vertices_of`], from when it is first asked.
-    vertices: OnceLock<Box<[Vector]>>,
+    /// Of the mesh, from the first [`PreparedRef::keep_content`] on.
+    content_copy: OnceLock<ContentCopy>,
     /// Living [`PreparedRef`]s. Rises from zero under the lock only.
     users: AtomicUsize,
 }
@@ -50,7 +49,7 @@ impl Entry {
     fn bytes(&self) -> usize {
         match self.prepared.get() {
             Some(Ok(prepared)) => {
-                prepared.bytes() + self.vertices.get().map_or(0, |v| size_of_val(&**v))
+                prepared.bytes() + self.content_copy.get().map_or(0, ContentCopy::bytes)
             }
             _ => 0,
         }
@@ -143,8 +142,8 @@ impl TreeCache {
     fn acquire(self: &Arc<Self>, content: ContentHash) -> PreparedRef {
         let mut entries = self.lock();
         let entry = entries.by_content.entry(content).or_insert_with(|| {
-            let (prepared, vertices) = (OnceLock::new(), OnceLock::new());
-            Arc::new(Entry { content, prepared, vertices, users: AtomicUsize::new(0) })
+            let (prepared, content_copy) = (OnceLock::new(), OnceLock::new());
+            Arc::new(Entry { content, prepared, content_copy, users: AtomicUsize::new(0) })
         });
         let entry = Arc::clone(entry);
         if entry.users.fetch_add(1, Ordering::AcqRel) == 0
@@ -230,29 +229,19 @@ impl PreparedRef {
         Arc::ptr_eq(&self.cache, cache)
     }
 
-    /// Copies the vertices of the mesh that this has just been prepared for, if nobody has yet.
-    pub(crate) fn keep_vertices(&self, mesh: &TriMesh) {
-        self.entry.vertices.get_or_init(|| mesh.vertices().into());
+    /// Copies vertices and triangles of the mesh that this has just been prepared for, if nobody has yet.
+    pub(crate) fn keep_content(&self, mesh: &TriMesh) {
+        self.entry.content_copy.get_or_init(|| ContentCopy::of(mesh));
     }
 
-    /// Whether the vertices of a mesh are, bit for bit, those kept by [`keep_vertices`](Self::keep_vertices).
-    pub(crate) fn has_vertices_of(&self, mesh: &TriMesh) -> bool {
-        let bytes = |vertices| -> &[u8] { bytemuck::cast_slice::<Vector, u8>(vertices) };
-        self.entry.vertices.get().is_some_and(|kept| bytes(kept) == bytes(mesh.vertices()))
+    /// Whether vertices and triangles of a mesh are, bit for bit, those kept by [`keep_content`](Self::keep_content).
+    pub(crate) fn has_content_of(&self, mesh: &TriMesh) -> bool {
+        self.entry.content_copy.get().is_some_and(|copy| copy.is_of(mesh))
     }
 
-    /// Whether the corners of one triangle are those kept.
+    /// The same for a single triangle.
     pub(crate) fn has_triangle_of(&self, mesh: &TriMesh, triangle: u32) -> bool {
-        let corner = |vertices: &[Vector], index: u32| {
-            vertices.get(index as usize).map(|x| x.to_array().map(f32::to_bits))
-        };
-        let is_kept = |kept: &[Vector], index| {
-            corner(kept, index).is_some() && corner(kept, index) == corner(mesh.vertices(), index)
-        };
-        let corners = mesh.indices().get(triangle as usize);
-        self.entry.vertices.get().zip(corners).is_some_and(|(kept, corners)| {
-            kept.len() == mesh.vertices().len() && corners.iter().all(|&i| is_kept(kept, i))
-        })
+        self.entry.content_copy.get().is_some_and(|copy| copy.has_triangle_of(mesh, triangle))
     }
 
     pub(crate) fn get(&self) -> &PreparedMesh {

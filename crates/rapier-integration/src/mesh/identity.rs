@@ -22,6 +22,7 @@
 
 use std::hash::Hasher;
 
+use parry3d::math::Vector;
 use parry3d::shape::{TriMesh, TriMeshFlags};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64, xxh3_128};
 
@@ -44,12 +45,50 @@ impl ContentHash {
     /// All but where the vertices are.
     fn add_topology(mesh: &TriMesh, hasher: &mut Xxh3) {
         hasher.write_usize(mesh.vertices().len());
-        let normals = TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED | TriMeshFlags::FIX_INTERNAL_EDGES;
-        hasher.write_u16((mesh.flags() & normals).bits());
+        // What a prepared mesh depends on: normal cones, and what becomes of a mesh that is not finite.
+        let flags = TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED
+            | TriMeshFlags::FIX_INTERNAL_EDGES
+            | TriMeshFlags::DEFORMABLE;
+        hasher.write_u16((mesh.flags() & flags).bits());
         hasher.update(bytemuck::cast_slice(mesh.indices()));
         for leaf in mesh.bvh().leaves(|_| true).take(Self::LEAVES) {
             hasher.write_u32(leaf);
         }
+    }
+}
+
+/// Vertices and triangles of a mesh, to be compared with those of another. For 10,000 vertices and 20,000 triangles that takes
+/// less than half as long as a hash of the vertices alone (xxh3, built for SSE2).
+pub(super) struct ContentCopy {
+    vertices: Box<[Vector]>,
+    triangles: Box<[[u32; 3]]>,
+}
+
+impl ContentCopy {
+    pub(super) fn of(mesh: &TriMesh) -> Self {
+        Self { vertices: mesh.vertices().into(), triangles: mesh.indices().into() }
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&*self.vertices) + size_of_val(&*self.triangles)
+    }
+
+    /// Whether both are the same, bit for bit.
+    pub(super) fn is_of(&self, mesh: &TriMesh) -> bool {
+        let bytes = |vertices| -> &[u8] { bytemuck::cast_slice::<Vector, u8>(vertices) };
+        bytes(&self.vertices) == bytes(mesh.vertices()) && *self.triangles == *mesh.indices()
+    }
+
+    /// Whether a triangle has the same corners, bit for bit.
+    pub(super) fn has_triangle_of(&self, mesh: &TriMesh, triangle: u32) -> bool {
+        let corners = |vertices: &[Vector], triangles: &[[u32; 3]]| {
+            let [a, b, c] = *triangles.get(triangle as usize)?;
+            let corner =
+                |index: u32| Some(vertices.get(index as usize)?.to_array().map(f32::to_bits));
+            Some([corner(a)?, corner(b)?, corner(c)?])
+        };
+        let kept = corners(&self.vertices, &self.triangles);
+        kept.is_some() && kept == corners(mesh.vertices(), mesh.indices())
     }
 }
 

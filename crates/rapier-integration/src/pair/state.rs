@@ -110,6 +110,10 @@ where
 
     /// Begins a query. Of manifolds that are not those of the last query, somebody else's, nothing is known.
     pub(super) fn begin(&mut self, manifolds: &[ContactManifold<M, C>]) {
+        // There is something left only if the last query ended in a panic.
+        self.in_place = 0;
+        self.next.clear();
+        self.next_contacts.clear();
         self.least_spare = self.spare.len();
         if !self.is_of(manifolds) {
             self.contacts.clear();
@@ -250,5 +254,77 @@ impl<S: Clone + Send + Sync + 'static> WorkspaceData for Kept<S> {
 
     fn clone_dyn(&self) -> Box<dyn WorkspaceData> {
         Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use oorandom::Rand32;
+    use parry3d::math::Vector;
+    use parry3d::shape::PackedFeatureId;
+
+    use super::*;
+
+    type Manifold = ContactManifold<(), ()>;
+
+    fn manifold(name: u32, has_points: bool) -> Manifold {
+        let mut manifold = Manifold::with_data(name, 0, ());
+        let (at, id) = (Vector::ZERO, PackedFeatureId::UNKNOWN);
+        manifold.points.extend(has_points.then(|| TrackedContact::new(at, at, id, id, 0.0)));
+        manifold
+    }
+
+    /// Would catch manifolds that are lost, doubled or out of order when some stay in place, some go and some are new, and a
+    /// query before, ended by a panic, that is not over.
+    #[test]
+    fn what_is_kept_is_there_in_the_order_in_which_it_was_kept() {
+        let mut random = Rand32::new(3);
+        let mut history = History::<(), (), u32>::default();
+        let mut manifolds = Vec::new();
+        let (mut next_name, mut stayed, mut moved) = (0, 0, 0);
+        for _ in 0..3000 {
+            let is_lively = random.rand_float() < 0.6;
+            let is_cut_off = random.rand_float() < 0.05;
+            let mut chance = |share: f32| is_lively && random.rand_float() < share;
+            let before = manifolds.as_ptr();
+            history.begin(&manifolds);
+            let mut expected = Vec::new();
+            for place in 0..manifolds.len() {
+                if chance(0.1) {
+                    next_name += 1;
+                    let is_kept = !chance(0.3);
+                    history.keep(manifold(next_name, is_kept), next_name, &mut manifolds);
+                    expected.extend(is_kept.then_some(next_name));
+                }
+                let name = manifolds[place].subshape1;
+                if chance(0.1) {
+                    history.retire(std::mem::take(&mut manifolds[place]));
+                    continue;
+                }
+                if chance(0.1) {
+                    manifolds[place].points.clear();
+                } else {
+                    expected.push(name);
+                }
+                history.keep_at(place, name, &mut manifolds);
+            }
+            if is_cut_off {
+                // What a panic leaves; nobody says which manifolds are left then.
+                manifolds.clear();
+                continue;
+            }
+            if manifolds.len() < 8 {
+                next_name += 1;
+                history.keep(manifold(next_name, true), next_name, &mut manifolds);
+                expected.push(next_name);
+            }
+            history.end(&mut manifolds);
+            let names: Vec<u32> = manifolds.iter().map(|manifold| manifold.subshape1).collect();
+            assert_eq!(names, expected);
+            let contacts: Vec<u32> = history.contacts.iter().flatten().copied().collect();
+            assert_eq!(contacts, expected);
+            *(if manifolds.as_ptr() == before { &mut stayed } else { &mut moved }) += 1;
+        }
+        assert!(stayed > 300 && moved > 300, "{stayed} stayed, {moved} moved");
     }
 }

@@ -1,16 +1,12 @@
 //! The trees of two meshes, for queries that come without a workspace.
 //!
-//! Nothing tells such a query that a mesh was edited, and the [`MeshToken`] of the contact queries misses an edit of
-//! single vertices in place (`TriMesh::update_vertices`, `set_vertices`); Parry refits its boxes then, but a vertex may move within the
-//! boxes of all its triangles, so they need not change. So all vertices are compared with a copy each time. Parry has no way to
-//! edit single *indices*: what changes them (`reverse`, `append`, `set_flags`) changes all of them, the number of vertices, or
-//! the flags, which are in the token.
+//! Nothing tells such a query that a mesh was edited, or dropped and another one built in its place, and the [`MeshToken`] of the
+//! contact queries misses single vertices that moved (Parry refits its boxes then, but a vertex may move within the boxes of
+//! all its triangles) and single triangles that are others. So all of both are compared with a copy each time, 24 bytes a
+//! vertex and a triangle of sequential memory.
 //!
-//! Comparing 10,000 vertices takes 2.7 µs, 24 bytes a vertex of sequential memory. A hash (xxh3, built for SSE2) reads half of that and took
-//! 7 µs; the boolean query of two heads of 20,000 triangles that are near takes 2.4.
-//!
-//! Two triangles that meet need no such comparison: if both are where they were, they meet in the meshes of now, whatever other vertices
-//! have done. So a query that such a pair answers asks the trees first ([`Trees::remembered`]).
+//! Two triangles that meet need no such comparison: if both are where they were, they meet in the meshes of now, whatever else
+//! has changed. So a query that such a pair answers asks the trees first ([`Trees::remembered`]).
 //!
 //! Each thread remembers the last few meshes it asked about. Only a mesh that is not among
 //! them costs a hash of all content and the lock of the cache, or its tree.
@@ -59,9 +55,9 @@ impl Memory {
     /// The prepared mesh; `None` if it cannot have a tree.
     fn prepare(&mut self, cache: &Arc<TreeCache>, mesh: &TriMesh) -> Option<PreparedRef> {
         let token = MeshToken::of(mesh);
-        self.recall(cache, token, |prepared| prepared.has_vertices_of(mesh)).or_else(|| {
+        self.recall(cache, token, |prepared| prepared.has_content_of(mesh)).or_else(|| {
             let prepared = cache.noting(mesh, cache.prepare(mesh))?;
-            prepared.keep_vertices(mesh);
+            prepared.keep_content(mesh);
             self.recent.truncate(REMEMBERED - 1);
             self.recent.insert(0, (token, prepared.clone()));
             Some(prepared)
@@ -81,7 +77,7 @@ impl Trees {
         Self::each(meshes, |memory, mesh| memory.prepare(cache, mesh))
     }
 
-    /// The trees that the meshes had of late. Vertices may have moved since.
+    /// The trees that the meshes had of late. They may be of other vertices and triangles than the meshes have now.
     pub(super) fn remembered(cache: &Arc<TreeCache>, meshes: [&TriMesh; 2]) -> Option<Self> {
         Self::each(meshes, |memory, mesh| memory.recall(cache, MeshToken::of(mesh), |_| true))
     }
@@ -98,11 +94,11 @@ impl Trees {
         })
     }
 
-    /// Whether the trees are of the vertices that the meshes have now.
+    /// Whether the trees are of the vertices and triangles that the meshes have now.
     pub(super) fn are_of(&self, [mesh1, mesh2]: [&TriMesh; 2]) -> bool {
         let [tree1, tree2] = &self.0;
         let is_same = std::ptr::eq(mesh1, mesh2);
-        tree1.has_vertices_of(mesh1) && (is_same || tree2.has_vertices_of(mesh2))
+        tree1.has_content_of(mesh1) && (is_same || tree2.has_content_of(mesh2))
     }
 
     /// Whether these triangles of the meshes are where they are in the trees.

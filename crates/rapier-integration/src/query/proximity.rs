@@ -11,7 +11,8 @@ use sbbk_core::traverse::Placement;
 use super::lookup::Trees;
 use crate::mesh::TreeCache;
 
-/// Whether the surfaces of two meshes meet, and where: one of the pairs of triangles that do. `None` if a mesh cannot have a tree.
+/// Whether the surfaces of two meshes meet, and where: one of the pairs of triangles that do (after an edit it can be another one
+/// than a new dispatcher would name). `None` if a mesh cannot have a tree.
 pub(crate) fn intersection(
     cache: &Arc<TreeCache>,
     meshes: [&TriMesh; 2],

@@ -29,12 +29,13 @@ where
         lanes: u32,
     ) -> (u32, [f32; 4]) {
         let frame = &mut *self.0;
-        let meets = |gap: f32x4| gap.simd_le(f32x4::ZERO).to_bitmask();
+        // A gap that overflowed to NaN is kept.
+        let meets = |gap: f32x4| lanes & !gap.simd_gt(f32x4::ZERO).to_bitmask();
         let largest = |gaps: [f32x4; 3]| gaps[0].fast_max(gaps[1]).fast_max(gaps[2]);
 
         let (offset, reach) = frame.offset_and_reach(side1, side2);
         let in_frame1 = largest(each(|axis| offset[axis].abs() - reach[axis]));
-        if lanes & meets(in_frame1) == 0 {
+        if meets(in_frame1) == 0 {
             return (0, [0.0; 4]);
         }
         let axes2 = &frame.axes2;
@@ -45,7 +46,7 @@ where
             dot(&axes2.rows[axis], &offset).abs() - reach
         }));
         let gap = in_frame1.fast_max(in_frame2);
-        let meeting = lanes & meets(gap);
+        let meeting = meets(gap);
         let keys = gap.to_array();
         match side1.0.kdop.zip(side2.0.kdop) {
             Some((kdops1, kdops2)) if meeting != 0 => {

@@ -91,7 +91,7 @@ impl<'a> Generator<'a> {
     /// Candidates out of sight are skipped, and so are those that still are apart along the axis along which they last were. Of
     /// a triangle that does not touch, Parry's routine often knows such an axis.
     ///
-    /// A triangle that has a manifold is not skipped, and needs not be a candidate: what becomes of a manifold is for Parry
+    /// A triangle that has a manifold is not skipped, and need not be a candidate: what becomes of a manifold is for Parry
     /// to say, from the manifold and the pose. So nothing depends on what else is remembered.
     pub(super) fn update<M, C>(
         &self,

@@ -6,7 +6,8 @@
 //! only the axes that the triangle has a part in can beat that of the face, and the points are the triangle's corners,
 //! seen from the face. If another axis wins, or the triangle is not inside, Parry's routine is asked.
 //!
-//! Inside is by a share of the cuboid's size, so that no rounding makes an edge of the triangle cross the outline.
+//! Inside is by a share of the cuboid's size, so that no rounding makes an edge of the triangle cross the outline, and slivers are
+//! left to Parry's routine, in whose clip rounding can put a corner of the face into them.
 //!
 //! # Axes that need no test
 //!
@@ -18,6 +19,14 @@
 //!   most `s - (c - |s|)·m`, if the face opposite does not win. The products of an edge have `m >= |z|/l`. With
 //!   `c >= 2|s|`, `c >= H/128` and `|z| >= l/512` the gap is below `s` by `c/1024 >= 128·u·H`. Parry's sums lose below
 //!   `10·u·(2·H + |s| + l)`, and with `c >= 3l` that is below `30·u·H`.
+//!
+//! # Corners of the face
+//!
+//! Seen along the normal, let `A` be the area of the triangle and `L` its longest edge. A corner of the face is `c` or more away from it.
+//! If its barycentric coordinates were all above `-c/3L`, it would be in the triangle blown up by `1 + c/L` about its
+//! centroid, so nearer; one is below, and so one is at least 1/3. Parry looks at the signs of these times `2·A`, as signed areas that it
+//! has but for `20·u·L·H`: two differ if `A·c/L >= 64·u·L·H`. Where `2·A` is below 2⁻²³ it does not look, so that the product of two signed
+//! areas does not underflow.
 
 use glamx::Vec3;
 use parry3d::math::{Pose, Real};
@@ -36,6 +45,8 @@ const INSIDE_OF_DEPTH: Real = 2.0;
 const INSIDE_OF_EDGE_SQUARED: Real = 9.0;
 /// `(|z|/l)²`.
 const SLOPE_SQUARED: Real = 1.0 / (512.0 * 512.0);
+/// `2·A·c/(L²·H)`: `128·u`.
+const AREA: Real = 1.0 / 131_072.0;
 
 /// The face of a cuboid that a mesh is over.
 #[derive(Copy, Clone, Debug)]
@@ -53,7 +64,8 @@ pub(super) struct OverFace<'a> {
     corner: Vec3,
     edge_product: Vec3,
     denominator: Real,
-    least_inside: Real,
+    /// The sum of the half-lengths; NaN if there is no face, so that no triangle is inside.
+    size: Real,
     fid: PackedFeatureId,
     corner_ids: [PackedFeatureId; 3],
 }
@@ -69,14 +81,15 @@ impl<'a> OverFace<'a> {
         let above = point.abs() - cuboid.half_extents;
         let axis = above.max_position();
         let sign = Real::copysign(1.0, point[axis]);
-        let normal = sign * Vec3::AXES[axis];
+        let mut normal = Vec3::ZERO;
+        normal[axis] = sign;
         let face = cuboid.support_face(normal);
         let [a, b, c, _] = face.vertices;
         let edge_product = (c - b).cross(a - b);
         let denominator = -edge_product.dot(normal);
         // Parry takes a face as small as that for none.
-        let is_face = denominator.abs() > Real::EPSILON;
-        let size = if is_face { cuboid.half_extents.element_sum() } else { Real::INFINITY };
+        let is_face = denominator.abs() > Real::EPSILON && denominator.is_finite();
+        let size = if is_face { cuboid.half_extents.element_sum() } else { Real::NAN };
         Self {
             cuboid,
             poses: [*to_cuboid, *to_triangle],
@@ -87,7 +100,7 @@ impl<'a> OverFace<'a> {
             corner: a,
             edge_product,
             denominator,
-            least_inside: INSIDE_OF_SIZE * size,
+            size,
             fid: face.fid,
             corner_ids: [0, 1, 2].map(PackedFeatureId::vertex),
         }
@@ -154,7 +167,14 @@ impl<'a> OverFace<'a> {
         let inside = (half[j] - farthest[j]).min(half[k] - farthest[k]);
         let lowest = (a[i] * self.sign).min(b[i] * self.sign).min(c[i] * self.sign);
         let beats_faces = height > -inside && height > -lowest - half[i];
-        (beats_faces && inside >= self.least_inside).then_some(inside)
+        let (ab, bc, ca) = (b - a, c - b, a - c);
+        let longest_squared = ab.length_squared().max(bc.length_squared()).max(ca.length_squared());
+        let double_area = (ab[j] * bc[k] - ab[k] * bc[j]).abs();
+        // No comparison holds for a NaN.
+        let is_inside = beats_faces
+            && inside >= INSIDE_OF_SIZE * self.size
+            && double_area * inside >= AREA * longest_squared * self.size;
+        is_inside.then_some(inside)
     }
 
     /// Whether the products of the triangle's edges and those of the cuboid need no test.
@@ -188,11 +208,10 @@ mod tests {
         let of_point = |p: &TrackedContact<()>| {
             let [p1, p2] = [p.local_p1.to_array(), p.local_p2.to_array()];
             let floats = [p1[0], p1[1], p1[2], p2[0], p2[1], p2[2], p.dist];
-            // The sign of a zero tells nothing.
-            floats.map(|x| (x + 0.0).to_bits()).into_iter().chain([p.fid1.0, p.fid2.0])
+            floats.map(Real::to_bits).into_iter().chain([p.fid1.0, p.fid2.0])
         };
         let points = manifold.points.iter().flat_map(of_point);
-        let normals = normals.iter().flat_map(|n| n.to_array()).map(|x| (x + 0.0).to_bits());
+        let normals = normals.iter().flat_map(|n| n.to_array()).map(Real::to_bits);
         if manifold.points.is_empty() { vec![] } else { normals.chain(points).collect() }
     }
 
@@ -256,5 +275,42 @@ mod tests {
             touching += usize::from(touches);
         }
         assert!(touching > COUNT / 4, "{answered} answered, {touching} of them touching");
+    }
+
+    /// Would catch slivers, seen from the face, that are taken: walls in a plane with a corner of the face, in which Parry's clip may
+    /// find that corner by rounding.
+    #[test]
+    fn walls_toward_a_corner_are_parrys() {
+        let mut random = Rand32::new(8);
+        let mut unit = || random.rand_float() * 2.0 - 1.0;
+        let (mut answered, mut corners) = (0, 0);
+        for round in 0..200_000 {
+            let half = Vec3::new(30.0 + 20.0 * unit(), 1.0, 20.0 + 12.0 * unit());
+            let corner = Vec3::new(half.x.copysign(unit()), half.y, half.z.copysign(unit()));
+            let lean = if round % 3 == 0 { 1e-5 * unit() } else { 0.0 };
+            let mut at = || {
+                let along = 0.3 * unit();
+                let aside = Vec3::new(-corner.z, 0.0, corner.x) * lean * unit();
+                Vec3::new(corner.x * along, half.y + 0.3 * unit(), corner.z * along) + aside
+            };
+            let triangle = Triangle::new(at(), at(), at());
+            let cuboid = Cuboid::new(half);
+            answered += usize::from(compare(&cuboid, &triangle, &Pose::IDENTITY, false)[0]);
+            let mut parrys = Manifold::new();
+            let (pose, prediction) = (Pose::IDENTITY, 0.05);
+            contact_manifold_cuboid_triangle(
+                &pose,
+                &pose,
+                &cuboid,
+                &triangle,
+                None,
+                None,
+                prediction,
+                &mut parrys,
+                false,
+            );
+            corners += usize::from(parrys.points.len() > 3);
+        }
+        assert!(answered > 1000 && corners > 10, "{answered} answered, {corners} with a corner");
     }
 }

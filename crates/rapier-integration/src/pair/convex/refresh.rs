@@ -68,7 +68,8 @@ impl Generator<'_> {
 
     /// Parry's routine for the kind of shape, with the arguments that stock's calls end up with. Called by its own name:
     /// through the dispatcher both shapes are taken apart and put together again for each triangle, and its GJK
-    /// asks a triangle for support points through a table. A tenth to a quarter of a query.
+    /// asks a triangle for support points through a table. A tenth to a quarter of a query. Where triangles are over a face of a
+    /// cuboid, its contacts without it.
     fn ask_parry<M, C>(&self, triangle: &Triangle, index: u32, manifold: &mut ContactManifold<M, C>)
     where
         M: Default,
@@ -152,8 +153,8 @@ impl Generator<'_> {
         if self.flipped { normal } else { -(self.placement.rotation * normal.as_dvec3()).as_vec3() }
     }
 
-    /// How far a triangle and the shape are apart along the axis of the candidate, at most their distance; minus infinity if it has none. If it is out of
-    /// sight, what it can move until it is not is raised to what that tells.
+    /// How far a triangle and the shape are apart along the axis of the candidate, at most their distance; minus infinity if it
+    /// has none. If it is out of sight, what it can move until it is not is raised to what that tells.
     pub(super) fn gap(
         &self,
         corners: &Triangle,

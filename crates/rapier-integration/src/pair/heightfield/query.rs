@@ -6,7 +6,7 @@ use parry3d::query::{ContactManifold, ContactManifoldsWorkspace};
 use parry3d::shape::{HeightField, TriMesh};
 use sbbk_core::contact::FeaturePair;
 use sbbk_core::field::{FieldFrame, FieldScratch, descend_field};
-use sbbk_core::traverse::{Counters, Placement};
+use sbbk_core::traverse::{Counters, GREATEST_SLACK, Placement};
 use sbbk_core::volumes::Aabb;
 
 use super::field::{Field, FieldToken};
@@ -44,9 +44,6 @@ impl PairKind for MeshAndHeightField {
 
 /// The mesh, as far as it is known, and the field that the candidates are for.
 type KnownShapes = (KnownMesh, Option<FieldToken>);
-
-/// Greatest slack of candidates as a share of the prediction distance, as for two meshes.
-const GREATEST_SLACK: f64 = 1.0;
 
 thread_local! {
     static SCRATCH: RefCell<(FieldScratch, Scratch)> = RefCell::default();

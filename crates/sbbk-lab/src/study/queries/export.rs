@@ -9,7 +9,7 @@ use super::report::{Asked, Queries};
 use crate::mesh::Mesh;
 
 /// Writes `DIR/<mesh>.obj` and `DIR/queries.csv`: for each pose of each row the query, the place, the pose of mesh 2 in
-/// the frame of mesh 1, the median times of stock and SBBK over all poses of the row (µs), and their answers.
+/// the frame of mesh 1, the least times of stock and SBBK over all poses of the row (µs), and their answers.
 ///
 /// Errors: a file cannot be written.
 pub fn export(plan: &QueriesPlan, queries: &Queries, folder: &Path) -> Result<(), Error> {
@@ -37,8 +37,8 @@ pub fn export(plan: &QueriesPlan, queries: &Queries, folder: &Path) -> Result<()
                     q.y,
                     q.z,
                     q.w,
-                    stock.time.median,
-                    sbbk.time.median,
+                    stock.time.min,
+                    sbbk.time.min,
                     stock.answers[i].number(),
                     sbbk.answers[i].number(),
                 )?;
