@@ -59,8 +59,8 @@ impl MeshPair<'_> {
     }
 
     /// The pose that stock Parry passes on: bit for bit, it inverts the pose twice if it does not swap the meshes.
-    fn parrys_pose(&self) -> Pose {
-        if self.is_flipped() { *self.pos12 } else { self.pos12.inverse().inverse() }
+    fn parrys_pose(&self, flipped: bool) -> Pose {
+        if flipped { *self.pos12 } else { self.pos12.inverse().inverse() }
     }
 
     /// The trees of both meshes, from the state if they are known and still valid, refitted if a mesh has deformed.
@@ -118,21 +118,21 @@ impl Question for MeshPair<'_> {
             Plan::Descend { margin } | Plan::Reuse { margin } => margin,
             Plan::Nothing => self.prediction,
         };
-        let mut frame = PairFrame::at(trees, placement, margin);
         let flipped = self.is_flipped();
         SCRATCH.with_borrow_mut(|scratch| {
             if let Plan::Reuse { .. } = plan {
                 coherence.near(self.prediction, &mut scratch.candidates);
             } else {
+                let mut frame = PairFrame::at(trees, placement, margin);
                 collect(prepared, &mut frame, flipped, counters, scratch);
             }
             let generator = Generator {
                 shapes: Meshes { pair: self, prepared, flipped },
                 pos12: self.pos12,
-                placement: frame.placement(),
-                margin: frame.margin(),
+                placement: &placement,
+                margin,
                 prediction: self.prediction,
-                parrys_pose: self.parrys_pose(),
+                parrys_pose: self.parrys_pose(flipped),
                 contacts: self.contacts,
             };
             generator.update(scratch, coherence, history, manifolds);
