@@ -57,7 +57,7 @@ fn kinds() -> Vec<(&'static str, SharedShape, Who)> {
         ("height field", field(), Sbbk),
         ("compound", SharedShape::compound(part(SharedShape::ball(0.5))), Sbbk),
         ("compound of another kind", SharedShape::compound(part(field())), Parry),
-        ("polyline", SharedShape::polyline(line, None), Parry),
+        ("polyline", SharedShape::polyline(line, None), Sbbk),
         ("voxels", SharedShape::voxels_from_points(Vec3::splat(0.3), &ball.vertices), Parry),
     ]
 }

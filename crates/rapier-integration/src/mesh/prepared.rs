@@ -1,4 +1,3 @@
-use parry3d::query::ContactManifold;
 use parry3d::shape::{CompositeShape, TriMesh, TriMeshFlags, TrianglePseudoNormals};
 use sbbk_core::tree::{BuildError, BuildOptions, RefitCost, Tree};
 
@@ -56,17 +55,6 @@ impl PreparedMesh {
     #[inline]
     pub(crate) fn is_broken(&self, triangle: u32) -> bool {
         !self.broken.is_empty() && self.broken.binary_search(&triangle).is_ok()
-    }
-
-    /// Drops the manifolds of triangles that are broken, which Parry's routines must not be asked to bring up to date.
-    pub(crate) fn drop_broken<M, C>(
-        &self,
-        manifolds: &mut Vec<ContactManifold<M, C>>,
-        triangle: impl Fn(&ContactManifold<M, C>) -> u32,
-    ) {
-        if !self.broken.is_empty() {
-            manifolds.retain(|manifold| !self.is_broken(triangle(manifold)));
-        }
     }
 
     /// The place of a triangle in stock order. A number that is not a triangle's sorts last.

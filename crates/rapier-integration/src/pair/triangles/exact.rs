@@ -40,12 +40,12 @@ impl LocalTriangles {
     #[inline(always)]
     pub(super) fn contact(
         &self,
-        (margin, prediction): (Real, Real),
+        (margin, prediction): (f64, f64),
         last: Option<FeaturePair>,
         points: &mut ManifoldPoints,
     ) -> Option<TriangleContact> {
         let [t1, t2] = &self.corners;
-        manifold(t1, t2, (f64::from(margin), f64::from(prediction)), last, points)
+        manifold(t1, t2, (margin, prediction), last, points)
     }
 }
 
@@ -192,7 +192,8 @@ impl<C: Default + Copy> TriangleContacts<C> {
         let placement = Placement::new(pos12);
         let triangles = LocalTriangles::new(&placement, &triangles.map(|triangle| *triangle));
         let mut points = ManifoldPoints::new();
-        let contact = triangles.contact((prediction, prediction), self.features, &mut points);
+        let within = f64::from(prediction);
+        let contact = triangles.contact((within, within), self.features, &mut points);
         self.features = contact.map(|contact| contact.features);
         match contact {
             Some(contact) => fill(
