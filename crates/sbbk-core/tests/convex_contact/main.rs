@@ -1,9 +1,9 @@
 //! The contact of a triangle and a convex shape against brute force with other formulas.
 
 mod curved;
-//mod degenerate;
-//mod invariance;
-//mod lattice;
+mod degenerate;
+mod invariance;
+mod lattice;
 mod polytope;
 mod random;
 mod shape;

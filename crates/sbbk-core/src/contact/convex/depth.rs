@@ -51,7 +51,7 @@ pub(super) fn depth<S: SupportMap>(
         let reach = new.point.dot(face.normal);
         let is_proved = reach - face.distance <= slack + PROVED * reach.abs();
         if is_proved || best.is_none_or(|best| reach < best.depth) {
-            let on_triangle = point_below(&polytope, &face, difference.triangle, slack);
+            let on_triangle = point_below(&polytope, &face, difference.triangle, 100.0 * slack);
             best = Some(Depth { outward: face.normal, depth: reach, on_triangle, rounds });
         }
         if is_proved {
@@ -65,19 +65,15 @@ pub(super) fn depth<S: SupportMap>(
 }
 
 /// The point of the triangle at the foot of the origin on a face. Where the foot is beside the face,
-/// another one in the same plane holds it.
+/// another one, in nearly the same plane, holds it.
 fn point_below(polytope: &Polytope, face: &Face, corners: &[DVec3; 3], slack: f64) -> DVec3 {
     let foot = face.normal * face.distance;
     let (mut least, mut point) = polytope.nearest_to(foot, face, corners);
     if least > slack * slack {
         for other in polytope.faces() {
-            if (other.distance - face.distance).abs() <= slack
-                && other.normal.dot(face.normal) > 0.5
-            {
-                let (squared, candidate) = polytope.nearest_to(foot, other, corners);
-                if squared < least {
-                    (least, point) = (squared, candidate);
-                }
+            let (squared, candidate) = polytope.nearest_to(foot, other, corners);
+            if squared < least {
+                (least, point) = (squared, candidate);
             }
         }
     }

@@ -87,25 +87,7 @@ pub fn convex_contact<S: SupportMap>(
     shape: &S,
     margin: f64,
 ) -> Option<ConvexContact> {
-    let [a, b, c] = *triangle;
-    let extent = ((b - a).abs() + (c - a).abs()).element_sum();
-    if !(extent + a.abs().element_sum()).is_finite() {
-        return None;
-    }
-    let difference = Difference { triangle, shape };
-    let toward = toward_origin(&difference, triangle);
-    let size = extent + shape.support(-toward).abs().element_sum();
-    let contact = match search(&difference, toward, margin, size).outcome {
-        Outcome::Far => return None,
-        Outcome::Apart(simplex) => {
-            let distance = simplex.squared.sqrt();
-            let on_triangle = simplex.on_triangle(triangle);
-            ConvexContact::new(on_triangle, simplex.nearest / distance, distance)
-        }
-        Outcome::Crossing(tetrahedron) => crossing(depth(&difference, tetrahedron, size)?),
-        Outcome::Touching(simplex) => crossing(touching(&difference, &simplex, size)?),
-    };
-    (contact.distance <= margin && contact.is_finite()).then_some(contact)
+    find(triangle, shape, margin).filter(|contact| contact.distance <= margin)
 }
 
 /// As [`convex_contact`] for a shape with a rounded border: all that is within `radius` of a core.
@@ -117,8 +99,34 @@ pub fn round_contact<S: SupportMap>(
     margin: f64,
 ) -> Option<ConvexContact> {
     let ConvexContact { distance, normal, on_triangle, .. } =
-        convex_contact(triangle, core, margin + radius)?;
-    Some(ConvexContact::new(on_triangle, normal, distance - radius))
+        find(triangle, core, margin + radius)?;
+    let contact = ConvexContact::new(on_triangle, normal, distance - radius);
+    (contact.distance <= margin).then_some(contact)
+}
+
+/// The contact; None if farther than the margin by more than rounding.
+#[inline(always)]
+fn find<S: SupportMap>(triangle: &[DVec3; 3], shape: &S, margin: f64) -> Option<ConvexContact> {
+    let [a, b, c] = *triangle;
+    let extent = ((b - a).abs() + (c - a).abs()).element_sum();
+    if !(extent + a.abs().element_sum()).is_finite() {
+        return None;
+    }
+    let difference = Difference { triangle, shape };
+    let toward = toward_origin(&difference, triangle);
+    let start = shape.support(-toward);
+    let size = extent + start.abs().element_sum();
+    let contact = match search(&difference, toward, start, margin, size).outcome {
+        Outcome::Far => return None,
+        Outcome::Apart(simplex) => {
+            let distance = simplex.squared.sqrt();
+            let on_triangle = simplex.on_triangle(triangle);
+            ConvexContact::new(on_triangle, simplex.nearest / distance, distance)
+        }
+        Outcome::Crossing(tetrahedron) => crossing(depth(&difference, tetrahedron, size)?),
+        Outcome::Touching(simplex) => crossing(touching(&difference, &simplex, size)?),
+    };
+    contact.is_finite().then_some(contact)
 }
 
 fn crossing(Depth { outward, depth, on_triangle, .. }: Depth) -> ConvexContact {

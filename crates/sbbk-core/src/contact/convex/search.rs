@@ -20,6 +20,9 @@ const PROVED: f64 = 1.0e-12;
 /// Share of the size that rounding leaves open.
 const ROUNDING: f64 = 1.0e-15;
 
+/// Share of the size by which a bound must be beyond the margin to end the search.
+const BOUNDARY: f64 = 1.0e-13;
+
 /// Bodies whose distance is below this share of their size touch.
 pub(super) const TOUCHING: f64 = 1.0e-12;
 
@@ -41,21 +44,23 @@ pub(super) struct Search {
     pub rounds: u32,
 }
 
-/// `toward` leads from the triangle to somewhere in or near the shape; `size` is that of the pair.
+/// `toward` leads from the triangle to somewhere in or near the shape; `start` is the point of the
+/// shape that reaches farthest back along it; `size` is that of the pair.
 #[inline(always)]
 pub(super) fn search<S: SupportMap>(
     difference: &Difference<S>,
     toward: DVec3,
+    start: DVec3,
     margin: f64,
     size: f64,
 ) -> Search {
     let end = |outcome, rounds| Search { outcome, rounds };
-    let margin = margin.max(0.0);
-    let margin_squared = margin * margin;
-    let is_far = |bound: f64, squared: f64| bound > 0.0 && bound * bound > margin_squared * squared;
+    // Wider than the margin by more than rounding, so that the distance decides.
+    let reach = margin.max(0.0) + BOUNDARY * size;
+    let reach_squared = reach * reach;
+    let is_far = |bound: f64, squared: f64| bound > 0.0 && bound * bound > reach_squared * squared;
 
     // The triangle as seen from the point of the shape that reaches farthest back.
-    let start = difference.shape.support(-toward);
     let [a, b, c] = difference.at(start);
     let bound = a.point.dot(toward).min(b.point.dot(toward)).min(c.point.dot(toward));
     if is_far(bound, toward.length_squared()) {
