@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 use allocation_counter::measure;
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
+use rapier_integration::{ContactGenerator, SbbkConfig, SbbkDispatcher};
 use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
@@ -14,8 +14,8 @@ use rapier3d::parry::utils::Array2;
 use sbbk_lab::mesh;
 
 use crate::support::{
-    Dispatcher, Manifold, Pair, assert_same, counting, direction, distance, nudge, rotation,
-    shape_with,
+    Dispatcher, Manifold, Pair, assert_same, counting, direction, distance, generating, nudge,
+    rotation, shape_with,
 };
 use crate::worlds::Bodies;
 
@@ -131,7 +131,9 @@ fn fresh_contacts_are_those_of_stock() {
     let constrained = shape_with(&mesh::monkey_head(), TriMeshFlags::FIX_INTERNAL_EDGES);
     for size in [0.6, 3.0] {
         for (name, compound) in compounds(size) {
-            let dispatcher = counting();
+            let mut config = SbbkConfig::default();
+            (config.contacts, config.count_queries) = (ContactGenerator::Parry, true);
+            let dispatcher = SbbkDispatcher::new(config);
             let mut random = Rand32::new(2);
             let (mut count, mut part_count) = (0, 0);
             for i in 0..24 {
@@ -285,7 +287,7 @@ fn other_parts_leave_the_pair_to_stock() {
 #[test]
 fn another_compound_with_the_same_workspace_is_noticed() {
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
-    let dispatcher = counting();
+    let dispatcher = generating(ContactGenerator::Parry);
     let pose = Pose::translation(0.9, 0.0, 0.0);
     let mut pair: Pair = Pair::default();
     let all: Vec<_> = compounds(1.0).into_iter().chain(compounds(1.1)).collect();

@@ -110,7 +110,7 @@ impl SbbkDispatcher {
             (None, None) => return Answer::Unsupported,
         };
         if let Some(parts) = Parts::of(other) {
-            self.ask(ConvexPair { pose, mesh, parts, mesh_place }, manifolds, workspace)
+            self.ask(ConvexPair { pose, mesh, parts, mesh_place, contacts }, manifolds, workspace)
         } else if let Some(field) = other.as_heightfield() {
             let pair = FieldPair { pose, mesh, field, mesh_place, contacts };
             self.ask(pair, manifolds, workspace)

@@ -7,11 +7,14 @@
 //! their distance and the axis that shows it: it is not looked at again until the pair has moved so
 //! far that they could touch ([`query`]).
 //!
-//! The contacts are those of Parry's routine, asked as if nothing was known ([`placed`]), or had
-//! without it where that leaves nothing to choose: over a face of a cuboid ([`face`]) and beside a
-//! half-space. So they are a function of the pose, as those of two triangles are.
+//! Contacts are a function of the pose, as those of two triangles are. Capsules, cylinders, cones,
+//! polyhedra and round shapes have exact ones ([`features`]). Balls, cuboids and half-spaces, and
+//! all kinds if the host wants that, have those of Parry's routine asked as if nothing was known
+//! ([`placed`]), or without it where it leaves nothing to choose: over a face of a cuboid
+//! ([`face`]) and beside a half-space.
 
 mod face;
+mod features;
 mod half_space;
 mod parts;
 mod placed;

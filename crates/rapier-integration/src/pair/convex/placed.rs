@@ -7,10 +7,12 @@ use parry3d::query::details::{
     contact_manifold_pfm_pfm,
 };
 use parry3d::query::{ContactManifold, TrackedContact};
-use parry3d::shape::Triangle;
+use parry3d::shape::{PolygonalFeatureMap, Triangle};
+use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::traverse::{Convex, Placement};
 
 use super::face::OverFace;
+use super::features::Touching;
 use super::half_space::half_space_manifold;
 use super::parts::{Part, Parts};
 use super::query::ConvexQuery;
@@ -63,6 +65,13 @@ impl PlacedPart {
         Measured { shape, extent: self.extent }
     }
 
+    /// The corners of a triangle of the mesh in the frame of the part.
+    #[inline(always)]
+    pub(super) fn corners(&self, triangle: &Triangle) -> [DVec3; 3] {
+        let at = |corner: Vec3| self.placement.to_frame1(corner, Vec3::ZERO);
+        [at(triangle.a), at(triangle.b), at(triangle.c)]
+    }
+
     /// How far a triangle and the part are apart along `axis`, which points from the part to the
     /// triangle in the frame of the part: at most their distance.
     pub(super) fn gap(&self, shape: ConvexShape<'_>, triangle: &Triangle, axis: Vec3) -> f64 {
@@ -81,10 +90,13 @@ pub(super) struct Question<'a> {
     pub(super) triangle: &'a Triangle,
     /// The cone that contact normals of the triangle must be in.
     pub(super) cone: Option<&'a dyn NormalConstraints>,
+    pub(super) mesh_place: MeshPlace,
+    pub(super) prediction: Real,
 }
 
 impl Question<'_> {
-    /// Brings the manifold of the triangle up to date, as Parry does it but for two things.
+    /// Brings the manifold of the triangle up to date: with `contact` if it is known, else as
+    /// Parry's routine does.
     ///
     /// Nothing of the step before has a part in the answer: Parry's `try_update_contacts` keeps
     /// points while they drift, and its GJK begins with the last normal, which for cylinders, cones
@@ -95,8 +107,7 @@ impl Question<'_> {
     /// new one.
     pub(super) fn refresh<M, C>(
         &self,
-        mesh_place: MeshPlace,
-        prediction: Real,
+        contact: Option<&ConvexContact>,
         previous_points: &mut Vec<TrackedContact<C>>,
         manifold: &mut ContactManifold<M, C>,
     ) where
@@ -105,12 +116,23 @@ impl Question<'_> {
     {
         if let ConvexShape::Ball(_) = self.part.shape {
             // One point, whose data Parry keeps in place.
-            return self.ask_parry(mesh_place, prediction, manifold);
+            return self.ask_parry(manifold);
         }
         std::mem::swap(&mut manifold.points, previous_points);
         manifold.points.clear();
         manifold.local_n1 = Vec3::ZERO;
-        self.ask_parry(mesh_place, prediction, manifold);
+        match (contact, self.part.shape) {
+            (Some(contact), ConvexShape::Features { map, radius, .. }) => {
+                let (mesh_place, PlacedPart { placement, to_mesh, to_part, .. }) =
+                    (self.mesh_place, self.placed);
+                let [pos12, _] = mesh_place.swap([to_mesh, to_part]);
+                let bodies: [&dyn PolygonalFeatureMap; 2] = [self.triangle, map];
+                let cones = [self.cone, self.part.cone];
+                Touching::new(mesh_place, contact, placement, pos12, bodies, cones, radius)
+                    .fill(manifold);
+            }
+            _ => self.ask_parry(manifold),
+        }
         manifold.match_contacts(previous_points);
     }
 
@@ -119,16 +141,12 @@ impl Question<'_> {
     /// again for each triangle, and its GJK asks a triangle for support points through a table. A
     /// tenth to a quarter of a query. Where triangles are over a face of a cuboid, its contacts
     /// without it.
-    fn ask_parry<M, C>(
-        &self,
-        mesh_place: MeshPlace,
-        prediction: Real,
-        manifold: &mut ContactManifold<M, C>,
-    ) where
+    fn ask_parry<M, C>(&self, manifold: &mut ContactManifold<M, C>)
+    where
         M: Default,
         C: Default + Copy,
     {
-        let Self { placed, part, triangle, cone } = *self;
+        let Self { placed, part, triangle, cone, mesh_place, prediction } = *self;
         let PlacedPart { to_part, to_mesh, over_face, .. } = placed;
         let is_mesh_second = mesh_place.is_second();
         match part.shape {
@@ -175,15 +193,11 @@ impl Question<'_> {
 
     /// Where GJK sees that two shapes do not touch, it leaves the direction as the manifold's
     /// normal. The same in the frame of the part, from the part to the triangle; else zero.
-    pub(super) fn axis_of<M, C>(
-        &self,
-        mesh_place: MeshPlace,
-        manifold: &ContactManifold<M, C>,
-    ) -> Vec3 {
+    pub(super) fn axis_of<M, C>(&self, manifold: &ContactManifold<M, C>) -> Vec3 {
         let ConvexShape::Features { .. } = self.part.shape else {
             return Vec3::ZERO;
         };
-        match mesh_place {
+        match self.mesh_place {
             MeshPlace::Second => manifold.local_n1,
             MeshPlace::First => {
                 -(self.placed.placement.rotation * manifold.local_n1.as_dvec3()).as_vec3()

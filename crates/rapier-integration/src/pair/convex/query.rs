@@ -6,12 +6,16 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::details::NormalConstraints;
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::{TriMesh, Triangle};
+use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::leaf::ProbeTest;
 use sbbk_core::traverse::{Counters, Placement, Probe, Verdict, descend_probe};
 use sbbk_core::volumes::rounding::gamma;
 
+use super::features::core_contact;
 use super::parts::{KnownParts, Part, Parts};
 use super::placed::{PlacedPart, Question};
+use super::shape::ConvexShape;
+use crate::ContactGenerator;
 use crate::mesh::{Change, Held, KnownMesh, TreeCache, root_box};
 use crate::pair::driver::{Limits, Moving, Pair, PairQuery, Scratch};
 use crate::pair::order::{Candidate, OrderKey};
@@ -24,6 +28,7 @@ pub(crate) struct ConvexPair<'a> {
     pub(crate) mesh: &'a TriMesh,
     pub(crate) parts: Parts<'a>,
     pub(crate) mesh_place: MeshPlace,
+    pub(crate) contacts: ContactGenerator,
 }
 
 /// Parry's GJK ends when it knows a distance, radii not counted, to this share; it calls triangles
@@ -187,7 +192,7 @@ impl PairQuery for ConvexQuery<'_> {
     /// The direction along which triangle and part were apart when last seen, from the part to the
     /// triangle, in the frame of the part. Zero if they were not.
     type Hint = Vec3;
-    type Contact = Triangle;
+    type Contact = Near;
 
     /// A candidate out of reach costs next to nothing, so it can be more than for two meshes. More:
     /// descents that find much; less: descents in each step of a fast body. At half a prediction
@@ -243,20 +248,36 @@ impl PairQuery for ConvexQuery<'_> {
         candidate: &mut Candidate<Vec3>,
         limits: Limits,
         scratch: &mut Scratch,
-    ) -> Option<Triangle> {
+    ) -> Option<Near> {
         let [triangle, part] = self.pair.mesh_place.swap(candidate.subshapes);
         let triangle = self.pair.mesh.triangle(triangle);
         // A descent has just looked.
-        if limits.travel > 0.0 && candidate.hint != Vec3::ZERO {
-            let gap = self.pair.parts.with(part, |shape| {
-                self.placed(part, &shape, scratch).gap(shape.shape, &triangle, candidate.hint)
-            })?;
-            if gap > limits.reach {
-                candidate.clear = candidate.clear.max(gap + limits.travel);
-                return None;
+        let has_moved = limits.travel > 0.0;
+        let is_exact = self.pair.contacts == ContactGenerator::Exact;
+        self.pair.parts.with(part, |part_shape| {
+            let shape = part_shape.shape;
+            let placed = self.placed(part, &part_shape, scratch);
+            if has_moved && candidate.hint != Vec3::ZERO {
+                let gap = placed.gap(shape, &triangle, candidate.hint);
+                if gap > limits.reach {
+                    candidate.clear = candidate.clear.max(gap + limits.travel);
+                    return None;
+                }
             }
-        }
-        Some(triangle)
+            let ConvexShape::Features { shape, radius, .. } = shape else {
+                return Some(Near { triangle, contact: None });
+            };
+            if !is_exact {
+                return Some(Near { triangle, contact: None });
+            }
+            let radius = f64::from(radius);
+            let corners = placed.corners(&triangle);
+            let contact = core_contact(&corners, shape, limits.margin + radius);
+            let distance = contact.map_or(limits.margin, |contact| contact.distance - radius);
+            candidate.clear = distance + limits.travel;
+            let is_near = distance <= f64::from(self.pair.pose.prediction);
+            is_near.then_some(Near { triangle, contact })
+        })?
     }
 
     fn name<M, C>(&self, candidate: &Candidate<Vec3>, manifold: &mut ContactManifold<M, C>) {
@@ -273,7 +294,7 @@ impl PairQuery for ConvexQuery<'_> {
     #[inline(always)]
     fn write<M, C>(
         &mut self,
-        triangle: Triangle,
+        Near { triangle, contact }: Near,
         candidate: &mut Candidate<Vec3>,
         _: Limits,
         scratch: &mut Scratch,
@@ -283,18 +304,27 @@ impl PairQuery for ConvexQuery<'_> {
         M: Default + Clone + Send + Sync,
         C: Default + Copy + Send + Sync,
     {
-        let ConvexPair { pose, mesh, parts, mesh_place } = self.pair;
+        let ConvexPair { pose, mesh, parts, mesh_place, .. } = *self.pair;
         let [index, part_index] = mesh_place.swap(candidate.subshapes);
         let mut fresh = None;
         let cone = self.prepared.normal_constraints(mesh, index, &mut fresh);
         let cone = cone.map(|cone| cone as &dyn NormalConstraints);
         parts.with(part_index, |part| {
             let placed = self.placed(part_index, &part, scratch);
-            let question = Question { placed, triangle: &triangle, cone, part: &part };
-            question.refresh(*mesh_place, pose.prediction, previous_points, manifold);
+            let prediction = pose.prediction;
+            let question =
+                Question { placed, part: &part, triangle: &triangle, cone, mesh_place, prediction };
+            question.refresh(contact.as_ref(), previous_points, manifold);
             if manifold.points.is_empty() {
-                candidate.hint = question.axis_of(*mesh_place, manifold);
+                candidate.hint = question.axis_of(manifold);
             }
         });
     }
+}
+
+/// A triangle that may be in reach, and its contact if it is known already: that with the core of
+/// the shape.
+pub(crate) struct Near {
+    triangle: Triangle,
+    contact: Option<ConvexContact>,
 }

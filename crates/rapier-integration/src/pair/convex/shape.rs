@@ -17,8 +17,8 @@ pub(crate) enum ConvexShape<'a> {
     HalfSpace(&'a HalfSpace),
     /// From separating axes.
     Cuboid(&'a Cuboid),
-    /// From GJK and two support features, with a radius around the shape.
-    Features { map: &'a dyn PolygonalFeatureMap, radius: Real, shape_type: ShapeType },
+    /// From the closest points and two support features, with a radius around the shape.
+    Features { shape: &'a dyn Shape, map: &'a dyn PolygonalFeatureMap, radius: Real },
 }
 
 impl<'a> ConvexShape<'a> {
@@ -28,7 +28,7 @@ impl<'a> ConvexShape<'a> {
             ShapeType::Ball => Self::Ball(shape.as_ball()?),
             ShapeType::HalfSpace => Self::HalfSpace(shape.as_halfspace()?),
             ShapeType::Cuboid => Self::Cuboid(shape.as_cuboid()?),
-            shape_type @ (ShapeType::Capsule
+            ShapeType::Capsule
             | ShapeType::Segment
             | ShapeType::Triangle
             | ShapeType::ConvexPolyhedron
@@ -38,9 +38,9 @@ impl<'a> ConvexShape<'a> {
             | ShapeType::RoundTriangle
             | ShapeType::RoundCylinder
             | ShapeType::RoundCone
-            | ShapeType::RoundConvexPolyhedron) => {
+            | ShapeType::RoundConvexPolyhedron => {
                 let (map, radius) = shape.as_polygonal_feature_map()?;
-                Self::Features { map, radius, shape_type }
+                Self::Features { shape, map, radius }
             }
             _ => return None,
         })
@@ -84,10 +84,10 @@ impl Extent {
                 let corner = cuboid.half_extents;
                 Self { min: -corner, max: corner, ..point(ShapeType::Cuboid) }
             }
-            ConvexShape::Features { map, radius, shape_type } => {
+            ConvexShape::Features { shape, map, radius } => {
                 let end = |axis: Vector| map.local_support_point(axis);
                 Self {
-                    shape_type,
+                    shape_type: shape.shape_type(),
                     radius,
                     min: Vec3::new(end(-Vec3::X).x, end(-Vec3::Y).y, end(-Vec3::Z).z),
                     max: Vec3::new(end(Vec3::X).x, end(Vec3::Y).y, end(Vec3::Z).z),
