@@ -97,11 +97,11 @@ impl<T> Coherence<T> {
         change: Change,
         manifolds: &mut Vec<ContactManifold<M, C>>,
     ) {
-        if change != Change::None {
+        if change != Change::Unchanged {
             self.clear();
         }
         match change {
-            Change::None => {}
+            Change::Unchanged => {}
             Change::Unknown | Change::Deformed => {
                 manifolds.iter_mut().for_each(ContactManifold::mark_shapes_deformed);
             }

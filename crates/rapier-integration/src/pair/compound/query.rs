@@ -92,11 +92,11 @@ impl CompoundPair<'_> {
         if known_compound.replace(compound).is_some_and(|known| known != compound) {
             change = Change::Replaced;
         }
-        if change != Change::None {
+        if change != Change::Unchanged {
             parts.forget(self.compound.shapes().len());
         }
         match change {
-            Change::None | Change::Unknown => {}
+            Change::Unchanged | Change::Unknown => {}
             Change::Deformed => {
                 manifolds.iter_mut().for_each(ContactManifold::mark_shapes_deformed)
             }
