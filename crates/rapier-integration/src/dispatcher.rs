@@ -62,7 +62,8 @@ impl SbbkDispatcher {
         self.counters.stats(self.cache.counts())
     }
 
-    /// Drops the trees that no pair of colliders uses, see [`SbbkConfig::idle_tree_bytes`].
+    /// Drops the trees that no pair of colliders uses, see [`SbbkConfig::idle_tree_bytes`]; those of
+    /// queries without manifolds too.
     pub fn release_idle_trees(&self) {
         self.cache.release_idle();
     }
@@ -167,7 +168,7 @@ pub struct PreparedTree(PreparedRef);
 impl PreparedTree {
     /// The tree itself.
     pub fn tree(&self) -> &Tree {
-        &self.0.get().tree
+        &self.0.prepared().tree
     }
 }
 

@@ -1,6 +1,7 @@
 //! SBBK for Rapier: fast and exact contacts between triangle meshes, as a drop-in query dispatcher.
 //!
-//! ```
+#![cfg_attr(feature = "rapier3d", doc = "```")]
+#![cfg_attr(not(feature = "rapier3d"), doc = "```ignore")]
 //! use rapier_integration::SbbkDispatcher;
 //! use rapier3d::prelude::*;
 //!
@@ -64,8 +65,9 @@
 //!
 //! Of all other pairs, deformable meshes among them, these queries are Parry's (`others_are_stocks`). As hosts keep no state for them, each
 //! compares vertices and triangles of its meshes with copies to know their trees, in time that grows with their number (a positive
-//! `intersection_test` only those two that meet); the first one builds the trees,
-//! unless [`SbbkDispatcher::prepare`] did, and each thread keeps those of the last eight meshes it asked about.
+//! `intersection_test` only those two that meet); the first one builds the trees, unless
+//! [`SbbkDispatcher::prepare`] did, and each thread knows those of the last eight meshes it asked
+//! about. The dispatcher keeps them as [`SbbkConfig::idle_tree_bytes`] says.
 //!
 //! # Hosts
 //!
@@ -73,6 +75,10 @@
 //! workspace when it edits one of its shapes, as Rapier does and as Parry's own workspaces need too. Queries from many
 //! threads at once are fine: no lock is taken by a pair of rigid meshes whose trees are known. A deformable mesh may be edited in place at
 //! any time between queries, and the workspaces kept: each query reads all of it (about 1 µs for 1000 triangles).
+//!
+//! Rapier's character controller asks the dispatcher of the query pipeline for shape casts and for
+//! how deep it is in a collider. For the contacts with its ground, and with bodies that it pushes, it
+//! asks Parry's own dispatcher, whatever dispatcher is set.
 //!
 //! Runs repeat bit for bit. The contacts of two meshes are a function of their pose and triangles, and their order of the
 //! meshes: not of what was remembered from earlier steps, of threads, or of when a tree was built.

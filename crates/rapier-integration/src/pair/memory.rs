@@ -69,7 +69,7 @@ impl<M, C: Default + Copy, H> PairMemory<M, C, H> {
     /// own.
     pub(super) fn follow(&mut self, change: Change, manifolds: &mut Vec<ContactManifold<M, C>>) {
         match change {
-            Change::None => return,
+            Change::Unchanged => return,
             Change::Unknown | Change::Deformed => {
                 manifolds.iter_mut().for_each(ContactManifold::mark_shapes_deformed);
             }
