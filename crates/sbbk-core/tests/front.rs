@@ -10,6 +10,7 @@ use proptest::prelude::*;
 use sbbk_core::contact::contact;
 use sbbk_core::front::{Front, FrontOptions, FrontStats};
 use sbbk_core::leaf::LeafTest;
+use sbbk_core::query::TrianglePair;
 use sbbk_core::traverse::{
     Descent, DescentCounts, DescentScratch, PairFrame, Placement, Verdict, Visitor, descend,
 };
@@ -38,10 +39,10 @@ impl Visitor for Within {
     ) -> Verdict {
         assert!(self.leaves.insert((leaf1, leaf2)), "a pair of leaves was visited twice");
         self.test.survivors(batch1, batch2, |lane1, lane2| {
-            let corners = batch1.corners(lane1);
-            let t1 = corners.map(|x| (x - corners[0]).as_dvec3());
-            let t2 = batch2.corners(lane2).map(|x| self.placement.to_frame1(x, corners[0]));
-            if contact(&t1, &t2, self.margin).is_some() {
+            let corners = (batch1.corners(lane1), batch2.corners(lane2));
+            let pair = TrianglePair::new(&self.placement, corners.0, corners.1);
+            let [t1, t2] = &pair.corners;
+            if contact(t1, t2, self.margin).is_some() {
                 self.pairs.insert((batch1.triangles()[lane1], batch2.triangles()[lane2]));
             }
         });
