@@ -6,15 +6,8 @@ use super::{Grid, ResultRow, Results, tables};
 use crate::metrics::{Environment, ratio};
 use crate::study::front::{FrontMotion, FrontRow, FrontStudy, Variant};
 
-/// The variants that are drawn; the others nearly cover one of these.
-const DRAWN: [Variant; 6] = [
-    Variant::Fresh,
-    Variant::Paper,
-    Variant::Raise,
-    Variant::MotionBound,
-    Variant::Adaptive,
-    Variant::Slack,
-];
+/// The variants that are drawn.
+const DRAWN: [Variant; 4] = [Variant::Fresh, Variant::Paper, Variant::Adaptive, Variant::Slack];
 
 fn panel(study: &FrontStudy, motion: FrontMotion) -> Panel {
     let rows = || study.rows.iter().filter(move |row| row.motion == motion);

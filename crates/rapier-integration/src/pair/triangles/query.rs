@@ -3,10 +3,11 @@ use parry3d::query::{
     ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, TrackedContact,
 };
 use parry3d::shape::Triangle;
-use sbbk_core::contact::{FeaturePair, ManifoldPoints, TriangleContact};
+use sbbk_core::contact::{FeaturePair, ManifoldPoints, TriangleContact, manifold};
+use sbbk_core::query::TrianglePair;
 use sbbk_core::traverse::{Counters, GREATEST_SLACK};
 
-use super::exact::{Constraints, LocalTriangles, fill};
+use super::exact::{Constraints, fill, local_pair};
 use crate::ContactGenerator;
 use crate::pair::driver::{Limits, Moving, PairQuery, Scratch};
 use crate::pair::order::{Candidate, OrderKey};
@@ -53,7 +54,7 @@ pub(crate) struct TriangleQuery<'q, S> {
 /// A contact within the prediction distance. Its points are in [`TriangleQuery::points`].
 pub(crate) struct Found {
     triangles: [Triangle; 2],
-    local: LocalTriangles,
+    local: TrianglePair,
     contact: TriangleContact,
 }
 
@@ -96,9 +97,10 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         _: &mut Scratch,
     ) -> Option<Found> {
         let triangles = self.shapes.triangles(candidate.subshapes)?;
-        let local = LocalTriangles::new(&self.pose.placement12, &triangles);
+        let local = local_pair(&self.pose.placement12, &triangles);
+        let [t1, t2] = &local.corners;
         let Limits { reach, margin, travel } = limits;
-        let contact = local.contact((margin, reach), candidate.hint, &mut self.points);
+        let contact = manifold(t1, t2, margin, reach, candidate.hint, &mut self.points);
         candidate.clear = contact.map_or(margin, |contact| contact.distance) + travel;
         let contact = contact?;
         candidate.hint = Some(contact.features);
