@@ -5,6 +5,8 @@
 mod allocation;
 /// Contacts that Parry generates are stock's, bit for bit.
 mod bits;
+/// Pairs that come back to where they were, are cut short, or forget everything.
+mod coming_back;
 /// Meshes against compounds of convex shapes.
 mod compound;
 /// What a host may expect of calls that follow each other.

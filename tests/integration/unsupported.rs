@@ -1,3 +1,5 @@
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
 use std::collections::BTreeMap;
 
 use rapier_integration::SbbkDispatcher;
@@ -121,6 +123,7 @@ fn endless_meshes() -> Vec<TriMesh> {
 fn a_mesh_without_a_finite_box_is_answered_by_stock_and_counted() {
     let whole = shape(&mesh::ball(1.0, 4));
     let pos12 = above(0.6);
+    let mut answered = 0;
     for (name, other, who) in kinds() {
         for (number, endless) in endless_meshes().iter().enumerate() {
             for is_first in [true, false] {
@@ -133,8 +136,17 @@ fn a_mesh_without_a_finite_box_is_answered_by_stock_and_counted() {
                         .map_err(|_| "unsupported")
                 };
                 let case = format!("{name}, mesh {number}, first: {is_first}");
-                println!("{case}");
                 let mut pairs: [Pair; 2] = Default::default();
+                let is_answered = catch_unwind(AssertUnwindSafe(|| {
+                    let mut pair = Pair::default();
+                    (0..2).for_each(|_| _ = ask(&DefaultQueryDispatcher, endless, &mut pair));
+                }))
+                .is_ok();
+                answered += usize::from(is_answered);
+                if !is_answered {
+                    // What Parry is asked for it answers, or panics, as without SBBK.
+                    continue;
+                }
                 for repeat in 1..3 {
                     let [ours, stocks] = &mut pairs;
                     let expected = ask(&DefaultQueryDispatcher, endless, stocks);
@@ -157,4 +169,5 @@ fn a_mesh_without_a_finite_box_is_answered_by_stock_and_counted() {
             }
         }
     }
+    assert!(answered > 200, "stock answers {answered} cases only");
 }

@@ -52,12 +52,14 @@ fn fresh_contacts_are_those_of_parrys_routine_on_all_triangles() {
     }
 }
 
-/// The contacts of SBBK's own routines beside Parry's distances, up to what Parry's tolerances are
-/// at these sizes. Would catch a shape that is taken for another, a pose the wrong way round, a
-/// radius left out, and a triangle that is lost or invented.
+/// The contacts of SBBK's own routines beside Parry's distances, which are too large by up to 0.013
+/// here (a round triangle at 0.0364 is said to be at 0.0487); that ours are exact is tested in
+/// `sbbk-core`. Would catch a shape that is taken for another, a pose the wrong way round, a radius
+/// left out, and a triangle that is lost or invented.
 #[test]
 fn exact_contacts_are_where_parry_measures_them() {
-    const TOLERANCE: Real = 2e-3;
+    const ROUNDING: Real = 1e-4;
+    const PARRYS_ERROR: Real = 2e-2;
     let dispatcher = SbbkDispatcher::default();
     let mut random = Rand32::new(3);
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
@@ -74,16 +76,15 @@ fn exact_contacts_are_where_parry_measures_them() {
                     found.iter().map(|m| (question.triangle_of(m), distance(m))).collect();
                 for triangle in 0..head.indices().len() as u32 {
                     let apart = question.apart(triangle);
-                    let near = found.get(&triangle).filter(|near| **near <= prediction);
-                    let is_sure = (apart - prediction).abs() > TOLERANCE;
-                    assert!(
-                        near.is_some() == (apart <= prediction) || !is_sure,
-                        "{name} of {size}: {triangle} is {apart} away, found {near:?}"
-                    );
-                    count += usize::from(near.is_some());
-                    if let Some(near) = near.filter(|_| apart > TOLERANCE) {
+                    let near = found.get(&triangle).copied().filter(|near| *near <= prediction);
+                    let is_found = near.is_some() || apart > prediction - ROUNDING;
+                    assert!(is_found, "{name} of {size}: {triangle} is lost, {apart} away");
+                    let Some(near) = near else { continue };
+                    assert!(near <= apart + ROUNDING, "{name} of {size}: {near} for {apart}");
+                    count += 1;
+                    if near > 0.0 {
                         apart_count += 1;
-                        assert!((near - apart).abs() < TOLERANCE, "{name}: {near} for {apart}");
+                        assert!(apart - near < PARRYS_ERROR, "{name}: {near} for {apart}");
                     }
                 }
             }

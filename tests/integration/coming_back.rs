@@ -1,0 +1,321 @@
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use glamx::{Quat, Vec3};
+use oorandom::Rand32;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::math::{Pose, Real};
+use rapier3d::parry::query::{ContactManifold, PersistentQueryDispatcher};
+use rapier3d::parry::shape::{HeightField, Shape, SharedShape, TriMeshFlags};
+use rapier3d::parry::utils::Array2;
+use rapier3d::pipeline::PhysicsWorld;
+use rapier3d::prelude::{ColliderBuilder, RigidBodyBuilder, RigidBodyHandle};
+use sbbk_lab::mesh;
+use sbbk_lab::metrics::Fingerprint;
+
+use crate::support::{Dispatcher, Manifold, Pair, counting, nudge, shape_with};
+
+/// A ground of every kind that a mesh can meet, flat at height 0 near x = -5 and x = 5.
+fn grounds() -> Vec<(&'static str, SharedShape)> {
+    let plate = |x: Real| (Pose::translation(x, -0.5, 0.0), SharedShape::cuboid(2.0, 0.5, 2.0));
+    let slab = mesh::cuboid(Vec3::new(8.0, 0.5, 2.0), 8)
+        .mapped(|vertex| vertex - Vec3::new(0.0, 0.5, 0.0));
+    let line = (-80..=80).map(|i| Vec3::new(0.1 * i as Real, 0.0, 0.0)).collect();
+    let below = |shape: SharedShape, depth: Real| {
+        let far = (Pose::translation(0.0, -50.0, 0.0), SharedShape::ball(0.1));
+        SharedShape::compound(vec![(Pose::translation(0.0, -depth, 0.0), shape), far])
+    };
+    let hull: Vec<Vec3> = slab.vertices.clone();
+    let lying = Quat::from_rotation_z(std::f32::consts::FRAC_PI_2);
+    let log = (Pose::from_parts(Vec3::new(0.0, -1.0, 0.0), lying), SharedShape::cylinder(8.0, 1.0));
+    let flat = HeightField::new(Array2::repeat(9, 33, 0.0), Vec3::new(32.0, 1.0, 8.0));
+    vec![
+        ("mesh", slab.shared_shape().expect("a box is a mesh")),
+        ("height field", SharedShape::new(flat)),
+        ("two plates", SharedShape::compound(vec![plate(-5.0), plate(5.0)])),
+        ("hull", SharedShape::convex_hull(&hull).expect("a box has a hull")),
+        ("half-space", SharedShape::halfspace(Vec3::Y)),
+        ("round plate", below(SharedShape::round_cuboid(8.0, 0.4, 2.0, 0.1), 0.5)),
+        ("log", SharedShape::compound(vec![log])),
+        ("capsule", below(SharedShape::capsule(-8.0 * Vec3::X, 8.0 * Vec3::X, 0.5), 0.5)),
+        ("polyline", SharedShape::polyline(line, None)),
+    ]
+}
+
+/// A mesh and a ground, as a host asks of them.
+struct Question<'a> {
+    ground: &'a dyn Shape,
+    mesh: &'a dyn Shape,
+    is_mesh_first: bool,
+}
+
+impl Question<'_> {
+    /// The mesh at `pose` in the frame of the ground.
+    fn ask<M, C>(&self, dispatcher: &impl Dispatcher<M, C>, pair: &mut Pair<M, C>, pose: Pose) {
+        let (pos12, [g1, g2]) = if self.is_mesh_first {
+            (pose.inverse(), [self.mesh, self.ground])
+        } else {
+            (pose, [self.ground, self.mesh])
+        };
+        let Pair { manifolds, workspace } = pair;
+        dispatcher
+            .contact_manifolds(&pos12, g1, g2, 0.02, manifolds, workspace)
+            .expect("supported");
+    }
+
+    fn fresh(&self, pose: Pose) -> Vec<Manifold> {
+        let mut pair = Pair::default();
+        self.ask(&SbbkDispatcher::default(), &mut pair, pose);
+        pair.manifolds
+    }
+}
+
+/// Asks `check` of a ball as a mesh with every ground, in both orders, rigid and deformable.
+fn for_each_pair(mut check: impl FnMut(&str, &Question)) {
+    for flags in [TriMeshFlags::empty(), TriMeshFlags::DEFORMABLE] {
+        let ball = shape_with(&mesh::ball(1.0, 6), flags);
+        for (name, ground) in grounds() {
+            for is_mesh_first in [false, true] {
+                let question = Question { ground: &*ground, mesh: &ball, is_mesh_first };
+                check(&format!("{name}, {flags:?}, mesh first: {is_mesh_first}"), &question);
+            }
+        }
+    }
+}
+
+/// All of manifolds that a host can see, bit for bit.
+fn seen<M, C>(manifolds: &[ContactManifold<M, C>]) -> Vec<String> {
+    let of_manifold = |m: &ContactManifold<M, C>| {
+        let points = m.points.iter().map(|p| {
+            let [fid1, fid2] = [p.fid1.0, p.fid2.0];
+            format!("{:?} {:?} {} {fid1} {fid2}", p.local_p1, p.local_p2, p.dist.to_bits())
+        });
+        let subshapes = [m.subshape1, m.subshape2];
+        format!("{subshapes:?} {:?} {:?} {:?}", m.local_n1, m.local_n2, points.collect::<Vec<_>>())
+    };
+    manifolds.iter().map(of_manifold).collect()
+}
+
+fn at(x: Real) -> Pose {
+    Pose::from_parts(Vec3::new(x, 0.99, 0.0), Quat::from_rotation_y(0.3))
+}
+
+/// Where a body can be in between: another place, a touch away, far off, nowhere.
+fn elsewhere() -> [Pose; 4] {
+    let [off, far] = [at(-5.0001), Pose::translation(0.0, 1e4, 0.0)];
+    [at(5.0), off, far, Pose::translation(Real::NAN, 0.0, 0.0)]
+}
+
+/// Would catch a pair that takes an old pose for the present one and answers nothing, or what it
+/// answered elsewhere: an episode that is reset, a body that goes to and fro.
+#[test]
+fn a_pair_that_comes_back_to_an_equal_pose_touches_as_before() {
+    for_each_pair(|name, question| {
+        let dispatcher = SbbkDispatcher::default();
+        let expected = seen(&question.fresh(at(-5.0)));
+        assert!(!expected.is_empty(), "{name}: no contacts");
+        for between in elsewhere() {
+            let mut pair: Pair = Pair::default();
+            let there = seen(&question.fresh(between));
+            for _ in 0..3 {
+                question.ask(&dispatcher, &mut pair, at(-5.0));
+                assert!(seen(&pair.manifolds) == expected, "{name}: {between:?}");
+                question.ask(&dispatcher, &mut pair, between);
+                assert!(seen(&pair.manifolds) == there, "{name}: at {between:?}");
+            }
+        }
+    });
+}
+
+/// Would catch manifolds that come twice, out of order, or not at all, after the host has removed,
+/// copied or moved some.
+#[test]
+fn a_host_may_prune_manifolds() {
+    for_each_pair(|name, question| {
+        let dispatcher = SbbkDispatcher::default();
+        let mut random = Rand32::new(1);
+        let mut pair: Pair = Pair::default();
+        for round in 0..24 {
+            let pose = nudge(&mut random, 1e-4) * at(-5.0);
+            question.ask(&dispatcher, &mut pair, pose);
+            question.ask(&dispatcher, &mut pair, nudge(&mut random, 1e-5) * pose);
+            match round % 4 {
+                0 => _ = pair.manifolds.pop(),
+                1 => drop(pair.manifolds.remove(0)),
+                2 => pair.manifolds.extend(pair.manifolds.first().cloned()),
+                _ => pair.manifolds.reverse(),
+            }
+            for step in [0.0, 0.0, 1e-5] {
+                let next = nudge(&mut random, step) * pose;
+                question.ask(&dispatcher, &mut pair, next);
+                assert!(seen(&pair.manifolds) == seen(&question.fresh(next)), "{name}, {round}");
+            }
+        }
+    });
+}
+
+/// Data of a host that panics when the countdown is over.
+#[derive(Clone)]
+struct Fragile;
+
+static COUNTDOWN: AtomicUsize = AtomicUsize::new(usize::MAX);
+
+impl Default for Fragile {
+    fn default() -> Self {
+        let left = COUNTDOWN.load(Ordering::Relaxed);
+        assert!(left > 0, "the host panics");
+        COUNTDOWN.store(left - 1, Ordering::Relaxed);
+        Self
+    }
+}
+
+/// Would catch a pair that takes a query which a type of the host cut short for one that was
+/// answered.
+#[test]
+fn a_query_cut_short_by_a_panic_is_asked_again() {
+    for_each_pair(|name, question| {
+        let dispatcher = SbbkDispatcher::default();
+        let expected = seen(&question.fresh(at(-5.0)));
+        for countdown in 0..5 {
+            for is_known in [false, true] {
+                let mut pair = Pair::<Fragile, ()>::default();
+                if is_known {
+                    question.ask(&dispatcher, &mut pair, at(-5.3));
+                    question.ask(&dispatcher, &mut pair, Pose::translation(-5.3, 1.5, 0.0));
+                }
+                COUNTDOWN.store(countdown, Ordering::Relaxed);
+                let is_cut_short = catch_unwind(AssertUnwindSafe(|| {
+                    question.ask(&dispatcher, &mut pair, at(-5.0));
+                }));
+                COUNTDOWN.store(usize::MAX, Ordering::Relaxed);
+                let must_be = countdown == 0 && !is_known;
+                assert!(is_cut_short.is_err() || !must_be, "{name}: nothing was cut short");
+                for _ in 0..2 {
+                    question.ask(&dispatcher, &mut pair, at(-5.0));
+                    assert!(seen(&pair.manifolds) == expected, "{name}: {countdown}");
+                }
+            }
+        }
+    });
+}
+
+/// Any prediction distance, however large, finds what a smaller one finds.
+#[test]
+fn no_prediction_distance_is_too_large() {
+    for_each_pair(|name, question| {
+        let near = question.fresh(at(-5.0));
+        let triangles = |manifolds: &[Manifold]| -> Vec<[u32; 2]> {
+            manifolds.iter().map(|m| [m.subshape1, m.subshape2]).collect()
+        };
+        for prediction in [1e3, 1e9, 2e19, 1e30, Real::MAX] {
+            let mut pair: Pair = Pair::default();
+            let Pair { manifolds, workspace } = &mut pair;
+            let (pos12, g1, g2) = if question.is_mesh_first {
+                (at(-5.0).inverse(), question.mesh, question.ground)
+            } else {
+                (at(-5.0), question.ground, question.mesh)
+            };
+            for _ in 0..2 {
+                SbbkDispatcher::default()
+                    .contact_manifolds(&pos12, g1, g2, prediction, manifolds, workspace)
+                    .expect("supported");
+                let found = triangles(manifolds);
+                let is_lost = |near: &&[u32; 2]| !found.contains(near);
+                let lost = triangles(&near).iter().filter(is_lost).count();
+                assert_eq!(lost, 0, "{name} within {prediction}");
+            }
+        }
+    });
+}
+
+/// A mesh ball above a ground.
+fn world(ground: &SharedShape, dispatcher: SbbkDispatcher) -> (PhysicsWorld, RigidBodyHandle) {
+    let mut world = PhysicsWorld::new();
+    world.integration_parameters.contact_recycling = false;
+    world.narrow_phase.set_query_dispatcher(dispatcher);
+    world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(ground.clone()));
+    let ball = mesh::ball(1.0, 6).shared_shape().expect("a ball is a mesh");
+    let body = RigidBodyBuilder::dynamic().pose(at(-5.0)).angular_damping(2.0);
+    let (body, _) = world.insert(body, ColliderBuilder::new(ball).density(1.0));
+    (world, body)
+}
+
+/// Would catch a body that falls through the ground once it is put back to where it was: episode
+/// after episode in one world, with another place, and nowhere, in between.
+#[test]
+fn bodies_put_back_to_their_start_do_not_fall() {
+    for (name, ground) in grounds() {
+        let dispatcher = counting();
+        let (mut world, handle) = world(&ground, dispatcher.clone());
+        for episode in 0..4 {
+            for pose in [at(-5.0), at(5.0), at(-5.0), at(5.0)] {
+                let body = &mut world.bodies[handle];
+                body.set_position(pose, true);
+                body.set_vels(Default::default(), true);
+                (0..30).for_each(|_| world.step());
+                let height = world.bodies[handle].translation().y;
+                assert!((0.9..1.1).contains(&height), "{name}, {episode}: at height {height}");
+            }
+        }
+        assert!(dispatcher.stats().queries > 100, "{name}: SBBK did not answer");
+    }
+}
+
+/// Bodies as meshes and convex bodies of every kind on a mesh ground, all lengths times `unit`.
+fn mixed_world(unit: Real, has_soft_ccd: bool) -> PhysicsWorld {
+    let mut world = PhysicsWorld::new();
+    world.integration_parameters.contact_recycling = false;
+    world.integration_parameters.length_unit = unit;
+    world.gravity *= unit;
+    let ground = mesh::terrain(8.0 * unit, 16, 0.3 * unit).shared_shape().expect("a terrain");
+    world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(ground));
+    let head = mesh::monkey_head_with(6).mapped(|vertex| 0.3 * unit * vertex);
+    let cloud: Vec<Vec3> = head.vertices.iter().step_by(7).copied().collect();
+    let [half, thin] = [0.25 * unit, 0.1 * unit];
+    let dumbbell = [-half, half].map(|x| (Pose::translation(x, 0.0, 0.0), SharedShape::ball(half)));
+    let shapes = [
+        head.shared_shape().expect("a head is a mesh"),
+        SharedShape::ball(half),
+        SharedShape::cuboid(half, thin, half),
+        SharedShape::capsule_y(half, thin),
+        SharedShape::cylinder(thin, half),
+        SharedShape::cone(half, half),
+        SharedShape::convex_hull(&cloud).expect("a head has a hull"),
+        SharedShape::round_cylinder(thin, half, 0.3 * thin),
+        SharedShape::round_cuboid(half, thin, thin, 0.3 * thin),
+        SharedShape::compound(dumbbell.to_vec()),
+    ];
+    for (i, shape) in shapes.into_iter().enumerate() {
+        let (row, column) = ((i / 4) as Real, (i % 4) as Real);
+        let place = unit * Vec3::new(1.1 * column - 1.6, 0.9, 1.1 * row - 1.2);
+        let ccd = if has_soft_ccd { 0.5 * unit } else { 0.0 };
+        let body = RigidBodyBuilder::dynamic().translation(place).soft_ccd_prediction(ccd);
+        let body = body.rotation(Vec3::new(0.2 * i as Real, 0.5, 0.1)).can_sleep(false);
+        world.insert(body, ColliderBuilder::new(shape).density(1.0));
+    }
+    world
+}
+
+/// Would catch contacts with convex shapes that depend on what is remembered of the steps before:
+/// worlds of several sizes, with and without soft CCD, and a new dispatcher before every step.
+#[test]
+fn convex_worlds_forget_everything_and_go_on_alike() {
+    for unit in [0.01, 0.1, 1.0, 100.0] {
+        for has_soft_ccd in [false, true] {
+            let dispatcher = counting();
+            let mut remembering = mixed_world(unit, has_soft_ccd);
+            remembering.narrow_phase.set_query_dispatcher(dispatcher.clone());
+            let mut forgetting = mixed_world(unit, has_soft_ccd);
+            for step in 0..150 {
+                forgetting.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
+                remembering.step();
+                forgetting.step();
+                let [one, two] = [&remembering, &forgetting].map(Fingerprint::of);
+                assert!(one == two, "units of {unit}, soft CCD {has_soft_ccd}, step {step}");
+            }
+            let touching = remembering.contact_pairs().filter(|p| p.has_any_active_contact());
+            assert!(touching.count() >= 8, "units of {unit}: bodies do not touch the ground");
+            assert!(dispatcher.stats().reused_queries > 100, "nothing was remembered");
+        }
+    }
+}
