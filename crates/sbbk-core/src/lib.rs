@@ -37,6 +37,9 @@
 //! * [`front`]: a descent that starts where the last one stopped.
 //! * [`broad_phase`]: which of many moving objects are near each other.
 //! * `truth` (feature `truth`): brute force in f64, to test against.
+//!
+//! Modules depend one way: `simd` (lanes), [`volumes`], [`tree`], [`traverse`], [`leaf`], then
+//! [`field`], [`front`] and [`query`]. [`contact`] and [`broad_phase`] need none of them.
 
 pub mod broad_phase;
 pub mod contact;
@@ -44,6 +47,7 @@ pub mod field;
 pub mod front;
 pub mod leaf;
 pub mod query;
+mod simd;
 pub mod traverse;
 pub mod tree;
 #[cfg(feature = "truth")]

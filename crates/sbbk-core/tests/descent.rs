@@ -80,7 +80,8 @@ fn truth(soup1: &Soup, soup2: &Soup, pos12: &Pose3, margin: f32) -> BTreeSet<(u3
     .collect()
 }
 
-/// All plans and both descents find a superset of the truth, and the leaf test lets little else through.
+/// All plans and both descents find a superset of the truth, and the leaf test lets little else
+/// through.
 fn check<const AXES: usize>(soup1: &Soup, soup2: &Soup, pos12: &Pose3, margin: f32) -> usize
 where
     Directions<AXES>: DirectionSet<AXES>,
@@ -134,8 +135,8 @@ fn finds_every_pair_of_one_triangle_with_many() {
     assert!(total > 500, "the poses hardly touch: {total}");
 }
 
-/// Integer corners and turns by multiples of 90 degrees: touching is exact, ties are everywhere, and degenerate
-/// triangles occur.
+/// Integer corners and turns by multiples of 90 degrees: touching is exact, ties are everywhere,
+/// and degenerate triangles occur.
 #[test]
 fn finds_every_pair_on_the_lattice() {
     let mut random = Random(3);
@@ -184,9 +185,9 @@ fn finds_every_pair_under_denormalised_rotations() {
     assert!(total > 1_000, "the poses hardly touch: {total}");
 }
 
-/// The paper's section 3.2: complete trees of n levels in which all nodes meet. Its formula for all tests of the
-/// simultaneous descent, `(2^(2n-1) - 1)/3`, is not a whole number; its own parts, inner
-/// `(2^(2(n-1)) - 1)/3` and leaf `2^(2(n-1))`, add up to `(2^(2n) - 1)/3`.
+/// The paper's section 3.2: complete trees of n levels in which all nodes meet. Its formula for all
+/// tests of the simultaneous descent, `(2^(2n-1) - 1)/3`, is not a whole number; its own parts,
+/// inner `(2^(2(n-1)) - 1)/3` and leaf `2^(2(n-1))`, add up to `(2^(2n) - 1)/3`.
 #[test]
 fn counts_of_complete_trees_are_the_papers() {
     for levels in 1..=6u32 {

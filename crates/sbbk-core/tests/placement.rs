@@ -6,8 +6,9 @@ use glamx::{DVec3, Pose3};
 use sbbk_core::traverse::Placement;
 use support::Random;
 
-/// Small and large motions of a ball anywhere: a bound that forgets the lever of the rotation, or measures the
-/// centre's way in the wrong frame, is too small here; one that is uselessly large fails too.
+/// Small and large motions of a ball anywhere: a bound that forgets the lever of the rotation, or
+/// measures the centre's way in the wrong frame, is too small here; one that is uselessly large
+/// fails too.
 #[test]
 fn no_point_moves_farther_than_the_bound() {
     let mut random = Random(31);

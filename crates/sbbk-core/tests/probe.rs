@@ -1,4 +1,5 @@
-//! One tree against a convex shape, by brute force: never a triangle lost, no bound of distance too high.
+//! One tree against a convex shape, by brute force: never a triangle lost, no bound of distance too
+//! high.
 
 mod support;
 
@@ -47,8 +48,8 @@ impl Convex for HalfSpace {
     }
 }
 
-/// Distance and axis of each triangle that the descent and the leaf test leave. `pose` is that of the mesh in the
-/// shape's frame.
+/// Distance and axis of each triangle that the descent and the leaf test leave. `pose` is that of
+/// the mesh in the shape's frame.
 fn near<S: Convex, const AXES: usize>(
     tree: &Tree<AXES>,
     pose: &Pose3,
@@ -78,8 +79,8 @@ fn placed(soup: &Soup, pose: &Pose3) -> Vec<[DVec3; 3]> {
     soup.triangles.iter().map(|triangle| triangle.map(corner)).collect()
 }
 
-/// Compares with the true distances of all triangles to a shape; how many were found and how many were not but for the
-/// margin. `truth` is negative, by any amount, where they overlap.
+/// Compares with the true distances of all triangles to a shape; how many were found and how many
+/// were not but for the margin. `truth` is negative, by any amount, where they overlap.
 fn check<S: Convex, const AXES: usize>(
     soup: &Soup,
     pose: &Pose3,
@@ -181,8 +182,8 @@ where
     assert!(found > 2000 && dropped > 2000, "{found} found, {dropped} dropped");
 }
 
-/// Would catch a rounding bound that is forgotten, an interval with the wrong sign, a k-DOP slab of another direction, a
-/// distance that is not a lower bound, and an axis that does not show it.
+/// Would catch a rounding bound that is forgotten, an interval with the wrong sign, a k-DOP slab of
+/// another direction, a distance that is not a lower bound, and an axis that does not show it.
 #[test]
 fn no_triangle_is_lost_and_no_bound_is_too_high() {
     check_all::<7>(1);
@@ -212,7 +213,8 @@ fn distances_to_balls_are_exact() {
     assert!(checked > 200, "{checked} distances");
 }
 
-/// Would catch a descent that tests a turned floor on the axes of the tree only: it then visits every leaf.
+/// Would catch a descent that tests a turned floor on the axes of the tree only: it then visits
+/// every leaf.
 #[test]
 fn a_large_turned_floor_is_met_where_it_is() {
     let mesh = bumpy_ball(20, 0.1);

@@ -9,7 +9,7 @@ use sbbk_core::leaf::LeafTest;
 use sbbk_core::traverse::{Descent, DescentScratch, PairFrame, Verdict, Visitor, descend};
 use sbbk_core::tree::{BuildError, BuildOptions, LayerPlan, LeafBatch, RefitCost, Tree};
 use sbbk_core::truth::pairs_within;
-use sbbk_core::volumes::{DirectionSet, Directions, Sphere, Volume};
+use sbbk_core::volumes::{DirectionSet, Directions, Sphere};
 use support::{Random, Soup, bumpy_ball, lattice_soup, soup};
 
 const PLANS: [LayerPlan; 4] = [

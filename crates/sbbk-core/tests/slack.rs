@@ -1,4 +1,5 @@
-//! What a descent with slack found is complete for as long as the plan says, and the slack is what the motion asks for.
+//! What a descent with slack found is complete for as long as the plan says, and the slack is what
+//! the motion asks for.
 
 mod support;
 
@@ -38,8 +39,9 @@ fn nudge(random: &mut Random, size: f32, pose: &Pose3) -> Pose3 {
     Pose3::from_parts(pose.translation + random.vector(size), rotation)
 }
 
-/// Walks with jumps and changes of stride and prediction distance, against brute force at each step. Would catch candidates used
-/// for too long, a reach or a travel that is too small, and a margin that is not that of the descent.
+/// Walks with jumps and changes of stride and prediction distance, against brute force at each
+/// step. Would catch candidates used for too long, a reach or a travel that is too small, and a
+/// margin that is not that of the descent.
 #[test]
 fn candidates_are_complete_while_they_are_reused() {
     let mut random = Random(61);
@@ -95,7 +97,8 @@ fn candidates_are_complete_while_they_are_reused() {
     assert!(reused > 5000 && skipped > 20_000 && found > 4000, "{reused}, {skipped}, {found}");
 }
 
-/// The margin of the second of two queries, the ball shifted by `step` between them, and whether it may be kept.
+/// The margin of the second of two queries, the ball shifted by `step` between them, and whether it
+/// may be kept.
 fn margin_after(step: f32, prediction: f32) -> (f32, bool) {
     let mut slack = Slack::default();
     let at = |x: f32| Placement::new(&Pose3::translation(x, 0.0, 0.0));
@@ -108,8 +111,8 @@ fn margin_after(step: f32, prediction: f32) -> (f32, bool) {
     }
 }
 
-/// Would catch slack for a pair at rest that the least jitter uses up, slack that does not grow with the motion or has no
-/// end, and slack for fast motion, where it is a waste.
+/// Would catch slack for a pair at rest that the least jitter uses up, slack that does not grow
+/// with the motion or has no end, and slack for fast motion, where it is a waste.
 #[test]
 fn slack_follows_the_motion() {
     let prediction = 0.02;

@@ -4,7 +4,7 @@ mod support;
 
 use glamx::Vec3;
 use sbbk_core::tree::{BATCH, BuildError, BuildOptions, LayerPlan, Node, Tree};
-use sbbk_core::volumes::{DirectionSet, Directions, Volume};
+use sbbk_core::volumes::{DirectionSet, Directions};
 use support::{Random, Soup, bumpy_ball, lattice_soup, soup};
 
 fn options(kdop_from_depth: Option<u32>, leaf_size: usize) -> BuildOptions {

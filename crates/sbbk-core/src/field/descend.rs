@@ -3,20 +3,23 @@ use glamx::{DVec3, Vec3};
 use super::frame::FieldFrame;
 use super::grid::{FieldTriangle, HeightGrid};
 use crate::leaf::PlacedTest;
+use crate::simd::{PerChild, each_bit};
 use crate::traverse::Counters;
 use crate::tree::{LeafBatch, Link, Tree};
 use crate::volumes::{DirectionSet, Directions};
 
-/// Memory of the descent, kept by the caller. Holds at most one node a level of the tree and one more.
+/// Memory of the descent, kept by the caller. Holds at most one node a level of the tree and one
+/// more.
 #[derive(Clone, Debug, Default)]
 pub struct FieldScratch {
     stack: Vec<Link>,
 }
 
-/// Calls `found` with a triangle of the field and the index of one of the mesh for all pairs within the margin of `frame`, and few
-/// others.
+/// Calls `found` with a triangle of the field and the index of one of the mesh for all pairs within
+/// the margin of `frame`, and few others.
 ///
-/// The order depends on the tree and the pose. Cells counted are those whose heights were read, as often as they were.
+/// The order depends on the tree and the pose. Cells counted are those whose heights were read, as
+/// often as they were.
 pub fn descend_field<F: HeightGrid, const AXES: usize>(
     tree: &Tree<AXES>,
     frame: &FieldFrame<'_, F>,
@@ -36,8 +39,8 @@ pub fn descend_field<F: HeightGrid, const AXES: usize>(
         let children = tree.children(index);
         counters.aabb_tests(2);
         for lane in 0..2 {
-            let of_lane = |values: &[[f32; 2]; 3]| Vec3::from_array(values.map(|axis| axis[lane]));
-            let (centre, extent) = (of_lane(children.centre), of_lane(children.extent));
+            let of_lane = |values: &[PerChild; 3]| Vec3::from_array(values.map(|axis| axis[lane]));
+            let (centre, extent) = (of_lane(children.boxes.centre), of_lane(children.boxes.extent));
             if frame.node_meets(centre, extent, &mut counters) {
                 stack.push(children.links[lane]);
             }
@@ -85,12 +88,9 @@ fn visit_leaf<F: HeightGrid>(
                 let Some(triangle) = triangle.as_ref().filter(is_finite) else {
                     continue;
                 };
-                let mut near = placed.near(triangle);
-                while near != 0 {
-                    let lane = near.trailing_zeros() as usize;
-                    near &= near - 1;
+                each_bit(placed.near(triangle), |lane| {
                     found(FieldTriangle { cell, side }, batch.triangles()[lane]);
-                }
+                });
             }
         }
     }

@@ -2,10 +2,11 @@
 //!
 //! # Rounding
 //!
-//! With `n` cells along an axis, line `c` computed in f32 as `(c·fl(1/n) - 1/2)·scale`, in any order, is off by less than
-//! `γ_4·|scale|`: ranges are taken wider by `γ_8` of the whole. A height times its scale loses `γ_1` of the product, and
-//! [`MIN_POSITIVE`](f32::MIN_POSITIVE) to underflow: bounds of heights are wider by `γ_4`. Boxes are turned in f64, a dozen
-//! roundings of `2⁻⁵³`: they grow by `1e-14` of their coordinates.
+//! With `n` cells along an axis, line `c` computed in f32 as `(c·fl(1/n) - 1/2)·scale`, in any
+//! order, is off by less than `γ_4·|scale|`: ranges are taken wider by `γ_8` of the whole. A height
+//! times its scale loses `γ_1` of the product, and [`MIN_POSITIVE`](f32::MIN_POSITIVE) to
+//! underflow: bounds of heights are wider by `γ_4`. Boxes are turned in f64, a dozen roundings of
+//! `2⁻⁵³`: they grow by `1e-14` of their coordinates.
 
 use std::ops::Range;
 
@@ -16,8 +17,9 @@ use crate::traverse::{Counters, Placement};
 use crate::volumes::Aabb;
 use crate::volumes::rounding::gamma;
 
-/// Cells under a node up to which their heights are read; a node above more is taken apart at once. More: whole parts of a mesh
-/// above the ground are ruled out sooner. Fewer: less is read twice where they are not.
+/// Cells under a node up to which their heights are read; a node above more is taken apart at once.
+/// More: whole parts of a mesh above the ground are ruled out sooner. Fewer: less is read twice
+/// where they are not.
 const READ_LIMIT: usize = 1024;
 
 /// A mesh and a height field at one pose: which cells a part of the mesh can touch.
@@ -41,8 +43,8 @@ pub(super) struct Cells {
 }
 
 impl<'a, F: HeightGrid> FieldFrame<'a, F> {
-    /// For a mesh at `placement` in the frame of the field. Triangles within `margin`, in either frame, will be found. A pose
-    /// that is not finite is nowhere.
+    /// For a mesh at `placement` in the frame of the field. Triangles within `margin`, in either
+    /// frame, will be found. A pose that is not finite is nowhere.
     pub fn new(field: &'a F, placement: &Placement, margin: f32) -> Self {
         let rotation = placement.rotation;
         let absolute =
@@ -126,6 +128,9 @@ impl Cells {
 
 /// The cells along an axis that an interval meets.
 fn lines(low: f64, high: f64, scale: f64, count: usize) -> Option<Range<usize>> {
+    if count == 0 {
+        return None;
+    }
     if scale == 0.0 {
         return (low <= 0.0 && high >= 0.0).then_some(0..count);
     }

@@ -2,9 +2,9 @@ use glamx::Vec3;
 
 /// Heights over a regular grid, with two triangles a cell.
 ///
-/// Grid line `c` of `n` along x is at `(c/n - 1/2)·scale.x`, and likewise along z; the corner there is at its height times
-/// `scale.y`. The corners of [`triangles`](Self::triangles) may be off that by a few roundings of f32, see
-/// [`FieldFrame`](super::FieldFrame).
+/// Grid line `c` of `n` along x is at `(c/n - 1/2)·scale.x`, and likewise along z; the corner there
+/// is at its height times `scale.y`. The corners of [`triangles`](Self::triangles) may be off that
+/// by a few roundings of f32, see [`FieldFrame`](super::FieldFrame).
 pub trait HeightGrid {
     /// Cells along x (columns) and z (rows).
     fn cell_counts(&self) -> [usize; 2];
@@ -15,8 +15,8 @@ pub trait HeightGrid {
     /// The heights along grid line `column` of x, one more than there are rows.
     fn heights(&self, column: usize) -> &[f32];
 
-    /// The triangles of a cell `[column, row]`; `None` where the surface has a hole. One with a corner that is NaN or infinite is
-    /// not found.
+    /// The triangles of a cell `[column, row]`; `None` where the surface has a hole. One with a
+    /// corner that is NaN or infinite is not found.
     fn triangles(&self, cell: [usize; 2]) -> [Option<[Vec3; 3]>; 2];
 }
 

@@ -1,16 +1,18 @@
 //! The triangles of a height field that may touch a mesh.
 //!
-//! A height field is a tree already: the cells under a box of its frame follow from two divisions. So only the tree of the
-//! mesh is descended. The box of each node, turned into the frame of the field, gives a range of cells; if all
-//! their corners are above the box, or all below, nothing under the node can touch ([`FieldFrame`]). Under a leaf each cell
-//! is compared by the same rule, and what is left triangle against triangle, by separating axes over lanes.
+//! A height field is a tree already: the cells under a box of its frame follow from two divisions.
+//! So only the tree of the mesh is descended. The box of each node, turned into the frame of the
+//! field, gives a range of cells; if all their corners are above the box, or all below, nothing
+//! under the node can touch ([`FieldFrame`]). Under a leaf each cell is compared by the same rule,
+//! and what is left triangle against triangle, by separating axes over lanes.
 //!
-//! So the cells looked at lie under the boxes of the mesh, and a field of a million cells costs what one of a thousand
-//! does. Nothing is computed from the field in advance, so nothing can be out of date when it is edited.
+//! So the cells looked at lie under the boxes of the mesh, and a field of a million cells costs
+//! what one of a thousand does. Nothing is computed from the field in advance, so nothing can be
+//! out of date when it is edited.
 //!
-//! A pyramid of least and greatest heights over blocks of cells is the usual way to test large ranges. It is left out:
-//! mostly the first line of heights shows that a range cannot be ruled out, only ranges that can be are read in
-//! full, and ranges above a limit are not read at all.
+//! A pyramid of least and greatest heights over blocks of cells is the usual way to test large
+//! ranges. It is left out: mostly the first line of heights shows that a range cannot be ruled out,
+//! only ranges that can be are read in full, and ranges above a limit are not read at all.
 //!
 //! ```
 //! use glamx::{Pose3, Vec3};

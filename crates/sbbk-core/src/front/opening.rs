@@ -2,7 +2,8 @@
 
 use wide::f32x4;
 
-use crate::traverse::{Counters, GapFrame, Inner, Outer, PairFrame, Same, Sides};
+use crate::simd::{Inner, Outer, Same};
+use crate::traverse::{Counters, PairFrame, Side, Sides};
 use crate::tree::{Link, Slot, Tree};
 use crate::volumes::{DirectionSet, Directions};
 
@@ -52,7 +53,6 @@ pub(super) trait PairTest {
 pub(super) struct TreePair<'a, C, const AXES: usize> {
     trees: (&'a Tree<AXES>, &'a Tree<AXES>),
     frame: &'a mut PairFrame<AXES>,
-    gap_frame: GapFrame,
     counters: C,
 }
 
@@ -65,8 +65,7 @@ where
         frame: &'a mut PairFrame<AXES>,
         counters: C,
     ) -> Self {
-        let gap_frame = GapFrame::new(frame);
-        Self { trees, frame, gap_frame, counters }
+        Self { trees, frame, counters }
     }
 
     fn opening(&self, nodes: (u32, u32), sides: Sides, same_lane: usize, lanes: u8) -> Opening {
@@ -112,15 +111,20 @@ where
     #[inline(always)]
     fn gaps(&mut self, opening: &Opening, lanes: u8) -> f32x4 {
         self.counters.aabb_tests(lanes.count_ones());
-        let (frame, with) = (&mut *self.frame, &self.gap_frame);
         let (tree1, tree2) = self.trees;
         let (one, two) = (tree1.children(opening.nodes.0), tree2.children(opening.nodes.1));
         let same = Same(usize::from(opening.same_lane));
-        let lanes = u32::from(lanes);
+        let (outer, inner) =
+            (Side { children: one, spread: Outer }, Side { children: two, spread: Inner });
+        let (frame, lanes) = (&mut *self.frame, u32::from(lanes));
         let found = match opening.sides {
-            Sides::Both => frame.gaps(with, (&one, Outer), (&two, Inner), lanes),
-            Sides::First => frame.gaps(with, (&one, Outer), (&two, same), lanes),
-            Sides::Second => frame.gaps(with, (&one, same), (&two, Inner), lanes),
+            Sides::Both => frame.gaps_beyond_margin(&outer, &inner, lanes),
+            Sides::First => {
+                frame.gaps_beyond_margin(&outer, &Side { children: two, spread: same }, lanes)
+            }
+            Sides::Second => {
+                frame.gaps_beyond_margin(&Side { children: one, spread: same }, &inner, lanes)
+            }
         };
         self.counters.kdop_tests(found.kdop_lanes.count_ones());
         found.gaps

@@ -1,17 +1,18 @@
-//! The triangles of a leaf, placed in another frame once, against triangles there that come one at a time.
+//! The triangles of a leaf, placed in another frame once, against triangles there that come one at
+//! a time.
 //!
 //! # Rounding
 //!
-//! As in [`separation`](super::separation), but all coordinates are relative to an origin near the mesh, so that a triangle of
-//! a wide terrain is tested as sharply as one at its middle. Taking the origin away rounds once more: `γ_18` for
-//! `γ_16`. `M1` is that of the one triangle.
+//! As in [`separation`](super::separation), but all coordinates are relative to an origin near the
+//! mesh, so that a triangle of a wide terrain is tested as sharply as one at its middle. Taking the
+//! origin away rounds once more: `γ_18` for `γ_16`. `M1` is that of the one triangle.
 
 use glamx::{DVec3, Vec3};
 use wide::f32x4;
 
-use super::lane::each;
-use super::lanes;
-use super::separation::{Corners, LeafFrame, near};
+use super::separation::{Corners, LeafFrame, apart};
+use super::{splat, used};
+use crate::simd::each;
 use crate::traverse::Placement;
 use crate::tree::LeafBatch;
 use crate::volumes::rounding::gamma;
@@ -34,33 +35,35 @@ pub(crate) struct PlacedBatch<'a> {
 }
 
 impl PlacedTest {
-    /// For a tree with coordinates up to `magnitude`, at `placement`, around `centre` of its own frame.
+    /// For a tree with coordinates up to `magnitude`, at `placement`, around `centre` of its own
+    /// frame.
     pub(crate) fn new(placement: &Placement, centre: Vec3, magnitude: f32, margin: f32) -> Self {
         let origin = placement.to_frame1(centre, Vec3::ZERO).as_vec3();
         let translation: DVec3 = placement.translation - origin.as_dvec3();
         let local = Placement { translation, ..*placement };
         let scale = each(|i| local.rotation.row(i).length()).into_iter().fold(0.0, f64::max);
         let size2 = translation.abs().max_element() as f32 + 2.0 * scale as f32 * magnitude;
-        Self { frame: LeafFrame::at(&local), origin, margin: margin.max(0.0), size2 }
+        Self { frame: LeafFrame::at(&local), origin, margin, size2 }
     }
 
     /// Places a leaf.
     #[inline]
     pub(crate) fn place(&self, batch: &LeafBatch) -> PlacedBatch<'_> {
-        let corners = Corners::from_frame2(&self.frame, lanes(&batch.corners, f32x4::new));
-        PlacedBatch { test: self, corners, used: (1 << batch.count()) - 1 }
+        let corners = Corners::from_frame2(&self.frame, batch.lanes());
+        PlacedBatch { test: self, corners, used: used(batch) }
     }
 }
 
 impl PlacedBatch<'_> {
-    /// The triangles of the leaf, as bits, that no axis separates from `triangle` by more than the margin.
+    /// The triangles of the leaf, as bits, that no axis separates from `triangle` by more than the
+    /// margin.
     #[inline]
     pub(crate) fn near(&self, triangle: &[Vec3; 3]) -> u32 {
         let PlacedTest { frame, origin, margin, size2 } = self.test;
         let corners = each(|i| triangle[i] - origin);
         let size1 = corners[0].abs().max(corners[1].abs()).max(corners[2].abs()).max_element();
         let frame = frame.with_margin(*margin, gamma(18) * (size1 + size2));
-        let one = Corners::new(each(|i| each(|axis| f32x4::splat(corners[i][axis]))));
-        near(&frame, &one, &self.corners).to_bitmask() & self.used
+        let one = Corners::new(splat(|corner, axis| corners[corner][axis]));
+        !apart(&frame, &one, &self.corners).to_bitmask() & self.used
     }
 }

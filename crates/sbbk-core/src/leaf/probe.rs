@@ -1,36 +1,44 @@
-//! Triangles against a convex shape, a batch at a time: which come within the margin, and at least how far away
-//! each of them is.
+//! Triangles against a convex shape, a batch at a time: which come within the margin, and at least
+//! how far away each of them is.
 //!
-//! Whatever direction `n` is chosen, the gap between the projections of a triangle and a shape on it, over `|n|`, is not more than
-//! their distance. So each direction gives a lower bound, and the greatest counts. Tried over the lanes, in the shape's
-//! frame, against its [`Outline`], a box with rounded edges:
+//! Whatever direction `n` is chosen, the gap between the projections of a triangle and a shape on
+//! it, over `|n|`, is not more than their distance. So each direction gives a lower bound, and the
+//! greatest counts. Tried over the lanes, in the shape's frame, against its [`Outline`], a box with
+//! rounded edges:
 //!
-//! * the axes of the box (the gaps along them add up as sides of a box do), the normal of the triangle, the products of
-//!   axes and edges: all that tells a box and a triangle apart that overlap or nearly do;
-//! * for each edge the direction to the point of the box next to it: between corners and edges the axes above give a bound
-//!   that is too low. For a ball this is the distance itself.
+//! * the axes of the box (the gaps along them add up as sides of a box do), the normal of the
+//!   triangle, the products of axes and edges: all that tells a box and a triangle apart that
+//!   overlap or nearly do;
+//! * for each edge the direction to the point of the box next to it: between corners and edges the
+//!   axes above give a bound that is too low. For a ball this is the distance itself.
 //!
-//! Of what is left, shapes that only are somewhere in their outline (cones, polyhedra) are asked for their reach along
-//! the triangle's normal.
+//! Of what is left, shapes that only are somewhere in their outline (cones, polyhedra) are asked
+//! for their reach along the triangle's normal.
 //!
 //! # Rounding
 //!
-//! In the shape's frame and relative to the middle of its outline, corners are at most `W = |t|∞ + 2·s·M` (`s` the
-//! rotation's scale, `M` the tree's magnitude) and off by `γ_5·W`. A direction is used as computed. Projections lose `γ_3·|n|₁·W`,
-//! the box's `γ_4·|n|₁·h`, and `|n|₁ <= √3·|n|`; with the difference below `γ_18·(W + h)·|n|`, and the quotient by `|n|`
-//! loses `γ_6` of a distance that is at most `2·W + h`: in all below `γ_32·(W + h + r)`, which is taken off each bound.
+//! In the shape's frame and relative to the middle of its outline, corners are at most `W = |t|∞ +
+//! 2·s·M` (`s` the rotation's scale, `M` the tree's magnitude) and off by `γ_5·W`. A direction is
+//! used as computed. Projections lose `γ_3·|n|₁·W`, the box's `γ_4·|n|₁·h`, and `|n|₁ <= √3·|n|`;
+//! with the difference below `γ_18·(W + h)·|n|`, and the quotient by `|n|` loses `γ_6` of a
+//! distance that is at most `2·W + h`: in all below `γ_32·(W + h + radius)`, which is taken off
+//! each bound.
 
 use glamx::{DVec3, Vec3};
 use wide::f32x4;
 
-use super::lane::{Lane, V3, cross, dot, each, sub};
-use super::lanes;
+use super::used;
+use crate::simd::{V3, cross, dot, each, each_bit, largest, smallest, sub};
 use crate::traverse::{Convex, Outline, Probe};
 use crate::tree::LeafBatch;
 use crate::volumes::rounding::gamma;
 
-/// Squared length below which a direction is not used: its components may have lost digits to underflow.
+/// Squared length below which a direction is not used: its components may have lost digits to
+/// underflow.
 const SHORTEST_SQUARED: f32 = 1e-30;
+
+/// The largest coordinate of which products of three, times 24, do not overflow.
+const LARGEST: f32 = 1e12;
 
 /// Tests leaves against a shape. Made once a query.
 #[derive(Copy, Clone)]
@@ -43,6 +51,9 @@ pub struct ProbeTest<'a, S> {
     is_exact: bool,
     centre: DVec3,
     margin: f32,
+    /// No further direction is tried where bounds are beyond this; minus infinity where coordinates
+    /// are so large that products of them overflow.
+    enough: f32,
     rounding: f32,
 }
 
@@ -55,22 +66,27 @@ enum Body {
 impl<'a, S: Convex> ProbeTest<'a, S> {
     /// For the pose and margin of `probe`.
     pub fn new<const AXES: usize>(probe: &Probe<'a, S, AXES>) -> Self {
-        let (body, centre, is_exact, size) = match probe.outline {
+        let (body, centre, is_exact, size, radius) = match probe.outline {
             Outline::RoundBox { centre, half_lengths, radius, is_exact } => {
                 // Rounded up, so that the body still contains the shape.
                 let half_lengths = each(|i| (half_lengths[i] as f32).next_up());
                 let radius = (radius as f32).next_up();
                 let size = half_lengths.into_iter().fold(radius, |sum, x| sum + x);
-                (Body::RoundBox { half_lengths, radius }, centre, is_exact, size)
+                (Body::RoundBox { half_lengths, radius }, centre, is_exact, size, radius)
             }
             Outline::HalfSpace { normal } => {
-                (Body::HalfSpace { normal: normal.as_vec3().to_array() }, DVec3::ZERO, true, 0.0)
+                let body = Body::HalfSpace { normal: normal.as_vec3().to_array() };
+                (body, DVec3::ZERO, true, 0.0, 0.0)
             }
         };
         let rotation = probe.placement.rotation;
         let offset = probe.placement.translation - centre;
         let scale = rotation.row(0).length().max(1.0) as f32;
         let largest = offset.abs().max_element() as f32 + 2.0 * scale * probe.magnitude;
+        let rounding = gamma(32) * (largest + size);
+        let margin = (probe.margin as f32).next_up();
+        let enough =
+            if largest <= LARGEST { margin + radius + rounding } else { f32::NEG_INFINITY };
         Self {
             shape: probe.shape,
             rows: each(|i| rotation.row(i).as_vec3().to_array()),
@@ -78,35 +94,32 @@ impl<'a, S: Convex> ProbeTest<'a, S> {
             body,
             is_exact,
             centre,
-            margin: (probe.margin as f32).next_up(),
-            rounding: gamma(32) * (largest + size),
+            margin,
+            enough,
+            rounding,
         }
     }
 
-    /// Calls `found(lane, distance, axis)` for the triangles that no direction shows to be beyond the margin, with a
-    /// distance that is not more than the true one, negative where they overlap, and the direction in the shape's frame, from
-    /// the shape to the triangle and of any length, that shows it; zero if there is none.
+    /// Calls `found(lane, distance, axis)` for the triangles that no direction shows to be beyond
+    /// the margin, with a distance that is not more than the true one, negative where they overlap,
+    /// and the direction in the shape's frame, from the shape to the triangle and of any length,
+    /// that shows it; zero if there is none.
     #[inline]
     pub fn survivors(&self, batch: &LeafBatch, mut found: impl FnMut(usize, f64, Vec3)) {
-        let corners = self.placed(&lanes(&batch.corners, f32x4::new));
+        let corners = self.placed(&batch.lanes());
         let best = match &self.body {
             Body::RoundBox { half_lengths, radius } => {
-                let margin = self.margin + radius + self.rounding;
-                let best = box_distances(&corners, half_lengths, margin);
+                let best = box_distances(&corners, half_lengths, self.enough);
                 Best { distance: best.distance - f32x4::splat(*radius), ..best }
             }
             Body::HalfSpace { normal } => {
                 let axis = each(|i| f32x4::splat(normal[i]));
-                let [a, b, c] = each(|i| dot(corners[i], axis));
-                Best { distance: a.smaller(b).smaller(c), axis }
+                Best { distance: smallest(each(|i| dot(corners[i], axis))), axis }
             }
         };
         let distances = best.distance - f32x4::splat(self.rounding);
-        let used = (1 << batch.count()) - 1;
-        let mut near = distances.simd_le(f32x4::splat(self.margin)).to_bitmask() & used;
-        while near != 0 {
-            let lane = near.trailing_zeros() as usize;
-            near &= near - 1;
+        let near = distances.simd_le(f32x4::splat(self.margin)).to_bitmask() & used(batch);
+        each_bit(near, |lane| {
             let of_lane = |v: V3<f32x4>| Vec3::from_array(each(|i| v[i].to_array()[lane]));
             let mut distance = f64::from(distances.to_array()[lane]);
             let mut axis = of_lane(best.axis);
@@ -125,7 +138,7 @@ impl<'a, S: Convex> ProbeTest<'a, S> {
             if distance <= f64::from(self.margin) {
                 found(lane, distance, axis);
             }
-        }
+        });
     }
 
     /// The corners in the shape's frame, from the middle of its outline.
@@ -139,7 +152,8 @@ impl<'a, S: Convex> ProbeTest<'a, S> {
         })
     }
 
-    /// A bound from a direction of length 1, corners as of [`placed`](Self::placed). Minus infinity if there is no direction.
+    /// A bound from a direction of length 1, corners as of [`placed`](Self::placed). Minus infinity
+    /// if there is no direction.
     fn gap_along(&self, direction: DVec3, corners: &[DVec3; 3]) -> f64 {
         if direction == DVec3::ZERO {
             return f64::NEG_INFINITY;
@@ -158,20 +172,19 @@ struct Best {
 }
 
 impl Best {
-    /// None of the four is within `margin`.
+    /// None of the four is within `enough`.
     #[inline(always)]
-    fn is_far(&self, margin: f32) -> bool {
-        self.distance.simd_le(f32x4::splat(margin)).to_bitmask() == 0
+    fn is_beyond(&self, enough: f32) -> bool {
+        self.distance.simd_le(f32x4::splat(enough)).to_bitmask() == 0
     }
 
     /// With the gap along a direction.
     #[inline(always)]
     fn with(self, n: V3<f32x4>, corners: &[V3<f32x4>; 3], half: &V3<f32x4>) -> Self {
-        let [a, b, c] = each(|i| dot(n, corners[i]));
-        let (low, high) = (a.smaller(b).smaller(c), a.larger(b).larger(c));
-        let below = f32x4::ZERO - high;
+        let along = each(|i| dot(n, corners[i]));
+        let (low, below) = (smallest(along), f32x4::ZERO - largest(along));
         let squared = dot(n, n);
-        let gap = low.larger(below) - dot(each(|axis| n[axis].abs()), *half);
+        let gap = low.fast_max(below) - dot(each(|axis| n[axis].abs()), *half);
         let distance = gap / squared.sqrt();
         // Where this is so, the triangle is on the other side.
         let is_opposite = below.simd_gt(low);
@@ -187,24 +200,24 @@ impl Best {
     }
 }
 
-/// Lower bounds of the distances of triangles to a box around the origin, without rounding. Not all directions are
-/// tried once all bounds are beyond `margin`.
+/// Lower bounds of the distances of triangles to a box around the origin, without rounding. Not all
+/// directions are tried once all bounds are beyond `enough`.
 #[inline(always)]
-fn box_distances(corners: &[V3<f32x4>; 3], half_lengths: &[f32; 3], margin: f32) -> Best {
+fn box_distances(corners: &[V3<f32x4>; 3], half_lengths: &[f32; 3], enough: f32) -> Best {
     let half = each(|axis| f32x4::splat(half_lengths[axis]));
     let mut best = along_axes(corners, &half);
-    if best.is_far(margin) {
+    if best.is_beyond(enough) {
         return best;
     }
     let edges = each(|i| sub(corners[(i + 1) % 3], corners[i]));
     best = best.with(cross(edges[0], edges[1]), corners, &half);
-    if best.is_far(margin) {
+    if best.is_beyond(enough) {
         return best;
     }
     for (start, edge) in corners.iter().zip(edges) {
         best = best.with(to_edge(*start, edge, &half), corners, &half);
     }
-    if best.is_far(margin) {
+    if best.is_beyond(enough) {
         return best;
     }
     for axis in (0..3).filter(|&axis| half_lengths[axis] > 0.0) {
@@ -216,25 +229,26 @@ fn box_distances(corners: &[V3<f32x4>; 3], half_lengths: &[f32; 3], margin: f32)
     best
 }
 
-/// The gaps along the axes of the box add up as the sides of a box do; where there is none, the least overlap counts.
+/// The gaps along the axes of the box add up as the sides of a box do; where there is none, the
+/// least overlap counts.
 #[inline(always)]
 fn along_axes(corners: &[V3<f32x4>; 3], half: &V3<f32x4>) -> Best {
-    let [a, b, c] = corners;
     let zero = f32x4::ZERO;
-    let low = each(|i| a[i].smaller(b[i]).smaller(c[i]) - half[i]);
-    let high = each(|i| zero - a[i].larger(b[i]).larger(c[i]) - half[i]);
-    let largest = each(|i| low[i].larger(high[i]));
-    let largest = largest[0].larger(largest[1]).larger(largest[2]);
+    let along = |axis: usize| each(|corner| corners[corner][axis]);
+    let low = each(|i| smallest(along(i)) - half[i]);
+    let high = each(|i| zero - largest(along(i)) - half[i]);
+    let gap = largest(each(|i| low[i].fast_max(high[i])));
     // At most one of the two is positive.
-    let axis = each(|i| low[i].larger(zero) - high[i].larger(zero));
-    let distance = largest.simd_gt(zero).select(dot(axis, axis).sqrt(), largest);
-    Best { distance, axis }
+    let axis = each(|i| low[i].fast_max(zero) - high[i].fast_max(zero));
+    // Gaps above the root of `f32::MAX` are taken for less.
+    let squares = dot(axis, axis).fast_min(f32x4::splat(f32::MAX));
+    Best { distance: gap.simd_gt(zero).select(squares.sqrt(), gap), axis }
 }
 
 /// From the box to a point of an edge that is close to it: two steps of alternating projection.
 #[inline(always)]
 fn to_edge(start: V3<f32x4>, edge: V3<f32x4>, half: &V3<f32x4>) -> V3<f32x4> {
-    let clamped = |x: f32x4, low: f32x4, high: f32x4| x.larger(low).smaller(high);
+    let clamped = |x: f32x4, low: f32x4, high: f32x4| x.fast_max(low).fast_min(high);
     let in_box = |x: V3<f32x4>| each(|i| clamped(x[i], f32x4::splat(0.0) - half[i], half[i]));
     let point_at = |t: f32x4| each(|i| start[i] + edge[i] * t);
     let target = in_box(point_at(f32x4::splat(0.5)));

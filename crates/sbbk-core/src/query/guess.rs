@@ -4,9 +4,9 @@
 
 use wide::f32x4;
 
-use crate::leaf::lane::each;
-use crate::traverse::{Compare, PairFrame, Sides, Spread, expand};
-use crate::tree::{Children, LeafBatch, Slot, Tree};
+use crate::simd::{Spread, dot};
+use crate::traverse::{Compare, PairFrame, Side, Sides, expand};
+use crate::tree::{LeafBatch, Slot, Tree};
 use crate::volumes::{DirectionSet, Directions};
 
 /// Down both trees from the roots, always to the children whose centres are nearest to each other.
@@ -46,12 +46,11 @@ where
     #[inline(always)]
     fn compare(
         &mut self,
-        side1: (&Children<'_, AXES>, impl Spread),
-        side2: (&Children<'_, AXES>, impl Spread),
+        side1: &Side<'_, impl Spread, AXES>,
+        side2: &Side<'_, impl Spread, AXES>,
         lanes: u32,
     ) -> (u32, [f32; 4]) {
-        let (offset, _) = self.0.offset_and_reach(side1, side2);
-        let [x, y, z]: [f32x4; 3] = each(|axis| offset[axis] * offset[axis]);
-        (lanes, (x + y + z).to_array())
+        let offset = self.0.along1(side1, side2, f32x4::ZERO).offset;
+        (lanes, dot(offset, offset).to_array())
     }
 }

@@ -6,19 +6,19 @@
 //!
 //! # Rounding
 //!
-//! The offset and the reach are those of [`PairFrame`], conservative by the margin of the frame. The velocity is exact in
-//! frame 1. A quotient loses at most `γ_4`, the target distance added to the reach `γ_2`; times are made earlier at
-//! their start and later at their end by `γ_8`.
+//! The offset and the reach are those of [`PairFrame`], conservative by its rounding. The velocity is exact
+//! in frame 1. A quotient loses at most `γ_4`, the target distance added to the reach `γ_2`; times are made
+//! earlier at their start and later at their end by `γ_8`.
 
 use glamx::Vec3;
 use wide::f32x4;
 
-use crate::traverse::{Compare, Cutoff, PairFrame, Spread};
-use crate::tree::Children;
+use crate::simd::Spread;
+use crate::traverse::{Along, Compare, Cutoff, PairFrame, Side};
 use crate::volumes::rounding::gamma;
 use crate::volumes::{DirectionSet, Directions};
 
-/// Lower bounds of times of impact. Needs a frame whose margin is zero.
+/// Lower bounds of times of impact.
 pub(super) struct Sweep<'a, const AXES: usize> {
     pub(super) frame: &'a mut PairFrame<AXES>,
     /// Of mesh 2 against mesh 1, in frame 1.
@@ -39,14 +39,15 @@ where
     #[inline(always)]
     fn times(
         &mut self,
-        side1: (&Children<'_, AXES>, impl Spread),
-        side2: (&Children<'_, AXES>, impl Spread),
+        side1: &Side<'_, impl Spread, AXES>,
+        side2: &Side<'_, impl Spread, AXES>,
     ) -> f32x4 {
         let target = f32x4::splat(self.target);
         let apart = self.frame.signed_gaps(side1, side2) - target;
         let mut start = (apart * f32x4::splat(self.inverse_speed)).fast_max(f32x4::ZERO);
         let mut end = f32x4::splat(f32::INFINITY);
-        let (offset, reach) = self.frame.offset_and_reach(side1, side2);
+        let rounding = f32x4::splat(self.frame.rounding[0]);
+        let Along { offset, reach } = self.frame.along1(side1, side2, rounding);
         for axis in 0..3 {
             let speed = self.velocity[axis];
             let inverse = f32x4::splat(1.0 / speed.abs());
@@ -70,8 +71,8 @@ where
     #[inline(always)]
     fn compare(
         &mut self,
-        side1: (&Children<'_, AXES>, impl Spread),
-        side2: (&Children<'_, AXES>, impl Spread),
+        side1: &Side<'_, impl Spread, AXES>,
+        side2: &Side<'_, impl Spread, AXES>,
         lanes: u32,
     ) -> (u32, [f32; 4]) {
         let times = self.times(side1, side2);

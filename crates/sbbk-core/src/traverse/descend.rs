@@ -1,18 +1,21 @@
 //! The descent: both trees at once.
 //!
-//! A pair of nodes that meet is replaced by the pairs of their children, all four compared in one SIMD test
-//! (the paper's simultaneous descent, section 3.2). Where one side is a leaf, the other goes on alone.
+//! A pair of nodes that meet is replaced by the pairs of their children, all four compared in one
+//! SIMD test (the paper's simultaneous descent, section 3.2). Where one side is a leaf, the other
+//! goes on alone.
 //!
-//! For complete trees of n levels in which everything meets, the paper counts `(2^(2(n-1)) - 1)/3` tests
-//! between inner nodes and `2^(2(n-1))` between leaves, against `2^(2n-1) - 1` in all when one side
-//! descends at a time ([`Descent::Single`]).
+//! For complete trees of n levels in which everything meets, the paper counts `(2^(2(n-1)) - 1)/3`
+//! tests between inner nodes and `2^(2(n-1))` between leaves, against `2^(2n-1) - 1` in all when
+//! one side descends at a time ([`Descent::Single`]).
 
 use super::counters::Counters;
-use super::expand::{Compare, Sides, expand};
+use super::expand::{Sides, expand};
 use super::frame::PairFrame;
-use super::overlap::{Same, Spread};
+use super::overlap::Overlap;
+use super::side::Side;
 use super::visitor::{NodePair, Verdict, Visitor};
-use crate::tree::{Children, Link, Slot, Tree};
+use crate::simd::Same;
+use crate::tree::{Link, Slot, Tree};
 use crate::volumes::{DirectionSet, Directions};
 
 /// In which order the trees go down.
@@ -27,14 +30,14 @@ pub enum Descent {
 
 /// Memory of the descent, kept by the caller: after the first few queries nothing is allocated.
 ///
-/// The stack holds at most 3 pairs a level of both trees in sum; it grows as needed and nothing is ever
-/// dropped.
+/// The stack holds at most 3 pairs a level of both trees in sum; it grows as needed.
 #[derive(Clone, Debug, Default)]
 pub struct DescentScratch {
     stack: Vec<NodePair>,
 }
 
-/// Visits all pairs of leaves whose volumes, and those of all their ancestors, come within the margin.
+/// Visits all pairs of leaves whose volumes, and those of all their ancestors, come within the
+/// margin.
 ///
 /// Finds every pair of triangles within the margin: volumes contain what is below them and tests
 /// are conservative, see [`PairFrame`]. The order of visits depends on the trees only.
@@ -55,8 +58,9 @@ pub fn descend<const AXES: usize, V: Visitor, C: Counters>(
         }
     }
     counters.aabb_tests(1);
-    let roots = (tree1.children(0), tree2.children(0));
-    if frame.boxes_meet((&roots.0, Same(0)), (&roots.1, Same(0))) == 0 {
+    let [root1, root2] =
+        [tree1, tree2].map(|tree| Side { children: tree.children(0), spread: Same(0) });
+    if frame.boxes_meet(&root1, &root2) == 0 {
         return;
     }
 
@@ -82,15 +86,10 @@ pub fn descend<const AXES: usize, V: Visitor, C: Counters>(
                 let mut compare = Overlap { frame, counters: &mut counters };
                 let sides = sides(descent, pair.depth, links);
                 let depth = pair.depth + 1;
-                expand(
-                    (tree1, tree2),
-                    (pair.slot1, pair.slot2),
-                    sides,
-                    &mut compare,
-                    |slots, ()| {
-                        stack.push(NodePair { slot1: slots.0, slot2: slots.1, depth });
-                    },
-                );
+                let slots = (pair.slot1, pair.slot2);
+                expand((tree1, tree2), slots, sides, &mut compare, |(slot1, slot2), ()| {
+                    stack.push(NodePair { slot1, slot2, depth });
+                });
             }
         }
     }
@@ -106,38 +105,5 @@ fn sides(descent: Descent, depth: u32, links: (Link, Link)) -> Sides {
             }
         }
         _ => Sides::of(links),
-    }
-}
-
-/// Keeps the children whose volumes come within the margin: boxes first, then k-DOPs where both sides have them.
-struct Overlap<'a, const AXES: usize, C> {
-    frame: &'a mut PairFrame<AXES>,
-    counters: &'a mut C,
-}
-
-impl<const AXES: usize, C: Counters> Compare<AXES> for Overlap<'_, AXES, C>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
-    type Key = ();
-
-    #[inline(always)]
-    fn compare(
-        &mut self,
-        side1: (&Children<'_, AXES>, impl Spread),
-        side2: (&Children<'_, AXES>, impl Spread),
-        lanes: u32,
-    ) -> (u32, [(); 4]) {
-        self.counters.aabb_tests(lanes.count_ones());
-        let meeting = self.frame.boxes_meet(side1, side2) & lanes;
-        let (Some(kdops1), Some(kdops2)) = (side1.0.kdop, side2.0.kdop) else {
-            return (meeting, [(); 4]);
-        };
-        if meeting == 0 {
-            return (0, [(); 4]);
-        }
-        self.counters.kdop_tests(meeting.count_ones());
-        let sides = ((kdops1, side1.1), (kdops2, side2.1));
-        (self.frame.correspondence().kdops_meet(sides.0, sides.1, meeting), [(); 4])
     }
 }

@@ -1,7 +1,8 @@
 //! From a pair of nodes to the pairs of their children, whatever these are compared by.
 
-use super::overlap::{Inner, Outer, Same, Spread};
-use crate::tree::{Children, Link, Slot, Tree};
+use super::side::Side;
+use crate::simd::{Inner, Outer, Same, Spread, each_bit};
+use crate::tree::{Link, Slot, Tree};
 use crate::volumes::{DirectionSet, Directions};
 
 /// Which sides of a pair go down.
@@ -23,7 +24,8 @@ impl Sides {
         }
     }
 
-    /// The inner node that holds the volumes of each side: the node's own children, or itself in its parent.
+    /// The inner node that holds the volumes of each side: the node's own children, or itself in
+    /// its parent.
     #[inline(always)]
     pub(crate) fn nodes(self, (slot1, slot2): (Slot, Slot), links: (Link, Link)) -> (u32, u32) {
         match self {
@@ -42,8 +44,8 @@ pub(crate) trait Compare<const AXES: usize> {
     /// The lanes of `lanes` whose pairs matter, as a mask, and what is known about each lane.
     fn compare(
         &mut self,
-        side1: (&Children<'_, AXES>, impl Spread),
-        side2: (&Children<'_, AXES>, impl Spread),
+        side1: &Side<'_, impl Spread, AXES>,
+        side2: &Side<'_, impl Spread, AXES>,
         lanes: u32,
     ) -> (u32, [Self::Key; 4]);
 }
@@ -62,26 +64,24 @@ pub(crate) fn expand<const AXES: usize, C: Compare<AXES>>(
     let links = (tree1.link(slot1), tree2.link(slot2));
     let (node1, node2) = sides.nodes((slot1, slot2), links);
     let (children1, children2) = (tree1.children(node1), tree2.children(node2));
+    let (outer, inner) =
+        (Side { children: children1, spread: Outer }, Side { children: children2, spread: Inner });
     match sides {
         Sides::Both => {
-            let (mask, keys) = compare.compare((&children1, Outer), (&children2, Inner), 0b1111);
-            for lane in (0..4).filter(|lane| mask >> lane & 1 != 0) {
+            let (mask, keys) = compare.compare(&outer, &inner, 0b1111);
+            each_bit(mask, |lane| {
                 push((Slot::new(node1, lane >> 1), Slot::new(node2, lane & 1)), keys[lane]);
-            }
+            });
         }
         Sides::First => {
-            let same = Same(slot2.lane());
-            let (mask, keys) = compare.compare((&children1, Outer), (&children2, same), 0b0101);
-            for lane in (0..2).filter(|lane| mask >> (2 * lane) & 1 != 0) {
-                push((Slot::new(node1, lane), slot2), keys[2 * lane]);
-            }
+            let same = Side { children: children2, spread: Same(slot2.lane()) };
+            let (mask, keys) = compare.compare(&outer, &same, 0b0101);
+            each_bit(mask, |lane| push((Slot::new(node1, lane >> 1), slot2), keys[lane]));
         }
         Sides::Second => {
-            let same = Same(slot1.lane());
-            let (mask, keys) = compare.compare((&children1, same), (&children2, Inner), 0b0011);
-            for lane in (0..2).filter(|lane| mask >> lane & 1 != 0) {
-                push((slot1, Slot::new(node2, lane)), keys[lane]);
-            }
+            let same = Side { children: children1, spread: Same(slot1.lane()) };
+            let (mask, keys) = compare.compare(&same, &inner, 0b0011);
+            each_bit(mask, |lane| push((slot1, Slot::new(node2, lane)), keys[lane]));
         }
     }
 }

@@ -3,70 +3,82 @@ use wide::f32x4;
 
 use super::correspondence::Correspondence;
 use super::placement::Placement;
-use crate::leaf::lane::each;
+use super::side::Side;
+use crate::simd::{Spread, V3, dot, each};
 use crate::tree::Tree;
 use crate::volumes::rounding::gamma;
 use crate::volumes::{DirectionSet, Directions};
 
-/// Everything about a pair of trees that depends on their relative pose and the margin: computed once a
-/// query, in f64, and spread over lanes.
+/// Everything about a pair of trees that depends on their relative pose and the margin: computed
+/// once a query, in f64, and spread over lanes.
 ///
-/// # Rounding
-///
-/// Let `M1`, `M2` be the largest absolute coordinates of the trees, `T` that of the translation and `s` the
-/// rotation's scale (1 up to the rounding of its quaternion). A test in frame 1 computes
-/// `|c1 - (t + R c2)| - e1 - |R| e2` in f32 from an R rounded once:
-///
-/// * each of the terms of `t + R c2` goes through at most 5 roundings, and the row sums of |R| are at most
-///   `√3·s < 1.8·s`: at most `γ_5·(T + 1.8·s·M2)`;
-/// * the difference with `c1` adds `γ_1·(M1 + T + 1.8·s·M2)`, the extents `γ_8·(M1 + 1.8·s·M2)`, as
-///   half-lengths are at most the largest coordinate.
-///
-/// The sum is below `γ_16·(M1 + T + 2·s·M2)`, and likewise in frame 2 with the roles exchanged. The margin grows
-/// by that. A pose that is not finite gives NaN everywhere, and no test passes.
+/// Tests are conservative: they allow for [`rounding`](crate::volumes::rounding). At a pose that is
+/// not finite no test passes. Any finite margin will do.
 #[derive(Clone, Debug)]
 pub struct PairFrame<const AXES: usize = 9> {
     pub(crate) placement: Placement,
     margin: f32,
-    /// The rounding bound above, frame 1.
-    pub(crate) rounding: f32,
-    /// The same in frame 2.
-    pub(super) rounding2: f32,
-    pub(super) translation_lanes: [f32x4; 3],
-    pub(super) axes1: BoxAxes,
-    pub(super) axes2: BoxAxes,
-    /// Computed when a descent first reaches k-DOPs in both trees: thousands of shallow pairs never do.
+    /// What a comparison of boxes may lose, in frame 1 and in frame 2.
+    pub(crate) rounding: [f32; 2],
+    /// The margin plus the rounding, likewise.
+    pub(super) slack: [f32x4; 2],
+    translation: V3<f32x4>,
+    to_frame1: Rows,
+    to_frame2: Rows,
+    /// Computed when a descent first reaches k-DOPs in both trees: thousands of shallow pairs never
+    /// do.
     correspondence: Option<Correspondence<AXES>>,
 }
 
-/// The three face axes of the boxes of one tree, and the other tree's axes seen in them, over lanes.
+/// A matrix over lanes.
 #[derive(Copy, Clone, Debug)]
-pub(super) struct BoxAxes {
-    /// Row `i` takes a centre of the other frame to coordinate `i` of this one.
-    pub(super) rows: [[f32x4; 3]; 3],
-    pub(super) absolute_rows: [[f32x4; 3]; 3],
-    pub(super) margin: f32x4,
+struct Rows {
+    rows: [V3<f32x4>; 3],
+    absolute: [V3<f32x4>; 3],
 }
 
-impl BoxAxes {
-    fn new(matrix: DMat3, margin: f32) -> Self {
+/// Two boxes in each lane, along the three face axes of one of them.
+#[derive(Copy, Clone)]
+pub(crate) struct Along {
+    /// From the centre of the box of tree 1 to that of the box of tree 2.
+    pub(crate) offset: V3<f32x4>,
+    /// How far both boxes reach together. Where an offset is longer, its axis separates them.
+    pub(crate) reach: V3<f32x4>,
+}
+
+impl Rows {
+    fn new(matrix: DMat3) -> Self {
         let rows = each(|i| matrix.row(i).as_vec3().to_array());
         Self {
             rows: each(|i| each(|j| f32x4::splat(rows[i][j]))),
-            absolute_rows: each(|i| each(|j| f32x4::splat(rows[i][j].abs()))),
-            margin: f32x4::splat(margin),
+            absolute: each(|i| each(|j| f32x4::splat(rows[i][j].abs()))),
         }
     }
 }
 
+impl Along {
+    /// Where no axis separates the boxes. False where anything is NaN.
+    #[inline(always)]
+    pub(super) fn meet(&self) -> f32x4 {
+        let [x, y, z] = each(|axis| self.offset[axis].abs().simd_le(self.reach[axis]));
+        x & y & z
+    }
+
+    /// By how much each axis separates them; negative where they overlap.
+    #[inline(always)]
+    pub(super) fn gaps(&self) -> V3<f32x4> {
+        each(|axis| self.offset[axis].abs() - self.reach[axis])
+    }
+}
+
 impl<const AXES: usize> PairFrame<AXES> {
-    /// The frame of `tree2` placed at `pos12` in the frame of `tree1`. Triangles within `margin` of each other
-    /// will be found.
+    /// The frame of `tree2` at the pose `pos12` in the frame of `tree1`, as of [`at`](Self::at).
     pub fn new(tree1: &Tree<AXES>, tree2: &Tree<AXES>, pos12: &Pose3, margin: f32) -> Self {
         Self::at((tree1, tree2), Placement::new(pos12), margin)
     }
 
-    /// As [`new`](Self::new), for a pose that is known already.
+    /// The frame of `tree2` at `placement` in the frame of `tree1`. Triangles within `margin` of
+    /// each other will be found.
     pub fn at(
         (tree1, tree2): (&Tree<AXES>, &Tree<AXES>),
         placement: Placement,
@@ -80,17 +92,20 @@ impl<const AXES: usize> PairFrame<AXES> {
 
         let (m1, m2) = (tree1.magnitude(), tree2.magnitude());
         let t = translation.abs().max_element();
-        let rounding = gamma(16) * (m1 + t + 2.0 * scale as f32 * m2);
-        let rounding2 = gamma(16) * (m2 + 2.0 * inverse_scale as f32 * (m1 + t));
+        let rounding = [
+            gamma(16) * (m1 + t + 2.0 * scale as f32 * m2),
+            gamma(16) * (m2 + 2.0 * inverse_scale as f32 * (m1 + t)),
+        ];
         let margin2 = (f64::from(margin) * inverse_scale) as f32;
+        let slack = |margin: f32, rounding: f32| f32x4::splat((margin + rounding).next_up());
         Self {
             placement,
             margin,
             rounding,
-            rounding2,
-            translation_lanes: each(|i| f32x4::splat(translation[i])),
-            axes1: BoxAxes::new(rotation, (margin + rounding).next_up()),
-            axes2: BoxAxes::new(inverse, (margin2 + rounding2).next_up()),
+            slack: [slack(margin, rounding[0]), slack(margin2, rounding[1])],
+            translation: each(|i| f32x4::splat(translation[i])),
+            to_frame1: Rows::new(rotation),
+            to_frame2: Rows::new(inverse),
             correspondence: None,
         }
     }
@@ -119,6 +134,44 @@ impl<const AXES: usize> PairFrame<AXES> {
     }
 }
 
+/// The kernel of all tests of boxes. The nine edge axes are left out: the tests that they save cost
+/// less than they do.
+impl<const AXES: usize> PairFrame<AXES> {
+    /// Along the axes of frame 1, with reaches longer by `slack`.
+    #[inline(always)]
+    pub(crate) fn along1(
+        &self,
+        side1: &Side<'_, impl Spread, AXES>,
+        side2: &Side<'_, impl Spread, AXES>,
+        slack: f32x4,
+    ) -> Along {
+        let Rows { rows, absolute } = &self.to_frame1;
+        let (centre1, extent1) = (side1.centre(), side1.extent());
+        let (centre2, extent2) = (side2.centre(), side2.extent());
+        Along {
+            offset: each(|i| self.translation[i] + dot(rows[i], centre2) - centre1[i]),
+            reach: each(|i| extent1[i] + dot(absolute[i], extent2) + slack),
+        }
+    }
+
+    /// Along the axes of frame 2. `offset` is that of [`along1`](Self::along1).
+    #[inline(always)]
+    pub(super) fn along2(
+        &self,
+        side1: &Side<'_, impl Spread, AXES>,
+        side2: &Side<'_, impl Spread, AXES>,
+        offset: V3<f32x4>,
+        slack: f32x4,
+    ) -> Along {
+        let Rows { rows, absolute } = &self.to_frame2;
+        let (extent1, extent2) = (side1.extent(), side2.extent());
+        Along {
+            offset: each(|i| dot(rows[i], offset)),
+            reach: each(|i| extent2[i] + dot(absolute[i], extent1) + slack),
+        }
+    }
+}
+
 impl<const AXES: usize> PairFrame<AXES>
 where
     Directions<AXES>: DirectionSet<AXES>,
@@ -126,7 +179,8 @@ where
     /// The correspondence of the slabs, computed once.
     #[inline(always)]
     pub(super) fn correspondence(&mut self) -> &Correspondence<AXES> {
-        self.correspondence
-            .get_or_insert_with(|| Correspondence::new(&self.placement, self.margin, self.rounding))
+        self.correspondence.get_or_insert_with(|| {
+            Correspondence::new(&self.placement, self.margin, self.rounding[0])
+        })
     }
 }

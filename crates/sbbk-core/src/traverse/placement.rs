@@ -3,8 +3,8 @@ use glamx::{DMat3, DQuat, DVec3, Pose3, Vec3};
 /// A pose as the linear map that it is, in f64.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Placement {
-    /// The linear part. Parry rotates a point `v` by a quaternion `q` as `q v q*`, which scales by `|q|²`: a
-    /// quaternion slightly off unit length is taken as it is, not normalised.
+    /// The linear part. Parry rotates a point `v` by a quaternion `q` as `q v q*`, which scales by
+    /// `|q|²`: a quaternion slightly off unit length is taken as it is, not normalised.
     pub rotation: DMat3,
     /// Where the origin goes.
     pub translation: DVec3,
@@ -15,8 +15,8 @@ pub struct Placement {
 impl Placement {
     /// The map of `pose`, exact but for the rounding of f64.
     ///
-    /// With `q = (b, w)`: `q v q* = (w² - b²) v + 2 (b·v) b + 2 w b × v`, which is `|q|²` times a rotation, so the
-    /// inverse is the transpose over `|q|⁴`.
+    /// With `q = (b, w)`: `q v q* = (w² - b²) v + 2 (b·v) b + 2 w b × v`, which is `|q|²` times a
+    /// rotation, so the inverse is the transpose over `|q|⁴`.
     pub fn new(pose: &Pose3) -> Self {
         let DQuat { x, y, z, w } = pose.rotation.as_dquat();
         let (xx, yy, zz, ww) = (x * x, y * y, z * z, w * w);
@@ -35,7 +35,8 @@ impl Placement {
         }
     }
 
-    /// Whether it is a map that can be undone: no entry, nor one of the inverse, is NaN or infinite.
+    /// Whether it is a map that can be undone: no entry, nor one of the inverse, is NaN or
+    /// infinite.
     pub fn is_finite(&self) -> bool {
         self.rotation.is_finite() && self.translation.is_finite() && self.inverse.is_finite()
     }
@@ -53,11 +54,13 @@ impl Placement {
     /// `x`, a point of frame 2, in frame 1 and relative to `origin` there.
     #[inline]
     pub fn to_frame1(&self, x: Vec3, origin: Vec3) -> DVec3 {
-        // The translations meet first: they are what cancels when two bodies touch far from the origin.
+        // The translations meet first: they are what cancels when two bodies touch far from the
+        // origin.
         self.rotation * x.as_dvec3() + (self.translation - origin.as_dvec3())
     }
 
-    /// The reverse of [`to_frame1`](Self::to_frame1): a point of frame 1, relative to `origin` there, in frame 2.
+    /// The reverse of [`to_frame1`](Self::to_frame1): a point of frame 1, relative to `origin`
+    /// there, in frame 2.
     #[inline]
     pub fn to_frame2(&self, x: DVec3, origin: Vec3) -> DVec3 {
         self.inverse * (x - (self.translation - origin.as_dvec3()))
@@ -65,12 +68,13 @@ impl Placement {
 
     /// An upper bound of how far any point of a ball has moved from one placement to another.
     ///
-    /// With `c` the ball's centre and `r` its radius, a point `x` in it moved by
-    /// `(R' - R)(x - c) + (R' c + t') - (R c + t)`: at most `‖R' - R‖·r` plus the motion of the centre.
+    /// With `c` the ball's centre and `r` its radius, a point `x` in it moved by `(R' - R)(x - c) +
+    /// (R' c + t') - (R c + t)`: at most `‖R' - R‖·r` plus the motion of the centre.
     ///
-    /// The spectral norm is at most the Frobenius norm over √2: with `R = s·Q`, `R' = s'·Q'`, and `θ` the angle from
-    /// `Q` to `Q'`, `R' - R` has the singular values `|s'·exp(iθ) - s|` twice and `|s' - s|`, which is not more; so the
-    /// sum of squares is at least twice the largest. The last term covers f64 rounding, a few 1e-16 of the terms.
+    /// The spectral norm is at most the Frobenius norm over √2: with `R = s·Q`, `R' = s'·Q'`, and
+    /// `θ` the angle from `Q` to `Q'`, `R' - R` has the singular values `|s'·exp(iθ) - s|` twice
+    /// and `|s' - s|`, which is not more; so the sum of squares is at least twice the largest. The
+    /// last term covers f64 rounding, a few 1e-16 of the terms.
     pub fn motion_bound(&self, earlier: &Self, centre: Vec3, radius: f32) -> f64 {
         let (centre, radius) = (centre.as_dvec3(), f64::from(radius));
         let turn = self.rotation - earlier.rotation;

@@ -1,69 +1,41 @@
 //! A convex shape against one tree: what a query needs to know of the shape, computed once.
 //!
-//! A convex shape is asked one question: how far does it reach along a direction (its support function,
-//! `h(d) = max d·y`). Along each direction it is then an interval, `[-h(-d), h(d)]`, as a node of the tree is one, and two
-//! intervals are compared as the slabs of two k-DOPs are. The directions are
+//! A convex shape is asked one question: how far does it reach along a direction (its support
+//! function, `h(d) = max d·y`). Along each direction it is then an interval, `[-h(-d), h(d)]`, as a
+//! node of the tree is one, and two intervals are compared as the slabs of two k-DOPs are. The
+//! directions are
 //!
-//! * the shape's own: the faces of a box, the normal of a half-space. A large floor that is turned against the mesh is
-//!   large along every direction of the tree; along its own normal it is thin. That is what keeps the descent off the
-//!   part of a mesh that is above it;
+//! * the shape's own: the faces of a box, the normal of a half-space. A large floor that is turned
+//!   against the mesh is large along every direction of the tree; along its own normal it is thin.
+//!   That is what keeps the descent off the part of a mesh that is above it;
 //! * the slabs of the tree, boxes first, then k-DOPs.
 
-use glamx::{DVec3, Vec3};
+use glamx::DVec3;
 use wide::f32x4;
 
+use super::convex::{Convex, Outline};
 use super::placement::Placement;
-use crate::leaf::lane::each;
-use crate::tree::{Children, Lanes, Tree};
+use crate::simd::{Inner, PerChild, Spread, dot, each};
+use crate::tree::{Children, Intervals, Tree};
 use crate::volumes::rounding::gamma;
 use crate::volumes::{DirectionSet, Directions};
 
-/// A convex shape in a frame of its own.
-pub trait Convex {
-    /// At least the largest `direction·y` of all points `y` of the shape, and as close to it as rounding lets it;
-    /// infinite where the shape has no end. `direction` is not zero and of any length.
-    fn reach(&self, direction: DVec3) -> f64;
-
-    /// A simple body that contains the shape.
-    fn outline(&self) -> Outline;
-}
-
-/// A body around a convex shape, simple enough to be compared with triangles over SIMD lanes.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub enum Outline {
-    /// A box along the axes of the shape's frame, rounded: all points within `radius` of the box. A ball has no
-    /// half-lengths, a capsule has one.
-    RoundBox {
-        /// The middle of the box.
-        centre: DVec3,
-        /// Half of its sides.
-        half_lengths: DVec3,
-        /// How far around the box the body goes.
-        radius: f64,
-        /// Whether the body is the shape itself. Otherwise [`Convex::reach`] can tell triangles apart that the
-        /// body meets, and is asked.
-        is_exact: bool,
-    },
-    /// All points with `normal·y <= 0`; always the shape itself.
-    HalfSpace {
-        /// The outer side, of length 1.
-        normal: DVec3,
-    },
-}
-
-/// A convex shape, placed and grown by a margin, as the intervals that a descent compares nodes with.
+/// A convex shape, placed and grown by a margin, as the intervals that a descent compares nodes
+/// with.
 ///
 /// # Rounding
 ///
-/// Let `M` be the largest absolute coordinate of the tree and `n` a direction in its frame. All of the tree is in
-/// `[-N, N]` along `n`, with `N = |n|₁·M`. The interval of the shape is computed in f64 and cut off at `±4·N`, where
-/// there is nothing to be met: the size of a floor and its distance have no part in the rounding, and an
-/// interval without end needs no case of its own. A test computes `|n·c - m| <= Σ|nᵢ|eᵢ + h` in f32:
+/// Let `M` be the largest absolute coordinate of the tree and `n` a direction in its frame. All of
+/// the tree is in `[-N, N]` along `n`, with `N = |n|₁·M`. The interval of the shape is computed in
+/// f64 and cut off at `±4·N`, where there is nothing to be met: the size of a floor and its
+/// distance have no part in the rounding, and an interval without end needs no case of its own. A
+/// test computes `|n·c - m| <= Σ|nᵢ|eᵢ + h` in f32:
 ///
 /// * the components of `n` are rounded once, products and sums lose `γ_4·N` on each side;
 /// * `m` and `h` are at most `4·N`, rounded once: `γ_1·8·N`; the difference and the sum `γ_1·10·N`.
 ///
-/// That is below `γ_32·N`, which the interval grows by on each side. The last term of it covers underflow.
+/// That is below `γ_32·N`, which the interval grows by on each side. The last term of it covers
+/// underflow.
 #[derive(Clone, Debug)]
 pub struct Probe<'a, S, const AXES: usize = 9> {
     pub(crate) shape: &'a S,
@@ -75,19 +47,20 @@ pub struct Probe<'a, S, const AXES: usize = 9> {
     own: [OwnAxes; 2],
     /// How far along the own axes together, squared: the margin and the outline's radius.
     own_reach_squared: f32x4,
-    boxes: Intervals<3>,
+    boxes: ShapeIntervals<3>,
     /// Computed when a descent first reaches k-DOPs.
-    kdops: Option<Intervals<AXES>>,
+    kdops: Option<ShapeIntervals<AXES>>,
 }
 
-/// Intervals along some directions of the tree, two for each lane of a pair of children.
+/// The shape's intervals along some directions of the tree.
 #[derive(Copy, Clone, Debug)]
-struct Intervals<const COUNT: usize> {
+struct ShapeIntervals<const COUNT: usize> {
     middle: [f32; COUNT],
     half: [f32; COUNT],
 }
 
-/// Two of the shape's own directions, seen in the tree's frame, in lanes 0, 0, 1, 1; none is zero everywhere.
+/// Two of the shape's own directions, seen in the tree's frame, in lanes 0, 0, 1, 1; none is zero
+/// everywhere.
 #[derive(Copy, Clone, Debug)]
 struct OwnAxes {
     direction: [f32x4; 3],
@@ -97,7 +70,8 @@ struct OwnAxes {
 }
 
 impl<'a, S: Convex, const AXES: usize> Probe<'a, S, AXES> {
-    /// A shape in whose frame the tree is at `placement`, to find all triangles within `margin` of it.
+    /// A shape in whose frame the tree is at `placement`, to find all triangles within `margin` of
+    /// it.
     pub fn new(tree: &Tree<AXES>, placement: &Placement, shape: &'a S, margin: f64) -> Self {
         let sight = Sight { shape, placement, margin, magnitude: f64::from(tree.magnitude()) };
         let axes = [DVec3::X, DVec3::Y, DVec3::Z];
@@ -134,22 +108,22 @@ impl<'a, S: Convex, const AXES: usize> Probe<'a, S, AXES> {
         self.margin
     }
 
-    /// Bit k: child k's box comes within the margin along the axes of the tree, and of the outline on all its own
-    /// axes together: these are at right angles, so the gaps along them add up as sides of a box do.
+    /// Bit k: child k's box comes within the margin along the axes of the tree, and of the outline
+    /// on all its own axes together: these are at right angles, so the gaps along them add up as
+    /// sides of a box do.
     #[inline(always)]
     pub(super) fn boxes_meet(&self, children: &Children<'_, AXES>) -> u32 {
-        let mut meets = self.boxes.meet(children.centre, children.extent, 0, 1)
-            & self.boxes.meet(children.centre, children.extent, 2, 2);
+        let boxes = &children.boxes;
+        let mut meets = self.boxes.meet(boxes, 0, 1) & self.boxes.meet(boxes, 2, 2);
         if meets.to_bitmask() == 0 {
             return 0;
         }
-        let both = |&[a, b]: &Lanes| f32x4::new([a, b, a, b]);
-        let centre = each(|axis| both(&children.centre[axis]));
-        let extent = each(|axis| both(&children.extent[axis]));
+        let centre = each(|axis| Inner.spread(&boxes.centre[axis]));
+        let extent = each(|axis| Inner.spread(&boxes.extent[axis]));
         let [gap1, gap2] = [0, 1].map(|pair| {
             let own = &self.own[pair];
-            let gap = (dot(&own.direction, &centre) - own.middle).abs();
-            let reach = dot(&own.magnitude, &extent) + own.half;
+            let gap = (dot(own.direction, centre) - own.middle).abs();
+            let reach = dot(own.magnitude, extent) + own.half;
             f32x4::ZERO.fast_max(gap - reach)
         });
         let [a, b, c, d] = (gap1 * gap1 + gap2 * gap2).to_array();
@@ -164,16 +138,16 @@ where
 {
     /// Bit k: child k's k-DOP comes within the margin, along the slabs that its box does not have.
     #[inline(always)]
-    pub(super) fn kdops_meet(&mut self, (centre, extent): (&[Lanes; AXES], &[Lanes; AXES])) -> u32 {
+    pub(super) fn kdops_meet(&mut self, kdops: &Intervals<'_, AXES>) -> u32 {
         let slabs = self.slabs();
         let mut meets = f32x4::splat(f32::from_bits(u32::MAX));
         for slab in (3..AXES).step_by(2) {
-            meets &= slabs.meet(centre, extent, slab, (slab + 1).min(AXES - 1));
+            meets &= slabs.meet(kdops, slab, (slab + 1).min(AXES - 1));
         }
         both_halves(meets)
     }
 
-    fn slabs(&mut self) -> &Intervals<AXES> {
+    fn slabs(&mut self) -> &ShapeIntervals<AXES> {
         let sight = Sight {
             shape: self.shape,
             placement: &self.placement,
@@ -187,17 +161,17 @@ where
     }
 }
 
-impl<const COUNT: usize> Intervals<COUNT> {
+impl<const COUNT: usize> ShapeIntervals<COUNT> {
     /// The test along two directions, in lanes `i`, `i`, `j`, `j`.
     #[inline(always)]
-    fn meet(&self, centre: &[Lanes], extent: &[Lanes], i: usize, j: usize) -> f32x4 {
-        let pair = |lanes: &[Lanes]| {
-            let ([a, b], [c, d]) = (lanes[i], lanes[j]);
+    fn meet(&self, nodes: &Intervals<'_, COUNT>, i: usize, j: usize) -> f32x4 {
+        let pair = |values: &[PerChild; COUNT]| {
+            let ([a, b], [c, d]) = (values[i], values[j]);
             f32x4::new([a, b, c, d])
         };
         let own = |x: &[f32; COUNT]| f32x4::new([x[i], x[i], x[j], x[j]]);
-        let gap = pair(centre) - own(&self.middle);
-        gap.abs().simd_le(pair(extent) + own(&self.half))
+        let gap = pair(nodes.centre) - own(&self.middle);
+        gap.abs().simd_le(pair(nodes.extent) + own(&self.half))
     }
 }
 
@@ -206,11 +180,6 @@ impl<const COUNT: usize> Intervals<COUNT> {
 fn both_halves(lanes: f32x4) -> u32 {
     let bits = lanes.to_bitmask();
     bits & bits >> 2 & 0b11
-}
-
-#[inline(always)]
-fn dot(row: &[f32x4; 3], v: &[f32x4; 3]) -> f32x4 {
-    row[0] * v[0] + row[1] * v[1] + row[2] * v[2]
 }
 
 /// A shape, seen from a tree.
@@ -226,9 +195,9 @@ impl<S: Convex> Sight<'_, S> {
     fn intervals<const COUNT: usize>(
         &self,
         direction: impl Fn(usize) -> DVec3,
-    ) -> Intervals<COUNT> {
+    ) -> ShapeIntervals<COUNT> {
         let to_shape = self.placement.inverse.transpose();
-        let mut intervals = Intervals { middle: [0.0; COUNT], half: [0.0; COUNT] };
+        let mut intervals = ShapeIntervals { middle: [0.0; COUNT], half: [0.0; COUNT] };
         for i in 0..COUNT {
             let n = direction(i);
             let interval = self.interval(n, to_shape * n, self.margin);
@@ -237,7 +206,8 @@ impl<S: Convex> Sight<'_, S> {
         intervals
     }
 
-    /// Along two directions of the shape's frame, of length 1 or none, without the margin and a radius.
+    /// Along two directions of the shape's frame, of length 1 or none, without the margin and a
+    /// radius.
     fn own_axes(&self, [d1, d2]: [DVec3; 2], radius: f64) -> OwnAxes {
         let to_tree = self.placement.rotation.transpose();
         let (n1, n2) = (to_tree * d1, to_tree * d2);
@@ -253,8 +223,9 @@ impl<S: Convex> Sight<'_, S> {
         }
     }
 
-    /// Middle and half-length of the shape's interval along `n`, in the tree's frame, which is `d` in the shape's: `n·x`
-    /// is `d·y - d·t` for a point `x` of the tree that is `y = R x + t` there. It is `growth` longer on each side.
+    /// Middle and half-length of the shape's interval along `n`, in the tree's frame, which is `d`
+    /// in the shape's: `n·x` is `d·y - d·t` for a point `x` of the tree that is `y = R x + t`
+    /// there. It is `growth` longer on each side.
     fn interval(&self, n: DVec3, d: DVec3, growth: f64) -> (f32, f32) {
         if d == DVec3::ZERO {
             return (0.0, 0.0);
@@ -271,33 +242,5 @@ impl<S: Convex> Sight<'_, S> {
         let high = (self.shape.reach(d) - offset + growth).clamp(-limit, limit);
         let rounding = f64::from(gamma(32)) * extent + f64::from(f32::MIN_POSITIVE);
         ((0.5 * (low + high)) as f32, (0.5 * (high - low) + rounding) as f32)
-    }
-}
-
-impl Outline {
-    /// Half of the diagonal of the outline's box with its radius; infinite for a half-space.
-    pub fn size(&self) -> f64 {
-        match self {
-            Self::RoundBox { half_lengths, radius, .. } => half_lengths.length() + radius,
-            Self::HalfSpace { .. } => f64::INFINITY,
-        }
-    }
-}
-
-/// The convex hull of points.
-impl<const COUNT: usize> Convex for [Vec3; COUNT] {
-    fn reach(&self, direction: DVec3) -> f64 {
-        self.iter().map(|x| direction.dot(x.as_dvec3())).fold(f64::NEG_INFINITY, f64::max)
-    }
-
-    fn outline(&self) -> Outline {
-        let low = self.iter().fold(DVec3::INFINITY, |low, x| low.min(x.as_dvec3()));
-        let high = self.iter().fold(DVec3::NEG_INFINITY, |high, x| high.max(x.as_dvec3()));
-        Outline::RoundBox {
-            centre: 0.5 * (low + high),
-            half_lengths: 0.5 * (high - low),
-            radius: 0.0,
-            is_exact: false,
-        }
     }
 }

@@ -1,34 +1,36 @@
 //! Descents that look farther than asked, so that what they find serves for several queries.
 //!
-//! Bodies move little from query to query. A descent that looks farther than the prediction distance `p`, by a *slack*
-//! `s`, finds all pairs that are at most `p + s` apart. While no point of tree 2 has moved by more than `s` since, a pair
-//! that it did not find is farther than `p` apart still: what it found is complete, and neither tree need be touched
-//! (Verlet, *Computer "Experiments" on Classical Fluids*, 1967, does so for particles). How far points have moved is
+//! Bodies move little from query to query. A descent that looks farther than the prediction
+//! distance `p`, by a *slack* `s`, finds all pairs that are at most `p + s` apart. While no point
+//! of tree 2 has moved by more than `s` since, a pair that it did not find is farther than `p`
+//! apart still: what it found is complete, and neither tree need be touched (Verlet, *Computer
+//! "Experiments" on Classical Fluids*, 1967, does so for particles). How far points have moved is
 //! bounded by [`Placement::motion_bound`] of a ball that holds them.
 //!
-//! More slack lasts longer and finds more pairs that do not touch. So it is chosen by the present motion, and none is
-//! given where it would be used up at once.
+//! More slack lasts longer and finds more pairs that do not touch. So it is chosen by the present
+//! motion, and none is given where it would be used up at once.
 
 use super::Placement;
 use crate::volumes::Sphere;
 
-/// Slack in steps of the present motion. More: fewer descents, and more candidates that do not touch.
+/// Slack in steps of the present motion. More: fewer descents, and more candidates that do not
+/// touch.
 const SLACK_STEPS: f64 = 8.0;
-/// Least slack as a share of the prediction distance, for bodies at rest that jitter. More: as above; less: jitter that grows uses
-/// it up.
+/// Least slack as a share of the prediction distance, for bodies at rest that jitter. More: as
+/// above; less: jitter that grows uses it up.
 const LEAST_SLACK: f64 = 0.1;
-/// A pair that would use up the greatest slack in fewer steps gets none: to look farther would not pay (with 2, queries
-/// that move by half a prediction distance took up to twice as long).
+/// A pair that would use up the greatest slack in fewer steps gets none: to look farther would not
+/// pay (with 2, queries that move by half a prediction distance took up to twice as long).
 const LEAST_STEPS: f64 = 6.0;
 
-/// Greatest slack as a share of the prediction distance, where what is found gets an exact test. More: pairs of triangles that
-/// do not touch get one; less: more descents.
+/// Greatest slack as a share of the prediction distance, where what is found gets an exact test.
+/// More: pairs of triangles that do not touch get one; less: more descents.
 pub const GREATEST_SLACK: f64 = 1.0;
 
 /// Plans the queries of one pair: when to descend, and how far to look.
 ///
-/// What descents find is the caller's to keep, and to drop where a shape changes (then this is to be replaced by the
-/// default, too).
+/// What descents find is the caller's to keep, and to drop where a shape changes (then this is to
+/// be replaced by the default, too).
 #[derive(Clone, Debug, Default)]
 pub struct Slack {
     /// The query before.
@@ -45,10 +47,12 @@ pub enum SlackPlan {
     Reuse {
         /// That of the descent.
         margin: f32,
-        /// What was farther apart than this at the descent is farther apart than the prediction distance now.
+        /// What was farther apart than this at the descent is farther apart than the prediction
+        /// distance now.
         reach: f64,
     },
-    /// Descend, forget what was found before, and keep what is found now if [`Slack::margin`] is there.
+    /// Descend, forget what was found before, and keep what is found now if [`Slack::margin`] is
+    /// there.
     Descend {
         /// The prediction distance plus the slack.
         margin: f32,
@@ -56,8 +60,9 @@ pub enum SlackPlan {
 }
 
 impl Slack {
-    /// Plans a query, and remembers it. What moves is in `ball` of its own frame, and that is at `placement`.
-    /// `greatest_slack` is a share of the prediction distance, [`GREATEST_SLACK`] for two meshes. Constant time.
+    /// Plans a query, and remembers it. What moves is in `ball` of its own frame, and that is at
+    /// `placement`. `greatest_slack` is a share of the prediction distance, [`GREATEST_SLACK`] for
+    /// two meshes. Constant time.
     ///
     /// If the placement or the prediction distance is not finite, it is a descent without slack.
     pub fn plan(
@@ -79,7 +84,8 @@ impl Slack {
         }
         // Of the first query nothing is known, not even whether there will be another one.
         let slack = step.map_or(0.0, |step| slack(step, f64::from(prediction), greatest_slack));
-        let margin = prediction + slack as f32;
+        let wide = prediction + slack as f32;
+        let margin = if wide.is_finite() { wide } else { prediction };
         self.travel = 0.0;
         self.descent = (margin > prediction).then_some((*placement, margin));
         SlackPlan::Descend { margin }
@@ -90,15 +96,15 @@ impl Slack {
         self.descent.map(|(_, margin)| margin)
     }
 
-    /// How far points have moved since the last descent, along their path: at most so much has a distance shrunk between any two
-    /// queries since.
+    /// How far points have moved since the last descent, along their path: at most so much has a
+    /// distance shrunk between any two queries since.
     pub fn travel(&self) -> f64 {
         self.travel
     }
 }
 
-/// How much farther than the prediction distance a descent should look, for a pair that moved by `step` since the
-/// query before. Not finite motion gives none.
+/// How much farther than the prediction distance a descent should look, for a pair that moved by
+/// `step` since the query before. Not finite motion gives none.
 fn slack(step: f64, prediction: f64, greatest_slack: f64) -> f64 {
     let greatest = greatest_slack * prediction;
     if LEAST_STEPS * step <= greatest {

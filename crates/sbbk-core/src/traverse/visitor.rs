@@ -29,8 +29,8 @@ pub trait Visitor {
         Verdict::Descend
     }
 
-    /// A pair of leaves whose volumes come within the margin; `leaf1` and `leaf2` are their numbers. Only
-    /// [`Verdict::Stop`] makes a difference.
+    /// A pair of leaves whose volumes come within the margin; `leaf1` and `leaf2` are their
+    /// numbers. Only [`Verdict::Stop`] makes a difference.
     fn leaves(&mut self, leaf1: u32, batch1: &LeafBatch, leaf2: u32, batch2: &LeafBatch)
     -> Verdict;
 }

@@ -31,7 +31,7 @@ mod walk;
 pub use build::BuildOptions;
 pub use layers::LayerPlan;
 pub use node::{BATCH, LeafBatch, Slot};
-pub(crate) use node::{Children, Lanes, Link};
+pub(crate) use node::{Children, Intervals, Link};
 pub use refit::RefitCost;
 pub use stats::BuildStats;
 pub use validate::Violation;

@@ -5,10 +5,11 @@
 //! next to each other. A node's own volume is therefore in its parent, and [`Slot`] names it there.
 
 use glamx::Vec3;
+use wide::f32x4;
 
-use crate::leaf::lane::each;
-use crate::volumes::rounding::{centre_extent, ordered_centre_extent};
-use crate::volumes::{Aabb, Kdop, Slabs};
+use crate::simd::{PerChild, V3, each};
+use crate::volumes::rounding::centre_extent;
+use crate::volumes::{Aabb, Kdop};
 
 /// Triangles in a leaf at most, and lanes of the triangle test.
 pub const BATCH: usize = 4;
@@ -68,16 +69,13 @@ impl Slot {
     }
 }
 
-/// Two values, one for each child.
-pub(crate) type Lanes = [f32; 2];
-
 /// The children of an inner node in an AABB layer: one cache line.
 #[derive(Copy, Clone, Debug)]
 #[repr(C, align(64))]
 pub(super) struct AabbPair {
-    pub(super) centre: [Lanes; 3], // 24
-    pub(super) extent: [Lanes; 3], // 24
-    pub(super) links: [Link; 2],   // 8
+    pub(super) centre: [PerChild; 3], // 24
+    pub(super) extent: [PerChild; 3], // 24
+    pub(super) links: [Link; 2],      // 8
 }
 const _: () = assert!(size_of::<AabbPair>() == 64);
 
@@ -85,9 +83,9 @@ const _: () = assert!(size_of::<AabbPair>() == 64);
 #[derive(Copy, Clone, Debug)]
 #[repr(C, align(16))]
 pub(super) struct KdopPair<const AXES: usize> {
-    pub(super) centre: [Lanes; AXES], // 8 · AXES
-    pub(super) extent: [Lanes; AXES], // 8 · AXES
-    pub(super) links: [Link; 2],      // 8
+    pub(super) centre: [PerChild; AXES], // 8 · AXES
+    pub(super) extent: [PerChild; AXES], // 8 · AXES
+    pub(super) links: [Link; 2],         // 8
 }
 const _: () = assert!(size_of::<KdopPair<9>>() == 160);
 
@@ -115,9 +113,9 @@ impl AabbPair {
 
 /// The intervals of two children, as centres and half-lengths.
 #[inline(always)]
-fn lanes([one, two]: [(f32, f32); 2]) -> (Lanes, Lanes) {
-    let (centre1, extent1) = ordered_centre_extent(one.0, one.1);
-    let (centre2, extent2) = ordered_centre_extent(two.0, two.1);
+fn lanes([one, two]: [(f32, f32); 2]) -> (PerChild, PerChild) {
+    let (centre1, extent1) = centre_extent(one.0, one.1);
+    let (centre2, extent2) = centre_extent(two.0, two.1);
     ([centre1, centre2], [extent1, extent2])
 }
 
@@ -148,50 +146,61 @@ impl<const AXES: usize> KdopPair<AXES> {
     }
 }
 
+/// Intervals of two children along the axes of their boxes, or along all slabs of their k-DOPs.
+#[derive(Copy, Clone, Debug)]
+pub(crate) struct Intervals<'a, const COUNT: usize> {
+    pub(crate) centre: &'a [PerChild; COUNT],
+    /// Half-lengths.
+    pub(crate) extent: &'a [PerChild; COUNT],
+}
+
 /// The children of an inner node of either layer.
 #[derive(Copy, Clone, Debug)]
 pub(crate) struct Children<'a, const AXES: usize> {
-    /// Centres of the boxes, axis by axis, child by child.
-    pub(crate) centre: &'a [Lanes; 3],
-    /// Half-lengths of the boxes.
-    pub(crate) extent: &'a [Lanes; 3],
-    /// Centres and half-lengths of all slabs, in the k-DOP layers.
-    pub(crate) kdop: Option<(&'a [Lanes; AXES], &'a [Lanes; AXES])>,
+    pub(crate) boxes: Intervals<'a, 3>,
+    /// In the k-DOP layers.
+    pub(crate) kdops: Option<Intervals<'a, AXES>>,
     pub(crate) links: &'a [Link; 2],
 }
 
 impl<'a, const AXES: usize> Children<'a, AXES> {
     pub(super) fn from_aabbs(pair: &'a AabbPair) -> Self {
-        Self { centre: &pair.centre, extent: &pair.extent, kdop: None, links: &pair.links }
+        let boxes = Intervals { centre: &pair.centre, extent: &pair.extent };
+        Self { boxes, kdops: None, links: &pair.links }
     }
 
     pub(super) fn from_kdops(pair: &'a KdopPair<AXES>) -> Self {
-        let box_of = |slabs: &'a [Lanes; AXES]| {
+        let box_of = |slabs: &'a [PerChild; AXES]| {
             slabs.first_chunk::<3>().expect("every direction set starts with x, y and z")
         };
         Self {
-            centre: box_of(&pair.centre),
-            extent: box_of(&pair.extent),
-            kdop: Some((&pair.centre, &pair.extent)),
+            boxes: Intervals { centre: box_of(&pair.centre), extent: box_of(&pair.extent) },
+            kdops: Some(Intervals { centre: &pair.centre, extent: &pair.extent }),
             links: &pair.links,
         }
     }
 
     /// The box of one child.
     pub fn aabb(&self, lane: usize) -> Aabb {
-        let read = |lanes: &[Lanes; 3]| Vec3::from_array(lanes.map(|l| l[lane]));
-        let (centre, extent) = (read(self.centre), read(self.extent));
-        Aabb { min: centre - extent, max: centre + extent }
+        let [min, max] = self.boxes.ends(lane).map(Vec3::from_array);
+        Aabb { min, max }
     }
 
     /// The k-DOP of one child, in the k-DOP layers.
     pub fn kdop(&self, lane: usize) -> Option<Kdop<AXES>> {
-        self.kdop.map(|(centre, extent)| {
-            let slab = |sign: f32| -> Slabs<AXES> {
-                std::array::from_fn(|axis| centre[axis][lane] + sign * extent[axis][lane])
-            };
-            Kdop { min: slab(-1.0), max: slab(1.0) }
+        self.kdops.map(|kdops| {
+            let [min, max] = kdops.ends(lane);
+            Kdop { min, max }
         })
+    }
+}
+
+impl<const COUNT: usize> Intervals<'_, COUNT> {
+    /// The lower and the upper ends of one child's.
+    fn ends(&self, lane: usize) -> [[f32; COUNT]; 2] {
+        let end =
+            |sign: f32| std::array::from_fn(|i| self.centre[i][lane] + sign * self.extent[i][lane]);
+        [end(-1.0), end(1.0)]
     }
 }
 
@@ -236,6 +245,12 @@ impl LeafBatch {
     #[inline]
     pub fn triangles(&self) -> &[u32] {
         &self.triangles[..self.count()]
+    }
+
+    /// The corners of all triangles, over lanes.
+    #[inline(always)]
+    pub(crate) fn lanes(&self) -> [V3<f32x4>; 3] {
+        each(|corner| each(|axis| f32x4::new(self.corners[corner][axis])))
     }
 
     /// The corners of the triangle in `lane`.

@@ -10,7 +10,7 @@ use super::Tree;
 use super::build::{BuildNode, BuildOptions, BuildTree, Content};
 use super::node::{AabbPair, BATCH, KdopPair, LeafBatch, Link};
 use super::stats::BuildStats;
-use crate::volumes::{DirectionSet, Directions, Kdop, Sphere, Volume};
+use crate::volumes::{DirectionSet, Directions, Kdop, Sphere};
 
 pub(super) fn pack<const AXES: usize>(
     built: BuildTree,

@@ -14,7 +14,7 @@ use wide::f32x4;
 
 use super::node::{AabbPair, BATCH, KdopPair, LeafBatch, Link};
 use super::{BuildError, Tree, check_mesh};
-use crate::volumes::{Aabb, DirectionSet, Directions, Kdop, Sphere, Volume};
+use crate::volumes::{Aabb, DirectionSet, Directions, Kdop, Sphere};
 
 /// How good a tree is, fitted to a mesh that has deformed since its build.
 #[derive(Copy, Clone, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 use super::Tree;
 use super::node::{Link, Slot};
-use crate::volumes::{DirectionSet, Directions, Kdop, Volume};
+use crate::volumes::{DirectionSet, Directions, Kdop};
 
 /// The first thing found wrong with a tree.
 #[derive(Clone, Debug, PartialEq)]

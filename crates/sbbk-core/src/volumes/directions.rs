@@ -1,5 +1,5 @@
-//! The direction sets of the k-DOPs: which slabs a [`Kdop`](super::Kdop) has, and how a direction of
-//! another frame is written in them.
+//! The direction sets of the k-DOPs: which slabs a [`Kdop`](super::Kdop) has, and how a direction
+//! of another frame is written in them.
 //!
 //! All directions have components in {-1, 0, 1}, so that a projection is a sum without products.
 //! They are not normalised: a margin `m` between two slabs is `m·|d|` in their coordinates.
@@ -9,13 +9,13 @@
 //! Two trees of bodies turned against each other have different slabs. Zachmann (*Rapid Collision
 //! Detection by Dynamically Aligned DOP-Trees*, 1998) writes a direction `b` of tree 1, seen in the
 //! frame of tree 2, as a combination of three directions of tree 2 with non-negative coefficients,
-//! `b = c₁·d₁ + c₂·d₂ + c₃·d₃`. For every point x of a node of tree 2 then
-//! `b·x = Σ cᵢ (dᵢ·x) <= Σ cᵢ maxᵢ`: a bound for 3 multiply-adds, conservative for any node by LP weak
-//! duality, and tight when the three directions are adjacent, as they then share a vertex of the
-//! k-DOP's prototype.
+//! `b = c₁·d₁ + c₂·d₂ + c₃·d₃`. For every point x of a node of tree 2 then `b·x = Σ cᵢ (dᵢ·x) <= Σ
+//! cᵢ maxᵢ`: a bound for 3 multiply-adds, conservative for any node by LP weak duality, and tight
+//! when the three directions are adjacent, as they then share a vertex of the k-DOP's prototype.
 //!
-//! No search is needed for the triple. The sets are symmetric under all permutations and sign changes of
-//! the axes, so sort the components, `x >= y >= z >= 0`; the cone that contains `b` follows:
+//! No search is needed for the triple. The sets are symmetric under all permutations and sign
+//! changes of the axes, so sort the components, `x >= y >= z >= 0`; the cone that contains `b`
+//! follows:
 //!
 //! | k | cone, sorted components | coefficients |
 //! |---|---|---|
@@ -48,8 +48,8 @@ pub type Member = [i8; 3];
 /// The slab of a direction and its sign there; by [`member_index`].
 type SlabTable = [(u8, i8); 27];
 
-/// A set of directions that is closed under the symmetries of the cube. Sealed: an unsupported k does
-/// not compile.
+/// A set of directions that is closed under the symmetries of the cube. Sealed: an unsupported k
+/// does not compile.
 pub trait DirectionSet<const AXES: usize>: sealed::Sealed {
     /// The slabs' directions, one of each opposite two. The first three are x, y and z.
     const DIRECTIONS: [Vec3; AXES];
@@ -57,8 +57,8 @@ pub trait DirectionSet<const AXES: usize>: sealed::Sealed {
     #[doc(hidden)]
     const SLABS: SlabTable = slab_table(&Self::DIRECTIONS);
 
-    /// The projections of a point on all directions. Written out, as `x·0 + y·1 + z·1` costs three products that no
-    /// compiler may leave out; fitting k-DOPs was a tenth of a build.
+    /// The projections of a point on all directions. Written out, as `x·0 + y·1 + z·1` costs three
+    /// products that no compiler may leave out; fitting k-DOPs was a tenth of a build.
     #[inline]
     fn project(point: Vec3) -> Slabs<AXES> {
         Self::project_components(point.to_array())
@@ -71,8 +71,8 @@ pub trait DirectionSet<const AXES: usize>: sealed::Sealed {
     /// `x >= y >= z >= 0`, with their coefficients.
     fn cone(sorted: DVec3) -> [(Member, f64); 3];
 
-    /// `direction` as a non-negative combination of three adjacent directions of the set: for each the
-    /// slab's index and the coefficient, negative where the slab's opposite direction is meant.
+    /// `direction` as a non-negative combination of three adjacent directions of the set: for each
+    /// the slab's index and the coefficient, negative where the slab's opposite direction is meant.
     #[inline]
     fn correspondence(direction: DVec3) -> [(usize, f64); 3] {
         let magnitude = direction.abs().to_array();
@@ -196,7 +196,8 @@ impl DirectionSet<13> for Directions<13> {
     }
 }
 
-/// The axes from the largest component to the smallest. Not sorted if one is NaN: then nothing overlaps anyway.
+/// The axes from the largest component to the smallest. Not sorted if one is NaN: then nothing
+/// overlaps anyway.
 #[inline]
 fn descending_order(v: [f64; 3]) -> [usize; 3] {
     let mut order = [0, 1, 2];

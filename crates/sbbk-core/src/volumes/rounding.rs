@@ -1,35 +1,56 @@
 //! What f32 arithmetic can lose, so that every culling test can give it back.
 //!
-//! Notation (Higham, *Accuracy and Stability of Numerical Algorithms*, chapter 3): `u` is the unit
-//! roundoff; one operation returns the exact result times `1 + δ`, `|δ| <= u`; after `n` operations
-//! in a row the relative error of each term of a sum is at most `γ_n = n·u / (1 - n·u)`.
+//! Notation (Higham, *Accuracy and Stability of Numerical Algorithms*, chapter 3): `u = 2⁻²⁴` is
+//! the unit roundoff; one operation returns the exact result times `1 + δ`, `|δ| <= u`; after `n`
+//! operations in a row the relative error of each term of a sum is at most `γ_n = n·u / (1 - n·u)`,
+//! [`gamma`].
+//!
+//! # Allowances
+//!
+//! `M` is the largest absolute coordinate of a tree, `T` that of a translation, `s` the scale of a
+//! rotation (1 but for the rounding of its quaternion), `m` a margin. `W = M1 + T + 2·s·M2` bounds
+//! all coordinates of two meshes in the frame of the first, as the row sums of `|R|` are at most
+//! `√3·s < 2·s`; `r = γ_16·W`. Directions of slabs have components in {-1, 0, 1}. Each allowance
+//! has a test in `allowances.rs` that fails without it.
+//!
+//! | where | what rounds | loses at most | allowed |
+//! |---|---|---|---|
+//! | `Kdop::fit` | two additions of corners | `γ_2·(X + Y + Z)` of the largest coordinates | `γ_3` of that |
+//! | `Sphere::fit` | three squares, a root; the difference before | `γ_5` of the distance, `u` of coordinates | `γ_6`, `γ_2`, and `UNDERFLOW` |
+//! //! | `centre_extent` | the half-length | `u` of it | the next number |
+//! | `PairFrame`, boxes | `t + R·c2` (5 roundings), minus `c1` (1), `e1 + \|R\|·e2` (8, `e <= M`) | `γ_5·(T + 2·s·M2) + γ_1·W + γ_8·(M1 + 2·s·M2)` | `r`; in frame 2 likewise |
+//! | `Correspondence`, slabs | bounds up to `3·M`, coefficients that sum to `2·√3·s` | `γ_9·3·M1 + γ_6·3·T + γ_14·10.4·s·M2` | `6·r` |
+//! | gaps (`Bound`) | the difference of offset and reach, a norm, a length, a scale | `γ_8` of the gap | `γ_8` |
+//! | `Toward`, nodes | coefficients that sum to 2, slabs up to `3·M`, 14 roundings a term | `γ_14·(6·M1 + 2·T + 6·s·M2)` | `6·r` |
+//! | `Toward`, leaves | components that sum to 1.8, 7 roundings | `γ_7·1.8·(M1 + T + s·M2)` | `r` |
+//! | `Probe` | a node in `[-N, N]`, `N = \|n\|₁·M`, a shape cut off at `4·N` | `γ_8·N + γ_1·18·N` | `γ_32·N` |
+//! | `Probe`, own axes | margin and radius, a sum of squares | `γ_6` of them | `γ_8` |
+//! | `LeafTest` | see `leaf/separation.rs` | `4·r`, `γ_6·m` with `m <= 2·√3·W` | `6·r` |
+//! | `PlacedTest` | the same, and an origin taken away | `γ_18` for `γ_16` | the same |
+//! | `ProbeTest` | see `leaf/probe.rs` | `γ_32·(W + h + radius)` | that |
+//! | `FieldFrame` | lines `(c·fl(1/n) - 1/2)·scale`, heights times their scale | `γ_4` of the field, `γ_1` of heights | `γ_8`, `γ_4` |
+//! | `Placement::motion_bound` | f64 | a few `1e-16` of the terms | `1e-14` |
 
 /// Unit roundoff of f32: half the distance from 1 to the next number.
-pub const UNIT_ROUNDOFF: f32 = f32::EPSILON * 0.5;
+const UNIT_ROUNDOFF: f32 = f32::EPSILON * 0.5;
 
 /// `γ_n`, rounded up.
 pub const fn gamma(operations: u32) -> f32 {
-    // The factor 1.001 covers the division by `1 - n·u` for all n below 16,000 and its own rounding.
+    // The factor 1.001 covers the division by `1 - n·u` for all n below 16,000 and its own
+    // rounding.
     operations as f32 * UNIT_ROUNDOFF * 1.001
 }
 
 /// The interval `[min, max]` as a centre and a half-length that contain it in exact arithmetic.
 ///
 /// The centre is rounded, so the half-length is measured from the rounded centre to both ends and
-/// rounded up. An empty or non-finite interval gives a half-length that fails every overlap test.
-pub fn centre_extent(min: f32, max: f32) -> (f32, f32) {
-    let centre = 0.5 * min + 0.5 * max;
-    let extent = (max - centre).max(centre - min);
-    (centre, extent.next_up())
-}
-
-/// [`centre_extent`] of an interval with `min <= max`, or a NaN, without the branches of `f32::next_up`.
+/// rounded up. An interval that is not finite gives a half-length that passes no test.
 #[inline(always)]
-pub(crate) fn ordered_centre_extent(min: f32, max: f32) -> (f32, f32) {
+pub(crate) fn centre_extent(min: f32, max: f32) -> (f32, f32) {
     let centre = 0.5 * min + 0.5 * max;
     let (above, below) = (max - centre, centre - min);
     let extent = if above > below { above } else { below };
-    // Of a number that is not negative the next one has the next bits.
-    let up = f32::from_bits(extent.to_bits() + 1);
+    // The next number of one that is not negative has the next bits: `f32::next_up` has branches.
+    let up = f32::from_bits(extent.to_bits().wrapping_add(1));
     (centre, if extent < f32::INFINITY { up } else { extent })
 }

@@ -1,7 +1,7 @@
-use glamx::{Pose3, Vec3};
+use glamx::Vec3;
 
 use super::rounding::gamma;
-use super::{DirectionSet, Directions, Volume};
+use super::{DirectionSet, Directions};
 
 /// A ball.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -13,57 +13,24 @@ pub struct Sphere {
 }
 
 /// How many times the extremal points are searched anew along the direction to the farthest point.
-/// Each costs one pass over the points. With 4 the radius is within 5 % of the minimum on thousands of random
-/// clouds (a test); more gain a percent and cost build time.
+/// Each costs one pass over the points. With 4 the radius is within 5 % of the minimum on thousands
+/// of random clouds (a test); more gain a percent and cost build time.
 const REFINEMENTS: usize = 4;
 
-/// What a distance may lose where the squares of its coordinates underflow: the root of some times 2^-149.
+/// What a distance may lose where squares of coordinates underflow: the root of some times 2⁻¹⁴⁹.
 const UNDERFLOW: f32 = 1e-22;
 
 impl Sphere {
-    /// The sphere that contains all points whose computed distance from `centre` is `distance` or less.
+    /// The sphere around `points`, near-minimal; one of a negative radius if there are none. Linear
+    /// in the number of points.
     ///
-    /// Rounding: a distance is a sum of three squared differences and a root, γ_5 in all, relative to the
-    /// difference of coordinates, which is itself rounded by u of the coordinates.
-    pub(crate) fn reaching(centre: Vec3, distance: f32) -> Self {
-        let magnitude = centre.abs().max_element() + distance;
-        let radius = distance * (1.0 + gamma(6)) + gamma(2) * magnitude + UNDERFLOW;
-        Self { centre, radius }
-    }
-
-    /// The farthest of `points` from the centre, and its distance.
-    fn farthest(&self, points: &[Vec3]) -> (Vec3, f32) {
-        let mut farthest = (self.centre, 0.0);
-        for &point in points {
-            let distance_squared = self.centre.distance_squared(point);
-            if distance_squared > farthest.1 {
-                farthest = (point, distance_squared);
-            }
-        }
-        (farthest.0, farthest.1.sqrt())
-    }
-
-    /// The sphere grown just enough to touch `point`, which is `distance` away from its centre.
-    fn grown_to(&self, point: Vec3, distance: f32) -> Self {
-        if distance <= self.radius {
-            return *self;
-        }
-        let radius = 0.5 * (self.radius + distance);
-        let centre = self.centre + (point - self.centre) * ((distance - radius) / distance);
-        Self { centre, radius }
-    }
-}
-
-impl Volume for Sphere {
-    const EMPTY: Self = Self { centre: Vec3::ZERO, radius: -1.0 };
-
-    /// Near-minimal. Starts from the widest of the 7 diameters of the 14-DOP's directions (Larsson, *Fast and
-    /// Tight Fitting Bounding Spheres*, 2008), then walks the centre towards the farthest point by a
-    /// shrinking step (Bădoiu and Clarkson, *Smaller Core-Sets for Balls*, 2003) and keeps the best.
-    /// Linear in the number of points.
-    fn fit(points: &[Vec3]) -> Self {
+    /// Starts from the widest of the 7 diameters of the 14-DOP's directions (Larsson, *Fast and
+    /// Tight Fitting Bounding Spheres*, 2008), then walks the centre towards the farthest point by
+    /// a shrinking step (Bădoiu and Clarkson, *Smaller Core-Sets for Balls*, 2003) and keeps the
+    /// best.
+    pub fn fit(points: &[Vec3]) -> Self {
         let Some(&first) = points.first() else {
-            return Self::EMPTY;
+            return Self { centre: Vec3::ZERO, radius: -1.0 };
         };
         let mut ends = [(first, first); 7];
         let (mut low, mut high) = ([f32::INFINITY; 7], [f32::NEG_INFINITY; 7]);
@@ -100,52 +67,38 @@ impl Volume for Sphere {
         Self::reaching(best.centre, best.radius)
     }
 
-    fn merge(&self, other: &Self) -> Self {
-        if other.radius < 0.0 {
-            return *self;
-        }
-        if self.radius < 0.0 {
-            return *other;
-        }
-        let distance = self.centre.distance(other.centre);
-        if distance + other.radius <= self.radius {
-            return *self;
-        }
-        if distance + self.radius <= other.radius {
-            return *other;
-        }
-        let radius = 0.5 * (distance + self.radius + other.radius);
-        let centre =
-            self.centre + (other.centre - self.centre) * ((radius - self.radius) / distance);
-        let magnitude = centre.abs().max_element() + radius;
-        Self { centre, radius: radius + gamma(12) * magnitude }
+    /// Whether `point` is in the sphere, computed in f64: fitted points are.
+    pub fn contains(&self, point: Vec3) -> bool {
+        self.centre.as_dvec3().distance(point.as_dvec3()) <= f64::from(self.radius)
     }
 
-    fn overlaps(&self, other: &Self, margin: f32) -> bool {
-        // The differences round by u of the coordinates, the squares and sums by γ_5, the radii by γ_3.
-        let magnitude = self.centre.abs().max_element() + other.centre.abs().max_element();
-        let reach = (self.radius + other.radius + margin) * (1.0 + gamma(8)) + gamma(4) * magnitude;
-        self.radius >= 0.0
-            && other.radius >= 0.0
-            && self.centre.distance_squared(other.centre) <= reach * reach
+    /// The sphere that contains all points whose computed distance from `centre` is `distance` or
+    /// less.
+    pub(crate) fn reaching(centre: Vec3, distance: f32) -> Self {
+        let magnitude = centre.abs().max_element() + distance;
+        let radius = distance * (1.0 + gamma(6)) + gamma(2) * magnitude + UNDERFLOW;
+        Self { centre, radius }
     }
 
-    /// Rounding: the rotated centre is off by at most γ_12·(3·|c| + |t|) an axis (see
-    /// [`Aabb`](super::Aabb)), twice that in length.
-    fn transformed(&self, pose: &Pose3) -> Self {
-        if self.radius < 0.0 {
+    /// The farthest of `points` from the centre, and its distance.
+    fn farthest(&self, points: &[Vec3]) -> (Vec3, f32) {
+        let mut farthest = (self.centre, 0.0);
+        for &point in points {
+            let distance_squared = self.centre.distance_squared(point);
+            if distance_squared > farthest.1 {
+                farthest = (point, distance_squared);
+            }
+        }
+        (farthest.0, farthest.1.sqrt())
+    }
+
+    /// The sphere grown just enough to touch `point`, which is `distance` away from its centre.
+    fn grown_to(&self, point: Vec3, distance: f32) -> Self {
+        if distance <= self.radius {
             return *self;
         }
-        let magnitude = 3.0 * self.centre.abs().max_element()
-            + pose.translation.abs().max_element()
-            + self.radius;
-        Self {
-            centre: pose.transform_point(self.centre),
-            radius: self.radius + 2.0 * gamma(12) * magnitude,
-        }
-    }
-
-    fn contains(&self, point: Vec3) -> bool {
-        self.overlaps(&Self { centre: point, radius: 0.0 }, 0.0)
+        let radius = 0.5 * (self.radius + distance);
+        let centre = self.centre + (point - self.centre) * ((distance - radius) / distance);
+        Self { centre, radius }
     }
 }

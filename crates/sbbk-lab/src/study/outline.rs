@@ -7,7 +7,7 @@ use sbbk_core::traverse::{
     Descent, DescentScratch, NodePair, PairFrame, Verdict, Visitor, descend,
 };
 use sbbk_core::tree::{BuildOptions, LayerPlan, LeafBatch, Slot, Tree};
-use sbbk_core::volumes::{Aabb, Kdop18, Volume};
+use sbbk_core::volumes::{Aabb, Kdop18};
 
 /// A node: its volume, in the frame of its mesh, and the triangles below it.
 #[derive(Clone, Debug)]
