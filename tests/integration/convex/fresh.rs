@@ -58,7 +58,7 @@ fn fresh_contacts_are_those_of_parrys_routine_on_all_triangles() {
 /// left out, and a triangle that is lost or invented.
 #[test]
 fn exact_contacts_are_where_parry_measures_them() {
-    const ROUNDING: Real = 1e-4;
+    const TOLERANCE: Real = 2e-3;
     const PARRYS_ERROR: Real = 2e-2;
     let dispatcher = SbbkDispatcher::default();
     let mut random = Rand32::new(3);
@@ -67,7 +67,7 @@ fn exact_contacts_are_where_parry_measures_them() {
         // Those of a cuboid are Parry's own.
         for (name, shape) in shapes(size).into_iter().filter(|(name, _)| *name != "cuboid") {
             let (mut count, mut apart_count) = (0, 0);
-            for i in 0..12 {
+            for i in 0..24 {
                 let pose = pose(&mut random, &head, size);
                 let (prediction, flipped) = (0.05, i % 2 == 0);
                 let question = Question { mesh: &head, shape: &shape, pose, prediction, flipped };
@@ -77,10 +77,10 @@ fn exact_contacts_are_where_parry_measures_them() {
                 for triangle in 0..head.indices().len() as u32 {
                     let apart = question.apart(triangle);
                     let near = found.get(&triangle).copied().filter(|near| *near <= prediction);
-                    let is_found = near.is_some() || apart > prediction - ROUNDING;
+                    let is_found = near.is_some() || apart > prediction - TOLERANCE;
                     assert!(is_found, "{name} of {size}: {triangle} is lost, {apart} away");
                     let Some(near) = near else { continue };
-                    assert!(near <= apart + ROUNDING, "{name} of {size}: {near} for {apart}");
+                    assert!(near <= apart + TOLERANCE, "{name} of {size}: {near} for {apart}");
                     count += 1;
                     if near > 0.0 {
                         apart_count += 1;

@@ -112,7 +112,9 @@ impl Extent {
     pub(super) fn meets(&self, aabb: &Aabb) -> bool {
         if self.shape_type == ShapeType::HalfSpace {
             let (normal, half) = (self.skew, aabb.half_extents());
-            return normal.dot(aabb.center()) <= normal.abs().dot(half);
+            // A box without end has no centre: NaN is not beyond.
+            let is_beyond = normal.dot(aabb.center()) > normal.abs().dot(half);
+            return !is_beyond;
         }
         let radius = Vec3::splat(self.radius);
         aabb.intersects(&Aabb::new(self.min - radius, self.max + radius))
