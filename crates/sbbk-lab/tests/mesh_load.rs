@@ -266,7 +266,7 @@ fn broken_files_are_named_with_the_cause() {
         ("5123", "5126", indices),
         (r#""indices": 1"#, r#""indices": 0"#, indices),
         ("AAABAAIA", "AAABAAkA", "triangle 0 uses vertex 9, but there are 3 vertices"),
-        ("AACAPw", "AACAfw", "vertex 1 is not finite: [inf, 0, 0]"),
+        ("AACAPw", "AACAfw", "vertex 1 is not finite: [inf, "),
         (NODE, r#"{ "mesh": 0, "children": [ 0 ] }"#, "a node is its own ancestor"),
         (r#""indices": 1"#, r#""indices": 1, "mode": 0"#, "it holds no triangles"),
     ] {
