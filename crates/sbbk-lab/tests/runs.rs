@@ -5,43 +5,37 @@ use std::sync::Arc;
 use rapier3d::parry::query::DefaultQueryDispatcher;
 use sbbk_lab::backend::{Backend, PairKind, Probe, SharedDispatcher, Timed};
 use sbbk_lab::metrics::{PosePairs, RunPlan, WorldState, run};
-use sbbk_lab::scene::{BoxStack, MonkeyPile, Scene, TwoMeshes};
+use sbbk_lab::scene::{BoxStack, HelicopterBallDrop, MonkeyPile, Scene};
 
 const PLAN: RunPlan =
-    RunPlan { warm_up: 5, steps: 35, sample_every: 10, sample_size: 20, query_stride: 1 };
+    RunPlan { warm_up: 5, steps: 35, sample_every: 4, sample_size: 20, query_stride: 1 };
 
 /// Would catch timers that are never started (Rapier's `profiler` feature is off), sampled steps
-/// that are timed, and a backend that is not installed.
+/// that are timed, a backend that is not installed, and a judge that does not see what the world
+/// sees: SBBK's own contacts are exact, in a run as well as asked afresh.
 #[test]
-fn every_backend_runs_and_is_timed() {
-    for backend in Backend::ALL {
-        let run = run(&TwoMeshes::default(), backend, PLAN).unwrap();
-        assert_eq!(run.samples.iter().map(|s| s.step).collect::<Vec<_>>(), [10, 20, 30, 40]);
-        assert_eq!(run.times.len(), PLAN.steps - run.samples.len());
-        assert!(run.mean(|times| times.mesh_mesh_calls as f64) > 0.0, "{backend}");
+fn every_backend_runs_and_is_timed_and_judged() {
+    let pile = MonkeyPile { contact_recycling: false, ..MonkeyPile::with_heads(20) };
+    let drop: &dyn Scene = &HelicopterBallDrop::default();
+    let runs = Backend::ALL.map(|backend| (drop, backend, PLAN.steps));
+    for (scene, backend, steps) in [&runs[..], &[(&pile, Backend::Sbbk, 65)]].concat() {
+        let name = format!("{} on {backend}", scene.name());
+        let run = run(scene, backend, RunPlan { steps, ..PLAN }).unwrap();
+        let sampled: Vec<usize> = run.samples.iter().map(|sample| sample.step).collect();
+        assert_eq!(sampled, (8..=PLAN.warm_up + steps).step_by(4).collect::<Vec<_>>(), "{name}");
+        assert_eq!(run.times.len(), steps - sampled.len());
+        assert!(run.mean(|times| times.mesh_mesh_calls as f64) > 0.0, "{name}");
         for times in &run.times {
             assert!(times.broad_phase > 0.0 && times.narrow_phase > 0.0 && times.solver > 0.0);
-            assert!(times.collision_detection() < times.step);
-            assert!(times.mesh_mesh <= times.narrow_phase);
+            assert!(
+                times.collision_detection() < times.step && times.mesh_mesh <= times.narrow_phase
+            );
         }
         assert!(run.frames_per_second() > 0.0);
-        let (fresh, updated) = (run.total(|s| s.fresh), run.total(|s| s.updated));
-        assert!(fresh.true_pairs > 0 && updated.true_pairs > 0, "{backend} met nothing");
-    }
-}
-
-/// Would catch a judge that does not see what the world sees: SBBK's own contacts are exact, in
-/// a run as well as asked afresh, in two heads that meet and in a pile without recycling.
-#[test]
-fn sbbk_is_without_error_in_whole_runs() {
-    let pile = MonkeyPile { contact_recycling: false, ..MonkeyPile::with_heads(20) };
-    let scenes: [(&dyn Scene, usize); 2] = [(&TwoMeshes::default(), 35), (&pile, 65)];
-    for (scene, steps) in scenes {
-        let plan = RunPlan { steps, ..PLAN };
-        let run = run(scene, Backend::Sbbk, plan).unwrap();
-        let (fresh, updated) = (run.total(|s| s.fresh), run.total(|s| s.updated));
-        assert!(fresh.true_pairs > 0 && updated.true_pairs > 0, "{}", scene.name());
-        assert_eq!((fresh.wrong(), updated.wrong()), (0, 0), "{}", scene.name());
+        for errors in [run.total(|sample| sample.fresh), run.total(|sample| sample.updated)] {
+            assert!(errors.true_pairs > 0, "{name} met nothing");
+            assert!(errors.wrong() == 0 || backend != Backend::Sbbk, "{name}: {errors:?}");
+        }
     }
 }
 
@@ -51,10 +45,9 @@ fn captured_pairs_are_asked_once_fresh_and_once_steady() {
     let mut built = MonkeyPile::with_heads(20).build().unwrap();
     (0..50).for_each(|_| built.world.step());
     let floor = built.world.colliders.iter().next().map(|(handle, _)| handle).unwrap();
-    let pairs = || built.world.narrow_phase.contact_pairs();
+    let pairs = || built.world.contact_pairs();
     let heads = pairs().filter(|pair| pair.collider1 != floor && pair.collider2 != floor).count();
-    let before: Vec<_> = pairs().map(|pair| pair.collider1).collect();
-    assert!(heads > 10 && heads < before.len(), "heads lie on heads and on the floor");
+    assert!(heads > 10 && heads < pairs().count(), "heads lie on heads and on the floor");
     let captured = PosePairs::capture(&mut built.world, |world| world.step());
     assert_eq!(captured.pair_count(), heads);
     let moved = |&index: &usize| {
@@ -67,8 +60,9 @@ fn captured_pairs_are_asked_once_fresh_and_once_steady() {
     let timed: SharedDispatcher =
         Arc::new(Timed::new(Arc::new(DefaultQueryDispatcher), probe.clone()));
     let sweep = captured.sweep(&timed);
-    assert_eq!(probe.times()[PairKind::MeshMesh].calls, 2 * heads as u64);
-    assert!(probe.times()[PairKind::MeshMesh].time <= sweep.fresh + sweep.steady);
+    let tally = probe.tally(PairKind::MeshMesh);
+    assert_eq!(tally.calls, 2 * heads as u64);
+    assert!(tally.time <= sweep.fresh + sweep.steady);
 }
 
 /// Would catch heights or energies of the wrong bodies: heads that fall freely keep their energy,
@@ -76,7 +70,6 @@ fn captured_pairs_are_asked_once_fresh_and_once_steady() {
 #[test]
 fn a_free_fall_keeps_its_energy() {
     let mut built = MonkeyPile::with_heads(10).build().unwrap();
-    let start = WorldState::of(&built.world, &built.watched);
     built.world.step();
     let first = WorldState::of(&built.world, &built.watched);
     (0..14).for_each(|_| built.world.step());
@@ -85,7 +78,6 @@ fn a_free_fall_keeps_its_energy() {
     let [early, late] = [1.0, 15.0].map(|steps: f64| 0.5 * 9.81 * (steps / 60.0).powi(2));
     assert!((fallen - (late - early)).abs() < 0.1 * fallen, "fell {fallen}");
     assert!((last.energy / first.energy - 1.0).abs() < 0.01);
-    assert!(start.mean_height > first.mean_height);
     assert_eq!((last.point_count, last.max_penetration), (0, 0.0));
 }
 
@@ -97,7 +89,6 @@ fn a_stack_touches_and_stands() {
     (0..120).for_each(|_| built.world.step());
     let state = WorldState::of(&built.world, &built.watched);
     assert_eq!(state.touching_pair_count, 10);
-    assert!(state.contact_manifold_count <= state.manifold_count);
     assert!(state.contact_manifold_count >= 10 && state.point_count >= 30);
     assert!(state.max_penetration < 0.02 && state.mean_penetration <= state.max_penetration);
     assert!((state.mean_height - 5.0).abs() < 0.05, "{}", state.mean_height);

@@ -2,110 +2,97 @@
 
 use std::collections::HashSet;
 
-use rapier3d::geometry::{Collider, TriMesh};
+use rapier3d::geometry::Collider;
 use rapier3d::parry::bounding_volume::BoundingVolume;
 use sbbk_lab::backend::{Backend, Question, shape_address};
-use sbbk_lab::mesh;
+use sbbk_lab::mesh::{self, Mesh};
 use sbbk_lab::metrics::Judge;
 use sbbk_lab::scene::{
-    BallKind, BoxStack, HeadOnSlope, HelicopterBallDrop, MonkeyPile, Scene, SceneWorld, Solid,
-    TwoMeshes,
+    BallKind, BoxStack, Ground, HeadOnSlope, HeadsOnTerrain, HelicopterBallDrop, MonkeyPile, Scene,
+    SceneWorld, SoftHeads, Solid,
 };
 
 /// Every scene, with the number of its moving bodies.
 fn scenes() -> Vec<(Box<dyn Scene>, usize)> {
     let primitive =
         HelicopterBallDrop { ball: BallKind::Primitive, ..HelicopterBallDrop::default() };
+    let terrain = HeadsOnTerrain { side_count: 2, cells: 16, ground: Ground::Mesh };
     vec![
         (Box::new(HelicopterBallDrop::default()), 1),
         (Box::new(primitive), 1),
         (Box::new(MonkeyPile::with_heads(30)), 30),
-        (Box::new(TwoMeshes::default()), 1),
         (Box::new(BoxStack::default()), 10),
         (Box::new(HeadOnSlope::default()), 1),
+        (Box::new(terrain), 4),
     ]
 }
 
-/// Would catch a body that is forgotten, listed twice, fixed by mistake or without mass.
-#[test]
-fn bodies_are_counted_and_can_move() {
-    for (scene, count) in scenes() {
-        let SceneWorld { world, watched } = scene.build().unwrap();
-        assert_eq!(watched.len(), count, "{}", scene.name());
-        assert_eq!(watched.iter().collect::<HashSet<_>>().len(), count);
-        assert_eq!(world.bodies.len(), count + 1, "one fixed body in {}", scene.name());
-        for &handle in &watched {
-            let body = &world.bodies[handle];
-            assert!(body.is_dynamic() && body.mass() > 0.0 && body.mass().is_finite());
-        }
-    }
+fn colliders(built: &SceneWorld) -> Vec<&Collider> {
+    built.world.colliders.iter().map(|(_, collider)| collider).collect()
 }
 
-/// Would catch a scene that starts with bodies in each other, which would be blown apart by the
-/// solver: against brute force in f64, no two meshes may be within a ten-thousandth of a unit.
+/// Would catch a body that is forgotten, listed twice, fixed by mistake or without mass, and bodies
+/// that start in each other, which the solver would blow apart: against brute force in f64, no two
+/// meshes may be within a ten-thousandth of a unit. Each scene must have a contact within two
+/// seconds.
 #[test]
-fn nothing_overlaps_at_the_start() {
-    for (scene, _) in scenes() {
-        let world = scene.build().unwrap().world;
-        let colliders: Vec<&Collider> = world.colliders.iter().map(|(_, c)| c).collect();
+fn bodies_start_apart_and_meet() {
+    for (scene, count) in scenes() {
+        let name = scene.name();
+        let mut built = scene.build().unwrap();
+        assert_eq!(built.watched.iter().collect::<HashSet<_>>().len(), count, "{name}");
+        assert_eq!(built.world.bodies.len(), count + 1, "one fixed body in {name}");
+        for &handle in &built.watched {
+            let body = &built.world.bodies[handle];
+            assert!(body.is_dynamic() && body.mass() > 0.0 && body.mass().is_finite(), "{name}");
+        }
+
+        let colliders = colliders(&built);
         let judge = Judge::new(colliders.iter().map(|collider| collider.shared_shape()));
-        for (index, collider1) in colliders.iter().enumerate() {
-            for collider2 in &colliders[index + 1..] {
-                let aabbs = [collider1, collider2].map(|collider| collider.compute_aabb());
-                let are_meshes = [collider1, collider2]
-                    .iter()
-                    .all(|collider| collider.shape().as_shape::<TriMesh>().is_some());
-                if !are_meshes {
-                    assert!(!aabbs[0].intersects(&aabbs[1]), "{}", scene.name());
-                } else if aabbs[0].intersects(&aabbs[1]) {
-                    let pos12 = collider1.position().inv_mul(collider2.position());
-                    let shapes = [collider1.shape(), collider2.shape()];
+        for (index, one) in colliders.iter().enumerate() {
+            for other in &colliders[index + 1..] {
+                let boxes_meet = one.compute_aabb().intersects(&other.compute_aabb());
+                let shapes = [one.shape(), other.shape()];
+                if boxes_meet && shapes.iter().all(|shape| shape.as_trimesh().is_some()) {
+                    let pos12 = one.position().inv_mul(other.position());
                     let truth = judge.truth(&Question::new(&pos12, shapes, 1e-4));
-                    assert_eq!(truth.pairs().count(), 0, "{}", scene.name());
+                    assert_eq!(truth.pairs().count(), 0, "{name}");
+                } else {
+                    assert!(!boxes_meet, "{name}");
                 }
             }
         }
-    }
-}
 
-/// Would catch a scene in which nothing ever touches: each must have a contact within its first
-/// two seconds.
-#[test]
-fn bodies_meet_within_two_seconds() {
-    for (scene, _) in scenes() {
-        let mut world = scene.build().unwrap().world;
         let touches = (0..120).any(|_| {
-            world.step();
-            world.narrow_phase.contact_pairs().any(|pair| pair.has_any_active_contact())
+            built.world.step();
+            built.world.contact_pairs().any(|pair| pair.has_any_active_contact())
         });
-        assert!(touches, "{}", scene.name());
+        assert!(touches, "{name}");
     }
+    let soft = SoftHeads::with_heads(2).build().unwrap();
+    assert_eq!((soft.watched.len(), soft.world.soft_bodies.iter().count()), (2, 2));
 }
 
-/// Would catch a pile whose memory, and whose number of trees, grows with its heads.
+/// Would catch a pile whose memory, and whose number of trees, grows with its heads, and
+/// orientations that are not random, or not seeded: comparisons of backends start from equal
+/// worlds.
 #[test]
-fn all_heads_share_one_shape() {
-    let world = MonkeyPile::with_heads(50).build().unwrap().world;
-    let meshes = world.colliders.iter().map(|(_, collider)| collider.shape());
-    let meshes = meshes.filter(|shape| shape.as_shape::<TriMesh>().is_some());
-    let addresses: HashSet<usize> = meshes.map(shape_address).collect();
+fn a_seed_gives_one_pile_of_one_shape() {
+    let pile = MonkeyPile::with_heads(50);
+    let built = pile.build().unwrap();
+    let meshes = colliders(&built).into_iter().filter(|c| c.shape().as_trimesh().is_some());
+    let addresses: HashSet<usize> = meshes.map(|mesh| shape_address(mesh.shape())).collect();
     assert_eq!(addresses.len(), 1);
-}
 
-/// Would catch orientations that are not random, or not seeded: comparisons of backends start
-/// from equal worlds.
-#[test]
-fn a_seed_gives_one_pile() {
-    let pile = MonkeyPile::with_heads(20);
     assert_eq!(pile.poses(), pile.poses());
     let other = MonkeyPile { seed: 2, ..pile.clone() };
     assert!(pile.poses().iter().zip(other.poses()).all(|(a, b)| a.rotation != b.rotation));
 }
 
 /// Would catch mass properties taken from an open or inside-out mesh: a body of negative mass
-/// falls upwards.
+/// falls upwards. And an error that does not say which mesh is wrong.
 #[test]
-fn open_and_inverted_meshes_fall_as_boxes() {
+fn any_mesh_with_triangles_falls() {
     let inverted = mesh::ball(1.0, 4).mapped(|v| -v);
     for mesh in [mesh::terrain(4.0, 8, 0.2), inverted] {
         let size = mesh.bounds().volume();
@@ -114,13 +101,8 @@ fn open_and_inverted_meshes_fall_as_boxes() {
     }
     let ball = Solid::new(&mesh::ball(1.0, 16)).unwrap().collider().build();
     assert!((ball.mass() - 4.0 / 3.0 * std::f32::consts::PI).abs() < 0.1);
-}
 
-/// Would catch an error that does not say which mesh is wrong.
-#[test]
-fn a_mesh_without_triangles_is_named() {
-    let empty = mesh::Mesh::new("nothing", Vec::new(), Vec::new());
-    let pile = MonkeyPile::of(2, empty);
+    let pile = MonkeyPile::of(2, Mesh::new("nothing", Vec::new(), Vec::new()));
     let message = pile.build().err().unwrap().to_string();
     assert!(message.contains("`nothing`"), "{message}");
 }
@@ -132,17 +114,12 @@ fn the_ball_meets_the_rotor_first() {
     let scene = HelicopterBallDrop::default();
     let bounds = scene.helicopter.bounds();
     let mut built = scene.build().unwrap();
-    let ball = built.watched[0];
-    let stock = Backend::Stock.install(&mut built.world);
-    for _ in 0..120 {
-        stock.probe.start_recording();
+    let probe = Backend::Stock.install(&mut built.world).probe;
+    let touches = (0..120).any(|_| {
+        probe.start_recording();
         built.world.step();
-        let answers = stock.probe.take_answers();
-        if answers.iter().any(|answer| !answer.reported.is_empty()) {
-            let lowest = built.world.bodies[ball].translation().y - scene.ball_radius;
-            assert!(lowest > bounds.maxs.y - 0.1 * bounds.extents().y);
-            return;
-        }
-    }
-    panic!("the ball met nothing");
+        probe.take_answers().iter().any(|answer| !answer.reported.is_empty())
+    });
+    let lowest = built.world.bodies[built.watched[0]].translation().y - scene.ball_radius;
+    assert!(touches && lowest > bounds.maxs.y - 0.1 * bounds.extents().y, "{lowest}");
 }

@@ -4,17 +4,6 @@ use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::ContactManifold;
 use rapier3d::parry::shape::Shape;
 
-/// One pair of triangles reported as touching.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reported {
-    /// Triangle of the first mesh.
-    pub triangle1: u32,
-    /// Triangle of the second mesh.
-    pub triangle2: u32,
-    /// Smallest signed distance among the points of the pair: negative when it penetrates.
-    pub distance: Real,
-}
-
 /// What a call of `contact_manifolds` asks about two meshes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Question {
@@ -26,8 +15,18 @@ pub struct Question {
     pub prediction: Real,
 }
 
-/// One call of `contact_manifolds` for two meshes: the question, and the triangle pairs of its
-/// answer.
+/// One pair of triangles reported as touching.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reported {
+    /// Triangle of the first mesh.
+    pub triangle1: u32,
+    /// Triangle of the second mesh.
+    pub triangle2: u32,
+    /// Smallest signed distance among the points of the pair: negative when it penetrates.
+    pub distance: Real,
+}
+
+/// One call of `contact_manifolds` for two meshes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
     /// What was asked.

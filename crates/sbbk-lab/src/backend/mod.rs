@@ -10,7 +10,7 @@
 //! let mut world = PhysicsWorld::new();
 //! let installed = Backend::Sbbk.install(&mut world);
 //! world.step();
-//! assert_eq!(installed.probe.times()[PairKind::MeshMesh].calls, 0);
+//! assert_eq!(installed.probe.tally(PairKind::MeshMesh).calls, 0);
 //! ```
 
 mod answer;
@@ -22,5 +22,5 @@ mod timed;
 pub use answer::{Answer, Question, Reported, shape_address};
 pub use kind::{Backend, Installed, SharedDispatcher};
 pub use primed::Primed;
-pub use probe::{PairKind, Probe, QueryTimes, Tally, clock_cost};
+pub use probe::{PairKind, Probe, Tally, clock_cost};
 pub use timed::Timed;

@@ -1,6 +1,5 @@
 //! Shared counters of the time spent in contact queries, and a recorder of their answers.
 
-use std::ops::Index;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -44,38 +43,14 @@ pub struct Tally {
     pub time: Duration,
 }
 
-/// [`Tally`] of each [`PairKind`], by index.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct QueryTimes([Tally; PairKind::COUNT]);
-
-impl Index<PairKind> for QueryTimes {
-    type Output = Tally;
-
-    fn index(&self, kind: PairKind) -> &Tally {
-        &self.0[kind as usize]
-    }
-}
-
 /// Handle on the counters of one [`Timed`](super::Timed) dispatcher; clones share them.
 #[derive(Clone, Debug, Default)]
 pub struct Probe(Arc<Shared>);
 
-impl Default for Shared {
-    fn default() -> Self {
-        Self {
-            stride: AtomicU64::new(1),
-            calls: Default::default(),
-            nanoseconds: Default::default(),
-            is_recording: AtomicBool::default(),
-            answers: Mutex::default(),
-        }
-    }
-}
-
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Shared {
-    /// Of so many calls of a kind the first is timed.
-    stride: AtomicU64,
+    /// Calls of a kind between two that are timed.
+    untimed: AtomicU64,
     calls: [AtomicU64; PairKind::COUNT],
     nanoseconds: [AtomicU64; PairKind::COUNT],
     is_recording: AtomicBool,
@@ -83,27 +58,23 @@ struct Shared {
 }
 
 impl Probe {
-    /// Time and calls since the last [`Self::reset`].
-    pub fn times(&self) -> QueryTimes {
-        let stride = self.0.stride.load(Relaxed);
-        QueryTimes(std::array::from_fn(|kind| {
-            let calls = self.0.calls[kind].load(Relaxed);
-            let timed = Duration::from_nanos(self.0.nanoseconds[kind].load(Relaxed));
-            let timed_calls = calls.div_ceil(stride).max(1);
-            Tally { calls, time: timed.mul_f64(calls as f64 / timed_calls as f64) }
-        }))
+    /// Calls of a kind and their time since the last [`Self::reset`].
+    pub fn tally(&self, kind: PairKind) -> Tally {
+        let calls = self.0.calls[kind as usize].load(Relaxed);
+        let timed = Duration::from_nanos(self.0.nanoseconds[kind as usize].load(Relaxed));
+        let timed_calls = calls.div_ceil(self.stride()).max(1);
+        Tally { calls, time: timed.mul_f64(calls as f64 / timed_calls as f64) }
     }
 
-    /// Times one call in `stride` from now on, from the next [`Self::reset`]; at first all are. Two
+    /// Times one call in `stride` from the next [`Self::reset`] on; at first all are (0 is 1). Two
     /// readings of the clock for each of tens of thousands of calls would be a part of what is
     /// measured: 3 % of a step of the pile of 2000 heads.
-    ///
-    /// # Panics
-    ///
-    /// If `stride` is zero.
     pub fn time_every(&self, stride: u64) {
-        assert!(stride > 0, "one call in none cannot be timed");
-        self.0.stride.store(stride, Relaxed);
+        self.0.untimed.store(stride.saturating_sub(1), Relaxed);
+    }
+
+    fn stride(&self) -> u64 {
+        self.0.untimed.load(Relaxed) + 1
     }
 
     /// Sets time and calls to zero.
@@ -127,23 +98,21 @@ impl Probe {
 
     /// Counts a call, and times it if it is its turn.
     pub(super) fn measure<T>(&self, kind: PairKind, call: impl FnOnce() -> T) -> T {
-        let shared = &*self.0;
-        let earlier = shared.calls[kind as usize].fetch_add(1, Relaxed);
-        if !earlier.is_multiple_of(shared.stride.load(Relaxed)) {
+        let earlier = self.0.calls[kind as usize].fetch_add(1, Relaxed);
+        if !earlier.is_multiple_of(self.stride()) {
             return call();
         }
         let start = Instant::now();
         let result = call();
         let time = start.elapsed().as_nanos() as u64;
-        shared.nanoseconds[kind as usize].fetch_add(time, Relaxed);
+        self.0.nanoseconds[kind as usize].fetch_add(time, Relaxed);
         result
     }
 
     pub(super) fn record(&self, answer: impl FnOnce() -> Answer) {
         if self.0.is_recording.load(Relaxed) {
             let answer = answer();
-            let mut answers = self.0.answers.lock().unwrap_or_else(PoisonError::into_inner);
-            answers.push(answer);
+            self.0.answers.lock().unwrap_or_else(PoisonError::into_inner).push(answer);
         }
     }
 }
@@ -159,10 +128,19 @@ pub fn clock_cost() -> Duration {
 mod tests {
     use super::*;
 
-    /// Would catch a clock so coarse or slow that times of single calls (tens of microseconds)
-    /// mean nothing.
+    /// Would catch calls that are not counted because they are not timed, and times that are not
+    /// made up for them.
     #[test]
-    fn the_clock_costs_less_than_a_microsecond() {
-        assert!(clock_cost() < Duration::from_micros(1));
+    fn one_call_in_some_is_timed_and_stands_for_all() {
+        const SLEEP: Duration = Duration::from_millis(2);
+        let probe = Probe::default();
+        probe.time_every(4);
+        for call in 0..10 {
+            // Calls 0, 4 and 8 are timed.
+            let sleep = if call % 4 == 0 { SLEEP } else { Duration::ZERO };
+            probe.measure(PairKind::MeshMesh, || std::thread::sleep(sleep));
+        }
+        let Tally { calls, time } = probe.tally(PairKind::MeshMesh);
+        assert!(calls == 10 && time >= 10 * SLEEP && time < 1000 * SLEEP, "{calls} in {time:?}");
     }
 }

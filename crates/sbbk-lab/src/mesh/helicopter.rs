@@ -9,49 +9,26 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 use glamx::{Pose3, Quat, Vec3};
 
 use super::Mesh;
-use super::grids::{Ring, loft};
+use super::shapes::{Ring, loft};
 
-/// The helicopter cut where it turns, both in the frame of the whole.
-#[derive(Clone, Debug, PartialEq)]
-pub struct HelicopterParts {
-    /// Fuselage, tail, mast and skids.
-    pub body: Mesh,
-    /// Hub and four blades, about the `y` axis, at [`ROTOR_HEIGHT`].
-    pub rotor: Mesh,
-}
+/// Height of the middle of the rotor above the ground.
+const ROTOR_HEIGHT: f32 = 1.95;
 
-/// Height of the middle of the rotor above the ground, in units.
-pub const ROTOR_HEIGHT: f32 = 1.95;
-
-/// Length of a blade from the rotor's axis to its tip, in units.
-pub const ROTOR_RADIUS: f32 = 2.4;
-
-/// The whole helicopter in one mesh, 5.9 units long with the rotor; see [`helicopter_parts`].
+/// The helicopter, 5.9 units long with its rotor of four blades.
 pub fn helicopter() -> Mesh {
-    let HelicopterParts { body, rotor } = helicopter_parts();
-    Mesh::merged("helicopter", [&body, &rotor])
-}
-
-/// The helicopter as a body and a rotor to turn on it.
-pub fn helicopter_parts() -> HelicopterParts {
-    let mut body = hull();
-    body.extend(tail());
+    let mut parts = hull();
+    parts.extend(tail());
     for side in [-1.0, 1.0] {
-        body.extend(landing_gear(side));
+        parts.extend(landing_gear(side));
     }
     let centre = Vec3::Y * ROTOR_HEIGHT;
-    let hub_axis = [centre - Vec3::Y * 0.07, centre + Vec3::Y * 0.07];
-    let mut rotor = vec![tube(&hub_axis, 0.14, 12)];
-    rotor.extend(blades(4, ROTOR_RADIUS, 0.13).map(|blade| blade.mapped(|point| point + centre)));
-    HelicopterParts {
-        body: Mesh::merged("helicopter body", &body),
-        rotor: Mesh::merged("helicopter rotor", &rotor),
-    }
+    parts.push(tube(&[centre - Vec3::Y * 0.07, centre + Vec3::Y * 0.07], 0.14, 12));
+    parts.extend(blades(4, 2.4, 0.13).map(|blade| blade.mapped(|point| point + centre)));
+    Mesh::merged("helicopter", &parts)
 }
 
 /// Cabin, engine housing and mast.
 fn hull() -> Vec<Mesh> {
-    // Along the length: position, middle, half height, half width.
     let cabin = [
         [-1.15, 1.22, 0.10, 0.08],
         [-1.00, 1.17, 0.21, 0.18],
@@ -105,7 +82,7 @@ fn tail() -> Vec<Mesh> {
 }
 
 /// A skid and its two struts, on one side.
-fn landing_gear(side: f32) -> Vec<Mesh> {
+fn landing_gear(side: f32) -> [Mesh; 3] {
     let skid = [
         [-1.05, 0.05],
         [-0.4, 0.05],
@@ -117,13 +94,10 @@ fn landing_gear(side: f32) -> Vec<Mesh> {
     ]
     .map(|[x, y]| Vec3::new(x, y, side * 0.62));
     let strut = |x: f32| {
-        [
-            Vec3::new(x, 0.72, side * 0.22),
-            Vec3::new(x, 0.30, side * 0.52),
-            Vec3::new(x, 0.05, side * 0.62),
-        ]
+        let path = [[0.72, 0.22], [0.30, 0.52], [0.05, 0.62]];
+        tube(&path.map(|[y, z]| Vec3::new(x, y, side * z)), 0.035, 8)
     };
-    vec![tube(&skid, 0.05, 8), tube(&strut(-0.35), 0.035, 8), tube(&strut(0.65), 0.035, 8)]
+    [tube(&skid, 0.05, 8), strut(-0.35), strut(0.65)]
 }
 
 /// Blades about the `y` axis, all at height zero.
@@ -142,28 +116,23 @@ fn blades(count: u32, radius: f32, half_chord: f32) -> impl Iterator<Item = Mesh
 
 /// A solid along `x`; per ring position, height of its middle, half height and half width.
 fn along_x(rings: &[[f32; 4]], segments: u32) -> Mesh {
-    let rings: Vec<Ring> = rings
-        .iter()
-        .map(|&[x, y, half_height, half_width]| Ring {
-            centre: Vec3::new(x, y, 0.0),
-            half_axes: [Vec3::Y * half_height, Vec3::Z * half_width],
-        })
-        .collect();
-    loft(&rings, segments)
+    let ring = |&[x, y, half_height, half_width]: &[f32; 4]| Ring {
+        centre: Vec3::new(x, y, 0.0),
+        half_axes: [Vec3::Y * half_height, Vec3::Z * half_width],
+    };
+    loft(&rings.iter().map(ring).collect::<Vec<_>>(), segments)
 }
 
 /// A round tube along a path without sharp bends.
 fn tube(path: &[Vec3], radius: f32, segments: u32) -> Mesh {
-    let rings: Vec<Ring> = (0..path.len())
-        .map(|index| {
-            let [before, after] = [index.saturating_sub(1), (index + 1).min(path.len() - 1)];
-            let forward = (path[after] - path[before]).normalize();
-            let side = forward.any_orthonormal_vector();
-            Ring {
-                centre: path[index],
-                half_axes: [side, forward.cross(side)].map(|axis| axis * radius),
-            }
-        })
-        .collect();
-    loft(&rings, segments)
+    let ring = |index: usize| {
+        let [before, after] = [index.saturating_sub(1), (index + 1).min(path.len() - 1)];
+        let forward = (path[after] - path[before]).normalize();
+        let side = forward.any_orthonormal_vector();
+        Ring {
+            centre: path[index],
+            half_axes: [side, forward.cross(side)].map(|axis| axis * radius),
+        }
+    };
+    loft(&(0..path.len()).map(ring).collect::<Vec<_>>(), segments)
 }

@@ -9,21 +9,16 @@
 //!
 //! let head = mesh::monkey_head();
 //! assert_eq!(head.triangle_count(), 968);
-//! assert!(head.check_closed().is_ok());
 //! ```
 
-mod grids;
+mod container;
+mod file;
 mod helicopter;
-mod load;
 mod monkey;
-mod primitives;
-mod surface;
-mod triangle_mesh;
-mod weld;
+mod shapes;
 
-pub use helicopter::{HelicopterParts, ROTOR_HEIGHT, ROTOR_RADIUS, helicopter, helicopter_parts};
-pub use load::{MeshError, MeshErrorCause, load};
+pub use container::Mesh;
+pub use file::{MeshError, load};
+pub use helicopter::helicopter;
 pub use monkey::{monkey_head, monkey_head_with};
-pub use primitives::{ball, cuboid, floor, terrain, torus};
-pub use surface::{OpenEdge, OpenEdgeKind};
-pub use triangle_mesh::Mesh;
+pub use shapes::{ball, cuboid, floor, terrain, torus};

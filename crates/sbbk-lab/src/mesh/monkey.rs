@@ -15,7 +15,7 @@
 use glamx::Vec3;
 
 use super::Mesh;
-use super::grids::octasphere;
+use super::shapes::octasphere;
 
 /// One step of the shaping, in the words of the formula above.
 struct Feature {
@@ -40,89 +40,50 @@ const SIDE_FOCUS: Vec3 = Vec3::new(1.0, 0.65, 0.75);
 /// is smooth. Must stay below the smallest part of [`SIDE_FOCUS`], or the sphere would fold.
 const FACE_FOCUS: Vec3 = Vec3::new(0.0, 0.0, 0.45);
 
-/// From large to small: later features shape what the earlier ones have made.
+/// Profiles: most features have a soft rim, ears a sharp one.
+const SOFT: [i32; 2] = [2, 2];
+const SHARP: [i32; 2] = [1, 1];
+
+/// Centre, spread, profile, pull and stretch, from large to small: later features shape what the
+/// earlier ones have made.
 const FEATURES: [Feature; 10] = [
     // Jaw, narrower than the skull.
-    Feature {
-        centre: Vec3::new(0.0, -0.85, 0.35),
-        spread: Vec3::splat(0.9),
-        profile: [2, 2],
-        pull: Vec3::new(0.0, -0.05, 0.10),
-        stretch: Vec3::new(-0.25, 0.0, 0.0),
-    },
+    feature([0.0, -0.85, 0.35], [0.9; 3], SOFT, [0.0, -0.05, 0.10], [-0.25, 0.0, 0.0]),
     // Flat face below the forehead.
-    Feature {
-        centre: Vec3::new(0.0, 0.1, 1.0),
-        spread: Vec3::new(0.75, 0.55, 0.75),
-        profile: [2, 2],
-        pull: Vec3::new(0.0, 0.0, -0.08),
-        stretch: Vec3::ZERO,
-    },
+    feature([0.0, 0.1, 1.0], [0.75, 0.55, 0.75], SOFT, [0.0, 0.0, -0.08], [0.0; 3]),
     // Muzzle.
-    Feature {
-        centre: Vec3::new(0.0, -0.50, 0.86),
-        spread: Vec3::new(0.60, 0.45, 0.60),
-        profile: [2, 2],
-        pull: Vec3::new(0.0, -0.06, 0.36),
-        stretch: Vec3::new(0.30, 0.15, 0.0),
-    },
+    feature([0.0, -0.50, 0.86], [0.60, 0.45, 0.60], SOFT, [0.0, -0.06, 0.36], [0.30, 0.15, 0.0]),
     // Ears.
-    Feature {
-        centre: Vec3::new(0.98, 0.12, -0.05),
-        spread: Vec3::splat(0.42),
-        profile: [1, 1],
-        pull: Vec3::new(0.52, 0.08, -0.12),
-        stretch: Vec3::new(0.0, 1.0, -0.68),
-    },
+    feature([0.98, 0.12, -0.05], [0.42; 3], SHARP, [0.52, 0.08, -0.12], [0.0, 1.0, -0.68]),
     // Hollow of the ears.
-    Feature {
-        centre: Vec3::new(0.92, 0.12, 0.24),
-        spread: Vec3::splat(0.26),
-        profile: [2, 2],
-        pull: Vec3::new(-0.07, 0.0, -0.09),
-        stretch: Vec3::ZERO,
-    },
+    feature([0.92, 0.12, 0.24], [0.26; 3], SOFT, [-0.07, 0.0, -0.09], [0.0; 3]),
     // Brow, highest above each eye.
-    Feature {
-        centre: Vec3::new(0.26, 0.46, 0.86),
-        spread: Vec3::new(0.45, 0.24, 0.45),
-        profile: [2, 2],
-        pull: Vec3::new(0.0, 0.0, 0.13),
-        stretch: Vec3::ZERO,
-    },
+    feature([0.26, 0.46, 0.86], [0.45, 0.24, 0.45], SOFT, [0.0, 0.0, 0.13], [0.0; 3]),
     // Eye sockets.
-    Feature {
-        centre: Vec3::new(0.30, 0.12, 0.93),
-        spread: Vec3::new(0.26, 0.26, 0.4),
-        profile: [2, 2],
-        pull: Vec3::new(0.0, 0.0, -0.20),
-        stretch: Vec3::ZERO,
-    },
+    feature([0.30, 0.12, 0.93], [0.26, 0.26, 0.4], SOFT, [0.0, 0.0, -0.20], [0.0; 3]),
     // Eyeballs.
-    Feature {
-        centre: Vec3::new(0.30, 0.12, 0.93),
-        spread: Vec3::new(0.17, 0.17, 0.4),
-        profile: [2, 2],
-        pull: Vec3::new(0.0, 0.0, 0.14),
-        stretch: Vec3::ZERO,
-    },
+    feature([0.30, 0.12, 0.93], [0.17, 0.17, 0.4], SOFT, [0.0, 0.0, 0.14], [0.0; 3]),
     // Nose.
-    Feature {
-        centre: Vec3::new(0.0, -0.25, 0.97),
-        spread: Vec3::new(0.14, 0.11, 0.3),
-        profile: [2, 2],
-        pull: Vec3::new(0.0, 0.0, 0.08),
-        stretch: Vec3::ZERO,
-    },
+    feature([0.0, -0.25, 0.97], [0.14, 0.11, 0.3], SOFT, [0.0, 0.0, 0.08], [0.0; 3]),
     // Mouth.
-    Feature {
-        centre: Vec3::new(0.0, -0.47, 0.88),
-        spread: Vec3::new(0.50, 0.13, 0.6),
-        profile: [2, 2],
-        pull: Vec3::new(0.0, 0.0, -0.13),
-        stretch: Vec3::ZERO,
-    },
+    feature([0.0, -0.47, 0.88], [0.50, 0.13, 0.6], SOFT, [0.0, 0.0, -0.13], [0.0; 3]),
 ];
+
+const fn feature(
+    centre: [f32; 3],
+    spread: [f32; 3],
+    profile: [i32; 2],
+    pull: [f32; 3],
+    stretch: [f32; 3],
+) -> Feature {
+    Feature {
+        centre: Vec3::from_array(centre),
+        spread: Vec3::from_array(spread),
+        profile,
+        pull: Vec3::from_array(pull),
+        stretch: Vec3::from_array(stretch),
+    }
+}
 
 /// The monkey head in its usual resolution: 968 triangles, 486 vertices.
 pub fn monkey_head() -> Mesh {
@@ -133,29 +94,20 @@ pub fn monkey_head() -> Mesh {
 /// like one), about the origin, 2 units across its longest side, facing `z`. Closed and oriented,
 /// with concave eye sockets and ears.
 pub fn monkey_head_with(detail: u32) -> Mesh {
-    let features = anchored_features();
-    octasphere(detail)
-        .mapped(|point| {
-            let mirror = Vec3::new(1f32.copysign(point.x), 1.0, 1.0);
-            let direction = (point * mirror * SIDE_FOCUS + FACE_FOCUS).normalize();
-            shaped(direction, &features) * mirror
-        })
-        .centred()
-        .scaled_to(2.0)
-        .named("monkey head")
-}
-
-/// The features in order, each with its anchor.
-fn anchored_features() -> Vec<(&'static Feature, Vec3)> {
-    let mut anchored = Vec::with_capacity(FEATURES.len());
+    let mut features = Vec::with_capacity(FEATURES.len());
     for feature in &FEATURES {
-        let anchor = shaped(feature.centre.normalize(), &anchored);
-        anchored.push((feature, anchor));
+        let anchor = shaped(feature.centre.normalize(), &features);
+        features.push((feature, anchor));
     }
-    anchored
+    let head = octasphere(detail).mapped(|point| {
+        let mirror = Vec3::new(1f32.copysign(point.x), 1.0, 1.0);
+        let direction = (point * mirror * SIDE_FOCUS + FACE_FOCUS).normalize();
+        shaped(direction, &features) * mirror
+    });
+    head.centred().scaled_to(2.0).named("monkey head")
 }
 
-/// Where a direction with `x >= 0` comes to lie after these features.
+/// Where a direction with `x >= 0` comes to lie after these features, each with its anchor.
 fn shaped(direction: Vec3, features: &[(&Feature, Vec3)]) -> Vec3 {
     features.iter().fold(direction * SKULL, |point, (feature, anchor)| {
         let change = feature.pull + feature.stretch * (point - anchor);

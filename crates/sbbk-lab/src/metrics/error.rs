@@ -10,7 +10,6 @@ use rapier3d::math::Real;
 use sbbk_core::truth::{TruthPair, pairs_within};
 use serde::Serialize;
 
-use super::near::near_parts;
 use super::ratio;
 use crate::backend::{Answer, Question, shape_address};
 
@@ -74,8 +73,9 @@ impl Sum for ErrorCount {
     }
 }
 
-/// Knows the meshes of a world in f64, and judges answers about them.
-#[derive(Default)]
+/// Knows the meshes of a world in f64, as they were when it was made, and judges answers about them.
+///
+/// It knows a mesh by its address, and must not outlive it.
 pub struct Judge {
     meshes: HashMap<usize, TruthMesh>,
 }
@@ -83,8 +83,6 @@ pub struct Judge {
 struct TruthMesh {
     vertices: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
-    /// Keeps the address, which is the key, from being used for another shape.
-    _shape: Option<SharedShape>,
 }
 
 /// Every triangle pair of one question within the prediction distance and its band.
@@ -95,50 +93,70 @@ pub struct Truth {
 impl Judge {
     /// A judge of the meshes among `shapes`; each is converted once, however often it is shared.
     pub fn new<'a>(shapes: impl IntoIterator<Item = &'a SharedShape>) -> Self {
-        Self::holding(shapes, true)
-    }
-
-    /// A judge of meshes that deform, as they are now. It does not hold them, as they would be copied then before their
-    /// vertices move: it must not outlive them.
-    pub fn of_present<'a>(shapes: impl IntoIterator<Item = &'a SharedShape>) -> Self {
-        Self::holding(shapes, false)
-    }
-
-    fn holding<'a>(shapes: impl IntoIterator<Item = &'a SharedShape>, is_held: bool) -> Self {
-        let mut judge = Self::default();
+        let mut meshes = HashMap::new();
         for shape in shapes {
             if let Some(mesh) = shape.as_trimesh() {
-                let address = shape_address(&**shape);
-                judge.meshes.entry(address).or_insert_with(|| TruthMesh {
+                meshes.entry(shape_address(&**shape)).or_insert_with(|| TruthMesh {
                     vertices: mesh.vertices().iter().map(|v| v.as_dvec3()).collect(),
                     triangles: mesh.indices().to_vec(),
-                    _shape: is_held.then(|| shape.clone()),
                 });
             }
         }
-        judge
+        Self { meshes }
     }
 
     /// Answers `question` by brute force: about 10 µs for each pair of triangles whose boxes are
     /// near.
     ///
-    /// Panics when the question is about a mesh that this judge was not given.
+    /// # Panics
+    ///
+    /// If the question is about a mesh that this judge was not given.
     pub fn truth(&self, question: &Question) -> Truth {
-        let meshes = question.shapes.map(|address| &self.meshes[&address]);
+        let [mesh1, mesh2] = question.shapes.map(|address| &self.meshes[&address]);
         let pose = DPose3::from(question.pos12);
         let margin = f64::from(question.prediction) * (1.0 + SET_BAND);
-        let surfaces = meshes.map(|mesh| (&*mesh.vertices, &*mesh.triangles));
-        let [part1, part2] = near_parts(surfaces, pose, margin);
-        let [(vertices1, _), (vertices2, _)] = surfaces;
-        let pairs =
-            pairs_within(vertices1, &part1.triangles, vertices2, &part2.triangles, pose, margin);
+        let near = near_triangles([mesh1, mesh2], pose, margin);
+        let triangles = |mesh: &TruthMesh, near: &[u32]| -> Vec<[u32; 3]> {
+            near.iter().map(|&index| mesh.triangles[index as usize]).collect()
+        };
+        let [triangles1, triangles2] = [triangles(mesh1, &near[0]), triangles(mesh2, &near[1])];
+        let [vertices1, vertices2] = [&*mesh1.vertices, &*mesh2.vertices];
+        let pairs = pairs_within(vertices1, &triangles1, vertices2, &triangles2, pose, margin);
         let contacts = pairs.into_iter().map(|pair| {
-            let triangle1 = part1.indices[pair.triangle1 as usize];
-            let triangle2 = part2.indices[pair.triangle2 as usize];
+            let triangle1 = near[0][pair.triangle1 as usize];
+            let triangle2 = near[1][pair.triangle2 as usize];
             ((triangle1, triangle2), TruthPair { triangle1, triangle2, ..pair })
         });
         Truth { contacts: contacts.collect() }
     }
+}
+
+/// The triangles of two meshes, the second one at `pose`, that reach within `margin` of the box
+/// around those of the other mesh, and of the box around what that leaves of it. Bodies in touch
+/// share a small part of their boxes: this saves brute force most of its work.
+fn near_triangles(meshes: [&TruthMesh; 2], pose: DPose3, margin: f64) -> [Vec<u32>; 2] {
+    let poses = [DPose3::IDENTITY, pose];
+    let boxes: [Vec<[DVec3; 2]>; 2] = [0, 1].map(|side| {
+        let vertices: Vec<DVec3> = meshes[side].vertices.iter().map(|&v| poses[side] * v).collect();
+        let corners = meshes[side].triangles.iter().map(|t| t.map(|i| vertices[i as usize]));
+        corners.map(|corners| union(corners.map(|corner| [corner; 2]))).collect()
+    });
+    let mut near = boxes.each_ref().map(|boxes| (0..boxes.len() as u32).collect::<Vec<_>>());
+    for (side, other) in [(0, 1), (1, 0), (0, 1), (1, 0)] {
+        let [min, max] = union(near[other].iter().map(|&i| boxes[other][i as usize]));
+        near[side].retain(|&i| {
+            let [low, high] = boxes[side][i as usize];
+            (low - margin).cmple(max).all() && (high + margin).cmpge(min).all()
+        });
+    }
+    near
+}
+
+/// The box around boxes, each given by its least and its greatest corner.
+fn union(boxes: impl IntoIterator<Item = [DVec3; 2]>) -> [DVec3; 2] {
+    boxes.into_iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[min, max], [low, high]| {
+        [min.min(low), max.max(high)]
+    })
 }
 
 impl Truth {

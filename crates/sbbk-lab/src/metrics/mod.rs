@@ -7,7 +7,6 @@
 mod environment;
 mod error;
 mod fingerprint;
-mod near;
 mod pose_pairs;
 mod run;
 mod statistics;

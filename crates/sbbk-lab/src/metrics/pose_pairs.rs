@@ -26,7 +26,6 @@ pub struct PosePairs {
 
 #[derive(Debug)]
 struct Pair {
-    handles: [ColliderHandle; 2],
     shapes: [SharedShape; 2],
     pos12: [Pose; 2],
 }
@@ -51,21 +50,25 @@ impl PosePairs {
     /// Collects the pairs of `world` and their poses now, then lets `step` step it once, and
     /// collects the poses again.
     pub fn capture(world: &mut PhysicsWorld, step: impl FnOnce(&mut PhysicsWorld)) -> Self {
-        let mut pairs: Vec<Pair> = Vec::new();
+        let pos12 = |world: &PhysicsWorld, handles: [ColliderHandle; 2]| {
+            let [pos1, pos2] = handles.map(|handle| world.colliders[handle].position());
+            pos1.inv_mul(pos2)
+        };
+        let mut asked = Vec::new();
         for pair in world.narrow_phase.contact_pairs() {
             let handles = [pair.collider1, pair.collider2];
             let shapes = handles.map(|handle| world.colliders[handle].shared_shape().clone());
-            if shapes.iter().all(|shape| shape.as_shape::<TriMesh>().is_some()) {
-                let pos12 = [pos12(world, handles); 2];
-                pairs.push(Pair { handles, shapes, pos12 });
+            if shapes.iter().all(|shape| shape.as_trimesh().is_some()) {
+                asked.push((handles, shapes, pos12(world, handles)));
             }
         }
         step(world);
-        for pair in &mut pairs {
-            pair.pos12[1] = pos12(world, pair.handles);
-        }
+        let pairs = asked.into_iter().map(|(handles, shapes, before)| Pair {
+            shapes,
+            pos12: [before, pos12(world, handles)],
+        });
         let prediction = world.integration_parameters.prediction_distance();
-        Self { prediction, pairs }
+        Self { prediction, pairs: pairs.collect() }
     }
 
     /// Number of pairs.
@@ -79,8 +82,8 @@ impl PosePairs {
         memories.resize_with(self.pairs.len(), PairMemory::default);
         let [fresh, steady] = [0, 1].map(|pose_index| {
             let start = Instant::now();
-            for (pair, memory) in self.pairs.iter().zip(&mut memories) {
-                pair.ask(dispatcher, self.prediction, pose_index, memory);
+            for (index, memory) in memories.iter_mut().enumerate() {
+                self.ask(dispatcher, index, pose_index, memory);
             }
             start.elapsed()
         });
@@ -89,9 +92,8 @@ impl PosePairs {
 
     /// The fresh (0) or steady (1) question about a pair. Panics when `index` is out of range.
     pub fn question(&self, index: usize, pose_index: usize) -> Question {
-        let Pair { shapes, pos12, .. } = &self.pairs[index];
-        let shapes = [&*shapes[0], &*shapes[1]];
-        Question::new(&pos12[pose_index], shapes, self.prediction)
+        let Pair { shapes: [shape1, shape2], pos12 } = &self.pairs[index];
+        Question::new(&pos12[pose_index], [&**shape1, &**shape2], self.prediction)
     }
 
     /// The answers of `dispatcher` to the fresh and the steady question about a pair. Panics when
@@ -99,7 +101,7 @@ impl PosePairs {
     pub fn answers(&self, dispatcher: &SharedDispatcher, index: usize) -> [Answer; 2] {
         let mut memory = PairMemory::default();
         [0, 1].map(|pose_index| {
-            self.pairs[index].ask(dispatcher, self.prediction, pose_index, &mut memory);
+            self.ask(dispatcher, index, pose_index, &mut memory);
             Answer::new(self.question(index, pose_index), &memory.manifolds)
         })
     }
@@ -114,29 +116,19 @@ impl PosePairs {
     pub fn shapes(&self) -> impl Iterator<Item = &SharedShape> {
         self.pairs.iter().flat_map(|pair| &pair.shapes)
     }
-}
 
-impl Pair {
     fn ask(
         &self,
         dispatcher: &SharedDispatcher,
-        prediction: Real,
+        index: usize,
         pose_index: usize,
         memory: &mut PairMemory,
     ) {
+        let Pair { shapes: [shape1, shape2], pos12 } = &self.pairs[index];
+        let PairMemory { manifolds, workspace } = memory;
+        let (pos12, prediction) = (&pos12[pose_index], self.prediction);
         // As in Rapier, an unsupported pair keeps what it had: nothing.
-        let _ = dispatcher.contact_manifolds(
-            &self.pos12[pose_index],
-            &*self.shapes[0],
-            &*self.shapes[1],
-            prediction,
-            &mut memory.manifolds,
-            &mut memory.workspace,
-        );
+        let _ = dispatcher
+            .contact_manifolds(pos12, &**shape1, &**shape2, prediction, manifolds, workspace);
     }
-}
-
-fn pos12(world: &PhysicsWorld, handles: [ColliderHandle; 2]) -> Pose {
-    let [pos1, pos2] = handles.map(|handle| world.colliders[handle].position());
-    pos1.inv_mul(pos2)
 }

@@ -17,8 +17,8 @@ pub struct RunPlan {
     pub sample_every: usize,
     /// At most this many mesh pairs are judged in each sampled step and way (fresh, updated).
     pub sample_size: usize,
-    /// Of so many queries one is timed; all if 0. More where they are so many that the clock would
-    /// be a part of the step ([`Probe::time_every`](crate::backend::Probe::time_every)).
+    /// Of so many queries one is timed; all if 0. See
+    /// [`Probe::time_every`](crate::backend::Probe::time_every).
     pub query_stride: u64,
 }
 
@@ -95,7 +95,7 @@ impl Runner {
     pub fn new(scene: &dyn Scene, backend: Backend, plan: RunPlan) -> Result<Self, SceneError> {
         let mut built = scene.build()?;
         let installed = backend.install(&mut built.world);
-        installed.probe.time_every(plan.query_stride.max(1));
+        installed.probe.time_every(plan.query_stride);
         let run = Run { backend, times: Vec::with_capacity(plan.steps), samples: Vec::new() };
         Ok(Self { built, installed, plan, step: 0, run })
     }
@@ -137,33 +137,25 @@ fn sampled_step(
     step: usize,
     limit: usize,
 ) -> Sample {
-    let Installed { dispatcher, probe, .. } = installed;
-    probe.start_recording();
+    installed.probe.start_recording();
     let pairs = PosePairs::capture(world, |world| world.step());
-    let updated = probe.take_answers();
-    let shapes = world.colliders.iter().map(|(_, collider)| collider.shared_shape());
-    let judge = Judge::new(shapes);
-    let fresh = |index| pairs.answers(dispatcher, index)[0].clone();
+    let updated = installed.probe.take_answers();
+    let judge = Judge::new(world.colliders.iter().map(|(_, collider)| collider.shared_shape()));
+    // At most `limit` of `count` answers.
+    let judged = |count: usize, answer: &dyn Fn(usize) -> Answer| {
+        let answers = sample_indices(count, limit).into_iter().map(answer);
+        let errors = answers.map(|answer| judge.truth(&answer.question).judge(&answer));
+        ErrorCount { sampled_from: count, ..errors.sum() }
+    };
+    let fresh = |index| {
+        let [fresh, _] = pairs.answers(&installed.dispatcher, index);
+        fresh
+    };
     Sample {
         step,
         state: WorldState::of(world, watched),
-        fresh: judged(&judge, fresh, pairs.pair_count(), limit),
-        updated: judged(&judge, |index| updated[index].clone(), updated.len(), limit),
+        fresh: judged(pairs.pair_count(), &fresh),
+        updated: judged(updated.len(), &|index| updated[index].clone()),
         pairs,
     }
-}
-
-/// Judges at most `limit` of `count` answers.
-fn judged(
-    judge: &Judge,
-    answer: impl Fn(usize) -> Answer,
-    count: usize,
-    limit: usize,
-) -> ErrorCount {
-    let sampled = sample_indices(count, limit).into_iter();
-    let errors = sampled.map(|index| {
-        let answer = answer(index);
-        judge.truth(&answer.question).judge(&answer)
-    });
-    ErrorCount { sampled_from: count, ..errors.sum() }
 }

@@ -53,36 +53,23 @@ pub fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Would catch a median off by one place, or one that forgets to sort.
+    /// Would catch a median off by one place, a table that shows "inf times faster" where nothing
+    /// was measured, and a mean of ratios that twice and half as fast do not bring back to one.
     #[test]
-    fn median_of_odd_and_even_counts() {
+    fn numbers_are_summed_up() {
         let odd = Summary::of([9.0, 1.0, 4.0]).unwrap();
         assert_eq!((odd.min, odd.median, odd.max), (1.0, 4.0, 9.0));
         let even = Summary::of([9.0, 1.0, 4.0, 2.0]).unwrap();
         assert_eq!((even.count, even.median, even.mean), (4, 3.0, 4.0));
-        assert_eq!(Summary::of([7.0]).unwrap().median, 7.0);
         assert_eq!(Summary::of([]), None);
-    }
 
-    /// Would catch a table that shows "inf times faster" where nothing was measured.
-    #[test]
-    fn no_ratio_to_nothing() {
-        assert_eq!(ratio(71.8, 35.9), Some(2.0));
-        assert_eq!(ratio(0.0, 2.0), Some(0.0));
-        for (numerator, denominator) in
-            [(1.0, 0.0), (0.0, 0.0), (f64::NAN, 1.0), (1.0, f64::INFINITY)]
+        assert_eq!([ratio(71.8, 35.9), ratio(0.0, 2.0)], [Some(2.0), Some(0.0)]);
+        for [numerator, denominator] in
+            [[1.0, 0.0], [0.0, 0.0], [f64::NAN, 1.0], [1.0, f64::INFINITY]]
         {
             assert_eq!(ratio(numerator, denominator), None);
         }
-    }
-
-    /// Would catch a mean of ratios that twice and half as fast do not bring back to one.
-    #[test]
-    fn ratios_have_a_geometric_mean() {
-        let mean = geometric_mean([2.0, 0.5]).unwrap();
-        assert!((mean - 1.0).abs() < 1e-12);
-        let mean = geometric_mean([1.0, 10.0, 100.0]).unwrap();
-        assert!((mean - 10.0).abs() < 1e-12);
+        assert!((geometric_mean([2.0, 0.5]).unwrap() - 1.0).abs() < 1e-12);
         assert_eq!(geometric_mean([]), None);
     }
 }

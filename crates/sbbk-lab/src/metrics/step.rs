@@ -45,10 +45,8 @@ pub fn timed_step(world: &mut PhysicsWorld, probe: &Probe) -> StepTimes {
     world.step();
     let step = 1e3 * start.elapsed().as_secs_f64();
     let counters = &world.physics_pipeline.counters;
-    let (mesh_mesh, mesh_other) = {
-        let times = probe.times();
-        (times[PairKind::MeshMesh], times[PairKind::MeshOther])
-    };
+    let mesh_mesh = probe.tally(PairKind::MeshMesh);
+    let mesh_other = probe.tally(PairKind::MeshOther);
     StepTimes {
         step,
         broad_phase: counters.cd.broad_phase_time.time_ms()

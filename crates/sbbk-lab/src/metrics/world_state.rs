@@ -12,8 +12,6 @@ use serde::Serialize;
 pub struct WorldState {
     /// Collider pairs with at least one contact point.
     pub touching_pair_count: usize,
-    /// Manifolds held, empty ones included.
-    pub manifold_count: usize,
     /// Manifolds with at least one point.
     pub contact_manifold_count: usize,
     /// Contact points.
@@ -49,7 +47,6 @@ impl WorldState {
         for pair in world.narrow_phase.contact_pairs() {
             let mut deepest: Option<f32> = None;
             for manifold in pair.manifolds() {
-                self.manifold_count += 1;
                 self.contact_manifold_count += usize::from(!manifold.points.is_empty());
                 self.point_count += manifold.points.len();
                 for point in &manifold.points {

@@ -78,11 +78,11 @@ impl Scene for HeadsOnTerrain {
         };
         world.insert(RigidBodyBuilder::fixed(), terrain);
         let head = Solid::new(&mesh::monkey_head().centred().scaled_to(2.0))?;
-        let middle = 0.5 * (self.side_count as Real - 1.0);
-        let places = (0..self.side_count * self.side_count).map(|i| {
-            [i % self.side_count, i / self.side_count].map(|k| 2.5 * (k as Real - middle))
-        });
-        let watched = places.map(|[x, z]| {
+        let Self { side_count, .. } = *self;
+        let middle = 0.5 * (side_count as Real - 1.0);
+        let watched = (0..side_count * side_count).map(|index| {
+            let [x, z] =
+                [index % side_count, index / side_count].map(|k| 2.5 * (k as Real - middle));
             let body = RigidBodyBuilder::dynamic().translation(Vec3::new(x, 2.0, z));
             world.insert(body.angular_damping(1.0), head.collider()).0
         });

@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use glamx::Vec3;
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::ColliderBuilder;
-use rapier3d::math::{Real, Vector};
+use rapier3d::math::Real;
 use rapier3d::pipeline::PhysicsWorld;
 use serde::Serialize;
 
@@ -35,8 +35,8 @@ impl fmt::Display for BallKind {
 
 /// A ball falls, by gravity alone, on the rotor of a fixed helicopter, bounces and rolls off.
 ///
-/// The paper says no more than that; the helicopter is fixed here because only the ball is said to
-/// move. The rotor is what lies within the top tenth of the helicopter's height. The ball starts
+/// The paper says no more than that; the helicopter is fixed because only the ball is said to move.
+/// The rotor is what lies within the top tenth of the helicopter's height. The ball starts
 /// above the blade whose tip is farthest from the hub, a little way out from the hub.
 #[derive(Clone, Debug)]
 pub struct HelicopterBallDrop {
@@ -70,7 +70,7 @@ impl Default for HelicopterBallDrop {
 
 impl HelicopterBallDrop {
     /// Centre of the ball at the start.
-    pub fn start(&self) -> Vec3 {
+    fn start(&self) -> Vec3 {
         let bounds = self.helicopter.bounds();
         let floor_of_rotor = bounds.maxs.y - ROTOR_SHARE * bounds.extents().y;
         let rotor = || (self.helicopter.vertices.iter()).filter(|v| v.y >= floor_of_rotor);
@@ -81,8 +81,7 @@ impl HelicopterBallDrop {
         over.with_y(bounds.maxs.y + self.drop_height + self.ball_radius)
     }
 
-    /// The mesh that the ball is, or would be, made of.
-    pub fn ball_mesh(&self) -> Mesh {
+    fn ball_mesh(&self) -> Mesh {
         mesh::ball(self.ball_radius, BALL_DETAIL)
     }
 }
@@ -105,7 +104,7 @@ impl Scene for HelicopterBallDrop {
             BallKind::Mesh => Solid::new(&self.ball_mesh())?.collider(),
             BallKind::Primitive => ColliderBuilder::ball(self.ball_radius),
         };
-        let body = RigidBodyBuilder::dynamic().translation(Vector::from(self.start()));
+        let body = RigidBodyBuilder::dynamic().translation(self.start());
         let (body, _) = world.insert(body, collider.restitution(0.4));
         Ok(SceneWorld { world, watched: vec![body] })
     }

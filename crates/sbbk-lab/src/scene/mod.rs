@@ -13,24 +13,52 @@
 //! # Ok::<(), sbbk_lab::scene::SceneError>(())
 //! ```
 
-mod box_stack;
-mod built;
-mod head_on_slope;
 mod heads_on_terrain;
 mod helicopter;
 mod pile;
-mod portrait;
 pub(crate) mod random;
+mod resting;
 mod soft_heads;
 mod solid;
-mod two_meshes;
 
-pub use box_stack::BoxStack;
-pub use built::{Scene, SceneError, SceneWorld};
-pub use head_on_slope::HeadOnSlope;
+use rapier3d::dynamics::RigidBodyHandle;
+use rapier3d::parry::shape::TriMeshBuilderError;
+use rapier3d::pipeline::PhysicsWorld;
+use thiserror::Error;
+
 pub use heads_on_terrain::{Ground, HeadsOnTerrain};
 pub use helicopter::{BallKind, HelicopterBallDrop};
 pub use pile::MonkeyPile;
+pub use resting::{BoxStack, HeadOnSlope};
 pub use soft_heads::SoftHeads;
 pub use solid::Solid;
-pub use two_meshes::TwoMeshes;
+
+/// A scene: data from which the same world can be built again and again.
+pub trait Scene {
+    /// What tables call it, numbers included: "200 heads of 968 triangles".
+    fn name(&self) -> String;
+
+    /// The world before its first step.
+    ///
+    /// Errors: a mesh of the scene has no triangles.
+    fn build(&self) -> Result<SceneWorld, SceneError>;
+}
+
+/// A scene could not be built.
+#[derive(Debug, Error)]
+#[error("the mesh `{mesh}` cannot collide: {cause}; give it at least one triangle")]
+pub struct SceneError {
+    /// Name of the mesh.
+    pub mesh: String,
+    /// What Parry says about it.
+    #[source]
+    pub cause: TriMeshBuilderError,
+}
+
+/// A world and the bodies that its scene is about.
+pub struct SceneWorld {
+    /// The world.
+    pub world: PhysicsWorld,
+    /// The moving bodies, in the order in which the scene lists them.
+    pub watched: Vec<RigidBodyHandle>,
+}

@@ -4,7 +4,7 @@ use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::ColliderBuilder;
-use rapier3d::math::{Real, Vector};
+use rapier3d::math::Vector;
 use rapier3d::pipeline::PhysicsWorld;
 
 use super::random::rotation;
@@ -14,22 +14,16 @@ use crate::mesh::{self, Mesh};
 /// Heads released at once from a loose grid above a floor, so that they fall and collide with it
 /// and with each other.
 ///
-/// The grid has [`Self::layers`] layers, each about square. Cells are cubes of
-/// [`Self::spacing`] times the diameter of the head's sphere about its origin: no two heads touch
-/// at the start, whatever their orientation, which is random. The lowest layer is half a cell
-/// above the floor, a fixed cuboid wide enough for the pile to spread. With the default head the
-/// pile is in full contact after about 90 steps (1.5 seconds).
+/// The grid has five layers, each about square. Its cells are cubes just larger than the head's
+/// sphere about its origin: no two heads touch at the start, whatever their orientation, which is
+/// random. The lowest layer is half a cell above the floor, a fixed cuboid wide enough for the pile
+/// to spread. With the default head the pile is in full contact after about 90 steps (1.5 seconds).
 #[derive(Clone, Debug)]
 pub struct MonkeyPile {
     /// Number of heads; the paper has 2000.
     pub heads: usize,
     /// The head, shared by all: 2 units across.
     pub mesh: Mesh,
-    /// Side of a grid cell in head diameters. Below 1 heads may touch at the start; raised, they
-    /// fall longer before they meet.
-    pub spacing: Real,
-    /// Number of layers. More layers give a deeper pile, which takes longer to settle.
-    pub layers: usize,
     /// Seed of the orientations.
     pub seed: u64,
     /// Rapier's contact recycling: pairs that moved little are not asked again (its default).
@@ -38,6 +32,11 @@ pub struct MonkeyPile {
 
 /// Longest side of a head, in units.
 const HEAD_SIZE: f32 = 2.0;
+/// Side of a grid cell in head diameters. Below 1 heads may touch at the start; raised, they fall
+/// longer before they meet.
+const SPACING: f32 = 1.02;
+/// Number of layers. More layers give a deeper pile, which takes longer to settle.
+const LAYERS: usize = 5;
 
 impl MonkeyPile {
     /// `heads` monkey heads.
@@ -47,14 +46,7 @@ impl MonkeyPile {
 
     /// `heads` heads of another kind, centred and scaled to the size of the monkey.
     pub fn of(heads: usize, mesh: Mesh) -> Self {
-        Self {
-            heads,
-            mesh: mesh.centred().scaled_to(HEAD_SIZE),
-            spacing: 1.02,
-            layers: 5,
-            seed: 1,
-            contact_recycling: true,
-        }
+        Self { heads, mesh: mesh.centred().scaled_to(HEAD_SIZE), seed: 1, contact_recycling: true }
     }
 
     /// The starting poses of the heads.
@@ -80,20 +72,13 @@ impl MonkeyPile {
     /// Side of a grid cell, in units.
     fn cell(&self) -> f32 {
         let farthest = (self.mesh.vertices.iter()).map(|vertex| vertex.length_squared());
-        self.spacing * 2.0 * farthest.fold(0.0, f32::max).sqrt()
+        SPACING * 2.0 * farthest.fold(0.0, f32::max).sqrt()
     }
 
     /// Number of grid columns along each side.
     fn columns(&self) -> usize {
-        let layer = self.heads.div_ceil(self.layers.max(1));
+        let layer = self.heads.div_ceil(LAYERS);
         (layer as f64).sqrt().ceil().max(1.0) as usize
-    }
-}
-
-impl Default for MonkeyPile {
-    /// The paper's 2000 heads.
-    fn default() -> Self {
-        Self::with_heads(2000)
     }
 }
 
@@ -108,7 +93,7 @@ impl Scene for MonkeyPile {
         world.integration_parameters.contact_recycling = self.contact_recycling;
         let cell = self.cell();
         // As much room beside the grid as it is wide or high.
-        let side = 2.0 * cell * self.columns().max(self.layers) as f32;
+        let side = 2.0 * cell * self.columns().max(LAYERS) as f32;
         world.insert(
             RigidBodyBuilder::fixed().translation(Vector::Y * -cell),
             ColliderBuilder::cuboid(side, cell, side),

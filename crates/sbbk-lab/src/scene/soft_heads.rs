@@ -1,5 +1,5 @@
-//! Soft monkey heads on a rigid helicopter: the deformable models that the paper names first among the advantages of
-//! its hierarchy.
+//! Soft monkey heads on a rigid helicopter: deformable models, which the paper names first among
+//! the advantages of its hierarchy.
 
 use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
@@ -16,10 +16,6 @@ use crate::mesh::{self, Mesh};
 pub struct SoftHeads {
     /// How many.
     pub heads: usize,
-    /// The head, about the origin.
-    pub head: Mesh,
-    /// The helicopter, `y` up.
-    pub helicopter: Mesh,
     /// Seed of the heads' rotations.
     pub seed: u64,
     /// How fast a head springs back to its shape, in Hz; less is softer.
@@ -36,37 +32,36 @@ const DROP_HEIGHT: f32 = 0.05;
 impl SoftHeads {
     /// This many monkeys.
     pub fn with_heads(heads: usize) -> Self {
-        let head = mesh::monkey_head().centred().scaled_to(HEAD_SIZE);
-        Self { heads, head, helicopter: mesh::helicopter(), seed: 7, stiffness: STIFFNESS }
+        Self { heads, seed: 7, stiffness: STIFFNESS }
     }
 
-    /// The starting poses, in a row along the longest side of the helicopter.
-    fn poses(&self) -> Vec<Pose3> {
+    fn head() -> Mesh {
+        mesh::monkey_head().centred().scaled_to(HEAD_SIZE)
+    }
+
+    /// The starting poses, in a row along the helicopter's `x` axis, which is its longest.
+    fn poses(&self, helicopter: &Mesh) -> impl Iterator<Item = Pose3> {
         let mut random = Rand32::new(self.seed);
-        let bounds = self.helicopter.bounds();
-        let (centre, extents) = (bounds.center(), bounds.extents());
-        let along = if extents.x > extents.z { Vec3::X } else { Vec3::Z };
-        let (spacing, height) = (1.2 * HEAD_SIZE, bounds.maxs.y + HEAD_SIZE + DROP_HEIGHT);
-        (0..self.heads)
-            .map(|index| {
-                let place = (index as f32 - 0.5 * (self.heads as f32 - 1.0)) * spacing;
-                let over = centre.with_y(height) + along * place;
-                Pose3::from_parts(over, rotation(&mut random))
-            })
-            .collect()
+        let bounds = helicopter.bounds();
+        let start = bounds.center().with_y(bounds.maxs.y + HEAD_SIZE + DROP_HEIGHT);
+        let middle = 0.5 * (self.heads as f32 - 1.0);
+        (0..self.heads).map(move |index| {
+            let place = (index as f32 - middle) * (1.2 * HEAD_SIZE);
+            Pose3::from_parts(start + Vec3::X * place, rotation(&mut random))
+        })
     }
 }
 
 impl Scene for SoftHeads {
     fn name(&self) -> String {
-        let [head, helicopter] = [&self.head, &self.helicopter].map(Mesh::triangle_count);
+        let [head, helicopter] = [Self::head(), mesh::helicopter()].map(|m| m.triangle_count());
         format!("{} soft heads of {head} triangles, helicopter of {helicopter}", self.heads)
     }
 
     fn build(&self) -> Result<SceneWorld, SceneError> {
         let mut world = PhysicsWorld::new();
-        let helicopter = Solid::new(&self.helicopter)?;
-        world.insert(RigidBodyBuilder::fixed(), helicopter.collider());
+        let (head, helicopter) = (Self::head(), mesh::helicopter());
+        world.insert(RigidBodyBuilder::fixed(), Solid::new(&helicopter)?.collider());
         let softness = SpringCoefficients::new(self.stiffness, 1.0);
         let material = SoftBodyMaterial {
             bend_softness: softness,
@@ -74,13 +69,10 @@ impl Scene for SoftHeads {
             ..SoftBodyMaterial::default()
         };
         let mut watched = Vec::new();
-        for pose in self.poses() {
-            let head = self.head.clone().posed(&pose);
-            let soft = SoftBodyBuilder::trimesh(head.vertices, head.triangles);
-            let soft = soft.ok_or_else(|| SceneError {
-                mesh: self.head.name.clone(),
-                cause: TriMeshBuilderError::EmptyIndices,
-            })?;
+        for pose in self.poses(&helicopter) {
+            let Mesh { name, vertices, triangles } = head.clone().posed(&pose);
+            let soft = SoftBodyBuilder::trimesh(vertices, triangles)
+                .ok_or(SceneError { mesh: name, cause: TriMeshBuilderError::EmptyIndices })?;
             let body = world.insert_soft_body(soft.material(material));
             watched.push(world.soft_bodies[body].root_body());
         }

@@ -72,7 +72,7 @@ fn judged(scene: &SoftHeads, backend: Backend, plan: &SoftPlan) -> Result<ErrorC
             continue;
         }
         let shapes = built.world.colliders.iter().map(|(_, collider)| collider.shared_shape());
-        let judge = Judge::of_present(shapes);
+        let judge = Judge::new(shapes);
         installed.probe.start_recording();
         built.world.step();
         for answer in installed.probe.take_answers() {

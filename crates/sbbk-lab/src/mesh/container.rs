@@ -1,4 +1,6 @@
-//! The mesh container and the affine edits that scenes need.
+//! The mesh container and the edits that scenes need.
+
+use std::collections::HashMap;
 
 use glamx::{Pose3, Vec3};
 use rapier3d::parry::bounding_volume::Aabb;
@@ -6,8 +8,8 @@ use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshBuilderError, TriMeshF
 
 /// A named indexed triangle mesh, in its own frame.
 ///
-/// The fields are public: a mesh is data, not an invariant. What holds of meshes made by this
-/// module is that indices are in range and coordinates finite.
+/// The fields are public: a mesh is data, not an invariant. Meshes made by this module have
+/// indices in range and finite coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     /// What reports and error messages call it.
@@ -24,14 +26,13 @@ impl Mesh {
         Self { name: name.into(), vertices, triangles }
     }
 
-    /// One mesh holding all parts, each as a component of its own: nothing is welded.
-    pub fn merged<'a>(name: impl Into<String>, parts: impl IntoIterator<Item = &'a Mesh>) -> Self {
+    /// One mesh of all parts, each a component of its own: nothing is welded.
+    pub fn merged(name: impl Into<String>, parts: &[Self]) -> Self {
         let mut whole = Self::new(name, Vec::new(), Vec::new());
         for part in parts {
             let offset = whole.vertices.len() as u32;
             whole.vertices.extend_from_slice(&part.vertices);
-            let shifted = part.triangles.iter().map(|t| t.map(|i| i + offset));
-            whole.triangles.extend(shifted);
+            whole.triangles.extend(part.triangles.iter().map(|t| t.map(|i| i + offset)));
         }
         whole
     }
@@ -52,7 +53,11 @@ impl Mesh {
         self.vertices.len()
     }
 
-    /// The corners of one triangle. Panics when `triangle_index` is out of range.
+    /// The corners of one triangle.
+    ///
+    /// # Panics
+    ///
+    /// If `triangle_index` is out of range.
     pub fn corners(&self, triangle_index: usize) -> [Vec3; 3] {
         self.triangles[triangle_index].map(|i| self.vertices[i as usize])
     }
@@ -60,26 +65,26 @@ impl Mesh {
     /// Box around all vertices; [`Aabb::new_invalid`] when there are none.
     pub fn bounds(&self) -> Aabb {
         let mut bounds = Aabb::new_invalid();
-        for vertex in &self.vertices {
-            bounds.take_point(*vertex);
-        }
+        self.vertices.iter().for_each(|&vertex| bounds.take_point(vertex));
         bounds
     }
 
-    /// Every vertex mapped by `map`; triangles are kept as they are, so a mirroring map turns
-    /// the surface inside out.
-    pub fn mapped(mut self, map: impl Fn(Vec3) -> Vec3) -> Self {
-        for vertex in &mut self.vertices {
-            *vertex = map(*vertex);
-        }
-        self
+    /// Signed volume, in cubed units: positive when a closed surface faces outwards. Of an open
+    /// surface, the volume between it and the origin.
+    pub fn volume(&self) -> f64 {
+        let six_fold: f64 = (0..self.triangle_count())
+            .map(|index| {
+                let [a, b, c] = self.corners(index).map(Vec3::as_dvec3);
+                a.dot(b.cross(c))
+            })
+            .sum();
+        six_fold / 6.0
     }
 
-    /// Turned inside out: all triangles run the other way round.
-    pub fn flipped(mut self) -> Self {
-        for triangle in &mut self.triangles {
-            triangle.swap(1, 2);
-        }
+    /// Every vertex mapped by `map`. Triangles stay as they are: a mirroring map turns the
+    /// surface inside out.
+    pub fn mapped(mut self, map: impl Fn(Vec3) -> Vec3) -> Self {
+        self.vertices.iter_mut().for_each(|vertex| *vertex = map(*vertex));
         self
     }
 
@@ -102,11 +107,27 @@ impl Mesh {
 
     /// Moved so that the centre of [`Self::bounds`] is the origin.
     pub fn centred(self) -> Self {
-        if self.vertices.is_empty() {
-            return self;
-        }
         let centre = self.bounds().center();
         self.mapped(|v| v - centre)
+    }
+
+    /// The same triangles over distinct positions in order of first use, without unused ones.
+    /// Positions are equal when all coordinates are (`-0` is `0`). Triangles that become
+    /// degenerate stay.
+    pub fn welded(&self) -> Self {
+        // Adding zero turns -0 into 0, and the bits of equal positions are then equal.
+        let key = |position: Vec3| (position + Vec3::ZERO).to_array().map(f32::to_bits);
+        let mut vertices = Vec::new();
+        let mut index_of = HashMap::with_capacity(self.vertices.len());
+        let mut weld = |index: u32| {
+            let position = self.vertices[index as usize];
+            *index_of.entry(key(position)).or_insert_with(|| {
+                vertices.push(position);
+                vertices.len() as u32 - 1
+            })
+        };
+        let triangles = self.triangles.iter().map(|t| t.map(&mut weld)).collect();
+        Self::new(self.name.clone(), vertices, triangles)
     }
 
     /// The mesh as Parry's shape, built as stock Rapier builds it.
@@ -116,8 +137,7 @@ impl Mesh {
         TriMesh::with_flags(self.vertices.clone(), self.triangles.clone(), flags)
     }
 
-    /// [`Self::trimesh`] without flags, shared: the shape that a plain
-    /// `ColliderBuilder::trimesh` would hold.
+    /// [`Self::trimesh`] without flags, shared: what a plain `ColliderBuilder::trimesh` holds.
     ///
     /// Errors: the mesh has no triangles.
     pub fn shared_shape(&self) -> Result<SharedShape, TriMeshBuilderError> {

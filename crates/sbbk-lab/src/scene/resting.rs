@@ -1,0 +1,80 @@
+//! Meshes that should come to rest.
+
+use glamx::{Pose3, Vec3};
+use rapier3d::dynamics::RigidBodyBuilder;
+use rapier3d::math::{Real, Vector};
+use rapier3d::pipeline::PhysicsWorld;
+
+use super::{Scene, SceneError, SceneWorld, Solid};
+use crate::mesh;
+
+/// A tower of unit cubes, each a mesh of 12 triangles, a millimetre apart at the start, on a fixed
+/// mesh of the same kind, 10 units wide. The tower should stand.
+#[derive(Clone, Debug)]
+pub struct BoxStack {
+    /// Number of cubes.
+    pub boxes: usize,
+}
+
+impl Default for BoxStack {
+    /// Ten cubes.
+    fn default() -> Self {
+        Self { boxes: 10 }
+    }
+}
+
+impl Scene for BoxStack {
+    fn name(&self) -> String {
+        format!("stack of {} box meshes", self.boxes)
+    }
+
+    fn build(&self) -> Result<SceneWorld, SceneError> {
+        const GAP: Real = 0.001;
+        let mut world = PhysicsWorld::new();
+        let floor = Solid::new(&mesh::cuboid(Vec3::new(5.0, 0.5, 5.0), 1))?;
+        let cube = Solid::new(&mesh::cuboid(Vec3::splat(0.5), 1))?;
+        world.insert(RigidBodyBuilder::fixed().translation(Vector::Y * -0.5), floor.collider());
+        let watched = (0..self.boxes).map(|index| {
+            let height = 0.5 + GAP + index as Real * (1.0 + GAP);
+            let body = RigidBodyBuilder::dynamic().translation(Vector::Y * height);
+            world.insert(body, cube.collider()).0
+        });
+        let watched = watched.collect();
+        Ok(SceneWorld { world, watched })
+    }
+}
+
+/// A monkey head set down on a fixed mesh floor, 20 units wide and of 800 triangles, that is
+/// inclined about the `z` axis. Rapier's default friction coefficient is 0.5 for each body, so that
+/// the head should rest below an angle of 26 degrees and slide above it, unless it rolls.
+#[derive(Clone, Debug)]
+pub struct HeadOnSlope {
+    /// Inclination, in radians.
+    pub angle: Real,
+}
+
+impl Default for HeadOnSlope {
+    /// A slope of 10 degrees.
+    fn default() -> Self {
+        Self { angle: Real::to_radians(10.0) }
+    }
+}
+
+impl Scene for HeadOnSlope {
+    fn name(&self) -> String {
+        format!("monkey head on a slope of {:.0} degrees", self.angle.to_degrees())
+    }
+
+    fn build(&self) -> Result<SceneWorld, SceneError> {
+        let mut world = PhysicsWorld::new();
+        let incline = Pose3::rotation(Vector::Z * self.angle);
+        let floor = Solid::new(&mesh::floor(20.0, 20))?;
+        world.insert(RigidBodyBuilder::fixed().pose(incline), floor.collider());
+        let head = mesh::monkey_head().centred().scaled_to(2.0);
+        // Upright in the frame of the slope, a hundredth of a unit above it.
+        let pose = incline * Pose3::translation(0.0, 0.01 - head.bounds().mins.y, 0.0);
+        let body = RigidBodyBuilder::dynamic().pose(pose);
+        let (body, _) = world.insert(body, Solid::new(&head)?.collider());
+        Ok(SceneWorld { world, watched: vec![body] })
+    }
+}
