@@ -182,7 +182,7 @@ impl Panel {
             Scale::Linear => 0.0..if most > 0.0 { 1.08 * most } else { 1.0 },
             _ if least > most => 0.0..1.0,
             // Half a power of ten below leaves room for the markers of zero.
-            Scale::ZeroAt(zero) if axis == 1 => zero.log10() - 0.5..most.ceil(),
+            Scale::ZeroAt(zero) if axis == 1 => zero.log10() - 0.5..most.ceil().max(1.0),
             _ => least.floor()..most.ceil().max(least.floor() + 1.0),
         }
     }
