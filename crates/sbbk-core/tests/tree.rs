@@ -3,8 +3,8 @@
 mod support;
 
 use glamx::Vec3;
-use sbbk_core::tree::{BATCH, BuildError, BuildOptions, LayerPlan, Tree};
-use sbbk_core::volumes::{DirectionSet, Directions};
+use sbbk_core::tree::{BATCH, BuildError, BuildOptions, LayerPlan, Node, Tree};
+use sbbk_core::volumes::{DirectionSet, Directions, Volume};
 use support::{Random, Soup, bumpy_ball, lattice_soup, soup};
 
 fn options(kdop_from_depth: Option<u32>, leaf_size: usize) -> BuildOptions {
@@ -56,6 +56,87 @@ fn equal_triangles_make_a_balanced_tree() {
     let soup =
         Soup { vertices: vec![Vec3::ZERO, Vec3::X, Vec3::Y], triangles: vec![[0, 1, 2]; 4096] };
     assert_eq!(check::<9>(&soup, &options(Some(4), 1)).stats().depth, 12);
+}
+
+/// Would catch splits by cost that take one triangle from the rest, level after level: sizes and places
+/// that shrink by a constant factor, on one axis, on all in turn, with and without area.
+#[test]
+fn trees_are_never_deep() {
+    let chain = |count: u32, factor: f64, axes: u32, width: f64| {
+        let corner = |i: u32, k: u32| {
+            // Towards zero from below: the first bin with anything in it has one triangle.
+            let size = factor.powi((i / axes) as i32) * 1e38;
+            let mut corner = Vec3::ZERO;
+            corner[(i % axes) as usize] = -size as f32;
+            corner[((i + k) % 3) as usize] += (width * f64::from(k) * size) as f32;
+            corner
+        };
+        let vertices = (0..count).flat_map(|i| [0, 1, 2].map(|k| corner(i, k))).collect();
+        let triangles = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        Soup { vertices, triangles }
+    };
+    let mut deepest = 0;
+    for (factor, axes, width) in [
+        (0.94, 1, 0.0),
+        (0.94, 1, 1e-3),
+        (0.94, 3, 1e-3),
+        (0.97, 3, 0.0),
+        (0.5, 2, 0.0),
+        (0.5, 1, 0.1),
+        (0.999, 1, 0.0),
+    ] {
+        let soup = chain(3000, factor, axes, width);
+        let mut tree = check::<9>(&soup, &options(Some(4), 1));
+        let depth = tree.stats().depth;
+        assert!(depth <= 64 + 12, "{depth} levels: {factor} {axes} {width}");
+        deepest = deepest.max(depth);
+        tree.refit(&soup.vertices, &soup.triangles).unwrap();
+        assert_eq!(tree.validate(), Ok(()));
+    }
+    assert!(deepest > 64, "no chain needs the bound: {deepest}");
+}
+
+/// The walk reaches each node once, with its own volume and depth. Would catch children of another node,
+/// a depth or slot that is wrong, and a volume of the wrong layer.
+#[test]
+fn the_walk_reaches_everything() {
+    let ball = bumpy_ball(12, 0.2);
+    let plan = LayerPlan { sphere_root: true, kdop_from_depth: Some(3) };
+    let tree = check::<9>(&ball, &BuildOptions { layers: plan, leaf_size: 3 });
+    let mut slots = std::collections::HashSet::new();
+    let mut seen = vec![0; ball.triangles.len()];
+    let (mut inner_count, mut leaf_count, mut deepest) = (0, 0, 0);
+    let mut stack = vec![(tree.root(), Vec::<Node>::new())];
+    while let Some((node, above)) = stack.pop() {
+        assert!(slots.insert(node.slot()));
+        assert_eq!(node.depth() as usize, above.len());
+        assert_eq!(node.kdop().is_some(), node.depth() >= 3);
+        deepest = deepest.max(node.depth());
+        let path = [above, vec![node]].concat();
+        let Some(children) = node.children() else {
+            let leaf = node.leaf().expect("no children");
+            leaf_count += 1;
+            assert_eq!(leaf.batch.triangles(), tree.leaf(leaf.number).triangles());
+            for (lane, &triangle) in leaf.batch.triangles().iter().enumerate() {
+                seen[triangle as usize] += 1;
+                for corner in leaf.batch.corners(lane) {
+                    let is_around = |node: &Node| {
+                        let kdop = node.kdop();
+                        node.aabb().contains(corner) && kdop.is_none_or(|k| k.contains(corner))
+                    };
+                    assert!(path.iter().all(is_around));
+                }
+            }
+            continue;
+        };
+        assert!(node.leaf().is_none());
+        inner_count += 1;
+        stack.extend(children.map(|child| (child, path.clone())));
+    }
+    assert!(seen.iter().all(|&count| count == 1));
+    let stats = tree.stats();
+    assert_eq!((inner_count, leaf_count), (stats.inner_count, stats.leaf_count));
+    assert_eq!(deepest, stats.depth);
 }
 
 /// Zero area, zero extent, lattice ties, and coordinates of very different size are all kept.

@@ -2,7 +2,6 @@
 
 use std::sync::LazyLock;
 
-use glamx::DVec3;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d::query::{ContactManifold, TrackedContact};
@@ -10,43 +9,33 @@ use parry3d::shape::{PackedFeatureId, Triangle};
 use sbbk_core::contact::{
     Feature, FeaturePair, ManifoldPoint, ManifoldPoints, TriangleContact, clip, manifold,
 };
+use sbbk_core::query::TrianglePair;
 use sbbk_core::traverse::Placement;
 
 /// The cones that the normals of both triangles must be in.
 pub(super) type Constraints<'a> = [Option<&'a dyn NormalConstraints>; 2];
 
-/// Two triangles in frame 1, relative to a corner of the first one: all their digits are about each other.
-pub(super) struct LocalTriangles {
-    origin: Vector,
-    corners: [[DVec3; 3]; 2],
+/// Two of Parry's triangles in frame 1, with all digits of how they lie to each other.
+#[inline(always)]
+pub(super) fn local_pair(
+    placement: &Placement,
+    [triangle1, triangle2]: &[Triangle; 2],
+) -> TrianglePair {
+    let corners = |triangle: &Triangle| [triangle.a, triangle.b, triangle.c];
+    TrianglePair::new(placement, corners(triangle1), corners(triangle2))
 }
 
-impl LocalTriangles {
-    #[inline(always)]
-    pub(super) fn new(placement: &Placement, [triangle1, triangle2]: &[Triangle; 2]) -> Self {
-        let origin = triangle1.a;
-        let relative = |x: Vector| x.as_dvec3() - origin.as_dvec3();
-        let placed = |x: Vector| placement.to_frame1(x, origin);
-        // Written out, as `array::map` is not always inlined.
-        let corners = [
-            [DVec3::ZERO, relative(triangle1.b), relative(triangle1.c)],
-            [placed(triangle2.a), placed(triangle2.b), placed(triangle2.c)],
-        ];
-        Self { origin, corners }
-    }
-
-    /// The contact within the margin and, within the prediction distance, its points; tried first with the features of
-    /// the step before.
-    #[inline(always)]
-    pub(super) fn contact(
-        &self,
-        (margin, prediction): (Real, Real),
-        last: Option<FeaturePair>,
-        points: &mut ManifoldPoints,
-    ) -> Option<TriangleContact> {
-        let [t1, t2] = &self.corners;
-        manifold(t1, t2, (f64::from(margin), f64::from(prediction)), last, points)
-    }
+/// The contact within the margin and, within the prediction distance, its points; tried first with the
+/// features of the step before.
+#[inline(always)]
+pub(super) fn contact_of(
+    pair: &TrianglePair,
+    (margin, prediction): (Real, Real),
+    last: Option<FeaturePair>,
+    points: &mut ManifoldPoints,
+) -> Option<TriangleContact> {
+    let [t1, t2] = &pair.corners;
+    manifold(t1, t2, f64::from(margin), f64::from(prediction), last, points)
 }
 
 /// Fills `manifold` with the `points` of a contact, as Parry would: the normal is projected into the cones of both
@@ -55,7 +44,7 @@ impl LocalTriangles {
 /// May leave the manifold without points, where the constraints reject the contact.
 pub(super) fn fill<M, C: Default + Copy>(
     (placement, pos12): (&Placement, &Pose),
-    triangles: &LocalTriangles,
+    triangles: &TrianglePair,
     (contact, points): (&TriangleContact, &mut ManifoldPoints),
     constraints: Constraints<'_>,
     previous_points: &mut Vec<TrackedContact<C>>,
@@ -190,9 +179,9 @@ impl<C: Default + Copy> TriangleContacts<C> {
         manifold: &mut ContactManifold<M, C>,
     ) {
         let placement = Placement::new(pos12);
-        let triangles = LocalTriangles::new(&placement, &triangles.map(|triangle| *triangle));
+        let triangles = local_pair(&placement, &triangles.map(|triangle| *triangle));
         let mut points = ManifoldPoints::new();
-        let contact = triangles.contact((prediction, prediction), self.features, &mut points);
+        let contact = contact_of(&triangles, (prediction, prediction), self.features, &mut points);
         self.features = contact.map(|contact| contact.features);
         match contact {
             Some(contact) => fill(

@@ -7,11 +7,12 @@ use parry3d::query::{
 };
 use parry3d::shape::Triangle;
 use sbbk_core::contact::{FeaturePair, ManifoldPoints, TriangleContact};
+use sbbk_core::query::TrianglePair;
 use sbbk_core::traverse::Placement;
 
 use super::candidates::{Candidate, OrderKey, Scratch};
 use super::coherence::Coherence;
-use super::exact::{Constraints, LocalTriangles, fill};
+use super::exact::{Constraints, contact_of, fill, local_pair};
 use super::previous::Previous;
 use super::query::MeshPair;
 use super::state::History;
@@ -98,7 +99,7 @@ impl<S: TriangleShapes> Generator<'_, S> {
             let features = kept.and_then(|place| history.contacts[place]).or(candidate.features);
             let indices = [candidate.triangle1, candidate.triangle2];
             let known = self.shapes.triangles(indices).map(|triangles| {
-                let local = LocalTriangles::new(self.placement, &triangles);
+                let local = local_pair(self.placement, &triangles);
                 (triangles, local)
             });
             let contact = known.as_ref().and_then(|(_, local)| {
@@ -132,13 +133,13 @@ impl<S: TriangleShapes> Generator<'_, S> {
     fn contact(
         &self,
         candidate: &Candidate,
-        local: &LocalTriangles,
+        local: &TrianglePair,
         features: Option<FeaturePair>,
         coherence: &mut Coherence<Candidate>,
         points: &mut ManifoldPoints,
     ) -> Option<TriangleContact> {
         let prediction = self.prediction;
-        let contact = local.contact((self.margin, prediction), features, points);
+        let contact = contact_of(local, (self.margin, prediction), features, points);
         coherence.note(candidate, contact.as_ref());
         // A descent with slack finds pairs that are farther apart than the prediction distance.
         contact.filter(|contact| contact.distance <= f64::from(prediction))
@@ -148,7 +149,7 @@ impl<S: TriangleShapes> Generator<'_, S> {
     fn fill<M, C>(
         &self,
         candidate: &Candidate,
-        ([triangle1, triangle2], local): (&[Triangle; 2], &LocalTriangles),
+        ([triangle1, triangle2], local): (&[Triangle; 2], &TrianglePair),
         answer: (&TriangleContact, &mut ManifoldPoints),
         previous_points: &mut Vec<TrackedContact<C>>,
         manifold: &mut ContactManifold<M, C>,

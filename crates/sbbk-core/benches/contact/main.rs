@@ -46,7 +46,8 @@ fn points(pair: &Pair) -> usize {
     manifold(
         &pair.t1,
         &pair.t2,
-        (pair.margin, pair.margin),
+        pair.margin,
+        pair.margin,
         Some(pair.contact.features),
         &mut points,
     );

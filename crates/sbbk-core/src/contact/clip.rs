@@ -13,9 +13,9 @@
 
 use super::closest::within_edge;
 use super::feature::{Feature, FeaturePair};
-use super::generate::TriangleContact;
 use super::sides::{Crossing, Sides};
 use super::triangle::{NEAR_PARALLEL, Triangle};
+use super::triangle_contact::TriangleContact;
 use arrayvec::ArrayVec;
 use glamx::DVec3;
 

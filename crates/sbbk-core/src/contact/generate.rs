@@ -7,36 +7,13 @@ use super::edges::{closest_edges, proved_edges};
 use super::feature::{Feature, FeaturePair};
 use super::touching::{at_axis, touching};
 use super::triangle::Triangle;
+use super::triangle_contact::TriangleContact;
 use glamx::DVec3;
 
 /// A gap or overlap below this many triangle sizes does not prove that triangles are apart or
 /// that they cross; the choice of the best axis is exact to a tenth of it. Higher: more pairs take
 /// the slow way of [`touching`], with the same result. Lower: rounding decides.
 pub(super) const TOUCHING: f64 = 1.0e-9;
-
-/// How two triangles meet: their closest points when apart, the least translation that separates
-/// them when they cross.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TriangleContact {
-    /// Unit vector from triangle 1 to triangle 2.
-    pub normal: DVec3,
-    /// The distance; when the triangles cross, minus the depth, which is how far triangle 2 must
-    /// move along the normal to touch triangle 1 only.
-    pub distance: f64,
-    /// The point on triangle 1.
-    pub point1: DVec3,
-    /// The point on triangle 2: `point1 + distance * normal`, up to rounding.
-    pub point2: DVec3,
-    /// What meets.
-    pub features: FeaturePair,
-}
-
-impl TriangleContact {
-    pub(super) fn new(features: FeaturePair, closest: Closest) -> Self {
-        let Closest { point1, point2, normal, distance } = closest;
-        Self { normal, distance, point1, point2, features }
-    }
-}
 
 /// The contact of two triangles at a distance of at most `margin`; crossing ones have a negative
 /// distance.
@@ -52,8 +29,8 @@ pub fn contact(t1: &[DVec3; 3], t2: &[DVec3; 3], margin: f64) -> Option<Triangle
 }
 
 /// As [`contact`](fn@contact), given the features that made the contact in the step before: 20 to
-/// 45 ns when they still do, apart; 120 when crossing. Whatever `last` is, the contact is that of `contact`, bit for
-/// bit: what was before is a hint where to look, never a part of the answer.
+/// 45 ns when they still do, apart; 120 when crossing. Whatever `last` is, the contact is that of
+/// `contact`, bit for bit: `last` is a hint where to look, never a part of the answer.
 pub fn contact_from(
     t1: &[DVec3; 3],
     t2: &[DVec3; 3],
@@ -63,14 +40,16 @@ pub fn contact_from(
     find(&Triangle::new(t1), &Triangle::new(t2), margin, Some(last))
 }
 
-/// [`contact`](fn@contact) or, given `last`, [`contact_from`]; then [`clip`](super::clip) along
-/// the normal and [`push_closest`](super::push_closest), at less cost than one by one. `out` is left
-/// empty without a contact, and by one that is farther than `reach`, which only its distance is
-/// asked of.
+/// [`contact`](fn@contact) or, given `last`, [`contact_from`]; then [`clip`](super::clip) along the
+/// normal and [`push_closest`](super::push_closest), at less cost than one by one.
+///
+/// `out` is left empty without a contact, and by one that is farther than `reach`: of contacts between
+/// `reach` and `margin` only the distance is of interest.
 pub fn manifold(
     t1: &[DVec3; 3],
     t2: &[DVec3; 3],
-    (margin, reach): (f64, f64),
+    margin: f64,
+    reach: f64,
     last: Option<FeaturePair>,
     out: &mut ManifoldPoints,
 ) -> Option<TriangleContact> {
@@ -95,7 +74,7 @@ fn find(
     if !(t1.size + t2.size).is_finite() {
         return None;
     }
-    // Triangles that crossed probably still do: then the ways that find only triangles apart are not tried.
+    // Triangles that crossed probably still do: the ways that find only triangles apart are not tried.
     if last.is_some_and(FeaturePair::is_crossing) {
         let contact = search(t1, t2, margin);
         if contact.is_some_and(|contact| contact.features.is_crossing()) {
@@ -158,8 +137,8 @@ fn search(t1: &Triangle, t2: &Triangle, margin: f64) -> Option<TriangleContact> 
     (contact.distance <= margin).then_some(contact)
 }
 
-/// A contact of triangles apart as [`closest`] gives it, so that the same features give the same digits whichever
-/// way they were found.
+/// A contact of triangles apart as [`closest`] gives it, so that the same features give the same digits
+/// whichever way they were found.
 #[inline(always)]
 fn from_features(t1: &Triangle, t2: &Triangle, contact: TriangleContact) -> TriangleContact {
     if contact.features.is_crossing() || contact.distance <= TOUCHING * (t1.size + t2.size) {
@@ -274,8 +253,8 @@ mod tests {
         assert!(kept > apart * 9 / 10, "only {kept} of {apart} steps apart kept their features");
     }
 
-    /// Triangles that are points or segments have many features in one place: fuzzing found that the last ones
-    /// were taken.
+    /// Triangles that are points or segments have many features in one place: fuzzing found that the
+    /// last ones were taken.
     #[test]
     fn any_last_features_of_points_and_segments() {
         let [a, b, c] =

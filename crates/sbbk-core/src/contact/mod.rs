@@ -50,7 +50,9 @@ mod generate;
 mod sides;
 mod touching;
 mod triangle;
+mod triangle_contact;
 
 pub use clip::{MANIFOLD_CAPACITY, ManifoldPoint, ManifoldPoints, clip, push_closest};
 pub use feature::{Feature, FeaturePair};
-pub use generate::{TriangleContact, contact, contact_from, manifold};
+pub use generate::{contact, contact_from, manifold};
+pub use triangle_contact::TriangleContact;

@@ -11,8 +11,8 @@ use super::clip::{ManifoldPoints, clip_triangles};
 use super::closest::{Closest, closest};
 use super::edges::closest_edges;
 use super::feature::{Feature, FeaturePair};
-use super::generate::TriangleContact;
 use super::triangle::Triangle;
+use super::triangle_contact::TriangleContact;
 use glamx::DVec3;
 
 /// What rounding can do to a distance or gap, in triangle sizes. Higher: triangles this close count

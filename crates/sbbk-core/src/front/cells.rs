@@ -1,20 +1,19 @@
-//! The front itself.
+//! The pairs of nodes that a front consists of.
 //!
-//! The pairs of nodes where a descent stopped come in fours, as the descent compares them: a [`Cell`] is a pair of nodes that
-//! met, with its four pairs of children. Each of these has parted, or is a pair of leaves, or leads to a cell of its own.
-//! So one SIMD test tests all four, and the pairs above the front, which tell when to raise it, are at hand.
+//! They come in fours, as the descent compares them: a [`Cell`] is a pair of nodes that met, with its
+//! four pairs of children. Each of these has parted, or is a pair of leaves, or leads to a cell of its
+//! own. One SIMD test tests all four, and the pairs above the front, which tell when to raise it, are
+//! at hand.
 //!
-//! Cells that nothing can have changed must cost next to nothing: what is read of all cells at each query is two numbers
-//! each, in arrays of their own.
+//! Of cells that motion cannot have changed a query reads two numbers each, in arrays of their own.
 
 use wide::f32x8;
 
 use super::opening::{Opening, SlotPair};
-use crate::traverse::AxisIndex;
 
-/// Pairs that meet are not asked to have parted before motion of this many times what it takes at least. More: fewer
-/// tests, and more pairs of leaves that have parted are handed out. In slow motion of 2596 triangles: with 1, 695 node
-/// tests a query; with 2, 527; with 4, 418, and a fifth less time than with 2.
+/// Pairs that meet are not tested again before motion of this many times the least that can part
+/// them. More: fewer tests, and more pairs of leaves that have parted are handed out. Slow motion of
+/// 2596 triangles, node tests a query: 695 with 1, 527 with 2, 418 with 4 (a fifth less time than 2).
 pub(super) const PATIENCE: f32 = 4.0;
 
 /// A pair of nodes that met.
@@ -25,8 +24,6 @@ pub(super) struct Cell {
     pub(super) depth: u32,
     /// Lanes whose pairs met when last asked.
     pub(super) met: u8,
-    /// One that separated all lanes that have parted.
-    pub(super) axis: Option<AxisIndex>,
     /// Of each lane that met: its cell, or its place among the pairs of leaves.
     below: [u32; 4],
 }
@@ -41,14 +38,14 @@ pub(super) struct LeafPair {
     owner: u32,
 }
 
-/// All cells, and the pairs of leaves.
+/// All cells, and the pairs of leaves that meet.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cells {
     cells: Vec<Cell>,
     /// While time plus margin is below this, no pair that has parted can meet. Infinite where no cell is.
     parted_until: Vec<f32>,
-    /// While this is below `PATIENCE·margin - time`, all pairs that met are taken to meet. Minus infinity
-    /// where no cell is.
+    /// While this is below `PATIENCE·margin - time`, all pairs that met are taken to meet. Minus
+    /// infinity where no cell is.
     met_until: Vec<f32>,
     free: Vec<u32>,
     leaf_pairs: Vec<LeafPair>,
@@ -90,14 +87,14 @@ impl Cells {
         &self.leaf_pairs
     }
 
-    /// Whether there is a cell of this number.
+    /// Whether the cell of this number exists.
     pub(super) fn is_cell(&self, cell: u32) -> bool {
         self.parted_until[cell as usize] != f32::INFINITY
     }
 
     /// A new cell, of which nothing is known yet.
     pub(super) fn add(&mut self, opening: Opening, depth: u32) -> u32 {
-        let cell = Cell { opening, depth, met: 0, axis: None, below: [0; 4] };
+        let cell = Cell { opening, depth, met: 0, below: [0; 4] };
         if let Some(free) = self.free.pop() {
             self.cells[free as usize] = cell;
             self.set_lasting(free, f32::NEG_INFINITY, f32::INFINITY);
@@ -113,10 +110,6 @@ impl Cells {
     pub(super) fn set_lasting(&mut self, cell: u32, parted_until: f32, met_until: f32) {
         self.parted_until[cell as usize] = parted_until;
         self.met_until[cell as usize] = met_until;
-    }
-
-    pub(super) fn set_axis(&mut self, cell: u32, axis: Option<AxisIndex>) {
-        self.cells[cell as usize].axis = axis;
     }
 
     /// A pair of leaves met.

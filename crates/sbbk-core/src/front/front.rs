@@ -1,26 +1,29 @@
+//! The front itself.
+
+use std::cmp::Reverse;
+
 use wide::f32x4;
 
 use super::cells::{Cell, Cells, PATIENCE, lanes};
 use super::clock::{Clock, Reading};
 use super::opening::{PairTest, TreePair};
-use super::options::{FrontOptions, FrontOrder};
+use super::options::FrontOptions;
 use super::policy::Policy;
-use crate::traverse::{
-    Counters, Descent, DescentScratch, Gaps, PairFrame, Verdict, Visitor, descend,
-};
+use crate::traverse::{Counters, Descent, DescentScratch, PairFrame, Verdict, Visitor, descend};
 use crate::tree::{LeafBatch, Tree};
 use crate::volumes::{DirectionSet, Directions};
 
-/// The front is built anew when it has more than this many times the cells that it was built with, and [`SPARE_CELLS`]:
-/// its bound. Lower: more fresh descents for pairs that close in. Higher: more memory.
+/// An adaptive front is built anew when it has more than this many times the cells that it was built
+/// with, and [`SPARE_CELLS`]: its bound. Lower: more fresh descents for pairs that close in. Higher:
+/// more memory.
 const GROWTH: usize = 2;
 /// See [`GROWTH`].
 const SPARE_CELLS: usize = 64;
-/// Time at which the front is built anew, in radii of mesh 2: stamps are f32, and would become coarse.
+/// Time at which an adaptive front is built anew, in radii of mesh 2: stamps are f32, and would become
+/// coarse.
 const LONGEST_TIME: f64 = 8.0;
 
-/// Where the last descent of a pair of trees stopped, and what follows from that for the next: see
-/// [the module](super).
+/// Where the last descent of a pair of trees stopped: see [the module](super).
 ///
 /// One front is for one pair of trees; after a tree was exchanged, [`clear`](Self::clear) it.
 #[derive(Clone, Debug, Default)]
@@ -32,9 +35,9 @@ pub struct Front {
     /// Number of cells when the front was built.
     built: usize,
     /// Cells to be tested.
-    due: Vec<u32>,
+    pub(super) due: Vec<u32>,
     pending: Vec<u32>,
-    /// Numbers of the nodes and leaves of both trees: other trees must not cause a panic.
+    /// Node and leaf counts of both trees: other trees must not cause a panic.
     sizes: [usize; 4],
     stats: FrontStats,
 }
@@ -63,7 +66,7 @@ pub struct FrontStats {
 }
 
 impl Front {
-    /// A front with some of its parts only.
+    /// A front of this kind.
     pub fn new(options: FrontOptions) -> Self {
         Self { options, ..Self::default() }
     }
@@ -83,8 +86,8 @@ impl Front {
     /// Visits pairs of leaves, as [`descend`] does: every pair of leaves that has triangles within the margin, and
     /// few others. Which others, and the order, depend on the queries before.
     ///
-    /// Of the visitor, only [`Visitor::leaves`] is asked, as the pairs above are not visited; it may stop. A pose or margin
-    /// that is not finite finds nothing, and the next query starts at the roots.
+    /// Of the visitor, only [`Visitor::leaves`] is called, as the pairs above are not visited; it may
+    /// stop. A pose or margin that is not finite finds nothing, and the next query starts at the roots.
     pub fn visit<const AXES: usize, V: Visitor, C: Counters>(
         &mut self,
         trees: (&Tree<AXES>, &Tree<AXES>),
@@ -103,7 +106,8 @@ impl Front {
         }
         let ball = trees.1.bounding_ball();
         let reading = self.clock.advance(frame.placement(), &ball);
-        if self.cells.is_empty() && !self.builds(&reading, trees.1) {
+        if self.cells.is_empty() && self.is_adaptive() && !self.policy.builds(reading.step, trees.1)
+        {
             self.stats.fresh += 1;
             descend(trees, frame, Descent::Simultaneous, scratch, counters, &mut Leaves(visitor));
             return;
@@ -145,79 +149,73 @@ impl Front {
         }
     }
 
-    /// Whether a query without a front builds one.
-    fn builds<const AXES: usize>(&mut self, reading: &Reading, tree2: &Tree<AXES>) -> bool {
-        !self.options.adaptive || self.policy.builds(reading.step, tree2)
+    fn is_adaptive(&self) -> bool {
+        self.options == FrontOptions::Adaptive
     }
 
     /// Brings the front up to date, or clears it and returns `false`: then a fresh descent is cheaper.
-    pub(super) fn update(
+    fn update(
         &mut self,
         pair: &mut impl PairTest,
         reading: Reading,
         margin: f32,
         longest_time: f64,
     ) -> bool {
-        let is_late = self.options.motion_bound && reading.time > longest_time;
+        let is_late = self.is_adaptive() && reading.time > longest_time;
         if self.cells.is_empty() || is_late {
             self.build(pair, margin);
             return true;
         }
         self.due.clear();
-        if self.options.motion_bound {
-            self.cells.due(reading.time, margin, &mut self.due);
-        } else {
-            self.cells.all(&mut self.due);
-        }
-        if self.options.adaptive
-            && self.policy.gives_up(reading.step, self.due.len(), self.cells.len())
-        {
-            self.cells.clear();
-            return false;
+        match self.options {
+            FrontOptions::Paper => self.cells.all(&mut self.due),
+            FrontOptions::Adaptive => {
+                self.cells.due(reading.time, margin, &mut self.due);
+                if self.policy.gives_up(reading.step, self.due.len(), self.cells.len()) {
+                    self.cells.clear();
+                    return false;
+                }
+            }
         }
         self.stats.reused += 1;
         self.stats.tested += self.due.len() as u64;
-        self.sort_due();
-        for place in 0..self.due.len() {
-            let cell = self.due[place];
-            if self.cells.is_cell(cell) {
-                self.settle(pair, cell, reading.stamp, margin);
-            }
-        }
-        if self.is_too_large() {
+        self.test_due(pair, reading.stamp, margin);
+        if self.is_adaptive() && self.cells.len() > GROWTH * self.built + SPARE_CELLS {
             self.build(pair, margin);
         }
         true
     }
 
-    fn is_too_large(&self) -> bool {
-        self.options.raise && self.cells.len() > GROWTH * self.built + SPARE_CELLS
-    }
-
-    fn build(&mut self, pair: &mut impl PairTest, margin: f32) {
+    pub(super) fn build(&mut self, pair: &mut impl PairTest, margin: f32) {
         self.stats.built += 1;
         self.cells.clear();
         self.clock.restart();
         let root = self.cells.add(pair.roots(), 0);
-        self.settle(pair, root, 0.0, margin);
+        self.test_from(pair, root, 0.0, margin);
         self.built = self.cells.len();
     }
 
-    /// Tests a cell and all that become cells by that.
-    fn settle(&mut self, pair: &mut impl PairTest, cell: u32, stamp: f64, margin: f32) {
-        self.pending.push(cell);
-        while let Some(cell) = self.pending.pop() {
-            self.test(pair, cell, stamp, margin);
+    /// Tests the cells that are due, in the order of the paper, or the highest first: one that parts
+    /// takes those below it with it.
+    pub(super) fn test_due(&mut self, pair: &mut impl PairTest, stamp: f64, margin: f32) {
+        let cells = &self.cells;
+        match self.options {
+            FrontOptions::Paper => self.due.sort_by_key(|&cell| Reverse(cells.get(cell).depth)),
+            FrontOptions::Adaptive => self.due.sort_by_key(|&cell| cells.get(cell).depth),
+        }
+        for place in 0..self.due.len() {
+            let cell = self.due[place];
+            if self.cells.is_cell(cell) {
+                self.test_from(pair, cell, stamp, margin);
+            }
         }
     }
 
-    fn sort_due(&mut self) {
-        let cells = &self.cells;
-        match self.options.order {
-            FrontOrder::HighestFirst => self.due.sort_by_key(|&cell| cells.get(cell).depth),
-            FrontOrder::DeepestFirst => {
-                self.due.sort_by_key(|&cell| std::cmp::Reverse(cells.get(cell).depth));
-            }
+    /// Tests a cell, and the new cells below it.
+    fn test_from(&mut self, pair: &mut impl PairTest, cell: u32, stamp: f64, margin: f32) {
+        self.pending.push(cell);
+        while let Some(cell) = self.pending.pop() {
+            self.test(pair, cell, stamp, margin);
         }
     }
 
@@ -226,14 +224,15 @@ impl Front {
     fn test(&mut self, pair: &mut impl PairTest, index: u32, stamp: f64, margin: f32) {
         let cell = *self.cells.get(index);
         let Cell { opening, met: before, .. } = cell;
-        // Without raising, pairs above the front are never asked again.
-        let above = before & !opening.leaves;
-        let asked = if self.options.raise { opening.lanes } else { opening.lanes & !above };
-        let stays_apart = before == 0 && self.stays_apart(pair, &cell, index, stamp, margin);
-        if asked == 0 || stays_apart {
+        let asked = match self.options {
+            // The pairs above the front are never asked again.
+            FrontOptions::Paper => opening.lanes & !(before & !opening.leaves),
+            FrontOptions::Adaptive => opening.lanes,
+        };
+        if asked == 0 {
             return;
         }
-        let Gaps { gaps, axis, .. } = pair.gaps(&opening, asked, self.options.cached_axis);
+        let gaps = pair.gaps(&opening, asked);
         // NaN, from numbers that overflow, counts as meeting.
         let apart = gaps.simd_gt(f32x4::splat(margin)).to_bitmask() as u8 & asked;
         let met = asked & !apart;
@@ -252,36 +251,14 @@ impl Front {
                 self.pending.push(below);
             }
         }
-        self.cells.set_axis(index, axis);
-        self.note_lasting(index, gaps, (apart, met), stamp);
+        if self.is_adaptive() {
+            self.set_lasting(index, gaps, apart, met, stamp);
+        }
     }
 
-    /// Whether all pairs of a cell are still apart on the axis that separated them last.
+    /// Sets until when the lanes that are apart, and those that met, stay so.
     #[inline(always)]
-    fn stays_apart(
-        &mut self,
-        pair: &mut impl PairTest,
-        cell: &Cell,
-        index: u32,
-        stamp: f64,
-        margin: f32,
-    ) -> bool {
-        let Some(axis) = cell.axis else { return false };
-        let lanes = cell.opening.lanes;
-        let Some(gaps) = pair.gaps_on(axis, &cell.opening, lanes) else { return false };
-        let is_apart = gaps.simd_gt(f32x4::splat(margin)).to_bitmask() as u8 & lanes == lanes;
-        if is_apart {
-            self.note_lasting(index, gaps, (lanes, 0), stamp);
-        }
-        is_apart
-    }
-
-    /// Until when the lanes that are apart, and those that met, stay so.
-    #[inline(always)]
-    fn note_lasting(&mut self, index: u32, gaps: f32x4, (apart, met): (u8, u8), stamp: f64) {
-        if !self.options.motion_bound {
-            return;
-        }
+    fn set_lasting(&mut self, index: u32, gaps: f32x4, apart: u8, met: u8, stamp: f64) {
         let gaps = gaps.to_array();
         let (mut least, mut largest) = (f32::MAX, f32::MIN);
         for lane in 0..4 {
@@ -296,7 +273,7 @@ impl Front {
     }
 }
 
-/// A visitor of which only leaves are asked.
+/// Passes on the calls of [`Visitor::leaves`] only.
 struct Leaves<'a, V>(&'a mut V);
 
 impl<V: Visitor> Visitor for Leaves<'_, V> {

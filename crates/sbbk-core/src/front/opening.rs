@@ -1,8 +1,8 @@
-//! What a front asks of two trees, apart from its own bookkeeping.
+//! What a front asks of two trees.
 
 use wide::f32x4;
 
-use crate::traverse::{AxisIndex, Counters, GapFrame, Gaps, Inner, Outer, PairFrame, Same, Sides};
+use crate::traverse::{Counters, GapFrame, Inner, Outer, PairFrame, Same, Sides};
 use crate::tree::{Link, Slot, Tree};
 use crate::volumes::{DirectionSet, Directions};
 
@@ -44,10 +44,8 @@ pub(super) trait PairTest {
     fn open(&self, pair: SlotPair) -> Opening;
     /// The numbers of a pair of leaves.
     fn leaves(&self, pair: SlotPair) -> (u32, u32);
-    /// The gaps of the pairs in `lanes`, and an axis of separation if `axis` says so.
-    fn gaps(&mut self, opening: &Opening, lanes: u8, axis: bool) -> Gaps;
-    /// The gaps on one axis.
-    fn gaps_on(&mut self, axis: AxisIndex, opening: &Opening, lanes: u8) -> Option<f32x4>;
+    /// Lower bounds of the distances of the pairs in `lanes`.
+    fn gaps(&mut self, opening: &Opening, lanes: u8) -> f32x4;
 }
 
 /// Two trees at a pose.
@@ -85,28 +83,6 @@ where
     }
 }
 
-/// Calls `$compare` with the two sides of an opening, for each way in which they lie over the lanes.
-macro_rules! with_sides {
-    ($opening:expr, $children:expr, |$side1:ident, $side2:ident| $compare:expr) => {{
-        let same = Same(usize::from($opening.same_lane));
-        let (children1, children2) = $children;
-        match $opening.sides {
-            Sides::Both => {
-                let ($side1, $side2) = ((&children1, Outer), (&children2, Inner));
-                $compare
-            }
-            Sides::First => {
-                let ($side1, $side2) = ((&children1, Outer), (&children2, same));
-                $compare
-            }
-            Sides::Second => {
-                let ($side1, $side2) = ((&children1, same), (&children2, Inner));
-                $compare
-            }
-        }
-    }};
-}
-
 impl<C: Counters, const AXES: usize> PairTest for TreePair<'_, C, AXES>
 where
     Directions<AXES>: DirectionSet<AXES>,
@@ -134,27 +110,19 @@ where
     }
 
     #[inline(always)]
-    fn gaps(&mut self, opening: &Opening, lanes: u8, axis: bool) -> Gaps {
+    fn gaps(&mut self, opening: &Opening, lanes: u8) -> f32x4 {
         self.counters.aabb_tests(lanes.count_ones());
         let (frame, with) = (&mut *self.frame, &self.gap_frame);
         let (tree1, tree2) = self.trees;
-        let children = (tree1.children(opening.nodes.0), tree2.children(opening.nodes.1));
+        let (one, two) = (tree1.children(opening.nodes.0), tree2.children(opening.nodes.1));
+        let same = Same(usize::from(opening.same_lane));
         let lanes = u32::from(lanes);
-        let gaps = with_sides!(opening, children, |side1, side2| if axis {
-            frame.gaps::<true>(with, side1, side2, lanes)
-        } else {
-            frame.gaps::<false>(with, side1, side2, lanes)
-        });
-        self.counters.kdop_tests(gaps.kdop_lanes.count_ones());
-        gaps
-    }
-
-    #[inline(always)]
-    fn gaps_on(&mut self, axis: AxisIndex, opening: &Opening, lanes: u8) -> Option<f32x4> {
-        self.counters.aabb_tests(lanes.count_ones());
-        let (frame, with) = (&mut *self.frame, &self.gap_frame);
-        let (tree1, tree2) = self.trees;
-        let children = (tree1.children(opening.nodes.0), tree2.children(opening.nodes.1));
-        with_sides!(opening, children, |side1, side2| frame.gaps_on(with, axis, side1, side2))
+        let found = match opening.sides {
+            Sides::Both => frame.gaps(with, (&one, Outer), (&two, Inner), lanes),
+            Sides::First => frame.gaps(with, (&one, Outer), (&two, same), lanes),
+            Sides::Second => frame.gaps(with, (&one, same), (&two, Inner), lanes),
+        };
+        self.counters.kdop_tests(found.kdop_lanes.count_ones());
+        found.gaps
     }
 }

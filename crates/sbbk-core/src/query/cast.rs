@@ -21,7 +21,7 @@ use crate::volumes::{DirectionSet, Directions};
 
 use super::seek::{Bounds, FOUND, SearchScratch, seek};
 use super::sweep::Sweep;
-use super::triangles::{FoundPair, LocalPair};
+use super::triangles::{FoundPair, LeafTriangle, TrianglePair};
 
 /// What counts as an impact.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -79,13 +79,19 @@ where
         cutoff: Cutoff::at(max_time.min(f32::MAX)),
     };
     let latest = f64::from(max_time);
-    let mut search =
-        Search { sweep, placement, velocity: velocity.as_dvec3(), options, latest, found: None };
+    let mut search = CastSearch {
+        sweep,
+        placement,
+        velocity: velocity.as_dvec3(),
+        options,
+        latest,
+        found: None,
+    };
     seek(trees, &mut search, scratch);
     search.found
 }
 
-struct Search<'a, const AXES: usize> {
+struct CastSearch<'a, const AXES: usize> {
     sweep: Sweep<'a, AXES>,
     placement: Placement,
     velocity: DVec3,
@@ -95,9 +101,9 @@ struct Search<'a, const AXES: usize> {
     found: Option<Cast>,
 }
 
-impl<const AXES: usize> Search<'_, AXES> {
-    fn triangles(&mut self, side1: (&LeafBatch, usize), side2: (&LeafBatch, usize)) {
-        let pair = LocalPair::new(&self.placement, side1, side2);
+impl<const AXES: usize> CastSearch<'_, AXES> {
+    fn triangles(&mut self, one: LeafTriangle<'_>, two: LeafTriangle<'_>) {
+        let pair = TrianglePair::new(&self.placement, one.corners(), two.corners());
         let target = f64::from(self.options.target_distance);
         if !self.boxes_meet(&pair, target) {
             return;
@@ -111,17 +117,15 @@ impl<const AXES: usize> Search<'_, AXES> {
         if self.found.is_some_and(|found| time >= found.time) {
             return;
         }
-        let [triangle1, triangle2] = [side1, side2].map(|(batch, lane)| batch.triangles()[lane]);
         let is_penetrating = time == 0.0 && contact.distance < target;
-        let is_touching = contact.distance <= pair.touching_distance();
-        let pair = FoundPair { triangle1, triangle2, contact, origin: pair.origin, is_touching };
+        let pair = FoundPair::new(one, two, &pair, contact);
         self.found = Some(Cast { time, pair, is_penetrating });
         self.latest = time;
         self.sweep.cutoff.limit = if time > 0.0 { (time as f32).next_up() } else { FOUND };
     }
 
     /// Whether the boxes of the triangles come within the target distance early enough.
-    fn boxes_meet(&self, pair: &LocalPair, target: f64) -> bool {
+    fn boxes_meet(&self, pair: &TrianglePair, target: f64) -> bool {
         let [(min1, max1), (min2, max2)] =
             pair.corners.map(|[a, b, c]| (a.min(b).min(c), a.max(b).max(c)));
         let slack = target + 1.0e-12 * ((max1 - min1) + (max2 - min2)).element_sum();
@@ -145,7 +149,7 @@ impl<const AXES: usize> Search<'_, AXES> {
 
 /// Two triangles, the second one moving.
 struct TriangleCast<'a> {
-    pair: &'a LocalPair,
+    pair: &'a TrianglePair,
     velocity: DVec3,
     target: f64,
 }
@@ -186,7 +190,7 @@ impl TriangleCast<'_> {
     }
 }
 
-impl<'a, const AXES: usize> Bounds<AXES> for Search<'a, AXES>
+impl<'a, const AXES: usize> Bounds<AXES> for CastSearch<'a, AXES>
 where
     Directions<AXES>: DirectionSet<AXES>,
 {
@@ -207,7 +211,8 @@ where
         for lane1 in 0..batch1.count() {
             for lane2 in 0..batch2.count() {
                 if self.sweep.cutoff.limit != FOUND {
-                    self.triangles((batch1, lane1), (batch2, lane2));
+                    let one = LeafTriangle { batch: batch1, lane: lane1 };
+                    self.triangles(one, LeafTriangle { batch: batch2, lane: lane2 });
                 }
             }
         }

@@ -1,11 +1,11 @@
-//! Questions about two meshes at a pose that need one answer, not all contacts: the nearest or the deepest pair of
-//! triangles, whether any pair meets, when moving meshes first meet.
+//! Questions about two meshes at a pose: all contacts, the nearest or the deepest pair of triangles,
+//! whether any pair meets, when moving meshes first meet.
 //!
-//! All of them are one search (`seek.rs`): both trees are descended at once, the pair of nodes with the
-//! least lower bound first, and whatever cannot beat the best pair of triangles so far is left out. What the bound is
-//! differs: the signed distance of volumes for [`nearest`], the earliest time at which they come close for [`cast`]; for
-//! [`meeting`] there is none.
-//! Pairs of triangles are compared exactly, in f64 ([`contact`](mod@crate::contact)).
+//! [`contacts`] is a descent. The questions with one answer are one search (`seek.rs`): both trees are
+//! descended at once, the pair of nodes with the least lower bound first, and what cannot beat the best
+//! pair of triangles so far is left out. The bound is the signed distance of volumes for [`nearest`],
+//! the earliest time at which they come close for [`cast`]; [`meeting`] has none. Pairs of triangles are
+//! compared exactly, in f64 ([`contact`](mod@crate::contact)).
 //!
 //! ```
 //! use glamx::{Pose3, Vec3};
@@ -24,11 +24,12 @@
 //! # Ok::<(), sbbk_core::tree::BuildError>(())
 //! ```
 //!
-//! Surfaces are what counts: a mesh inside another one is apart from it. A pose or velocity that is not finite has no
-//! answer. Answers depend on the trees and the pose only.
+//! Meshes are surfaces: one inside another is apart from it. A pose or velocity that is not finite has
+//! no answer. Answers depend on the trees and the pose only.
 
 mod advance;
 mod cast;
+mod contacts;
 mod departure;
 mod guess;
 mod meet;
@@ -40,8 +41,9 @@ mod triangles;
 pub use crate::traverse::GapCounts;
 pub use advance::{Advance, AdvanceOptions, advance};
 pub use cast::{Cast, CastOptions, cast};
+pub use contacts::contacts;
 pub use departure::advance_from_contact;
 pub use meet::meeting;
 pub use nearest::{Goal, nearest, nearest_counted};
 pub use seek::SearchScratch;
-pub use triangles::FoundPair;
+pub use triangles::{FoundPair, TrianglePair};

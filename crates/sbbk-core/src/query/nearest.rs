@@ -10,7 +10,7 @@ use crate::volumes::{DirectionSet, Directions};
 
 use super::guess::near_leaves;
 use super::seek::{Bounds, FOUND, SearchScratch, seek};
-use super::triangles::{FoundPair, LocalPair};
+use super::triangles::{FoundPair, LeafTriangle, TrianglePair};
 
 /// Which pair of triangles is sought.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -78,7 +78,7 @@ where
     let mut frame = PairFrame::at(trees, placement, 0.0);
     let test = LeafTest::new(&frame);
     let gaps = SignedGaps { frame: &mut frame, cutoff: Cutoff::at(above(best)), toward: None };
-    let mut search = Search { gaps, placement, test, goal, besides, best, found: None };
+    let mut search = NearestSearch { gaps, placement, test, goal, besides, best, found: None };
     // A limit of zero cannot be lowered: the search ends with the first pair that meets.
     if best > 0.0 {
         let (leaf1, leaf2) = near_leaves(trees, search.gaps.frame);
@@ -103,7 +103,7 @@ fn above(x: f64) -> f32 {
     (x as f32).next_up()
 }
 
-struct Search<'a, const AXES: usize> {
+struct NearestSearch<'a, const AXES: usize> {
     gaps: SignedGaps<'a, AXES>,
     placement: Placement,
     test: LeafTest,
@@ -115,20 +115,20 @@ struct Search<'a, const AXES: usize> {
     found: Option<FoundPair>,
 }
 
-impl<const AXES: usize> Search<'_, AXES>
+impl<const AXES: usize> NearestSearch<'_, AXES>
 where
     Directions<AXES>: DirectionSet<AXES>,
 {
-    fn triangles(&mut self, side1: (&LeafBatch, usize), side2: (&LeafBatch, usize)) {
+    fn triangles(&mut self, one: LeafTriangle<'_>, two: LeafTriangle<'_>) {
         if self.gaps.cutoff.limit == FOUND {
             return;
         }
-        let [triangle1, triangle2] = [side1, side2].map(|(batch, lane)| batch.triangles()[lane]);
-        if !self.besides.is_empty() && self.besides.binary_search(&[triangle1, triangle2]).is_ok() {
+        let besides = self.besides;
+        if !besides.is_empty() && besides.binary_search(&[one.index(), two.index()]).is_ok() {
             return;
         }
         self.gaps.cutoff.counts.triangle_pairs += 1;
-        let pair = LocalPair::new(&self.placement, side1, side2);
+        let pair = TrianglePair::new(&self.placement, one.corners(), two.corners());
         let touching = pair.touching_distance();
         let margin = if self.best >= 0.0 { self.best.max(touching) } else { self.best };
         let [t1, t2] = &pair.corners;
@@ -138,10 +138,9 @@ where
         if self.found.is_some() && contact.distance >= self.best {
             return;
         }
-        let (origin, is_touching) = (pair.origin, contact.distance <= touching);
-        self.found = Some(FoundPair { triangle1, triangle2, contact, origin, is_touching });
+        self.found = Some(FoundPair::new(one, two, &pair, contact));
         self.best = contact.distance;
-        let is_last = self.goal == Goal::Nearest && is_touching;
+        let is_last = self.goal == Goal::Nearest && contact.distance <= touching;
         self.gaps.cutoff.limit = if is_last { FOUND } else { above(contact.distance) };
         self.look_along(contact.normal);
     }
@@ -157,7 +156,7 @@ where
     }
 }
 
-impl<'a, const AXES: usize> Bounds<AXES> for Search<'a, AXES>
+impl<'a, const AXES: usize> Bounds<AXES> for NearestSearch<'a, AXES>
 where
     Directions<AXES>: DirectionSet<AXES>,
 {
@@ -183,7 +182,10 @@ where
             let test = self.test.within(self.gaps.cutoff.limit);
             // The axis of far triangles tells nothing about those that touch.
             let is_far = self.best > 0.0;
-            let found = |lane1, lane2| self.triangles((batch1, lane1), (batch2, lane2));
+            let found = |lane1, lane2| {
+                let one = LeafTriangle { batch: batch1, lane: lane1 };
+                self.triangles(one, LeafTriangle { batch: batch2, lane: lane2 });
+            };
             if is_far {
                 test.far_survivors(batch1, batch2, found);
             } else {
@@ -192,7 +194,8 @@ where
         } else {
             for lane1 in 0..batch1.count() {
                 for lane2 in 0..batch2.count() {
-                    self.triangles((batch1, lane1), (batch2, lane2));
+                    let one = LeafTriangle { batch: batch1, lane: lane1 };
+                    self.triangles(one, LeafTriangle { batch: batch2, lane: lane2 });
                 }
             }
         }

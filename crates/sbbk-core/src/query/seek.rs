@@ -4,7 +4,7 @@
 //! of these the least is looked at next. The first leaves that are reached are near the answer, so the bound is tight
 //! from then on.
 
-use crate::traverse::{Compare, Sides, expand};
+use crate::traverse::{Compare, DescentScratch, Sides, expand};
 use crate::tree::{LeafBatch, Slot, Tree};
 use crate::volumes::{DirectionSet, Directions};
 
@@ -13,7 +13,7 @@ pub(super) trait Bounds<const AXES: usize> {
     /// Finds lower bounds for pairs of nodes.
     type Compare: Compare<AXES, Key = f32>;
 
-    /// See there.
+    /// What finds them.
     fn compare(&mut self) -> &mut Self::Compare;
 
     /// Pairs whose bound is above this cannot matter; [`FOUND`] ends the search.
@@ -23,10 +23,11 @@ pub(super) trait Bounds<const AXES: usize> {
     fn leaves(&mut self, batch1: &LeafBatch, batch2: &LeafBatch);
 }
 
-/// Memory of a search, kept by the caller: after the first few nothing is allocated.
+/// Memory of a query, kept by the caller: after the first few nothing is allocated.
 #[derive(Clone, Debug, Default)]
 pub struct SearchScratch {
     stack: Vec<Candidate>,
+    pub(super) descent: DescentScratch,
 }
 
 /// A pair of nodes and its bound.

@@ -1,4 +1,4 @@
-//! A pair of triangles with all its digits.
+//! Pairs of triangles with all their digits.
 
 use glamx::{DVec3, Vec3};
 
@@ -6,25 +6,31 @@ use crate::contact::TriangleContact;
 use crate::traverse::Placement;
 use crate::tree::LeafBatch;
 
-/// Triangles this close touch, as a share of the lengths of their edges: what rounding can do to a distance of zero.
-/// Higher: triangles that are apart count as touching. Lower: those that touch count as apart.
+/// Triangles this close touch, as a share of the lengths of their edges: what rounding can do to a
+/// distance of zero. Higher: triangles that are apart count as touching. Lower: those that touch count
+/// as apart.
 const TOUCHING: f64 = 1.0e-12;
 
-/// Two triangles in frame 1, relative to a corner of the first one: all their digits are about each other.
-pub(super) struct LocalPair {
-    pub(super) origin: Vec3,
-    pub(super) corners: [[DVec3; 3]; 2],
+/// Two triangles in frame 1, relative to a corner of the first one, as
+/// [`contact`](mod@crate::contact) needs them.
+///
+/// Coordinates are widened to f64 before anything is subtracted, so that no digit of how the
+/// triangles lie to each other is lost, wherever the origin is.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct TrianglePair {
+    /// A corner of triangle 1, in frame 1.
+    pub origin: Vec3,
+    /// Of triangle 1 and of triangle 2, in frame 1, relative to `origin`.
+    pub corners: [[DVec3; 3]; 2],
 }
 
-impl LocalPair {
+impl TrianglePair {
+    /// Triangle 1 in its own frame, and triangle 2 in its own, which is placed at `placement` in the
+    /// frame of triangle 1.
     #[inline(always)]
-    pub(super) fn new(
-        placement: &Placement,
-        (batch1, lane1): (&LeafBatch, usize),
-        (batch2, lane2): (&LeafBatch, usize),
-    ) -> Self {
-        let [a, b, c] = batch1.corners(lane1);
-        let [d, e, f] = batch2.corners(lane2);
+    pub fn new(placement: &Placement, triangle1: [Vec3; 3], triangle2: [Vec3; 3]) -> Self {
+        // Written out, as `array::map` is not always inlined.
+        let ([a, b, c], [d, e, f]) = (triangle1, triangle2);
         let relative = |x: Vec3| x.as_dvec3() - a.as_dvec3();
         let placed = |x: Vec3| placement.to_frame1(x, a);
         Self {
@@ -44,7 +50,27 @@ fn edge_lengths([a, b, c]: &[DVec3; 3]) -> f64 {
     ((*b - *a).abs() + (*c - *a).abs()).element_sum()
 }
 
-/// What a search found: a pair of triangles and its contact.
+/// A triangle of a tree.
+#[derive(Copy, Clone)]
+pub(super) struct LeafTriangle<'a> {
+    pub(super) batch: &'a LeafBatch,
+    pub(super) lane: usize,
+}
+
+impl LeafTriangle<'_> {
+    /// Its index in the mesh.
+    #[inline(always)]
+    pub(super) fn index(self) -> u32 {
+        self.batch.triangles()[self.lane]
+    }
+
+    #[inline(always)]
+    pub(super) fn corners(self) -> [Vec3; 3] {
+        self.batch.corners(self.lane)
+    }
+}
+
+/// A pair of triangles of two meshes and its contact.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct FoundPair {
     /// Index of the triangle in mesh 1.
@@ -60,6 +86,22 @@ pub struct FoundPair {
 }
 
 impl FoundPair {
+    #[inline(always)]
+    pub(super) fn new(
+        one: LeafTriangle<'_>,
+        two: LeafTriangle<'_>,
+        pair: &TrianglePair,
+        contact: TriangleContact,
+    ) -> Self {
+        Self {
+            triangle1: one.index(),
+            triangle2: two.index(),
+            contact,
+            origin: pair.origin,
+            is_touching: contact.distance <= pair.touching_distance(),
+        }
+    }
+
     /// The point on mesh 1, in frame 1.
     pub fn point1(&self) -> Vec3 {
         (self.origin.as_dvec3() + self.contact.point1).as_vec3()

@@ -49,31 +49,16 @@ impl GapFrame {
     }
 }
 
-/// An axis of separation, by number: the face axes of tree 1 and tree 2, then the slabs.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub(crate) struct AxisIndex(pub(crate) u8);
-
-/// Gaps lane by lane, and one axis that alone shows all of those beyond the margin, if it was asked for and there is one.
+/// Gaps lane by lane.
 #[derive(Copy, Clone, Debug)]
 pub(crate) struct Gaps {
     pub(crate) gaps: f32x4,
-    pub(crate) axis: Option<AxisIndex>,
     /// Lanes that were compared by k-DOPs.
     pub(crate) kdop_lanes: u32,
 }
 
 /// One side of four pairs: the nodes and how they lie over the lanes.
 pub(crate) type Side<'a, 'b, const AXES: usize, S> = (&'a Children<'b, AXES>, S);
-
-/// The lanes that each axis shows to be beyond the margin.
-struct AxisLanes([u32; 32]);
-
-impl AxisLanes {
-    fn first_with(&self, lanes: u32) -> Option<AxisIndex> {
-        let axis = self.0.iter().position(|&shown| lanes != 0 && shown & lanes == lanes);
-        axis.map(|axis| AxisIndex(axis as u8))
-    }
-}
 
 impl<const AXES: usize> PairFrame<AXES>
 where
@@ -82,7 +67,7 @@ where
     /// The gaps of the pairs in `lanes`. Once all of them are beyond the margin, no further slab is asked: they could
     /// only be larger. Asking all saves 1 test in 50 later, and takes longer.
     #[inline(always)]
-    pub(crate) fn gaps<const AXIS: bool>(
+    pub(crate) fn gaps(
         &mut self,
         with: &GapFrame,
         side1: Side<'_, '_, AXES, impl Spread>,
@@ -90,13 +75,7 @@ where
         lanes: u32,
     ) -> Gaps {
         let margin = f32x4::splat(self.margin());
-        let mut shown = AxisLanes([0; 32]);
-        let mut note = |axis: usize, gap: f32x4| {
-            if AXIS {
-                shown.0[axis] = gap.simd_gt(margin).to_bitmask();
-            }
-        };
-        let mut gaps = self.box_gaps(with, side1, side2, &mut note);
+        let mut gaps = self.box_gaps(with, side1, side2);
         let meeting = !gaps.simd_gt(margin).to_bitmask() & lanes;
         let mut kdop_lanes = 0;
         if let (Some(kdops1), Some(kdops2)) = (side1.0.kdop, side2.0.kdop)
@@ -106,40 +85,13 @@ where
             let sides = ((kdops1, side1.1), (kdops2, side2.1));
             for axis in 0..AXES {
                 let gap = self.correspondence().slab_gap(with, axis, sides.0, sides.1);
-                note(6 + axis, gap);
                 gaps = gaps.fast_max(gap);
                 if !gaps.simd_gt(margin).to_bitmask() & lanes == 0 {
                     break;
                 }
             }
         }
-        let apart = gaps.simd_gt(margin).to_bitmask() & lanes;
-        let axis = if AXIS { shown.first_with(apart) } else { None };
-        Gaps { gaps, axis, kdop_lanes }
-    }
-
-    /// The gaps on one axis; `None` where it is a slab and a side has none.
-    #[inline(always)]
-    pub(crate) fn gaps_on(
-        &mut self,
-        with: &GapFrame,
-        AxisIndex(axis): AxisIndex,
-        side1: Side<'_, '_, AXES, impl Spread>,
-        side2: Side<'_, '_, AXES, impl Spread>,
-    ) -> Option<f32x4> {
-        let axis = usize::from(axis);
-        match axis {
-            0..3 => Some(self.gap1(with, axis, self.offset(axis, side1, side2), side1, side2)),
-            3..6 => {
-                let offset = each(|i| self.offset(i, side1, side2));
-                Some(self.gap2(with, axis - 3, &offset, side1, side2))
-            }
-            _ => {
-                let kdops = (side1.0.kdop?, side2.0.kdop?);
-                let sides = ((kdops.0, side1.1), (kdops.1, side2.1));
-                Some(self.correspondence().slab_gap(with, axis - 6, sides.0, sides.1))
-            }
-        }
+        Gaps { gaps, kdop_lanes }
     }
 
     #[inline(always)]
@@ -148,15 +100,10 @@ where
         with: &GapFrame,
         side1: Side<'_, '_, AXES, impl Spread>,
         side2: Side<'_, '_, AXES, impl Spread>,
-        note: &mut impl FnMut(usize, f32x4),
     ) -> f32x4 {
         let offset = each(|axis| self.offset(axis, side1, side2));
         let gaps1 = each(|axis| self.gap1(with, axis, offset[axis], side1, side2));
         let gaps2 = each(|axis| self.gap2(with, axis, &offset, side1, side2));
-        for axis in 0..3 {
-            note(axis, gaps1[axis]);
-            note(3 + axis, gaps2[axis]);
-        }
         let largest = |gaps: &[f32x4; 3]| gaps[0].fast_max(gaps[1]).fast_max(gaps[2]);
         largest(&gaps1).fast_max(largest(&gaps2))
     }
@@ -237,9 +184,9 @@ mod tests {
     use crate::traverse::{Inner, Outer};
     use crate::tree::{BuildOptions, LayerPlan, Tree};
 
-    /// Two triangles under their roots, and those of the other tree: no gap, over all axes or on one, is more than the distance of
-    /// the corners that it is between. Would catch a wrong sign, lane, length of a slab or unit, and a bound that is
-    /// of no use.
+    /// Two triangles under their roots, and those of the other tree: no gap is more than the distance of
+    /// the corners that it is between. Would catch a wrong sign, lane, length of a slab or unit, and a
+    /// bound that is of no use.
     #[test]
     fn gaps_are_below_distances_and_not_far_below() {
         let mut tightest = 0.0f32;
@@ -260,11 +207,7 @@ mod tests {
             let nodes = [0, 1].map(|tree| trees[tree].link(crate::tree::Slot::ROOT).index());
             let children = [0, 1].map(|tree| trees[tree].children(nodes[tree]));
             let sides = ((&children[0], Outer), (&children[1], Inner));
-            let all = frame.gaps::<true>(&with, sides.0, sides.1, 0b1111).gaps.to_array();
-            let on_axis: Vec<[f32; 4]> = (0..15)
-                .map(|axis| frame.gaps_on(&with, AxisIndex(axis), sides.0, sides.1).unwrap())
-                .map(f32x4::to_array)
-                .collect();
+            let all = frame.gaps(&with, sides.0, sides.1, 0b1111).gaps.to_array();
             for lane in 0..4 {
                 let leaf = |tree: usize, child: usize| {
                     trees[tree].leaf(children[tree].links[child].index()).corners(0)
@@ -275,12 +218,7 @@ mod tests {
                     .flat_map(|&x| two.map(|y| frame.placement().to_frame1(y, x).length() as f32));
                 let distance = distances.fold(f32::INFINITY, f32::min);
                 assert!(all[lane] <= distance, "{} {distance}", all[lane]);
-                for gaps in &on_axis {
-                    assert!(gaps[lane] <= distance, "{} {distance}", gaps[lane]);
-                }
-                let largest = on_axis.iter().map(|gaps| gaps[lane]).fold(f32::MIN, f32::max);
-                assert!(all[lane] <= largest, "{} {largest}", all[lane]);
-                tightest = tightest.max(largest / distance);
+                tightest = tightest.max(all[lane] / distance);
             }
         }
         assert!((0.95..=1.0).contains(&tightest), "{tightest}");

@@ -29,7 +29,7 @@ pub use counters::{Counters, DescentCounts};
 pub use descend::{Descent, DescentScratch, descend};
 pub(crate) use expand::{Compare, Sides, expand};
 pub use frame::PairFrame;
-pub(crate) use gaps::{AxisIndex, GapFrame, Gaps};
+pub(crate) use gaps::GapFrame;
 pub(crate) use ordered_overlap::OrderedOverlap;
 pub(crate) use overlap::{Inner, Outer, Same, Spread};
 pub use placement::Placement;

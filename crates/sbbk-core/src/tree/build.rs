@@ -1,11 +1,15 @@
 //! Top-down build by the binned surface area heuristic.
 //!
-//! Wald, *On Fast Construction of SAH-based Bounding Volume Hierarchies*, 2007: the triangles' centroids fall
-//! into a fixed number of bins along their longest axis; the split between two bins with the least
+//! Wald, *On Fast Construction of SAH-based Bounding Volume Hierarchies*, 2007: the triangles' centroids
+//! fall into a fixed number of bins along their longest axis; the split between two bins with the least
 //! `area(1)·count(1) + area(2)·count(2)` wins. Where no split separates anything (equal centroids) the
-//! triangles are halved by number, so the depth stays logarithmic for any input. Trying all three axes was dropped:
-//! 3 % fewer node tests for twice the build time. Two leaves' worth of triangles are halved at the median: as good, and
-//! half of all splits are such.
+//! triangles are halved by number. Trying all three axes was dropped: 3 % fewer node tests for twice the
+//! build time. Two leaves' worth of triangles are halved at the median: as good, and half of all splits
+//! are such.
+//!
+//! A split by cost may part one triangle from all others, and where sizes shrink by a sixteenth from
+//! triangle to triangle, each one does: thousands of levels. So from [`DEEPEST_BY_COST`] on triangles are
+//! halved at the median, and no tree of `n` triangles is deeper than that and `log2 n` together.
 
 use glamx::Vec3;
 
@@ -13,6 +17,10 @@ use super::LayerPlan;
 use super::bins::{BinMapping, Bins, Bounds};
 use super::node::BATCH;
 use crate::volumes::Aabb;
+
+/// Depth of the last nodes that are split by cost. Lower: worse trees of meshes with a few very deep
+/// parts; ordinary ones have 20 to 30 levels. Higher: deeper recursion of a refit.
+const DEEPEST_BY_COST: u32 = 64;
 
 /// How a tree is built.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -82,9 +90,9 @@ pub(super) fn build(
             nodes[node as usize].content = Content::Leaf(range.start as u32..range.end as u32);
             continue;
         }
-        let (middle, bounds) = split(&mut primitives[range.clone()], leaf_size);
-        let middle = range.start + middle;
         let depth = nodes[node as usize].depth + 1;
+        let (middle, bounds) = split(&mut primitives[range.clone()], leaf_size, depth);
+        let middle = range.start + middle;
         let first = nodes.len() as u32;
         let children = [range.start..middle, middle..range.end];
         for (child, bounds) in children.into_iter().zip(bounds) {
@@ -109,12 +117,12 @@ fn bounds(primitives: &[Primitive]) -> Bounds {
     primitives.iter().fold(Bounds::EMPTY, |all, p| all.merge(&p.bounds))
 }
 
-/// Reorders the primitives so that the two halves of the best split follow each other. Returns where the second
-/// starts, never at an end, and the boxes of both.
-fn split(primitives: &mut [Primitive], leaf_size: usize) -> (usize, [Bounds; 2]) {
+/// Reorders the primitives so that the two halves of the best split, which will be at `depth`, follow each
+/// other. Returns where the second starts, never at an end, and the boxes of both.
+fn split(primitives: &mut [Primitive], leaf_size: usize, depth: u32) -> (usize, [Bounds; 2]) {
     let centroids =
         primitives.iter().fold(Bounds::EMPTY, |all, p| all.with_point(p.bounds.centre()));
-    if primitives.len() <= 2 * leaf_size {
+    if primitives.len() <= 2 * leaf_size || depth > DEEPEST_BY_COST {
         let axis = centroids.longest_axis();
         primitives
             .sort_unstable_by(|a, b| a.bounds.centre()[axis].total_cmp(&b.bounds.centre()[axis]));

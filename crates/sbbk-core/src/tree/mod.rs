@@ -2,8 +2,9 @@
 //! batches of triangles in the leaves.
 //!
 //! A tree is built in a comfortable form (`build.rs`: binned SAH over primitives, one node after the
-//! other) and packed once into the flat arrays that the descent reads (`pack.rs`). For a mesh that deforms its volumes can
-//! be fitted anew in place ([`Tree::refit`]); else it is immutable then.
+//! other) and packed once into the flat arrays that the descent reads (`pack.rs`). For a mesh that
+//! deforms, its volumes can be fitted anew in place ([`Tree::refit`]); else it never changes.
+//! [`Tree::root`] starts a walk over its nodes.
 //!
 //! ```
 //! use glamx::Vec3;
@@ -25,14 +26,16 @@ mod pack;
 mod refit;
 mod stats;
 mod validate;
+mod walk;
 
 pub use build::BuildOptions;
 pub use layers::LayerPlan;
-pub use node::{BATCH, LeafBatch, Link, Slot};
-pub(crate) use node::{Children, Lanes};
+pub use node::{BATCH, LeafBatch, Slot};
+pub(crate) use node::{Children, Lanes, Link};
 pub use refit::RefitCost;
 pub use stats::BuildStats;
 pub use validate::Violation;
+pub use walk::{Leaf, Node};
 
 use glamx::Vec3;
 use thiserror::Error;
@@ -177,6 +180,12 @@ impl<const AXES: usize> Tree<AXES> {
             Some(pair) => Children::from_aabbs(pair),
             None => Children::from_kdops(&self.kdop_pairs[node - self.aabb_pairs.len()]),
         }
+    }
+
+    /// What a slot leads to.
+    #[inline]
+    pub(crate) fn link(&self, slot: Slot) -> Link {
+        self.children(slot.node()).links[slot.lane()]
     }
 
     /// Number of inner nodes, the root's own entry included.

@@ -15,12 +15,12 @@ pub const BATCH: usize = 4;
 
 /// What a slot leads to: an inner node or a leaf. A packed word.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub struct Link(u32);
+pub(crate) struct Link(u32);
 
 impl Link {
     const LEAF_BIT: u32 = 1 << 31;
     /// The largest node or leaf number. Two bits are spare: a [`Slot`] doubles node numbers.
-    pub const MAX_INDEX: u32 = (1 << 30) - 1;
+    pub(crate) const MAX_INDEX: u32 = (1 << 30) - 1;
     /// Of a lane that holds no child.
     pub(super) const NONE: Self = Self(u32::MAX);
 
@@ -35,12 +35,12 @@ impl Link {
     }
 
     /// Whether this is a leaf.
-    pub fn is_leaf(self) -> bool {
+    pub(crate) fn is_leaf(self) -> bool {
         self.0 & Self::LEAF_BIT != 0
     }
 
     /// The number of the leaf or the inner node.
-    pub fn index(self) -> u32 {
+    pub(crate) fn index(self) -> u32 {
         self.0 & !Self::LEAF_BIT
     }
 }
@@ -150,7 +150,7 @@ impl<const AXES: usize> KdopPair<AXES> {
 
 /// The children of an inner node of either layer.
 #[derive(Copy, Clone, Debug)]
-pub struct Children<'a, const AXES: usize> {
+pub(crate) struct Children<'a, const AXES: usize> {
     /// Centres of the boxes, axis by axis, child by child.
     pub(crate) centre: &'a [Lanes; 3],
     /// Half-lengths of the boxes.

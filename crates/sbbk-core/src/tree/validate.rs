@@ -116,10 +116,4 @@ where
             None => Ok(()),
         }
     }
-
-    /// What a slot leads to.
-    #[inline]
-    pub(crate) fn link(&self, slot: Slot) -> Link {
-        self.children(slot.node()).links[slot.lane()]
-    }
 }

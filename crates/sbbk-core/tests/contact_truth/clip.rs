@@ -118,16 +118,16 @@ proptest! {
             let mut one_by_one = ManifoldPoints::new();
             clip(&t1, &t2, from.unwrap().normal, &mut one_by_one);
             push_closest(&t1, &t2, &from.unwrap(), &mut one_by_one);
-            prop_assert_eq!(manifold(&t1, &t2, (1.0, 1.0), last, &mut at_once), from);
+            prop_assert_eq!(manifold(&t1, &t2, 1.0, 1.0, last, &mut at_once), from);
             prop_assert_eq!(at_once, one_by_one);
         }
         let below = found.distance.next_down();
         let mut none = points.clone();
-        prop_assert_eq!(manifold(&t1, &t2, (below, below), None, &mut none), None);
+        prop_assert_eq!(manifold(&t1, &t2, below, below, None, &mut none), None);
         prop_assert!(none.is_empty());
         // Within the margin and out of reach: the contact alone.
         let mut none = points.clone();
-        prop_assert_eq!(manifold(&t1, &t2, (1.0, below), None, &mut none), Some(found));
+        prop_assert_eq!(manifold(&t1, &t2, 1.0, below, None, &mut none), Some(found));
         prop_assert!(none.is_empty());
     }
 

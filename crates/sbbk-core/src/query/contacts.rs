@@ -1,0 +1,85 @@
+//! All contacts of two meshes.
+
+use crate::contact::contact;
+use crate::leaf::LeafTest;
+use crate::traverse::{Descent, PairFrame, Placement, Verdict, Visitor, descend};
+use crate::tree::{LeafBatch, Tree};
+use crate::volumes::rounding::gamma;
+use crate::volumes::{DirectionSet, Directions};
+
+use super::seek::SearchScratch;
+use super::triangles::{FoundPair, LeafTriangle, TrianglePair};
+
+/// Calls `found` for each pair of triangles at a distance of at most `margin`, in units of frame 1,
+/// mesh 2 placed at `placement` in the frame of mesh 1.
+///
+/// Triangles that touch, up to 1e-12 of their size, are always among them. The order depends on the
+/// trees and the pose only. No pair is found if the placement is not finite, or if the margin is
+/// negative or NaN.
+///
+/// For the points of a manifold see [`clip`](crate::contact::clip); for one pair out of all,
+/// [`nearest`](super::nearest()) is much faster.
+pub fn contacts<const AXES: usize>(
+    trees: (&Tree<AXES>, &Tree<AXES>),
+    placement: Placement,
+    margin: f64,
+    scratch: &mut SearchScratch,
+    found: impl FnMut(FoundPair),
+) where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    if !placement.is_finite() || !(0.0..).contains(&margin) {
+        return;
+    }
+    // Not below the margin. A wider one would overflow in the tests, and separates nothing.
+    let widened = margin.min(WIDEST_MARGIN) as f32 * (1.0 + gamma(4)) + f32::MIN_POSITIVE;
+    let mut frame = PairFrame::at(trees, placement, widened);
+    let mut visitor = Contacts { test: LeafTest::new(&frame), placement, margin, found };
+    if margin <= WIDEST_MARGIN {
+        let scratch = &mut scratch.descent;
+        descend(trees, &mut frame, Descent::Simultaneous, scratch, (), &mut visitor);
+        return;
+    }
+    for batch1 in (0..trees.0.leaf_count()).map(|leaf| trees.0.leaf(leaf)) {
+        for batch2 in (0..trees.1.leaf_count()).map(|leaf| trees.1.leaf(leaf)) {
+            for lane1 in 0..batch1.count() {
+                for lane2 in 0..batch2.count() {
+                    let one = LeafTriangle { batch: batch1, lane: lane1 };
+                    visitor.triangles(one, LeafTriangle { batch: batch2, lane: lane2 });
+                }
+            }
+        }
+    }
+}
+
+/// Squares of wider margins may overflow in the leaf test.
+const WIDEST_MARGIN: f64 = 1.0e15;
+
+struct Contacts<F> {
+    test: LeafTest,
+    placement: Placement,
+    margin: f64,
+    found: F,
+}
+
+impl<F: FnMut(FoundPair)> Contacts<F> {
+    #[inline]
+    fn triangles(&mut self, one: LeafTriangle<'_>, two: LeafTriangle<'_>) {
+        let pair = TrianglePair::new(&self.placement, one.corners(), two.corners());
+        let [t1, t2] = &pair.corners;
+        if let Some(contact) = contact(t1, t2, self.margin.max(pair.touching_distance())) {
+            (self.found)(FoundPair::new(one, two, &pair, contact));
+        }
+    }
+}
+
+impl<F: FnMut(FoundPair)> Visitor for Contacts<F> {
+    fn leaves(&mut self, _: u32, batch1: &LeafBatch, _: u32, batch2: &LeafBatch) -> Verdict {
+        let test = self.test;
+        test.survivors(batch1, batch2, |lane1, lane2| {
+            let one = LeafTriangle { batch: batch1, lane: lane1 };
+            self.triangles(one, LeafTriangle { batch: batch2, lane: lane2 });
+        });
+        Verdict::Descend
+    }
+}

@@ -1,0 +1,88 @@
+//! A tree to be read: drawn, measured, exported.
+
+use super::Tree;
+use super::node::{LeafBatch, Link, Slot};
+use crate::volumes::{Aabb, Kdop};
+
+/// A node of a tree, to be read: see [`Tree::root`].
+#[derive(Copy, Clone, Debug)]
+pub struct Node<'a, const AXES: usize = 9> {
+    tree: &'a Tree<AXES>,
+    slot: Slot,
+    depth: u32,
+}
+
+/// A leaf of a tree, to be read.
+#[derive(Copy, Clone, Debug)]
+pub struct Leaf<'a> {
+    /// Its number: what [`Tree::leaf`] takes and a descent hands to its visitor.
+    pub number: u32,
+    /// Its triangles.
+    pub batch: &'a LeafBatch,
+}
+
+impl<const AXES: usize> Tree<AXES> {
+    /// The root, from which all nodes can be reached.
+    ///
+    /// ```
+    /// # use glamx::Vec3;
+    /// # use sbbk_core::tree::{BuildOptions, Tree};
+    /// # let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+    /// # let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    /// # let options = BuildOptions { leaf_size: 1, ..BuildOptions::default() };
+    /// let tree: Tree = Tree::build(&vertices, &triangles, &options)?;
+    /// let mut stack = vec![tree.root()];
+    /// while let Some(node) = stack.pop() {
+    ///     println!("{} {:?}", node.depth(), node.aabb());
+    ///     stack.extend(node.children().into_iter().flatten());
+    /// }
+    /// # Ok::<(), sbbk_core::tree::BuildError>(())
+    /// ```
+    pub fn root(&self) -> Node<'_, AXES> {
+        Node { tree: self, slot: Slot::ROOT, depth: 0 }
+    }
+}
+
+impl<'a, const AXES: usize> Node<'a, AXES> {
+    /// The name by which a [`NodePair`](crate::traverse::NodePair) of a descent knows this node.
+    pub fn slot(&self) -> Slot {
+        self.slot
+    }
+
+    /// Steps from the root.
+    pub fn depth(&self) -> u32 {
+        self.depth
+    }
+
+    /// The box of the node, in the frame of the mesh.
+    pub fn aabb(&self) -> Aabb {
+        self.tree.children(self.slot.node()).aabb(self.slot.lane())
+    }
+
+    /// The k-DOP of the node, in the layers that have one.
+    pub fn kdop(&self) -> Option<Kdop<AXES>> {
+        self.tree.children(self.slot.node()).kdop(self.slot.lane())
+    }
+
+    /// The two nodes below; `None` for a leaf.
+    pub fn children(&self) -> Option<[Self; 2]> {
+        let link = self.link();
+        let child = |lane| Self {
+            tree: self.tree,
+            slot: Slot::new(link.index(), lane),
+            depth: self.depth + 1,
+        };
+        (!link.is_leaf()).then(|| [child(0), child(1)])
+    }
+
+    /// The triangles of a leaf; `None` for an inner node.
+    pub fn leaf(&self) -> Option<Leaf<'a>> {
+        let link = self.link();
+        let number = link.index();
+        link.is_leaf().then(|| Leaf { number, batch: self.tree.leaf(number) })
+    }
+
+    fn link(&self) -> Link {
+        self.tree.link(self.slot)
+    }
+}

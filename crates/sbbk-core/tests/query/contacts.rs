@@ -1,0 +1,128 @@
+//! All contacts of two meshes against brute force, as whole sets of pairs.
+
+use std::collections::BTreeMap;
+
+use glamx::{DPose3, DVec3, Pose3, Vec3};
+use sbbk_core::query::{FoundPair, SearchScratch, contacts};
+use sbbk_core::traverse::Placement;
+use sbbk_core::tree::{BuildOptions, Tree};
+use sbbk_core::truth::pairs_within;
+
+use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
+
+type Distances = BTreeMap<(u32, u32), f64>;
+
+fn found(meshes: [&Soup; 2], pose: &Pose3, margin: f64) -> Vec<FoundPair> {
+    let [tree1, tree2] = meshes.map(|soup| {
+        Tree::<9>::build(&soup.vertices, &soup.triangles, &BuildOptions::default()).unwrap()
+    });
+    let mut pairs = Vec::new();
+    let scratch = &mut SearchScratch::default();
+    contacts((&tree1, &tree2), Placement::new(pose), margin, scratch, |pair| pairs.push(pair));
+    pairs
+}
+
+fn truth([one, two]: [&Soup; 2], pose: &Pose3, margin: f64) -> Distances {
+    let pose =
+        DPose3 { rotation: pose.rotation.as_dquat(), translation: pose.translation.as_dvec3() };
+    let wide = |soup: &Soup| soup.vertices.iter().map(|v| v.as_dvec3()).collect::<Vec<DVec3>>();
+    pairs_within(&wide(one), &one.triangles, &wide(two), &two.triangles, pose, margin)
+        .into_iter()
+        .map(|pair| ((pair.triangle1, pair.triangle2), pair.distance))
+        .collect()
+}
+
+/// Returns the number of pairs.
+fn check(meshes: [&Soup; 2], pose: &Pose3, margin: f64, tolerance: f64) -> usize {
+    let pairs = found(meshes, pose, margin);
+    let found: Distances = pairs
+        .iter()
+        .map(|pair| ((pair.triangle1, pair.triangle2), pair.contact.distance))
+        .collect();
+    assert_eq!(found.len(), pairs.len(), "a pair was found twice");
+    let possible = truth(meshes, pose, margin + tolerance);
+    for (triangles, distance) in &found {
+        let expected = possible.get(triangles).expect("a pair beyond the margin");
+        assert!((distance - expected).abs() <= tolerance, "{distance} {expected}");
+    }
+    for (triangles, distance) in possible {
+        let is_certain = distance <= margin - tolerance;
+        assert!(!is_certain || found.contains_key(&triangles), "lost {triangles:?} {distance}");
+    }
+    found.len()
+}
+
+/// Would catch a pair that is lost, found twice or too far, triangles of the wrong mesh, and a margin
+/// that is rounded down.
+#[test]
+fn whole_sets_of_pairs() {
+    let mut random = Random(51);
+    let mut total = 0;
+    for round in 0..60 {
+        let (one, two) = match round % 3 {
+            0 => (bumpy_ball(5, 0.2), bumpy_ball(4, 0.1)),
+            1 => (soup(&mut random, 40, 0.3), soup(&mut random, 30, 0.4)),
+            _ => (lattice_soup(&mut random, 30, 2), lattice_soup(&mut random, 30, 2)),
+        };
+        let pose = random.pose(1.0);
+        for margin in [0.0, 0.02, 0.5] {
+            total += check([&one, &two], &pose, margin, 1e-11);
+        }
+    }
+    assert!(total > 10_000, "{total}");
+}
+
+/// A margin just above and just below the distance of a pair, with corners near the origin and far from
+/// it in one triangle. Would catch differences of corners that are rounded to f32.
+#[test]
+fn the_margin_is_exact() {
+    let mut random = Random(52);
+    let mut count = 0;
+    for _ in 0..40 {
+        let mut meshes = [(); 2].map(|()| soup(&mut random, 12, 0.5));
+        for vertex in meshes.iter_mut().flat_map(|soup| &mut soup.vertices) {
+            *vertex *= 10f32.powf(random.range(-6.0, 0.0));
+        }
+        let [one, two] = &meshes;
+        let pose = Pose3::translation(0.3, 0.2, 0.1);
+        for (triangles, distance) in truth([one, two], &pose, 1.0) {
+            if !(1e-3..0.9).contains(&distance) || count > 2000 {
+                continue;
+            }
+            count += 1;
+            let finds = |margin: f64| {
+                let pairs = found([one, two], &pose, margin);
+                pairs.iter().any(|pair| (pair.triangle1, pair.triangle2) == triangles)
+            };
+            assert!(finds(distance + 1e-12) && !finds(distance - 1e-12), "{triangles:?}");
+        }
+    }
+    assert!(count > 1000, "{count}");
+}
+
+/// Margins at which f32 overflows compare all triangles; others that are no margins find nothing.
+#[test]
+fn all_margins() {
+    let ball = bumpy_ball(3, 0.1);
+    let pose = Pose3::from_translation(Vec3::new(1e3, 0.0, 0.0));
+    let all = ball.triangles.len() * ball.triangles.len();
+    for margin in [2e3, 1e9, 1e15, 1.1e15, 1e20, 1e38, 1e300, f64::INFINITY] {
+        assert_eq!(check([&ball; 2], &pose, margin, 1e-9), all, "{margin}");
+    }
+    for margin in [f64::NAN, -1e-9, f64::NEG_INFINITY] {
+        assert_eq!(found([&ball; 2], &pose, margin), []);
+    }
+    let nowhere = Pose3::from_translation(Vec3::NAN);
+    assert_eq!(found([&ball; 2], &nowhere, 1e20), []);
+}
+
+/// Triangles that share corners exactly touch, at a margin of zero too.
+#[test]
+fn touching_counts() {
+    let one = Soup { vertices: vec![Vec3::ZERO, Vec3::X, Vec3::Y], triangles: vec![[0, 1, 2]] };
+    let pairs = found([&one; 2], &Pose3::translation(1.0, 0.0, 0.0), 0.0);
+    assert_eq!(pairs.len(), 1);
+    assert!(pairs[0].is_touching && pairs[0].contact.distance.abs() < 1e-12, "{pairs:?}");
+    let apart = found([&one; 2], &Pose3::translation(1.0 + 1e-6, 0.0, 0.0), 1e-5);
+    assert!(!apart[0].is_touching, "{apart:?}");
+}
