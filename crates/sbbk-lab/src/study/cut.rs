@@ -1,7 +1,7 @@
 //! The paper's "overlapping area" (figures 6 and 7) as a number: what a hierarchy still reports as
 //! touching when the descent stops at a certain depth.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
@@ -9,10 +9,10 @@ use rapier3d::geometry::TriMesh;
 use sbbk_core::traverse::{
     Descent, DescentScratch, NodePair, PairFrame, Verdict, Visitor, descend,
 };
-use sbbk_core::tree::{BuildOptions, LayerPlan, LeafBatch, Tree};
+use sbbk_core::tree::{BuildOptions, LayerPlan, LeafBatch, Node, Slot, Tree};
+use sbbk_core::volumes::Volume;
 
 use super::StudyError;
-use super::outline::{Outline, Region};
 use crate::backend::Backend;
 use crate::metrics::{Judge, PosePairs};
 use crate::report::{Row, Table, TableSpec, faster, number};
@@ -58,13 +58,13 @@ fn cut_pair(pairs: &PosePairs, index: usize, step: usize) -> Result<Vec<Row>, St
         let meshes = pairs.meshes(index);
         let trees = Trees::new(layers, meshes, question.pos12, question.prediction)?;
         rows.extend((0..=trees.depth()).map(|depth| {
-            let (pairs, triangles) = trees.cut(depth);
+            let pairs = trees.cut(depth);
             Row::new(CUT, backend)
                 .key("depth", depth)
                 .with("step", step)
                 .with("true_triangle_count", true_triangle_count)
                 .with("pair_count", pairs.len())
-                .with("triangle_count", triangles)
+                .with("triangle_count", triangle_count(&pairs))
                 .with("volume", trees.volume(&pairs))
         }));
     }
@@ -80,7 +80,6 @@ fn distinct_count(pairs: impl Iterator<Item = (u32, u32)>) -> usize {
 /// Both meshes in one kind of hierarchy.
 struct Trees {
     trees: [Tree; 2],
-    outlines: [Outline; 2],
     pos12: Pose3,
     margin: f32,
 }
@@ -98,9 +97,7 @@ impl Trees {
                 StudyError::Tree { mesh: "of the helicopter scene".to_owned(), cause }
             })
         };
-        let trees = [build(meshes[0])?, build(meshes[1])?];
-        let outlines = trees.each_ref().map(|tree| Outline::new(tree, layers));
-        Ok(Self { outlines, trees, pos12, margin })
+        Ok(Self { trees: [build(meshes[0])?, build(meshes[1])?], pos12, margin })
     }
 
     /// Depth of the deepest leaf.
@@ -109,53 +106,91 @@ impl Trees {
         depth1.max(depth2)
     }
 
-    /// The pairs of nodes at which a descent stops, and the number of triangles of both meshes below
-    /// them.
-    fn cut(&self, depth: u32) -> (Vec<[&Region; 2]>, usize) {
+    /// The pairs of nodes at which a descent stops.
+    fn cut(&self, depth: u32) -> Vec<[Node<'_>; 2]> {
         let [tree1, tree2] = &self.trees;
+        let nodes = [tree1, tree2].map(|tree| {
+            let mut nodes = Nodes::default();
+            nodes.add(tree.root());
+            nodes
+        });
         let mut frame = PairFrame::new(tree1, tree2, &self.pos12, self.margin);
-        let mut cut = Cut { outlines: &self.outlines, depth, pairs: Vec::new() };
+        let mut cut = Cut { nodes, depth, pairs: Vec::new() };
         let scratch = &mut DescentScratch::default();
         descend((tree1, tree2), &mut frame, Descent::Simultaneous, scratch, (), &mut cut);
-        let triangles = [0, 1].map(|side| {
-            let regions = cut.pairs.iter().map(|pair| pair[side]);
-            regions.flat_map(|region| region.triangles.iter().copied()).collect::<HashSet<u32>>()
-        });
-        (cut.pairs, triangles.iter().map(HashSet::len).sum())
+        cut.pairs
     }
 
-    /// Volume of the union of the intersections of all pairs: the share of random points of the
-    /// second mesh's box that are in one.
-    fn volume(&self, pairs: &[[&Region; 2]]) -> f64 {
-        let root = self.outlines[1].root_box();
+    /// Volume of the union of the intersections of all pairs, in cubed units: the share of random
+    /// points of the second mesh's box that are in one.
+    fn volume(&self, pairs: &[[Node; 2]]) -> f64 {
+        let root = self.trees[1].root().aabb();
         let extents = root.max - root.min;
+        let regions = pairs.iter().map(|pair| pair.map(|node| (node.aabb(), node.kdop())));
+        let regions: Vec<_> = regions.collect();
         let mut random = Rand32::new(1);
         let hits = (0..POINT_COUNT).filter(|_| {
             let share = Vec3::from_array(std::array::from_fn(|_| random.rand_float()));
             let point2 = root.min + share * extents;
             let points = [self.pos12 * point2, point2];
-            let is_in = |(region, point): (&&Region, Vec3)| region.contains(point);
-            pairs.iter().any(|pair| pair.iter().zip(points).all(is_in))
+            regions.iter().any(|pair| {
+                let mut sides = pair.iter().zip(points);
+                sides.all(|((aabb, kdop), point)| {
+                    aabb.contains(point) && kdop.is_none_or(|kdop| kdop.contains(point))
+                })
+            })
         });
         let share = hits.count() as f64 / POINT_COUNT as f64;
         share * extents.to_array().into_iter().map(f64::from).product::<f64>()
     }
 }
 
+/// Number of triangles of both meshes below some nodes.
+fn triangle_count(pairs: &[[Node; 2]]) -> usize {
+    let counts = [0, 1].map(|side| {
+        let mut triangles = HashSet::<u32>::new();
+        let mut nodes: Vec<Node> = pairs.iter().map(|pair| pair[side]).collect();
+        while let Some(node) = nodes.pop() {
+            nodes.extend(node.children().into_iter().flatten());
+            triangles.extend(node.leaf().into_iter().flat_map(|leaf| leaf.batch.triangles()));
+        }
+        triangles.len()
+    });
+    counts.iter().sum()
+}
+
+/// The nodes of a tree, as a descent names them.
+#[derive(Default)]
+struct Nodes<'a> {
+    inner: HashMap<Slot, Node<'a>>,
+    leaves: HashMap<u32, Node<'a>>,
+}
+
+impl<'a> Nodes<'a> {
+    /// Adds a node and all below it.
+    fn add(&mut self, node: Node<'a>) {
+        if let Some(leaf) = node.leaf() {
+            self.leaves.insert(leaf.number, node);
+        } else {
+            self.inner.insert(node.slot(), node);
+        }
+        node.children().into_iter().flatten().for_each(|child| self.add(child));
+    }
+}
+
 /// Collects the pairs of nodes at which a descent stops.
 struct Cut<'a> {
-    outlines: &'a [Outline; 2],
+    nodes: [Nodes<'a>; 2],
     depth: u32,
-    pairs: Vec<[&'a Region; 2]>,
+    pairs: Vec<[Node<'a>; 2]>,
 }
 
 impl Visitor for Cut<'_> {
     fn nodes(&mut self, pair: NodePair) -> Verdict {
-        let [outline1, outline2] = self.outlines;
-        let inner = (outline1.inner.get(&pair.slot1), outline2.inner.get(&pair.slot2));
-        match inner {
-            (Some(region1), Some(region2)) if pair.depth >= self.depth => {
-                self.pairs.push([region1, region2]);
+        let [nodes1, nodes2] = &self.nodes;
+        match (nodes1.inner.get(&pair.slot1), nodes2.inner.get(&pair.slot2)) {
+            (Some(&node1), Some(&node2)) if pair.depth >= self.depth => {
+                self.pairs.push([node1, node2]);
                 Verdict::Prune
             }
             _ => Verdict::Descend,
@@ -163,8 +198,8 @@ impl Visitor for Cut<'_> {
     }
 
     fn leaves(&mut self, leaf1: u32, _: &LeafBatch, leaf2: u32, _: &LeafBatch) -> Verdict {
-        let [outline1, outline2] = self.outlines;
-        self.pairs.push([&outline1.leaves[&leaf1], &outline2.leaves[&leaf2]]);
+        let [nodes1, nodes2] = &self.nodes;
+        self.pairs.push([nodes1.leaves[&leaf1], nodes2.leaves[&leaf2]]);
         Verdict::Descend
     }
 }

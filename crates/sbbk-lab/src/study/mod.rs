@@ -13,7 +13,6 @@ pub mod front;
 mod helicopter;
 mod meshes;
 mod motion;
-mod outline;
 mod pair;
 mod pile;
 mod progress;

@@ -7,6 +7,7 @@ use glamx::Pose3;
 use sbbk_core::contact::contact;
 use sbbk_core::front::{Front, FrontOptions};
 use sbbk_core::leaf::LeafTest;
+use sbbk_core::query::TrianglePair;
 use sbbk_core::traverse::{
     Counters, Descent, DescentScratch, GREATEST_SLACK, PairFrame, Placement, Slack, SlackPlan,
     Verdict, Visitor, descend,
@@ -69,8 +70,8 @@ impl<'a> Search<'a> {
             tree,
             prediction,
             front: match variant {
-                Variant::Paper => Some(Front::new(FrontOptions::PAPER)),
-                Variant::Adaptive => Some(Front::new(FrontOptions::ADAPTIVE)),
+                Variant::Paper => Some(Front::new(FrontOptions::Paper)),
+                Variant::Adaptive => Some(Front::new(FrontOptions::Adaptive)),
                 Variant::Fresh | Variant::Slack => None,
             },
             slack: (variant == Variant::Slack).then(Slack::default),
@@ -157,11 +158,9 @@ fn distance(
     [lane1, lane2]: [usize; 2],
     margin: f64,
 ) -> Option<f64> {
-    let corners1 = batch1.corners(lane1);
-    let origin = corners1[0];
-    let t1 = corners1.map(|x| x.as_dvec3() - origin.as_dvec3());
-    let t2 = batch2.corners(lane2).map(|x| placement.to_frame1(x, origin));
-    contact(&t1, &t2, margin).map(|contact| contact.distance)
+    let pair = TrianglePair::new(placement, batch1.corners(lane1), batch2.corners(lane2));
+    let [t1, t2] = &pair.corners;
+    contact(t1, t2, margin).map(|contact| contact.distance)
 }
 
 fn triangles(batches: [&LeafBatch; 2], lanes: [usize; 2]) -> (u32, u32) {
