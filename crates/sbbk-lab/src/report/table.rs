@@ -245,7 +245,7 @@ fn three_digits(value: f64) -> String {
         magnitude if magnitude >= 10.0 => 1,
         magnitude if magnitude >= 1.0 => 2,
         magnitude if magnitude >= 1.0e-3 || magnitude == 0.0 => 3,
-        _ => return format!("{value:.0e}"),
+        _ => return format!("{value:.1e}"),
     };
     format!("{value:.decimals$}")
 }
@@ -260,7 +260,7 @@ mod tests {
     #[test]
     fn three_significant_digits() {
         let shown = [0.0123, 0.5, 1.234, 12.34, 123.4, 12345.6, 2.0e-7].map(three_digits);
-        assert_eq!(shown, ["0.012", "0.500", "1.23", "12.3", "123", "12346", "2e-7"]);
+        assert_eq!(shown, ["0.012", "0.500", "1.23", "12.3", "123", "12346", "2.0e-7"]);
     }
 
     /// Would catch a cell in another line or under another backend, a ratio upside down or to other

@@ -221,20 +221,23 @@ pub fn table(rows: &[Row]) -> Table {
     let first = rows.iter().find(|row| row.study == CUT);
     let moment = first.map_or("the ball does not meet the helicopter".to_owned(), |row| {
         format!(
-            "ball of triangles on the rotor, step {}: the first at which it penetrates; {} triangles              are truly within the prediction distance; deeper cuts change nothing",
+            "ball of triangles on the rotor, step {}: the first at which it penetrates; {} triangles \
+             are truly within the prediction distance; deeper cuts change nothing",
             row.count("step"),
             row.count("true_triangle_count")
         )
     });
     let spec = TableSpec {
-        title: "Figures 6 and 7. \"Overlapping area\" when the descent is cut at a depth".to_owned(),
+        title: "Figures 6 and 7. \"Overlapping area\" when the descent is cut at a depth"
+            .to_owned(),
         study: CUT,
         keys: &["depth"],
         total: None,
         columns: columns.concat(),
         notes: vec![
             moment,
-            "triangles: those of both meshes below a node reported as touching; volume: what lies              within both nodes of a reported pair, cubed units"
+            "triangles: those of both meshes below a node reported as touching; volume: what lies \
+             within both nodes of a reported pair, cubed units"
                 .to_owned(),
         ],
     };

@@ -71,7 +71,7 @@ fn measure(mesh: &Mesh) -> Result<[Row; 2], StudyError> {
             .with("kibibytes", bytes[side] as f64 / 1024.0)
             .with("pose_count", query_count(&sequences) as usize)
             .with("time", queries[side])
-            .with("break_even", break_even[side].map(f64::ceil))
+            .with("break_even", break_even[side].map(|count| count.ceil() as u64))
             .with("errors", errors[side])
     }))
 }
