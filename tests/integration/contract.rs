@@ -246,8 +246,8 @@ fn any_data_will_do() {
     assert_same(&manifolds, &expected, 0.0);
 }
 
-/// Would catch manifolds left over for callers that keep nothing, as Rapier's character controller
-/// does: it passes an empty workspace, and the manifolds of whatever it asked before.
+/// Would catch manifolds left over for callers that keep nothing: they pass an empty workspace, and
+/// the manifolds of whatever they asked before.
 #[test]
 fn callers_without_memory_get_fresh_answers() {
     let [one, two] = rings();

@@ -23,6 +23,8 @@ mod exact;
 mod heightfield;
 /// Contacts beside those of stock.
 mod like_stock;
+/// What trees take, and when they go.
+mod memory;
 /// Motion that never loses a contact: random walks against fresh queries.
 mod motion;
 /// Nonlinear casts that start in contact.

@@ -1,11 +1,14 @@
 use std::sync::Barrier;
 
+use oorandom::Rand32;
 use rapier_integration::{SbbkConfig, SbbkDispatcher, SbbkStats};
 use rapier3d::math::{Pose, Vector};
 use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
 use sbbk_lab::mesh;
 
-use crate::support::{Pair, Query, assert_same, fresh, rebuilt, shape, shape_with};
+use crate::support::{
+    Pair, Query, assert_same, fresh, rebuilt, sequence, shape, shape_with, touching,
+};
 
 /// Two of them touch when a bit more than a radius apart.
 fn ball() -> TriMesh {
@@ -232,4 +235,95 @@ fn threads_come_and_go() {
     });
     assert_eq!(counts(&dispatcher)[..2], [0, 0]);
     assert_eq!(dispatcher.stats().tree_builds + dispatcher.stats().tree_hits, 2 * 8 * 200);
+}
+
+/// Panics unless both meshes, equal in vertices and triangles, get the contacts from a shared
+/// dispatcher that each gets alone. The number of questions whose answers differ between them.
+fn check_shared(meshes: [&TriMesh; 2], other: &TriMesh, depths: &[f32]) -> usize {
+    let [one, two] = meshes;
+    assert_eq!((one.vertices(), one.indices()), (two.vertices(), two.indices()));
+    let mut random = Rand32::new(1);
+    let mut unlike = 0;
+    for [first, second] in [[one, two], [two, one]] {
+        let shared = SbbkDispatcher::default();
+        let _kept = shared.prepare(first).unwrap();
+        for &depth in depths {
+            let query = Query::new(second, other, touching(&mut random, [second, other], depth));
+            let alone = |mesh| {
+                let query = Query { meshes: [mesh, other], ..query };
+                fresh(&SbbkDispatcher::default(), &query)
+            };
+            let expected = alone(second);
+            assert_same(&fresh(&shared, &query), &expected, 0.0);
+            let normals = |mesh| alone(mesh).iter().map(|m| m.local_n1).collect::<Vec<_>>();
+            let is_like =
+                sequence(&alone(first)) == sequence(&expected) && normals(first) == normals(second);
+            unlike += usize::from(!is_like);
+        }
+    }
+    unlike
+}
+
+/// The triangles in the order of Parry's hierarchy.
+fn leaves(mesh: &TriMesh) -> Vec<u32> {
+    mesh.bvh().leaves(|_| true).collect()
+}
+
+/// Would catch cones of a mesh used for another one with equal triangles: scaling turns the
+/// pseudo-normals of edges in another way than a build with the scaled vertices.
+#[test]
+fn scaled_meshes_keep_their_own_normals() {
+    let other = shape(&mesh::ball(0.5, 4));
+    let depths = [0.0, 0.05, 0.2].repeat(4);
+    for flags in [TriMeshFlags::FIX_INTERNAL_EDGES, TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED] {
+        for lab_mesh in [mesh::cuboid(Vector::new(2.0, 0.3, 2.0), 2), mesh::terrain(6.0, 8, 1.0)] {
+            let scaled = shape_with(&lab_mesh, flags).scaled(Vector::new(1.0, 0.2, 1.0));
+            let built = rebuilt(&scaled);
+            assert_eq!(leaves(&scaled), leaves(&built), "nothing but the normals differs");
+            let unlike = check_shared([&scaled, &built], &other, &depths);
+            assert!(unlike > 12, "only {unlike} of 24 tell the meshes apart");
+        }
+    }
+}
+
+/// Would catch the stock order of a mesh used for another one with equal triangles: Parry fits
+/// the hierarchy of a mesh that was edited, and builds that of a new one.
+#[test]
+fn edited_meshes_keep_their_own_order() {
+    let other = shape(&mesh::ball(0.8, 8));
+    let ball = ball();
+    let (mut alike_at_first, mut unlike) = (0, 0);
+    for vertex in (0..ball.vertices().len()).step_by(9) {
+        let mut edited = ball.clone();
+        edited.update_vertices(|vertices| vertices[vertex] *= 1.25);
+        let built = rebuilt(&edited);
+        let orders = [&edited, &built].map(|mesh| leaves(mesh));
+        if orders[0] != orders[1] && orders[0][..16] == orders[1][..16] {
+            alike_at_first += 1;
+            unlike += check_shared([&edited, &built], &other, &[0.3, 0.3, 0.3]);
+        }
+    }
+    assert!(alike_at_first > 3 && unlike > 6, "{alike_at_first} meshes, {unlike} answers");
+}
+
+/// A deformable mesh whose hierarchy Parry has built anew has the order of the new one.
+#[test]
+fn a_turned_soft_mesh_has_the_order_of_its_new_hierarchy() {
+    let other = shape(&mesh::ball(0.8, 8));
+    let mut soft = shape_with(&mesh::ball(1.0, 6), TriMeshFlags::DEFORMABLE);
+    let dispatcher = SbbkDispatcher::default();
+    let place = Pose::translation(1.4, 0.2, 0.1);
+    let mut pair: Pair = Pair::default();
+    let mut orders = Vec::new();
+    for turn in 0..20 {
+        // Two edits in turn: one keeps the hierarchy, one replaces it.
+        soft.update_vertices(|vertices| vertices[(7 * turn) % 60] *= 1.1);
+        soft.transform_vertices(&Pose::rotation(Vector::new(0.0, 1e-3 * turn as f32, 0.0)));
+        let query = Query::new(&soft, &other, place);
+        let found = sequence(&pair.ask(&dispatcher, &query).manifolds);
+        assert_eq!(found, sequence(&fresh(&SbbkDispatcher::default(), &query)), "turn {turn}");
+        orders.push(found);
+    }
+    orders.dedup();
+    assert!(orders.len() > 5 && orders[0].len() > 5);
 }

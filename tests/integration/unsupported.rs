@@ -1,12 +1,13 @@
 use std::collections::BTreeMap;
 
 use rapier_integration::SbbkDispatcher;
-use rapier3d::math::{Pose, Real};
-use rapier3d::parry::query::DefaultQueryDispatcher;
-use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
+use rapier3d::math::{Pose, Real, Vector};
+use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
+use rapier3d::parry::shape::{Shape, TriMesh, TriMeshFlags};
 use sbbk_lab::mesh;
 
 use crate::support::{Dispatcher, Manifold, Pair, Query, assert_same, fresh, shape, shape_with};
+use crate::who_answers::{Who, kinds};
 
 /// A ball with one vertex that is not a number.
 fn broken_ball() -> TriMesh {
@@ -91,4 +92,69 @@ fn a_pair_changes_hands() {
         assert_same(&pair.manifolds, &fresh(&dispatcher, &query), 1e-5);
     }
     assert_eq!(dispatcher.stats().unsupported_queries, 4);
+}
+
+/// Meshes of which no coordinate along some axes is finite: all NaN, all infinite, from −∞ to +∞.
+fn endless_meshes() -> Vec<TriMesh> {
+    let ball = shape(&mesh::ball(1.0, 4));
+    let (nan, inf) = (Real::NAN, Real::INFINITY);
+    let changes: [&dyn Fn(Vector) -> Vector; 6] = [
+        &|_| Vector::splat(nan),
+        &|v| Vector::new(nan, v.y, v.z),
+        &|_| Vector::splat(inf),
+        &|_| Vector::splat(-inf),
+        &|v| v.signum() * inf,
+        &|v| Vector::new(v.x, v.y.signum() * inf, v.z),
+    ];
+    changes
+        .iter()
+        .map(|change| {
+            let vertices = ball.vertices().iter().map(|&vertex| change(vertex)).collect();
+            TriMesh::new(vertices, ball.indices().to_vec()).expect("Parry takes any numbers")
+        })
+        .collect()
+}
+
+/// Would catch a panic over the box of such a mesh, and an answer that is not stock's or not
+/// counted, on a first query and where the pair knew a whole mesh.
+#[test]
+fn a_mesh_without_a_finite_box_is_answered_by_stock_and_counted() {
+    let whole = shape(&mesh::ball(1.0, 4));
+    let pos12 = above(0.6);
+    for (name, other, who) in kinds() {
+        for (number, endless) in endless_meshes().iter().enumerate() {
+            for is_first in [true, false] {
+                let dispatcher = SbbkDispatcher::default();
+                let ask = |d: &dyn PersistentQueryDispatcher, mesh: &TriMesh, pair: &mut Pair| {
+                    let shapes: [&dyn Shape; 2] =
+                        if is_first { [mesh, &*other] } else { [&*other, mesh] };
+                    let Pair { manifolds, workspace } = pair;
+                    d.contact_manifolds(&pos12, shapes[0], shapes[1], 0.02, manifolds, workspace)
+                        .map_err(|_| "unsupported")
+                };
+                let case = format!("{name}, mesh {number}, first: {is_first}");
+                println!("{case}");
+                let mut pairs: [Pair; 2] = Default::default();
+                for repeat in 1..3 {
+                    let [ours, stocks] = &mut pairs;
+                    let expected = ask(&DefaultQueryDispatcher, endless, stocks);
+                    assert_eq!(ask(&dispatcher, endless, ours), expected, "{case}");
+                    let [ours, stocks] = pairs.each_ref().map(|p| format!("{:?}", p.manifolds));
+                    assert_eq!(ours, stocks, "{case}");
+                    let count = if who == Who::Sbbk { repeat } else { 0 };
+                    assert_eq!(dispatcher.stats().unsupported_queries, count, "{case}");
+                }
+                let mut pair: Pair = Pair::default();
+                for mesh in [&whole, endless, endless, &whole] {
+                    let _ = ask(&dispatcher, mesh, &mut pair);
+                }
+                let count = if who == Who::Sbbk { 4 } else { 0 };
+                assert_eq!(dispatcher.stats().unsupported_queries, count, "{case}");
+                let mut first: Pair = Pair::default();
+                let _ = ask(&dispatcher, &whole, &mut first);
+                let [again, first] = [&pair, &first].map(|pair| pair.manifolds.len());
+                assert_eq!(again, first, "{case}: whole again");
+            }
+        }
+    }
 }

@@ -17,7 +17,7 @@ use crate::support::{Pair, counting, shape, shape_with};
 
 /// Who answers for a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Who {
+pub enum Who {
     Sbbk,
     Parry,
 }
@@ -28,7 +28,7 @@ fn field() -> SharedShape {
 }
 
 /// What a mesh can meet, and who answers for its contacts.
-fn kinds() -> Vec<(&'static str, SharedShape, Who)> {
+pub fn kinds() -> Vec<(&'static str, SharedShape, Who)> {
     use Who::{Parry, Sbbk};
     let [a, b, c] = [Vec3::X, Vec3::Y, Vec3::Z];
     let ball = mesh::ball(0.7, 3);
@@ -57,7 +57,7 @@ fn kinds() -> Vec<(&'static str, SharedShape, Who)> {
         ("height field", field(), Sbbk),
         ("compound", SharedShape::compound(part(SharedShape::ball(0.5))), Sbbk),
         ("compound of another kind", SharedShape::compound(part(field())), Parry),
-        ("polyline", SharedShape::polyline(line, None), Parry),
+        ("polyline", SharedShape::polyline(line, None), Sbbk),
         ("voxels", SharedShape::voxels_from_points(Vec3::splat(0.3), &ball.vertices), Parry),
     ]
 }

@@ -21,8 +21,9 @@ pub struct SbbkConfig {
     pub layers: LayerPlan,
     /// Who generates the contacts of a pair of triangles.
     pub contacts: ContactGenerator,
-    /// Memory that trees may keep while no pair of colliders uses them, in bytes. A mesh that leaves all contacts and comes
-    /// back finds its tree here; with 0 it is built again each time.
+    /// Memory that trees may keep while no pair of colliders uses them, in bytes. A mesh that leaves
+    /// all contacts and comes back finds its tree here; with 0 it is built again each time. The
+    /// trees of the last eight meshes that queries without manifolds asked for stay beyond it.
     pub idle_tree_bytes: usize,
     /// Whether queries are counted in [`SbbkStats`](crate::SbbkStats). Costs some percent, more with many
     /// threads.

@@ -13,7 +13,9 @@ use sbbk_core::traverse::DescentCounts;
 use sbbk_core::tree::{BuildError, Tree};
 
 use crate::mesh::{PreparedRef, TreeCache};
-use crate::pair::{Answer, CompoundPair, ConvexPair, ConvexShape, FieldPair, MeshPair, Question};
+use crate::pair::{
+    Answer, ConvexPair, FieldPair, MeshPair, MeshPlace, Pair, PairPose, Parts, answer,
+};
 use crate::query::{Trees, intersection};
 use crate::stats::QueryCounters;
 use crate::{ContactGenerator, SbbkConfig, SbbkStats, TriangleContacts};
@@ -60,7 +62,8 @@ impl SbbkDispatcher {
         self.counters.stats(self.cache.counts())
     }
 
-    /// Drops the trees that no pair of colliders uses, see [`SbbkConfig::idle_tree_bytes`].
+    /// Drops the trees that no pair of colliders uses, see [`SbbkConfig::idle_tree_bytes`]; those of
+    /// queries without manifolds too.
     pub fn release_idle_trees(&self) {
         self.cache.release_idle();
     }
@@ -97,33 +100,30 @@ impl SbbkDispatcher {
         C: Default + Copy + Send + Sync + 'static,
     {
         let contacts = self.config.contacts;
-        let (mesh, other, flipped) = match (g1.as_trimesh(), g2.as_trimesh()) {
+        let pose = &PairPose::new(pos12, prediction);
+        let (mesh, other, mesh_place) = match (g1.as_trimesh(), g2.as_trimesh()) {
             (Some(mesh1), Some(mesh2)) => {
-                let pair = MeshPair { pos12, mesh1, mesh2, prediction, contacts };
+                let pair = MeshPair { pose, meshes: [mesh1, mesh2], contacts };
                 return self.ask(pair, manifolds, workspace);
             }
-            (Some(mesh), None) => (mesh, g2, false),
-            (None, Some(mesh)) => (mesh, g1, true),
+            (Some(mesh), None) => (mesh, g2, MeshPlace::First),
+            (None, Some(mesh)) => (mesh, g1, MeshPlace::Second),
             (None, None) => return Answer::Unsupported,
         };
-        if let Some(shape) = ConvexShape::of(other) {
-            let pair = ConvexPair::new(pos12, (mesh, shape), flipped, prediction);
-            self.ask(pair, manifolds, workspace)
+        if let Some(parts) = Parts::of(other) {
+            self.ask(ConvexPair { pose, mesh, parts, mesh_place, contacts }, manifolds, workspace)
         } else if let Some(field) = other.as_heightfield() {
-            let pair = FieldPair { pos12, mesh, field, flipped, prediction, contacts };
-            self.ask(pair, manifolds, workspace)
-        } else if let Some(compound) = other.as_compound().filter(|c| CompoundPair::is_known(c)) {
-            let pair = CompoundPair { pos12, mesh, compound, flipped, prediction };
+            let pair = FieldPair { pose, mesh, field, mesh_place, contacts };
             self.ask(pair, manifolds, workspace)
         } else {
             Answer::Unsupported
         }
     }
 
-    /// The answer to a question, counted; `Unsupported` if Parry must answer.
+    /// The contacts of a pair, counted; `Unsupported` if Parry must answer.
     fn ask<M, C>(
         &self,
-        question: impl Question,
+        pair: impl Pair,
         manifolds: &mut Vec<ContactManifold<M, C>>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Answer
@@ -133,11 +133,11 @@ impl SbbkDispatcher {
     {
         let answer = if self.config.count_queries {
             let mut counts = DescentCounts::default();
-            let answer = question.contact_manifolds(&self.cache, &mut counts, manifolds, workspace);
+            let answer = answer(pair, &self.cache, &mut counts, manifolds, workspace);
             self.counters.add(answer, &counts);
             answer
         } else {
-            question.contact_manifolds(&self.cache, (), manifolds, workspace)
+            answer(pair, &self.cache, (), manifolds, workspace)
         };
         if answer == Answer::Unsupported {
             self.counters.add_unsupported();
@@ -168,7 +168,7 @@ pub struct PreparedTree(PreparedRef);
 impl PreparedTree {
     /// The tree itself.
     pub fn tree(&self) -> &Tree {
-        &self.0.get().tree
+        &self.0.prepared().tree
     }
 }
 

@@ -1,6 +1,7 @@
 //! SBBK for Rapier: fast and exact contacts between triangle meshes, as a drop-in query dispatcher.
 //!
-//! ```
+#![cfg_attr(feature = "rapier3d", doc = "```")]
+#![cfg_attr(not(feature = "rapier3d"), doc = "```ignore")]
 //! use rapier_integration::SbbkDispatcher;
 //! use rapier3d::prelude::*;
 //!
@@ -28,7 +29,7 @@
 //! | a mesh and | contacts | state kept between steps | tested by |
 //! |---|---|---|---|
 //! | a mesh | SBBK | candidates, features, manifolds | `exact`: `heads_touch_as_the_truth_says`, `contacts_are_stocks_where_triangles_are_large`; `bits`: `parrys_contacts_are_stocks`; `motion`: `thousands_of_histories_end_alike`; `edited_mesh`: `slightly_moved_vertices_are_seen` |
-//! | a ball, cuboid, capsule, segment, triangle, cylinder, cone, convex polyhedron | SBBK's trees, Parry's contact routines: on a first query Parry's contacts of all triangles, bit for bit | candidates with distances and separating axes, manifolds | `convex`: `fresh_contacts_are_those_of_parrys_routine_on_all_triangles`, `motion_loses_no_contact`, `a_head_rests_on_a_floor_as_with_stock` |
+//! | a ball, cuboid, capsule, segment, triangle, cylinder, cone, convex polyhedron | SBBK's trees, Parry's contact routines: on a first query Parry's contacts of all triangles, bit for bit | candidates with distances and separating axes, manifolds | `convex`: `fresh_contacts_are_those_of_parrys_routine_on_all_triangles`, `motion_is_no_part_of_the_answer`, `a_head_rests_on_a_floor_as_with_stock` |
 //! | a round cuboid, triangle, cylinder, cone, convex polyhedron | the same | the same | `convex`: the same |
 //! | a half-space | the same | the same | `convex`: the same |
 //! | a height field | SBBK; stock Rapier has none, bodies fall through | candidates, features, manifolds | `heightfield`: `lattice_contacts_are_those_of_brute_force`, `contacts_equal_those_of_the_terrain_as_a_mesh`, `motion_never_differs_from_fresh_queries`, `heads_rest_on_a_height_field` |
@@ -64,8 +65,9 @@
 //!
 //! Of all other pairs, deformable meshes among them, these queries are Parry's (`others_are_stocks`). As hosts keep no state for them, each
 //! compares vertices and triangles of its meshes with copies to know their trees, in time that grows with their number (a positive
-//! `intersection_test` only those two that meet); the first one builds the trees,
-//! unless [`SbbkDispatcher::prepare`] did, and each thread keeps those of the last eight meshes it asked about.
+//! `intersection_test` only those two that meet); the first one builds the trees, unless
+//! [`SbbkDispatcher::prepare`] did, and each thread knows those of the last eight meshes it asked
+//! about. The dispatcher keeps them as [`SbbkConfig::idle_tree_bytes`] says.
 //!
 //! # Hosts
 //!
@@ -73,6 +75,10 @@
 //! workspace when it edits one of its shapes, as Rapier does and as Parry's own workspaces need too. Queries from many
 //! threads at once are fine: no lock is taken by a pair of rigid meshes whose trees are known. A deformable mesh may be edited in place at
 //! any time between queries, and the workspaces kept: each query reads all of it (about 1 µs for 1000 triangles).
+//!
+//! Rapier's character controller asks the dispatcher of the query pipeline for shape casts and for
+//! how deep it is in a collider. For the contacts with its ground, and with bodies that it pushes, it
+//! asks Parry's own dispatcher, whatever dispatcher is set.
 //!
 //! Runs repeat bit for bit. The contacts of two meshes are a function of their pose and triangles, and their order of the
 //! meshes: not of what was remembered from earlier steps, of threads, or of when a tree was built.

@@ -13,23 +13,24 @@ pub struct SbbkStats {
     pub trees: usize,
     /// Of these, how many no pair of colliders uses.
     pub idle_trees: usize,
-    /// Memory of all of them.
+    /// Memory of all of them, with all that is kept beside a tree.
     pub tree_bytes: usize,
     /// Trees built.
     pub tree_builds: u64,
     /// How often a pair of colliders needed a tree that was there.
     pub tree_hits: u64,
-    /// Deformable meshes (`TriMeshFlags::DEFORMABLE`) that have a tree of their own at present, not counted in
-    /// [`trees`](Self::trees).
+    /// Deformable meshes (`TriMeshFlags::DEFORMABLE`) that have a tree of their own at present, not
+    /// counted in [`trees`](Self::trees).
     pub deformable_trees: usize,
     /// Memory of these.
     pub deformable_tree_bytes: usize,
     /// How often the tree of a deformable mesh was fitted to vertices that had moved.
     pub tree_refits: u64,
-    /// How often such a tree had become so bad that it was built anew, or the mesh had vertices that are NaN or infinite.
+    /// How often such a tree had become so bad that it was built anew, or the mesh had vertices
+    /// that are NaN or infinite.
     pub tree_rebuilds: u64,
-    /// Pairs of a mesh and a mesh or convex shape that Parry had to answer as a mesh cannot have a tree: see
-    /// [`SbbkDispatcher::prepare`](crate::SbbkDispatcher::prepare).
+    /// Pairs of a mesh and a mesh or convex shape that Parry had to answer as a mesh cannot have a
+    /// tree: see [`SbbkDispatcher::prepare`](crate::SbbkDispatcher::prepare).
     pub unsupported_queries: u64,
     /// Such pairs answered from trees. Counted, like the following, if
     /// [`SbbkConfig::count_queries`](crate::SbbkConfig::count_queries) is set.

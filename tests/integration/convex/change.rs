@@ -1,12 +1,12 @@
 use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
+use rapier_integration::ContactGenerator;
 use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::TriMeshFlags;
 use sbbk_lab::mesh;
 
 use super::question::{Question, bits};
 use super::shapes::{pose, shapes};
-use crate::support::{Pair, counting, shape_with};
+use crate::support::{Pair, counting, generating, shape_with};
 
 /// Would catch candidates of a shape that is no longer there, where a host keeps the workspace of a pair over an edit.
 #[test]
@@ -34,7 +34,7 @@ fn another_shape_with_the_same_workspace_is_noticed() {
 #[test]
 fn stock_can_hand_over_a_pair() {
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = generating(ContactGenerator::Parry);
     let mut random = Rand32::new(7);
     for (name, shape) in shapes(0.6) {
         let pose = pose(&mut random, &head, 0.5);

@@ -65,6 +65,27 @@ impl Question<'_> {
         distance.expect("Parry knows the distance of all these shapes to triangles").distance
     }
 
+    /// Panics unless an answer is that of Parry's routine on all triangles, bit for bit: each
+    /// manifold of ours is one of brute force, and each of brute force that has a point within the
+    /// prediction distance is one of ours. The number of contacts.
+    pub fn check_against_parry(&self, name: &str, found: &[Manifold]) -> usize {
+        let all = self.brute_force();
+        let by_triangle: BTreeMap<u32, &Manifold> =
+            found.iter().map(|manifold| (self.triangle_of(manifold), manifold)).collect();
+        assert_eq!(by_triangle.len(), found.len(), "{name}: two manifolds of one triangle");
+        for (triangle, manifold) in &by_triangle {
+            let expected =
+                all.get(triangle).unwrap_or_else(|| panic!("{name}: {triangle} is invented"));
+            assert!(bits(manifold) == bits(expected), "{name}: {triangle}");
+        }
+        let touching = all.iter().filter(|(_, manifold)| touches(manifold, self.prediction));
+        for (triangle, expected) in touching.clone() {
+            let points = &expected.points;
+            assert!(by_triangle.contains_key(triangle), "{name}: {triangle} is lost, {points:?}");
+        }
+        touching.count()
+    }
+
     /// Parry's routine on each triangle of the mesh, called as stock calls it; manifolds with points.
     pub fn brute_force(&self) -> BTreeMap<u32, Manifold> {
         let all = (0..self.mesh.indices().len() as u32).filter_map(|index| {

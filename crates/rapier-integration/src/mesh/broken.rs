@@ -1,13 +1,16 @@
-//! A deformable mesh of which some vertices are NaN or infinite: a simulation that has gone wrong in one place.
+//! A deformable mesh of which some vertices are NaN or infinite: a simulation that has gone wrong
+//! in one place.
 //!
-//! Its other triangles touch as before; those of such a vertex touch nothing. Parry looks at some of them, and then can panic, or
-//! loses others: the boxes of its hierarchy mean nothing above a NaN.
+//! Its other triangles touch as before; those of such a vertex touch nothing. Parry looks at some
+//! of them, and then can panic, or loses others: the boxes of its hierarchy mean nothing above a
+//! NaN.
 
 use parry3d::bounding_volume::Aabb;
 use parry3d::shape::{CompositeShape, TriMesh};
 use sbbk_core::tree::{BuildError, BuildOptions, Tree};
 
-/// A tree, and the triangles that are broken, in ascending order: the tree has them as points somewhere on the mesh.
+/// A tree, and the triangles that are broken, in ascending order: the tree has them as points
+/// somewhere on the mesh.
 ///
 /// # Errors
 /// Why the mesh cannot have a tree, if no triangle is whole or for another reason.
@@ -33,8 +36,11 @@ pub(super) fn build(
     Ok((Tree::build(vertices, &standing_in, options)?, broken))
 }
 
-/// The box around a mesh, as Parry's hierarchy has it; `None` if the mesh deforms and is broken.
+/// The box around a mesh, as Parry's hierarchy has it; `None` if it is not finite, or if the mesh
+/// deforms and is broken.
 pub(crate) fn root_box(mesh: &TriMesh) -> Option<Aabb> {
+    let root = mesh.bvh().root_aabb();
+    let has_box = root.mins.is_finite() && root.maxs.is_finite();
     let is_whole = || mesh.vertices().iter().all(|vertex| vertex.is_finite());
-    (!mesh.is_deformable() || is_whole()).then(|| mesh.bvh().root_aabb())
+    (has_box && (!mesh.is_deformable() || is_whole())).then_some(root)
 }

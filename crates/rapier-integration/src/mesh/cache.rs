@@ -1,13 +1,16 @@
 //! One prepared mesh for all colliders with equal geometry.
 //!
-//! The lock is taken when a pair of colliders first needs its trees and when the last pair that used a tree ends, not by
-//! a query of a pair that has them. Trees are built outside of it; threads that want the same one wait for it alone.
+//! The lock is taken when a pair of colliders first needs its trees and when the last pair that
+//! used a tree ends, not by a query of a pair that has them. Each takes time that grows with the
+//! logarithm of the number of trees. Trees are built outside of it; threads that want the same one
+//! wait for it alone.
 
-use std::collections::{HashMap, VecDeque};
+use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::ops::Deref;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-use parry3d::shape::{CompositeShape, TriMesh};
+use parry3d::shape::TriMesh;
 use sbbk_core::tree::{BuildError, BuildOptions};
 
 use super::deformable::{DeformableCounts, DeformableTree, DeformableTrees};
@@ -24,35 +27,88 @@ pub(crate) struct TreeCache {
     hits: AtomicU64,
     /// Trees that are not shared by content.
     deformable: Arc<DeformableTrees>,
-    unsupported_rigid: Unsupported,
-    unsupported_deformable: Unsupported,
+    unsupported: Unsupported,
 }
+
+/// Meshes without a pair that are kept for queries without manifolds, whatever the limit of idle
+/// ones: the trees of large meshes may exceed it. More: scenes with many such meshes rebuild less.
+const QUERIED: usize = 8;
 
 #[derive(Default)]
 struct Entries {
-    by_content: HashMap<ContentHash, Arc<Entry>>,
-    /// Entries without users, oldest first.
-    idle: VecDeque<ContentHash>,
+    by_content: HashMap<ContentHash, Entry>,
+    /// Entries without users, by when they became idle.
+    idle: BTreeMap<u64, ContentHash>,
+    /// When the next one becomes idle.
+    now: u64,
     idle_bytes: usize,
+    /// The last meshes for which a query without manifolds needed the lock. Each counts as a user.
+    queried: VecDeque<Arc<CachedMesh>>,
 }
 
 struct Entry {
+    mesh: Arc<CachedMesh>,
+    idle: Option<Idle>,
+}
+
+#[derive(Copy, Clone)]
+struct Idle {
+    since: u64,
+    bytes: usize,
+}
+
+/// A prepared mesh that all colliders with equal geometry share.
+pub(crate) struct CachedMesh {
     content: ContentHash,
     prepared: OnceLock<Result<PreparedMesh, BuildError>>,
-    /// Of the mesh, from the first [`PreparedRef::keep_content`] on.
-    content_copy: OnceLock<ContentCopy>,
-    /// Living [`PreparedRef`]s. Rises from zero under the lock only.
+    /// Of the mesh, from the first query without manifolds on.
+    copy: OnceLock<ContentCopy>,
+    /// Living [`PreparedRef`]s, and a place in [`Entries::queried`]. Rises from zero under the lock
+    /// only.
     users: AtomicUsize,
 }
 
-impl Entry {
-    fn bytes(&self) -> usize {
-        match self.prepared.get() {
-            Some(Ok(prepared)) => {
-                prepared.bytes() + self.content_copy.get().map_or(0, ContentCopy::bytes)
-            }
-            _ => 0,
+impl CachedMesh {
+    fn new(content: ContentHash) -> Self {
+        Self {
+            content,
+            prepared: OnceLock::new(),
+            copy: OnceLock::new(),
+            users: AtomicUsize::new(0),
         }
+    }
+
+    /// All memory that goes with the mesh: its own, and its places in maps that are half empty at
+    /// most. None if it cannot have a tree.
+    fn bytes(&self) -> usize {
+        const PLACES: usize =
+            2 * (size_of::<(ContentHash, Entry)>() + size_of::<(u64, ContentHash)>());
+        const COUNTERS: usize = 2 * size_of::<usize>();
+        let Some(Ok(prepared)) = self.prepared.get() else {
+            return 0;
+        };
+        // The prepared mesh counts itself, which is within this value.
+        let own = size_of::<Self>() - size_of::<PreparedMesh>() + prepared.bytes();
+        own + self.copy.get().map_or(0, ContentCopy::bytes) + COUNTERS + PLACES
+    }
+
+    /// The prepared mesh.
+    pub(crate) fn prepared(&self) -> &PreparedMesh {
+        match self.prepared.get() {
+            Some(Ok(prepared)) => prepared,
+            _ => unreachable!("`TreeCache::prepare` returns references to finished trees only"),
+        }
+    }
+
+    /// Whether vertices and triangles of a mesh are, bit for bit, those of this one. Never so
+    /// before the first [`TreeCache::prepare_for_queries`].
+    pub(crate) fn is_of(&self, mesh: &TriMesh) -> bool {
+        self.copy.get().is_some_and(|copy| copy.is_of(mesh))
+    }
+
+    /// The same for a single triangle.
+    pub(crate) fn has_triangle_of(&self, mesh: &TriMesh, triangle: u32) -> bool {
+        self.copy.get().is_some_and(|copy| copy.has_triangle_of(mesh, triangle))
     }
 }
 
@@ -76,8 +132,7 @@ impl TreeCache {
             builds: AtomicU64::new(0),
             hits: AtomicU64::new(0),
             deformable: Arc::default(),
-            unsupported_rigid: Unsupported::default(),
-            unsupported_deformable: Unsupported::default(),
+            unsupported: Unsupported::default(),
         }
     }
 
@@ -89,7 +144,7 @@ impl TreeCache {
         let content = ContentHash::of(mesh);
         let prepared = self.acquire(content);
         let mut built = false;
-        let result = prepared.entry.prepared.get_or_init(|| {
+        let result = prepared.mesh.prepared.get_or_init(|| {
             built = true;
             PreparedMesh::new(mesh, &self.options)
         });
@@ -101,19 +156,37 @@ impl TreeCache {
         }
     }
 
+    /// The same for queries without manifolds: kept for the next ones, with a copy of the mesh.
+    ///
+    /// # Errors
+    /// Why this mesh cannot have a tree.
+    pub(crate) fn prepare_for_queries(
+        self: &Arc<Self>,
+        mesh: &TriMesh,
+    ) -> Result<Arc<CachedMesh>, BuildError> {
+        let prepared = self.prepare(mesh)?;
+        prepared.copy.get_or_init(|| ContentCopy::of(mesh));
+        let cached = Arc::clone(&prepared.mesh);
+        let mut entries = self.lock();
+        if !entries.queried.iter().any(|known| Arc::ptr_eq(known, &cached)) {
+            cached.users.fetch_add(1, Ordering::AcqRel);
+            entries.queried.push_back(Arc::clone(&cached));
+            if entries.queried.len() > QUERIED {
+                entries.forget_oldest_queried(self.idle_bytes_limit);
+            }
+        }
+        Ok(cached)
+    }
+
     /// The result of preparing a mesh, which is remembered if there is no tree for it.
     pub(crate) fn noting<T>(&self, mesh: &TriMesh, result: Result<T, BuildError>) -> Option<T> {
-        result.map_err(|_| self.unsupported(mesh).note(mesh)).ok()
+        result.map_err(|_| self.unsupported.note(mesh)).ok()
     }
 
-    /// Whether one of the meshes is known not to have a tree.
+    /// Whether one of the meshes is known not to have a tree. Takes no lock.
+    #[inline]
     pub(crate) fn is_unsupported(&self, meshes: &[&TriMesh]) -> bool {
-        meshes.iter().any(|mesh| self.unsupported(mesh).contains(mesh))
-    }
-
-    /// A mesh that deforms may be broken for a step: the others must not take a lock for it for ever after.
-    fn unsupported(&self, mesh: &TriMesh) -> &Unsupported {
-        if mesh.is_deformable() { &self.unsupported_deformable } else { &self.unsupported_rigid }
+        meshes.iter().any(|mesh| self.unsupported.contains(mesh))
     }
 
     /// The place of the tree of a deformable mesh. Takes a lock.
@@ -141,54 +214,39 @@ impl TreeCache {
 
     fn acquire(self: &Arc<Self>, content: ContentHash) -> PreparedRef {
         let mut entries = self.lock();
-        let entry = entries.by_content.entry(content).or_insert_with(|| {
-            let (prepared, content_copy) = (OnceLock::new(), OnceLock::new());
-            Arc::new(Entry { content, prepared, content_copy, users: AtomicUsize::new(0) })
-        });
-        let entry = Arc::clone(entry);
-        if entry.users.fetch_add(1, Ordering::AcqRel) == 0
-            && let Some(place) = entries.idle.iter().position(|&idle| idle == content)
-        {
-            entries.idle.remove(place);
-            entries.idle_bytes -= entry.bytes();
+        let entry = entries
+            .by_content
+            .entry(content)
+            .or_insert_with(|| Entry { mesh: Arc::new(CachedMesh::new(content)), idle: None });
+        entry.mesh.users.fetch_add(1, Ordering::AcqRel);
+        let (mesh, idle) = (Arc::clone(&entry.mesh), entry.idle.take());
+        if let Some(idle) = idle {
+            entries.idle.remove(&idle.since);
+            entries.idle_bytes -= idle.bytes;
         }
-        PreparedRef { entry, cache: Arc::clone(self) }
-    }
-
-    /// Called when the last user of an entry has gone; another may have come since.
-    fn release(&self, entry: &Entry) {
-        let mut entries = self.lock();
-        let known = entries.by_content.get(&entry.content);
-        let is_idle = entry.users.load(Ordering::Acquire) == 0
-            && known.is_some_and(|known| std::ptr::eq(&**known, entry))
-            && !entries.idle.contains(&entry.content);
-        if is_idle {
-            match entry.bytes() {
-                // A mesh that cannot have a tree: nothing to keep.
-                0 => drop(entries.by_content.remove(&entry.content)),
-                bytes => {
-                    entries.idle.push_back(entry.content);
-                    entries.idle_bytes += bytes;
-                    entries.shrink_idle(self.idle_bytes_limit);
-                }
-            }
-        }
+        PreparedRef { mesh, cache: Arc::clone(self) }
     }
 
     /// Drops all trees that no pair uses.
     pub(crate) fn release_idle(&self) {
         let mut entries = self.lock();
-        while !entries.idle.is_empty() {
-            entries.drop_oldest_idle();
+        while !entries.queried.is_empty() {
+            entries.forget_oldest_queried(self.idle_bytes_limit);
         }
+        entries.shrink_idle(0);
     }
 
     pub(crate) fn counts(&self) -> CacheCounts {
         let entries = self.lock();
+        let is_queried = |entry: &&Entry| {
+            let queried = || entries.queried.iter().any(|mesh| Arc::ptr_eq(mesh, &entry.mesh));
+            entry.mesh.users.load(Ordering::Acquire) == 1 && queried()
+        };
+        let queried = entries.by_content.values().filter(is_queried).count();
         CacheCounts {
             trees: entries.by_content.len(),
-            idle_trees: entries.idle.len(),
-            bytes: entries.by_content.values().map(|entry| entry.bytes()).sum(),
+            idle_trees: entries.idle.len() + queried,
+            bytes: entries.by_content.values().map(|entry| entry.mesh.bytes()).sum(),
             builds: self.builds.load(Ordering::Relaxed),
             hits: self.hits.load(Ordering::Relaxed),
             deformable: self.deformable.counts(),
@@ -202,24 +260,50 @@ impl TreeCache {
 }
 
 impl Entries {
-    fn shrink_idle(&mut self, limit: usize) {
-        while self.idle_bytes > limit {
-            self.drop_oldest_idle();
+    /// Called when the last user of a mesh has gone; another may have come since.
+    fn release(&mut self, mesh: &CachedMesh, idle_bytes_limit: usize) {
+        let Some(entry) = self.by_content.get_mut(&mesh.content) else {
+            return;
+        };
+        let is_unused = mesh.users.load(Ordering::Acquire) == 0;
+        if !is_unused || !std::ptr::eq(&*entry.mesh, mesh) || entry.idle.is_some() {
+            return;
+        }
+        match mesh.bytes() {
+            // A mesh that cannot have a tree: nothing to keep.
+            0 => drop(self.by_content.remove(&mesh.content)),
+            bytes => {
+                entry.idle = Some(Idle { since: self.now, bytes });
+                self.idle.insert(self.now, mesh.content);
+                self.now += 1;
+                self.idle_bytes += bytes;
+                self.shrink_idle(idle_bytes_limit);
+            }
         }
     }
 
-    fn drop_oldest_idle(&mut self) {
-        if let Some(content) = self.idle.pop_front()
-            && let Some(entry) = self.by_content.remove(&content)
+    fn forget_oldest_queried(&mut self, idle_bytes_limit: usize) {
+        if let Some(mesh) = self.queried.pop_front()
+            && mesh.users.fetch_sub(1, Ordering::AcqRel) == 1
         {
-            self.idle_bytes -= entry.bytes();
+            self.release(&mesh, idle_bytes_limit);
+        }
+    }
+
+    /// Drops the oldest idle trees until the others take no more than `limit` bytes.
+    fn shrink_idle(&mut self, limit: usize) {
+        while self.idle_bytes > limit
+            && let Some((_, content)) = self.idle.pop_first()
+            && let Some(Entry { idle: Some(idle), .. }) = self.by_content.remove(&content)
+        {
+            self.idle_bytes -= idle.bytes;
         }
     }
 }
 
 /// A prepared mesh in use. The last one to go makes the tree idle.
 pub(crate) struct PreparedRef {
-    entry: Arc<Entry>,
+    mesh: Arc<CachedMesh>,
     cache: Arc<TreeCache>,
 }
 
@@ -228,41 +312,27 @@ impl PreparedRef {
     pub(crate) fn is_from(&self, cache: &Arc<TreeCache>) -> bool {
         Arc::ptr_eq(&self.cache, cache)
     }
+}
 
-    /// Copies vertices and triangles of the mesh that this has just been prepared for, if nobody has yet.
-    pub(crate) fn keep_content(&self, mesh: &TriMesh) {
-        self.entry.content_copy.get_or_init(|| ContentCopy::of(mesh));
-    }
+impl Deref for PreparedRef {
+    type Target = CachedMesh;
 
-    /// Whether vertices and triangles of a mesh are, bit for bit, those kept by [`keep_content`](Self::keep_content).
-    pub(crate) fn has_content_of(&self, mesh: &TriMesh) -> bool {
-        self.entry.content_copy.get().is_some_and(|copy| copy.is_of(mesh))
-    }
-
-    /// The same for a single triangle.
-    pub(crate) fn has_triangle_of(&self, mesh: &TriMesh, triangle: u32) -> bool {
-        self.entry.content_copy.get().is_some_and(|copy| copy.has_triangle_of(mesh, triangle))
-    }
-
-    pub(crate) fn get(&self) -> &PreparedMesh {
-        match self.entry.prepared.get() {
-            Some(Ok(prepared)) => prepared,
-            _ => unreachable!("`TreeCache::prepare` returns references to finished trees only"),
-        }
+    fn deref(&self) -> &CachedMesh {
+        &self.mesh
     }
 }
 
 impl Clone for PreparedRef {
     fn clone(&self) -> Self {
-        self.entry.users.fetch_add(1, Ordering::AcqRel);
-        Self { entry: Arc::clone(&self.entry), cache: Arc::clone(&self.cache) }
+        self.mesh.users.fetch_add(1, Ordering::AcqRel);
+        Self { mesh: Arc::clone(&self.mesh), cache: Arc::clone(&self.cache) }
     }
 }
 
 impl Drop for PreparedRef {
     fn drop(&mut self) {
-        if self.entry.users.fetch_sub(1, Ordering::AcqRel) == 1 {
-            self.cache.release(&self.entry);
+        if self.mesh.users.fetch_sub(1, Ordering::AcqRel) == 1 {
+            self.cache.lock().release(&self.mesh, self.cache.idle_bytes_limit);
         }
     }
 }

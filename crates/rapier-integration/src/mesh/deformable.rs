@@ -1,15 +1,17 @@
 //! Trees of meshes that deform: one for each mesh, wherever it is, not for each content.
 //!
-//! A tree is known by the addresses of the mesh's buffers. That names it only among the meshes that exist at a time,
-//! and so each query compares the content as well: by [`DeformedContent`], which it reads off the mesh.
-//! The first query after a change refits the tree, or builds one where the triangles are others or the refitted one
-//! has become bad; queries of other pairs on other threads wait for it and find it done.
+//! A tree is known by the addresses of the mesh's buffers. That names it only among the meshes that
+//! exist at a time, and so each query compares the content as well: by [`DeformedContent`], which
+//! it reads off the mesh. The first query after a change refits the tree, or builds one where the
+//! triangles are others or the refitted one has become bad; queries of other pairs on other threads
+//! wait for it and find it done.
 //!
-//! While a query uses a tree it holds a reference, and gives it back at its end. No mesh changes while it is borrowed by a
-//! query, so when a tree must be refitted nobody else holds it, and it is changed in place.
+//! While a query uses a tree it holds a reference, and gives it back at its end. No mesh changes
+//! while it is borrowed by a query, so when a tree must be refitted nobody else holds it, and it is
+//! changed in place.
 //!
-//! The locks here are taken by pairs with a deformable mesh only. A tree is dropped when the last pair that knows
-//! it ends.
+//! The locks here are taken by pairs with a deformable mesh only. A tree is dropped when the last
+//! pair that knows it ends.
 
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -102,8 +104,8 @@ impl DeformableTree {
         self.address == Address::of(mesh) && Arc::ptr_eq(&self.owner, owner)
     }
 
-    /// The tree of the mesh with this content; brought up to date, or built by `build`, if the mesh has changed. To be
-    /// given back before the mesh changes again.
+    /// The tree of the mesh with this content; brought up to date, or built by `build`, if the mesh
+    /// has changed. To be given back before the mesh changes again.
     ///
     /// # Errors
     /// Why the mesh, as it is now, cannot have a tree.
@@ -134,7 +136,8 @@ impl DeformableTree {
         mesh: &TriMesh,
         build: &impl Fn() -> Result<PreparedMesh, BuildError>,
     ) -> Result<Arc<PreparedMesh>, BuildError> {
-        // A host that edits a mesh during a query is answered as well, if slowly. So is a broken mesh.
+        // A host that edits a mesh during a query is answered as well, if slowly. So is a broken
+        // mesh.
         if let Some(unused) = Arc::get_mut(&mut prepared)
             && let Ok(cost) = unused.refit(mesh)
         {

@@ -1,28 +1,34 @@
 //! What "the same mesh" means.
 //!
-//! A dispatcher sees a `&TriMesh` and nothing else: no handle, no generation. Its address proves nothing, since
-//! freed memory is used again and `SharedShape::make_mut` edits in place. So there are two notions:
+//! A dispatcher sees a `&TriMesh` and nothing else: no handle, no generation. Its address proves
+//! nothing, since freed memory is used again and `SharedShape::make_mut` edits in place. So there
+//! are two notions:
 //!
-//! * [`ContentHash`], 128 bits over all vertices, all indices, the flags that concern contacts and the first leaves of
-//!   Parry's hierarchy. Meshes with equal hashes share one
-//!   tree, wherever they are: clones, copies restored from a snapshot, the same file loaded twice. It reads the
-//!   whole mesh (about 1 µs for 1000 triangles), so it is asked for only when a pair of colliders gets its first
-//!   contact query that passes the root boxes.
-//! * [`MeshToken`], constant time, checked on every later query of the pair: addresses and sizes of the buffers,
-//!   the flags, the root box of Parry's own hierarchy, and a few sampled vertices and triangles. If it changed, the
-//!   hash is asked again.
+//! * [`ContentHash`], 128 bits over all that a [`PreparedMesh`](super::PreparedMesh) is made of:
+//!   vertices, triangles, flags, Parry's hierarchy (the stock order of contacts) and, where they
+//!   constrain contact normals, the pseudo-normals of the edges. Equal vertices and triangles do
+//!   not make the last two equal: Parry fits them to a mesh that is edited or scaled, and builds
+//!   those of a new mesh. Meshes with equal hashes share one prepared mesh, wherever they are:
+//!   clones, copies restored from a snapshot, the same file loaded twice. The hash reads the whole
+//!   mesh (about 4 µs for 1000 triangles), so it is asked for only when a pair of colliders gets
+//!   its first contact query that passes the root boxes.
+//! * [`MeshToken`], constant time, checked on every later query of the pair: addresses and sizes of
+//!   the buffers, the flags, the root box of Parry's own hierarchy, and a few sampled vertices and
+//!   triangles. If it changed, the hash is asked again.
 //!
-//! Between two queries of one pair a mesh may change unseen by the token only if its buffers stay in place, the root
-//! box stays equal and no sample moves: an edit of single vertices by `TriMesh::update_vertices`. Rapier
-//! drops the pair's workspace when a shape was edited (`ColliderChanges::SHAPE`, set by `shape_mut` and
-//! `set_shape`), and with it the token; other hosts must do the same, as Parry asks for its own workspaces too.
+//! Between two queries of one pair a mesh may change unseen by the token only if its buffers stay
+//! in place, the root box stays equal and no sample moves: an edit of single vertices by
+//! `TriMesh::update_vertices`. Rapier drops the pair's workspace when a shape was edited
+//! (`ColliderChanges::SHAPE`, set by `shape_mut` and `set_shape`), and with it the token; other
+//! hosts must do the same, as Parry asks for its own workspaces too.
 //!
-//! A mesh that is meant to deform (`TriMeshFlags::DEFORMABLE`) may change at any time and is read in full by each query:
-//! [`DeformedContent`].
+//! A mesh that is meant to deform (`TriMeshFlags::DEFORMABLE`) may change at any time and is read
+//! in full by each query: [`DeformedContent`].
 
 use std::hash::Hasher;
 
 use parry3d::math::Vector;
+use parry3d::partitioning::TraversalAction;
 use parry3d::shape::{TriMesh, TriMeshFlags};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64, xxh3_128};
 
@@ -31,34 +37,64 @@ use xxhash_rust::xxh3::{Xxh3, xxh3_64, xxh3_128};
 pub(crate) struct ContentHash(u128);
 
 impl ContentHash {
-    /// Leaves of Parry's hierarchy looked at. Equal meshes with other hierarchies (one was edited and refitted) have
-    /// another stock order; they differ among the first leaves, as good as always.
-    const LEAVES: usize = 16;
-
     pub(crate) fn of(mesh: &TriMesh) -> Self {
         let mut hasher = Xxh3::new();
+        add_topology(mesh, &mut hasher);
         hasher.update(bytemuck::cast_slice(mesh.vertices()));
-        Self::add_topology(mesh, &mut hasher);
-        Self(hasher.digest128())
-    }
-
-    /// All but where the vertices are.
-    fn add_topology(mesh: &TriMesh, hasher: &mut Xxh3) {
-        hasher.write_usize(mesh.vertices().len());
-        // What a prepared mesh depends on: normal cones, and what becomes of a mesh that is not finite.
-        let flags = TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED
-            | TriMeshFlags::FIX_INTERNAL_EDGES
-            | TriMeshFlags::DEFORMABLE;
-        hasher.write_u16((mesh.flags() & flags).bits());
-        hasher.update(bytemuck::cast_slice(mesh.indices()));
-        for leaf in mesh.bvh().leaves(|_| true).take(Self::LEAVES) {
-            hasher.write_u32(leaf);
+        add_hierarchy(mesh, &mut hasher);
+        if mesh.flags().contains(TriMeshFlags::FIX_INTERNAL_EDGES)
+            && let Some(normals) = mesh.pseudo_normals()
+        {
+            hasher.update(bytemuck::cast_slice(&normals.edges_pseudo_normal));
         }
+        Self(hasher.digest128())
     }
 }
 
-/// Vertices and triangles of a mesh, to be compared with those of another. For 10,000 vertices and 20,000 triangles that takes
-/// less than half as long as a hash of the vertices alone (xxh3, built for SSE2).
+/// Adds the triangles, and the flags that concern contacts.
+fn add_topology(mesh: &TriMesh, hasher: &mut Xxh3) {
+    hasher.write_usize(mesh.vertices().len());
+    hasher.write_usize(mesh.indices().len());
+    // What a prepared mesh depends on: normal cones, and what becomes of a mesh that is not finite.
+    let flags = TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED
+        | TriMeshFlags::FIX_INTERNAL_EDGES
+        | TriMeshFlags::DEFORMABLE;
+    hasher.write_u16((mesh.flags() & flags).bits());
+    hasher.update(bytemuck::cast_slice(mesh.indices()));
+}
+
+/// Adds the shape of Parry's hierarchy: for each node, in the order of a walk, whether it is a leaf
+/// and which. The walk takes a quarter of the time of Parry's iterator over the leaves.
+fn add_hierarchy(mesh: &TriMesh, hasher: &mut Xxh3) {
+    const INNER: u32 = u32::MAX;
+    let (mut nodes, mut count) = ([0; 64], 0);
+    mesh.bvh().traverse(|node| {
+        nodes[count] = node.leaf_data().unwrap_or(INNER);
+        count += 1;
+        if count == nodes.len() {
+            hasher.update(bytemuck::cast_slice(&nodes));
+            count = 0;
+        }
+        TraversalAction::Continue
+    });
+    hasher.update(bytemuck::cast_slice(&nodes[..count]));
+}
+
+/// Names Parry's hierarchy of a mesh by its shape, whatever its boxes.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(super) struct HierarchyHash(u128);
+
+impl HierarchyHash {
+    pub(super) fn of(mesh: &TriMesh) -> Self {
+        let mut hasher = Xxh3::new();
+        add_hierarchy(mesh, &mut hasher);
+        Self(hasher.digest128())
+    }
+}
+
+/// Vertices and triangles of a mesh, to be compared with those of another. For 10,000 vertices and
+/// 20,000 triangles that takes less than half as long as a hash of the vertices alone (xxh3, built
+/// for SSE2).
 pub(super) struct ContentCopy {
     vertices: Box<[Vector]>,
     triangles: Box<[[u32; 3]]>,
@@ -92,8 +128,8 @@ impl ContentCopy {
     }
 }
 
-/// What a deformable mesh is at present: what never changes while it is the same mesh, and where its vertices are.
-/// Costs as much as a [`ContentHash`]; a refit takes about thirty times as long.
+/// What a deformable mesh is at present: what never changes while it is the same mesh, and where
+/// its vertices are. Takes about 1 µs for 1000 triangles; a refit takes about thirty times as long.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub(crate) struct DeformedContent {
     pub(super) topology: u128,
@@ -101,9 +137,17 @@ pub(crate) struct DeformedContent {
 }
 
 impl DeformedContent {
+    /// Leaves of Parry's hierarchy looked at. It changes only where Parry builds it anew
+    /// (`TriMesh::transform_vertices`), mostly among the first leaves; the vertices nearly always
+    /// change too, and then a refit looks at all of it.
+    const LEAVES: usize = 16;
+
     pub(crate) fn of(mesh: &TriMesh) -> Self {
         let mut hasher = Xxh3::new();
-        ContentHash::add_topology(mesh, &mut hasher);
+        add_topology(mesh, &mut hasher);
+        for leaf in mesh.bvh().leaves(|_| true).take(Self::LEAVES) {
+            hasher.write_u32(leaf);
+        }
         let vertices = xxh3_128(bytemuck::cast_slice(mesh.vertices()));
         Self { topology: hasher.digest128(), vertices }
     }
@@ -111,7 +155,7 @@ impl DeformedContent {
 
 /// Tells in constant time that a mesh is most likely still the one it was.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct MeshToken(u64);
+pub(crate) struct MeshToken(pub(super) u64);
 
 impl MeshToken {
     /// Vertices and triangles looked at, evenly spread.

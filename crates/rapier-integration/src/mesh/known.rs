@@ -9,7 +9,8 @@ use super::deformable::DeformableTree;
 use super::identity::{DeformedContent, MeshToken};
 use super::prepared::PreparedMesh;
 
-/// A mesh as a pair of colliders knows it from query to query: its tree, and how to tell whether it still is that mesh.
+/// A mesh as a pair of colliders knows it from query to query: its tree, and how to tell whether it
+/// still is that mesh.
 #[derive(Clone, Default)]
 pub(crate) enum KnownMesh {
     /// No query has needed it yet.
@@ -25,8 +26,9 @@ pub(crate) enum KnownMesh {
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Change {
     /// Nothing.
-    None,
-    /// It was not known, or another dispatcher knew it: nothing is known, but it need not be another mesh.
+    Unchanged,
+    /// It was not known, or another dispatcher knew it: nothing is known, but it need not be
+    /// another mesh.
     Unknown,
     /// Its vertices have moved, or may have.
     Deformed,
@@ -71,23 +73,23 @@ impl KnownMesh {
         }
         let token = MeshToken::of(mesh);
         let change = match self {
-            Self::Rigid(known, tree) if *known == token && tree.is_from(cache) => Change::None,
+            Self::Rigid(known, tree) if *known == token && tree.is_from(cache) => Change::Unchanged,
             Self::Rigid(known, _) if *known == token => Change::Unknown,
             Self::Unknown => Change::Unknown,
             Self::Rigid(..) | Self::Deformable(..) => Change::Replaced,
         };
-        if change != Change::None {
+        if change != Change::Unchanged {
             *self = Self::Unknown;
             *self = Self::Rigid(token, cache.prepare(mesh)?);
         }
         match self {
-            Self::Rigid(_, tree) => Ok((change, Held::Rigid(tree.get()))),
+            Self::Rigid(_, tree) => Ok((change, Held::Rigid(tree.prepared()))),
             _ => unreachable!("known just now"),
         }
     }
 
-    /// Where the mesh is matters for its tree only: a host that copies a mesh to edit it, as a shared one must be, still has
-    /// the same mesh.
+    /// Where the mesh is matters for its tree only: a host that copies a mesh to edit it, as a
+    /// shared one must be, still has the same mesh.
     fn update_deformable(
         &mut self,
         mesh: &TriMesh,
@@ -97,7 +99,7 @@ impl KnownMesh {
         let (change, known) = match std::mem::take(self) {
             Self::Deformable(tree, old) => {
                 let change = match old {
-                    _ if old == content => Change::None,
+                    _ if old == content => Change::Unchanged,
                     _ if old.topology == content.topology => Change::Deformed,
                     _ => Change::Replaced,
                 };

@@ -9,7 +9,7 @@ mod prepared;
 mod unsupported;
 
 pub(crate) use broken::root_box;
-pub(crate) use cache::{CacheCounts, PreparedRef, TreeCache};
+pub(crate) use cache::{CacheCounts, CachedMesh, PreparedRef, TreeCache};
 pub(crate) use identity::MeshToken;
 pub(crate) use known::{Change, Held, KnownMesh};
 pub(crate) use prepared::PreparedMesh;

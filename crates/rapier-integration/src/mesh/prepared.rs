@@ -1,21 +1,24 @@
-use parry3d::query::ContactManifold;
 use parry3d::shape::{CompositeShape, TriMesh, TriMeshFlags, TrianglePseudoNormals};
 use sbbk_core::tree::{BuildError, BuildOptions, RefitCost, Tree};
 
 use super::broken;
+use super::identity::HierarchyHash;
 
 /// All that is computed once a mesh.
 pub(crate) struct PreparedMesh {
     pub(crate) tree: Tree,
-    /// For each triangle its place in the order in which Parry's own hierarchy lists them, which is the order of
-    /// stock manifolds.
+    /// For each triangle its place in the order in which Parry's own hierarchy lists them, which is
+    /// the order of stock manifolds.
     ranks: Vec<u32>,
+    /// The hierarchy that the ranks are of.
+    hierarchy: HierarchyHash,
     /// The pseudo-normals that constrain contact normals, if the mesh asks for them
-    /// (`TriMeshFlags::FIX_INTERNAL_EDGES`); for degenerate triangles none. Parry computes them anew for each pair of
-    /// triangles. Empty for a deformable mesh, whose normals turn.
+    /// (`TriMeshFlags::FIX_INTERNAL_EDGES`); for degenerate triangles none. Parry computes them
+    /// anew for each pair of triangles. Empty for a deformable mesh, whose normals turn.
     normal_constraints: Vec<Option<TrianglePseudoNormals>>,
     normals_turn: bool,
-    /// Triangles of a deformable mesh with a corner that is NaN or infinite, in ascending order: they touch nothing.
+    /// Triangles of a deformable mesh with a corner that is NaN or infinite, in ascending order:
+    /// they touch nothing.
     broken: Vec<u32>,
 }
 
@@ -27,10 +30,6 @@ impl PreparedMesh {
             }
             built => (built?, Vec::new()),
         };
-        let mut ranks = vec![0; mesh.indices().len()];
-        for (rank, triangle) in mesh.bvh().leaves(|_| true).enumerate() {
-            ranks[triangle as usize] = rank as u32;
-        }
         let triangles = 0..mesh.indices().len() as u32;
         let has_constraints = mesh.flags().contains(TriMeshFlags::FIX_INTERNAL_EDGES);
         let normals_turn = has_constraints && mesh.is_deformable();
@@ -39,16 +38,22 @@ impl PreparedMesh {
         } else {
             Vec::new()
         };
-        Ok(Self { tree, ranks, normal_constraints, normals_turn, broken })
+        let (ranks, hierarchy) = (ranks(mesh), HierarchyHash::of(mesh));
+        Ok(Self { tree, ranks, hierarchy, normal_constraints, normals_turn, broken })
     }
 
-    /// Fits the tree to a mesh whose vertices have moved.
+    /// Fits the tree to a mesh whose vertices have moved, and the ranks if its hierarchy is
+    /// another.
     ///
     /// # Errors
     /// Those of [`Tree::refit`]: a broken mesh needs a build.
     pub(super) fn refit(&mut self, mesh: &TriMesh) -> Result<RefitCost, BuildError> {
         let cost = self.tree.refit(mesh.vertices(), mesh.indices())?;
         self.broken.clear();
+        let hierarchy = HierarchyHash::of(mesh);
+        if self.hierarchy != hierarchy {
+            (self.ranks, self.hierarchy) = (ranks(mesh), hierarchy);
+        }
         Ok(cost)
     }
 
@@ -56,17 +61,6 @@ impl PreparedMesh {
     #[inline]
     pub(crate) fn is_broken(&self, triangle: u32) -> bool {
         !self.broken.is_empty() && self.broken.binary_search(&triangle).is_ok()
-    }
-
-    /// Drops the manifolds of triangles that are broken, which Parry's routines must not be asked to bring up to date.
-    pub(crate) fn drop_broken<M, C>(
-        &self,
-        manifolds: &mut Vec<ContactManifold<M, C>>,
-        triangle: impl Fn(&ContactManifold<M, C>) -> u32,
-    ) {
-        if !self.broken.is_empty() {
-            manifolds.retain(|manifold| !self.is_broken(triangle(manifold)));
-        }
     }
 
     /// The place of a triangle in stock order. A number that is not a triangle's sorts last.
@@ -89,10 +83,20 @@ impl PreparedMesh {
         self.normal_constraints.get(triangle as usize)?.as_ref()
     }
 
-    /// Memory, without the mesh itself.
+    /// Memory, with this value but without the mesh itself.
     pub(crate) fn bytes(&self) -> usize {
-        self.tree.stats().bytes()
+        size_of::<Self>()
+            + self.tree.stats().bytes()
             + (self.ranks.len() + self.broken.len()) * size_of::<u32>()
             + self.normal_constraints.len() * size_of::<Option<TrianglePseudoNormals>>()
     }
+}
+
+/// For each triangle its place among the leaves of Parry's hierarchy.
+fn ranks(mesh: &TriMesh) -> Vec<u32> {
+    let mut ranks = vec![0; mesh.indices().len()];
+    for (rank, triangle) in mesh.bvh().leaves(|_| true).enumerate() {
+        ranks[triangle as usize] = rank as u32;
+    }
+    ranks
 }

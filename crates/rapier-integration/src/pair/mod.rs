@@ -1,25 +1,23 @@
 //! A pair of shapes: from a pose to contact manifolds.
 //!
-//! [`query`] is the way of the data for two meshes: the state of the pair ([`state`]), the descent that collects the pairs of
-//! triangles that may touch ([`candidates`]), and one manifold for each pair that does ([`exact`], [`manifolds`]).
-//! [`convex`] is the same way for a mesh and a convex shape, [`heightfield`] for a mesh and a height field,
-//! [`compound`] for a mesh and convex shapes put together.
+//! [`driver`] is the way of a query, the same for every kind of pair: the state of the pair
+//! ([`state`], [`memory`]), the candidates in stock order ([`order`]), and one manifold for each that
+//! touches, those of the query before among them ([`merge`], [`pool`]). A kind says what is its own:
+//! [`triangles`] for two meshes, or a mesh and a height field; [`convex`] for a mesh and convex
+//! shapes, one or the parts of a compound or polyline.
 
-mod candidates;
-mod coherence;
-mod compound;
 mod convex;
-mod exact;
-mod heightfield;
-mod manifolds;
-mod previous;
-mod query;
-mod question;
+mod driver;
+mod memory;
+mod merge;
+mod order;
+mod pool;
+mod pose;
 mod state;
+mod triangles;
 
-pub(crate) use compound::CompoundPair;
-pub(crate) use convex::{ConvexPair, ConvexShape};
-pub use exact::TriangleContacts;
-pub(crate) use heightfield::FieldPair;
-pub(crate) use query::MeshPair;
-pub(crate) use question::{Answer, Question};
+pub(crate) use convex::{ConvexPair, Parts};
+pub(crate) use driver::{Answer, Pair, answer};
+pub(crate) use pose::{MeshPlace, PairPose};
+pub use triangles::TriangleContacts;
+pub(crate) use triangles::{FieldPair, MeshPair};

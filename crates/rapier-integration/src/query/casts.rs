@@ -11,8 +11,8 @@ use sbbk_core::tree::Tree;
 
 use super::lookup::Trees;
 
-/// Meshes this close have met, for a nonlinear cast, as a share of their size. Poses along a motion are computed in f32
-/// and no better than that. Higher: fewer steps, earlier impacts.
+/// Meshes this close have met, for a nonlinear cast, as a share of their size. Poses along a motion
+/// are computed in f32 and no better than that. Higher: fewer steps, earlier impacts.
 const TOLERANCE: f64 = 1.0e-6;
 
 /// Steps of a nonlinear cast. Head-on motions take 10 to 30, turning ones up to some hundred.
@@ -47,9 +47,10 @@ impl Trees {
 
     /// The first impact of two meshes on their ways.
     ///
-    /// If contacts at the start are not to stop the cast, Parry asks of each pair of triangles that touches then whether its
-    /// velocities approach, and leaves it out for good if they do not. (For thicker shapes it goes on to look at times between; the
-    /// thickness of a triangle is zero.) Here too; "approach" is to come closer, until the end, by more than the tolerance.
+    /// If contacts at the start are not to stop the cast, Parry asks of each pair of triangles that
+    /// touches then whether its velocities approach, and leaves it out for good if they do not.
+    /// (For thicker shapes it goes on to look at times between; the thickness of a triangle is
+    /// zero.) Here too; "approach" is to come closer, until the end, by more than the tolerance.
     pub(crate) fn cast_nonlinear(
         &self,
         [motion1, motion2]: [&NonlinearRigidMotion; 2],

@@ -11,8 +11,9 @@ use sbbk_core::traverse::Placement;
 use super::lookup::Trees;
 use crate::mesh::TreeCache;
 
-/// Whether the surfaces of two meshes meet, and where: one of the pairs of triangles that do (after an edit it can be another one
-/// than a new dispatcher would name). `None` if a mesh cannot have a tree.
+/// Whether the surfaces of two meshes meet, and where: one of the pairs of triangles that do (after
+/// an edit it can be another one than a new dispatcher would name). `None` if a mesh cannot have a
+/// tree.
 pub(crate) fn intersection(
     cache: &Arc<TreeCache>,
     meshes: [&TriMesh; 2],
@@ -47,7 +48,8 @@ impl Trees {
         self.search(|scratch| nearest(self.both(), placement, limit, goal, scratch))
     }
 
-    /// The distance; `Real::MAX` at a pose that is not finite, as Parry has it for shapes without parts.
+    /// The distance; `Real::MAX` at a pose that is not finite, as Parry has it for shapes without
+    /// parts.
     pub(crate) fn distance(&self, pos12: &Pose) -> ShapeDistance {
         match self.nearest(Placement::new(pos12), Real::MAX, Goal::Nearest) {
             Some(pair) => {

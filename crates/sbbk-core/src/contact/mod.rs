@@ -44,6 +44,7 @@
 mod axes;
 mod clip;
 mod closest;
+pub mod convex;
 mod edges;
 mod feature;
 mod generate;

@@ -50,8 +50,8 @@ const AREA: Real = 1.0 / 131_072.0;
 
 /// The face of a cuboid that a mesh is over.
 #[derive(Copy, Clone, Debug)]
-pub(super) struct OverFace<'a> {
-    cuboid: &'a Cuboid,
+pub(super) struct OverFace {
+    cuboid: Cuboid,
     /// Triangles in the frame of the cuboid, and the reverse.
     poses: [Pose; 2],
     axis: usize,
@@ -70,12 +70,12 @@ pub(super) struct OverFace<'a> {
     corner_ids: [PackedFeatureId; 3],
 }
 
-impl<'a> OverFace<'a> {
+impl OverFace {
     /// The face that is farthest below `point`, which is in the frame of the cuboid. `to_cuboid` places triangles in that frame,
     /// `to_triangle` is its inverse as Parry is given it.
     pub(super) fn below(
         point: Vec3,
-        cuboid: &'a Cuboid,
+        cuboid: &Cuboid,
         [to_cuboid, to_triangle]: [&Pose; 2],
     ) -> Self {
         let above = point.abs() - cuboid.half_extents;
@@ -91,7 +91,7 @@ impl<'a> OverFace<'a> {
         let is_face = denominator.abs() > Real::EPSILON && denominator.is_finite();
         let size = if is_face { cuboid.half_extents.element_sum() } else { Real::NAN };
         Self {
-            cuboid,
+            cuboid: *cuboid,
             poses: [*to_cuboid, *to_triangle],
             axis,
             sign,
@@ -126,11 +126,17 @@ impl<'a> OverFace<'a> {
         if height > prediction {
             return true;
         }
-        let (mut of_triangle, _) =
-            triangle_cuboid_find_local_separating_normal_oneway(triangle, self.cuboid, to_triangle);
+        let (mut of_triangle, _) = triangle_cuboid_find_local_separating_normal_oneway(
+            triangle,
+            &self.cuboid,
+            to_triangle,
+        );
         if !self.beats_edges(&placed, height, inside) {
-            let (of_edges, _) =
-                cuboid_triangle_find_local_separating_edge_twoway(self.cuboid, triangle, to_cuboid);
+            let (of_edges, _) = cuboid_triangle_find_local_separating_edge_twoway(
+                &self.cuboid,
+                triangle,
+                to_cuboid,
+            );
             of_triangle = of_triangle.max(of_edges);
         }
         if of_triangle > prediction {

@@ -1,20 +1,26 @@
-//! A mesh and a convex shape: from a pose to contact manifolds.
+//! A mesh and convex shapes: one, or the parts of a compound or a polyline.
 //!
-//! Stock Parry asks the mesh's tree with the shape's box in the mesh's frame, which for a large floor is the whole mesh, and
-//! runs its contact routine on every triangle found, in every step. Here a descent compares the mesh with the shape itself
-//! ([`shape`] says how far it reaches), and [`query`] keeps what it found with a lower bound of each triangle's distance:
-//! a triangle is not looked at again until the pair has moved so far that it could touch. The contacts are those of
-//! Parry's routine ([`contacts`], [`refresh`]), called as stock calls it, or had without it where they leave nothing to choose: over a
-//! face of a cuboid ([`face`]) and beside a half-space.
+//! Stock Parry asks the mesh's tree with the shape's box in the mesh's frame, which for a large
+//! floor is the whole mesh, and runs its contact routine on every triangle found, in every step.
+//! Here a descent compares the mesh with the shape itself ([`shape`] says how far it reaches). A
+//! candidate is a triangle of the mesh and a part of the shape ([`parts`]), with a lower bound of
+//! their distance and the axis that shows it: it is not looked at again until the pair has moved so
+//! far that they could touch ([`query`]).
+//!
+//! Contacts are a function of the pose, as those of two triangles are. Capsules, cylinders, cones,
+//! polyhedra and round shapes have exact ones ([`features`]). Balls, cuboids and half-spaces, and
+//! all kinds if the host wants that, have those of Parry's routine asked as if nothing was known
+//! ([`placed`]), or without it where it leaves nothing to choose: over a face of a cuboid
+//! ([`face`]) and beside a half-space.
 
-mod contacts;
 mod face;
+mod features;
 mod half_space;
+mod parts;
+mod placed;
 mod query;
-mod refresh;
 mod shape;
 
-pub(super) use contacts::NearTriangle;
+pub(crate) use parts::Parts;
+pub(super) use placed::PlacedPart;
 pub(crate) use query::ConvexPair;
-pub(crate) use shape::ConvexShape;
-pub(super) use shape::Fingerprint;

@@ -1,237 +1,330 @@
-use std::cell::RefCell;
 use std::sync::Arc;
 
-use parry3d::bounding_volume::BoundingVolume;
+use glamx::Vec3;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
-use parry3d::query::{ContactManifold, ContactManifoldsWorkspace};
-use parry3d::shape::{CompoundPseudoNormals, TriMesh};
+use parry3d::query::details::NormalConstraints;
+use parry3d::query::{ContactManifold, TrackedContact};
+use parry3d::shape::{TriMesh, Triangle};
+use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::leaf::ProbeTest;
-use sbbk_core::traverse::{
-    Convex, Counters, Placement, Probe, ProbeScratch, Verdict, descend_probe,
-};
+use sbbk_core::traverse::{Counters, Placement, Probe, Verdict, descend_probe};
 use sbbk_core::volumes::rounding::gamma;
 
-use super::contacts::{Generator, Limits, NearTriangle};
-use super::shape::{ConvexShape, Fingerprint, Kind};
-use crate::mesh::{Change, Held, KnownMesh, PreparedMesh, TreeCache, root_box};
-use crate::pair::candidates::OrderKey;
-use crate::pair::coherence::{Coherence, KnownCandidate, Plan};
-use crate::pair::state::{History, PairKind, PairState, state_in};
-use crate::pair::{Answer, Question};
+use super::features::core_contact;
+use super::parts::{KnownParts, Part, Parts};
+use super::placed::{PlacedPart, Question};
+use super::shape::ConvexShape;
+use crate::ContactGenerator;
+use crate::mesh::{Change, Held, KnownMesh, TreeCache, root_box};
+use crate::pair::driver::{Limits, Moving, Pair, PairQuery, Scratch};
+use crate::pair::order::{Candidate, OrderKey};
+use crate::pair::pose::{MeshPlace, PairPose};
 
-/// The question: which contacts do a mesh and a convex shape have?
+/// A mesh and one or more convex shapes.
 #[derive(Copy, Clone)]
 pub(crate) struct ConvexPair<'a> {
-    /// The pose of shape 2 in the frame of shape 1.
-    pub(crate) pos12: &'a Pose,
+    pub(crate) pose: &'a PairPose,
     pub(crate) mesh: &'a TriMesh,
-    pub(crate) shape: ConvexShape<'a>,
-    /// The cones that contact normals of the shape must be in.
-    pub(crate) cone: Option<&'a CompoundPseudoNormals>,
-    /// Whether the mesh is shape 2.
-    pub(crate) flipped: bool,
-    pub(crate) prediction: Real,
-    /// `pos12` as stock passes it on, bit for bit.
-    pub(crate) parrys_pose: Pose,
+    pub(crate) parts: Parts<'a>,
+    pub(crate) mesh_place: MeshPlace,
+    pub(crate) contacts: ContactGenerator,
 }
 
-/// A mesh and a convex shape, as a kind of pair.
-#[derive(Clone)]
-struct MeshAndConvex;
-
-impl PairKind for MeshAndConvex {
-    type Shapes = KnownShapes;
-    type Candidate = NearTriangle;
-    type Contact = ();
-}
-
-/// The mesh, as far as it is known, and the shape that the candidates are for.
-type KnownShapes = (KnownMesh, Option<Fingerprint>);
-
-/// Parry's GJK ends when it knows a distance, radii not counted, to this share; it calls triangles that are so much
-/// beyond the prediction distance contacts as well. Looking for them makes the contacts those of a test of all
-/// triangles.
+/// Parry's GJK ends when it knows a distance, radii not counted, to this share; it calls triangles
+/// that are so much beyond the prediction distance contacts as well. Looking for them makes the
+/// contacts those of a test of all triangles.
 const GJK_TOLERANCE: Real = 1.2e-3;
 
-/// Greatest slack of candidates as a share of the prediction distance. A candidate out of reach costs next to nothing, so it
-/// can be more than for two meshes. More: descents that find much; fewer: descents in each step of a fast body. At half a prediction distance a step, 4
-/// instead of 8 costs 4 % on the mean over all kinds.
-const GREATEST_SLACK: f64 = 8.0;
-
-/// Memory of one query, kept by each thread.
-#[derive(Default)]
-struct Scratch {
-    descent: ProbeScratch,
-    candidates: Vec<KnownCandidate<NearTriangle>>,
-    places: Vec<(OrderKey, u32)>,
-}
-
-thread_local! {
-    static SCRATCH: RefCell<Scratch> = RefCell::default();
-}
-
-impl<'a> ConvexPair<'a> {
-    /// The whole of two colliders: stock passes on the inverse of an inverse where the mesh is shape 2.
-    pub(crate) fn new(
-        pos12: &'a Pose,
-        (mesh, shape): (&'a TriMesh, ConvexShape<'a>),
-        flipped: bool,
-        prediction: Real,
-    ) -> Self {
-        let parrys_pose = if flipped { pos12.inverse().inverse() } else { *pos12 };
-        Self { pos12, mesh, shape, cone: None, flipped, prediction, parrys_pose }
-    }
-
-    /// The mesh in the frame of the shape.
-    fn placement(&self) -> Placement {
-        let placement = Placement::new(self.pos12);
-        if self.flipped { placement } else { placement.inverted() }
-    }
-
-    /// Whether the boxes meet, as stock tests them. Asked before there is a tree.
-    fn root_boxes_meet(&self) -> bool {
-        let Some(root) = root_box(self.mesh) else {
-            return true;
-        };
-        let pose = if self.flipped { &self.pos12.inverse() } else { self.pos12 };
-        let rounding = 1e-5 * (root.half_extents().length() + root.center().length());
-        let moved = self.shape.shape.compute_aabb(pose);
-        root.intersects(&moved.loosened(self.prediction.max(0.0) + rounding))
-    }
-
-    /// How far Parry's routine may see: the prediction distance, what GJK adds, and what Parry rounds away in f32, some
-    /// sixty operations on coordinates of the mesh, the pose and the shape.
-    fn sight(&self, prepared: &PreparedMesh) -> Real {
-        // A NaN stays one.
-        let prediction = if self.prediction < 0.0 { 0.0 } else { self.prediction };
-        let size = match self.shape.kind {
-            Kind::HalfSpace(_) => 0.0,
-            _ => self.shape.outline().size() as Real,
-        };
-        let largest = prepared.tree.magnitude() + self.pos12.translation.abs().max_element() + size;
-        prediction + GJK_TOLERANCE * (prediction + self.shape.radius()) + gamma(64) * largest
-    }
-
-    /// The tree of the mesh, from the state if it is known and still valid, refitted if the mesh has deformed.
-    ///
-    /// If only another dispatcher was here before, or a snapshot was restored, the manifolds are as good as ours: all are of
-    /// Parry's routine.
-    fn tree<'s, M, C: Default + Copy>(
-        &self,
-        cache: &Arc<TreeCache>,
-        (known, known_shape): &'s mut KnownShapes,
-        coherence: &mut Coherence<NearTriangle>,
-        manifolds: &mut Vec<ContactManifold<M, C>>,
-    ) -> Option<Held<'s>> {
-        let (mut change, tree) = cache.noting(self.mesh, known.update(self.mesh, cache))?;
-        let fingerprint = self.shape.fingerprint();
-        if known_shape.replace(fingerprint).is_some_and(|known| known != fingerprint) {
-            change = Change::Replaced;
-        }
-        match change {
-            Change::Unknown => coherence.clear(),
-            _ => coherence.follow(change, manifolds),
-        }
-        tree.drop_broken(manifolds, |manifold| {
-            [manifold.subshape1, manifold.subshape2][usize::from(self.flipped)]
-        });
-        Some(tree)
-    }
-
-    /// Fills `scratch.candidates` with all triangles within `margin`, and few others, in stock order.
-    fn collect(
-        &self,
-        prepared: &PreparedMesh,
-        placement: &Placement,
-        margin: Real,
-        counters: impl Counters,
-        scratch: &mut Scratch,
-    ) {
-        let Scratch { descent, candidates, .. } = scratch;
-        candidates.clear();
-        let mut probe = Probe::new(&prepared.tree, placement, &self.shape, f64::from(margin));
-        let test = ProbeTest::new(&probe);
-        descend_probe(&prepared.tree, &mut probe, descent, counters, |batch| {
-            test.survivors(batch, |lane, distance, axis| {
-                let triangle = batch.triangles()[lane];
-                if prepared.is_broken(triangle) {
-                    return;
-                }
-                let key = OrderKey::of_triangle(prepared, triangle);
-                let candidate = NearTriangle { key, triangle, axis };
-                candidates.push(KnownCandidate { candidate, clear: distance });
-            });
-            Verdict::Descend
-        });
-        candidates.sort_unstable_by_key(|known| known.candidate.key);
-    }
-
-    /// Brings the manifolds up to date from what is known of the pair and the tree of the mesh.
-    pub(in crate::pair) fn update<M, C>(
-        &self,
-        prepared: &PreparedMesh,
-        (coherence, history): (&mut Coherence<NearTriangle>, &mut History<M, C, ()>),
-        counters: impl Counters,
-        manifolds: &mut Vec<ContactManifold<M, C>>,
-    ) -> Answer
-    where
-        M: Default + Clone + Send + Sync + 'static,
-        C: Default + Copy + Send + Sync + 'static,
-    {
-        let placement = self.placement();
-        let sight = self.sight(prepared);
-        let ball = prepared.tree.bounding_ball();
-        let plan = coherence.plan(ball, (self.pos12, placement), sight, GREATEST_SLACK);
-        if plan == Plan::Nothing && history.is_of(manifolds) {
-            return Answer::Unchanged;
-        }
-        let generator = Generator::new(self, prepared, placement);
-        SCRATCH.with_borrow_mut(|scratch| match plan {
-            Plan::Reuse { .. } => {
-                let limits = Limits { sight: f64::from(sight), travel: coherence.travel() };
-                let candidates = coherence.candidates_mut();
-                generator.update(candidates, limits, &mut scratch.places, history, manifolds);
-                Answer::Reused
-            }
-            Plan::Nothing | Plan::Descend { .. } => {
-                let margin = if let Plan::Descend { margin } = plan { margin } else { sight };
-                self.collect(prepared, &placement, margin, counters, scratch);
-                let Scratch { candidates, places, .. } = scratch;
-                let limits = Limits { sight: f64::from(sight), travel: 0.0 };
-                generator.update(candidates, limits, places, history, manifolds);
-                if matches!(plan, Plan::Descend { .. }) {
-                    coherence.keep(candidates.iter().copied());
-                }
-                Answer::Descended
-            }
+impl ConvexPair<'_> {
+    /// The box around the mesh in the frame of the parts, grown by `reach`. `None` if the mesh is
+    /// broken: it can be anywhere.
+    fn mesh_box(&self, reach: Real) -> Option<Aabb> {
+        let root = root_box(self.mesh)?;
+        let pos12 = self.pose.pos12;
+        let pose = if self.mesh_place.is_second() { pos12 } else { pos12.inverse() };
+        let size = root.half_extents().length() + root.center().length();
+        let rounding = gamma(64) * (size + pose.translation.length() + reach);
+        let grown = reach + rounding;
+        // A pose that is not a number is nowhere.
+        let is_somewhere = grown >= 0.0;
+        Some(if is_somewhere {
+            root.transform_by(&pose).loosened(grown)
+        } else {
+            Aabb::new_invalid()
         })
     }
+
+    /// Whether stock walks the hierarchy of the mesh first.
+    fn is_mesh_first(&self) -> bool {
+        let mesh = self.mesh.bvh().root_aabb().half_extents().length_squared();
+        self.parts.walk_size().is_none_or(|parts| match self.mesh_place {
+            MeshPlace::First => mesh >= parts,
+            MeshPlace::Second => parts < mesh,
+        })
+    }
+
+    /// The pose of shape 2 in the frame of shape 1 with a part in place of the whole: with stock's
+    /// roundings.
+    pub(super) fn part_pose(&self, part: Option<&Pose>) -> Pose {
+        let pos12 = self.pose.pos12;
+        let (is_mesh_first, is_mesh_second) = (self.is_mesh_first(), self.mesh_place.is_second());
+        match (self.parts, part) {
+            (Parts::One(_), _) if is_mesh_second => pos12.inverse().inverse(),
+            (Parts::One(_), _) => pos12,
+            (_, None) if is_mesh_first == is_mesh_second => pos12,
+            (_, None) => pos12.inverse().inverse(),
+            (_, Some(part)) => match (is_mesh_second, is_mesh_first) {
+                (false, false) => pos12 * *part,
+                (false, true) => part.inv_mul(&pos12.inverse()).inverse(),
+                (true, true) => part.inv_mul(&pos12),
+                (true, false) => (pos12.inverse() * *part).inverse(),
+            },
+        }
+    }
 }
 
-impl Question for ConvexPair<'_> {
-    fn contact_manifolds<M, C>(
-        self,
-        cache: &Arc<TreeCache>,
-        counters: impl Counters,
-        manifolds: &mut Vec<ContactManifold<M, C>>,
-        workspace: &mut Option<ContactManifoldsWorkspace>,
-    ) -> Answer
+impl<'a> Pair for ConvexPair<'a> {
+    /// The mesh, and the parts that the candidates are of.
+    type Known = (KnownMesh, KnownParts);
+    type Hint = Vec3;
+    type Query<'q>
+        = ConvexQuery<'q>
     where
-        M: Default + Clone + Send + Sync + 'static,
-        C: Default + Copy + Send + Sync + 'static,
-    {
-        if cache.is_unsupported(&[self.mesh]) {
-            return Answer::Unsupported;
-        }
-        let PairState::<_, _, MeshAndConvex> { shapes, coherence, history } =
-            state_in(workspace, manifolds);
-        if shapes.0.is_unknown() && !self.root_boxes_meet() {
-            manifolds.clear();
-            return Answer::Apart;
-        }
-        let Some(prepared) = self.tree(cache, shapes, coherence, manifolds) else {
-            return Answer::Unsupported;
-        };
-        self.update(&prepared, (coherence, history), counters, manifolds)
+        Self: 'q;
+
+    fn is_unsupported(&self, cache: &TreeCache) -> bool {
+        cache.is_unsupported(&[self.mesh])
     }
+
+    fn needs_trees((mesh, _): &Self::Known) -> bool {
+        mesh.is_unknown()
+    }
+
+    fn boxes_meet(&self, _: &mut impl Counters) -> bool {
+        let prediction = self.pose.prediction.max(0.0);
+        let reach = prediction + GJK_TOLERANCE * prediction;
+        self.mesh_box(reach).is_none_or(|aabb| self.parts.meets(&aabb))
+    }
+
+    fn open<'q>(
+        &'q self,
+        cache: &Arc<TreeCache>,
+        (known_mesh, known_parts): &'q mut Self::Known,
+    ) -> Option<(Change, Self::Query<'q>)> {
+        let (mut change, prepared) =
+            cache.noting(self.mesh, known_mesh.update(self.mesh, cache))?;
+        if known_parts.update(&self.parts) {
+            change = Change::Replaced;
+        }
+        let is_mesh_first = self.is_mesh_first();
+        let placement = self.mesh_place.mesh_in_other(&self.pose.placement12);
+        let query = ConvexQuery { pair: self, prepared, known_parts, placement, is_mesh_first };
+        Some((change, query))
+    }
+}
+
+/// A mesh with its tree, and the parts.
+pub(crate) struct ConvexQuery<'q> {
+    pub(super) pair: &'q ConvexPair<'q>,
+    pub(super) prepared: Held<'q>,
+    known_parts: &'q KnownParts,
+    /// The mesh in the frame of the parts.
+    placement: Placement,
+    /// Whether stock walks the hierarchy of the mesh first.
+    is_mesh_first: bool,
+}
+
+impl ConvexQuery<'_> {
+    /// Adds the triangles within `margin` of a part, and few others.
+    fn descend_part(
+        &self,
+        index: u32,
+        margin: Real,
+        counters: &mut impl Counters,
+        scratch: &mut Scratch,
+        candidates: &mut Vec<Candidate<Vec3>>,
+    ) {
+        let prepared = &*self.prepared;
+        self.pair.parts.with(index, |part| {
+            let placed = self.placed(index, &part, scratch);
+            let (placement, shape) = (placed.placement, placed.measured(part.shape));
+            let mut probe = Probe::new(&prepared.tree, &placement, &shape, f64::from(margin));
+            let test = ProbeTest::new(&probe);
+            descend_probe(&prepared.tree, &mut probe, &mut scratch.probe, counters, |batch| {
+                test.survivors(batch, |lane, clear, hint| {
+                    let triangle = batch.triangles()[lane];
+                    if !prepared.is_broken(triangle) {
+                        let subshapes = self.pair.mesh_place.swap([triangle, index]);
+                        let key = self.key_of(triangle, index);
+                        candidates.push(Candidate { key, subshapes, clear, hint });
+                    }
+                });
+                Verdict::Descend
+            });
+        });
+    }
+
+    fn key_of(&self, triangle: u32, part: u32) -> OrderKey {
+        let ranks = [self.prepared.rank(triangle), self.known_parts.rank(part)];
+        OrderKey::new(if self.is_mesh_first { ranks } else { [ranks[1], ranks[0]] })
+    }
+
+    /// A part at its place, as this query has it.
+    #[inline]
+    fn placed<'s>(&self, index: u32, part: &Part<'_>, scratch: &'s mut Scratch) -> &'s PlacedPart {
+        /// Parts that are kept at hand. More: parts that stock walks last are placed again less
+        /// often.
+        const AT_HAND: usize = 64;
+        let parts = &mut scratch.parts;
+        let slot = index as usize % AT_HAND;
+        if parts.len() <= slot {
+            parts.resize_with(slot + 1, || None);
+        }
+        if parts[slot].as_ref().is_some_and(|placed| placed.index != index) {
+            parts[slot] = None;
+        }
+        parts[slot].get_or_insert_with(|| PlacedPart::new(index, part, self))
+    }
+}
+
+impl PairQuery for ConvexQuery<'_> {
+    /// The direction along which triangle and part were apart when last seen, from the part to the
+    /// triangle, in the frame of the part. Zero if they were not.
+    type Hint = Vec3;
+    type Contact = Near;
+
+    /// A candidate out of reach costs next to nothing, so it can be more than for two meshes. More:
+    /// descents that find much; less: descents in each step of a fast body. At half a prediction
+    /// distance a step, 4 instead of 8 costs 4 % on the mean over all kinds.
+    const GREATEST_SLACK: f64 = 8.0;
+
+    fn pose(&self) -> &PairPose {
+        self.pair.pose
+    }
+
+    fn moving(&self) -> Moving {
+        Moving { ball: self.prepared.tree.bounding_ball(), placement: self.placement }
+    }
+
+    /// How far Parry's routine may see: the prediction distance, what GJK adds, and what Parry
+    /// rounds away in f32, some sixty operations on coordinates of the mesh, the pose and the
+    /// shape.
+    fn reach(&self) -> Real {
+        let PairPose { pos12, prediction, .. } = self.pair.pose;
+        // A NaN stays one.
+        let prediction = if *prediction < 0.0 { 0.0 } else { *prediction };
+        let KnownParts { radius, size, .. } = *self.known_parts;
+        let largest = self.prepared.tree.magnitude() + pos12.translation.abs().max_element() + size;
+        let reach = prediction + GJK_TOLERANCE * (prediction + radius) + gamma(64) * largest;
+        reach.min(Real::MAX)
+    }
+
+    fn descend(
+        &mut self,
+        margin: Real,
+        counters: &mut impl Counters,
+        scratch: &mut Scratch,
+        candidates: &mut Vec<Candidate<Vec3>>,
+    ) {
+        let Some(mesh_box) = self.pair.mesh_box(margin) else {
+            return (0..self.known_parts.count()).for_each(|part| {
+                self.descend_part(part, margin, counters, scratch, candidates);
+            });
+        };
+        self.pair.parts.meeting(&mesh_box, |part| {
+            self.descend_part(part, margin, counters, scratch, candidates);
+        });
+    }
+
+    fn key(&self, subshapes: [u32; 2]) -> OrderKey {
+        let [triangle, part] = self.pair.mesh_place.swap(subshapes);
+        self.key_of(triangle, part)
+    }
+
+    #[inline(always)]
+    fn contact(
+        &mut self,
+        candidate: &mut Candidate<Vec3>,
+        limits: Limits,
+        scratch: &mut Scratch,
+    ) -> Option<Near> {
+        let [triangle, part] = self.pair.mesh_place.swap(candidate.subshapes);
+        let triangle = self.pair.mesh.triangle(triangle);
+        // A descent has just looked.
+        let has_moved = limits.travel > 0.0;
+        let is_exact = self.pair.contacts == ContactGenerator::Exact;
+        self.pair.parts.with(part, |part_shape| {
+            let shape = part_shape.shape;
+            let placed = self.placed(part, &part_shape, scratch);
+            if has_moved && candidate.hint != Vec3::ZERO {
+                let gap = placed.gap(shape, &triangle, candidate.hint);
+                if gap > limits.reach {
+                    candidate.clear = candidate.clear.max(gap + limits.travel);
+                    return None;
+                }
+            }
+            let ConvexShape::Features { shape, radius, .. } = shape else {
+                return Some(Near { triangle, contact: None });
+            };
+            if !is_exact {
+                return Some(Near { triangle, contact: None });
+            }
+            let radius = f64::from(radius);
+            let corners = placed.corners(&triangle);
+            let contact = core_contact(&corners, shape, limits.margin + radius);
+            let distance = contact.map_or(limits.margin, |contact| contact.distance - radius);
+            candidate.clear = distance + limits.travel;
+            let is_near = distance <= f64::from(self.pair.pose.prediction);
+            is_near.then_some(Near { triangle, contact })
+        })?
+    }
+
+    fn name<M, C>(&self, candidate: &Candidate<Vec3>, manifold: &mut ContactManifold<M, C>) {
+        [manifold.subshape1, manifold.subshape2] = candidate.subshapes;
+        if let Parts::Many(_) = self.pair.parts {
+            let [_, part] = self.pair.mesh_place.swap(candidate.subshapes);
+            self.pair.parts.with(part, |part| match self.pair.mesh_place {
+                MeshPlace::First => manifold.set_subshape_pos2(part.pose.copied()),
+                MeshPlace::Second => manifold.set_subshape_pos1(part.pose.copied()),
+            });
+        }
+    }
+
+    #[inline(always)]
+    fn write<M, C>(
+        &mut self,
+        Near { triangle, contact }: Near,
+        candidate: &mut Candidate<Vec3>,
+        _: Limits,
+        scratch: &mut Scratch,
+        previous_points: &mut Vec<TrackedContact<C>>,
+        manifold: &mut ContactManifold<M, C>,
+    ) where
+        M: Default + Clone + Send + Sync,
+        C: Default + Copy + Send + Sync,
+    {
+        let ConvexPair { pose, mesh, parts, mesh_place, .. } = *self.pair;
+        let [index, part_index] = mesh_place.swap(candidate.subshapes);
+        let mut fresh = None;
+        let cone = self.prepared.normal_constraints(mesh, index, &mut fresh);
+        let cone = cone.map(|cone| cone as &dyn NormalConstraints);
+        parts.with(part_index, |part| {
+            let placed = self.placed(part_index, &part, scratch);
+            let prediction = pose.prediction;
+            let question =
+                Question { placed, part: &part, triangle: &triangle, cone, mesh_place, prediction };
+            question.refresh(contact.as_ref(), previous_points, manifold);
+            if manifold.points.is_empty() {
+                candidate.hint = question.axis_of(manifold);
+            }
+        });
+    }
+}
+
+/// A triangle that may be in reach, and its contact if it is known already: that with the core of
+/// the shape.
+pub(crate) struct Near {
+    triangle: Triangle,
+    contact: Option<ConvexContact>,
 }

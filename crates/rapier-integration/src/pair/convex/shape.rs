@@ -1,117 +1,93 @@
 //! Parry's convex shapes, as far as a descent has to know them.
 
 use glamx::{DVec3, Vec3};
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Real, Vector};
 use parry3d::shape::{Ball, Cuboid, HalfSpace, PolygonalFeatureMap, Shape, ShapeType};
 use sbbk_core::traverse::{Convex, Outline};
 use sbbk_core::volumes::rounding::gamma;
 
-/// A convex shape that Parry has contacts with triangles for. Not `ShapeType::Custom`: nobody knows what its support map
-/// does.
+/// A convex shape that Parry has contacts with triangles for, by how Parry makes them.
+/// `ShapeType::Custom` is none: what its support map does is not known.
 #[derive(Copy, Clone)]
-pub(crate) struct ConvexShape<'a> {
-    pub(super) shape: &'a dyn Shape,
-    pub(super) kind: Kind<'a>,
-    fingerprint: Fingerprint,
-}
-
-/// How Parry makes its contacts.
-#[derive(Copy, Clone)]
-pub(super) enum Kind<'a> {
+pub(crate) enum ConvexShape<'a> {
     /// From the projection of the centre.
     Ball(&'a Ball),
     /// From the support feature of the triangle.
     HalfSpace(&'a HalfSpace),
     /// From separating axes.
     Cuboid(&'a Cuboid),
-    /// From GJK and two support features, with a radius around the shape.
-    Features(&'a dyn PolygonalFeatureMap, Real),
+    /// From the closest points and two support features, with a radius around the shape.
+    Features { shape: &'a dyn Shape, map: &'a dyn PolygonalFeatureMap, radius: Real },
 }
 
-/// What a shape was at the last query, as far as a few numbers tell: its kind, its box, and its support point in a skew
-/// direction.
+impl<'a> ConvexShape<'a> {
+    /// `None` if the shape is of another kind.
+    pub(super) fn of(shape: &'a dyn Shape) -> Option<Self> {
+        Some(match shape.shape_type() {
+            ShapeType::Ball => Self::Ball(shape.as_ball()?),
+            ShapeType::HalfSpace => Self::HalfSpace(shape.as_halfspace()?),
+            ShapeType::Cuboid => Self::Cuboid(shape.as_cuboid()?),
+            ShapeType::Capsule
+            | ShapeType::Segment
+            | ShapeType::Triangle
+            | ShapeType::ConvexPolyhedron
+            | ShapeType::Cylinder
+            | ShapeType::Cone
+            | ShapeType::RoundCuboid
+            | ShapeType::RoundTriangle
+            | ShapeType::RoundCylinder
+            | ShapeType::RoundCone
+            | ShapeType::RoundConvexPolyhedron => {
+                let (map, radius) = shape.as_polygonal_feature_map()?;
+                Self::Features { shape, map, radius }
+            }
+            _ => return None,
+        })
+    }
+}
+
+/// How far a shape extends: its radius and the box around the rest of it.
 ///
-/// A host drops the workspace of a pair when it edits a shape, see [`crate::mesh`]; this is for those that do not.
+/// Also tells, as far as a few numbers do, that a shape is the one that it was at the last query. A
+/// host drops the workspace of a pair when it edits a shape, see [`crate::mesh`]; this is for those
+/// that do not.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub(in crate::pair) struct Fingerprint {
+pub(super) struct Extent {
     shape_type: ShapeType,
-    radius: Real,
+    /// Around the core that Parry's routine knows.
+    pub(super) radius: Real,
     min: Vec3,
     max: Vec3,
+    /// The support point in a skew direction; the normal of a half-space.
     skew: Vec3,
 }
 
-/// Points in no direction that a shape is likely to have a face or an axis in.
+/// A direction in which a shape is not likely to have a face or an axis.
 const SKEW: Vec3 = Vec3::new(0.267, 0.535, 0.802);
 
-impl<'a> ConvexShape<'a> {
-    /// Whether shapes of this type are among them.
-    pub(crate) fn is_known(shape_type: ShapeType) -> bool {
-        matches!(
+impl Extent {
+    pub(super) fn of(shape: ConvexShape<'_>) -> Self {
+        let point = |shape_type| Self {
             shape_type,
-            ShapeType::Ball
-                | ShapeType::HalfSpace
-                | ShapeType::Cuboid
-                | ShapeType::Capsule
-                | ShapeType::Segment
-                | ShapeType::Triangle
-                | ShapeType::ConvexPolyhedron
-                | ShapeType::Cylinder
-                | ShapeType::Cone
-                | ShapeType::RoundCuboid
-                | ShapeType::RoundTriangle
-                | ShapeType::RoundCylinder
-                | ShapeType::RoundCone
-                | ShapeType::RoundConvexPolyhedron
-        )
-    }
-
-    /// `None` if the shape is of another kind.
-    pub(crate) fn of(shape: &'a dyn Shape) -> Option<Self> {
-        let kind = match shape.shape_type() {
-            ShapeType::Ball => Kind::Ball(shape.as_ball()?),
-            ShapeType::HalfSpace => Kind::HalfSpace(shape.as_halfspace()?),
-            ShapeType::Cuboid => Kind::Cuboid(shape.as_cuboid()?),
-            other if Self::is_known(other) => {
-                let (map, radius) = shape.as_polygonal_feature_map()?;
-                Kind::Features(map, radius)
-            }
-            _ => return None,
+            radius: 0.0,
+            min: Vec3::ZERO,
+            max: Vec3::ZERO,
+            skew: Vec3::ZERO,
         };
-        Some(Self { shape, kind, fingerprint: Fingerprint::of(shape.shape_type(), kind) })
-    }
-
-    pub(in crate::pair) fn fingerprint(&self) -> Fingerprint {
-        self.fingerprint
-    }
-
-    /// The radius around the core that Parry's routine knows.
-    pub(super) fn radius(&self) -> Real {
-        self.fingerprint.radius
-    }
-
-    /// The largest absolute coordinate of the core: what its rounding is relative to.
-    fn magnitude(&self) -> Real {
-        let Fingerprint { min, max, .. } = self.fingerprint;
-        min.abs().max(max.abs()).max_element()
-    }
-}
-
-impl Fingerprint {
-    fn of(shape_type: ShapeType, kind: Kind<'_>) -> Self {
-        let none =
-            Self { shape_type, radius: 0.0, min: Vec3::ZERO, max: Vec3::ZERO, skew: Vec3::ZERO };
-        match kind {
-            Kind::Ball(ball) => Self { radius: ball.radius, ..none },
-            Kind::HalfSpace(half_space) => Self { skew: half_space.normal, ..none },
-            Kind::Cuboid(cuboid) => {
-                let corner = cuboid.half_extents;
-                Self { min: -corner, max: corner, ..none }
+        match shape {
+            ConvexShape::Ball(ball) => Self { radius: ball.radius, ..point(ShapeType::Ball) },
+            ConvexShape::HalfSpace(half_space) => {
+                Self { skew: half_space.normal, ..point(ShapeType::HalfSpace) }
             }
-            Kind::Features(map, radius) => {
+            ConvexShape::Cuboid(cuboid) => {
+                let corner = cuboid.half_extents;
+                Self { min: -corner, max: corner, ..point(ShapeType::Cuboid) }
+            }
+            ConvexShape::Features { shape, map, radius } => {
                 let end = |axis: Vector| map.local_support_point(axis);
                 Self {
-                    shape_type,
+                    shape_type: shape.shape_type(),
                     radius,
                     min: Vec3::new(end(-Vec3::X).x, end(-Vec3::Y).y, end(-Vec3::Z).z),
                     max: Vec3::new(end(Vec3::X).x, end(Vec3::Y).y, end(Vec3::Z).z),
@@ -120,23 +96,50 @@ impl Fingerprint {
             }
         }
     }
+
+    /// The largest absolute coordinate, radius included: what rounding is relative to. That of a
+    /// half-space does not count.
+    pub(super) fn size(&self) -> Real {
+        self.magnitude() + self.radius
+    }
+
+    /// That of the core.
+    fn magnitude(&self) -> Real {
+        self.min.abs().max(self.max.abs()).max_element()
+    }
+
+    /// Whether a box in the frame of the shape meets the box around the shape, or the half-space.
+    pub(super) fn meets(&self, aabb: &Aabb) -> bool {
+        if self.shape_type == ShapeType::HalfSpace {
+            let (normal, half) = (self.skew, aabb.half_extents());
+            return normal.dot(aabb.center()) <= normal.abs().dot(half);
+        }
+        let radius = Vec3::splat(self.radius);
+        aabb.intersects(&Aabb::new(self.min - radius, self.max + radius))
+    }
 }
 
-impl Convex for ConvexShape<'_> {
-    /// Parry's support points are found in f32, from the direction rounded to f32: the best point is missed, or off, by
-    /// a few roundings of the largest coordinate.
+/// A convex shape for a descent.
+pub(super) struct Measured<'a> {
+    pub(super) shape: ConvexShape<'a>,
+    pub(super) extent: Extent,
+}
+
+impl Convex for Measured<'_> {
+    /// Parry's support points are found in f32, from the direction rounded to f32: the best point
+    /// is missed, or off, by a few roundings of the largest coordinate.
     fn reach(&self, direction: DVec3) -> f64 {
-        match self.kind {
-            Kind::Ball(ball) => f64::from(ball.radius) * direction.length(),
-            // The descent asks along the normal. Any other direction leaves the half-space somewhere.
-            Kind::HalfSpace(half_space) => {
+        match self.shape {
+            ConvexShape::Ball(ball) => f64::from(ball.radius) * direction.length(),
+            // The descent asks along the normal. Along any other direction there is no end.
+            ConvexShape::HalfSpace(half_space) => {
                 let is_normal = direction == half_space.normal.as_dvec3();
                 if is_normal { 0.0 } else { f64::INFINITY }
             }
-            Kind::Cuboid(cuboid) => direction.abs().dot(cuboid.half_extents.as_dvec3()),
-            Kind::Features(map, radius) => {
+            ConvexShape::Cuboid(cuboid) => direction.abs().dot(cuboid.half_extents.as_dvec3()),
+            ConvexShape::Features { map, radius, .. } => {
                 let point = map.local_support_point(direction.as_vec3()).as_dvec3();
-                let rounding = gamma(16) * self.magnitude();
+                let rounding = gamma(16) * self.extent.magnitude();
                 direction.dot(point)
                     + f64::from(rounding) * direction.abs().element_sum()
                     + f64::from(radius) * direction.length()
@@ -145,10 +148,10 @@ impl Convex for ConvexShape<'_> {
     }
 
     fn outline(&self) -> Outline {
-        if let Kind::HalfSpace(half_space) = self.kind {
+        if let ConvexShape::HalfSpace(half_space) = self.shape {
             return Outline::HalfSpace { normal: half_space.normal.as_dvec3() };
         }
-        let Fingerprint { shape_type, radius, min, max, .. } = self.fingerprint;
+        let Extent { shape_type, radius, min, max, .. } = self.extent;
         let (min, max) = (min.as_dvec3(), max.as_dvec3());
         let half_lengths = 0.5 * (max - min);
         let is_box = matches!(shape_type, ShapeType::Cuboid | ShapeType::RoundCuboid);

@@ -59,7 +59,7 @@ impl HeightGrid for Field<'_> {
 /// Tells in constant time that a field is most likely still the one it was: addresses, sizes, scale, flags, and some
 /// heights. Parry gives nobody the heights of a field to edit.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub(super) struct FieldToken(u64);
+pub(crate) struct FieldToken(u64);
 
 impl FieldToken {
     /// Heights looked at, evenly spread.

@@ -7,7 +7,8 @@ use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::{PackedFeatureId, Triangle};
 use sbbk_core::contact::{
-    Feature, FeaturePair, ManifoldPoint, ManifoldPoints, TriangleContact, clip, manifold,
+    Feature, FeaturePair, ManifoldPoint, ManifoldPoints, TriangleContact, clip,
+    manifold as manifold_of,
 };
 use sbbk_core::query::TrianglePair;
 use sbbk_core::traverse::Placement;
@@ -23,19 +24,6 @@ pub(super) fn local_pair(
 ) -> TrianglePair {
     let corners = |triangle: &Triangle| [triangle.a, triangle.b, triangle.c];
     TrianglePair::new(placement, corners(triangle1), corners(triangle2))
-}
-
-/// The contact within the margin and, within the prediction distance, its points; tried first with the
-/// features of the step before.
-#[inline(always)]
-pub(super) fn contact_of(
-    pair: &TrianglePair,
-    (margin, prediction): (Real, Real),
-    last: Option<FeaturePair>,
-    points: &mut ManifoldPoints,
-) -> Option<TriangleContact> {
-    let [t1, t2] = &pair.corners;
-    manifold(t1, t2, f64::from(margin), f64::from(prediction), last, points)
 }
 
 /// Fills `manifold` with the `points` of a contact, as Parry would: the normal is projected into the cones of both
@@ -181,7 +169,9 @@ impl<C: Default + Copy> TriangleContacts<C> {
         let placement = Placement::new(pos12);
         let triangles = local_pair(&placement, &triangles.map(|triangle| *triangle));
         let mut points = ManifoldPoints::new();
-        let contact = contact_of(&triangles, (prediction, prediction), self.features, &mut points);
+        let [t1, t2] = &triangles.corners;
+        let within = f64::from(prediction);
+        let contact = manifold_of(t1, t2, within, within, self.features, &mut points);
         self.features = contact.map(|contact| contact.features);
         match contact {
             Some(contact) => fill(

@@ -1,0 +1,184 @@
+use parry3d::bounding_volume::Aabb;
+use parry3d::math::{Pose, Real};
+use parry3d::query::details::NormalConstraints;
+use parry3d::shape::{CompositeShape, Shape};
+
+use super::shape::{ConvexShape, Extent};
+
+/// The convex shapes that a shape is made of.
+#[derive(Copy, Clone)]
+pub(crate) enum Parts<'a> {
+    /// It is convex itself.
+    One(ConvexShape<'a>),
+    /// A compound or a polyline.
+    Many(Composite<'a>),
+}
+
+/// A shape with parts in a hierarchy of its own.
+#[derive(Copy, Clone)]
+pub(crate) struct Composite<'a> {
+    shape: &'a dyn CompositeShape,
+    token: CompositeToken,
+}
+
+/// One of the parts.
+pub(super) struct Part<'p> {
+    /// Where it is in the frame of the whole, if elsewhere.
+    pub(super) pose: Option<&'p Pose>,
+    pub(super) shape: ConvexShape<'p>,
+    /// The cone that contact normals of the part must be in.
+    pub(super) cone: Option<&'p dyn NormalConstraints>,
+}
+
+/// What a composite was at the last query, in constant time. Parry has no call that edits the parts
+/// of a compound; a host drops the workspace when it puts another shape in its place, or edits a
+/// polyline, and this is for those that do not.
+#[derive(Copy, Clone, Debug, PartialEq)]
+struct CompositeToken {
+    address: usize,
+    part_count: usize,
+    flags: u32,
+    aabb: Aabb,
+}
+
+impl<'a> Parts<'a> {
+    /// `None` if a part is of a kind that only Parry answers for.
+    pub(crate) fn of(shape: &'a dyn Shape) -> Option<Self> {
+        if let Some(compound) = shape.as_compound() {
+            let parts = compound.shapes();
+            let token = CompositeToken {
+                address: parts.as_ptr().addr(),
+                part_count: parts.len(),
+                flags: u32::from(compound.flags().bits()),
+                aabb: *compound.local_aabb(),
+            };
+            let is_known = parts.iter().all(|(_, part)| ConvexShape::of(&**part).is_some());
+            return is_known.then_some(Self::Many(Composite { shape: compound, token }));
+        }
+        if let Some(polyline) = shape.as_polyline() {
+            let token = CompositeToken {
+                address: polyline.vertices().as_ptr().addr(),
+                part_count: polyline.num_segments(),
+                flags: u32::from(polyline.flags().bits()),
+                aabb: polyline.bvh().root_aabb(),
+            };
+            let is_rigid = !polyline.is_deformable();
+            return is_rigid.then_some(Self::Many(Composite { shape: polyline, token }));
+        }
+        ConvexShape::of(shape).map(Self::One)
+    }
+
+    /// Hands on a part.
+    #[inline]
+    pub(super) fn with<T>(&self, index: u32, then: impl FnOnce(Part<'_>) -> T) -> Option<T> {
+        let composite = match self {
+            Self::One(shape) => return Some(then(Part { pose: None, shape: *shape, cone: None })),
+            Self::Many(composite) => composite,
+        };
+        let (mut then, mut result) = (Some(then), None);
+        composite.shape.map_part_at(index, &mut |pose, shape, cone| {
+            if let (Some(shape), Some(then)) = (ConvexShape::of(shape), then.take()) {
+                result = Some(then(Part { pose, shape, cone }));
+            }
+        });
+        result
+    }
+
+    /// Calls `found` with the parts whose boxes meet a box in the frame of the whole.
+    pub(super) fn meeting(&self, aabb: &Aabb, found: impl FnMut(u32)) {
+        match self {
+            Self::One(_) => std::iter::once(0).for_each(found),
+            Self::Many(composite) => composite.shape.bvh().intersect_aabb(aabb).for_each(found),
+        }
+    }
+
+    /// Whether a box in the frame of the whole meets that of a part.
+    pub(super) fn meets(&self, aabb: &Aabb) -> bool {
+        match self {
+            Self::One(shape) => Extent::of(*shape).meets(aabb),
+            Self::Many(composite) => composite.shape.bvh().intersect_aabb(aabb).next().is_some(),
+        }
+    }
+
+    /// The size by which stock chooses which hierarchy to walk first; none without a hierarchy.
+    pub(super) fn walk_size(&self) -> Option<Real> {
+        match self {
+            Self::One(_) => None,
+            Self::Many(composite) => {
+                Some(composite.shape.bvh().root_aabb().half_extents().length_squared())
+            }
+        }
+    }
+}
+
+/// What is known of the parts from query to query.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct KnownParts {
+    token: Option<Token>,
+    /// The places of the parts of a composite in the order of its hierarchy.
+    ranks: Vec<u32>,
+    /// The greatest radius of a part.
+    pub(super) radius: Real,
+    /// The greatest size of a part, with its distance from the origin of the whole.
+    pub(super) size: Real,
+}
+
+#[derive(Copy, Clone, Debug, PartialEq)]
+enum Token {
+    One(Extent),
+    Many(CompositeToken),
+}
+
+impl KnownParts {
+    /// Takes note of the parts as they are now. Whether others were known before.
+    pub(super) fn update(&mut self, parts: &Parts<'_>) -> bool {
+        let token = match parts {
+            Parts::One(shape) => Token::One(Extent::of(*shape)),
+            Parts::Many(composite) => Token::Many(composite.token),
+        };
+        if self.token == Some(token) {
+            return false;
+        }
+        let was_known = self.token.is_some();
+        *self = Self { token: Some(token), ..Self::default() };
+        match token {
+            Token::One(shape) => (self.radius, self.size) = (shape.radius, shape.size()),
+            Token::Many(CompositeToken { part_count, .. }) => {
+                self.ranks = vec![u32::MAX; part_count];
+                for (rank, part) in parts.leaves().enumerate() {
+                    self.ranks[part as usize] = rank as u32;
+                    parts.with(part, |part| {
+                        let shape = Extent::of(part.shape);
+                        let offset =
+                            part.pose.map_or(0.0, |pose| pose.translation.abs().max_element());
+                        self.radius = self.radius.max(shape.radius);
+                        self.size = self.size.max(shape.size() + offset);
+                    });
+                }
+            }
+        }
+        was_known
+    }
+
+    /// How many there are.
+    pub(super) fn count(&self) -> u32 {
+        self.ranks.len().max(1) as u32
+    }
+
+    /// The place of a part in the order of its hierarchy.
+    #[inline(always)]
+    pub(super) fn rank(&self, part: u32) -> u32 {
+        self.ranks.get(part as usize).copied().unwrap_or(0)
+    }
+}
+
+impl<'a> Parts<'a> {
+    /// All parts of a composite, in the order of its hierarchy.
+    fn leaves(&self) -> impl Iterator<Item = u32> {
+        let bvh = match self {
+            Self::One(_) => None,
+            Self::Many(composite) => Some(composite.shape.bvh()),
+        };
+        bvh.into_iter().flat_map(|bvh| bvh.leaves(|_| true))
+    }
+}

@@ -1,0 +1,27 @@
+/// The place of a pair of subshapes in the order of stock manifolds.
+///
+/// Parry walks the hierarchy of the shape with the larger box and, for each part found there, the
+/// hierarchy of the other. The order of SBBK depends on the two shapes only: not on the descent, a
+/// thread, or earlier queries.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct OrderKey(u64);
+
+impl OrderKey {
+    /// Of parts with these ranks in the shape walked first and in the other.
+    pub(super) fn new([major, minor]: [u32; 2]) -> Self {
+        Self(u64::from(major) << 32 | u64::from(minor))
+    }
+}
+
+/// A pair of subshapes that may come within the prediction distance.
+#[derive(Copy, Clone, Debug)]
+pub(crate) struct Candidate<H> {
+    pub(super) key: OrderKey,
+    /// Their numbers in shape 1 and shape 2.
+    pub(super) subshapes: [u32; 2],
+    /// A lower bound of the distance when it was last measured, plus the travel of the pair then.
+    /// Minus the present travel, it bounds the present distance.
+    pub(super) clear: f64,
+    /// What makes the next query about it cheaper. Never part of the answer.
+    pub(super) hint: H,
+}

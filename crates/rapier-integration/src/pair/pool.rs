@@ -1,0 +1,214 @@
+//! The manifolds of a pair, kept from query to query: a new one costs ten times as much as a used
+//! one.
+
+use parry3d::query::{ContactManifold, TrackedContact};
+
+/// Manifolds that are in use or spare.
+///
+/// As long as no manifold comes or goes, all stay in their place in the host's list: to move one
+/// takes as long as to update its distances.
+#[derive(Clone)]
+pub(super) struct ManifoldPool<M, C> {
+    /// Length of the prefix of the host's list that stays in place. Zero once `next` is in use;
+    /// `next` then holds all that is kept.
+    in_place: usize,
+    next: Vec<ContactManifold<M, C>>,
+    spare: Vec<ContactManifold<M, C>>,
+    /// The fewest spare ones during this query.
+    least_spare: usize,
+    demand: Demand,
+    /// Memory for the points that a manifold had before.
+    pub(super) previous_points: Vec<TrackedContact<C>>,
+}
+
+/// How much memory to keep: as much as was needed of late. What was not needed for some queries is
+/// given back, a quarter at a time.
+#[derive(Copy, Clone, Debug, Default)]
+pub(super) struct Demand {
+    peak: usize,
+    /// Queries since as much was needed.
+    age: u8,
+}
+
+impl Demand {
+    /// More: memory is kept longer. Fewer: allocations where contacts come and go.
+    const PATIENCE: u8 = 64;
+
+    /// Notes what a query has needed. If it is time to keep less, how much.
+    pub(super) fn note(&mut self, needed: usize) -> Option<usize> {
+        self.age += 1;
+        if needed >= self.peak {
+            (self.peak, self.age) = (needed, 0);
+        } else if self.age >= Self::PATIENCE {
+            (self.peak, self.age) = (needed.max(self.peak - self.peak.div_ceil(4)), 0);
+            return Some(self.peak);
+        }
+        None
+    }
+}
+
+impl<M, C> Default for ManifoldPool<M, C> {
+    fn default() -> Self {
+        Self {
+            in_place: 0,
+            next: Vec::new(),
+            spare: Vec::new(),
+            least_spare: 0,
+            demand: Demand::default(),
+            previous_points: Vec::new(),
+        }
+    }
+}
+
+impl<M: Default, C: Default + Copy> ManifoldPool<M, C> {
+    /// Begins a query, whether or not the one before has ended.
+    pub(super) fn begin(&mut self) {
+        self.in_place = 0;
+        self.next.clear();
+        self.least_spare = self.spare.len();
+    }
+
+    /// Ends a query: `manifolds` become those that were kept.
+    pub(super) fn end(&mut self, manifolds: &mut Vec<ContactManifold<M, C>>) {
+        manifolds.truncate(std::mem::take(&mut self.in_place));
+        if !self.next.is_empty() {
+            std::mem::swap(manifolds, &mut self.next);
+        }
+        let count = manifolds.len();
+        // New ones come before old ones go, so it can be more than the pair has had.
+        let needed = count.max((count + self.spare.len()).saturating_sub(self.least_spare));
+        if let Some(limit) = self.demand.note(needed) {
+            self.spare.truncate(limit - count);
+        }
+    }
+
+    /// An empty manifold.
+    pub(super) fn take(&mut self) -> ContactManifold<M, C> {
+        let manifold = self.spare.pop().unwrap_or_else(|| {
+            self.demand.peak += 1;
+            ContactManifold::default()
+        });
+        self.least_spare = self.least_spare.min(self.spare.len());
+        manifold
+    }
+
+    /// Adds a manifold, if there is one, to those of this query.
+    #[inline(always)]
+    pub(super) fn keep_new(
+        &mut self,
+        manifold: Option<ContactManifold<M, C>>,
+        manifolds: &mut [ContactManifold<M, C>],
+    ) {
+        self.leave_place(manifolds);
+        self.next.extend(manifold);
+    }
+
+    /// Keeps the manifold at `place` of the host's list, if it has points.
+    #[inline(always)]
+    pub(super) fn keep_old(&mut self, place: usize, manifolds: &mut [ContactManifold<M, C>]) {
+        if manifolds[place].points.is_empty() {
+            self.retire(std::mem::take(&mut manifolds[place]));
+        } else if self.next.is_empty() && place == self.in_place {
+            self.in_place += 1;
+        } else {
+            self.leave_place(manifolds);
+            self.next.push(std::mem::take(&mut manifolds[place]));
+        }
+    }
+
+    /// From here on the manifolds of this query are in `next`.
+    fn leave_place(&mut self, manifolds: &mut [ContactManifold<M, C>]) {
+        let stayed = &mut manifolds[..std::mem::take(&mut self.in_place)];
+        self.next.extend(stayed.iter_mut().map(std::mem::take));
+    }
+
+    /// Takes back a manifold that is no longer used. Only its memory is kept.
+    pub(super) fn retire(&mut self, mut manifold: ContactManifold<M, C>) {
+        if self.in_place + self.next.len() + self.spare.len() < self.demand.peak {
+            reset(&mut manifold);
+            self.spare.push(manifold);
+        }
+    }
+}
+
+/// Makes a manifold an empty one. The poses of its parts stay, as their memory does: a kind of pair
+/// with parts sets them anew.
+pub(super) fn reset<M: Default, C>(manifold: &mut ContactManifold<M, C>) {
+    manifold.points.clear();
+    manifold.local_n1 = Default::default();
+    manifold.local_n2 = Default::default();
+    manifold.data = M::default();
+}
+
+#[cfg(test)]
+mod tests {
+    use oorandom::Rand32;
+    use parry3d::math::Vector;
+    use parry3d::shape::PackedFeatureId;
+
+    use super::*;
+
+    type Manifold = ContactManifold<(), ()>;
+
+    fn manifold(name: u32, has_points: bool) -> Manifold {
+        let mut manifold = Manifold::with_data(name, 0, ());
+        let (at, id) = (Vector::ZERO, PackedFeatureId::UNKNOWN);
+        manifold.points.extend(has_points.then(|| TrackedContact::new(at, at, id, id, 0.0)));
+        manifold
+    }
+
+    /// Would catch manifolds that are lost, doubled or out of order when some stay in place, some go and some are new, and a
+    /// query before, ended by a panic, that is not over.
+    #[test]
+    fn what_is_kept_is_there_in_the_order_in_which_it_was_kept() {
+        let mut random = Rand32::new(3);
+        let mut pool = ManifoldPool::<(), ()>::default();
+        let mut manifolds = Vec::new();
+        let (mut next_name, mut stayed, mut moved) = (0, 0, 0);
+        for _ in 0..3000 {
+            let is_lively = random.rand_float() < 0.6;
+            let is_cut_off = random.rand_float() < 0.05;
+            let mut chance = |share: f32| is_lively && random.rand_float() < share;
+            let before = manifolds.as_ptr();
+            pool.begin();
+            let mut expected = Vec::new();
+            for place in 0..manifolds.len() {
+                if chance(0.1) {
+                    next_name += 1;
+                    if chance(0.3) {
+                        pool.retire(manifold(next_name, false));
+                    } else {
+                        pool.keep_new(Some(manifold(next_name, true)), &mut manifolds);
+                        expected.push(next_name);
+                    }
+                }
+                let name = manifolds[place].subshape1;
+                if chance(0.1) {
+                    pool.retire(std::mem::take(&mut manifolds[place]));
+                    continue;
+                }
+                if chance(0.1) {
+                    manifolds[place].points.clear();
+                } else {
+                    expected.push(name);
+                }
+                pool.keep_old(place, &mut manifolds);
+            }
+            if is_cut_off {
+                // What a panic leaves: no promise which manifolds.
+                manifolds.clear();
+                continue;
+            }
+            if manifolds.len() < 8 {
+                next_name += 1;
+                pool.keep_new(Some(manifold(next_name, true)), &mut manifolds);
+                expected.push(next_name);
+            }
+            pool.end(&mut manifolds);
+            let names: Vec<u32> = manifolds.iter().map(|manifold| manifold.subshape1).collect();
+            assert_eq!(names, expected);
+            *(if manifolds.as_ptr() == before { &mut stayed } else { &mut moved }) += 1;
+        }
+        assert!(stayed > 300 && moved > 300, "{stayed} stayed, {moved} moved");
+    }
+}

@@ -1,0 +1,49 @@
+use parry3d::math::{Pose, Real};
+use sbbk_core::traverse::Placement;
+
+/// Where shape 2 of a pair is, in the frame of shape 1, and how far contacts reach.
+#[derive(Copy, Clone)]
+pub(crate) struct PairPose {
+    /// As the host gives it.
+    pub(super) pos12: Pose,
+    /// The same in f64.
+    pub(super) placement12: Placement,
+    /// The prediction distance.
+    pub(super) prediction: Real,
+}
+
+impl PairPose {
+    pub(crate) fn new(pos12: &Pose, prediction: Real) -> Self {
+        Self { pos12: *pos12, placement12: Placement::new(pos12), prediction }
+    }
+}
+
+/// The order of a mesh and another shape in their pair.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(crate) enum MeshPlace {
+    First,
+    Second,
+}
+
+impl MeshPlace {
+    /// From mesh and other shape to shape 1 and shape 2, or back.
+    #[inline(always)]
+    pub(super) fn swap<T>(self, [one, two]: [T; 2]) -> [T; 2] {
+        match self {
+            Self::First => [one, two],
+            Self::Second => [two, one],
+        }
+    }
+
+    /// The mesh in the frame of the other shape.
+    pub(super) fn mesh_in_other(self, placement12: &Placement) -> Placement {
+        match self {
+            Self::First => placement12.inverted(),
+            Self::Second => *placement12,
+        }
+    }
+
+    pub(super) fn is_second(self) -> bool {
+        self == Self::Second
+    }
+}

@@ -1,0 +1,15 @@
+//! Pairs of which both shapes are made of triangles: two meshes ([`meshes`]), a mesh and a height
+//! field ([`heightfield`]).
+//!
+//! Candidates are pairs of triangles. Their contacts are exact ([`sbbk_core::contact`]), or Parry's
+//! if the host wants those.
+
+mod exact;
+mod field;
+mod heightfield;
+mod meshes;
+mod query;
+
+pub use exact::TriangleContacts;
+pub(crate) use heightfield::FieldPair;
+pub(crate) use meshes::MeshPair;

@@ -1,0 +1,144 @@
+use parry3d::math::{Pose, Real};
+use parry3d::query::{
+    ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, TrackedContact,
+};
+use parry3d::shape::Triangle;
+use sbbk_core::contact::{FeaturePair, ManifoldPoints, TriangleContact, manifold};
+use sbbk_core::query::TrianglePair;
+use sbbk_core::traverse::{Counters, GREATEST_SLACK};
+
+use super::exact::{Constraints, fill, local_pair};
+use crate::ContactGenerator;
+use crate::pair::driver::{Limits, Moving, PairQuery, Scratch};
+use crate::pair::order::{Candidate, OrderKey};
+use crate::pair::pose::PairPose;
+
+/// The features that were closest at the last query, to be tried first.
+pub(super) type Hint = Option<FeaturePair>;
+
+/// Two shapes made of triangles.
+pub(crate) trait TriangleShapes {
+    /// What moves.
+    fn moving(&self) -> Moving;
+
+    /// Calls `found` with all pairs of triangles within `margin`, and few others.
+    fn descend(
+        &self,
+        margin: Real,
+        counters: &mut impl Counters,
+        scratch: &mut Scratch,
+        found: impl FnMut([u32; 2]),
+    );
+
+    /// The place of a pair of triangles in the order of manifolds.
+    fn key(&self, triangles: [u32; 2]) -> OrderKey;
+
+    /// The triangles; `None` if one does not exist.
+    fn triangles(&self, triangles: [u32; 2]) -> Option<[Triangle; 2]>;
+
+    /// Hands on the cones that the normals of both must be in.
+    fn with_constraints(&self, triangles: [u32; 2], then: impl FnOnce(Constraints<'_>));
+}
+
+/// A query about two shapes made of triangles.
+pub(crate) struct TriangleQuery<'q, S> {
+    pub(super) shapes: S,
+    pub(super) pose: &'q PairPose,
+    /// The pose that stock Parry passes on, bit for bit.
+    pub(super) parrys_pose: Pose,
+    pub(super) generator: ContactGenerator,
+    /// Of the contact found last.
+    pub(super) points: ManifoldPoints,
+}
+
+/// A contact within the prediction distance. Its points are in [`TriangleQuery::points`].
+pub(crate) struct Found {
+    triangles: [Triangle; 2],
+    local: TrianglePair,
+    contact: TriangleContact,
+}
+
+impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
+    type Hint = Hint;
+    type Contact = Found;
+
+    const GREATEST_SLACK: f64 = GREATEST_SLACK;
+
+    fn pose(&self) -> &PairPose {
+        self.pose
+    }
+
+    fn moving(&self) -> Moving {
+        self.shapes.moving()
+    }
+
+    fn descend(
+        &mut self,
+        margin: Real,
+        counters: &mut impl Counters,
+        scratch: &mut Scratch,
+        candidates: &mut Vec<Candidate<Hint>>,
+    ) {
+        self.shapes.descend(margin, counters, scratch, |subshapes| {
+            let key = self.shapes.key(subshapes);
+            candidates.push(Candidate { key, subshapes, clear: f64::NEG_INFINITY, hint: None });
+        });
+    }
+
+    fn key(&self, subshapes: [u32; 2]) -> OrderKey {
+        self.shapes.key(subshapes)
+    }
+
+    #[inline(always)]
+    fn contact(
+        &mut self,
+        candidate: &mut Candidate<Hint>,
+        limits: Limits,
+        _: &mut Scratch,
+    ) -> Option<Found> {
+        let triangles = self.shapes.triangles(candidate.subshapes)?;
+        let local = local_pair(&self.pose.placement12, &triangles);
+        let [t1, t2] = &local.corners;
+        let Limits { reach, margin, travel } = limits;
+        let contact = manifold(t1, t2, margin, reach, candidate.hint, &mut self.points);
+        candidate.clear = contact.map_or(margin, |contact| contact.distance) + travel;
+        let contact = contact?;
+        candidate.hint = Some(contact.features);
+        // A descent with slack finds pairs that are farther apart than the prediction distance.
+        (contact.distance <= reach).then_some(Found { triangles, local, contact })
+    }
+
+    #[inline(always)]
+    fn write<M, C>(
+        &mut self,
+        Found { triangles, local, contact }: Found,
+        candidate: &mut Candidate<Hint>,
+        _: Limits,
+        _: &mut Scratch,
+        previous_points: &mut Vec<TrackedContact<C>>,
+        manifold: &mut ContactManifold<M, C>,
+    ) where
+        M: Default + Clone + Send + Sync,
+        C: Default + Copy + Send + Sync,
+    {
+        let Self { shapes, pose, parrys_pose, generator, points } = self;
+        shapes.with_constraints(candidate.subshapes, |constraints| match generator {
+            ContactGenerator::Exact => {
+                let placed = (&pose.placement12, &pose.pos12);
+                fill(placed, &local, (&contact, points), constraints, previous_points, manifold);
+            }
+            ContactGenerator::Parry => {
+                // Two triangles are a pair that Parry supports.
+                let _ = DefaultQueryDispatcher.contact_manifold_convex_convex(
+                    parrys_pose,
+                    &triangles[0],
+                    &triangles[1],
+                    constraints[0],
+                    constraints[1],
+                    pose.prediction,
+                    manifold,
+                );
+            }
+        });
+    }
+}

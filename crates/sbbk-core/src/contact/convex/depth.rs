@@ -1,0 +1,155 @@
+//! The least translation that parts bodies that cross or touch.
+//!
+//! G. van den Bergen, "Proximity queries and penetration depth computation on 3D game objects",
+//! 2001. A polytope inside the difference grows around the origin. The nearest plane of its faces
+//! is never farther than the surface of the difference; a move by the support of the difference
+//! along any direction parts the bodies. Where both meet, the move is the least one. What rounding
+//! makes of a thin face can end the growth early, but never gives a move that does not part them.
+
+use super::difference::{Difference, Vertex};
+use super::polytope::{Face, Polytope};
+use super::simplex::{Simplex, thin_normal};
+use super::support::SupportMap;
+use glamx::DVec3;
+
+/// Share of the depth that may be left open.
+const PROVED: f64 = 1.0e-8;
+
+/// Share of the size that rounding leaves open.
+const ROUNDING: f64 = 1.0e-14;
+
+/// A difference with less extent across its widest plane or line, as a share of the size, has none.
+const FLAT: f64 = 1.0e-12;
+
+/// The direction of the least translation of the triangle, its length, and the point of the
+/// triangle that moves on to the shape.
+#[derive(Clone, Copy)]
+pub(super) struct Depth {
+    /// Unit vector, outward from the difference.
+    pub outward: DVec3,
+    /// How far the difference reaches.
+    pub depth: f64,
+    pub on_triangle: DVec3,
+    /// Faces looked at.
+    pub rounds: u32,
+}
+
+/// Of bodies whose difference holds the origin inside a tetrahedron.
+pub(super) fn depth<S: SupportMap>(
+    difference: &Difference<S>,
+    tetrahedron: [Vertex; 4],
+    size: f64,
+) -> Option<Depth> {
+    let slack = ROUNDING * size;
+    let mut polytope = Polytope::new(tetrahedron, slack);
+    let mut best: Option<Depth> = None;
+    let mut rounds = 0;
+    while let Some(i) = polytope.nearest_open() {
+        rounds += 1;
+        let face = *polytope.get(i);
+        let new = difference.farthest(face.normal);
+        let reach = new.point.dot(face.normal);
+        let is_proved = reach - face.distance <= slack + PROVED * reach.abs();
+        if is_proved || best.is_none_or(|best| reach < best.depth) {
+            let on_triangle = point_below(&polytope, &face, difference.triangle, 100.0 * slack);
+            best = Some(Depth { outward: face.normal, depth: reach, on_triangle, rounds });
+        }
+        if is_proved {
+            break;
+        }
+        if !polytope.expand(i, new) {
+            polytope.close(i);
+        }
+    }
+    best.map(|best| Depth { rounds, ..best })
+}
+
+/// The point of the triangle at the foot of the origin on a face. Where the foot is beside the face,
+/// another one, in nearly the same plane, holds it.
+fn point_below(polytope: &Polytope, face: &Face, corners: &[DVec3; 3], slack: f64) -> DVec3 {
+    let foot = face.normal * face.distance;
+    let (mut least, mut point) = polytope.nearest_to(foot, face, corners);
+    if least > slack * slack {
+        for other in polytope.faces() {
+            let (squared, candidate) = polytope.nearest_to(foot, other, corners);
+            if squared < least {
+                (least, point) = (squared, candidate);
+            }
+        }
+    }
+    point
+}
+
+/// Of bodies of which a simplex of the difference holds the origin up to rounding.
+#[cold]
+pub(super) fn touching<S: SupportMap>(
+    difference: &Difference<S>,
+    simplex: &Simplex,
+    size: f64,
+) -> Option<Depth> {
+    let on_triangle = simplex.on_triangle(difference.triangle);
+    let flat = |normal: DVec3| {
+        let [up, down] = [normal, -normal].map(|u| (difference.farthest(u).point.dot(u), u));
+        let (depth, outward) = if down.0 < up.0 { down } else { up };
+        Some(Depth { outward, depth, on_triangle, rounds: 0 })
+    };
+    let given = simplex.vertices();
+    let a = given[0];
+    let Some(b) = given.get(1).copied().or_else(|| beyond_point(difference, a, size)) else {
+        return flat(DVec3::Z);
+    };
+    let along = b.point - a.point;
+    let is_wide = |c: &Vertex| thin_normal([a.point, b.point, c.point]).is_some();
+    let third = given.get(2).copied().filter(is_wide);
+    let Some(c) = third.or_else(|| beyond_line(difference, a, along, size)) else {
+        return flat(along.try_normalize()?.any_orthonormal_vector());
+    };
+    let Some(normal) = plane(a, b, c) else {
+        return flat(along.try_normalize()?.any_orthonormal_vector());
+    };
+    match across(difference, a, normal) {
+        (height, d) if height > FLAT * size => depth(difference, [a, b, c, d], size),
+        _ => flat(normal),
+    }
+}
+
+fn plane(a: Vertex, b: Vertex, c: Vertex) -> Option<DVec3> {
+    let (normal, squared) = thin_normal([a.point, b.point, c.point])?;
+    Some(normal / squared.sqrt())
+}
+
+/// The farther one of both support points across a plane through `a`, and how far it is.
+fn across<S: SupportMap>(difference: &Difference<S>, a: Vertex, normal: DVec3) -> (f64, Vertex) {
+    let [up, down] = [normal, -normal].map(|u| {
+        let vertex = difference.farthest(u);
+        ((vertex.point - a.point).dot(u), vertex)
+    });
+    if down.0 > up.0 { down } else { up }
+}
+
+fn beyond_point<S: SupportMap>(difference: &Difference<S>, a: Vertex, size: f64) -> Option<Vertex> {
+    farthest_of(difference, a, DVec3::AXES, size)
+}
+
+fn beyond_line<S: SupportMap>(
+    difference: &Difference<S>,
+    a: Vertex,
+    along: DVec3,
+    size: f64,
+) -> Option<Vertex> {
+    let along = along.try_normalize()?;
+    let across = along.any_orthonormal_vector();
+    farthest_of(difference, a, [across, along.cross(across), DVec3::ZERO], size)
+}
+
+/// The support point farthest from `a` along any of some axes. None where none is off it.
+fn farthest_of<S: SupportMap>(
+    difference: &Difference<S>,
+    a: Vertex,
+    axes: [DVec3; 3],
+    size: f64,
+) -> Option<Vertex> {
+    let found = axes.map(|axis| across(difference, a, axis));
+    let most = found.into_iter().reduce(|x, y| if y.0 > x.0 { y } else { x })?;
+    (most.0 > FLAT * size).then_some(most.1)
+}

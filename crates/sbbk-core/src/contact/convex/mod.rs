@@ -1,0 +1,146 @@
+//! The exact contact of a triangle and any convex shape.
+//!
+//! ```
+//! use glamx::DVec3;
+//! use sbbk_core::contact::convex::{CylinderSupport, SegmentSupport, convex_contact, round_contact};
+//!
+//! let floor = [DVec3::ZERO, DVec3::X * 4.0, DVec3::Z * 4.0].map(|v| v - DVec3::new(1.0, 1.1, 1.0));
+//! let drum = CylinderSupport { half_height: 1.0, radius: 0.5 };
+//! let contact = convex_contact(&floor, &drum, 0.2).expect("0.1 is within the margin");
+//! assert!((contact.distance - 0.1).abs() < 1.0e-15 && contact.normal == DVec3::Y);
+//!
+//! let capsule = SegmentSupport([DVec3::Y, -DVec3::Y]);
+//! let contact = round_contact(&floor, &capsule, 0.3, 0.2).expect("crosses by 0.2");
+//! assert!((contact.distance + 0.2).abs() < 1.0e-15);
+//! ```
+//!
+//! # How
+//!
+//! 1. The nearest point of a simplex of the Minkowski difference goes toward the origin until a
+//!    support plane proves it nearest, or proves that the shape is beyond the margin (`search.rs`).
+//!    The first simplex is the whole triangle, seen from the point of the shape that reaches
+//!    farthest towards it: for flat contacts that is the answer.
+//! 2. If a simplex holds the origin, a polytope grows from it to the nearest part of the surface of
+//!    the difference (`depth.rs`).
+//!
+//! # Accuracy
+//!
+//! Arithmetic is f64; no tolerance has a unit. Distances of polytopes are exact up to rounding,
+//! which is 1e-15 of the size of the pair, or of the coordinates in the shape's frame if these are
+//! larger. Those of curved shapes are exact to 1e-13 of themselves apart and to 1e-8 of the depth
+//! crossing; directions to the root of that. A contact is a function of its arguments, bit for bit:
+//! no search starts from an earlier one.
+
+mod depth;
+mod difference;
+mod polytope;
+mod search;
+mod simplex;
+mod support;
+
+pub use support::{
+    ConeSupport, CuboidSupport, CylinderSupport, HullSupport, PointSupport, SegmentSupport,
+    SupportMap, TriangleSupport,
+};
+
+use depth::{Depth, depth, touching};
+use difference::{Difference, Vertex};
+use glamx::DVec3;
+use search::{Outcome, search};
+
+/// How a triangle and a convex shape meet, in the shape's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConvexContact {
+    /// The distance; when the bodies cross, minus the length of the least translation that parts
+    /// them.
+    pub distance: f64,
+    /// Unit vector from the triangle to the shape: the direction in which the shape moves away.
+    pub normal: DVec3,
+    /// The point on the triangle.
+    pub on_triangle: DVec3,
+    /// The point on the shape: `on_triangle + distance * normal`.
+    pub on_shape: DVec3,
+}
+
+impl ConvexContact {
+    #[inline(always)]
+    fn new(on_triangle: DVec3, normal: DVec3, distance: f64) -> Self {
+        Self { distance, normal, on_triangle, on_shape: on_triangle + normal * distance }
+    }
+
+    fn is_finite(&self) -> bool {
+        (self.on_shape + self.normal).is_finite() && self.distance.is_finite()
+    }
+}
+
+/// The contact of a triangle with a convex shape at a distance of at most `margin`; crossing ones
+/// have a negative distance.
+///
+/// The corners are in the shape's frame, whose origin should be in or near the shape: the search
+/// starts toward it. The triangle may be a segment or a point, and the shape may be flat. None
+/// when a coordinate is not finite. Coordinates and their differences between 1e-38 and 1e38 are
+/// safe from overflow.
+///
+/// About 50 ns beyond the margin, 100 to 300 within it, some microseconds when crossing.
+pub fn convex_contact<S: SupportMap>(
+    triangle: &[DVec3; 3],
+    shape: &S,
+    margin: f64,
+) -> Option<ConvexContact> {
+    find(triangle, shape, margin).filter(|contact| contact.distance <= margin)
+}
+
+/// As [`convex_contact`] for a shape with a rounded border: all that is within `radius` of a core.
+/// A ball has a point as its core, a capsule a segment.
+pub fn round_contact<S: SupportMap>(
+    triangle: &[DVec3; 3],
+    core: &S,
+    radius: f64,
+    margin: f64,
+) -> Option<ConvexContact> {
+    let ConvexContact { distance, normal, on_triangle, .. } =
+        find(triangle, core, margin + radius)?;
+    let contact = ConvexContact::new(on_triangle, normal, distance - radius);
+    (contact.distance <= margin).then_some(contact)
+}
+
+/// The contact; None if farther than the margin by more than rounding.
+#[inline(always)]
+fn find<S: SupportMap>(triangle: &[DVec3; 3], shape: &S, margin: f64) -> Option<ConvexContact> {
+    let [a, b, c] = *triangle;
+    let extent = ((b - a).abs() + (c - a).abs()).element_sum();
+    if !(extent + a.abs().element_sum()).is_finite() {
+        return None;
+    }
+    let difference = Difference { triangle, shape };
+    let toward = toward_origin(&difference, triangle);
+    let start = shape.support(-toward);
+    let size = extent + start.abs().element_sum();
+    let contact = match search(&difference, toward, start, margin, size).outcome {
+        Outcome::Far => return None,
+        Outcome::Apart(simplex) => {
+            let distance = simplex.squared.sqrt();
+            let on_triangle = simplex.on_triangle(triangle);
+            ConvexContact::new(on_triangle, simplex.nearest / distance, distance)
+        }
+        Outcome::Crossing(tetrahedron) => crossing(depth(&difference, tetrahedron, size)?),
+        Outcome::Touching(simplex) => crossing(touching(&difference, &simplex, size)?),
+    };
+    contact.is_finite().then_some(contact)
+}
+
+fn crossing(Depth { outward, depth, on_triangle, .. }: Depth) -> ConvexContact {
+    ConvexContact::new(on_triangle, -outward, -depth)
+}
+
+/// From the nearest point of the triangle to the origin, or across a triangle that holds it.
+#[inline(always)]
+fn toward_origin<S: SupportMap>(difference: &Difference<S>, triangle: &[DVec3; 3]) -> DVec3 {
+    let [a, b, c]: [Vertex; 3] = difference.at(DVec3::ZERO);
+    let nearest = simplex::face(a, b, c).nearest;
+    if nearest != DVec3::ZERO {
+        return nearest;
+    }
+    let normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+    if normal != DVec3::ZERO { normal } else { DVec3::Y }
+}

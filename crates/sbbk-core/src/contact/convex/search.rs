@@ -1,0 +1,97 @@
+//! The search for the point of the difference nearest to the origin.
+//!
+//! E. Gilbert, D. Johnson, S. Keerthi, "A fast procedure for computing the distance between complex
+//! objects in three-dimensional space", 1988. The nearest point `v` of a simplex is never nearer
+//! than that of the difference; the difference is nowhere farther back along `v` than its support
+//! point there. Where both meet, the distance is proved; where the support point is beyond the
+//! margin, so is the shape.
+
+use super::difference::{Difference, Vertex};
+use super::simplex::{self, Simplex, Step};
+use super::support::SupportMap;
+use glamx::DVec3;
+
+/// Simplices tried at most. Polytopes take three to ten, cylinders and cones up to thirty.
+pub(super) const ROUNDS: u32 = 100;
+
+/// Share of the distance that a proof may leave open. Directions are off by the root of it.
+const PROVED: f64 = 1.0e-12;
+
+/// Share of the size that rounding leaves open.
+const ROUNDING: f64 = 1.0e-15;
+
+/// Share of the size by which a bound must be beyond the margin to end the search.
+const BOUNDARY: f64 = 1.0e-13;
+
+/// Bodies whose distance is below this share of their size touch.
+pub(super) const TOUCHING: f64 = 1.0e-12;
+
+/// How a search ends.
+pub(super) enum Outcome {
+    /// Beyond the margin.
+    Far,
+    /// The nearest point.
+    Apart(Simplex),
+    /// The nearest point is the origin up to rounding.
+    Touching(Simplex),
+    /// A tetrahedron with the origin inside.
+    Crossing([Vertex; 4]),
+}
+
+/// How a search ends and how many simplices it took.
+pub(super) struct Search {
+    pub outcome: Outcome,
+    pub rounds: u32,
+}
+
+/// `toward` leads from the triangle to somewhere in or near the shape; `start` is the point of the
+/// shape that reaches farthest back along it; `size` is that of the pair.
+#[inline(always)]
+pub(super) fn search<S: SupportMap>(
+    difference: &Difference<S>,
+    toward: DVec3,
+    start: DVec3,
+    margin: f64,
+    size: f64,
+) -> Search {
+    let end = |outcome, rounds| Search { outcome, rounds };
+    // Wider than the margin by more than rounding, so that the distance decides.
+    let reach = margin.max(0.0) + BOUNDARY * size;
+    let reach_squared = reach * reach;
+    let is_far = |bound: f64, squared: f64| bound > 0.0 && bound * bound > reach_squared * squared;
+
+    // The triangle as seen from the point of the shape that reaches farthest back.
+    let [a, b, c] = difference.at(start);
+    let bound = a.point.dot(toward).min(b.point.dot(toward)).min(c.point.dot(toward));
+    if is_far(bound, toward.length_squared()) {
+        return end(Outcome::Far, 0);
+    }
+    let mut simplex = simplex::face(a, b, c);
+    let touching = (TOUCHING * size).powi(2);
+    let rounding = (ROUNDING * size).powi(2);
+    for rounds in 1..=ROUNDS {
+        let Simplex { nearest, squared, .. } = simplex;
+        if squared <= touching {
+            return end(Outcome::Touching(simplex), rounds);
+        }
+        let new = difference.farthest(-nearest);
+        let bound = nearest.dot(new.point);
+        if is_far(bound, squared) {
+            return end(Outcome::Far, rounds);
+        }
+        let open = squared - bound;
+        let is_known = simplex.vertices().iter().any(|v| v.point == new.point);
+        if open <= PROVED * squared || open * open <= rounding * squared || is_known {
+            return end(Outcome::Apart(simplex), rounds);
+        }
+        match simplex.add(new) {
+            Step::Around(tetrahedron) => return end(Outcome::Crossing(tetrahedron), rounds),
+            // No nearer for all that: rounding leaves no more to find.
+            Step::Beside(next) if !(next.squared < squared) => {
+                return end(Outcome::Apart(simplex), rounds);
+            }
+            Step::Beside(next) => simplex = next,
+        }
+    }
+    end(Outcome::Apart(simplex), ROUNDS)
+}

@@ -1,0 +1,140 @@
+//! Support maps: all that a search needs to know of a convex shape.
+
+use glamx::DVec3;
+
+/// A convex shape, in its own frame.
+pub trait SupportMap {
+    /// The farthest point along `direction`, which has any length but zero; any of them where
+    /// several are farthest. Exact up to rounding.
+    fn support(&self, direction: DVec3) -> DVec3;
+}
+
+impl<F: Fn(DVec3) -> DVec3> SupportMap for F {
+    #[inline(always)]
+    fn support(&self, direction: DVec3) -> DVec3 {
+        self(direction)
+    }
+}
+
+/// A point; the core of a ball.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointSupport(pub DVec3);
+
+impl SupportMap for PointSupport {
+    #[inline(always)]
+    fn support(&self, _: DVec3) -> DVec3 {
+        self.0
+    }
+}
+
+/// A segment, given by its ends; the core of a capsule.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SegmentSupport(pub [DVec3; 2]);
+
+impl SupportMap for SegmentSupport {
+    #[inline(always)]
+    fn support(&self, direction: DVec3) -> DVec3 {
+        let [a, b] = self.0;
+        if (b - a).dot(direction) > 0.0 { b } else { a }
+    }
+}
+
+/// A triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TriangleSupport(pub [DVec3; 3]);
+
+impl SupportMap for TriangleSupport {
+    #[inline(always)]
+    fn support(&self, direction: DVec3) -> DVec3 {
+        self.0[lowest(&self.0, -direction)]
+    }
+}
+
+/// Index of the corner of a triangle that is least far along a direction.
+#[inline(always)]
+pub(super) fn lowest([a, b, c]: &[DVec3; 3], direction: DVec3) -> usize {
+    let [b, c] = [(*b - *a).dot(direction), (*c - *a).dot(direction)];
+    let (i, least) = if b < 0.0 { (1, b) } else { (0, 0.0) };
+    if c < least { 2 } else { i }
+}
+
+/// A box around the origin, along the axes, given by its half lengths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CuboidSupport(pub DVec3);
+
+impl SupportMap for CuboidSupport {
+    #[inline(always)]
+    fn support(&self, direction: DVec3) -> DVec3 {
+        self.0.copysign(direction)
+    }
+}
+
+/// A cylinder around the y axis, its middle at the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CylinderSupport {
+    /// Half the length of the axis.
+    pub half_height: f64,
+    /// Radius of both discs.
+    pub radius: f64,
+}
+
+impl SupportMap for CylinderSupport {
+    #[inline(always)]
+    fn support(&self, direction: DVec3) -> DVec3 {
+        rim(direction, radial(direction), self.radius, self.half_height.copysign(direction.y))
+    }
+}
+
+/// A cone around the y axis: its tip at `half_height`, its base at `-half_height`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConeSupport {
+    /// Half the length of the axis.
+    pub half_height: f64,
+    /// Radius of the base.
+    pub radius: f64,
+}
+
+impl SupportMap for ConeSupport {
+    #[inline(always)]
+    fn support(&self, direction: DVec3) -> DVec3 {
+        let across = radial(direction);
+        if 2.0 * self.half_height * direction.y > self.radius * across {
+            return DVec3::new(0.0, self.half_height, 0.0);
+        }
+        rim(direction, across, self.radius, -self.half_height)
+    }
+}
+
+/// Length of a direction across the y axis.
+#[inline(always)]
+fn radial(direction: DVec3) -> f64 {
+    (direction.x * direction.x + direction.z * direction.z).sqrt()
+}
+
+/// The point of a circle around the y axis that is farthest along a direction; the centre of the
+/// disc where all of it is.
+#[inline(always)]
+fn rim(direction: DVec3, across: f64, radius: f64, y: f64) -> DVec3 {
+    let scale = if across > 0.0 { radius / across } else { 0.0 };
+    DVec3::new(direction.x * scale, y, direction.z * scale)
+}
+
+/// The convex hull of points, found by looking at all of them: for hulls of up to some dozens.
+/// Without points it is the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HullSupport<'a>(pub &'a [DVec3]);
+
+impl SupportMap for HullSupport<'_> {
+    #[inline(always)]
+    fn support(&self, direction: DVec3) -> DVec3 {
+        let Some((&first, rest)) = self.0.split_first() else { return DVec3::ZERO };
+        let (mut farthest, mut most) = (first, first.dot(direction));
+        for &point in rest {
+            let along = point.dot(direction);
+            if along > most {
+                (farthest, most) = (point, along);
+            }
+        }
+        farthest
+    }
+}

@@ -1,0 +1,129 @@
+//! Shapes and triangles without volume or area, and numbers that are none.
+
+use crate::polytope;
+use crate::shape::{Core, Kind, Rng, Shape};
+use crate::truth::{check, size};
+use glamx::DVec3;
+use sbbk_core::contact::convex::{
+    ConeSupport, CuboidSupport, CylinderSupport, PointSupport, convex_contact,
+};
+
+/// Triangles that are points, segments and slivers against every polytope.
+#[test]
+fn triangles_without_area() {
+    for kind in Kind::POLYTOPES {
+        let mut rng = Rng(40 + kind as u64);
+        for i in 0..2000 {
+            let shape = rng.shape(kind);
+            let [a, b, c] = {
+                let gap = rng.within(-0.3, 0.1);
+                rng.triangle_beside(&shape, gap)
+            };
+            let middle = a.lerp(b, rng.within(-0.2, 1.2));
+            let triangle = match i % 5 {
+                0 => [a; 3],
+                1 => [a, b, a],
+                2 => [a, b, b],
+                3 => [a, b, middle],
+                _ => [a, b, middle + (c - a) * rng.scale(1.0e-16, 1.0e-6)],
+            };
+            let truth = polytope::distance(&shape.vertices(), &triangle) - shape.radius;
+            let size = size(&triangle, &shape);
+            let contact = shape.contact(&triangle, 100.0).unwrap();
+            let error = (contact.distance - truth).abs();
+            assert!(error <= 1.0e-9 * size, "{truth} {contact:?}\n{shape:?}\n{triangle:?}");
+            check(&triangle, &shape, &contact, 1.0e-9 * size);
+        }
+    }
+}
+
+/// A cylinder without radius is a segment, one without height a disc; likewise a cone.
+#[test]
+fn round_shapes_without_volume() {
+    let mut rng = Rng(50);
+    for _ in 0..3000 {
+        let half_height = rng.scale(0.01, 1.0);
+        let ends = [DVec3::Y * half_height, DVec3::Y * -half_height];
+        let segment = Shape { core: Core::Segment(ends), radius: 0.0 };
+        let gap = rng.within(-0.3, 0.1);
+        let triangle = rng.triangle_beside(&segment, gap);
+        let truth = segment.contact(&triangle, 100.0).unwrap().distance;
+        let size = size(&triangle, &segment);
+        for core in [
+            Core::Cylinder(CylinderSupport { half_height, radius: 0.0 }),
+            Core::Cone(ConeSupport { half_height, radius: 0.0 }),
+        ] {
+            let needle = Shape { core, radius: 0.0 };
+            let contact = needle.contact(&triangle, 100.0).unwrap();
+            assert!((contact.distance - truth).abs() <= 1.0e-9 * size, "{triangle:?} {needle:?}");
+            check(&triangle, &needle, &contact, 1.0e-9 * size);
+        }
+        let [disc, flat] = [
+            Core::Cylinder(CylinderSupport { half_height: 0.0, radius: half_height }),
+            Core::Cone(ConeSupport { half_height: 0.0, radius: half_height }),
+        ]
+        .map(|core| Shape { core, radius: 0.0 });
+        let triangle = rng.triangle_beside(&disc, gap);
+        let [disc, flat] = [disc, flat].map(|shape| {
+            let contact = shape.contact(&triangle, 100.0).unwrap();
+            check(&triangle, &shape, &contact, 1.0e-8 * size);
+            contact.distance
+        });
+        assert!((disc - flat).abs() <= 1.0e-7 * size, "{disc} {flat} {half_height} {triangle:?}");
+    }
+}
+
+/// Points in one place touch: the distance is 0 and the normal some unit vector.
+#[test]
+fn points_in_one_place() {
+    for p in [DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)] {
+        let contact = convex_contact(&[p; 3], &PointSupport(p), 0.0).unwrap();
+        assert_eq!((contact.distance, contact.normal.length()), (0.0, 1.0));
+        assert_eq!(contact.on_triangle, p);
+    }
+}
+
+/// "None when a coordinate is not finite", and no panic.
+#[test]
+fn numbers_that_are_none() {
+    let floor = [DVec3::ZERO, DVec3::X, DVec3::Z];
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for i in 0..9 {
+            let mut triangle = floor;
+            triangle[i / 3][i % 3] = bad;
+            for margin in [0.1, f64::INFINITY] {
+                assert_eq!(convex_contact(&triangle, &CuboidSupport(DVec3::ONE), margin), None);
+            }
+        }
+        for half in [DVec3::new(bad, 1.0, 1.0), DVec3::splat(bad)] {
+            assert_eq!(convex_contact(&floor, &CuboidSupport(half), 0.1), None);
+        }
+        for radius in [bad, 1.0] {
+            let cylinder = CylinderSupport { half_height: bad, radius };
+            assert_eq!(convex_contact(&floor, &cylinder, 0.1), None);
+            let cone = ConeSupport { half_height: 1.0, radius: bad };
+            assert_eq!(convex_contact(&floor, &cone, 0.1), None);
+        }
+    }
+    let cuboid = CuboidSupport(DVec3::ONE);
+    assert_eq!(convex_contact(&floor, &cuboid, f64::NAN), None);
+    assert_eq!(convex_contact(&floor, &|_| DVec3::NAN, 0.1), None);
+}
+
+/// A support map that lies must not hang or panic.
+#[test]
+fn support_maps_that_lie() {
+    for seed in 0..5000 {
+        let state = std::cell::RefCell::new(Rng(seed));
+        let liar = |_: DVec3| {
+            let mut rng = state.borrow_mut();
+            match rng.below(40) {
+                0 => DVec3::NAN,
+                1 => DVec3::INFINITY,
+                2 => DVec3::ZERO,
+                _ => rng.point(),
+            }
+        };
+        convex_contact(&[DVec3::ZERO, DVec3::X * 0.1, DVec3::Z * 0.1], &liar, 1.0);
+    }
+}

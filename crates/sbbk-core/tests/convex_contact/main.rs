@@ -1,0 +1,10 @@
+//! The contact of a triangle and a convex shape against brute force with other formulas.
+
+mod curved;
+mod degenerate;
+mod invariance;
+mod lattice;
+mod polytope;
+mod random;
+mod shape;
+mod truth;

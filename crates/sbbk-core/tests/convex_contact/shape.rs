@@ -1,0 +1,222 @@
+//! Shapes of all kinds, random numbers, and triangles near shapes.
+
+use glamx::{DQuat, DVec3};
+use sbbk_core::contact::convex::{
+    ConeSupport, ConvexContact, CuboidSupport, CylinderSupport, HullSupport, PointSupport,
+    SegmentSupport, SupportMap, TriangleSupport, convex_contact, round_contact,
+};
+
+#[derive(Clone, Debug)]
+pub enum Core {
+    Point(DVec3),
+    Segment([DVec3; 2]),
+    Triangle([DVec3; 3]),
+    Cuboid(DVec3),
+    Hull(Vec<DVec3>),
+    Cylinder(CylinderSupport),
+    Cone(ConeSupport),
+}
+
+#[derive(Clone, Debug)]
+pub struct Shape {
+    pub core: Core,
+    pub radius: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    Ball,
+    Segment,
+    Capsule,
+    Triangle,
+    Cuboid,
+    RoundCuboid,
+    Hull,
+    FlatHull,
+    Cylinder,
+    RoundCylinder,
+    Cone,
+}
+
+impl Kind {
+    pub const POLYTOPES: [Self; 8] = [
+        Self::Ball,
+        Self::Segment,
+        Self::Capsule,
+        Self::Triangle,
+        Self::Cuboid,
+        Self::RoundCuboid,
+        Self::Hull,
+        Self::FlatHull,
+    ];
+    pub const CURVED: [Self; 3] = [Self::Cylinder, Self::RoundCylinder, Self::Cone];
+}
+
+impl Shape {
+    pub fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
+        let r = self.radius;
+        let find =
+            |triangle, core: &dyn Fn(DVec3) -> DVec3| round_contact(triangle, &core, r, margin);
+        match &self.core {
+            Core::Point(p) if r == 0.0 => convex_contact(triangle, &PointSupport(*p), margin),
+            Core::Point(p) => round_contact(triangle, &PointSupport(*p), r, margin),
+            Core::Segment(ends) => round_contact(triangle, &SegmentSupport(*ends), r, margin),
+            Core::Triangle(t) => round_contact(triangle, &TriangleSupport(*t), r, margin),
+            Core::Cuboid(half) => round_contact(triangle, &CuboidSupport(*half), r, margin),
+            Core::Hull(points) => round_contact(triangle, &HullSupport(points), r, margin),
+            Core::Cylinder(cylinder) => find(triangle, &|d| cylinder.support(d)),
+            Core::Cone(cone) => find(triangle, &|d| cone.support(d)),
+        }
+    }
+
+    /// Farthest point of the core along a direction.
+    pub fn support(&self, direction: DVec3) -> DVec3 {
+        match &self.core {
+            Core::Cylinder(cylinder) => cylinder.support(direction),
+            Core::Cone(cone) => cone.support(direction),
+            _ => {
+                let along = |a: &DVec3, b: &DVec3| a.dot(direction).total_cmp(&b.dot(direction));
+                self.vertices().into_iter().max_by(along).unwrap()
+            }
+        }
+    }
+
+    /// Vertices of the core of a polytope.
+    pub fn vertices(&self) -> Vec<DVec3> {
+        match &self.core {
+            Core::Point(p) => vec![*p],
+            Core::Segment(ends) => ends.to_vec(),
+            Core::Triangle(t) => t.to_vec(),
+            Core::Cuboid(half) => (0..8)
+                .map(|i| {
+                    let sign = |bit: u32| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
+                    *half * DVec3::new(sign(0), sign(1), sign(2))
+                })
+                .collect(),
+            Core::Hull(points) => points.clone(),
+            Core::Cylinder(_) | Core::Cone(_) => unreachable!("no polytope"),
+        }
+    }
+
+    pub fn scaled(&self, factor: f64) -> Self {
+        let core = match &self.core {
+            Core::Point(p) => Core::Point(*p * factor),
+            Core::Segment(ends) => Core::Segment(ends.map(|p| p * factor)),
+            Core::Triangle(t) => Core::Triangle(t.map(|p| p * factor)),
+            Core::Cuboid(half) => Core::Cuboid(*half * factor),
+            Core::Hull(points) => Core::Hull(points.iter().map(|&p| p * factor).collect()),
+            Core::Cylinder(c) => Core::Cylinder(CylinderSupport {
+                half_height: c.half_height * factor,
+                radius: c.radius * factor,
+            }),
+            Core::Cone(c) => Core::Cone(ConeSupport {
+                half_height: c.half_height * factor,
+                radius: c.radius * factor,
+            }),
+        };
+        Self { core, radius: self.radius * factor }
+    }
+}
+
+/// SplitMix64.
+pub struct Rng(pub u64);
+
+impl Rng {
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ z >> 31
+    }
+
+    pub fn below(&mut self, n: u64) -> u64 {
+        self.bits() % n
+    }
+
+    pub fn within(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Evenly over the orders of magnitude.
+    pub fn scale(&mut self, low: f64, high: f64) -> f64 {
+        self.within(low.ln(), high.ln()).exp()
+    }
+
+    pub fn point(&mut self) -> DVec3 {
+        DVec3::from_array([0; 3].map(|_| self.within(-1.0, 1.0)))
+    }
+
+    pub fn direction(&mut self) -> DVec3 {
+        loop {
+            let point = self.point();
+            if (0.01..=1.0).contains(&point.length_squared()) {
+                return point.normalize();
+            }
+        }
+    }
+
+    /// A shape of size about 1.
+    pub fn shape(&mut self, kind: Kind) -> Shape {
+        let radius = self.scale(0.01, 1.0);
+        let sharp = |core| Shape { core, radius: 0.0 };
+        let round = |core| Shape { core, radius };
+        let half = DVec3::from_array([0; 3].map(|_| self.scale(0.05, 1.0)));
+        let (half_height, half_width) = (half.x, half.y);
+        let turn = DQuat::from_scaled_axis(self.point() * 3.0);
+        match kind {
+            Kind::Ball => round(Core::Point(DVec3::ZERO)),
+            Kind::Segment => sharp(Core::Segment([self.point(), self.point()])),
+            Kind::Capsule => round(Core::Segment([DVec3::Y * half.x, DVec3::Y * -half.x])),
+            Kind::Triangle => sharp(Core::Triangle([0; 3].map(|_| self.point()))),
+            Kind::Cuboid => sharp(Core::Cuboid(half)),
+            Kind::RoundCuboid => round(Core::Cuboid(half)),
+            Kind::Hull => {
+                let count = 4 + self.below(6);
+                sharp(Core::Hull((0..count).map(|_| half * self.direction()).collect()))
+            }
+            Kind::FlatHull => {
+                let count = 4 + self.below(4);
+                let flat = |p: DVec3| turn * DVec3::new(p.x, p.y, 0.0);
+                sharp(Core::Hull((0..count).map(|_| flat(self.point())).collect()))
+            }
+            Kind::Cylinder => {
+                sharp(Core::Cylinder(CylinderSupport { half_height, radius: half_width }))
+            }
+            Kind::RoundCylinder => {
+                round(Core::Cylinder(CylinderSupport { half_height, radius: half_width }))
+            }
+            Kind::Cone => sharp(Core::Cone(ConeSupport { half_height, radius: half_width })),
+        }
+    }
+
+    /// A triangle of any proportions beside a shape: `gap` is how far it is along some direction,
+    /// and more than the least translation if negative.
+    pub fn triangle_beside(&mut self, shape: &Shape, gap: f64) -> [DVec3; 3] {
+        let size = self.scale(0.02, 20.0);
+        let mut corners = [0; 3].map(|_| self.point() * size);
+        let outward = match self.below(4) {
+            0 => [DVec3::X, DVec3::Y, DVec3::Z][self.below(3) as usize],
+            1 => -DVec3::Y,
+            _ => self.direction(),
+        };
+        match self.below(4) {
+            // Face on.
+            0 => corners = corners.map(|c| c - outward * c.dot(outward)),
+            // Edge on.
+            1 => corners[1] = corners[0] + (corners[1] - corners[0]).reject_from(outward),
+            // A needle.
+            2 => corners[2] = corners[0].lerp(corners[1], 0.4) + 1.0e-4 * size * self.point(),
+            _ => {}
+        }
+        // Which of the closest ones, or something between them, meets the shape.
+        let [u, v] = [self.within(0.0, 1.0), self.within(0.0, 1.0)];
+        let middle = corners[0]
+            + (corners[1] - corners[0]) * u.min(v)
+            + (corners[2] - corners[0]) * (1.0 - u.max(v));
+        let lowest =
+            corners.into_iter().min_by(|a, b| a.dot(outward).total_cmp(&b.dot(outward))).unwrap();
+        let low = middle - outward * (middle - lowest).dot(outward);
+        let to = shape.support(outward) + outward * (shape.radius + gap);
+        corners.map(|c| c + (to - low))
+    }
+}
