@@ -25,7 +25,12 @@ fn every_kind_has_contacts_and_first_ones_are_right() {
         let queries = 5 * if is_fresh { 1 } else { STEP_COUNT as u64 + 1 };
         assert_eq!(row.count("errors.mesh_pairs"), queries, "{row:?}");
         assert!(!is_fresh || row.count("errors.true_pairs") > 0, "{row:?}");
-        assert!(!is_fresh || row.wrong("errors") == 0, "{row:?}");
+        // The judge is Parry's routine. SBBK has its own for most shapes, and may differ in depth.
+        let wrong = match &*row.backend {
+            "sbbk" => row.count("errors.missed") + row.count("errors.phantom"),
+            _ => row.wrong("errors"),
+        };
+        assert!(!is_fresh || wrong == 0, "{row:?}");
     }
     let missed = ["stock", "sbbk"].map(|side| sum(side, false, |row| row.count("errors.missed")));
     assert!(missed[1] <= missed[0], "{missed:?}");

@@ -3,9 +3,9 @@
 //!
 //! The mesh comes towards a shape of each kind along random directions and is stopped at five places
 //! around the first touch; the pair is asked there for the first time, and in slow and faster motion
-//! through these places. Both make contacts by the same routine of Parry's. Which triangles must have
-//! one is told by that routine itself, run afresh on every triangle of the mesh and every part of the
-//! shape.
+//! through these places. Which triangles must have a contact is told by Parry's routine, run afresh on
+//! every triangle of the mesh and every part of the shape. Stock makes its contacts by it, SBBK those of
+//! some shapes only: where Parry's depths are not exact, SBBK's differ from them.
 
 mod errors;
 mod kinds;
