@@ -12,9 +12,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use sbbk_lab::cli::{StudyArguments, exit_code};
+use sbbk_lab::cli::{OtherFiles, StudyArguments, exit_code};
 use sbbk_lab::mesh;
-use sbbk_lab::study::{ComparePlan, compare};
+use sbbk_lab::study::compare::{ComparePlan, compare};
 
 /// Compares stock Rapier, SBBK, and SBBK with AABBs only, in speed and error.
 #[derive(Parser)]
@@ -39,6 +39,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     if !arguments.heads.is_empty() {
         plan.heads = arguments.heads.iter().copied().map(NonZeroUsize::get).collect();
     }
-    arguments.study.run(&plan, compare)?;
+    let others = OtherFiles { read: arguments.mesh.as_deref(), ..OtherFiles::default() };
+    arguments.study.run(&plan, compare, others)?;
     Ok(())
 }

@@ -9,7 +9,7 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use sbbk_lab::cli::{StudyArguments, exit_code};
+use sbbk_lab::cli::{OtherFiles, StudyArguments, exit_code};
 use sbbk_lab::study::contacts::{ContactsPlan, contacts};
 
 /// Compares the contacts of stock Parry and SBBK with brute force, and their times.
@@ -22,5 +22,5 @@ struct Arguments {
 fn main() -> ExitCode {
     let Arguments { study } = Arguments::parse();
     let plan = study.plan(ContactsPlan::standard, ContactsPlan::quick);
-    exit_code(study.run(&plan, contacts))
+    exit_code(study.run(&plan, contacts, OtherFiles::default()))
 }

@@ -9,7 +9,7 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use sbbk_lab::cli::{StudyArguments, exit_code};
+use sbbk_lab::cli::{OtherFiles, StudyArguments, exit_code};
 use sbbk_lab::study::convex::{ConvexPlan, convex};
 
 /// Compares the contacts of a mesh and convex shapes or compounds, and their times.
@@ -22,5 +22,5 @@ struct Arguments {
 fn main() -> ExitCode {
     let Arguments { study } = Arguments::parse();
     let plan = study.plan(ConvexPlan::standard, ConvexPlan::quick);
-    exit_code(study.run(&plan, convex))
+    exit_code(study.run(&plan, convex, OtherFiles::default()))
 }

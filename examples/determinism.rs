@@ -14,9 +14,8 @@ use std::thread::available_parallelism;
 
 use clap::Parser;
 use sbbk_lab::cli::{exit_code, print};
-use sbbk_lab::report::tables;
 use sbbk_lab::study::Progress;
-use sbbk_lab::study::determinism::{DeterminismPlan, determinism};
+use sbbk_lab::study::determinism::{DeterminismPlan, broken, determinism};
 
 /// Runs scenes again and again, and compares the worlds bit for bit. Fails if SBBK's differ.
 #[derive(Parser)]
@@ -47,10 +46,9 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         ..DeterminismPlan::standard(arguments.heads, threads)
     };
     let found = determinism(&plan, &Progress::visible())?;
-    print(&found.environment)?;
-    print(format_args!("\n{}\n\n{}", tables::fingerprints(&found), tables::threads(&found)))?;
-    match found.broken().next() {
-        None => Ok(()),
-        Some(row) => Err(format!("runs of `{}` under {} differ", row.scene, row.backend).into()),
+    print(&found)?;
+    match &broken(&found)[..] {
+        [] => Ok(()),
+        scenes => Err(format!("runs under sbbk differ: {}", scenes.join(", ")).into()),
     }
 }

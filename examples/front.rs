@@ -1,4 +1,5 @@
-//! What temporal coherence is worth: the parts of a front, one after the other, beside fresh descents.
+//! What temporal coherence is worth: the paper's front, the adaptive one and the dispatcher's way, beside
+//! fresh descents.
 //!
 //! ```text
 //! cargo run --release --example front
@@ -8,7 +9,7 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use sbbk_lab::cli::{StudyArguments, exit_code};
+use sbbk_lab::cli::{OtherFiles, StudyArguments, exit_code};
 use sbbk_lab::study::front::{FrontPlan, front};
 
 /// Compares descents that start where the last one stopped with fresh ones.
@@ -21,5 +22,5 @@ struct Arguments {
 fn main() -> ExitCode {
     let Arguments { study } = Arguments::parse();
     let plan = study.plan(FrontPlan::standard, FrontPlan::quick);
-    exit_code(study.run(&plan, front))
+    exit_code(study.run(&plan, front, OtherFiles::default()))
 }

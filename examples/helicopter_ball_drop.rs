@@ -15,9 +15,9 @@ use sbbk_lab::backend::Backend;
 use sbbk_lab::cli::{exit_code, print};
 use sbbk_lab::mesh;
 use sbbk_lab::metrics::Environment;
-use sbbk_lab::report::{reserve, tables};
+use sbbk_lab::report::{check_files, replace_file};
 use sbbk_lab::scene::{BallKind, HelicopterBallDrop, Scene};
-use sbbk_lab::study::{HelicopterPlan, Progress, cut, helicopter};
+use sbbk_lab::study::{HelicopterPlan, Progress, cut, cut_table, frames, helicopter};
 
 /// Drops a ball on a helicopter's rotor: frames a second, and how much each hierarchy reports.
 #[derive(Parser)]
@@ -52,22 +52,20 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         scene.helicopter = mesh::load(path)?;
     }
     let plan = HelicopterPlan { repeats: arguments.repeats.get(), steps: arguments.steps.get() };
-    arguments.picture.as_deref().map(reserve).transpose()?;
+    let [read, written] = [&arguments.mesh, &arguments.picture].map(Option::as_deref);
+    check_files(read.as_slice(), written.as_slice())?;
     let progress = Progress::visible();
     let rows = helicopter(&scene, &arguments.backend, &plan, &progress)?;
     let cut = cut(&scene)?;
     progress.finish();
-    print(format_args!("{}\n\n{}\n", Environment::detect(), tables::frames(&rows)))?;
-    match &cut {
-        Some(cut) => print(tables::overlapping_area(cut))?,
-        None => print("The ball does not meet the helicopter within four seconds.")?,
-    }
-    if let Some(path) = &arguments.picture {
+    let frames = frames(&rows, &plan);
+    print(format_args!("{}\n\n{frames}\n\n{}", Environment::detect(), cut_table(&cut)))?;
+    if let Some(path) = written {
         let mut built = scene.build()?;
-        for _ in 0..cut.map_or(plan.steps, |cut| cut.step) {
-            built.world.step();
-        }
-        built.portrait(1280, 720).save(path)?;
+        let contact = cut.first().map_or(plan.steps as u64, |row| row.count("step"));
+        (0..contact).for_each(|_| built.world.step());
+        let picture = built.portrait(1280, 720);
+        replace_file(path, |path| picture.save(path))?;
     }
     Ok(())
 }

@@ -15,9 +15,9 @@ use sbbk_lab::backend::Backend;
 use sbbk_lab::cli::{exit_code, print};
 use sbbk_lab::mesh;
 use sbbk_lab::metrics::{Environment, RunPlan};
-use sbbk_lab::report::{reserve, tables};
+use sbbk_lab::report::{check_files, replace_file};
 use sbbk_lab::scene::MonkeyPile;
-use sbbk_lab::study::{PILE_QUERY_STRIDE, PilePlan, Progress, pile};
+use sbbk_lab::study::{PilePlan, Progress, pile, runs};
 
 /// Drops monkey heads in a pile, and says where the time goes.
 #[derive(Parser)]
@@ -42,9 +42,6 @@ struct Arguments {
     picture: Option<PathBuf>,
 }
 
-/// Steps until the lowest heads land.
-const FREE_FALL: usize = 27;
-
 fn main() -> ExitCode {
     exit_code(run(&Arguments::parse()))
 }
@@ -55,32 +52,33 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         scene = MonkeyPile::of(arguments.heads.get(), mesh::load(path)?);
     }
     scene.contact_recycling = !arguments.no_recycling;
-    arguments.picture.as_deref().map(reserve).transpose()?;
+    let [read, written] = [&arguments.mesh, &arguments.picture].map(Option::as_deref);
+    check_files(read.as_slice(), written.as_slice())?;
     let steps = arguments.steps.get();
     let plan = PilePlan {
         backends: arguments.backend.clone(),
         repeats: 1,
         run: RunPlan {
-            warm_up: FREE_FALL,
+            warm_up: PilePlan::FREE_FALL,
             steps,
             sample_every: steps.div_ceil(3),
             sample_size: 30,
-            query_stride: PILE_QUERY_STRIDE,
+            query_stride: PilePlan::QUERY_STRIDE,
         },
         same_poses: None,
     };
     let mut picture = None;
     let progress = Progress::visible();
-    let study = pile(&scene, &plan, &progress, &mut |world| {
-        if arguments.picture.is_some() {
+    let rows = pile(&scene, &plan, &progress, &mut |world| {
+        if written.is_some() {
             picture.get_or_insert_with(|| world.portrait(1280, 720));
         }
     })?;
     progress.finish();
-    print(Environment::detect())?;
-    print(format_args!("\n{}\n{}", tables::runs(&study), tables::accuracy(&[study])))?;
-    if let (Some(path), Some(picture)) = (&arguments.picture, picture) {
-        picture.save(path)?;
+    let [times, accuracy] = runs(&rows, &plan.run);
+    print(format_args!("{}\n\n{times}\n\n{accuracy}", Environment::detect()))?;
+    if let Some((path, picture)) = written.zip(picture) {
+        replace_file(path, |path| picture.save(path))?;
     }
     Ok(())
 }

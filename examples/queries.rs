@@ -7,11 +7,12 @@
 //! ```
 
 use std::error::Error;
+use std::fs::create_dir_all;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use sbbk_lab::cli::{StudyArguments, exit_code};
+use sbbk_lab::cli::{OtherFiles, StudyArguments, exit_code};
 use sbbk_lab::study::queries::{QueriesPlan, export, queries};
 
 /// Compares the queries of stock Parry and SBBK with brute force, and their times.
@@ -30,7 +31,8 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let plan = arguments.study.plan(QueriesPlan::standard, QueriesPlan::quick);
-    let found = arguments.study.run(&plan, queries)?;
+    arguments.export.as_deref().map(create_dir_all).transpose()?;
+    let found = arguments.study.run(&plan, queries, OtherFiles::default())?;
     if let Some(folder) = &arguments.export {
         export(&plan, &found, folder)?;
     }

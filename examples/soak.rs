@@ -10,9 +10,8 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use sbbk_lab::cli::{exit_code, print};
-use sbbk_lab::report::tables;
 use sbbk_lab::study::Progress;
-use sbbk_lab::study::soak::{SoakPlan, soak};
+use sbbk_lab::study::soak::{SoakEnd, SoakPlan, soak};
 
 /// Runs SBBK for long: memory and step time should stay flat, no contact be lost, and no tree be
 /// left at the end. Fails if one is.
@@ -38,14 +37,10 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         window,
         ..SoakPlan::default()
     };
-    let found = soak(&plan, &Progress::visible())?;
-    print(&found.environment)?;
-    print(format_args!("\n{}", tables::soak(&found)))?;
-    let errors = found.errors();
-    if errors.wrong() > 0 || found.trees_left > 0 {
-        return Err(
-            format!("{} wrong contacts, {} trees left", errors.wrong(), found.trees_left).into()
-        );
+    let (found, SoakEnd { wrong, trees_left }) = soak(&plan, &Progress::visible())?;
+    print(found)?;
+    if wrong > 0 || trees_left > 0 {
+        return Err(format!("{wrong} wrong contacts, {trees_left} trees left").into());
     }
     Ok(())
 }

@@ -1,4 +1,5 @@
-//! Soft monkey heads fall on a rigid helicopter, stock beside SBBK, and a large mesh deforms: refits beside rebuilds.
+//! Soft monkey heads fall on a rigid helicopter, stock beside SBBK, and a large mesh deforms: refits
+//! beside rebuilds.
 //!
 //! ```text
 //! cargo run --release --example soft_heads
@@ -12,8 +13,8 @@ use std::process::ExitCode;
 use clap::Parser;
 use rapier3d::math::Vec3;
 use sbbk_lab::backend::Backend;
-use sbbk_lab::cli::{StudyArguments, exit_code};
-use sbbk_lab::report::reserve;
+use sbbk_lab::cli::{OtherFiles, StudyArguments, exit_code};
+use sbbk_lab::report::replace_file;
 use sbbk_lab::scene::{Scene, SoftHeads};
 use sbbk_lab::study::soft::{SoftPlan, soft};
 
@@ -36,15 +37,16 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let plan = arguments.study.plan(SoftPlan::standard, SoftPlan::quick);
-    arguments.picture.as_deref().map(reserve).transpose()?;
-    arguments.study.run(&plan, soft)?;
-    if let Some(path) = &arguments.picture {
+    let others = OtherFiles { written: arguments.picture.as_deref(), ..OtherFiles::default() };
+    arguments.study.run(&plan, soft, others)?;
+    if let Some(path) = others.written {
         // Softer than those that are measured, and seen while the rotor squashes them most.
         let scene = SoftHeads { stiffness: 4.0, seed: 3, ..SoftHeads::with_heads(4) };
         let mut built = scene.build()?;
         let _installed = Backend::Sbbk.install(&mut built.world);
         (0..SQUASHED_AT).for_each(|_| built.world.step());
-        built.close_up(1280, 720, Vec3::new(-0.35, -0.45, -1.0)).save(path)?;
+        let picture = built.close_up(1280, 720, Vec3::new(-0.35, -0.45, -1.0));
+        replace_file(path, |path| picture.save(path))?;
     }
     Ok(())
 }

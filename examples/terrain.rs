@@ -1,4 +1,5 @@
-//! Monkey heads on a terrain: as a height field, which stock Rapier lets them fall through, and as a mesh of the same triangles.
+//! Monkey heads on a terrain: as a height field, which stock Rapier lets them fall through, and as a
+//! mesh of the same triangles.
 //!
 //! ```text
 //! cargo run --release --example terrain
@@ -11,10 +12,10 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use sbbk_lab::backend::Backend;
-use sbbk_lab::cli::{StudyArguments, exit_code};
-use sbbk_lab::report::reserve;
+use sbbk_lab::cli::{OtherFiles, StudyArguments, exit_code};
+use sbbk_lab::report::replace_file;
 use sbbk_lab::scene::{Ground, Scene};
-use sbbk_lab::study::terrain::{Fall, TerrainPlan, terrain};
+use sbbk_lab::study::terrain::{TerrainPlan, falling_heads, terrain};
 
 /// Measures queries on terrains from a thousand to a million cells, and lets heads fall on one.
 #[derive(Parser)]
@@ -32,13 +33,14 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let plan = arguments.study.plan(TerrainPlan::standard, TerrainPlan::quick);
-    arguments.picture.as_deref().map(reserve).transpose()?;
-    arguments.study.run(&plan, terrain)?;
-    if let Some(path) = &arguments.picture {
-        let mut built = Fall::scene(Ground::HeightField).build()?;
+    let others = OtherFiles { written: arguments.picture.as_deref(), ..OtherFiles::default() };
+    arguments.study.run(&plan, terrain, others)?;
+    if let Some(path) = others.written {
+        let mut built = falling_heads(Ground::HeightField).build()?;
         let _installed = Backend::Sbbk.install(&mut built.world);
         (0..plan.fall_steps).for_each(|_| built.world.step());
-        built.portrait(1280, 720).save(path)?;
+        let picture = built.portrait(1280, 720);
+        replace_file(path, |path| picture.save(path))?;
     }
     Ok(())
 }

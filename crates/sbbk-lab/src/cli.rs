@@ -3,12 +3,12 @@
 use std::error::Error;
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
 
-use crate::report::{ReportError, Results, reserve, write_csv, write_json, write_plot};
+use crate::report::{Results, check_files};
 use crate::study::{Progress, StudyError};
 
 /// What every study can be asked for.
@@ -17,35 +17,6 @@ pub struct StudyArguments {
     /// Measures less, within half a minute: for trying, not for quoting
     #[arg(long)]
     quick: bool,
-    #[command(flatten)]
-    output: Output,
-}
-
-impl StudyArguments {
-    /// The plan that is wanted.
-    pub fn plan<P>(&self, standard: fn() -> P, quick: fn() -> P) -> P {
-        if self.quick { quick() } else { standard() }
-    }
-
-    /// Carries out a study under progress bars, prints what it found and writes the files, which
-    /// are tried before the work begins.
-    ///
-    /// Errors: the study's own, or the output or a file cannot be written.
-    pub fn run<P, R: Results>(
-        &self,
-        plan: &P,
-        study: impl FnOnce(&P, &Progress) -> Result<R, StudyError>,
-    ) -> Result<R, Box<dyn Error>> {
-        self.output.reserve()?;
-        let results = study(plan, &Progress::visible())?;
-        self.output.publish(&results)?;
-        Ok(results)
-    }
-}
-
-/// Files for the results of a study.
-#[derive(Args, Clone, Debug, Default)]
-struct Output {
     /// Writes all numbers to a JSON file
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -57,30 +28,42 @@ struct Output {
     plot: Option<PathBuf>,
 }
 
-impl Output {
-    /// Makes sure, before the work begins, that the files can be written.
-    fn reserve(&self) -> Result<(), ReportError> {
-        let Self { json, csv, plot } = self;
-        [json, csv, plot].into_iter().flatten().try_for_each(|path| reserve(path))
+impl StudyArguments {
+    /// The plan that is wanted.
+    pub fn plan<P>(&self, standard: fn() -> P, quick: fn() -> P) -> P {
+        if self.quick { quick() } else { standard() }
     }
 
-    /// Prints where and what was measured, and writes the files.
-    fn publish(&self, results: &impl Results) -> Result<(), Box<dyn Error>> {
-        print(results.environment())?;
-        for table in results.tables() {
-            print(format_args!("\n{table}"))?;
-        }
-        if let Some(path) = &self.json {
-            write_json(results, path)?;
-        }
-        if let Some(path) = &self.csv {
-            write_csv(results, path)?;
-        }
-        if let Some(path) = &self.plot {
-            write_plot(results, path)?;
-        }
-        Ok(())
+    /// Carries out a study under progress bars, prints what it found and writes the files. Before the
+    /// work begins, they are tried together with the `others` that the run reads or writes.
+    ///
+    /// Errors: the study's own, or the output or a file cannot be written.
+    pub fn run<P>(
+        &self,
+        plan: &P,
+        study: impl FnOnce(&P, &Progress) -> Result<Results, StudyError>,
+        others: OtherFiles,
+    ) -> Result<Results, Box<dyn Error>> {
+        let Self { json, csv, plot, .. } = self;
+        let outputs = [json, csv, plot].into_iter().map(Option::as_deref).chain([others.written]);
+        let outputs: Vec<&Path> = outputs.flatten().collect();
+        check_files(others.read.as_slice(), &outputs)?;
+        let results = study(plan, &Progress::visible())?;
+        print(&results)?;
+        json.as_deref().map(|path| results.write_json(path)).transpose()?;
+        csv.as_deref().map(|path| results.write_csv(path)).transpose()?;
+        plot.as_deref().map(|path| results.write_plot(path)).transpose()?;
+        Ok(results)
     }
+}
+
+/// Files of a run besides its results.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct OtherFiles<'a> {
+    /// A mesh.
+    pub read: Option<&'a Path>,
+    /// A picture.
+    pub written: Option<&'a Path>,
 }
 
 /// Prints a line. A reader that has gone away, as in `compare | head`, is no error.

@@ -1,25 +1,46 @@
-//! Results as tables, files and plots, beside the paper's own.
+//! Results as rows, and what is made of them: tables, files and plots.
 
-mod against;
-mod comparison;
-mod contacts;
-mod convex;
-mod error;
 mod files;
-mod format;
-mod front;
-mod grid;
-mod look;
-mod panel;
-mod paper;
-mod queries;
-mod soft;
-pub mod tables;
-mod terrain;
+mod plot;
+mod row;
+mod table;
 
-pub use error::ReportError;
-pub use files::{ResultRow, Results, reserve, write_csv, write_json, write_plot};
-pub use grid::Grid;
-pub use look::Look;
-pub use panel::{Panel, Scale, Series};
-pub use paper::{PAPER, Paper};
+use std::fmt;
+
+use serde::Serialize;
+
+pub use files::{ReportError, check_files, replace_file};
+pub use plot::{Look, Panel, Scale};
+pub use row::Row;
+pub use table::{Column, Table, TableSpec, errors, faster, number, sides, time};
+
+use crate::metrics::Environment;
+
+/// What the columns of times hold.
+pub const TIME_NOTE: &str = "times: min / median over the repeats, all in turn; ratios: of minima, \
+                             geometric means in the lines of means";
+/// What the columns of errors hold.
+pub const ERROR_NOTE: &str = "errors: missed + phantom + wrong depth, of the true triangle pairs \
+                              judged, against brute force in f64";
+
+/// What a study found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Results {
+    /// Machine and build.
+    pub environment: Environment,
+    /// All numbers.
+    pub rows: Vec<Row>,
+    /// Some of them for the terminal.
+    #[serde(skip)]
+    pub tables: Vec<Table>,
+    /// The picture, from left to right.
+    #[serde(skip)]
+    pub panels: Vec<Panel>,
+}
+
+impl fmt::Display for Results {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.environment)?;
+        self.tables.iter().try_for_each(|table| write!(f, "\n\n{table}"))
+    }
+}

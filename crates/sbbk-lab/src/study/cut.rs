@@ -1,7 +1,7 @@
 //! The paper's "overlapping area" (figures 6 and 7) as a number: what a hierarchy still reports as
 //! touching when the descent stops at a certain depth.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
@@ -9,74 +9,29 @@ use rapier3d::geometry::TriMesh;
 use sbbk_core::traverse::{
     Descent, DescentScratch, NodePair, PairFrame, Verdict, Visitor, descend,
 };
-use sbbk_core::tree::{BuildOptions, LayerPlan, LeafBatch, Tree};
-use serde::Serialize;
+use sbbk_core::tree::{BuildOptions, LayerPlan, LeafBatch, Node, Slot, Tree};
 
 use super::StudyError;
-use super::outline::{Outline, Region};
 use crate::backend::Backend;
 use crate::metrics::{Judge, PosePairs};
+use crate::report::{Row, Table, TableSpec, faster, number};
 use crate::scene::{BallKind, HelicopterBallDrop, Scene};
 
-/// Which hierarchy.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Hierarchy {
-    /// AABBs in all layers.
-    AabbOnly,
-    /// Sphere, AABBs, k-DOPs.
-    Sbbk,
-}
-
-impl Hierarchy {
-    /// Both, the paper's comparison first.
-    pub const ALL: [Self; 2] = [Self::AabbOnly, Self::Sbbk];
-
-    fn plan(self) -> LayerPlan {
-        match self {
-            Self::AabbOnly => LayerPlan::AABB_ONLY,
-            Self::Sbbk => LayerPlan::SBBK,
-        }
-    }
-}
-
-/// What one hierarchy reports at one depth.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct CutRow {
-    /// Which hierarchy.
-    pub hierarchy: Hierarchy,
-    /// Depth of the cut: pairs of inner nodes are not opened from there on. A pair with a leaf on
-    /// one side goes on to the leaves of the other.
-    pub depth: u32,
-    /// Pairs of nodes reported.
-    pub pair_count: usize,
-    /// Triangles of both meshes below a reported node.
-    pub triangle_count: usize,
-    /// Volume that lies within both nodes of a reported pair, in cubed units, by sampling.
-    pub volume: f64,
-}
-
-/// The moment when the ball meets the helicopter, as both hierarchies see it.
-#[derive(Clone, Debug, Serialize)]
-pub struct CutStudy {
-    /// Step of the stock run at which the ball first penetrates the helicopter.
-    pub step: usize,
-    /// Triangles of both meshes that are within the prediction distance of the other mesh.
-    pub true_triangle_count: usize,
-    /// Each hierarchy at all depths from 0 to that of the deepest leaf.
-    pub rows: Vec<CutRow>,
-}
-
+const CUT: &str = "cut at depth";
+/// The hierarchies, by the backends that use them.
+const HIERARCHIES: [(Backend, LayerPlan); 2] =
+    [(Backend::AabbOnly, LayerPlan::AABB_ONLY), (Backend::Sbbk, LayerPlan::SBBK)];
 /// Steps within which the ball must have met the helicopter: four seconds.
 const STEP_LIMIT: usize = 240;
 /// Points that measure a volume: enough for 5 % of a hundredth of the ball's box.
 const POINT_COUNT: usize = 50_000;
 
-/// Follows the mesh ball to its first penetration, and cuts both hierarchies at every depth.
-/// `None` when the ball does not meet the helicopter.
+/// Follows the mesh ball to its first penetration, and cuts both hierarchies at every depth, from 0 to
+/// that of the deepest leaf: pairs of inner nodes are not opened from there on. A pair with a leaf on
+/// one side goes on to the leaves of the other. Nothing when the ball does not meet the helicopter.
 ///
 /// Errors: a mesh does not serve.
-pub fn cut(scene: &HelicopterBallDrop) -> Result<Option<CutStudy>, StudyError> {
+pub fn cut(scene: &HelicopterBallDrop) -> Result<Vec<Row>, StudyError> {
     let scene = HelicopterBallDrop { ball: BallKind::Mesh, ..scene.clone() };
     let mut world = scene.build()?.world;
     let stock = Backend::Stock.dispatcher();
@@ -87,22 +42,32 @@ pub fn cut(scene: &HelicopterBallDrop) -> Result<Option<CutStudy>, StudyError> {
             fresh.reported.iter().any(|pair| pair.distance < 0.0)
         };
         if let Some(index) = (0..pairs.pair_count()).find(|&index| penetrates(index)) {
-            return cut_pair(&pairs, index, step).map(Some);
+            return cut_pair(&pairs, index, step);
         }
     }
-    Ok(None)
+    Ok(Vec::new())
 }
 
-fn cut_pair(pairs: &PosePairs, index: usize, step: usize) -> Result<CutStudy, StudyError> {
+fn cut_pair(pairs: &PosePairs, index: usize, step: usize) -> Result<Vec<Row>, StudyError> {
     let question = pairs.question(index, 0);
     let truth = Judge::new(pairs.shapes()).truth(&question);
-    let meshes = pairs.meshes(index);
+    let true_triangle_count = distinct_count(truth.pairs());
     let mut rows = Vec::new();
-    for hierarchy in Hierarchy::ALL {
-        let trees = Trees::new(hierarchy, meshes, question.pos12, question.prediction)?;
-        rows.extend((0..=trees.depth()).map(|depth| trees.cut(depth)));
+    for (backend, layers) in HIERARCHIES {
+        let meshes = pairs.meshes(index);
+        let trees = Trees::new(layers, meshes, question.pos12, question.prediction)?;
+        rows.extend((0..=trees.depth()).map(|depth| {
+            let pairs = trees.cut(depth);
+            Row::new(CUT, backend)
+                .key("depth", depth)
+                .with("step", step)
+                .with("true_triangle_count", true_triangle_count)
+                .with("pair_count", pairs.len())
+                .with("triangle_count", triangle_count(&pairs))
+                .with("volume", trees.volume(&pairs))
+        }));
     }
-    Ok(CutStudy { step, true_triangle_count: distinct_count(truth.pairs()), rows })
+    Ok(rows)
 }
 
 /// Number of different triangles of both meshes in some pairs.
@@ -113,34 +78,25 @@ fn distinct_count(pairs: impl Iterator<Item = (u32, u32)>) -> usize {
 
 /// Both meshes in one kind of hierarchy.
 struct Trees {
-    hierarchy: Hierarchy,
     trees: [Tree; 2],
-    outlines: [Outline; 2],
     pos12: Pose3,
     margin: f32,
 }
 
 impl Trees {
     fn new(
-        hierarchy: Hierarchy,
+        layers: LayerPlan,
         meshes: [&TriMesh; 2],
         pos12: Pose3,
         margin: f32,
     ) -> Result<Self, StudyError> {
-        let options = BuildOptions { layers: hierarchy.plan(), ..BuildOptions::default() };
+        let options = BuildOptions { layers, ..BuildOptions::default() };
         let build = |mesh: &TriMesh| {
             Tree::build(mesh.vertices(), mesh.indices(), &options).map_err(|cause| {
                 StudyError::Tree { mesh: "of the helicopter scene".to_owned(), cause }
             })
         };
-        let trees = [build(meshes[0])?, build(meshes[1])?];
-        Ok(Self {
-            hierarchy,
-            outlines: trees.each_ref().map(|tree| Outline::new(tree, options.layers)),
-            trees,
-            pos12,
-            margin,
-        })
+        Ok(Self { trees: [build(meshes[0])?, build(meshes[1])?], pos12, margin })
     }
 
     /// Depth of the deepest leaf.
@@ -149,57 +105,91 @@ impl Trees {
         depth1.max(depth2)
     }
 
-    fn cut(&self, depth: u32) -> CutRow {
+    /// The pairs of nodes at which a descent stops.
+    fn cut(&self, depth: u32) -> Vec<[Node<'_>; 2]> {
         let [tree1, tree2] = &self.trees;
+        let nodes = [tree1, tree2].map(|tree| {
+            let mut nodes = Nodes::default();
+            nodes.add(tree.root());
+            nodes
+        });
         let mut frame = PairFrame::new(tree1, tree2, &self.pos12, self.margin);
-        let mut cut = Cut { outlines: &self.outlines, depth, pairs: Vec::new() };
+        let mut cut = Cut { nodes, depth, pairs: Vec::new() };
         let scratch = &mut DescentScratch::default();
         descend((tree1, tree2), &mut frame, Descent::Simultaneous, scratch, (), &mut cut);
-        let triangles = |side: usize| -> HashSet<u32> {
-            let regions = cut.pairs.iter().map(|pair| pair[side]);
-            regions.flat_map(|region| region.triangles.iter().copied()).collect()
-        };
-        CutRow {
-            hierarchy: self.hierarchy,
-            depth,
-            pair_count: cut.pairs.len(),
-            triangle_count: triangles(0).len() + triangles(1).len(),
-            volume: self.volume(&cut.pairs),
-        }
+        cut.pairs
     }
 
-    /// Volume of the union of the intersections of all pairs: the share of random points of the
-    /// second mesh's box that are in one.
-    fn volume(&self, pairs: &[[&Region; 2]]) -> f64 {
-        let root = self.outlines[1].root_box();
+    /// Volume of the union of the intersections of all pairs, in cubed units: the share of random
+    /// points of the second mesh's box that are in one.
+    fn volume(&self, pairs: &[[Node; 2]]) -> f64 {
+        let root = self.trees[1].root().aabb();
         let extents = root.max - root.min;
+        let regions = pairs.iter().map(|pair| pair.map(|node| (node.aabb(), node.kdop())));
+        let regions: Vec<_> = regions.collect();
         let mut random = Rand32::new(1);
         let hits = (0..POINT_COUNT).filter(|_| {
             let share = Vec3::from_array(std::array::from_fn(|_| random.rand_float()));
             let point2 = root.min + share * extents;
             let points = [self.pos12 * point2, point2];
-            let is_in = |(region, point): (&&Region, Vec3)| region.contains(point);
-            pairs.iter().any(|pair| pair.iter().zip(points).all(is_in))
+            regions.iter().any(|pair| {
+                let mut sides = pair.iter().zip(points);
+                sides.all(|((aabb, kdop), point)| {
+                    aabb.contains(point) && kdop.is_none_or(|kdop| kdop.contains(point))
+                })
+            })
         });
         let share = hits.count() as f64 / POINT_COUNT as f64;
         share * extents.to_array().into_iter().map(f64::from).product::<f64>()
     }
 }
 
+/// Number of triangles of both meshes below some nodes.
+fn triangle_count(pairs: &[[Node; 2]]) -> usize {
+    let counts = [0, 1].map(|side| {
+        let mut triangles = HashSet::<u32>::new();
+        let mut nodes: Vec<Node> = pairs.iter().map(|pair| pair[side]).collect();
+        while let Some(node) = nodes.pop() {
+            nodes.extend(node.children().into_iter().flatten());
+            triangles.extend(node.leaf().into_iter().flat_map(|leaf| leaf.batch.triangles()));
+        }
+        triangles.len()
+    });
+    counts.iter().sum()
+}
+
+/// The nodes of a tree, as a descent names them.
+#[derive(Default)]
+struct Nodes<'a> {
+    inner: HashMap<Slot, Node<'a>>,
+    leaves: HashMap<u32, Node<'a>>,
+}
+
+impl<'a> Nodes<'a> {
+    /// Adds a node and all below it.
+    fn add(&mut self, node: Node<'a>) {
+        if let Some(leaf) = node.leaf() {
+            self.leaves.insert(leaf.number, node);
+        } else {
+            self.inner.insert(node.slot(), node);
+        }
+        node.children().into_iter().flatten().for_each(|child| self.add(child));
+    }
+}
+
 /// Collects the pairs of nodes at which a descent stops.
 struct Cut<'a> {
-    outlines: &'a [Outline; 2],
+    nodes: [Nodes<'a>; 2],
     depth: u32,
-    pairs: Vec<[&'a Region; 2]>,
+    pairs: Vec<[Node<'a>; 2]>,
 }
 
 impl Visitor for Cut<'_> {
     fn nodes(&mut self, pair: NodePair) -> Verdict {
-        let [outline1, outline2] = self.outlines;
-        let inner = (outline1.inner.get(&pair.slot1), outline2.inner.get(&pair.slot2));
-        match inner {
-            (Some(region1), Some(region2)) if pair.depth >= self.depth => {
-                self.pairs.push([region1, region2]);
+        let [nodes1, nodes2] = &self.nodes;
+        match (nodes1.inner.get(&pair.slot1), nodes2.inner.get(&pair.slot2)) {
+            (Some(&node1), Some(&node2)) if pair.depth >= self.depth => {
+                self.pairs.push([node1, node2]);
                 Verdict::Prune
             }
             _ => Verdict::Descend,
@@ -207,8 +197,51 @@ impl Visitor for Cut<'_> {
     }
 
     fn leaves(&mut self, leaf1: u32, _: &LeafBatch, leaf2: u32, _: &LeafBatch) -> Verdict {
-        let [outline1, outline2] = self.outlines;
-        self.pairs.push([&outline1.leaves[&leaf1], &outline2.leaves[&leaf2]]);
+        let [nodes1, nodes2] = &self.nodes;
+        self.pairs.push([nodes1.leaves[&leaf1], nodes2.leaves[&leaf2]]);
         Verdict::Descend
     }
+}
+
+/// The paper's figures 6 and 7; empty if nothing was cut.
+pub fn table(rows: &[Row]) -> Table {
+    let sides = |header: &str, path| {
+        let side = |backend: Backend| number(&format!("{header}, {backend}"), path).of(backend);
+        [side(Backend::AabbOnly), side(Backend::Sbbk)]
+    };
+    let ratio = |path| faster("ratio", path, Backend::Sbbk).inverse().of(Backend::AabbOnly);
+    let columns = [
+        &sides("node pairs", "pair_count")[..],
+        &sides("triangles", "triangle_count"),
+        &[ratio("triangle_count")],
+        &sides("volume", "volume"),
+        &[ratio("volume")],
+    ];
+    let first = rows.iter().find(|row| row.study == CUT);
+    let moment = first.map_or("the ball does not meet the helicopter".to_owned(), |row| {
+        format!(
+            "ball of triangles on the rotor, step {}: the first at which it penetrates; {} triangles \
+             are truly within the prediction distance; deeper cuts change nothing",
+            row.count("step"),
+            row.count("true_triangle_count")
+        )
+    });
+    let spec = TableSpec {
+        title: "Figures 6 and 7. \"Overlapping area\" when the descent is cut at a depth"
+            .to_owned(),
+        study: CUT,
+        keys: &["depth"],
+        total: None,
+        columns: columns.concat(),
+        notes: vec![
+            moment,
+            "triangles: those of both meshes below a node reported as touching; volume: what lies \
+             within both nodes of a reported pair, cubed units"
+                .to_owned(),
+        ],
+    };
+    let mut table = spec.of(rows);
+    // Deeper cuts than the leaves change nothing.
+    table.lines.dedup_by(|line, before| line[1..] == before[1..]);
+    table
 }

@@ -1,17 +1,19 @@
-//! Same inputs, same bits: whole worlds run again and again, on other numbers of threads, and
-//! under a dispatcher that remembers nothing.
+//! Same inputs, same bits: whole worlds run again and again, on other numbers of threads, and under a
+//! dispatcher that remembers nothing.
 
 use std::fmt;
 
 use rapier_integration::SbbkDispatcher;
-use rapier3d::pipeline::PhysicsWorld;
-use rayon::{ThreadPool, ThreadPoolBuilder};
-use serde::Serialize;
+use rayon::ThreadPoolBuilder;
+use serde_json::Value;
 
 use super::{Progress, StudyError};
 use crate::backend::Backend;
 use crate::metrics::{Environment, Fingerprint, StepTimes, Summary, timed_step};
+use crate::report::{Results, Row, Table, TableSpec, faster, number, time};
 use crate::scene::{BoxStack, HeadOnSlope, HelicopterBallDrop, MonkeyPile, Scene};
+
+const WORLDS: &str = "determinism";
 
 /// What to run.
 pub struct DeterminismPlan {
@@ -37,10 +39,9 @@ impl DeterminismPlan {
     }
 }
 
-/// How a scene was run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Way {
+/// How a scene is run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Way {
     /// On so many threads.
     Threads(usize),
     /// The same again, on the first number of threads.
@@ -59,106 +60,62 @@ impl fmt::Display for Way {
     }
 }
 
-/// One run of a scene.
-#[derive(Clone, Debug, Serialize)]
-pub struct DeterminismRun {
-    /// How.
-    pub way: Way,
-    /// The world after the last step.
-    pub fingerprint: Fingerprint,
-    /// Narrow phase, milliseconds a step.
-    pub narrow_phase: Summary,
-    /// Whole step, milliseconds.
-    pub step: Summary,
-}
-
-/// All runs of a scene under one backend.
-#[derive(Clone, Debug, Serialize)]
-pub struct DeterminismRow {
-    /// What the scene calls itself.
-    pub scene: String,
-    /// Who answered: stock or SBBK.
-    pub backend: Backend,
-    /// Contact manifolds after the last step.
-    pub manifold_count: usize,
-    /// The first one is what the others should be.
-    pub runs: Vec<DeterminismRun>,
-}
-
-impl DeterminismRow {
-    /// Whether all runs ended in the same world.
-    pub fn is_same(&self) -> bool {
-        self.runs.iter().all(|run| run.fingerprint == self.runs[0].fingerprint)
-    }
-}
-
-/// What was found.
-#[derive(Clone, Debug, Serialize)]
-pub struct Determinism {
-    /// Where.
-    pub environment: Environment,
-    /// Steps of each run.
-    pub steps: usize,
-    /// Scene by scene, stock and SBBK.
-    pub rows: Vec<DeterminismRow>,
-}
-
-impl Determinism {
-    /// The scenes whose runs under SBBK differ though they repeat under stock: SBBK's own fault.
-    pub fn broken(&self) -> impl Iterator<Item = &DeterminismRow> {
-        let pairs = self.rows.chunks_exact(2);
-        pairs.filter(|pair| pair[0].is_same() && !pair[1].is_same()).map(|pair| &pair[1])
-    }
-}
-
 /// Runs all scenes in all ways.
 ///
 /// Errors: a scene cannot be built.
-pub fn determinism(plan: &DeterminismPlan, progress: &Progress) -> Result<Determinism, StudyError> {
+pub fn determinism(plan: &DeterminismPlan, progress: &Progress) -> Result<Results, StudyError> {
     let mut rows = Vec::new();
     for scene in &plan.scenes {
         for backend in [Backend::Stock, Backend::Sbbk] {
-            rows.push(run_all(&**scene, backend, plan, progress)?);
+            let threads = plan.thread_counts.iter().map(|&count| Way::Threads(count));
+            let forgetful = (backend == Backend::Sbbk).then_some(Way::Forgetful);
+            for way in threads.chain([Way::Again]).chain(forgetful) {
+                let name = scene.name();
+                progress.phase(format!("{name}, {backend}, {way}"), plan.steps);
+                let row = run(&**scene, backend, way, plan, progress)?;
+                rows.push(row.key("scene", name).key("run", way.to_string()));
+            }
         }
     }
     progress.finish();
-    Ok(Determinism { environment: Environment::detect(), steps: plan.steps, rows })
+    let tables = tables(&rows, plan.steps);
+    Ok(Results { environment: Environment::detect(), rows, tables, panels: Vec::new() })
 }
 
-fn run_all(
-    scene: &dyn Scene,
-    backend: Backend,
-    plan: &DeterminismPlan,
-    progress: &Progress,
-) -> Result<DeterminismRow, StudyError> {
-    let mut ways: Vec<Way> = plan.thread_counts.iter().map(|&count| Way::Threads(count)).collect();
-    ways.push(Way::Again);
-    ways.extend((backend == Backend::Sbbk).then_some(Way::Forgetful));
-    let mut row =
-        DeterminismRow { scene: scene.name(), backend, manifold_count: 0, runs: Vec::new() };
-    for way in ways {
-        progress.phase(format!("{}, {backend}, {way}", row.scene), plan.steps);
-        let (run, world) = run_once(scene, backend, way, plan, progress)?;
-        row.manifold_count = world.contact_pairs().map(|pair| pair.manifolds().len()).sum();
-        row.runs.push(run);
-    }
-    Ok(row)
+/// The scenes whose runs under SBBK differ though they repeat under stock: SBBK's own fault.
+pub fn broken(results: &Results) -> Vec<String> {
+    let mut scenes: Vec<&Value> = results.rows.iter().filter_map(|row| row.get("scene")).collect();
+    scenes.dedup();
+    let is_same = |scene: &Value, backend: Backend| {
+        let runs = results
+            .rows
+            .iter()
+            .filter(|row| row.get("scene") == Some(scene) && row.is("backend", backend));
+        let mut fingerprints = runs.map(|row| row.get("fingerprint"));
+        let first = fingerprints.next();
+        fingerprints.all(|fingerprint| Some(fingerprint) == first)
+    };
+    let is_broken =
+        |scene: &&Value| is_same(scene, Backend::Stock) && !is_same(scene, Backend::Sbbk);
+    scenes.into_iter().filter(is_broken).map(Value::to_string).collect()
 }
 
-fn run_once(
+fn run(
     scene: &dyn Scene,
     backend: Backend,
     way: Way,
     plan: &DeterminismPlan,
     progress: &Progress,
-) -> Result<(DeterminismRun, PhysicsWorld), StudyError> {
+) -> Result<Row, StudyError> {
     let mut world = scene.build()?.world;
     let installed = backend.install(&mut world);
     let threads = match way {
         Way::Threads(count) => count,
         Way::Again | Way::Forgetful => plan.thread_counts.first().copied().unwrap_or(1),
     };
-    let pool = pool(threads);
+    // Rapier uses the pool that a step is called in.
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.expect("the system can start threads");
     let mut times = Vec::with_capacity(plan.steps);
     for _ in 0..plan.steps {
         if way == Way::Forgetful {
@@ -167,18 +124,50 @@ fn run_once(
         times.push(pool.install(|| timed_step(&mut world, &installed.probe)));
         progress.step();
     }
-    let summary =
-        |time: fn(&StepTimes) -> f64| Summary::of(times.iter().map(time)).expect("a run has steps");
-    let run = DeterminismRun {
-        way,
-        fingerprint: Fingerprint::of(&world),
-        narrow_phase: summary(|times| times.narrow_phase),
-        step: summary(|times| times.step),
-    };
-    Ok((run, world))
+    let summary = |time: fn(&StepTimes) -> f64| Summary::of(times.iter().map(time));
+    let manifolds: usize = world.contact_pairs().map(|pair| pair.manifolds().len()).sum();
+    Ok(Row::new(WORLDS, backend)
+        .with("fingerprint", Fingerprint::of(&world).to_string())
+        .with("manifold_count", manifolds)
+        .with("narrow_phase", summary(|times| times.narrow_phase))
+        .with("step", summary(|times| times.step)))
 }
 
-/// Rapier uses the pool that a step is called in.
-fn pool(threads: usize) -> ThreadPool {
-    ThreadPoolBuilder::new().num_threads(threads).build().expect("the system can start threads")
+fn tables(rows: &[Row], steps: usize) -> Vec<Table> {
+    let side = |header: &str, path| {
+        let [stock, sbbk] = [Backend::Stock, Backend::Sbbk]
+            .map(|backend| time(&format!("{backend}, {header}"), path).of(backend));
+        [stock, sbbk]
+    };
+    let [narrow, narrow_sbbk] = side("narrow phase", "narrow_phase");
+    let [step, step_sbbk] = side("step", "step");
+    let worlds = TableSpec {
+        title: format!("Worlds after {steps} steps, bit for bit; milliseconds a step"),
+        study: WORLDS,
+        keys: &["scene", "run"],
+        total: None,
+        columns: vec![
+            number("manifolds", "manifold_count").of("sbbk"),
+            number("hash, stock", "fingerprint").of("stock"),
+            number("hash, sbbk", "fingerprint").of("sbbk"),
+            narrow,
+            narrow_sbbk,
+            faster("ratio", "narrow_phase.mean", "stock").of("sbbk"),
+            step,
+            step_sbbk,
+            faster("ratio", "step.mean", "stock").of("sbbk"),
+        ],
+        notes: vec![
+            "hash: poses, velocities, contacts in their order, features and impulses; all runs of a \
+             scene under one backend should have the same"
+                .to_owned(),
+            "forgetful: a new dispatcher before each step, so that no tree, candidate or feature is \
+             known, and the time to build the trees is in it"
+                .to_owned(),
+            "times: min / median over the steps; ratios: of means; more threads than one are used \
+             only under Rapier's feature `parallel`"
+                .to_owned(),
+        ],
+    };
+    vec![worlds.of(rows)]
 }

@@ -1,12 +1,13 @@
 //! The paper's first experiment on all backends: frames per second of the ball and helicopter.
 
-use serde::Serialize;
-
 use super::Progress;
 use super::turns::in_turn;
 use crate::backend::Backend;
-use crate::metrics::{ErrorCount, Run, RunPlan, Sample, StepTimes, Summary, run};
-use crate::scene::{BallKind, HelicopterBallDrop, Scene, SceneError};
+use crate::metrics::{Run, RunPlan, StepTimes, Summary, run};
+use crate::report::{ERROR_NOTE, Row, TIME_NOTE, Table, TableSpec, errors, faster, number, time};
+use crate::scene::{HelicopterBallDrop, Scene, SceneError};
+
+const FRAMES: &str = "helicopter";
 
 /// How often and how long to run the helicopter scene.
 #[derive(Clone, Copy, Debug)]
@@ -18,29 +19,8 @@ pub struct HelicopterPlan {
     pub steps: usize,
 }
 
-/// One backend in the helicopter scene. Times are means over a run's steps, in milliseconds,
-/// summed up over the repeats.
-#[derive(Clone, Debug, Serialize)]
-pub struct HelicopterRow {
-    /// What the ball is made of.
-    pub ball: BallKind,
-    /// Who answered.
-    pub backend: Backend,
-    /// Steps of each run.
-    pub steps: usize,
-    /// Steps a second; nothing is drawn.
-    pub frames_per_second: Summary,
-    /// Broad and narrow phase.
-    pub collision_detection: Summary,
-    /// The queries of the ball and the helicopter alone.
-    pub queries: Summary,
-    /// Error of fresh answers, in a run of its own (see [`Sample::fresh`]).
-    pub fresh: ErrorCount,
-    /// Error of the answers that Rapier got, in that run (see [`Sample::updated`]).
-    pub updated: ErrorCount,
-}
-
-/// Runs `scene` on the given backends in turn.
+/// Runs `scene` on the given backends in turn. Times are means over a run's steps, in milliseconds,
+/// summed up over the repeats; errors are of a run of its own.
 ///
 /// Errors: the scene cannot be built.
 pub fn helicopter(
@@ -48,35 +28,68 @@ pub fn helicopter(
     backends: &[Backend],
     plan: &HelicopterPlan,
     progress: &Progress,
-) -> Result<Vec<HelicopterRow>, SceneError> {
+) -> Result<Vec<Row>, SceneError> {
     progress.phase(scene.name(), (plan.repeats + 1) * backends.len());
     let timed = RunPlan { warm_up: 1, steps: plan.steps, ..RunPlan::default() };
     // One mesh pair: every other step can be judged.
     let judged = RunPlan { sample_every: 2, sample_size: 1, ..timed };
-    let runs = in_turn(backends, plan.repeats, |&backend, _| {
+    let runs = in_turn(backends, plan.repeats, |&backend| {
         progress.step();
         run(scene, backend, timed)
     })?;
-    let mut rows = Vec::new();
-    for (&backend, runs) in backends.iter().zip(&runs) {
+    let rows = backends.iter().zip(&runs).map(|(&backend, runs)| {
         let judged = run(scene, backend, judged)?;
         progress.step();
-        rows.extend(row(scene.ball, runs, &judged));
-    }
-    Ok(rows)
+        let mean = |time: fn(&StepTimes) -> f64| Summary::of(runs.iter().map(|run| run.mean(time)));
+        Ok(Row::new(FRAMES, backend)
+            .key("ball", scene.ball.to_string())
+            .with("steps", plan.steps)
+            .with("frames_per_second", Summary::of(runs.iter().map(Run::frames_per_second)))
+            .with("collision_detection", mean(StepTimes::collision_detection))
+            .with("queries", mean(|times| times.mesh_mesh + times.mesh_other))
+            .with("fresh", judged.total(|sample| sample.fresh))
+            .with("updated", judged.total(|sample| sample.updated)))
+    });
+    rows.collect()
 }
 
-/// `None` without runs.
-fn row(ball: BallKind, runs: &[Run], judged: &Run) -> Option<HelicopterRow> {
-    let mean = |time: fn(&StepTimes) -> f64| Summary::of(runs.iter().map(|run| run.mean(time)));
-    Some(HelicopterRow {
-        ball,
-        backend: judged.backend,
-        steps: runs.first()?.times.len(),
-        frames_per_second: Summary::of(runs.iter().map(Run::frames_per_second))?,
-        collision_detection: mean(StepTimes::collision_detection)?,
-        queries: mean(|times| times.mesh_mesh + times.mesh_other)?,
-        fresh: judged.total(|sample: &Sample| sample.fresh),
-        updated: judged.total(|sample: &Sample| sample.updated),
+/// The paper's results: frames a second, drawing included.
+pub(super) fn papers() -> [Row; 2] {
+    [(Backend::AabbOnly, 162.0), (Backend::Sbbk, 180.0)].map(|(backend, fps)| {
+        let row = Row::new(FRAMES, backend).key("ball", "the paper's");
+        row.with("frames_per_second", Summary::of([fps]))
     })
+}
+
+/// The paper's Table 1.
+pub fn frames(rows: &[Row], plan: &HelicopterPlan) -> Table {
+    let against = |backend: Backend| {
+        faster(&format!("vs {backend}"), "frames_per_second.median", backend).inverse()
+    };
+    let spec = TableSpec {
+        title: "Table 1. A ball falls on the rotor: frames a second".to_owned(),
+        study: FRAMES,
+        keys: &["ball", "backend"],
+        total: None,
+        columns: vec![
+            number("fps, median", "frames_per_second.median"),
+            number("best", "frames_per_second.max"),
+            against(Backend::Stock),
+            against(Backend::AabbOnly),
+            time("broad + narrow, ms", "collision_detection"),
+            time("queries, ms", "queries"),
+            errors("errors, fresh", "fresh"),
+            errors("errors, in the run", "updated"),
+        ],
+        notes: vec![
+            format!(
+                "{} runs of {} steps each, backends in turn; contact recycling on",
+                plan.repeats, plan.steps
+            ),
+            "a frame is a step: nothing is drawn, unlike in the paper".to_owned(),
+            TIME_NOTE.to_owned(),
+            ERROR_NOTE.to_owned(),
+        ],
+    };
+    spec.of(rows)
 }

@@ -1,191 +1,139 @@
 //! One mesh at a time: what its tree costs, and what first queries cost with and without it.
 
-use std::convert::Infallible;
-use std::time::Instant;
+use std::time::Duration;
 
-use glamx::{Pose3, Vec3};
-use oorandom::Rand32;
-use rapier3d::geometry::{ContactManifold, SharedShape};
-use rapier3d::math::Real;
-use sbbk_core::tree::{BuildOptions, Tree};
-use serde::Serialize;
+use sbbk_core::tree::LayerPlan;
 
-use super::turns::in_turn;
-use super::{Progress, StudyError};
-use crate::backend::{Answer, Backend, Primed, Question, SharedDispatcher};
+use super::contacts::places;
+use super::pair::{Contest, Sequence, query_count};
+use super::turns::{race, timed};
+use super::{Progress, StudyError, shape, tree};
+use crate::backend::{Answer, Backend, Question};
 use crate::mesh::Mesh;
 use crate::metrics::{ErrorCount, Judge, Summary, ratio};
-use crate::scene::{Solid, random};
+use crate::report::{
+    ERROR_NOTE, Look, Panel, Row, Scale, TIME_NOTE, Table, TableSpec, errors, faster, number, time,
+};
 
-/// One mesh against itself, at a few poses in touch; times are in milliseconds, summed up over the
-/// repeats.
-#[derive(Clone, Debug, Serialize)]
-pub struct MeshRow {
-    /// Name of the mesh.
-    pub mesh: String,
-    /// Its triangles.
-    pub triangle_count: usize,
-    /// To build Parry's shape, which is its tree above all.
-    pub parry_build: Summary,
-    /// To build the SBBK tree, on top of that.
-    pub sbbk_build: Summary,
-    /// Bytes of Parry's tree.
-    pub parry_bytes: usize,
-    /// Bytes of the SBBK tree. Its leaves hold the triangles themselves.
-    pub sbbk_bytes: usize,
-    /// First queries at all poses, with stock Parry; to free the manifolds is part of it.
-    pub stock_queries: Summary,
-    /// The same with SBBK, its tree built.
-    pub sbbk_queries: Summary,
-    /// Error of stock Parry's answers; `mesh_pairs` is the number of poses.
-    pub stock_error: ErrorCount,
-    /// Error of SBBK's answers.
-    pub sbbk_error: ErrorCount,
-}
-
-impl MeshRow {
-    /// Number of first queries after which the time they save has paid for building the tree, by
-    /// the medians; `None` if they save none.
-    pub fn break_even(&self) -> Option<f64> {
-        let saved = self.stock_queries.median - self.sbbk_queries.median;
-        ratio(self.sbbk_build.median * self.stock_error.mesh_pairs as f64, saved)
-    }
-}
-
+const MESHES: &str = "trees and first queries";
 /// The prediction distance of the queries: Rapier's default.
-const PREDICTION: Real = 0.02;
-/// Least and greatest number of poses. Large meshes, whose queries take long, get the least.
-const POSES: [usize; 2] = [2, 10];
+const PREDICTION: f32 = 0.02;
+/// Least and greatest number of approaches of five poses each. Large meshes, whose queries take long,
+/// get the least.
+const APPROACHES: [usize; 2] = [1, 3];
 /// Least and greatest number of repeats.
 const REPEATS: [usize; 2] = [3, 25];
-/// Triangles in all poses, or all repeats, together.
+/// Triangles in all approaches, or all repeats, together.
 const TRIANGLES: usize = 100_000;
 
-/// Measures each mesh.
+/// Measures each mesh, scaled to two units, against itself. Builds are in milliseconds, queries in µs.
 ///
 /// Errors: a mesh has no triangles, or a tree cannot be built for it.
-pub fn meshes(meshes: &[Mesh], progress: &Progress) -> Result<Vec<MeshRow>, StudyError> {
+pub(super) fn meshes(meshes: &[Mesh], progress: &Progress) -> Result<Vec<Row>, StudyError> {
     progress.phase("trees and first queries", meshes.len());
-    let rows = meshes.iter().map(|mesh| {
+    let mut rows = Vec::new();
+    for mesh in meshes {
+        rows.extend(measure(&mesh.clone().centred().scaled_to(2.0))?);
         progress.step();
-        measure(mesh)
-    });
-    rows.collect()
+    }
+    Ok(rows)
 }
 
-fn measure(mesh: &Mesh) -> Result<MeshRow, StudyError> {
+fn measure(mesh: &Mesh) -> Result<[Row; 2], StudyError> {
     let count =
         |[least, most]: [usize; 2]| (TRIANGLES / mesh.triangle_count().max(1)).clamp(least, most);
-    let shape = Solid::new(mesh)?.collider().shape;
-    let parry_bytes = shape.as_trimesh().map_or(0, |mesh| mesh.bvh().total_memory_size());
-    let sbbk_bytes = build(mesh)?.stats().bytes();
-    let repeats = count(REPEATS);
-    let [parry_build, sbbk_build] =
-        race([&|| drop(mesh.shared_shape()), &|| drop(build(mesh))], repeats);
-    let [stock, sbbk] = [Backend::Stock, Backend::Sbbk].map(Backend::dispatcher);
-    let _primed = [&stock, &sbbk].map(|dispatcher| Primed::new(dispatcher, [&shape]));
-    let touches = |pose: &Pose3| {
-        let manifolds = ask(&sbbk, &shape, pose);
-        manifolds.iter().any(|manifold| !manifold.points.is_empty())
-    };
-    let poses = poses(mesh, count(POSES), touches);
-    let ask_all = |dispatcher| poses.iter().for_each(|pose| drop(ask(dispatcher, &shape, pose)));
-    let [stock_queries, sbbk_queries] = race([&|| ask_all(&stock), &|| ask_all(&sbbk)], repeats);
-    let [stock_error, sbbk_error] = judge([&stock, &sbbk], &shape, &poses);
-    Ok(MeshRow {
-        mesh: mesh.name.clone(),
-        triangle_count: mesh.triangle_count(),
-        parry_build,
-        sbbk_build,
-        parry_bytes,
-        sbbk_bytes,
-        stock_queries,
-        sbbk_queries,
-        stock_error,
-        sbbk_error,
-    })
+    let shape = shape(mesh)?;
+    let bytes = [
+        shape.as_trimesh().map_or(0, |mesh| mesh.bvh().total_memory_size()),
+        tree(mesh, LayerPlan::SBBK)?.stats().bytes(),
+    ];
+    let builds: [&dyn Fn() -> Duration; 2] =
+        [&|| timed(|| mesh.shared_shape()).0, &|| timed(|| tree(mesh, LayerPlan::SBBK)).0];
+    let builds = race(&builds, count(REPEATS), 1e3, |build| build());
+    let contest = Contest::new([&shape]);
+    let places = (0..count(APPROACHES) as u64)
+        .flat_map(|seed| places(&contest, &shape, 2.0, PREDICTION, seed));
+    let sequence =
+        |pos12| Sequence { shapes: [&shape; 2], poses: vec![pos12], prediction: PREDICTION };
+    let sequences: Vec<Sequence> = places.map(|place| sequence(place.pos12)).collect();
+    let queries = contest.race(count(REPEATS), &sequences);
+    let errors = judge(&contest, &sequences);
+    // First queries after which the time they save has paid for the tree.
+    let saved = queries[0].median - queries[1].median;
+    let paid = |build: &Summary| ratio(1e3 * build.median, saved).filter(|count| *count > 0.0);
+    let break_even = [None, paid(&builds[1])];
+    Ok([0, 1].map(|side| {
+        Row::new(MESHES, Contest::BACKENDS[side])
+            .key("mesh", &*mesh.name)
+            .key("triangle_count", mesh.triangle_count())
+            .with("build", builds[side])
+            .with("bytes", bytes[side])
+            .with("kibibytes", bytes[side] as f64 / 1024.0)
+            .with("pose_count", query_count(&sequences) as usize)
+            .with("time", queries[side])
+            .with("break_even", break_even[side].map(|count| count.ceil() as u64))
+            .with("errors", errors[side])
+    }))
 }
 
-fn build(mesh: &Mesh) -> Result<Tree, StudyError> {
-    let tree = Tree::build(&mesh.vertices, &mesh.triangles, &BuildOptions::default());
-    tree.map_err(|cause| StudyError::Tree { mesh: mesh.name.clone(), cause })
-}
-
-/// Milliseconds of two tasks, done in turn. `repeats` is at least 1.
-fn race(tasks: [&dyn Fn(); 2], repeats: usize) -> [Summary; 2] {
-    let Ok(times) = in_turn(&tasks, repeats, |task, _| {
-        let start = Instant::now();
-        task();
-        Ok::<_, Infallible>(1e3 * start.elapsed().as_secs_f64())
-    });
-    let mut times = times.into_iter().flat_map(Summary::of);
-    [(); 2].map(|()| times.next().expect("both tasks were done at least once"))
-}
-
-/// Poses of the mesh beside itself, in random directions and orientations: as far as it reaches,
-/// then nearer by a twentieth at a time until `touches` says so, or the centres nearly meet.
-fn poses(mesh: &Mesh, count: usize, touches: impl Fn(&Pose3) -> bool) -> Vec<Pose3> {
-    let mut random = Rand32::new(1);
-    let reach = |direction: Vec3| {
-        let heights = mesh.vertices.iter().map(|vertex| vertex.dot(direction));
-        heights.fold(f32::NEG_INFINITY, f32::max)
-    };
-    let poses = (0..count).map(|_| {
-        let (direction, rotation) = (random::direction(&mut random), random::rotation(&mut random));
-        let opposite = rotation.inverse() * -direction;
-        let farthest = reach(direction) + reach(opposite);
-        let pose = |step: u8| {
-            let distance = farthest * (1.0 - 0.05 * f32::from(step));
-            Pose3::from_parts(distance * direction, rotation)
-        };
-        (0..19).map(pose).find(&touches).unwrap_or(pose(19))
-    });
-    poses.collect()
-}
-
-/// A first query of the mesh against itself.
-fn ask(dispatcher: &SharedDispatcher, shape: &SharedShape, pos12: &Pose3) -> Vec<ContactManifold> {
-    let (mut manifolds, mut workspace) = (Vec::new(), None);
-    dispatcher
-        .contact_manifolds(pos12, &**shape, &**shape, PREDICTION, &mut manifolds, &mut workspace)
-        .expect("every backend answers for two meshes");
-    manifolds
-}
-
-/// Errors of both dispatchers; the truth of each pose is worked out once.
-fn judge(
-    dispatchers: [&SharedDispatcher; 2],
-    shape: &SharedShape,
-    poses: &[Pose3],
-) -> [ErrorCount; 2] {
-    let judge = Judge::new([shape]);
+/// Errors of both; the truth of each pose is worked out once.
+fn judge(contest: &Contest, sequences: &[Sequence]) -> [ErrorCount; 2] {
+    let judge = Judge::new(sequences[0].shapes);
     let mut errors = [ErrorCount::default(); 2];
-    for pose in poses {
-        let question = Question::new(pose, [&**shape; 2], PREDICTION);
+    for sequence in sequences {
+        let shapes = sequence.shapes.map(|shape| &**shape);
+        let question = Question::new(&sequence.poses[0], shapes, PREDICTION);
         let truth = judge.truth(&question);
-        for (dispatcher, error) in dispatchers.iter().zip(&mut errors) {
-            *error += truth.judge(&Answer::new(question, &ask(dispatcher, shape, pose)));
+        for (dispatcher, errors) in contest.dispatchers.iter().zip(&mut errors) {
+            sequence.walk(dispatcher, |_, manifolds| {
+                *errors += truth.judge(&Answer::new(question, manifolds));
+            });
         }
     }
     errors
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::mesh;
+/// Build time, memory, first queries and break-even.
+pub(super) fn table(rows: &[Row]) -> Table {
+    let spec = TableSpec {
+        title: "Trees and first queries: each mesh against itself, 2 units across".to_owned(),
+        study: MESHES,
+        keys: &["mesh", "triangle_count"],
+        total: None,
+        columns: vec![
+            time("parry build, ms", "build").of("stock"),
+            time("sbbk build, ms", "build").of("sbbk"),
+            number("parry KiB", "kibibytes").of("stock"),
+            number("sbbk KiB", "kibibytes").of("sbbk"),
+            number("poses", "pose_count").of("sbbk"),
+            time("stock, µs", "time").of("stock"),
+            time("sbbk, µs", "time").of("sbbk"),
+            faster("ratio", "time.median", "stock").of("sbbk"),
+            number("break-even queries", "break_even").of("sbbk"),
+            errors("errors, stock", "errors").of("stock"),
+            errors("errors, sbbk", "errors").of("sbbk"),
+        ],
+        notes: vec![
+            "the SBBK tree comes on top of Parry's; its leaves hold the triangles".to_owned(),
+            "break-even: first queries whose saved time pays for the tree".to_owned(),
+            TIME_NOTE.to_owned(),
+            ERROR_NOTE.to_owned(),
+        ],
+    };
+    spec.of(rows)
+}
 
-    /// Would catch poses at which nothing touches, or a race that does nothing: times and errors
-    /// would then be about nothing. SBBK's answers must be right.
-    #[test]
-    fn the_queries_are_about_something() {
-        let rows = meshes(&[mesh::ball(1.0, 4)], &Progress::hidden()).unwrap();
-        let row = &rows[0];
-        assert_eq!(row.triangle_count, 128);
-        assert_eq!(row.sbbk_error.mesh_pairs, POSES[1]);
-        assert!(row.sbbk_error.true_pairs >= POSES[1]);
-        assert_eq!(row.sbbk_error.wrong(), 0);
-        assert!(row.stock_queries.min > 0.0 && row.sbbk_build.min > 0.0);
-        assert!(row.parry_bytes > 0 && row.sbbk_bytes > 0);
-    }
+/// Time against error of first queries, for each true pair of triangles.
+pub(super) fn panel(rows: &[Row]) -> Panel {
+    let labels = ["µs for each true triangle pair", "wrong triangle pairs for 100 true ones"];
+    let panel = Panel::new("Time against error, first queries", labels, Scale::Linear);
+    [Backend::Stock, Backend::Sbbk].into_iter().fold(panel, |panel, backend| {
+        let is_shown = move |row: &&Row| row.study == MESHES && row.is("backend", backend);
+        let point = |row: &Row| {
+            let time = row.number("time.median") * row.number("pose_count");
+            Some([time / row.number("errors.true_pairs"), 100.0 * row.error_share("errors")?])
+        };
+        let points = rows.iter().filter(is_shown).filter_map(point);
+        panel.points(&backend.to_string(), Look::of(backend), points)
+    })
 }

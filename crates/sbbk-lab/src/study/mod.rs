@@ -1,37 +1,65 @@
-//! The experiments: the paper's two scenes on all backends, and what lies behind their times.
-//!
-//! [`compare`] does all of them; each can be run on its own. Results are plain data, which
-//! [`report`](crate::report) turns into tables, files and plots.
+//! The experiments. Each has a plan, standard or quick, carries it out, and returns rows, tables and
+//! a picture: [`Results`](crate::report::Results).
 //!
 //! Times are taken in one process, backends in turn, and without what happens only once: trees are
-//! built before. Two runs of one scene soon differ, as chaos makes a different last bit of a contact
-//! into a different trajectory; so the same pairs at the same poses are timed as well
-//! ([`same_poses`]).
+//! built before. Wrong contacts are counted on the queries that are timed, or on such ones.
 
-mod comparison;
+pub mod compare;
 pub mod contacts;
 pub mod convex;
 mod cut;
 pub mod determinism;
-mod error;
 pub mod front;
 mod helicopter;
 mod meshes;
-mod outline;
+mod motion;
+mod pair;
 mod pile;
 mod progress;
 pub mod queries;
-mod same_poses;
 pub mod soak;
 pub mod soft;
 pub mod terrain;
 mod turns;
 
-pub use comparison::{ComparePlan, Comparison, compare};
-pub use cut::{CutRow, CutStudy, Hierarchy, cut};
-pub use error::StudyError;
-pub use helicopter::{HelicopterPlan, HelicopterRow, helicopter};
-pub use meshes::{MeshRow, meshes};
-pub use pile::{PILE_QUERY_STRIDE, PilePlan, PileRow, PileStudy, pile};
+pub use cut::{cut, table as cut_table};
+pub use helicopter::{HelicopterPlan, frames, helicopter};
+pub use motion::STEP_COUNT;
+pub use pile::{PilePlan, SamePosesPlan, pile, runs};
 pub use progress::Progress;
-pub use same_poses::{SamePosesPlan, SamePosesRow, same_poses};
+
+use rapier3d::geometry::SharedShape;
+use sbbk_core::tree::{BuildError, BuildOptions, LayerPlan, Tree};
+use thiserror::Error;
+
+use crate::mesh::Mesh;
+use crate::scene::SceneError;
+
+/// A mesh does not serve.
+#[derive(Debug, Error)]
+pub enum StudyError {
+    /// A scene could not be built.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A mesh could not have a tree.
+    #[error("no tree can be built for the mesh `{mesh}`: {cause}")]
+    Tree {
+        /// Name of the mesh.
+        mesh: String,
+        /// What is wrong with it.
+        #[source]
+        cause: BuildError,
+    },
+}
+
+/// Parry's shape of a mesh.
+fn shape(mesh: &Mesh) -> Result<SharedShape, SceneError> {
+    mesh.shared_shape().map_err(|cause| SceneError { mesh: mesh.name.clone(), cause })
+}
+
+/// The tree of a mesh.
+fn tree(mesh: &Mesh, layers: LayerPlan) -> Result<Tree, StudyError> {
+    let options = BuildOptions { layers, ..BuildOptions::default() };
+    Tree::build(&mesh.vertices, &mesh.triangles, &options)
+        .map_err(|cause| StudyError::Tree { mesh: mesh.name.clone(), cause })
+}

@@ -1,14 +1,23 @@
-//! The paper's second experiment on all backends: time of collision detection in the pile.
+//! The paper's second experiment: time of collision detection in a pile of heads.
+//!
+//! Two runs of one scene soon differ, as chaos makes a different last bit of a contact into a
+//! different trajectory; so the same pairs at the same poses are timed as well.
 
-use serde::Serialize;
+use std::time::Duration;
 
-use super::{Progress, SamePosesPlan, SamePosesRow, same_poses};
-use crate::backend::Backend;
-use crate::metrics::{ErrorCount, Run, RunPlan, Runner, StepTimes, Summary, WorldState};
+use super::Progress;
+use super::turns::in_turn;
+use crate::backend::{Backend, Primed};
+use crate::metrics::{
+    ErrorCount, Judge, PosePairs, Run, RunPlan, Runner, StepTimes, Summary, Sweep, sample_indices,
+};
+use crate::report::{
+    ERROR_NOTE, Look, Panel, Row, Scale, TIME_NOTE, Table, TableSpec, errors, faster, number, time,
+};
 use crate::scene::{MonkeyPile, Scene, SceneError, SceneWorld};
 
-/// Of so many queries of a pile one is timed: thousands are left in each step of the large piles.
-pub const PILE_QUERY_STRIDE: u64 = 8;
+const RUNS: &str = "pile, whole runs";
+const SAME_POSES: &str = "pile, same poses";
 
 /// How often and how long to run a pile.
 #[derive(Clone, Debug)]
@@ -23,52 +32,24 @@ pub struct PilePlan {
     pub same_poses: Option<SamePosesPlan>,
 }
 
-/// What was measured on one pile.
-#[derive(Clone, Debug, Serialize)]
-pub struct PileStudy {
-    /// Number of heads.
-    pub heads: usize,
-    /// What the scene calls itself.
-    pub scene: String,
-    /// Whether Rapier recycled contacts.
-    pub contact_recycling: bool,
-    /// Whole runs, one row for each backend.
-    pub runs: Vec<PileRow>,
-    /// All backends at the same poses: those of the last sample of the first backend's run.
-    pub same_poses: Vec<SamePosesRow>,
+/// What to ask all backends at the same poses.
+#[derive(Clone, Copy, Debug)]
+pub struct SamePosesPlan {
+    /// How often each is asked about all pairs.
+    pub repeats: usize,
+    /// At most this many pairs are judged.
+    pub sample_size: usize,
 }
 
-/// Whole runs of one backend. Times are means over a run's timed steps, in milliseconds, summed
-/// up over the runs.
-#[derive(Clone, Debug, Serialize)]
-pub struct PileRow {
-    /// Who answered.
-    pub backend: Backend,
-    /// Steps of each run.
-    pub steps: usize,
-    /// Whole step.
-    pub step: Summary,
-    /// Broad phase.
-    pub broad_phase: Summary,
-    /// Narrow phase, queries included.
-    pub narrow_phase: Summary,
-    /// Broad and narrow phase: the paper's "whole time of CD process".
-    pub collision_detection: Summary,
-    /// Constraint solver.
-    pub solver: Summary,
-    /// Queries between two heads.
-    pub mesh_mesh: Summary,
-    /// Queries between a head and the floor.
-    pub mesh_other: Summary,
-    /// The world at the last sample.
-    pub state: WorldState,
-    /// Error of fresh answers on this backend's own trajectory.
-    pub fresh: ErrorCount,
-    /// Error of the answers that Rapier got.
-    pub updated: ErrorCount,
+impl PilePlan {
+    /// Of so many queries one is timed: thousands are left in each step of the large piles.
+    pub const QUERY_STRIDE: u64 = 8;
+    /// Steps until the lowest heads land.
+    pub const FREE_FALL: usize = 27;
 }
 
-/// Runs `scene` on the backends of `plan`; `at_end` sees each world after its last step.
+/// Runs `scene` on the backends of `plan`; `at_end` sees each world after its last step. Times are
+/// means over a run's timed steps, in milliseconds, summed up over the runs.
 ///
 /// Errors: the scene cannot be built.
 pub fn pile(
@@ -76,7 +57,7 @@ pub fn pile(
     plan: &PilePlan,
     progress: &Progress,
     at_end: &mut dyn FnMut(&SceneWorld),
-) -> Result<PileStudy, SceneError> {
+) -> Result<Vec<Row>, SceneError> {
     let mut runs: Vec<Vec<Run>> = plan.backends.iter().map(|_| Vec::new()).collect();
     for repeat in 0..plan.repeats {
         progress.phase(scene.name(), plan.run.step_count());
@@ -88,19 +69,14 @@ pub fn pile(
             runs.push(run);
         }
     }
+    let mut rows: Vec<Row> = runs.iter().map(|runs| row(scene, runs)).collect();
     let sample = runs.first().and_then(|runs| runs.first()?.samples.last());
-    let same_poses = sample.zip(plan.same_poses.as_ref()).map(|(sample, plan)| {
-        let message = format!("{}, same poses", scene.name());
-        progress.phase(message, plan.repeats * plan.backends.len());
-        same_poses(&sample.pairs, sample.step, plan, progress)
-    });
-    Ok(PileStudy {
-        heads: scene.heads,
-        scene: scene.name(),
-        contact_recycling: scene.contact_recycling,
-        runs: runs.iter().filter_map(|runs| row(runs)).collect(),
-        same_poses: same_poses.unwrap_or_default(),
-    })
+    if let Some((sample, plan)) = sample.zip(plan.same_poses) {
+        let phase = format!("{}, same poses", scene.name());
+        progress.phase(phase, plan.repeats * Backend::ALL.len());
+        rows.extend(same_poses(scene, &sample.pairs, plan, progress));
+    }
+    Ok(rows)
 }
 
 /// One run on each backend, all at the same time: each step is done by one world after the other,
@@ -124,22 +100,203 @@ fn side_by_side(
     Ok(runners.into_iter().map(Runner::finish).collect())
 }
 
-/// `None` without runs.
-fn row(runs: &[Run]) -> Option<PileRow> {
-    let first = runs.first()?;
+fn pile_row(study: &'static str, backend: Backend, scene: &MonkeyPile) -> Row {
+    let row = Row::new(study, backend).key("heads", scene.heads).key("scene", scene.name());
+    row.key("contact_recycling", scene.contact_recycling)
+}
+
+/// Whole runs of one backend; there is one at least.
+fn row(scene: &MonkeyPile, runs: &[Run]) -> Row {
+    let first = &runs[0];
     let mean = |time: fn(&StepTimes) -> f64| Summary::of(runs.iter().map(|run| run.mean(time)));
-    Some(PileRow {
-        backend: first.backend,
-        steps: first.times.len() + first.samples.len(),
-        step: mean(|times| times.step)?,
-        broad_phase: mean(|times| times.broad_phase)?,
-        narrow_phase: mean(|times| times.narrow_phase)?,
-        collision_detection: mean(StepTimes::collision_detection)?,
-        solver: mean(|times| times.solver)?,
-        mesh_mesh: mean(|times| times.mesh_mesh)?,
-        mesh_other: mean(|times| times.mesh_other)?,
-        state: first.samples.last().map(|sample| sample.state).unwrap_or_default(),
-        fresh: first.total(|sample| sample.fresh),
-        updated: first.total(|sample| sample.updated),
+    let judged_from = |count: ErrorCount| format!("{} of {}", count.mesh_pairs, count.sampled_from);
+    let (fresh, updated) = (first.total(|sample| sample.fresh), first.total(|s| s.updated));
+    pile_row(RUNS, first.backend, scene)
+        .with("steps", first.times.len() + first.samples.len())
+        .with("step", mean(|times| times.step))
+        .with("broad_phase", mean(|times| times.broad_phase))
+        .with("narrow_phase", mean(|times| times.narrow_phase))
+        .with("collision_detection", mean(StepTimes::collision_detection))
+        .with("solver", mean(|times| times.solver))
+        .with("mesh_mesh", mean(|times| times.mesh_mesh))
+        .with("mesh_other", mean(|times| times.mesh_other))
+        .with("state", first.samples.last().map(|sample| sample.state))
+        .with("fresh", fresh)
+        .with("fresh_from", judged_from(fresh))
+        .with("updated", updated)
+        .with("updated_from", judged_from(updated))
+}
+
+/// Every backend asked about all of `pairs`: milliseconds for all.
+fn same_poses(
+    scene: &MonkeyPile,
+    pairs: &PosePairs,
+    plan: SamePosesPlan,
+    progress: &Progress,
+) -> Vec<Row> {
+    let dispatchers = Backend::ALL.map(Backend::dispatcher);
+    let _primed = dispatchers.each_ref().map(|dispatcher| Primed::new(dispatcher, pairs.shapes()));
+    let mut errors = [[ErrorCount::default(); 2]; Backend::ALL.len()];
+    let judge = Judge::new(pairs.shapes());
+    for index in sample_indices(pairs.pair_count(), plan.sample_size) {
+        let truths = [0, 1].map(|pose_index| judge.truth(&pairs.question(index, pose_index)));
+        for (dispatcher, errors) in dispatchers.iter().zip(&mut errors) {
+            let answers = pairs.answers(dispatcher, index);
+            for ((answer, truth), error) in answers.iter().zip(&truths).zip(errors) {
+                *error += truth.judge(answer);
+            }
+        }
+    }
+    let Ok(sweeps) = in_turn(&dispatchers, plan.repeats, |dispatcher| {
+        progress.step();
+        Ok::<_, std::convert::Infallible>(pairs.sweep(dispatcher))
+    });
+    let answered = Backend::ALL.into_iter().zip(sweeps).zip(errors);
+    let rows = answered.map(|((backend, sweeps), [fresh_error, steady_error])| {
+        let milliseconds = |time: fn(&Sweep) -> Duration| {
+            Summary::of(sweeps.iter().map(|sweep| 1e3 * time(sweep).as_secs_f64()))
+        };
+        pile_row(SAME_POSES, backend, scene)
+            .with("pair_count", pairs.pair_count())
+            .with("fresh", milliseconds(|sweep| sweep.fresh))
+            .with("steady", milliseconds(|sweep| sweep.steady))
+            .with("fresh_error", fresh_error)
+            .with("steady_error", steady_error)
+    });
+    rows.collect()
+}
+
+/// What tables call the paper's pile, its size, and its "whole time of CD process" in milliseconds; it is not said
+/// whether this is a frame's time.
+const PAPERS: &str = "the paper's";
+const PAPERS_HEADS: usize = 2000;
+const PAPERS_TIMES: [(Backend, f64); 2] = [(Backend::AabbOnly, 71.8), (Backend::Sbbk, 34.5)];
+
+/// The paper's results.
+pub(super) fn papers() -> [Row; 2] {
+    PAPERS_TIMES.map(|(backend, milliseconds)| {
+        let row = Row::new(RUNS, backend).key("heads", PAPERS_HEADS).key("scene", PAPERS);
+        row.with("collision_detection", Summary::of([milliseconds]))
     })
+}
+
+/// The paper's Table 2 and the numbers behind its Diagram 1, and the errors.
+pub fn runs(rows: &[Row], plan: &RunPlan) -> [Table; 2] {
+    let keys = &["scene", "contact_recycling", "backend"];
+    let stock = |path| faster("vs stock", path, Backend::Stock);
+    let aabb_only = |path| faster("vs aabb-only", path, Backend::AabbOnly);
+    let times = TableSpec {
+        title: "Table 2 and Diagram 1. Heads in a pile: milliseconds a step".to_owned(),
+        study: RUNS,
+        keys,
+        total: None,
+        columns: vec![
+            time("broad + narrow", "collision_detection"),
+            stock("collision_detection.median"),
+            aabb_only("collision_detection.median"),
+            time("head-head queries", "mesh_mesh"),
+            stock("mesh_mesh.median"),
+            aabb_only("mesh_mesh.median"),
+            time("head-floor queries", "mesh_other"),
+            time("solver", "solver"),
+            time("step", "step"),
+            stock("step.median"),
+        ],
+        notes: vec![
+            format!(
+                "mean of the {} steps after the first heads land, in which one query in {} is \
+                 timed; times: min / median over the runs; ratios: of medians",
+                plan.steps, plan.query_stride
+            ),
+            "contact recycling: Rapier's default is true; backends side by side, each on its own \
+             trajectory"
+                .to_owned(),
+        ],
+    };
+    let accuracy = TableSpec {
+        title: "Accuracy in whole runs".to_owned(),
+        study: RUNS,
+        keys,
+        total: None,
+        columns: vec![
+            number("mesh pairs, fresh", "fresh_from"),
+            errors("errors", "fresh"),
+            number("mesh pairs, in the run", "updated_from"),
+            errors("errors", "updated"),
+            number("manifolds", "state.contact_manifold_count"),
+            number("points", "state.point_count"),
+            number("mean height", "state.mean_height"),
+            number("mean depth", "state.mean_penetration"),
+            number("max depth", "state.max_penetration"),
+        ],
+        notes: vec![
+            "fresh: sampled from all pairs of the broad phase, asked anew; in the run: sampled from \
+             those that Rapier updated in the sampled steps, as it got them"
+                .to_owned(),
+            "manifolds and the rest: after the last sampled step, recycled contacts included; depth: \
+             units, of the deepest point of touching pairs"
+                .to_owned(),
+            ERROR_NOTE.to_owned(),
+        ],
+    };
+    let papers = |row: &Row| row.is("scene", PAPERS);
+    let ours: Vec<Row> = rows.iter().filter(|row| !papers(row)).cloned().collect();
+    [times.of(rows), accuracy.of(&ours)]
+}
+
+/// All backends at the same poses.
+pub(super) fn same_poses_table(rows: &[Row]) -> Table {
+    let spec = TableSpec {
+        title: "The same head-head pairs at the same poses, milliseconds for all".to_owned(),
+        study: SAME_POSES,
+        keys: &["heads", "backend"],
+        total: None,
+        columns: vec![
+            number("pairs", "pair_count"),
+            time("fresh", "fresh"),
+            faster("vs stock", "fresh.median", Backend::Stock),
+            time("steady", "steady"),
+            faster("vs stock", "steady.median", Backend::Stock),
+            faster("vs aabb-only", "steady.median", Backend::AabbOnly),
+            errors("errors, fresh", "fresh_error"),
+            errors("errors, steady", "steady_error"),
+        ],
+        notes: vec![
+            "poses of the stock run's last sampled step; fresh: nothing known about a pair; steady: a \
+             step later, with what is kept from the first query"
+                .to_owned(),
+            "no pair is left out as recycled, so that steady is Rapier with recycling off".to_owned(),
+            TIME_NOTE.to_owned(),
+            ERROR_NOTE.to_owned(),
+        ],
+    };
+    spec.of(rows)
+}
+
+/// Time of collision detection, and Diagram 1: the ratios of these times by number of heads.
+pub(super) fn panels(rows: &[Row]) -> [Panel; 2] {
+    let medians = |backend: Backend| -> Vec<[f64; 2]> {
+        let is_shown = |row: &&Row| {
+            row.study == RUNS
+                && row.is("backend", backend)
+                && row.get("contact_recycling") == Some(&true.into())
+        };
+        let point = |row: &Row| [row.number("heads"), row.number("collision_detection.median")];
+        rows.iter().filter(is_shown).map(point).collect()
+    };
+    let labels = ["monkey heads", "ms a step, whole runs"];
+    let times = Panel::new("Broad and narrow phase", labels, Scale::Linear);
+    let times = Backend::ALL.into_iter().fold(times, |panel, backend| {
+        panel.line(&backend.to_string(), Look::of(backend), medians(backend).into_iter())
+    });
+    let labels = ["monkey heads", "ratio of times, broad and narrow phase"];
+    let ratios = Panel::new("Diagram 1: how many times faster", labels, Scale::Linear);
+    let ratios = [Backend::Stock, Backend::AabbOnly].into_iter().fold(ratios, |panel, backend| {
+        let pairs = medians(backend).into_iter().zip(medians(Backend::Sbbk));
+        let points = pairs.map(|([heads, time], [_, sbbk])| [heads, time / sbbk]);
+        panel.line(&format!("{backend} : sbbk"), Look::of(backend), points)
+    });
+    let [(_, aabb), (_, sbbk)] = PAPERS_TIMES;
+    let papers = [[PAPERS_HEADS as f64, aabb / sbbk]].into_iter();
+    [times, ratios.points("the paper's aabb : sbbk", Look::ALL[4], papers)]
 }

@@ -2,6 +2,7 @@
 //! or get lost?
 
 use std::collections::VecDeque;
+use std::mem::take;
 use std::sync::Arc;
 
 use glamx::Vec3;
@@ -11,12 +12,12 @@ use rapier_integration::{SbbkConfig, SbbkDispatcher};
 use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::math::Vector;
 use rapier3d::pipeline::PhysicsWorld;
-use serde::Serialize;
 
 use super::{Progress, StudyError};
-use crate::backend::{Probe, Timed};
+use crate::backend::{Backend, Probe, Timed};
 use crate::mesh::{self, Mesh};
 use crate::metrics::{Environment, ErrorCount, Judge, Summary, sample_indices, timed_step};
+use crate::report::{self, ERROR_NOTE, Results, Row, TableSpec, number, time};
 use crate::scene::Solid;
 
 /// How long, and how much at once.
@@ -54,77 +55,70 @@ impl Default for SoakPlan {
 /// then on.
 const IDLE_TREE_BYTES: usize = 1 << 20;
 
-/// Some steps in a row.
-#[derive(Clone, Debug, Serialize)]
-pub struct SoakRow {
-    /// The last one of them.
-    pub step: usize,
-    /// Milliseconds a step, of those that were not sampled.
-    pub time: Summary,
-    /// Memory of the process at the end, in bytes; `None` where the system does not tell.
-    pub memory: Option<usize>,
-    /// Trees at the end.
-    pub trees: usize,
-    /// Those of them that no pair uses.
-    pub idle_trees: usize,
-    /// Memory of all trees, in bytes.
-    pub tree_bytes: usize,
-    /// Trees built since the start.
-    pub tree_builds: u64,
-    /// Answers judged in these steps.
-    pub errors: ErrorCount,
-}
+const SOAK: &str = "soak";
 
-/// A whole run.
-#[derive(Clone, Debug, Serialize)]
-pub struct Soak {
-    /// Where.
-    pub environment: Environment,
-    /// Bodies that there were at once.
-    pub body_limit: usize,
-    /// Bodies created in all.
-    pub body_count: usize,
-    /// The run, piece by piece.
-    pub rows: Vec<SoakRow>,
+/// What a long run left behind.
+pub struct SoakEnd {
+    /// Wrong contacts, of all that were judged.
+    pub wrong: u64,
     /// Trees left after all bodies were taken away, the world dropped and idle trees released.
     pub trees_left: usize,
 }
 
-impl Soak {
-    /// All judged answers together.
-    pub fn errors(&self) -> ErrorCount {
-        self.rows.iter().map(|row| row.errors).sum()
-    }
-}
-
-/// Runs it.
+/// Runs it: window by window, and the end.
 ///
 /// Errors: a mesh of the scene has no triangles.
-pub fn soak(plan: &SoakPlan, progress: &Progress) -> Result<Soak, StudyError> {
+pub fn soak(plan: &SoakPlan, progress: &Progress) -> Result<(Results, SoakEnd), StudyError> {
     let mut run = SoakRun::new()?;
     let mut rows = Vec::new();
     progress.phase("bodies come and go", plan.steps);
-    let mut window = (Vec::new(), ErrorCount::default());
+    let (mut times, mut errors) = (Vec::new(), ErrorCount::default());
     for step in 1..=plan.steps {
         if step % plan.spawn_every == 0 {
             run.spawn(plan.body_limit)?;
         }
         if step % plan.sample_every == 0 {
-            window.1 += run.sampled_step(plan.sample_size);
+            errors += run.sampled_step(plan.sample_size);
         } else {
-            window.0.push(timed_step(&mut run.world, &run.probe).step);
+            times.push(timed_step(&mut run.world, &run.probe).step);
         }
         if step % plan.window == 0 {
-            let (times, errors) = std::mem::take(&mut window);
-            rows.extend(Summary::of(times).map(|time| run.row(step, time, errors)));
+            rows.push(run.row(step, take(&mut times), take(&mut errors)));
         }
         progress.step();
     }
     progress.finish();
     let body_count = run.body_count;
-    let trees_left = run.clear();
-    let environment = Environment::detect();
-    Ok(Soak { environment, body_limit: plan.body_limit, body_count, rows, trees_left })
+    let end = SoakEnd {
+        wrong: rows.iter().map(|row| row.wrong("errors")).sum(),
+        trees_left: run.clear(),
+    };
+    let spec = TableSpec {
+        title: format!("{body_count} bodies, {} at once, on a mesh terrain", plan.body_limit),
+        study: SOAK,
+        keys: &["until_step"],
+        total: None,
+        columns: vec![
+            time("ms a step", "time"),
+            number("process, MiB", "memory"),
+            number("trees built", "tree_builds"),
+            number("trees", "trees"),
+            number("idle", "idle_trees"),
+            number("trees, MiB", "tree_memory"),
+            number("mesh pairs judged", "errors.mesh_pairs"),
+            report::errors("errors", "errors"),
+        ],
+        notes: vec![
+            format!(
+                "trees left after all bodies and the world went and idle trees were released: {}",
+                end.trees_left
+            ),
+            "times: min / median over the steps".to_owned(),
+            ERROR_NOTE.to_owned(),
+        ],
+    };
+    let tables = vec![spec.of(&rows)];
+    Ok((Results { environment: Environment::detect(), rows, tables, panels: Vec::new() }, end))
 }
 
 struct SoakRun {
@@ -221,18 +215,19 @@ impl SoakRun {
         ErrorCount { sampled_from: answers.len(), ..errors }
     }
 
-    fn row(&self, step: usize, time: Summary, errors: ErrorCount) -> SoakRow {
+    /// Of the steps up to this one, in milliseconds and MiB.
+    fn row(&self, step: usize, times: Vec<f64>, errors: ErrorCount) -> Row {
+        let mebibytes = |bytes: usize| bytes as f64 / (1 << 20) as f64;
         let stats = self.dispatcher.stats();
-        SoakRow {
-            step,
-            time,
-            memory: memory_stats().map(|memory| memory.physical_mem),
-            trees: stats.trees,
-            idle_trees: stats.idle_trees,
-            tree_bytes: stats.tree_bytes,
-            tree_builds: stats.tree_builds,
-            errors,
-        }
+        Row::new(SOAK, Backend::Sbbk)
+            .key("until_step", step)
+            .with("time", Summary::of(times))
+            .with("memory", memory_stats().map(|memory| mebibytes(memory.physical_mem)))
+            .with("trees", stats.trees)
+            .with("idle_trees", stats.idle_trees)
+            .with("tree_memory", mebibytes(stats.tree_bytes))
+            .with("tree_builds", stats.tree_builds)
+            .with("errors", errors)
     }
 
     /// Takes everything away, and the world last: Rapier keeps the pairs that it has retired, with what they hold, until it

@@ -1,5 +1,10 @@
 //! Fair repeats.
 
+use std::convert::Infallible;
+use std::time::{Duration, Instant};
+
+use crate::metrics::Summary;
+
 /// Calls `measure` for each contestant in turn, `repeats` times over, so that a slow spell of the
 /// machine meets all of them; the results by contestant.
 ///
@@ -7,15 +12,35 @@
 pub(super) fn in_turn<C, T, E>(
     contestants: &[C],
     repeats: usize,
-    mut measure: impl FnMut(&C, usize) -> Result<T, E>,
+    mut measure: impl FnMut(&C) -> Result<T, E>,
 ) -> Result<Vec<Vec<T>>, E> {
     let mut results: Vec<Vec<T>> = contestants.iter().map(|_| Vec::new()).collect();
-    for repeat in 0..repeats {
+    for _ in 0..repeats {
         for (contestant, results) in contestants.iter().zip(&mut results) {
-            results.push(measure(contestant, repeat)?);
+            results.push(measure(contestant)?);
         }
     }
     Ok(results)
+}
+
+/// Times of the contestants, taken in turn, at least once; seconds times `scale`.
+pub(super) fn race<C>(
+    contestants: &[C],
+    repeats: usize,
+    scale: f64,
+    mut sweep: impl FnMut(&C) -> Duration,
+) -> Vec<Summary> {
+    let Ok(times) = in_turn(contestants, repeats.max(1), |contestant| {
+        Ok::<_, Infallible>(scale * sweep(contestant).as_secs_f64())
+    });
+    times.into_iter().filter_map(Summary::of).collect()
+}
+
+/// What some work takes, and its result.
+pub(super) fn timed<T>(work: impl FnOnce() -> T) -> (Duration, T) {
+    let start = Instant::now();
+    let result = work();
+    (start.elapsed(), result)
 }
 
 #[cfg(test)]
@@ -26,13 +51,13 @@ mod tests {
     #[test]
     fn contestants_alternate() {
         let mut order = Vec::new();
-        let results = in_turn(&["a", "b"], 2, |&name, repeat| {
-            order.push((name, repeat));
+        let results = in_turn(&["a", "b"], 2, |&name| {
+            order.push(name);
             Ok::<_, ()>(order.len())
         });
-        assert_eq!(order, [("a", 0), ("b", 0), ("a", 1), ("b", 1)]);
+        assert_eq!(order, ["a", "b", "a", "b"]);
         assert_eq!(results, Ok(vec![vec![1, 3], vec![2, 4]]));
-        let failing = in_turn(&[1, 2], 3, |&name, _| if name == 1 { Ok(()) } else { Err(name) });
+        let failing = in_turn(&[1, 2], 3, |&name| if name == 1 { Ok(()) } else { Err(name) });
         assert_eq!(failing, Err(2));
     }
 }

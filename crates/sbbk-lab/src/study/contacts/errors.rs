@@ -9,7 +9,7 @@ use sbbk_core::truth::TruthPair;
 use serde::Serialize;
 
 use crate::backend::{Answer, Question};
-use crate::metrics::{ErrorCount, Truth, is_right_depth, ratio};
+use crate::metrics::{ErrorCount, Truth, is_right_depth};
 
 /// Degrees between a normal and the true one beyond which it is wrong.
 const NORMAL_BAND: f64 = 0.1;
@@ -28,11 +28,7 @@ pub struct ContactErrors {
 
 impl ContactErrors {
     /// Judges the manifolds that answer a question against its truth.
-    pub(in crate::study) fn of(
-        truth: &Truth,
-        question: Question,
-        manifolds: &[ContactManifold],
-    ) -> Self {
+    pub fn of(truth: &Truth, question: Question, manifolds: &[ContactManifold]) -> Self {
         let pairs = truth.judge(&Answer::new(question, manifolds));
         let normals = manifolds.iter().filter_map(|manifold| {
             let truth = truth.contact(manifold.subshape1, manifold.subshape2)?;
@@ -42,7 +38,7 @@ impl ContactErrors {
     }
 
     /// Judges the manifold of a pair of triangles that is truly within the prediction distance.
-    pub(super) fn of_pair(truth: &TruthPair, manifold: &ContactManifold, prediction: Real) -> Self {
+    pub fn of_pair(truth: &TruthPair, manifold: &ContactManifold, prediction: Real) -> Self {
         let distance = distance(manifold).filter(|distance| *distance <= prediction);
         let is_wrong_depth = distance.is_some_and(|d| !is_right_depth(d, truth, prediction));
         let pairs = ErrorCount {
@@ -61,16 +57,6 @@ impl ContactErrors {
             self.wrong_normal += usize::from(is_wrong);
         }
         self
-    }
-
-    /// Wrong contacts of all four kinds.
-    pub fn wrong(&self) -> usize {
-        self.pairs.wrong() + self.wrong_normal
-    }
-
-    /// Wrong contacts for each true pair; may exceed 1. `None` when there were no true pairs.
-    pub fn share(&self) -> Option<f64> {
-        ratio(self.wrong() as f64, self.pairs.true_pairs as f64)
     }
 }
 
@@ -141,7 +127,7 @@ mod tests {
         let turned = |degrees: Real| Quat::from_rotation_y(degrees.to_radians()) * normal.as_vec3();
         let judged = |truth: &TruthPair, normal: Vec3, distance: Real| {
             let errors = ContactErrors::of_pair(truth, &manifold(normal, distance), PREDICTION);
-            (errors.judged_normals, errors.wrong_normal, errors.wrong())
+            (errors.judged_normals, errors.wrong_normal, errors.pairs.wrong() + errors.wrong_normal)
         };
         let right = [turned(0.0), turned(0.09), 5.0 * turned(-0.09)];
         for normal in right {

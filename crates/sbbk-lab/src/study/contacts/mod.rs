@@ -4,35 +4,438 @@
 //! A *case* is one mesh at one size, asked for its contacts with itself within one prediction
 //! distance. Its poses come from *approaches*: one copy comes along a random direction, in a random
 //! orientation, and is stopped at five places from nearly apart to deep inside. Every answer is
-//! compared with brute force in f64, and both dispatchers answer in turn in one process.
-//!
-//! Dispatchers are called as the narrow phase calls them, but directly: contact skins, soft-CCD
-//! margins and contact recycling are Rapier's, and have no part in it.
+//! compared with brute force in f64, and both dispatchers answer in turn.
 
-mod approach;
-mod case;
-mod contest;
 mod errors;
-mod exactness;
-mod generator;
-mod motion;
-mod plan;
-mod report;
-mod side;
-mod speed;
-mod triangles;
+mod generators;
 
-pub use approach::PAIR_LIMIT;
-pub(super) use approach::{Place, places};
-pub use case::ContactCase;
-pub use contest::CONTESTANTS;
-pub(super) use contest::{Contest, Memory};
-pub use errors::ContactErrors;
-pub use exactness::{ExactnessRow, ExactnessSide};
-pub(super) use motion::motion;
-pub use motion::{FAST, SLOW, STEP_COUNT};
-pub use plan::{ApproachedMesh, ContactsPlan, SHORT_REPEATS};
-pub use report::{Contacts, SPEED_CASE, contacts};
-pub use side::{Measured, Mode, Side};
-pub use speed::SpeedRow;
-pub use triangles::GeneratorRow;
+pub(super) use errors::ContactErrors;
+
+use oorandom::Rand32;
+use rapier3d::geometry::SharedShape;
+use rapier3d::math::Real;
+use rayon::prelude::*;
+use serde_json::Value;
+
+use self::generators::generators;
+use super::motion::{Approach, Mode, Place, STEP_COUNT, mode_notes};
+use super::pair::{Contest, DIRECT_NOTE, Memory, Sequence};
+use super::{Progress, StudyError, shape};
+use crate::backend::Question;
+use crate::mesh::{self, Mesh};
+use crate::metrics::{Environment, Judge};
+use crate::report::{Panel, Results, Row, TIME_NOTE, Table, TableSpec, number, sides};
+
+const EXACTNESS: &str = "contacts: exactness";
+const QUERIES: &str = "contacts: queries, µs";
+const PAIRS: &str = "contacts: pairs, ns";
+
+/// What the columns of errors hold.
+pub(super) const ERROR_NOTE: &str =
+    "errors: missed + phantom + wrong depth + wrong normal, of the true pairs judged";
+
+/// A mesh and how often it is approached in each case.
+#[derive(Clone, Debug)]
+pub struct ApproachedMesh {
+    /// The mesh; sizes are made by scaling it.
+    pub mesh: Mesh,
+    /// Approaches, of five poses each.
+    pub approach_count: usize,
+}
+
+/// What to compare, and how thoroughly.
+#[derive(Clone, Debug)]
+pub struct ContactsPlan {
+    /// The meshes, in the order of the tables.
+    pub meshes: Vec<ApproachedMesh>,
+    /// Longest sides, in units.
+    pub sizes: Vec<Real>,
+    /// Prediction distances, in units.
+    pub predictions: Vec<Real>,
+    /// How often the queries of each case are timed; once where there are very many contacts.
+    pub case_repeats: usize,
+    /// How often those of the speed tables are, at least.
+    pub speed_repeats: usize,
+}
+
+/// Repeats of short measurements.
+const SHORT_REPEATS: usize = 25;
+/// Triangles in all repeats of the speed tables together: short queries are repeated more often.
+const REPEATED_TRIANGLES: usize = 25_000;
+/// True pairs in all repeats of a case together: the few cases with hundreds of thousands of
+/// contacts, for which stock Parry takes seconds a query, are timed once.
+const REPEATED_PAIRS: usize = 500_000;
+/// Size and prediction distance, in units, of the cases whose speed is measured: Rapier's default
+/// distance, and meshes of the size that it is made for.
+const SPEED_CASE: [Real; 2] = [2.0, 0.02];
+/// At most this many motions a mesh.
+const MOTION_LIMIT: usize = 20;
+/// Where there would be more contacts than these, the approach ends earlier: two meshes of 70,000
+/// triangles, a tenth of a unit long, have tens of millions within 0.02 units. Higher: minutes and
+/// gigabytes for the same verdict. Lower: meshes touch and cross in fewer cases.
+const PAIR_LIMIT: usize = 40_000;
+/// The way to a place is halved at most so often to stay below the limit.
+const HALVINGS: i32 = 7;
+
+impl ContactsPlan {
+    /// Six meshes of 288 to 70,688 triangles, three sizes, three prediction distances, 1125 poses;
+    /// within three minutes on two cores.
+    pub fn standard() -> Self {
+        let approached = |mesh, approach_count| ApproachedMesh { mesh, approach_count };
+        Self {
+            // Pieces of a mesh with many triangles are many poses in themselves.
+            meshes: vec![
+                approached(mesh::monkey_head_with(6), 8),
+                approached(mesh::monkey_head_with(11), 6),
+                approached(mesh::helicopter(), 4),
+                approached(mesh::torus(0.7, 0.3, 72, 35), 4),
+                approached(mesh::monkey_head_with(50), 2),
+                approached(mesh::monkey_head_with(94), 1),
+            ],
+            sizes: vec![0.1, 2.0, 40.0],
+            predictions: vec![0.001, 0.002, 0.02],
+            case_repeats: 3,
+            speed_repeats: 5,
+        }
+    }
+
+    /// The same cases of the four smaller meshes, one approach each, within half a minute: for
+    /// trying, not for quoting.
+    pub fn quick() -> Self {
+        let standard = Self::standard();
+        let small = standard.meshes.into_iter().take(4);
+        Self {
+            meshes: small.map(|mesh| ApproachedMesh { approach_count: 1, ..mesh }).collect(),
+            case_repeats: 1,
+            speed_repeats: 3,
+            ..standard
+        }
+    }
+
+    /// Number of poses over all cases.
+    pub fn pose_count(&self) -> usize {
+        let approaches: usize = self.meshes.iter().map(|mesh| mesh.approach_count).sum();
+        approaches * advances(0.0, 0.0).len() * self.sizes.len() * self.predictions.len()
+    }
+}
+
+/// One mesh at one size against itself, with one prediction distance.
+struct Case<'a> {
+    mesh: &'a ApproachedMesh,
+    size: Real,
+    prediction: Real,
+    shape: &'a SharedShape,
+    places: Vec<Place>,
+    /// Of first queries at all places, by stock and SBBK.
+    errors: [ContactErrors; 2],
+    apart: usize,
+    crossing: usize,
+}
+
+/// What was found at one pose.
+type Found = (usize, [ContactErrors; 2]);
+
+/// Measures all that `plan` asks for.
+///
+/// Errors: a mesh has no triangles.
+pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Result<Results, StudyError> {
+    let mut shapes = Vec::new();
+    for mesh in &plan.meshes {
+        for &size in &plan.sizes {
+            shapes.push((mesh, size, shape(&mesh.mesh.clone().centred().scaled_to(size))?));
+        }
+    }
+    let contest = Contest::new(shapes.iter().map(|(_, _, shape)| shape));
+    let cases: Vec<Case> = shapes
+        .iter()
+        .flat_map(|(mesh, size, shape)| {
+            plan.predictions
+                .iter()
+                .map(move |&prediction| Case::new(mesh, *size, prediction, shape))
+        })
+        .collect();
+    progress.phase("poses and brute force", plan.pose_count());
+    let cases: Vec<Case> = (cases.into_par_iter().enumerate().with_max_len(1))
+        .map(|(index, case)| case.posed(index, &contest).judged(&contest, progress))
+        .collect();
+    progress.phase("first queries", cases.len());
+    let mut rows: Vec<Row> = Vec::new();
+    for case in &cases {
+        rows.extend(case.exactness(&contest, plan.case_repeats));
+        progress.step();
+    }
+    let speed_cases = cases.iter().filter(|case| [case.size, case.prediction] == SPEED_CASE);
+    progress.phase("speed", plan.meshes.len());
+    for case in speed_cases {
+        rows.extend(case.speed(&contest, plan.speed_repeats));
+        rows.extend(generators(case, &contest));
+        progress.step();
+    }
+    progress.finish();
+    let speed = |mode: Mode| {
+        let is_shown = move |row: &&Row| row.study == QUERIES && row.is("mode", mode);
+        rows.iter().filter(is_shown)
+    };
+    let exactness = rows.iter().filter(|row| row.study == EXACTNESS);
+    let first = format!("First queries: {} cases of mesh, size and distance", cases.len());
+    let motion = "Queries in motion, 2 units across, distance 0.02";
+    let panels = vec![
+        Panel::time_against_error(first, exactness),
+        Panel::time_against_error(motion, speed(Mode::SLOW).chain(speed(Mode::FAST))),
+    ];
+    let tables = tables(&rows, cases.iter().filter(|case| case.crossing == 0).count());
+    Ok(Results { environment: Environment::detect(), rows, tables, panels })
+}
+
+/// How far the second mesh goes beyond the first touch, in units; negative: short of it. The
+/// distance of the meshes is at most the way back to where they touch, so that they are within the
+/// prediction distance at all places.
+fn advances(size: Real, prediction: Real) -> [Real; 5] {
+    [-0.95 * prediction, -0.5 * prediction, 0.0, 0.02 * size, 0.06 * size]
+}
+
+/// The places of one approach of a mesh to itself, from apart to deep inside.
+pub(super) fn places(
+    contest: &Contest,
+    shape: &SharedShape,
+    size: Real,
+    prediction: Real,
+    seed: u64,
+) -> Vec<Place> {
+    let approach = Approach::random(contest.sbbk(), [shape; 2], &mut Rand32::new(seed));
+    let is_small = |place: &Place| {
+        let mut memory = Memory::default();
+        memory.ask(contest.sbbk(), [&**shape; 2], &place.pos12, prediction);
+        memory.manifolds.len() <= PAIR_LIMIT
+    };
+    let advances = advances(size, prediction);
+    let first = advances[0];
+    let place = |advance: Real| {
+        let ways = (0..=HALVINGS).rev().map(|k| first + (advance - first) * 0.5f32.powi(k));
+        let places = ways.map(|way| approach.place(way));
+        places.take_while(is_small).last().unwrap_or(approach.place(first))
+    };
+    advances.map(place).into()
+}
+
+impl<'a> Case<'a> {
+    fn new(mesh: &'a ApproachedMesh, size: Real, prediction: Real, shape: &'a SharedShape) -> Self {
+        let (places, errors) = (Vec::new(), Default::default());
+        Self { mesh, size, prediction, shape, places, errors, apart: 0, crossing: 0 }
+    }
+
+    /// With its places. Each approach has a seed of its own, so that the poses do not depend on the
+    /// order in which the cores find them.
+    fn posed(mut self, index: usize, contest: &Contest) -> Self {
+        let seeds = (0..self.mesh.approach_count).map(|approach| (index << 16 | approach) as u64);
+        self.places = seeds
+            .flat_map(|seed| places(contest, self.shape, self.size, self.prediction, seed))
+            .collect();
+        self
+    }
+
+    /// With what is true, and what is wrong with the answers of both.
+    fn judged(mut self, contest: &Contest, progress: &Progress) -> Self {
+        let judge = Judge::new([self.shape]);
+        let sequences = self.sequences(Mode::Fresh, usize::MAX);
+        let found: Vec<Found> = (sequences.par_iter().with_max_len(1))
+            .map(|sequence| {
+                let question =
+                    Question::new(&sequence.poses[0], [&**self.shape; 2], self.prediction);
+                let truth = judge.truth(&question);
+                let errors = contest.dispatchers.each_ref().map(|dispatcher| {
+                    let mut errors = ContactErrors::default();
+                    sequence.walk(dispatcher, |_, manifolds| {
+                        errors = ContactErrors::of(&truth, question, manifolds);
+                    });
+                    errors
+                });
+                progress.step();
+                (truth.contacts().filter(|pair| pair.distance <= 0.0).count(), errors)
+            })
+            .collect();
+        self.errors = [0, 1].map(|side| found.iter().map(|found| found.1[side]).sum());
+        self.crossing = found.iter().map(|found| found.0).sum();
+        self.apart = self.errors[0].pairs.true_pairs - self.crossing;
+        self
+    }
+
+    /// What is asked in a mode.
+    fn sequences(&self, mode: Mode, limit: usize) -> Vec<Sequence<'a>> {
+        let places = self.places.iter().take(limit);
+        let sequence = |place: &Place| Sequence {
+            shapes: [self.shape; 2],
+            poses: mode.poses(self.shape, place, self.prediction),
+            prediction: self.prediction,
+        };
+        places.map(sequence).collect()
+    }
+
+    fn row(&self, study: &'static str, backend: impl ToString) -> Row {
+        let row = Row::new(study, backend).key("mesh", &*self.mesh.mesh.name);
+        row.key("triangle_count", self.mesh.mesh.triangle_count())
+    }
+
+    fn exactness(&self, contest: &Contest, repeats: usize) -> impl Iterator<Item = Row> {
+        let affordable = REPEATED_PAIRS / (self.apart + self.crossing).max(1);
+        let sequences = self.sequences(Mode::Fresh, usize::MAX);
+        let times = contest.race(affordable.clamp(1, repeats.max(1)), &sequences);
+        let sides = Contest::BACKENDS.into_iter().zip(times).zip(self.errors);
+        sides.map(|((backend, time), errors)| {
+            self.row(EXACTNESS, backend)
+                .key("size", decimal(self.size))
+                .key("prediction", decimal(self.prediction))
+                .with("pose_count", self.places.len())
+                .with("apart", self.apart)
+                .with("crossing", self.crossing)
+                .with("time", time)
+                .with("errors", errors)
+        })
+    }
+
+    /// First queries, and queries in motion.
+    fn speed(&self, contest: &Contest, repeats: usize) -> Vec<Row> {
+        let affordable = REPEATED_TRIANGLES / self.mesh.mesh.triangle_count().max(1);
+        let repeats = affordable.min(SHORT_REPEATS).max(repeats);
+        let rows = Mode::ALL.into_iter().flat_map(|mode| {
+            let is_fresh = mode == Mode::Fresh;
+            let sequences = self.sequences(mode, if is_fresh { usize::MAX } else { MOTION_LIMIT });
+            let times = contest.race(repeats, &sequences);
+            let errors = if is_fresh { self.errors } else { judge_steady(&sequences, contest) };
+            let sides = Contest::BACKENDS.into_iter().zip(times).zip(errors);
+            let rows = sides.map(|((backend, time), errors)| {
+                let row = self.row(QUERIES, backend).key("mode", mode.to_string());
+                row.with("sequence_count", sequences.len())
+                    .with("time", time)
+                    .with("errors", errors)
+            });
+            rows.collect::<Vec<_>>()
+        });
+        rows.collect()
+    }
+}
+
+/// Judges both in the middle and at the end of each motion.
+fn judge_steady(sequences: &[Sequence], contest: &Contest) -> [ContactErrors; 2] {
+    let judge = Judge::new([sequences[0].shapes[0]]);
+    let errors: Vec<[ContactErrors; 2]> = (sequences.par_iter().with_max_len(1))
+        .map(|sequence| {
+            let questions = [STEP_COUNT / 2, STEP_COUNT].map(|step| {
+                let shapes = sequence.shapes.map(|shape| &**shape);
+                let question = Question::new(&sequence.poses[step], shapes, sequence.prediction);
+                (step, question, judge.truth(&question))
+            });
+            contest.dispatchers.each_ref().map(|dispatcher| {
+                let mut errors = ContactErrors::default();
+                sequence.walk(dispatcher, |step, manifolds| {
+                    for (_, question, truth) in questions.iter().filter(|q| q.0 == step) {
+                        errors += ContactErrors::of(truth, *question, manifolds);
+                    }
+                });
+                errors
+            })
+        })
+        .collect();
+    [0, 1].map(|side| errors.iter().map(|sides| sides[side]).sum())
+}
+
+/// As it is written: 0.1 as an f32 is not 0.1 as an f64.
+fn decimal(value: Real) -> Value {
+    value.to_string().parse::<f64>().unwrap_or(f64::NAN).into()
+}
+
+fn tables(rows: &[Row], uncrossed: usize) -> Vec<Table> {
+    let exactness = |title: &str, keys, notes| {
+        let truth = [("poses", "pose_count"), ("true, apart", "apart"), ("crossing", "crossing")];
+        let wrong = [
+            ("missed", "errors.missed"),
+            ("phantom", "errors.phantom"),
+            ("wrong depth", "errors.wrong_depth"),
+            ("wrong normal", "errors.wrong_normal"),
+        ];
+        let truth = truth.map(|(header, path)| number(header, path).of("sbbk"));
+        let wrong = Contest::BACKENDS.into_iter().flat_map(|backend| {
+            wrong.map(|(header, path)| number(&format!("{backend}: {header}"), path).of(backend))
+        });
+        TableSpec {
+            title: title.to_owned(),
+            study: EXACTNESS,
+            keys,
+            total: Some(0),
+            columns: truth.into_iter().chain(wrong).collect(),
+            notes,
+        }
+        .of(rows)
+    };
+    let speed = |title: String, study, of: Vec<_>, notes: Vec<String>| {
+        let common = [TIME_NOTE, ERROR_NOTE, DIRECT_NOTE].map(str::to_owned);
+        TableSpec {
+            title,
+            study,
+            keys: &["mode", "mesh", "triangle_count"],
+            total: Some(1),
+            columns: of.into_iter().chain(sides()).collect(),
+            notes: [mode_notes(), notes, common.into()].concat(),
+        }
+        .of(rows)
+    };
+    let [size, prediction] = SPEED_CASE;
+    vec![
+        exactness("Exactness by size: all meshes", &["size", "prediction"], Vec::new()),
+        exactness(
+            "Exactness by mesh: all sizes and distances",
+            &["mesh", "triangle_count"],
+            vec![
+                "pairs of triangles, against brute force in f64; true: within the prediction \
+                 distance, with a band of 1 % of it for missed and phantom; wrong depth: off by \
+                 more than 5 % of it"
+                    .to_owned(),
+                "wrong normal: off by more than 0.1 degrees, where the depth is right and the true \
+                 normal the only one"
+                    .to_owned(),
+                format!(
+                    "poses: from 0.95 prediction distances apart to 6 % of the size inside; less \
+                     deep where there would be more than {PAIR_LIMIT} contacts, so that nothing \
+                     crosses in {uncrossed} cases"
+                ),
+                DIRECT_NOTE.to_owned(),
+            ],
+        ),
+        speed(
+            format!(
+                "Speed of mesh pairs: {size} units across, prediction distance {prediction}; \
+                 microseconds a query"
+            ),
+            QUERIES,
+            vec![number("poses or motions", "sequence_count").of("sbbk")],
+            vec!["errors of motions: in their middle and at their end".to_owned()],
+        ),
+        speed(
+            "Contact generators, Parry's and SBBK's: the same true pairs of triangles, nanoseconds \
+             a pair"
+                .to_owned(),
+            PAIRS,
+            vec![number("pairs", "pair_count").of("sbbk"), number("crossing", "crossing").of("sbbk")],
+            vec![
+                "pairs of the motions above that are within the prediction distance throughout; \
+                 fresh: a new manifold for each, allocated and freed, in the middle of the motion; \
+                 errors of motions: at their end"
+                    .to_owned(),
+            ],
+        ),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Would catch a grid with a hole, and a plan that promises more than it asks.
+    #[test]
+    fn the_standard_plan_is_a_full_grid_of_a_thousand_poses() {
+        let plan = ContactsPlan::standard();
+        let counts = plan.meshes.iter().map(|mesh| mesh.mesh.triangle_count());
+        assert_eq!(counts.collect::<Vec<_>>(), [288, 968, 2596, 5040, 20_000, 70_688]);
+        assert_eq!((plan.pose_count(), ContactsPlan::quick().pose_count()), (1125, 180));
+    }
+}

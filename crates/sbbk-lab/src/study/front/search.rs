@@ -1,127 +1,152 @@
-//! One variant at work on one pair.
+//! One variant at work on one pair of equal meshes.
+
+use std::fmt;
+use std::mem::take;
 
 use glamx::Pose3;
 use sbbk_core::contact::contact;
-use sbbk_core::front::Front;
+use sbbk_core::front::{Front, FrontOptions};
 use sbbk_core::leaf::LeafTest;
+use sbbk_core::query::TrianglePair;
 use sbbk_core::traverse::{
     Counters, Descent, DescentScratch, GREATEST_SLACK, PairFrame, Placement, Slack, SlackPlan,
     Verdict, Visitor, descend,
 };
 use sbbk_core::tree::{LeafBatch, Tree};
 
-use super::variant::Variant;
+/// A way to find the pairs of a step after those of the step before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Variant {
+    /// A descent from the roots at each query.
+    Fresh,
+    /// The front of the paper.
+    Paper,
+    /// The default front: with a bound of the motion, and fresh descents where they are cheaper.
+    Adaptive,
+    /// The dispatcher's way, without a front: descents look farther by a slack, and what they find
+    /// serves until it is used up.
+    Slack,
+}
 
-/// What a variant remembers of a pair of equal meshes, and its answers.
-pub(super) struct Search {
+impl Variant {
+    pub const ALL: [Self; 4] = [Self::Fresh, Self::Paper, Self::Adaptive, Self::Slack];
+}
+
+impl fmt::Display for Variant {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Fresh => "fresh descent",
+            Self::Paper => "front of the paper",
+            Self::Adaptive => "adaptive front",
+            Self::Slack => "slack, as the dispatcher",
+        })
+    }
+}
+
+/// What a variant remembers, and its answers.
+pub(super) struct Search<'a> {
+    tree: &'a Tree,
+    prediction: f32,
     front: Option<Front>,
     slack: Option<Slack>,
     scratch: DescentScratch,
-    /// Pairs of leaves of the last descent.
-    pub leaf_pairs: Vec<(u32, u32)>,
-    /// Pairs of triangles of the last descent: leaves and lanes, and how far apart they were.
-    known: Vec<Known>,
+    leaf_pairs: Vec<[u32; 2]>,
+    candidates: Vec<Candidate>,
     /// Pairs of triangles within the prediction distance, in no order.
     pub pairs: Vec<(u32, u32)>,
 }
 
+/// Two triangles: leaves and lanes, and how far apart they were at the last descent.
 #[derive(Clone, Copy)]
-struct Known {
-    places: [(u32, u32); 2],
+struct Candidate {
+    leaves: [u32; 2],
+    lanes: [usize; 2],
     distance: f64,
 }
 
-impl Search {
-    pub fn new(variant: Variant) -> Self {
+impl<'a> Search<'a> {
+    pub fn new(variant: Variant, tree: &'a Tree, prediction: f32) -> Self {
         Self {
-            front: variant.front(),
-            slack: variant.has_slack().then(Slack::default),
+            tree,
+            prediction,
+            front: match variant {
+                Variant::Paper => Some(Front::new(FrontOptions::Paper)),
+                Variant::Adaptive => Some(Front::new(FrontOptions::Adaptive)),
+                Variant::Fresh | Variant::Slack => None,
+            },
+            slack: (variant == Variant::Slack).then(Slack::default),
             scratch: DescentScratch::default(),
             leaf_pairs: Vec::new(),
-            known: Vec::new(),
+            candidates: Vec::new(),
             pairs: Vec::new(),
         }
     }
 
-    /// The front, if it has one.
-    pub fn front(&self) -> Option<&Front> {
-        self.front.as_ref()
+    /// How many queries were answered from a front that was there.
+    pub fn reused(&self) -> Option<u64> {
+        Some(self.front.as_ref()?.stats().reused)
     }
 
-    fn plan(&mut self, tree: &Tree, placement: &Placement, prediction: f32) -> SlackPlan {
+    fn plan(&mut self, placement: &Placement) -> SlackPlan {
+        let Self { tree, prediction, .. } = *self;
         match &mut self.slack {
             Some(slack) => slack.plan(tree.bounding_ball(), placement, prediction, GREATEST_SLACK),
             None => SlackPlan::Descend { margin: prediction },
         }
     }
 
-    fn visit(
-        &mut self,
-        tree: &Tree,
-        frame: &mut PairFrame,
-        counters: impl Counters,
-        visitor: &mut impl Visitor,
-    ) {
-        let (trees, scratch) = ((tree, tree), &mut self.scratch);
+    fn descend(&mut self, frame: &mut PairFrame, counters: impl Counters, to: &mut impl Visitor) {
+        let (trees, scratch) = ((self.tree, self.tree), &mut self.scratch);
         match &mut self.front {
-            Some(front) => front.visit(trees, frame, scratch, counters, visitor),
-            None => descend(trees, frame, Descent::Simultaneous, scratch, counters, visitor),
+            Some(front) => front.visit(trees, frame, scratch, counters, to),
+            None => descend(trees, frame, Descent::Simultaneous, scratch, counters, to),
         }
     }
 
-    /// Finds the pairs of leaves.
-    pub fn traverse(
-        &mut self,
-        tree: &Tree,
-        pos12: &Pose3,
-        prediction: f32,
-        counters: impl Counters,
-    ) {
+    /// Finds the pairs of leaves; how many there are.
+    pub fn traverse(&mut self, pos12: &Pose3, counters: impl Counters) -> usize {
         let placement = Placement::new(pos12);
-        if let SlackPlan::Descend { margin } = self.plan(tree, &placement, prediction) {
-            let mut frame = PairFrame::at((tree, tree), placement, margin);
-            let mut collected = Collected(std::mem::take(&mut self.leaf_pairs));
+        if let SlackPlan::Descend { margin } = self.plan(&placement) {
+            let mut frame = PairFrame::at((self.tree, self.tree), placement, margin);
+            let mut collected = Collected(take(&mut self.leaf_pairs));
             collected.0.clear();
-            self.visit(tree, &mut frame, counters, &mut collected);
+            self.descend(&mut frame, counters, &mut collected);
             self.leaf_pairs = collected.0;
         }
+        self.leaf_pairs.len()
     }
 
     /// Finds the pairs of triangles within the prediction distance.
-    pub fn query(&mut self, tree: &Tree, pos12: &Pose3, prediction: f32, counters: impl Counters) {
-        self.pairs.clear();
+    pub fn query(&mut self, pos12: &Pose3) {
         let placement = Placement::new(pos12);
-        match self.plan(tree, &placement, prediction) {
+        let mut tested = Tested {
+            placement,
+            prediction: f64::from(self.prediction),
+            margin: f64::from(self.prediction),
+            test: None,
+            candidates: take(&mut self.candidates),
+            pairs: take(&mut self.pairs),
+        };
+        tested.pairs.clear();
+        match self.plan(&placement) {
             SlackPlan::Reuse { reach, .. } => {
-                for known in self.known.iter().filter(|known| known.distance <= reach) {
-                    let [(leaf1, lane1), (leaf2, lane2)] = known.places;
-                    let batches = [tree.leaf(leaf1), tree.leaf(leaf2)];
-                    let lanes = [lane1 as usize, lane2 as usize];
-                    let distance = distance(&placement, batches, lanes, f64::from(prediction));
-                    if distance.is_some() {
-                        self.pairs.push((
-                            batches[0].triangles()[lanes[0]],
-                            batches[1].triangles()[lanes[1]],
-                        ));
+                let candidates = tested.candidates.iter().filter(|c| c.distance <= reach);
+                for Candidate { leaves, lanes, .. } in candidates {
+                    let batches = leaves.map(|leaf| self.tree.leaf(leaf));
+                    if distance(&placement, batches, *lanes, tested.margin).is_some() {
+                        tested.pairs.push(triangles(batches, *lanes));
                     }
                 }
             }
             SlackPlan::Descend { margin } => {
-                let mut frame = PairFrame::at((tree, tree), placement, margin);
-                let mut tested = Tested {
-                    test: LeafTest::new(&frame),
-                    placement,
-                    margin: f64::from(margin),
-                    prediction: f64::from(prediction),
-                    keeps: self.slack.is_some(),
-                    known: std::mem::take(&mut self.known),
-                    pairs: std::mem::take(&mut self.pairs),
-                };
-                tested.known.clear();
-                self.visit(tree, &mut frame, counters, &mut tested);
-                (self.known, self.pairs) = (tested.known, tested.pairs);
+                let mut frame = PairFrame::at((self.tree, self.tree), placement, margin);
+                tested.margin = f64::from(margin);
+                tested.test = Some(LeafTest::new(&frame));
+                tested.candidates.clear();
+                self.descend(&mut frame, (), &mut tested);
             }
         }
+        (self.candidates, self.pairs) = (tested.candidates, tested.pairs);
     }
 }
 
@@ -133,55 +158,48 @@ fn distance(
     [lane1, lane2]: [usize; 2],
     margin: f64,
 ) -> Option<f64> {
-    let corners1 = batch1.corners(lane1);
-    let origin = corners1[0];
-    let t1 = corners1.map(|x| (x - origin).as_dvec3());
-    let t2 = batch2.corners(lane2).map(|x| placement.to_frame1(x, origin));
-    contact(&t1, &t2, margin).map(|contact| contact.distance)
+    let pair = TrianglePair::new(placement, batch1.corners(lane1), batch2.corners(lane2));
+    let [t1, t2] = &pair.corners;
+    contact(t1, t2, margin).map(|contact| contact.distance)
 }
 
-struct Collected(Vec<(u32, u32)>);
+fn triangles(batches: [&LeafBatch; 2], lanes: [usize; 2]) -> (u32, u32) {
+    (batches[0].triangles()[lanes[0]], batches[1].triangles()[lanes[1]])
+}
+
+struct Collected(Vec<[u32; 2]>);
 
 impl Visitor for Collected {
     #[inline]
     fn leaves(&mut self, leaf1: u32, _: &LeafBatch, leaf2: u32, _: &LeafBatch) -> Verdict {
-        self.0.push((leaf1, leaf2));
+        self.0.push([leaf1, leaf2]);
         Verdict::Descend
     }
 }
 
 /// Tests the triangles of leaves, first in f32 over lanes, then exactly.
 struct Tested {
-    test: LeafTest,
     placement: Placement,
-    margin: f64,
     prediction: f64,
-    keeps: bool,
-    known: Vec<Known>,
+    margin: f64,
+    test: Option<LeafTest>,
+    candidates: Vec<Candidate>,
     pairs: Vec<(u32, u32)>,
 }
 
 impl Visitor for Tested {
     #[inline]
-    fn leaves(
-        &mut self,
-        leaf1: u32,
-        batch1: &LeafBatch,
-        leaf2: u32,
-        batch2: &LeafBatch,
-    ) -> Verdict {
-        let Self { test, placement, margin, prediction, keeps, known, pairs } = self;
+    fn leaves(&mut self, l1: u32, batch1: &LeafBatch, l2: u32, batch2: &LeafBatch) -> Verdict {
+        let Self { placement, prediction, margin, test, candidates, pairs } = self;
+        let Some(test) = test else { return Verdict::Prune };
         test.survivors(batch1, batch2, |lane1, lane2| {
-            let Some(distance) = distance(placement, [batch1, batch2], [lane1, lane2], *margin)
-            else {
-                return;
-            };
-            if *keeps {
-                let places = [(leaf1, lane1 as u32), (leaf2, lane2 as u32)];
-                known.push(Known { places, distance });
+            let (batches, lanes) = ([batch1, batch2], [lane1, lane2]);
+            let Some(distance) = distance(placement, batches, lanes, *margin) else { return };
+            if margin > prediction {
+                candidates.push(Candidate { leaves: [l1, l2], lanes, distance });
             }
             if distance <= *prediction {
-                pairs.push((batch1.triangles()[lane1], batch2.triangles()[lane2]));
+                pairs.push(triangles(batches, lanes));
             }
         });
         Verdict::Descend

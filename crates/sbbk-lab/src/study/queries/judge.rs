@@ -9,12 +9,11 @@ use rapier3d::math::Real;
 use sbbk_core::truth::pairs_within;
 use serde::Serialize;
 
-use super::answer::{Answered, Query, motion};
-use super::place::Placed;
+use super::ask::{Answered, Placed, Query, motion};
 
 /// How wrong answers are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct QueryErrors {
+pub(super) struct QueryErrors {
     /// Answers judged.
     pub judged: usize,
     /// Answers that say the opposite of the truth, or nothing where there is something.
@@ -105,7 +104,7 @@ impl Judge {
         let pose_at = |time: Real| match query {
             Query::NonlinearCast => motion(placed, self.size as Real).position_at_time(time),
             _ => {
-                let translation = placed.pos12.translation - placed.back * time;
+                let translation = placed.pos12.translation - placed.direction * time;
                 Pose3 { translation, ..placed.pos12 }
             }
         };

@@ -1,0 +1,313 @@
+//! Tables, made by pivoting rows.
+
+use std::fmt;
+
+use comfy_table::presets::ASCII_MARKDOWN;
+use comfy_table::{CellAlignment, Table as Drawn};
+use serde_json::Value;
+
+use super::row::{Row, text};
+use crate::metrics::{geometric_mean, ratio};
+
+/// A table for the terminal.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// What it shows.
+    pub title: String,
+    /// Names of the columns.
+    pub header: Vec<String>,
+    /// Cells, line by line.
+    pub lines: Vec<Vec<String>>,
+    /// What a reader must know.
+    pub notes: Vec<String>,
+    /// Whether a column is text, which is aligned to the left.
+    is_text: Vec<bool>,
+}
+
+/// What to make a table of.
+pub struct TableSpec<'a> {
+    /// What it shows.
+    pub title: String,
+    /// The part of the study of which rows are taken.
+    pub study: &'a str,
+    /// Each line holds the rows that agree in these; `backend` is one, too.
+    pub keys: &'a [&'a str],
+    /// With `Some(n)`, the rows that agree in the first `n` keys get a line of their sums and means.
+    pub total: Option<usize>,
+    /// After those of the keys.
+    pub columns: Vec<Column>,
+    /// What a reader must know.
+    pub notes: Vec<String>,
+}
+
+/// One column: its name, and what it shows of the rows of a line.
+#[derive(Clone, Debug)]
+pub struct Column {
+    header: String,
+    path: &'static str,
+    /// Only rows of this backend count.
+    backend: Option<String>,
+    cell: Cell,
+}
+
+#[derive(Clone, Debug)]
+enum Cell {
+    Plain,
+    MinMedian,
+    Errors,
+    /// Base over this one, of the base's name.
+    Faster(String),
+    /// This one over base.
+    Greater(String),
+}
+
+/// The number or text at `path`: counts are summed over the rows of a line.
+pub fn number(header: &str, path: &'static str) -> Column {
+    column(header, path, Cell::Plain)
+}
+
+/// Minimum and median of the summary at `path`.
+pub fn time(header: &str, path: &'static str) -> Column {
+    column(header, path, Cell::MinMedian)
+}
+
+/// Wrong contacts by kind, of the true ones: sums over the rows of a line.
+pub fn errors(header: &str, path: &'static str) -> Column {
+    column(header, path, Cell::Errors)
+}
+
+/// How many times less the number at `path` is than that of `base` with the same keys: geometric
+/// mean over the rows of a line.
+pub fn faster(header: &str, path: &'static str, base: impl ToString) -> Column {
+    column(header, path, Cell::Faster(base.to_string()))
+}
+
+fn column(header: &str, path: &'static str, cell: Cell) -> Column {
+    Column { header: header.to_owned(), path, backend: None, cell }
+}
+
+/// Times of stock and SBBK, their ratio, and the errors of both.
+pub fn sides() -> Vec<Column> {
+    vec![
+        time("stock", "time").of("stock"),
+        time("sbbk", "time").of("sbbk"),
+        faster("ratio", "time.min", "stock").of("sbbk"),
+        errors("errors, stock", "errors").of("stock"),
+        errors("errors, sbbk", "errors").of("sbbk"),
+    ]
+}
+
+impl Column {
+    /// Of this backend's rows only.
+    pub fn of(self, backend: impl ToString) -> Self {
+        Self { backend: Some(backend.to_string()), ..self }
+    }
+
+    /// The other way round: for what is better if it is more.
+    pub fn inverse(self) -> Self {
+        let Cell::Faster(base) = self.cell else { return self };
+        Self { cell: Cell::Greater(base), ..self }
+    }
+
+    fn show(&self, line: &[&Row], all: &[&Row]) -> String {
+        let counts = |row: &&&Row| self.backend.as_ref().is_none_or(|name| row.backend == *name);
+        let rows: Vec<&Row> = line.iter().filter(counts).copied().collect();
+        let shown = match &self.cell {
+            Cell::Plain => self.plain(&rows),
+            Cell::MinMedian => match rows[..] {
+                [row] => min_median(row, self.path),
+                _ => Some(String::new()),
+            },
+            Cell::Errors => self.errors(&rows),
+            Cell::Faster(base) | Cell::Greater(base) => {
+                let ratios = rows.iter().filter_map(|row| {
+                    let is_base = |other: &&&Row| other.backend == *base && other.keys == row.keys;
+                    let base = all.iter().find(is_base)?.number(self.path);
+                    let own = row.number(self.path);
+                    match self.cell {
+                        Cell::Greater(_) => ratio(own, base),
+                        _ => ratio(base, own),
+                    }
+                });
+                geometric_mean(ratios).map(|ratio| format!("{ratio:.2}x"))
+            }
+        };
+        shown.unwrap_or_else(|| "-".to_owned())
+    }
+
+    fn plain(&self, rows: &[&Row]) -> Option<String> {
+        let values = rows.iter().map(|row| row.get(self.path));
+        match values.collect::<Option<Vec<&Value>>>()?[..] {
+            [] => None,
+            [value] => match value.as_f64() {
+                Some(number) if !value.is_u64() => Some(three_digits(number)),
+                _ => (!value.is_null()).then(|| text(value)),
+            },
+            ref values => Some(match values.iter().map(|value| value.as_u64()).sum() {
+                Option::<u64>::None => String::new(),
+                Some(sum) => sum.to_string(),
+            }),
+        }
+    }
+
+    fn errors(&self, rows: &[&Row]) -> Option<String> {
+        let sum = |kind: &str| -> Option<u64> {
+            let path = format!("{}.{kind}", self.path);
+            let counts = rows.iter().filter_map(|row| row.get(&path)?.as_u64());
+            counts.reduce(|a, b| a + b)
+        };
+        let kinds = ["missed", "phantom", "wrong_depth", "wrong_normal"].map(sum);
+        let kinds: Vec<String> = kinds.into_iter().flatten().map(|n| n.to_string()).collect();
+        let true_pairs = sum("true_pairs")?;
+        let is_judged = true_pairs > 0 || sum("mesh_pairs")? > 0;
+        is_judged.then(|| format!("{} of {true_pairs}", kinds.join("+")))
+    }
+}
+
+impl TableSpec<'_> {
+    /// The table of `rows`.
+    pub fn of(self, rows: &[Row]) -> Table {
+        let Self { title, study, keys, total, columns, notes } = self;
+        let rows: Vec<&Row> = rows.iter().filter(|row| row.study == study).collect();
+        let cells = |row: &Row, count: usize| -> Vec<String> {
+            let value = |key: &&str| match *key {
+                "backend" => row.backend.clone(),
+                key => row.get(key).map_or_else(String::new, text),
+            };
+            keys[..count].iter().map(value).collect()
+        };
+        let is_number = |key: &&str| rows.iter().all(|row| !row.number(key).is_nan());
+        let mut lines = Vec::new();
+        let lead = total.unwrap_or(0);
+        for lead in groups(&rows, |row| cells(row, lead)) {
+            let show = |group: &[&Row]| columns.iter().map(|c| c.show(group, &rows)).collect();
+            for group in groups(&lead, |row| cells(row, keys.len())) {
+                lines.push([cells(group[0], keys.len()), show(&group)].concat());
+            }
+            if let Some(lead_keys) = total {
+                let mut line = cells(lead[0], lead_keys);
+                line.push("all, or mean".to_owned());
+                line.resize(keys.len(), String::new());
+                lines.push([line, show(&lead)].concat());
+            }
+        }
+        let names = keys.iter().map(|key| key.replace('_', " "));
+        Table {
+            title,
+            header: names.chain(columns.iter().map(|column| column.header.clone())).collect(),
+            lines,
+            notes,
+            is_text: keys.iter().map(|key| !is_number(key)).collect(),
+        }
+    }
+}
+
+/// The rows with the same key together, in the order in which the keys first appear.
+fn groups<'a>(rows: &[&'a Row], key: impl Fn(&Row) -> Vec<String>) -> Vec<Vec<&'a Row>> {
+    let mut groups: Vec<(Vec<String>, Vec<&Row>)> = Vec::new();
+    for &row in rows {
+        let key = key(row);
+        match groups.iter_mut().find(|group| group.0 == key) {
+            Some(group) => group.1.push(row),
+            None => groups.push((key, vec![row])),
+        }
+    }
+    groups.into_iter().map(|group| group.1).collect()
+}
+
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut table = Drawn::new();
+        table.load_style(ASCII_MARKDOWN).set_header(&self.header);
+        table.add_rows(&self.lines);
+        for (index, column) in table.column_iter_mut().enumerate() {
+            if !self.is_text.get(index).is_some_and(|is_text| *is_text) {
+                column.set_cell_alignment(CellAlignment::Right);
+            }
+        }
+        write!(f, "{}\n{table}", self.title)?;
+        self.notes.iter().try_for_each(|note| write!(f, "\n  {note}"))
+    }
+}
+
+/// Minimum and median; one number if only one was measured.
+fn min_median(row: &Row, path: &str) -> Option<String> {
+    let number = |name: &str| Some(row.get(path)?.get(name)?.as_f64()?);
+    let median = three_digits(number("median")?);
+    let is_single = number("count")? == 1.0;
+    Some(if is_single { median } else { format!("{} / {median}", three_digits(number("min")?)) })
+}
+
+/// Three significant digits, with an exponent only below a thousandth: `0.123`, `12.3`, `1230`.
+fn three_digits(value: f64) -> String {
+    let decimals = match value.abs() {
+        magnitude if magnitude >= 100.0 => 0,
+        magnitude if magnitude >= 10.0 => 1,
+        magnitude if magnitude >= 1.0 => 2,
+        magnitude if magnitude >= 1.0e-3 || magnitude == 0.0 => 3,
+        _ => return format!("{value:.1e}"),
+    };
+    format!("{value:.decimals$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    /// Would catch columns that pretend to a precision that was not measured, or drop one.
+    #[test]
+    fn three_significant_digits() {
+        let shown = [0.0123, 0.5, 1.234, 12.34, 123.4, 12345.6, 2.0e-7].map(three_digits);
+        assert_eq!(shown, ["0.012", "0.500", "1.23", "12.3", "123", "12346", "2.0e-7"]);
+    }
+
+    /// Would catch a cell in another line or under another backend, a ratio upside down or to other
+    /// keys' base, totals over other lines' rows, and sums of errors that lose a kind.
+    #[test]
+    fn rows_are_pivoted() {
+        let row = |mode, mesh, backend, time: f64, missed| {
+            let time = json!({ "count": 2, "min": time, "median": 2.0 * time });
+            let errors =
+                json!({ "missed": missed, "phantom": 0, "wrong_depth": 1, "true_pairs": 9 });
+            let row = Row::new("race", backend).key("mode", mode).key("mesh", mesh);
+            row.with("time", time).with("errors", errors)
+        };
+        let rows = [
+            row("fresh", "a", "stock", 8.0, 3),
+            row("fresh", "a", "sbbk", 4.0, 0),
+            row("slow", "a", "stock", 1.0, 0),
+            row("slow", "a", "sbbk", 2.0, 0),
+            row("fresh", "b", "stock", 8.0, 4),
+            row("fresh", "b", "sbbk", 1.0, 0),
+            Row::new("another", "stock"),
+        ];
+        let spec = TableSpec {
+            title: String::new(),
+            study: "race",
+            keys: &["mode", "mesh"],
+            total: Some(1),
+            columns: sides(),
+            notes: Vec::new(),
+        };
+        let table = spec.of(&rows);
+        let expected = [
+            ["fresh", "a", "8.00 / 16.0", "4.00 / 8.00", "2.00x", "3+0+1 of 9", "0+0+1 of 9"],
+            ["fresh", "b", "8.00 / 16.0", "1.00 / 2.00", "8.00x", "4+0+1 of 9", "0+0+1 of 9"],
+            ["fresh", "all, or mean", "", "", "4.00x", "7+0+2 of 18", "0+0+2 of 18"],
+            ["slow", "a", "1.00 / 2.00", "2.00 / 4.00", "0.50x", "0+0+1 of 9", "0+0+1 of 9"],
+            [
+                "slow",
+                "all, or mean",
+                "1.00 / 2.00",
+                "2.00 / 4.00",
+                "0.50x",
+                "0+0+1 of 9",
+                "0+0+1 of 9",
+            ],
+        ];
+        assert_eq!(table.lines, expected);
+        assert_eq!(table.header.len(), 7);
+    }
+}

@@ -1,0 +1,107 @@
+//! The experiments on a small scale, and what reports make of them.
+
+use std::collections::HashSet;
+use std::path::Path;
+
+use sbbk_lab::backend::Backend;
+use sbbk_lab::metrics::{Environment, RunPlan};
+use sbbk_lab::report::{Results, Row};
+use sbbk_lab::scene::HelicopterBallDrop;
+use sbbk_lab::study::compare::{ComparePlan, compare};
+use sbbk_lab::study::{HelicopterPlan, PilePlan, Progress, SamePosesPlan, cut};
+
+use super::support;
+
+/// Everything that `compare` does, in about a second.
+fn small() -> Results {
+    let quick = ComparePlan::quick();
+    let plan = ComparePlan {
+        helicopter: HelicopterPlan { repeats: 2, steps: 40 },
+        heads: vec![5, 10],
+        heads_without_recycling: 5,
+        pile: PilePlan {
+            repeats: 1,
+            run: RunPlan { steps: 24, sample_every: 10, ..quick.pile.run },
+            same_poses: Some(SamePosesPlan { repeats: 1, sample_size: 10 }),
+            ..quick.pile
+        },
+        details: vec![4],
+        head: None,
+    };
+    compare(&plan, &Progress::hidden()).unwrap()
+}
+
+/// Would catch an experiment or a backend that is left out, a table whose cells slip into the
+/// next column, and files that lack what the tables show.
+#[test]
+fn a_comparison_covers_everything_and_can_be_reported() {
+    let comparison = small();
+    let count = |study: &str, backend: Backend| {
+        support::rows(&comparison, study, &backend.to_string()).len()
+    };
+    // Two balls, and the paper's; three piles, and the paper's; two piles with recycling; two meshes.
+    let counts = ["helicopter", "pile, whole runs", "pile, same poses", "trees and first queries"]
+        .map(|study| Backend::ALL.map(|backend| count(study, backend)));
+    assert_eq!(counts, [[2, 3, 3, 2], [3, 4, 4, 0], [2; 4], [2, 0, 2, 0]]);
+    for row in support::rows(&comparison, "trees and first queries", "sbbk") {
+        assert!(row.count("errors.true_pairs") > row.count("pose_count"), "{row:?}");
+        assert_eq!(row.wrong("errors"), 0, "{row:?}");
+        assert!(row.number("time.min") > 0.0 && row.number("build.min") > 0.0, "{row:?}");
+        assert!(row.count("bytes") > 0);
+    }
+    let fps = support::rows(&comparison, "helicopter", "sbbk")[1];
+    assert_eq!((fps.count("frames_per_second.count"), fps.count("steps")), (2, 40));
+    assert_eq!(comparison.tables.len(), 6);
+    assert!(
+        comparison.tables[0].lines[1].contains(&"1.11x".to_owned()),
+        "{}",
+        comparison.tables[0]
+    );
+
+    let report = support::report(&comparison);
+    let studies: HashSet<&str> = report.csv.iter().map(|line| &line[0]).collect();
+    assert_eq!(studies.len(), 5, "{studies:?}");
+    assert!(report.svg.contains("the paper"));
+}
+
+/// Would catch a panic, or silence, where a file cannot be written.
+#[test]
+fn a_file_that_cannot_be_written_is_named() {
+    let results = Results {
+        environment: Environment::detect(),
+        rows: vec![Row::new("study", "stock").with("time", 1.0)],
+        tables: Vec::new(),
+        panels: Vec::new(),
+    };
+    let path = Path::new("no/such/folder/out");
+    for error in [results.write_json(path), results.write_csv(path), results.write_plot(path)] {
+        let message = error.unwrap_err().to_string();
+        assert!(message.contains("no/such/folder/out"), "{message}");
+    }
+}
+
+/// Would catch a cut that prunes true contacts, or one that does not cut: deeper cuts report no
+/// more triangles, k-DOPs no more than boxes, and no cut fewer than truly touch.
+#[test]
+fn cuts_close_in_on_the_truth() {
+    let rows = cut(&HelicopterBallDrop::default()).unwrap();
+    let [aabb, sbbk] = [Backend::AabbOnly, Backend::Sbbk].map(|backend| -> Vec<&Row> {
+        rows.iter().filter(|row| row.is("backend", backend)).collect()
+    });
+    assert_eq!(aabb.len(), sbbk.len());
+    let pairs = |row: &Row| row.count("pair_count");
+    let triangles = |row: &Row| row.count("triangle_count");
+    let volume = |row: &Row| row.number("volume");
+    let last = aabb.len() - 1;
+    for rows in [&aabb, &sbbk] {
+        assert!(rows.is_sorted_by(|a, b| triangles(a) >= triangles(b)));
+        assert!(rows.is_sorted_by(|a, b| volume(a) >= volume(b)));
+        assert!(triangles(rows[0]) > 4 * triangles(rows[last]));
+        assert!(triangles(rows[last]) >= rows[0].count("true_triangle_count"));
+    }
+    for (aabb, sbbk) in aabb.iter().zip(&sbbk) {
+        assert!(pairs(sbbk) <= pairs(aabb) && volume(sbbk) <= volume(aabb));
+    }
+    assert!(volume(sbbk[last]) < volume(aabb[last]));
+    assert!(rows[0].count("true_triangle_count") > 0);
+}

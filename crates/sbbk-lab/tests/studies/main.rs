@@ -1,0 +1,10 @@
+//! The studies on a small scale, and what reports make of them.
+
+mod compare;
+mod contacts;
+mod convex;
+mod front;
+mod long_runs;
+mod soft;
+mod support;
+mod terrain;
