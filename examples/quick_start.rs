@@ -51,7 +51,7 @@ fn world() -> (PhysicsWorld, Vec<(&'static str, RigidBodyHandle)>) {
     world.insert(RigidBodyBuilder::fixed(), floor.translation(Vector::new(0.0, -0.5, 0.0)));
 
     let (ball, cylinder, cuboid) =
-        (Ball::new(0.5), Cylinder::new(0.5, 0.4), Cuboid::new(Vector::new(0.6, 0.2, 0.4)));
+        (Ball::new(0.5), Cylinder::new(0.2, 0.5), Cuboid::new(Vector::new(0.6, 0.2, 0.4)));
     let meshes = [
         ("ball", ball.to_trimesh(24, 12)),
         ("cylinder", cylinder.to_trimesh(24)),

@@ -232,7 +232,7 @@ impl fmt::Display for Table {
 
 /// Minimum and median; one number if only one was measured.
 fn min_median(row: &Row, path: &str) -> Option<String> {
-    let number = |name: &str| Some(row.get(path)?.get(name)?.as_f64()?);
+    let number = |name: &str| row.get(path)?.get(name)?.as_f64();
     let median = three_digits(number("median")?);
     let is_single = number("count")? == 1.0;
     Some(if is_single { median } else { format!("{} / {median}", three_digits(number("min")?)) })

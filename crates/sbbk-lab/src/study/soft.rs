@@ -157,7 +157,8 @@ fn refit(plan: &SoftPlan, progress: &Progress) -> Result<Vec<Row>, StudyError> {
             row(REFIT, name).with("time", Summary::of(times.clone())).with("by_frame", times),
         );
     }
-    let kinds: [(&str, fn(&Frame) -> usize); 4] = [
+    type Count = fn(&Frame) -> usize;
+    let kinds: [(&str, Count); 4] = [
         ("tree built in each frame", |frame| frame.built.len()),
         ("refitted tree", |frame| frame.refitted.len()),
         ("lost", |frame| frame.built.difference(&frame.refitted).count()),
