@@ -5,7 +5,7 @@
 //! in a row the relative error of each term of a sum is at most `γ_n = n·u / (1 - n·u)`.
 
 /// Unit roundoff of f32: half the distance from 1 to the next number.
-pub const UNIT_ROUNDOFF: f32 = f32::EPSILON * 0.5;
+const UNIT_ROUNDOFF: f32 = f32::EPSILON * 0.5;
 
 /// `γ_n`, rounded up.
 pub const fn gamma(operations: u32) -> f32 {
