@@ -1,5 +1,5 @@
-//! The front: whatever happened before, the pairs of triangles within the margin are those of a fresh descent, and those of
-//! brute force.
+//! The front: whatever happened before, the pairs of triangles within the margin are those of a
+//! fresh descent, and those of brute force.
 
 mod support;
 
@@ -172,7 +172,8 @@ impl Walk {
     }
 }
 
-/// Runs one sequence for both fronts at once. Returns the statistics of each, and the number of pairs.
+/// Runs one sequence for both fronts at once. Returns the statistics of each, and the number of
+/// pairs.
 fn check_sequence(
     seed: u64,
     soups: [&Soup; 2],
@@ -234,8 +235,9 @@ fn check_sequences(count: u64, seed: u64, spread: f32, soups: impl Fn(&mut Rando
     assert!(adaptive.fresh > 0 && adaptive.raised > 0, "{adaptive:?}");
 }
 
-/// A gap that is too large, motion that is underestimated, a margin that is taken for the one before, a lane or pair of leaves that is
-/// lost or kept when the front goes up or down: each loses or doubles a pair here.
+/// A gap that is too large, motion that is underestimated, a margin that is taken for the one
+/// before, a lane or pair of leaves that is lost or kept when the front goes up or down: each loses
+/// or doubles a pair here.
 #[test]
 fn bumpy_balls_in_any_motion() {
     check_sequences(100, 100, 1.2, |random| {
@@ -297,8 +299,8 @@ proptest! {
     }
 }
 
-/// 6000 slow steps through each other and apart: an adaptive front has at most twice the cells it can be
-/// built with, plus 64. One that only goes down has far more in the end.
+/// 6000 slow steps through each other and apart: an adaptive front has at most twice the cells it
+/// can be built with, plus 64. One that only goes down has far more in the end.
 #[test]
 fn a_raised_front_stays_bounded() {
     let ball = tree(&bumpy_ball(10, 0.2));

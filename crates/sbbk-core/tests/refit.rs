@@ -1,4 +1,5 @@
-//! Refits: volumes as tight as those of a build around vertices that moved, and descents that lose nothing.
+//! Refits: volumes as tight as those of a build around vertices that moved, and descents that lose
+//! nothing.
 
 mod support;
 
@@ -58,7 +59,8 @@ fn at_frame(soup: &Soup, frame: u32, random: &mut Random) -> Soup {
 }
 
 /// A mesh twice as large has the same hierarchy, with all numbers twice as large. Would catch a
-/// volume that is not that of a build: looser, rounded twice, or of other corners; a stale leaf or magnitude.
+/// volume that is not that of a build: looser, rounded twice, or of other corners; a stale leaf or
+/// magnitude.
 fn check_tightness<const AXES: usize>()
 where
     Directions<AXES>: DirectionSet<AXES>,
@@ -158,9 +160,10 @@ fn truth([one, two]: [&Soup; 2], pos12: &Pose3, margin: f32) -> BTreeSet<(u32, u
     pairs.into_iter().map(|pair| (pair.triangle1, pair.triangle2)).collect()
 }
 
-/// 500 frames, one tree refitted through all of them. Would catch a pair of triangles that the refitted tree does
-/// not find and a fresh one, or brute force, does. Leaf volumes of a refitted tree are looser, so it may hand more pairs
-/// to the leaf test, but that test sees the triangles alone and passes the same ones.
+/// 500 frames, one tree refitted through all of them. Would catch a pair of triangles that the
+/// refitted tree does not find and a fresh one, or brute force, does. Leaf volumes of a refitted
+/// tree are looser, so it may hand more pairs to the leaf test, but that test sees the triangles
+/// alone and passes the same ones.
 #[test]
 fn descents_find_what_brute_force_and_a_rebuilt_tree_find() {
     let mut random = Random(33);
@@ -188,8 +191,8 @@ fn descents_find_what_brute_force_and_a_rebuilt_tree_find() {
     assert!(touching > 200, "only {touching} frames with contacts");
 }
 
-/// Would catch a tree that is half of the old mesh and half of the new one after an error, a fault that goes unseen, and
-/// an unused vertex that does harm.
+/// Would catch a tree that is half of the old mesh and half of the new one after an error, a fault
+/// that goes unseen, and an unused vertex that does harm.
 #[test]
 fn faults_leave_the_tree_as_it_was() {
     let mut ball = bumpy_ball(6, 0.2);
@@ -242,8 +245,8 @@ fn collapsed_meshes_have_valid_trees() {
     assert_eq!(content(&tree), before);
 }
 
-/// The measure is that of the build, stays where nothing but place and size change, and grows where what was
-/// together is torn apart.
+/// The measure is that of the build, stays where nothing but place and size change, and grows where
+/// what was together is torn apart.
 #[test]
 fn the_cost_tells_when_to_rebuild() {
     let ball = bumpy_ball(20, 0.1);

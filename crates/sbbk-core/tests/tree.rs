@@ -1,4 +1,5 @@
-//! Building: every triangle once, every volume around what is below it, every fault of the input reported.
+//! Building: every triangle once, every volume around what is below it, every fault of the input
+//! reported.
 
 mod support;
 
@@ -58,8 +59,8 @@ fn equal_triangles_make_a_balanced_tree() {
     assert_eq!(check::<9>(&soup, &options(Some(4), 1)).stats().depth, 12);
 }
 
-/// Would catch splits by cost that take one triangle from the rest, level after level: sizes and places
-/// that shrink by a constant factor, on one axis, on all in turn, with and without area.
+/// Would catch splits by cost that take one triangle from the rest, level after level: sizes and
+/// places that shrink by a constant factor, on one axis, on all in turn, with and without area.
 #[test]
 fn trees_are_never_deep() {
     let chain = |count: u32, factor: f64, axes: u32, width: f64| {
@@ -96,8 +97,35 @@ fn trees_are_never_deep() {
     assert!(deepest > 64, "no chain needs the bound: {deepest}");
 }
 
-/// The walk reaches each node once, with its own volume and depth. Would catch children of another node,
-/// a depth or slot that is wrong, and a volume of the wrong layer.
+/// Without a sphere the ball is around the root's box, whose corners are the vertices here: nothing
+/// to spare. Would catch a rounding of length or centre that is not given back, near the origin and
+/// far from it.
+#[test]
+fn the_ball_around_a_box_holds_its_corners() {
+    let mut random = Random(23);
+    for round in 0..2000 {
+        let far = [0.0, 1.0, 1e3, 1e6][round % 4];
+        let (centre, half) =
+            (random.vector(far), random.vector(if round % 3 == 0 { 1.0 } else { 0.1 }));
+        let vertices: Vec<Vec3> = (0..8)
+            .map(|i| {
+                let sign = |bit: u32| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
+                centre + half * Vec3::new(sign(0), sign(1), sign(2))
+            })
+            .collect();
+        let triangles = (0..6).map(|i| [i, i + 1, i + 2]).collect();
+        let soup = Soup { vertices, triangles };
+        let plan = LayerPlan { sphere_root: false, kdop_from_depth: None };
+        let ball = check::<9>(&soup, &BuildOptions { layers: plan, leaf_size: 4 }).bounding_ball();
+        for vertex in soup.vertices {
+            let distance = (vertex.as_dvec3() - ball.centre.as_dvec3()).length();
+            assert!(distance <= f64::from(ball.radius), "{vertex} is outside of {ball:?}");
+        }
+    }
+}
+
+/// The walk reaches each node once, with its own volume and depth. Would catch children of another
+/// node, a depth or slot that is wrong, and a volume of the wrong layer.
 #[test]
 fn the_walk_reaches_everything() {
     let ball = bumpy_ball(12, 0.2);
@@ -137,6 +165,27 @@ fn the_walk_reaches_everything() {
     let stats = tree.stats();
     assert_eq!((inner_count, leaf_count), (stats.inner_count, stats.leaf_count));
     assert_eq!(deepest, stats.depth);
+}
+
+/// "Other values are clamped": no leaf size makes an endless build.
+#[test]
+fn leaf_sizes_are_clamped() {
+    let ball = bumpy_ball(4, 0.1);
+    for (leaf_size, clamped) in [(0, 1), (9, BATCH), (usize::MAX, BATCH)] {
+        let leaf_count = |size| check::<9>(&ball, &options(Some(4), size)).leaf_count();
+        assert_eq!(leaf_count(leaf_size), leaf_count(clamped));
+    }
+}
+
+/// A vertex that no triangle uses widens no volume.
+#[test]
+fn unused_vertices_do_not_count() {
+    let mut ball = bumpy_ball(6, 0.1);
+    let radius = |ball: &Soup| check::<9>(ball, &options(Some(4), 4)).sphere().unwrap().radius;
+    // The ball's own unused vertices, at the poles, are in its place.
+    let before = radius(&ball);
+    ball.vertices.push(Vec3::splat(100.0));
+    assert_eq!(radius(&ball), before);
 }
 
 /// Zero area, zero extent, lattice ties, and coordinates of very different size are all kept.

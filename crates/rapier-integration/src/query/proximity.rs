@@ -5,7 +5,7 @@ use std::sync::Arc;
 use parry3d::math::{Pose, Real};
 use parry3d::query::{ClosestPoints, Contact, ShapeDistance, ShapeIntersection};
 use parry3d::shape::TriMesh;
-use sbbk_core::query::{FoundPair, Goal, meeting, nearest};
+use sbbk_core::query::{FoundPair, deepest, meeting, nearest};
 use sbbk_core::traverse::Placement;
 
 use super::lookup::Trees;
@@ -42,16 +42,20 @@ fn answer(meeting: Option<FoundPair>) -> ShapeIntersection {
     }
 }
 
+/// Parry's limit of a distance: its largest number is none.
+fn limit_of(distance: Real) -> f64 {
+    if distance == Real::MAX { f64::INFINITY } else { f64::from(distance) }
+}
+
 impl Trees {
-    fn nearest(&self, placement: Placement, limit: Real, goal: Goal) -> Option<FoundPair> {
-        let limit = if limit == Real::MAX { f64::INFINITY } else { f64::from(limit) };
-        self.search(|scratch| nearest(self.both(), placement, limit, goal, scratch))
+    fn nearest(&self, placement: Placement, limit: f64) -> Option<FoundPair> {
+        self.search(|scratch| nearest(self.both(), placement, limit, scratch))
     }
 
     /// The distance; `Real::MAX` at a pose that is not finite, as Parry has it for shapes without
     /// parts.
     pub(crate) fn distance(&self, pos12: &Pose) -> ShapeDistance {
-        match self.nearest(Placement::new(pos12), Real::MAX, Goal::Nearest) {
+        match self.nearest(Placement::new(pos12), f64::INFINITY) {
             Some(pair) => {
                 let distance = pair.contact.distance.max(0.0) as Real;
                 ShapeDistance::new(distance).with_subshapes(pair.triangle1, pair.triangle2)
@@ -67,7 +71,7 @@ impl Trees {
     /// The closest points, each in the frame of its mesh.
     pub(crate) fn closest_points(&self, pos12: &Pose, max_distance: Real) -> ClosestPoints {
         let placement = Placement::new(pos12);
-        match self.nearest(placement, max_distance, Goal::Nearest) {
+        match self.nearest(placement, limit_of(max_distance)) {
             Some(pair) if pair.is_touching => ClosestPoints::Intersecting,
             Some(pair) => ClosestPoints::WithinMargin(pair.point1(), pair.point2(&placement)),
             None => ClosestPoints::Disjoint,
@@ -77,7 +81,8 @@ impl Trees {
     /// The contact of the deepest pair of triangles or, where none cross, of the nearest.
     pub(crate) fn contact(&self, pos12: &Pose, prediction: Real) -> Option<Contact> {
         let placement = Placement::new(pos12);
-        let pair = self.nearest(placement, prediction, Goal::Deepest)?;
+        let limit = limit_of(prediction);
+        let pair = self.search(|scratch| deepest(self.both(), placement, limit, scratch))?;
         let points = (pair.point1(), pair.point2(&placement));
         let normals = (pair.normal1(), pair.normal2(&placement));
         let distance = pair.contact.distance as Real;

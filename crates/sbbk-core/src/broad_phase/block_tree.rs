@@ -14,9 +14,9 @@
 //! objects move by refit, come by being appended, go by leaving their lane empty, and are packed
 //! afresh when too many boxes have grown too much.
 
+use super::bounds::{Aabb, Reach};
 use super::lanes::{BoxLanes, LANE_COUNT, LaneMask, Lanes, SphereLanes, lanes_of};
 use super::order::Order;
-use super::reach::{Aabb, Reach};
 
 /// A group of objects is worn when the sum of its sides exceeds this multiple of its least value
 /// since the objects were packed. Lower packs more often; higher descends through larger boxes.

@@ -2,7 +2,7 @@
 
 use wide::f32x8;
 
-use super::reach::{ABSOLUTE_SLACK, Aabb, RELATIVE_SLACK, Reach};
+use super::bounds::{ABSOLUTE_SLACK, Aabb, RELATIVE_SLACK, Reach};
 
 /// Boxes or spheres tested at once.
 pub(super) const LANE_COUNT: usize = 8;

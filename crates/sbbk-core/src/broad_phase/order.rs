@@ -4,8 +4,8 @@
 //! Every cut falls between whole subtrees of the tree of eight, so that all nodes but the last on
 //! each level are full.
 
+use super::bounds::{Aabb, Reach};
 use super::lanes::LANE_COUNT;
-use super::reach::{Aabb, Reach};
 
 #[derive(Clone, Copy, Debug)]
 struct Entry {

@@ -4,10 +4,9 @@
 use thiserror::Error;
 
 use super::block_tree::BlockTree;
-use super::bounds::{Bounds, BoundsError};
+use super::bounds::{Bounds, BoundsError, Reach};
 use super::handle::{CapacityExceeded, HandleTable, ObjectHandle, StaleHandle};
 use super::pairs::{Change, PairSet};
-use super::reach::Reach;
 
 /// Two objects, the one with the lower handle index first.
 pub type ObjectPair = [ObjectHandle; 2];

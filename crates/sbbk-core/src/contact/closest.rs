@@ -16,13 +16,13 @@ use glamx::DVec3;
 /// short way.
 pub(super) const TIE: f64 = 1.0e-13;
 
-/// How far, in triangle sizes, other vertices must be behind the closest features for these to be known without looking
-/// at others, see [`proved`]. Higher: more pairs that nearly tie take the long way. Lower: the answer depends on the
-/// features that it was tried with.
+/// How far, in triangle sizes, other vertices must be behind the closest features for these to be
+/// known without looking at others, see [`proved`]. Higher: more pairs that nearly tie take the
+/// long way. Lower: the answer depends on the features that it was tried with.
 const CLEAR_WIN: f64 = 1.0e-9;
 
-/// How far from the border of its feature a closest point must be, as a share of the geometric mean of size and distance;
-/// likewise.
+/// How far from the border of its feature a closest point must be, as a share of the geometric mean
+/// of size and distance; likewise.
 const NEAR: f64 = 1.0e-5;
 
 /// Closest points of two features and the direction from the first to the second.
@@ -147,13 +147,14 @@ fn within(along: f64) -> bool {
     (0.0..=1.0).contains(&along)
 }
 
-/// The closest points of two features, if they are clearly the only closest points of the triangles, so that a search
-/// finds no other features, whatever rounding does to it.
+/// The closest points of two features, if they are clearly the only closest points of the
+/// triangles, so that a search finds no other features, whatever rounding does to it.
 ///
-/// A search is off by a few times `TIE` of the size in the distance. Points `y` to the side of the closest ones are
-/// farther by `y²/2d`, so the closest ones must be farther than `√(2d·TIE·size)` from the border of their features. A
-/// vertex that is `w` behind the plane puts the foot of a perpendicular `d·w/size` outside, which must be more than
-/// rounding. The constants are hundreds of times larger.
+/// A search is off by a few times `TIE` of the size in the distance. Points `y` to the side of the
+/// closest ones are farther by `y²/2d`, so the closest ones must be farther than `√(2d·TIE·size)`
+/// from the border of their features. A vertex that is `w` behind the plane puts the foot of a
+/// perpendicular `d·w/size` outside, which must be more than rounding. The constants are hundreds
+/// of times larger.
 #[inline(always)]
 pub(super) fn proved(t1: &Triangle, t2: &Triangle, features: FeaturePair) -> Option<Closest> {
     let closest = closest(t1, t2, features)?;

@@ -43,8 +43,8 @@ pub fn contact_from(
 /// [`contact`](fn@contact) or, given `last`, [`contact_from`]; then [`clip`](super::clip) along the
 /// normal and [`push_closest`](super::push_closest), at less cost than one by one.
 ///
-/// `out` is left empty without a contact, and by one that is farther than `reach`: of contacts between
-/// `reach` and `margin` only the distance is of interest.
+/// `out` is left empty without a contact, and by one that is farther than `reach`: of contacts
+/// between `reach` and `margin` only the distance is of interest.
 pub fn manifold(
     t1: &[DVec3; 3],
     t2: &[DVec3; 3],
@@ -74,7 +74,8 @@ fn find(
     if !(t1.size + t2.size).is_finite() {
         return None;
     }
-    // Triangles that crossed probably still do: the ways that find only triangles apart are not tried.
+    // Triangles that crossed probably still do: the ways that find only triangles apart are not
+    // tried.
     if last.is_some_and(FeaturePair::is_crossing) {
         let contact = search(t1, t2, margin);
         if contact.is_some_and(|contact| contact.features.is_crossing()) {
@@ -137,8 +138,8 @@ fn search(t1: &Triangle, t2: &Triangle, margin: f64) -> Option<TriangleContact> 
     (contact.distance <= margin).then_some(contact)
 }
 
-/// A contact of triangles apart as [`closest`] gives it, so that the same features give the same digits
-/// whichever way they were found.
+/// A contact of triangles apart as [`closest`] gives it, so that the same features give the same
+/// digits whichever way they were found.
 #[inline(always)]
 fn from_features(t1: &Triangle, t2: &Triangle, contact: TriangleContact) -> TriangleContact {
     if contact.features.is_crossing() || contact.distance <= TOUCHING * (t1.size + t2.size) {
@@ -253,8 +254,8 @@ mod tests {
         assert!(kept > apart * 9 / 10, "only {kept} of {apart} steps apart kept their features");
     }
 
-    /// Triangles that are points or segments have many features in one place: fuzzing found that the
-    /// last ones were taken.
+    /// Triangles that are points or segments have many features in one place: fuzzing found that
+    /// the last ones were taken.
     #[test]
     fn any_last_features_of_points_and_segments() {
         let [a, b, c] =

@@ -71,16 +71,13 @@ fn nearest_features(t1: &Triangle, t2: &Triangle) -> (FeaturePair, Closest) {
     nearest
 }
 
-/// The normals of the edges in the planes of their triangles.
+/// The normals of the edges in the planes of their triangles. Which features they stand for does not
+/// matter: [`at_axis`] finds those that meet.
 fn in_plane_axes(t1: &Triangle, t2: &Triangle) -> impl Iterator<Item = Axis> {
-    let edge = move |k: usize, i: usize| {
-        let t = [t1, t2][k];
-        let normal = t.edges[i].cross(t.normal()).try_normalize()?;
-        let features = FeaturePair::new(Feature::Edge(i as u8), Feature::Face);
-        let features = if k == 0 { features } else { features.swapped() };
-        Some(Axis::along(t1, t2, normal, features))
-    };
-    (0..2).flat_map(move |k| (0..3).filter_map(move |i| edge(k, i)))
+    let faces = FeaturePair::new(Feature::Face, Feature::Face);
+    let across = |t: &Triangle| t.edges.map(|edge| edge.cross(t.normal()).try_normalize());
+    let normals = [across(t1), across(t2)].into_iter().flatten().flatten();
+    normals.map(move |normal| Axis::along(t1, t2, normal, faces))
 }
 
 /// Segments and points on one line, which touch: any direction across the line separates them.

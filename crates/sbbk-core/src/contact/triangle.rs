@@ -69,8 +69,8 @@ impl<'a> Triangle<'a> {
         perpendicular(longest, shorter).map_or(DVec3::ZERO, |normal| normal * area)
     }
 
-    /// Whether a feature lies in a plane that faces a direction, up to `slack`, and the rest of the triangle behind it by
-    /// at least `win`.
+    /// Whether a feature lies in a plane that faces a direction, up to `slack`, and the rest of the
+    /// triangle behind it by at least `win`.
     #[inline(always)]
     pub fn is_behind(&self, feature: Feature, direction: DVec3, slack: f64, win: f64) -> bool {
         let i = feature.vertex();
@@ -83,7 +83,8 @@ impl<'a> Triangle<'a> {
         }
     }
 
-    /// Whether a point of a feature is farther than some distance from the feature's border; never so in a thin triangle.
+    /// Whether a point of a feature is farther than some distance from the feature's border; never
+    /// so in a thin triangle.
     #[inline(always)]
     pub fn is_well_inside(&self, feature: Feature, point: DVec3, border_squared: f64) -> bool {
         match feature {

@@ -1,9 +1,9 @@
 //! The pairs of nodes that a front consists of.
 //!
-//! They come in fours, as the descent compares them: a [`Cell`] is a pair of nodes that met, with its
-//! four pairs of children. Each of these has parted, or is a pair of leaves, or leads to a cell of its
-//! own. One SIMD test tests all four, and the pairs above the front, which tell when to raise it, are
-//! at hand.
+//! They come in fours, as the descent compares them: a [`Cell`] is a pair of nodes that met, with
+//! its four pairs of children. Each of these has parted, or is a pair of leaves, or leads to a cell
+//! of its own. One SIMD test tests all four, and the pairs above the front, which tell when to
+//! raise it, are at hand.
 //!
 //! Of cells that motion cannot have changed a query reads two numbers each, in arrays of their own.
 
@@ -12,8 +12,9 @@ use wide::f32x8;
 use super::opening::{Opening, SlotPair};
 
 /// Pairs that meet are not tested again before motion of this many times the least that can part
-/// them. More: fewer tests, and more pairs of leaves that have parted are handed out. Slow motion of
-/// 2596 triangles, node tests a query: 695 with 1, 527 with 2, 418 with 4 (a fifth less time than 2).
+/// them. More: fewer tests, and more pairs of leaves that have parted are handed out. Slow motion
+/// of 2596 triangles, node tests a query: 695 with 1, 527 with 2, 418 with 4 (a fifth less time
+/// than 2).
 pub(super) const PATIENCE: f32 = 4.0;
 
 /// A pair of nodes that met.
@@ -42,7 +43,8 @@ pub(super) struct LeafPair {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cells {
     cells: Vec<Cell>,
-    /// While time plus margin is below this, no pair that has parted can meet. Infinite where no cell is.
+    /// While time plus margin is below this, no pair that has parted can meet. Infinite where no
+    /// cell is.
     parted_until: Vec<f32>,
     /// While this is below `PATIENCE·margin - time`, all pairs that met are taken to meet. Minus
     /// infinity where no cell is.

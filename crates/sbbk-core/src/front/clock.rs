@@ -1,25 +1,27 @@
 //! How far two meshes may have moved against each other, as one number that grows.
 //!
 //! A gap `g` was measured at the placement `P`; at `Q` it is at least `g - d(P, Q)`, with `d` the
-//! [`motion_bound`](Placement::motion_bound). To ask that for thousands of gaps of different ages with one comparison
-//! each, `d` is bounded by way of *anchors*, one placement after the other. With `A` the anchor at the time of `P`, `B`
-//! that at the time of `Q`, and `O` the sum of the distances from anchor to anchor, the triangle inequality gives
+//! [`motion_bound`](Placement::motion_bound). To ask that for thousands of gaps of different ages
+//! with one comparison each, `d` is bounded by way of *anchors*, one placement after the other.
+//! With `A` the anchor at the time of `P`, `B` that at the time of `Q`, and `O` the sum of the
+//! distances from anchor to anchor, the triangle inequality gives
 //!
 //! `d(P, Q) <= d(P, A) + (O_B - O_A) + d(B, Q) = (O_B + d(B, Q)) - (O_A - d(P, A))`.
 //!
-//! The first bracket is the *time* of `Q`, the second the *stamp* of `P`: a gap lasts while `g + stamp > time + margin`.
+//! The first bracket is the *time* of `Q`, the second the *stamp* of `P`: a gap lasts while `g +
+//! stamp > time + margin`.
 //!
-//! Bodies on their way get a new anchor at each query: time is the length of the way then. A body at rest that jitters
-//! keeps its anchor: its way grows, and its distance from the anchor does not.
+//! Bodies on their way get a new anchor at each query: time is the length of the way then. A body
+//! at rest that jitters keeps its anchor: its way grows, and its distance from the anchor does not.
 
 use crate::traverse::Placement;
 use crate::volumes::Sphere;
 
-/// Queries after which it is decided anew whether a pair rests. Fewer: slow turning is taken for jitter. More: a pair
-/// that comes to rest is noticed later.
+/// Queries after which it is decided anew whether a pair rests. Fewer: slow turning is taken for
+/// jitter. More: a pair that comes to rest is noticed later.
 const WINDOW: u32 = 8;
-/// A pair rests while it gets no farther than this share of its way. Higher: stamps of moving pairs lose what they
-/// are away from the anchor. Lower: jitter with a little drift is taken for motion.
+/// A pair rests while it gets no farther than this share of its way. Higher: stamps of moving pairs
+/// lose what they are away from the anchor. Lower: jitter with a little drift is taken for motion.
 const RESTING_SHARE: f64 = 0.5;
 
 /// Measures the way.
@@ -113,8 +115,8 @@ mod tests {
         Placement::new(&Pose3::from_parts(Vec3::X * x, Quat::from_rotation_y(angle)))
     }
 
-    /// Would catch a bound that a change of anchors makes too small: for all pairs of queries of a way that drifts, jitters,
-    /// jumps and drifts again.
+    /// Would catch a bound that a change of anchors makes too small: for all pairs of queries of a
+    /// way that drifts, jitters, jumps and drifts again.
     #[test]
     fn no_two_queries_are_farther_apart_than_the_clock_says() {
         let way = (0..200).map(|i| {

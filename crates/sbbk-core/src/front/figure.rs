@@ -1,10 +1,10 @@
 //! Figures 3 and 4 of the SBBK paper.
 //!
-//! The figures show one tree, T1 to T31, the children of T*n* being T*2n* and T*2n+1*: a tree of pairs
-//! of nodes, with two children each, as where one side is a leaf. The paper lists the nodes visited at
-//! time t2, and T13 is not among them though T6, its parent, is opened: T6 has one child. No descent of
-//! real trees has such a pair, so the tree here is the figure's own, and only which nodes meet is
-//! given. The front is the real one.
+//! The figures show one tree, T1 to T31, the children of T*n* being T*2n* and T*2n+1*: a tree of
+//! pairs of nodes, with two children each, as where one side is a leaf. The paper lists the nodes
+//! visited at time t2, and T13 is not among them though T6, its parent, is opened: T6 has one
+//! child. No descent of real trees has such a pair, so the tree here is the figure's own, and only
+//! which nodes meet is given. The front is the real one.
 
 use std::collections::BTreeSet;
 
@@ -94,8 +94,8 @@ fn the_front_visits_13_nodes_and_a_fresh_descent_16() {
     assert!(place(14) < place(6) && place(15) < place(6) && place(6) < place(2), "{again:?}");
 }
 
-/// Back to t1: the paper's front stays as low as it was and visits more each time; a raised one is that
-/// of t1 again.
+/// Back to t1: the paper's front stays as low as it was and visits more each time; a raised one is
+/// that of t1 again.
 #[test]
 fn a_raised_front_goes_back_up() {
     let paper = (FrontOptions::Paper, vec![4, 10, 11, 12, 28, 29, 30, 31], 9, 0);

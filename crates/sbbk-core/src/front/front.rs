@@ -13,14 +13,14 @@ use crate::traverse::{Counters, Descent, DescentScratch, PairFrame, Verdict, Vis
 use crate::tree::{LeafBatch, Tree};
 use crate::volumes::{DirectionSet, Directions};
 
-/// An adaptive front is built anew when it has more than this many times the cells that it was built
-/// with, and [`SPARE_CELLS`]: its bound. Lower: more fresh descents for pairs that close in. Higher:
-/// more memory.
+/// An adaptive front is built anew when it has more than this many times the cells that it was
+/// built with, and [`SPARE_CELLS`]: its bound. Lower: more fresh descents for pairs that close in.
+/// Higher: more memory.
 const GROWTH: usize = 2;
 /// See [`GROWTH`].
 const SPARE_CELLS: usize = 64;
-/// Time at which an adaptive front is built anew, in radii of mesh 2: stamps are f32, and would become
-/// coarse.
+/// Time at which an adaptive front is built anew, in radii of mesh 2: stamps are f32, and would
+/// become coarse.
 const LONGEST_TIME: f64 = 8.0;
 
 /// Where the last descent of a pair of trees stopped: see [the module](super).
@@ -83,11 +83,12 @@ impl Front {
         FrontStats { cells: self.cells.len(), memory: self.cells.memory(), ..self.stats }
     }
 
-    /// Visits pairs of leaves, as [`descend`] does: every pair of leaves that has triangles within the margin, and
-    /// few others. Which others, and the order, depend on the queries before.
+    /// Visits pairs of leaves, as [`descend`] does: every pair of leaves that has triangles within
+    /// the margin, and few others. Which others, and the order, depend on the queries before.
     ///
-    /// Of the visitor, only [`Visitor::leaves`] is called, as the pairs above are not visited; it may
-    /// stop. A pose or margin that is not finite finds nothing, and the next query starts at the roots.
+    /// Of the visitor, only [`Visitor::leaves`] is called, as the pairs above are not visited; it
+    /// may stop. A pose or margin that is not finite finds nothing, and the next query starts at
+    /// the roots.
     pub fn visit<const AXES: usize, V: Visitor, C: Counters>(
         &mut self,
         trees: (&Tree<AXES>, &Tree<AXES>),
@@ -153,7 +154,8 @@ impl Front {
         self.options == FrontOptions::Adaptive
     }
 
-    /// Brings the front up to date, or clears it and returns `false`: then a fresh descent is cheaper.
+    /// Brings the front up to date, or clears it and returns `false`: then a fresh descent is
+    /// cheaper.
     fn update(
         &mut self,
         pair: &mut impl PairTest,
@@ -195,8 +197,8 @@ impl Front {
         self.built = self.cells.len();
     }
 
-    /// Tests the cells that are due, in the order of the paper, or the highest first: one that parts
-    /// takes those below it with it.
+    /// Tests the cells that are due, in the order of the paper, or the highest first: one that
+    /// parts takes those below it with it.
     pub(super) fn test_due(&mut self, pair: &mut impl PairTest, stamp: f64, margin: f32) {
         let cells = &self.cells;
         match self.options {
@@ -219,7 +221,8 @@ impl Front {
         }
     }
 
-    /// Tests the lanes of a cell, and lowers and raises the front below it. New cells are pending then.
+    /// Tests the lanes of a cell, and lowers and raises the front below it. New cells are pending
+    /// then.
     #[inline(always)]
     fn test(&mut self, pair: &mut impl PairTest, index: u32, stamp: f64, margin: f32) {
         let cell = *self.cells.get(index);

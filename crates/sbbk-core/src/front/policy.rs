@@ -2,13 +2,14 @@
 
 use crate::tree::Tree;
 
-/// A front is given up when more than this share of its cells is to be tested. A test costs more than one of a fresh
-/// descent, as it measures; besides, the front is lowered below some of them.
+/// A front is given up when more than this share of its cells is to be tested. A test costs more
+/// than one of a fresh descent, as it measures; besides, the front is lowered below some of them.
 const WORTHWHILE: f64 = 0.5;
-/// Motion from query to query at which a front is first tried, in sizes of a leaf. A wrong guess costs one building of
-/// a front.
+/// Motion from query to query at which a front is first tried, in sizes of a leaf. A wrong guess
+/// costs one building of a front.
 const FIRST_GUESS: f64 = 0.1;
-/// Fresh descents after which twice the motion is tried. A try costs half a descent: one in a hundred with this.
+/// Fresh descents after which twice the motion is tried. A try costs half a descent: one in a
+/// hundred with this.
 const TRY_AGAIN: u32 = 64;
 
 /// What is known about which motion is slow enough.
@@ -41,7 +42,8 @@ impl Policy {
         false
     }
 
-    /// Whether a front of `cells` cells, `due` of them to be tested after a motion of `step`, is not worth it.
+    /// Whether a front of `cells` cells, `due` of them to be tested after a motion of `step`, is
+    /// not worth it.
     pub(super) fn gives_up(&mut self, step: f64, due: usize, cells: usize) -> bool {
         let gives_up = due as f64 > WORTHWHILE * cells as f64;
         if gives_up {

@@ -1,14 +1,15 @@
 //! When two meshes on any paths first touch: conservative advancement.
 //!
-//! If no point of one mesh moves faster than `s` against the other, meshes that are `d` apart do not touch before
-//! `d/s` has passed. Steps of that length approach the time of impact from below (Mirtich, *Impulse-based Dynamic
-//! Simulation of Rigid Body Systems*, 1996); the search ends within the tolerance.
+//! If no point of one mesh moves faster than `s` against the other, meshes that are `d` apart do
+//! not touch before `d/s` has passed. Steps of that length approach the time of impact from below
+//! (Mirtich, *Impulse-based Dynamic Simulation of Rigid Body Systems*, 1996); the search ends
+//! within the tolerance.
 
 use crate::traverse::Placement;
 use crate::tree::Tree;
 use crate::volumes::{DirectionSet, Directions};
 
-use super::nearest::{Goal, nearest};
+use super::nearest::nearest;
 use super::seek::SearchScratch;
 use super::triangles::FoundPair;
 
@@ -40,8 +41,8 @@ pub struct Advance {
     pub has_converged: bool,
 }
 
-/// The first time at which mesh 2, at `placement_at(time)` in the frame of mesh 1, is within the tolerance of it;
-/// `None` if there is no such time until the end, or if a number is not finite.
+/// The first time at which mesh 2, at `placement_at(time)` in the frame of mesh 1, is within the
+/// tolerance of it; `None` if there is no such time until the end, or if a number is not finite.
 pub fn advance<const AXES: usize>(
     trees: (&Tree<AXES>, &Tree<AXES>),
     placement_at: impl Fn(f64) -> Placement,
@@ -51,9 +52,7 @@ pub fn advance<const AXES: usize>(
 where
     Directions<AXES>: DirectionSet<AXES>,
 {
-    advance_by(placement_at, options, |placement, reach| {
-        nearest(trees, placement, reach, Goal::Nearest, scratch)
-    })
+    advance_by(placement_at, options, |placement, reach| nearest(trees, placement, reach, scratch))
 }
 
 /// The same with the nearest pair up to a distance from `nearest`.

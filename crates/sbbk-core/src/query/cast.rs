@@ -1,15 +1,16 @@
 //! When two meshes, moving along a line against each other, first come within a distance.
 //!
-//! For two triangles the distance is a convex function of time, as triangles are convex: Newton's method from the
-//! start,
+//! For two triangles the distance is a convex function of time, as triangles are convex: Newton's
+//! method from the start,
 //!
 //! ```text
 //! t ← t + (d(t) - target) / -(n(t)·v),    n: from the closest point of triangle 1 to that of triangle 2
 //! ```
 //!
-//! never passes the first time of impact, and where the distance no longer falls there is none. While the closest
-//! features stay the same and one of them is a face, or both are edges, the distance is linear in time and one step
-//! arrives. Over two meshes the earliest of all pairs is sought with the bounds of `sweep.rs`.
+//! never passes the first time of impact, and where the distance no longer falls there is none.
+//! While the closest features stay the same and one of them is a face, or both are edges, the
+//! distance is linear in time and one step arrives. Over two meshes the earliest of all pairs is
+//! sought with the bounds of `sweep.rs`.
 
 use glamx::{DVec3, Vec3};
 
@@ -30,7 +31,8 @@ pub struct CastOptions {
     pub max_time: f32,
     /// How close counts as an impact; zero or more.
     pub target_distance: f32,
-    /// Whether triangles that are within the target distance at the start count if they do not come any closer.
+    /// Whether triangles that are within the target distance at the start count if they do not come
+    /// any closer.
     pub stop_at_penetration: bool,
 }
 
@@ -45,15 +47,17 @@ pub struct Cast {
     pub is_penetrating: bool,
 }
 
-/// A triangle pair has come as close as the target if it is this much farther, as a share of edges and travel. Higher:
-/// impacts are early by as much. Lower: rounding keeps them from being noticed.
+/// A triangle pair has come as close as the target if it is this much farther, as a share of edges
+/// and travel. Higher: impacts are early by as much. Lower: rounding keeps them from being noticed.
 const ARRIVED: f64 = 1.0e-12;
 
-/// Steps of Newton's method. Grazing impacts gain a binary digit a step; others take two or three steps.
+/// Steps of Newton's method. Grazing impacts gain a binary digit a step; others take two or three
+/// steps.
 const STEP_LIMIT: usize = 100;
 
-/// The first impact of mesh 2, placed at `placement` in the frame of mesh 1 and moving by `velocity` there; `None` if
-/// there is none until `options.max_time`, or if a number is NaN or infinite.
+/// The first impact of mesh 2, placed at `placement` in the frame of mesh 1 and moving by
+/// `velocity` there; `None` if there is none until `options.max_time`, or if a number is NaN or
+/// infinite.
 pub fn cast<const AXES: usize>(
     trees: (&Tree<AXES>, &Tree<AXES>),
     placement: Placement,

@@ -1,13 +1,13 @@
 //! When two meshes on any paths touch, not counting what they touch already and are about to leave.
 //!
-//! A pair of triangles that touches at the start is an impact if it approaches: if its velocities along
-//! the normal of the contact deepen it. Otherwise it is left out for good, and the others are advanced
-//! to their first touch (`advance.rs`). So this is an answer about pairs of triangles, not about bodies:
-//! where a mesh that sinks into another is pulled out again, triangles that did not touch before can be
-//! met on the way.
+//! A pair of triangles that touches at the start is an impact if it approaches: if its velocities
+//! along the normal of the contact deepen it. Otherwise it is left out for good, and the others are
+//! advanced to their first touch (`advance.rs`). So this is an answer about pairs of triangles, not
+//! about bodies: where a mesh that sinks into another is pulled out again, triangles that did not
+//! touch before can be met on the way.
 //!
-//! The pairs at the start keep overlapping in each step of the search: a start deep inside makes all
-//! steps as dear as a query for all contacts.
+//! The pairs at the start keep overlapping in each step of the search: a start deep inside makes
+//! all steps as dear as a query for all contacts.
 
 use crate::traverse::Placement;
 use crate::tree::Tree;
@@ -15,17 +15,17 @@ use crate::volumes::{DirectionSet, Directions};
 
 use super::advance::{Advance, AdvanceOptions, advance_by};
 use super::contacts::contacts;
-use super::nearest::{Goal, nearest_besides};
+use super::nearest::{Goal, search_besides};
 use super::seek::SearchScratch;
 use super::triangles::FoundPair;
 
-/// The first impact of two meshes that may touch at the start, as of [`advance`](fn@super::advance) but
-/// for the pairs of triangles within the tolerance of each other at the start. Those of them that
-/// `approaches` accepts are impacts at the start, and the deepest one is returned. The others do not
-/// count, whatever becomes of them.
+/// The first impact of two meshes that may touch at the start, as of [`advance`](fn@super::advance)
+/// but for the pairs of triangles within the tolerance of each other at the start. Those of them
+/// that `approaches` accepts are impacts at the start, and the deepest one is returned. The others
+/// do not count, whatever becomes of them.
 ///
-/// `None` if there is no impact until the end, or if a number is not finite. Allocates lists of the pairs
-/// that touch at the start.
+/// `None` if there is no impact until the end, or if a number is not finite. Allocates lists of the
+/// pairs that touch at the start.
 pub fn advance_from_contact<const AXES: usize>(
     trees: (&Tree<AXES>, &Tree<AXES>),
     placement_at: impl Fn(f64) -> Placement,
@@ -57,6 +57,6 @@ where
         touching.iter().map(|pair| [pair.triangle1, pair.triangle2]).collect();
     besides.sort_unstable();
     advance_by(placement_at, options, |placement, reach| {
-        nearest_besides(trees, placement, reach, Goal::Nearest, &besides, scratch).0
+        search_besides(trees, placement, reach, Goal::Nearest, &besides, scratch).0
     })
 }

@@ -13,11 +13,11 @@ use crate::volumes::{DirectionSet, Directions};
 use super::seek::{Bounds, FOUND, SearchScratch, seek};
 use super::triangles::{FoundPair, LeafTriangle, TrianglePair};
 
-/// A pair of triangles that touch or cross, mesh 2 placed at `placement` in the frame of mesh 1; `None`
-/// if there is none, or if the placement is not finite.
+/// A pair of triangles that touch or cross, mesh 2 placed at `placement` in the frame of mesh 1;
+/// `None` if there is none, or if the placement is not finite.
 ///
-/// Triangles touch up to 1e-12 of their size. As [`nearest`](super::nearest()) with a limit of zero, but
-/// for the choice among several pairs, and faster.
+/// Triangles touch up to 1e-12 of their size. As [`nearest`](super::nearest()) with a limit of
+/// zero, but for the choice among several pairs, and faster.
 pub fn meeting<const AXES: usize>(
     trees: (&Tree<AXES>, &Tree<AXES>),
     placement: Placement,

@@ -1,15 +1,15 @@
-//! Questions about two meshes at a pose: all contacts, the nearest or the deepest pair of triangles,
-//! whether any pair meets, when moving meshes first meet.
+//! Questions about two meshes at a pose: all contacts, the nearest or the deepest pair of
+//! triangles, whether any pair meets, when moving meshes first meet.
 //!
-//! [`contacts`] is a descent. The questions with one answer are one search (`seek.rs`): both trees are
-//! descended at once, the pair of nodes with the least lower bound first, and what cannot beat the best
-//! pair of triangles so far is left out. The bound is the signed distance of volumes for [`nearest`],
-//! the earliest time at which they come close for [`cast`]; [`meeting`] has none. Pairs of triangles are
-//! compared exactly, in f64 ([`contact`](mod@crate::contact)).
+//! [`contacts`] is a descent. The questions with one answer are one search (`seek.rs`): both trees
+//! are descended at once, the pair of nodes with the least lower bound first, and what cannot beat
+//! the best pair of triangles so far is left out. The bound is the signed distance of volumes for
+//! [`nearest`], the earliest time at which they come close for [`cast`]; [`meeting`] has none.
+//! Pairs of triangles are compared exactly, in f64 ([`contact`](mod@crate::contact)).
 //!
 //! ```
 //! use glamx::{Pose3, Vec3};
-//! use sbbk_core::query::{Goal, SearchScratch, nearest};
+//! use sbbk_core::query::{SearchScratch, nearest};
 //! use sbbk_core::traverse::{PairFrame, Placement};
 //! use sbbk_core::tree::{BuildOptions, Tree};
 //!
@@ -19,13 +19,13 @@
 //!
 //! let placement = Placement::new(&Pose3::translation(0.0, 0.0, 3.0));
 //! let mut scratch = SearchScratch::default();
-//! let found = nearest((&tree, &tree), placement, f64::INFINITY, Goal::Nearest, &mut scratch);
+//! let found = nearest((&tree, &tree), placement, f64::INFINITY, &mut scratch);
 //! assert_eq!(found.expect("no limit").contact.distance, 2.0);
 //! # Ok::<(), sbbk_core::tree::BuildError>(())
 //! ```
 //!
-//! Meshes are surfaces: one inside another is apart from it. A pose or velocity that is not finite has
-//! no answer. Answers depend on the trees and the pose only.
+//! Meshes are surfaces: one inside another is apart from it. A pose or velocity that is not finite
+//! has no answer. Answers depend on the trees and the pose only.
 
 mod advance;
 mod cast;
@@ -35,15 +35,17 @@ mod guess;
 mod meet;
 mod nearest;
 mod seek;
+#[cfg(test)]
+#[path = "../../tests/support/mod.rs"]
+mod support;
 mod sweep;
 mod triangles;
 
-pub use crate::traverse::GapCounts;
 pub use advance::{Advance, AdvanceOptions, advance};
 pub use cast::{Cast, CastOptions, cast};
 pub use contacts::contacts;
 pub use departure::advance_from_contact;
 pub use meet::meeting;
-pub use nearest::{Goal, nearest, nearest_counted};
+pub use nearest::{deepest, nearest};
 pub use seek::SearchScratch;
 pub use triangles::{FoundPair, TrianglePair};

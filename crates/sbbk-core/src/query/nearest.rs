@@ -14,7 +14,7 @@ use super::triangles::{FoundPair, LeafTriangle, TrianglePair};
 
 /// Which pair of triangles is sought.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Goal {
+pub(super) enum Goal {
     /// The nearest one. If several touch or cross, any of them.
     Nearest,
     /// The nearest one; if several touch or cross, the deepest.
@@ -24,25 +24,39 @@ pub enum Goal {
 /// Margins of the leaf test whose squares would overflow are no use.
 const WIDEST_LEAF_MARGIN: f32 = 1.0e15;
 
-/// The pair of triangles sought, mesh 2 placed at `placement` in the frame of mesh 1; `None` if all pairs are farther
-/// apart than `limit`, or if the placement is not finite.
+/// The nearest pair of triangles, mesh 2 placed at `placement` in the frame of mesh 1; if several touch
+/// or cross, any of them. `None` if all pairs are farther apart than `limit`, or if the placement is not
+/// finite.
 ///
-/// Triangles touch up to 1e-12 of their size. With a limit of zero this is the test whether the surfaces meet.
+/// Triangles touch up to 1e-12 of their size. With a limit of zero this is the test whether the surfaces
+/// meet; [`meeting`](super::meeting()) is faster.
 pub fn nearest<const AXES: usize>(
     trees: (&Tree<AXES>, &Tree<AXES>),
     placement: Placement,
     limit: f64,
-    goal: Goal,
     scratch: &mut SearchScratch,
 ) -> Option<FoundPair>
 where
     Directions<AXES>: DirectionSet<AXES>,
 {
-    nearest_counted(trees, placement, limit, goal, scratch).0
+    search(trees, placement, limit, Goal::Nearest, scratch).0
 }
 
-/// As [`nearest`], with the work that was done.
-pub fn nearest_counted<const AXES: usize>(
+/// As [`nearest`], but if several pairs touch or cross, the deepest.
+pub fn deepest<const AXES: usize>(
+    trees: (&Tree<AXES>, &Tree<AXES>),
+    placement: Placement,
+    limit: f64,
+    scratch: &mut SearchScratch,
+) -> Option<FoundPair>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    search(trees, placement, limit, Goal::Deepest, scratch).0
+}
+
+/// The pair, and the work that it took.
+fn search<const AXES: usize>(
     trees: (&Tree<AXES>, &Tree<AXES>),
     placement: Placement,
     limit: f64,
@@ -55,11 +69,11 @@ where
     // Not `min`: a limit that is NaN stays, and admits nothing.
     let some = some_distance(trees, &placement);
     let best = if some < limit { some } else { limit };
-    nearest_besides(trees, placement, best, goal, &[], scratch)
+    search_besides(trees, placement, best, goal, &[], scratch)
 }
 
 /// The same of all pairs of triangles but some, which are given in ascending order.
-pub(super) fn nearest_besides<const AXES: usize>(
+pub(super) fn search_besides<const AXES: usize>(
     trees: (&Tree<AXES>, &Tree<AXES>),
     placement: Placement,
     best: f64,
@@ -197,6 +211,43 @@ where
                     let one = LeafTriangle { batch: batch1, lane: lane1 };
                     self.triangles(one, LeafTriangle { batch: batch2, lane: lane2 });
                 }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glamx::Pose3;
+
+    use super::*;
+    use crate::query::support::{Random, bumpy_ball};
+    use crate::tree::BuildOptions;
+
+    /// The counters: of 16 million pairs of triangles a few hundred are compared, wherever the meshes
+    /// are. Would catch a search that does not look along the way between the meshes: at a distance of
+    /// 6 it tests 15,000 pairs of nodes.
+    #[test]
+    fn most_is_pruned() {
+        let ball = bumpy_ball(32, 0.1);
+        let tree: Tree =
+            Tree::build(&ball.vertices, &ball.triangles, &BuildOptions::default()).unwrap();
+        let mut random = Random(7);
+        let mut scratch = SearchScratch::default();
+        for (distance, limit, goal) in [
+            (2.3, f64::INFINITY, Goal::Nearest),
+            (6.0, f64::INFINITY, Goal::Nearest),
+            (1.0, f64::INFINITY, Goal::Nearest),
+            (2.3, 0.0, Goal::Nearest),
+            (1.9, 0.0, Goal::Deepest),
+        ] {
+            for _ in 0..20 {
+                let direction = random.vector(1.0).normalize();
+                let pose = Pose3::from_parts(distance * direction, random.rotation());
+                let placement = Placement::new(&pose);
+                let (_, counts) = search((&tree, &tree), placement, limit, goal, &mut scratch);
+                assert!(counts.node_pairs < 8000, "{counts:?} at {distance}");
+                assert!(counts.triangle_pairs < 600, "{counts:?} at {distance}");
             }
         }
     }

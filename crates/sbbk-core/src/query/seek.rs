@@ -1,8 +1,8 @@
 //! The search: depth first, the nearest pair first, with a bound.
 //!
-//! A pair of nodes is replaced by those pairs of its children whose lower bound does not exceed the best value so far;
-//! of these the least is looked at next. The first leaves that are reached are near the answer, so the bound is tight
-//! from then on.
+//! A pair of nodes is replaced by those pairs of its children whose lower bound does not exceed the
+//! best value so far; of these the least is looked at next. The first leaves that are reached are
+//! near the answer, so the bound is tight from then on.
 
 use crate::traverse::{Compare, DescentScratch, Sides, expand};
 use crate::tree::{LeafBatch, Slot, Tree};
@@ -72,7 +72,8 @@ pub(super) fn seek<const AXES: usize, B: Bounds<AXES>>(
     }
 }
 
-/// Sorts up to four pairs, so that the one with the least bound is popped first; equal ones in the order they have.
+/// Sorts up to four pairs, so that the one with the least bound is popped first; equal ones in the
+/// order they have.
 #[inline(always)]
 fn nearest_last(pairs: &mut [Candidate]) {
     for end in 1..pairs.len() {

@@ -1,14 +1,15 @@
 //! The earliest time at which pairs of moving nodes may come within a distance, over SIMD lanes.
 //!
-//! Two bounds, of which the later counts. Boxes that move along a line against each other overlap on each axis of
-//! frame 1 during an interval, on all three during the intersection of these (the slabs of a ray against the
-//! Minkowski sum). And volumes that are a gap apart need at least the gap over the speed.
+//! Two bounds, of which the later counts. Boxes that move along a line against each other overlap
+//! on each axis of frame 1 during an interval, on all three during the intersection of these (the
+//! slabs of a ray against the Minkowski sum). And volumes that are a gap apart need at least the
+//! gap over the speed.
 //!
 //! # Rounding
 //!
-//! The offset and the reach are those of [`PairFrame`], conservative by its rounding. The velocity is exact
-//! in frame 1. A quotient loses at most `γ_4`, the target distance added to the reach `γ_2`; times are made
-//! earlier at their start and later at their end by `γ_8`.
+//! The offset and the reach are those of [`PairFrame`], conservative by its rounding.
+//! The velocity is exact in frame 1. A quotient loses at most `γ_4`, the target distance added to
+//! the reach `γ_2`; times are made earlier at their start and later at their end by `γ_8`.
 
 use glamx::Vec3;
 use wide::f32x4;

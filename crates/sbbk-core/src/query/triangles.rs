@@ -7,8 +7,8 @@ use crate::traverse::Placement;
 use crate::tree::LeafBatch;
 
 /// Triangles this close touch, as a share of the lengths of their edges: what rounding can do to a
-/// distance of zero. Higher: triangles that are apart count as touching. Lower: those that touch count
-/// as apart.
+/// distance of zero. Higher: triangles that are apart count as touching. Lower: those that touch
+/// count as apart.
 const TOUCHING: f64 = 1.0e-12;
 
 /// Two triangles in frame 1, relative to a corner of the first one, as
@@ -25,8 +25,8 @@ pub struct TrianglePair {
 }
 
 impl TrianglePair {
-    /// Triangle 1 in its own frame, and triangle 2 in its own, which is placed at `placement` in the
-    /// frame of triangle 1.
+    /// Triangle 1 in its own frame, and triangle 2 in its own, which is placed at `placement` in
+    /// the frame of triangle 1.
     #[inline(always)]
     pub fn new(placement: &Placement, triangle1: [Vec3; 3], triangle2: [Vec3; 3]) -> Self {
         // Written out, as `array::map` is not always inlined.

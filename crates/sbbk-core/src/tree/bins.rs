@@ -4,8 +4,8 @@ use glamx::{Vec3, Vec3A};
 
 use crate::volumes::Aabb;
 
-/// Bins an axis at most. More find slightly better splits and cost build time; 16 was within 1 % of the
-/// traversal time of 32.
+/// Bins an axis at most. More find slightly better splits and cost build time; 16 was within 1 % of
+/// the traversal time of 32.
 const MOST_BINS: usize = 16;
 /// Bins for few triangles: sweeping over more than there are triangles finds nothing.
 const LEAST_BINS: usize = 4;
@@ -58,8 +58,8 @@ impl Bounds {
 
 /// Maps centroids to bins along one axis.
 ///
-/// The result is in range whatever the input: the multiplication may round up to the number of bins, so the bin is
-/// clamped, and a NaN casts to 0.
+/// The result is in range whatever the input: the multiplication may round up to the number of
+/// bins, so the bin is clamped, and a NaN casts to 0.
 #[derive(Copy, Clone)]
 pub(super) struct BinMapping {
     axis: usize,
@@ -69,8 +69,8 @@ pub(super) struct BinMapping {
 }
 
 impl BinMapping {
-    /// For `count` triangles, along the longest axis of their centroids. `None` if they cannot be told apart
-    /// there.
+    /// For `count` triangles, along the longest axis of their centroids. `None` if they cannot be
+    /// told apart there.
     pub(super) fn new(centroids: &Bounds, count: usize) -> Option<Self> {
         let size = centroids.max - centroids.min;
         let axis = centroids.longest_axis();

@@ -1,15 +1,16 @@
 //! Top-down build by the binned surface area heuristic.
 //!
-//! Wald, *On Fast Construction of SAH-based Bounding Volume Hierarchies*, 2007: the triangles' centroids
-//! fall into a fixed number of bins along their longest axis; the split between two bins with the least
-//! `area(1)·count(1) + area(2)·count(2)` wins. Where no split separates anything (equal centroids) the
-//! triangles are halved by number. Trying all three axes was dropped: 3 % fewer node tests for twice the
-//! build time. Two leaves' worth of triangles are halved at the median: as good, and half of all splits
-//! are such.
+//! Wald, *On Fast Construction of SAH-based Bounding Volume Hierarchies*, 2007: the triangles'
+//! centroids fall into a fixed number of bins along their longest axis; the split between two bins
+//! with the least `area(1)·count(1) + area(2)·count(2)` wins. Where no split separates anything
+//! (equal centroids) the triangles are halved by number. Trying all three axes was dropped: 3 %
+//! fewer node tests for twice the build time. Two leaves' worth of triangles are halved at the
+//! median: as good, and half of all splits are such.
 //!
-//! A split by cost may part one triangle from all others, and where sizes shrink by a sixteenth from
-//! triangle to triangle, each one does: thousands of levels. So from [`DEEPEST_BY_COST`] on triangles are
-//! halved at the median, and no tree of `n` triangles is deeper than that and `log2 n` together.
+//! A split by cost may part one triangle from all others, and where sizes shrink by a sixteenth
+//! from triangle to triangle, each one does: thousands of levels. So from [`DEEPEST_BY_COST`] on
+//! triangles are halved at the median, and no tree of `n` triangles is deeper than that and `log2
+//! n` together.
 
 use glamx::Vec3;
 
@@ -18,8 +19,8 @@ use super::bins::{BinMapping, Bins, Bounds};
 use super::node::BATCH;
 use crate::volumes::Aabb;
 
-/// Depth of the last nodes that are split by cost. Lower: worse trees of meshes with a few very deep
-/// parts; ordinary ones have 20 to 30 levels. Higher: deeper recursion of a refit.
+/// Depth of the last nodes that are split by cost. Lower: worse trees of meshes with a few very
+/// deep parts; ordinary ones have 20 to 30 levels. Higher: deeper recursion of a refit.
 const DEEPEST_BY_COST: u32 = 64;
 
 /// How a tree is built.
@@ -27,8 +28,8 @@ const DEEPEST_BY_COST: u32 = 64;
 pub struct BuildOptions {
     /// The volume of each layer.
     pub layers: LayerPlan,
-    /// Triangles in a leaf at most, 1 to [`BATCH`]; other values are clamped. Larger leaves make smaller
-    /// trees and more triangle tests.
+    /// Triangles in a leaf at most, 1 to [`BATCH`]; other values are clamped. Larger leaves make
+    /// smaller trees and more triangle tests.
     pub leaf_size: usize,
 }
 
@@ -117,8 +118,8 @@ fn bounds(primitives: &[Primitive]) -> Bounds {
     primitives.iter().fold(Bounds::EMPTY, |all, p| all.merge(&p.bounds))
 }
 
-/// Reorders the primitives so that the two halves of the best split, which will be at `depth`, follow each
-/// other. Returns where the second starts, never at an end, and the boxes of both.
+/// Reorders the primitives so that the two halves of the best split, which will be at `depth`,
+/// follow each other. Returns where the second starts, never at an end, and the boxes of both.
 fn split(primitives: &mut [Primitive], leaf_size: usize, depth: u32) -> (usize, [Bounds; 2]) {
     let centroids =
         primitives.iter().fold(Bounds::EMPTY, |all, p| all.with_point(p.bounds.centre()));

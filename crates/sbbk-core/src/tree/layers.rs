@@ -2,10 +2,10 @@ use super::BuildError;
 
 /// Which volume each layer of a tree has.
 ///
-/// The paper's plan is a sphere at the root, AABBs in the inner layers and k-DOPs in the lower ones. Where
-/// the boundary is best depends on the mesh and on how deep two meshes usually meet: high layers are tested
-/// often but prune little more with k-DOPs than with boxes; in low layers a tighter volume saves whole
-/// subtrees and triangle tests.
+/// The paper's plan is a sphere at the root, AABBs in the inner layers and k-DOPs in the lower
+/// ones. Where the boundary is best depends on the mesh and on how deep two meshes usually meet:
+/// high layers are tested often but prune little more with k-DOPs than with boxes; in low layers a
+/// tighter volume saves whole subtrees and triangle tests.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct LayerPlan {
     /// Whether the root is tested as a sphere first. One distance test a pair of bodies.
@@ -16,8 +16,8 @@ pub struct LayerPlan {
 }
 
 impl LayerPlan {
-    /// Sphere, AABBs, k-DOPs from depth 4 on: the plan of the paper, with a boundary that was best or close
-    /// to it on meshes of 1000 to 70,000 triangles.
+    /// Sphere, AABBs, k-DOPs from depth 4 on: the plan of the paper, with a boundary that was best
+    /// or close to it on meshes of 1000 to 70,000 triangles.
     pub const SBBK: Self = Self { sphere_root: true, kdop_from_depth: Some(4) };
 
     /// Boxes in all layers: what the paper compares with.

@@ -1,9 +1,9 @@
 //! The bounding volume hierarchy of one mesh: a sphere at the root, AABBs below, then k-DOPs, and
 //! batches of triangles in the leaves.
 //!
-//! A tree is built in a comfortable form (`build.rs`: binned SAH over primitives, one node after the
-//! other) and packed once into the flat arrays that the descent reads (`pack.rs`). For a mesh that
-//! deforms, its volumes can be fitted anew in place ([`Tree::refit`]); else it never changes.
+//! A tree is built in a comfortable form (`build.rs`: binned SAH over primitives, one node after
+//! the other) and packed once into the flat arrays that the descent reads (`pack.rs`). For a mesh
+//! that deforms, its volumes can be fitted anew in place ([`Tree::refit`]); else it never changes.
 //! [`Tree::root`] starts a walk over its nodes.
 //!
 //! ```
@@ -44,8 +44,8 @@ use crate::volumes::rounding::gamma;
 use crate::volumes::{DirectionSet, Directions, Sphere};
 use node::{AabbPair, KdopPair};
 
-/// A bounding volume hierarchy with `AXES` slabs in its k-DOP layers: 7, 9 (the default, 18-DOPs) or
-/// 13.
+/// A bounding volume hierarchy with `AXES` slabs in its k-DOP layers: 7, 9 (the default, 18-DOPs)
+/// or 13.
 #[derive(Clone, Debug)]
 pub struct Tree<const AXES: usize = 9> {
     /// `None` if the plan has no sphere.
@@ -144,7 +144,8 @@ impl<const AXES: usize> Tree<AXES> {
         self.sphere.as_ref()
     }
 
-    /// A ball around the mesh: the sphere of the root, or one around its box where the plan has none.
+    /// A ball around the mesh: the sphere of the root, or one around its box where the plan has
+    /// none.
     pub fn bounding_ball(&self) -> Sphere {
         self.sphere.unwrap_or_else(|| {
             let aabb = self.children(0).aabb(0);

@@ -1,8 +1,9 @@
 //! The runtime layout of a tree.
 //!
-//! An inner node stores the volumes of its *two children* side by side, lane by lane: a simultaneous
-//! descent compares the children of two nodes all at once, so these four volumes are what it needs
-//! next to each other. A node's own volume is therefore in its parent, and [`Slot`] names it there.
+//! An inner node stores the volumes of its *two children* side by side, lane by lane: a
+//! simultaneous descent compares the children of two nodes all at once, so these four volumes are
+//! what it needs next to each other. A node's own volume is therefore in its parent, and [`Slot`]
+//! names it there.
 
 use glamx::Vec3;
 use wide::f32x4;

@@ -1,7 +1,7 @@
 //! From the tree of the build to the arrays of the descent.
 //!
-//! Upper nodes are numbered breadth first, so that the ones every descent visits share cache lines; the k-DOP
-//! layers follow in the order of the build (depth first, siblings adjacent).
+//! Upper nodes are numbered breadth first, so that the ones every descent visits share cache lines;
+//! the k-DOP layers follow in the order of the build (depth first, siblings adjacent).
 
 use arrayvec::ArrayVec;
 use glamx::Vec3;

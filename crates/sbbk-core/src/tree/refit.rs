@@ -1,10 +1,10 @@
 //! New volumes for a mesh whose vertices have moved.
 //!
-//! The hierarchy stays as it was built; corners and volumes are computed anew, children before parents
-//! (van den Bergen, *Efficient Collision Detection of Complex Deformable Models using AABB Trees*, 1997).
-//! The walk is depth first, which is the order in which `pack.rs` lays out the k-DOP layers, and hands
-//! each volume up by its ends: only what is stored is turned into centre and half-length, so nothing is
-//! rounded twice and the volumes are those of a build.
+//! The hierarchy stays as it was built; corners and volumes are computed anew, children before
+//! parents (van den Bergen, *Efficient Collision Detection of Complex Deformable Models using AABB
+//! Trees*, 1997). The walk is depth first, which is the order in which `pack.rs` lays out the k-DOP
+//! layers, and hands each volume up by its ends: only what is stored is turned into centre and
+//! half-length, so nothing is rounded twice and the volumes are those of a build.
 //!
 //! A leaf projects the corners of its four triangles in lanes, and reduces four slabs at a time by
 //! transposing them.
@@ -27,8 +27,8 @@ pub struct RefitCost {
 
 impl RefitCost {
     /// Growth of the cost from which on a build is advised. A build takes about as long as eleven
-    /// refits. Lower: builds that save little. Higher: descents that visit more nodes than needed, in
-    /// proportion.
+    /// refits. Lower: builds that save little. Higher: descents that visit more nodes than needed,
+    /// in proportion.
     pub const REBUILD_AT: f32 = 2.0;
 
     /// Whether a tree built anew would pay soon.
@@ -41,12 +41,12 @@ impl<const AXES: usize> Tree<AXES>
 where
     Directions<AXES>: DirectionSet<AXES>,
 {
-    /// Fits all volumes to the mesh with its vertices where they are now; the triangles must be those of
-    /// the build. Linear in the size of the mesh, and nothing is allocated.
+    /// Fits all volumes to the mesh with its vertices where they are now; the triangles must be
+    /// those of the build. Linear in the size of the mesh, and nothing is allocated.
     ///
     /// Boxes and k-DOPs are exactly as tight as those of a build with this hierarchy. The sphere is
-    /// centred in the box of the vertices, and somewhat larger than a build's. [`Tree::stats`] stays that
-    /// of the build.
+    /// centred in the box of the vertices, and somewhat larger than a build's. [`Tree::stats`]
+    /// stays that of the build.
     ///
     /// ```
     /// # use glamx::Vec3;
@@ -99,8 +99,8 @@ where
     }
 }
 
-/// Checks the mesh as a build does, and returns a centre for the sphere: the middle of the vertices, used
-/// or not, as any centre will do.
+/// Checks the mesh as a build does, and returns a centre for the sphere: the middle of the
+/// vertices, used or not, as any centre will do.
 fn survey(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Vec3, BuildError> {
     let mut bounds = Aabb::EMPTY;
     // Stays zero while all is finite: a test without branches.
@@ -135,7 +135,8 @@ struct Refit<'a, const AXES: usize> {
     centre: [f32x4; 3],
     /// Squared distance of the farthest corner so far, lane by lane.
     farthest_squared: f32x4,
-    /// The sum over all nodes so far that [`BuildStats::sah_cost`](super::BuildStats::sah_cost) has.
+    /// The sum over all nodes so far that [`BuildStats::sah_cost`](super::BuildStats::sah_cost)
+    /// has.
     cost: f32,
 }
 
@@ -200,8 +201,8 @@ where
         project: impl Fn([f32x4; 3]) -> [f32x4; N],
     ) -> [[f32; N]; 2] {
         let batch = &mut self.leaves[leaf];
-        // Written out, here and below: `array::map` is not inlined, and its way over the stack was a third
-        // of a refit.
+        // Written out, here and below: `array::map` is not inlined, and its way over the stack was
+        // a third of a refit.
         let [a, b, c, d] = batch.triangles;
         let triangle = |triangle: u32| self.triangles[triangle as usize];
         let members = [triangle(a), triangle(b), triangle(c), triangle(d)];

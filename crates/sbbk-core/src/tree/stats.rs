@@ -17,8 +17,9 @@ pub struct BuildStats {
     pub leaf_count: u32,
     /// Triangles whose area is exactly zero in f32. They are kept.
     pub degenerate_count: u32,
-    /// Expected cost of a random query that hits the root, in node tests: the surface area heuristic's
-    /// `Σ area(inner)·2 + Σ area(leaf)·count`, over the root's area. Zero if that is zero.
+    /// Expected cost of a random query that hits the root, in node tests: the surface area
+    /// heuristic's `Σ area(inner)·2 + Σ area(leaf)·count`, over the root's area. Zero if that is
+    /// zero.
     pub sah_cost: f32,
     /// Memory of the sphere.
     pub sphere_bytes: usize,

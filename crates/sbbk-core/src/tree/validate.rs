@@ -37,8 +37,8 @@ impl<const AXES: usize> Tree<AXES>
 where
     Directions<AXES>: DirectionSet<AXES>,
 {
-    /// Checks topology, completeness and that each volume of each layer contains every corner below it.
-    /// Costs triangles times depth: for tests and for finding out.
+    /// Checks topology, completeness and that each volume of each layer contains every corner below
+    /// it. Costs triangles times depth: for tests and for finding out.
     ///
     /// # Errors
     /// The first violation found. A tree from [`Tree::build`] has none.

@@ -1,7 +1,7 @@
 //! What a contact must fulfil, whatever the triangles are.
 
 use glamx::DVec3;
-use sbbk_core::contact::{TriangleContact, contact};
+use sbbk_core::contact::{Feature, TriangleContact, contact};
 use sbbk_core::truth;
 
 /// Distances and depths may be off by this many triangle sizes.
@@ -16,10 +16,21 @@ pub fn size(t: &Triangle) -> f64 {
     (0..3).map(|i| t[i].distance(t[(i + 1) % 3])).fold(0.0, f64::max)
 }
 
+/// A part of a triangle, as a triangle that may be a segment or a point.
+pub fn part(t: &Triangle, feature: Feature) -> Triangle {
+    let vertex = |i: u8| t[usize::from(i) % 3];
+    match feature {
+        Feature::Vertex(i) => [vertex(i); 3],
+        Feature::Edge(i) => [vertex(i), vertex(i), vertex(i + 1)],
+        Feature::Face => *t,
+    }
+}
+
 /// Checks the contact of two triangles against the truth and returns the truth.
 ///
 /// Would catch a wrong distance or depth, a wrong decision at the margin, a normal that does not
-/// separate or has the wrong sign, points off the triangles, and a difference between the sides.
+/// separate or has the wrong sign, points off the triangles or off the features named, features of
+/// the other triangle, and a difference between the sides.
 pub fn check(t1: &Triangle, t2: &Triangle) -> truth::TruthContact {
     let size = size(t1).max(size(t2));
     let reach = t1.iter().chain(t2).map(|v| v.length()).fold(0.0, f64::max);
@@ -86,10 +97,14 @@ fn check_points(
     // rounding may pick the one whose point lies beside.
     let size = size(t1).max(size(t2));
     let beside = 1.0e-6 * size + (-found.distance).clamp(0.0, 1.0e-6 * size);
-    for (point, triangle) in [(found.point1, t1), (found.point2, t2)] {
-        let off = truth::contact(&[point; 3], triangle).distance;
+    let sides = [
+        (found.point1, t1, found.features.feature1()),
+        (found.point2, t2, found.features.feature2()),
+    ];
+    for (point, triangle, feature) in sides {
+        let off = truth::contact(&[point; 3], &part(triangle, feature)).distance;
         if off.abs() > tolerance + beside {
-            return Err(format!("a point is off its triangle by {off:e}"));
+            return Err(format!("a point is off its {feature:?} by {off:e}"));
         }
     }
     Ok(())

@@ -1,12 +1,13 @@
 //! The points of a manifold against the polygon where the shadows overlap, found by clipping one
 //! shadow at the edges of the other (I. Sutherland, G. Hodgman, 1974).
 
-use crate::check::{TOLERANCE, Triangle, size};
+use crate::check::{TOLERANCE, Triangle, part, size};
 use crate::strategies::{point, triangle};
 use glamx::{DVec2, DVec3};
 use proptest::prelude::*;
 use sbbk_core::contact::{
-    Feature, ManifoldPoint, ManifoldPoints, clip, contact, contact_from, manifold, push_closest,
+    Feature, FeaturePair, ManifoldPoint, ManifoldPoints, clip, contact, contact_from, manifold,
+    push_closest,
 };
 use sbbk_core::truth;
 use std::collections::HashSet;
@@ -65,12 +66,7 @@ fn check_point(
         (point.point1, t1, point.features.feature1()),
         (point.point2, t2, point.features.feature2()),
     ] {
-        let part = match feature {
-            Feature::Vertex(i) => [t[i as usize]; 3],
-            Feature::Edge(i) => [t[i as usize], t[i as usize], t[(i as usize + 1) % 3]],
-            Feature::Face => *t,
-        };
-        let off = truth::contact(&[p; 3], &part).distance.abs();
+        let off = truth::contact(&[p; 3], &part(t, feature)).distance.abs();
         prop_assert!(off <= 100.0 * tolerance, "{feature:?} is missed by {off:e}");
     }
     Ok(())
@@ -103,6 +99,9 @@ proptest! {
         }
 
         push_closest(&t1, &t2, &found, &mut points);
+        for point in &points {
+            check_point(point, &t1, &t2, normal)?;
+        }
         let least = points.iter().map(|p| p.distance).fold(f64::INFINITY, f64::min);
         prop_assert!((least - found.distance).abs() <= TOLERANCE * 10.0, "{least} {found:?}");
         let count = points.len();
@@ -191,5 +190,25 @@ fn large_vertex_beside_small_triangle() {
         let mut points = ManifoldPoints::new();
         clip(&large, &small, DVec3::Z, &mut points);
         assert!(points.is_empty(), "{beside}: {points:?}");
+    }
+}
+
+/// In one plane, where clipping finds no corner, the closest points are all there is. Would catch
+/// features that are given to the other triangle.
+#[test]
+fn closest_points_keep_the_features_of_their_triangles() {
+    let at = |x: f64, y: f64| DVec3::new(x, y, 0.0);
+    let left = [at(-2.0, -1.0), at(-2.0, 1.0), at(0.0, 0.0)];
+    let corner = [at(1.0, 0.0), at(3.0, 1.0), at(3.0, -1.0)];
+    let side = [at(3.0, 0.0), at(1.0, -1.0), at(1.0, 1.0)];
+    for (right, feature2) in [(corner, Feature::Vertex(0)), (side, Feature::Edge(1))] {
+        let features = FeaturePair::new(Feature::Vertex(2), feature2);
+        for (t1, t2, features) in [(left, right, features), (right, left, features.swapped())] {
+            let mut points = ManifoldPoints::new();
+            let found = manifold(&t1, &t2, 2.0, 2.0, None, &mut points).unwrap();
+            assert_eq!(found.features, features);
+            assert_eq!(points.len(), 1, "{points:?}");
+            assert_eq!((points[0].features, points[0].distance), (features, 1.0));
+        }
     }
 }

@@ -29,8 +29,9 @@ fn distance_at(meshes: [&Soup; 2], pose: &Pose3, velocity: Vec3, time: f64) -> f
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(50))]
 
-    /// Against a march in 200 steps with the distance of all pairs: nothing is met before the time of impact, and the
-    /// meshes are at the target distance then. Would catch an impact passed by, or found too early.
+    /// Against a march in 200 steps with the distance of all pairs: nothing is met before the time
+    /// of impact, and the meshes are at the target distance then. Would catch an impact passed by,
+    /// or found too early.
     #[test]
     fn beside_a_march(seed: u64, target in prop::sample::select(vec![0.0_f32, 0.05, 0.5])) {
         let mut random = Random(seed);
@@ -55,7 +56,8 @@ proptest! {
     }
 }
 
-/// Not vacuous: most of the casts above hit, some do not. And the counterpart, a cast that must go through.
+/// Not vacuous: most of the casts above hit, some do not. And the counterpart, a cast that must go
+/// through.
 #[test]
 fn some_hit_and_some_miss() {
     let ball = bumpy_ball(12, 0.0);
@@ -79,7 +81,8 @@ fn some_hit_and_some_miss() {
     assert!((20..80).contains(&hits));
 }
 
-/// Face against face, known exactly; a limit of time before and after; the way out of a penetration.
+/// Face against face, known exactly; a limit of time before and after; the way out of a
+/// penetration.
 #[test]
 fn statuses() {
     let floor = Soup {
@@ -122,7 +125,8 @@ fn numbers_that_are_none() {
     assert!(ask([&ball; 2], &pose, -Vec3::X, options(f32::INFINITY, 0.0)).is_some());
 }
 
-/// A ball that turns and flies past or into another: never beyond the first touch, and within the tolerance of it.
+/// A ball that turns and flies past or into another: never beyond the first touch, and within the
+/// tolerance of it.
 #[test]
 fn advancement_stops_at_the_first_touch() {
     let ball = bumpy_ball(4, 0.2);

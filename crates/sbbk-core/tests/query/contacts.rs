@@ -52,8 +52,8 @@ fn check(meshes: [&Soup; 2], pose: &Pose3, margin: f64, tolerance: f64) -> usize
     found.len()
 }
 
-/// Would catch a pair that is lost, found twice or too far, triangles of the wrong mesh, and a margin
-/// that is rounded down.
+/// Would catch a pair that is lost, found twice or too far, triangles of the wrong mesh, and a
+/// margin that is rounded down.
 #[test]
 fn whole_sets_of_pairs() {
     let mut random = Random(51);
@@ -72,8 +72,8 @@ fn whole_sets_of_pairs() {
     assert!(total > 10_000, "{total}");
 }
 
-/// A margin just above and just below the distance of a pair, with corners near the origin and far from
-/// it in one triangle. Would catch differences of corners that are rounded to f32.
+/// A margin just above and just below the distance of a pair, with corners near the origin and far
+/// from it in one triangle. Would catch differences of corners that are rounded to f32.
 #[test]
 fn the_margin_is_exact() {
     let mut random = Random(52);

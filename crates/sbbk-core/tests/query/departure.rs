@@ -25,7 +25,8 @@ impl Motion {
         Pose3::from_parts(place, turn * self.start.rotation)
     }
 
-    /// How fast the normal brings the meshes closer, but for the turning: the caller of the search decides what an approach is.
+    /// How fast the normal brings the meshes closer, but for the turning: the caller of the search
+    /// decides what an approach is.
     fn approach(&self, normal: DVec3) -> f64 {
         -normal.dot(self.velocity.as_dvec3())
     }
@@ -67,7 +68,8 @@ fn names(pair: &TruthPair) -> [u32; 2] {
     [pair.triangle1, pair.triangle2]
 }
 
-/// What brute force says of the start: the pairs that touch, and whether one approaches; `None` where rounding may decide that.
+/// What brute force says of the start: the pairs that touch, and whether one approaches; `None`
+/// where rounding may decide that.
 fn start_of(meshes: [&Soup; 2], motion: &Motion) -> Option<(Vec<TruthPair>, bool)> {
     let near = truth(meshes, &motion.start, 10.0 * TOLERANCE);
     let is_clear = |pair: &TruthPair| {
@@ -78,9 +80,10 @@ fn start_of(meshes: [&Soup; 2], motion: &Motion) -> Option<(Vec<TruthPair>, bool
     near.iter().all(is_clear).then_some((near, approaches))
 }
 
-/// Casts from deep inside, from grazing contact and from apart, against a march with brute force: an impact at the start where a
-/// pair that touches approaches, and then the deepest of these; else the first touch of a pair that did not touch. Would catch a pair
-/// forgotten at the start, a bound of the distance from a pair that is left out, and an impact passed by.
+/// Casts from deep inside, from grazing contact and from apart, against a march with brute force:
+/// an impact at the start where a pair that touches approaches, and then the deepest of these; else
+/// the first touch of a pair that did not touch. Would catch a pair forgotten at the start, a bound
+/// of the distance from a pair that is left out, and an impact passed by.
 #[test]
 fn beside_a_march() {
     let (mut at_start, mut later, mut never, mut skipped) = (0, 0, 0, 0);
@@ -134,7 +137,8 @@ fn check_start(motion: &Motion, touching: &[TruthPair], hit: Option<Advance>) {
     assert!((hit.pair.contact.distance - deepest).abs() < 1e-6, "deepest is {deepest}: {hit:?}");
 }
 
-/// A tile on a floor, known exactly: pressed down it is stopped at once; lifted, or slid along, it meets the wall or nothing.
+/// A tile on a floor, known exactly: pressed down it is stopped at once; lifted, or slid along, it
+/// meets the wall or nothing.
 #[test]
 fn a_tile_on_a_floor() {
     let floor = Soup {

@@ -1,6 +1,6 @@
 use glamx::{DVec3, Pose3, Quat, Vec3};
 use proptest::prelude::*;
-use sbbk_core::query::{FoundPair, Goal, SearchScratch, meeting, nearest, nearest_counted};
+use sbbk_core::query::{FoundPair, SearchScratch, deepest, meeting, nearest};
 use sbbk_core::traverse::Placement;
 use sbbk_core::tree::{BuildOptions, LayerPlan, Tree};
 
@@ -18,10 +18,13 @@ where
     Tree::build(&soup.vertices, &soup.triangles, &options).expect("soups are valid")
 }
 
-fn ask(meshes: [&Soup; 2], pose: &Pose3, limit: f64, goal: Goal) -> Option<FoundPair> {
+/// [`nearest`] or [`deepest`].
+type Question = fn((&Tree, &Tree), Placement, f64, &mut SearchScratch) -> Option<FoundPair>;
+
+fn ask(meshes: [&Soup; 2], pose: &Pose3, limit: f64, question: Question) -> Option<FoundPair> {
     let [tree1, tree2] = meshes.map(|soup| tree::<9>(soup, LayerPlan::SBBK));
     let placement = Placement::new(pose);
-    nearest((&tree1, &tree2), placement, limit, goal, &mut SearchScratch::default())
+    question((&tree1, &tree2), placement, limit, &mut SearchScratch::default())
 }
 
 fn ask_meeting(meshes: [&Soup; 2], pose: &Pose3) -> Option<FoundPair> {
@@ -35,7 +38,7 @@ fn check(meshes: [&Soup; 2], pose: &Pose3) {
     let (truth, slack) = (least(&pairs), TOLERANCE * size(meshes));
     let scale = slack + TOLERANCE * f64::from(pose.translation.length());
 
-    let found = ask(meshes, pose, f64::INFINITY, Goal::Nearest).expect("no limit");
+    let found = ask(meshes, pose, f64::INFINITY, nearest).expect("no limit");
     let distance = found.contact.distance.max(0.0);
     assert!((distance - truth.max(0.0)).abs() <= scale, "{distance}, truth {truth}");
     let own = of(&pairs, [found.triangle1, found.triangle2]).max(0.0);
@@ -43,10 +46,10 @@ fn check(meshes: [&Soup; 2], pose: &Pose3) {
     let [p1, p2] = [found.contact.point1, found.contact.point2];
     assert!(found.is_touching || ((p2 - p1).length() - distance).abs() <= scale);
 
-    let deepest = ask(meshes, pose, f64::INFINITY, Goal::Deepest).expect("no limit");
+    let deepest = ask(meshes, pose, f64::INFINITY, deepest).expect("no limit");
     assert!((deepest.contact.distance - truth).abs() <= scale, "{deepest:?}, truth {truth}");
 
-    let meets = ask(meshes, pose, 0.0, Goal::Nearest).is_some();
+    let meets = ask(meshes, pose, 0.0, nearest).is_some();
     assert_eq!(meets, found.is_touching);
     let met = ask_meeting(meshes, pose);
     assert_eq!(met.is_some(), meets);
@@ -60,7 +63,7 @@ fn check(meshes: [&Soup; 2], pose: &Pose3) {
     // A limit on either side of the answer.
     for (factor, is_within) in [(0.99, false), (1.01, true)] {
         if distance > 1000.0 * scale {
-            let within = ask(meshes, pose, factor * distance, Goal::Nearest);
+            let within = ask(meshes, pose, factor * distance, nearest);
             assert_eq!(within.is_some(), is_within);
         }
     }
@@ -69,8 +72,8 @@ fn check(meshes: [&Soup; 2], pose: &Pose3) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
-    /// Would catch a bound that is not one, a wrong pair, points of another pair, a limit not kept: triangles of all
-    /// sizes, from deep inside each other to far apart.
+    /// Would catch a bound that is not one, a wrong pair, points of another pair, a limit not kept:
+    /// triangles of all sizes, from deep inside each other to far apart.
     #[test]
     fn random_soups(seed: u64, count1 in 1_u32..40, count2 in 1_u32..40, distance in 0.0_f32..4.0) {
         let mut random = Random(seed);
@@ -79,8 +82,8 @@ proptest! {
         check([&one, &two], &random.pose(distance));
     }
 
-    /// The same far from the origin, where coordinates have few digits left, and for meshes of a micrometre or a
-    /// thousand kilometres: no tolerance may have a unit.
+    /// The same far from the origin, where coordinates have few digits left, and for meshes of a
+    /// micrometre or a thousand kilometres: no tolerance may have a unit.
     #[test]
     fn other_scales(seed: u64, exponent in -6_i32..=6, offset in 0.0_f32..100.0) {
         let mut random = Random(seed);
@@ -96,8 +99,8 @@ proptest! {
         check([&one, &two], &Pose3::from_parts(nudge, Quat::IDENTITY));
     }
 
-    /// Lattice soups: degenerate triangles, triangles that touch in a point or lie in one plane. Whole numbers, so that
-    /// the truth is exact and touching must count.
+    /// Lattice soups: degenerate triangles, triangles that touch in a point or lie in one plane.
+    /// Whole numbers, so that the truth is exact and touching must count.
     #[test]
     fn lattice_soups(seed: u64, count in 1_u32..12, x in -4_i8..=4, y in -4_i8..=4, turn in 0_u8..4) {
         let mut random = Random(seed);
@@ -106,15 +109,15 @@ proptest! {
             Quat::from_xyzw(0.0, 1.0, 0.0, 0.0), Quat::from_xyzw(0.0, 0.0, 1.0, 0.0)][usize::from(turn)];
         let pose = Pose3::from_parts(Vec3::new(f32::from(x), f32::from(y), 0.0), rotation);
         let pairs = all_pairs([&one, &two], &pose, DVec3::ZERO);
-        let found = ask([&one, &two], &pose, f64::INFINITY, Goal::Nearest).unwrap();
+        let found = ask([&one, &two], &pose, f64::INFINITY, nearest).unwrap();
         let truth = least(&pairs);
         prop_assert!((found.contact.distance.max(0.0) - truth.max(0.0)).abs() < 1e-9);
         prop_assert_eq!(found.is_touching, truth <= 1e-12);
-        prop_assert_eq!(ask([&one, &two], &pose, 0.0, Goal::Nearest).is_some(), truth <= 1e-12);
+        prop_assert_eq!(ask([&one, &two], &pose, 0.0, nearest).is_some(), truth <= 1e-12);
         let met = ask_meeting([&one, &two], &pose);
         prop_assert_eq!(met.is_some(), truth <= 1e-12);
         prop_assert!(met.is_none_or(|met| of(&pairs, [met.triangle1, met.triangle2]) <= 1e-12));
-        let deepest = ask([&one, &two], &pose, 0.0, Goal::Deepest);
+        let deepest = ask([&one, &two], &pose, 0.0, deepest);
         prop_assert_eq!(deepest.is_some(), truth <= 1e-12);
         if let Some(deepest) = deepest {
             prop_assert!((deepest.contact.distance - truth).abs() < 1e-9, "{deepest:?} {truth}");
@@ -147,7 +150,7 @@ where
 {
     let [tree1, tree2] = meshes.map(|soup| tree::<AXES>(soup, plan));
     let (placement, mut scratch) = (Placement::new(pose), SearchScratch::default());
-    let found = nearest((&tree1, &tree2), placement, f64::INFINITY, Goal::Deepest, &mut scratch);
+    let found = deepest((&tree1, &tree2), placement, f64::INFINITY, &mut scratch);
     found.expect("no limit").contact.distance
 }
 
@@ -158,7 +161,7 @@ fn one_triangle_each() {
         Soup { vertices: vec![Vec3::ZERO, Vec3::X, Vec3::Y], triangles: vec![[0, 1, 2]] };
     for height in [0.0, 1e-20, 1e-3, 1.0, 1e6, 1e18] {
         let pose = Pose3::translation(0.0, 0.0, height);
-        let found = ask([&triangle; 2], &pose, f64::INFINITY, Goal::Nearest).unwrap();
+        let found = ask([&triangle; 2], &pose, f64::INFINITY, nearest).unwrap();
         assert_eq!(found.contact.distance.max(0.0), f64::from(height));
         assert_eq!(found.is_touching, height < 1e-12);
     }
@@ -171,38 +174,12 @@ fn numbers_that_are_none() {
     for bad in [f32::NAN, f32::INFINITY] {
         let turned = Pose3::from_parts(Vec3::ZERO, Quat::from_xyzw(bad, 0.0, 0.0, 1.0));
         for pose in [Pose3::translation(bad, 0.0, 0.0), turned] {
-            assert_eq!(ask([&ball; 2], &pose, f64::INFINITY, Goal::Nearest), None);
+            assert_eq!(ask([&ball; 2], &pose, f64::INFINITY, nearest), None);
             assert_eq!(ask_meeting([&ball; 2], &pose), None);
         }
     }
     let pose = Pose3::translation(3.0, 0.0, 0.0);
     for limit in [f64::NAN, -1.0] {
-        assert_eq!(ask([&ball; 2], &pose, limit, Goal::Deepest), None);
-    }
-}
-
-/// The counters: of 16 million pairs of triangles a few hundred are compared, wherever the meshes are. Would catch a search that
-/// does not look along the way between the meshes: at a distance of 6 it tests 15,000 pairs of nodes.
-#[test]
-fn most_is_pruned() {
-    let ball = bumpy_ball(32, 0.1);
-    let tree = tree::<9>(&ball, LayerPlan::SBBK);
-    let mut random = Random(7);
-    let mut scratch = SearchScratch::default();
-    for (distance, limit, goal) in [
-        (2.3, f64::INFINITY, Goal::Nearest),
-        (6.0, f64::INFINITY, Goal::Nearest),
-        (1.0, f64::INFINITY, Goal::Nearest),
-        (2.3, 0.0, Goal::Nearest),
-        (1.9, 0.0, Goal::Deepest),
-    ] {
-        for _ in 0..20 {
-            let direction = random.vector(1.0).normalize();
-            let pose = Pose3::from_parts(distance * direction, random.rotation());
-            let placement = Placement::new(&pose);
-            let (_, counts) = nearest_counted((&tree, &tree), placement, limit, goal, &mut scratch);
-            assert!(counts.node_pairs < 8000, "{counts:?} at {distance}");
-            assert!(counts.triangle_pairs < 600, "{counts:?} at {distance}");
-        }
+        assert_eq!(ask([&ball; 2], &pose, limit, deepest), None);
     }
 }

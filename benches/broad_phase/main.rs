@@ -1,14 +1,10 @@
-//! Structures for the broad phase, side by side: a step of each on the same frames.
+//! A step of this crate's broad phase and of Parry's tree, which Rapier uses, on the same frames.
 //!
-//! `cargo bench -p sbbk-core --bench broad_phase`, with a part of a name such as `pile/2000` to
-//! run less. Before it is timed, each structure is compared with brute force.
+//! `cargo bench --bench broad_phase`, with a part of a name such as `pile/2000` to
+//! run less. Before they are timed, both are compared with brute force.
 
-mod binned_bvh;
 mod candidate;
-mod dynamic_tree;
-mod grid;
 mod scenes;
-mod sweep;
 
 use std::hint::black_box;
 use std::time::Duration;
@@ -16,24 +12,17 @@ use std::time::Duration;
 use criterion::{BenchmarkId, Criterion, SamplingMode, criterion_group, criterion_main};
 use sbbk_core::broad_phase::Bounds;
 
-use binned_bvh::BinnedBvh;
-use candidate::{Candidate, IndexPair, Kept};
-use dynamic_tree::DynamicTree;
-use grid::Grid;
+use candidate::{Candidate, IndexPair, Parry, Sbbk};
 use scenes::SCENES;
-use sweep::Sweep;
 
 /// Rapier's default prediction distance for objects of about one unit.
 const MARGIN: f32 = 0.02;
 
 type Constructor = fn(f32) -> Box<dyn Candidate>;
 
-const CANDIDATES: [(&str, Constructor); 5] = [
-    ("kept", |margin| Box::new(Kept::new(margin))),
-    ("sweep", |margin| Box::new(Sweep::new(margin))),
-    ("grid", |margin| Box::new(Grid::new(margin))),
-    ("dynamic_tree", |margin| Box::new(DynamicTree::new(margin))),
-    ("binned_bvh", |margin| Box::new(BinnedBvh::new(margin))),
+const CANDIDATES: [(&str, Constructor); 2] = [
+    ("sbbk", |margin| Box::new(Sbbk::new(margin))),
+    ("parry", |margin| Box::new(Parry::new(margin))),
 ];
 
 fn brute_force(frame: &[Bounds]) -> Vec<IndexPair> {
@@ -44,15 +33,14 @@ fn brute_force(frame: &[Bounds]) -> Vec<IndexPair> {
     (0..frame.len()).flat_map(pairs_of).collect()
 }
 
-/// Compares all candidates with brute force over a few frames of every scene.
+/// Compares both with brute force over a few frames of every scene.
 fn check() {
-    let mut pairs = Vec::new();
     for scene in SCENES {
         let frames = scene.frames(1000);
         for (name, construct) in CANDIDATES {
             let mut candidate = construct(MARGIN);
             for (f, frame) in frames.iter().enumerate() {
-                candidate.step(frame, &mut pairs);
+                let mut pairs = candidate.step(frame);
                 if f % 8 == 0 {
                     pairs.sort_unstable();
                     let is_equal = pairs == brute_force(frame);
@@ -72,12 +60,8 @@ fn broad_phase(criterion: &mut Criterion) {
             group.sampling_mode(SamplingMode::Flat);
             for (name, construct) in CANDIDATES {
                 let mut candidate = construct(MARGIN);
-                let mut pairs = Vec::new();
                 let mut next_frames = frames.iter().cycle();
-                let mut step = || {
-                    candidate.step(next_frames.next().unwrap(), &mut pairs);
-                    black_box(pairs.len())
-                };
+                let mut step = || black_box(candidate.step(next_frames.next().unwrap()).len());
                 // What the first frame costs is not the question here.
                 step();
                 group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
