@@ -27,7 +27,7 @@
 //!
 //! Arithmetic is f64; no tolerance has a unit. Distances of polytopes are exact up to rounding,
 //! which is 1e-15 of the size of the pair, or of the coordinates in the shape's frame if these are
-//! larger. Those of curved shapes are exact to 1e-13 of themselves apart and to 1e-8 of the depth
+//! larger. Those of curved shapes are exact to 1e-12 of themselves apart and to 1e-10 of the depth
 //! crossing; directions to the root of that. A contact is a function of its arguments, bit for bit:
 //! no search starts from an earlier one.
 
