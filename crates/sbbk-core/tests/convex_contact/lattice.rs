@@ -40,9 +40,11 @@ fn exact_and_nearly_exact_ties() {
             let tolerance = 1.0e-9 * size(&triangle, &shape).max(1.0);
             assert!(error <= tolerance, "{truth} {contact:?}\n{shape:?}\n{triangle:?}");
             check(&triangle, &shape, &contact, tolerance);
-            apart += u32::from(truth > tolerance);
-            touching += u32::from(truth.abs() <= tolerance);
-            deep += u32::from(truth < -tolerance);
+            // Corners that met on the lattice are apart by the nudge at most.
+            let met = tolerance + 10.0 * nudge;
+            apart += u32::from(truth > met);
+            touching += u32::from(truth.abs() <= met);
+            deep += u32::from(truth < -met);
         }
         assert!(apart > 2000 && touching > 500 && deep > 2000, "{apart} {touching} {deep}");
     }

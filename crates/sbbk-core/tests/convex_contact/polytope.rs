@@ -31,14 +31,16 @@ fn segments([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> f64 {
     let (u, v, w) = (b - a, d - c, c - a);
     let (uu, uv, vv) = (u.dot(u), u.dot(v), v.dot(v));
     let det = uu * vv - uv * uv;
-    let [s, t] = [(vv * w.dot(u) - uv * w.dot(v)) / det, (uv * w.dot(u) - uu * w.dot(v)) / det];
+    let s = (vv * w.dot(u) - uv * w.dot(v)) / det;
     let mut least = [a, b]
         .map(|p| (nearest_of_segment([c, d], p) - p).length())
         .into_iter()
         .chain([c, d].map(|p| (nearest_of_segment([a, b], p) - p).length()))
         .fold(f64::INFINITY, f64::min);
-    if det > 1.0e-14 * uu * vv && (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t) {
-        least = least.min((w + v * t - u * s).length());
+    // The second point by projection: near parallel lines, rounding moves both along them.
+    if det > 0.0 {
+        let p = a + u * s.clamp(0.0, 1.0);
+        least = least.min((nearest_of_segment([c, d], p) - p).length());
     }
     least
 }

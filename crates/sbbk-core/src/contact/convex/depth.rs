@@ -13,7 +13,7 @@ use super::support::SupportMap;
 use glamx::DVec3;
 
 /// Share of the depth that may be left open.
-const PROVED: f64 = 1.0e-8;
+const PROVED: f64 = 1.0e-10;
 
 /// Share of the size that rounding leaves open.
 const ROUNDING: f64 = 1.0e-14;

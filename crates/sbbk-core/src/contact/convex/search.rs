@@ -20,11 +20,20 @@ const PROVED: f64 = 1.0e-12;
 /// Share of the size that rounding leaves open.
 const ROUNDING: f64 = 1.0e-15;
 
+/// Simplices that may be no nearer than the one before, and by how much they may be farther.
+const STALLS: u32 = 4;
+const TIE: f64 = 1.0e-14;
+
 /// Share of the size by which a bound must be beyond the margin to end the search.
 const BOUNDARY: f64 = 1.0e-13;
 
 /// Bodies whose distance is below this share of their size touch.
 pub(super) const TOUCHING: f64 = 1.0e-12;
+
+/// Bodies whose distance is below this share of their size may touch, if a proof leaves open more
+/// than `DOUBTFUL` of the size.
+const NEARLY: f64 = 1.0e-10;
+const DOUBTFUL: f64 = 1.0e-11;
 
 /// How a search ends.
 pub(super) enum Outcome {
@@ -55,6 +64,12 @@ pub(super) fn search<S: SupportMap>(
     size: f64,
 ) -> Search {
     let end = |outcome, rounds| Search { outcome, rounds };
+    let (doubtful, nearly) = ((DOUBTFUL * size).powi(2), (NEARLY * size).powi(2));
+    // Rounding can keep a search from the direction of bodies that nearly touch.
+    let stuck = |simplex: Simplex, open: f64, rounds| {
+        let is_doubtful = open * open > doubtful * simplex.squared && simplex.squared <= nearly;
+        end(if is_doubtful { Outcome::Touching(simplex) } else { Outcome::Apart(simplex) }, rounds)
+    };
     // Wider than the margin by more than rounding, so that the distance decides.
     let reach = margin.max(0.0) + BOUNDARY * size;
     let reach_squared = reach * reach;
@@ -69,6 +84,7 @@ pub(super) fn search<S: SupportMap>(
     let mut simplex = simplex::face(a, b, c);
     let touching = (TOUCHING * size).powi(2);
     let rounding = (ROUNDING * size).powi(2);
+    let mut stalls = 0;
     for rounds in 1..=ROUNDS {
         let Simplex { nearest, squared, .. } = simplex;
         if squared <= touching {
@@ -81,14 +97,22 @@ pub(super) fn search<S: SupportMap>(
         }
         let open = squared - bound;
         let is_known = simplex.vertices().iter().any(|v| v.point == new.point);
-        if open <= PROVED * squared || open * open <= rounding * squared || is_known {
+        if open <= PROVED * squared || open * open <= rounding * squared {
             return end(Outcome::Apart(simplex), rounds);
+        }
+        if is_known {
+            return stuck(simplex, open, rounds);
         }
         match simplex.add(new) {
             Step::Around(tetrahedron) => return end(Outcome::Crossing(tetrahedron), rounds),
-            // No nearer for all that: rounding leaves no more to find.
+            // As near up to rounding, as where a vertex and a face nearly tie: the direction may
+            // still be another one.
             Step::Beside(next) if !(next.squared < squared) => {
-                return end(Outcome::Apart(simplex), rounds);
+                stalls += 1;
+                if stalls > STALLS || !(next.squared <= squared * (1.0 + TIE)) {
+                    return stuck(simplex, open, rounds);
+                }
+                simplex = next;
             }
             Step::Beside(next) => simplex = next,
         }
