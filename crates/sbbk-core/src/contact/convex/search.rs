@@ -50,6 +50,7 @@ pub(super) enum Outcome {
 /// How a search ends and how many simplices it took.
 pub(super) struct Search {
     pub outcome: Outcome,
+    #[cfg_attr(not(test), expect(dead_code, reason = "a test watches it"))]
     pub rounds: u32,
 }
 
@@ -105,16 +106,17 @@ pub(super) fn search<S: SupportMap>(
         }
         match simplex.add(new) {
             Step::Around(tetrahedron) => return end(Outcome::Crossing(tetrahedron), rounds),
+            Step::Beside(next) if next.squared < squared => simplex = next,
             // As near up to rounding, as where a vertex and a face nearly tie: the direction may
             // still be another one.
-            Step::Beside(next) if !(next.squared < squared) => {
+            Step::Beside(next) => {
                 stalls += 1;
-                if stalls > STALLS || !(next.squared <= squared * (1.0 + TIE)) {
+                let is_tied = next.squared <= squared * (1.0 + TIE);
+                if stalls > STALLS || !is_tied {
                     return stuck(simplex, open, rounds);
                 }
                 simplex = next;
             }
-            Step::Beside(next) => simplex = next,
         }
     }
     end(Outcome::Apart(simplex), ROUNDS)
