@@ -11,7 +11,8 @@ use super::simplex::{self, Simplex, Step};
 use super::support::SupportMap;
 use glamx::DVec3;
 
-/// Simplices tried at most. Polytopes take three to ten, cylinders and cones up to thirty.
+/// Simplices tried at most. No contact of the tests takes half as many;
+/// polytopes take few, cylinders and cones some thirty.
 pub(super) const ROUNDS: u32 = 100;
 
 /// Share of the distance that a proof may leave open. Directions are off by the root of it.
