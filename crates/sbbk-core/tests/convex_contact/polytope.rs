@@ -78,7 +78,7 @@ fn separation(points: &[DVec3], triangle: &[DVec3; 3]) -> f64 {
     let mut count = 0;
     let mut test = |axis: DVec3, lengths: f64| {
         // What is nearly no cross product is no axis.
-        if axis.length() <= 1.0e-9 * lengths || !(lengths > 0.0) {
+        if lengths == 0.0 || axis.length() <= 1.0e-9 * lengths {
             return;
         }
         let axis = axis.normalize();

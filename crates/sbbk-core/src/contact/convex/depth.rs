@@ -31,6 +31,7 @@ pub(super) struct Depth {
     pub depth: f64,
     pub on_triangle: DVec3,
     /// Faces looked at.
+    #[cfg_attr(not(test), expect(dead_code, reason = "a test watches it"))]
     pub rounds: u32,
 }
 

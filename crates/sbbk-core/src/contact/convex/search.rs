@@ -11,7 +11,8 @@ use super::simplex::{self, Simplex, Step};
 use super::support::SupportMap;
 use glamx::DVec3;
 
-/// Simplices tried at most. Polytopes take three to ten, cylinders and cones up to thirty.
+/// Simplices tried at most. No contact of the tests takes half as many;
+/// polytopes take few, cylinders and cones some thirty.
 pub(super) const ROUNDS: u32 = 100;
 
 /// Share of the distance that a proof may leave open. Directions are off by the root of it.
@@ -50,6 +51,7 @@ pub(super) enum Outcome {
 /// How a search ends and how many simplices it took.
 pub(super) struct Search {
     pub outcome: Outcome,
+    #[cfg_attr(not(test), expect(dead_code, reason = "a test watches it"))]
     pub rounds: u32,
 }
 
@@ -105,16 +107,17 @@ pub(super) fn search<S: SupportMap>(
         }
         match simplex.add(new) {
             Step::Around(tetrahedron) => return end(Outcome::Crossing(tetrahedron), rounds),
+            Step::Beside(next) if next.squared < squared => simplex = next,
             // As near up to rounding, as where a vertex and a face nearly tie: the direction may
             // still be another one.
-            Step::Beside(next) if !(next.squared < squared) => {
+            Step::Beside(next) => {
                 stalls += 1;
-                if stalls > STALLS || !(next.squared <= squared * (1.0 + TIE)) {
+                let is_tied = next.squared <= squared * (1.0 + TIE);
+                if stalls > STALLS || !is_tied {
                     return stuck(simplex, open, rounds);
                 }
                 simplex = next;
             }
-            Step::Beside(next) => simplex = next,
         }
     }
     end(Outcome::Apart(simplex), ROUNDS)

@@ -86,7 +86,8 @@ pub(super) fn segment(a: Vertex, b: Vertex) -> Simplex {
     let along = -a.point.dot(edge);
     let length_squared = edge.length_squared();
     // Not so for a segment without length.
-    if !(along > 0.0) {
+    let is_beyond_a = along > 0.0;
+    if !is_beyond_a {
         return vertex(a);
     }
     if along >= length_squared {
@@ -152,7 +153,8 @@ fn thin_face(a: Vertex, b: Vertex, c: Vertex) -> Simplex {
     let across = to_c - edge * along_c;
     let across = across - edge * (across.dot(edge) / length_squared);
     let width_squared = across.length_squared();
-    if !(width_squared > COLLINEAR * COLLINEAR * length_squared) {
+    let has_width = width_squared > COLLINEAR * COLLINEAR * length_squared;
+    if !has_width {
         return border;
     }
     let weight_c = -a.point.dot(across) / width_squared;
@@ -200,7 +202,8 @@ fn tetrahedron(a: Vertex, b: Vertex, c: Vertex, d: Vertex) -> Step {
     let (abc, acd, adb) = (ab.cross(ac), ac.cross(ad), ad.cross(ab));
     let volume = abc.dot(ad);
     let lengths = ab.length_squared() * ac.length_squared() * ad.length_squared();
-    if !(volume * volume > FLAT * FLAT * lengths) {
+    let has_volume = volume * volume > FLAT * FLAT * lengths;
+    if !has_volume {
         return flat_tetrahedron(a, b, c, d);
     }
     // How far inside each face the origin is, where the opposite vertex counts 1.
