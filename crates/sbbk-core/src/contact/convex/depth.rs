@@ -13,7 +13,7 @@ use super::support::SupportMap;
 use glamx::DVec3;
 
 /// Share of the depth that may be left open, for polytopes and for curved shapes.
-const PROVED: [f64; 2] = [1.0e-10, 1.0e-6];
+const PROVED: [f64; 2] = [1.0e-10, 1.0e-5];
 
 /// Share of the size that rounding leaves open.
 const ROUNDING: f64 = 1.0e-14;
@@ -43,7 +43,8 @@ pub(super) fn depth<S: SupportMap>(
 ) -> Option<Depth> {
     let slack = ROUNDING * size;
     let proved = PROVED[usize::from(S::IS_CURVED)];
-    let mut polytope = Polytope::new(tetrahedron, slack);
+    let mut polytope = Polytope::empty(slack);
+    polytope.begin(tetrahedron);
     let mut best: Option<Depth> = None;
     let mut rounds = 0;
     while let Some(i) = polytope.nearest_open() {

@@ -28,7 +28,7 @@
 //! Arithmetic is f64; no tolerance has a unit. Distances of polytopes apart are exact up to
 //! rounding, which is 1e-15 of the size of the pair, or of the coordinates in the shape's frame if
 //! these are larger. Those of curved shapes are exact to 1e-7 of themselves, directions to 0.03
-//! degrees. Depths are exact to 1e-10 of themselves, those of curved shapes to 1e-6. Bodies closer than 1e-10 of their
+//! degrees. Depths are exact to 1e-10 of themselves, those of curved shapes to 1e-5. Bodies closer than 1e-10 of their
 //! size may count as touching: their distance is off by less than that. A contact is a function of
 //! its arguments, bit for bit: no search starts from an earlier one.
 

@@ -56,18 +56,25 @@ pub(super) struct Polytope {
 const NO_FACE: u16 = u16::MAX;
 
 impl Polytope {
-    /// From a tetrahedron in any order. `slack` is what rounding does to distances.
-    pub fn new([a, b, c, d]: [Vertex; 4], slack: f64) -> Self {
-        let volume = (b.point - a.point).cross(c.point - a.point).dot(d.point - a.point);
-        // Seen from d, the face a, b, c must turn clockwise.
-        let vertices = if volume > 0.0 { [a, c, b, d] } else { [a, b, c, d] };
-        let mut polytope = Self {
-            vertices: ArrayVec::from_iter(vertices),
+    /// Without faces. `slack` is what rounding does to distances.
+    #[inline(always)]
+    pub fn empty(slack: f64) -> Self {
+        Self {
+            vertices: ArrayVec::new(),
             faces: ArrayVec::new(),
             open: ArrayVec::new(),
             gone: ArrayVec::new(),
             slack,
-        };
+        }
+    }
+
+    /// Makes an empty one a tetrahedron, its vertices in any order. (To return it from here would
+    /// copy 45 kB.)
+    pub fn begin(&mut self, [a, b, c, d]: [Vertex; 4]) {
+        let volume = (b.point - a.point).cross(c.point - a.point).dot(d.point - a.point);
+        // Seen from d, the face a, b, c must turn clockwise.
+        let vertices = if volume > 0.0 { [a, c, b, d] } else { [a, b, c, d] };
+        self.vertices.extend(vertices);
         let faces = [
             ([0, 1, 2], [1, 2, 3]),
             ([1, 0, 3], [0, 3, 2]),
@@ -75,10 +82,9 @@ impl Polytope {
             ([0, 2, 3], [0, 2, 1]),
         ];
         for (vertices, neighbors) in faces {
-            let face = polytope.face(vertices, neighbors);
-            polytope.put(polytope.faces.len(), face);
+            let face = self.face(vertices, neighbors);
+            self.put(self.faces.len(), face);
         }
-        polytope
     }
 
     /// The open face whose plane is nearest to the origin.
