@@ -83,7 +83,7 @@
 //!
 //! # Hosts other than Rapier
 //!
-//! The dispatcher is generic over manifold and contact data: any host of Parry 0.31 can use it. A
+//! The dispatcher is generic over manifold and contact data: any host of Parry 0.31.1 can use it. A
 //! host must drop a pair's workspace when it edits one of its shapes, as Rapier does and as Parry's
 //! own workspaces need. A deformable mesh may be edited in place between queries, and the workspaces
 //! kept: each query reads all of it, about 1 µs for 1000 triangles.
