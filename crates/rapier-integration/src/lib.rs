@@ -15,15 +15,16 @@
 //! # What changes
 //!
 //! * The contacts of two meshes are exact at every scale, and so are those of a mesh with most
-//!   convex shapes. Stock's tolerances are absolute lengths: it loses contacts of triangles that are
-//!   small, and gets their depths and normals wrong.
+//!   convex shapes. Stock's tolerances are absolute lengths: it loses contacts of triangles that
+//!   are small, and gets their depths and normals wrong.
 //! * Queries about meshes are faster, several times for two meshes; the repository's README has the
 //!   figures.
 //! * Contacts depend on the pose and the shapes alone, bit for bit. What is remembered from earlier
 //!   steps saves time and is never part of the answer.
 //! * A mesh that meets a height field has contacts. In stock Rapier it falls through.
 //! * Each mesh gets a [tree](sbbk_core::tree), built when it first comes close to another shape and
-//!   shared by all colliders with equal geometry. [`SbbkDispatcher::prepare`] builds it at load time.
+//!   shared by all colliders with equal geometry. [`SbbkDispatcher::prepare`] builds it at load
+//!   time.
 //!
 //! [`SbbkConfig`] chooses the volumes of the trees, the contact generator, and how much memory
 //! unused trees may keep. [`SbbkDispatcher::stats`] counts trees and queries. [`TriangleContacts`]
@@ -47,16 +48,16 @@
 //! | a compound with any other part | Parry | Parry |
 //!
 //! SBBK's contacts of a convex shape have the distance, the normal and the closest points of
-//! [`sbbk_core::contact::convex`], computed in f64; further points come from Parry's clip of the two
-//! features that face each other. Manifolds are in the order of stock's. With
+//! [`sbbk_core::contact::convex`], computed in f64; further points come from Parry's clip of the
+//! two features that face each other. Manifolds are in the order of stock's. With
 //! [`ContactGenerator::Parry`] the contacts of two meshes are those of Parry's routine, which keeps
 //! points from step to step as it does in stock; convex shapes of every kind have those of Parry's
 //! routine asked anew.
 //!
 //! A mesh may deform (`TriMeshFlags::DEFORMABLE`, Rapier's soft bodies), and the other one too. Its
-//! tree is refitted by the first query after its vertices moved. Triangles with a vertex that is NaN
-//! or infinite touch nothing; the others touch as before. Rapier itself answers for two soft bodies
-//! and asks no dispatcher.
+//! tree is refitted by the first query after its vertices moved. Triangles with a vertex that is
+//! NaN or infinite touch nothing; the others touch as before. Rapier itself answers for two soft
+//! bodies and asks no dispatcher.
 //!
 //! A rigid mesh with a vertex that is NaN or infinite cannot have a tree. Parry answers for it, and
 //! [`SbbkStats::unsupported_queries`] counts.
@@ -64,34 +65,35 @@
 //! # Queries without manifolds
 //!
 //! Of two rigid meshes `intersection_test`, `distance`, `closest_points`, `contact`, `cast_shapes`
-//! and `cast_shapes_nonlinear` are SBBK's; of all other pairs, deformable meshes among them, Parry's.
+//! and `cast_shapes_nonlinear` are SBBK's; of all other pairs, deformable meshes among them,
+//! Parry's.
 //!
 //! * A mesh is a surface, as in stock: one inside another does not meet it.
 //! * `contact` is that of the deepest pair of triangles or, where none cross, of the nearest.
-//! * With `stop_at_penetration` off, a cast leaves out pairs of triangles that touch at the start and
-//!   do not approach.
+//! * With `stop_at_penetration` off, a cast leaves out pairs of triangles that touch at the start
+//!   and do not approach.
 //! * A pose that is not finite finds nothing.
 //!
 //! A host keeps no state for these queries. So each one compares vertices and triangles of its
 //! meshes with copies to know their trees, in time that grows with their number; an
-//! `intersection_test` that finds two triangles compares those two. Each thread knows the last eight
-//! meshes it asked about.
+//! `intersection_test` that finds two triangles compares those two. Each thread knows the last
+//! eight meshes it asked about.
 //!
 //! Rapier's character controller asks the dispatcher of the query pipeline for shape casts and for
-//! how deep it is in a collider. For the contacts with its ground, and with bodies that it pushes, it
-//! asks Parry's own dispatcher, whatever dispatcher is set.
+//! how deep it is in a collider. For the contacts with its ground, and with bodies that it pushes,
+//! it asks Parry's own dispatcher, whatever dispatcher is set.
 //!
 //! # Hosts other than Rapier
 //!
 //! The dispatcher is generic over manifold and contact data: any host of Parry 0.31.1 can use it. A
 //! host must drop a pair's workspace when it edits one of its shapes, as Rapier does and as Parry's
-//! own workspaces need. A deformable mesh may be edited in place between queries, and the workspaces
-//! kept: each query reads all of it, about 1 µs for 1000 triangles.
+//! own workspaces need. A deformable mesh may be edited in place between queries, and the
+//! workspaces kept: each query reads all of it, about 1 µs for 1000 triangles.
 //!
 //! # Threads
 //!
-//! Queries may come from many threads at once. A pair of rigid meshes whose trees are known takes no
-//! lock. Results do not depend on the number of threads.
+//! Queries may come from many threads at once. A pair of rigid meshes whose trees are known takes
+//! no lock. Results do not depend on the number of threads.
 //!
 //! # Snapshots
 //!

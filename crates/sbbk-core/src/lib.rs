@@ -19,7 +19,8 @@
 //! let tree: Tree = Tree::build(&vertices, &triangles, &BuildOptions::default())?;
 //! let placement = Placement::new(&Pose3::translation(0.0, 0.0, 1.01));
 //! let mut pairs = Vec::new();
-//! contacts((&tree, &tree), placement, 0.02, &mut SearchScratch::default(), |pair| pairs.push(pair));
+//! let mut scratch = SearchScratch::default();
+//! contacts((&tree, &tree), placement, 0.02, &mut scratch, |pair| pairs.push(pair));
 //! assert_eq!(pairs.len(), 9);
 //! # Ok::<(), sbbk_core::tree::BuildError>(())
 //! ```
