@@ -12,8 +12,8 @@ use super::simplex::{Simplex, thin_normal};
 use super::support::SupportMap;
 use glamx::DVec3;
 
-/// Share of the depth that may be left open.
-const PROVED: f64 = 1.0e-10;
+/// Share of the depth that may be left open, for polytopes and for curved shapes.
+const PROVED: [f64; 2] = [1.0e-10, 1.0e-6];
 
 /// Share of the size that rounding leaves open.
 const ROUNDING: f64 = 1.0e-14;
@@ -42,6 +42,7 @@ pub(super) fn depth<S: SupportMap>(
     size: f64,
 ) -> Option<Depth> {
     let slack = ROUNDING * size;
+    let proved = PROVED[usize::from(S::IS_CURVED)];
     let mut polytope = Polytope::new(tetrahedron, slack);
     let mut best: Option<Depth> = None;
     let mut rounds = 0;
@@ -50,7 +51,7 @@ pub(super) fn depth<S: SupportMap>(
         let face = *polytope.get(i);
         let new = difference.farthest(face.normal);
         let reach = new.point.dot(face.normal);
-        let is_proved = reach - face.distance <= slack + PROVED * reach.abs();
+        let is_proved = reach - face.distance <= slack + proved * reach.abs();
         if is_proved || best.is_none_or(|best| reach < best.depth) {
             let on_triangle = point_below(&polytope, &face, difference.triangle, 100.0 * slack);
             best = Some(Depth { outward: face.normal, depth: reach, on_triangle, rounds });

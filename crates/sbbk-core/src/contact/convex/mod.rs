@@ -19,7 +19,7 @@
 //! 1. The nearest point of a simplex of the Minkowski difference goes toward the origin until a
 //!    support plane proves it nearest, or proves that the shape is beyond the margin (`search.rs`).
 //!    The first simplex is the whole triangle, seen from the point of the shape that reaches
-//!    farthest towards it: for flat contacts that is the answer.
+//!    farthest towards it, or farthest along its normal: for flat contacts that is the answer.
 //! 2. If a simplex holds the origin, a polytope grows from it to the nearest part of the surface of
 //!    the difference (`depth.rs`).
 //!
@@ -27,8 +27,8 @@
 //!
 //! Arithmetic is f64; no tolerance has a unit. Distances of polytopes apart are exact up to
 //! rounding, which is 1e-15 of the size of the pair, or of the coordinates in the shape's frame if
-//! these are larger. Those of curved shapes are exact to 1e-12 of themselves, directions to the root
-//! of that. Depths of all shapes are exact to 1e-10 of themselves. Bodies closer than 1e-10 of their
+//! these are larger. Those of curved shapes are exact to 1e-7 of themselves, directions to 0.03
+//! degrees. Depths are exact to 1e-10 of themselves, those of curved shapes to 1e-6. Bodies closer than 1e-10 of their
 //! size may count as touching: their distance is off by less than that. A contact is a function of
 //! its arguments, bit for bit: no search starts from an earlier one.
 

@@ -4,6 +4,10 @@ use glamx::DVec3;
 
 /// A convex shape, in its own frame.
 pub trait SupportMap {
+    /// Whether its surface is curved anywhere. A search for the nearest point then comes nearer and
+    /// nearer without end, and is content earlier, see [the accuracy](super).
+    const IS_CURVED: bool = false;
+
     /// The farthest point along `direction`, which has any length but zero; any of them where
     /// several are farthest. Exact up to rounding.
     fn support(&self, direction: DVec3) -> DVec3;
@@ -79,6 +83,8 @@ pub struct CylinderSupport {
 }
 
 impl SupportMap for CylinderSupport {
+    const IS_CURVED: bool = true;
+
     #[inline(always)]
     fn support(&self, direction: DVec3) -> DVec3 {
         rim(direction, radial(direction), self.radius, self.half_height.copysign(direction.y))
@@ -95,6 +101,8 @@ pub struct ConeSupport {
 }
 
 impl SupportMap for ConeSupport {
+    const IS_CURVED: bool = true;
+
     #[inline(always)]
     fn support(&self, direction: DVec3) -> DVec3 {
         let across = radial(direction);
