@@ -25,10 +25,11 @@
 //! # Ok::<(), sbbk_core::tree::BuildError>(())
 //! ```
 //!
-//! * [`tree`]: [`Tree`](tree::Tree), built from a mesh once, and a walk over its nodes.
+//! * [`tree`]: [`Tree`](tree::Tree), built from a mesh once, and a read-only walk over its nodes.
 //! * [`query`]: all contacts of two meshes, the nearest or deepest triangles, and when moving
 //!   meshes first meet.
-//! * [`contact`]: the exact contact of two triangles, and its manifold.
+//! * [`contact`]: the exact contact of two triangles, and its manifold; the contact of a triangle
+//!   and a convex shape.
 //!
 //! Below these, for a midphase or narrow phase of one's own:
 //!
