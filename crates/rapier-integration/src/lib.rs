@@ -33,8 +33,8 @@
 //!
 //! # Who answers
 //!
-//! By what a mesh meets, in either order of the two shapes. All that is not listed is Parry's, as
-//! without this crate; so are pairs without a mesh.
+//! By what a mesh meets, in either order of the two shapes. Pairs without a mesh are Parry's, as
+//! without this crate.
 //!
 //! | a mesh and | pairs found by | contact points by |
 //! |---|---|---|
