@@ -28,7 +28,6 @@
 use std::hash::Hasher;
 
 use parry3d::math::Vector;
-use parry3d::partitioning::TraversalAction;
 use parry3d::shape::{TriMesh, TriMeshFlags};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64, xxh3_128};
 
@@ -63,21 +62,25 @@ fn add_topology(mesh: &TriMesh, hasher: &mut Xxh3) {
     hasher.update(bytemuck::cast_slice(mesh.indices()));
 }
 
-/// Adds the shape of Parry's hierarchy: for each node, in the order of a walk, whether it is a leaf
-/// and which. The walk takes a quarter of the time of Parry's iterator over the leaves.
+/// Adds the shape of Parry's hierarchy: where each leaf stands in its array of nodes. Parry lays
+/// nodes out as it walks them, so equal places come from equal walks; the first leaves of the walk
+/// are added as a check. A walk over all nodes takes four times as long.
 fn add_hierarchy(mesh: &TriMesh, hasher: &mut Xxh3) {
-    const INNER: u32 = u32::MAX;
-    let (mut nodes, mut count) = ([0; 64], 0);
-    mesh.bvh().traverse(|node| {
-        nodes[count] = node.leaf_data().unwrap_or(INNER);
-        count += 1;
-        if count == nodes.len() {
-            hasher.update(bytemuck::cast_slice(&nodes));
-            count = 0;
+    const FIRST: usize = 16;
+    let bvh = mesh.bvh();
+    for leaf in bvh.leaves(|_| true).take(FIRST) {
+        hasher.write_u32(leaf);
+    }
+    let place = |leaf| bvh.leaf_node(leaf).map_or(0, |node| std::ptr::from_ref(node).addr());
+    let start = place(0);
+    let (mut places, count) = ([0; 64], mesh.indices().len() as u32);
+    for first in (0..count).step_by(places.len()) {
+        let used = places.len().min((count - first) as usize);
+        for (place_of, leaf) in places[..used].iter_mut().zip(first..) {
+            *place_of = place(leaf).wrapping_sub(start) as u32;
         }
-        TraversalAction::Continue
-    });
-    hasher.update(bytemuck::cast_slice(&nodes[..count]));
+        hasher.update(bytemuck::cast_slice(&places[..used]));
+    }
 }
 
 /// Names Parry's hierarchy of a mesh by its shape, whatever its boxes.

@@ -160,6 +160,14 @@ impl KnownParts {
         was_known
     }
 
+    /// That of a part.
+    pub(super) fn extent(&self, part: &Part<'_>) -> Extent {
+        match self.token {
+            Some(Token::One(extent)) => extent,
+            _ => Extent::of(part.shape),
+        }
+    }
+
     /// How many there are.
     pub(super) fn count(&self) -> u32 {
         self.ranks.len().max(1) as u32

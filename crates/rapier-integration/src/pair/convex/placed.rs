@@ -52,7 +52,7 @@ impl PlacedPart {
         };
         Self {
             index,
-            extent: Extent::of(part.shape),
+            extent: query.known_parts.extent(part),
             placement: pair.mesh_place.mesh_in_other(&placement12),
             to_part,
             to_mesh,

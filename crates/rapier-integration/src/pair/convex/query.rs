@@ -128,7 +128,7 @@ impl<'a> Pair for ConvexPair<'a> {
 pub(crate) struct ConvexQuery<'q> {
     pub(super) pair: &'q ConvexPair<'q>,
     pub(super) prepared: Held<'q>,
-    known_parts: &'q KnownParts,
+    pub(super) known_parts: &'q KnownParts,
     /// The mesh in the frame of the parts.
     placement: Placement,
     /// Whether stock walks the hierarchy of the mesh first.

@@ -45,6 +45,9 @@ struct HorizonEdge {
 pub(super) struct Polytope {
     vertices: ArrayVec<Vertex, VERTICES>,
     faces: ArrayVec<Face, FACES>,
+    /// Their distances, infinite for those that are not open: side by side, as all are looked
+    /// through for each new vertex.
+    open: ArrayVec<f64, FACES>,
     gone: ArrayVec<u16, FACES>,
     /// What is above a plane by less counts as in it.
     slack: f64,
@@ -61,6 +64,7 @@ impl Polytope {
         let mut polytope = Self {
             vertices: ArrayVec::from_iter(vertices),
             faces: ArrayVec::new(),
+            open: ArrayVec::new(),
             gone: ArrayVec::new(),
             slack,
         };
@@ -72,21 +76,28 @@ impl Polytope {
         ];
         for (vertices, neighbors) in faces {
             let face = polytope.face(vertices, neighbors);
-            polytope.faces.push(face);
+            polytope.put(polytope.faces.len(), face);
         }
         polytope
     }
 
     /// The open face whose plane is nearest to the origin.
     pub fn nearest_open(&self) -> Option<usize> {
-        let mut nearest = None;
-        let mut least = f64::INFINITY;
-        for (i, face) in self.faces.iter().enumerate() {
-            if face.state == State::Open && face.distance < least {
-                (nearest, least) = (Some(i), face.distance);
+        let least =
+            self.open.iter().fold(f64::INFINITY, |least, &x| if x < least { x } else { least });
+        (least < f64::INFINITY).then(|| self.open.iter().position(|&x| x == least))?
+    }
+
+    /// Writes a face to a place in the list, or behind its end.
+    fn put(&mut self, place: usize, face: Face) {
+        let open = if face.state == State::Open { face.distance } else { f64::INFINITY };
+        match self.faces.get_mut(place) {
+            Some(old) => (*old, self.open[place]) = (face, open),
+            None => {
+                self.faces.push(face);
+                self.open.push(open);
             }
         }
-        nearest
     }
 
     pub fn get(&self, face: usize) -> &Face {
@@ -100,6 +111,7 @@ impl Polytope {
 
     pub fn close(&mut self, face: usize) {
         self.faces[face].state = State::Closed;
+        self.open[face] = f64::INFINITY;
     }
 
     pub fn corners(&self, face: &Face) -> [Vertex; 3] {
@@ -124,6 +136,7 @@ impl Polytope {
         }
         for &i in &seen {
             self.faces[usize::from(i)].state = State::Gone;
+            self.open[usize::from(i)] = f64::INFINITY;
             self.gone.push(i);
         }
         self.vertices.push(new);
@@ -183,10 +196,7 @@ impl Polytope {
         for &HorizonEdge { start, end, behind } in horizon {
             let face = self.face([start, end, top], [behind, NO_FACE, NO_FACE]);
             let slot = self.gone.pop().unwrap_or(self.faces.len() as u16);
-            match self.faces.get_mut(usize::from(slot)) {
-                Some(place) => *place = face,
-                None => self.faces.push(face),
-            }
+            self.put(usize::from(slot), face);
             starting_at[usize::from(start)] = slot;
             let across = &mut self.faces[usize::from(behind)];
             for edge in 0..3 {
