@@ -1,5 +1,5 @@
-//! What temporal coherence is worth: the paper's front, the adaptive one and the dispatcher's way, beside
-//! fresh descents.
+//! What temporal coherence is worth: the paper's front, the adaptive one and the dispatcher's way,
+//! beside fresh descents.
 //!
 //! ```text
 //! cargo run --release --example front

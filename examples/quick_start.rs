@@ -1,4 +1,5 @@
-//! Plain Rapier with SBBK: a ball, a cylinder and a cuboid, all as triangle meshes, fall on a mesh floor.
+//! Plain Rapier with SBBK: a ball, a cylinder and a cuboid, all as triangle meshes, fall on a mesh
+//! floor.
 //!
 //! ```text
 //! cargo run --release --example quick_start

@@ -1,5 +1,5 @@
-//! Monkey heads on a terrain: as a height field, which stock Rapier lets them fall through, and as a
-//! mesh of the same triangles.
+//! Monkey heads on a terrain: as a height field, which stock Rapier lets them fall through, and as
+//! a mesh of the same triangles.
 //!
 //! ```text
 //! cargo run --release --example terrain

@@ -19,7 +19,8 @@ use crate::support::{
 };
 use crate::worlds::Bodies;
 
-/// Compounds of parts of every kind, of boxes that share faces, of one part, and one that reaches far.
+/// Compounds of parts of every kind, of boxes that share faces, of one part, and one that reaches
+/// far.
 fn compounds(size: Real) -> Vec<(&'static str, Compound)> {
     let mut random = Rand32::new(1);
     let half = 0.25 * size;
@@ -123,8 +124,9 @@ fn assert_like_stock(ours: &[Manifold], stock: &[Manifold]) {
     }
 }
 
-/// Would catch parts that are not looked at, poses or roundings other than stock's, the poses and numbers of parts mixed up,
-/// cones of parts left out, and another order: bit for bit what stock says.
+/// Would catch parts that are not looked at, poses or roundings other than stock's, the poses and
+/// numbers of parts mixed up, cones of parts left out, and another order: bit for bit what stock
+/// says.
 #[test]
 fn fresh_contacts_are_those_of_stock() {
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
@@ -202,7 +204,8 @@ fn motion_is_no_part_of_the_answer() {
     }
 }
 
-/// Would catch lists of parts, manifolds and the boxes of their poses that are made anew in each step.
+/// Would catch lists of parts, manifolds and the boxes of their poses that are made anew in each
+/// step.
 #[test]
 fn steady_contact_allocates_nothing() {
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
@@ -283,7 +286,8 @@ fn other_parts_leave_the_pair_to_stock() {
     assert_eq!(dispatcher.stats().queries, 0);
 }
 
-/// Would catch candidates of a compound that is no longer there, where a host keeps the workspace over an edit.
+/// Would catch candidates of a compound that is no longer there, where a host keeps the workspace
+/// over an edit.
 #[test]
 fn another_compound_with_the_same_workspace_is_noticed() {
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
@@ -317,8 +321,8 @@ fn dumbbells(dispatcher: Option<SbbkDispatcher>) -> Bodies {
     Bodies::above(ground, &dumbbell, (0..3).map(place), 2.0, dispatcher)
 }
 
-/// Would catch contacts that flicker, sink in or do not hold a body at rest, and a world that cannot be saved in the middle of
-/// it or goes on otherwise.
+/// Would catch contacts that flicker, sink in or do not hold a body at rest, and a world that
+/// cannot be saved in the middle of it or goes on otherwise.
 #[test]
 fn compounds_rest_on_a_mesh_as_with_stock() {
     let dispatcher = counting();

@@ -49,9 +49,9 @@ fn set<M, C>(
     sequence(manifolds).into_iter().collect()
 }
 
-/// A soft ball and another mesh through hundreds of frames: of every twelve, five leave the vertices, two the pose, and
-/// one both as they were. The answer of the pair that is kept is that of a dispatcher that knows nothing of a mesh
-/// built anew, and no contact of the truth is missing.
+/// A soft ball and another mesh through hundreds of frames: of every twelve, five leave the
+/// vertices, two the pose, and one both as they were. The answer of the pair that is kept is that
+/// of a dispatcher that knows nothing of a mesh built anew, and no contact of the truth is missing.
 ///
 /// Would catch trees, candidates, features or cones of vertices that are no more, in either order.
 fn check_frames(flags: TriMeshFlags, other: TriMesh, frames: usize) {
@@ -107,7 +107,8 @@ fn cones_of_normals_turn_with_the_mesh() {
     check_frames(TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED, torus(), 70);
 }
 
-/// Two soft meshes, each with its own tree. Would catch a tree found by content or by the address of the other mesh.
+/// Two soft meshes, each with its own tree. Would catch a tree found by content or by the address
+/// of the other mesh.
 #[test]
 fn two_soft_meshes_have_a_tree_each() {
     let dispatcher = counting();
@@ -128,8 +129,8 @@ fn two_soft_meshes_have_a_tree_each() {
     assert_eq!((stats.deformable_trees, stats.trees, stats.tree_refits), (2, 0, 199 + 99));
 }
 
-/// Parry's generator reuses points of its own where the pose stays: it must be told that the vertices do not. Beside
-/// stock, which recomputes the contacts of a deformable mesh at each call.
+/// Parry's generator reuses points of its own where the pose stays: it must be told that the
+/// vertices do not. Beside stock, which recomputes the contacts of a deformable mesh at each call.
 #[test]
 fn parrys_generator_is_told_of_moved_vertices() {
     let mut config = SbbkConfig::default();
@@ -149,7 +150,8 @@ fn parrys_generator_is_told_of_moved_vertices() {
         for (triangles, manifold) in by_triangles(&pair.manifolds) {
             let off =
                 stocks.get(&triangles).map(|stock| (distance(stock) - distance(manifold)).abs());
-            // Parry's iterations begin elsewhere where a pair of triangles was farther apart before.
+            // Parry's iterations begin elsewhere where a pair of triangles was farther apart
+            // before.
             assert!(
                 off.is_some_and(|off| off < 2e-3),
                 "frame {frame}, {triangles:?}: off by {off:?}"
@@ -164,8 +166,8 @@ fn parrys_generator_is_told_of_moved_vertices() {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Impulse(u32);
 
-/// Would catch impulses lost where a mesh deforms a little, or where it is copied first as Rapier does with a shared
-/// shape: soft bodies would jitter.
+/// Would catch impulses lost where a mesh deforms a little, or where it is copied first as Rapier
+/// does with a shared shape: soft bodies would jitter.
 #[test]
 fn contacts_keep_their_data_while_a_mesh_deforms() {
     let dispatcher = SbbkDispatcher::default();
@@ -225,7 +227,8 @@ fn pairs_on_many_threads_share_one_refit() {
     assert_eq!((stats.deformable_trees, stats.deformable_tree_bytes), (0, 0));
 }
 
-/// Would catch a bad tree kept for ever, and one built anew each time for a mesh that is no better then.
+/// Would catch a bad tree kept for ever, and one built anew each time for a mesh that is no better
+/// then.
 #[test]
 fn a_tree_that_has_become_bad_is_built_anew_once() {
     let dispatcher = SbbkDispatcher::default();
@@ -277,7 +280,8 @@ fn a_mesh_that_is_broken_for_a_while_comes_back() {
     assert_eq!((stats.tree_rebuilds, stats.tree_refits), (3, 8), "{stats:?}");
 }
 
-/// Triangles that change where the mesh is: the tree is another, and manifolds of old triangles are dropped.
+/// Triangles that change where the mesh is: the tree is another, and manifolds of old triangles are
+/// dropped.
 #[test]
 fn other_triangles_at_the_same_place_are_seen() {
     let dispatcher = SbbkDispatcher::default();
@@ -294,8 +298,8 @@ fn other_triangles_at_the_same_place_are_seen() {
     }
 }
 
-/// A soft ball against convex shapes, beside stock, which knows no state of such a mesh. Would catch stale candidates,
-/// separating axes or points.
+/// A soft ball against convex shapes, beside stock, which knows no state of such a mesh. Would
+/// catch stale candidates, separating axes or points.
 #[test]
 fn a_soft_mesh_keeps_its_contacts_with_convex_shapes() {
     let shapes: [SharedShape; 5] = [
@@ -341,9 +345,9 @@ fn a_soft_mesh_keeps_its_contacts_with_convex_shapes() {
     }
 }
 
-/// Equal to one of stock's answers, afresh or from step to step, up to what Parry's tolerances leave open where its
-/// iterations begin elsewhere (its own two answers for a cylinder differ by 0.004): contacts near the prediction distance may
-/// come or not. Vertices move by 0.01 a frame.
+/// Equal to one of stock's answers, afresh or from step to step, up to what Parry's tolerances
+/// leave open where its iterations begin elsewhere (its own two answers for a cylinder differ by
+/// 0.004): contacts near the prediction distance may come or not. Vertices move by 0.01 a frame.
 fn check_like(found: &[Manifold], stock: [&[Manifold]; 2]) {
     let clear = |manifolds: &[Manifold]| -> BTreeMap<TrianglePair, Real> {
         let known = by_triangles(manifolds).into_iter().map(|(pair, m)| (pair, distance(m)));
@@ -382,8 +386,9 @@ fn meshes_of(world: &PhysicsWorld) -> (TriMesh, TriMesh) {
     (found.0.clone(), found.1.clone())
 }
 
-/// In each step of a real soft body Rapier's narrow phase gets the contacts that a dispatcher finds which knows nothing, on a
-/// mesh built of the vertices as they are in that step; and the body, which falls, is caught by them.
+/// In each step of a real soft body Rapier's narrow phase gets the contacts that a dispatcher finds
+/// which knows nothing, on a mesh built of the vertices as they are in that step; and the body,
+/// which falls, is caught by them.
 #[test]
 fn a_soft_body_of_rapier_keeps_its_contacts() {
     let (dispatcher, probe) = (counting(), Probe::default());

@@ -1,5 +1,19 @@
 //! The dispatcher inside Rapier and Parry, judged from outside: by stock Parry, by brute force in
 //! f64, and by itself asked afresh.
+//!
+//! What is tested where. `who_answers` asks about every kind of pair and query, `coming_back` about
+//! every kind whose pairs keep a memory.
+//!
+//! | a mesh and | contacts are right | whatever was before | in worlds |
+//! |---|---|---|---|
+//! | a mesh | `exact`, `bits`, `normals` | `motion`, `edited_mesh` | `rest`, `scenes` |
+//! | convex shapes | `convex::fresh` | `convex::motion` | `convex::rest` |
+//! | compounds | `compound` | `compound` | `compound` |
+//! | a height field | `heightfield::truth` | `heightfield::motion` | `heightfield::rest` |
+//! | soft: a mesh, convex shapes | `deformable` | `deformable` | `deformable` |
+//! | soft: the others | `soft_pairs::histories` | `soft_pairs::histories` | `soft_pairs::worlds` |
+//!
+//! Queries without manifolds are in `queries` and `nonlinear`.
 
 /// A steady contact allocates nothing.
 mod allocation;
@@ -53,7 +67,7 @@ mod trajectories;
 mod truth;
 /// Meshes that cannot have a tree.
 mod unsupported;
-/// Who answers for which pair, and that the documentation says so.
+/// Who answers for which pair and query.
 mod who_answers;
 /// Bodies above a ground.
 mod worlds;

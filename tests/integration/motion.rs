@@ -223,8 +223,8 @@ enum Meddling {
 const MEDDLING: [Meddling; 4] =
     [Meddling::AsksStock, Meddling::AsksAnother, Meddling::Edits, Meddling::TakesWorkspace];
 
-/// Thousands of short sequences, each of another kind: after whatever happened, the answer is that of
-/// a dispatcher which knows nothing, bit for bit.
+/// Thousands of short sequences, each of another kind: after whatever happened, the answer is that
+/// of a dispatcher which knows nothing, bit for bit.
 ///
 /// Would catch anything that outlives the event that should have ended it.
 #[test]

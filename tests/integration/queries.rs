@@ -1,4 +1,5 @@
-//! Queries without manifolds: the dispatcher beside brute force, and beside stock Parry where stock is right.
+//! Queries without manifolds: the dispatcher beside brute force, and beside stock Parry where stock
+//! is right.
 
 use glamx::{DPose3, DVec3, Pose3, Vec3};
 use oorandom::Rand32;
@@ -49,8 +50,9 @@ fn cases() -> impl Iterator<Item = ([TriMesh; 2], Vec<Pose3>)> {
     })
 }
 
-/// Distance, closest points, intersection and contact, in both orders, against brute force. Would catch points in the
-/// wrong frame, normals the wrong way round, numbers of triangles of the other mesh, a limit that is not kept.
+/// Distance, closest points, intersection and contact, in both orders, against brute force. Would
+/// catch points in the wrong frame, normals the wrong way round, numbers of triangles of the other
+/// mesh, a limit that is not kept.
 #[test]
 fn proximity_is_true() {
     let dispatcher = SbbkDispatcher::default();
@@ -110,8 +112,8 @@ fn check_proximity(
     assert!((along - truth).abs() < slack, "points {along} apart along the normal, not {truth}");
 }
 
-/// Beside stock where stock is right: meshes of a unit. Would catch an answer with a meaning of its own: another sign,
-/// a limit understood otherwise, `Intersecting` for a mesh inside another.
+/// Beside stock where stock is right: meshes of a unit. Would catch an answer with a meaning of its
+/// own: another sign, a limit understood otherwise, `Intersecting` for a mesh inside another.
 #[test]
 fn proximity_is_like_stock() {
     let (stock, ours) = (DefaultQueryDispatcher, SbbkDispatcher::default());
@@ -150,8 +152,8 @@ fn inside_is_not_intersecting() {
     }
 }
 
-/// Linear casts against a march with brute force, and against stock; witnesses where Parry documents them: on each
-/// mesh in its own frame, meeting when mesh 2 has moved.
+/// Linear casts against a march with brute force, and against stock; witnesses where Parry
+/// documents them: on each mesh in its own frame, meeting when mesh 2 has moved.
 #[test]
 fn casts_stop_at_the_first_impact() {
     let (stock, ours) = (DefaultQueryDispatcher, SbbkDispatcher::default());
@@ -288,7 +290,8 @@ fn sensors_see_what_stock_sees() {
     assert!(met > 20 && met < ours.iter().flatten().count(), "{met} met");
 }
 
-/// Meshes that change in place, between queries that have no workspace to lose: one vertex, inside the box.
+/// Meshes that change in place, between queries that have no workspace to lose: one vertex, inside
+/// the box.
 #[test]
 fn an_edited_mesh_is_seen() {
     let dispatcher = SbbkDispatcher::default();
@@ -304,8 +307,9 @@ fn an_edited_mesh_is_seen() {
     assert!((after - truth).abs() < 1e-5);
 }
 
-/// A vertex that moves within the boxes of all its triangles, forth and back: nothing else of the mesh changes. Would catch a
-/// mesh that is known by its boxes or by samples, and an answer from the tree of the other state.
+/// A vertex that moves within the boxes of all its triangles, forth and back: nothing else of the
+/// mesh changes. Would catch a mesh that is known by its boxes or by samples, and an answer from
+/// the tree of the other state.
 #[test]
 fn edits_forth_and_back_are_seen() {
     let dispatcher = SbbkDispatcher::default();
@@ -333,8 +337,8 @@ fn edits_forth_and_back_are_seen() {
     assert!((seen[0] - seen[1]).abs() > 0.01, "{seen:?}");
 }
 
-/// Would catch an answer that is proved by triangles that have moved, or denied by a tree of other vertices: bumps that come and go
-/// on a ball, all over it, and a probe that meets some of them.
+/// Would catch an answer that is proved by triangles that have moved, or denied by a tree of other
+/// vertices: bumps that come and go on a ball, all over it, and a probe that meets some of them.
 #[test]
 fn bumps_come_and_go_under_a_sensor() {
     let dispatcher = SbbkDispatcher::default();
@@ -355,8 +359,8 @@ fn bumps_come_and_go_under_a_sensor() {
     assert!(met > 20 && missed > 20, "{met} met, {missed} missed");
 }
 
-/// Would catch a mesh that is taken for one that is gone, whose memory it got: the same vertices, and a triangle, not the same each time,
-/// that lies elsewhere.
+/// Would catch a mesh that is taken for one that is gone, whose memory it got: the same vertices,
+/// and a triangle, not the same each time, that lies elsewhere.
 #[test]
 fn a_mesh_in_the_place_of_another_is_not_that_one() {
     let dispatcher = SbbkDispatcher::default();

@@ -1,7 +1,3 @@
-use std::collections::BTreeSet;
-use std::fs;
-use std::path::{Path, PathBuf};
-
 use glamx::Vec3;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::math::Pose;
@@ -62,8 +58,9 @@ pub fn kinds() -> Vec<(&'static str, SharedShape, Who)> {
     ]
 }
 
-/// The contacts of each kind, in both orders, with a rigid and with a deformable mesh: counted as answered from trees, or equal to Parry's
-/// and not counted. Would catch a kind that the table of the documentation has in the wrong row, and an order that is forgotten.
+/// The contacts of each kind, in both orders, with a rigid and with a deformable mesh: counted as
+/// answered from trees, or equal to Parry's and not counted. Would catch a kind that another one
+/// answers for than the crate's documentation says, and an order that is forgotten.
 #[test]
 fn contacts_of_each_kind() {
     let pos12 = Pose::translation(0.15, 0.6, 0.1);
@@ -96,7 +93,8 @@ fn contacts_of_each_kind() {
     }
 }
 
-/// Each query without manifolds: of two rigid meshes from trees, which it needs; of all else Parry's answer, without a tree.
+/// Each query without manifolds: of two rigid meshes from trees, which it needs; of all else
+/// Parry's answer, without a tree.
 #[test]
 fn queries_of_each_kind() {
     let pos12 = Pose::translation(2.5, 0.2, 0.1);
@@ -138,48 +136,4 @@ fn queries_of_each_kind() {
             }
         }
     }
-}
-
-/// The names of all functions in Rust files below a folder.
-fn functions_below(folder: &Path, names: &mut BTreeSet<String>) {
-    for entry in fs::read_dir(folder).expect("the folder of the tests") {
-        let path = entry.expect("readable").path();
-        if path.is_dir() {
-            functions_below(&path, names);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            let text = fs::read_to_string(&path).expect("readable");
-            let name =
-                |line: &str| Some(line.trim().strip_prefix("fn ")?.split('(').next()?.to_owned());
-            names.extend(text.lines().filter_map(name));
-        }
-    }
-}
-
-/// Would catch tests that were renamed or removed and stay in the documentation: each row of its tables names some, and all exist.
-#[test]
-fn the_tests_that_the_tables_name_exist() {
-    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
-    let mut functions = BTreeSet::new();
-    functions_below(&root.join("tests/integration"), &mut functions);
-    let documentation = fs::read_to_string(root.join("crates/rapier-integration/src/lib.rs"))
-        .expect("the documentation of the crate");
-    let rows = documentation.lines().filter(|line| line.starts_with("//! | "));
-    let mut named = 0;
-    for row in rows.filter(|row| !row.ends_with("tested by |")) {
-        let tests = row.trim_end_matches(" |").rsplit(" | ").next().expect("a last column");
-        let quoted: Vec<&str> = tests.split('`').skip(1).step_by(2).collect();
-        assert!(!quoted.is_empty(), "no test in {row}");
-        for name in quoted {
-            let is_module = tests.contains(&format!("`{name}`:"));
-            let file = root.join("tests/integration").join(name);
-            let exists = if is_module {
-                file.is_dir() || file.with_extension("rs").is_file()
-            } else {
-                functions.contains(name)
-            };
-            assert!(exists, "there is no {name}");
-            named += usize::from(!is_module);
-        }
-    }
-    assert!(named > 25, "only {named} tests are named");
 }

@@ -1,14 +1,17 @@
 use sbbk_core::tree::{BuildOptions, LayerPlan};
 
-/// Which code turns a pair of triangles within the prediction distance into contact points.
+/// Which code turns two triangles, or a triangle and a convex shape, within the prediction distance
+/// into contact points.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum ContactGenerator {
-    /// SBBK's own ([`sbbk_core::contact`]): exact at every scale, and faster.
+    /// SBBK's own ([`sbbk_core::contact`]): exact at every scale, and faster. Balls, cuboids and
+    /// half-spaces have Parry's.
     #[default]
     Exact,
-    /// Parry's (GJK, EPA and clipping), called as stock Parry calls it: on a first query the contacts are
-    /// bit-identical to stock's for each pair of triangles within the prediction distance. For comparison, and
-    /// for whoever depends on these bits. Its tolerances are absolute: triangles much smaller than 0.1 units get
+    /// Parry's (GJK, EPA and clipping), called as stock Parry calls it: on a first query the
+    /// contacts are bit-identical to stock's for each pair of triangles within the prediction
+    /// distance, and for each triangle near a convex shape. For comparison, and for programs that
+    /// depend on these bits. Its tolerances are absolute: triangles much smaller than 0.1 units get
     /// wrong depths.
     Parry,
 }
@@ -19,14 +22,14 @@ pub enum ContactGenerator {
 pub struct SbbkConfig {
     /// The volume of each layer of the trees.
     pub layers: LayerPlan,
-    /// Who generates the contacts of a pair of triangles.
+    /// Where contact points come from.
     pub contacts: ContactGenerator,
-    /// Memory that trees may keep while no pair of colliders uses them, in bytes. A mesh that leaves
-    /// all contacts and comes back finds its tree here; with 0 it is built again each time. The
-    /// trees of the last eight meshes that queries without manifolds asked for stay beyond it.
+    /// Memory that trees may keep while no pair of colliders uses them, in bytes. A mesh that
+    /// leaves all contacts and comes back finds its tree here; with 0 it is built again each time.
+    /// The trees of the last eight meshes that queries without manifolds asked for stay beyond it.
     pub idle_tree_bytes: usize,
-    /// Whether queries are counted in [`SbbkStats`](crate::SbbkStats). Costs some percent, more with many
-    /// threads.
+    /// Whether queries are counted in [`SbbkStats`](crate::SbbkStats). Costs some percent, more
+    /// with many threads.
     pub count_queries: bool,
 }
 
@@ -42,8 +45,8 @@ impl Default for SbbkConfig {
 }
 
 impl SbbkConfig {
-    /// The comparison of the SBBK paper: the same code with AABBs in every layer, no sphere at the root and no
-    /// k-DOPs below.
+    /// The comparison of the SBBK paper: the same code with AABBs in every layer, no sphere at the
+    /// root and no k-DOPs below.
     pub fn aabb_only() -> Self {
         Self { layers: LayerPlan::AABB_ONLY, ..Self::default() }
     }

@@ -29,10 +29,10 @@ pub struct SbbkStats {
     /// How often such a tree had become so bad that it was built anew, or the mesh had vertices
     /// that are NaN or infinite.
     pub tree_rebuilds: u64,
-    /// Pairs of a mesh and a mesh or convex shape that Parry had to answer as a mesh cannot have a
-    /// tree: see [`SbbkDispatcher::prepare`](crate::SbbkDispatcher::prepare).
+    /// Queries that Parry had to answer as a mesh cannot have a tree: see
+    /// [`SbbkDispatcher::prepare`](crate::SbbkDispatcher::prepare).
     pub unsupported_queries: u64,
-    /// Such pairs answered from trees. Counted, like the following, if
+    /// Contact queries answered from trees. Counted, like the following, if
     /// [`SbbkConfig::count_queries`](crate::SbbkConfig::count_queries) is set.
     pub queries: u64,
     /// Of these, how many found nothing moved since the last query of the pair.

@@ -1,9 +1,10 @@
-//! Collision detection between triangle meshes with hybrid bounding volume hierarchies: a **s**phere at
-//! the root, AA**BB**s in the inner layers, **k**-DOPs in the lower ones. No physics engine: see
-//! `rapier-integration` for Rapier.
+//! Collision detection between triangle meshes with hybrid bounding volume hierarchies: a
+//! **s**phere at the root, AA**BB**s in the inner layers, **k**-DOPs in the lower ones. No physics
+//! engine: see `rapier-integration` for Rapier.
 //!
-//! The idea is that of *A Three-layer Hybrid Bounding Volume Hierarchy for Collision Detection*: cheap
-//! volumes where most pairs part, tight ones where they do not, and both trees descended at once.
+//! The idea is that of *A Three-layer Hybrid Bounding Volume Hierarchy for Collision Detection*:
+//! cheap volumes where most pairs part, tight ones where they do not, and both trees descended at
+//! once.
 //!
 //! ```
 //! use glamx::{Pose3, Vec3};
@@ -18,20 +19,23 @@
 //! let tree: Tree = Tree::build(&vertices, &triangles, &BuildOptions::default())?;
 //! let placement = Placement::new(&Pose3::translation(0.0, 0.0, 1.01));
 //! let mut pairs = Vec::new();
-//! contacts((&tree, &tree), placement, 0.02, &mut SearchScratch::default(), |pair| pairs.push(pair));
+//! let mut scratch = SearchScratch::default();
+//! contacts((&tree, &tree), placement, 0.02, &mut scratch, |pair| pairs.push(pair));
 //! assert_eq!(pairs.len(), 9);
 //! # Ok::<(), sbbk_core::tree::BuildError>(())
 //! ```
 //!
-//! * [`tree`]: [`Tree`](tree::Tree), built from a mesh once, and a walk over its nodes.
-//! * [`query`]: all contacts of two meshes, the nearest or deepest triangles, and when moving meshes
-//!   first meet.
-//! * [`contact`]: the exact contact of two triangles, and its manifold.
+//! * [`tree`]: [`Tree`](tree::Tree), built from a mesh once, and a read-only walk over its nodes.
+//! * [`query`]: all contacts of two meshes, the nearest or deepest triangles, and when moving
+//!   meshes first meet.
+//! * [`contact`]: the exact contact of two triangles, and its manifold; the contact of a triangle
+//!   and a convex shape.
 //!
 //! Below these, for a midphase or narrow phase of one's own:
 //!
 //! * [`volumes`]: [`Sphere`](volumes::Sphere), [`Aabb`](volumes::Aabb), [`Kdop`](volumes::Kdop).
-//! * [`traverse`]: [`descend`](traverse::descend) finds the pairs of leaves that may touch at a pose.
+//! * [`traverse`]: [`descend`](traverse::descend) finds the pairs of leaves that may touch at a
+//!   pose.
 //! * [`leaf`]: which triangles of two leaves may touch, over SIMD lanes.
 //! * [`field`]: the triangles of a height field that may touch a mesh.
 //! * [`front`]: a descent that starts where the last one stopped.

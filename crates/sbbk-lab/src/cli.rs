@@ -34,8 +34,8 @@ impl StudyArguments {
         if self.quick { quick() } else { standard() }
     }
 
-    /// Carries out a study under progress bars, prints what it found and writes the files. Before the
-    /// work begins, they are tried together with the `others` that the run reads or writes.
+    /// Carries out a study under progress bars, prints what it found and writes the files. Before
+    /// the work begins, they are tried together with the `others` that the run reads or writes.
     ///
     /// Errors: the study's own, or the output or a file cannot be written.
     pub fn run<P>(

@@ -2,8 +2,8 @@
 //! for Rapier.
 //!
 //! [`mesh`] makes and loads meshes, [`scene`] builds worlds from them, [`backend`] chooses who
-//! answers a world's contact queries, [`metrics`] measures one run, [`study`] compares the
-//! backends on the paper's experiments, [`report`] shows the results, and [`picture`] draws a world.
+//! answers a world's contact queries, [`metrics`] measures one run, [`study`] compares the backends
+//! on the paper's experiments, [`report`] shows the results, and [`picture`] draws a world.
 
 pub mod backend;
 pub mod cli;

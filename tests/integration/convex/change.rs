@@ -8,7 +8,8 @@ use super::question::{Question, bits};
 use super::shapes::{pose, shapes};
 use crate::support::{Pair, counting, generating, shape_with};
 
-/// Would catch candidates of a shape that is no longer there, where a host keeps the workspace of a pair over an edit.
+/// Would catch candidates of a shape that is no longer there, where a host keeps the workspace of a
+/// pair over an edit.
 #[test]
 fn another_shape_with_the_same_workspace_is_noticed() {
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
@@ -30,7 +31,8 @@ fn another_shape_with_the_same_workspace_is_noticed() {
     assert_eq!(stats.unchanged_queries, 30, "{stats:?}");
 }
 
-/// Would catch manifolds of stock's that are taken for ours, or dropped with their data where the shapes are the same.
+/// Would catch manifolds of stock's that are taken for ours, or dropped with their data where the
+/// shapes are the same.
 #[test]
 fn stock_can_hand_over_a_pair() {
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());

@@ -9,8 +9,8 @@ use super::question::Question;
 use super::shapes::{floor, near_pose, shapes};
 use crate::support::{Pair, counting, distance, nudge, shape_with};
 
-/// Would catch a manifold, a list of points or of candidates that is made anew in each step, in Parry's routines too. The
-/// shapes do not overlap: Parry's EPA allocates.
+/// Would catch a manifold, a list of points or of candidates that is made anew in each step, in
+/// Parry's routines too. The shapes do not overlap: Parry's EPA allocates.
 #[test]
 fn steady_contact_allocates_nothing() {
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::FIX_INTERNAL_EDGES);

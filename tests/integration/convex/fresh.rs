@@ -12,7 +12,8 @@ use super::question::{Question, bits, touches};
 use super::shapes::{PREDICTIONS, lattice_pose, pose, shapes};
 use crate::support::{Manifold, distance, generating, rotation, shape_with};
 
-/// The same for stock's dispatcher: its manifolds with a point within the prediction distance are ours.
+/// The same for stock's dispatcher: its manifolds with a point within the prediction distance are
+/// ours.
 fn check_against_stock(name: &str, dispatcher: &SbbkDispatcher, question: &Question) {
     let touching = |manifolds: Vec<Manifold>| -> BTreeMap<u32, Vec<u32>> {
         let near = manifolds.into_iter().filter(|m| touches(m, question.prediction));
@@ -22,8 +23,8 @@ fn check_against_stock(name: &str, dispatcher: &SbbkDispatcher, question: &Quest
     assert_eq!(touching(question.fresh(dispatcher)), stock, "{name}");
 }
 
-/// Would catch a triangle that the descent or the leaf test drops, one that is kept though Parry sees no contact, and any
-/// other pose, order, constraint or argument than stock passes.
+/// Would catch a triangle that the descent or the leaf test drops, one that is kept though Parry
+/// sees no contact, and any other pose, order, constraint or argument than stock passes.
 #[test]
 fn fresh_contacts_are_those_of_parrys_routine_on_all_triangles() {
     let dispatcher = generating(ContactGenerator::Parry);
@@ -93,7 +94,8 @@ fn exact_contacts_are_where_parry_measures_them() {
     }
 }
 
-/// Would catch rounding that grows with the floor and is not allowed for, and a floor that is cut off too early.
+/// Would catch rounding that grows with the floor and is not allowed for, and a floor that is cut
+/// off too early.
 #[test]
 fn a_huge_floor_loses_no_contact() {
     let dispatcher = SbbkDispatcher::default();

@@ -45,9 +45,9 @@ fn walk(name: &str, shape: &SharedShape, size: Real, flipped: bool, seed: u64) -
     [stats.queries, stats.unchanged_queries, stats.reused_queries, stats.descended_queries]
 }
 
-/// Would catch candidates that are kept too long, bounds of distance that are too high, axes that do not hold at another
-/// pose, manifolds given to another triangle, and anything else that depends on where the pair was before. Proves
-/// that candidates were kept.
+/// Would catch candidates that are kept too long, bounds of distance that are too high, axes that
+/// do not hold at another pose, manifolds given to another triangle, and anything else that depends
+/// on where the pair was before. Proves that candidates were kept.
 #[test]
 fn motion_is_no_part_of_the_answer() {
     let floor = ("floor", floor());

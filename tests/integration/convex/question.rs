@@ -86,7 +86,8 @@ impl Question<'_> {
         touching.count()
     }
 
-    /// Parry's routine on each triangle of the mesh, called as stock calls it; manifolds with points.
+    /// Parry's routine on each triangle of the mesh, called as stock calls it; manifolds with
+    /// points.
     pub fn brute_force(&self) -> BTreeMap<u32, Manifold> {
         let all = (0..self.mesh.indices().len() as u32).filter_map(|index| {
             let subshapes = if self.flipped { [0, index] } else { [index, 0] };

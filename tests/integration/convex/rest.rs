@@ -18,8 +18,9 @@ fn fall(floor: SharedShape, dispatcher: Option<SbbkDispatcher>) -> Vec<Pose> {
     (0..600).map(step).collect()
 }
 
-/// Would catch contacts that flicker, sink in or do not hold a body at rest: ten seconds on a floor, beside stock. A
-/// head rolls to where it likes, which is chaos; so heights and speeds are compared, not places.
+/// Would catch contacts that flicker, sink in or do not hold a body at rest: ten seconds on a
+/// floor, beside stock. A head rolls to where it likes, which is chaos; so heights and speeds are
+/// compared, not places.
 #[test]
 fn a_head_rests_on_a_floor_as_with_stock() {
     for shape in [SharedShape::cuboid(50.0, 0.25, 50.0), SharedShape::halfspace(Vec3::Y)] {

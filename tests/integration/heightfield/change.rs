@@ -10,7 +10,8 @@ use super::question::Question;
 use super::terrain::{Terrain, place, rolling};
 use crate::support::{Manifold, Pair, assert_same, nudge, shape};
 
-/// Would catch answers for a field that is no longer there, where a host keeps the workspace over an edit.
+/// Would catch answers for a field that is no longer there, where a host keeps the workspace over
+/// an edit.
 #[test]
 fn an_edited_field_is_noticed() {
     let dispatcher = SbbkDispatcher::default();
@@ -42,7 +43,8 @@ fn an_edited_field_is_noticed() {
     assert_same(&moved.ask(&dispatcher, &mut pair).manifolds, &expected, 0.0);
 }
 
-/// Would catch manifolds of stock's own for this pair, should it have any, that are taken for ours. Stock has none.
+/// Would catch manifolds of stock's own for this pair, should it have any, that are taken for ours.
+/// Stock has none.
 #[test]
 fn stock_has_no_contacts_to_hand_over() {
     let terrain = Terrain::new(rolling(6.0, 20, 0.5));

@@ -11,8 +11,9 @@ use super::question::Question;
 use super::terrain::{Terrain, rolling};
 use crate::support::{Pair, counting, nudge, shape, touching};
 
-/// Would catch a descent that looks at more of a terrain than what lies under the mesh: the same mesh on a field of the same
-/// cells, of a thousand times as many. And loss of digits far from the middle of it.
+/// Would catch a descent that looks at more of a terrain than what lies under the mesh: the same
+/// mesh on a field of the same cells, of a thousand times as many. And loss of digits far from the
+/// middle of it.
 #[test]
 fn a_million_cells_cost_what_is_under_the_mesh() {
     let head = shape(&mesh::monkey_head());

@@ -9,8 +9,8 @@ use super::question::Question;
 use super::terrain::{Terrain, place};
 use crate::support::{Manifold, assert_same, shape_with};
 
-/// Would catch constraints of a neighbour, of the wrong shape or none at all: each manifold is the one that the
-/// generator makes of its two triangles and their cones.
+/// Would catch constraints of a neighbour, of the wrong shape or none at all: each manifold is the
+/// one that the generator makes of its two triangles and their cones.
 #[test]
 fn internal_edges_of_the_field_are_fixed() {
     let dispatcher = SbbkDispatcher::default();

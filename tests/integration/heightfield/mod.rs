@@ -1,4 +1,5 @@
-//! The same terrain is always at hand as a mesh: what brute force and the pair of meshes say of it is expected of the field.
+//! The same terrain is always at hand as a mesh: what brute force and the pair of meshes say of it
+//! is expected of the field.
 
 /// Fields and manifolds that change between queries.
 mod change;

@@ -8,8 +8,8 @@ use super::question::Question;
 use super::terrain::{Terrain, place, rolling, terrains};
 use crate::support::{Pair, assert_same, counting, nudge, shape};
 
-/// Would catch candidates kept too long, cells that are not looked at again, and anything else that depends on where the pair
-/// was before. Proves that candidates were kept.
+/// Would catch candidates kept too long, cells that are not looked at again, and anything else that
+/// depends on where the pair was before. Proves that candidates were kept.
 #[test]
 fn motion_never_differs_from_fresh_queries() {
     let terrains = terrains();

@@ -14,8 +14,8 @@ fn heads_above(terrain: SharedShape, dispatcher: Option<SbbkDispatcher>) -> Bodi
     Bodies::above(terrain, &head, (0..4).map(place), 3.0, dispatcher)
 }
 
-/// The reason for all this: under stock Rapier heads fall through a height field. Here they come to rest, about where they do on
-/// the same terrain as a mesh.
+/// The reason for all this: under stock Rapier heads fall through a height field. Here they come to
+/// rest, about where they do on the same terrain as a mesh.
 #[test]
 fn heads_rest_on_a_height_field() {
     let field = rolling(12.0, 24, 0.4);

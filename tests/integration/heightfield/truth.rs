@@ -10,8 +10,9 @@ use super::terrain::{Terrain, heights, place, terrains};
 use crate::support::{assert_same, fresh, shape, shape_with};
 use crate::truth::Tally;
 
-/// Would catch cells that are cut off too early, triangles that are taken for others, holes that are filled, contacts in
-/// the frame of the other shape, and rounding that is not allowed for. Against brute force over all triangles in f64.
+/// Would catch cells that are cut off too early, triangles that are taken for others, holes that
+/// are filled, contacts in the frame of the other shape, and rounding that is not allowed for.
+/// Against brute force over all triangles in f64.
 #[test]
 fn contacts_are_those_of_brute_force() {
     let dispatcher = SbbkDispatcher::default();
@@ -55,8 +56,8 @@ fn lattice_contacts_are_those_of_brute_force() {
     tally.check_all_right(1000);
 }
 
-/// Would catch any difference between a terrain and the same terrain: the contacts are those of two meshes, bit for bit,
-/// but for the order.
+/// Would catch any difference between a terrain and the same terrain: the contacts are those of two
+/// meshes, bit for bit, but for the order.
 #[test]
 fn contacts_equal_those_of_the_terrain_as_a_mesh() {
     let dispatcher = SbbkDispatcher::default();

@@ -79,9 +79,10 @@ fn expected(question: &Question) -> Vec<Manifold> {
     manifolds
 }
 
-/// A mesh that breaks near what it touches, deforms and is whole again, against every kind: whole triangles touch as if there were no
-/// others, broken ones touch nothing. Would catch a panic of Parry's, which looks at the broken ones, a box that means nothing, and
-/// a manifold of a triangle that has broken since.
+/// A mesh that breaks near what it touches, deforms and is whole again, against every kind: whole
+/// triangles touch as if there were no others, broken ones touch nothing. Would catch a panic of
+/// Parry's, which looks at the broken ones, a box that means nothing, and a manifold of a triangle
+/// that has broken since.
 #[test]
 fn whole_triangles_touch_and_broken_ones_do_not() {
     for (name, other, contacts) in others() {
@@ -128,7 +129,8 @@ fn whole_triangles_touch_and_broken_ones_do_not() {
     }
 }
 
-/// Panics unless each contact of one side that is clearly within the prediction distance is on the other, as deep.
+/// Panics unless each contact of one side that is clearly within the prediction distance is on the
+/// other, as deep.
 fn assert_near(found: &[Manifold], expected: &[Manifold]) {
     let [found, expected] = [found, expected].map(by_triangles);
     for (these, others) in [(&found, &expected), (&expected, &found)] {

@@ -30,9 +30,10 @@ fn deform(mesh: &mut TriMesh, rest: &[Vec3], frame: usize) {
     });
 }
 
-/// A soft ball and another shape through hundreds of frames: of every twelve, five leave the vertices, two the pose, and one both
-/// as they were. Both orders are asked; `check` gets the question and the answer. Proves that the tree was built once and refitted
-/// once a deformation, for both, and that candidates were kept where it was not.
+/// A soft ball and another shape through hundreds of frames: of every twelve, five leave the
+/// vertices, two the pose, and one both as they were. Both orders are asked; `check` gets the
+/// question and the answer. Proves that the tree was built once and refitted once a deformation,
+/// for both, and that candidates were kept where it was not.
 fn run(other: &dyn Shape, height: Real, check: &mut dyn FnMut(&Question, &[Manifold], bool)) {
     let dispatcher = counting();
     let mut soft = soft_ball();
@@ -73,8 +74,9 @@ fn as_mesh(field: &HeightField) -> (TriMesh, Vec<u32>) {
     (TriMesh::new(corners.concat(), indices.collect()).unwrap(), ids)
 }
 
-/// Would catch a lost or invented contact, and a field that is asked with the mesh as it was: each answer is judged by brute force in
-/// f64 over all pairs of triangles, and equal to that of a mesh built anew bit for bit.
+/// Would catch a lost or invented contact, and a field that is asked with the mesh as it was: each
+/// answer is judged by brute force in f64 over all pairs of triangles, and equal to that of a mesh
+/// built anew bit for bit.
 #[test]
 fn a_soft_mesh_keeps_its_contacts_with_a_height_field() {
     let field = hills(&mut Rand32::new(3));
@@ -106,7 +108,8 @@ fn a_soft_mesh_keeps_its_contacts_with_a_compound() {
             near.map(|manifold| [manifold.subshape1, manifold.subshape2]).collect()
         };
         let expected = question.anew(&DefaultQueryDispatcher);
-        // What Parry's iterations leave open: where vertices moved, a thousandth of the prediction distance.
+        // What Parry's iterations leave open: where vertices moved, a thousandth of the prediction
+        // distance.
         let band = if is_deformed { 1e-3 * PREDICTION } else { 2e-3 };
         let [inner, outer] = [PREDICTION - band, PREDICTION + band];
         assert!(clear(found, inner).is_subset(&clear(&expected, outer)));
@@ -116,7 +119,8 @@ fn a_soft_mesh_keeps_its_contacts_with_a_compound() {
     assert!(contacts > 5_000, "{contacts} contacts");
 }
 
-/// Parry's generator, too, is told that vertices have moved where the pose has not. Would catch manifolds that are not marked.
+/// Parry's generator, too, is told that vertices have moved where the pose has not. Would catch
+/// manifolds that are not marked.
 #[test]
 fn parrys_generator_is_told_of_moved_vertices() {
     let dispatcher = generating(ContactGenerator::Parry);
@@ -169,7 +173,8 @@ fn contacts_keep_their_data_while_a_mesh_deforms() {
     }
 }
 
-/// The tree of a mesh is one, whatever it meets: another soft mesh, a field and a compound share each refit.
+/// The tree of a mesh is one, whatever it meets: another soft mesh, a field and a compound share
+/// each refit.
 #[test]
 fn pairs_of_all_kinds_share_one_refit() {
     let dispatcher = counting();

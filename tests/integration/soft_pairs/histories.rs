@@ -146,7 +146,8 @@ impl Sums {
     }
 }
 
-/// Runs a history and compares each answer by `check`: whether vertices have moved, what the pair has then, and the question.
+/// Runs a history and compares each answer by `check`: whether vertices have moved, what the pair
+/// has then, and the question.
 fn run(
     history: &History,
     other: &dyn Shape,
@@ -181,8 +182,9 @@ fn runner(cases: u32) -> TestRunner {
     TestRunner::new(config)
 }
 
-/// Would catch a tree, candidates, features or cones of vertices that are no more, and anything else that depends on the past: the
-/// manifolds are those of the mesh built anew, bit for bit, and in the order of a dispatcher that knows nothing.
+/// Would catch a tree, candidates, features or cones of vertices that are no more, and anything
+/// else that depends on the past: the manifolds are those of the mesh built anew, bit for bit, and
+/// in the order of a dispatcher that knows nothing.
 #[test]
 fn contacts_with_a_height_field_are_those_of_a_mesh_built_anew() {
     let sums = Sums::default();
@@ -199,9 +201,10 @@ fn contacts_with_a_height_field_are_those_of_a_mesh_built_anew() {
     sums.check(20_000, 500);
 }
 
-/// The same against boxes and balls, whose contacts are Parry's: where vertices have moved bit for bit, as no point of a query
-/// before may be kept then, which would catch manifolds that are not marked. Where only the mesh has moved Parry keeps points, and
-/// contacts of other kinds come from iterations that begin where they ended.
+/// The same against boxes and balls, whose contacts are Parry's: where vertices have moved bit for
+/// bit, as no point of a query before may be kept then, which would catch manifolds that are not
+/// marked. Where only the mesh has moved Parry keeps points, and contacts of other kinds come from
+/// iterations that begin where they ended.
 #[test]
 fn contacts_with_a_compound_are_those_of_a_mesh_built_anew() {
     let sums = Sums::default();

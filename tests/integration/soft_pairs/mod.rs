@@ -1,5 +1,5 @@
-//! Meshes that move their vertices, against height fields and compounds, and broken ones against all kinds: at every frame the contacts are those of a mesh built
-//! anew of the same vertices.
+//! Meshes that move their vertices, against height fields and compounds, and broken ones against
+//! all kinds: at every frame the contacts are those of a mesh built anew of the same vertices.
 
 /// Vertices that are no numbers.
 mod broken;

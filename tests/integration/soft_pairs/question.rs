@@ -54,7 +54,8 @@ impl Question<'_> {
     }
 }
 
-/// Panics unless both have the same manifolds, in any order, bit for bit but for the sign of a zero.
+/// Panics unless both have the same manifolds, in any order, bit for bit but for the sign of a
+/// zero.
 pub fn assert_same_set(found: &[Manifold], expected: &[Manifold]) {
     assert_same(&sorted(found), &sorted(expected), 0.0);
 }

@@ -64,8 +64,8 @@ fn step(world: &mut PhysicsWorld, count: usize) {
     (0..count).for_each(|_| world.step());
 }
 
-/// The reason for all this: under stock Rapier a soft body falls through a height field. Here it is caught, in each step by
-/// contacts of the mesh as it is then, and comes to rest.
+/// The reason for all this: under stock Rapier a soft body falls through a height field. Here it is
+/// caught, in each step by contacts of the mesh as it is then, and comes to rest.
 #[test]
 fn a_soft_body_rests_on_a_height_field() {
     let ground = bowl();
@@ -90,7 +90,8 @@ fn a_soft_body_rests_on_a_height_field() {
     assert_eq!((stats.unsupported_queries, stats.deformable_trees), (0, 1));
 }
 
-/// Would catch contacts with the wrong part, or in its frame: the body rests where it does under stock.
+/// Would catch contacts with the wrong part, or in its frame: the body rests where it does under
+/// stock.
 #[test]
 fn a_soft_body_rests_on_a_compound_as_with_stock() {
     let ground = table();

@@ -7,8 +7,8 @@
 //! wait for it and find it done.
 //!
 //! While a query uses a tree it holds a reference, and gives it back at its end. No mesh changes
-//! while it is borrowed by a query, so when a tree must be refitted nobody else holds it, and it is
-//! changed in place.
+//! while it is borrowed by a query, so when a tree must be refitted no other query holds it, and it
+//! is changed in place.
 //!
 //! The locks here are taken by pairs with a deformable mesh only. A tree is dropped when the last
 //! pair that knows it ends.

@@ -41,11 +41,13 @@
 //!
 //! let field = Plane([0.0; 101]);
 //! let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|x| 0.2 * x);
-//! let tree: Tree = Tree::build(&vertices, &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], &BuildOptions::default())?;
+//! let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+//! let tree: Tree = Tree::build(&vertices, &triangles, &BuildOptions::default())?;
 //! let placement = Placement::new(&Pose3::translation(7.1, 0.01, -3.9));
 //! let frame = FieldFrame::new(&field, &placement, 0.02);
 //! let mut near = Vec::new();
-//! descend_field(&tree, &frame, &mut FieldScratch::default(), (), |cell, triangle| near.push((cell, triangle)));
+//! let mut scratch = FieldScratch::default();
+//! descend_field(&tree, &frame, &mut scratch, (), |cell, index| near.push((cell, index)));
 //! assert!(near.iter().all(|(triangle, _)| triangle.cell == [57, 46]));
 //! assert!(near.len() >= 4);
 //! # Ok::<(), sbbk_core::tree::BuildError>(())

@@ -4,7 +4,8 @@
 //! method from the start,
 //!
 //! ```text
-//! t ← t + (d(t) - target) / -(n(t)·v),    n: from the closest point of triangle 1 to that of triangle 2
+//! t ← t + (d(t) - target) / -(n(t)·v)
+//! n: from the closest point of triangle 1 to that of triangle 2
 //! ```
 //!
 //! never passes the first time of impact, and where the distance no longer falls there is none.

@@ -24,12 +24,12 @@ pub(super) enum Goal {
 /// Margins of the leaf test whose squares would overflow are no use.
 const WIDEST_LEAF_MARGIN: f32 = 1.0e15;
 
-/// The nearest pair of triangles, mesh 2 placed at `placement` in the frame of mesh 1; if several touch
-/// or cross, any of them. `None` if all pairs are farther apart than `limit`, or if the placement is not
-/// finite.
+/// The nearest pair of triangles, mesh 2 placed at `placement` in the frame of mesh 1; if several
+/// touch or cross, any of them. `None` if all pairs are farther apart than `limit`, or if the
+/// placement is not finite.
 ///
-/// Triangles touch up to 1e-12 of their size. With a limit of zero this is the test whether the surfaces
-/// meet; [`meeting`](super::meeting()) is faster.
+/// Triangles touch up to 1e-12 of their size. With a limit of zero this is the test whether the
+/// surfaces meet; [`meeting`](super::meeting()) is faster.
 pub fn nearest<const AXES: usize>(
     trees: (&Tree<AXES>, &Tree<AXES>),
     placement: Placement,
@@ -224,9 +224,9 @@ mod tests {
     use crate::query::support::{Random, bumpy_ball};
     use crate::tree::BuildOptions;
 
-    /// The counters: of 16 million pairs of triangles a few hundred are compared, wherever the meshes
-    /// are. Would catch a search that does not look along the way between the meshes: at a distance of
-    /// 6 it tests 15,000 pairs of nodes.
+    /// The counters: of 16 million pairs of triangles a few hundred are compared, wherever the
+    /// meshes are. Would catch a search that does not look along the way between the meshes: at a
+    /// distance of 6 it tests 15,000 pairs of nodes.
     #[test]
     fn most_is_pruned() {
         let ball = bumpy_ball(32, 0.1);

@@ -76,7 +76,7 @@ impl BinMapping {
         let axis = centroids.longest_axis();
         let bin_count = count.clamp(LEAST_BINS, MOST_BINS);
         let scale = bin_count as f32 / size[axis];
-        // The reciprocal of a size below 1/f32::MAX is infinite: such an axis is as good as flat.
+        // The reciprocal of a size below 1/f32::MAX is infinite: such an axis counts as flat.
         let usable = scale.is_finite() && size[axis] > 0.0;
         usable.then_some(Self { axis, origin: centroids.min[axis], scale, bin_count })
     }

@@ -73,7 +73,8 @@ impl Sum for ErrorCount {
     }
 }
 
-/// Knows the meshes of a world in f64, as they were when it was made, and judges answers about them.
+/// Knows the meshes of a world in f64, as they were when it was made, and judges answers about
+/// them.
 ///
 /// It knows a mesh by its address, and must not outlive it.
 pub struct Judge {

@@ -171,8 +171,8 @@ mod tests {
         assert!(fs::read_dir(folder.path()).unwrap().count() <= 3, "nothing is left behind");
     }
 
-    /// Would catch an old result that is lost when a new one cannot be completed, and a new one that
-    /// is not put in its place.
+    /// Would catch an old result that is lost when a new one cannot be completed, and a new one
+    /// that is not put in its place.
     #[test]
     fn the_old_file_stays_until_the_new_one_is_complete() {
         let folder = tempfile::tempdir().unwrap();

@@ -32,7 +32,8 @@ pub struct TableSpec<'a> {
     pub study: &'a str,
     /// Each line holds the rows that agree in these; `backend` is one, too.
     pub keys: &'a [&'a str],
-    /// With `Some(n)`, the rows that agree in the first `n` keys get a line of their sums and means.
+    /// With `Some(n)`, the rows that agree in the first `n` keys get a line of their sums and
+    /// means.
     pub total: Option<usize>,
     /// After those of the keys.
     pub columns: Vec<Column>,

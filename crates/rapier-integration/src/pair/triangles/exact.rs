@@ -26,8 +26,9 @@ pub(super) fn local_pair(
     TrianglePair::new(placement, corners(triangle1), corners(triangle2))
 }
 
-/// Fills `manifold` with the `points` of a contact, as Parry would: the normal is projected into the cones of both
-/// triangles, where they have them, and points keep their data by their feature ids.
+/// Fills `manifold` with the `points` of a contact, as Parry would: the normal is projected into
+/// the cones of both triangles, where they have them, and points keep their data by their feature
+/// ids.
 ///
 /// May leave the manifold without points, where the constraints reject the contact.
 pub(super) fn fill<M, C: Default + Copy>(
@@ -85,8 +86,8 @@ fn constrained_normal(
     Some(ConstrainedNormal { normal, is_changed: normal != free })
 }
 
-/// Parry drops points that a constrained normal puts more than five times as deep as the contact is without
-/// constraints.
+/// Parry drops points that a constrained normal puts more than five times as deep as the contact is
+/// without constraints.
 fn is_plausible(point: &ManifoldPoint, contact: &TriangleContact) -> bool {
     contact.distance >= 0.0 || point.distance >= 0.0 || point.distance >= 5.0 * contact.distance
 }
@@ -104,7 +105,8 @@ fn have_names<C>(tracked: &[TrackedContact<C>], points: &[ManifoldPoint], names:
     tracked.len() == points.len() && tracked.iter().zip(points).all(is_same)
 }
 
-/// Makes `tracked` the contacts of other points, of which some were there before and keep their data.
+/// Makes `tracked` the contacts of other points, of which some were there before and keep their
+/// data.
 fn rename<C: Default + Copy>(
     tracked: &mut Vec<TrackedContact<C>>,
     points: &[ManifoldPoint],
@@ -124,8 +126,8 @@ fn rename<C: Default + Copy>(
 /// By [`FeaturePair::to_bits`].
 type Names = [[PackedFeatureId; 2]; FeaturePair::MASK as usize + 1];
 
-/// Parry's names of the features: made once, as Parry's own constructors are not inlined and took a twentieth of a
-/// query.
+/// Parry's names of the features: made once, as Parry's own constructors are not inlined and took a
+/// twentieth of a query.
 static NAMES: LazyLock<Names> = LazyLock::new(|| {
     let name = |feature| match feature {
         Feature::Vertex(i) => PackedFeatureId::vertex(u32::from(i)),
@@ -138,7 +140,8 @@ static NAMES: LazyLock<Names> = LazyLock::new(|| {
     })
 });
 
-/// The contacts of two triangles from step to step, without meshes: for hosts with a midphase of their own.
+/// The contacts of two triangles from step to step, without meshes: for hosts with a midphase of
+/// their own.
 ///
 /// Exact at every scale, see [`sbbk_core::contact`].
 #[derive(Clone, Debug)]
@@ -154,10 +157,11 @@ impl<C> Default for TriangleContacts<C> {
 }
 
 impl<C: Default + Copy> TriangleContacts<C> {
-    /// Brings the manifold of two triangles up to date, `triangle2` at `pos12` in the frame of `triangle1`.
+    /// Brings the manifold of two triangles up to date, `triangle2` at `pos12` in the frame of
+    /// `triangle1`.
     ///
-    /// The manifold has no points if the triangles are farther apart than `prediction`, if the normal
-    /// constraints reject the contact, or if a number is not finite.
+    /// The manifold has no points if the triangles are farther apart than `prediction`, if the
+    /// normal constraints reject the contact, or if a number is not finite.
     pub fn update<M>(
         &mut self,
         pos12: &Pose,
