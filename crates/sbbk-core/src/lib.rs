@@ -1,9 +1,10 @@
-//! Collision detection between triangle meshes with hybrid bounding volume hierarchies: a **s**phere at
-//! the root, AA**BB**s in the inner layers, **k**-DOPs in the lower ones. No physics engine: see
-//! `rapier-integration` for Rapier.
+//! Collision detection between triangle meshes with hybrid bounding volume hierarchies: a
+//! **s**phere at the root, AA**BB**s in the inner layers, **k**-DOPs in the lower ones. No physics
+//! engine: see `rapier-integration` for Rapier.
 //!
-//! The idea is that of *A Three-layer Hybrid Bounding Volume Hierarchy for Collision Detection*: cheap
-//! volumes where most pairs part, tight ones where they do not, and both trees descended at once.
+//! The idea is that of *A Three-layer Hybrid Bounding Volume Hierarchy for Collision Detection*:
+//! cheap volumes where most pairs part, tight ones where they do not, and both trees descended at
+//! once.
 //!
 //! ```
 //! use glamx::{Pose3, Vec3};
@@ -24,14 +25,15 @@
 //! ```
 //!
 //! * [`tree`]: [`Tree`](tree::Tree), built from a mesh once, and a walk over its nodes.
-//! * [`query`]: all contacts of two meshes, the nearest or deepest triangles, and when moving meshes
-//!   first meet.
+//! * [`query`]: all contacts of two meshes, the nearest or deepest triangles, and when moving
+//!   meshes first meet.
 //! * [`contact`]: the exact contact of two triangles, and its manifold.
 //!
 //! Below these, for a midphase or narrow phase of one's own:
 //!
 //! * [`volumes`]: [`Sphere`](volumes::Sphere), [`Aabb`](volumes::Aabb), [`Kdop`](volumes::Kdop).
-//! * [`traverse`]: [`descend`](traverse::descend) finds the pairs of leaves that may touch at a pose.
+//! * [`traverse`]: [`descend`](traverse::descend) finds the pairs of leaves that may touch at a
+//!   pose.
 //! * [`leaf`]: which triangles of two leaves may touch, over SIMD lanes.
 //! * [`field`]: the triangles of a height field that may touch a mesh.
 //! * [`front`]: a descent that starts where the last one stopped.

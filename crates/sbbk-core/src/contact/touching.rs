@@ -71,8 +71,8 @@ fn nearest_features(t1: &Triangle, t2: &Triangle) -> (FeaturePair, Closest) {
     nearest
 }
 
-/// The normals of the edges in the planes of their triangles. Which features they stand for does not
-/// matter: [`at_axis`] finds those that meet.
+/// The normals of the edges in the planes of their triangles. Which features they stand for does
+/// not matter: [`at_axis`] finds those that meet.
 fn in_plane_axes(t1: &Triangle, t2: &Triangle) -> impl Iterator<Item = Axis> {
     let faces = FeaturePair::new(Feature::Face, Feature::Face);
     let across = |t: &Triangle| t.edges.map(|edge| edge.cross(t.normal()).try_normalize());

@@ -17,7 +17,7 @@
 //! |---|---|---|---|
 //! | `Kdop::fit` | two additions of corners | `γ_2·(X + Y + Z)` of the largest coordinates | `γ_3` of that |
 //! | `Sphere::fit` | three squares, a root; the difference before | `γ_5` of the distance, `u` of coordinates | `γ_6`, `γ_2`, and `UNDERFLOW` |
-//! //! | `centre_extent` | the half-length | `u` of it | the next number |
+//! | `centre_extent` | the half-length | `u` of it | the next number |
 //! | `PairFrame`, boxes | `t + R·c2` (5 roundings), minus `c1` (1), `e1 + \|R\|·e2` (8, `e <= M`) | `γ_5·(T + 2·s·M2) + γ_1·W + γ_8·(M1 + 2·s·M2)` | `r`; in frame 2 likewise |
 //! | `Correspondence`, slabs | bounds up to `3·M`, coefficients that sum to `2·√3·s` | `γ_9·3·M1 + γ_6·3·T + γ_14·10.4·s·M2` | `6·r` |
 //! | gaps (`Bound`) | the difference of offset and reach, a norm, a length, a scale | `γ_8` of the gap | `γ_8` |

@@ -8,7 +8,8 @@ use crate::grid::Grid;
 use crate::oracle::{found, placed, tree};
 use crate::support::{Random, Soup, bumpy_ball};
 
-/// Waves of three units over square cells of a tenth of a unit, the same about the middle however many there are.
+/// Waves of three units over square cells of a tenth of a unit, the same about the middle however
+/// many there are.
 fn waves(cells: usize) -> Grid {
     let at = |line: usize| 0.1 * (line as f32 - 0.5 * cells as f32);
     let scale = Vec3::new(0.1 * cells as f32, 1.0, 0.1 * cells as f32);
@@ -17,7 +18,8 @@ fn waves(cells: usize) -> Grid {
     })
 }
 
-/// The columns and rows under the box around some points of the field's frame, one more at either end for rounding.
+/// The columns and rows under the box around some points of the field's frame, one more at either
+/// end for rounding.
 fn under(grid: &Grid, points: &[DVec3], margin: f64) -> [RangeInclusive<usize>; 2] {
     let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min) - margin;
     let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max) + margin;
@@ -41,8 +43,9 @@ fn turned_box(mesh: &Soup, pose: &Pose3) -> Vec<DVec3> {
     (0..8).map(|i| placement.to_frame1(corner(i), Vec3::ZERO)).collect()
 }
 
-/// No triangle of a cell is compared that is not under the mesh, and no line of heights read that is not under its box, turned with it:
-/// anywhere, over the edge of the field, above it and across it. Would catch ranges that are too wide, or asked for a part of the mesh that is elsewhere.
+/// No triangle of a cell is compared that is not under the mesh, and no line of heights read that
+/// is not under its box, turned with it: anywhere, over the edge of the field, above it and across
+/// it. Would catch ranges that are too wide, or asked for a part of the mesh that is elsewhere.
 #[test]
 fn only_what_is_under_the_mesh_is_read() {
     let (grid, mesh) = (waves(200), bumpy_ball(10, 0.1));
@@ -70,7 +73,8 @@ fn only_what_is_under_the_mesh_is_read() {
     assert!(compared > 5000, "only {compared} cells");
 }
 
-/// Cells are compared triangle by triangle only where a leaf's box reaches the surface. Would catch a descent that does not look at heights.
+/// Cells are compared triangle by triangle only where a leaf's box reaches the surface. Would catch
+/// a descent that does not look at heights.
 #[test]
 fn a_mesh_above_the_ground_compares_nothing() {
     let (grid, tree) = (waves(100), tree(&bumpy_ball(8, 0.1)));
@@ -83,7 +87,8 @@ fn a_mesh_above_the_ground_compares_nothing() {
     }
 }
 
-/// A field of a million cells costs what a small one does. Would catch any work that grows with the field.
+/// A field of a million cells costs what a small one does. Would catch any work that grows with the
+/// field.
 #[test]
 fn a_million_cells_cost_what_is_under_the_mesh() {
     let mesh = bumpy_ball(10, 0.1);

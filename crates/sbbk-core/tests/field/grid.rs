@@ -14,7 +14,8 @@ pub struct Grid {
     pub scale: Vec3,
     /// Line by line of x.
     pub heights: Vec<f32>,
-    /// Of each cell, column by column: the triangles that are missing, bits 1 and 2, and the diagonal, bit 4.
+    /// Of each cell, column by column: the triangles that are missing, bits 1 and 2, and the
+    /// diagonal, bit 4.
     pub statuses: Vec<u8>,
     pub asked: RefCell<Asked>,
 }

@@ -1,5 +1,5 @@
-//! A mesh against a height field, by brute force over the triangles of all cells: never a pair lost, and no cell looked at that
-//! is not under the mesh.
+//! A mesh against a height field, by brute force over the triangles of all cells: never a pair
+//! lost, and no cell looked at that is not under the mesh.
 
 /// What is visited.
 mod cost;

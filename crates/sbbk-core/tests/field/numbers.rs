@@ -13,7 +13,8 @@ fn plain() -> Grid {
     Grid::new([10, 10], Vec3::new(5.0, 1.0, 5.0), |column, row| 0.01 * (column * row % 7) as f32)
 }
 
-/// Nothing is found at poses and margins that are none, and nothing panics; where all is well something is.
+/// Nothing is found at poses and margins that are none, and nothing panics; where all is well
+/// something is.
 #[test]
 fn poses_and_margins_that_are_none() {
     let (grid, tree) = (plain(), tree(&bumpy_ball(5, 0.1)));
@@ -34,8 +35,8 @@ fn poses_and_margins_that_are_none() {
     found(&grid, &tree, &no_map, 0.02);
 }
 
-/// A triangle with a corner that is NaN or infinite is a hole, its neighbours are not. Would catch a range ruled out as one of its
-/// heights compares with nothing.
+/// A triangle with a corner that is NaN or infinite is a hole, its neighbours are not. Would catch
+/// a range ruled out as one of its heights compares with nothing.
 #[test]
 fn heights_that_are_none_are_holes() {
     let mut tally = Tally::default();

@@ -23,8 +23,8 @@ pub fn placed(soup: &Soup, pose: &Pose3) -> Vec<[DVec3; 3]> {
     soup.triangles.iter().map(|triangle| triangle.map(corner)).collect()
 }
 
-/// The signed distances of all pairs up to `margin`, by brute force over all cells. Boxes are compared first, as most cells are
-/// far off.
+/// The signed distances of all pairs up to `margin`, by brute force over all cells. Boxes are
+/// compared first, as most cells are far off.
 pub fn pairs_within(grid: &Grid, soup: &Soup, pose: &Pose3, margin: f64) -> BTreeMap<Pair, f64> {
     let placed = placed(soup, pose);
     let bounds = |corners: &[DVec3; 3]| {
@@ -82,7 +82,8 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Compares one query with brute force: every pair within the margin is found, and no pair that is far beyond it.
+    /// Compares one query with brute force: every pair within the margin is found, and no pair that
+    /// is far beyond it.
     pub fn check(
         &mut self,
         grid: &Grid,

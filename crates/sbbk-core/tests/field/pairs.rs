@@ -32,8 +32,8 @@ fn some_mesh(random: &mut Random) -> Soup {
     }
 }
 
-/// Would catch cells cut off at the edge of a range, triangles of a neighbour, a diagonal taken for the other, rows taken for columns,
-/// and a scale, of either sign, that is forgotten somewhere.
+/// Would catch cells cut off at the edge of a range, triangles of a neighbour, a diagonal taken for
+/// the other, rows taken for columns, and a scale, of either sign, that is forgotten somewhere.
 #[test]
 fn random_hills() {
     run(400, 5_000, |seed, tally| {
@@ -49,8 +49,8 @@ fn random_hills() {
     });
 }
 
-/// Corners on corners, edges on edges, faces in one plane, boxes that end on a grid line; degenerate triangles. Would catch a bound that
-/// leaves out what just touches.
+/// Corners on corners, edges on edges, faces in one plane, boxes that end on a grid line;
+/// degenerate triangles. Would catch a bound that leaves out what just touches.
 #[test]
 fn lattices() {
     run(200, 20_000, |seed, tally| {
@@ -65,8 +65,9 @@ fn lattices() {
     });
 }
 
-/// The same from a ten-thousandth to a million units, with a field much larger than the mesh and far off its middle, where its f32
-/// corners are rough. Would catch a rounding that is not allowed for, and tolerances that are not relative.
+/// The same from a ten-thousandth to a million units, with a field much larger than the mesh and
+/// far off its middle, where its f32 corners are rough. Would catch a rounding that is not allowed
+/// for, and tolerances that are not relative.
 #[test]
 fn huge_and_tiny() {
     run(250, 5_000, |seed, tally| {
@@ -85,7 +86,8 @@ fn huge_and_tiny() {
     });
 }
 
-/// Quaternions slightly off unit length scale the mesh. Would catch a margin or a box that does not grow with it.
+/// Quaternions slightly off unit length scale the mesh. Would catch a margin or a box that does not
+/// grow with it.
 #[test]
 fn rotations_that_scale() {
     run(150, 3_000, |seed, tally| {
@@ -97,8 +99,8 @@ fn rotations_that_scale() {
     });
 }
 
-/// A box is ruled out only where no triangle in it comes within the margin: and it often is. Would catch a test of the root box that
-/// drops contacts, or that never says no.
+/// A box is ruled out only where no triangle in it comes within the margin: and it often is. Would
+/// catch a test of the root box that drops contacts, or that never says no.
 #[test]
 fn boxes_are_ruled_out_rightly() {
     let (mut met, mut ruled_out, mut over_the_field) = (0, 0, 0);
