@@ -3,8 +3,7 @@
 //!
 //! The test looks for a separating axis over SIMD lanes: one triangle of leaf 1 against the batch
 //! of leaf 2. It is conservative and nearly exact; what survives goes to the exact test in f64
-//! ([`contact`](crate::contact)). The same code runs over one lane for comparison:
-//! [`LeafTest::survivors_scalar`]. [`ProbeTest`] does the same for triangles and a convex shape.
+//! ([`contact`](crate::contact)). [`ProbeTest`] does the same for triangles and a convex shape.
 
 mod placed;
 mod probe;
@@ -84,7 +83,9 @@ impl LeafTest {
         }
     }
 
-    /// [`survivors`](Self::survivors) over one lane: the same answer, slower.
+    /// [`survivors`](Self::survivors) over one lane: the same answer, slower. Hidden, as only tests
+    /// compare the two.
+    #[doc(hidden)]
     pub fn survivors_scalar(
         &self,
         batch1: &LeafBatch,

@@ -21,9 +21,6 @@ pub(super) enum Goal {
     Deepest,
 }
 
-/// Margins of the leaf test whose squares would overflow are no use.
-const WIDEST_LEAF_MARGIN: f32 = 1.0e15;
-
 /// The nearest pair of triangles, mesh 2 placed at `placement` in the frame of mesh 1; if several
 /// touch or cross, any of them. `None` if all pairs are farther apart than `limit`, or if the
 /// placement is not finite.
@@ -192,26 +189,17 @@ where
         if toward.is_some_and(|t| t.gap_of_leaves(batch1, batch2) > self.gaps.cutoff.limit) {
             return;
         }
-        if self.gaps.cutoff.limit < WIDEST_LEAF_MARGIN {
-            let test = self.test.within(self.gaps.cutoff.limit);
-            // The axis of far triangles tells nothing about those that touch.
-            let is_far = self.best > 0.0;
-            let found = |lane1, lane2| {
-                let one = LeafTriangle { batch: batch1, lane: lane1 };
-                self.triangles(one, LeafTriangle { batch: batch2, lane: lane2 });
-            };
-            if is_far {
-                test.far_survivors(batch1, batch2, found);
-            } else {
-                test.survivors(batch1, batch2, found);
-            }
+        let test = self.test.within(self.gaps.cutoff.limit);
+        // The axis of far triangles tells nothing about those that touch.
+        let is_far = self.best > 0.0;
+        let found = |lane1, lane2| {
+            let one = LeafTriangle { batch: batch1, lane: lane1 };
+            self.triangles(one, LeafTriangle { batch: batch2, lane: lane2 });
+        };
+        if is_far {
+            test.far_survivors(batch1, batch2, found);
         } else {
-            for lane1 in 0..batch1.count() {
-                for lane2 in 0..batch2.count() {
-                    let one = LeafTriangle { batch: batch1, lane: lane1 };
-                    self.triangles(one, LeafTriangle { batch: batch2, lane: lane2 });
-                }
-            }
+            test.survivors(batch1, batch2, found);
         }
     }
 }

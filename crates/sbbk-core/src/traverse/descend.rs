@@ -6,7 +6,7 @@
 //!
 //! For complete trees of n levels in which everything meets, the paper counts `(2^(2(n-1)) - 1)/3`
 //! tests between inner nodes and `2^(2(n-1))` between leaves, against `2^(2n-1) - 1` in all when
-//! one side descends at a time ([`Descent::Single`]).
+//! one side descends at a time.
 
 use super::counters::Counters;
 use super::expand::{Sides, expand};
@@ -24,7 +24,8 @@ pub enum Descent {
     /// Both at once.
     #[default]
     Simultaneous,
-    /// One at a time, taking turns. For comparison only.
+    /// One at a time, taking turns. Hidden, as only a test compares the two.
+    #[doc(hidden)]
     Single,
 }
 

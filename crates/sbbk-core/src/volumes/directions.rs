@@ -43,6 +43,7 @@ mod sealed {
 pub type Slabs<const AXES: usize> = [f32; AXES];
 
 /// A member of a direction set: components in {-1, 0, 1}.
+#[doc(hidden)]
 pub type Member = [i8; 3];
 
 /// The slab of a direction and its sign there; by [`member_index`].
@@ -64,11 +65,13 @@ pub trait DirectionSet<const AXES: usize>: sealed::Sealed {
         Self::project_components(point.to_array())
     }
 
-    /// The same for one point or a lane of several.
+    /// The same for one point or a lane of several. Hidden, as only the crate calls it.
+    #[doc(hidden)]
     fn project_components<T: Component>(components: [T; 3]) -> [T; AXES];
 
     /// The cone of three adjacent directions that contains the direction with components
-    /// `x >= y >= z >= 0`, with their coefficients.
+    /// `x >= y >= z >= 0`, with their coefficients. Hidden, as only the crate and its tests call it.
+    #[doc(hidden)]
     fn cone(sorted: DVec3) -> [(Member, f64); 3];
 
     /// `direction` as a non-negative combination of three adjacent directions of the set: for each
@@ -94,6 +97,7 @@ pub trait DirectionSet<const AXES: usize>: sealed::Sealed {
 }
 
 /// A coordinate of one point, or of several in lanes.
+#[doc(hidden)]
 pub trait Component: Copy + Add<Output = Self> + Sub<Output = Self> {}
 
 impl<T: Copy + Add<Output = Self> + Sub<Output = Self>> Component for T {}

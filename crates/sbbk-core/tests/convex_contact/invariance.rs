@@ -59,7 +59,8 @@ fn margin() {
     }
 }
 
-/// The order of the corners and of a hull's points, and mirrors, change nothing but the last digits.
+/// The order of the corners and of a hull's points, and mirrors, change nothing but the last
+/// digits.
 #[test]
 fn order_and_mirrors() {
     for kind in kinds() {
