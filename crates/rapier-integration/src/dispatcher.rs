@@ -20,11 +20,12 @@ use crate::query::{Trees, intersection};
 use crate::stats::QueryCounters;
 use crate::{ContactGenerator, SbbkConfig, SbbkStats, TriangleContacts};
 
-/// A query dispatcher that answers every pair of triangle meshes, and the contacts of meshes with convex shapes, compounds and
-/// height fields, from SBBK trees, and leaves all else to Parry's [`DefaultQueryDispatcher`].
+/// A query dispatcher that answers every pair of triangle meshes, and the contacts of meshes with
+/// convex shapes, compounds and height fields, from SBBK trees, and leaves all else to Parry's
+/// [`DefaultQueryDispatcher`].
 ///
-/// Trees are built when two meshes first come close and shared by all colliders with equal geometry. Clones of a
-/// dispatcher share their trees.
+/// Trees are built when two meshes first come close and shared by all colliders with equal
+/// geometry. Clones of a dispatcher share their trees.
 #[derive(Clone)]
 pub struct SbbkDispatcher {
     config: SbbkConfig,
@@ -44,12 +45,14 @@ impl SbbkDispatcher {
         &self.config
     }
 
-    /// Builds the tree of a mesh now, or finds it built: at load time rather than in the step in which the mesh first comes
-    /// close to another. The tree stays for as long as the returned value lives. Of no use for a mesh that deforms: its tree is
-    /// built by the first query and follows it from then on.
+    /// Builds the tree of a mesh now, or finds it built: at load time rather than in the step in
+    /// which the mesh first comes close to another. The tree stays for as long as the returned
+    /// value lives. Of no use for a mesh that deforms: its tree is built by the first query and
+    /// follows it from then on.
     ///
-    /// A query cannot report trouble (Rapier ignores a dispatcher's errors), so a mesh that fails here is answered
-    /// by Parry, as without SBBK, and counted in [`SbbkStats::unsupported_queries`].
+    /// A query cannot report trouble (Rapier ignores a dispatcher's errors), so a mesh that fails
+    /// here is answered by Parry, as without SBBK, and counted in
+    /// [`SbbkStats::unsupported_queries`].
     ///
     /// # Errors
     /// What is wrong with the mesh, for example a vertex that is NaN.
@@ -57,13 +60,13 @@ impl SbbkDispatcher {
         self.cache.prepare(mesh).map(PreparedTree)
     }
 
-    /// Counts of trees and queries.
+    /// Counts of trees and queries. Takes time in proportion to the number of trees.
     pub fn stats(&self) -> SbbkStats {
         self.counters.stats(self.cache.counts())
     }
 
-    /// Drops the trees that no pair of colliders uses, see [`SbbkConfig::idle_tree_bytes`]; those of
-    /// queries without manifolds too.
+    /// Drops the trees that no pair of colliders uses, see [`SbbkConfig::idle_tree_bytes`]; those
+    /// of queries without manifolds too.
     pub fn release_idle_trees(&self) {
         self.cache.release_idle();
     }
@@ -178,7 +181,8 @@ impl fmt::Debug for PreparedTree {
     }
 }
 
-/// The mesh that queries without manifolds are answered for. Meshes that deform between queries are Parry's.
+/// The mesh that queries without manifolds are answered for. Meshes that deform between queries are
+/// Parry's.
 fn rigid_mesh(shape: &dyn Shape) -> Option<&TriMesh> {
     shape.as_trimesh().filter(|mesh| !mesh.is_deformable())
 }

@@ -1,10 +1,10 @@
 //! A pair of shapes: from a pose to contact manifolds.
 //!
 //! [`driver`] is the way of a query, the same for every kind of pair: the state of the pair
-//! ([`state`], [`memory`]), the candidates in stock order ([`order`]), and one manifold for each that
-//! touches, those of the query before among them ([`merge`], [`pool`]). A kind says what is its own:
-//! [`triangles`] for two meshes, or a mesh and a height field; [`convex`] for a mesh and convex
-//! shapes, one or the parts of a compound or polyline.
+//! ([`state`], [`memory`]), the candidates in stock order ([`order`]), and one manifold for each
+//! that touches, those of the query before among them ([`merge`], [`pool`]). A kind says what is
+//! its own: [`triangles`] for two meshes, or a mesh and a height field; [`convex`] for a mesh and
+//! convex shapes, one or the parts of a compound or polyline.
 
 mod convex;
 mod driver;

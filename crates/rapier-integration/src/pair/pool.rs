@@ -157,8 +157,8 @@ mod tests {
         manifold
     }
 
-    /// Would catch manifolds that are lost, doubled or out of order when some stay in place, some go and some are new, and a
-    /// query before, ended by a panic, that is not over.
+    /// Would catch manifolds that are lost, doubled or out of order when some stay in place, some
+    /// go and some are new, and a query before, ended by a panic, that is not over.
     #[test]
     fn what_is_kept_is_there_in_the_order_in_which_it_was_kept() {
         let mut random = Rand32::new(3);

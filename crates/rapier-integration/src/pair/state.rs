@@ -51,9 +51,9 @@ where
 
 /// What a snapshot holds in place of our state.
 ///
-/// Parry can store only its own kinds of workspace: a custom one makes the whole snapshot unreadable. This one is
-/// empty. The next query replaces it, whatever dispatcher the restored world has, and keeps the
-/// manifolds.
+/// Parry can store only its own kinds of workspace: a custom one makes the whole snapshot
+/// unreadable. This one is empty. The next query replaces it, whatever dispatcher the restored
+/// world has, and keeps the manifolds.
 static PLACEHOLDER: LazyLock<VoxelsShapeContactManifoldsWorkspace<2>> =
     LazyLock::new(VoxelsShapeContactManifoldsWorkspace::new);
 

@@ -1,32 +1,38 @@
-//! Triangles that lie over one face of a cuboid, which on a floor all do: the contacts of Parry's routine, bit for bit,
-//! without its search.
+//! Triangles that lie over one face of a cuboid, which on a floor all do: the contacts of Parry's
+//! routine, bit for bit, without its search.
 //!
-//! Parry's routine tries 16 axes and clips the triangle with the face that wins: twelve pairs of edges, seven corners. That was
-//! four fifths of a query about a floor. If all of a triangle is well inside the outline of a face there is little to find:
-//! only the axes that the triangle has a part in can beat that of the face, and the points are the triangle's corners,
-//! seen from the face. If another axis wins, or the triangle is not inside, Parry's routine is asked.
+//! Parry's routine tries 16 axes and clips the triangle with the face that wins: twelve pairs of
+//! edges, seven corners. That was four fifths of a query about a floor. If all of a triangle is
+//! well inside the outline of a face there is little to find: only the axes that the triangle has a
+//! part in can beat that of the face, and the points are the triangle's corners, seen from the
+//! face. If another axis wins, or the triangle is not inside, Parry's routine is asked.
 //!
-//! Inside is by a share of the cuboid's size, so that no rounding makes an edge of the triangle cross the outline, and slivers are
-//! left to Parry's routine, in whose clip rounding can put a corner of the face into them.
+//! Inside is by a share of the cuboid's size, so that no rounding makes an edge of the triangle
+//! cross the outline, and slivers are left to Parry's routine, in whose clip rounding can put a
+//! corner of the face into them.
 //!
 //! # Axes that need no test
 //!
-//! Let `c` be the distance of the triangle to the outline of the face, `s` its signed distance to the face, `l` the length of an edge of
-//! the triangle, `z` its part along the normal, `H` the sum of the cuboid's half-lengths and `u = 2⁻²⁴`.
+//! Let `c` be the distance of the triangle to the outline of the face, `s` its signed distance to
+//! the face, `l` the length of an edge of the triangle, `z` its part along the normal, `H` the sum
+//! of the cuboid's half-lengths and `u = 2⁻²⁴`.
 //!
-//! * *Other faces*: each of Parry's gaps is that of some corner and at most that of the lowest one, as rounding is monotone.
-//! * *Products of edges*: along a direction of length 1 with the part `m` across the normal, the lowest corner shows the gap to be at
-//!   most `s - (c - |s|)·m`, if the face opposite does not win. The products of an edge have `m >= |z|/l`. With
-//!   `c >= 2|s|`, `c >= H/128` and `|z| >= l/512` the gap is below `s` by `c/1024 >= 128·u·H`. Parry's sums lose below
-//!   `10·u·(2·H + |s| + l)`, and with `c >= 3l` that is below `30·u·H`.
+//! * *Other faces*: each of Parry's gaps is that of some corner and at most that of the lowest one,
+//!   as rounding is monotone.
+//! * *Products of edges*: along a direction of length 1 with the part `m` across the normal, the
+//!   lowest corner shows the gap to be at most `s - (c - |s|)·m`, if the face opposite does not
+//!   win. The products of an edge have `m >= |z|/l`. With `c >= 2|s|`, `c >= H/128` and `|z| >=
+//!   l/512` the gap is below `s` by `c/1024 >= 128·u·H`. Parry's sums lose below `10·u·(2·H + |s| +
+//!   l)`, and with `c >= 3l` that is below `30·u·H`.
 //!
 //! # Corners of the face
 //!
-//! Seen along the normal, let `A` be the area of the triangle and `L` its longest edge. A corner of the face is `c` or more away from it.
-//! If its barycentric coordinates were all above `-c/3L`, it would be in the triangle blown up by `1 + c/L` about its
-//! centroid, so nearer; one is below, and so one is at least 1/3. Parry looks at the signs of these times `2·A`, as signed areas that it
-//! has but for `20·u·L·H`: two differ if `A·c/L >= 64·u·L·H`. Where `2·A` is below 2⁻²³ it does not look, so that the product of two signed
-//! areas does not underflow.
+//! Seen along the normal, let `A` be the area of the triangle and `L` its longest edge. A corner of
+//! the face is `c` or more away from it. If its barycentric coordinates were all above `-c/3L`, it
+//! would be in the triangle blown up by `1 + c/L` about its centroid, so nearer; one is below, and
+//! so one is at least 1/3. Parry looks at the signs of these times `2·A`, as signed areas that it
+//! has but for `20·u·L·H`: two differ if `A·c/L >= 64·u·L·H`. Where `2·A` is below 2⁻²³ it does not
+//! look, so that the product of two signed areas does not underflow.
 
 use glamx::Vec3;
 use parry3d::math::{Pose, Real};
@@ -56,7 +62,8 @@ pub(super) struct OverFace {
     poses: [Pose; 2],
     axis: usize,
     sign: Real,
-    /// What Parry takes for the outer normal, in the frame of the cuboid and in that of the triangles.
+    /// What Parry takes for the outer normal, in the frame of the cuboid and in that of the
+    /// triangles.
     normals: [Vec3; 2],
     /// Against the normal, in the frame of the triangles.
     inward: Vec3,
@@ -71,8 +78,8 @@ pub(super) struct OverFace {
 }
 
 impl OverFace {
-    /// The face that is farthest below `point`, which is in the frame of the cuboid. `to_cuboid` places triangles in that frame,
-    /// `to_triangle` is its inverse as Parry is given it.
+    /// The face that is farthest below `point`, which is in the frame of the cuboid. `to_cuboid`
+    /// places triangles in that frame, `to_triangle` is its inverse as Parry is given it.
     pub(super) fn below(
         point: Vec3,
         cuboid: &Cuboid,
@@ -106,7 +113,8 @@ impl OverFace {
         }
     }
 
-    /// Fills an empty manifold with the contacts that Parry's routine has without normal constraints; `flipped` if the cuboid is shape 2.
+    /// Fills an empty manifold with the contacts that Parry's routine has without normal
+    /// constraints; `flipped` if the cuboid is shape 2.
     ///
     /// If that is not sure, nothing is done and the answer is `false`.
     pub(super) fn contacts<M, C: Default + Copy>(
@@ -164,7 +172,8 @@ impl OverFace {
         true
     }
 
-    /// How far a triangle is inside the outline, if it is enough; `height` must beat the gaps to the other faces.
+    /// How far a triangle is inside the outline, if it is enough; `height` must beat the gaps to
+    /// the other faces.
     #[inline]
     fn inside(&self, [a, b, c]: &[Vec3; 3], height: Real) -> Option<Real> {
         let half = self.cuboid.half_extents;
@@ -247,8 +256,9 @@ mod tests {
         [is_answered, is_answered && !ours.points.is_empty()]
     }
 
-    /// Would catch an axis that is taken to lose and does not, a point too many or too few, and another order of operations:
-    /// triangles near a face, any and flat ones, with edges along the axes among them.
+    /// Would catch an axis that is taken to lose and does not, a point too many or too few, and
+    /// another order of operations: triangles near a face, any and flat ones, with edges along the
+    /// axes among them.
     #[test]
     fn contacts_are_parrys_bit_for_bit() {
         const COUNT: usize = 200_000;
@@ -283,8 +293,8 @@ mod tests {
         assert!(touching > COUNT / 4, "{answered} answered, {touching} of them touching");
     }
 
-    /// Would catch slivers, seen from the face, that are taken: walls in a plane with a corner of the face, in which Parry's clip may
-    /// find that corner by rounding.
+    /// Would catch slivers, seen from the face, that are taken: walls in a plane with a corner of
+    /// the face, in which Parry's clip may find that corner by rounding.
     #[test]
     fn walls_toward_a_corner_are_parrys() {
         let mut random = Rand32::new(8);

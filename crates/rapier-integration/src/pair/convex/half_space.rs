@@ -2,11 +2,12 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::{HalfSpace, PackedFeatureId, Triangle};
 
-/// The contacts of a triangle and a half-space: its corners that are within the prediction distance. `pose` is that of the
-/// triangle in the frame of the half-space; `flipped` if the triangle is shape 1.
+/// The contacts of a triangle and a half-space: its corners that are within the prediction
+/// distance. `pose` is that of the triangle in the frame of the half-space; `flipped` if the
+/// triangle is shape 1.
 ///
-/// The formula leaves nothing to choose, so that the contacts are Parry's bit for bit. Parry's routine gives the manifold a
-/// new buffer each time, this one does not.
+/// The formula leaves nothing to choose, so that the contacts are Parry's bit for bit. Parry's
+/// routine gives the manifold a new buffer each time, this one does not.
 pub(super) fn half_space_manifold<M, C: Default + Copy>(
     pose: &Pose,
     half_space: &HalfSpace,

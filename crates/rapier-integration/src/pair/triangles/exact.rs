@@ -13,6 +13,8 @@ use sbbk_core::contact::{
 use sbbk_core::query::TrianglePair;
 use sbbk_core::traverse::Placement;
 
+use crate::pair::pose::PairPose;
+
 /// The cones that the normals of both triangles must be in.
 pub(super) type Constraints<'a> = [Option<&'a dyn NormalConstraints>; 2];
 
@@ -26,18 +28,21 @@ pub(super) fn local_pair(
     TrianglePair::new(placement, corners(triangle1), corners(triangle2))
 }
 
-/// Fills `manifold` with the `points` of a contact, as Parry would: the normal is projected into the cones of both
-/// triangles, where they have them, and points keep their data by their feature ids.
+/// Fills `manifold` with the `points` of a contact, as Parry would: the normal is projected into
+/// the cones of both triangles, where they have them, and points keep their data by their feature
+/// ids.
 ///
 /// May leave the manifold without points, where the constraints reject the contact.
 pub(super) fn fill<M, C: Default + Copy>(
-    (placement, pos12): (&Placement, &Pose),
+    pose: &PairPose,
     triangles: &TrianglePair,
-    (contact, points): (&TriangleContact, &mut ManifoldPoints),
+    contact: &TriangleContact,
+    points: &mut ManifoldPoints,
     constraints: Constraints<'_>,
     previous_points: &mut Vec<TrackedContact<C>>,
     manifold: &mut ContactManifold<M, C>,
 ) {
+    let PairPose { pos12, placement12, .. } = pose;
     let Some(normal1) = constrained_normal(contact, constraints, pos12) else {
         manifold.points.clear();
         return;
@@ -55,7 +60,7 @@ pub(super) fn fill<M, C: Default + Copy>(
     }
     for (point, tracked) in points.iter().zip(&mut manifold.points) {
         tracked.local_p1 = (triangles.origin.as_dvec3() + point.point1).as_vec3();
-        tracked.local_p2 = placement.to_frame2(point.point2, triangles.origin).as_vec3();
+        tracked.local_p2 = placement12.to_frame2(point.point2, triangles.origin).as_vec3();
         tracked.dist = point.distance as f32;
     }
     manifold.local_n1 = normal1.normal;
@@ -85,8 +90,8 @@ fn constrained_normal(
     Some(ConstrainedNormal { normal, is_changed: normal != free })
 }
 
-/// Parry drops points that a constrained normal puts more than five times as deep as the contact is without
-/// constraints.
+/// Parry drops points that a constrained normal puts more than five times as deep as the contact is
+/// without constraints.
 fn is_plausible(point: &ManifoldPoint, contact: &TriangleContact) -> bool {
     contact.distance >= 0.0 || point.distance >= 0.0 || point.distance >= 5.0 * contact.distance
 }
@@ -104,7 +109,8 @@ fn have_names<C>(tracked: &[TrackedContact<C>], points: &[ManifoldPoint], names:
     tracked.len() == points.len() && tracked.iter().zip(points).all(is_same)
 }
 
-/// Makes `tracked` the contacts of other points, of which some were there before and keep their data.
+/// Makes `tracked` the contacts of other points, of which some were there before and keep their
+/// data.
 fn rename<C: Default + Copy>(
     tracked: &mut Vec<TrackedContact<C>>,
     points: &[ManifoldPoint],
@@ -124,8 +130,8 @@ fn rename<C: Default + Copy>(
 /// By [`FeaturePair::to_bits`].
 type Names = [[PackedFeatureId; 2]; FeaturePair::MASK as usize + 1];
 
-/// Parry's names of the features: made once, as Parry's own constructors are not inlined and took a twentieth of a
-/// query.
+/// Parry's names of the features: made once, as Parry's own constructors are not inlined and took a
+/// twentieth of a query.
 static NAMES: LazyLock<Names> = LazyLock::new(|| {
     let name = |feature| match feature {
         Feature::Vertex(i) => PackedFeatureId::vertex(u32::from(i)),
@@ -138,7 +144,8 @@ static NAMES: LazyLock<Names> = LazyLock::new(|| {
     })
 });
 
-/// The contacts of two triangles from step to step, without meshes: for hosts with a midphase of their own.
+/// The contacts of two triangles from step to step, without meshes: for hosts with a midphase of
+/// their own.
 ///
 /// Exact at every scale, see [`sbbk_core::contact`].
 #[derive(Clone, Debug)]
@@ -154,10 +161,11 @@ impl<C> Default for TriangleContacts<C> {
 }
 
 impl<C: Default + Copy> TriangleContacts<C> {
-    /// Brings the manifold of two triangles up to date, `triangle2` at `pos12` in the frame of `triangle1`.
+    /// Brings the manifold of two triangles up to date, `triangle2` at `pos12` in the frame of
+    /// `triangle1`.
     ///
-    /// The manifold has no points if the triangles are farther apart than `prediction`, if the normal
-    /// constraints reject the contact, or if a number is not finite.
+    /// The manifold has no points if the triangles are farther apart than `prediction`, if the
+    /// normal constraints reject the contact, or if a number is not finite.
     pub fn update<M>(
         &mut self,
         pos12: &Pose,
@@ -166,8 +174,8 @@ impl<C: Default + Copy> TriangleContacts<C> {
         prediction: Real,
         manifold: &mut ContactManifold<M, C>,
     ) {
-        let placement = Placement::new(pos12);
-        let triangles = local_pair(&placement, &triangles.map(|triangle| *triangle));
+        let pose = PairPose::new(pos12, prediction);
+        let triangles = local_pair(&pose.placement12, &triangles.map(|triangle| *triangle));
         let mut points = ManifoldPoints::new();
         let [t1, t2] = &triangles.corners;
         let within = f64::from(prediction);
@@ -175,9 +183,10 @@ impl<C: Default + Copy> TriangleContacts<C> {
         self.features = contact.map(|contact| contact.features);
         match contact {
             Some(contact) => fill(
-                (&placement, pos12),
+                &pose,
                 &triangles,
-                (&contact, &mut points),
+                &contact,
+                &mut points,
                 normal_constraints,
                 &mut self.previous_points,
                 manifold,

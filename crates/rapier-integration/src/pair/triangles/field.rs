@@ -3,7 +3,8 @@ use parry3d::shape::{HeightField, Triangle};
 use sbbk_core::field::{FieldTriangle, HeightGrid};
 use xxhash_rust::xxh3::xxh3_64;
 
-/// Parry's height field as the descent sees it. What Parry calls rows lies along z, columns along x.
+/// Parry's height field as the descent sees it. What Parry calls rows lies along z, columns along
+/// x.
 #[derive(Copy, Clone)]
 pub(super) struct Field<'a>(pub(super) &'a HeightField);
 
@@ -14,8 +15,8 @@ impl Field<'_> {
         (cell + side * self.cell_count()) as u32
     }
 
-    /// The reverse of [`id`](Self::id) as far as its order goes: the cells along z, then x, the left triangle first. A number
-    /// that is not a triangle's sorts last.
+    /// The reverse of [`id`](Self::id) as far as its order goes: the cells along z, then x, the
+    /// left triangle first. A number that is not a triangle's sorts last.
     pub(super) fn rank(self, id: u32) -> u32 {
         let count = self.cell_count();
         let (cell, side) = (id as usize % count, id as usize / count);
@@ -56,8 +57,8 @@ impl HeightGrid for Field<'_> {
     }
 }
 
-/// Tells in constant time that a field is most likely still the one it was: addresses, sizes, scale, flags, and some
-/// heights. Parry gives nobody the heights of a field to edit.
+/// Tells in constant time that a field is most likely still the one it was: addresses, sizes,
+/// scale, flags, and some heights. Parry gives nobody the heights of a field to edit.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub(crate) struct FieldToken(u64);
 
