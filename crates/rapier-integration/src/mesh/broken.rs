@@ -5,9 +5,11 @@
 //! of them, and then can panic, or loses others: the boxes of its hierarchy mean nothing above a
 //! NaN.
 
-use parry3d::bounding_volume::Aabb;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::math::{Pose, Real};
 use parry3d::shape::{CompositeShape, TriMesh};
 use sbbk_core::tree::{BuildError, BuildOptions, Tree};
+use sbbk_core::volumes::rounding::gamma;
 
 /// A tree, and the triangles that are broken, in ascending order: the tree has them as points
 /// somewhere on the mesh.
@@ -43,4 +45,14 @@ pub(crate) fn root_box(mesh: &TriMesh) -> Option<Aabb> {
     let has_box = root.mins.is_finite() && root.maxs.is_finite();
     let is_whole = || mesh.vertices().iter().all(|vertex| vertex.is_finite());
     (has_box && (!mesh.is_deformable() || is_whole())).then_some(root)
+}
+
+/// The same in the frame that the mesh is in at `pose`, grown by `reach` and by what rounding takes
+/// from it. Without a finite pose the mesh is nowhere: a box that meets none.
+pub(crate) fn placed_root_box(mesh: &TriMesh, pose: &Pose, reach: Real) -> Option<Aabb> {
+    let root = root_box(mesh)?;
+    let size = root.half_extents().length() + root.center().length();
+    let grown = reach + gamma(64) * (size + pose.translation.length() + reach);
+    let is_somewhere = grown >= 0.0;
+    Some(if is_somewhere { root.transform_by(pose).loosened(grown) } else { Aabb::new_invalid() })
 }

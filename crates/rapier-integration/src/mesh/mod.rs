@@ -8,7 +8,7 @@ mod known;
 mod prepared;
 mod unsupported;
 
-pub(crate) use broken::root_box;
+pub(crate) use broken::{placed_root_box, root_box};
 pub(crate) use cache::{CacheCounts, CachedMesh, PreparedRef, TreeCache};
 pub(crate) use identity::MeshToken;
 pub(crate) use known::{Change, Held, KnownMesh};

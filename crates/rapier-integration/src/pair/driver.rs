@@ -257,6 +257,10 @@ fn update<Q, M, C>(
         match (contact, old) {
             (Some(contact), Some(place)) => {
                 let (points, manifold) = (&mut pool.previous_points, &mut manifolds[place]);
+                if manifold.points.is_empty() {
+                    // A blank one, that a host has made or a panic has left.
+                    query.name(candidate, manifold);
+                }
                 query.write(contact, candidate, limits, scratch, points, manifold);
                 pool.keep_old(place, manifolds);
             }

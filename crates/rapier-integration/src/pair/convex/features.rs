@@ -8,12 +8,13 @@ use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::{
-    PackedFeatureId, PolygonalFeature, PolygonalFeatureMap, Shape, Triangle, TypedShape,
+    PackedFeatureId, PolygonalFeature, PolygonalFeatureMap, Segment, Shape, Triangle, TypedShape,
 };
 use sbbk_core::contact::convex::{
     ConeSupport, ConvexContact, CuboidSupport, CylinderSupport, SegmentSupport, TriangleSupport,
     convex_contact,
 };
+use sbbk_core::traverse::Placement;
 
 use crate::pair::pose::MeshPlace;
 
@@ -23,7 +24,7 @@ pub(super) fn core_contact(
     shape: &dyn Shape,
     margin: f64,
 ) -> Option<ConvexContact> {
-    let segment = |segment: &parry3d::shape::Segment| {
+    let segment = |segment: &Segment| {
         let core = SegmentSupport([segment.a, segment.b].map(|end| end.as_dvec3()));
         convex_contact(triangle, &core, margin)
     };
@@ -90,7 +91,30 @@ pub(super) struct Touching<'a> {
     pub(super) distance: Real,
 }
 
-impl Touching<'_> {
+impl<'a> Touching<'a> {
+    /// A triangle of a mesh and a shape whose frame the mesh is in at `placement`.
+    pub(super) fn new(
+        mesh_place: MeshPlace,
+        contact: &ConvexContact,
+        placement: &Placement,
+        pos12: &'a Pose,
+        bodies: [&'a dyn PolygonalFeatureMap; 2],
+        cones: [Option<&'a dyn NormalConstraints>; 2],
+        radius: Real,
+    ) -> Self {
+        let at_mesh = placement.inverse * (contact.on_triangle - placement.translation);
+        let normal = (placement.inverse * contact.normal).normalize();
+        Self {
+            pos12,
+            bodies: mesh_place.swap(bodies),
+            cones: mesh_place.swap(cones),
+            radii: mesh_place.swap([0.0, radius]),
+            normals: mesh_place.swap([normal, -contact.normal]).map(|normal| normal.as_vec3()),
+            points: mesh_place.swap([at_mesh, contact.on_shape]).map(|point| point.as_vec3()),
+            distance: contact.distance as Real,
+        }
+    }
+
     /// Fills an empty manifold; leaves it empty where the cones reject the contact.
     pub(super) fn fill<M, C: Default + Copy>(&self, manifold: &mut ContactManifold<M, C>) {
         let Self { pos12, bodies: [body1, body2], points: [point1, point2], distance, .. } = *self;
@@ -126,30 +150,5 @@ impl Touching<'_> {
             point.dist -= radius1 + radius2;
         }
         [manifold.local_n1, manifold.local_n2] = [normal1, normal2];
-    }
-}
-
-impl<'a> Touching<'a> {
-    /// A triangle of a mesh and a shape whose frame the mesh is in at `placement`.
-    pub(super) fn new(
-        mesh_place: MeshPlace,
-        contact: &ConvexContact,
-        placement: &sbbk_core::traverse::Placement,
-        pos12: &'a Pose,
-        bodies: [&'a dyn PolygonalFeatureMap; 2],
-        cones: [Option<&'a dyn NormalConstraints>; 2],
-        radius: Real,
-    ) -> Self {
-        let at_mesh = placement.inverse * (contact.on_triangle - placement.translation);
-        let normal = (placement.inverse * contact.normal).normalize();
-        Self {
-            pos12,
-            bodies: mesh_place.swap(bodies),
-            cones: mesh_place.swap(cones),
-            radii: mesh_place.swap([0.0, radius]),
-            normals: mesh_place.swap([normal, -contact.normal]).map(|normal| normal.as_vec3()),
-            points: mesh_place.swap([at_mesh, contact.on_shape]).map(|point| point.as_vec3()),
-            distance: contact.distance as Real,
-        }
     }
 }

@@ -100,6 +100,14 @@ impl<'a> Parts<'a> {
         }
     }
 
+    /// At least the greatest radius of a part.
+    pub(super) fn radius(&self) -> Real {
+        match self {
+            Self::One(shape) => Extent::of(*shape).radius,
+            Self::Many(composite) => composite.shape.bvh().root_aabb().half_extents().min_element(),
+        }
+    }
+
     /// The size by which stock chooses which hierarchy to walk first; none without a hierarchy.
     pub(super) fn walk_size(&self) -> Option<Real> {
         match self {
@@ -108,6 +116,15 @@ impl<'a> Parts<'a> {
                 Some(composite.shape.bvh().root_aabb().half_extents().length_squared())
             }
         }
+    }
+
+    /// All parts of a composite, in the order of its hierarchy.
+    fn leaves(&self) -> impl Iterator<Item = u32> {
+        let bvh = match self {
+            Self::One(_) => None,
+            Self::Many(composite) => Some(composite.shape.bvh()),
+        };
+        bvh.into_iter().flat_map(|bvh| bvh.leaves(|_| true))
     }
 }
 
@@ -170,23 +187,15 @@ impl KnownParts {
 
     /// How many there are.
     pub(super) fn count(&self) -> u32 {
-        self.ranks.len().max(1) as u32
+        match self.token {
+            Some(Token::Many(_)) => self.ranks.len() as u32,
+            _ => 1,
+        }
     }
 
     /// The place of a part in the order of its hierarchy.
     #[inline(always)]
     pub(super) fn rank(&self, part: u32) -> u32 {
         self.ranks.get(part as usize).copied().unwrap_or(0)
-    }
-}
-
-impl<'a> Parts<'a> {
-    /// All parts of a composite, in the order of its hierarchy.
-    fn leaves(&self) -> impl Iterator<Item = u32> {
-        let bvh = match self {
-            Self::One(_) => None,
-            Self::Many(composite) => Some(composite.shape.bvh()),
-        };
-        bvh.into_iter().flat_map(|bvh| bvh.leaves(|_| true))
     }
 }

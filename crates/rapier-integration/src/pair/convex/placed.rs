@@ -20,7 +20,6 @@ use super::shape::{ConvexShape, Extent, Measured};
 use crate::pair::pose::MeshPlace;
 
 /// A part at the pose of a query: what is computed once for all triangles near it.
-#[derive(Clone)]
 pub(crate) struct PlacedPart {
     /// Its number.
     pub(super) index: u32,

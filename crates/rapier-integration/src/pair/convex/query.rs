@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use glamx::Vec3;
-use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::NormalConstraints;
 use parry3d::query::{ContactManifold, TrackedContact};
@@ -16,7 +16,7 @@ use super::parts::{KnownParts, Part, Parts};
 use super::placed::{PlacedPart, Question};
 use super::shape::ConvexShape;
 use crate::ContactGenerator;
-use crate::mesh::{Change, Held, KnownMesh, TreeCache, root_box};
+use crate::mesh::{Change, Held, KnownMesh, TreeCache, placed_root_box};
 use crate::pair::driver::{Limits, Moving, Pair, PairQuery, Scratch};
 use crate::pair::order::{Candidate, OrderKey};
 use crate::pair::pose::{MeshPlace, PairPose};
@@ -32,7 +32,7 @@ pub(crate) struct ConvexPair<'a> {
 }
 
 /// Parry's GJK ends when it knows a distance, radii not counted, to this share; it calls triangles
-/// that are so much beyond the prediction distance contacts as well. Looking for them makes the
+/// that are so much beyond the prediction distance contacts as well. Looking for them makes its
 /// contacts those of a test of all triangles.
 const GJK_TOLERANCE: Real = 1.2e-3;
 
@@ -40,19 +40,19 @@ impl ConvexPair<'_> {
     /// The box around the mesh in the frame of the parts, grown by `reach`. `None` if the mesh is
     /// broken: it can be anywhere.
     fn mesh_box(&self, reach: Real) -> Option<Aabb> {
-        let root = root_box(self.mesh)?;
         let pos12 = self.pose.pos12;
         let pose = if self.mesh_place.is_second() { pos12 } else { pos12.inverse() };
-        let size = root.half_extents().length() + root.center().length();
-        let rounding = gamma(64) * (size + pose.translation.length() + reach);
-        let grown = reach + rounding;
-        // A pose that is not a number is nowhere.
-        let is_somewhere = grown >= 0.0;
-        Some(if is_somewhere {
-            root.transform_by(&pose).loosened(grown)
-        } else {
-            Aabb::new_invalid()
-        })
+        placed_root_box(self.mesh, &pose, reach)
+    }
+
+    /// How far contacts may be found of parts with radii of at most `radius`, roundings not
+    /// counted.
+    fn sight(&self, radius: Real) -> Real {
+        let prediction = self.pose.prediction.max(0.0);
+        match self.contacts {
+            ContactGenerator::Exact => prediction,
+            ContactGenerator::Parry => prediction + GJK_TOLERANCE * (prediction + radius),
+        }
     }
 
     /// Whether stock walks the hierarchy of the mesh first.
@@ -102,9 +102,7 @@ impl<'a> Pair for ConvexPair<'a> {
     }
 
     fn boxes_meet(&self, _: &mut impl Counters) -> bool {
-        let prediction = self.pose.prediction.max(0.0);
-        let reach = prediction + GJK_TOLERANCE * prediction;
-        self.mesh_box(reach).is_none_or(|aabb| self.parts.meets(&aabb))
+        self.mesh_box(self.sight(self.parts.radius())).is_none_or(|aabb| self.parts.meets(&aabb))
     }
 
     fn open<'q>(
@@ -207,17 +205,15 @@ impl PairQuery for ConvexQuery<'_> {
         Moving { ball: self.prepared.tree.bounding_ball(), placement: self.placement }
     }
 
-    /// How far Parry's routine may see: the prediction distance, what GJK adds, and what Parry
+    /// How far Parry's routines may see: the prediction distance, what GJK adds, and what Parry
     /// rounds away in f32, some sixty operations on coordinates of the mesh, the pose and the
-    /// shape.
+    /// shape. More than the error of exact contacts with curved shapes, which is 1e-7 of the
+    /// distance.
     fn reach(&self) -> Real {
-        let PairPose { pos12, prediction, .. } = self.pair.pose;
-        // A NaN stays one.
-        let prediction = if *prediction < 0.0 { 0.0 } else { *prediction };
         let KnownParts { radius, size, .. } = *self.known_parts;
-        let largest = self.prepared.tree.magnitude() + pos12.translation.abs().max_element() + size;
-        let reach = prediction + GJK_TOLERANCE * (prediction + radius) + gamma(64) * largest;
-        reach.min(Real::MAX)
+        let offset = self.pose().pos12.translation.abs().max_element();
+        let largest = self.prepared.tree.magnitude() + offset + size;
+        (self.pair.sight(radius) + gamma(64) * largest).min(Real::MAX)
     }
 
     fn descend(

@@ -13,6 +13,8 @@ use sbbk_core::contact::{
 use sbbk_core::query::TrianglePair;
 use sbbk_core::traverse::Placement;
 
+use crate::pair::pose::PairPose;
+
 /// The cones that the normals of both triangles must be in.
 pub(super) type Constraints<'a> = [Option<&'a dyn NormalConstraints>; 2];
 
@@ -32,13 +34,15 @@ pub(super) fn local_pair(
 ///
 /// May leave the manifold without points, where the constraints reject the contact.
 pub(super) fn fill<M, C: Default + Copy>(
-    (placement, pos12): (&Placement, &Pose),
+    pose: &PairPose,
     triangles: &TrianglePair,
-    (contact, points): (&TriangleContact, &mut ManifoldPoints),
+    contact: &TriangleContact,
+    points: &mut ManifoldPoints,
     constraints: Constraints<'_>,
     previous_points: &mut Vec<TrackedContact<C>>,
     manifold: &mut ContactManifold<M, C>,
 ) {
+    let PairPose { pos12, placement12, .. } = pose;
     let Some(normal1) = constrained_normal(contact, constraints, pos12) else {
         manifold.points.clear();
         return;
@@ -56,7 +60,7 @@ pub(super) fn fill<M, C: Default + Copy>(
     }
     for (point, tracked) in points.iter().zip(&mut manifold.points) {
         tracked.local_p1 = (triangles.origin.as_dvec3() + point.point1).as_vec3();
-        tracked.local_p2 = placement.to_frame2(point.point2, triangles.origin).as_vec3();
+        tracked.local_p2 = placement12.to_frame2(point.point2, triangles.origin).as_vec3();
         tracked.dist = point.distance as f32;
     }
     manifold.local_n1 = normal1.normal;
@@ -170,8 +174,8 @@ impl<C: Default + Copy> TriangleContacts<C> {
         prediction: Real,
         manifold: &mut ContactManifold<M, C>,
     ) {
-        let placement = Placement::new(pos12);
-        let triangles = local_pair(&placement, &triangles.map(|triangle| *triangle));
+        let pose = PairPose::new(pos12, prediction);
+        let triangles = local_pair(&pose.placement12, &triangles.map(|triangle| *triangle));
         let mut points = ManifoldPoints::new();
         let [t1, t2] = &triangles.corners;
         let within = f64::from(prediction);
@@ -179,9 +183,10 @@ impl<C: Default + Copy> TriangleContacts<C> {
         self.features = contact.map(|contact| contact.features);
         match contact {
             Some(contact) => fill(
-                (&placement, pos12),
+                &pose,
                 &triangles,
-                (&contact, &mut points),
+                &contact,
+                &mut points,
                 normal_constraints,
                 &mut self.previous_points,
                 manifold,

@@ -12,7 +12,7 @@ use sbbk_core::tree::LeafBatch;
 use super::exact::Constraints;
 use super::query::{Hint, TriangleQuery, TriangleShapes};
 use crate::ContactGenerator;
-use crate::mesh::{Change, Held, KnownMesh, PreparedMesh, TreeCache, root_box};
+use crate::mesh::{Change, Held, KnownMesh, PreparedMesh, TreeCache, placed_root_box, root_box};
 use crate::pair::driver::{Moving, Pair, Scratch};
 use crate::pair::order::OrderKey;
 use crate::pair::pose::PairPose;
@@ -57,12 +57,13 @@ impl<'a> Pair for MeshPair<'a> {
     }
 
     fn boxes_meet(&self, _: &mut impl Counters) -> bool {
-        let [Some(root1), Some(root2)] = self.meshes.map(root_box) else {
+        let [mesh1, mesh2] = self.meshes;
+        let PairPose { pos12, prediction, .. } = self.pose;
+        let boxes = (root_box(mesh1), placed_root_box(mesh2, pos12, prediction.max(0.0)));
+        let (Some(box1), Some(box2)) = boxes else {
             return true;
         };
-        let rounding = 1e-5 * (root1.half_extents().length() + root1.center().length());
-        let PairPose { pos12, prediction, .. } = self.pose;
-        root1.intersects(&root2.transform_by(pos12).loosened(prediction.max(0.0) + rounding))
+        box1.intersects(&box2)
     }
 
     fn open<'q>(

@@ -124,8 +124,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         let Self { shapes, pose, parrys_pose, generator, points } = self;
         shapes.with_constraints(candidate.subshapes, |constraints| match generator {
             ContactGenerator::Exact => {
-                let placed = (&pose.placement12, &pose.pos12);
-                fill(placed, &local, (&contact, points), constraints, previous_points, manifold);
+                fill(pose, &local, &contact, points, constraints, previous_points, manifold);
             }
             ContactGenerator::Parry => {
                 // Two triangles are a pair that Parry supports.
