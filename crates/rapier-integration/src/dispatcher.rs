@@ -20,8 +20,8 @@ use crate::query::{Trees, intersection};
 use crate::stats::QueryCounters;
 use crate::{ContactGenerator, SbbkConfig, SbbkStats, TriangleContacts};
 
-/// A query dispatcher that answers every pair of triangle meshes, and the contacts of meshes with
-/// convex shapes, compounds and height fields, from SBBK trees, and leaves all else to Parry's
+/// A query dispatcher that answers pairs of triangle meshes, and the contacts of meshes with convex
+/// shapes, compounds, polylines and height fields, from SBBK trees. All else goes to Parry's
 /// [`DefaultQueryDispatcher`].
 ///
 /// Trees are built when two meshes first come close and shared by all colliders with equal

@@ -58,7 +58,7 @@ impl HeightGrid for Field<'_> {
 }
 
 /// Tells in constant time that a field is most likely still the one it was: addresses, sizes,
-/// scale, flags, and some heights. Parry gives nobody the heights of a field to edit.
+/// scale, flags, and some heights. Heights cannot be edited in place.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub(crate) struct FieldToken(u64);
 
