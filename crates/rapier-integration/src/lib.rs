@@ -15,7 +15,7 @@
 //! # What changes
 //!
 //! * The contacts of two meshes are exact at every scale, and so are those of a mesh with
-//!   most convex shapes (cylinders and cones: apart to 1e-7, crossing to 1e-6 of the distance).
+//!   most convex shapes (cylinders and cones: apart to 1e-7, crossing to 1e-5 of the distance).
 //!   Stock's tolerances are absolute lengths: it loses contacts of triangles that are small, and
 //!   gets their depths and normals wrong.
 //! * Queries about meshes are faster, several times for two meshes; the repository's README has the

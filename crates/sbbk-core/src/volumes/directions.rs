@@ -69,8 +69,8 @@ pub trait DirectionSet<const AXES: usize>: sealed::Sealed {
     #[doc(hidden)]
     fn project_components<T: Component>(components: [T; 3]) -> [T; AXES];
 
-    /// The cone of three adjacent directions that contains the direction with components
-    /// `x >= y >= z >= 0`, with their coefficients. Hidden, as only the crate and its tests call it.
+    /// The cone of three adjacent directions that contains the direction with components `x >= y >=
+    /// z >= 0`, with their coefficients. Hidden, as only the crate and its tests call it.
     #[doc(hidden)]
     fn cone(sorted: DVec3) -> [(Member, f64); 3];
 

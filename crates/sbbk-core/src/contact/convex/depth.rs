@@ -67,8 +67,8 @@ pub(super) fn depth<S: SupportMap>(
     best.map(|best| Depth { rounds, ..best })
 }
 
-/// The point of the triangle at the foot of the origin on a face. Where the foot is beside the face,
-/// another one, in nearly the same plane, holds it.
+/// The point of the triangle at the foot of the origin on a face. Where the foot is beside the
+/// face, another one, in nearly the same plane, holds it.
 fn point_below(polytope: &Polytope, face: &Face, corners: &[DVec3; 3], slack: f64) -> DVec3 {
     let foot = face.normal * face.distance;
     let (mut least, mut point) = polytope.nearest_to(foot, face, corners);

@@ -28,9 +28,9 @@
 //! Arithmetic is f64; no tolerance has a unit. Distances of polytopes apart are exact up to
 //! rounding, which is 1e-15 of the size of the pair, or of the coordinates in the shape's frame if
 //! these are larger. Those of curved shapes are exact to 1e-7 of themselves, directions to 0.03
-//! degrees. Depths are exact to 1e-10 of themselves, those of curved shapes to 1e-5. Bodies closer than 1e-10 of their
-//! size may count as touching: their distance is off by less than that. A contact is a function of
-//! its arguments, bit for bit: no search starts from an earlier one.
+//! degrees. Depths are exact to 1e-10 of themselves, those of curved shapes to 1e-5. Bodies closer
+//! than 1e-10 of their size may count as touching: their distance is off by less than that. A
+//! contact is a function of its arguments, bit for bit: no search starts from an earlier one.
 
 mod depth;
 mod difference;
@@ -82,8 +82,8 @@ impl ConvexContact {
 /// when a coordinate is not finite. Coordinates and their differences between 1e-38 and 1e38 are
 /// safe from overflow.
 ///
-/// About 50 ns far beyond the margin; within it 100 to 400 for a ball, capsule, cuboid or small hull
-/// and 2 µs for a cylinder or cone; 2 to 10 µs when crossing.
+/// About 50 ns far beyond the margin; within it 100 to 400 for a ball, capsule, cuboid or small
+/// hull and 2 µs for a cylinder or cone; 2 to 10 µs when crossing.
 pub fn convex_contact<S: SupportMap>(
     triangle: &[DVec3; 3],
     shape: &S,
