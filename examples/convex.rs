@@ -1,5 +1,5 @@
-//! A mesh against convex shapes of every kind, compounds of them and a large floor: what queries
-//! cost, and whether a contact is lost, stock Parry beside SBBK.
+//! A mesh against convex shapes of every kind, compounds of them and a large floor, stock Parry
+//! beside SBBK: what queries cost, and how many contacts are wrong, by brute force, at all sizes.
 //!
 //! ```text
 //! cargo run --release --example convex

@@ -24,8 +24,7 @@ pub enum Descent {
     /// Both at once.
     #[default]
     Simultaneous,
-    /// One at a time, taking turns. Hidden, as only a test compares the two.
-    #[doc(hidden)]
+    /// One at a time, taking turns: what the paper compares with. Visits more pairs.
     Single,
 }
 

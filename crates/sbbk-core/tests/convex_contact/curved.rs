@@ -2,38 +2,8 @@
 //! a search over directions.
 
 use crate::shape::{Kind, Rng, Shape};
-use crate::truth::{check, gap, outside, size};
+use crate::truth::{check, gap, size};
 use glamx::DVec3;
-
-/// Least value of a convex function on 0 to 1, by golden section.
-fn least(function: impl Fn(f64) -> f64) -> f64 {
-    const RATIO: f64 = 0.618_033_988_749_894_9;
-    let (mut low, mut high) = (0.0, 1.0);
-    let mut at = [1.0 - RATIO, RATIO];
-    let mut values = at.map(&function);
-    for _ in 0..45 {
-        if values[0] < values[1] {
-            high = at[1];
-            at = [high - RATIO * (high - low), at[0]];
-            values = [function(at[0]), values[0]];
-        } else {
-            low = at[0];
-            at = [at[1], low + RATIO * (high - low)];
-            values = [values[1], function(at[1])];
-        }
-    }
-    values[0].min(values[1]).min(function(0.0)).min(function(1.0))
-}
-
-/// Distance of a triangle and a shape; 0 when the cores cross. The distance from a convex body is
-/// a convex function.
-fn apart([a, b, c]: &[DVec3; 3], shape: &Shape) -> f64 {
-    let far = least(|s| {
-        let (from, to) = (a.lerp(*b, s), a.lerp(*c, s));
-        least(|t| outside(&shape.core, from.lerp(to, t)))
-    });
-    far - shape.radius
-}
 
 /// The widest gap that a search over directions finds: no more than the true one, and the same for
 /// bodies that cross unless the search is caught in a local maximum.
@@ -76,6 +46,8 @@ fn cylinders_and_cones() {
         let (mut clear, mut deep, mut far, mut wrong) = (0, 0, 0, 0);
         for i in 0..20_000 {
             let shape = rng.shape(kind);
+            let body = shape.truth();
+            let apart = |triangle| body.distance(triangle).unwrap_or(-shape.radius);
             let margin = rng.scale(1.0e-4, 0.1);
             let gap = match i % 4 {
                 0 => rng.within(0.0, 2.0 * margin),
@@ -91,7 +63,7 @@ fn cylinders_and_cones() {
             }
             let distance = contact.map_or(f64::INFINITY, |contact| contact.distance);
             let is_wrong = if distance > -shape.radius {
-                let truth = apart(&triangle, &shape);
+                let truth = apart(&triangle);
                 far += u32::from(contact.is_none());
                 clear += u32::from(contact.is_some());
                 match contact {
@@ -105,7 +77,7 @@ fn cylinders_and_cones() {
             };
             wrong += u32::from(is_wrong);
             if is_wrong && wrong == 1 {
-                let truth = (apart(&triangle, &shape), separation(&triangle, &shape, &mut rng));
+                let truth = (apart(&triangle), separation(&triangle, &shape, &mut rng));
                 println!("{kind:?} {i}: {truth:?} {contact:?}\n{shape:?}\n{triangle:?}");
             }
         }

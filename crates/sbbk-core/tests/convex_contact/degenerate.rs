@@ -1,6 +1,5 @@
 //! Shapes and triangles without volume or area, and numbers that are none.
 
-use crate::polytope;
 use crate::shape::{Core, Kind, Rng, Shape};
 use crate::truth::{check, size};
 use glamx::DVec3;
@@ -27,7 +26,7 @@ fn triangles_without_area() {
                 3 => [a, b, middle],
                 _ => [a, b, middle + (c - a) * rng.scale(1.0e-16, 1.0e-6)],
             };
-            let truth = polytope::distance(&shape.vertices(), &triangle) - shape.radius;
+            let truth = shape.truth().distance(&triangle).unwrap();
             let size = size(&triangle, &shape);
             let contact = shape.contact(&triangle, 100.0).unwrap();
             let error = (contact.distance - truth).abs();

@@ -1,6 +1,5 @@
 //! Corners on a small lattice: coplanar faces, parallel edges, shared vertices, exact contact.
 
-use crate::polytope;
 use crate::shape::{Core, Rng, Shape};
 use crate::truth::{check, size};
 use glamx::DVec3;
@@ -34,7 +33,7 @@ fn exact_and_nearly_exact_ties() {
         for _ in 0..20_000 {
             let shape = rng.lattice_shape();
             let triangle = [0; 3].map(|_| rng.lattice_point() + rng.point() * nudge);
-            let truth = polytope::distance(&shape.vertices(), &triangle) - shape.radius;
+            let truth = shape.truth().distance(&triangle).unwrap();
             let contact = shape.contact(&triangle, 20.0).expect("within the margin");
             let error = (contact.distance - truth).abs();
             let tolerance = 1.0e-9 * size(&triangle, &shape).max(1.0);

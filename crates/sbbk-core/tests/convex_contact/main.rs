@@ -4,7 +4,6 @@ mod curved;
 mod degenerate;
 mod invariance;
 mod lattice;
-mod polytope;
 mod random;
 mod shape;
 mod truth;

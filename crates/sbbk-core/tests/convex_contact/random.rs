@@ -1,6 +1,5 @@
 //! Random poses: apart, touching and deep.
 
-use crate::polytope;
 use crate::shape::{Kind, Rng};
 use crate::truth::{check, size};
 
@@ -21,7 +20,7 @@ fn polytopes() {
                 _ => rng.within(-1.0, 0.0),
             };
             let triangle = rng.triangle_beside(&shape, gap);
-            let truth = polytope::distance(&shape.vertices(), &triangle) - shape.radius;
+            let truth = shape.truth().distance(&triangle).unwrap();
             let size = size(&triangle, &shape);
             let Some(contact) = shape.contact(&triangle, margin) else {
                 far += 1;

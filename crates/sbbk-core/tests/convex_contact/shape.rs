@@ -5,6 +5,7 @@ use sbbk_core::contact::convex::{
     ConeSupport, ConvexContact, CuboidSupport, CylinderSupport, HullSupport, PointSupport,
     SegmentSupport, SupportMap, TriangleSupport, convex_contact, round_contact,
 };
+use sbbk_core::truth::ConvexBody;
 
 #[derive(Clone, Debug)]
 pub enum Core {
@@ -96,6 +97,16 @@ impl Shape {
             Core::Hull(points) => points.clone(),
             Core::Cylinder(_) | Core::Cone(_) => unreachable!("no polytope"),
         }
+    }
+
+    /// The same for the reference.
+    pub fn truth(&self) -> ConvexBody {
+        let core = match &self.core {
+            Core::Cylinder(c) => ConvexBody::cylinder(c.half_height, c.radius),
+            Core::Cone(c) => ConvexBody::cone(c.half_height, c.radius),
+            _ => ConvexBody::hull(self.vertices()),
+        };
+        core.rounded(self.radius)
     }
 
     pub fn scaled(&self, factor: f64) -> Self {

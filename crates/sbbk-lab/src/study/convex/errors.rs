@@ -1,151 +1,197 @@
-//! Contacts lost and added, against Parry's routine on every triangle and every part of the shape.
-//!
-//! Where the cores of two shapes just touch, that routine may see no contact at all. A contact that it does not see is not
-//! counted as added if by Parry's own distance it is there.
+//! Contacts of a mesh and a shape missed and added, and wrong distances, by brute force in f64.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use glamx::Pose3;
-use rapier3d::geometry::{ContactManifold, SharedShape};
-use rapier3d::math::Real;
-use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher, QueryDispatcher};
-use rapier3d::parry::shape::{Shape, Triangle};
+use glamx::{DPose3, DVec3, Pose3};
+use rapier3d::geometry::{ContactManifold, SharedShape, TypedShape};
+use rapier3d::math::{Real, Vector};
+use rapier3d::parry::shape::Shape;
+use sbbk_core::truth::ConvexBody;
 
 use crate::metrics::ErrorCount;
 
-/// Distances this close to the prediction distance, as a share of it, may go either way: kept points are only moved
-/// along, by Parry's rules, while a pair moves by up to a thousandth of a unit.
-const SET_BAND: Real = 0.01;
-/// A depth off by more than this share of the prediction distance is wrong.
-const DEPTH_BAND: Real = 0.05;
+/// Distances this close to the prediction distance, as a share of it, may go either way.
+const SET_BAND: f64 = 0.01;
+/// A distance off by more than this share of the prediction distance is wrong.
+const DISTANCE_BAND: f64 = 0.05;
 
 /// A triangle of the mesh and a part of the shape, 0 if it has no parts.
 pub(super) type Subshapes = (u32, u32);
 
+/// Knows a mesh and a shape in f64.
+pub(super) struct Judge {
+    triangles: Vec<[DVec3; 3]>,
+    parts: Vec<Part>,
+}
+
+/// A convex part of a shape.
+struct Part {
+    /// The shape in the frame of the part.
+    pose: DPose3,
+    body: ConvexBody,
+    /// The corners of the box around it.
+    bounds: [DVec3; 2],
+    has_own_contacts: bool,
+}
+
 /// The truth about one pose.
-pub(super) struct Expected<'a> {
-    /// Of each triangle and part that Parry's routine gives points, the least.
-    distances: BTreeMap<Subshapes, Real>,
-    pose: Posed<'a>,
-    prediction: Real,
+pub(super) struct Truth<'a> {
+    judge: &'a Judge,
+    /// Of all triangles and parts within the prediction distance and its band. `None`: they cross,
+    /// how deep is not known.
+    distances: BTreeMap<Subshapes, Option<f64>>,
+    prediction: f64,
 }
 
-/// A mesh and a shape at a pose.
-pub(super) struct Posed<'a> {
-    pub mesh: &'a SharedShape,
-    pub shape: &'a SharedShape,
-    /// The pose of the second in the frame of the first. In the other order Parry's routine may answer otherwise, so
-    /// it is asked in the same, and with the inverse of an inverse where stock does so.
-    pub pos12: Pose3,
-    pub is_mesh_first: bool,
-}
-
-impl Posed<'_> {
-    /// Asks about a triangle, whose flags are left out of account, and a part.
-    fn ask<T>(
-        &self,
-        triangle: &Triangle,
-        (pose, part): (Pose3, &dyn Shape),
-        question: impl FnOnce(&Pose3, [&dyn Shape; 2]) -> T,
-    ) -> T {
-        if self.is_mesh_first {
-            question(&(self.pos12 * pose), [triangle, part])
-        } else {
-            question(&(pose.inverse() * self.pos12.inverse().inverse()), [part, triangle])
-        }
+impl Judge {
+    pub fn new(mesh: &SharedShape, shape: &SharedShape) -> Self {
+        let triangles = mesh.as_trimesh().into_iter().flat_map(|mesh| mesh.triangles());
+        let corners = |corner: [_; 3]| corner.map(|corner: Vector| corner.as_dvec3());
+        let parts = match shape.as_compound() {
+            Some(compound) => {
+                compound.shapes().iter().map(|(pose, part)| Part::new(pose, &**part)).collect()
+            }
+            None => vec![Part::new(&Pose3::IDENTITY, &**shape)],
+        };
+        Self { triangles: triangles.map(|t| corners([t.a, t.b, t.c])).collect(), parts }
     }
 
-    /// By Parry's measure of distance, not by its contact routine.
-    fn distance(&self, (triangle, part): Subshapes) -> Real {
-        let triangle = self.mesh.as_trimesh().map(|mesh| mesh.triangle(triangle));
-        let part = parts(self.shape).into_iter().nth(part as usize);
-        let asked = triangle.zip(part).and_then(|(triangle, part)| {
-            self.ask(&triangle, part, |pos12, [shape1, shape2]| {
-                DefaultQueryDispatcher.distance(pos12, shape1, shape2).ok()
-            })
-        });
-        asked.map_or(Real::INFINITY, |answer| answer.distance)
-    }
-}
-
-impl<'a> Expected<'a> {
-    /// Asks Parry's routine about all triangles and parts.
-    pub fn new(pose: Posed<'a>, prediction: Real) -> Self {
+    /// With the mesh at a pose in the frame of the shape.
+    pub fn truth(&self, pose: &Pose3, prediction: Real) -> Truth<'_> {
+        let prediction = f64::from(prediction);
+        let reach = prediction * (1.0 + SET_BAND);
         let mut distances = BTreeMap::new();
-        for (part_index, part) in (0..).zip(parts(pose.shape)) {
-            let triangles = pose.mesh.as_trimesh().into_iter().flat_map(|mesh| mesh.triangles());
-            for (triangle_index, triangle) in (0..).zip(triangles) {
-                let least =
-                    pose.ask(&triangle, part, |pos12, pair| distance(pos12, pair, prediction));
-                if let Some(distance) = least {
+        for (part_index, part) in (0..).zip(&self.parts) {
+            let pose = part.pose * DPose3::from(*pose);
+            for (triangle_index, triangle) in (0..).zip(&self.triangles) {
+                let triangle = triangle.map(|corner| pose * corner);
+                if part.is_beyond(&triangle, reach) {
+                    continue;
+                }
+                let distance = part.body.distance(&triangle);
+                if distance.is_none_or(|distance| distance <= reach) {
                     distances.insert((triangle_index, part_index), distance);
                 }
             }
         }
-        Self { distances, pose, prediction }
+        Truth { judge: self, distances, prediction }
     }
 
-    /// Judges the manifolds of an answer; `subshapes` tells the triangle and the part of each.
+    /// Whether SBBK computes contacts of a part of the shape itself.
+    pub fn has_own_contacts(&self) -> bool {
+        self.parts.iter().any(|part| part.has_own_contacts)
+    }
+}
+
+impl Part {
+    fn new(pose: &Pose3, shape: &dyn Shape) -> Self {
+        let bounds = shape.compute_local_aabb();
+        Self {
+            pose: DPose3::from(*pose).inverse(),
+            body: body(shape),
+            bounds: [bounds.mins, bounds.maxs].map(|corner| corner.as_dvec3()),
+            has_own_contacts: !matches!(
+                shape.as_typed_shape(),
+                TypedShape::Ball(_) | TypedShape::Cuboid(_) | TypedShape::HalfSpace(_)
+            ),
+        }
+    }
+
+    /// Whether box and box are farther apart than `reach`.
+    fn is_beyond(&self, [a, b, c]: &[DVec3; 3], reach: f64) -> bool {
+        let [min, max] = self.bounds;
+        (a.min(*b).min(*c) - reach).cmpgt(max).any() || (a.max(*b).max(*c) + reach).cmplt(min).any()
+    }
+}
+
+impl Truth<'_> {
+    /// Judges the manifolds of an answer; `subshapes` tells the triangle and the part of each. If
+    /// `only_own`, nothing counts but parts whose contacts SBBK computes itself.
     pub fn judge(
         &self,
         manifolds: &[ContactManifold],
         subshapes: impl Fn(&ContactManifold) -> Subshapes,
+        only_own: bool,
     ) -> ErrorCount {
-        let band = SET_BAND * self.prediction;
+        let Self { judge, distances, prediction } = self;
+        let counts =
+            |(_, part): Subshapes| !only_own || judge.parts[part as usize].has_own_contacts;
         let mut errors = ErrorCount { mesh_pairs: 1, sampled_from: 1, ..ErrorCount::default() };
-        let mut reported = BTreeMap::new();
+        let mut reported = BTreeSet::new();
         for manifold in manifolds {
-            let Some(distance) = least(manifold).filter(|&d| d <= self.prediction) else {
+            let subshapes = subshapes(manifold);
+            let distances_of_points = manifold.points.iter().map(|point| f64::from(point.dist));
+            let Some(distance) = distances_of_points
+                .reduce(f64::min)
+                .filter(|d| d <= prediction && counts(subshapes))
+            else {
                 continue;
             };
             errors.reported += 1;
-            let expected = self.distances.get(&subshapes(manifold)).copied();
-            let is_true = match expected {
-                Some(expected) => expected <= self.prediction + band,
-                None => self.pose.distance(subshapes(manifold)) <= self.prediction + band,
-            };
-            let is_repeated = reported.insert(subshapes(manifold), distance).is_some();
-            // Just within here, just beyond there.
-            let is_doubtful = distance > self.prediction - band;
-            errors.phantom += usize::from(is_repeated || !is_true && !is_doubtful);
-            let is_off = expected
-                .is_some_and(|expected| (expected - distance).abs() > DEPTH_BAND * self.prediction);
-            errors.wrong_depth += usize::from(is_true && is_off);
+            let is_repeated = !reported.insert(subshapes);
+            match distances.get(&subshapes) {
+                Some(truth) if !is_repeated => {
+                    let is_wrong =
+                        |truth: f64| (truth - distance).abs() > DISTANCE_BAND * prediction;
+                    errors.wrong_depth += usize::from(truth.is_some_and(is_wrong));
+                }
+                _ => errors.phantom += 1,
+            }
         }
-        for (subshapes, &distance) in &self.distances {
-            errors.true_pairs += usize::from(distance <= self.prediction);
-            let must = distance < self.prediction - band;
-            errors.missed += usize::from(must && !reported.contains_key(subshapes));
+        for (&subshapes, distance) in distances.iter().filter(|(subshapes, _)| counts(**subshapes))
+        {
+            let is_within = |limit: f64| distance.is_none_or(|distance| distance <= limit);
+            errors.true_pairs += usize::from(is_within(*prediction));
+            let must = is_within(prediction * (1.0 - SET_BAND));
+            errors.missed += usize::from(must && !reported.contains(&subshapes));
         }
         errors
     }
 }
 
-/// The convex parts of a shape and their poses in its frame.
-fn parts(shape: &SharedShape) -> Vec<(Pose3, &dyn Shape)> {
-    match shape.as_compound() {
-        Some(compound) => compound.shapes().iter().map(|(pose, part)| (*pose, &*part.0)).collect(),
-        None => vec![(Pose3::IDENTITY, &*shape.0)],
-    }
-}
-
-/// The least distance of the points that Parry's routine gives two convex shapes.
-fn distance(pos12: &Pose3, pair: [&dyn Shape; 2], prediction: Real) -> Option<Real> {
-    let mut manifold: ContactManifold = ContactManifold::new();
-    DefaultQueryDispatcher
-        .contact_manifold_convex_convex(
-            pos12,
-            pair[0],
-            pair[1],
-            None,
-            None,
-            prediction,
-            &mut manifold,
-        )
-        .expect("Parry has contacts of these shapes with triangles");
-    least(&manifold)
-}
-
-fn least(manifold: &ContactManifold) -> Option<Real> {
-    manifold.points.iter().map(|point| point.dist).reduce(Real::min)
+/// A convex shape of Parry's as the reference knows it.
+fn body(shape: &dyn Shape) -> ConvexBody {
+    let hull = |points: &[Vector]| {
+        ConvexBody::hull(points.iter().map(|point| point.as_dvec3()).collect::<Vec<_>>())
+    };
+    let cuboid = |half_lengths: Vector| {
+        let sign = |corner: usize, axis: usize| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 };
+        let corner =
+            |i| half_lengths.as_dvec3() * DVec3::from_array([0, 1, 2].map(|axis| sign(i, axis)));
+        ConvexBody::hull((0..8).map(corner).collect::<Vec<_>>())
+    };
+    let cylinder =
+        |half_height: Real, radius: Real| ConvexBody::cylinder(half_height.into(), radius.into());
+    let cone =
+        |half_height: Real, radius: Real| ConvexBody::cone(half_height.into(), radius.into());
+    let (core, radius) = match shape.as_typed_shape() {
+        TypedShape::Ball(ball) => (ConvexBody::hull([DVec3::ZERO]), ball.radius),
+        TypedShape::Segment(segment) => (hull(&[segment.a, segment.b]), 0.0),
+        TypedShape::Capsule(capsule) => {
+            (hull(&[capsule.segment.a, capsule.segment.b]), capsule.radius)
+        }
+        TypedShape::Triangle(triangle) => (hull(triangle.vertices()), 0.0),
+        TypedShape::RoundTriangle(round) => {
+            (hull(round.inner_shape.vertices()), round.border_radius)
+        }
+        TypedShape::Cuboid(shape) => (cuboid(shape.half_extents), 0.0),
+        TypedShape::RoundCuboid(round) => {
+            (cuboid(round.inner_shape.half_extents), round.border_radius)
+        }
+        TypedShape::ConvexPolyhedron(shape) => (hull(shape.points()), 0.0),
+        TypedShape::RoundConvexPolyhedron(round) => {
+            (hull(round.inner_shape.points()), round.border_radius)
+        }
+        TypedShape::Cylinder(shape) => (cylinder(shape.half_height, shape.radius), 0.0),
+        TypedShape::RoundCylinder(round) => {
+            (cylinder(round.inner_shape.half_height, round.inner_shape.radius), round.border_radius)
+        }
+        TypedShape::Cone(shape) => (cone(shape.half_height, shape.radius), 0.0),
+        TypedShape::RoundCone(round) => {
+            (cone(round.inner_shape.half_height, round.inner_shape.radius), round.border_radius)
+        }
+        TypedShape::HalfSpace(shape) => (ConvexBody::half_space(shape.normal.as_dvec3()), 0.0),
+        _ => unreachable!("no convex shape of the study"),
+    };
+    core.rounded(radius.into())
 }
