@@ -95,7 +95,7 @@ fn a_stack_of_ten_boxes_stands_for_a_minute() {
 #[test]
 fn a_head_rests_on_a_slope() {
     for (degrees, least_way) in [(0.0, 0.0), (10.0, 0.3), (14.0, 0.3)] {
-        let scene = HeadOnSlope { angle: Real::to_radians(degrees), ..HeadOnSlope::default() };
+        let scene = HeadOnSlope { angle: Real::to_radians(degrees) };
         let mut both = Both::new(|| build(&scene));
         let start: Vec<Vector> = both.bodies().map(|[_, sbbk]| sbbk.translation()).collect();
         both.step(600);

@@ -297,7 +297,7 @@ fn edited_meshes_keep_their_own_order() {
         let mut edited = ball.clone();
         edited.update_vertices(|vertices| vertices[vertex] *= 1.25);
         let built = rebuilt(&edited);
-        let orders = [&edited, &built].map(|mesh| leaves(mesh));
+        let orders = [&edited, &built].map(leaves);
         if orders[0] != orders[1] && orders[0][..16] == orders[1][..16] {
             alike_at_first += 1;
             unlike += check_shared([&edited, &built], &other, &[0.3, 0.3, 0.3]);

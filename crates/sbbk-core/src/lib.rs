@@ -52,6 +52,9 @@ pub mod front;
 pub mod leaf;
 pub mod query;
 mod simd;
+#[cfg(test)]
+#[path = "../tests/support/mod.rs"]
+mod support;
 pub mod traverse;
 pub mod tree;
 #[cfg(feature = "truth")]

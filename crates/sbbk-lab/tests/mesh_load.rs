@@ -242,7 +242,7 @@ fn broken_files_are_named_with_the_cause() {
     for (contents, problem) in [
         (text.replacen("vertex 0.0", "vertex zero", 1).into_bytes(), "invalid float literal"),
         (text.replacen("vertex 0.0", "vertex nan", 1).into_bytes(), "expected finite f32, got NaN"),
-        (text[..text.len() - 24].as_bytes().to_vec(), "expected [\"endfacet\"]"),
+        (text.as_bytes()[..text.len() - 24].to_vec(), "expected [\"endfacet\"]"),
         (binary[..683].to_vec(), "failed to fill whole buffer"),
         (infinite, "vertex 1 is not finite: [inf, "),
         (b"solid x\nendsolid x\n".to_vec(), "it holds no triangles"),

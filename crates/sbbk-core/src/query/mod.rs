@@ -35,9 +35,6 @@ mod guess;
 mod meet;
 mod nearest;
 mod seek;
-#[cfg(test)]
-#[path = "../../tests/support/mod.rs"]
-mod support;
 mod sweep;
 mod triangles;
 

@@ -209,7 +209,7 @@ mod tests {
     use glamx::Pose3;
 
     use super::*;
-    use crate::query::support::{Random, bumpy_ball};
+    use crate::support::{Random, bumpy_ball};
     use crate::tree::BuildOptions;
 
     /// The counters: of 16 million pairs of triangles a few hundred are compared, wherever the

@@ -8,12 +8,9 @@ use super::expand::Compare;
 use super::gaps::Bound;
 use super::{OrderedOverlap, PairFrame, Side, Toward};
 use crate::simd::{Inner, Outer, each};
+use crate::support::Random;
 use crate::tree::{BuildOptions, Children, Intervals, LayerPlan, Slot, Tree};
 use crate::volumes::{DirectionSet, Directions};
-
-#[path = "../../tests/support/mod.rs"]
-mod support;
-use support::Random;
 
 /// What was lost in the direction that matters, as a share of what is allowed.
 struct Loss {
@@ -192,7 +189,7 @@ fn bounds_are_below_those_in_f64() {
         assert!(f64::from(bound) <= exact, "{bound} of {exact}");
         let is_near = f64::from(bound) >= exact - 1.0e-6 * exact.abs();
         is_equal += u32::from(is_near);
-        assert!(is_near || size > 1.0e37 || size < 1.0e-11, "{bound} of {exact}");
+        assert!(is_near || !(1.0e-11..=1.0e37).contains(&size), "{bound} of {exact}");
     }
     assert!(is_equal > 1000);
 }

@@ -110,7 +110,7 @@ impl TriangleShapes for Meshes<'_> {
         let prepared = self.prepared.each_ref().map(|held| &**held);
         let trees = (&prepared[0].tree, &prepared[1].tree);
         let mut frame = PairFrame::at(trees, self.pair.pose.placement12, margin);
-        let mut collector = Collector { prepared, test: LeafTest::new(&mut frame), found };
+        let mut collector = Collector { prepared, test: LeafTest::new(&frame), found };
         let (stack, way) = (&mut scratch.descent, Descent::Simultaneous);
         descend(trees, &mut frame, way, stack, counters, &mut collector);
     }
