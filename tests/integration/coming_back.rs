@@ -43,10 +43,12 @@ fn grounds() -> Vec<(&'static str, SharedShape)> {
 }
 
 /// A mesh and a ground, as a host asks of them.
+#[derive(Clone, Copy)]
 struct Question<'a> {
     ground: &'a dyn Shape,
     mesh: &'a dyn Shape,
     is_mesh_first: bool,
+    prediction: Real,
 }
 
 impl Question<'_> {
@@ -59,7 +61,7 @@ impl Question<'_> {
         };
         let Pair { manifolds, workspace } = pair;
         dispatcher
-            .contact_manifolds(&pos12, g1, g2, 0.02, manifolds, workspace)
+            .contact_manifolds(&pos12, g1, g2, self.prediction, manifolds, workspace)
             .expect("supported");
     }
 
@@ -76,7 +78,8 @@ fn for_each_pair(mut check: impl FnMut(&str, &Question)) {
         let ball = shape_with(&mesh::ball(1.0, 6), flags);
         for (name, ground) in grounds() {
             for is_mesh_first in [false, true] {
-                let question = Question { ground: &*ground, mesh: &ball, is_mesh_first };
+                let question =
+                    Question { ground: &*ground, mesh: &ball, is_mesh_first, prediction: 0.02 };
                 check(&format!("{name}, {flags:?}, mesh first: {is_mesh_first}"), &question);
             }
         }
@@ -91,7 +94,9 @@ fn seen<M, C>(manifolds: &[ContactManifold<M, C>]) -> Vec<String> {
             format!("{:?} {:?} {} {fid1} {fid2}", p.local_p1, p.local_p2, p.dist.to_bits())
         });
         let subshapes = [m.subshape1, m.subshape2];
-        format!("{subshapes:?} {:?} {:?} {:?}", m.local_n1, m.local_n2, points.collect::<Vec<_>>())
+        let (normals, points) = ([m.local_n1, m.local_n2], points.collect::<Vec<_>>());
+        let poses = [m.subshape_pos1(), m.subshape_pos2()];
+        format!("{subshapes:?} {poses:?} {normals:?} {points:?}")
     };
     manifolds.iter().map(of_manifold).collect()
 }
@@ -127,8 +132,8 @@ fn a_pair_that_comes_back_to_an_equal_pose_touches_as_before() {
     });
 }
 
-/// Would catch manifolds that come twice, out of order, or not at all, after the host has removed,
-/// copied or moved some.
+/// Would catch manifolds that come twice, out of order, not at all, or without the poses of their
+/// parts, after the host has removed, copied, moved or emptied some.
 #[test]
 fn a_host_may_prune_manifolds() {
     for_each_pair(|name, question| {
@@ -139,11 +144,14 @@ fn a_host_may_prune_manifolds() {
             let pose = nudge(&mut random, 1e-4) * at(-5.0);
             question.ask(&dispatcher, &mut pair, pose);
             question.ask(&dispatcher, &mut pair, nudge(&mut random, 1e-5) * pose);
-            match round % 4 {
+            match round % 5 {
                 0 => _ = pair.manifolds.pop(),
                 1 => drop(pair.manifolds.remove(0)),
                 2 => pair.manifolds.extend(pair.manifolds.first().cloned()),
-                _ => pair.manifolds.reverse(),
+                3 => pair.manifolds.reverse(),
+                _ => pair.manifolds.iter_mut().for_each(|manifold| {
+                    *manifold = Manifold::with_data(manifold.subshape1, manifold.subshape2, ());
+                }),
             }
             for step in [0.0, 0.0, 1e-5] {
                 let next = nudge(&mut random, step) * pose;
@@ -199,6 +207,42 @@ fn a_query_cut_short_by_a_panic_is_asked_again() {
     });
 }
 
+/// Would catch boxes of whole shapes that roundings make too small: a mesh far from its own origin,
+/// at the prediction distance, in the first query of a pair.
+#[test]
+fn first_queries_see_as_far_as_later_ones() {
+    let cube = mesh::cuboid(Vec3::ONE, 1);
+    let plate = (Pose::IDENTITY, SharedShape::cuboid(1.0, 1.0, 1.0));
+    let grounds = [
+        cube.shared_shape().expect("a box is a mesh"),
+        SharedShape::cuboid(1.0, 1.0, 1.0),
+        SharedShape::cylinder(1.0, 1.0),
+        SharedShape::compound(vec![plate]),
+    ];
+    let (mut random, mut found) = (Rand32::new(1), [0; 4]);
+    for _ in 0..200 {
+        let offset = 1e4 * (1.0 + random.rand_float());
+        let far = shape_with(&cube.clone().mapped(|x| x + offset * Vec3::Y), TriMeshFlags::empty());
+        let pose = Pose::translation(0.1, 2.02 - offset, 0.2);
+        let lowest = far.vertices().iter().map(|x| x.y).fold(Real::INFINITY, Real::min);
+        let gap = (f64::from(lowest) + f64::from(pose.translation.y) - 1.0) as Real;
+        for (ground, found) in grounds.iter().zip(&mut found) {
+            for is_mesh_first in [false, true] {
+                let prediction = gap.next_up();
+                let question =
+                    Question { ground: &**ground, mesh: &far, is_mesh_first, prediction };
+                let mut pair: Pair = Pair::default();
+                let dispatcher = SbbkDispatcher::default();
+                question.ask(&dispatcher, &mut pair, Pose::translation(-0.1, -0.1, 0.0) * pose);
+                question.ask(&dispatcher, &mut pair, pose);
+                assert!(seen(&pair.manifolds) == seen(&question.fresh(pose)), "{offset}");
+                *found += pair.manifolds.len();
+            }
+        }
+    }
+    assert!(found.iter().all(|&found| found > 100), "{found:?} contacts");
+}
+
 /// Any prediction distance, however large, finds what a smaller one finds.
 #[test]
 fn no_prediction_distance_is_too_large() {
@@ -209,17 +253,10 @@ fn no_prediction_distance_is_too_large() {
         };
         for prediction in [1e3, 1e9, 2e19, 1e30, Real::MAX] {
             let mut pair: Pair = Pair::default();
-            let Pair { manifolds, workspace } = &mut pair;
-            let (pos12, g1, g2) = if question.is_mesh_first {
-                (at(-5.0).inverse(), question.mesh, question.ground)
-            } else {
-                (at(-5.0), question.ground, question.mesh)
-            };
+            let question = Question { prediction, ..*question };
             for _ in 0..2 {
-                SbbkDispatcher::default()
-                    .contact_manifolds(&pos12, g1, g2, prediction, manifolds, workspace)
-                    .expect("supported");
-                let found = triangles(manifolds);
+                question.ask(&SbbkDispatcher::default(), &mut pair, at(-5.0));
+                let found = triangles(&pair.manifolds);
                 let is_lost = |near: &&[u32; 2]| !found.contains(near);
                 let lost = triangles(&near).iter().filter(is_lost).count();
                 assert_eq!(lost, 0, "{name} within {prediction}");
