@@ -143,8 +143,8 @@ fn lines(low: f64, high: f64, scale: f64, count: usize) -> Option<Range<usize>> 
     is_inside.then(|| first.max(0.0) as usize..last.min(cells - 1.0) as usize + 1)
 }
 
-/// The interval of y in heights before scaling. Rounding its ends to f32 passes no height, as heights
-/// are f32 themselves.
+/// The interval of y in heights before scaling. Rounding its ends to f32 passes no height, as
+/// heights are f32 themselves.
 fn heights(low: f64, high: f64, scale: f64) -> [f32; 2] {
     if scale == 0.0 {
         let is_inside = low <= 0.0 && high >= 0.0;
