@@ -230,12 +230,14 @@ fn is_found(tree: &Tree, placement: &Placement, shape: &Shape, margin: f64) -> b
 fn shapes_the_margin_apart_are_found() {
     let random = &mut Random(3);
     for i in 0..6000 {
-        let far = [0.0, 3.0, 300.0, 1.0e4][i % 4];
+        // The squares of tiny triangles' normals underflow.
+        let size = if i % 5 == 0 { 3.0e-11 } else { 1.0 };
+        let far = [0.0, 3.0, 300.0, 1.0e4][i % 4] * size;
         // In the frame of the shape: towards a corner along an axis of the shape, or any direction
         // for a ball.
         let axis = [DVec3::X, DVec3::Y, DVec3::Z][i % 3];
         let any = random.vector(1.0).as_dvec3().normalize();
-        let radius = f64::from(random.range(0.0, 0.5));
+        let radius = f64::from(random.range(0.0, 0.5) * size);
         let centre = random.vector(far).as_dvec3();
         let (n, outline) = match i / 4 % 3 {
             0 => {
@@ -243,7 +245,7 @@ fn shapes_the_margin_apart_are_found() {
                 (any, Outline::RoundBox { centre, half_lengths, radius, is_exact: true })
             }
             1 => {
-                let half_lengths = random.vector(0.5).abs().as_dvec3() + 0.1;
+                let half_lengths = (random.vector(0.5).abs().as_dvec3() + 0.1) * f64::from(size);
                 (axis, Outline::RoundBox { centre, half_lengths, radius, is_exact: true })
             }
             _ => (any, Outline::HalfSpace { normal: any }),
@@ -253,9 +255,9 @@ fn shapes_the_margin_apart_are_found() {
         let placement = Placement::new(&pose);
         let middle = if let Outline::HalfSpace { .. } = outline { DVec3::ZERO } else { centre };
         let surface = middle + n * (shape.reach(n) - n.dot(middle));
-        let gap = f64::from(random.range(0.01, 1.0));
+        let gap = f64::from(random.range(0.01, 1.0) * size);
         let tip = surface + n * gap;
-        let aside = n.any_orthonormal_vector();
+        let (n, aside) = (n * f64::from(size), n.any_orthonormal_vector() * f64::from(size));
         let corners = [tip, tip + n + 0.1 * aside, tip + 0.5 * n - 0.1 * aside];
         let corners = corners.map(|x| placement.to_frame2(x, Vec3::ZERO).as_vec3());
         let tree = tree(&corners, KDOPS);
@@ -273,6 +275,26 @@ fn shapes_the_margin_apart_are_found() {
         );
         let less = 0.9 * distance - 1.0e-4 * f64::from(tree.magnitude() + far);
         assert!(!is_found(&tree, &placement, &shape, less) || less <= 0.0);
+    }
+}
+
+/// How deep a triangle is in a box is not made less by products that overflow.
+#[test]
+fn depths_of_any_size_are_bounds() {
+    for exponent in -5..36 {
+        let size = 10.0_f32.powi(exponent);
+        let half_lengths = DVec3::splat(f64::from(size));
+        let (centre, radius) = (DVec3::ZERO, 0.0);
+        let shape = Shape(Outline::RoundBox { centre, half_lengths, radius, is_exact: true });
+        let corners =
+            [Vec3::new(0.3, 0.1, 0.0), Vec3::new(-0.2, 0.3, 0.1), Vec3::new(0.0, -0.3, 0.2)];
+        let tree = tree(&corners.map(|corner| corner * size), KDOPS);
+        let placement = Placement::new(&Pose3::IDENTITY);
+        let probe: Probe<'_, _> = Probe::new(&tree, &placement, &shape, 0.0);
+        let mut found = Vec::new();
+        ProbeTest::new(&probe).survivors(tree.leaf(0), |_, distance, _| found.push(distance));
+        let depth = found[0] / f64::from(size);
+        assert!(found.len() == 1 && depth < -0.69, "{found:?} of {size}");
     }
 }
 

@@ -143,7 +143,8 @@ fn lines(low: f64, high: f64, scale: f64, count: usize) -> Option<Range<usize>> 
     is_inside.then(|| first.max(0.0) as usize..last.min(cells - 1.0) as usize + 1)
 }
 
-/// The interval of y in heights before scaling, rounded outwards.
+/// The interval of y in heights before scaling. Rounding its ends to f32 passes no height, as
+/// heights are f32 themselves.
 fn heights(low: f64, high: f64, scale: f64) -> [f32; 2] {
     if scale == 0.0 {
         let is_inside = low <= 0.0 && high >= 0.0;
@@ -152,5 +153,23 @@ fn heights(low: f64, high: f64, scale: f64) -> [f32; 2] {
     let (a, b) = (low / scale, high / scale);
     let slack =
         f64::from(gamma(4)) * a.abs().max(b.abs()) + (f64::from(f32::MIN_POSITIVE) / scale).abs();
-    [((a.min(b) - slack) as f32).next_down(), ((a.max(b) + slack) as f32).next_up()]
+    [(a.min(b) - slack) as f32, (a.max(b) + slack) as f32]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::heights;
+
+    /// A scaled height is in its own interval, where the product rounds and where it underflows.
+    #[test]
+    fn a_scaled_height_is_a_height() {
+        for i in 1..10_000_u16 {
+            let (x, y) = (f32::from(i).sqrt(), f32::from(i).cbrt());
+            for (height, scale) in [(x, y), (x, -y), (1e-30 * x, 1e-20 * y), (1e-38 * x, 0.1 * y)] {
+                let scaled = f64::from(height * scale);
+                let [low, high] = heights(scaled, scaled, f64::from(scale));
+                assert!(low <= height && height <= high, "{height} times {scale}: {low} to {high}");
+            }
+        }
+    }
 }

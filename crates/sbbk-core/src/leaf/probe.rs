@@ -37,8 +37,9 @@ use crate::volumes::rounding::gamma;
 /// underflow.
 const SHORTEST_SQUARED: f32 = 1e-30;
 
-/// The largest coordinate of which products of three, times 24, do not overflow.
-const LARGEST: f32 = 1e12;
+/// The largest coordinate of which products of four, times 192, do not overflow: the squared length
+/// of the product of two edges.
+const LARGEST: f32 = 1e9;
 
 /// Tests leaves against a shape. Made once a query.
 #[derive(Copy, Clone)]

@@ -10,13 +10,14 @@
 //! `M` is the largest absolute coordinate of a tree, `T` that of a translation, `s` the scale of a
 //! rotation (1 but for the rounding of its quaternion), `m` a margin. `W = M1 + T + 2·s·M2` bounds
 //! all coordinates of two meshes in the frame of the first, as the row sums of `|R|` are at most
-//! `√3·s < 2·s`; `r = γ_16·W`. Directions of slabs have components in {-1, 0, 1}. Each allowance
-//! has a test in `allowances.rs` that fails without it.
+//! `√3·s < 2·s`; `r = γ_16·W`. Directions of slabs have components in {-1, 0, 1}. Most
+//! allowances have a test that fails without them; for some there is none yet, or another allowance
+//! covers the same loss.
 //!
 //! | where | what rounds | loses at most | allowed |
 //! |---|---|---|---|
 //! | `Kdop::fit` | two additions of corners | `γ_2·(X + Y + Z)` of the largest coordinates | `γ_3` of that |
-//! | `Sphere::fit` | three squares, a root; the difference before | `γ_5` of the distance, `u` of coordinates | `γ_6`, `γ_2`, and `UNDERFLOW` |
+//! | `Sphere::fit` | a difference, three squares, a root | `γ_5` of the distance | `γ_6` and `UNDERFLOW` |
 //! | `centre_extent` | the half-length | `u` of it | the next number |
 //! | `PairFrame`, boxes | `t + R·c2` (5 roundings), minus `c1` (1), `e1 + \|R\|·e2` (8, `e <= M`) | `γ_5·(T + 2·s·M2) + γ_1·W + γ_8·(M1 + 2·s·M2)` | `r`; in frame 2 likewise |
 //! | `Correspondence`, slabs | bounds up to `3·M`, coefficients that sum to `2·√3·s` | `γ_9·3·M1 + γ_6·3·T + γ_14·10.4·s·M2` | `6·r` |

@@ -75,9 +75,7 @@ impl Sphere {
     /// The sphere that contains all points whose computed distance from `centre` is `distance` or
     /// less.
     pub(crate) fn reaching(centre: Vec3, distance: f32) -> Self {
-        let magnitude = centre.abs().max_element() + distance;
-        let radius = distance * (1.0 + gamma(6)) + gamma(2) * magnitude + UNDERFLOW;
-        Self { centre, radius }
+        Self { centre, radius: distance * (1.0 + gamma(6)) + UNDERFLOW }
     }
 
     /// The farthest of `points` from the centre, and its distance.
