@@ -5,7 +5,7 @@ use glamx::{Quat, Vec3};
 use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::math::{Pose, Real};
-use rapier3d::parry::query::{ContactManifold, PersistentQueryDispatcher};
+use rapier3d::parry::query::ContactManifold;
 use rapier3d::parry::shape::{HeightField, Shape, SharedShape, TriMeshFlags};
 use rapier3d::parry::utils::Array2;
 use rapier3d::pipeline::PhysicsWorld;

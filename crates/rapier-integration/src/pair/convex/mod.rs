@@ -16,11 +16,12 @@
 mod face;
 mod features;
 mod half_space;
+mod pair;
 mod parts;
 mod placed;
 mod query;
 mod shape;
 
+pub(crate) use pair::ConvexPair;
 pub(crate) use parts::Parts;
 pub(super) use placed::PlacedPart;
-pub(crate) use query::ConvexPair;

@@ -14,8 +14,8 @@ use sbbk_core::traverse::{Convex, Placement};
 use super::face::OverFace;
 use super::features::Touching;
 use super::half_space::half_space_manifold;
+use super::pair::ConvexPair;
 use super::parts::{Part, Parts};
-use super::query::ConvexQuery;
 use super::shape::{ConvexShape, Extent, Measured};
 use crate::pair::pose::MeshPlace;
 
@@ -34,8 +34,14 @@ pub(crate) struct PlacedPart {
 }
 
 impl PlacedPart {
-    pub(super) fn new(index: u32, part: &Part<'_>, query: &ConvexQuery<'_>) -> Self {
-        let pair = query.pair;
+    /// `mesh_centre` is that of the mesh, in its own frame.
+    pub(super) fn new(
+        index: u32,
+        part: &Part<'_>,
+        pair: &ConvexPair<'_>,
+        extent: Extent,
+        mesh_centre: Vec3,
+    ) -> Self {
         let pose = pair.part_pose(part.pose);
         let [to_mesh, to_part] = pair.mesh_place.swap([pose, pose.inverse()]);
         let placement12 = match pair.parts {
@@ -44,14 +50,14 @@ impl PlacedPart {
         };
         let over_face = match part.shape {
             ConvexShape::Cuboid(cuboid) => {
-                let centre = to_part * query.prepared.tree.bounding_ball().centre;
+                let centre = to_part * mesh_centre;
                 Some(OverFace::below(centre, cuboid, [&to_part, &to_mesh]))
             }
             _ => None,
         };
         Self {
             index,
-            extent: query.known_parts.extent(part),
+            extent,
             placement: pair.mesh_place.mesh_in_other(&placement12),
             to_part,
             to_mesh,

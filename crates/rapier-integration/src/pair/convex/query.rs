@@ -1,88 +1,25 @@
 use std::sync::Arc;
 
 use glamx::Vec3;
-use parry3d::bounding_volume::Aabb;
-use parry3d::math::{Pose, Real};
+use parry3d::math::Real;
 use parry3d::query::details::NormalConstraints;
 use parry3d::query::{ContactManifold, TrackedContact};
-use parry3d::shape::{TriMesh, Triangle};
+use parry3d::shape::Triangle;
 use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::leaf::ProbeTest;
 use sbbk_core::traverse::{Counters, Placement, Probe, Verdict, descend_probe};
 use sbbk_core::volumes::rounding::gamma;
 
 use super::features::core_contact;
+use super::pair::ConvexPair;
 use super::parts::{KnownParts, Part, Parts};
 use super::placed::{PlacedPart, Question};
 use super::shape::ConvexShape;
 use crate::ContactGenerator;
-use crate::mesh::{Change, Held, KnownMesh, TreeCache, placed_root_box};
+use crate::mesh::{Change, Held, KnownMesh, TreeCache};
 use crate::pair::driver::{Limits, Moving, Pair, PairQuery, Scratch};
 use crate::pair::order::{Candidate, OrderKey};
 use crate::pair::pose::{MeshPlace, PairPose};
-
-/// A mesh and one or more convex shapes.
-#[derive(Copy, Clone)]
-pub(crate) struct ConvexPair<'a> {
-    pub(crate) pose: &'a PairPose,
-    pub(crate) mesh: &'a TriMesh,
-    pub(crate) parts: Parts<'a>,
-    pub(crate) mesh_place: MeshPlace,
-    pub(crate) contacts: ContactGenerator,
-}
-
-/// Parry's GJK ends when it knows a distance, radii not counted, to this share; it calls triangles
-/// that are so much beyond the prediction distance contacts as well. Looking for them makes its
-/// contacts those of a test of all triangles.
-const GJK_TOLERANCE: Real = 1.2e-3;
-
-impl ConvexPair<'_> {
-    /// The box around the mesh in the frame of the parts, grown by `reach`. `None` if the mesh is
-    /// broken: it can be anywhere.
-    fn mesh_box(&self, reach: Real) -> Option<Aabb> {
-        let pos12 = self.pose.pos12;
-        let pose = if self.mesh_place.is_second() { pos12 } else { pos12.inverse() };
-        placed_root_box(self.mesh, &pose, reach)
-    }
-
-    /// How far contacts may be found of parts with radii of at most `radius`, roundings not
-    /// counted.
-    fn sight(&self, radius: Real) -> Real {
-        let prediction = self.pose.prediction.max(0.0);
-        match self.contacts {
-            ContactGenerator::Exact => prediction,
-            ContactGenerator::Parry => prediction + GJK_TOLERANCE * (prediction + radius),
-        }
-    }
-
-    /// Whether stock walks the hierarchy of the mesh first.
-    fn is_mesh_first(&self) -> bool {
-        let mesh = self.mesh.bvh().root_aabb().half_extents().length_squared();
-        self.parts.walk_size().is_none_or(|parts| match self.mesh_place {
-            MeshPlace::First => mesh >= parts,
-            MeshPlace::Second => parts < mesh,
-        })
-    }
-
-    /// The pose of shape 2 in the frame of shape 1 with a part in place of the whole: with stock's
-    /// roundings.
-    pub(super) fn part_pose(&self, part: Option<&Pose>) -> Pose {
-        let pos12 = self.pose.pos12;
-        let (is_mesh_first, is_mesh_second) = (self.is_mesh_first(), self.mesh_place.is_second());
-        match (self.parts, part) {
-            (Parts::One(_), _) if is_mesh_second => pos12.inverse().inverse(),
-            (Parts::One(_), _) => pos12,
-            (_, None) if is_mesh_first == is_mesh_second => pos12,
-            (_, None) => pos12.inverse().inverse(),
-            (_, Some(part)) => match (is_mesh_second, is_mesh_first) {
-                (false, false) => pos12 * *part,
-                (false, true) => part.inv_mul(&pos12.inverse()).inverse(),
-                (true, true) => part.inv_mul(&pos12),
-                (true, false) => (pos12.inverse() * *part).inverse(),
-            },
-        }
-    }
-}
 
 impl<'a> Pair for ConvexPair<'a> {
     /// The mesh, and the parts that the candidates are of.
@@ -124,9 +61,9 @@ impl<'a> Pair for ConvexPair<'a> {
 
 /// A mesh with its tree, and the parts.
 pub(crate) struct ConvexQuery<'q> {
-    pub(super) pair: &'q ConvexPair<'q>,
-    pub(super) prepared: Held<'q>,
-    pub(super) known_parts: &'q KnownParts,
+    pair: &'q ConvexPair<'q>,
+    prepared: Held<'q>,
+    known_parts: &'q KnownParts,
     /// The mesh in the frame of the parts.
     placement: Placement,
     /// Whether stock walks the hierarchy of the mesh first.
@@ -182,7 +119,10 @@ impl ConvexQuery<'_> {
         if parts[slot].as_ref().is_some_and(|placed| placed.index != index) {
             parts[slot] = None;
         }
-        parts[slot].get_or_insert_with(|| PlacedPart::new(index, part, self))
+        parts[slot].get_or_insert_with(|| {
+            let centre = self.prepared.tree.bounding_ball().centre;
+            PlacedPart::new(index, part, self.pair, self.known_parts.extent(part), centre)
+        })
     }
 }
 
