@@ -26,9 +26,10 @@ const STEP_LIMIT: usize = 240;
 /// Points that measure a volume: enough for 5 % of a hundredth of the ball's box.
 const POINT_COUNT: usize = 50_000;
 
-/// Follows the mesh ball to its first penetration, and cuts both hierarchies at every depth, from 0 to
-/// that of the deepest leaf: pairs of inner nodes are not opened from there on. A pair with a leaf on
-/// one side goes on to the leaves of the other. Nothing when the ball does not meet the helicopter.
+/// Follows the mesh ball to its first penetration, and cuts both hierarchies at every depth, from 0
+/// to that of the deepest leaf: pairs of inner nodes are not opened from there on. A pair with a
+/// leaf on one side goes on to the leaves of the other. Nothing when the ball does not meet the
+/// helicopter.
 ///
 /// Errors: a mesh does not serve.
 pub fn cut(scene: &HelicopterBallDrop) -> Result<Vec<Row>, StudyError> {

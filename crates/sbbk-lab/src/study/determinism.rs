@@ -1,5 +1,5 @@
-//! Same inputs, same bits: whole worlds run again and again, on other numbers of threads, and under a
-//! dispatcher that remembers nothing.
+//! Same inputs, same bits: whole worlds run again and again, on other numbers of threads, and under
+//! a dispatcher that remembers nothing.
 
 use std::fmt;
 

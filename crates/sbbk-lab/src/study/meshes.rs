@@ -18,15 +18,16 @@ use crate::report::{
 const MESHES: &str = "trees and first queries";
 /// The prediction distance of the queries: Rapier's default.
 const PREDICTION: f32 = 0.02;
-/// Least and greatest number of approaches of five poses each. Large meshes, whose queries take long,
-/// get the least.
+/// Least and greatest number of approaches of five poses each. Large meshes, whose queries take
+/// long, get the least.
 const APPROACHES: [usize; 2] = [1, 3];
 /// Least and greatest number of repeats.
 const REPEATS: [usize; 2] = [3, 25];
 /// Triangles in all approaches, or all repeats, together.
 const TRIANGLES: usize = 100_000;
 
-/// Measures each mesh, scaled to two units, against itself. Builds are in milliseconds, queries in µs.
+/// Measures each mesh, scaled to two units, against itself. Builds are in milliseconds, queries in
+/// µs.
 ///
 /// Errors: a mesh has no triangles, or a tree cannot be built for it.
 pub(super) fn meshes(meshes: &[Mesh], progress: &Progress) -> Result<Vec<Row>, StudyError> {

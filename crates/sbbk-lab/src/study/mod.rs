@@ -1,5 +1,5 @@
-//! The experiments. Each has a plan, standard or quick, carries it out, and returns rows, tables and
-//! a picture: [`Results`](crate::report::Results).
+//! The experiments. Each has a plan, standard or quick, carries it out, and returns rows, tables
+//! and a picture: [`Results`](crate::report::Results).
 //!
 //! Times are taken in one process, backends in turn, and without what happens only once: trees are
 //! built before. Wrong contacts are counted on the queries that are timed, or on such ones.

@@ -84,8 +84,8 @@ pub(super) struct Place {
 }
 
 impl Approach {
-    /// A way in a random orientation along a random direction. The shape may pass through a hole, as
-    /// of a torus: then another is tried.
+    /// A way in a random orientation along a random direction. The shape may pass through a hole,
+    /// as of a torus: then another is tried.
     ///
     /// Panics where none touches, as of shapes without extent.
     pub fn random(
@@ -160,16 +160,17 @@ fn reach(shape: &SharedShape, from: Vec3, direction: Vec3) -> Real {
 }
 
 /// Poses from before a place through it to as far behind it, `step_count` equal steps: the mesh
-/// `shape` slides along a straight line and turns about its origin at once. Each of the two moves the
-/// point of the surface that it moves most by half of `step`; together they move no point farther
-/// than `step`, and some nearly so far.
+/// `shape` slides along a straight line and turns about its origin at once. Each of the two moves
+/// the point of the surface that it moves most by half of `step`; together they move no point
+/// farther than `step`, and some nearly so far.
 pub(super) fn motion(
     shape: &SharedShape,
     place: &Place,
     step: Real,
     step_count: usize,
 ) -> Vec<Pose3> {
-    // Along the first shape, and about an axis that is neither that of rolling nor that of spinning.
+    // Along the first shape, and about an axis that is neither that of rolling nor that of
+    // spinning.
     let slide = place.direction.any_orthonormal_vector();
     let axis = FRAC_1_SQRT_2 * (place.direction + place.direction.cross(slide));
     let local_axis = place.pos12.rotation.inverse() * axis;

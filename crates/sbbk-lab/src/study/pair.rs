@@ -25,8 +25,8 @@ pub(super) struct Contest {
     _primed: [Primed; 2],
 }
 
-/// Two shapes, asked for their contacts at one pose after the other, each with what the query before
-/// left.
+/// Two shapes, asked for their contacts at one pose after the other, each with what the query
+/// before left.
 pub(super) struct Sequence<'a> {
     pub shapes: [&'a SharedShape; 2],
     pub poses: Vec<Pose3>,
@@ -67,8 +67,8 @@ pub(super) fn query_count(sequences: &[Sequence]) -> f64 {
     sequences.iter().map(|sequence| (sequence.poses.len() - 1).max(1)).sum::<usize>() as f64
 }
 
-/// Time of all queries but the first of each sequence; of that, if it is the only one, and then with
-/// the time to free the manifolds.
+/// Time of all queries but the first of each sequence; of that, if it is the only one, and then
+/// with the time to free the manifolds.
 pub(super) fn sweep(dispatcher: &SharedDispatcher, sequences: &[Sequence]) -> Duration {
     let time = |sequence: &Sequence| {
         let mut memory = Memory::default();

@@ -166,8 +166,8 @@ fn same_poses(
     rows.collect()
 }
 
-/// What tables call the paper's pile, its size, and its "whole time of CD process" in milliseconds; it is not said
-/// whether this is a frame's time.
+/// What tables call the paper's pile, its size, and its "whole time of CD process" in milliseconds;
+/// it is not said whether this is a frame's time.
 const PAPERS: &str = "the paper's";
 const PAPERS_HEADS: usize = 2000;
 const PAPERS_TIMES: [(Backend, f64); 2] = [(Backend::AabbOnly, 71.8), (Backend::Sbbk, 34.5)];

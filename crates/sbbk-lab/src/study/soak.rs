@@ -51,8 +51,8 @@ impl Default for SoakPlan {
     }
 }
 
-/// What trees of meshes that are gone may keep: little, so that the bound is reached soon and memory must be flat from
-/// then on.
+/// What trees of meshes that are gone may keep: little, so that the bound is reached soon and
+/// memory must be flat from then on.
 const IDLE_TREE_BYTES: usize = 1 << 20;
 
 const SOAK: &str = "soak";
@@ -230,8 +230,8 @@ impl SoakRun {
             .with("errors", errors)
     }
 
-    /// Takes everything away, and the world last: Rapier keeps the pairs that it has retired, with what they hold, until it
-    /// needs a new one. The trees that are left.
+    /// Takes everything away, and the world last: Rapier keeps the pairs that it has retired, with
+    /// what they hold, until it needs a new one. The trees that are left.
     fn clear(mut self) -> usize {
         while !self.bodies.is_empty() {
             self.remove_oldest();

@@ -1,5 +1,5 @@
-//! Meshes that deform: soft monkey heads on a rigid helicopter, stock beside SBBK; and what it costs
-//! to follow one large mesh, and whether contacts are lost.
+//! Meshes that deform: soft monkey heads on a rigid helicopter, stock beside SBBK; and what it
+//! costs to follow one large mesh, and whether contacts are lost.
 
 use std::collections::BTreeSet;
 

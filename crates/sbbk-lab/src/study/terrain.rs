@@ -1,11 +1,11 @@
-//! Monkey heads on terrains of growing size: the terrain as a height field and as a mesh of the same
-//! triangles.
+//! Monkey heads on terrains of growing size: the terrain as a height field and as a mesh of the
+//! same triangles.
 //!
-//! Stock Rapier has no contacts of a mesh and a height field, so it is timed on the mesh only. A head
-//! stands on the terrain at random places and is asked there for the first time, and then in slow
-//! motion with what the query before left. The first and the last answer of each motion are judged by
-//! brute force over the triangles. Besides, heads fall on a terrain in whole worlds, under stock too:
-//! how many stay on it.
+//! Stock Rapier has no contacts of a mesh and a height field, so it is timed on the mesh only. A
+//! head stands on the terrain at random places and is asked there for the first time, and then in
+//! slow motion with what the query before left. The first and the last answer of each motion are
+//! judged by brute force over the triangles. Besides, heads fall on a terrain in whole worlds,
+//! under stock too: how many stay on it.
 
 use std::sync::Arc;
 

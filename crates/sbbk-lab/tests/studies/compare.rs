@@ -39,7 +39,8 @@ fn a_comparison_covers_everything_and_can_be_reported() {
     let count = |study: &str, backend: Backend| {
         support::rows(&comparison, study, &backend.to_string()).len()
     };
-    // Two balls, and the paper's; three piles, and the paper's; two piles with recycling; two meshes.
+    // Two balls, and the paper's; three piles, and the paper's; two piles with recycling; two
+    // meshes.
     let counts = ["helicopter", "pile, whole runs", "pile, same poses", "trees and first queries"]
         .map(|study| Backend::ALL.map(|backend| count(study, backend)));
     assert_eq!(counts, [[2, 3, 3, 2], [3, 4, 4, 0], [2; 4], [2, 0, 2, 0]]);

@@ -6,8 +6,8 @@ use sbbk_lab::study::front::{FrontPlan, front};
 
 use super::support;
 
-/// Would catch a variant that answers wrongly, motions in which nothing touches or that are not what
-/// they are called, a front that does nothing, and reports that lose a column or a row.
+/// Would catch a variant that answers wrongly, motions in which nothing touches or that are not
+/// what they are called, a front that does nothing, and reports that lose a column or a row.
 #[test]
 fn all_variants_agree_and_can_be_reported() {
     let meshes = vec![mesh::ball(1.0, 6), mesh::torus(0.7, 0.3, 24, 12)];

@@ -6,8 +6,8 @@ use sbbk_lab::study::soft::{SoftPlan, soft};
 use super::support;
 
 /// Would catch a scene in which nothing touches, a judge that looks at the vertices of another step
-/// (then even SBBK's exact contacts would be wrong), contacts lost by a refit, and reports that lose
-/// steps or frames.
+/// (then even SBBK's exact contacts would be wrong), contacts lost by a refit, and reports that
+/// lose steps or frames.
 #[test]
 fn soft_heads_touch_and_nothing_is_lost() {
     let plan =

@@ -14,8 +14,8 @@ pub struct Report {
     pub svg: String,
 }
 
-/// Writes all files. Panics where a table is empty or a line has more or fewer cells than its header,
-/// and where a file is not what it should be.
+/// Writes all files. Panics where a table is empty or a line has more or fewer cells than its
+/// header, and where a file is not what it should be.
 pub fn report(results: &Results) -> Report {
     for table in &results.tables {
         assert!(!table.lines.is_empty(), "{}", table.title);

@@ -6,8 +6,8 @@ use sbbk_lab::study::terrain::{TerrainPlan, terrain};
 
 use super::support;
 
-/// Would catch places without contacts, wrong contacts, numbers of triangles that are not those of the
-/// mesh, heads that fall through, and reports that lose a way to answer.
+/// Would catch places without contacts, wrong contacts, numbers of triangles that are not those of
+/// the mesh, heads that fall through, and reports that lose a way to answer.
 #[test]
 fn heads_stay_on_terrains_and_contacts_are_right() {
     let plan = TerrainPlan { cells: vec![32], place_count: 3, repeats: 1, fall_steps: 90 };

@@ -164,8 +164,8 @@ fn truth(pair: &[Triangle; 2], pos12: &Pose3) -> TruthPair {
     }
 }
 
-/// Time of all pairs: with a new generator, where there is one pose; else with one that goes through
-/// all poses, the first of which is not timed.
+/// Time of all pairs: with a new generator, where there is one pose; else with one that goes
+/// through all poses, the first of which is not timed.
 fn sweep<G: Generator>(all: &[Moving]) -> Duration {
     let times = all.iter().map(|Moving { poses, pairs, prediction }| {
         let update = |generator: &mut G, pose: &Pose3, pair: &[Triangle; 2]| {

@@ -1,5 +1,5 @@
-//! Contacts of mesh pairs at every scale, stock Parry beside SBBK: how many are right, and what they
-//! cost.
+//! Contacts of mesh pairs at every scale, stock Parry beside SBBK: how many are right, and what
+//! they cost.
 //!
 //! A *case* is one mesh at one size, asked for its contacts with itself within one prediction
 //! distance. Its poses come from *approaches*: one copy comes along a random direction, in a random

@@ -22,12 +22,13 @@ pub(super) struct Kind {
 pub(super) enum Upright {
     /// Along the axes of the floor.
     Yes,
-    /// In any orientation: so the box around a large floor, in the frame of the mesh, holds all of the mesh.
+    /// In any orientation: so the box around a large floor, in the frame of the mesh, holds all of
+    /// the mesh.
     No,
 }
 
-/// Every convex kind that Rapier has, `unit` or so across, and a floor of 100 units; then compounds.
-/// There are none of meshes: Parry does not allow them.
+/// Every convex kind that Rapier has, `unit` or so across, and a floor of 100 units; then
+/// compounds. There are none of meshes: Parry does not allow them.
 pub(super) fn kinds(unit: f32) -> Vec<Kind> {
     let mut random = Rand32::new(3);
     let cloud: Vec<Vec3> = (0..40).map(|_| 0.5 * unit * random::direction(&mut random)).collect();

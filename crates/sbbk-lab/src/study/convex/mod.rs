@@ -1,10 +1,11 @@
 //! A mesh against convex shapes and compounds of them, stock Parry beside SBBK: what queries cost,
 //! and whether a contact is lost, added or at a wrong distance.
 //!
-//! The mesh comes towards a shape of each kind along random directions and is stopped at five places
-//! around the first touch; the pair is asked there for the first time, and in slow and faster motion
-//! through these places. The same ways are taken by small and large meshes and shapes, asked for the
-//! first time. Brute force in f64 over all triangles near the shape tells the truth.
+//! The mesh comes towards a shape of each kind along random directions and is stopped at five
+//! places around the first touch; the pair is asked there for the first time, and in slow and
+//! faster motion through these places. The same ways are taken by small and large meshes and
+//! shapes, asked for the first time. Brute force in f64 over all triangles near the shape tells the
+//! truth.
 
 mod errors;
 mod kinds;

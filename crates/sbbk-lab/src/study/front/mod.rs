@@ -1,10 +1,11 @@
 //! What temporal coherence is worth: node tests, times and errors of descents that start where the
-//! last one stopped, beside fresh ones, for pairs that move slowly, fast, rest with jitter, or tumble.
+//! last one stopped, beside fresh ones, for pairs that move slowly, fast, rest with jitter, or
+//! tumble.
 //!
 //! Every variant answers the same sequences of poses, from nothing known on, and all queries are
-//! timed. Two times are taken: of the *traversal*, until the pairs of leaves are known, the frame of
-//! the pose included; and of the whole *query*, until the pairs of triangles within the prediction
-//! distance are known, exactly. These pairs are compared with those of fresh descents.
+//! timed. Two times are taken: of the *traversal*, until the pairs of leaves are known, the frame
+//! of the pose included; and of the whole *query*, until the pairs of triangles within the
+//! prediction distance are known, exactly. These pairs are compared with those of fresh descents.
 //!
 //! Besides, the dispatcher as a user has it makes a *journey* through all places of a mesh in slow
 //! motion, with a teleport from each place to the next, beside stock.
@@ -37,8 +38,8 @@ use crate::scene::random;
 
 const COHERENCE: &str = "front";
 const JOURNEY: &str = "front: journey, µs";
-/// Longest side of the meshes, in units, and the prediction distance: Rapier's default, and meshes of
-/// the size that it is made for.
+/// Longest side of the meshes, in units, and the prediction distance: Rapier's default, and meshes
+/// of the size that it is made for.
 const SIZE: f32 = 2.0;
 const PREDICTION: f32 = 0.02;
 /// Steps of one motion, after its first query.
@@ -283,8 +284,8 @@ fn differing(a: &[(u32, u32)], b: &[(u32, u32)]) -> usize {
     missing(a, b) + missing(b, a)
 }
 
-/// Manifolds that differ from those of a fresh query in any bit of their triangles, points, distances
-/// or normals, over all queries.
+/// Manifolds that differ from those of a fresh query in any bit of their triangles, points,
+/// distances or normals, over all queries.
 fn differing_from_fresh(sequence: &Sequence, dispatcher: &SharedDispatcher) -> usize {
     let mut differing = 0;
     sequence.walk(dispatcher, |step, kept| {

@@ -41,7 +41,8 @@ impl Query {
         Self::Contacts,
     ];
 
-    /// The largest mesh that is asked about: stock takes seconds for a nonlinear cast of larger ones.
+    /// The largest mesh that is asked about: stock takes seconds for a nonlinear cast of larger
+    /// ones.
     pub fn largest_mesh(self) -> usize {
         if self == Self::NonlinearCast { 1000 } else { usize::MAX }
     }

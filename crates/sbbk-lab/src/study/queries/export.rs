@@ -10,9 +10,9 @@ use super::{Asked, QueriedMesh, QueriesPlan, SIZE};
 use crate::mesh::Mesh;
 use crate::report::{Results, replace_file};
 
-/// Writes `DIR/<mesh>.obj` and `DIR/queries.csv`: for each pose of each row the query, the place, the
-/// pose of mesh 2 in the frame of mesh 1, the least times of stock and SBBK over all poses of the row
-/// (µs), and their answers.
+/// Writes `DIR/<mesh>.obj` and `DIR/queries.csv`: for each pose of each row the query, the place,
+/// the pose of mesh 2 in the frame of mesh 1, the least times of stock and SBBK over all poses of
+/// the row (µs), and their answers.
 ///
 /// Errors: a file cannot be written.
 pub fn export(plan: &QueriesPlan, results: &Results, folder: &Path) -> Result<(), Box<dyn Error>> {

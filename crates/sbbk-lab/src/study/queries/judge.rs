@@ -18,7 +18,8 @@ pub(super) struct QueryErrors {
     pub judged: usize,
     /// Answers that say the opposite of the truth, or nothing where there is something.
     pub wrong: usize,
-    /// The largest error of the other ones, in sizes of the mesh. Of a time of impact: the distance left then.
+    /// The largest error of the other ones, in sizes of the mesh. Of a time of impact: the distance
+    /// left then.
     pub largest: f64,
 }
 

@@ -1,8 +1,9 @@
-//! Queries that want one answer about two meshes (distance, intersection, casts), stock Parry beside
-//! SBBK.
+//! Queries that want one answer about two meshes (distance, intersection, casts), stock Parry
+//! beside SBBK.
 //!
-//! Each mesh is asked about itself at *places*: crossing, hardly apart, near and far. Both dispatchers
-//! answer the same questions in turn; every answer judged is compared with brute force in f64.
+//! Each mesh is asked about itself at *places*: crossing, hardly apart, near and far. Both
+//! dispatchers answer the same questions in turn; every answer judged is compared with brute force
+//! in f64.
 
 mod ask;
 mod export;
@@ -119,7 +120,8 @@ impl Asked {
         Ok(Self { contest: Contest::new([&shape]), judge: Judge::new(&shape, SIZE), shape })
     }
 
-    /// Poses at a distance: the second mesh comes in a random orientation, along a random direction.
+    /// Poses at a distance: the second mesh comes in a random orientation, along a random
+    /// direction.
     fn places(&self, distance: Distance, count: usize) -> Vec<Placed> {
         let mut random = Rand32::new(1);
         let place = |_| {
