@@ -15,6 +15,7 @@ use sbbk_core::contact::convex::{
     convex_contact,
 };
 use sbbk_core::traverse::Placement;
+use sbbk_core::volumes::rounding::gamma;
 
 use crate::pair::pose::MeshPlace;
 
@@ -133,6 +134,11 @@ impl<'a> Touching<'a> {
             pos12, pos21, normal1, normal2, feature1, feature2, manifold, false,
         );
         if normal1 == self.normals[0] {
+            // No point of the bodies is nearer along the normal than the closest ones. Where a face
+            // is seen edge on, Parry's clip makes some that are.
+            let size = point1.abs().max_element() + point2.abs().max_element();
+            let nearest = distance - gamma(64) * size;
+            manifold.points.retain(|point| point.dist >= nearest);
             let unknown = PackedFeatureId::UNKNOWN;
             let closest = TrackedContact::new(point1, point2, unknown, unknown, distance);
             manifold.points.push(closest);
