@@ -35,7 +35,7 @@ pub(crate) trait Pair: Copy {
     /// What is known of the shapes from query to query.
     type Known: Clone + Default + Send + Sync + 'static;
     /// See [`Candidate::hint`].
-    type Hint: Copy + Send + Sync + 'static;
+    type Hint: Copy + Default + PartialEq + Send + Sync + 'static;
     /// The pair with its trees.
     type Query<'q>: PairQuery<Hint = Self::Hint>
     where

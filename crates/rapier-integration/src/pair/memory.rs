@@ -99,9 +99,9 @@ impl<H> Coherence<H> {
     }
 }
 
-impl<H: Copy> Coherence<H> {
-    /// Replaces the candidates by those that `find` adds, in any order; those that were there
-    /// before hand on their hints.
+impl<H: Copy + Default + PartialEq> Coherence<H> {
+    /// Replaces the candidates by those that `find` adds, in any order. To those found without a
+    /// hint, the ones that were there before hand on theirs.
     pub(super) fn find(&mut self, find: impl FnOnce(&mut Vec<Candidate<H>>)) {
         let old_count = self.candidates.len();
         find(&mut self.candidates);
@@ -110,7 +110,9 @@ impl<H: Copy> Coherence<H> {
         let mut old = old.iter().peekable();
         for candidate in new {
             while old.next_if(|old| old.key < candidate.key).is_some() {}
-            if let Some(same) = old.next_if(|old| old.key == candidate.key) {
+            if let Some(same) = old.next_if(|old| old.key == candidate.key)
+                && candidate.hint == H::default()
+            {
                 candidate.hint = same.hint;
             }
         }

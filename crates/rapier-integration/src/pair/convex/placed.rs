@@ -197,16 +197,13 @@ impl Question<'_> {
     }
 
     /// Where GJK sees that two shapes do not touch, it leaves the direction as the manifold's
-    /// normal. The same in the frame of the part, from the part to the triangle; else zero.
-    pub(super) fn axis_of<M, C>(&self, manifold: &ContactManifold<M, C>) -> Vec3 {
-        let ConvexShape::Features { .. } = self.part.shape else {
-            return Vec3::ZERO;
-        };
-        match self.mesh_place {
-            MeshPlace::Second => manifold.local_n1,
-            MeshPlace::First => {
-                -(self.placed.placement.rotation * manifold.local_n1.as_dvec3()).as_vec3()
-            }
-        }
+    /// normal. The same in the frame of the part, from the part to the triangle.
+    pub(super) fn axis_of<M, C>(&self, manifold: &ContactManifold<M, C>) -> Option<Vec3> {
+        let normal = manifold.local_n1;
+        let is_gjks = matches!(self.part.shape, ConvexShape::Features { .. });
+        (is_gjks && normal != Vec3::ZERO).then(|| match self.mesh_place {
+            MeshPlace::Second => normal,
+            MeshPlace::First => -(self.placed.placement.rotation * normal.as_dvec3()).as_vec3(),
+        })
     }
 }

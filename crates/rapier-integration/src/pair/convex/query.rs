@@ -251,8 +251,10 @@ impl PairQuery for ConvexQuery<'_> {
             let question =
                 Question { placed, part: &part, triangle: &triangle, cone, mesh_place, prediction };
             question.refresh(contact.as_ref(), previous_points, manifold);
-            if manifold.points.is_empty() {
-                candidate.hint = question.axis_of(manifold);
+            if manifold.points.is_empty()
+                && let Some(axis) = question.axis_of(manifold)
+            {
+                candidate.hint = axis;
             }
         });
     }
