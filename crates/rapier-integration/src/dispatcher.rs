@@ -8,15 +8,15 @@ use parry3d::query::{
     NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher, ShapeCastHit, ShapeDistance,
     ShapeIntersection, Unsupported,
 };
-use parry3d::shape::{CompositeShape, Shape, TriMesh};
+use parry3d::shape::{CompositeShape, Shape, SharedShape, TriMesh};
 use sbbk_core::traverse::DescentCounts;
 use sbbk_core::tree::{BuildError, Tree};
 
-use crate::mesh::{PreparedRef, TreeCache};
+use crate::mesh::{Hierarchy, PreparedRef, Registered, TreeCache};
 use crate::pair::{
     Answer, ConvexPair, FieldPair, MeshPair, MeshPlace, Pair, PairPose, Parts, answer,
 };
-use crate::query::{Trees, intersection};
+use crate::query::MeshQuery;
 use crate::stats::QueryCounters;
 use crate::{ContactGenerator, SbbkConfig, SbbkStats, TriangleContacts};
 
@@ -57,7 +57,25 @@ impl SbbkDispatcher {
     /// # Errors
     /// What is wrong with the mesh, for example a vertex that is NaN.
     pub fn prepare(&self, mesh: &TriMesh) -> Result<PreparedTree, BuildError> {
-        self.cache.prepare(mesh).map(PreparedTree)
+        let tree = self.cache.prepare(mesh)?;
+        Ok(PreparedTree { tree, _registered: None })
+    }
+
+    /// As [`prepare`](Self::prepare), for a mesh that is used as this shape and its clones. While the
+    /// returned value lives, every query knows its tree by its address, in constant time: the way
+    /// for a large mesh. Of no use for other shapes: `None`.
+    ///
+    /// The returned value holds a clone of `shape`, so whoever edits the shape meanwhile
+    /// (`SharedShape::make_mut`) edits a copy of the mesh, and the copy has no tree.
+    ///
+    /// # Errors
+    /// What is wrong with the mesh, for example a vertex that is NaN.
+    pub fn prepare_shape(&self, shape: &SharedShape) -> Result<Option<PreparedTree>, BuildError> {
+        let Some(mesh) = rigid_mesh(&*shape.0) else {
+            return Ok(None);
+        };
+        let registered = self.cache.register(shape, mesh)?;
+        Ok(Some(PreparedTree { tree: registered.tree().clone(), _registered: Some(registered) }))
     }
 
     /// Counts of trees and queries. Takes time in proportion to the number of trees.
@@ -71,22 +89,10 @@ impl SbbkDispatcher {
         self.cache.release_idle();
     }
 
-    /// The trees for a query without manifolds; `None` if Parry must answer.
-    fn trees(&self, g1: &dyn Shape, g2: &dyn Shape) -> Option<Trees> {
-        self.of_rigid_meshes([g1, g2], Trees::of)
-    }
-
-    /// What a query without manifolds finds about two rigid meshes; `None` if Parry must answer.
-    fn of_rigid_meshes<T>(
-        &self,
-        [g1, g2]: [&dyn Shape; 2],
-        find: impl FnOnce(&Arc<TreeCache>, [&TriMesh; 2]) -> Option<T>,
-    ) -> Option<T> {
-        let found = find(&self.cache, [rigid_mesh(g1)?, rigid_mesh(g2)?]);
-        if found.is_none() {
-            self.counters.add_unsupported();
-        }
-        found
+    /// Two rigid meshes, for a query without manifolds; `None` if Parry must answer.
+    fn meshes<'a>(&'a self, g1: &'a dyn Shape, g2: &'a dyn Shape) -> Option<MeshQuery<'a>> {
+        let meshes = self.look_at([rigid_mesh(g1)?, rigid_mesh(g2)?])?;
+        Some(MeshQuery { cache: &self.cache, meshes })
     }
 
     /// The contacts of a pair of shapes, if SBBK answers for them.
@@ -106,21 +112,42 @@ impl SbbkDispatcher {
         let pose = &PairPose::new(pos12, prediction);
         let (mesh, other, mesh_place) = match (g1.as_trimesh(), g2.as_trimesh()) {
             (Some(mesh1), Some(mesh2)) => {
-                let pair = MeshPair { pose, meshes: [mesh1, mesh2], contacts };
-                return self.ask(pair, manifolds, workspace);
+                let Some(meshes) = self.look_at([mesh1, mesh2]) else {
+                    return Answer::Unsupported;
+                };
+                return self.ask(MeshPair { pose, meshes, contacts }, manifolds, workspace);
             }
             (Some(mesh), None) => (mesh, g2, MeshPlace::First),
             (None, Some(mesh)) => (mesh, g1, MeshPlace::Second),
             (None, None) => return Answer::Unsupported,
         };
         if let Some(parts) = Parts::of(other) {
+            let Some([mesh]) = self.look_at([mesh]) else {
+                return Answer::Unsupported;
+            };
             self.ask(ConvexPair { pose, mesh, parts, mesh_place, contacts }, manifolds, workspace)
         } else if let Some(field) = other.as_heightfield() {
+            let Some([mesh]) = self.look_at([mesh]) else {
+                return Answer::Unsupported;
+            };
             let pair = FieldPair { pose, mesh, field, mesh_place, contacts };
             self.ask(pair, manifolds, workspace)
         } else {
             Answer::Unsupported
         }
+    }
+
+    /// Meshes as a query sees them; `None`, and counted, if only Parry can answer for one.
+    fn look_at<'a, const COUNT: usize>(
+        &self,
+        meshes: [&'a TriMesh; COUNT],
+    ) -> Option<[Hierarchy<'a>; COUNT]> {
+        let seen = meshes.map(|mesh| self.cache.look_at(mesh));
+        if seen.iter().any(Option::is_none) {
+            self.counters.add_unsupported();
+            return None;
+        }
+        Some(seen.map(|mesh| mesh.expect("all are there")))
     }
 
     /// The contacts of a pair, counted; `Unsupported` if Parry must answer.
@@ -134,17 +161,12 @@ impl SbbkDispatcher {
         M: Default + Clone + Send + Sync + 'static,
         C: Default + Copy + Send + Sync + 'static,
     {
-        let answer = if self.config.count_queries {
-            let mut counts = DescentCounts::default();
-            let answer = answer(pair, &self.cache, &mut counts, manifolds, workspace);
-            self.counters.add(answer, &counts);
-            answer
-        } else {
-            answer(pair, &self.cache, (), manifolds, workspace)
-        };
-        if answer == Answer::Unsupported {
-            self.counters.add_unsupported();
+        if !self.config.count_queries {
+            return answer(pair, &self.cache, (), manifolds, workspace);
         }
+        let mut counts = DescentCounts::default();
+        let answer = answer(pair, &self.cache, &mut counts, manifolds, workspace);
+        self.counters.add(answer, &counts);
         answer
     }
 }
@@ -164,14 +186,18 @@ impl fmt::Debug for SbbkDispatcher {
     }
 }
 
-/// Keeps the tree of a mesh, see [`SbbkDispatcher::prepare`].
+/// Keeps the tree of a mesh, see [`SbbkDispatcher::prepare`] and
+/// [`SbbkDispatcher::prepare_shape`].
 #[derive(Clone)]
-pub struct PreparedTree(PreparedRef);
+pub struct PreparedTree {
+    tree: PreparedRef,
+    _registered: Option<Arc<Registered>>,
+}
 
 impl PreparedTree {
     /// The tree itself.
     pub fn tree(&self) -> &Tree {
-        &self.0.prepared().tree
+        &self.tree.prepared().tree
     }
 }
 
@@ -246,10 +272,8 @@ impl QueryDispatcher for SbbkDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
-        let found =
-            self.of_rigid_meshes([g1, g2], |cache, meshes| intersection(cache, meshes, pos12));
-        match found {
-            Some(answer) => Ok(answer),
+        match self.meshes(g1, g2) {
+            Some(meshes) => Ok(meshes.intersection(pos12)),
             None => DefaultQueryDispatcher.intersection_test(pos12, g1, g2),
         }
     }
@@ -260,8 +284,8 @@ impl QueryDispatcher for SbbkDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeDistance, Unsupported> {
-        match self.trees(g1, g2) {
-            Some(trees) => Ok(trees.distance(pos12)),
+        match self.meshes(g1, g2) {
+            Some(meshes) => Ok(meshes.distance(pos12)),
             None => DefaultQueryDispatcher.distance(pos12, g1, g2),
         }
     }
@@ -273,8 +297,8 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
         prediction: Real,
     ) -> Result<Option<Contact>, Unsupported> {
-        match self.trees(g1, g2) {
-            Some(trees) => Ok(trees.contact(pos12, prediction)),
+        match self.meshes(g1, g2) {
+            Some(meshes) => Ok(meshes.contact(pos12, prediction)),
             None => DefaultQueryDispatcher.contact(pos12, g1, g2, prediction),
         }
     }
@@ -286,8 +310,8 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
         max_dist: Real,
     ) -> Result<ClosestPoints, Unsupported> {
-        match self.trees(g1, g2) {
-            Some(trees) => Ok(trees.closest_points(pos12, max_dist)),
+        match self.meshes(g1, g2) {
+            Some(meshes) => Ok(meshes.closest_points(pos12, max_dist)),
             None => DefaultQueryDispatcher.closest_points(pos12, g1, g2, max_dist),
         }
     }
@@ -300,8 +324,8 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
         options: ShapeCastOptions,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        match self.trees(g1, g2) {
-            Some(trees) => Ok(trees.cast(pos12, local_vel12, options)),
+        match self.meshes(g1, g2).and_then(|meshes| meshes.cast(pos12, local_vel12, options)) {
+            Some(hit) => Ok(hit),
             None => DefaultQueryDispatcher.cast_shapes(pos12, local_vel12, g1, g2, options),
         }
     }
@@ -316,9 +340,11 @@ impl QueryDispatcher for SbbkDispatcher {
         end_time: Real,
         stop_at_penetration: bool,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        if let Some(trees) = self.trees(g1, g2) {
-            let times = (start_time, end_time);
-            return Ok(trees.cast_nonlinear([motion1, motion2], times, stop_at_penetration));
+        if let Some(meshes) = self.meshes(g1, g2) {
+            let (motions, times) = ([motion1, motion2], (start_time, end_time));
+            if let Some(hit) = meshes.cast_nonlinear(motions, times, stop_at_penetration) {
+                return Ok(hit);
+            }
         }
         DefaultQueryDispatcher.cast_shapes_nonlinear(
             motion1,

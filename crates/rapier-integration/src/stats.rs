@@ -19,16 +19,12 @@ pub struct SbbkStats {
     pub tree_builds: u64,
     /// How often a pair of colliders needed a tree that was there.
     pub tree_hits: u64,
-    /// Deformable meshes (`TriMeshFlags::DEFORMABLE`) that have a tree of their own at present, not
-    /// counted in [`trees`](Self::trees).
-    pub deformable_trees: usize,
-    /// Memory of these.
-    pub deformable_tree_bytes: usize,
-    /// How often the tree of a deformable mesh was fitted to vertices that had moved.
-    pub tree_refits: u64,
-    /// How often such a tree had become so bad that it was built anew, or the mesh had vertices
-    /// that are NaN or infinite.
-    pub tree_rebuilds: u64,
+    /// Pairs of colliders that SBBK has answered for: first queries. If this stays zero, the
+    /// dispatcher is not in use.
+    pub pairs: u64,
+    /// Descents of two meshes that did without trees, down Parry's own hierarchies: of large meshes
+    /// that nobody prepared, and of deformable ones.
+    pub walks: u64,
     /// Queries that Parry had to answer as a mesh cannot have a tree: see
     /// [`SbbkDispatcher::prepare`](crate::SbbkDispatcher::prepare).
     pub unsupported_queries: u64,
@@ -89,10 +85,8 @@ impl QueryCounters {
             tree_bytes: cache.bytes,
             tree_builds: cache.builds,
             tree_hits: cache.hits,
-            deformable_trees: cache.deformable.trees,
-            deformable_tree_bytes: cache.deformable.bytes,
-            tree_refits: cache.deformable.refits,
-            tree_rebuilds: cache.deformable.rebuilds,
+            pairs: cache.pairs,
+            walks: cache.walks,
             unsupported_queries: load(&self.unsupported),
             queries: load(&self.queries),
             unchanged_queries: load(&self.unchanged),

@@ -134,15 +134,12 @@ impl Walk {
 #[derive(Default)]
 struct Sums {
     contacts: AtomicU64,
-    refits: AtomicU64,
-    reused: AtomicU64,
 }
 
 impl Sums {
-    fn check(&self, least_contacts: u64, least_refits: u64) {
-        let [contacts, refits] = [&self.contacts, &self.refits].map(|sum| sum.load(Relaxed));
+    fn check(&self, least_contacts: u64) {
+        let contacts = self.contacts.load(Relaxed);
         assert!(contacts >= least_contacts, "only {contacts} contacts");
-        assert!(refits >= least_refits, "only {refits} refits");
     }
 }
 
@@ -172,8 +169,6 @@ fn run(
         sums.contacts.fetch_add(pair.manifolds.len() as u64, Relaxed);
     }
     let stats = dispatcher.stats();
-    sums.refits.fetch_add(stats.tree_refits, Relaxed);
-    sums.reused.fetch_add(stats.reused_queries, Relaxed);
     assert_eq!((stats.unsupported_queries, stats.trees), (0, 0), "{stats:?}");
 }
 
@@ -198,7 +193,7 @@ fn contacts_with_a_height_field_are_those_of_a_mesh_built_anew() {
         Ok(())
     };
     runner(150).run(&history(), case).unwrap();
-    sums.check(20_000, 500);
+    sums.check(20_000);
 }
 
 /// The same against boxes and balls, whose contacts are Parry's: where vertices have moved bit for
@@ -225,7 +220,7 @@ fn contacts_with_a_compound_are_those_of_a_mesh_built_anew() {
         Ok(())
     };
     runner(150).run(&history(), case).unwrap();
-    sums.check(20_000, 500);
+    sums.check(20_000);
 }
 
 /// What is within the prediction distance: Parry makes some contacts beyond.

@@ -5,29 +5,36 @@
 //! logarithm of the number of trees. Trees are built outside of it; threads that want the same one
 //! wait for it alone.
 
+use std::collections::hash_map::Entry as HashEntry;
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::ops::Deref;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-use parry3d::shape::TriMesh;
+use parry3d::shape::{CompositeShape, SharedShape, TriMesh};
 use sbbk_core::tree::{BuildError, BuildOptions};
 
-use super::deformable::{DeformableCounts, DeformableTree, DeformableTrees};
-use super::identity::{ContentCopy, ContentHash, DeformedContent};
+use super::credit::Credit;
+use super::hierarchy::Hierarchy;
+use super::identity::{ContentCopy, ContentHash, MeshToken};
 use super::prepared::PreparedMesh;
-use super::unsupported::Unsupported;
+use super::registry::{Registered, Registry};
+use super::soundness::Soundness;
 
 pub(crate) struct TreeCache {
+    /// Of this cache alone.
+    id: u64,
     options: BuildOptions,
     /// Memory that trees without users may keep. Least recently used ones go first.
     idle_bytes_limit: usize,
     entries: Mutex<Entries>,
     builds: AtomicU64,
     hits: AtomicU64,
-    /// Trees that are not shared by content.
-    deformable: Arc<DeformableTrees>,
-    unsupported: Unsupported,
+    pairs: AtomicU64,
+    walks: AtomicU64,
+    credit: Credit,
+    registry: Registry,
+    soundness: Soundness,
 }
 
 /// Meshes without a pair that are kept for queries without manifolds, whatever the limit of idle
@@ -42,6 +49,8 @@ struct Entries {
     /// When the next one becomes idle.
     now: u64,
     idle_bytes: usize,
+    /// How many of the meshes have so many triangles. Others need no hash to be told apart.
+    counts: HashMap<usize, usize>,
     /// The last meshes for which a query without manifolds needed the lock. Each counts as a user.
     queried: VecDeque<Arc<CachedMesh>>,
 }
@@ -60,6 +69,7 @@ struct Idle {
 /// A prepared mesh that all colliders with equal geometry share.
 pub(crate) struct CachedMesh {
     content: ContentHash,
+    triangle_count: usize,
     prepared: OnceLock<Result<PreparedMesh, BuildError>>,
     /// Of the mesh, from the first query without manifolds on.
     copy: OnceLock<ContentCopy>,
@@ -69,9 +79,10 @@ pub(crate) struct CachedMesh {
 }
 
 impl CachedMesh {
-    fn new(content: ContentHash) -> Self {
+    fn new(content: ContentHash, triangle_count: usize) -> Self {
         Self {
             content,
+            triangle_count,
             prepared: OnceLock::new(),
             copy: OnceLock::new(),
             users: AtomicUsize::new(0),
@@ -120,19 +131,25 @@ pub(crate) struct CacheCounts {
     pub(crate) bytes: usize,
     pub(crate) builds: u64,
     pub(crate) hits: u64,
-    pub(crate) deformable: DeformableCounts,
+    pub(crate) pairs: u64,
+    pub(crate) walks: u64,
 }
 
 impl TreeCache {
     pub(crate) fn new(options: BuildOptions, idle_bytes_limit: usize) -> Self {
+        static NEXT: AtomicU64 = AtomicU64::new(0);
         Self {
+            id: NEXT.fetch_add(1, Ordering::Relaxed),
             options,
             idle_bytes_limit,
             entries: Mutex::default(),
             builds: AtomicU64::new(0),
             hits: AtomicU64::new(0),
-            deformable: Arc::default(),
-            unsupported: Unsupported::default(),
+            pairs: AtomicU64::new(0),
+            walks: AtomicU64::new(0),
+            credit: Credit::default(),
+            registry: Registry::default(),
+            soundness: Soundness::default(),
         }
     }
 
@@ -141,8 +158,15 @@ impl TreeCache {
     /// # Errors
     /// Why this mesh cannot have a tree.
     pub(crate) fn prepare(self: &Arc<Self>, mesh: &TriMesh) -> Result<PreparedRef, BuildError> {
-        let content = ContentHash::of(mesh);
-        let prepared = self.acquire(content);
+        self.find_or_build(mesh, ContentHash::of(mesh))
+    }
+
+    fn find_or_build(
+        self: &Arc<Self>,
+        mesh: &TriMesh,
+        content: ContentHash,
+    ) -> Result<PreparedRef, BuildError> {
+        let prepared = self.acquire(content, mesh.indices().len());
         let mut built = false;
         let result = prepared.mesh.prepared.get_or_init(|| {
             built = true;
@@ -178,46 +202,79 @@ impl TreeCache {
         Ok(cached)
     }
 
-    /// The result of preparing a mesh, which is remembered if there is no tree for it.
-    pub(crate) fn noting<T>(&self, mesh: &TriMesh, result: Result<T, BuildError>) -> Option<T> {
-        result.map_err(|_| self.unsupported.note(mesh)).ok()
-    }
-
-    /// Whether one of the meshes is known not to have a tree. Takes no lock.
-    #[inline]
-    pub(crate) fn is_unsupported(&self, meshes: &[&TriMesh]) -> bool {
-        meshes.iter().any(|mesh| self.unsupported.contains(mesh))
-    }
-
-    /// The place of the tree of a deformable mesh. Takes a lock.
-    pub(super) fn deformable(&self, mesh: &TriMesh) -> Arc<DeformableTree> {
-        DeformableTree::of(mesh, &self.deformable)
-    }
-
-    /// Whether `tree` is what [`deformable`](Self::deformable) returns for the mesh.
-    pub(super) fn is_place_of(&self, tree: &DeformableTree, mesh: &TriMesh) -> bool {
-        tree.is_of(mesh, &self.deformable)
-    }
-
-    /// The tree of a deformable mesh as it is now, see [`DeformableTree::current`].
-    pub(super) fn refitted(
-        &self,
-        tree: &DeformableTree,
+    /// The same for good: as long as the result lives, a query about the shape knows its tree by
+    /// its address.
+    ///
+    /// # Errors
+    /// Why this mesh cannot have a tree.
+    pub(crate) fn register(
+        self: &Arc<Self>,
+        shape: &SharedShape,
         mesh: &TriMesh,
-        content: DeformedContent,
-    ) -> Result<Arc<PreparedMesh>, BuildError> {
-        tree.current(mesh, content, || {
-            self.builds.fetch_add(1, Ordering::Relaxed);
-            PreparedMesh::new(mesh, &self.options)
-        })
+    ) -> Result<Arc<Registered>, BuildError> {
+        Ok(Registered::new(shape, self.prepare(mesh)?, &self.registry))
     }
 
-    fn acquire(self: &Arc<Self>, content: ContentHash) -> PreparedRef {
+    pub(super) fn unregister(&self, address: usize) {
+        self.registry.forget(address);
+    }
+
+    /// The tree of a mesh if it is there, or if queries have earned what it takes.
+    pub(super) fn afford(self: &Arc<Self>, mesh: &TriMesh) -> Option<PreparedRef> {
+        if let Some(tree) = self.registry.tree_of(mesh) {
+            return Some(tree);
+        }
+        let count = mesh.indices().len();
+        let may_be_there = self.lock().counts.contains_key(&count);
+        if may_be_there && (self.is_small(mesh) || self.credit.spend(Credit::of_hash(count))) {
+            let content = ContentHash::of(mesh);
+            let is_there = self.lock().by_content.contains_key(&content);
+            if is_there {
+                // Should it go meanwhile, it is built again.
+                return self.find_or_build(mesh, content).ok();
+            }
+        }
+        let can_pay = self.is_small(mesh) && self.credit.spend(count);
+        can_pay.then(|| self.prepare(mesh).ok())?
+    }
+
+    /// The tree of a mesh that is registered.
+    pub(crate) fn registered(&self, mesh: &TriMesh) -> Option<Arc<CachedMesh>> {
+        self.registry.tree_of(mesh).map(|tree| Arc::clone(&tree.mesh))
+    }
+
+    /// Whether the tree of a mesh can be built in the midst of things.
+    pub(crate) fn is_small(&self, mesh: &TriMesh) -> bool {
+        mesh.indices().len() <= Credit::MOST as usize
+    }
+
+    /// Notes a descent that had to do without trees.
+    pub(crate) fn did_without(&self) {
+        self.walks.fetch_add(1, Ordering::Relaxed);
+        self.credit.earn();
+    }
+
+    /// Notes a pair of which nothing was known.
+    pub(crate) fn met(&self) {
+        self.pairs.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// A mesh as a query sees it; `None` if only Parry can answer for it: it is rigid and broken.
+    #[inline]
+    pub(crate) fn look_at<'a>(&self, mesh: &'a TriMesh) -> Option<Hierarchy<'a>> {
+        let token = MeshToken::of(mesh);
+        let is_broken = self.soundness.is_broken(mesh, token);
+        let is_supported = !is_broken || mesh.is_deformable();
+        is_supported.then_some(Hierarchy { mesh, token, owner: self.id, is_broken })
+    }
+
+    fn acquire(self: &Arc<Self>, content: ContentHash, triangle_count: usize) -> PreparedRef {
         let mut entries = self.lock();
-        let entry = entries
-            .by_content
-            .entry(content)
-            .or_insert_with(|| Entry { mesh: Arc::new(CachedMesh::new(content)), idle: None });
+        let Entries { by_content, counts, .. } = &mut *entries;
+        let entry = by_content.entry(content).or_insert_with(|| {
+            *counts.entry(triangle_count).or_default() += 1;
+            Entry { mesh: Arc::new(CachedMesh::new(content, triangle_count)), idle: None }
+        });
         entry.mesh.users.fetch_add(1, Ordering::AcqRel);
         let (mesh, idle) = (Arc::clone(&entry.mesh), entry.idle.take());
         if let Some(idle) = idle {
@@ -249,7 +306,8 @@ impl TreeCache {
             bytes: entries.by_content.values().map(|entry| entry.mesh.bytes()).sum(),
             builds: self.builds.load(Ordering::Relaxed),
             hits: self.hits.load(Ordering::Relaxed),
-            deformable: self.deformable.counts(),
+            pairs: self.pairs.load(Ordering::Relaxed),
+            walks: self.walks.load(Ordering::Relaxed),
         }
     }
 
@@ -271,7 +329,7 @@ impl Entries {
         }
         match mesh.bytes() {
             // A mesh that cannot have a tree: nothing to keep.
-            0 => drop(self.by_content.remove(&mesh.content)),
+            0 => self.remove(mesh.content),
             bytes => {
                 entry.idle = Some(Idle { since: self.now, bytes });
                 self.idle.insert(self.now, mesh.content);
@@ -294,9 +352,21 @@ impl Entries {
     fn shrink_idle(&mut self, limit: usize) {
         while self.idle_bytes > limit
             && let Some((_, content)) = self.idle.pop_first()
-            && let Some(Entry { idle: Some(idle), .. }) = self.by_content.remove(&content)
+            && let Some(Entry { idle: Some(idle), .. }) = self.by_content.get(&content)
         {
             self.idle_bytes -= idle.bytes;
+            self.remove(content);
+        }
+    }
+
+    fn remove(&mut self, content: ContentHash) {
+        if let Some(entry) = self.by_content.remove(&content)
+            && let HashEntry::Occupied(mut count) = self.counts.entry(entry.mesh.triangle_count)
+        {
+            *count.get_mut() -= 1;
+            if *count.get() == 0 {
+                count.remove();
+            }
         }
     }
 }
@@ -308,9 +378,8 @@ pub(crate) struct PreparedRef {
 }
 
 impl PreparedRef {
-    /// Whether this cache made it.
-    pub(crate) fn is_from(&self, cache: &Arc<TreeCache>) -> bool {
-        Arc::ptr_eq(&self.cache, cache)
+    pub(super) fn cache(&self) -> &TreeCache {
+        &self.cache
     }
 }
 

@@ -22,14 +22,14 @@
 //! (`ColliderChanges::SHAPE`, set by `shape_mut` and `set_shape`), and with it the token; other
 //! hosts must do the same, as Parry asks for its own workspaces too.
 //!
-//! A mesh that is meant to deform (`TriMeshFlags::DEFORMABLE`) may change at any time and is read
-//! in full by each query: [`DeformedContent`].
+//! A mesh that is meant to deform (`TriMeshFlags::DEFORMABLE`) may change at any time: nothing is
+//! kept of it.
 
 use std::hash::Hasher;
 
 use parry3d::math::Vector;
 use parry3d::shape::{TriMesh, TriMeshFlags};
-use xxhash_rust::xxh3::{Xxh3, xxh3_64, xxh3_128};
+use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 /// Names a mesh by its content.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Hash)]
@@ -83,18 +83,6 @@ fn add_hierarchy(mesh: &TriMesh, hasher: &mut Xxh3) {
     }
 }
 
-/// Names Parry's hierarchy of a mesh by its shape, whatever its boxes.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub(super) struct HierarchyHash(u128);
-
-impl HierarchyHash {
-    pub(super) fn of(mesh: &TriMesh) -> Self {
-        let mut hasher = Xxh3::new();
-        add_hierarchy(mesh, &mut hasher);
-        Self(hasher.digest128())
-    }
-}
-
 /// Vertices and triangles of a mesh, to be compared with those of another. For 10,000 vertices and
 /// 20,000 triangles that takes less than half as long as a hash of the vertices alone (xxh3, built
 /// for SSE2).
@@ -128,31 +116,6 @@ impl ContentCopy {
         };
         let kept = corners(&self.vertices, &self.triangles);
         kept.is_some() && kept == corners(mesh.vertices(), mesh.indices())
-    }
-}
-
-/// What a deformable mesh is at present: what never changes while it is the same mesh, and where
-/// its vertices are. Takes about 1 µs for 1000 triangles; a refit takes about thirty times as long.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub(crate) struct DeformedContent {
-    pub(super) topology: u128,
-    vertices: u128,
-}
-
-impl DeformedContent {
-    /// Leaves of Parry's hierarchy looked at. It changes only where Parry builds it anew
-    /// (`TriMesh::transform_vertices`), mostly among the first leaves; the vertices nearly always
-    /// change too, and then a refit looks at all of it.
-    const LEAVES: usize = 16;
-
-    pub(crate) fn of(mesh: &TriMesh) -> Self {
-        let mut hasher = Xxh3::new();
-        add_topology(mesh, &mut hasher);
-        for leaf in mesh.bvh().leaves(|_| true).take(Self::LEAVES) {
-            hasher.write_u32(leaf);
-        }
-        let vertices = xxh3_128(bytemuck::cast_slice(mesh.vertices()));
-        Self { topology: hasher.digest128(), vertices }
     }
 }
 

@@ -1,15 +1,18 @@
-//! Triangle meshes and their trees: what is the same mesh, and where its tree is kept.
+//! Triangle meshes: Parry's own hierarchy of them, what is the same mesh, and where its tree is
+//! kept.
 
-mod broken;
 mod cache;
-mod deformable;
+mod credit;
+mod hierarchy;
 mod identity;
 mod known;
 mod prepared;
-mod unsupported;
+mod registry;
+mod soundness;
 
-pub(crate) use broken::{placed_root_box, root_box};
 pub(crate) use cache::{CacheCounts, CachedMesh, PreparedRef, TreeCache};
+pub(crate) use hierarchy::{Hierarchy, Ranks, box_of};
 pub(crate) use identity::MeshToken;
-pub(crate) use known::{Change, Held, KnownMesh};
+pub(crate) use known::{Change, KnownMesh};
 pub(crate) use prepared::PreparedMesh;
+pub(crate) use registry::Registered;

@@ -1,34 +1,33 @@
 //! The way from a pose to contact manifolds, the same for every kind of pair.
 //!
-//! 1. Meshes that cannot have a tree are left to Parry.
-//! 2. The state of the pair is taken from the host's workspace.
-//! 3. If its trees are not known yet, the boxes of the whole shapes are compared, as stock does.
-//! 4. The trees are looked up, and what changed since the last query is forgotten.
-//! 5. The same question as the last one has the same answer.
-//! 6. [`Slack`](sbbk_core::traverse::Slack) says whether the candidates of the last descent still
+//! 1. The state of the pair is taken from the host's workspace.
+//! 2. On a first query the boxes of the whole shapes are compared, as stock does.
+//! 3. What changed since the last query is forgotten. Two meshes get their trees, if they are there
+//!    or cost little.
+//! 4. The same question as the last one has the same answer.
+//! 5. [`Slack`](sbbk_core::traverse::Slack) says whether the candidates of the last descent still
 //!    serve. If not, a descent finds new ones.
-//! 7. Each candidate that may be in reach gets its exact contact, written to its manifold of the
+//! 6. Each candidate that may be in reach gets its exact contact, written to its manifold of the
 //!    query before or to a new one.
 //!
-//! A [`Pair`] says what is particular to its kind in steps 3 and 4, its [`PairQuery`] in steps 6
-//! and 7.
+//! A [`Pair`] says what is particular to its kind in steps 2 and 3, its [`PairQuery`] in steps 5
+//! and 6.
 
 use std::cell::Cell;
 use std::sync::Arc;
 
 use parry3d::math::Real;
 use parry3d::query::{ContactManifold, ContactManifoldsWorkspace, TrackedContact};
-use sbbk_core::field::FieldScratch;
-use sbbk_core::traverse::{Counters, DescentScratch, Placement, ProbeScratch, SlackPlan};
+use sbbk_core::traverse::{Counters, DescentScratch, Placement, SlackPlan};
 use sbbk_core::volumes::Sphere;
 
 use super::convex::PlacedPart;
-use super::merge::{Place, Previous};
-use super::order::{Candidate, OrderKey};
+use super::merge::Lookup;
+use super::order::{Candidate, OrderKey, Place};
 use super::pool::{Demand, ManifoldPool, reset};
 use super::pose::PairPose;
 use super::state::{PairState, state_in};
-use crate::mesh::{Change, TreeCache};
+use crate::mesh::{Change, Ranks, TreeCache};
 
 /// A mesh and another shape, of whose contacts a host asks.
 pub(crate) trait Pair: Copy {
@@ -36,30 +35,26 @@ pub(crate) trait Pair: Copy {
     type Known: Clone + Default + Send + Sync + 'static;
     /// See [`Candidate::hint`].
     type Hint: Copy + Default + PartialEq + Send + Sync + 'static;
-    /// The pair with its trees.
+    /// The pair as it is now.
     type Query<'q>: PairQuery<Hint = Self::Hint>
     where
         Self: 'q;
 
-    /// Whether a mesh is known not to have a tree.
-    fn is_unsupported(&self, cache: &TreeCache) -> bool;
-
-    /// Whether the trees have yet to be looked up or built.
-    fn needs_trees(known: &Self::Known) -> bool;
+    /// Whether nothing is known of the shapes.
+    fn is_unknown(known: &Self::Known) -> bool;
 
     /// Whether the boxes of the whole shapes come within the prediction distance, or about.
     fn boxes_meet(&self, counters: &mut impl Counters) -> bool;
 
-    /// Looks up or builds the trees, refitted where a mesh has deformed, and says what changed
-    /// since the last query. `None` if a mesh cannot have a tree.
+    /// Says what changed since the last query, and opens this one.
     fn open<'q>(
         &'q self,
-        cache: &Arc<TreeCache>,
+        cache: &'q Arc<TreeCache>,
         known: &'q mut Self::Known,
-    ) -> Option<(Change, Self::Query<'q>)>;
+    ) -> (Change, Self::Query<'q>);
 }
 
-/// A query of a pair whose trees are known.
+/// A query of a pair.
 pub(crate) trait PairQuery {
     type Hint: Copy;
     /// What is known of the contact of a candidate before its manifold is at hand.
@@ -78,7 +73,7 @@ pub(crate) trait PairQuery {
         self.pose().prediction
     }
 
-    /// Adds all candidates within `margin`, and few others, in any order.
+    /// Adds all candidates within `margin`, and few others, in the order of stock's manifolds.
     fn descend(
         &mut self,
         margin: Real,
@@ -86,9 +81,6 @@ pub(crate) trait PairQuery {
         scratch: &mut Scratch,
         candidates: &mut Vec<Candidate<Self::Hint>>,
     );
-
-    /// The key of a pair of subshapes. Numbers that no subshape has sort somewhere.
-    fn key(&self, subshapes: [u32; 2]) -> OrderKey;
 
     /// The contact of a candidate; `None` if it is surely out of reach. May raise what the
     /// candidate knows.
@@ -147,7 +139,7 @@ pub(crate) enum Answer {
     Reused,
     /// By a descent.
     Descended,
-    /// Not at all: a mesh cannot have a tree, and Parry must answer.
+    /// Not at all: Parry must answer.
     Unsupported,
 }
 
@@ -155,12 +147,17 @@ pub(crate) enum Answer {
 #[derive(Default)]
 pub(crate) struct Scratch {
     pub(super) descent: DescentScratch,
-    pub(super) probe: ProbeScratch,
-    pub(super) field: FieldScratch,
     /// The parts of convex shapes that this query has come across.
     pub(super) parts: Vec<Option<PlacedPart>>,
-    /// The manifolds of the query before.
-    places: Vec<Place>,
+    /// Pairs of subshapes and their places in the order of manifolds.
+    pub(super) ordered: Vec<(OrderKey, [u32; 2])>,
+    /// Places of triangles in the order of their mesh.
+    pub(super) ranks: [Ranks; 2],
+    /// Triangles that a walk has found.
+    pub(super) near: Vec<u32>,
+    lookup: Lookup,
+    /// Which manifolds of the query before are dealt with.
+    is_done: Vec<bool>,
     demand: Demand,
 }
 
@@ -181,17 +178,15 @@ where
     M: Default + Clone + Send + Sync + 'static,
     C: Default + Copy + Send + Sync + 'static,
 {
-    if pair.is_unsupported(cache) {
-        return Answer::Unsupported;
-    }
     let PairState::<M, C, P::Known, P::Hint> { shapes, memory } = state_in(workspace, manifolds);
-    if P::needs_trees(shapes) && !pair.boxes_meet(&mut counters) {
-        manifolds.clear();
-        return Answer::Apart;
+    if P::is_unknown(shapes) {
+        if !pair.boxes_meet(&mut counters) {
+            manifolds.clear();
+            return Answer::Apart;
+        }
+        cache.met();
     }
-    let Some((change, mut query)) = pair.open(cache, shapes) else {
-        return Answer::Unsupported;
-    };
+    let (change, mut query) = pair.open(cache, shapes);
     memory.follow(change, manifolds);
     if memory.coherence.is_answered(query.pose(), manifolds.len()) {
         return Answer::Unchanged;
@@ -205,9 +200,11 @@ where
     let (answer, margin) = match plan {
         SlackPlan::Reuse { margin, .. } => (Answer::Reused, margin),
         SlackPlan::Descend { margin } => {
-            coherence.find(|candidates| {
+            let mut lookup = std::mem::take(&mut scratch.lookup);
+            coherence.find(&mut lookup, |candidates| {
                 query.descend(margin, &mut counters, &mut scratch, candidates);
             });
+            scratch.lookup = lookup;
             (Answer::Descended, margin)
         }
     };
@@ -216,6 +213,7 @@ where
         margin: f64::from(margin),
         travel: coherence.slack.travel(),
     };
+    coherence.find_places(&mut scratch.lookup, manifolds);
     update(
         &mut query,
         &mut coherence.candidates,
@@ -245,16 +243,21 @@ fn update<Q, M, C>(
     C: Default + Copy + Send + Sync + 'static,
 {
     pool.begin();
-    let mut places = std::mem::take(&mut scratch.places);
-    let mut previous = Previous::new(manifolds, |subshapes| query.key(subshapes), &mut places);
+    let mut is_done = std::mem::take(&mut scratch.is_done);
+    is_done.clear();
+    is_done.resize(manifolds.len(), false);
     // A new manifold that has no points yet.
     let mut blank = None;
+    let mut count = 0;
     let farthest = limits.reach + limits.travel;
     for candidate in candidates {
-        let old = previous.find(candidate.key, manifolds, pool);
+        let old = candidate.place.take().map(Place::index);
+        if let Some(place) = old {
+            is_done[place] = true;
+        }
         let is_far = candidate.clear > farthest;
         let contact = if is_far { None } else { query.contact(candidate, limits, scratch) };
-        match (contact, old) {
+        let is_kept = match (contact, old) {
             (Some(contact), Some(place)) => {
                 let (points, manifold) = (&mut pool.previous_points, &mut manifolds[place]);
                 if manifold.points.is_empty() {
@@ -262,30 +265,42 @@ fn update<Q, M, C>(
                     query.name(candidate, manifold);
                 }
                 query.write(contact, candidate, limits, scratch, points, manifold);
-                pool.keep_old(place, manifolds);
+                pool.keep_old(place, manifolds)
             }
             (Some(contact), None) => {
                 let manifold = blank.get_or_insert_with(|| pool.take());
                 query.name(candidate, manifold);
                 let points = &mut pool.previous_points;
                 query.write(contact, candidate, limits, scratch, points, manifold);
-                if manifold.points.is_empty() {
-                    reset(manifold);
-                } else {
+                let has_points = !manifold.points.is_empty();
+                if has_points {
                     pool.keep_new(blank.take(), manifolds);
+                } else {
+                    reset(manifold);
                 }
+                has_points
             }
-            (None, Some(place)) => pool.retire(std::mem::take(&mut manifolds[place])),
-            (None, None) => {}
+            (None, Some(place)) => {
+                pool.retire(std::mem::take(&mut manifolds[place]));
+                false
+            }
+            (None, None) => false,
+        };
+        if is_kept {
+            candidate.place = Place::new(count);
+            count += 1;
         }
     }
     if let Some(blank) = blank {
         pool.retire(blank);
     }
-    previous.retire_rest(manifolds, pool);
-    pool.end(manifolds);
-    if let Some(limit) = scratch.demand.note(places.len()) {
-        places.shrink_to(limit);
+    for (manifold, _) in manifolds.iter_mut().zip(&is_done).filter(|(_, is_done)| !**is_done) {
+        pool.retire(std::mem::take(manifold));
     }
-    scratch.places = places;
+    pool.end(manifolds);
+    if let Some(limit) = scratch.demand.note(is_done.len()) {
+        is_done.shrink_to(limit);
+        scratch.lookup.shrink_to(limit);
+    }
+    scratch.is_done = is_done;
 }

@@ -14,6 +14,7 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::ContactManifold;
 use sbbk_core::traverse::Slack;
 
+use super::merge::{Lookup, are_in_place};
 use super::order::Candidate;
 use super::pool::{Demand, ManifoldPool};
 use super::pose::PairPose;
@@ -100,23 +101,27 @@ impl<H> Coherence<H> {
 }
 
 impl<H: Copy + Default + PartialEq> Coherence<H> {
-    /// Replaces the candidates by those that `find` adds, in any order. To those found without a
-    /// hint, the ones that were there before hand on theirs.
-    pub(super) fn find(&mut self, find: impl FnOnce(&mut Vec<Candidate<H>>)) {
+    /// Replaces the candidates by those that `find` adds, in the order of manifolds. What was known
+    /// of the same subshapes is handed on.
+    pub(super) fn find(&mut self, lookup: &mut Lookup, find: impl FnOnce(&mut Vec<Candidate<H>>)) {
         let old_count = self.candidates.len();
         find(&mut self.candidates);
         let (old, new) = self.candidates.split_at_mut(old_count);
-        new.sort_unstable_by_key(|candidate| candidate.key);
-        let mut old = old.iter().peekable();
-        for candidate in new {
-            while old.next_if(|old| old.key < candidate.key).is_some() {}
-            if let Some(same) = old.next_if(|old| old.key == candidate.key)
-                && candidate.hint == H::default()
-            {
-                candidate.hint = same.hint;
-            }
-        }
+        lookup.hand_on(old, new);
         self.candidates.drain(..old_count);
+    }
+
+    /// Makes sure that candidates know the places of their manifolds in the host's list, which a
+    /// host may have changed since, and of which a lost memory knows nothing.
+    pub(super) fn find_places<M, C>(
+        &mut self,
+        lookup: &mut Lookup,
+        manifolds: &[ContactManifold<M, C>],
+    ) {
+        let has_as_many = self.last.is_some_and(|last| last.manifold_count == manifolds.len());
+        if !has_as_many || !are_in_place(manifolds, &self.candidates) {
+            lookup.find_places(manifolds, &mut self.candidates);
+        }
     }
 }
 

@@ -1,59 +1,71 @@
-use std::iter::Peekable;
-use std::slice::Iter;
+//! Which manifold of the query before is a candidate's.
 
 use parry3d::query::ContactManifold;
+use rustc_hash::FxHashMap;
 
-use super::order::OrderKey;
-use super::pool::ManifoldPool;
+use super::order::{Candidate, Place};
 
-/// The manifolds of the query before, walked in stock order beside the candidates of this one.
-pub(super) struct Previous<'a>(Peekable<Iter<'a, Place>>);
+/// Memory for looking things up by a pair of subshapes.
+#[derive(Default)]
+pub(super) struct Lookup(FxHashMap<[u32; 2], u32>);
 
-/// The key of a manifold and its index in the host's list.
-pub(super) type Place = (OrderKey, u32);
-
-impl<'a> Previous<'a> {
-    /// Lists `manifolds` by their keys in `places`. They are in order unless the host moved them.
-    pub(super) fn new<M, C>(
-        manifolds: &[ContactManifold<M, C>],
-        key: impl Fn([u32; 2]) -> OrderKey,
-        places: &'a mut Vec<Place>,
-    ) -> Self {
-        places.clear();
-        places.extend(manifolds.iter().enumerate().map(|(place, manifold)| {
-            (key([manifold.subshape1, manifold.subshape2]), place as u32)
-        }));
-        if !places.is_sorted() {
-            places.sort_unstable();
-        }
-        // A host may have copied one.
-        places.dedup_by_key(|old| old.0);
-        Self(places.iter().peekable())
-    }
-
-    /// The index of the manifold of a candidate, if there is one. To be asked in ascending order;
-    /// manifolds between are retired.
-    #[inline(always)]
-    pub(super) fn find<M: Default, C: Default + Copy>(
+impl Lookup {
+    /// Hands on to `new` candidates what is known of those of the same subshapes among `old`: hints,
+    /// unless they have one, and places.
+    pub(super) fn hand_on<H: Copy + Default + PartialEq>(
         &mut self,
-        wanted: OrderKey,
-        manifolds: &mut [ContactManifold<M, C>],
-        pool: &mut ManifoldPool<M, C>,
-    ) -> Option<usize> {
-        while let Some(&(_, place)) = self.0.next_if(|old| old.0 < wanted) {
-            pool.retire(std::mem::take(&mut manifolds[place as usize]));
+        old: &[Candidate<H>],
+        new: &mut [Candidate<H>],
+    ) {
+        let is_known = |old: &Candidate<H>| old.place.is_some() || old.hint != H::default();
+        let known = old.iter().zip(0..).filter(|(old, _)| is_known(old));
+        self.0.clear();
+        self.0.extend(known.map(|(old, index)| (old.subshapes, index)));
+        if self.0.is_empty() {
+            return;
         }
-        self.0.next_if(|old| old.0 == wanted).map(|&(_, place)| place as usize)
+        for candidate in new {
+            let Some(&index) = self.0.get(&candidate.subshapes) else {
+                continue;
+            };
+            let old = old[index as usize];
+            candidate.place = old.place;
+            if candidate.hint == H::default() {
+                candidate.hint = old.hint;
+            }
+        }
     }
 
-    /// Retires the manifolds that are left.
-    pub(super) fn retire_rest<M: Default, C: Default + Copy>(
-        self,
-        manifolds: &mut [ContactManifold<M, C>],
-        pool: &mut ManifoldPool<M, C>,
+    /// Makes the places of candidates those of a list that they do not know.
+    pub(super) fn find_places<M, C, H>(
+        &mut self,
+        manifolds: &[ContactManifold<M, C>],
+        candidates: &mut [Candidate<H>],
     ) {
-        for &(_, place) in self.0 {
-            pool.retire(std::mem::take(&mut manifolds[place as usize]));
+        let subshapes = |m: &ContactManifold<M, C>| [m.subshape1, m.subshape2];
+        self.0.clear();
+        // A host may have copied one: the last copy counts.
+        self.0.extend(manifolds.iter().map(subshapes).zip(0..));
+        for candidate in candidates {
+            let index = self.0.get(&candidate.subshapes);
+            candidate.place = index.and_then(|&index| Place::new(index as usize));
         }
     }
+
+    /// How much is kept for later, in entries.
+    pub(super) fn shrink_to(&mut self, limit: usize) {
+        self.0.shrink_to(limit);
+    }
+}
+
+/// Whether the manifolds are where the candidates have them. Others may be there besides.
+pub(super) fn are_in_place<M, C, H>(
+    manifolds: &[ContactManifold<M, C>],
+    candidates: &[Candidate<H>],
+) -> bool {
+    let is_there = |candidate: &Candidate<H>, place: Place| {
+        let manifold = manifolds.get(place.index());
+        manifold.is_some_and(|m| [m.subshape1, m.subshape2] == candidate.subshapes)
+    };
+    candidates.iter().all(|candidate| candidate.place.is_none_or(|at| is_there(candidate, at)))
 }

@@ -20,4 +20,4 @@ pub(crate) use convex::{ConvexPair, Parts};
 pub(crate) use driver::{Answer, Pair, answer};
 pub(crate) use pose::{MeshPlace, PairPose};
 pub use triangles::TriangleContacts;
-pub(crate) use triangles::{FieldPair, MeshPair};
+pub(crate) use triangles::{FieldPair, MeshPair, walk};

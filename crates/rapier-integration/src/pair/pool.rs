@@ -103,17 +103,24 @@ impl<M: Default, C: Default + Copy> ManifoldPool<M, C> {
         self.next.extend(manifold);
     }
 
-    /// Keeps the manifold at `place` of the host's list, if it has points.
+    /// Keeps the manifold at `place` of the host's list, if it has points. Whether it has.
     #[inline(always)]
-    pub(super) fn keep_old(&mut self, place: usize, manifolds: &mut [ContactManifold<M, C>]) {
+    pub(super) fn keep_old(
+        &mut self,
+        place: usize,
+        manifolds: &mut [ContactManifold<M, C>],
+    ) -> bool {
         if manifolds[place].points.is_empty() {
             self.retire(std::mem::take(&mut manifolds[place]));
-        } else if self.next.is_empty() && place == self.in_place {
+            return false;
+        }
+        if self.next.is_empty() && place == self.in_place {
             self.in_place += 1;
         } else {
             self.leave_place(manifolds);
             self.next.push(std::mem::take(&mut manifolds[place]));
         }
+        true
     }
 
     /// From here on the manifolds of this query are in `next`.

@@ -9,7 +9,7 @@ use sbbk_core::query::{
 use sbbk_core::traverse::Placement;
 use sbbk_core::tree::Tree;
 
-use super::lookup::Trees;
+use super::lookup::{MeshQuery, Trees};
 
 /// Meshes this close have met, for a nonlinear cast, as a share of their size. Poses along a motion
 /// are computed in f32 and no better than that. Higher: fewer steps, earlier impacts.
@@ -18,9 +18,31 @@ const TOLERANCE: f64 = 1.0e-6;
 /// Steps of a nonlinear cast. Head-on motions take 10 to 30, turning ones up to some hundred.
 const STEP_LIMIT: usize = 2000;
 
+impl MeshQuery<'_> {
+    /// As [`Trees::cast`]; `None` if a mesh has no tree, and Parry must answer.
+    pub(crate) fn cast(
+        &self,
+        pos12: &Pose,
+        velocity12: Vector,
+        options: ShapeCastOptions,
+    ) -> Option<Option<ShapeCastHit>> {
+        Some(self.trees()?.cast(pos12, velocity12, options))
+    }
+
+    /// As [`Trees::cast_nonlinear`]; `None` if a mesh has no tree, and Parry must answer.
+    pub(crate) fn cast_nonlinear(
+        &self,
+        motions: [&NonlinearRigidMotion; 2],
+        times: (Real, Real),
+        stop_at_penetration: bool,
+    ) -> Option<Option<ShapeCastHit>> {
+        Some(self.trees()?.cast_nonlinear(motions, times, stop_at_penetration))
+    }
+}
+
 impl Trees {
     /// The first impact of mesh 2, moving by `velocity12` in the frame of mesh 1.
-    pub(crate) fn cast(
+    fn cast(
         &self,
         pos12: &Pose,
         velocity12: Vector,
@@ -51,7 +73,7 @@ impl Trees {
     /// touches then whether its velocities approach, and leaves it out for good if they do not.
     /// (For thicker shapes it goes on to look at times between; the thickness of a triangle is
     /// zero.) Here too; "approach" is to come closer, until the end, by more than the tolerance.
-    pub(crate) fn cast_nonlinear(
+    fn cast_nonlinear(
         &self,
         [motion1, motion2]: [&NonlinearRigidMotion; 2],
         (start, end): (Real, Real),

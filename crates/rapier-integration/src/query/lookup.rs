@@ -1,14 +1,16 @@
 //! The trees of two meshes, for queries that come without a workspace.
 //!
-//! Nothing tells such a query that a mesh was edited, or dropped and another one built in its
-//! place, and the [`MeshToken`] of the contact queries misses single vertices that moved (Parry
-//! refits its boxes then, but a vertex may move within the boxes of all its triangles) and single
-//! triangles that are others. So all of both are compared with a copy each time, 24 bytes a vertex
-//! and a triangle of sequential memory.
+//! A registered mesh is known by its address. Of the others nothing tells that they were edited, or
+//! dropped and another one built in their place, and the [`MeshToken`] of the contact queries misses
+//! single vertices that moved (Parry refits its boxes then, but a vertex may move within the boxes of
+//! all its triangles) and single triangles that are others. So all of a mesh is compared with a copy
+//! each time, 24 bytes a vertex and a triangle of sequential memory: less than the search takes, as
+//! this is done for small meshes only. Large ones are searched by Parry's own hierarchy, which needs
+//! no proof ([`walk`](super::walk)).
 //!
 //! Two triangles that meet need no such comparison: if both are where they were, they meet in the
 //! meshes of now, whatever else has changed. So a query that such a pair answers asks the trees
-//! first ([`Trees::remembered`]).
+//! first ([`MeshQuery::remembered`]).
 //!
 //! Each thread remembers the last few meshes it asked about, without keeping their trees: the cache
 //! does that, and goes with its dispatcher. Only a mesh that is not among them costs a hash of all
@@ -17,11 +19,11 @@
 use std::cell::RefCell;
 use std::sync::{Arc, Weak};
 
-use parry3d::shape::TriMesh;
 use sbbk_core::query::SearchScratch;
 use sbbk_core::tree::Tree;
 
-use crate::mesh::{CachedMesh, MeshToken, TreeCache};
+use super::walk::Walk;
+use crate::mesh::{CachedMesh, Hierarchy, MeshToken, TreeCache};
 
 /// Meshes that a thread remembers. More: scenes with many meshes look up faster.
 const REMEMBERED: usize = 8;
@@ -70,11 +72,17 @@ impl Memory {
         Some(mesh)
     }
 
-    /// The prepared mesh; `None` if it cannot have a tree.
-    fn prepare(&mut self, cache: &Arc<TreeCache>, mesh: &TriMesh) -> Option<Arc<CachedMesh>> {
-        let token = MeshToken::of(mesh);
+    /// The prepared mesh; `None` if it has no tree and is too large to get one at once.
+    fn prepare(&mut self, cache: &Arc<TreeCache>, seen: &Hierarchy<'_>) -> Option<Arc<CachedMesh>> {
+        let (mesh, token) = (seen.mesh, seen.token());
+        if let Some(registered) = cache.registered(mesh) {
+            return Some(registered);
+        }
+        if !cache.is_small(mesh) {
+            return None;
+        }
         self.recall(cache, token, |known| known.is_of(mesh)).or_else(|| {
-            let prepared = cache.noting(mesh, cache.prepare_for_queries(mesh))?;
+            let prepared = cache.prepare_for_queries(mesh).ok()?;
             self.recent.retain(|known| known.mesh.strong_count() > 0);
             self.recent.truncate(REMEMBERED - 1);
             let (cache, mesh) = (Arc::downgrade(cache), Arc::downgrade(&prepared));
@@ -84,46 +92,56 @@ impl Memory {
     }
 }
 
-/// The trees of two meshes.
-pub(crate) struct Trees([Arc<CachedMesh>; 2]);
+/// Two rigid meshes of which something is asked.
+pub(crate) struct MeshQuery<'a> {
+    pub(crate) cache: &'a Arc<TreeCache>,
+    pub(crate) meshes: [Hierarchy<'a>; 2],
+}
 
-impl Trees {
-    /// Finds or builds the trees; `None` if a mesh cannot have one, so that Parry must answer.
-    pub(crate) fn of(cache: &Arc<TreeCache>, meshes: [&TriMesh; 2]) -> Option<Self> {
-        if cache.is_unsupported(&meshes) {
-            return None;
-        }
-        Self::each(meshes, |memory, mesh| memory.prepare(cache, mesh))
+impl MeshQuery<'_> {
+    /// The trees of both meshes, if they are registered or so small that theirs are built at once.
+    pub(super) fn trees(&self) -> Option<Trees> {
+        self.each(|memory, seen| memory.prepare(self.cache, seen))
     }
 
     /// The trees that the meshes had of late. They may be of other vertices and triangles than the
     /// meshes have now.
-    pub(super) fn remembered(cache: &Arc<TreeCache>, meshes: [&TriMesh; 2]) -> Option<Self> {
-        Self::each(meshes, |memory, mesh| memory.recall(cache, MeshToken::of(mesh), |_| true))
+    pub(super) fn remembered(&self) -> Option<Trees> {
+        self.each(|memory, seen| memory.recall(self.cache, seen.token(), |_| true))
+    }
+
+    pub(super) fn walk(&self) -> Walk<'_> {
+        Walk(self.meshes.each_ref())
     }
 
     fn each(
-        [mesh1, mesh2]: [&TriMesh; 2],
-        tree_of: impl Fn(&mut Memory, &TriMesh) -> Option<Arc<CachedMesh>>,
-    ) -> Option<Self> {
+        &self,
+        tree_of: impl Fn(&mut Memory, &Hierarchy<'_>) -> Option<Arc<CachedMesh>>,
+    ) -> Option<Trees> {
+        let [mesh1, mesh2] = &self.meshes;
         MEMORY.with_borrow_mut(|memory| {
             let tree1 = tree_of(memory, mesh1)?;
-            let is_same = std::ptr::eq(mesh1, mesh2);
+            let is_same = std::ptr::eq(mesh1.mesh, mesh2.mesh);
             let tree2 = if is_same { tree1.clone() } else { tree_of(memory, mesh2)? };
-            Some(Self([tree1, tree2]))
+            Some(Trees([tree1, tree2]))
         })
     }
+}
 
+/// The trees of two meshes.
+pub(crate) struct Trees([Arc<CachedMesh>; 2]);
+
+impl Trees {
     /// Whether the trees are of the vertices and triangles that the meshes have now.
-    pub(super) fn are_of(&self, [mesh1, mesh2]: [&TriMesh; 2]) -> bool {
+    pub(super) fn are_of(&self, [mesh1, mesh2]: [Hierarchy<'_>; 2]) -> bool {
         let [tree1, tree2] = &self.0;
-        let is_same = std::ptr::eq(mesh1, mesh2);
-        tree1.is_of(mesh1) && (is_same || tree2.is_of(mesh2))
+        let is_same = std::ptr::eq(mesh1.mesh, mesh2.mesh);
+        tree1.is_of(mesh1.mesh) && (is_same || tree2.is_of(mesh2.mesh))
     }
 
     /// Whether these triangles of the meshes are where they are in the trees.
-    pub(super) fn have(&self, meshes: [&TriMesh; 2], triangles: [u32; 2]) -> bool {
-        (0..2).all(|i| self.0[i].has_triangle_of(meshes[i], triangles[i]))
+    pub(super) fn have(&self, meshes: [Hierarchy<'_>; 2], triangles: [u32; 2]) -> bool {
+        (0..2).all(|i| self.0[i].has_triangle_of(meshes[i].mesh, triangles[i]))
     }
 
     /// Both trees.

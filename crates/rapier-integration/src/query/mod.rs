@@ -7,6 +7,6 @@
 mod casts;
 mod lookup;
 mod proximity;
+mod walk;
 
-pub(crate) use lookup::Trees;
-pub(crate) use proximity::intersection;
+pub(crate) use lookup::MeshQuery;

@@ -1,55 +1,35 @@
 //! Distance, closest points, intersection and the deepest contact.
 
-use std::sync::Arc;
-
+use parry3d::bounding_volume::BoundingVolume;
 use parry3d::math::{Pose, Real};
 use parry3d::query::{ClosestPoints, Contact, ShapeDistance, ShapeIntersection};
-use parry3d::shape::TriMesh;
 use sbbk_core::query::{FoundPair, deepest, meeting, nearest};
 use sbbk_core::traverse::Placement;
 
-use super::lookup::Trees;
-use crate::mesh::TreeCache;
+use super::lookup::{MeshQuery, Trees};
 
-/// Whether the surfaces of two meshes meet, and where: one of the pairs of triangles that do (after
-/// an edit it can be another one than a new dispatcher would name). `None` if a mesh cannot have a
-/// tree.
-pub(crate) fn intersection(
-    cache: &Arc<TreeCache>,
-    meshes: [&TriMesh; 2],
-    pos12: &Pose,
-) -> Option<ShapeIntersection> {
-    let placement = Placement::new(pos12);
-    if let Some(trees) = Trees::remembered(cache, meshes) {
-        let pair = trees.meeting(placement);
-        let holds = match &pair {
-            Some(pair) => trees.have(meshes, [pair.triangle1, pair.triangle2]),
-            None => trees.are_of(meshes),
-        };
-        if holds {
-            return Some(answer(pair));
+impl MeshQuery<'_> {
+    /// Whether the surfaces of two meshes meet, and where: one of the pairs of triangles that do
+    /// (after an edit it can be another one than a new dispatcher would name).
+    pub(crate) fn intersection(&self, pos12: &Pose) -> ShapeIntersection {
+        if !self.boxes_meet(pos12, 0.0) {
+            return answer(None);
         }
-    }
-    Some(answer(Trees::of(cache, meshes)?.meeting(placement)))
-}
-
-fn answer(meeting: Option<FoundPair>) -> ShapeIntersection {
-    match meeting {
-        Some(FoundPair { triangle1, triangle2, .. }) => {
-            ShapeIntersection::new(true).with_subshapes(triangle1, triangle2)
+        let placement = Placement::new(pos12);
+        if let Some(trees) = self.remembered() {
+            let pair = trees.meeting(placement);
+            let holds = match &pair {
+                Some(pair) => trees.have(self.meshes, [pair.triangle1, pair.triangle2]),
+                None => trees.are_of(self.meshes),
+            };
+            if holds {
+                return answer(pair);
+            }
         }
-        None => ShapeIntersection::new(false),
-    }
-}
-
-/// Parry's limit of a distance: its largest number is none.
-fn limit_of(distance: Real) -> f64 {
-    if distance == Real::MAX { f64::INFINITY } else { f64::from(distance) }
-}
-
-impl Trees {
-    fn nearest(&self, placement: Placement, limit: f64) -> Option<FoundPair> {
-        self.search(|scratch| nearest(self.both(), placement, limit, scratch))
+        answer(match self.trees() {
+            Some(trees) => trees.meeting(placement),
+            None => self.walk().meeting(placement),
+        })
     }
 
     /// The distance; `Real::MAX` at a pose that is not finite, as Parry has it for shapes without
@@ -64,14 +44,10 @@ impl Trees {
         }
     }
 
-    fn meeting(&self, placement: Placement) -> Option<FoundPair> {
-        self.search(|scratch| meeting(self.both(), placement, scratch))
-    }
-
     /// The closest points, each in the frame of its mesh.
     pub(crate) fn closest_points(&self, pos12: &Pose, max_distance: Real) -> ClosestPoints {
         let placement = Placement::new(pos12);
-        match self.nearest(placement, limit_of(max_distance)) {
+        match self.within(pos12, max_distance, |limit| self.nearest(placement, limit)) {
             Some(pair) if pair.is_touching => ClosestPoints::Intersecting,
             Some(pair) => ClosestPoints::WithinMargin(pair.point1(), pair.point2(&placement)),
             None => ClosestPoints::Disjoint,
@@ -81,13 +57,65 @@ impl Trees {
     /// The contact of the deepest pair of triangles or, where none cross, of the nearest.
     pub(crate) fn contact(&self, pos12: &Pose, prediction: Real) -> Option<Contact> {
         let placement = Placement::new(pos12);
-        let limit = limit_of(prediction);
-        let pair = self.search(|scratch| deepest(self.both(), placement, limit, scratch))?;
+        let pair = self.within(pos12, prediction, |limit| match self.trees() {
+            Some(trees) => trees.deepest(placement, limit),
+            None => self.walk().deepest(placement, limit),
+        })?;
         let points = (pair.point1(), pair.point2(&placement));
         let normals = (pair.normal1(), pair.normal2(&placement));
         let distance = pair.contact.distance as Real;
         let mut contact = Contact::new(points.0, points.1, normals.0, normals.1, distance);
         (contact.subshape1, contact.subshape2) = (pair.triangle1, pair.triangle2);
         Some(contact)
+    }
+
+    fn nearest(&self, placement: Placement, limit: f64) -> Option<FoundPair> {
+        match self.trees() {
+            Some(trees) => trees.nearest(placement, limit),
+            None => self.walk().nearest(placement, limit),
+        }
+    }
+
+    /// What `find` finds up to a distance, Parry's largest number meaning none; nothing where the
+    /// boxes of the meshes are farther apart.
+    fn within(
+        &self,
+        pos12: &Pose,
+        distance: Real,
+        find: impl FnOnce(f64) -> Option<FoundPair>,
+    ) -> Option<FoundPair> {
+        if distance == Real::MAX {
+            return find(f64::INFINITY);
+        }
+        self.boxes_meet(pos12, distance).then(|| find(f64::from(distance)))?
+    }
+
+    /// Whether the boxes of the meshes come within a distance, or about.
+    fn boxes_meet(&self, pos12: &Pose, distance: Real) -> bool {
+        let [mesh1, mesh2] = &self.meshes;
+        mesh1.root().intersects(&mesh2.placed_root(pos12, distance.max(0.0)))
+    }
+}
+
+fn answer(meeting: Option<FoundPair>) -> ShapeIntersection {
+    match meeting {
+        Some(FoundPair { triangle1, triangle2, .. }) => {
+            ShapeIntersection::new(true).with_subshapes(triangle1, triangle2)
+        }
+        None => ShapeIntersection::new(false),
+    }
+}
+
+impl Trees {
+    fn nearest(&self, placement: Placement, limit: f64) -> Option<FoundPair> {
+        self.search(|scratch| nearest(self.both(), placement, limit, scratch))
+    }
+
+    fn meeting(&self, placement: Placement) -> Option<FoundPair> {
+        self.search(|scratch| meeting(self.both(), placement, scratch))
+    }
+
+    fn deepest(&self, placement: Placement, limit: f64) -> Option<FoundPair> {
+        self.search(|scratch| deepest(self.both(), placement, limit, scratch))
     }
 }

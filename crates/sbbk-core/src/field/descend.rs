@@ -29,8 +29,7 @@ pub fn descend_field<F: HeightGrid, const AXES: usize>(
 ) where
     Directions<AXES>: DirectionSet<AXES>,
 {
-    let centre = tree.bounding_ball().centre;
-    let test = PlacedTest::new(&frame.placement, centre, tree.magnitude(), frame.margin);
+    let leaves = FieldLeaves::new(frame, tree.bounding_ball().centre, tree.magnitude());
     let stack = &mut scratch.stack;
     stack.clear();
     // The root's own volume is in lane 0 of the first entry; the other lane is empty.
@@ -52,45 +51,60 @@ pub fn descend_field<F: HeightGrid, const AXES: usize>(
                 break;
             }
             counters.leaf_pair();
-            visit_leaf(tree.leaf(link.index()), frame, &test, &mut counters, &mut found);
+            leaves.visit(tree.leaf(link.index()), &mut counters, &mut found);
         }
     }
 }
 
-fn visit_leaf<F: HeightGrid>(
-    batch: &LeafBatch,
-    frame: &FieldFrame<'_, F>,
-    test: &PlacedTest,
-    counters: &mut impl Counters,
-    found: &mut impl FnMut(FieldTriangle, u32),
-) {
-    let corners = (0..batch.count()).flat_map(|lane| batch.corners(lane));
-    let (low, high) = corners
-        .map(|corner| frame.placed(corner))
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), corner| {
-            (low.min(corner), high.max(corner))
-        });
-    let Some(cells) = frame.cells_between(low, high) else {
-        return;
-    };
-    let placed = test.place(batch);
-    for column in cells.columns.clone() {
-        counters.cells(cells.rows.len());
-        let lines = [column, column + 1].map(|line| frame.field.heights(line));
-        for row in cells.rows.clone() {
-            let [a, b] = lines.map(|line| [line[row], line[row + 1]]);
-            if !cells.is_met([a[0], a[1], b[0], b[1]]) {
-                continue;
-            }
-            let cell = [column, row];
-            for (side, triangle) in frame.field.triangles(cell).iter().enumerate() {
-                let is_finite = |triangle: &&[Vec3; 3]| triangle.iter().all(|x| x.is_finite());
-                let Some(triangle) = triangle.as_ref().filter(is_finite) else {
+/// Finds the triangles of a field near batches of triangles of a mesh. Made once a query.
+pub struct FieldLeaves<'a, F> {
+    frame: &'a FieldFrame<'a, F>,
+    test: PlacedTest,
+}
+
+impl<'a, F: HeightGrid> FieldLeaves<'a, F> {
+    /// For a mesh around `centre`, with coordinates up to `magnitude`.
+    pub fn new(frame: &'a FieldFrame<'a, F>, centre: Vec3, magnitude: f32) -> Self {
+        let test = PlacedTest::new(&frame.placement, centre, magnitude, frame.margin);
+        Self { frame, test }
+    }
+
+    /// Calls `found` as [`descend_field`] does, for the triangles of `batch`.
+    pub fn visit(
+        &self,
+        batch: &LeafBatch,
+        mut counters: impl Counters,
+        mut found: impl FnMut(FieldTriangle, u32),
+    ) {
+        let Self { frame, test } = self;
+        let corners = (0..batch.count()).flat_map(|lane| batch.corners(lane));
+        let (low, high) = corners
+            .map(|corner| frame.placed(corner))
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), corner| {
+                (low.min(corner), high.max(corner))
+            });
+        let Some(cells) = frame.cells_between(low, high) else {
+            return;
+        };
+        let placed = test.place(batch);
+        for column in cells.columns.clone() {
+            counters.cells(cells.rows.len());
+            let lines = [column, column + 1].map(|line| frame.field.heights(line));
+            for row in cells.rows.clone() {
+                let [a, b] = lines.map(|line| [line[row], line[row + 1]]);
+                if !cells.is_met([a[0], a[1], b[0], b[1]]) {
                     continue;
-                };
-                each_bit(placed.near(triangle), |lane| {
-                    found(FieldTriangle { cell, side }, batch.triangles()[lane]);
-                });
+                }
+                let cell = [column, row];
+                for (side, triangle) in frame.field.triangles(cell).iter().enumerate() {
+                    let is_finite = |triangle: &&[Vec3; 3]| triangle.iter().all(|x| x.is_finite());
+                    let Some(triangle) = triangle.as_ref().filter(is_finite) else {
+                        continue;
+                    };
+                    each_bit(placed.near(triangle), |lane| {
+                        found(FieldTriangle { cell, side }, batch.triangles()[lane]);
+                    });
+                }
             }
         }
     }

@@ -13,8 +13,7 @@ use std::ops::Range;
 use glamx::{DMat3, DVec3, Vec3};
 
 use super::grid::HeightGrid;
-use crate::traverse::{Counters, Placement};
-use crate::volumes::Aabb;
+use crate::traverse::{Counters, Placement, TestedBox};
 use crate::volumes::rounding::gamma;
 
 /// Cells under a node up to which their heights are read; a node above more is taken apart at once.
@@ -55,10 +54,10 @@ impl<'a, F: HeightGrid> FieldFrame<'a, F> {
     }
 
     /// Whether anything in a box of the mesh's frame may touch the field. Conservative.
-    pub fn meets(&self, aabb: &Aabb, mut counters: impl Counters) -> bool {
-        let (centre, extent) = (0.5 * (aabb.min + aabb.max), 0.5 * (aabb.max - aabb.min));
-        // The middle is rounded: what it loses is a part of the half-lengths.
-        let lost = gamma(4) * aabb.magnitude();
+    pub fn meets(&self, tested: TestedBox, mut counters: impl Counters) -> bool {
+        let (centre, extent) = tested.centre_extent();
+        // Centre and half-lengths are rounded: what they lose is a part of their size.
+        let lost = gamma(4) * (centre.abs() + extent).max_element();
         self.node_meets(centre, extent + Vec3::splat(lost), &mut counters)
     }
 

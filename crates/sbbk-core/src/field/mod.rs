@@ -57,6 +57,6 @@ mod descend;
 mod frame;
 mod grid;
 
-pub use descend::{FieldScratch, descend_field};
+pub use descend::{FieldLeaves, FieldScratch, descend_field};
 pub use frame::FieldFrame;
 pub use grid::{FieldTriangle, HeightGrid};

@@ -2,7 +2,7 @@
 
 use glamx::{DVec3, Vec3};
 
-use crate::contact::TriangleContact;
+use crate::contact::{TriangleContact, contact};
 use crate::traverse::Placement;
 use crate::tree::LeafBatch;
 
@@ -86,6 +86,21 @@ pub struct FoundPair {
 }
 
 impl FoundPair {
+    /// Two triangles by their indices and corners, mesh 2 placed at `placement` in the frame of mesh
+    /// 1, if they touch or are at most `margin` apart.
+    pub fn of(
+        placement: &Placement,
+        (triangle1, corners1): (u32, [Vec3; 3]),
+        (triangle2, corners2): (u32, [Vec3; 3]),
+        margin: f64,
+    ) -> Option<Self> {
+        let pair = TrianglePair::new(placement, corners1, corners2);
+        let touching = pair.touching_distance();
+        let contact = contact(&pair.corners[0], &pair.corners[1], margin.max(touching))?;
+        let is_touching = contact.distance <= touching;
+        Some(Self { triangle1, triangle2, contact, origin: pair.origin, is_touching })
+    }
+
     #[inline(always)]
     pub(super) fn new(
         one: LeafTriangle<'_>,

@@ -84,13 +84,17 @@ impl<const AXES: usize> PairFrame<AXES> {
         placement: Placement,
         margin: f32,
     ) -> Self {
+        Self::within([tree1.magnitude(), tree2.magnitude()], placement, margin)
+    }
+
+    /// The frame of any two bodies, whose coordinates are at most so large.
+    pub fn within([m1, m2]: [f32; 2], placement: Placement, margin: f32) -> Self {
         let Placement { rotation, translation, inverse } = placement;
         let translation = translation.as_vec3();
         // A row of the inverse is 1/s long: distances along it shrink by that.
         let inverse_scale = each(|i| inverse.row(i).length()).into_iter().fold(0.0, f64::max);
         let scale = each(|i| rotation.row(i).length()).into_iter().fold(0.0, f64::max);
 
-        let (m1, m2) = (tree1.magnitude(), tree2.magnitude());
         let t = translation.abs().max_element();
         let rounding = [
             gamma(16) * (m1 + t + 2.0 * scale as f32 * m2),

@@ -11,6 +11,7 @@
 
 #[cfg(test)]
 mod allowances;
+mod boxes;
 mod convex;
 mod correspondence;
 mod counters;
@@ -27,6 +28,7 @@ mod slack;
 mod toward;
 mod visitor;
 
+pub use boxes::{BoxTest, NearBox, TestedBox};
 pub use convex::{Convex, Outline};
 pub use counters::{Counters, DescentCounts};
 pub use descend::{Descent, DescentScratch, descend};

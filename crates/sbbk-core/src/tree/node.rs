@@ -219,7 +219,18 @@ const _: () = assert!(size_of::<LeafBatch>() == 176);
 
 impl LeafBatch {
     pub(super) fn new(members: &[u32], vertices: &[Vec3], triangles: &[[u32; 3]]) -> Self {
-        debug_assert!((1..=BATCH).contains(&members.len()));
+        Self::gather(members, |triangle| {
+            triangles[triangle as usize].map(|vertex| vertices[vertex as usize])
+        })
+    }
+
+    /// One to [`BATCH`] triangles, by their indices in a mesh and their corners.
+    ///
+    /// # Panics
+    /// With fewer or more.
+    #[inline]
+    pub fn gather(members: &[u32], corners_of: impl Fn(u32) -> [Vec3; 3]) -> Self {
+        assert!((1..=BATCH).contains(&members.len()), "{} triangles in a batch", members.len());
         let mut batch = Self {
             corners: [[[0.0; BATCH]; 3]; 3],
             triangles: [0; BATCH],
@@ -228,9 +239,9 @@ impl LeafBatch {
         for lane in 0..BATCH {
             let triangle = members[lane.min(members.len() - 1)];
             batch.triangles[lane] = triangle;
-            for (corner, &vertex) in triangles[triangle as usize].iter().enumerate() {
+            for (corner, position) in corners_of(triangle).into_iter().enumerate() {
                 for axis in 0..3 {
-                    batch.corners[corner][axis][lane] = vertices[vertex as usize][axis];
+                    batch.corners[corner][axis][lane] = position[axis];
                 }
             }
         }

@@ -4,7 +4,7 @@ use glamx::{DVec3, Pose3, Quat, Vec3};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use sbbk_core::field::FieldFrame;
-use sbbk_core::traverse::Placement;
+use sbbk_core::traverse::{Placement, TestedBox};
 use sbbk_core::volumes::Aabb;
 
 use crate::grid::Grid;
@@ -116,7 +116,7 @@ fn boxes_are_ruled_out_rightly() {
         };
         let margin = [0.0, 0.05][seed as usize % 2];
         let placement = Placement::new(&pose);
-        if FieldFrame::new(&grid, &placement, margin).meets(&aabb, ()) {
+        if FieldFrame::new(&grid, &placement, margin).meets(TestedBox::new(aabb.min, aabb.max), ()) {
             met += 1;
         } else {
             let lost = pairs_within(&grid, &mesh, &pose, f64::from(margin));

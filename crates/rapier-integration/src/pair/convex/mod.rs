@@ -16,6 +16,7 @@
 mod face;
 mod features;
 mod half_space;
+mod near;
 mod pair;
 mod parts;
 mod placed;

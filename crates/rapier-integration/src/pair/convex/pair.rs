@@ -1,17 +1,16 @@
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Pose, Real};
-use parry3d::shape::TriMesh;
 
 use super::parts::Parts;
 use crate::ContactGenerator;
-use crate::mesh::placed_root_box;
+use crate::mesh::Hierarchy;
 use crate::pair::pose::{MeshPlace, PairPose};
 
 /// A mesh and one or more convex shapes.
 #[derive(Copy, Clone)]
 pub(crate) struct ConvexPair<'a> {
     pub(crate) pose: &'a PairPose,
-    pub(crate) mesh: &'a TriMesh,
+    pub(crate) mesh: Hierarchy<'a>,
     pub(crate) parts: Parts<'a>,
     pub(crate) mesh_place: MeshPlace,
     pub(crate) contacts: ContactGenerator,
@@ -23,12 +22,11 @@ pub(crate) struct ConvexPair<'a> {
 const GJK_TOLERANCE: Real = 1.2e-3;
 
 impl ConvexPair<'_> {
-    /// The box around the mesh in the frame of the parts, grown by `reach`. `None` if the mesh is
-    /// broken: it can be anywhere.
-    pub(super) fn mesh_box(&self, reach: Real) -> Option<Aabb> {
+    /// The box around the mesh in the frame of the parts, grown by `reach`.
+    pub(super) fn mesh_box(&self, reach: Real) -> Aabb {
         let pos12 = self.pose.pos12;
         let pose = if self.mesh_place.is_second() { pos12 } else { pos12.inverse() };
-        placed_root_box(self.mesh, &pose, reach)
+        self.mesh.placed_root(&pose, reach)
     }
 
     /// How far contacts may be found of parts with radii of at most `radius`, roundings not
@@ -43,7 +41,7 @@ impl ConvexPair<'_> {
 
     /// Whether stock walks the hierarchy of the mesh first.
     pub(super) fn is_mesh_first(&self) -> bool {
-        let mesh = self.mesh.bvh().root_aabb().half_extents().length_squared();
+        let mesh = self.mesh.mesh.bvh().root_aabb().half_extents().length_squared();
         self.parts.walk_size().is_none_or(|parts| match self.mesh_place {
             MeshPlace::First => mesh >= parts,
             MeshPlace::Second => parts < mesh,

@@ -1,7 +1,9 @@
+use glamx::Vec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::NormalConstraints;
 use parry3d::shape::{CompositeShape, Shape};
+use sbbk_core::volumes::Sphere;
 
 use super::shape::{ConvexShape, Extent};
 
@@ -185,12 +187,11 @@ impl KnownParts {
         }
     }
 
-    /// How many there are.
-    pub(super) fn count(&self) -> u32 {
-        match self.token {
-            Some(Token::Many(_)) => self.ranks.len() as u32,
-            _ => 1,
-        }
+    /// A ball around all of them.
+    pub(super) fn ball(&self) -> Sphere {
+        let is_endless = matches!(self.token, Some(Token::One(extent)) if extent.is_endless());
+        let radius = if is_endless { Real::INFINITY } else { 1.75 * self.size };
+        Sphere { centre: Vec3::ZERO, radius }
     }
 
     /// The place of a part in the order of its hierarchy.

@@ -9,14 +9,14 @@ use parry3d::query::details::{
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::{PolygonalFeatureMap, Triangle};
 use sbbk_core::contact::convex::ConvexContact;
-use sbbk_core::traverse::{Convex, Placement};
+use sbbk_core::traverse::Placement;
 
 use super::face::OverFace;
 use super::features::Touching;
 use super::half_space::half_space_manifold;
 use super::pair::ConvexPair;
 use super::parts::{Part, Parts};
-use super::shape::{ConvexShape, Extent, Measured};
+use super::shape::{ConvexShape, Extent};
 use crate::pair::pose::MeshPlace;
 
 /// A part at the pose of a query: what is computed once for all triangles near it.
@@ -65,9 +65,9 @@ impl PlacedPart {
         }
     }
 
-    /// The shape of the part, for a descent.
-    pub(super) fn measured<'a>(&self, shape: ConvexShape<'a>) -> Measured<'a> {
-        Measured { shape, extent: self.extent }
+    /// The box around the part in its own frame, its radius not counted, and the radius.
+    pub(super) fn bounds(&self) -> (Vec3, Vec3, Real) {
+        self.extent.bounds()
     }
 
     /// The corners of a triangle of the mesh in the frame of the part.
@@ -84,7 +84,7 @@ impl PlacedPart {
         let at_mesh: DVec3 = self.placement.rotation.transpose() * axis;
         let lowest = triangle.vertices().iter().map(|x| at_mesh.dot(x.as_dvec3()));
         let lowest = lowest.fold(f64::INFINITY, f64::min) + axis.dot(self.placement.translation);
-        (lowest - self.measured(shape).reach(axis)) / axis.length()
+        (lowest - self.extent.reach(shape, axis)) / axis.length()
     }
 }
 

@@ -6,17 +6,17 @@ use parry3d::query::details::NormalConstraints;
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::Triangle;
 use sbbk_core::contact::convex::ConvexContact;
-use sbbk_core::leaf::ProbeTest;
-use sbbk_core::traverse::{Counters, Placement, Probe, Verdict, descend_probe};
+use sbbk_core::traverse::{Counters, Placement};
 use sbbk_core::volumes::rounding::gamma;
 
 use super::features::core_contact;
+use super::near::NearPart;
 use super::pair::ConvexPair;
 use super::parts::{KnownParts, Part, Parts};
 use super::placed::{PlacedPart, Question};
 use super::shape::ConvexShape;
 use crate::ContactGenerator;
-use crate::mesh::{Change, Held, KnownMesh, TreeCache};
+use crate::mesh::{Change, KnownMesh, TreeCache};
 use crate::pair::driver::{Limits, Moving, Pair, PairQuery, Scratch};
 use crate::pair::order::{Candidate, OrderKey};
 use crate::pair::pose::{MeshPlace, PairPose};
@@ -30,79 +30,52 @@ impl<'a> Pair for ConvexPair<'a> {
     where
         Self: 'q;
 
-    fn is_unsupported(&self, cache: &TreeCache) -> bool {
-        cache.is_unsupported(&[self.mesh])
-    }
-
-    fn needs_trees((mesh, _): &Self::Known) -> bool {
+    fn is_unknown((mesh, _): &Self::Known) -> bool {
         mesh.is_unknown()
     }
 
     fn boxes_meet(&self, _: &mut impl Counters) -> bool {
-        self.mesh_box(self.sight(self.parts.radius())).is_none_or(|aabb| self.parts.meets(&aabb))
+        self.parts.meets(&self.mesh_box(self.sight(self.parts.radius())))
     }
 
     fn open<'q>(
         &'q self,
-        cache: &Arc<TreeCache>,
+        _: &'q Arc<TreeCache>,
         (known_mesh, known_parts): &'q mut Self::Known,
-    ) -> Option<(Change, Self::Query<'q>)> {
-        let (mut change, prepared) =
-            cache.noting(self.mesh, known_mesh.update(self.mesh, cache))?;
+    ) -> (Change, Self::Query<'q>) {
+        let mut change = known_mesh.update(&self.mesh);
         if known_parts.update(&self.parts) {
             change = Change::Replaced;
         }
-        let is_mesh_first = self.is_mesh_first();
         let placement = self.mesh_place.mesh_in_other(&self.pose.placement12);
-        let query = ConvexQuery { pair: self, prepared, known_parts, placement, is_mesh_first };
-        Some((change, query))
+        (change, ConvexQuery { pair: self, known_parts, placement })
     }
 }
 
-/// A mesh with its tree, and the parts.
+/// A mesh and the parts.
 pub(crate) struct ConvexQuery<'q> {
     pair: &'q ConvexPair<'q>,
-    prepared: Held<'q>,
     known_parts: &'q KnownParts,
     /// The mesh in the frame of the parts.
     placement: Placement,
-    /// Whether stock walks the hierarchy of the mesh first.
-    is_mesh_first: bool,
 }
 
 impl ConvexQuery<'_> {
-    /// Adds the triangles within `margin` of a part, and few others.
+    /// Calls `found` with the triangles within `margin` of a part, and few others, in stock order.
     fn descend_part(
         &self,
         index: u32,
         margin: Real,
         counters: &mut impl Counters,
         scratch: &mut Scratch,
-        candidates: &mut Vec<Candidate<Vec3>>,
+        found: impl FnMut(u32),
     ) {
-        let prepared = &*self.prepared;
+        let mesh = &self.pair.mesh;
         self.pair.parts.with(index, |part| {
             let placed = self.placed(index, &part, scratch);
-            let (placement, shape) = (placed.placement, placed.measured(part.shape));
-            let mut probe = Probe::new(&prepared.tree, &placement, &shape, f64::from(margin));
-            let test = ProbeTest::new(&probe);
-            descend_probe(&prepared.tree, &mut probe, &mut scratch.probe, counters, |batch| {
-                test.survivors(batch, |lane, clear, hint| {
-                    let triangle = batch.triangles()[lane];
-                    if !prepared.is_broken(triangle) {
-                        let subshapes = self.pair.mesh_place.swap([triangle, index]);
-                        let key = self.key_of(triangle, index);
-                        candidates.push(Candidate { key, subshapes, clear, hint });
-                    }
-                });
-                Verdict::Descend
-            });
+            let near = NearPart::new(placed, part.shape, mesh.magnitude(), margin);
+            near.triangles(mesh, counters, found);
         });
-    }
-
-    fn key_of(&self, triangle: u32, part: u32) -> OrderKey {
-        let ranks = [self.prepared.rank(triangle), self.known_parts.rank(part)];
-        OrderKey::new(if self.is_mesh_first { ranks } else { [ranks[1], ranks[0]] })
     }
 
     /// A part at its place, as this query has it.
@@ -120,7 +93,7 @@ impl ConvexQuery<'_> {
             parts[slot] = None;
         }
         parts[slot].get_or_insert_with(|| {
-            let centre = self.prepared.tree.bounding_ball().centre;
+            let centre = self.pair.mesh.root().center();
             PlacedPart::new(index, part, self.pair, self.known_parts.extent(part), centre)
         })
     }
@@ -142,7 +115,13 @@ impl PairQuery for ConvexQuery<'_> {
     }
 
     fn moving(&self) -> Moving {
-        Moving { ball: self.prepared.tree.bounding_ball(), placement: self.placement }
+        let (mesh, parts) = (self.pair.mesh.ball(), self.known_parts.ball());
+        // The smaller one: it moves less as it turns.
+        if mesh.radius <= parts.radius {
+            Moving { ball: mesh, placement: self.placement }
+        } else {
+            Moving { ball: parts, placement: self.placement.inverted() }
+        }
     }
 
     /// How far Parry's routines may see: the prediction distance, what GJK adds, and what Parry
@@ -152,7 +131,7 @@ impl PairQuery for ConvexQuery<'_> {
     fn reach(&self) -> Real {
         let KnownParts { radius, size, .. } = *self.known_parts;
         let offset = self.pose().pos12.translation.abs().max_element();
-        let largest = self.prepared.tree.magnitude() + offset + size;
+        let largest = self.pair.mesh.magnitude() + offset + size;
         (self.pair.sight(radius) + gamma(64) * largest).min(Real::MAX)
     }
 
@@ -163,19 +142,29 @@ impl PairQuery for ConvexQuery<'_> {
         scratch: &mut Scratch,
         candidates: &mut Vec<Candidate<Vec3>>,
     ) {
-        let Some(mesh_box) = self.pair.mesh_box(margin) else {
-            return (0..self.known_parts.count()).for_each(|part| {
-                self.descend_part(part, margin, counters, scratch, candidates);
+        let place = self.pair.mesh_place;
+        let Parts::Many(_) = self.pair.parts else {
+            return self.descend_part(0, margin, counters, scratch, |triangle| {
+                candidates.push(Candidate::new(place.swap([triangle, 0])));
             });
         };
-        self.pair.parts.meeting(&mesh_box, |part| {
-            self.descend_part(part, margin, counters, scratch, candidates);
+        let mut ordered = std::mem::take(&mut scratch.ordered);
+        ordered.clear();
+        self.pair.parts.meeting(&self.pair.mesh_box(margin), |part| {
+            self.descend_part(part, margin, counters, scratch, |triangle| {
+                ordered.push((OrderKey::default(), [triangle, part]));
+            });
         });
-    }
-
-    fn key(&self, subshapes: [u32; 2]) -> OrderKey {
-        let [triangle, part] = self.pair.mesh_place.swap(subshapes);
-        self.key_of(triangle, part)
+        let ranks = &mut scratch.ranks[0];
+        self.pair.mesh.rank(ordered.iter().map(|(_, [triangle, _])| *triangle), ranks);
+        let is_mesh_first = self.pair.is_mesh_first();
+        for (key, [triangle, part]) in &mut ordered {
+            let ranks = [ranks.of(*triangle), self.known_parts.rank(*part)];
+            *key = OrderKey::new(if is_mesh_first { ranks } else { [ranks[1], ranks[0]] });
+        }
+        ordered.sort_unstable();
+        candidates.extend(ordered.iter().map(|&(_, pair)| Candidate::new(place.swap(pair))));
+        scratch.ordered = ordered;
     }
 
     #[inline(always)]
@@ -186,14 +175,12 @@ impl PairQuery for ConvexQuery<'_> {
         scratch: &mut Scratch,
     ) -> Option<Near> {
         let [triangle, part] = self.pair.mesh_place.swap(candidate.subshapes);
-        let triangle = self.pair.mesh.triangle(triangle);
-        // A descent has just looked.
-        let has_moved = limits.travel > 0.0;
+        let triangle = self.pair.mesh.mesh.triangle(triangle);
         let is_exact = self.pair.contacts == ContactGenerator::Exact;
         self.pair.parts.with(part, |part_shape| {
             let shape = part_shape.shape;
             let placed = self.placed(part, &part_shape, scratch);
-            if has_moved && candidate.hint != Vec3::ZERO {
+            if candidate.hint != Vec3::ZERO {
                 let gap = placed.gap(shape, &triangle, candidate.hint);
                 if gap > limits.reach {
                     candidate.clear = candidate.clear.max(gap + limits.travel);
@@ -242,9 +229,8 @@ impl PairQuery for ConvexQuery<'_> {
     {
         let ConvexPair { pose, mesh, parts, mesh_place, .. } = *self.pair;
         let [index, part_index] = mesh_place.swap(candidate.subshapes);
-        let mut fresh = None;
-        let cone = self.prepared.normal_constraints(mesh, index, &mut fresh);
-        let cone = cone.map(|cone| cone as &dyn NormalConstraints);
+        let cone = mesh.mesh.triangle_normal_constraints(index);
+        let cone = cone.as_ref().map(|cone| cone as &dyn NormalConstraints);
         parts.with(part_index, |part| {
             let placed = self.placed(part_index, &part, scratch);
             let prediction = pose.prediction;

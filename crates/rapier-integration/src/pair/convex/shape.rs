@@ -4,7 +4,6 @@ use glamx::{DVec3, Vec3};
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Real, Vector};
 use parry3d::shape::{Ball, Cuboid, HalfSpace, PolygonalFeatureMap, Shape, ShapeType};
-use sbbk_core::traverse::{Convex, Outline};
 use sbbk_core::volumes::rounding::gamma;
 
 /// A convex shape that Parry has contacts with triangles for, by how Parry makes them.
@@ -110,7 +109,7 @@ impl Extent {
 
     /// Whether a box in the frame of the shape meets the box around the shape, or the half-space.
     pub(super) fn meets(&self, aabb: &Aabb) -> bool {
-        if self.shape_type == ShapeType::HalfSpace {
+        if self.is_endless() {
             let (normal, half) = (self.skew, aabb.half_extents());
             // A box without end has no centre: NaN is not beyond.
             let is_beyond = normal.dot(aabb.center()) > normal.abs().dot(half);
@@ -119,21 +118,25 @@ impl Extent {
         let radius = Vec3::splat(self.radius);
         aabb.intersects(&Aabb::new(self.min - radius, self.max + radius))
     }
-}
 
-/// A convex shape for a descent.
-pub(super) struct Measured<'a> {
-    pub(super) shape: ConvexShape<'a>,
-    pub(super) extent: Extent,
-}
+    /// Whether it goes on without end.
+    pub(super) fn is_endless(&self) -> bool {
+        self.shape_type == ShapeType::HalfSpace
+    }
 
-impl Convex for Measured<'_> {
+    /// The box around the shape without its radius, and the radius.
+    pub(super) fn bounds(&self) -> (Vec3, Vec3, Real) {
+        (self.min, self.max, self.radius)
+    }
+
+    /// At least how far the shape reaches along a direction of any length; infinite where it has no
+    /// end.
+    ///
     /// Parry's support points are found in f32, from the direction rounded to f32: the best point
     /// is missed, or off, by a few roundings of the largest coordinate.
-    fn reach(&self, direction: DVec3) -> f64 {
-        match self.shape {
+    pub(super) fn reach(&self, shape: ConvexShape<'_>, direction: DVec3) -> f64 {
+        match shape {
             ConvexShape::Ball(ball) => f64::from(ball.radius) * direction.length(),
-            // The descent asks along the normal. Along any other direction there is no end.
             ConvexShape::HalfSpace(half_space) => {
                 let is_normal = direction == half_space.normal.as_dvec3();
                 if is_normal { 0.0 } else { f64::INFINITY }
@@ -141,29 +144,11 @@ impl Convex for Measured<'_> {
             ConvexShape::Cuboid(cuboid) => direction.abs().dot(cuboid.half_extents.as_dvec3()),
             ConvexShape::Features { map, radius, .. } => {
                 let point = map.local_support_point(direction.as_vec3()).as_dvec3();
-                let rounding = gamma(16) * self.extent.magnitude();
+                let rounding = gamma(16) * self.magnitude();
                 direction.dot(point)
                     + f64::from(rounding) * direction.abs().element_sum()
                     + f64::from(radius) * direction.length()
             }
-        }
-    }
-
-    fn outline(&self) -> Outline {
-        if let ConvexShape::HalfSpace(half_space) = self.shape {
-            return Outline::HalfSpace { normal: half_space.normal.as_dvec3() };
-        }
-        let Extent { shape_type, radius, min, max, .. } = self.extent;
-        let (min, max) = (min.as_dvec3(), max.as_dvec3());
-        let half_lengths = 0.5 * (max - min);
-        let is_box = matches!(shape_type, ShapeType::Cuboid | ShapeType::RoundCuboid);
-        // A segment along an axis, or a point.
-        let is_line = half_lengths.to_array().iter().filter(|&&half| half > 0.0).count() <= 1;
-        Outline::RoundBox {
-            centre: 0.5 * (min + max),
-            half_lengths,
-            radius: f64::from(radius),
-            is_exact: is_box || is_line,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! A mesh and a height field.
 //!
 //! Stock Parry takes the field for a convex shape here and finds no contacts at all. The descent
-//! goes down the tree of the mesh and reads the cells under it ([`sbbk_core::field`]).
+//! goes down Parry's hierarchy of the mesh and reads the cells under it ([`sbbk_core::field`]).
 //!
 //! Triangles of the field have the numbers that Parry gives them in contacts with convex shapes.
 //! Manifolds are in the order in which Parry walks a field and a compound: cell by cell along z,
@@ -19,17 +19,17 @@ use std::sync::Arc;
 
 use parry3d::math::Real;
 use parry3d::query::details::NormalConstraints;
-use parry3d::shape::{HeightField, TriMesh, Triangle, TrianglePseudoNormals};
+use parry3d::shape::{HeightField, Triangle, TrianglePseudoNormals};
 use sbbk_core::contact::ManifoldPoints;
-use sbbk_core::field::{FieldFrame, descend_field};
-use sbbk_core::traverse::{Counters, Placement};
-use sbbk_core::volumes::Aabb;
+use sbbk_core::field::{FieldFrame, FieldLeaves};
+use sbbk_core::traverse::{Counters, Placement, TestedBox};
+use sbbk_core::tree::{BATCH, LeafBatch};
 
 use super::exact::Constraints;
 use super::field::{Field, FieldToken};
 use super::query::{Hint, TriangleQuery, TriangleShapes};
 use crate::ContactGenerator;
-use crate::mesh::{Change, Held, KnownMesh, TreeCache, root_box};
+use crate::mesh::{Change, Hierarchy, KnownMesh, TreeCache};
 use crate::pair::driver::{Moving, Pair, Scratch};
 use crate::pair::order::OrderKey;
 use crate::pair::pose::{MeshPlace, PairPose};
@@ -38,7 +38,7 @@ use crate::pair::pose::{MeshPlace, PairPose};
 #[derive(Copy, Clone)]
 pub(crate) struct FieldPair<'a> {
     pub(crate) pose: &'a PairPose,
-    pub(crate) mesh: &'a TriMesh,
+    pub(crate) mesh: Hierarchy<'a>,
     pub(crate) field: &'a HeightField,
     pub(crate) mesh_place: MeshPlace,
     pub(crate) contacts: ContactGenerator,
@@ -60,36 +60,28 @@ impl<'a> Pair for FieldPair<'a> {
     where
         Self: 'q;
 
-    fn is_unsupported(&self, cache: &TreeCache) -> bool {
-        cache.is_unsupported(&[self.mesh])
-    }
-
-    fn needs_trees((mesh, _): &Self::Known) -> bool {
+    fn is_unknown((mesh, _): &Self::Known) -> bool {
         mesh.is_unknown()
     }
 
     fn boxes_meet(&self, counters: &mut impl Counters) -> bool {
-        let Some(root) = root_box(self.mesh) else {
-            return true;
-        };
-        let field = Field(self.field);
+        let (field, root) = (Field(self.field), self.mesh.root());
         let frame = FieldFrame::new(&field, &self.mesh_placement(), self.pose.prediction);
-        frame.meets(&Aabb { min: root.mins, max: root.maxs }, counters)
+        frame.meets(TestedBox::new(root.mins, root.maxs), counters)
     }
 
     fn open<'q>(
         &'q self,
-        cache: &Arc<TreeCache>,
+        _: &'q Arc<TreeCache>,
         (known_mesh, known_field): &'q mut Self::Known,
-    ) -> Option<(Change, Self::Query<'q>)> {
-        let (mut change, tree) = cache.noting(self.mesh, known_mesh.update(self.mesh, cache))?;
+    ) -> (Change, Self::Query<'q>) {
+        let mut change = known_mesh.update(&self.mesh);
         let field = FieldToken::of(self.field);
         if known_field.replace(field).is_some_and(|known| known != field) {
             change = Change::Replaced;
         }
         let shapes = MeshAndField {
             pair: self,
-            prepared: tree,
             mesh_placement: self.mesh_placement(),
             field: Field(self.field),
             cone: RefCell::new((u32::MAX, None)),
@@ -101,14 +93,13 @@ impl<'a> Pair for FieldPair<'a> {
             generator: self.contacts,
             points: ManifoldPoints::new(),
         };
-        Some((change, query))
+        (change, query)
     }
 }
 
-/// A mesh with its tree, and a height field.
+/// A mesh and a height field.
 pub(crate) struct MeshAndField<'q> {
     pair: &'q FieldPair<'q>,
-    prepared: Held<'q>,
     /// The mesh in the frame of the field.
     mesh_placement: Placement,
     field: Field<'q>,
@@ -119,7 +110,7 @@ pub(crate) struct MeshAndField<'q> {
 
 impl TriangleShapes for MeshAndField<'_> {
     fn moving(&self) -> Moving {
-        Moving { ball: self.prepared.tree.bounding_ball(), placement: self.mesh_placement }
+        Moving { ball: self.pair.mesh.ball(), placement: self.mesh_placement }
     }
 
     fn descend(
@@ -127,40 +118,47 @@ impl TriangleShapes for MeshAndField<'_> {
         margin: Real,
         counters: &mut impl Counters,
         scratch: &mut Scratch,
-        mut found: impl FnMut([u32; 2]),
+        found: &mut Vec<(OrderKey, [u32; 2])>,
     ) {
-        let prepared = &*self.prepared;
+        let mesh = &self.pair.mesh;
         let frame = FieldFrame::new(&self.field, &self.mesh_placement, margin);
-        let stack = &mut scratch.field;
-        descend_field(&prepared.tree, &frame, stack, counters, |triangle, of_mesh| {
-            if !prepared.is_broken(of_mesh) {
-                found(self.pair.mesh_place.swap([of_mesh, self.field.id(triangle)]));
-            }
-        });
-    }
-
-    fn key(&self, triangles: [u32; 2]) -> OrderKey {
-        let [mesh, field] = self.pair.mesh_place.swap(triangles);
-        OrderKey::new([self.field.rank(field), self.prepared.rank(mesh)])
+        let leaves = FieldLeaves::new(&frame, mesh.ball().centre, mesh.magnitude());
+        let near = &mut scratch.near;
+        near.clear();
+        let meets = |node: TestedBox| frame.meets(node, ());
+        mesh.near(&mut *counters, meets, |triangle| near.push(triangle));
+        for triangles in near.chunks(BATCH) {
+            let batch = LeafBatch::gather(triangles, |triangle| mesh.corners(triangle));
+            leaves.visit(&batch, &mut *counters, |triangle, of_mesh| {
+                let pair = [of_mesh, self.field.id(triangle)];
+                found.push((OrderKey::default(), self.pair.mesh_place.swap(pair)));
+            });
+        }
+        let of_mesh = |pair: [u32; 2]| self.pair.mesh_place.swap(pair)[0];
+        let ranks = &mut scratch.ranks[0];
+        mesh.rank(found.iter().map(|(_, pair)| of_mesh(*pair)), ranks);
+        for (key, pair) in found {
+            let [mesh, field] = self.pair.mesh_place.swap(*pair);
+            *key = OrderKey::new([self.field.rank(field), ranks.of(mesh)]);
+        }
     }
 
     #[inline(always)]
     fn triangles(&self, triangles: [u32; 2]) -> Option<[Triangle; 2]> {
         let place = self.pair.mesh_place;
         let [mesh, field] = place.swap(triangles);
-        Some(place.swap([self.pair.mesh.triangle(mesh), self.field.triangle(field)?]))
+        Some(place.swap([self.pair.mesh.mesh.triangle(mesh), self.field.triangle(field)?]))
     }
 
     fn with_constraints(&self, triangles: [u32; 2], then: impl FnOnce(Constraints<'_>)) {
         let place = self.pair.mesh_place;
         let [mesh, field] = place.swap(triangles);
-        let mut fresh = None;
-        let of_mesh = self.prepared.normal_constraints(self.pair.mesh, mesh, &mut fresh);
+        let of_mesh = self.pair.mesh.mesh.triangle_normal_constraints(mesh);
         let cone = &mut *self.cone.borrow_mut();
         if cone.0 != field {
             *cone = (field, self.field.0.triangle_normal_constraints(field));
         }
-        let cones = [of_mesh, cone.1.as_ref()];
+        let cones = [of_mesh.as_ref(), cone.1.as_ref()];
         then(place.swap(cones).map(|cone| cone.map(|cone| cone as &dyn NormalConstraints)));
     }
 }

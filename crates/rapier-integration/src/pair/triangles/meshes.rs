@@ -1,9 +1,10 @@
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use parry3d::bounding_volume::BoundingVolume;
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::NormalConstraints;
-use parry3d::shape::{TriMesh, Triangle};
+use parry3d::shape::Triangle;
 use sbbk_core::contact::ManifoldPoints;
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::traverse::{Counters, Descent, PairFrame, Verdict, Visitor, descend};
@@ -11,8 +12,9 @@ use sbbk_core::tree::LeafBatch;
 
 use super::exact::Constraints;
 use super::query::{Hint, TriangleQuery, TriangleShapes};
+use super::walk::walk;
 use crate::ContactGenerator;
-use crate::mesh::{Change, Held, KnownMesh, PreparedMesh, TreeCache, placed_root_box, root_box};
+use crate::mesh::{Change, Hierarchy, KnownMesh, PreparedMesh, TreeCache};
 use crate::pair::driver::{Moving, Pair, Scratch};
 use crate::pair::order::OrderKey;
 use crate::pair::pose::PairPose;
@@ -21,14 +23,15 @@ use crate::pair::pose::PairPose;
 #[derive(Copy, Clone)]
 pub(crate) struct MeshPair<'a> {
     pub(crate) pose: &'a PairPose,
-    pub(crate) meshes: [&'a TriMesh; 2],
+    pub(crate) meshes: [Hierarchy<'a>; 2],
     pub(crate) contacts: ContactGenerator,
 }
 
 impl MeshPair<'_> {
     /// Whether Parry walks mesh 2 first: it does so if its box is larger.
     fn is_second_first(&self) -> bool {
-        let size = |mesh: &TriMesh| mesh.bvh().root_aabb().half_extents().length_squared();
+        let size =
+            |seen: Hierarchy<'_>| seen.mesh.bvh().root_aabb().half_extents().length_squared();
         size(self.meshes[0]) < size(self.meshes[1])
     }
 
@@ -48,56 +51,56 @@ impl<'a> Pair for MeshPair<'a> {
     where
         Self: 'q;
 
-    fn is_unsupported(&self, cache: &TreeCache) -> bool {
-        cache.is_unsupported(&self.meshes)
-    }
-
-    fn needs_trees(known: &Self::Known) -> bool {
+    fn is_unknown(known: &Self::Known) -> bool {
         known.iter().any(KnownMesh::is_unknown)
     }
 
     fn boxes_meet(&self, _: &mut impl Counters) -> bool {
-        let [mesh1, mesh2] = self.meshes;
+        let [mesh1, mesh2] = &self.meshes;
         let PairPose { pos12, prediction, .. } = self.pose;
-        let boxes = (root_box(mesh1), placed_root_box(mesh2, pos12, prediction.max(0.0)));
-        let (Some(box1), Some(box2)) = boxes else {
-            return true;
-        };
-        box1.intersects(&box2)
+        mesh1.root().intersects(&mesh2.placed_root(pos12, prediction.max(0.0)))
     }
 
     fn open<'q>(
         &'q self,
-        cache: &Arc<TreeCache>,
+        cache: &'q Arc<TreeCache>,
         [known1, known2]: &'q mut [KnownMesh; 2],
-    ) -> Option<(Change, Self::Query<'q>)> {
-        let [mesh1, mesh2] = self.meshes;
-        let (change1, tree1) = cache.noting(mesh1, known1.update(mesh1, cache))?;
-        let (change2, tree2) = cache.noting(mesh2, known2.update(mesh2, cache))?;
+    ) -> (Change, Self::Query<'q>) {
+        let [mesh1, mesh2] = &self.meshes;
+        let change = known1.update(mesh1).max(known2.update(mesh2));
+        let are_rigid = mesh1.is_rigid() && mesh2.is_rigid();
+        let tree1 = if are_rigid { known1.tree(mesh1.mesh, cache) } else { None };
+        let trees = tree1.and_then(|tree1| Some([tree1, known2.tree(mesh2.mesh, cache)?]));
         let is_second_first = self.is_second_first();
         let query = TriangleQuery {
-            shapes: Meshes { pair: self, prepared: [tree1, tree2], is_second_first },
+            shapes: Meshes { pair: self, trees, is_second_first, cache },
             pose: self.pose,
             parrys_pose: self.parrys_pose(is_second_first),
             generator: self.contacts,
             points: ManifoldPoints::new(),
         };
-        Some((change1.max(change2), query))
+        (change, query)
     }
 }
 
-/// Two meshes and their trees.
+/// Two meshes and, if both have them, their trees.
 pub(crate) struct Meshes<'q> {
     pair: &'q MeshPair<'q>,
-    prepared: [Held<'q>; 2],
+    trees: Option<[&'q PreparedMesh; 2]>,
     /// Whether Parry walks mesh 2 first.
     is_second_first: bool,
+    cache: &'q TreeCache,
+}
+
+impl Meshes<'_> {
+    fn key(&self, ranks: [u32; 2]) -> OrderKey {
+        OrderKey::new(if self.is_second_first { [ranks[1], ranks[0]] } else { ranks })
+    }
 }
 
 impl TriangleShapes for Meshes<'_> {
     fn moving(&self) -> Moving {
-        let ball = self.prepared[1].tree.bounding_ball();
-        Moving { ball, placement: self.pair.pose.placement12 }
+        Moving { ball: self.pair.meshes[1].ball(), placement: self.pair.pose.placement12 }
     }
 
     fn descend(
@@ -105,59 +108,59 @@ impl TriangleShapes for Meshes<'_> {
         margin: Real,
         counters: &mut impl Counters,
         scratch: &mut Scratch,
-        found: impl FnMut([u32; 2]),
+        found: &mut Vec<(OrderKey, [u32; 2])>,
     ) {
-        let prepared = self.prepared.each_ref().map(|held| &**held);
+        let placement12 = self.pair.pose.placement12;
+        let Some(prepared) = self.trees else {
+            let meshes = self.pair.meshes.each_ref();
+            walk(meshes, placement12, margin, counters, |pair| {
+                found.push((OrderKey::default(), pair));
+                ControlFlow::Continue(())
+            });
+            let ranks = &mut scratch.ranks;
+            (0..2)
+                .for_each(|i| meshes[i].rank(found.iter().map(|(_, pair)| pair[i]), &mut ranks[i]));
+            for (key, pair) in found {
+                *key = self.key([0, 1].map(|i| ranks[i].of(pair[i])));
+            }
+            return self.cache.did_without();
+        };
         let trees = (&prepared[0].tree, &prepared[1].tree);
-        let mut frame = PairFrame::at(trees, self.pair.pose.placement12, margin);
-        let mut collector = Collector { prepared, test: LeafTest::new(&frame), found };
-        let (stack, way) = (&mut scratch.descent, Descent::Simultaneous);
-        descend(trees, &mut frame, way, stack, counters, &mut collector);
-    }
-
-    #[inline(always)]
-    fn key(&self, triangles: [u32; 2]) -> OrderKey {
-        let ranks = [0, 1].map(|i| self.prepared[i].rank(triangles[i]));
-        OrderKey::new(if self.is_second_first { [ranks[1], ranks[0]] } else { ranks })
+        let mut frame = PairFrame::at(trees, placement12, margin);
+        let (test, stack) = (LeafTest::new(&frame), &mut scratch.descent);
+        let mut collector = Collector(|batch1: &LeafBatch, batch2: &LeafBatch| {
+            test.survivors(batch1, batch2, |lane1, lane2| {
+                let pair = [batch1.triangles()[lane1], batch2.triangles()[lane2]];
+                found.push((self.key([0, 1].map(|i| prepared[i].rank(pair[i]))), pair));
+            });
+        });
+        descend(trees, &mut frame, Descent::Simultaneous, stack, counters, &mut collector);
     }
 
     #[inline(always)]
     fn triangles(&self, [triangle1, triangle2]: [u32; 2]) -> Option<[Triangle; 2]> {
-        let [mesh1, mesh2] = self.pair.meshes;
+        let [mesh1, mesh2] = self.pair.meshes.map(|seen| seen.mesh);
         Some([mesh1.triangle(triangle1), mesh2.triangle(triangle2)])
     }
 
     #[inline(always)]
-    fn with_constraints(
-        &self,
-        [triangle1, triangle2]: [u32; 2],
-        then: impl FnOnce(Constraints<'_>),
-    ) {
-        let [mesh1, mesh2] = self.pair.meshes;
-        let [prepared1, prepared2] = &self.prepared;
-        let [mut fresh1, mut fresh2] = [None, None];
-        let cone1 = prepared1.normal_constraints(mesh1, triangle1, &mut fresh1);
-        let cone2 = prepared2.normal_constraints(mesh2, triangle2, &mut fresh2);
-        then([cone1, cone2].map(|cone| cone.map(|cone| cone as &dyn NormalConstraints)));
+    fn with_constraints(&self, triangles: [u32; 2], then: impl FnOnce(Constraints<'_>)) {
+        if let Some(prepared) = self.trees {
+            let cones = [0, 1].map(|i| prepared[i].normal_constraints(triangles[i]));
+            return then(cones.map(|cone| cone.map(|cone| cone as &dyn NormalConstraints)));
+        }
+        let cones =
+            [0, 1].map(|i| self.pair.meshes[i].mesh.triangle_normal_constraints(triangles[i]));
+        then(cones.each_ref().map(|cone| cone.as_ref().map(|cone| cone as &dyn NormalConstraints)));
     }
 }
 
-struct Collector<'a, F> {
-    prepared: [&'a PreparedMesh; 2],
-    test: LeafTest,
-    found: F,
-}
+struct Collector<F>(F);
 
-impl<F: FnMut([u32; 2])> Visitor for Collector<'_, F> {
+impl<F: FnMut(&LeafBatch, &LeafBatch)> Visitor for Collector<F> {
     #[inline]
     fn leaves(&mut self, _: u32, batch1: &LeafBatch, _: u32, batch2: &LeafBatch) -> Verdict {
-        self.test.survivors(batch1, batch2, |lane1, lane2| {
-            let [triangle1, triangle2] = [batch1.triangles()[lane1], batch2.triangles()[lane2]];
-            let [prepared1, prepared2] = self.prepared;
-            if !prepared1.is_broken(triangle1) && !prepared2.is_broken(triangle2) {
-                (self.found)([triangle1, triangle2]);
-            }
-        });
+        self.0(batch1, batch2);
         Verdict::Descend
     }
 }

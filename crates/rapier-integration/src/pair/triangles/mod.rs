@@ -9,7 +9,9 @@ mod field;
 mod heightfield;
 mod meshes;
 mod query;
+mod walk;
 
 pub use exact::TriangleContacts;
 pub(crate) use heightfield::FieldPair;
 pub(crate) use meshes::MeshPair;
+pub(crate) use walk::walk;

@@ -21,17 +21,15 @@ pub(crate) trait TriangleShapes {
     /// What moves.
     fn moving(&self) -> Moving;
 
-    /// Calls `found` with all pairs of triangles within `margin`, and few others.
+    /// Adds all pairs of triangles within `margin`, and few others, with their places in the order
+    /// of manifolds.
     fn descend(
         &self,
         margin: Real,
         counters: &mut impl Counters,
         scratch: &mut Scratch,
-        found: impl FnMut([u32; 2]),
+        found: &mut Vec<(OrderKey, [u32; 2])>,
     );
-
-    /// The place of a pair of triangles in the order of manifolds.
-    fn key(&self, triangles: [u32; 2]) -> OrderKey;
 
     /// The triangles; `None` if one does not exist.
     fn triangles(&self, triangles: [u32; 2]) -> Option<[Triangle; 2]>;
@@ -79,14 +77,12 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         scratch: &mut Scratch,
         candidates: &mut Vec<Candidate<Hint>>,
     ) {
-        self.shapes.descend(margin, counters, scratch, |subshapes| {
-            let key = self.shapes.key(subshapes);
-            candidates.push(Candidate { key, subshapes, clear: f64::NEG_INFINITY, hint: None });
-        });
-    }
-
-    fn key(&self, subshapes: [u32; 2]) -> OrderKey {
-        self.shapes.key(subshapes)
+        let mut ordered = std::mem::take(&mut scratch.ordered);
+        ordered.clear();
+        self.shapes.descend(margin, counters, scratch, &mut ordered);
+        ordered.sort_unstable();
+        candidates.extend(ordered.iter().map(|&(_, subshapes)| Candidate::new(subshapes)));
+        scratch.ordered = ordered;
     }
 
     #[inline(always)]
