@@ -67,6 +67,8 @@ mod trajectories;
 mod truth;
 /// Meshes that cannot have a tree.
 mod unsupported;
+/// Meshes without trees.
+mod walks;
 /// Who answers for which pair and query.
 mod who_answers;
 /// Bodies above a ground.

@@ -1,15 +1,15 @@
 //! Triangles exactly the margin apart are found, where f32 rounds most: by descents of every plan,
-//! leaf tests, probes and height fields. Each test fails if what the arithmetic loses there is not
+//! leaf tests and height fields. Each test fails if what the arithmetic loses there is not
 //! allowed for; the numbers are in `sbbk_core::volumes::rounding`.
 
 mod support;
 
 use glamx::{DVec3, Pose3, Vec3};
 use sbbk_core::field::{FieldFrame, FieldScratch, HeightGrid, descend_field};
-use sbbk_core::leaf::{LeafTest, ProbeTest};
+use sbbk_core::leaf::LeafTest;
 use sbbk_core::traverse::{
-    Convex, Descent, DescentScratch, Outline, PairFrame, Placement, Probe, ProbeScratch, Slack,
-    SlackPlan, Verdict, Visitor, descend, descend_probe,
+    BoxTest, Descent, DescentScratch, PairFrame, Placement, Slack, SlackPlan, TestedBox, Verdict,
+    Visitor, descend,
 };
 use sbbk_core::tree::{BuildOptions, LayerPlan, LeafBatch, Tree};
 use sbbk_core::truth;
@@ -193,108 +193,55 @@ fn tiny_triangles_the_margin_apart_are_found() {
     }
 }
 
-/// A rounded box, or all points on one side of a plane.
-struct Shape(Outline);
-
-impl Convex for Shape {
-    fn reach(&self, direction: DVec3) -> f64 {
-        match self.0 {
-            Outline::RoundBox { centre, half_lengths, radius, .. } => {
-                direction.dot(centre)
-                    + direction.abs().dot(half_lengths)
-                    + direction.length() * radius
-            }
-            Outline::HalfSpace { normal } if direction == normal => 0.0,
-            Outline::HalfSpace { .. } => f64::INFINITY,
-        }
-    }
-
-    fn outline(&self) -> Outline {
-        self.0
-    }
-}
-
-fn is_found(tree: &Tree, placement: &Placement, shape: &Shape, margin: f64) -> bool {
-    let mut probe = Probe::new(tree, placement, shape, margin);
-    let test = ProbeTest::new(&probe);
-    let mut is_found = false;
-    descend_probe(tree, &mut probe, &mut ProbeScratch::default(), (), |batch| {
-        test.survivors(batch, |_, _, _| is_found = true);
-        Verdict::Descend
-    });
-    is_found
-}
-
-/// Balls, boxes and half-spaces against a corner of a triangle.
+/// Boxes of two bodies, a corner of one over a face of the other; asked either way round.
 #[test]
-fn shapes_the_margin_apart_are_found() {
+fn boxes_the_margin_apart_are_found() {
     let random = &mut Random(3);
     for i in 0..6000 {
-        // The squares of tiny triangles' normals underflow.
-        let size = if i % 5 == 0 { 3.0e-11 } else { 1.0 };
-        let far = [0.0, 3.0, 300.0, 1.0e4][i % 4] * size;
-        // In the frame of the shape: towards a corner along an axis of the shape, or any direction
-        // for a ball.
-        let axis = [DVec3::X, DVec3::Y, DVec3::Z][i % 3];
-        let any = random.vector(1.0).as_dvec3().normalize();
-        let radius = f64::from(random.range(0.0, 0.5) * size);
-        let centre = random.vector(far).as_dvec3();
-        let (n, outline) = match i / 4 % 3 {
-            0 => {
-                let half_lengths = DVec3::ZERO;
-                (any, Outline::RoundBox { centre, half_lengths, radius, is_exact: true })
-            }
-            1 => {
-                let half_lengths = (random.vector(0.5).abs().as_dvec3() + 0.1) * f64::from(size);
-                (axis, Outline::RoundBox { centre, half_lengths, radius, is_exact: true })
-            }
-            _ => (any, Outline::HalfSpace { normal: any }),
+        let far = [0.0, 3.0, 300.0, 1.0e4][i % 4];
+        let axis = [DVec3::X, DVec3::Y, DVec3::Z][i / 4 % 3];
+        // So large that no corner of the other is beside it.
+        let boxes = [2.0, 0.1].map(|least| {
+            let (centre, half) = (random.vector(far), random.vector(0.5).abs() + least);
+            [centre - half, centre + half]
+        });
+        let [[min1, max1], [min2, max2]] = boxes;
+        // The corners of box 2 in frame 1, lowest along the axis.
+        let below = |placement: &Placement| {
+            let pick = |bit: usize, k: usize| if k >> bit & 1 == 0 { min2[bit] } else { max2[bit] };
+            let corner = |k: usize| Vec3::from_array([0, 1, 2].map(|bit| pick(bit, k)));
+            let heights = (0..8).map(|k| axis.dot(placement.to_frame1(corner(k), Vec3::ZERO)));
+            heights.fold(f64::INFINITY, f64::min)
         };
-        let shape = Shape(outline);
-        let pose = Pose3::from_parts(random.vector(far), random.rotation());
+        let turn = random.rotation();
+        let turned = Placement::new(&Pose3::from_parts(Vec3::ZERO, turn));
+        let [middle1, middle2] = boxes.map(|[min, max]| 0.5 * (min.as_dvec3() + max.as_dvec3()));
+        let over = middle1 - turned.rotation * middle2;
+        let top = axis.dot(max1.as_dvec3());
+        let lift = top + f64::from(random.range(0.01, 1.0)) - (below(&turned) + axis.dot(over));
+        let pose = Pose3::from_parts((over + lift * axis).as_vec3(), turn);
         let placement = Placement::new(&pose);
-        let middle = if let Outline::HalfSpace { .. } = outline { DVec3::ZERO } else { centre };
-        let surface = middle + n * (shape.reach(n) - n.dot(middle));
-        let gap = f64::from(random.range(0.01, 1.0) * size);
-        let tip = surface + n * gap;
-        let (n, aside) = (n * f64::from(size), n.any_orthonormal_vector() * f64::from(size));
-        let corners = [tip, tip + n + 0.1 * aside, tip + 0.5 * n - 0.1 * aside];
-        let corners = corners.map(|x| placement.to_frame2(x, Vec3::ZERO).as_vec3());
-        let tree = tree(&corners, KDOPS);
-        let corner = placement.to_frame1(corners[0], Vec3::ZERO);
-        let distance = match outline {
-            Outline::RoundBox { half_lengths, .. } => {
-                ((corner - centre).abs() - half_lengths).max(DVec3::ZERO).length() - radius
-            }
-            Outline::HalfSpace { normal } => normal.dot(corner),
+        let distance = below(&placement) - top;
+        if distance <= 0.0 {
+            // Far from the origin by the rounding of the pose.
+            continue;
+        }
+        let magnitudes = boxes.map(|[min, max]| min.abs().max(max.abs()).max_element());
+        let [one, two] = boxes.map(|[min, max]| TestedBox::new(min, max));
+        let meet = |margin: f32| {
+            let there: PairFrame = PairFrame::within(magnitudes, placement, margin);
+            let [m1, m2] = magnitudes;
+            let back: PairFrame = PairFrame::within([m2, m1], placement.inverted(), margin);
+            [BoxTest::new(&there).of(two).meets(one), BoxTest::new(&back).of(one).meets(two)]
         };
-        assert!(
-            is_found(&tree, &placement, &shape, distance),
-            "{i}: {shape:?}, {distance}",
-            shape = shape.0
-        );
-        let less = 0.9 * distance - 1.0e-4 * f64::from(tree.magnitude() + far);
-        assert!(!is_found(&tree, &placement, &shape, less) || less <= 0.0);
-    }
-}
-
-/// How deep a triangle is in a box is not made less by products that overflow.
-#[test]
-fn depths_of_any_size_are_bounds() {
-    for exponent in -5..36 {
-        let size = 10.0_f32.powi(exponent);
-        let half_lengths = DVec3::splat(f64::from(size));
-        let (centre, radius) = (DVec3::ZERO, 0.0);
-        let shape = Shape(Outline::RoundBox { centre, half_lengths, radius, is_exact: true });
-        let corners =
-            [Vec3::new(0.3, 0.1, 0.0), Vec3::new(-0.2, 0.3, 0.1), Vec3::new(0.0, -0.3, 0.2)];
-        let tree = tree(&corners.map(|corner| corner * size), KDOPS);
-        let placement = Placement::new(&Pose3::IDENTITY);
-        let probe: Probe<'_, _> = Probe::new(&tree, &placement, &shape, 0.0);
-        let mut found = Vec::new();
-        ProbeTest::new(&probe).survivors(tree.leaf(0), |_, distance, _| found.push(distance));
-        let depth = found[0] / f64::from(size);
-        assert!(found.len() == 1 && depth < -0.69, "{found:?} of {size}");
+        assert_eq!(meet((distance as f32).next_up()), [true; 2], "{i}: {distance}");
+        let less = 0.9 * distance - 2.0e-5 * f64::from(magnitudes[0] + magnitudes[1] + far);
+        if less > 0.0 {
+            assert_eq!(meet(less as f32), [false; 2], "{i}: {less}");
+        }
+        let frame: PairFrame = PairFrame::within(magnitudes, placement, 0.0);
+        let gap = BoxTest::new(&frame).of(two).gap(one);
+        assert!(f64::from(gap) <= distance, "{i}: {gap}, {distance}");
     }
 }
 
@@ -413,7 +360,7 @@ fn any_finite_margin_finds_everything() {
                     assert_eq!(survivors, count * count, "{margin} at {distance}");
 
                     let placement = Placement::new(&pose);
-                    check_shapes(&tree, &placement, margin, count);
+                    check_boxes(&tree, &placement, margin);
                     check_field(&tree, &placement, margin, count);
                 }
             }
@@ -421,28 +368,11 @@ fn any_finite_margin_finds_everything() {
     }
 }
 
-fn check_shapes(tree: &Tree, placement: &Placement, margin: f32, count: usize) {
-    let round = |half_lengths| Outline::RoundBox {
-        centre: DVec3::new(1.0, 2.0, 3.0),
-        half_lengths,
-        radius: 0.5,
-        is_exact: true,
-    };
-    let plane = Outline::HalfSpace { normal: DVec3::Y };
-    for outline in [round(DVec3::ZERO), round(DVec3::ONE), plane] {
-        let shape = Shape(outline);
-        let mut probe = Probe::new(tree, placement, &shape, margin.into());
-        let test = ProbeTest::new(&probe);
-        let mut found = 0;
-        descend_probe(tree, &mut probe, &mut ProbeScratch::default(), (), |batch| {
-            test.survivors(batch, |_, distance, _| {
-                assert!(distance <= f64::from(margin));
-                found += 1;
-            });
-            Verdict::Descend
-        });
-        assert_eq!(found, count, "{outline:?}, {margin} at {:?}", placement.translation);
-    }
+fn check_boxes(tree: &Tree, placement: &Placement, margin: f32) {
+    let magnitude = tree.magnitude();
+    let frame: PairFrame = PairFrame::within([magnitude; 2], *placement, margin);
+    let all = TestedBox::new(Vec3::splat(-magnitude), Vec3::splat(magnitude));
+    assert!(BoxTest::new(&frame).of(all).meets(all), "{margin} at {:?}", placement.translation);
 }
 
 fn check_field(tree: &Tree, placement: &Placement, margin: f32, count: usize) {

@@ -1,11 +1,11 @@
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// What queries may spend on trees, in triangles: to build the tree of one triangle takes about
-/// half a microsecond.
+/// a fifth of a microsecond.
 ///
 /// Queries that do without a tree earn some; a tree that nobody has prepared is built when there is
 /// enough. So building never takes more than a share of what queries take, and at most
-/// [`MOST`](Self::MOST) at a time, about two milliseconds, however many meshes land together. What
+/// [`MOST`](Self::MOST) at a time, less than two milliseconds, however many meshes land together. What
 /// is built when is never part of an answer.
 #[derive(Debug)]
 pub(super) struct Credit(AtomicU32);
@@ -19,9 +19,9 @@ impl Default for Credit {
 impl Credit {
     /// The most that can be saved up, and so the largest mesh that gets a tree unasked. More: longer
     /// steps where such meshes land; less: larger meshes do without a tree.
-    pub(super) const MOST: u32 = 4096;
+    pub(super) const MOST: u32 = 8192;
     /// What a descent without trees earns: it takes some 20 µs, a little more than two with trees.
-    const EARNED: u32 = 32;
+    const EARNED: u32 = 64;
 
     pub(super) fn earn(&self) {
         let more = |now: u32| Some((now + Self::EARNED).min(Self::MOST));

@@ -3,14 +3,12 @@
 //!
 //! The test looks for a separating axis over SIMD lanes: one triangle of leaf 1 against the batch
 //! of leaf 2. It is conservative and nearly exact; what survives goes to the exact test in f64
-//! ([`contact`](crate::contact)). [`ProbeTest`] does the same for triangles and a convex shape.
+//! ([`contact`](crate::contact)).
 
 mod placed;
-mod probe;
 mod separation;
 
 pub(crate) use placed::PlacedTest;
-pub use probe::ProbeTest;
 
 use wide::f32x4;
 

@@ -1,4 +1,4 @@
-//! Two trees against each other, and one against a convex shape.
+//! Two trees against each other.
 //!
 //! [`PairFrame`] holds what depends on the pair's pose, computed once, and the kernel that compares
 //! boxes; [`descend`] goes down both trees at once and hands pairs of leaves to a [`Visitor`];
@@ -6,13 +6,11 @@
 //!
 //! [`Slack`] says when a descent can be spared, as the last one looked far enough.
 //!
-//! One tree against a [`Convex`] shape: [`Probe`] is the shape as the tree sees it,
-//! [`descend_probe`] finds the leaves near it.
+//! [`BoxTest`] compares boxes of other hierarchies, one pair at a time.
 
 #[cfg(test)]
 mod allowances;
 mod boxes;
-mod convex;
 mod correspondence;
 mod counters;
 mod descend;
@@ -21,15 +19,12 @@ mod frame;
 mod gaps;
 mod overlap;
 mod placement;
-mod probe;
-mod probe_descend;
 mod side;
 mod slack;
 mod toward;
 mod visitor;
 
 pub use boxes::{BoxTest, NearBox, TestedBox};
-pub use convex::{Convex, Outline};
 pub use counters::{Counters, DescentCounts};
 pub use descend::{Descent, DescentScratch, descend};
 pub(crate) use expand::{Compare, Sides, expand};
@@ -38,8 +33,6 @@ pub use frame::PairFrame;
 pub(crate) use gaps::{Cutoff, GapCounts, SignedGaps};
 pub(crate) use overlap::OrderedOverlap;
 pub use placement::Placement;
-pub use probe::Probe;
-pub use probe_descend::{ProbeScratch, descend_probe};
 pub(crate) use side::Side;
 pub use slack::{GREATEST_SLACK, Slack, SlackPlan};
 pub(crate) use toward::Toward;

@@ -20,15 +20,13 @@
 //! | `Sphere::fit` | a difference, three squares, a root | `γ_5` of the distance | `γ_6` and `UNDERFLOW` |
 //! | `centre_extent` | the half-length | `u` of it | the next number |
 //! | `PairFrame`, boxes | `t + R·c2` (5 roundings), minus `c1` (1), `e1 + \|R\|·e2` (8, `e <= M`) | `γ_5·(T + 2·s·M2) + γ_1·W + γ_8·(M1 + 2·s·M2)` | `r`; in frame 2 likewise |
+//! | `BoxTest` | the same, and `c` and `e` (1 each) | `γ_2·W` more | `2·r` |
 //! | `Correspondence`, slabs | bounds up to `3·M`, coefficients that sum to `2·√3·s` | `γ_9·3·M1 + γ_6·3·T + γ_14·10.4·s·M2` | `6·r` |
 //! | gaps (`Bound`) | the difference of offset and reach, a norm, a length, a scale | `γ_8` of the gap | `γ_8` |
 //! | `Toward`, nodes | coefficients that sum to 2, slabs up to `3·M`, 14 roundings a term | `γ_14·(6·M1 + 2·T + 6·s·M2)` | `6·r` |
 //! | `Toward`, leaves | components that sum to 1.8, 7 roundings | `γ_7·1.8·(M1 + T + s·M2)` | `r` |
-//! | `Probe` | a node in `[-N, N]`, `N = \|n\|₁·M`, a shape cut off at `4·N` | `γ_8·N + γ_1·18·N` | `γ_32·N` |
-//! | `Probe`, own axes | margin and radius, a sum of squares | `γ_6` of them | `γ_8` |
 //! | `LeafTest` | see `leaf/separation.rs` | `4·r`, `γ_6·m` with `m <= 2·√3·W` | `6·r` |
 //! | `PlacedTest` | the same, and an origin taken away | `γ_18` for `γ_16` | the same |
-//! | `ProbeTest` | see `leaf/probe.rs` | `γ_32·(W + h + radius)` | that |
 //! | `FieldFrame` | lines `(c·fl(1/n) - 1/2)·scale`, heights times their scale | `γ_4` of the field, `γ_1` of heights | `γ_8`, `γ_4` |
 //! | `Placement::motion_bound` | f64 | a few `1e-16` of the terms | `1e-14` |
 

@@ -28,7 +28,11 @@ fn poses_and_margins_that_are_none() {
     for pose in shifts.chain(turns) {
         assert!(found(&grid, &tree, &pose, 0.02).0.is_empty(), "{pose:?}");
         let placement = Placement::new(&pose);
-        assert!(!FieldFrame::new(&grid, &placement, 0.02).meets(TestedBox::new(whole.min, whole.max), ()), "{pose:?}");
+        assert!(
+            !FieldFrame::new(&grid, &placement, 0.02)
+                .meets(TestedBox::new(whole.min, whole.max), ()),
+            "{pose:?}"
+        );
     }
     assert!(found(&grid, &tree, &Pose3::IDENTITY, f32::NAN).0.is_empty());
     let no_map = Pose3::from_parts(Vec3::ZERO, Quat::from_xyzw(0.0, 0.0, 0.0, 0.0));

@@ -116,7 +116,8 @@ fn boxes_are_ruled_out_rightly() {
         };
         let margin = [0.0, 0.05][seed as usize % 2];
         let placement = Placement::new(&pose);
-        if FieldFrame::new(&grid, &placement, margin).meets(TestedBox::new(aabb.min, aabb.max), ()) {
+        if FieldFrame::new(&grid, &placement, margin).meets(TestedBox::new(aabb.min, aabb.max), ())
+        {
             met += 1;
         } else {
             let lost = pairs_within(&grid, &mesh, &pose, f64::from(margin));

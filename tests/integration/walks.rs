@@ -1,0 +1,223 @@
+//! Meshes that are too large for a tree nobody has asked for, and those that may deform: answered
+//! from Parry's own hierarchy, with the same contacts.
+
+use glamx::{Pose3, Quat, Vec3};
+use oorandom::Rand32;
+use rapier_integration::{ContactGenerator, SbbkDispatcher};
+use rapier3d::math::{Pose, Real};
+use rapier3d::parry::query::details::ShapeCastOptions;
+use rapier3d::parry::query::{ClosestPoints, QueryDispatcher};
+use rapier3d::parry::shape::{Shape, SharedShape, TriMesh, TriMeshFlags};
+use sbbk_lab::mesh;
+
+use crate::support::{
+    Manifold, Pair, Query, assert_same, counting, fresh, generating, nudge, rotation, shape,
+    shape_with, touching,
+};
+
+/// 9600 triangles, four units across.
+fn large(flags: TriMeshFlags) -> SharedShape {
+    SharedShape::new(shape_with(&mesh::torus(1.4, 0.6, 100, 48), flags))
+}
+
+fn head(flags: TriMeshFlags) -> SharedShape {
+    SharedShape::new(shape_with(&mesh::monkey_head(), flags))
+}
+
+fn as_mesh(shape: &SharedShape) -> &TriMesh {
+    shape.as_trimesh().expect("the shape is a mesh")
+}
+
+/// Every bit of manifolds, and their order.
+fn bits(manifolds: &[Manifold]) -> String {
+    format!("{manifolds:?}")
+}
+
+/// Would catch a pair that the walk loses or finds in another order than a descent, a normal cone
+/// that is another, and meshes taken for each other. Both ways are proved by counters.
+#[test]
+fn contacts_without_trees_are_those_with_trees() {
+    let flags = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES];
+    let generators = [ContactGenerator::Exact, ContactGenerator::Parry];
+    let mut count = 0;
+    for (flags, generator) in flags.into_iter().flat_map(|f| generators.map(|g| (f, g))) {
+        let (ring, head) = (large(flags), head(flags));
+        let (walking, prepared) = (generating(generator), generating(generator));
+        let _tree = prepared.prepare_shape(&ring).unwrap().expect("a rigid mesh");
+        let mut random = Rand32::new(1);
+        for i in 0..24 {
+            let (one, two) = (as_mesh(&ring), as_mesh(if i % 4 == 0 { &ring } else { &head }));
+            let pose = match i % 3 {
+                // Faces on faces, edges on edges.
+                0 => Pose::translation(2.0 + 0.25 * (i / 3) as Real, 0.0, 0.5),
+                _ => touching(&mut random, [one, two], [0.0, 0.01, 0.2][i / 3 % 3]),
+            };
+            let query = Query::new(one, two, pose).within([0.002, 0.02, 0.1][i % 3]);
+            for query in [query, query.swapped()] {
+                let [found, expected] = [&walking, &prepared].map(|d| fresh(d, &query));
+                assert_eq!(bits(&found), bits(&expected), "{i}");
+                count += found.len();
+            }
+        }
+        // Some boxes are apart.
+        assert!(walking.stats().walks >= 36 && prepared.stats().walks == 0);
+        assert_eq!(prepared.stats().tree_builds, 2);
+    }
+    assert!(count > 4000, "{count} contacts");
+}
+
+/// Would catch places in stock order that hold for one walk only.
+#[test]
+fn motion_without_trees_is_no_part_of_the_answer() {
+    let (ring, head) = (large(TriMeshFlags::empty()), head(TriMeshFlags::empty()));
+    let dispatcher = counting();
+    let mut random = Rand32::new(5);
+    let (mut pair, mut pose): (Pair, _) =
+        (Pair::default(), touching(&mut random, [as_mesh(&ring), as_mesh(&head)], 0.05));
+    for i in 0..300 {
+        pose = nudge(&mut random, [1e-4, 1e-3, 2e-2][i / 100]) * pose;
+        let query = Query::new(as_mesh(&ring), as_mesh(&head), pose);
+        pair.ask(&dispatcher, &query);
+        assert_eq!(bits(&pair.manifolds), bits(&fresh(&SbbkDispatcher::default(), &query)), "{i}");
+    }
+    let stats = dispatcher.stats();
+    assert!(stats.walks > 50 && stats.reused_queries > 100, "{stats:?}");
+}
+
+/// A mesh with all flags, as Rapier's loaders of robots make them, does not deform as a rule. Would
+/// catch a tree built for it, and contacts that the flag changes.
+#[test]
+fn a_flag_alone_changes_nothing() {
+    let all = TriMeshFlags::all() - TriMeshFlags::DEFORMABLE;
+    let (rigid, soft) = (head(all), head(TriMeshFlags::all()));
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(2);
+    let mut pair: Pair = Pair::default();
+    for _ in 0..50 {
+        let pose = touching(&mut random, [as_mesh(&rigid); 2], 0.02);
+        let expected = fresh(&dispatcher, &Query::new(as_mesh(&rigid), as_mesh(&rigid), pose));
+        assert!(!expected.is_empty());
+        for (one, two) in [(&soft, &rigid), (&rigid, &soft), (&soft, &soft)] {
+            let query = Query::new(as_mesh(one), as_mesh(two), pose);
+            assert_same(&fresh(&dispatcher, &query), &expected, 0.0);
+            assert_same(&pair.ask(&dispatcher, &query).manifolds, &expected, 0.0);
+        }
+    }
+    assert_eq!(dispatcher.stats().trees, 1);
+}
+
+/// Would catch a registered mesh whose edit is not seen, one that stays registered when nobody
+/// keeps it, and another shape of the same content taken for it.
+#[test]
+fn a_registered_shape_is_known_until_it_is_let_go() {
+    let dispatcher = SbbkDispatcher::default();
+    let mut ring = large(TriMeshFlags::empty());
+    let head = head(TriMeshFlags::empty());
+    let pose = touching(&mut Rand32::new(3), [as_mesh(&ring), as_mesh(&head)], 0.05);
+    let ask = |ring: &SharedShape| {
+        let query = Query::new(as_mesh(ring), as_mesh(&head), pose);
+        let before = dispatcher.stats().walks;
+        let found = fresh(&dispatcher, &query);
+        assert_eq!(bits(&found), bits(&fresh(&SbbkDispatcher::default(), &query)));
+        (found.len(), dispatcher.stats().walks - before)
+    };
+    let tree = dispatcher.prepare_shape(&ring).unwrap().expect("a rigid mesh");
+    assert_eq!(tree.tree().triangle_count(), 9600);
+    let (count, walks) = ask(&ring);
+    assert!(count > 5 && walks == 0);
+    let clone = ring.clone();
+    assert_eq!(ask(&clone), (count, 0));
+    let mesh = ring.make_mut().as_trimesh_mut().expect("a mesh");
+    mesh.update_vertices(|vertices| vertices.iter_mut().for_each(|v| *v *= 0.98));
+    let (other_count, walks) = ask(&ring);
+    assert!(other_count != count && walks == 1);
+    assert_eq!(ask(&clone), (count, 0));
+    drop(tree);
+    // The tree is idle now, and its content is known: it takes a hash.
+    assert_eq!(ask(&clone), (count, 0));
+    dispatcher.release_idle_trees();
+    assert_eq!(ask(&clone), (count, 1));
+    assert!(dispatcher.prepare_shape(&SharedShape::ball(1.0)).unwrap().is_none());
+    let soft = large(TriMeshFlags::DEFORMABLE);
+    assert!(dispatcher.prepare_shape(&soft).unwrap().is_none());
+}
+
+/// Meshes of 968 triangles, each another one. Would catch a step in which all of them are built.
+#[test]
+fn meshes_that_land_together_are_not_all_built_at_once() {
+    let head = mesh::monkey_head();
+    let meshes: Vec<TriMesh> =
+        (0..100).map(|i| shape(&head.clone().scaled_to(2.0 + 0.001 * i as Real))).collect();
+    let dispatcher = SbbkDispatcher::default();
+    let pose = touching(&mut Rand32::new(4), [&meshes[0], &meshes[1]], 0.05);
+    let mut pairs: Vec<Pair> = (1..100).map(|_| Pair::default()).collect();
+    let mut step = |step: usize| {
+        // Too fast for what the query before has found.
+        let pose = Pose::translation(0.0, 0.03 * (step % 2) as Real, 0.0) * pose;
+        for (pair, meshes) in pairs.iter_mut().zip(meshes.windows(2)) {
+            let query = Query::new(&meshes[0], &meshes[1], pose);
+            pair.ask(&dispatcher, &query);
+        }
+        dispatcher.stats()
+    };
+    let first = step(0);
+    assert!((4..=14).contains(&first.tree_builds) && first.walks > 80, "{first:?}");
+    let last = (1..40).map(&mut step).last().unwrap();
+    assert_eq!(last.tree_builds, 100, "queries earn what trees take: {last:?}");
+    for (pair, meshes) in pairs.iter().zip(meshes.windows(2)) {
+        let pose = Pose::translation(0.0, 0.03, 0.0) * pose;
+        let query = Query::new(&meshes[0], &meshes[1], pose);
+        assert_eq!(bits(&pair.manifolds), bits(&fresh(&SbbkDispatcher::default(), &query)));
+    }
+}
+
+/// Would catch a search over Parry's hierarchies that ends too soon or in the wrong frame.
+#[test]
+fn queries_without_trees_are_those_with_trees() {
+    let (ring, head) = (large(TriMeshFlags::empty()), head(TriMeshFlags::empty()));
+    let (walking, prepared) = (SbbkDispatcher::default(), SbbkDispatcher::default());
+    let _trees = [&ring, &head].map(|shape| prepared.prepare_shape(shape).unwrap());
+    let mut random = Rand32::new(6);
+    let (mut crossing, mut apart) = (0, 0);
+    for i in 0..120 {
+        let from = rotation(&mut random) * Vec3::X;
+        let pose = Pose3::from_parts(from * (0.3 + 0.03 * i as Real), rotation(&mut random));
+        for is_swapped in [false, true] {
+            let shapes: [&dyn Shape; 2] =
+                if is_swapped { [&*head, &*ring] } else { [&*ring, &*head] };
+            let pos12 = if is_swapped { pose.inverse() } else { pose };
+            let ask = |d: &SbbkDispatcher| {
+                let [g1, g2] = shapes;
+                let closest = match d.closest_points(&pos12, g1, g2, 0.5).unwrap() {
+                    ClosestPoints::Intersecting => -1.0,
+                    ClosestPoints::WithinMargin(p1, p2) => (p1 - pos12 * p2).length(),
+                    ClosestPoints::Disjoint => 9.0,
+                };
+                let contact = d.contact(&pos12, g1, g2, 0.5).unwrap();
+                (
+                    d.intersection_test(&pos12, g1, g2).unwrap().intersecting,
+                    [d.distance(&pos12, g1, g2).unwrap().distance, closest],
+                    contact.map(|contact| contact.dist),
+                )
+            };
+            let [found, expected] = [&walking, &prepared].map(ask);
+            assert_eq!((found.0, found.2.is_some()), (expected.0, expected.2.is_some()), "{i}");
+            for (found, expected) in found.1.into_iter().zip(expected.1) {
+                assert!((found - expected).abs() < 1e-6, "{i}: {found} for {expected}");
+            }
+            if let (Some(found), Some(expected)) = (found.2, expected.2) {
+                assert!((found - expected).abs() < 1e-6, "{i}: {found} for {expected}");
+            }
+            *(if found.0 { &mut crossing } else { &mut apart }) += 1;
+        }
+    }
+    assert!(crossing > 40 && apart > 40, "{crossing} crossing, {apart} apart");
+    assert_eq!((walking.stats().trees, prepared.stats().trees), (1, 2));
+    // Casts are Parry's where there is no tree.
+    let (velocity, options) = (-Vec3::X, ShapeCastOptions::with_max_time_of_impact(9.0));
+    let pose = Pose3::from_parts(Vec3::new(4.0, 0.1, 1.4), Quat::IDENTITY);
+    let casts = [&walking, &prepared]
+        .map(|d| d.cast_shapes(&pose, velocity, &*ring, &*head, options).unwrap().unwrap());
+    let [found, expected] = casts.map(|hit| hit.time_of_impact);
+    assert!((found - expected).abs() < 1e-2, "{found} for {expected}");
+}
