@@ -119,6 +119,8 @@ impl Everyday<'_> {
         }
         let [stock, sbbk] = sides.map(|side| (side.row_values(), side));
         let of = |detection: &Spread| [detection.median, detection.worst];
+        let limit = stock.0.0.worst + WORST;
+        let bad_steps = sbbk.1.detection.iter().filter(|&&time| time > limit).count();
         let verdict = verdict(of(&stock.0.0), of(&sbbk.0.0), IGNORED, WORST);
         let row = |backend: Backend, ((detection, step), side): (_, Side)| {
             let row = Row { backend: backend.to_string(), ..self.row.clone() };
@@ -129,7 +131,7 @@ impl Everyday<'_> {
                 .with("mesh_mebibytes", mebibytes(side.mesh_bytes))
                 .with("plugin_mebibytes", mebibytes(side.plugin_bytes))
         };
-        let sbbk = row(Backend::Sbbk, sbbk).with("verdict", verdict);
+        let sbbk = row(Backend::Sbbk, sbbk).with("verdict", verdict).with("bad_steps", bad_steps);
         let sbbk =
             sbbk.with("pairs", comparison.pairs).with("triangles_of_pairs", comparison.triangles);
         Ok([row(Backend::Stock, stock), sbbk])

@@ -11,6 +11,7 @@ mod ground;
 mod measure;
 mod queries;
 mod report;
+mod robots;
 mod scenes;
 
 use rapier3d::geometry::TriMeshFlags;
@@ -24,7 +25,7 @@ use crate::report::{Results, Row};
 
 const BODIES: &str = "everyday: bodies on terrains";
 const SINGLE: &str = "everyday: single bodies, and many meshes";
-const DEFORMABLE: &str = "everyday: meshes with all flags";
+const DEFORMABLE: &str = "everyday: all flags, and robots";
 const SENSORS: &str = "everyday: sensors and characters";
 const PILE: &str = "everyday: pile";
 const QUERIES: &str = "everyday: queries";
@@ -53,13 +54,14 @@ pub struct EverydayPlan {
     pub steps: usize,
     /// Runs of each scene on each backend.
     pub repeats: usize,
-    /// Cells along a side of the terrain for single bodies and sensors, of half a unit.
+    /// Cells along a side of the terrain for single bodies and sensors, of half a unit, with fixed
+    /// edges.
     pub cells: u32,
     /// Cells along a side of the world that is crossed once, of a unit.
     pub world_cells: u32,
     /// Small meshes that come and go.
     pub small_meshes: usize,
-    /// Cells along a side of the terrain with all flags, of half a unit.
+    /// Cells along a side of the terrains for meshes with all flags and for robots, of half a unit.
     pub deformable_cells: u32,
     /// Heads in the pile.
     pub heads: usize,
@@ -79,13 +81,13 @@ impl EverydayPlan {
         Self {
             grounds: grounds.collect(),
             bodies: 100,
-            steps: 150,
-            repeats: 3,
+            steps: 120,
+            repeats: 2,
             cells: 512,
             world_cells: 1000,
             small_meshes: 10_000,
             deformable_cells: 256,
-            heads: 500,
+            heads: 300,
             query_cells: vec![23, 100, 400, 1000],
         }
     }
@@ -101,7 +103,6 @@ impl EverydayPlan {
                 ground(400, 0.25, false),
             ],
             steps: 100,
-            repeats: 2,
             world_cells: 512,
             small_meshes: 1000,
             heads: 100,
@@ -148,14 +149,18 @@ fn on_terrains(plan: &EverydayPlan, progress: &Progress) -> Result<Vec<Row>, Stu
 
 fn in_worlds(plan: &EverydayPlan, progress: &Progress) -> Result<Vec<Row>, StudyError> {
     let plain = |cells, cell| Ground::new(cells, cell, TriMeshFlags::empty());
-    let (large, world) = (plain(plan.cells, 0.5)?, plain(plan.world_cells, 1.0)?);
+    let large = Ground::new(plan.cells, 0.5, TriMeshFlags::FIX_INTERNAL_EDGES)?;
+    let world = plain(plan.world_cells, 1.0)?;
     let (small, deformable) =
         (plain(64, 0.5)?, Ground::new(plan.deformable_cells, 0.5, TriMeshFlags::all())?);
+    let ground_of_robots =
+        Ground::new(plan.deformable_cells, 0.5, TriMeshFlags::FIX_INTERNAL_EDGES)?;
     let steps = plan.steps;
     let mut scenes: Vec<Everyday> = scenes::bouncing(&large, 3 * steps)?;
     scenes.extend(scenes::crossing(&world, 2 * steps)?);
     scenes.push(scenes::rolling_population(&small, plan.small_meshes, plan.small_meshes / 5));
     scenes.extend(scenes::all_flags(&deformable, steps)?);
+    scenes.extend(robots::robots(&ground_of_robots, steps));
     scenes.extend(scenes::sensors(&large, steps)?);
     scenes.push(scenes::pile(plan.heads, steps));
     progress.phase("worlds", scenes.len());

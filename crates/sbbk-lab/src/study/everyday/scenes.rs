@@ -48,7 +48,7 @@ pub(super) fn bouncing(ground: &Ground, steps: usize) -> Scenes<'_> {
     let scene = |(name, shape): (&str, SharedShape)| {
         named(SINGLE, &format!("a {name} bounces"), ground, steps, move || {
             let mut world = ground.world();
-            let start = above(ground.size, [1.0, 1.0], 2.5);
+            let start = above(ground.size, [1.0, 1.0], 1.5);
             let collider = ColliderBuilder::new(shape.clone()).restitution(1.0);
             let collider = collider.restitution_combine_rule(CoefficientCombineRule::Max);
             world.insert(RigidBodyBuilder::dynamic().translation(start), collider);
