@@ -21,4 +21,4 @@ pub use container::Mesh;
 pub use file::{MeshError, load};
 pub use helicopter::helicopter;
 pub use monkey::{monkey_head, monkey_head_with};
-pub use shapes::{ball, cuboid, floor, terrain, torus};
+pub use shapes::{ball, cuboid, floor, hill_height, hills, terrain, torus};

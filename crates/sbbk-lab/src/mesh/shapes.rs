@@ -62,6 +62,23 @@ pub fn terrain(size: f32, cells: u32, height: f32) -> Mesh {
     sheet(size, cells, |x, z| height * bumps(x, z)).named("terrain")
 }
 
+/// A square sheet of `cells * cells` quads about the origin, with the heights of [`hill_height`]:
+/// what bodies of about a unit roll over. `2 * cells * cells` triangles (`cells` at least 1).
+pub fn hills(size: f32, cells: u32) -> Mesh {
+    sheet(size, cells, |x, z| hill_height(size, size * x, size * z)).named("hills")
+}
+
+/// Height of [`hills`] of this size over `(x, z)`, in units: smooth waves of 7 to 23 units, a unit
+/// high and no steeper than 30 degrees, and a rim 3 units high that nothing rolls over.
+pub fn hill_height(size: f32, x: f32, z: f32) -> f32 {
+    let waves = 0.7 * (0.31 * x).sin() * (0.27 * z).cos() + 0.3 * (0.83 * x + 0.41 * z).sin();
+    let beyond = x.abs().max(z.abs()) - (0.5 * size - RIM);
+    waves + 2.0 * beyond.max(0.0)
+}
+
+/// Width of the rim of [`hills`], in units.
+const RIM: f32 = 1.5;
+
 /// A square sheet with heights over `(x, z)`, each within -0.5..0.5 of the side.
 fn sheet(size: f32, cells: u32, height: impl Fn(f32, f32) -> f32) -> Mesh {
     let cells = cells.max(1);

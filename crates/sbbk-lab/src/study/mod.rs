@@ -9,6 +9,7 @@ pub mod contacts;
 pub mod convex;
 mod cut;
 pub mod determinism;
+pub mod everyday;
 pub mod front;
 mod helicopter;
 mod meshes;

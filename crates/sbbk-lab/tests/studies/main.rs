@@ -3,6 +3,7 @@
 mod compare;
 mod contacts;
 mod convex;
+mod everyday;
 mod front;
 mod long_runs;
 mod soft;

@@ -8,7 +8,7 @@ use crate::scene::random;
 
 /// A convex shape, or a compound of some, and how a mesh comes to it.
 #[derive(Clone)]
-pub(super) struct Kind {
+pub(in crate::study) struct Kind {
     /// Its name in tables.
     pub name: &'static str,
     /// The shape, at the size of a body beside a head of two units, or a floor.
@@ -19,7 +19,7 @@ pub(super) struct Kind {
 
 /// How a mesh stands on a floor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Upright {
+pub(in crate::study) enum Upright {
     /// Along the axes of the floor.
     Yes,
     /// In any orientation: so the box around a large floor, in the frame of the mesh, holds all of
@@ -29,7 +29,7 @@ pub(super) enum Upright {
 
 /// Every convex kind that Rapier has, `unit` or so across, and a floor of 100 units; then
 /// compounds. There are none of meshes: Parry does not allow them.
-pub(super) fn kinds(unit: f32) -> Vec<Kind> {
+pub(in crate::study) fn kinds(unit: f32) -> Vec<Kind> {
     let mut random = Rand32::new(3);
     let cloud: Vec<Vec3> = (0..40).map(|_| 0.5 * unit * random::direction(&mut random)).collect();
     let hull = SharedShape::convex_hull(&cloud);

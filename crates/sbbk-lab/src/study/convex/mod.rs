@@ -8,7 +8,7 @@
 //! truth.
 
 mod errors;
-mod kinds;
+pub(super) mod kinds;
 
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;

@@ -1,0 +1,203 @@
+//! One scene, run under stock Rapier and under SBBK in turns.
+
+use std::time::{Duration, Instant};
+
+use rapier_integration::SbbkDispatcher;
+use rapier3d::pipeline::PhysicsWorld;
+use serde::Serialize;
+
+use super::compare::Comparison;
+use crate::backend::{Backend, shape_address};
+use crate::report::Row;
+use crate::scene::SceneError;
+
+/// A world that can be built again and again, and what moves in it besides.
+pub(super) struct Everyday<'a> {
+    /// Study and keys of the rows.
+    pub row: Row,
+    pub steps: usize,
+    pub build: Box<dyn Fn() -> Result<Driven, SceneError> + 'a>,
+}
+
+/// A world and what is done to it before each step.
+pub(super) struct Driven {
+    pub world: PhysicsWorld,
+    pub drive: Drive,
+}
+
+/// Called with the number of the step, from 0; returns the time of the queries that it asked, which
+/// counts as collision detection.
+pub(super) type Drive = Box<dyn FnMut(&mut PhysicsWorld, usize) -> Duration>;
+
+impl Driven {
+    /// Nothing is done to the world.
+    pub fn alone(world: PhysicsWorld) -> Self {
+        Self::by(world, |_, _| Duration::ZERO)
+    }
+
+    /// Something is.
+    pub fn by(
+        world: PhysicsWorld,
+        drive: impl FnMut(&mut PhysicsWorld, usize) -> Duration + 'static,
+    ) -> Self {
+        Self { world, drive: Box::new(drive) }
+    }
+}
+
+/// Steps between two samples of memory.
+const MEMORY_EVERY: usize = 10;
+/// How often in a run contacts are compared; with so few pairs, after so many steps.
+const COMPARISONS: usize = 5;
+const FEW_PAIRS: usize = 3;
+const FEW_EVERY: usize = 4;
+/// What is no slower: this factor, or this much more, in microseconds a step.
+const NOISE: f64 = 1.05;
+const IGNORED: f64 = 1.0;
+/// How much worse the worst step may be, in microseconds.
+const WORST: f64 = 2000.0;
+
+/// Times of some steps, in microseconds.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(super) struct Spread {
+    /// The middle one.
+    pub median: f64,
+    /// All but a hundredth are less.
+    pub p99: f64,
+    /// The largest.
+    pub worst: f64,
+    /// The arithmetic mean.
+    pub mean: f64,
+}
+
+impl Spread {
+    /// Zeros if there are no times.
+    pub fn of(mut times: Vec<f64>) -> Self {
+        times.sort_unstable_by(f64::total_cmp);
+        let at = |share: f64| {
+            let index = (share * times.len() as f64).ceil() as usize;
+            times.get(index.saturating_sub(1)).copied().unwrap_or(0.0)
+        };
+        let mean = times.iter().sum::<f64>() / times.len().max(1) as f64;
+        Self { median: at(0.5), p99: at(0.99), worst: at(1.0), mean }
+    }
+}
+
+/// What a user would say of SBBK's times beside stock's; `ignored` is what is too little to be
+/// seen, in the same unit.
+pub(super) fn verdict(stock: [f64; 2], sbbk: [f64; 2], ignored: f64, worst: f64) -> &'static str {
+    let [is_slower, is_worse] =
+        [sbbk[0] > (NOISE * stock[0]).max(stock[0] + ignored), sbbk[1] > stock[1] + worst];
+    match (is_slower, is_worse) {
+        (false, false) => "ok",
+        (true, false) => "slower",
+        (false, true) => "worst step",
+        (true, true) => "slower, worst step",
+    }
+}
+
+/// What was seen of one backend: of each step the least times over the repeats, as every run of a
+/// backend does the same.
+#[derive(Default)]
+struct Side {
+    detection: Vec<f64>,
+    step: Vec<f64>,
+    mesh_bytes: usize,
+    plugin_bytes: usize,
+}
+
+impl Everyday<'_> {
+    /// Runs the scene `repeats` times on either backend.
+    ///
+    /// Errors: the scene cannot be built.
+    pub fn measure(&self, repeats: usize) -> Result<[Row; 2], SceneError> {
+        let mut sides: [Side; 2] = Default::default();
+        let mut comparison = Comparison::new();
+        for repeat in 0..repeats.max(1) {
+            let looks = (repeat == 0).then_some(&mut comparison);
+            self.run(None, &mut sides[0], looks)?;
+            self.run(Some(&SbbkDispatcher::default()), &mut sides[1], None)?;
+        }
+        let [stock, sbbk] = sides.map(|side| (side.row_values(), side));
+        let of = |detection: &Spread| [detection.median, detection.worst];
+        let limit = stock.0.0.worst + WORST;
+        let bad_steps = sbbk.1.detection.iter().filter(|&&time| time > limit).count();
+        let verdict = verdict(of(&stock.0.0), of(&sbbk.0.0), IGNORED, WORST);
+        let row = |backend: Backend, ((detection, step), side): (_, Side)| {
+            let row = Row { backend: backend.to_string(), ..self.row.clone() };
+            let mebibytes = |bytes: usize| bytes as f64 / (1 << 20) as f64;
+            row.with("steps", self.steps)
+                .with("detection", detection)
+                .with("step", step)
+                .with("mesh_mebibytes", mebibytes(side.mesh_bytes))
+                .with("plugin_mebibytes", mebibytes(side.plugin_bytes))
+        };
+        let sbbk = row(Backend::Sbbk, sbbk).with("verdict", verdict).with("bad_steps", bad_steps);
+        let sbbk =
+            sbbk.with("pairs", comparison.pairs).with("triangles_of_pairs", comparison.triangles);
+        Ok([row(Backend::Stock, stock), sbbk])
+    }
+
+    fn run(
+        &self,
+        dispatcher: Option<&SbbkDispatcher>,
+        side: &mut Side,
+        mut comparison: Option<&mut Comparison>,
+    ) -> Result<(), SceneError> {
+        let Driven { mut world, mut drive } = (self.build)()?;
+        if let Some(dispatcher) = dispatcher {
+            world.narrow_phase.set_query_dispatcher(dispatcher.clone());
+        }
+        world.physics_pipeline.counters.enable();
+        for step in 0..self.steps {
+            let asked = drive(&mut world, step);
+            let start = Instant::now();
+            world.step();
+            let whole = start.elapsed() + asked;
+            let detection = asked + world.physics_pipeline.counters.cd.narrow_phase_time.time();
+            keep_least(&mut side.detection, step, detection);
+            keep_least(&mut side.step, step, whole);
+            if step % MEMORY_EVERY == 0 {
+                side.mesh_bytes = side.mesh_bytes.max(mesh_bytes(&world));
+                side.plugin_bytes = side.plugin_bytes.max(dispatcher.map_or(0, plugin_bytes));
+            }
+            if let Some(comparison) = &mut comparison {
+                let is_single = world.contact_pairs().nth(FEW_PAIRS).is_none();
+                let every = if is_single { FEW_EVERY } else { (self.steps / COMPARISONS).max(1) };
+                if (step + 1) % every == 0 {
+                    comparison.look(&world);
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Side {
+    fn row_values(&self) -> (Spread, Spread) {
+        (Spread::of(self.detection.clone()), Spread::of(self.step.clone()))
+    }
+}
+
+fn keep_least(times: &mut Vec<f64>, step: usize, time: Duration) {
+    let time = 1e6 * time.as_secs_f64();
+    match times.get_mut(step) {
+        Some(least) => *least = least.min(time),
+        None => times.push(time),
+    }
+}
+
+/// Parry's own memory of the meshes of a world, each counted once.
+fn mesh_bytes(world: &PhysicsWorld) -> usize {
+    let shapes = world.colliders.iter().map(|(_, collider)| collider.shape());
+    let meshes = shapes.filter_map(|shape| Some((shape_address(shape), shape.as_trimesh()?)));
+    let mut meshes: Vec<_> =
+        meshes.map(|(address, mesh)| (address, mesh.total_memory_size())).collect();
+    meshes.sort_unstable();
+    meshes.dedup();
+    meshes.into_iter().map(|(_, bytes)| bytes).sum()
+}
+
+fn plugin_bytes(dispatcher: &SbbkDispatcher) -> usize {
+    let stats = dispatcher.stats();
+    stats.tree_bytes + stats.deformable_tree_bytes
+}

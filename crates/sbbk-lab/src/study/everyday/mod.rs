@@ -1,0 +1,173 @@
+//! Everyday scenes: bodies on mesh terrains of all sizes, a mesh that comes and goes, sensors,
+//! characters, and queries without a workspace. Is one line ever a loss?
+//!
+//! Each scene runs in whole worlds, under stock Rapier and under SBBK as a user gets it: run by run
+//! in turns, trees built when the scene first needs them. All runs of a backend do the same, so the
+//! time of a step is the least over the runs. At poses of stock's runs both are asked afresh for
+//! the contacts of all pairs with a mesh.
+
+mod compare;
+mod ground;
+mod measure;
+mod queries;
+mod report;
+mod robots;
+mod scenes;
+
+use rapier3d::geometry::TriMeshFlags;
+use rapier3d::math::Real;
+
+use self::ground::Ground;
+use self::measure::Everyday;
+use super::{Progress, StudyError};
+use crate::metrics::Environment;
+use crate::report::{Results, Row};
+
+const BODIES: &str = "everyday: bodies on terrains";
+const SINGLE: &str = "everyday: single bodies, and many meshes";
+const DEFORMABLE: &str = "everyday: all flags, and robots";
+const SENSORS: &str = "everyday: sensors and characters";
+const PILE: &str = "everyday: pile";
+const QUERIES: &str = "everyday: queries";
+/// Rapier's, in units.
+const PREDICTION: Real = 0.02;
+
+/// A terrain.
+#[derive(Clone, Copy, Debug)]
+pub struct GroundPlan {
+    /// Cells along a side: two triangles each.
+    pub cells: u32,
+    /// Length of a cell, in units: bodies are about a unit long.
+    pub cell: f32,
+    /// Whether the mesh has `TriMeshFlags::FIX_INTERNAL_EDGES`.
+    pub fixes_edges: bool,
+}
+
+/// What to compare, and how thoroughly.
+#[derive(Clone, Debug)]
+pub struct EverydayPlan {
+    /// Terrains for bodies of all kinds.
+    pub grounds: Vec<GroundPlan>,
+    /// Bodies on each, if there is room.
+    pub bodies: usize,
+    /// Steps of a run of these.
+    pub steps: usize,
+    /// Runs of each scene on each backend.
+    pub repeats: usize,
+    /// Cells along a side of the terrain for single bodies and sensors, of half a unit, with fixed
+    /// edges.
+    pub cells: u32,
+    /// Cells along a side of the world that is crossed once, of a unit.
+    pub world_cells: u32,
+    /// Small meshes that come and go.
+    pub small_meshes: usize,
+    /// Cells along a side of the terrains for meshes with all flags and for robots, of half a unit.
+    pub deformable_cells: u32,
+    /// Heads in the pile.
+    pub heads: usize,
+    /// Cells along a side of the terrains for single queries, of half a unit.
+    pub query_cells: Vec<u32>,
+}
+
+impl EverydayPlan {
+    /// Terrains of 2048 to two million triangles, of a body's length and a quarter of it, with
+    /// and without fixed edges; ten minutes on two cores.
+    pub fn standard() -> Self {
+        let grounds = [32, 100, 400, 1000].into_iter().flat_map(|cells| {
+            [1.0, 0.25].into_iter().flat_map(move |cell| {
+                [false, true].map(|fixes_edges| GroundPlan { cells, cell, fixes_edges })
+            })
+        });
+        Self {
+            grounds: grounds.collect(),
+            bodies: 100,
+            steps: 120,
+            repeats: 2,
+            cells: 512,
+            world_cells: 1000,
+            small_meshes: 10_000,
+            deformable_cells: 256,
+            heads: 300,
+            query_cells: vec![23, 100, 400, 1000],
+        }
+    }
+
+    /// For trying, not for quoting: about a minute.
+    pub fn quick() -> Self {
+        let ground = |cells, cell, fixes_edges| GroundPlan { cells, cell, fixes_edges };
+        Self {
+            grounds: vec![
+                ground(32, 1.0, false),
+                ground(100, 1.0, false),
+                ground(100, 1.0, true),
+                ground(400, 0.25, false),
+            ],
+            steps: 100,
+            world_cells: 512,
+            small_meshes: 1000,
+            heads: 100,
+            query_cells: vec![100, 400],
+            ..Self::standard()
+        }
+    }
+}
+
+/// Measures all that `plan` asks for.
+///
+/// Errors: none but those of a mesh without triangles, which these are not.
+pub fn everyday(plan: &EverydayPlan, progress: &Progress) -> Result<Results, StudyError> {
+    let mut rows = on_terrains(plan, progress)?;
+    rows.extend(in_worlds(plan, progress)?);
+    progress.phase("queries", plan.query_cells.len());
+    for &cells in &plan.query_cells {
+        let ground = Ground::new(cells, 0.5, TriMeshFlags::empty())?;
+        rows.extend(queries::queries(&ground, plan.repeats)?);
+        progress.step();
+    }
+    progress.finish();
+    let (tables, panels) = (report::tables(plan, &rows), report::panels(&rows));
+    Ok(Results { environment: Environment::detect(), rows, tables, panels })
+}
+
+fn on_terrains(plan: &EverydayPlan, progress: &Progress) -> Result<Vec<Row>, StudyError> {
+    let mut rows = Vec::new();
+    progress.phase("bodies on terrains", plan.grounds.len());
+    for &ground_plan in &plan.grounds {
+        let GroundPlan { cells, cell, fixes_edges } = ground_plan;
+        let flags = match fixes_edges {
+            true => TriMeshFlags::FIX_INTERNAL_EDGES,
+            false => TriMeshFlags::empty(),
+        };
+        let ground = Ground::new(cells, cell, flags)?;
+        for scene in scenes::bodies(ground_plan, &ground, plan.bodies, plan.steps) {
+            rows.extend(scene.measure(plan.repeats)?);
+        }
+        progress.step();
+    }
+    Ok(rows)
+}
+
+fn in_worlds(plan: &EverydayPlan, progress: &Progress) -> Result<Vec<Row>, StudyError> {
+    let plain = |cells, cell| Ground::new(cells, cell, TriMeshFlags::empty());
+    let large = Ground::new(plan.cells, 0.5, TriMeshFlags::FIX_INTERNAL_EDGES)?;
+    let world = plain(plan.world_cells, 1.0)?;
+    let (small, deformable) =
+        (plain(64, 0.5)?, Ground::new(plan.deformable_cells, 0.5, TriMeshFlags::all())?);
+    let ground_of_robots =
+        Ground::new(plan.deformable_cells, 0.5, TriMeshFlags::FIX_INTERNAL_EDGES)?;
+    let steps = plan.steps;
+    let mut scenes: Vec<Everyday> = scenes::bouncing(&large, 3 * steps)?;
+    scenes.extend(scenes::crossing(&world, 2 * steps)?);
+    scenes.push(scenes::rolling_population(&small, plan.small_meshes, plan.small_meshes / 5));
+    scenes.extend(scenes::all_flags(&deformable, steps)?);
+    scenes.extend(robots::robots(&ground_of_robots, steps));
+    scenes.extend(scenes::sensors(&large, steps)?);
+    scenes.push(scenes::pile(plan.heads, steps));
+    progress.phase("worlds", scenes.len());
+    let mut rows = Vec::new();
+    for scene in &scenes {
+        rows.extend(scene.measure(plan.repeats)?);
+        progress.step();
+    }
+    Ok(rows)
+}

@@ -1,0 +1,197 @@
+//! Single queries of a body and a terrain without a workspace: what hosts ask that are not Rapier's
+//! narrow phase.
+
+use std::fmt;
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use glamx::{Pose3, Vec3};
+use oorandom::Rand32;
+use rapier3d::geometry::{ContactManifold, SharedShape, TriMeshFlags};
+use rapier3d::math::Real;
+use rapier3d::parry::query::details::ShapeCastOptions;
+
+use super::ground::{Ground, above, head, shape};
+use super::measure::verdict;
+use super::{PREDICTION, QUERIES};
+use crate::backend::{Backend, SharedDispatcher};
+use crate::metrics::{ErrorCount, Summary};
+use crate::report::Row;
+use crate::scene::SceneError;
+use crate::study::turns::{in_turn, timed};
+
+/// What is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Query {
+    Intersection,
+    Distance,
+    Contact,
+    Manifolds,
+    Cast,
+}
+
+impl Query {
+    const ALL: [Self; 5] =
+        [Self::Intersection, Self::Distance, Self::Contact, Self::Manifolds, Self::Cast];
+
+    /// Asks once; the answer as a number: 0 or 1, a distance or a time.
+    fn ask(
+        self,
+        dispatcher: &SharedDispatcher,
+        ground: &SharedShape,
+        body: &SharedShape,
+        pos12: &Pose3,
+    ) -> Option<Real> {
+        let (ground, body) = (&**ground, &**body);
+        match self {
+            Self::Intersection => {
+                let meets = dispatcher.intersection_test(pos12, ground, body).ok()?;
+                Some(Real::from(u8::from(meets.intersecting)))
+            }
+            Self::Distance => Some(dispatcher.distance(pos12, ground, body).ok()?.distance),
+            Self::Contact => Some(dispatcher.contact(pos12, ground, body, PREDICTION).ok()??.dist),
+            Self::Manifolds => {
+                let mut manifolds: Vec<ContactManifold> = Vec::new();
+                let workspace = &mut None;
+                dispatcher
+                    .contact_manifolds(pos12, ground, body, PREDICTION, &mut manifolds, workspace)
+                    .ok()?;
+                let distances = manifolds.iter().flat_map(|m| &m.points).map(|point| point.dist);
+                distances.reduce(Real::min).filter(|&distance| distance <= PREDICTION)
+            }
+            Self::Cast => {
+                let options = ShapeCastOptions::with_max_time_of_impact(10.0);
+                let way = Vec3::new(0.2, -1.0, 0.1);
+                let hit = dispatcher.cast_shapes(pos12, way, ground, body, options).ok()??;
+                Some(hit.time_of_impact)
+            }
+        }
+    }
+}
+
+impl fmt::Display for Query {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Intersection => "intersection",
+            Self::Distance => "distance",
+            Self::Contact => "contact",
+            Self::Manifolds => "manifolds, no workspace",
+            Self::Cast => "cast",
+        })
+    }
+}
+
+/// Heights of a body of about one unit above the terrain, in units.
+const PLACES: [(&str, f32); 3] = [("in", 0.35), ("near", 0.75), ("above", 1.8)];
+/// Poses at each height; a repeat ends with the pose at which it has taken this long.
+const POSES: usize = 20;
+const BUDGET: Duration = Duration::from_millis(20);
+/// What is too little to be seen, in nanoseconds a query, and how much longer the first query of a
+/// dispatcher may take.
+const IGNORED: f64 = 50.0;
+const WORST: f64 = 2.0e6;
+/// How far answers may differ, in units.
+const BAND: Real = 0.05 * PREDICTION;
+
+/// All queries of a ball and a head on a terrain.
+///
+/// Errors: none but those of a mesh without triangles, which these are not.
+pub(super) fn queries(ground: &Ground, repeats: usize) -> Result<Vec<Row>, SceneError> {
+    let bodies =
+        [("ball", SharedShape::ball(0.5)), ("head", shape(&head(), TriMeshFlags::empty())?)];
+    let mut rows = Vec::new();
+    for (name, body) in &bodies {
+        for (place, height) in PLACES {
+            let poses: Vec<Pose3> = places(ground, height);
+            for query in Query::ALL {
+                let key = |row: Row| {
+                    let row = row.key("query", query.to_string()).key("body", *name);
+                    row.key("place", place).key("triangles", ground.triangle_count)
+                };
+                let asked = Asked { ground, body, poses: &poses, query };
+                rows.extend(asked.measure(repeats).map(key));
+            }
+        }
+    }
+    Ok(rows)
+}
+
+/// Anywhere above the middle of the terrain.
+fn places(ground: &Ground, height: f32) -> Vec<Pose3> {
+    let mut random = Rand32::new(8);
+    let reach = 0.5 * ground.size - 3.0;
+    let place = |_| {
+        let at = [(); 2].map(|()| reach * (2.0 * random.rand_float() - 1.0));
+        let turn = crate::scene::random::rotation(&mut random);
+        Pose3::from_parts(above(ground.size, at, height), turn)
+    };
+    (0..POSES).map(place).collect()
+}
+
+struct Asked<'a> {
+    ground: &'a Ground,
+    body: &'a SharedShape,
+    poses: &'a [Pose3],
+    query: Query,
+}
+
+impl Asked<'_> {
+    fn ask(&self, dispatcher: &SharedDispatcher, pose: &Pose3) -> Option<Real> {
+        self.query.ask(dispatcher, &self.ground.shape, self.body, pose)
+    }
+
+    fn measure(&self, repeats: usize) -> [Row; 2] {
+        let backends = [Backend::Stock, Backend::Sbbk];
+        let dispatchers = backends.map(Backend::dispatcher);
+        // Neither has the caches cold: Parry reads what both read.
+        self.sweep(&Backend::Stock.dispatcher());
+        let first =
+            dispatchers.each_ref().map(|d| timed(|| black_box(self.ask(d, &self.poses[0]))).0);
+        let first = first.map(|time| 1e9 * time.as_secs_f64());
+        let Ok(times) = in_turn(&dispatchers, 2 * repeats + 1, |dispatcher| {
+            Ok::<_, std::convert::Infallible>(self.sweep(dispatcher))
+        });
+        let times = times.into_iter().map(Summary::of);
+        let answers = self.compare(&dispatchers);
+        let rows = backends.into_iter().zip(times).zip(first).map(|((backend, time), first)| {
+            Row::new(QUERIES, backend).with("time", time).with("first", first)
+        });
+        let [stock, sbbk]: [Row; 2] = rows.collect::<Vec<_>>().try_into().expect("two backends");
+        let of = |row: &Row| [row.number("time.median"), row.number("first")];
+        let verdict = verdict(of(&stock), of(&sbbk), IGNORED, WORST);
+        [stock, sbbk.with("answers", answers).with("verdict", verdict)]
+    }
+
+    /// Nanoseconds a query.
+    fn sweep(&self, dispatcher: &SharedDispatcher) -> f64 {
+        let start = Instant::now();
+        let mut count = 0;
+        for pose in self.poses {
+            black_box(self.ask(dispatcher, pose));
+            count += 1;
+            if start.elapsed() > BUDGET {
+                break;
+            }
+        }
+        1e9 * start.elapsed().as_secs_f64() / f64::from(count)
+    }
+
+    /// Answers that only one has, or that differ, beside stock's.
+    fn compare(&self, [stock, sbbk]: &[SharedDispatcher; 2]) -> ErrorCount {
+        let start = Instant::now();
+        let mut counts = ErrorCount::default();
+        for pose in self.poses.iter().take_while(|_| start.elapsed() < 10 * BUDGET) {
+            counts.mesh_pairs += 1;
+            match [stock, sbbk].map(|dispatcher| self.ask(dispatcher, pose)) {
+                [Some(_), None] => counts.missed += 1,
+                [None, Some(_)] => counts.phantom += 1,
+                [Some(stock), Some(sbbk)] => {
+                    counts.wrong_depth += usize::from((stock - sbbk).abs() > BAND);
+                }
+                [None, None] => {}
+            }
+            counts.true_pairs += 1;
+        }
+        counts
+    }
+}
