@@ -12,7 +12,7 @@ use parry3d::shape::{CompositeShape, Shape, SharedShape, TriMesh};
 use sbbk_core::traverse::DescentCounts;
 use sbbk_core::tree::{BuildError, Tree};
 
-use crate::mesh::{Hierarchy, PreparedRef, Registered, TreeCache};
+use crate::mesh::{Hierarchy, PreparedRef, Registered, TreeCache, are_near, is_near};
 use crate::pair::{
     Answer, ConvexPair, FieldPair, MeshPair, MeshPlace, Pair, PairPose, Parts, answer,
 };
@@ -95,6 +95,13 @@ impl SbbkDispatcher {
         Some(MeshQuery { cache: &self.cache, meshes })
     }
 
+    /// Whether Parry's hierarchies already tell that two rigid meshes are farther apart than
+    /// `distance`.
+    fn are_surely_apart(&self, [g1, g2]: [&dyn Shape; 2], pos12: &Pose, distance: Real) -> bool {
+        let meshes = rigid_mesh(g1).zip(rigid_mesh(g2));
+        meshes.is_some_and(|(mesh1, mesh2)| !are_near([mesh1, mesh2], pos12, distance))
+    }
+
     /// The contacts of a pair of shapes, if SBBK answers for them.
     fn answer<M, C>(
         &self,
@@ -109,32 +116,63 @@ impl SbbkDispatcher {
         C: Default + Copy + Send + Sync + 'static,
     {
         let contacts = self.config.contacts;
-        let pose = &PairPose::new(pos12, prediction);
         let (mesh, other, mesh_place) = match (g1.as_trimesh(), g2.as_trimesh()) {
             (Some(mesh1), Some(mesh2)) => {
-                let Some(meshes) = self.look_at([mesh1, mesh2]) else {
+                let meshes = [mesh1, mesh2];
+                if workspace.is_none()
+                    && self.are_apart(are_near(meshes, pos12, prediction), meshes)
+                {
+                    return self.nothing(manifolds);
+                }
+                let Some(meshes) = self.look_at(meshes) else {
                     return Answer::Unsupported;
                 };
+                let pose = &PairPose::new(pos12, prediction);
                 return self.ask(MeshPair { pose, meshes, contacts }, manifolds, workspace);
             }
             (Some(mesh), None) => (mesh, g2, MeshPlace::First),
             (None, Some(mesh)) => (mesh, g1, MeshPlace::Second),
             (None, None) => return Answer::Unsupported,
         };
-        if let Some(parts) = Parts::of(other) {
-            let Some([mesh]) = self.look_at([mesh]) else {
-                return Answer::Unsupported;
-            };
+        let (parts, field) = (Parts::of(other), other.as_heightfield());
+        if parts.is_none() && field.is_none() {
+            return Answer::Unsupported;
+        }
+        if workspace.is_none() {
+            let in_mesh = if mesh_place.is_second() { pos12.inverse() } else { *pos12 };
+            if self.are_apart(is_near(mesh, other, &in_mesh, prediction), [mesh]) {
+                return self.nothing(manifolds);
+            }
+        }
+        let Some([mesh]) = self.look_at([mesh]) else {
+            return Answer::Unsupported;
+        };
+        let pose = &PairPose::new(pos12, prediction);
+        if let Some(parts) = parts {
             self.ask(ConvexPair { pose, mesh, parts, mesh_place, contacts }, manifolds, workspace)
-        } else if let Some(field) = other.as_heightfield() {
-            let Some([mesh]) = self.look_at([mesh]) else {
-                return Answer::Unsupported;
-            };
+        } else if let Some(field) = field {
             let pair = FieldPair { pose, mesh, field, mesh_place, contacts };
             self.ask(pair, manifolds, workspace)
         } else {
             Answer::Unsupported
         }
+    }
+
+    /// Whether shapes are apart, if Parry's hierarchies say so: above a vertex that is NaN they mean
+    /// nothing.
+    fn are_apart<const COUNT: usize>(&self, are_near: bool, meshes: [&TriMesh; COUNT]) -> bool {
+        let is_broken = |mesh: &TriMesh| self.cache.look_at(mesh).is_some_and(|m| m.is_broken());
+        let may_mislead = |mesh: &&TriMesh| mesh.is_deformable() && is_broken(mesh);
+        !are_near && !meshes.iter().any(may_mislead)
+    }
+
+    /// The answer about shapes that are apart: no memory is kept of them.
+    fn nothing<M, C>(&self, manifolds: &mut Vec<ContactManifold<M, C>>) -> Answer {
+        manifolds.clear();
+        if self.config.count_queries {
+            self.counters.add(Answer::Apart, &DescentCounts::default());
+        }
+        Answer::Apart
     }
 
     /// Meshes as a query sees them; `None`, and counted, if only Parry can answer for one.
@@ -272,6 +310,9 @@ impl QueryDispatcher for SbbkDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
+        if self.are_surely_apart([g1, g2], pos12, 0.0) {
+            return Ok(ShapeIntersection::new(false));
+        }
         match self.meshes(g1, g2) {
             Some(meshes) => Ok(meshes.intersection(pos12)),
             None => DefaultQueryDispatcher.intersection_test(pos12, g1, g2),
@@ -297,6 +338,9 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
         prediction: Real,
     ) -> Result<Option<Contact>, Unsupported> {
+        if self.are_surely_apart([g1, g2], pos12, prediction) {
+            return Ok(None);
+        }
         match self.meshes(g1, g2) {
             Some(meshes) => Ok(meshes.contact(pos12, prediction)),
             None => DefaultQueryDispatcher.contact(pos12, g1, g2, prediction),
@@ -310,6 +354,9 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
         max_dist: Real,
     ) -> Result<ClosestPoints, Unsupported> {
+        if self.are_surely_apart([g1, g2], pos12, max_dist) {
+            return Ok(ClosestPoints::Disjoint);
+        }
         match self.meshes(g1, g2) {
             Some(meshes) => Ok(meshes.closest_points(pos12, max_dist)),
             None => DefaultQueryDispatcher.closest_points(pos12, g1, g2, max_dist),

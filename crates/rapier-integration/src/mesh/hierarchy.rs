@@ -4,21 +4,49 @@
 //! stock's manifolds. So a pair needs nothing else where triangles meet something simple, or where
 //! a tree of our own would take longer to build than stock takes to do without.
 
-use std::cell::Cell;
-use std::ops::ControlFlow;
-
 use glamx::Vec3;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
 use parry3d::partitioning::BvhNode;
-use parry3d::shape::{CompositeShape, TriMesh, Triangle};
+use parry3d::shape::{CompositeShape, Shape, TriMesh, Triangle};
 use rustc_hash::FxHashMap;
-use sbbk_core::traverse::{BoxTest, Counters, TestedBox};
+use sbbk_core::traverse::TestedBox;
 use sbbk_core::volumes::Sphere;
 use sbbk_core::volumes::rounding::gamma;
 
 use super::identity::MeshToken;
 use super::soundness::is_whole;
+
+/// Whether Parry's hierarchy of a mesh has something within `margin` of the box around a shape at
+/// `pos12`, or about: as stock begins. Not to be asked about a broken mesh.
+pub(crate) fn is_near(mesh: &TriMesh, shape: &dyn Shape, pos12: &Pose, margin: Real) -> bool {
+    let root = mesh.bvh().root_aabb();
+    if !(root.mins.is_finite() && root.maxs.is_finite()) {
+        return true;
+    }
+    let aabb = match shape.as_trimesh() {
+        Some(other) => other.bvh().root_aabb().transform_by(pos12),
+        None => shape.compute_aabb(pos12),
+    };
+    // Some thirty operations on coordinates that are, before and after a turn, no larger than twice
+    // these.
+    let size = aabb.mins.abs().max(aabb.maxs.abs()).max_element();
+    let grown = margin.max(0.0) + gamma(64) * 2.0 * (size + pos12.translation.abs().max_element());
+    // Nowhere without a finite pose: then this is NaN.
+    let is_somewhere = grown >= 0.0;
+    let aabb = BvhNode::leaf(aabb.loosened(grown), 0);
+    is_somewhere && mesh.bvh().leaves(|node| node.intersects(&aabb)).next().is_some()
+}
+
+/// The same of two meshes: of the larger one, and the box of the other.
+pub(crate) fn are_near([mesh1, mesh2]: [&TriMesh; 2], pos12: &Pose, margin: Real) -> bool {
+    let size = |mesh: &TriMesh| mesh.bvh().root_aabb().half_extents().length_squared();
+    if size(mesh1) < size(mesh2) {
+        is_near(mesh2, mesh1, &pos12.inverse(), margin)
+    } else {
+        is_near(mesh1, mesh2, pos12, margin)
+    }
+}
 
 /// The places of some triangles of a mesh in stock order.
 #[derive(Debug, Default)]
@@ -47,6 +75,10 @@ pub(crate) struct Hierarchy<'a> {
 impl<'a> Hierarchy<'a> {
     pub(crate) fn token(&self) -> MeshToken {
         self.token
+    }
+
+    pub(crate) fn is_broken(&self) -> bool {
+        self.is_broken
     }
 
     /// Whether the mesh stays as it is as long as its token does.
@@ -86,51 +118,27 @@ impl<'a> Hierarchy<'a> {
         Sphere { centre, radius: half + gamma(8) * (centre.length() + half) }
     }
 
-    /// Calls `found` with the triangles whose boxes, and those above them, meet what `meets` tells
-    /// of, in stock order.
-    pub(crate) fn near(
-        &self,
-        mut counters: impl Counters,
-        meets: impl Fn(TestedBox) -> bool,
-        found: impl FnMut(u32),
-    ) {
-        let tested = Cell::new(0);
-        let meets = |aabb: TestedBox| {
-            tested.set(tested.get() + 1);
-            meets(aabb)
-        };
-        if self.is_broken {
-            self.whole_ones().filter(|&i| meets(self.tested(i))).for_each(found);
-        } else {
-            self.mesh.bvh().leaves(|node| meets(box_of(node))).for_each(found);
-        }
-        counters.aabb_tests(tested.get());
+    /// The triangles whose boxes, and those above them, meet what `meets` tells of, in stock order.
+    pub(crate) fn near<'s>(
+        &'s self,
+        meets: &'s impl Fn(TestedBox) -> bool,
+    ) -> impl Iterator<Item = u32> + 's {
+        let broken = self.is_broken.then(|| {
+            let tested = |index: &u32| self.tested(&[*index]);
+            self.whole_ones().filter(move |index| meets(tested(index)))
+        });
+        let whole = (!self.is_broken).then(|| {
+            let box_of = |node: &BvhNode| TestedBox::new(node.mins(), node.maxs());
+            self.mesh.bvh().leaves(move |node| meets(box_of(node)))
+        });
+        whole.into_iter().flatten().chain(broken.into_iter().flatten())
     }
 
-    /// Calls `found` with all pairs of triangles whose boxes, and those above them, `test` does not
-    /// tell apart, in any order,
-    /// until it has enough.
-    pub(crate) fn pairs(
-        [one, two]: [&Self; 2],
-        test: &BoxTest,
-        mut counters: impl Counters,
-        mut found: impl FnMut([u32; 2]) -> ControlFlow<()>,
-    ) {
-        let tested = Cell::new(0);
-        let meet = |one: TestedBox, two: TestedBox| {
-            tested.set(tested.get() + 1);
-            test.of(two).meets(one)
-        };
-        let _ = if one.is_broken || two.is_broken {
-            let all = one.whole_ones().flat_map(|i| two.whole_ones().map(move |j| [i, j]));
-            let mut near = all.filter(|&[i, j]| meet(one.tested(i), two.tested(j)));
-            near.try_for_each(found)
-        } else {
-            let meet = |node1: &BvhNode, node2: &BvhNode| meet(box_of(node1), box_of(node2));
-            let mut pairs = one.mesh.bvh().leaf_pairs(two.mesh.bvh(), meet);
-            pairs.try_for_each(|(triangle1, triangle2)| found([triangle1, triangle2]))
-        };
-        counters.aabb_tests(tested.get());
+    /// The box around some triangles.
+    pub(crate) fn tested(&self, triangles: &[u32]) -> TestedBox {
+        let corners = || triangles.iter().flat_map(|&triangle| self.corners(triangle));
+        let low = corners().fold(Vec3::INFINITY, Vec3::min);
+        TestedBox::new(low, corners().fold(Vec3::NEG_INFINITY, Vec3::max))
     }
 
     /// Gives triangles their places in stock order. Looks at all triangles near them.
@@ -138,7 +146,7 @@ impl<'a> Hierarchy<'a> {
         let ranks = &mut ranks.0;
         ranks.clear();
         ranks.extend(triangles.map(|index| (index, u32::MAX)));
-        if ranks.len() < 2 || self.is_broken {
+        if self.is_broken {
             // Of a broken mesh in the order of its triangles.
             return ranks.iter_mut().for_each(|(index, rank)| *rank = *index);
         }
@@ -163,18 +171,8 @@ impl<'a> Hierarchy<'a> {
         let whole = triangles.filter(|(triangle, _)| is_whole(self.mesh, triangle));
         whole.map(|(_, index)| index)
     }
-
-    fn tested(&self, triangle: u32) -> TestedBox {
-        let aabb = self.mesh.triangle(triangle).local_aabb();
-        TestedBox::new(aabb.mins, aabb.maxs)
-    }
 }
 
 fn around(boxes: impl Iterator<Item = Aabb>) -> Aabb {
     boxes.fold(Aabb::new_invalid(), |all, one| all.merged(&one))
-}
-
-#[inline(always)]
-pub(crate) fn box_of(node: &BvhNode) -> TestedBox {
-    TestedBox::new(node.mins(), node.maxs())
 }

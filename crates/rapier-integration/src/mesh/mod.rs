@@ -11,7 +11,7 @@ mod registry;
 mod soundness;
 
 pub(crate) use cache::{CacheCounts, CachedMesh, PreparedRef, TreeCache};
-pub(crate) use hierarchy::{Hierarchy, Ranks, box_of};
+pub(crate) use hierarchy::{Hierarchy, Ranks, are_near, is_near};
 pub(crate) use identity::MeshToken;
 pub(crate) use known::{Change, KnownMesh};
 pub(crate) use prepared::PreparedMesh;

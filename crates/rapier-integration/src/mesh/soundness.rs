@@ -48,13 +48,13 @@ impl Soundness {
 
 /// Vertices that no triangle uses may be anything.
 fn is_broken(mesh: &TriMesh) -> bool {
-    // Differences from itself are zero, or NaN: sums of them need no branches.
+    // Zero times a number is zero, or NaN: sums need no branches.
     let coordinates: &[f32] = bytemuck::cast_slice(mesh.vertices());
     let mut sums = [0.0; 16];
     let (blocks, rest) = coordinates.as_chunks::<16>();
     for block in blocks {
         for (sum, x) in sums.iter_mut().zip(block) {
-            *sum += x - x;
+            *sum += 0.0 * x;
         }
     }
     let is_finite = sums.iter().chain(rest).all(|x| x.is_finite());

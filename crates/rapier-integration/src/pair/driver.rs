@@ -1,17 +1,16 @@
 //! The way from a pose to contact manifolds, the same for every kind of pair.
 //!
 //! 1. The state of the pair is taken from the host's workspace.
-//! 2. On a first query the boxes of the whole shapes are compared, as stock does.
-//! 3. What changed since the last query is forgotten. Two meshes get their trees, if they are there
+//! 2. What changed since the last query is forgotten. Two meshes get their trees, if they are there
 //!    or cost little.
-//! 4. The same question as the last one has the same answer.
-//! 5. [`Slack`](sbbk_core::traverse::Slack) says whether the candidates of the last descent still
+//! 3. The same question as the last one has the same answer.
+//! 4. [`Slack`](sbbk_core::traverse::Slack) says whether the candidates of the last descent still
 //!    serve. If not, a descent finds new ones.
-//! 6. Each candidate that may be in reach gets its exact contact, written to its manifold of the
+//! 5. Each candidate that may be in reach gets its exact contact, written to its manifold of the
 //!    query before or to a new one.
 //!
-//! A [`Pair`] says what is particular to its kind in steps 2 and 3, its [`PairQuery`] in steps 5
-//! and 6.
+//! A [`Pair`] says what is particular to its kind in steps 1 and 2, its [`PairQuery`] in steps 4
+//! and 5.
 
 use std::cell::Cell;
 use std::sync::Arc;
@@ -42,9 +41,6 @@ pub(crate) trait Pair: Copy {
 
     /// Whether nothing is known of the shapes.
     fn is_unknown(known: &Self::Known) -> bool;
-
-    /// Whether the boxes of the whole shapes come within the prediction distance, or about.
-    fn boxes_meet(&self, counters: &mut impl Counters) -> bool;
 
     /// Says what changed since the last query, and opens this one.
     fn open<'q>(
@@ -131,7 +127,7 @@ pub(crate) struct Limits {
 /// How a query was answered; with more effort further down.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Answer {
-    /// By the boxes of the whole shapes alone.
+    /// By Parry's hierarchy and a box alone.
     Apart,
     /// By what the last query left: nothing has moved.
     Unchanged,
@@ -180,10 +176,6 @@ where
 {
     let PairState::<M, C, P::Known, P::Hint> { shapes, memory } = state_in(workspace, manifolds);
     if P::is_unknown(shapes) {
-        if !pair.boxes_meet(&mut counters) {
-            manifolds.clear();
-            return Answer::Apart;
-        }
         cache.met();
     }
     let (change, mut query) = pair.open(cache, shapes);

@@ -43,7 +43,7 @@ impl MeshPlace {
         }
     }
 
-    pub(super) fn is_second(self) -> bool {
+    pub(crate) fn is_second(self) -> bool {
         self == Self::Second
     }
 }

@@ -1,6 +1,5 @@
 //! Distance, closest points, intersection and the deepest contact.
 
-use parry3d::bounding_volume::BoundingVolume;
 use parry3d::math::{Pose, Real};
 use parry3d::query::{ClosestPoints, Contact, ShapeDistance, ShapeIntersection};
 use sbbk_core::query::{FoundPair, deepest, meeting, nearest};
@@ -12,9 +11,6 @@ impl MeshQuery<'_> {
     /// Whether the surfaces of two meshes meet, and where: one of the pairs of triangles that do
     /// (after an edit it can be another one than a new dispatcher would name).
     pub(crate) fn intersection(&self, pos12: &Pose) -> ShapeIntersection {
-        if !self.boxes_meet(pos12, 0.0) {
-            return answer(None);
-        }
         let placement = Placement::new(pos12);
         if let Some(trees) = self.remembered() {
             let pair = trees.meeting(placement);
@@ -47,7 +43,7 @@ impl MeshQuery<'_> {
     /// The closest points, each in the frame of its mesh.
     pub(crate) fn closest_points(&self, pos12: &Pose, max_distance: Real) -> ClosestPoints {
         let placement = Placement::new(pos12);
-        match self.within(pos12, max_distance, |limit| self.nearest(placement, limit)) {
+        match self.nearest(placement, limit_of(max_distance)) {
             Some(pair) if pair.is_touching => ClosestPoints::Intersecting,
             Some(pair) => ClosestPoints::WithinMargin(pair.point1(), pair.point2(&placement)),
             None => ClosestPoints::Disjoint,
@@ -57,10 +53,11 @@ impl MeshQuery<'_> {
     /// The contact of the deepest pair of triangles or, where none cross, of the nearest.
     pub(crate) fn contact(&self, pos12: &Pose, prediction: Real) -> Option<Contact> {
         let placement = Placement::new(pos12);
-        let pair = self.within(pos12, prediction, |limit| match self.trees() {
+        let limit = limit_of(prediction);
+        let pair = match self.trees() {
             Some(trees) => trees.deepest(placement, limit),
             None => self.walk().deepest(placement, limit),
-        })?;
+        }?;
         let points = (pair.point1(), pair.point2(&placement));
         let normals = (pair.normal1(), pair.normal2(&placement));
         let distance = pair.contact.distance as Real;
@@ -75,26 +72,11 @@ impl MeshQuery<'_> {
             None => self.walk().nearest(placement, limit),
         }
     }
+}
 
-    /// What `find` finds up to a distance, Parry's largest number meaning none; nothing where the
-    /// boxes of the meshes are farther apart.
-    fn within(
-        &self,
-        pos12: &Pose,
-        distance: Real,
-        find: impl FnOnce(f64) -> Option<FoundPair>,
-    ) -> Option<FoundPair> {
-        if distance == Real::MAX {
-            return find(f64::INFINITY);
-        }
-        self.boxes_meet(pos12, distance).then(|| find(f64::from(distance)))?
-    }
-
-    /// Whether the boxes of the meshes come within a distance, or about.
-    fn boxes_meet(&self, pos12: &Pose, distance: Real) -> bool {
-        let [mesh1, mesh2] = &self.meshes;
-        mesh1.root().intersects(&mesh2.placed_root(pos12, distance.max(0.0)))
-    }
+/// Parry's limit of a distance: its largest number is none.
+fn limit_of(distance: Real) -> f64 {
+    if distance == Real::MAX { f64::INFINITY } else { f64::from(distance) }
 }
 
 fn answer(meeting: Option<FoundPair>) -> ShapeIntersection {

@@ -2,14 +2,16 @@
 
 use std::ops::ControlFlow;
 
-use glamx::Vec3;
 use parry3d::math::Real;
 use parry3d::partitioning::BvhNode;
 use sbbk_core::query::FoundPair;
 use sbbk_core::traverse::{BoxTest, PairFrame, Placement, TestedBox};
 
-use crate::mesh::{Hierarchy, box_of};
+use crate::mesh::Hierarchy;
 use crate::pair::walk;
+
+/// Distance up to which all pairs are looked at, as a share of the smaller mesh.
+const WIDE: f64 = 0.1;
 
 /// Two meshes, by their hierarchies.
 pub(super) struct Walk<'a>(pub(super) [&'a Hierarchy<'a>; 2]);
@@ -18,7 +20,7 @@ impl Walk<'_> {
     /// A pair of triangles that touch or cross; the first one that the walk comes across.
     pub(super) fn meeting(&self, placement: Placement) -> Option<FoundPair> {
         let mut meeting = None;
-        walk(self.0, placement, 0.0, (), |pair| {
+        walk(self.0, placement, 0.0, (), &mut Vec::new(), |pair| {
             meeting = self.pair(&placement, pair, 0.0).filter(|pair| pair.is_touching);
             if meeting.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
@@ -27,20 +29,23 @@ impl Walk<'_> {
 
     /// Of crossing triangles the deepest, else the nearest within `limit`.
     pub(super) fn deepest(&self, placement: Placement, limit: f64) -> Option<FoundPair> {
-        let mut deepest = None::<FoundPair>;
-        let nearest = self.nearest(placement, limit)?;
-        if !nearest.is_touching {
-            return Some(nearest);
+        // Far from the surface there is too much to look at: the nearest is found first, and if it
+        // touches all that do.
+        let [size1, size2] = self.0.map(|mesh| f64::from(mesh.ball().radius));
+        if limit > WIDE * size1.min(size2) {
+            let nearest = self.nearest(placement, limit)?;
+            return if nearest.is_touching { self.deepest(placement, 0.0) } else { Some(nearest) };
         }
-        walk(self.0, placement, 0.0, (), |pair| {
-            if let Some(pair) = self.pair(&placement, pair, 0.0)
+        let mut deepest = None::<FoundPair>;
+        walk(self.0, placement, (limit.max(0.0) as Real).next_up(), (), &mut Vec::new(), |pair| {
+            if let Some(pair) = self.pair(&placement, pair, limit)
                 && deepest.is_none_or(|deepest| pair.contact.distance < deepest.contact.distance)
             {
                 deepest = Some(pair);
             }
             ControlFlow::Continue(())
         });
-        deepest.or(Some(nearest))
+        deepest
     }
 
     /// The nearest pair of triangles within `limit`: one that touches, if any does.
@@ -49,32 +54,40 @@ impl Walk<'_> {
             return None;
         }
         let [mesh1, mesh2] = self.0;
-        let magnitudes = self.0.map(Hierarchy::magnitude);
-        let within = |[one, two]: [Real; 2], placement| {
-            BoxTest::new(&PairFrame::<9>::within([one, two], placement, 0.0))
+        let size = |mesh: &Hierarchy<'_>| mesh.root().half_extents().length_squared();
+        if size(mesh1) < size(mesh2) {
+            let found = Walk([mesh2, mesh1]).nearest_of_larger(placement.inverted(), limit)?;
+            // The same pair in the other order.
+            let triangles = [found.triangle2, found.triangle1];
+            return self.pair(&placement, triangles, f64::INFINITY);
+        }
+        self.nearest_of_larger(placement, limit)
+    }
+
+    /// Mesh 1 is the larger one.
+    fn nearest_of_larger(&self, placement: Placement, limit: f64) -> Option<FoundPair> {
+        let [mesh1, mesh2] = self.0;
+        let [m1, m2] = self.0.map(Hierarchy::magnitude);
+        let test = |magnitudes, placement| {
+            BoxTest::new(&PairFrame::<9>::within(magnitudes, placement, 0.0))
         };
-        let [m1, m2] = magnitudes;
-        let (in_frame1, in_frame2) =
-            (within([m1, m2], placement), within([m2, m1], placement.inverted()));
+        let in_frame1 = test([m1, m2], placement);
+        let in_frame2 = test([m2, m1], placement.inverted());
         let root = mesh2.root();
         let whole = in_frame1.of(TestedBox::new(root.mins, root.maxs));
+        let box_of = |node: &BvhNode| TestedBox::new(node.mins(), node.maxs());
         // Costs are compared with less-than: the least number above the limit is the first one out.
         let limit = (limit.min(f64::from(Real::MAX)) as Real).next_up();
         let found = mesh1.mesh.bvh().find_best(
             limit,
             |node1: &BvhNode, _| whole.gap(box_of(node1)),
             |triangle1, best| {
-                let corners1 = mesh1.corners(triangle1);
-                let low = corners1.into_iter().fold(Vec3::INFINITY, Vec3::min);
-                let high = corners1.into_iter().fold(Vec3::NEG_INFINITY, Vec3::max);
-                let near = in_frame2.of(TestedBox::new(low, high));
+                let near = in_frame2.of(mesh1.tested(&[triangle1]));
                 let (_, found) = mesh2.mesh.bvh().find_best(
                     best,
                     |node2: &BvhNode, _| near.gap(box_of(node2)) * inverse_scale(&placement),
                     |triangle2, best| {
-                        let two = (triangle2, mesh2.corners(triangle2));
-                        let one = (triangle1, corners1);
-                        let pair = FoundPair::of(&placement, one, two, f64::from(best))?;
+                        let pair = self.pair(&placement, [triangle1, triangle2], best.into())?;
                         Some((pair.contact.distance.max(0.0) as Real, pair))
                     },
                 )?;

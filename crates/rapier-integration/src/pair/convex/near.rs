@@ -1,69 +1,67 @@
 //! The triangles of a mesh near a convex shape, from Parry's hierarchy of the mesh.
 
+use std::cell::Cell;
+
 use glamx::DVec3;
 use parry3d::math::Real;
-use sbbk_core::traverse::{BoxTest, Counters, PairFrame, TestedBox};
+use parry3d::shape::HalfSpace;
+use sbbk_core::traverse::{BoxTest, Counters, PairFrame, Placement, TestedBox};
 use sbbk_core::volumes::rounding::gamma;
 
 use super::placed::PlacedPart;
 use super::shape::ConvexShape;
 use crate::mesh::Hierarchy;
 
-/// A convex shape as boxes of the mesh are compared with it.
-pub(super) enum NearPart {
-    /// Within a box of its own frame.
-    Box { test: BoxTest, own: TestedBox },
-    /// Below a plane of the mesh's frame: `normal·x <= height`.
-    HalfSpace { normal: DVec3, height: f64 },
-}
-
-impl NearPart {
-    /// A part, to find all triangles within `margin` of it. `magnitude` is the largest coordinate of
-    /// the mesh.
-    pub(super) fn new(
-        placed: &PlacedPart,
-        shape: ConvexShape<'_>,
-        magnitude: Real,
-        margin: Real,
-    ) -> Self {
-        let placement = placed.placement;
-        if let ConvexShape::HalfSpace(half_space) = shape {
-            let normal = half_space.normal.as_dvec3();
-            let own = placement.rotation.transpose() * normal;
-            // What boxes lose to rounding in f32 is a few parts of their size; all else is f64.
-            let lost = f64::from(gamma(8) * magnitude) * own.abs().element_sum();
-            let offset = normal.dot(placement.translation);
-            let height = f64::from(margin) * normal.length() + lost - offset;
-            return Self::HalfSpace { normal: own, height: height + 1e-14 * offset.abs() };
-        }
-        let (min, max, radius) = placed.bounds();
+/// Calls `found` with the triangles whose boxes, and those above them, may be within `margin` of a
+/// part, in stock order.
+pub(super) fn triangles_near(
+    placed: &PlacedPart,
+    shape: ConvexShape<'_>,
+    mesh: &Hierarchy<'_>,
+    margin: Real,
+    mut counters: impl Counters,
+    found: impl FnMut(u32),
+) {
+    let (tested, magnitude) = (Cell::new(0), mesh.magnitude());
+    let count = || tested.set(tested.get() + 1);
+    if let ConvexShape::HalfSpace(half_space) = shape {
+        let (normal, height) = plane(&placed.placement, half_space, magnitude, margin);
+        let is_below = |node: TestedBox| {
+            count();
+            let (centre, extent) = node.centre_extent();
+            normal.dot(centre.as_dvec3()) - normal.abs().dot(extent.as_dvec3()) <= height
+        };
+        mesh.near(&is_below).for_each(found);
+    } else {
+        let (min, max, radius) = placed.extent.bounds();
         let size = min.abs().max(max.abs()).max_element();
         let reach = ((f64::from(margin) + f64::from(radius)) as Real).next_up();
-        let frame: PairFrame = PairFrame::within([magnitude, size], placement.inverted(), reach);
-        Self::Box { test: BoxTest::new(&frame), own: TestedBox::new(min, max) }
+        let frame: PairFrame =
+            PairFrame::within([magnitude, size], placed.placement.inverted(), reach);
+        let test = BoxTest::new(&frame);
+        let near = test.of(TestedBox::new(min, max));
+        let meets = |node: TestedBox| {
+            count();
+            near.meets(node)
+        };
+        mesh.near(&meets).for_each(found);
     }
+    counters.aabb_tests(tested.get());
+}
 
-    /// Calls `found` with the triangles whose boxes may be within the margin, in stock order.
-    pub(super) fn triangles(
-        &self,
-        mesh: &Hierarchy<'_>,
-        counters: impl Counters,
-        found: impl FnMut(u32),
-    ) {
-        match self {
-            Self::Box { test, own } => {
-                let near = test.of(*own);
-                mesh.near(counters, |node| near.meets(node), found);
-            }
-            Self::HalfSpace { normal, height } => {
-                let is_below = |node: TestedBox| {
-                    let (centre, extent) = node.centre_extent();
-                    let lowest =
-                        normal.dot(centre.as_dvec3()) - normal.abs().dot(extent.as_dvec3());
-                    lowest <= *height
-                };
-                mesh.near(counters, is_below, found);
-            }
-        }
-    }
+/// All within `margin` of a half-space, in the frame of a mesh that is at `placement` in its frame:
+/// `normal·x <= height`.
+fn plane(
+    placement: &Placement,
+    half_space: &HalfSpace,
+    magnitude: Real,
+    margin: Real,
+) -> (DVec3, f64) {
+    let own = half_space.normal.as_dvec3();
+    let normal = placement.rotation.transpose() * own;
+    // What boxes lose to rounding in f32 is a few parts of their size; all else is f64.
+    let lost = f64::from(gamma(8) * magnitude) * normal.abs().element_sum();
+    let offset = own.dot(placement.translation);
+    let reach = f64::from(margin) * own.length() + lost + 1e-14 * offset.abs();
+    (normal, reach - offset)
 }

@@ -94,22 +94,6 @@ impl<'a> Parts<'a> {
         }
     }
 
-    /// Whether a box in the frame of the whole meets that of a part.
-    pub(super) fn meets(&self, aabb: &Aabb) -> bool {
-        match self {
-            Self::One(shape) => Extent::of(*shape).meets(aabb),
-            Self::Many(composite) => composite.shape.bvh().intersect_aabb(aabb).next().is_some(),
-        }
-    }
-
-    /// At least the greatest radius of a part.
-    pub(super) fn radius(&self) -> Real {
-        match self {
-            Self::One(shape) => Extent::of(*shape).radius,
-            Self::Many(composite) => composite.shape.bvh().root_aabb().half_extents().min_element(),
-        }
-    }
-
     /// The size by which stock chooses which hierarchy to walk first; none without a hierarchy.
     pub(super) fn walk_size(&self) -> Option<Real> {
         match self {

@@ -23,7 +23,7 @@ use crate::pair::pose::MeshPlace;
 pub(crate) struct PlacedPart {
     /// Its number.
     pub(super) index: u32,
-    extent: Extent,
+    pub(super) extent: Extent,
     /// The mesh in the frame of the part.
     pub(super) placement: Placement,
     /// The mesh in the frame of the part and the reverse, with the roundings of stock.
@@ -63,11 +63,6 @@ impl PlacedPart {
             to_mesh,
             over_face,
         }
-    }
-
-    /// The box around the part in its own frame, its radius not counted, and the radius.
-    pub(super) fn bounds(&self) -> (Vec3, Vec3, Real) {
-        self.extent.bounds()
     }
 
     /// The corners of a triangle of the mesh in the frame of the part.

@@ -10,7 +10,7 @@ use sbbk_core::traverse::{Counters, Placement};
 use sbbk_core::volumes::rounding::gamma;
 
 use super::features::core_contact;
-use super::near::NearPart;
+use super::near::triangles_near;
 use super::pair::ConvexPair;
 use super::parts::{KnownParts, Part, Parts};
 use super::placed::{PlacedPart, Question};
@@ -32,10 +32,6 @@ impl<'a> Pair for ConvexPair<'a> {
 
     fn is_unknown((mesh, _): &Self::Known) -> bool {
         mesh.is_unknown()
-    }
-
-    fn boxes_meet(&self, _: &mut impl Counters) -> bool {
-        self.parts.meets(&self.mesh_box(self.sight(self.parts.radius())))
     }
 
     fn open<'q>(
@@ -73,8 +69,7 @@ impl ConvexQuery<'_> {
         let mesh = &self.pair.mesh;
         self.pair.parts.with(index, |part| {
             let placed = self.placed(index, &part, scratch);
-            let near = NearPart::new(placed, part.shape, mesh.magnitude(), margin);
-            near.triangles(mesh, counters, found);
+            triangles_near(placed, part.shape, mesh, margin, counters, found);
         });
     }
 

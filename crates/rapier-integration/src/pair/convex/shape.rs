@@ -1,7 +1,6 @@
 //! Parry's convex shapes, as far as a descent has to know them.
 
 use glamx::{DVec3, Vec3};
-use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Real, Vector};
 use parry3d::shape::{Ball, Cuboid, HalfSpace, PolygonalFeatureMap, Shape, ShapeType};
 use sbbk_core::volumes::rounding::gamma;
@@ -105,18 +104,6 @@ impl Extent {
     /// That of the core.
     fn magnitude(&self) -> Real {
         self.min.abs().max(self.max.abs()).max_element()
-    }
-
-    /// Whether a box in the frame of the shape meets the box around the shape, or the half-space.
-    pub(super) fn meets(&self, aabb: &Aabb) -> bool {
-        if self.is_endless() {
-            let (normal, half) = (self.skew, aabb.half_extents());
-            // A box without end has no centre: NaN is not beyond.
-            let is_beyond = normal.dot(aabb.center()) > normal.abs().dot(half);
-            return !is_beyond;
-        }
-        let radius = Vec3::splat(self.radius);
-        aabb.intersects(&Aabb::new(self.min - radius, self.max + radius))
     }
 
     /// Whether it goes on without end.

@@ -64,12 +64,6 @@ impl<'a> Pair for FieldPair<'a> {
         mesh.is_unknown()
     }
 
-    fn boxes_meet(&self, counters: &mut impl Counters) -> bool {
-        let (field, root) = (Field(self.field), self.mesh.root());
-        let frame = FieldFrame::new(&field, &self.mesh_placement(), self.pose.prediction);
-        frame.meets(TestedBox::new(root.mins, root.maxs), counters)
-    }
-
     fn open<'q>(
         &'q self,
         _: &'q Arc<TreeCache>,
@@ -125,8 +119,7 @@ impl TriangleShapes for MeshAndField<'_> {
         let leaves = FieldLeaves::new(&frame, mesh.ball().centre, mesh.magnitude());
         let near = &mut scratch.near;
         near.clear();
-        let meets = |node: TestedBox| frame.meets(node, ());
-        mesh.near(&mut *counters, meets, |triangle| near.push(triangle));
+        near.extend(mesh.near(&|node: TestedBox| frame.meets(node, ())));
         for triangles in near.chunks(BATCH) {
             let batch = LeafBatch::gather(triangles, |triangle| mesh.corners(triangle));
             leaves.visit(&batch, &mut *counters, |triangle, of_mesh| {

@@ -1,7 +1,6 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use parry3d::bounding_volume::BoundingVolume;
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::NormalConstraints;
 use parry3d::shape::Triangle;
@@ -53,12 +52,6 @@ impl<'a> Pair for MeshPair<'a> {
 
     fn is_unknown(known: &Self::Known) -> bool {
         known.iter().any(KnownMesh::is_unknown)
-    }
-
-    fn boxes_meet(&self, _: &mut impl Counters) -> bool {
-        let [mesh1, mesh2] = &self.meshes;
-        let PairPose { pos12, prediction, .. } = self.pose;
-        mesh1.root().intersects(&mesh2.placed_root(pos12, prediction.max(0.0)))
     }
 
     fn open<'q>(
@@ -113,7 +106,8 @@ impl TriangleShapes for Meshes<'_> {
         let placement12 = self.pair.pose.placement12;
         let Some(prepared) = self.trees else {
             let meshes = self.pair.meshes.each_ref();
-            walk(meshes, placement12, margin, counters, |pair| {
+            let near = &mut scratch.near;
+            walk(meshes, placement12, margin, counters, near, |pair| {
                 found.push((OrderKey::default(), pair));
                 ControlFlow::Continue(())
             });

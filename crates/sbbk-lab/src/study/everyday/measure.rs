@@ -199,5 +199,5 @@ fn mesh_bytes(world: &PhysicsWorld) -> usize {
 
 fn plugin_bytes(dispatcher: &SbbkDispatcher) -> usize {
     let stats = dispatcher.stats();
-    stats.tree_bytes + stats.deformable_tree_bytes
+    stats.tree_bytes
 }
