@@ -1,5 +1,9 @@
 //! Support maps: all that a search needs to know of a convex shape.
 
+use super::cuboid::cuboid_contact;
+use super::segment::{point_contact, segment_contact};
+use super::{ConvexContact, by_search};
+use crate::contact::contact as triangle_contact;
 use glamx::DVec3;
 
 /// A convex shape, in its own frame.
@@ -11,6 +15,16 @@ pub trait SupportMap {
     /// The farthest point along `direction`, which has any length but zero; any of them where
     /// several are farthest. Exact up to rounding.
     fn support(&self, direction: DVec3) -> DVec3;
+
+    /// The contact with a triangle of finite coordinates. May be none if that is beyond `margin`.
+    /// By [search](super), unless there is a closed form.
+    #[inline(always)]
+    fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact>
+    where
+        Self: Sized,
+    {
+        by_search(triangle, self, margin)
+    }
 }
 
 impl<F: Fn(DVec3) -> DVec3> SupportMap for F {
@@ -29,6 +43,11 @@ impl SupportMap for PointSupport {
     fn support(&self, _: DVec3) -> DVec3 {
         self.0
     }
+
+    #[inline(always)]
+    fn contact(&self, triangle: &[DVec3; 3], _: f64) -> Option<ConvexContact> {
+        point_contact(triangle, self.0)
+    }
 }
 
 /// A segment, given by its ends; the core of a capsule.
@@ -41,6 +60,11 @@ impl SupportMap for SegmentSupport {
         let [a, b] = self.0;
         if (b - a).dot(direction) > 0.0 { b } else { a }
     }
+
+    #[inline(always)]
+    fn contact(&self, triangle: &[DVec3; 3], _: f64) -> Option<ConvexContact> {
+        segment_contact(triangle, &self.0)
+    }
 }
 
 /// A triangle.
@@ -51,6 +75,13 @@ impl SupportMap for TriangleSupport {
     #[inline(always)]
     fn support(&self, direction: DVec3) -> DVec3 {
         self.0[lowest(&self.0, -direction)]
+    }
+
+    /// That of [two triangles](crate::contact).
+    #[inline(always)]
+    fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
+        let contact = triangle_contact(triangle, &self.0, margin)?;
+        Some(ConvexContact::new(contact.point1, contact.normal, contact.distance))
     }
 }
 
@@ -70,6 +101,11 @@ impl SupportMap for CuboidSupport {
     #[inline(always)]
     fn support(&self, direction: DVec3) -> DVec3 {
         self.0.copysign(direction)
+    }
+
+    #[inline(always)]
+    fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
+        cuboid_contact(triangle, self.0, margin)
     }
 }
 
