@@ -11,9 +11,9 @@
 //! the bodies whatever rounding made of the axis.
 
 use super::difference::Vertex;
+use super::search::is_proved;
 use super::simplex::{self, thin_normal};
 use super::support::CuboidSupport;
-use super::search::is_proved;
 use super::{ConvexContact, DOUBTFUL, by_search};
 use crate::contact::closest::{crossing, within_edge};
 use glamx::DVec3;

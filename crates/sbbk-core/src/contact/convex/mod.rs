@@ -32,6 +32,7 @@
 //! than 1e-10 of their size may count as touching: their distance is off by less than that. A
 //! contact is a function of its arguments, bit for bit: no search starts from an earlier one.
 
+mod clip;
 mod cuboid;
 mod depth;
 mod difference;
@@ -42,6 +43,7 @@ mod segment;
 mod simplex;
 mod support;
 
+pub use clip::{FEATURE_CORNERS, FeaturePoint, FeaturePoints, clip_feature};
 pub use half_space::half_space_contact;
 pub use support::{
     ConeSupport, CuboidSupport, CylinderSupport, HullSupport, PointSupport, SegmentSupport,

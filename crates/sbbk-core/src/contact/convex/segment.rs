@@ -90,7 +90,9 @@ pub(super) fn segment_contact(
     let mut nearest = Near::of(&nearer, triangle);
     if !(rises_to_q || rises_to_p) {
         match crossed(triangle, segment) {
-            Some(contact) if contact.distance * contact.distance > doubtful => return Some(contact),
+            Some(contact) if contact.distance * contact.distance > doubtful => {
+                return Some(contact);
+            }
             Some(_) => return by_search(triangle, &SegmentSupport(*segment), f64::INFINITY),
             None => {}
         }
