@@ -3,18 +3,13 @@
 //! The faces of the difference of both are those of the box, the triangle, and one for each edge of
 //! the triangle and axis of the box: along one of these axes the bodies that cross are parted by
 //! the least translation, and bodies that are apart are seen to be so. How far these are apart is
-//! found at the corners of the triangle, at a corner of the box over the triangle, or along an edge
-//! of the triangle, where the distance from the box is a convex function with parts that are
-//! parabolas.
-//!
-//! Every gap is measured with all three corners along an axis of any accuracy: a move by it parts
-//! the bodies whatever rounding made of the axis.
+//! found by their nearest points (`apart.rs`).
 
+use super::apart::{Gap, Near, Pair, Solid};
 use super::difference::Vertex;
-use super::search::is_proved;
-use super::simplex::{self, thin_normal};
+use super::simplex;
 use super::support::CuboidSupport;
-use super::{ConvexContact, DOUBTFUL, by_search};
+use super::{ConvexContact, by_search};
 use crate::contact::closest::{crossing, within_edge};
 use glamx::DVec3;
 
@@ -39,82 +34,88 @@ enum Facet {
     Edges(usize, usize),
 }
 
-/// A gap of the bodies along a direction from the box to the triangle; negative if they overlap.
-#[derive(Clone, Copy)]
-struct Gap {
-    width: f64,
-    /// Unit vector.
-    outward: DVec3,
-    facet: Facet,
-}
+impl Solid for CuboidSupport {
+    #[inline(always)]
+    fn outside(&self, point: DVec3) -> DVec3 {
+        point - point.clamp(-self.0, self.0)
+    }
 
-/// A point of the triangle and the way from the point of the box nearest to it.
-#[derive(Clone, Copy)]
-struct Near {
-    point: DVec3,
-    from_box: DVec3,
-    squared: f64,
-}
-
-/// A triangle in the frame of a box.
-struct Pair<'a> {
-    triangle: &'a [DVec3; 3],
-    edges: [DVec3; 3],
-    half: DVec3,
-    size: f64,
+    /// The slope is linear between the planes of the box's faces.
+    #[inline(always)]
+    fn near_edge(&self, start: DVec3, edge: DVec3, _: f64) -> Near {
+        let half = self.0;
+        let at = |t: f64| Near::of(self, start + edge * t);
+        let (mut low, mut high) = (0.0, 1.0);
+        let (to_high, to_low) = (half - start, -half - start);
+        for i in 0..3 {
+            for t in [to_low[i] / edge[i], to_high[i] / edge[i]] {
+                // Not so for NaN.
+                if t > low && t < high {
+                    if at(t).from_shape.dot(edge) < 0.0 {
+                        low = t;
+                    } else {
+                        high = t;
+                    }
+                }
+            }
+        }
+        // Beyond these faces the edge is all the way.
+        let middle = at(0.5 * (low + high)).from_shape;
+        let (mut down, mut up) = (0.0, 0.0);
+        for i in 0..3 {
+            if middle[i] != 0.0 {
+                let face = half[i].copysign(middle[i]);
+                down += (face - start[i]) * edge[i];
+                up += edge[i] * edge[i];
+            }
+        }
+        let t = if up > 0.0 { (down / up).clamp(low, high) } else { low };
+        at(within_edge(t))
+    }
 }
 
 pub(super) fn cuboid_contact(
     triangle: &[DVec3; 3],
-    half: DVec3,
+    cuboid: &CuboidSupport,
     margin: f64,
 ) -> Option<ConvexContact> {
-    let [a, b, c] = *triangle;
-    let edges = [b - a, c - b, a - c];
-    let size = (edges[0].abs() + edges[2].abs() + a.abs() + half).element_sum();
-    if !size.is_finite() {
+    let pair = Pair::new(triangle, cuboid, cuboid.0.element_sum());
+    if !pair.size.is_finite() {
         return None;
     }
-    let pair = Pair { triangle, edges, half, size };
-    let beyond = margin.max(0.0) + BOUNDARY * size;
-    let of_box = pair.box_gap();
+    let beyond = margin.max(0.0) + BOUNDARY * pair.size;
+    let (of_box, facet) = pair.box_gap();
     if of_box.width > beyond {
         return None;
     }
     let of_triangle = pair.triangle_gap();
-    let mut widest = of_box;
+    let mut widest = (of_box, facet);
     if let Some(gap) = of_triangle {
         if gap.width > beyond {
             return None;
         }
-        if gap.width > widest.width {
-            widest = gap;
+        if gap.width > of_box.width {
+            widest = (gap, Facet::Triangle);
         }
     }
-    let doubtful = DOUBTFUL * size;
-    if widest.width <= doubtful {
+    let doubtful = pair.doubtful();
+    if widest.0.width <= doubtful {
         widest = pair.edge_gap(widest);
     }
-    if widest.width < -doubtful {
-        if let Some(contact) = pair.crossing(&widest) {
-            return Some(contact);
-        }
+    let contact = if widest.0.width < -doubtful {
+        pair.crossing(&widest.0, widest.1)
     } else {
-        let near = pair.nearest(of_triangle.as_ref());
-        let is_apart = near.squared > doubtful * doubtful;
-        if is_apart && is_proved::<CuboidSupport>(near.squared, pair.open(&near), size) {
-            return Some(ConvexContact::apart(near.point, -near.from_box));
-        }
-    }
-    by_search(triangle, &CuboidSupport(half), f64::INFINITY)
+        pair.contact(&pair.nearest(of_triangle.as_ref()))
+    };
+    contact.or_else(|| by_search(triangle, cuboid, f64::INFINITY))
 }
 
-impl Pair<'_> {
+impl Pair<'_, CuboidSupport> {
     /// The widest gap across a face of the box.
     #[inline(always)]
-    fn box_gap(&self) -> Gap {
-        let [a, b, c] = *self.triangle;
-        let (above, below) = (a.min(b).min(c) - self.half, -self.half - a.max(b).max(c));
+    fn box_gap(&self) -> (Gap, Facet) {
+        let ([a, b, c], half) = (*self.triangle, self.solid.0);
+        let (above, below) = (a.min(b).min(c) - half, -half - a.max(b).max(c));
         let (mut axis, mut width, mut sign) = (0, f64::NEG_INFINITY, 1.0);
         for i in 0..3 {
             let (gap, side) = if below[i] > above[i] { (below[i], -1.0) } else { (above[i], 1.0) };
@@ -122,19 +123,7 @@ impl Pair<'_> {
                 (axis, width, sign) = (i, gap, side);
             }
         }
-        Gap { width, outward: DVec3::AXES[axis] * sign, facet: Facet::Box(axis) }
-    }
-
-    /// The gap along the normal of the triangle.
-    #[inline(always)]
-    fn triangle_gap(&self) -> Option<Gap> {
-        let (normal, squared) = thin_normal(*self.triangle)?;
-        let [a, b, c] = self.triangle.map(|corner| corner.dot(normal));
-        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        let reach = normal.abs().dot(self.half);
-        let scale = 1.0 / squared.sqrt();
-        let (gap, side) = if -high > low { (-high - reach, -scale) } else { (low - reach, scale) };
-        Some(Gap { width: gap * scale, outward: normal * side, facet: Facet::Triangle })
+        (Gap { width, outward: DVec3::AXES[axis] * sign }, Facet::Box(axis))
     }
 
     /// The widest of a gap and those along the products of an edge and an axis of the box.
@@ -142,19 +131,19 @@ impl Pair<'_> {
     /// A point's height along the product of axis `i` and an edge is coordinate `i` of the product
     /// of edge and point. Gaps are compared by their squares, which saves eight roots.
     #[inline(always)]
-    fn edge_gap(&self, widest: Gap) -> Gap {
-        let mut best = widest;
+    fn edge_gap(&self, widest: (Gap, Facet)) -> (Gap, Facet) {
+        let (mut best, half) = (widest, self.solid.0);
         // Minus the square of a negative width: it rises with the width.
-        let mut most = best.width * best.width.abs();
+        let mut most = best.0.width * best.0.width.abs();
         for (j, edge) in self.edges.into_iter().enumerate() {
             let heights = self.triangle.map(|corner| edge.cross(corner));
             let low = heights[0].min(heights[1]).min(heights[2]);
             let high = heights[0].max(heights[1]).max(heights[2]);
             let long = edge.abs();
             let reach = DVec3::new(
-                long.y * self.half.z + long.z * self.half.y,
-                long.z * self.half.x + long.x * self.half.z,
-                long.x * self.half.y + long.y * self.half.x,
+                long.y * half.z + long.z * half.y,
+                long.z * half.x + long.x * half.z,
+                long.x * half.y + long.y * half.x,
             );
             let squares = edge * edge;
             let shortest = PARALLEL * PARALLEL * squares.element_sum();
@@ -168,7 +157,7 @@ impl Pair<'_> {
                     let side = if is_below { -scale } else { scale };
                     let width = gap * scale;
                     let outward = DVec3::AXES[i].cross(edge) * side;
-                    best = Gap { width, outward, facet: Facet::Edges(j, i) };
+                    best = (Gap { width, outward }, Facet::Edges(j, i));
                     most = width * width.abs();
                 }
             }
@@ -176,14 +165,15 @@ impl Pair<'_> {
         best
     }
 
-    /// The contact of bodies that cross, parted best along a gap. None where no points are found.
+    /// The contact of bodies that cross, parted best along the gap of a facet. None where no points
+    /// are found.
     #[inline(always)]
-    fn crossing(&self, gap: &Gap) -> Option<ConvexContact> {
-        let Gap { width, outward, facet } = *gap;
+    fn crossing(&self, gap: &Gap, facet: Facet) -> Option<ConvexContact> {
+        let Gap { width, outward } = *gap;
         let guess = match facet {
             Facet::Box(axis) => self.corner_over_face(axis, outward[axis]),
             Facet::Triangle => {
-                let over = self.half.copysign(outward) + outward * width;
+                let over = self.solid.0.copysign(outward) + outward * width;
                 let [a, b, c] =
                     [0, 1, 2].map(|i| Vertex { point: over - self.triangle[i], corner: i });
                 let near = simplex::face(a, b, c).squared;
@@ -191,20 +181,8 @@ impl Pair<'_> {
             }
             Facet::Edges(edge, axis) => self.on_edge(edge, axis, gap),
         };
-        let on_triangle = match guess {
-            Some(point) => point,
-            None => {
-                // Features that lie in one plane: where they touch after the move.
-                let shift = -outward * width;
-                let moved = self.triangle.map(|corner| corner + shift);
-                let moved = Pair { triangle: &moved, ..*self };
-                let near = moved.nearest(moved.triangle_gap().as_ref());
-                if near.squared > (DOUBTFUL * self.size).powi(2) {
-                    return None;
-                }
-                near.point - shift
-            }
-        };
+        // Else features lie in one plane.
+        let on_triangle = guess.or_else(|| self.touching_after(gap))?;
         Some(ConvexContact::new(on_triangle, -outward, width))
     }
 
@@ -217,7 +195,7 @@ impl Pair<'_> {
                 deepest = corner;
             }
         }
-        let outside = deepest.abs() - self.half;
+        let outside = deepest.abs() - self.solid.0;
         let slack = ON_BODY * self.size;
         let is_over = |i: usize| outside[(axis + i) % 3] <= slack;
         (is_over(1) && is_over(2)).then_some(deepest)
@@ -228,99 +206,16 @@ impl Pair<'_> {
     /// a product of edges can be the normal of a face of the box.
     #[inline(always)]
     fn on_edge(&self, j: usize, axis: usize, gap: &Gap) -> Option<DVec3> {
-        let Gap { width, outward, .. } = *gap;
+        let Gap { width, outward } = *gap;
         let (start, edge) = (self.triangle[j], self.edges[j]);
-        let mut corner = self.half.copysign(outward);
+        let mut corner = self.solid.0.copysign(outward);
         corner[axis] = 0.0;
         let along = DVec3::AXES[axis];
         let cross = edge.cross(along);
         let [s, t] = crossing(corner - start, edge, along, cross, cross.length_squared());
-        let is_within = (0.0..=1.0).contains(&s) && t.abs() <= self.half[axis];
+        let is_within = (0.0..=1.0).contains(&s) && t.abs() <= self.solid.0[axis];
         let point = start + edge * s;
         let above = (point - corner).dot(outward) - width;
         (is_within && above <= ON_BODY * self.size).then_some(point)
-    }
-
-    /// The point of the triangle nearest to the box; of bodies that do not cross.
-    #[inline(always)]
-    fn nearest(&self, of_triangle: Option<&Gap>) -> Near {
-        let [a, b, c] = self.triangle.map(|corner| self.near(corner));
-        let mut nearest = a;
-        for other in [b, c] {
-            if other.squared < nearest.squared {
-                nearest = other;
-            }
-        }
-        // The distance from the box is a convex function: it rises toward the other corners.
-        let from = nearest.point;
-        if self.triangle.iter().all(|corner| (*corner - from).dot(nearest.from_box) >= 0.0) {
-            return nearest;
-        }
-        if let Some(&Gap { width, outward, .. }) = of_triangle
-            && width > -DOUBTFUL * self.size
-        {
-            let over = self.half.copysign(outward) + outward * width;
-            let [p, q, r] = *self.triangle;
-            let beside = [(p, q), (q, r), (r, p)]
-                .map(|(start, end)| (end - start).cross(over - start).dot(outward));
-            let is_over = beside.iter().all(|x| *x > 0.0) || beside.iter().all(|x| *x < 0.0);
-            if is_over {
-                return Near { point: over, from_box: outward * width, squared: width * width };
-            }
-        }
-        for j in 0..3 {
-            let other = self.near_edge(self.triangle[j], self.edges[j]);
-            if other.squared < nearest.squared {
-                nearest = other;
-            }
-        }
-        nearest
-    }
-
-    /// By how much a corner of the triangle is nearer than a point, along the way to it from the
-    /// box, times the length of that.
-    fn open(&self, near: &Near) -> f64 {
-        let [a, b, c] = self.triangle.map(|corner| (near.point - corner).dot(near.from_box));
-        a.max(b).max(c)
-    }
-
-    #[inline(always)]
-    fn near(&self, point: DVec3) -> Near {
-        let from_box = point - point.clamp(-self.half, self.half);
-        Near { point, from_box, squared: from_box.length_squared() }
-    }
-
-    /// The point of an edge that is nearest to the box. The slope of the squared distance rises
-    /// along the edge, and is linear between the planes of the box's faces.
-    #[inline(always)]
-    fn near_edge(&self, start: DVec3, edge: DVec3) -> Near {
-        let at = |t: f64| start + edge * t;
-        let slope = |t: f64| self.near(at(t)).from_box.dot(edge);
-        let (mut low, mut high) = (0.0, 1.0);
-        let (to_high, to_low) = (self.half - start, -self.half - start);
-        for i in 0..3 {
-            for t in [to_low[i] / edge[i], to_high[i] / edge[i]] {
-                // Not so for NaN.
-                if t > low && t < high {
-                    if slope(t) < 0.0 {
-                        low = t;
-                    } else {
-                        high = t;
-                    }
-                }
-            }
-        }
-        // Beyond these faces the edge is all the way.
-        let middle = self.near(at(0.5 * (low + high))).from_box;
-        let (mut down, mut up) = (0.0, 0.0);
-        for i in 0..3 {
-            if middle[i] != 0.0 {
-                let face = self.half[i].copysign(middle[i]);
-                down += (face - start[i]) * edge[i];
-                up += edge[i] * edge[i];
-            }
-        }
-        let t = if up > 0.0 { (down / up).clamp(low, high) } else { low };
-        self.near(at(within_edge(t)))
     }
 }

@@ -32,8 +32,10 @@
 //! than 1e-10 of their size may count as touching: their distance is off by less than that. A
 //! contact is a function of its arguments, bit for bit: no search starts from an earlier one.
 
+mod apart;
 mod clip;
 mod cuboid;
+mod curved;
 mod depth;
 mod difference;
 mod half_space;

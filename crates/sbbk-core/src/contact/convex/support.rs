@@ -1,6 +1,7 @@
 //! Support maps: all that a search needs to know of a convex shape.
 
 use super::cuboid::cuboid_contact;
+use super::curved::turned_contact;
 use super::segment::{point_contact, segment_contact};
 use super::{ConvexContact, by_search};
 use crate::contact::contact as triangle_contact;
@@ -105,7 +106,7 @@ impl SupportMap for CuboidSupport {
 
     #[inline(always)]
     fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
-        cuboid_contact(triangle, self.0, margin)
+        cuboid_contact(triangle, self, margin)
     }
 }
 
@@ -124,6 +125,11 @@ impl SupportMap for CylinderSupport {
     #[inline(always)]
     fn support(&self, direction: DVec3) -> DVec3 {
         rim(direction, radial(direction), self.radius, self.half_height.copysign(direction.y))
+    }
+
+    #[inline(always)]
+    fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
+        turned_contact(triangle, self, margin)
     }
 }
 
@@ -146,6 +152,11 @@ impl SupportMap for ConeSupport {
             return DVec3::new(0.0, self.half_height, 0.0);
         }
         rim(direction, across, self.radius, -self.half_height)
+    }
+
+    #[inline(always)]
+    fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
+        turned_contact(triangle, self, margin)
     }
 }
 
