@@ -9,7 +9,7 @@ use rapier3d::parry::shape::{SharedShape, TriMeshFlags};
 use sbbk_lab::mesh;
 
 use super::question::{Question, bits, touches};
-use super::shapes::{PREDICTIONS, lattice_pose, pose, shapes};
+use super::shapes::{PREDICTIONS, body, lattice_pose, pose, shapes};
 use crate::support::{Manifold, distance, generating, rotation, shape_with};
 
 /// The same for stock's dispatcher: its manifolds with a point within the prediction distance are
@@ -65,8 +65,7 @@ fn exact_contacts_are_where_parry_measures_them() {
     let mut random = Rand32::new(3);
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
     for size in [0.6, 3.0] {
-        // Those of a cuboid are Parry's own.
-        for (name, shape) in shapes(size).into_iter().filter(|(name, _)| *name != "cuboid") {
+        for (name, shape) in shapes(size) {
             let (mut count, mut apart_count) = (0, 0);
             for i in 0..40 {
                 let pose = pose(&mut random, &head, size);
@@ -94,16 +93,45 @@ fn exact_contacts_are_where_parry_measures_them() {
     }
 }
 
+/// Balls, cuboids and half-spaces at all sizes, against brute force in f64. Would catch a pose or a
+/// shape that is taken for another, a tolerance with a unit, and a triangle that is lost or
+/// invented.
+#[test]
+fn exact_contacts_are_the_true_ones() {
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(4);
+    for scale in [0.01, 1.0, 100.0] {
+        let head = shape_with(&mesh::monkey_head().scaled(scale), TriMeshFlags::empty());
+        for (name, shape) in shapes(0.6 * scale) {
+            let Some(body) = body(&shape) else { continue };
+            let mut count = 0;
+            for i in 0..40 {
+                let pose = if i % 4 == 0 && scale == 1.0 {
+                    lattice_pose(&mut random)
+                } else {
+                    pose(&mut random, &head, 0.6 * scale)
+                };
+                let (prediction, flipped) = (PREDICTIONS[i % 4] * scale, i % 8 < 4);
+                let question = Question { mesh: &head, shape: &shape, pose, prediction, flipped };
+                let found = question.fresh(&dispatcher);
+                count += question.check_against_truth(name, &found, &body, 1e-6 * f64::from(scale));
+            }
+            assert!(count > 100, "{name} of {scale}: {count}");
+        }
+    }
+}
+
 /// Would catch rounding that grows with the floor and is not allowed for, and a floor that is cut
 /// off too early.
 #[test]
 fn a_huge_floor_loses_no_contact() {
-    let dispatcher = SbbkDispatcher::default();
+    let [parrys, exact] = [ContactGenerator::Parry, ContactGenerator::Exact].map(generating);
     let mut random = Rand32::new(2);
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
     let mut count = 0;
     for half in [50.0, 2000.0] {
         let shape = SharedShape::cuboid(half, 0.25, half);
+        let body = body(&shape).expect("a cuboid");
         for i in 0..60 {
             let turn = if i % 4 == 0 { Quat::IDENTITY } else { rotation(&mut random) };
             let [x, z] = [(); 2].map(|()| 1.8 * half * (random.rand_float() - 0.5));
@@ -113,7 +141,8 @@ fn a_huge_floor_loses_no_contact() {
             let prediction = PREDICTIONS[i % 4];
             for flipped in [false, true] {
                 let question = Question { mesh: &head, shape: &shape, pose, prediction, flipped };
-                count += question.check_against_parry("floor", &question.fresh(&dispatcher));
+                count += question.check_against_parry("floor", &question.fresh(&parrys));
+                question.check_against_truth("floor", &question.fresh(&exact), &body, 1e-6);
             }
         }
     }

@@ -1,13 +1,16 @@
 use std::collections::BTreeMap;
 
+use glamx::Vec3;
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::details::NormalConstraints;
 use rapier3d::parry::query::{
     ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, QueryDispatcher,
 };
 use rapier3d::parry::shape::{SharedShape, TriMesh};
+use sbbk_core::traverse::Placement;
+use sbbk_core::truth::ConvexBody;
 
-use crate::support::{Dispatcher, Manifold, Pair};
+use crate::support::{Dispatcher, Manifold, Pair, distance};
 
 /// What is asked: the contacts of a mesh and a convex shape.
 #[derive(Clone, Copy)]
@@ -84,6 +87,35 @@ impl Question<'_> {
             assert!(by_triangle.contains_key(triangle), "{name}: {triangle} is lost, {points:?}");
         }
         touching.count()
+    }
+
+    /// Panics unless the answer is that of brute force in f64, up to `tolerance`: triangles within
+    /// the prediction distance, each at its distance, without normal constraints. The number of
+    /// contacts.
+    pub fn check_against_truth(
+        &self,
+        name: &str,
+        found: &[Manifold],
+        body: &ConvexBody,
+        tolerance: f64,
+    ) -> usize {
+        let placement = Placement::new(&self.pos12());
+        let placement = if self.flipped { placement } else { placement.inverted() };
+        let found: BTreeMap<u32, Real> =
+            found.iter().map(|m| (self.triangle_of(m), distance(m))).collect();
+        let prediction = f64::from(self.prediction);
+        for (index, triangle) in (0..).zip(self.mesh.triangles()) {
+            let corners = triangle.vertices().map(|v| placement.to_frame1(v, Vec3::ZERO));
+            let truth = body.distance(&corners).expect("polytopes have depths");
+            match found.get(&index) {
+                Some(&near) => {
+                    let error = (f64::from(near) - truth).abs();
+                    assert!(error <= tolerance, "{name}: {index} at {near}, is at {truth}");
+                }
+                None => assert!(truth >= prediction - tolerance, "{name}: {index} is lost"),
+            }
+        }
+        found.len()
     }
 
     /// Parry's routine on each triangle of the mesh, called as stock calls it; manifolds with

@@ -1,10 +1,11 @@
 use std::f32::consts::FRAC_PI_2;
 
-use glamx::{Pose3, Quat, Vec3};
+use glamx::{DVec3, Pose3, Quat, Vec3};
 use oorandom::Rand32;
 use rapier3d::math::Real;
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
-use rapier3d::parry::shape::{SharedShape, TriMesh};
+use rapier3d::parry::shape::{SharedShape, TriMesh, TypedShape};
+use sbbk_core::truth::ConvexBody;
 
 use crate::support::{direction, rotation};
 
@@ -37,6 +38,25 @@ pub(super) fn shapes(size: Real) -> Vec<(&'static str, SharedShape)> {
         ("round hull", round_hull),
         ("half-space", SharedShape::halfspace(Vec3::new(0.36, 0.8, -0.48))),
     ]
+}
+
+/// What the reference knows of a ball, a cuboid or a half-space; `None` for other kinds.
+pub(super) fn body(shape: &SharedShape) -> Option<ConvexBody> {
+    match shape.as_typed_shape() {
+        TypedShape::Ball(ball) => {
+            Some(ConvexBody::hull([DVec3::ZERO]).rounded(f64::from(ball.radius)))
+        }
+        TypedShape::Cuboid(cuboid) => {
+            let half = cuboid.half_extents.as_dvec3();
+            let corner = |i: u32| {
+                let sign = |axis: u32| if i >> axis & 1 == 0 { -1.0 } else { 1.0 };
+                half * DVec3::new(sign(0), sign(1), sign(2))
+            };
+            Some(ConvexBody::hull((0..8).map(corner).collect::<Vec<_>>()))
+        }
+        TypedShape::HalfSpace(shape) => Some(ConvexBody::half_space(shape.normal.as_dvec3())),
+        _ => None,
+    }
 }
 
 /// A large flat floor, whose box holds the whole mesh as soon as it is turned.

@@ -56,8 +56,6 @@ impl Kind {
 impl Shape {
     pub fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
         let r = self.radius;
-        let find =
-            |triangle, core: &dyn Fn(DVec3) -> DVec3| round_contact(triangle, &core, r, margin);
         match &self.core {
             Core::Point(p) if r == 0.0 => convex_contact(triangle, &PointSupport(*p), margin),
             Core::Point(p) => round_contact(triangle, &PointSupport(*p), r, margin),
@@ -65,8 +63,8 @@ impl Shape {
             Core::Triangle(t) => round_contact(triangle, &TriangleSupport(*t), r, margin),
             Core::Cuboid(half) => round_contact(triangle, &CuboidSupport(*half), r, margin),
             Core::Hull(points) => round_contact(triangle, &HullSupport(points), r, margin),
-            Core::Cylinder(cylinder) => find(triangle, &|d| cylinder.support(d)),
-            Core::Cone(cone) => find(triangle, &|d| cone.support(d)),
+            Core::Cylinder(cylinder) => round_contact(triangle, cylinder, r, margin),
+            Core::Cone(cone) => round_contact(triangle, cone, r, margin),
         }
     }
 

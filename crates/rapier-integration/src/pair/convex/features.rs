@@ -1,30 +1,42 @@
-//! The contact of a triangle and a shape with polygonal features, exact at every scale.
-//!
-//! Distance, normal and closest points are those of [`sbbk_core::contact::convex`]; the other
-//! points come from Parry's clip of the features that support them.
+//! The contact of a triangle and a convex shape, exact at every scale: its distance, normal and
+//! closest points, and for shapes with polygonal features the other points, are those of
+//! [`sbbk_core::contact::convex`]; the features are Parry's.
 
 use glamx::DVec3;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
-use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::{
     PackedFeatureId, PolygonalFeature, PolygonalFeatureMap, Segment, Shape, Triangle, TypedShape,
 };
+use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::{
-    ConeSupport, ConvexContact, CuboidSupport, CylinderSupport, SegmentSupport, TriangleSupport,
-    convex_contact,
+    ConeSupport, ConvexContact, CuboidSupport, CylinderSupport, FeaturePoint, FeaturePoints,
+    PointSupport, SegmentSupport, TriangleSupport, clip_feature, convex_contact,
+    half_space_contact,
 };
-use sbbk_core::traverse::Placement;
 use sbbk_core::volumes::rounding::gamma;
 
-use crate::pair::pose::MeshPlace;
+use super::shape::ConvexShape;
 
 /// The contact of a triangle with a shape without its radius, in the shape's frame.
 pub(super) fn core_contact(
     triangle: &[DVec3; 3],
-    shape: &dyn Shape,
+    shape: ConvexShape<'_>,
     margin: f64,
 ) -> Option<ConvexContact> {
+    match shape {
+        ConvexShape::Ball(_) => convex_contact(triangle, &PointSupport(DVec3::ZERO), margin),
+        ConvexShape::HalfSpace(half_space) => {
+            half_space_contact(triangle, half_space.normal.as_dvec3(), margin)
+        }
+        ConvexShape::Cuboid(cuboid) => {
+            convex_contact(triangle, &CuboidSupport(cuboid.half_extents.as_dvec3()), margin)
+        }
+        ConvexShape::Features { shape, .. } => feature_contact(triangle, shape, margin),
+    }
+}
+
+fn feature_contact(triangle: &[DVec3; 3], shape: &dyn Shape, margin: f64) -> Option<ConvexContact> {
     let segment = |segment: &Segment| {
         let core = SegmentSupport([segment.a, segment.b].map(|end| end.as_dvec3()));
         convex_contact(triangle, &core, margin)
@@ -77,84 +89,94 @@ pub(super) fn core_contact(
     }
 }
 
-/// Two bodies that touch, in the order of the pair.
-pub(super) struct Touching<'a> {
-    /// The pose of body 2 in the frame of body 1.
-    pub(super) pos12: &'a Pose,
-    pub(super) bodies: [&'a dyn PolygonalFeatureMap; 2],
-    pub(super) cones: [Option<&'a dyn NormalConstraints>; 2],
-    /// Radii around both.
-    pub(super) radii: [Real; 2],
-    /// Unit vectors from each body to the other, in its frame; the closest points, radii not
-    /// counted; and their distance.
+/// The normals of a contact, in the order of the pair.
+pub(super) struct Normals {
+    /// Unit vectors from each body to the other, in its frame.
     pub(super) normals: [Vector; 2],
-    pub(super) points: [Vector; 2],
-    pub(super) distance: Real,
+    /// Whether the cones have turned them.
+    pub(super) are_turned: bool,
 }
 
-impl<'a> Touching<'a> {
-    /// A triangle of a mesh and a shape whose frame the mesh is in at `placement`.
+impl Normals {
+    /// Turned into the cones of both bodies. None where these reject the contact.
     pub(super) fn new(
-        mesh_place: MeshPlace,
-        contact: &ConvexContact,
-        placement: &Placement,
-        pos12: &'a Pose,
-        bodies: [&'a dyn PolygonalFeatureMap; 2],
-        cones: [Option<&'a dyn NormalConstraints>; 2],
-        radius: Real,
-    ) -> Self {
-        let at_mesh = placement.inverse * (contact.on_triangle - placement.translation);
-        let normal = (placement.inverse * contact.normal).normalize();
-        Self {
-            pos12,
-            bodies: mesh_place.swap(bodies),
-            cones: mesh_place.swap(cones),
-            radii: mesh_place.swap([0.0, radius]),
-            normals: mesh_place.swap([normal, -contact.normal]).map(|normal| normal.as_vec3()),
-            points: mesh_place.swap([at_mesh, contact.on_shape]).map(|point| point.as_vec3()),
-            distance: contact.distance as Real,
+        pos12: &Pose,
+        free: [Vector; 2],
+        cones: [Option<&dyn NormalConstraints>; 2],
+    ) -> Option<Self> {
+        let [mut normal1, mut normal2] = free;
+        if !(cones[0], cones[1]).project_local_normals(pos12, &mut normal1, &mut normal2) {
+            return None;
         }
+        // Parry makes one normal of the other, with its roundings: that is no turn.
+        let normals = [normal1, normal2];
+        let are_turned = (0..2).any(|i| cones[i].is_some() && normals[i] != free[i]);
+        Some(Self { normals: if are_turned { normals } else { free }, are_turned })
     }
+}
 
-    /// Fills an empty manifold; leaves it empty where the cones reject the contact.
-    pub(super) fn fill<M, C: Default + Copy>(&self, manifold: &mut ContactManifold<M, C>) {
-        let Self { pos12, bodies: [body1, body2], points: [point1, point2], distance, .. } = *self;
-        let [mut normal1, mut normal2] = self.normals;
-        let constraints = (self.cones[0], self.cones[1]);
-        let has_cones = self.cones.iter().any(Option::is_some);
-        if has_cones && !constraints.project_local_normals(pos12, &mut normal1, &mut normal2) {
-            return;
+/// A triangle and a shape with features that touch, in the frame of the shape.
+pub(super) struct Touching<'a> {
+    pub(super) corners: &'a [DVec3; 3],
+    pub(super) map: &'a dyn PolygonalFeatureMap,
+    pub(super) contact: &'a ConvexContact,
+    /// Whether closest points are wanted even if others are as near. A shape with a curved surface
+    /// does not touch at the corners of its features.
+    pub(super) is_round: bool,
+}
+
+/// A point of a manifold, radii not counted.
+pub(super) struct Point {
+    pub(super) on_triangle: DVec3,
+    pub(super) on_shape: DVec3,
+    pub(super) distance: f64,
+    /// Of the triangle and of the shape.
+    pub(super) features: [PackedFeatureId; 2],
+}
+
+impl Touching<'_> {
+    /// Hands on the points along a normal: the closest ones, and the corners of the overlap of the
+    /// triangle and the feature that faces it.
+    ///
+    /// `turned` is the normal if cones have turned it, in the direction of the contact's.
+    pub(super) fn points(&self, turned: Option<DVec3>, mut each: impl FnMut(Point)) {
+        let Self { corners, map, contact, is_round } = *self;
+        let ConvexContact { distance, normal, on_triangle, on_shape } = *contact;
+        let normal = turned.unwrap_or(normal);
+        let mut feature = PolygonalFeature::default();
+        map.local_support_feature_toward((-normal).as_vec3(), on_shape.as_vec3(), &mut feature);
+        let polygon = feature.vertices.map(|corner| corner.as_dvec3());
+        let mut points = FeaturePoints::new();
+        clip_feature(corners, &polygon[..feature.num_vertices], normal, &mut points);
+        // Features of curved shapes are rounded to f32, and edges of a hull are nearly faces: points
+        // that are nearer than the closest ones by more than that are not on the shape.
+        let size = polygon.iter().fold(0.0, |size: f64, x| size.max(x.abs().max_element()));
+        let slack = f64::from(gamma(64)) * size;
+        let mut has_closest = false;
+        for point in &points {
+            if turned.is_none() && point.distance < distance - slack {
+                continue;
+            }
+            has_closest |= point.distance <= distance + slack;
+            let distance =
+                if turned.is_none() { point.distance.max(distance) } else { point.distance };
+            let of_triangle = match point.features[0] {
+                Feature::Vertex(i) => PackedFeatureId::vertex(u32::from(i)),
+                Feature::Edge(i) => PackedFeatureId::edge(u32::from(i)),
+                Feature::Face => PackedFeatureId::face(0),
+            };
+            let of_shape = match point.features[1] {
+                Feature::Vertex(i) => feature.vids[usize::from(i)],
+                Feature::Edge(i) => feature.eids[usize::from(i)],
+                Feature::Face => feature.fid,
+            };
+            let features = [of_triangle, of_shape];
+            let FeaturePoint { on_triangle, on_shape, .. } = *point;
+            each(Point { on_triangle, on_shape, distance, features });
         }
-        let mut features = [PolygonalFeature::default(), PolygonalFeature::default()];
-        body1.local_support_feature_toward(normal1, point1, &mut features[0]);
-        body2.local_support_feature_toward(normal2, point2, &mut features[1]);
-        let [feature1, feature2] = &features;
-        let pos21 = &pos12.inverse();
-        PolygonalFeature::contacts(
-            pos12, pos21, normal1, normal2, feature1, feature2, manifold, false,
-        );
-        if normal1 == self.normals[0] {
-            // No point of the bodies is nearer along the normal than the closest ones. Where a face
-            // is seen edge on, Parry's clip makes some that are.
-            let size = point1.abs().max_element() + point2.abs().max_element();
-            let nearest = distance - gamma(64) * size;
-            manifold.points.retain(|point| point.dist >= nearest);
-            let unknown = PackedFeatureId::UNKNOWN;
-            let closest = TrackedContact::new(point1, point2, unknown, unknown, distance);
-            manifold.points.push(closest);
+        if turned.is_none() && (is_round || !has_closest) {
+            let features = [PackedFeatureId::UNKNOWN; 2];
+            each(Point { on_triangle, on_shape, distance, features });
         }
-        if has_cones {
-            // As Parry: points that a constrained normal puts much deeper than the bodies are.
-            manifold.points.retain(|point| {
-                distance >= 0.0 || point.dist >= 0.0 || point.dist >= 5.0 * distance
-            });
-        }
-        let [radius1, radius2] = self.radii;
-        for point in &mut manifold.points {
-            point.local_p1 += normal1 * radius1;
-            point.local_p2 += normal2 * radius2;
-            point.dist -= radius1 + radius2;
-        }
-        [manifold.local_n1, manifold.local_n2] = [normal1, normal2];
     }
 }

@@ -1,38 +1,30 @@
-use parry3d::math::{Pose, Real};
+use glamx::DVec3;
+use parry3d::math::Real;
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::{HalfSpace, PackedFeatureId, Triangle};
 
-/// The contacts of a triangle and a half-space: its corners that are within the prediction
-/// distance. `pose` is that of the triangle in the frame of the half-space; `flipped` if the
-/// triangle is shape 1.
-///
-/// The formula leaves nothing to choose, so that the contacts are Parry's bit for bit. Parry's
-/// routine gives the manifold a new buffer each time, this one does not.
-pub(super) fn half_space_manifold<M, C: Default + Copy>(
-    pose: &Pose,
+/// Fills an empty manifold with the corners of a triangle that are within the prediction distance
+/// of a half-space; `corners` has them in its frame. `flipped` if the triangle is shape 1.
+pub(super) fn half_space_points<M, C: Default + Copy>(
     half_space: &HalfSpace,
     triangle: &Triangle,
+    corners: &[DVec3; 3],
     prediction: Real,
     flipped: bool,
     manifold: &mut ContactManifold<M, C>,
 ) {
-    let normal = half_space.normal;
-    let normal_at_triangle = pose.rotation.inverse() * normal;
-    for (corner, &vertex) in triangle.vertices().iter().enumerate() {
-        let placed = pose * vertex;
-        let distance = placed.dot(normal);
-        if distance <= prediction {
+    let normal = half_space.normal.as_dvec3();
+    for (index, (corner, vertex)) in (0..).zip(corners.iter().zip(triangle.vertices())) {
+        let distance = corner.dot(normal);
+        if distance <= f64::from(prediction) {
             manifold.points.push(TrackedContact::flipped(
-                placed - normal * distance,
-                vertex,
+                (corner - normal * distance).as_vec3(),
+                *vertex,
                 PackedFeatureId::face(0),
-                PackedFeatureId::vertex(corner as u32),
-                distance,
+                PackedFeatureId::vertex(index),
+                distance as Real,
                 flipped,
             ));
         }
     }
-    let normals = [normal, -normal_at_triangle];
-    [manifold.local_n1, manifold.local_n2] =
-        if flipped { [normals[1], normals[0]] } else { normals };
 }

@@ -7,13 +7,10 @@
 //! their distance and the axis that shows it: it is not looked at again until the pair has moved so
 //! far that they could touch ([`query`]).
 //!
-//! Contacts are a function of the pose, as those of two triangles are. Capsules, cylinders, cones,
-//! polyhedra and round shapes have exact ones ([`features`]). Balls, cuboids and half-spaces, and
-//! all kinds if the host wants that, have those of Parry's routine asked as if nothing was known
-//! ([`placed`]), or without it where it leaves nothing to choose: over a face of a cuboid
-//! ([`face`]) and beside a half-space.
+//! Contacts are a function of the pose, as those of two triangles are: exact ones ([`features`]),
+//! or, if the host wants that, those of Parry's routine asked as if nothing was known ([`placed`]).
 
-mod face;
+mod ball;
 mod features;
 mod half_space;
 mod near;

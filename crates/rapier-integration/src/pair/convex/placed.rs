@@ -1,19 +1,20 @@
-//! A triangle and a convex shape at a pose: Parry's contact routine, asked by its own name.
+//! A triangle and a convex shape at a pose, and the manifold of their contact: an exact one, or
+//! that of Parry's routine, asked by its own name.
 
 use glamx::{DVec3, Vec3};
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::{
     NormalConstraints, contact_manifold_convex_ball, contact_manifold_cuboid_triangle,
-    contact_manifold_pfm_pfm,
+    contact_manifold_halfspace_pfm, contact_manifold_pfm_pfm,
 };
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::{PolygonalFeatureMap, Triangle};
 use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::traverse::Placement;
 
-use super::face::OverFace;
-use super::features::Touching;
-use super::half_space::half_space_manifold;
+use super::ball::{keep_one, ray_length};
+use super::features::{Normals, Point, Touching};
+use super::half_space::half_space_points;
 use super::pair::ConvexPair;
 use super::parts::{Part, Parts};
 use super::shape::{ConvexShape, Extent};
@@ -29,31 +30,15 @@ pub(crate) struct PlacedPart {
     /// The mesh in the frame of the part and the reverse, with the roundings of stock.
     to_part: Pose,
     to_mesh: Pose,
-    /// If the part is a cuboid, the face that the mesh is over.
-    over_face: Option<OverFace>,
 }
 
 impl PlacedPart {
-    /// `mesh_centre` is that of the mesh, in its own frame.
-    pub(super) fn new(
-        index: u32,
-        part: &Part<'_>,
-        pair: &ConvexPair<'_>,
-        extent: Extent,
-        mesh_centre: Vec3,
-    ) -> Self {
+    pub(super) fn new(index: u32, part: &Part<'_>, pair: &ConvexPair<'_>, extent: Extent) -> Self {
         let pose = pair.part_pose(part.pose);
         let [to_mesh, to_part] = pair.mesh_place.swap([pose, pose.inverse()]);
         let placement12 = match pair.parts {
             Parts::One(_) => pair.pose.placement12,
             Parts::Many(_) => Placement::new(&pose),
-        };
-        let over_face = match part.shape {
-            ConvexShape::Cuboid(cuboid) => {
-                let centre = to_part * mesh_centre;
-                Some(OverFace::below(centre, cuboid, [&to_part, &to_mesh]))
-            }
-            _ => None,
         };
         Self {
             index,
@@ -61,7 +46,6 @@ impl PlacedPart {
             placement: pair.mesh_place.mesh_in_other(&placement12),
             to_part,
             to_mesh,
-            over_face,
         }
     }
 
@@ -70,6 +54,12 @@ impl PlacedPart {
     pub(super) fn corners(&self, triangle: &Triangle) -> [DVec3; 3] {
         let at = |corner: Vec3| self.placement.to_frame1(corner, Vec3::ZERO);
         [at(triangle.a), at(triangle.b), at(triangle.c)]
+    }
+
+    /// A point of the part in the frame of the mesh.
+    #[inline(always)]
+    fn at_mesh(&self, point: DVec3) -> Vec3 {
+        (self.placement.inverse * (point - self.placement.translation)).as_vec3()
     }
 
     /// How far a triangle and the part are apart along `axis`, which points from the part to the
@@ -114,40 +104,123 @@ impl Question<'_> {
         M: Default,
         C: Default + Copy,
     {
-        if let ConvexShape::Ball(_) = self.part.shape {
-            // One point, whose data Parry keeps in place.
-            return self.ask_parry(manifold);
+        if let ConvexShape::Ball(ball) = self.part.shape {
+            // One point, whose data stays in place.
+            return match contact {
+                Some(contact) => self.touch_ball(ball.radius, contact, manifold),
+                None => self.ask_parry(manifold),
+            };
         }
         std::mem::swap(&mut manifold.points, previous_points);
         manifold.points.clear();
         manifold.local_n1 = Vec3::ZERO;
         match (contact, self.part.shape) {
             (Some(contact), ConvexShape::Features { map, radius, .. }) => {
-                let (mesh_place, PlacedPart { placement, to_mesh, to_part, .. }) =
-                    (self.mesh_place, self.placed);
-                let [pos12, _] = mesh_place.swap([to_mesh, to_part]);
-                let bodies: [&dyn PolygonalFeatureMap; 2] = [self.triangle, map];
-                let cones = [self.cone, self.part.cone];
-                Touching::new(mesh_place, contact, placement, pos12, bodies, cones, radius)
-                    .fill(manifold);
+                self.touch(map, radius, true, contact, manifold);
+            }
+            (Some(contact), ConvexShape::Cuboid(cuboid)) => {
+                self.touch(cuboid, 0.0, false, contact, manifold);
+            }
+            (Some(contact), ConvexShape::HalfSpace(half_space)) => {
+                let Self { triangle, mesh_place, prediction, .. } = *self;
+                let (corners, flipped) = (self.placed.corners(triangle), !mesh_place.is_second());
+                half_space_points(half_space, triangle, &corners, prediction, flipped, manifold);
+                [manifold.local_n1, manifold.local_n2] = self.normals(contact);
             }
             _ => self.ask_parry(manifold),
         }
         manifold.match_contacts(previous_points);
     }
 
+    /// Unit vectors from each body to the other, in its frame and in the order of the pair.
+    fn normals(&self, contact: &ConvexContact) -> [Vec3; 2] {
+        let at_mesh = (self.placed.placement.inverse * contact.normal).normalize();
+        self.mesh_place.swap([at_mesh, -contact.normal]).map(|normal| normal.as_vec3())
+    }
+
+    /// The pose of body 2 in the frame of body 1, and the cones of both.
+    fn pair(&self) -> (&Pose, [Option<&dyn NormalConstraints>; 2]) {
+        let PlacedPart { to_mesh, to_part, .. } = self.placed;
+        let [pos12, _] = self.mesh_place.swap([to_mesh, to_part]);
+        (pos12, self.mesh_place.swap([self.cone, self.part.cone]))
+    }
+
+    /// Fills an empty manifold with the contact of the triangle and a shape with features; leaves it
+    /// empty where the cones reject the contact.
+    fn touch<M, C: Default + Copy>(
+        &self,
+        map: &dyn PolygonalFeatureMap,
+        radius: Real,
+        is_round: bool,
+        contact: &ConvexContact,
+        manifold: &mut ContactManifold<M, C>,
+    ) {
+        let Self { placed, triangle, mesh_place, .. } = *self;
+        let (pos12, cones) = self.pair();
+        let Some(Normals { normals, are_turned }) =
+            Normals::new(pos12, self.normals(contact), cones)
+        else {
+            return;
+        };
+        let [_, to_triangle] = mesh_place.swap(normals);
+        let turned = are_turned.then(|| -to_triangle.as_dvec3().normalize());
+        let depth = contact.distance;
+        let has_cones = cones.iter().any(Option::is_some);
+        let corners = &placed.corners(triangle);
+        Touching { corners, map, contact, is_round }.points(turned, |point| {
+            let Point { on_triangle, on_shape, distance, features } = point;
+            // As Parry: points that a constrained normal puts much deeper than the bodies are.
+            if has_cones && depth < 0.0 && distance < 5.0 * depth {
+                return;
+            }
+            let points = [placed.at_mesh(on_triangle), on_shape.as_vec3() + to_triangle * radius];
+            let ([point1, point2], [fid1, fid2]) =
+                (mesh_place.swap(points), mesh_place.swap(features));
+            let distance = (distance - f64::from(radius)) as Real;
+            manifold.points.push(TrackedContact::new(point1, point2, fid1, fid2, distance));
+        });
+        [manifold.local_n1, manifold.local_n2] = normals;
+    }
+
+    /// Brings the one point of a ball up to date; `contact` is that of its centre.
+    fn touch_ball<M, C: Default + Copy>(
+        &self,
+        radius: Real,
+        contact: &ConvexContact,
+        manifold: &mut ContactManifold<M, C>,
+    ) {
+        let Self { placed, triangle, mesh_place, .. } = *self;
+        let (pos12, cones) = self.pair();
+        let Some(Normals { normals, are_turned }) =
+            Normals::new(pos12, self.normals(contact), cones)
+        else {
+            return manifold.points.clear();
+        };
+        let [_, to_triangle] = mesh_place.swap(normals);
+        let (mut on_triangle, mut distance) = (contact.on_triangle, contact.distance);
+        if are_turned {
+            let direction = to_triangle.as_dvec3().normalize();
+            let Some(length) = ray_length(&placed.corners(triangle), direction) else {
+                return manifold.points.clear();
+            };
+            (on_triangle, distance) = (direction * length, length);
+        }
+        let points = mesh_place.swap([placed.at_mesh(on_triangle), to_triangle * radius]);
+        keep_one(points, (distance - f64::from(radius)) as Real, manifold);
+        [manifold.local_n1, manifold.local_n2] = normals;
+    }
+
     /// Parry's routine for the kind of shape, with the arguments that stock's calls end up with.
     /// Called by its own name: through the dispatcher both shapes are taken apart and put together
     /// again for each triangle, and its GJK asks a triangle for support points through a table. A
-    /// tenth to a quarter of a query. Where triangles are over a face of a cuboid, its contacts
-    /// without it.
+    /// tenth to a quarter of a query.
     fn ask_parry<M, C>(&self, manifold: &mut ContactManifold<M, C>)
     where
         M: Default,
         C: Default + Copy,
     {
         let Self { placed, part, triangle, cone, mesh_place, prediction } = *self;
-        let PlacedPart { to_part, to_mesh, over_face, .. } = placed;
+        let PlacedPart { to_part, to_mesh, .. } = placed;
         let is_mesh_second = mesh_place.is_second();
         match part.shape {
             ConvexShape::Ball(ball) => {
@@ -162,24 +235,26 @@ impl Question<'_> {
                     is_mesh_second,
                 );
             }
-            ConvexShape::Cuboid(cuboid) => {
-                let is_free = cone.is_none() && part.cone.is_none();
-                let over_face = over_face.as_ref().filter(|_| is_free);
-                let is_second = !is_mesh_second;
-                if over_face
-                    .is_some_and(|face| face.contacts(triangle, prediction, is_second, manifold))
-                {
-                    return;
-                }
-                contact_manifold_cuboid_triangle(
-                    to_part, to_mesh, cuboid, triangle, part.cone, cone, prediction, manifold,
-                    is_second,
-                );
-            }
-            ConvexShape::HalfSpace(half_space) => {
-                let is_second = !is_mesh_second;
-                half_space_manifold(to_part, half_space, triangle, prediction, is_second, manifold);
-            }
+            ConvexShape::Cuboid(cuboid) => contact_manifold_cuboid_triangle(
+                to_part,
+                to_mesh,
+                cuboid,
+                triangle,
+                part.cone,
+                cone,
+                prediction,
+                manifold,
+                !is_mesh_second,
+            ),
+            ConvexShape::HalfSpace(half_space) => contact_manifold_halfspace_pfm(
+                to_part,
+                half_space,
+                triangle,
+                0.0,
+                prediction,
+                manifold,
+                !is_mesh_second,
+            ),
             ConvexShape::Features { map, radius, .. } if is_mesh_second => {
                 contact_manifold_pfm_pfm(
                     to_part, map, radius, part.cone, triangle, 0.0, cone, prediction, manifold,

@@ -14,7 +14,6 @@ use super::near::triangles_near;
 use super::pair::ConvexPair;
 use super::parts::{KnownParts, Part, Parts};
 use super::placed::{PlacedPart, Question};
-use super::shape::ConvexShape;
 use crate::ContactGenerator;
 use crate::mesh::{Change, KnownMesh, TreeCache};
 use crate::pair::driver::{Limits, Moving, Pair, PairQuery, Scratch};
@@ -88,8 +87,7 @@ impl ConvexQuery<'_> {
             parts[slot] = None;
         }
         parts[slot].get_or_insert_with(|| {
-            let centre = self.pair.mesh.root().center();
-            PlacedPart::new(index, part, self.pair, self.known_parts.extent(part), centre)
+            PlacedPart::new(index, part, self.pair, self.known_parts.extent(part))
         })
     }
 }
@@ -182,13 +180,10 @@ impl PairQuery for ConvexQuery<'_> {
                     return None;
                 }
             }
-            let ConvexShape::Features { shape, radius, .. } = shape else {
-                return Some(Near { triangle, contact: None });
-            };
             if !is_exact {
                 return Some(Near { triangle, contact: None });
             }
-            let radius = f64::from(radius);
+            let radius = f64::from(shape.radius());
             let corners = placed.corners(&triangle);
             let contact = core_contact(&corners, shape, limits.margin + radius);
             let distance = contact.map_or(limits.margin, |contact| contact.distance - radius);

@@ -45,6 +45,17 @@ impl<'a> ConvexShape<'a> {
     }
 }
 
+impl ConvexShape<'_> {
+    /// That of the border around what [`core_contact`](super::features::core_contact) knows.
+    pub(super) fn radius(&self) -> Real {
+        match *self {
+            Self::Ball(ball) => ball.radius,
+            Self::Features { radius, .. } => radius,
+            Self::HalfSpace(_) | Self::Cuboid(_) => 0.0,
+        }
+    }
+}
+
 /// How far a shape extends: its radius and the box around the rest of it.
 ///
 /// Also tells, as far as a few numbers do, that a shape is the one that it was at the last query. A

@@ -32,13 +32,21 @@
 //! than 1e-10 of their size may count as touching: their distance is off by less than that. A
 //! contact is a function of its arguments, bit for bit: no search starts from an earlier one.
 
+mod apart;
+mod clip;
+mod cuboid;
+mod curved;
 mod depth;
 mod difference;
+mod half_space;
 mod polytope;
 mod search;
+mod segment;
 mod simplex;
 mod support;
 
+pub use clip::{FEATURE_CORNERS, FeaturePoint, FeaturePoints, clip_feature};
+pub use half_space::half_space_contact;
 pub use support::{
     ConeSupport, CuboidSupport, CylinderSupport, HullSupport, PointSupport, SegmentSupport,
     SupportMap, TriangleSupport,
@@ -67,6 +75,13 @@ impl ConvexContact {
     #[inline(always)]
     fn new(on_triangle: DVec3, normal: DVec3, distance: f64) -> Self {
         Self { distance, normal, on_triangle, on_shape: on_triangle + normal * distance }
+    }
+
+    /// Of bodies apart, from the point of the triangle and the way from there to the shape.
+    #[inline(always)]
+    fn apart(on_triangle: DVec3, difference: DVec3) -> Self {
+        let distance = difference.length();
+        Self::new(on_triangle, difference / distance, distance)
     }
 
     fn is_finite(&self) -> bool {
@@ -106,29 +121,44 @@ pub fn round_contact<S: SupportMap>(
     (contact.distance <= margin).then_some(contact)
 }
 
-/// The contact; None if farther than the margin by more than rounding.
+/// Closed forms answer for bodies that are apart, or cross, by more than this share of their size.
+/// For others, where rounding chooses what touches what, the search does.
+const DOUBTFUL: f64 = 1.0e-10;
+
+/// The contact; may be none if farther than the margin.
 #[inline(always)]
 fn find<S: SupportMap>(triangle: &[DVec3; 3], shape: &S, margin: f64) -> Option<ConvexContact> {
     let [a, b, c] = *triangle;
-    let extent = ((b - a).abs() + (c - a).abs()).element_sum();
-    if !(extent + a.abs().element_sum()).is_finite() {
+    // Finite, unless they are huge, exactly if all coordinates are.
+    if !(a.abs() + b.abs() + c.abs()).element_sum().is_finite() {
         return None;
     }
+    shape.contact(triangle, margin).filter(ConvexContact::is_finite)
+}
+
+/// The contact by support points alone; none if farther than the margin by more than rounding.
+#[inline(never)]
+fn by_search<S: SupportMap>(
+    triangle: &[DVec3; 3],
+    shape: &S,
+    margin: f64,
+) -> Option<ConvexContact> {
+    let [a, b, c] = *triangle;
+    let extent = ((b - a).abs() + (c - a).abs()).element_sum();
     let difference = Difference { triangle, shape };
     let toward = toward_origin(&difference, triangle);
     let start = shape.support(-toward);
     let size = extent + start.abs().element_sum();
-    let contact = match search(&difference, toward, start, margin, size).outcome {
-        Outcome::Far => return None,
+    match search(&difference, toward, start, margin, size).outcome {
+        Outcome::Far => None,
         Outcome::Apart(simplex) => {
             let distance = simplex.squared.sqrt();
             let on_triangle = simplex.on_triangle(triangle);
-            ConvexContact::new(on_triangle, simplex.nearest / distance, distance)
+            Some(ConvexContact::new(on_triangle, simplex.nearest / distance, distance))
         }
-        Outcome::Crossing(tetrahedron) => crossing(depth(&difference, tetrahedron, size)?),
-        Outcome::Touching(simplex) => crossing(touching(&difference, &simplex, size)?),
-    };
-    contact.is_finite().then_some(contact)
+        Outcome::Crossing(tetrahedron) => depth(&difference, tetrahedron, size).map(crossing),
+        Outcome::Touching(simplex) => touching(&difference, &simplex, size).map(crossing),
+    }
 }
 
 fn crossing(Depth { outward, depth, on_triangle, .. }: Depth) -> ConvexContact {

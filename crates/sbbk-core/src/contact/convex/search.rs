@@ -38,6 +38,14 @@ pub(super) const TOUCHING: f64 = 1.0e-12;
 const NEARLY: f64 = 1.0e-10;
 const DOUBTFUL: f64 = 1.0e-11;
 
+/// Whether it is proved that a nearest point is: its squared distance, and how much of that a
+/// support plane leaves open.
+#[inline(always)]
+pub(super) fn is_proved<S: SupportMap>(squared: f64, open: f64, size: f64) -> bool {
+    let rounding = (ROUNDING * size).powi(2);
+    open <= PROVED[usize::from(S::IS_CURVED)] * squared || open * open <= rounding * squared
+}
+
 /// How a search ends.
 pub(super) enum Outcome {
     /// Beyond the margin.
@@ -100,7 +108,6 @@ pub(super) fn search<S: SupportMap>(
         simplex = flat;
     }
     let touching = (TOUCHING * size).powi(2);
-    let rounding = (ROUNDING * size).powi(2);
     let mut stalls = 0;
     for rounds in 1..=ROUNDS {
         let Simplex { nearest, squared, .. } = simplex;
@@ -114,8 +121,7 @@ pub(super) fn search<S: SupportMap>(
         }
         let open = squared - bound;
         let is_known = simplex.vertices().iter().any(|v| v.point == new.point);
-        if open <= PROVED[usize::from(S::IS_CURVED)] * squared || open * open <= rounding * squared
-        {
+        if is_proved::<S>(squared, open, size) {
             return end(Outcome::Apart(simplex), rounds);
         }
         if is_known {

@@ -1,5 +1,10 @@
 //! Support maps: all that a search needs to know of a convex shape.
 
+use super::cuboid::cuboid_contact;
+use super::curved::turned_contact;
+use super::segment::{point_contact, segment_contact};
+use super::{ConvexContact, by_search};
+use crate::contact::contact as triangle_contact;
 use glamx::DVec3;
 
 /// A convex shape, in its own frame.
@@ -11,6 +16,16 @@ pub trait SupportMap {
     /// The farthest point along `direction`, which has any length but zero; any of them where
     /// several are farthest. Exact up to rounding.
     fn support(&self, direction: DVec3) -> DVec3;
+
+    /// The contact with a triangle of finite coordinates. May be none if that is beyond `margin`.
+    /// By [search](super), unless there is a closed form.
+    #[inline(always)]
+    fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact>
+    where
+        Self: Sized,
+    {
+        by_search(triangle, self, margin)
+    }
 }
 
 impl<F: Fn(DVec3) -> DVec3> SupportMap for F {
@@ -29,6 +44,11 @@ impl SupportMap for PointSupport {
     fn support(&self, _: DVec3) -> DVec3 {
         self.0
     }
+
+    #[inline(always)]
+    fn contact(&self, triangle: &[DVec3; 3], _: f64) -> Option<ConvexContact> {
+        point_contact(triangle, self.0)
+    }
 }
 
 /// A segment, given by its ends; the core of a capsule.
@@ -41,6 +61,11 @@ impl SupportMap for SegmentSupport {
         let [a, b] = self.0;
         if (b - a).dot(direction) > 0.0 { b } else { a }
     }
+
+    #[inline(always)]
+    fn contact(&self, triangle: &[DVec3; 3], _: f64) -> Option<ConvexContact> {
+        segment_contact(triangle, &self.0)
+    }
 }
 
 /// A triangle.
@@ -51,6 +76,13 @@ impl SupportMap for TriangleSupport {
     #[inline(always)]
     fn support(&self, direction: DVec3) -> DVec3 {
         self.0[lowest(&self.0, -direction)]
+    }
+
+    /// That of [two triangles](crate::contact).
+    #[inline(always)]
+    fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
+        let contact = triangle_contact(triangle, &self.0, margin)?;
+        Some(ConvexContact::new(contact.point1, contact.normal, contact.distance))
     }
 }
 
@@ -71,6 +103,11 @@ impl SupportMap for CuboidSupport {
     fn support(&self, direction: DVec3) -> DVec3 {
         self.0.copysign(direction)
     }
+
+    #[inline(always)]
+    fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
+        cuboid_contact(triangle, self, margin)
+    }
 }
 
 /// A cylinder around the y axis, its middle at the origin.
@@ -88,6 +125,11 @@ impl SupportMap for CylinderSupport {
     #[inline(always)]
     fn support(&self, direction: DVec3) -> DVec3 {
         rim(direction, radial(direction), self.radius, self.half_height.copysign(direction.y))
+    }
+
+    #[inline(always)]
+    fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
+        turned_contact(triangle, self, margin)
     }
 }
 
@@ -110,6 +152,11 @@ impl SupportMap for ConeSupport {
             return DVec3::new(0.0, self.half_height, 0.0);
         }
         rim(direction, across, self.radius, -self.half_height)
+    }
+
+    #[inline(always)]
+    fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
+        turned_contact(triangle, self, margin)
     }
 }
 

@@ -1,0 +1,214 @@
+//! The nearest points of a triangle and a solid whose distance from a point is a closed form.
+//!
+//! That distance is a convex function. Its least value over the triangle is at a corner, at a point
+//! of the solid over the triangle, or along an edge.
+
+use super::search::is_proved;
+use super::simplex::thin_normal;
+use super::support::SupportMap;
+use super::{ConvexContact, DOUBTFUL};
+use glamx::DVec3;
+
+/// Steps along an edge at most; some ten are taken.
+const STEPS: u32 = 60;
+
+/// The slope of the squared distance at the end of a search along an edge, as a share of the
+/// squared distance: directions are off by about as much.
+const LEVEL: f64 = 1.0e-12;
+
+/// The part of an edge at which a search along it ends.
+const PART: f64 = 1.0e-14;
+
+/// A convex shape that holds the origin.
+pub(super) trait Solid: SupportMap {
+    /// The way from the shape to a point; zero inside.
+    fn outside(&self, point: DVec3) -> DVec3;
+
+    /// The point of an edge that is nearest, or one that is within `touching`. The slope of the
+    /// squared distance rises along the edge.
+    #[inline(always)]
+    fn near_edge(&self, start: DVec3, edge: DVec3, touching: f64) -> Near {
+        let at = |t: f64| {
+            let near = Near::of(self, start + edge * t);
+            (near, near.from_shape.dot(edge))
+        };
+        let is_end = |near: &Near, slope: f64| {
+            slope.abs() <= LEVEL * near.squared || near.squared <= touching * touching
+        };
+        let ((first, mut low_slope), (last, mut high_slope)) = (at(0.0), at(1.0));
+        if low_slope >= 0.0 || is_end(&first, low_slope) {
+            return first;
+        }
+        if high_slope <= 0.0 || is_end(&last, high_slope) {
+            return last;
+        }
+        // The rule of false position; an end that stays counts half. Every third step is half the
+        // way: where the edge touches, the slope rises from nothing.
+        let (mut low, mut high, mut side) = (0.0, 1.0, 0);
+        let mut nearest = if first.squared < last.squared { first } else { last };
+        for step in 1..=STEPS {
+            let t = if step % 3 == 0 {
+                0.5 * (low + high)
+            } else {
+                high - high_slope * (high - low) / (high_slope - low_slope)
+            };
+            let (near, slope) = at(t);
+            nearest = near;
+            if is_end(&near, slope) || !(high - low > PART && t > low && t < high) {
+                break;
+            }
+            if slope < 0.0 {
+                (low, low_slope) = (t, slope);
+                if side < 0 {
+                    high_slope *= 0.5;
+                }
+                side = -1;
+            } else {
+                (high, high_slope) = (t, slope);
+                if side > 0 {
+                    low_slope *= 0.5;
+                }
+                side = 1;
+            }
+        }
+        nearest
+    }
+}
+
+/// A point of a triangle and the way to it from the nearest point of a solid.
+#[derive(Clone, Copy)]
+pub(super) struct Near {
+    pub point: DVec3,
+    pub from_shape: DVec3,
+    pub squared: f64,
+}
+
+impl Near {
+    #[inline(always)]
+    pub fn of<S: Solid + ?Sized>(solid: &S, point: DVec3) -> Self {
+        let from_shape = solid.outside(point);
+        Self { point, from_shape, squared: from_shape.length_squared() }
+    }
+}
+
+/// A gap of the bodies along a direction from the solid to the triangle; negative if they overlap.
+/// All three corners are measured, so that a move by it parts the bodies, whatever rounding made of
+/// the direction.
+#[derive(Clone, Copy)]
+pub(super) struct Gap {
+    pub width: f64,
+    /// Unit vector.
+    pub outward: DVec3,
+}
+
+/// A triangle in the frame of a solid.
+pub(super) struct Pair<'a, S> {
+    pub triangle: &'a [DVec3; 3],
+    pub edges: [DVec3; 3],
+    pub solid: &'a S,
+    /// Of both.
+    pub size: f64,
+}
+
+impl<'a, S: Solid> Pair<'a, S> {
+    #[inline(always)]
+    pub fn new(triangle: &'a [DVec3; 3], solid: &'a S, solid_size: f64) -> Self {
+        let [a, b, c] = *triangle;
+        let edges = [b - a, c - b, a - c];
+        let size = (edges[0].abs() + edges[2].abs() + a.abs()).element_sum() + solid_size;
+        Self { triangle, edges, solid, size }
+    }
+
+    /// The distance below which rounding chooses what touches what.
+    #[inline(always)]
+    pub fn doubtful(&self) -> f64 {
+        DOUBTFUL * self.size
+    }
+
+    /// The gap along the normal of the triangle that points away from the origin. If the plane of
+    /// the triangle parts the bodies, that is by how much. None for a triangle without area.
+    #[inline(always)]
+    pub fn triangle_gap(&self) -> Option<Gap> {
+        let (normal, squared) = thin_normal(*self.triangle)?;
+        let normal = normal / squared.sqrt();
+        let [a, b, c] = self.triangle.map(|corner| corner.dot(normal));
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        let (low, outward) = if -high > low { (-high, -normal) } else { (low, normal) };
+        Some(Gap { width: low - self.solid.support(outward).dot(outward), outward })
+    }
+
+    /// The nearest point of bodies that do not cross.
+    #[inline(always)]
+    pub fn nearest(&self, of_triangle: Option<&Gap>) -> Near {
+        let [a, b, c] = self.triangle.map(|corner| Near::of(self.solid, corner));
+        let mut nearest = a;
+        for other in [b, c] {
+            if other.squared < nearest.squared {
+                nearest = other;
+            }
+        }
+        if self.open(&nearest) <= 0.0 {
+            return nearest;
+        }
+        if let Some(&Gap { width, outward }) = of_triangle
+            && width > -self.doubtful()
+        {
+            let over = self.solid.support(outward) + outward * width;
+            if self.is_over(over, outward) {
+                return Near { point: over, from_shape: outward * width, squared: width * width };
+            }
+        }
+        for j in 0..3 {
+            let other = self.near_edge(j);
+            if other.squared < nearest.squared {
+                nearest = other;
+            }
+        }
+        nearest
+    }
+
+    #[inline(always)]
+    pub fn near_edge(&self, j: usize) -> Near {
+        self.solid.near_edge(self.triangle[j], self.edges[j], self.doubtful())
+    }
+
+    /// Whether a point of the triangle's plane is inside it.
+    #[inline(always)]
+    pub fn is_over(&self, point: DVec3, normal: DVec3) -> bool {
+        let beside = [0, 1, 2].map(|i| self.edges[i].cross(point - self.triangle[i]).dot(normal));
+        beside.iter().all(|x| *x > 0.0) || beside.iter().all(|x| *x < 0.0)
+    }
+
+    /// By how much a corner of the triangle is nearer than a point, along the way to that from the
+    /// solid, times the length of that way.
+    #[inline(always)]
+    fn open(&self, near: &Near) -> f64 {
+        let [a, b, c] = self.triangle.map(|corner| (near.point - corner).dot(near.from_shape));
+        a.max(b).max(c)
+    }
+
+    /// The contact at the nearest point. None if the bodies touch, or where places that are apart
+    /// by the root of rounding tie, and it may be the wrong one.
+    #[inline(always)]
+    pub fn contact(&self, near: &Near) -> Option<ConvexContact> {
+        let is_apart = near.squared > self.doubtful() * self.doubtful()
+            && is_proved::<S>(near.squared, self.open(near), self.size);
+        is_apart.then(|| ConvexContact::apart(near.point, -near.from_shape))
+    }
+
+    /// The triangle moved along a gap until the bodies touch.
+    #[inline(always)]
+    pub fn moved(&self, gap: &Gap) -> [DVec3; 3] {
+        self.triangle.map(|corner| corner - gap.outward * gap.width)
+    }
+
+    /// The point of the triangle that touches the solid after it has moved along a gap.
+    #[inline(never)]
+    pub fn touching_after(&self, gap: &Gap) -> Option<DVec3> {
+        let moved = self.moved(gap);
+        let pair = Pair { triangle: &moved, ..*self };
+        let near = pair.nearest(pair.triangle_gap().as_ref());
+        let is_touching = near.squared <= self.doubtful() * self.doubtful();
+        is_touching.then_some(near.point + gap.outward * gap.width)
+    }
+}

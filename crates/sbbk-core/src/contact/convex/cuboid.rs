@@ -1,0 +1,221 @@
+//! A triangle and a box around the origin, in closed form.
+//!
+//! The faces of the difference of both are those of the box, the triangle, and one for each edge of
+//! the triangle and axis of the box: along one of these axes the bodies that cross are parted by
+//! the least translation, and bodies that are apart are seen to be so. How far these are apart is
+//! found by their nearest points (`apart.rs`).
+
+use super::apart::{Gap, Near, Pair, Solid};
+use super::difference::Vertex;
+use super::simplex;
+use super::support::CuboidSupport;
+use super::{ConvexContact, by_search};
+use crate::contact::closest::{crossing, within_edge};
+use glamx::DVec3;
+
+/// Least sine between an edge of the triangle and an axis of the box whose product is looked at:
+/// the face that it bounds is narrower than this share of the edge.
+const PARALLEL: f64 = 1.0e-12;
+
+/// How far a point may be off a body, as a share of the size, and count as on it: where features
+/// tie, the deepest corner need not be over the other body.
+const ON_BODY: f64 = 1.0e-13;
+
+/// Share of the size by which a gap must be beyond the margin to end the search.
+const BOUNDARY: f64 = 1.0e-13;
+
+/// What a direction that may part the bodies belongs to.
+#[derive(Clone, Copy)]
+enum Facet {
+    /// Of the box, across this axis.
+    Box(usize),
+    Triangle,
+    /// An edge of the triangle, and the edges of the box along this axis.
+    Edges(usize, usize),
+}
+
+impl Solid for CuboidSupport {
+    #[inline(always)]
+    fn outside(&self, point: DVec3) -> DVec3 {
+        point - point.clamp(-self.0, self.0)
+    }
+
+    /// The slope is linear between the planes of the box's faces.
+    #[inline(always)]
+    fn near_edge(&self, start: DVec3, edge: DVec3, _: f64) -> Near {
+        let half = self.0;
+        let at = |t: f64| Near::of(self, start + edge * t);
+        let (mut low, mut high) = (0.0, 1.0);
+        let (to_high, to_low) = (half - start, -half - start);
+        for i in 0..3 {
+            for t in [to_low[i] / edge[i], to_high[i] / edge[i]] {
+                // Not so for NaN.
+                if t > low && t < high {
+                    if at(t).from_shape.dot(edge) < 0.0 {
+                        low = t;
+                    } else {
+                        high = t;
+                    }
+                }
+            }
+        }
+        // Beyond these faces the edge is all the way.
+        let middle = at(0.5 * (low + high)).from_shape;
+        let (mut down, mut up) = (0.0, 0.0);
+        for i in 0..3 {
+            if middle[i] != 0.0 {
+                let face = half[i].copysign(middle[i]);
+                down += (face - start[i]) * edge[i];
+                up += edge[i] * edge[i];
+            }
+        }
+        let t = if up > 0.0 { (down / up).clamp(low, high) } else { low };
+        at(within_edge(t))
+    }
+}
+
+pub(super) fn cuboid_contact(
+    triangle: &[DVec3; 3],
+    cuboid: &CuboidSupport,
+    margin: f64,
+) -> Option<ConvexContact> {
+    let pair = Pair::new(triangle, cuboid, cuboid.0.element_sum());
+    if !pair.size.is_finite() {
+        return None;
+    }
+    let beyond = margin.max(0.0) + BOUNDARY * pair.size;
+    let (of_box, facet) = pair.box_gap();
+    if of_box.width > beyond {
+        return None;
+    }
+    let of_triangle = pair.triangle_gap();
+    let mut widest = (of_box, facet);
+    if let Some(gap) = of_triangle {
+        if gap.width > beyond {
+            return None;
+        }
+        if gap.width > of_box.width {
+            widest = (gap, Facet::Triangle);
+        }
+    }
+    let doubtful = pair.doubtful();
+    if widest.0.width <= doubtful {
+        widest = pair.edge_gap(widest);
+    }
+    let contact = if widest.0.width < -doubtful {
+        pair.crossing(&widest.0, widest.1)
+    } else {
+        pair.contact(&pair.nearest(of_triangle.as_ref()))
+    };
+    contact.or_else(|| by_search(triangle, cuboid, f64::INFINITY))
+}
+
+impl Pair<'_, CuboidSupport> {
+    /// The widest gap across a face of the box.
+    #[inline(always)]
+    fn box_gap(&self) -> (Gap, Facet) {
+        let ([a, b, c], half) = (*self.triangle, self.solid.0);
+        let (above, below) = (a.min(b).min(c) - half, -half - a.max(b).max(c));
+        let (mut axis, mut width, mut sign) = (0, f64::NEG_INFINITY, 1.0);
+        for i in 0..3 {
+            let (gap, side) = if below[i] > above[i] { (below[i], -1.0) } else { (above[i], 1.0) };
+            if gap > width {
+                (axis, width, sign) = (i, gap, side);
+            }
+        }
+        (Gap { width, outward: DVec3::AXES[axis] * sign }, Facet::Box(axis))
+    }
+
+    /// The widest of a gap and those along the products of an edge and an axis of the box.
+    ///
+    /// A point's height along the product of axis `i` and an edge is coordinate `i` of the product
+    /// of edge and point. Gaps are compared by their squares, which saves eight roots.
+    #[inline(always)]
+    fn edge_gap(&self, widest: (Gap, Facet)) -> (Gap, Facet) {
+        let (mut best, half) = (widest, self.solid.0);
+        // Minus the square of a negative width: it rises with the width.
+        let mut most = best.0.width * best.0.width.abs();
+        for (j, edge) in self.edges.into_iter().enumerate() {
+            let heights = self.triangle.map(|corner| edge.cross(corner));
+            let low = heights[0].min(heights[1]).min(heights[2]);
+            let high = heights[0].max(heights[1]).max(heights[2]);
+            let long = edge.abs();
+            let reach = DVec3::new(
+                long.y * half.z + long.z * half.y,
+                long.z * half.x + long.x * half.z,
+                long.x * half.y + long.y * half.x,
+            );
+            let squares = edge * edge;
+            let shortest = PARALLEL * PARALLEL * squares.element_sum();
+            let (above, below) = (low - reach, -high - reach);
+            for i in 0..3 {
+                let squared = squares[(i + 1) % 3] + squares[(i + 2) % 3];
+                let is_below = below[i] > above[i];
+                let gap = if is_below { below[i] } else { above[i] };
+                if squared > shortest && gap * gap.abs() > most * squared {
+                    let scale = 1.0 / squared.sqrt();
+                    let side = if is_below { -scale } else { scale };
+                    let width = gap * scale;
+                    let outward = DVec3::AXES[i].cross(edge) * side;
+                    best = (Gap { width, outward }, Facet::Edges(j, i));
+                    most = width * width.abs();
+                }
+            }
+        }
+        best
+    }
+
+    /// The contact of bodies that cross, parted best along the gap of a facet. None where no points
+    /// are found.
+    #[inline(always)]
+    fn crossing(&self, gap: &Gap, facet: Facet) -> Option<ConvexContact> {
+        let Gap { width, outward } = *gap;
+        let guess = match facet {
+            Facet::Box(axis) => self.corner_over_face(axis, outward[axis]),
+            Facet::Triangle => {
+                let over = self.solid.0.copysign(outward) + outward * width;
+                let [a, b, c] =
+                    [0, 1, 2].map(|i| Vertex { point: over - self.triangle[i], corner: i });
+                let near = simplex::face(a, b, c).squared;
+                (near <= (ON_BODY * self.size).powi(2)).then_some(over)
+            }
+            Facet::Edges(edge, axis) => self.on_edge(edge, axis, gap),
+        };
+        // Else features lie in one plane.
+        let on_triangle = guess.or_else(|| self.touching_after(gap))?;
+        Some(ConvexContact::new(on_triangle, -outward, width))
+    }
+
+    /// The deepest corner below a face of the box, if it is below the face.
+    #[inline(always)]
+    fn corner_over_face(&self, axis: usize, sign: f64) -> Option<DVec3> {
+        let [mut deepest, b, c] = *self.triangle;
+        for corner in [b, c] {
+            if corner[axis] * sign < deepest[axis] * sign {
+                deepest = corner;
+            }
+        }
+        let outside = deepest.abs() - self.solid.0;
+        let slack = ON_BODY * self.size;
+        let is_over = |i: usize| outside[(axis + i) % 3] <= slack;
+        (is_over(1) && is_over(2)).then_some(deepest)
+    }
+
+    /// The point of an edge of the triangle nearest to the edge of the box along an axis that is
+    /// farthest outward, if it is beside that edge and the deepest of the triangle. It need not be:
+    /// a product of edges can be the normal of a face of the box.
+    #[inline(always)]
+    fn on_edge(&self, j: usize, axis: usize, gap: &Gap) -> Option<DVec3> {
+        let Gap { width, outward } = *gap;
+        let (start, edge) = (self.triangle[j], self.edges[j]);
+        let mut corner = self.solid.0.copysign(outward);
+        corner[axis] = 0.0;
+        let along = DVec3::AXES[axis];
+        let cross = edge.cross(along);
+        let [s, t] = crossing(corner - start, edge, along, cross, cross.length_squared());
+        let is_within = (0.0..=1.0).contains(&s) && t.abs() <= self.solid.0[axis];
+        let point = start + edge * s;
+        let above = (point - corner).dot(outward) - width;
+        (is_within && above <= ON_BODY * self.size).then_some(point)
+    }
+}

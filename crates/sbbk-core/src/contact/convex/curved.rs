@@ -1,0 +1,341 @@
+//! A triangle and a cylinder or a cone around the y axis, in closed form.
+//!
+//! Bodies that cross are parted by the least translation along the normal of some part of the
+//! surface of their difference. There are few kinds of parts, each with its least depth in closed
+//! form, or by Newton's method on a convex function:
+//!
+//! * a flat end and a corner of the triangle, and the triangle and a point of the shape;
+//! * a line of the slope and an edge: the normal is across both;
+//! * the slope and a corner: the normal is that of the slope in the direction of the corner;
+//! * a rim and an edge, see [`rim_and_edge`].
+//!
+//! The edge between two parts is never nearest to a point inside. The depth of each candidate is
+//! measured with the support points of both bodies, so that each is a move that parts them, and the
+//! least is the answer.
+
+use super::apart::{Gap, Near, Pair, Solid};
+use super::difference::Vertex;
+use super::simplex;
+use super::support::{ConeSupport, CylinderSupport};
+use super::{ConvexContact, by_search};
+use crate::contact::closest::{crossing, within_edge};
+use glamx::DVec3;
+
+/// Share of the size by which a gap must be beyond the margin to end the search.
+const BOUNDARY: f64 = 1.0e-13;
+
+/// Steps of Newton's method at most; some five are taken.
+const STEPS: u32 = 40;
+
+/// The last step, as a share of the tangent. The depth is off by the square of it.
+const STEP: f64 = 1.0e-9;
+
+/// Least sine between an edge and the axis at which the edge and a rim make a surface.
+const PARALLEL: f64 = 1.0e-9;
+
+/// What a direction that may part the bodies belongs to.
+#[derive(Clone, Copy)]
+enum Feature {
+    Corner,
+    Face,
+    Edge(usize),
+}
+
+/// A solid around the y axis.
+pub(super) trait Turned: Solid {
+    /// A bound of its coordinates.
+    fn size(&self) -> f64;
+
+    /// The height of the slope's normal, which has length 1.
+    fn slope(&self) -> f64;
+
+    /// The flat ends: the height of each, and the direction out of it.
+    fn ends(&self) -> impl Iterator<Item = (f64, f64)>;
+
+    /// The rims: the height of each, and the directions on which side of it the normals of the
+    /// surfaces with edges are.
+    fn rims(&self) -> [(f64, f64); 2];
+
+    fn radius(&self) -> f64;
+}
+
+impl Solid for CylinderSupport {
+    #[inline(always)]
+    fn outside(&self, DVec3 { x, y, z }: DVec3) -> DVec3 {
+        let across = (x * x + z * z).sqrt();
+        let scale = if across > self.radius { 1.0 - self.radius / across } else { 0.0 };
+        DVec3::new(x * scale, y - y.clamp(-self.half_height, self.half_height), z * scale)
+    }
+}
+
+impl Turned for CylinderSupport {
+    fn size(&self) -> f64 {
+        self.half_height + 2.0 * self.radius
+    }
+
+    fn slope(&self) -> f64 {
+        0.0
+    }
+
+    fn ends(&self) -> impl Iterator<Item = (f64, f64)> {
+        [(self.half_height, 1.0), (-self.half_height, -1.0)].into_iter()
+    }
+
+    fn rims(&self) -> [(f64, f64); 2] {
+        [(self.half_height, 1.0), (-self.half_height, -1.0)]
+    }
+
+    fn radius(&self) -> f64 {
+        self.radius
+    }
+}
+
+impl Solid for ConeSupport {
+    /// In a half plane the cone is a triangle between base, axis and slope.
+    #[inline(always)]
+    fn outside(&self, DVec3 { x, y, z }: DVec3) -> DVec3 {
+        let Self { half_height, radius } = *self;
+        let across = (x * x + z * z).sqrt();
+        let (out, up) = if y < -half_height {
+            ((across - radius).max(0.0), y + half_height)
+        } else {
+            let (below_tip, height) = (half_height - y, 2.0 * half_height);
+            if across * height <= below_tip * radius {
+                return DVec3::ZERO;
+            }
+            let along =
+                (across * radius + below_tip * height) / (radius * radius + height * height);
+            let along = along.clamp(0.0, 1.0);
+            (across - radius * along, height * along - below_tip)
+        };
+        let scale = if across > 0.0 { out / across } else { 0.0 };
+        DVec3::new(x * scale, up, z * scale)
+    }
+}
+
+impl Turned for ConeSupport {
+    fn size(&self) -> f64 {
+        self.half_height + 2.0 * self.radius
+    }
+
+    fn slope(&self) -> f64 {
+        let Self { half_height, radius } = *self;
+        radius / (radius * radius + 4.0 * half_height * half_height).sqrt()
+    }
+
+    fn ends(&self) -> impl Iterator<Item = (f64, f64)> {
+        [(-self.half_height, -1.0)].into_iter()
+    }
+
+    /// Beside the base, normals can point up as far as that of the slope does.
+    fn rims(&self) -> [(f64, f64); 2] {
+        [(-self.half_height, -1.0), (-self.half_height, 1.0)]
+    }
+
+    fn radius(&self) -> f64 {
+        self.radius
+    }
+}
+
+pub(super) fn turned_contact<S: Turned>(
+    triangle: &[DVec3; 3],
+    solid: &S,
+    margin: f64,
+) -> Option<ConvexContact> {
+    let pair = Pair::new(triangle, solid, solid.size());
+    if !pair.size.is_finite() {
+        return None;
+    }
+    let beyond = margin.max(0.0) + BOUNDARY * pair.size;
+    let of_triangle = pair.triangle_gap();
+    if of_triangle.is_some_and(|gap| gap.width > beyond) {
+        return None;
+    }
+    let (low, high) = pair.heights();
+    let end = solid.support(DVec3::Y).y;
+    if low - end > beyond || -end - high > beyond {
+        return None;
+    }
+    let near = pair.nearest(of_triangle.as_ref());
+    let is_through = |gap: Gap| gap.width < 0.0 && pair.is_pierced(&gap);
+    let touches = near.squared <= pair.doubtful() * pair.doubtful();
+    let contact = if touches || of_triangle.is_some_and(is_through) {
+        pair.crossing(of_triangle)
+    } else {
+        pair.contact(&near)
+    };
+    contact.or_else(|| by_search(triangle, solid, f64::INFINITY))
+}
+
+impl<S: Turned> Pair<'_, S> {
+    fn heights(&self) -> (f64, f64) {
+        let [a, b, c] = self.triangle.map(|corner| corner.y);
+        (a.min(b).min(c), a.max(b).max(c))
+    }
+
+    /// Whether a chord of the solid, across the plane of the triangle, goes through the triangle.
+    /// The section of the solid that no edge touches is inside the triangle or outside, as a whole.
+    #[inline(always)]
+    fn is_pierced(&self, gap: &Gap) -> bool {
+        let normal = gap.outward;
+        let [above, below] = [normal, -normal].map(|u| self.solid.support(u));
+        let [over, under] = [above, below].map(|x| (x - self.triangle[0]).dot(normal));
+        let is_across = over > 0.0 && under < 0.0;
+        is_across && self.is_over(above.lerp(below, over / (over - under)), normal)
+    }
+
+    #[inline(always)]
+    fn gap(&self, outward: DVec3) -> Gap {
+        let [a, b, c] = self.triangle.map(|corner| corner.dot(outward));
+        let reach = self.solid.support(outward).dot(outward);
+        Gap { width: a.min(b).min(c) - reach, outward }
+    }
+
+    /// The contact of bodies that cross. None if they hardly do.
+    #[inline(always)]
+    fn crossing(&self, of_triangle: Option<Gap>) -> Option<ConvexContact> {
+        let solid = self.solid;
+        let mut best = (Gap { width: f64::NEG_INFINITY, outward: DVec3::Y }, Feature::Corner);
+        let mut take = |gap: Gap, feature: Feature| {
+            if gap.width > best.0.width {
+                best = (gap, feature);
+            }
+        };
+        if let Some(gap) = of_triangle {
+            take(gap, Feature::Face);
+            take(self.gap(-gap.outward), Feature::Face);
+        }
+        let (low, high) = self.heights();
+        for (height, side) in solid.ends() {
+            let width = if side > 0.0 { low - height } else { height - high };
+            take(Gap { width, outward: DVec3::Y * side }, Feature::Corner);
+        }
+        let rise = solid.slope();
+        let run = (1.0 - rise * rise).sqrt();
+        for corner in *self.triangle {
+            let across = (corner.x * corner.x + corner.z * corner.z).sqrt();
+            if across > 0.0 {
+                let scale = run / across;
+                let outward = DVec3::new(corner.x * scale, rise, corner.z * scale);
+                take(self.gap(outward), Feature::Corner);
+            }
+        }
+        for (j, edge) in self.edges.into_iter().enumerate() {
+            // Across the edge: level, and as far up as can be.
+            let level = edge.cross(DVec3::Y);
+            let (level_squared, squared) = (level.length_squared(), edge.length_squared());
+            if level_squared <= PARALLEL * PARALLEL * squared {
+                continue;
+            }
+            let level = level / level_squared.sqrt();
+            let up = level.cross(edge) / squared.sqrt();
+            let up = if up.y < 0.0 { -up } else { up };
+            let sine = rise / up.y;
+            if sine <= 1.0 {
+                let cosine = (1.0 - sine * sine).sqrt();
+                for side in [level * cosine, level * -cosine] {
+                    take(self.gap(side + up * sine), Feature::Edge(j));
+                }
+            }
+            for (height, side) in solid.rims() {
+                let to_edge = DVec3::Y * height - self.triangle[j];
+                let coordinates = [to_edge.dot(level), to_edge.dot(up) * side];
+                if let Some([x, y]) = rim_and_edge(coordinates, up.y, solid.radius()) {
+                    take(self.gap(level * x + up * (y * side)), Feature::Edge(j));
+                }
+            }
+        }
+        let (gap, feature) = best;
+        if !(gap.width < -self.doubtful()) {
+            return None;
+        }
+        let on_triangle = self.touching(&gap, feature).or_else(|| self.touching_after(&gap))?;
+        Some(ConvexContact::new(on_triangle, -gap.outward, gap.width))
+    }
+
+    /// The point of the triangle that touches the solid after it has moved along the gap of a
+    /// feature, if that is where they touch: other features may be as deep.
+    #[inline(always)]
+    fn touching(&self, gap: &Gap, feature: Feature) -> Option<DVec3> {
+        let touching = self.doubtful() * self.doubtful();
+        let shift = gap.outward * gap.width;
+        match feature {
+            Feature::Corner => {
+                let deepest = |x: &DVec3, y: &DVec3| y.dot(gap.outward) < x.dot(gap.outward);
+                let [a, b, c] = *self.triangle;
+                let corner = if deepest(&a, &b) { b } else { a };
+                let corner = if deepest(&corner, &c) { c } else { corner };
+                (Near::of(self.solid, corner - shift).squared <= touching).then_some(corner)
+            }
+            Feature::Face => {
+                let over = self.solid.support(gap.outward) + shift;
+                let [a, b, c] =
+                    [0, 1, 2].map(|i| Vertex { point: over - self.triangle[i], corner: i });
+                (simplex::face(a, b, c).squared <= touching).then_some(over)
+            }
+            // A point of a rim, or of the line of the slope that is nearest to the axis.
+            Feature::Edge(j) => {
+                let (start, edge) = (self.triangle[j], self.edges[j]);
+                let rim = self.solid.support(gap.outward) + shift - start;
+                let cross = edge.cross(DVec3::Y);
+                let [on_slope, _] = crossing(-start, edge, DVec3::Y, cross, cross.length_squared());
+                let on_rim = rim.dot(edge) / edge.length_squared();
+                [on_rim, on_slope]
+                    .into_iter()
+                    .map(|s| start + edge * within_edge(s))
+                    .find(|&point| Near::of(self.solid, point - shift).squared <= touching)
+            }
+        }
+    }
+}
+
+/// The direction, by its level and upright coordinates, of the least depth of the surface that a
+/// rim and an edge make. The centre of the rim is at `(a, b)` from the edge; `rise` is the height
+/// of the upright unit vector across the edge. None if there is none with a positive upright part.
+///
+/// Along `(cos f, sin f)` the depth is `a cos f + b sin f + r √(1 - rise² sin² f)`. With `t = tan f`
+/// and `a < 0`, so that `f < 90°` holds the least one, its slope has the sign of
+/// `|a| t + b - r rise² t / √(1 + run² t²)`, `run² = 1 - rise²`, which is convex for `t > 0`: the
+/// depth is least at the last root, to which Newton's method falls from above. Where `a > 0` and
+/// `b > 0` the slope over `sin f cos f` falls, so that there is no least depth.
+#[inline(always)]
+fn rim_and_edge([a, b]: [f64; 2], rise: f64, radius: f64) -> Option<[f64; 2]> {
+    let (steep, sign) = (a.abs(), if a < 0.0 { 1.0 } else { -1.0 });
+    let lift = radius * rise * rise;
+    if b >= 0.0 && steep >= lift {
+        return None;
+    }
+    let run_squared = (1.0 - rise * rise).max(0.0);
+    let value = |t: f64| {
+        let root = (1.0 + run_squared * t * t).sqrt();
+        (steep * t + b - lift * t / root, steep - lift / (root * root * root))
+    };
+    // The product is at most `lift / run`, and at most `lift t`.
+    let by_run = (lift / run_squared.sqrt() - b) / steep;
+    let by_tangent = -b / (steep - lift);
+    let mut t = if steep > lift && by_tangent < by_run { by_tangent } else { by_run };
+    if !t.is_finite() {
+        return Some([0.0, 1.0]);
+    }
+    for _ in 0..STEPS {
+        let (height, slope) = value(t);
+        // Past the lowest point: there is no root.
+        let falls = slope > 0.0 && height >= 0.0;
+        if !falls {
+            if height > 0.0 {
+                return None;
+            }
+            break;
+        }
+        let step = height / slope;
+        t -= step;
+        if t <= 0.0 {
+            return None;
+        }
+        if step <= STEP * t {
+            break;
+        }
+    }
+    let scale = 1.0 / (1.0 + t * t).sqrt();
+    Some([sign * scale, t * scale])
+}

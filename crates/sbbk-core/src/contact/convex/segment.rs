@@ -1,0 +1,183 @@
+//! A triangle and a point or a segment, in closed form: the cores of balls and capsules.
+
+use super::difference::Difference;
+use super::search::is_proved;
+use super::simplex::{self, Simplex, thin_normal};
+use super::support::{PointSupport, SegmentSupport, SupportMap};
+use super::{ConvexContact, DOUBTFUL, by_search};
+use crate::contact::closest::{crossing, within_edge};
+use crate::contact::triangle::NEAR_PARALLEL;
+use glamx::DVec3;
+
+/// Least sine between an edge and a segment that cross the closed form's way. A depth beside the
+/// edge is off by 1e-16 of the size over the sine, so by 1e-11; the closed form asks for ten times
+/// that.
+const SKEW: f64 = 1.0e-5;
+
+/// A point of the triangle and the way from there to a point of the segment.
+#[derive(Clone, Copy)]
+struct Near {
+    on_triangle: DVec3,
+    difference: DVec3,
+    /// The squared length of that.
+    squared: f64,
+}
+
+impl Near {
+    #[inline(always)]
+    fn new(on_triangle: DVec3, difference: DVec3) -> Self {
+        Self { on_triangle, difference, squared: difference.length_squared() }
+    }
+
+    #[inline(always)]
+    fn of(end: &Simplex, triangle: &[DVec3; 3]) -> Self {
+        Self::new(end.on_triangle(triangle), end.nearest)
+    }
+
+    /// The contact that it makes of bodies whose size this is. None where rounding may have chosen
+    /// it: they touch, or places that are apart by the root of rounding tie.
+    #[inline(always)]
+    fn contact<S: SupportMap>(
+        &self,
+        &[a, b, c]: &[DVec3; 3],
+        &[p, q]: &[DVec3; 2],
+        size: f64,
+    ) -> Option<ConvexContact> {
+        let Self { on_triangle, difference, squared } = *self;
+        if squared <= (DOUBTFUL * size).powi(2) {
+            return None;
+        }
+        let along = |x: DVec3| (x - on_triangle).dot(difference);
+        let reach = along(p).min(along(q)) - along(a).max(along(b)).max(along(c));
+        let is_proved = is_proved::<S>(squared, squared - reach, size);
+        is_proved.then(|| ConvexContact::apart(on_triangle, difference))
+    }
+}
+
+/// A point on the triangle is parted from it along the triangle's normal, on whose side it counts
+/// as being.
+#[inline(always)]
+pub(super) fn point_contact(triangle: &[DVec3; 3], point: DVec3) -> Option<ConvexContact> {
+    let (nearest, size) = (from_end(triangle, point), size(triangle, point));
+    let near = Near::of(&nearest, triangle);
+    if let Some(contact) = near.contact::<PointSupport>(triangle, &[point; 2], size) {
+        return Some(contact);
+    }
+    let touches = nearest.squared <= (DOUBTFUL * size).powi(2) && nearest.vertices().len() == 3;
+    let Some((normal, squared)) = thin_normal(*triangle).filter(|_| touches) else {
+        return by_search(triangle, &PointSupport(point), f64::INFINITY);
+    };
+    let normal = normal / squared.sqrt();
+    let height = (point - triangle[0]).dot(normal);
+    Some(ConvexContact::new(point - normal * height, normal, height))
+}
+
+/// The distance from the triangle is a convex function along the segment: if it rises from an end
+/// on, that end is nearest. Else a point between is, nearest to an edge, or the segment crosses.
+pub(super) fn segment_contact(
+    triangle: &[DVec3; 3],
+    segment: &[DVec3; 2],
+) -> Option<ConvexContact> {
+    let [p, q] = *segment;
+    let along = q - p;
+    let size = size(triangle, p) + along.abs().element_sum();
+    let doubtful = (DOUBTFUL * size).powi(2);
+    let from_p = from_end(triangle, p);
+    let from_q = from_end(triangle, q);
+    let (rises_to_q, rises_to_p) =
+        (along.dot(from_p.nearest) >= 0.0, along.dot(from_q.nearest) <= 0.0);
+    let nearer = if from_q.squared < from_p.squared { from_q } else { from_p };
+    let mut nearest = Near::of(&nearer, triangle);
+    if !(rises_to_q || rises_to_p) {
+        match crossed(triangle, segment) {
+            Some(contact) if contact.distance * contact.distance > doubtful => {
+                return Some(contact);
+            }
+            Some(_) => return by_search(triangle, &SegmentSupport(*segment), f64::INFINITY),
+            None => {}
+        }
+        for i in 0..3 {
+            let other = from_edge(triangle[i], triangle[(i + 1) % 3], p, along);
+            if other.squared < nearest.squared {
+                nearest = other;
+            }
+        }
+    }
+    nearest
+        .contact::<SegmentSupport>(triangle, segment, size)
+        .or_else(|| by_search(triangle, &SegmentSupport(*segment), f64::INFINITY))
+}
+
+#[inline(always)]
+fn size(&[a, b, c]: &[DVec3; 3], point: DVec3) -> f64 {
+    ((b - a).abs() + (c - a).abs() + a.abs() + point.abs()).element_sum()
+}
+
+/// The point of the triangle nearest to a point, and the way from one to the other.
+#[inline(always)]
+fn from_end(triangle: &[DVec3; 3], end: DVec3) -> Simplex {
+    let [a, b, c] = Difference { triangle, shape: &PointSupport(end) }.at(end);
+    simplex::face(a, b, c)
+}
+
+/// Closest points of an edge from `v` to `w` and a segment from `p`. Where they are near parallel
+/// the place is uncertain, but the distance is as flat there: it is off by 1e-16 of the size.
+#[inline(always)]
+fn from_edge(v: DVec3, w: DVec3, p: DVec3, along: DVec3) -> Near {
+    let (edge, between) = (w - v, p - v);
+    let cross = edge.cross(along);
+    let area = cross.length_squared();
+    let [s, t] = crossing(between, edge, along, cross, area);
+    let is_within = |x: f64| x > 0.0 && x < 1.0;
+    let lengths = edge.length_squared() * along.length_squared();
+    if is_within(s) && is_within(t) && area > NEAR_PARALLEL * NEAR_PARALLEL * lengths {
+        return Near::new(v + edge * s, cross * (between.dot(cross) / area));
+    }
+    let s = within_edge(s);
+    let t = within_edge((edge * s - between).dot(along) / along.length_squared());
+    let s = within_edge((between + along * t).dot(edge) / edge.length_squared());
+    Near::new(v + edge * s, between + along * t - edge * s)
+}
+
+/// The least translation that parts a triangle and a segment through it. The difference of both is
+/// a prism: its bases are the triangle, its sides are between the segment and an edge. None if they
+/// do not cross, or not clearly.
+#[inline(always)]
+fn crossed(triangle: &[DVec3; 3], &[p, q]: &[DVec3; 2]) -> Option<ConvexContact> {
+    let along = q - p;
+    let (normal, squared) = thin_normal(*triangle)?;
+    let [below, above] = [p, q].map(|end| (end - triangle[0]).dot(normal));
+    let is_through = below < 0.0 && above > 0.0 || below > 0.0 && above < 0.0;
+    if !is_through {
+        return None;
+    }
+    let unit = normal / squared.sqrt();
+    let [height, end] = if below.abs() < above.abs() { [below, 0.0] } else { [above, 1.0] };
+    // The end that comes out first, as it moves back to the side of the other end.
+    let outward = if height < 0.0 { unit } else { -unit };
+    let depth = height.abs() / squared.sqrt();
+    let mut least = ConvexContact::new(p + along * end + outward * depth, outward, -depth);
+    let sides = [0, 1, 2].map(|i| {
+        let (v, edge) = (triangle[i], triangle[(i + 1) % 3] - triangle[i]);
+        let cross = edge.cross(along);
+        (v, edge, cross, (p - v).dot(cross))
+    });
+    let is_inside = sides.iter().all(|side| side.3 > 0.0) || sides.iter().all(|side| side.3 < 0.0);
+    if !is_inside {
+        return None;
+    }
+    for (v, edge, cross, volume) in sides {
+        let area = cross.length_squared();
+        if area <= SKEW * SKEW * edge.length_squared() * along.length_squared() {
+            return Some(ConvexContact { distance: 0.0, ..least });
+        }
+        if volume * volume < area * (least.distance * least.distance) {
+            let scale = 1.0 / area.sqrt();
+            let outward = cross * if volume > 0.0 { -scale } else { scale };
+            let [s, _] = crossing(p - v, edge, along, cross, area);
+            let on_triangle = v + edge * within_edge(s);
+            least = ConvexContact::new(on_triangle, outward, -volume.abs() * scale);
+        }
+    }
+    Some(least)
+}
