@@ -116,13 +116,14 @@ impl SbbkDispatcher {
         C: Default + Copy + Send + Sync + 'static,
     {
         let contacts = self.config.contacts;
+        // Of such a pair nothing needs to be kept while it is apart. Not if there are manifolds: where
+        // Rapier finds no workspace it keeps pointers to manifolds that are gone.
+        let is_new = workspace.is_none() && manifolds.is_empty();
         let (mesh, other, mesh_place) = match (g1.as_trimesh(), g2.as_trimesh()) {
             (Some(mesh1), Some(mesh2)) => {
                 let meshes = [mesh1, mesh2];
-                if workspace.is_none()
-                    && self.are_apart(are_near(meshes, pos12, prediction), meshes)
-                {
-                    return self.nothing(manifolds);
+                if is_new && self.are_apart(are_near(meshes, pos12, prediction), meshes) {
+                    return self.nothing();
                 }
                 let Some(meshes) = self.look_at(meshes) else {
                     return Answer::Unsupported;
@@ -138,10 +139,10 @@ impl SbbkDispatcher {
         if parts.is_none() && field.is_none() {
             return Answer::Unsupported;
         }
-        if workspace.is_none() {
+        if is_new && parts.is_some() {
             let in_mesh = if mesh_place.is_second() { pos12.inverse() } else { *pos12 };
             if self.are_apart(is_near(mesh, other, &in_mesh, prediction), [mesh]) {
-                return self.nothing(manifolds);
+                return self.nothing();
             }
         }
         let Some([mesh]) = self.look_at([mesh]) else {
@@ -166,9 +167,8 @@ impl SbbkDispatcher {
         !are_near && !meshes.iter().any(may_mislead)
     }
 
-    /// The answer about shapes that are apart: no memory is kept of them.
-    fn nothing<M, C>(&self, manifolds: &mut Vec<ContactManifold<M, C>>) -> Answer {
-        manifolds.clear();
+    /// The answer about shapes that are apart, of which no memory is kept.
+    fn nothing(&self) -> Answer {
         if self.config.count_queries {
             self.counters.add(Answer::Apart, &DescentCounts::default());
         }

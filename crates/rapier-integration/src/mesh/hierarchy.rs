@@ -20,22 +20,23 @@ use super::soundness::is_whole;
 /// Whether Parry's hierarchy of a mesh has something within `margin` of the box around a shape at
 /// `pos12`, or about: as stock begins. Not to be asked about a broken mesh.
 pub(crate) fn is_near(mesh: &TriMesh, shape: &dyn Shape, pos12: &Pose, margin: Real) -> bool {
-    let root = mesh.bvh().root_aabb();
-    if !(root.mins.is_finite() && root.maxs.is_finite()) {
+    let is_finite = |aabb: Aabb| aabb.mins.is_finite() && aabb.maxs.is_finite();
+    let other = shape.as_trimesh().map(|other| other.bvh().root_aabb());
+    if !is_finite(mesh.bvh().root_aabb()) || other.is_some_and(|other| !is_finite(other)) {
         return true;
     }
-    let aabb = match shape.as_trimesh() {
-        Some(other) => other.bvh().root_aabb().transform_by(pos12),
-        None => shape.compute_aabb(pos12),
-    };
+    let aabb = other.map_or_else(|| shape.compute_aabb(pos12), |other| other.transform_by(pos12));
     // Some thirty operations on coordinates that are, before and after a turn, no larger than twice
     // these.
     let size = aabb.mins.abs().max(aabb.maxs.abs()).max_element();
     let grown = margin.max(0.0) + gamma(64) * 2.0 * (size + pos12.translation.abs().max_element());
     // Nowhere without a finite pose: then this is NaN.
     let is_somewhere = grown >= 0.0;
+    if !is_somewhere {
+        return false;
+    }
     let aabb = BvhNode::leaf(aabb.loosened(grown), 0);
-    is_somewhere && mesh.bvh().leaves(|node| node.intersects(&aabb)).next().is_some()
+    mesh.bvh().leaves(|node| node.intersects(&aabb)).next().is_some()
 }
 
 /// The same of two meshes: of the larger one, and the box of the other.
