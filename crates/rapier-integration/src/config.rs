@@ -4,8 +4,7 @@ use sbbk_core::tree::{BuildOptions, LayerPlan};
 /// into contact points.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum ContactGenerator {
-    /// SBBK's own ([`sbbk_core::contact`]): exact at every scale, and faster. Balls, cuboids and
-    /// half-spaces have Parry's.
+    /// SBBK's own ([`sbbk_core::contact`]): exact at every scale, and faster.
     #[default]
     Exact,
     /// Parry's (GJK, EPA and clipping), called as stock Parry calls it: on a first query the

@@ -2,11 +2,13 @@
 //! closest points, and for shapes with polygonal features the other points, are those of
 //! [`sbbk_core::contact::convex`]; the features are Parry's.
 
+use std::sync::LazyLock;
+
 use glamx::DVec3;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d::shape::{
-    PackedFeatureId, PolygonalFeature, PolygonalFeatureMap, Segment, Shape, Triangle, TypedShape,
+    Cuboid, PackedFeatureId, PolygonalFeature, Segment, Shape, Triangle, TypedShape,
 };
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::{
@@ -118,11 +120,8 @@ impl Normals {
 /// A triangle and a shape with features that touch, in the frame of the shape.
 pub(super) struct Touching<'a> {
     pub(super) corners: &'a [DVec3; 3],
-    pub(super) map: &'a dyn PolygonalFeatureMap,
+    pub(super) shape: ConvexShape<'a>,
     pub(super) contact: &'a ConvexContact,
-    /// Whether closest points are wanted even if others are as near. A shape with a curved surface
-    /// does not touch at the corners of its features.
-    pub(super) is_round: bool,
 }
 
 /// A point of a manifold, radii not counted.
@@ -140,11 +139,25 @@ impl Touching<'_> {
     ///
     /// `turned` is the normal if cones have turned it, in the direction of the contact's.
     pub(super) fn points(&self, turned: Option<DVec3>, mut each: impl FnMut(Point)) {
-        let Self { corners, map, contact, is_round } = *self;
+        let Self { corners, shape, contact } = *self;
         let ConvexContact { distance, normal, on_triangle, on_shape } = *contact;
         let normal = turned.unwrap_or(normal);
+        let toward = -normal.as_vec3();
         let mut feature = PolygonalFeature::default();
-        map.local_support_feature_toward((-normal).as_vec3(), on_shape.as_vec3(), &mut feature);
+        // Closest points are wanted even if others are as near, but of a cuboid: another shape may
+        // not touch at the corners of its features.
+        let mut is_round = true;
+        match shape {
+            ConvexShape::Cuboid(cuboid) => {
+                is_round = false;
+                feature = FACES[face_toward(toward)].clone();
+                feature.vertices = feature.vertices.map(|corner| corner * cuboid.half_extents);
+            }
+            ConvexShape::Features { map, .. } => {
+                map.local_support_feature_toward(toward, on_shape.as_vec3(), &mut feature);
+            }
+            ConvexShape::Ball(_) | ConvexShape::HalfSpace(_) => {}
+        }
         let polygon = feature.vertices.map(|corner| corner.as_dvec3());
         let mut points = FeaturePoints::new();
         clip_feature(corners, &polygon[..feature.num_vertices], normal, &mut points);
@@ -161,9 +174,9 @@ impl Touching<'_> {
             let distance =
                 if turned.is_none() { point.distance.max(distance) } else { point.distance };
             let of_triangle = match point.features[0] {
-                Feature::Vertex(i) => PackedFeatureId::vertex(u32::from(i)),
-                Feature::Edge(i) => PackedFeatureId::edge(u32::from(i)),
-                Feature::Face => PackedFeatureId::face(0),
+                Feature::Vertex(i) => TRIANGLE.vids[usize::from(i)],
+                Feature::Edge(i) => TRIANGLE.eids[usize::from(i)],
+                Feature::Face => TRIANGLE.fid,
             };
             let of_shape = match point.features[1] {
                 Feature::Vertex(i) => feature.vids[usize::from(i)],
@@ -179,4 +192,24 @@ impl Touching<'_> {
             each(Point { on_triangle, on_shape, distance, features });
         }
     }
+}
+
+/// A triangle, for the names of its features. Made once, as the faces of cuboids are: Parry's
+/// constructors are not inlined and took more than the clip.
+static TRIANGLE: LazyLock<PolygonalFeature> =
+    LazyLock::new(|| Triangle::new(Vector::X, Vector::Y, Vector::Z).into());
+
+/// The faces of a cuboid with half lengths of 1, by [`face_toward`].
+static FACES: LazyLock<[PolygonalFeature; 6]> = LazyLock::new(|| {
+    let axes = [Vector::X, Vector::Y, Vector::Z];
+    std::array::from_fn(|i| {
+        let outward = if i < 3 { axes[i] } else { -axes[i - 3] };
+        Cuboid::new(Vector::ONE).support_face(outward)
+    })
+});
+
+/// The number of the face of a cuboid that is farthest along a direction.
+fn face_toward(direction: Vector) -> usize {
+    let axis = direction.abs().max_position();
+    if direction[axis] < 0.0 { axis + 3 } else { axis }
 }

@@ -8,7 +8,7 @@ use parry3d::query::details::{
     contact_manifold_halfspace_pfm, contact_manifold_pfm_pfm,
 };
 use parry3d::query::{ContactManifold, TrackedContact};
-use parry3d::shape::{PolygonalFeatureMap, Triangle};
+use parry3d::shape::Triangle;
 use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::traverse::Placement;
 
@@ -115,11 +115,8 @@ impl Question<'_> {
         manifold.points.clear();
         manifold.local_n1 = Vec3::ZERO;
         match (contact, self.part.shape) {
-            (Some(contact), ConvexShape::Features { map, radius, .. }) => {
-                self.touch(map, radius, true, contact, manifold);
-            }
-            (Some(contact), ConvexShape::Cuboid(cuboid)) => {
-                self.touch(cuboid, 0.0, false, contact, manifold);
+            (Some(contact), ConvexShape::Features { .. } | ConvexShape::Cuboid(_)) => {
+                self.touch(contact, manifold);
             }
             (Some(contact), ConvexShape::HalfSpace(half_space)) => {
                 let Self { triangle, mesh_place, prediction, .. } = *self;
@@ -149,13 +146,11 @@ impl Question<'_> {
     /// empty where the cones reject the contact.
     fn touch<M, C: Default + Copy>(
         &self,
-        map: &dyn PolygonalFeatureMap,
-        radius: Real,
-        is_round: bool,
         contact: &ConvexContact,
         manifold: &mut ContactManifold<M, C>,
     ) {
-        let Self { placed, triangle, mesh_place, .. } = *self;
+        let Self { placed, part, triangle, mesh_place, .. } = *self;
+        let (shape, radius) = (part.shape, part.shape.radius());
         let (pos12, cones) = self.pair();
         let Some(Normals { normals, are_turned }) =
             Normals::new(pos12, self.normals(contact), cones)
@@ -167,7 +162,7 @@ impl Question<'_> {
         let depth = contact.distance;
         let has_cones = cones.iter().any(Option::is_some);
         let corners = &placed.corners(triangle);
-        Touching { corners, map, contact, is_round }.points(turned, |point| {
+        Touching { corners, shape, contact }.points(turned, |point| {
             let Point { on_triangle, on_shape, distance, features } = point;
             // As Parry: points that a constrained normal puts much deeper than the bodies are.
             if has_cones && depth < 0.0 && distance < 5.0 * depth {

@@ -246,7 +246,7 @@ impl<S: Turned> Pair<'_, S> {
             }
         }
         let (gap, feature) = best;
-        if !(gap.width < -self.doubtful()) {
+        if gap.width >= -self.doubtful() {
             return None;
         }
         let on_triangle = self.touching(&gap, feature).or_else(|| self.touching_after(&gap))?;

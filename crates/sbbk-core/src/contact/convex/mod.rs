@@ -16,12 +16,20 @@
 //!
 //! # How
 //!
+//! Balls, capsules, boxes, cylinders and cones have closed forms: nearest points of features for
+//! bodies apart (`segment.rs`, `apart.rs`), and the least depth of the parts of the surface of the
+//! Minkowski difference for bodies that cross (`segment.rs`, `cuboid.rs`, `curved.rs`). Triangles
+//! have the contact of [two](crate::contact). Whatever other shape, and all poses in which rounding
+//! chooses what touches what, is left to a search by support points:
+//!
 //! 1. The nearest point of a simplex of the Minkowski difference goes toward the origin until a
 //!    support plane proves it nearest, or proves that the shape is beyond the margin (`search.rs`).
 //!    The first simplex is the whole triangle, seen from the point of the shape that reaches
 //!    farthest towards it, or farthest along its normal: for flat contacts that is the answer.
 //! 2. If a simplex holds the origin, a polytope grows from it to the nearest part of the surface of
 //!    the difference (`depth.rs`).
+//!
+//! The further points of a contact are those of [`clip_feature`].
 //!
 //! # Accuracy
 //!
@@ -97,8 +105,9 @@ impl ConvexContact {
 /// when a coordinate is not finite. Coordinates and their differences between 1e-38 and 1e38 are
 /// safe from overflow.
 ///
-/// About 50 ns far beyond the margin; within it 100 to 400 for a ball, capsule, cuboid or small
-/// hull and 2 µs for a cylinder or cone; 2 to 10 µs when crossing.
+/// Within the margin about 100 ns for a ball, capsule, triangle or cuboid, 300 for a cylinder or
+/// cone and 400 for a small hull; when crossing as much, 1 µs for a cylinder or cone, and 2 µs or
+/// more for a hull.
 pub fn convex_contact<S: SupportMap>(
     triangle: &[DVec3; 3],
     shape: &S,

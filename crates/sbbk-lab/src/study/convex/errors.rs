@@ -31,12 +31,10 @@ struct Part {
     body: ConvexBody,
     /// The corners of the box around it.
     bounds: [DVec3; 2],
-    has_own_contacts: bool,
 }
 
 /// The truth about one pose.
-pub(super) struct Truth<'a> {
-    judge: &'a Judge,
+pub(super) struct Truth {
     /// Of all triangles and parts within the prediction distance and its band. `None`: they cross,
     /// how deep is not known.
     distances: BTreeMap<Subshapes, Option<f64>>,
@@ -57,7 +55,7 @@ impl Judge {
     }
 
     /// With the mesh at a pose in the frame of the shape.
-    pub fn truth(&self, pose: &Pose3, prediction: Real) -> Truth<'_> {
+    pub fn truth(&self, pose: &Pose3, prediction: Real) -> Truth {
         let prediction = f64::from(prediction);
         let reach = prediction * (1.0 + SET_BAND);
         let mut distances = BTreeMap::new();
@@ -74,12 +72,7 @@ impl Judge {
                 }
             }
         }
-        Truth { judge: self, distances, prediction }
-    }
-
-    /// Whether SBBK computes contacts of a part of the shape itself.
-    pub fn has_own_contacts(&self) -> bool {
-        self.parts.iter().any(|part| part.has_own_contacts)
+        Truth { distances, prediction }
     }
 }
 
@@ -90,10 +83,6 @@ impl Part {
             pose: DPose3::from(*pose).inverse(),
             body: body(shape),
             bounds: [bounds.mins, bounds.maxs].map(|corner| corner.as_dvec3()),
-            has_own_contacts: !matches!(
-                shape.as_typed_shape(),
-                TypedShape::Ball(_) | TypedShape::Cuboid(_) | TypedShape::HalfSpace(_)
-            ),
         }
     }
 
@@ -104,26 +93,20 @@ impl Part {
     }
 }
 
-impl Truth<'_> {
-    /// Judges the manifolds of an answer; `subshapes` tells the triangle and the part of each. If
-    /// `only_own`, nothing counts but parts whose contacts SBBK computes itself.
+impl Truth {
+    /// Judges the manifolds of an answer; `subshapes` tells the triangle and the part of each.
     pub fn judge(
         &self,
         manifolds: &[ContactManifold],
         subshapes: impl Fn(&ContactManifold) -> Subshapes,
-        only_own: bool,
     ) -> ErrorCount {
-        let Self { judge, distances, prediction } = self;
-        let counts =
-            |(_, part): Subshapes| !only_own || judge.parts[part as usize].has_own_contacts;
+        let Self { distances, prediction } = self;
         let mut errors = ErrorCount { mesh_pairs: 1, sampled_from: 1, ..ErrorCount::default() };
         let mut reported = BTreeSet::new();
         for manifold in manifolds {
             let subshapes = subshapes(manifold);
             let distances_of_points = manifold.points.iter().map(|point| f64::from(point.dist));
-            let Some(distance) = distances_of_points
-                .reduce(f64::min)
-                .filter(|d| d <= prediction && counts(subshapes))
+            let Some(distance) = distances_of_points.reduce(f64::min).filter(|d| d <= prediction)
             else {
                 continue;
             };
@@ -138,12 +121,11 @@ impl Truth<'_> {
                 _ => errors.phantom += 1,
             }
         }
-        for (&subshapes, distance) in distances.iter().filter(|(subshapes, _)| counts(**subshapes))
-        {
+        for (subshapes, distance) in distances {
             let is_within = |limit: f64| distance.is_none_or(|distance| distance <= limit);
             errors.true_pairs += usize::from(is_within(*prediction));
             let must = is_within(prediction * (1.0 - SET_BAND));
-            errors.missed += usize::from(must && !reported.contains(&subshapes));
+            errors.missed += usize::from(must && !reported.contains(subshapes));
         }
         errors
     }

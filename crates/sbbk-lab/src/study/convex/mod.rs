@@ -53,8 +53,6 @@ const ERRORS_NOTE: &str = "errors: missed + beyond + wrong distance, of the true
                            brute force in f64. Missed: nearer than the prediction distance, and not reported; beyond: \
                            reported, and farther; 1 % of the prediction distance may go either way. Wrong: off by \
                            more than 5 % of it; how deep cylinders and cones cross is not judged";
-const EXACT_NOTE: &str = "own: of the shapes and parts whose contacts SBBK computes itself; balls, \
-                          cuboids and half-spaces have those of Parry's routines";
 
 impl ConvexPlan {
     /// The head of 968 triangles, two units across, Rapier's prediction distance; within three
@@ -151,12 +149,11 @@ fn tables(plan: &ConvexPlan, rows: &[Row]) -> Vec<Table> {
     let ConvexPlan { mesh, prediction, .. } = plan;
     let count = mesh.triangle_count();
     let places = |header| number(header, "place_count").of("sbbk");
-    let own = ["stock", "sbbk"].map(|side| errors(&format!("own, {side}"), "own_errors").of(side));
     let timed = [("convex shapes", SHAPES), ("compounds", COMPOUNDS)].map(|(kinds, study)| {
         let mut notes = mode_notes();
         let asked = "every other place or motion is asked with the mesh first";
-        notes.extend([asked, TIME_NOTE, ERRORS_NOTE, EXACT_NOTE, DIRECT_NOTE].map(str::to_owned));
-        let columns = [vec![places("places or motions")], sides(), own.to_vec()].concat();
+        notes.extend([asked, TIME_NOTE, ERRORS_NOTE, DIRECT_NOTE].map(str::to_owned));
+        let columns = [vec![places("places or motions")], sides()].concat();
         let title = format!(
             "A mesh against {kinds}: {} of {count} triangles, prediction distance {prediction}; \
              microseconds a query",
@@ -166,7 +163,7 @@ fn tables(plan: &ConvexPlan, rows: &[Row]) -> Vec<Table> {
     });
     let sides = ["stock", "sbbk"].map(|side| errors(&format!("errors, {side}"), "errors").of(side));
     let asked = vec![number("prediction", "prediction").of("sbbk"), places("places")];
-    let columns = [asked, sides.to_vec(), own.to_vec()].concat();
+    let columns = [asked, sides.to_vec()].concat();
     let sized = TableSpec {
         title: format!("First queries at several sizes of the mesh: {}", mesh.name),
         study: SIZED,
@@ -176,7 +173,6 @@ fn tables(plan: &ConvexPlan, rows: &[Row]) -> Vec<Table> {
         notes: vec![
             "everything shrinks together: mesh, shapes, prediction distance".to_owned(),
             ERRORS_NOTE.to_owned(),
-            EXACT_NOTE.to_owned(),
         ],
     };
     timed.into_iter().chain([sized]).map(|spec| spec.of(rows)).collect()
@@ -228,7 +224,7 @@ impl<'a> Pair<'a> {
 
     /// The errors of both sides in all answers.
     fn rows(&self, study: &'static str, sequences: &[Sequence]) -> [Row; 2] {
-        let mut errors = [[ErrorCount::default(); 2]; 2];
+        let mut errors = [ErrorCount::default(); 2];
         for (index, sequence) in sequences.iter().enumerate() {
             let is_mesh_first = is_mesh_first(index);
             let truth = sequence.poses.iter().map(|pos12| {
@@ -240,21 +236,18 @@ impl<'a> Pair<'a> {
                 let (one, two) = (manifold.subshape1, manifold.subshape2);
                 if is_mesh_first { (one, two) } else { (two, one) }
             };
-            for (dispatcher, [all, own]) in self.contest.dispatchers.iter().zip(&mut errors) {
+            for (dispatcher, errors) in self.contest.dispatchers.iter().zip(&mut errors) {
                 sequence.walk(dispatcher, |step, manifolds| {
-                    *all += truth[step].judge(manifolds, subshapes, false);
-                    *own += truth[step].judge(manifolds, subshapes, true);
+                    *errors += truth[step].judge(manifolds, subshapes);
                 });
             }
         }
         let parts = self.kind.shape.as_compound().map(|compound| compound.shapes().len());
         let row = |side: usize| {
-            let [all, own] = errors[side];
             Row::new(study, Contest::BACKENDS[side])
                 .key("shape", self.kind.name)
                 .with("part_count", parts)
-                .with("errors", all)
-                .with("own_errors", self.judge.has_own_contacts().then_some(own))
+                .with("errors", errors[side])
         };
         [row(0), row(1)]
     }
