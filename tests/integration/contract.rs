@@ -57,7 +57,7 @@ fn there_is_a_workspace_wherever_there_are_or_were_manifolds() {
             pair.ask(&SbbkDispatcher::default(), &query.at(pos12));
             assert_eq!(pair.manifolds.is_empty(), pos12 != query.pos12);
             assert!(pair.workspace.is_some() || !had_some && pair.manifolds.is_empty());
-            if had_some {
+            if !pair.manifolds.is_empty() {
                 // As Rapier does where a shape was edited.
                 pair.workspace = None;
                 pair.ask(&SbbkDispatcher::default(), &query.at(far));

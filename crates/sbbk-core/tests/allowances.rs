@@ -229,18 +229,17 @@ fn boxes_the_margin_apart_are_found() {
         let magnitudes = boxes.map(|[min, max]| min.abs().max(max.abs()).max_element());
         let [one, two] = boxes.map(|[min, max]| TestedBox::new(min, max));
         let meet = |margin: f32| {
-            let there: PairFrame = PairFrame::within(magnitudes, placement, margin);
+            let there = BoxTest::new(magnitudes, &placement, margin);
             let [m1, m2] = magnitudes;
-            let back: PairFrame = PairFrame::within([m2, m1], placement.inverted(), margin);
-            [BoxTest::new(&there).of(two).meets(one), BoxTest::new(&back).of(one).meets(two)]
+            let back = BoxTest::new([m2, m1], &placement.inverted(), margin);
+            [there.of(two).meets(one), back.of(one).meets(two)]
         };
         assert_eq!(meet((distance as f32).next_up()), [true; 2], "{i}: {distance}");
         let less = 0.9 * distance - 2.0e-5 * f64::from(magnitudes[0] + magnitudes[1] + far);
         if less > 0.0 {
             assert_eq!(meet(less as f32), [false; 2], "{i}: {less}");
         }
-        let frame: PairFrame = PairFrame::within(magnitudes, placement, 0.0);
-        let gap = BoxTest::new(&frame).of(two).gap(one);
+        let gap = BoxTest::new(magnitudes, &placement, 0.0).of(two).gap(one);
         assert!(f64::from(gap) <= distance, "{i}: {gap}, {distance}");
     }
 }
@@ -370,9 +369,9 @@ fn any_finite_margin_finds_everything() {
 
 fn check_boxes(tree: &Tree, placement: &Placement, margin: f32) {
     let magnitude = tree.magnitude();
-    let frame: PairFrame = PairFrame::within([magnitude; 2], *placement, margin);
+    let test = BoxTest::new([magnitude; 2], placement, margin);
     let all = TestedBox::new(Vec3::splat(-magnitude), Vec3::splat(magnitude));
-    assert!(BoxTest::new(&frame).of(all).meets(all), "{margin} at {:?}", placement.translation);
+    assert!(test.of(all).meets(all), "{margin} at {:?}", placement.translation);
 }
 
 fn check_field(tree: &Tree, placement: &Placement, margin: f32, count: usize) {

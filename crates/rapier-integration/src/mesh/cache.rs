@@ -265,7 +265,7 @@ impl TreeCache {
         let token = MeshToken::of(mesh);
         let is_broken = self.soundness.is_broken(mesh, token);
         let is_supported = !is_broken || mesh.is_deformable();
-        is_supported.then_some(Hierarchy { mesh, token, owner: self.id, is_broken })
+        is_supported.then(|| Hierarchy::new(mesh, token, self.id, is_broken))
     }
 
     fn acquire(self: &Arc<Self>, content: ContentHash, triangle_count: usize) -> PreparedRef {

@@ -71,6 +71,8 @@ pub(crate) struct Hierarchy<'a> {
     /// Some vertices are NaN or infinite: boxes above them mean nothing, and triangles that have
     /// them touch nothing.
     pub(super) is_broken: bool,
+    /// The box around the mesh: of a broken one around its whole triangles.
+    root: Aabb,
 }
 
 impl<'a> Hierarchy<'a> {
@@ -87,13 +89,23 @@ impl<'a> Hierarchy<'a> {
         !self.mesh.is_deformable()
     }
 
-    /// The box around the mesh: of a broken one around its whole triangles.
-    pub(crate) fn root(&self) -> Aabb {
-        if self.is_broken {
-            around(self.whole_ones().map(|index| self.mesh.triangle(index).local_aabb()))
-        } else {
-            self.mesh.bvh().root_aabb()
+    pub(super) fn new(mesh: &'a TriMesh, token: MeshToken, owner: u64, is_broken: bool) -> Self {
+        let mut seen = Self { mesh, token, owner, is_broken, root: mesh.bvh().root_aabb() };
+        if is_broken {
+            let boxes = seen.whole_ones().map(|index| mesh.triangle(index).local_aabb());
+            seen.root = around(boxes);
         }
+        seen
+    }
+
+    /// The box around the mesh.
+    pub(crate) fn root(&self) -> &Aabb {
+        &self.root
+    }
+
+    /// By which stock chooses the hierarchy to walk first.
+    pub(crate) fn size_squared(&self) -> Real {
+        self.root.half_extents().length_squared()
     }
 
     /// The root box in the frame that the mesh is in at `pose`, grown by `reach` and by what

@@ -83,7 +83,8 @@ mod tests {
     fn every_mesh_gets_its_own_answer() {
         let soundness = Soundness::default();
         let broken = |mesh: &TriMesh| soundness.is_broken(mesh, MeshToken::of(mesh));
-        let corner = |i: usize| if i % 3 == 0 { Vector::NAN } else { Vector::Y * i as f32 };
+        let corner =
+            |i: usize| if i.is_multiple_of(3) { Vector::NAN } else { Vector::Y * i as f32 };
         let mut meshes: Vec<TriMesh> = (0..3000).map(|i| mesh(corner(i))).collect();
         for _ in 0..2 {
             for (i, mesh) in meshes.iter().enumerate() {

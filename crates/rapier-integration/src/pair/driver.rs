@@ -158,7 +158,8 @@ pub(crate) struct Scratch {
 }
 
 thread_local! {
-    static SCRATCH: Cell<Scratch> = Cell::default();
+    /// Taken while a query uses it: one within another makes its own.
+    static SCRATCH: Cell<Option<Box<Scratch>>> = Cell::default();
 }
 
 /// Brings the manifolds of a pair up to date.
@@ -184,7 +185,7 @@ where
         return Answer::Unchanged;
     }
     let mut coherence = std::mem::take(&mut memory.coherence);
-    let mut scratch = SCRATCH.take();
+    let mut scratch = SCRATCH.take().unwrap_or_default();
     scratch.parts.clear();
     let (moving, reach) = (query.moving(), query.reach());
     let plan =
@@ -214,7 +215,7 @@ where
         &mut memory.pool,
         manifolds,
     );
-    SCRATCH.set(scratch);
+    SCRATCH.set(Some(scratch));
     coherence.answered(query.pose(), manifolds.len());
     memory.keep(coherence);
     answer

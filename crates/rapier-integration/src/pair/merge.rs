@@ -5,6 +5,9 @@ use rustc_hash::FxHashMap;
 
 use super::order::{Candidate, Place};
 
+/// So many are looked through one by one.
+const FEW: usize = 8;
+
 /// Memory for looking things up by a pair of subshapes.
 #[derive(Default)]
 pub(super) struct Lookup(FxHashMap<[u32; 2], u32>);
@@ -17,21 +20,29 @@ impl Lookup {
         old: &[Candidate<H>],
         new: &mut [Candidate<H>],
     ) {
-        let is_known = |old: &Candidate<H>| old.place.is_some() || old.hint != H::default();
-        let known = old.iter().zip(0..).filter(|(old, _)| is_known(old));
-        self.0.clear();
-        self.0.extend(known.map(|(old, index)| (old.subshapes, index)));
-        if self.0.is_empty() {
+        if old.is_empty() {
             return;
         }
-        for candidate in new {
-            let Some(&index) = self.0.get(&candidate.subshapes) else {
-                continue;
-            };
-            let old = old[index as usize];
+        let hand_on = |old: &Candidate<H>, candidate: &mut Candidate<H>| {
             candidate.place = old.place;
             if candidate.hint == H::default() {
                 candidate.hint = old.hint;
+            }
+        };
+        if old.len() <= FEW {
+            for candidate in new {
+                let is_same = |old: &&Candidate<H>| old.subshapes == candidate.subshapes;
+                if let Some(old) = old.iter().find(is_same) {
+                    hand_on(old, candidate);
+                }
+            }
+            return;
+        }
+        self.0.clear();
+        self.0.extend(old.iter().map(|old| old.subshapes).zip(0..));
+        for candidate in new {
+            if let Some(&index) = self.0.get(&candidate.subshapes) {
+                hand_on(&old[index as usize], candidate);
             }
         }
     }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use parry3d::math::Real;
 use parry3d::partitioning::BvhNode;
 use sbbk_core::query::FoundPair;
-use sbbk_core::traverse::{BoxTest, PairFrame, Placement, TestedBox};
+use sbbk_core::traverse::{BoxTest, Placement, TestedBox};
 
 use crate::mesh::Hierarchy;
 use crate::pair::walk;
@@ -54,8 +54,7 @@ impl Walk<'_> {
             return None;
         }
         let [mesh1, mesh2] = self.0;
-        let size = |mesh: &Hierarchy<'_>| mesh.root().half_extents().length_squared();
-        if size(mesh1) < size(mesh2) {
+        if mesh1.size_squared() < mesh2.size_squared() {
             let found = Walk([mesh2, mesh1]).nearest_of_larger(placement.inverted(), limit)?;
             // The same pair in the other order.
             let triangles = [found.triangle2, found.triangle1];
@@ -68,11 +67,8 @@ impl Walk<'_> {
     fn nearest_of_larger(&self, placement: Placement, limit: f64) -> Option<FoundPair> {
         let [mesh1, mesh2] = self.0;
         let [m1, m2] = self.0.map(Hierarchy::magnitude);
-        let test = |magnitudes, placement| {
-            BoxTest::new(&PairFrame::<9>::within(magnitudes, placement, 0.0))
-        };
-        let in_frame1 = test([m1, m2], placement);
-        let in_frame2 = test([m2, m1], placement.inverted());
+        let in_frame1 = BoxTest::new([m1, m2], &placement, 0.0);
+        let in_frame2 = BoxTest::new([m2, m1], &placement.inverted(), 0.0);
         let root = mesh2.root();
         let whole = in_frame1.of(TestedBox::new(root.mins, root.maxs));
         let box_of = |node: &BvhNode| TestedBox::new(node.mins(), node.maxs());

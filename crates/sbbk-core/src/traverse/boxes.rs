@@ -2,7 +2,7 @@
 //!
 //! # Rounding
 //!
-//! As that of the boxes of [`PairFrame`], with `c = 1/2·(min + max)` and `e = 1/2·(max - min)` in
+//! As that of the boxes of [`PairFrame`](super::PairFrame), with `c = 1/2·(min + max)` and `e = 1/2·(max - min)` in
 //! place of a stored centre and half-length: a centre is off by `u·M`, and a half-length too short
 //! by as much. In frame 1 that adds `2·u·(M1 + 2·s·M2)` to what a comparison loses, in frame 2
 //! likewise: far below `r`. Twice `r` is allowed.
@@ -10,10 +10,11 @@
 use glamx::{DMat3, Vec3};
 use wide::f32x4;
 
-use super::frame::PairFrame;
+use super::frame::Allowance;
+use super::placement::Placement;
 use crate::volumes::rounding::gamma;
 
-/// Whether boxes of two bodies come within the margin of a [`PairFrame`]. Made once a query.
+/// Whether boxes of two bodies come within a margin. Made once a query.
 #[derive(Copy, Clone, Debug)]
 pub struct BoxTest {
     to_frame1: Columns,
@@ -50,14 +51,15 @@ impl TestedBox {
 }
 
 impl BoxTest {
-    /// For the pose and margin of `frame`.
-    pub fn new<const AXES: usize>(frame: &PairFrame<AXES>) -> Self {
-        let placement = frame.placement();
+    /// For two bodies with coordinates up to `magnitudes`, body 2 at `placement` in the frame of body
+    /// 1.
+    pub fn new(magnitudes: [f32; 2], placement: &Placement, margin: f32) -> Self {
+        let Allowance { rounding, slack } = Allowance::new(magnitudes, placement, margin);
         Self {
             to_frame1: Columns::new(placement.rotation),
             to_frame2: Columns::new(placement.inverse),
             translation: lanes(placement.translation.as_vec3()),
-            slack: std::array::from_fn(|i| frame.slack[i] + f32x4::splat(frame.rounding[i])),
+            slack: std::array::from_fn(|i| f32x4::splat(slack[i] + rounding[i])),
         }
     }
 

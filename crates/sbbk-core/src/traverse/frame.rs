@@ -30,6 +30,33 @@ pub struct PairFrame<const AXES: usize = 9> {
     correspondence: Option<Correspondence<AXES>>,
 }
 
+/// What comparisons of boxes allow, in frame 1 and in frame 2.
+pub(super) struct Allowance {
+    /// What rounding may take.
+    pub(super) rounding: [f32; 2],
+    /// The margin plus that.
+    pub(super) slack: [f32; 2],
+}
+
+impl Allowance {
+    /// For bodies with coordinates up to `magnitudes`.
+    #[inline]
+    pub(super) fn new([m1, m2]: [f32; 2], placement: &Placement, margin: f32) -> Self {
+        let Placement { rotation, translation, inverse } = placement;
+        // A row of the inverse is 1/s long: distances along it shrink by that.
+        let inverse_scale = each(|i| inverse.row(i).length()).into_iter().fold(0.0, f64::max);
+        let scale = each(|i| rotation.row(i).length()).into_iter().fold(0.0, f64::max);
+        let t = translation.as_vec3().abs().max_element();
+        let rounding = [
+            gamma(16) * (m1 + t + 2.0 * scale as f32 * m2),
+            gamma(16) * (m2 + 2.0 * inverse_scale as f32 * (m1 + t)),
+        ];
+        let margins = [margin, (f64::from(margin) * inverse_scale) as f32];
+        let slack = std::array::from_fn(|i| (margins[i] + rounding[i]).next_up());
+        Self { rounding, slack }
+    }
+}
+
 /// A matrix over lanes.
 #[derive(Copy, Clone, Debug)]
 struct Rows {
@@ -88,25 +115,15 @@ impl<const AXES: usize> PairFrame<AXES> {
     }
 
     /// The frame of any two bodies, whose coordinates are at most so large.
-    pub fn within([m1, m2]: [f32; 2], placement: Placement, margin: f32) -> Self {
+    pub fn within(magnitudes: [f32; 2], placement: Placement, margin: f32) -> Self {
         let Placement { rotation, translation, inverse } = placement;
         let translation = translation.as_vec3();
-        // A row of the inverse is 1/s long: distances along it shrink by that.
-        let inverse_scale = each(|i| inverse.row(i).length()).into_iter().fold(0.0, f64::max);
-        let scale = each(|i| rotation.row(i).length()).into_iter().fold(0.0, f64::max);
-
-        let t = translation.abs().max_element();
-        let rounding = [
-            gamma(16) * (m1 + t + 2.0 * scale as f32 * m2),
-            gamma(16) * (m2 + 2.0 * inverse_scale as f32 * (m1 + t)),
-        ];
-        let margin2 = (f64::from(margin) * inverse_scale) as f32;
-        let slack = |margin: f32, rounding: f32| f32x4::splat((margin + rounding).next_up());
+        let Allowance { rounding, slack } = Allowance::new(magnitudes, &placement, margin);
         Self {
             placement,
             margin,
             rounding,
-            slack: [slack(margin, rounding[0]), slack(margin2, rounding[1])],
+            slack: slack.map(f32x4::splat),
             translation: each(|i| f32x4::splat(translation[i])),
             to_frame1: Rows::new(rotation),
             to_frame2: Rows::new(inverse),

@@ -5,7 +5,7 @@ use std::cell::Cell;
 use glamx::DVec3;
 use parry3d::math::Real;
 use parry3d::shape::HalfSpace;
-use sbbk_core::traverse::{BoxTest, Counters, PairFrame, Placement, TestedBox};
+use sbbk_core::traverse::{BoxTest, Counters, Placement, TestedBox};
 use sbbk_core::volumes::rounding::gamma;
 
 use super::placed::PlacedPart;
@@ -36,9 +36,7 @@ pub(super) fn triangles_near(
         let (min, max, radius) = placed.extent.bounds();
         let size = min.abs().max(max.abs()).max_element();
         let reach = ((f64::from(margin) + f64::from(radius)) as Real).next_up();
-        let frame: PairFrame =
-            PairFrame::within([magnitude, size], placed.placement.inverted(), reach);
-        let test = BoxTest::new(&frame);
+        let test = BoxTest::new([magnitude, size], &placed.placement.inverted(), reach);
         let near = test.of(TestedBox::new(min, max));
         let meets = |node: TestedBox| {
             count();

@@ -41,7 +41,7 @@ impl ConvexPair<'_> {
 
     /// Whether stock walks the hierarchy of the mesh first.
     pub(super) fn is_mesh_first(&self) -> bool {
-        let mesh = self.mesh.mesh.bvh().root_aabb().half_extents().length_squared();
+        let mesh = self.mesh.size_squared();
         self.parts.walk_size().is_none_or(|parts| match self.mesh_place {
             MeshPlace::First => mesh >= parts,
             MeshPlace::Second => parts < mesh,

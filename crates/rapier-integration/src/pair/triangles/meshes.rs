@@ -29,9 +29,7 @@ pub(crate) struct MeshPair<'a> {
 impl MeshPair<'_> {
     /// Whether Parry walks mesh 2 first: it does so if its box is larger.
     fn is_second_first(&self) -> bool {
-        let size =
-            |seen: Hierarchy<'_>| seen.mesh.bvh().root_aabb().half_extents().length_squared();
-        size(self.meshes[0]) < size(self.meshes[1])
+        self.meshes[0].size_squared() < self.meshes[1].size_squared()
     }
 
     /// The pose that stock Parry passes on: bit for bit, it inverts the pose twice if it does not
