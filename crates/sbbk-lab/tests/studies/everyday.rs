@@ -24,6 +24,7 @@ fn contacts_are_compared_in_every_scene() {
         deformable_cells: 48,
         heads: 8,
         query_cells: vec![24],
+        ..EverydayPlan::quick()
     };
     let study = everyday(&plan, &Progress::hidden()).unwrap();
     let of = |backend: &str| -> Vec<&Row> {

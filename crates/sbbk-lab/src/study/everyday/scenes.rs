@@ -25,8 +25,8 @@ pub(super) fn bodies<'a>(
     ground: &'a Ground,
     count: usize,
     steps: usize,
-) -> impl Iterator<Item = Everyday<'a>> {
-    kinds().into_iter().map(move |(name, shapes)| {
+) -> Vec<Everyday<'a>> {
+    let scene = |(name, shapes): (&str, Vec<SharedShape>)| {
         let count = ground.room(count);
         let row = Row::new(BODIES, "")
             .key("triangles", ground.triangle_count)
@@ -40,7 +40,8 @@ pub(super) fn bodies<'a>(
             Ok(Driven::alone(world))
         };
         Everyday { row, steps, build: Box::new(build) }
-    })
+    };
+    kinds().into_iter().map(scene).collect()
 }
 
 /// A ball and meshes, one in each world, that bounce on a terrain, higher than its rim: between two
@@ -87,15 +88,17 @@ pub(super) fn crossing(ground: &Ground, steps: usize) -> Scenes<'_> {
 }
 
 /// Small meshes, no two alike, that fall on a terrain and are taken away again: `count` in all.
-pub(super) fn rolling_population(ground: &Ground, count: usize, steps: usize) -> Everyday<'_> {
+pub(super) fn rolling_population(ground: &Ground, count: usize) -> Everyday<'_> {
     const AT_ONCE: usize = 150;
+    const EACH_STEP: usize = 5;
+    let steps = count / EACH_STEP;
     let name = format!("{count} small meshes come and go, {AT_ONCE} at once");
     named(SINGLE, &name, ground, steps, move || {
         let mut random = Rand32::new(5);
         let mut bodies: VecDeque<RigidBodyHandle> = VecDeque::new();
         let (size, mut made) = (ground.size, 0);
         Ok(Driven::by(ground.world(), move |world, step| {
-            while made < count * (step + 1) / steps {
+            while made < EACH_STEP * (step + 1) {
                 made += 1;
                 let mut between = |low: f32, high: f32| low + (high - low) * random.rand_float();
                 let stretch = Vec3::from_array([(); 3].map(|()| between(0.3, 0.6)));
