@@ -104,7 +104,7 @@ impl EverydayPlan {
             grounds: grounds.collect(),
             bodies: 100,
             steps: 120,
-            repeats: 2,
+            repeats: 3,
             cells: 512,
             world_cells: 1000,
             small_meshes: 10_000,
