@@ -4,23 +4,30 @@
 //! ```text
 //! cargo run --release --example everyday
 //! cargo run --release --example everyday -- --quick --csv everyday.csv --plot everyday.svg
+//! cargo run --release --example everyday -- --quick --only sensors,queries
 //! ```
 
 use std::process::ExitCode;
 
 use clap::Parser;
 use sbbk_lab::cli::{OtherFiles, StudyArguments, exit_code};
-use sbbk_lab::study::everyday::{EverydayPlan, everyday};
+use sbbk_lab::study::everyday::{EverydayPlan, Group, everyday};
 
 /// Compares times, memory and contacts in everyday scenes.
 #[derive(Parser)]
 struct Arguments {
     #[command(flatten)]
     study: StudyArguments,
+    /// Measures only these parts
+    #[arg(long, value_name = "PARTS", value_delimiter = ',')]
+    only: Vec<Group>,
 }
 
 fn main() -> ExitCode {
-    let Arguments { study } = Arguments::parse();
-    let plan = study.plan(EverydayPlan::standard, EverydayPlan::quick);
+    let Arguments { study, only } = Arguments::parse();
+    let mut plan = study.plan(EverydayPlan::standard, EverydayPlan::quick);
+    if !only.is_empty() {
+        plan.groups = only;
+    }
     exit_code(study.run(&plan, everyday, OtherFiles::default()))
 }

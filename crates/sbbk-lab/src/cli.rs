@@ -14,7 +14,7 @@ use crate::study::{Progress, StudyError};
 /// What every study can be asked for.
 #[derive(Args, Clone, Debug, Default)]
 pub struct StudyArguments {
-    /// Measures less, within half a minute: for trying, not for quoting
+    /// Measures less, within a minute: for trying, not for quoting
     #[arg(long)]
     quick: bool,
     /// Writes all numbers to a JSON file

@@ -16,10 +16,10 @@ const SET_BAND: f64 = 0.01;
 const DISTANCE_BAND: f64 = 0.05;
 
 /// A triangle of the mesh and a part of the shape, 0 if it has no parts.
-pub(super) type Subshapes = (u32, u32);
+pub(in crate::study) type Subshapes = (u32, u32);
 
 /// Knows a mesh and a shape in f64.
-pub(super) struct Judge {
+pub(in crate::study) struct Judge {
     triangles: Vec<[DVec3; 3]>,
     parts: Vec<Part>,
 }
@@ -34,7 +34,7 @@ struct Part {
 }
 
 /// The truth about one pose.
-pub(super) struct Truth {
+pub(in crate::study) struct Truth {
     /// Of all triangles and parts within the prediction distance and its band. `None`: they cross,
     /// how deep is not known.
     distances: BTreeMap<Subshapes, Option<f64>>,

@@ -7,7 +7,7 @@
 //! shapes, asked for the first time. Brute force in f64 over all triangles near the shape tells the
 //! truth.
 
-mod errors;
+pub(super) mod errors;
 pub(super) mod kinds;
 
 use glamx::{Pose3, Quat, Vec3};

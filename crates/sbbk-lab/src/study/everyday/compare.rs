@@ -7,6 +7,7 @@ use rapier3d::geometry::{ColliderHandle, ContactManifold, SharedShape};
 use rapier3d::math::Real;
 use rapier3d::pipeline::PhysicsWorld;
 
+use super::truth::Pair;
 use crate::backend::{Backend, Primed, SharedDispatcher};
 use crate::metrics::ErrorCount;
 
@@ -23,7 +24,12 @@ pub(super) struct Comparison {
     pub pairs: ErrorCount,
     /// Triangles, or pairs of them, by their deepest contact.
     pub triangles: ErrorCount,
+    /// Errors of stock and of SBBK by the truth, of the first pairs about which they differ.
+    pub judged: [ErrorCount; 2],
 }
+
+/// Pairs that are judged at most: brute force takes a while.
+const JUDGED: usize = 20;
 
 /// Two shapes at a pose.
 struct Question {
@@ -38,6 +44,7 @@ impl Comparison {
             primed: Vec::new(),
             pairs: ErrorCount::default(),
             triangles: ErrorCount::default(),
+            judged: Default::default(),
         }
     }
 
@@ -56,7 +63,7 @@ impl Comparison {
     }
 
     fn compare(&mut self, Question { shapes, pos12 }: &Question, prediction: Real) {
-        let [stock, sbbk] = self.dispatchers.each_ref().map(|dispatcher| {
+        let answers = self.dispatchers.each_ref().map(|dispatcher| {
             let mut manifolds: Vec<ContactManifold> = Vec::new();
             let [shape1, shape2] = shapes.each_ref().map(|shape| &**shape);
             // As in Rapier, an unsupported pair keeps what it had: nothing.
@@ -68,8 +75,10 @@ impl Comparison {
                 &mut manifolds,
                 &mut None,
             );
-            deepest(&manifolds)
+            manifolds
         });
+        let [stock, sbbk] = answers.each_ref().map(|manifolds| deepest(manifolds));
+        let before = self.triangles.wrong();
         self.pairs.mesh_pairs += 1;
         self.triangles.mesh_pairs += 1;
         let least = |distances: &BTreeMap<_, Real>| distances.values().copied().reduce(Real::min);
@@ -78,6 +87,13 @@ impl Comparison {
         for key in stock.keys().chain(others) {
             let [stock, sbbk] = [&stock, &sbbk].map(|distances| distances.get(key).copied());
             count(&mut self.triangles, stock, sbbk, prediction);
+        }
+        if self.triangles.wrong() > before && self.judged[0].mesh_pairs < JUDGED {
+            let pair = Pair { shapes: shapes.each_ref(), pos12: *pos12, prediction };
+            let errors = pair.judge(answers.each_ref().map(|manifolds| &manifolds[..]));
+            for (sum, errors) in self.judged.iter_mut().zip(errors.into_iter().flatten()) {
+                *sum += errors;
+            }
         }
     }
 

@@ -47,7 +47,7 @@ impl Driven {
 /// Steps between two samples of memory.
 const MEMORY_EVERY: usize = 10;
 /// How often in a run contacts are compared; with so few pairs, after so many steps.
-const COMPARISONS: usize = 5;
+const COMPARISONS: usize = 3;
 const FEW_PAIRS: usize = 3;
 const FEW_EVERY: usize = 4;
 /// What is no slower: this factor, or this much more, in microseconds a step.
@@ -132,9 +132,11 @@ impl Everyday<'_> {
                 .with("plugin_mebibytes", mebibytes(side.plugin_bytes))
         };
         let sbbk = row(Backend::Sbbk, sbbk).with("verdict", verdict).with("bad_steps", bad_steps);
-        let sbbk =
-            sbbk.with("pairs", comparison.pairs).with("triangles_of_pairs", comparison.triangles);
-        Ok([row(Backend::Stock, stock), sbbk])
+        let [by_stock, by_sbbk] = comparison.judged;
+        let stock = row(Backend::Stock, stock).with("judged", by_stock);
+        let sbbk = sbbk.with("pairs", comparison.pairs).with("judged", by_sbbk);
+        let sbbk = sbbk.with("triangles_of_pairs", comparison.triangles);
+        Ok([stock, sbbk])
     }
 
     fn run(

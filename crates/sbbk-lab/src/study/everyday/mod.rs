@@ -4,7 +4,7 @@
 //! Each scene runs in whole worlds, under stock Rapier and under SBBK as a user gets it: run by run
 //! in turns, trees built when the scene first needs them. All runs of a backend do the same, so the
 //! time of a step is the least over the runs. At poses of stock's runs both are asked afresh for
-//! the contacts of all pairs with a mesh.
+//! the contacts of all pairs with a mesh; where they differ, brute force in f64 tells who is right.
 
 mod compare;
 mod ground;
@@ -13,7 +13,9 @@ mod queries;
 mod report;
 mod robots;
 mod scenes;
+mod truth;
 
+use clap::ValueEnum;
 use rapier3d::geometry::TriMeshFlags;
 use rapier3d::math::Real;
 
@@ -32,6 +34,23 @@ const QUERIES: &str = "everyday: queries";
 /// Rapier's, in units.
 const PREDICTION: Real = 0.02;
 
+/// A part of the study.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Group {
+    /// Bodies of all kinds on mesh terrains.
+    Terrains,
+    /// Single bodies that bounce and cross, and many small meshes.
+    Single,
+    /// Meshes with `TriMeshFlags::all()`, and robots.
+    Flags,
+    /// Mesh sensors, and Rapier's character controller.
+    Sensors,
+    /// Heads in a pile.
+    Pile,
+    /// Single queries without a workspace.
+    Queries,
+}
+
 /// A terrain.
 #[derive(Clone, Copy, Debug)]
 pub struct GroundPlan {
@@ -46,6 +65,8 @@ pub struct GroundPlan {
 /// What to compare, and how thoroughly.
 #[derive(Clone, Debug)]
 pub struct EverydayPlan {
+    /// What to measure.
+    pub groups: Vec<Group>,
     /// Terrains for bodies of all kinds.
     pub grounds: Vec<GroundPlan>,
     /// Bodies on each, if there is room.
@@ -79,6 +100,7 @@ impl EverydayPlan {
             })
         });
         Self {
+            groups: Group::value_variants().to_vec(),
             grounds: grounds.collect(),
             bodies: 100,
             steps: 120,
@@ -103,6 +125,7 @@ impl EverydayPlan {
                 ground(400, 0.25, false),
             ],
             steps: 100,
+            repeats: 3,
             world_cells: 512,
             small_meshes: 1000,
             heads: 100,
@@ -116,57 +139,87 @@ impl EverydayPlan {
 ///
 /// Errors: none but those of a mesh without triangles, which these are not.
 pub fn everyday(plan: &EverydayPlan, progress: &Progress) -> Result<Results, StudyError> {
-    let mut rows = on_terrains(plan, progress)?;
-    rows.extend(in_worlds(plan, progress)?);
-    progress.phase("queries", plan.query_cells.len());
-    for &cells in &plan.query_cells {
-        let ground = Ground::new(cells, 0.5, TriMeshFlags::empty())?;
-        rows.extend(queries::queries(&ground, plan.repeats)?);
-        progress.step();
+    let mut rows = Vec::new();
+    for group in &plan.groups {
+        rows.extend(match group {
+            Group::Terrains => on_terrains(plan, progress)?,
+            Group::Queries => queries(plan, progress)?,
+            Group::Single => {
+                let large = plan.large()?;
+                let world = Ground::new(plan.world_cells, 1.0, TriMeshFlags::empty())?;
+                let small = Ground::new(64, 0.5, TriMeshFlags::empty())?;
+                let mut scenes = scenes::bouncing(&large, 5 * plan.steps)?;
+                scenes.extend(scenes::crossing(&world, 2 * plan.steps)?);
+                scenes.push(scenes::rolling_population(&small, plan.small_meshes));
+                plan.measure("single bodies, many meshes", &scenes, progress)?
+            }
+            Group::Flags => {
+                let [all, fixed] = [TriMeshFlags::all(), TriMeshFlags::FIX_INTERNAL_EDGES];
+                let all = Ground::new(plan.deformable_cells, 0.5, all)?;
+                let fixed = Ground::new(plan.deformable_cells, 0.5, fixed)?;
+                let mut scenes = scenes::all_flags(&all, plan.steps)?;
+                scenes.extend(robots::robots(&fixed, plan.steps));
+                plan.measure("all flags, and robots", &scenes, progress)?
+            }
+            Group::Sensors => {
+                let large = plan.large()?;
+                let scenes = scenes::sensors(&large, plan.steps)?;
+                plan.measure("sensors and characters", &scenes, progress)?
+            }
+            Group::Pile => {
+                plan.measure("pile", &[scenes::pile(plan.heads, plan.steps)], progress)?
+            }
+        });
     }
     progress.finish();
     let (tables, panels) = (report::tables(plan, &rows), report::panels(&rows));
     Ok(Results { environment: Environment::detect(), rows, tables, panels })
 }
 
+impl EverydayPlan {
+    /// The terrain for single bodies and sensors.
+    fn large(&self) -> Result<Ground, StudyError> {
+        Ok(Ground::new(self.cells, 0.5, TriMeshFlags::FIX_INTERNAL_EDGES)?)
+    }
+
+    fn measure(
+        &self,
+        phase: &str,
+        scenes: &[Everyday],
+        progress: &Progress,
+    ) -> Result<Vec<Row>, StudyError> {
+        progress.phase(phase, scenes.len());
+        let mut rows = Vec::new();
+        for scene in scenes {
+            rows.extend(scene.measure(self.repeats)?);
+            progress.step();
+        }
+        Ok(rows)
+    }
+}
+
 fn on_terrains(plan: &EverydayPlan, progress: &Progress) -> Result<Vec<Row>, StudyError> {
     let mut rows = Vec::new();
-    progress.phase("bodies on terrains", plan.grounds.len());
-    for &ground_plan in &plan.grounds {
+    for (index, &ground_plan) in plan.grounds.iter().enumerate() {
         let GroundPlan { cells, cell, fixes_edges } = ground_plan;
         let flags = match fixes_edges {
             true => TriMeshFlags::FIX_INTERNAL_EDGES,
             false => TriMeshFlags::empty(),
         };
         let ground = Ground::new(cells, cell, flags)?;
-        for scene in scenes::bodies(ground_plan, &ground, plan.bodies, plan.steps) {
-            rows.extend(scene.measure(plan.repeats)?);
-        }
-        progress.step();
+        let scenes = scenes::bodies(ground_plan, &ground, plan.bodies, plan.steps);
+        let phase = format!("bodies on terrain {} of {}", index + 1, plan.grounds.len());
+        rows.extend(plan.measure(&phase, &scenes, progress)?);
     }
     Ok(rows)
 }
 
-fn in_worlds(plan: &EverydayPlan, progress: &Progress) -> Result<Vec<Row>, StudyError> {
-    let plain = |cells, cell| Ground::new(cells, cell, TriMeshFlags::empty());
-    let large = Ground::new(plan.cells, 0.5, TriMeshFlags::FIX_INTERNAL_EDGES)?;
-    let world = plain(plan.world_cells, 1.0)?;
-    let (small, deformable) =
-        (plain(64, 0.5)?, Ground::new(plan.deformable_cells, 0.5, TriMeshFlags::all())?);
-    let ground_of_robots =
-        Ground::new(plan.deformable_cells, 0.5, TriMeshFlags::FIX_INTERNAL_EDGES)?;
-    let steps = plan.steps;
-    let mut scenes: Vec<Everyday> = scenes::bouncing(&large, 3 * steps)?;
-    scenes.extend(scenes::crossing(&world, 2 * steps)?);
-    scenes.push(scenes::rolling_population(&small, plan.small_meshes, plan.small_meshes / 5));
-    scenes.extend(scenes::all_flags(&deformable, steps)?);
-    scenes.extend(robots::robots(&ground_of_robots, steps));
-    scenes.extend(scenes::sensors(&large, steps)?);
-    scenes.push(scenes::pile(plan.heads, steps));
-    progress.phase("worlds", scenes.len());
+fn queries(plan: &EverydayPlan, progress: &Progress) -> Result<Vec<Row>, StudyError> {
+    progress.phase("queries on terrains", plan.query_cells.len());
     let mut rows = Vec::new();
-    for scene in &scenes {
-        rows.extend(scene.measure(plan.repeats)?);
+    for &cells in &plan.query_cells {
+        let ground = Ground::new(cells, 0.5, TriMeshFlags::empty())?;
+        rows.extend(queries::queries(&ground, plan.repeats)?);
         progress.step();
     }
     Ok(rows)

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
 use rapier3d::control::KinematicCharacterController;
-use rapier3d::dynamics::{CoefficientCombineRule, RigidBodyBuilder, RigidBodyHandle};
+use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::geometry::{ColliderBuilder, SharedShape, TriMeshFlags};
 use rapier3d::pipeline::{ActiveEvents, QueryFilter};
 
@@ -25,8 +25,8 @@ pub(super) fn bodies<'a>(
     ground: &'a Ground,
     count: usize,
     steps: usize,
-) -> impl Iterator<Item = Everyday<'a>> {
-    kinds().into_iter().map(move |(name, shapes)| {
+) -> Vec<Everyday<'a>> {
+    let scene = |(name, shapes): (&str, Vec<SharedShape>)| {
         let count = ground.room(count);
         let row = Row::new(BODIES, "")
             .key("triangles", ground.triangle_count)
@@ -40,19 +40,30 @@ pub(super) fn bodies<'a>(
             Ok(Driven::alone(world))
         };
         Everyday { row, steps, build: Box::new(build) }
-    })
+    };
+    kinds().into_iter().map(scene).collect()
 }
 
-/// A ball and meshes, one in each world, that bounce on a terrain.
+/// A ball and meshes, one in each world, that bounce on a terrain, higher than its rim: between two
+/// landings their box leaves that of the terrain.
 pub(super) fn bouncing(ground: &Ground, steps: usize) -> Scenes<'_> {
+    /// Four times as fast as under plain gravity, and not so fast that a step is more than a body.
+    const GRAVITY: f32 = 4.0;
+    const SPEED: f32 = 24.0;
     let scene = |(name, shape): (&str, SharedShape)| {
         named(SINGLE, &format!("a {name} bounces"), ground, steps, move || {
             let mut world = ground.world();
-            let start = above(ground.size, [1.0, 1.0], 1.5);
-            let collider = ColliderBuilder::new(shape.clone()).restitution(1.0);
-            let collider = collider.restitution_combine_rule(CoefficientCombineRule::Max);
-            world.insert(RigidBodyBuilder::dynamic().translation(start), collider);
-            Ok(Driven::alone(world))
+            let start = above(ground.size, [1.0, 1.0], 7.0);
+            let body = RigidBodyBuilder::dynamic().translation(start).gravity_scale(GRAVITY);
+            let collider = ColliderBuilder::new(shape.clone()).restitution(0.7);
+            let (body, _) = world.insert(body, collider);
+            Ok(Driven::by(world, move |world, _| {
+                let body = &mut world.bodies[body];
+                let up = body.linvel().y;
+                let is_landing = up > 0.0 && body.translation().y < start.y - 5.0;
+                body.set_linvel(Vec3::Y * if is_landing { SPEED } else { up }, true);
+                Duration::ZERO
+            }))
         })
     };
     Ok(wanderers()?.map(scene).into())
@@ -77,15 +88,17 @@ pub(super) fn crossing(ground: &Ground, steps: usize) -> Scenes<'_> {
 }
 
 /// Small meshes, no two alike, that fall on a terrain and are taken away again: `count` in all.
-pub(super) fn rolling_population(ground: &Ground, count: usize, steps: usize) -> Everyday<'_> {
+pub(super) fn rolling_population(ground: &Ground, count: usize) -> Everyday<'_> {
     const AT_ONCE: usize = 150;
+    const EACH_STEP: usize = 5;
+    let steps = count / EACH_STEP;
     let name = format!("{count} small meshes come and go, {AT_ONCE} at once");
     named(SINGLE, &name, ground, steps, move || {
         let mut random = Rand32::new(5);
         let mut bodies: VecDeque<RigidBodyHandle> = VecDeque::new();
         let (size, mut made) = (ground.size, 0);
         Ok(Driven::by(ground.world(), move |world, step| {
-            while made < count * (step + 1) / steps {
+            while made < EACH_STEP * (step + 1) {
                 made += 1;
                 let mut between = |low: f32, high: f32| low + (high - low) * random.rand_float();
                 let stretch = Vec3::from_array([(); 3].map(|()| between(0.3, 0.6)));

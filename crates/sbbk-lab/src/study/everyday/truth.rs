@@ -1,0 +1,86 @@
+//! Who is right where stock and SBBK differ: by brute force in f64, over the triangles near by.
+
+use rapier3d::geometry::{ContactManifold, SharedShape, TriMesh, TriMeshFlags};
+use rapier3d::math::{Pose, Real, Vector};
+use rapier3d::parry::bounding_volume::BoundingVolume;
+
+use crate::backend::{Answer, Question};
+use crate::metrics::{ErrorCount, Judge};
+use crate::study::convex::errors::Judge as ConvexJudge;
+
+/// A pair of shapes, at least one of them a mesh.
+pub(super) struct Pair<'a> {
+    pub shapes: [&'a SharedShape; 2],
+    pub pos12: Pose,
+    pub prediction: Real,
+}
+
+/// The triangles of a mesh that come near a shape, as a mesh of their own.
+struct Near {
+    shape: SharedShape,
+    /// Their numbers in the whole mesh, ascending.
+    triangles: Vec<u32>,
+}
+
+impl Pair<'_> {
+    /// The errors of some answers; `None` if it cannot be judged: with `FIX_INTERNAL_EDGES`
+    /// contacts are not those of the triangles alone.
+    pub fn judge(&self, answers: [&[ContactManifold]; 2]) -> Option<[ErrorCount; 2]> {
+        let Self { shapes: [shape1, shape2], pos12, prediction } = self;
+        let meshes = [shape1, shape2].map(|shape| shape.as_trimesh());
+        let is_plain = |mesh: &TriMesh| !mesh.flags().contains(TriMeshFlags::FIX_INTERNAL_EDGES);
+        if !meshes.iter().flatten().all(|mesh| is_plain(mesh)) {
+            return None;
+        }
+        let near1 = meshes[0].map(|mesh| Near::new(mesh, shape2, pos12, *prediction));
+        let near2 = meshes[1].map(|mesh| Near::new(mesh, shape1, &pos12.inverse(), *prediction));
+        Some(match (near1, near2) {
+            (Some(Some(near1)), Some(Some(near2))) => {
+                let shapes = [&near1.shape, &near2.shape];
+                let question = Question::new(pos12, shapes.map(|shape| &**shape), *prediction);
+                let truth = Judge::new(shapes).truth(&question);
+                answers.map(|manifolds| {
+                    let mut answer = Answer::new(question, manifolds);
+                    for pair in &mut answer.reported {
+                        pair.triangle1 = near1.number(pair.triangle1);
+                        pair.triangle2 = near2.number(pair.triangle2);
+                    }
+                    truth.judge(&answer)
+                })
+            }
+            (Some(Some(near)), None) => {
+                let judge = ConvexJudge::new(&near.shape, shape2);
+                let truth = judge.truth(&pos12.inverse(), *prediction);
+                let subshapes = |m: &ContactManifold| (near.number(m.subshape1), m.subshape2);
+                answers.map(|manifolds| truth.judge(manifolds, subshapes))
+            }
+            (None, Some(Some(near))) => {
+                let judge = ConvexJudge::new(&near.shape, shape1);
+                let truth = judge.truth(pos12, *prediction);
+                let subshapes = |m: &ContactManifold| (near.number(m.subshape2), m.subshape1);
+                answers.map(|manifolds| truth.judge(manifolds, subshapes))
+            }
+            _ => return None,
+        })
+    }
+}
+
+impl Near {
+    /// `None` if there are no such triangles. `pose` is that of the shape in the mesh's frame.
+    fn new(mesh: &TriMesh, shape: &SharedShape, pose: &Pose, prediction: Real) -> Option<Self> {
+        let bounds = shape.compute_aabb(pose).loosened(2.0 * prediction);
+        let mut triangles: Vec<u32> = mesh.bvh().intersect_aabb(&bounds).collect();
+        triangles.sort_unstable();
+        let corners =
+            triangles.iter().flat_map(|&index| mesh.triangle(index).vertices().to_owned());
+        let vertices: Vec<Vector> = corners.collect();
+        let indices = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
+        let shape = SharedShape::trimesh(vertices, indices.collect()).ok()?;
+        Some(Self { shape, triangles })
+    }
+
+    /// The number here of a triangle of the whole mesh; of one that is not near, none.
+    fn number(&self, triangle: u32) -> u32 {
+        self.triangles.binary_search(&triangle).map_or(u32::MAX, |index| index as u32)
+    }
+}
