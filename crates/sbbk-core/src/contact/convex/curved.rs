@@ -219,11 +219,10 @@ impl<S: Turned> Pair<'_, S> {
         let run = (1.0 - rise * rise).sqrt();
         for corner in *self.triangle {
             let across = (corner.x * corner.x + corner.z * corner.z).sqrt();
-            if across > 0.0 {
-                let scale = run / across;
-                let outward = DVec3::new(corner.x * scale, rise, corner.z * scale);
-                take(self.gap(outward), Feature::Corner);
-            }
+            // From the axis any direction is as good.
+            let [x, z] =
+                if across > 0.0 { [corner.x / across, corner.z / across] } else { [1.0, 0.0] };
+            take(self.gap(DVec3::new(x * run, rise, z * run)), Feature::Corner);
         }
         for (j, edge) in self.edges.into_iter().enumerate() {
             // Across the edge: level, and as far up as can be.
