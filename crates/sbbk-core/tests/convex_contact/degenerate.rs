@@ -72,6 +72,38 @@ fn round_shapes_without_volume() {
     }
 }
 
+/// Cones and cylinders that are discs, needles and points, and corners in their plane or on their
+/// line: whole coordinates, so that all that is flat is exactly flat.
+#[test]
+fn flat_round_shapes_on_a_lattice() {
+    let mut rng = Rng(51);
+    let mut far = 0;
+    for i in 0..20_000 {
+        let half_height = (i % 2) as f64 * 0.5;
+        let radius = (i / 2 % 2) as f64;
+        let core = if i / 4 % 2 == 0 {
+            Core::Cylinder(CylinderSupport { half_height, radius })
+        } else {
+            Core::Cone(ConeSupport { half_height, radius })
+        };
+        let shape = Shape { core, radius: 0.0 };
+        let mut corner = || DVec3::from_array([0; 3].map(|_| rng.below(5) as f64 - 2.0));
+        let mut triangle = [corner(), corner(), corner()];
+        if i % 5 == 0 {
+            // On the axis.
+            triangle = triangle.map(|corner| DVec3::Y * 0.25 * corner.y);
+        }
+        let contact = shape.contact(&triangle, 100.0).unwrap();
+        let searched = convex_contact(&triangle, &|d| shape.support(d), 100.0).unwrap();
+        let says = || format!("{contact:?} {searched:?}\n{shape:?}\n{triangle:?}");
+        // Where features tie, the search may have answered: depths to 1e-5 of themselves.
+        assert!(contact.distance >= searched.distance - 1.0e-5, "{}", says());
+        check(&triangle, &shape, &contact, 1.0e-5);
+        far += u32::from(contact.distance > 0.5);
+    }
+    assert!(far > 2000, "{far}");
+}
+
 /// Points in one place touch: the distance is 0 and the normal some unit vector.
 #[test]
 fn points_in_one_place() {

@@ -100,12 +100,16 @@ impl Solid for ConeSupport {
             ((across - radius).max(0.0), y + half_height)
         } else {
             let (below_tip, height) = (half_height - y, 2.0 * half_height);
-            if across * height <= below_tip * radius {
+            // The first is no more than `0 <= 0` beside a disc or a needle.
+            let is_inside =
+                across * height <= below_tip * radius && across <= radius && below_tip >= 0.0;
+            if is_inside {
                 return DVec3::ZERO;
             }
-            let along =
-                (across * radius + below_tip * height) / (radius * radius + height * height);
-            let along = along.clamp(0.0, 1.0);
+            let squared = radius * radius + height * height;
+            let along = (across * radius + below_tip * height) / squared;
+            // Without a slope there is only the tip.
+            let along = if squared > 0.0 { along.clamp(0.0, 1.0) } else { 0.0 };
             (across - radius * along, height * along - below_tip)
         };
         let scale = if across > 0.0 { out / across } else { 0.0 };
@@ -120,7 +124,8 @@ impl Turned for ConeSupport {
 
     fn slope(&self) -> f64 {
         let Self { half_height, radius } = *self;
-        radius / (radius * radius + 4.0 * half_height * half_height).sqrt()
+        let length = (radius * radius + 4.0 * half_height * half_height).sqrt();
+        if length > 0.0 { radius / length } else { 0.0 }
     }
 
     fn ends(&self) -> impl Iterator<Item = (f64, f64)> {
@@ -214,11 +219,10 @@ impl<S: Turned> Pair<'_, S> {
         let run = (1.0 - rise * rise).sqrt();
         for corner in *self.triangle {
             let across = (corner.x * corner.x + corner.z * corner.z).sqrt();
-            if across > 0.0 {
-                let scale = run / across;
-                let outward = DVec3::new(corner.x * scale, rise, corner.z * scale);
-                take(self.gap(outward), Feature::Corner);
-            }
+            // From the axis any direction is as good.
+            let [x, z] =
+                if across > 0.0 { [corner.x / across, corner.z / across] } else { [1.0, 0.0] };
+            take(self.gap(DVec3::new(x * run, rise, z * run)), Feature::Corner);
         }
         for (j, edge) in self.edges.into_iter().enumerate() {
             // Across the edge: level, and as far up as can be.
