@@ -184,7 +184,7 @@ where
     if memory.coherence.is_answered(query.pose(), manifolds.len()) {
         return Answer::Unchanged;
     }
-    let mut coherence = std::mem::take(&mut memory.coherence);
+    let coherence = memory.coherence.begin();
     let mut scratch = SCRATCH.take().unwrap_or_default();
     scratch.parts.clear();
     let (moving, reach) = (query.moving(), query.reach());
@@ -216,8 +216,7 @@ where
         manifolds,
     );
     SCRATCH.set(Some(scratch));
-    coherence.answered(query.pose(), manifolds.len());
-    memory.keep(coherence);
+    memory.end(query.pose(), manifolds.len());
     answer
 }
 

@@ -28,11 +28,12 @@ pub(super) struct PairMemory<M, C, H> {
     demand: Demand,
 }
 
-/// What the last queries found. The driver takes it out while it answers: if a type of the host
-/// panics meanwhile, nothing half done is left.
+/// What the last queries found.
 #[derive(Clone)]
 pub(super) struct Coherence<H> {
     last: Option<Answered>,
+    /// Whether no query is under way.
+    is_whole: bool,
     /// Until when the candidates serve.
     pub(super) slack: Slack,
     /// Those of the last descent, in stock order.
@@ -59,7 +60,7 @@ impl<M, C, H> Default for PairMemory<M, C, H> {
 
 impl<H> Default for Coherence<H> {
     fn default() -> Self {
-        Self { last: None, slack: Slack::default(), candidates: Vec::new() }
+        Self { last: None, is_whole: false, slack: Slack::default(), candidates: Vec::new() }
     }
 }
 
@@ -79,24 +80,29 @@ impl<M, C: Default + Copy, H> PairMemory<M, C, H> {
         self.coherence = Coherence::default();
     }
 
-    /// Keeps what a query that is over has found.
-    pub(super) fn keep(&mut self, mut coherence: Coherence<H>) {
-        if let Some(limit) = self.demand.note(coherence.candidates.len()) {
-            coherence.candidates.shrink_to(limit);
+    /// Ends a query, which has left so many manifolds.
+    pub(super) fn end(&mut self, pose: &PairPose, manifold_count: usize) {
+        let Coherence { last, is_whole, candidates, .. } = &mut self.coherence;
+        (*last, *is_whole) = (Some(Answered::new(pose, manifold_count)), true);
+        if let Some(limit) = self.demand.note(candidates.len()) {
+            candidates.shrink_to(limit);
         }
-        self.coherence = coherence;
     }
 }
 
 impl<H> Coherence<H> {
     /// Whether the last query asked the same and left as many manifolds.
     pub(super) fn is_answered(&self, pose: &PairPose, manifold_count: usize) -> bool {
-        self.last == Some(Answered::new(pose, manifold_count))
+        self.is_whole && self.last == Some(Answered::new(pose, manifold_count))
     }
 
-    /// Notes that a query is answered.
-    pub(super) fn answered(&mut self, pose: &PairPose, manifold_count: usize) {
-        self.last = Some(Answered::new(pose, manifold_count));
+    /// Begins a query. If the one before was cut short, by a panic of a type of the host, what it has
+    /// left half done is forgotten.
+    pub(super) fn begin(&mut self) -> &mut Self {
+        if !std::mem::take(&mut self.is_whole) {
+            *self = Self::default();
+        }
+        self
     }
 }
 

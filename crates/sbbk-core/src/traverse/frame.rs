@@ -44,8 +44,11 @@ impl Allowance {
     pub(super) fn new([m1, m2]: [f32; 2], placement: &Placement, margin: f32) -> Self {
         let Placement { rotation, translation, inverse } = placement;
         // A row of the inverse is 1/s long: distances along it shrink by that.
-        let inverse_scale = each(|i| inverse.row(i).length()).into_iter().fold(0.0, f64::max);
-        let scale = each(|i| rotation.row(i).length()).into_iter().fold(0.0, f64::max);
+        let longest_row = |matrix: &DMat3| {
+            let squares = each(|i| matrix.row(i).length_squared());
+            squares.into_iter().fold(0.0, f64::max).sqrt()
+        };
+        let (scale, inverse_scale) = (longest_row(rotation), longest_row(inverse));
         let t = translation.as_vec3().abs().max_element();
         let rounding = [
             gamma(16) * (m1 + t + 2.0 * scale as f32 * m2),

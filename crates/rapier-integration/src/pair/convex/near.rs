@@ -1,6 +1,7 @@
 //! The triangles of a mesh near a convex shape, from Parry's hierarchy of the mesh.
 
 use std::cell::Cell;
+use std::ops::ControlFlow;
 
 use glamx::DVec3;
 use parry3d::math::Real;
@@ -20,18 +21,22 @@ pub(super) fn triangles_near(
     mesh: &Hierarchy<'_>,
     margin: Real,
     mut counters: impl Counters,
-    found: impl FnMut(u32),
+    mut found: impl FnMut(u32),
 ) {
     let (tested, magnitude) = (Cell::new(0), mesh.magnitude());
     let count = || tested.set(tested.get() + 1);
-    if let ConvexShape::HalfSpace(half_space) = shape {
+    let found = |triangle| {
+        found(triangle);
+        ControlFlow::Continue(())
+    };
+    let _ = if let ConvexShape::HalfSpace(half_space) = shape {
         let (normal, height) = plane(&placed.placement, half_space, magnitude, margin);
         let is_below = |node: TestedBox| {
             count();
             let (centre, extent) = node.centre_extent();
             normal.dot(centre.as_dvec3()) - normal.abs().dot(extent.as_dvec3()) <= height
         };
-        mesh.near(&is_below).for_each(found);
+        mesh.near(is_below, found)
     } else {
         let (min, max, radius) = placed.extent.bounds();
         let size = min.abs().max(max.abs()).max_element();
@@ -42,8 +47,8 @@ pub(super) fn triangles_near(
             count();
             near.meets(node)
         };
-        mesh.near(&meets).for_each(found);
-    }
+        mesh.near(meets, found)
+    };
     counters.aabb_tests(tested.get());
 }
 

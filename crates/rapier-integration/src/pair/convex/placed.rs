@@ -52,8 +52,14 @@ impl PlacedPart {
     /// The corners of a triangle of the mesh in the frame of the part.
     #[inline(always)]
     pub(super) fn corners(&self, triangle: &Triangle) -> [DVec3; 3] {
-        let at = |corner: Vec3| self.placement.to_frame1(corner, Vec3::ZERO);
-        [at(triangle.a), at(triangle.b), at(triangle.c)]
+        self.place([triangle.a, triangle.b, triangle.c])
+    }
+
+    /// Points of the mesh in the frame of the part.
+    #[inline(always)]
+    pub(super) fn place(&self, [a, b, c]: [Vec3; 3]) -> [DVec3; 3] {
+        let at = |point: Vec3| self.placement.to_frame1(point, Vec3::ZERO);
+        [at(a), at(b), at(c)]
     }
 
     /// A point of the part in the frame of the mesh.

@@ -4,7 +4,6 @@ use glamx::Vec3;
 use parry3d::math::Real;
 use parry3d::query::details::NormalConstraints;
 use parry3d::query::{ContactManifold, TrackedContact};
-use parry3d::shape::Triangle;
 use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::traverse::{Counters, Placement};
 use sbbk_core::volumes::rounding::gamma;
@@ -168,28 +167,28 @@ impl PairQuery for ConvexQuery<'_> {
         scratch: &mut Scratch,
     ) -> Option<Near> {
         let [triangle, part] = self.pair.mesh_place.swap(candidate.subshapes);
-        let triangle = self.pair.mesh.mesh.triangle(triangle);
+        let mesh = &self.pair.mesh;
         let is_exact = self.pair.contacts == ContactGenerator::Exact;
         self.pair.parts.with(part, |part_shape| {
             let shape = part_shape.shape;
             let placed = self.placed(part, &part_shape, scratch);
             if candidate.hint != Vec3::ZERO {
-                let gap = placed.gap(shape, &triangle, candidate.hint);
+                let gap = placed.gap(shape, &mesh.mesh.triangle(triangle), candidate.hint);
                 if gap > limits.reach {
                     candidate.clear = candidate.clear.max(gap + limits.travel);
                     return None;
                 }
             }
             if !is_exact {
-                return Some(Near { triangle, contact: None });
+                return Some(Near(None));
             }
             let radius = f64::from(shape.radius());
-            let corners = placed.corners(&triangle);
+            let corners = placed.place(mesh.corners(triangle));
             let contact = core_contact(&corners, shape, limits.margin + radius);
             let distance = contact.map_or(limits.margin, |contact| contact.distance - radius);
             candidate.clear = distance + limits.travel;
             let is_near = distance <= f64::from(self.pair.pose.prediction);
-            is_near.then_some(Near { triangle, contact })
+            is_near.then_some(Near(contact))
         })?
     }
 
@@ -207,7 +206,7 @@ impl PairQuery for ConvexQuery<'_> {
     #[inline(always)]
     fn write<M, C>(
         &mut self,
-        Near { triangle, contact }: Near,
+        Near(contact): Near,
         candidate: &mut Candidate<Vec3>,
         _: Limits,
         scratch: &mut Scratch,
@@ -219,6 +218,7 @@ impl PairQuery for ConvexQuery<'_> {
     {
         let ConvexPair { pose, mesh, parts, mesh_place, .. } = *self.pair;
         let [index, part_index] = mesh_place.swap(candidate.subshapes);
+        let triangle = mesh.mesh.triangle(index);
         let cone = mesh.mesh.triangle_normal_constraints(index);
         let cone = cone.as_ref().map(|cone| cone as &dyn NormalConstraints);
         parts.with(part_index, |part| {
@@ -236,9 +236,6 @@ impl PairQuery for ConvexQuery<'_> {
     }
 }
 
-/// A triangle that may be in reach, and its contact if it is known already: that with the core of
-/// the shape.
-pub(crate) struct Near {
-    triangle: Triangle,
-    contact: Option<ConvexContact>,
-}
+/// The contact of a triangle that may be in reach, if it is known already: that with the core of the
+/// shape.
+pub(crate) struct Near(Option<ConvexContact>);

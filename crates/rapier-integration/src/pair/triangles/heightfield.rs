@@ -15,6 +15,7 @@
 //! next.
 
 use std::cell::RefCell;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use parry3d::math::Real;
@@ -22,7 +23,7 @@ use parry3d::query::details::NormalConstraints;
 use parry3d::shape::{HeightField, Triangle, TrianglePseudoNormals};
 use sbbk_core::contact::ManifoldPoints;
 use sbbk_core::field::{FieldFrame, FieldLeaves};
-use sbbk_core::traverse::{Counters, Placement, TestedBox};
+use sbbk_core::traverse::{Counters, Placement};
 use sbbk_core::tree::{BATCH, LeafBatch};
 
 use super::exact::Constraints;
@@ -119,7 +120,13 @@ impl TriangleShapes for MeshAndField<'_> {
         let leaves = FieldLeaves::new(&frame, mesh.ball().centre, mesh.magnitude());
         let near = &mut scratch.near;
         near.clear();
-        near.extend(mesh.near(&|node: TestedBox| frame.meets(node, ())));
+        let _ = mesh.near(
+            |node| frame.meets(node, ()),
+            |triangle| {
+                near.push(triangle);
+                ControlFlow::Continue(())
+            },
+        );
         for triangles in near.chunks(BATCH) {
             let batch = LeafBatch::gather(triangles, |triangle| mesh.corners(triangle));
             leaves.visit(&batch, &mut *counters, |triangle, of_mesh| {

@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 
 use arrayvec::ArrayVec;
 use sbbk_core::leaf::LeafTest;
-use sbbk_core::traverse::{BoxTest, Counters, PairFrame, Placement, TestedBox};
+use sbbk_core::traverse::{BoxTest, Counters, NearBox, PairFrame, Placement, TestedBox};
 use sbbk_core::tree::{BATCH, LeafBatch};
 
 use crate::mesh::Hierarchy;
@@ -50,10 +50,17 @@ fn walk_larger(
     let in_frame1 = BoxTest::new([m1, m2], &placement12, margin);
     let whole = in_frame1.of(TestedBox::new(mesh2.root().mins, mesh2.root().maxs));
     near1.clear();
-    near1.extend(mesh1.near(&|node: TestedBox| {
+    let meets = |near: &NearBox<'_>, node| {
         tested.set(tested.get() + 1);
-        whole.meets(node)
-    }));
+        near.meets(node)
+    };
+    let _ = mesh1.near(
+        |node| meets(&whole, node),
+        |triangle| {
+            near1.push(triangle);
+            ControlFlow::Continue(())
+        },
+    );
     if near1.is_empty() {
         return;
     }
@@ -76,18 +83,19 @@ fn walk_larger(
             });
             flow
         };
-        let meets = |node: TestedBox| {
-            tested.set(tested.get() + 1);
-            group.meets(node)
-        };
         let mut waiting = ArrayVec::<u32, BATCH>::new();
-        for triangle2 in mesh2.near(&meets) {
-            waiting.push(triangle2);
-            if waiting.is_full() {
+        mesh2.near(
+            |node| meets(&group, node),
+            |triangle2| {
+                waiting.push(triangle2);
+                if !waiting.is_full() {
+                    return ControlFlow::Continue(());
+                }
                 decide(&waiting)?;
                 waiting.clear();
-            }
-        }
+                ControlFlow::Continue(())
+            },
+        )?;
         if waiting.is_empty() { ControlFlow::Continue(()) } else { decide(&waiting) }
     });
 }
