@@ -229,6 +229,10 @@ impl<S: Turned> Pair<'_, S> {
             let level = edge.cross(DVec3::Y);
             let (level_squared, squared) = (level.length_squared(), edge.length_squared());
             if level_squared <= PARALLEL * PARALLEL * squared {
+                // Along the axis: level, from the axis to the edge.
+                let DVec3 { x, z, .. } = self.triangle[j];
+                let outward = DVec3::new(x, 0.0, z).normalize_or(DVec3::X);
+                take(self.gap(outward), Feature::Edge(j));
                 continue;
             }
             let level = level / level_squared.sqrt();
