@@ -90,8 +90,9 @@ fn flat_round_shapes_on_a_lattice() {
         let mut corner = || DVec3::from_array([0; 3].map(|_| rng.below(5) as f64 - 2.0));
         let mut triangle = [corner(), corner(), corner()];
         if i % 5 == 0 {
-            // On the axis.
-            triangle = triangle.map(|corner| DVec3::Y * 0.25 * corner.y);
+            // On the axis, or along it.
+            let aside = DVec3::new(0.1, 0.0, 0.2) * (i / 8 % 4) as f64;
+            triangle = triangle.map(|corner| aside + DVec3::Y * 0.25 * corner.y);
         }
         let contact = shape.contact(&triangle, 100.0).unwrap();
         let searched = convex_contact(&triangle, &|d| shape.support(d), 100.0).unwrap();

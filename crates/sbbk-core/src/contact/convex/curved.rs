@@ -229,6 +229,10 @@ impl<S: Turned> Pair<'_, S> {
             let level = edge.cross(DVec3::Y);
             let (level_squared, squared) = (level.length_squared(), edge.length_squared());
             if level_squared <= PARALLEL * PARALLEL * squared {
+                // Along the axis: level, from the axis to the edge.
+                let DVec3 { x, z, .. } = self.triangle[j];
+                let outward = DVec3::new(x, 0.0, z).normalize_or(DVec3::X);
+                take(self.gap(outward), Feature::Edge(j));
                 continue;
             }
             let level = level / level_squared.sqrt();
@@ -295,7 +299,8 @@ impl<S: Turned> Pair<'_, S> {
 
 /// The direction, by its level and upright coordinates, of the least depth of the surface that a
 /// rim and an edge make. The centre of the rim is at `(a, b)` from the edge; `rise` is the height
-/// of the upright unit vector across the edge. None if there is none with a positive upright part.
+/// of the upright unit vector across the edge. None if there is none whose upright part
+/// is positive, or zero.
 ///
 /// Along `(cos f, sin f)` the depth is `a cos f + b sin f + r √(1 - rise² sin² f)`. With `t = tan f`
 /// and `a < 0`, so that `f < 90°` holds the least one, its slope has the sign of
@@ -307,7 +312,8 @@ fn rim_and_edge([a, b]: [f64; 2], rise: f64, radius: f64) -> Option<[f64; 2]> {
     let (steep, sign) = (a.abs(), if a < 0.0 { 1.0 } else { -1.0 });
     let lift = radius * rise * rise;
     if b >= 0.0 && steep >= lift {
-        return None;
+        // In the plane of the rim it is least where the cone's normals go on beyond.
+        return (b == 0.0).then_some([sign, 0.0]);
     }
     let run_squared = (1.0 - rise * rise).max(0.0);
     let value = |t: f64| {
