@@ -21,7 +21,7 @@ const SLACK_STEPS: f64 = 8.0;
 const LEAST_SLACK: f64 = 0.1;
 /// A pair that would use up the greatest slack in fewer steps gets none: to look farther would not
 /// pay (with 2, queries that move by half a prediction distance took up to twice as long).
-const LEAST_STEPS: f64 = 6.0;
+const LEAST_STEPS: f64 = 3.0;
 
 /// Greatest slack as a share of the prediction distance, where what is found gets an exact test.
 /// More: pairs of triangles that do not touch get one; less: more descents.

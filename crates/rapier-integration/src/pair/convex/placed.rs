@@ -62,6 +62,15 @@ impl PlacedPart {
         [at(a), at(b), at(c)]
     }
 
+    /// Whether a triangle is surely farther than `reach` from the part without its radius: the boxes
+    /// of both are, along the axes of the part.
+    #[inline(always)]
+    pub(super) fn is_beyond(&self, [a, b, c]: &[DVec3; 3], reach: f64) -> bool {
+        let (min, max, reach) = self.extent.widest(reach);
+        let gap = (a.min(*b).min(*c) - max).max(min - a.max(*b).max(*c)).max(DVec3::ZERO);
+        gap.length_squared() > reach * reach
+    }
+
     /// A point of the part in the frame of the mesh.
     #[inline(always)]
     fn at_mesh(&self, point: DVec3) -> Vec3 {

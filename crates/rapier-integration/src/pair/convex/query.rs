@@ -184,7 +184,9 @@ impl PairQuery for ConvexQuery<'_> {
             }
             let radius = f64::from(shape.radius());
             let corners = placed.place(mesh.corners(triangle));
-            let contact = core_contact(&corners, shape, limits.margin + radius);
+            let reach = limits.margin + radius;
+            let is_beyond = placed.is_beyond(&corners, reach);
+            let contact = if is_beyond { None } else { core_contact(&corners, shape, reach) };
             let distance = contact.map_or(limits.margin, |contact| contact.distance - radius);
             candidate.clear = distance + limits.travel;
             let is_near = distance <= f64::from(self.pair.pose.prediction);

@@ -127,6 +127,15 @@ impl Extent {
         (self.min, self.max, self.radius)
     }
 
+    /// The box around the shape without its radius, and `reach`, longer by what Parry's support points
+    /// may miss. A half-space is near everything.
+    #[inline(always)]
+    pub(super) fn widest(&self, reach: f64) -> (DVec3, DVec3, f64) {
+        let missed = if self.is_endless() { f64::INFINITY } else { gamma(16).into() };
+        let reach = reach + missed * f64::from(self.magnitude().max(f32::MIN_POSITIVE));
+        (self.min.as_dvec3(), self.max.as_dvec3(), reach)
+    }
+
     /// At least how far the shape reaches along a direction of any length; infinite where it has no
     /// end.
     ///
