@@ -1,11 +1,13 @@
 use glamx::Vec3;
-use rapier_integration::SbbkDispatcher;
+use rapier_integration::{Kinds, SbbkConfig, SbbkDispatcher};
 use rapier3d::math::Pose;
 use rapier3d::parry::query::details::ShapeCastOptions;
 use rapier3d::parry::query::{
     DefaultQueryDispatcher, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher,
 };
-use rapier3d::parry::shape::{HeightField, Shape, SharedShape, TriMeshFlags};
+use rapier3d::parry::shape::{
+    Ball, Cuboid, HeightField, Shape, SharedShape, TriMesh, TriMeshFlags,
+};
 use rapier3d::parry::utils::Array2;
 use sbbk_lab::mesh;
 
@@ -138,4 +140,47 @@ fn queries_of_each_kind() {
             }
         }
     }
+}
+
+/// What is not asked of SBBK is Parry's to the last bit; balls may be left to it where it is quicker:
+/// on large triangles, and on meshes that may deform.
+#[test]
+fn kinds_are_a_choice() {
+    let ground = shape(&mesh::cuboid(Vec3::new(8.0, 0.5, 8.0), 4));
+    let fine = shape(&mesh::cuboid(Vec3::new(8.0, 0.5, 8.0), 60));
+    let soft = shape_with(&mesh::cuboid(Vec3::new(8.0, 0.5, 8.0), 60), TriMeshFlags::DEFORMABLE);
+    let with = |change: &dyn Fn(&mut Kinds)| {
+        let mut config = SbbkConfig::default();
+        config.count_queries = true;
+        change(&mut config.kinds);
+        SbbkDispatcher::new(config)
+    };
+    let is_ours = |dispatcher: &SbbkDispatcher, ground: &TriMesh, other: &dyn Shape| {
+        let pos12 = Pose::translation(0.3, 0.95, 0.2);
+        let before = dispatcher.stats().queries;
+        let [mut ours, mut stocks]: [Pair; 2] = Default::default();
+        let ask = |d: &dyn PersistentQueryDispatcher, pair: &mut Pair| {
+            let Pair { manifolds, workspace } = pair;
+            let _ = d.contact_manifolds(&pos12, ground, other, 0.02, manifolds, workspace);
+        };
+        ask(dispatcher, &mut ours);
+        ask(&DefaultQueryDispatcher, &mut stocks);
+        let is_ours = dispatcher.stats().queries > before;
+        let [found, expected] = [&ours, &stocks].map(|pair| format!("{:?}", pair.manifolds));
+        assert!(is_ours || found == expected);
+        is_ours
+    };
+    let all = with(&|_| ());
+    let none = with(&|kinds| {
+        (kinds.meshes, kinds.height_fields) = (false, false);
+        (kinds.convex_shapes, kinds.composites) = (false, false);
+    });
+    for (name, other, who) in kinds() {
+        assert_eq!(is_ours(&all, &ground, &*other), who == Who::Sbbk, "{name}");
+        assert!(!is_ours(&none, &ground, &*other), "{name}");
+    }
+    let (fewer, ball) = (with(&|kinds| kinds.balls_on_coarse_meshes = false), Ball::new(0.5));
+    assert!(!is_ours(&fewer, &ground, &ball) && !is_ours(&fewer, &soft, &ball));
+    assert!(is_ours(&fewer, &fine, &ball) && is_ours(&all, &soft, &ball));
+    assert!(is_ours(&fewer, &ground, &Cuboid::new(Vec3::splat(0.5))));
 }

@@ -91,14 +91,15 @@ impl SbbkDispatcher {
 
     /// Two rigid meshes, for a query without manifolds; `None` if Parry must answer.
     fn meshes<'a>(&'a self, g1: &'a dyn Shape, g2: &'a dyn Shape) -> Option<MeshQuery<'a>> {
-        let meshes = self.look_at([rigid_mesh(g1)?, rigid_mesh(g2)?])?;
+        let meshes = [rigid_mesh(g1)?, rigid_mesh(g2)?];
+        let meshes = if self.config.kinds.meshes { self.look_at(meshes)? } else { return None };
         Some(MeshQuery { cache: &self.cache, meshes })
     }
 
     /// Whether Parry's hierarchies already tell that two rigid meshes are farther apart than
     /// `distance`.
     fn are_surely_apart(&self, [g1, g2]: [&dyn Shape; 2], pos12: &Pose, distance: Real) -> bool {
-        let meshes = rigid_mesh(g1).zip(rigid_mesh(g2));
+        let meshes = rigid_mesh(g1).zip(rigid_mesh(g2)).filter(|_| self.config.kinds.meshes);
         meshes.is_some_and(|(mesh1, mesh2)| !are_near([mesh1, mesh2], pos12, distance))
     }
 
@@ -115,12 +116,15 @@ impl SbbkDispatcher {
         M: Default + Clone + Send + Sync + 'static,
         C: Default + Copy + Send + Sync + 'static,
     {
-        let contacts = self.config.contacts;
+        let SbbkConfig { contacts, kinds, .. } = self.config;
         // Of such a pair nothing needs to be kept while it is apart. Not if there are manifolds: where
         // Rapier finds no workspace it keeps pointers to manifolds that are gone.
         let is_new = workspace.is_none() && manifolds.is_empty();
         let (mesh, other, mesh_place) = match (g1.as_trimesh(), g2.as_trimesh()) {
             (Some(mesh1), Some(mesh2)) => {
+                if !kinds.meshes {
+                    return Answer::Unsupported;
+                }
                 let meshes = [mesh1, mesh2];
                 if is_new && self.are_apart(are_near(meshes, pos12, prediction), meshes) {
                     return self.nothing();
@@ -129,13 +133,21 @@ impl SbbkDispatcher {
                     return Answer::Unsupported;
                 };
                 let pose = &PairPose::new(pos12, prediction);
-                return self.ask(MeshPair { pose, meshes, contacts }, manifolds, workspace);
+                return self.ask(&MeshPair { pose, meshes, contacts }, manifolds, workspace);
             }
             (Some(mesh), None) => (mesh, g2, MeshPlace::First),
             (None, Some(mesh)) => (mesh, g1, MeshPlace::Second),
             (None, None) => return Answer::Unsupported,
         };
-        let (parts, field) = (Parts::of(other), other.as_heightfield());
+        if !kinds.balls_on_coarse_meshes && self.is_parrys_ball(mesh, other) {
+            return Answer::Unsupported;
+        }
+        let is_answered = |parts: &Parts<'_>| match parts {
+            Parts::One(_) => kinds.convex_shapes,
+            Parts::Many(_) => kinds.composites,
+        };
+        let parts = Parts::of(other).filter(is_answered);
+        let field = other.as_heightfield().filter(|_| kinds.height_fields);
         if parts.is_none() && field.is_none() {
             return Answer::Unsupported;
         }
@@ -150,13 +162,26 @@ impl SbbkDispatcher {
         };
         let pose = &PairPose::new(pos12, prediction);
         if let Some(parts) = parts {
-            self.ask(ConvexPair { pose, mesh, parts, mesh_place, contacts }, manifolds, workspace)
+            self.ask(&ConvexPair { pose, mesh, parts, mesh_place, contacts }, manifolds, workspace)
         } else if let Some(field) = field {
             let pair = FieldPair { pose, mesh, field, mesh_place, contacts };
-            self.ask(pair, manifolds, workspace)
+            self.ask(&pair, manifolds, workspace)
         } else {
             Answer::Unsupported
         }
+    }
+
+    /// Whether a shape is a ball that touches only a few triangles of a mesh at a time, by the mean
+    /// size of the triangles, or a mesh of which nothing can be kept: see [`Kinds`](crate::Kinds).
+    fn is_parrys_ball(&self, mesh: &TriMesh, other: &dyn Shape) -> bool {
+        /// So many triangles for a half of a ball's box.
+        const FEW: Real = 6.0;
+        other.as_ball().is_some_and(|ball| {
+            let size = mesh.bvh().root_aabb().half_extents().length_squared();
+            let count = mesh.indices().len() as Real * ball.radius * ball.radius;
+            let is_whole = || self.cache.look_at(mesh).is_some_and(|mesh| !mesh.is_broken());
+            size.is_finite() && count < FEW * size || mesh.is_deformable() && is_whole()
+        })
     }
 
     /// Whether shapes are apart, if Parry's hierarchies say so: above a vertex that is NaN they mean
@@ -191,7 +216,7 @@ impl SbbkDispatcher {
     /// The contacts of a pair, counted; `Unsupported` if Parry must answer.
     fn ask<M, C>(
         &self,
-        pair: impl Pair,
+        pair: &impl Pair,
         manifolds: &mut Vec<ContactManifold<M, C>>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Answer

@@ -62,7 +62,7 @@ pub(crate) trait PairQuery {
     fn pose(&self) -> &PairPose;
 
     /// What moves, as the slack of descents has it.
-    fn moving(&self) -> Moving;
+    fn moving(&self) -> Moving<'_>;
 
     /// The distance up to which there may be contacts.
     fn reach(&self) -> Real {
@@ -108,9 +108,9 @@ pub(crate) trait PairQuery {
 }
 
 /// A ball that holds the moving shape in its own frame, and where that frame is in the other's.
-pub(crate) struct Moving {
+pub(crate) struct Moving<'a> {
     pub(super) ball: Sphere,
-    pub(super) placement: Placement,
+    pub(super) placement: &'a Placement,
 }
 
 /// How far a query looks.
@@ -164,7 +164,7 @@ thread_local! {
 
 /// Brings the manifolds of a pair up to date.
 pub(crate) fn answer<P, M, C>(
-    pair: P,
+    pair: &P,
     cache: &Arc<TreeCache>,
     mut counters: impl Counters,
     manifolds: &mut Vec<ContactManifold<M, C>>,
@@ -188,8 +188,7 @@ where
     let mut scratch = SCRATCH.take().unwrap_or_default();
     scratch.parts.clear();
     let (moving, reach) = (query.moving(), query.reach());
-    let plan =
-        coherence.slack.plan(moving.ball, &moving.placement, reach, P::Query::GREATEST_SLACK);
+    let plan = coherence.slack.plan(moving.ball, moving.placement, reach, P::Query::GREATEST_SLACK);
     let (answer, margin) = match plan {
         SlackPlan::Reuse { margin, .. } => (Answer::Reused, margin),
         SlackPlan::Descend { margin } => {

@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 use super::order::{Candidate, Place};
 
 /// So many are looked through one by one.
-const FEW: usize = 8;
+const FEW: usize = 16;
 
 /// Memory for looking things up by a pair of subshapes.
 #[derive(Default)]

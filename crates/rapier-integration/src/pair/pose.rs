@@ -8,13 +8,16 @@ pub(crate) struct PairPose {
     pub(super) pos12: Pose,
     /// The same in f64.
     pub(super) placement12: Placement,
+    /// The reverse: shape 1 in the frame of shape 2.
+    pub(super) placement21: Placement,
     /// The prediction distance.
     pub(super) prediction: Real,
 }
 
 impl PairPose {
     pub(crate) fn new(pos12: &Pose, prediction: Real) -> Self {
-        Self { pos12: *pos12, placement12: Placement::new(pos12), prediction }
+        let placement12 = Placement::new(pos12);
+        Self { pos12: *pos12, placement12, placement21: placement12.inverted(), prediction }
     }
 }
 
@@ -35,11 +38,11 @@ impl MeshPlace {
         }
     }
 
-    /// The mesh in the frame of the other shape.
-    pub(super) fn mesh_in_other(self, placement12: &Placement) -> Placement {
+    /// The mesh in the frame of the other shape, and the reverse.
+    pub(super) fn placements(self, pose: &PairPose) -> [&Placement; 2] {
         match self {
-            Self::First => placement12.inverted(),
-            Self::Second => *placement12,
+            Self::First => [&pose.placement21, &pose.placement12],
+            Self::Second => [&pose.placement12, &pose.placement21],
         }
     }
 

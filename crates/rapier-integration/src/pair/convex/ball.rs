@@ -1,3 +1,5 @@
+use std::sync::LazyLock;
+
 use glamx::DVec3;
 use parry3d::math::{Real, Vector};
 use parry3d::query::{ContactManifold, TrackedContact};
@@ -27,20 +29,21 @@ pub(super) fn ray_length(&[a, b, c]: &[DVec3; 3], direction: DVec3) -> Option<f6
     (is_hit && length >= -BESIDE * size && length.is_finite()).then_some(length)
 }
 
+/// Made once: Parry's constructor is not inlined.
+static FACE: LazyLock<PackedFeatureId> = LazyLock::new(|| PackedFeatureId::face(0));
+
 /// Makes a point the only one of a manifold. If there was one, its data stays.
 pub(super) fn keep_one<M, C: Default + Copy>(
     points: [Vector; 2],
     distance: Real,
     manifold: &mut ContactManifold<M, C>,
 ) {
-    let face = PackedFeatureId::face(0);
     let [point1, point2] = points;
-    let point = TrackedContact::new(point1, point2, face, face, distance);
-    match &mut *manifold.points {
-        [one] => one.copy_geometry_from(point),
-        _ => {
-            manifold.points.clear();
-            manifold.points.push(point);
-        }
+    if let [one] = &mut *manifold.points {
+        (one.local_p1, one.local_p2, one.dist) = (point1, point2, distance);
+        (one.fid1, one.fid2) = (*FACE, *FACE);
+    } else {
+        manifold.points.clear();
+        manifold.points.push(TrackedContact::new(point1, point2, *FACE, *FACE, distance));
     }
 }

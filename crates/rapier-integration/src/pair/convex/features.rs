@@ -101,12 +101,16 @@ pub(super) struct Normals {
 
 impl Normals {
     /// Turned into the cones of both bodies. None where these reject the contact.
+    #[inline]
     pub(super) fn new(
         pos12: &Pose,
         free: [Vector; 2],
         cones: [Option<&dyn NormalConstraints>; 2],
     ) -> Option<Self> {
         let [mut normal1, mut normal2] = free;
+        if cones.iter().all(Option::is_none) {
+            return Some(Self { normals: free, are_turned: false });
+        }
         if !(cones[0], cones[1]).project_local_normals(pos12, &mut normal1, &mut normal2) {
             return None;
         }

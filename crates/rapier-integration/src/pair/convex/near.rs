@@ -41,7 +41,7 @@ pub(super) fn triangles_near(
         let (min, max, radius) = placed.extent.bounds();
         let size = min.abs().max(max.abs()).max_element();
         let reach = ((f64::from(margin) + f64::from(radius)) as Real).next_up();
-        let test = BoxTest::new([magnitude, size], &placed.placement.inverted(), reach);
+        let test = BoxTest::new([magnitude, size], &placed.inverse, reach);
         let near = test.of(TestedBox::new(min, max));
         let meets = |node: TestedBox| {
             count();

@@ -18,7 +18,7 @@ use super::half_space::half_space_points;
 use super::pair::ConvexPair;
 use super::parts::{Part, Parts};
 use super::shape::{ConvexShape, Extent};
-use crate::pair::pose::MeshPlace;
+use crate::pair::pose::{MeshPlace, PairPose};
 
 /// A part at the pose of a query: what is computed once for all triangles near it.
 pub(crate) struct PlacedPart {
@@ -27,6 +27,8 @@ pub(crate) struct PlacedPart {
     pub(super) extent: Extent,
     /// The mesh in the frame of the part.
     pub(super) placement: Placement,
+    /// The reverse.
+    pub(super) inverse: Placement,
     /// The mesh in the frame of the part and the reverse, with the roundings of stock.
     to_part: Pose,
     to_mesh: Pose,
@@ -36,17 +38,16 @@ impl PlacedPart {
     pub(super) fn new(index: u32, part: &Part<'_>, pair: &ConvexPair<'_>, extent: Extent) -> Self {
         let pose = pair.part_pose(part.pose);
         let [to_mesh, to_part] = pair.mesh_place.swap([pose, pose.inverse()]);
-        let placement12 = match pair.parts {
-            Parts::One(_) => pair.pose.placement12,
-            Parts::Many(_) => Placement::new(&pose),
+        let of_part;
+        let whole = match pair.parts {
+            Parts::One(_) => pair.pose,
+            Parts::Many(_) => {
+                of_part = PairPose::new(&pose, pair.pose.prediction);
+                &of_part
+            }
         };
-        Self {
-            index,
-            extent,
-            placement: pair.mesh_place.mesh_in_other(&placement12),
-            to_part,
-            to_mesh,
-        }
+        let [placement, inverse] = pair.mesh_place.placements(whole).map(|placement| *placement);
+        Self { index, extent, placement, inverse, to_part, to_mesh }
     }
 
     /// The corners of a triangle of the mesh in the frame of the part.

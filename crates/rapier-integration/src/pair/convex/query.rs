@@ -5,7 +5,7 @@ use parry3d::math::Real;
 use parry3d::query::details::NormalConstraints;
 use parry3d::query::{ContactManifold, TrackedContact};
 use sbbk_core::contact::convex::ConvexContact;
-use sbbk_core::traverse::{Counters, Placement};
+use sbbk_core::traverse::Counters;
 use sbbk_core::volumes::rounding::gamma;
 
 use super::features::core_contact;
@@ -41,8 +41,7 @@ impl<'a> Pair for ConvexPair<'a> {
         if known_parts.update(&self.parts) {
             change = Change::Replaced;
         }
-        let placement = self.mesh_place.mesh_in_other(&self.pose.placement12);
-        (change, ConvexQuery { pair: self, known_parts, placement })
+        (change, ConvexQuery { pair: self, known_parts })
     }
 }
 
@@ -50,8 +49,6 @@ impl<'a> Pair for ConvexPair<'a> {
 pub(crate) struct ConvexQuery<'q> {
     pair: &'q ConvexPair<'q>,
     known_parts: &'q KnownParts,
-    /// The mesh in the frame of the parts.
-    placement: Placement,
 }
 
 impl ConvexQuery<'_> {
@@ -106,13 +103,14 @@ impl PairQuery for ConvexQuery<'_> {
         self.pair.pose
     }
 
-    fn moving(&self) -> Moving {
+    fn moving(&self) -> Moving<'_> {
+        let [to_parts, to_mesh] = self.pair.mesh_place.placements(self.pair.pose);
         let (mesh, parts) = (self.pair.mesh.ball(), self.known_parts.ball());
         // The smaller one: it moves less as it turns.
         if mesh.radius <= parts.radius {
-            Moving { ball: mesh, placement: self.placement }
+            Moving { ball: mesh, placement: to_parts }
         } else {
-            Moving { ball: parts, placement: self.placement.inverted() }
+            Moving { ball: parts, placement: to_mesh }
         }
     }
 

@@ -47,8 +47,8 @@ pub(crate) struct FieldPair<'a> {
 
 impl FieldPair<'_> {
     /// The mesh in the frame of the field.
-    fn mesh_placement(&self) -> Placement {
-        self.mesh_place.mesh_in_other(&self.pose.placement12)
+    fn mesh_placement(&self) -> &Placement {
+        self.mesh_place.placements(self.pose)[0]
     }
 }
 
@@ -77,7 +77,6 @@ impl<'a> Pair for FieldPair<'a> {
         }
         let shapes = MeshAndField {
             pair: self,
-            mesh_placement: self.mesh_placement(),
             field: Field(self.field),
             cone: RefCell::new((u32::MAX, None)),
         };
@@ -95,8 +94,6 @@ impl<'a> Pair for FieldPair<'a> {
 /// A mesh and a height field.
 pub(crate) struct MeshAndField<'q> {
     pair: &'q FieldPair<'q>,
-    /// The mesh in the frame of the field.
-    mesh_placement: Placement,
     field: Field<'q>,
     /// The cone of the triangle of the field that was asked for last. Its contacts follow each
     /// other, and Parry makes it from the normals of four triangles.
@@ -104,8 +101,8 @@ pub(crate) struct MeshAndField<'q> {
 }
 
 impl TriangleShapes for MeshAndField<'_> {
-    fn moving(&self) -> Moving {
-        Moving { ball: self.pair.mesh.ball(), placement: self.mesh_placement }
+    fn moving(&self) -> Moving<'_> {
+        Moving { ball: self.pair.mesh.ball(), placement: self.pair.mesh_placement() }
     }
 
     fn descend(
@@ -116,7 +113,7 @@ impl TriangleShapes for MeshAndField<'_> {
         found: &mut Vec<(OrderKey, [u32; 2])>,
     ) {
         let mesh = &self.pair.mesh;
-        let frame = FieldFrame::new(&self.field, &self.mesh_placement, margin);
+        let frame = FieldFrame::new(&self.field, self.pair.mesh_placement(), margin);
         let leaves = FieldLeaves::new(&frame, mesh.ball().centre, mesh.magnitude());
         let near = &mut scratch.near;
         near.clear();

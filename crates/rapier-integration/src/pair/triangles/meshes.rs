@@ -90,8 +90,8 @@ impl Meshes<'_> {
 }
 
 impl TriangleShapes for Meshes<'_> {
-    fn moving(&self) -> Moving {
-        Moving { ball: self.pair.meshes[1].ball(), placement: self.pair.pose.placement12 }
+    fn moving(&self) -> Moving<'_> {
+        Moving { ball: self.pair.meshes[1].ball(), placement: &self.pair.pose.placement12 }
     }
 
     fn descend(

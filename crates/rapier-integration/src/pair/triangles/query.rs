@@ -19,7 +19,7 @@ pub(super) type Hint = Option<FeaturePair>;
 /// Two shapes made of triangles.
 pub(crate) trait TriangleShapes {
     /// What moves.
-    fn moving(&self) -> Moving;
+    fn moving(&self) -> Moving<'_>;
 
     /// Adds all pairs of triangles within `margin`, and few others, with their places in the order
     /// of manifolds.
@@ -66,7 +66,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         self.pose
     }
 
-    fn moving(&self) -> Moving {
+    fn moving(&self) -> Moving<'_> {
         self.shapes.moving()
     }
 
