@@ -20,7 +20,8 @@ const SLACK_STEPS: f64 = 8.0;
 /// above; less: jitter that grows uses it up.
 const LEAST_SLACK: f64 = 0.1;
 /// A pair that would use up the greatest slack in fewer steps gets none: to look farther would not
-/// pay (with 2, queries that move by half a prediction distance took up to twice as long).
+/// pay (with 2, queries that move by half a prediction distance took up to twice as long; with 6,
+/// those of a ball that rolls over a terrain 1.2 times).
 const LEAST_STEPS: f64 = 3.0;
 
 /// Greatest slack as a share of the prediction distance, where what is found gets an exact test.
