@@ -70,9 +70,10 @@
 //! every kind have those of Parry's routine asked anew.
 //!
 //! A mesh may deform (`TriMeshFlags::DEFORMABLE`, Rapier's soft bodies), and the other one too. It
-//! has no tree, and nothing is kept of it from query to query but the data of its manifolds.
-//! Triangles with a vertex that is NaN or infinite touch nothing; the others touch as before.
-//! Rapier itself answers for two soft bodies and asks no dispatcher.
+//! has no tree, and pairs keep the data of its manifolds from query to query and nothing else. Where
+//! it has changed, the next query reads its vertices once, about a nanosecond each, to see whether
+//! they are finite. Triangles with a vertex that is NaN or infinite touch nothing; the others touch
+//! as before. Rapier itself answers for two soft bodies and asks no dispatcher.
 //!
 //! Parry answers for a rigid mesh with a vertex that is NaN or infinite, and
 //! [`SbbkStats::unsupported_queries`] counts.
