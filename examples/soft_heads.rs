@@ -1,5 +1,5 @@
 //! Soft monkey heads fall on a rigid helicopter, stock beside SBBK, and a large mesh deforms:
-//! refits beside rebuilds.
+//! refits of a bare tree beside rebuilds.
 //!
 //! ```text
 //! cargo run --release --example soft_heads

@@ -53,7 +53,7 @@ fn set<M, C>(
 /// vertices, two the pose, and one both as they were. The answer of the pair that is kept is that
 /// of a dispatcher that knows nothing of a mesh built anew, and no contact of the truth is missing.
 ///
-/// Would catch trees, candidates, features or cones of vertices that are no more, in either order.
+/// Would catch candidates, features or cones of vertices that are no more, in either order.
 fn check_frames(flags: TriMeshFlags, other: TriMesh, frames: usize) {
     let dispatcher = counting();
     let mut random = Rand32::new(9);
@@ -242,8 +242,7 @@ fn a_mesh_that_is_broken_for_a_while_comes_back() {
     assert_eq!(stats.unsupported_queries, 0, "{stats:?}");
 }
 
-/// Triangles that change where the mesh is: the tree is another, and manifolds of old triangles are
-/// dropped.
+/// Triangles that change where the mesh is: the contacts are those of the new ones.
 #[test]
 fn other_triangles_at_the_same_place_are_seen() {
     let dispatcher = SbbkDispatcher::default();

@@ -7,13 +7,14 @@
 //! | a mesh and | contacts are right | whatever was before | in worlds |
 //! |---|---|---|---|
 //! | a mesh | `exact`, `bits`, `normals` | `motion`, `edited_mesh` | `rest`, `scenes` |
+//! | a mesh, one of the two without a tree | `walks` | `walks` | `deformable` |
 //! | convex shapes | `convex::fresh` | `convex::motion` | `convex::rest` |
 //! | compounds | `compound` | `compound` | `compound` |
 //! | a height field | `heightfield::truth` | `heightfield::motion` | `heightfield::rest` |
 //! | soft: a mesh, convex shapes | `deformable` | `deformable` | `deformable` |
 //! | soft: the others | `soft_pairs::histories` | `soft_pairs::histories` | `soft_pairs::worlds` |
 //!
-//! Queries without manifolds are in `queries` and `nonlinear`.
+//! Queries without manifolds are in `queries`, `nonlinear` and, of meshes without trees, `walks`.
 
 /// A steady contact allocates nothing.
 mod allocation;
@@ -65,9 +66,9 @@ mod support;
 mod trajectories;
 /// Brute force in f64.
 mod truth;
-/// Meshes that cannot have a tree.
+/// Rigid meshes with vertices that are not finite.
 mod unsupported;
-/// Meshes without trees.
+/// Meshes without trees: large ones that nobody prepared, deformable ones, many at once.
 mod walks;
 /// Who answers for which pair and query.
 mod who_answers;

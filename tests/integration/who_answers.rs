@@ -61,7 +61,7 @@ pub fn kinds() -> Vec<(&'static str, SharedShape, Who)> {
 }
 
 /// The contacts of each kind, in both orders, with a rigid and with a deformable mesh: counted as
-/// answered from trees, or equal to Parry's and not counted. Would catch a kind that another one
+/// answered by SBBK, or equal to Parry's and not counted. Would catch a kind that another one
 /// answers for than the crate's documentation says, and an order that is forgotten.
 #[test]
 fn contacts_of_each_kind() {
@@ -95,7 +95,7 @@ fn contacts_of_each_kind() {
     }
 }
 
-/// Each query without manifolds: of two rigid meshes from trees, which it needs; of all else
+/// Each query without manifolds: of two small rigid meshes from trees, which it needs; of all else
 /// Parry's answer, without a tree.
 #[test]
 fn queries_of_each_kind() {

@@ -4,7 +4,8 @@ use sbbk_core::tree::{BuildOptions, LayerPlan};
 /// into contact points.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum ContactGenerator {
-    /// SBBK's own ([`sbbk_core::contact`]): exact at every scale, and faster.
+    /// SBBK's own ([`sbbk_core::contact`]), of two triangles and of convex shapes of every kind:
+    /// exact at every scale, and faster.
     #[default]
     Exact,
     /// Parry's (GJK, EPA and clipping), called as stock Parry calls it: on a first query the
@@ -58,8 +59,9 @@ pub struct SbbkConfig {
     /// What is answered.
     pub kinds: Kinds,
     /// Memory that trees may keep while no pair of colliders uses them, in bytes. A mesh that
-    /// leaves all contacts and comes back finds its tree here; with 0 it is built again each time.
-    /// The trees of the last eight meshes that queries without manifolds asked for stay beyond it.
+    /// leaves all contacts and comes back finds its tree here; with 0 the tree is gone by then. The
+    /// trees of the last eight meshes that queries without manifolds asked for stay beyond it, and
+    /// so do those that a [`PreparedTree`](crate::PreparedTree) keeps.
     pub idle_tree_bytes: usize,
     /// Whether queries are counted in [`SbbkStats`](crate::SbbkStats). Costs some percent, more
     /// with many threads.

@@ -14,18 +14,33 @@
 //!
 //! # What changes
 //!
-//! * The contacts of two meshes are exact at every scale, and so are those of a mesh with
-//!   most convex shapes (cylinders and cones: apart to 1e-7, crossing to 1e-5 of the distance).
-//!   Stock's tolerances are absolute lengths: it loses contacts of triangles that are small, and
-//!   gets their depths and normals wrong.
+//! * The contacts of two meshes are exact at every scale, and so are those of a mesh with convex
+//!   shapes (cylinders and cones: apart to 1e-7, crossing to 1e-5 of the distance). Stock's
+//!   tolerances are absolute lengths: it loses contacts of triangles that are small, and gets their
+//!   depths and normals wrong.
 //! * Queries about meshes are faster, several times for two meshes; the repository's README has the
 //!   figures.
 //! * Contacts depend on the pose and the shapes alone, bit for bit. What is remembered from earlier
 //!   steps saves time and is never part of the answer.
 //! * A mesh that meets a height field has contacts. In stock Rapier it falls through.
-//! * Each mesh gets a [tree](sbbk_core::tree), built when it first comes close to another shape and
-//!   shared by all colliders with equal geometry. [`SbbkDispatcher::prepare`] builds it at load
-//!   time.
+//!
+//! # Trees
+//!
+//! Rigid meshes that meet other rigid meshes get a [tree](sbbk_core::tree), shared by all colliders
+//! with equal geometry. A mesh of up to 8192 triangles gets it unasked, in the midst of a step: a
+//! build takes less than 2 ms, and all of them no more than that and a share of what queries have
+//! taken, however many meshes land together. A larger mesh gets a tree when the program prepares it,
+//! at load time:
+//!
+//! * [`SbbkDispatcher::prepare_shape`] is for a mesh that is used as one `SharedShape` and its
+//!   clones. Queries know it by its address, at any size.
+//! * [`SbbkDispatcher::prepare`] is for copies too, loaded twice or restored from a snapshot. They
+//!   are found by a hash of their content, up to about 500,000 triangles.
+//!
+//! Without trees the contacts of two meshes are the same, bit for bit and in the same order, and
+//! take longer: their pairs of triangles are found by Parry's own hierarchies of the meshes. Pairs
+//! of a mesh and anything else are always found that way; they need no build and no memory for a
+//! tree.
 //!
 //! [`SbbkConfig`] chooses the volumes of the trees, the contact generator, and how much memory
 //! unused trees may keep. [`SbbkDispatcher::stats`] counts trees and queries. [`TriangleContacts`]
@@ -38,36 +53,36 @@
 //!
 //! | a mesh and | pairs found by | contact points by |
 //! |---|---|---|
-//! | a mesh | SBBK | SBBK |
-//! | a capsule, segment, triangle, cylinder, cone, convex polyhedron | SBBK | SBBK |
-//! | a round cuboid, triangle, cylinder, cone, convex polyhedron | SBBK | SBBK |
-//! | a ball, cuboid, half-space | SBBK | Parry, asked anew each time |
-//! | a compound of the convex shapes above | SBBK | as for each part |
-//! | a polyline | SBBK | SBBK |
-//! | a height field | SBBK | SBBK |
+//! | a mesh | SBBK: trees, or Parry's hierarchies | SBBK |
+//! | a ball, cuboid, half-space | SBBK: Parry's hierarchy of the mesh | SBBK |
+//! | a capsule, segment, triangle, cylinder, cone, convex polyhedron | likewise | SBBK |
+//! | a round cuboid, triangle, cylinder, cone, convex polyhedron | likewise | SBBK |
+//! | a compound of the convex shapes above | likewise | SBBK |
+//! | a polyline | likewise | SBBK |
+//! | a height field | SBBK: the same, and the cells under it | SBBK |
 //! | voxels, a custom shape, a deformable polyline | Parry | Parry |
 //! | a compound with any other part | Parry | Parry |
 //!
-//! SBBK's contacts of a convex shape have the distance, the normal and the closest points of
-//! [`sbbk_core::contact::convex`], computed in f64; further points come from Parry's clip of the
-//! two features that face each other. Manifolds are in the order of stock's. With
-//! [`ContactGenerator::Parry`] the contacts of two meshes are those of Parry's routine, which keeps
-//! points from step to step as it does in stock; convex shapes of every kind have those of Parry's
-//! routine asked anew.
+//! SBBK's contacts of a convex shape are those of [`sbbk_core::contact::convex`], computed in f64;
+//! Parry says which feature of a polyhedron, cylinder or cone faces the triangle. Manifolds are in
+//! the order of stock's. With [`ContactGenerator::Parry`] the contacts of two meshes are those of
+//! Parry's routine, which keeps points from step to step as it does in stock; convex shapes of
+//! every kind have those of Parry's routine asked anew.
 //!
-//! A mesh may deform (`TriMeshFlags::DEFORMABLE`, Rapier's soft bodies), and the other one too. Its
-//! tree is refitted by the first query after its vertices moved. Triangles with a vertex that is
-//! NaN or infinite touch nothing; the others touch as before. Rapier itself answers for two soft
-//! bodies and asks no dispatcher.
+//! A mesh may deform (`TriMeshFlags::DEFORMABLE`, Rapier's soft bodies), and the other one too. It
+//! has no tree, and pairs keep the data of its manifolds from query to query and nothing else. Where
+//! it has changed, the next query reads its vertices once, about a nanosecond each, to see whether
+//! they are finite. Triangles with a vertex that is NaN or infinite touch nothing; the others touch
+//! as before. Rapier itself answers for two soft bodies and asks no dispatcher.
 //!
-//! A rigid mesh with a vertex that is NaN or infinite cannot have a tree. Parry answers for it, and
+//! Parry answers for a rigid mesh with a vertex that is NaN or infinite, and
 //! [`SbbkStats::unsupported_queries`] counts.
 //!
 //! # Queries without manifolds
 //!
 //! Of two rigid meshes `intersection_test`, `distance`, `closest_points`, `contact`, `cast_shapes`
-//! and `cast_shapes_nonlinear` are SBBK's; of all other pairs, deformable meshes among them,
-//! Parry's.
+//! and `cast_shapes_nonlinear` are SBBK's, with the exception below; of all other pairs, deformable
+//! meshes among them, Parry's.
 //!
 //! * A mesh is a surface, as in stock: one inside another does not meet it.
 //! * `contact` is that of the deepest pair of triangles or, where none cross, of the nearest.
@@ -75,10 +90,15 @@
 //!   and do not approach.
 //! * A pose that is not finite finds nothing.
 //!
-//! A host keeps no state for these queries. So each one compares vertices and triangles of its
-//! meshes with copies to know their trees, in time that grows with their number; an
-//! `intersection_test` that finds two triangles compares those two. Each thread knows the last
-//! eight meshes it asked about.
+//! A host keeps no state for these queries, so each one has to find the trees of its meshes:
+//!
+//! * A mesh of [`SbbkDispatcher::prepare_shape`] is known by its address.
+//! * A mesh of up to 8192 triangles gets a tree at its first query. Each later one compares
+//!   vertices and triangles with a copy, in time that grows with their number; an
+//!   `intersection_test` that finds two triangles compares those two. Each thread knows the last
+//!   eight meshes it asked about.
+//! * A larger mesh has no tree here. Then the answer comes from Parry's hierarchies of both meshes,
+//!   with the same exact distances; casts are Parry's.
 //!
 //! Rapier's character controller asks the dispatcher of the query pipeline for shape casts and for
 //! how deep it is in a collider. For the contacts with its ground, and with bodies that it pushes,
@@ -89,12 +109,13 @@
 //! The dispatcher is generic over manifold and contact data: any host of Parry 0.31.1 can use it. A
 //! host must drop a pair's workspace when it edits one of its shapes, as Rapier does and as Parry's
 //! own workspaces need. A deformable mesh may be edited in place between queries, and the
-//! workspaces kept: each query reads all of it, about 1 µs for 1000 triangles.
+//! workspaces kept. A pair without manifolds that is apart may be left without a workspace.
 //!
 //! # Threads
 //!
-//! Queries may come from many threads at once. A pair of rigid meshes whose trees are known takes
-//! no lock. Results do not depend on the number of threads.
+//! Queries may come from many threads at once. Contact queries take no lock, but for two rigid
+//! meshes of which one has no tree yet: these look for it under a lock, for a moment. A tree is
+//! built outside of it. Results do not depend on the number of threads.
 //!
 //! # Snapshots
 //!

@@ -17,27 +17,27 @@ pub struct SbbkStats {
     pub tree_bytes: usize,
     /// Trees built.
     pub tree_builds: u64,
-    /// How often a pair of colliders needed a tree that was there.
+    /// How often a tree that was needed, or prepared, was found by its content.
     pub tree_hits: u64,
-    /// Pairs of colliders that SBBK has answered for: first queries. If this stays zero, the
-    /// dispatcher is not in use.
+    /// Pairs of colliders that SBBK has answered for: queries about pairs of which nothing was
+    /// known, and that were not apart at once. If this stays zero, the dispatcher is not in use.
     pub pairs: u64,
-    /// Descents of two meshes that did without trees, down Parry's own hierarchies: of large meshes
-    /// that nobody prepared, and of deformable ones.
+    /// Descents of two meshes that did without trees, down Parry's own hierarchies: of deformable
+    /// meshes, of large ones that nobody prepared, and of small ones that have no tree yet.
     pub walks: u64,
-    /// Queries that Parry had to answer as a mesh cannot have a tree: see
+    /// Queries that Parry had to answer, as a rigid mesh has a vertex that is not finite: see
     /// [`SbbkDispatcher::prepare`](crate::SbbkDispatcher::prepare).
     pub unsupported_queries: u64,
-    /// Contact queries answered from trees. Counted, like the following, if
+    /// Contact queries that SBBK has answered. Counted, like the following, if
     /// [`SbbkConfig::count_queries`](crate::SbbkConfig::count_queries) is set.
     pub queries: u64,
     /// Of these, how many found nothing moved since the last query of the pair.
     pub unchanged_queries: u64,
     /// How many tested the candidates of an earlier descent.
     pub reused_queries: u64,
-    /// How many descended. The rest was apart by the boxes of the whole meshes.
+    /// How many descended. The rest was apart by Parry's hierarchy and the box of the other shape.
     pub descended_queries: u64,
-    /// The work of the descents.
+    /// The work of the descents: those down Parry's hierarchies count as tests of boxes.
     pub descent: DescentCounts,
 }
 

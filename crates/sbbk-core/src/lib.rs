@@ -35,15 +35,17 @@
 //!
 //! * [`volumes`]: [`Sphere`](volumes::Sphere), [`Aabb`](volumes::Aabb), [`Kdop`](volumes::Kdop).
 //! * [`traverse`]: [`descend`](traverse::descend) finds the pairs of leaves that may touch at a
-//!   pose.
-//! * [`leaf`]: which triangles of two leaves may touch, over SIMD lanes.
+//!   pose; [`BoxTest`](traverse::BoxTest) compares boxes of other hierarchies.
+//! * [`leaf`]: which triangles of two leaves, or of batches gathered elsewhere, may touch, over
+//!   SIMD lanes.
 //! * [`field`]: the triangles of a height field that may touch a mesh.
 //! * [`front`]: a descent that starts where the last one stopped.
 //! * [`broad_phase`]: which of many moving objects are near each other.
 //! * `truth` (feature `truth`): brute force in f64, to test against.
 //!
 //! Modules depend one way: `simd` (lanes), [`volumes`], [`tree`], [`traverse`], [`leaf`], then
-//! [`field`], [`front`] and [`query`]. [`contact`] and [`broad_phase`] need none of them.
+//! [`field`], [`front`] and [`query`]. [`contact`], which [`query`] uses, and [`broad_phase`] need
+//! none of them.
 
 pub mod broad_phase;
 pub mod contact;

@@ -23,7 +23,7 @@ fn check_against_stock(name: &str, dispatcher: &SbbkDispatcher, question: &Quest
     assert_eq!(touching(question.fresh(dispatcher)), stock, "{name}");
 }
 
-/// Would catch a triangle that the descent or the leaf test drops, one that is kept though Parry
+/// Would catch a triangle that the walk over the mesh drops, one that is kept though Parry
 /// sees no contact, and any other pose, order, constraint or argument than stock passes.
 #[test]
 fn fresh_contacts_are_those_of_parrys_routine_on_all_triangles() {

@@ -1,10 +1,11 @@
-//! What Parry's routine says of each triangle alone is expected of the whole mesh.
+//! What Parry's routine, or brute force in f64, says of each triangle alone is expected of the whole
+//! mesh.
 
 /// Shapes that change between queries, and pairs taken over from stock.
 mod change;
 /// Memory allocated.
 mod cost;
-/// First queries, bit for bit.
+/// First queries: those of Parry's routine bit for bit, SBBK's own against brute force.
 mod fresh;
 /// Motion against fresh queries.
 mod motion;

@@ -31,8 +31,7 @@ fn deform(mesh: &mut TriMesh, rest: &[Vec3], frame: usize) {
 
 /// A soft ball and another shape through hundreds of frames: of every twelve, five leave the
 /// vertices, two the pose, and one both as they were. Both orders are asked; `check` gets the
-/// question and the answer. Proves that nothing was
-/// built or kept of a mesh that may change.
+/// question and the answer. Proves that nothing was built or kept of a mesh that may change.
 fn run(other: &dyn Shape, height: Real, check: &mut dyn FnMut(&Question, &[Manifold], bool)) {
     let dispatcher = counting();
     let mut soft = soft_ball();

@@ -177,7 +177,7 @@ fn runner(cases: u32) -> TestRunner {
     TestRunner::new(config)
 }
 
-/// Would catch a tree, candidates, features or cones of vertices that are no more, and anything
+/// Would catch candidates, features or cones of vertices that are no more, and anything
 /// else that depends on the past: the manifolds are those of the mesh built anew, bit for bit, and
 /// in the order of a dispatcher that knows nothing.
 #[test]

@@ -1,9 +1,12 @@
 //! One prepared mesh for all colliders with equal geometry.
 //!
-//! The lock is taken when a pair of colliders first needs its trees and when the last pair that
-//! used a tree ends, not by a query of a pair that has them. Each takes time that grows with the
-//! logarithm of the number of trees. Trees are built outside of it; threads that want the same one
-//! wait for it alone.
+//! A pair of two rigid meshes asks for their trees until it has both. It gets one that is there, or
+//! that is small enough and paid for ([`credit`](super::credit)); else it does without, and the
+//! next query asks again.
+//!
+//! That takes a lock, and so does the end of the last pair that used a tree, but no query of a pair
+//! that has its trees, or needs none. Each takes time that grows with the logarithm of the number of
+//! trees. Trees are built outside of the lock; threads that want the same one wait for it alone.
 
 use std::collections::hash_map::Entry as HashEntry;
 use std::collections::{BTreeMap, HashMap, VecDeque};
@@ -38,7 +41,7 @@ pub(crate) struct TreeCache {
 }
 
 /// Meshes without a pair that are kept for queries without manifolds, whatever the limit of idle
-/// ones: the trees of large meshes may exceed it. More: scenes with many such meshes rebuild less.
+/// ones, which may be zero. More: scenes with many such meshes rebuild less.
 const QUERIED: usize = 8;
 
 #[derive(Default)]

@@ -1,8 +1,8 @@
 //! What "the same mesh" means.
 //!
 //! A dispatcher sees a `&TriMesh` and nothing else: no handle, no generation. Its address proves
-//! nothing, since freed memory is used again and `SharedShape::make_mut` edits in place. So there
-//! are two notions:
+//! nothing, since freed memory is used again and `SharedShape::make_mut` edits in place (unless the
+//! shape is held here: [`registry`](super::registry)). So there are two notions:
 //!
 //! * [`ContentHash`], 128 bits over all that a [`PreparedMesh`](super::PreparedMesh) is made of:
 //!   vertices, triangles, flags, Parry's hierarchy (the stock order of contacts) and, where they
@@ -10,11 +10,12 @@
 //!   not make the last two equal: Parry fits them to a mesh that is edited or scaled, and builds
 //!   those of a new mesh. Meshes with equal hashes share one prepared mesh, wherever they are:
 //!   clones, copies restored from a snapshot, the same file loaded twice. The hash reads the whole
-//!   mesh (about 4 µs for 1000 triangles), so it is asked for only when a pair of colliders gets
-//!   its first contact query that passes the root boxes.
-//! * [`MeshToken`], constant time, checked on every later query of the pair: addresses and sizes of
-//!   the buffers, the flags, the root box of Parry's own hierarchy, and a few sampled vertices and
-//!   triangles. If it changed, the hash is asked again.
+//!   mesh (about 4 µs for 1000 triangles), so it is asked for only where a tree is built, and where
+//!   a pair of two meshes has none yet and one of a mesh with as many triangles is there.
+//! * [`MeshToken`], constant time, made at every query: addresses and sizes of the buffers, the
+//!   flags, the root box of Parry's own hierarchy, and a few sampled vertices and triangles. If it
+//!   changed, a pair forgets the mesh and its tree; whether vertices are finite is remembered by it
+//!   too ([`soundness`](super::soundness)).
 //!
 //! Between two queries of one pair a mesh may change unseen by the token only if its buffers stay
 //! in place, the root box stays equal and no sample moves: an edit of single vertices by
@@ -22,8 +23,9 @@
 //! (`ColliderChanges::SHAPE`, set by `shape_mut` and `set_shape`), and with it the token; other
 //! hosts must do the same, as Parry asks for its own workspaces too.
 //!
-//! A mesh that is meant to deform (`TriMeshFlags::DEFORMABLE`) may change at any time: nothing is
-//! kept of it.
+//! A mesh that is meant to deform (`TriMeshFlags::DEFORMABLE`) may change at any time: a pair keeps
+//! nothing of it. Queries without manifolds have no workspace that a host could drop: they compare
+//! all of a mesh with a [`ContentCopy`].
 
 use std::hash::Hasher;
 

@@ -16,7 +16,7 @@ pub(crate) enum KnownMesh {
     Unknown,
     /// Valid while the token is, for the same owner.
     Rigid { token: MeshToken, owner: u64, tree: Option<PreparedRef> },
-    /// May be another one at any time.
+    /// May be another one at any time: has no tree.
     Deformable,
 }
 

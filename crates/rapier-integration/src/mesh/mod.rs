@@ -1,5 +1,5 @@
-//! Triangle meshes: Parry's own hierarchy of them, what is the same mesh, and where its tree is
-//! kept.
+//! Triangle meshes: Parry's own hierarchy of a mesh ([`hierarchy`]), what is the same mesh
+//! ([`identity`], [`registry`]), and where its tree is kept ([`cache`]).
 
 mod cache;
 mod credit;

@@ -1,9 +1,9 @@
 //! What a pair keeps from query to query, besides what it knows of its shapes.
 //!
 //! A descent may look farther than the prediction distance, and what it finds then serves for
-//! several queries: [`Slack`] says for how long. Until then neither trees nor leaves are touched,
-//! and candidates that cannot have come within the prediction distance are skipped. Each of the
-//! others gets the exact test, so the contacts are those of a descent.
+//! several queries: [`Slack`] says for how long. Until then no hierarchy is touched, and candidates
+//! that cannot have come within the prediction distance are skipped. Each of the others gets the
+//! exact test, so the contacts are those of a descent.
 //!
 //! Dropped in a pile of 1000 heads: a separating plane between the hulls of 64 boxes of each mesh
 //! (Gilbert's algorithm) before a descent halves the number of descents and takes as long, as those

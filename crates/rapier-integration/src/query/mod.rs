@@ -1,8 +1,9 @@
-//! Queries without manifolds for a pair of meshes: from Parry's question to a search over trees
-//! ([`sbbk_core::query`]) and back.
+//! Queries without manifolds for a pair of meshes: from Parry's question to a search and back.
 //!
 //! Hosts keep nothing for such a query, so each one has to find the trees of its meshes anew
-//! ([`lookup`]).
+//! ([`lookup`]). With trees the search is that of [`sbbk_core::query`]. Where a mesh is large and
+//! not registered it goes down Parry's hierarchies and decides by the same exact contacts
+//! ([`walk`]); casts are Parry's then.
 
 mod casts;
 mod lookup;

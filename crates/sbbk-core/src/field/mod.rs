@@ -6,6 +6,10 @@
 //! under the node can touch ([`FieldFrame`]). Under a leaf each cell is compared by the same rule,
 //! and what is left triangle against triangle, by separating axes over lanes.
 //!
+//! [`descend_field`] does so with a [`Tree`](crate::tree::Tree). A walk over any other hierarchy of
+//! the mesh asks [`FieldFrame::meets`] about its boxes, and [`FieldLeaves`] about the triangles that
+//! it comes to.
+//!
 //! So the cells looked at lie under the boxes of the mesh, and a field of a million cells costs
 //! what one of a thousand does. Nothing is computed from the field in advance, so nothing can be
 //! out of date when it is edited.

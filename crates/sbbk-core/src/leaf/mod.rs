@@ -1,5 +1,5 @@
 //! Triangles against triangles, a batch at a time: which pairs of two leaves may come within the
-//! margin.
+//! margin. A leaf is a [`LeafBatch`], of a tree or gathered from any hierarchy.
 //!
 //! The test looks for a separating axis over SIMD lanes: one triangle of leaf 1 against the batch
 //! of leaf 2. It is conservative and nearly exact; what survives goes to the exact test in f64

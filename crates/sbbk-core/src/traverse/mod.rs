@@ -6,7 +6,8 @@
 //!
 //! [`Slack`] says when a descent can be spared, as the last one looked far enough.
 //!
-//! [`BoxTest`] compares boxes of other hierarchies, one pair at a time.
+//! [`BoxTest`] compares boxes of other hierarchies, or of a hierarchy and a single body, one pair at
+//! a time.
 
 #[cfg(test)]
 mod allowances;

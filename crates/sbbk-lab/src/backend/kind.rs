@@ -25,7 +25,7 @@ pub enum Backend {
     AabbOnly,
     /// SBBK as a user gets it.
     Sbbk,
-    /// SBBK's trees, with Parry generating the contacts of the triangles they find.
+    /// SBBK, with Parry generating the contacts of the triangles that it finds.
     SbbkParry,
 }
 

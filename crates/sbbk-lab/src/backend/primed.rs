@@ -6,9 +6,10 @@ use rapier3d::parry::query::ContactManifoldsWorkspace;
 
 use super::{SharedDispatcher, shape_address};
 
-/// What a dispatcher remembers after it was asked about each of some meshes: SBBK builds the tree
-/// of a mesh when it first meets it, and may drop it when no pair needs it any more. Building is
-/// measured on its own, so that times of queries and steps should not hold it.
+/// What a dispatcher remembers after it was asked about each of some meshes: SBBK builds trees of
+/// small meshes unasked, up to 8192 triangles at once, and may drop them when no pair needs them any
+/// more. Building is measured on its own, so that times of queries and steps should not hold it.
+/// Larger meshes stay without trees.
 pub struct Primed(#[expect(dead_code, reason = "kept alive")] Vec<ContactManifoldsWorkspace>);
 
 impl Primed {

@@ -1,8 +1,9 @@
 //! The experiments. Each has a plan, standard or quick, carries it out, and returns rows, tables
 //! and a picture: [`Results`](crate::report::Results).
 //!
-//! Times are taken in one process, backends in turn, and without what happens only once: trees are
-//! built before. Wrong contacts are counted on the queries that are timed, or on such ones.
+//! Times are taken in one process, backends in turn, and without what happens only once: trees that
+//! SBBK builds unasked are built before (but in [`everyday`], where they are part of the steps).
+//! Wrong contacts are counted on the queries that are timed, or on such ones.
 
 pub mod compare;
 pub mod contacts;

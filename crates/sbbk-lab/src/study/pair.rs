@@ -19,7 +19,7 @@ use crate::metrics::Summary;
 pub(super) const DIRECT_NOTE: &str = "dispatchers called directly: contact skins and contact \
                                       recycling, which are Rapier's, have no part in it";
 
-/// Stock and SBBK, the trees of all meshes built.
+/// Stock and SBBK, the trees built that SBBK builds unasked.
 pub(super) struct Contest {
     pub dispatchers: [SharedDispatcher; 2],
     _primed: [Primed; 2],

@@ -1,5 +1,5 @@
-//! Meshes that deform: soft monkey heads on a rigid helicopter, stock beside SBBK; and what it
-//! costs to follow one large mesh, and whether contacts are lost.
+//! Meshes that deform: soft monkey heads on a rigid helicopter, stock beside SBBK; what it costs to
+//! refit a bare tree to one large mesh; and whether a pair of that mesh loses contacts.
 
 use std::collections::BTreeSet;
 

@@ -1,14 +1,17 @@
 //! A mesh and convex shapes: one, or the parts of a compound or a polyline.
 //!
-//! Stock Parry asks the mesh's tree with the shape's box in the mesh's frame, which for a large
-//! floor is the whole mesh, and runs its contact routine on every triangle found, in every step.
-//! Here a descent compares the mesh with the shape itself ([`shape`] says how far it reaches). A
-//! candidate is a triangle of the mesh and a part of the shape ([`parts`]), with a lower bound of
-//! their distance and the axis that shows it: it is not looked at again until the pair has moved so
-//! far that they could touch ([`query`]).
+//! Stock Parry asks its hierarchy of the mesh with the shape's box in the mesh's frame, which for a
+//! large floor is the whole mesh, and runs its contact routine on every triangle found, in every
+//! step. Here the same hierarchy is asked with the box of the shape in the shape's own frame, or
+//! with the plane of a half-space ([`near`]). A candidate is a triangle of the mesh and a part of
+//! the shape ([`parts`]). Its contact gives a lower bound of their distance: it is not looked at
+//! again until the pair has moved so far that they could touch ([`query`]).
 //!
-//! Contacts are a function of the pose, as those of two triangles are: exact ones ([`features`]),
-//! or, if the host wants that, those of Parry's routine asked as if nothing was known ([`placed`]).
+//! Contacts are a function of the pose, as those of two triangles are: exact ones ([`features`],
+//! [`ball`], [`half_space`]), or, if the host wants that, those of Parry's routine asked as if
+//! nothing was known ([`placed`]). Where Parry's GJK has seen that the two are apart, the direction
+//! is the candidate's hint, and shows it at the next query by how far the shape reaches along it
+//! ([`shape`]).
 
 mod ball;
 mod features;

@@ -1,4 +1,4 @@
-//! Parry's convex shapes, as far as a descent has to know them.
+//! Parry's convex shapes, as far as a walk over a mesh has to know them.
 
 use glamx::{DVec3, Vec3};
 use parry3d::math::{Real, Vector};
@@ -59,8 +59,8 @@ impl ConvexShape<'_> {
 /// How far a shape extends: its radius and the box around the rest of it.
 ///
 /// Also tells, as far as a few numbers do, that a shape is the one that it was at the last query. A
-/// host drops the workspace of a pair when it edits a shape, see [`crate::mesh`]; this is for those
-/// that do not.
+/// host drops the workspace of a pair when it edits a shape (see `mesh/identity.rs`); this is for
+/// those that do not.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub(super) struct Extent {
     shape_type: ShapeType,

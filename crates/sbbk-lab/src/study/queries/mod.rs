@@ -107,7 +107,7 @@ pub fn queries(plan: &QueriesPlan, progress: &Progress) -> Result<Results, Study
     Ok(Results { environment: Environment::detect(), tables: tables(&rows), rows, panels })
 }
 
-/// A mesh of size [`SIZE`], and both dispatchers with its tree built.
+/// A mesh of size [`SIZE`], and both dispatchers, which have met it.
 struct Asked {
     shape: SharedShape,
     contest: Contest,
