@@ -132,6 +132,9 @@ fn a_registered_shape_is_known_until_it_is_let_go() {
     let (other_count, walks) = ask(&ring);
     assert!(other_count != count && walks == 1);
     assert_eq!(ask(&clone), (count, 0));
+    // Twice is as good as once.
+    drop(dispatcher.prepare_shape(&clone).unwrap());
+    assert_eq!(ask(&clone), (count, 0));
     drop(tree);
     // The tree is idle now, and its content is known: it takes a hash.
     assert_eq!(ask(&clone), (count, 0));

@@ -158,7 +158,8 @@ impl SbbkDispatcher {
         if parts.is_none() && field.is_none() {
             return Answer::Unsupported;
         }
-        if is_new && parts.is_some() {
+        // Parry's routine sees a little farther than the prediction distance.
+        if is_new && parts.is_some() && contacts == ContactGenerator::Exact {
             let in_mesh = if mesh_place.is_second() { pos12.inverse() } else { *pos12 };
             if self.are_apart(is_near(mesh, other, &in_mesh, prediction), [mesh]) {
                 return self.nothing();

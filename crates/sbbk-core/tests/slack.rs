@@ -117,7 +117,9 @@ fn margin_after(step: f32, prediction: f32) -> (f32, bool) {
 fn slack_follows_the_motion() {
     let prediction = 0.02;
     let near = |found: f32, expected: f32| (found - expected).abs() < 1e-5 * prediction;
-    for (step, share) in [(0.0, 0.1), (0.01, 0.1), (0.05, 0.4), (0.1, 0.8), (0.15, 1.0), (0.33, 1.0)] {
+    for (step, share) in
+        [(0.0, 0.1), (0.01, 0.1), (0.05, 0.4), (0.1, 0.8), (0.15, 1.0), (0.33, 1.0)]
+    {
         let (margin, kept) = margin_after(step * prediction, prediction);
         assert!(near(margin, prediction * (1.0 + share)) && kept, "{margin} at {step}");
     }

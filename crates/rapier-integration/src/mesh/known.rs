@@ -14,8 +14,8 @@ pub(crate) enum KnownMesh {
     /// No query has needed it yet.
     #[default]
     Unknown,
-    /// Valid while the token is, for the same owner.
-    Rigid { token: MeshToken, owner: u64, tree: Option<PreparedRef> },
+    /// Valid while the token is, for the same owner. Without a tree, for so many more queries.
+    Rigid { token: MeshToken, owner: u64, tree: Option<PreparedRef>, wait: u8 },
     /// May be another one at any time: has no tree.
     Deformable,
 }
@@ -55,19 +55,22 @@ impl KnownMesh {
             Self::Unknown => Change::Unknown,
             Self::Rigid { .. } | Self::Deformable => Change::Replaced,
         };
-        *self = Self::Rigid { token: seen, owner: asking, tree: None };
+        *self = Self::Rigid { token: seen, owner: asking, tree: None, wait: 0 };
         change
     }
 
     /// The tree of a mesh that [`update`](Self::update) has seen, if it is there or can be had at
     /// once.
     pub(crate) fn tree(&mut self, mesh: &TriMesh, cache: &Arc<TreeCache>) -> Option<&PreparedMesh> {
-        let Self::Rigid { tree, .. } = self else {
+        /// Queries from one try to the next. More: trees come later; fewer: each costs two locks.
+        const PATIENCE: u8 = 15;
+        let Self::Rigid { tree, wait, .. } = self else {
             return None;
         };
-        if tree.is_none() {
-            *tree = cache.afford(mesh);
+        if tree.is_none() && *wait == 0 {
+            (*tree, *wait) = (cache.afford(mesh), PATIENCE);
         }
+        *wait = wait.saturating_sub(1);
         tree.as_ref().map(|tree| tree.prepared())
     }
 }

@@ -17,14 +17,20 @@ pub(crate) struct Registered {
 }
 
 impl Registered {
-    /// Registers the mesh that `shape` is.
+    /// Registers the mesh that `shape` is, unless it is registered.
     pub(super) fn new(shape: &SharedShape, tree: PreparedRef, registry: &Registry) -> Arc<Self> {
         let registered = Arc::new(Self { shape: shape.clone(), tree });
-        if let Some(mesh) = shape.as_trimesh() {
-            let mut meshes = registry.0.write().unwrap_or_else(PoisonError::into_inner);
+        let Some(mesh) = shape.as_trimesh() else {
+            return registered;
+        };
+        let mut meshes = registry.0.write().unwrap_or_else(PoisonError::into_inner);
+        let known = meshes.get(&address(mesh)).and_then(Weak::upgrade);
+        if known.is_none() {
             meshes.insert(address(mesh), Arc::downgrade(&registered));
         }
-        registered
+        // The new one goes only now, if it is not needed: it may take the lock.
+        drop(meshes);
+        known.unwrap_or(registered)
     }
 
     pub(crate) fn tree(&self) -> &PreparedRef {

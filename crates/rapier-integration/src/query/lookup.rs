@@ -101,6 +101,12 @@ pub(crate) struct MeshQuery<'a> {
 impl MeshQuery<'_> {
     /// The trees of both meshes, if they are registered or so small that theirs are built at once.
     pub(super) fn trees(&self) -> Option<Trees> {
+        let has_one = |seen: &Hierarchy<'_>| {
+            self.cache.is_small(seen.mesh) || self.cache.registered(seen.mesh).is_some()
+        };
+        if !self.meshes.iter().all(has_one) {
+            return None;
+        }
         self.each(|memory, seen| memory.prepare(self.cache, seen))
     }
 

@@ -1,6 +1,7 @@
 //! The backends that are compared.
 
 use std::fmt;
+use std::ops::Deref;
 use std::sync::Arc;
 
 use clap::ValueEnum;
@@ -14,6 +15,23 @@ use super::{Primed, Probe, Timed};
 
 /// A dispatcher as Rapier takes it.
 pub type SharedDispatcher = Arc<dyn PersistentQueryDispatcher<ContactManifoldData, ContactData>>;
+
+/// A backend's dispatcher.
+#[derive(Clone)]
+pub struct Dispatcher {
+    /// As Rapier takes it.
+    pub shared: SharedDispatcher,
+    /// As what it is, unless it is stock's.
+    pub sbbk: Option<SbbkDispatcher>,
+}
+
+impl Deref for Dispatcher {
+    type Target = SharedDispatcher;
+
+    fn deref(&self) -> &SharedDispatcher {
+        &self.shared
+    }
+}
 
 /// Who answers the contact queries of a world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum, Serialize)]
@@ -34,15 +52,18 @@ impl Backend {
     pub const ALL: [Self; 4] = [Self::Stock, Self::AabbOnly, Self::Sbbk, Self::SbbkParry];
 
     /// A fresh dispatcher, with nothing cached.
-    pub fn dispatcher(self) -> SharedDispatcher {
+    pub fn dispatcher(self) -> Dispatcher {
         let mut config = SbbkConfig::default();
         match self {
-            Self::Stock => return Arc::new(DefaultQueryDispatcher),
+            Self::Stock => {
+                return Dispatcher { shared: Arc::new(DefaultQueryDispatcher), sbbk: None };
+            }
             Self::AabbOnly => config = SbbkConfig::aabb_only(),
             Self::Sbbk => {}
             Self::SbbkParry => config.contacts = ContactGenerator::Parry,
         }
-        Arc::new(SbbkDispatcher::new(config))
+        let sbbk = SbbkDispatcher::new(config);
+        Dispatcher { shared: Arc::new(sbbk.clone()), sbbk: Some(sbbk) }
     }
 
     /// Makes a fresh, timed dispatcher the one that answers `world`'s narrow phase. It is
@@ -55,7 +76,7 @@ impl Backend {
             dispatcher,
             probe: Probe::default(),
         };
-        let timed = Timed::new(installed.dispatcher.clone(), installed.probe.clone());
+        let timed = Timed::new(installed.dispatcher.shared.clone(), installed.probe.clone());
         world.narrow_phase.set_query_dispatcher(timed);
         installed
     }
@@ -75,7 +96,7 @@ impl fmt::Display for Backend {
 /// What [`Backend::install`] put into a world.
 pub struct Installed {
     /// The dispatcher, untimed, with the trees that the world's queries use: for asking it afresh.
-    pub dispatcher: SharedDispatcher,
+    pub dispatcher: Dispatcher,
     /// Times and answers of the world's own queries.
     pub probe: Probe,
     /// Keeps the trees from being dropped while nothing touches.

@@ -20,7 +20,7 @@ mod probe;
 mod timed;
 
 pub use answer::{Answer, Question, Reported, shape_address};
-pub use kind::{Backend, Installed, SharedDispatcher};
+pub use kind::{Backend, Dispatcher, Installed, SharedDispatcher};
 pub use primed::Primed;
 pub use probe::{PairKind, Probe, Tally, clock_cost};
 pub use timed::Timed;

@@ -12,7 +12,7 @@ use rapier3d::parry::query::ContactManifoldsWorkspace;
 use rapier3d::parry::shape::Shape;
 
 use super::turns::{race, timed};
-use crate::backend::{Backend, Primed, SharedDispatcher};
+use crate::backend::{Backend, Dispatcher, Primed, SharedDispatcher};
 use crate::metrics::Summary;
 
 /// How dispatchers are called, for notes.
@@ -21,7 +21,7 @@ pub(super) const DIRECT_NOTE: &str = "dispatchers called directly: contact skins
 
 /// Stock and SBBK, the trees built that SBBK builds unasked.
 pub(super) struct Contest {
-    pub dispatchers: [SharedDispatcher; 2],
+    pub dispatchers: [Dispatcher; 2],
     _primed: [Primed; 2],
 }
 

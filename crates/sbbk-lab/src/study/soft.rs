@@ -181,7 +181,7 @@ impl Followed {
             aabb_only: tree(&ball, LayerPlan::AABB_ONLY)?,
             parry: SharedShape::new(deformable.map_err(named)?),
             torus: shape(&mesh::torus(1.0, 0.4, 24, 12))?,
-            dispatcher: Backend::Sbbk.dispatcher(),
+            dispatcher: Backend::Sbbk.dispatcher().shared,
             memory: Memory::default(),
             ball,
         })
@@ -206,7 +206,7 @@ impl Followed {
         let pos12 = Pose3::from_parts(Vec3::new(1.5, 0.4, 0.2), Quat::from_rotation_x(1.0));
         let mut fresh = Memory::default();
         self.memory.ask(&self.dispatcher, [&*self.parry, &*self.torus], &pos12, 0.02);
-        fresh.ask(&Backend::Sbbk.dispatcher(), [&copy, &*self.torus], &pos12, 0.02);
+        fresh.ask(&Backend::Sbbk.dispatcher().shared, [&copy, &*self.torus], &pos12, 0.02);
         let [refitted, built] = [&self.memory, &fresh].map(|memory| {
             let pairs = memory.manifolds.iter();
             pairs.map(|manifold| (manifold.subshape1, manifold.subshape2)).collect()

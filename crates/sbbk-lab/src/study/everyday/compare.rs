@@ -8,7 +8,7 @@ use rapier3d::math::Real;
 use rapier3d::pipeline::PhysicsWorld;
 
 use super::truth::Pair;
-use crate::backend::{Backend, Primed, SharedDispatcher};
+use crate::backend::{Backend, Dispatcher, Primed};
 use crate::metrics::ErrorCount;
 
 /// Contacts this close to the prediction distance, as a share of it, may be there or not.
@@ -18,7 +18,7 @@ const DISTANCE_BAND: Real = 0.05;
 
 /// Contacts that SBBK has lost or added, beside stock's, which here stand for the truth.
 pub(super) struct Comparison {
-    dispatchers: [SharedDispatcher; 2],
+    dispatchers: [Dispatcher; 2],
     primed: Vec<Primed>,
     /// Pairs of colliders with a mesh, by their deepest contact, and sensors by whether they meet.
     pub pairs: ErrorCount,

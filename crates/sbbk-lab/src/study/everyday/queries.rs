@@ -14,7 +14,7 @@ use rapier3d::parry::query::details::ShapeCastOptions;
 use super::ground::{Ground, above, head, shape};
 use super::measure::verdict;
 use super::{PREDICTION, QUERIES};
-use crate::backend::{Backend, SharedDispatcher};
+use crate::backend::{Backend, Dispatcher, SharedDispatcher};
 use crate::metrics::{ErrorCount, Summary};
 use crate::report::Row;
 use crate::scene::SceneError;
@@ -177,7 +177,7 @@ impl Asked<'_> {
     }
 
     /// Answers that only one has, or that differ, beside stock's.
-    fn compare(&self, [stock, sbbk]: &[SharedDispatcher; 2]) -> ErrorCount {
+    fn compare(&self, [stock, sbbk]: &[Dispatcher; 2]) -> ErrorCount {
         let start = Instant::now();
         let mut counts = ErrorCount::default();
         for pose in self.poses.iter().take_while(|_| start.elapsed() < 10 * BUDGET) {
