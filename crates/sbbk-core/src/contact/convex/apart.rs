@@ -16,6 +16,13 @@ const STEPS: u32 = 60;
 /// squared distance: directions are off by about as much.
 const LEVEL: f64 = 1.0e-12;
 
+/// The same at most, where rounding moves the slope by more than `LEVEL`: a tenth of what a proof may
+/// leave open. The distance is off by the square of what directions are.
+const NEARLY_LEVEL: f64 = 1.0e-8;
+
+/// Rounding of points, some ten steps, as a share of the distance at which bodies touch.
+const ROUNDING: f64 = 1.0e-15 / DOUBTFUL;
+
 /// The part of an edge at which a search along it ends.
 const PART: f64 = 1.0e-14;
 
@@ -34,12 +41,14 @@ pub(super) trait Solid: SupportMap {
     /// squared distance rises along the edge.
     #[inline(always)]
     fn near_edge(&self, start: DVec3, edge: DVec3, touching: f64) -> Near {
+        let rounding = ROUNDING * touching * edge.length();
         let at = |t: f64| {
             let near = Near::of(self, start + edge * t);
             (near, near.from_shape.dot(edge))
         };
         let is_end = |near: &Near, slope: f64| {
-            slope.abs() <= LEVEL * near.squared || near.squared <= touching * touching
+            let level = (LEVEL * near.squared).max(rounding.min(NEARLY_LEVEL * near.squared));
+            slope.abs() <= level || near.squared <= touching * touching
         };
         let ((first, mut low_slope), (last, mut high_slope)) = (at(0.0), at(1.0));
         if low_slope >= 0.0 || is_end(&first, low_slope) {
@@ -48,8 +57,8 @@ pub(super) trait Solid: SupportMap {
         if high_slope <= 0.0 || is_end(&last, high_slope) {
             return last;
         }
-        // The rule of false position; an end that stays counts half. Every third step is half the
-        // way: where the edge touches, the slope rises from nothing.
+        // First a guess. Then the rule of false position; an end that stays counts half. Every third
+        // step is half the way: where the edge touches, the slope rises from nothing.
         let (mut low, mut high, mut side) = (0.0, 1.0, 0);
         let mut nearest = if first.squared < last.squared { first } else { last };
         for step in 0..=STEPS {
@@ -176,7 +185,8 @@ impl<'a, S: Solid> Pair<'a, S> {
             }
         }
         for j in 0..3 {
-            // No corner is nearer to the plane across the way than this point, or none of an edge.
+            // The plane through this point, across the way to it: if no corner is on the near side, it
+            // is nearest; if no end of an edge is, that edge is no nearer.
             let [a, b, c] = self.nearer(&nearest);
             let open = a.max(b).max(c);
             if open <= 0.0 {
