@@ -16,6 +16,13 @@ const STEPS: u32 = 60;
 /// squared distance: directions are off by about as much.
 const LEVEL: f64 = 1.0e-12;
 
+/// The same at most, where rounding moves the slope by more than `LEVEL`: a tenth of what a proof may
+/// leave open. The distance is off by the square of what directions are.
+const NEARLY_LEVEL: f64 = 1.0e-8;
+
+/// Rounding of points, some ten steps, as a share of the distance at which bodies touch.
+const ROUNDING: f64 = 1.0e-15 / DOUBTFUL;
+
 /// The part of an edge at which a search along it ends.
 const PART: f64 = 1.0e-14;
 
@@ -24,16 +31,24 @@ pub(super) trait Solid: SupportMap {
     /// The way from the shape to a point; zero inside.
     fn outside(&self, point: DVec3) -> DVec3;
 
+    /// Where along an edge the solid is likely to be nearest, as a share of the edge; any number.
+    #[inline(always)]
+    fn likely(&self, _start: DVec3, _edge: DVec3) -> f64 {
+        0.5
+    }
+
     /// The point of an edge that is nearest, or one that is within `touching`. The slope of the
     /// squared distance rises along the edge.
     #[inline(always)]
     fn near_edge(&self, start: DVec3, edge: DVec3, touching: f64) -> Near {
+        let rounding = ROUNDING * touching * edge.length();
         let at = |t: f64| {
             let near = Near::of(self, start + edge * t);
             (near, near.from_shape.dot(edge))
         };
         let is_end = |near: &Near, slope: f64| {
-            slope.abs() <= LEVEL * near.squared || near.squared <= touching * touching
+            let level = (LEVEL * near.squared).max(rounding.min(NEARLY_LEVEL * near.squared));
+            slope.abs() <= level || near.squared <= touching * touching
         };
         let ((first, mut low_slope), (last, mut high_slope)) = (at(0.0), at(1.0));
         if low_slope >= 0.0 || is_end(&first, low_slope) {
@@ -42,12 +57,20 @@ pub(super) trait Solid: SupportMap {
         if high_slope <= 0.0 || is_end(&last, high_slope) {
             return last;
         }
-        // The rule of false position; an end that stays counts half. Every third step is half the
-        // way: where the edge touches, the slope rises from nothing.
+        // First a guess. Then the rule of false position; an end that stays counts half. Every third
+        // step is half the way: where the edge touches, the slope rises from nothing.
         let (mut low, mut high, mut side) = (0.0, 1.0, 0);
         let mut nearest = if first.squared < last.squared { first } else { last };
-        for step in 1..=STEPS {
-            let t = if step % 3 == 0 {
+        for step in 0..=STEPS {
+            let t = if step == 0 {
+                let likely = self.likely(start, edge);
+                // Also not a number.
+                let is_between = likely > low && likely < high;
+                if !is_between {
+                    continue;
+                }
+                likely
+            } else if step % 3 == 0 {
                 0.5 * (low + high)
             } else {
                 high - high_slope * (high - low) / (high_slope - low_slope)
@@ -137,34 +160,63 @@ impl<'a, S: Solid> Pair<'a, S> {
         Some(Gap { width: low - self.solid.support(outward).dot(outward), outward })
     }
 
-    /// The nearest point of bodies that do not cross.
+    /// The nearest point of bodies that do not cross. None if they are surely farther apart than
+    /// `beyond`.
     #[inline(always)]
-    pub fn nearest(&self, of_triangle: Option<&Gap>) -> Near {
-        let [a, b, c] = self.triangle.map(|corner| Near::of(self.solid, corner));
+    pub fn nearest(&self, of_triangle: Option<&Gap>, beyond: f64) -> Option<Near> {
+        if let Some(&Gap { width, outward }) = of_triangle
+            && width > -self.doubtful()
+        {
+            let over = self.solid.support(outward) + outward * width;
+            if self.is_over(over, outward) {
+                let from_shape = outward * width;
+                return Some(Near { point: over, from_shape, squared: width * width });
+            }
+        }
+        let [a, b, c] = [
+            Near::of(self.solid, self.triangle[0]),
+            Near::of(self.solid, self.triangle[1]),
+            Near::of(self.solid, self.triangle[2]),
+        ];
         let mut nearest = a;
         for other in [b, c] {
             if other.squared < nearest.squared {
                 nearest = other;
             }
         }
-        if self.open(&nearest) <= 0.0 {
-            return nearest;
-        }
-        if let Some(&Gap { width, outward }) = of_triangle
-            && width > -self.doubtful()
-        {
-            let over = self.solid.support(outward) + outward * width;
-            if self.is_over(over, outward) {
-                return Near { point: over, from_shape: outward * width, squared: width * width };
-            }
-        }
         for j in 0..3 {
+            // The plane through this point, across the way to it: if no corner is on the near side, it
+            // is nearest; if no end of an edge is, that edge is no nearer.
+            let [a, b, c] = self.nearer(&nearest);
+            let open = a.max(b).max(c);
+            if open <= 0.0 {
+                break;
+            }
+            if self.is_beyond(&nearest, open, beyond) {
+                return None;
+            }
+            let ends = [[a, b], [b, c], [c, a]][j];
+            if ends[0] <= 0.0 && ends[1] <= 0.0 {
+                continue;
+            }
             let other = self.near_edge(j);
             if other.squared < nearest.squared {
                 nearest = other;
             }
         }
-        nearest
+        Some(nearest)
+    }
+
+    /// Whether the plane across the way to a point proves that the bodies are farther apart than
+    /// `beyond`. The support point is asked for: of the slope of a cone, the way is no exact normal.
+    #[inline(always)]
+    fn is_beyond(&self, near: &Near, open: f64, beyond: f64) -> bool {
+        let is_farther = |bound: f64| bound > 0.0 && bound * bound > beyond * beyond * near.squared;
+        is_farther(near.squared - open) && {
+            let [a, b, c] = self.triangle.map(|corner| corner.dot(near.from_shape));
+            let reach = self.solid.support(near.from_shape).dot(near.from_shape);
+            is_farther(a.min(b).min(c) - reach)
+        }
     }
 
     #[inline(always)]
@@ -183,8 +235,15 @@ impl<'a, S: Solid> Pair<'a, S> {
     /// solid, times the length of that way.
     #[inline(always)]
     fn open(&self, near: &Near) -> f64 {
-        let [a, b, c] = self.triangle.map(|corner| (near.point - corner).dot(near.from_shape));
+        let [a, b, c] = self.nearer(near);
         a.max(b).max(c)
+    }
+
+    /// The same for each corner.
+    #[inline(always)]
+    fn nearer(&self, near: &Near) -> [f64; 3] {
+        let [a, b, c] = *self.triangle;
+        [a, b, c].map(|corner| (near.point - corner).dot(near.from_shape))
     }
 
     /// The contact at the nearest point. None if the bodies touch, or where places that are apart
@@ -207,7 +266,7 @@ impl<'a, S: Solid> Pair<'a, S> {
     pub fn touching_after(&self, gap: &Gap) -> Option<DVec3> {
         let moved = self.moved(gap);
         let pair = Pair { triangle: &moved, ..*self };
-        let near = pair.nearest(pair.triangle_gap().as_ref());
+        let near = pair.nearest(pair.triangle_gap().as_ref(), f64::INFINITY)?;
         let is_touching = near.squared <= self.doubtful() * self.doubtful();
         is_touching.then_some(near.point + gap.outward * gap.width)
     }

@@ -105,7 +105,7 @@ pub(super) fn cuboid_contact(
     let contact = if widest.0.width < -doubtful {
         pair.crossing(&widest.0, widest.1)
     } else {
-        pair.contact(&pair.nearest(of_triangle.as_ref()))
+        pair.contact(&pair.nearest(of_triangle.as_ref(), beyond)?)
     };
     contact.or_else(|| by_search(triangle, cuboid, f64::INFINITY))
 }

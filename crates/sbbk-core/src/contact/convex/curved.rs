@@ -18,7 +18,7 @@ use super::difference::Vertex;
 use super::simplex;
 use super::support::{ConeSupport, CylinderSupport};
 use super::{ConvexContact, by_search};
-use crate::contact::closest::{crossing, within_edge};
+use crate::contact::closest::within_edge;
 use glamx::DVec3;
 
 /// Share of the size by which a gap must be beyond the margin to end the search.
@@ -38,7 +38,22 @@ const PARALLEL: f64 = 1.0e-9;
 enum Feature {
     Corner,
     Face,
-    Edge(usize),
+    /// The slope and an edge.
+    Slope(usize),
+    /// A rim and an edge.
+    Rim(usize),
+}
+
+/// The widest gap so far.
+struct Best(Gap, Feature);
+
+impl Best {
+    #[inline(always)]
+    fn take(&mut self, gap: Gap, feature: Feature) {
+        if gap.width > self.0.width {
+            *self = Self(gap, feature);
+        }
+    }
 }
 
 /// A solid around the y axis.
@@ -57,6 +72,8 @@ pub(super) trait Turned: Solid {
     fn rims(&self) -> [(f64, f64); 2];
 
     fn radius(&self) -> f64;
+
+    fn half_height(&self) -> f64;
 }
 
 impl Solid for CylinderSupport {
@@ -65,6 +82,11 @@ impl Solid for CylinderSupport {
         let across = (x * x + z * z).sqrt();
         let scale = if across > self.radius { 1.0 - self.radius / across } else { 0.0 };
         DVec3::new(x * scale, y - y.clamp(-self.half_height, self.half_height), z * scale)
+    }
+
+    #[inline(always)]
+    fn likely(&self, start: DVec3, edge: DVec3) -> f64 {
+        near_slope(start, edge, 0.0)
     }
 }
 
@@ -87,6 +109,10 @@ impl Turned for CylinderSupport {
 
     fn radius(&self) -> f64 {
         self.radius
+    }
+
+    fn half_height(&self) -> f64 {
+        self.half_height
     }
 }
 
@@ -115,6 +141,11 @@ impl Solid for ConeSupport {
         let scale = if across > 0.0 { out / across } else { 0.0 };
         DVec3::new(x * scale, up, z * scale)
     }
+
+    #[inline(always)]
+    fn likely(&self, start: DVec3, edge: DVec3) -> f64 {
+        near_slope(start, edge, self.radius / (2.0 * self.half_height))
+    }
 }
 
 impl Turned for ConeSupport {
@@ -140,6 +171,10 @@ impl Turned for ConeSupport {
     fn radius(&self) -> f64 {
         self.radius
     }
+
+    fn half_height(&self) -> f64 {
+        self.half_height
+    }
 }
 
 pub(super) fn turned_contact<S: Turned>(
@@ -157,17 +192,20 @@ pub(super) fn turned_contact<S: Turned>(
         return None;
     }
     let (low, high) = pair.heights();
-    let end = solid.support(DVec3::Y).y;
+    let end = solid.half_height();
     if low - end > beyond || -end - high > beyond {
         return None;
     }
-    let near = pair.nearest(of_triangle.as_ref());
     let is_through = |gap: Gap| gap.width < 0.0 && pair.is_pierced(&gap);
-    let touches = near.squared <= pair.doubtful() * pair.doubtful();
-    let contact = if touches || of_triangle.is_some_and(is_through) {
+    let contact = if of_triangle.is_some_and(is_through) {
         pair.crossing(of_triangle)
     } else {
-        pair.contact(&near)
+        let near = pair.nearest(of_triangle.as_ref(), beyond)?;
+        if near.squared <= pair.doubtful() * pair.doubtful() {
+            pair.crossing(of_triangle)
+        } else {
+            pair.contact(&near)
+        }
     };
     contact.or_else(|| by_search(triangle, solid, f64::INFINITY))
 }
@@ -200,60 +238,87 @@ impl<S: Turned> Pair<'_, S> {
     #[inline(always)]
     fn crossing(&self, of_triangle: Option<Gap>) -> Option<ConvexContact> {
         let solid = self.solid;
-        let mut best = (Gap { width: f64::NEG_INFINITY, outward: DVec3::Y }, Feature::Corner);
-        let mut take = |gap: Gap, feature: Feature| {
-            if gap.width > best.0.width {
-                best = (gap, feature);
-            }
-        };
+        let nothing = Gap { width: f64::NEG_INFINITY, outward: DVec3::Y };
+        let mut best = Best(nothing, Feature::Corner);
         if let Some(gap) = of_triangle {
-            take(gap, Feature::Face);
-            take(self.gap(-gap.outward), Feature::Face);
+            best.take(gap, Feature::Face);
+            best.take(self.gap(-gap.outward), Feature::Face);
         }
         let (low, high) = self.heights();
         for (height, side) in solid.ends() {
             let width = if side > 0.0 { low - height } else { height - high };
-            take(Gap { width, outward: DVec3::Y * side }, Feature::Corner);
+            best.take(Gap { width, outward: DVec3::Y * side }, Feature::Corner);
         }
         let rise = solid.slope();
         let run = (1.0 - rise * rise).sqrt();
+        let (radius, half_height) = (solid.radius(), solid.half_height());
+        // All of the slope reaches as far along its normal.
+        let steepest = DVec3::new(run, rise, 0.0);
+        let reach = solid.support(steepest).dot(steepest);
         for corner in *self.triangle {
             let across = (corner.x * corner.x + corner.z * corner.z).sqrt();
+            if across * run + corner.y * rise - reach <= best.0.width {
+                continue;
+            }
             // From the axis any direction is as good.
             let [x, z] =
                 if across > 0.0 { [corner.x / across, corner.z / across] } else { [1.0, 0.0] };
-            take(self.gap(DVec3::new(x * run, rise, z * run)), Feature::Corner);
+            best.take(self.gap(DVec3::new(x * run, rise, z * run)), Feature::Corner);
         }
         for (j, edge) in self.edges.into_iter().enumerate() {
+            let [start, end, third] = [0, 1, 2].map(|i| self.triangle[(j + i) % 3]);
+            // An edge that touches after the move is no farther than that now.
+            let depth = -best.0.width;
+            let [most, least] = [half_height + depth, -half_height - depth];
+            if (start.y > most && end.y > most) || (start.y < least && end.y < least) {
+                continue;
+            }
             // Across the edge: level, and as far up as can be.
-            let level = edge.cross(DVec3::Y);
+            let level = DVec3::new(-edge.z, 0.0, edge.x);
             let (level_squared, squared) = (level.length_squared(), edge.length_squared());
             if level_squared <= PARALLEL * PARALLEL * squared {
                 // Along the axis: level, from the axis to the edge.
-                let DVec3 { x, z, .. } = self.triangle[j];
-                let outward = DVec3::new(x, 0.0, z).normalize_or(DVec3::X);
-                take(self.gap(outward), Feature::Edge(j));
+                let outward = DVec3::new(start.x, 0.0, start.z).normalize_or(DVec3::X);
+                best.take(self.gap(outward), Feature::Slope(j));
+                continue;
+            }
+            let beside = start.dot(level);
+            if beside * beside > (radius + depth).powi(2) * level_squared {
                 continue;
             }
             let level = level / level_squared.sqrt();
             let up = level.cross(edge) / squared.sqrt();
             let up = if up.y < 0.0 { -up } else { up };
+            // By both coordinates across the edge: where it is, and the way to the third corner,
+            // which is not below the edge that touches.
+            let [at_level, at_up] = [start.dot(level), start.dot(up)];
+            let [to_level, to_up] = [(third - start).dot(level), (third - start).dot(up)];
+            let is_lowest = |x: f64, y: f64| x * to_level + y * to_up >= -self.doubtful();
             let sine = rise / up.y;
             if sine <= 1.0 {
                 let cosine = (1.0 - sine * sine).sqrt();
-                for side in [level * cosine, level * -cosine] {
-                    take(self.gap(side + up * sine), Feature::Edge(j));
+                for x in [cosine, -cosine] {
+                    let bound = at_level * x + at_up * sine - reach;
+                    if bound > best.0.width && is_lowest(x, sine) {
+                        best.take(self.gap(level * x + up * sine), Feature::Slope(j));
+                    }
                 }
             }
             for (height, side) in solid.rims() {
-                let to_edge = DVec3::Y * height - self.triangle[j];
-                let coordinates = [to_edge.dot(level), to_edge.dot(up) * side];
-                if let Some([x, y]) = rim_and_edge(coordinates, up.y, solid.radius()) {
-                    take(self.gap(level * x + up * (y * side)), Feature::Edge(j));
+                let coordinates = [-at_level, (height * up.y - at_up) * side];
+                // The directions between these two.
+                let x = if coordinates[0] < 0.0 { 1.0 } else { -1.0 };
+                if !(is_lowest(x, 0.0) || is_lowest(0.0, side)) {
+                    continue;
+                }
+                if let Some([x, y]) = rim_and_edge(coordinates, up.y, radius)
+                    && is_lowest(x, y * side)
+                {
+                    best.take(self.gap(level * x + up * (y * side)), Feature::Rim(j));
                 }
             }
         }
-        let (gap, feature) = best;
+        let Best(gap, feature) = best;
         if gap.width >= -self.doubtful() {
             return None;
         }
@@ -281,20 +346,44 @@ impl<S: Turned> Pair<'_, S> {
                     [0, 1, 2].map(|i| Vertex { point: over - self.triangle[i], corner: i });
                 (simplex::face(a, b, c).squared <= touching).then_some(over)
             }
-            // A point of a rim, or of the line of the slope that is nearest to the axis.
-            Feature::Edge(j) => {
+            // The solid touches in the plane of the axis and the direction.
+            Feature::Slope(j) | Feature::Rim(j) => {
                 let (start, edge) = (self.triangle[j], self.edges[j]);
-                let rim = self.solid.support(gap.outward) + shift - start;
-                let cross = edge.cross(DVec3::Y);
-                let [on_slope, _] = crossing(-start, edge, DVec3::Y, cross, cross.length_squared());
-                let on_rim = rim.dot(edge) / edge.length_squared();
-                [on_rim, on_slope]
-                    .into_iter()
-                    .map(|s| start + edge * within_edge(s))
-                    .find(|&point| Near::of(self.solid, point - shift).squared <= touching)
+                let beside = |v: DVec3| v.x * gap.outward.z - v.z * gap.outward.x;
+                let in_plane = || -beside(start) / beside(edge);
+                let rim = || {
+                    let rim = self.solid.support(gap.outward) + shift;
+                    (rim - start).dot(edge) / edge.length_squared()
+                };
+                let at = |s: f64| {
+                    let point = start + edge * within_edge(s);
+                    (Near::of(self.solid, point - shift).squared <= touching).then_some(point)
+                };
+                match feature {
+                    Feature::Slope(_) => at(in_plane()).or_else(|| at(rim())),
+                    _ => at(rim()).or_else(|| at(in_plane())),
+                }
             }
         }
     }
+}
+
+/// Where the line of an edge is nearest to an endless slope, as a share of the edge; the slope
+/// comes `lean` nearer to the axis for each unit up.
+///
+/// Across the slope the distance is as `√(a² + l² t²) + lean y t`, with `t` from where the edge is
+/// nearest to the axis, by `a`; `l` is its level length and `y` its height. It is least where
+/// `l² t = -lean y √(a² + l² t²)`. Steeper edges have no such place.
+#[inline(always)]
+fn near_slope(start: DVec3, edge: DVec3, lean: f64) -> f64 {
+    let level_squared = edge.x * edge.x + edge.z * edge.z;
+    let to_axis = -(start.x * edge.x + start.z * edge.z) / level_squared;
+    let fall = -lean * edge.y;
+    if fall == 0.0 {
+        return to_axis;
+    }
+    let beside = (start.x * edge.z - start.z * edge.x) / level_squared;
+    to_axis + fall * beside.abs() / (level_squared - fall * fall).sqrt()
 }
 
 /// The direction, by its level and upright coordinates, of the least depth of the surface that a
