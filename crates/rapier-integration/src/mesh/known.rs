@@ -63,7 +63,7 @@ impl KnownMesh {
     /// once.
     pub(crate) fn tree(&mut self, mesh: &TriMesh, cache: &Arc<TreeCache>) -> Option<&PreparedMesh> {
         /// Queries from one try to the next. More: trees come later; fewer: each costs two locks.
-        const PATIENCE: u8 = 15;
+        const PATIENCE: u8 = 7;
         let Self::Rigid { tree, wait, .. } = self else {
             return None;
         };
