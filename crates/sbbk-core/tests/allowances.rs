@@ -205,7 +205,7 @@ fn boxes_the_margin_apart_are_found() {
             let (centre, half) = (random.vector(far), random.vector(0.5).abs() + least);
             [centre - half, centre + half]
         });
-        let [[min1, max1], [min2, max2]] = boxes;
+        let [[_, max1], [min2, max2]] = boxes;
         // The corners of box 2 in frame 1, lowest along the axis.
         let below = |placement: &Placement| {
             let pick = |bit: usize, k: usize| if k >> bit & 1 == 0 { min2[bit] } else { max2[bit] };
