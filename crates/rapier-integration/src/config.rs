@@ -74,7 +74,7 @@ impl Default for SbbkConfig {
             layers: LayerPlan::SBBK,
             contacts: ContactGenerator::Exact,
             kinds: Kinds::default(),
-            idle_tree_bytes: 64 << 20,
+            idle_tree_bytes: 16 << 20,
             count_queries: false,
         }
     }
