@@ -28,23 +28,12 @@ pub struct Kinds {
     pub convex_shapes: bool,
     /// Compounds of convex shapes, and polylines.
     pub composites: bool,
-    /// Balls that touch about six triangles at a time or fewer, or a deformable mesh, if
-    /// [`convex_shapes`](Self::convex_shapes) are. Parry's contacts of balls are exact at every scale
-    /// too, and there its collision detection takes a tenth to a quarter less time; but it loses
-    /// impulses of contacts where a ball rolls on.
-    pub balls_on_coarse_meshes: bool,
 }
 
 impl Default for Kinds {
     /// All.
     fn default() -> Self {
-        Self {
-            meshes: true,
-            height_fields: true,
-            convex_shapes: true,
-            composites: true,
-            balls_on_coarse_meshes: true,
-        }
+        Self { meshes: true, height_fields: true, convex_shapes: true, composites: true }
     }
 }
 

@@ -14,7 +14,8 @@ use sbbk_core::tree::{BuildError, Tree};
 
 use crate::mesh::{Hierarchy, PreparedRef, Registered, TreeCache, are_near, is_near};
 use crate::pair::{
-    Answer, ConvexPair, FieldPair, MeshPair, MeshPlace, Pair, PairPose, Parts, answer,
+    Answer, ConvexPair, FieldPair, MeshPair, MeshPlace, Pair, PairPose, Parts, answer, is_few,
+    touch_few,
 };
 use crate::query::MeshQuery;
 use crate::stats::QueryCounters;
@@ -146,9 +147,6 @@ impl SbbkDispatcher {
             (None, Some(mesh)) => (mesh, g1, MeshPlace::Second),
             (None, None) => return Answer::Unsupported,
         };
-        if !kinds.balls_on_coarse_meshes && self.is_parrys_ball(mesh, other) {
-            return Answer::Unsupported;
-        }
         let is_answered = |parts: &Parts<'_>| match parts {
             Parts::One(_) => kinds.convex_shapes,
             Parts::Many(_) => kinds.composites,
@@ -168,6 +166,16 @@ impl SbbkDispatcher {
         let Some([mesh]) = self.look_at([mesh]) else {
             return Answer::Unsupported;
         };
+        if let Some(ball) = other.as_ball().filter(|ball| is_few(mesh.mesh, ball)) {
+            if workspace.is_none() {
+                self.cache.met();
+            }
+            touch_few(&mesh, ball, mesh_place, pos12, prediction, manifolds, workspace);
+            if self.config.count_queries {
+                self.counters.add(Answer::Descended, &DescentCounts::default());
+            }
+            return Answer::Descended;
+        }
         let pose = &PairPose::new(pos12, prediction);
         if let Some(parts) = parts {
             self.ask(&ConvexPair { pose, mesh, parts, mesh_place, contacts }, manifolds, workspace)
@@ -177,19 +185,6 @@ impl SbbkDispatcher {
         } else {
             Answer::Unsupported
         }
-    }
-
-    /// Whether a shape is a ball that touches only a few triangles of a mesh at a time, by the mean
-    /// size of the triangles, or a mesh of which nothing can be kept: see [`Kinds`](crate::Kinds).
-    fn is_parrys_ball(&self, mesh: &TriMesh, other: &dyn Shape) -> bool {
-        /// So many triangles for a half of a ball's box.
-        const FEW: Real = 6.0;
-        other.as_ball().is_some_and(|ball| {
-            let size = mesh.bvh().root_aabb().half_extents().length_squared();
-            let count = mesh.indices().len() as Real * ball.radius * ball.radius;
-            let is_whole = || self.cache.look_at(mesh).is_some_and(|mesh| !mesh.is_broken());
-            size.is_finite() && count < FEW * size || mesh.is_deformable() && is_whole()
-        })
     }
 
     /// Whether shapes are apart, if Parry's hierarchies say so: above a vertex that is NaN they mean

@@ -5,6 +5,8 @@
 mod change;
 /// Memory allocated.
 mod cost;
+/// Balls that touch a few triangles.
+mod few;
 /// First queries: those of Parry's routine bit for bit, SBBK's own against brute force.
 mod fresh;
 /// Motion against fresh queries.

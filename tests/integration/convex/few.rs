@@ -1,0 +1,83 @@
+use oorandom::Rand32;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::math::{Pose, Real, Vector};
+use rapier3d::parry::query::DefaultQueryDispatcher;
+use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshFlags};
+use sbbk_lab::mesh;
+
+use super::question::{Question, bits, touches};
+use crate::support::{Manifold, Pair, counting, rotation, shape_with};
+
+/// Of 192 triangles, two units wide, bent.
+fn ground(flags: TriMeshFlags) -> TriMesh {
+    let bent = |v: Vector| v + Vector::Y * (0.3 * (0.7 * v.x).sin() + 0.2 * v.z.cos());
+    shape_with(&mesh::cuboid(Vector::new(8.0, 0.5, 8.0), 4).mapped(bent), flags)
+}
+
+/// Balls so large as a triangle or smaller. Would catch a contact that is lost, another than stock's,
+/// or in another order; one that depends on where the ball was; and manifolds without points.
+#[test]
+fn balls_on_large_triangles_touch_as_with_stock() {
+    let mut count = 0;
+    for flags in [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES] {
+        let ground = ground(flags);
+        for (seed, radius) in [0.05, 0.4, 1.0].into_iter().enumerate() {
+            let (dispatcher, unaware) = (counting(), SbbkDispatcher::default());
+            let shape = SharedShape::ball(radius);
+            let mut random = Rand32::new(seed as u64);
+            let mut pairs: [Pair; 2] = Default::default();
+            for i in 0..300 {
+                let way = 0.05 * i as Real;
+                let height = 0.5 + 0.3 * (0.7 * (way - 7.0)).sin() + 0.2 * (0.6 * way - 4.0).cos();
+                let depth = 0.1 * radius * random.rand_float();
+                let at = Vector::new(way - 7.0, height + radius - depth, 0.6 * way - 4.0);
+                let pose = Pose::from_parts(at, rotation(&mut random));
+                for (pair, flipped) in pairs.iter_mut().zip([false, true]) {
+                    let (mesh, shape) = (&ground, &shape);
+                    let question = Question { mesh, shape, pose, prediction: 0.02, flipped };
+                    let all = |found: &[Manifold]| found.iter().map(bits).collect::<Vec<_>>();
+                    let found = all(&question.ask(&dispatcher, pair).manifolds);
+                    assert_eq!(found, all(&question.fresh(&unaware)), "{radius}, {i}");
+                    let mut stock = question.fresh(&DefaultQueryDispatcher);
+                    stock.retain(|manifold| touches(manifold, question.prediction));
+                    assert_eq!(found, all(&stock), "{radius}, {i}");
+                    count += found.len();
+                }
+            }
+            let stats = dispatcher.stats();
+            assert_eq!((stats.pairs, stats.descended_queries), (2, stats.queries));
+        }
+    }
+    assert!(count > 2000, "{count} contacts");
+}
+
+/// What a host stores with each contact point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Impulse(u32);
+
+/// Would catch impulses that are lost where a ball rolls on, as in stock, or given to another
+/// triangle.
+#[test]
+fn contacts_keep_their_data_where_a_ball_rolls() {
+    let (ground, shape) = (ground(TriMeshFlags::empty()), SharedShape::ball(0.8));
+    let dispatcher = SbbkDispatcher::default();
+    let mut pair = Pair::<(), Impulse>::default();
+    let (mut kept, mut came) = (0, 0);
+    for i in 0..400 {
+        let way = 0.01 * i as Real;
+        let height = 0.5 + 0.3 * (0.7 * (way - 2.0)).sin() + 0.2 + 0.75;
+        let pose = Pose::translation(way - 2.0, height, 0.1);
+        let question =
+            Question { mesh: &ground, shape: &shape, pose, prediction: 0.02, flipped: false };
+        let before: Vec<u32> = pair.manifolds.iter().map(|m| m.subshape1).collect();
+        question.ask(&dispatcher, &mut pair);
+        for manifold in &mut pair.manifolds {
+            let is_old = before.contains(&manifold.subshape1);
+            *(if is_old { &mut kept } else { &mut came }) += 1;
+            let data = &mut manifold.points[0].data.0;
+            assert_eq!(*data, if is_old { manifold.subshape1 + 1 } else { 0 });
+            *data = manifold.subshape1 + 1;
+        }
+    }
+    assert!(kept > 300 && came > 4, "{kept} kept, {came} came");
+}
