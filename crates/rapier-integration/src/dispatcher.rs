@@ -14,8 +14,8 @@ use sbbk_core::tree::{BuildError, Tree};
 
 use crate::mesh::{Hierarchy, PreparedRef, Registered, TreeCache, are_near, is_near};
 use crate::pair::{
-    Answer, ConvexPair, FieldPair, MeshPair, MeshPlace, Pair, PairPose, Parts, answer, is_few,
-    touch_few,
+    Answer, ConvexPair, FewPair, FieldPair, MeshPair, MeshPlace, Pair, PairPose, Parts, answer,
+    is_few,
 };
 use crate::query::MeshQuery;
 use crate::stats::QueryCounters;
@@ -147,6 +147,12 @@ impl SbbkDispatcher {
             (None, Some(mesh)) => (mesh, g1, MeshPlace::Second),
             (None, None) => return Answer::Unsupported,
         };
+        if kinds.convex_shapes
+            && let Some(ball) = other.as_ball().filter(|ball| is_few(mesh, ball))
+        {
+            let pair = FewPair { mesh, is_broken: self.is_broken(mesh), ball, mesh_place };
+            return self.touch_few(pair, pos12, prediction, manifolds, workspace);
+        }
         let is_answered = |parts: &Parts<'_>| match parts {
             Parts::One(_) => kinds.convex_shapes,
             Parts::Many(_) => kinds.composites,
@@ -166,16 +172,6 @@ impl SbbkDispatcher {
         let Some([mesh]) = self.look_at([mesh]) else {
             return Answer::Unsupported;
         };
-        if let Some(ball) = other.as_ball().filter(|ball| is_few(mesh.mesh, ball)) {
-            if workspace.is_none() {
-                self.cache.met();
-            }
-            touch_few(&mesh, ball, mesh_place, pos12, prediction, manifolds, workspace);
-            if self.config.count_queries {
-                self.counters.add(Answer::Descended, &DescentCounts::default());
-            }
-            return Answer::Descended;
-        }
         let pose = &PairPose::new(pos12, prediction);
         if let Some(parts) = parts {
             self.ask(&ConvexPair { pose, mesh, parts, mesh_place, contacts }, manifolds, workspace)
@@ -190,9 +186,37 @@ impl SbbkDispatcher {
     /// Whether shapes are apart, if Parry's hierarchies say so: above a vertex that is NaN they mean
     /// nothing.
     fn are_apart<const COUNT: usize>(&self, are_near: bool, meshes: [&TriMesh; COUNT]) -> bool {
-        let is_broken = |mesh: &TriMesh| self.cache.look_at(mesh).is_some_and(|m| m.is_broken());
-        let may_mislead = |mesh: &&TriMesh| mesh.is_deformable() && is_broken(mesh);
-        !are_near && !meshes.iter().any(may_mislead)
+        !are_near && !meshes.iter().any(|mesh| self.is_broken(mesh))
+    }
+
+    /// Whether a mesh may deform and has vertices that are NaN or infinite.
+    fn is_broken(&self, mesh: &TriMesh) -> bool {
+        mesh.is_deformable() && self.cache.look_at(mesh).is_some_and(|mesh| mesh.is_broken())
+    }
+
+    /// The contacts of a mesh and a ball that touches few triangles, counted.
+    fn touch_few<M, C>(
+        &self,
+        pair: FewPair<'_>,
+        pos12: &Pose,
+        prediction: Real,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Answer
+    where
+        M: Default + Clone + Send + Sync + 'static,
+        C: Default + Copy + Send + Sync + 'static,
+    {
+        let is_first = workspace.is_none();
+        pair.answer(pos12, prediction, manifolds, workspace);
+        if is_first && workspace.is_some() {
+            self.cache.met();
+        }
+        let answer = if workspace.is_some() { Answer::Descended } else { Answer::Apart };
+        if self.config.count_queries {
+            self.counters.add(answer, &DescentCounts::default());
+        }
+        answer
     }
 
     /// The answer about shapes that are apart, of which no memory is kept.

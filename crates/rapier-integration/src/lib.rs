@@ -63,6 +63,9 @@
 //! | voxels, a custom shape, a deformable polyline | Parry | Parry |
 //! | a compound with any other part | Parry | Parry |
 //!
+//! Balls that touch about six triangles of a mesh at a time or fewer, by the triangles' mean size,
+//! have Parry's contacts: these are exact at every scale, and there nothing is quicker.
+//!
 //! SBBK's contacts of a convex shape are those of [`sbbk_core::contact::convex`], computed in f64;
 //! Parry says which feature of a polyhedron, cylinder or cone faces the triangle. Manifolds are in
 //! the order of stock's. With [`ContactGenerator::Parry`] the contacts of two meshes are those of

@@ -152,22 +152,6 @@ impl<'a> Hierarchy<'a> {
         ControlFlow::Continue(())
     }
 
-    /// The same for triangles whose boxes meet `aabb`, a leaf of no mesh: Parry's own test.
-    #[inline(always)]
-    pub(crate) fn near_box(
-        &self,
-        aabb: &BvhNode,
-        mut found: impl FnMut(u32) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        if self.is_broken {
-            return self.whole_ones().try_for_each(found);
-        }
-        for triangle in self.mesh.bvh().leaves(|node| node.intersects(aabb)) {
-            found(triangle)?;
-        }
-        ControlFlow::Continue(())
-    }
-
     /// The box around some triangles.
     pub(crate) fn tested(&self, triangles: &[u32]) -> TestedBox {
         let corners = || triangles.iter().flat_map(|&triangle| self.corners(triangle));

@@ -16,3 +16,4 @@ pub(crate) use identity::MeshToken;
 pub(crate) use known::{Change, KnownMesh};
 pub(crate) use prepared::PreparedMesh;
 pub(crate) use registry::Registered;
+pub(crate) use soundness::is_whole;

@@ -62,7 +62,7 @@ fn is_broken(mesh: &TriMesh) -> bool {
 }
 
 /// Whether all corners of a triangle are finite.
-pub(super) fn is_whole(mesh: &TriMesh, triangle: &[u32; 3]) -> bool {
+pub(crate) fn is_whole(mesh: &TriMesh, triangle: &[u32; 3]) -> bool {
     let is_finite =
         |&vertex: &u32| mesh.vertices().get(vertex as usize).is_some_and(|v| v.is_finite());
     triangle.iter().all(is_finite)

@@ -5,8 +5,6 @@
 //! scale. Nothing is kept but the manifolds; stock also keeps those without points, and asks about
 //! all triangles of a box that is wider than the ball's.
 
-use std::ops::ControlFlow;
-
 use parry3d::bounding_volume::BoundingVolume;
 use parry3d::math::{Pose, Real};
 use parry3d::partitioning::BvhNode;
@@ -17,7 +15,7 @@ use sbbk_core::volumes::rounding::gamma;
 
 use super::pose::MeshPlace;
 use super::state::state_in;
-use crate::mesh::Hierarchy;
+use crate::mesh::is_whole;
 
 /// Whether a ball touches about six triangles of a mesh at a time or fewer, by their mean size.
 pub(crate) fn is_few(mesh: &TriMesh, ball: &Ball) -> bool {
@@ -29,58 +27,87 @@ pub(crate) fn is_few(mesh: &TriMesh, ball: &Ball) -> bool {
     size.is_finite() && count < FEW * size
 }
 
-/// Brings the manifolds of the pair up to date: those with a point, in stock order.
-pub(crate) fn touch_few<M, C>(
-    mesh: &Hierarchy<'_>,
-    ball: &Ball,
-    mesh_place: MeshPlace,
-    pos12: &Pose,
-    prediction: Real,
-    manifolds: &mut Vec<ContactManifold<M, C>>,
-    workspace: &mut Option<ContactManifoldsWorkspace>,
-) where
-    M: Default + Clone + Send + Sync + 'static,
-    C: Default + Copy + Send + Sync + 'static,
-{
-    // Nothing is kept there, but Rapier must find a workspace.
-    state_in::<M, C, (), ()>(workspace, manifolds);
-    let is_second = mesh_place.is_second();
-    // With stock's roundings: it turns the pose about on its way to the mesh and back.
-    let ball_in_mesh = if is_second { pos12.inverse().inverse().inverse() } else { *pos12 };
-    let aabb = ball.compute_aabb(&ball_in_mesh);
-    // Some ten operations on these coordinates.
-    let size = aabb.mins.abs().max(aabb.maxs.abs()).max_element();
-    let reach = prediction.max(0.0) + gamma(16) * (size + prediction.max(0.0));
-    let is_somewhere = reach >= 0.0 && aabb.mins.is_finite() && aabb.maxs.is_finite();
-    if !is_somewhere {
-        return manifolds.clear();
+/// A mesh and such a ball.
+#[derive(Copy, Clone)]
+pub(crate) struct FewPair<'a> {
+    pub(crate) mesh: &'a TriMesh,
+    /// Some vertices are NaN or infinite, and the mesh may deform: boxes above them mean nothing.
+    pub(crate) is_broken: bool,
+    pub(crate) ball: &'a Ball,
+    pub(crate) mesh_place: MeshPlace,
+}
+
+impl FewPair<'_> {
+    /// Brings the manifolds of the pair up to date: those with a point, in stock order.
+    pub(crate) fn answer<M, C>(
+        &self,
+        pos12: &Pose,
+        prediction: Real,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) where
+        M: Default + Clone + Send + Sync + 'static,
+        C: Default + Copy + Send + Sync + 'static,
+    {
+        // Nothing is kept in a workspace, but where there are or were manifolds Rapier must find one.
+        let is_new = workspace.is_none() && manifolds.is_empty();
+        if !is_new {
+            state_in::<M, C, (), ()>(workspace, manifolds);
+        }
+        self.touch(pos12, prediction, manifolds);
+        if is_new && !manifolds.is_empty() {
+            let found = std::mem::take(manifolds);
+            state_in::<M, C, (), ()>(workspace, manifolds);
+            *manifolds = found;
+        }
     }
-    let near = BvhNode::leaf(aabb.loosened(reach), 0);
-    let (mut blank, mut count) = (None, 0);
-    let touch = |triangle: u32, manifold: &mut ContactManifold<M, C>| {
-        let cone = mesh.mesh.triangle_normal_constraints(triangle);
-        let cone = cone.as_ref().map(|cone| cone as &dyn NormalConstraints);
-        let triangle = mesh.mesh.triangle(triangle);
-        contact_manifold_convex_ball(
-            &ball_in_mesh,
-            &triangle,
-            ball,
-            cone,
-            None,
-            prediction,
-            manifold,
-            is_second,
-        );
-        manifold.points.iter().any(|point| point.dist <= prediction)
-    };
-    let _ = mesh.near_box(&near, |triangle| {
-        let subshapes = mesh_place.swap([triangle, 0]);
-        let is_same = |m: &ContactManifold<M, C>| [m.subshape1, m.subshape2] == subshapes;
-        if let Some(place) = manifolds[count..].iter().position(is_same) {
-            manifolds.swap(count, count + place);
-            // A blank one, or one that has gone, stays behind.
-            count += usize::from(touch(triangle, &mut manifolds[count]));
-        } else {
+
+    fn touch<M, C>(
+        &self,
+        pos12: &Pose,
+        prediction: Real,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+    ) where
+        M: Default,
+        C: Default + Copy,
+    {
+        let Self { mesh, is_broken, ball, mesh_place } = *self;
+        let is_second = mesh_place.is_second();
+        // With stock's roundings: it turns the pose about on its way to the mesh and back.
+        let ball_in_mesh = if is_second { pos12.inverse().inverse().inverse() } else { *pos12 };
+        let aabb = ball.compute_aabb(&ball_in_mesh);
+        // Some ten operations on these coordinates.
+        let size = aabb.mins.abs().max(aabb.maxs.abs()).max_element();
+        let reach = prediction.max(0.0) + gamma(16) * (size + prediction.max(0.0));
+        let is_somewhere = reach >= 0.0 && aabb.mins.is_finite() && aabb.maxs.is_finite();
+        if !is_somewhere {
+            return manifolds.clear();
+        }
+        let touch = |index: u32, manifold: &mut ContactManifold<M, C>| {
+            let cone = mesh.triangle_normal_constraints(index);
+            let cone = cone.as_ref().map(|cone| cone as &dyn NormalConstraints);
+            contact_manifold_convex_ball(
+                &ball_in_mesh,
+                &mesh.triangle(index),
+                ball,
+                cone,
+                None,
+                prediction,
+                manifold,
+                is_second,
+            );
+            manifold.points.iter().any(|point| point.dist <= prediction)
+        };
+        let (mut blank, mut count) = (None, 0);
+        let mut visit = |triangle: u32| {
+            let subshapes = mesh_place.swap([triangle, 0]);
+            let is_same = |m: &ContactManifold<M, C>| [m.subshape1, m.subshape2] == subshapes;
+            if let Some(place) = manifolds[count..].iter().position(is_same) {
+                manifolds.swap(count, count + place);
+                // One that has gone stays behind.
+                count += usize::from(touch(triangle, &mut manifolds[count]));
+                return;
+            }
             let mut manifold = blank.take().unwrap_or_else(ContactManifold::default);
             [manifold.subshape1, manifold.subshape2] = subshapes;
             if touch(triangle, &mut manifold) {
@@ -92,8 +119,15 @@ pub(crate) fn touch_few<M, C>(
                 manifold.points.clear();
                 blank = Some(manifold);
             }
+        };
+        if is_broken {
+            let triangles = mesh.indices().iter().zip(0..);
+            let whole = triangles.filter(|(triangle, _)| is_whole(mesh, triangle));
+            whole.for_each(|(_, index)| visit(index));
+        } else {
+            let near = BvhNode::leaf(aabb.loosened(reach), 0);
+            mesh.bvh().leaves(|node| node.intersects(&near)).for_each(visit);
         }
-        ControlFlow::Continue(())
-    });
-    manifolds.truncate(count);
+        manifolds.truncate(count);
+    }
 }

@@ -19,7 +19,7 @@ mod triangles;
 
 pub(crate) use convex::{ConvexPair, Parts};
 pub(crate) use driver::{Answer, Pair, answer};
-pub(crate) use few::{is_few, touch_few};
+pub(crate) use few::{FewPair, is_few};
 pub(crate) use pose::{MeshPlace, PairPose};
 pub use triangles::TriangleContacts;
 pub(crate) use triangles::{FieldPair, MeshPair, walk};
