@@ -83,7 +83,7 @@ impl SbbkDispatcher {
             return Ok(None);
         };
         let registered = self.cache.register(shape, mesh)?;
-        Ok(Some(PreparedTree { tree: registered.tree().clone(), _registered: Some(registered) }))
+        Ok(Some(PreparedTree { tree: registered.tree.clone(), _registered: Some(registered) }))
     }
 
     /// Counts of trees and queries. Takes time in proportion to the number of trees.
@@ -281,7 +281,7 @@ impl fmt::Debug for SbbkDispatcher {
 #[derive(Clone)]
 pub struct PreparedTree {
     tree: PreparedRef,
-    _registered: Option<Arc<Registered>>,
+    _registered: Option<Arc<Registered<PreparedRef>>>,
 }
 
 impl PreparedTree {

@@ -36,7 +36,7 @@ pub(crate) struct TreeCache {
     pairs: AtomicU64,
     walks: AtomicU64,
     credit: Credit,
-    registry: Registry,
+    registry: Arc<Registry<PreparedRef>>,
     soundness: Soundness,
 }
 
@@ -151,7 +151,7 @@ impl TreeCache {
             pairs: AtomicU64::new(0),
             walks: AtomicU64::new(0),
             credit: Credit::default(),
-            registry: Registry::default(),
+            registry: Arc::default(),
             soundness: Soundness::default(),
         }
     }
@@ -214,12 +214,8 @@ impl TreeCache {
         self: &Arc<Self>,
         shape: &SharedShape,
         mesh: &TriMesh,
-    ) -> Result<Arc<Registered>, BuildError> {
-        Ok(Registered::new(shape, self.prepare(mesh)?, &self.registry))
-    }
-
-    pub(super) fn unregister(&self, address: usize) {
-        self.registry.forget(address);
+    ) -> Result<Arc<Registered<PreparedRef>>, BuildError> {
+        Ok(self.registry.register(shape, self.prepare(mesh)?))
     }
 
     /// The tree of a mesh if it is there, or if queries have earned what it takes.
@@ -378,12 +374,6 @@ impl Entries {
 pub(crate) struct PreparedRef {
     mesh: Arc<CachedMesh>,
     cache: Arc<TreeCache>,
-}
-
-impl PreparedRef {
-    pub(super) fn cache(&self) -> &TreeCache {
-        &self.cache
-    }
 }
 
 impl Deref for PreparedRef {

@@ -1,63 +1,72 @@
 use std::collections::HashMap;
-use std::sync::{Arc, PoisonError, RwLock, Weak};
+use std::sync::{Arc, PoisonError, RwLock, RwLockWriteGuard, Weak};
 
 use parry3d::shape::{SharedShape, TriMesh};
 
-use super::cache::PreparedRef;
-
-/// Meshes that cannot change: as long as a clone of a [`SharedShape`] is held here, whoever edits
-/// the shape edits a copy. So their addresses prove what they are.
-#[derive(Default)]
-pub(super) struct Registry(RwLock<HashMap<usize, Weak<Registered>>>);
+/// Meshes that cannot change, with their trees: as long as a clone of a [`SharedShape`] is held
+/// here, whoever edits the shape edits a copy. So their addresses prove what they are.
+pub(super) struct Registry<T>(RwLock<HashMap<usize, Weak<Registered<T>>>>);
 
 /// A registered mesh and its tree.
-pub(crate) struct Registered {
+pub(crate) struct Registered<T> {
     shape: SharedShape,
-    tree: PreparedRef,
+    pub(crate) tree: T,
+    registry: Arc<Registry<T>>,
 }
 
-impl Registered {
+impl<T> Default for Registry<T> {
+    fn default() -> Self {
+        Self(RwLock::default())
+    }
+}
+
+impl<T: Clone> Registry<T> {
     /// Registers the mesh that `shape` is, unless it is registered.
-    pub(super) fn new(shape: &SharedShape, tree: PreparedRef, registry: &Registry) -> Arc<Self> {
-        let registered = Arc::new(Self { shape: shape.clone(), tree });
-        let Some(mesh) = shape.as_trimesh() else {
+    pub(super) fn register(self: &Arc<Self>, shape: &SharedShape, tree: T) -> Arc<Registered<T>> {
+        let (shape, registry) = (shape.clone(), Arc::clone(self));
+        let registered = Arc::new(Registered { shape, tree, registry });
+        let Some(address) = registered.address() else {
             return registered;
         };
-        let mut meshes = registry.0.write().unwrap_or_else(PoisonError::into_inner);
-        let known = meshes.get(&address(mesh)).and_then(Weak::upgrade);
+        let mut meshes = self.write();
+        let known = meshes.get(&address).and_then(Weak::upgrade);
         if known.is_none() {
-            meshes.insert(address(mesh), Arc::downgrade(&registered));
+            meshes.insert(address, Arc::downgrade(&registered));
         }
-        // The new one goes only now, if it is not needed: it may take the lock.
+        // The new one goes only now, if it is not needed: it takes the lock.
         drop(meshes);
         known.unwrap_or(registered)
     }
 
-    pub(crate) fn tree(&self) -> &PreparedRef {
-        &self.tree
-    }
-}
-
-impl Drop for Registered {
-    fn drop(&mut self) {
-        if let Some(mesh) = self.shape.as_trimesh() {
-            self.tree.cache().unregister(address(mesh));
-        }
-    }
-}
-
-impl Registry {
-    pub(super) fn tree_of(&self, mesh: &TriMesh) -> Option<PreparedRef> {
+    /// The tree of a registered mesh.
+    pub(super) fn tree_of(&self, mesh: &TriMesh) -> Option<T> {
         let meshes = self.0.read().unwrap_or_else(PoisonError::into_inner);
         let registered = meshes.get(&address(mesh))?.upgrade()?;
         // It may be the last one to go, and then takes the lock.
         drop(meshes);
         Some(registered.tree.clone())
     }
+}
 
-    /// Forgets a mesh, unless it has been registered again.
-    pub(super) fn forget(&self, address: usize) {
-        let mut meshes = self.0.write().unwrap_or_else(PoisonError::into_inner);
+impl<T> Registry<T> {
+    fn write(&self) -> RwLockWriteGuard<'_, HashMap<usize, Weak<Registered<T>>>> {
+        self.0.write().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl<T> Registered<T> {
+    fn address(&self) -> Option<usize> {
+        self.shape.as_trimesh().map(address)
+    }
+}
+
+impl<T> Drop for Registered<T> {
+    fn drop(&mut self) {
+        let Some(address) = self.address() else {
+            return;
+        };
+        let mut meshes = self.registry.write();
+        // It may have been registered again.
         if meshes.get(&address).is_some_and(|mesh| mesh.strong_count() == 0) {
             meshes.remove(&address);
         }
