@@ -135,7 +135,7 @@ impl SbbkDispatcher {
                 }
                 let meshes = [mesh1, mesh2];
                 if is_new && self.are_apart(are_near(meshes, pos12, prediction), meshes) {
-                    return self.nothing();
+                    return self.counted(Answer::Apart);
                 }
                 let Some(meshes) = self.look_at(meshes) else {
                     return Answer::Unsupported;
@@ -166,7 +166,7 @@ impl SbbkDispatcher {
         if is_new && parts.is_some() && contacts == ContactGenerator::Exact {
             let in_mesh = if mesh_place.is_second() { pos12.inverse() } else { *pos12 };
             if self.are_apart(is_near(mesh, other, &in_mesh, prediction), [mesh]) {
-                return self.nothing();
+                return self.counted(Answer::Apart);
             }
         }
         let Some([mesh]) = self.look_at([mesh]) else {
@@ -212,19 +212,15 @@ impl SbbkDispatcher {
         if is_first && workspace.is_some() {
             self.cache.met();
         }
-        let answer = if workspace.is_some() { Answer::Descended } else { Answer::Apart };
+        self.counted(if workspace.is_some() { Answer::Descended } else { Answer::Apart })
+    }
+
+    /// An answer that took no descent, counted.
+    fn counted(&self, answer: Answer) -> Answer {
         if self.config.count_queries {
             self.counters.add(answer, &DescentCounts::default());
         }
         answer
-    }
-
-    /// The answer about shapes that are apart, of which no memory is kept.
-    fn nothing(&self) -> Answer {
-        if self.config.count_queries {
-            self.counters.add(Answer::Apart, &DescentCounts::default());
-        }
-        Answer::Apart
     }
 
     /// Meshes as a query sees them; `None`, and counted, if only Parry can answer for one.

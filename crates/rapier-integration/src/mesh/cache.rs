@@ -1,8 +1,8 @@
 //! One prepared mesh for all colliders with equal geometry.
 //!
 //! A pair of two rigid meshes asks for their trees until it has both. It gets one that is there, or
-//! that is small enough and paid for ([`credit`](super::credit)); else it does without, and the
-//! next query asks again.
+//! that is small enough and paid for ([`credit`](super::credit)); else it does without, and asks
+//! again some queries later.
 //!
 //! That takes a lock, and so does the end of the last pair that used a tree, but no query of a pair
 //! that has its trees, or needs none. Each takes time that grows with the logarithm of the number of

@@ -8,10 +8,26 @@
 use super::apart::{Gap, Near, Pair, Solid};
 use super::difference::Vertex;
 use super::simplex;
-use super::support::CuboidSupport;
+use super::support::SupportMap;
 use super::{ConvexContact, by_search};
 use crate::contact::closest::{crossing, within_edge};
 use glamx::DVec3;
+
+/// A box around the origin, along the axes, given by its half lengths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CuboidSupport(pub DVec3);
+
+impl SupportMap for CuboidSupport {
+    #[inline(always)]
+    fn support(&self, direction: DVec3) -> DVec3 {
+        self.0.copysign(direction)
+    }
+
+    #[inline(always)]
+    fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
+        cuboid_contact(triangle, self, margin)
+    }
+}
 
 /// Least sine between an edge of the triangle and an axis of the box whose product is looked at:
 /// the face that it bounds is narrower than this share of the edge.
@@ -74,7 +90,7 @@ impl Solid for CuboidSupport {
     }
 }
 
-pub(super) fn cuboid_contact(
+fn cuboid_contact(
     triangle: &[DVec3; 3],
     cuboid: &CuboidSupport,
     margin: f64,

@@ -16,10 +16,74 @@
 use super::apart::{Gap, Near, Pair, Solid};
 use super::difference::Vertex;
 use super::simplex;
-use super::support::{ConeSupport, CylinderSupport};
+use super::support::SupportMap;
 use super::{ConvexContact, by_search};
 use crate::contact::closest::within_edge;
 use glamx::DVec3;
+
+/// A cylinder around the y axis, its middle at the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CylinderSupport {
+    /// Half the length of the axis.
+    pub half_height: f64,
+    /// Radius of both discs.
+    pub radius: f64,
+}
+
+impl SupportMap for CylinderSupport {
+    const IS_CURVED: bool = true;
+
+    #[inline(always)]
+    fn support(&self, direction: DVec3) -> DVec3 {
+        rim(direction, radial(direction), self.radius, self.half_height.copysign(direction.y))
+    }
+
+    #[inline(always)]
+    fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
+        turned_contact(triangle, self, margin)
+    }
+}
+
+/// A cone around the y axis: its tip at `half_height`, its base at `-half_height`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConeSupport {
+    /// Half the length of the axis.
+    pub half_height: f64,
+    /// Radius of the base.
+    pub radius: f64,
+}
+
+impl SupportMap for ConeSupport {
+    const IS_CURVED: bool = true;
+
+    #[inline(always)]
+    fn support(&self, direction: DVec3) -> DVec3 {
+        let across = radial(direction);
+        if 2.0 * self.half_height * direction.y > self.radius * across {
+            return DVec3::new(0.0, self.half_height, 0.0);
+        }
+        rim(direction, across, self.radius, -self.half_height)
+    }
+
+    #[inline(always)]
+    fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
+        turned_contact(triangle, self, margin)
+    }
+}
+
+/// Length of a direction across the y axis.
+#[inline(always)]
+fn radial(direction: DVec3) -> f64 {
+    (direction.x * direction.x + direction.z * direction.z).sqrt()
+}
+
+/// The point of a circle around the y axis that is farthest along a direction; the centre of the
+/// disc where all of it is.
+#[inline(always)]
+fn rim(direction: DVec3, across: f64, radius: f64, y: f64) -> DVec3 {
+    let scale = if across > 0.0 { radius / across } else { 0.0 };
+    DVec3::new(direction.x * scale, y, direction.z * scale)
+}
 
 /// Share of the size by which a gap must be beyond the margin to end the search.
 const BOUNDARY: f64 = 1.0e-13;
@@ -177,7 +241,7 @@ impl Turned for ConeSupport {
     }
 }
 
-pub(super) fn turned_contact<S: Turned>(
+fn turned_contact<S: Turned>(
     triangle: &[DVec3; 3],
     solid: &S,
     margin: f64,

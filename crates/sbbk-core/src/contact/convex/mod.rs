@@ -54,11 +54,11 @@ mod simplex;
 mod support;
 
 pub use clip::{FEATURE_CORNERS, FeaturePoint, FeaturePoints, clip_feature};
+pub use cuboid::CuboidSupport;
+pub use curved::{ConeSupport, CylinderSupport};
 pub use half_space::half_space_contact;
-pub use support::{
-    ConeSupport, CuboidSupport, CylinderSupport, HullSupport, PointSupport, SegmentSupport,
-    SupportMap, TriangleSupport,
-};
+pub use segment::{PointSupport, SegmentSupport};
+pub use support::{HullSupport, SupportMap, TriangleSupport};
 
 use depth::{Depth, depth, touching};
 use difference::{Difference, Vertex};

@@ -3,11 +3,44 @@
 use super::difference::Difference;
 use super::search::is_proved;
 use super::simplex::{self, Simplex, thin_normal};
-use super::support::{PointSupport, SegmentSupport, SupportMap};
+use super::support::SupportMap;
 use super::{ConvexContact, DOUBTFUL, by_search};
 use crate::contact::closest::{crossing, within_edge};
 use crate::contact::triangle::NEAR_PARALLEL;
 use glamx::DVec3;
+
+/// A point; the core of a ball.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointSupport(pub DVec3);
+
+impl SupportMap for PointSupport {
+    #[inline(always)]
+    fn support(&self, _: DVec3) -> DVec3 {
+        self.0
+    }
+
+    #[inline(always)]
+    fn contact(&self, triangle: &[DVec3; 3], _: f64) -> Option<ConvexContact> {
+        point_contact(triangle, self.0)
+    }
+}
+
+/// A segment, given by its ends; the core of a capsule.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SegmentSupport(pub [DVec3; 2]);
+
+impl SupportMap for SegmentSupport {
+    #[inline(always)]
+    fn support(&self, direction: DVec3) -> DVec3 {
+        let [a, b] = self.0;
+        if (b - a).dot(direction) > 0.0 { b } else { a }
+    }
+
+    #[inline(always)]
+    fn contact(&self, triangle: &[DVec3; 3], _: f64) -> Option<ConvexContact> {
+        segment_contact(triangle, &self.0)
+    }
+}
 
 /// Least sine between an edge and a segment that cross the closed form's way. A depth beside the
 /// edge is off by 1e-16 of the size over the sine, so by 1e-11; the closed form asks for ten times
@@ -57,7 +90,7 @@ impl Near {
 /// A point on the triangle is parted from it along the triangle's normal, on whose side it counts
 /// as being.
 #[inline(always)]
-pub(super) fn point_contact(triangle: &[DVec3; 3], point: DVec3) -> Option<ConvexContact> {
+fn point_contact(triangle: &[DVec3; 3], point: DVec3) -> Option<ConvexContact> {
     let (nearest, size) = (from_end(triangle, point), size(triangle, point));
     let near = Near::of(&nearest, triangle);
     if let Some(contact) = near.contact::<PointSupport>(triangle, &[point; 2], size) {
@@ -74,10 +107,7 @@ pub(super) fn point_contact(triangle: &[DVec3; 3], point: DVec3) -> Option<Conve
 
 /// The distance from the triangle is a convex function along the segment: if it rises from an end
 /// on, that end is nearest. Else a point between is, nearest to an edge, or the segment crosses.
-pub(super) fn segment_contact(
-    triangle: &[DVec3; 3],
-    segment: &[DVec3; 2],
-) -> Option<ConvexContact> {
+fn segment_contact(triangle: &[DVec3; 3], segment: &[DVec3; 2]) -> Option<ConvexContact> {
     let [p, q] = *segment;
     let along = q - p;
     let size = size(triangle, p) + along.abs().element_sum();

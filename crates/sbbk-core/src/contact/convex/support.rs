@@ -1,8 +1,5 @@
 //! Support maps: all that a search needs to know of a convex shape.
 
-use super::cuboid::cuboid_contact;
-use super::curved::turned_contact;
-use super::segment::{point_contact, segment_contact};
 use super::{ConvexContact, by_search};
 use crate::contact::contact as triangle_contact;
 use glamx::DVec3;
@@ -32,39 +29,6 @@ impl<F: Fn(DVec3) -> DVec3> SupportMap for F {
     #[inline(always)]
     fn support(&self, direction: DVec3) -> DVec3 {
         self(direction)
-    }
-}
-
-/// A point; the core of a ball.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PointSupport(pub DVec3);
-
-impl SupportMap for PointSupport {
-    #[inline(always)]
-    fn support(&self, _: DVec3) -> DVec3 {
-        self.0
-    }
-
-    #[inline(always)]
-    fn contact(&self, triangle: &[DVec3; 3], _: f64) -> Option<ConvexContact> {
-        point_contact(triangle, self.0)
-    }
-}
-
-/// A segment, given by its ends; the core of a capsule.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SegmentSupport(pub [DVec3; 2]);
-
-impl SupportMap for SegmentSupport {
-    #[inline(always)]
-    fn support(&self, direction: DVec3) -> DVec3 {
-        let [a, b] = self.0;
-        if (b - a).dot(direction) > 0.0 { b } else { a }
-    }
-
-    #[inline(always)]
-    fn contact(&self, triangle: &[DVec3; 3], _: f64) -> Option<ConvexContact> {
-        segment_contact(triangle, &self.0)
     }
 }
 
@@ -106,86 +70,6 @@ pub(super) fn lowest([a, b, c]: &[DVec3; 3], direction: DVec3) -> usize {
     let [b, c] = [(*b - *a).dot(direction), (*c - *a).dot(direction)];
     let (i, least) = if b < 0.0 { (1, b) } else { (0, 0.0) };
     if c < least { 2 } else { i }
-}
-
-/// A box around the origin, along the axes, given by its half lengths.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CuboidSupport(pub DVec3);
-
-impl SupportMap for CuboidSupport {
-    #[inline(always)]
-    fn support(&self, direction: DVec3) -> DVec3 {
-        self.0.copysign(direction)
-    }
-
-    #[inline(always)]
-    fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
-        cuboid_contact(triangle, self, margin)
-    }
-}
-
-/// A cylinder around the y axis, its middle at the origin.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CylinderSupport {
-    /// Half the length of the axis.
-    pub half_height: f64,
-    /// Radius of both discs.
-    pub radius: f64,
-}
-
-impl SupportMap for CylinderSupport {
-    const IS_CURVED: bool = true;
-
-    #[inline(always)]
-    fn support(&self, direction: DVec3) -> DVec3 {
-        rim(direction, radial(direction), self.radius, self.half_height.copysign(direction.y))
-    }
-
-    #[inline(always)]
-    fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
-        turned_contact(triangle, self, margin)
-    }
-}
-
-/// A cone around the y axis: its tip at `half_height`, its base at `-half_height`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ConeSupport {
-    /// Half the length of the axis.
-    pub half_height: f64,
-    /// Radius of the base.
-    pub radius: f64,
-}
-
-impl SupportMap for ConeSupport {
-    const IS_CURVED: bool = true;
-
-    #[inline(always)]
-    fn support(&self, direction: DVec3) -> DVec3 {
-        let across = radial(direction);
-        if 2.0 * self.half_height * direction.y > self.radius * across {
-            return DVec3::new(0.0, self.half_height, 0.0);
-        }
-        rim(direction, across, self.radius, -self.half_height)
-    }
-
-    #[inline(always)]
-    fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
-        turned_contact(triangle, self, margin)
-    }
-}
-
-/// Length of a direction across the y axis.
-#[inline(always)]
-fn radial(direction: DVec3) -> f64 {
-    (direction.x * direction.x + direction.z * direction.z).sqrt()
-}
-
-/// The point of a circle around the y axis that is farthest along a direction; the centre of the
-/// disc where all of it is.
-#[inline(always)]
-fn rim(direction: DVec3, across: f64, radius: f64, y: f64) -> DVec3 {
-    let scale = if across > 0.0 { radius / across } else { 0.0 };
-    DVec3::new(direction.x * scale, y, direction.z * scale)
 }
 
 /// The convex hull of points, found by looking at all of them: for hulls of up to some dozens.
