@@ -14,11 +14,13 @@
 mod container;
 mod file;
 mod helicopter;
+mod machine;
 mod monkey;
 mod shapes;
 
 pub use container::Mesh;
 pub use file::{MeshError, load};
 pub use helicopter::helicopter;
+pub use machine::{Gear, prism, revolved};
 pub use monkey::{monkey_head, monkey_head_with};
-pub use shapes::{ball, cuboid, floor, hill_height, hills, terrain, torus};
+pub use shapes::{ball, cuboid, floor, hill_height, hills, slab, terrain, torus};

@@ -29,16 +29,22 @@ pub fn torus(ring_radius: f32, tube_radius: f32, ring_segments: u32, tube_segmen
 /// A box about the origin with `cells * cells` quads a face: `12 * cells * cells` triangles
 /// (`cells` at least 1).
 pub fn cuboid(half_extents: Vec3, cells: u32) -> Mesh {
-    let cells = cells.max(1);
+    slab(half_extents, [cells; 3])
+}
+
+/// A box about the origin, cut into so many cells along each axis (at least 1).
+pub fn slab(half_extents: Vec3, cells: [u32; 3]) -> Mesh {
+    let cells = cells.map(|cells| cells.max(1));
     // The same but for the sign at both ends, so that the rims of the faces weld.
-    let coordinate = |k: u32| (2.0 * k as f32 - cells as f32) / cells as f32;
+    let coordinate = |k: u32, cells: u32| (2.0 * k as f32 - cells as f32) / cells as f32;
     let faces = [0, 1, 2, 3, 4, 5].map(|face| {
         let (axis, sign) = (face / 2, if face % 2 == 0 { 1.0 } else { -1.0 });
-        quad_grid([cells; 2], |i, j| {
+        let [second, third] = [1, 2].map(|next| (axis + next) % 3);
+        quad_grid([cells[second], cells[third]], |i, j| {
             let mut point = Vec3::ZERO;
             point[axis] = sign;
-            point[(axis + 1) % 3] = sign * coordinate(i);
-            point[(axis + 2) % 3] = coordinate(j);
+            point[second] = sign * coordinate(i, cells[second]);
+            point[third] = coordinate(j, cells[third]);
             point * half_extents
         })
     });
@@ -90,7 +96,7 @@ fn sheet(size: f32, cells: u32, height: impl Fn(f32, f32) -> f32) -> Mesh {
 
 /// A grid of `cells[0] * cells[1]` quads, two triangles each, through `position(i, j)` for
 /// `0 <= i <= cells[0]` and `0 <= j <= cells[1]`. Faces look along `d/di x d/dj`.
-fn quad_grid([columns, rows]: [u32; 2], position: impl Fn(u32, u32) -> Vec3) -> Mesh {
+pub(super) fn quad_grid([columns, rows]: [u32; 2], position: impl Fn(u32, u32) -> Vec3) -> Mesh {
     let index = |i: u32, j: u32| i * (rows + 1) + j;
     let mut grid = Mesh::new("grid", Vec::new(), Vec::new());
     for i in 0..=columns {

@@ -12,6 +12,7 @@ mod cut;
 pub mod determinism;
 pub mod everyday;
 pub mod front;
+pub mod hard;
 mod helicopter;
 mod meshes;
 mod motion;

@@ -1,0 +1,108 @@
+//! Parts of machines: solids that are pulled out of an outline or turned about an axis.
+
+use std::f32::consts::{PI, TAU};
+
+use glamx::{Vec2, Vec3};
+
+use super::Mesh;
+use super::shapes::quad_grid;
+
+/// A solid between `-half_width` and `half_width` along `z`. Its outline runs counter-clockwise
+/// seen from `+z`, and all of it must be seen from the origin.
+pub fn prism(outline: &[Vec2], half_width: f32) -> Mesh {
+    let count = outline.len() as u32;
+    let solid = quad_grid([count, 3], |i, j| {
+        let point = outline[(i % count) as usize];
+        match j {
+            0 => Vec3::Z * -half_width,
+            1 => point.extend(-half_width),
+            2 => point.extend(half_width),
+            _ => Vec3::Z * half_width,
+        }
+    });
+    without_needles(&solid).named("prism")
+}
+
+/// A profile of `(distance from the axis, height)`, turned once about the `y` axis in `segments`
+/// parts. The solid is to the left of the profile. A closed profile, whose last point is the
+/// first, makes a ring; one that starts and ends on the axis, a solid without a hole.
+pub fn revolved(profile: &[Vec2], segments: u32) -> Mesh {
+    let count = profile.len() as u32 - 1;
+    let solid = quad_grid([count, segments], |i, j| {
+        let (sin, cos) = (TAU * (j % segments) as f32 / segments as f32).sin_cos();
+        // The last point is the first, if they are the same.
+        let Vec2 { x, y } = profile[i as usize];
+        Vec3::new(x * cos, y, x * sin)
+    });
+    without_needles(&solid).named("revolved")
+}
+
+/// A spur gear about the `z` axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Gear {
+    /// Teeth; from 18 on none is undercut.
+    pub teeth: u32,
+    /// Pitch diameter over teeth, in units.
+    pub module: f32,
+    /// What its teeth are thinner than the gaps of its mate, on the pitch circle.
+    pub thinned: f32,
+    /// Half the length of a tooth along the axis.
+    pub half_width: f32,
+}
+
+impl Gear {
+    /// Angle between tooth flank and radius on the pitch circle: the usual one.
+    const PRESSURE_ANGLE: f32 = PI / 9.0;
+    /// Points of a flank.
+    const FLANK_POINTS: u32 = 7;
+
+    /// Radius on which two gears roll on each other.
+    pub fn pitch_radius(&self) -> f32 {
+        0.5 * self.module * self.teeth as f32
+    }
+
+    /// One tooth about the `x` axis, counter-clockwise: flanks are involutes of a circle.
+    pub fn tooth(&self) -> Vec<Vec2> {
+        let involute = |angle: f32| angle.tan() - angle;
+        let pitch = self.pitch_radius();
+        let base = pitch * Self::PRESSURE_ANGLE.cos();
+        let half_angle = |radius: f32| {
+            let thickness = 0.5 * PI * self.module - self.thinned;
+            let angle = (base / radius).min(1.0).acos();
+            0.5 * thickness / pitch + involute(Self::PRESSURE_ANGLE) - involute(angle)
+        };
+        let foot = pitch - 1.25 * self.module;
+        let steps = (0..Self::FLANK_POINTS).map(|k| k as f32 / (Self::FLANK_POINTS - 1) as f32);
+        let rising = steps.map(|share| base + share * (pitch + self.module - base));
+        let flank: Vec<Vec2> = [foot]
+            .into_iter()
+            .chain(rising)
+            .map(|radius| radius * Vec2::from_angle(half_angle(radius)))
+            .collect();
+        let lower = flank.iter().map(|point| Vec2::new(point.x, -point.y));
+        lower.chain(flank.iter().rev().copied()).collect()
+    }
+
+    /// The angles of the middles of the teeth; the first is 0.
+    pub fn angles(&self) -> impl Iterator<Item = f32> + use<> {
+        let teeth = self.teeth;
+        (0..teeth).map(move |tooth| TAU * tooth as f32 / teeth as f32)
+    }
+
+    /// The whole gear.
+    pub fn mesh(&self) -> Mesh {
+        let tooth = self.tooth();
+        let outline = self.angles().flat_map(|angle| {
+            let turn = Vec2::from_angle(angle);
+            tooth.iter().map(move |&point| turn.rotate(point)).collect::<Vec<Vec2>>()
+        });
+        prism(&outline.collect::<Vec<Vec2>>(), self.half_width).named("gear")
+    }
+}
+
+/// The same vertices, without triangles that have two corners in one place.
+fn without_needles(mesh: &Mesh) -> Mesh {
+    let mut solid = mesh.welded();
+    solid.triangles.retain(|&[a, b, c]| a != b && b != c && c != a);
+    solid
+}

@@ -1,0 +1,99 @@
+//! How deep meshes are in each other: by winding number in f64 and the distance to the surface.
+
+use std::f64::consts::TAU;
+
+use glamx::{DVec3, Pose3, Vec3};
+use rapier3d::geometry::SharedShape;
+use rapier3d::parry::bounding_volume::Aabb;
+use rapier3d::pipeline::PhysicsWorld;
+
+use crate::mesh::Mesh;
+use crate::metrics::sample_indices;
+use crate::scene::SceneError;
+use crate::study::shape;
+
+/// A mesh that can be asked how deep a point is in it.
+pub(super) struct Depths {
+    vertices: Vec<Vec3>,
+    triangles: Vec<[DVec3; 3]>,
+    bounds: Aabb,
+    shape: SharedShape,
+}
+
+impl Depths {
+    /// Errors: the mesh has no triangles.
+    pub fn new(mesh: &Mesh) -> Result<Self, SceneError> {
+        let corners = (0..mesh.triangle_count()).map(|index| mesh.corners(index));
+        Ok(Self {
+            vertices: mesh.vertices.clone(),
+            triangles: corners.map(|corners| corners.map(Vec3::as_dvec3)).collect(),
+            bounds: mesh.bounds(),
+            shape: shape(mesh)?,
+        })
+    }
+
+    /// Distance of a point to the surface if it is inside, else 0.
+    pub fn of(&self, point: Vec3) -> f32 {
+        if !self.bounds.contains_local_point(point) || self.winding(point.as_dvec3()) < 0.5 {
+            return 0.0;
+        }
+        (self.shape.project_local_point(point, false).point - point).length()
+    }
+
+    /// How deep the deepest vertex of each is in the other; NaN if a pose is.
+    pub fn between(&self, pose: &Pose3, other: &Self, others: &Pose3) -> f32 {
+        if !(pose.translation + others.translation).is_finite() {
+            return f32::NAN;
+        }
+        let one_way = |outer: &Self, inner: &Self, pose: Pose3| {
+            let points = inner.vertices.iter().map(|&vertex| pose.transform_point(vertex));
+            points.map(|point| outer.of(point)).fold(0.0, f32::max)
+        };
+        let pos12 = pose.inv_mul(others);
+        one_way(self, other, pos12).max(one_way(other, self, pos12.inverse()))
+    }
+
+    /// How often the surface goes round a point (A. van Oosterom, J. Strackee, "The solid angle of
+    /// a plane triangle", 1983).
+    fn winding(&self, point: DVec3) -> f64 {
+        let angles = self.triangles.iter().map(|triangle| {
+            let [a, b, c] = triangle.map(|corner| corner - point);
+            let [la, lb, lc] = [a.length(), b.length(), c.length()];
+            let denominator = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+            a.dot(b.cross(c)).atan2(denominator)
+        });
+        angles.sum::<f64>() / TAU
+    }
+}
+
+/// Mean and greatest depth of some pairs.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PairDepths {
+    pub mean: f64,
+    pub max: f64,
+}
+
+/// Judges at most `limit` of the touching pairs of dynamic bodies, all of which have this mesh as
+/// their one collider.
+pub(super) fn touching_pairs(world: &PhysicsWorld, depths: &Depths, limit: usize) -> PairDepths {
+    let mut pairs: Vec<[Pose3; 2]> = Vec::new();
+    for pair in world.contact_pairs() {
+        let colliders = [pair.collider1, pair.collider2].map(|handle| &world.colliders[handle]);
+        let moves = colliders.map(|collider| {
+            collider.parent().is_some_and(|parent| world.bodies[parent].is_dynamic())
+        });
+        if moves == [true; 2] && pair.manifolds().iter().any(|manifold| !manifold.points.is_empty())
+        {
+            pairs.push(colliders.map(|collider| *collider.position()));
+        }
+    }
+    let sampled = sample_indices(pairs.len(), limit);
+    let mut found = PairDepths::default();
+    for &index in &sampled {
+        let [one, two] = &pairs[index];
+        let depth = f64::from(depths.between(one, depths, two));
+        found.mean += depth / sampled.len() as f64;
+        found.max = found.max.max(depth);
+    }
+    found
+}

@@ -1,0 +1,115 @@
+//! Figures with limits, and what they say of a run.
+
+use glamx::Vec3;
+use rapier3d::dynamics::RigidBodyHandle;
+use rapier3d::pipeline::PhysicsWorld;
+
+/// What was measured in a run.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Figures(pub Vec<Figure>);
+
+/// One of them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Figure {
+    pub name: &'static str,
+    pub value: f64,
+    /// From where to where a user would call it right.
+    pub limits: [f64; 2],
+}
+
+impl Figure {
+    /// NaN is not.
+    pub fn is_right(&self) -> bool {
+        (self.limits[0]..=self.limits[1]).contains(&self.value)
+    }
+
+    /// How far outside the limits it is; NaN is farthest.
+    pub fn excess(&self) -> f64 {
+        let [low, high] = self.limits;
+        let excess = (low - self.value).max(self.value - high);
+        if self.value.is_nan() { f64::INFINITY } else { excess }
+    }
+}
+
+impl Figures {
+    /// Adds a figure with an upper limit.
+    pub fn at_most(self, name: &'static str, value: impl Into<f64>, high: f64) -> Self {
+        self.within(name, value, f64::NEG_INFINITY, high)
+    }
+
+    /// Adds a count that must be zero.
+    pub fn none(self, name: &'static str, count: usize) -> Self {
+        self.at_most(name, count as f64, 0.0)
+    }
+
+    /// Adds a figure with limits on both sides.
+    pub fn within(
+        mut self,
+        name: &'static str,
+        value: impl Into<f64>,
+        low: f64,
+        high: f64,
+    ) -> Self {
+        self.0.push(Figure { name, value: value.into(), limits: [low, high] });
+        self
+    }
+
+    /// Adds a figure that nothing is asked of.
+    pub fn note(self, name: &'static str, value: impl Into<f64>) -> Self {
+        self.within(name, value, f64::NEG_INFINITY, f64::INFINITY)
+    }
+
+    /// Whether all are right.
+    pub fn pass(&self) -> bool {
+        self.0.iter().all(Figure::is_right)
+    }
+}
+
+/// The highest speed of some bodies in a world, now; NaN if one has flown out of all numbers.
+pub(super) fn top_speed(world: &PhysicsWorld, bodies: &[RigidBodyHandle]) -> f32 {
+    let speeds = bodies.iter().map(|&body| world.bodies[body].linvel().length());
+    speeds.reduce(|a, b| if a >= b { a } else { b }).unwrap_or(0.0)
+}
+
+/// Where bodies are.
+pub(super) fn places(world: &PhysicsWorld, bodies: &[RigidBodyHandle]) -> Vec<Vec3> {
+    bodies.iter().map(|&body| world.bodies[body].translation()).collect()
+}
+
+/// Kinetic and potential energy of some bodies. Those that sleep have none of motion.
+pub(super) fn energy(world: &PhysicsWorld, bodies: &[RigidBodyHandle]) -> f64 {
+    let energies = bodies.iter().map(|&body| {
+        let body = &world.bodies[body];
+        let height = f64::from(-world.gravity.dot(body.center_of_mass()));
+        f64::from(body.kinetic_energy()) + f64::from(body.mass()) * height
+    });
+    energies.sum()
+}
+
+/// Watches a quantity that should never rise.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gain {
+    least: f64,
+    /// The greatest rise over an earlier value so far.
+    pub most: f64,
+}
+
+impl Default for Gain {
+    fn default() -> Self {
+        Self { least: f64::INFINITY, most: 0.0 }
+    }
+}
+
+impl Gain {
+    pub fn see(&mut self, value: f64) {
+        self.least = self.least.min(value);
+        let rise = value - self.least;
+        // NaN stays.
+        self.most = if rise <= self.most { self.most } else { rise };
+    }
+}
+
+/// The largest of some numbers; NaN if one is, 0 if there are none.
+pub(super) fn largest(values: impl IntoIterator<Item = f32>) -> f32 {
+    values.into_iter().reduce(|a, b| if b <= a { a } else { b }).unwrap_or(0.0)
+}

@@ -1,0 +1,120 @@
+//! What a scene is built with: shapes, worlds and random numbers, as a column wants them.
+
+use std::fmt;
+
+use clap::ValueEnum;
+use glamx::{Pose3, Vec3};
+use oorandom::Rand32;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::geometry::{ColliderBuilder, SharedShape, TriMeshFlags};
+use rapier3d::pipeline::PhysicsWorld;
+
+use crate::mesh::{self, Mesh};
+use crate::scene::SceneError;
+
+/// Who answers, and what bodies are made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Column {
+    /// Stock Rapier, plain meshes.
+    Stock,
+    /// Stock Rapier, all meshes with `TriMeshFlags::FIX_INTERNAL_EDGES`.
+    StockFlag,
+    /// SBBK, plain meshes.
+    Sbbk,
+    /// SBBK, all meshes with `TriMeshFlags::FIX_INTERNAL_EDGES`.
+    SbbkFlag,
+    /// Stock Rapier, convex shapes instead of the meshes, where there are such.
+    Control,
+}
+
+impl fmt::Display for Column {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Stock => "stock",
+            Self::StockFlag => "stock + flag",
+            Self::Sbbk => "sbbk",
+            Self::SbbkFlag => "sbbk + flag",
+            Self::Control => "control",
+        })
+    }
+}
+
+/// A mesh, and the convex shapes that stand for it in the control.
+#[derive(Clone)]
+pub(super) struct Form {
+    pub mesh: Mesh,
+    pub control: Option<SharedShape>,
+}
+
+impl Form {
+    /// Nothing stands for the mesh: it is the control's, too.
+    pub fn mesh(mesh: Mesh) -> Self {
+        Self { mesh, control: None }
+    }
+
+    /// A box of `12 * cells * cells` triangles.
+    pub fn cuboid(half_extents: Vec3, cells: u32) -> Self {
+        let Vec3 { x, y, z } = half_extents;
+        let control = Some(SharedShape::cuboid(x, y, z));
+        Self { mesh: mesh::cuboid(half_extents, cells), control }
+    }
+
+    /// A ball of `8 * detail * detail` triangles.
+    pub fn ball(radius: f32, detail: u32) -> Self {
+        Self { mesh: mesh::ball(radius, detail), control: Some(SharedShape::ball(radius)) }
+    }
+
+    /// A mesh that consists of convex parts, each the hull of some points.
+    pub fn parts(mesh: Mesh, parts: impl IntoIterator<Item = Vec<Vec3>>) -> Self {
+        let hulls = parts.into_iter().filter_map(|points| SharedShape::convex_hull(&points));
+        let hulls: Vec<_> = hulls.map(|hull| (Pose3::IDENTITY, hull)).collect();
+        Self { mesh, control: Some(SharedShape::compound(hulls)) }
+    }
+}
+
+/// One run of a scene.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Kit {
+    pub column: Column,
+    pub recycling: bool,
+    pub seed: u64,
+}
+
+impl Kit {
+    /// An empty world with the column's dispatcher.
+    pub fn world(&self) -> PhysicsWorld {
+        let mut world = PhysicsWorld::new();
+        world.integration_parameters.contact_recycling = self.recycling;
+        if matches!(self.column, Column::Sbbk | Column::SbbkFlag) {
+            world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
+        }
+        world
+    }
+
+    /// A collider, the shape of which clones share.
+    ///
+    /// Errors: the mesh has no triangles.
+    pub fn collider(&self, form: &Form) -> Result<ColliderBuilder, SceneError> {
+        let shape = match (self.column, &form.control) {
+            (Column::Control, Some(control)) => control.clone(),
+            _ => self.mesh_shape(&form.mesh)?,
+        };
+        Ok(ColliderBuilder::new(shape))
+    }
+
+    /// The mesh itself, also in the control.
+    pub fn mesh_shape(&self, mesh: &Mesh) -> Result<SharedShape, SceneError> {
+        let flags = match self.column {
+            Column::StockFlag | Column::SbbkFlag => TriMeshFlags::FIX_INTERNAL_EDGES,
+            _ => TriMeshFlags::empty(),
+        };
+        let shape = mesh.trimesh(flags);
+        let shape = shape.map_err(|cause| SceneError { mesh: mesh.name.clone(), cause })?;
+        Ok(SharedShape::new(shape))
+    }
+
+    /// Numbers that depend on the seed alone.
+    pub fn random(&self) -> Rand32 {
+        Rand32::new(self.seed)
+    }
+}

@@ -1,0 +1,204 @@
+//! Hard scenes: whole worlds of meshes that stack, nest, mesh, sink in and fly. Does each end as a
+//! user expects?
+//!
+//! A scene is run by stock Rapier and by SBBK, with plain meshes and with
+//! `TriMeshFlags::FIX_INTERNAL_EDGES`, with Rapier's contact recycling and without, and where convex
+//! shapes can stand for the meshes, as a control by these. It is judged by figures with limits that
+//! are the same for all. Where chaos decides, it is run with several seeds.
+//!
+//! Time steps are 1/60 s, gravity 9.81 units/s² and all parameters Rapier's defaults, unless a scene
+//! says otherwise.
+
+mod depth;
+mod figures;
+mod gears;
+mod kit;
+mod overlap;
+mod pile;
+mod report;
+mod road;
+mod sheets;
+mod stacks;
+mod sunk;
+
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+
+use clap::ValueEnum;
+
+pub use self::kit::Column;
+
+use self::figures::Figures;
+use self::kit::Kit;
+use super::{Progress, StudyError};
+use crate::metrics::Environment;
+use crate::report::Results;
+use crate::scene::SceneError;
+
+/// A kind of scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Group {
+    /// Heads dropped on a floor.
+    Pile,
+    /// Towers of cubes.
+    Stacks,
+    /// Two gears.
+    Gears,
+    /// Bodies released in each other.
+    Overlap,
+    /// Boxes that start in a slab.
+    Sunk,
+    /// Cubes that slide and balls that roll over meshes.
+    Road,
+    /// Cubes on sheets without an inside.
+    Sheets,
+}
+
+/// What to run.
+#[derive(Clone, Debug)]
+pub struct HardPlan {
+    /// Kinds of scenes.
+    pub groups: Vec<Group>,
+    /// Who answers.
+    pub columns: Vec<Column>,
+    /// Rapier's contact recycling: its default is `true`.
+    pub recycling: Vec<bool>,
+    /// Runs of a scene where chaos decides.
+    pub seeds: u64,
+    /// Heads in the piles.
+    pub heads: Vec<usize>,
+    /// Runs at once, but for scenes of which the time counts.
+    pub threads: usize,
+    /// Whether to show all figures.
+    pub shows_figures: bool,
+}
+
+impl HardPlan {
+    /// Everything.
+    pub fn standard() -> Self {
+        Self {
+            groups: Group::value_variants().to_vec(),
+            columns: Column::value_variants().to_vec(),
+            recycling: vec![true, false],
+            seeds: 3,
+            heads: vec![200, 500],
+            threads: 2,
+            shows_figures: false,
+        }
+    }
+
+    /// Stock and SBBK on plain meshes, with Rapier's defaults, once.
+    pub fn quick() -> Self {
+        Self {
+            columns: vec![Column::Stock, Column::Sbbk],
+            recycling: vec![true],
+            seeds: 1,
+            heads: vec![200],
+            ..Self::standard()
+        }
+    }
+}
+
+/// A scene: what to run, and what to measure of it.
+struct Trial {
+    name: String,
+    /// Whether convex shapes can stand for its meshes.
+    has_control: bool,
+    /// Whether the seed makes a difference.
+    has_seeds: bool,
+    run: Box<RunTrial>,
+}
+
+type RunTrial = dyn Fn(&Kit) -> Result<Figures, SceneError> + Send + Sync;
+
+impl Trial {
+    /// A scene that is the same whatever the seed, with a control.
+    fn new(
+        name: impl Into<String>,
+        run: impl Fn(&Kit) -> Result<Figures, SceneError> + Send + Sync + 'static,
+    ) -> Self {
+        Self { name: name.into(), has_control: true, has_seeds: false, run: Box::new(run) }
+    }
+
+    /// It has no control.
+    fn without_control(self) -> Self {
+        Self { has_control: false, ..self }
+    }
+
+    /// It is run with several seeds.
+    fn seeded(self) -> Self {
+        Self { has_seeds: true, ..self }
+    }
+
+    fn kits(&self, plan: &HardPlan) -> Vec<Kit> {
+        let mut kits = Vec::new();
+        for &recycling in &plan.recycling {
+            let columns = plan.columns.iter().copied();
+            for column in columns.filter(|&column| self.has_control || column != Column::Control) {
+                let seeds = 1..=if self.has_seeds { plan.seeds } else { 1 };
+                kits.extend(seeds.map(|seed| Kit { column, recycling, seed }));
+            }
+        }
+        kits
+    }
+}
+
+/// Runs all that `plan` asks for.
+///
+/// Errors: none but those of a mesh without triangles, which these are not.
+pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError> {
+    let mut rows = Vec::new();
+    for group in &plan.groups {
+        let trials = match group {
+            Group::Pile => pile::trials(&plan.heads),
+            Group::Stacks => stacks::trials(),
+            Group::Gears => gears::trials(),
+            Group::Overlap => overlap::trials(),
+            Group::Sunk => sunk::trials(),
+            Group::Road => road::trials(),
+            Group::Sheets => sheets::trials(),
+        };
+        let jobs: Vec<(&Trial, Kit)> = trials
+            .iter()
+            .flat_map(|trial| trial.kits(plan).into_iter().map(move |kit| (trial, kit)))
+            .collect();
+        let name = group.to_possible_value().map_or_else(String::new, |v| v.get_name().to_owned());
+        progress.phase(name, jobs.len());
+        let threads = if *group == Group::Pile { 1 } else { plan.threads };
+        let found = run_all(&jobs, threads, progress)?;
+        for trial in &trials {
+            let runs = jobs.iter().zip(&found).filter(|((other, _), _)| other.name == trial.name);
+            let runs: Vec<(Kit, &Figures)> = runs.map(|((_, kit), found)| (*kit, found)).collect();
+            rows.extend(report::rows(trial, &runs));
+        }
+    }
+    progress.finish();
+    let (tables, panels) = (report::tables(plan, &rows), report::panels(&rows));
+    Ok(Results { environment: Environment::detect(), rows, tables, panels })
+}
+
+/// Runs some jobs, so many at once.
+fn run_all(
+    jobs: &[(&Trial, Kit)],
+    threads: usize,
+    progress: &Progress,
+) -> Result<Vec<Figures>, SceneError> {
+    let next = AtomicUsize::new(0);
+    let found: Mutex<Vec<_>> = Mutex::new(jobs.iter().map(|_| None).collect());
+    thread::scope(|scope| {
+        for _ in 0..threads.max(1) {
+            scope.spawn(|| {
+                while let index = next.fetch_add(1, Relaxed)
+                    && let Some((trial, kit)) = jobs.get(index)
+                {
+                    let figures = (trial.run)(kit);
+                    found.lock().unwrap_or_else(PoisonError::into_inner)[index] = Some(figures);
+                    progress.step();
+                }
+            });
+        }
+    });
+    let found = found.into_inner().unwrap_or_else(PoisonError::into_inner);
+    found.into_iter().flatten().collect()
+}

@@ -1,0 +1,56 @@
+//! Bodies that are released in each other.
+
+use glamx::{Pose3, Vec3};
+use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
+
+use super::Trial;
+use super::depth::Depths;
+use super::figures::{Figures, largest, top_speed};
+use super::kit::{Form, Kit};
+use crate::mesh;
+use crate::scene::{SceneError, random};
+
+const BODIES: usize = 8;
+const STEPS: usize = 120;
+/// Bodies are a unit long, and start with their centres in a cube of this side.
+const SPREAD: f32 = 1.0;
+
+pub(super) fn trials() -> Vec<Trial> {
+    let balls = Trial::new("eight balls in each other", |kit| run(kit, &Form::ball(0.5, 8)));
+    let heads = Trial::new("eight heads in each other", |kit| {
+        run(kit, &Form::mesh(mesh::monkey_head().centred().scaled_to(1.0)))
+    });
+    vec![balls.seeded(), heads.without_control().seeded()]
+}
+
+fn run(kit: &Kit, form: &Form) -> Result<Figures, SceneError> {
+    let mut world = kit.world();
+    world.gravity = Vec3::ZERO;
+    let mut random = kit.random();
+    let collider = kit.collider(form)?;
+    let bodies = (0..BODIES).map(|_| {
+        let place = Vec3::from_array([(); 3].map(|()| SPREAD * (random.rand_float() - 0.5)));
+        let pose = Pose3::from_parts(place, random::rotation(&mut random));
+        world.insert(RigidBodyBuilder::dynamic().pose(pose), collider.clone()).0
+    });
+    let bodies: Vec<RigidBodyHandle> = bodies.collect();
+    let mut fastest = 0.0_f32;
+    for _ in 0..STEPS {
+        world.step();
+        fastest = largest([fastest, top_speed(&world, &bodies)]);
+    }
+    let depths = Depths::new(&form.mesh)?;
+    let poses = bodies.iter().map(|&body| *world.bodies[body].position());
+    let poses: Vec<Pose3> = poses.collect();
+    let pairs = (1..BODIES).flat_map(|j| (0..j).map(move |i| [i, j]));
+    let depths = pairs.map(|[i, j]| depths.between(&poses[i], &depths, &poses[j]));
+    let depths: Vec<f32> = depths.collect();
+    let joined = depths.iter().filter(|&&depth| !(depth <= APART)).count();
+    Ok(Figures::default()
+        .none("pairs not apart", joined)
+        .at_most("speed", fastest, 5.0)
+        .note("deepest", largest(depths)))
+}
+
+/// Pairs that are no deeper in each other only touch.
+const APART: f32 = 0.01;

@@ -1,0 +1,76 @@
+//! Heads that fall on a floor and come to rest on each other.
+
+use std::time::Instant;
+
+use glamx::Vec3;
+use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
+use rapier3d::geometry::ColliderBuilder;
+use rapier3d::pipeline::PhysicsWorld;
+
+use super::Trial;
+use super::depth::{Depths, PairDepths, touching_pairs};
+use super::figures::{Figures, Gain, energy, largest, places};
+use super::kit::{Form, Kit};
+use super::report::STEP_TIME;
+use crate::metrics::Summary;
+use crate::scene::{MonkeyPile, SceneError};
+
+/// Steps until the heads are judged by their depth, and until they are judged by their height.
+const DEEP_AT: usize = 120;
+const HIGH_AT: usize = 180;
+/// Times and contacts are those of the steps after this one.
+const FULL_AT: usize = 60;
+/// Pairs whose depth is judged.
+const PAIRS: usize = 150;
+
+pub(super) fn trials(heads: &[usize]) -> Vec<Trial> {
+    let trial = |&heads: &usize| {
+        let name = format!("pile of {heads} heads");
+        Trial::new(name, move |kit| run(kit, heads)).without_control().seeded()
+    };
+    heads.iter().map(trial).collect()
+}
+
+fn run(kit: &Kit, heads: usize) -> Result<Figures, SceneError> {
+    let pile = MonkeyPile { seed: kit.seed, ..MonkeyPile::with_heads(heads) };
+    let mut world = kit.world();
+    let floor = RigidBodyBuilder::fixed().translation(-Vec3::Y);
+    world.insert(floor, ColliderBuilder::cuboid(100.0, 1.0, 100.0));
+    let collider = kit.collider(&Form::mesh(pile.mesh.clone()))?;
+    let bodies = pile.poses().into_iter().map(|pose| {
+        world.insert(RigidBodyBuilder::dynamic().pose(pose).can_sleep(false), collider.clone()).0
+    });
+    let bodies: Vec<RigidBodyHandle> = bodies.collect();
+    let start = energy(&world, &bodies);
+    let (mut gain, mut deep) = (Gain::default(), PairDepths::default());
+    let (mut times, mut points) = (Vec::new(), 0.0);
+    for step in 1..=HIGH_AT {
+        let clock = Instant::now();
+        world.step();
+        let time = 1e3 * clock.elapsed().as_secs_f64();
+        gain.see(energy(&world, &bodies));
+        if step > FULL_AT {
+            times.push(time);
+            points += solver_points(&world) as f64 / (HIGH_AT - FULL_AT) as f64;
+        }
+        if step == DEEP_AT {
+            deep = touching_pairs(&world, &Depths::new(&pile.mesh)?, PAIRS);
+        }
+    }
+    let heights = places(&world, &bodies).into_iter().map(|place| place.y);
+    let mean_height = heights.clone().sum::<f32>() / bodies.len() as f32;
+    Ok(Figures::default()
+        .within("mean height", mean_height, 0.9, 1.4)
+        .at_most("highest", largest(heights), 4.5)
+        .at_most("deepest", deep.max, 0.05)
+        .at_most("mean depth", deep.mean, 0.001)
+        .at_most("energy gained", gain.most / start, 0.001)
+        .at_most("points a step", points, 4000.0 / 200.0 * heads as f64)
+        .note(STEP_TIME, Summary::of(times).map_or(f64::NAN, |times| times.median)))
+}
+
+/// The contacts that the solver has.
+fn solver_points(world: &PhysicsWorld) -> usize {
+    let manifolds = world.contact_pairs().flat_map(|pair| pair.solver_manifolds());
+    manifolds.map(|manifold| manifold.data.solver_contacts.len()).sum()
+}

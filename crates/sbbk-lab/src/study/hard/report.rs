@@ -1,0 +1,131 @@
+//! Rows, tables and a picture of hard scenes.
+
+use clap::ValueEnum;
+
+use super::figures::{Figure, Figures};
+use super::kit::Kit;
+use super::{Column, HardPlan, Trial};
+use crate::report::{Look, Panel, Row, Scale, Table, TableSpec, faster, number};
+
+const VERDICTS: &str = "hard scenes";
+const FIGURES: &str = "hard scenes: figures";
+/// A figure, of which the table of times is made.
+pub(super) const STEP_TIME: &str = "ms a step";
+
+/// The rows of one scene. All runs of a column and a setting of recycling stand together; they
+/// have the same figures in the same order.
+pub(super) fn rows(trial: &Trial, runs: &[(Kit, &Figures)]) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for runs in runs.chunk_by(|(a, _), (b, _)| (a.column, a.recycling) == (b.column, b.recycling)) {
+        let kit = runs[0].0;
+        let row = |study| {
+            let row = Row::new(study, kit.column).key("scene", &*trial.name);
+            row.key("contact_recycling", kit.recycling)
+        };
+        let count = runs[0].1.0.len();
+        let worst: Vec<Figure> = (0..count).map(|index| worst_of(runs, index)).collect();
+        let passed = runs.iter().filter(|(_, figures)| figures.pass()).count();
+        rows.push(
+            row(VERDICTS)
+                .with("runs", runs.len())
+                .with("passed", passed)
+                .with("verdict", verdict(passed, runs.len(), &worst)),
+        );
+        rows.extend(worst.into_iter().map(|Figure { name, value, limits }| {
+            row(FIGURES).key("figure", name).with("worst", value).with("limits", limits)
+        }));
+    }
+    rows
+}
+
+/// The figure of one number in the worst of some runs.
+fn worst_of(runs: &[(Kit, &Figures)], index: usize) -> Figure {
+    let of_runs = runs.iter().map(|(_, figures)| figures.0[index]);
+    of_runs.reduce(|a, b| if b.excess() > a.excess() { b } else { a }).unwrap_or(runs[0].1.0[index])
+}
+
+/// The cell of a table: with the first figure, or the first that is not right.
+fn verdict(passed: usize, runs: usize, worst: &[Figure]) -> String {
+    let wrong = worst.iter().find(|figure| !figure.is_right());
+    let shown = wrong.or(worst.first()).map_or_else(String::new, |figure| {
+        format!("{} {}", figure.name, three_digits(figure.value))
+    });
+    match (passed == runs, runs) {
+        (true, _) => format!("ok: {shown}"),
+        (false, 1) => format!("FAILS: {shown}"),
+        (false, _) => format!("FAILS {} of {runs}: {shown}", runs - passed),
+    }
+}
+
+fn three_digits(value: f64) -> String {
+    match value.abs() {
+        magnitude if magnitude < 1e-3 && magnitude > 0.0 => format!("{value:.0e}"),
+        magnitude if magnitude >= 100.0 || value.fract() == 0.0 => format!("{value:.0}"),
+        magnitude if magnitude >= 1.0 => format!("{value:.2}"),
+        _ => format!("{value:.3}"),
+    }
+}
+
+pub(super) fn tables(plan: &HardPlan, rows: &[Row]) -> Vec<Table> {
+    let keys = &["scene", "contact_recycling"];
+    let columns = |path| plan.columns.iter().map(move |c| number(&c.to_string(), path).of(c));
+    let verdicts = TableSpec {
+        title: "Hard scenes: how each ends".to_owned(),
+        study: VERDICTS,
+        keys,
+        total: None,
+        columns: columns("verdict").collect(),
+        notes: vec![
+            format!("runs of a scene where chaos decides: {}; the worst is shown", plan.seeds),
+            "flag: FIX_INTERNAL_EDGES on all meshes; control: stock Rapier with convex shapes in \
+             place of the meshes"
+                .to_owned(),
+        ],
+    };
+    let stock = plan.columns.contains(&Column::Stock).then(|| {
+        let others = plan.columns.iter().filter(|&&c| c != Column::Stock && c != Column::Control);
+        others.map(|c| faster(&format!("{c} vs stock"), "worst", Column::Stock).of(c))
+    });
+    let times = TableSpec {
+        title: "Piles: median of the steps' times, milliseconds".to_owned(),
+        study: FIGURES,
+        keys,
+        total: None,
+        columns: columns("worst").chain(stock.into_iter().flatten()).collect(),
+        notes: vec!["each on its own trajectory; the slowest run is shown".to_owned()],
+    };
+    let times_of: Vec<Row> =
+        rows.iter().filter(|row| row.is("figure", STEP_TIME)).cloned().collect();
+    let figures = TableSpec {
+        title: "All figures: the worst of the runs".to_owned(),
+        study: FIGURES,
+        keys: &["scene", "figure", "contact_recycling"],
+        total: None,
+        columns: columns("worst").collect(),
+        notes: Vec::new(),
+    };
+    let mut tables = vec![verdicts.of(rows)];
+    if !times_of.is_empty() {
+        tables.push(times.of(&times_of));
+    }
+    if plan.shows_figures {
+        tables.push(figures.of(rows));
+    }
+    tables
+}
+
+/// Scenes that end well, by column.
+pub(super) fn panels(rows: &[Row]) -> Vec<Panel> {
+    let labels = ["column", "share of runs that end well"];
+    let panel = Panel::new("Hard scenes", labels, Scale::Linear);
+    let columns = Column::value_variants().iter().zip(Look::ALL).enumerate();
+    let panel = columns.fold(panel, |panel, (index, (column, look))| {
+        let rows = rows.iter().filter(|row| row.study == VERDICTS && row.is("backend", column));
+        let sums = rows.fold([0, 0], |[passed, runs], row| {
+            [passed + row.count("passed"), runs + row.count("runs")]
+        });
+        let share = (sums[1] > 0).then(|| [index as f64, sums[0] as f64 / sums[1] as f64]);
+        panel.points(&column.to_string(), look, share.into_iter())
+    });
+    vec![panel]
+}

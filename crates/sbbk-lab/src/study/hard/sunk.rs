@@ -1,0 +1,64 @@
+//! Boxes that start in a slab.
+
+use glamx::Vec3;
+use rapier3d::dynamics::RigidBodyBuilder;
+
+use super::Trial;
+use super::figures::{Figures, largest, top_speed};
+use super::kit::{Form, Kit};
+use crate::scene::SceneError;
+
+/// The lowest points of boxes of a unit start so deep below the slab's upper side.
+const DEPTHS: usize = 10;
+const LEAST: f32 = 0.1;
+const MOST: f32 = 1.2;
+const STEPS: usize = 180;
+/// Where both ways out are about as long, either is right.
+const DOUBT: f32 = 0.25;
+
+pub(super) fn trials() -> Vec<Trial> {
+    let mut trials = Vec::new();
+    for thickness in [2.0, 0.8] {
+        for cells in [1, 8] {
+            let triangles = 12 * cells * cells;
+            let name = format!("boxes in a slab of {thickness}, {triangles} triangles each");
+            trials.push(Trial::new(name, move |kit| run(kit, thickness, cells)));
+        }
+    }
+    trials
+}
+
+fn run(kit: &Kit, thickness: f32, cells: u32) -> Result<Figures, SceneError> {
+    let slab = kit.collider(&Form::cuboid(Vec3::new(5.0, 0.5 * thickness, 5.0), cells))?;
+    let cube = kit.collider(&Form::cuboid(Vec3::splat(0.5), cells))?;
+    let (mut inside, mut wrong_side, mut fastest) = (0, 0, 0.0_f32);
+    for index in 0..DEPTHS {
+        let depth = LEAST + (MOST - LEAST) * index as f32 / (DEPTHS - 1) as f32;
+        let mut world = kit.world();
+        let place = -0.5 * thickness * Vec3::Y;
+        world.insert(RigidBodyBuilder::fixed().translation(place), slab.clone());
+        let body = RigidBodyBuilder::dynamic().translation(Vec3::Y * (0.5 - depth));
+        let (body, _) = world.insert(body, cube.clone());
+        // One that has left below may fall as fast as it likes.
+        let (mut left_below, mut lowest_speed) = (false, 0.0);
+        for _ in 0..STEPS {
+            world.step();
+            left_below |= world.bodies[body].translation().y < -thickness - 0.45;
+            if !left_below {
+                lowest_speed = largest([lowest_speed, top_speed(&world, &[body])]);
+            }
+        }
+        fastest = largest([fastest, lowest_speed]);
+        let is_above = world.bodies[body].translation().y > 0.45;
+        // Down it is the slab's thickness and the box, less the way up.
+        let shorter_down = depth - (thickness + 1.0 - depth);
+        inside += usize::from(!is_above && !left_below);
+        wrong_side += usize::from(
+            (is_above && shorter_down > DOUBT) || (left_below && shorter_down < -DOUBT),
+        );
+    }
+    Ok(Figures::default()
+        .none("stay", inside)
+        .none("on the far side", wrong_side)
+        .at_most("speed", fastest, 5.0))
+}
