@@ -16,16 +16,16 @@ const WIDTH: f32 = 6.0;
 const HALF_EXTENTS: Vec3 = Vec3::new(0.5 * LENGTH, 0.5, 0.5 * WIDTH);
 /// How high bodies start above it.
 const GAP: f32 = 0.001;
-const STEPS: usize = 180;
-/// Steps at the start in which the body lands.
+/// Steps at the start in which the body lands, and those at the end that tell its speed.
 const LANDING: usize = 20;
+const LAST: usize = 60;
 
 /// What moves.
 #[derive(Clone, Copy)]
 enum Rider {
-    /// Half a unit high, slides with little friction.
+    /// A unit high, slides with little friction.
     Cube,
-    /// Half a unit in radius, rolls.
+    /// A unit in radius, rolls. It is so fine and slow that on a cuboid it loses little.
     Ball,
 }
 
@@ -55,7 +55,7 @@ fn floor_mesh(cell: f32, is_slab: bool) -> Mesh {
     floor.welded()
 }
 
-/// Where a run has ended, and the highest speed upwards on the way.
+/// How far a body has come, in all and in the last second, and its highest speed upwards.
 struct Ride {
     path: f32,
     speed: f32,
@@ -63,51 +63,72 @@ struct Ride {
 }
 
 impl Rider {
+    /// Of its middle, in units.
+    fn height(self) -> f32 {
+        match self {
+            Self::Cube => 0.5,
+            Self::Ball => 1.0,
+        }
+    }
+
+    /// At the start, in units a second.
+    fn speed(self) -> f32 {
+        match self {
+            Self::Cube => 8.0,
+            Self::Ball => 3.5,
+        }
+    }
+
+    /// In which it comes about 20 units far.
+    fn steps(self) -> usize {
+        match self {
+            Self::Cube => 180,
+            Self::Ball => 340,
+        }
+    }
+
     fn start(self, kit: &Kit) -> RigidBodyBuilder {
         let mut random = kit.random();
-        let place = Vec3::new(0.8 - 0.5 * LENGTH, 0.5 + GAP, random.rand_float());
-        match self {
-            Self::Cube => {
-                let turn = Quat::from_rotation_y(random.rand_float());
-                let body = RigidBodyBuilder::dynamic().pose(Pose3::from_parts(place, turn));
-                body.linvel(8.0 * Vec3::X)
-            }
-            Self::Ball => {
-                let turn = random::rotation(&mut random);
-                let body = RigidBodyBuilder::dynamic().pose(Pose3::from_parts(place, turn));
-                body.linvel(7.0 * Vec3::X).angvel(-14.0 * Vec3::Z)
-            }
-        }
+        let place = Vec3::new(2.0 - 0.5 * LENGTH, self.height() + GAP, random.rand_float());
+        let (turn, roll) = match self {
+            Self::Cube => (Quat::from_rotation_y(random.rand_float()), 0.0),
+            Self::Ball => (random::rotation(&mut random), self.speed() / self.height()),
+        };
+        let body = RigidBodyBuilder::dynamic().pose(Pose3::from_parts(place, turn));
+        body.linvel(self.speed() * Vec3::X).angvel(-roll * Vec3::Z).can_sleep(false)
     }
 
     fn form(self) -> Form {
         match self {
-            Self::Cube => Form::cuboid(Vec3::splat(0.5), 4),
+            Self::Cube => Form::cuboid(Vec3::splat(self.height()), 4),
             // Rolls as the mesh that it is, in the control as well.
-            Self::Ball => Form::mesh(mesh::ball(0.5, 16)),
+            Self::Ball => Form::mesh(mesh::ball(self.height(), 32)),
+        }
+    }
+
+    fn friction(self) -> f32 {
+        match self {
+            Self::Cube => 0.1,
+            Self::Ball => 0.5,
         }
     }
 
     fn ride(self, kit: &Kit, floor: ColliderBuilder) -> Result<Ride, SceneError> {
-        let friction = match self {
-            Self::Cube => 0.1,
-            Self::Ball => 0.5,
-        };
         let mut world = kit.world();
-        world.insert(RigidBodyBuilder::fixed(), floor.friction(friction));
-        let collider = kit.collider(&self.form())?.friction(friction);
-        let start = self.start(kit).can_sleep(false).build();
-        let from = start.translation().x;
-        let (body, _) = world.insert(start, collider);
+        world.insert(RigidBodyBuilder::fixed(), floor.friction(self.friction()));
+        let collider = kit.collider(&self.form())?.friction(self.friction());
+        let (body, _) = world.insert(self.start(kit), collider);
         let mut bump = 0.0;
-        for step in 1..=STEPS {
+        let mut way = vec![world.bodies[body].translation().x];
+        for step in 1..=self.steps() {
             world.step();
+            way.push(world.bodies[body].translation().x);
             if step > LANDING {
                 bump = largest([bump, world.bodies[body].linvel().y]);
             }
         }
-        let body = &world.bodies[body];
-        Ok(Ride { path: body.translation().x - from, speed: body.linvel().x, bump })
+        let end = way[self.steps()];
+        Ok(Ride { path: end - way[0], speed: end - way[self.steps() - LAST], bump })
     }
 }
 
