@@ -1,6 +1,6 @@
 //! A gear that drives another one.
 
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::PI;
 
 use glamx::{Quat, Vec2, Vec3};
 use rapier3d::dynamics::{RevoluteJointBuilder, RigidBodyBuilder, RigidBodyHandle};
@@ -62,7 +62,7 @@ fn run(kit: &Kit, speed: f32) -> Result<Figures, SceneError> {
     let driver = wheel(0.0, 0.0, 0.0, Some(speed));
     // A gap of the second is where a tooth of the first is.
     let driven = wheel(2.0 * GEAR.pitch_radius(), PI / GEAR.teeth as f32, LOAD, None);
-    let mut turns = [Turn::new(&world, driver), Turn::new(&world, driven)];
+    let mut turns = [driver, driven].map(|body| Turn::new(&world, body, Vec3::Z));
     let (mut away, mut after_speed_up) = (0.0_f32, 0.0);
     for step in 1..=STEPS {
         world.step();
@@ -82,24 +82,24 @@ fn run(kit: &Kit, speed: f32) -> Result<Figures, SceneError> {
     ))
 }
 
-/// Counts the turns of a body about the `z` axis.
+/// Counts the turns of a body about an axis.
 pub(super) struct Turn {
     body: RigidBodyHandle,
+    axis: Vec3,
     last: Quat,
     /// Since the start, in radians.
     pub angle: f32,
 }
 
 impl Turn {
-    pub fn new(world: &PhysicsWorld, body: RigidBodyHandle) -> Self {
-        Self { body, last: *world.bodies[body].rotation(), angle: 0.0 }
+    pub fn new(world: &PhysicsWorld, body: RigidBodyHandle, axis: Vec3) -> Self {
+        Self { body, axis, last: *world.bodies[body].rotation(), angle: 0.0 }
     }
 
     /// Adds what it has turned since the last call: less than half a turn.
     pub fn see(&mut self, world: &PhysicsWorld) {
         let now = *world.bodies[self.body].rotation();
-        let Vec3 { x, y, .. } = (now * self.last.inverse()) * Vec3::X;
-        self.angle += y.atan2(x) % TAU;
+        self.angle += (now * self.last.inverse()).to_scaled_axis().dot(self.axis);
         self.last = now;
     }
 }

@@ -9,17 +9,23 @@
 //! Time steps are 1/60 s, gravity 9.81 units/s² and all parameters Rapier's defaults, unless a scene
 //! says otherwise.
 
+mod bowls;
+mod ccd;
+mod chain;
 mod depth;
 mod figures;
 mod gears;
 mod kit;
 mod overlap;
 mod pile;
+mod pit;
 mod report;
 mod road;
+mod screw;
 mod sheets;
 mod stacks;
 mod sunk;
+mod walls;
 
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
@@ -43,6 +49,14 @@ pub enum Group {
     Pile,
     /// Towers of cubes.
     Stacks,
+    /// Bowls in each other.
+    Bowls,
+    /// A wall of bricks, and a house of cards.
+    Walls,
+    /// Rings that hang in each other.
+    Chain,
+    /// A nut on a bolt.
+    Screw,
     /// Two gears.
     Gears,
     /// Bodies released in each other.
@@ -51,6 +65,10 @@ pub enum Group {
     Sunk,
     /// Cubes that slide and balls that roll over meshes.
     Road,
+    /// Thin and fast bodies.
+    Ccd,
+    /// Heads at rest in a pit, of several sizes.
+    Pit,
     /// Cubes on sheets without an inside.
     Sheets,
 }
@@ -153,6 +171,12 @@ pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError>
         let trials = match group {
             Group::Pile => pile::trials(&plan.heads),
             Group::Stacks => stacks::trials(),
+            Group::Bowls => bowls::trials(),
+            Group::Walls => walls::trials(),
+            Group::Chain => chain::trials(),
+            Group::Screw => screw::trials(),
+            Group::Ccd => ccd::trials(),
+            Group::Pit => pit::trials(),
             Group::Gears => gears::trials(),
             Group::Overlap => overlap::trials(),
             Group::Sunk => sunk::trials(),

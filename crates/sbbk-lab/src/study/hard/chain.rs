@@ -1,0 +1,83 @@
+//! Rings that hang in each other, with a weight.
+
+use std::f32::consts::{FRAC_PI_2, TAU};
+
+use glamx::{Pose3, Quat, Vec3};
+use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
+
+use super::Trial;
+use super::figures::{Figures, Gain, energy, largest, places};
+use super::kit::{Form, Kit};
+use crate::mesh;
+use crate::scene::SceneError;
+
+/// Rings of the chain; one more is the weight.
+const RINGS: usize = 10;
+const RADIUS: f32 = 0.25;
+const TUBE: f32 = 0.05;
+const SEGMENTS: [u32; 2] = [24, 12];
+/// Between the middles of two rings of a chain that is taut.
+const PITCH: f32 = 2.0 * (RADIUS - TUBE);
+/// What they are closer at the start.
+const SLACK: f32 = 0.005;
+const STEPS: usize = 360;
+
+pub(super) fn trials() -> Vec<Trial> {
+    let trial = |load: f32| {
+        let name = format!("chain under {load} times its weight");
+        Trial::new(name, move |kit| run(kit, load))
+    };
+    [1.0, 5.0, 50.0].map(trial).into()
+}
+
+fn form() -> Form {
+    let [ring_segments, tube_segments] = SEGMENTS;
+    let part = |part: u32| {
+        let ends = [part, part + 1].map(|k| TAU * k as f32 / ring_segments as f32);
+        let points = ends.into_iter().flat_map(|angle| {
+            (0..tube_segments).map(move |k| {
+                let tube = TAU * k as f32 / tube_segments as f32;
+                let distance = RADIUS + TUBE * tube.cos();
+                Vec3::new(distance * angle.cos(), -TUBE * tube.sin(), distance * angle.sin())
+            })
+        });
+        points.collect()
+    };
+    let torus = mesh::torus(RADIUS, TUBE, ring_segments, tube_segments);
+    Form::parts(torus, (0..ring_segments).map(part))
+}
+
+fn run(kit: &Kit, load: f32) -> Result<Figures, SceneError> {
+    let mut world = kit.world();
+    let collider = kit.collider(&form())?;
+    let bodies = (0..=RINGS).map(|index| {
+        let body = match index {
+            0 => RigidBodyBuilder::fixed(),
+            _ => RigidBodyBuilder::dynamic(),
+        };
+        // Every second ring is turned by a right angle, all of them upright.
+        let upright = Quat::from_rotation_x(FRAC_PI_2);
+        let turn = Quat::from_rotation_y(FRAC_PI_2 * (index % 2) as f32) * upright;
+        let place = -Vec3::Y * index as f32 * (PITCH - SLACK);
+        let density = if index == RINGS { load * RINGS as f32 } else { 1.0 };
+        let body = body.pose(Pose3::from_parts(place, turn)).can_sleep(false);
+        world.insert(body, collider.clone().density(density)).0
+    });
+    let bodies: Vec<RigidBodyHandle> = bodies.collect();
+    world.step();
+    let mut gain = Gain::default();
+    for _ in 1..STEPS {
+        world.step();
+        gain.see(energy(&world, &bodies[1..]));
+    }
+    let ends = places(&world, &bodies);
+    let apart: Vec<f32> = ends.windows(2).map(|pair| pair[0].distance(pair[1])).collect();
+    let parted = apart.iter().filter(|&&apart| !(apart < PITCH + TUBE)).count();
+    let mass: f32 = bodies[1..].iter().map(|&body| world.bodies[body].mass()).sum();
+    // As a share of what it takes to lift all by one ring.
+    let lift = mass * -world.gravity.y * PITCH;
+    Ok(Figures::default()
+        .none("parted", parted)
+        .at_most("energy gained", gain.most / f64::from(lift), 0.01)
+        .note("longest link", largest(apart) / PITCH))
+}

@@ -1,0 +1,71 @@
+//! A nut that runs down a bolt by its weight.
+
+use std::f32::consts::TAU;
+
+use glamx::Vec3;
+use rapier3d::dynamics::RigidBodyBuilder;
+
+use super::Trial;
+use super::figures::Figures;
+use super::gears::Turn;
+use super::kit::{Form, Kit};
+use crate::mesh::Thread;
+use crate::scene::SceneError;
+
+/// Its lead angle is 1.9 degrees.
+const BOLT: Thread = Thread { root: 0.9, height: 0.1, pitch: 0.2, turns: 8, segments: 32 };
+const NUT_TURNS: u32 = 3;
+const NUT_RADIUS: f32 = 1.4;
+const CLEARANCE: f32 = 0.02;
+const STEPS: usize = 720;
+
+pub(super) fn trials() -> Vec<Trial> {
+    let trial = |(friction, name): (f32, &str)| {
+        Trial::new(name, move |kit| run(kit, friction)).without_control()
+    };
+    let names = ["nut runs down a bolt, friction 0.01", "nut is locked, friction 0.05"];
+    [0.01, 0.05].into_iter().zip(names).map(trial).collect()
+}
+
+/// Without contact clustering, which takes all normals within five degrees for one.
+fn run(kit: &Kit, friction: f32) -> Result<Figures, SceneError> {
+    let mut world = kit.world();
+    world.integration_parameters.contact_clustering = false;
+    let bolt = kit.collider(&Form::mesh(BOLT.bolt()))?;
+    world.insert(RigidBodyBuilder::fixed(), bolt.friction(friction));
+    let nut = Thread { turns: NUT_TURNS, ..BOLT }.nut(NUT_RADIUS, CLEARANCE);
+    let nut = kit.collider(&Form::mesh(nut))?;
+    let start = BOLT.pitch * (BOLT.turns - NUT_TURNS) as f32;
+    let body = RigidBodyBuilder::dynamic().translation(Vec3::Y * start).can_sleep(false);
+    let (body, _) = world.insert(body, nut.friction(friction));
+    let mut turn = Turn::new(&world, body, Vec3::Y);
+    // It first falls by the play of the thread.
+    let (mut settled, mut place) = ([0.0; 2], start);
+    for step in 1..=STEPS {
+        world.step();
+        turn.see(&world);
+        place = world.bodies[body].translation().y;
+        if step == SETTLED {
+            settled = [turn.angle, place];
+        }
+        // Before it leaves the bolt.
+        if !(place > BOLT.pitch) {
+            break;
+        }
+    }
+    let descent = (settled[1] - place) / BOLT.pitch;
+    let turns = (settled[0] - turn.angle) / TAU;
+    let figures = Figures::default();
+    Ok(match friction > 0.03 {
+        true => figures.within("pitches down", descent, -0.1, 0.3),
+        false => figures.within("pitches down", descent, 1.0, f64::from(BOLT.turns)).within(
+            "turns a pitch",
+            turns / descent,
+            0.98,
+            1.02,
+        ),
+    })
+}
+
+/// Steps until it rests on the thread.
+const SETTLED: usize = 30;

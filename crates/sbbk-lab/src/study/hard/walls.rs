@@ -1,0 +1,86 @@
+//! A wall of bricks, and a house of cards.
+
+use glamx::{Pose3, Quat, Vec3};
+use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
+
+use super::Trial;
+use super::figures::{Figures, largest, places};
+use super::kit::{Form, Kit};
+use crate::scene::SceneError;
+
+const STEPS: usize = 480;
+
+pub(super) fn trials() -> Vec<Trial> {
+    let mut trials = Vec::new();
+    for cells in [1, 4] {
+        let triangles = 12 * cells * cells;
+        let wall = move |kit: &Kit| run(kit, BRICK, cells, &wall(), 0.5, 0.03);
+        trials.push(Trial::new(format!("wall of bricks of {triangles} triangles"), wall));
+        let house = move |kit: &Kit| run(kit, CARD, cells, &house(), 0.8, 0.1);
+        trials.push(Trial::new(format!("house of cards of {triangles} triangles"), house));
+    }
+    trials
+}
+
+const BRICK: Vec3 = Vec3::new(0.5, 0.25, 0.25);
+const ROWS: usize = 5;
+const COLUMNS: usize = 6;
+
+/// Running bond; all bricks touch.
+fn wall() -> Vec<Pose3> {
+    let place = |index: usize| {
+        let [row, column] = [index / COLUMNS, index % COLUMNS].map(|k| k as f32);
+        let shift = 0.5 * (row % 2.0);
+        2.0 * BRICK * Vec3::new(column + shift - 0.5 * COLUMNS as f32, row + 0.5, 0.0)
+    };
+    (0..ROWS * COLUMNS).map(|index| Pose3::from_translation(place(index))).collect()
+}
+
+/// Upright.
+const CARD: Vec3 = Vec3::new(0.01, 0.5, 0.4);
+/// How far cards lean, in radians.
+const LEAN: f32 = 0.35;
+
+/// Two pairs that lean against each other, a card across, and a pair on it.
+fn house() -> Vec<Pose3> {
+    let (sin, cos) = LEAN.sin_cos();
+    // From its middle to its highest point, and to the edge that leans on the other card.
+    let up = CARD.x * sin + CARD.y * cos;
+    let aside = CARD.x * cos + CARD.y * sin;
+    let pair = |x: f32, floor: f32| {
+        [-1.0, 1.0].map(|side| {
+            let place = Vec3::new(x + side * aside, floor + up, 0.0);
+            Pose3::from_parts(place, Quat::from_rotation_z(side * LEAN))
+        })
+    };
+    let foot = 2.0 * CARD.y * sin + 0.01;
+    let across = Pose3::from_parts(
+        Vec3::Y * (2.0 * up + CARD.x),
+        Quat::from_rotation_z(std::f32::consts::FRAC_PI_2),
+    );
+    let upper = pair(0.0, 2.0 * (up + CARD.x));
+    [&pair(-foot, 0.0)[..], &pair(foot, 0.0), &[across], &upper].concat()
+}
+
+fn run(
+    kit: &Kit,
+    half_extents: Vec3,
+    cells: u32,
+    poses: &[Pose3],
+    friction: f32,
+    limit: f64,
+) -> Result<Figures, SceneError> {
+    let mut world = kit.world();
+    let floor = kit.collider(&Form::cuboid(Vec3::new(6.0, 0.5, 6.0), cells))?;
+    let ground = RigidBodyBuilder::fixed().translation(-0.5 * Vec3::Y);
+    world.insert(ground, floor.friction(friction));
+    let collider = kit.collider(&Form::cuboid(half_extents, cells))?.friction(friction);
+    let bodies = poses
+        .iter()
+        .map(|&pose| world.insert(RigidBodyBuilder::dynamic().pose(pose), collider.clone()).0);
+    let bodies: Vec<RigidBodyHandle> = bodies.collect();
+    (0..STEPS).for_each(|_| world.step());
+    let ends = places(&world, &bodies);
+    let drifts = poses.iter().zip(&ends).map(|(start, end)| (start.translation - *end).length());
+    Ok(Figures::default().at_most("drift", largest(drifts), limit))
+}
