@@ -57,6 +57,7 @@ mod simd;
 #[cfg(test)]
 #[path = "../tests/support/mod.rs"]
 mod support;
+pub mod surface;
 pub mod traverse;
 pub mod tree;
 #[cfg(feature = "truth")]

@@ -15,6 +15,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use parry3d::shape::{CompositeShape, SharedShape, TriMesh};
+use sbbk_core::surface::Surface;
 use sbbk_core::tree::{BuildError, BuildOptions};
 
 use super::credit::Credit;
@@ -74,6 +75,8 @@ pub(crate) struct CachedMesh {
     content: ContentHash,
     triangle_count: usize,
     prepared: OnceLock<Result<PreparedMesh, BuildError>>,
+    /// From the first contact on.
+    surface: OnceLock<Surface>,
     /// Of the mesh, from the first query without manifolds on.
     copy: OnceLock<ContentCopy>,
     /// Living [`PreparedRef`]s, and a place in [`Entries::queried`]. Rises from zero under the lock
@@ -87,31 +90,38 @@ impl CachedMesh {
             content,
             triangle_count,
             prepared: OnceLock::new(),
+            surface: OnceLock::new(),
             copy: OnceLock::new(),
             users: AtomicUsize::new(0),
         }
     }
 
     /// All memory that goes with the mesh: its own, and its places in maps that are half empty at
-    /// most. None if it cannot have a tree.
+    /// most.
     fn bytes(&self) -> usize {
         const PLACES: usize =
             2 * (size_of::<(ContentHash, Entry)>() + size_of::<(u64, ContentHash)>());
         const COUNTERS: usize = 2 * size_of::<usize>();
-        let Some(Ok(prepared)) = self.prepared.get() else {
-            return 0;
-        };
-        // The prepared mesh counts itself, which is within this value.
-        let own = size_of::<Self>() - size_of::<PreparedMesh>() + prepared.bytes();
-        own + self.copy.get().map_or(0, ContentCopy::bytes) + COUNTERS + PLACES
+        // These count themselves, which are within this value.
+        let tree = self.tree().map_or(0, |tree| tree.bytes() - size_of::<PreparedMesh>());
+        let surface = self.surface.get().map_or(0, |own| own.bytes() - size_of::<Surface>());
+        let copy = self.copy.get().map_or(0, ContentCopy::bytes);
+        size_of::<Self>() + tree + surface + copy + COUNTERS + PLACES
     }
 
-    /// The prepared mesh.
+    /// The prepared mesh, if it is.
+    pub(crate) fn tree(&self) -> Option<&PreparedMesh> {
+        self.prepared.get()?.as_ref().ok()
+    }
+
+    /// The prepared mesh, of a mesh that [`TreeCache::prepare`] has returned.
     pub(crate) fn prepared(&self) -> &PreparedMesh {
-        match self.prepared.get() {
-            Some(Ok(prepared)) => prepared,
-            _ => unreachable!("`TreeCache::prepare` returns references to finished trees only"),
-        }
+        self.tree().expect("prepared")
+    }
+
+    /// The surface of the mesh, which must be this one.
+    pub(crate) fn surface(&self, mesh: &TriMesh) -> &Surface {
+        self.surface.get_or_init(|| Surface::new(mesh.vertices(), mesh.indices()))
     }
 
     /// Whether vertices and triangles of a mesh are, bit for bit, those of this one. Never so
@@ -161,26 +171,21 @@ impl TreeCache {
     /// # Errors
     /// Why this mesh cannot have a tree.
     pub(crate) fn prepare(self: &Arc<Self>, mesh: &TriMesh) -> Result<PreparedRef, BuildError> {
-        self.find_or_build(mesh, ContentHash::of(mesh))
+        let entry = self.acquire(ContentHash::of(mesh), mesh.indices().len());
+        self.build(mesh, &entry)?;
+        Ok(entry)
     }
 
-    fn find_or_build(
-        self: &Arc<Self>,
-        mesh: &TriMesh,
-        content: ContentHash,
-    ) -> Result<PreparedRef, BuildError> {
-        let prepared = self.acquire(content, mesh.indices().len());
+    /// Builds the tree of a mesh, whose entry this is, if it is not there.
+    fn build(&self, mesh: &TriMesh, entry: &CachedMesh) -> Result<(), BuildError> {
         let mut built = false;
-        let result = prepared.mesh.prepared.get_or_init(|| {
+        let result = entry.prepared.get_or_init(|| {
             built = true;
             PreparedMesh::new(mesh, &self.options)
         });
         let counter = if built { &self.builds } else { &self.hits };
         counter.fetch_add(1, Ordering::Relaxed);
-        match result {
-            Ok(_) => Ok(prepared),
-            Err(error) => Err(error.clone()),
-        }
+        result.as_ref().map(|_| ()).map_err(BuildError::clone)
     }
 
     /// The same for queries without manifolds: kept for the next ones, with a copy of the mesh.
@@ -218,23 +223,32 @@ impl TreeCache {
         Ok(self.registry.register(shape, self.prepare(mesh)?))
     }
 
-    /// The tree of a mesh if it is there, or if queries have earned what it takes.
-    pub(super) fn afford(self: &Arc<Self>, mesh: &TriMesh) -> Option<PreparedRef> {
-        if let Some(tree) = self.registry.tree_of(mesh) {
-            return Some(tree);
-        }
+    /// What is known of a mesh, if it is registered or small.
+    pub(super) fn know(self: &Arc<Self>, mesh: &TriMesh) -> Option<PreparedRef> {
+        let small = || self.acquire(ContentHash::of(mesh), mesh.indices().len());
+        self.registry.tree_of(mesh).or_else(|| self.is_small(mesh).then(small))
+    }
+
+    /// The tree of a large mesh if it is there, and queries have earned what it takes to know it.
+    pub(super) fn recognise(self: &Arc<Self>, mesh: &TriMesh) -> Option<PreparedRef> {
         let count = mesh.indices().len();
         let may_be_there = self.lock().counts.contains_key(&count);
-        if may_be_there && (self.is_small(mesh) || self.credit.spend(Credit::of_hash(count))) {
-            let content = ContentHash::of(mesh);
-            let is_there = self.lock().by_content.contains_key(&content);
-            if is_there {
-                // Should it go meanwhile, it is built again.
-                return self.find_or_build(mesh, content).ok();
-            }
+        if !may_be_there || !self.credit.spend(Credit::of_hash(count)) {
+            return None;
         }
-        let can_pay = self.is_small(mesh) && self.credit.spend(count);
-        can_pay.then(|| self.prepare(mesh).ok())?
+        let content = ContentHash::of(mesh);
+        let is_there = self.lock().by_content.contains_key(&content);
+        // Should it go meanwhile, it has no tree any more.
+        is_there.then(|| self.acquire(content, count))
+    }
+
+    /// Builds the tree of a mesh, if queries have earned what it takes.
+    pub(super) fn afford(&self, mesh: &TriMesh, entry: &CachedMesh) {
+        let is_there = entry.prepared.get().is_some();
+        if is_there || self.is_small(mesh) && self.credit.spend(mesh.indices().len()) {
+            // A mesh that cannot have one does without.
+            let _ = self.build(mesh, entry);
+        }
     }
 
     /// The tree of a mesh that is registered.
@@ -300,7 +314,7 @@ impl TreeCache {
         };
         let queried = entries.by_content.values().filter(is_queried).count();
         CacheCounts {
-            trees: entries.by_content.len(),
+            trees: entries.by_content.values().filter(|e| e.mesh.tree().is_some()).count(),
             idle_trees: entries.idle.len() + queried,
             bytes: entries.by_content.values().map(|entry| entry.mesh.bytes()).sum(),
             builds: self.builds.load(Ordering::Relaxed),
@@ -326,17 +340,12 @@ impl Entries {
         if !is_unused || !std::ptr::eq(&*entry.mesh, mesh) || entry.idle.is_some() {
             return;
         }
-        match mesh.bytes() {
-            // A mesh that cannot have a tree: nothing to keep.
-            0 => self.remove(mesh.content),
-            bytes => {
-                entry.idle = Some(Idle { since: self.now, bytes });
-                self.idle.insert(self.now, mesh.content);
-                self.now += 1;
-                self.idle_bytes += bytes;
-                self.shrink_idle(idle_bytes_limit);
-            }
-        }
+        let bytes = mesh.bytes();
+        entry.idle = Some(Idle { since: self.now, bytes });
+        self.idle.insert(self.now, mesh.content);
+        self.now += 1;
+        self.idle_bytes += bytes;
+        self.shrink_idle(idle_bytes_limit);
     }
 
     fn forget_oldest_queried(&mut self, idle_bytes_limit: usize) {

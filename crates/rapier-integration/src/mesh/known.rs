@@ -2,10 +2,10 @@ use std::sync::Arc;
 
 use parry3d::shape::{CompositeShape, TriMesh};
 
-use super::cache::{PreparedRef, TreeCache};
+use super::cache::{CachedMesh, PreparedRef, TreeCache};
 use super::hierarchy::Hierarchy;
 use super::identity::MeshToken;
-use super::prepared::PreparedMesh;
+use super::neighbours::Neighbours;
 
 /// A mesh as a pair of colliders knows it from query to query: how to tell whether it still is that
 /// mesh, and its tree, if there is one.
@@ -15,7 +15,14 @@ pub(crate) enum KnownMesh {
     #[default]
     Unknown,
     /// Valid while the token is, for the same owner. Without a tree, for so many more queries.
-    Rigid { token: MeshToken, owner: u64, tree: Option<PreparedRef>, wait: u8 },
+    Rigid {
+        token: MeshToken,
+        owner: u64,
+        entry: Option<PreparedRef>,
+        wait: u8,
+        is_sure: bool,
+        neighbours: Neighbours,
+    },
     /// May be another one at any time: has no tree.
     Deformable,
 }
@@ -55,22 +62,41 @@ impl KnownMesh {
             Self::Unknown => Change::Unknown,
             Self::Rigid { .. } | Self::Deformable => Change::Replaced,
         };
-        *self = Self::Rigid { token: seen, owner: asking, tree: None, wait: 0 };
+        *self = Self::Rigid {
+            token: seen,
+            owner: asking,
+            entry: None,
+            wait: 0,
+            is_sure: false,
+            neighbours: Neighbours::default(),
+        };
         change
     }
 
-    /// The tree of a mesh that [`update`](Self::update) has seen, if it is there or can be had at
-    /// once.
-    pub(crate) fn tree(&mut self, mesh: &TriMesh, cache: &Arc<TreeCache>) -> Option<&PreparedMesh> {
+    /// What all pairs share of a mesh that [`update`](Self::update) has seen, if it is small or
+    /// registered, and whether that is why; with its tree if that is there or can be had at once.
+    pub(crate) fn entry(
+        &mut self,
+        mesh: &TriMesh,
+        cache: &Arc<TreeCache>,
+    ) -> Option<(Option<&CachedMesh>, bool, &mut Neighbours)> {
         /// Queries from one try to the next. More: trees come later; fewer: each costs two locks.
         const PATIENCE: u8 = 7;
-        let Self::Rigid { tree, wait, .. } = self else {
+        let Self::Rigid { entry, wait, is_sure, neighbours, .. } = self else {
             return None;
         };
-        if tree.is_none() && *wait == 0 {
-            (*tree, *wait) = (cache.afford(mesh), PATIENCE);
+        if *wait == 0 && entry.as_ref().is_none_or(|entry| entry.tree().is_none()) {
+            *wait = PATIENCE;
+            if entry.is_none() {
+                *entry = cache.know(mesh);
+                *is_sure = entry.is_some();
+            }
+            *entry = entry.take().or_else(|| cache.recognise(mesh));
+            if let Some(entry) = entry {
+                cache.afford(mesh, entry);
+            }
         }
         *wait = wait.saturating_sub(1);
-        tree.as_ref().map(|tree| tree.prepared())
+        Some((entry.as_deref(), *is_sure, neighbours))
     }
 }

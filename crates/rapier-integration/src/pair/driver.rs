@@ -26,6 +26,7 @@ use super::order::{Candidate, OrderKey, Place};
 use super::pool::{Demand, ManifoldPool, reset};
 use super::pose::PairPose;
 use super::state::{PairState, state_in};
+use super::triangles::Regions;
 use crate::mesh::{Change, Ranks, TreeCache};
 
 /// A mesh and another shape, of whose contacts a host asks.
@@ -78,14 +79,19 @@ pub(crate) trait PairQuery {
         candidates: &mut Vec<Candidate<Self::Hint>>,
     );
 
-    /// The contact of a candidate; `None` if it is surely out of reach. May raise what the
-    /// candidate knows.
+    /// The contact of a candidate. May raise what the candidate knows.
     fn contact(
         &mut self,
         candidate: &mut Candidate<Self::Hint>,
         limits: Limits,
         scratch: &mut Scratch,
-    ) -> Option<Self::Contact>;
+    ) -> Seen<Self::Contact>;
+
+    /// Whether contacts that were put off may be needed, now that all candidates have been seen. Then
+    /// each candidate is asked for once more, and none may be put off.
+    fn needs_more(&mut self, _: &mut Scratch) -> bool {
+        false
+    }
 
     /// Says which subshapes a manifold without points is of.
     fn name<M, C>(&self, candidate: &Candidate<Self::Hint>, manifold: &mut ContactManifold<M, C>) {
@@ -105,6 +111,21 @@ pub(crate) trait PairQuery {
     ) where
         M: Default + Clone + Send + Sync,
         C: Default + Copy + Send + Sync;
+}
+
+/// What is known of the contact of a candidate.
+pub(crate) enum Seen<C> {
+    /// There is none.
+    Nothing,
+    /// Whether it is needed depends on the others.
+    Later,
+    Contact(C),
+}
+
+impl<C> From<Option<C>> for Seen<C> {
+    fn from(contact: Option<C>) -> Self {
+        contact.map_or(Self::Nothing, Self::Contact)
+    }
 }
 
 /// A ball that holds the moving shape in its own frame, and where that frame is in the other's.
@@ -151,6 +172,8 @@ pub(crate) struct Scratch {
     pub(super) ranks: [Ranks; 2],
     /// Triangles that a walk has found.
     pub(super) near: Vec<u32>,
+    /// Where surfaces cross.
+    pub(super) regions: Regions,
     lookup: Lookup,
     /// Which manifolds of the query before are dealt with.
     is_done: Vec<bool>,
@@ -206,21 +229,23 @@ where
         travel: coherence.slack.travel(),
     };
     coherence.find_places(&mut scratch.lookup, manifolds);
-    update(
-        &mut query,
-        &mut coherence.candidates,
-        limits,
-        &mut scratch,
-        &mut memory.pool,
-        manifolds,
-    );
+    scratch.regions.begin();
+    let candidates = &mut coherence.candidates;
+    let mut update = |query: &mut _, scratch: &mut _, manifolds: &mut _| {
+        update(query, candidates, limits, scratch, &mut memory.pool, manifolds)
+    };
+    let has_put_off = update(&mut query, &mut scratch, manifolds);
+    if query.needs_more(&mut scratch) || has_put_off {
+        update(&mut query, &mut scratch, manifolds);
+    }
     SCRATCH.set(Some(scratch));
     memory.end(query.pose(), manifolds.len());
     answer
 }
 
 /// Replaces `manifolds` by those of the candidates that touch, in stock order. Manifolds of
-/// subshapes that still do keep their data; none is left empty.
+/// subshapes that still do keep their data; none is left empty. Returns whether some are still there
+/// whose contacts were put off.
 fn update<Q, M, C>(
     query: &mut Q,
     candidates: &mut [Candidate<Q::Hint>],
@@ -228,7 +253,8 @@ fn update<Q, M, C>(
     scratch: &mut Scratch,
     pool: &mut ManifoldPool<M, C>,
     manifolds: &mut Vec<ContactManifold<M, C>>,
-) where
+) -> bool
+where
     Q: PairQuery,
     M: Default + Clone + Send + Sync + 'static,
     C: Default + Copy + Send + Sync + 'static,
@@ -240,6 +266,7 @@ fn update<Q, M, C>(
     // A new manifold that has no points yet.
     let mut blank = None;
     let mut count = 0;
+    let mut has_put_off = false;
     let farthest = limits.reach + limits.travel;
     for candidate in candidates {
         let old = candidate.place.take().map(Place::index);
@@ -247,9 +274,9 @@ fn update<Q, M, C>(
             is_done[place] = true;
         }
         let is_far = candidate.clear > farthest;
-        let contact = if is_far { None } else { query.contact(candidate, limits, scratch) };
-        let is_kept = match (contact, old) {
-            (Some(contact), Some(place)) => {
+        let seen = if is_far { Seen::Nothing } else { query.contact(candidate, limits, scratch) };
+        let is_kept = match (seen, old) {
+            (Seen::Contact(contact), Some(place)) => {
                 let (points, manifold) = (&mut pool.previous_points, &mut manifolds[place]);
                 if manifold.points.is_empty() {
                     // A blank one, that a host has made or a panic has left.
@@ -258,7 +285,7 @@ fn update<Q, M, C>(
                 query.write(contact, candidate, limits, scratch, points, manifold);
                 pool.keep_old(place, manifolds)
             }
-            (Some(contact), None) => {
+            (Seen::Contact(contact), None) => {
                 let manifold = blank.get_or_insert_with(|| pool.take());
                 query.name(candidate, manifold);
                 let points = &mut pool.previous_points;
@@ -271,11 +298,15 @@ fn update<Q, M, C>(
                 }
                 has_points
             }
-            (None, Some(place)) => {
+            (Seen::Later, Some(place)) => {
+                has_put_off = true;
+                pool.keep_old(place, manifolds)
+            }
+            (Seen::Nothing, Some(place)) => {
                 pool.retire(std::mem::take(&mut manifolds[place]));
                 false
             }
-            (None, None) => false,
+            (Seen::Nothing | Seen::Later, None) => false,
         };
         if is_kept {
             candidate.place = Place::new(count);
@@ -294,4 +325,5 @@ fn update<Q, M, C>(
         scratch.lookup.shrink_to(limit);
     }
     scratch.is_done = is_done;
+    has_put_off
 }

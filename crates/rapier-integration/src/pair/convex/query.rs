@@ -15,7 +15,7 @@ use super::parts::{KnownParts, Part, Parts};
 use super::placed::{PlacedPart, Question};
 use crate::ContactGenerator;
 use crate::mesh::{Change, KnownMesh, TreeCache};
-use crate::pair::driver::{Limits, Moving, Pair, PairQuery, Scratch};
+use crate::pair::driver::{Limits, Moving, Pair, PairQuery, Scratch, Seen};
 use crate::pair::order::{Candidate, OrderKey};
 use crate::pair::pose::{MeshPlace, PairPose};
 
@@ -163,11 +163,11 @@ impl PairQuery for ConvexQuery<'_> {
         candidate: &mut Candidate<Vec3>,
         limits: Limits,
         scratch: &mut Scratch,
-    ) -> Option<Near> {
+    ) -> Seen<Near> {
         let [triangle, part] = self.pair.mesh_place.swap(candidate.subshapes);
         let mesh = &self.pair.mesh;
         let is_exact = self.pair.contacts == ContactGenerator::Exact;
-        self.pair.parts.with(part, |part_shape| {
+        let contact = self.pair.parts.with(part, |part_shape| {
             let shape = part_shape.shape;
             let placed = self.placed(part, &part_shape, scratch);
             if candidate.hint != Vec3::ZERO {
@@ -189,7 +189,8 @@ impl PairQuery for ConvexQuery<'_> {
             candidate.clear = distance + limits.travel;
             let is_near = distance <= f64::from(self.pair.pose.prediction);
             is_near.then_some(Near(contact))
-        })?
+        });
+        contact.flatten().into()
     }
 
     fn name<M, C>(&self, candidate: &Candidate<Vec3>, manifold: &mut ContactManifold<M, C>) {

@@ -1,11 +1,12 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use parry3d::math::{Pose, Real};
+use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::NormalConstraints;
-use parry3d::shape::Triangle;
+use parry3d::shape::{CompositeShapeRef, Triangle};
 use sbbk_core::contact::ManifoldPoints;
 use sbbk_core::leaf::LeafTest;
+use sbbk_core::surface::Around;
 use sbbk_core::traverse::{Counters, Descent, PairFrame, Verdict, Visitor, descend};
 use sbbk_core::tree::LeafBatch;
 
@@ -13,7 +14,9 @@ use super::exact::Constraints;
 use super::query::{Hint, TriangleQuery, TriangleShapes};
 use super::walk::walk;
 use crate::ContactGenerator;
-use crate::mesh::{Change, Hierarchy, KnownMesh, PreparedMesh, TreeCache};
+use crate::mesh::{
+    CachedMesh, Change, Hierarchy, KnownMesh, NearTwins, Neighbours, PreparedMesh, TreeCache,
+};
 use crate::pair::driver::{Moving, Pair, Scratch};
 use crate::pair::order::OrderKey;
 use crate::pair::pose::PairPose;
@@ -60,11 +63,26 @@ impl<'a> Pair for MeshPair<'a> {
         let [mesh1, mesh2] = &self.meshes;
         let change = known1.update(mesh1).max(known2.update(mesh2));
         let are_rigid = mesh1.is_rigid() && mesh2.is_rigid();
-        let tree1 = if are_rigid { known1.tree(mesh1.mesh, cache) } else { None };
-        let trees = tree1.and_then(|tree1| Some([tree1, known2.tree(mesh2.mesh, cache)?]));
+        let entries = if are_rigid {
+            [known1.entry(mesh1.mesh, cache), known2.entry(mesh2.mesh, cache)]
+        } else {
+            [None, None]
+        };
+        let [one, two] = entries;
+        let tree = |entry: &Option<(Option<&'q CachedMesh>, _, _)>| entry.as_ref()?.0?.tree();
+        let trees = tree(&one).zip(tree(&two)).map(<[_; 2]>::from);
+        let surface = |entry: Option<(Option<&'q CachedMesh>, bool, &'q mut Neighbours)>, mesh| {
+            let (entry, is_sure, neighbours) =
+                entry.filter(|_| self.contacts == ContactGenerator::Exact)?;
+            Some(match entry.filter(|_| is_sure) {
+                Some(entry) => SurfaceOf::Whole(entry),
+                None => SurfaceOf::Near(NearTwins::new(mesh, neighbours)),
+            })
+        };
+        let surfaces = [surface(one, mesh1.mesh), surface(two, mesh2.mesh)];
         let is_second_first = self.is_second_first();
         let query = TriangleQuery {
-            shapes: Meshes { pair: self, trees, is_second_first, cache },
+            shapes: Meshes { pair: self, trees, surfaces, is_second_first, cache },
             pose: self.pose,
             parrys_pose: self.parrys_pose(is_second_first),
             generator: self.contacts,
@@ -78,9 +96,19 @@ impl<'a> Pair for MeshPair<'a> {
 pub(crate) struct Meshes<'q> {
     pair: &'q MeshPair<'q>,
     trees: Option<[&'q PreparedMesh; 2]>,
+    /// Where the surfaces of both come from, if they have them.
+    surfaces: [Option<SurfaceOf<'q>>; 2],
     /// Whether Parry walks mesh 2 first.
     is_second_first: bool,
     cache: &'q TreeCache,
+}
+
+/// Where the surface of a mesh comes from.
+enum SurfaceOf<'q> {
+    /// Known as a whole.
+    Whole(&'q CachedMesh),
+    /// Looked at where it is met: too large.
+    Near(NearTwins<'q>),
 }
 
 impl Meshes<'_> {
@@ -127,6 +155,31 @@ impl TriangleShapes for Meshes<'_> {
             });
         });
         descend(trees, &mut frame, Descent::Simultaneous, stack, counters, &mut collector);
+    }
+
+    fn around(&self, i: usize) -> Option<Around<'_>> {
+        let mesh = self.pair.meshes[i].mesh;
+        let (vertices, triangles) = (mesh.vertices(), mesh.indices());
+        Some(match self.surfaces[i].as_ref()? {
+            SurfaceOf::Whole(entry) => entry.surface(mesh).around(vertices, triangles),
+            SurfaceOf::Near(twins) => Around { twins, is_solid: false, vertices, triangles },
+        })
+    }
+
+    fn near(&self) -> f64 {
+        let radius = |i: usize| f64::from(self.pair.meshes[i].ball().radius);
+        0.1 * radius(0).min(radius(1))
+    }
+
+    fn is_deep(&self, i: usize, point: Vector, distance: Real) -> bool {
+        let mesh = self.pair.meshes[i].mesh;
+        let nearest = CompositeShapeRef(mesh).project_local_point(point, Real::MAX, false);
+        nearest.is_some_and(|(triangle, nearest)| {
+            let away = point - nearest.point;
+            // Nearest to a point inside is a face.
+            let into = mesh.triangle(triangle).normal().map_or(0.0, |normal| -away.dot(normal));
+            into > distance && into > 0.9 * away.length()
+        })
     }
 
     #[inline(always)]

@@ -9,9 +9,11 @@ mod field;
 mod heightfield;
 mod meshes;
 mod query;
+mod regions;
 mod walk;
 
 pub use exact::TriangleContacts;
 pub(crate) use heightfield::FieldPair;
 pub(crate) use meshes::MeshPair;
+pub(crate) use regions::Regions;
 pub(crate) use walk::walk;

@@ -1,0 +1,73 @@
+//! What lies around a triangle of a mesh, and whether the mesh has an inside.
+//!
+//! A triangle alone cannot tell on which side of it the body is, nor whether a point on its border
+//! is a corner of the body or in the midst of a flat face. A [`Surface`] can: it knows the
+//! neighbours across each edge, of welded vertices, and from all triangles together whether they
+//! bound a solid.
+//!
+//! ```
+//! use glamx::{DVec3, Vec3};
+//! use sbbk_core::contact::Feature;
+//! use sbbk_core::surface::{Side, Surface, SurfaceKind};
+//!
+//! let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+//! let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+//! let surface = Surface::new(&vertices, &triangles);
+//! assert_eq!(surface.kind(), SurfaceKind::Solid);
+//!
+//! let around = surface.around(&vertices, &triangles);
+//! // Down from the origin nothing of the solid is nearer to what is there.
+//! assert_eq!(around.side(0, Feature::Vertex(0), -DVec3::ONE), Side::Front);
+//! // Along this one the next vertex on the x axis is nearer.
+//! assert_eq!(around.side(0, Feature::Vertex(0), DVec3::new(1.0, -1.0, -1.0)), Side::Beside);
+//! assert_eq!(around.side(0, Feature::Vertex(0), DVec3::ONE), Side::Behind);
+//! ```
+
+mod around;
+mod kind;
+mod twins;
+
+pub use around::{Around, Side, Twins};
+pub use kind::SurfaceKind;
+
+use glamx::Vec3;
+
+/// The neighbours of each triangle of a mesh, and what the mesh bounds.
+///
+/// Takes 12 bytes a triangle.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    /// Half-edge `3 t + i` runs from vertex `i` of triangle `t` to the next one. Its twin runs back
+    /// in the neighbour; [`NONE`](Self::NONE) where there is not exactly one.
+    twins: Box<[u32]>,
+    kind: SurfaceKind,
+}
+
+impl Surface {
+    const NONE: u32 = u32::MAX;
+
+    /// Vertices at one place are one vertex. Takes about 60 ns a triangle.
+    ///
+    /// # Panics
+    /// If a triangle has an index beyond the vertices.
+    pub fn new(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Self {
+        let (twins, uneven) = twins::find(vertices, triangles);
+        let kind = kind::of(vertices, triangles, &uneven);
+        Self { twins, kind }
+    }
+
+    /// What the mesh bounds.
+    pub fn kind(&self) -> SurfaceKind {
+        self.kind
+    }
+
+    /// With the mesh that it is of.
+    pub fn around<'a>(&'a self, vertices: &'a [Vec3], triangles: &'a [[u32; 3]]) -> Around<'a> {
+        Around { twins: self, is_solid: self.kind == SurfaceKind::Solid, vertices, triangles }
+    }
+
+    /// Memory, with this value but without the mesh itself.
+    pub fn bytes(&self) -> usize {
+        size_of::<Self>() + size_of_val(&*self.twins)
+    }
+}
