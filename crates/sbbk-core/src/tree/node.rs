@@ -205,7 +205,8 @@ impl<const COUNT: usize> Intervals<'_, COUNT> {
     }
 }
 
-/// Up to [`BATCH`] triangles, lane by lane. Unused lanes repeat the last triangle.
+/// Up to [`BATCH`] triangles, lane by lane. Unused lanes repeat the last triangle, which tells their
+/// number.
 #[derive(Copy, Clone, Debug)]
 #[repr(C, align(16))]
 pub struct LeafBatch {
@@ -213,9 +214,8 @@ pub struct LeafBatch {
     pub(crate) corners: [[[f32; BATCH]; 3]; 3], // 144
     /// Indices of the triangles in the mesh.
     pub(crate) triangles: [u32; BATCH], // 16
-    pub(crate) count: u32, // 4
 }
-const _: () = assert!(size_of::<LeafBatch>() == 176);
+const _: () = assert!(size_of::<LeafBatch>() == 160);
 
 impl LeafBatch {
     pub(super) fn new(members: &[u32], vertices: &[Vec3], triangles: &[[u32; 3]]) -> Self {
@@ -224,18 +224,14 @@ impl LeafBatch {
         })
     }
 
-    /// One to [`BATCH`] triangles, by their indices in a mesh and their corners.
+    /// One to [`BATCH`] different triangles, by their indices in a mesh and their corners.
     ///
     /// # Panics
     /// With fewer or more.
     #[inline]
     pub fn gather(members: &[u32], corners_of: impl Fn(u32) -> [Vec3; 3]) -> Self {
         assert!((1..=BATCH).contains(&members.len()), "{} triangles in a batch", members.len());
-        let mut batch = Self {
-            corners: [[[0.0; BATCH]; 3]; 3],
-            triangles: [0; BATCH],
-            count: members.len() as u32,
-        };
+        let mut batch = Self { corners: [[[0.0; BATCH]; 3]; 3], triangles: [0; BATCH] };
         for lane in 0..BATCH {
             let triangle = members[lane.min(members.len() - 1)];
             batch.triangles[lane] = triangle;
@@ -249,8 +245,10 @@ impl LeafBatch {
     }
 
     /// Number of triangles.
+    #[inline]
     pub fn count(&self) -> usize {
-        self.count as usize
+        let [a, b, c, d] = self.triangles;
+        1 + usize::from(b != a) + usize::from(c != b) + usize::from(d != c)
     }
 
     /// Indices of the triangles in the mesh.
