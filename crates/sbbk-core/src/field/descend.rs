@@ -3,7 +3,7 @@ use glamx::{DVec3, Vec3};
 use super::frame::FieldFrame;
 use super::grid::{FieldTriangle, HeightGrid};
 use crate::leaf::PlacedTest;
-use crate::simd::{PerChild, each_bit};
+use crate::simd::each_bit;
 use crate::traverse::Counters;
 use crate::tree::{LeafBatch, Link, Tree};
 use crate::volumes::{DirectionSet, Directions};
@@ -38,8 +38,8 @@ pub fn descend_field<F: HeightGrid, const AXES: usize>(
         let children = tree.children(index);
         counters.aabb_tests(2);
         for lane in 0..2 {
-            let of_lane = |values: &[PerChild; 3]| Vec3::from_array(values.map(|axis| axis[lane]));
-            let (centre, extent) = (of_lane(children.boxes.centre), of_lane(children.boxes.extent));
+            let centre = Vec3::from_array(children.boxes.centre.map(|axis| axis[lane]));
+            let extent = Vec3::from_array(children.boxes.extent.map(|axis| axis[lane].into()));
             if frame.node_meets(centre, extent, &mut counters) {
                 stack.push(children.links[lane]);
             }
