@@ -76,7 +76,7 @@ impl Slot {
 pub(super) struct Pair<const COUNT: usize> {
     pub(super) centre: [PerChild<f32>; COUNT], // 8 · COUNT
     pub(super) extent: [PerChild<HalfLength>; COUNT], // 4 · COUNT
-    pub(super) links: [Link; 2], // 8
+    pub(super) links: [Link; 2],               // 8
 }
 const _: () = assert!(size_of::<Pair<3>>() == 44 && size_of::<Pair<9>>() == 116);
 
@@ -151,9 +151,7 @@ impl<const COUNT: usize> Intervals<'_, COUNT> {
     /// The lower and the upper ends of one child's.
     fn ends(&self, lane: usize) -> [[f32; COUNT]; 2] {
         let end = |sign: f32| {
-            std::array::from_fn(|i| {
-                self.centre[i][lane] + sign * f32::from(self.extent[i][lane])
-            })
+            std::array::from_fn(|i| self.centre[i][lane] + sign * f32::from(self.extent[i][lane]))
         };
         [end(-1.0), end(1.0)]
     }
