@@ -97,18 +97,24 @@ impl SbbkDispatcher {
         self.cache.release_idle();
     }
 
-    /// Two rigid meshes, for a query without manifolds; `None` if Parry must answer.
-    fn meshes<'a>(&'a self, g1: &'a dyn Shape, g2: &'a dyn Shape) -> Option<MeshQuery<'a>> {
+    /// The answer of `search` about two rigid meshes, or `apart` if Parry's hierarchies already tell
+    /// that they are farther apart than a distance; `None` if Parry must answer.
+    fn search<T>(
+        &self,
+        [g1, g2]: [&dyn Shape; 2],
+        apart: Option<(&Pose, Real, T)>,
+        search: impl FnOnce(MeshQuery<'_>) -> Option<T>,
+    ) -> Option<T> {
         let meshes = [rigid_mesh(g1)?, rigid_mesh(g2)?];
-        let meshes = if self.config.kinds.meshes { self.look_at(meshes)? } else { return None };
-        Some(MeshQuery { cache: &self.cache, meshes })
-    }
-
-    /// Whether Parry's hierarchies already tell that two rigid meshes are farther apart than
-    /// `distance`.
-    fn are_surely_apart(&self, [g1, g2]: [&dyn Shape; 2], pos12: &Pose, distance: Real) -> bool {
-        let meshes = rigid_mesh(g1).zip(rigid_mesh(g2)).filter(|_| self.config.kinds.meshes);
-        meshes.is_some_and(|(mesh1, mesh2)| !are_near([mesh1, mesh2], pos12, distance))
+        if !self.config.kinds.meshes {
+            return None;
+        }
+        if let Some((pos12, distance, apart)) = apart
+            && !are_near(meshes, pos12, distance)
+        {
+            return Some(apart);
+        }
+        search(MeshQuery { cache: &self.cache, meshes: self.look_at(meshes)? })
     }
 
     /// The contacts of a pair of shapes, if SBBK answers for them.
@@ -359,11 +365,9 @@ impl QueryDispatcher for SbbkDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
-        if self.are_surely_apart([g1, g2], pos12, 0.0) {
-            return Ok(ShapeIntersection::new(false));
-        }
-        match self.meshes(g1, g2) {
-            Some(meshes) => Ok(meshes.intersection(pos12)),
+        let apart = Some((pos12, 0.0, ShapeIntersection::new(false)));
+        match self.search([g1, g2], apart, |meshes| Some(meshes.intersection(pos12))) {
+            Some(found) => Ok(found),
             None => DefaultQueryDispatcher.intersection_test(pos12, g1, g2),
         }
     }
@@ -374,8 +378,8 @@ impl QueryDispatcher for SbbkDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeDistance, Unsupported> {
-        match self.meshes(g1, g2) {
-            Some(meshes) => Ok(meshes.distance(pos12)),
+        match self.search([g1, g2], None, |meshes| Some(meshes.distance(pos12))) {
+            Some(found) => Ok(found),
             None => DefaultQueryDispatcher.distance(pos12, g1, g2),
         }
     }
@@ -387,11 +391,9 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
         prediction: Real,
     ) -> Result<Option<Contact>, Unsupported> {
-        if self.are_surely_apart([g1, g2], pos12, prediction) {
-            return Ok(None);
-        }
-        match self.meshes(g1, g2) {
-            Some(meshes) => Ok(meshes.contact(pos12, prediction)),
+        let apart = Some((pos12, prediction, None));
+        match self.search([g1, g2], apart, |meshes| Some(meshes.contact(pos12, prediction))) {
+            Some(found) => Ok(found),
             None => DefaultQueryDispatcher.contact(pos12, g1, g2, prediction),
         }
     }
@@ -403,11 +405,9 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
         max_dist: Real,
     ) -> Result<ClosestPoints, Unsupported> {
-        if self.are_surely_apart([g1, g2], pos12, max_dist) {
-            return Ok(ClosestPoints::Disjoint);
-        }
-        match self.meshes(g1, g2) {
-            Some(meshes) => Ok(meshes.closest_points(pos12, max_dist)),
+        let apart = Some((pos12, max_dist, ClosestPoints::Disjoint));
+        match self.search([g1, g2], apart, |meshes| Some(meshes.closest_points(pos12, max_dist))) {
+            Some(found) => Ok(found),
             None => DefaultQueryDispatcher.closest_points(pos12, g1, g2, max_dist),
         }
     }
@@ -420,7 +420,7 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
         options: ShapeCastOptions,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        match self.meshes(g1, g2).and_then(|meshes| meshes.cast(pos12, local_vel12, options)) {
+        match self.search([g1, g2], None, |meshes| meshes.cast(pos12, local_vel12, options)) {
             Some(hit) => Ok(hit),
             None => DefaultQueryDispatcher.cast_shapes(pos12, local_vel12, g1, g2, options),
         }
@@ -436,20 +436,20 @@ impl QueryDispatcher for SbbkDispatcher {
         end_time: Real,
         stop_at_penetration: bool,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        if let Some(meshes) = self.meshes(g1, g2) {
-            let (motions, times) = ([motion1, motion2], (start_time, end_time));
-            if let Some(hit) = meshes.cast_nonlinear(motions, times, stop_at_penetration) {
-                return Ok(hit);
-            }
+        let (motions, times) = ([motion1, motion2], (start_time, end_time));
+        let cast =
+            |meshes: MeshQuery<'_>| meshes.cast_nonlinear(motions, times, stop_at_penetration);
+        match self.search([g1, g2], None, cast) {
+            Some(hit) => Ok(hit),
+            None => DefaultQueryDispatcher.cast_shapes_nonlinear(
+                motion1,
+                g1,
+                motion2,
+                g2,
+                start_time,
+                end_time,
+                stop_at_penetration,
+            ),
         }
-        DefaultQueryDispatcher.cast_shapes_nonlinear(
-            motion1,
-            g1,
-            motion2,
-            g2,
-            start_time,
-            end_time,
-            stop_at_penetration,
-        )
     }
 }

@@ -122,11 +122,11 @@ pub(crate) fn each_bit(mut mask: u32, mut found: impl FnMut(usize)) {
 }
 
 /// A number of each of two children of a node.
-pub(crate) type PerChild = [f32; 2];
+pub(crate) type PerChild<T> = [T; 2];
 
 /// How the children of one side lie over the four lanes of a test.
 pub(crate) trait Spread: Copy {
-    fn spread(self, values: &PerChild) -> f32x4;
+    fn spread(self, values: &PerChild<impl Copy + Into<f32>>) -> f32x4;
 }
 
 /// Children 0, 0, 1, 1: side 1 of all four pairs of children.
@@ -143,21 +143,21 @@ pub(crate) struct Same(pub(crate) usize);
 
 impl Spread for Outer {
     #[inline(always)]
-    fn spread(self, &[a, b]: &PerChild) -> f32x4 {
-        f32x4::new([a, a, b, b])
+    fn spread(self, &[a, b]: &PerChild<impl Copy + Into<f32>>) -> f32x4 {
+        f32x4::new([a.into(), a.into(), b.into(), b.into()])
     }
 }
 
 impl Spread for Inner {
     #[inline(always)]
-    fn spread(self, &[a, b]: &PerChild) -> f32x4 {
-        f32x4::new([a, b, a, b])
+    fn spread(self, &[a, b]: &PerChild<impl Copy + Into<f32>>) -> f32x4 {
+        f32x4::new([a.into(), b.into(), a.into(), b.into()])
     }
 }
 
 impl Spread for Same {
     #[inline(always)]
-    fn spread(self, values: &PerChild) -> f32x4 {
-        f32x4::splat(values[self.0])
+    fn spread(self, values: &PerChild<impl Copy + Into<f32>>) -> f32x4 {
+        f32x4::splat(values[self.0].into())
     }
 }

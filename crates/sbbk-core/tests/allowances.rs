@@ -5,7 +5,7 @@
 mod support;
 
 use glamx::{DVec3, Pose3, Vec3};
-use sbbk_core::field::{FieldFrame, FieldScratch, HeightGrid, descend_field};
+use sbbk_core::field::{FieldFrame, HeightGrid};
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::traverse::{
     BoxTest, Descent, DescentScratch, PairFrame, Placement, Slack, SlackPlan, TestedBox, Verdict,
@@ -313,7 +313,7 @@ fn fields_the_margin_apart_are_found() {
         let distance = distances.fold(f64::INFINITY, f64::min);
         let frame = FieldFrame::new(&field, &placement, (distance as f32).next_up());
         let mut count = 0;
-        descend_field(&tree, &frame, &mut FieldScratch::default(), (), |_, _| count += 1);
+        support::descend_field(&tree, &frame, |_, _| count += 1);
         assert!(count > 0, "{i}: {distance} from the field");
     }
 }
@@ -378,7 +378,7 @@ fn check_field(tree: &Tree, placement: &Placement, margin: f32, count: usize) {
     let field = Hills { scale: Vec3::ONE, lines: vec![vec![0.1; 3]; 4] };
     let frame = FieldFrame::new(&field, placement, margin);
     let mut found = 0;
-    descend_field(tree, &frame, &mut FieldScratch::default(), (), |_, _| found += 1);
+    support::descend_field(tree, &frame, |_, _| found += 1);
     assert_eq!(found, 2 * 3 * 2 * count, "{margin} at {:?}", placement.translation);
 }
 

@@ -17,17 +17,36 @@ use sbbk_core::volumes::Sphere;
 use sbbk_core::volumes::rounding::gamma;
 
 use super::identity::MeshToken;
-use super::soundness::is_whole;
+use super::soundness::whole_ones;
 
 /// Whether Parry's hierarchy of a mesh has something within `margin` of the box around a shape at
 /// `pos12`, or about: as stock begins. Not to be asked about a broken mesh.
 pub(crate) fn is_near(mesh: &TriMesh, shape: &dyn Shape, pos12: &Pose, margin: Real) -> bool {
-    let is_finite = |aabb: Aabb| aabb.mins.is_finite() && aabb.maxs.is_finite();
-    let other = shape.as_trimesh().map(|other| other.bvh().root_aabb());
-    if !is_finite(mesh.bvh().root_aabb()) || other.is_some_and(|other| !is_finite(other)) {
+    !is_finite(&mesh.bvh().root_aabb()) || has_near(mesh, &shape.compute_aabb(pos12), pos12, margin)
+}
+
+/// The same of two meshes: of the larger one, and the box of the other.
+pub(crate) fn are_near([mesh1, mesh2]: [&TriMesh; 2], pos12: &Pose, margin: Real) -> bool {
+    let roots = [mesh1, mesh2].map(|mesh| mesh.bvh().root_aabb());
+    if !roots.iter().all(is_finite) {
         return true;
     }
-    let aabb = other.map_or_else(|| shape.compute_aabb(pos12), |other| other.transform_by(pos12));
+    let [size1, size2] = roots.map(|root| root.half_extents().length_squared());
+    if size1 < size2 {
+        let pos21 = pos12.inverse();
+        has_near(mesh2, &roots[0].transform_by(&pos21), &pos21, margin)
+    } else {
+        has_near(mesh1, &roots[1].transform_by(pos12), pos12, margin)
+    }
+}
+
+fn is_finite(aabb: &Aabb) -> bool {
+    aabb.mins.is_finite() && aabb.maxs.is_finite()
+}
+
+/// Whether the hierarchy of a mesh has something within `margin` of a box that was placed at `pos12`,
+/// or about.
+fn has_near(mesh: &TriMesh, aabb: &Aabb, pos12: &Pose, margin: Real) -> bool {
     // Some thirty operations on coordinates that are, before and after a turn, no larger than twice
     // these.
     let size = aabb.mins.abs().max(aabb.maxs.abs()).max_element();
@@ -39,16 +58,6 @@ pub(crate) fn is_near(mesh: &TriMesh, shape: &dyn Shape, pos12: &Pose, margin: R
     }
     let aabb = BvhNode::leaf(aabb.loosened(grown), 0);
     mesh.bvh().leaves(|node| node.intersects(&aabb)).next().is_some()
-}
-
-/// The same of two meshes: of the larger one, and the box of the other.
-pub(crate) fn are_near([mesh1, mesh2]: [&TriMesh; 2], pos12: &Pose, margin: Real) -> bool {
-    let size = |mesh: &TriMesh| mesh.bvh().root_aabb().half_extents().length_squared();
-    if size(mesh1) < size(mesh2) {
-        is_near(mesh2, mesh1, &pos12.inverse(), margin)
-    } else {
-        is_near(mesh1, mesh2, pos12, margin)
-    }
 }
 
 /// The places of some triangles of a mesh in stock order.
@@ -94,7 +103,7 @@ impl<'a> Hierarchy<'a> {
     pub(super) fn new(mesh: &'a TriMesh, token: MeshToken, owner: u64, is_broken: bool) -> Self {
         let mut seen = Self { mesh, token, owner, is_broken, root: mesh.bvh().root_aabb() };
         if is_broken {
-            let boxes = seen.whole_ones().map(|index| mesh.triangle(index).local_aabb());
+            let boxes = whole_ones(mesh).map(|index| mesh.triangle(index).local_aabb());
             seen.root = around(boxes);
         }
         seen
@@ -142,10 +151,9 @@ impl<'a> Hierarchy<'a> {
         mut found: impl FnMut(u32) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         if self.is_broken {
-            let mut near = self.whole_ones().filter(|&index| meets(self.tested(&[index])));
+            let mut near = whole_ones(self.mesh).filter(|&index| meets(self.tested(&[index])));
             return near.try_for_each(found);
         }
-        let box_of = |node: &BvhNode| TestedBox::new(node.mins(), node.maxs());
         for triangle in self.mesh.bvh().leaves(|node| meets(box_of(node))) {
             found(triangle)?;
         }
@@ -185,12 +193,12 @@ impl<'a> Hierarchy<'a> {
         let (vertices, [a, b, c]) = (self.mesh.vertices(), self.mesh.indices()[triangle as usize]);
         [vertices[a as usize], vertices[b as usize], vertices[c as usize]]
     }
+}
 
-    fn whole_ones(&self) -> impl Iterator<Item = u32> {
-        let triangles = self.mesh.indices().iter().zip(0..);
-        let whole = triangles.filter(|(triangle, _)| is_whole(self.mesh, triangle));
-        whole.map(|(_, index)| index)
-    }
+/// The box of a node of Parry's.
+#[inline(always)]
+pub(crate) fn box_of(node: &BvhNode) -> TestedBox {
+    TestedBox::new(node.mins(), node.maxs())
 }
 
 fn around(boxes: impl Iterator<Item = Aabb>) -> Aabb {

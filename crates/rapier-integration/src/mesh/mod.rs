@@ -12,10 +12,10 @@ mod registry;
 mod soundness;
 
 pub(crate) use cache::{CacheCounts, CachedMesh, PreparedRef, TreeCache};
-pub(crate) use hierarchy::{Hierarchy, Ranks, are_near, is_near};
+pub(crate) use hierarchy::{Hierarchy, Ranks, are_near, box_of, is_near};
 pub(crate) use identity::MeshToken;
 pub(crate) use known::{Change, KnownMesh};
 pub(crate) use neighbours::{NearTwins, Neighbours};
 pub(crate) use prepared::PreparedMesh;
 pub(crate) use registry::Registered;
-pub(crate) use soundness::is_whole;
+pub(crate) use soundness::whole_ones;

@@ -6,11 +6,17 @@ pub(crate) struct PreparedMesh {
     pub(crate) tree: Tree,
     /// For each triangle its place in the order in which Parry's own hierarchy lists them, which is
     /// the order of stock manifolds.
-    ranks: Vec<u32>,
+    ranks: Ranks,
     /// The pseudo-normals that constrain contact normals, if the mesh asks for them
     /// (`TriMeshFlags::FIX_INTERNAL_EDGES`); for degenerate triangles none. Parry computes them
     /// anew for each pair of triangles.
     normal_constraints: Vec<Option<TrianglePseudoNormals>>,
+}
+
+/// Places of triangles: in sixteen bits where these are enough.
+enum Ranks {
+    Narrow(Box<[u16]>),
+    Wide(Box<[u32]>),
 }
 
 impl PreparedMesh {
@@ -23,13 +29,18 @@ impl PreparedMesh {
         } else {
             Vec::new()
         };
-        Ok(Self { tree, ranks: ranks(mesh), normal_constraints })
+        Ok(Self { tree, ranks: Ranks::of(mesh), normal_constraints })
     }
 
     /// The place of a triangle in stock order. A number that is not a triangle's sorts last.
     #[inline(always)]
     pub(crate) fn rank(&self, triangle: u32) -> u32 {
-        self.ranks.get(triangle as usize).copied().unwrap_or(u32::MAX)
+        let place = triangle as usize;
+        let rank = match &self.ranks {
+            Ranks::Narrow(ranks) => ranks.get(place).copied().map(u32::from),
+            Ranks::Wide(ranks) => ranks.get(place).copied(),
+        };
+        rank.unwrap_or(u32::MAX)
     }
 
     /// The cone of a triangle.
@@ -42,16 +53,25 @@ impl PreparedMesh {
     pub(crate) fn bytes(&self) -> usize {
         size_of::<Self>()
             + self.tree.stats().bytes()
-            + self.ranks.len() * size_of::<u32>()
+            + self.ranks.bytes()
             + self.normal_constraints.len() * size_of::<Option<TrianglePseudoNormals>>()
     }
 }
 
-/// For each triangle its place among the leaves of Parry's hierarchy.
-fn ranks(mesh: &TriMesh) -> Vec<u32> {
-    let mut ranks = vec![0; mesh.indices().len()];
-    for (rank, triangle) in mesh.bvh().leaves(|_| true).enumerate() {
-        ranks[triangle as usize] = rank as u32;
+impl Ranks {
+    fn of(mesh: &TriMesh) -> Self {
+        let mut ranks = vec![0; mesh.indices().len()];
+        for (rank, triangle) in mesh.bvh().leaves(|_| true).enumerate() {
+            ranks[triangle as usize] = rank as u32;
+        }
+        let narrow: Result<_, _> = ranks.iter().map(|&rank| u16::try_from(rank)).collect();
+        narrow.map_or_else(|_| Self::Wide(ranks.into()), Self::Narrow)
     }
-    ranks
+
+    fn bytes(&self) -> usize {
+        match self {
+            Self::Narrow(ranks) => size_of_val(&**ranks),
+            Self::Wide(ranks) => size_of_val(&**ranks),
+        }
+    }
 }

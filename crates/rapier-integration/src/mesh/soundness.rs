@@ -61,8 +61,14 @@ fn is_broken(mesh: &TriMesh) -> bool {
     !is_finite && !mesh.indices().iter().all(|triangle| is_whole(mesh, triangle))
 }
 
+/// The triangles of a mesh whose corners are finite.
+pub(crate) fn whole_ones(mesh: &TriMesh) -> impl Iterator<Item = u32> {
+    let triangles = mesh.indices().iter().zip(0..);
+    triangles.filter(|(triangle, _)| is_whole(mesh, triangle)).map(|(_, index)| index)
+}
+
 /// Whether all corners of a triangle are finite.
-pub(crate) fn is_whole(mesh: &TriMesh, triangle: &[u32; 3]) -> bool {
+fn is_whole(mesh: &TriMesh, triangle: &[u32; 3]) -> bool {
     let is_finite =
         |&vertex: &u32| mesh.vertices().get(vertex as usize).is_some_and(|v| v.is_finite());
     triangle.iter().all(is_finite)

@@ -15,7 +15,7 @@ use sbbk_core::volumes::rounding::gamma;
 
 use super::pose::MeshPlace;
 use super::state::state_in;
-use crate::mesh::is_whole;
+use crate::mesh::whole_ones;
 
 /// Whether a ball touches about six triangles of a mesh at a time or fewer, by their mean size.
 pub(crate) fn is_few(mesh: &TriMesh, ball: &Ball) -> bool {
@@ -99,7 +99,7 @@ impl FewPair<'_> {
             manifold.points.iter().any(|point| point.dist <= prediction)
         };
         let (mut blank, mut count) = (None, 0);
-        let mut visit = |triangle: u32| {
+        let visit = |triangle: u32| {
             let subshapes = mesh_place.swap([triangle, 0]);
             let is_same = |m: &ContactManifold<M, C>| [m.subshape1, m.subshape2] == subshapes;
             if let Some(place) = manifolds[count..].iter().position(is_same) {
@@ -121,9 +121,7 @@ impl FewPair<'_> {
             }
         };
         if is_broken {
-            let triangles = mesh.indices().iter().zip(0..);
-            let whole = triangles.filter(|(triangle, _)| is_whole(mesh, triangle));
-            whole.for_each(|(_, index)| visit(index));
+            whole_ones(mesh).for_each(visit);
         } else {
             let near = BvhNode::leaf(aabb.loosened(reach), 0);
             mesh.bvh().leaves(|node| node.intersects(&near)).for_each(visit);

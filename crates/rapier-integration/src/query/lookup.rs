@@ -72,15 +72,9 @@ impl Memory {
         Some(mesh)
     }
 
-    /// The prepared mesh; `None` if it has no tree and is too large to get one at once.
+    /// The prepared mesh, with a tree that is built now if need be.
     fn prepare(&mut self, cache: &Arc<TreeCache>, seen: &Hierarchy<'_>) -> Option<Arc<CachedMesh>> {
         let (mesh, token) = (seen.mesh, seen.token());
-        if let Some(registered) = cache.registered(mesh) {
-            return Some(registered);
-        }
-        if !cache.is_small(mesh) {
-            return None;
-        }
         self.recall(cache, token, |known| known.is_of(mesh)).or_else(|| {
             let prepared = cache.prepare_for_queries(mesh).ok()?;
             self.recent.retain(|known| known.mesh.strong_count() > 0);
@@ -101,19 +95,21 @@ pub(crate) struct MeshQuery<'a> {
 impl MeshQuery<'_> {
     /// The trees of both meshes, if they are registered or so small that theirs are built at once.
     pub(super) fn trees(&self) -> Option<Trees> {
-        let has_one = |seen: &Hierarchy<'_>| {
-            self.cache.is_small(seen.mesh) || self.cache.registered(seen.mesh).is_some()
-        };
-        if !self.meshes.iter().all(has_one) {
+        let mut registered = self.meshes.each_ref().map(|seen| self.cache.registered(seen.mesh));
+        let can_have_one =
+            |i: usize| registered[i].is_some() || self.cache.is_small(self.meshes[i].mesh);
+        if !(0..2).all(can_have_one) {
             return None;
         }
-        self.each(|memory, seen| memory.prepare(self.cache, seen))
+        self.each(|memory, i| {
+            registered[i].take().or_else(|| memory.prepare(self.cache, &self.meshes[i]))
+        })
     }
 
     /// The trees that the meshes had of late. They may be of other vertices and triangles than the
     /// meshes have now.
     pub(super) fn remembered(&self) -> Option<Trees> {
-        self.each(|memory, seen| memory.recall(self.cache, seen.token(), |_| true))
+        self.each(|memory, i| memory.recall(self.cache, self.meshes[i].token(), |_| true))
     }
 
     pub(super) fn walk(&self) -> Walk<'_> {
@@ -122,13 +118,13 @@ impl MeshQuery<'_> {
 
     fn each(
         &self,
-        tree_of: impl Fn(&mut Memory, &Hierarchy<'_>) -> Option<Arc<CachedMesh>>,
+        mut tree_of: impl FnMut(&mut Memory, usize) -> Option<Arc<CachedMesh>>,
     ) -> Option<Trees> {
         let [mesh1, mesh2] = &self.meshes;
         MEMORY.with_borrow_mut(|memory| {
-            let tree1 = tree_of(memory, mesh1)?;
+            let tree1 = tree_of(memory, 0)?;
             let is_same = std::ptr::eq(mesh1.mesh, mesh2.mesh);
-            let tree2 = if is_same { tree1.clone() } else { tree_of(memory, mesh2)? };
+            let tree2 = if is_same { tree1.clone() } else { tree_of(memory, 1)? };
             Some(Trees([tree1, tree2]))
         })
     }

@@ -7,7 +7,7 @@ use parry3d::partitioning::BvhNode;
 use sbbk_core::query::FoundPair;
 use sbbk_core::traverse::{BoxTest, Placement, TestedBox};
 
-use crate::mesh::Hierarchy;
+use crate::mesh::{Hierarchy, box_of};
 use crate::pair::walk;
 
 /// Distance up to which all pairs are looked at, as a share of the smaller mesh.
@@ -71,7 +71,6 @@ impl Walk<'_> {
         let in_frame2 = BoxTest::new([m2, m1], &placement.inverted(), 0.0);
         let root = mesh2.root();
         let whole = in_frame1.of(TestedBox::new(root.mins, root.maxs));
-        let box_of = |node: &BvhNode| TestedBox::new(node.mins(), node.maxs());
         // Costs are compared with less-than: the least number above the limit is the first one out.
         let limit = (limit.min(f64::from(Real::MAX)) as Real).next_up();
         let found = mesh1.mesh.bvh().find_best(

@@ -58,20 +58,10 @@ impl<'a, F: HeightGrid> FieldFrame<'a, F> {
         let (centre, extent) = tested.centre_extent();
         // Centre and half-lengths are rounded: what they lose is a part of their size.
         let lost = gamma(4) * (centre.abs() + extent).max_element();
-        self.node_meets(centre, extent + Vec3::splat(lost), &mut counters)
-    }
-
-    /// The same of a node.
-    pub(super) fn node_meets(
-        &self,
-        centre: Vec3,
-        extent: Vec3,
-        counters: &mut impl Counters,
-    ) -> bool {
         let middle = self.placed(centre);
-        let half = self.absolute * extent.as_dvec3();
+        let half = self.absolute * (extent + Vec3::splat(lost)).as_dvec3();
         let cells = self.cells_between(middle - half, middle + half);
-        cells.is_some_and(|cells| cells.count() > READ_LIMIT || self.are_met(&cells, counters))
+        cells.is_some_and(|cells| cells.count() > READ_LIMIT || self.are_met(&cells, &mut counters))
     }
 
     /// A point of the mesh in the frame of the field.

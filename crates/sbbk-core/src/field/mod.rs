@@ -1,14 +1,11 @@
 //! The triangles of a height field that may touch a mesh.
 //!
 //! A height field is a tree already: the cells under a box of its frame follow from two divisions.
-//! So only the tree of the mesh is descended. The box of each node, turned into the frame of the
-//! field, gives a range of cells; if all their corners are above the box, or all below, nothing
-//! under the node can touch ([`FieldFrame`]). Under a leaf each cell is compared by the same rule,
-//! and what is left triangle against triangle, by separating axes over lanes.
-//!
-//! [`descend_field`] does so with a [`Tree`](crate::tree::Tree). A walk over any other hierarchy of
-//! the mesh asks [`FieldFrame::meets`] about its boxes, and [`FieldLeaves`] about the triangles that
-//! it comes to.
+//! So only a hierarchy of the mesh is walked, any one. The box of each node, turned into the frame
+//! of the field, gives a range of cells; if all their corners are above the box, or all below,
+//! nothing under the node can touch ([`FieldFrame::meets`]). Of the triangles that the walk comes to
+//! ([`FieldLeaves`]) each cell is compared by the same rule, and what is left triangle against
+//! triangle, by separating axes over lanes.
 //!
 //! So the cells looked at lie under the boxes of the mesh, and a field of a million cells costs
 //! what one of a thousand does. Nothing is computed from the field in advance, so nothing can be
@@ -20,8 +17,8 @@
 //!
 //! ```
 //! use glamx::{Pose3, Vec3};
-//! use sbbk_core::field::{FieldFrame, FieldScratch, HeightGrid, descend_field};
-//! use sbbk_core::traverse::Placement;
+//! use sbbk_core::field::{FieldFrame, FieldLeaves, HeightGrid};
+//! use sbbk_core::traverse::{Placement, TestedBox};
 //! use sbbk_core::tree::{BuildOptions, Tree};
 //!
 //! /// A plane of 100 by 100 cells of one unit.
@@ -49,18 +46,27 @@
 //! let tree: Tree = Tree::build(&vertices, &triangles, &BuildOptions::default())?;
 //! let placement = Placement::new(&Pose3::translation(7.1, 0.01, -3.9));
 //! let frame = FieldFrame::new(&field, &placement, 0.02);
+//! let leaves = FieldLeaves::new(&frame, tree.bounding_ball().centre, tree.magnitude());
 //! let mut near = Vec::new();
-//! let mut scratch = FieldScratch::default();
-//! descend_field(&tree, &frame, &mut scratch, (), |cell, index| near.push((cell, index)));
+//! let mut nodes = vec![tree.root()];
+//! while let Some(node) = nodes.pop() {
+//!     let aabb = node.aabb();
+//!     if frame.meets(TestedBox::new(aabb.min, aabb.max), ()) {
+//!         nodes.extend(node.children().into_iter().flatten());
+//!         if let Some(leaf) = node.leaf() {
+//!             leaves.visit(leaf.batch, (), |cell, index| near.push((cell, index)));
+//!         }
+//!     }
+//! }
 //! assert!(near.iter().all(|(triangle, _)| triangle.cell == [57, 46]));
 //! assert!(near.len() >= 4);
 //! # Ok::<(), sbbk_core::tree::BuildError>(())
 //! ```
 
-mod descend;
 mod frame;
 mod grid;
+mod leaves;
 
-pub use descend::{FieldLeaves, FieldScratch, descend_field};
 pub use frame::FieldFrame;
 pub use grid::{FieldTriangle, HeightGrid};
+pub use leaves::FieldLeaves;

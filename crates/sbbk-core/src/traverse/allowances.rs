@@ -93,9 +93,9 @@ impl Pair {
         let placement = self.frame(0.0).placement;
         let [children1, children2] = self.children();
         let read = |values: Intervals<'_, 3>, child: usize| {
-            let vector =
-                |values: &[[f32; 2]; 3]| DVec3::from_array(each(|i| values[i][child].into()));
-            (vector(values.centre), vector(values.extent))
+            let extent = |i: usize| f64::from(f32::from(values.extent[i][child]));
+            let centre = DVec3::from_array(each(|i| values.centre[i][child].into()));
+            (centre, DVec3::from_array(each(extent)))
         };
         let ((c1, e1), (c2, e2)) =
             (read(children1.boxes, lane >> 1), read(children2.boxes, lane & 1));
@@ -108,15 +108,17 @@ impl Pair {
         let (kdops1, kdops2) = (children1.kdops.unwrap(), children2.kdops.unwrap());
         let slabs = std::array::from_fn(|slab| {
             let direction = Directions::<9>::DIRECTIONS[slab].as_dvec3();
-            let at =
-                |values: &[[f32; 2]; 9], slab: usize, child: usize| f64::from(values[slab][child]);
-            let mut offset =
-                direction.dot(placement.translation) - at(kdops1.centre, slab, lane >> 1);
-            let mut reach = at(kdops1.extent, slab, lane >> 1);
+            let at = |kdops: Intervals<'_, 9>, slab: usize, child: usize| {
+                let extent = f32::from(kdops.extent[slab][child]);
+                (f64::from(kdops.centre[slab][child]), f64::from(extent))
+            };
+            let (centre, mut reach) = at(kdops1, slab, lane >> 1);
+            let mut offset = direction.dot(placement.translation) - centre;
             let seen = placement.rotation.transpose() * direction;
             for (slab, coefficient) in Directions::<9>::correspondence(seen) {
-                offset += coefficient * at(kdops2.centre, slab, lane & 1);
-                reach += coefficient.abs() * at(kdops2.extent, slab, lane & 1);
+                let (centre, extent) = at(kdops2, slab, lane & 1);
+                offset += coefficient * centre;
+                reach += coefficient.abs() * extent;
             }
             (offset.abs() - reach) / direction.length()
         });

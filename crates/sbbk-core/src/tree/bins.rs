@@ -102,10 +102,11 @@ impl Bin {
         Self { bounds: self.bounds.merge(&other.bounds), count: self.count + other.count }
     }
 
-    /// The cost of testing this many triangles in a volume of this size.
+    /// The cost of testing so many full leaves in a volume of this size.
     #[inline]
-    fn cost(&self) -> f32 {
-        if self.count == 0 { 0.0 } else { self.bounds.half_area() * self.count as f32 }
+    fn cost(&self, leaf_size: u32) -> f32 {
+        let leaves = self.count.div_ceil(leaf_size);
+        if leaves == 0 { 0.0 } else { self.bounds.half_area() * leaves as f32 }
     }
 }
 
@@ -133,8 +134,8 @@ impl Bins {
         bin.count += 1;
     }
 
-    /// The cheapest split that has triangles on both sides.
-    pub(super) fn best_split(&self) -> Option<Split> {
+    /// The cheapest split that has triangles on both sides, into leaves of so many triangles.
+    pub(super) fn best_split(&self, leaf_size: usize) -> Option<Split> {
         let bins = &self.bins[..self.bin_count];
         let mut above = [Bin::EMPTY; MOST_BINS + 1];
         for (i, bin) in bins.iter().enumerate().rev() {
@@ -145,7 +146,7 @@ impl Bins {
         let mut below = Bin::EMPTY;
         for i in 1..bins.len() {
             below = below.merge(&bins[i - 1]);
-            let cost = below.cost() + above[i].cost();
+            let cost = below.cost(leaf_size as u32) + above[i].cost(leaf_size as u32);
             if below.count > 0 && above[i].count > 0 && cost < best_cost {
                 best_cost = cost;
                 best = Some(Split { bin: i, bounds: [below.bounds, above[i].bounds] });

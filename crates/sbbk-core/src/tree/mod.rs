@@ -42,7 +42,7 @@ use thiserror::Error;
 
 use crate::volumes::rounding::gamma;
 use crate::volumes::{DirectionSet, Directions, Sphere};
-use node::{AabbPair, KdopPair};
+use node::Pair;
 
 /// A bounding volume hierarchy with `AXES` slabs in its k-DOP layers: 7, 9 (the default, 18-DOPs)
 /// or 13.
@@ -51,9 +51,9 @@ pub struct Tree<const AXES: usize = 9> {
     /// `None` if the plan has no sphere.
     sphere: Option<Sphere>,
     /// Children of the inner nodes of the upper layers. Entry 0 is the root's own volume in lane 0.
-    aabb_pairs: Vec<AabbPair>,
+    aabb_pairs: Vec<Pair<3>>,
     /// Children of the inner nodes of the lower layers; their node numbers follow those above.
-    kdop_pairs: Vec<KdopPair<AXES>>,
+    kdop_pairs: Vec<Pair<AXES>>,
     leaves: Vec<LeafBatch>,
     triangle_count: u32,
     /// The largest absolute coordinate: what rounding errors in this frame are relative to.

@@ -9,7 +9,7 @@ use glamx::Vec3;
 use wide::f32x4;
 
 use crate::simd::{PerChild, V3, each};
-use crate::volumes::rounding::centre_extent;
+use crate::volumes::rounding::{HalfLength, centre_extent};
 use crate::volumes::{Aabb, Kdop};
 
 /// Triangles in a leaf at most, and lanes of the triangle test.
@@ -70,79 +70,30 @@ impl Slot {
     }
 }
 
-/// The children of an inner node in an AABB layer: one cache line.
+/// The children of an inner node: their intervals along the axes of their boxes, or along all slabs
+/// of their k-DOPs, of which the first three are the box.
 #[derive(Copy, Clone, Debug)]
-#[repr(C, align(64))]
-pub(super) struct AabbPair {
-    pub(super) centre: [PerChild; 3], // 24
-    pub(super) extent: [PerChild; 3], // 24
-    pub(super) links: [Link; 2],      // 8
+pub(super) struct Pair<const COUNT: usize> {
+    pub(super) centre: [PerChild<f32>; COUNT], // 8 · COUNT
+    pub(super) extent: [PerChild<HalfLength>; COUNT], // 4 · COUNT
+    pub(super) links: [Link; 2],               // 8
 }
-const _: () = assert!(size_of::<AabbPair>() == 64);
+const _: () = assert!(size_of::<Pair<3>>() == 44 && size_of::<Pair<9>>() == 116);
 
-/// The children of an inner node in a k-DOP layer. The first three slabs are the box.
-#[derive(Copy, Clone, Debug)]
-#[repr(C, align(16))]
-pub(super) struct KdopPair<const AXES: usize> {
-    pub(super) centre: [PerChild; AXES], // 8 · AXES
-    pub(super) extent: [PerChild; AXES], // 8 · AXES
-    pub(super) links: [Link; 2],         // 8
-}
-const _: () = assert!(size_of::<KdopPair<9>>() == 160);
-
-impl AabbPair {
-    pub(super) const EMPTY: Self =
-        Self { centre: [[0.0; 2]; 3], extent: [[f32::NEG_INFINITY; 2]; 3], links: [Link::NONE; 2] };
-
-    pub(super) fn set(&mut self, lane: usize, link: Link, aabb: &Aabb) {
-        self.links[lane] = link;
-        for axis in 0..3 {
-            let (centre, extent) = centre_extent(aabb.min[axis], aabb.max[axis]);
-            self.centre[axis][lane] = centre;
-            self.extent[axis][lane] = extent;
-        }
-    }
-
-    /// Puts other boxes in the place of both children's.
-    pub(super) fn refit(&mut self, children: &[Aabb; 2]) {
-        let ends = |axis: usize| children.map(|child| (child.min[axis], child.max[axis]));
-        for axis in 0..3 {
-            (self.centre[axis], self.extent[axis]) = lanes(ends(axis));
-        }
-    }
-}
-
-/// The intervals of two children, as centres and half-lengths.
-#[inline(always)]
-fn lanes([one, two]: [(f32, f32); 2]) -> (PerChild, PerChild) {
-    let (centre1, extent1) = centre_extent(one.0, one.1);
-    let (centre2, extent2) = centre_extent(two.0, two.1);
-    ([centre1, centre2], [extent1, extent2])
-}
-
-impl<const AXES: usize> KdopPair<AXES> {
+impl<const COUNT: usize> Pair<COUNT> {
     pub(super) const EMPTY: Self = Self {
-        centre: [[0.0; 2]; AXES],
-        extent: [[f32::NEG_INFINITY; 2]; AXES],
+        centre: [[0.0; 2]; COUNT],
+        extent: [[HalfLength::NONE; 2]; COUNT],
         links: [Link::NONE; 2],
     };
 
-    pub(super) fn set(&mut self, lane: usize, link: Link, kdop: &Kdop<AXES>) {
-        self.links[lane] = link;
-        for axis in 0..AXES {
-            let (centre, extent) = centre_extent(kdop.min[axis], kdop.max[axis]);
-            self.centre[axis][lane] = centre;
-            self.extent[axis][lane] = extent;
-        }
-    }
-
-    /// Puts other k-DOPs in the place of both children's.
+    /// Sets a child and the ends of its intervals.
     #[inline(always)]
-    pub(super) fn refit(&mut self, children: &[Kdop<AXES>; 2]) {
-        let [one, two] = children;
-        for axis in 0..AXES {
-            let ends = [(one.min[axis], one.max[axis]), (two.min[axis], two.max[axis])];
-            (self.centre[axis], self.extent[axis]) = lanes(ends);
+    pub(super) fn set(&mut self, lane: usize, link: Link, min: &[f32; COUNT], max: &[f32; COUNT]) {
+        self.links[lane] = link;
+        for axis in 0..COUNT {
+            (self.centre[axis][lane], self.extent[axis][lane]) =
+                centre_extent(min[axis], max[axis]);
         }
     }
 }
@@ -150,9 +101,9 @@ impl<const AXES: usize> KdopPair<AXES> {
 /// Intervals of two children along the axes of their boxes, or along all slabs of their k-DOPs.
 #[derive(Copy, Clone, Debug)]
 pub(crate) struct Intervals<'a, const COUNT: usize> {
-    pub(crate) centre: &'a [PerChild; COUNT],
+    pub(crate) centre: &'a [PerChild<f32>; COUNT],
     /// Half-lengths.
-    pub(crate) extent: &'a [PerChild; COUNT],
+    pub(crate) extent: &'a [PerChild<HalfLength>; COUNT],
 }
 
 /// The children of an inner node of either layer.
@@ -165,20 +116,15 @@ pub(crate) struct Children<'a, const AXES: usize> {
 }
 
 impl<'a, const AXES: usize> Children<'a, AXES> {
-    pub(super) fn from_aabbs(pair: &'a AabbPair) -> Self {
+    pub(super) fn from_aabbs(pair: &'a Pair<3>) -> Self {
         let boxes = Intervals { centre: &pair.centre, extent: &pair.extent };
         Self { boxes, kdops: None, links: &pair.links }
     }
 
-    pub(super) fn from_kdops(pair: &'a KdopPair<AXES>) -> Self {
-        let box_of = |slabs: &'a [PerChild; AXES]| {
-            slabs.first_chunk::<3>().expect("every direction set starts with x, y and z")
-        };
-        Self {
-            boxes: Intervals { centre: box_of(&pair.centre), extent: box_of(&pair.extent) },
-            kdops: Some(Intervals { centre: &pair.centre, extent: &pair.extent }),
-            links: &pair.links,
-        }
+    pub(super) fn from_kdops(pair: &'a Pair<AXES>) -> Self {
+        let kdops = Intervals { centre: &pair.centre, extent: &pair.extent };
+        let boxes = Intervals { centre: box_of(kdops.centre), extent: box_of(kdops.extent) };
+        Self { boxes, kdops: Some(kdops), links: &pair.links }
     }
 
     /// The box of one child.
@@ -196,16 +142,23 @@ impl<'a, const AXES: usize> Children<'a, AXES> {
     }
 }
 
+#[inline(always)]
+fn box_of<T, const AXES: usize>(slabs: &[T; AXES]) -> &[T; 3] {
+    slabs.first_chunk().expect("every direction set starts with x, y and z")
+}
+
 impl<const COUNT: usize> Intervals<'_, COUNT> {
     /// The lower and the upper ends of one child's.
     fn ends(&self, lane: usize) -> [[f32; COUNT]; 2] {
-        let end =
-            |sign: f32| std::array::from_fn(|i| self.centre[i][lane] + sign * self.extent[i][lane]);
+        let end = |sign: f32| {
+            std::array::from_fn(|i| self.centre[i][lane] + sign * f32::from(self.extent[i][lane]))
+        };
         [end(-1.0), end(1.0)]
     }
 }
 
-/// Up to [`BATCH`] triangles, lane by lane. Unused lanes repeat the last triangle.
+/// Up to [`BATCH`] triangles, lane by lane. Unused lanes repeat the last triangle, which tells their
+/// number.
 #[derive(Copy, Clone, Debug)]
 #[repr(C, align(16))]
 pub struct LeafBatch {
@@ -213,9 +166,8 @@ pub struct LeafBatch {
     pub(crate) corners: [[[f32; BATCH]; 3]; 3], // 144
     /// Indices of the triangles in the mesh.
     pub(crate) triangles: [u32; BATCH], // 16
-    pub(crate) count: u32, // 4
 }
-const _: () = assert!(size_of::<LeafBatch>() == 176);
+const _: () = assert!(size_of::<LeafBatch>() == 160);
 
 impl LeafBatch {
     pub(super) fn new(members: &[u32], vertices: &[Vec3], triangles: &[[u32; 3]]) -> Self {
@@ -224,18 +176,14 @@ impl LeafBatch {
         })
     }
 
-    /// One to [`BATCH`] triangles, by their indices in a mesh and their corners.
+    /// One to [`BATCH`] different triangles, by their indices in a mesh and their corners.
     ///
     /// # Panics
     /// With fewer or more.
     #[inline]
     pub fn gather(members: &[u32], corners_of: impl Fn(u32) -> [Vec3; 3]) -> Self {
         assert!((1..=BATCH).contains(&members.len()), "{} triangles in a batch", members.len());
-        let mut batch = Self {
-            corners: [[[0.0; BATCH]; 3]; 3],
-            triangles: [0; BATCH],
-            count: members.len() as u32,
-        };
+        let mut batch = Self { corners: [[[0.0; BATCH]; 3]; 3], triangles: [0; BATCH] };
         for lane in 0..BATCH {
             let triangle = members[lane.min(members.len() - 1)];
             batch.triangles[lane] = triangle;
@@ -249,8 +197,10 @@ impl LeafBatch {
     }
 
     /// Number of triangles.
+    #[inline]
     pub fn count(&self) -> usize {
-        self.count as usize
+        let [a, b, c, d] = self.triangles;
+        1 + usize::from(b != a) + usize::from(c != b) + usize::from(d != c)
     }
 
     /// Indices of the triangles in the mesh.

@@ -8,7 +8,7 @@ use glamx::Vec3;
 
 use super::Tree;
 use super::build::{BuildNode, BuildOptions, BuildTree, Content};
-use super::node::{AabbPair, BATCH, KdopPair, LeafBatch, Link};
+use super::node::{BATCH, LeafBatch, Link, Pair};
 use super::stats::BuildStats;
 use crate::volumes::{DirectionSet, Directions, Kdop, Sphere};
 
@@ -27,13 +27,14 @@ where
     let numbers = number_nodes(&built.nodes, options);
 
     // Entry 0 holds the root itself, in lane 0.
-    let mut aabb_pairs = vec![AabbPair::EMPTY; 1 + numbers.aabb_count];
-    let mut kdop_pairs = vec![KdopPair::EMPTY; numbers.kdop_count];
+    let mut aabb_pairs = vec![Pair::EMPTY; 1 + numbers.aabb_count];
+    let mut kdop_pairs = vec![Pair::EMPTY; numbers.kdop_count];
     let link_of = |place: usize| match built.nodes[place].content {
         Content::Inner(_) => Link::inner(numbers.of_place[place]),
         Content::Leaf(_) => leaf_links[place],
     };
-    aabb_pairs[0].set(0, link_of(0), &built.nodes[0].aabb);
+    let root = &built.nodes[0].aabb;
+    aabb_pairs[0].set(0, link_of(0), root.min.as_ref(), root.max.as_ref());
     for (place, node) in built.nodes.iter().enumerate() {
         let Content::Inner(children) = node.content else {
             continue;
@@ -42,10 +43,12 @@ where
         for (lane, child) in children.into_iter().enumerate() {
             let child = child as usize;
             if layers.is_kdop(node.depth + 1) {
-                let pair = &mut kdop_pairs[number - aabb_pairs.len()];
-                pair.set(lane, link_of(child), &kdops[child]);
+                let (pair, kdop) = (&mut kdop_pairs[number - aabb_pairs.len()], &kdops[child]);
+                pair.set(lane, link_of(child), &kdop.min, &kdop.max);
             } else {
-                aabb_pairs[number].set(lane, link_of(child), &built.nodes[child].aabb);
+                let aabb = &built.nodes[child].aabb;
+                let pair = &mut aabb_pairs[number];
+                pair.set(lane, link_of(child), aabb.min.as_ref(), aabb.max.as_ref());
             }
         }
     }

@@ -12,7 +12,7 @@
 use glamx::Vec3;
 use wide::f32x4;
 
-use super::node::{AabbPair, BATCH, KdopPair, LeafBatch, Link};
+use super::node::{BATCH, LeafBatch, Link, Pair};
 use super::{BuildError, Tree, check_mesh};
 use crate::volumes::{Aabb, DirectionSet, Directions, Kdop, Sphere};
 
@@ -87,7 +87,7 @@ where
         };
         let root = refit.aabb(root_link);
         let (farthest_squared, cost) = (refit.farthest_squared, refit.cost);
-        self.aabb_pairs[0].set(0, root_link, &root);
+        self.aabb_pairs[0].set(0, root_link, root.min.as_ref(), root.max.as_ref());
         self.magnitude = root.magnitude();
         if let Some(sphere) = &mut self.sphere {
             let farthest = farthest_squared.to_array().into_iter().fold(0.0, f32::max).sqrt();
@@ -128,8 +128,8 @@ fn survey(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Vec3, BuildError>
 struct Refit<'a, const AXES: usize> {
     vertices: &'a [Vec3],
     triangles: &'a [[u32; 3]],
-    aabb_pairs: &'a mut [AabbPair],
-    kdop_pairs: &'a mut [KdopPair<AXES>],
+    aabb_pairs: &'a mut [Pair<3>],
+    kdop_pairs: &'a mut [Pair<AXES>],
     leaves: &'a mut [LeafBatch],
     /// Of the sphere, each coordinate in all lanes.
     centre: [f32x4; 3],
@@ -155,10 +155,12 @@ where
         let Some(pair) = self.aabb_pairs.get(index) else {
             return self.kdop_pair(index - self.aabb_pairs.len()).aabb();
         };
-        let [first, second] = pair.links;
-        let second = self.aabb(second);
-        let children = [self.aabb(first), second];
-        self.aabb_pairs[index].refit(&children);
+        let links = pair.links;
+        let second = self.aabb(links[1]);
+        let children = [self.aabb(links[0]), second];
+        for (lane, Aabb { min, max }) in children.iter().enumerate() {
+            self.aabb_pairs[index].set(lane, links[lane], min.as_ref(), max.as_ref());
+        }
         self.charged(children[0].merge(&children[1]), 2)
     }
 
@@ -176,11 +178,13 @@ where
 
     /// The k-DOP around both children of an inner node of the k-DOP layers.
     fn kdop_pair(&mut self, pair: usize) -> Kdop<AXES> {
-        let [first, second] = self.kdop_pairs[pair].links;
+        let links = self.kdop_pairs[pair].links;
         // The build goes on with the second child, so its nodes come first in memory.
-        let second = self.kdop(second);
-        let children = [self.kdop(first), second];
-        self.kdop_pairs[pair].refit(&children);
+        let second = self.kdop(links[1]);
+        let children = [self.kdop(links[0]), second];
+        for (lane, Kdop { min, max }) in children.iter().enumerate() {
+            self.kdop_pairs[pair].set(lane, links[lane], min, max);
+        }
         let merged = children[0].merge(&children[1]);
         self.charged(merged.aabb(), 2);
         merged

@@ -2,7 +2,7 @@ use glamx::Vec3;
 
 use super::Tree;
 use super::build::{BuildTree, Content};
-use super::node::{AabbPair, KdopPair, LeafBatch};
+use super::node::{LeafBatch, Pair};
 use crate::volumes::Sphere;
 
 /// What a build made.
@@ -60,8 +60,8 @@ impl BuildStats {
             degenerate_count: triangles.iter().filter(is_degenerate).count() as u32,
             sah_cost: if root_area > 0.0 { cost / root_area } else { 0.0 },
             sphere_bytes: tree.sphere.map_or(0, |_| size_of::<Sphere>()),
-            aabb_bytes: tree.aabb_pairs.len() * size_of::<AabbPair>(),
-            kdop_bytes: tree.kdop_pairs.len() * size_of::<KdopPair<AXES>>(),
+            aabb_bytes: tree.aabb_pairs.len() * size_of::<Pair<3>>(),
+            kdop_bytes: tree.kdop_pairs.len() * size_of::<Pair<AXES>>(),
             leaf_bytes: tree.leaves.len() * size_of::<LeafBatch>(),
         }
     }

@@ -18,7 +18,7 @@
 //! |---|---|---|---|
 //! | `Kdop::fit` | two additions of corners | `γ_2·(X + Y + Z)` of the largest coordinates | `γ_3` of that |
 //! | `Sphere::fit` | a difference, three squares, a root | `γ_5` of the distance | `γ_6` and `UNDERFLOW` |
-//! | `centre_extent` | the half-length | `u` of it | the next number |
+//! | `centre_extent` | the half-length | `u` of it | the next number of eight bits, up to `2⁻⁷` more |
 //! | `PairFrame`, boxes | `t + R·c2` (5 roundings), minus `c1` (1), `e1 + \|R\|·e2` (8, `e <= M`) | `γ_5·(T + 2·s·M2) + γ_1·W + γ_8·(M1 + 2·s·M2)` | `r`; in frame 2 likewise |
 //! | `BoxTest` | the same, and `c` and `e` (1 each) | `γ_2·W` more | `2·r` |
 //! | `Correspondence`, slabs | bounds up to `3·M`, coefficients that sum to `2·√3·s` | `γ_9·3·M1 + γ_6·3·T + γ_14·10.4·s·M2` | `6·r` |
@@ -40,16 +40,36 @@ pub const fn gamma(operations: u32) -> f32 {
     operations as f32 * UNIT_ROUNDOFF * 1.001
 }
 
+/// A length, as the upper half of an f32: eight significant bits, rounded up.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub(crate) struct HalfLength(u16);
+
+impl HalfLength {
+    /// Of no interval: below all, so that no test passes.
+    pub(crate) const NONE: Self = Self((f32::NEG_INFINITY.to_bits() >> 16) as u16);
+
+    /// The next one above a length. Infinite above `2¹²⁸ - 2¹²⁰`; what is infinite or NaN stays so.
+    #[inline(always)]
+    fn above(length: f32) -> Self {
+        let below = (length.to_bits() >> 16) as u16;
+        Self(if length < f32::INFINITY { below + 1 } else { below })
+    }
+}
+
+impl From<HalfLength> for f32 {
+    #[inline(always)]
+    fn from(HalfLength(upper): HalfLength) -> Self {
+        f32::from_bits(u32::from(upper) << 16)
+    }
+}
+
 /// The interval `[min, max]` as a centre and a half-length that contain it in exact arithmetic.
 ///
 /// The centre is rounded, so the half-length is measured from the rounded centre to both ends and
 /// rounded up. An interval that is not finite gives a half-length that passes no test.
 #[inline(always)]
-pub(crate) fn centre_extent(min: f32, max: f32) -> (f32, f32) {
+pub(crate) fn centre_extent(min: f32, max: f32) -> (f32, HalfLength) {
     let centre = 0.5 * min + 0.5 * max;
     let (above, below) = (max - centre, centre - min);
-    let extent = if above > below { above } else { below };
-    // The next number of one that is not negative has the next bits: `f32::next_up` has branches.
-    let up = f32::from_bits(extent.to_bits().wrapping_add(1));
-    (centre, if extent < f32::INFINITY { up } else { extent })
+    (centre, HalfLength::above(if above > below { above } else { below }))
 }

@@ -1,13 +1,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use glamx::{DVec3, Pose3, Vec3};
-use sbbk_core::field::{FieldFrame, FieldScratch, FieldTriangle, descend_field};
+use sbbk_core::field::{FieldFrame, FieldTriangle};
 use sbbk_core::traverse::{DescentCounts, Placement};
 use sbbk_core::tree::{BuildOptions, Tree};
 use sbbk_core::truth::contact;
 
 use crate::grid::Grid;
-use crate::support::Soup;
+use crate::support::{Soup, descend_field};
 
 /// A triangle of the field and one of the mesh.
 pub type Pair = (FieldTriangle, u32);
@@ -66,9 +66,8 @@ pub fn found(
 ) -> (BTreeSet<Pair>, DescentCounts) {
     let placement = Placement::new(pose);
     let frame = FieldFrame::new(grid, &placement, margin);
-    let mut counts = DescentCounts::default();
     let mut found = BTreeSet::new();
-    descend_field(tree, &frame, &mut FieldScratch::default(), &mut counts, |triangle, index| {
+    let counts = descend_field(tree, &frame, |triangle, index| {
         assert!(found.insert((triangle, index)), "{triangle:?} and {index} twice");
     });
     (found, counts)

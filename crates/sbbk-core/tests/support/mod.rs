@@ -2,6 +2,9 @@
 #![allow(dead_code)] // Each test binary uses a part.
 
 use glamx::{Pose3, Quat, Vec3};
+use sbbk_core::field::{FieldFrame, FieldLeaves, FieldTriangle, HeightGrid};
+use sbbk_core::traverse::{Counters, DescentCounts, TestedBox};
+use sbbk_core::tree::Tree;
 
 /// A mesh as the tree takes it.
 #[derive(Clone, Debug)]
@@ -101,4 +104,27 @@ pub fn lattice_soup(random: &mut Random, count: u32, side: u64) -> Soup {
     let vertices = (0..3 * count).map(|_| corner()).collect();
     let triangles = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     Soup { vertices, triangles }
+}
+
+/// Walks a tree by the tests of a field. Calls `found` with the triangles of the field and of the
+/// mesh that may touch.
+pub fn descend_field<F: HeightGrid>(
+    tree: &Tree,
+    frame: &FieldFrame<'_, F>,
+    mut found: impl FnMut(FieldTriangle, u32),
+) -> DescentCounts {
+    let leaves = FieldLeaves::new(frame, tree.bounding_ball().centre, tree.magnitude());
+    let mut counts = DescentCounts::default();
+    let mut nodes = vec![tree.root()];
+    while let Some(node) = nodes.pop() {
+        let aabb = node.aabb();
+        counts.aabb_tests(1);
+        if frame.meets(TestedBox::new(aabb.min, aabb.max), &mut counts) {
+            nodes.extend(node.children().into_iter().flatten());
+            if let Some(leaf) = node.leaf() {
+                leaves.visit(leaf.batch, &mut counts, &mut found);
+            }
+        }
+    }
+    counts
 }

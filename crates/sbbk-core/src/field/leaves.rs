@@ -3,58 +3,9 @@ use glamx::{DVec3, Vec3};
 use super::frame::FieldFrame;
 use super::grid::{FieldTriangle, HeightGrid};
 use crate::leaf::PlacedTest;
-use crate::simd::{PerChild, each_bit};
+use crate::simd::each_bit;
 use crate::traverse::Counters;
-use crate::tree::{LeafBatch, Link, Tree};
-use crate::volumes::{DirectionSet, Directions};
-
-/// Memory of the descent, kept by the caller. Holds at most one node a level of the tree and one
-/// more.
-#[derive(Clone, Debug, Default)]
-pub struct FieldScratch {
-    stack: Vec<Link>,
-}
-
-/// Calls `found` with a triangle of the field and the index of one of the mesh for all pairs within
-/// the margin of `frame`, and few others.
-///
-/// The order depends on the tree and the pose. Cells counted are those whose heights were read, as
-/// often as they were.
-pub fn descend_field<F: HeightGrid, const AXES: usize>(
-    tree: &Tree<AXES>,
-    frame: &FieldFrame<'_, F>,
-    scratch: &mut FieldScratch,
-    mut counters: impl Counters,
-    mut found: impl FnMut(FieldTriangle, u32),
-) where
-    Directions<AXES>: DirectionSet<AXES>,
-{
-    let leaves = FieldLeaves::new(frame, tree.bounding_ball().centre, tree.magnitude());
-    let stack = &mut scratch.stack;
-    stack.clear();
-    // The root's own volume is in lane 0 of the first entry; the other lane is empty.
-    let mut node = Some(0);
-    while let Some(index) = node {
-        let children = tree.children(index);
-        counters.aabb_tests(2);
-        for lane in 0..2 {
-            let of_lane = |values: &[PerChild; 3]| Vec3::from_array(values.map(|axis| axis[lane]));
-            let (centre, extent) = (of_lane(children.boxes.centre), of_lane(children.boxes.extent));
-            if frame.node_meets(centre, extent, &mut counters) {
-                stack.push(children.links[lane]);
-            }
-        }
-        node = None;
-        while let Some(link) = stack.pop() {
-            if !link.is_leaf() {
-                node = Some(link.index());
-                break;
-            }
-            counters.leaf_pair();
-            leaves.visit(tree.leaf(link.index()), &mut counters, &mut found);
-        }
-    }
-}
+use crate::tree::LeafBatch;
 
 /// Finds the triangles of a field near batches of triangles of a mesh. Made once a query.
 pub struct FieldLeaves<'a, F> {
@@ -69,7 +20,8 @@ impl<'a, F: HeightGrid> FieldLeaves<'a, F> {
         Self { frame, test }
     }
 
-    /// Calls `found` as [`descend_field`] does, for the triangles of `batch`.
+    /// Calls `found` with a triangle of the field and the index of one of `batch` for all pairs within
+    /// the margin of the frame, and few others.
     pub fn visit(
         &self,
         batch: &LeafBatch,
