@@ -144,7 +144,8 @@ fn boxes(kit: &Kit) -> Result<Figures, SceneError> {
         });
         (0..60).for_each(|_| world.step());
         let [left, right] = bodies.map(|body| world.bodies[body].translation().x);
-        passed += usize::from(!(right - left > 1.8 * HALF));
+        let are_apart = right - left > 1.8 * HALF;
+        passed += usize::from(!are_apart);
     }
     Ok(Figures::default().none("passed", passed))
 }
@@ -162,7 +163,8 @@ fn slabs(kit: &Kit, cell: f32) -> Result<Figures, SceneError> {
         let pose = Pose3::from_parts(Vec3::new(0.1, 1.75, 0.2), random::rotation(&mut random));
         let (body, _) = world.insert(RigidBodyBuilder::dynamic().pose(pose), slab.clone());
         (0..150).for_each(|_| world.step());
-        passed += usize::from(!(world.bodies[body].translation().y > 0.0));
+        let is_above = world.bodies[body].translation().y > 0.0;
+        passed += usize::from(!is_above);
     }
     Ok(Figures::default().none("passed", passed))
 }

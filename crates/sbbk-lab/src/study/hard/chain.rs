@@ -75,12 +75,12 @@ fn run(kit: &Kit, load: f32) -> Result<Figures, SceneError> {
     }
     let ends = places(&world, &bodies);
     let apart: Vec<f32> = ends.windows(2).map(|pair| pair[0].distance(pair[1])).collect();
-    let parted = apart.iter().filter(|&&apart| !(apart < PITCH + TUBE)).count();
+    let linked = apart.iter().filter(|&&apart| apart < PITCH + TUBE).count();
     let mass: f32 = bodies[1..].iter().map(|&body| world.bodies[body].mass()).sum();
     // As a share of what it takes to lift all by one ring.
     let lift = mass * -world.gravity.y * PITCH;
     Ok(Figures::default()
-        .none("parted", parted)
+        .none("parted", RINGS - linked)
         .at_most("energy gained", gain.most / f64::from(lift), 0.05)
         .note("longest link", largest(apart) / PITCH))
 }

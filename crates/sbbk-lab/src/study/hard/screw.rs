@@ -49,7 +49,7 @@ fn run(kit: &Kit, friction: f32) -> Result<Figures, SceneError> {
             settled = [turn.angle, place];
         }
         // Before it leaves the bolt.
-        if !(place > BOLT.pitch) {
+        if place <= BOLT.pitch {
             break;
         }
     }
