@@ -127,9 +127,9 @@ impl Thread {
         [[0.0, 0.0], [0.3 + low, 0.0], [0.4 + low, 1.0], [0.6 + high, 1.0], [0.7 + high, 0.0]]
     }
 
-    /// Corners of the profile over all turns, and those of one more, as the thread winds.
+    /// Corners of the profile over all turns, those of one more, as the thread winds, and the end.
     fn row_count(&self) -> u32 {
-        self.profile().len() as u32 * (self.turns + 1)
+        self.profile().len() as u32 * (self.turns + 1) + 1
     }
 
     /// The corner of a row at an angle. What would be below or above the part is at its end.
