@@ -150,3 +150,34 @@ fn meshes_are_scaled_centred_posed_and_made_shapes() {
     assert_eq!(empty.clone().centred().scaled_to(2.0), empty);
     assert!(empty.shared_shape().is_err());
 }
+
+/// Would catch parts of machines with holes, inside out, or of the wrong size.
+#[test]
+fn parts_of_machines_are_closed_and_have_their_volume() {
+    use glamx::Vec2;
+    use sbbk_lab::mesh::{Gear, Mesh, Thread, prism, revolved};
+
+    let thread =
+        Thread { root: 0.9, height: 0.1, pitch: 0.2, thicker: 0.0, turns: 6, segments: 48 };
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(Vec2::from_array);
+    let ring = [[1.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 0.0]].map(Vec2::from_array);
+    let gear = Gear { teeth: 20, module: 0.1, thinned: 0.01, half_width: 0.2 };
+    let bolt = 0.93 * 0.93 * 1.2 * std::f64::consts::PI;
+    let parts: [(Mesh, f64); 5] = [
+        (prism(&corners, 0.5), 4.0),
+        (revolved(&ring, 64), 3.0 * std::f64::consts::PI),
+        // Teeth are thinner above the pitch circle than gaps are below it.
+        (gear.mesh(), 0.96 * 0.4 * std::f64::consts::PI),
+        (thread.bolt(), bolt),
+        (thread.nut(1.2), 1.44 * 1.2 * std::f64::consts::PI - bolt),
+    ];
+    for (mesh, volume) in parts {
+        let mut edges: Vec<[u32; 2]> =
+            mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+        edges.sort_unstable();
+        let is_closed = |&[a, b]: &[u32; 2]| edges.binary_search(&[b, a]).is_ok();
+        assert!(edges.iter().all(is_closed), "{}", mesh.name);
+        assert!(edges.windows(2).all(|pair| pair[0] != pair[1]), "{}", mesh.name);
+        assert!((mesh.volume() / volume - 1.0).abs() < 0.04, "{}: {}", mesh.name, mesh.volume());
+    }
+}

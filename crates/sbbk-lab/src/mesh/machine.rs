@@ -109,6 +109,9 @@ pub struct Thread {
     pub height: f32,
     /// Rise of one turn, in units.
     pub pitch: f32,
+    /// What the thread is thicker at its upper and its lower side than 0.4 of the pitch at its
+    /// foot, as a share of the pitch, at most 0.25.
+    pub thicker: f32,
     /// Turns of the part.
     pub turns: u32,
     /// Vertices of a turn.
@@ -117,35 +120,40 @@ pub struct Thread {
 
 impl Thread {
     /// Where the corners of the profile are in each turn, as a share of the pitch, and how much of
-    /// the height they stand out.
-    const PROFILE: [[f32; 2]; 4] = [[0.0, 0.0], [0.15, 0.0], [0.5, 1.0], [0.65, 1.0]];
+    /// the height they stand out. Slopes are steep, so that facets of bolt and nut hardly make the
+    /// nut go up and down.
+    fn profile(&self) -> [[f32; 2]; 5] {
+        let [low, high] = [-self.thicker, self.thicker];
+        [[0.0, 0.0], [0.3 + low, 0.0], [0.4 + low, 1.0], [0.6 + high, 1.0], [0.7 + high, 0.0]]
+    }
 
-    /// Corners of the profile over all turns, and those of one more, as the thread winds.
+    /// Corners of the profile over all turns, those of one more, as the thread winds, and the end.
     fn row_count(&self) -> u32 {
-        Self::PROFILE.len() as u32 * (self.turns + 1)
+        self.profile().len() as u32 * (self.turns + 1) + 1
     }
 
     /// The corner of a row at an angle. What would be below or above the part is at its end.
     fn point(&self, angle: u32, row: u32) -> Vec3 {
         let segments = self.segments;
-        let [turn, corner] = [row / Self::PROFILE.len() as u32, row % Self::PROFILE.len() as u32];
+        let profile = self.profile();
+        let [turn, corner] = [row / profile.len() as u32, row % profile.len() as u32];
         // The last angle is the first, and its rows are a turn higher.
         let share = (angle % segments) as f32 / segments as f32;
-        let [place, stands_out] = Self::PROFILE[corner as usize];
+        let [place, stands_out] = profile[corner as usize];
         let height = (turn + angle / segments) as f32 - 1.0 + place + share;
         let ended = height.clamp(0.0, self.turns as f32);
         let stands_out = if height == ended {
             stands_out
         } else {
-            Self::profile((ended - share).rem_euclid(1.0))
+            self.stands_out((ended - share).rem_euclid(1.0))
         };
         self.around(angle, self.root + self.height * stands_out, self.pitch * ended)
     }
 
     /// How much of the height the thread stands out at a share of the pitch.
-    fn profile(place: f32) -> f32 {
-        let corners = Self::PROFILE.into_iter().chain([[1.0, 0.0]]);
-        let ends = Self::PROFILE.into_iter().zip(corners.skip(1));
+    fn stands_out(&self, place: f32) -> f32 {
+        let corners = self.profile().into_iter().chain([[1.0, 0.0]]);
+        let ends = self.profile().into_iter().zip(corners.skip(1));
         let side = ends.into_iter().find(|(_, end)| place <= end[0]);
         side.map_or(0.0, |([from, low], [to, high])| {
             low + (high - low) * (place - from) / (to - from)
@@ -168,14 +176,13 @@ impl Thread {
         without_needles(&bolt).named("bolt")
     }
 
-    /// A round nut of this radius for a bolt of this thread, its thread wider by `clearance`.
-    pub fn nut(&self, radius: f32, clearance: f32) -> Mesh {
+    /// A round nut of this radius that this thread is cut into.
+    pub fn nut(&self, radius: f32) -> Mesh {
         let rows = self.row_count();
-        let inner = Self { root: self.root + clearance, ..*self };
         let nut = quad_grid([self.segments, rows + 2], |i, j| match j {
             j if j == 0 || j == rows + 2 => self.around(i, radius, 0.0),
             1 => self.around(i, radius, self.pitch * self.turns as f32),
-            j => inner.point(i, rows + 1 - j),
+            j => self.point(i, rows + 1 - j),
         });
         without_needles(&nut).named("nut")
     }

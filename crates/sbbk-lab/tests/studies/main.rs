@@ -5,6 +5,7 @@ mod contacts;
 mod convex;
 mod everyday;
 mod front;
+mod hard;
 mod long_runs;
 mod soft;
 mod support;

@@ -62,13 +62,13 @@ fn run(kit: &Kit, size: f32) -> Result<Figures, SceneError> {
     let awake = bodies.iter().filter(|&&body| !world.bodies[body].is_sleeping()).count();
     let depths = touching_pairs(&world, &Depths::new(&head)?, 150);
     let ends = places(&world, &bodies);
-    let lost = ends.iter().filter(|end| !(end.y > 0.0)).count();
+    let kept = ends.iter().filter(|end| end.y > 0.0).count();
     let per_size = f64::from(size);
     Ok(Figures::default()
         .at_most("speed", f64::from(top_speed(&world, &bodies)) / per_size, 0.05)
         .at_most("deepest", depths.max / per_size, 0.025)
         .at_most("energy gained", gain.most / start, 0.001)
-        .none("lost", lost)
+        .none("lost", ends.len() - kept)
         .note("awake", awake as f64)
         .note("highest", f64::from(largest(ends.iter().map(|end| end.y))) / per_size))
 }

@@ -13,10 +13,11 @@ use crate::mesh::Thread;
 use crate::scene::SceneError;
 
 /// Its lead angle is 1.9 degrees.
-const BOLT: Thread = Thread { root: 0.9, height: 0.1, pitch: 0.2, turns: 8, segments: 32 };
-const NUT_TURNS: u32 = 3;
-const NUT_RADIUS: f32 = 1.4;
-const CLEARANCE: f32 = 0.02;
+const BOLT: Thread =
+    Thread { root: 0.9, height: 0.1, pitch: 0.2, thicker: 0.0, turns: 6, segments: 48 };
+/// With a tenth of a pitch of play, and so much less deep.
+const NUT: Thread = Thread { root: 0.92, thicker: 0.05, turns: 2, ..BOLT };
+const NUT_RADIUS: f32 = 1.2;
 const STEPS: usize = 720;
 
 pub(super) fn trials() -> Vec<Trial> {
@@ -33,9 +34,8 @@ fn run(kit: &Kit, friction: f32) -> Result<Figures, SceneError> {
     world.integration_parameters.contact_clustering = false;
     let bolt = kit.collider(&Form::mesh(BOLT.bolt()))?;
     world.insert(RigidBodyBuilder::fixed(), bolt.friction(friction));
-    let nut = Thread { turns: NUT_TURNS, ..BOLT }.nut(NUT_RADIUS, CLEARANCE);
-    let nut = kit.collider(&Form::mesh(nut))?;
-    let start = BOLT.pitch * (BOLT.turns - NUT_TURNS) as f32;
+    let nut = kit.collider(&Form::mesh(NUT.nut(NUT_RADIUS)))?;
+    let start = BOLT.pitch * (BOLT.turns - NUT.turns) as f32;
     let body = RigidBodyBuilder::dynamic().translation(Vec3::Y * start).can_sleep(false);
     let (body, _) = world.insert(body, nut.friction(friction));
     let mut turn = Turn::new(&world, body, Vec3::Y);
@@ -49,7 +49,7 @@ fn run(kit: &Kit, friction: f32) -> Result<Figures, SceneError> {
             settled = [turn.angle, place];
         }
         // Before it leaves the bolt.
-        if !(place > BOLT.pitch) {
+        if place <= BOLT.pitch {
             break;
         }
     }
