@@ -16,6 +16,18 @@ pub enum ContactGenerator {
     Parry,
 }
 
+/// Which contacts two meshes have.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum ContactSet {
+    /// Those of their surfaces: what touches is pushed out of a mesh that bounds a solid, not through
+    /// it, and edges within a surface do not count. For rigid meshes and
+    /// [`ContactGenerator::Exact`]; see the documentation of this crate.
+    #[default]
+    Surfaces,
+    /// Those of each two triangles by themselves, as in stock Rapier: for comparison.
+    Triangles,
+}
+
 /// What SBBK answers for when it meets a mesh. Parry answers for the rest, as without SBBK.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -45,6 +57,8 @@ pub struct SbbkConfig {
     pub layers: LayerPlan,
     /// Where contact points come from.
     pub contacts: ContactGenerator,
+    /// Which of them two meshes have.
+    pub contact_set: ContactSet,
     /// What is answered.
     pub kinds: Kinds,
     /// Memory that trees may keep while no pair of colliders uses them, in bytes. A mesh that
@@ -62,6 +76,7 @@ impl Default for SbbkConfig {
         Self {
             layers: LayerPlan::SBBK,
             contacts: ContactGenerator::Exact,
+            contact_set: ContactSet::Surfaces,
             kinds: Kinds::default(),
             idle_tree_bytes: 16 << 20,
             count_queries: false,

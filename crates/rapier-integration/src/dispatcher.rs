@@ -19,7 +19,7 @@ use crate::pair::{
 };
 use crate::query::MeshQuery;
 use crate::stats::QueryCounters;
-use crate::{ContactGenerator, SbbkConfig, SbbkStats, TriangleContacts};
+use crate::{ContactGenerator, ContactSet, SbbkConfig, SbbkStats, TriangleContacts};
 
 /// A query dispatcher that answers pairs of triangle meshes, and the contacts of meshes with convex
 /// shapes, compounds, polylines and height fields. All else goes to Parry's
@@ -130,7 +130,7 @@ impl SbbkDispatcher {
         M: Default + Clone + Send + Sync + 'static,
         C: Default + Copy + Send + Sync + 'static,
     {
-        let SbbkConfig { contacts, kinds, .. } = self.config;
+        let SbbkConfig { contacts, contact_set, kinds, .. } = self.config;
         // Of such a pair nothing needs to be kept while it is apart. Not if there are manifolds: where
         // Rapier finds no workspace it keeps pointers to manifolds that are gone.
         let is_new = workspace.is_none() && manifolds.is_empty();
@@ -147,7 +147,10 @@ impl SbbkDispatcher {
                     return Answer::Unsupported;
                 };
                 let pose = &PairPose::new(pos12, prediction);
-                return self.ask(&MeshPair { pose, meshes, contacts }, manifolds, workspace);
+                let has_surfaces =
+                    contacts == ContactGenerator::Exact && contact_set == ContactSet::Surfaces;
+                let pair = MeshPair { pose, meshes, contacts, has_surfaces };
+                return self.ask(&pair, manifolds, workspace);
             }
             (Some(mesh), None) => (mesh, g2, MeshPlace::First),
             (None, Some(mesh)) => (mesh, g1, MeshPlace::Second),

@@ -28,6 +28,7 @@ use sbbk_core::tree::{BATCH, LeafBatch};
 
 use super::exact::Constraints;
 use super::field::{Field, FieldToken};
+use super::judge::Surfaces;
 use super::query::{Hint, TriangleQuery, TriangleShapes};
 use crate::ContactGenerator;
 use crate::mesh::{Change, Hierarchy, KnownMesh, TreeCache};
@@ -99,6 +100,8 @@ pub(crate) struct MeshAndField<'q> {
     /// other, and Parry makes it from the normals of four triangles.
     cone: RefCell<(u32, Option<TrianglePseudoNormals>)>,
 }
+
+impl Surfaces for MeshAndField<'_> {}
 
 impl TriangleShapes for MeshAndField<'_> {
     fn moving(&self) -> Moving<'_> {

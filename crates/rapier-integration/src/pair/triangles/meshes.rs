@@ -11,6 +11,7 @@ use sbbk_core::traverse::{Counters, Descent, PairFrame, Verdict, Visitor, descen
 use sbbk_core::tree::LeafBatch;
 
 use super::exact::Constraints;
+use super::judge::Surfaces;
 use super::query::{Hint, TriangleQuery, TriangleShapes};
 use super::walk::walk;
 use crate::ContactGenerator;
@@ -27,6 +28,8 @@ pub(crate) struct MeshPair<'a> {
     pub(crate) pose: &'a PairPose,
     pub(crate) meshes: [Hierarchy<'a>; 2],
     pub(crate) contacts: ContactGenerator,
+    /// Whether contacts are those of surfaces.
+    pub(crate) has_surfaces: bool,
 }
 
 impl MeshPair<'_> {
@@ -72,17 +75,22 @@ impl<'a> Pair for MeshPair<'a> {
         let tree = |entry: &Option<(Option<&'q CachedMesh>, _, _)>| entry.as_ref()?.0?.tree();
         let trees = tree(&one).zip(tree(&two)).map(<[_; 2]>::from);
         let surface = |entry: Option<(Option<&'q CachedMesh>, bool, &'q mut Neighbours)>, mesh| {
-            let (entry, is_sure, neighbours) =
-                entry.filter(|_| self.contacts == ContactGenerator::Exact)?;
+            let (entry, is_sure, neighbours) = entry.filter(|_| self.has_surfaces)?;
             Some(match entry.filter(|_| is_sure) {
                 Some(entry) => SurfaceOf::Whole(entry),
                 None => SurfaceOf::Near(NearTwins::new(mesh, neighbours)),
             })
         };
         let surfaces = [surface(one, mesh1.mesh), surface(two, mesh2.mesh)];
+        let near = if surfaces.iter().any(Option::is_some) {
+            let radii = self.meshes.map(|mesh| f64::from(mesh.ball().radius));
+            NEAR * radii[0].min(radii[1])
+        } else {
+            f64::INFINITY
+        };
         let is_second_first = self.is_second_first();
         let query = TriangleQuery {
-            shapes: Meshes { pair: self, trees, surfaces, is_second_first, cache },
+            shapes: Meshes { pair: self, trees, surfaces, near, is_second_first, cache },
             pose: self.pose,
             parrys_pose: self.parrys_pose(is_second_first),
             generator: self.contacts,
@@ -98,10 +106,16 @@ pub(crate) struct Meshes<'q> {
     trees: Option<[&'q PreparedMesh; 2]>,
     /// Where the surfaces of both come from, if they have them.
     surfaces: [Option<SurfaceOf<'q>>; 2],
+    near: f64,
     /// Whether Parry walks mesh 2 first.
     is_second_first: bool,
     cache: &'q TreeCache,
 }
+
+/// [`Surfaces::near`] as a share of the radius of the smaller mesh. Higher: plates that soft CCD
+/// sees turn through what they meet; less: small bodies in a large prediction distance have contacts
+/// that are no local minima.
+const NEAR: f64 = 0.1;
 
 /// Where the surface of a mesh comes from.
 enum SurfaceOf<'q> {
@@ -157,31 +171,6 @@ impl TriangleShapes for Meshes<'_> {
         descend(trees, &mut frame, Descent::Simultaneous, stack, counters, &mut collector);
     }
 
-    fn around(&self, i: usize) -> Option<Around<'_>> {
-        let mesh = self.pair.meshes[i].mesh;
-        let (vertices, triangles) = (mesh.vertices(), mesh.indices());
-        Some(match self.surfaces[i].as_ref()? {
-            SurfaceOf::Whole(entry) => entry.surface(mesh).around(vertices, triangles),
-            SurfaceOf::Near(twins) => Around { twins, is_solid: false, vertices, triangles },
-        })
-    }
-
-    fn near(&self) -> f64 {
-        let radius = |i: usize| f64::from(self.pair.meshes[i].ball().radius);
-        0.1 * radius(0).min(radius(1))
-    }
-
-    fn is_deep(&self, i: usize, point: Vector, distance: Real) -> bool {
-        let mesh = self.pair.meshes[i].mesh;
-        let nearest = CompositeShapeRef(mesh).project_local_point(point, Real::MAX, false);
-        nearest.is_some_and(|(triangle, nearest)| {
-            let away = point - nearest.point;
-            // Nearest to a point inside is a face.
-            let into = mesh.triangle(triangle).normal().map_or(0.0, |normal| -away.dot(normal));
-            into > distance && into > 0.9 * away.length()
-        })
-    }
-
     #[inline(always)]
     fn triangles(&self, [triangle1, triangle2]: [u32; 2]) -> Option<[Triangle; 2]> {
         let [mesh1, mesh2] = self.pair.meshes.map(|seen| seen.mesh);
@@ -197,6 +186,32 @@ impl TriangleShapes for Meshes<'_> {
         let cones =
             [0, 1].map(|i| self.pair.meshes[i].mesh.triangle_normal_constraints(triangles[i]));
         then(cones.each_ref().map(|cone| cone.as_ref().map(|cone| cone as &dyn NormalConstraints)));
+    }
+}
+
+impl Surfaces for Meshes<'_> {
+    fn around(&self, i: usize) -> Option<Around<'_>> {
+        let mesh = self.pair.meshes[i].mesh;
+        let (vertices, triangles) = (mesh.vertices(), mesh.indices());
+        Some(match self.surfaces[i].as_ref()? {
+            SurfaceOf::Whole(entry) => entry.surface(mesh).around(vertices, triangles),
+            SurfaceOf::Near(twins) => Around { twins, is_solid: false, vertices, triangles },
+        })
+    }
+
+    fn near(&self) -> f64 {
+        self.near
+    }
+
+    fn is_deep(&self, i: usize, point: Vector, distance: Real) -> bool {
+        let mesh = self.pair.meshes[i].mesh;
+        let nearest = CompositeShapeRef(mesh).project_local_point(point, Real::MAX, false);
+        nearest.is_some_and(|(triangle, nearest)| {
+            let away = point - nearest.point;
+            // Nearest to a point inside is a face.
+            let into = mesh.triangle(triangle).normal().map_or(0.0, |normal| -away.dot(normal));
+            into > distance && into > 0.9 * away.length()
+        })
     }
 }
 

@@ -7,6 +7,7 @@
 mod exact;
 mod field;
 mod heightfield;
+mod judge;
 mod meshes;
 mod query;
 mod regions;

@@ -7,9 +7,9 @@ use rustc_hash::FxHashMap;
 #[derive(Default)]
 pub(crate) struct Regions {
     /// Each with whether its contact is beyond doubt.
-    pub(super) pairs: Vec<([u32; 2], bool)>,
+    pairs: Vec<([u32; 2], bool)>,
     /// Whether contacts in doubt are still put off.
-    pub(super) is_collecting: bool,
+    is_collecting: bool,
     /// By mesh and triangle: another one of the same region, or itself.
     above: FxHashMap<(usize, u32), (usize, u32)>,
     /// Regions with a contact that is beyond doubt, by their roots.
@@ -17,9 +17,21 @@ pub(crate) struct Regions {
 }
 
 impl Regions {
+    /// Begins the first round of a query.
     pub(crate) fn begin(&mut self) {
         self.pairs.clear();
         self.is_collecting = true;
+    }
+
+    pub(super) fn is_first_round(&self) -> bool {
+        self.is_collecting
+    }
+
+    /// Notes a pair that crosses.
+    pub(super) fn add(&mut self, pair: [u32; 2], is_good: bool) {
+        if self.is_collecting {
+            self.pairs.push((pair, is_good));
+        }
     }
 
     /// Ends the first round. Whether some regions have no contact beyond doubt.

@@ -1,0 +1,138 @@
+//! Which contacts of triangles are contacts of the surfaces.
+//!
+//! Two triangles know nothing of the meshes that they are of. A contact of theirs belongs to the set
+//! if
+//!
+//! * apart, nothing around its points is nearer: a local minimum of the distance, which leads out
+//!   of solids. Others are of internal edges, or of walls that pass by;
+//! * crossing, it leads out of solids, and the surfaces end where the overlap does, a local minimum
+//!   of the overlap. So do triangles of solids that have passed each other.
+//!
+//! Crossing surfaces never stay without a contact: where a whole region of pairs that cross has none
+//! of these ([`Regions`]), it gets the best that there is.
+
+use glamx::DVec3;
+use parry3d::math::{Real, Vector};
+use sbbk_core::contact::{Feature, Outward, TriangleContact, outward};
+use sbbk_core::query::TrianglePair;
+use sbbk_core::surface::{Around, Side};
+
+use super::regions::Regions;
+use crate::pair::driver::Seen;
+use crate::pair::pose::PairPose;
+
+/// What is known of the surfaces of two shapes.
+pub(crate) trait Surfaces {
+    /// The surface of shape 1 (0) or 2 (1), if it is known.
+    fn around(&self, _: usize) -> Option<Around<'_>> {
+        None
+    }
+
+    /// The distance up to which contacts must be local minima, and the greatest depth. Farther ones
+    /// are looked at by soft CCD: bodies turn before they meet.
+    fn near(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Whether a point, in the frame of the shape, is deeper in it than some distance.
+    fn is_deep(&self, _: usize, _: Vector, _: Real) -> bool {
+        false
+    }
+}
+
+/// How much deeper than the least translation, or than the prediction distance if that is more, a
+/// contact may be that is taken without a second look. Parry's number for constrained normals.
+const SHALLOW: f64 = 5.0;
+
+/// Distances below this do not tell on which side of each other triangles are.
+const TOUCHING: f64 = 1.0e-9;
+
+/// Two triangles of two surfaces.
+pub(super) struct Judge<'a, S> {
+    pub(super) shapes: &'a S,
+    pub(super) pose: &'a PairPose,
+    pub(super) pair: [u32; 2],
+}
+
+impl<S: Surfaces> Judge<'_, S> {
+    /// The contact of the surfaces that the contact of their triangles stands for.
+    #[inline(always)]
+    pub(super) fn verdict(
+        &self,
+        local: &TrianglePair,
+        contact: TriangleContact,
+        regions: &mut Regions,
+    ) -> Seen<TriangleContact> {
+        match [self.shapes.around(0), self.shapes.around(1)] {
+            [None, None] => Seen::Contact(contact),
+            around => self.by_surfaces(around, local, contact, regions),
+        }
+    }
+
+    fn by_surfaces(
+        &self,
+        around: [Option<Around<'_>>; 2],
+        local: &TrianglePair,
+        contact: TriangleContact,
+        regions: &mut Regions,
+    ) -> Seen<TriangleContact> {
+        let inverse = self.pose.placement12.inverse;
+        let side = |i: usize, feature: Feature, direction: DVec3| {
+            let own = if i == 0 { direction } else { inverse * direction };
+            around[i].map_or(Side::Front, |around| around.side(self.pair[i], feature, own))
+        };
+        let is_solid = around.map(|around| around.is_some_and(|around| around.is_solid));
+        let has_solid = is_solid[0] || is_solid[1];
+        let TriangleContact { normal, distance, features, .. } = contact;
+        let is_crossing = features.is_crossing();
+        if is_crossing && !has_solid {
+            return Seen::Contact(contact);
+        }
+        if !is_crossing {
+            if distance > self.shapes.near() {
+                return Seen::Contact(contact);
+            }
+            let sides =
+                [side(0, features.feature1(), normal), side(1, features.feature2(), -normal)];
+            if sides == [Side::Front; 2] {
+                return Seen::Contact(contact);
+            }
+            let have_passed = has_solid && (0..2).all(|i| !is_solid[i] || sides[i] == Side::Behind);
+            if !have_passed {
+                return Seen::Nothing;
+            }
+        }
+        let is_end = |i, feature, direction| side(i, feature, direction) == Side::Front;
+        let [t1, t2] = &local.corners;
+        let Some(Outward { contact, is_extremal }) = outward(t1, t2, is_solid, is_end) else {
+            return Seen::Nothing;
+        };
+        let greatest = SHALLOW * distance.abs().max(f64::from(self.pose.prediction));
+        let is_shallow = contact.distance >= -greatest;
+        let is_good = is_extremal && is_shallow;
+        if is_good {
+            regions.add(self.pair, true);
+            Seen::Contact(contact)
+        } else if !is_crossing && distance.abs() < TOUCHING {
+            Seen::Nothing
+        } else if regions.is_first_round() {
+            regions.add(self.pair, false);
+            Seen::Later
+        } else if regions.is_lost(self.pair)
+            && (is_shallow || is_extremal && self.is_deep(local, &contact))
+        {
+            Seen::Contact(contact)
+        } else {
+            Seen::Nothing
+        }
+    }
+
+    /// Whether a contact is deep because the surface of a body is far, not because this triangle is
+    /// on its far side.
+    fn is_deep(&self, local: &TrianglePair, contact: &TriangleContact) -> bool {
+        let within = (-contact.distance / SHALLOW) as Real;
+        let point1 = (local.origin.as_dvec3() + contact.point2).as_vec3();
+        let point2 = self.pose.placement12.to_frame2(contact.point1, local.origin).as_vec3();
+        self.shapes.is_deep(0, point1, within) || self.shapes.is_deep(1, point2, within)
+    }
+}
