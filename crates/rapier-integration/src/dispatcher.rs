@@ -20,6 +20,7 @@ use crate::pair::{
 use crate::query::MeshQuery;
 use crate::stats::QueryCounters;
 use crate::{ContactGenerator, ContactSet, SbbkConfig, SbbkStats, TriangleContacts};
+use sbbk_core::surface::SurfaceKind;
 
 /// A query dispatcher that answers pairs of triangle meshes, and the contacts of meshes with convex
 /// shapes, compounds, polylines and height fields. All else goes to Parry's
@@ -293,6 +294,13 @@ impl PreparedTree {
     /// The tree itself.
     pub fn tree(&self) -> &Tree {
         &self.tree.prepared().tree
+    }
+
+    /// Says what the mesh bounds, where SBBK would take it for something else: a vase with a narrow
+    /// neck for a solid, a mask for a sheet. For all meshes with this content, as long as one of them
+    /// is in use. Without effect when it was said before; say it before the mesh meets another.
+    pub fn bounds(&self, kind: SurfaceKind) {
+        self.tree.settle_kind(kind);
     }
 }
 

@@ -143,6 +143,7 @@ pub use config::{ContactGenerator, ContactSet, Kinds, SbbkConfig};
 pub use dispatcher::{PreparedTree, SbbkDispatcher};
 pub use pair::TriangleContacts;
 pub use sbbk_core;
+pub use sbbk_core::surface::SurfaceKind;
 pub use stats::SbbkStats;
 
 /// Fails to compile if the dispatcher stops being one that Rapier takes.

@@ -11,7 +11,15 @@ use crate::pair::Answer;
 pub struct SbbkStats {
     /// Meshes that have a tree at present.
     pub trees: usize,
-    /// Of these, how many no pair of colliders uses.
+    /// Meshes that have met another mesh and bound a solid: what meets them is pushed out, see
+    /// [`ContactSet`](crate::ContactSet).
+    pub solids: usize,
+    /// Meshes that have met another mesh and bound nothing: these are met from both sides.
+    pub sheets: usize,
+    /// The same for closed meshes whose normals point inwards: most likely wound the wrong way. They
+    /// are met from both sides, too.
+    pub inside_out: usize,
+    /// Of the trees, how many no pair of colliders uses.
     pub idle_trees: usize,
     /// Memory of all of them, with all that is kept beside a tree.
     pub tree_bytes: usize,
@@ -81,6 +89,9 @@ impl QueryCounters {
         let load = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
         SbbkStats {
             trees: cache.trees,
+            solids: cache.solids,
+            sheets: cache.sheets,
+            inside_out: cache.inside_out,
             idle_trees: cache.idle_trees,
             tree_bytes: cache.bytes,
             tree_builds: cache.builds,

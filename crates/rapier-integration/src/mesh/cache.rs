@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use parry3d::shape::{CompositeShape, SharedShape, TriMesh};
-use sbbk_core::surface::Surface;
+use sbbk_core::surface::{Surface, SurfaceKind};
 use sbbk_core::tree::{BuildError, BuildOptions};
 
 use super::credit::Credit;
@@ -77,6 +77,8 @@ pub(crate) struct CachedMesh {
     prepared: OnceLock<Result<PreparedMesh, BuildError>>,
     /// From the first contact on.
     surface: OnceLock<Surface>,
+    /// What the user says that the mesh bounds.
+    kind: OnceLock<SurfaceKind>,
     /// Of the mesh, from the first query without manifolds on.
     copy: OnceLock<ContentCopy>,
     /// Living [`PreparedRef`]s, and a place in [`Entries::queried`]. Rises from zero under the lock
@@ -91,6 +93,7 @@ impl CachedMesh {
             triangle_count,
             prepared: OnceLock::new(),
             surface: OnceLock::new(),
+            kind: OnceLock::new(),
             copy: OnceLock::new(),
             users: AtomicUsize::new(0),
         }
@@ -119,9 +122,22 @@ impl CachedMesh {
         self.tree().expect("prepared")
     }
 
-    /// The surface of the mesh, which must be this one.
-    pub(crate) fn surface(&self, mesh: &TriMesh) -> &Surface {
-        self.surface.get_or_init(|| Surface::new(mesh.vertices(), mesh.indices()))
+    /// The surface of the mesh, which must be this one, and what it bounds.
+    #[inline]
+    pub(crate) fn surface(&self, mesh: &TriMesh) -> (&Surface, SurfaceKind) {
+        let look = || Surface::new(mesh.vertices(), mesh.indices());
+        let surface = self.surface.get_or_init(look);
+        (surface, self.kind.get().copied().unwrap_or(surface.kind()))
+    }
+
+    /// Settles what the mesh bounds; in vain if that is settled already.
+    pub(crate) fn settle_kind(&self, kind: SurfaceKind) {
+        let _ = self.kind.set(kind);
+    }
+
+    /// What the mesh bounds, if anything had to know.
+    fn kind(&self) -> Option<SurfaceKind> {
+        self.kind.get().copied().or_else(|| Some(self.surface.get()?.kind()))
     }
 
     /// Whether vertices and triangles of a mesh are, bit for bit, those of this one. Never so
@@ -140,6 +156,9 @@ impl CachedMesh {
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct CacheCounts {
     pub(crate) trees: usize,
+    pub(crate) solids: usize,
+    pub(crate) sheets: usize,
+    pub(crate) inside_out: usize,
     pub(crate) idle_trees: usize,
     pub(crate) bytes: usize,
     pub(crate) builds: u64,
@@ -313,7 +332,13 @@ impl TreeCache {
             entry.mesh.users.load(Ordering::Acquire) == 1 && queried()
         };
         let queried = entries.by_content.values().filter(is_queried).count();
+        let of_kind = |kind| {
+            entries.by_content.values().filter(|entry| entry.mesh.kind() == Some(kind)).count()
+        };
         CacheCounts {
+            solids: of_kind(SurfaceKind::Solid),
+            sheets: of_kind(SurfaceKind::Sheet),
+            inside_out: of_kind(SurfaceKind::InsideOut),
             trees: entries.by_content.values().filter(|e| e.mesh.tree().is_some()).count(),
             idle_trees: entries.idle.len() + queried,
             bytes: entries.by_content.values().map(|entry| entry.mesh.bytes()).sum(),

@@ -1,11 +1,13 @@
 use std::sync::Arc;
 
 use parry3d::shape::{CompositeShape, TriMesh};
+use sbbk_core::surface::{Around, SurfaceKind};
 
 use super::cache::{CachedMesh, PreparedRef, TreeCache};
 use super::hierarchy::Hierarchy;
 use super::identity::MeshToken;
-use super::neighbours::Neighbours;
+use super::neighbours::{NearTwins, Neighbours};
+use super::prepared::PreparedMesh;
 
 /// A mesh as a pair of colliders knows it from query to query: how to tell whether it still is that
 /// mesh, and its tree, if there is one.
@@ -20,7 +22,9 @@ pub(crate) enum KnownMesh {
         owner: u64,
         entry: Option<PreparedRef>,
         wait: u8,
-        is_sure: bool,
+        /// Whether `entry` was there at the first query, and will be at that of any pair: so that
+        /// answers may depend on it.
+        is_whole: bool,
         neighbours: Neighbours,
     },
     /// May be another one at any time: has no tree.
@@ -67,29 +71,29 @@ impl KnownMesh {
             owner: asking,
             entry: None,
             wait: 0,
-            is_sure: false,
+            is_whole: false,
             neighbours: Neighbours::default(),
         };
         change
     }
 
-    /// What all pairs share of a mesh that [`update`](Self::update) has seen, if it is small or
-    /// registered, and whether that is why; with its tree if that is there or can be had at once.
-    pub(crate) fn entry(
-        &mut self,
-        mesh: &TriMesh,
+    /// What is known of a mesh that [`update`](Self::update) has seen: what all pairs share of it, if
+    /// it is small or registered, with its tree if that is there or can be had at once.
+    pub(crate) fn look_up<'a>(
+        &'a mut self,
+        mesh: &'a TriMesh,
         cache: &Arc<TreeCache>,
-    ) -> Option<(Option<&CachedMesh>, bool, &mut Neighbours)> {
+    ) -> Option<Known<'a>> {
         /// Queries from one try to the next. More: trees come later; fewer: each costs two locks.
         const PATIENCE: u8 = 7;
-        let Self::Rigid { entry, wait, is_sure, neighbours, .. } = self else {
+        let Self::Rigid { entry, wait, is_whole, neighbours, .. } = self else {
             return None;
         };
         if *wait == 0 && entry.as_ref().is_none_or(|entry| entry.tree().is_none()) {
             *wait = PATIENCE;
             if entry.is_none() {
                 *entry = cache.know(mesh);
-                *is_sure = entry.is_some();
+                *is_whole = entry.is_some();
             }
             *entry = entry.take().or_else(|| cache.recognise(mesh));
             if let Some(entry) = entry {
@@ -97,6 +101,39 @@ impl KnownMesh {
             }
         }
         *wait = wait.saturating_sub(1);
-        Some((entry.as_deref(), *is_sure, neighbours))
+        let surface = match entry.as_deref().filter(|_| *is_whole) {
+            Some(entry) => MeshSurface::Whole(entry),
+            None => MeshSurface::Near(NearTwins::new(mesh, neighbours)),
+        };
+        Some(Known { tree: entry.as_ref().and_then(|entry| entry.tree()), surface })
+    }
+}
+
+/// What a query may know of a rigid mesh.
+pub(crate) struct Known<'a> {
+    pub(crate) tree: Option<&'a PreparedMesh>,
+    pub(crate) surface: MeshSurface<'a>,
+}
+
+/// How the triangles of a mesh hang together.
+pub(crate) enum MeshSurface<'a> {
+    /// Of the mesh as a whole. The same for all pairs and queries.
+    Whole(&'a CachedMesh),
+    /// Where it is met, of a mesh that is too large to be looked at unasked. It is no solid.
+    Near(NearTwins<'a>),
+}
+
+impl MeshSurface<'_> {
+    /// The surface of `mesh`, which must be this one.
+    #[inline]
+    pub(crate) fn around<'a>(&'a self, mesh: &'a TriMesh) -> Around<'a> {
+        let (vertices, triangles) = (mesh.vertices(), mesh.indices());
+        match self {
+            Self::Whole(entry) => {
+                let (twins, kind) = entry.surface(mesh);
+                Around { twins, is_solid: kind == SurfaceKind::Solid, vertices, triangles }
+            }
+            Self::Near(twins) => Around { twins, is_solid: false, vertices, triangles },
+        }
     }
 }

@@ -17,7 +17,7 @@ use sbbk_core::contact::{Feature, Outward, TriangleContact, outward};
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Side};
 
-use super::regions::Regions;
+use super::regions::{Crossing, Regions};
 use crate::pair::driver::Seen;
 use crate::pair::pose::PairPose;
 
@@ -110,13 +110,15 @@ impl<S: Surfaces> Judge<'_, S> {
         let greatest = SHALLOW * distance.abs().max(f64::from(self.pose.prediction));
         let is_shallow = contact.distance >= -greatest;
         let is_good = is_extremal && is_shallow;
-        if is_good {
-            regions.add(self.pair, true);
+        let TriangleContact { normal, distance: depth, .. } = contact;
+        let crossing = Crossing { pair: self.pair, normal, depth: -depth, is_good };
+        if is_good && !regions.is_wrong(self.pair) {
+            regions.add(crossing);
             Seen::Contact(contact)
         } else if !is_crossing && distance.abs() < TOUCHING {
             Seen::Nothing
         } else if regions.is_first_round() {
-            regions.add(self.pair, false);
+            regions.add(crossing);
             Seen::Later
         } else if regions.is_lost(self.pair)
             && (is_shallow || is_extremal && self.is_deep(local, &contact))

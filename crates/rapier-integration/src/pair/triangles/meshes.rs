@@ -15,9 +15,7 @@ use super::judge::Surfaces;
 use super::query::{Hint, TriangleQuery, TriangleShapes};
 use super::walk::walk;
 use crate::ContactGenerator;
-use crate::mesh::{
-    CachedMesh, Change, Hierarchy, KnownMesh, NearTwins, Neighbours, PreparedMesh, TreeCache,
-};
+use crate::mesh::{Change, Hierarchy, KnownMesh, MeshSurface, PreparedMesh, TreeCache};
 use crate::pair::driver::{Moving, Pair, Scratch};
 use crate::pair::order::OrderKey;
 use crate::pair::pose::PairPose;
@@ -66,22 +64,14 @@ impl<'a> Pair for MeshPair<'a> {
         let [mesh1, mesh2] = &self.meshes;
         let change = known1.update(mesh1).max(known2.update(mesh2));
         let are_rigid = mesh1.is_rigid() && mesh2.is_rigid();
-        let entries = if are_rigid {
-            [known1.entry(mesh1.mesh, cache), known2.entry(mesh2.mesh, cache)]
+        let known = if are_rigid {
+            [known1.look_up(mesh1.mesh, cache), known2.look_up(mesh2.mesh, cache)]
         } else {
             [None, None]
         };
-        let [one, two] = entries;
-        let tree = |entry: &Option<(Option<&'q CachedMesh>, _, _)>| entry.as_ref()?.0?.tree();
-        let trees = tree(&one).zip(tree(&two)).map(<[_; 2]>::from);
-        let surface = |entry: Option<(Option<&'q CachedMesh>, bool, &'q mut Neighbours)>, mesh| {
-            let (entry, is_sure, neighbours) = entry.filter(|_| self.has_surfaces)?;
-            Some(match entry.filter(|_| is_sure) {
-                Some(entry) => SurfaceOf::Whole(entry),
-                None => SurfaceOf::Near(NearTwins::new(mesh, neighbours)),
-            })
-        };
-        let surfaces = [surface(one, mesh1.mesh), surface(two, mesh2.mesh)];
+        let [tree1, tree2] = known.each_ref().map(|known| known.as_ref()?.tree);
+        let trees = tree1.zip(tree2).map(<[_; 2]>::from);
+        let surfaces = known.map(|known| Some(known?.surface).filter(|_| self.has_surfaces));
         let near = if surfaces.iter().any(Option::is_some) {
             let radii = self.meshes.map(|mesh| f64::from(mesh.ball().radius));
             NEAR * radii[0].min(radii[1])
@@ -104,8 +94,9 @@ impl<'a> Pair for MeshPair<'a> {
 pub(crate) struct Meshes<'q> {
     pair: &'q MeshPair<'q>,
     trees: Option<[&'q PreparedMesh; 2]>,
-    /// Where the surfaces of both come from, if they have them.
-    surfaces: [Option<SurfaceOf<'q>>; 2],
+    /// If contacts are those of surfaces.
+    surfaces: [Option<MeshSurface<'q>>; 2],
+    /// [`Surfaces::near`].
     near: f64,
     /// Whether Parry walks mesh 2 first.
     is_second_first: bool,
@@ -116,14 +107,6 @@ pub(crate) struct Meshes<'q> {
 /// sees turn through what they meet; less: small bodies in a large prediction distance have contacts
 /// that are no local minima.
 const NEAR: f64 = 0.1;
-
-/// Where the surface of a mesh comes from.
-enum SurfaceOf<'q> {
-    /// Known as a whole.
-    Whole(&'q CachedMesh),
-    /// Looked at where it is met: too large.
-    Near(NearTwins<'q>),
-}
 
 impl Meshes<'_> {
     fn key(&self, ranks: [u32; 2]) -> OrderKey {
@@ -190,13 +173,9 @@ impl TriangleShapes for Meshes<'_> {
 }
 
 impl Surfaces for Meshes<'_> {
+    #[inline]
     fn around(&self, i: usize) -> Option<Around<'_>> {
-        let mesh = self.pair.meshes[i].mesh;
-        let (vertices, triangles) = (mesh.vertices(), mesh.indices());
-        Some(match self.surfaces[i].as_ref()? {
-            SurfaceOf::Whole(entry) => entry.surface(mesh).around(vertices, triangles),
-            SurfaceOf::Near(twins) => Around { twins, is_solid: false, vertices, triangles },
-        })
+        Some(self.surfaces[i].as_ref()?.around(self.pair.meshes[i].mesh))
     }
 
     fn near(&self) -> f64 {

@@ -1,67 +1,119 @@
-//! Where two surfaces cross, and where nothing parts them.
+use std::cmp::Ordering;
 
-use rustc_hash::FxHashMap;
+use glamx::DVec3;
+use rustc_hash::{FxHashMap, FxHashSet};
 
-/// The pairs of triangles of a query that cross, in regions that hang together: the curve along
-/// which two surfaces cross goes from one pair to the next through a triangle that both have.
+/// Where two surfaces cross, what pushes them apart, and where nothing does.
+///
+/// *Regions* are the pairs of triangles that hang together: the curve along which two surfaces cross
+/// goes from one pair to the next through a triangle that both have.
 #[derive(Default)]
 pub(crate) struct Regions {
-    /// Each with whether its contact is beyond doubt.
-    pairs: Vec<([u32; 2], bool)>,
+    found: Vec<Crossing>,
     /// Whether contacts in doubt are still put off.
-    is_collecting: bool,
+    is_first_round: bool,
+    /// Pairs whose contact pushes the wrong way.
+    wrong: FxHashSet<[u32; 2]>,
     /// By mesh and triangle: another one of the same region, or itself.
-    above: FxHashMap<(usize, u32), (usize, u32)>,
-    /// Regions with a contact that is beyond doubt, by their roots.
-    held: FxHashMap<(usize, u32), bool>,
+    above: FxHashMap<Node, Node>,
+    /// By the node at the top of a region: whether it has a contact beyond doubt.
+    held: FxHashMap<Node, bool>,
+}
+
+/// A triangle of mesh 1 (0) or 2 (1).
+type Node = (usize, u32);
+
+/// A pair of triangles that cross.
+#[derive(Copy, Clone)]
+pub(super) struct Crossing {
+    pub(super) pair: [u32; 2],
+    /// Of its contact, from mesh 1 to mesh 2.
+    pub(super) normal: DVec3,
+    pub(super) depth: f64,
+    /// Whether its contact is beyond doubt, but for others of its triangles.
+    pub(super) is_good: bool,
 }
 
 impl Regions {
     /// Begins the first round of a query.
     pub(crate) fn begin(&mut self) {
-        self.pairs.clear();
-        self.is_collecting = true;
+        self.found.clear();
+        self.wrong.clear();
+        self.is_first_round = true;
     }
 
     pub(super) fn is_first_round(&self) -> bool {
-        self.is_collecting
+        self.is_first_round
     }
 
-    /// Notes a pair that crosses.
-    pub(super) fn add(&mut self, pair: [u32; 2], is_good: bool) {
-        if self.is_collecting {
-            self.pairs.push((pair, is_good));
+    /// Notes a pair that crosses, in the first round.
+    pub(super) fn add(&mut self, crossing: Crossing) {
+        if self.is_first_round {
+            self.found.push(crossing);
         }
     }
 
-    /// Ends the first round. Whether some regions have no contact beyond doubt.
+    /// Ends the first round. Whether there are regions that nothing holds, or contacts that push the
+    /// wrong way.
     pub(super) fn close(&mut self) -> bool {
-        let was_collecting = std::mem::take(&mut self.is_collecting);
-        if !was_collecting || self.pairs.iter().all(|&(_, is_good)| is_good) {
+        if !std::mem::take(&mut self.is_first_round) {
+            return false;
+        }
+        self.find_wrong();
+        let is_fine = |found: &Crossing| found.is_good && !self.wrong.contains(&found.pair);
+        if self.found.iter().all(is_fine) {
             return false;
         }
         self.above.clear();
         self.held.clear();
-        for i in 0..self.pairs.len() {
-            let ([triangle1, triangle2], _) = self.pairs[i];
-            let [root1, root2] = [(0, triangle1), (1, triangle2)].map(|node| self.root(node));
-            self.above.insert(root1.max(root2), root1.min(root2));
+        for i in 0..self.found.len() {
+            let [triangle1, triangle2] = self.found[i].pair;
+            let [top1, top2] = [(0, triangle1), (1, triangle2)].map(|node| self.top(node));
+            self.above.insert(top1.max(top2), top1.min(top2));
         }
-        for i in 0..self.pairs.len() {
-            let ([triangle1, _], is_good) = self.pairs[i];
-            let root = self.root((0, triangle1));
-            *self.held.entry(root).or_default() |= is_good;
+        for i in 0..self.found.len() {
+            let Crossing { pair, is_good, .. } = self.found[i];
+            let top = self.top((0, pair[0]));
+            *self.held.entry(top).or_default() |= is_good && !self.wrong.contains(&pair);
         }
-        self.held.values().any(|is_held| !is_held)
+        !self.wrong.is_empty() || self.held.values().any(|is_held| !is_held)
+    }
+
+    /// Whether the contact of a pair pushes the wrong way.
+    pub(super) fn is_wrong(&self, pair: [u32; 2]) -> bool {
+        self.wrong.contains(&pair)
     }
 
     /// Whether the region of a pair has no contact beyond doubt.
     pub(super) fn is_lost(&mut self, [triangle1, _]: [u32; 2]) -> bool {
-        let root = self.root((0, triangle1));
-        self.held.get(&root).is_some_and(|is_held| !is_held)
+        let top = self.top((0, triangle1));
+        self.held.get(&top).is_some_and(|is_held| !is_held)
     }
 
-    fn root(&mut self, mut node: (usize, u32)) -> (usize, u32) {
+    /// A triangle that is in a thin body, or has a thin one around it, has both its sides near, which
+    /// push against each other. The one that is farther away is wrong.
+    fn find_wrong(&mut self) {
+        for side in 0..2 {
+            self.found.sort_unstable_by_key(|found| (found.pair[side], found.pair));
+            for of_one in self.found.chunk_by(|a, b| a.pair[side] == b.pair[side]) {
+                for found in of_one.iter().filter(|found| found.is_good) {
+                    let deepest = |sign: f64| {
+                        let like = |other: &&Crossing| {
+                            other.is_good && sign * other.normal.dot(found.normal) > 0.5
+                        };
+                        of_one.iter().filter(like).map(|other| other.depth).max_by(f64::total_cmp)
+                    };
+                    let is_nearer = deepest(-1.0).partial_cmp(&deepest(1.0));
+                    if deepest(-1.0).is_some() && is_nearer == Some(Ordering::Less) {
+                        self.wrong.insert(found.pair);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The node at the top of a region.
+    fn top(&mut self, mut node: Node) -> Node {
         loop {
             let above = *self.above.entry(node).or_insert(node);
             if above == node {
