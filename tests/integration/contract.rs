@@ -10,7 +10,7 @@ use sbbk_lab::mesh;
 
 use crate::support::{
     Manifold, Pair, Query, TrianglePair, assert_same, by_triangles, fresh, generating, nudge,
-    rebuilt, sequence, shape, stock, touching, triangles,
+    per_triangle, rebuilt, sequence, shape, stock, touching, triangles,
 };
 
 /// Marks manifolds and points, to see which of them survive.
@@ -74,7 +74,7 @@ fn there_is_a_workspace_wherever_there_are_or_were_manifolds() {
 fn manifolds_come_in_stock_order_and_none_is_empty() {
     let [one, two] = rings();
     let mut random = Rand32::new(2);
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = per_triangle();
     let mut manifold_count = 0;
     for _ in 0..30 {
         let query = Query::new(&one, &two, touching(&mut random, [&one, &two], 0.1));
@@ -103,7 +103,7 @@ fn each_of_two_equal_meshes_has_its_own_stock_order() {
     let query = Query::new(&one, &two, touching(&mut Rand32::new(3), [&one, &two], 0.1));
     let other = Query { meshes: [&refitted, &two], ..query };
     assert_ne!(sequence(&stock(&query)), sequence(&stock(&other)));
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = per_triangle();
     for query in [query, other] {
         assert_eq!(sequence(&fresh(&dispatcher, &query)), sequence(&stock(&query)));
     }

@@ -10,16 +10,18 @@ fn run(
 ) -> Vec<Fingerprint> {
     let mut world = scene.build().unwrap().world;
     world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
-    let mut states = Vec::new();
+    let (mut states, mut touching_steps) = (Vec::new(), 0);
     for step in 0..200 {
         before_step(step, &mut world);
         world.step();
+        let is_touching = world.contact_pairs().any(|pair| pair.has_any_active_contact());
+        touching_steps += usize::from(is_touching);
         if step % 20 == 19 {
             states.push(Fingerprint::of(&world));
         }
     }
-    let has_contacts = world.contact_pairs().any(|pair| pair.has_any_active_contact());
-    assert!(has_contacts, "nothing touches at the end");
+    // Less than that has the ball which rolls off the rotor, bounces off the fuselage, and is gone.
+    assert!(touching_steps > 20, "something touches in {touching_steps} steps");
     states
 }
 

@@ -1,11 +1,10 @@
 use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::shape::TriMesh;
 use sbbk_lab::mesh::{self, Mesh};
 
 use crate::like_stock;
-use crate::support::{Query, fresh, shape, touching};
+use crate::support::{Query, fresh, per_triangle, shape, touching};
 use crate::truth::Tally;
 
 /// Meshes whose triangles have edges of about a unit, 20 to 40 units across: stock Parry is right
@@ -25,7 +24,7 @@ fn large_meshes() -> Vec<TriMesh> {
 /// too many, another depth, another normal, other points.
 #[test]
 fn contacts_are_stocks_where_triangles_are_large() {
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = per_triangle();
     let meshes = large_meshes();
     let mut random = Rand32::new(1);
     let [mut contacts, mut excused] = [0; 2];
@@ -49,7 +48,7 @@ const PREDICTIONS: [Real; 3] = [0.001, 0.002, 0.02];
 const DEPTHS: [Real; 4] = [-0.0005, 0.0005, 0.01, 0.2];
 
 fn judge(seed: u64, meshes: [&Mesh; 2], least_contacts: usize) {
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = per_triangle();
     let mut random = Rand32::new(seed);
     let mut tally = Tally::default();
     for size in SIZES {
@@ -85,7 +84,7 @@ fn fine_balls_touch_as_the_truth_says() {
 /// Edges and faces that are exactly parallel, and vertices that meet exactly.
 #[test]
 fn aligned_boxes_touch_as_the_truth_says() {
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = per_triangle();
     let mut tally = Tally::default();
     for size in SIZES {
         let cube = shape(&mesh::cuboid(Vector::splat(0.5 * size), 4));
@@ -107,7 +106,7 @@ fn aligned_boxes_touch_as_the_truth_says() {
 /// are far from an origin: contacts are about differences, which the poses know well.
 #[test]
 fn distant_meshes_touch_as_the_truth_says() {
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = per_triangle();
     let mut random = Rand32::new(6);
     let mut tally = Tally::default();
     let head = mesh::monkey_head_with(7);

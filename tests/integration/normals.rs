@@ -1,7 +1,6 @@
 use std::collections::BTreeMap;
 
 use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
 use rapier3d::math::Vector;
 use rapier3d::parry::query::details::NormalConstraints;
 use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
@@ -9,7 +8,7 @@ use sbbk_lab::mesh::{self, Mesh};
 
 use crate::like_stock;
 use crate::support::{
-    Manifold, Query, TrianglePair, by_triangles, fresh, shape, shape_with, touching,
+    Manifold, Query, TrianglePair, by_triangles, fresh, per_triangle, shape, shape_with, touching,
 };
 
 const FREE: TriMeshFlags = TriMeshFlags::empty();
@@ -43,7 +42,7 @@ fn check_cone(k: usize, flags: TriMeshFlags) {
     let meshes = meshes();
     let free = [0, 1].map(|i| flagged(&meshes[i], FREE));
     let fixed = [0, 1].map(|i| flagged(&meshes[i], if i == k { flags } else { FREE }));
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = per_triangle();
     let mut random = Rand32::new(1);
     let [mut pushed, mut untouched, mut rejected] = [0; 3];
     for depth in [-0.01, 0.0, 0.1, 0.5, 2.0].repeat(4) {
@@ -97,7 +96,7 @@ fn two_sided_cones_reject_nothing() {
 #[test]
 fn constrained_contacts_are_stocks() {
     let meshes = meshes();
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = per_triangle();
     let mut contact_count = 0;
     let all = [
         [ONE_SIDED, FREE],

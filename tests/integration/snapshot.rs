@@ -4,6 +4,8 @@ use rapier3d::math::{Pose, Real};
 use rapier3d::pipeline::PhysicsWorld;
 use sbbk_lab::scene::{MonkeyPile, Scene, SceneWorld};
 
+use crate::support::per_triangle;
+
 /// Steps until heads lie on each other.
 const BEFORE: usize = 60;
 /// Steps that a world and its copy take side by side.
@@ -80,7 +82,7 @@ fn a_restored_world_goes_on_bit_for_bit() {
 #[test]
 fn a_world_goes_on_without_sbbk_or_begins_with_it() {
     for was_sbbk in [true, false] {
-        let dispatcher = SbbkDispatcher::default();
+        let dispatcher = per_triangle();
         let SceneWorld { mut world, watched } = pile(was_sbbk.then_some(&dispatcher), true);
         let mut copy = restored(&world, (!was_sbbk).then_some(&dispatcher));
         let [early, late] = apart_after(&mut world, &mut copy, &watched);

@@ -5,7 +5,7 @@ use std::f32::consts::TAU;
 
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
-use rapier_integration::{ContactGenerator, SbbkConfig, SbbkDispatcher};
+use rapier_integration::{ContactGenerator, ContactSet, SbbkConfig, SbbkDispatcher};
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::{
     ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
@@ -88,11 +88,33 @@ pub fn stock(query: &Query) -> Vec<Manifold> {
     manifolds
 }
 
+/// Both sets of contacts, the default one first.
+pub const SETS: [ContactSet; 2] = [ContactSet::Surfaces, ContactSet::Triangles];
+
 /// A dispatcher that counts its queries.
 pub fn counting() -> SbbkDispatcher {
+    counting_of(ContactSet::default())
+}
+
+/// The same, for contacts of this set.
+pub fn counting_of(contact_set: ContactSet) -> SbbkDispatcher {
     let mut config = SbbkConfig::default();
+    config.contact_set = contact_set;
     config.count_queries = true;
     SbbkDispatcher::new(config)
+}
+
+/// A dispatcher whose contacts are of this set.
+pub fn having(contact_set: ContactSet) -> SbbkDispatcher {
+    let mut config = SbbkConfig::default();
+    config.contact_set = contact_set;
+    SbbkDispatcher::new(config)
+}
+
+/// A dispatcher whose contacts are those of each two triangles by themselves: what stock, brute
+/// force over all triangles, and meshes that deform can be compared with.
+pub fn per_triangle() -> SbbkDispatcher {
+    having(ContactSet::Triangles)
 }
 
 /// A dispatcher whose contacts come from `contacts`.

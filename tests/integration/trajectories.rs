@@ -1,17 +1,19 @@
-use rapier_integration::SbbkDispatcher;
 use rapier3d::geometry::ColliderHandle;
 use rapier3d::math::{Real, Vector};
 use sbbk_lab::mesh;
 use sbbk_lab::metrics::WorldState;
 use sbbk_lab::scene::{HelicopterBallDrop, MonkeyPile, Scene, SceneWorld};
 
+use crate::support::per_triangle;
+
 fn under_stock(scene: &dyn Scene) -> SceneWorld {
     scene.build().expect("the meshes of this scene have triangles")
 }
 
+/// With the contacts of each two triangles, as stock has them.
 fn under_sbbk(scene: &dyn Scene) -> SceneWorld {
     let mut built = under_stock(scene);
-    built.world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
+    built.world.narrow_phase.set_query_dispatcher(per_triangle());
     built
 }
 

@@ -7,7 +7,7 @@ use sbbk_lab::mesh;
 
 use super::question::Question;
 use super::terrain::{Terrain, heights, place, terrains};
-use crate::support::{assert_same, fresh, shape, shape_with};
+use crate::support::{assert_same, fresh, per_triangle, shape, shape_with};
 use crate::truth::Tally;
 
 /// Would catch cells that are cut off too early, triangles that are taken for others, holes that
@@ -60,7 +60,7 @@ fn lattice_contacts_are_those_of_brute_force() {
 /// meshes, bit for bit, but for the order.
 #[test]
 fn contacts_equal_those_of_the_terrain_as_a_mesh() {
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = per_triangle();
     let mut random = Rand32::new(4);
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::FIX_INTERNAL_EDGES);
     let mut count = 0;

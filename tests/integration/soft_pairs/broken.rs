@@ -1,12 +1,13 @@
 use glamx::Vec3;
 use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshFlags};
 use sbbk_lab::mesh;
 
 use super::question::{PREDICTION, Question, assert_same_set, furniture, hills};
-use crate::support::{Manifold, Pair, by_triangles, counting, distance, rotation, shape_with};
+use crate::support::{
+    Manifold, Pair, by_triangles, counting, distance, per_triangle, rotation, shape_with,
+};
 
 /// How the contacts of a mesh and a shape follow from where they are.
 #[derive(Clone, Copy, PartialEq)]
@@ -70,7 +71,7 @@ fn whole_part(mesh: &TriMesh) -> (TriMesh, Vec<u32>) {
 /// The contacts that the whole part of the mesh has, by the numbers of the mesh.
 fn expected(question: &Question) -> Vec<Manifold> {
     let (whole, numbers) = whole_part(question.mesh);
-    let mut manifolds = Question { mesh: &whole, ..*question }.fresh(&SbbkDispatcher::default());
+    let mut manifolds = Question { mesh: &whole, ..*question }.fresh(&per_triangle());
     for manifold in &mut manifolds {
         let Manifold { subshape1, subshape2, .. } = manifold;
         let number = if question.is_mesh_first { subshape1 } else { subshape2 };
