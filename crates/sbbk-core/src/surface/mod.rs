@@ -34,18 +34,14 @@ use glamx::Vec3;
 
 /// The neighbours of each triangle of a mesh, and what the mesh bounds.
 ///
-/// Takes 12 bytes a triangle.
+/// Takes 6 bytes a triangle, 12 of a mesh of more than 21,844.
 #[derive(Clone, Debug)]
 pub struct Surface {
-    /// Half-edge `3 t + i` runs from vertex `i` of triangle `t` to the next one. Its twin runs back
-    /// in the neighbour; [`NONE`](Self::NONE) where there is not exactly one.
-    twins: Box<[u32]>,
+    twins: twins::List,
     kind: SurfaceKind,
 }
 
 impl Surface {
-    const NONE: u32 = u32::MAX;
-
     /// Vertices at one place are one vertex. Takes about 60 ns a triangle.
     ///
     /// # Panics
@@ -53,7 +49,7 @@ impl Surface {
     pub fn new(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Self {
         let (twins, uneven) = twins::find(vertices, triangles);
         let kind = kind::of(vertices, triangles, &uneven);
-        Self { twins, kind }
+        Self { twins: twins::List::of(twins), kind }
     }
 
     /// What the mesh bounds.
@@ -68,6 +64,6 @@ impl Surface {
 
     /// Memory, with this value but without the mesh itself.
     pub fn bytes(&self) -> usize {
-        size_of::<Self>() + size_of_val(&*self.twins)
+        size_of::<Self>() + self.twins.bytes()
     }
 }

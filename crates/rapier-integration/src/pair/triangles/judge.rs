@@ -102,7 +102,10 @@ impl<S: Surfaces> Judge<'_, S> {
                 return Seen::Nothing;
             }
         }
-        let is_end = |i, feature, direction| side(i, feature, direction) == Side::Front;
+        let is_end = |i: usize, feature: Feature, direction: DVec3| {
+            let own = if i == 0 { direction } else { inverse * direction };
+            around[i].is_none_or(|around| around.is_front(self.pair[i], feature, own))
+        };
         let [t1, t2] = &local.corners;
         let Some(Outward { contact, is_extremal }) = outward(t1, t2, is_solid, is_end) else {
             return Seen::Nothing;
