@@ -11,7 +11,7 @@
 use std::collections::hash_map::Entry as HashEntry;
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::ops::Deref;
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use parry3d::shape::{CompositeShape, SharedShape, TriMesh};
@@ -75,6 +75,8 @@ pub(crate) struct CachedMesh {
     content: ContentHash,
     triangle_count: usize,
     prepared: OnceLock<Result<PreparedMesh, BuildError>>,
+    /// Whether that has been paid for.
+    is_begun: AtomicBool,
     /// From the first contact on.
     surface: OnceLock<Surface>,
     /// What the user says that the mesh bounds.
@@ -92,6 +94,7 @@ impl CachedMesh {
             content,
             triangle_count,
             prepared: OnceLock::new(),
+            is_begun: AtomicBool::new(false),
             surface: OnceLock::new(),
             kind: OnceLock::new(),
             copy: OnceLock::new(),
@@ -197,6 +200,7 @@ impl TreeCache {
 
     /// Builds the tree of a mesh, whose entry this is, if it is not there.
     fn build(&self, mesh: &TriMesh, entry: &CachedMesh) -> Result<(), BuildError> {
+        entry.is_begun.store(true, Ordering::Relaxed);
         let mut built = false;
         let result = entry.prepared.get_or_init(|| {
             built = true;
@@ -263,10 +267,12 @@ impl TreeCache {
 
     /// Builds the tree of a mesh, if queries have earned what it takes.
     pub(super) fn afford(&self, mesh: &TriMesh, entry: &CachedMesh) {
-        let is_there = entry.prepared.get().is_some();
-        if is_there || self.is_small(mesh) && self.credit.spend(mesh.indices().len()) {
+        let is_begun = entry.is_begun.swap(true, Ordering::Relaxed);
+        if is_begun || self.is_small(mesh) && self.credit.spend(mesh.indices().len()) {
             // A mesh that cannot have one does without.
             let _ = self.build(mesh, entry);
+        } else {
+            entry.is_begun.store(false, Ordering::Relaxed);
         }
     }
 

@@ -6,8 +6,9 @@
 //! outside of both.
 
 use super::axes::Axis;
+use super::clip::{ManifoldPoints, clip_triangles};
 use super::feature::{Feature, FeaturePair};
-use super::touching::at_axis_deepest;
+use super::touching::deepest;
 use super::triangle::{NEAR_PARALLEL, NEXT, PREVIOUS, Triangle};
 use super::triangle_contact::TriangleContact;
 use glamx::DVec3;
@@ -15,6 +16,11 @@ use glamx::DVec3;
 /// Sine of the angle that an axis may lean into a solid: an edge of a box that stands on another,
 /// not quite upright, still pushes up. Higher: walls push up bodies that they do not carry.
 const LEAN: f64 = 0.05;
+
+/// Sine of the angle to the plane of the other triangle from which on an edge says on which side of it
+/// the axis must be. Lower: a nut jams on its bolt, as the least axis of all need not be outward, and
+/// of the outward ones not that of edges in front. Higher: more axes, a nut runs as well with 1.
+const STEEP: f64 = 0.55;
 
 /// How much of the overlap the deepest points must show: else the features that end the overlap are
 /// elsewhere, in triangles that show it better.
@@ -35,46 +41,82 @@ pub struct Outward {
 /// The contact of two triangles that overlap, along the outward axis of least overlap. `solid` says
 /// which triangles are of a solid, whose outside their normals point to; `is_extremal` whether no
 /// triangle around a feature of triangle 1 (0) or 2 (1) is farther in a direction. Extremal axes
-/// go first. None if the triangles face away from each other, or have no points in line with the
-/// axis.
+/// go first. `out` gets the points, as [`clip`](super::clip) has them. None if the triangles face away
+/// from each other, or have no points in line with the axis.
 pub fn outward(
     t1: &[DVec3; 3],
     t2: &[DVec3; 3],
     solid: [bool; 2],
     is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
+    out: &mut ManifoldPoints,
 ) -> Option<Outward> {
     let (t1, t2) = (&Triangle::new(t1), &Triangle::new(t2));
-    let [normal1, normal2] = [t1.normal(), t2.normal()];
-    let leads_out = |axis: DVec3| {
-        let is_out = |is_solid: bool, cosine: f64| !is_solid || cosine >= -LEAN;
-        is_out(solid[0], axis.dot(normal1)) && is_out(solid[1], -axis.dot(normal2))
-    };
-    let crosses =
-        t1.edges.into_iter().flat_map(|e1| t2.edges.map(|e2| (e1, e2))).map(|(e1, e2)| {
-            let cross = e1.cross(e2);
-            let least = NEAR_PARALLEL * NEAR_PARALLEL * e1.length_squared() * e2.length_squared();
-            if cross.length_squared() > least { cross.normalize() } else { DVec3::ZERO }
-        });
-    let axes = [normal1, normal2].into_iter().chain(crosses).flat_map(|axis| [axis, -axis]);
+    let areas = [t1.area_vector(), t2.area_vector()];
+    let [normal1, normal2] = areas.map(|area| area.normalize_or_zero());
     let faces = FeaturePair::new(Feature::Face, Feature::Face);
     let [mut best, mut extremal] = [Axis::NONE; 2];
-    for axis in axes.filter(|&axis| axis != DVec3::ZERO && leads_out(axis)) {
+    let mut consider = |axis: DVec3| {
+        let is_out = |is_solid: bool, cosine: f64| !is_solid || cosine >= -LEAN;
+        if !is_out(solid[0], axis.dot(normal1)) || !is_out(solid[1], -axis.dot(normal2)) {
+            return;
+        }
         let along = Axis::one_way(t1, t2, axis, faces);
         if along.gap > best.gap {
             best = along;
         }
-        let ends = || {
-            is_extremal(0, farthest(t1, axis), axis) && is_extremal(1, farthest(t2, -axis), -axis)
-        };
-        if along.gap > extremal.gap && ends() {
+        let ends = |i: usize, t: &Triangle, axis: DVec3| is_extremal(i, farthest(t, axis), axis);
+        if along.gap > extremal.gap && ends(0, t1, axis) && ends(1, t2, -axis) {
             extremal = along;
+        }
+    };
+    for normal in [normal1, normal2] {
+        if normal != DVec3::ZERO {
+            consider(normal);
+            consider(-normal);
+        }
+    }
+    // Which way an edge runs through the plane of the other triangle; 0 if nearly along it.
+    let slopes = |t: &Triangle, normal: DVec3| {
+        t.edges.map(|edge| {
+            let slope = edge.dot(normal);
+            if slope * slope <= STEEP * STEEP * edge.length_squared() {
+                0.0
+            } else {
+                slope.signum()
+            }
+        })
+    };
+    let (slopes1, slopes2) = (slopes(t1, normal2), slopes(t2, normal1));
+    for (i, j) in (0..9).map(|pair| (pair / 3, pair % 3)) {
+        // As in `axes.rs`: only if both have one sign, the edges are in front, along that of the axis.
+        let (sign1, sign2) = (slopes1[i], slopes2[j]);
+        if sign1 * sign2 < 0.0 {
+            continue;
+        }
+        let (e1, e2) = (t1.edges[i], t2.edges[j]);
+        let cross = e1.cross(e2);
+        let least = NEAR_PARALLEL * NEAR_PARALLEL * e1.length_squared() * e2.length_squared();
+        if cross.length_squared() <= least {
+            continue;
+        }
+        let axis = cross.normalize();
+        let sign = sign1 + sign2;
+        if sign >= 0.0 {
+            consider(axis);
+        }
+        if sign <= 0.0 {
+            consider(-axis);
         }
     }
     let is_extremal = extremal.normal != DVec3::ZERO;
-    let axis = if is_extremal { extremal } else { best };
-    let contact = at_axis_deepest(t1, t2, &axis)?;
-    let is_extremal = is_extremal && contact.distance <= SHOWN * axis.gap;
+    let Axis { gap, normal, .. } = if is_extremal { extremal } else { best };
+    if normal == DVec3::ZERO {
+        return None;
+    }
+    clip_triangles(t1, t2, normal, out);
+    let contact = deepest(out, normal)?;
     let contact = TriangleContact { features: contact.features.crossing(), ..contact };
+    let is_extremal = is_extremal && contact.distance <= SHOWN * gap;
     Some(Outward { contact, is_extremal })
 }
 

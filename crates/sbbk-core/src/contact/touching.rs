@@ -41,22 +41,18 @@ pub(super) fn touching(t1: &Triangle, t2: &Triangle, best: Axis) -> TriangleCont
 /// The contact on an axis where many features tie: the deepest of the points seen along it. None
 /// when no point is as deep as the gap says.
 pub(super) fn at_axis(t1: &Triangle, t2: &Triangle, axis: &Axis) -> Option<TriangleContact> {
-    let deepest = at_axis_deepest(t1, t2, axis)?;
+    let mut points = ManifoldPoints::new();
+    clip_triangles(t1, t2, axis.normal, &mut points);
+    let deepest = deepest(&points, axis.normal)?;
     let is_as_deep = (deepest.distance - axis.gap).abs() <= ROUNDING * (t1.size + t2.size);
     is_as_deep.then_some(TriangleContact { distance: axis.gap, ..deepest })
 }
 
-/// The deepest of the points seen along an axis.
-pub(super) fn at_axis_deepest(
-    t1: &Triangle,
-    t2: &Triangle,
-    axis: &Axis,
-) -> Option<TriangleContact> {
-    let mut points = ManifoldPoints::new();
-    clip_triangles(t1, t2, axis.normal, &mut points);
-    let deepest = points.into_iter().min_by(|a, b| a.distance.total_cmp(&b.distance))?;
-    let ManifoldPoint { point1, point2, distance, features } = deepest;
-    Some(TriangleContact { normal: axis.normal, distance, point1, point2, features })
+/// The contact of the deepest of the points seen along a normal.
+pub(super) fn deepest(points: &ManifoldPoints, normal: DVec3) -> Option<TriangleContact> {
+    let deepest = points.iter().min_by(|a, b| a.distance.total_cmp(&b.distance))?;
+    let ManifoldPoint { point1, point2, distance, features } = *deepest;
+    Some(TriangleContact { normal, distance, point1, point2, features })
 }
 
 /// The least of the distances of nine edge pairs and six vertices over the other's face.

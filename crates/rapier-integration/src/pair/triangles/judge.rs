@@ -13,7 +13,7 @@
 
 use glamx::DVec3;
 use parry3d::math::{Real, Vector};
-use sbbk_core::contact::{Feature, Outward, TriangleContact, outward};
+use sbbk_core::contact::{Feature, ManifoldPoints, Outward, TriangleContact, outward};
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Side};
 
@@ -55,17 +55,20 @@ pub(super) struct Judge<'a, S> {
 }
 
 impl<S: Surfaces> Judge<'_, S> {
-    /// The contact of the surfaces that the contact of their triangles stands for.
+    /// The contact of the surfaces that the contact of their triangles stands for. `points` stays
+    /// empty if it is the same.
     #[inline(always)]
     pub(super) fn verdict(
         &self,
         local: &TrianglePair,
         contact: TriangleContact,
         regions: &mut Regions,
+        points: &mut ManifoldPoints,
     ) -> Seen<TriangleContact> {
+        points.clear();
         match [self.shapes.around(0), self.shapes.around(1)] {
             [None, None] => Seen::Contact(contact),
-            around => self.by_surfaces(around, local, contact, regions),
+            around => self.by_surfaces(around, local, contact, regions, points),
         }
     }
 
@@ -75,6 +78,7 @@ impl<S: Surfaces> Judge<'_, S> {
         local: &TrianglePair,
         contact: TriangleContact,
         regions: &mut Regions,
+        points: &mut ManifoldPoints,
     ) -> Seen<TriangleContact> {
         let inverse = self.pose.placement12.inverse;
         let side = |i: usize, feature: Feature, direction: DVec3| {
@@ -107,7 +111,8 @@ impl<S: Surfaces> Judge<'_, S> {
             around[i].is_none_or(|around| around.is_front(self.pair[i], feature, own))
         };
         let [t1, t2] = &local.corners;
-        let Some(Outward { contact, is_extremal }) = outward(t1, t2, is_solid, is_end) else {
+        let Some(Outward { contact, is_extremal }) = outward(t1, t2, is_solid, is_end, points)
+        else {
             return Seen::Nothing;
         };
         let greatest = SHALLOW * distance.abs().max(f64::from(self.pose.prediction));

@@ -115,13 +115,15 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
             return Seen::Nothing;
         }
         let judge = Judge { shapes: &self.shapes, pose: self.pose, pair: candidate.subshapes };
-        let contact = match judge.verdict(&local, contact, &mut scratch.regions) {
+        let contact = match judge.verdict(&local, contact, &mut scratch.regions, &mut self.points) {
             Seen::Contact(contact) => contact,
             Seen::Nothing => return Seen::Nothing,
             Seen::Later => return Seen::Later,
         };
-        clip(t1, t2, contact.normal, &mut self.points);
-        push_closest(t1, t2, &contact, &mut self.points);
+        if self.points.is_empty() {
+            clip(t1, t2, contact.normal, &mut self.points);
+            push_closest(t1, t2, &contact, &mut self.points);
+        }
         let deepest = -self.shapes.near();
         self.points.iter_mut().for_each(|point| point.distance = point.distance.max(deepest));
         Seen::Contact(Found { triangles, local, contact })
