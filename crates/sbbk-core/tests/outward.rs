@@ -191,8 +191,11 @@ fn either_triangle_may_come_first() {
 #[test]
 #[ignore = "outward answers with a normal of zero"]
 fn triangles_that_face_one_way_have_no_contact() {
-    let t1 = [DVec3::ZERO, DVec3::X, DVec3::Y];
-    let t2 = [[0.2, 0.2, -0.1], [0.7, 0.2, 0.1], [0.2, 0.7, 0.05]].map(DVec3::from_array);
+    let [t1, t2] = [
+        [[0.2, -6.7, 3.6], [-7.8, 7.7, -5.1], [0.2, 1.0, -2.0]],
+        [[0.8, 0.0, 1.7], [5.4, -6.2, 1.9], [-4.2, -8.1, 3.8]],
+    ]
+    .map(|corners| corners.map(DVec3::from_array));
     assert!(contact(&t1, &t2, 0.0).is_some_and(|contact| contact.distance < -0.01));
     assert_eq!(outward(&t1, &t2, [true; 2], |_, _, _| true), None);
 
