@@ -23,7 +23,7 @@ impl Case {
         let question = Question::new(&pos12, [&*head, &*head], PREDICTION);
         let mut manifolds = Vec::new();
         Backend::Sbbk
-            .dispatcher()
+            .per_triangle()
             .contact_manifolds(&pos12, &*head, &*head, PREDICTION, &mut manifolds, &mut None)
             .unwrap();
         manifolds.retain(|manifold| !manifold.points.is_empty());

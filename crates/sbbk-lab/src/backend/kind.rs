@@ -5,7 +5,7 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use clap::ValueEnum;
-use rapier_integration::{ContactGenerator, SbbkConfig, SbbkDispatcher};
+use rapier_integration::{ContactGenerator, ContactSet, SbbkConfig, SbbkDispatcher};
 use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
 use rapier3d::pipeline::PhysicsWorld;
@@ -53,6 +53,21 @@ impl Backend {
 
     /// A fresh dispatcher, with nothing cached.
     pub fn dispatcher(self) -> Dispatcher {
+        self.having(ContactSet::Surfaces)
+    }
+
+    /// The same, for the contacts of each two triangles of meshes by themselves. These are what
+    /// stock has, and what can be judged by brute force over all triangles.
+    pub fn per_triangle(self) -> Dispatcher {
+        self.having(ContactSet::Triangles)
+    }
+
+    /// Whether two rigid meshes have the contacts of their surfaces.
+    pub fn has_surfaces(self) -> bool {
+        matches!(self, Self::AabbOnly | Self::Sbbk)
+    }
+
+    fn having(self, contact_set: ContactSet) -> Dispatcher {
         let mut config = SbbkConfig::default();
         match self {
             Self::Stock => {
@@ -62,6 +77,7 @@ impl Backend {
             Self::Sbbk => {}
             Self::SbbkParry => config.contacts = ContactGenerator::Parry,
         }
+        config.contact_set = contact_set;
         let sbbk = SbbkDispatcher::new(config);
         Dispatcher { shared: Arc::new(sbbk.clone()), sbbk: Some(sbbk) }
     }

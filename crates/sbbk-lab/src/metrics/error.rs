@@ -11,7 +11,7 @@ use sbbk_core::truth::{TruthPair, pairs_within};
 use serde::Serialize;
 
 use super::ratio;
-use crate::backend::{Answer, Question, shape_address};
+use crate::backend::{Answer, Question, Reported, shape_address};
 
 /// Pairs whose distance differs from the prediction distance by at most this share of it may be
 /// reported or not. Raised, real misses pass; lowered, f32 rounding of large meshes is blamed.
@@ -205,6 +205,24 @@ impl Truth {
             errors.missed += usize::from(is_certain && !reported.contains_key(key));
         }
         errors
+    }
+
+    /// The same for the contacts of surfaces, which are some of those of triangles: where these cross
+    /// or have passed each other they are measured along another way, and none need be there but one
+    /// if the meshes cross. No way is shorter than the distance of triangles that are apart.
+    pub fn judge_surfaces(&self, answer: &Answer) -> ErrorCount {
+        let band = DEPTH_BAND * f64::from(answer.question.prediction);
+        let is_wrong = |pair: &&Reported| {
+            let truth = self.contact(pair.triangle1, pair.triangle2);
+            let distance = f64::from(pair.distance);
+            distance > 0.0 && truth.is_some_and(|truth| distance < truth.distance - band)
+        };
+        let is_crossing = self.contacts().any(|contact| contact.distance < -band);
+        ErrorCount {
+            missed: usize::from(is_crossing && answer.reported.is_empty()),
+            wrong_depth: answer.reported.iter().filter(is_wrong).count(),
+            ..self.judge(answer)
+        }
     }
 }
 

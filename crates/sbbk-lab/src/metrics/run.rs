@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{ErrorCount, Judge, PosePairs, StepTimes, WorldState, sample_indices, timed_step};
-use crate::backend::{Answer, Backend, Installed};
+use crate::backend::{Answer, Backend, Installed, Primed};
 use crate::scene::{Scene, SceneError, SceneWorld};
 
 /// How long to run, and what to look at.
@@ -50,11 +50,12 @@ pub struct Sample {
     /// The world after the step.
     pub state: WorldState,
     /// Error of fresh answers: pairs sampled from all those of the broad phase, asked with
-    /// nothing known about them.
+    /// nothing known about them for all contacts of triangles.
     pub fresh: ErrorCount,
     /// Error of the answers that Rapier got: pairs sampled from those that it updated in this
     /// step, with their manifolds and workspace of earlier steps. Pairs that Rapier recycled were
-    /// not asked; their contacts are up to 0.05 units old on any backend, and not judged.
+    /// not asked; their contacts are up to 0.05 units old on any backend, and not judged. Contacts of
+    /// surfaces are judged as [such](super::Truth::judge_surfaces).
     pub updated: ErrorCount,
     /// The pairs, for asking other backends.
     #[serde(skip)]
@@ -109,7 +110,9 @@ impl Runner {
             self.built.world.step();
         } else if is_sampled {
             let limit = self.plan.sample_size;
-            let sample = sampled_step(&mut self.built, &self.installed, self.step, limit);
+            let run = &self.run;
+            let sample =
+                sampled_step(&mut self.built, &self.installed, run.backend, self.step, limit);
             self.run.samples.push(sample);
         } else {
             self.run.times.push(timed_step(&mut self.built.world, &self.installed.probe));
@@ -134,6 +137,7 @@ pub fn run(scene: &dyn Scene, backend: Backend, plan: RunPlan) -> Result<Run, Sc
 fn sampled_step(
     SceneWorld { world, watched }: &mut SceneWorld,
     installed: &Installed,
+    backend: Backend,
     step: usize,
     limit: usize,
 ) -> Sample {
@@ -142,20 +146,25 @@ fn sampled_step(
     let updated = installed.probe.take_answers();
     let judge = Judge::new(world.colliders.iter().map(|(_, collider)| collider.shared_shape()));
     // At most `limit` of `count` answers.
-    let judged = |count: usize, answer: &dyn Fn(usize) -> Answer| {
+    let judged = |count: usize, has_surfaces: bool, answer: &dyn Fn(usize) -> Answer| {
         let answers = sample_indices(count, limit).into_iter().map(answer);
-        let errors = answers.map(|answer| judge.truth(&answer.question).judge(&answer));
+        let errors = answers.map(|answer| {
+            let truth = judge.truth(&answer.question);
+            if has_surfaces { truth.judge_surfaces(&answer) } else { truth.judge(&answer) }
+        });
         ErrorCount { sampled_from: count, ..errors.sum() }
     };
+    let dispatcher = backend.per_triangle();
+    let _primed = Primed::new(&dispatcher, pairs.shapes());
     let fresh = |index| {
-        let [fresh, _] = pairs.answers(&installed.dispatcher, index);
+        let [fresh, _] = pairs.answers(&dispatcher, index);
         fresh
     };
     Sample {
         step,
         state: WorldState::of(world, watched),
-        fresh: judged(pairs.pair_count(), &fresh),
-        updated: judged(updated.len(), &|index| updated[index].clone()),
+        fresh: judged(pairs.pair_count(), false, &fresh),
+        updated: judged(updated.len(), backend.has_surfaces(), &|index| updated[index].clone()),
         pairs,
     }
 }

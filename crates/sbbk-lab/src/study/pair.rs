@@ -1,4 +1,5 @@
-//! Stock Parry and SBBK, asked about the same pairs of shapes in turn.
+//! Stock Parry and SBBK, asked about the same pairs of shapes in turn: of two meshes, for the contacts
+//! of each two triangles.
 //!
 //! Dispatchers are called as the narrow phase calls them, but directly: contact skins, soft-CCD
 //! margins and contact recycling are Rapier's, and have no part in it.
@@ -17,7 +18,8 @@ use crate::metrics::Summary;
 
 /// How dispatchers are called, for notes.
 pub(super) const DIRECT_NOTE: &str = "dispatchers called directly: contact skins and contact \
-                                      recycling, which are Rapier's, have no part in it";
+                                      recycling, which are Rapier's, have no part in it; all \
+                                      contacts of triangles, not those of surfaces alone";
 
 /// Stock and SBBK, the trees built that SBBK builds unasked.
 pub(super) struct Contest {
@@ -45,7 +47,7 @@ impl Contest {
     pub const BACKENDS: [Backend; 2] = [Backend::Stock, Backend::Sbbk];
 
     pub fn new<'a>(shapes: impl IntoIterator<Item = &'a SharedShape> + Clone) -> Self {
-        let dispatchers = Self::BACKENDS.map(Backend::dispatcher);
+        let dispatchers = Self::BACKENDS.map(Backend::per_triangle);
         let primed = dispatchers.each_ref().map(|d| Primed::new(d, shapes.clone()));
         Self { dispatchers, _primed: primed }
     }

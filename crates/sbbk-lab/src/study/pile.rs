@@ -134,7 +134,7 @@ fn same_poses(
     plan: SamePosesPlan,
     progress: &Progress,
 ) -> Vec<Row> {
-    let dispatchers = Backend::ALL.map(Backend::dispatcher);
+    let dispatchers = Backend::ALL.map(Backend::per_triangle);
     let _primed = dispatchers.each_ref().map(|dispatcher| Primed::new(dispatcher, pairs.shapes()));
     let mut errors = [[ErrorCount::default(); 2]; Backend::ALL.len()];
     let judge = Judge::new(pairs.shapes());
@@ -230,8 +230,9 @@ pub fn runs(rows: &[Row], plan: &RunPlan) -> [Table; 2] {
             number("max depth", "state.max_penetration"),
         ],
         notes: vec![
-            "fresh: sampled from all pairs of the broad phase, asked anew; in the run: sampled from \
-             those that Rapier updated in the sampled steps, as it got them"
+            "fresh: sampled from all pairs of the broad phase, asked anew for all contacts of triangles; \
+             in the run: sampled from those that Rapier updated in the sampled steps, as it got them; \
+             of surfaces: none without contacts that cross, and none that are not true"
                 .to_owned(),
             "manifolds and the rest: after the last sampled step, recycled contacts included; depth: \
              units, of the deepest point of touching pairs"
@@ -262,7 +263,7 @@ pub(super) fn same_poses_table(rows: &[Row]) -> Table {
             errors("errors, steady", "steady_error"),
         ],
         notes: vec![
-            "poses of the stock run's last sampled step; fresh: nothing known about a pair; steady: a \
+            "all contacts of triangles at the poses of the stock run's last sampled step; fresh: nothing known about a pair; steady: a \
              step later, with what is kept from the first query"
                 .to_owned(),
             "no pair is left out as recycled, so that steady is Rapier with recycling off".to_owned(),

@@ -210,8 +210,9 @@ impl SoakRun {
         let shapes = self.world.colliders.iter().map(|(_, collider)| collider.shared_shape());
         let judge = Judge::new(shapes);
         let sampled = sample_indices(answers.len(), limit).into_iter();
-        let errors =
-            sampled.map(|index| judge.truth(&answers[index].question).judge(&answers[index])).sum();
+        let errors = sampled
+            .map(|index| judge.truth(&answers[index].question).judge_surfaces(&answers[index]))
+            .sum();
         ErrorCount { sampled_from: answers.len(), ..errors }
     }
 

@@ -40,7 +40,7 @@ struct Question {
 impl Comparison {
     pub fn new() -> Self {
         Self {
-            dispatchers: [Backend::Stock, Backend::Sbbk].map(Backend::dispatcher),
+            dispatchers: [Backend::Stock, Backend::Sbbk].map(Backend::per_triangle),
             primed: Vec::new(),
             pairs: ErrorCount::default(),
             triangles: ErrorCount::default(),

@@ -142,7 +142,7 @@ impl Asked<'_> {
 
     fn measure(&self, repeats: usize) -> [Row; 2] {
         let backends = [Backend::Stock, Backend::Sbbk];
-        let dispatchers = backends.map(Backend::dispatcher);
+        let dispatchers = backends.map(Backend::per_triangle);
         // Neither has the caches cold: Parry reads what both read.
         self.sweep(&Backend::Stock.dispatcher());
         let first =
