@@ -119,6 +119,8 @@ pub(crate) enum Seen<C> {
     Nothing,
     /// Whether it is needed depends on the others.
     Later,
+    /// In a second round: what it was in the first.
+    Same,
     Contact(C),
 }
 
@@ -302,11 +304,12 @@ where
                 has_put_off = true;
                 pool.keep_old(place, manifolds)
             }
+            (Seen::Same, Some(place)) => pool.keep_old(place, manifolds),
             (Seen::Nothing, Some(place)) => {
                 pool.retire(std::mem::take(&mut manifolds[place]));
                 false
             }
-            (Seen::Nothing | Seen::Later, None) => false,
+            (Seen::Nothing | Seen::Later | Seen::Same, None) => false,
         };
         if is_kept {
             candidate.place = Place::new(count);

@@ -52,13 +52,6 @@ impl Axis {
         let (gap, normal) = if up >= down { (up, normal) } else { (down, -normal) };
         Self::new(gap, normal, features)
     }
-
-    /// An axis with its direction, by all six vertices.
-    pub fn one_way(t1: &Triangle, t2: &Triangle, normal: DVec3, features: FeaturePair) -> Self {
-        let origin = t1.vertices[0];
-        let ([_, max1], [min2, _]) = (t1.shadow(origin, normal), t2.shadow(origin, normal));
-        Self::new(min2 - max1, normal, features)
-    }
 }
 
 /// Both face normals as axes.

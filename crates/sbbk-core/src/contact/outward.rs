@@ -5,12 +5,12 @@
 //! the one of least overlap is taken: the face normals, and the products of edges that point to the
 //! outside of both.
 
-use super::axes::Axis;
 use super::clip::{ManifoldPoints, clip_triangles};
-use super::feature::{Feature, FeaturePair};
+use super::feature::Feature;
 use super::touching::deepest;
 use super::triangle::{NEAR_PARALLEL, NEXT, PREVIOUS, Triangle};
 use super::triangle_contact::TriangleContact;
+use arrayvec::ArrayVec;
 use glamx::DVec3;
 
 /// Sine of the angle that an axis may lean into a solid: an edge of a box that stands on another,
@@ -53,20 +53,14 @@ pub fn outward(
     let (t1, t2) = (&Triangle::new(t1), &Triangle::new(t2));
     let areas = [t1.area_vector(), t2.area_vector()];
     let [normal1, normal2] = areas.map(|area| area.normalize_or_zero());
-    let faces = FeaturePair::new(Feature::Face, Feature::Face);
-    let [mut best, mut extremal] = [Axis::NONE; 2];
-    let mut consider = |axis: DVec3| {
+    let mut axes = ArrayVec::<(f64, DVec3), 22>::new();
+    let mut consider = |direction: DVec3| {
+        let axis = direction.normalize();
         let is_out = |is_solid: bool, cosine: f64| !is_solid || cosine >= -LEAN;
-        if !is_out(solid[0], axis.dot(normal1)) || !is_out(solid[1], -axis.dot(normal2)) {
-            return;
-        }
-        let along = Axis::one_way(t1, t2, axis, faces);
-        if along.gap > best.gap {
-            best = along;
-        }
-        let ends = |i: usize, t: &Triangle, axis: DVec3| is_extremal(i, farthest(t, axis), axis);
-        if along.gap > extremal.gap && ends(0, t1, axis) && ends(1, t2, -axis) {
-            extremal = along;
+        if is_out(solid[0], axis.dot(normal1)) && is_out(solid[1], -axis.dot(normal2)) {
+            let ([_, max1], [min2, _]) =
+                (t1.shadow(DVec3::ZERO, axis), t2.shadow(DVec3::ZERO, axis));
+            axes.push((min2 - max1, axis));
         }
     };
     for normal in [normal1, normal2] {
@@ -99,20 +93,19 @@ pub fn outward(
         if cross.length_squared() <= least {
             continue;
         }
-        let axis = cross.normalize();
         let sign = sign1 + sign2;
         if sign >= 0.0 {
-            consider(axis);
+            consider(cross);
         }
         if sign <= 0.0 {
-            consider(-axis);
+            consider(-cross);
         }
     }
-    let is_extremal = extremal.normal != DVec3::ZERO;
-    let Axis { gap, normal, .. } = if is_extremal { extremal } else { best };
-    if normal == DVec3::ZERO {
-        return None;
-    }
+    // Those of least overlap first: to look around a feature takes longer than all before.
+    axes.sort_unstable_by(|(a, _), (b, _)| b.total_cmp(a));
+    let ends = |i: usize, t: &Triangle, axis: DVec3| is_extremal(i, farthest(t, axis), axis);
+    let extremal = axes.iter().find(|&&(_, axis)| ends(0, t1, axis) && ends(1, t2, -axis));
+    let (is_extremal, &(gap, normal)) = (extremal.is_some(), extremal.or(axes.first())?);
     clip_triangles(t1, t2, normal, out);
     let contact = deepest(out, normal)?;
     let contact = TriangleContact { features: contact.features.crossing(), ..contact };

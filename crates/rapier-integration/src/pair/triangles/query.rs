@@ -95,6 +95,9 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         limits: Limits,
         scratch: &mut Scratch,
     ) -> Seen<Found> {
+        if scratch.regions.is_settled(candidate.subshapes) {
+            return Seen::Same;
+        }
         let Some(triangles) = self.shapes.triangles(candidate.subshapes) else {
             return Seen::Nothing;
         };
@@ -119,6 +122,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
             Seen::Contact(contact) => contact,
             Seen::Nothing => return Seen::Nothing,
             Seen::Later => return Seen::Later,
+            Seen::Same => return Seen::Same,
         };
         if self.points.is_empty() {
             clip(t1, t2, contact.normal, &mut self.points);

@@ -60,6 +60,7 @@ impl Regions {
             return false;
         }
         self.find_wrong();
+        self.found.sort_unstable_by_key(|found| found.pair);
         let is_fine = |found: &Crossing| found.is_good && !self.wrong.contains(&found.pair);
         if self.found.iter().all(is_fine) {
             return false;
@@ -77,6 +78,15 @@ impl Regions {
             *self.held.entry(top).or_default() |= is_good && !self.wrong.contains(&pair);
         }
         !self.wrong.is_empty() || self.held.values().any(|is_held| !is_held)
+    }
+
+    /// Whether a second round changes nothing for a pair.
+    pub(super) fn is_settled(&self, pair: [u32; 2]) -> bool {
+        if self.is_first_round {
+            return false;
+        }
+        let found = self.found.binary_search_by_key(&pair, |found| found.pair);
+        found.is_err() || found.is_ok_and(|at| self.found[at].is_good) && !self.is_wrong(pair)
     }
 
     /// Whether the contact of a pair pushes the wrong way.
