@@ -18,6 +18,8 @@
 //!   shapes (cylinders and cones: apart to 1e-7, crossing to 1e-5 of the distance). Stock's
 //!   tolerances are absolute lengths: it loses contacts of triangles that are small, and gets their
 //!   depths and normals wrong.
+//! * Two meshes have the contacts of their *surfaces*, see below: stacks of meshes stand, gears turn,
+//!   boxes slide over the edges of a floor, and what has sunk into a body comes out again.
 //! * Queries about meshes are faster, several times for two meshes; the repository's README has the
 //!   figures.
 //! * Contacts depend on the pose and the shapes alone, bit for bit. What is remembered from earlier
@@ -37,14 +39,43 @@
 //! * [`SbbkDispatcher::prepare`] is for copies too, loaded twice or restored from a snapshot. They
 //!   are found by a hash of their content, up to about 500,000 triangles.
 //!
-//! Without trees the contacts of two meshes are the same, bit for bit and in the same order, and
-//! take longer: their pairs of triangles are found by Parry's own hierarchies of the meshes. Pairs
-//! of a mesh and anything else are always found that way; they need no build and no memory for a
-//! tree.
+//! Without trees the pairs of triangles of two meshes are the same, bit for bit and in the same
+//! order, and take longer: they are found by Parry's own hierarchies of the meshes. Pairs of a mesh
+//! and anything else are always found that way; they need no build and no memory for a tree.
 //!
 //! [`SbbkConfig`] chooses the volumes of the trees, the contact generator, and how much memory
 //! unused trees may keep. [`SbbkDispatcher::stats`] counts trees and queries. [`TriangleContacts`]
 //! is the contact generator alone, for hosts with a midphase of their own.
+//!
+//! # Inside and outside
+//!
+//! A triangle alone cannot tell on which side of it a body is, nor whether its border is a corner of
+//! the body or lies within a flat face. Stock Rapier asks each two triangles by themselves, so meshes
+//! lock into each other, and stumble over edges that nobody can see. Two rigid meshes have other
+//! contacts here ([`ContactSet::Surfaces`]):
+//!
+//! * A mesh that bounds a *solid* ([`SurfaceKind::Solid`]) pushes out what has sunk into it. It is
+//!   wound consistently, with normals that point outwards, and closed or nearly: its holes together
+//!   are at most a fiftieth of its surface. Vertices at one place count as one. Depths count up to a
+//!   tenth of the radius of the smaller mesh, so that deep bodies come out slowly.
+//! * Any other mesh is a *sheet* and met from both sides: terrains, walls, bowls, vases with a wide
+//!   neck, soups of triangles. So is a closed mesh whose normals point inwards
+//!   ([`SbbkStats::inside_out`]).
+//! * Contacts apart are local minima of the distance, so edges within a face and walls that pass by
+//!   make none. Not those that soft CCD looks at, farther than a tenth of that radius: plates turn
+//!   before they land.
+//! * Surfaces that cross never stay without a contact.
+//!
+//! What a mesh bounds is found when it first meets another mesh, in about a third of the time that a
+//! tree takes. It is never looked for in a mesh of more than 8192 triangles that is not
+//! [registered](SbbkDispatcher::prepare_shape): such a mesh is a sheet, of which the neighbours of
+//! triangles are found where it is touched. [`PreparedTree::bounds`] says what a mesh bounds where
+//! SBBK would think otherwise; [`SbbkStats`] counts the kinds.
+//!
+//! With [`ContactSet::Triangles`] all is as in stock: of meshes without
+//! `TriMeshFlags::FIX_INTERNAL_EDGES` triangles have no outside. Deformable meshes, height fields and
+//! convex shapes have these contacts always. A body that lies wholly inside another, farther from
+//! its surface than the prediction distance, has no contact either way.
 //!
 //! # Who answers
 //!

@@ -39,13 +39,14 @@
 //! * [`leaf`]: which triangles of two leaves, or of batches gathered elsewhere, may touch, over
 //!   SIMD lanes.
 //! * [`field`]: the triangles of a height field that may touch a mesh.
+//! * [`surface`]: which triangles of a mesh are neighbours, and whether it bounds a solid.
 //! * [`front`]: a descent that starts where the last one stopped.
 //! * [`broad_phase`]: which of many moving objects are near each other.
 //! * `truth` (feature `truth`): brute force in f64, to test against.
 //!
 //! Modules depend one way: `simd` (lanes), [`volumes`], [`tree`], [`traverse`], [`leaf`], then
 //! [`field`], [`front`] and [`query`]. [`contact`], which [`query`] uses, and [`broad_phase`] need
-//! none of them.
+//! none of them; [`surface`] uses the names of features of [`contact`].
 
 pub mod broad_phase;
 pub mod contact;
