@@ -6,7 +6,7 @@
 //!
 //! | a mesh and | contacts are right | whatever was before | in worlds |
 //! |---|---|---|---|
-//! | a mesh | `exact`, `bits`, `normals` | `motion`, `edited_mesh` | `rest`, `scenes` |
+//! | a mesh | `exact`, `bits`, `normals`, `surfaces` | `motion`, `edited_mesh` | `rest`, `scenes` |
 //! | a mesh, one of the two without a tree | `walks` | `walks` | `deformable` |
 //! | convex shapes | `convex::fresh` | `convex::motion` | `convex::rest` |
 //! | compounds | `compound` | `compound` | `compound` |
@@ -62,6 +62,8 @@ mod snapshot;
 mod soft_pairs;
 /// Asking, comparing, meshes and poses.
 mod support;
+/// The contacts of surfaces, beside those of each two triangles.
+mod surfaces;
 /// Motion beside that of stock Rapier: as close as chaos allows.
 mod trajectories;
 /// Brute force in f64.

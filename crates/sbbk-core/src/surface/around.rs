@@ -166,5 +166,5 @@ fn next(half_edge: u32) -> u32 {
 }
 
 fn previous(half_edge: u32) -> u32 {
-    if half_edge % 3 == 0 { half_edge + 2 } else { half_edge - 1 }
+    if half_edge.is_multiple_of(3) { half_edge + 2 } else { half_edge - 1 }
 }

@@ -1,0 +1,431 @@
+//! The contacts of surfaces.
+
+use std::collections::BTreeSet;
+
+use glamx::{Quat, Vec3};
+use oorandom::Rand32;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::math::{Pose, Real, Vector};
+use rapier3d::parry::query::DefaultQueryDispatcher;
+use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshFlags};
+use sbbk_lab::mesh::{self, Mesh};
+
+use crate::support::{
+    Manifold, Pair, Query, assert_same, distance, fresh, nudge, per_triangle, sequence, shape,
+    shape_with, touching, triangles,
+};
+
+fn ask(query: &Query) -> Vec<Manifold> {
+    fresh(&SbbkDispatcher::default(), query)
+}
+
+/// A cube of edge length 1 about the origin, of 12 triangles.
+fn cube() -> TriMesh {
+    shape(&mesh::cuboid(Vec3::splat(0.5), 1))
+}
+
+/// Where the points of manifolds are, in the frame of mesh 1.
+fn points(manifolds: &[Manifold]) -> impl Iterator<Item = Vector> {
+    manifolds.iter().flat_map(|manifold| manifold.points.iter().map(|point| point.local_p1))
+}
+
+/// Panics unless all contacts point one way, up to `sine`, and there are some.
+fn assert_along(manifolds: &[Manifold], direction: Vector, sine: Real) {
+    assert!(!manifolds.is_empty(), "no contacts");
+    for manifold in manifolds {
+        let off = (manifold.local_n1 - direction).length();
+        assert!(off <= sine, "{:?} points along {}", triangles(manifold), manifold.local_n1);
+    }
+}
+
+/// Faces that have sunk into each other by a hair. Would catch contacts that push sideways or down,
+/// too few to carry the cube at its corners, and depths that are not those of the faces.
+#[test]
+fn a_cube_that_has_sunk_a_little_is_pushed_up() {
+    let cube = cube();
+    for (sunk, [x, z]) in
+        [(0.0007, [0.0, 0.0]), (0.0007, [0.2, 0.1]), (1e-6, [0.3, 0.0]), (0.05, [0.1, 0.2])]
+    {
+        let found = ask(&Query::new(&cube, &cube, Pose::translation(x, 1.0 - sunk, z)));
+        assert_along(&found, Vector::Y, 1e-6);
+        for corner in [[x - 0.5, z - 0.5], [x - 0.5, 0.5], [0.5, z - 0.5], [0.5, 0.5]] {
+            let [x, z] = corner;
+            let away = |p: Vector| (p - Vector::new(x, p.y, z)).length();
+            let nearest = points(&found).map(away).fold(Real::INFINITY, Real::min);
+            assert!(nearest < 1e-4, "the nearest to {corner:?} is {nearest} away, sunk by {sunk}");
+        }
+        for manifold in &found {
+            assert!((distance(manifold) + sunk).abs() < 1e-5, "{}", distance(manifold));
+        }
+    }
+}
+
+/// Would catch a cube pushed through another one to the far side: it leaves by the nearer one.
+#[test]
+fn a_cube_sunk_halfway_leaves_by_the_nearer_side() {
+    let cube = cube();
+    for (height, [x, z]) in [(0.7, [0.1, 0.05]), (0.55, [0.1, 0.05]), (0.6, [0.3, -0.2])] {
+        for sign in [1.0, -1.0] {
+            let found = ask(&Query::new(&cube, &cube, Pose::translation(x, sign * height, z)));
+            assert_along(&found, sign * Vector::Y, 1e-6);
+            // Not deeper than a tenth of the radius.
+            let expected = (1.0 - height).min(0.1 * 0.75_f32.sqrt());
+            let depth = -found.iter().map(distance).fold(0.0, Real::min);
+            assert!((depth - expected).abs() < 1e-5, "{depth} at {height}");
+        }
+    }
+}
+
+/// Would catch faces that have passed each other, and no longer cross, taken for two that are apart:
+/// the cube would be held inside.
+#[test]
+fn faces_that_have_passed_each_other_part_the_way_they_came() {
+    let (floor, small) = (cube(), shape(&mesh::cuboid(Vec3::splat(0.2), 1)));
+    for sunk in [1e-5, 0.001, 0.01] {
+        // No triangle of the small cube crosses one of the large face but at its sides.
+        let found = ask(&Query::new(&floor, &small, Pose::translation(0.05, 0.7 - sunk, 0.02)));
+        assert_along(&found, Vector::Y, 1e-6);
+        assert!(found.iter().all(|manifold| (distance(manifold) + sunk).abs() < 1e-5));
+    }
+}
+
+/// Would catch contacts of edges within a floor: the points of a cube that lies on many small
+/// triangles all push up.
+#[test]
+fn a_cube_on_a_fine_floor_is_pushed_one_way() {
+    let (floor, cube) = (shape(&mesh::floor(4.0, 40)), cube());
+    let slab = shape(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 20).mapped(|v| v - 0.5 * Vec3::Y));
+    let mut random = Rand32::new(1);
+    for _ in 0..40 {
+        let [x, z] = [(); 2].map(|()| random.rand_float() - 0.5);
+        let turn = Quat::from_rotation_y(random.rand_float());
+        for ground in [&floor, &slab] {
+            for height in [0.5 + 0.01, 0.5, 0.5 - 0.0007] {
+                // Of a sheet that is crossed all contacts of triangles are kept.
+                let is_crossing = height < 0.5;
+                if is_crossing && std::ptr::eq(ground, &floor) {
+                    continue;
+                }
+                let pose = Pose::from_parts(Vec3::new(x, height, z), turn);
+                let found = ask(&Query::new(ground, &cube, pose));
+                // Apart, points of neighbours that are hardly farther count as well.
+                let sine = if height > 0.5 { 0.08 } else { 1e-3 };
+                assert_along(&found, Vector::Y, sine);
+            }
+        }
+    }
+}
+
+/// A sheet has no inside: a cube is pushed to the side on which most of it is. Would catch a side
+/// taken from the order of vertices.
+#[test]
+fn a_cube_is_pushed_to_its_own_side_of_a_sheet() {
+    let (floor, cube) = (shape(&mesh::floor(4.0, 8)), cube());
+    for sign in [1.0, -1.0] {
+        for height in [0.51, 0.495, 0.45, 0.3] {
+            let pose = Pose::translation(0.1, sign * height, 0.17);
+            let found = ask(&Query::new(&floor, &cube, pose));
+            let lifts = found.iter().map(|m| sign * m.local_n1.y);
+            let sideways = lifts.clone().filter(|lift| lift.abs() < 0.9).count();
+            assert!(found.iter().all(|m| sign * m.local_n1.y > -1e-6), "{height} {sign}");
+            assert!(2 * sideways < found.len(), "{sideways} of {} at {height}", found.len());
+        }
+    }
+}
+
+fn turned_inside_out(mut mesh: Mesh) -> Mesh {
+    mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    mesh
+}
+
+/// Every bit of manifolds, and their order.
+fn bits(manifolds: &[Manifold]) -> String {
+    format!("{manifolds:?}")
+}
+
+/// Contacts of triangles by themselves do not depend on what these are part of. Would catch a set
+/// that is asked for and not given.
+#[test]
+fn contacts_of_triangles_know_no_surfaces() {
+    let head = mesh::monkey_head_with(7);
+    let [outside, inside] = [head.clone(), turned_inside_out(head)].map(|mesh| shape(&mesh));
+    let mut random = Rand32::new(2);
+    for depth in [-0.01, 0.0, 0.02, 0.3].repeat(5) {
+        let query = Query::new(&outside, &outside, touching(&mut random, [&outside; 2], depth));
+        let expected = fresh(&per_triangle(), &query);
+        let turned = fresh(&per_triangle(), &Query { meshes: [&inside; 2], ..query });
+        assert_eq!(sequence(&expected), sequence(&turned));
+        for (one, other) in expected.iter().zip(&turned) {
+            assert!((distance(one) - distance(other)).abs() < 1e-6);
+        }
+    }
+}
+
+/// A mesh whose normals point inwards has no outside that can be trusted. Would catch bodies pushed
+/// into it: of two of them, all contacts of triangles that cross stay.
+#[test]
+fn inside_out_meshes_cross_as_sheets_do() {
+    let inside = shape(&turned_inside_out(mesh::ball(0.8, 6)));
+    let mut random = Rand32::new(3);
+    let mut count = 0;
+    for depth in [0.02, 0.1, 0.3].repeat(8) {
+        let query = Query::new(&inside, &inside, touching(&mut random, [&inside; 2], depth));
+        let [found, all] = [ask(&query), fresh(&per_triangle(), &query)];
+        let crossing = |manifolds: Vec<Manifold>| -> Vec<Manifold> {
+            manifolds.into_iter().filter(|manifold| distance(manifold) < -1e-6).collect()
+        };
+        let [found, all] = [found, all].map(crossing);
+        assert_eq!(bits(&found), bits(&all));
+        count += found.len();
+    }
+    assert!(count > 200, "{count}");
+}
+
+/// Meshes of which pairs are made, solids and sheets, of few and of many triangles.
+fn meshes() -> Vec<Mesh> {
+    vec![
+        mesh::monkey_head_with(7),
+        mesh::ball(0.8, 6),
+        mesh::torus(0.8, 0.35, 20, 10),
+        mesh::cuboid(Vec3::splat(0.6), 3),
+        mesh::terrain(3.0, 12, 0.5),
+        turned_inside_out(mesh::ball(0.7, 4)),
+    ]
+}
+
+/// Poses of all pairs of `meshes`, from apart to deep.
+fn for_each_pose(seed: u64, mut check: impl FnMut([&TriMesh; 2], Pose, &mut Rand32)) {
+    let shapes: Vec<TriMesh> = meshes().iter().map(shape).collect();
+    let mut random = Rand32::new(seed);
+    for (i, one) in shapes.iter().enumerate() {
+        for two in &shapes[..=i] {
+            for depth in [-0.01, 0.0, 0.003, 0.03, 0.2, 0.5] {
+                let pose = touching(&mut random, [one, two], depth);
+                check([one, two], pose, &mut random);
+            }
+        }
+    }
+}
+
+/// Would catch contacts of pairs of triangles that have none by themselves, and another order.
+#[test]
+fn surfaces_have_some_of_the_contacts_of_triangles() {
+    let [mut some, mut all] = [0; 2];
+    for_each_pose(4, |[one, two], pose, _| {
+        let query = Query::new(one, two, pose);
+        let expected = sequence(&fresh(&per_triangle(), &query));
+        let found = sequence(&ask(&query));
+        let mut rest = expected.iter();
+        assert!(found.iter().all(|pair| rest.any(|other| other == pair)), "{found:?}");
+        some += found.len();
+        all += expected.len();
+    });
+    assert!(some > 500 && 2 * some < all, "{some} of {all}");
+}
+
+/// Meshes that cross have a contact. Would catch bodies that fall through each other where no contact
+/// leads out.
+#[test]
+fn what_crosses_touches() {
+    let mut count = 0;
+    for seed in 5..15 {
+        for_each_pose(seed, |[one, two], pose, _| {
+            let query = Query::new(one, two, pose);
+            let all = fresh(&per_triangle(), &query);
+            if all.iter().any(|manifold| distance(manifold) < -1e-6) {
+                let parts = |manifold: &Manifold| manifold.local_n1 != Vector::ZERO;
+                assert!(ask(&query).iter().any(parts), "{} pairs at {pose:?}", all.len());
+                count += 1;
+            }
+        });
+    }
+    assert!(count > 500, "{count} pairs cross");
+}
+
+/// Would catch normals that are none.
+#[test]
+#[ignore = "triangles that cross and face one way have a normal of zero"]
+fn normals_have_length_one() {
+    let mut wrong = 0;
+    for_each_pose(16, |[one, two], pose, _| {
+        for manifold in ask(&Query::new(one, two, pose)) {
+            let is_unit = |normal: Vector| (normal.length() - 1.0).abs() < 1e-5;
+            wrong += usize::from(!is_unit(manifold.local_n1) || !is_unit(manifold.local_n2));
+        }
+    });
+    assert_eq!(wrong, 0);
+}
+
+/// The pair as a set of triangles with their contacts, as mesh 1 sees it.
+fn mirrored(manifolds: &[Manifold], is_swapped: bool) -> Vec<([u32; 2], Vector, Real)> {
+    let mut all: Vec<_> = manifolds
+        .iter()
+        .map(|manifold| {
+            let [one, two] = triangles(manifold);
+            let (pair, normal) = if is_swapped {
+                ([two, one], manifold.local_n2)
+            } else {
+                ([one, two], manifold.local_n1)
+            };
+            (pair, normal, distance(manifold))
+        })
+        .collect();
+    all.sort_by_key(|&(pair, ..)| pair);
+    all
+}
+
+/// Would catch a set, or a normal, that depends on which mesh comes first.
+#[test]
+fn either_mesh_may_come_first() {
+    let mut count = 0;
+    for_each_pose(17, |[one, two], pose, _| {
+        let query = Query::new(one, two, pose);
+        let [found, other] =
+            [mirrored(&ask(&query), false), mirrored(&ask(&query.swapped()), true)];
+        // Roundings of the pose that is turned round decide about few.
+        let pairs =
+            |all: &[([u32; 2], Vector, Real)]| all.iter().map(|c| c.0).collect::<BTreeSet<_>>();
+        let [a, b] = [pairs(&found), pairs(&other)];
+        let differ = a.symmetric_difference(&b).count();
+        assert!(20 * differ <= a.len(), "{differ} of {} at {pose:?}", a.len());
+        count += a.len();
+    });
+    assert!(count > 500);
+}
+
+/// Would catch neighbours, regions or sides that are remembered from another pose.
+#[test]
+fn memory_is_never_part_of_the_answer() {
+    let [kept, unaware] = [(); 2].map(|()| SbbkDispatcher::default());
+    let mut count = 0;
+    for_each_pose(18, |[one, two], mut pose, random| {
+        let mut pair: Pair = Pair::default();
+        for stride in [0.0, 1e-5, 1e-3, 1e-3, 0.03] {
+            pose = nudge(random, stride) * pose;
+            let query = Query::new(one, two, pose).within(0.01);
+            let expected = fresh(&unaware, &query);
+            assert_same(&pair.ask(&kept, &query).manifolds, &expected, 0.0);
+            count += expected.len();
+        }
+    });
+    assert!(count > 2000, "{count}");
+}
+
+/// Small meshes without trees: the budget for these is spent. Would catch a surface that is known with
+/// the tree only.
+#[test]
+fn answers_without_trees_are_those_with_trees() {
+    let prepared = SbbkDispatcher::default();
+    let spent = SbbkDispatcher::default();
+    // Others that take all that may be spent on trees.
+    for i in 0..6 {
+        let other = shape(&mesh::ball(1.0 + 0.01 * i as Real, 14));
+        _ = fresh(&spent, &Query::new(&other, &other, Pose::translation(1.5, 0.1, 0.2)));
+    }
+    let mut count = 0;
+    for_each_pose(19, |[one, two], pose, _| {
+        let walks = spent.stats().walks;
+        let trees = [one, two].map(|mesh| prepared.prepare(mesh).unwrap());
+        let query = Query::new(one, two, pose);
+        let [found, expected] = [&spent, &prepared].map(|dispatcher| fresh(dispatcher, &query));
+        drop(trees);
+        if spent.stats().walks > walks {
+            assert_eq!(bits(&found), bits(&expected));
+            count += found.len();
+        }
+    });
+    assert!(count > 100, "{count} contacts without trees");
+}
+
+/// Meshes of more than 8192 triangles, registered and not. Would catch a large mesh that is looked at
+/// as a whole in the midst of a step, one that is registered and not known as a solid, and edges
+/// within a large surface that count.
+#[test]
+fn large_meshes_are_solids_if_they_are_registered() {
+    let slab = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 40);
+    assert!(slab.triangle_count() > 8192);
+    let (slab, cube) = (SharedShape::new(shape(&slab)), cube());
+    let ground = slab.as_trimesh().unwrap();
+    let (unaware, knowing) = (SbbkDispatcher::default(), SbbkDispatcher::default());
+    let _tree = knowing.prepare_shape(&slab).unwrap().unwrap();
+    let query = |height: Real| {
+        let turn = Quat::from_rotation_y(0.3);
+        Query::new(ground, &cube, Pose::from_parts(Vec3::new(0.1, 1.0 + height, 0.2), turn))
+    };
+    // Apart there is no difference.
+    let above = query(0.005);
+    assert_eq!(bits(&fresh(&unaware, &above)), bits(&fresh(&knowing, &above)));
+    assert_along(&fresh(&knowing, &above), Vector::Y, 1e-6);
+    // Sunk in, faces have passed each other; the cube knows its own outside in both cases.
+    let sunk = query(-0.01);
+    assert_along(&fresh(&knowing, &sunk), Vector::Y, 1e-3);
+    let [found, all] = [fresh(&unaware, &sunk), fresh(&per_triangle(), &sunk)];
+    assert!(!found.is_empty() && found.len() < all.len());
+}
+
+/// Would catch a pair that goes on with what it knew of a large mesh before that was registered.
+#[test]
+#[ignore = "a pair that has a tree by content, or waits for one, does not see the registration"]
+fn a_mesh_registered_late_is_a_solid_at_once() {
+    let slab = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 40);
+    let (slab, cube) = (SharedShape::new(shape(&slab)), cube());
+    let ground = slab.as_trimesh().unwrap();
+    let query = |step: usize| {
+        let pose = Pose::translation(0.1 + 0.05 * (step % 7) as Real, 0.99, 0.2);
+        Query::new(ground, &cube, pose)
+    };
+    for was_registered in [false, true] {
+        let dispatcher = SbbkDispatcher::default();
+        if was_registered {
+            // The tree stays, idle.
+            drop(dispatcher.prepare_shape(&slab).unwrap());
+        }
+        let mut pair: Pair = Pair::default();
+        for step in 0..9 {
+            pair.ask(&dispatcher, &query(step));
+        }
+        let _tree = dispatcher.prepare_shape(&slab).unwrap();
+        for step in 9..40 {
+            let found = bits(&pair.ask(&dispatcher, &query(step)).manifolds);
+            assert_eq!(found, bits(&fresh(&dispatcher, &query(step))), "{step}");
+        }
+    }
+}
+
+/// Would catch numbers that have a unit: everything times a power of two, the prediction distance as
+/// well, has the contacts of the same triangles.
+#[test]
+fn size_does_not_matter() {
+    let mut count = 0;
+    for scale in [0.0078125, 0.125, 8.0, 128.0] {
+        for_each_pose(20, |[one, two], pose, _| {
+            let expected = ask(&Query::new(one, two, pose));
+            let [large1, large2] = [one, two].map(|mesh| mesh.clone().scaled(Vector::splat(scale)));
+            let far = Pose::from_parts(scale * pose.translation, pose.rotation);
+            let query = Query::new(&large1, &large2, far).within(0.02 * scale);
+            let found = ask(&query);
+            assert_eq!(sequence(&found), sequence(&expected), "{scale} {pose:?}");
+            for (one, other) in found.iter().zip(&expected) {
+                assert_eq!(one.local_n1, other.local_n1);
+            }
+            count += found.len();
+        });
+    }
+    assert!(count > 2000, "{count}");
+}
+
+/// Would catch surfaces of meshes that deform, which have none: stock answers for both alike, and so
+/// does SBBK with every contact of triangles.
+#[test]
+fn deformable_meshes_have_no_surfaces() {
+    let ball = mesh::ball(0.8, 6);
+    let [rigid, soft] =
+        [TriMeshFlags::empty(), TriMeshFlags::DEFORMABLE].map(|flags| shape_with(&ball, flags));
+    let mut random = Rand32::new(21);
+    for depth in [0.0, 0.1].repeat(5) {
+        let query = Query::new(&rigid, &rigid, touching(&mut random, [&rigid; 2], depth));
+        let all = fresh(&per_triangle(), &query);
+        assert_same(&ask(&Query { meshes: [&soft, &rigid], ..query }), &all, 0.0);
+        assert!(!fresh(&DefaultQueryDispatcher, &query).is_empty());
+    }
+}
