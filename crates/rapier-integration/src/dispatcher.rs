@@ -72,7 +72,8 @@ impl SbbkDispatcher {
 
     /// As [`prepare`](Self::prepare), for a mesh that is used as this shape and its clones. While the
     /// returned value lives, every query knows its tree by its address, in constant time: the way
-    /// for a large mesh. `None` for shapes that are no rigid mesh.
+    /// for a large mesh, which so is known as a solid, too. Do it before the mesh meets others: pairs
+    /// that have met go on as they are. `None` for shapes that are no rigid mesh.
     ///
     /// The returned value holds a clone of `shape`, so whoever edits the shape meanwhile
     /// (`SharedShape::make_mut`) edits a copy of the mesh, and the copy has no tree.
