@@ -362,7 +362,6 @@ fn large_meshes_are_solids_if_they_are_registered() {
     assert!(!found.is_empty() && found.len() < all.len());
 }
 
-
 /// Would catch numbers that have a unit: everything times a power of two, the prediction distance as
 /// well, has the contacts of the same triangles.
 #[test]

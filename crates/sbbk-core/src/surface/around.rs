@@ -47,26 +47,43 @@ pub enum Side {
 /// of its contacts.
 const RISE: f64 = 0.05;
 
+/// The same where the other surface is a face. Higher: edges within a floor stop what slides over it.
+/// Lower: of a body that rocks from point to point, the next one comes as a surprise.
+const RISE_ON_FACE: f64 = 0.3;
+
 impl Around<'_> {
     /// Where a unit direction leads from a point of a feature of a triangle, if it is that to the
     /// nearest point of something else: across the face, from an edge, or from a vertex into its
     /// Voronoi cell.
     pub fn side(&self, triangle: u32, feature: Feature, direction: DVec3) -> Side {
-        self.look(triangle, feature, direction, !self.is_solid)
+        self.look(triangle, feature, direction, RISE, !self.is_solid)
+    }
+
+    /// The same for a feature that a face is next to: it may be held up there, though a neighbour is a
+    /// little nearer.
+    pub fn side_on_face(&self, triangle: u32, feature: Feature, direction: DVec3) -> Side {
+        self.look(triangle, feature, direction, RISE_ON_FACE, !self.is_solid)
     }
 
     /// Whether [`side`](Self::side) is the front, at less cost.
     pub fn is_front(&self, triangle: u32, feature: Feature, direction: DVec3) -> bool {
-        self.look(triangle, feature, direction, true) == Side::Front
+        self.look(triangle, feature, direction, RISE, true) == Side::Front
     }
 
     /// The side. If it cannot be the front, `is_hasty` takes it to be beside.
-    fn look(&self, triangle: u32, feature: Feature, direction: DVec3, is_hasty: bool) -> Side {
+    fn look(
+        &self,
+        triangle: u32,
+        feature: Feature,
+        direction: DVec3,
+        rise: f64,
+        is_hasty: bool,
+    ) -> Side {
         let half_edge = match feature {
             Feature::Face => return self.side_of_face(triangle, direction),
             Feature::Edge(i) | Feature::Vertex(i) => 3 * triangle + u32::from(i),
         };
-        let mut fan = Fan { rises: false, normal: DVec3::ZERO, direction, is_hasty };
+        let mut fan = Fan { rises: false, normal: DVec3::ZERO, direction, rise, is_hasty };
         match feature {
             Feature::Edge(_) => {
                 self.add(half_edge, &mut fan);
@@ -91,7 +108,7 @@ impl Around<'_> {
         let [a, b, c] = self.corners(3 * triangle);
         let normal = (b - a).cross(c - a);
         let height = normal.dot(direction);
-        if height.abs() < (1.0 - RISE) * normal.length() {
+        if height.abs() <= (1.0 - RISE) * normal.length() {
             Side::Beside
         } else if self.is_solid && height < 0.0 {
             Side::Behind
@@ -132,7 +149,7 @@ impl Around<'_> {
         fan.normal += u.cross(v);
         let rises = |edge: DVec3| {
             let height = edge.dot(fan.direction);
-            height > 0.0 && height * height > RISE * RISE * edge.length_squared()
+            height > 0.0 && height * height > fan.rise * fan.rise * edge.length_squared()
         };
         fan.rises |= rises(u) | rises(v);
     }
@@ -151,6 +168,7 @@ struct Fan {
     /// The sum of their normals.
     normal: DVec3,
     direction: DVec3,
+    rise: f64,
     is_hasty: bool,
 }
 

@@ -81,10 +81,7 @@ impl<S: Surfaces> Judge<'_, S> {
         points: &mut ManifoldPoints,
     ) -> Seen<TriangleContact> {
         let inverse = self.pose.placement12.inverse;
-        let side = |i: usize, feature: Feature, direction: DVec3| {
-            let own = if i == 0 { direction } else { inverse * direction };
-            around[i].map_or(Side::Front, |around| around.side(self.pair[i], feature, own))
-        };
+        let own = |i: usize, direction: DVec3| if i == 0 { direction } else { inverse * direction };
         let is_solid = around.map(|around| around.is_some_and(|around| around.is_solid));
         let has_solid = is_solid[0] || is_solid[1];
         let TriangleContact { normal, distance, features, .. } = contact;
@@ -96,8 +93,14 @@ impl<S: Surfaces> Judge<'_, S> {
             if distance > self.shapes.near() {
                 return Seen::Contact(contact);
             }
-            let sides =
-                [side(0, features.feature1(), normal), side(1, features.feature2(), -normal)];
+            let side = |i: usize, feature, direction, other: Feature| {
+                around[i].map_or(Side::Front, |around| match other {
+                    Feature::Face => around.side_on_face(self.pair[i], feature, own(i, direction)),
+                    _ => around.side(self.pair[i], feature, own(i, direction)),
+                })
+            };
+            let [feature1, feature2] = [features.feature1(), features.feature2()];
+            let sides = [side(0, feature1, normal, feature2), side(1, feature2, -normal, feature1)];
             if sides == [Side::Front; 2] {
                 return Seen::Contact(contact);
             }
@@ -107,8 +110,7 @@ impl<S: Surfaces> Judge<'_, S> {
             }
         }
         let is_end = |i: usize, feature: Feature, direction: DVec3| {
-            let own = if i == 0 { direction } else { inverse * direction };
-            around[i].is_none_or(|around| around.is_front(self.pair[i], feature, own))
+            around[i].is_none_or(|around| around.is_front(self.pair[i], feature, own(i, direction)))
         };
         let [t1, t2] = &local.corners;
         let Some(Outward { contact, is_extremal }) = outward(t1, t2, is_solid, is_end, points)
@@ -120,6 +122,9 @@ impl<S: Surfaces> Judge<'_, S> {
         let is_good = is_extremal && is_shallow;
         let TriangleContact { normal, distance: depth, .. } = contact;
         let crossing = Crossing { pair: self.pair, normal, depth: -depth, is_good };
+        if !is_crossing && depth > 0.0 {
+            return Seen::Nothing;
+        }
         if is_good && !regions.is_wrong(self.pair) {
             regions.add(crossing);
             Seen::Contact(contact)
