@@ -50,7 +50,63 @@ pub fn outward(
     is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
     out: &mut ManifoldPoints,
 ) -> Option<Outward> {
-    let (t1, t2) = (&Triangle::new(t1), &Triangle::new(t2));
+    let triangles = [&Triangle::new(t1), &Triangle::new(t2)];
+    let axes = axes(triangles, solid, f64::INFINITY);
+    match first_extremal(triangles, &axes, is_extremal) {
+        Some(axis) => {
+            let contact = along(triangles, axis, out)?;
+            Some(Outward { contact, is_extremal: contact.distance <= SHOWN * axis.0 })
+        }
+        None => {
+            let contact = along(triangles, *axes.first()?, out)?;
+            Some(Outward { contact, is_extremal: false })
+        }
+    }
+}
+
+/// The same, if the axis is extremal and the contact not deeper than `most`: at less cost.
+pub fn outward_within(
+    t1: &[DVec3; 3],
+    t2: &[DVec3; 3],
+    solid: [bool; 2],
+    is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
+    most: f64,
+    out: &mut ManifoldPoints,
+) -> Option<TriangleContact> {
+    let triangles = [&Triangle::new(t1), &Triangle::new(t2)];
+    let axes = axes(triangles, solid, most / SHOWN);
+    let axis = first_extremal(triangles, &axes, is_extremal)?;
+    let contact = along(triangles, axis, out)?;
+    let is_within = contact.distance >= -most && contact.distance <= SHOWN * axis.0;
+    is_within.then_some(contact)
+}
+
+/// The gap along an axis, and the axis.
+type OutwardAxis = (f64, DVec3);
+
+fn first_extremal(
+    [t1, t2]: [&Triangle; 2],
+    axes: &[OutwardAxis],
+    is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
+) -> Option<OutwardAxis> {
+    let ends = |i: usize, t: &Triangle, axis: DVec3| is_extremal(i, farthest(t, axis), axis);
+    axes.iter().copied().find(|&(_, axis)| ends(0, t1, axis) && ends(1, t2, -axis))
+}
+
+/// The contact along an axis, and its points.
+fn along(
+    [t1, t2]: [&Triangle; 2],
+    (_, normal): OutwardAxis,
+    out: &mut ManifoldPoints,
+) -> Option<TriangleContact> {
+    clip_triangles(t1, t2, normal, out);
+    let contact = deepest(out, normal)?;
+    Some(TriangleContact { features: contact.features.crossing(), ..contact })
+}
+
+/// The outward axes along which triangles overlap by no more than `most`. Those of least overlap come
+/// first: to look around a feature takes longer than all of this.
+fn axes([t1, t2]: [&Triangle; 2], solid: [bool; 2], most: f64) -> ArrayVec<OutwardAxis, 22> {
     let areas = [t1.area_vector(), t2.area_vector()];
     let [normal1, normal2] = areas.map(|area| area.normalize_or_zero());
     let mut axes = ArrayVec::<(f64, DVec3), 22>::new();
@@ -60,7 +116,10 @@ pub fn outward(
         if is_out(solid[0], axis.dot(normal1)) && is_out(solid[1], -axis.dot(normal2)) {
             let ([_, max1], [min2, _]) =
                 (t1.shadow(DVec3::ZERO, axis), t2.shadow(DVec3::ZERO, axis));
-            axes.push((min2 - max1, axis));
+            let gap = min2 - max1;
+            if gap >= -most {
+                axes.push((gap, axis));
+            }
         }
     };
     for normal in [normal1, normal2] {
@@ -101,16 +160,8 @@ pub fn outward(
             consider(-cross);
         }
     }
-    // Those of least overlap first: to look around a feature takes longer than all before.
     axes.sort_unstable_by(|(a, _), (b, _)| b.total_cmp(a));
-    let ends = |i: usize, t: &Triangle, axis: DVec3| is_extremal(i, farthest(t, axis), axis);
-    let extremal = axes.iter().find(|&&(_, axis)| ends(0, t1, axis) && ends(1, t2, -axis));
-    let (is_extremal, &(gap, normal)) = (extremal.is_some(), extremal.or(axes.first())?);
-    clip_triangles(t1, t2, normal, out);
-    let contact = deepest(out, normal)?;
-    let contact = TriangleContact { features: contact.features.crossing(), ..contact };
-    let is_extremal = is_extremal && contact.distance <= SHOWN * gap;
-    Some(Outward { contact, is_extremal })
+    axes
 }
 
 /// The feature that is farthest along an axis.

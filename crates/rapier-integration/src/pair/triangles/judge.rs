@@ -13,11 +13,13 @@
 
 use glamx::DVec3;
 use parry3d::math::{Real, Vector};
-use sbbk_core::contact::{Feature, ManifoldPoints, Outward, TriangleContact, outward};
+use sbbk_core::contact::{
+    Feature, ManifoldPoints, Outward, TriangleContact, outward, outward_within,
+};
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Side};
 
-use super::regions::{Crossing, Regions};
+use super::regions::Regions;
 use crate::pair::driver::Seen;
 use crate::pair::pose::PairPose;
 
@@ -113,29 +115,26 @@ impl<S: Surfaces> Judge<'_, S> {
             around[i].is_none_or(|around| around.is_front(self.pair[i], feature, own(i, direction)))
         };
         let [t1, t2] = &local.corners;
+        let greatest = SHALLOW * distance.abs().max(f64::from(self.pose.prediction));
+        if regions.is_first_round() {
+            let contact = outward_within(t1, t2, is_solid, is_end, greatest, points);
+            let contact = contact.filter(|contact| is_crossing || contact.distance <= 0.0);
+            if contact.is_none() && !is_crossing && distance.abs() < TOUCHING {
+                return Seen::Nothing;
+            }
+            regions.add(self.pair, contact.as_ref());
+            return contact.map_or(Seen::Later, Seen::Contact);
+        }
+        if !regions.is_lost(self.pair) {
+            return Seen::Nothing;
+        }
         let Some(Outward { contact, is_extremal }) = outward(t1, t2, is_solid, is_end, points)
         else {
             return Seen::Nothing;
         };
-        let greatest = SHALLOW * distance.abs().max(f64::from(self.pose.prediction));
+        let is_overlap = is_crossing || contact.distance <= 0.0;
         let is_shallow = contact.distance >= -greatest;
-        let is_good = is_extremal && is_shallow;
-        let TriangleContact { normal, distance: depth, .. } = contact;
-        let crossing = Crossing { pair: self.pair, normal, depth: -depth, is_good };
-        if !is_crossing && depth > 0.0 {
-            return Seen::Nothing;
-        }
-        if is_good && !regions.is_wrong(self.pair) {
-            regions.add(crossing);
-            Seen::Contact(contact)
-        } else if !is_crossing && distance.abs() < TOUCHING {
-            Seen::Nothing
-        } else if regions.is_first_round() {
-            regions.add(crossing);
-            Seen::Later
-        } else if regions.is_lost(self.pair)
-            && (is_shallow || is_extremal && self.is_deep(local, &contact))
-        {
+        if is_overlap && (is_shallow || is_extremal && self.is_deep(local, &contact)) {
             Seen::Contact(contact)
         } else {
             Seen::Nothing

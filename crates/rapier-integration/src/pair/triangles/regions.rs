@@ -2,6 +2,7 @@ use std::cmp::Ordering;
 
 use glamx::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
+use sbbk_core::contact::TriangleContact;
 
 /// Where two surfaces cross, what pushes them apart, and where nothing does.
 ///
@@ -25,13 +26,13 @@ type Node = (usize, u32);
 
 /// A pair of triangles that cross.
 #[derive(Copy, Clone)]
-pub(super) struct Crossing {
-    pub(super) pair: [u32; 2],
-    /// Of its contact, from mesh 1 to mesh 2.
-    pub(super) normal: DVec3,
-    pub(super) depth: f64,
+struct Crossing {
+    pair: [u32; 2],
     /// Whether its contact is beyond doubt, but for others of its triangles.
-    pub(super) is_good: bool,
+    is_good: bool,
+    /// Of such a contact, from mesh 1 to mesh 2.
+    normal: DVec3,
+    depth: f64,
 }
 
 impl Regions {
@@ -46,11 +47,11 @@ impl Regions {
         self.is_first_round
     }
 
-    /// Notes a pair that crosses, in the first round.
-    pub(super) fn add(&mut self, crossing: Crossing) {
-        if self.is_first_round {
-            self.found.push(crossing);
-        }
+    /// Notes a pair that crosses, with its contact if that is beyond doubt.
+    pub(super) fn add(&mut self, pair: [u32; 2], good: Option<&TriangleContact>) {
+        let (normal, depth) =
+            good.map_or_else(Default::default, |good| (good.normal, -good.distance));
+        self.found.push(Crossing { pair, is_good: good.is_some(), normal, depth });
     }
 
     /// Ends the first round. Whether there are regions that nothing holds, or contacts that push the
