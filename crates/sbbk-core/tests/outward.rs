@@ -3,10 +3,27 @@
 mod support;
 
 use glamx::DVec3;
-use sbbk_core::contact::{Feature, Outward, contact, outward};
+use sbbk_core::contact::{Feature, ManifoldPoints, Outward, contact, outward_within};
 use support::Random;
 
 type Triangle = [DVec3; 3];
+
+fn outward(
+    t1: &Triangle,
+    t2: &Triangle,
+    solid: [bool; 2],
+    ends: impl Fn(usize, Feature, DVec3) -> bool,
+) -> Option<Outward> {
+    let mut points = ManifoldPoints::new();
+    let found = sbbk_core::contact::outward(t1, t2, solid, &ends, &mut points);
+    // The short way has the same, if it is extremal and shallow enough.
+    for most in [0.001, 0.1, 10.0, 1e9] {
+        let good = outward_within(t1, t2, solid, &ends, most, &mut points);
+        let expected = found.filter(|found| found.is_extremal && found.contact.distance >= -most);
+        assert_eq!(good, expected.map(|found| found.contact));
+    }
+    found
+}
 
 fn normal([a, b, c]: &Triangle) -> DVec3 {
     (b - a).cross(c - a).normalize_or_zero()
@@ -116,7 +133,8 @@ fn outward_contacts_lead_out_and_part() {
 }
 
 /// Would catch an axis that is left out, taken the wrong way round or measured wrongly: where the
-/// surfaces end everywhere, or nowhere, the overlap is the least of all axes that lead out.
+/// surfaces end everywhere, or nowhere, the overlap is at most that of all axes that lead out and have
+/// faces or edges in front, and not less than of any other.
 #[test]
 fn the_overlap_is_the_least_of_all_that_lead_out() {
     let mut random = Random(52);
@@ -134,16 +152,28 @@ fn the_overlap_is_the_least_of_all_that_lead_out() {
                 continue;
             }
             assert!(are_ends || !is_extremal);
+            let size = (t1[1] - t1[0]).length() + (t2[1] - t2[0]).length();
+            // Whether both a corner and another one are the farthest ones: a face or an edge is in front.
+            let has_front = |t: &Triangle, axis: DVec3| {
+                let end = shadow(t, axis)[1];
+                t.iter().filter(|corner| corner.dot(axis) > end - 1e-9 * size).count() > 1
+            };
+            let is_in_front = |axis: DVec3| {
+                let fronts = [has_front(&t1, axis), has_front(&t2, -axis)];
+                let is_face =
+                    [normal(&t1), normal(&t2)].iter().any(|n| n.dot(axis).abs() > 1.0 - 1e-9);
+                is_face || fronts == [true; 2]
+            };
             let least = |greatest_lean: f64, least_sine: f64| {
                 let axes = all_axes(&t1, &t2).into_iter();
                 let axes = axes.filter(|&(axis, sine)| {
                     axis != DVec3::ZERO
                         && sine > least_sine
+                        && (least_sine < 1.0e-3 || is_in_front(axis))
                         && lean(&t1, &t2, solid, axis) < greatest_lean
                 });
                 axes.map(|(axis, _)| overlap(&t1, &t2, axis)).fold(f64::INFINITY, f64::min)
             };
-            let size = (t1[1] - t1[0]).length() + (t2[1] - t2[0]).length();
             let way = overlap(&t1, &t2, contact.normal);
             assert!(way <= least(LEANS[0], 1.1e-3) + 1e-6 * size, "{way}: {t1:?} {t2:?} {solid:?}");
             assert!(way >= least(LEANS[1], 0.9e-3) - 1e-6 * size, "{way}: {t1:?} {t2:?} {solid:?}");
@@ -189,7 +219,6 @@ fn either_triangle_may_come_first() {
 /// Two triangles that cross and face the same way: no axis leads out of both. Would catch a contact
 /// without a normal.
 #[test]
-#[ignore = "outward answers with a normal of zero"]
 fn triangles_that_face_one_way_have_no_contact() {
     let [t1, t2] = [
         [[0.2, -6.7, 3.6], [-7.8, 7.7, -5.1], [0.2, 1.0, -2.0]],
