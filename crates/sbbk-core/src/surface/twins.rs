@@ -42,64 +42,62 @@ impl List {
     }
 }
 
-/// The twin of each half-edge, [`NONE`] where there is not exactly one, and the half-edges that no other makes up for, by their welded ends:
-/// borders, and edges along which triangles disagree about the outside.
+/// The twin of each half-edge, [`NONE`] where there is not exactly one, and the half-edges that no
+/// other makes up for, by their welded ends: borders, and edges along which triangles disagree about
+/// the outside.
 pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<[u32; 2]>) {
-    let edges = Edges::new(vertices, triangles);
-    let mut uneven = Vec::new();
-    let twins = (0..3 * triangles.len()).map(|half_edge| {
-        let [start, end] = edges.ends(half_edge);
-        let mut back = edges.along([end, start]);
-        let twin = back.next();
-        let backward = back.count() + usize::from(twin.is_some());
-        let forward = edges.along([start, end]).count();
-        let is_first = edges.along([start, end]).next() == Some(half_edge as u32);
-        if is_first && forward > backward {
-            uneven.extend(std::iter::repeat_n([start, end], forward - backward));
+    let welded = weld(vertices);
+    // Each edge is listed with its lesser end. A mesh has one and a half edges a triangle.
+    let mut first = vec![NONE; vertices.len()];
+    let mut edges = Vec::<Edge>::with_capacity(triangles.len() * 3 / 2 + 16);
+    for (triangle, corners) in (0..).zip(triangles) {
+        let [a, b, c] = corners.map(|corner| welded[corner as usize]);
+        for (i, [start, end]) in (0..).zip([[a, b], [b, c], [c, a]]) {
+            if start == end {
+                continue;
+            }
+            let way = usize::from(start > end);
+            let (low, high) = if way == 0 { (start, end) } else { (end, start) };
+            let head = &mut first[low as usize];
+            let mut at = *head;
+            while at != NONE && edges[at as usize].high != high {
+                at = edges[at as usize].next;
+            }
+            if at == NONE {
+                at = edges.len() as u32;
+                edges.push(Edge { low, high, next: *head, last: [NONE; 2], counts: [0; 2] });
+                *head = at;
+            }
+            let edge = &mut edges[at as usize];
+            edge.last[way] = 3 * triangle + i;
+            edge.counts[way] += 1;
         }
-        twin.filter(|_| forward == 1 && backward == 1).unwrap_or(NONE)
-    });
-    (twins.collect(), uneven)
-}
-
-/// The half-edges of a mesh, by the vertices that they start at.
-struct Edges<'a> {
-    triangles: &'a [[u32; 3]],
-    /// For each vertex the first one at its place.
-    welded: Vec<u32>,
-    /// For each vertex one of its half-edges, and for each half-edge another one of its start.
-    first: Vec<u32>,
-    next: Vec<u32>,
-}
-
-impl<'a> Edges<'a> {
-    fn new(vertices: &[Vec3], triangles: &'a [[u32; 3]]) -> Self {
-        let (first, next) = (vec![NONE; vertices.len()], vec![NONE; 3 * triangles.len()]);
-        let mut edges = Self { triangles, welded: weld(vertices), first, next };
-        for half_edge in 0..edges.next.len() {
-            let [start, end] = edges.ends(half_edge);
-            if start != end {
-                let first = &mut edges.first[start as usize];
-                edges.next[half_edge] = std::mem::replace(first, half_edge as u32);
+    }
+    let (mut twins, mut uneven) = (vec![NONE; 3 * triangles.len()], Vec::new());
+    for Edge { low, high, last: [up, down], counts, .. } in edges {
+        match counts {
+            [1, 1] => {
+                twins[up as usize] = down;
+                twins[down as usize] = up;
+            }
+            [ups, downs] => {
+                let ends = if ups > downs { [low, high] } else { [high, low] };
+                uneven.extend(std::iter::repeat_n(ends, ups.abs_diff(downs) as usize));
             }
         }
-        edges
     }
+    (twins, uneven)
+}
 
-    /// Where a half-edge starts and ends.
-    fn ends(&self, half_edge: usize) -> [u32; 2] {
-        let triangle = self.triangles[half_edge / 3];
-        [half_edge % 3, (half_edge + 1) % 3].map(|i| self.welded[triangle[i] as usize])
-    }
-
-    /// The half-edges with these ends.
-    fn along(&self, ends: [u32; 2]) -> impl Iterator<Item = u32> {
-        let is_one = |&half_edge: &u32| half_edge != NONE;
-        let first = Some(self.first[ends[0] as usize]).filter(is_one);
-        let next = move |&half_edge: &u32| Some(self.next[half_edge as usize]).filter(is_one);
-        let from_start = std::iter::successors(first, next);
-        from_start.filter(move |&half_edge| self.ends(half_edge as usize) == ends)
-    }
+/// All half-edges between two vertices.
+struct Edge {
+    low: u32,
+    high: u32,
+    /// Another edge with the same lesser end.
+    next: u32,
+    /// The last half-edge up and down, and how many there are.
+    last: [u32; 2],
+    counts: [u32; 2],
 }
 
 /// For each vertex the first one at its place.
