@@ -9,6 +9,7 @@ use parry3d::query::{
     ShapeIntersection, Unsupported,
 };
 use parry3d::shape::{CompositeShape, Shape, SharedShape, TriMesh};
+use sbbk_core::surface::SurfaceKind;
 use sbbk_core::traverse::DescentCounts;
 use sbbk_core::tree::{BuildError, Tree};
 
@@ -20,7 +21,6 @@ use crate::pair::{
 use crate::query::MeshQuery;
 use crate::stats::QueryCounters;
 use crate::{ContactGenerator, ContactSet, SbbkConfig, SbbkStats, TriangleContacts};
-use sbbk_core::surface::SurfaceKind;
 
 /// A query dispatcher that answers pairs of triangle meshes, and the contacts of meshes with convex
 /// shapes, compounds, polylines and height fields. All else goes to Parry's

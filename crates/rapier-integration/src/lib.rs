@@ -56,7 +56,7 @@
 //!
 //! * A mesh that bounds a *solid* ([`SurfaceKind::Solid`]) pushes out what has sunk into it. It is
 //!   wound consistently, with normals that point outwards, and closed or nearly: its holes together
-//!   are at most a fiftieth of its surface. Vertices at one place count as one. Depths count up to a
+//!   are at most 6 % of its surface. Vertices at one place count as one. Depths count up to a
 //!   tenth of the radius of the smaller mesh, so that deep bodies come out slowly.
 //! * Any other mesh is a *sheet* and met from both sides: terrains, walls, bowls, vases with a wide
 //!   neck, soups of triangles. So is a closed mesh whose normals point inwards

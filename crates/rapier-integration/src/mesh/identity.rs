@@ -10,8 +10,9 @@
 //!   not make the last two equal: Parry fits them to a mesh that is edited or scaled, and builds
 //!   those of a new mesh. Meshes with equal hashes share one prepared mesh, wherever they are:
 //!   clones, copies restored from a snapshot, the same file loaded twice. The hash reads the whole
-//!   mesh (about 4 µs for 1000 triangles), so it is asked for only where a tree is built, and where
-//!   a pair of two meshes has none yet and one of a mesh with as many triangles is there.
+//!   mesh (about 4 µs for 1000 triangles), so it is asked for only where a tree is built, once by each
+//!   pair of two meshes about those that are small, and about a large one where one with as many
+//!   triangles is there.
 //! * [`MeshToken`], constant time, made at every query: addresses and sizes of the buffers, the
 //!   flags, the root box of Parry's own hierarchy, and a few sampled vertices and triangles. If it
 //!   changed, a pair forgets the mesh and its tree; whether vertices are finite is remembered by it

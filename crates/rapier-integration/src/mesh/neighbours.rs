@@ -10,8 +10,8 @@ pub(crate) type Neighbours = FxHashMap<u32, [Option<u32>; 3]>;
 
 /// Finds them where they are asked for, by Parry's hierarchy: about a microsecond a triangle.
 pub(crate) struct NearTwins<'a> {
-    pub(crate) mesh: &'a TriMesh,
-    pub(crate) known: RefCell<&'a mut Neighbours>,
+    mesh: &'a TriMesh,
+    known: RefCell<&'a mut Neighbours>,
 }
 
 impl<'a> NearTwins<'a> {
@@ -38,15 +38,12 @@ impl Twins for NearTwins<'_> {
 /// The twins of the edges of a triangle. As `sbbk_core::surface::Surface` has them: vertices at one
 /// place are one vertex.
 fn twins_of(mesh: &TriMesh, triangle: u32) -> [Option<u32>; 3] {
-    let corners = |triangle: u32| {
-        let triangle = mesh.triangle(triangle);
-        [triangle.a, triangle.b, triangle.c]
-    };
-    let own = corners(triangle);
+    let triangle = mesh.triangle(triangle);
+    let own = [triangle.a, triangle.b, triangle.c];
     let (mut forward, mut backward, mut twins) = ([0; 3], [0; 3], [None; 3]);
-    let around = mesh.triangle(triangle).local_aabb();
-    for other in mesh.bvh().intersect_aabb(&around) {
-        let theirs = corners(other);
+    for other in mesh.bvh().intersect_aabb(&triangle.local_aabb()) {
+        let neighbour = mesh.triangle(other);
+        let theirs = [neighbour.a, neighbour.b, neighbour.c];
         for (i, j) in (0..9).map(|pair| (pair / 3, pair % 3)) {
             let [a, b] = [own[i], own[(i + 1) % 3]];
             let [c, d] = [theirs[j], theirs[(j + 1) % 3]];

@@ -52,16 +52,11 @@ pub fn outward(
 ) -> Option<Outward> {
     let triangles = [&Triangle::new(t1), &Triangle::new(t2)];
     let axes = axes(triangles, solid, f64::INFINITY);
-    match first_extremal(triangles, &axes, is_extremal) {
-        Some(axis) => {
-            let contact = along(triangles, axis, out)?;
-            Some(Outward { contact, is_extremal: contact.distance <= SHOWN * axis.0 })
-        }
-        None => {
-            let contact = along(triangles, *axes.first()?, out)?;
-            Some(Outward { contact, is_extremal: false })
-        }
-    }
+    let extremal = first_extremal(triangles, &axes, is_extremal);
+    let axis = extremal.or(axes.first().copied())?;
+    let contact = along(triangles, axis, out)?;
+    let is_extremal = extremal.is_some() && contact.distance <= SHOWN * axis.0;
+    Some(Outward { contact, is_extremal })
 }
 
 /// The same, if the axis is extremal and the contact not deeper than `most`: at less cost.
@@ -109,7 +104,7 @@ fn along(
 fn axes([t1, t2]: [&Triangle; 2], solid: [bool; 2], most: f64) -> ArrayVec<OutwardAxis, 22> {
     let areas = [t1.area_vector(), t2.area_vector()];
     let [normal1, normal2] = areas.map(|area| area.normalize_or_zero());
-    let mut axes = ArrayVec::<(f64, DVec3), 22>::new();
+    let mut axes = ArrayVec::new();
     let mut consider = |direction: DVec3| {
         let axis = direction.normalize();
         let is_out = |is_solid: bool, cosine: f64| !is_solid || cosine >= -LEAN;

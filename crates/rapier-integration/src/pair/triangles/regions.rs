@@ -62,8 +62,7 @@ impl Regions {
         }
         self.find_wrong();
         self.found.sort_unstable_by_key(|found| found.pair);
-        let is_fine = |found: &Crossing| found.is_good && !self.wrong.contains(&found.pair);
-        if self.found.iter().all(is_fine) {
+        if self.found.iter().all(|found| self.is_fine(found)) {
             return false;
         }
         self.above.clear();
@@ -74,9 +73,9 @@ impl Regions {
             self.above.insert(top1.max(top2), top1.min(top2));
         }
         for i in 0..self.found.len() {
-            let Crossing { pair, is_good, .. } = self.found[i];
-            let top = self.top((0, pair[0]));
-            *self.held.entry(top).or_default() |= is_good && !self.wrong.contains(&pair);
+            let found = self.found[i];
+            let (top, is_fine) = (self.top((0, found.pair[0])), self.is_fine(&found));
+            *self.held.entry(top).or_default() |= is_fine;
         }
         !self.wrong.is_empty() || self.held.values().any(|is_held| !is_held)
     }
@@ -87,12 +86,12 @@ impl Regions {
             return false;
         }
         let found = self.found.binary_search_by_key(&pair, |found| found.pair);
-        found.is_err() || found.is_ok_and(|at| self.found[at].is_good) && !self.is_wrong(pair)
+        found.is_ok_and(|at| self.is_fine(&self.found[at])) || found.is_err()
     }
 
-    /// Whether the contact of a pair pushes the wrong way.
-    pub(super) fn is_wrong(&self, pair: [u32; 2]) -> bool {
-        self.wrong.contains(&pair)
+    /// Whether a contact is good, and pushes the right way.
+    fn is_fine(&self, found: &Crossing) -> bool {
+        found.is_good && !self.wrong.contains(&found.pair)
     }
 
     /// Whether the region of a pair has no contact beyond doubt.
