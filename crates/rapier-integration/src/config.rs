@@ -28,6 +28,19 @@ pub enum ContactSet {
     Triangles,
 }
 
+/// How many of the contacts of two shapes a host gets.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum ContactDetail {
+    /// Each triangle that touches, or each two, has a manifold of its own, as in stock Rapier.
+    #[default]
+    Every,
+    /// A few manifolds for two shapes: each is a direction and a place with at most four points,
+    /// which are chosen before they are made. The deepest point is always among them. For exact
+    /// contacts of rigid meshes; pairs of which one may deform have every contact. Of a manifold,
+    /// the subshapes are those of its deepest contact.
+    Patches,
+}
+
 /// What SBBK answers for when it meets a mesh. Parry answers for the rest, as without SBBK.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -59,6 +72,8 @@ pub struct SbbkConfig {
     pub contacts: ContactGenerator,
     /// Which of them two meshes have.
     pub contact_set: ContactSet,
+    /// How many of them a host gets.
+    pub detail: ContactDetail,
     /// What is answered.
     pub kinds: Kinds,
     /// Memory that trees may keep while no pair of colliders uses them, in bytes. A mesh that
@@ -77,6 +92,7 @@ impl Default for SbbkConfig {
             layers: LayerPlan::SBBK,
             contacts: ContactGenerator::Exact,
             contact_set: ContactSet::Surfaces,
+            detail: ContactDetail::Every,
             kinds: Kinds::default(),
             idle_tree_bytes: 16 << 20,
             count_queries: false,

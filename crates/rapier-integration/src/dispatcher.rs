@@ -20,7 +20,7 @@ use crate::pair::{
 };
 use crate::query::MeshQuery;
 use crate::stats::QueryCounters;
-use crate::{ContactGenerator, ContactSet, SbbkConfig, SbbkStats, TriangleContacts};
+use crate::{ContactDetail, ContactGenerator, ContactSet, SbbkConfig, SbbkStats, TriangleContacts};
 
 /// A query dispatcher that answers pairs of triangle meshes, and the contacts of meshes with convex
 /// shapes, compounds, polylines and height fields. All else goes to Parry's
@@ -132,7 +132,9 @@ impl SbbkDispatcher {
         M: Default + Clone + Send + Sync + 'static,
         C: Default + Copy + Send + Sync + 'static,
     {
-        let SbbkConfig { contacts, contact_set, kinds, .. } = self.config;
+        let SbbkConfig { contacts, contact_set, detail, kinds, .. } = self.config;
+        let is_exact = contacts == ContactGenerator::Exact;
+        let has_patches = is_exact && detail == ContactDetail::Patches;
         // Of such a pair nothing needs to be kept while it is apart. Not if there are manifolds: where
         // Rapier finds no workspace it keeps pointers to manifolds that are gone.
         let is_new = workspace.is_none() && manifolds.is_empty();
@@ -149,9 +151,8 @@ impl SbbkDispatcher {
                     return Answer::Unsupported;
                 };
                 let pose = &PairPose::new(pos12, prediction);
-                let has_surfaces =
-                    contacts == ContactGenerator::Exact && contact_set == ContactSet::Surfaces;
-                let pair = MeshPair { pose, meshes, contacts, has_surfaces };
+                let has_surfaces = is_exact && contact_set == ContactSet::Surfaces;
+                let pair = MeshPair { pose, meshes, contacts, has_surfaces, has_patches };
                 return self.ask(&pair, manifolds, workspace);
             }
             (Some(mesh), None) => (mesh, g2, MeshPlace::First),
@@ -174,7 +175,7 @@ impl SbbkDispatcher {
             return Answer::Unsupported;
         }
         // Parry's routine sees a little farther than the prediction distance.
-        if is_new && parts.is_some() && contacts == ContactGenerator::Exact {
+        if is_new && parts.is_some() && is_exact {
             let in_mesh = if mesh_place.is_second() { pos12.inverse() } else { *pos12 };
             if self.are_apart(is_near(mesh, other, &in_mesh, prediction), [mesh]) {
                 return self.counted(Answer::Apart);
@@ -185,9 +186,10 @@ impl SbbkDispatcher {
         };
         let pose = &PairPose::new(pos12, prediction);
         if let Some(parts) = parts {
-            self.ask(&ConvexPair { pose, mesh, parts, mesh_place, contacts }, manifolds, workspace)
+            let pair = ConvexPair { pose, mesh, parts, mesh_place, contacts, has_patches };
+            self.ask(&pair, manifolds, workspace)
         } else if let Some(field) = field {
-            let pair = FieldPair { pose, mesh, field, mesh_place, contacts };
+            let pair = FieldPair { pose, mesh, field, mesh_place, contacts, has_patches };
             self.ask(&pair, manifolds, workspace)
         } else {
             Answer::Unsupported

@@ -170,7 +170,7 @@ mod pair;
 mod query;
 mod stats;
 
-pub use config::{ContactGenerator, ContactSet, Kinds, SbbkConfig};
+pub use config::{ContactDetail, ContactGenerator, ContactSet, Kinds, SbbkConfig};
 pub use dispatcher::{PreparedTree, SbbkDispatcher};
 pub use pair::TriangleContacts;
 pub use sbbk_core;

@@ -6,8 +6,9 @@
 //! 3. The same question as the last one has the same answer.
 //! 4. [`Slack`](sbbk_core::traverse::Slack) says whether the candidates of the last descent still
 //!    serve. If not, a descent finds new ones.
-//! 5. Each candidate that may be in reach gets its exact contact, written to its manifold of the
-//!    query before or to a new one.
+//! 5. Each candidate that may be in reach gets its exact contact.
+//! 6. Each contact is written to its manifold of the query before or to a new one; or
+//!    [`patches`](super::patches) are made of all.
 //!
 //! A [`Pair`] says what is particular to its kind in steps 1 and 2, its [`PairQuery`] in steps 4
 //! and 5.
@@ -20,13 +21,14 @@ use parry3d::query::{ContactManifold, ContactManifoldsWorkspace, TrackedContact}
 use sbbk_core::traverse::{Counters, DescentScratch, Placement, SlackPlan};
 use sbbk_core::volumes::Sphere;
 
-use super::convex::PlacedPart;
+use super::convex::{Near, PlacedPart};
 use super::merge::Lookup;
 use super::order::{Candidate, OrderKey, Place};
+use super::patches::{Outline, Patches, write_patches};
 use super::pool::{Demand, ManifoldPool, reset};
 use super::pose::PairPose;
 use super::state::{PairState, state_in};
-use super::triangles::Regions;
+use super::triangles::{Found, Regions};
 use crate::mesh::{Change, Ranks, TreeCache};
 
 /// A mesh and another shape, of whose contacts a host asks.
@@ -55,7 +57,7 @@ pub(crate) trait Pair: Copy {
 pub(crate) trait PairQuery {
     type Hint: Copy;
     /// What is known of the contact of a candidate before its manifold is at hand.
-    type Contact;
+    type Contact: Copy;
 
     /// Greatest slack of a descent as a share of [`reach`](Self::reach).
     const GREATEST_SLACK: f64;
@@ -87,11 +89,25 @@ pub(crate) trait PairQuery {
         scratch: &mut Scratch,
     ) -> Seen<Self::Contact>;
 
-    /// Whether contacts that were put off may be needed, now that all candidates have been seen. Then
-    /// each candidate is asked for once more, and none may be put off.
+    /// Whether contacts may be others, now that all candidates have been seen. Then each candidate
+    /// is asked for once more.
     fn needs_more(&mut self, _: &mut Scratch) -> bool {
         false
     }
+
+    /// Memory for contacts, lent from query to query.
+    fn contacts(scratch: &mut Scratch) -> &mut Vec<Option<Self::Contact>>;
+
+    /// Up to how far apart contacts may be in one patch; `None` if every contact has a manifold.
+    fn patch_size(&self) -> Option<Real>;
+
+    /// What a patch needs to know of a contact. `None` if it has no points after all.
+    fn outline(
+        &self,
+        contact: &Self::Contact,
+        candidate: &Candidate<Self::Hint>,
+        scratch: &mut Scratch,
+    ) -> Option<Outline>;
 
     /// Says which subshapes a manifold without points is of.
     fn name<M, C>(&self, candidate: &Candidate<Self::Hint>, manifold: &mut ContactManifold<M, C>) {
@@ -115,10 +131,8 @@ pub(crate) trait PairQuery {
 
 /// What is known of the contact of a candidate.
 pub(crate) enum Seen<C> {
-    /// There is none.
+    /// There is none, or none before a second round.
     Nothing,
-    /// Whether it is needed depends on the others.
-    Later,
     /// In a second round: what it was in the first.
     Same,
     Contact(C),
@@ -176,6 +190,9 @@ pub(crate) struct Scratch {
     pub(super) near: Vec<u32>,
     /// Where surfaces cross.
     pub(super) regions: Regions,
+    pub(super) triangle_contacts: Vec<Option<Found>>,
+    pub(super) convex_contacts: Vec<Option<Near>>,
+    pub(super) patches: Patches,
     lookup: Lookup,
     /// Which manifolds of the query before are dealt with.
     is_done: Vec<bool>,
@@ -230,33 +247,76 @@ where
         margin: f64::from(margin),
         travel: coherence.slack.travel(),
     };
-    coherence.find_places(&mut scratch.lookup, manifolds);
-    scratch.regions.begin();
+    let mut contacts = std::mem::take(P::Query::contacts(&mut scratch));
     let candidates = &mut coherence.candidates;
-    let mut update = |query: &mut _, scratch: &mut _, manifolds: &mut _| {
-        update(query, candidates, limits, scratch, &mut memory.pool, manifolds)
-    };
-    let has_put_off = update(&mut query, &mut scratch, manifolds);
-    if query.needs_more(&mut scratch) || has_put_off {
-        update(&mut query, &mut scratch, manifolds);
+    find_contacts(&mut query, candidates, limits, &mut scratch, &mut contacts);
+    if let Some(size) = query.patch_size() {
+        let found = Contacts { query: &mut query, candidates, contacts: &contacts, limits };
+        write_patches(found, size, &mut scratch, &mut memory.pool, manifolds);
+    } else {
+        coherence.find_places(&mut scratch.lookup, manifolds);
+        let (candidates, query) = (&mut coherence.candidates, &mut query);
+        let found = Contacts { query, candidates, contacts: &contacts, limits };
+        write_every(found, &mut scratch, &mut memory.pool, manifolds);
     }
+    if let Some(limit) = scratch.demand.note(contacts.len()) {
+        // Candidates come and go more than manifolds do.
+        contacts.shrink_to(2 * limit);
+        scratch.is_done.shrink_to(limit);
+        scratch.lookup.shrink_to(limit);
+        scratch.patches.shrink_to(limit);
+    }
+    *P::Query::contacts(&mut scratch) = contacts;
     SCRATCH.set(Some(scratch));
     memory.end(query.pose(), manifolds.len());
     answer
 }
 
-/// Replaces `manifolds` by those of the candidates that touch, in stock order. Manifolds of
-/// subshapes that still do keep their data; none is left empty. Returns whether some are still there
-/// whose contacts were put off.
-fn update<Q, M, C>(
+/// The contacts of a query, before their manifolds.
+pub(super) struct Contacts<'c, Q: PairQuery> {
+    pub(super) query: &'c mut Q,
+    pub(super) candidates: &'c mut [Candidate<Q::Hint>],
+    /// Of each candidate.
+    pub(super) contacts: &'c [Option<Q::Contact>],
+    pub(super) limits: Limits,
+}
+
+/// Makes `contacts` those of the candidates.
+fn find_contacts<Q: PairQuery>(
     query: &mut Q,
     candidates: &mut [Candidate<Q::Hint>],
     limits: Limits,
     scratch: &mut Scratch,
+    contacts: &mut Vec<Option<Q::Contact>>,
+) {
+    scratch.regions.begin();
+    contacts.clear();
+    contacts.resize(candidates.len(), None);
+    let farthest = limits.reach + limits.travel;
+    loop {
+        for (candidate, contact) in candidates.iter_mut().zip(&mut *contacts) {
+            if candidate.clear <= farthest {
+                match query.contact(candidate, limits, scratch) {
+                    Seen::Nothing => *contact = None,
+                    Seen::Same => {}
+                    Seen::Contact(seen) => *contact = Some(seen),
+                }
+            }
+        }
+        if !query.needs_more(scratch) {
+            return;
+        }
+    }
+}
+
+/// Replaces `manifolds` by one for each contact, in stock order. Manifolds of subshapes that still
+/// touch keep their data; none is left empty.
+fn write_every<Q, M, C>(
+    Contacts { query, candidates, contacts, limits }: Contacts<'_, Q>,
+    scratch: &mut Scratch,
     pool: &mut ManifoldPool<M, C>,
     manifolds: &mut Vec<ContactManifold<M, C>>,
-) -> bool
-where
+) where
     Q: PairQuery,
     M: Default + Clone + Send + Sync + 'static,
     C: Default + Copy + Send + Sync + 'static,
@@ -268,17 +328,13 @@ where
     // A new manifold that has no points yet.
     let mut blank = None;
     let mut count = 0;
-    let mut has_put_off = false;
-    let farthest = limits.reach + limits.travel;
-    for candidate in candidates {
+    for (candidate, &contact) in candidates.iter_mut().zip(contacts) {
         let old = candidate.place.take().map(Place::index);
         if let Some(place) = old {
             is_done[place] = true;
         }
-        let is_far = candidate.clear > farthest;
-        let seen = if is_far { Seen::Nothing } else { query.contact(candidate, limits, scratch) };
-        let is_kept = match (seen, old) {
-            (Seen::Contact(contact), Some(place)) => {
+        let is_kept = match (contact, old) {
+            (Some(contact), Some(place)) => {
                 let (points, manifold) = (&mut pool.previous_points, &mut manifolds[place]);
                 if manifold.points.is_empty() {
                     // A blank one, that a host has made or a panic has left.
@@ -287,7 +343,7 @@ where
                 query.write(contact, candidate, limits, scratch, points, manifold);
                 pool.keep_old(place, manifolds)
             }
-            (Seen::Contact(contact), None) => {
+            (Some(contact), None) => {
                 let manifold = blank.get_or_insert_with(|| pool.take());
                 query.name(candidate, manifold);
                 let points = &mut pool.previous_points;
@@ -300,16 +356,11 @@ where
                 }
                 has_points
             }
-            (Seen::Later, Some(place)) => {
-                has_put_off = true;
-                pool.keep_old(place, manifolds)
-            }
-            (Seen::Same, Some(place)) => pool.keep_old(place, manifolds),
-            (Seen::Nothing, Some(place)) => {
+            (None, Some(place)) => {
                 pool.retire(std::mem::take(&mut manifolds[place]));
                 false
             }
-            (Seen::Nothing | Seen::Later | Seen::Same, None) => false,
+            (None, None) => false,
         };
         if is_kept {
             candidate.place = Place::new(count);
@@ -323,10 +374,5 @@ where
         pool.retire(std::mem::take(manifold));
     }
     pool.end(manifolds);
-    if let Some(limit) = scratch.demand.note(is_done.len()) {
-        is_done.shrink_to(limit);
-        scratch.lookup.shrink_to(limit);
-    }
     scratch.is_done = is_done;
-    has_put_off
 }

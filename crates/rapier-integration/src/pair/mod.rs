@@ -2,7 +2,8 @@
 //!
 //! [`driver`] is the way of a query, the same for every kind of pair: the state of the pair
 //! ([`state`], [`memory`]), the candidates in stock order ([`order`]), and one manifold for each
-//! that touches, those of the query before among them ([`merge`], [`pool`]). A kind says what is
+//! that touches, those of the query before among them ([`merge`], [`pool`]), or a few for all
+//! ([`patches`]). A kind says what is
 //! its own: [`triangles`] for two meshes, or a mesh and a height field; [`convex`] for a mesh and
 //! convex shapes, one or the parts of a compound or polyline.
 
@@ -12,6 +13,7 @@ mod few;
 mod memory;
 mod merge;
 mod order;
+mod patches;
 mod pool;
 mod pose;
 mod state;

@@ -19,6 +19,9 @@ pub(super) struct ManifoldPool<M, C> {
     demand: Demand,
     /// Memory for the points that a manifold had before.
     pub(super) previous_points: Vec<TrackedContact<C>>,
+    /// Memory for the points that the patches of a pair had before, and for those that one may have.
+    pub(super) old_points: Vec<TrackedContact<C>>,
+    pub(super) patch_points: Vec<TrackedContact<C>>,
 }
 
 /// How much memory to keep: as much as was needed of late. What was not needed for some queries is
@@ -56,6 +59,8 @@ impl<M, C> Default for ManifoldPool<M, C> {
             least_spare: 0,
             demand: Demand::default(),
             previous_points: Vec::new(),
+            old_points: Vec::new(),
+            patch_points: Vec::new(),
         }
     }
 }

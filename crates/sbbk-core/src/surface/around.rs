@@ -1,3 +1,5 @@
+use std::ops::ControlFlow;
+
 use glamx::{DVec3, Vec3};
 
 use super::Surface;
@@ -30,18 +32,6 @@ pub struct Around<'a> {
     pub triangles: &'a [[u32; 3]],
 }
 
-/// How a direction leaves a feature of a mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
-    /// All triangles around the feature lie behind it: what is out there is nowhere nearer. Of a
-    /// solid, it leads out.
-    Front,
-    /// Into a solid.
-    Behind,
-    /// Neither: a neighbour is nearer.
-    Beside,
-}
-
 /// How far a neighbour may rise towards a direction before it is nearer, as a sine. Higher: bodies
 /// feel the edges between facets. Lower: a face that lies on another, not quite flat, loses part
 /// of its contacts.
@@ -52,131 +42,127 @@ const RISE: f64 = 0.05;
 const RISE_ON_FACE: f64 = 0.3;
 
 impl Around<'_> {
-    /// Where a unit direction leads from a point of a feature of a triangle, if it is that to the
-    /// nearest point of something else: across the face, from an edge, or from a vertex into its
-    /// Voronoi cell.
-    pub fn side(&self, triangle: u32, feature: Feature, direction: DVec3) -> Side {
-        self.look(triangle, feature, direction, RISE, !self.is_solid)
+    /// Whether a unit direction leads from a feature out in front of all triangles around it: what
+    /// it leads to is nowhere nearer, and of a solid it leads out. It should be that from a point of
+    /// the feature to the nearest point of something else: across the face, from an edge, or from a
+    /// vertex into its Voronoi cell.
+    pub fn is_front(&self, triangle: u32, feature: Feature, direction: DVec3) -> bool {
+        self.is_in_front(triangle, feature, direction, RISE)
     }
 
     /// The same for a feature that a face is next to: it may be held up there, though a neighbour is a
     /// little nearer.
-    pub fn side_on_face(&self, triangle: u32, feature: Feature, direction: DVec3) -> Side {
-        self.look(triangle, feature, direction, RISE_ON_FACE, !self.is_solid)
+    pub fn is_front_of_face(&self, triangle: u32, feature: Feature, direction: DVec3) -> bool {
+        self.is_in_front(triangle, feature, direction, RISE_ON_FACE)
     }
 
-    /// Whether [`side`](Self::side) is the front, at less cost.
-    pub fn is_front(&self, triangle: u32, feature: Feature, direction: DVec3) -> bool {
-        self.look(triangle, feature, direction, RISE, true) == Side::Front
+    /// Whether such a direction leads into the solid.
+    pub fn is_behind(&self, triangle: u32, feature: Feature, direction: DVec3) -> bool {
+        if !self.is_solid {
+            return false;
+        }
+        if feature == Feature::Face {
+            let (height, is_upright) = self.over_face(triangle, direction);
+            return is_upright && height < 0.0;
+        }
+        let mut height = 0.0;
+        self.around(triangle, feature, |u, v| {
+            height += u.cross(v).dot(direction);
+            ControlFlow::Continue(())
+        });
+        height < 0.0
     }
 
-    /// The side. If it cannot be the front, `is_hasty` takes it to be beside.
-    fn look(
+    fn is_in_front(&self, triangle: u32, feature: Feature, direction: DVec3, rise: f64) -> bool {
+        if feature == Feature::Face {
+            let (height, is_upright) = self.over_face(triangle, direction);
+            return is_upright && !(self.is_solid && height < 0.0);
+        }
+        let rises = |edge: DVec3| {
+            let height = edge.dot(direction);
+            height > 0.0 && height * height > rise * rise * edge.length_squared()
+        };
+        let (mut height, mut has_risen) = (0.0, false);
+        self.around(triangle, feature, |u, v| {
+            has_risen = rises(u) || rises(v);
+            if has_risen {
+                return ControlFlow::Break(());
+            }
+            height += u.cross(v).dot(direction);
+            ControlFlow::Continue(())
+        });
+        !has_risen && !(self.is_solid && height < 0.0)
+    }
+
+    /// How far a direction points along the normal of a triangle, times twice the area, and whether
+    /// it is nearly upright.
+    fn over_face(&self, triangle: u32, direction: DVec3) -> (f64, bool) {
+        let [a, b, c] = [0, 1, 2].map(|i| self.corner(3 * triangle, i));
+        let normal = (b - a).cross(c - a);
+        let height = normal.dot(direction);
+        (height, height.abs() > (1.0 - RISE) * normal.length())
+    }
+
+    /// Visits the triangles around an edge or a vertex by their two edges from there, while it is
+    /// told to.
+    #[inline(always)]
+    fn around(
         &self,
         triangle: u32,
         feature: Feature,
-        direction: DVec3,
-        rise: f64,
-        is_hasty: bool,
-    ) -> Side {
-        let half_edge = match feature {
-            Feature::Face => return self.side_of_face(triangle, direction),
-            Feature::Edge(i) | Feature::Vertex(i) => 3 * triangle + u32::from(i),
-        };
-        let mut fan = Fan { rises: false, normal: DVec3::ZERO, direction, rise, is_hasty };
-        match feature {
-            Feature::Edge(_) => {
-                self.add(half_edge, &mut fan);
-                if let Some(twin) = self.twins.twin(half_edge) {
-                    self.add(twin, &mut fan);
-                }
+        mut visit: impl FnMut(DVec3, DVec3) -> ControlFlow<()>,
+    ) {
+        let first = half_edge(triangle, feature);
+        let start = self.corner(first, 0);
+        let (first_u, first_v) = (self.corner(first, 1) - start, self.corner(first, 2) - start);
+        if visit(first_u, first_v).is_break() {
+            return;
+        }
+        if !matches!(feature, Feature::Vertex(_)) {
+            if let Some(twin) = self.twins.twin(first) {
+                let start = self.corner(twin, 0);
+                let _ = visit(self.corner(twin, 1) - start, self.corner(twin, 2) - start);
             }
-            _ => self.add_around(half_edge, &mut fan),
+            return;
         }
-        if fan.is_done() {
-            Side::Beside
-        } else if self.is_solid && fan.normal.dot(direction) < 0.0 {
-            Side::Behind
-        } else if fan.rises {
-            Side::Beside
-        } else {
-            Side::Front
-        }
-    }
-
-    fn side_of_face(&self, triangle: u32, direction: DVec3) -> Side {
-        let [a, b, c] = self.corners(3 * triangle);
-        let normal = (b - a).cross(c - a);
-        let height = normal.dot(direction);
-        if height.abs() <= (1.0 - RISE) * normal.length() {
-            Side::Beside
-        } else if self.is_solid && height < 0.0 {
-            Side::Behind
-        } else {
-            Side::Front
-        }
-    }
-
-    /// Adds the triangles around the vertex that a half-edge starts at.
-    fn add_around(&self, first: u32, fan: &mut Fan) {
-        let mut half_edge = first;
-        loop {
-            self.add(half_edge, fan);
-            if fan.is_done() {
+        let (mut at, mut u) = (first, first_v);
+        while let Some(twin) = self.twins.twin(previous(at)) {
+            if twin == first {
                 return;
             }
-            match self.twins.twin(previous(half_edge)) {
-                Some(twin) if twin == first => return,
-                Some(twin) => half_edge = twin,
-                None => break,
+            at = twin;
+            let v = self.corner(at, 2) - start;
+            if visit(u, v).is_break() {
+                return;
             }
+            u = v;
         }
         // A border: on from the other side.
-        half_edge = first;
-        while let Some(twin) = self.twins.twin(half_edge) {
-            half_edge = next(twin);
-            self.add(half_edge, fan);
-            if fan.is_done() {
+        let (mut at, mut v) = (first, first_u);
+        while let Some(twin) = self.twins.twin(at) {
+            at = next(twin);
+            let u = self.corner(at, 1) - start;
+            if visit(u, v).is_break() {
                 return;
             }
+            v = u;
         }
     }
 
-    /// Adds the triangle of a half-edge as it is seen from its start.
-    fn add(&self, half_edge: u32, fan: &mut Fan) {
-        let [a, b, c] = self.corners(half_edge);
-        let (u, v) = (b - a, c - a);
-        fan.normal += u.cross(v);
-        let rises = |edge: DVec3| {
-            let height = edge.dot(fan.direction);
-            height > 0.0 && height * height > fan.rise * fan.rise * edge.length_squared()
-        };
-        fan.rises |= rises(u) | rises(v);
-    }
-
-    /// The corners of the triangle, from the start of a half-edge on.
-    fn corners(&self, half_edge: u32) -> [DVec3; 3] {
+    /// A corner of the triangle of a half-edge, counted from its start.
+    #[inline(always)]
+    fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
         let triangle = self.triangles[half_edge as usize / 3];
-        let i = half_edge as usize % 3;
-        [i, (i + 1) % 3, (i + 2) % 3].map(|i| self.vertices[triangle[i] as usize].as_dvec3())
+        self.vertices[triangle[(half_edge as usize + i) % 3] as usize].as_dvec3()
     }
 }
 
-/// What is known of the triangles around a feature.
-struct Fan {
-    rises: bool,
-    /// The sum of their normals.
-    normal: DVec3,
-    direction: DVec3,
-    rise: f64,
-    is_hasty: bool,
-}
-
-impl Fan {
-    /// Whether no more needs to be known.
-    fn is_done(&self) -> bool {
-        self.is_hasty && self.rises
-    }
+fn half_edge(triangle: u32, feature: Feature) -> u32 {
+    3 * triangle
+        + match feature {
+            Feature::Face => 0,
+            Feature::Edge(i) | Feature::Vertex(i) => u32::from(i),
+        }
 }
 
 fn next(half_edge: u32) -> u32 {

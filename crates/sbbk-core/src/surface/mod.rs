@@ -8,7 +8,7 @@
 //! ```
 //! use glamx::{DVec3, Vec3};
 //! use sbbk_core::contact::Feature;
-//! use sbbk_core::surface::{Side, Surface, SurfaceKind};
+//! use sbbk_core::surface::{Surface, SurfaceKind};
 //!
 //! let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
 //! let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
@@ -17,17 +17,17 @@
 //!
 //! let around = surface.around(&vertices, &triangles);
 //! // Down from the origin nothing of the solid is nearer to what is there.
-//! assert_eq!(around.side(0, Feature::Vertex(0), -DVec3::ONE), Side::Front);
+//! assert!(around.is_front(0, Feature::Vertex(0), -DVec3::ONE));
 //! // Along this one the next vertex on the x axis is nearer.
-//! assert_eq!(around.side(0, Feature::Vertex(0), DVec3::new(1.0, -1.0, -1.0)), Side::Beside);
-//! assert_eq!(around.side(0, Feature::Vertex(0), DVec3::ONE), Side::Behind);
+//! assert!(!around.is_front(0, Feature::Vertex(0), DVec3::new(1.0, -1.0, -1.0)));
+//! assert!(around.is_behind(0, Feature::Vertex(0), DVec3::ONE));
 //! ```
 
 mod around;
 mod kind;
 mod twins;
 
-pub use around::{Around, Side, Twins};
+pub use around::{Around, Twins};
 pub use kind::SurfaceKind;
 
 use glamx::Vec3;

@@ -26,3 +26,4 @@ mod shape;
 pub(crate) use pair::ConvexPair;
 pub(crate) use parts::Parts;
 pub(super) use placed::PlacedPart;
+pub(super) use query::Near;

@@ -14,6 +14,7 @@ pub(crate) struct ConvexPair<'a> {
     pub(crate) parts: Parts<'a>,
     pub(crate) mesh_place: MeshPlace,
     pub(crate) contacts: ContactGenerator,
+    pub(crate) has_patches: bool,
 }
 
 /// Parry's GJK ends when it knows a distance, radii not counted, to this share; it calls triangles

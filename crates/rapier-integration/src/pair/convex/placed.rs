@@ -18,6 +18,7 @@ use super::half_space::half_space_points;
 use super::pair::ConvexPair;
 use super::parts::{Part, Parts};
 use super::shape::{ConvexShape, Extent};
+use crate::pair::patches::Outline;
 use crate::pair::pose::{MeshPlace, PairPose};
 
 /// A part at the pose of a query: what is computed once for all triangles near it.
@@ -143,6 +144,19 @@ impl Question<'_> {
             _ => self.ask_parry(manifold),
         }
         manifold.match_contacts(previous_points);
+    }
+
+    /// In the frame of the part; `None` where the cones reject the contact.
+    pub(super) fn outline(&self, contact: &ConvexContact) -> Option<Outline> {
+        let (pos12, cones) = self.pair();
+        let Normals { normals, .. } = Normals::new(pos12, self.normals(contact), cones)?;
+        let [_, normal] = self.mesh_place.swap(normals);
+        Some(Outline {
+            part: if self.part.pose.is_some() { self.placed.index } else { 0 },
+            normal,
+            point: contact.on_triangle.as_vec3(),
+            distance: (contact.distance - f64::from(self.part.shape.radius())) as Real,
+        })
     }
 
     /// Unit vectors from each body to the other, in its frame and in the order of the pair.

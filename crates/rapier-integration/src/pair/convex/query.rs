@@ -17,6 +17,7 @@ use crate::ContactGenerator;
 use crate::mesh::{Change, KnownMesh, TreeCache};
 use crate::pair::driver::{Limits, Moving, Pair, PairQuery, Scratch, Seen};
 use crate::pair::order::{Candidate, OrderKey};
+use crate::pair::patches::{Outline, patch_size};
 use crate::pair::pose::{MeshPlace, PairPose};
 
 impl<'a> Pair for ConvexPair<'a> {
@@ -65,6 +66,27 @@ impl ConvexQuery<'_> {
         self.pair.parts.with(index, |part| {
             let placed = self.placed(index, &part, scratch);
             triangles_near(placed, part.shape, mesh, margin, counters, found);
+        });
+    }
+
+    /// Hands on what there is to ask about a triangle and a part.
+    #[inline(always)]
+    fn ask(&self, index: u32, part: u32, scratch: &mut Scratch, then: impl FnOnce(Question<'_>)) {
+        let ConvexPair { pose, mesh, parts, mesh_place, .. } = *self.pair;
+        let triangle = mesh.mesh.triangle(index);
+        let cone = mesh.mesh.triangle_normal_constraints(index);
+        let cone = cone.as_ref().map(|cone| cone as &dyn NormalConstraints);
+        let prediction = pose.prediction;
+        parts.with(part, |shape| {
+            let placed = self.placed(part, &shape, scratch);
+            then(Question {
+                placed,
+                part: &shape,
+                triangle: &triangle,
+                cone,
+                mesh_place,
+                prediction,
+            });
         });
     }
 
@@ -204,6 +226,28 @@ impl PairQuery for ConvexQuery<'_> {
         }
     }
 
+    fn contacts(scratch: &mut Scratch) -> &mut Vec<Option<Near>> {
+        &mut scratch.convex_contacts
+    }
+
+    fn patch_size(&self) -> Option<Real> {
+        let has_patches = self.pair.has_patches && self.pair.mesh.is_rigid();
+        has_patches.then(|| patch_size(self.moving().ball.radius))
+    }
+
+    fn outline(
+        &self,
+        Near(contact): &Near,
+        candidate: &Candidate<Vec3>,
+        scratch: &mut Scratch,
+    ) -> Option<Outline> {
+        let contact = contact.as_ref()?;
+        let [triangle, index] = self.pair.mesh_place.swap(candidate.subshapes);
+        let mut outline = None;
+        self.ask(triangle, index, scratch, |question| outline = question.outline(contact));
+        outline
+    }
+
     #[inline(always)]
     fn write<M, C>(
         &mut self,
@@ -217,16 +261,8 @@ impl PairQuery for ConvexQuery<'_> {
         M: Default + Clone + Send + Sync,
         C: Default + Copy + Send + Sync,
     {
-        let ConvexPair { pose, mesh, parts, mesh_place, .. } = *self.pair;
-        let [index, part_index] = mesh_place.swap(candidate.subshapes);
-        let triangle = mesh.mesh.triangle(index);
-        let cone = mesh.mesh.triangle_normal_constraints(index);
-        let cone = cone.as_ref().map(|cone| cone as &dyn NormalConstraints);
-        parts.with(part_index, |part| {
-            let placed = self.placed(part_index, &part, scratch);
-            let prediction = pose.prediction;
-            let question =
-                Question { placed, part: &part, triangle: &triangle, cone, mesh_place, prediction };
+        let [index, part] = self.pair.mesh_place.swap(candidate.subshapes);
+        self.ask(index, part, scratch, |question| {
             question.refresh(contact.as_ref(), previous_points, manifold);
             if manifold.points.is_empty()
                 && let Some(axis) = question.axis_of(manifold)
@@ -239,4 +275,5 @@ impl PairQuery for ConvexQuery<'_> {
 
 /// The contact of a triangle that may be in reach, if it is known already: that with the core of the
 /// shape.
+#[derive(Copy, Clone)]
 pub(crate) struct Near(Option<ConvexContact>);

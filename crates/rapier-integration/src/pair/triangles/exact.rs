@@ -67,14 +67,14 @@ pub(super) fn fill<M, C: Default + Copy>(
     manifold.local_n2 = pos12.rotation.inverse() * -normal1.normal;
 }
 
-struct ConstrainedNormal {
-    normal: Vector,
+pub(super) struct ConstrainedNormal {
+    pub(super) normal: Vector,
     is_changed: bool,
 }
 
 /// The normal in the cones of both triangles; `None` if they exclude it.
 #[inline(always)]
-fn constrained_normal(
+pub(super) fn constrained_normal(
     contact: &TriangleContact,
     constraints: Constraints<'_>,
     pos12: &Pose,

@@ -34,6 +34,7 @@ use crate::ContactGenerator;
 use crate::mesh::{Change, Hierarchy, KnownMesh, TreeCache};
 use crate::pair::driver::{Moving, Pair, Scratch};
 use crate::pair::order::OrderKey;
+use crate::pair::patches::patch_size;
 use crate::pair::pose::{MeshPlace, PairPose};
 
 /// A mesh and a height field.
@@ -44,6 +45,7 @@ pub(crate) struct FieldPair<'a> {
     pub(crate) field: &'a HeightField,
     pub(crate) mesh_place: MeshPlace,
     pub(crate) contacts: ContactGenerator,
+    pub(crate) has_patches: bool,
 }
 
 impl FieldPair<'_> {
@@ -86,6 +88,8 @@ impl<'a> Pair for FieldPair<'a> {
             pose: self.pose,
             parrys_pose: self.pose.pos12,
             generator: self.contacts,
+            patch_size: (self.has_patches && self.mesh.is_rigid())
+                .then(|| patch_size(self.mesh.ball().radius)),
             points: ManifoldPoints::new(),
         };
         (change, query)

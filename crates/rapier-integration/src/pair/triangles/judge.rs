@@ -17,10 +17,9 @@ use sbbk_core::contact::{
     Feature, ManifoldPoints, Outward, TriangleContact, outward, outward_within,
 };
 use sbbk_core::query::TrianglePair;
-use sbbk_core::surface::{Around, Side};
+use sbbk_core::surface::Around;
 
 use super::regions::Regions;
-use crate::pair::driver::Seen;
 use crate::pair::pose::PairPose;
 
 /// What is known of the surfaces of two shapes.
@@ -57,8 +56,8 @@ pub(super) struct Judge<'a, S> {
 }
 
 impl<S: Surfaces> Judge<'_, S> {
-    /// The contact of the surfaces that the contact of their triangles stands for. `points` stays
-    /// empty if it is the same.
+    /// The contact of the surfaces that the contact of their triangles stands for, if there is one:
+    /// perhaps only in a second round. `points` stays empty if it is the same.
     #[inline(always)]
     pub(super) fn verdict(
         &self,
@@ -66,10 +65,10 @@ impl<S: Surfaces> Judge<'_, S> {
         contact: TriangleContact,
         regions: &mut Regions,
         points: &mut ManifoldPoints,
-    ) -> Seen<TriangleContact> {
+    ) -> Option<TriangleContact> {
         points.clear();
         match [self.shapes.around(0), self.shapes.around(1)] {
-            [None, None] => Seen::Contact(contact),
+            [None, None] => Some(contact),
             around => self.by_surfaces(around, local, contact, regions, points),
         }
     }
@@ -81,7 +80,7 @@ impl<S: Surfaces> Judge<'_, S> {
         contact: TriangleContact,
         regions: &mut Regions,
         points: &mut ManifoldPoints,
-    ) -> Seen<TriangleContact> {
+    ) -> Option<TriangleContact> {
         let inverse = self.pose.placement12.inverse;
         let own = |i: usize, direction: DVec3| if i == 0 { direction } else { inverse * direction };
         let is_solid = around.map(|around| around.is_some_and(|around| around.is_solid));
@@ -89,26 +88,35 @@ impl<S: Surfaces> Judge<'_, S> {
         let TriangleContact { normal, distance, features, .. } = contact;
         let is_crossing = features.is_crossing();
         if is_crossing && !has_solid {
-            return Seen::Contact(contact);
+            return Some(contact);
         }
         if !is_crossing {
             if distance > self.shapes.near() {
-                return Seen::Contact(contact);
+                return Some(contact);
             }
-            let side = |i: usize, feature, direction, other: Feature| {
-                around[i].map_or(Side::Front, |around| match other {
-                    Feature::Face => around.side_on_face(self.pair[i], feature, own(i, direction)),
-                    _ => around.side(self.pair[i], feature, own(i, direction)),
+            let features = [features.feature1(), features.feature2()];
+            let directions = [own(0, normal), own(1, -normal)];
+            let is_front = |i: usize| {
+                around[i].is_none_or(|around| match features[1 - i] {
+                    Feature::Face => {
+                        around.is_front_of_face(self.pair[i], features[i], directions[i])
+                    }
+                    _ => around.is_front(self.pair[i], features[i], directions[i]),
                 })
             };
-            let [feature1, feature2] = [features.feature1(), features.feature2()];
-            let sides = [side(0, feature1, normal, feature2), side(1, feature2, -normal, feature1)];
-            if sides == [Side::Front; 2] {
-                return Seen::Contact(contact);
+            let is_behind = |i: usize| {
+                around[i].is_some_and(|around| {
+                    around.is_behind(self.pair[i], features[i], directions[i])
+                })
+            };
+            let are_front = [is_front(0), is_front(1)];
+            if are_front == [true; 2] {
+                return Some(contact);
             }
-            let have_passed = has_solid && (0..2).all(|i| !is_solid[i] || sides[i] == Side::Behind);
+            let may_have_passed = has_solid && (0..2).all(|i| !(is_solid[i] && are_front[i]));
+            let have_passed = may_have_passed && (0..2).all(|i| !is_solid[i] || is_behind(i));
             if !have_passed {
-                return Seen::Nothing;
+                return None;
             }
         }
         let is_end = |i: usize, feature: Feature, direction: DVec3| {
@@ -120,25 +128,19 @@ impl<S: Surfaces> Judge<'_, S> {
             let contact = outward_within(t1, t2, is_solid, is_end, greatest, points);
             let contact = contact.filter(|contact| is_crossing || contact.distance <= 0.0);
             if contact.is_none() && !is_crossing && distance.abs() < TOUCHING {
-                return Seen::Nothing;
+                return None;
             }
             regions.add(self.pair, contact.as_ref());
-            return contact.map_or(Seen::Later, Seen::Contact);
+            return contact;
         }
         if !regions.is_lost(self.pair) {
-            return Seen::Nothing;
+            return None;
         }
-        let Some(Outward { contact, is_extremal }) = outward(t1, t2, is_solid, is_end, points)
-        else {
-            return Seen::Nothing;
-        };
+        let Outward { contact, is_extremal } = outward(t1, t2, is_solid, is_end, points)?;
         let is_overlap = is_crossing || contact.distance <= 0.0;
         let is_shallow = contact.distance >= -greatest;
-        if is_overlap && (is_shallow || is_extremal && self.is_deep(local, &contact)) {
-            Seen::Contact(contact)
-        } else {
-            Seen::Nothing
-        }
+        let is_meant = is_overlap && (is_shallow || is_extremal && self.is_deep(local, &contact));
+        is_meant.then_some(contact)
     }
 
     /// Whether a contact is deep because the surface of a body is far, not because this triangle is

@@ -18,6 +18,7 @@ use crate::ContactGenerator;
 use crate::mesh::{Change, Hierarchy, KnownMesh, MeshSurface, PreparedMesh, TreeCache};
 use crate::pair::driver::{Moving, Pair, Scratch};
 use crate::pair::order::OrderKey;
+use crate::pair::patches::patch_size;
 use crate::pair::pose::PairPose;
 
 /// Two meshes.
@@ -28,6 +29,7 @@ pub(crate) struct MeshPair<'a> {
     pub(crate) contacts: ContactGenerator,
     /// Whether contacts are those of surfaces.
     pub(crate) has_surfaces: bool,
+    pub(crate) has_patches: bool,
 }
 
 impl MeshPair<'_> {
@@ -72,18 +74,17 @@ impl<'a> Pair for MeshPair<'a> {
         let [tree1, tree2] = known.each_ref().map(|known| known.as_ref()?.tree);
         let trees = tree1.zip(tree2).map(<[_; 2]>::from);
         let surfaces = known.map(|known| Some(known?.surface).filter(|_| self.has_surfaces));
-        let near = if surfaces.iter().any(Option::is_some) {
-            let radii = self.meshes.map(|mesh| f64::from(mesh.ball().radius));
-            NEAR * radii[0].min(radii[1])
-        } else {
-            f64::INFINITY
-        };
+        let [radius1, radius2] = [mesh1, mesh2].map(|mesh| mesh.ball().radius);
+        let radius = radius1.min(radius2);
+        let has_surface = surfaces.iter().any(Option::is_some);
+        let near = if has_surface { NEAR * f64::from(radius) } else { f64::INFINITY };
         let is_second_first = self.is_second_first();
         let query = TriangleQuery {
             shapes: Meshes { pair: self, trees, surfaces, near, is_second_first, cache },
             pose: self.pose,
             parrys_pose: self.parrys_pose(is_second_first),
             generator: self.contacts,
+            patch_size: (self.has_patches && are_rigid).then(|| patch_size(radius)),
             points: ManifoldPoints::new(),
         };
         (change, query)

@@ -16,5 +16,6 @@ mod walk;
 pub use exact::TriangleContacts;
 pub(crate) use heightfield::FieldPair;
 pub(crate) use meshes::MeshPair;
+pub(super) use query::Found;
 pub(crate) use regions::Regions;
 pub(crate) use walk::walk;

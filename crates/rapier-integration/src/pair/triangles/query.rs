@@ -6,14 +6,14 @@ use parry3d::shape::Triangle;
 use sbbk_core::contact::{
     FeaturePair, ManifoldPoints, TriangleContact, clip, contact, contact_from, push_closest,
 };
-use sbbk_core::query::TrianglePair;
 use sbbk_core::traverse::{Counters, GREATEST_SLACK};
 
-use super::exact::{Constraints, fill, local_pair};
+use super::exact::{Constraints, constrained_normal, fill, local_pair};
 use super::judge::{Judge, Surfaces};
 use crate::ContactGenerator;
 use crate::pair::driver::{Limits, Moving, PairQuery, Scratch, Seen};
 use crate::pair::order::{Candidate, OrderKey};
+use crate::pair::patches::Outline;
 use crate::pair::pose::PairPose;
 
 /// The features that were closest at the last query, to be tried first.
@@ -48,15 +48,18 @@ pub(crate) struct TriangleQuery<'q, S> {
     /// The pose that stock Parry passes on, bit for bit.
     pub(super) parrys_pose: Pose,
     pub(super) generator: ContactGenerator,
-    /// Of the contact found last.
+    pub(super) patch_size: Option<Real>,
+    /// Memory for the points of a contact.
     pub(super) points: ManifoldPoints,
 }
 
-/// A contact within the prediction distance. Its points are in [`TriangleQuery::points`].
+/// A contact within the prediction distance.
+#[derive(Copy, Clone)]
 pub(crate) struct Found {
-    triangles: [Triangle; 2],
-    local: TrianglePair,
     contact: TriangleContact,
+    /// Whether it is that of the triangles: its closest points are contacts too. Else it is one along
+    /// an axis that leads out of solids.
+    has_closest: bool,
 }
 
 impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
@@ -118,29 +121,44 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
             return Seen::Nothing;
         }
         let judge = Judge { shapes: &self.shapes, pose: self.pose, pair: candidate.subshapes };
-        let contact = match judge.verdict(&local, contact, &mut scratch.regions, &mut self.points) {
-            Seen::Contact(contact) => contact,
-            Seen::Nothing => return Seen::Nothing,
-            Seen::Later => return Seen::Later,
-            Seen::Same => return Seen::Same,
-        };
-        if self.points.is_empty() {
-            clip(t1, t2, contact.normal, &mut self.points);
-            push_closest(t1, t2, &contact, &mut self.points);
-        }
-        let deepest = -self.shapes.near();
-        self.points.iter_mut().for_each(|point| point.distance = point.distance.max(deepest));
-        Seen::Contact(Found { triangles, local, contact })
+        let points = &mut self.points;
+        let contact = judge.verdict(&local, contact, &mut scratch.regions, points);
+        contact.map(|contact| Found { contact, has_closest: points.is_empty() }).into()
     }
 
     fn needs_more(&mut self, scratch: &mut Scratch) -> bool {
         scratch.regions.close()
     }
 
+    fn contacts(scratch: &mut Scratch) -> &mut Vec<Option<Found>> {
+        &mut scratch.triangle_contacts
+    }
+
+    fn patch_size(&self) -> Option<Real> {
+        self.patch_size
+    }
+
+    fn outline(
+        &self,
+        Found { contact, .. }: &Found,
+        candidate: &Candidate<Hint>,
+        _: &mut Scratch,
+    ) -> Option<Outline> {
+        let TriangleContact { distance, point1, .. } = *contact;
+        let [triangle1, _] = self.shapes.triangles(candidate.subshapes)?;
+        let pos12 = &self.pose.pos12;
+        let mut normal = None;
+        self.shapes.with_constraints(candidate.subshapes, |constraints| {
+            normal = constrained_normal(contact, constraints, pos12);
+        });
+        let point = (triangle1.a.as_dvec3() + point1).as_vec3();
+        Some(Outline { part: 0, normal: normal?.normal, point, distance: distance as Real })
+    }
+
     #[inline(always)]
     fn write<M, C>(
         &mut self,
-        Found { triangles, local, contact }: Found,
+        Found { contact, has_closest }: Found,
         candidate: &mut Candidate<Hint>,
         _: Limits,
         _: &mut Scratch,
@@ -150,9 +168,20 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         M: Default + Clone + Send + Sync,
         C: Default + Copy + Send + Sync,
     {
-        let Self { shapes, pose, parrys_pose, generator, points } = self;
+        let Self { shapes, pose, parrys_pose, generator, points, .. } = self;
+        let Some(triangles) = shapes.triangles(candidate.subshapes) else {
+            return manifold.points.clear();
+        };
         shapes.with_constraints(candidate.subshapes, |constraints| match generator {
             ContactGenerator::Exact => {
+                let local = local_pair(&pose.placement12, &triangles);
+                let [t1, t2] = &local.corners;
+                clip(t1, t2, contact.normal, points);
+                if has_closest {
+                    push_closest(t1, t2, &contact, points);
+                }
+                let deepest = -shapes.near();
+                points.iter_mut().for_each(|point| point.distance = point.distance.max(deepest));
                 fill(pose, &local, &contact, points, constraints, previous_points, manifold);
             }
             ContactGenerator::Parry => {
