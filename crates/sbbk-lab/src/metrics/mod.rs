@@ -20,4 +20,4 @@ pub use pose_pairs::{PosePairs, Sweep};
 pub use run::{Run, RunPlan, Runner, Sample, run};
 pub use statistics::{Summary, geometric_mean, ratio};
 pub use step::{StepTimes, timed_step};
-pub use world_state::WorldState;
+pub use world_state::{WorldState, solver_points};

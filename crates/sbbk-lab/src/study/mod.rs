@@ -16,6 +16,7 @@ pub mod hard;
 mod helicopter;
 mod meshes;
 mod motion;
+pub mod one_step;
 mod pair;
 mod pile;
 mod progress;

@@ -7,6 +7,7 @@ mod everyday;
 mod front;
 mod hard;
 mod long_runs;
+mod one_step;
 mod soft;
 mod support;
 mod terrain;
