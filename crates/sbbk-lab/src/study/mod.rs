@@ -37,9 +37,10 @@ use sbbk_core::tree::{BuildError, BuildOptions, LayerPlan, Tree};
 use thiserror::Error;
 
 use crate::mesh::Mesh;
+use crate::report::ReportError;
 use crate::scene::SceneError;
 
-/// A mesh does not serve.
+/// A mesh does not serve, or a page cannot be written.
 #[derive(Debug, Error)]
 pub enum StudyError {
     /// A scene could not be built.
@@ -54,6 +55,9 @@ pub enum StudyError {
         #[source]
         cause: BuildError,
     },
+    /// A page could not be written.
+    #[error(transparent)]
+    Report(#[from] ReportError),
 }
 
 /// Parry's shape of a mesh.

@@ -1,0 +1,220 @@
+// Draws frames: bodies of one shape are one instanced mesh a run, lit at their vertices.
+
+const PALETTE = [[214, 160, 96], [120, 160, 210], [170, 190, 110], [205, 120, 110],
+  [160, 140, 190], [225, 200, 120]];
+const FIXED = [200, 204, 209];
+const BACKGROUND = [0.9, 0.925, 0.95];
+const FIELD_OF_VIEW = 35;
+// From the target to the eye.
+const VIEW = [0.5, 0.5, 1];
+
+const BODY_VERTEX = `#version 300 es
+in vec3 position; in vec3 normal; in vec3 place; in vec4 turn; in vec3 tint;
+uniform mat4 viewMatrix; uniform mat4 projectionMatrix; uniform vec3 sun;
+out vec3 colour;
+vec3 turned(vec3 v) { return v + 2.0 * cross(turn.xyz, cross(turn.xyz, v) + turn.w * v); }
+void main() {
+  vec3 n = turned(normal);
+  // What is not there has no rotation, and shrinks to a point.
+  vec3 world = turned(position) * min(1.0, 2.0 * dot(turn, turn)) + place;
+  vec3 light = vec3(0.95, 0.91, 0.83) * max(dot(n, sun), 0.0)
+    + mix(vec3(0.10, 0.09, 0.08), vec3(0.30, 0.33, 0.38), 0.5 + 0.5 * n.y);
+  colour = pow(min(tint * light, 1.0), vec3(1.0 / 2.2));
+  gl_Position = projectionMatrix * viewMatrix * vec4(world, 1.0);
+}`;
+const BODY_FRAGMENT = `#version 300 es
+precision mediump float;
+in vec3 colour; out vec4 seen;
+void main() { seen = vec4(colour, 1.0); }`;
+const POINT_VERTEX = `#version 300 es
+in vec3 position; uniform mat4 viewMatrix; uniform mat4 projectionMatrix; uniform float size;
+void main() {
+  gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
+  gl_PointSize = size;
+}`;
+const POINT_FRAGMENT = `#version 300 es
+precision mediump float;
+uniform vec3 colour; uniform float hole; out vec4 seen;
+void main() {
+  float r = 2.0 * length(gl_PointCoord - 0.5);
+  if (r > 1.0 || r < hole) discard;
+  seen = vec4(colour, 1.0);
+}`;
+
+// Vertices with normals: smooth where faces nearly agree, else those of the face.
+function faceted({ vertices, triangles }) {
+  const corner = (index) => vertices.subarray(3 * index, 3 * index + 3);
+  const unit = (v) => { const n = Math.hypot(...v) || 1; return v.map((x) => x / n); };
+  const smooth = new Float32Array(vertices.length);
+  const faces = [];
+  for (let at = 0; at < triangles.length; at += 3) {
+    const [a, b, c] = [0, 1, 2].map((k) => corner(triangles[at + k]));
+    const [u, v] = [b, c].map((p) => [0, 1, 2].map((k) => p[k] - a[k]));
+    const face = [0, 1, 2].map((k) =>
+      u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
+    faces.push(unit(face));
+    for (let k = 0; k < 9; k++) smooth[3 * triangles[at + Math.floor(k / 3)] + (k % 3)] += face[k % 3];
+  }
+  const [position, normal, index, known] = [[], [], [], new Map()];
+  triangles.forEach((vertex, at) => {
+    const face = faces[Math.floor(at / 3)];
+    const mean = unit(Array.from(smooth.subarray(3 * vertex, 3 * vertex + 3)));
+    const agrees = mean[0] * face[0] + mean[1] * face[1] + mean[2] * face[2] > 0.6;
+    const found = agrees ? mean : face;
+    const key = agrees ? vertex : `${vertex} ${face.map((x) => x.toFixed(2))}`;
+    if (!known.has(key)) {
+      known.set(key, position.length / 3);
+      position.push(...corner(vertex));
+      normal.push(...found);
+    }
+    index.push(known.get(key));
+  });
+  return { position, normal, index };
+}
+
+class Drawing {
+  constructor(canvas, data) {
+    this.data = data;
+    this.canvas = canvas;
+    this.renderer = new OGL.Renderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    this.gl = this.renderer.gl;
+    this.camera = new OGL.Camera(this.gl, { fov: FIELD_OF_VIEW });
+    this.level = 0;
+    this.showsContacts = true;
+    const sun = { value: [0.35, 0.8, 0.5].map((k, _, v) => k / Math.hypot(...v)) };
+    const bodies = new OGL.Program(this.gl,
+      { vertex: BODY_VERTEX, fragment: BODY_FRAGMENT, uniforms: { sun }, cullFace: false });
+    this.runs = data.runs.map((run) => ({ run, groups: this.groups(run, bodies), ...this.points(run) }));
+    this.look();
+  }
+
+  // For each shape of a run: its objects, and a mesh of each level that share their poses.
+  groups(run, program) {
+    const linear = (colour) => colour.map((channel) => (channel / 255) ** 2.2);
+    let moving = 0;
+    const tints = run.shapes.map((_, object) =>
+      linear(run.fixed[object] ? FIXED : PALETTE[moving++ % PALETTE.length]));
+    return this.data.shapes.flatMap((levels, shape) => {
+      const objects = run.shapes.flatMap((other, object) => (other === shape ? [object] : []));
+      if (!objects.length) return [];
+      const instanced = (size, data) => ({ instanced: 1, size, data });
+      const place = instanced(3, new Float32Array(3 * objects.length));
+      const turn = instanced(4, new Float32Array(4 * objects.length));
+      const tint = instanced(3, new Float32Array(objects.flatMap((object) => tints[object])));
+      const meshes = levels.map((level) => {
+        const { position, normal, index } = faceted(level);
+        const geometry = new OGL.Geometry(this.gl, {
+          position: { size: 3, data: new Float32Array(position) },
+          normal: { size: 3, data: new Float32Array(normal) },
+          index: { data: new Uint32Array(index) },
+          place: { ...place }, turn: { ...turn }, tint: { ...tint },
+        });
+        return new OGL.Mesh(this.gl, { geometry, program, frustumCulled: false });
+      });
+      return [{ objects, place: place.data, turn: turn.data, meshes }];
+    });
+  }
+
+  // Contacts of a frame, and the mark of the first difference.
+  points(run) {
+    const most = Math.max(1, ...run.firsts.slice(1).map((end, frame) => end - run.firsts[frame]));
+    const make = (count, size, colour, hole) => {
+      const program = new OGL.Program(this.gl, {
+        vertex: POINT_VERTEX, fragment: POINT_FRAGMENT, depthTest: false, depthWrite: false,
+        uniforms: { size: { value: size }, colour: { value: colour }, hole: { value: hole } },
+      });
+      const position = { size: 3, data: new Float32Array(3 * count) };
+      const geometry = new OGL.Geometry(this.gl, { position });
+      return new OGL.Mesh(this.gl, { mode: this.gl.POINTS, geometry, program, frustumCulled: false });
+    };
+    const mark = make(1, 34, [0.85, 0, 0.1], 0.75);
+    if (this.data.difference) {
+      const { position } = mark.geometry.attributes;
+      position.data.set(this.data.difference.point);
+      position.needsUpdate = true;
+    }
+    return { contacts: make(most, 4, [0.85, 0, 0.1], 0), mark };
+  }
+
+  // The camera that sees all moving bodies in the middle of the run.
+  look() {
+    const [place, turn] = [[], []];
+    const bounds = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+    const run = this.data.runs[this.data.runs.length - 1];
+    const all = run.fixed.every((fixed) => fixed);
+    run.shapes.forEach((shape, object) => {
+      if (run.fixed[object] && !all) return;
+      const { vertices } = this.data.shapes[shape][1];
+      const reach = vertices.reduce((most, k) => Math.max(most, Math.abs(k)), 0);
+      for (const share of [0.2, 0.6, 1]) {
+        if (!pose(this.data, run, object, share * (run.frames - 1), place, turn)) continue;
+        for (let k = 0; k < 3; k++) {
+          bounds[0][k] = Math.min(bounds[0][k], place[k] - reach);
+          bounds[1][k] = Math.max(bounds[1][k], place[k] + reach);
+        }
+      }
+    });
+    const [least, most] = bounds;
+    const target = least.map((k, axis) => 0.5 * (k + most[axis]));
+    const radius = 0.5 * Math.hypot(...least.map((k, axis) => most[axis] - k));
+    const far = (2.3 * radius) / Math.hypot(...VIEW);
+    this.camera.position.set(...target.map((k, axis) => k + far * VIEW[axis]));
+    Object.assign(this.camera, { near: 0.02 * radius, far: 40 * radius });
+    this.orbit = new OGL.Orbit(this.camera,
+      { element: this.canvas, target: new OGL.Vec3(...target), ease: 1, inertia: 0 });
+  }
+
+  // Of each run, its part of the canvas, in pixels from below.
+  views() {
+    const { width, height } = this.gl.canvas;
+    const count = this.runs.length;
+    return this.runs.map((_, index) => (width > height
+      ? { x: Math.round((index * width) / count), y: 0, width: Math.round(width / count), height }
+      : { x: 0, y: Math.round(((count - 1 - index) * height) / count), width,
+        height: Math.round(height / count) }));
+  }
+
+  resize() {
+    const { clientWidth, clientHeight } = this.canvas;
+    this.renderer.dpr = Math.min(window.devicePixelRatio, 2);
+    this.renderer.setSize(clientWidth, clientHeight);
+    this.canvas.style.width = this.canvas.style.height = "";
+  }
+
+  draw(time) {
+    const { gl, data, camera } = this;
+    this.orbit.update();
+    const views = this.views();
+    camera.perspective({ aspect: views[0].width / views[0].height });
+    camera.updateMatrixWorld();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.viewport(0, 0, gl.canvas.width, gl.canvas.height);
+    gl.depthMask(true);
+    this.renderer.state.depthMask = true;
+    gl.clearColor(...BACKGROUND, 1);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    this.runs.forEach(({ run, groups, contacts, mark }, index) => {
+      const { x, y, width, height } = views[index];
+      gl.viewport(x, y, width, height);
+      for (const { objects, place, turn, meshes } of groups) {
+        objects.forEach((object, at) => pose(data, run, object, time,
+          place.subarray(3 * at, 3 * at + 3), turn.subarray(4 * at, 4 * at + 4)));
+        const mesh = meshes[this.level];
+        mesh.geometry.attributes.place.needsUpdate = mesh.geometry.attributes.turn.needsUpdate = true;
+        mesh.draw({ camera });
+      }
+      if (!this.showsContacts) return;
+      const frame = Math.min(Math.floor(time), run.frames - 1);
+      const [first, end] = [run.firsts[frame], run.firsts[frame + 1]];
+      const { position } = contacts.geometry.attributes;
+      for (let at = first; at < end; at++) {
+        for (let k = 0; k < 3; k++) position.data[3 * (at - first) + k] = data.quantum * run.contacts[k][at];
+      }
+      position.needsUpdate = true;
+      contacts.geometry.setDrawRange(0, end - first);
+      if (end > first) contacts.draw({ camera });
+      const step = data.difference?.step ?? -Infinity;
+      if (Math.abs(time * data.stride - step) < 12) mark.draw({ camera });
+    });
+  }
+}
