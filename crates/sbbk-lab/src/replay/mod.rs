@@ -17,6 +17,8 @@ mod difference;
 mod encode;
 mod recorder;
 mod shapes;
+#[cfg(test)]
+mod tests;
 
 use std::error::Error;
 use std::fs;
@@ -79,5 +81,5 @@ fn page(title: &str, runs: &[Recorder]) -> io::Result<String> {
         ("@data@", encode(runs)?),
     ];
     let page = TEMPLATE.to_owned();
-    Ok(parts.iter().fold(page, |page, (name, part)| page.replacen(name, part, 1)))
+    Ok(parts.iter().fold(page, |page, (name, part)| page.replace(name, part)))
 }

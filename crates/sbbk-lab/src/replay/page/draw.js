@@ -72,24 +72,45 @@ function faceted({ vertices, triangles }) {
   return { position, normal, index };
 }
 
+// Whether each edge has a neighbour, so that backs of triangles cannot be seen.
+function isClosed({ triangles }) {
+  const edges = new Set();
+  const name = (at, next) => triangles[at] * 2 ** 26 + triangles[next];
+  for (let at = 0; at < triangles.length; at += 3) {
+    for (let k = 0; k < 3; k++) edges.add(name(at + k, at + ((k + 1) % 3)));
+  }
+  for (let at = 0; at < triangles.length; at += 3) {
+    for (let k = 0; k < 3; k++) if (!edges.has(name(at + ((k + 1) % 3), at + k))) return false;
+  }
+  return true;
+}
+
+// Without a graphics card smooth edges cost more than all else.
+function isSoftware() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const named = gl?.getExtension("WEBGL_debug_renderer_info");
+  return /swiftshader|llvmpipe|software/i.test(named ? gl.getParameter(named.UNMASKED_RENDERER_WEBGL) : "");
+}
+
 class Drawing {
   constructor(canvas, data) {
     this.data = data;
     this.canvas = canvas;
-    this.renderer = new OGL.Renderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    const antialias = !isSoftware();
+    this.renderer = new OGL.Renderer({ canvas, antialias, powerPreference: "high-performance" });
     this.gl = this.renderer.gl;
     this.camera = new OGL.Camera(this.gl, { fov: FIELD_OF_VIEW });
     this.level = 0;
     this.showsContacts = true;
     const sun = { value: [0.35, 0.8, 0.5].map((k, _, v) => k / Math.hypot(...v)) };
-    const bodies = new OGL.Program(this.gl,
-      { vertex: BODY_VERTEX, fragment: BODY_FRAGMENT, uniforms: { sun }, cullFace: false });
+    const bodies = [false, this.gl.BACK].map((cullFace) => new OGL.Program(this.gl,
+      { vertex: BODY_VERTEX, fragment: BODY_FRAGMENT, uniforms: { sun }, cullFace }));
     this.runs = data.runs.map((run) => ({ run, groups: this.groups(run, bodies), ...this.points(run) }));
     this.look();
   }
 
   // For each shape of a run: its objects, and a mesh of each level that share their poses.
-  groups(run, program) {
+  groups(run, programs) {
     const linear = (colour) => colour.map((channel) => (channel / 255) ** 2.2);
     let moving = 0;
     const tints = run.shapes.map((_, object) =>
@@ -101,6 +122,7 @@ class Drawing {
       const place = instanced(3, new Float32Array(3 * objects.length));
       const turn = instanced(4, new Float32Array(4 * objects.length));
       const tint = instanced(3, new Float32Array(objects.flatMap((object) => tints[object])));
+      const program = programs[Number(isClosed(levels[0]))];
       const meshes = levels.map((level) => {
         const { position, normal, index } = faceted(level);
         const geometry = new OGL.Geometry(this.gl, {
@@ -118,10 +140,11 @@ class Drawing {
   // Contacts of a frame, and the mark of the first difference.
   points(run) {
     const most = Math.max(1, ...run.firsts.slice(1).map((end, frame) => end - run.firsts[frame]));
+    const scale = Math.min(window.devicePixelRatio, 2);
     const make = (count, size, colour, hole) => {
       const program = new OGL.Program(this.gl, {
         vertex: POINT_VERTEX, fragment: POINT_FRAGMENT, depthTest: false, depthWrite: false,
-        uniforms: { size: { value: size }, colour: { value: colour }, hole: { value: hole } },
+        uniforms: { size: { value: size * scale }, colour: { value: colour }, hole: { value: hole } },
       });
       const position = { size: 3, data: new Float32Array(3 * count) };
       const geometry = new OGL.Geometry(this.gl, { position });
@@ -157,7 +180,7 @@ class Drawing {
     const [least, most] = bounds;
     const target = least.map((k, axis) => 0.5 * (k + most[axis]));
     const radius = 0.5 * Math.hypot(...least.map((k, axis) => most[axis] - k));
-    const far = (2.3 * radius) / Math.hypot(...VIEW);
+    const far = (1.95 * radius) / Math.hypot(...VIEW);
     this.camera.position.set(...target.map((k, axis) => k + far * VIEW[axis]));
     Object.assign(this.camera, { near: 0.02 * radius, far: 40 * radius });
     this.orbit = new OGL.Orbit(this.camera,

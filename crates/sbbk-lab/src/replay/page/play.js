@@ -53,7 +53,8 @@ function graph() {
   });
   context.font = `${11 * scale}px system-ui, sans-serif`;
   context.fillStyle = "#59626b";
-  context.fillText(`${most.toPrecision(2)} ms a step`, 4 * scale, 11 * scale);
+  context.textAlign = "right";
+  context.fillText(`up to ${most.toPrecision(2)} ms a step`, width - 4 * scale, 11 * scale);
 }
 
 function layout() {
