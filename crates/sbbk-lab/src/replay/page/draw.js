@@ -41,31 +41,36 @@ void main() {
   seen = vec4(colour, 1.0);
 }`;
 
-// Vertices with normals: smooth where faces nearly agree, else those of the face.
-function faceted({ vertices, triangles }) {
+// Least cosine between faces that look like one smooth surface.
+const SMOOTH = 0.7;
+
+// Vertices with normals: the mean of those faces around that look like one surface.
+function faceted({ vertices, triangles }, smooth) {
   const corner = (index) => vertices.subarray(3 * index, 3 * index + 3);
-  const unit = (v) => { const n = Math.hypot(...v) || 1; return v.map((x) => x / n); };
-  const smooth = new Float32Array(vertices.length);
-  const faces = [];
+  const [faces, around] = [[], []];
   for (let at = 0; at < triangles.length; at += 3) {
     const [a, b, c] = [0, 1, 2].map((k) => corner(triangles[at + k]));
-    const [u, v] = [b, c].map((p) => [0, 1, 2].map((k) => p[k] - a[k]));
-    const face = [0, 1, 2].map((k) =>
-      u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
-    faces.push(unit(face));
-    for (let k = 0; k < 9; k++) smooth[3 * triangles[at + Math.floor(k / 3)] + (k % 3)] += face[k % 3];
+    const [u, v] = [b, c].map((p) => [p[0] - a[0], p[1] - a[1], p[2] - a[2]]);
+    const area = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    const norm = Math.hypot(...area) || 1;
+    const face = { area, unit: area.map((k) => k / norm) };
+    faces.push(face);
+    for (let k = 0; k < 3; k++) (around[triangles[at + k]] ??= []).push(face);
   }
   const [position, normal, index, known] = [[], [], [], new Map()];
   triangles.forEach((vertex, at) => {
-    const face = faces[Math.floor(at / 3)];
-    const mean = unit(Array.from(smooth.subarray(3 * vertex, 3 * vertex + 3)));
-    const agrees = mean[0] * face[0] + mean[1] * face[1] + mean[2] * face[2] > 0.6;
-    const found = agrees ? mean : face;
-    const key = agrees ? vertex : `${vertex} ${face.map((x) => x.toFixed(2))}`;
+    const [x, y, z] = faces[Math.floor(at / 3)].unit;
+    const sum = [0, 0, 0];
+    for (const { area, unit } of around[vertex]) {
+      if (x * unit[0] + y * unit[1] + z * unit[2] < smooth) continue;
+      for (let k = 0; k < 3; k++) sum[k] += area[k];
+    }
+    const norm = Math.hypot(...sum) || 1;
+    const key = `${vertex} ${sum.map((k) => (k / norm).toFixed(2))}`;
     if (!known.has(key)) {
       known.set(key, position.length / 3);
       position.push(...corner(vertex));
-      normal.push(...found);
+      normal.push(...sum.map((k) => k / norm));
     }
     index.push(known.get(key));
   });
@@ -106,6 +111,7 @@ class Drawing {
     const bodies = [false, this.gl.BACK].map((cullFace) => new OGL.Program(this.gl,
       { vertex: BODY_VERTEX, fragment: BODY_FRAGMENT, uniforms: { sun }, cullFace }));
     this.runs = data.runs.map((run) => ({ run, groups: this.groups(run, bodies), ...this.points(run) }));
+    this.resize();
     this.look();
   }
 
@@ -123,8 +129,10 @@ class Drawing {
       const turn = instanced(4, new Float32Array(4 * objects.length));
       const tint = instanced(3, new Float32Array(objects.flatMap((object) => tints[object])));
       const program = programs[Number(isClosed(levels[0]))];
-      const meshes = levels.map((level) => {
-        const { position, normal, index } = faceted(level);
+      const meshes = levels.map((level, at) => {
+        // Many small bodies have all vertices once.
+        const isSmooth = at > 0 && level.triangles.length > 3 * 24;
+        const { position, normal, index } = faceted(level, isSmooth ? -1 : SMOOTH);
         const geometry = new OGL.Geometry(this.gl, {
           position: { size: 3, data: new Float32Array(position) },
           normal: { size: 3, data: new Float32Array(normal) },
@@ -159,30 +167,39 @@ class Drawing {
     return { contacts: make(most, 4, [0.85, 0, 0.1], 0), mark };
   }
 
-  // The camera that sees all moving bodies in the middle of the run.
+  // The camera that sees nearly all moving bodies, some times of the run together.
   look() {
-    const [place, turn] = [[], []];
-    const bounds = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
-    const run = this.data.runs[this.data.runs.length - 1];
-    const all = run.fixed.every((fixed) => fixed);
-    run.shapes.forEach((shape, object) => {
-      if (run.fixed[object] && !all) return;
+    const run = this.data.runs.at(-1);
+    const isStill = run.fixed.every((fixed) => fixed);
+    const bodies = run.shapes.flatMap((shape, object) => {
+      if (run.fixed[object] && !isStill) return [];
       const { vertices } = this.data.shapes[shape][1];
       const reach = vertices.reduce((most, k) => Math.max(most, Math.abs(k)), 0);
-      for (const share of [0.2, 0.6, 1]) {
-        if (!pose(this.data, run, object, share * (run.frames - 1), place, turn)) continue;
-        for (let k = 0; k < 3; k++) {
-          bounds[0][k] = Math.min(bounds[0][k], place[k] - reach);
-          bounds[1][k] = Math.max(bounds[1][k], place[k] + reach);
-        }
-      }
+      return [0.2, 0.6, 1].flatMap((share) => {
+        const place = [];
+        return pose(this.data, run, object, share * (run.frames - 1), place, []) ? [{ place, reach }] : [];
+      });
     });
-    const [least, most] = bounds;
-    const target = least.map((k, axis) => 0.5 * (k + most[axis]));
-    const radius = 0.5 * Math.hypot(...least.map((k, axis) => most[axis] - k));
-    const far = (1.95 * radius) / Math.hypot(...VIEW);
-    this.camera.position.set(...target.map((k, axis) => k + far * VIEW[axis]));
-    Object.assign(this.camera, { near: 0.02 * radius, far: 40 * radius });
+    const sorted = (numbers) => numbers.sort((a, b) => a - b);
+    const most = (numbers) => sorted(numbers)[Math.ceil(0.97 * (numbers.length - 1))] ?? 1;
+    const target = [0, 1, 2].map((axis) => {
+      const along = sorted(bodies.map(({ place }) => place[axis]));
+      return 0.5 * ((along[Math.floor(0.03 * along.length)] ?? 0) + most(along));
+    });
+    const dot = (u, v) => u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+    const back = VIEW.map((k) => k / Math.hypot(...VIEW));
+    const flat = Math.hypot(back[0], back[2]);
+    const right = [back[2] / flat, 0, -back[0] / flat];
+    const up = [back[1] * right[2], back[2] * right[0] - back[0] * right[2], -back[1] * right[0]];
+    const [view] = this.views();
+    const slope = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
+    const far = most(bodies.map(({ place, reach }) => {
+      const from = place.map((k, axis) => k - target[axis]);
+      const across = (Math.abs(dot(from, right)) + reach) * (view.height / view.width);
+      return dot(from, back) + Math.max(across, Math.abs(dot(from, up)) + reach) / slope;
+    }));
+    this.camera.position.set(...target.map((k, axis) => k + far * back[axis]));
+    Object.assign(this.camera, { near: 0.02 * far, far: 40 * far });
     this.orbit = new OGL.Orbit(this.camera,
       { element: this.canvas, target: new OGL.Vec3(...target), ease: 1, inertia: 0 });
   }

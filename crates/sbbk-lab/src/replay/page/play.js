@@ -76,7 +76,7 @@ function show() {
   data.runs.forEach((run, index) => {
     const near = run.times.slice(Math.max(0, step - 8), step);
     const mean = near.reduce((sum, time) => sum + time, 0) / Math.max(1, near.length);
-    times[index].textContent = near.length ? `${run.name}: ${mean.toFixed(2)} ms a step` : run.name;
+    times[index].textContent = near.length ? `${run.name}: ${mean.toFixed(mean < 0.1 ? 3 : 2)} ms a step` : run.name;
   });
 }
 
