@@ -8,6 +8,7 @@ mod front;
 mod hard;
 mod long_runs;
 mod one_step;
+mod report;
 mod soft;
 mod support;
 mod terrain;
