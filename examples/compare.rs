@@ -12,8 +12,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
+use sbbk_lab::backend::Backend;
 use sbbk_lab::cli::{OtherFiles, StudyArguments, exit_code};
 use sbbk_lab::mesh;
+use sbbk_lab::replay;
 use sbbk_lab::study::compare::{ComparePlan, compare};
 
 /// Compares stock Rapier, SBBK, and SBBK with AABBs only, in speed and error.
@@ -25,9 +27,16 @@ struct Arguments {
     /// The head: an OBJ, STL or glTF file instead of the built-in monkey
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
+    /// Runs the smallest pile once more, for ten seconds, and writes a page that plays it on stock
+    /// and SBBK side by side
+    #[arg(long, value_name = "FILE")]
+    replay: Option<PathBuf>,
     #[command(flatten)]
     study: StudyArguments,
 }
+
+/// Steps of the page.
+const STEPS: usize = 600;
 
 fn main() -> ExitCode {
     exit_code(run(&Arguments::parse()))
@@ -39,7 +48,11 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     if !arguments.heads.is_empty() {
         plan.heads = arguments.heads.iter().copied().map(NonZeroUsize::get).collect();
     }
-    let others = OtherFiles { read: arguments.mesh.as_deref(), ..OtherFiles::default() };
-    arguments.study.run(&plan, compare, others)?;
+    let [read, written] = [&arguments.mesh, &arguments.replay].map(Option::as_deref);
+    arguments.study.run(&plan, compare, OtherFiles { read, written })?;
+    if let Some(path) = written {
+        let heads = plan.heads.iter().copied().min().unwrap_or(1);
+        replay::play(path, &plan.scene(heads), &[Backend::Stock, Backend::Sbbk], STEPS)?;
+    }
     Ok(())
 }

@@ -5,8 +5,10 @@
 //! cargo run --release --example hard_scenes
 //! cargo run --release --example hard_scenes -- --quick --csv hard.csv
 //! cargo run --release --example hard_scenes -- --only gears,sunk --backends stock,sbbk --verbose
+//! cargo run --release --example hard_scenes -- --quick --only gears --replay gears.html
 //! ```
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -24,6 +26,12 @@ struct Arguments {
     /// Runs only these columns
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',')]
     backends: Vec<Column>,
+    /// Runs only scenes with this in their names
+    #[arg(long, value_name = "TEXT", default_value = "")]
+    scene: String,
+    /// Writes a page that plays the first of the scenes, backends side by side
+    #[arg(long, value_name = "FILE")]
+    replay: Option<PathBuf>,
     /// Shows all figures of all scenes
     #[arg(long)]
     verbose: bool,
@@ -33,7 +41,7 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
-    let Arguments { study, only, backends, verbose, threads } = Arguments::parse();
+    let Arguments { study, only, backends, scene, replay, verbose, threads } = Arguments::parse();
     let mut plan = study.plan(HardPlan::standard, HardPlan::quick);
     if !only.is_empty() {
         plan.groups = only;
@@ -43,5 +51,8 @@ fn main() -> ExitCode {
     }
     plan.shows_figures = verbose;
     plan.threads = threads;
-    exit_code(study.run(&plan, hard, OtherFiles::default()))
+    plan.name = scene;
+    plan.replay = replay.clone();
+    let others = OtherFiles { written: replay.as_deref(), ..OtherFiles::default() };
+    exit_code(study.run(&plan, hard, others))
 }

@@ -15,6 +15,7 @@ use sbbk_lab::backend::Backend;
 use sbbk_lab::cli::{exit_code, print};
 use sbbk_lab::mesh;
 use sbbk_lab::metrics::Environment;
+use sbbk_lab::replay;
 use sbbk_lab::report::{check_files, replace_file};
 use sbbk_lab::scene::{BallKind, HelicopterBallDrop, Scene};
 use sbbk_lab::study::{HelicopterPlan, Progress, cut, cut_table, frames, helicopter};
@@ -40,6 +41,9 @@ struct Arguments {
     /// Saves a picture of the moment of contact to a PNG file
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
+    /// Runs once more, and writes a page that plays the backends side by side
+    #[arg(long, value_name = "FILE")]
+    replay: Option<PathBuf>,
 }
 
 fn main() -> ExitCode {
@@ -53,7 +57,8 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     }
     let plan = HelicopterPlan { repeats: arguments.repeats.get(), steps: arguments.steps.get() };
     let [read, written] = [&arguments.mesh, &arguments.picture].map(Option::as_deref);
-    check_files(read.as_slice(), written.as_slice())?;
+    let replay = arguments.replay.as_deref();
+    check_files(read.as_slice(), &[written, replay].into_iter().flatten().collect::<Vec<_>>())?;
     let progress = Progress::visible();
     let rows = helicopter(&scene, &arguments.backend, &plan, &progress)?;
     let cut = cut(&scene)?;
@@ -66,6 +71,9 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         (0..contact).for_each(|_| built.world.step());
         let picture = built.portrait(1280, 720);
         replace_file(path, |path| picture.save(path))?;
+    }
+    if let Some(path) = replay {
+        replay::play(path, &scene, &arguments.backend, plan.steps)?;
     }
     Ok(())
 }

@@ -3,6 +3,7 @@
 //! ```text
 //! cargo run --release --example monkey_pile
 //! cargo run --release --example monkey_pile -- 200 --backend stock,sbbk --picture pile.png
+//! cargo run --release --example monkey_pile -- 200 --steps 573 --backend stock,sbbk --replay pile.html
 //! ```
 
 use std::error::Error;
@@ -15,6 +16,7 @@ use sbbk_lab::backend::Backend;
 use sbbk_lab::cli::{exit_code, print};
 use sbbk_lab::mesh;
 use sbbk_lab::metrics::{Environment, RunPlan};
+use sbbk_lab::replay;
 use sbbk_lab::report::{check_files, replace_file};
 use sbbk_lab::scene::MonkeyPile;
 use sbbk_lab::study::{PilePlan, Progress, pile, runs};
@@ -40,6 +42,9 @@ struct Arguments {
     /// Saves a picture of the last step to a PNG file
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
+    /// Runs once more, and writes a page that plays the backends side by side
+    #[arg(long, value_name = "FILE")]
+    replay: Option<PathBuf>,
 }
 
 fn main() -> ExitCode {
@@ -53,7 +58,8 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     }
     scene.contact_recycling = !arguments.no_recycling;
     let [read, written] = [&arguments.mesh, &arguments.picture].map(Option::as_deref);
-    check_files(read.as_slice(), written.as_slice())?;
+    let replay = arguments.replay.as_deref();
+    check_files(read.as_slice(), &[written, replay].into_iter().flatten().collect::<Vec<_>>())?;
     let steps = arguments.steps.get();
     let plan = PilePlan {
         backends: arguments.backend.clone(),
@@ -79,6 +85,9 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     print(format_args!("{}\n\n{times}\n\n{accuracy}", Environment::detect()))?;
     if let Some((path, picture)) = written.zip(picture) {
         replace_file(path, |path| picture.save(path))?;
+    }
+    if let Some(path) = replay {
+        replay::play(path, &scene, &arguments.backend, plan.run.step_count())?;
     }
     Ok(())
 }

@@ -3,13 +3,15 @@
 //!
 //! [`mesh`] makes and loads meshes, [`scene`] builds worlds from them, [`backend`] chooses who
 //! answers a world's contact queries, [`metrics`] measures one run, [`study`] compares the backends
-//! on the paper's experiments, [`report`] shows the results, and [`picture`] draws a world.
+//! on the paper's experiments, [`report`] shows the results, [`picture`]
+//! draws a world, and [`replay`] plays runs in a browser.
 
 pub mod backend;
 pub mod cli;
 pub mod mesh;
 pub mod metrics;
 pub mod picture;
+pub mod replay;
 pub mod report;
 pub mod scene;
 pub mod study;

@@ -63,3 +63,9 @@ impl WorldState {
         self.mean_penetration /= self.touching_pair_count.max(1) as f64;
     }
 }
+
+/// The contacts that the solver has: clusters where Rapier makes them of several manifolds.
+pub fn solver_points(world: &PhysicsWorld) -> usize {
+    let manifolds = world.contact_pairs().flat_map(|pair| pair.solver_manifolds());
+    manifolds.map(|manifold| manifold.data.solver_contacts.len()).sum()
+}

@@ -70,7 +70,8 @@ impl ComparePlan {
         }
     }
 
-    fn scene(&self, heads: usize) -> MonkeyPile {
+    /// The pile of so many heads.
+    pub fn scene(&self, heads: usize) -> MonkeyPile {
         match &self.head {
             Some(head) => MonkeyPile::of(heads, head.clone()),
             None => MonkeyPile::with_heads(heads),

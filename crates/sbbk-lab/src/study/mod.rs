@@ -8,6 +8,7 @@
 pub mod compare;
 pub mod contacts;
 pub mod convex;
+pub mod cost;
 mod cut;
 pub mod determinism;
 pub mod everyday;
@@ -16,6 +17,7 @@ pub mod hard;
 mod helicopter;
 mod meshes;
 mod motion;
+pub mod one_step;
 mod pair;
 mod pile;
 mod progress;
@@ -36,9 +38,10 @@ use sbbk_core::tree::{BuildError, BuildOptions, LayerPlan, Tree};
 use thiserror::Error;
 
 use crate::mesh::Mesh;
+use crate::report::ReportError;
 use crate::scene::SceneError;
 
-/// A mesh does not serve.
+/// A mesh does not serve, or a page cannot be written.
 #[derive(Debug, Error)]
 pub enum StudyError {
     /// A scene could not be built.
@@ -53,6 +56,9 @@ pub enum StudyError {
         #[source]
         cause: BuildError,
     },
+    /// A page could not be written.
+    #[error(transparent)]
+    Report(#[from] ReportError),
 }
 
 /// Parry's shape of a mesh.

@@ -7,6 +7,8 @@ mod everyday;
 mod front;
 mod hard;
 mod long_runs;
+mod one_step;
+mod report;
 mod soft;
 mod support;
 mod terrain;

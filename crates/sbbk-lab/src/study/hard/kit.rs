@@ -1,6 +1,8 @@
 //! What a scene is built with: shapes, worlds and random numbers, as a column wants them.
 
 use std::fmt;
+use std::ops::{Deref, DerefMut};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use clap::ValueEnum;
 use glamx::{Pose3, Vec3};
@@ -10,6 +12,7 @@ use rapier3d::geometry::{ColliderBuilder, SharedShape, TriMeshFlags};
 use rapier3d::pipeline::PhysicsWorld;
 
 use crate::mesh::{self, Mesh};
+use crate::replay::Recorder;
 use crate::scene::SceneError;
 
 /// Who answers, and what bodies are made of.
@@ -73,22 +76,70 @@ impl Form {
 }
 
 /// One run of a scene.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Kit {
     pub column: Column,
     pub recycling: bool,
     pub seed: u64,
+    /// Where the run's first world is recorded, if it is.
+    pub film: Option<Film>,
+}
+
+/// A recording that is under way, or done.
+pub(super) type Film = Arc<Mutex<Option<Recorder>>>;
+
+/// A world that is recorded, if it is to be.
+pub(super) struct World {
+    world: PhysicsWorld,
+    film: Option<Film>,
+    recorder: Option<Recorder>,
+    name: String,
+}
+
+impl World {
+    /// Steps once.
+    pub fn step(&mut self) {
+        let Self { world, film, recorder, name } = self;
+        match film {
+            Some(_) => recorder.get_or_insert_with(|| Recorder::new(name, world)).step(world),
+            None => world.step(),
+        }
+    }
+}
+
+impl Drop for World {
+    fn drop(&mut self) {
+        if let Some(film) = &self.film {
+            let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);
+            *film = film.take().or(self.recorder.take());
+        }
+    }
+}
+
+impl Deref for World {
+    type Target = PhysicsWorld;
+
+    fn deref(&self) -> &PhysicsWorld {
+        &self.world
+    }
+}
+
+impl DerefMut for World {
+    fn deref_mut(&mut self) -> &mut PhysicsWorld {
+        &mut self.world
+    }
 }
 
 impl Kit {
     /// An empty world with the column's dispatcher.
-    pub fn world(&self) -> PhysicsWorld {
+    pub fn world(&self) -> World {
         let mut world = PhysicsWorld::new();
         world.integration_parameters.contact_recycling = self.recycling;
         if matches!(self.column, Column::Sbbk | Column::SbbkFlag) {
             world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
         }
-        world
+        let (film, name) = (self.film.clone(), self.column.to_string());
+        World { world, film, recorder: None, name }
     }
 
     /// A collider, the shape of which clones share.

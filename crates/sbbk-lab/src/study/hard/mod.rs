@@ -27,6 +27,7 @@ mod stacks;
 mod sunk;
 mod walls;
 
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
@@ -36,9 +37,10 @@ use clap::ValueEnum;
 pub use self::kit::Column;
 
 use self::figures::Figures;
-use self::kit::Kit;
+use self::kit::{Film, Kit};
 use super::{Progress, StudyError};
 use crate::metrics::Environment;
+use crate::replay;
 use crate::report::Results;
 use crate::scene::SceneError;
 
@@ -90,6 +92,10 @@ pub struct HardPlan {
     pub threads: usize,
     /// Whether to show all figures.
     pub shows_figures: bool,
+    /// Only scenes with this in their names.
+    pub name: String,
+    /// The page on which the first of the scenes is played, on all columns.
+    pub replay: Option<PathBuf>,
 }
 
 impl HardPlan {
@@ -103,6 +109,8 @@ impl HardPlan {
             heads: vec![200, 500],
             threads: 2,
             shows_figures: false,
+            name: String::new(),
+            replay: None,
         }
     }
 
@@ -155,7 +163,7 @@ impl Trial {
             let columns = plan.columns.iter().copied();
             for column in columns.filter(|&column| self.has_control || column != Column::Control) {
                 let seeds = 1..=if self.has_seeds { plan.seeds } else { 1 };
-                kits.extend(seeds.map(|seed| Kit { column, recycling, seed }));
+                kits.extend(seeds.map(|seed| Kit { column, recycling, seed, film: None }));
             }
         }
         kits
@@ -164,11 +172,12 @@ impl Trial {
 
 /// Runs all that `plan` asks for.
 ///
-/// Errors: none but those of a mesh without triangles, which these are not.
+/// Errors: the page cannot be written, or a mesh has no triangles, which these have.
 pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError> {
     let mut rows = Vec::new();
+    let mut replay = plan.replay.as_deref();
     for group in &plan.groups {
-        let trials = match group {
+        let mut trials = match group {
             Group::Pile => pile::trials(&plan.heads),
             Group::Stacks => stacks::trials(),
             Group::Bowls => bowls::trials(),
@@ -183,23 +192,46 @@ pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError>
             Group::Road => road::trials(),
             Group::Sheets => sheets::trials(),
         };
-        let jobs: Vec<(&Trial, Kit)> = trials
+        trials.retain(|trial| trial.name.contains(&plan.name));
+        let mut jobs: Vec<(&Trial, Kit)> = trials
             .iter()
             .flat_map(|trial| trial.kits(plan).into_iter().map(move |kit| (trial, kit)))
             .collect();
+        let replay = trials.first().and_then(|trial| Some((trial, replay.take()?)));
+        let films = if replay.is_some() { film(&mut jobs) } else { Vec::new() };
         let name = group.to_possible_value().map_or_else(String::new, |v| v.get_name().to_owned());
         progress.phase(name, jobs.len());
         let threads = if *group == Group::Pile { 1 } else { plan.threads };
         let found = run_all(&jobs, threads, progress)?;
+        if let Some((trial, path)) = replay {
+            let recorders = films
+                .iter()
+                .filter_map(|film| film.lock().unwrap_or_else(PoisonError::into_inner).take());
+            replay::write(path, &trial.name, &recorders.collect::<Vec<_>>())?;
+        }
         for trial in &trials {
             let runs = jobs.iter().zip(&found).filter(|((other, _), _)| other.name == trial.name);
-            let runs: Vec<(Kit, &Figures)> = runs.map(|((_, kit), found)| (*kit, found)).collect();
+            let runs: Vec<(&Kit, &Figures)> = runs.map(|((_, kit), found)| (kit, found)).collect();
             rows.extend(report::rows(trial, &runs));
         }
     }
     progress.finish();
     let (tables, panels) = (report::tables(plan, &rows), report::panels(&rows));
     Ok(Results { environment: Environment::detect(), rows, tables, panels })
+}
+
+/// Lets the first run of the first scene be recorded, on each column.
+fn film(jobs: &mut [(&Trial, Kit)]) -> Vec<Film> {
+    let mut films: Vec<(Column, Film)> = Vec::new();
+    let first = jobs.first().map_or_else(String::new, |(trial, _)| trial.name.clone());
+    for (_, kit) in jobs.iter_mut().filter(|(trial, _)| trial.name == first) {
+        if films.iter().all(|(column, _)| *column != kit.column) {
+            let film = Film::default();
+            films.push((kit.column, film.clone()));
+            kit.film = Some(film);
+        }
+    }
+    films.into_iter().map(|(_, film)| film).collect()
 }
 
 /// Runs some jobs, so many at once.

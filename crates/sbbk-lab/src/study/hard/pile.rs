@@ -5,14 +5,13 @@ use std::time::Instant;
 use glamx::Vec3;
 use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::geometry::ColliderBuilder;
-use rapier3d::pipeline::PhysicsWorld;
 
 use super::Trial;
 use super::depth::{Depths, PairDepths, touching_pairs};
 use super::figures::{Figures, Gain, energy, largest, places};
 use super::kit::{Form, Kit};
 use super::report::STEP_TIME;
-use crate::metrics::Summary;
+use crate::metrics::{Summary, solver_points};
 use crate::scene::{MonkeyPile, SceneError};
 
 /// Steps until the heads are judged by their depth, and until they are judged by their height.
@@ -67,10 +66,4 @@ fn run(kit: &Kit, heads: usize) -> Result<Figures, SceneError> {
         .at_most("energy gained", gain.most / start, 0.001)
         .at_most("points a step", points, 4000.0 / 200.0 * heads as f64)
         .note(STEP_TIME, Summary::of(times).map_or(f64::NAN, |times| times.median)))
-}
-
-/// The contacts that the solver has.
-fn solver_points(world: &PhysicsWorld) -> usize {
-    let manifolds = world.contact_pairs().flat_map(|pair| pair.solver_manifolds());
-    manifolds.map(|manifold| manifold.data.solver_contacts.len()).sum()
 }

@@ -14,7 +14,7 @@ pub(super) const STEP_TIME: &str = "ms a step";
 
 /// The rows of one scene. All runs of a column and a setting of recycling stand together; they
 /// have the same figures in the same order.
-pub(super) fn rows(trial: &Trial, runs: &[(Kit, &Figures)]) -> Vec<Row> {
+pub(super) fn rows(trial: &Trial, runs: &[(&Kit, &Figures)]) -> Vec<Row> {
     let mut rows = Vec::new();
     for runs in runs.chunk_by(|(a, _), (b, _)| (a.column, a.recycling) == (b.column, b.recycling)) {
         let kit = runs[0].0;
@@ -39,7 +39,7 @@ pub(super) fn rows(trial: &Trial, runs: &[(Kit, &Figures)]) -> Vec<Row> {
 }
 
 /// The figure of one number in the worst of some runs.
-fn worst_of(runs: &[(Kit, &Figures)], index: usize) -> Figure {
+fn worst_of(runs: &[(&Kit, &Figures)], index: usize) -> Figure {
     let of_runs = runs.iter().map(|(_, figures)| figures.0[index]);
     of_runs.reduce(|a, b| if b.excess() > a.excess() { b } else { a }).unwrap_or(runs[0].1.0[index])
 }

@@ -135,7 +135,8 @@ impl Rider {
 fn run(kit: &Kit, rider: Rider, floor: &Mesh) -> Result<Figures, SceneError> {
     let Vec3 { x, y, z } = HALF_EXTENTS;
     let cuboid = ColliderBuilder::cuboid(x, y, z).translation(-Vec3::Y * y);
-    let control = rider.ride(&Kit { column: Column::Control, ..*kit }, cuboid.clone())?;
+    let control =
+        rider.ride(&Kit { column: Column::Control, film: None, ..kit.clone() }, cuboid.clone())?;
     let floor = match kit.column {
         Column::Control => cuboid,
         _ => ColliderBuilder::new(kit.mesh_shape(floor)?),

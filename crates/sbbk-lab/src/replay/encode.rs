@@ -1,0 +1,168 @@
+//! Recordings as text: JSON and arrays, compressed.
+//!
+//! The text is base64 of a gzip stream of: the length of the header in bytes as `u32`, the header,
+//! zeros up to a multiple of four, and the arrays that it tells of. Numbers are little-endian.
+//! Of each shape, fine and coarse: vertices as `f32`, triangles as `u32`. Of each run: times as
+//! `f32`; [`planes`] of seven numbers for each object and frame; the count of contacts of each frame
+//! as `u32`; [`planes`] of the contacts.
+
+use std::io::{self, Write};
+
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use glamx::Vec3;
+use rapier3d::math::Pose;
+use serde::Serialize;
+
+use super::Recorder;
+use super::difference::Difference;
+use super::recorder::{Frame, STRIDE};
+use super::shapes::Surface;
+
+/// Steps of a quaternion's parts.
+const TURN: f32 = 32767.0;
+
+#[derive(Serialize)]
+struct Header<'a> {
+    /// Of positions, in units, and of rotations.
+    quantum: f32,
+    turn: f32,
+    stride: usize,
+    /// Vertices and triangles of each shape, fine and coarse.
+    shapes: Vec<[[usize; 2]; 2]>,
+    runs: Vec<RunHeader<'a>>,
+    difference: Option<Difference>,
+}
+
+#[derive(Serialize)]
+struct RunHeader<'a> {
+    name: &'a str,
+    steps: usize,
+    frames: usize,
+    contacts: usize,
+    /// Of each object, its shape.
+    shapes: Vec<usize>,
+    fixed: Vec<bool>,
+}
+
+/// The recordings as text.
+///
+/// Errors: none in practice; the stream is in memory.
+pub fn encode(runs: &[Recorder]) -> io::Result<String> {
+    let mut surfaces: Vec<&Surface> = Vec::new();
+    let mut place = |surface| {
+        surfaces.iter().position(|other| *other == surface).unwrap_or_else(|| {
+            surfaces.push(surface);
+            surfaces.len() - 1
+        })
+    };
+    let places: Vec<Vec<usize>> =
+        runs.iter().map(|run| run.shapes.surfaces.iter().map(&mut place).collect()).collect();
+    let levels: Vec<[Surface; 2]> = surfaces.into_iter().map(Surface::levels).collect();
+    let header = |(run, places): (_, &Vec<usize>)| -> RunHeader<'_> {
+        let run: &Recorder = run;
+        RunHeader {
+            name: &run.name,
+            steps: run.times.len(),
+            frames: run.frames.len(),
+            contacts: run.frames.iter().map(|frame| frame.contacts.len()).sum(),
+            shapes: run.objects.iter().map(|object| places[object.shape]).collect(),
+            fixed: run.objects.iter().map(|object| object.is_fixed).collect(),
+        }
+    };
+    let size = |surface: &Surface| [surface.vertices.len(), surface.triangles.len()];
+    let quantum = quantum(runs);
+    let header = Header {
+        quantum,
+        turn: TURN,
+        stride: STRIDE,
+        shapes: levels.iter().map(|levels| levels.each_ref().map(size)).collect(),
+        runs: runs.iter().zip(&places).map(header).collect(),
+        difference: match runs {
+            [one, other, ..] => Difference::first(one, other),
+            _ => None,
+        },
+    };
+
+    let header = serde_json::to_vec(&header)?;
+    let mut out = GzEncoder::new(Vec::new(), Compression::best());
+    out.write_all(&(header.len() as u32).to_le_bytes())?;
+    out.write_all(&header)?;
+    out.write_all(&[0; 3][..header.len().next_multiple_of(4) - header.len()])?;
+    for surface in levels.iter().flatten() {
+        let numbers = surface.vertices.iter().flat_map(|vertex| vertex.to_array());
+        out.write_all(&numbers.flat_map(f32::to_le_bytes).collect::<Vec<u8>>())?;
+        let numbers = surface.triangles.iter().flatten();
+        out.write_all(&numbers.flat_map(|n| n.to_le_bytes()).collect::<Vec<u8>>())?;
+    }
+    for run in runs {
+        out.write_all(&run.times.iter().flat_map(|time| time.to_le_bytes()).collect::<Vec<u8>>())?;
+        out.write_all(&planes(&poses(run, quantum)))?;
+        let counts = run.frames.iter().map(|frame| frame.contacts.len() as u32);
+        out.write_all(&counts.flat_map(u32::to_le_bytes).collect::<Vec<u8>>())?;
+        let points = || run.frames.iter().flat_map(|frame| &frame.contacts);
+        let numbers = [0, 1, 2].map(|axis| points().map(|p| steps(p[axis], quantum)).collect());
+        out.write_all(&planes(&numbers))?;
+    }
+    Ok(BASE64_STANDARD.encode(out.finish()?))
+}
+
+/// A thousandth of the smallest moving body.
+fn quantum(runs: &[Recorder]) -> f32 {
+    let moving = |run: &Recorder| -> Vec<f32> {
+        let objects = run.objects.iter().filter(|object| !object.is_fixed);
+        objects.map(|object| run.shapes.surfaces[object.shape].radius()).collect()
+    };
+    let least = runs.iter().flat_map(moving).filter(|r| *r > 0.0).fold(f32::INFINITY, f32::min);
+    1e-3 * if least.is_finite() { least } else { 1.0 }
+}
+
+fn steps(length: f32, quantum: f32) -> i32 {
+    // Three bytes; what has fallen farther than four thousand bodies stays there.
+    (length / quantum).round().clamp(-4e6, 4e6) as i32
+}
+
+/// Of each of seven numbers, all objects after each other, and of each object all frames. One that
+/// is not there has a rotation of zeros.
+fn poses(run: &Recorder, quantum: f32) -> [Vec<i32>; 7] {
+    let mut numbers = [(); 7].map(|()| Vec::with_capacity(run.objects.len() * run.frames.len()));
+    for object in 0..run.objects.len() {
+        let mut last = [0.0; 4];
+        let mut shown = Vec3::ZERO;
+        for frame in &run.frames {
+            let pose = pose(frame, object);
+            let rotation = pose.map_or([0.0; 4], |pose| pose.rotation.to_array());
+            // Of the two quaternions of a rotation, the one that is nearer to the last.
+            let dot: f32 = rotation.iter().zip(last).map(|(a, b)| a * b).sum();
+            let rotation = rotation.map(|part| if dot < 0.0 { -part } else { part });
+            (last, shown) = (rotation, pose.map_or(shown, |pose| pose.translation));
+            let place = shown.to_array().map(|part| steps(part, quantum));
+            let rotation = rotation.map(|part| (TURN * part).round() as i32);
+            numbers.iter_mut().zip(place.into_iter().chain(rotation)).for_each(|(n, k)| n.push(k));
+        }
+    }
+    numbers
+}
+
+fn pose(frame: &Frame, object: usize) -> Option<Pose> {
+    *frame.poses.get(object)?
+}
+
+/// Of each list of numbers, their differences from the ones before, folded so that small ones of
+/// either sign are small; of these, the lowest bytes, the middle and the highest ones. What stays
+/// where it is becomes long runs of zeros.
+fn planes<const N: usize>(lists: &[Vec<i32>; N]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    for list in lists {
+        let mut last = 0;
+        let folded = list.iter().map(|&number| {
+            let difference = number - std::mem::replace(&mut last, number);
+            ((difference << 1) ^ (difference >> 31)) as u32
+        });
+        let folded: Vec<u32> = folded.collect();
+        bytes.extend([0, 8, 16].iter().flat_map(|s| folded.iter().map(move |k| (k >> s) as u8)));
+    }
+    bytes
+}

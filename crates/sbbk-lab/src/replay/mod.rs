@@ -1,0 +1,85 @@
+//! Runs of a scene to be played side by side in a browser.
+//!
+//! A [`Recorder`] looks at a world after each step; [`write`] puts the recordings of one scene into
+//! one self-contained page. Poses are quantised to a thousandth of the smallest moving body.
+//!
+//! ```no_run
+//! use sbbk_lab::backend::Backend;
+//! use sbbk_lab::replay;
+//! use sbbk_lab::scene::MonkeyPile;
+//!
+//! let pile = MonkeyPile::with_heads(8);
+//! replay::play("page.html".as_ref(), &pile, &[Backend::Stock, Backend::Sbbk], 120)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod difference;
+mod encode;
+mod recorder;
+mod shapes;
+#[cfg(test)]
+mod tests;
+
+use std::error::Error;
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use crate::backend::Backend;
+use crate::report::{ReportError, replace_file};
+use crate::scene::{Scene, SceneError, SceneWorld};
+
+pub use encode::encode;
+pub use recorder::Recorder;
+
+const TEMPLATE: &str = include_str!("page/page.html");
+const STYLE: &str = include_str!("page/style.css");
+/// [OGL](https://github.com/oframe/ogl), which is in the public domain; its licence is in the page.
+const LIBRARY: &str = include_str!("page/ogl.min.js");
+const DECODE: &str = include_str!("page/decode.js");
+const DRAW: &str = include_str!("page/draw.js");
+const PLAY: &str = include_str!("page/play.js");
+
+/// Runs a scene on some backends, all at the same time, and writes their page.
+///
+/// Errors: the scene cannot be built, or the file cannot be written.
+pub fn play(
+    path: &Path,
+    scene: &dyn Scene,
+    backends: &[Backend],
+    steps: usize,
+) -> Result<(), Box<dyn Error>> {
+    let start = |&backend: &Backend| {
+        let SceneWorld { mut world, .. } = scene.build()?;
+        let installed = backend.install(&mut world);
+        Ok((Recorder::new(backend, &world), world, installed))
+    };
+    let mut runs = backends.iter().map(start).collect::<Result<Vec<_>, SceneError>>()?;
+    for _ in 0..steps {
+        runs.iter_mut().for_each(|(recorder, world, _)| recorder.step(world));
+    }
+    let recorders: Vec<Recorder> = runs.into_iter().map(|(recorder, ..)| recorder).collect();
+    Ok(write(path, &scene.name(), &recorders)?)
+}
+
+/// Writes the runs of one scene, the first beside the others, into a page.
+///
+/// Errors: the file cannot be written.
+pub fn write(path: &Path, title: &str, runs: &[Recorder]) -> Result<(), ReportError> {
+    replace_file(path, |path| Ok::<_, io::Error>(fs::write(path, page(title, runs)?)?))
+}
+
+fn page(title: &str, runs: &[Recorder]) -> io::Result<String> {
+    let title = title.replace('&', "&amp;").replace('<', "&lt;");
+    let parts = [
+        ("@title@", title),
+        ("@style@", STYLE.to_owned()),
+        ("@library@", LIBRARY.to_owned()),
+        ("@decode@", DECODE.to_owned()),
+        ("@draw@", DRAW.to_owned()),
+        ("@play@", PLAY.to_owned()),
+        ("@data@", encode(runs)?),
+    ];
+    let page = TEMPLATE.to_owned();
+    Ok(parts.iter().fold(page, |page, (name, part)| page.replace(name, part)))
+}

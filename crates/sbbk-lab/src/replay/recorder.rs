@@ -1,0 +1,139 @@
+//! What is kept of a run.
+
+use std::collections::HashMap;
+use std::time::Instant;
+
+use glamx::Vec3;
+use rapier3d::geometry::{Collider, ColliderHandle};
+use rapier3d::math::Pose;
+use rapier3d::pipeline::PhysicsWorld;
+
+use super::shapes::Shapes;
+
+/// Steps of the world for one frame of the page, which puts bodies between two frames where they
+/// would be.
+pub(super) const STRIDE: usize = 2;
+/// At most this many contacts of a frame are kept, evenly chosen.
+const CONTACTS: usize = 200;
+
+/// A run as it is recorded: poses and contacts, and times of all steps.
+#[derive(Clone, Debug)]
+pub struct Recorder {
+    pub(super) name: String,
+    /// In the order in which they came into the world.
+    pub(super) objects: Vec<Object>,
+    places: HashMap<ColliderHandle, usize>,
+    pub(super) shapes: Shapes,
+    pub(super) frames: Vec<Frame>,
+    /// Of each step, in milliseconds.
+    pub(super) times: Vec<f32>,
+    /// Of each step: the deepest contact of each pair of objects.
+    pub(super) deepest: Vec<HashMap<[usize; 2], Deepest>>,
+}
+
+/// A collider.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Object {
+    pub shape: usize,
+    pub is_fixed: bool,
+}
+
+/// What is drawn.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Frame {
+    /// Of the objects; `None` once one is gone.
+    pub poses: Vec<Option<Pose>>,
+    pub contacts: Vec<Vec3>,
+}
+
+/// The nearest or deepest point of a pair.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Deepest {
+    pub distance: f32,
+    pub point: Vec3,
+}
+
+impl Recorder {
+    /// Of a world before its first step.
+    pub fn new(name: impl ToString, world: &PhysicsWorld) -> Self {
+        let mut recorder = Self {
+            name: name.to_string(),
+            objects: Vec::new(),
+            places: HashMap::new(),
+            shapes: Shapes::default(),
+            frames: Vec::new(),
+            times: Vec::new(),
+            deepest: Vec::new(),
+        };
+        recorder.frame(world, Vec::new());
+        recorder
+    }
+
+    /// Steps a world once, and records it.
+    pub fn step(&mut self, world: &mut PhysicsWorld) {
+        let clock = Instant::now();
+        world.step();
+        self.times.push(1e3 * clock.elapsed().as_secs_f32());
+        let contacts = self.contacts(world);
+        if self.times.len().is_multiple_of(STRIDE) {
+            self.frame(world, contacts);
+        }
+    }
+
+    fn frame(&mut self, world: &PhysicsWorld, contacts: Vec<Vec3>) {
+        let mut poses = vec![None; self.objects.len()];
+        for (handle, collider) in world.colliders.iter() {
+            let object = self.object(world, handle, collider);
+            poses.resize(poses.len().max(object + 1), None);
+            let is_drawn = collider.is_enabled() && !collider.is_sensor();
+            poses[object] = is_drawn.then(|| *collider.position());
+        }
+        let stride = contacts.len().div_ceil(CONTACTS).max(1);
+        let contacts = contacts.into_iter().step_by(stride).collect();
+        self.frames.push(Frame { poses, contacts });
+    }
+
+    fn object(
+        &mut self,
+        world: &PhysicsWorld,
+        handle: ColliderHandle,
+        collider: &Collider,
+    ) -> usize {
+        let body = collider.parent().and_then(|body| world.bodies.get(body));
+        *self.places.entry(handle).or_insert_with(|| {
+            let shape = self.shapes.add(collider.shared_shape());
+            let is_fixed = body.is_none_or(|body| body.is_fixed());
+            self.objects.push(Object { shape, is_fixed });
+            self.objects.len() - 1
+        })
+    }
+
+    /// All points of the solver's pairs within the prediction distance; notes the deepest.
+    fn contacts(&mut self, world: &PhysicsWorld) -> Vec<Vec3> {
+        let prediction = world.integration_parameters.prediction_distance();
+        let (mut contacts, mut deepest) = (Vec::new(), HashMap::new());
+        for pair in world.contact_pairs() {
+            let handles = [pair.collider1, pair.collider2];
+            let [Some(&one), Some(&other)] = handles.map(|handle| self.places.get(&handle)) else {
+                continue;
+            };
+            let Some(collider) = world.colliders.get(pair.collider1) else { continue };
+            for manifold in pair.manifolds() {
+                let pose = manifold
+                    .subshape_pos1()
+                    .map_or(*collider.position(), |inner| *collider.position() * *inner);
+                for point in manifold.points.iter().filter(|point| point.dist <= prediction) {
+                    let found = Deepest { distance: point.dist, point: pose * point.local_p1 };
+                    contacts.push(found.point);
+                    let pair = [one.min(other), one.max(other)];
+                    let kept = deepest.entry(pair).or_insert(found);
+                    if found.distance < kept.distance {
+                        *kept = found;
+                    }
+                }
+            }
+        }
+        self.deepest.push(deepest);
+        contacts
+    }
+}

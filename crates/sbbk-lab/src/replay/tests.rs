@@ -1,0 +1,163 @@
+//! Recordings, written and read again.
+
+use std::io::Read;
+
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use flate2::read::GzDecoder;
+use glamx::{Quat, Vec3};
+use serde_json::Value;
+
+use super::{Recorder, encode, page};
+use crate::backend::Backend;
+use crate::scene::{MonkeyPile, Scene};
+
+const HEADS: usize = 12;
+const STEPS: usize = 90;
+/// The step after which a head is taken away.
+const GONE: usize = 70;
+
+fn recorded(backend: Backend) -> Recorder {
+    let mut built = MonkeyPile::with_heads(HEADS).build().unwrap();
+    let installed = backend.install(&mut built.world);
+    let mut recorder = Recorder::new(backend, &built.world);
+    for step in 0..STEPS {
+        if step == GONE {
+            built.world.remove_body(built.watched[3]);
+        }
+        recorder.step(&mut built.world);
+    }
+    drop(installed);
+    recorder
+}
+
+/// The stream after its header.
+struct Stream {
+    bytes: Vec<u8>,
+    at: usize,
+}
+
+impl Stream {
+    fn open(text: &str) -> (Value, Self) {
+        let packed = BASE64_STANDARD.decode(text).unwrap();
+        let mut bytes = Vec::new();
+        GzDecoder::new(&packed[..]).read_to_end(&mut bytes).unwrap();
+        let length = u32::from_le_bytes(bytes[..4].try_into().unwrap()) as usize;
+        let header = serde_json::from_slice(&bytes[4..4 + length]).unwrap();
+        (header, Self { bytes, at: 4 + length.next_multiple_of(4) })
+    }
+
+    fn take(&mut self, count: usize) -> &[u8] {
+        self.at += count;
+        &self.bytes[self.at - count..self.at]
+    }
+
+    fn words(&mut self, count: usize) -> Vec<u32> {
+        let words = self.take(4 * count).as_chunks::<4>().0.iter();
+        words.map(|word| u32::from_le_bytes(*word)).collect()
+    }
+
+    fn floats(&mut self, count: usize) -> Vec<f32> {
+        self.words(count).into_iter().map(f32::from_bits).collect()
+    }
+
+    fn planes<const N: usize>(&mut self, count: usize) -> [Vec<i32>; N] {
+        [(); N].map(|()| {
+            let bytes = self.take(3 * count).to_vec();
+            let folded = |index: usize| {
+                (0..3).map(|k| u32::from(bytes[k * count + index]) << (8 * k)).sum::<u32>()
+            };
+            let differences = (0..count).map(|index| {
+                let folded = folded(index);
+                (folded >> 1) as i32 ^ -((folded & 1) as i32)
+            });
+            differences
+                .scan(0, |last, difference| {
+                    *last += difference;
+                    Some(*last)
+                })
+                .collect()
+        })
+    }
+}
+
+/// Would catch poses, contacts and times that are lost, mixed up, or moved by more than half a step
+/// of their grid; bodies that stay on the page when they are gone; and a page that grows.
+#[test]
+fn what_is_written_can_be_read() {
+    let runs = [Backend::Stock, Backend::Sbbk].map(recorded);
+    let text = encode(&runs).unwrap();
+    let (header, mut stream) = Stream::open(&text);
+    let quantum = header["quantum"].as_f64().unwrap() as f32;
+    assert!(quantum > 5e-4 && quantum < 2e-3, "{quantum}");
+    let number = |value: &Value| value.as_u64().unwrap() as usize;
+    for level in header["shapes"].as_array().unwrap().iter().flat_map(|s| s.as_array().unwrap()) {
+        let [vertices, triangles] = [0, 1].map(|index| number(&level[index]));
+        assert!(stream.floats(3 * vertices).iter().all(|k| k.abs() < 100.0));
+        assert!(stream.words(3 * triangles).iter().all(|&vertex| (vertex as usize) < vertices));
+    }
+    for (run, header) in runs.iter().zip(header["runs"].as_array().unwrap()) {
+        assert_eq!(header["name"], run.name);
+        let [frames, objects] = [number(&header["frames"]), run.objects.len()];
+        assert_eq!((frames, objects), (1 + STEPS / 2, HEADS + 1));
+        assert_eq!(stream.floats(number(&header["steps"])), run.times);
+        let poses: [Vec<i32>; 7] = stream.planes(frames * objects);
+        for (object, frame) in (0..objects).flat_map(|o| (0..frames).map(move |f| (o, f))) {
+            let [x, y, z, i, j, k, w] =
+                poses.each_ref().map(|part| part[object * frames + frame] as f32);
+            let rotation = Quat::from_xyzw(i, j, k, w);
+            let Some(pose) = run.frames[frame].poses.get(object).copied().flatten() else {
+                assert_eq!(rotation.length(), 0.0, "object {object} in frame {frame}");
+                continue;
+            };
+            let place = quantum * Vec3::new(x, y, z);
+            assert!(place.distance(pose.translation) < 0.9 * quantum, "{place} {pose:?}");
+            assert!(rotation.normalize().angle_between(pose.rotation) < 1e-3);
+        }
+        let counts = stream.words(frames);
+        let contacts: [Vec<i32>; 3] = stream.planes(counts.iter().sum::<u32>() as usize);
+        let points = run.frames.iter().flat_map(|frame| &frame.contacts);
+        assert!(points.clone().count() > 100);
+        for (index, point) in points.enumerate() {
+            let [x, y, z] = contacts.each_ref().map(|axis| axis[index] as f32);
+            assert!((quantum * Vec3::new(x, y, z)).distance(*point) < 0.9 * quantum);
+        }
+        let gone = run.frames.last().unwrap().poses.iter().filter(|pose| pose.is_none());
+        assert_eq!(gone.count(), 1);
+    }
+    assert_eq!(stream.at, stream.bytes.len());
+
+    // Of the pile of 200 heads and 600 steps, the page may be 5 MB large.
+    let head_frames = 2 * HEADS * (STEPS / 2);
+    let shapes = 30_000;
+    assert!(text.len() < shapes + 40 * head_frames, "{} for {head_frames}", text.len());
+}
+
+/// Would catch a first difference that is none: the runs are the same until bodies meet.
+#[test]
+fn runs_part_at_the_first_contact_that_differs() {
+    let [stock, sbbk] = [Backend::Stock, Backend::Sbbk].map(recorded);
+    let found = super::difference::Difference::first(&stock, &sbbk).unwrap();
+    let before = |run: &Recorder| run.deepest[..found.step - 1].to_vec();
+    for (one, other) in before(&stock).iter().zip(before(&sbbk)) {
+        let same = |pair: &[usize; 2]| {
+            let [a, b] =
+                [one, &other].map(|deepest| deepest.get(pair).map_or(0.02, |d| d.distance));
+            (a - b).abs() <= 0.004
+        };
+        assert!(one.keys().chain(other.keys()).all(same));
+    }
+    assert!(found.step > 20 && found.pair[0] < found.pair[1], "{found:?}");
+    assert_eq!(super::difference::Difference::first(&sbbk, &sbbk.clone()), None);
+}
+
+/// Would catch a page that lacks a part, and titles that are taken for markup.
+#[test]
+fn pages_are_whole() {
+    let page = page("a < b", &[recorded(Backend::Sbbk)]).unwrap();
+    assert_eq!(page.matches("a &lt; b").count(), 2);
+    let parts = ["style", "library", "decode", "draw", "play", "data", "title"];
+    assert!(parts.iter().all(|part| !page.contains(&format!("@{part}@"))));
+    assert_eq!(page.matches("</script>").count(), 3);
+    assert!(!page.contains("<script src") && !page.contains("<link"));
+}

@@ -1,0 +1,179 @@
+//! Worlds whose bodies are put where they were in a run.
+
+use glamx::{DVec3, Quat};
+use rapier3d::dynamics::{IntegrationParameters, RigidBody, RigidBodyHandle};
+use rapier3d::geometry::InteractionGroups;
+use rapier3d::math::{Pose, Vector};
+
+use crate::backend::{Backend, Installed};
+use crate::metrics::{StepTimes, solver_points, timed_step};
+use crate::scene::{Scene, SceneError, SceneWorld};
+
+/// Where a body is, and how it moves.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion {
+    pose: Pose,
+    linear: Vector,
+    angular: Vector,
+}
+
+impl Motion {
+    fn of(body: &RigidBody) -> Self {
+        Self { pose: *body.position(), linear: body.linvel(), angular: body.angvel() }
+    }
+}
+
+/// The watched bodies before each step of a run with default parameters, and after `last` steps.
+///
+/// Errors: the scene cannot be built.
+pub(super) fn run(
+    scene: &dyn Scene,
+    backend: Backend,
+    last: usize,
+    mut done: impl FnMut(),
+) -> Result<Vec<Vec<Motion>>, SceneError> {
+    let mut led = Led::new(scene, backend)?;
+    let mut run = vec![led.motions()];
+    for _ in 0..last {
+        led.built.world.step();
+        run.push(led.motions());
+        done();
+    }
+    Ok(run)
+}
+
+/// A world of a scene whose bodies are led.
+pub(super) struct Led {
+    built: SceneWorld,
+    installed: Installed,
+    /// Of each step so far.
+    pub times: Vec<StepTimes>,
+}
+
+impl Led {
+    /// Errors: the scene cannot be built.
+    pub fn new(scene: &dyn Scene, backend: Backend) -> Result<Self, SceneError> {
+        let mut built = scene.build()?;
+        let installed = backend.install(&mut built.world);
+        Ok(Self { built, installed, times: Vec::new() })
+    }
+
+    /// A world in which bodies do not meet.
+    ///
+    /// Errors: the scene cannot be built.
+    pub fn without_contacts(scene: &dyn Scene) -> Result<Self, SceneError> {
+        let mut led = Self::new(scene, Backend::Stock)?;
+        for (_, collider) in led.built.world.colliders.iter_mut() {
+            collider.set_collision_groups(InteractionGroups::none());
+        }
+        Ok(led)
+    }
+
+    pub fn parameters(&mut self) -> &mut IntegrationParameters {
+        &mut self.built.world.integration_parameters
+    }
+
+    /// Steps once from each of some states, one after the other, with the contacts and impulses of
+    /// the step before; what the last step led to.
+    pub fn lead(&mut self, states: &[Vec<Motion>]) -> Vec<Motion> {
+        for state in states {
+            for (&handle, motion) in self.built.watched.iter().zip(state) {
+                let body = &mut self.built.world.bodies[handle];
+                body.set_position(motion.pose, true);
+                body.set_linvel(motion.linear, true);
+                body.set_angvel(motion.angular, true);
+            }
+            self.times.push(timed_step(&mut self.built.world, &self.installed.probe));
+        }
+        self.motions()
+    }
+
+    pub fn solver_points(&self) -> usize {
+        solver_points(&self.built.world)
+    }
+
+    fn motions(&self) -> Vec<Motion> {
+        self.built.watched.iter().map(|&body| Motion::of(&self.built.world.bodies[body])).collect()
+    }
+}
+
+/// Of velocities, weighted by the masses of bodies.
+pub(super) struct Norm(Vec<Inertia>);
+
+struct Inertia {
+    mass: f64,
+    /// About the principal axes, and these in the world.
+    principal: DVec3,
+    axes: Quat,
+}
+
+impl Norm {
+    /// That of a scene's bodies as they stand.
+    ///
+    /// Errors: the scene cannot be built.
+    pub fn of(scene: &dyn Scene, state: &[Motion]) -> Result<Self, SceneError> {
+        let built = scene.build()?;
+        let inertia = |(&handle, motion): (&RigidBodyHandle, &Motion)| {
+            let properties = built.world.bodies[handle].mass_properties().local_mprops;
+            Inertia {
+                mass: f64::from(properties.mass()),
+                principal: properties.principal_inertia().as_dvec3(),
+                axes: motion.pose.rotation * properties.principal_inertia_local_frame,
+            }
+        };
+        Ok(Self(built.watched.iter().zip(state).map(inertia).collect()))
+    }
+
+    /// Between two motions of all bodies.
+    pub fn distance(&self, some: &[Motion], others: &[Motion]) -> f64 {
+        let squares = self.0.iter().zip(some).zip(others).map(|((inertia, some), other)| {
+            let linear = (some.linear - other.linear).as_dvec3();
+            let angular = inertia.axes.inverse() * (some.angular - other.angular);
+            let angular = angular.as_dvec3();
+            inertia.mass * linear.length_squared() + inertia.principal.dot(angular * angular)
+        });
+        squares.sum::<f64>().sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rapier3d::dynamics::RigidBodyBuilder;
+    use rapier3d::geometry::ColliderBuilder;
+    use rapier3d::pipeline::PhysicsWorld;
+
+    use super::*;
+
+    /// A turned brick, alone.
+    struct Brick;
+
+    impl Scene for Brick {
+        fn name(&self) -> String {
+            "brick".to_owned()
+        }
+
+        fn build(&self) -> Result<SceneWorld, SceneError> {
+            let mut world = PhysicsWorld::new();
+            let body = RigidBodyBuilder::dynamic().rotation(Vector::new(0.4, 1.1, -0.3));
+            let body = body.linvel(Vector::new(1.0, -2.0, 0.5)).angvel(Vector::new(3.0, 1.0, -2.0));
+            let (body, _) = world.insert(body, ColliderBuilder::cuboid(0.2, 0.5, 1.1));
+            Ok(SceneWorld { world, watched: vec![body] })
+        }
+    }
+
+    /// Would catch moments of inertia about the wrong axes, and a norm that is not that of energy.
+    #[test]
+    fn the_norm_is_the_root_of_twice_the_energy() {
+        let mut led = Led::new(&Brick, Backend::Stock).unwrap();
+        led.built.world.gravity = Vector::ZERO;
+        // Rapier knows a body's inertia in the world after a step.
+        let moving = led.motions();
+        led.lead(&[moving.clone()]);
+        let energy = f64::from(led.built.world.bodies[led.built.watched[0]].kinetic_energy());
+        let motions = led.motions();
+        let norm = Norm::of(&Brick, &motions).unwrap();
+        let still = [Motion { linear: Vector::ZERO, angular: Vector::ZERO, ..motions[0] }];
+        let distance = norm.distance(&motions, &still);
+        assert!((distance * distance / (2.0 * energy) - 1.0).abs() < 1e-4, "{distance} {energy}");
+    }
+}

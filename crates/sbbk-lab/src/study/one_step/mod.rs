@@ -1,0 +1,179 @@
+//! What one step does to the velocities of a pile, beside what it should do.
+//!
+//! One backend runs the scene. At some times of this run, every backend makes the same step, with
+//! several numbers of solver iterations (Rapier's substeps), and so does a *reference*: every
+//! contact, none recycled or merged into clusters, and far more solver iterations. Bodies are led
+//! along the run for some steps before, so that each solver starts from impulses of its own.
+//!
+//! The error of a step is the norm of the difference of its velocities from those of the reference
+//! over the norm of the reference's contact impulses. The norm of velocities is weighted by mass:
+//! the root of twice the kinetic energy. Impulses are what contacts change velocities by, in the
+//! same norm.
+
+mod led;
+mod report;
+
+use self::led::{Led, Motion, Norm};
+use super::{Progress, StudyError};
+use crate::backend::Backend;
+use crate::metrics::{Environment, StepTimes, Summary};
+use crate::report::{Results, Row};
+use crate::scene::{MonkeyPile, Scene};
+
+/// What to compare, and how thoroughly.
+#[derive(Clone, Debug)]
+pub struct OneStepPlan {
+    /// Heads in the pile.
+    pub heads: usize,
+    /// Who answers.
+    pub backends: Vec<Backend>,
+    /// Solver iterations.
+    pub substeps: Vec<usize>,
+    /// The steps that are made: their numbers in the run.
+    pub moments: Vec<usize>,
+    /// Who runs the scene, and whose contacts the reference has: one with every contact.
+    pub reference: Backend,
+    /// Solver iterations of the reference.
+    pub reference_substeps: usize,
+}
+
+impl OneStepPlan {
+    /// 200 heads, from landing to rest.
+    pub fn standard() -> Self {
+        Self {
+            heads: 200,
+            backends: vec![Backend::Stock, Backend::Sbbk],
+            substeps: vec![1, 2, 4, 8, 16, 32],
+            moments: vec![45, 60, 75, 90, 120, 150, 200, 300],
+            reference: Backend::Sbbk,
+            reference_substeps: 256,
+        }
+    }
+
+    /// 50 heads at three times: for trying, not for quoting.
+    pub fn quick() -> Self {
+        Self {
+            heads: 50,
+            substeps: vec![1, 4, 16],
+            moments: vec![45, 75, 150],
+            reference_substeps: 128,
+            ..Self::standard()
+        }
+    }
+}
+
+/// Steps before the one that counts, in which bodies are led and impulses grow.
+const LEAD: usize = 6;
+/// What tables call the reference with half the solver iterations, which says how far it has
+/// converged, and with a solver that has the clusters of all others.
+const HALF: &str = "reference, half the substeps";
+const CLUSTERS: &str = "reference, clusters";
+
+/// How a step is made.
+#[derive(Clone, Debug)]
+struct Way {
+    name: String,
+    backend: Backend,
+    substeps: usize,
+    /// Whether Rapier merges the contacts of a pair into clusters, and recycles them.
+    is_thinned: bool,
+}
+
+/// What was seen of one way.
+#[derive(Default)]
+struct Seen {
+    errors: Vec<f64>,
+    times: Vec<StepTimes>,
+    points: Vec<f64>,
+}
+
+/// Makes all the steps.
+///
+/// Errors: the scene cannot be built.
+pub fn one_step(plan: &OneStepPlan, progress: &Progress) -> Result<Results, StudyError> {
+    let scene = MonkeyPile::with_heads(plan.heads);
+    let rows = steps(&scene, plan, progress)?;
+    progress.finish();
+    let (tables, panels) = (vec![report::table(plan, &rows)], report::panels(plan, &rows));
+    Ok(Results { environment: Environment::detect(), rows, tables, panels })
+}
+
+fn steps(
+    scene: &dyn Scene,
+    plan: &OneStepPlan,
+    progress: &Progress,
+) -> Result<Vec<Row>, StudyError> {
+    let exact = |name: &str, substeps| Way {
+        name: name.to_owned(),
+        backend: plan.reference,
+        substeps,
+        is_thinned: false,
+    };
+    let reference = exact("reference", plan.reference_substeps);
+    let mut ways = vec![
+        exact(HALF, plan.reference_substeps / 2),
+        Way { name: CLUSTERS.to_owned(), is_thinned: true, ..reference.clone() },
+    ];
+    for &substeps in &plan.substeps {
+        let way = |backend: &Backend| Way {
+            name: backend.to_string(),
+            backend: *backend,
+            substeps,
+            is_thinned: true,
+        };
+        ways.extend(plan.backends.iter().map(way));
+    }
+
+    let last = plan.moments.iter().copied().max().unwrap_or(0);
+    progress.phase(format!("{}, the run", scene.name()), last);
+    let run = led::run(scene, plan.reference, last, || progress.step())?;
+    progress.phase(format!("{}, its steps", scene.name()), plan.moments.len() * ways.len());
+    let mut seen: Vec<Seen> = ways.iter().map(|_| Seen::default()).collect();
+    for &moment in &plan.moments {
+        let lead = &run[moment.saturating_sub(LEAD)..=moment];
+        let (right, _) = step(scene, &reference, lead)?;
+        let free = Led::without_contacts(scene)?.lead(&run[moment..=moment]);
+        let norm = Norm::of(scene, &run[moment])?;
+        let impulse = norm.distance(&right, &free);
+        // A slow spell of the machine meets all ways.
+        for index in 0..ways.len() {
+            let index = (index + moment) % ways.len();
+            let (motions, mut led) = step(scene, &ways[index], lead)?;
+            let seen = &mut seen[index];
+            seen.errors.push(norm.distance(&motions, &right) / impulse);
+            seen.points.push(led.solver_points() as f64);
+            seen.times.append(&mut led.times);
+            progress.step();
+        }
+    }
+    Ok(ways.iter().zip(seen).map(|(way, seen)| row(scene, way, seen)).collect())
+}
+
+/// The step after those that lead to it.
+fn step(
+    scene: &dyn Scene,
+    way: &Way,
+    lead: &[Vec<Motion>],
+) -> Result<(Vec<Motion>, Led), StudyError> {
+    let mut led = Led::new(scene, way.backend)?;
+    let parameters = led.parameters();
+    parameters.num_solver_iterations = way.substeps;
+    if !way.is_thinned {
+        parameters.contact_clustering = false;
+        parameters.contact_recycling = false;
+    }
+    Ok((led.lead(lead), led))
+}
+
+fn row(scene: &dyn Scene, way: &Way, seen: Seen) -> Row {
+    let time = |time: fn(&StepTimes) -> f64| Summary::of(seen.times.iter().map(time));
+    Row::new(report::STUDY, &way.name)
+        .key("scene", scene.name())
+        .key("substeps", way.substeps)
+        .with("error", Summary::of(seen.errors.iter().copied()))
+        .with("errors", &seen.errors)
+        .with("points", Summary::of(seen.points))
+        .with("step", time(|times| times.step))
+        .with("solver", time(|times| times.solver))
+        .with("collision_detection", time(StepTimes::collision_detection))
+}
