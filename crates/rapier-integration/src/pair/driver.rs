@@ -260,8 +260,8 @@ where
         write_every(found, &mut scratch, &mut memory.pool, manifolds);
     }
     if let Some(limit) = scratch.demand.note(contacts.len()) {
-        // Candidates come and go more than manifolds do.
-        contacts.shrink_to(2 * limit);
+        // Candidates come and go more than manifolds do: some hundred kilobytes a thread stay.
+        contacts.shrink_to(limit.max(1024));
         scratch.is_done.shrink_to(limit);
         scratch.lookup.shrink_to(limit);
         scratch.patches.shrink_to(limit);

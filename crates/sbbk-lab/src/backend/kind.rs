@@ -5,7 +5,9 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use clap::ValueEnum;
-use rapier_integration::{ContactGenerator, ContactSet, SbbkConfig, SbbkDispatcher};
+use rapier_integration::{
+    ContactDetail, ContactGenerator, ContactSet, SbbkConfig, SbbkDispatcher,
+};
 use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
 use rapier3d::pipeline::PhysicsWorld;
@@ -43,6 +45,8 @@ pub enum Backend {
     AabbOnly,
     /// SBBK as a user gets it.
     Sbbk,
+    /// SBBK with a few manifolds for all contacts of a pair.
+    Patches,
     /// SBBK, with Parry generating the contacts of the triangles that it finds.
     SbbkParry,
 }
@@ -64,7 +68,7 @@ impl Backend {
 
     /// Whether two rigid meshes have the contacts of their surfaces.
     pub fn has_surfaces(self) -> bool {
-        matches!(self, Self::AabbOnly | Self::Sbbk)
+        matches!(self, Self::AabbOnly | Self::Sbbk | Self::Patches)
     }
 
     fn having(self, contact_set: ContactSet) -> Dispatcher {
@@ -75,6 +79,7 @@ impl Backend {
             }
             Self::AabbOnly => config = SbbkConfig::aabb_only(),
             Self::Sbbk => {}
+            Self::Patches => config.detail = ContactDetail::Patches,
             Self::SbbkParry => config.contacts = ContactGenerator::Parry,
         }
         config.contact_set = contact_set;
@@ -104,6 +109,7 @@ impl fmt::Display for Backend {
             Self::Stock => "stock",
             Self::AabbOnly => "aabb-only",
             Self::Sbbk => "sbbk",
+            Self::Patches => "patches",
             Self::SbbkParry => "sbbk-parry",
         })
     }

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use clap::ValueEnum;
 use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
+use rapier_integration::{ContactDetail, SbbkConfig, SbbkDispatcher};
 use rapier3d::geometry::{ColliderBuilder, SharedShape, TriMeshFlags};
 use rapier3d::pipeline::PhysicsWorld;
 
@@ -24,6 +24,8 @@ pub enum Column {
     StockFlag,
     /// SBBK, plain meshes.
     Sbbk,
+    /// SBBK with patches, plain meshes.
+    Patches,
     /// SBBK, all meshes with `TriMeshFlags::FIX_INTERNAL_EDGES`.
     SbbkFlag,
     /// Stock Rapier, convex shapes instead of the meshes, where there are such.
@@ -36,6 +38,7 @@ impl fmt::Display for Column {
             Self::Stock => "stock",
             Self::StockFlag => "stock + flag",
             Self::Sbbk => "sbbk",
+            Self::Patches => "patches",
             Self::SbbkFlag => "sbbk + flag",
             Self::Control => "control",
         })
@@ -135,8 +138,15 @@ impl Kit {
     pub fn world(&self) -> World {
         let mut world = PhysicsWorld::new();
         world.integration_parameters.contact_recycling = self.recycling;
-        if matches!(self.column, Column::Sbbk | Column::SbbkFlag) {
-            world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
+        let detail = match self.column {
+            Column::Stock | Column::StockFlag | Column::Control => None,
+            Column::Sbbk | Column::SbbkFlag => Some(ContactDetail::Every),
+            Column::Patches => Some(ContactDetail::Patches),
+        };
+        if let Some(detail) = detail {
+            let mut config = SbbkConfig::default();
+            config.detail = detail;
+            world.narrow_phase.set_query_dispatcher(SbbkDispatcher::new(config));
         }
         let (film, name) = (self.film.clone(), self.column.to_string());
         World { world, film, recorder: None, name }
