@@ -6,6 +6,7 @@
 //! time of a step is the least over the runs. At poses of stock's runs both are asked afresh for
 //! the contacts of all pairs with a mesh; where they differ, brute force in f64 tells who is right.
 
+mod advise;
 mod compare;
 mod ground;
 mod measure;
@@ -15,6 +16,7 @@ mod robots;
 mod scenes;
 mod truth;
 
+pub use advise::{Advice, advise};
 use clap::ValueEnum;
 use rapier3d::geometry::TriMeshFlags;
 use rapier3d::math::Real;

@@ -45,7 +45,7 @@ pub(super) fn robots(ground: &Ground, steps: usize) -> [Everyday<'_>; 2] {
                 Duration::ZERO
             }))
         };
-        Everyday { row, steps, build: Box::new(build) }
+        Everyday::new(row, steps, build)
     })
 }
 
