@@ -29,6 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         &world.impulse_joints,
         &world.multibody_joints,
         &world.narrow_phase,
+        &world.soft_bodies,
     );
     let stock = lines.0.len();
     draw_sbbk(&world, &dispatcher, &mut lines)?;
