@@ -136,7 +136,7 @@ fn layers_hold_the_mesh() {
     };
     let tree: Tree = Tree::build(&ball.vertices, &ball.triangles, &options).unwrap();
     let mut random = Random(9);
-    for depth in 0..=tree.stats().depth as u32 {
+    for depth in 0..=tree.stats().depth {
         let pose: Pose3 = random.pose(3.0);
         let mut lines = Vec::new();
         draw::layer(&tree, depth, &pose, |a, b, colour| lines.push((a, b, colour)));
