@@ -12,6 +12,9 @@
 //! Colliders stay plain triangle meshes; nothing else in a scene changes. Prediction distance,
 //! contact skins, internal edges, recycling and clustering of contacts work as in stock Rapier.
 //!
+//! The [`guide`] says what to set where a scene is difficult, and when not to use SBBK; [`draw`] shows
+//! trees and contacts.
+//!
 //! # What changes
 //!
 //! * The contacts of two meshes are exact at every scale, and so are those of a mesh with convex
