@@ -5,8 +5,10 @@
 //! cargo run --release --example everyday
 //! cargo run --release --example everyday -- --quick --csv everyday.csv --plot everyday.svg
 //! cargo run --release --example everyday -- --quick --only sensors,queries
+//! cargo run --release --example everyday -- --quick --only flags --urdf robot.urdf
 //! ```
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -21,13 +23,18 @@ struct Arguments {
     /// Measures only these parts
     #[arg(long, value_name = "PARTS", value_delimiter = ',')]
     only: Vec<Group>,
+    /// A robot of yours instead of ours, in the part `flags`
+    #[arg(long, value_name = "FILE")]
+    urdf: Option<PathBuf>,
 }
 
 fn main() -> ExitCode {
-    let Arguments { study, only } = Arguments::parse();
+    let Arguments { study, only, urdf } = Arguments::parse();
     let mut plan = study.plan(EverydayPlan::standard, EverydayPlan::quick);
     if !only.is_empty() {
         plan.groups = only;
     }
-    exit_code(study.run(&plan, everyday, OtherFiles::default()))
+    let others = OtherFiles { read: urdf.as_deref(), ..OtherFiles::default() };
+    plan.urdf = urdf.clone();
+    exit_code(study.run(&plan, everyday, others))
 }

@@ -63,6 +63,16 @@ impl Default for Kinds {
 }
 
 /// How an [`SbbkDispatcher`](crate::SbbkDispatcher) builds trees and contacts.
+///
+/// ```
+/// use rapier_integration::{ContactSet, SbbkConfig, SbbkDispatcher};
+///
+/// let mut config = SbbkConfig::default();
+/// config.contact_set = ContactSet::Triangles; // which contacts: as stock's, but exact
+/// config.kinds.convex_shapes = false; // Parry answers for these
+/// let dispatcher = SbbkDispatcher::new(config);
+/// assert!(!dispatcher.config().kinds.convex_shapes);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SbbkConfig {

@@ -30,6 +30,64 @@ use crate::{ContactDetail, ContactGenerator, ContactSet, SbbkConfig, SbbkStats, 
 /// small meshes are built as queries need them, those of large ones by [`prepare`](Self::prepare)
 /// and [`prepare_shape`](Self::prepare_shape). All other pairs do with Parry's own hierarchies.
 /// Clones of a dispatcher share their trees.
+///
+/// A dispatcher of one's own goes before this one, which leaves nothing to those after it that
+/// Parry can answer:
+///
+/// ```
+/// use parry3d::math::{Pose, Real, Vector};
+/// use parry3d::query::{Unsupported, details::ShapeCastOptions, *};
+/// use parry3d::shape::{Ball, Shape};
+/// use rapier_integration::SbbkDispatcher;
+/// # use parry3d::query::details::NormalConstraints;
+///
+/// /// Lets balls pass through balls, and has nothing to say about other pairs.
+/// struct Ghosts;
+///
+/// fn ghosts(g1: &dyn Shape, g2: &dyn Shape) -> Result<(), Unsupported> {
+///     if g1.as_ball().is_some() && g2.as_ball().is_some() { Ok(()) } else { Err(Unsupported) }
+/// }
+///
+/// impl<M, C> PersistentQueryDispatcher<M, C> for Ghosts {
+///     fn contact_manifolds(
+///         &self,
+///         _: &Pose,
+///         g1: &dyn Shape,
+///         g2: &dyn Shape,
+///         _: Real,
+///         manifolds: &mut Vec<ContactManifold<M, C>>,
+///         _: &mut Option<ContactManifoldsWorkspace>,
+///     ) -> Result<(), Unsupported> {
+///         ghosts(g1, g2).map(|()| manifolds.clear())
+///     }
+///     // ...
+/// #   fn contact_manifold_convex_convex(&self, _: &Pose, _: &dyn Shape, _: &dyn Shape,
+/// #       _: Option<&dyn NormalConstraints>, _: Option<&dyn NormalConstraints>, _: Real,
+/// #       _: &mut ContactManifold<M, C>) -> Result<(), Unsupported> { Err(Unsupported) }
+/// }
+/// # impl QueryDispatcher for Ghosts {
+/// #     fn intersection_test(&self, _: &Pose, g1: &dyn Shape, g2: &dyn Shape)
+/// #         -> Result<ShapeIntersection, Unsupported> {
+/// #         ghosts(g1, g2).map(|()| ShapeIntersection::new(false)) }
+/// #     fn distance(&self, _: &Pose, _: &dyn Shape, _: &dyn Shape)
+/// #         -> Result<ShapeDistance, Unsupported> { Err(Unsupported) }
+/// #     fn contact(&self, _: &Pose, _: &dyn Shape, _: &dyn Shape, _: Real)
+/// #         -> Result<Option<Contact>, Unsupported> { Err(Unsupported) }
+/// #     fn closest_points(&self, _: &Pose, _: &dyn Shape, _: &dyn Shape, _: Real)
+/// #         -> Result<ClosestPoints, Unsupported> { Err(Unsupported) }
+/// #     fn cast_shapes(&self, _: &Pose, _: Vector, _: &dyn Shape, _: &dyn Shape,
+/// #         _: ShapeCastOptions) -> Result<Option<ShapeCastHit>, Unsupported> { Err(Unsupported) }
+/// #     fn cast_shapes_nonlinear(&self, _: &NonlinearRigidMotion, _: &dyn Shape,
+/// #         _: &NonlinearRigidMotion, _: &dyn Shape, _: Real, _: Real, _: bool)
+/// #         -> Result<Option<ShapeCastHit>, Unsupported> { Err(Unsupported) }
+/// # }
+///
+/// let dispatcher = Ghosts.chain(SbbkDispatcher::default());
+/// let (ball, at) = (Ball::new(1.0), Pose::translation(0.5, 0.0, 0.0));
+/// assert!(!dispatcher.intersection_test(&at, &ball, &ball)?.intersecting);
+/// assert_eq!(dispatcher.distance(&Pose::translation(3.0, 0.0, 0.0), &ball, &ball)?.distance, 1.0);
+/// # Ok::<(), Unsupported>(())
+/// ```
 #[derive(Clone)]
 pub struct SbbkDispatcher {
     config: SbbkConfig,
@@ -63,6 +121,21 @@ impl SbbkDispatcher {
     /// vertex that is not finite is answered by Parry, as without SBBK, and counted in
     /// [`SbbkStats::unsupported_queries`].
     ///
+    /// ```
+    /// use parry3d::shape::{Ball, TriMesh};
+    /// use rapier_integration::SbbkDispatcher;
+    ///
+    /// let (vertices, triangles) = Ball::new(1.0).to_trimesh(24, 12);
+    /// let mesh = TriMesh::new(vertices, triangles)?;
+    /// let dispatcher = SbbkDispatcher::default();
+    /// let prepared = dispatcher.prepare(&mesh)?; // keep it
+    /// assert_eq!(prepared.tree().triangle_count(), 528);
+    /// // A copy needs no build of its own.
+    /// let _copy = dispatcher.prepare(&mesh.clone())?;
+    /// assert_eq!((dispatcher.stats().tree_builds, dispatcher.stats().tree_hits), (1, 1));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// What is wrong with the mesh, for example a vertex that is NaN.
     pub fn prepare(&self, mesh: &TriMesh) -> Result<PreparedTree, BuildError> {
@@ -78,6 +151,20 @@ impl SbbkDispatcher {
     /// The returned value holds a clone of `shape`, so whoever edits the shape meanwhile
     /// (`SharedShape::make_mut`) edits a copy of the mesh, and the copy has no tree.
     ///
+    /// ```
+    /// use parry3d::shape::{Ball, SharedShape};
+    /// use rapier_integration::SbbkDispatcher;
+    ///
+    /// let (vertices, triangles) = Ball::new(1.0).to_trimesh(100, 100);
+    /// let shape = SharedShape::trimesh(vertices, triangles)?;
+    /// let dispatcher = SbbkDispatcher::default();
+    /// let prepared = dispatcher.prepare_shape(&shape)?; // keep it
+    /// assert!(prepared.is_some());
+    /// // In Rapier: `ColliderBuilder::new(shape.clone())`, once for each collider.
+    /// assert!(dispatcher.prepare_shape(&SharedShape::ball(1.0))?.is_none());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// What is wrong with the mesh, for example a vertex that is NaN.
     pub fn prepare_shape(&self, shape: &SharedShape) -> Result<Option<PreparedTree>, BuildError> {
@@ -89,6 +176,25 @@ impl SbbkDispatcher {
     }
 
     /// Counts of trees and queries. Takes time in proportion to the number of trees.
+    ///
+    /// ```
+    /// use parry3d::math::Pose;
+    /// use parry3d::query::{ContactManifold, PersistentQueryDispatcher, Unsupported};
+    /// use parry3d::shape::{Ball, TriMesh};
+    /// use rapier_integration::{SbbkConfig, SbbkDispatcher};
+    ///
+    /// let mut config = SbbkConfig::default();
+    /// config.count_queries = true;
+    /// let dispatcher = SbbkDispatcher::new(config);
+    /// let (vertices, triangles) = Ball::new(1.0).to_trimesh(24, 12);
+    /// let mesh = TriMesh::new(vertices, triangles).unwrap();
+    /// let (mut manifolds, mut workspace) = (Vec::<ContactManifold<(), ()>>::new(), None);
+    /// let at = Pose::translation(1.99, 0.0, 0.0);
+    /// dispatcher.contact_manifolds(&at, &mesh, &mesh, 0.02, &mut manifolds, &mut workspace)?;
+    /// let stats = dispatcher.stats();
+    /// assert_eq!((stats.pairs, stats.queries, stats.solids), (1, 1, 1));
+    /// # Ok::<(), Unsupported>(())
+    /// ```
     pub fn stats(&self) -> SbbkStats {
         self.counters.stats(self.cache.counts())
     }

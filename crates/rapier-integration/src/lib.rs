@@ -12,6 +12,9 @@
 //! Colliders stay plain triangle meshes; nothing else in a scene changes. Prediction distance,
 //! contact skins, internal edges, recycling and clustering of contacts work as in stock Rapier.
 //!
+//! The [`guide`] says what to set where a scene is difficult, and when not to use SBBK; [`draw`] shows
+//! trees and contacts.
+//!
 //! # What changes
 //!
 //! * The contacts of two meshes are exact at every scale, and so are those of a mesh with convex
@@ -140,8 +143,32 @@
 //!
 //! # Hosts other than Rapier
 //!
-//! The dispatcher is generic over manifold and contact data: any host of Parry 0.31.1 can use it. A
-//! host must drop a pair's workspace when it edits one of its shapes, as Rapier does and as Parry's
+//! The dispatcher is generic over manifold and contact data: any host of Parry 0.31.1 can use it.
+//!
+//! ```
+//! use parry3d::math::Pose;
+//! use parry3d::query::{ContactManifold, PersistentQueryDispatcher, Unsupported};
+//! use parry3d::shape::{Ball, TriMesh};
+//! use rapier_integration::SbbkDispatcher;
+//!
+//! let (vertices, triangles) = Ball::new(1.0).to_trimesh(24, 12);
+//! let mesh = TriMesh::new(vertices, triangles).unwrap();
+//! let dispatcher = SbbkDispatcher::default();
+//!
+//! // Of each pair the host keeps these two from step to step.
+//! let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
+//! let mut workspace = None;
+//! for step in 0..10 {
+//!     let at = Pose::translation(2.04 - 0.01 * step as f32, 0.0, 0.0);
+//!     dispatcher.contact_manifolds(&at, &mesh, &mesh, 0.02, &mut manifolds, &mut workspace)?;
+//! }
+//! let deepest = manifolds.iter().flat_map(|manifold| &manifold.points);
+//! let deepest = deepest.map(|point| point.dist).fold(f32::INFINITY, f32::min);
+//! assert!((deepest + 0.05).abs() < 0.01);
+//! # Ok::<(), Unsupported>(())
+//! ```
+//!
+//! A host must drop a pair's workspace when it edits one of its shapes, as Rapier does and as Parry's
 //! own workspaces need. A deformable mesh may be edited in place between queries, and the
 //! workspaces kept. A pair without manifolds that is apart may be left without a workspace.
 //!
@@ -165,6 +192,8 @@
 
 mod config;
 mod dispatcher;
+pub mod draw;
+pub mod guide;
 mod mesh;
 mod pair;
 mod query;
@@ -190,3 +219,7 @@ const _: fn() = || {
     }
     is_for_rapier::<SbbkDispatcher>();
 };
+
+#[cfg(all(doctest, feature = "rapier3d"))]
+#[doc = include_str!("../README.md")]
+struct Readme;

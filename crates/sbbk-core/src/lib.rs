@@ -42,6 +42,7 @@
 //! * [`surface`]: which triangles of a mesh are neighbours, and whether it bounds a solid.
 //! * [`front`]: a descent that starts where the last one stopped.
 //! * [`broad_phase`]: which of many moving objects are near each other.
+//! * [`draw`]: the volumes of a layer, as lines.
 //! * `truth` (feature `truth`): brute force in f64, to test against.
 //!
 //! Modules depend one way: `simd` (lanes), [`volumes`], [`tree`], [`traverse`], [`leaf`], then
@@ -50,6 +51,7 @@
 
 pub mod broad_phase;
 pub mod contact;
+pub mod draw;
 pub mod field;
 pub mod front;
 pub mod leaf;
@@ -64,3 +66,7 @@ pub mod tree;
 #[cfg(feature = "truth")]
 pub mod truth;
 pub mod volumes;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -33,6 +33,8 @@ pub use motion::STEP_COUNT;
 pub use pile::{PilePlan, SamePosesPlan, pile, runs};
 pub use progress::Progress;
 
+use std::path::PathBuf;
+
 use rapier3d::geometry::SharedShape;
 use sbbk_core::tree::{BuildError, BuildOptions, LayerPlan, Tree};
 use thiserror::Error;
@@ -47,6 +49,14 @@ pub enum StudyError {
     /// A scene could not be built.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// A URDF file could not be loaded.
+    #[error("cannot load the robot {}: {cause}", path.display())]
+    Robot {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        cause: String,
+    },
     /// A mesh could not have a tree.
     #[error("no tree can be built for the mesh `{mesh}`: {cause}")]
     Tree {

@@ -1,5 +1,6 @@
 //! The studies on a small scale, and what reports make of them.
 
+mod advise;
 mod compare;
 mod contacts;
 mod convex;

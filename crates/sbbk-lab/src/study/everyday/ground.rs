@@ -93,10 +93,10 @@ pub(super) fn put(world: &mut PhysicsWorld, body: RigidBodyHandle, place: Vec3) 
     body.set_linvel(Vec3::ZERO, true);
 }
 
-/// The shapes of the terrain tests by name; the last is all of them in turn.
-pub(super) fn kinds() -> Vec<(&'static str, Vec<SharedShape>)> {
+/// The shapes of the terrain tests by name, of this length; the last is all of them in turn.
+pub(super) fn kinds(length: Real) -> Vec<(&'static str, Vec<SharedShape>)> {
     const NAMES: [&str; 6] = ["ball", "capsule", "cuboid", "cylinder", "cone", "convex polyhedron"];
-    let all = crate::study::convex::kinds::kinds(BODY);
+    let all = crate::study::convex::kinds::kinds(length);
     let of = |name: &'static str| {
         let shapes = all.iter().filter(|kind| kind.name == name);
         (name, shapes.map(|kind| kind.shape.clone()).collect())
@@ -106,6 +106,3 @@ pub(super) fn kinds() -> Vec<(&'static str, Vec<SharedShape>)> {
     kinds.push(("mixture", mixture));
     kinds
 }
-
-/// Length of a body, in units.
-const BODY: Real = 1.0;

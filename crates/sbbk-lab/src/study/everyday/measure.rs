@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use rapier_integration::SbbkDispatcher;
+use rapier3d::geometry::SharedShape;
 use rapier3d::pipeline::PhysicsWorld;
 use serde::Serialize;
 
@@ -17,6 +18,8 @@ pub(super) struct Everyday<'a> {
     pub row: Row,
     pub steps: usize,
     pub build: Box<dyn Fn() -> Result<Driven, SceneError> + 'a>,
+    /// Shapes that SBBK prepares before.
+    pub prepared: Vec<SharedShape>,
 }
 
 /// A world and what is done to it before each step.
@@ -105,7 +108,16 @@ struct Side {
     plugin_bytes: usize,
 }
 
-impl Everyday<'_> {
+impl<'a> Everyday<'a> {
+    /// With nothing prepared.
+    pub fn new(
+        row: Row,
+        steps: usize,
+        build: impl Fn() -> Result<Driven, SceneError> + 'a,
+    ) -> Self {
+        Self { row, steps, build: Box::new(build), prepared: Vec::new() }
+    }
+
     /// Runs the scene `repeats` times on either backend.
     ///
     /// Errors: the scene cannot be built.
@@ -149,6 +161,12 @@ impl Everyday<'_> {
         if let Some(dispatcher) = dispatcher {
             world.narrow_phase.set_query_dispatcher(dispatcher.clone());
         }
+        let prepare = |dispatcher: &SbbkDispatcher| {
+            let trees =
+                self.prepared.iter().filter_map(|shape| dispatcher.prepare_shape(shape).ok());
+            trees.collect::<Vec<_>>()
+        };
+        let _prepared = dispatcher.map(prepare);
         world.physics_pipeline.counters.enable();
         for step in 0..self.steps {
             let asked = drive(&mut world, step);

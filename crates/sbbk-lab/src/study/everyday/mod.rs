@@ -6,6 +6,7 @@
 //! time of a step is the least over the runs. At poses of stock's runs both are asked afresh for
 //! the contacts of all pairs with a mesh; where they differ, brute force in f64 tells who is right.
 
+mod advise;
 mod compare;
 mod ground;
 mod measure;
@@ -14,6 +15,9 @@ mod report;
 mod robots;
 mod scenes;
 mod truth;
+
+pub use advise::{Advice, advise};
+use std::path::PathBuf;
 
 use clap::ValueEnum;
 use rapier3d::geometry::TriMeshFlags;
@@ -84,6 +88,8 @@ pub struct EverydayPlan {
     pub small_meshes: usize,
     /// Cells along a side of the terrains for meshes with all flags and for robots, of half a unit.
     pub deformable_cells: u32,
+    /// The robot that stands on the last: one of ours, which walks, if there is none.
+    pub urdf: Option<PathBuf>,
     /// Heads in the pile.
     pub heads: usize,
     /// Cells along a side of the terrains for single queries, of half a unit.
@@ -109,6 +115,7 @@ impl EverydayPlan {
             world_cells: 1000,
             small_meshes: 10_000,
             deformable_cells: 256,
+            urdf: None,
             heads: 300,
             query_cells: vec![23, 100, 400, 1000],
         }
@@ -137,7 +144,7 @@ impl EverydayPlan {
 
 /// Measures all that `plan` asks for.
 ///
-/// Errors: none but those of a mesh without triangles, which these are not.
+/// Errors: the URDF file cannot be loaded. Not those of a mesh without triangles, which these are not.
 pub fn everyday(plan: &EverydayPlan, progress: &Progress) -> Result<Results, StudyError> {
     let mut rows = Vec::new();
     for group in &plan.groups {
@@ -158,7 +165,7 @@ pub fn everyday(plan: &EverydayPlan, progress: &Progress) -> Result<Results, Stu
                 let all = Ground::new(plan.deformable_cells, 0.5, all)?;
                 let fixed = Ground::new(plan.deformable_cells, 0.5, fixed)?;
                 let mut scenes = scenes::all_flags(&all, plan.steps)?;
-                scenes.extend(robots::robots(&fixed, plan.steps));
+                scenes.extend(robots::robots(&fixed, plan.urdf.as_deref(), plan.steps)?);
                 plan.measure("all flags, and robots", &scenes, progress)?
             }
             Group::Sensors => {

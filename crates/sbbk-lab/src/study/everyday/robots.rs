@@ -1,13 +1,15 @@
 //! Robots from a URDF file, loaded by Rapier's own loader.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
+use std::fmt::Display;
 use std::path::Path;
 use std::time::Duration;
 
-use glamx::{Pose3, Quat};
+use glamx::{Pose3, Quat, Vec3};
 use rapier3d::dynamics::{ImpulseJointHandle, JointAxis};
 use rapier3d::geometry::TriMeshFlags;
 use rapier3d::math::Real;
+use rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::pipeline::PhysicsWorld;
 use rapier3d_urdf::{UrdfLoaderOptions, UrdfRobot};
 
@@ -15,24 +17,43 @@ use super::DEFORMABLE;
 use super::ground::{Ground, above};
 use super::measure::{Driven, Everyday};
 use crate::report::Row;
+use crate::study::StudyError;
 
 /// A walker of four legs, nine meshes of 320 to 384 triangles, a metre long.
 const WALKER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/walker/walker.urdf");
 const COUNT: usize = 10;
-/// Units between robots.
-const SPACING: f32 = 2.2;
-/// Height of the torso over the terrain at the start, in units: the feet hang just above it.
-const HEIGHT: f32 = 1.2;
+/// Between the middles of two robots, in their lengths.
+const SPACING: f32 = 2.0;
+/// Height of the lowest point over the terrain at the start, in units.
+const HEIGHT: f32 = 0.1;
 /// Of the motors in the joints, in 1/s² and 1/s, and how often a leg swings, in Hz.
 const STIFFNESS: Real = 2000.0;
 const DAMPING: Real = 90.0;
 const STRIDES: f32 = 1.2;
 
-/// Ten walkers on a terrain, with the loader's flags for their meshes and with none.
-pub(super) fn robots(ground: &Ground, steps: usize) -> [Everyday<'_>; 2] {
+/// A URDF file cannot be used.
+fn unusable(path: &Path, cause: impl Display) -> StudyError {
+    StudyError::Robot { path: path.to_owned(), cause: cause.to_string() }
+}
+
+/// Ten robots on a terrain, with the loader's flags for their meshes and with none: walkers, or those
+/// of a file, whose joints nothing moves.
+///
+/// Errors: the file cannot be loaded, or its robot has no shapes.
+pub(super) fn robots<'a>(
+    ground: &'a Ground,
+    file: Option<&Path>,
+    steps: usize,
+) -> Result<Vec<Everyday<'a>>, StudyError> {
+    let walks = file.is_none();
+    let file = file.unwrap_or(Path::new(WALKER));
     let defaults = UrdfLoaderOptions::default().trimesh_flags;
-    [("the loader's flags", defaults), ("no flags", TriMeshFlags::empty())].map(|(name, flags)| {
-        let robots: Vec<UrdfRobot> = (0..COUNT).map(|index| load(ground, flags, index)).collect();
+    let mut scenes = Vec::new();
+    for (name, flags) in [("the loader's flags", defaults), ("no flags", TriMeshFlags::empty())] {
+        let bounds = bounds(&load(file, flags, Pose3::IDENTITY)?)
+            .ok_or_else(|| unusable(file, "no link has a shape"))?;
+        let load = |index| load(file, flags, start(ground, bounds, index));
+        let robots = (0..COUNT).map(load).collect::<Result<Vec<UrdfRobot>, _>>()?;
         let row = Row::new(DEFORMABLE, "")
             .key("scene", format!("{COUNT} robots from URDF, {name}"))
             .key("triangles", ground.triangle_count);
@@ -41,25 +62,44 @@ pub(super) fn robots(ground: &Ground, steps: usize) -> [Everyday<'_>; 2] {
             let legs = robots.iter().flat_map(|robot| insert(&mut world, robot.clone()));
             let legs: Vec<Leg> = legs.collect();
             Ok(Driven::by(world, move |world, step| {
-                legs.iter().for_each(|leg| leg.swing(world, step));
+                if walks {
+                    legs.iter().for_each(|leg| leg.swing(world, step));
+                }
                 Duration::ZERO
             }))
         };
-        Everyday { row, steps, build: Box::new(build) }
-    })
+        scenes.push(Everyday::new(row, steps, build));
+    }
+    Ok(scenes)
+}
+
+/// The box around the shapes of a robot.
+fn bounds(robot: &UrdfRobot) -> Option<Aabb> {
+    let links = robot.links.iter().map(|link| (link.body.position(), &link.colliders));
+    let boxes = links.flat_map(|(body, colliders)| {
+        colliders.iter().map(move |part| {
+            let part = &part.collider;
+            part.shape().compute_aabb(&(body * part.position()))
+        })
+    });
+    boxes.reduce(|one, two| one.merged(&two))
+}
+
+/// Where a robot starts. In the file z is up.
+fn start(ground: &Ground, bounds: Aabb, index: usize) -> Pose3 {
+    let Vec3 { x: length, y: width, .. } = bounds.extents();
+    let [x, z] =
+        [index % 5, index / 5].map(|place| SPACING * length.max(width) * (place as f32 - 2.0));
+    let height = HEIGHT - bounds.mins.z;
+    Pose3::from_parts(above(ground.size, [x, z], height), Quat::from_rotation_x(-FRAC_PI_2))
 }
 
 /// Each robot has its own meshes, as if each were loaded by itself.
-fn load(ground: &Ground, trimesh_flags: TriMeshFlags, index: usize) -> UrdfRobot {
-    let [x, z] = [index % 5, index / 5].map(|place| SPACING * (place as f32 - 2.0));
-    // In the file z is up.
-    let shift =
-        Pose3::from_parts(above(ground.size, [x, z], HEIGHT), Quat::from_rotation_x(-FRAC_PI_2));
+fn load(file: &Path, trimesh_flags: TriMeshFlags, shift: Pose3) -> Result<UrdfRobot, StudyError> {
     let options = UrdfLoaderOptions { trimesh_flags, shift, ..UrdfLoaderOptions::default() };
-    let (robot, _) = UrdfRobot::from_file(Path::new(WALKER), options, None)
-        .expect("the file is part of this crate");
-    assert!(robot.links.iter().all(|link| !link.colliders.is_empty()), "a mesh is missing");
-    robot
+    let (robot, _) =
+        UrdfRobot::from_file(file, options, None).map_err(|cause| unusable(file, cause))?;
+    Ok(robot)
 }
 
 /// The joints of a leg, and when in a stride it swings.

@@ -39,9 +39,9 @@ pub(super) fn bodies<'a>(
             ground.scatter(&mut world, &shapes, count);
             Ok(Driven::alone(world))
         };
-        Everyday { row, steps, build: Box::new(build) }
+        Everyday::new(row, steps, build)
     };
-    kinds().into_iter().map(scene).collect()
+    kinds(1.0).into_iter().map(scene).collect()
 }
 
 /// A ball and meshes, one in each world, that bounce on a terrain, higher than its rim: between two
@@ -205,7 +205,7 @@ pub(super) fn pile(heads: usize, steps: usize) -> Everyday<'static> {
     let pile = MonkeyPile::with_heads(heads);
     let row = Row::new(PILE, "").key("scene", pile.name());
     let build = move || Ok(Driven::alone(pile.build()?.world));
-    Everyday { row, steps, build: Box::new(build) }
+    Everyday::new(row, steps, build)
 }
 
 fn named<'a>(
@@ -216,7 +216,7 @@ fn named<'a>(
     build: impl Fn() -> Result<Driven, SceneError> + 'a,
 ) -> Everyday<'a> {
     let row = Row::new(study, "").key("scene", name).key("triangles", ground.triangle_count);
-    Everyday { row, steps, build: Box::new(build) }
+    Everyday::new(row, steps, build)
 }
 
 /// A ball, and meshes of about its size.

@@ -1,0 +1,90 @@
+//! Lines for a picture of contacts, and of the trees of prepared meshes ([`layer`]), handed to a
+//! closure `FnMut(a, b, colour)`: any renderer of lines will do.
+//!
+//! Rapier's own debug renderer, and all that is built on it, takes them as they are, as
+//! `examples/draw.rs` does:
+//!
+//! ```ignore
+//! let object = DebugRenderObject::ContactPair(pair, collider1, collider2);
+//! contacts(manifolds, poses, 0.1, |a, b, colour| backend.draw_line(object, a, b, colour));
+//! ```
+//!
+//! Bevy's gizmos want `gizmos.line(a, b, Color::hsla(h, s, l, a))` of `[h, s, l, a] = colour`.
+
+use parry3d::math::{Pose, Real, Vector};
+use parry3d::query::ContactManifold;
+use parry3d::shape::Shape;
+pub use sbbk_core::draw::{BOX, Colour, KDOP, SPHERE, aabb, kdop, layer, sphere};
+
+/// What [`contacts`] draws points in that are apart, and what those that overlap.
+pub const APART: Colour = [200.0, 0.9, 0.6, 1.0];
+/// See [`APART`].
+pub const OVERLAPPING: Colour = [0.0, 1.0, 0.5, 1.0];
+/// What [`contacts`] draws normals in.
+pub const NORMAL: Colour = [60.0, 1.0, 0.5, 1.0];
+/// What [`triangles`] draws in, for each of the two shapes.
+pub const TRIANGLES: [Colour; 2] = [[300.0, 0.8, 0.6, 1.0], [30.0, 0.9, 0.6, 1.0]];
+
+/// Draws the contact points of manifolds, between shapes at these poses: a line from the point of
+/// one shape to that of the other, and the normal from the first.
+///
+/// ```
+/// use parry3d::math::Pose;
+/// use parry3d::query::{ContactManifold, PersistentQueryDispatcher, Unsupported};
+/// use parry3d::shape::{Ball, TriMesh};
+/// use rapier_integration::{SbbkDispatcher, draw};
+///
+/// let (vertices, indices) = Ball::new(1.0).to_trimesh(24, 12);
+/// let mesh = TriMesh::new(vertices, indices).unwrap();
+/// let poses = [&Pose::IDENTITY, &Pose::translation(1.99, 0.0, 0.0)];
+/// let (mut manifolds, mut workspace) = (Vec::<ContactManifold<(), ()>>::new(), None);
+/// SbbkDispatcher::default()
+///     .contact_manifolds(poses[1], &mesh, &mesh, 0.02, &mut manifolds, &mut workspace)?;
+///
+/// let mut lines = Vec::new();
+/// let mut line = |a, b, colour| lines.push((a, b, colour));
+/// draw::contacts(&manifolds, poses, 0.1, &mut line);
+/// draw::triangles(&manifolds, [&mesh, &mesh], poses, &mut line);
+/// assert!(lines.len() >= 8);
+/// # Ok::<(), Unsupported>(())
+/// ```
+pub fn contacts<M, C>(
+    manifolds: &[ContactManifold<M, C>],
+    poses: [&Pose; 2],
+    normal_length: Real,
+    mut line: impl FnMut(Vector, Vector, Colour),
+) {
+    for manifold in manifolds {
+        let subshapes = [manifold.subshape_pos1(), manifold.subshape_pos2()];
+        let place = |side: usize, point: Vector| {
+            poses[side] * subshapes[side].map_or(point, |subshape| subshape * point)
+        };
+        for point in &manifold.points {
+            let [p1, p2] = [place(0, point.local_p1), place(1, point.local_p2)];
+            let normal = place(0, point.local_p1 + normal_length * manifold.local_n1) - p1;
+            line(p1, p2, if point.dist > 0.0 { APART } else { OVERLAPPING });
+            line(p1, p1 + normal, NORMAL);
+        }
+    }
+}
+
+/// Draws the triangles that manifolds are about, of shapes at these poses: of meshes only.
+pub fn triangles<M, C>(
+    manifolds: &[ContactManifold<M, C>],
+    shapes: [&dyn Shape; 2],
+    poses: [&Pose; 2],
+    mut line: impl FnMut(Vector, Vector, Colour),
+) {
+    for manifold in manifolds {
+        for (side, triangle) in [manifold.subshape1, manifold.subshape2].into_iter().enumerate() {
+            let mesh = shapes[side].as_trimesh();
+            let Some(mesh) = mesh.filter(|mesh| (triangle as usize) < mesh.indices().len()) else {
+                continue;
+            };
+            let [a, b, c] = mesh.triangle(triangle).vertices().map(|corner| poses[side] * corner);
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                line(from, to, TRIANGLES[side]);
+            }
+        }
+    }
+}

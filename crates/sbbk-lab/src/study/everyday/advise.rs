@@ -1,0 +1,271 @@
+//! What SBBK is worth for a mesh: as a terrain, as a body, as a sensor.
+
+use std::fmt;
+use std::time::Duration;
+
+use glamx::{Pose3, Vec3};
+use oorandom::Rand32;
+use rapier3d::dynamics::RigidBodyBuilder;
+use rapier3d::geometry::{ColliderBuilder, SharedShape};
+use rapier3d::math::Real;
+use rapier3d::parry::query::Ray;
+use rapier3d::pipeline::{ActiveEvents, PhysicsWorld};
+use sbbk_core::surface::{Surface, SurfaceKind};
+
+use super::ground::{kinds, put};
+use super::measure::{Driven, Everyday};
+use crate::mesh::Mesh;
+use crate::report::Row;
+use crate::scene::{Solid, random};
+use crate::study::StudyError;
+
+const STUDY: &str = "advice";
+/// Convex bodies on the mesh, along each side of it.
+const TERRAIN_SIDE: usize = 7;
+/// Their length, as a share of the mesh's longest side.
+const TERRAIN_BODY: f32 = 0.07;
+/// Bodies of the mesh that fall onto each other: fewer of large meshes, as stock takes long.
+const BODIES: [usize; 2] = [6, 24];
+const BODY_TRIANGLES: usize = 100_000;
+/// Sensors of the mesh, around one of it.
+const SENSORS: usize = 10;
+/// A mesh with more triangles has a tree only if it is prepared.
+const UNPREPARED: usize = 8192;
+/// Faster or slower by less than this factor is as fast.
+const NOISE: f64 = 1.1;
+/// A mesh whose size in units is outside of this wants another `length_unit`.
+const USUAL_SIZES: [f32; 2] = [0.3, 30.0];
+
+/// What was measured of one mesh; displayed as its name and three lines.
+#[derive(Clone, Debug)]
+pub struct Advice {
+    /// Name of the mesh.
+    pub name: String,
+    /// Number of its triangles.
+    pub triangles: usize,
+    /// Its longest side, in units.
+    pub size: f32,
+    /// What SBBK takes it for.
+    pub kind: SurfaceKind,
+    /// Under stock Rapier and under SBBK: as a terrain, as bodies, as sensors.
+    pub rows: [[Row; 2]; 3],
+}
+
+/// Measures whole worlds with this mesh, each `repeats` times for so many `steps`.
+///
+/// Lengths are the mesh's own; `length_unit` and gravity are as large as bodies are.
+///
+/// Errors: the mesh has no triangles.
+pub fn advise(mesh: &Mesh, steps: usize, repeats: usize) -> Result<Advice, StudyError> {
+    let mesh = &mesh.clone().centred();
+    let solid = Solid::new(mesh)?;
+    let scenes = Scenes {
+        mesh,
+        shape: solid.collider().shape,
+        solid,
+        size: mesh.bounds().extents().max_element(),
+    };
+    let mut measured = [scenes.terrain(steps), scenes.bodies(steps), scenes.sensors(steps)]
+        .into_iter()
+        .map(|scene| scene.measure(repeats));
+    let mut next = || measured.next().expect("there are three");
+    let rows = [next()?, next()?, next()?];
+    Ok(Advice {
+        name: mesh.name.clone(),
+        triangles: mesh.triangle_count(),
+        size: scenes.size,
+        kind: Surface::new(&mesh.vertices, &mesh.triangles).kind(),
+        rows,
+    })
+}
+
+struct Scenes<'a> {
+    mesh: &'a Mesh,
+    solid: Solid,
+    shape: SharedShape,
+    size: f32,
+}
+
+impl Scenes<'_> {
+    /// Convex bodies of all kinds, each a little above the highest point of the mesh below it.
+    fn terrain(&self, steps: usize) -> Everyday<'_> {
+        let length = TERRAIN_BODY * self.size;
+        let (_, shapes) = kinds(length).pop().expect("the last is the mixture");
+        let build = move || {
+            let mut world = world(length);
+            world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(self.shape.clone()));
+            let (mut random, bounds) = (Rand32::new(5), self.mesh.bounds());
+            let mut shapes = shapes.iter().cycle();
+            for index in 0..TERRAIN_SIDE * TERRAIN_SIDE {
+                let [x, z] = [index % TERRAIN_SIDE, index / TERRAIN_SIDE]
+                    .map(|place| (place as f32 + 0.5) / TERRAIN_SIDE as f32);
+                let share = Vec3::new(x, 1.0, z);
+                let top = bounds.mins + share * bounds.extents() + 2.0 * length * Vec3::Y;
+                let ray = Ray::new(top, Vec3::NEG_Y);
+                let hit = self.shape.cast_local_ray(&ray, 2.0 * self.size, false);
+                let turn = random::rotation(&mut random);
+                if let (Some(fall), Some(shape)) = (hit, shapes.next()) {
+                    let place = top - (fall - length) * Vec3::Y;
+                    let body = RigidBodyBuilder::dynamic().pose(Pose3::from_parts(place, turn));
+                    world.insert(body, ColliderBuilder::new(shape.clone()));
+                }
+            }
+            Ok(Driven::alone(world))
+        };
+        Everyday::new(self.row("terrain"), steps, build)
+    }
+
+    /// Copies of the mesh that fall onto each other and a floor.
+    fn bodies(&self, steps: usize) -> Everyday<'_> {
+        let [least, most] = BODIES;
+        let count = (BODY_TRIANGLES / self.mesh.triangle_count().max(1)).clamp(least, most);
+        let build = move || {
+            let mut world = world(self.size);
+            let floor = ColliderBuilder::cuboid(20.0 * self.size, self.size, 20.0 * self.size);
+            world.insert(RigidBodyBuilder::fixed(), floor.translation(-self.size * Vec3::Y));
+            let (mut random, mut height) = (Rand32::new(5), 0.0);
+            for index in 0..count {
+                let turn = random::rotation(&mut random);
+                let bounds = self.shape.compute_aabb(&Pose3::from_rotation(turn));
+                let spread = 0.5 * bounds.extents() * random::direction(&mut random);
+                let column = self.size * Vec3::X * (0.8 * (index % 3) as f32 - 0.8);
+                let place = column + spread.with_y(height - bounds.mins.y);
+                let body = RigidBodyBuilder::dynamic().pose(Pose3::from_parts(place, turn));
+                world.insert(body, self.solid.collider());
+                // Three start side by side, and may touch.
+                height += if index % 3 == 2 { self.size } else { 0.0 };
+            }
+            Ok(Driven::alone(world))
+        };
+        self.with_tree(Everyday::new(self.row("bodies"), steps, build))
+    }
+
+    /// Sensors of the mesh that drift through one that is fixed, and past it.
+    fn sensors(&self, steps: usize) -> Everyday<'_> {
+        let build = move || {
+            let mut world = world(self.size);
+            world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(self.shape.clone()));
+            let mut random = Rand32::new(5);
+            let sensor = ColliderBuilder::new(self.shape.clone()).sensor(true);
+            let sensor = sensor.active_events(ActiveEvents::COLLISION_EVENTS);
+            let starts = (0..SENSORS).map(|index| {
+                let away = self.size * (0.2 + 0.8 * index as f32 / SENSORS as f32);
+                let place = away * random::direction(&mut random);
+                let pose = Pose3::from_parts(place, random::rotation(&mut random));
+                let body = RigidBodyBuilder::dynamic().pose(pose).gravity_scale(0.0);
+                (world.insert(body.additional_mass(1.0), sensor.clone()).0, place)
+            });
+            let starts: Vec<_> = starts.collect();
+            let speed = 0.002 * self.size;
+            Ok(Driven::by(world, move |world, step| {
+                for &(body, start) in &starts {
+                    put(world, body, start + speed * step as f32 * Vec3::X);
+                }
+                Duration::ZERO
+            }))
+        };
+        self.with_tree(Everyday::new(self.row("sensors"), steps, build))
+    }
+
+    fn row(&self, part: &str) -> Row {
+        Row::new(STUDY, "").key("mesh", &*self.mesh.name).key("as", part)
+    }
+
+    fn with_tree<'s>(&self, mut scene: Everyday<'s>) -> Everyday<'s> {
+        if self.mesh.triangle_count() > UNPREPARED {
+            scene.prepared.push(self.shape.clone());
+        }
+        scene
+    }
+}
+
+/// An empty world for bodies of this size.
+fn world(size: Real) -> PhysicsWorld {
+    let mut world = PhysicsWorld::new();
+    world.integration_parameters.length_unit = size;
+    world.gravity *= size;
+    world
+}
+
+impl Advice {
+    /// How many times as fast as stock's SBBK's collision detection is: as a terrain, as bodies, as
+    /// sensors.
+    pub fn speeds(&self) -> [f64; 3] {
+        self.rows
+            .each_ref()
+            .map(|[stock, sbbk]| stock.number("detection.mean") / sbbk.number("detection.mean"))
+    }
+
+    /// What to set for each use.
+    fn settings(&self) -> [String; 3] {
+        let mut body: Vec<String> = Vec::new();
+        if self.triangles > UNPREPARED {
+            body.push("call `prepare_shape` at load time".into());
+        }
+        if self.kind == SurfaceKind::InsideOut {
+            body.push("turn its triangles, their normals point inwards".into());
+        }
+        let mut dynamic = body.clone();
+        let [small, large] = USUAL_SIZES;
+        if !(small..large).contains(&self.size) {
+            dynamic.push(format!("`length_unit = {:.1e}`", self.size));
+        }
+        let list = |settings: Vec<String>| match settings.is_empty() {
+            true => "nothing".to_owned(),
+            false => settings.join("; "),
+        };
+        [
+            "`FIX_INTERNAL_EDGES` if convex bodies slide or roll on it".to_owned(),
+            list(dynamic),
+            list(body),
+        ]
+    }
+}
+
+impl fmt::Display for Advice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kind = match self.kind {
+            SurfaceKind::Solid => "a solid",
+            SurfaceKind::Sheet => "a sheet",
+            SurfaceKind::InsideOut => "inside out",
+        };
+        let Self { name, triangles, size, .. } = self;
+        write!(f, "{name}: {triangles} triangles, {size:.3} units, {kind}")?;
+        let speeds = self.speeds();
+        for (index, (use_, settings)) in
+            ["terrain", "bodies", "sensors"].into_iter().zip(self.settings()).enumerate()
+        {
+            let [stock, sbbk] = &self.rows[index];
+            let speed = speeds[index];
+            let verdict = match speed {
+                _ if speed.is_nan() => "nothing to measure".to_owned(),
+                _ if speed > NOISE => format!("{speed:.1} times as fast"),
+                _ if speed < 1.0 / NOISE => format!("slower, {speed:.2} of the speed"),
+                _ => "as fast".to_owned(),
+            };
+            let milliseconds = |row: &Row, time: &str| 1e-3 * row.number(time);
+            write!(
+                f,
+                "\n  as {use_}: {verdict} ({:.3} ms a step, stock {:.3}; worst {:.2}, {:.2}); ",
+                milliseconds(sbbk, "detection.mean"),
+                milliseconds(stock, "detection.mean"),
+                milliseconds(sbbk, "detection.worst"),
+                milliseconds(stock, "detection.worst"),
+            )?;
+            if use_ == "sensors" {
+                let (pairs, differ) = (sbbk.count("pairs.mesh_pairs"), sbbk.wrong("pairs"));
+                write!(f, "{differ} of {pairs} answers differ from stock's; ")?;
+            } else if stock.count("judged.mesh_pairs") == 0 {
+                let pairs = sbbk.count("pairs.mesh_pairs");
+                write!(f, "contacts of {pairs} pairs agree with stock's; ")?;
+            } else {
+                let [wrong, stocks] = [sbbk, stock].map(|row| row.wrong("judged"));
+                let all = stock.count("judged.true_pairs");
+                write!(f, "wrong contacts {wrong}, stock {stocks}, of {all} judged; ")?;
+            }
+            let [own, meshes] = ["plugin_mebibytes", "mesh_mebibytes"].map(|m| sbbk.number(m));
+            write!(f, "{own:.1} MiB beside {meshes:.1}; set: {settings}")?;
+        }
+        Ok(())
+    }
+}

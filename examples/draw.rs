@@ -1,0 +1,104 @@
+//! Trees and contacts as lines, by Rapier's debug renderer: what any program that draws with it can
+//! do. Here the lines go to a file that 3D programs open.
+//!
+//! ```text
+//! cargo run --release --example draw -- lines.obj
+//! ```
+
+use std::error::Error;
+use std::fmt::Write;
+
+use rapier_integration::{SbbkDispatcher, draw};
+use rapier3d::parry::shape::Ball;
+use rapier3d::pipeline::{DebugColor, DebugRenderBackend, DebugRenderObject, DebugRenderPipeline};
+use rapier3d::prelude::*;
+
+/// Which layer of the trees is drawn.
+const LAYER: u32 = 4;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let path = std::env::args().nth(1).unwrap_or_else(|| "lines.obj".into());
+    let dispatcher = SbbkDispatcher::default();
+    let world = world(&dispatcher);
+
+    let mut lines = Lines::default();
+    DebugRenderPipeline::default().render(
+        &mut lines,
+        &world.bodies,
+        &world.colliders,
+        &world.impulse_joints,
+        &world.multibody_joints,
+        &world.narrow_phase,
+        &world.soft_bodies,
+    );
+    let stock = lines.0.len();
+    draw_sbbk(&world, &dispatcher, &mut lines)?;
+    println!("{stock} lines of Rapier's, {} of SBBK's in {path}", lines.0.len() - stock);
+    std::fs::write(path, lines.obj()?)?;
+    Ok(())
+}
+
+/// Draws contacts, and a layer of the tree of each mesh, on whatever Rapier's debug renderer draws
+/// on.
+fn draw_sbbk(
+    world: &PhysicsWorld,
+    dispatcher: &SbbkDispatcher,
+    backend: &mut impl DebugRenderBackend,
+) -> Result<(), Box<dyn Error>> {
+    for (handle, collider) in world.colliders.iter() {
+        let object = DebugRenderObject::Collider(handle, collider);
+        if let Some(prepared) = dispatcher.prepare_shape(collider.shared_shape())? {
+            draw::layer(prepared.tree(), LAYER, collider.position(), |a, b, colour| {
+                backend.draw_line(object, a, b, colour);
+            });
+        }
+    }
+    for pair in world.narrow_phase.contact_pairs() {
+        let [one, two] = [pair.collider1, pair.collider2].map(|handle| &world.colliders[handle]);
+        let object = DebugRenderObject::ContactPair(pair, one, two);
+        let poses = [one.position(), two.position()];
+        let shapes = [one.shape(), two.shape()];
+        let mut line = |a, b, colour| backend.draw_line(object, a, b, colour);
+        draw::contacts(pair.manifolds(), poses, 0.1, &mut line);
+        draw::triangles(pair.manifolds(), shapes, poses, &mut line);
+    }
+    Ok(())
+}
+
+/// Two mesh balls on a third, which lies on a floor.
+fn world(dispatcher: &SbbkDispatcher) -> PhysicsWorld {
+    let mut world = PhysicsWorld::new();
+    world.narrow_phase.set_query_dispatcher(dispatcher.clone());
+    world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::cuboid(5.0, 0.1, 5.0));
+    let (vertices, indices) = Ball::new(0.5).to_trimesh(24, 12);
+    let ball = SharedShape::trimesh(vertices, indices).expect("it has triangles");
+    for (index, place) in [0.0, -0.4, 0.4].into_iter().enumerate() {
+        let place = Vector::new(place, 0.61 + 0.9 * index.min(1) as f32, 0.0);
+        let body = RigidBodyBuilder::dynamic().translation(place);
+        world.insert(body, ColliderBuilder::new(ball.clone()));
+    }
+    (0..20).for_each(|_| world.step());
+    world
+}
+
+/// A backend that keeps the lines.
+#[derive(Default)]
+struct Lines(Vec<[Vector; 2]>);
+
+impl DebugRenderBackend for Lines {
+    fn draw_line(&mut self, _: DebugRenderObject, a: Vector, b: Vector, _: DebugColor) {
+        self.0.push([a, b]);
+    }
+}
+
+impl Lines {
+    /// As an OBJ file of line elements, which have no colours.
+    fn obj(&self) -> Result<String, std::fmt::Error> {
+        let mut text = String::new();
+        for (index, line) in self.0.iter().enumerate() {
+            line.iter().try_for_each(|p| writeln!(text, "v {} {} {}", p.x, p.y, p.z))?;
+            writeln!(text, "l {} {}", 2 * index + 1, 2 * index + 2)?;
+        }
+        Ok(text)
+    }
+}
