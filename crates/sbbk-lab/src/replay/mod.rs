@@ -66,7 +66,7 @@ pub fn play(
 ///
 /// Errors: the file cannot be written.
 pub fn write(path: &Path, title: &str, runs: &[Recorder]) -> Result<(), ReportError> {
-    replace_file(path, |path| Ok::<_, io::Error>(fs::write(path, page(title, runs)?)?))
+    replace_file(path, |path| fs::write(path, page(title, runs)?))
 }
 
 fn page(title: &str, runs: &[Recorder]) -> io::Result<String> {
