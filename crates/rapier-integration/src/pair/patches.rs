@@ -20,7 +20,7 @@ const MOST_POINTS: usize = 4;
 
 /// The least cosine of normals of one patch: that of Rapier's own clusters, so that its solver gets
 /// as many directions as of all contacts.
-const SAME_NORMAL: Real = 0.996;
+const SAME_NORMAL: Real = 0.9995;
 
 /// Normals of a patch and of one of the step before that may be the same patch.
 const LIKE_NORMAL: Real = 0.9;

@@ -1,6 +1,6 @@
 //! Runs of a scene to be played side by side in a browser.
 //!
-//! A [`Recorder`] looks at a world after each step; [`write`] puts the recordings of one scene into
+//! A [`Recorder`] looks at a world after each step; [`write()`] puts the recordings of one scene into
 //! one self-contained page. Poses are quantised to a thousandth of the smallest moving body.
 //!
 //! ```no_run
@@ -66,7 +66,7 @@ pub fn play(
 ///
 /// Errors: the file cannot be written.
 pub fn write(path: &Path, title: &str, runs: &[Recorder]) -> Result<(), ReportError> {
-    replace_file(path, |path| Ok::<_, io::Error>(fs::write(path, page(title, runs)?)?))
+    replace_file(path, |path| fs::write(path, page(title, runs)?))
 }
 
 fn page(title: &str, runs: &[Recorder]) -> io::Result<String> {

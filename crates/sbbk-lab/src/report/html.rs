@@ -14,7 +14,8 @@ const STYLE: &str = "\
     caption { text-align: left; font-weight: 600; padding: .6em 0 .3em; } \
     th, td { padding: .15em .6em; border-bottom: 1px solid #dde2e7; text-align: right; } \
     th { border-bottom: 2px solid #59626b; vertical-align: bottom; } \
-    .text { text-align: left; } \
+    td { white-space: nowrap; } \
+    .text { text-align: left; white-space: normal; } \
     .wide { overflow-x: auto; } \
     .notes { font-size: .8em; color: #59626b; margin: .3em 0 1.2em; } \
     svg { max-width: 100%; height: auto; } \

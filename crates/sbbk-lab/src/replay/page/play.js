@@ -54,7 +54,7 @@ function graph() {
   context.font = `${11 * scale}px system-ui, sans-serif`;
   context.fillStyle = "#59626b";
   context.textAlign = "right";
-  context.fillText(`up to ${most.toPrecision(2)} ms a step`, width - 4 * scale, 11 * scale);
+  context.fillText(`up to ${most < 10 ? most.toPrecision(2) : Math.round(most)} ms a step`, width - 4 * scale, 11 * scale);
 }
 
 function layout() {

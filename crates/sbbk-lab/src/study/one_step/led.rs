@@ -168,7 +168,7 @@ mod tests {
         led.built.world.gravity = Vector::ZERO;
         // Rapier knows a body's inertia in the world after a step.
         let moving = led.motions();
-        led.lead(&[moving.clone()]);
+        led.lead(std::slice::from_ref(&moving));
         let energy = f64::from(led.built.world.bodies[led.built.watched[0]].kinetic_energy());
         let motions = led.motions();
         let norm = Norm::of(&Brick, &motions).unwrap();
