@@ -5,9 +5,7 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use clap::ValueEnum;
-use rapier_integration::{
-    ContactDetail, ContactGenerator, ContactSet, SbbkConfig, SbbkDispatcher,
-};
+use rapier_integration::{ContactDetail, ContactGenerator, ContactSet, SbbkConfig, SbbkDispatcher};
 use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
 use rapier3d::pipeline::PhysicsWorld;
