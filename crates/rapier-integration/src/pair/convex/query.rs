@@ -184,7 +184,8 @@ impl PairQuery for ConvexQuery<'_> {
             let corners = placed.place(mesh.corners(triangle));
             let reach = limits.margin + radius;
             let is_beyond = placed.is_beyond(&corners, reach);
-            let contact = if is_beyond { None } else { core_contact(&corners, shape, reach) };
+            let contact =
+                if is_beyond { None } else { core_contact(&corners, shape, &placed.hull, reach) };
             let distance = contact.map_or(limits.margin, |contact| contact.distance - radius);
             candidate.clear = distance + limits.travel;
             let is_near = distance <= f64::from(self.pair.pose.prediction);
