@@ -60,6 +60,11 @@ impl PlacedPart {
         Self { index, extent, placement, inverse, hull: OnceCell::new(), to_part, to_mesh }
     }
 
+    /// The part in the frame of the mesh.
+    pub(super) fn pose_in_mesh(&self) -> &Pose {
+        &self.to_mesh
+    }
+
     /// The corners of a triangle of the mesh in the frame of the part.
     #[inline(always)]
     pub(super) fn corners(&self, triangle: &Triangle) -> [DVec3; 3] {
@@ -84,7 +89,7 @@ impl PlacedPart {
 
     /// A point of the part in the frame of the mesh.
     #[inline(always)]
-    fn at_mesh(&self, point: DVec3) -> Vec3 {
+    pub(super) fn at_mesh(&self, point: DVec3) -> Vec3 {
         (self.placement.inverse * (point - self.placement.translation)).as_vec3()
     }
 

@@ -1,3 +1,4 @@
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use glamx::Vec3;
@@ -59,12 +60,15 @@ impl ConvexQuery<'_> {
         margin: Real,
         counters: &mut impl Counters,
         scratch: &mut Scratch,
-        found: impl FnMut(u32),
+        mut found: impl FnMut(u32),
     ) {
         let mesh = &self.pair.mesh;
         self.pair.parts.with(index, |part| {
             let placed = self.placed(index, &part, scratch);
-            triangles_near(placed, part.shape, mesh, margin, counters, found);
+            triangles_near(placed, part.shape, mesh, margin, counters, |triangle| {
+                found(triangle);
+                ControlFlow::Continue(())
+            });
         });
     }
 
