@@ -26,7 +26,7 @@ fn least(distances: &[f64]) -> f64 {
 
 /// Would catch a pair in the wrong order or frame, a triangle that a bound leaves out, a radius that
 /// is forgotten, and an answer that depends on the size, as those of Parry's GJK do: at the two
-/// smaller sizes it is wrong here hundreds of times.
+/// smaller sizes they are wrong in dozens of cases.
 #[test]
 fn as_brute_force_says_at_every_size() {
     let dispatcher = SbbkDispatcher::default();
@@ -98,7 +98,7 @@ fn as_brute_force_says_at_every_size() {
             }
         }
     }
-    assert!(stocks_wrong > 100, "{stocks_wrong}");
+    assert!(stocks_wrong > 50, "{stocks_wrong}");
 }
 
 /// Would catch an answer for a pose or a limit that is no number, and for a limit without end.

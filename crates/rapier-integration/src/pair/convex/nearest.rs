@@ -1,10 +1,11 @@
+use std::cell::OnceCell;
 use std::ops::ControlFlow;
 
 use glamx::DVec3;
 use parry3d::math::{Real, Vector};
 use parry3d::partitioning::BvhNode;
 use parry3d::shape::Shape;
-use sbbk_core::contact::convex::ConvexContact;
+use sbbk_core::contact::convex::{ConvexContact, HullPoints};
 
 use super::features::core_contact;
 use super::near::{gap_of, triangles_near};
@@ -27,6 +28,7 @@ pub(crate) struct ConvexSearch<'a> {
     shape: &'a dyn Shape,
     convex: ConvexShape<'a>,
     placed: PlacedPart,
+    hull: OnceCell<HullPoints>,
 }
 
 /// A triangle of the mesh and its contact.
@@ -50,7 +52,7 @@ impl<'a> ConvexSearch<'a> {
         let Parts::One(convex) = pair.parts else { return None };
         let part = Part { pose: None, shape: convex, cone: None };
         let placed = PlacedPart::new(0, &part, pair, Extent::of(convex));
-        Some(Self { mesh: pair.mesh, shape, convex, placed })
+        Some(Self { mesh: pair.mesh, shape, convex, placed, hull: OnceCell::new() })
     }
 
     /// A triangle that touches or crosses the shape; the first one that the walk comes across.
@@ -65,6 +67,9 @@ impl<'a> ConvexSearch<'a> {
 
     /// Of crossing triangles the deepest, else the nearest within `limit`.
     pub(crate) fn deepest(&self, limit: f64) -> Option<FoundTriangle> {
+        if limit.is_nan() {
+            return None;
+        }
         // Far from the surface there is too much to look at: the nearest is found first, and if it
         // touches all that do.
         if limit > WIDE * f64::from(self.placed.extent.size()) {
@@ -116,7 +121,7 @@ impl<'a> ConvexSearch<'a> {
         if self.placed.is_beyond(&corners, reach) {
             return None;
         }
-        let mut contact = core_contact(&corners, self.convex, &self.placed.hull, reach)?;
+        let mut contact = core_contact(&corners, self.convex, &self.hull, reach)?;
         contact.distance -= radius;
         contact.on_shape -= contact.normal * radius;
         Some(FoundTriangle { triangle, contact, is_touching: contact.distance <= touching })

@@ -1,8 +1,6 @@
 //! A triangle and a convex shape at a pose, and the manifold of their contact: an exact one, or
 //! that of Parry's routine, asked by its own name.
 
-use std::cell::OnceCell;
-
 use glamx::{DVec3, Vec3};
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::{
@@ -11,7 +9,7 @@ use parry3d::query::details::{
 };
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::Triangle;
-use sbbk_core::contact::convex::{ConvexContact, HullPoints};
+use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::traverse::Placement;
 
 use super::ball::{keep_one, ray_length};
@@ -32,8 +30,6 @@ pub(crate) struct PlacedPart {
     pub(super) placement: Placement,
     /// The reverse.
     pub(super) inverse: Placement,
-    /// The points of a hull, once they are needed.
-    pub(super) hull: OnceCell<HullPoints>,
     /// The mesh in the frame of the part and the reverse, with the roundings of stock.
     to_part: Pose,
     to_mesh: Pose,
@@ -57,7 +53,7 @@ impl PlacedPart {
             }
             _ => whole,
         };
-        Self { index, extent, placement, inverse, hull: OnceCell::new(), to_part, to_mesh }
+        Self { index, extent, placement, inverse, to_part, to_mesh }
     }
 
     /// The part in the frame of the mesh.

@@ -169,7 +169,7 @@ impl PairQuery for ConvexQuery<'_> {
         scratch: &mut Scratch,
     ) -> Seen<Near> {
         let [triangle, part] = self.pair.mesh_place.swap(candidate.subshapes);
-        let mesh = &self.pair.mesh;
+        let (mesh, known_parts) = (&self.pair.mesh, self.known_parts);
         let is_exact = self.pair.contacts == ContactGenerator::Exact;
         let contact = self.pair.parts.with(part, |part_shape| {
             let shape = part_shape.shape;
@@ -188,8 +188,11 @@ impl PairQuery for ConvexQuery<'_> {
             let corners = placed.place(mesh.corners(triangle));
             let reach = limits.margin + radius;
             let is_beyond = placed.is_beyond(&corners, reach);
-            let contact =
-                if is_beyond { None } else { core_contact(&corners, shape, &placed.hull, reach) };
+            let contact = if is_beyond {
+                None
+            } else {
+                core_contact(&corners, shape, known_parts.hull(part), reach)
+            };
             let distance = contact.map_or(limits.margin, |contact| contact.distance - radius);
             candidate.clear = distance + limits.travel;
             let is_near = distance <= f64::from(self.pair.pose.prediction);
