@@ -2,8 +2,7 @@
 //! closest points, and for shapes with polygonal features the other points, are those of
 //! [`sbbk_core::contact::convex`]; the features are Parry's.
 
-use std::cell::OnceCell;
-use std::sync::LazyLock;
+use std::sync::{LazyLock, OnceLock};
 
 use glamx::DVec3;
 use parry3d::math::{Pose, Real, Vector};
@@ -26,7 +25,7 @@ use super::shape::ConvexShape;
 pub(crate) fn core_contact(
     triangle: &[DVec3; 3],
     shape: ConvexShape<'_>,
-    hull: &OnceCell<HullPoints>,
+    hull: &OnceLock<HullPoints>,
     margin: f64,
 ) -> Option<ConvexContact> {
     match shape {
@@ -44,7 +43,7 @@ pub(crate) fn core_contact(
 fn feature_contact(
     triangle: &[DVec3; 3],
     shape: &dyn Shape,
-    hull: &OnceCell<HullPoints>,
+    hull: &OnceLock<HullPoints>,
     margin: f64,
 ) -> Option<ConvexContact> {
     let segment = |segment: &Segment| {

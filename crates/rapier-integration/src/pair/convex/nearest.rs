@@ -1,5 +1,5 @@
-use std::cell::OnceCell;
 use std::ops::ControlFlow;
+use std::sync::OnceLock;
 
 use glamx::DVec3;
 use parry3d::math::{Real, Vector};
@@ -28,7 +28,7 @@ pub(crate) struct ConvexSearch<'a> {
     shape: &'a dyn Shape,
     convex: ConvexShape<'a>,
     placed: PlacedPart,
-    hull: OnceCell<HullPoints>,
+    hull: OnceLock<HullPoints>,
 }
 
 /// A triangle of the mesh and its contact.
@@ -52,7 +52,7 @@ impl<'a> ConvexSearch<'a> {
         let Parts::One(convex) = pair.parts else { return None };
         let part = Part { pose: None, shape: convex, cone: None };
         let placed = PlacedPart::new(0, &part, pair, Extent::of(convex));
-        Some(Self { mesh: pair.mesh, shape, convex, placed, hull: OnceCell::new() })
+        Some(Self { mesh: pair.mesh, shape, convex, placed, hull: OnceLock::new() })
     }
 
     /// A triangle that touches or crosses the shape; the first one that the walk comes across.

@@ -1,4 +1,4 @@
-use std::cell::OnceCell;
+use std::sync::OnceLock;
 
 use glamx::Vec3;
 use parry3d::bounding_volume::Aabb;
@@ -124,7 +124,7 @@ pub(crate) struct KnownParts {
     /// The places of the parts of a composite in the order of its hierarchy.
     ranks: Vec<u32>,
     /// The points of those parts that are hulls, once they have been needed; of one shape the first.
-    hulls: Vec<OnceCell<HullPoints>>,
+    hulls: Vec<OnceLock<HullPoints>>,
     /// The greatest radius of a part.
     pub(super) radius: Real,
     /// The greatest size of a part, with its distance from the origin of the whole.
@@ -152,11 +152,11 @@ impl KnownParts {
         match token {
             Token::One(shape) => {
                 (self.radius, self.size) = (shape.radius, shape.size());
-                self.hulls = vec![OnceCell::new()];
+                self.hulls = vec![OnceLock::new()];
             }
             Token::Many(CompositeToken { part_count, .. }) => {
                 self.ranks = vec![u32::MAX; part_count];
-                self.hulls = vec![OnceCell::new(); part_count];
+                self.hulls = vec![OnceLock::new(); part_count];
                 for (rank, part) in parts.leaves().enumerate() {
                     self.ranks[part as usize] = rank as u32;
                     parts.with(part, |part| {
@@ -173,7 +173,7 @@ impl KnownParts {
     }
 
     /// The points of a part that is a hull.
-    pub(super) fn hull(&self, part: u32) -> &OnceCell<HullPoints> {
+    pub(super) fn hull(&self, part: u32) -> &OnceLock<HullPoints> {
         &self.hulls[part as usize]
     }
 
