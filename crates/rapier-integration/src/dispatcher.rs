@@ -133,15 +133,17 @@ impl SbbkDispatcher {
             (None, Some(mesh)) => (mesh, g1, MeshPlace::Second),
             _ => return None,
         };
-        let is_answered = self.config.kinds.convex_shapes && other.as_ball().is_none();
-        let parts =
-            Parts::of(other).filter(|parts| is_answered && matches!(parts, Parts::One(_)))?;
+        if !self.config.kinds.convex_shapes || !other.is_convex() || other.as_ball().is_some() {
+            return None;
+        }
+        // Before all else: most pairs that a host asks about are apart.
         if let Some((distance, apart)) = apart {
             let in_mesh = if mesh_place.is_second() { pos12.inverse() } else { *pos12 };
             if !is_near(mesh, other, &in_mesh, distance) {
                 return Some(apart);
             }
         }
+        let parts = Parts::of(other).filter(|parts| matches!(parts, Parts::One(_)))?;
         let [mesh] = self.look_at([mesh])?;
         let pose = &PairPose::new(pos12, 0.0);
         let contacts = ContactGenerator::Exact;
