@@ -15,7 +15,9 @@ const KEPT: usize = 16;
 /// compared in f64. So the farthest point is that of [`HullSupport`](super::HullSupport): the
 /// first of the farthest.
 ///
-/// Of 40 points one is found in 18 ns, which took 40 before.
+/// One is found among 40 points in 23 ns, among 100 in 48, where a look at all in f64 takes 40 and
+/// 104. Hulls of 20 gain nothing: to climb from neighbour to neighbour would have to beat that, and
+/// would need a proof where faces are nearly flat.
 #[derive(Clone, Debug, Default)]
 pub struct HullPoints {
     points: Vec<Vec3>,
