@@ -15,10 +15,10 @@ use sbbk_core::tree::{BuildError, Tree};
 
 use crate::mesh::{Hierarchy, PreparedRef, Registered, TreeCache, are_near, is_near};
 use crate::pair::{
-    Answer, ConvexPair, FewPair, FieldPair, MeshPair, MeshPlace, Pair, PairPose, Parts, answer,
-    is_few,
+    Answer, ConvexPair, ConvexSearch, FewPair, FieldPair, MeshPair, MeshPlace, Pair, PairPose,
+    Parts, answer, is_few,
 };
-use crate::query::MeshQuery;
+use crate::query::{ConvexQuery, MeshQuery};
 use crate::stats::QueryCounters;
 use crate::{ContactDetail, ContactGenerator, ContactSet, SbbkConfig, SbbkStats, TriangleContacts};
 
@@ -223,6 +223,38 @@ impl SbbkDispatcher {
             return Some(apart);
         }
         search(MeshQuery { cache: &self.cache, meshes: self.look_at(meshes)? })
+    }
+
+    /// The same of a rigid mesh and a convex shape; `None` if Parry must answer: of balls, which it
+    /// answers for exactly and in less time, and which inside a mesh with pseudo-normals meet it.
+    fn search_convex<T>(
+        &self,
+        [g1, g2]: [&dyn Shape; 2],
+        pos12: &Pose,
+        apart: Option<(Real, T)>,
+        search: impl FnOnce(ConvexQuery<'_>) -> T,
+    ) -> Option<T> {
+        let (mesh, other, mesh_place) = match (rigid_mesh(g1), rigid_mesh(g2)) {
+            (Some(mesh), None) => (mesh, g2, MeshPlace::First),
+            (None, Some(mesh)) => (mesh, g1, MeshPlace::Second),
+            _ => return None,
+        };
+        if !self.config.kinds.convex_shapes || !other.is_convex() || other.as_ball().is_some() {
+            return None;
+        }
+        // Before all else: most pairs that a host asks about are apart.
+        if let Some((distance, apart)) = apart {
+            let in_mesh = if mesh_place.is_second() { pos12.inverse() } else { *pos12 };
+            if !is_near(mesh, other, &in_mesh, distance) {
+                return Some(apart);
+            }
+        }
+        let parts = Parts::of(other).filter(|parts| matches!(parts, Parts::One(_)))?;
+        let [mesh] = self.look_at([mesh])?;
+        let pose = &PairPose::new(pos12, 0.0);
+        let contacts = ContactGenerator::Exact;
+        let pair = ConvexPair { pose, mesh, parts, mesh_place, contacts, has_patches: false };
+        Some(search(ConvexQuery { search: ConvexSearch::new(&pair, other)?, mesh_place }))
     }
 
     /// The contacts of a pair of shapes, if SBBK answers for them.
@@ -476,8 +508,9 @@ where
     }
 }
 
-/// Queries without manifolds: of two rigid meshes from their trees or Parry's hierarchies, all
-/// others Parry's. Casts of meshes without trees are Parry's too.
+/// Queries without manifolds: of two rigid meshes from their trees or Parry's hierarchies, of one and
+/// a convex shape from Parry's hierarchy, all others Parry's. Casts are Parry's too, but of meshes
+/// with trees.
 impl QueryDispatcher for SbbkDispatcher {
     fn intersection_test(
         &self,
@@ -486,7 +519,10 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
         let apart = Some((pos12, 0.0, ShapeIntersection::new(false)));
-        match self.search([g1, g2], apart, |meshes| Some(meshes.intersection(pos12))) {
+        let found = self.search([g1, g2], apart, |meshes| Some(meshes.intersection(pos12)));
+        let apart = Some((0.0, ShapeIntersection::new(false)));
+        let convex = || self.search_convex([g1, g2], pos12, apart, |pair| pair.intersection());
+        match found.or_else(convex) {
             Some(found) => Ok(found),
             None => DefaultQueryDispatcher.intersection_test(pos12, g1, g2),
         }
@@ -498,7 +534,9 @@ impl QueryDispatcher for SbbkDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeDistance, Unsupported> {
-        match self.search([g1, g2], None, |meshes| Some(meshes.distance(pos12))) {
+        let found = self.search([g1, g2], None, |meshes| Some(meshes.distance(pos12)));
+        let convex = || self.search_convex([g1, g2], pos12, None, |pair| pair.distance());
+        match found.or_else(convex) {
             Some(found) => Ok(found),
             None => DefaultQueryDispatcher.distance(pos12, g1, g2),
         }
@@ -512,7 +550,10 @@ impl QueryDispatcher for SbbkDispatcher {
         prediction: Real,
     ) -> Result<Option<Contact>, Unsupported> {
         let apart = Some((pos12, prediction, None));
-        match self.search([g1, g2], apart, |meshes| Some(meshes.contact(pos12, prediction))) {
+        let found = self.search([g1, g2], apart, |meshes| Some(meshes.contact(pos12, prediction)));
+        let apart = Some((prediction, None));
+        let convex = || self.search_convex([g1, g2], pos12, apart, |pair| pair.contact(prediction));
+        match found.or_else(convex) {
             Some(found) => Ok(found),
             None => DefaultQueryDispatcher.contact(pos12, g1, g2, prediction),
         }
@@ -526,7 +567,12 @@ impl QueryDispatcher for SbbkDispatcher {
         max_dist: Real,
     ) -> Result<ClosestPoints, Unsupported> {
         let apart = Some((pos12, max_dist, ClosestPoints::Disjoint));
-        match self.search([g1, g2], apart, |meshes| Some(meshes.closest_points(pos12, max_dist))) {
+        let found =
+            self.search([g1, g2], apart, |meshes| Some(meshes.closest_points(pos12, max_dist)));
+        let apart = Some((max_dist, ClosestPoints::Disjoint));
+        let convex =
+            || self.search_convex([g1, g2], pos12, apart, |pair| pair.closest_points(max_dist));
+        match found.or_else(convex) {
             Some(found) => Ok(found),
             None => DefaultQueryDispatcher.closest_points(pos12, g1, g2, max_dist),
         }

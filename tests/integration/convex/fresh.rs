@@ -102,8 +102,9 @@ fn exact_contacts_are_the_true_ones() {
     let mut random = Rand32::new(4);
     for scale in [0.01, 1.0, 100.0] {
         let head = shape_with(&mesh::monkey_head().scaled(scale), TriMeshFlags::empty());
-        for (name, shape) in shapes(0.6 * scale) {
-            let Some(body) = body(&shape) else { continue };
+        let quick = |name: &str| ["ball", "cuboid", "half-space"].contains(&name);
+        for (name, shape) in shapes(0.6 * scale).into_iter().filter(|(name, _)| quick(name)) {
+            let body = body(&shape);
             let mut count = 0;
             for i in 0..40 {
                 let pose = if i % 4 == 0 && scale == 1.0 {
@@ -131,7 +132,7 @@ fn a_huge_floor_loses_no_contact() {
     let mut count = 0;
     for half in [50.0, 2000.0] {
         let shape = SharedShape::cuboid(half, 0.25, half);
-        let body = body(&shape).expect("a cuboid");
+        let body = body(&shape);
         for i in 0..60 {
             let turn = if i % 4 == 0 { Quat::IDENTITY } else { rotation(&mut random) };
             let [x, z] = [(); 2].map(|()| 1.8 * half * (random.rand_float() - 0.5));

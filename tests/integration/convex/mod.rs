@@ -11,6 +11,8 @@ mod few;
 mod fresh;
 /// Motion against fresh queries.
 mod motion;
+/// Queries without manifolds, against brute force.
+mod queries;
 /// What is asked, and Parry's answer triangle by triangle.
 mod question;
 /// A head at rest on a floor.

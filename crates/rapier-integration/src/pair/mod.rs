@@ -19,7 +19,7 @@ mod pose;
 mod state;
 mod triangles;
 
-pub(crate) use convex::{ConvexPair, Parts};
+pub(crate) use convex::{ConvexPair, ConvexSearch, FoundTriangle, Parts};
 pub(crate) use driver::{Answer, Pair, answer};
 pub(crate) use few::{FewPair, is_few};
 pub(crate) use pose::{MeshPlace, PairPose};

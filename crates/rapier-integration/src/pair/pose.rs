@@ -31,7 +31,7 @@ pub(crate) enum MeshPlace {
 impl MeshPlace {
     /// From mesh and other shape to shape 1 and shape 2, or back.
     #[inline(always)]
-    pub(super) fn swap<T>(self, [one, two]: [T; 2]) -> [T; 2] {
+    pub(crate) fn swap<T>(self, [one, two]: [T; 2]) -> [T; 2] {
         match self {
             Self::First => [one, two],
             Self::Second => [two, one],

@@ -1,13 +1,16 @@
-//! Queries without manifolds for a pair of meshes: from Parry's question to a search and back.
+//! Queries without manifolds for a pair of meshes, or a mesh and a convex shape: from Parry's question to a search and back.
 //!
 //! Hosts keep nothing for such a query, so each one has to find the trees of its meshes anew
 //! ([`lookup`]). With trees the search is that of [`sbbk_core::query`]. Where a mesh is large and
 //! not registered it goes down Parry's hierarchies and decides by the same exact contacts
-//! ([`walk`]); casts are Parry's then.
+//! ([`walk`]); casts are Parry's then. A mesh and a convex shape ([`convex`]) have no trees, and their
+//! casts are Parry's.
 
 mod casts;
+mod convex;
 mod lookup;
 mod proximity;
 mod walk;
 
+pub(crate) use convex::ConvexQuery;
 pub(crate) use lookup::MeshQuery;

@@ -75,7 +75,7 @@ impl MeshQuery<'_> {
 }
 
 /// Parry's limit of a distance: its largest number is none.
-fn limit_of(distance: Real) -> f64 {
+pub(super) fn limit_of(distance: Real) -> f64 {
     if distance == Real::MAX { f64::INFINITY } else { f64::from(distance) }
 }
 

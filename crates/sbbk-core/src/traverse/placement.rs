@@ -51,6 +51,16 @@ impl Placement {
         }
     }
 
+    /// The placement of what is at `inner` in frame 2.
+    #[must_use]
+    pub fn of(&self, inner: &Self) -> Self {
+        Self {
+            rotation: self.rotation * inner.rotation,
+            translation: self.rotation * inner.translation + self.translation,
+            inverse: inner.inverse * self.inverse,
+        }
+    }
+
     /// `x`, a point of frame 2, in frame 1 and relative to `origin` there.
     #[inline]
     pub fn to_frame1(&self, x: Vec3, origin: Vec3) -> DVec3 {

@@ -6,10 +6,11 @@
 //! algebra inside.
 
 mod convex;
+mod curved;
 mod mesh;
 mod polytope;
 mod triangle;
 
-pub use convex::ConvexBody;
+pub use convex::{ConvexBody, ConvexTruth};
 pub use mesh::{TruthPair, pairs_within};
 pub use triangle::{TruthContact, contact, separation};

@@ -3,8 +3,12 @@
 //! Apart: the least distance of all pairs of features. Crossing: the least overlap over all
 //! directions that can be a face normal of the Minkowski difference.
 
+use super::convex::ConvexTruth;
 use glamx::DVec3;
 use std::collections::BTreeSet;
+
+/// Depths that differ by less than this share of the size are equal.
+const TIE: f64 = 1.0e-9;
 
 /// The hull of points, its edges and faces, and some that are in its faces or have no extent.
 #[derive(Clone, Debug)]
@@ -41,29 +45,43 @@ impl Polytope {
         Self { points, edges, faces }
     }
 
-    pub fn distance(&self, triangle: &[DVec3; 3]) -> f64 {
-        let separation = self.separation(triangle);
-        if separation <= 0.0 { separation } else { self.apart(triangle).max(separation) }
+    /// The greatest distance from the first point.
+    pub fn size(&self) -> f64 {
+        self.points.iter().map(|p| (*p - self.points[0]).length()).fold(0.0, f64::max)
     }
 
-    fn apart(&self, triangle: &[DVec3; 3]) -> f64 {
+    pub fn contact(&self, triangle: &[DVec3; 3]) -> ConvexTruth {
+        let separation = self.separation(triangle);
+        if separation.distance <= 0.0 {
+            return separation;
+        }
+        let way = self.apart(triangle);
+        let distance = way.length().max(separation.distance);
+        ConvexTruth { distance, normals: way.try_normalize().into_iter().collect() }
+    }
+
+    /// The shortest way from the triangle to the hull.
+    fn apart(&self, triangle: &[DVec3; 3]) -> DVec3 {
         let edges = edges(triangle);
-        let of_points = self.points.iter().map(|&p| to_triangle(triangle, p));
+        let of_points = self.points.iter().map(|&p| p - on_triangle(triangle, p));
         let of_edges =
-            self.edges.iter().flat_map(|&own| edges.map(|edge| between_segments(own, edge)));
-        let of_faces = self.faces.iter().flat_map(|face| triangle.map(|c| to_triangle(face, c)));
-        of_points.chain(of_edges).chain(of_faces).fold(f64::INFINITY, f64::min)
+            self.edges.iter().flat_map(|&own| edges.map(|edge| between_segments(edge, own)));
+        let of_faces =
+            self.faces.iter().flat_map(|face| triangle.map(|c| on_triangle(face, c) - c));
+        shortest(of_points.chain(of_edges).chain(of_faces))
     }
 
     /// The widest gap of all axes that can be that of a face of the Minkowski difference, flat ones
     /// included.
-    fn separation(&self, triangle: &[DVec3; 3]) -> f64 {
+    fn separation(&self, triangle: &[DVec3; 3]) -> ConvexTruth {
         let points = &self.points;
         let corner = triangle[0];
         let sides = edges(triangle).map(|[a, b]| b - a);
         let face = sides[0].cross(sides[1]);
         let scale = sides.iter().chain(points).map(|v| v.abs().max_element()).fold(0.0, f64::max);
-        let mut widest: Option<f64> = None;
+        let tie = TIE * scale;
+        let mut widest = f64::NEG_INFINITY;
+        let mut found: Vec<(f64, DVec3)> = Vec::new();
         let mut test = |axis: DVec3, lengths: f64| {
             // What is nearly no cross product is no axis.
             if axis.length() <= 1.0e-9 * lengths {
@@ -75,8 +93,12 @@ impl Polytope {
                 heights.fold([f64::INFINITY, -f64::INFINITY], |[l, h], x| [l.min(x), h.max(x)])
             };
             let ([low1, high1], [low2, high2]) = (shadow(triangle), shadow(points));
-            let gap = (low1 - high2).max(low2 - high1);
-            widest = Some(widest.map_or(gap, |widest| widest.max(gap)));
+            for (gap, normal) in [(low2 - high1, axis), (low1 - high2, -axis)] {
+                if gap >= widest - tie {
+                    widest = widest.max(gap);
+                    found.push((gap, normal));
+                }
+            }
         };
         let mut cross = |u: DVec3, v: DVec3| test(u.cross(v), u.length() * v.length());
         cross(sides[0], sides[1]);
@@ -102,7 +124,9 @@ impl Polytope {
             }
         }
         test(between, scale.max(f64::MIN_POSITIVE));
-        widest.unwrap_or(0.0)
+        let is_least = |&(gap, normal): &(f64, DVec3)| (gap >= widest - tie).then_some(normal);
+        let normals = found.iter().filter_map(is_least).collect();
+        ConvexTruth { distance: if found.is_empty() { 0.0 } else { widest }, normals }
     }
 }
 
@@ -110,15 +134,20 @@ fn edges([a, b, c]: &[DVec3; 3]) -> [[DVec3; 2]; 3] {
     [[*a, *b], [*b, *c], [*c, *a]]
 }
 
-fn to_segment([a, b]: [DVec3; 2], point: DVec3) -> f64 {
-    let edge = b - a;
-    let along = (point - a).dot(edge) / edge.length_squared();
-    let nearest = if along.is_nan() { a } else { a + edge * along.clamp(0.0, 1.0) };
-    (nearest - point).length()
+fn shortest(ways: impl IntoIterator<Item = DVec3>) -> DVec3 {
+    let shorter = |x: DVec3, y: DVec3| if y.length() < x.length() { y } else { x };
+    ways.into_iter().reduce(shorter).unwrap_or(DVec3::INFINITY)
 }
 
-/// Distance of a point, in coordinates along the longest edge and across.
-fn to_triangle(triangle: &[DVec3; 3], point: DVec3) -> f64 {
+/// The point of a segment nearest to a point.
+fn on_segment([a, b]: [DVec3; 2], point: DVec3) -> DVec3 {
+    let edge = b - a;
+    let along = (point - a).dot(edge) / edge.length_squared();
+    if along.is_nan() { a } else { a + edge * along.clamp(0.0, 1.0) }
+}
+
+/// The point of a triangle nearest to a point, in coordinates along the longest edge and across.
+fn on_triangle(triangle: &[DVec3; 3], point: DVec3) -> DVec3 {
     let length = |i: usize| (triangle[(i + 1) % 3] - triangle[i]).length_squared();
     let longest = if length(0) >= length(1).max(length(2)) {
         0
@@ -130,19 +159,21 @@ fn to_triangle(triangle: &[DVec3; 3], point: DVec3) -> f64 {
     let across = v - u * (v.dot(u) / u.dot(u));
     let t = p.dot(across) / across.dot(across);
     let s = (p - v * t).dot(u) / u.dot(u);
-    let border = edges(triangle).map(|edge| to_segment(edge, point));
     let is_over = across.length() > 1.0e-9 * u.length() && s >= 0.0 && t >= 0.0 && s + t <= 1.0;
-    let face = if is_over { (a + u * s + v * t - point).length() } else { f64::INFINITY };
-    border.into_iter().fold(face, f64::min)
+    let face = is_over.then(|| a + u * s + v * t - point);
+    let border = edges(triangle).map(|edge| on_segment(edge, point) - point);
+    point + shortest(border.into_iter().chain(face))
 }
 
-fn between_segments([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> f64 {
+/// The shortest way from one segment to another.
+fn between_segments([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> DVec3 {
     let (u, v, w) = (b - a, d - c, c - a);
     let (uu, uv, vv) = (u.dot(u), u.dot(v), v.dot(v));
     let det = uu * vv - uv * uv;
     let s = (vv * w.dot(u) - uv * w.dot(v)) / det;
-    let ends = [a, b].map(|p| to_segment([c, d], p)).into_iter();
-    let ends = ends.chain([c, d].map(|p| to_segment([a, b], p))).fold(f64::INFINITY, f64::min);
+    let to_other = |p: DVec3| on_segment([c, d], p) - p;
+    let ends = [c, d].map(|p| p - on_segment([a, b], p));
+    let ends = shortest([a, b].map(to_other).into_iter().chain(ends));
     // The second point by projection: near parallel lines, rounding moves both along them.
-    if det > 0.0 { ends.min(to_segment([c, d], a + u * s.clamp(0.0, 1.0))) } else { ends }
+    if det > 0.0 { shortest([ends, to_other(a + u * s.clamp(0.0, 1.0))]) } else { ends }
 }

@@ -105,7 +105,7 @@ fn half_spaces() {
     let mut rng = Rng(3);
     for _ in 0..5000 {
         let (normal, triangle) = (rng.direction(), [0; 3].map(|_| rng.point()));
-        let truth = ConvexBody::half_space(normal).distance(&triangle).unwrap();
+        let truth = ConvexBody::half_space(normal).distance(&triangle);
         let contact = half_space_contact(&triangle, normal, 0.1);
         assert_eq!(contact.is_some(), truth <= 0.1);
         if let Some(contact) = contact {
@@ -134,7 +134,7 @@ fn flat_boxes() {
         let shape = Shape { core: Core::Cuboid(half), radius: 0.0 };
         let gap = rng.within(-0.3, 0.1);
         let triangle = rng.triangle_beside(&shape, gap);
-        let truth = shape.truth().distance(&triangle).unwrap();
+        let truth = shape.truth().distance(&triangle);
         let contact = shape.contact(&triangle, 100.0).unwrap();
         let size = size(&triangle, &shape);
         assert!((contact.distance - truth).abs() <= 1.0e-9 * size, "{truth} {contact:?}");

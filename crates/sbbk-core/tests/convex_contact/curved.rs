@@ -1,5 +1,5 @@
-//! Cylinders and cones: apart, against a search over the points of the triangle; crossing, against
-//! a search over directions.
+//! Cylinders and cones: against a search over the points of the triangle or over the directions
+//! across its parts; crossing, also against a search over all directions.
 
 use crate::shape::{Kind, Rng, Shape};
 use crate::truth::{check, gap, size};
@@ -47,7 +47,6 @@ fn cylinders_and_cones() {
         for i in 0..20_000 {
             let shape = rng.shape(kind);
             let body = shape.truth();
-            let apart = |triangle| body.distance(triangle).unwrap_or(-shape.radius);
             let margin = rng.scale(1.0e-4, 0.1);
             let gap = match i % 4 {
                 0 => rng.within(0.0, 2.0 * margin),
@@ -62,22 +61,25 @@ fn cylinders_and_cones() {
                 check(&triangle, &shape, contact, 1.0e-8 * size);
             }
             let distance = contact.map_or(f64::INFINITY, |contact| contact.distance);
-            let is_wrong = if distance > -shape.radius {
-                let truth = apart(&triangle);
-                far += u32::from(contact.is_none());
-                clear += u32::from(contact.is_some());
-                match contact {
-                    Some(_) => (distance - truth).abs() > 1.0e-7 * size,
-                    None => truth < margin * 0.999,
+            let truth = body.distance(&triangle);
+            far += u32::from(contact.is_none());
+            clear += u32::from(contact.is_some() && truth > -shape.radius);
+            let is_deep = truth <= -shape.radius;
+            deep += u32::from(is_deep);
+            let is_wrong = match contact {
+                Some(_) if is_deep => {
+                    // The contact's own move parts the bodies, as checked: no other may be less.
+                    let is_searched = i % 8 < 2;
+                    (distance - truth).abs() > 1.0e-7 * size
+                        || is_searched
+                            && separation(&triangle, &shape, &mut rng) > distance + 1.0e-6 * size
                 }
-            } else {
-                deep += 1;
-                // The contact's own move parts the bodies, as checked: no other may be less.
-                i % 8 < 2 && separation(&triangle, &shape, &mut rng) > distance + 1.0e-6 * size
+                Some(_) => (distance - truth).abs() > 1.0e-7 * size,
+                None => truth < margin * 0.999,
             };
             wrong += u32::from(is_wrong);
             if is_wrong && wrong == 1 {
-                let truth = (apart(&triangle), separation(&triangle, &shape, &mut rng));
+                let truth = (truth, separation(&triangle, &shape, &mut rng));
                 println!("{kind:?} {i}: {truth:?} {contact:?}\n{shape:?}\n{triangle:?}");
             }
         }

@@ -4,6 +4,7 @@ mod clip;
 mod closed;
 mod curved;
 mod degenerate;
+mod drawn;
 mod invariance;
 mod lattice;
 mod random;

@@ -1,7 +1,9 @@
 //! Random poses: apart, touching and deep.
 
+use crate::drawn::check_drawn;
 use crate::shape::{Kind, Rng};
 use crate::truth::{check, size};
+use std::convert::Infallible;
 
 /// Would catch a wrong region of a simplex, a proof that proves nothing, or a polytope that stops
 /// before its nearest face.
@@ -20,7 +22,7 @@ fn polytopes() {
                 _ => rng.within(-1.0, 0.0),
             };
             let triangle = rng.triangle_beside(&shape, gap);
-            let truth = shape.truth().distance(&triangle).unwrap();
+            let truth = shape.truth().distance(&triangle);
             let size = size(&triangle, &shape);
             let Some(contact) = shape.contact(&triangle, margin) else {
                 far += 1;
@@ -44,5 +46,14 @@ fn polytopes() {
         println!("{kind:?}: {apart} apart, {deep} deep, {far} far, {wrong} wrong");
         assert_eq!(wrong, 0, "{kind:?}");
         assert!(apart > 1500 && deep > 500 && far > 1000, "{kind:?}: {apart} {deep} {far}");
+    }
+}
+
+/// What the fuzz target checks, of numbers drawn at random.
+#[test]
+fn drawn() {
+    let mut rng = Rng(11);
+    for _ in 0..60_000 {
+        let Ok(()) = check_drawn(&mut |n| Ok::<_, Infallible>(rng.below(n)));
     }
 }

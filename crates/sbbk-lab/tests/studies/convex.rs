@@ -13,18 +13,20 @@ use super::support;
 /// size and in motion, and reports that lose a kind.
 #[test]
 fn sbbks_contacts_are_right() {
-    let mesh = mesh::monkey_head_with(6);
     let plan = ConvexPlan {
-        mesh,
+        mesh: mesh::monkey_head_with(6),
         approach_count: 1,
-        sized_approach_count: 1,
         repeats: 1,
+        meshes: vec![mesh::monkey_head_with(6)],
+        sizes: vec![0.01, 2.0],
+        predictions: vec![0.0001, 0.02],
         ..ConvexPlan::standard()
     };
     let study = convex(&plan, &Progress::hidden()).unwrap();
     for row in &study.rows {
         let is_steady = row.get("mode").is_some_and(|mode| mode != "fresh");
-        let queries = 5 * if is_steady { STEP_COUNT as u64 + 1 } else { 1 };
+        let places = if row.is("depth", "deep") { 2 } else { 5 };
+        let queries = places * if is_steady { STEP_COUNT as u64 / 4 + 1 } else { 1 };
         assert_eq!(row.count("errors.mesh_pairs"), queries, "{row:?}");
         assert!(is_steady || row.count("errors.true_pairs") > 0, "{row:?}");
         assert!(row.backend == "stock" || row.wrong("errors") == 0, "{row:?}");
@@ -40,8 +42,10 @@ fn sbbks_contacts_are_right() {
     parts.dedup();
     assert_eq!(parts, [3, 8, 24]);
 
-    assert_eq!(support::line_counts(&study), [3 * 17, 3 * 4, 3 * 20]);
+    // Four modes, touching and deep; two sizes; two prediction distances, one of them larger than
+    // the smaller mesh.
+    assert_eq!(support::line_counts(&study), [8 * 17, 8 * 4, 2 * 20, 3]);
     let report = support::report(&study);
     let of_all = |line: &&StringRecord| &line[4] == "errors" && &line[5] == "missed";
-    assert_eq!(report.csv.iter().filter(of_all).count(), 19 * (3 + 3) * 2);
+    assert_eq!(report.csv.iter().filter(of_all).count(), 19 * (8 + 3) * 2);
 }

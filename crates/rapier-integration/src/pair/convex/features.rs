@@ -2,7 +2,7 @@
 //! closest points, and for shapes with polygonal features the other points, are those of
 //! [`sbbk_core::contact::convex`]; the features are Parry's.
 
-use std::sync::LazyLock;
+use std::sync::{LazyLock, OnceLock};
 
 use glamx::DVec3;
 use parry3d::math::{Pose, Real, Vector};
@@ -13,17 +13,19 @@ use parry3d::shape::{
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::{
     ConeSupport, ConvexContact, CuboidSupport, CylinderSupport, FeaturePoint, FeaturePoints,
-    PointSupport, SegmentSupport, TriangleSupport, clip_feature, convex_contact,
+    HullPoints, PointSupport, SegmentSupport, TriangleSupport, clip_feature, convex_contact,
     half_space_contact,
 };
 use sbbk_core::volumes::rounding::gamma;
 
 use super::shape::ConvexShape;
 
-/// The contact of a triangle with a shape without its radius, in the shape's frame.
-pub(super) fn core_contact(
+/// The contact of a triangle with a shape without its radius, in the shape's frame. `hull` has the
+/// points of the shape, if it is the hull of some and has been asked about before.
+pub(crate) fn core_contact(
     triangle: &[DVec3; 3],
     shape: ConvexShape<'_>,
+    hull: &OnceLock<HullPoints>,
     margin: f64,
 ) -> Option<ConvexContact> {
     match shape {
@@ -34,11 +36,16 @@ pub(super) fn core_contact(
         ConvexShape::Cuboid(cuboid) => {
             convex_contact(triangle, &CuboidSupport(cuboid.half_extents.as_dvec3()), margin)
         }
-        ConvexShape::Features { shape, .. } => feature_contact(triangle, shape, margin),
+        ConvexShape::Features { shape, .. } => feature_contact(triangle, shape, hull, margin),
     }
 }
 
-fn feature_contact(triangle: &[DVec3; 3], shape: &dyn Shape, margin: f64) -> Option<ConvexContact> {
+fn feature_contact(
+    triangle: &[DVec3; 3],
+    shape: &dyn Shape,
+    hull: &OnceLock<HullPoints>,
+    margin: f64,
+) -> Option<ConvexContact> {
     let segment = |segment: &Segment| {
         let core = SegmentSupport([segment.a, segment.b].map(|end| end.as_dvec3()));
         convex_contact(triangle, &core, margin)
@@ -55,18 +62,9 @@ fn feature_contact(triangle: &[DVec3; 3], shape: &dyn Shape, margin: f64) -> Opt
         let [half_height, radius] = [half_height, radius].map(f64::from);
         convex_contact(triangle, &ConeSupport { half_height, radius }, margin)
     };
-    let hull = |points: &[Vector]| {
-        let support = |direction: DVec3| {
-            let (mut farthest, mut most) = (Vector::ZERO, f64::NEG_INFINITY);
-            for &point in points {
-                let along = point.as_dvec3().dot(direction);
-                if along > most {
-                    (farthest, most) = (point, along);
-                }
-            }
-            farthest.as_dvec3()
-        };
-        convex_contact(triangle, &support, margin)
+    let hull_of = |points: &[Vector]| {
+        let points = hull.get_or_init(|| HullPoints::new(points.iter().copied()));
+        convex_contact(triangle, points, margin)
     };
     match shape.as_typed_shape() {
         TypedShape::Segment(shape) => segment(shape),
@@ -85,8 +83,8 @@ fn feature_contact(triangle: &[DVec3; 3], shape: &dyn Shape, margin: f64) -> Opt
             let half_lengths = shape.inner_shape.half_extents.as_dvec3();
             convex_contact(triangle, &CuboidSupport(half_lengths), margin)
         }
-        TypedShape::ConvexPolyhedron(shape) => hull(shape.points()),
-        TypedShape::RoundConvexPolyhedron(shape) => hull(shape.inner_shape.points()),
+        TypedShape::ConvexPolyhedron(shape) => hull_of(shape.points()),
+        TypedShape::RoundConvexPolyhedron(shape) => hull_of(shape.inner_shape.points()),
         _ => None,
     }
 }

@@ -17,12 +17,14 @@ mod ball;
 mod features;
 mod half_space;
 mod near;
+mod nearest;
 mod pair;
 mod parts;
 mod placed;
 mod query;
 mod shape;
 
+pub(crate) use nearest::{ConvexSearch, FoundTriangle};
 pub(crate) use pair::ConvexPair;
 pub(crate) use parts::Parts;
 pub(super) use placed::PlacedPart;

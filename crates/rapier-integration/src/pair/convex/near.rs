@@ -3,7 +3,8 @@
 use std::cell::Cell;
 use std::ops::ControlFlow;
 
-use glamx::DVec3;
+use glamx::{DVec3, Vec3};
+use parry3d::bounding_volume::Aabb;
 use parry3d::math::Real;
 use parry3d::shape::HalfSpace;
 use sbbk_core::traverse::{BoxTest, Counters, Placement, TestedBox};
@@ -14,21 +15,17 @@ use super::shape::ConvexShape;
 use crate::mesh::Hierarchy;
 
 /// Calls `found` with the triangles whose boxes, and those above them, may be within `margin` of a
-/// part, in stock order.
+/// part, in stock order, until it has enough.
 pub(super) fn triangles_near(
     placed: &PlacedPart,
     shape: ConvexShape<'_>,
     mesh: &Hierarchy<'_>,
     margin: Real,
     mut counters: impl Counters,
-    mut found: impl FnMut(u32),
+    found: impl FnMut(u32) -> ControlFlow<()>,
 ) {
     let (tested, magnitude) = (Cell::new(0), mesh.magnitude());
     let count = || tested.set(tested.get() + 1);
-    let found = |triangle| {
-        found(triangle);
-        ControlFlow::Continue(())
-    };
     let _ = if let ConvexShape::HalfSpace(half_space) = shape {
         let (normal, height) = plane(&placed.placement, half_space, magnitude, margin);
         let is_below = |node: TestedBox| {
@@ -50,6 +47,35 @@ pub(super) fn triangles_near(
         mesh.near(meets, found)
     };
     counters.aabb_tests(tested.get());
+}
+
+/// At most how far boxes of a mesh are from a part: as Parry has it, by the box around the part in
+/// the frame of the mesh.
+pub(super) fn gap_of(
+    placed: &PlacedPart,
+    shape: ConvexShape<'_>,
+    mesh: &Hierarchy<'_>,
+    around: Aabb,
+) -> impl Fn(TestedBox) -> Real {
+    let magnitude = mesh.magnitude();
+    let plane = match shape {
+        ConvexShape::HalfSpace(half_space) => {
+            Some(plane(&placed.placement, half_space, magnitude, 0.0))
+        }
+        _ => None,
+    };
+    let reach = magnitude.max(around.mins.abs().max(around.maxs.abs()).max_element());
+    // Boxes, and that of the shape by some twenty operations, are rounded.
+    let lost = gamma(32) * reach;
+    move |node| {
+        let (centre, extent) = node.centre_extent();
+        if let Some((normal, height)) = plane {
+            let lowest = normal.dot(centre.as_dvec3()) - normal.abs().dot(extent.as_dvec3());
+            return ((lowest - height) as Real).next_down().max(0.0);
+        }
+        let gap = (centre - around.center()).abs() - (extent + around.half_extents());
+        (gap.max(Vec3::ZERO).length() * (1.0 - gamma(8)) - lost).max(0.0)
+    }
 }
 
 /// All within `margin` of a half-space, in the frame of a mesh that is at `placement` in its frame:

@@ -1,8 +1,11 @@
+use std::sync::OnceLock;
+
 use glamx::Vec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::NormalConstraints;
 use parry3d::shape::{CompositeShape, Shape};
+use sbbk_core::contact::convex::HullPoints;
 use sbbk_core::volumes::Sphere;
 
 use super::shape::{ConvexShape, Extent};
@@ -120,6 +123,8 @@ pub(crate) struct KnownParts {
     token: Option<Token>,
     /// The places of the parts of a composite in the order of its hierarchy.
     ranks: Vec<u32>,
+    /// The points of those parts that are hulls, once they have been needed; of one shape the first.
+    hulls: Vec<OnceLock<HullPoints>>,
     /// The greatest radius of a part.
     pub(super) radius: Real,
     /// The greatest size of a part, with its distance from the origin of the whole.
@@ -145,9 +150,13 @@ impl KnownParts {
         let was_known = self.token.is_some();
         *self = Self { token: Some(token), ..Self::default() };
         match token {
-            Token::One(shape) => (self.radius, self.size) = (shape.radius, shape.size()),
+            Token::One(shape) => {
+                (self.radius, self.size) = (shape.radius, shape.size());
+                self.hulls = vec![OnceLock::new()];
+            }
             Token::Many(CompositeToken { part_count, .. }) => {
                 self.ranks = vec![u32::MAX; part_count];
+                self.hulls = vec![OnceLock::new(); part_count];
                 for (rank, part) in parts.leaves().enumerate() {
                     self.ranks[part as usize] = rank as u32;
                     parts.with(part, |part| {
@@ -161,6 +170,11 @@ impl KnownParts {
             }
         }
         was_known
+    }
+
+    /// The points of a part that is a hull.
+    pub(super) fn hull(&self, part: u32) -> &OnceLock<HullPoints> {
+        &self.hulls[part as usize]
     }
 
     /// That of a part.

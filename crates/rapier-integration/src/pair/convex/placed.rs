@@ -18,6 +18,7 @@ use super::half_space::half_space_points;
 use super::pair::ConvexPair;
 use super::parts::{Part, Parts};
 use super::shape::{ConvexShape, Extent};
+use crate::ContactGenerator;
 use crate::pair::patches::Outline;
 use crate::pair::pose::{MeshPlace, PairPose};
 
@@ -39,16 +40,26 @@ impl PlacedPart {
     pub(super) fn new(index: u32, part: &Part<'_>, pair: &ConvexPair<'_>, extent: Extent) -> Self {
         let pose = pair.part_pose(part.pose);
         let [to_mesh, to_part] = pair.mesh_place.swap([pose, pose.inverse()]);
-        let of_part;
-        let whole = match pair.parts {
-            Parts::One(_) => pair.pose,
-            Parts::Many(_) => {
-                of_part = PairPose::new(&pose, pair.pose.prediction);
-                &of_part
+        let whole = pair.mesh_place.placements(pair.pose).map(|placement| *placement);
+        let [placement, inverse] = match (pair.parts, pair.contacts, part.pose) {
+            // Not that pose: in f32 the poses of a pair and a part make one that is off by some
+            // 1e-7 of the way.
+            (Parts::Many(_), ContactGenerator::Exact, Some(part)) => {
+                let mesh_in_part = Placement::new(part).inverted().of(&whole[0]);
+                [mesh_in_part, mesh_in_part.inverted()]
             }
+            (Parts::Many(_), ContactGenerator::Parry, _) => {
+                let of_part = PairPose::new(&pose, pair.pose.prediction);
+                pair.mesh_place.placements(&of_part).map(|placement| *placement)
+            }
+            _ => whole,
         };
-        let [placement, inverse] = pair.mesh_place.placements(whole).map(|placement| *placement);
         Self { index, extent, placement, inverse, to_part, to_mesh }
+    }
+
+    /// The part in the frame of the mesh.
+    pub(super) fn pose_in_mesh(&self) -> &Pose {
+        &self.to_mesh
     }
 
     /// The corners of a triangle of the mesh in the frame of the part.
@@ -75,7 +86,7 @@ impl PlacedPart {
 
     /// A point of the part in the frame of the mesh.
     #[inline(always)]
-    fn at_mesh(&self, point: DVec3) -> Vec3 {
+    pub(super) fn at_mesh(&self, point: DVec3) -> Vec3 {
         (self.placement.inverse * (point - self.placement.translation)).as_vec3()
     }
 

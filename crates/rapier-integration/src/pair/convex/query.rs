@@ -1,3 +1,4 @@
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use glamx::Vec3;
@@ -60,12 +61,15 @@ impl ConvexQuery<'_> {
         margin: Real,
         counters: &mut impl Counters,
         scratch: &mut Scratch,
-        found: impl FnMut(u32),
+        mut found: impl FnMut(u32),
     ) {
         let mesh = &self.pair.mesh;
         self.pair.parts.with(index, |part| {
             let placed = self.placed(index, &part, scratch);
-            triangles_near(placed, part.shape, mesh, margin, counters, found);
+            triangles_near(placed, part.shape, mesh, margin, counters, |triangle| {
+                found(triangle);
+                ControlFlow::Continue(())
+            });
         });
     }
 
@@ -187,7 +191,7 @@ impl PairQuery for ConvexQuery<'_> {
         scratch: &mut Scratch,
     ) -> Seen<Near> {
         let [triangle, part] = self.pair.mesh_place.swap(candidate.subshapes);
-        let mesh = &self.pair.mesh;
+        let (mesh, known_parts) = (&self.pair.mesh, self.known_parts);
         let is_exact = self.pair.contacts == ContactGenerator::Exact;
         let contact = self.pair.parts.with(part, |part_shape| {
             let shape = part_shape.shape;
@@ -206,7 +210,11 @@ impl PairQuery for ConvexQuery<'_> {
             let corners = placed.place(mesh.corners(triangle));
             let reach = limits.margin + radius;
             let is_beyond = placed.is_beyond(&corners, reach);
-            let contact = if is_beyond { None } else { core_contact(&corners, shape, reach) };
+            let contact = if is_beyond {
+                None
+            } else {
+                core_contact(&corners, shape, known_parts.hull(part), reach)
+            };
             let distance = contact.map_or(limits.margin, |contact| contact.distance - radius);
             candidate.clear = distance + limits.travel;
             let is_near = distance <= f64::from(self.pair.pose.prediction);

@@ -45,17 +45,16 @@ pub(super) fn depth<S: SupportMap>(
     let proved = PROVED[usize::from(S::IS_CURVED)];
     let mut polytope = Polytope::empty(slack);
     polytope.begin(tetrahedron);
-    let mut best: Option<Depth> = None;
+    let mut best: Option<(f64, Face)> = None;
     let mut rounds = 0;
     while let Some(i) = polytope.nearest_open() {
         rounds += 1;
-        let face = *polytope.get(i);
+        let face = polytope.get(i);
         let new = difference.farthest(face.normal);
         let reach = new.point.dot(face.normal);
         let is_proved = reach - face.distance <= slack + proved * reach.abs();
-        if is_proved || best.is_none_or(|best| reach < best.depth) {
-            let on_triangle = point_below(&polytope, &face, difference.triangle, 100.0 * slack);
-            best = Some(Depth { outward: face.normal, depth: reach, on_triangle, rounds });
+        if is_proved || best.is_none_or(|(depth, _)| reach < depth) {
+            best = Some((reach, *face));
         }
         if is_proved {
             break;
@@ -64,7 +63,9 @@ pub(super) fn depth<S: SupportMap>(
             polytope.close(i);
         }
     }
-    best.map(|best| Depth { rounds, ..best })
+    let (depth, face) = best?;
+    let on_triangle = point_below(&polytope, &face, difference.triangle, 100.0 * slack);
+    Some(Depth { outward: face.normal, depth, on_triangle, rounds })
 }
 
 /// The point of the triangle at the foot of the origin on a face. Where the foot is beside the

@@ -47,6 +47,7 @@ mod curved;
 mod depth;
 mod difference;
 mod half_space;
+mod hull;
 mod polytope;
 mod search;
 mod segment;
@@ -57,6 +58,7 @@ pub use clip::{FEATURE_CORNERS, FeaturePoint, FeaturePoints, clip_feature};
 pub use cuboid::CuboidSupport;
 pub use curved::{ConeSupport, CylinderSupport};
 pub use half_space::half_space_contact;
+pub use hull::HullPoints;
 pub use segment::{PointSupport, SegmentSupport};
 pub use support::{HullSupport, SupportMap, TriangleSupport};
 

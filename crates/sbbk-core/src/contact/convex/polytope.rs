@@ -221,9 +221,10 @@ impl Polytope {
 
     /// A face without area lies along the first edge of another one and shares its plane.
     fn face(&self, vertices: [u16; 3], neighbors: [u16; 3]) -> Face {
-        let corners = vertices.map(|v| self.vertices[usize::from(v)].point);
-        let [a, b, c] = corners;
-        if let Some((normal, squared)) = thin_normal(corners) {
+        // Written out: `array::map` is not always inlined, and then written and read again.
+        let point = |v: u16| self.vertices[usize::from(v)].point;
+        let (a, b, c) = (point(vertices[0]), point(vertices[1]), point(vertices[2]));
+        if let Some((normal, squared)) = thin_normal([a, b, c]) {
             let normal = normal / squared.sqrt();
             let distance = (normal.dot(a) + normal.dot(b) + normal.dot(c)) / 3.0;
             return Face { vertices, neighbors, normal, distance, state: State::Open };

@@ -183,15 +183,20 @@ fn longest_first([a, b, c]: [Vertex; 3]) -> [Vertex; 3] {
 
 /// The normal of a face by its two shortest edges, and its squared length. None where rounding
 /// would choose it.
+#[inline(always)]
 pub(super) fn thin_normal([a, b, c]: [DVec3; 3]) -> Option<(DVec3, f64)> {
-    let edges = [b - a, c - b, a - c];
-    let lengths = edges.map(DVec3::length_squared);
-    let longer = usize::from(lengths[1] > lengths[0]);
-    let longest = if lengths[2] > lengths[longer] { 2 } else { longer };
-    let (next, last) = ((longest + 1) % 3, (longest + 2) % 3);
-    let normal = edges[next].cross(edges[last]);
+    let (ab, bc, ca) = (b - a, c - b, a - c);
+    let (of_ab, of_bc, of_ca) = (ab.length_squared(), bc.length_squared(), ca.length_squared());
+    // Written out: an array, and an index in it, is written and read again.
+    let (normal, shorter) = if of_ca > of_ab.max(of_bc) {
+        (ab.cross(bc), of_ab * of_bc)
+    } else if of_bc > of_ab {
+        (ca.cross(ab), of_ca * of_ab)
+    } else {
+        (bc.cross(ca), of_bc * of_ca)
+    };
     let squared = normal.length_squared();
-    let is_wide = squared > NO_NORMAL * NO_NORMAL * lengths[next] * lengths[last];
+    let is_wide = squared > NO_NORMAL * NO_NORMAL * shorter;
     is_wide.then_some((normal, squared))
 }
 

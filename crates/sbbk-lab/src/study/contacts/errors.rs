@@ -12,7 +12,7 @@ use crate::backend::{Answer, Question};
 use crate::metrics::{ErrorCount, Truth, is_right_depth};
 
 /// Degrees between a normal and the true one beyond which it is wrong.
-const NORMAL_BAND: f64 = 0.1;
+pub(in crate::study) const NORMAL_BAND: f64 = 0.1;
 
 /// Right and wrong contacts, summed over the mesh pairs that were judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -51,7 +51,10 @@ impl ContactErrors {
         Self { pairs, ..Self::default() }.with_normals(is_wrong_normal(truth, manifold, prediction))
     }
 
-    fn with_normals(mut self, are_wrong: impl IntoIterator<Item = bool>) -> Self {
+    pub(in crate::study) fn with_normals(
+        mut self,
+        are_wrong: impl IntoIterator<Item = bool>,
+    ) -> Self {
         for is_wrong in are_wrong {
             self.judged_normals += 1;
             self.wrong_normal += usize::from(is_wrong);
@@ -94,7 +97,7 @@ fn is_wrong_normal(
 }
 
 /// Signed distance of the deepest point.
-fn distance(manifold: &ContactManifold) -> Option<Real> {
+pub(in crate::study) fn distance(manifold: &ContactManifold) -> Option<Real> {
     manifold.points.iter().map(|point| point.dist).reduce(Real::min)
 }
 

@@ -6,7 +6,7 @@
 //! orientation, and is stopped at five places from nearly apart to deep inside. Every answer is
 //! compared with brute force in f64, and both dispatchers answer in turn.
 
-mod errors;
+pub(super) mod errors;
 mod generators;
 
 pub(super) use errors::ContactErrors;

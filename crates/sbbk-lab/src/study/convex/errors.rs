@@ -1,24 +1,25 @@
-//! Contacts of a mesh and a shape missed and added, and wrong distances, by brute force in f64.
+//! Contacts of a mesh and a shape missed and added, and wrong distances and normals, by brute force
+//! in f64.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use glamx::{DPose3, DVec3, Pose3};
+use glamx::{DAffine3, DMat3, DPose3, DVec3, Pose3};
 use rapier3d::geometry::{ContactManifold, SharedShape, TypedShape};
 use rapier3d::math::{Real, Vector};
 use rapier3d::parry::shape::Shape;
-use sbbk_core::truth::ConvexBody;
+use sbbk_core::truth::{ConvexBody, ConvexTruth};
 
 use crate::metrics::ErrorCount;
+use crate::study::contacts::errors::{ContactErrors, NORMAL_BAND, distance};
 
 /// Distances this close to the prediction distance, as a share of it, may go either way.
 const SET_BAND: f64 = 0.01;
 /// A distance off by more than this share of the prediction distance is wrong.
-const DISTANCE_BAND: f64 = 0.05;
+const DISTANCE_BAND: f64 = 0.01;
+/// The same of depths, where that is more: as a share of the depth.
+const DEPTH_BAND: f64 = 1.0e-5;
 
-/// A triangle of the mesh and a part of the shape, 0 if it has no parts.
-pub(in crate::study) type Subshapes = (u32, u32);
-
-/// Knows a mesh and a shape in f64.
+/// A mesh and a shape in f64.
 pub(in crate::study) struct Judge {
     triangles: Vec<[DVec3; 3]>,
     parts: Vec<Part>,
@@ -27,17 +28,21 @@ pub(in crate::study) struct Judge {
 /// A convex part of a shape.
 struct Part {
     /// The shape in the frame of the part.
-    pose: DPose3,
+    pose: DAffine3,
     body: ConvexBody,
     /// The corners of the box around it.
     bounds: [DVec3; 2],
 }
 
+/// A triangle of the mesh and a part of the shape, 0 if it has no parts.
+type Subshapes = (u32, u32);
+
 /// The truth about one pose.
 pub(in crate::study) struct Truth {
-    /// Of all triangles and parts within the prediction distance and its band. `None`: they cross,
-    /// how deep is not known.
-    distances: BTreeMap<Subshapes, Option<f64>>,
+    /// Of all triangles and parts within the prediction distance and its band, in the frame of the
+    /// part.
+    contacts: BTreeMap<Subshapes, ConvexTruth>,
+    is_mesh_first: bool,
     prediction: f64,
 }
 
@@ -54,33 +59,44 @@ impl Judge {
         Self { triangles: triangles.map(|t| corners([t.a, t.b, t.c])).collect(), parts }
     }
 
-    /// With the mesh at a pose in the frame of the shape.
-    pub fn truth(&self, pose: &Pose3, prediction: Real) -> Truth {
+    /// With the second of the two at a pose in the frame of the first.
+    pub fn truth(&self, pos12: &Pose3, is_mesh_first: bool, prediction: Real) -> Truth {
         let prediction = f64::from(prediction);
         let reach = prediction * (1.0 + SET_BAND);
-        let mut distances = BTreeMap::new();
+        let pose = if is_mesh_first { affine(pos12).inverse() } else { affine(pos12) };
+        let mut contacts = BTreeMap::new();
         for (part_index, part) in (0..).zip(&self.parts) {
-            let pose = part.pose * DPose3::from(*pose);
+            let pose = part.pose * pose;
             for (triangle_index, triangle) in (0..).zip(&self.triangles) {
-                let triangle = triangle.map(|corner| pose * corner);
+                let triangle = triangle.map(|corner| pose.transform_point3(corner));
                 if part.is_beyond(&triangle, reach) {
                     continue;
                 }
-                let distance = part.body.distance(&triangle);
-                if distance.is_none_or(|distance| distance <= reach) {
-                    distances.insert((triangle_index, part_index), distance);
+                let contact = part.body.contact(&triangle);
+                if contact.distance <= reach {
+                    contacts.insert((triangle_index, part_index), contact);
                 }
             }
         }
-        Truth { distances, prediction }
+        Truth { contacts, is_mesh_first, prediction }
     }
+}
+
+/// A pose as the map that it is: with a quaternion that is not quite of unit length it scales.
+fn affine(pose: &Pose3) -> DAffine3 {
+    let DPose3 { rotation, translation } = DPose3::from(*pose);
+    let columns = DVec3::AXES.map(|axis| rotation * axis);
+    DAffine3::from_mat3_translation(
+        DMat3::from_cols(columns[0], columns[1], columns[2]),
+        translation,
+    )
 }
 
 impl Part {
     fn new(pose: &Pose3, shape: &dyn Shape) -> Self {
         let bounds = shape.compute_local_aabb();
         Self {
-            pose: DPose3::from(*pose).inverse(),
+            pose: affine(pose).inverse(),
             body: body(shape),
             bounds: [bounds.mins, bounds.maxs].map(|corner| corner.as_dvec3()),
         }
@@ -94,41 +110,55 @@ impl Part {
 }
 
 impl Truth {
-    /// Judges the manifolds of an answer; `subshapes` tells the triangle and the part of each.
+    /// Judges the manifolds of an answer; `number` tells that of a triangle of the mesh.
     pub fn judge(
         &self,
         manifolds: &[ContactManifold],
-        subshapes: impl Fn(&ContactManifold) -> Subshapes,
-    ) -> ErrorCount {
-        let Self { distances, prediction } = self;
+        number: impl Fn(u32) -> u32,
+    ) -> ContactErrors {
+        let Self { contacts, is_mesh_first, prediction } = self;
         let mut errors = ErrorCount { mesh_pairs: 1, sampled_from: 1, ..ErrorCount::default() };
         let mut reported = BTreeSet::new();
+        let mut are_normals_wrong = Vec::new();
         for manifold in manifolds {
-            let subshapes = subshapes(manifold);
-            let distances_of_points = manifold.points.iter().map(|point| f64::from(point.dist));
-            let Some(distance) = distances_of_points.reduce(f64::min).filter(|d| d <= prediction)
+            let mut subshapes = [manifold.subshape1, manifold.subshape2];
+            let mut normals = [manifold.local_n1, manifold.local_n2];
+            if !is_mesh_first {
+                subshapes.reverse();
+                normals.reverse();
+            }
+            let subshapes = (number(subshapes[0]), subshapes[1]);
+            let Some(distance) = distance(manifold).map(f64::from).filter(|d| d <= prediction)
             else {
                 continue;
             };
             errors.reported += 1;
             let is_repeated = !reported.insert(subshapes);
-            match distances.get(&subshapes) {
+            match contacts.get(&subshapes) {
                 Some(truth) if !is_repeated => {
-                    let is_wrong =
-                        |truth: f64| (truth - distance).abs() > DISTANCE_BAND * prediction;
-                    errors.wrong_depth += usize::from(truth.is_some_and(is_wrong));
+                    let depth = DEPTH_BAND * -truth.distance;
+                    let band = depth.max(DISTANCE_BAND * prediction);
+                    let is_wrong = (truth.distance - distance).abs() > band;
+                    errors.wrong_depth += usize::from(is_wrong);
+                    if !is_wrong && !truth.normals.is_empty() {
+                        are_normals_wrong.push(is_off(-normals[1].as_dvec3(), &truth.normals));
+                    }
                 }
                 _ => errors.phantom += 1,
             }
         }
-        for (subshapes, distance) in distances {
-            let is_within = |limit: f64| distance.is_none_or(|distance| distance <= limit);
-            errors.true_pairs += usize::from(is_within(*prediction));
-            let must = is_within(prediction * (1.0 - SET_BAND));
+        for (subshapes, ConvexTruth { distance, .. }) in contacts {
+            errors.true_pairs += usize::from(distance <= prediction);
+            let must = *distance <= prediction * (1.0 - SET_BAND);
             errors.missed += usize::from(must && !reported.contains(subshapes));
         }
-        errors
+        ContactErrors { pairs: errors, ..ContactErrors::default() }.with_normals(are_normals_wrong)
     }
+}
+
+/// Whether a normal is off each of the right ones. One that is zero is at no angle to anything.
+fn is_off(normal: DVec3, right: &[DVec3]) -> bool {
+    !right.iter().any(|right| normal.angle_between(*right).to_degrees() <= NORMAL_BAND)
 }
 
 /// A convex shape of Parry's as the reference knows it.

@@ -50,15 +50,13 @@ impl Pair<'_> {
             }
             (Some(Some(near)), None) => {
                 let judge = ConvexJudge::new(&near.shape, shape2);
-                let truth = judge.truth(&pos12.inverse(), *prediction);
-                let subshapes = |m: &ContactManifold| (near.number(m.subshape1), m.subshape2);
-                answers.map(|manifolds| truth.judge(manifolds, subshapes))
+                let truth = judge.truth(pos12, true, *prediction);
+                answers.map(|manifolds| truth.judge(manifolds, |index| near.number(index)).pairs)
             }
             (None, Some(Some(near))) => {
                 let judge = ConvexJudge::new(&near.shape, shape1);
-                let truth = judge.truth(pos12, *prediction);
-                let subshapes = |m: &ContactManifold| (near.number(m.subshape2), m.subshape1);
-                answers.map(|manifolds| truth.judge(manifolds, subshapes))
+                let truth = judge.truth(pos12, false, *prediction);
+                answers.map(|manifolds| truth.judge(manifolds, |index| near.number(index)).pairs)
             }
             _ => return None,
         })

@@ -1,0 +1,142 @@
+use std::ops::ControlFlow;
+use std::sync::OnceLock;
+
+use glamx::DVec3;
+use parry3d::math::{Real, Vector};
+use parry3d::partitioning::BvhNode;
+use parry3d::shape::Shape;
+use sbbk_core::contact::convex::{ConvexContact, HullPoints};
+
+use super::features::core_contact;
+use super::near::{gap_of, triangles_near};
+use super::pair::ConvexPair;
+use super::parts::{Part, Parts};
+use super::placed::PlacedPart;
+use super::shape::{ConvexShape, Extent};
+use crate::mesh::{Hierarchy, box_of};
+
+/// Bodies this close touch, as a share of their coordinates in the frame of the shape: what rounding
+/// can do to a distance of zero.
+const TOUCHING: f64 = 1.0e-12;
+
+/// Distance up to which all triangles are looked at, as a share of the shape.
+const WIDE: f64 = 0.1;
+
+/// A mesh and one convex shape, to be searched.
+pub(crate) struct ConvexSearch<'a> {
+    mesh: Hierarchy<'a>,
+    shape: &'a dyn Shape,
+    convex: ConvexShape<'a>,
+    placed: PlacedPart,
+    hull: OnceLock<HullPoints>,
+}
+
+/// A triangle of the mesh and its contact.
+#[derive(Copy, Clone)]
+pub(crate) struct FoundTriangle {
+    pub(crate) triangle: u32,
+    /// In the frame of the shape, from the mesh to the shape.
+    contact: ConvexContact,
+    pub(crate) is_touching: bool,
+}
+
+impl FoundTriangle {
+    pub(crate) fn distance(&self) -> Real {
+        self.contact.distance as Real
+    }
+}
+
+impl<'a> ConvexSearch<'a> {
+    /// `None` if the shape, which that of the pair is, has parts.
+    pub(crate) fn new(pair: &ConvexPair<'a>, shape: &'a dyn Shape) -> Option<Self> {
+        let Parts::One(convex) = pair.parts else { return None };
+        let part = Part { pose: None, shape: convex, cone: None };
+        let placed = PlacedPart::new(0, &part, pair, Extent::of(convex));
+        Some(Self { mesh: pair.mesh, shape, convex, placed, hull: OnceLock::new() })
+    }
+
+    /// A triangle that touches or crosses the shape; the first one that the walk comes across.
+    pub(crate) fn meeting(&self) -> Option<FoundTriangle> {
+        let mut meeting = None;
+        triangles_near(&self.placed, self.convex, &self.mesh, 0.0, (), |triangle| {
+            meeting = self.triangle(triangle, 0.0).filter(|found| found.is_touching);
+            if meeting.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        meeting
+    }
+
+    /// Of crossing triangles the deepest, else the nearest within `limit`.
+    pub(crate) fn deepest(&self, limit: f64) -> Option<FoundTriangle> {
+        if limit.is_nan() {
+            return None;
+        }
+        // Far from the surface there is too much to look at: the nearest is found first, and if it
+        // touches all that do.
+        if limit > WIDE * f64::from(self.placed.extent.size()) {
+            let nearest = self.nearest(limit)?;
+            return if nearest.is_touching { self.deepest(0.0) } else { Some(nearest) };
+        }
+        let mut deepest = None::<FoundTriangle>;
+        let margin = (limit.max(0.0) as Real).next_up();
+        triangles_near(&self.placed, self.convex, &self.mesh, margin, (), |triangle| {
+            if let Some(found) = self.triangle(triangle, limit)
+                && deepest.is_none_or(|deepest| found.contact.distance < deepest.contact.distance)
+            {
+                deepest = Some(found);
+            }
+            ControlFlow::Continue(())
+        });
+        deepest
+    }
+
+    /// The nearest triangle within `limit`: one that touches, if any does.
+    pub(crate) fn nearest(&self, limit: f64) -> Option<FoundTriangle> {
+        if !self.placed.placement.is_finite() || limit.is_nan() {
+            return None;
+        }
+        let around = self.shape.compute_aabb(self.placed.pose_in_mesh());
+        let gap = gap_of(&self.placed, self.convex, &self.mesh, around);
+        // Costs are compared with less-than: the least number above the limit is the first one out.
+        let limit = (limit.min(f64::from(Real::MAX)) as Real).next_up();
+        let found = self.mesh.mesh.bvh().find_best(
+            limit,
+            |node: &BvhNode, _| gap(box_of(node)),
+            |triangle, best| {
+                let found = self.triangle(triangle, best.into())?;
+                Some((found.distance().max(0.0), found))
+            },
+        );
+        found.map(|(_, (_, found))| found)
+    }
+
+    /// The contact of a triangle, if it touches or is at most `margin` away.
+    fn triangle(&self, triangle: u32, margin: f64) -> Option<FoundTriangle> {
+        let corners = self.placed.place(self.mesh.corners(triangle));
+        let [a, b, c] = corners;
+        let size =
+            f64::from(self.placed.extent.size()) + (a.abs() + b.abs() + c.abs()).element_sum();
+        let touching = TOUCHING * size;
+        let radius = f64::from(self.convex.radius());
+        let reach = margin.max(touching) + radius;
+        if self.placed.is_beyond(&corners, reach) {
+            return None;
+        }
+        let mut contact = core_contact(&corners, self.convex, &self.hull, reach)?;
+        contact.distance -= radius;
+        contact.on_shape -= contact.normal * radius;
+        Some(FoundTriangle { triangle, contact, is_touching: contact.distance <= touching })
+    }
+
+    /// The points on the mesh and on the shape, each in its frame.
+    pub(crate) fn points(&self, found: &FoundTriangle) -> [Vector; 2] {
+        let ConvexContact { on_triangle, on_shape, .. } = found.contact;
+        [self.placed.at_mesh(on_triangle), on_shape.as_vec3()]
+    }
+
+    /// The unit normals of the mesh and of the shape, each in its frame and outward.
+    pub(crate) fn normals(&self, found: &FoundTriangle) -> [Vector; 2] {
+        let normal = found.contact.normal;
+        let at_mesh: DVec3 = self.placed.placement.inverse * normal;
+        [at_mesh.normalize(), -normal].map(|normal| normal.as_vec3())
+    }
+}

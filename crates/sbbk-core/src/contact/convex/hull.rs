@@ -1,0 +1,89 @@
+//! The farthest of many points.
+
+use super::support::{HullSupport, SupportMap};
+use crate::volumes::rounding::gamma;
+use glamx::{DVec3, Vec3};
+use wide::f32x4;
+
+/// Points whose heights are kept from the first look to the second, by four: more are computed
+/// twice.
+const KEPT: usize = 16;
+
+/// The convex hull of points in f32, for many support points. Without points it is the origin.
+///
+/// Heights are compared in f32, over lanes; those that rounding may have put below the greatest are
+/// compared in f64. So the farthest point is that of [`HullSupport`](super::HullSupport): the
+/// first of the farthest.
+///
+/// One is found among 40 points in 23 ns, among 100 in 48, where a look at all in f64 takes 40 and
+/// 104. Hulls of 20 gain nothing: to climb from neighbour to neighbour would have to beat that, and
+/// would need a proof where faces are nearly flat.
+#[derive(Clone, Debug, Default)]
+pub struct HullPoints {
+    points: Vec<Vec3>,
+    lanes: Vec<[f32x4; 3]>,
+    /// The largest absolute coordinate along each axis.
+    greatest: DVec3,
+}
+
+impl HullPoints {
+    /// The hull of these points.
+    pub fn new(points: impl IntoIterator<Item = Vec3>) -> Self {
+        let points: Vec<Vec3> = points.into_iter().collect();
+        let lanes = points.chunks(4).map(|four| {
+            // What is missing is the first one again.
+            let at = |i: usize| *four.get(i).unwrap_or(&four[0]);
+            let axis = |axis: usize| f32x4::new([0, 1, 2, 3].map(|i| at(i)[axis]));
+            [axis(0), axis(1), axis(2)]
+        });
+        let lanes = lanes.collect();
+        let greatest = points.iter().fold(Vec3::ZERO, |most, point| most.max(point.abs()));
+        Self { points, lanes, greatest: greatest.as_dvec3() }
+    }
+}
+
+impl SupportMap for HullPoints {
+    #[inline(always)]
+    fn support(&self, direction: DVec3) -> DVec3 {
+        // Of any length: in f32 it must be about one.
+        let scaled = direction * (1.0 / direction.abs().max_element());
+        let [x, y, z] = scaled.as_vec3().to_array().map(f32x4::splat);
+        let height = |lanes: &[f32x4; 3]| lanes[0] * x + lanes[1] * y + lanes[2] * z;
+        let mut kept = [f32x4::ZERO; KEPT];
+        let mut most = f32x4::splat(f32::NEG_INFINITY);
+        for (i, lanes) in self.lanes.iter().enumerate() {
+            let height = height(lanes);
+            most = most.fast_max(height);
+            if i < KEPT {
+                kept[i] = height;
+            }
+        }
+        let [a, b, c, d] = most.to_array();
+        let most = f64::from(a.max(b).max(c.max(d)));
+        // The direction rounds once, products and sums five times; below the least normal number
+        // they lose more.
+        let lost = self.greatest.dot(scaled.abs()) * f64::from(gamma(8))
+            + self.greatest.element_sum() * f64::from(f32::MIN_POSITIVE);
+        let least = (most - 2.0 * lost) as f32;
+        if !least.is_finite() {
+            let points: Vec<DVec3> = self.points.iter().map(|point| point.as_dvec3()).collect();
+            return HullSupport(&points).support(direction);
+        }
+        let least = f32x4::splat(least.next_down());
+        let (mut farthest, mut most) = (Vec3::ZERO, f64::NEG_INFINITY);
+        for (i, lanes) in self.lanes.iter().enumerate() {
+            let height = if i < KEPT { kept[i] } else { height(lanes) };
+            let mut mask = height.simd_ge(least).to_bitmask();
+            while mask != 0 {
+                // What fills the last four is the first one, and no farther.
+                let point = self.points.get(4 * i + mask.trailing_zeros() as usize);
+                let along = point.map_or(f64::NEG_INFINITY, |p| p.as_dvec3().dot(direction));
+                if along > most {
+                    (farthest, most) = (*point.expect("it has a height"), along);
+                }
+                mask &= mask - 1;
+            }
+        }
+        farthest.as_dvec3()
+    }
+}

@@ -1,0 +1,140 @@
+use glamx::{DAffine3, DMat3, DPose3, DVec3, Pose3, Vec3};
+use oorandom::Rand32;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::math::Real;
+use rapier3d::parry::query::{ClosestPoints, DefaultQueryDispatcher, QueryDispatcher};
+use rapier3d::parry::shape::{Shape, SharedShape, TriMesh};
+use sbbk_core::truth::ConvexBody;
+use sbbk_lab::mesh;
+
+use super::shapes::{body, pose, shapes};
+use crate::support::shape;
+
+/// The signed distances of all triangles.
+fn truth(mesh: &TriMesh, body: &ConvexBody, pos12: &Pose3, is_mesh_first: bool) -> Vec<f64> {
+    let DPose3 { rotation, translation } = DPose3::from(*pos12);
+    let [x, y, z] = DVec3::AXES.map(|axis| rotation * axis);
+    let pose = DAffine3::from_mat3_translation(DMat3::from_cols(x, y, z), translation);
+    let pose = if is_mesh_first { pose.inverse() } else { pose };
+    let place = |corner: Vec3| pose.transform_point3(corner.as_dvec3());
+    mesh.triangles().map(|t| body.distance(&[t.a, t.b, t.c].map(place))).collect()
+}
+
+fn least(distances: &[f64]) -> f64 {
+    distances.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+/// Would catch a pair in the wrong order or frame, a triangle that a bound leaves out, a radius that
+/// is forgotten, and an answer that depends on the size, as those of Parry's GJK do: at the two
+/// smaller sizes they are wrong in dozens of cases.
+#[test]
+fn as_brute_force_says_at_every_size() {
+    let dispatcher = SbbkDispatcher::default();
+    let mut stocks_wrong = 0;
+    for size in [0.01, 0.1, 2.0, 40.0] {
+        let mesh = shape(&mesh::monkey_head_with(6).centred().scaled_to(size));
+        let tolerance = 2.0e-6 * f64::from(size);
+        for (seed, (name, other)) in (0..).zip(shapes(0.5 * size)) {
+            let body = body(&other);
+            let mut random = Rand32::new(seed);
+            for i in 0..6 {
+                let mut in_mesh = pose(&mut random, &mesh, 0.5 * size);
+                in_mesh.translation *= [1.0, 1.1, 1.5][i % 3];
+                let is_mesh_first = i % 2 == 0;
+                let pos12 = if is_mesh_first { in_mesh } else { in_mesh.inverse() };
+                let shapes: [&dyn Shape; 2] =
+                    if is_mesh_first { [&mesh, &*other] } else { [&*other, &mesh] };
+                let distances = truth(&mesh, &body, &pos12, is_mesh_first);
+                let least = least(&distances);
+                let says = format!("{name}, {size}, {i}: {least}");
+                let [g1, g2] = shapes;
+                let is_near =
+                    |distance: Real, truth: f64| (f64::from(distance) - truth).abs() <= tolerance;
+                let of_mesh = |one: u32, two: u32| {
+                    let [triangle, part] = if is_mesh_first { [one, two] } else { [two, one] };
+                    assert_eq!(part, 0, "{says}");
+                    distances[triangle as usize]
+                };
+
+                let found = dispatcher.distance(&pos12, g1, g2).unwrap();
+                assert!(is_near(found.distance, least.max(0.0)), "{says} {found:?}");
+                let own = of_mesh(found.subshape1, found.subshape2);
+                assert!(is_near(found.distance, own.max(0.0)), "{says} {found:?} {own}");
+                let stock = DefaultQueryDispatcher.distance(&pos12, g1, g2).unwrap();
+                stocks_wrong += usize::from(!is_near(stock.distance, least.max(0.0)));
+
+                let found = dispatcher.intersection_test(&pos12, g1, g2).unwrap();
+                let is_sure = least.abs() > tolerance;
+                assert!(!is_sure || found.intersecting == (least < 0.0), "{says}");
+                if found.intersecting {
+                    assert!(of_mesh(found.subshape1, found.subshape2) <= tolerance, "{says}");
+                }
+
+                let margin = (least.abs() * [0.9, 1.1][i / 3]) as Real;
+                match dispatcher.closest_points(&pos12, g1, g2, margin).unwrap() {
+                    ClosestPoints::Intersecting => assert!(least <= tolerance, "{says}"),
+                    ClosestPoints::Disjoint => {
+                        assert!(least >= f64::from(margin) - tolerance, "{says}");
+                    }
+                    ClosestPoints::WithinMargin(point1, point2) => {
+                        let between = (point1 - pos12 * point2).length();
+                        assert!(least >= -tolerance && is_near(between, least), "{says}");
+                    }
+                }
+
+                match dispatcher.contact(&pos12, g1, g2, margin).unwrap() {
+                    None => assert!(least >= f64::from(margin) - tolerance, "{says}"),
+                    Some(contact) => {
+                        assert!(is_near(contact.dist, least), "{says} {contact:?}");
+                        let own = of_mesh(contact.subshape1, contact.subshape2);
+                        assert!(is_near(contact.dist, own), "{says} {contact:?} {own}");
+                        let way = pos12 * contact.point2 - contact.point1;
+                        let off = way - contact.normal1 * contact.dist;
+                        assert!(f64::from(off.length()) <= tolerance, "{says} {contact:?}");
+                        let opposite = pos12.rotation * contact.normal2 + contact.normal1;
+                        assert!(opposite.length() < 1.0e-5, "{says} {contact:?}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(stocks_wrong > 50, "{stocks_wrong}");
+}
+
+/// Would catch an answer for a pose or a limit that is no number, and for a limit without end.
+#[test]
+fn poses_and_limits_that_are_none() {
+    let dispatcher = SbbkDispatcher::default();
+    let mesh = shape(&mesh::monkey_head_with(6));
+    for (name, other) in shapes(1.0).into_iter().filter(|(name, _)| *name != "ball") {
+        let nowhere = Pose3::translation(f32::NAN, 0.0, 0.0);
+        let [g1, g2]: [&dyn Shape; 2] = [&mesh, &*other];
+        assert!(!dispatcher.intersection_test(&nowhere, g1, g2).unwrap().intersecting, "{name}");
+        assert_eq!(dispatcher.distance(&nowhere, g1, g2).unwrap().distance, Real::MAX, "{name}");
+        assert!(dispatcher.contact(&nowhere, g1, g2, 1.0).unwrap().is_none(), "{name}");
+        let away = Pose3::translation(0.0, -3.0e6, 0.0);
+        assert!(dispatcher.contact(&away, g2, g1, f32::NAN).unwrap().is_none(), "{name}");
+        let high = Pose3::translation(0.0, 30.0, 0.0);
+        let found = dispatcher.contact(&high, g2, g1, Real::MAX).unwrap();
+        assert!(found.is_some_and(|contact| contact.dist > 20.0), "{name}");
+    }
+}
+
+/// A corner on the plane of a half-space, in a box whose middle is rounded away from it: the sum of
+/// the ends is no number of f32. Would catch a plane that allows for no rounding of boxes.
+#[test]
+fn a_corner_on_a_plane() {
+    let step = f32::EPSILON;
+    let (low, high) = (1.0 + step, 2.0 + 2.0 * step);
+    let corners =
+        vec![Vec3::new(0.0, low, 0.0), Vec3::new(1.0, high, 0.0), Vec3::new(0.0, high, 1.0)];
+    let mesh = TriMesh::new(corners, vec![[0, 1, 2]]).unwrap();
+    let plane = SharedShape::halfspace(Vec3::Y);
+    let dispatcher = SbbkDispatcher::default();
+    let down = Pose3::translation(0.0, -low, 0.0);
+    assert!(dispatcher.intersection_test(&down, &*plane, &mesh).unwrap().intersecting);
+    let contact = dispatcher.contact(&down, &*plane, &mesh, 0.0).unwrap();
+    assert_eq!(contact.map(|contact| contact.dist), Some(0.0));
+    let above = Pose3::translation(0.0, -low + 1.0e-5, 0.0);
+    assert!(!dispatcher.intersection_test(&above, &*plane, &mesh).unwrap().intersecting);
+}
