@@ -48,6 +48,8 @@ mod motion;
 mod nonlinear;
 /// Contact normals constrained at internal edges.
 mod normals;
+/// A few manifolds for all contacts of a pair.
+mod patches;
 /// Queries without manifolds.
 mod queries;
 /// Bodies at rest, and sliding, beside stock Rapier.

@@ -20,7 +20,7 @@ const MOST_POINTS: usize = 4;
 
 /// The least cosine of normals of one patch: that of Rapier's own clusters, so that its solver gets
 /// as many directions as of all contacts.
-const SAME_NORMAL: Real = 0.9995;
+const SAME_NORMAL: Real = 0.996;
 
 /// Normals of a patch and of one of the step before that may be the same patch.
 const LIKE_NORMAL: Real = 0.9;
@@ -44,6 +44,8 @@ pub(crate) struct Outline {
     pub(super) normal: Vec3,
     pub(super) point: Vec3,
     pub(super) distance: Real,
+    /// Whether cones have a say in the points: how deep they are, and whether there are any.
+    pub(super) has_cones: bool,
 }
 
 /// Memory for the choice of patches.
@@ -110,29 +112,32 @@ pub(super) fn write_patches<Q, M, C>(
     pool.begin();
     let mut patches = std::mem::take(&mut scratch.patches);
     patches.members.clear();
-    for (candidate, contact) in (0..).zip(contacts) {
-        let of = &candidates[candidate as usize];
-        let outline = contact.as_ref().and_then(|contact| query.outline(contact, of, scratch));
-        patches.members.extend(outline.map(|outline| Member { outline, candidate, patch: 0 }));
+    let mut blank = pool.take();
+    for (index, contact) in (0..).zip(contacts) {
+        let candidate = &mut candidates[index as usize];
+        let Some(contact) = *contact else { continue };
+        let Some(mut outline) = query.outline(&contact, candidate, scratch) else { continue };
+        if outline.has_cones {
+            reset(&mut blank);
+            query.write(contact, candidate, limits, scratch, &mut pool.previous_points, &mut blank);
+            let distances = blank.points.iter().map(|point| point.dist);
+            let Some(distance) = distances.reduce(Real::min) else { continue };
+            outline.distance = distance;
+        }
+        patches.members.push(Member { outline, candidate: index, patch: 0 });
     }
     patches.divide(size);
     let mut old_points = std::mem::take(&mut pool.old_points);
     let mut points = std::mem::take(&mut pool.patch_points);
     old_points.clear();
     old_points.extend(manifolds.iter().flat_map(|manifold| &manifold.points));
-    let mut blank = pool.take();
     for members in patches.members.chunk_by(|a, b| a.patch == b.patch) {
         points.clear();
         patches.points.clear();
         patches.points.extend(members.iter().map(|member| member.outline.point));
         let chosen = outermost(&patches.points, members[0].outline.normal);
-        // Cones may leave nothing of those chosen.
-        let others = (0..members.len()).filter(|member| !chosen.contains(member));
         let mut of_patch = None;
-        for (turn, member) in chosen.iter().copied().chain(others).enumerate() {
-            if turn >= chosen.len() && !points.is_empty() {
-                break;
-            }
+        for member in chosen {
             let index = members[member].candidate as usize;
             let (candidate, Some(contact)) = (&mut candidates[index], contacts[index]) else {
                 continue;

@@ -167,6 +167,7 @@ impl Question<'_> {
             normal,
             point: contact.on_triangle.as_vec3(),
             distance: (contact.distance - f64::from(self.part.shape.radius())) as Real,
+            has_cones: cones.iter().any(Option::is_some),
         })
     }
 

@@ -147,12 +147,15 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         let TriangleContact { distance, point1, .. } = *contact;
         let [triangle1, _] = self.shapes.triangles(candidate.subshapes)?;
         let pos12 = &self.pose.pos12;
-        let mut normal = None;
+        let (mut normal, mut has_cones) = (None, false);
         self.shapes.with_constraints(candidate.subshapes, |constraints| {
             normal = constrained_normal(contact, constraints, pos12);
+            has_cones = constraints.iter().any(Option::is_some);
         });
         let point = (triangle1.a.as_dvec3() + point1).as_vec3();
-        Some(Outline { part: 0, normal: normal?.normal, point, distance: distance as Real })
+        let normal = normal?.normal;
+        let distance = distance as Real;
+        Some(Outline { part: 0, normal, point, distance, has_cones })
     }
 
     #[inline(always)]

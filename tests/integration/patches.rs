@@ -1,0 +1,268 @@
+//! A few manifolds for all contacts of two shapes, beside every contact at the same pose.
+
+use glamx::{Pose3, Quat, Vec3};
+use oorandom::Rand32;
+use rapier_integration::{ContactDetail, SbbkConfig, SbbkDispatcher};
+use rapier3d::math::{Pose, Real, Vector};
+use rapier3d::parry::query::{ContactManifold, TrackedContact};
+use rapier3d::parry::shape::{HeightField, Shape, SharedShape, TriMeshFlags};
+use sbbk_lab::mesh::{self, Mesh};
+
+use crate::support::{Dispatcher, Pair, direction, distance, nudge, rotation, shape, shape_with};
+
+/// The least cosine of the normals in one patch; where cones turn them, the deepest contact may come
+/// to nothing, and the others are as near to its normal.
+const SAME_NORMAL: Real = 0.996;
+const NEAR_ONE_NORMAL: Real = 2.0 * SAME_NORMAL * SAME_NORMAL - 1.0;
+
+fn detailed(detail: ContactDetail) -> SbbkDispatcher {
+    let mut config = SbbkConfig::default();
+    config.detail = detail;
+    SbbkDispatcher::new(config)
+}
+
+fn ask<M, C>(
+    pair: &mut Pair<M, C>,
+    dispatcher: &impl Dispatcher<M, C>,
+    shapes: [&dyn Shape; 2],
+    pos12: &Pose,
+    prediction: Real,
+) {
+    let Pair { manifolds, workspace } = pair;
+    dispatcher
+        .contact_manifolds(pos12, shapes[0], shapes[1], prediction, manifolds, workspace)
+        .expect("one of the shapes is a mesh");
+}
+
+type Manifold = ContactManifold<u32, u32>;
+
+fn fresh(
+    dispatcher: &SbbkDispatcher,
+    shapes: [&dyn Shape; 2],
+    pos12: &Pose,
+    prediction: Real,
+) -> Vec<Manifold> {
+    let mut pair = Pair::default();
+    ask(&mut pair, dispatcher, shapes, pos12, prediction);
+    pair.manifolds
+}
+
+/// Where a point is in frame 1, on both shapes, and its distance.
+fn place<C>(
+    pos12: &Pose,
+    manifold: &ContactManifold<u32, C>,
+    point: &TrackedContact<C>,
+) -> [Vector; 2] {
+    let own = |pose: Option<&Pose>, at: Vector| pose.map_or(at, |pose| *pose * at);
+    let on2 = own(manifold.subshape_pos2(), point.local_p2);
+    [own(manifold.subshape_pos1(), point.local_p1), *pos12 * on2]
+}
+
+/// Panics unless `patches` stand for `every`. Says how many manifolds there are of each.
+fn assert_stand_for(
+    patches: &[Manifold],
+    every: &[Manifold],
+    pos12: &Pose,
+    what: &str,
+) -> [usize; 2] {
+    assert_eq!(patches.is_empty(), every.is_empty(), "{what}");
+    let least = if what.starts_with("fixed") { NEAR_ONE_NORMAL } else { SAME_NORMAL };
+    for patch in patches {
+        assert!((1..=4).contains(&patch.points.len()), "{what}: {} points", patch.points.len());
+        let is_that = |m: &&Manifold| {
+            [m.subshape1, m.subshape2] == [patch.subshape1, patch.subshape2]
+                && m.local_n1 == patch.local_n1
+                && m.local_n2 == patch.local_n2
+                && m.subshape_pos1() == patch.subshape_pos1()
+                && m.subshape_pos2() == patch.subshape_pos2()
+        };
+        assert!(every.iter().any(|m| is_that(&m)), "{what}: a patch of no contact");
+        for point in &patch.points {
+            let is_same = |m: &&Manifold| {
+                let is_there = |p: &TrackedContact<u32>| {
+                    p.dist == point.dist && place(pos12, m, p) == place(pos12, patch, point)
+                };
+                m.local_n1.dot(patch.local_n1) >= least - 1e-6 && m.points.iter().any(is_there)
+            };
+            assert!(every.iter().any(|m| is_same(&m)), "{what}: a point of no contact");
+        }
+    }
+    // Each contact is in a patch that is as deep and has its direction.
+    for contact in every {
+        let is_of = |patch: &&Manifold| {
+            patch.local_n1.dot(contact.local_n1) >= least - 1e-6
+                && distance(patch) <= distance(contact)
+        };
+        assert!(
+            patches.iter().any(|patch| is_of(&patch)),
+            "{what}: no patch for {} along {}, but {:?}",
+            distance(contact),
+            contact.local_n1,
+            patches
+                .iter()
+                .map(|m| (m.local_n1.dot(contact.local_n1), distance(m)))
+                .collect::<Vec<_>>(),
+        );
+    }
+    let deepest = |all: &[Manifold]| all.iter().map(distance).fold(Real::INFINITY, Real::min);
+    assert_eq!(deepest(patches), deepest(every), "{what}");
+    [patches.len(), every.len()]
+}
+
+/// What a host sees of manifolds.
+fn bare(manifolds: &[Manifold]) -> String {
+    let points = |m: &Manifold| {
+        let all = m.points.iter().map(|p| (p.local_p1, p.local_p2, p.dist, p.fid1, p.fid2));
+        all.collect::<Vec<_>>()
+    };
+    let all =
+        manifolds.iter().map(|m| (m.subshape1, m.subshape2, m.local_n1, m.local_n2, points(m)));
+    format!("{:?}", all.collect::<Vec<_>>())
+}
+
+/// A grid of hills, as a shape.
+fn field() -> SharedShape {
+    let heights = rapier3d::parry::utils::Array2::new(
+        9,
+        9,
+        (0..81).map(|i| 0.1 * (i as f32).sin()).collect(),
+    );
+    SharedShape::new(HeightField::new(heights, Vec3::new(4.0, 1.0, 4.0)))
+}
+
+/// Shapes that meet the mesh, each about 2 units across.
+fn partners() -> Vec<(&'static str, SharedShape)> {
+    let part = |x: Real| (Pose::translation(x, 0.0, 0.0), SharedShape::cuboid(0.3, 0.5, 0.4));
+    let torus = mesh::torus(0.7, 0.3, 24, 12);
+    vec![
+        ("torus", SharedShape::new(shape(&torus))),
+        ("fixed torus", SharedShape::new(shape_with(&torus, TriMeshFlags::FIX_INTERNAL_EDGES))),
+        ("coarse box", SharedShape::new(shape(&mesh::cuboid(Vec3::splat(0.7), 1)))),
+        ("ball", SharedShape::ball(0.9)),
+        ("cuboid", SharedShape::cuboid(0.8, 0.5, 0.6)),
+        ("capsule", SharedShape::capsule_y(0.5, 0.4)),
+        ("cylinder", SharedShape::cylinder(0.6, 0.5)),
+        ("half-space", SharedShape::halfspace(Vec3::Y)),
+        ("compound", SharedShape::compound(vec![part(-0.6), part(0.6)])),
+        ("field", field()),
+    ]
+}
+
+/// Would catch a contact that no patch stands for, a point that is none, more than four of them, a
+/// patch deeper or shallower than its contacts, names of other subshapes, and memory that is part of
+/// the answer.
+#[test]
+fn patches_stand_for_every_contact() {
+    let head = shape(&mesh::monkey_head());
+    let [every, patches] = [ContactDetail::Every, ContactDetail::Patches].map(detailed);
+    let mut random = Rand32::new(5);
+    for (name, partner) in partners() {
+        let mut counts = [0; 2];
+        for prediction in [0.002, 0.1] {
+            for is_swapped in [false, true] {
+                let mut pair = Pair::default();
+                let mut at = Pose::IDENTITY;
+                for i in 0..40 {
+                    at = match i % 4 {
+                        0 => {
+                            let away = direction(&mut random) * (0.7 + 0.8 * random.rand_float());
+                            Pose3::from_parts(away, rotation(&mut random))
+                        }
+                        _ => nudge(&mut random, 0.01) * at,
+                    };
+                    let (shapes, pos12): ([&dyn Shape; 2], Pose) = if is_swapped {
+                        ([&*partner.0, &head], at.inverse())
+                    } else {
+                        ([&head, &*partner.0], at)
+                    };
+                    let what = format!("{name}, {prediction}, {is_swapped}, {i}");
+                    let expected = fresh(&every, shapes, &pos12, prediction);
+                    let found = fresh(&patches, shapes, &pos12, prediction);
+                    let count = assert_stand_for(&found, &expected, &pos12, &what);
+                    counts = [counts[0] + count[0], counts[1] + count[1]];
+                    ask(&mut pair, &patches, shapes, &pos12, prediction);
+                    assert_eq!(bare(&pair.manifolds), bare(&found), "{what}: memory");
+                }
+            }
+        }
+        println!("{name}: {counts:?}");
+        assert!(counts[0] > 100 && counts[0] < counts[1], "{name}: {counts:?}");
+    }
+}
+
+/// A box with six legs, three by two.
+fn table() -> Mesh {
+    let legs = (0..6).map(|i: u8| {
+        let at = Vec3::new(0.8 * f32::from(i % 3) - 0.8, -0.7, 1.0 * f32::from(i / 3) - 0.5);
+        mesh::cuboid(Vec3::new(0.05, 0.3, 0.05), 2).posed(&Pose3::from_translation(at))
+    });
+    let top = mesh::cuboid(Vec3::new(1.0, 0.4, 0.7), 4);
+    Mesh::merged("table", &legs.chain([top]).collect::<Vec<_>>())
+}
+
+/// Would catch supports that are lost, as four points under a table with six legs would be.
+#[test]
+fn a_patch_for_each_leg() {
+    let table = shape(&table());
+    let floor = shape(&mesh::floor(4.0, 20));
+    let slab = SharedShape::cuboid(2.0, 0.5, 2.0);
+    let dispatcher = detailed(ContactDetail::Patches);
+    for (other, height) in [(&floor as &dyn Shape, 0.0), (&*slab.0, 0.5)] {
+        for turn in [0.0, 0.3] {
+            let at = Pose3::from_parts(Vec3::Y * (height + 0.999), Quat::from_rotation_y(turn));
+            let found = fresh(&dispatcher, [other, &table], &at, 0.002);
+            let mut legs: Vec<_> = (found.iter().flat_map(|m| &m.points))
+                .map(|point| [point.local_p2.x, point.local_p2.z].map(|x| (2.0 * x).round() as i32))
+                .collect();
+            legs.sort_unstable();
+            legs.dedup();
+            assert_eq!(legs.len(), 6, "{legs:?}");
+            assert!(found.len() <= 12, "{} patches for six legs", found.len());
+        }
+    }
+}
+
+/// What the host keeps with manifolds and points stays with them while bodies slide. Would catch
+/// impulses that are lost or handed to other points, and manifolds without their data.
+#[test]
+fn patches_and_points_keep_their_data() {
+    let [floor, cube] = [mesh::floor(4.0, 2), mesh::cuboid(Vec3::splat(0.5), 1)].map(|m| shape(&m));
+    let dispatcher = detailed(ContactDetail::Patches);
+    let mut pair = Pair::default();
+    let at = |x: Real| Pose::translation(0.3 + x, 0.4995, 0.2);
+    ask(&mut pair, &dispatcher, [&floor, &cube], &at(0.0), 0.002);
+    let mut mark = 0..;
+    for manifold in &mut pair.manifolds {
+        manifold.data = 7;
+        for point in &mut manifold.points {
+            point.data = 100 + mark.next().unwrap();
+        }
+    }
+    let named = |pair: &Pair<u32, u32>| {
+        let all = pair.manifolds.iter().flat_map(|m| &m.points);
+        let mut all: Vec<_> = all.map(|point| (point.fid1, point.fid2, point.data)).collect();
+        all.sort_unstable_by_key(|point| point.2);
+        all
+    };
+    let before = named(&pair);
+    assert!(before.len() >= 4, "{before:?}");
+    for step in 1..20 {
+        ask(&mut pair, &dispatcher, [&floor, &cube], &at(1e-4 * step as Real), 0.002);
+        assert_eq!(named(&pair), before);
+        assert!(pair.manifolds.iter().all(|manifold| manifold.data == 7));
+    }
+}
+
+/// Soft bodies need each contact's triangle. Would catch patches of a mesh that may deform.
+#[test]
+fn meshes_that_deform_have_every_contact() {
+    let soft = shape_with(&mesh::monkey_head(), TriMeshFlags::DEFORMABLE);
+    let torus = shape(&mesh::torus(0.7, 0.3, 24, 12));
+    let at = Pose::translation(0.4, 0.5, 0.2);
+    for other in [&torus as &dyn Shape, &*SharedShape::cuboid(0.5, 0.5, 0.5).0, &*field().0] {
+        let [every, patches] = [ContactDetail::Every, ContactDetail::Patches]
+            .map(|detail| fresh(&detailed(detail), [&soft, other], &at, 0.02));
+        assert!(every.len() > 10, "{}", every.len());
+        assert_eq!(bare(&patches), bare(&every));
+    }
+}
