@@ -76,7 +76,8 @@ impl Around<'_> {
     fn is_in_front(&self, triangle: u32, feature: Feature, direction: DVec3, rise: f64) -> bool {
         if feature == Feature::Face {
             let (height, is_upright) = self.over_face(triangle, direction);
-            return is_upright && !(self.is_solid && height < 0.0);
+            let leads_in = self.is_solid && height < 0.0;
+            return is_upright && !leads_in;
         }
         let rises = |edge: DVec3| {
             let height = edge.dot(direction);
@@ -91,7 +92,8 @@ impl Around<'_> {
             height += u.cross(v).dot(direction);
             ControlFlow::Continue(())
         });
-        !has_risen && !(self.is_solid && height < 0.0)
+        let leads_in = self.is_solid && height < 0.0;
+        !has_risen && !leads_in
     }
 
     /// How far a direction points along the normal of a triangle, times twice the area, and whether

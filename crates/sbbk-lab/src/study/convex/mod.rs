@@ -38,7 +38,7 @@ pub struct ConvexPlan {
     pub meshes: Vec<Mesh>,
     /// The lengths of these, in units.
     pub sizes: Vec<f64>,
-    /// The prediction distances, see [`asks`](Self::asks).
+    /// The prediction distances; one that is too large for a mesh is left out.
     pub predictions: Vec<Real>,
 }
 
