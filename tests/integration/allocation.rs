@@ -1,6 +1,6 @@
 use allocation_counter::measure;
 use oorandom::Rand32;
-use rapier_integration::{SbbkDispatcher, SbbkStats};
+use rapier_integration::{ContactDetail, SbbkConfig, SbbkDispatcher, SbbkStats};
 use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
@@ -16,14 +16,17 @@ const WARM_UP: usize = 20;
 /// A pair that stays in contact and moves by at most `stride` from query to query; with Rapier's
 /// own manifold data. The stats of the counted queries. Panics when one of them allocates.
 fn steady(meshes: [&TriMesh; 2], stride: Real) -> SbbkStats {
-    let dispatcher = counting();
+    steady_with(&counting(), meshes, stride)
+}
+
+fn steady_with(dispatcher: &SbbkDispatcher, meshes: [&TriMesh; 2], stride: Real) -> SbbkStats {
     let mut random = Rand32::new(1);
     let pos12 = touching(&mut random, meshes, 0.01);
     let poses: Vec<Pose> = (0..POSES).map(|_| nudge(&mut random, 0.5 * stride) * pos12).collect();
     let mut pair = Pair::<ContactManifoldData, ContactData>::default();
     let mut ask = |pose: usize| {
         let query = Query::new(meshes[0], meshes[1], poses[pose % POSES]);
-        pair.ask(&dispatcher, &query).manifolds.len()
+        pair.ask(dispatcher, &query).manifolds.len()
     };
     for pose in 0..WARM_UP * POSES {
         ask(pose);
@@ -88,4 +91,18 @@ fn constrained_normals_allocate_nothing() {
     let floor = shape_with(&mesh::ball(3.0, 10), flags);
     let stats = steady([&floor, &head], 1e-3);
     assert!(stats.reused_queries > stats.queries / 4, "{stats:?}");
+}
+
+/// Would catch patches that are divided up in new memory, or whose manifolds are made anew.
+#[test]
+fn patches_allocate_nothing() {
+    let mut config = SbbkConfig::default();
+    config.detail = ContactDetail::Patches;
+    let dispatcher = SbbkDispatcher::new(config);
+    for flags in [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES] {
+        let head = shape_with(&mesh::monkey_head(), flags);
+        for stride in [1e-4, 2.5e-2] {
+            steady_with(&dispatcher, [&head, &head], stride);
+        }
+    }
 }

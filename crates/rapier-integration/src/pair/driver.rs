@@ -96,7 +96,7 @@ pub(crate) trait PairQuery {
     }
 
     /// Memory for contacts, lent from query to query.
-    fn contacts(scratch: &mut Scratch) -> &mut Vec<Option<Self::Contact>>;
+    fn contacts(scratch: &mut Scratch) -> &mut [ContactList<Self::Contact>; 2];
 
     /// Up to how far apart contacts may be in one patch; `None` if every contact has a manifold.
     fn patch_size(&self) -> Option<Real>;
@@ -190,8 +190,8 @@ pub(crate) struct Scratch {
     pub(super) near: Vec<u32>,
     /// Where surfaces cross.
     pub(super) regions: Regions,
-    pub(super) triangle_contacts: Vec<Option<Found>>,
-    pub(super) convex_contacts: Vec<Option<Near>>,
+    pub(super) triangle_contacts: [ContactList<Found>; 2],
+    pub(super) convex_contacts: [ContactList<Near>; 2],
     pub(super) patches: Patches,
     lookup: Lookup,
     /// Which manifolds of the query before are dealt with.
@@ -247,9 +247,9 @@ where
         margin: f64::from(margin),
         travel: coherence.slack.travel(),
     };
-    let mut contacts = std::mem::take(P::Query::contacts(&mut scratch));
+    let [mut contacts, mut spare] = std::mem::take(P::Query::contacts(&mut scratch));
     let candidates = &mut coherence.candidates;
-    find_contacts(&mut query, candidates, limits, &mut scratch, &mut contacts);
+    find_contacts(&mut query, candidates, limits, &mut scratch, [&mut contacts, &mut spare]);
     if let Some(size) = query.patch_size() {
         let found = Contacts { query: &mut query, candidates, contacts: &contacts, limits };
         write_patches(found, size, &mut scratch, &mut memory.pool, manifolds);
@@ -261,23 +261,28 @@ where
     }
     if let Some(limit) = scratch.demand.note(contacts.len()) {
         // Candidates come and go more than manifolds do: some hundred kilobytes a thread stay.
-        contacts.shrink_to(limit.max(1024));
+        for list in [&mut contacts, &mut spare] {
+            list.shrink_to(limit.max(1024));
+        }
         scratch.is_done.shrink_to(limit);
         scratch.lookup.shrink_to(limit);
         scratch.patches.shrink_to(limit);
     }
-    *P::Query::contacts(&mut scratch) = contacts;
+    *P::Query::contacts(&mut scratch) = [contacts, spare];
     SCRATCH.set(Some(scratch));
     memory.end(query.pose(), manifolds.len());
     answer
 }
 
+/// Contacts and the candidates that they are of, by their places, in order. Most candidates have
+/// none.
+pub(crate) type ContactList<C> = Vec<(u32, C)>;
+
 /// The contacts of a query, before their manifolds.
 pub(super) struct Contacts<'c, Q: PairQuery> {
     pub(super) query: &'c mut Q,
     pub(super) candidates: &'c mut [Candidate<Q::Hint>],
-    /// Of each candidate.
-    pub(super) contacts: &'c [Option<Q::Contact>],
+    pub(super) contacts: &'c [(u32, Q::Contact)],
     pub(super) limits: Limits,
 }
 
@@ -287,25 +292,28 @@ fn find_contacts<Q: PairQuery>(
     candidates: &mut [Candidate<Q::Hint>],
     limits: Limits,
     scratch: &mut Scratch,
-    contacts: &mut Vec<Option<Q::Contact>>,
+    [contacts, before]: [&mut ContactList<Q::Contact>; 2],
 ) {
     scratch.regions.begin();
-    contacts.clear();
-    contacts.resize(candidates.len(), None);
+    before.clear();
     let farthest = limits.reach + limits.travel;
     loop {
-        for (candidate, contact) in candidates.iter_mut().zip(&mut *contacts) {
+        contacts.clear();
+        let mut before_now = before.iter().copied().peekable();
+        for (index, candidate) in (0..).zip(&mut *candidates) {
+            let same = before_now.next_if(|&(of, _)| of == index);
             if candidate.clear <= farthest {
                 match query.contact(candidate, limits, scratch) {
-                    Seen::Nothing => *contact = None,
-                    Seen::Same => {}
-                    Seen::Contact(seen) => *contact = Some(seen),
+                    Seen::Nothing => {}
+                    Seen::Same => contacts.extend(same),
+                    Seen::Contact(contact) => contacts.push((index, contact)),
                 }
             }
         }
         if !query.needs_more(scratch) {
             return;
         }
+        std::mem::swap(contacts, before);
     }
 }
 
@@ -328,7 +336,9 @@ fn write_every<Q, M, C>(
     // A new manifold that has no points yet.
     let mut blank = None;
     let mut count = 0;
-    for (candidate, &contact) in candidates.iter_mut().zip(contacts) {
+    let mut contacts = contacts.iter().copied().peekable();
+    for (index, candidate) in (0..).zip(&mut *candidates) {
+        let contact = contacts.next_if(|&(of, _)| of == index).map(|(_, contact)| contact);
         let old = candidate.place.take().map(Place::index);
         if let Some(place) = old {
             is_done[place] = true;

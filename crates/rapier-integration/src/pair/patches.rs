@@ -6,6 +6,8 @@
 //! twice: of contacts, by their closest points, before their other points are made, and of the
 //! points of those that were chosen.
 
+use std::cmp::Ordering;
+
 use arrayvec::ArrayVec;
 use glamx::Vec3;
 use parry3d::math::Real;
@@ -51,7 +53,6 @@ pub(crate) struct Outline {
 /// Memory for the choice of patches.
 #[derive(Default)]
 pub(crate) struct Patches {
-    /// Sorted by depth, then by patch.
     members: Vec<Member>,
     /// The deepest contact of each patch.
     deepest: Vec<Outline>,
@@ -60,8 +61,15 @@ pub(crate) struct Patches {
 
 struct Member {
     outline: Outline,
-    candidate: u32,
+    /// Its place among the contacts.
+    contact: u32,
     patch: u32,
+}
+
+/// The deepest first; those of one depth in stock order.
+fn by_depth(a: &Member, b: &Member) -> Ordering {
+    let by_depth = a.outline.distance.total_cmp(&b.outline.distance);
+    by_depth.then(a.contact.cmp(&b.contact))
 }
 
 impl Patches {
@@ -74,10 +82,7 @@ impl Patches {
     /// Divides the contacts up: each joins the first patch of its direction that it is near to, the
     /// deepest first.
     fn divide(&mut self, size: Real) {
-        self.members.sort_unstable_by(|a, b| {
-            let by_depth = a.outline.distance.total_cmp(&b.outline.distance);
-            by_depth.then(a.candidate.cmp(&b.candidate))
-        });
+        self.members.sort_unstable_by(by_depth);
         self.deepest.clear();
         for Member { outline, patch, .. } in &mut self.members {
             let is_near = |deepest: &Outline| {
@@ -91,8 +96,7 @@ impl Patches {
             });
             *patch = place as u32;
         }
-        // Within a patch the order stays: candidates of one depth are in order, too.
-        self.members.sort_by_key(|member| member.patch);
+        self.members.sort_unstable_by(|a, b| a.patch.cmp(&b.patch).then_with(|| by_depth(a, b)));
     }
 }
 
@@ -113,9 +117,8 @@ pub(super) fn write_patches<Q, M, C>(
     let mut patches = std::mem::take(&mut scratch.patches);
     patches.members.clear();
     let mut blank = pool.take();
-    for (index, contact) in (0..).zip(contacts) {
-        let candidate = &mut candidates[index as usize];
-        let Some(contact) = *contact else { continue };
+    for (place, &(of, contact)) in (0..).zip(contacts) {
+        let candidate = &mut candidates[of as usize];
         let Some(mut outline) = query.outline(&contact, candidate, scratch) else { continue };
         if outline.has_cones {
             reset(&mut blank);
@@ -124,7 +127,7 @@ pub(super) fn write_patches<Q, M, C>(
             let Some(distance) = distances.reduce(Real::min) else { continue };
             outline.distance = distance;
         }
-        patches.members.push(Member { outline, candidate: index, patch: 0 });
+        patches.members.push(Member { outline, contact: place, patch: 0 });
     }
     patches.divide(size);
     let mut old_points = std::mem::take(&mut pool.old_points);
@@ -138,19 +141,17 @@ pub(super) fn write_patches<Q, M, C>(
         let chosen = outermost(&patches.points, members[0].outline.normal);
         let mut of_patch = None;
         for member in chosen {
-            let index = members[member].candidate as usize;
-            let (candidate, Some(contact)) = (&mut candidates[index], contacts[index]) else {
-                continue;
-            };
+            let (of, contact) = contacts[members[member].contact as usize];
+            let candidate = &mut candidates[of as usize];
             reset(&mut blank);
             query.name(candidate, &mut blank);
             query.write(contact, candidate, limits, scratch, &mut pool.previous_points, &mut blank);
             points.extend(blank.points.iter().map(|&point| named(point, candidate.subshapes)));
             if !blank.points.is_empty() {
-                of_patch.get_or_insert((index, blank.local_n1, blank.local_n2));
+                of_patch.get_or_insert((of, blank.local_n1, blank.local_n2));
             }
         }
-        let Some((index, local_n1, local_n2)) = of_patch else {
+        let Some((of, local_n1, local_n2)) = of_patch else {
             continue;
         };
         // The deepest one comes first.
@@ -169,7 +170,7 @@ pub(super) fn write_patches<Q, M, C>(
             Some(place) => std::mem::take(&mut manifolds[place]),
             None => pool.take(),
         };
-        query.name(&candidates[index], &mut manifold);
+        query.name(&candidates[of as usize], &mut manifold);
         (manifold.local_n1, manifold.local_n2) = (local_n1, local_n2);
         patches.points.clear();
         patches.points.extend(points.iter().map(|point| point.local_p1));
@@ -186,7 +187,9 @@ pub(super) fn write_patches<Q, M, C>(
         pool.keep_new(Some(manifold), manifolds);
     }
     pool.retire(blank);
-    manifolds.drain(..).for_each(|manifold| pool.retire(manifold));
+    // Those without points were taken.
+    let gone = manifolds.drain(..).filter(|manifold| !manifold.points.is_empty());
+    gone.for_each(|manifold| pool.retire(manifold));
     pool.end(manifolds);
     (pool.old_points, pool.patch_points) = (old_points, points);
     scratch.patches = patches;

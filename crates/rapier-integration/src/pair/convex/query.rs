@@ -16,7 +16,7 @@ use super::parts::{KnownParts, Part, Parts};
 use super::placed::{PlacedPart, Question};
 use crate::ContactGenerator;
 use crate::mesh::{Change, KnownMesh, TreeCache};
-use crate::pair::driver::{Limits, Moving, Pair, PairQuery, Scratch, Seen};
+use crate::pair::driver::{ContactList, Limits, Moving, Pair, PairQuery, Scratch, Seen};
 use crate::pair::order::{Candidate, OrderKey};
 use crate::pair::patches::{Outline, patch_size};
 use crate::pair::pose::{MeshPlace, PairPose};
@@ -234,7 +234,7 @@ impl PairQuery for ConvexQuery<'_> {
         }
     }
 
-    fn contacts(scratch: &mut Scratch) -> &mut Vec<Option<Near>> {
+    fn contacts(scratch: &mut Scratch) -> &mut [ContactList<Near>; 2] {
         &mut scratch.convex_contacts
     }
 

@@ -11,7 +11,7 @@ use sbbk_core::traverse::{Counters, GREATEST_SLACK};
 use super::exact::{Constraints, constrained_normal, fill, local_pair};
 use super::judge::{Judge, Surfaces};
 use crate::ContactGenerator;
-use crate::pair::driver::{Limits, Moving, PairQuery, Scratch, Seen};
+use crate::pair::driver::{ContactList, Limits, Moving, PairQuery, Scratch, Seen};
 use crate::pair::order::{Candidate, OrderKey};
 use crate::pair::patches::Outline;
 use crate::pair::pose::PairPose;
@@ -130,7 +130,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         scratch.regions.close()
     }
 
-    fn contacts(scratch: &mut Scratch) -> &mut Vec<Option<Found>> {
+    fn contacts(scratch: &mut Scratch) -> &mut [ContactList<Found>; 2] {
         &mut scratch.triangle_contacts
     }
 
