@@ -1,10 +1,11 @@
+use glamx::{Quat, Vec3};
 use oorandom::Rand32;
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::shape::TriMesh;
 use sbbk_lab::mesh::{self, Mesh};
 
 use crate::like_stock;
-use crate::support::{Query, fresh, per_triangle, shape, touching};
+use crate::support::{Query, SETS, fresh, having, per_triangle, shape, touching};
 use crate::truth::Tally;
 
 /// Meshes whose triangles have edges of about a unit, 20 to 40 units across: stock Parry is right
@@ -124,4 +125,27 @@ fn distant_meshes_touch_as_the_truth_says() {
         }
     }
     tally.check_all_right(200);
+}
+
+/// A corner of a box above the middle of a triangle. Would catch features of the two shapes that are
+/// taken for each other: impulses would be handed to other points as bodies slide.
+#[test]
+fn features_are_those_of_their_shape() {
+    let [floor, cube] = [mesh::floor(4.0, 1), mesh::cuboid(Vec3::splat(0.5), 1)].map(|m| shape(&m));
+    let turn = Quat::from_rotation_arc(Vec3::splat(-1.0).normalize(), -Vec3::Y);
+    let at = Pose::from_parts(Vec3::new(0.7, 0.75_f32.sqrt() + 0.001, 0.3), turn);
+    let query = Query::new(&floor, &cube, at);
+    for dispatcher in SETS.map(having) {
+        for (query, is_swapped) in [(query, false), (query.swapped(), true)] {
+            let found = fresh(&dispatcher, &query);
+            let points = found.iter().flat_map(|manifold| &manifold.points);
+            let nearest = points.min_by(|a, b| a.dist.total_cmp(&b.dist)).expect("they touch");
+            let [floors, cubes] = if is_swapped {
+                [nearest.fid2, nearest.fid1]
+            } else {
+                [nearest.fid1, nearest.fid2]
+            };
+            assert!(floors.is_face() && cubes.is_vertex(), "{floors:?} {cubes:?}");
+        }
+    }
 }
