@@ -1,33 +1,19 @@
-//! The way from a pose to contact manifolds, the same for every kind of pair.
-//!
-//! 1. The state of the pair is taken from the host's workspace.
-//! 2. What changed since the last query is forgotten. Two meshes get their trees, if they are there
-//!    or cost little.
-//! 3. The same question as the last one has the same answer.
-//! 4. [`Slack`](sbbk_core::traverse::Slack) says whether the candidates of the last descent still
-//!    serve. If not, a descent finds new ones.
-//! 5. Each candidate that may be in reach gets its exact contact.
-//! 6. Each contact is written to its manifold of the query before or to a new one; or
-//!    [`patches`](super::patches) are made of all.
-//!
-//! A [`Pair`] says what is particular to its kind in steps 1 and 2, its [`PairQuery`] in steps 4
-//! and 5.
+//! What the kinds of pairs have in common: a [`Pair`] says what is particular to its kind in steps 1
+//! and 2 of the way of a query ([`answer`](super::answer)), its [`PairQuery`] in the others.
 
-use std::cell::Cell;
 use std::sync::Arc;
 
 use parry3d::math::Real;
-use parry3d::query::{ContactManifold, ContactManifoldsWorkspace, TrackedContact};
-use sbbk_core::traverse::{Counters, DescentScratch, Placement, SlackPlan};
+use parry3d::query::{ContactManifold, TrackedContact};
+use sbbk_core::traverse::{Counters, DescentScratch, Placement};
 use sbbk_core::volumes::Sphere;
 
 use super::convex::{Near, PlacedPart};
 use super::merge::Lookup;
-use super::order::{Candidate, OrderKey, Place};
-use super::patches::{Outline, Patches, write_patches};
-use super::pool::{Demand, ManifoldPool, reset};
+use super::order::{Candidate, OrderKey};
+use super::outline::{Outline, Patches};
+use super::pool::Demand;
 use super::pose::PairPose;
-use super::state::{PairState, state_in};
 use super::triangles::{Found, Regions};
 use crate::mesh::{Change, Ranks, TreeCache};
 
@@ -193,85 +179,10 @@ pub(crate) struct Scratch {
     pub(super) triangle_contacts: [ContactList<Found>; 2],
     pub(super) convex_contacts: [ContactList<Near>; 2],
     pub(super) patches: Patches,
-    lookup: Lookup,
+    pub(super) lookup: Lookup,
     /// Which manifolds of the query before are dealt with.
-    is_done: Vec<bool>,
-    demand: Demand,
-}
-
-thread_local! {
-    /// Taken while a query uses it: one within another makes its own.
-    static SCRATCH: Cell<Option<Box<Scratch>>> = Cell::default();
-}
-
-/// Brings the manifolds of a pair up to date.
-pub(crate) fn answer<P, M, C>(
-    pair: &P,
-    cache: &Arc<TreeCache>,
-    mut counters: impl Counters,
-    manifolds: &mut Vec<ContactManifold<M, C>>,
-    workspace: &mut Option<ContactManifoldsWorkspace>,
-) -> Answer
-where
-    P: Pair,
-    M: Default + Clone + Send + Sync + 'static,
-    C: Default + Copy + Send + Sync + 'static,
-{
-    let PairState::<M, C, P::Known, P::Hint> { shapes, memory } = state_in(workspace, manifolds);
-    if P::is_unknown(shapes) {
-        cache.met();
-    }
-    let (change, mut query) = pair.open(cache, shapes);
-    memory.follow(change, manifolds);
-    if memory.coherence.is_answered(query.pose(), manifolds.len()) {
-        return Answer::Unchanged;
-    }
-    let coherence = memory.coherence.begin();
-    let mut scratch = SCRATCH.take().unwrap_or_default();
-    scratch.parts.clear();
-    let (moving, reach) = (query.moving(), query.reach());
-    let plan = coherence.slack.plan(moving.ball, moving.placement, reach, P::Query::GREATEST_SLACK);
-    let (answer, margin) = match plan {
-        SlackPlan::Reuse { margin, .. } => (Answer::Reused, margin),
-        SlackPlan::Descend { margin } => {
-            let mut lookup = std::mem::take(&mut scratch.lookup);
-            coherence.find(&mut lookup, |candidates| {
-                query.descend(margin, &mut counters, &mut scratch, candidates);
-            });
-            scratch.lookup = lookup;
-            (Answer::Descended, margin)
-        }
-    };
-    let limits = Limits {
-        reach: f64::from(reach),
-        margin: f64::from(margin),
-        travel: coherence.slack.travel(),
-    };
-    let [mut contacts, mut spare] = std::mem::take(P::Query::contacts(&mut scratch));
-    let candidates = &mut coherence.candidates;
-    find_contacts(&mut query, candidates, limits, &mut scratch, [&mut contacts, &mut spare]);
-    if let Some(size) = query.patch_size() {
-        let found = Contacts { query: &mut query, candidates, contacts: &contacts, limits };
-        write_patches(found, size, &mut scratch, &mut memory.pool, manifolds);
-    } else {
-        coherence.find_places(&mut scratch.lookup, manifolds);
-        let (candidates, query) = (&mut coherence.candidates, &mut query);
-        let found = Contacts { query, candidates, contacts: &contacts, limits };
-        write_every(found, &mut scratch, &mut memory.pool, manifolds);
-    }
-    if let Some(limit) = scratch.demand.note(contacts.len()) {
-        // Candidates come and go more than manifolds do: some hundred kilobytes a thread stay.
-        for list in [&mut contacts, &mut spare] {
-            list.shrink_to(limit.max(1024));
-        }
-        scratch.is_done.shrink_to(limit);
-        scratch.lookup.shrink_to(limit);
-        scratch.patches.shrink_to(limit);
-    }
-    *P::Query::contacts(&mut scratch) = [contacts, spare];
-    SCRATCH.set(Some(scratch));
-    memory.end(query.pose(), manifolds.len());
-    answer
+    pub(super) is_done: Vec<bool>,
+    pub(super) demand: Demand,
 }
 
 /// Contacts and the candidates that they are of, by their places, in order. Most candidates have
@@ -284,105 +195,4 @@ pub(super) struct Contacts<'c, Q: PairQuery> {
     pub(super) candidates: &'c mut [Candidate<Q::Hint>],
     pub(super) contacts: &'c [(u32, Q::Contact)],
     pub(super) limits: Limits,
-}
-
-/// Makes `contacts` those of the candidates.
-fn find_contacts<Q: PairQuery>(
-    query: &mut Q,
-    candidates: &mut [Candidate<Q::Hint>],
-    limits: Limits,
-    scratch: &mut Scratch,
-    [contacts, before]: [&mut ContactList<Q::Contact>; 2],
-) {
-    scratch.regions.begin();
-    before.clear();
-    let farthest = limits.reach + limits.travel;
-    loop {
-        contacts.clear();
-        let mut before_now = before.iter().copied().peekable();
-        for (index, candidate) in (0..).zip(&mut *candidates) {
-            let same = before_now.next_if(|&(of, _)| of == index);
-            if candidate.clear <= farthest {
-                match query.contact(candidate, limits, scratch) {
-                    Seen::Nothing => {}
-                    Seen::Same => contacts.extend(same),
-                    Seen::Contact(contact) => contacts.push((index, contact)),
-                }
-            }
-        }
-        if !query.needs_more(scratch) {
-            return;
-        }
-        std::mem::swap(contacts, before);
-    }
-}
-
-/// Replaces `manifolds` by one for each contact, in stock order. Manifolds of subshapes that still
-/// touch keep their data; none is left empty.
-fn write_every<Q, M, C>(
-    Contacts { query, candidates, contacts, limits }: Contacts<'_, Q>,
-    scratch: &mut Scratch,
-    pool: &mut ManifoldPool<M, C>,
-    manifolds: &mut Vec<ContactManifold<M, C>>,
-) where
-    Q: PairQuery,
-    M: Default + Clone + Send + Sync + 'static,
-    C: Default + Copy + Send + Sync + 'static,
-{
-    pool.begin();
-    let mut is_done = std::mem::take(&mut scratch.is_done);
-    is_done.clear();
-    is_done.resize(manifolds.len(), false);
-    // A new manifold that has no points yet.
-    let mut blank = None;
-    let mut count = 0;
-    let mut contacts = contacts.iter().copied().peekable();
-    for (index, candidate) in (0..).zip(&mut *candidates) {
-        let contact = contacts.next_if(|&(of, _)| of == index).map(|(_, contact)| contact);
-        let old = candidate.place.take().map(Place::index);
-        if let Some(place) = old {
-            is_done[place] = true;
-        }
-        let is_kept = match (contact, old) {
-            (Some(contact), Some(place)) => {
-                let (points, manifold) = (&mut pool.previous_points, &mut manifolds[place]);
-                if manifold.points.is_empty() {
-                    // A blank one, that a host has made or a panic has left.
-                    query.name(candidate, manifold);
-                }
-                query.write(contact, candidate, limits, scratch, points, manifold);
-                pool.keep_old(place, manifolds)
-            }
-            (Some(contact), None) => {
-                let manifold = blank.get_or_insert_with(|| pool.take());
-                query.name(candidate, manifold);
-                let points = &mut pool.previous_points;
-                query.write(contact, candidate, limits, scratch, points, manifold);
-                let has_points = !manifold.points.is_empty();
-                if has_points {
-                    pool.keep_new(blank.take(), manifolds);
-                } else {
-                    reset(manifold);
-                }
-                has_points
-            }
-            (None, Some(place)) => {
-                pool.retire(std::mem::take(&mut manifolds[place]));
-                false
-            }
-            (None, None) => false,
-        };
-        if is_kept {
-            candidate.place = Place::new(count);
-            count += 1;
-        }
-    }
-    if let Some(blank) = blank {
-        pool.retire(blank);
-    }
-    for (manifold, _) in manifolds.iter_mut().zip(&is_done).filter(|(_, is_done)| !**is_done) {
-        pool.retire(std::mem::take(manifold));
-    }
-    pool.end(manifolds);
-    scratch.is_done = is_done;
 }

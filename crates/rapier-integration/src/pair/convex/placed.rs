@@ -19,7 +19,7 @@ use super::pair::ConvexPair;
 use super::parts::{Part, Parts};
 use super::shape::{ConvexShape, Extent};
 use crate::ContactGenerator;
-use crate::pair::patches::Outline;
+use crate::pair::outline::Outline;
 use crate::pair::pose::{MeshPlace, PairPose};
 
 /// A part at the pose of a query: what is computed once for all triangles near it.

@@ -18,7 +18,7 @@ use crate::ContactGenerator;
 use crate::mesh::{Change, KnownMesh, TreeCache};
 use crate::pair::driver::{ContactList, Limits, Moving, Pair, PairQuery, Scratch, Seen};
 use crate::pair::order::{Candidate, OrderKey};
-use crate::pair::patches::{Outline, patch_size};
+use crate::pair::outline::{Outline, patch_size};
 use crate::pair::pose::{MeshPlace, PairPose};
 
 impl<'a> Pair for ConvexPair<'a> {

@@ -34,7 +34,7 @@ use crate::ContactGenerator;
 use crate::mesh::{Change, Hierarchy, KnownMesh, TreeCache};
 use crate::pair::driver::{Moving, Pair, Scratch};
 use crate::pair::order::OrderKey;
-use crate::pair::patches::patch_size;
+use crate::pair::outline::patch_size;
 use crate::pair::pose::{MeshPlace, PairPose};
 
 /// A mesh and a height field.

@@ -18,7 +18,7 @@ use crate::ContactGenerator;
 use crate::mesh::{Change, Hierarchy, KnownMesh, MeshSurface, PreparedMesh, TreeCache};
 use crate::pair::driver::{Moving, Pair, Scratch};
 use crate::pair::order::OrderKey;
-use crate::pair::patches::patch_size;
+use crate::pair::outline::patch_size;
 use crate::pair::pose::PairPose;
 
 /// Two meshes.

@@ -13,7 +13,7 @@ use super::judge::{Judge, Surfaces};
 use crate::ContactGenerator;
 use crate::pair::driver::{ContactList, Limits, Moving, PairQuery, Scratch, Seen};
 use crate::pair::order::{Candidate, OrderKey};
-use crate::pair::patches::Outline;
+use crate::pair::outline::Outline;
 use crate::pair::pose::PairPose;
 
 /// The features that were closest at the last query, to be tried first.
