@@ -66,6 +66,8 @@ mod soft_pairs;
 mod support;
 /// The contacts of surfaces, beside those of each two triangles.
 mod surfaces;
+/// Thin and fast bodies.
+mod thin;
 /// Motion beside that of stock Rapier: as close as chaos allows.
 mod trajectories;
 /// Brute force in f64.

@@ -63,10 +63,11 @@
 //!   tenth of the radius of the smaller mesh, so that deep bodies come out slowly.
 //! * Any other mesh is a *sheet* and met from both sides: terrains, walls, bowls, vases with a wide
 //!   neck, soups of triangles. So is a closed mesh whose normals point inwards
-//!   ([`SbbkStats::inside_out`]).
+//!   ([`SbbkStats::inside_out`]). A thin solid in the midst of a sheet goes to the side that its
+//!   middle is on, in doubt to the front.
 //! * Contacts apart are local minima of the distance, so edges within a face and walls that pass by
 //!   make none. Not those that soft CCD looks at, farther than a tenth of that radius: plates turn
-//!   before they land.
+//!   before they land. Where none is nearer, they have at most four points a direction.
 //! * Surfaces that cross never stay without a contact.
 //!
 //! What a mesh bounds is found when it first meets another mesh, in about a third of the time that a

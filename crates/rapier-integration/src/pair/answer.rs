@@ -74,7 +74,7 @@ where
     let [mut contacts, mut spare] = std::mem::take(P::Query::contacts(&mut scratch));
     let candidates = &mut coherence.candidates;
     find_contacts(&mut query, candidates, limits, &mut scratch, [&mut contacts, &mut spare]);
-    if let Some(size) = query.patch_size() {
+    if let Some(size) = query.patch_size(&contacts) {
         let found = Contacts { query: &mut query, candidates, contacts: &contacts, limits };
         write_patches(found, size, &mut scratch, &mut memory.pool, manifolds);
     } else {

@@ -85,7 +85,7 @@ pub(crate) trait PairQuery {
     fn contacts(scratch: &mut Scratch) -> &mut [ContactList<Self::Contact>; 2];
 
     /// Up to how far apart contacts may be in one patch; `None` if every contact has a manifold.
-    fn patch_size(&self) -> Option<Real>;
+    fn patch_size(&self, contacts: &[(u32, Self::Contact)]) -> Option<Real>;
 
     /// What a patch needs to know of a contact. `None` if it has no points after all.
     fn outline(

@@ -238,7 +238,7 @@ impl PairQuery for ConvexQuery<'_> {
         &mut scratch.convex_contacts
     }
 
-    fn patch_size(&self) -> Option<Real> {
+    fn patch_size(&self, _: &[(u32, Near)]) -> Option<Real> {
         let has_patches = self.pair.has_patches && self.pair.mesh.is_rigid();
         has_patches.then(|| patch_size(self.moving().ball.radius))
     }

@@ -18,8 +18,9 @@ use sbbk_core::contact::{
 };
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::Around;
+use sbbk_core::volumes::Sphere;
 
-use super::regions::Regions;
+use super::regions::{Regions, Sheet};
 use crate::pair::pose::PairPose;
 
 /// What is known of the surfaces of two shapes.
@@ -35,6 +36,11 @@ pub(crate) trait Surfaces {
         f64::INFINITY
     }
 
+    /// A ball that holds a shape, in its frame.
+    fn ball(&self, _: usize) -> Sphere {
+        Sphere { centre: Vector::ZERO, radius: 0.0 }
+    }
+
     /// Whether a point, in the frame of the shape, is deeper in it than some distance.
     fn is_deep(&self, _: usize, _: Vector, _: Real) -> bool {
         false
@@ -44,6 +50,11 @@ pub(crate) trait Surfaces {
 /// How much deeper than the least translation, or than the prediction distance if that is more, a
 /// contact may be that is taken without a second look. Parry's number for constrained normals.
 const SHALLOW: f64 = 5.0;
+
+/// How far behind a sheet the middle of a thin solid may be, in radii, that is still pushed to the
+/// front: most sheets are grounds. Higher: what comes from behind is pulled through. Lower: plates
+/// that one step has brought to the midst of a ground fall out below.
+const LEAN: f64 = 0.02;
 
 /// Distances below this do not tell on which side of each other triangles are.
 const TOUCHING: f64 = 1.0e-9;
@@ -130,7 +141,7 @@ impl<S: Surfaces> Judge<'_, S> {
             if contact.is_none() && !is_crossing && distance.abs() < TOUCHING {
                 return None;
             }
-            regions.add(self.pair, contact.as_ref());
+            regions.add(self.pair, contact.as_ref(), self.sheet(is_solid, local));
             return contact;
         }
         if !regions.is_lost(self.pair) {
@@ -141,6 +152,24 @@ impl<S: Surfaces> Judge<'_, S> {
         let is_shallow = contact.distance >= -greatest;
         let is_meant = is_overlap && (is_shallow || is_extremal && self.is_deep(local, &contact));
         is_meant.then_some(contact)
+    }
+
+    /// How the middle of a solid lies to the triangle of a sheet.
+    fn sheet(&self, is_solid: [bool; 2], local: &TrianglePair) -> Option<Sheet> {
+        let solid = match is_solid {
+            [true, false] => 0,
+            [false, true] => 1,
+            _ => return None,
+        };
+        let Sphere { centre, radius } = self.shapes.ball(solid);
+        let centre = match solid {
+            0 => centre.as_dvec3() - local.origin.as_dvec3(),
+            _ => self.pose.placement12.to_frame1(centre, local.origin),
+        };
+        let [a, b, c] = local.corners[1 - solid];
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let away = if solid == 0 { -normal } else { normal };
+        Some(Sheet { away, height: normal.dot(centre - a) + LEAN * f64::from(radius) })
     }
 
     /// Whether a contact is deep because the surface of a body is far, not because this triangle is

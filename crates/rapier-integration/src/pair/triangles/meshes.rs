@@ -9,6 +9,7 @@ use sbbk_core::leaf::LeafTest;
 use sbbk_core::surface::Around;
 use sbbk_core::traverse::{Counters, Descent, PairFrame, Verdict, Visitor, descend};
 use sbbk_core::tree::LeafBatch;
+use sbbk_core::volumes::Sphere;
 
 use super::exact::Constraints;
 use super::judge::Surfaces;
@@ -181,6 +182,10 @@ impl Surfaces for Meshes<'_> {
 
     fn near(&self) -> f64 {
         self.near
+    }
+
+    fn ball(&self, i: usize) -> Sphere {
+        self.pair.meshes[i].ball()
     }
 
     fn is_deep(&self, i: usize, point: Vector, distance: Real) -> bool {

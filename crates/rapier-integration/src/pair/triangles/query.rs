@@ -134,8 +134,17 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         &mut scratch.triangle_contacts
     }
 
-    fn patch_size(&self) -> Option<Real> {
-        self.patch_size
+    /// Where all contacts are far, a patch a direction. Of more than four points of one Rapier's
+    /// solver leaves out those beyond the prediction distance without soft CCD: a plate that falls
+    /// flat would turn about one point, and through what it falls on.
+    fn patch_size(&self, contacts: &[(u32, Found)]) -> Option<Real> {
+        let near = self.shapes.near();
+        let are_far = contacts.iter().all(|(_, found)| found.contact.distance > near);
+        let may_be_far = f64::from(self.pose.prediction) > near;
+        if may_be_far && are_far {
+            return Some(Real::INFINITY);
+        }
+        self.patch_size.map(|size| if may_be_far { Real::INFINITY } else { size })
     }
 
     fn outline(

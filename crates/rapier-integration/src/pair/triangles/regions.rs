@@ -19,6 +19,18 @@ pub(crate) struct Regions {
     above: FxHashMap<Node, Node>,
     /// By the node at the top of a region: whether it has a contact beyond doubt.
     held: FxHashMap<Node, bool>,
+    /// By the node at the top of a region.
+    torn: FxHashMap<Node, Torn>,
+}
+
+/// Where a solid crosses a sheet.
+#[derive(Default)]
+struct Torn {
+    /// The sum of the heights of its middle.
+    height: f64,
+    /// Whether it is pushed to each side.
+    to_front: bool,
+    to_back: bool,
 }
 
 /// A triangle of mesh 1 (0) or 2 (1).
@@ -33,7 +45,29 @@ struct Crossing {
     /// Of such a contact, from mesh 1 to mesh 2.
     normal: DVec3,
     depth: f64,
+    /// If one of the two is a sheet, and the other a solid.
+    sheet: Option<Sheet>,
 }
+
+/// How a solid lies to a triangle of a sheet that it crosses.
+#[derive(Copy, Clone)]
+pub(super) struct Sheet {
+    /// The normal of contacts that push the solid off the front of the triangle.
+    pub(super) away: DVec3,
+    /// How far in front the middle of the solid is.
+    pub(super) height: f64,
+}
+
+impl Crossing {
+    /// To which side of a sheet its contact pushes the solid: 1 to the front, -1 to the back, 0 neither.
+    fn side(&self) -> f64 {
+        let along = self.sheet.map_or(0.0, |sheet| sheet.away.dot(self.normal));
+        if along.abs() > SAME_SIDE { along.signum() } else { 0.0 }
+    }
+}
+
+/// The cosine of normals that push to one side.
+const SAME_SIDE: f64 = 0.5;
 
 impl Regions {
     /// Begins the first round of a query.
@@ -48,10 +82,15 @@ impl Regions {
     }
 
     /// Notes a pair that crosses, with its contact if that is beyond doubt.
-    pub(super) fn add(&mut self, pair: [u32; 2], good: Option<&TriangleContact>) {
+    pub(super) fn add(
+        &mut self,
+        pair: [u32; 2],
+        good: Option<&TriangleContact>,
+        sheet: Option<Sheet>,
+    ) {
         let (normal, depth) =
             good.map_or_else(Default::default, |good| (good.normal, -good.distance));
-        self.found.push(Crossing { pair, is_good: good.is_some(), normal, depth });
+        self.found.push(Crossing { pair, is_good: good.is_some(), normal, depth, sheet });
     }
 
     /// Ends the first round. Whether there are regions that nothing holds, or contacts that push the
@@ -62,7 +101,9 @@ impl Regions {
         }
         self.find_wrong();
         self.found.sort_unstable_by_key(|found| found.pair);
-        if self.found.iter().all(|found| self.is_fine(found)) {
+        let is_on = |side: f64| self.found.iter().any(|found| found.side() == side);
+        let is_torn = is_on(1.0) && is_on(-1.0);
+        if !is_torn && self.found.iter().all(|found| self.is_fine(found)) {
             return false;
         }
         self.above.clear();
@@ -71,6 +112,9 @@ impl Regions {
             let [triangle1, triangle2] = self.found[i].pair;
             let [top1, top2] = [(0, triangle1), (1, triangle2)].map(|node| self.top(node));
             self.above.insert(top1.max(top2), top1.min(top2));
+        }
+        if is_torn {
+            self.find_torn();
         }
         for i in 0..self.found.len() {
             let found = self.found[i];
@@ -109,7 +153,7 @@ impl Regions {
                 for found in of_one.iter().filter(|found| found.is_good) {
                     let deepest = |sign: f64| {
                         let like = |other: &&Crossing| {
-                            other.is_good && sign * other.normal.dot(found.normal) > 0.5
+                            other.is_good && sign * other.normal.dot(found.normal) > SAME_SIDE
                         };
                         of_one.iter().filter(like).map(|other| other.depth).max_by(f64::total_cmp)
                     };
@@ -118,6 +162,28 @@ impl Regions {
                         self.wrong.insert(found.pair);
                     }
                 }
+            }
+        }
+    }
+
+    /// A thin solid in the midst of a sheet is pushed to both sides of it, and held there. It goes to
+    /// the side that its middle is on, as seen from where it crosses the sheet.
+    fn find_torn(&mut self) {
+        self.torn.clear();
+        for i in 0..self.found.len() {
+            let found = self.found[i];
+            let top = self.top((0, found.pair[0]));
+            let torn = self.torn.entry(top).or_default();
+            torn.height += found.sheet.map_or(0.0, |sheet| sheet.height);
+            torn.to_front |= found.side() > 0.0;
+            torn.to_back |= found.side() < 0.0;
+        }
+        for i in 0..self.found.len() {
+            let found = self.found[i];
+            let top = self.top((0, found.pair[0]));
+            let torn = self.torn.get(&top).filter(|torn| torn.to_front && torn.to_back);
+            if torn.is_some_and(|torn| found.side() * torn.height < 0.0) {
+                self.wrong.insert(found.pair);
             }
         }
     }

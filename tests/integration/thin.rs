@@ -1,0 +1,100 @@
+//! Thin and fast bodies: on sheets, and at the distances of soft CCD.
+
+use glamx::{Pose3, Quat, Vec3};
+use rapier_integration::SbbkDispatcher;
+use rapier3d::geometry::ColliderBuilder;
+use rapier3d::math::{Pose, Real, Vector};
+use rapier3d::parry::shape::{SharedShape, TriMesh};
+use rapier3d::prelude::{PhysicsWorld, RigidBodyBuilder};
+use sbbk_lab::mesh;
+
+use crate::support::{Manifold, Query, distance, fresh, shape};
+
+/// Half the thickness of plates that are a unit wide.
+const HALF: Real = 0.015;
+
+fn plate(cells: u32) -> TriMesh {
+    shape(&mesh::cuboid(Vec3::new(0.5, HALF, 0.5), cells))
+}
+
+/// A sheet with its front up.
+fn floor() -> TriMesh {
+    shape(&mesh::floor(10.0, 20))
+}
+
+fn ask(query: &Query) -> Vec<Manifold> {
+    fresh(&SbbkDispatcher::default(), query)
+}
+
+/// Would catch a plate that is held in the midst of a sheet by contacts that push to both sides, and
+/// one that is pushed to the side where less of it is, in either order of the two.
+#[test]
+fn a_plate_in_the_midst_of_a_sheet_leaves_to_one_side() {
+    let floor = floor();
+    let mut pushed = [0; 2];
+    for (cells, height) in [(1, 0.01), (1, 0.0), (4, 0.012), (1, -0.03), (4, -0.05)] {
+        for tilt in [0.0, 0.02, 0.05, 0.2, 0.5] {
+            let plate = plate(cells);
+            let turn = Quat::from_rotation_y(0.3) * Quat::from_rotation_x(tilt);
+            let pose = Pose::from_parts(Vec3::new(0.13, height, 0.21), turn);
+            let query = Query::new(&floor, &plate, pose);
+            let side = if height < -HALF { -1.0 } else { 1.0 };
+            // Normals lead to the plate from the floor, or are turned round.
+            let up = ask(&query).into_iter().map(|found| (distance(&found), found.local_n1.y));
+            let swapped = ask(&query.swapped()).into_iter();
+            let swapped = swapped.map(|found| (distance(&found), found.local_n2.y));
+            for (found, up) in up.chain(swapped) {
+                if found < 0.0 {
+                    assert!(side * up > -0.5, "{up} at {height}, {tilt}, {cells} cells");
+                    pushed[usize::from(side > 0.0)] += usize::from(side * up > 0.5);
+                }
+            }
+        }
+    }
+    assert!(pushed.iter().all(|&count| count > 100), "{pushed:?}");
+}
+
+/// Would catch more points of one direction than Rapier's solver takes at the distances of soft CCD,
+/// and such as are not the plate's corners.
+#[test]
+fn far_contacts_are_four_corners() {
+    let (floor, plate) = (floor(), plate(4));
+    let turn = Quat::from_rotation_y(0.3);
+    for gap in [0.1, 0.3, 0.5] {
+        let pose = Pose::from_parts(Vec3::new(0.1, gap + HALF, 0.2), turn);
+        let found = ask(&Query::new(&floor, &plate, pose).within(0.6));
+        for (i, manifold) in found.iter().enumerate() {
+            assert!((1..=4).contains(&manifold.points.len()));
+            let is_like = |other: &Manifold| other.local_n1.dot(manifold.local_n1) >= 0.996;
+            assert!(!found[..i].iter().any(is_like), "two of one direction");
+        }
+        let down = found.iter().find(|manifold| manifold.local_n1.y > 0.999).expect("one is down");
+        for corner in [[0.5, 0.5], [0.5, -0.5], [-0.5, 0.5], [-0.5, -0.5]] {
+            let corner = Vector::new(corner[0], -HALF, corner[1]);
+            let away = down.points.iter().map(|point| (point.local_p2 - corner).length());
+            let away = away.fold(Real::INFINITY, Real::min);
+            assert!(away < 1e-4, "nothing at {corner}, but {away} away");
+        }
+    }
+}
+
+/// Would catch plates that turn about one contact of soft CCD, and through the floor.
+#[test]
+fn fast_plates_do_not_pass_a_floor() {
+    const SPEED: Real = 30.0;
+    let [floor, plate] = [floor(), plate(4)].map(SharedShape::new);
+    for index in 0..16 {
+        let phase = index as Real / 16.0;
+        let mut world = PhysicsWorld::new();
+        world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
+        world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(floor.clone()));
+        let turn = Quat::from_rotation_y(6.0 * phase) * Quat::from_rotation_x(0.6 * phase);
+        let place = Vec3::new(0.1, 2.0 + phase * SPEED / 60.0, 0.05);
+        let body = RigidBodyBuilder::dynamic().pose(Pose3::from_parts(place, turn));
+        let body = body.linvel(-SPEED * Vec3::Y).soft_ccd_prediction(0.6);
+        let (body, _) = world.insert(body, ColliderBuilder::new(plate.clone()));
+        (0..60).for_each(|_| world.step());
+        let height = world.bodies[body].translation().y;
+        assert!(height > -HALF, "at {height} from phase {phase}");
+    }
+}
