@@ -110,6 +110,7 @@ impl<S: Surfaces> Judge<'_, S> {
             if are_front == [true; 2] {
                 return Some(contact);
             }
+            // What is in front is not behind: this spares a look.
             let may_have_passed = has_solid && (0..2).all(|i| !(is_solid[i] && are_front[i]));
             let have_passed = may_have_passed && (0..2).all(|i| !is_solid[i] || is_behind(i));
             if !have_passed {
