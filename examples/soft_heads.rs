@@ -1,5 +1,4 @@
-//! Soft monkey heads fall on a rigid helicopter, stock beside SBBK, and a large mesh deforms:
-//! refits of a bare tree beside rebuilds.
+//! Soft monkey heads fall on a rigid helicopter, stock beside SBBK.
 //!
 //! ```text
 //! cargo run --release --example soft_heads
@@ -18,7 +17,7 @@ use sbbk_lab::report::replace_file;
 use sbbk_lab::scene::{Scene, SoftHeads};
 use sbbk_lab::study::soft::{SoftPlan, soft};
 
-/// Measures soft heads on a helicopter and refits of a large mesh.
+/// Measures soft heads on a helicopter.
 #[derive(Parser)]
 struct Arguments {
     #[command(flatten)]

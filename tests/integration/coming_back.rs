@@ -5,15 +5,18 @@ use glamx::{Quat, Vec3};
 use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::math::{Pose, Real};
-use rapier3d::parry::query::ContactManifold;
+use rapier3d::parry::query::{ClosestPoints, ContactManifold, QueryDispatcher};
 use rapier3d::parry::shape::{HeightField, Shape, SharedShape, TriMeshFlags};
 use rapier3d::parry::utils::Array2;
 use rapier3d::pipeline::PhysicsWorld;
 use rapier3d::prelude::{ColliderBuilder, RigidBodyBuilder, RigidBodyHandle};
+use sbbk_core::traverse::Placement;
 use sbbk_lab::mesh;
 use sbbk_lab::metrics::Fingerprint;
 
-use crate::support::{Dispatcher, Manifold, Pair, counting, nudge, shape_with};
+use crate::support::{
+    Dispatcher, Manifold, Pair, counting, direction, nudge, rotation, shape_with,
+};
 
 /// A ground of every kind that a mesh can meet, flat at height 0 near x = -5 and x = 5.
 fn grounds() -> Vec<(&'static str, SharedShape)> {
@@ -54,15 +57,8 @@ struct Question<'a> {
 impl Question<'_> {
     /// The mesh at `pose` in the frame of the ground.
     fn ask<M, C>(&self, dispatcher: &impl Dispatcher<M, C>, pair: &mut Pair<M, C>, pose: Pose) {
-        let (pos12, [g1, g2]) = if self.is_mesh_first {
-            (pose.inverse(), [self.mesh, self.ground])
-        } else {
-            (pose, [self.ground, self.mesh])
-        };
-        let Pair { manifolds, workspace } = pair;
-        dispatcher
-            .contact_manifolds(&pos12, g1, g2, self.prediction, manifolds, workspace)
-            .expect("supported");
+        let Self { ground, mesh, is_mesh_first, prediction } = *self;
+        pair.ask_of(dispatcher, [ground, mesh], pose, is_mesh_first, prediction);
     }
 
     fn fresh(&self, pose: Pose) -> Vec<Manifold> {
@@ -241,6 +237,59 @@ fn first_queries_see_as_far_as_later_ones() {
         }
     }
     assert!(found.iter().all(|&found| found > 100), "{found:?} contacts");
+}
+
+/// The same of a mesh that is turned, by which roundings are different in each frame. It is as near
+/// as the prediction distance, so that a box that is a little too small hides it.
+#[test]
+fn turned_meshes_far_from_their_origin_are_seen() {
+    let cube = mesh::cuboid(Vec3::ONE, 1);
+    let slab = Vec3::new(5.0, 1.0, 5.0);
+    let cuboid = SharedShape::cuboid(slab.x, slab.y, slab.z);
+    let grounds = [
+        mesh::cuboid(slab, 1).shared_shape().expect("a box is a mesh"),
+        cuboid.clone(),
+        SharedShape::cylinder(1.0, 5.0),
+        SharedShape::compound(vec![(Pose::IDENTITY, cuboid)]),
+    ];
+    let dispatcher = SbbkDispatcher::default();
+    let (mut random, mut found) = (Rand32::new(1), 0);
+    for _ in 0..400 {
+        let offset = 1e4 * (1.0 + random.rand_float()) * direction(&mut random);
+        let far = shape_with(&cube.clone().mapped(|x| x + offset), TriMeshFlags::empty());
+        let turn = rotation(&mut random);
+        let reach =
+            [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| (turn * axis).y.abs()).iter().sum::<Real>();
+        let pose = Pose::from_parts(Vec3::new(0.1, 1.02 + reach, 0.2) - turn * offset, turn);
+        for is_mesh_first in [false, true] {
+            let placement = if is_mesh_first {
+                Placement::new(&pose.inverse()).inverted()
+            } else {
+                Placement::new(&pose)
+            };
+            let heights = far.vertices().iter().map(|&x| placement.to_frame1(x, Vec3::ZERO).y);
+            let gap = (heights.fold(f64::INFINITY, f64::min) - 1.0) as Real;
+            if gap < 1e-4 {
+                continue;
+            }
+            for ground in &grounds {
+                // A frame may be longer than the other by the rounding of its quaternion.
+                let prediction = 1.000_01 * gap;
+                let question =
+                    Question { ground: &**ground, mesh: &far, is_mesh_first, prediction };
+                assert!(!question.fresh(pose).is_empty(), "{gap} apart, {is_mesh_first}");
+                found += 1;
+                if ground.as_composite_shape().is_none() {
+                    let shapes: [&dyn Shape; 2] = [&**ground, &far];
+                    let [g1, g2] = if is_mesh_first { [shapes[1], shapes[0]] } else { shapes };
+                    let pos12 = if is_mesh_first { pose.inverse() } else { pose };
+                    let nearest = dispatcher.closest_points(&pos12, g1, g2, prediction).unwrap();
+                    assert!(nearest != ClosestPoints::Disjoint, "{gap} apart, {is_mesh_first}");
+                }
+            }
+        }
+    }
+    assert!(found > 2000, "{found} contacts");
 }
 
 /// Any prediction distance, however large, finds what a smaller one finds.

@@ -8,7 +8,7 @@ use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::parry::shape::{
-    Compound, CompoundFlags, HeightField, Shape, SharedShape, TriMesh, TriMeshFlags,
+    Compound, CompoundFlags, HeightField, SharedShape, TriMesh, TriMeshFlags,
 };
 use rapier3d::parry::utils::Array2;
 use sbbk_lab::mesh;
@@ -73,17 +73,8 @@ impl Question<'_> {
         dispatcher: &impl Dispatcher<M, C>,
         pair: &'p mut Pair<M, C>,
     ) -> &'p mut Pair<M, C> {
-        let (mesh, compound): (&dyn Shape, &dyn Shape) = (self.mesh, self.compound);
-        let (pos12, one, two) = if self.flipped {
-            (self.pose.inverse(), compound, mesh)
-        } else {
-            (self.pose, mesh, compound)
-        };
-        let Pair { manifolds, workspace } = pair;
-        dispatcher
-            .contact_manifolds(&pos12, one, two, self.prediction, manifolds, workspace)
-            .expect("the pair is supported");
-        pair
+        let Self { mesh, compound, pose, prediction, flipped } = *self;
+        pair.ask_of(dispatcher, [mesh, compound], pose, flipped, prediction)
     }
 
     /// The answer to one who knows nothing of the pair: what touches.

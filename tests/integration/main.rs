@@ -6,7 +6,7 @@
 //!
 //! | a mesh and | contacts are right | whatever was before | in worlds |
 //! |---|---|---|---|
-//! | a mesh | `exact`, `bits`, `normals`, `surfaces` | `motion`, `edited_mesh` | `rest`, `scenes` |
+//! | a mesh | `exact`, `bits`, `normals`, `surfaces`, `judged` | `motion`, `edited_mesh` | `rest`, `scenes` |
 //! | a mesh, one of the two without a tree | `walks` | `walks` | `deformable` |
 //! | convex shapes | `convex::fresh` | `convex::motion` | `convex::rest` |
 //! | compounds | `compound` | `compound` | `compound` |
@@ -38,6 +38,8 @@ mod edited_mesh;
 mod exact;
 /// Meshes against height fields.
 mod heightfield;
+/// Which contacts of triangles are contacts of surfaces, near and far.
+mod judged;
 /// Contacts beside those of stock.
 mod like_stock;
 /// What trees take, and when they go.

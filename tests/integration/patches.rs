@@ -28,10 +28,7 @@ fn ask<M, C>(
     pos12: &Pose,
     prediction: Real,
 ) {
-    let Pair { manifolds, workspace } = pair;
-    dispatcher
-        .contact_manifolds(pos12, shapes[0], shapes[1], prediction, manifolds, workspace)
-        .expect("one of the shapes is a mesh");
+    pair.ask_of(dispatcher, shapes, *pos12, false, prediction);
 }
 
 type Manifold = ContactManifold<u32, u32>;
@@ -251,6 +248,10 @@ fn patches_and_points_keep_their_data() {
         assert_eq!(named(&pair), before);
         assert!(pair.manifolds.iter().all(|manifold| manifold.data == 7));
     }
+    // On the other side of the floor there are others.
+    ask(&mut pair, &dispatcher, [&floor, &cube], &Pose::translation(0.3, -0.4995, 0.2), 0.002);
+    assert!(!pair.manifolds.is_empty());
+    assert!(pair.manifolds.iter().all(|manifold| manifold.data == 0));
 }
 
 /// Soft bodies need each contact's triangle. Would catch patches of a mesh that may deform.

@@ -343,12 +343,18 @@ fn edits_forth_and_back_are_seen() {
 fn bumps_come_and_go_under_a_sensor() {
     let dispatcher = SbbkDispatcher::default();
     let mut random = Rand32::new(5);
-    let smooth = shape(&mesh::ball(1.0, 8));
+    let mut smooth = shape(&mesh::ball(1.0, 8));
+    let ball_vertices = smooth.vertices().len() as u32;
+    // So far out that no bump changes the box around all.
+    for far in [-3.0, 3.0] {
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::Y].map(|corner| Vec3::splat(far) + 0.1 * corner);
+        smooth.append(&TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap());
+    }
     let (mut edited, probe) = (smooth.clone(), shape(&mesh::ball(0.3, 3)));
     let place = Pose3::translation(1.35, 0.0, 0.0);
     let (mut met, mut missed) = (0, 0);
     for _ in 0..300 {
-        let vertex = random.rand_range(0..smooth.vertices().len() as u32) as usize;
+        let vertex = random.rand_range(0..ball_vertices) as usize;
         let height = if random.rand_float() < 0.3 { 1.2 } else { 1.0 };
         edited.update_vertices(|vertices| vertices[vertex] = height * smooth.vertices()[vertex]);
         let answer = dispatcher.intersection_test(&place, &edited, &probe).unwrap();

@@ -1,7 +1,6 @@
 //! What the tests share: asking a dispatcher, comparing answers, meshes and poses.
 
 use std::collections::BTreeMap;
-use std::f32::consts::TAU;
 
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
@@ -11,8 +10,9 @@ use rapier3d::parry::query::{
     ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
     QueryDispatcher,
 };
-use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
+use rapier3d::parry::shape::{Shape, TriMesh, TriMeshFlags};
 use sbbk_lab::mesh::Mesh;
+pub use sbbk_lab::scene::random::{direction, rotation};
 
 /// Manifolds without data, as hosts other than Rapier may have them.
 pub type Manifold = ContactManifold<(), ()>;
@@ -67,11 +67,26 @@ impl<M, C> Default for Pair<M, C> {
 
 impl<M, C> Pair<M, C> {
     pub fn ask(&mut self, dispatcher: &impl Dispatcher<M, C>, query: &Query) -> &mut Self {
-        let Query { meshes: [mesh1, mesh2], pos12, prediction } = query;
+        let Query { meshes: [mesh1, mesh2], pos12, prediction } = *query;
+        self.ask_of(dispatcher, [mesh1, mesh2], pos12, false, prediction)
+    }
+
+    /// The contacts of any two shapes, the other one at `pose` in the frame of the one; of the other
+    /// one and the one if they are swapped.
+    pub fn ask_of(
+        &mut self,
+        dispatcher: &impl Dispatcher<M, C>,
+        [one, other]: [&dyn Shape; 2],
+        pose: Pose,
+        are_swapped: bool,
+        prediction: Real,
+    ) -> &mut Self {
+        let (pos12, g1, g2) =
+            if are_swapped { (pose.inverse(), other, one) } else { (pose, one, other) };
         let Self { manifolds, workspace } = self;
         dispatcher
-            .contact_manifolds(pos12, *mesh1, *mesh2, *prediction, manifolds, workspace)
-            .expect("two meshes are supported");
+            .contact_manifolds(&pos12, g1, g2, prediction, manifolds, workspace)
+            .expect("the pair is supported");
         self
     }
 }
@@ -183,19 +198,6 @@ pub fn shape_with(mesh: &Mesh, flags: TriMeshFlags) -> TriMesh {
 /// The same mesh built again: equal content, other memory.
 pub fn rebuilt(mesh: &TriMesh) -> TriMesh {
     TriMesh::with_flags(mesh.vertices().to_vec(), mesh.indices().to_vec(), mesh.flags()).unwrap()
-}
-
-/// Uniform over all rotations.
-pub fn rotation(random: &mut Rand32) -> Quat {
-    let [split, angle1, angle2] = std::array::from_fn(|_| random.rand_float());
-    let (radius1, radius2) = ((1.0 - split).sqrt(), split.sqrt());
-    let [(sin1, cos1), (sin2, cos2)] = [angle1, angle2].map(|angle| (TAU * angle).sin_cos());
-    Quat::from_xyzw(radius1 * sin1, radius1 * cos1, radius2 * sin2, radius2 * cos2).normalize()
-}
-
-/// Uniform over all unit vectors.
-pub fn direction(random: &mut Rand32) -> Vec3 {
-    rotation(random) * Vec3::Y
 }
 
 /// A small motion: a shift and a turn, both of at most `size` (units, radians).

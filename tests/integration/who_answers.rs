@@ -1,5 +1,6 @@
 use glamx::Vec3;
 use rapier_integration::{Kinds, SbbkConfig, SbbkDispatcher};
+use rapier3d::control::KinematicCharacterController;
 use rapier3d::math::Pose;
 use rapier3d::parry::query::details::ShapeCastOptions;
 use rapier3d::parry::query::{
@@ -7,6 +8,8 @@ use rapier3d::parry::query::{
 };
 use rapier3d::parry::shape::{HeightField, Shape, SharedShape, TriMesh, TriMeshFlags};
 use rapier3d::parry::utils::Array2;
+use rapier3d::pipeline::{PhysicsWorld, QueryFilter};
+use rapier3d::prelude::{ColliderBuilder, RigidBodyBuilder};
 use sbbk_lab::mesh;
 
 use crate::support::{Pair, counting, shape, shape_with};
@@ -178,4 +181,32 @@ fn kinds_are_a_choice() {
         assert_eq!(is_ours(&all, &ground, &*other), who == Who::Sbbk, "{name}");
         assert!(!is_ours(&none, &ground, &*other), "{name}");
     }
+}
+
+/// Rapier's character controller stands on the ground by casts alone: the dispatcher is never asked
+/// for its contacts. Would catch documentation that says otherwise, and a Rapier that asks.
+#[test]
+fn character_controllers_ask_for_no_contacts() {
+    let dispatcher = counting();
+    let mut world = PhysicsWorld::new();
+    world.narrow_phase.set_query_dispatcher(dispatcher.clone());
+    let floor = mesh::floor(4.0, 4).shared_shape().expect("a floor is a mesh");
+    world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(floor.clone()));
+    world.step();
+    let (capsule, controller) =
+        (SharedShape::capsule_y(0.4, 0.3), KinematicCharacterController::default());
+    let mut pose = Pose::translation(0.1, 0.9, 0.2);
+    let mut is_grounded = false;
+    for _ in 0..30 {
+        let queries = world.query_pipeline_with_filter(QueryFilter::default());
+        let way = Vec3::new(0.01, -0.05, 0.0);
+        let moved = controller.move_shape(1.0 / 60.0, &queries, &*capsule, &pose, way, |_| ());
+        pose.translation += moved.translation;
+        is_grounded = moved.grounded;
+    }
+    assert!(is_grounded && pose.translation.y > 0.69, "{pose:?}");
+    assert_eq!(dispatcher.stats().queries, 0);
+    let at = Pose::translation(0.1, 0.7, 0.2);
+    Pair::<(), ()>::default().ask_of(&dispatcher, [&*floor, &*capsule], at, false, 0.02);
+    assert_eq!(dispatcher.stats().queries, 1);
 }

@@ -31,63 +31,7 @@ use crate::{ContactDetail, ContactGenerator, ContactSet, SbbkConfig, SbbkStats, 
 /// and [`prepare_shape`](Self::prepare_shape). All other pairs do with Parry's own hierarchies.
 /// Clones of a dispatcher share their trees.
 ///
-/// A dispatcher of one's own goes before this one, which leaves nothing to those after it that
-/// Parry can answer:
-///
-/// ```
-/// use parry3d::math::{Pose, Real, Vector};
-/// use parry3d::query::{Unsupported, details::ShapeCastOptions, *};
-/// use parry3d::shape::{Ball, Shape};
-/// use rapier_integration::SbbkDispatcher;
-/// # use parry3d::query::details::NormalConstraints;
-///
-/// /// Lets balls pass through balls, and has nothing to say about other pairs.
-/// struct Ghosts;
-///
-/// fn ghosts(g1: &dyn Shape, g2: &dyn Shape) -> Result<(), Unsupported> {
-///     if g1.as_ball().is_some() && g2.as_ball().is_some() { Ok(()) } else { Err(Unsupported) }
-/// }
-///
-/// impl<M, C> PersistentQueryDispatcher<M, C> for Ghosts {
-///     fn contact_manifolds(
-///         &self,
-///         _: &Pose,
-///         g1: &dyn Shape,
-///         g2: &dyn Shape,
-///         _: Real,
-///         manifolds: &mut Vec<ContactManifold<M, C>>,
-///         _: &mut Option<ContactManifoldsWorkspace>,
-///     ) -> Result<(), Unsupported> {
-///         ghosts(g1, g2).map(|()| manifolds.clear())
-///     }
-///     // ...
-/// #   fn contact_manifold_convex_convex(&self, _: &Pose, _: &dyn Shape, _: &dyn Shape,
-/// #       _: Option<&dyn NormalConstraints>, _: Option<&dyn NormalConstraints>, _: Real,
-/// #       _: &mut ContactManifold<M, C>) -> Result<(), Unsupported> { Err(Unsupported) }
-/// }
-/// # impl QueryDispatcher for Ghosts {
-/// #     fn intersection_test(&self, _: &Pose, g1: &dyn Shape, g2: &dyn Shape)
-/// #         -> Result<ShapeIntersection, Unsupported> {
-/// #         ghosts(g1, g2).map(|()| ShapeIntersection::new(false)) }
-/// #     fn distance(&self, _: &Pose, _: &dyn Shape, _: &dyn Shape)
-/// #         -> Result<ShapeDistance, Unsupported> { Err(Unsupported) }
-/// #     fn contact(&self, _: &Pose, _: &dyn Shape, _: &dyn Shape, _: Real)
-/// #         -> Result<Option<Contact>, Unsupported> { Err(Unsupported) }
-/// #     fn closest_points(&self, _: &Pose, _: &dyn Shape, _: &dyn Shape, _: Real)
-/// #         -> Result<ClosestPoints, Unsupported> { Err(Unsupported) }
-/// #     fn cast_shapes(&self, _: &Pose, _: Vector, _: &dyn Shape, _: &dyn Shape,
-/// #         _: ShapeCastOptions) -> Result<Option<ShapeCastHit>, Unsupported> { Err(Unsupported) }
-/// #     fn cast_shapes_nonlinear(&self, _: &NonlinearRigidMotion, _: &dyn Shape,
-/// #         _: &NonlinearRigidMotion, _: &dyn Shape, _: Real, _: Real, _: bool)
-/// #         -> Result<Option<ShapeCastHit>, Unsupported> { Err(Unsupported) }
-/// # }
-///
-/// let dispatcher = Ghosts.chain(SbbkDispatcher::default());
-/// let (ball, at) = (Ball::new(1.0), Pose::translation(0.5, 0.0, 0.0));
-/// assert!(!dispatcher.intersection_test(&at, &ball, &ball)?.intersecting);
-/// assert_eq!(dispatcher.distance(&Pose::translation(3.0, 0.0, 0.0), &ball, &ball)?.distance, 1.0);
-/// # Ok::<(), Unsupported>(())
-/// ```
+/// A dispatcher of one's own goes before this one: the [guide](crate::guide) has an example.
 #[derive(Clone)]
 pub struct SbbkDispatcher {
     config: SbbkConfig,
@@ -205,44 +149,36 @@ impl SbbkDispatcher {
         self.cache.release_idle();
     }
 
-    /// The answer of `search` about two rigid meshes, or `apart` if Parry's hierarchies already tell
-    /// that they are farther apart than a distance; `None` if Parry must answer.
+    /// What `of_meshes` finds of two rigid meshes, or `of_convex` of one and a convex shape; `None` if
+    /// Parry must answer. `apart` is the answer where Parry's hierarchies tell that they are farther
+    /// apart than a distance.
     fn search<T>(
         &self,
-        [g1, g2]: [&dyn Shape; 2],
-        apart: Option<(&Pose, Real, T)>,
-        search: impl FnOnce(MeshQuery<'_>) -> Option<T>,
-    ) -> Option<T> {
-        let meshes = [rigid_mesh(g1)?, rigid_mesh(g2)?];
-        if !self.config.kinds.meshes {
-            return None;
-        }
-        if let Some((pos12, distance, apart)) = apart
-            && !are_near(meshes, pos12, distance)
-        {
-            return Some(apart);
-        }
-        search(MeshQuery { cache: &self.cache, meshes: self.look_at(meshes)? })
-    }
-
-    /// The same of a rigid mesh and a convex shape; `None` if Parry must answer: of balls, which it
-    /// answers for exactly and in less time, and which inside a mesh with pseudo-normals meet it.
-    fn search_convex<T>(
-        &self,
-        [g1, g2]: [&dyn Shape; 2],
         pos12: &Pose,
+        [g1, g2]: [&dyn Shape; 2],
         apart: Option<(Real, T)>,
-        search: impl FnOnce(ConvexQuery<'_>) -> T,
+        of_meshes: impl FnOnce(MeshQuery<'_>) -> T,
+        of_convex: impl FnOnce(ConvexQuery<'_>) -> T,
     ) -> Option<T> {
-        let (mesh, other, mesh_place) = match (rigid_mesh(g1), rigid_mesh(g2)) {
-            (Some(mesh), None) => (mesh, g2, MeshPlace::First),
-            (None, Some(mesh)) => (mesh, g1, MeshPlace::Second),
-            _ => return None,
+        let (mesh, other, mesh_place) = match [g1, g2].map(rigid_mesh) {
+            [Some(mesh1), Some(mesh2)] => {
+                let meshes = [mesh1, mesh2];
+                let kind = self.config.kinds.meshes;
+                // Before all else: most pairs that a host asks about are apart.
+                return match apart.filter(|_| kind) {
+                    Some((distance, apart)) if !are_near(meshes, pos12, distance) => Some(apart),
+                    _ => self.mesh_query([g1, g2]).map(of_meshes),
+                };
+            }
+            [Some(mesh), None] => (mesh, g2, MeshPlace::First),
+            [None, Some(mesh)] => (mesh, g1, MeshPlace::Second),
+            [None, None] => return None,
         };
+        // Parry answers for balls exactly and in less time, and inside a mesh with pseudo-normals
+        // they meet it.
         if !self.config.kinds.convex_shapes || !other.is_convex() || other.as_ball().is_some() {
             return None;
         }
-        // Before all else: most pairs that a host asks about are apart.
         if let Some((distance, apart)) = apart {
             let in_mesh = if mesh_place.is_second() { pos12.inverse() } else { *pos12 };
             if !is_near(mesh, other, &in_mesh, distance) {
@@ -254,7 +190,16 @@ impl SbbkDispatcher {
         let pose = &PairPose::new(pos12, 0.0);
         let contacts = ContactGenerator::Exact;
         let pair = ConvexPair { pose, mesh, parts, mesh_place, contacts, has_patches: false };
-        Some(search(ConvexQuery { search: ConvexSearch::new(&pair, other)?, mesh_place }))
+        Some(of_convex(ConvexQuery { search: ConvexSearch::new(&pair, other)?, mesh_place }))
+    }
+
+    /// Two rigid meshes, to be asked about; `None` if Parry must answer.
+    fn mesh_query<'a>(&'a self, shapes: [&'a dyn Shape; 2]) -> Option<MeshQuery<'a>> {
+        let [Some(mesh1), Some(mesh2)] = shapes.map(rigid_mesh) else { return None };
+        if !self.config.kinds.meshes {
+            return None;
+        }
+        Some(MeshQuery { cache: &self.cache, meshes: self.look_at([mesh1, mesh2])? })
     }
 
     /// The contacts of a pair of shapes, if SBBK answers for them.
@@ -518,11 +463,14 @@ impl QueryDispatcher for SbbkDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
-        let apart = Some((pos12, 0.0, ShapeIntersection::new(false)));
-        let found = self.search([g1, g2], apart, |meshes| Some(meshes.intersection(pos12)));
-        let apart = Some((0.0, ShapeIntersection::new(false)));
-        let convex = || self.search_convex([g1, g2], pos12, apart, |pair| pair.intersection());
-        match found.or_else(convex) {
+        let found = self.search(
+            pos12,
+            [g1, g2],
+            Some((0.0, ShapeIntersection::new(false))),
+            |meshes| meshes.intersection(pos12),
+            |pair| pair.intersection(),
+        );
+        match found {
             Some(found) => Ok(found),
             None => DefaultQueryDispatcher.intersection_test(pos12, g1, g2),
         }
@@ -534,9 +482,14 @@ impl QueryDispatcher for SbbkDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeDistance, Unsupported> {
-        let found = self.search([g1, g2], None, |meshes| Some(meshes.distance(pos12)));
-        let convex = || self.search_convex([g1, g2], pos12, None, |pair| pair.distance());
-        match found.or_else(convex) {
+        let found = self.search(
+            pos12,
+            [g1, g2],
+            None,
+            |meshes| meshes.distance(pos12),
+            |pair| pair.distance(),
+        );
+        match found {
             Some(found) => Ok(found),
             None => DefaultQueryDispatcher.distance(pos12, g1, g2),
         }
@@ -549,11 +502,14 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
         prediction: Real,
     ) -> Result<Option<Contact>, Unsupported> {
-        let apart = Some((pos12, prediction, None));
-        let found = self.search([g1, g2], apart, |meshes| Some(meshes.contact(pos12, prediction)));
-        let apart = Some((prediction, None));
-        let convex = || self.search_convex([g1, g2], pos12, apart, |pair| pair.contact(prediction));
-        match found.or_else(convex) {
+        let found = self.search(
+            pos12,
+            [g1, g2],
+            Some((prediction, None)),
+            |meshes| meshes.contact(pos12, prediction),
+            |pair| pair.contact(prediction),
+        );
+        match found {
             Some(found) => Ok(found),
             None => DefaultQueryDispatcher.contact(pos12, g1, g2, prediction),
         }
@@ -566,13 +522,14 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
         max_dist: Real,
     ) -> Result<ClosestPoints, Unsupported> {
-        let apart = Some((pos12, max_dist, ClosestPoints::Disjoint));
-        let found =
-            self.search([g1, g2], apart, |meshes| Some(meshes.closest_points(pos12, max_dist)));
-        let apart = Some((max_dist, ClosestPoints::Disjoint));
-        let convex =
-            || self.search_convex([g1, g2], pos12, apart, |pair| pair.closest_points(max_dist));
-        match found.or_else(convex) {
+        let found = self.search(
+            pos12,
+            [g1, g2],
+            Some((max_dist, ClosestPoints::Disjoint)),
+            |meshes| meshes.closest_points(pos12, max_dist),
+            |pair| pair.closest_points(max_dist),
+        );
+        match found {
             Some(found) => Ok(found),
             None => DefaultQueryDispatcher.closest_points(pos12, g1, g2, max_dist),
         }
@@ -586,7 +543,8 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
         options: ShapeCastOptions,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        match self.search([g1, g2], None, |meshes| meshes.cast(pos12, local_vel12, options)) {
+        let meshes = self.mesh_query([g1, g2]);
+        match meshes.and_then(|meshes| meshes.cast(pos12, local_vel12, options)) {
             Some(hit) => Ok(hit),
             None => DefaultQueryDispatcher.cast_shapes(pos12, local_vel12, g1, g2, options),
         }
@@ -605,7 +563,7 @@ impl QueryDispatcher for SbbkDispatcher {
         let (motions, times) = ([motion1, motion2], (start_time, end_time));
         let cast =
             |meshes: MeshQuery<'_>| meshes.cast_nonlinear(motions, times, stop_at_penetration);
-        match self.search([g1, g2], None, cast) {
+        match self.mesh_query([g1, g2]).and_then(cast) {
             Some(hit) => Ok(hit),
             None => DefaultQueryDispatcher.cast_shapes_nonlinear(
                 motion1,

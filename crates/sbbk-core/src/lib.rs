@@ -43,13 +43,15 @@
 //! * [`front`]: a descent that starts where the last one stopped.
 //! * [`broad_phase`]: which of many moving objects are near each other.
 //! * [`draw`]: the volumes of a layer, as lines.
+//! * [`collections`]: lists of numbers, and groups.
 //! * `truth` (feature `truth`): brute force in f64, to test against.
 //!
 //! Modules depend one way: `simd` (lanes), [`volumes`], [`tree`], [`traverse`], [`leaf`], then
 //! [`field`], [`front`] and [`query`]. [`contact`], which [`query`] uses, and [`broad_phase`] need
-//! none of them; [`surface`] uses the names of features of [`contact`].
+//! none of them; [`surface`] uses the names of features of [`contact`], and [`collections`].
 
 pub mod broad_phase;
+pub mod collections;
 pub mod contact;
 pub mod draw;
 pub mod field;

@@ -132,7 +132,7 @@ enum Side {
 
 fn side(around: &Around<'_>, triangle: u32, feature: Feature, direction: DVec3) -> Side {
     let is_behind = around.is_behind(triangle, feature, direction);
-    match around.is_front(triangle, feature, direction) {
+    match around.is_front(triangle, feature, direction, false) {
         true if is_behind => panic!("in front and behind"),
         true => Side::Front,
         false if is_behind => Side::Behind,
@@ -254,6 +254,34 @@ fn in_front_of_a_convex_solid_is_what_no_vertex_exceeds() {
         }
     }
     assert!(fronts > 1_000 && behinds > 1_000, "{fronts} {behinds}");
+}
+
+/// A cube's corner that leads down, where the cube leans on an edge: what it leads to is a face that
+/// it may soon lie on, or something else, which the lower corners keep away. Would catch edges that
+/// are stumbled over, and corners that come as a surprise.
+#[test]
+fn a_face_is_met_before_it_is_nearest() {
+    let cube = cube();
+    let surface = Surface::new(&cube.vertices, &cube.triangles);
+    let around = surface.around(&cube.vertices, &cube.triangles);
+    let half_edges = 0..3 * cube.triangles.len();
+    let corner = half_edges.into_iter().find(|&half_edge| {
+        let [corner, _, _] = corners(&cube, half_edge);
+        (0..3).all(|axis| corner[axis] <= cube.vertices.iter().map(|v| v[axis]).fold(1e9, f32::min))
+    });
+    let corner = corner.expect("a cube has a lowest corner") as u32;
+    let (triangle, feature) = (corner / 3, Feature::Vertex((corner % 3) as u8));
+    for (lean, free, to_face) in [
+        (-0.1, true, true),
+        (0.04, true, true),
+        (0.1, false, true),
+        (0.25, false, true),
+        (0.4, false, false),
+    ] {
+        let down = DVec3::new(f64::sin(lean), -f64::cos(lean), 0.0);
+        let is_front = |to_face| around.is_front(triangle, feature, down, to_face);
+        assert_eq!([is_front(false), is_front(true)], [free, to_face], "{lean}");
+    }
 }
 
 /// A cube of edge length 1 in eight vertices.

@@ -29,7 +29,8 @@ fn balls_on_large_triangles_touch_as_with_stock() {
             for i in 0..300 {
                 let way = 0.05 * i as Real;
                 let height = 0.5 + 0.3 * (0.7 * (way - 7.0)).sin() + 0.2 * (0.6 * way - 4.0).cos();
-                let depth = 0.1 * radius * random.rand_float();
+                // Every other one within the prediction distance, about.
+                let depth = 0.1 * radius * random.rand_float() - 0.02 * (i % 2) as Real;
                 let at = Vector::new(way - 7.0, height + radius - depth, 0.6 * way - 4.0);
                 let pose = Pose::from_parts(at, rotation(&mut random));
                 for (pair, flipped) in pairs.iter_mut().zip([false, true]) {

@@ -35,16 +35,8 @@ impl Question<'_> {
         dispatcher: &impl Dispatcher<M, C>,
         pair: &'p mut Pair<M, C>,
     ) -> &'p mut Pair<M, C> {
-        let Pair { manifolds, workspace } = &mut *pair;
-        let (mesh, shape) = (self.mesh, &*self.shape.0);
-        let pos12 = self.pos12();
-        let answer = if self.flipped {
-            dispatcher.contact_manifolds(&pos12, shape, mesh, self.prediction, manifolds, workspace)
-        } else {
-            dispatcher.contact_manifolds(&pos12, mesh, shape, self.prediction, manifolds, workspace)
-        };
-        answer.expect("a mesh and a convex shape are supported");
-        pair
+        let shapes = [self.mesh, &*self.shape.0];
+        pair.ask_of(dispatcher, shapes, self.pose, self.flipped, self.prediction)
     }
 
     pub fn fresh(&self, dispatcher: &impl Dispatcher<(), ()>) -> Vec<Manifold> {

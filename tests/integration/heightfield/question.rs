@@ -1,6 +1,6 @@
 use rapier_integration::SbbkDispatcher;
 use rapier3d::math::{Pose, Real};
-use rapier3d::parry::shape::TriMesh;
+use rapier3d::parry::shape::{Shape, TriMesh};
 
 use super::terrain::Terrain;
 use crate::support::{Dispatcher, Manifold, Pair, Query};
@@ -37,29 +37,8 @@ impl<'a> Question<'a> {
         dispatcher: &impl Dispatcher<M, C>,
         pair: &'p mut Pair<M, C>,
     ) -> &'p mut Pair<M, C> {
-        let (field, mesh) = (&self.terrain.field, self.mesh);
-        let Pair { manifolds, workspace } = pair;
-        let answer = if self.is_mesh_first {
-            dispatcher.contact_manifolds(
-                &self.pos12(),
-                mesh,
-                field,
-                self.prediction,
-                manifolds,
-                workspace,
-            )
-        } else {
-            dispatcher.contact_manifolds(
-                &self.pos12(),
-                field,
-                mesh,
-                self.prediction,
-                manifolds,
-                workspace,
-            )
-        };
-        answer.expect("the pair is supported");
-        pair
+        let shapes = [&self.terrain.field as &dyn Shape, self.mesh];
+        pair.ask_of(dispatcher, shapes, self.pose, self.is_mesh_first, self.prediction)
     }
 
     pub fn fresh(&self, dispatcher: &SbbkDispatcher) -> Vec<Manifold> {

@@ -31,13 +31,8 @@ impl Question<'_> {
         dispatcher: &impl Dispatcher<M, C>,
         pair: &'p mut Pair<M, C>,
     ) -> &'p mut Pair<M, C> {
-        let (g1, g2): (&dyn Shape, &dyn Shape) =
-            if self.is_mesh_first { (self.mesh, self.other) } else { (self.other, self.mesh) };
-        let Pair { manifolds, workspace } = pair;
-        dispatcher
-            .contact_manifolds(&self.pos12(), g1, g2, PREDICTION, manifolds, workspace)
-            .expect("the pair is supported");
-        pair
+        let shapes = [self.other, self.mesh];
+        pair.ask_of(dispatcher, shapes, self.pose, self.is_mesh_first, PREDICTION)
     }
 
     /// The answer to one who knows nothing of the pair: manifolds with points.

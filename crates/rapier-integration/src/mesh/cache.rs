@@ -46,7 +46,7 @@ pub(crate) struct TreeCache {
 const QUERIED: usize = 8;
 
 #[derive(Default)]
-struct Entries {
+pub(super) struct Entries {
     by_content: HashMap<ContentHash, Entry>,
     /// Entries without users, by when they became idle.
     idle: BTreeMap<u64, ContentHash>,
@@ -355,7 +355,7 @@ impl TreeCache {
         }
     }
 
-    fn lock(&self) -> MutexGuard<'_, Entries> {
+    pub(super) fn lock(&self) -> MutexGuard<'_, Entries> {
         // No code that holds the lock can leave the entries half changed.
         self.entries.lock().unwrap_or_else(PoisonError::into_inner)
     }

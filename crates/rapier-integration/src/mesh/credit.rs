@@ -40,3 +40,23 @@ impl Credit {
         triangle_count.div_ceil(64)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Would catch trees that cost nothing, a credit that grows without end, so that many are built
+    /// at once, and one that is never earned again.
+    #[test]
+    fn credit_is_spent_earned_and_no_more_than_the_most() {
+        let (credit, most) = (Credit::default(), Credit::MOST as usize);
+        assert!(!credit.spend(most + 1) && !credit.spend(usize::MAX));
+        assert!(credit.spend(most) && credit.spend(0) && !credit.spend(1));
+        let needed = most.div_ceil(Credit::EARNED as usize);
+        (1..needed).for_each(|_| credit.earn());
+        assert!(!credit.spend(most));
+        (0..3 * needed).for_each(|_| credit.earn());
+        assert!(credit.spend(most) && !credit.spend(1));
+        assert_eq!([1, 64, 65].map(Credit::of_hash), [1, 1, 2]);
+    }
+}

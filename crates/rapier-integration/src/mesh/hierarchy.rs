@@ -120,7 +120,7 @@ impl<'a> Hierarchy<'a> {
     }
 
     /// The root box in the frame that the mesh is in at `pose`, grown by `reach` and by what
-    /// rounding takes from it. Without a finite pose the mesh is nowhere: a box that meets none.
+    /// rounding takes from it. (That of a convex query allows for as much itself.) Without a finite pose the mesh is nowhere: a box that meets none.
     pub(crate) fn placed_root(&self, pose: &Pose, reach: Real) -> Aabb {
         let root = self.root();
         let size = root.half_extents().length() + root.center().length();

@@ -6,6 +6,8 @@ mod credit;
 mod hierarchy;
 mod identity;
 mod known;
+#[cfg(test)]
+mod locks;
 mod neighbours;
 mod prepared;
 mod registry;

@@ -57,3 +57,49 @@ fn twins_of(mesh: &TriMesh, triangle: u32) -> [Option<u32>; 3] {
     }
     std::array::from_fn(|i| twins[i].filter(|_| forward[i] == 1 && backward[i] == 1))
 }
+
+#[cfg(test)]
+mod tests {
+    use oorandom::Rand32;
+    use parry3d::math::Vector;
+    use sbbk_core::surface::Surface;
+
+    use super::*;
+
+    /// Would catch neighbours other than those of the whole mesh: in soups of triangles between a
+    /// few places, many of them points, segments, of one edge more than two, or there twice.
+    #[test]
+    fn neighbours_are_those_of_the_whole_mesh() {
+        let (mut random, mut found) = (Rand32::new(1), 0);
+        for round in 0..400 {
+            let mut place = || Vector::from_array([(); 3].map(|()| random.rand_range(0..3) as f32));
+            let vertices: Vec<Vector> = (0..12).map(|_| place()).collect();
+            let mut corner = || random.rand_range(0..12);
+            let triangles = (0..1 + round % 20).map(|_| [corner(), corner(), corner()]).collect();
+            let mesh = TriMesh::new(vertices, triangles).expect("there are triangles");
+            let whole = Surface::new(mesh.vertices(), mesh.indices());
+            let mut known = Neighbours::default();
+            let near = NearTwins::new(&mesh, &mut known);
+            for half_edge in 0..3 * mesh.indices().len() as u32 {
+                let twin = whole.twin(half_edge);
+                assert_eq!(near.twin(half_edge), twin, "{half_edge} of {:?}", mesh.indices());
+                found += u32::from(twin.is_some());
+            }
+        }
+        assert!(found > 1000, "{found} twins");
+    }
+
+    /// Would catch a body that crosses a large mesh and remembers all of it.
+    #[test]
+    fn what_is_known_has_an_end() {
+        let triangle = vec![[0, 1, 2]];
+        let mesh = TriMesh::new(vec![Vector::ZERO, Vector::X, Vector::Y], triangle).unwrap();
+        let most = NearTwins::MOST as u32;
+        let mut known: Neighbours = (0..most).map(|index| (index, [None; 3])).collect();
+        NearTwins::new(&mesh, &mut known);
+        assert_eq!(known.len(), most as usize);
+        known.insert(most, [None; 3]);
+        NearTwins::new(&mesh, &mut known);
+        assert!(known.is_empty());
+    }
+}

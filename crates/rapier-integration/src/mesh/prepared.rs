@@ -1,4 +1,5 @@
 use parry3d::shape::{TriMesh, TriMeshFlags, TrianglePseudoNormals};
+use sbbk_core::collections::Numbers;
 use sbbk_core::tree::{BuildError, BuildOptions, Tree};
 
 /// All that is computed once a mesh.
@@ -6,17 +7,11 @@ pub(crate) struct PreparedMesh {
     pub(crate) tree: Tree,
     /// For each triangle its place in the order in which Parry's own hierarchy lists them, which is
     /// the order of stock manifolds.
-    ranks: Ranks,
+    ranks: Numbers,
     /// The pseudo-normals that constrain contact normals, if the mesh asks for them
     /// (`TriMeshFlags::FIX_INTERNAL_EDGES`); for degenerate triangles none. Parry computes them
     /// anew for each pair of triangles.
     normal_constraints: Vec<Option<TrianglePseudoNormals>>,
-}
-
-/// Places of triangles: in sixteen bits where these are enough.
-enum Ranks {
-    Narrow(Box<[u16]>),
-    Wide(Box<[u32]>),
 }
 
 impl PreparedMesh {
@@ -29,18 +24,13 @@ impl PreparedMesh {
         } else {
             Vec::new()
         };
-        Ok(Self { tree, ranks: Ranks::of(mesh), normal_constraints })
+        Ok(Self { tree, ranks: ranks(mesh), normal_constraints })
     }
 
     /// The place of a triangle in stock order. A number that is not a triangle's sorts last.
     #[inline(always)]
     pub(crate) fn rank(&self, triangle: u32) -> u32 {
-        let place = triangle as usize;
-        let rank = match &self.ranks {
-            Ranks::Narrow(ranks) => ranks.get(place).copied().map(u32::from),
-            Ranks::Wide(ranks) => ranks.get(place).copied(),
-        };
-        rank.unwrap_or(u32::MAX)
+        self.ranks.get(triangle).unwrap_or(u32::MAX)
     }
 
     /// The cone of a triangle.
@@ -58,20 +48,10 @@ impl PreparedMesh {
     }
 }
 
-impl Ranks {
-    fn of(mesh: &TriMesh) -> Self {
-        let mut ranks = vec![0; mesh.indices().len()];
-        for (rank, triangle) in mesh.bvh().leaves(|_| true).enumerate() {
-            ranks[triangle as usize] = rank as u32;
-        }
-        let narrow: Result<_, _> = ranks.iter().map(|&rank| u16::try_from(rank)).collect();
-        narrow.map_or_else(|_| Self::Wide(ranks.into()), Self::Narrow)
+fn ranks(mesh: &TriMesh) -> Numbers {
+    let mut ranks = vec![None; mesh.indices().len()];
+    for (rank, triangle) in (0..).zip(mesh.bvh().leaves(|_| true)) {
+        ranks[triangle as usize] = Some(rank);
     }
-
-    fn bytes(&self) -> usize {
-        match self {
-            Self::Narrow(ranks) => size_of_val(&**ranks),
-            Self::Wide(ranks) => size_of_val(&**ranks),
-        }
-    }
+    Numbers::new(ranks.into_iter())
 }

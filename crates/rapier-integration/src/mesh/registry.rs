@@ -76,3 +76,41 @@ impl<T> Drop for Registered<T> {
 fn address(mesh: &TriMesh) -> usize {
     std::ptr::from_ref(mesh).addr()
 }
+
+#[cfg(test)]
+mod tests {
+    use parry3d::shape::Ball;
+
+    use super::*;
+
+    /// Would catch a mesh that is forgotten when one of its registrations goes, one that is never
+    /// forgotten, and a second tree of it that takes the place of the first.
+    #[test]
+    fn a_mesh_is_known_until_its_last_registration_goes() {
+        let (vertices, triangles) = Ball::new(1.0).to_trimesh(6, 3);
+        let [shape, other] =
+            [0, 1].map(|_| SharedShape::trimesh(vertices.clone(), triangles.clone()).unwrap());
+        let of = |shape: &SharedShape, registry: &Registry<u32>| {
+            registry.tree_of(shape.as_trimesh().unwrap())
+        };
+        let registry = Arc::new(Registry::default());
+        let first = registry.register(&shape, 1);
+        let second = registry.register(&shape.clone(), 2);
+        assert!(Arc::ptr_eq(&first, &second));
+        assert_eq!([of(&shape, &registry), of(&other, &registry)], [Some(1), None]);
+        drop(first);
+        assert_eq!(of(&shape, &registry), Some(1));
+        drop(second);
+        assert_eq!((of(&shape, &registry), registry.write().len()), (None, 0));
+
+        // The last one goes while the mesh is registered anew.
+        let old = registry.register(&shape, 3);
+        let address = old.address().unwrap();
+        registry.write().remove(&address);
+        let new = registry.register(&shape, 4);
+        drop(old);
+        assert_eq!(of(&shape, &registry), Some(4));
+        drop(new);
+        assert_eq!(of(&shape, &registry), None);
+    }
+}

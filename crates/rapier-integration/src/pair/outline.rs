@@ -108,3 +108,66 @@ pub(super) fn outermost(points: &[Vec3], normal: Vec3) -> ArrayVec<usize, MOST_P
     }
     chosen
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Contacts divided up: for each by its place the number of its patch, in order.
+    fn patches(outlines: &[Outline], size: Real) -> Vec<(u32, u32)> {
+        let mut patches = Patches::default();
+        patches.members.extend((0..).zip(outlines).map(|(contact, &outline)| Member {
+            outline,
+            contact,
+            patch: 0,
+        }));
+        patches.divide(size);
+        patches.members.iter().map(|member| (member.contact, member.patch)).collect()
+    }
+
+    fn outline(x: Real, distance: Real) -> Outline {
+        let point = Vec3::new(x, 0.0, 0.0);
+        Outline { part: 0, normal: Vec3::Y, point, distance, has_cones: false }
+    }
+
+    /// Would catch patches that mix parts, directions or places, that begin at another contact than
+    /// their deepest, and an order that sorting does not fix.
+    #[test]
+    fn contacts_join_the_first_patch_of_their_part_direction_and_place() {
+        let row = [0.0, 0.9, 1.1, 2.5].map(|x| outline(x, -0.1));
+        assert_eq!(patches(&row, 1.0), [(0, 0), (1, 0), (2, 1), (3, 2)]);
+        assert_eq!(patches(&row, 3.0), [(0, 0), (1, 0), (2, 0), (3, 0)]);
+        // The deepest one opens the first.
+        let deep = [outline(0.0, -0.1), outline(0.9, -0.2), outline(1.8, -0.1)];
+        assert_eq!(patches(&deep, 1.0), [(1, 0), (0, 0), (2, 0)]);
+        let other_part = Outline { part: 1, ..outline(0.0, -0.1) };
+        assert_eq!(patches(&[outline(0.0, -0.1), other_part], 1.0), [(0, 0), (1, 1)]);
+        // Those of one depth in their order, however many there are.
+        let layers: Vec<Outline> = (0..200).map(|i| outline(0.0, 0.1 * (i % 3) as Real)).collect();
+        let expected = (0..3).flat_map(|layer| (layer..200).step_by(3).map(|contact| (contact, 0)));
+        assert_eq!(patches(&layers, 1.0), expected.collect::<Vec<_>>());
+        let turned = |degrees: Real| {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            Outline { normal: Vec3::new(sin, cos, 0.0), ..outline(0.0, -0.1) }
+        };
+        assert_eq!(patches(&[outline(0.0, -0.1), turned(5.0)], 1.0), [(0, 0), (1, 0)]);
+        assert_eq!(patches(&[outline(0.0, -0.1), turned(6.0)], 1.0), [(0, 0), (1, 1)]);
+    }
+
+    /// Would catch points of one side only, a second one that is not the farthest, and points that
+    /// come twice.
+    #[test]
+    fn the_outermost_points_are_chosen_once() {
+        let at = |places: &[[Real; 2]]| -> Vec<Vec3> {
+            places.iter().map(|&[x, z]| Vec3::new(x, 0.0, z)).collect()
+        };
+        let points =
+            at(&[[0.0, 0.0], [1.0, 0.3], [3.0, 0.0], [1.0, -0.5], [2.0, 0.9], [2.0, -0.4]]);
+        let mut chosen = outermost(&points, Vec3::Y);
+        chosen.sort_unstable();
+        assert_eq!(chosen[..], [0, 2, 3, 4]);
+        let line = at(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0], [2.5, 0.0]]);
+        assert_eq!(outermost(&line, Vec3::Y)[..], [0, 3]);
+        assert_eq!(outermost(&points[..4], Vec3::Y)[..], [0, 1, 2, 3]);
+    }
+}

@@ -77,12 +77,10 @@ pub(super) fn write_patches<Q, M, C>(
         {
             points.swap(0, deepest);
         }
-        let is_like = |old: &ContactManifold<M, C>| {
-            !old.points.is_empty() && old.local_n1.dot(local_n1) >= LIKE_NORMAL
-        };
-        let like = manifolds.iter().enumerate().filter(|(_, old)| is_like(old));
-        let place = like
-            .max_by(|(_, a), (_, b)| a.local_n1.dot(local_n1).total_cmp(&b.local_n1.dot(local_n1)));
+        // One that was taken has no normal.
+        let like = |old: &ContactManifold<M, C>| old.local_n1.dot(local_n1);
+        let likes = manifolds.iter().map(like).enumerate().filter(|(_, like)| *like >= LIKE_NORMAL);
+        let place = likes.max_by(|(_, a), (_, b)| a.total_cmp(b));
         let mut manifold = match place.map(|(place, _)| place) {
             Some(place) => std::mem::take(&mut manifolds[place]),
             None => pool.take(),

@@ -43,7 +43,8 @@ struct Remembered {
 }
 
 impl Remembered {
-    /// The mesh, if it has this token, is of this cache and still there.
+    /// The mesh, if it has this token, is of this cache and still there. Another cache's tree would give
+    /// the same answers, by layers that were not asked for.
     fn get(&self, cache: &Arc<TreeCache>, token: MeshToken) -> Option<Arc<CachedMesh>> {
         let is_it = self.token == token && std::ptr::eq(self.cache.as_ptr(), &**cache);
         is_it.then(|| self.mesh.upgrade())?

@@ -10,7 +10,8 @@ use sbbk_core::traverse::{BoxTest, Placement, TestedBox};
 use crate::mesh::{Hierarchy, box_of};
 use crate::pair::walk;
 
-/// Distance up to which all pairs are looked at, as a share of the smaller mesh.
+/// Distance up to which all pairs are looked at, as a share of the smaller mesh: a matter of time
+/// alone.
 const WIDE: f64 = 0.1;
 
 /// Two meshes, by their hierarchies.

@@ -43,61 +43,32 @@ pub struct Outward {
 /// triangle around a feature of triangle 1 (0) or 2 (1) is farther in a direction. Extremal axes
 /// go first. `out` gets the points, as [`clip`](super::clip) has them. None if the triangles face away
 /// from each other, or have no points in line with the axis.
+///
+/// `most`, if given, asks at less cost: for an extremal contact that is no deeper, or none.
 pub fn outward(
     t1: &[DVec3; 3],
     t2: &[DVec3; 3],
     solid: [bool; 2],
     is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
+    most: Option<f64>,
     out: &mut ManifoldPoints,
 ) -> Option<Outward> {
-    let triangles = [&Triangle::new(t1), &Triangle::new(t2)];
-    let axes = axes(triangles, solid, f64::INFINITY);
-    let extremal = first_extremal(triangles, &axes, is_extremal);
-    let axis = extremal.or(axes.first().copied())?;
-    let contact = along(triangles, axis, out)?;
-    let is_extremal = extremal.is_some() && contact.distance <= SHOWN * axis.0;
-    Some(Outward { contact, is_extremal })
-}
-
-/// The same, if the axis is extremal and the contact not deeper than `most`: at less cost.
-pub fn outward_within(
-    t1: &[DVec3; 3],
-    t2: &[DVec3; 3],
-    solid: [bool; 2],
-    is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
-    most: f64,
-    out: &mut ManifoldPoints,
-) -> Option<TriangleContact> {
-    let triangles = [&Triangle::new(t1), &Triangle::new(t2)];
-    let axes = axes(triangles, solid, most / SHOWN);
-    let axis = first_extremal(triangles, &axes, is_extremal)?;
-    let contact = along(triangles, axis, out)?;
-    let is_within = contact.distance >= -most && contact.distance <= SHOWN * axis.0;
-    is_within.then_some(contact)
+    let triangles @ [t1, t2] = [&Triangle::new(t1), &Triangle::new(t2)];
+    let axes = axes(triangles, solid, most.map_or(f64::INFINITY, |most| most / SHOWN));
+    let ends = |i: usize, t: &Triangle, axis: DVec3| is_extremal(i, farthest(t, axis), axis);
+    let extremal = axes.iter().find(|&&(_, axis)| ends(0, t1, axis) && ends(1, t2, -axis));
+    let any = || axes.first().filter(|_| most.is_none());
+    let &(gap, normal) = extremal.or_else(any)?;
+    clip_triangles(t1, t2, normal, out);
+    let contact = deepest(out, normal)?;
+    let contact = TriangleContact { features: contact.features.crossing(), ..contact };
+    let is_extremal = extremal.is_some() && contact.distance <= SHOWN * gap;
+    let is_wanted = most.is_none_or(|most| is_extremal && contact.distance >= -most);
+    is_wanted.then_some(Outward { contact, is_extremal })
 }
 
 /// The gap along an axis, and the axis.
 type OutwardAxis = (f64, DVec3);
-
-fn first_extremal(
-    [t1, t2]: [&Triangle; 2],
-    axes: &[OutwardAxis],
-    is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
-) -> Option<OutwardAxis> {
-    let ends = |i: usize, t: &Triangle, axis: DVec3| is_extremal(i, farthest(t, axis), axis);
-    axes.iter().copied().find(|&(_, axis)| ends(0, t1, axis) && ends(1, t2, -axis))
-}
-
-/// The contact along an axis, and its points.
-fn along(
-    [t1, t2]: [&Triangle; 2],
-    (_, normal): OutwardAxis,
-    out: &mut ManifoldPoints,
-) -> Option<TriangleContact> {
-    clip_triangles(t1, t2, normal, out);
-    let contact = deepest(out, normal)?;
-    Some(TriangleContact { features: contact.features.crossing(), ..contact })
-}
 
 /// The outward axes along which triangles overlap by no more than `most`. Those of least overlap come
 /// first: to look around a feature takes longer than all of this.

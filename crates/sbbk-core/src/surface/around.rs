@@ -39,21 +39,42 @@ const RISE: f64 = 0.05;
 
 /// The same where the other surface is a face. Higher: edges within a floor stop what slides over it.
 /// Lower: of a body that rocks from point to point, the next one comes as a surprise.
-const RISE_ON_FACE: f64 = 0.3;
+const RISE_TO_FACE: f64 = 0.3;
 
 impl Around<'_> {
     /// Whether a unit direction leads from a feature out in front of all triangles around it: what
     /// it leads to is nowhere nearer, and of a solid it leads out. It should be that from a point of
     /// the feature to the nearest point of something else: across the face, from an edge, or from a
-    /// vertex into its Voronoi cell.
-    pub fn is_front(&self, triangle: u32, feature: Feature, direction: DVec3) -> bool {
-        self.is_in_front(triangle, feature, direction, RISE)
-    }
-
-    /// The same for a feature that a face is next to: it may be held up there, though a neighbour is a
-    /// little nearer.
-    pub fn is_front_of_face(&self, triangle: u32, feature: Feature, direction: DVec3) -> bool {
-        self.is_in_front(triangle, feature, direction, RISE_ON_FACE)
+    /// vertex into its Voronoi cell. `to_face` says that a face is there: it may be held up by the
+    /// feature though a neighbour is a little nearer.
+    pub fn is_front(
+        &self,
+        triangle: u32,
+        feature: Feature,
+        direction: DVec3,
+        to_face: bool,
+    ) -> bool {
+        if feature == Feature::Face {
+            let (height, is_upright) = self.over_face(triangle, direction);
+            let leads_in = self.is_solid && height < 0.0;
+            return is_upright && !leads_in;
+        }
+        let rise = if to_face { RISE_TO_FACE } else { RISE };
+        let rises = |edge: DVec3| {
+            let height = edge.dot(direction);
+            height > 0.0 && height * height > rise * rise * edge.length_squared()
+        };
+        let (mut height, mut has_risen) = (0.0, false);
+        self.around(triangle, feature, |u, v| {
+            has_risen = rises(u) || rises(v);
+            if has_risen {
+                return ControlFlow::Break(());
+            }
+            height += u.cross(v).dot(direction);
+            ControlFlow::Continue(())
+        });
+        let leads_in = self.is_solid && height < 0.0;
+        !has_risen && !leads_in
     }
 
     /// Whether such a direction leads into the solid.
@@ -71,29 +92,6 @@ impl Around<'_> {
             ControlFlow::Continue(())
         });
         height < 0.0
-    }
-
-    fn is_in_front(&self, triangle: u32, feature: Feature, direction: DVec3, rise: f64) -> bool {
-        if feature == Feature::Face {
-            let (height, is_upright) = self.over_face(triangle, direction);
-            let leads_in = self.is_solid && height < 0.0;
-            return is_upright && !leads_in;
-        }
-        let rises = |edge: DVec3| {
-            let height = edge.dot(direction);
-            height > 0.0 && height * height > rise * rise * edge.length_squared()
-        };
-        let (mut height, mut has_risen) = (0.0, false);
-        self.around(triangle, feature, |u, v| {
-            has_risen = rises(u) || rises(v);
-            if has_risen {
-                return ControlFlow::Break(());
-            }
-            height += u.cross(v).dot(direction);
-            ControlFlow::Continue(())
-        });
-        let leads_in = self.is_solid && height < 0.0;
-        !has_risen && !leads_in
     }
 
     /// How far a direction points along the normal of a triangle, times twice the area, and whether

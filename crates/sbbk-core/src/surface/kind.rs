@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use glamx::{DVec3, Vec3};
 use rustc_hash::FxHashMap;
 
+use crate::collections::Groups;
+
 /// What a mesh bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SurfaceKind {
@@ -101,25 +103,11 @@ fn without_seams(
 
 /// Edges that hang together.
 fn loops(edges: &[[u32; 2]]) -> Vec<Vec<[u32; 2]>> {
-    let mut parent: FxHashMap<u32, u32> = Default::default();
-    fn root(parent: &mut FxHashMap<u32, u32>, mut vertex: u32) -> u32 {
-        loop {
-            let above = *parent.entry(vertex).or_insert(vertex);
-            if above == vertex {
-                return vertex;
-            }
-            let top = *parent.entry(above).or_insert(above);
-            parent.insert(vertex, top);
-            vertex = above;
-        }
-    }
-    for &[a, b] in edges {
-        let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-        parent.insert(a.max(b), a.min(b));
-    }
+    let mut groups = Groups::default();
+    edges.iter().for_each(|&[a, b]| groups.join(a, b));
     let mut loops: BTreeMap<u32, Vec<[u32; 2]>> = Default::default();
     for &edge in edges {
-        loops.entry(root(&mut parent, edge[0])).or_default().push(edge);
+        loops.entry(groups.first(edge[0])).or_default().push(edge);
     }
     loops.into_values().collect()
 }

@@ -17,9 +17,10 @@
 //!
 //! let around = surface.around(&vertices, &triangles);
 //! // Down from the origin nothing of the solid is nearer to what is there.
-//! assert!(around.is_front(0, Feature::Vertex(0), -DVec3::ONE));
+//! assert!(around.is_front(0, Feature::Vertex(0), -DVec3::ONE, false));
 //! // Along this one the next vertex on the x axis is nearer.
-//! assert!(!around.is_front(0, Feature::Vertex(0), DVec3::new(1.0, -1.0, -1.0)));
+//! let along_x = DVec3::new(1.0, -1.0, -1.0);
+//! assert!(!around.is_front(0, Feature::Vertex(0), along_x, false));
 //! assert!(around.is_behind(0, Feature::Vertex(0), DVec3::ONE));
 //! ```
 
@@ -32,12 +33,14 @@ pub use kind::SurfaceKind;
 
 use glamx::Vec3;
 
+use crate::collections::Numbers;
+
 /// The neighbours of each triangle of a mesh, and what the mesh bounds.
 ///
-/// Takes 6 bytes a triangle, 12 of a mesh of more than 21,844.
+/// Takes 6 bytes a triangle, 12 of a mesh of more than 21,845.
 #[derive(Clone, Debug)]
 pub struct Surface {
-    twins: twins::List,
+    twins: Numbers,
     kind: SurfaceKind,
 }
 
@@ -49,7 +52,7 @@ impl Surface {
     pub fn new(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Self {
         let (twins, uneven) = twins::find(vertices, triangles);
         let kind = kind::of(vertices, triangles, &uneven);
-        Self { twins: twins::List::of(twins), kind }
+        Self { twins, kind }
     }
 
     /// What the mesh bounds.

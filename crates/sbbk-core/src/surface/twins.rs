@@ -3,49 +3,13 @@
 use glamx::Vec3;
 use rustc_hash::FxHashMap;
 
+use crate::collections::Numbers;
+
 const NONE: u32 = u32::MAX;
 
-/// The twins of all half-edges, in sixteen bits where these are enough.
-#[derive(Clone, Debug)]
-pub(super) enum List {
-    Narrow(Box<[u16]>),
-    Wide(Box<[u32]>),
-}
-
-impl List {
-    pub(super) fn of(twins: Vec<u32>) -> Self {
-        if twins.len() < usize::from(u16::MAX) {
-            // What is cut off of `NONE` leaves the largest number.
-            Self::Narrow(twins.into_iter().map(|twin| twin as u16).collect())
-        } else {
-            Self::Wide(twins.into())
-        }
-    }
-
-    #[inline(always)]
-    pub(super) fn get(&self, half_edge: u32) -> Option<u32> {
-        let twin = match self {
-            Self::Narrow(twins) => {
-                let twin = twins[half_edge as usize];
-                if twin == u16::MAX { NONE } else { twin.into() }
-            }
-            Self::Wide(twins) => twins[half_edge as usize],
-        };
-        (twin != NONE).then_some(twin)
-    }
-
-    pub(super) fn bytes(&self) -> usize {
-        match self {
-            Self::Narrow(twins) => size_of_val(&**twins),
-            Self::Wide(twins) => size_of_val(&**twins),
-        }
-    }
-}
-
-/// The twin of each half-edge, [`NONE`] where there is not exactly one, and the half-edges that no
-/// other makes up for, by their welded ends: borders, and edges along which triangles disagree about
-/// the outside.
-pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<[u32; 2]>) {
+/// The twin of each half-edge, if there is exactly one, and the half-edges that no other makes up
+/// for, by their welded ends: borders, and edges along which triangles disagree about the outside.
+pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Numbers, Vec<[u32; 2]>) {
     let welded = weld(vertices);
     // Each edge is listed with its lesser end. A mesh has one and a half edges a triangle.
     let mut first = vec![NONE; vertices.len()];
@@ -73,12 +37,12 @@ pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<
             edge.counts[way] += 1;
         }
     }
-    let (mut twins, mut uneven) = (vec![NONE; 3 * triangles.len()], Vec::new());
+    let (mut twins, mut uneven) = (vec![None; 3 * triangles.len()], Vec::new());
     for Edge { low, high, last: [up, down], counts, .. } in edges {
         match counts {
             [1, 1] => {
-                twins[up as usize] = down;
-                twins[down as usize] = up;
+                twins[up as usize] = Some(down);
+                twins[down as usize] = Some(up);
             }
             [ups, downs] => {
                 let ends = if ups > downs { [low, high] } else { [high, low] };
@@ -86,7 +50,7 @@ pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<
             }
         }
     }
-    (twins, uneven)
+    (Numbers::new(twins.into_iter()), uneven)
 }
 
 /// All half-edges between two vertices.

@@ -6,11 +6,13 @@
 //! algebra inside.
 
 mod convex;
+mod convex_truth;
 mod curved;
 mod mesh;
 mod polytope;
 mod triangle;
 
-pub use convex::{ConvexBody, ConvexTruth};
+pub use convex::ConvexBody;
+pub use convex_truth::ConvexTruth;
 pub use mesh::{TruthPair, pairs_within};
 pub use triangle::{TruthContact, contact, separation};

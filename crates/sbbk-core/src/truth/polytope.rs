@@ -3,7 +3,7 @@
 //! Apart: the least distance of all pairs of features. Crossing: the least overlap over all
 //! directions that can be a face normal of the Minkowski difference.
 
-use super::convex::ConvexTruth;
+use super::convex_truth::ConvexTruth;
 use glamx::DVec3;
 use std::collections::BTreeSet;
 

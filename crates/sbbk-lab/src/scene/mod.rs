@@ -16,7 +16,7 @@
 mod heads_on_terrain;
 mod helicopter;
 mod pile;
-pub(crate) mod random;
+pub mod random;
 mod resting;
 mod soft_heads;
 mod solid;

@@ -6,7 +6,7 @@ use glamx::{Quat, Vec3};
 use oorandom::Rand32;
 
 /// Uniformly distributed over all rotations (K. Shoemake, "Uniform random rotations", 1992).
-pub(crate) fn rotation(random: &mut Rand32) -> Quat {
+pub fn rotation(random: &mut Rand32) -> Quat {
     let [split, angle1, angle2] = std::array::from_fn(|_| random.rand_float());
     let (radius1, radius2) = ((1.0 - split).sqrt(), split.sqrt());
     let [(sin1, cos1), (sin2, cos2)] = [angle1, angle2].map(|angle| (TAU * angle).sin_cos());
@@ -14,6 +14,6 @@ pub(crate) fn rotation(random: &mut Rand32) -> Quat {
 }
 
 /// Uniformly distributed over all unit vectors.
-pub(crate) fn direction(random: &mut Rand32) -> Vec3 {
+pub fn direction(random: &mut Rand32) -> Vec3 {
     rotation(random) * Vec3::Y
 }

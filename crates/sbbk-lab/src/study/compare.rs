@@ -1,6 +1,5 @@
 //! Both experiments of the paper on all backends, and what lies behind their times.
 
-use super::cut::{self, cut};
 use super::helicopter::{self, HelicopterPlan, frames, helicopter};
 use super::meshes::{self, meshes};
 use super::pile::{self, PilePlan, SamePosesPlan, pile, same_poses_table};
@@ -105,7 +104,6 @@ pub fn compare(plan: &ComparePlan, progress: &Progress) -> Result<Results, Study
         let plan = PilePlan { repeats, same_poses, ..plan.pile.clone() };
         rows.extend(pile(&scene, &plan, progress, &mut |_| ())?);
     }
-    rows.extend(cut(&HelicopterBallDrop::default())?);
     rows.extend(meshes(&plan.meshes(), progress)?);
     progress.finish();
     let [times, accuracy] = pile::runs(&rows, &plan.pile.run);
@@ -114,7 +112,6 @@ pub fn compare(plan: &ComparePlan, progress: &Progress) -> Result<Results, Study
         times,
         same_poses_table(&rows),
         accuracy,
-        cut::table(&rows),
         meshes::table(&rows),
     ];
     let [detection, ratios] = pile::panels(&rows);

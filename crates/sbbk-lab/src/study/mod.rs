@@ -9,7 +9,6 @@ pub mod compare;
 pub mod contacts;
 pub mod convex;
 pub mod cost;
-mod cut;
 pub mod determinism;
 pub mod everyday;
 pub mod front;
@@ -27,7 +26,6 @@ pub mod soft;
 pub mod terrain;
 mod turns;
 
-pub use cut::{cut, table as cut_table};
 pub use helicopter::{HelicopterPlan, frames, helicopter};
 pub use motion::STEP_COUNT;
 pub use pile::{PilePlan, SamePosesPlan, pile, runs};

@@ -6,9 +6,8 @@ use std::path::Path;
 use sbbk_lab::backend::Backend;
 use sbbk_lab::metrics::{Environment, RunPlan};
 use sbbk_lab::report::{Results, Row};
-use sbbk_lab::scene::HelicopterBallDrop;
 use sbbk_lab::study::compare::{ComparePlan, compare};
-use sbbk_lab::study::{HelicopterPlan, PilePlan, Progress, SamePosesPlan, cut};
+use sbbk_lab::study::{HelicopterPlan, PilePlan, Progress, SamePosesPlan};
 
 use super::support;
 
@@ -52,7 +51,7 @@ fn a_comparison_covers_everything_and_can_be_reported() {
     }
     let fps = support::rows(&comparison, "helicopter", "sbbk")[1];
     assert_eq!((fps.count("frames_per_second.count"), fps.count("steps")), (2, 40));
-    assert_eq!(comparison.tables.len(), 6);
+    assert_eq!(comparison.tables.len(), 5);
     assert!(
         comparison.tables[0].lines[1].contains(&"1.11x".to_owned()),
         "{}",
@@ -61,7 +60,7 @@ fn a_comparison_covers_everything_and_can_be_reported() {
 
     let report = support::report(&comparison);
     let studies: HashSet<&str> = report.csv.iter().map(|line| &line[0]).collect();
-    assert_eq!(studies.len(), 5, "{studies:?}");
+    assert_eq!(studies.len(), 4, "{studies:?}");
     assert!(report.svg.contains("the paper"));
 }
 
@@ -79,30 +78,4 @@ fn a_file_that_cannot_be_written_is_named() {
         let message = error.unwrap_err().to_string();
         assert!(message.contains("no/such/folder/out"), "{message}");
     }
-}
-
-/// Would catch a cut that prunes true contacts, or one that does not cut: deeper cuts report no
-/// more triangles, k-DOPs no more than boxes, and no cut fewer than truly touch.
-#[test]
-fn cuts_close_in_on_the_truth() {
-    let rows = cut(&HelicopterBallDrop::default()).unwrap();
-    let [aabb, sbbk] = [Backend::AabbOnly, Backend::Sbbk].map(|backend| -> Vec<&Row> {
-        rows.iter().filter(|row| row.is("backend", backend)).collect()
-    });
-    assert_eq!(aabb.len(), sbbk.len());
-    let pairs = |row: &Row| row.count("pair_count");
-    let triangles = |row: &Row| row.count("triangle_count");
-    let volume = |row: &Row| row.number("volume");
-    let last = aabb.len() - 1;
-    for rows in [&aabb, &sbbk] {
-        assert!(rows.is_sorted_by(|a, b| triangles(a) >= triangles(b)));
-        assert!(rows.is_sorted_by(|a, b| volume(a) >= volume(b)));
-        assert!(triangles(rows[0]) > 4 * triangles(rows[last]));
-        assert!(triangles(rows[last]) >= rows[0].count("true_triangle_count"));
-    }
-    for (aabb, sbbk) in aabb.iter().zip(&sbbk) {
-        assert!(pairs(sbbk) <= pairs(aabb) && volume(sbbk) <= volume(aabb));
-    }
-    assert!(volume(sbbk[last]) < volume(aabb[last]));
-    assert!(rows[0].count("true_triangle_count") > 0);
 }

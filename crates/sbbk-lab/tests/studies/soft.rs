@@ -6,24 +6,17 @@ use sbbk_lab::study::soft::{SoftPlan, soft};
 use super::support;
 
 /// Would catch a scene in which nothing touches, a judge that looks at the vertices of another step
-/// (then even SBBK's exact contacts would be wrong), contacts lost by a refit, and reports that
-/// lose steps or frames.
+/// (then even SBBK's exact contacts would be wrong), and reports that lose steps.
 #[test]
 fn soft_heads_touch_and_nothing_is_lost() {
-    let plan =
-        SoftPlan { heads: 1, steps: 45, repeats: 1, judged_every: 5, detail: 12, frames: 20 };
+    let plan = SoftPlan { heads: 1, steps: 45, repeats: 1, judged_every: 5 };
     let study = soft(&plan, &Progress::hidden()).unwrap();
     let sbbk = support::rows(&study, "soft heads, ms", "sbbk")[0];
     assert!(sbbk.count("errors.true_pairs") > 100, "{sbbk:?}");
     assert_eq!(sbbk.wrong("errors"), 0, "{sbbk:?}");
-    let contacts =
-        |of: &str| support::rows(&study, "refit: contacts", of)[0].values["contacts"].clone();
-    assert!(contacts("tree built in each frame").as_u64().unwrap() > 1000);
-    assert_eq!(contacts("refitted tree"), contacts("tree built in each frame"));
-    assert_eq!((contacts("lost"), contacts("added")), (0.into(), 0.into()));
 
     let report = support::report(&study);
     let lines = |quantity| report.csv.iter().filter(|line| &line[4] == quantity).count();
-    assert_eq!((lines("queries_by_step"), lines("by_frame")), (2 * 45, 20 * 8));
-    assert!(report.svg.contains("refit of all layers"));
+    assert_eq!(lines("queries_by_step"), 2 * 45);
+    assert!(report.svg.contains("sbbk"));
 }

@@ -19,7 +19,7 @@ use crate::mesh::{Hierarchy, box_of};
 /// can do to a distance of zero.
 const TOUCHING: f64 = 1.0e-12;
 
-/// Distance up to which all triangles are looked at, as a share of the shape.
+/// Distance up to which all triangles are looked at, as a share of the shape: a matter of time alone.
 const WIDE: f64 = 0.1;
 
 /// A mesh and one convex shape, to be searched.

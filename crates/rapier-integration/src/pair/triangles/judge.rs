@@ -13,9 +13,7 @@
 
 use glamx::DVec3;
 use parry3d::math::{Real, Vector};
-use sbbk_core::contact::{
-    Feature, ManifoldPoints, Outward, TriangleContact, outward, outward_within,
-};
+use sbbk_core::contact::{Feature, ManifoldPoints, Outward, TriangleContact, outward};
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::Around;
 use sbbk_core::volumes::Sphere;
@@ -56,7 +54,7 @@ const SHALLOW: f64 = 5.0;
 /// that one step has brought to the midst of a ground fall out below.
 const LEAN: f64 = 0.02;
 
-/// Distances below this do not tell on which side of each other triangles are.
+/// Distances below this share of their sizes do not tell on which side of each other triangles are.
 const TOUCHING: f64 = 1.0e-9;
 
 /// Two triangles of two surfaces.
@@ -94,6 +92,12 @@ impl<S: Surfaces> Judge<'_, S> {
     ) -> Option<TriangleContact> {
         let inverse = self.pose.placement12.inverse;
         let own = |i: usize, direction: DVec3| if i == 0 { direction } else { inverse * direction };
+        let is_front = |i: usize, feature: Feature, direction: DVec3, to_face: bool| {
+            let is_front = |around: Around<'_>| {
+                around.is_front(self.pair[i], feature, own(i, direction), to_face)
+            };
+            around[i].is_none_or(is_front)
+        };
         let is_solid = around.map(|around| around.is_some_and(|around| around.is_solid));
         let has_solid = is_solid[0] || is_solid[1];
         let TriangleContact { normal, distance, features, .. } = contact;
@@ -106,39 +110,35 @@ impl<S: Surfaces> Judge<'_, S> {
                 return Some(contact);
             }
             let features = [features.feature1(), features.feature2()];
-            let directions = [own(0, normal), own(1, -normal)];
-            let is_front = |i: usize| {
-                around[i].is_none_or(|around| match features[1 - i] {
-                    Feature::Face => {
-                        around.is_front_of_face(self.pair[i], features[i], directions[i])
-                    }
-                    _ => around.is_front(self.pair[i], features[i], directions[i]),
-                })
-            };
+            let directions = [normal, -normal];
+            let are_front = [0, 1]
+                .map(|i| is_front(i, features[i], directions[i], features[1 - i] == Feature::Face));
             let is_behind = |i: usize| {
                 around[i].is_some_and(|around| {
-                    around.is_behind(self.pair[i], features[i], directions[i])
+                    around.is_behind(self.pair[i], features[i], own(i, directions[i]))
                 })
             };
-            let are_front = [is_front(0), is_front(1)];
             if are_front == [true; 2] {
                 return Some(contact);
             }
+            // What is in front is not behind: this spares a look.
             let may_have_passed = has_solid && (0..2).all(|i| !(is_solid[i] && are_front[i]));
             let have_passed = may_have_passed && (0..2).all(|i| !is_solid[i] || is_behind(i));
             if !have_passed {
                 return None;
             }
         }
-        let is_end = |i: usize, feature: Feature, direction: DVec3| {
-            around[i].is_none_or(|around| around.is_front(self.pair[i], feature, own(i, direction)))
-        };
+        let is_end = |i: usize, feature: Feature, axis: DVec3| is_front(i, feature, axis, false);
         let [t1, t2] = &local.corners;
         let greatest = SHALLOW * distance.abs().max(f64::from(self.pose.prediction));
         if regions.is_first_round() {
-            let contact = outward_within(t1, t2, is_solid, is_end, greatest, points);
+            let good = outward(t1, t2, is_solid, is_end, Some(greatest), points);
+            let contact = good.map(|good| good.contact);
             let contact = contact.filter(|contact| is_crossing || contact.distance <= 0.0);
-            if contact.is_none() && !is_crossing && distance.abs() < TOUCHING {
+            if contact.is_none()
+                && !is_crossing
+                && distance.abs() < TOUCHING * (size(t1) + size(t2))
+            {
                 return None;
             }
             regions.add(self.pair, contact.as_ref(), self.sheet(is_solid, local));
@@ -147,7 +147,7 @@ impl<S: Surfaces> Judge<'_, S> {
         if !regions.is_lost(self.pair) {
             return None;
         }
-        let Outward { contact, is_extremal } = outward(t1, t2, is_solid, is_end, points)?;
+        let Outward { contact, is_extremal } = outward(t1, t2, is_solid, is_end, None, points)?;
         let is_overlap = is_crossing || contact.distance <= 0.0;
         let is_shallow = contact.distance >= -greatest;
         let is_meant = is_overlap && (is_shallow || is_extremal && self.is_deep(local, &contact));
@@ -180,4 +180,9 @@ impl<S: Surfaces> Judge<'_, S> {
         let point2 = self.pose.placement12.to_frame2(contact.point1, local.origin).as_vec3();
         self.shapes.is_deep(0, point1, within) || self.shapes.is_deep(1, point2, within)
     }
+}
+
+/// The longer of two sides.
+fn size([a, b, c]: &[DVec3; 3]) -> f64 {
+    (*b - *a).length().max((*c - *a).length())
 }

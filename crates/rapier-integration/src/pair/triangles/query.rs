@@ -111,6 +111,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
             Some(hint) => contact_from(t1, t2, margin, hint),
             None => contact(t1, t2, margin),
         };
+        // Without the travel it would be asked for in each query.
         candidate.clear = contact.map_or(margin, |contact| contact.distance) + travel;
         let Some(contact) = contact else {
             return Seen::Nothing;

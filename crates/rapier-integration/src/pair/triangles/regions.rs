@@ -2,6 +2,7 @@ use std::cmp::Ordering;
 
 use glamx::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
+use sbbk_core::collections::Groups;
 use sbbk_core::contact::TriangleContact;
 
 /// Where two surfaces cross, what pushes them apart, and where nothing does.
@@ -15,11 +16,11 @@ pub(crate) struct Regions {
     is_first_round: bool,
     /// Pairs whose contact pushes the wrong way.
     wrong: FxHashSet<[u32; 2]>,
-    /// By mesh and triangle: another one of the same region, or itself.
-    above: FxHashMap<Node, Node>,
-    /// By the node at the top of a region: whether it has a contact beyond doubt.
+    /// The triangles of a region, by mesh and triangle.
+    regions: Groups<Node>,
+    /// By the first triangle of a region: whether it has a contact beyond doubt.
     held: FxHashMap<Node, bool>,
-    /// By the node at the top of a region.
+    /// By the first triangle of a region.
     torn: FxHashMap<Node, Torn>,
 }
 
@@ -106,20 +107,18 @@ impl Regions {
         if !is_torn && self.found.iter().all(|found| self.is_fine(found)) {
             return false;
         }
-        self.above.clear();
+        self.regions.clear();
         self.held.clear();
-        for i in 0..self.found.len() {
-            let [triangle1, triangle2] = self.found[i].pair;
-            let [top1, top2] = [(0, triangle1), (1, triangle2)].map(|node| self.top(node));
-            self.above.insert(top1.max(top2), top1.min(top2));
+        for &Crossing { pair: [triangle1, triangle2], .. } in &self.found {
+            self.regions.join((0, triangle1), (1, triangle2));
         }
         if is_torn {
             self.find_torn();
         }
         for i in 0..self.found.len() {
             let found = self.found[i];
-            let (top, is_fine) = (self.top((0, found.pair[0])), self.is_fine(&found));
-            *self.held.entry(top).or_default() |= is_fine;
+            let (first, is_fine) = (self.first_of(found.pair), self.is_fine(&found));
+            *self.held.entry(first).or_default() |= is_fine;
         }
         !self.wrong.is_empty() || self.held.values().any(|is_held| !is_held)
     }
@@ -139,9 +138,9 @@ impl Regions {
     }
 
     /// Whether the region of a pair has no contact beyond doubt.
-    pub(super) fn is_lost(&mut self, [triangle1, _]: [u32; 2]) -> bool {
-        let top = self.top((0, triangle1));
-        self.held.get(&top).is_some_and(|is_held| !is_held)
+    pub(super) fn is_lost(&mut self, pair: [u32; 2]) -> bool {
+        let first = self.first_of(pair);
+        self.held.get(&first).is_some_and(|is_held| !is_held)
     }
 
     /// A triangle that is in a thin body, or has a thin one around it, has both its sides near, which
@@ -172,32 +171,112 @@ impl Regions {
         self.torn.clear();
         for i in 0..self.found.len() {
             let found = self.found[i];
-            let top = self.top((0, found.pair[0]));
-            let torn = self.torn.entry(top).or_default();
+            let first = self.first_of(found.pair);
+            let torn = self.torn.entry(first).or_default();
             torn.height += found.sheet.map_or(0.0, |sheet| sheet.height);
             torn.to_front |= found.side() > 0.0;
             torn.to_back |= found.side() < 0.0;
         }
         for i in 0..self.found.len() {
             let found = self.found[i];
-            let top = self.top((0, found.pair[0]));
-            let torn = self.torn.get(&top).filter(|torn| torn.to_front && torn.to_back);
+            let first = self.first_of(found.pair);
+            let torn = self.torn.get(&first).filter(|torn| torn.to_front && torn.to_back);
             if torn.is_some_and(|torn| found.side() * torn.height < 0.0) {
                 self.wrong.insert(found.pair);
             }
         }
     }
 
-    /// The node at the top of a region.
-    fn top(&mut self, mut node: Node) -> Node {
-        loop {
-            let above = *self.above.entry(node).or_insert(node);
-            if above == node {
-                return node;
+    /// The first triangle of the region of a pair.
+    fn first_of(&mut self, [triangle1, _]: [u32; 2]) -> Node {
+        self.regions.first((0, triangle1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use sbbk_core::contact::{Feature, FeaturePair};
+
+    use super::*;
+
+    fn pushing(normal: DVec3, depth: f64) -> TriangleContact {
+        let (point, features) = (DVec3::ZERO, FeaturePair::new(Feature::Face, Feature::Face));
+        TriangleContact { normal, distance: -depth, point1: point, point2: point, features }
+    }
+
+    /// Would catch regions that are not joined through the triangles that their pairs share, one that
+    /// is held taken for lost, and pairs that a second round decides anew without need.
+    #[test]
+    fn regions_without_a_good_contact_are_lost() {
+        let good = pushing(DVec3::Y, 0.1);
+        let mut regions = Regions::default();
+        for _ in 0..2 {
+            regions.begin();
+            // One region is held by a contact far along it, one is not.
+            for (pair, contact) in [
+                ([1, 1], None),
+                ([1, 2], None),
+                ([3, 2], Some(&good)),
+                ([7, 7], None),
+                ([7, 8], None),
+            ] {
+                regions.add(pair, contact, None);
+                assert!(!regions.is_settled(pair));
             }
-            let next = *self.above.get(&above).unwrap_or(&above);
-            self.above.insert(node, next);
-            node = above;
+            assert!(regions.is_first_round() && regions.close());
+            assert!(!regions.is_first_round() && !regions.close());
+            let held = [[1, 1], [1, 2], [3, 2]].map(|pair| regions.is_lost(pair));
+            assert_eq!(held, [false; 3]);
+            assert!(regions.is_lost([7, 7]) && regions.is_lost([7, 8]));
+            assert!(!regions.is_lost([9, 9]), "it does not cross");
+            let settled = [[3, 2], [9, 9], [1, 1], [7, 8]].map(|pair| regions.is_settled(pair));
+            assert_eq!(settled, [true, true, false, false]);
         }
+        regions.begin();
+        regions.add([1, 1], Some(&good), None);
+        assert!(!regions.close(), "all is good");
+        regions.begin();
+        regions.add([1, 1], None, None);
+        regions.add([1, 2], Some(&good), None);
+        assert!(!regions.close(), "the region is held");
+    }
+
+    /// Would catch a thin body that is pushed both ways, or by its farther side.
+    #[test]
+    fn of_two_sides_that_push_against_each_other_the_nearer_one_stays() {
+        let both = |up: f64, down: f64, lean: f64| {
+            let mut regions = Regions::default();
+            regions.begin();
+            let leaning = DVec3::new(lean.sin(), -lean.cos(), 0.0);
+            regions.add([1, 1], Some(&pushing(DVec3::Y, up)), None);
+            regions.add([1, 2], Some(&pushing(leaning, down)), None);
+            regions.close().then(|| [[1, 1], [1, 2]].map(|pair| regions.is_settled(pair)))
+        };
+        assert_eq!(both(0.1, 0.3, 0.0), Some([true, false]));
+        assert_eq!(both(0.3, 0.1, 0.5), Some([false, true]));
+        assert_eq!(both(0.2, 0.2, 0.0), None, "neither is nearer");
+        assert_eq!(both(0.1, 0.3, 1.2), None, "they do not push against each other");
+    }
+    /// Would catch a thin body that is held in a sheet, one that goes to the side where less of it is,
+    /// and contacts lost where all push to one side, whichever that is.
+    #[test]
+    fn a_region_pushed_to_both_sides_of_a_sheet_keeps_one() {
+        let pushed = |heights: [f64; 2], normals: [DVec3; 2]| {
+            let mut regions = Regions::default();
+            regions.begin();
+            for (i, (height, normal)) in (1..).zip(heights.into_iter().zip(normals)) {
+                let sheet = Some(Sheet { away: DVec3::Y, height });
+                regions.add([i, 1], Some(&pushing(normal, 0.1)), sheet);
+            }
+            // Far from these, all the same way.
+            let sheet = Some(Sheet { away: DVec3::Y, height: 1.0 });
+            regions.add([7, 7], Some(&pushing(-DVec3::Y, 0.1)), sheet);
+            regions.close();
+            [[1, 1], [2, 1], [7, 7]].map(|pair| regions.is_settled(pair))
+        };
+        let both = [DVec3::Y, -DVec3::Y];
+        assert_eq!(pushed([0.2, -0.1], both), [true, false, true]);
+        assert_eq!(pushed([0.1, -0.2], both), [false, true, true]);
+        assert_eq!(pushed([-0.1; 2], [DVec3::Y; 2]), [true; 3]);
     }
 }

@@ -1,0 +1,77 @@
+const NONE: u32 = u32::MAX;
+
+/// A list of numbers that are less than its length, or none: in sixteen bits each where these are
+/// enough.
+///
+/// ```
+/// use sbbk_core::collections::Numbers;
+///
+/// let numbers = Numbers::new([Some(2), None, Some(0)].into_iter());
+/// assert_eq!([0, 1, 2, 3].map(|place| numbers.get(place)), [Some(2), None, Some(0), None]);
+/// assert_eq!(numbers.bytes(), 6);
+/// ```
+#[derive(Clone, Debug)]
+pub struct Numbers(Width);
+
+#[derive(Clone, Debug)]
+enum Width {
+    Narrow(Box<[u16]>),
+    Wide(Box<[u32]>),
+}
+
+impl Numbers {
+    /// The list of these.
+    pub fn new(numbers: impl ExactSizeIterator<Item = Option<u32>>) -> Self {
+        // Of a list that is not longer than this, all numbers are less than what is cut off `NONE`.
+        let is_narrow = numbers.len() <= usize::from(u16::MAX);
+        let numbers = numbers.map(|number| number.unwrap_or(NONE));
+        Self(if is_narrow {
+            Width::Narrow(numbers.map(|number| number as u16).collect())
+        } else {
+            Width::Wide(numbers.collect())
+        })
+    }
+
+    /// The number at a place; none where the list has ended.
+    #[inline(always)]
+    pub fn get(&self, place: u32) -> Option<u32> {
+        match &self.0 {
+            Width::Narrow(numbers) => {
+                let number = *numbers.get(place as usize)?;
+                (number != NONE as u16).then_some(number.into())
+            }
+            Width::Wide(numbers) => {
+                let number = *numbers.get(place as usize)?;
+                (number != NONE).then_some(number)
+            }
+        }
+    }
+
+    /// Memory, without this value.
+    pub fn bytes(&self) -> usize {
+        match &self.0 {
+            Width::Narrow(numbers) => size_of_val(&**numbers),
+            Width::Wide(numbers) => size_of_val(&**numbers),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Would catch a number that is taken for none, or none for a number, where sixteen bits end.
+    #[test]
+    fn narrow_and_wide_lists_hold_the_same() {
+        for length in [0, 1, 2, 65_534, 65_535, 65_536, 65_537, 100_000] {
+            let number = |place: u32| (place % 5 != 3).then(|| length - 1 - place);
+            let numbers = Numbers::new((0..length as usize).map(|place| number(place as u32)));
+            for place in 0..length {
+                assert_eq!(numbers.get(place), number(place), "{place} of {length}");
+            }
+            assert_eq!(numbers.get(length), None);
+            let width = if length < 65_536 { 2 } else { 4 };
+            assert_eq!(numbers.bytes(), length as usize * width, "{length}");
+        }
+    }
+}
