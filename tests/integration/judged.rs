@@ -1,36 +1,9 @@
 use glamx::{Quat, Vec3};
-use oorandom::Rand32;
 use rapier_integration::ContactSet;
 use rapier3d::math::{Pose, Real};
 use sbbk_lab::mesh;
 
-use crate::support::{
-    Query, assert_same, direction, distance, fresh, having, per_triangle, rotation, shape,
-};
-
-/// Contacts farther than a tenth of the radius of the smaller mesh are for soft CCD, which needs all
-/// of them. Would catch far contacts that are left out since a neighbour is nearer, and near ones
-/// that are not.
-#[test]
-fn far_contacts_are_those_of_each_two_triangles() {
-    let [head, torus] =
-        [mesh::monkey_head_with(6), mesh::torus(0.7, 0.3, 12, 8)].map(|m| shape(&m));
-    let surfaces = having(ContactSet::Surfaces);
-    let (mut random, mut far, mut near) = (Rand32::new(1), 0, [0; 2]);
-    for _ in 0..60 {
-        let at = Pose::from_parts(2.6 * direction(&mut random), rotation(&mut random));
-        let query = Query::new(&head, &torus, at).within(0.7);
-        let [found, all] = [fresh(&surfaces, &query), fresh(&per_triangle(), &query)];
-        // The radius of the smaller one is between 0.9 and 1.2, of its ball and of its box.
-        if all.iter().all(|manifold| distance(manifold) > 0.13) {
-            assert_same(&found, &all, 0.0);
-            far += found.len();
-        } else {
-            near = [near[0] + found.len(), near[1] + all.len()];
-        }
-    }
-    assert!(far > 200 && near[0] < near[1], "{far} far, {near:?} near");
-}
+use crate::support::{Query, distance, fresh, having, shape};
 
 /// A body that lies on a face, not quite flat, is held up at its other corners as well: it rocks onto
 /// them. Would catch corners that are left out as the lower ones are nearer.

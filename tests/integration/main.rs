@@ -38,7 +38,7 @@ mod edited_mesh;
 mod exact;
 /// Meshes against height fields.
 mod heightfield;
-/// Which contacts of triangles are contacts of surfaces, near and far.
+/// Contacts of surfaces beside a face.
 mod judged;
 /// Contacts beside those of stock.
 mod like_stock;
