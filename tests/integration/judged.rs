@@ -1,9 +1,48 @@
+use std::collections::BTreeSet;
+
 use glamx::{Quat, Vec3};
+use oorandom::Rand32;
 use rapier_integration::ContactSet;
 use rapier3d::math::{Pose, Real};
 use sbbk_lab::mesh;
 
-use crate::support::{Query, distance, fresh, having, shape};
+use crate::support::{
+    Manifold, Query, direction, distance, fresh, having, per_triangle, rotation, shape, triangles,
+};
+
+/// Contacts farther than a tenth of the radius of the smaller mesh are for soft CCD, which needs those
+/// of every direction. Would catch a direction that is left out since a neighbour is nearer, the
+/// nearest one lost, and near contacts that are not left out.
+#[test]
+fn far_contacts_have_every_direction() {
+    let [head, torus] =
+        [mesh::monkey_head_with(6), mesh::torus(0.7, 0.3, 12, 8)].map(|m| shape(&m));
+    let surfaces = having(ContactSet::Surfaces);
+    let (mut random, mut far, mut near) = (Rand32::new(1), 0, [0; 2]);
+    for _ in 0..60 {
+        let at = Pose::from_parts(2.6 * direction(&mut random), rotation(&mut random));
+        let query = Query::new(&head, &torus, at).within(0.7);
+        let [found, all] = [fresh(&surfaces, &query), fresh(&per_triangle(), &query)];
+        // The radius of the smaller one is between 0.9 and 1.2, of its ball and of its box.
+        if all.iter().all(|manifold| distance(manifold) > 0.13) {
+            let pairs =
+                |manifolds: &[Manifold]| manifolds.iter().map(triangles).collect::<BTreeSet<_>>();
+            assert!(pairs(&found).is_subset(&pairs(&all)), "{at:?}");
+            let nearest = |manifolds: &[Manifold]| {
+                manifolds.iter().map(distance).fold(Real::INFINITY, Real::min)
+            };
+            assert_eq!(nearest(&found), nearest(&all), "{at:?}");
+            for manifold in &all {
+                let is_like = |found: &Manifold| found.local_n1.dot(manifold.local_n1) >= 0.99;
+                assert!(found.iter().any(is_like), "{at:?} lost {}", manifold.local_n1);
+            }
+            far += found.len();
+        } else {
+            near = [near[0] + found.len(), near[1] + all.len()];
+        }
+    }
+    assert!(far > 50 && near[0] < near[1], "{far} far, {near:?} near");
+}
 
 /// A body that lies on a face, not quite flat, is held up at its other corners as well: it rocks onto
 /// them. Would catch corners that are left out as the lower ones are nearer.

@@ -38,7 +38,7 @@ mod edited_mesh;
 mod exact;
 /// Meshes against height fields.
 mod heightfield;
-/// Contacts of surfaces beside a face.
+/// Which contacts of triangles are contacts of surfaces, near and far.
 mod judged;
 /// Contacts beside those of stock.
 mod like_stock;
