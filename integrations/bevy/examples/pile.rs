@@ -30,7 +30,9 @@ fn main() {
     if headless.is_none() {
         return window(arguments.iter().any(|argument| argument == "stock"));
     }
-    [true, false].map(|is_stock| measure(is_stock, seconds.unwrap_or(5.0)));
+    for is_stock in [true, false] {
+        measure(is_stock, seconds.unwrap_or(5.0));
+    }
 }
 
 /// The app without a window, as fast as it goes.
@@ -42,7 +44,7 @@ fn measure(is_stock: bool, seconds: f32) {
     build(&mut app, is_stock);
     app.finish();
     let start = Instant::now();
-    let steps = (seconds / STEP) as u32;
+    let steps = (seconds / STEP).round() as u32;
     (0..steps).for_each(|_| app.update());
     let step = 1e3 * start.elapsed().as_secs_f64() / f64::from(steps.max(1));
     let mut tori = app.world_mut().query_filtered::<&Transform, With<Velocity>>();
@@ -95,9 +97,8 @@ fn torus() -> (Vec<Vec3>, Vec<[u32; 3]>) {
         let radius = RADII[0] + RADII[1] * out;
         Vec3::new(radius * cos, RADII[1] * rise, -radius * sin)
     });
-    let triangles = cells.clone().flat_map(|(i, j)| {
-        let [a, b, c, d] =
-            [place(i, j), place(i + 1, j), place(i + 1, j + 1), place(i, j + 1)];
+    let triangles = cells.flat_map(|(i, j)| {
+        let [a, b, c, d] = [place(i, j), place(i + 1, j), place(i + 1, j + 1), place(i, j + 1)];
         [[a, b, c], [a, c, d]]
     });
     (vertices.collect(), triangles.collect())
