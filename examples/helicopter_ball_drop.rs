@@ -17,9 +17,9 @@ use sbbk_lab::mesh;
 use sbbk_lab::metrics::Environment;
 use sbbk_lab::report::check_files;
 use sbbk_lab::scene::{BallKind, HelicopterBallDrop};
-use sbbk_lab::study::{HelicopterPlan, Progress, cut, cut_table, frames, helicopter};
+use sbbk_lab::study::{HelicopterPlan, Progress, frames, helicopter};
 
-/// Drops a ball on a helicopter's rotor: frames a second, and how much each hierarchy reports.
+/// Drops a ball on a helicopter's rotor: frames a second.
 #[derive(Parser)]
 struct Arguments {
     /// What the ball is made of
@@ -55,9 +55,8 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     check_files(arguments.mesh.as_deref().as_slice(), replay.replay.as_deref().as_slice())?;
     let progress = Progress::visible();
     let rows = helicopter(&scene, &arguments.backend, &plan, &progress)?;
-    let cut = cut(&scene)?;
     progress.finish();
     let frames = frames(&rows, &plan);
-    print(format_args!("{}\n\n{frames}\n\n{}", Environment::detect(), cut_table(&cut)))?;
+    print(format_args!("{}\n\n{frames}", Environment::detect()))?;
     replay.play(&scene, &arguments.backend, plan.steps)
 }
