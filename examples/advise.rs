@@ -1,8 +1,8 @@
-//! Does it pay? Measures your meshes as terrains, as bodies and as sensors, under stock Rapier and
-//! under SBBK, and says what to set.
+//! Does it pay? Measures your meshes and robots as terrains, as bodies and as sensors, under stock
+//! Rapier and under SBBK, and says what to set.
 //!
 //! ```text
-//! cargo run --release --example advise -- bunny.obj terrain.glb
+//! cargo run --release --example advise -- bunny.obj terrain.glb robot.urdf
 //! ```
 
 use std::error::Error;
@@ -12,14 +12,14 @@ use std::process::ExitCode;
 use clap::Parser;
 use sbbk_lab::cli::{exit_code, print};
 use sbbk_lab::mesh;
-use sbbk_lab::study::everyday::advise;
+use sbbk_lab::study::everyday::{advise, advise_robot};
 
-/// Says for each mesh, in three lines, what SBBK is worth and what to set.
+/// Says for each mesh or robot, in three lines, what SBBK is worth and what to set.
 #[derive(Parser)]
 struct Arguments {
-    /// OBJ, STL or glTF files
-    #[arg(required = true, value_name = "MESH")]
-    meshes: Vec<PathBuf>,
+    /// OBJ, STL, glTF or URDF files
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
     /// Steps of each run
     #[arg(long, default_value_t = 120)]
     steps: usize,
@@ -29,11 +29,15 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let Arguments { files, steps, repeats } = Arguments::parse();
     let run = || -> Result<(), Box<dyn Error>> {
-        for path in &arguments.meshes {
-            let mesh = mesh::load(path)?;
-            print(advise(&mesh, arguments.steps, arguments.repeats)?)?;
+        for path in &files {
+            let is_robot = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf"));
+            let advice = match is_robot {
+                true => advise_robot(path, steps, repeats)?,
+                false => advise(&mesh::load(path)?, steps, repeats)?,
+            };
+            print(advice)?;
         }
         Ok(())
     };

@@ -13,9 +13,8 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use sbbk_lab::backend::Backend;
-use sbbk_lab::cli::{OtherFiles, StudyArguments, exit_code};
+use sbbk_lab::cli::{OtherFiles, ReplayArguments, StudyArguments, exit_code};
 use sbbk_lab::mesh;
-use sbbk_lab::replay;
 use sbbk_lab::study::compare::{ComparePlan, compare};
 
 /// Compares stock Rapier, SBBK, and SBBK with AABBs only, in speed and error.
@@ -27,10 +26,9 @@ struct Arguments {
     /// The head: an OBJ, STL or glTF file instead of the built-in monkey
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
-    /// Runs the smallest pile once more, for ten seconds, and writes a page that plays it on stock
-    /// and SBBK side by side
-    #[arg(long, value_name = "FILE")]
-    replay: Option<PathBuf>,
+    // Of the smallest pile, for ten seconds.
+    #[command(flatten)]
+    replay: ReplayArguments,
     #[command(flatten)]
     study: StudyArguments,
 }
@@ -48,11 +46,9 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     if !arguments.heads.is_empty() {
         plan.heads = arguments.heads.iter().copied().map(NonZeroUsize::get).collect();
     }
-    let [read, written] = [&arguments.mesh, &arguments.replay].map(Option::as_deref);
-    arguments.study.run(&plan, compare, OtherFiles { read, written })?;
-    if let Some(path) = written {
-        let heads = plan.heads.iter().copied().min().unwrap_or(1);
-        replay::play(path, &plan.scene(heads), &[Backend::Stock, Backend::Sbbk], STEPS)?;
-    }
-    Ok(())
+    let Arguments { mesh, replay, study, .. } = arguments;
+    let others = OtherFiles { read: mesh.as_deref(), ..OtherFiles::written(replay) };
+    study.run(&plan, compare, others)?;
+    let smallest = plan.heads.iter().copied().min().unwrap_or(1);
+    replay.play(&plan.scene(smallest), &[Backend::Stock, Backend::Sbbk], STEPS)
 }

@@ -38,16 +38,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Draws contacts, and a layer of the tree of each mesh, on whatever Rapier's debug renderer draws
-/// on.
+/// Draws contacts and candidates, and a layer of the tree of each mesh, on whatever Rapier's debug
+/// renderer draws on.
 fn draw_sbbk(
     world: &PhysicsWorld,
     dispatcher: &SbbkDispatcher,
     backend: &mut impl DebugRenderBackend,
 ) -> Result<(), Box<dyn Error>> {
+    let tree = |collider: &Collider| dispatcher.prepare_shape(collider.shared_shape());
     for (handle, collider) in world.colliders.iter() {
         let object = DebugRenderObject::Collider(handle, collider);
-        if let Some(prepared) = dispatcher.prepare_shape(collider.shared_shape())? {
+        if let Some(prepared) = tree(collider)? {
             draw::layer(prepared.tree(), LAYER, collider.position(), |a, b, colour| {
                 backend.draw_line(object, a, b, colour);
             });
@@ -60,7 +61,12 @@ fn draw_sbbk(
         let shapes = [one.shape(), two.shape()];
         let mut line = |a, b, colour| backend.draw_line(object, a, b, colour);
         draw::contacts(pair.manifolds(), poses, 0.1, &mut line);
+        draw::patches(pair.manifolds(), poses, &mut line);
         draw::triangles(pair.manifolds(), shapes, poses, &mut line);
+        if let (Some(one), Some(two)) = (tree(one)?, tree(two)?) {
+            let margin = world.integration_parameters.prediction_distance();
+            draw::candidates((one.tree(), two.tree()), poses, margin, &mut line);
+        }
     }
     Ok(())
 }

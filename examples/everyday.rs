@@ -6,13 +6,14 @@
 //! cargo run --release --example everyday -- --quick --csv everyday.csv --plot everyday.svg
 //! cargo run --release --example everyday -- --quick --only sensors,queries
 //! cargo run --release --example everyday -- --quick --only flags --urdf robot.urdf
+//! cargo run --release --example everyday -- --quick --only sensors --scene walk --replay walk.html
 //! ```
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use sbbk_lab::cli::{OtherFiles, StudyArguments, exit_code};
+use sbbk_lab::cli::{OtherFiles, ReplayArguments, StudyArguments, exit_code};
 use sbbk_lab::study::everyday::{EverydayPlan, Group, everyday};
 
 /// Compares times, memory and contacts in everyday scenes.
@@ -23,18 +24,25 @@ struct Arguments {
     /// Measures only these parts
     #[arg(long, value_name = "PARTS", value_delimiter = ',')]
     only: Vec<Group>,
+    /// Measures only worlds with this in their names
+    #[arg(long, value_name = "TEXT", default_value = "")]
+    scene: String,
+    #[command(flatten)]
+    replay: ReplayArguments,
     /// A robot of yours instead of ours, in the part `flags`
     #[arg(long, value_name = "FILE")]
     urdf: Option<PathBuf>,
 }
 
 fn main() -> ExitCode {
-    let Arguments { study, only, urdf } = Arguments::parse();
+    let Arguments { study, only, scene, replay, urdf } = Arguments::parse();
     let mut plan = study.plan(EverydayPlan::standard, EverydayPlan::quick);
     if !only.is_empty() {
         plan.groups = only;
     }
-    let others = OtherFiles { read: urdf.as_deref(), ..OtherFiles::default() };
+    let others = OtherFiles { read: urdf.as_deref(), ..OtherFiles::written(&replay) };
     plan.urdf = urdf.clone();
+    plan.name = scene;
+    plan.replay = replay.replay.clone();
     exit_code(study.run(&plan, everyday, others))
 }

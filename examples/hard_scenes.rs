@@ -8,11 +8,10 @@
 //! cargo run --release --example hard_scenes -- --quick --only gears --replay gears.html
 //! ```
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use sbbk_lab::cli::{OtherFiles, StudyArguments, exit_code};
+use sbbk_lab::cli::{OtherFiles, ReplayArguments, StudyArguments, exit_code};
 use sbbk_lab::study::hard::{Column, Group, HardPlan, hard};
 
 /// Runs difficult scenes of meshes to their end, and judges them.
@@ -29,9 +28,8 @@ struct Arguments {
     /// Runs only scenes with this in their names
     #[arg(long, value_name = "TEXT", default_value = "")]
     scene: String,
-    /// Writes a page that plays the first of the scenes, backends side by side
-    #[arg(long, value_name = "FILE")]
-    replay: Option<PathBuf>,
+    #[command(flatten)]
+    replay: ReplayArguments,
     /// Shows all figures of all scenes
     #[arg(long)]
     verbose: bool,
@@ -52,7 +50,6 @@ fn main() -> ExitCode {
     plan.shows_figures = verbose;
     plan.threads = threads;
     plan.name = scene;
-    plan.replay = replay.clone();
-    let others = OtherFiles { written: replay.as_deref(), ..OtherFiles::default() };
-    exit_code(study.run(&plan, hard, others))
+    plan.replay = replay.replay.clone();
+    exit_code(study.run(&plan, hard, OtherFiles::written(&replay)))
 }

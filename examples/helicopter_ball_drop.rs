@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! cargo run --release --example helicopter_ball_drop
-//! cargo run --release --example helicopter_ball_drop -- --ball primitive --picture rotor.png
+//! cargo run --release --example helicopter_ball_drop -- --ball primitive --replay rotor.html
 //! ```
 
 use std::error::Error;
@@ -12,15 +12,14 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use sbbk_lab::backend::Backend;
-use sbbk_lab::cli::{exit_code, print};
+use sbbk_lab::cli::{ReplayArguments, exit_code, print};
 use sbbk_lab::mesh;
 use sbbk_lab::metrics::Environment;
-use sbbk_lab::replay;
-use sbbk_lab::report::{check_files, replace_file};
-use sbbk_lab::scene::{BallKind, HelicopterBallDrop, Scene};
-use sbbk_lab::study::{HelicopterPlan, Progress, cut, cut_table, frames, helicopter};
+use sbbk_lab::report::check_files;
+use sbbk_lab::scene::{BallKind, HelicopterBallDrop};
+use sbbk_lab::study::{HelicopterPlan, Progress, frames, helicopter};
 
-/// Drops a ball on a helicopter's rotor: frames a second, and how much each hierarchy reports.
+/// Drops a ball on a helicopter's rotor: frames a second.
 #[derive(Parser)]
 struct Arguments {
     /// What the ball is made of
@@ -38,12 +37,8 @@ struct Arguments {
     /// Runs of each backend; the paper has 30
     #[arg(long, default_value = "30")]
     repeats: NonZeroUsize,
-    /// Saves a picture of the moment of contact to a PNG file
-    #[arg(long, value_name = "FILE")]
-    picture: Option<PathBuf>,
-    /// Runs once more, and writes a page that plays the backends side by side
-    #[arg(long, value_name = "FILE")]
-    replay: Option<PathBuf>,
+    #[command(flatten)]
+    replay: ReplayArguments,
 }
 
 fn main() -> ExitCode {
@@ -56,24 +51,12 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         scene.helicopter = mesh::load(path)?;
     }
     let plan = HelicopterPlan { repeats: arguments.repeats.get(), steps: arguments.steps.get() };
-    let [read, written] = [&arguments.mesh, &arguments.picture].map(Option::as_deref);
-    let replay = arguments.replay.as_deref();
-    check_files(read.as_slice(), &[written, replay].into_iter().flatten().collect::<Vec<_>>())?;
+    let replay = &arguments.replay;
+    check_files(arguments.mesh.as_deref().as_slice(), replay.replay.as_deref().as_slice())?;
     let progress = Progress::visible();
     let rows = helicopter(&scene, &arguments.backend, &plan, &progress)?;
-    let cut = cut(&scene)?;
     progress.finish();
     let frames = frames(&rows, &plan);
-    print(format_args!("{}\n\n{frames}\n\n{}", Environment::detect(), cut_table(&cut)))?;
-    if let Some(path) = written {
-        let mut built = scene.build()?;
-        let contact = cut.first().map_or(plan.steps as u64, |row| row.count("step"));
-        (0..contact).for_each(|_| built.world.step());
-        let picture = built.portrait(1280, 720);
-        replace_file(path, |path| picture.save(path))?;
-    }
-    if let Some(path) = replay {
-        replay::play(path, &scene, &arguments.backend, plan.steps)?;
-    }
-    Ok(())
+    print(format_args!("{}\n\n{frames}", Environment::detect()))?;
+    replay.play(&scene, &arguments.backend, plan.steps)
 }

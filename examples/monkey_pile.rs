@@ -2,7 +2,6 @@
 //!
 //! ```text
 //! cargo run --release --example monkey_pile
-//! cargo run --release --example monkey_pile -- 200 --backend stock,sbbk --picture pile.png
 //! cargo run --release --example monkey_pile -- 200 --steps 573 --backend stock,sbbk --replay pile.html
 //! ```
 
@@ -13,11 +12,10 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use sbbk_lab::backend::Backend;
-use sbbk_lab::cli::{exit_code, print};
+use sbbk_lab::cli::{ReplayArguments, exit_code, print};
 use sbbk_lab::mesh;
 use sbbk_lab::metrics::{Environment, RunPlan};
-use sbbk_lab::replay;
-use sbbk_lab::report::{check_files, replace_file};
+use sbbk_lab::report::check_files;
 use sbbk_lab::scene::MonkeyPile;
 use sbbk_lab::study::{PilePlan, Progress, pile, runs};
 
@@ -39,12 +37,8 @@ struct Arguments {
     /// The head: an OBJ, STL or glTF file instead of the built-in monkey
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
-    /// Saves a picture of the last step to a PNG file
-    #[arg(long, value_name = "FILE")]
-    picture: Option<PathBuf>,
-    /// Runs once more, and writes a page that plays the backends side by side
-    #[arg(long, value_name = "FILE")]
-    replay: Option<PathBuf>,
+    #[command(flatten)]
+    replay: ReplayArguments,
 }
 
 fn main() -> ExitCode {
@@ -57,9 +51,8 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         scene = MonkeyPile::of(arguments.heads.get(), mesh::load(path)?);
     }
     scene.contact_recycling = !arguments.no_recycling;
-    let [read, written] = [&arguments.mesh, &arguments.picture].map(Option::as_deref);
-    let replay = arguments.replay.as_deref();
-    check_files(read.as_slice(), &[written, replay].into_iter().flatten().collect::<Vec<_>>())?;
+    let replay = &arguments.replay;
+    check_files(arguments.mesh.as_deref().as_slice(), replay.replay.as_deref().as_slice())?;
     let steps = arguments.steps.get();
     let plan = PilePlan {
         backends: arguments.backend.clone(),
@@ -73,21 +66,10 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         },
         same_poses: None,
     };
-    let mut picture = None;
     let progress = Progress::visible();
-    let rows = pile(&scene, &plan, &progress, &mut |world| {
-        if written.is_some() {
-            picture.get_or_insert_with(|| world.portrait(1280, 720));
-        }
-    })?;
+    let rows = pile(&scene, &plan, &progress)?;
     progress.finish();
     let [times, accuracy] = runs(&rows, &plan.run);
     print(format_args!("{}\n\n{times}\n\n{accuracy}", Environment::detect()))?;
-    if let Some((path, picture)) = written.zip(picture) {
-        replace_file(path, |path| picture.save(path))?;
-    }
-    if let Some(path) = replay {
-        replay::play(path, &scene, &arguments.backend, plan.run.step_count())?;
-    }
-    Ok(())
+    replay.play(&scene, &arguments.backend, plan.run.step_count())
 }

@@ -8,7 +8,7 @@
 import assert from "node:assert/strict";
 import { mkdirSync, statSync } from "node:fs";
 import { join, resolve } from "node:path";
-import { chromium } from "playwright-core";
+import { open } from "./browser.mjs";
 
 const MOST_BYTES = 5e6;
 const LEAST_FRAMES = 30;
@@ -23,46 +23,42 @@ const bytes = statSync(page).size;
 assert(bytes <= MOST_BYTES, `${bytes} bytes`);
 mkdirSync(folder, { recursive: true });
 
-const browser = await chromium.launch({
-  executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-  args: ["--no-sandbox", "--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-    "--disable-quic", "--no-first-run", "--disable-background-networking",
-    "--disable-component-update", "--disable-sync"],
-});
-try {
-  for (const [name, [width, height]] of Object.entries(SIZES)) await look(name, width, height);
-} finally {
-  await browser.close();
-}
+for (const [name, [width, height]] of Object.entries(SIZES)) await look(name, width, height);
 
 async function look(name, width, height) {
-  const context = await browser.newContext({ viewport: { width, height }, hasTouch: name === "phone" });
-  const tab = await context.newPage();
-  const wrong = [];
-  tab.on("pageerror", (error) => wrong.push(String(error)));
-  tab.on("console", (message) => message.type() === "error" && wrong.push(message.text()));
-  tab.on("request", (request) => {
-    if (!/^(file|data|blob):/.test(request.url())) wrong.push(`asks for ${request.url()}`);
-  });
-  await tab.goto(`file://${page}`);
-  await tab.waitForFunction(() => window.replay?.state.drawn > 0, null, { timeout: 60000 })
-    .catch((error) => { throw new Error(`${wrong.join("\n")}\n${error}`); });
+  const options = { viewport: { width, height }, hasTouch: name === "phone" };
+  const { browser, tab, wrong } = await open(page, options);
+  try {
+    await lookAt(tab, name, width, height);
+  } finally {
+    await browser.close();
+  }
+  assert.deepEqual(wrong, []);
+}
 
+async function lookAt(tab, name, width, height) {
   // It plays by itself.
   const passed = await tab.evaluate(async () => {
     const { state, seek, play } = window.replay;
     const wait = (ms) => new Promise((done) => setTimeout(done, ms));
     seek(0);
     play(true);
+    // A short run starts again.
+    const again = setInterval(() => {
+      if (state.isPlaying) return;
+      seek(0);
+      play(true);
+    }, 10);
     await wait(1500);
     const [drawn, start] = [state.drawn, performance.now()];
     await wait(4000);
     const frames = (1000 * (state.drawn - drawn)) / (performance.now() - start);
+    clearInterval(again);
     play(false);
-    return { frames, time: state.time, level: window.replay.drawing.level };
+    return { frames, drawn: state.drawn };
   });
   console.log(`${name}: ${passed.frames.toFixed(1)} frames a second`);
-  assert(passed.time > 10, "time stands still");
+  assert(passed.drawn > 10, "time stands still");
   if (name === "desktop") assert(passed.frames >= LEAST_FRAMES, `${passed.frames} frames a second`);
 
   // The slider goes to its ends.
@@ -95,8 +91,6 @@ async function look(name, width, height) {
     await tab.waitForTimeout(600);
     await tab.screenshot({ path: join(folder, `${name}-part.png`) });
   }
-  assert.deepEqual(wrong, []);
-  await context.close();
 }
 
 // Projects the places of the run, and looks at the screenshot there.

@@ -1,5 +1,6 @@
-//! Lines for a picture of contacts, and of the trees of prepared meshes ([`layer`]), handed to a
-//! closure `FnMut(a, b, colour)`: any renderer of lines will do.
+//! Lines for a picture of contacts and [`patches`], and of the trees of prepared meshes ([`layer`])
+//! and what they find ([`candidates`]), handed to a closure `FnMut(a, b, colour)`: any renderer of
+//! lines will do.
 //!
 //! Rapier's own debug renderer, and all that is built on it, takes them as they are, as
 //! `examples/draw.rs` does:
@@ -14,7 +15,9 @@
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::ContactManifold;
 use parry3d::shape::Shape;
-pub use sbbk_core::draw::{BOX, Colour, KDOP, SPHERE, aabb, kdop, layer, sphere};
+pub use sbbk_core::draw::{
+    BOX, CANDIDATES, Colour, KDOP, SPHERE, aabb, candidates, kdop, layer, sphere,
+};
 
 /// What [`contacts`] draws points in that are apart, and what those that overlap.
 pub const APART: Colour = [200.0, 0.9, 0.6, 1.0];
@@ -22,6 +25,8 @@ pub const APART: Colour = [200.0, 0.9, 0.6, 1.0];
 pub const OVERLAPPING: Colour = [0.0, 1.0, 0.5, 1.0];
 /// What [`contacts`] draws normals in.
 pub const NORMAL: Colour = [60.0, 1.0, 0.5, 1.0];
+/// What [`patches`] draws in.
+pub const PATCH: Colour = [120.0, 1.0, 0.5, 1.0];
 /// What [`triangles`] draws in, for each of the two shapes.
 pub const TRIANGLES: [Colour; 2] = [[300.0, 0.8, 0.6, 1.0], [30.0, 0.9, 0.6, 1.0]];
 
@@ -55,17 +60,37 @@ pub fn contacts<M, C>(
     mut line: impl FnMut(Vector, Vector, Colour),
 ) {
     for manifold in manifolds {
-        let subshapes = [manifold.subshape_pos1(), manifold.subshape_pos2()];
-        let place = |side: usize, point: Vector| {
-            poses[side] * subshapes[side].map_or(point, |subshape| subshape * point)
-        };
+        let [pose1, pose2] = placed(manifold, poses);
         for point in &manifold.points {
-            let [p1, p2] = [place(0, point.local_p1), place(1, point.local_p2)];
-            let normal = place(0, point.local_p1 + normal_length * manifold.local_n1) - p1;
+            let [p1, p2] = [pose1 * point.local_p1, pose2 * point.local_p2];
+            let normal = pose1.rotation * (normal_length * manifold.local_n1);
             line(p1, p2, if point.dist > 0.0 { APART } else { OVERLAPPING });
             line(p1, p1 + normal, NORMAL);
         }
     }
+}
+
+/// Draws each manifold as lines between all of its points, on the first shape: what counts as one
+/// direction and place, with [`ContactDetail::Patches`](crate::ContactDetail::Patches) a patch.
+pub fn patches<M, C>(
+    manifolds: &[ContactManifold<M, C>],
+    poses: [&Pose; 2],
+    mut line: impl FnMut(Vector, Vector, Colour),
+) {
+    for manifold in manifolds {
+        let [pose, _] = placed(manifold, poses);
+        for (index, one) in manifold.points.iter().enumerate() {
+            for other in &manifold.points[..index] {
+                line(pose * one.local_p1, pose * other.local_p1, PATCH);
+            }
+        }
+    }
+}
+
+/// The poses of the subshapes of a manifold.
+fn placed<M, C>(manifold: &ContactManifold<M, C>, [pose1, pose2]: [&Pose; 2]) -> [Pose; 2] {
+    [(pose1, manifold.subshape_pos1()), (pose2, manifold.subshape_pos2())]
+        .map(|(pose, subshape)| subshape.map_or(*pose, |subshape| *pose * *subshape))
 }
 
 /// Draws the triangles that manifolds are about, of shapes at these poses: of meshes only.

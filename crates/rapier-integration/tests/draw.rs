@@ -16,6 +16,11 @@ fn contacts(shapes: [&dyn Shape; 2], poses: [&Pose; 2]) -> (usize, Vec<Line>, Ve
     let [mut points, mut triangles] = [Vec::new(), Vec::new()];
     draw::contacts(&manifolds, poses, 0.1, |a, b, colour| points.push((a, b, colour)));
     draw::triangles(&manifolds, shapes, poses, |a, b, colour| triangles.push((a, b, colour)));
+    // Each line of a patch joins two points that are drawn.
+    draw::patches(&manifolds, poses, |a, b, _| {
+        let is_drawn = |end| points.iter().step_by(2).any(|point: &Line| point.0 == end);
+        assert!(is_drawn(a) && is_drawn(b), "{a} {b}");
+    });
     (manifolds.iter().map(|manifold| manifold.points.len()).sum(), points, triangles)
 }
 

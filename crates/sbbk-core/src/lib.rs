@@ -42,7 +42,7 @@
 //! * [`surface`]: which triangles of a mesh are neighbours, and whether it bounds a solid.
 //! * [`front`]: a descent that starts where the last one stopped.
 //! * [`broad_phase`]: which of many moving objects are near each other.
-//! * [`draw`]: the volumes of a layer, as lines.
+//! * [`draw`]: the volumes of a layer, and the candidates of a query, as lines.
 //! * [`collections`]: lists of numbers, and groups.
 //! * `truth` (feature `truth`): brute force in f64, to test against.
 //!

@@ -157,3 +157,33 @@ fn layers_hold_the_mesh() {
         }
     }
 }
+
+/// Would catch candidates that are lost, of the wrong mesh or at the wrong pose: of two balls that
+/// touch, some triangles of each, all near the place between.
+#[test]
+fn candidates_are_near_the_contact() {
+    let ball = bumpy_ball(12, 0.0);
+    let tree: Tree =
+        Tree::build(&ball.vertices, &ball.triangles, &BuildOptions::default()).unwrap();
+    let mut random = Random(10);
+    for _ in 0..20 {
+        let pose1: Pose3 = random.pose(3.0);
+        let way = random.vector(1.0).normalize();
+        let pose2 = Pose3::from_translation(1.95 * way) * pose1;
+        let mut lines = Vec::new();
+        let line = |a, b, colour| lines.push((a, b, colour));
+        draw::candidates((&tree, &tree), [&pose1, &pose2], 0.1, line);
+        for colour in draw::CANDIDATES {
+            let of = lines.iter().filter(|line| line.2 == colour);
+            assert!(of.clone().count() > 0 && of.count() < 3 * ball.triangles.len() / 3);
+        }
+        let middle = pose1.translation + 0.975 * way;
+        for &(a, b, colour) in &lines {
+            assert!(a.distance(middle) < 0.9 && b.distance(middle) < 0.9, "{a} {b} {middle}");
+            let pose = if colour == draw::CANDIDATES[0] { &pose1 } else { &pose2 };
+            assert!((a.distance(pose.translation) - 1.0).abs() < 1e-4);
+        }
+    }
+    let far = Pose3::translation(2.1, 0.0, 0.0);
+    draw::candidates((&tree, &tree), [&Pose3::IDENTITY, &far], 0.02, |_, _, _| unreachable!());
+}

@@ -8,7 +8,10 @@ use std::process::ExitCode;
 
 use clap::Args;
 
+use crate::backend::Backend;
+use crate::replay;
 use crate::report::{Results, check_files};
+use crate::scene::Scene;
 use crate::study::{Progress, StudyError};
 
 /// What every study can be asked for.
@@ -57,13 +60,42 @@ impl StudyArguments {
     }
 }
 
+/// What every run of a scene can be asked for.
+#[derive(Args, Clone, Debug, Default)]
+pub struct ReplayArguments {
+    /// Writes a page that plays a scene, the first of several, on backends side by side
+    #[arg(long, value_name = "FILE")]
+    pub replay: Option<PathBuf>,
+}
+
+impl ReplayArguments {
+    /// Runs a scene on some backends and writes their page, if it is wanted.
+    ///
+    /// Errors: the scene cannot be built, or the file cannot be written.
+    pub fn play(
+        &self,
+        scene: &dyn Scene,
+        backends: &[Backend],
+        steps: usize,
+    ) -> Result<(), Box<dyn Error>> {
+        self.replay.as_deref().map_or(Ok(()), |path| replay::play(path, scene, backends, steps))
+    }
+}
+
 /// Files of a run besides its results.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct OtherFiles<'a> {
-    /// A mesh.
+    /// A mesh or a robot.
     pub read: Option<&'a Path>,
-    /// A picture.
+    /// A page.
     pub written: Option<&'a Path>,
+}
+
+impl<'a> OtherFiles<'a> {
+    /// The page of a replay.
+    pub fn written(replay: &'a ReplayArguments) -> Self {
+        Self { read: None, written: replay.replay.as_deref() }
+    }
 }
 
 /// Prints a line. A reader that has gone away, as in `compare | head`, is no error.

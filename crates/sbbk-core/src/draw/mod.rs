@@ -1,4 +1,5 @@
-//! Lines for a picture of what a tree holds, handed to a closure: any renderer of lines will do.
+//! Lines for a picture of what a tree holds, and of what a query of two finds, handed to a closure:
+//! any renderer of lines will do.
 //!
 //! ```
 //! # use sbbk_core::tree::{BuildOptions, Tree};
@@ -15,6 +16,7 @@
 //! # Ok::<(), sbbk_core::tree::BuildError>(())
 //! ```
 
+mod candidates;
 mod polytope;
 
 use std::f32::consts::TAU;
@@ -24,6 +26,8 @@ use glamx::{Pose3, Vec3};
 use crate::tree::Tree;
 use crate::volumes::{Aabb, DirectionSet, Directions, Kdop, Sphere};
 use polytope::edges;
+
+pub use candidates::candidates;
 
 /// Hue in degrees, then saturation, lightness and opacity from 0 to 1: as Rapier's debug renderer
 /// has it.
@@ -35,6 +39,9 @@ pub const SPHERE: Colour = [50.0, 1.0, 0.5, 1.0];
 pub const BOX: Colour = [210.0, 1.0, 0.5, 1.0];
 /// What [`layer`] draws k-DOPs in.
 pub const KDOP: Colour = [140.0, 1.0, 0.4, 1.0];
+
+/// What [`candidates`] draws in, for each of the two meshes.
+pub const CANDIDATES: [Colour; 2] = [[260.0, 0.5, 0.7, 1.0], [180.0, 0.5, 0.6, 1.0]];
 
 /// Lines of each great circle of a sphere. Fewer: corners show.
 const CIRCLE_LINES: u32 = 32;

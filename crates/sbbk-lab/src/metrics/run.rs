@@ -119,9 +119,9 @@ impl Runner {
         }
     }
 
-    /// The world and the measurements.
-    pub fn finish(self) -> (SceneWorld, Run) {
-        (self.built, self.run)
+    /// The measurements.
+    pub fn finish(self) -> Run {
+        self.run
     }
 }
 
@@ -131,7 +131,7 @@ impl Runner {
 pub fn run(scene: &dyn Scene, backend: Backend, plan: RunPlan) -> Result<Run, SceneError> {
     let mut runner = Runner::new(scene, backend, plan)?;
     (0..plan.step_count()).for_each(|_| runner.step());
-    Ok(runner.finish().1)
+    Ok(runner.finish())
 }
 
 fn sampled_step(

@@ -102,7 +102,7 @@ pub fn compare(plan: &ComparePlan, progress: &Progress) -> Result<Results, Study
         let repeats = if is_cheap { plan.pile.repeats } else { 1 };
         let same_poses = plan.pile.same_poses.filter(|_| contact_recycling);
         let plan = PilePlan { repeats, same_poses, ..plan.pile.clone() };
-        rows.extend(pile(&scene, &plan, progress, &mut |_| ())?);
+        rows.extend(pile(&scene, &plan, progress)?);
     }
     rows.extend(meshes(&plan.meshes(), progress)?);
     progress.finish();

@@ -66,7 +66,7 @@ pub fn cost(plan: &CostPlan, progress: &Progress) -> Result<Results, StudyError>
         };
         let backends = plan.backends.clone();
         let pile_plan = PilePlan { backends, repeats: 1, run, same_poses: None };
-        let found = pile(&scene, &pile_plan, progress, &mut |_| ())?;
+        let found = pile(&scene, &pile_plan, progress)?;
         rows.extend(found.into_iter().map(|found| {
             let row = Row::new(COST, found.backend.clone()).key("growing", axis);
             let row = row.key("count", count);

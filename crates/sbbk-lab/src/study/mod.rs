@@ -41,7 +41,7 @@ use crate::mesh::Mesh;
 use crate::report::ReportError;
 use crate::scene::SceneError;
 
-/// A mesh does not serve, or a page cannot be written.
+/// A mesh does not serve, a scene is not there, or a page cannot be written.
 #[derive(Debug, Error)]
 pub enum StudyError {
     /// A scene could not be built.
@@ -64,6 +64,9 @@ pub enum StudyError {
         #[source]
         cause: BuildError,
     },
+    /// No scene has the name that is wanted.
+    #[error("no scene of these has `{0}` in its name")]
+    NoScene(String),
     /// A page could not be written.
     #[error(transparent)]
     Report(#[from] ReportError),

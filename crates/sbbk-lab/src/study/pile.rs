@@ -14,7 +14,7 @@ use crate::metrics::{
 use crate::report::{
     ERROR_NOTE, Look, Panel, Row, Scale, TIME_NOTE, Table, TableSpec, errors, faster, number, time,
 };
-use crate::scene::{MonkeyPile, Scene, SceneError, SceneWorld};
+use crate::scene::{MonkeyPile, Scene, SceneError};
 
 const RUNS: &str = "pile, whole runs";
 const SAME_POSES: &str = "pile, same poses";
@@ -48,15 +48,14 @@ impl PilePlan {
     pub const FREE_FALL: usize = 27;
 }
 
-/// Runs `scene` on the backends of `plan`; `at_end` sees each world after its last step. Times are
-/// means over a run's timed steps, in milliseconds, summed up over the runs.
+/// Runs `scene` on the backends of `plan`. Times are means over a run's timed steps, in milliseconds,
+/// summed up over the runs.
 ///
 /// Errors: the scene cannot be built.
 pub fn pile(
     scene: &MonkeyPile,
     plan: &PilePlan,
     progress: &Progress,
-    at_end: &mut dyn FnMut(&SceneWorld),
 ) -> Result<Vec<Row>, SceneError> {
     let mut runs: Vec<Vec<Run>> = plan.backends.iter().map(|_| Vec::new()).collect();
     for repeat in 0..plan.repeats {
@@ -64,10 +63,7 @@ pub fn pile(
         let sample_every = if repeat == 0 { plan.run.sample_every } else { 0 };
         let run_plan = RunPlan { sample_every, ..plan.run };
         let ended = side_by_side(scene, &plan.backends, run_plan, progress)?;
-        for ((world, run), runs) in ended.into_iter().zip(&mut runs) {
-            at_end(&world);
-            runs.push(run);
-        }
+        ended.into_iter().zip(&mut runs).for_each(|(run, runs)| runs.push(run));
     }
     let mut rows: Vec<Row> = runs.iter().map(|runs| row(scene, runs)).collect();
     let sample = runs.first().and_then(|runs| runs.first()?.samples.last());
@@ -87,7 +83,7 @@ fn side_by_side(
     backends: &[Backend],
     plan: RunPlan,
     progress: &Progress,
-) -> Result<Vec<(SceneWorld, Run)>, SceneError> {
+) -> Result<Vec<Run>, SceneError> {
     let runners = backends.iter().map(|&backend| Runner::new(scene, backend, plan));
     let mut runners = runners.collect::<Result<Vec<Runner>, _>>()?;
     for step in 0..plan.step_count() {

@@ -2,7 +2,7 @@
 
 use sbbk_core::surface::SurfaceKind;
 use sbbk_lab::mesh;
-use sbbk_lab::study::everyday::{Advice, advise};
+use sbbk_lab::study::everyday::{Advice, advise, advise_robot};
 
 fn measured(mesh: &sbbk_lab::mesh::Mesh) -> (Advice, Vec<String>) {
     let advice = advise(mesh, 60, 1).unwrap();
@@ -47,4 +47,26 @@ fn advice_fits_the_mesh() {
             assert!(stock.wrong("judged") > 100 && sbbk.wrong("judged") == 0, "{stock:?} {sbbk:?}");
         }
     }
+}
+
+/// Would catch robots whose links are lost, lie apart or hang in the air, flags that take the inside
+/// of meshes away, and files that cannot be used but do not say so.
+#[test]
+fn robots_are_measured_as_a_whole() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/walker/walker.urdf");
+    let advice = advise_robot(file.as_ref(), 60, 1).unwrap();
+    assert_eq!((&*advice.name, advice.kind), ("walker", SurfaceKind::Solid));
+    assert!(advice.triangles > 2500 && (0.5..2.0).contains(&advice.size), "{advice}");
+    for [stock, sbbk] in &advice.rows {
+        assert!(sbbk.count("pairs.mesh_pairs") > 50, "{sbbk:?}");
+        assert!(sbbk.wrong("judged") <= stock.wrong("judged"), "{sbbk:?}");
+    }
+    // Whether two meshes meet is not judged.
+    for [_, sbbk] in &advice.rows[..2] {
+        assert_eq!(sbbk.count("pairs.missed") + sbbk.count("pairs.phantom"), 0, "{sbbk:?}");
+    }
+    let lines: Vec<String> = advice.to_string().lines().map(str::to_owned).collect();
+    assert!(lines[2].contains("TriMeshFlags::empty()"), "{}", lines[2]);
+    let missing = advise_robot("no/such.urdf".as_ref(), 1, 1).unwrap_err().to_string();
+    assert!(missing.contains("no/such.urdf"), "{missing}");
 }

@@ -121,18 +121,24 @@ class Drawing {
     let moving = 0;
     const tints = run.shapes.map((_, object) =>
       linear(run.fixed[object] ? FIXED : PALETTE[moving++ % PALETTE.length]));
-    return this.data.shapes.flatMap((levels, shape) => {
-      const objects = run.shapes.flatMap((other, object) => (other === shape ? [object] : []));
+    const together = this.data.shapes.map((_, shape) =>
+      run.shapes.flatMap((other, object) => (other === shape && !run.soft.has(object) ? [object] : [])));
+    const alone = [...run.soft.keys()].map((object) => [object]);
+    return [...together, ...alone].flatMap((objects) => {
       if (!objects.length) return [];
+      const levels = this.data.shapes[run.shapes[objects[0]]];
+      const isSoft = run.soft.has(objects[0]);
       const instanced = (size, data) => ({ instanced: 1, size, data });
       const place = instanced(3, new Float32Array(3 * objects.length));
       const turn = instanced(4, new Float32Array(4 * objects.length));
       const tint = instanced(3, new Float32Array(objects.flatMap((object) => tints[object])));
       const program = programs[Number(isClosed(levels[0]))];
-      const meshes = levels.map((level, at) => {
+      const meshes = (isSoft ? [levels[0], levels[0]] : levels).map((level, at) => {
         // Many small bodies have all vertices once.
         const isSmooth = at > 0 && level.triangles.length > 3 * 24;
-        const { position, normal, index } = faceted(level, isSmooth ? -1 : SMOOTH);
+        const { vertices, triangles } = level;
+        const { position, normal, index } = isSoft
+          ? { position: vertices, normal: vertices, index: triangles } : faceted(level, isSmooth ? -1 : SMOOTH);
         const geometry = new OGL.Geometry(this.gl, {
           position: { size: 3, data: new Float32Array(position) },
           normal: { size: 3, data: new Float32Array(normal) },
@@ -141,7 +147,7 @@ class Drawing {
         });
         return new OGL.Mesh(this.gl, { geometry, program, frustumCulled: false });
       });
-      return [{ objects, place: place.data, turn: turn.data, meshes }];
+      return [{ objects, isSoft, place: place.data, turn: turn.data, meshes }];
     });
   }
 
@@ -167,8 +173,8 @@ class Drawing {
     return { contacts: make(most, 4, [0.85, 0, 0.1], 0), mark };
   }
 
-  // The camera that sees nearly all moving bodies, some times of the run together.
-  look() {
+  // The camera that sees nearly all moving bodies, some times of the run together, from this side.
+  look(side = VIEW) {
     const run = this.data.runs.at(-1);
     const isStill = run.fixed.every((fixed) => fixed);
     const bodies = run.shapes.flatMap((shape, object) => {
@@ -187,7 +193,7 @@ class Drawing {
       return 0.5 * ((along[Math.floor(0.03 * along.length)] ?? 0) + most(along));
     });
     const dot = (u, v) => u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-    const back = VIEW.map((k) => k / Math.hypot(...VIEW));
+    const back = side.map((k) => k / Math.hypot(...side));
     const flat = Math.hypot(back[0], back[2]);
     const right = [back[2] / flat, 0, -back[0] / flat];
     const up = [back[1] * right[2], back[2] * right[0] - back[0] * right[2], -back[1] * right[0]];
@@ -236,11 +242,17 @@ class Drawing {
     this.runs.forEach(({ run, groups, contacts, mark }, index) => {
       const { x, y, width, height } = views[index];
       gl.viewport(x, y, width, height);
-      for (const { objects, place, turn, meshes } of groups) {
+      for (const { objects, isSoft, place, turn, meshes } of groups) {
         objects.forEach((object, at) => pose(data, run, object, time,
           place.subarray(3 * at, 3 * at + 3), turn.subarray(4 * at, 4 * at + 4)));
         const mesh = meshes[this.level];
-        mesh.geometry.attributes.place.needsUpdate = mesh.geometry.attributes.turn.needsUpdate = true;
+        const { attributes } = mesh.geometry;
+        attributes.place.needsUpdate = attributes.turn.needsUpdate = true;
+        if (isSoft) {
+          const { position, normal, index } = attributes;
+          deform(data, run, objects[0], time, index.data, position.data, normal.data);
+          position.needsUpdate = normal.needsUpdate = true;
+        }
         mesh.draw({ camera });
       }
       if (!this.showsContacts) return;

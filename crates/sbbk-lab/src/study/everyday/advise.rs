@@ -1,6 +1,7 @@
-//! What SBBK is worth for a mesh: as a terrain, as a body, as a sensor.
+//! What SBBK is worth for a mesh or a robot: as a terrain, as bodies, as sensors.
 
 use std::fmt;
+use std::path::Path;
 use std::time::Duration;
 
 use glamx::{Pose3, Vec3};
@@ -8,26 +9,28 @@ use oorandom::Rand32;
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use rapier3d::math::Real;
+use rapier3d::parry::bounding_volume::Aabb;
 use rapier3d::parry::query::Ray;
 use rapier3d::pipeline::{ActiveEvents, PhysicsWorld};
-use sbbk_core::surface::{Surface, SurfaceKind};
+use sbbk_core::surface::SurfaceKind;
 
 use super::ground::{kinds, put};
 use super::measure::{Driven, Everyday};
+use super::subject::Subject;
 use crate::mesh::Mesh;
 use crate::report::Row;
-use crate::scene::{Solid, random};
+use crate::scene::random;
 use crate::study::StudyError;
 
 const STUDY: &str = "advice";
-/// Convex bodies on the mesh, along each side of it.
+/// Convex bodies on it, along each side.
 const TERRAIN_SIDE: usize = 7;
-/// Their length, as a share of the mesh's longest side.
+/// Their length, as a share of its longest side.
 const TERRAIN_BODY: f32 = 0.07;
-/// Bodies of the mesh that fall onto each other: fewer of large meshes, as stock takes long.
+/// Bodies that fall onto each other: fewer of many triangles, as stock takes long.
 const BODIES: [usize; 2] = [6, 24];
 const BODY_TRIANGLES: usize = 100_000;
-/// Sensors of the mesh, around one of it.
+/// Sensors around one of it.
 const SENSORS: usize = 10;
 /// A mesh with more triangles has a tree only if it is prepared.
 const UNPREPARED: usize = 8192;
@@ -36,10 +39,10 @@ const NOISE: f64 = 1.1;
 /// A mesh whose size in units is outside of this wants another `length_unit`.
 const USUAL_SIZES: [f32; 2] = [0.3, 30.0];
 
-/// What was measured of one mesh; displayed as its name and three lines.
+/// What was measured of one mesh or robot; displayed as its name and three lines.
 #[derive(Clone, Debug)]
 pub struct Advice {
-    /// Name of the mesh.
+    /// Name of the mesh, or of the robot's file.
     pub name: String,
     /// Number of its triangles.
     pub triangles: usize,
@@ -49,6 +52,8 @@ pub struct Advice {
     pub kind: SurfaceKind,
     /// Under stock Rapier and under SBBK: as a terrain, as bodies, as sensors.
     pub rows: [[Row; 2]; 3],
+    is_robot: bool,
+    wants_trees: bool,
 }
 
 /// Measures whole worlds with this mesh, each `repeats` times for so many `steps`.
@@ -57,52 +62,60 @@ pub struct Advice {
 ///
 /// Errors: the mesh has no triangles.
 pub fn advise(mesh: &Mesh, steps: usize, repeats: usize) -> Result<Advice, StudyError> {
-    let mesh = &mesh.clone().centred();
-    let solid = Solid::new(mesh)?;
-    let scenes = Scenes {
-        mesh,
-        shape: solid.collider().shape,
-        solid,
-        size: mesh.bounds().extents().max_element(),
-    };
+    advise_on(&Subject::mesh(mesh)?, steps, repeats)
+}
+
+/// The same of the robot of a URDF file, by Rapier's loader. Its meshes have no flags.
+///
+/// Errors: the file cannot be loaded, or its robot has no shapes.
+pub fn advise_robot(file: &Path, steps: usize, repeats: usize) -> Result<Advice, StudyError> {
+    advise_on(&Subject::robot(file)?, steps, repeats)
+}
+
+fn advise_on(subject: &Subject, steps: usize, repeats: usize) -> Result<Advice, StudyError> {
+    let bounds = subject.bounds(&Pose3::IDENTITY);
+    let size = bounds.extents().max_element();
+    let scenes = Scenes { subject, bounds, size, large: subject.larger_than(UNPREPARED) };
     let mut measured = [scenes.terrain(steps), scenes.bodies(steps), scenes.sensors(steps)]
         .into_iter()
         .map(|scene| scene.measure(repeats));
     let mut next = || measured.next().expect("there are three");
     let rows = [next()?, next()?, next()?];
     Ok(Advice {
-        name: mesh.name.clone(),
-        triangles: mesh.triangle_count(),
-        size: scenes.size,
-        kind: Surface::new(&mesh.vertices, &mesh.triangles).kind(),
+        name: subject.name.clone(),
+        triangles: subject.triangle_count(),
+        size,
+        kind: subject.kind(),
         rows,
+        is_robot: subject.is_robot,
+        wants_trees: !scenes.large.is_empty(),
     })
 }
 
 struct Scenes<'a> {
-    mesh: &'a Mesh,
-    solid: Solid,
-    shape: SharedShape,
+    subject: &'a Subject,
+    bounds: Aabb,
     size: f32,
+    /// Shapes that have a tree only if they are prepared.
+    large: Vec<SharedShape>,
 }
 
 impl Scenes<'_> {
-    /// Convex bodies of all kinds, each a little above the highest point of the mesh below it.
+    /// Convex bodies of all kinds, each a little above the highest point of the subject below it.
     fn terrain(&self, steps: usize) -> Everyday<'_> {
         let length = TERRAIN_BODY * self.size;
         let (_, shapes) = kinds(length).pop().expect("the last is the mixture");
         let build = move || {
             let mut world = world(length);
-            world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(self.shape.clone()));
-            let (mut random, bounds) = (Rand32::new(5), self.mesh.bounds());
+            self.fix(&mut world);
+            let mut random = Rand32::new(5);
             let mut shapes = shapes.iter().cycle();
             for index in 0..TERRAIN_SIDE * TERRAIN_SIDE {
                 let [x, z] = [index % TERRAIN_SIDE, index / TERRAIN_SIDE]
                     .map(|place| (place as f32 + 0.5) / TERRAIN_SIDE as f32);
                 let share = Vec3::new(x, 1.0, z);
-                let top = bounds.mins + share * bounds.extents() + 2.0 * length * Vec3::Y;
-                let ray = Ray::new(top, Vec3::NEG_Y);
-                let hit = self.shape.cast_local_ray(&ray, 2.0 * self.size, false);
+                let top = self.bounds.mins + share * self.bounds.extents() + 2.0 * length * Vec3::Y;
+                let hit = self.subject.cast(&Ray::new(top, Vec3::NEG_Y), 2.0 * self.size);
                 let turn = random::rotation(&mut random);
                 if let (Some(fall), Some(shape)) = (hit, shapes.next()) {
                     let place = top - (fall - length) * Vec3::Y;
@@ -115,10 +128,10 @@ impl Scenes<'_> {
         Everyday::new(self.row("terrain"), steps, build)
     }
 
-    /// Copies of the mesh that fall onto each other and a floor.
+    /// Copies that fall onto each other and a floor.
     fn bodies(&self, steps: usize) -> Everyday<'_> {
         let [least, most] = BODIES;
-        let count = (BODY_TRIANGLES / self.mesh.triangle_count().max(1)).clamp(least, most);
+        let count = (BODY_TRIANGLES / self.subject.triangle_count().max(1)).clamp(least, most);
         let build = move || {
             let mut world = world(self.size);
             let floor = ColliderBuilder::cuboid(20.0 * self.size, self.size, 20.0 * self.size);
@@ -126,34 +139,37 @@ impl Scenes<'_> {
             let (mut random, mut height) = (Rand32::new(5), 0.0);
             for index in 0..count {
                 let turn = random::rotation(&mut random);
-                let bounds = self.shape.compute_aabb(&Pose3::from_rotation(turn));
+                let bounds = self.subject.bounds(&Pose3::from_rotation(turn));
                 let spread = 0.5 * bounds.extents() * random::direction(&mut random);
                 let column = self.size * Vec3::X * (0.8 * (index % 3) as f32 - 0.8);
                 let place = column + spread.with_y(height - bounds.mins.y);
-                let body = RigidBodyBuilder::dynamic().pose(Pose3::from_parts(place, turn));
-                world.insert(body, self.solid.collider());
+                self.subject.insert(&mut world, Pose3::from_parts(place, turn));
                 // Three start side by side, and may touch.
                 height += if index % 3 == 2 { self.size } else { 0.0 };
             }
             Ok(Driven::alone(world))
         };
-        self.with_tree(Everyday::new(self.row("bodies"), steps, build))
+        let scene = Everyday::new(self.row("bodies"), steps, build);
+        Everyday { prepared: self.large.clone(), ..scene }
     }
 
-    /// Sensors of the mesh that drift through one that is fixed, and past it.
+    /// Sensors that drift through one of it that is fixed, and past it.
     fn sensors(&self, steps: usize) -> Everyday<'_> {
         let build = move || {
             let mut world = world(self.size);
-            world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(self.shape.clone()));
+            self.fix(&mut world);
             let mut random = Rand32::new(5);
-            let sensor = ColliderBuilder::new(self.shape.clone()).sensor(true);
-            let sensor = sensor.active_events(ActiveEvents::COLLISION_EVENTS);
             let starts = (0..SENSORS).map(|index| {
                 let away = self.size * (0.2 + 0.8 * index as f32 / SENSORS as f32);
                 let place = away * random::direction(&mut random);
                 let pose = Pose3::from_parts(place, random::rotation(&mut random));
                 let body = RigidBodyBuilder::dynamic().pose(pose).gravity_scale(0.0);
-                (world.insert(body.additional_mass(1.0), sensor.clone()).0, place)
+                let body = world.insert_body(body.additional_mass(1.0));
+                for sensor in self.subject.colliders() {
+                    let sensor = sensor.sensor(true).active_events(ActiveEvents::COLLISION_EVENTS);
+                    world.insert_collider(sensor, Some(body));
+                }
+                (body, place)
             });
             let starts: Vec<_> = starts.collect();
             let speed = 0.002 * self.size;
@@ -164,18 +180,20 @@ impl Scenes<'_> {
                 Duration::ZERO
             }))
         };
-        self.with_tree(Everyday::new(self.row("sensors"), steps, build))
+        let scene = Everyday::new(self.row("sensors"), steps, build);
+        Everyday { prepared: self.large.clone(), ..scene }
+    }
+
+    /// Puts one into a world that cannot move.
+    fn fix(&self, world: &mut PhysicsWorld) {
+        let body = world.insert_body(RigidBodyBuilder::fixed());
+        for collider in self.subject.colliders() {
+            world.insert_collider(collider, Some(body));
+        }
     }
 
     fn row(&self, part: &str) -> Row {
-        Row::new(STUDY, "").key("mesh", &*self.mesh.name).key("as", part)
-    }
-
-    fn with_tree<'s>(&self, mut scene: Everyday<'s>) -> Everyday<'s> {
-        if self.mesh.triangle_count() > UNPREPARED {
-            scene.prepared.push(self.shape.clone());
-        }
-        scene
+        Row::new(STUDY, "").key("mesh", &*self.subject.name).key("as", part)
     }
 }
 
@@ -199,7 +217,10 @@ impl Advice {
     /// What to set for each use.
     fn settings(&self) -> [String; 3] {
         let mut body: Vec<String> = Vec::new();
-        if self.triangles > UNPREPARED {
+        if self.is_robot {
+            body.push("load it with `trimesh_flags = TriMeshFlags::empty()`, as here".into());
+        }
+        if self.wants_trees {
             body.push("call `prepare_shape` at load time".into());
         }
         if self.kind == SurfaceKind::InsideOut {

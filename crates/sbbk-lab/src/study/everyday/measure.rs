@@ -1,16 +1,19 @@
 //! One scene, run under stock Rapier and under SBBK in turns.
 
+use std::path::Path;
 use std::time::{Duration, Instant};
 
-use rapier_integration::SbbkDispatcher;
+use rapier_integration::{PreparedTree, SbbkDispatcher};
 use rapier3d::geometry::SharedShape;
 use rapier3d::pipeline::PhysicsWorld;
 use serde::Serialize;
 
 use super::compare::Comparison;
 use crate::backend::{Backend, shape_address};
+use crate::replay::{self, Recorder};
 use crate::report::Row;
 use crate::scene::SceneError;
+use crate::study::StudyError;
 
 /// A world that can be built again and again, and what moves in it besides.
 pub(super) struct Everyday<'a> {
@@ -151,22 +154,52 @@ impl<'a> Everyday<'a> {
         Ok([stock, sbbk])
     }
 
+    /// Runs it once more on either backend, and writes a page that plays both.
+    ///
+    /// Errors: the scene cannot be built, or the page cannot be written.
+    pub fn play(&self, path: &Path) -> Result<(), StudyError> {
+        let sbbk = SbbkDispatcher::default();
+        let mut runs = Vec::new();
+        for (backend, dispatcher) in [(Backend::Stock, None), (Backend::Sbbk, Some(&sbbk))] {
+            let (Driven { mut world, mut drive }, _prepared) = self.start(dispatcher)?;
+            let mut recorder = Recorder::new(backend, &world);
+            for step in 0..self.steps {
+                drive(&mut world, step);
+                recorder.step(&mut world);
+            }
+            runs.push(recorder);
+        }
+        Ok(replay::write(path, &self.name(), &runs)?)
+    }
+
+    /// What tables call it.
+    pub fn name(&self) -> String {
+        let keys = self.row.keys.iter();
+        let keys = keys.map(|(key, value)| match value.as_str() {
+            Some(text) => text.to_owned(),
+            None => format!("{value} {key}"),
+        });
+        keys.collect::<Vec<_>>().join(", ")
+    }
+
+    fn start(
+        &self,
+        dispatcher: Option<&SbbkDispatcher>,
+    ) -> Result<(Driven, Vec<Option<PreparedTree>>), SceneError> {
+        let mut driven = (self.build)()?;
+        let Some(dispatcher) = dispatcher else { return Ok((driven, Vec::new())) };
+        driven.world.narrow_phase.set_query_dispatcher(dispatcher.clone());
+        let trees = self.prepared.iter().filter_map(|shape| dispatcher.prepare_shape(shape).ok());
+        Ok((driven, trees.collect()))
+    }
+
     fn run(
         &self,
         dispatcher: Option<&SbbkDispatcher>,
         side: &mut Side,
         mut comparison: Option<&mut Comparison>,
     ) -> Result<(), SceneError> {
-        let Driven { mut world, mut drive } = (self.build)()?;
-        if let Some(dispatcher) = dispatcher {
-            world.narrow_phase.set_query_dispatcher(dispatcher.clone());
-        }
-        let prepare = |dispatcher: &SbbkDispatcher| {
-            let trees =
-                self.prepared.iter().filter_map(|shape| dispatcher.prepare_shape(shape).ok());
-            trees.collect::<Vec<_>>()
-        };
-        let _prepared = dispatcher.map(prepare);
+        let (Driven { mut world, mut drive }, _prepared) = self.start(dispatcher)?;
         world.physics_pipeline.counters.enable();
         for step in 0..self.steps {
             let asked = drive(&mut world, step);

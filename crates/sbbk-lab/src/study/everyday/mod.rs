@@ -14,10 +14,11 @@ mod queries;
 mod report;
 mod robots;
 mod scenes;
+mod subject;
 mod truth;
 
-pub use advise::{Advice, advise};
-use std::path::PathBuf;
+pub use advise::{Advice, advise, advise_robot};
+use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use rapier3d::geometry::TriMeshFlags;
@@ -94,6 +95,10 @@ pub struct EverydayPlan {
     pub heads: usize,
     /// Cells along a side of the terrains for single queries, of half a unit.
     pub query_cells: Vec<u32>,
+    /// Only worlds with this in their names.
+    pub name: String,
+    /// The page on which the first of these worlds is played.
+    pub replay: Option<PathBuf>,
 }
 
 impl EverydayPlan {
@@ -118,6 +123,8 @@ impl EverydayPlan {
             urdf: None,
             heads: 300,
             query_cells: vec![23, 100, 400, 1000],
+            name: String::new(),
+            replay: None,
         }
     }
 
@@ -144,12 +151,14 @@ impl EverydayPlan {
 
 /// Measures all that `plan` asks for.
 ///
-/// Errors: the URDF file cannot be loaded. Not those of a mesh without triangles, which these are not.
+/// Errors: there is no such world, the URDF file cannot be loaded, or the page cannot be written. Not those of a mesh without
+/// triangles, which these are not.
 pub fn everyday(plan: &EverydayPlan, progress: &Progress) -> Result<Results, StudyError> {
+    let mut worlds = Worlds { plan, progress, replay: plan.replay.as_deref() };
     let mut rows = Vec::new();
     for group in &plan.groups {
         rows.extend(match group {
-            Group::Terrains => on_terrains(plan, progress)?,
+            Group::Terrains => on_terrains(&mut worlds)?,
             Group::Queries => queries(plan, progress)?,
             Group::Single => {
                 let large = plan.large()?;
@@ -158,7 +167,7 @@ pub fn everyday(plan: &EverydayPlan, progress: &Progress) -> Result<Results, Stu
                 let mut scenes = scenes::bouncing(&large, 5 * plan.steps)?;
                 scenes.extend(scenes::crossing(&world, 2 * plan.steps)?);
                 scenes.push(scenes::rolling_population(&small, plan.small_meshes));
-                plan.measure("single bodies, many meshes", &scenes, progress)?
+                worlds.measure("single bodies, many meshes", &scenes)?
             }
             Group::Flags => {
                 let [all, fixed] = [TriMeshFlags::all(), TriMeshFlags::FIX_INTERNAL_EDGES];
@@ -166,19 +175,20 @@ pub fn everyday(plan: &EverydayPlan, progress: &Progress) -> Result<Results, Stu
                 let fixed = Ground::new(plan.deformable_cells, 0.5, fixed)?;
                 let mut scenes = scenes::all_flags(&all, plan.steps)?;
                 scenes.extend(robots::robots(&fixed, plan.urdf.as_deref(), plan.steps)?);
-                plan.measure("all flags, and robots", &scenes, progress)?
+                worlds.measure("all flags, and robots", &scenes)?
             }
             Group::Sensors => {
                 let large = plan.large()?;
                 let scenes = scenes::sensors(&large, plan.steps)?;
-                plan.measure("sensors and characters", &scenes, progress)?
+                worlds.measure("sensors and characters", &scenes)?
             }
-            Group::Pile => {
-                plan.measure("pile", &[scenes::pile(plan.heads, plan.steps)], progress)?
-            }
+            Group::Pile => worlds.measure("pile", &[scenes::pile(plan.heads, plan.steps)])?,
         });
     }
     progress.finish();
+    if rows.is_empty() {
+        return Err(StudyError::NoScene(plan.name.clone()));
+    }
     let (tables, panels) = (report::tables(plan, &rows), report::panels(&rows));
     Ok(Results { environment: Environment::detect(), rows, tables, panels })
 }
@@ -188,24 +198,33 @@ impl EverydayPlan {
     fn large(&self) -> Result<Ground, StudyError> {
         Ok(Ground::new(self.cells, 0.5, TriMeshFlags::FIX_INTERNAL_EDGES)?)
     }
+}
 
-    fn measure(
-        &self,
-        phase: &str,
-        scenes: &[Everyday],
-        progress: &Progress,
-    ) -> Result<Vec<Row>, StudyError> {
-        progress.phase(phase, scenes.len());
+/// Measures worlds.
+struct Worlds<'a> {
+    plan: &'a EverydayPlan,
+    progress: &'a Progress,
+    /// The page that is not written yet.
+    replay: Option<&'a Path>,
+}
+
+impl Worlds<'_> {
+    fn measure(&mut self, phase: &str, scenes: &[Everyday]) -> Result<Vec<Row>, StudyError> {
+        let scenes: Vec<&Everyday> =
+            scenes.iter().filter(|scene| scene.name().contains(&self.plan.name)).collect();
+        self.progress.phase(phase, scenes.len());
         let mut rows = Vec::new();
         for scene in scenes {
-            rows.extend(scene.measure(self.repeats)?);
-            progress.step();
+            rows.extend(scene.measure(self.plan.repeats)?);
+            self.replay.take().map(|path| scene.play(path)).transpose()?;
+            self.progress.step();
         }
         Ok(rows)
     }
 }
 
-fn on_terrains(plan: &EverydayPlan, progress: &Progress) -> Result<Vec<Row>, StudyError> {
+fn on_terrains(worlds: &mut Worlds) -> Result<Vec<Row>, StudyError> {
+    let plan = worlds.plan;
     let mut rows = Vec::new();
     for (index, &ground_plan) in plan.grounds.iter().enumerate() {
         let GroundPlan { cells, cell, fixes_edges } = ground_plan;
@@ -216,7 +235,7 @@ fn on_terrains(plan: &EverydayPlan, progress: &Progress) -> Result<Vec<Row>, Stu
         let ground = Ground::new(cells, cell, flags)?;
         let scenes = scenes::bodies(ground_plan, &ground, plan.bodies, plan.steps);
         let phase = format!("bodies on terrain {} of {}", index + 1, plan.grounds.len());
-        rows.extend(plan.measure(&phase, &scenes, progress)?);
+        rows.extend(worlds.measure(&phase, &scenes)?);
     }
     Ok(rows)
 }

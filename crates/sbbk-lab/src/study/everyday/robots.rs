@@ -50,8 +50,7 @@ pub(super) fn robots<'a>(
     let defaults = UrdfLoaderOptions::default().trimesh_flags;
     let mut scenes = Vec::new();
     for (name, flags) in [("the loader's flags", defaults), ("no flags", TriMeshFlags::empty())] {
-        let bounds = bounds(&load(file, flags, Pose3::IDENTITY)?)
-            .ok_or_else(|| unusable(file, "no link has a shape"))?;
+        let bounds = bounds(&load(file, flags, Pose3::IDENTITY)?, file)?;
         let load = |index| load(file, flags, start(ground, bounds, index));
         let robots = (0..COUNT).map(load).collect::<Result<Vec<UrdfRobot>, _>>()?;
         let row = Row::new(DEFORMABLE, "")
@@ -74,7 +73,9 @@ pub(super) fn robots<'a>(
 }
 
 /// The box around the shapes of a robot.
-fn bounds(robot: &UrdfRobot) -> Option<Aabb> {
+///
+/// Errors: it has none.
+pub(super) fn bounds(robot: &UrdfRobot, file: &Path) -> Result<Aabb, StudyError> {
     let links = robot.links.iter().map(|link| (link.body.position(), &link.colliders));
     let boxes = links.flat_map(|(body, colliders)| {
         colliders.iter().map(move |part| {
@@ -82,7 +83,9 @@ fn bounds(robot: &UrdfRobot) -> Option<Aabb> {
             part.shape().compute_aabb(&(body * part.position()))
         })
     });
-    boxes.reduce(|one, two| one.merged(&two))
+    boxes
+        .reduce(|one, two| one.merged(&two))
+        .ok_or_else(|| unusable(file, "no link has a shape that can collide"))
 }
 
 /// Where a robot starts. In the file z is up.
@@ -95,7 +98,11 @@ fn start(ground: &Ground, bounds: Aabb, index: usize) -> Pose3 {
 }
 
 /// Each robot has its own meshes, as if each were loaded by itself.
-fn load(file: &Path, trimesh_flags: TriMeshFlags, shift: Pose3) -> Result<UrdfRobot, StudyError> {
+pub(super) fn load(
+    file: &Path,
+    trimesh_flags: TriMeshFlags,
+    shift: Pose3,
+) -> Result<UrdfRobot, StudyError> {
     let options = UrdfLoaderOptions { trimesh_flags, shift, ..UrdfLoaderOptions::default() };
     let (robot, _) =
         UrdfRobot::from_file(file, options, None).map_err(|cause| unusable(file, cause))?;
@@ -103,12 +110,12 @@ fn load(file: &Path, trimesh_flags: TriMeshFlags, shift: Pose3) -> Result<UrdfRo
 }
 
 /// The joints of a leg, and when in a stride it swings.
-struct Leg {
+pub(super) struct Leg {
     joints: [ImpulseJointHandle; 2],
     phase: f32,
 }
 
-fn insert(world: &mut PhysicsWorld, robot: UrdfRobot) -> Vec<Leg> {
+pub(super) fn insert(world: &mut PhysicsWorld, robot: UrdfRobot) -> Vec<Leg> {
     let joints = robot
         .insert_using_impulse_joints(
             &mut world.bodies,

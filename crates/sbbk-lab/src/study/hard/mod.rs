@@ -172,7 +172,7 @@ impl Trial {
 
 /// Runs all that `plan` asks for.
 ///
-/// Errors: the page cannot be written, or a mesh has no triangles, which these have.
+/// Errors: there is no such scene, the page cannot be written, or a mesh has no triangles, which these have.
 pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError> {
     let mut rows = Vec::new();
     let mut replay = plan.replay.as_deref();
@@ -216,6 +216,9 @@ pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError>
         }
     }
     progress.finish();
+    if rows.is_empty() {
+        return Err(StudyError::NoScene(plan.name.clone()));
+    }
     let (tables, panels) = (report::tables(plan, &rows), report::panels(&rows));
     Ok(Results { environment: Environment::detect(), rows, tables, panels })
 }
