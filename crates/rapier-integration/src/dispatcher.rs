@@ -225,12 +225,14 @@ impl SbbkDispatcher {
         search(MeshQuery { cache: &self.cache, meshes: self.look_at(meshes)? })
     }
 
-    /// The same of a rigid mesh and a convex shape; `None` if Parry must answer: of balls, which it
-    /// answers for exactly and in less time, and which inside a mesh with pseudo-normals meet it.
+    /// The same of a rigid mesh and a convex shape; `None` if Parry must answer: of balls, unless
+    /// `has_balls`, which it answers for exactly and in less time, and which inside a mesh with
+    /// pseudo-normals meet it.
     fn search_convex<T>(
         &self,
         [g1, g2]: [&dyn Shape; 2],
         pos12: &Pose,
+        has_balls: bool,
         apart: Option<(Real, T)>,
         search: impl FnOnce(ConvexQuery<'_>) -> T,
     ) -> Option<T> {
@@ -239,7 +241,8 @@ impl SbbkDispatcher {
             (None, Some(mesh)) => (mesh, g1, MeshPlace::Second),
             _ => return None,
         };
-        if !self.config.kinds.convex_shapes || !other.is_convex() || other.as_ball().is_some() {
+        let is_answered = other.is_convex() && (has_balls || other.as_ball().is_none());
+        if !self.config.kinds.convex_shapes || !is_answered {
             return None;
         }
         // Before all else: most pairs that a host asks about are apart.
@@ -509,8 +512,8 @@ where
 }
 
 /// Queries without manifolds: of two rigid meshes from their trees or Parry's hierarchies, of one and
-/// a convex shape from Parry's hierarchy, all others Parry's. Casts are Parry's too, but of meshes
-/// with trees.
+/// a convex shape from Parry's hierarchy, all others Parry's. Nonlinear casts are Parry's too, but of
+/// meshes with trees.
 impl QueryDispatcher for SbbkDispatcher {
     fn intersection_test(
         &self,
@@ -521,7 +524,8 @@ impl QueryDispatcher for SbbkDispatcher {
         let apart = Some((pos12, 0.0, ShapeIntersection::new(false)));
         let found = self.search([g1, g2], apart, |meshes| Some(meshes.intersection(pos12)));
         let apart = Some((0.0, ShapeIntersection::new(false)));
-        let convex = || self.search_convex([g1, g2], pos12, apart, |pair| pair.intersection());
+        let convex =
+            || self.search_convex([g1, g2], pos12, false, apart, |pair| pair.intersection());
         match found.or_else(convex) {
             Some(found) => Ok(found),
             None => DefaultQueryDispatcher.intersection_test(pos12, g1, g2),
@@ -535,7 +539,7 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
     ) -> Result<ShapeDistance, Unsupported> {
         let found = self.search([g1, g2], None, |meshes| Some(meshes.distance(pos12)));
-        let convex = || self.search_convex([g1, g2], pos12, None, |pair| pair.distance());
+        let convex = || self.search_convex([g1, g2], pos12, false, None, |pair| pair.distance());
         match found.or_else(convex) {
             Some(found) => Ok(found),
             None => DefaultQueryDispatcher.distance(pos12, g1, g2),
@@ -552,7 +556,8 @@ impl QueryDispatcher for SbbkDispatcher {
         let apart = Some((pos12, prediction, None));
         let found = self.search([g1, g2], apart, |meshes| Some(meshes.contact(pos12, prediction)));
         let apart = Some((prediction, None));
-        let convex = || self.search_convex([g1, g2], pos12, apart, |pair| pair.contact(prediction));
+        let convex =
+            || self.search_convex([g1, g2], pos12, false, apart, |pair| pair.contact(prediction));
         match found.or_else(convex) {
             Some(found) => Ok(found),
             None => DefaultQueryDispatcher.contact(pos12, g1, g2, prediction),
@@ -570,8 +575,9 @@ impl QueryDispatcher for SbbkDispatcher {
         let found =
             self.search([g1, g2], apart, |meshes| Some(meshes.closest_points(pos12, max_dist)));
         let apart = Some((max_dist, ClosestPoints::Disjoint));
-        let convex =
-            || self.search_convex([g1, g2], pos12, apart, |pair| pair.closest_points(max_dist));
+        let convex = || {
+            self.search_convex([g1, g2], pos12, false, apart, |pair| pair.closest_points(max_dist))
+        };
         match found.or_else(convex) {
             Some(found) => Ok(found),
             None => DefaultQueryDispatcher.closest_points(pos12, g1, g2, max_dist),
@@ -586,7 +592,9 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
         options: ShapeCastOptions,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        match self.search([g1, g2], None, |meshes| meshes.cast(pos12, local_vel12, options)) {
+        let found = self.search([g1, g2], None, |meshes| meshes.cast(pos12, local_vel12, options));
+        let cast = |pair: ConvexQuery<'_>| pair.cast(local_vel12, options);
+        match found.or_else(|| self.search_convex([g1, g2], pos12, true, None, cast)) {
             Some(hit) => Ok(hit),
             None => DefaultQueryDispatcher.cast_shapes(pos12, local_vel12, g1, g2, options),
         }
