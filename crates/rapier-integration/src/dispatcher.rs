@@ -151,11 +151,13 @@ impl SbbkDispatcher {
 
     /// What `of_meshes` finds of two rigid meshes, or `of_convex` of one and a convex shape; `None` if
     /// Parry must answer. `apart` is the answer where Parry's hierarchies tell that they are farther
-    /// apart than a distance.
+    /// apart than a distance. Unless `has_balls` Parry answers for these: exactly, in less time, and
+    /// inside a mesh with pseudo-normals they meet it.
     fn search<T>(
         &self,
         pos12: &Pose,
         [g1, g2]: [&dyn Shape; 2],
+        has_balls: bool,
         apart: Option<(Real, T)>,
         of_meshes: impl FnOnce(MeshQuery<'_>) -> T,
         of_convex: impl FnOnce(ConvexQuery<'_>) -> T,
@@ -174,9 +176,8 @@ impl SbbkDispatcher {
             [None, Some(mesh)] => (mesh, g1, MeshPlace::Second),
             [None, None] => return None,
         };
-        // Parry answers for balls exactly and in less time, and inside a mesh with pseudo-normals
-        // they meet it.
-        if !self.config.kinds.convex_shapes || !other.is_convex() || other.as_ball().is_some() {
+        let is_answered = other.is_convex() && (has_balls || other.as_ball().is_none());
+        if !self.config.kinds.convex_shapes || !is_answered {
             return None;
         }
         if let Some((distance, apart)) = apart {
@@ -454,8 +455,8 @@ where
 }
 
 /// Queries without manifolds: of two rigid meshes from their trees or Parry's hierarchies, of one and
-/// a convex shape from Parry's hierarchy, all others Parry's. Casts are Parry's too, but of meshes
-/// with trees.
+/// a convex shape from Parry's hierarchy, all others Parry's. Nonlinear casts are Parry's too, but of
+/// meshes with trees.
 impl QueryDispatcher for SbbkDispatcher {
     fn intersection_test(
         &self,
@@ -466,6 +467,7 @@ impl QueryDispatcher for SbbkDispatcher {
         let found = self.search(
             pos12,
             [g1, g2],
+            false,
             Some((0.0, ShapeIntersection::new(false))),
             |meshes| meshes.intersection(pos12),
             |pair| pair.intersection(),
@@ -485,6 +487,7 @@ impl QueryDispatcher for SbbkDispatcher {
         let found = self.search(
             pos12,
             [g1, g2],
+            false,
             None,
             |meshes| meshes.distance(pos12),
             |pair| pair.distance(),
@@ -505,6 +508,7 @@ impl QueryDispatcher for SbbkDispatcher {
         let found = self.search(
             pos12,
             [g1, g2],
+            false,
             Some((prediction, None)),
             |meshes| meshes.contact(pos12, prediction),
             |pair| pair.contact(prediction),
@@ -525,6 +529,7 @@ impl QueryDispatcher for SbbkDispatcher {
         let found = self.search(
             pos12,
             [g1, g2],
+            false,
             Some((max_dist, ClosestPoints::Disjoint)),
             |meshes| meshes.closest_points(pos12, max_dist),
             |pair| pair.closest_points(max_dist),
@@ -543,8 +548,15 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
         options: ShapeCastOptions,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        let meshes = self.mesh_query([g1, g2]);
-        match meshes.and_then(|meshes| meshes.cast(pos12, local_vel12, options)) {
+        let found = self.search(
+            pos12,
+            [g1, g2],
+            true,
+            None,
+            |meshes| meshes.cast(pos12, local_vel12, options),
+            |pair| Some(pair.cast(local_vel12, options)),
+        );
+        match found.flatten() {
             Some(hit) => Ok(hit),
             None => DefaultQueryDispatcher.cast_shapes(pos12, local_vel12, g1, g2, options),
         }

@@ -1,6 +1,8 @@
 //! What Parry's routine, or brute force in f64, says of each triangle alone is expected of the whole
 //! mesh.
 
+/// Linear casts, against brute force.
+mod casts;
 /// Shapes that change between queries, and pairs taken over from stock.
 mod change;
 /// Memory allocated.

@@ -11,7 +11,12 @@ use super::shapes::{body, pose, shapes};
 use crate::support::shape;
 
 /// The signed distances of all triangles.
-fn truth(mesh: &TriMesh, body: &ConvexBody, pos12: &Pose3, is_mesh_first: bool) -> Vec<f64> {
+pub(super) fn truth(
+    mesh: &TriMesh,
+    body: &ConvexBody,
+    pos12: &Pose3,
+    is_mesh_first: bool,
+) -> Vec<f64> {
     let DPose3 { rotation, translation } = DPose3::from(*pos12);
     let [x, y, z] = DVec3::AXES.map(|axis| rotation * axis);
     let pose = DAffine3::from_mat3_translation(DMat3::from_cols(x, y, z), translation);
@@ -20,7 +25,7 @@ fn truth(mesh: &TriMesh, body: &ConvexBody, pos12: &Pose3, is_mesh_first: bool) 
     mesh.triangles().map(|t| body.distance(&[t.a, t.b, t.c].map(place))).collect()
 }
 
-fn least(distances: &[f64]) -> f64 {
+pub(super) fn least(distances: &[f64]) -> f64 {
     distances.iter().copied().fold(f64::INFINITY, f64::min)
 }
 

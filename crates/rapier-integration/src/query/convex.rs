@@ -1,10 +1,14 @@
-//! A mesh and a convex shape: distance, closest points, intersection and the deepest contact.
+//! A mesh and a convex shape: distance, closest points, intersection, the deepest contact and linear
+//! casts.
 
-use parry3d::math::Real;
-use parry3d::query::{ClosestPoints, Contact, ShapeDistance, ShapeIntersection};
+use parry3d::math::{Real, Vector};
+use parry3d::query::details::ShapeCastOptions;
+use parry3d::query::{
+    ClosestPoints, Contact, ShapeCastHit, ShapeCastStatus, ShapeDistance, ShapeIntersection,
+};
 
 use super::proximity::limit_of;
-use crate::pair::{ConvexSearch, FoundTriangle, MeshPlace};
+use crate::pair::{ConvexSearch, FoundCast, MeshPlace};
 
 /// A mesh and a convex shape of which something is asked.
 pub(crate) struct ConvexQuery<'a> {
@@ -16,8 +20,8 @@ impl ConvexQuery<'_> {
     /// Whether the surface of the mesh meets the shape, and where.
     pub(crate) fn intersection(&self) -> ShapeIntersection {
         match self.search.meeting() {
-            Some(found) => {
-                let [one, two] = self.subshapes(&found);
+            Some(triangle) => {
+                let [one, two] = self.subshapes(triangle);
                 ShapeIntersection::new(true).with_subshapes(one, two)
             }
             None => ShapeIntersection::new(false),
@@ -29,7 +33,7 @@ impl ConvexQuery<'_> {
         match self.search.nearest(f64::INFINITY) {
             Some(found) => {
                 let distance = if found.is_touching { 0.0 } else { found.distance() };
-                let [one, two] = self.subshapes(&found);
+                let [one, two] = self.subshapes(found.triangle);
                 ShapeDistance::new(distance).with_subshapes(one, two)
             }
             None => ShapeDistance::new(Real::MAX),
@@ -54,11 +58,40 @@ impl ConvexQuery<'_> {
         let [point1, point2] = self.mesh_place.swap(self.search.points(&found));
         let [normal1, normal2] = self.mesh_place.swap(self.search.normals(&found));
         let mut contact = Contact::new(point1, point2, normal1, normal2, found.distance());
-        [contact.subshape1, contact.subshape2] = self.subshapes(&found);
+        [contact.subshape1, contact.subshape2] = self.subshapes(found.triangle);
         Some(contact)
     }
 
-    fn subshapes(&self, found: &FoundTriangle) -> [u32; 2] {
-        self.mesh_place.swap([found.triangle, 0])
+    /// The first impact of shape 2, moving by `velocity12` in the frame of shape 1.
+    pub(crate) fn cast(
+        &self,
+        velocity12: Vector,
+        options: ShapeCastOptions,
+    ) -> Option<ShapeCastHit> {
+        let cast = self.search.cast(self.mesh_place, velocity12.as_dvec3(), options)?;
+        let FoundCast { time, found, is_penetrating } = cast;
+        let status = if is_penetrating {
+            ShapeCastStatus::PenetratingOrWithinTargetDist
+        } else {
+            ShapeCastStatus::Converged
+        };
+        let [witness1, witness2] = self.mesh_place.swap(self.search.points(&found));
+        let [normal1, normal2] = self.mesh_place.swap(self.search.normals(&found));
+        let [subshape1, subshape2] = self.subshapes(found.triangle);
+        let time_of_impact = time as Real;
+        Some(ShapeCastHit {
+            time_of_impact,
+            witness1,
+            witness2,
+            normal1,
+            normal2,
+            status,
+            subshape1,
+            subshape2,
+        })
+    }
+
+    fn subshapes(&self, triangle: u32) -> [u32; 2] {
+        self.mesh_place.swap([triangle, 0])
     }
 }

@@ -3,8 +3,8 @@
 //! Hosts keep nothing for such a query, so each one has to find the trees of its meshes anew
 //! ([`lookup`]). With trees the search is that of [`sbbk_core::query`]. Where a mesh is large and
 //! not registered it goes down Parry's hierarchies and decides by the same exact contacts
-//! ([`walk`]); casts are Parry's then. A mesh and a convex shape ([`convex`]) have no trees, and their
-//! casts are Parry's.
+//! ([`walk`]); casts are Parry's then. A mesh and a convex shape ([`convex`]) have no trees; their
+//! nonlinear casts are Parry's.
 
 mod casts;
 mod convex;

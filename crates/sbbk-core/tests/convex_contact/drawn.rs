@@ -1,7 +1,7 @@
 //! Triangles and shapes drawn from whole numbers, by the fuzzer or at random: corners on a grid,
 //! equal ones among them, moved by next to nothing.
 
-use crate::shape::{Core, Shape};
+use crate::shape::{Core, Shape, rounded};
 use crate::truth::{check, size};
 use glamx::DVec3;
 use sbbk_core::contact::convex::{ConeSupport, CylinderSupport, round_contact};
@@ -35,7 +35,10 @@ pub fn check_drawn<E>(draw: Draw<E>) -> Result<(), E> {
         5 => Core::Cone(ConeSupport { half_height, radius: half_width }),
         _ => {
             let count = 4 + draw(4)?;
-            Core::Hull((0..count).map(|_| point(draw)).collect::<Result<_, E>>()?)
+            let points = (0..count).map(|_| point(draw)).collect::<Result<Vec<_>, E>>()?;
+            // Hulls in f32 have faces of their own.
+            let is_rounded = draw(3)? > 0;
+            Core::Hull(if is_rounded { points.into_iter().map(rounded).collect() } else { points })
         }
     };
     let shape = Shape { core, radius };

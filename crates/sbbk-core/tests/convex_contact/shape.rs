@@ -1,9 +1,9 @@
 //! Shapes of all kinds, random numbers, and triangles near shapes.
 
-use glamx::{DQuat, DVec3};
+use glamx::{DQuat, DVec3, Vec3};
 use sbbk_core::contact::convex::{
-    ConeSupport, ConvexContact, CuboidSupport, CylinderSupport, HullSupport, PointSupport,
-    SegmentSupport, SupportMap, TriangleSupport, convex_contact, round_contact,
+    ConeSupport, ConvexContact, CuboidSupport, CylinderSupport, HullPoints, HullSupport,
+    PointSupport, SegmentSupport, SupportMap, TriangleSupport, convex_contact, round_contact,
 };
 use sbbk_core::truth::ConvexBody;
 
@@ -62,7 +62,10 @@ impl Shape {
             Core::Segment(ends) => round_contact(triangle, &SegmentSupport(*ends), r, margin),
             Core::Triangle(t) => round_contact(triangle, &TriangleSupport(*t), r, margin),
             Core::Cuboid(half) => round_contact(triangle, &CuboidSupport(*half), r, margin),
-            Core::Hull(points) => round_contact(triangle, &HullSupport(points), r, margin),
+            Core::Hull(points) => match in_f32(points) {
+                Some(points) => round_contact(triangle, &HullPoints::new(points), r, margin),
+                None => round_contact(triangle, &HullSupport(points), r, margin),
+            },
             Core::Cylinder(cylinder) => round_contact(triangle, cylinder, r, margin),
             Core::Cone(cone) => round_contact(triangle, cone, r, margin),
         }
@@ -127,6 +130,17 @@ impl Shape {
     }
 }
 
+/// To the nearest numbers in f32.
+pub fn rounded(point: DVec3) -> DVec3 {
+    point.as_vec3().as_dvec3()
+}
+
+/// Points in f32, if they are in f32 exactly.
+fn in_f32(points: &[DVec3]) -> Option<Vec<Vec3>> {
+    let is_exact = points.iter().all(|&point| rounded(point) == point);
+    is_exact.then(|| points.iter().map(|point| point.as_vec3()).collect())
+}
+
 /// SplitMix64.
 pub struct Rng(pub u64);
 
@@ -181,7 +195,7 @@ impl Rng {
             Kind::RoundCuboid => round(Core::Cuboid(half)),
             Kind::Hull => {
                 let count = 4 + self.below(6);
-                sharp(Core::Hull((0..count).map(|_| half * self.direction()).collect()))
+                sharp(Core::Hull((0..count).map(|_| rounded(half * self.direction())).collect()))
             }
             Kind::FlatHull => {
                 let count = 4 + self.below(4);

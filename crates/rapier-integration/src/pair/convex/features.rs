@@ -8,13 +8,14 @@ use glamx::DVec3;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d::shape::{
-    Cuboid, PackedFeatureId, PolygonalFeature, Segment, Shape, Triangle, TypedShape,
+    ConvexPolyhedron, Cuboid, PackedFeatureId, PolygonalFeature, Segment, Shape, Triangle,
+    TypedShape,
 };
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::{
     ConeSupport, ConvexContact, CuboidSupport, CylinderSupport, FeaturePoint, FeaturePoints,
     HullPoints, PointSupport, SegmentSupport, TriangleSupport, clip_feature, convex_contact,
-    half_space_contact,
+    convex_touches, half_space_contact,
 };
 use sbbk_core::volumes::rounding::gamma;
 
@@ -40,6 +41,28 @@ pub(crate) fn core_contact(
     }
 }
 
+/// Whether a triangle is at most `reach` from a shape without its radius, or crosses it.
+pub(super) fn core_touches(
+    triangle: &[DVec3; 3],
+    shape: ConvexShape<'_>,
+    hull: &OnceLock<HullPoints>,
+    reach: f64,
+) -> bool {
+    // How deep hulls cross takes longer to find than that they do, and their faces are not needed.
+    if let ConvexShape::Features { shape, .. } = shape
+        && let Some(shape) = polyhedron(shape)
+    {
+        let points = hull.get_or_init(|| HullPoints::new(shape.points().iter().copied()));
+        return convex_touches(triangle, points, reach);
+    }
+    core_contact(triangle, shape, hull, reach).is_some()
+}
+
+fn polyhedron(shape: &dyn Shape) -> Option<&ConvexPolyhedron> {
+    let round = || shape.as_round_convex_polyhedron().map(|shape| &shape.inner_shape);
+    shape.as_convex_polyhedron().or_else(round)
+}
+
 fn feature_contact(
     triangle: &[DVec3; 3],
     shape: &dyn Shape,
@@ -62,9 +85,8 @@ fn feature_contact(
         let [half_height, radius] = [half_height, radius].map(f64::from);
         convex_contact(triangle, &ConeSupport { half_height, radius }, margin)
     };
-    let hull_of = |points: &[Vector]| {
-        let points = hull.get_or_init(|| HullPoints::new(points.iter().copied()));
-        convex_contact(triangle, points, margin)
+    let hull_of = |shape: &ConvexPolyhedron| {
+        convex_contact(triangle, hull.get_or_init(|| hull_points(shape)), margin)
     };
     match shape.as_typed_shape() {
         TypedShape::Segment(shape) => segment(shape),
@@ -83,10 +105,21 @@ fn feature_contact(
             let half_lengths = shape.inner_shape.half_extents.as_dvec3();
             convex_contact(triangle, &CuboidSupport(half_lengths), margin)
         }
-        TypedShape::ConvexPolyhedron(shape) => hull_of(shape.points()),
-        TypedShape::RoundConvexPolyhedron(shape) => hull_of(shape.inner_shape.points()),
+        TypedShape::ConvexPolyhedron(shape) => hull_of(shape),
+        TypedShape::RoundConvexPolyhedron(shape) => hull_of(&shape.inner_shape),
         _ => None,
     }
+}
+
+fn hull_points(shape: &ConvexPolyhedron) -> HullPoints {
+    let corners = shape.vertices_adj_to_face();
+    let fans = shape.faces().iter().flat_map(|face| {
+        let start = face.first_vertex_or_edge as usize;
+        let corners = &corners[start..start + face.num_vertices_or_edges as usize];
+        let (first, rest) = corners.split_first().unwrap_or((&0, &[]));
+        rest.windows(2).map(|ends| [*first, ends[0], ends[1]])
+    });
+    HullPoints::with_faces(shape.points().iter().copied(), fans)
 }
 
 /// The normals of a contact, in the order of the pair.

@@ -14,6 +14,7 @@
 //! ([`shape`]).
 
 mod ball;
+mod cast;
 mod features;
 mod half_space;
 mod near;
@@ -24,7 +25,8 @@ mod placed;
 mod query;
 mod shape;
 
-pub(crate) use nearest::{ConvexSearch, FoundTriangle};
+pub(crate) use cast::FoundCast;
+pub(crate) use nearest::ConvexSearch;
 pub(crate) use pair::ConvexPair;
 pub(crate) use parts::Parts;
 pub(super) use placed::PlacedPart;

@@ -78,6 +78,49 @@ pub(super) fn gap_of(
     }
 }
 
+/// At least how long it takes until boxes of a mesh are within `target` of a part that moves by
+/// `velocity` in the frame of the mesh, where `around` is the box around it; `Real::MAX` if they pass
+/// each other.
+pub(super) fn time_of(
+    placed: &PlacedPart,
+    shape: ConvexShape<'_>,
+    mesh: &Hierarchy<'_>,
+    around: Aabb,
+    velocity: DVec3,
+    target: Real,
+) -> impl Fn(TestedBox) -> Real {
+    let gap = gap_of(placed, shape, mesh, around);
+    let magnitude = mesh.magnitude();
+    let reach = magnitude.max(around.mins.abs().max(around.maxs.abs()).max_element());
+    let slack = f64::from(target) + f64::from(gamma(32) * reach);
+    let is_endless = matches!(shape, ConvexShape::HalfSpace(_));
+    // Poses and boxes are rounded to f32; so is what turns the velocity.
+    let speed = velocity.length() * f64::from(1.0 + gamma(8));
+    let lost = f64::from(gamma(8)) * speed;
+    move |node| {
+        let (centre, extent) = node.centre_extent();
+        let apart = f64::from(gap(node)) - f64::from(target);
+        let (mut start, mut end) = ((apart / speed).max(0.0), f64::INFINITY);
+        if !is_endless {
+            let offset = (centre - around.center()).as_dvec3();
+            let reach = (extent + around.half_extents()).as_dvec3() + slack;
+            for axis in 0..3 {
+                let ahead = offset[axis] * velocity[axis].signum();
+                let (fast, slow) = (velocity[axis].abs() + lost, velocity[axis].abs() - lost);
+                if slow > 0.0 {
+                    start = start.max((ahead - reach[axis]) / fast);
+                    end = end.min((ahead + reach[axis]) / slow);
+                } else {
+                    start = start.max((ahead.abs() - reach[axis]) / fast);
+                }
+            }
+        }
+        // Also where nothing moves, and the boxes are apart.
+        let is_time = start <= end && start < f64::from(Real::MAX);
+        if is_time { (start as Real).next_down().max(0.0) } else { Real::MAX }
+    }
+}
+
 /// All within `margin` of a half-space, in the frame of a mesh that is at `placement` in its frame:
 /// `normal·x <= height`.
 fn plane(

@@ -7,7 +7,7 @@ use parry3d::partitioning::BvhNode;
 use parry3d::shape::Shape;
 use sbbk_core::contact::convex::{ConvexContact, HullPoints};
 
-use super::features::core_contact;
+use super::features::{core_contact, core_touches};
 use super::near::{gap_of, triangles_near};
 use super::pair::ConvexPair;
 use super::parts::{Part, Parts};
@@ -24,11 +24,11 @@ const WIDE: f64 = 0.1;
 
 /// A mesh and one convex shape, to be searched.
 pub(crate) struct ConvexSearch<'a> {
-    mesh: Hierarchy<'a>,
-    shape: &'a dyn Shape,
-    convex: ConvexShape<'a>,
-    placed: PlacedPart,
-    hull: OnceLock<HullPoints>,
+    pub(super) mesh: Hierarchy<'a>,
+    pub(super) shape: &'a dyn Shape,
+    pub(super) convex: ConvexShape<'a>,
+    pub(super) placed: PlacedPart,
+    pub(super) hull: OnceLock<HullPoints>,
 }
 
 /// A triangle of the mesh and its contact.
@@ -36,7 +36,7 @@ pub(crate) struct ConvexSearch<'a> {
 pub(crate) struct FoundTriangle {
     pub(crate) triangle: u32,
     /// In the frame of the shape, from the mesh to the shape.
-    contact: ConvexContact,
+    pub(super) contact: ConvexContact,
     pub(crate) is_touching: bool,
 }
 
@@ -56,11 +56,19 @@ impl<'a> ConvexSearch<'a> {
     }
 
     /// A triangle that touches or crosses the shape; the first one that the walk comes across.
-    pub(crate) fn meeting(&self) -> Option<FoundTriangle> {
+    pub(crate) fn meeting(&self) -> Option<u32> {
+        let radius = f64::from(self.convex.radius());
         let mut meeting = None;
         triangles_near(&self.placed, self.convex, &self.mesh, 0.0, (), |triangle| {
-            meeting = self.triangle(triangle, 0.0).filter(|found| found.is_touching);
-            if meeting.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            let corners = self.placed.place(self.mesh.corners(triangle));
+            let reach = TOUCHING * self.size(&corners) + radius;
+            let touches = !self.placed.is_beyond(&corners, reach)
+                && core_touches(&corners, self.convex, &self.hull, reach);
+            if touches {
+                meeting = Some(triangle);
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
         });
         meeting
     }
@@ -112,10 +120,7 @@ impl<'a> ConvexSearch<'a> {
     /// The contact of a triangle, if it touches or is at most `margin` away.
     fn triangle(&self, triangle: u32, margin: f64) -> Option<FoundTriangle> {
         let corners = self.placed.place(self.mesh.corners(triangle));
-        let [a, b, c] = corners;
-        let size =
-            f64::from(self.placed.extent.size()) + (a.abs() + b.abs() + c.abs()).element_sum();
-        let touching = TOUCHING * size;
+        let touching = TOUCHING * self.size(&corners);
         let radius = f64::from(self.convex.radius());
         let reach = margin.max(touching) + radius;
         if self.placed.is_beyond(&corners, reach) {
@@ -125,6 +130,11 @@ impl<'a> ConvexSearch<'a> {
         contact.distance -= radius;
         contact.on_shape -= contact.normal * radius;
         Some(FoundTriangle { triangle, contact, is_touching: contact.distance <= touching })
+    }
+
+    /// The sum of coordinates in the frame of the shape.
+    pub(super) fn size(&self, [a, b, c]: &[DVec3; 3]) -> f64 {
+        f64::from(self.placed.extent.size()) + (a.abs() + b.abs() + c.abs()).element_sum()
     }
 
     /// The points on the mesh and on the shape, each in its frame.

@@ -125,6 +125,8 @@ pub(crate) struct KnownParts {
     ranks: Vec<u32>,
     /// The points of those parts that are hulls, once they have been needed; of one shape the first.
     hulls: Vec<OnceLock<HullPoints>>,
+    /// How far each part extends; of one shape the first.
+    extents: Vec<Extent>,
     /// The greatest radius of a part.
     pub(super) radius: Real,
     /// The greatest size of a part, with its distance from the origin of the whole.
@@ -153,18 +155,22 @@ impl KnownParts {
             Token::One(shape) => {
                 (self.radius, self.size) = (shape.radius, shape.size());
                 self.hulls = vec![OnceLock::new()];
+                self.extents = vec![shape];
             }
             Token::Many(CompositeToken { part_count, .. }) => {
                 self.ranks = vec![u32::MAX; part_count];
                 self.hulls = vec![OnceLock::new(); part_count];
                 for (rank, part) in parts.leaves().enumerate() {
                     self.ranks[part as usize] = rank as u32;
+                }
+                for part in 0..part_count as u32 {
                     parts.with(part, |part| {
                         let shape = Extent::of(part.shape);
                         let offset =
                             part.pose.map_or(0.0, |pose| pose.translation.abs().max_element());
                         self.radius = self.radius.max(shape.radius);
                         self.size = self.size.max(shape.size() + offset);
+                        self.extents.push(shape);
                     });
                 }
             }
@@ -178,11 +184,8 @@ impl KnownParts {
     }
 
     /// That of a part.
-    pub(super) fn extent(&self, part: &Part<'_>) -> Extent {
-        match self.token {
-            Some(Token::One(extent)) => extent,
-            _ => Extent::of(part.shape),
-        }
+    pub(super) fn extent(&self, part: u32) -> Extent {
+        self.extents[part as usize]
     }
 
     /// A ball around all of them.

@@ -77,6 +77,10 @@ impl PlacedPart {
 
     /// Whether a triangle is surely farther than `reach` from the part without its radius: the boxes
     /// of both are, along the axes of the part.
+    ///
+    /// Of a ball that moves by three prediction distances a step, deep in a head, this leaves 69 of 100
+    /// candidates, and 63 of these are contacts: to decide for several triangles at once would spare
+    /// six.
     #[inline(always)]
     pub(super) fn is_beyond(&self, [a, b, c]: &[DVec3; 3], reach: f64) -> bool {
         let (min, max, reach) = self.extent.widest(reach);

@@ -109,7 +109,7 @@ impl ConvexQuery<'_> {
             parts[slot] = None;
         }
         parts[slot].get_or_insert_with(|| {
-            PlacedPart::new(index, part, self.pair, self.known_parts.extent(part))
+            PlacedPart::new(index, part, self.pair, self.known_parts.extent(index))
         })
     }
 }

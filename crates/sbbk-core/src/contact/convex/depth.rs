@@ -74,7 +74,7 @@ fn point_below(polytope: &Polytope, face: &Face, corners: &[DVec3; 3], slack: f6
     let foot = face.normal * face.distance;
     let (mut least, mut point) = polytope.nearest_to(foot, face, corners);
     if least > slack * slack {
-        for other in polytope.faces() {
+        for (_, other) in polytope.faces() {
             let (squared, candidate) = polytope.nearest_to(foot, other, corners);
             if squared < least {
                 (least, point) = (squared, candidate);

@@ -1,8 +1,11 @@
 //! The farthest of many points.
 
+use super::ConvexContact;
+use super::faces::HullFaces;
 use super::support::{HullSupport, SupportMap};
 use crate::volumes::rounding::gamma;
 use glamx::{DVec3, Vec3};
+use std::sync::OnceLock;
 use wide::f32x4;
 
 /// Points whose heights are kept from the first look to the second, by four: more are computed
@@ -21,14 +24,28 @@ const KEPT: usize = 16;
 #[derive(Clone, Debug, Default)]
 pub struct HullPoints {
     points: Vec<Vec3>,
+    /// What the host takes for its faces.
+    triangles: Vec<[u32; 3]>,
     lanes: Vec<[f32x4; 3]>,
     /// The largest absolute coordinate along each axis.
     greatest: DVec3,
+    /// Found when a triangle first crosses the hull; none where that is not clean.
+    faces: OnceLock<Option<HullFaces>>,
 }
 
 impl HullPoints {
     /// The hull of these points.
     pub fn new(points: impl IntoIterator<Item = Vec3>) -> Self {
+        Self::with_faces(points, [])
+    }
+
+    /// The same, with the faces that it is likely to have: triangles by their points, counterclockwise
+    /// from outside, which saves nine tenths of the time it takes to find them. They are looked at
+    /// when a triangle first crosses the hull; if they are not its faces, these are found.
+    pub fn with_faces(
+        points: impl IntoIterator<Item = Vec3>,
+        triangles: impl IntoIterator<Item = [u32; 3]>,
+    ) -> Self {
         let points: Vec<Vec3> = points.into_iter().collect();
         let lanes = points.chunks(4).map(|four| {
             // What is missing is the first one again.
@@ -38,7 +55,9 @@ impl HullPoints {
         });
         let lanes = lanes.collect();
         let greatest = points.iter().fold(Vec3::ZERO, |most, point| most.max(point.abs()));
-        Self { points, lanes, greatest: greatest.as_dvec3() }
+        let triangles = triangles.into_iter().collect();
+        let greatest = greatest.as_dvec3();
+        Self { points, triangles, lanes, greatest, faces: OnceLock::new() }
     }
 }
 
@@ -85,5 +104,13 @@ impl SupportMap for HullPoints {
             }
         }
         farthest.as_dvec3()
+    }
+
+    fn crossing(&self, triangle: &[DVec3; 3], size: f64) -> Option<ConvexContact> {
+        let faces = self.faces.get_or_init(|| {
+            let points: Vec<DVec3> = self.points.iter().map(|point| point.as_dvec3()).collect();
+            HullFaces::new(&points, &self.triangles)
+        });
+        faces.as_ref()?.crossing(triangle, size)
     }
 }

@@ -19,7 +19,8 @@
 //! Balls, capsules, boxes, cylinders and cones have closed forms: nearest points of features for
 //! bodies apart (`segment.rs`, `apart.rs`), and the least depth of the parts of the surface of the
 //! Minkowski difference for bodies that cross (`segment.rs`, `cuboid.rs`, `curved.rs`). Triangles
-//! have the contact of [two](crate::contact). Whatever other shape, and all poses in which rounding
+//! have the contact of [two](crate::contact). Hulls of up to 128 points that cross have one by their
+//! faces and edges (`faces.rs`, `hull_surface.rs`). Whatever other shape, and all poses in which rounding
 //! chooses what touches what, is left to a search by support points:
 //!
 //! 1. The nearest point of a simplex of the Minkowski difference goes toward the origin until a
@@ -46,8 +47,11 @@ mod cuboid;
 mod curved;
 mod depth;
 mod difference;
+mod faces;
 mod half_space;
 mod hull;
+mod hull_surface;
+mod lanes;
 mod polytope;
 mod search;
 mod segment;
@@ -108,8 +112,8 @@ impl ConvexContact {
 /// safe from overflow.
 ///
 /// Within the margin about 100 ns for a ball, capsule, triangle or cuboid, 300 for a cylinder or
-/// cone and 400 for a small hull; when crossing as much, 1 µs for a cylinder or cone, and 2 µs or
-/// more for a hull.
+/// cone and 400 for a small hull; when crossing as much, 1 µs for a cylinder or cone, and half of that
+/// or more for a hull. Of other support maps, crossing ones take 2 µs or more.
 pub fn convex_contact<S: SupportMap>(
     triangle: &[DVec3; 3],
     shape: &S,
@@ -130,6 +134,20 @@ pub fn round_contact<S: SupportMap>(
         find(triangle, core, margin + radius)?;
     let contact = ConvexContact::new(on_triangle, normal, distance - radius);
     (contact.distance <= margin).then_some(contact)
+}
+
+/// Whether a triangle and a convex shape cross, or are at most `reach` apart, by search: where a
+/// [`convex_contact`] would measure how deep they cross, that is not asked.
+pub fn convex_touches<S: SupportMap>(triangle: &[DVec3; 3], shape: &S, reach: f64) -> bool {
+    let [a, b, c] = *triangle;
+    let is_finite = (a.abs() + b.abs() + c.abs()).element_sum().is_finite();
+    let difference = Difference { triangle, shape };
+    is_finite
+        && match Start::new(&difference).search(&difference, reach).outcome {
+            Outcome::Far => false,
+            Outcome::Apart(simplex) => simplex.squared <= reach * reach,
+            Outcome::Touching(_) | Outcome::Crossing(_) => true,
+        }
 }
 
 /// Closed forms answer for bodies that are apart, or cross, by more than this share of their size.
@@ -154,13 +172,15 @@ fn by_search<S: SupportMap>(
     shape: &S,
     margin: f64,
 ) -> Option<ConvexContact> {
-    let [a, b, c] = *triangle;
-    let extent = ((b - a).abs() + (c - a).abs()).element_sum();
     let difference = Difference { triangle, shape };
-    let toward = toward_origin(&difference, triangle);
-    let start = shape.support(-toward);
-    let size = extent + start.abs().element_sum();
-    match search(&difference, toward, start, margin, size).outcome {
+    let start = Start::new(&difference);
+    if !start.parts(triangle)
+        && let Some(contact) = shape.crossing(triangle, start.size)
+    {
+        return Some(contact);
+    }
+    let size = start.size;
+    match start.search(&difference, margin).outcome {
         Outcome::Far => None,
         Outcome::Apart(simplex) => {
             let distance = simplex.squared.sqrt();
@@ -169,6 +189,38 @@ fn by_search<S: SupportMap>(
         }
         Outcome::Crossing(tetrahedron) => depth(&difference, tetrahedron, size).map(crossing),
         Outcome::Touching(simplex) => touching(&difference, &simplex, size).map(crossing),
+    }
+}
+
+/// Where a search starts.
+struct Start {
+    /// From the triangle to somewhere in or near the shape.
+    toward: DVec3,
+    /// The point of the shape that reaches farthest back along that.
+    point: DVec3,
+    /// Of both.
+    size: f64,
+}
+
+impl Start {
+    #[inline(always)]
+    fn new<S: SupportMap>(difference: &Difference<S>) -> Self {
+        let [a, b, c] = *difference.triangle;
+        let extent = ((b - a).abs() + (c - a).abs()).element_sum();
+        let toward = toward_origin(difference, difference.triangle);
+        let point = difference.shape.support(-toward);
+        Self { toward, point, size: extent + point.abs().element_sum() }
+    }
+
+    /// Whether a plane across the way parts the bodies.
+    #[inline(always)]
+    fn parts(&self, triangle: &[DVec3; 3]) -> bool {
+        triangle.iter().all(|corner| (self.point - corner).dot(self.toward) > 0.0)
+    }
+
+    #[inline(always)]
+    fn search<S: SupportMap>(&self, difference: &Difference<S>, margin: f64) -> search::Search {
+        search(difference, self.toward, self.point, margin, self.size)
     }
 }
 

@@ -16,7 +16,7 @@ const FACES: usize = 2 * VERTICES;
 pub(super) struct Face {
     pub vertices: [u16; 3],
     /// The face across the edge from each vertex to the next.
-    neighbors: [u16; 3],
+    pub neighbors: [u16; 3],
     pub normal: DVec3,
     /// Of its plane from the origin.
     pub distance: f64,
@@ -94,6 +94,11 @@ impl Polytope {
         (least < f64::INFINITY).then(|| self.open.iter().position(|&x| x == least))?
     }
 
+    /// An open face.
+    pub fn first_open(&self) -> Option<usize> {
+        self.open.iter().position(|&x| x < f64::INFINITY)
+    }
+
     /// Writes a face to a place in the list, or behind its end.
     fn put(&mut self, place: usize, face: Face) {
         let open = if face.state == State::Open { face.distance } else { f64::INFINITY };
@@ -110,9 +115,10 @@ impl Polytope {
         &self.faces[face]
     }
 
-    /// The faces of the surface.
-    pub fn faces(&self) -> impl Iterator<Item = &Face> {
-        self.faces.iter().filter(|face| matches!(face.state, State::Open | State::Closed))
+    /// The faces of the surface, and their places in the list.
+    pub fn faces(&self) -> impl Iterator<Item = (usize, &Face)> {
+        let is_part = |face: &Face| matches!(face.state, State::Open | State::Closed);
+        self.faces.iter().enumerate().filter(move |(_, face)| is_part(face))
     }
 
     pub fn close(&mut self, face: usize) {

@@ -23,6 +23,13 @@ pub trait SupportMap {
     {
         by_search(triangle, self, margin)
     }
+
+    /// The contact with a triangle that crosses the shape, if there is a shorter way to it than the
+    /// [search](super). None if the triangle may not cross the shape. `size` is that of both.
+    #[inline(always)]
+    fn crossing(&self, _triangle: &[DVec3; 3], _size: f64) -> Option<ConvexContact> {
+        None
+    }
 }
 
 impl<F: Fn(DVec3) -> DVec3> SupportMap for F {

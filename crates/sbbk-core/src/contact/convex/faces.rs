@@ -1,0 +1,333 @@
+//! A triangle that crosses the convex hull of some points, by the hull's faces and edges.
+//!
+//! The faces of the difference of both are those of the hull, the triangle on both sides, and one
+//! for each edge of the hull and edge of the triangle whose arcs of normals cross. Along one of
+//! these the bodies are parted by the least translation. The normals of an edge of the hull are an
+//! arc between those of its faces; the normals of an edge of the triangle are half of a great
+//! circle. So arcs cross where one face of the hull rises along the edge of the triangle and the
+//! other one falls.
+//!
+//! Few pairs of edges are looked at. A plane of the difference between two faces of the hull is no
+//! nearer than the nearer one of the planes that a corner of the triangle is below: both ends of the
+//! edge must be below one of these planes by less than the least depth so far.
+
+use super::difference::Vertex;
+use super::hull_surface::{FACES, HullSurface, POINTS, ROUNDING};
+use super::lanes::{PlaneLanes, PointLanes, splat};
+use super::simplex::{self, thin_normal};
+use super::support::lowest as lowest_corner;
+use super::{ConvexContact, DOUBTFUL};
+use crate::contact::closest::crossing;
+use arrayvec::ArrayVec;
+use glamx::DVec3;
+use wide::f64x4;
+
+/// Least sine between an edge of the triangle and one of the hull that are looked at: the face that
+/// they span is narrower than this share of the edge.
+const PARALLEL: f64 = 1.0e-12;
+
+/// How far a point may be off a body, as a share of the size, and count as on it.
+const ON_BODY: f64 = 1.0e-12;
+
+/// How much less deep a corner may be than the deepest one, as a share of the size, and count as
+/// deep: contact points are off the shape by as much.
+const TIE: f64 = 1.0e-11;
+
+/// The surface of a convex hull, as triangles.
+#[derive(Clone, Debug)]
+pub(super) struct HullFaces {
+    points: PointLanes,
+    planes: Vec<PlaneLanes>,
+    /// The faces beside each edge.
+    beside: Vec<[u8; 2]>,
+    /// The start of each edge, and its vector, counterclockwise around the first face.
+    edges: Vec<[DVec3; 2]>,
+}
+
+/// What a direction that parts the bodies belongs to.
+#[derive(Clone, Copy)]
+enum Facet {
+    /// Of the hull.
+    Face,
+    Triangle,
+    /// An edge of the hull, a point of it and its vector, and one of the triangle.
+    Edges([DVec3; 2], usize),
+}
+
+/// A plane of the difference.
+#[derive(Clone, Copy)]
+struct Reach {
+    /// Unit vector: the direction in which the triangle moves out of the hull.
+    outward: DVec3,
+    depth: f64,
+    facet: Facet,
+}
+
+impl HullFaces {
+    /// Of the hull of these points, whose faces may be these triangles. None for a hull that is flat
+    /// or has too many points, or where rounding chooses what is a face.
+    pub fn new(points: &[DVec3], triangles: &[[u32; 3]]) -> Option<Self> {
+        if points.len() > POINTS {
+            return None;
+        }
+        let lanes = PointLanes::new(points);
+        let surface = HullSurface::of(points, triangles).or_else(|| HullSurface::around(&lanes))?;
+        let HullSurface { planes, corners, neighbors } = surface;
+        let planes = planes.chunks(4).map(PlaneLanes::new).collect();
+        let (mut beside, mut edges) = (Vec::new(), Vec::new());
+        for (face, (corners, neighbors)) in (0..).zip(corners.iter().zip(&neighbors)) {
+            for (i, &neighbor) in neighbors.iter().enumerate() {
+                if face < neighbor {
+                    beside.push([face, neighbor]);
+                    edges.push([corners[i], corners[NEXT[i]] - corners[i]]);
+                }
+            }
+        }
+        Some(Self { points: lanes, planes, beside, edges })
+    }
+
+    /// The contact of a triangle that crosses the hull. None if it does not, or may not, and where
+    /// rounding chooses how. `size` is that of both.
+    pub fn crossing(&self, triangle: &[DVec3; 3], size: f64) -> Option<ConvexContact> {
+        let doubtful = DOUBTFUL * size;
+        let (normal, squared) = thin_normal(*triangle)?;
+        let mut depths = ArrayVec::new();
+        let mut least = self.face(triangle, &mut depths);
+        if least.depth <= doubtful {
+            return None;
+        }
+        for normal in [normal, -normal] {
+            let outward = normal / squared.sqrt();
+            let depth = self.points.farthest(outward).0 - lowest(triangle, outward);
+            if depth < least.depth {
+                least = Reach { outward, depth, facet: Facet::Triangle };
+            }
+        }
+        let of_edges = self.edge_pair(triangle, &depths, least.depth)?;
+        if let Some(reach) = of_edges {
+            // A move by what the difference reaches parts the bodies, whatever rounding made of the
+            // arcs.
+            let depth = self.points.farthest(reach.outward).0 - lowest(triangle, reach.outward);
+            if (depth - reach.depth).abs() > ROUNDING * size + 1.0e-10 * depth {
+                return None;
+            }
+            least = Reach { depth, ..reach };
+        }
+        if least.depth <= doubtful {
+            return None;
+        }
+        let on_triangle = self.on_triangle(triangle, &least, size)?;
+        Some(ConvexContact::new(on_triangle, -least.outward, -least.depth))
+    }
+
+    /// The least depth along the normal of a face; and how deep each corner is below each face.
+    #[inline(always)]
+    fn face(&self, triangle: &[DVec3; 3], depths: &mut Depths) -> Reach {
+        let [a, b, c] = triangle.map(splat);
+        let (mut least, mut at) = (f64x4::splat(f64::INFINITY), f64x4::ZERO);
+        for (i, planes) in self.planes.iter().enumerate() {
+            let below = [planes.depth(&a), planes.depth(&b), planes.depth(&c)];
+            let deepest = below[0].fast_max(below[1]).fast_max(below[2]);
+            let is_less = deepest.simd_lt(least);
+            least = deepest.fast_min(least);
+            at = is_less.bitselect(f64x4::splat(i as f64), at);
+            depths.push(below);
+        }
+        let (least, at) = (least.to_array(), at.to_array());
+        let mut lane = 0;
+        for other in 1..4 {
+            if least[other] < least[lane] {
+                lane = other;
+            }
+        }
+        let outward = self.planes[at[lane] as usize].normal(lane);
+        Reach { outward, depth: least[lane], facet: Facet::Face }
+    }
+
+    /// The least depth along a product of edges, if less than `most`. None of bodies apart.
+    #[inline(always)]
+    fn edge_pair(
+        &self,
+        triangle: &[DVec3; 3],
+        depths: &Depths,
+        most: f64,
+    ) -> Option<Option<Reach>> {
+        let [a, b, c] = *triangle;
+        let sides = [b - a, c - b, a - c];
+        // Of each face along which sides it rises, and, three times, whether a corner is hardly below.
+        let mut marks = [0_u8; FACES];
+        let bound = f64x4::splat(most);
+        for (mark, [a, b, c]) in marks.chunks_exact_mut(4).zip(depths) {
+            let near = a.fast_min(*b).fast_min(*c).simd_lt(bound).to_bitmask();
+            let [ab, bc, ca] = [a.simd_lt(*b), b.simd_lt(*c), c.simd_lt(*a)];
+            let bits = SPREAD[ab.to_bitmask() as usize & 15]
+                | SPREAD[bc.to_bitmask() as usize & 15] << 1
+                | SPREAD[ca.to_bitmask() as usize & 15] << 2
+                | SPREAD[near as usize & 15] * (0b111 << 3);
+            mark.copy_from_slice(&bits.to_le_bytes());
+        }
+        let mut least: Option<Reach> = None;
+        // The least depth, and its square.
+        let (mut most, mut squared) = (most, most * most);
+        for (&[p, q], edge) in self.beside.iter().zip(&self.edges) {
+            let [of_p, of_q] = [p, q].map(|face| marks[usize::from(face)]);
+            let mut crossed = (of_p ^ of_q) & (of_p | of_q) >> 3;
+            while crossed != 0 {
+                let j = crossed.trailing_zeros() as usize;
+                crossed &= crossed - 1;
+                let next = NEXT[j];
+                let nearer = |i: usize| {
+                    let [p, q] = [p, q]
+                        .map(|f| depths[usize::from(f / 4)][i].to_array()[usize::from(f % 4)]);
+                    p.min(q)
+                };
+                let can_be_less = nearer(j) < most && nearer(next) < most;
+                if !can_be_less {
+                    continue;
+                }
+                let (&[start, along], side) = (edge, sides[j]);
+                let product = side.cross(along);
+                // The side falls below the first face, or the second.
+                let outward = if of_p >> j & 1 == 1 { product } else { -product };
+                let length_squared = outward.length_squared();
+                let shortest = PARALLEL * PARALLEL * side.length_squared() * along.length_squared();
+                // The rest of the triangle must be on the outer side of the edge.
+                let is_face = length_squared > shortest && outward.dot(sides[NEXT[next]]) <= 0.0;
+                if !is_face {
+                    continue;
+                }
+                let depth = (start - triangle[j]).dot(outward);
+                if depth <= 0.0 {
+                    return None;
+                }
+                if depth * depth < squared * length_squared {
+                    let scale = 1.0 / length_squared.sqrt();
+                    most = depth * scale;
+                    squared = most * most;
+                    let facet = Facet::Edges(*edge, j);
+                    least = Some(Reach { outward: outward * scale, depth: most, facet });
+                }
+            }
+        }
+        Some(least)
+    }
+
+    /// The point of the triangle that comes to lie on the hull when it moves out.
+    #[inline(always)]
+    fn on_triangle(&self, triangle: &[DVec3; 3], reach: &Reach, size: f64) -> Option<DVec3> {
+        let Reach { outward, depth, facet } = *reach;
+        let guess = match facet {
+            Facet::Face => {
+                let corner = triangle[lowest_corner(triangle, outward)];
+                self.holds(corner + outward * depth, ON_BODY * size).then_some(corner)
+            }
+            Facet::Triangle => {
+                let (_, vertex) = self.points.farthest(outward);
+                let point = vertex - outward * depth;
+                is_on(triangle, point, ON_BODY * size).then_some(point)
+            }
+            Facet::Edges([start, along], j) => {
+                let (corner, side) = (triangle[j], triangle[(j + 1) % 3] - triangle[j]);
+                let cross = side.cross(along);
+                let [s, t] = crossing(start - corner, side, along, cross, cross.length_squared());
+                let is_within = (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t);
+                is_within.then(|| corner + side * s)
+            }
+        };
+        guess.or_else(|| self.where_flat(triangle, outward, depth, size))
+    }
+
+    /// The same where features are parallel, or nearly so.
+    #[inline(never)]
+    fn where_flat(
+        &self,
+        triangle: &[DVec3; 3],
+        outward: DVec3,
+        depth: f64,
+        size: f64,
+    ) -> Option<DVec3> {
+        let (tie, slack) = (TIE * size, ON_BODY * size);
+        let low = lowest(triangle, outward) + tie;
+        let is_low = triangle.map(|corner| corner.dot(outward) <= low);
+        let out = outward * depth;
+        for i in 0..3 {
+            if is_low[i] && self.holds(triangle[i] + out, slack) {
+                return Some(triangle[i]);
+            }
+        }
+        for i in 0..3 {
+            let next = (i + 1) % 3;
+            if is_low[i] && is_low[next] {
+                let ends = [triangle[i], triangle[next]];
+                if let Some(share) = self.middle(ends.map(|end| end + out), slack) {
+                    return Some(ends[0].lerp(ends[1], share));
+                }
+            }
+        }
+        let high = self.points.farthest(outward).0 - tie;
+        let below = |point: DVec3| point - outward * depth;
+        let mut points = self.points.iter().filter(|p| p.dot(outward) >= high).map(below);
+        points.find(|point| is_on(triangle, *point, slack))
+    }
+
+    /// Whether a point is in the hull, or off it by at most `slack`.
+    fn holds(&self, point: DVec3, slack: f64) -> bool {
+        let point = splat(point);
+        let mut least = f64x4::splat(f64::INFINITY);
+        for planes in &self.planes {
+            least = least.fast_min(planes.depth(&point));
+        }
+        least.to_array().iter().all(|depth| *depth >= -slack)
+    }
+
+    /// The middle of the part of a segment that is in the hull, as a share of the segment.
+    fn middle(&self, ends: [DVec3; 2], slack: f64) -> Option<f64> {
+        let ends = ends.map(splat);
+        let (mut low, mut high) = (0.0_f64, 1.0_f64);
+        for planes in &self.planes {
+            let [from, to] = [planes.depth(&ends[0]), planes.depth(&ends[1])];
+            let (from, to) = (from.to_array(), to.to_array());
+            for lane in 0..4 {
+                let (from, to) = (from[lane] + slack, to[lane] + slack);
+                if from < 0.0 && to < 0.0 {
+                    return None;
+                } else if from < 0.0 {
+                    low = low.max(from / (from - to));
+                } else if to < 0.0 {
+                    high = high.min(from / (from - to));
+                }
+            }
+        }
+        (low <= high).then(|| 0.5 * (low + high))
+    }
+}
+
+/// How deep each corner of a triangle is below each face.
+type Depths = ArrayVec<[f64x4; 3], { FACES / 4 }>;
+
+/// Bit `i` of the index as the lowest bit of byte `i`.
+const SPREAD: [u32; 16] = {
+    let mut spread = [0; 16];
+    let mut bits = 0;
+    while bits < 16 {
+        spread[bits as usize] = bits & 1 | (bits & 2) << 7 | (bits & 4) << 14 | (bits & 8) << 21;
+        bits += 1;
+    }
+    spread
+};
+
+/// The corner after each.
+const NEXT: [usize; 3] = [1, 2, 0];
+
+/// How far the lowest corner of a triangle is along a direction.
+#[inline(always)]
+fn lowest([a, b, c]: &[DVec3; 3], direction: DVec3) -> f64 {
+    a.dot(direction).min(b.dot(direction)).min(c.dot(direction))
+}
+
+/// Whether a point is at most `slack` off a triangle.
+#[inline(always)]
+fn is_on(triangle: &[DVec3; 3], point: DVec3, slack: f64) -> bool {
+    let [a, b, c] = triangle.map(|corner| Vertex { point: point - corner, corner: 0 });
+    simplex::face(a, b, c).squared <= slack * slack
+}

@@ -1,0 +1,127 @@
+use glamx::{Pose3, Vec3};
+use oorandom::Rand32;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::math::Real;
+use rapier3d::parry::query::details::ShapeCastOptions;
+use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher, ShapeCastStatus};
+use rapier3d::parry::shape::{Shape, SharedShape, TriMesh};
+use sbbk_lab::mesh;
+
+use super::queries::{least, truth};
+use super::shapes::{body, pose, shapes};
+use crate::support::{direction, shape};
+
+/// Times before an impact at which brute force looks whether there was an earlier one.
+const LOOKS: usize = 6;
+
+/// Would catch a velocity in the wrong frame, a triangle that a bound leaves out, an impact that is
+/// not the first one or none, and points that are not where the bodies meet.
+#[test]
+fn first_impacts_are_those_of_brute_force() {
+    let dispatcher = SbbkDispatcher::default();
+    let (mut hits, mut misses, mut stocks_wrong) = (0, 0, 0);
+    for size in [0.01_f32, 2.0, 40.0] {
+        let mesh = shape(&mesh::monkey_head_with(6).centred().scaled_to(size));
+        let tolerance = 4.0e-6 * f64::from(size);
+        for (seed, (name, other)) in (0..).zip(shapes(0.3 * size)) {
+            let body = body(&other);
+            let mut random = Rand32::new(seed);
+            for i in 0..4 {
+                let is_mesh_first = i % 2 == 0;
+                let way = direction(&mut random);
+                let mut in_mesh = pose(&mut random, &mesh, 0.3 * size);
+                // The last one passes by, more often than not.
+                let aside = [0.5, 0.5, 0.5, 2.5][i];
+                in_mesh.translation = (1.5 * way + aside * direction(&mut random)) * size;
+                let pos12 = if is_mesh_first { in_mesh } else { in_mesh.inverse() };
+                let velocity = -2.0 * size * way;
+                let velocity12 =
+                    if is_mesh_first { velocity } else { -(in_mesh.rotation.inverse() * velocity) };
+                let shapes: [&dyn Shape; 2] =
+                    if is_mesh_first { [&mesh, &*other] } else { [&*other, &mesh] };
+                let options = ShapeCastOptions {
+                    max_time_of_impact: 1.5,
+                    target_distance: [0.0, 0.02][i / 2] * size,
+                    ..ShapeCastOptions::default()
+                };
+                let at = |time: Real| {
+                    let mut pose = pos12;
+                    pose.translation += velocity12 * time;
+                    pose
+                };
+                let left = |time: Real| {
+                    let distance = least(&truth(&mesh, &body, &at(time), is_mesh_first));
+                    distance - f64::from(options.target_distance)
+                };
+                if left(0.0) <= 0.0 {
+                    continue;
+                }
+                let [g1, g2] = shapes;
+                let says = format!("{name}, {size}, {i}");
+                let found = dispatcher.cast_shapes(&pos12, velocity12, g1, g2, options).unwrap();
+                let until = found.map_or(options.max_time_of_impact, |hit| hit.time_of_impact);
+                for look in 0..LOOKS {
+                    let time = until * look as Real / LOOKS as Real;
+                    assert!(left(time) > 0.0, "{says}: earlier, at {time} before {until}");
+                }
+                let stock = DefaultQueryDispatcher;
+                let stock = stock.cast_shapes(&pos12, velocity12, g1, g2, options).unwrap();
+                let is_near = |time: Real| left(time).abs() <= tolerance;
+                stocks_wrong += usize::from(
+                    stock.is_some() != found.is_some()
+                        || stock.is_some_and(|hit| !is_near(hit.time_of_impact)),
+                );
+                let Some(hit) = found else {
+                    misses += 1;
+                    assert!(left(until) > 0.0, "{says}");
+                    continue;
+                };
+                hits += 1;
+                assert!(is_near(hit.time_of_impact), "{says}: {hit:?} {}", left(until));
+                assert_eq!(hit.status, ShapeCastStatus::Converged, "{says}");
+                let between = at(until) * hit.witness2 - hit.witness1;
+                let off = between - hit.normal1 * options.target_distance;
+                assert!(f64::from(off.length()) <= 2.0 * tolerance, "{says} {hit:?}");
+                let opposite = pos12.rotation * hit.normal2 + hit.normal1;
+                assert!(opposite.length() < 1.0e-5, "{says} {hit:?}");
+                assert!(hit.normal1.dot(velocity12) < 0.0, "{says} {hit:?}");
+            }
+        }
+    }
+    assert!(hits > 60 && misses > 5 && stocks_wrong > 10, "{hits} {misses} {stocks_wrong}");
+}
+
+/// Would catch an option that is not obeyed.
+#[test]
+fn bodies_that_cross_at_the_start() {
+    let dispatcher = SbbkDispatcher::default();
+    let corners = [[-1.0, 0.0, -1.0], [0.0, 0.0, 1.0], [1.0, 0.0, -1.0]].map(Vec3::from);
+    let floor = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
+    for other in [SharedShape::cylinder(0.5, 0.3), SharedShape::cuboid(0.3, 0.5, 0.2)] {
+        let cast = |height: Real, velocity: Vec3, target: Real, stop_at_penetration: bool| {
+            let options = ShapeCastOptions {
+                target_distance: target,
+                stop_at_penetration,
+                ..Default::default()
+            };
+            let pos12 = Pose3::translation(0.0, height, 0.0);
+            dispatcher.cast_shapes(&pos12, velocity, &floor, &*other, options).unwrap()
+        };
+        let (up, down) = (Vec3::Y, -Vec3::Y);
+        let crossing = cast(0.4, up, 0.0, true).unwrap();
+        assert_eq!(crossing.time_of_impact, 0.0);
+        assert_eq!(crossing.status, ShapeCastStatus::PenetratingOrWithinTargetDist);
+        assert!((crossing.normal1 - up).length() < 1.0e-6, "{crossing:?}");
+        assert!(cast(0.4, up, 0.0, false).is_none());
+        assert!(cast(0.4, down, 0.0, false).is_some());
+        let within = cast(0.55, up, 0.1, true).unwrap();
+        assert_eq!(within.status, ShapeCastStatus::PenetratingOrWithinTargetDist);
+        assert!(cast(0.55, up, 0.1, false).is_none());
+        let above = cast(1.5, down, 0.1, false).unwrap();
+        assert!((above.time_of_impact - 0.9).abs() < 1.0e-6, "{above:?}");
+        assert!((above.witness2.y + 0.5).abs() < 1.0e-6 && above.witness1.y.abs() < 1.0e-6);
+        assert!(cast(1.5, Vec3::ZERO, 0.0, true).is_none());
+        assert!(cast(1.5, Vec3::X, 0.0, true).is_none());
+        assert!(cast(1.5, down * Real::NAN, 0.0, true).is_none());
+    }
+}
