@@ -163,7 +163,7 @@ impl HullFaces {
             let bits = SPREAD[ab.to_bitmask() as usize & 15]
                 | SPREAD[bc.to_bitmask() as usize & 15] << 1
                 | SPREAD[ca.to_bitmask() as usize & 15] << 2
-                | SPREAD[near as usize & 15] * (0b111 << 3);
+                | (SPREAD[near as usize & 15] * (0b111 << 3));
             mark.copy_from_slice(&bits.to_le_bytes());
         }
         let mut least: Option<Reach> = None;
@@ -298,7 +298,7 @@ impl HullFaces {
                 }
             }
         }
-        (low <= high).then(|| 0.5 * (low + high))
+        (low <= high).then_some(0.5 * (low + high))
     }
 }
 

@@ -38,7 +38,7 @@ impl HullSurface {
     pub fn of(points: &[DVec3], triangles: &[[u32; 3]]) -> Option<Self> {
         const NONE: u8 = u8::MAX;
         let (count, slack) = (points.len(), ROUNDING * size(points.iter().copied()));
-        let is_closed = count <= POINTS && count >= 4 && triangles.len() == 2 * count - 4;
+        let is_closed = (4..=POINTS).contains(&count) && triangles.len() == 2 * count - 4;
         if !is_closed {
             return None;
         }
