@@ -77,9 +77,13 @@ fn axes([t1, t2]: [&Triangle; 2], solid: [bool; 2], most: f64) -> ArrayVec<Outwa
     let [normal1, normal2] = areas.map(|area| area.normalize_or_zero());
     let mut axes = ArrayVec::new();
     let mut consider = |direction: DVec3| {
-        let axis = direction.normalize();
-        let is_out = |is_solid: bool, cosine: f64| !is_solid || cosine >= -LEAN;
-        if is_out(solid[0], axis.dot(normal1)) && is_out(solid[1], -axis.dot(normal2)) {
+        let length_squared = direction.length_squared();
+        let is_out = |is_solid: bool, along: f64| {
+            !is_solid || along >= 0.0 || along * along <= LEAN * LEAN * length_squared
+        };
+        // Before the division: two of three axes end here.
+        if is_out(solid[0], direction.dot(normal1)) && is_out(solid[1], -direction.dot(normal2)) {
+            let axis = direction / length_squared.sqrt();
             let ([_, max1], [min2, _]) =
                 (t1.shadow(DVec3::ZERO, axis), t2.shadow(DVec3::ZERO, axis));
             let gap = min2 - max1;

@@ -121,16 +121,14 @@ impl<'a> Everyday<'a> {
         Self { row, steps, build: Box::new(build), prepared: Vec::new() }
     }
 
-    /// Runs the scene `repeats` times on either backend.
+    /// Runs the scene `repeats` times on both backends, step by step in turns.
     ///
     /// Errors: the scene cannot be built.
     pub fn measure(&self, repeats: usize) -> Result<[Row; 2], SceneError> {
         let mut sides: [Side; 2] = Default::default();
         let mut comparison = Comparison::new();
         for repeat in 0..repeats.max(1) {
-            let looks = (repeat == 0).then_some(&mut comparison);
-            self.run(None, &mut sides[0], looks)?;
-            self.run(Some(&SbbkDispatcher::default()), &mut sides[1], None)?;
+            self.run(&mut sides, (repeat == 0).then_some(&mut comparison))?;
         }
         let [stock, sbbk] = sides.map(|side| (side.row_values(), side));
         let of = |detection: &Spread| [detection.median, detection.worst];
@@ -193,31 +191,35 @@ impl<'a> Everyday<'a> {
         Ok((driven, trees.collect()))
     }
 
+    /// Both worlds at once, so that what else the machine does slows both, each first in turn.
     fn run(
         &self,
-        dispatcher: Option<&SbbkDispatcher>,
-        side: &mut Side,
+        sides: &mut [Side; 2],
         mut comparison: Option<&mut Comparison>,
     ) -> Result<(), SceneError> {
-        let (Driven { mut world, mut drive }, _prepared) = self.start(dispatcher)?;
-        world.physics_pipeline.counters.enable();
+        let dispatcher = SbbkDispatcher::default();
+        let (stock, _) = self.start(None)?;
+        let (sbbk, _prepared) = self.start(Some(&dispatcher))?;
+        let mut worlds = [stock, sbbk];
+        for Driven { world, .. } in &mut worlds {
+            world.physics_pipeline.counters.enable();
+        }
         for step in 0..self.steps {
-            let asked = drive(&mut world, step);
-            let start = Instant::now();
-            world.step();
-            let whole = start.elapsed() + asked;
-            let detection = asked + world.physics_pipeline.counters.cd.narrow_phase_time.time();
-            keep_least(&mut side.detection, step, detection);
-            keep_least(&mut side.step, step, whole);
+            for i in [step % 2, 1 - step % 2] {
+                sides[i].step(&mut worlds[i], step);
+            }
             if step % MEMORY_EVERY == 0 {
-                side.mesh_bytes = side.mesh_bytes.max(mesh_bytes(&world));
-                side.plugin_bytes = side.plugin_bytes.max(dispatcher.map_or(0, plugin_bytes));
+                for (side, Driven { world, .. }) in sides.iter_mut().zip(&worlds) {
+                    side.mesh_bytes = side.mesh_bytes.max(mesh_bytes(world));
+                }
+                sides[1].plugin_bytes = sides[1].plugin_bytes.max(plugin_bytes(&dispatcher));
             }
             if let Some(comparison) = &mut comparison {
-                let is_single = world.contact_pairs().nth(FEW_PAIRS).is_none();
+                let stock = &worlds[0].world;
+                let is_single = stock.contact_pairs().nth(FEW_PAIRS).is_none();
                 let every = if is_single { FEW_EVERY } else { (self.steps / COMPARISONS).max(1) };
                 if (step + 1) % every == 0 {
-                    comparison.look(&world);
+                    comparison.look(stock);
                 }
             }
         }
@@ -226,6 +228,16 @@ impl<'a> Everyday<'a> {
 }
 
 impl Side {
+    fn step(&mut self, Driven { world, drive }: &mut Driven, step: usize) {
+        let asked = drive(world, step);
+        let start = Instant::now();
+        world.step();
+        let whole = start.elapsed() + asked;
+        let detection = asked + world.physics_pipeline.counters.cd.narrow_phase_time.time();
+        keep_least(&mut self.detection, step, detection);
+        keep_least(&mut self.step, step, whole);
+    }
+
     fn row_values(&self) -> (Spread, Spread) {
         (Spread::of(self.detection.clone()), Spread::of(self.step.clone()))
     }

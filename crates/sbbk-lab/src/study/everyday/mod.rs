@@ -1,7 +1,7 @@
 //! Everyday scenes: bodies on mesh terrains of all sizes, a mesh that comes and goes, sensors,
 //! characters, and queries without a workspace. Is one line ever a loss?
 //!
-//! Each scene runs in whole worlds, under stock Rapier and under SBBK as a user gets it: run by run
+//! Each scene runs in whole worlds, under stock Rapier and under SBBK as a user gets it: step by step
 //! in turns, trees built when the scene first needs them. All runs of a backend do the same, so the
 //! time of a step is the least over the runs. At poses of stock's runs both are asked afresh for
 //! the contacts of all pairs with a mesh; where they differ, brute force in f64 tells who is right.

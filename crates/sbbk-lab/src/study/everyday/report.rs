@@ -88,7 +88,7 @@ fn world_notes(plan: &EverydayPlan) -> Vec<String> {
     vec![
         format!(
             "time step 1/{:.0} s, length unit {}, prediction distance {} units; microseconds a \
-             step: of each step the least over {} runs, both in turn",
+             step: of each step the least over {} runs, both step by step in turn",
             1.0 / parameters.dt,
             parameters.length_unit,
             parameters.prediction_distance(),
