@@ -151,13 +151,12 @@ impl SbbkDispatcher {
 
     /// What `of_meshes` finds of two rigid meshes, or `of_convex` of one and a convex shape; `None` if
     /// Parry must answer. `apart` is the answer where Parry's hierarchies tell that they are farther
-    /// apart than a distance. Unless `has_balls` Parry answers for these: exactly, in less time, and
-    /// inside a mesh with pseudo-normals they meet it.
+    /// apart than a distance. `balls` says who answers for these.
     fn search<T>(
         &self,
         pos12: &Pose,
         [g1, g2]: [&dyn Shape; 2],
-        has_balls: bool,
+        balls: Balls,
         apart: Option<(Real, T)>,
         of_meshes: impl FnOnce(MeshQuery<'_>) -> T,
         of_convex: impl FnOnce(ConvexQuery<'_>) -> T,
@@ -165,19 +164,19 @@ impl SbbkDispatcher {
         let (mesh, other, mesh_place) = match [g1, g2].map(rigid_mesh) {
             [Some(mesh1), Some(mesh2)] => {
                 let meshes = [mesh1, mesh2];
-                let kind = self.config.kinds.meshes;
+                let is_answered = self.config.kinds.meshes;
                 // Before all else: most pairs that a host asks about are apart.
-                return match apart.filter(|_| kind) {
+                return match apart.filter(|_| is_answered) {
                     Some((distance, apart)) if !are_near(meshes, pos12, distance) => Some(apart),
-                    _ => self.mesh_query([g1, g2]).map(of_meshes),
+                    _ => self.mesh_query(meshes).map(of_meshes),
                 };
             }
             [Some(mesh), None] => (mesh, g2, MeshPlace::First),
             [None, Some(mesh)] => (mesh, g1, MeshPlace::Second),
             [None, None] => return None,
         };
-        let is_answered = other.is_convex() && (has_balls || other.as_ball().is_none());
-        if !self.config.kinds.convex_shapes || !is_answered {
+        let is_parrys = balls == Balls::Parrys && other.as_ball().is_some();
+        if !self.config.kinds.convex_shapes || is_parrys || !other.is_convex() {
             return None;
         }
         if let Some((distance, apart)) = apart {
@@ -195,12 +194,9 @@ impl SbbkDispatcher {
     }
 
     /// Two rigid meshes, to be asked about; `None` if Parry must answer.
-    fn mesh_query<'a>(&'a self, shapes: [&'a dyn Shape; 2]) -> Option<MeshQuery<'a>> {
-        let [Some(mesh1), Some(mesh2)] = shapes.map(rigid_mesh) else { return None };
-        if !self.config.kinds.meshes {
-            return None;
-        }
-        Some(MeshQuery { cache: &self.cache, meshes: self.look_at([mesh1, mesh2])? })
+    fn mesh_query<'a>(&'a self, meshes: [&'a TriMesh; 2]) -> Option<MeshQuery<'a>> {
+        let meshes = self.config.kinds.meshes.then(|| self.look_at(meshes))??;
+        Some(MeshQuery { cache: &self.cache, meshes })
     }
 
     /// The contacts of a pair of shapes, if SBBK answers for them.
@@ -397,6 +393,15 @@ impl fmt::Debug for PreparedTree {
     }
 }
 
+/// Who answers queries without manifolds about a ball.
+#[derive(PartialEq)]
+enum Balls {
+    /// SBBK, as for other convex shapes.
+    Ours,
+    /// Parry: exactly, in less time, and inside a mesh with pseudo-normals a ball meets it.
+    Parrys,
+}
+
 /// A mesh that can have a tree, and that queries without manifolds are answered for. Meshes that
 /// deform have none, and such queries about them are Parry's.
 fn rigid_mesh(shape: &dyn Shape) -> Option<&TriMesh> {
@@ -467,7 +472,7 @@ impl QueryDispatcher for SbbkDispatcher {
         let found = self.search(
             pos12,
             [g1, g2],
-            false,
+            Balls::Parrys,
             Some((0.0, ShapeIntersection::new(false))),
             |meshes| meshes.intersection(pos12),
             |pair| pair.intersection(),
@@ -487,7 +492,7 @@ impl QueryDispatcher for SbbkDispatcher {
         let found = self.search(
             pos12,
             [g1, g2],
-            false,
+            Balls::Parrys,
             None,
             |meshes| meshes.distance(pos12),
             |pair| pair.distance(),
@@ -508,7 +513,7 @@ impl QueryDispatcher for SbbkDispatcher {
         let found = self.search(
             pos12,
             [g1, g2],
-            false,
+            Balls::Parrys,
             Some((prediction, None)),
             |meshes| meshes.contact(pos12, prediction),
             |pair| pair.contact(prediction),
@@ -529,7 +534,7 @@ impl QueryDispatcher for SbbkDispatcher {
         let found = self.search(
             pos12,
             [g1, g2],
-            false,
+            Balls::Parrys,
             Some((max_dist, ClosestPoints::Disjoint)),
             |meshes| meshes.closest_points(pos12, max_dist),
             |pair| pair.closest_points(max_dist),
@@ -551,7 +556,7 @@ impl QueryDispatcher for SbbkDispatcher {
         let found = self.search(
             pos12,
             [g1, g2],
-            true,
+            Balls::Ours,
             None,
             |meshes| meshes.cast(pos12, local_vel12, options),
             |pair| Some(pair.cast(local_vel12, options)),
@@ -575,7 +580,9 @@ impl QueryDispatcher for SbbkDispatcher {
         let (motions, times) = ([motion1, motion2], (start_time, end_time));
         let cast =
             |meshes: MeshQuery<'_>| meshes.cast_nonlinear(motions, times, stop_at_penetration);
-        match self.mesh_query([g1, g2]).and_then(cast) {
+        let [mesh1, mesh2] = [g1, g2].map(rigid_mesh);
+        let meshes = mesh1.zip(mesh2).and_then(|(mesh1, mesh2)| self.mesh_query([mesh1, mesh2]));
+        match meshes.and_then(cast) {
             Some(hit) => Ok(hit),
             None => DefaultQueryDispatcher.cast_shapes_nonlinear(
                 motion1,

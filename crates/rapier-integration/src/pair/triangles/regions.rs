@@ -257,6 +257,7 @@ mod tests {
         assert_eq!(both(0.2, 0.2, 0.0), None, "neither is nearer");
         assert_eq!(both(0.1, 0.3, 1.2), None, "they do not push against each other");
     }
+
     /// Would catch a thin body that is held in a sheet, one that goes to the side where less of it is,
     /// and contacts lost where all push to one side, whichever that is.
     #[test]
