@@ -105,6 +105,22 @@ fn flat_round_shapes_on_a_lattice() {
     assert!(far > 2000, "{far}");
 }
 
+/// A needle that a segment, which calls itself a triangle, runs through. Would catch a search that is
+/// stuck and takes a direction that parts nothing for the normal.
+#[test]
+fn a_needle_and_a_segment() {
+    let needle = [
+        DVec3::new(-2.0, -2.0, -1.875),
+        DVec3::new(-2.0000000027939677, -2.0000000074505806, -2.0000000069849193),
+        DVec3::new(-1.8750000037252903, -1.8749999976716936, -1.875000003259629),
+    ];
+    let end = DVec3::new(1.7500000223517418, 1.749999975785613, 1.7499999832361937);
+    let core = Core::Triangle([end, DVec3::splat(-2.0), DVec3::splat(-2.0)]);
+    let shape = Shape { core, radius: 1.625 };
+    let contact = shape.contact(&needle, 100.0).unwrap();
+    check(&needle, &shape, &contact, 1.0e-9 * size(&needle, &shape));
+}
+
 /// Points in one place touch: the distance is 0 and the normal some unit vector.
 #[test]
 fn points_in_one_place() {
