@@ -121,6 +121,24 @@ fn a_needle_and_a_segment() {
     check(&needle, &shape, &contact, 1.0e-9 * size(&needle, &shape));
 }
 
+/// A triangle on a face of a flat hull. Would catch a polytope that rounding has turned inside out,
+/// with a far face for the nearest one.
+#[test]
+fn a_triangle_on_a_face_of_a_flat_hull() {
+    let triangle = [
+        DVec3::ONE,
+        DVec3::new(1.0, -6.984919309616089e-9, -7.450580596923828e-9),
+        DVec3::new(2.384185791015625e-7, 2.682209014892578e-7, 2.682209014892578e-7),
+    ];
+    let corners =
+        [[-0.125, 1.0, 1.0], [1.0; 3], [-2.0, 1.0, 1.0], [-0.25, -1.875, -2.0], [-2.0; 3]];
+    let shape = Shape { core: Core::Hull(corners.map(DVec3::from).into()), radius: 0.625 };
+    let contact = shape.contact(&triangle, 100.0).unwrap();
+    let size = size(&triangle, &shape);
+    check(&triangle, &shape, &contact, 1.0e-9 * size);
+    assert!((contact.distance + shape.radius).abs() < 1.0e-9 * size, "{contact:?}");
+}
+
 /// Points in one place touch: the distance is 0 and the normal some unit vector.
 #[test]
 fn points_in_one_place() {

@@ -52,8 +52,11 @@ pub(super) fn depth<S: SupportMap>(
         let face = polytope.get(i);
         let new = difference.farthest(face.normal);
         let reach = new.point.dot(face.normal);
-        let is_proved = reach - face.distance <= slack + proved * reach.abs();
-        if is_proved || best.is_none_or(|(depth, _)| reach < depth) {
+        let open = slack + proved * reach.abs();
+        let is_proved = reach - face.distance <= open;
+        // Of two as near the proved one has the origin above it. What rounding has made of a thin
+        // difference may have a face that is proved and far: each move parts, so the least one counts.
+        if best.is_none_or(|(depth, _)| reach < depth || is_proved && reach <= depth + open) {
             best = Some((reach, *face));
         }
         if is_proved {
