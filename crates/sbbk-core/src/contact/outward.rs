@@ -81,7 +81,7 @@ fn axes([t1, t2]: [&Triangle; 2], solid: [bool; 2], most: f64) -> ArrayVec<Outwa
         let is_out = |is_solid: bool, along: f64| {
             !is_solid || along >= 0.0 || along * along <= LEAN * LEAN * length_squared
         };
-        // Before the division: two of three axes end here.
+        // Before the division: most directions end here.
         if is_out(solid[0], direction.dot(normal1)) && is_out(solid[1], -direction.dot(normal2)) {
             let axis = direction / length_squared.sqrt();
             let ([_, max1], [min2, _]) =

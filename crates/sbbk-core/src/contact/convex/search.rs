@@ -81,9 +81,9 @@ pub(super) fn search<S: SupportMap>(
     size: f64,
 ) -> Search {
     let end = |outcome, rounds| Search { outcome, rounds };
-    let (doubtful, nearly) = ((DOUBTFUL * size).powi(2), (NEARLY * size).powi(2));
+    let [doubtful, nearly, unproved] =
+        [DOUBTFUL, NEARLY, UNPROVED].map(|share| (share * size).powi(2));
     // Rounding can keep a search from the direction of bodies that nearly touch.
-    let unproved = (UNPROVED * size).powi(2);
     let stuck = |simplex: Simplex, open: f64, rounds| {
         let Simplex { squared, .. } = simplex;
         let is_open = open * open > doubtful * squared && squared <= nearly;
