@@ -19,12 +19,19 @@ fn near() -> Pose {
     Pose::translation(1.6, 0.3, 0.2)
 }
 
-/// Asks about two meshes that touch; the state of the pair must be kept by the caller.
+/// Asks about two meshes that touch: twice, as the first query of a pair looks for no trees. The
+/// state of the pair must be kept by the caller.
 fn touch(dispatcher: &SbbkDispatcher, mesh1: &TriMesh, mesh2: &TriMesh) -> Pair {
     let mut pair = Pair::default();
-    pair.ask(dispatcher, &Query::new(mesh1, mesh2, near()));
+    ask_twice(&mut pair, dispatcher, &Query::new(mesh1, mesh2, near()));
     assert!(!pair.manifolds.is_empty());
     pair
+}
+
+fn ask_twice(pair: &mut Pair, dispatcher: &SbbkDispatcher, query: &Query) {
+    for _ in 0..2 {
+        pair.ask(dispatcher, query);
+    }
 }
 
 fn with_idle_bytes(limit: usize) -> SbbkDispatcher {
@@ -47,7 +54,7 @@ fn clones_and_equal_meshes_share_one_tree() {
     let mesh = ball();
     let (clone, equal) = (mesh.clone(), rebuilt(&mesh));
     let _pairs = [touch(&dispatcher, &mesh, &clone), touch(&dispatcher, &equal, &mesh)];
-    assert_eq!(counts(&dispatcher), [1, 0, 1, 3]);
+    assert_eq!(counts(&dispatcher), [1, 0, 1, 2]);
     assert!(dispatcher.stats().tree_bytes > 0);
 }
 
@@ -60,10 +67,10 @@ fn two_thousand_copies_share_one_tree() {
     let copies: Vec<TriMesh> = (0..2000).map(|_| mesh.clone()).collect();
     let pairs: Vec<Pair> =
         copies.windows(2).map(|two| touch(&dispatcher, &two[0], &two[1])).collect();
-    assert_eq!(counts(&dispatcher), [1, 0, 1, 2 * 1999 - 1]);
+    assert_eq!(counts(&dispatcher), [1, 0, 1, 2 * 1998]);
     let bytes = dispatcher.stats().tree_bytes;
     drop(pairs);
-    assert_eq!(counts(&dispatcher), [1, 1, 1, 2 * 1999 - 1]);
+    assert_eq!(counts(&dispatcher), [1, 1, 1, 2 * 1998]);
     assert_eq!(dispatcher.stats().tree_bytes, bytes);
 }
 
@@ -91,7 +98,7 @@ fn clones_of_a_dispatcher_share_their_trees() {
     let mesh = ball();
     let _pair = touch(&dispatcher.clone(), &mesh, &mesh);
     let _other = touch(&dispatcher, &mesh, &mesh);
-    assert_eq!(counts(&dispatcher), [1, 0, 1, 3]);
+    assert_eq!(counts(&dispatcher), [1, 0, 1, 2]);
 }
 
 /// Would catch trees built for pairs that never come close: a world is full of them.
@@ -101,10 +108,12 @@ fn meshes_far_apart_need_no_tree() {
     let mesh = ball();
     let far = Query::new(&mesh, &mesh, Pose::translation(2.1, 0.0, 0.0));
     let mut pair: Pair = Pair::default();
-    pair.ask(&dispatcher, &far);
+    ask_twice(&mut pair, &dispatcher, &far);
     assert_eq!(counts(&dispatcher), [0, 0, 0, 0]);
     pair.ask(&dispatcher, &far.at(near()));
-    assert_eq!(counts(&dispatcher), [1, 0, 1, 1]);
+    assert_eq!(counts(&dispatcher), [0, 0, 0, 0], "it may leave again");
+    pair.ask(&dispatcher, &far.at(near()));
+    assert_eq!(counts(&dispatcher), [1, 0, 1, 0]);
 }
 
 /// Would catch memory that is never given back, and a tree in use that is.
@@ -115,9 +124,9 @@ fn idle_trees_go_when_there_is_no_room() {
     let pairs = [touch(&none_idle, &mesh, &mesh), touch(&none_idle, &mesh, &mesh)];
     let [one, other] = pairs;
     drop(one);
-    assert_eq!(counts(&none_idle), [1, 0, 1, 3]);
+    assert_eq!(counts(&none_idle), [1, 0, 1, 2]);
     drop(other);
-    assert_eq!(counts(&none_idle), [0, 0, 1, 3]);
+    assert_eq!(counts(&none_idle), [0, 0, 1, 2]);
     assert_eq!(none_idle.stats().tree_bytes, 0);
 }
 
@@ -135,15 +144,15 @@ fn the_oldest_idle_tree_goes_first() {
     for mesh in &meshes {
         drop(touch(&dispatcher, mesh, mesh));
     }
-    assert_eq!(counts(&dispatcher), [2, 2, 3, 3]);
+    assert_eq!(counts(&dispatcher), [2, 2, 3, 0]);
     for mesh in meshes[1..].iter().rev() {
         drop(touch(&dispatcher, mesh, mesh));
     }
-    assert_eq!(counts(&dispatcher), [2, 2, 3, 7]);
+    assert_eq!(counts(&dispatcher), [2, 2, 3, 4]);
     drop(touch(&dispatcher, &meshes[0], &meshes[0]));
     // The one before last is the oldest now: touching a tree makes it young again.
     drop(touch(&dispatcher, &meshes[1], &meshes[1]));
-    assert_eq!(counts(&dispatcher), [2, 2, 4, 10]);
+    assert_eq!(counts(&dispatcher), [2, 2, 4, 6]);
 }
 
 /// Would catch a release that takes trees from living pairs, or leaves some behind.
@@ -182,7 +191,7 @@ fn a_cloned_pair_keeps_its_trees() {
     drop(pair);
     assert_eq!(counts(&dispatcher)[..2], [1, 0]);
     drop(clone);
-    assert_eq!(counts(&dispatcher), [0, 0, 1, 1]);
+    assert_eq!(counts(&dispatcher), [0, 0, 1, 0]);
 }
 
 /// Would catch a tree built by several threads, one seen half built, or a deadlock: eight threads
@@ -201,7 +210,7 @@ fn threads_build_one_tree_and_agree() {
         let ask = || {
             together.wait();
             let mut pair: Pair = Pair::default();
-            pair.ask(&dispatcher, &query);
+            ask_twice(&mut pair, &dispatcher, &query);
             // No pair ends before all have begun.
             together.wait();
             pair.manifolds
@@ -212,7 +221,7 @@ fn threads_build_one_tree_and_agree() {
                 assert_same(&thread.join().unwrap(), &expected, 0.0);
             }
         });
-        assert_eq!(counts(&dispatcher), [2, 2, 2, 2 * (THREADS as u64 - 1)]);
+        assert_eq!(counts(&dispatcher)[..3], [2, 2, 2]);
     }
 }
 

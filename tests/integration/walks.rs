@@ -47,7 +47,7 @@ fn contacts_without_trees_are_those_with_trees() {
             ContactGenerator::Exact => per_triangle(),
             ContactGenerator::Parry => generating(generator),
         });
-        let _tree = prepared.prepare_shape(&ring).unwrap().expect("a rigid mesh");
+        let _trees = [&ring, &head].map(|shape| prepared.prepare_shape(shape).unwrap());
         let mut random = Rand32::new(1);
         for i in 0..24 {
             let (one, two) = (as_mesh(&ring), as_mesh(if i % 4 == 0 { &ring } else { &head }));
@@ -96,11 +96,13 @@ fn a_flag_alone_changes_nothing() {
     let (rigid, soft) = (head(all), head(TriMeshFlags::all()));
     let dispatcher = per_triangle();
     let mut random = Rand32::new(2);
-    let mut pair: Pair = Pair::default();
+    let [mut pair, mut rigid_pair]: [Pair; 2] = Default::default();
     for _ in 0..50 {
         let pose = touching(&mut random, [as_mesh(&rigid); 2], 0.02);
-        let expected = fresh(&dispatcher, &Query::new(as_mesh(&rigid), as_mesh(&rigid), pose));
+        let of_rigid = Query::new(as_mesh(&rigid), as_mesh(&rigid), pose);
+        let expected = fresh(&dispatcher, &of_rigid);
         assert!(!expected.is_empty());
+        assert_same(&rigid_pair.ask(&dispatcher, &of_rigid).manifolds, &expected, 0.0);
         for (one, two) in [(&soft, &rigid), (&rigid, &soft), (&soft, &soft)] {
             let query = Query::new(as_mesh(one), as_mesh(two), pose);
             assert_same(&fresh(&dispatcher, &query), &expected, 0.0);
@@ -125,6 +127,7 @@ fn a_registered_shape_is_known_until_it_is_let_go() {
         assert_eq!(bits(&found), bits(&fresh(&per_triangle(), &query)));
         (found.len(), dispatcher.stats().walks - before)
     };
+    let _tree_of_head = dispatcher.prepare_shape(&head).unwrap();
     let tree = dispatcher.prepare_shape(&ring).unwrap().expect("a rigid mesh");
     assert_eq!(tree.tree().triangle_count(), 9600);
     let (count, walks) = ask(&ring);
@@ -140,9 +143,6 @@ fn a_registered_shape_is_known_until_it_is_let_go() {
     drop(dispatcher.prepare_shape(&clone).unwrap());
     assert_eq!(ask(&clone), (count, 0));
     drop(tree);
-    // The tree is idle now, and its content is known: it takes a hash.
-    assert_eq!(ask(&clone), (count, 0));
-    dispatcher.release_idle_trees();
     assert_eq!(ask(&clone), (count, 1));
     assert!(dispatcher.prepare_shape(&SharedShape::ball(1.0)).unwrap().is_none());
     let soft = large(TriMeshFlags::DEFORMABLE);
@@ -168,8 +168,10 @@ fn meshes_that_land_together_are_not_all_built_at_once() {
         dispatcher.stats()
     };
     let first = step(0);
-    assert!((4..=14).contains(&first.tree_builds) && first.walks > 80, "{first:?}");
-    let last = (1..160).map(&mut step).last().unwrap();
+    assert!(first.tree_builds == 0 && first.walks == 99, "none may stay: {first:?}");
+    let second = step(1);
+    assert!((4..=14).contains(&second.tree_builds) && second.walks > 180, "{second:?}");
+    let last = (2..160).map(&mut step).last().unwrap();
     assert!(last.tree_builds > 95, "queries earn what trees take: {last:?}");
     for (pair, meshes) in pairs.iter().zip(meshes.windows(2)) {
         let pose = Pose::translation(0.0, 0.03, 0.0) * pose;

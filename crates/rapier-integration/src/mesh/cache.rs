@@ -193,7 +193,7 @@ impl TreeCache {
     /// # Errors
     /// Why this mesh cannot have a tree.
     pub(crate) fn prepare(self: &Arc<Self>, mesh: &TriMesh) -> Result<PreparedRef, BuildError> {
-        let entry = self.acquire(ContentHash::of(mesh), mesh.indices().len());
+        let entry = self.know(mesh);
         self.build(mesh, &entry)?;
         Ok(entry)
     }
@@ -201,13 +201,10 @@ impl TreeCache {
     /// Builds the tree of a mesh, whose entry this is, if it is not there.
     fn build(&self, mesh: &TriMesh, entry: &CachedMesh) -> Result<(), BuildError> {
         entry.is_begun.store(true, Ordering::Relaxed);
-        let mut built = false;
         let result = entry.prepared.get_or_init(|| {
-            built = true;
+            self.builds.fetch_add(1, Ordering::Relaxed);
             PreparedMesh::new(mesh, &self.options)
         });
-        let counter = if built { &self.builds } else { &self.hits };
-        counter.fetch_add(1, Ordering::Relaxed);
         result.as_ref().map(|_| ()).map_err(BuildError::clone)
     }
 
@@ -246,10 +243,14 @@ impl TreeCache {
         Ok(self.registry.register(shape, self.prepare(mesh)?))
     }
 
-    /// What is known of a mesh, if it is registered or small.
-    pub(super) fn know(self: &Arc<Self>, mesh: &TriMesh) -> Option<PreparedRef> {
-        let small = || self.acquire(ContentHash::of(mesh), mesh.indices().len());
-        self.registry.tree_of(mesh).or_else(|| self.is_small(mesh).then(small))
+    /// What all pairs share of a mesh: found by a hash of all of it.
+    pub(super) fn know(self: &Arc<Self>, mesh: &TriMesh) -> PreparedRef {
+        self.acquire(ContentHash::of(mesh), mesh.indices().len())
+    }
+
+    /// The same of a mesh that is registered, which its address tells.
+    pub(super) fn registered_tree(&self, mesh: &TriMesh) -> Option<PreparedRef> {
+        self.registry.tree_of(mesh)
     }
 
     /// The tree of a large mesh if it is there, and queries have earned what it takes to know it.
@@ -278,7 +279,7 @@ impl TreeCache {
 
     /// The tree of a mesh that is registered.
     pub(crate) fn registered(&self, mesh: &TriMesh) -> Option<Arc<CachedMesh>> {
-        self.registry.tree_of(mesh).map(|tree| Arc::clone(&tree.mesh))
+        self.registered_tree(mesh).map(|tree| Arc::clone(&tree.mesh))
     }
 
     /// Whether the tree of a mesh can be built in the midst of things.
@@ -314,6 +315,7 @@ impl TreeCache {
             Entry { mesh: Arc::new(CachedMesh::new(content, triangle_count)), idle: None }
         });
         entry.mesh.users.fetch_add(1, Ordering::AcqRel);
+        self.hits.fetch_add(entry.mesh.tree().is_some().into(), Ordering::Relaxed);
         let (mesh, idle) = (Arc::clone(&entry.mesh), entry.idle.take());
         if let Some(idle) = idle {
             entries.idle.remove(&idle.since);

@@ -111,3 +111,28 @@ fn loops(edges: &[[u32; 2]]) -> Vec<Vec<[u32; 2]>> {
     }
     loops.into_values().collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Would catch edges that make up for several others, for those that run the same way, or for none
+    /// once they have made up for one.
+    #[test]
+    fn each_edge_makes_up_for_one_that_runs_back() {
+        // Both ends three times, a little apart.
+        let corner = |vertex: u32| DVec3::new(f64::from(vertex % 2), 1e-7 * f64::from(vertex), 0.0);
+        let left = |edges: &[[u32; 2]]| {
+            without_seams(edges, corner, 1e-5)
+                .iter()
+                .map(|edge| edge.map(|v| v % 2))
+                .collect::<Vec<_>>()
+        };
+        let (out, back) = ([[0, 1], [2, 3], [4, 5]], [[1, 0], [3, 2], [5, 4]]);
+        assert!(left(&[out[0], back[1]]).is_empty());
+        assert_eq!(left(&[out[0], back[1], back[2]]), [[1, 0]]);
+        assert_eq!(left(&[out[0], out[1], back[2]]), [[0, 1]]);
+        assert!(left(&[out[0], back[1], out[2], back[0]]).is_empty());
+        assert_eq!(left(&[out[0], out[1]]), [[0, 1]; 2]);
+    }
+}

@@ -7,6 +7,7 @@
 
 use super::apart::{Gap, Near, Pair, Solid};
 use super::difference::Vertex;
+use super::search::BOUNDARY;
 use super::simplex;
 use super::support::SupportMap;
 use super::{ConvexContact, by_search};
@@ -36,9 +37,6 @@ const PARALLEL: f64 = 1.0e-12;
 /// How far a point may be off a body, as a share of the size, and count as on it: where features
 /// tie, the deepest corner need not be over the other body.
 const ON_BODY: f64 = 1.0e-13;
-
-/// Share of the size by which a gap must be beyond the margin to end the search.
-const BOUNDARY: f64 = 1.0e-13;
 
 /// What a direction that may part the bodies belongs to.
 #[derive(Clone, Copy)]

@@ -15,6 +15,7 @@
 
 use super::apart::{Gap, Near, Pair, Solid};
 use super::difference::Vertex;
+use super::search::BOUNDARY;
 use super::simplex;
 use super::support::SupportMap;
 use super::{ConvexContact, by_search};
@@ -84,9 +85,6 @@ fn rim(direction: DVec3, across: f64, radius: f64, y: f64) -> DVec3 {
     let scale = if across > 0.0 { radius / across } else { 0.0 };
     DVec3::new(direction.x * scale, y, direction.z * scale)
 }
-
-/// Share of the size by which a gap must be beyond the margin to end the search.
-const BOUNDARY: f64 = 1.0e-13;
 
 /// Steps of Newton's method at most; some five are taken.
 const STEPS: u32 = 40;

@@ -27,8 +27,8 @@ const ROUNDING: f64 = 1.0e-15;
 const STALLS: u32 = 4;
 const TIE: f64 = 1.0e-14;
 
-/// Share of the size by which a bound must be beyond the margin to end the search.
-const BOUNDARY: f64 = 1.0e-13;
+/// Share of the size by which a bound must be beyond the margin to end a search, or a closed form.
+pub(super) const BOUNDARY: f64 = 1.0e-13;
 
 /// Bodies whose distance is below this share of their size touch.
 pub(super) const TOUCHING: f64 = 1.0e-12;
