@@ -6,7 +6,7 @@
 
 use std::time::{Duration, Instant};
 
-use rapier3d::geometry::{ColliderHandle, ContactManifold, SharedShape, TriMesh};
+use rapier3d::geometry::{ColliderHandle, ContactManifold, SharedShape};
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::ContactManifoldsWorkspace;
 use rapier3d::pipeline::PhysicsWorld;
@@ -104,12 +104,6 @@ impl PosePairs {
             self.ask(dispatcher, index, pose_index, &mut memory);
             Answer::new(self.question(index, pose_index), &memory.manifolds)
         })
-    }
-
-    /// The meshes of a pair. Panics when `index` is out of range.
-    pub fn meshes(&self, index: usize) -> [&TriMesh; 2] {
-        let shapes = self.pairs[index].shapes.each_ref();
-        shapes.map(|shape| shape.as_trimesh().expect("only meshes are captured"))
     }
 
     /// All shapes, those shared by several colliders repeated.

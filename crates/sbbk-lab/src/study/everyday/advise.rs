@@ -273,15 +273,18 @@ impl fmt::Display for Advice {
                 milliseconds(sbbk, "detection.worst"),
                 milliseconds(stock, "detection.worst"),
             )?;
+            let [wrong, stocks] = [sbbk, stock].map(|row| row.wrong("judged"));
+            let all = stock.count("judged.true_pairs");
             if use_ == "sensors" {
                 let (pairs, differ) = (sbbk.count("pairs.mesh_pairs"), sbbk.wrong("pairs"));
                 write!(f, "{differ} of {pairs} answers differ from stock's; ")?;
+                if all > 0 {
+                    write!(f, "wrong {wrong}, stock {stocks}, of {all} judged; ")?;
+                }
             } else if stock.count("judged.mesh_pairs") == 0 {
                 let pairs = sbbk.count("pairs.mesh_pairs");
                 write!(f, "contacts of {pairs} pairs agree with stock's; ")?;
             } else {
-                let [wrong, stocks] = [sbbk, stock].map(|row| row.wrong("judged"));
-                let all = stock.count("judged.true_pairs");
                 write!(f, "wrong contacts {wrong}, stock {stocks}, of {all} judged; ")?;
             }
             let [own, meshes] = ["plugin_mebibytes", "mesh_mebibytes"].map(|m| sbbk.number(m));

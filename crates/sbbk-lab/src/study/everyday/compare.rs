@@ -59,7 +59,7 @@ impl Comparison {
         self.primed.push(Primed::new(&self.dispatchers[1], shapes));
         let prediction = world.integration_parameters.prediction_distance();
         contacts.iter().for_each(|question| self.compare(question, prediction));
-        meetings.iter().for_each(|question| self.compare_meeting(question));
+        meetings.iter().for_each(|question| self.compare_meeting(question, prediction));
     }
 
     fn compare(&mut self, Question { shapes, pos12 }: &Question, prediction: Real) {
@@ -97,7 +97,8 @@ impl Comparison {
         }
     }
 
-    fn compare_meeting(&mut self, Question { shapes: [shape1, shape2], pos12 }: &Question) {
+    fn compare_meeting(&mut self, Question { shapes, pos12 }: &Question, prediction: Real) {
+        let [shape1, shape2] = shapes;
         let meets = self.dispatchers.each_ref().map(|dispatcher| {
             dispatcher
                 .intersection_test(pos12, &**shape1, &**shape2)
@@ -109,6 +110,16 @@ impl Comparison {
         self.pairs.reported += usize::from(sbbk);
         self.pairs.missed += usize::from(stock && !sbbk);
         self.pairs.phantom += usize::from(sbbk && !stock);
+        let is_judged = stock != sbbk && self.judged[0].mesh_pairs < JUDGED;
+        let pair = Pair { shapes: shapes.each_ref(), pos12: *pos12, prediction };
+        if let Some(truth) = is_judged.then(|| pair.meets()).flatten() {
+            for (errors, answer) in self.judged.iter_mut().zip(meets) {
+                errors.mesh_pairs += 1;
+                errors.true_pairs += 1;
+                errors.missed += usize::from(truth && !answer);
+                errors.phantom += usize::from(answer && !truth);
+            }
+        }
     }
 }
 

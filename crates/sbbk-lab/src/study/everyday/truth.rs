@@ -5,7 +5,7 @@ use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::bounding_volume::BoundingVolume;
 
 use crate::backend::{Answer, Question};
-use crate::metrics::{ErrorCount, Judge};
+use crate::metrics::{ErrorCount, Judge, Truth};
 use crate::study::convex::errors::Judge as ConvexJudge;
 
 /// A pair of shapes, at least one of them a mesh.
@@ -32,13 +32,9 @@ impl Pair<'_> {
         if !meshes.iter().flatten().all(|mesh| is_plain(mesh)) {
             return None;
         }
-        let near1 = meshes[0].map(|mesh| Near::new(mesh, shape2, pos12, *prediction));
-        let near2 = meshes[1].map(|mesh| Near::new(mesh, shape1, &pos12.inverse(), *prediction));
-        Some(match (near1, near2) {
-            (Some(Some(near1)), Some(Some(near2))) => {
-                let shapes = [&near1.shape, &near2.shape];
-                let question = Question::new(pos12, shapes.map(|shape| &**shape), *prediction);
-                let truth = Judge::new(shapes).truth(&question);
+        Some(match self.near() {
+            [Some(Some(near1)), Some(Some(near2))] => {
+                let (question, truth) = self.truth([&near1, &near2]);
                 answers.map(|manifolds| {
                     let mut answer = Answer::new(question, manifolds);
                     for pair in &mut answer.reported {
@@ -48,18 +44,45 @@ impl Pair<'_> {
                     truth.judge(&answer)
                 })
             }
-            (Some(Some(near)), None) => {
+            [Some(Some(near)), None] => {
                 let judge = ConvexJudge::new(&near.shape, shape2);
                 let truth = judge.truth(pos12, true, *prediction);
                 answers.map(|manifolds| truth.judge(manifolds, |index| near.number(index)).pairs)
             }
-            (None, Some(Some(near))) => {
+            [None, Some(Some(near))] => {
                 let judge = ConvexJudge::new(&near.shape, shape1);
                 let truth = judge.truth(pos12, false, *prediction);
                 answers.map(|manifolds| truth.judge(manifolds, |index| near.number(index)).pairs)
             }
             _ => return None,
         })
+    }
+
+    /// Whether the surfaces of two meshes meet; `None` of a mesh and another shape.
+    pub fn meets(&self) -> Option<bool> {
+        let [near1, near2] = self.near();
+        Some(match (near1?, near2?) {
+            (Some(near1), Some(near2)) => {
+                let (_, truth) = self.truth([&near1, &near2]);
+                truth.contacts().any(|pair| pair.distance <= 0.0)
+            }
+            _ => false,
+        })
+    }
+
+    /// Of each mesh the triangles near the other shape, if there are any.
+    fn near(&self) -> [Option<Option<Near>>; 2] {
+        let Self { shapes: [shape1, shape2], pos12, prediction } = self;
+        let near = |of: &SharedShape, other: &SharedShape, pose: &Pose| {
+            Some(Near::new(of.as_trimesh()?, other, pose, *prediction))
+        };
+        [near(shape1, shape2, pos12), near(shape2, shape1, &pos12.inverse())]
+    }
+
+    fn truth(&self, near: [&Near; 2]) -> (Question, Truth) {
+        let shapes = near.map(|near| &near.shape);
+        let question = Question::new(&self.pos12, shapes.map(|shape| &**shape), self.prediction);
+        (question, Judge::new(shapes).truth(&question))
     }
 }
 
