@@ -52,6 +52,31 @@ fn balls_on_large_triangles_touch_as_with_stock() {
     assert!(count > 2000, "{count} contacts");
 }
 
+/// Balls as far above a floor as the prediction distance, to the last digit. Would catch a box that is
+/// rounded to less than the ball's.
+#[test]
+fn balls_at_the_prediction_distance_touch_as_with_stock() {
+    let ground = shape_with(&mesh::floor(64.0, 8), TriMeshFlags::empty());
+    let mut random = Rand32::new(3);
+    let mut counts = [0, 0];
+    for _ in 0..2000 {
+        let [radius, prediction, x, z] =
+            [1.0, 0.1, 20.0, 20.0].map(|most: Real| most * (0.1 + 0.9 * random.rand_float()));
+        let shape = SharedShape::ball(radius);
+        let mut height = radius + prediction;
+        (0..random.rand_range(0..4)).for_each(|_| height = height.next_down());
+        let pose = Pose::from_parts(Vector::new(x, height, z), rotation(&mut random));
+        for flipped in [false, true] {
+            let question = Question { mesh: &ground, shape: &shape, pose, prediction, flipped };
+            let mut stock = question.fresh(&DefaultQueryDispatcher);
+            stock.retain(|manifold| touches(manifold, prediction));
+            assert_eq!(question.fresh(&SbbkDispatcher::default()).len(), stock.len());
+            counts[usize::from(!stock.is_empty())] += 1;
+        }
+    }
+    assert!(counts.iter().all(|&count| count > 300), "{counts:?} above and touching");
+}
+
 /// What a host stores with each contact point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Impulse(u32);

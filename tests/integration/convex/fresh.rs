@@ -93,6 +93,29 @@ fn exact_contacts_are_where_parry_measures_them() {
     }
 }
 
+/// A box that lies flat touches at its four corners, whatever rounding makes of their depths. Would
+/// catch the closest point as a fifth one, and corners that are left out.
+#[test]
+fn a_box_that_lies_flat_touches_at_its_corners() {
+    let dispatcher = SbbkDispatcher::default();
+    let mut random = Rand32::new(8);
+    for i in 0..300 {
+        let floor = mesh::floor(400.0, 1);
+        let turn = if i % 2 == 0 { Quat::IDENTITY } else { rotation(&mut random) };
+        let mesh = shape_with(&floor.mapped(|v| turn * v), TriMeshFlags::empty());
+        let [x, y, z] = [(); 3].map(|()| 0.2 + random.rand_float());
+        let gap = [-0.01, 0.0, 0.005][i % 3];
+        let place = Vec3::new(40.0 + x, y + gap, -20.0 - z);
+        let yaw = Quat::from_rotation_y(6.0 * random.rand_float());
+        let pose = Pose3::from_parts(turn * place, turn * yaw);
+        let shape = SharedShape::cuboid(x, y, z);
+        let question =
+            Question { mesh: &mesh, shape: &shape, pose, prediction: 0.02, flipped: i % 5 == 0 };
+        let found = question.fresh(&dispatcher);
+        assert_eq!(found.iter().map(|m| m.points.len()).collect::<Vec<_>>(), [4], "{i}");
+    }
+}
+
 /// Balls, cuboids and half-spaces at all sizes, against brute force in f64. Would catch a pose or a
 /// shape that is taken for another, a tolerance with a unit, and a triangle that is lost or
 /// invented.
