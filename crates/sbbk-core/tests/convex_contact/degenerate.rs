@@ -121,6 +121,21 @@ fn a_needle_and_a_segment() {
     check(&needle, &shape, &contact, 1.0e-9 * size(&needle, &shape));
 }
 
+/// A point beside the tip of a needle, whose two long edges are equally near up to rounding. Would
+/// catch the normal of the wrong one.
+#[test]
+fn a_point_beside_the_tip_of_a_needle() {
+    let tip = DVec3::new(-2.0000038146972656, -1.9999980926513672, -1.9999980926513672);
+    let needle = [DVec3::splat(-0.5), DVec3::ONE, tip];
+    for turned in 0..3 {
+        let mut needle = needle;
+        needle.rotate_left(turned);
+        let shape = Shape { core: Core::Point(DVec3::splat(-2.0)), radius: 1.0 };
+        let contact = shape.contact(&needle, 100.0).unwrap();
+        check(&needle, &shape, &contact, 1.0e-9);
+    }
+}
+
 /// A triangle on a face of a flat hull. Would catch a polytope that rounding has turned inside out,
 /// with a far face for the nearest one.
 #[test]

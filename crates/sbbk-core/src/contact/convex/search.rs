@@ -9,6 +9,7 @@
 use super::difference::{Difference, Vertex};
 use super::simplex::{self, Simplex, Step};
 use super::support::SupportMap;
+use arrayvec::ArrayVec;
 use glamx::DVec3;
 
 /// Simplices tried at most. No contact of the tests takes half as many;
@@ -29,6 +30,9 @@ const TIE: f64 = 1.0e-14;
 
 /// Share of the size by which a bound must be beyond the margin to end a search, or a closed form.
 pub(super) const BOUNDARY: f64 = 1.0e-13;
+
+/// Share of the size by which distances may differ that rounding cannot tell apart.
+const NEARER: f64 = 1.0e-15;
 
 /// Bodies whose distance is below this share of their size touch.
 pub(super) const TOUCHING: f64 = 1.0e-12;
@@ -133,6 +137,7 @@ pub(super) fn search<S: SupportMap>(
             return end(Outcome::Apart(simplex), rounds);
         }
         if is_known {
+            let (simplex, open) = least_open(difference, simplex, new, size);
             return stuck(simplex, open, rounds);
         }
         match simplex.add(new) {
@@ -144,6 +149,7 @@ pub(super) fn search<S: SupportMap>(
                 stalls += 1;
                 let is_tied = next.squared <= squared * (1.0 + TIE);
                 if stalls > STALLS || !is_tied {
+                    let (simplex, open) = least_open(difference, simplex, new, size);
                     return stuck(simplex, open, rounds);
                 }
                 simplex = next;
@@ -151,4 +157,33 @@ pub(super) fn search<S: SupportMap>(
         }
     }
     end(Outcome::Apart(simplex), ROUNDS)
+}
+
+/// Of the segments and vertices of a simplex and of a further vertex that are as near, up to rounding,
+/// the one of which a support plane leaves least open, and how much: where distances tie, that tells
+/// which direction is right. (The two long edges of a needle, seen from beside its tip; found by
+/// fuzzing.)
+#[cold]
+fn least_open<S: SupportMap>(
+    difference: &Difference<S>,
+    simplex: Simplex,
+    new: Vertex,
+    size: f64,
+) -> (Simplex, f64) {
+    let open = |simplex: &Simplex| {
+        let farthest = difference.farthest(-simplex.nearest).point;
+        simplex.squared - simplex.nearest.dot(farthest)
+    };
+    let as_near = (simplex.squared.sqrt() + NEARER * size).powi(2);
+    let vertices: ArrayVec<Vertex, 4> = simplex.vertices().iter().copied().chain([new]).collect();
+    let mut least = (simplex, open(&simplex));
+    for (i, &a) in vertices.iter().enumerate() {
+        for &b in &vertices[..i] {
+            let other = simplex::segment(a, b);
+            if other.squared <= as_near && open(&other) < least.1 {
+                least = (other, open(&other));
+            }
+        }
+    }
+    least
 }
