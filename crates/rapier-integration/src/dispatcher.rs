@@ -56,9 +56,9 @@ impl SbbkDispatcher {
     /// lives.
     ///
     /// Each new pair of colliders finds the tree at its second query, by a hash of the mesh's content,
-    /// so it serves copies of the mesh too. That takes about 4 µs for 1000 triangles; for meshes of more than
-    /// about 500,000 it is not done, and queries without manifolds do not do it for more than 8192:
-    /// see [`prepare_shape`](Self::prepare_shape). Of no use for a mesh that deforms
+    /// so it serves copies of the mesh too. That takes about 4 µs for 1000 triangles; for meshes of
+    /// more than about 500,000 it is not done, and queries without manifolds do not do it for more than
+    /// 8192: see [`prepare_shape`](Self::prepare_shape). Of no use for a mesh that deforms
     /// (`TriMeshFlags::DEFORMABLE`) or that meets no other rigid mesh.
     ///
     /// A query cannot report trouble (Rapier ignores a dispatcher's errors), so a rigid mesh with a

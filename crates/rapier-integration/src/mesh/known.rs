@@ -114,7 +114,7 @@ impl KnownMesh {
             if let Some(entry) = entry.get() {
                 cache.afford(mesh, entry);
             }
-            *wait = if is_first { 0 } else { PATIENCE };
+            *wait = if is_first { 0 } else { PATIENCE - 1 };
         } else {
             *wait = wait.saturating_sub(1);
         }

@@ -31,9 +31,6 @@ const TIE: f64 = 1.0e-14;
 /// Share of the size by which a bound must be beyond the margin to end a search, or a closed form.
 pub(super) const BOUNDARY: f64 = 1.0e-13;
 
-/// Share of the size by which distances may differ that rounding cannot tell apart.
-const NEARER: f64 = 1.0e-15;
-
 /// Bodies whose distance is below this share of their size touch.
 pub(super) const TOUCHING: f64 = 1.0e-12;
 
@@ -88,7 +85,8 @@ pub(super) fn search<S: SupportMap>(
     let [doubtful, nearly, unproved] =
         [DOUBTFUL, NEARLY, UNPROVED].map(|share| (share * size).powi(2));
     // Rounding can keep a search from the direction of bodies that nearly touch.
-    let stuck = |simplex: Simplex, open: f64, rounds| {
+    let stuck = |simplex: Simplex, new: Vertex, rounds| {
+        let (simplex, open) = least_open(difference, simplex, new, size);
         let Simplex { squared, .. } = simplex;
         let is_open = open * open > doubtful * squared && squared <= nearly;
         let is_doubtful = is_open || open >= squared && squared <= unproved;
@@ -137,8 +135,7 @@ pub(super) fn search<S: SupportMap>(
             return end(Outcome::Apart(simplex), rounds);
         }
         if is_known {
-            let (simplex, open) = least_open(difference, simplex, new, size);
-            return stuck(simplex, open, rounds);
+            return stuck(simplex, new, rounds);
         }
         match simplex.add(new) {
             Step::Around(tetrahedron) => return end(Outcome::Crossing(tetrahedron), rounds),
@@ -149,8 +146,7 @@ pub(super) fn search<S: SupportMap>(
                 stalls += 1;
                 let is_tied = next.squared <= squared * (1.0 + TIE);
                 if stalls > STALLS || !is_tied {
-                    let (simplex, open) = least_open(difference, simplex, new, size);
-                    return stuck(simplex, open, rounds);
+                    return stuck(simplex, new, rounds);
                 }
                 simplex = next;
             }
@@ -174,14 +170,15 @@ fn least_open<S: SupportMap>(
         let farthest = difference.farthest(-simplex.nearest).point;
         simplex.squared - simplex.nearest.dot(farthest)
     };
-    let as_near = (simplex.squared.sqrt() + NEARER * size).powi(2);
+    let as_near = (simplex.squared.sqrt() + ROUNDING * size).powi(2);
     let vertices: ArrayVec<Vertex, 4> = simplex.vertices().iter().copied().chain([new]).collect();
     let mut least = (simplex, open(&simplex));
     for (i, &a) in vertices.iter().enumerate() {
         for &b in &vertices[..i] {
             let other = simplex::segment(a, b);
-            if other.squared <= as_near && open(&other) < least.1 {
-                least = (other, open(&other));
+            let other = (other, open(&other));
+            if other.0.squared <= as_near && other.1 < least.1 {
+                least = other;
             }
         }
     }

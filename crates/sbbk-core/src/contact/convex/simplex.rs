@@ -10,7 +10,7 @@ use super::difference::Vertex;
 use glamx::DVec3;
 
 /// Least width of a face, as a share of its length, at which its normal and areas need no care.
-pub(super) const THIN: f64 = 1.0e-3;
+const THIN: f64 = 1.0e-3;
 
 /// Least width, as a share of the length, at which a face is more than its edges.
 const COLLINEAR: f64 = 1.0e-14;
