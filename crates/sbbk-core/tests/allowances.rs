@@ -301,7 +301,9 @@ fn fields_the_margin_apart_are_found() {
         let tip = (foot + gap * n).as_dvec3();
         let (n, aside) =
             (n.as_dvec3() * f64::from(size), f64::from(0.1 * size) * DVec3::new(0.6, 0.7, -0.4));
-        let pose = Pose3::from_parts(random.vector(size), random.rotation());
+        // Quaternions of any length stretch, and the margin may be meant in the frame of the mesh.
+        let stretch = [1.0, 1.5][i / 12 % 2];
+        let pose = Pose3::from_parts(random.vector(size), random.rotation() * stretch);
         let placement = Placement::new(&pose);
         let corners = [tip, tip + n + aside, tip + 0.5 * n - aside];
         let corners = corners.map(|x| placement.to_frame2(x, Vec3::ZERO).as_vec3());
@@ -311,7 +313,8 @@ fn fields_the_margin_apart_are_found() {
         let triangles = cells.flat_map(|cell| field.triangles(cell)).flatten();
         let distances = triangles.map(|t| truth::contact(&t.map(Vec3::as_dvec3), &placed).distance);
         let distance = distances.fold(f64::INFINITY, f64::min);
-        let frame = FieldFrame::new(&field, &placement, (distance as f32).next_up());
+        let margin = (distance / placement.rotation.x_axis.length()) as f32;
+        let frame = FieldFrame::new(&field, &placement, margin.next_up());
         let mut count = 0;
         support::descend_field(&tree, &frame, |_, _| count += 1);
         assert!(count > 0, "{i}: {distance} from the field");

@@ -25,10 +25,9 @@ const READ_LIMIT: usize = 1024;
 pub struct FieldFrame<'a, F> {
     pub(super) field: &'a F,
     pub(super) placement: Placement,
-    pub(super) margin: f32,
     absolute: DMat3,
     /// The margin in the frame of the field.
-    reach: f64,
+    pub(super) reach: f64,
 }
 
 /// A range of cells and the heights at which it can touch.
@@ -50,7 +49,7 @@ impl<'a, F: HeightGrid> FieldFrame<'a, F> {
             DMat3::from_cols(rotation.x_axis.abs(), rotation.y_axis.abs(), rotation.z_axis.abs());
         let scale = [0, 1, 2].map(|i| rotation.row(i).length()).into_iter().fold(1.0, f64::max);
         let reach = f64::from(margin) * scale * (1.0 + 1e-12);
-        Self { field, placement: *placement, margin, absolute, reach }
+        Self { field, placement: *placement, absolute, reach }
     }
 
     /// Whether anything in a box of the mesh's frame may touch the field. Conservative.
@@ -128,7 +127,7 @@ fn lines(low: f64, high: f64, scale: f64, count: usize) -> Option<Range<usize>> 
     let cells = count as f64;
     let first = ((a.min(b) - slack) * cells).floor();
     let last = ((a.max(b) + slack) * cells).floor();
-    let is_inside = low <= high && first < cells && last >= 0.0;
+    let is_inside = first < cells && last >= 0.0;
     is_inside.then(|| first.max(0.0) as usize..last.min(cells - 1.0) as usize + 1)
 }
 

@@ -16,7 +16,8 @@ pub struct FieldLeaves<'a, F> {
 impl<'a, F: HeightGrid> FieldLeaves<'a, F> {
     /// For a mesh around `centre`, with coordinates up to `magnitude`.
     pub fn new(frame: &'a FieldFrame<'a, F>, centre: Vec3, magnitude: f32) -> Self {
-        let test = PlacedTest::new(&frame.placement, centre, magnitude, frame.margin);
+        let margin = (frame.reach as f32).next_up();
+        let test = PlacedTest::new(&frame.placement, centre, magnitude, margin);
         Self { frame, test }
     }
 

@@ -46,15 +46,6 @@ impl LeafTest {
         self.not_apart(batch1, batch2, apart, found);
     }
 
-    /// Lane by lane: bit k is set unless an axis separates triangle k of batch 1 and triangle k of
-    /// batch 2 by more than the margin.
-    #[inline]
-    pub fn lanes(&self, batch1: &LeafBatch, batch2: &LeafBatch) -> u32 {
-        let one = Corners::new(batch1.lanes());
-        let two = Corners::from_frame2(&self.0, batch2.lanes());
-        !apart(&self.0, &one, &two).to_bitmask() & used(batch1) & used(batch2)
-    }
-
     /// As [`survivors`](Self::survivors), with one more axis, for triangles that may be far apart
     /// for their size.
     #[inline]

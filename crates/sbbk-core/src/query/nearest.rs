@@ -22,8 +22,8 @@ pub(super) enum Goal {
 }
 
 /// The nearest pair of triangles, mesh 2 placed at `placement` in the frame of mesh 1; if several
-/// touch or cross, any of them. `None` if all pairs are farther apart than `limit`, or if the
-/// placement is not finite.
+/// touch or cross, any of them. `None` if all pairs are farther apart than `limit`, if
+/// that is negative, or if the placement is not finite.
 ///
 /// Triangles touch up to 1e-12 of their size. With a limit of zero this is the test whether the
 /// surfaces meet; [`meeting`](super::meeting()) is faster.
@@ -88,7 +88,8 @@ where
     }
     let mut frame = PairFrame::at(trees, placement, 0.0);
     let test = LeafTest::new(&frame);
-    let gaps = SignedGaps { frame: &mut frame, cutoff: Cutoff::at(above(best)), toward: None };
+    // Bounds are f32 too: no bound of a nearer pair is above the limit, rounded to nearest.
+    let gaps = SignedGaps { frame: &mut frame, cutoff: Cutoff::at(best as f32), toward: None };
     let mut search = NearestSearch { gaps, placement, test, goal, besides, best, found: None };
     // A limit of zero cannot be lowered: the search ends with the first pair that meets.
     if best > 0.0 {
@@ -107,11 +108,6 @@ fn some_distance<const AXES: usize>(
     let [vertex1, vertex2] = [tree1, tree2].map(|tree| tree.leaf(0).corners(0)[0]);
     let distance = placement.to_frame1(vertex2, vertex1).length();
     distance * (1.0 + 1.0e-9)
-}
-
-/// The f32 above.
-fn above(x: f64) -> f32 {
-    (x as f32).next_up()
 }
 
 struct NearestSearch<'a, const AXES: usize> {
@@ -152,7 +148,7 @@ where
         self.found = Some(FoundPair::new(one, two, &pair, contact));
         self.best = contact.distance;
         let is_last = self.goal == Goal::Nearest && contact.distance <= touching;
-        self.gaps.cutoff.limit = if is_last { FOUND } else { above(contact.distance) };
+        self.gaps.cutoff.limit = if is_last { FOUND } else { contact.distance as f32 };
         self.look_along(contact.normal);
     }
 

@@ -77,8 +77,7 @@ impl BinMapping {
         let bin_count = count.clamp(LEAST_BINS, MOST_BINS);
         let scale = bin_count as f32 / size[axis];
         // The reciprocal of a size below 1/f32::MAX is infinite: such an axis counts as flat.
-        let usable = scale.is_finite() && size[axis] > 0.0;
-        usable.then_some(Self { axis, origin: centroids.min[axis], scale, bin_count })
+        scale.is_finite().then_some(Self { axis, origin: centroids.min[axis], scale, bin_count })
     }
 
     #[inline]
@@ -102,11 +101,10 @@ impl Bin {
         Self { bounds: self.bounds.merge(&other.bounds), count: self.count + other.count }
     }
 
-    /// The cost of testing so many full leaves in a volume of this size.
+    /// The cost of testing so many full leaves in a volume of this size; NaN of an empty bin.
     #[inline]
     fn cost(&self, leaf_size: u32) -> f32 {
-        let leaves = self.count.div_ceil(leaf_size);
-        if leaves == 0 { 0.0 } else { self.bounds.half_area() * leaves as f32 }
+        self.bounds.half_area() * self.count.div_ceil(leaf_size) as f32
     }
 }
 
@@ -147,7 +145,8 @@ impl Bins {
         for i in 1..bins.len() {
             below = below.merge(&bins[i - 1]);
             let cost = below.cost(leaf_size as u32) + above[i].cost(leaf_size as u32);
-            if below.count > 0 && above[i].count > 0 && cost < best_cost {
+            // Not so with nothing on a side, where it is NaN.
+            if cost < best_cost {
                 best_cost = cost;
                 best = Some(Split { bin: i, bounds: [below.bounds, above[i].bounds] });
             }

@@ -117,3 +117,39 @@ where
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::support::bumpy_ball;
+    use crate::tree::BuildOptions;
+
+    /// Would catch a check that passes over what it is there for.
+    #[test]
+    fn each_kind_of_damage_is_found() {
+        let ball = bumpy_ball(8, 0.1);
+        let whole: Tree =
+            Tree::build(&ball.vertices, &ball.triangles, &BuildOptions::default()).unwrap();
+        let found = |damage: &dyn Fn(&mut Tree)| {
+            let mut tree = whole.clone();
+            damage(&mut tree);
+            tree.validate().expect_err("it is damaged")
+        };
+        let lost = found(&|tree| tree.aabb_pairs[0].links[0] = Link::leaf(Link::MAX_INDEX));
+        assert!(matches!(lost, Violation::Topology { .. }), "{lost:?}");
+        let left_over = found(&|tree| tree.leaves.push(tree.leaves[0]));
+        assert!(matches!(left_over, Violation::Unreachable { .. }), "{left_over:?}");
+        let renamed = found(&|tree| tree.leaves[0].triangles = tree.leaves[1].triangles);
+        assert!(matches!(renamed, Violation::Triangles { .. }), "{renamed:?}");
+        // The root, a slab of a k-DOP that is none of its box, and the sphere.
+        for damage in [
+            &|tree: &mut Tree| tree.aabb_pairs[0].centre[0][0] += 1.0,
+            &|tree: &mut Tree| tree.kdop_pairs[0].centre[3] = [9.0; 2],
+            &|tree: &mut Tree| tree.sphere.as_mut().unwrap().radius *= 0.5,
+        ] as [&dyn Fn(&mut Tree); 3]
+        {
+            let outside = found(damage);
+            assert!(matches!(outside, Violation::NotContained { .. }), "{outside:?}");
+        }
+    }
+}

@@ -74,3 +74,36 @@ fn scales_that_are_nothing() {
     grid.statuses.fill(3);
     assert!(found(&grid, &tree(&bumpy_ball(5, 0.1)), &Pose3::IDENTITY, 0.1).0.is_empty());
 }
+
+/// Would catch a box that touches a field of no extent along an axis and is left out, and one found
+/// on a field without cells.
+#[test]
+fn fields_of_no_extent_are_touched() {
+    let touches = |grid: &Grid, min: Vec3, max: Vec3| {
+        FieldFrame::new(grid, &Placement::new(&Pose3::IDENTITY), 0.0)
+            .meets(TestedBox::new(min, max), ())
+    };
+    for axis in 0..3 {
+        let (mut scale, mut edge) = (Vec3::new(5.0, 1.0, 5.0), Vec3::ONE);
+        (scale[axis], edge[axis]) = (0.0, 0.0);
+        let grid = Grid::new([4, 4], scale, |_, _| 0.0);
+        assert!(touches(&grid, -Vec3::ONE, edge) && touches(&grid, -edge, Vec3::ONE), "{axis}");
+        let beyond = Vec3::AXES[axis] * 2.0;
+        assert!(!touches(&grid, beyond - Vec3::ONE, beyond + Vec3::ONE), "{axis}");
+        let empty = Grid::new([0, 0], scale, |_, _| 0.0);
+        assert!(!touches(&empty, -Vec3::ONE, Vec3::ONE), "{axis}");
+    }
+}
+
+/// Would catch a long box that loses its lower end to the rounding of its middle.
+#[test]
+fn ends_of_long_boxes_count() {
+    let random = &mut Random(1);
+    for _ in 0..1000 {
+        let (low, high) = (random.range(0.1, 1.0), random.range(100.0, 1000.0));
+        let grid = Grid::new([2, 2], Vec3::new(5.0, 1.0, 5.0), |_, _| low);
+        let tested = TestedBox::new(Vec3::new(-1.0, low, -1.0), Vec3::new(1.0, high, 1.0));
+        let frame = FieldFrame::new(&grid, &Placement::new(&Pose3::IDENTITY), 0.0);
+        assert!(frame.meets(tested, ()), "{low} to {high}");
+    }
+}

@@ -178,8 +178,33 @@ fn numbers_that_are_none() {
             assert_eq!(ask_meeting([&ball; 2], &pose), None);
         }
     }
-    let pose = Pose3::translation(3.0, 0.0, 0.0);
-    for limit in [f64::NAN, -1.0] {
-        assert_eq!(ask([&ball; 2], &pose, limit, deepest), None);
+    for x in [0.5, 3.0] {
+        for limit in [f64::NAN, -1.0e-3] {
+            let pose = Pose3::translation(x, 0.0, 0.0);
+            assert_eq!(ask([&ball; 2], &pose, limit, deepest), None);
+        }
+    }
+}
+
+/// Would catch meshes that touch, if it were not for the rounding of f64, and do not count as meeting.
+#[test]
+fn meshes_touch_up_to_rounding() {
+    let random = &mut Random(11);
+    for _ in 0..500 {
+        // The middle of two such places is exact in f32, but whether it is between them not in f64.
+        let mut place = || {
+            Vec3::from_array(
+                [(); 3].map(|()| random.range(0.5, 1.0).to_bits() & !1).map(f32::from_bits),
+            )
+        };
+        let [a, b, c, aside] = [(); 4].map(|()| place());
+        let middle = (a + b) / 2.0;
+        let away = middle + (middle - c);
+        let triangle =
+            |vertices: [Vec3; 3]| Soup { vertices: vertices.into(), triangles: vec![[0, 1, 2]] };
+        let meshes =
+            [&triangle([a, b, c]), &triangle([middle, away + 0.1 * aside, away - 0.1 * aside])];
+        assert!(ask(meshes, &Pose3::IDENTITY, 0.0, nearest).is_some());
+        assert!(ask_meeting(meshes, &Pose3::IDENTITY).is_some());
     }
 }
