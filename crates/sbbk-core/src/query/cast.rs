@@ -138,13 +138,8 @@ impl<const AXES: usize> CastSearch<'_, AXES> {
         let (near, far) = (min1 - max2 - slack, max1 - min2 + slack);
         let (mut start, mut end) = (0.0, self.latest);
         for axis in 0..3 {
+            // Without speed infinite: of both signs, unless the boxes pass each other.
             let speed = self.velocity[axis];
-            if speed == 0.0 {
-                if near[axis] > 0.0 || far[axis] < 0.0 {
-                    return false;
-                }
-                continue;
-            }
             let (a, b) = (near[axis] / speed, far[axis] / speed);
             start = f64::max(start, a.min(b));
             end = f64::min(end, a.max(b));

@@ -95,15 +95,18 @@ fn fields_of_no_extent_are_touched() {
     }
 }
 
-/// Would catch a long box that loses its lower end to the rounding of its middle.
+/// Would catch a box far from the origin of its mesh that loses its lower end to the rounding of its
+/// middle.
 #[test]
-fn ends_of_long_boxes_count() {
-    let random = &mut Random(1);
+fn ends_of_far_boxes_count() {
+    let (random, far) = (&mut Random(1), 8192.0);
+    let placement = Placement::new(&Pose3::translation(0.0, -far, 0.0));
     for _ in 0..1000 {
-        let (low, high) = (random.range(0.1, 1.0), random.range(100.0, 1000.0));
+        // Coordinates that are exact; that in the middle of them is not.
+        let [low, high] = [0.0, 1000.0].map(|x| random.range(x + 1.0, x + 1000.0).floor() / 1024.0);
         let grid = Grid::new([2, 2], Vec3::new(5.0, 1.0, 5.0), |_, _| low);
-        let tested = TestedBox::new(Vec3::new(-1.0, low, -1.0), Vec3::new(1.0, high, 1.0));
-        let frame = FieldFrame::new(&grid, &Placement::new(&Pose3::IDENTITY), 0.0);
-        assert!(frame.meets(tested, ()), "{low} to {high}");
+        let [min, max] = [Vec3::new(-1.0, far + low, -1.0), Vec3::new(1.0, far + high, 1.0)];
+        let frame = FieldFrame::new(&grid, &placement, 0.0);
+        assert!(frame.meets(TestedBox::new(min, max), ()), "{low} to {high}");
     }
 }

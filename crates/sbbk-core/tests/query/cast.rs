@@ -62,23 +62,64 @@ proptest! {
 fn some_hit_and_some_miss() {
     let ball = bumpy_ball(12, 0.0);
     let mut random = Random(3);
-    let mut hits = 0;
-    for _ in 0..100 {
-        let pose = Pose3::from_parts(Vec3::new(-5.0, 0.0, 0.0), random.rotation());
-        let side = 4.0 * random.range(0.0, 1.0);
-        let pose = Pose3::from_parts(pose.translation + side * Vec3::Y, pose.rotation);
-        let hit = ask([&ball; 2], &pose, Vec3::X, options(100.0, 0.0));
-        // Between the balls in and around the polyhedra.
-        if side < 1.9 {
-            let depth = 5.0 - (4.0 - side * side).sqrt();
-            let time = hit.expect("the balls meet").time;
-            assert!((time - f64::from(depth)).abs() < 0.2, "{time}, spheres at {depth}");
-            hits += 1;
-        } else if side > 2.0 {
-            assert_eq!(hit, None);
+    for target in [0.0, 0.5] {
+        let (reach, mut hits) = (2.0 + target, 0);
+        for _ in 0..100 {
+            let pose = Pose3::from_parts(Vec3::new(-5.0, 0.0, 0.0), random.rotation());
+            let side = 2.0 * reach * random.range(0.0, 1.0);
+            let pose = Pose3::from_parts(pose.translation + side * Vec3::Y, pose.rotation);
+            let hit = ask([&ball; 2], &pose, Vec3::X, options(100.0, target));
+            // Between the balls in and around the polyhedra.
+            if side < reach - 0.1 {
+                let depth = 5.0 - (reach * reach - side * side).sqrt();
+                let time = hit.expect("the balls meet").time;
+                assert!((time - f64::from(depth)).abs() < 0.2, "{time}, spheres at {depth}");
+                hits += 1;
+            } else if side > reach {
+                assert_eq!(hit, None);
+            }
         }
+        assert!((20..80).contains(&hits));
     }
-    assert!((20..80).contains(&hits));
+}
+
+/// Would catch an impact lost to the rounding of its bounds, and one that is too late: each is there
+/// until its very time.
+#[test]
+fn impacts_count_until_the_last_moment() {
+    let mut random = Random(17);
+    let mut hits = 0;
+    for i in 0..1500 {
+        let [one, two] = [12, 9].map(|count| soup(&mut random, count, 0.6));
+        let pose = Pose3::from_parts(4.0 * random.vector(1.0).normalize(), random.rotation());
+        let velocity = 0.7 * random.vector(1.0) - 0.5 * pose.translation;
+        // Along an axis too.
+        let velocity = if i % 3 == 0 { velocity * Vec3::AXES[i % 9 / 3] } else { velocity };
+        let target = [0.0, 0.05][i % 2];
+        let ask = |max_time| ask([&one, &two], &pose, velocity, options(max_time, target));
+        let Some(hit) = ask(f32::INFINITY).filter(|hit| hit.time > 0.0) else { continue };
+        hits += 1;
+        let time = hit.time as f32;
+        assert_eq!(ask(time.next_up()), Some(hit));
+        assert_eq!(ask(0.999 * time), None);
+    }
+    assert!(hits > 500, "{hits} hits");
+}
+
+/// Would catch the normal of corners that touch, which could be any, in place of that of corners just
+/// apart.
+#[test]
+fn the_normal_is_that_before_the_impact() {
+    let way = Vec3::new(0.3, -0.2, 1.0);
+    let below = |x: Vec3| Soup {
+        vertices: vec![Vec3::ZERO, x - Vec3::X, x + Vec3::new(0.7, 0.9, 0.0)],
+        triangles: vec![[0, 1, 2]],
+    };
+    let meshes = [&below(-2.0 * Vec3::Z), &below(2.0 * Vec3::Z)];
+    let hit =
+        ask(meshes, &Pose3::from_translation(way), -way, options(2.0, 0.0)).expect("corners meet");
+    assert!((hit.time - 1.0).abs() < 1e-9);
+    assert!((hit.pair.contact.normal - way.as_dvec3().normalize()).length() < 1e-6, "{hit:?}");
 }
 
 /// Face against face, known exactly; a limit of time before and after; the way out of a
@@ -100,6 +141,12 @@ fn statuses() {
     assert_eq!(ask([&floor; 2], &above(3.0), down, options(1.49, 0.0)), None);
     assert_eq!(ask([&floor; 2], &above(3.0), -down, options(10.0, 0.0)), None);
     assert_eq!(ask([&floor; 2], &above(3.0), Vec3::ZERO, options(10.0, 0.0)), None);
+    let hit = ask([&floor; 2], &above(1.0), down, options(10.0, 1.0)).expect("starts at 1 unit");
+    assert!(hit.time == 0.0 && !hit.is_penetrating);
+    for none in [-1.0, f32::NAN] {
+        assert_eq!(ask([&floor; 2], &above(0.0), down, options(none, 0.0)), None);
+    }
+    assert_eq!(ask([&floor; 2], &above(3.0), down, options(10.0, -1.0)), None);
 
     let within = options(10.0, 1.0);
     let through = CastOptions { stop_at_penetration: false, ..within };

@@ -1,6 +1,6 @@
 use glamx::{DVec3, Pose3, Quat, Vec3};
 use proptest::prelude::*;
-use sbbk_core::query::{FoundPair, SearchScratch, deepest, meeting, nearest};
+use sbbk_core::query::{CastOptions, FoundPair, SearchScratch, cast, deepest, meeting, nearest};
 use sbbk_core::traverse::Placement;
 use sbbk_core::tree::{BuildOptions, LayerPlan, Tree};
 
@@ -206,5 +206,12 @@ fn meshes_touch_up_to_rounding() {
             [&triangle([a, b, c]), &triangle([middle, away + 0.1 * aside, away - 0.1 * aside])];
         assert!(ask(meshes, &Pose3::IDENTITY, 0.0, nearest).is_some());
         assert!(ask_meeting(meshes, &Pose3::IDENTITY).is_some());
+        // So do those that part.
+        let [tree1, tree2] = meshes.map(|soup| tree::<9>(soup, LayerPlan::SBBK));
+        let options =
+            CastOptions { max_time: 1.0, target_distance: 0.0, stop_at_penetration: true };
+        let placement = Placement::new(&Pose3::IDENTITY);
+        let scratch = &mut SearchScratch::default();
+        assert!(cast((&tree1, &tree2), placement, middle - c, options, scratch).is_some());
     }
 }
