@@ -136,3 +136,43 @@ impl Answered {
         Self { pos12: pose.pos12, prediction: pose.prediction, manifold_count }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Would catch an answer taken for that of another question, of a query that was cut short, or of
+    /// a host that has removed manifolds since; and what such a query left half done.
+    #[test]
+    fn only_the_question_that_was_answered_is() {
+        let pose = |x: Real, prediction| PairPose::new(&Pose::translation(x, 0.0, 0.0), prediction);
+        let mut memory = PairMemory::<(), (), ()>::default();
+        assert!(!memory.coherence.is_answered(&pose(1.0, 0.1), 0));
+        memory.coherence.begin().candidates.push(Candidate::new([1, 2]));
+        memory.end(&pose(1.0, 0.1), 3);
+        let is_answered = |memory: &PairMemory<_, _, _>, x, prediction, count| {
+            memory.coherence.is_answered(&pose(x, prediction), count)
+        };
+        assert!(is_answered(&memory, 1.0, 0.1, 3) && !is_answered(&memory, 1.0, 0.1, 2));
+        assert!(!is_answered(&memory, 1.1, 0.1, 3) && !is_answered(&memory, 1.0, 0.2, 3));
+        assert_eq!(memory.coherence.begin().candidates.len(), 1);
+        assert!(!is_answered(&memory, 1.0, 0.1, 3), "it has not ended");
+        assert!(memory.coherence.begin().candidates.is_empty());
+    }
+
+    /// Would catch candidates of one great overlap whose memory a pair keeps for ever.
+    #[test]
+    fn memory_of_candidates_is_given_back() {
+        let mut memory = PairMemory::<(), (), ()>::default();
+        let pose = PairPose::new(&Pose::IDENTITY, 0.1);
+        let mut query = |count: u32| {
+            let candidates = &mut memory.coherence.begin().candidates;
+            candidates.clear();
+            candidates.extend((0..count).map(|i| Candidate::new([i, 0])));
+            memory.end(&pose, 0);
+            memory.coherence.candidates.capacity()
+        };
+        assert!(query(1000) >= 1000 && query(0) >= 1000);
+        assert!((0..3000).map(|_| query(0)).last() < Some(10));
+    }
+}

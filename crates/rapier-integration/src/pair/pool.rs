@@ -223,4 +223,33 @@ mod tests {
         }
         assert!(stayed > 300 && moved > 300, "{stayed} stayed, {moved} moved");
     }
+
+    /// Would catch manifolds that are kept though no query needs them, for long or at all.
+    #[test]
+    fn what_is_not_needed_is_given_back() {
+        let mut pool = ManifoldPool::<(), ()>::default();
+        let mut query = |manifolds: &mut Vec<Manifold>, count: usize| {
+            pool.begin();
+            for place in 0..manifolds.len() {
+                if place < count {
+                    pool.keep_old(place, manifolds);
+                } else {
+                    pool.retire(std::mem::take(&mut manifolds[place]));
+                }
+            }
+            for _ in manifolds.len()..count {
+                let mut new = pool.take();
+                new.points.extend(manifold(0, true).points);
+                pool.keep_new(Some(new), manifolds);
+            }
+            pool.end(manifolds);
+            pool.spare.len()
+        };
+        // Those of the host are none that a query needed.
+        let mut manifolds: Vec<Manifold> = (0..100).map(|name| manifold(name, true)).collect();
+        assert_eq!(query(&mut manifolds, 0), 0);
+        assert_eq!(query(&mut manifolds, 100), 0);
+        assert_eq!(query(&mut manifolds, 0), 100);
+        assert!((0..3000).map(|_| query(&mut manifolds, 0)).last() < Some(10));
+    }
 }
