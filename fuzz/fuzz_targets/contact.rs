@@ -7,7 +7,7 @@
 
 #![no_main]
 
-#[path = "../../crates/sbbk-core/tests/contact_truth/check.rs"]
+#[path = "../../crates/sbbk-core/tests/all/contact_truth/check.rs"]
 mod check;
 
 use glamx::DVec3;

@@ -5,12 +5,12 @@
 
 #![no_main]
 
-#[path = "../../crates/sbbk-core/tests/convex_contact/drawn.rs"]
+#[path = "../../crates/sbbk-core/tests/all/convex_contact/drawn.rs"]
 mod drawn;
-#[path = "../../crates/sbbk-core/tests/convex_contact/shape.rs"]
+#[path = "../../crates/sbbk-core/tests/all/convex_contact/shape.rs"]
 #[allow(dead_code)]
 mod shape;
-#[path = "../../crates/sbbk-core/tests/convex_contact/truth.rs"]
+#[path = "../../crates/sbbk-core/tests/all/convex_contact/truth.rs"]
 mod truth;
 
 use libfuzzer_sys::arbitrary::Unstructured;

@@ -1,0 +1,402 @@
+//! Triangles exactly the margin apart are found, where f32 rounds most: by descents of every plan,
+//! leaf tests and height fields. Each test fails if what the arithmetic loses there is not
+//! allowed for; the numbers are in `sbbk_core::volumes::rounding`.
+
+use crate::support::Random;
+use glamx::{DVec3, Pose3, Vec3};
+use sbbk_core::field::{FieldFrame, HeightGrid};
+use sbbk_core::leaf::LeafTest;
+use sbbk_core::traverse::{
+    BoxTest, Descent, DescentScratch, PairFrame, Placement, Slack, SlackPlan, TestedBox, Verdict,
+    Visitor, descend,
+};
+use sbbk_core::tree::{BuildOptions, LayerPlan, LeafBatch, Tree};
+use sbbk_core::truth;
+use sbbk_core::volumes::{DirectionSet, Directions, Sphere};
+
+const KDOPS: LayerPlan = LayerPlan { sphere_root: true, kdop_from_depth: Some(1) };
+
+fn tree<const AXES: usize>(corners: &[Vec3], layers: LayerPlan) -> Tree<AXES>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    let triangles: Vec<_> =
+        (0..corners.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let options = BuildOptions { layers, leaf_size: 1 };
+    Tree::build(corners, &triangles, &options).unwrap()
+}
+
+/// Counts the pairs of triangles that a leaf test leaves.
+struct Count {
+    test: LeafTest,
+    leaf_pairs: usize,
+    survivors: usize,
+}
+
+impl Visitor for Count {
+    fn leaves(&mut self, _: u32, batch1: &LeafBatch, _: u32, batch2: &LeafBatch) -> Verdict {
+        self.leaf_pairs += 1;
+        self.test.survivors(batch1, batch2, |_, _| self.survivors += 1);
+        Verdict::Descend
+    }
+}
+
+/// How many pairs of leaves and of triangles are found.
+fn found<const AXES: usize>(
+    tree1: &Tree<AXES>,
+    tree2: &Tree<AXES>,
+    pos12: &Pose3,
+    margin: f32,
+) -> (usize, usize)
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    let mut frame = PairFrame::new(tree1, tree2, pos12, margin);
+    let mut count = Count { test: LeafTest::new(&frame), leaf_pairs: 0, survivors: 0 };
+    let scratch = &mut DescentScratch::default();
+    descend((tree1, tree2), &mut frame, Descent::Simultaneous, scratch, (), &mut count);
+    (count.leaf_pairs, count.survivors)
+}
+
+/// Two triangles in frames of their own, near each other, and how far they are apart in truth.
+struct Pair {
+    corners: [[Vec3; 3]; 2],
+    pos12: Pose3,
+    distance: f64,
+}
+
+impl Pair {
+    /// From corners in one frame, told apart by `apart`, seen in two frames far from it. Rounding
+    /// the corners moves them a little; the truth is what is left.
+    fn of(random: &mut Random, corners: [[DVec3; 3]; 2], far: f32) -> Self {
+        let turn = random.rotation();
+        let pos12 = Pose3::from_parts(random.vector(far), turn);
+        let placement = Placement::new(&pos12);
+        let place = random.vector(far).as_dvec3();
+        let one = corners[0].map(|x| (x + place).as_vec3());
+        let two = corners[1].map(|x| placement.to_frame2(x + place, Vec3::ZERO).as_vec3());
+        let placed = two.map(|x| placement.to_frame1(x, Vec3::ZERO));
+        let distance = truth::contact(&one.map(Vec3::as_dvec3), &placed).distance;
+        Self { corners: [one, two], pos12, distance }
+    }
+
+    /// Corner against corner along `n`, all others behind: what nodes can tell.
+    fn tips(random: &mut Random, n: DVec3, gap: f64, far: f32) -> Self {
+        let mut behind = |sign: f64| {
+            let aside = random.vector(0.1).as_dvec3();
+            (aside - n * aside.dot(n)) + n * (sign * f64::from(random.range(0.3, 1.0)))
+        };
+        let tip = n * gap;
+        let one = [DVec3::ZERO, behind(-1.0), behind(-1.0)];
+        let two = [tip, tip + behind(1.0), tip + behind(1.0)];
+        Self::of(random, [one, two], far)
+    }
+
+    /// Corner against face, the face at a right angle to `n`: what triangles can tell.
+    fn corner_and_face(random: &mut Random, n: DVec3, gap: f64, far: f32) -> Self {
+        let u = n.any_orthonormal_vector();
+        let v = n.cross(u);
+        let face = [2.0 * u, -u + 2.0 * v, -u - 2.0 * v];
+        let tip = n * gap;
+        let two = [tip, tip + n + 0.3 * u, tip + 0.7 * n - 0.2 * v];
+        Self::of(random, [face, two], far)
+    }
+
+    /// Edges across each other, `n` at a right angle to both.
+    fn edges(random: &mut Random, n: DVec3, gap: f64, far: f32) -> Self {
+        let u = n.any_orthonormal_vector();
+        let v = n.cross(u);
+        let tip = n * gap;
+        let one = [u, -u, -n + 0.2 * v];
+        let w = (0.4 * u + v).normalize();
+        Self::of(random, [one, [tip + w, tip - w, tip + n + 0.1 * u]], far)
+    }
+
+    fn check<const AXES: usize>(&self, layers: LayerPlan)
+    where
+        Directions<AXES>: DirectionSet<AXES>,
+    {
+        let [tree1, tree2] = self.corners.each_ref().map(|corners| tree::<AXES>(corners, layers));
+        let margin = (self.distance as f32).next_up();
+        let (_, survivors) = found(&tree1, &tree2, &self.pos12, margin);
+        assert_eq!(survivors, 1, "{margin}, {:?} at {:?}", self.corners, self.pos12);
+        let margin = 0.99 * margin - 1.0e-5 * (tree1.magnitude() + 4.0 * tree2.magnitude());
+        let leaf_pairs = found(&tree1, &tree2, &self.pos12, margin.max(0.0)).0;
+        // Nearly all of them are told apart otherwise.
+        assert!(leaf_pairs <= 1);
+    }
+}
+
+/// Boxes and k-DOPs along each of their directions.
+#[test]
+fn nodes_the_margin_apart_are_found() {
+    let random = &mut Random(1);
+    for i in 0..3000 {
+        let far = [0.0, 3.0, 300.0, 1.0e4][i % 4];
+        let n = match i % 3 {
+            0 => [DVec3::X, DVec3::Y, DVec3::Z][i / 3 % 3],
+            1 => random.vector(1.0).as_dvec3().normalize(),
+            _ => Directions::<13>::DIRECTIONS[i / 3 % 13].as_dvec3().normalize(),
+        };
+        let gap = f64::from(random.range(0.1, 1.0));
+        let pair = Pair::tips(random, n, gap, far);
+        pair.check::<7>(KDOPS);
+        pair.check::<9>(KDOPS);
+        pair.check::<13>(KDOPS);
+        pair.check::<9>(LayerPlan::AABB_ONLY);
+    }
+}
+
+/// Triangles along their normals and along the products of their edges; and tiny ones, whose
+/// squares underflow.
+#[test]
+fn triangles_the_margin_apart_are_found() {
+    let random = &mut Random(2);
+    for i in 0..6000 {
+        let far = [0.0, 3.0, 300.0, 1.0e4][i % 4];
+        let n = random.vector(1.0).as_dvec3().normalize();
+        let gap = f64::from(random.range(0.01, 1.0));
+        let mut pair = match i % 2 {
+            0 => Pair::corner_and_face(random, n, gap, far),
+            _ => Pair::edges(random, n, gap, far),
+        };
+        if i % 3 == 0 {
+            let tiny = 1.0e-7;
+            pair.corners = pair.corners.map(|corners| corners.map(|x| x * tiny));
+            pair.pos12.translation *= tiny;
+            let placement = Placement::new(&pair.pos12);
+            let [one, two] = pair.corners;
+            let placed = two.map(|x| placement.to_frame1(x, Vec3::ZERO));
+            pair.distance = truth::contact(&one.map(Vec3::as_dvec3), &placed).distance;
+        }
+        if pair.distance > 0.0 {
+            pair.check::<9>(KDOPS);
+        }
+    }
+}
+
+/// A face so small that squares of its normal underflow, and a corner that is far for its size.
+#[test]
+fn tiny_triangles_the_margin_apart_are_found() {
+    let random = &mut Random(6);
+    for _ in 0..2000 {
+        let n = random.vector(1.0).as_dvec3().normalize();
+        let u = n.any_orthonormal_vector();
+        let v = n.cross(u);
+        let size = f64::from(random.range(1.0e-11, 1.0e-10));
+        let face = [2.0 * u, -u + 2.0 * v, -u - 2.0 * v].map(|x| x * size);
+        let tip = n * f64::from(random.range(0.5, 2.0));
+        let two = [tip, tip + n + 0.3 * u, tip + 0.7 * n - 0.2 * v];
+        Pair::of(random, [face, two], 0.0).check::<9>(KDOPS);
+    }
+}
+
+/// Boxes of two bodies, a corner of one over a face of the other; asked either way round.
+#[test]
+fn boxes_the_margin_apart_are_found() {
+    let random = &mut Random(3);
+    for i in 0..6000 {
+        let far = [0.0, 3.0, 300.0, 1.0e4][i % 4];
+        let axis = [DVec3::X, DVec3::Y, DVec3::Z][i / 4 % 3];
+        // So large that no corner of the other is beside it.
+        let boxes = [2.0, 0.1].map(|least| {
+            let (centre, half) = (random.vector(far), random.vector(0.5).abs() + least);
+            [centre - half, centre + half]
+        });
+        let [[_, max1], [min2, max2]] = boxes;
+        // The corners of box 2 in frame 1, lowest along the axis.
+        let below = |placement: &Placement| {
+            let pick = |bit: usize, k: usize| if k >> bit & 1 == 0 { min2[bit] } else { max2[bit] };
+            let corner = |k: usize| Vec3::from_array([0, 1, 2].map(|bit| pick(bit, k)));
+            let heights = (0..8).map(|k| axis.dot(placement.to_frame1(corner(k), Vec3::ZERO)));
+            heights.fold(f64::INFINITY, f64::min)
+        };
+        let turn = random.rotation();
+        let turned = Placement::new(&Pose3::from_parts(Vec3::ZERO, turn));
+        let [middle1, middle2] = boxes.map(|[min, max]| 0.5 * (min.as_dvec3() + max.as_dvec3()));
+        let over = middle1 - turned.rotation * middle2;
+        let top = axis.dot(max1.as_dvec3());
+        let lift = top + f64::from(random.range(0.01, 1.0)) - (below(&turned) + axis.dot(over));
+        let pose = Pose3::from_parts((over + lift * axis).as_vec3(), turn);
+        let placement = Placement::new(&pose);
+        let distance = below(&placement) - top;
+        if distance <= 0.0 {
+            // Far from the origin by the rounding of the pose.
+            continue;
+        }
+        let magnitudes = boxes.map(|[min, max]| min.abs().max(max.abs()).max_element());
+        let [one, two] = boxes.map(|[min, max]| TestedBox::new(min, max));
+        let meet = |margin: f32| {
+            let there = BoxTest::new(magnitudes, &placement, margin);
+            let [m1, m2] = magnitudes;
+            let back = BoxTest::new([m2, m1], &placement.inverted(), margin);
+            [there.of(two).meets(one), back.of(one).meets(two)]
+        };
+        assert_eq!(meet((distance as f32).next_up()), [true; 2], "{i}: {distance}");
+        let less = 0.9 * distance - 2.0e-5 * f64::from(magnitudes[0] + magnitudes[1] + far);
+        if less > 0.0 {
+            assert_eq!(meet(less as f32), [false; 2], "{i}: {less}");
+        }
+        let gap = BoxTest::new(magnitudes, &placement, 0.0).of(two).gap(one);
+        assert!(f64::from(gap) <= distance, "{i}: {gap}, {distance}");
+    }
+}
+
+/// Hills of a few cells, scaled.
+struct Hills {
+    scale: Vec3,
+    lines: Vec<Vec<f32>>,
+}
+
+impl Hills {
+    fn corner(&self, column: usize, row: usize) -> Vec3 {
+        let [columns, rows] = self.cell_counts().map(|count| 1.0 / count as f32);
+        let (x, z) = (column as f32 * columns - 0.5, row as f32 * rows - 0.5);
+        Vec3::new(x, self.lines[column][row], z) * self.scale
+    }
+}
+
+impl HeightGrid for Hills {
+    fn cell_counts(&self) -> [usize; 2] {
+        [self.lines.len() - 1, self.lines[0].len() - 1]
+    }
+
+    fn scale(&self) -> Vec3 {
+        self.scale
+    }
+
+    fn heights(&self, column: usize) -> &[f32] {
+        &self.lines[column]
+    }
+
+    fn triangles(&self, [column, row]: [usize; 2]) -> [Option<[Vec3; 3]>; 2] {
+        let at = |i, j| self.corner(column + i, row + j);
+        [Some([at(0, 0), at(0, 1), at(1, 0)]), Some([at(0, 1), at(1, 1), at(1, 0)])]
+    }
+}
+
+/// A corner of a triangle above or below a flat field, and beside it.
+#[test]
+fn fields_the_margin_apart_are_found() {
+    let random = &mut Random(4);
+    for i in 0..2400 {
+        let size = [1.0, 1.0e3, 1.0e5][i % 3];
+        let scale =
+            Vec3::new(random.range(0.5, 1.0), random.range(0.1, 2.0), random.range(0.5, 1.0))
+                * size;
+        let height = random.range(-1.0, 1.0);
+        let field = Hills { scale, lines: vec![vec![height; 8]; 12] };
+        let (low, high) = (field.corner(0, 0), field.corner(11, 7));
+        let gap = random.range(0.001, 0.1) * size;
+        let inside =
+            low + (high - low) * Vec3::new(random.range(0.2, 0.8), 1.0, random.range(0.2, 0.8));
+        let (n, foot) = match i / 3 % 4 {
+            0 => (Vec3::Y, inside),
+            1 => (-Vec3::Y, inside),
+            2 => (Vec3::X, inside.with_x(high.x)),
+            _ => (-Vec3::Z, inside.with_z(low.z)),
+        };
+        let tip = (foot + gap * n).as_dvec3();
+        let (n, aside) =
+            (n.as_dvec3() * f64::from(size), f64::from(0.1 * size) * DVec3::new(0.6, 0.7, -0.4));
+        // Quaternions of any length stretch, and the margin may be meant in the frame of the mesh.
+        let stretch = [1.0, 1.5][i / 12 % 2];
+        let pose = Pose3::from_parts(random.vector(size), random.rotation() * stretch);
+        let placement = Placement::new(&pose);
+        let corners = [tip, tip + n + aside, tip + 0.5 * n - aside];
+        let corners = corners.map(|x| placement.to_frame2(x, Vec3::ZERO).as_vec3());
+        let tree = tree::<9>(&corners, KDOPS);
+        let placed = corners.map(|x| placement.to_frame1(x, Vec3::ZERO));
+        let cells = (0..11).flat_map(|column| (0..7).map(move |row| [column, row]));
+        let triangles = cells.flat_map(|cell| field.triangles(cell)).flatten();
+        let distances = triangles.map(|t| truth::contact(&t.map(Vec3::as_dvec3), &placed).distance);
+        let distance = distances.fold(f64::INFINITY, f64::min);
+        let margin = (distance / placement.rotation.x_axis.length()) as f32;
+        let frame = FieldFrame::new(&field, &placement, margin.next_up());
+        let mut count = 0;
+        crate::support::descend_field(&tree, &frame, |_, _| count += 1);
+        assert!(count > 0, "{i}: {distance} from the field");
+    }
+}
+
+/// The least that a bound of motion may lose is the rounding of f64.
+#[test]
+fn the_least_motion_is_bounded() {
+    let random = &mut Random(5);
+    for _ in 0..2000 {
+        let ball = Sphere { centre: random.vector(1.0e3), radius: random.range(0.0, 1.0) };
+        let pose = random.pose(1.0e6);
+        let mut next = pose;
+        next.translation.x = next.translation.x.next_up();
+        let [then, now] = [pose, next].map(|pose| Placement::new(&pose));
+        let moved = now.translation.x - then.translation.x;
+        assert!(now.motion_bound(&then, ball.centre, ball.radius) >= moved);
+        // The same, at a quaternion a little longer than one: the centre moves by what is written
+        // out here.
+        let mut longer = pose;
+        longer.rotation *= 1.0 + f32::EPSILON;
+        let longer = Placement::new(&longer);
+        let centre = ball.centre.as_dvec3();
+        let moved = ((longer.rotation - then.rotation) * centre).length();
+        assert!(longer.motion_bound(&then, ball.centre, ball.radius) >= moved);
+    }
+}
+
+/// However far a query looks, all of it is found: margins whose squares, and sums with slack,
+/// overflow.
+#[test]
+fn any_finite_margin_finds_everything() {
+    let ball = crate::support::bumpy_ball(4, 0.2);
+    let flat = crate::support::Soup { vertices: vec![Vec3::ZERO; 3], triangles: vec![[0, 1, 2]] };
+    for soup in [&ball, &flat] {
+        for layers in [KDOPS, LayerPlan::SBBK, LayerPlan::AABB_ONLY] {
+            let options = BuildOptions { layers, ..BuildOptions::default() };
+            let tree: Tree = Tree::build(&soup.vertices, &soup.triangles, &options).unwrap();
+            let count = soup.triangles.len();
+            for margin in [1.0e4, 1.0e15, 2.0e19, 1.0e30, f32::MAX] {
+                for distance in [0.0, 1.0e3, 1.0e-3 * margin, 0.2 * margin] {
+                    let pose = Pose3::translation(0.6 * distance, -0.8 * distance, 0.0);
+                    let (_, survivors) = found(&tree, &tree, &pose, margin);
+                    assert_eq!(survivors, count * count, "{margin} at {distance}");
+
+                    let placement = Placement::new(&pose);
+                    check_boxes(&tree, &placement, margin);
+                    check_field(&tree, &placement, margin, count);
+                }
+            }
+        }
+    }
+}
+
+fn check_boxes(tree: &Tree, placement: &Placement, margin: f32) {
+    let magnitude = tree.magnitude();
+    let test = BoxTest::new([magnitude; 2], placement, margin);
+    let all = TestedBox::new(Vec3::splat(-magnitude), Vec3::splat(magnitude));
+    assert!(test.of(all).meets(all), "{margin} at {:?}", placement.translation);
+}
+
+fn check_field(tree: &Tree, placement: &Placement, margin: f32, count: usize) {
+    let field = Hills { scale: Vec3::ONE, lines: vec![vec![0.1; 3]; 4] };
+    let frame = FieldFrame::new(&field, placement, margin);
+    let mut found = 0;
+    crate::support::descend_field(tree, &frame, |_, _| found += 1);
+    assert_eq!(found, 2 * 3 * 2 * count, "{margin} at {:?}", placement.translation);
+}
+
+/// Slack on top of the greatest prediction distance is none.
+#[test]
+fn slack_stays_finite() {
+    let ball = Sphere { centre: Vec3::ZERO, radius: 1.0 };
+    let placement = Placement::new(&Pose3::IDENTITY);
+    for prediction in [2.0e19, 3.0e38, f32::MAX] {
+        let mut slack = Slack::default();
+        for _ in 0..3 {
+            match slack.plan(ball, &placement, prediction, 8.0) {
+                SlackPlan::Descend { margin } => {
+                    assert!(margin.is_finite() && margin >= prediction)
+                }
+                SlackPlan::Reuse { margin, .. } => assert!(margin.is_finite()),
+            }
+        }
+    }
+}

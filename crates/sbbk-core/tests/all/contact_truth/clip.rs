@@ -1,0 +1,214 @@
+//! The points of a manifold against the polygon where the shadows overlap, found by clipping one
+//! shadow at the edges of the other (I. Sutherland, G. Hodgman, 1974).
+
+use super::check::{TOLERANCE, Triangle, part, size};
+use super::strategies::{point, triangle};
+use glamx::{DVec2, DVec3};
+use proptest::prelude::*;
+use sbbk_core::contact::{
+    Feature, FeaturePair, ManifoldPoint, ManifoldPoints, clip, contact, contact_from, manifold,
+    push_closest,
+};
+use sbbk_core::truth;
+use std::collections::HashSet;
+
+/// Shadow of a triangle, counter-clockwise.
+fn shadow(t: &Triangle, normal: DVec3) -> Vec<DVec2> {
+    let across = normal.cross(DVec3::new(0.3, -0.7, 0.2)).normalize();
+    let up = normal.cross(across);
+    let mut shadow: Vec<_> = t.iter().map(|v| DVec2::new(v.dot(across), v.dot(up))).collect();
+    if (shadow[1] - shadow[0]).perp_dot(shadow[2] - shadow[0]) < 0.0 {
+        shadow.reverse();
+    }
+    shadow
+}
+
+fn overlap(subject: Vec<DVec2>, clipper: &[DVec2]) -> Vec<DVec2> {
+    (0..3).fold(subject, |polygon, e| {
+        let (a, b) = (clipper[e], clipper[(e + 1) % 3]);
+        let side = |p: DVec2| (b - a).perp_dot(p - a);
+        let mut kept = Vec::new();
+        for (i, &p) in polygon.iter().enumerate() {
+            let q = polygon[(i + 1) % polygon.len()];
+            if side(p) >= 0.0 {
+                kept.push(p);
+            }
+            if side(p) * side(q) < 0.0 {
+                kept.push(p.lerp(q, side(p) / (side(p) - side(q))));
+            }
+        }
+        kept
+    })
+}
+
+/// Whether no three corners that matter lie so close that rounding could add or drop one.
+fn is_generic(shadows: [&[DVec2]; 2], clear: f64) -> bool {
+    let corner = |k: usize, i: usize| shadows[k][i % 3];
+    (0..2).all(|k| {
+        (0..3).all(|e| {
+            let (a, b) = (corner(k, e), corner(k, e + 1));
+            let far = |p: DVec2| (b - a).normalize().perp_dot(p - a).abs() > clear;
+            a.distance(b) > clear && far(corner(k, e + 2)) && (0..3).all(|v| far(corner(1 - k, v)))
+        })
+    })
+}
+
+fn check_point(
+    point: &ManifoldPoint,
+    t1: &Triangle,
+    t2: &Triangle,
+    normal: DVec3,
+) -> Result<(), TestCaseError> {
+    let tolerance = TOLERANCE * size(t1).max(size(t2));
+    let offset = point.point2 - point.point1 - normal * point.distance;
+    prop_assert!(offset.length() <= tolerance, "not in line: {offset}");
+    for (p, t, feature) in [
+        (point.point1, t1, point.features.feature1()),
+        (point.point2, t2, point.features.feature2()),
+    ] {
+        let off = truth::contact(&[p; 3], &part(t, feature)).distance.abs();
+        prop_assert!(off <= 100.0 * tolerance, "{feature:?} is missed by {off:e}");
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+    /// Would catch a corner that is missed, found twice or misplaced, a wrong name of a corner,
+    /// and a wrong distance.
+    #[test]
+    fn the_corners_of_the_overlap(t1 in triangle(), t2 in triangle(), offset in point(), closeness in 0.0..1.0) {
+        // Both at a distance and into each other.
+        let apart = t2.map(|v| v + 2.0 * offset);
+        let before = truth::contact(&t1, &apart);
+        let t2 = apart.map(|v| v + before.normal * (0.1 * closeness - before.distance));
+        let found = contact(&t1, &t2, 1.0).expect("closer than 0.1");
+        let normal = found.normal;
+        let mut points = ManifoldPoints::new();
+        clip(&t1, &t2, normal, &mut points);
+
+        for point in &points {
+            check_point(point, &t1, &t2, normal)?;
+        }
+        let names: HashSet<_> = points.iter().map(|p| p.features).collect();
+        prop_assert_eq!(names.len(), points.len());
+        let [shadow1, shadow2] = [&t1, &t2].map(|t| shadow(t, normal));
+        if is_generic([&shadow1, &shadow2], 1.0e-4) {
+            prop_assert_eq!(points.len(), overlap(shadow1, &shadow2).len());
+        }
+
+        push_closest(&t1, &t2, &found, &mut points);
+        for point in &points {
+            check_point(point, &t1, &t2, normal)?;
+        }
+        let least = points.iter().map(|p| p.distance).fold(f64::INFINITY, f64::min);
+        prop_assert!((least - found.distance).abs() <= TOLERANCE * 10.0, "{least} {found:?}");
+        let count = points.len();
+        push_closest(&t1, &t2, &found, &mut points);
+        prop_assert_eq!(points.len(), count, "the closest points were added twice");
+        let names: HashSet<_> = points.iter().map(|p| p.features).collect();
+        prop_assert_eq!(names.len(), points.len());
+
+        // "contact or contact_from; then clip along the normal and push_closest".
+        for last in [None, Some(found.features)] {
+            let mut at_once = ManifoldPoints::new();
+            let from = last.map_or(Some(found), |last| contact_from(&t1, &t2, 1.0, last));
+            let mut one_by_one = ManifoldPoints::new();
+            clip(&t1, &t2, from.unwrap().normal, &mut one_by_one);
+            push_closest(&t1, &t2, &from.unwrap(), &mut one_by_one);
+            prop_assert_eq!(manifold(&t1, &t2, 1.0, 1.0, last, &mut at_once), from);
+            prop_assert_eq!(at_once, one_by_one);
+        }
+        let below = found.distance.next_down();
+        let mut none = points.clone();
+        prop_assert_eq!(manifold(&t1, &t2, below, below, None, &mut none), None);
+        prop_assert!(none.is_empty());
+        // Within the margin and out of reach: the contact alone.
+        let mut none = points.clone();
+        prop_assert_eq!(manifold(&t1, &t2, 1.0, below, None, &mut none), Some(found));
+        prop_assert!(none.is_empty());
+    }
+
+    /// Along any direction, not only the normal: the caller may have turned it. Nothing may be
+    /// infinite, and no point may lie off its triangle, when one is seen edge-on.
+    #[test]
+    fn edge_on(t1 in triangle(), t2 in triangle(), tilt in -9.0..-1.0, around in point()) {
+        for edge_on in [&t1, &t2] {
+            let along = (edge_on[1] - edge_on[0]).normalize();
+            let normal = (along + around * 10.0_f64.powf(tilt) * 0.1).normalize();
+            let mut points = ManifoldPoints::new();
+            clip(&t1, &t2, normal, &mut points);
+            for point in &points {
+                check_point(point, &t1, &t2, normal)?;
+            }
+        }
+    }
+}
+
+/// Two equal triangles: each vertex is on the border of the other, no edges cross.
+#[test]
+fn equal_triangles() {
+    let t = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    let over = t.map(|v| v + DVec3::Z * 0.5);
+    let mut points = ManifoldPoints::new();
+    clip(&t, &over, DVec3::Z, &mut points);
+    assert_eq!(points.len(), 6);
+    assert!(points.iter().all(|p| p.distance == 0.5));
+    for v in t {
+        assert_eq!(
+            points.iter().filter(|p| p.point1 == v && p.point2 == v + DVec3::Z * 0.5).count(),
+            2
+        );
+    }
+}
+
+/// A triangle that stands on the other has the points of its lower edge, which its vertices and
+/// the crossings with its own edges give; its plane, seen edge-on, gives none.
+#[test]
+fn standing_triangle() {
+    let floor = [DVec3::ZERO, DVec3::X * 4.0, DVec3::Y * 4.0];
+    let wall = [DVec3::new(0.5, 0.5, 0.1), DVec3::new(1.5, 0.5, 0.1), DVec3::new(0.5, 0.5, 3.0)];
+    let mut points = ManifoldPoints::new();
+    clip(&floor, &wall, DVec3::Z, &mut points);
+    let distances: Vec<_> = points.iter().map(|p| p.distance).collect();
+    assert_eq!(points.len(), 3);
+    assert!(points.iter().all(|p| p.features.feature1() == Feature::Face));
+    assert!(
+        distances.iter().zip([0.1, 0.1, 3.0]).all(|(d, e)| (d - e).abs() < 1.0e-12),
+        "{distances:?}"
+    );
+}
+
+/// Small and large together: tolerances of the large one must not reach across the small one.
+#[test]
+fn large_vertex_beside_small_triangle() {
+    let large = [DVec3::ZERO, DVec3::X * 1.0e5, DVec3::Y * 1.0e5];
+    for beside in [1.0e-4, 1.0e-3, 1.0, 10.0] {
+        let small =
+            [DVec3::ZERO, DVec3::X, DVec3::Y].map(|v| v * 1.0e-4 - DVec3::X * (1.0e-4 + beside));
+        let mut points = ManifoldPoints::new();
+        clip(&large, &small, DVec3::Z, &mut points);
+        assert!(points.is_empty(), "{beside}: {points:?}");
+    }
+}
+
+/// In one plane, where clipping finds no corner, the closest points are all there is. Would catch
+/// features that are given to the other triangle.
+#[test]
+fn closest_points_keep_the_features_of_their_triangles() {
+    let at = |x: f64, y: f64| DVec3::new(x, y, 0.0);
+    let left = [at(-2.0, -1.0), at(-2.0, 1.0), at(0.0, 0.0)];
+    let corner = [at(1.0, 0.0), at(3.0, 1.0), at(3.0, -1.0)];
+    let side = [at(3.0, 0.0), at(1.0, -1.0), at(1.0, 1.0)];
+    for (right, feature2) in [(corner, Feature::Vertex(0)), (side, Feature::Edge(1))] {
+        let features = FeaturePair::new(Feature::Vertex(2), feature2);
+        for (t1, t2, features) in [(left, right, features), (right, left, features.swapped())] {
+            let mut points = ManifoldPoints::new();
+            let found = manifold(&t1, &t2, 2.0, 2.0, None, &mut points).unwrap();
+            assert_eq!(found.features, features);
+            assert_eq!(points.len(), 1, "{points:?}");
+            assert_eq!((points[0].features, points[0].distance), (features, 1.0));
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! Random triangles of all shapes, sizes and distances.
+
+use super::check::{check, size};
+use super::strategies::{decades, point, triangle};
+use glamx::DVec3;
+use proptest::prelude::*;
+use sbbk_core::contact::contact;
+use sbbk_core::truth;
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+    #[test]
+    fn same_size(t1 in triangle(), t2 in triangle(), offset in point()) {
+        check(&t1, &t2.map(|v| v + 2.0 * offset));
+    }
+
+    /// Would catch a tolerance with a unit, or one that takes the large triangle for the small.
+    #[test]
+    fn any_two_sizes(
+        t1 in triangle(),
+        t2 in triangle(),
+        offset in point(),
+        s1 in decades(-4.0, 5.0),
+        s2 in decades(-4.0, 5.0),
+    ) {
+        let reach = s1.abs().max(s2.abs());
+        check(&t1.map(|v| v * s1), &t2.map(|v| v * s2 + offset * reach));
+    }
+
+    /// A small triangle near a large one: most pairs of a moving body and a floor.
+    #[test]
+    fn small_near_large(t1 in triangle(), t2 in triangle(), at in prop::array::uniform2(-0.2..1.2), s in decades(-6.0, 0.0)) {
+        let foot = t1[0] + (t1[1] - t1[0]) * at[0] + (t1[2] - t1[0]) * at[1];
+        check(&t1, &t2.map(|v| v * s + foot));
+    }
+
+    /// Brings two triangles to a given distance or depth: would catch directions taken from a
+    /// difference that is mere rounding, and gaps in the decision between apart and crossing.
+    #[test]
+    fn nearly_touching(t1 in triangle(), t2 in triangle(), offset in point(), gap in decades(-17.0, -1.0)) {
+        let t2 = t2.map(|v| v + 2.0 * offset);
+        let before = truth::contact(&t1, &t2);
+        let shift = before.normal * (gap * size(&t1) - before.distance);
+        check(&t1, &t2.map(|v| v + shift));
+    }
+
+    #[test]
+    fn far_from_the_origin(t1 in triangle(), t2 in triangle(), offset in point(), far in point()) {
+        let far = far * 1.0e5;
+        check(&t1.map(|v| v + far), &t2.map(|v| v + 2.0 * offset + far));
+    }
+
+    /// Multiplying by a power of two rounds nothing, so it must change nothing but the exponents.
+    /// Would catch any tolerance with a unit.
+    #[test]
+    fn scale_is_free(t1 in triangle(), t2 in triangle(), offset in point(), exponent in -100..100) {
+        let scale = 2.0_f64.powi(exponent);
+        let t2 = t2.map(|v| v + offset);
+        let [scaled1, scaled2] = [t1, t2].map(|t| t.map(|v| v * scale));
+        let plain = contact(&t1, &t2, f64::INFINITY).unwrap();
+        let scaled = contact(&scaled1, &scaled2, f64::INFINITY).unwrap();
+        prop_assert_eq!(plain.distance * scale, scaled.distance);
+        prop_assert_eq!(plain.normal, scaled.normal);
+        prop_assert_eq!(plain.features, scaled.features);
+        prop_assert_eq!(plain.point1 * scale, scaled.point1);
+    }
+}
+
+/// The generators above must reach both sides of the decision and all kinds of features.
+#[test]
+fn the_random_pairs_are_of_all_kinds() {
+    use proptest::{strategy::ValueTree, test_runner::TestRunner};
+    let mut runner = TestRunner::deterministic();
+    let mut kinds = std::collections::HashMap::new();
+    for _ in 0..2000 {
+        let strategy = (triangle(), triangle(), point());
+        let (t1, t2, offset) = strategy.new_tree(&mut runner).unwrap().current();
+        let found = contact(&t1, &t2.map(|v: DVec3| v + 2.0 * offset), f64::INFINITY).unwrap();
+        let name = |f| format!("{f:?}").split('(').next().unwrap().to_string();
+        let mut names = [name(found.features.feature1()), name(found.features.feature2())];
+        names.sort();
+        *kinds.entry((names, found.distance < 0.0)).or_insert(0) += 1;
+    }
+    // Vertex-vertex, vertex-edge, vertex-face and edge-edge apart, the last two crossing.
+    assert_eq!(kinds.len(), 6, "{kinds:?}");
+    assert!(kinds.values().all(|&count| count >= 10), "{kinds:?}");
+}

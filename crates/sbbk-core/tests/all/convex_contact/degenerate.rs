@@ -1,0 +1,210 @@
+//! Shapes and triangles without volume or area, and numbers that are none.
+
+use super::shape::{Core, Kind, Rng, Shape};
+use super::truth::{check, size};
+use glamx::DVec3;
+use sbbk_core::contact::convex::{
+    ConeSupport, CuboidSupport, CylinderSupport, PointSupport, convex_contact,
+};
+
+/// Triangles that are points, segments and slivers against every polytope.
+#[test]
+fn triangles_without_area() {
+    for kind in Kind::POLYTOPES {
+        let mut rng = Rng(40 + kind as u64);
+        for i in 0..2000 {
+            let shape = rng.shape(kind);
+            let [a, b, c] = {
+                let gap = rng.within(-0.3, 0.1);
+                rng.triangle_beside(&shape, gap)
+            };
+            let middle = a.lerp(b, rng.within(-0.2, 1.2));
+            let triangle = match i % 5 {
+                0 => [a; 3],
+                1 => [a, b, a],
+                2 => [a, b, b],
+                3 => [a, b, middle],
+                _ => [a, b, middle + (c - a) * rng.scale(1.0e-16, 1.0e-6)],
+            };
+            let truth = shape.truth().distance(&triangle);
+            let size = size(&triangle, &shape);
+            let contact = shape.contact(&triangle, 100.0).unwrap();
+            let error = (contact.distance - truth).abs();
+            assert!(error <= 1.0e-9 * size, "{truth} {contact:?}\n{shape:?}\n{triangle:?}");
+            check(&triangle, &shape, &contact, 1.0e-9 * size);
+        }
+    }
+}
+
+/// A cylinder without radius is a segment, one without height a disc; likewise a cone.
+#[test]
+fn round_shapes_without_volume() {
+    let mut rng = Rng(50);
+    for _ in 0..3000 {
+        let half_height = rng.scale(0.01, 1.0);
+        let ends = [DVec3::Y * half_height, DVec3::Y * -half_height];
+        let segment = Shape { core: Core::Segment(ends), radius: 0.0 };
+        let gap = rng.within(-0.3, 0.1);
+        let triangle = rng.triangle_beside(&segment, gap);
+        let truth = segment.contact(&triangle, 100.0).unwrap().distance;
+        let size = size(&triangle, &segment);
+        for core in [
+            Core::Cylinder(CylinderSupport { half_height, radius: 0.0 }),
+            Core::Cone(ConeSupport { half_height, radius: 0.0 }),
+        ] {
+            let needle = Shape { core, radius: 0.0 };
+            let contact = needle.contact(&triangle, 100.0).unwrap();
+            assert!((contact.distance - truth).abs() <= 1.0e-9 * size, "{triangle:?} {needle:?}");
+            check(&triangle, &needle, &contact, 1.0e-9 * size);
+        }
+        let [disc, flat] = [
+            Core::Cylinder(CylinderSupport { half_height: 0.0, radius: half_height }),
+            Core::Cone(ConeSupport { half_height: 0.0, radius: half_height }),
+        ]
+        .map(|core| Shape { core, radius: 0.0 });
+        let triangle = rng.triangle_beside(&disc, gap);
+        let [disc, flat] = [disc, flat].map(|shape| {
+            let contact = shape.contact(&triangle, 100.0).unwrap();
+            check(&triangle, &shape, &contact, 1.0e-8 * size);
+            contact.distance
+        });
+        assert!((disc - flat).abs() <= 1.0e-7 * size, "{disc} {flat} {half_height} {triangle:?}");
+    }
+}
+
+/// Cones and cylinders that are discs, needles and points, and corners in their plane or on their
+/// line: whole coordinates, so that all that is flat is exactly flat.
+#[test]
+fn flat_round_shapes_on_a_lattice() {
+    let mut rng = Rng(51);
+    let mut far = 0;
+    for i in 0..20_000 {
+        let half_height = (i % 2) as f64 * 0.5;
+        let radius = (i / 2 % 2) as f64;
+        let core = if i / 4 % 2 == 0 {
+            Core::Cylinder(CylinderSupport { half_height, radius })
+        } else {
+            Core::Cone(ConeSupport { half_height, radius })
+        };
+        let shape = Shape { core, radius: 0.0 };
+        let mut corner = || DVec3::from_array([0; 3].map(|_| rng.below(5) as f64 - 2.0));
+        let mut triangle = [corner(), corner(), corner()];
+        if i % 5 == 0 {
+            // On the axis, or along it.
+            let aside = DVec3::new(0.1, 0.0, 0.2) * (i / 8 % 4) as f64;
+            triangle = triangle.map(|corner| aside + DVec3::Y * 0.25 * corner.y);
+        }
+        let contact = shape.contact(&triangle, 100.0).unwrap();
+        let searched = convex_contact(&triangle, &|d| shape.support(d), 100.0).unwrap();
+        let says = || format!("{contact:?} {searched:?}\n{shape:?}\n{triangle:?}");
+        // Where features tie, the search may have answered: depths to 1e-5 of themselves.
+        assert!(contact.distance >= searched.distance - 1.0e-5, "{}", says());
+        check(&triangle, &shape, &contact, 1.0e-5);
+        far += u32::from(contact.distance > 0.5);
+    }
+    assert!(far > 2000, "{far}");
+}
+
+/// A needle that a segment, which calls itself a triangle, runs through. Would catch a search that is
+/// stuck and takes a direction that parts nothing for the normal.
+#[test]
+fn a_needle_and_a_segment() {
+    let needle = [
+        DVec3::new(-2.0, -2.0, -1.875),
+        DVec3::new(-2.0000000027939677, -2.0000000074505806, -2.0000000069849193),
+        DVec3::new(-1.8750000037252903, -1.8749999976716936, -1.875000003259629),
+    ];
+    let end = DVec3::new(1.7500000223517418, 1.749999975785613, 1.7499999832361937);
+    let core = Core::Triangle([end, DVec3::splat(-2.0), DVec3::splat(-2.0)]);
+    let shape = Shape { core, radius: 1.625 };
+    let contact = shape.contact(&needle, 100.0).unwrap();
+    check(&needle, &shape, &contact, 1.0e-9 * size(&needle, &shape));
+}
+
+/// A point beside the tip of a needle, whose two long edges are equally near up to rounding. Would
+/// catch the normal of the wrong one.
+#[test]
+fn a_point_beside_the_tip_of_a_needle() {
+    let tip = DVec3::new(-2.0000038146972656, -1.9999980926513672, -1.9999980926513672);
+    let needle = [DVec3::splat(-0.5), DVec3::ONE, tip];
+    for turned in 0..3 {
+        let mut needle = needle;
+        needle.rotate_left(turned);
+        let shape = Shape { core: Core::Point(DVec3::splat(-2.0)), radius: 1.0 };
+        let contact = shape.contact(&needle, 100.0).unwrap();
+        check(&needle, &shape, &contact, 1.0e-9);
+    }
+}
+
+/// A triangle on a face of a flat hull. Would catch a polytope that rounding has turned inside out,
+/// with a far face for the nearest one.
+#[test]
+fn a_triangle_on_a_face_of_a_flat_hull() {
+    let triangle = [
+        DVec3::ONE,
+        DVec3::new(1.0, -6.984919309616089e-9, -7.450580596923828e-9),
+        DVec3::new(2.384185791015625e-7, 2.682209014892578e-7, 2.682209014892578e-7),
+    ];
+    let corners =
+        [[-0.125, 1.0, 1.0], [1.0; 3], [-2.0, 1.0, 1.0], [-0.25, -1.875, -2.0], [-2.0; 3]];
+    let shape = Shape { core: Core::Hull(corners.map(DVec3::from).into()), radius: 0.625 };
+    let contact = shape.contact(&triangle, 100.0).unwrap();
+    let size = size(&triangle, &shape);
+    check(&triangle, &shape, &contact, 1.0e-9 * size);
+    assert!((contact.distance + shape.radius).abs() < 1.0e-9 * size, "{contact:?}");
+}
+
+/// Points in one place touch: the distance is 0 and the normal some unit vector.
+#[test]
+fn points_in_one_place() {
+    for p in [DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)] {
+        let contact = convex_contact(&[p; 3], &PointSupport(p), 0.0).unwrap();
+        assert_eq!((contact.distance, contact.normal.length()), (0.0, 1.0));
+        assert_eq!(contact.on_triangle, p);
+    }
+}
+
+/// "None when a coordinate is not finite", and no panic.
+#[test]
+fn numbers_that_are_none() {
+    let floor = [DVec3::ZERO, DVec3::X, DVec3::Z];
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for i in 0..9 {
+            let mut triangle = floor;
+            triangle[i / 3][i % 3] = bad;
+            for margin in [0.1, f64::INFINITY] {
+                assert_eq!(convex_contact(&triangle, &CuboidSupport(DVec3::ONE), margin), None);
+            }
+        }
+        for half in [DVec3::new(bad, 1.0, 1.0), DVec3::splat(bad)] {
+            assert_eq!(convex_contact(&floor, &CuboidSupport(half), 0.1), None);
+        }
+        for radius in [bad, 1.0] {
+            let cylinder = CylinderSupport { half_height: bad, radius };
+            assert_eq!(convex_contact(&floor, &cylinder, 0.1), None);
+            let cone = ConeSupport { half_height: 1.0, radius: bad };
+            assert_eq!(convex_contact(&floor, &cone, 0.1), None);
+        }
+    }
+    let cuboid = CuboidSupport(DVec3::ONE);
+    assert_eq!(convex_contact(&floor, &cuboid, f64::NAN), None);
+    assert_eq!(convex_contact(&floor, &|_| DVec3::NAN, 0.1), None);
+}
+
+/// A support map that lies must not hang or panic.
+#[test]
+fn support_maps_that_lie() {
+    for seed in 0..5000 {
+        let state = std::cell::RefCell::new(Rng(seed));
+        let liar = |_: DVec3| {
+            let mut rng = state.borrow_mut();
+            match rng.below(40) {
+                0 => DVec3::NAN,
+                1 => DVec3::INFINITY,
+                2 => DVec3::ZERO,
+                _ => rng.point(),
+            }
+        };
+        convex_contact(&[DVec3::ZERO, DVec3::X * 0.1, DVec3::Z * 0.1], &liar, 1.0);
+    }
+}

@@ -1,0 +1,243 @@
+//! The descent against the brute-force reference: never a pair lost, none visited without need.
+
+use std::collections::BTreeSet;
+
+use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
+use glamx::{Pose3, Quat, Vec3};
+use sbbk_core::leaf::LeafTest;
+use sbbk_core::traverse::{
+    Descent, DescentCounts, DescentScratch, PairFrame, Verdict, Visitor, descend,
+};
+use sbbk_core::tree::{BuildOptions, LayerPlan, LeafBatch, Tree};
+use sbbk_core::truth::pairs_within;
+use sbbk_core::volumes::{DirectionSet, Directions};
+
+/// Collects the survivors of the leaf test and compares it with its scalar twin on the way.
+struct Survivors {
+    test: LeafTest,
+    pairs: BTreeSet<(u32, u32)>,
+}
+
+impl Visitor for Survivors {
+    fn leaves(&mut self, _: u32, batch1: &LeafBatch, _: u32, batch2: &LeafBatch) -> Verdict {
+        let (mut simd, mut scalar) = (Vec::new(), Vec::new());
+        self.test.survivors(batch1, batch2, |i, j| simd.push((i, j)));
+        self.test.survivors_scalar(batch1, batch2, |i, j| scalar.push((i, j)));
+        assert_eq!(simd, scalar, "the lanes and the scalar twin must agree");
+        for (i, j) in simd {
+            let new = self.pairs.insert((batch1.triangles()[i], batch2.triangles()[j]));
+            assert!(new, "a pair of triangles was visited twice");
+        }
+        Verdict::Descend
+    }
+}
+
+fn survivors<const AXES: usize>(
+    trees: (&Tree<AXES>, &Tree<AXES>),
+    pos12: &Pose3,
+    margin: f32,
+    descent: Descent,
+) -> (BTreeSet<(u32, u32)>, DescentCounts)
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    let mut frame = PairFrame::new(trees.0, trees.1, pos12, margin);
+    let mut visitor = Survivors { test: LeafTest::new(&frame), pairs: BTreeSet::new() };
+    let mut counts = DescentCounts::default();
+    let mut scratch = DescentScratch::default();
+    descend(trees, &mut frame, descent, &mut scratch, &mut counts, &mut visitor);
+    (visitor.pairs, counts)
+}
+
+fn tree<const AXES: usize>(soup: &Soup, layers: LayerPlan) -> Tree<AXES>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    let options = BuildOptions { layers, ..BuildOptions::default() };
+    let tree = Tree::build(&soup.vertices, &soup.triangles, &options).unwrap();
+    assert_eq!(tree.validate(), Ok(()));
+    tree
+}
+
+fn truth(soup1: &Soup, soup2: &Soup, pos12: &Pose3, margin: f32) -> BTreeSet<(u32, u32)> {
+    let pose = glamx::DPose3 {
+        rotation: pos12.rotation.as_dquat(),
+        translation: pos12.translation.as_dvec3(),
+    };
+    let wide = |soup: &Soup| soup.vertices.iter().map(|v| v.as_dvec3()).collect::<Vec<_>>();
+    pairs_within(
+        &wide(soup1),
+        &soup1.triangles,
+        &wide(soup2),
+        &soup2.triangles,
+        pose,
+        f64::from(margin),
+    )
+    .into_iter()
+    .map(|pair| (pair.triangle1, pair.triangle2))
+    .collect()
+}
+
+/// All plans and both descents find a superset of the truth, and the leaf test lets little else
+/// through.
+fn check<const AXES: usize>(soup1: &Soup, soup2: &Soup, pos12: &Pose3, margin: f32) -> usize
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    let truth = truth(soup1, soup2, pos12, margin);
+    let plans = [
+        LayerPlan::SBBK,
+        LayerPlan::AABB_ONLY,
+        LayerPlan { sphere_root: false, kdop_from_depth: Some(1) },
+    ];
+    for plan in plans {
+        let trees = (tree::<AXES>(soup1, plan), tree::<AXES>(soup2, plan));
+        for descent in [Descent::Simultaneous, Descent::Single] {
+            let (pairs, _) = survivors((&trees.0, &trees.1), pos12, margin, descent);
+            let lost: Vec<_> = truth.difference(&pairs).collect();
+            assert!(lost.is_empty(), "{plan:?} {descent:?} lost {lost:?} at {pos12:?}");
+        }
+    }
+    truth.len()
+}
+
+/// A hole in a volume, a wrong lane, a margin that is too small: each loses a pair here.
+#[test]
+fn finds_every_pair_on_bumpy_balls() {
+    let mut random = Random(1);
+    let ball = bumpy_ball(12, 0.15);
+    let small = bumpy_ball(5, 0.3);
+    let mut total = 0;
+    for i in 0..60 {
+        let pose = random.pose(1.2);
+        let margin = [0.0, 0.001, 0.02, 0.2][i % 4];
+        total += check::<9>(&ball, &small, &pose, margin);
+        total += check::<7>(&small, &ball, &pose, margin);
+        total += check::<13>(&ball, &ball, &pose, margin);
+    }
+    assert!(total > 10_000, "the poses hardly touch: {total}");
+}
+
+/// Trees of very different depth: one side reaches its leaves while the other goes on.
+#[test]
+fn finds_every_pair_of_one_triangle_with_many() {
+    let mut random = Random(2);
+    let ball = bumpy_ball(10, 0.1);
+    let mut total = 0;
+    for _ in 0..100 {
+        let one = soup(&mut random, 1, 1.5);
+        let pose = random.pose(0.7);
+        total += check::<9>(&one, &ball, &pose, 0.02);
+        total += check::<9>(&ball, &one, &pose, 0.02);
+    }
+    assert!(total > 500, "the poses hardly touch: {total}");
+}
+
+/// Integer corners and turns by multiples of 90 degrees: touching is exact, ties are everywhere,
+/// and degenerate triangles occur.
+#[test]
+fn finds_every_pair_on_the_lattice() {
+    let mut random = Random(3);
+    let mut total = 0;
+    for i in 0..60 {
+        let soups = [0, 1].map(|_| lattice_soup(&mut random, 40, 6));
+        let turn = Quat::from_axis_angle(
+            [Vec3::X, Vec3::Y, Vec3::Z][i % 3],
+            std::f32::consts::FRAC_PI_2 * (i % 4) as f32,
+        );
+        let shift = Vec3::from_array([0; 3].map(|_| (random.bits() % 9) as f32 - 4.0));
+        total += check::<9>(&soups[0], &soups[1], &Pose3::from_parts(shift, turn), (i % 2) as f32);
+    }
+    assert!(total > 5_000, "the poses hardly touch: {total}");
+}
+
+/// Far from the origin f32 has few digits left: the margins must grow by as much as they lose.
+#[test]
+fn finds_every_pair_far_from_the_origin() {
+    let mut random = Random(4);
+    let mut total = 0;
+    for _ in 0..20 {
+        let mut ball = bumpy_ball(8, 0.2);
+        let offset = Vec3::new(1e5, -3e4, 7e4);
+        ball.vertices.iter_mut().for_each(|v| *v += offset);
+        let rotation = random.rotation();
+        let translation = offset - rotation * offset + random.vector(1.0);
+        total += check::<9>(&ball, &ball, &Pose3::from_parts(translation, rotation), 0.02);
+    }
+    assert!(total > 1_000, "the poses hardly touch: {total}");
+}
+
+/// A quaternion a little off unit length scales the second mesh; Parry's points do so too.
+#[test]
+fn finds_every_pair_under_denormalised_rotations() {
+    let mut random = Random(5);
+    let ball = bumpy_ball(8, 0.2);
+    let mut total = 0;
+    for scale in [0.999, 1.0001, 1.01] {
+        for _ in 0..10 {
+            let mut pose = random.pose(1.2);
+            pose.rotation *= scale;
+            total += check::<9>(&ball, &ball, &pose, 0.01);
+        }
+    }
+    assert!(total > 1_000, "the poses hardly touch: {total}");
+}
+
+/// The paper's section 3.2: complete trees of n levels in which all nodes meet. Its formula for all
+/// tests of the simultaneous descent, `(2^(2n-1) - 1)/3`, is not a whole number; its own parts,
+/// inner `(2^(2(n-1)) - 1)/3` and leaf `2^(2(n-1))`, add up to `(2^(2n) - 1)/3`.
+#[test]
+fn counts_of_complete_trees_are_the_papers() {
+    for levels in 1..=6u32 {
+        let count = 1 << (levels - 1);
+        // Equal triangles are halved by number: the tree is complete.
+        let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        let triangles = vec![[0, 1, 2]; count];
+        let options = BuildOptions { layers: LayerPlan::SBBK, leaf_size: 1 };
+        let tree: Tree = Tree::build(&vertices, &triangles, &options).unwrap();
+        assert_eq!(tree.stats().depth, levels - 1);
+        for (descent, expected) in [
+            (Descent::Simultaneous, (4u64.pow(levels) - 1) / 3),
+            (Descent::Single, 2u64.pow(2 * levels - 1) - 1),
+        ] {
+            let (pairs, counts) = survivors((&tree, &tree), &Pose3::IDENTITY, 0.0, descent);
+            assert_eq!(counts.aabb_tests, expected, "{descent:?}, {levels} levels");
+            assert_eq!(counts.leaf_pairs, 4u64.pow(levels - 1));
+            assert_eq!(pairs.len(), count * count);
+        }
+    }
+}
+
+/// Without a finite pose there is no answer but "no pair", and no panic.
+#[test]
+fn poses_that_are_not_finite_find_nothing() {
+    let ball = bumpy_ball(5, 0.2);
+    let tree = tree::<9>(&ball, LayerPlan::SBBK);
+    let zero = Quat::from_xyzw(0.0, 0.0, 0.0, 0.0);
+    let poses = [
+        Pose3::from_translation(Vec3::new(f32::NAN, 0.0, 0.0)),
+        Pose3::from_translation(Vec3::new(0.0, f32::INFINITY, 0.0)),
+        Pose3::from_rotation(Quat::from_xyzw(f32::NAN, 0.0, 0.0, 1.0)),
+        Pose3::from_rotation(zero),
+    ];
+    for pose in poses {
+        let (pairs, _) = survivors((&tree, &tree), &pose, 0.02, Descent::Simultaneous);
+        assert!(pairs.is_empty(), "{pose:?}");
+    }
+}
+
+/// k-DOPs below must prune more than boxes alone, or they are wired wrongly.
+#[test]
+fn kdops_visit_fewer_leaves() {
+    let mut random = Random(6);
+    let ball = bumpy_ball(24, 0.15);
+    let trees = [LayerPlan::SBBK, LayerPlan::AABB_ONLY].map(|plan| tree::<9>(&ball, plan));
+    let mut leaf_pairs = [0, 0];
+    for _ in 0..20 {
+        let pose = Pose3::from_parts(random.vector(1.0).normalize() * 1.9, random.rotation());
+        for (tree, total) in trees.iter().zip(&mut leaf_pairs) {
+            *total += survivors((tree, tree), &pose, 0.01, Descent::Simultaneous).1.leaf_pairs;
+        }
+    }
+    assert!(leaf_pairs[0] > 0 && leaf_pairs[0] * 10 < leaf_pairs[1] * 8, "{leaf_pairs:?}");
+}

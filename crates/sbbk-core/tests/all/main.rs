@@ -1,0 +1,20 @@
+//! All tests of the crate's interface, in one binary.
+
+mod allowances;
+mod broad_phase;
+mod contact_truth;
+mod convex_contact;
+mod descent;
+mod draw;
+mod field;
+mod front;
+mod outward;
+mod placement;
+mod query;
+mod refit;
+mod slack;
+#[path = "../support/mod.rs"]
+mod support;
+mod surface;
+mod tree;
+mod volumes;

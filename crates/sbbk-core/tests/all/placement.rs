@@ -1,0 +1,57 @@
+//! The motion bound: no point of the ball may move farther.
+
+use crate::support::Random;
+use glamx::{DVec3, Pose3};
+use sbbk_core::traverse::Placement;
+
+/// Small and large motions of a ball anywhere: a bound that forgets the lever of the rotation, or
+/// measures the centre's way in the wrong frame, is too small here; one that is uselessly large
+/// fails too.
+#[test]
+fn no_point_moves_farther_than_the_bound() {
+    let mut random = Random(31);
+    let mut tightest = f64::INFINITY;
+    for i in 0..5_000 {
+        let (centre, radius) = (random.vector(3.0), random.range(0.0, 2.0));
+        let before = random.pose(5.0);
+        let size = [1e-4, 1e-2, 1.0][i % 3];
+        let turn = glamx::Quat::from_scaled_axis(random.vector(size));
+        let mut after =
+            Pose3::from_parts(before.translation + random.vector(size), turn * before.rotation);
+        after.rotation = after.rotation.normalize();
+        let placements = [Placement::new(&before), Placement::new(&after)];
+        let bound = placements[1].motion_bound(&placements[0], centre, radius);
+        for _ in 0..20 {
+            let direction = random.vector(1.0).as_dvec3().normalize();
+            let point: DVec3 = centre.as_dvec3() + direction * f64::from(radius);
+            let at = |p: &Placement| p.rotation * point + p.translation;
+            let moved = at(&placements[1]).distance(at(&placements[0]));
+            assert!(moved <= bound, "moved {moved}, bound {bound}");
+            tightest = tightest.min(bound / moved);
+        }
+    }
+    assert!(tightest < 1.5, "the bound is never better than {tightest} times the motion");
+}
+
+/// The map is Parry's, `q v q*`, for quaternions off unit length too; and the inverse undoes it.
+#[test]
+fn the_map_is_that_of_the_quaternion() {
+    let mut random = Random(32);
+    for scale in [1.0, 0.9, 1.001] {
+        for _ in 0..1_000 {
+            let mut pose = random.pose(5.0);
+            pose.rotation *= scale;
+            let (x, origin) = (random.vector(3.0), random.vector(3.0));
+            let exact = glamx::DPose3 {
+                rotation: pose.rotation.as_dquat(),
+                translation: pose.translation.as_dvec3(),
+            };
+            let placement = Placement::new(&pose);
+            let moved = placement.to_frame1(x, origin);
+            let expected = exact.transform_point(x.as_dvec3()) - origin.as_dvec3();
+            assert!(moved.distance(expected) < 1e-13, "{moved:?} {expected:?}");
+            let back = placement.to_frame2(moved, origin);
+            assert!(back.distance(x.as_dvec3()) < 1e-13, "{back:?} {x:?}");
+        }
+    }
+}

@@ -1,0 +1,212 @@
+use glamx::{DVec3, Pose3, Quat, Vec3};
+use proptest::prelude::*;
+use sbbk_core::query::{AdvanceOptions, Cast, CastOptions, SearchScratch, advance, cast};
+use sbbk_core::traverse::Placement;
+use sbbk_core::tree::{BuildOptions, Tree};
+
+use super::truth::{all_pairs, least, of};
+use crate::support::{Random, Soup, bumpy_ball, soup};
+
+fn tree(soup: &Soup) -> Tree {
+    Tree::build(&soup.vertices, &soup.triangles, &BuildOptions::default()).expect("valid")
+}
+
+fn options(max_time: f32, target_distance: f32) -> CastOptions {
+    CastOptions { max_time, target_distance, stop_at_penetration: true }
+}
+
+fn ask(meshes: [&Soup; 2], pose: &Pose3, velocity: Vec3, options: CastOptions) -> Option<Cast> {
+    let [tree1, tree2] = meshes.map(tree);
+    let mut scratch = SearchScratch::default();
+    cast((&tree1, &tree2), Placement::new(pose), velocity, options, &mut scratch)
+}
+
+/// The least distance of all pairs after a time.
+fn distance_at(meshes: [&Soup; 2], pose: &Pose3, velocity: Vec3, time: f64) -> f64 {
+    least(&all_pairs(meshes, pose, velocity.as_dvec3() * time))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(50))]
+
+    /// Against a march in 200 steps with the distance of all pairs: nothing is met before the time
+    /// of impact, and the meshes are at the target distance then. Would catch an impact passed by,
+    /// or found too early.
+    #[test]
+    fn beside_a_march(seed: u64, target in prop::sample::select(vec![0.0_f32, 0.05, 0.5])) {
+        let mut random = Random(seed);
+        let [one, two] = [6, 5].map(|count| soup(&mut random, count, 0.6));
+        let pose = Pose3::from_parts(4.0 * random.vector(1.0).normalize(), random.rotation());
+        let velocity = 0.7 * random.vector(1.0) - 0.5 * pose.translation;
+        let hit = ask([&one, &two], &pose, velocity, options(3.0, target));
+        let target = f64::from(target);
+        let end = hit.map_or(3.0, |hit| hit.time);
+        for step in 0..200 {
+            let time = end * f64::from(step) / 200.0;
+            let distance = distance_at([&one, &two], &pose, velocity, time);
+            prop_assert!(distance > target - 1e-5, "{distance} at {time}, before {hit:?}");
+        }
+        if let Some(Cast { time, pair, is_penetrating }) = hit {
+            let pairs = all_pairs([&one, &two], &pose, velocity.as_dvec3() * time);
+            let distance = of(&pairs, [pair.triangle1, pair.triangle2]);
+            let starts_within = distance_at([&one, &two], &pose, velocity, 0.0) < target;
+            prop_assert_eq!(is_penetrating, starts_within);
+            prop_assert!(starts_within || (distance - target).abs() < 1e-5);
+        }
+    }
+}
+
+/// Not vacuous: most of the casts above hit, some do not. And the counterpart, a cast that must go
+/// through.
+#[test]
+fn some_hit_and_some_miss() {
+    let ball = bumpy_ball(12, 0.0);
+    let mut random = Random(3);
+    for target in [0.0, 0.5] {
+        let (reach, mut hits) = (2.0 + target, 0);
+        for _ in 0..100 {
+            let pose = Pose3::from_parts(Vec3::new(-5.0, 0.0, 0.0), random.rotation());
+            let side = 2.0 * reach * random.range(0.0, 1.0);
+            let pose = Pose3::from_parts(pose.translation + side * Vec3::Y, pose.rotation);
+            let hit = ask([&ball; 2], &pose, Vec3::X, options(100.0, target));
+            // Between the balls in and around the polyhedra.
+            if side < reach - 0.1 {
+                let depth = 5.0 - (reach * reach - side * side).sqrt();
+                let time = hit.expect("the balls meet").time;
+                assert!((time - f64::from(depth)).abs() < 0.2, "{time}, spheres at {depth}");
+                hits += 1;
+            } else if side > reach {
+                assert_eq!(hit, None);
+            }
+        }
+        assert!((20..80).contains(&hits));
+    }
+}
+
+/// Would catch an impact lost to the rounding of its bounds, and one that is too late: each is there
+/// until its very time.
+#[test]
+fn impacts_count_until_the_last_moment() {
+    let mut random = Random(17);
+    let mut hits = 0;
+    for i in 0..1500 {
+        let [one, two] = [12, 9].map(|count| soup(&mut random, count, 0.6));
+        let pose = Pose3::from_parts(4.0 * random.vector(1.0).normalize(), random.rotation());
+        let velocity = 0.7 * random.vector(1.0) - 0.5 * pose.translation;
+        // Along an axis too.
+        let velocity = if i % 3 == 0 { velocity * Vec3::AXES[i % 9 / 3] } else { velocity };
+        let target = [0.0, 0.05][i % 2];
+        let ask = |max_time| ask([&one, &two], &pose, velocity, options(max_time, target));
+        let Some(hit) = ask(f32::INFINITY).filter(|hit| hit.time > 0.0) else { continue };
+        hits += 1;
+        let time = hit.time as f32;
+        assert_eq!(ask(time.next_up()), Some(hit));
+        assert_eq!(ask(0.999 * time), None);
+    }
+    assert!(hits > 500, "{hits} hits");
+}
+
+/// Would catch the normal of corners that touch, which could be any, in place of that of corners just
+/// apart.
+#[test]
+fn the_normal_is_that_before_the_impact() {
+    let way = Vec3::new(0.3, -0.2, 1.0);
+    let below = |x: Vec3| Soup {
+        vertices: vec![Vec3::ZERO, x - Vec3::X, x + Vec3::new(0.7, 0.9, 0.0)],
+        triangles: vec![[0, 1, 2]],
+    };
+    let meshes = [&below(-2.0 * Vec3::Z), &below(2.0 * Vec3::Z)];
+    let hit =
+        ask(meshes, &Pose3::from_translation(way), -way, options(2.0, 0.0)).expect("corners meet");
+    assert!((hit.time - 1.0).abs() < 1e-9);
+    assert!((hit.pair.contact.normal - way.as_dvec3().normalize()).length() < 1e-6, "{hit:?}");
+}
+
+/// Face against face, known exactly; a limit of time before and after; the way out of a
+/// penetration.
+#[test]
+fn statuses() {
+    let floor = Soup {
+        vertices: vec![Vec3::ZERO, 4.0 * Vec3::X, 4.0 * Vec3::Y],
+        triangles: vec![[0, 1, 2]],
+    };
+    let above = |height: f32| Pose3::translation(0.5, 0.5, height);
+    let down = -2.0 * Vec3::Z;
+    let hit = ask([&floor; 2], &above(3.0), down, options(10.0, 0.0)).expect("falls on it");
+    assert!((hit.time - 1.5).abs() < 1e-12 && !hit.is_penetrating);
+    assert!((hit.pair.contact.normal - DVec3::Z).length() < 1e-9);
+    let hit = ask([&floor; 2], &above(3.0), down, options(10.0, 1.0)).expect("comes to 1 unit");
+    assert!((hit.time - 1.0).abs() < 1e-12 && !hit.is_penetrating);
+    assert!((hit.pair.contact.distance - 1.0).abs() < 1e-12);
+    assert_eq!(ask([&floor; 2], &above(3.0), down, options(1.49, 0.0)), None);
+    assert_eq!(ask([&floor; 2], &above(3.0), -down, options(10.0, 0.0)), None);
+    assert_eq!(ask([&floor; 2], &above(3.0), Vec3::ZERO, options(10.0, 0.0)), None);
+    let hit = ask([&floor; 2], &above(1.0), down, options(10.0, 1.0)).expect("starts at 1 unit");
+    assert!(hit.time == 0.0 && !hit.is_penetrating);
+    for none in [-1.0, f32::NAN] {
+        assert_eq!(ask([&floor; 2], &above(0.0), down, options(none, 0.0)), None);
+    }
+    assert_eq!(ask([&floor; 2], &above(3.0), down, options(10.0, -1.0)), None);
+
+    let within = options(10.0, 1.0);
+    let through = CastOptions { stop_at_penetration: false, ..within };
+    for (velocity, passes) in [(down, false), (-down, true)] {
+        let hit = ask([&floor; 2], &above(0.5), velocity, within).expect("starts within 1 unit");
+        assert!(hit.time == 0.0 && hit.is_penetrating);
+        assert_eq!(ask([&floor; 2], &above(0.5), velocity, through).is_none(), passes);
+    }
+}
+
+/// Numbers that are none have no answer.
+#[test]
+fn numbers_that_are_none() {
+    let ball = bumpy_ball(6, 0.1);
+    let pose = Pose3::translation(5.0, 0.0, 0.0);
+    for bad in [f32::NAN, f32::INFINITY] {
+        assert_eq!(ask([&ball; 2], &pose, Vec3::new(bad, 0.0, 0.0), options(1.0, 0.0)), None);
+        assert_eq!(ask([&ball; 2], &pose, -Vec3::X, options(1.0, bad)), None);
+        let nowhere = Pose3::translation(bad, 0.0, 0.0);
+        assert_eq!(ask([&ball; 2], &nowhere, -Vec3::X, options(1.0, 0.0)), None);
+    }
+    assert_eq!(ask([&ball; 2], &pose, -Vec3::X, options(f32::NAN, 0.0)), None);
+    assert!(ask([&ball; 2], &pose, -Vec3::X, options(f32::INFINITY, 0.0)).is_some());
+}
+
+/// A ball that turns and flies past or into another: never beyond the first touch, and within the
+/// tolerance of it.
+#[test]
+fn advancement_stops_at_the_first_touch() {
+    let ball = bumpy_ball(4, 0.2);
+    let tree = tree(&ball);
+    let mut random = Random(11);
+    let mut hits = 0;
+    for _ in 0..40 {
+        let axis = random.vector(1.0).normalize();
+        let side = 2.5 * random.vector(1.0).with_x(0.0);
+        let pose_at = |time: f64| {
+            let turn = Quat::from_scaled_axis(axis * (2.0 * time) as f32);
+            Pose3::from_parts(Vec3::new(5.0 - 2.0 * time as f32, 0.0, 0.0) + side, turn)
+        };
+        let placement_at = |time| Placement::new(&pose_at(time));
+        let options = AdvanceOptions {
+            start: 0.0,
+            end: 4.0,
+            speed_bound: 2.0 + 2.0 * 1.3,
+            tolerance: 1e-5,
+            step_limit: 10_000,
+        };
+        let found = advance((&tree, &tree), placement_at, options, &mut SearchScratch::default());
+        let end = found.map_or(4.0, |found| found.time);
+        for step in 0..8 {
+            let distance =
+                least(&all_pairs([&ball; 2], &pose_at(end * f64::from(step) / 8.0), DVec3::ZERO));
+            assert!(distance > 0.0, "met before {end}");
+        }
+        if let Some(found) = found {
+            hits += 1;
+            let distance = least(&all_pairs([&ball; 2], &pose_at(end), DVec3::ZERO));
+            assert!(found.has_converged && distance < 2e-5, "{distance} {found:?}");
+        }
+    }
+    assert!((5..36).contains(&hits), "{hits} hits");
+}

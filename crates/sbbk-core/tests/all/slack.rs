@@ -1,0 +1,157 @@
+//! What a descent with slack found is complete for as long as the plan says, and the slack is what
+//! the motion asks for.
+
+use std::collections::BTreeMap;
+
+use crate::support::Random;
+use glamx::{Pose3, Quat, Vec3};
+use sbbk_core::traverse::{Placement, Slack, SlackPlan};
+use sbbk_core::volumes::Sphere;
+
+const BALL: Sphere = Sphere { centre: Vec3::new(0.3, -0.2, 0.1), radius: 0.7 };
+
+/// Points of both frames, those of frame 2 in [`BALL`].
+struct Points([Vec<Vec3>; 2]);
+
+impl Points {
+    fn random(random: &mut Random) -> Self {
+        let still = (0..40).map(|_| random.vector(1.5)).collect();
+        let in_ball = |_| BALL.centre + random.vector(1.0).normalize_or_zero() * BALL.radius;
+        Self([still, (0..40).map(in_ball).collect()])
+    }
+
+    /// The distances of all pairs of points that are at most `margin` apart.
+    fn within(&self, placement: &Placement, margin: f64) -> BTreeMap<(usize, usize), f64> {
+        let Self([one, two]) = self;
+        let pairs = one.iter().enumerate().flat_map(|(i, &origin)| {
+            let distance = move |(j, &x)| ((i, j), placement.to_frame1(x, origin).length());
+            two.iter().enumerate().map(distance)
+        });
+        pairs.filter(|(_, distance)| *distance <= margin).collect()
+    }
+}
+
+fn nudge(random: &mut Random, size: f32, pose: &Pose3) -> Pose3 {
+    let turn = Quat::from_scaled_axis(random.vector(size));
+    let rotation = (turn * pose.rotation).normalize();
+    Pose3::from_parts(pose.translation + random.vector(size), rotation)
+}
+
+/// Walks with jumps and changes of stride and prediction distance, against brute force at each
+/// step. Would catch candidates used for too long, a reach or a travel that is too small, and a
+/// margin that is not that of the descent.
+#[test]
+fn candidates_are_complete_while_they_are_reused() {
+    let mut random = Random(61);
+    let (mut reused, mut skipped, mut found) = (0, 0, 0);
+    for walk in 0..60 {
+        let points = Points::random(&mut random);
+        let greatest_slack = [1.0, 8.0][walk % 2];
+        let (mut slack, mut pose) = (Slack::default(), random.pose(0.5));
+        let (mut stride, mut prediction) = (1e-3, 0.05_f32);
+        // The distance of each candidate when it was last known, plus the travel then.
+        let mut candidates = BTreeMap::new();
+        for step in 0..200 {
+            match random.range(0.0, 50.0) as u32 {
+                0 => pose = random.pose(0.5),
+                1 => stride = [0.0, 1e-5, 1e-3, 5e-3, 5e-2][step % 5],
+                2 => prediction = [0.0, 0.02, 0.05, 0.2][step % 4],
+                _ => pose = nudge(&mut random, stride, &pose),
+            }
+            let placement = Placement::new(&pose);
+            let expected = points.within(&placement, prediction.into());
+            match slack.plan(BALL, &placement, prediction, greatest_slack) {
+                SlackPlan::Descend { margin } => {
+                    assert!(margin >= prediction);
+                    assert_eq!(slack.travel(), 0.0);
+                    assert!(slack.margin().is_none_or(|kept| kept == margin && kept > prediction));
+                    let known = points.within(&placement, margin.into());
+                    candidates = known.into_iter().map(|(pair, d)| (pair, (d, d))).collect();
+                }
+                SlackPlan::Reuse { margin, reach } => {
+                    reused += 1;
+                    assert_eq!(slack.margin(), Some(margin));
+                    let limit = f64::from(prediction) + slack.travel();
+                    for (pair, distance) in &expected {
+                        let Some((at_descent, clear)) = candidates.get(pair) else {
+                            panic!("{pair:?}, {distance} apart, was not found");
+                        };
+                        assert!(*at_descent <= reach && *clear <= limit, "{pair:?} is skipped");
+                    }
+                    let now = points.within(&placement, f64::INFINITY);
+                    for (pair, (_, clear)) in &mut candidates {
+                        // As a caller does: what is out of reach is not looked at.
+                        if *clear <= limit {
+                            *clear = now[pair] + slack.travel();
+                        } else {
+                            skipped += 1;
+                        }
+                    }
+                }
+            }
+            found += expected.len();
+        }
+    }
+    assert!(reused > 5000 && skipped > 20_000 && found > 4000, "{reused}, {skipped}, {found}");
+}
+
+/// The margin of the second of two queries, the ball shifted by `step` between them, and whether it
+/// may be kept.
+fn margin_after(step: f32, prediction: f32) -> (f32, bool) {
+    let mut slack = Slack::default();
+    let at = |x: f32| Placement::new(&Pose3::translation(x, 0.0, 0.0));
+    let first = slack.plan(BALL, &at(0.0), prediction, 1.0);
+    assert_eq!(first, SlackPlan::Descend { margin: prediction }, "a first query looks farther");
+    assert_eq!(slack.margin(), None);
+    match slack.plan(BALL, &at(step), prediction, 1.0) {
+        SlackPlan::Descend { margin } => (margin, slack.margin().is_some()),
+        plan => panic!("{plan:?} without a descent to reuse"),
+    }
+}
+
+/// Would catch slack for a pair at rest that the least jitter uses up, slack that does not grow
+/// with the motion or has no end, and slack for fast motion, where it is a waste.
+#[test]
+fn slack_follows_the_motion() {
+    let prediction = 0.02;
+    let near = |found: f32, expected: f32| (found - expected).abs() < 1e-5 * prediction;
+    for (step, share) in
+        [(0.0, 0.1), (0.01, 0.1), (0.05, 0.4), (0.1, 0.8), (0.15, 1.0), (0.33, 1.0)]
+    {
+        let (margin, kept) = margin_after(step * prediction, prediction);
+        assert!(near(margin, prediction * (1.0 + share)) && kept, "{margin} at {step}");
+    }
+    for step in [0.34, 1.0, 1000.0] {
+        assert_eq!(margin_after(step * prediction, prediction), (prediction, false));
+    }
+    // Nothing can be kept within a distance of zero, as there is no scale for slack.
+    assert_eq!(margin_after(0.0, 0.0), (0.0, false));
+}
+
+/// Would catch candidates that are kept beyond a pose that is none, and a panic there.
+#[test]
+fn queries_that_are_not_finite_are_descents() {
+    let good = Placement::new(&Pose3::IDENTITY);
+    for broken in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        let bad_pose = Placement::new(&Pose3::translation(broken, 0.0, 0.0));
+        for (placement, prediction) in [(&bad_pose, 0.02), (&good, broken)] {
+            let mut slack = Slack::default();
+            for _ in 0..2 {
+                slack.plan(BALL, &good, 0.02, 1.0);
+            }
+            let again = slack.clone().plan(BALL, &good, 0.02, 1.0);
+            assert!(matches!(again, SlackPlan::Reuse { .. }), "{again:?}");
+            let plan = slack.plan(BALL, placement, prediction, 1.0);
+            // Within less than nothing, what is known is more than enough.
+            if prediction == f32::NEG_INFINITY {
+                assert!(matches!(plan, SlackPlan::Reuse { .. }));
+                continue;
+            }
+            let SlackPlan::Descend { margin } = plan else { panic!("{plan:?}") };
+            assert_eq!(margin.to_bits(), prediction.to_bits());
+            assert_eq!(slack.margin(), None);
+            let next = slack.plan(BALL, &good, 0.02, 1.0);
+            assert!(matches!(next, SlackPlan::Descend { .. }), "{next:?}");
+        }
+    }
+}

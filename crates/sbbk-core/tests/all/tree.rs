@@ -1,0 +1,250 @@
+//! Building: every triangle once, every volume around what is below it, every fault of the input
+//! reported.
+
+use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
+use glamx::Vec3;
+use sbbk_core::tree::{BATCH, BuildError, BuildOptions, LayerPlan, Node, Tree};
+use sbbk_core::volumes::{DirectionSet, Directions};
+
+fn options(kdop_from_depth: Option<u32>, leaf_size: usize) -> BuildOptions {
+    BuildOptions { layers: LayerPlan { sphere_root: true, kdop_from_depth }, leaf_size }
+}
+
+fn check<const AXES: usize>(soup: &Soup, options: &BuildOptions) -> Tree<AXES>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    let tree = Tree::<AXES>::build(&soup.vertices, &soup.triangles, options).unwrap();
+    assert_eq!(tree.validate(), Ok(()));
+    assert_eq!(tree.triangle_count() as usize, soup.triangles.len());
+    for leaf in 0..tree.leaf_count() {
+        let batch = tree.leaf(leaf);
+        assert!((1..=options.leaf_size.clamp(1, BATCH)).contains(&batch.count()));
+        for (lane, &triangle) in batch.triangles().iter().enumerate() {
+            let corners = soup.triangles[triangle as usize].map(|v| soup.vertices[v as usize]);
+            assert_eq!(batch.corners(lane), corners, "the leaf holds another triangle");
+        }
+    }
+    tree
+}
+
+/// Each size from one triangle up, so that every shape of small tree occurs.
+#[test]
+fn trees_of_all_small_sizes_are_valid() {
+    let mut random = Random(21);
+    for count in 1..=70 {
+        for leaf_size in 1..=BATCH {
+            let soup = soup(&mut random, count, 0.3);
+            check::<9>(&soup, &options(Some(1 + count % 5), leaf_size));
+            check::<7>(&soup, &options(None, leaf_size));
+            check::<13>(&soup, &options(Some(3), leaf_size));
+        }
+    }
+}
+
+#[test]
+fn large_tree_is_valid_and_shallow() {
+    let ball = bumpy_ball(60, 0.1);
+    let tree = check::<9>(&ball, &BuildOptions::default());
+    assert!(ball.triangles.len() > 14_000 && tree.stats().depth < 25, "{:?}", tree.stats());
+}
+
+/// Equal centroids cannot be separated by a plane: halving keeps the depth logarithmic.
+#[test]
+fn equal_triangles_make_a_balanced_tree() {
+    let soup =
+        Soup { vertices: vec![Vec3::ZERO, Vec3::X, Vec3::Y], triangles: vec![[0, 1, 2]; 4096] };
+    assert_eq!(check::<9>(&soup, &options(Some(4), 1)).stats().depth, 12);
+}
+
+/// Would catch splits by cost that take one triangle from the rest, level after level: sizes and
+/// places that shrink by a constant factor, on one axis, on all in turn, with and without area.
+#[test]
+fn trees_are_never_deep() {
+    let chain = |count: u32, factor: f64, axes: u32, width: f64| {
+        let corner = |i: u32, k: u32| {
+            // Towards zero from below: the first bin with anything in it has one triangle.
+            let size = factor.powi((i / axes) as i32) * 1e38;
+            let mut corner = Vec3::ZERO;
+            corner[(i % axes) as usize] = -size as f32;
+            corner[((i + k) % 3) as usize] += (width * f64::from(k) * size) as f32;
+            corner
+        };
+        let vertices = (0..count).flat_map(|i| [0, 1, 2].map(|k| corner(i, k))).collect();
+        let triangles = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        Soup { vertices, triangles }
+    };
+    let mut deepest = 0;
+    for (factor, axes, width) in [
+        (0.94, 1, 0.0),
+        (0.94, 1, 1e-3),
+        (0.94, 3, 1e-3),
+        (0.97, 3, 0.0),
+        (0.5, 2, 0.0),
+        (0.5, 1, 0.1),
+        (0.999, 1, 0.0),
+    ] {
+        let soup = chain(3000, factor, axes, width);
+        let mut tree = check::<9>(&soup, &options(Some(4), 1));
+        let depth = tree.stats().depth;
+        assert!(depth <= 64 + 12, "{depth} levels: {factor} {axes} {width}");
+        deepest = deepest.max(depth);
+        tree.refit(&soup.vertices, &soup.triangles).unwrap();
+        assert_eq!(tree.validate(), Ok(()));
+    }
+    assert!(deepest > 64, "no chain needs the bound: {deepest}");
+}
+
+/// Without a sphere the ball is around the root's box, whose corners are the vertices here: nothing
+/// to spare. Would catch a rounding of length or centre that is not given back, near the origin and
+/// far from it.
+#[test]
+fn the_ball_around_a_box_holds_its_corners() {
+    let mut random = Random(23);
+    for round in 0..2000 {
+        let far = [0.0, 1.0, 1e3, 1e6][round % 4];
+        let (centre, half) =
+            (random.vector(far), random.vector(if round % 3 == 0 { 1.0 } else { 0.1 }));
+        let vertices: Vec<Vec3> = (0..8)
+            .map(|i| {
+                let sign = |bit: u32| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
+                centre + half * Vec3::new(sign(0), sign(1), sign(2))
+            })
+            .collect();
+        let triangles = (0..6).map(|i| [i, i + 1, i + 2]).collect();
+        let soup = Soup { vertices, triangles };
+        let plan = LayerPlan { sphere_root: false, kdop_from_depth: None };
+        let ball = check::<9>(&soup, &BuildOptions { layers: plan, leaf_size: 4 }).bounding_ball();
+        for vertex in soup.vertices {
+            let distance = (vertex.as_dvec3() - ball.centre.as_dvec3()).length();
+            assert!(distance <= f64::from(ball.radius), "{vertex} is outside of {ball:?}");
+        }
+    }
+}
+
+/// The walk reaches each node once, with its own volume and depth. Would catch children of another
+/// node, a depth or slot that is wrong, and a volume of the wrong layer.
+#[test]
+fn the_walk_reaches_everything() {
+    let ball = bumpy_ball(12, 0.2);
+    let plan = LayerPlan { sphere_root: true, kdop_from_depth: Some(3) };
+    let tree = check::<9>(&ball, &BuildOptions { layers: plan, leaf_size: 3 });
+    let mut slots = std::collections::HashSet::new();
+    let mut seen = vec![0; ball.triangles.len()];
+    let (mut inner_count, mut leaf_count, mut deepest) = (0, 0, 0);
+    let mut stack = vec![(tree.root(), Vec::<Node>::new())];
+    while let Some((node, above)) = stack.pop() {
+        assert!(slots.insert(node.slot()));
+        assert_eq!(node.depth() as usize, above.len());
+        assert_eq!(node.kdop().is_some(), node.depth() >= 3);
+        deepest = deepest.max(node.depth());
+        let path = [above, vec![node]].concat();
+        let Some(children) = node.children() else {
+            let leaf = node.leaf().expect("no children");
+            leaf_count += 1;
+            assert_eq!(leaf.batch.triangles(), tree.leaf(leaf.number).triangles());
+            for (lane, &triangle) in leaf.batch.triangles().iter().enumerate() {
+                seen[triangle as usize] += 1;
+                for corner in leaf.batch.corners(lane) {
+                    let is_around = |node: &Node| {
+                        let kdop = node.kdop();
+                        node.aabb().contains(corner) && kdop.is_none_or(|k| k.contains(corner))
+                    };
+                    assert!(path.iter().all(is_around));
+                }
+            }
+            continue;
+        };
+        assert!(node.leaf().is_none());
+        inner_count += 1;
+        stack.extend(children.map(|child| (child, path.clone())));
+    }
+    assert!(seen.iter().all(|&count| count == 1));
+    let stats = tree.stats();
+    assert_eq!((inner_count, leaf_count), (stats.inner_count, stats.leaf_count));
+    assert_eq!(deepest, stats.depth);
+}
+
+/// "Other values are clamped": no leaf size makes an endless build.
+#[test]
+fn leaf_sizes_are_clamped() {
+    let ball = bumpy_ball(4, 0.1);
+    for (leaf_size, clamped) in [(0, 1), (9, BATCH), (usize::MAX, BATCH)] {
+        let leaf_count = |size| check::<9>(&ball, &options(Some(4), size)).leaf_count();
+        assert_eq!(leaf_count(leaf_size), leaf_count(clamped));
+    }
+}
+
+/// A vertex that no triangle uses widens no volume.
+#[test]
+fn unused_vertices_do_not_count() {
+    let mut ball = bumpy_ball(6, 0.1);
+    let radius = |ball: &Soup| check::<9>(ball, &options(Some(4), 4)).sphere().unwrap().radius;
+    // The ball's own unused vertices, at the poles, are in its place.
+    let before = radius(&ball);
+    ball.vertices.push(Vec3::splat(100.0));
+    assert_eq!(radius(&ball), before);
+}
+
+/// Zero area, zero extent, lattice ties, and coordinates of very different size are all kept.
+#[test]
+fn degenerate_triangles_are_kept_and_counted() {
+    let mut random = Random(22);
+    let mut soup = lattice_soup(&mut random, 200, 2);
+    soup.triangles.push([0, 0, 0]);
+    soup.triangles.push([0, 1, 0]);
+    let flat = |t: &&[u32; 3]| {
+        let [a, b, c] = t.map(|v| soup.vertices[v as usize]);
+        (b - a).cross(c - a) == Vec3::ZERO
+    };
+    let expected = soup.triangles.iter().filter(flat).count() as u32;
+    let tree = check::<9>(&soup, &BuildOptions::default());
+    assert_eq!(tree.stats().degenerate_count, expected);
+    assert!(expected > 2);
+
+    for vertex in &mut soup.vertices {
+        *vertex *= random.range(0.0, 1.0).powi(40) * 1e5;
+    }
+    check::<9>(&soup, &BuildOptions::default());
+}
+
+#[test]
+fn faults_are_reported_with_their_place() {
+    let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(0.0, f32::NAN, 0.0)];
+    let build = |triangles: &[[u32; 3]], options: &BuildOptions| {
+        Tree::<9>::build(&vertices, triangles, options).err()
+    };
+    let fine = BuildOptions::default();
+    assert_eq!(build(&[], &fine), Some(BuildError::NoTriangles));
+    assert_eq!(
+        build(&[[0, 1, 2], [0, 4, 2]], &fine),
+        Some(BuildError::IndexOutOfRange { triangle: 1, vertex: 4, vertex_count: 4 })
+    );
+    let nan = build(&[[0, 1, 3]], &fine).expect("a NaN vertex");
+    assert!(matches!(nan, BuildError::NotFinite { vertex: 3, .. }));
+    assert_eq!(nan.to_string(), "vertex 3 is not finite: (0, NaN, 0)");
+    assert_eq!(
+        build(&[[0, 1, 2]], &options(Some(0), 4)),
+        Some(BuildError::KdopAtRoot { depth: 0 })
+    );
+    // A bad vertex that no triangle uses does no harm.
+    assert_eq!(build(&[[0, 1, 2]], &fine), None);
+}
+
+/// The memory by kind adds up, and plans without a kind have none of it.
+#[test]
+fn statistics_follow_the_plan() {
+    let ball = bumpy_ball(20, 0.1);
+    let sbbk = *check::<9>(&ball, &options(Some(4), 4)).stats();
+    let boxes =
+        *check::<9>(&ball, &BuildOptions { layers: LayerPlan::AABB_ONLY, leaf_size: 4 }).stats();
+    assert_eq!((boxes.sphere_bytes, boxes.kdop_bytes), (0, 0));
+    assert!(sbbk.sphere_bytes > 0 && sbbk.kdop_bytes > sbbk.aabb_bytes);
+    assert_eq!(sbbk.leaf_bytes, boxes.leaf_bytes);
+    assert_eq!(
+        sbbk.bytes(),
+        sbbk.sphere_bytes + sbbk.aabb_bytes + sbbk.kdop_bytes + sbbk.leaf_bytes
+    );
+    assert_eq!(sbbk.inner_count + 1, sbbk.leaf_count);
+    assert!(sbbk.sah_cost > 1.0 && sbbk.sah_cost == boxes.sah_cost);
+}

@@ -1,9 +1,0 @@
-//! Queries with one answer, against brute force in f64 over all pairs of triangles.
-
-mod cast;
-mod contacts;
-mod departure;
-mod nearest;
-#[path = "../support/mod.rs"]
-mod support;
-mod truth;
