@@ -26,19 +26,12 @@ pub struct Table {
 
 /// What to make a table of.
 pub struct TableSpec<'a> {
-    /// What it shows.
-    pub title: String,
-    /// The part of the study of which rows are taken.
-    pub study: &'a str,
-    /// Each line holds the rows that agree in these; `backend` is one, too.
-    pub keys: &'a [&'a str],
-    /// With `Some(n)`, the rows that agree in the first `n` keys get a line of their sums and
-    /// means.
-    pub total: Option<usize>,
-    /// After those of the keys.
-    pub columns: Vec<Column>,
-    /// What a reader must know.
-    pub notes: Vec<String>,
+    title: String,
+    study: &'a str,
+    keys: &'a [&'a str],
+    total: Option<usize>,
+    columns: Vec<Column>,
+    notes: Vec<String>,
 }
 
 /// One column: its name, and what it shows of the rows of a line.
@@ -165,7 +158,35 @@ impl Column {
     }
 }
 
-impl TableSpec<'_> {
+impl<'a> TableSpec<'a> {
+    /// Of the rows of one part of a study. Each line holds those that agree in the `keys`, of which
+    /// `backend` may be one; the columns come after those of the keys.
+    pub fn new(
+        title: impl Into<String>,
+        study: &'a str,
+        keys: &'a [&'a str],
+        columns: impl IntoIterator<Item = Column>,
+    ) -> Self {
+        let columns = columns.into_iter().collect();
+        Self { title: title.into(), study, keys, total: None, columns, notes: Vec::new() }
+    }
+
+    /// The rows that agree in so many of the first keys get a line of their sums and means.
+    pub fn total(self, key_count: impl Into<Option<usize>>) -> Self {
+        Self { total: key_count.into(), ..self }
+    }
+
+    /// Adds what a reader must know.
+    pub fn note(self, note: impl Into<String>) -> Self {
+        self.notes([note.into()])
+    }
+
+    /// The same, several times.
+    pub fn notes(mut self, notes: impl IntoIterator<Item = String>) -> Self {
+        self.notes.extend(notes);
+        self
+    }
+
     /// The table of `rows`.
     pub fn of(self, rows: &[Row]) -> Table {
         let Self { title, study, keys, total, columns, notes } = self;
@@ -291,14 +312,7 @@ mod tests {
             row("fresh", "b", "sbbk", 1.0, 0),
             Row::new("another", "stock"),
         ];
-        let spec = TableSpec {
-            title: String::new(),
-            study: "race",
-            keys: &["mode", "mesh"],
-            total: Some(1),
-            columns: sides(),
-            notes: Vec::new(),
-        };
+        let spec = TableSpec::new(String::new(), "race", &["mode", "mesh"], sides()).total(1);
         let table = spec.of(&rows);
         let expected = [
             ["fresh", "a", "8.00 / 16.0", "4.00 / 8.00", "2.00x", "3+0+1 of 9", "0+0+1 of 9"],

@@ -99,35 +99,33 @@ fn points(rows: &[Row], axis: &str, backend: Backend, path: &str) -> Vec<[f64; 2
 }
 
 fn table(plan: &CostPlan, rows: &[Row]) -> Table {
-    let spec = TableSpec {
-        title: "Cost: milliseconds a step".to_owned(),
-        study: COST,
-        keys: &["growing", "count", "backend"],
-        total: None,
-        columns: vec![
+    let spec = TableSpec::new(
+        "Cost: milliseconds a step",
+        COST,
+        &["growing", "count", "backend"],
+        [
             time("broad + narrow", "collision_detection"),
             faster("vs stock", "collision_detection.median", Backend::Stock),
             time("solver", "solver"),
             time("step", "step"),
         ],
-        notes: vec![format!(
-            "means of the {} steps after the first heads land; triangles a mesh: {} heads; all with \
+    )
+    .note(format!(
+        "means of the {} steps after the first heads land; triangles a mesh: {} heads; all with \
              trees",
-            plan.steps, plan.few
-        )],
-    };
+        plan.steps, plan.few
+    ));
     spec.of(rows)
 }
 
 fn exponent_table(rows: &[Row]) -> Table {
-    let spec = TableSpec {
-        title: "Exponents of power laws through these times".to_owned(),
-        study: EXPONENTS,
-        keys: &["growing", "backend"],
-        total: None,
-        columns: vec![number("broad + narrow", "collision_detection"), number("step", "step")],
-        notes: vec!["least squares over logarithms".to_owned()],
-    };
+    let spec = TableSpec::new(
+        "Exponents of power laws through these times",
+        EXPONENTS,
+        &["growing", "backend"],
+        [number("broad + narrow", "collision_detection"), number("step", "step")],
+    )
+    .note("least squares over logarithms");
     spec.of(rows)
 }
 

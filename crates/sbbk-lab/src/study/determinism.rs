@@ -141,12 +141,11 @@ fn tables(rows: &[Row], steps: usize) -> Vec<Table> {
     };
     let [narrow, narrow_sbbk] = side("narrow phase", "narrow_phase");
     let [step, step_sbbk] = side("step", "step");
-    let worlds = TableSpec {
-        title: format!("Worlds after {steps} steps, bit for bit; milliseconds a step"),
-        study: WORLDS,
-        keys: &["scene", "run"],
-        total: None,
-        columns: vec![
+    let worlds = TableSpec::new(
+        format!("Worlds after {steps} steps, bit for bit; milliseconds a step"),
+        WORLDS,
+        &["scene", "run"],
+        [
             number("manifolds", "manifold_count").of("sbbk"),
             number("hash, stock", "fingerprint").of("stock"),
             number("hash, sbbk", "fingerprint").of("sbbk"),
@@ -157,17 +156,18 @@ fn tables(rows: &[Row], steps: usize) -> Vec<Table> {
             step_sbbk,
             faster("ratio", "step.mean", "stock").of("sbbk"),
         ],
-        notes: vec![
-            "hash: poses, velocities, contacts in their order, features and impulses; all runs of a \
-             scene under one backend should have the same"
-                .to_owned(),
-            "forgetful: a new dispatcher before each step, so that no tree, candidate or feature is \
-             known, and the time to build the trees is in it"
-                .to_owned(),
-            "times: min / median over the steps; ratios: of means; more threads than one are used \
-             only under Rapier's feature `parallel`"
-                .to_owned(),
-        ],
-    };
+    )
+    .note(
+        "hash: poses, velocities, contacts in their order, features and impulses; all runs of a \
+             scene under one backend should have the same",
+    )
+    .note(
+        "forgetful: a new dispatcher before each step, so that no tree, candidate or feature is \
+             known, and the time to build the trees is in it",
+    )
+    .note(
+        "times: min / median over the steps; ratios: of means; more threads than one are used \
+             only under Rapier's feature `parallel`",
+    );
     vec![worlds.of(rows)]
 }

@@ -66,12 +66,11 @@ pub fn frames(rows: &[Row], plan: &HelicopterPlan) -> Table {
     let against = |backend: Backend| {
         faster(&format!("vs {backend}"), "frames_per_second.median", backend).inverse()
     };
-    let spec = TableSpec {
-        title: "Table 1. A ball falls on the rotor: frames a second".to_owned(),
-        study: FRAMES,
-        keys: &["ball", "backend"],
-        total: None,
-        columns: vec![
+    TableSpec::new(
+        "Table 1. A ball falls on the rotor: frames a second",
+        FRAMES,
+        &["ball", "backend"],
+        [
             number("fps, median", "frames_per_second.median"),
             number("best", "frames_per_second.max"),
             against(Backend::Stock),
@@ -81,15 +80,13 @@ pub fn frames(rows: &[Row], plan: &HelicopterPlan) -> Table {
             errors("errors, fresh", "fresh"),
             errors("errors, in the run", "updated"),
         ],
-        notes: vec![
-            format!(
-                "{} runs of {} steps each, backends in turn; contact recycling on",
-                plan.repeats, plan.steps
-            ),
-            "a frame is a step: nothing is drawn, unlike in the paper".to_owned(),
-            TIME_NOTE.to_owned(),
-            ERROR_NOTE.to_owned(),
-        ],
-    };
-    spec.of(rows)
+    )
+    .note(format!(
+        "{} runs of {} steps each, backends in turn; contact recycling on",
+        plan.repeats, plan.steps
+    ))
+    .note("a frame is a step: nothing is drawn, unlike in the paper")
+    .note(TIME_NOTE)
+    .note(ERROR_NOTE)
+    .of(rows)
 }

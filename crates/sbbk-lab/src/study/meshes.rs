@@ -96,12 +96,11 @@ fn judge(contest: &Contest, sequences: &[Sequence]) -> [ErrorCount; 2] {
 
 /// Build time, memory, first queries and break-even.
 pub(super) fn table(rows: &[Row]) -> Table {
-    let spec = TableSpec {
-        title: "Trees and first queries: each mesh against itself, 2 units across".to_owned(),
-        study: MESHES,
-        keys: &["mesh", "triangle_count"],
-        total: None,
-        columns: vec![
+    TableSpec::new(
+        "Trees and first queries: each mesh against itself, 2 units across",
+        MESHES,
+        &["mesh", "triangle_count"],
+        [
             time("parry build, ms", "build").of("stock"),
             time("sbbk build, ms", "build").of("sbbk"),
             number("parry KiB", "kibibytes").of("stock"),
@@ -114,14 +113,12 @@ pub(super) fn table(rows: &[Row]) -> Table {
             errors("errors, stock", "errors").of("stock"),
             errors("errors, sbbk", "errors").of("sbbk"),
         ],
-        notes: vec![
-            "the SBBK tree comes on top of Parry's; its leaves hold the triangles".to_owned(),
-            "break-even: first queries whose saved time pays for the tree".to_owned(),
-            TIME_NOTE.to_owned(),
-            ERROR_NOTE.to_owned(),
-        ],
-    };
-    spec.of(rows)
+    )
+    .note("the SBBK tree comes on top of Parry's; its leaves hold the triangles")
+    .note("break-even: first queries whose saved time pays for the tree")
+    .note(TIME_NOTE)
+    .note(ERROR_NOTE)
+    .of(rows)
 }
 
 /// Time against error of first queries, for each true pair of triangles.

@@ -181,12 +181,11 @@ pub fn runs(rows: &[Row], plan: &RunPlan) -> [Table; 2] {
     let keys = &["scene", "contact_recycling", "backend"];
     let stock = |path| faster("vs stock", path, Backend::Stock);
     let aabb_only = |path| faster("vs aabb-only", path, Backend::AabbOnly);
-    let times = TableSpec {
-        title: "Table 2 and Diagram 1. Heads in a pile: milliseconds a step".to_owned(),
-        study: RUNS,
+    let times = TableSpec::new(
+        "Table 2 and Diagram 1. Heads in a pile: milliseconds a step",
+        RUNS,
         keys,
-        total: None,
-        columns: vec![
+        [
             time("broad + narrow", "collision_detection"),
             stock("collision_detection.median"),
             aabb_only("collision_detection.median"),
@@ -198,23 +197,21 @@ pub fn runs(rows: &[Row], plan: &RunPlan) -> [Table; 2] {
             time("step", "step"),
             stock("step.median"),
         ],
-        notes: vec![
-            format!(
-                "mean of the {} steps after the first heads land, in which one query in {} is \
+    )
+    .note(format!(
+        "mean of the {} steps after the first heads land, in which one query in {} is \
                  timed; times: min / median over the runs; ratios: of medians",
-                plan.steps, plan.query_stride
-            ),
-            "contact recycling: Rapier's default is true; backends side by side, each on its own \
-             trajectory"
-                .to_owned(),
-        ],
-    };
-    let accuracy = TableSpec {
-        title: "Accuracy in whole runs".to_owned(),
-        study: RUNS,
+        plan.steps, plan.query_stride
+    ))
+    .note(
+        "contact recycling: Rapier's default is true; backends side by side, each on its own \
+             trajectory",
+    );
+    let accuracy = TableSpec::new(
+        "Accuracy in whole runs",
+        RUNS,
         keys,
-        total: None,
-        columns: vec![
+        [
             number("mesh pairs, fresh", "fresh_from"),
             errors("errors", "fresh"),
             number("mesh pairs, in the run", "updated_from"),
@@ -225,17 +222,17 @@ pub fn runs(rows: &[Row], plan: &RunPlan) -> [Table; 2] {
             number("mean depth", "state.mean_penetration"),
             number("max depth", "state.max_penetration"),
         ],
-        notes: vec![
-            "fresh: sampled from all pairs of the broad phase, asked anew for all contacts of triangles; \
-             in the run: sampled from those that Rapier updated in the sampled steps, as it got them; \
-             of surfaces: none without contacts that cross, and none that are not true"
-                .to_owned(),
-            "manifolds and the rest: after the last sampled step, recycled contacts included; depth: \
-             units, of the deepest point of touching pairs"
-                .to_owned(),
-            ERROR_NOTE.to_owned(),
-        ],
-    };
+    )
+    .note(
+        "fresh: sampled from all pairs of the broad phase, asked anew for all contacts of \
+         triangles; in the run: sampled from those that Rapier updated in the sampled steps, as it \
+         got them; of surfaces: none without contacts that cross, and none that are not true",
+    )
+    .note(
+        "manifolds and the rest: after the last sampled step, recycled contacts included; depth: \
+             units, of the deepest point of touching pairs",
+    )
+    .note(ERROR_NOTE);
     let papers = |row: &Row| row.is("scene", PAPERS);
     let ours: Vec<Row> = rows.iter().filter(|row| !papers(row)).cloned().collect();
     [times.of(rows), accuracy.of(&ours)]
@@ -243,12 +240,11 @@ pub fn runs(rows: &[Row], plan: &RunPlan) -> [Table; 2] {
 
 /// All backends at the same poses.
 pub(super) fn same_poses_table(rows: &[Row]) -> Table {
-    let spec = TableSpec {
-        title: "The same head-head pairs at the same poses, milliseconds for all".to_owned(),
-        study: SAME_POSES,
-        keys: &["heads", "backend"],
-        total: None,
-        columns: vec![
+    TableSpec::new(
+        "The same head-head pairs at the same poses, milliseconds for all",
+        SAME_POSES,
+        &["heads", "backend"],
+        [
             number("pairs", "pair_count"),
             time("fresh", "fresh"),
             faster("vs stock", "fresh.median", Backend::Stock),
@@ -258,16 +254,15 @@ pub(super) fn same_poses_table(rows: &[Row]) -> Table {
             errors("errors, fresh", "fresh_error"),
             errors("errors, steady", "steady_error"),
         ],
-        notes: vec![
-            "all contacts of triangles at the poses of the stock run's last sampled step; fresh: nothing known about a pair; steady: a \
-             step later, with what is kept from the first query"
-                .to_owned(),
-            "no pair is left out as recycled, so that steady is Rapier with recycling off".to_owned(),
-            TIME_NOTE.to_owned(),
-            ERROR_NOTE.to_owned(),
-        ],
-    };
-    spec.of(rows)
+    )
+    .note(
+        "all contacts of triangles at the poses of the stock run's last sampled step; fresh: \
+         nothing known about a pair; steady: a step later, with what is kept from the first query",
+    )
+    .note("no pair is left out as recycled, so that steady is Rapier with recycling off")
+    .note(TIME_NOTE)
+    .note(ERROR_NOTE)
+    .of(rows)
 }
 
 /// Time of collision detection, and Diagram 1: the ratios of these times by number of heads.

@@ -93,12 +93,11 @@ pub fn soak(plan: &SoakPlan, progress: &Progress) -> Result<(Results, SoakEnd), 
         wrong: rows.iter().map(|row| row.wrong("errors")).sum(),
         trees_left: run.clear(),
     };
-    let spec = TableSpec {
-        title: format!("{body_count} bodies, {} at once, on a mesh terrain", plan.body_limit),
-        study: SOAK,
-        keys: &["until_step"],
-        total: None,
-        columns: vec![
+    let spec = TableSpec::new(
+        format!("{body_count} bodies, {} at once, on a mesh terrain", plan.body_limit),
+        SOAK,
+        &["until_step"],
+        [
             time("ms a step", "time"),
             number("process, MiB", "memory"),
             number("trees built", "tree_builds"),
@@ -108,15 +107,13 @@ pub fn soak(plan: &SoakPlan, progress: &Progress) -> Result<(Results, SoakEnd), 
             number("mesh pairs judged", "errors.mesh_pairs"),
             report::errors("errors", "errors"),
         ],
-        notes: vec![
-            format!(
-                "trees left after all bodies and the world went and idle trees were released: {}",
-                end.trees_left
-            ),
-            "times: min / median over the steps".to_owned(),
-            ERROR_NOTE.to_owned(),
-        ],
-    };
+    )
+    .note(format!(
+        "trees left after all bodies and the world went and idle trees were released: {}",
+        end.trees_left
+    ))
+    .note("times: min / median over the steps")
+    .note(ERROR_NOTE);
     let tables = vec![spec.of(&rows)];
     Ok((Results { environment: Environment::detect(), rows, tables, panels: Vec::new() }, end))
 }

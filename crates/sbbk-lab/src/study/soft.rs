@@ -102,12 +102,11 @@ fn judged(scene: &SoftHeads, backend: Backend, plan: &SoftPlan) -> Result<ErrorC
 }
 
 fn table(rows: &[Row], scene: &SoftHeads) -> Table {
-    let spec = TableSpec {
-        title: format!("{}; milliseconds a step", scene.name()),
-        study: HEADS,
-        keys: &["backend"],
-        total: None,
-        columns: vec![
+    TableSpec::new(
+        format!("{}; milliseconds a step", scene.name()),
+        HEADS,
+        &["backend"],
+        [
             time("step", "step"),
             faster("ratio", "step.min", Backend::Stock),
             time("queries", "queries"),
@@ -115,15 +114,14 @@ fn table(rows: &[Row], scene: &SoftHeads) -> Table {
             number("calls", "calls"),
             errors("errors", "errors"),
         ],
-        notes: vec![
-            "heads are Rapier's soft bodies, which deform their meshes in each step; queries: of \
-             heads and helicopter; heads against heads are not a dispatcher's"
-                .to_owned(),
-            TIME_NOTE.to_owned(),
-            ERROR_NOTE.to_owned(),
-        ],
-    };
-    spec.of(rows)
+    )
+    .note(
+        "heads are Rapier's soft bodies, which deform their meshes in each step; queries: of \
+             heads and helicopter; heads against heads are not a dispatcher's",
+    )
+    .note(TIME_NOTE)
+    .note(ERROR_NOTE)
+    .of(rows)
 }
 
 /// Time of the queries of soft heads.

@@ -229,36 +229,31 @@ fn fall(backend: Backend, ground: Ground, steps: usize) -> Result<Vec<usize>, Sc
 }
 
 fn tables(rows: &[Row], fall_steps: usize) -> Vec<Table> {
-    let queries = TableSpec {
-        title: "A head of 968 triangles on a square terrain; microseconds a query".to_owned(),
-        study: QUERIES,
-        keys: &["cells", "backend", "ground"],
-        total: None,
-        columns: vec![
+    let queries = TableSpec::new(
+        "A head of 968 triangles on a square terrain; microseconds a query",
+        QUERIES,
+        &["cells", "backend", "ground"],
+        [
             time("first", "fresh"),
             time("steady, 0.05 a step", "steady"),
             number("cells read", "cells_read"),
             errors("errors", "errors"),
         ],
-        notes: vec![
-            "cells: along a side; stock Rapier has no contacts of a mesh and a height field"
-                .to_owned(),
-            "first, on a mesh: with the hash of its vertices and triangles, by which its tree is \
-             found"
-                .to_owned(),
-            "cells read: by a first query, each as often as its heights are read".to_owned(),
-            TIME_NOTE.to_owned(),
-            ERROR_NOTE.to_owned(),
-        ],
-    };
-    let falls = TableSpec {
-        title: format!("Sixteen heads that fell on a terrain, after {fall_steps} steps"),
-        study: FALLS,
-        keys: &["backend", "ground"],
-        total: None,
-        columns: vec![number("not under it", "left")],
-        notes: Vec::new(),
-    };
+    )
+    .note("cells: along a side; stock Rapier has no contacts of a mesh and a height field")
+    .note(
+        "first, on a mesh: with the hash of its vertices and triangles, by which its tree is \
+             found",
+    )
+    .note("cells read: by a first query, each as often as its heights are read")
+    .note(TIME_NOTE)
+    .note(ERROR_NOTE);
+    let falls = TableSpec::new(
+        format!("Sixteen heads that fell on a terrain, after {fall_steps} steps"),
+        FALLS,
+        &["backend", "ground"],
+        [number("not under it", "left")],
+    );
     [queries, falls].map(|spec| spec.of(rows)).into()
 }
 

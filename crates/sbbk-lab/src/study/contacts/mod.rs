@@ -357,26 +357,21 @@ fn tables(rows: &[Row], uncrossed: usize) -> Vec<Table> {
         let wrong = Contest::BACKENDS.into_iter().flat_map(|backend| {
             wrong.map(|(header, path)| number(&format!("{backend}: {header}"), path).of(backend))
         });
-        TableSpec {
-            title: title.to_owned(),
-            study: EXACTNESS,
-            keys,
-            total: Some(0),
-            columns: truth.into_iter().chain(wrong).collect(),
-            notes,
-        }
-        .of(rows)
+        TableSpec::new(title, EXACTNESS, keys, truth.into_iter().chain(wrong))
+            .total(0)
+            .notes(notes)
+            .of(rows)
     };
     let speed = |title: String, study, of: Vec<_>, notes: Vec<String>| {
         let common = [TIME_NOTE, ERROR_NOTE, DIRECT_NOTE].map(str::to_owned);
-        TableSpec {
+        TableSpec::new(
             title,
             study,
-            keys: &["mode", "mesh", "triangle_count"],
-            total: Some(1),
-            columns: of.into_iter().chain(sides()).collect(),
-            notes: [mode_notes(), notes, common.into()].concat(),
-        }
+            &["mode", "mesh", "triangle_count"],
+            of.into_iter().chain(sides()),
+        )
+        .total(1)
+        .notes([mode_notes(), notes, common.into()].concat())
         .of(rows)
     };
     let [size, prediction] = SPEED_CASE;

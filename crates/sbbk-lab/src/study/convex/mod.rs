@@ -210,14 +210,7 @@ fn tables(plan: &ConvexPlan, rows: &[Row]) -> Vec<Table> {
              microseconds a query",
             mesh.name
         );
-        TableSpec {
-            title,
-            study,
-            keys: &["mode", "depth", "shape"],
-            total: Some(2),
-            columns,
-            notes,
-        }
+        TableSpec::new(title, study, &["mode", "depth", "shape"], columns).total(2).notes(notes)
     });
     let sized = [
         ("by size and shape", &["size", "shape"][..]),
@@ -229,7 +222,7 @@ fn tables(plan: &ConvexPlan, rows: &[Row]) -> Vec<Table> {
         let columns = [vec![places("places")], sides.to_vec()].concat();
         let title = format!("First queries of meshes of all sizes, {by}");
         let notes = vec![ERRORS_NOTE.to_owned()];
-        TableSpec { title, study: SIZED, keys, total: Some(1), columns, notes }
+        TableSpec::new(title, SIZED, keys, columns).total(1).notes(notes)
     });
     timed.into_iter().chain(sized).map(|spec| spec.of(rows)).collect()
 }

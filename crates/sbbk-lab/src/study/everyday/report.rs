@@ -19,20 +19,21 @@ pub(super) fn tables(plan: &EverydayPlan, rows: &[Row]) -> Vec<Table> {
         (SENSORS, "Mesh sensors, and Rapier's character controller", &SCENE, None),
         (PILE, "Heads in a pile", &["scene"], None),
     ];
-    let worlds = worlds.map(|(study, title, keys, total)| TableSpec {
-        title: format!("{title}: collision detection (narrow phase) of whole worlds"),
-        study,
-        keys,
-        total,
-        columns: world_columns(study == BODIES),
-        notes: world_notes(plan),
+    let worlds = worlds.map(|(study, title, keys, total)| {
+        TableSpec::new(
+            format!("{title}: collision detection (narrow phase) of whole worlds"),
+            study,
+            keys,
+            world_columns(study == BODIES),
+        )
+        .total(total)
+        .notes(world_notes(plan))
     });
-    let queries = TableSpec {
-        title: "Single queries without a workspace on terrains; nanoseconds a query".to_owned(),
-        study: QUERIES,
-        keys: &["body", "query", "place", "triangles"],
-        total: Some(2),
-        columns: vec![
+    let queries = TableSpec::new(
+        "Single queries without a workspace on terrains; nanoseconds a query",
+        QUERIES,
+        &["body", "query", "place", "triangles"],
+        [
             number("stock", "time.median").of("stock"),
             number("sbbk", "time.median").of("sbbk"),
             faster("ratio", "time.median", Backend::Stock).of("sbbk"),
@@ -41,21 +42,19 @@ pub(super) fn tables(plan: &EverydayPlan, rows: &[Row]) -> Vec<Table> {
             errors("lost + added + other", "answers").of("sbbk"),
             number("verdict", "verdict").of("sbbk"),
         ],
-        notes: vec![
-            format!(
-                "median of {} repeats over up to 20 places, both in turn",
-                2 * plan.repeats + 1
-            ),
-            "first: the first query of a dispatcher; ok: no slower by 5 % or 50 ns, and the first \
-             by no more than 2 ms"
-                .to_owned(),
-            "lost, added, other: answers that only stock has, only SBBK, and distances or times \
-             that differ by more than 0.001, of all"
-                .to_owned(),
-        ],
-    };
-    let has_rows = |spec: &TableSpec<'_>| rows.iter().any(|row| row.study == spec.study);
-    worlds.into_iter().chain([queries]).filter(has_rows).map(|spec| spec.of(rows)).collect()
+    )
+    .total(2)
+    .note(format!("median of {} repeats over up to 20 places, both in turn", 2 * plan.repeats + 1))
+    .note(
+        "first: the first query of a dispatcher; ok: no slower by 5 % or 50 ns, and the first \
+             by no more than 2 ms",
+    )
+    .note(
+        "lost, added, other: answers that only stock has, only SBBK, and distances or times \
+             that differ by more than 0.001, of all",
+    );
+    let tables = worlds.into_iter().chain([queries]).map(|spec| spec.of(rows));
+    tables.filter(|table| !table.lines.is_empty()).collect()
 }
 
 const SCENE: [&str; 2] = ["scene", "triangles"];

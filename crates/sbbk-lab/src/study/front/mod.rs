@@ -313,12 +313,11 @@ fn tables(rows: &[Row]) -> Vec<Table> {
     let note = "differing: triangle pairs within the prediction distance, against fresh descents; \
                 all queries together";
     let notes = vec![TIME_NOTE.to_owned(), note.to_owned()];
-    let details = TableSpec {
-        title: "Coherence: each variant, for one query on average, microseconds".to_owned(),
-        study: COHERENCE,
-        keys: &["motion", "triangle_count", "backend"],
-        total: None,
-        columns: vec![
+    let details = TableSpec::new(
+        "Coherence: each variant, for one query on average, microseconds",
+        COHERENCE,
+        &["motion", "triangle_count", "backend"],
+        [
             number("node tests", "node_tests"),
             number("leaf pairs", "leaf_pairs"),
             time("traversal", "traversal"),
@@ -328,37 +327,33 @@ fn tables(rows: &[Row]) -> Vec<Table> {
             number("true pairs", "pairs"),
             number("differing", "differing"),
         ],
-        notes: notes.clone(),
-    };
-    let summary = TableSpec {
-        title: "Coherence: times fewer and faster than fresh descents, geometric means over the \
-                meshes"
-            .to_owned(),
-        study: COHERENCE,
-        keys: &["motion", "backend"],
-        total: None,
-        columns: vec![
+    )
+    .notes(notes.clone());
+    let summary = TableSpec::new(
+        "Coherence: times fewer and faster than fresh descents, geometric means over the \
+                meshes",
+        COHERENCE,
+        &["motion", "backend"],
+        [
             faster("node tests", "node_tests", Variant::Fresh),
             faster("traversal", "traversal.min", Variant::Fresh),
             faster("query", "query.min", Variant::Fresh),
             number("differing pairs", "differing"),
         ],
-        notes,
-    };
+    )
+    .notes(notes);
     let counts = [number("queries", "query_count"), number("teleports", "teleport_count")];
     let columns = counts.map(|column| column.of("sbbk")).into_iter().chain(sides());
-    let journeys = TableSpec {
-        title: "The dispatcher in slow motion with teleports: microseconds a query".to_owned(),
-        study: JOURNEY,
-        keys: &["mesh", "triangle_count"],
-        total: Some(0),
-        columns: columns.chain([number("differing", "differing").of("sbbk")]).collect(),
-        notes: vec![
-            format!("{TIME_NOTE}; 0.05 prediction distances a step"),
-            ERROR_NOTE.to_owned(),
-            "differing: manifolds of sbbk that differ from a fresh query's in any bit".to_owned(),
-        ],
-    };
+    let journeys = TableSpec::new(
+        "The dispatcher in slow motion with teleports: microseconds a query",
+        JOURNEY,
+        &["mesh", "triangle_count"],
+        columns.chain([number("differing", "differing").of("sbbk")]),
+    )
+    .total(0)
+    .note(format!("{TIME_NOTE}; 0.05 prediction distances a step"))
+    .note(ERROR_NOTE)
+    .note("differing: manifolds of sbbk that differ from a fresh query's in any bit");
     [details, summary, journeys].map(|spec| spec.of(rows)).into()
 }
 

@@ -69,41 +69,31 @@ fn three_digits(value: f64) -> String {
 pub(super) fn tables(plan: &HardPlan, rows: &[Row]) -> Vec<Table> {
     let keys = &["scene", "contact_recycling"];
     let columns = |path| plan.columns.iter().map(move |c| number(&c.to_string(), path).of(c));
-    let verdicts = TableSpec {
-        title: "Hard scenes: how each ends".to_owned(),
-        study: VERDICTS,
-        keys,
-        total: None,
-        columns: columns("verdict").collect(),
-        notes: vec![
-            format!("runs of a scene where chaos decides: {}; the worst is shown", plan.seeds),
+    let verdicts = TableSpec::new("Hard scenes: how each ends", VERDICTS, keys, columns("verdict"))
+        .note(format!("runs of a scene where chaos decides: {}; the worst is shown", plan.seeds))
+        .note(
             "flag: FIX_INTERNAL_EDGES on all meshes; control: stock Rapier with convex shapes in \
-             place of the meshes"
-                .to_owned(),
-        ],
-    };
+             place of the meshes",
+        );
     let stock = plan.columns.contains(&Column::Stock).then(|| {
         let others = plan.columns.iter().filter(|&&c| c != Column::Stock && c != Column::Control);
         others.map(|c| faster(&format!("{c} vs stock"), "worst", Column::Stock).of(c))
     });
-    let times = TableSpec {
-        title: "Piles: median of the steps' times, milliseconds".to_owned(),
-        study: FIGURES,
+    let times = TableSpec::new(
+        "Piles: median of the steps' times, milliseconds",
+        FIGURES,
         keys,
-        total: None,
-        columns: columns("worst").chain(stock.into_iter().flatten()).collect(),
-        notes: vec!["each on its own trajectory; the slowest run is shown".to_owned()],
-    };
+        columns("worst").chain(stock.into_iter().flatten()),
+    )
+    .note("each on its own trajectory; the slowest run is shown");
     let times_of: Vec<Row> =
         rows.iter().filter(|row| row.is("figure", STEP_TIME)).cloned().collect();
-    let figures = TableSpec {
-        title: "All figures: the worst of the runs".to_owned(),
-        study: FIGURES,
-        keys: &["scene", "figure", "contact_recycling"],
-        total: None,
-        columns: columns("worst").collect(),
-        notes: Vec::new(),
-    };
+    let figures = TableSpec::new(
+        "All figures: the worst of the runs",
+        FIGURES,
+        &["scene", "figure", "contact_recycling"],
+        columns("worst"),
+    );
     let mut tables = vec![verdicts.of(rows)];
     if !times_of.is_empty() {
         tables.push(times.of(&times_of));

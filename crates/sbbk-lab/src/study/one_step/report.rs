@@ -6,13 +6,11 @@ use crate::report::{Look, Panel, Row, Scale, Table, TableSpec, number, time};
 pub(super) const STUDY: &str = "one step";
 
 pub(super) fn table(plan: &OneStepPlan, rows: &[Row]) -> Table {
-    let spec = TableSpec {
-        title: "One step: velocities beside those of a converged step with every contact"
-            .to_owned(),
-        study: STUDY,
-        keys: &["scene", "substeps", "backend"],
-        total: None,
-        columns: vec![
+    TableSpec::new(
+        "One step: velocities beside those of a converged step with every contact",
+        STUDY,
+        &["scene", "substeps", "backend"],
+        [
             number("error, median", "error.median"),
             number("largest", "error.max"),
             number("points of the solver", "points.median"),
@@ -20,24 +18,22 @@ pub(super) fn table(plan: &OneStepPlan, rows: &[Row]) -> Table {
             time("broad + narrow, ms", "collision_detection"),
             time("step, ms", "step"),
         ],
-        notes: vec![
-            format!(
-                "error: the difference from the reference over its contact impulse, in the norm of \
+    )
+    .note(format!(
+        "error: the difference from the reference over its contact impulse, in the norm of \
                  kinetic energy, at the steps {:?} of a run on {}",
-                plan.moments, plan.reference
-            ),
-            format!(
-                "reference: contacts of {}, none recycled or clustered, {} substeps; what its own \
+        plan.moments, plan.reference
+    ))
+    .note(format!(
+        "reference: contacts of {}, none recycled or clustered, {} substeps; what its own \
                  variants differ by is in the first lines",
-                plan.reference, plan.reference_substeps
-            ),
-            format!(
-                "times: min / median over the steps and the {LEAD} before each, in which bodies are \
+        plan.reference, plan.reference_substeps
+    ))
+    .note(format!(
+        "times: min / median over the steps and the {LEAD} before each, in which bodies are \
                  put where they were in the run"
-            ),
-        ],
-    };
-    spec.of(rows)
+    ))
+    .of(rows)
 }
 
 /// Error against time of the step and of the solver alone.

@@ -161,12 +161,11 @@ impl Asked {
 
 fn tables(rows: &[Row]) -> Vec<Table> {
     let ratio = || faster("ratio", "time.median", Backend::Stock).of("sbbk");
-    let all = TableSpec {
-        title: "Queries about each mesh and itself, 2 units across, microseconds".to_owned(),
-        study: QUERIES,
-        keys: &["query", "place", "mesh", "triangle_count"],
-        total: None,
-        columns: vec![
+    let all = TableSpec::new(
+        "Queries about each mesh and itself, 2 units across, microseconds",
+        QUERIES,
+        &["query", "place", "mesh", "triangle_count"],
+        [
             number("poses", "pose_count").of("sbbk"),
             time("stock", "time").of("stock"),
             time("sbbk", "time").of("sbbk"),
@@ -177,27 +176,24 @@ fn tables(rows: &[Row]) -> Vec<Table> {
             number("wrong, sbbk", "errors.wrong").of("sbbk"),
             number("largest error", "errors.largest").of("sbbk"),
         ],
-        notes: vec![
-            "times: min / median over the repeats, both in turn; ratios: of medians".to_owned(),
-            "errors against brute force in f64: wrong answers of those judged, and the largest error \
-             of the others in sizes of the mesh (for casts: the distance left at the time of impact)"
-                .to_owned(),
-        ],
-    };
-    let means = TableSpec {
-        title: "How many times faster than stock: geometric means over meshes and places"
-            .to_owned(),
-        study: QUERIES,
-        keys: &["query"],
-        total: None,
-        columns: vec![
+    )
+    .note("times: min / median over the repeats, both in turn; ratios: of medians")
+    .note(
+        "errors against brute force in f64: wrong answers of those judged, and the largest \
+         error of the others in sizes of the mesh (for casts: the distance left at the time of \
+         impact)",
+    );
+    let means = TableSpec::new(
+        "How many times faster than stock: geometric means over meshes and places",
+        QUERIES,
+        &["query"],
+        [
             ratio(),
             number("judged", "errors.judged").of("sbbk"),
             number("wrong, stock", "errors.wrong").of("stock"),
             number("wrong, sbbk", "errors.wrong").of("sbbk"),
         ],
-        notes: Vec::new(),
-    };
+    );
     [all, means].map(|spec| spec.of(rows)).into()
 }
 
