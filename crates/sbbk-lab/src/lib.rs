@@ -5,6 +5,9 @@
 //! answers a world's contact queries, [`metrics`] measures one run, [`study`] compares the backends
 //! on the paper's experiments, [`report`] shows the results, and [`replay`] plays runs in a browser.
 
+#[macro_use]
+mod named;
+
 pub mod backend;
 pub mod cli;
 pub mod mesh;

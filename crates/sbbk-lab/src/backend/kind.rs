@@ -103,13 +103,7 @@ impl Backend {
 
 impl fmt::Display for Backend {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Stock => "stock",
-            Self::AabbOnly => "aabb-only",
-            Self::Sbbk => "sbbk",
-            Self::Patches => "patches",
-            Self::SbbkParry => "sbbk-parry",
-        })
+        f.pad(self.to_possible_value().expect("none is hidden").get_name())
     }
 }
 

@@ -1,7 +1,5 @@
 //! Heads that fall on a terrain.
 
-use std::fmt;
-
 use glamx::Vec3;
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::{ColliderBuilder, HeightField, SharedShape};
@@ -14,21 +12,14 @@ use serde::Serialize;
 use super::{Scene, SceneError, SceneWorld, Solid};
 use crate::mesh::{self, Mesh};
 
-/// What a terrain is made of. The surface is the same, triangle by triangle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub enum Ground {
-    /// A height field. Under stock Rapier meshes fall through it.
-    HeightField,
-    /// A triangle mesh.
-    Mesh,
-}
-
-impl fmt::Display for Ground {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::HeightField => "height field",
-            Self::Mesh => "mesh",
-        })
+named! {
+    /// What a terrain is made of. The surface is the same, triangle by triangle.
+    #[derive(Serialize)]
+    pub enum Ground {
+        /// A height field. Under stock Rapier meshes fall through it.
+        HeightField = "height field",
+        /// A triangle mesh.
+        Mesh = "mesh",
     }
 }
 

@@ -1,7 +1,5 @@
 //! The paper's first experiment (section 4.1, figure 5): a ball falls on a helicopter's rotor.
 
-use std::fmt;
-
 use clap::ValueEnum;
 use glamx::Vec3;
 use rapier3d::dynamics::RigidBodyBuilder;
@@ -13,23 +11,16 @@ use serde::Serialize;
 use super::{Scene, SceneError, SceneWorld, Solid};
 use crate::mesh::{self, Mesh};
 
-/// What the falling ball is made of.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum BallKind {
-    /// A triangle mesh, so that the pair is mesh against mesh.
-    #[default]
-    Mesh,
-    /// Rapier's ball, so that the pair is mesh against ball.
-    Primitive,
-}
-
-impl fmt::Display for BallKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Mesh => "mesh",
-            Self::Primitive => "primitive",
-        })
+named! {
+    /// What the falling ball is made of.
+    #[derive(Default, ValueEnum, Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum BallKind {
+        /// A triangle mesh, so that the pair is mesh against mesh.
+        #[default]
+        Mesh = "mesh",
+        /// Rapier's ball, so that the pair is mesh against ball.
+        Primitive = "primitive",
     }
 }
 

@@ -1,7 +1,6 @@
 //! Single queries of a body and a terrain without a workspace: what hosts ask that are not Rapier's
 //! narrow phase.
 
-use std::fmt;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
@@ -20,20 +19,18 @@ use crate::report::Row;
 use crate::scene::SceneError;
 use crate::study::turns::{in_turn, timed};
 
-/// What is asked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Query {
-    Intersection,
-    Distance,
-    Contact,
-    Manifolds,
-    Cast,
+named! {
+    /// What is asked.
+    enum Query {
+        Intersection = "intersection",
+        Distance = "distance",
+        Contact = "contact",
+        Manifolds = "manifolds, no workspace",
+        Cast = "cast",
+    }
 }
 
 impl Query {
-    const ALL: [Self; 5] =
-        [Self::Intersection, Self::Distance, Self::Contact, Self::Manifolds, Self::Cast];
-
     /// Asks once; the answer as a number: 0 or 1, a distance or a time.
     fn ask(
         self,
@@ -66,18 +63,6 @@ impl Query {
                 Some(hit.time_of_impact)
             }
         }
-    }
-}
-
-impl fmt::Display for Query {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Intersection => "intersection",
-            Self::Distance => "distance",
-            Self::Contact => "contact",
-            Self::Manifolds => "manifolds, no workspace",
-            Self::Cast => "cast",
-        })
     }
 }
 

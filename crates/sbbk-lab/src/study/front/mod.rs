@@ -12,8 +12,6 @@
 
 mod search;
 
-use std::fmt;
-
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
 use rapier3d::geometry::{ContactManifold, SharedShape, TrackedContact};
@@ -82,22 +80,21 @@ impl FrontPlan {
     }
 }
 
-/// How a pair moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Motion {
-    /// It slides and turns through the place, 0.05 prediction distances a step.
-    Slow,
-    /// The same, 0.5 prediction distances a step.
-    Fast,
-    /// It stays at the place, but for a shift and turn at random at each step.
-    Resting,
-    /// It turns on the spot, about a random axis.
-    Tumbling,
+named! {
+    /// How a pair moves.
+    enum Motion {
+        /// It slides and turns through the place, 0.05 prediction distances a step.
+        Slow = "slow",
+        /// The same, 0.5 prediction distances a step.
+        Fast = "fast",
+        /// It stays at the place, but for a shift and turn at random at each step.
+        Resting = "resting, jitter",
+        /// It turns on the spot, about a random axis.
+        Tumbling = "tumbling",
+    }
 }
 
 impl Motion {
-    const ALL: [Self; 4] = [Self::Slow, Self::Fast, Self::Resting, Self::Tumbling];
-
     fn poses(self, shape: &SharedShape, place: &Place, random: &mut Rand32) -> Vec<Pose3> {
         let Pose3 { translation, rotation, .. } = place.pos12;
         match self {
@@ -118,17 +115,6 @@ impl Motion {
                 (0..=STEP_COUNT).map(|step| Pose3::from_parts(translation, turn(step))).collect()
             }
         }
-    }
-}
-
-impl fmt::Display for Motion {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Slow => "slow",
-            Self::Fast => "fast",
-            Self::Resting => "resting, jitter",
-            Self::Tumbling => "tumbling",
-        })
     }
 }
 

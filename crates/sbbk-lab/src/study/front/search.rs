@@ -1,6 +1,5 @@
 //! One variant at work on one pair of equal meshes.
 
-use std::fmt;
 use std::mem::take;
 
 use glamx::Pose3;
@@ -14,32 +13,18 @@ use sbbk_core::traverse::{
 };
 use sbbk_core::tree::{LeafBatch, Tree};
 
-/// A way to find the pairs of a step after those of the step before.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Variant {
-    /// A descent from the roots at each query.
-    Fresh,
-    /// The front of the paper.
-    Paper,
-    /// The default front: with a bound of the motion, and fresh descents where they are cheaper.
-    Adaptive,
-    /// The dispatcher's way, without a front: descents look farther by a slack, and what they find
-    /// serves until it is used up.
-    Slack,
-}
-
-impl Variant {
-    pub const ALL: [Self; 4] = [Self::Fresh, Self::Paper, Self::Adaptive, Self::Slack];
-}
-
-impl fmt::Display for Variant {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Fresh => "fresh descent",
-            Self::Paper => "front of the paper",
-            Self::Adaptive => "adaptive front",
-            Self::Slack => "slack, as the dispatcher",
-        })
+named! {
+    /// A way to find the pairs of a step after those of the step before.
+    pub(super) enum Variant {
+        /// A descent from the roots at each query.
+        Fresh = "fresh descent",
+        /// The front of the paper.
+        Paper = "front of the paper",
+        /// The default front: with a bound of the motion, and fresh descents where they are cheaper.
+        Adaptive = "adaptive front",
+        /// The dispatcher's way, without a front: descents look farther by a slack, and what they find
+        /// serves until it is used up.
+        Slack = "slack, as the dispatcher",
     }
 }
 

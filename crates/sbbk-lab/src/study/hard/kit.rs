@@ -1,6 +1,5 @@
 //! What a scene is built with: shapes, worlds and random numbers, as a column wants them.
 
-use std::fmt;
 use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -15,33 +14,22 @@ use crate::mesh::{self, Mesh};
 use crate::replay::Recorder;
 use crate::scene::SceneError;
 
-/// Who answers, and what bodies are made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Column {
-    /// Stock Rapier, plain meshes.
-    Stock,
-    /// Stock Rapier, all meshes with `TriMeshFlags::FIX_INTERNAL_EDGES`.
-    StockFlag,
-    /// SBBK, plain meshes.
-    Sbbk,
-    /// SBBK with patches, plain meshes.
-    Patches,
-    /// SBBK, all meshes with `TriMeshFlags::FIX_INTERNAL_EDGES`.
-    SbbkFlag,
-    /// Stock Rapier, convex shapes instead of the meshes, where there are such.
-    Control,
-}
-
-impl fmt::Display for Column {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Stock => "stock",
-            Self::StockFlag => "stock + flag",
-            Self::Sbbk => "sbbk",
-            Self::Patches => "patches",
-            Self::SbbkFlag => "sbbk + flag",
-            Self::Control => "control",
-        })
+named! {
+    /// Who answers, and what bodies are made of.
+    #[derive(ValueEnum)]
+    pub enum Column {
+        /// Stock Rapier, plain meshes.
+        Stock = "stock",
+        /// Stock Rapier, all meshes with `TriMeshFlags::FIX_INTERNAL_EDGES`.
+        StockFlag = "stock + flag",
+        /// SBBK, plain meshes.
+        Sbbk = "sbbk",
+        /// SBBK with patches, plain meshes.
+        Patches = "patches",
+        /// SBBK, all meshes with `TriMeshFlags::FIX_INTERNAL_EDGES`.
+        SbbkFlag = "sbbk + flag",
+        /// Stock Rapier, convex shapes instead of the meshes, where there are such.
+        Control = "control",
     }
 }
 

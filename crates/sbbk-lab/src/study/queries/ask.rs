@@ -1,7 +1,5 @@
 //! The questions, where they are asked, and what is kept of the answers.
 
-use std::fmt;
-
 use rapier3d::geometry::{ContactManifold, SharedShape};
 use rapier3d::math::Real;
 use rapier3d::parry::query::details::ShapeCastOptions;
@@ -10,37 +8,27 @@ use rapier3d::parry::query::{ClosestPoints, NonlinearRigidMotion};
 use crate::backend::SharedDispatcher;
 pub(super) use crate::study::motion::Place as Placed;
 
-/// A kind of question.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Query {
-    /// The distance.
-    Distance,
-    /// The closest points, at any distance.
-    ClosestPoints,
-    /// Whether the surfaces meet.
-    Intersection,
-    /// The deepest contact, or the nearest within a tenth of the size.
-    Contact,
-    /// The first impact on the way towards the first mesh.
-    Cast,
-    /// The same while turning, by one radian on a way of the size.
-    NonlinearCast,
-    /// The contact manifolds of touching triangles, with nothing known of the pair.
-    Contacts,
+named! {
+    /// A kind of question.
+    pub(super) enum Query {
+        /// The distance.
+        Distance = "distance",
+        /// The closest points, at any distance.
+        ClosestPoints = "closest points",
+        /// Whether the surfaces meet.
+        Intersection = "intersection",
+        /// The deepest contact, or the nearest within a tenth of the size.
+        Contact = "contact",
+        /// The first impact on the way towards the first mesh.
+        Cast = "cast",
+        /// The same while turning, by one radian on a way of the size.
+        NonlinearCast = "nonlinear cast",
+        /// The contact manifolds of touching triangles, with nothing known of the pair.
+        Contacts = "all contacts",
+    }
 }
 
 impl Query {
-    /// All of them.
-    pub const ALL: [Self; 7] = [
-        Self::Distance,
-        Self::ClosestPoints,
-        Self::Intersection,
-        Self::Contact,
-        Self::Cast,
-        Self::NonlinearCast,
-        Self::Contacts,
-    ];
-
     /// The largest mesh that is asked about: stock takes seconds for a nonlinear cast of larger
     /// ones.
     pub fn largest_mesh(self) -> usize {
@@ -61,31 +49,18 @@ impl Query {
     }
 }
 
-impl fmt::Display for Query {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Distance => "distance",
-            Self::ClosestPoints => "closest points",
-            Self::Intersection => "intersection",
-            Self::Contact => "contact",
-            Self::Cast => "cast",
-            Self::NonlinearCast => "nonlinear cast",
-            Self::Contacts => "all contacts",
-        })
+named! {
+    /// How far the second mesh stands off the first touch on its way, in sizes of the mesh.
+    pub(super) enum Distance {
+        /// 0.03 beyond it.
+        Crossing = "crossing",
+        /// 0.001 short of it.
+        HardlyApart = "hardly apart",
+        /// 0.05 short of it.
+        Near = "near",
+        /// 1 short of it.
+        Far = "far",
     }
-}
-
-/// How far the second mesh stands off the first touch on its way, in sizes of the mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Distance {
-    /// 0.03 beyond it.
-    Crossing,
-    /// 0.001 short of it.
-    HardlyApart,
-    /// 0.05 short of it.
-    Near,
-    /// 1 short of it.
-    Far,
 }
 
 impl Distance {
@@ -97,17 +72,6 @@ impl Distance {
             Self::Near => 0.05,
             Self::Far => 1.0,
         }
-    }
-}
-
-impl fmt::Display for Distance {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Crossing => "crossing",
-            Self::HardlyApart => "hardly apart",
-            Self::Near => "near",
-            Self::Far => "far",
-        })
     }
 }
 
