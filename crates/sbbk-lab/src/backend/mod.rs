@@ -15,12 +15,14 @@
 
 mod answer;
 mod kind;
+mod memory;
 mod primed;
 mod probe;
 mod timed;
 
 pub use answer::{Answer, Question, Reported, shape_address};
 pub use kind::{Backend, Dispatcher, Installed, SharedDispatcher};
+pub use memory::Memory;
 pub use primed::Primed;
 pub use probe::{PairKind, Probe, Tally, clock_cost};
 pub use timed::Timed;

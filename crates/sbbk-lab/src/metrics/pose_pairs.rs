@@ -6,12 +6,11 @@
 
 use std::time::{Duration, Instant};
 
-use rapier3d::geometry::{ColliderHandle, ContactManifold, SharedShape};
+use rapier3d::geometry::{ColliderHandle, SharedShape};
 use rapier3d::math::{Pose, Real};
-use rapier3d::parry::query::ContactManifoldsWorkspace;
 use rapier3d::pipeline::PhysicsWorld;
 
-use crate::backend::{Answer, Question, SharedDispatcher};
+use crate::backend::{Answer, Memory, Question, SharedDispatcher};
 
 /// The mesh-mesh pairs proposed by a world's broad phase, at its poses after two steps in a row.
 ///
@@ -28,13 +27,6 @@ pub struct PosePairs {
 struct Pair {
     shapes: [SharedShape; 2],
     pos12: [Pose; 2],
-}
-
-/// What Rapier keeps for a pair from step to step.
-#[derive(Default)]
-struct PairMemory {
-    manifolds: Vec<ContactManifold>,
-    workspace: Option<ContactManifoldsWorkspace>,
 }
 
 /// Time of all queries, one after the other on one thread.
@@ -78,8 +70,8 @@ impl PosePairs {
 
     /// Asks `dispatcher` about every pair, fresh and steady, and takes the time.
     pub fn sweep(&self, dispatcher: &SharedDispatcher) -> Sweep {
-        let mut memories: Vec<PairMemory> = Vec::new();
-        memories.resize_with(self.pairs.len(), PairMemory::default);
+        let mut memories: Vec<Memory> = Vec::new();
+        memories.resize_with(self.pairs.len(), Memory::default);
         let [fresh, steady] = [0, 1].map(|pose_index| {
             let start = Instant::now();
             for (index, memory) in memories.iter_mut().enumerate() {
@@ -99,7 +91,7 @@ impl PosePairs {
     /// The answers of `dispatcher` to the fresh and the steady question about a pair. Panics when
     /// `index` is out of range.
     pub fn answers(&self, dispatcher: &SharedDispatcher, index: usize) -> [Answer; 2] {
-        let mut memory = PairMemory::default();
+        let mut memory = Memory::default();
         [0, 1].map(|pose_index| {
             self.ask(dispatcher, index, pose_index, &mut memory);
             Answer::new(self.question(index, pose_index), &memory.manifolds)
@@ -116,13 +108,10 @@ impl PosePairs {
         dispatcher: &SharedDispatcher,
         index: usize,
         pose_index: usize,
-        memory: &mut PairMemory,
+        memory: &mut Memory,
     ) {
-        let Pair { shapes: [shape1, shape2], pos12 } = &self.pairs[index];
-        let PairMemory { manifolds, workspace } = memory;
-        let (pos12, prediction) = (&pos12[pose_index], self.prediction);
-        // As in Rapier, an unsupported pair keeps what it had: nothing.
-        let _ = dispatcher
-            .contact_manifolds(pos12, &**shape1, &**shape2, prediction, manifolds, workspace);
+        let Pair { shapes, pos12 } = &self.pairs[index];
+        let shapes = shapes.each_ref().map(|shape| &**shape);
+        memory.ask(dispatcher, shapes, &pos12[pose_index], self.prediction);
     }
 }

@@ -22,9 +22,12 @@ mod soft_heads;
 mod solid;
 
 use rapier3d::dynamics::RigidBodyHandle;
+use rapier3d::geometry::{SharedShape, TriMeshFlags};
 use rapier3d::parry::shape::TriMeshBuilderError;
 use rapier3d::pipeline::PhysicsWorld;
 use thiserror::Error;
+
+use crate::mesh::Mesh;
 
 pub use heads_on_terrain::{Ground, HeadsOnTerrain};
 pub use helicopter::{BallKind, HelicopterBallDrop};
@@ -53,6 +56,15 @@ pub struct SceneError {
     /// What Parry says about it.
     #[source]
     pub cause: TriMeshBuilderError,
+}
+
+/// Parry's shape of a mesh.
+///
+/// Errors: the mesh has no triangles.
+pub fn shape(mesh: &Mesh, flags: TriMeshFlags) -> Result<SharedShape, SceneError> {
+    let shape = mesh.trimesh(flags);
+    let shape = shape.map_err(|cause| SceneError { mesh: mesh.name.clone(), cause })?;
+    Ok(SharedShape::new(shape))
 }
 
 /// A world and the bodies that its scene is about.

@@ -1,10 +1,10 @@
 //! A mesh prepared for many bodies: one shape and one set of mass properties for all of them.
 
 use rapier3d::dynamics::MassProperties;
-use rapier3d::geometry::{ColliderBuilder, SharedShape};
+use rapier3d::geometry::{ColliderBuilder, SharedShape, TriMeshFlags};
 use rapier3d::math::Real;
 
-use super::SceneError;
+use super::{SceneError, shape};
 use crate::mesh::Mesh;
 
 /// Mass of a cubic unit of every body. The value is without effect on motion, since all bodies
@@ -29,8 +29,7 @@ pub struct Solid {
 impl Solid {
     /// Prepares `mesh`. Errors: it has no triangles.
     pub fn new(mesh: &Mesh) -> Result<Self, SceneError> {
-        let shape =
-            mesh.shared_shape().map_err(|cause| SceneError { mesh: mesh.name.clone(), cause })?;
+        let shape = shape(mesh, TriMeshFlags::empty())?;
         let bounds = mesh.bounds();
         let is_solid = mesh.volume() > LEAST_SOLIDITY * f64::from(bounds.volume());
         let mass_properties = if is_solid {

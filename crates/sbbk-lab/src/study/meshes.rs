@@ -8,9 +8,9 @@ use super::contacts::places;
 use super::pair::{Contest, Sequence, query_count};
 use super::turns::{race, timed};
 use super::{Progress, StudyError, shape, tree};
-use crate::backend::{Answer, Backend, Question};
+use crate::backend::Backend;
 use crate::mesh::Mesh;
-use crate::metrics::{ErrorCount, Judge, Summary, ratio};
+use crate::metrics::{Summary, ratio};
 use crate::report::{
     ERROR_NOTE, Look, Panel, Row, Scale, TIME_NOTE, Table, TableSpec, errors, faster, number, time,
 };
@@ -58,7 +58,7 @@ fn measure(mesh: &Mesh) -> Result<[Row; 2], StudyError> {
         |pos12| Sequence { shapes: [&shape; 2], poses: vec![pos12], prediction: PREDICTION };
     let sequences: Vec<Sequence> = places.map(|place| sequence(place.pos12)).collect();
     let queries = contest.race(count(REPEATS), &sequences);
-    let errors = judge(&contest, &sequences);
+    let errors = contest.errors(&sequences, |_| true).map(|errors| errors.pairs);
     // First queries after which the time they save has paid for the tree.
     let saved = queries[0].median - queries[1].median;
     let paid = |build: &Summary| ratio(1e3 * build.median, saved).filter(|count| *count > 0.0);
@@ -75,23 +75,6 @@ fn measure(mesh: &Mesh) -> Result<[Row; 2], StudyError> {
             .with("break_even", break_even[side].map(|count| count.ceil() as u64))
             .with("errors", errors[side])
     }))
-}
-
-/// Errors of both; the truth of each pose is worked out once.
-fn judge(contest: &Contest, sequences: &[Sequence]) -> [ErrorCount; 2] {
-    let judge = Judge::new(sequences[0].shapes);
-    let mut errors = [ErrorCount::default(); 2];
-    for sequence in sequences {
-        let shapes = sequence.shapes.map(|shape| &**shape);
-        let question = Question::new(&sequence.poses[0], shapes, PREDICTION);
-        let truth = judge.truth(&question);
-        for (dispatcher, errors) in contest.dispatchers.iter().zip(&mut errors) {
-            sequence.walk(dispatcher, |_, manifolds| {
-                *errors += truth.judge(&Answer::new(question, manifolds));
-            });
-        }
-    }
-    errors
 }
 
 /// Build time, memory, first queries and break-even.

@@ -33,13 +33,13 @@ pub use progress::Progress;
 
 use std::path::PathBuf;
 
-use rapier3d::geometry::SharedShape;
+use rapier3d::geometry::{SharedShape, TriMeshFlags};
 use sbbk_core::tree::{BuildError, BuildOptions, LayerPlan, Tree};
 use thiserror::Error;
 
 use crate::mesh::Mesh;
 use crate::report::ReportError;
-use crate::scene::SceneError;
+use crate::scene::{self, SceneError};
 
 /// A mesh does not serve, a scene is not there, or a page cannot be written.
 #[derive(Debug, Error)]
@@ -72,9 +72,9 @@ pub enum StudyError {
     Report(#[from] ReportError),
 }
 
-/// Parry's shape of a mesh.
+/// Parry's shape of a mesh without flags.
 fn shape(mesh: &Mesh) -> Result<SharedShape, SceneError> {
-    mesh.shared_shape().map_err(|cause| SceneError { mesh: mesh.name.clone(), cause })
+    scene::shape(mesh, TriMeshFlags::empty())
 }
 
 /// The tree of a mesh.

@@ -9,12 +9,12 @@ use std::time::Duration;
 use glamx::Pose3;
 use rapier3d::geometry::{ContactManifold, SharedShape};
 use rapier3d::math::Real;
-use rapier3d::parry::query::ContactManifoldsWorkspace;
-use rapier3d::parry::shape::Shape;
+use rayon::prelude::*;
 
+use super::contacts::ContactErrors;
 use super::turns::{race, timed};
-use crate::backend::{Backend, Dispatcher, Primed, SharedDispatcher};
-use crate::metrics::Summary;
+use crate::backend::{Backend, Dispatcher, Memory, Primed, Question, SharedDispatcher};
+use crate::metrics::{Judge, Summary, Truth};
 
 /// How dispatchers are called, for notes.
 pub(super) const DIRECT_NOTE: &str = "dispatchers called directly: contact skins and contact \
@@ -33,13 +33,6 @@ pub(super) struct Sequence<'a> {
     pub shapes: [&'a SharedShape; 2],
     pub poses: Vec<Pose3>,
     pub prediction: Real,
-}
-
-/// What a host keeps of a pair of shapes from query to query.
-#[derive(Default)]
-pub(super) struct Memory {
-    pub manifolds: Vec<ContactManifold>,
-    workspace: Option<ContactManifoldsWorkspace>,
 }
 
 impl Contest {
@@ -61,6 +54,35 @@ impl Contest {
         race(&self.dispatchers, repeats, 1e6 / query_count(sequences), |dispatcher| {
             sweep(dispatcher, sequences)
         })
+    }
+
+    /// Errors of both in some steps of sequences of meshes.
+    pub fn errors(
+        &self,
+        sequences: &[Sequence],
+        is_judged: impl Fn(usize) -> bool + Sync,
+    ) -> [ContactErrors; 2] {
+        let of_sequence = |sequence: &Sequence| {
+            let judge = Judge::new(sequence.shapes);
+            let steps = (0..sequence.poses.len()).into_par_iter().with_max_len(1);
+            let truths = steps.map(|step| {
+                let question = sequence.question(step);
+                is_judged(step).then(|| (question, judge.truth(&question)))
+            });
+            let truths: Vec<Option<(Question, Truth)>> = truths.collect();
+            self.dispatchers.each_ref().map(|dispatcher| {
+                let mut errors = ContactErrors::default();
+                sequence.walk(dispatcher, |step, manifolds| {
+                    if let Some((question, truth)) = &truths[step] {
+                        errors += ContactErrors::of(truth, *question, manifolds);
+                    }
+                });
+                errors
+            })
+        };
+        let errors = sequences.par_iter().with_max_len(1).map(of_sequence);
+        let errors: Vec<[ContactErrors; 2]> = errors.collect();
+        [0, 1].map(|side| errors.iter().map(|sides| sides[side]).sum())
     }
 }
 
@@ -88,6 +110,11 @@ pub(super) fn sweep(dispatcher: &SharedDispatcher, sequences: &[Sequence]) -> Du
 }
 
 impl Sequence<'_> {
+    /// What is asked in a step.
+    pub fn question(&self, step: usize) -> Question {
+        Question::new(&self.poses[step], self.shapes.map(|shape| &**shape), self.prediction)
+    }
+
     fn ask(&self, memory: &mut Memory, dispatcher: &SharedDispatcher, pose: &Pose3) {
         memory.ask(dispatcher, self.shapes.map(|shape| &**shape), pose, self.prediction);
     }
@@ -103,21 +130,5 @@ impl Sequence<'_> {
             self.ask(&mut memory, dispatcher, pose);
             seen(index, &memory.manifolds);
         }
-    }
-}
-
-impl Memory {
-    /// Brings the manifolds up to date.
-    pub fn ask(
-        &mut self,
-        dispatcher: &SharedDispatcher,
-        [shape1, shape2]: [&dyn Shape; 2],
-        pos12: &Pose3,
-        prediction: Real,
-    ) {
-        let Self { manifolds, workspace } = self;
-        dispatcher
-            .contact_manifolds(pos12, shape1, shape2, prediction, manifolds, workspace)
-            .expect("every backend answers for a mesh and the shapes of these studies");
     }
 }

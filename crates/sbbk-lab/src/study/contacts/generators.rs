@@ -13,10 +13,11 @@ use rayon::prelude::*;
 use sbbk_core::truth::{self, TruthPair};
 
 use super::{Case, ContactErrors, MOTION_LIMIT, PAIRS, SHORT_REPEATS};
+use crate::backend::Memory;
 use crate::metrics::sample_indices;
 use crate::report::Row;
 use crate::study::motion::{Mode, STEP_COUNT};
-use crate::study::pair::{Contest, Memory, Sequence};
+use crate::study::pair::{Contest, Sequence};
 use crate::study::turns::{race, timed};
 
 /// At most this many pairs of each motion: enough for a mean, and the truth of each is worked out

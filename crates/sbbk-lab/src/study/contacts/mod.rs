@@ -19,9 +19,9 @@ use serde_json::Value;
 
 use self::generators::generators;
 use super::motion::{Approach, Mode, Place, STEP_COUNT, mode_notes};
-use super::pair::{Contest, DIRECT_NOTE, Memory, Sequence};
+use super::pair::{Contest, DIRECT_NOTE, Sequence};
 use super::{Progress, StudyError, shape};
-use crate::backend::Question;
+use crate::backend::Memory;
 use crate::mesh::{self, Mesh};
 use crate::metrics::{Environment, Judge};
 use crate::report::{Panel, Results, Row, TIME_NOTE, Table, TableSpec, number, sides};
@@ -240,8 +240,7 @@ impl<'a> Case<'a> {
         let sequences = self.sequences(Mode::Fresh, usize::MAX);
         let found: Vec<Found> = (sequences.par_iter().with_max_len(1))
             .map(|sequence| {
-                let question =
-                    Question::new(&sequence.poses[0], [&**self.shape; 2], self.prediction);
+                let question = sequence.question(0);
                 let truth = judge.truth(&question);
                 let errors = contest.dispatchers.each_ref().map(|dispatcher| {
                     let mut errors = ContactErrors::default();
@@ -301,7 +300,12 @@ impl<'a> Case<'a> {
             let is_fresh = mode == Mode::Fresh;
             let sequences = self.sequences(mode, if is_fresh { usize::MAX } else { MOTION_LIMIT });
             let times = contest.race(repeats, &sequences);
-            let errors = if is_fresh { self.errors } else { judge_steady(&sequences, contest) };
+            let errors = match is_fresh {
+                true => self.errors,
+                false => {
+                    contest.errors(&sequences, |step| step == STEP_COUNT / 2 || step == STEP_COUNT)
+                }
+            };
             let sides = Contest::BACKENDS.into_iter().zip(times).zip(errors);
             let rows = sides.map(|((backend, time), errors)| {
                 let row = self.row(QUERIES, backend).key("mode", mode.to_string());
@@ -313,30 +317,6 @@ impl<'a> Case<'a> {
         });
         rows.collect()
     }
-}
-
-/// Judges both in the middle and at the end of each motion.
-fn judge_steady(sequences: &[Sequence], contest: &Contest) -> [ContactErrors; 2] {
-    let judge = Judge::new([sequences[0].shapes[0]]);
-    let errors: Vec<[ContactErrors; 2]> = (sequences.par_iter().with_max_len(1))
-        .map(|sequence| {
-            let questions = [STEP_COUNT / 2, STEP_COUNT].map(|step| {
-                let shapes = sequence.shapes.map(|shape| &**shape);
-                let question = Question::new(&sequence.poses[step], shapes, sequence.prediction);
-                (step, question, judge.truth(&question))
-            });
-            contest.dispatchers.each_ref().map(|dispatcher| {
-                let mut errors = ContactErrors::default();
-                sequence.walk(dispatcher, |step, manifolds| {
-                    for (_, question, truth) in questions.iter().filter(|q| q.0 == step) {
-                        errors += ContactErrors::of(truth, *question, manifolds);
-                    }
-                });
-                errors
-            })
-        })
-        .collect();
-    [0, 1].map(|side| errors.iter().map(|sides| sides[side]).sum())
 }
 
 /// As it is written: 0.1 as an f32 is not 0.1 as an f64.

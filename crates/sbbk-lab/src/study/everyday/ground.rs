@@ -8,7 +8,7 @@ use rapier3d::math::Real;
 use rapier3d::pipeline::PhysicsWorld;
 
 use crate::mesh::{self, Mesh};
-use crate::scene::{SceneError, random};
+use crate::scene::{SceneError, random, shape};
 
 /// A terrain of hills, all worlds of a scene sharing one mesh.
 #[derive(Clone)]
@@ -72,13 +72,6 @@ impl Ground {
 /// A point above a terrain of this size.
 pub(super) fn above(size: f32, [x, z]: [f32; 2], height: f32) -> Vec3 {
     Vec3::new(x, mesh::hill_height(size, x, z) + height, z)
-}
-
-/// Parry's shape of a mesh with flags.
-pub(super) fn shape(mesh: &Mesh, flags: TriMeshFlags) -> Result<SharedShape, SceneError> {
-    let shape = mesh.trimesh(flags);
-    let shape = shape.map_err(|cause| SceneError { mesh: mesh.name.clone(), cause })?;
-    Ok(SharedShape::new(shape))
 }
 
 /// The head of 968 triangles, 1.2 units across.

@@ -6,17 +6,17 @@ use std::time::{Duration, Instant};
 
 use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
-use rapier3d::geometry::{ContactManifold, SharedShape, TriMeshFlags};
+use rapier3d::geometry::{SharedShape, TriMeshFlags};
 use rapier3d::math::Real;
 use rapier3d::parry::query::details::ShapeCastOptions;
 
-use super::ground::{Ground, above, head, shape};
+use super::ground::{Ground, above, head};
 use super::measure::verdict;
 use super::{PREDICTION, QUERIES};
-use crate::backend::{Backend, Dispatcher, SharedDispatcher};
+use crate::backend::{Backend, Dispatcher, Memory, SharedDispatcher};
 use crate::metrics::{ErrorCount, Summary};
 use crate::report::Row;
-use crate::scene::SceneError;
+use crate::scene::{SceneError, random, shape};
 use crate::study::turns::{in_turn, timed};
 
 named! {
@@ -48,12 +48,10 @@ impl Query {
             Self::Distance => Some(dispatcher.distance(pos12, ground, body).ok()?.distance),
             Self::Contact => Some(dispatcher.contact(pos12, ground, body, PREDICTION).ok()??.dist),
             Self::Manifolds => {
-                let mut manifolds: Vec<ContactManifold> = Vec::new();
-                let workspace = &mut None;
-                dispatcher
-                    .contact_manifolds(pos12, ground, body, PREDICTION, &mut manifolds, workspace)
-                    .ok()?;
-                let distances = manifolds.iter().flat_map(|m| &m.points).map(|point| point.dist);
+                let mut memory = Memory::default();
+                memory.ask(dispatcher, [ground, body], pos12, PREDICTION);
+                let points = memory.manifolds.iter().flat_map(|manifold| &manifold.points);
+                let distances = points.map(|point| point.dist);
                 distances.reduce(Real::min).filter(|&distance| distance <= PREDICTION)
             }
             Self::Cast => {
@@ -103,11 +101,11 @@ pub(super) fn queries(ground: &Ground, repeats: usize) -> Result<Vec<Row>, Scene
 
 /// Anywhere above the middle of the terrain.
 fn places(ground: &Ground, height: f32) -> Vec<Pose3> {
-    let mut random = Rand32::new(8);
+    let mut numbers = Rand32::new(8);
     let reach = 0.5 * ground.size - 3.0;
     let place = |_| {
-        let at = [(); 2].map(|()| reach * (2.0 * random.rand_float() - 1.0));
-        let turn = crate::scene::random::rotation(&mut random);
+        let at = [(); 2].map(|()| reach * (2.0 * numbers.rand_float() - 1.0));
+        let turn = random::rotation(&mut numbers);
         Pose3::from_parts(above(ground.size, at, height), turn)
     };
     (0..POSES).map(place).collect()

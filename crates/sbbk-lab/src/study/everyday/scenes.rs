@@ -10,12 +10,12 @@ use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::geometry::{ColliderBuilder, SharedShape, TriMeshFlags};
 use rapier3d::pipeline::{ActiveEvents, QueryFilter};
 
-use super::ground::{Ground, above, head, kinds, put, shape};
+use super::ground::{Ground, above, head, kinds, put};
 use super::measure::{Driven, Everyday};
 use super::{BODIES, DEFORMABLE, GroundPlan, PILE, SENSORS, SINGLE};
 use crate::mesh;
 use crate::report::Row;
-use crate::scene::{MonkeyPile, Scene, SceneError, Solid, random};
+use crate::scene::{MonkeyPile, Scene, SceneError, Solid, random, shape};
 
 type Scenes<'a> = Result<Vec<Everyday<'a>>, SceneError>;
 

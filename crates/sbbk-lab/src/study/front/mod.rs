@@ -16,19 +16,18 @@ use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
 use rapier3d::geometry::{ContactManifold, SharedShape, TrackedContact};
 use rapier3d::math::Real;
-use rayon::prelude::*;
 use sbbk_core::traverse::DescentCounts;
 use sbbk_core::tree::{LayerPlan, Tree};
 
 use self::search::{Search, Variant};
-use super::contacts::{ContactErrors, ERROR_NOTE, places};
+use super::contacts::{ERROR_NOTE, places};
 use super::motion::{Place, motion};
-use super::pair::{Contest, Memory, Sequence};
+use super::pair::{Contest, Sequence};
 use super::turns::{race, timed};
 use super::{Progress, StudyError, shape, tree};
-use crate::backend::{Question, SharedDispatcher};
+use crate::backend::{Memory, SharedDispatcher};
 use crate::mesh::{self, Mesh};
-use crate::metrics::{Environment, Judge, Summary};
+use crate::metrics::{Environment, Summary};
 use crate::report::{
     Look, Panel, Results, Row, Scale, TIME_NOTE, Table, TableSpec, faster, number, sides, time,
 };
@@ -232,33 +231,19 @@ impl<'a> Posed<'a> {
             Sequence { shapes: [&self.shape; 2], poses: motions.concat(), prediction: PREDICTION };
         let contest = Contest::new([&self.shape]);
         let times = contest.race(repeats, std::slice::from_ref(&sequence));
-        let sides = Contest::BACKENDS.into_iter().zip(&contest.dispatchers).zip(times);
-        let rows = sides.map(|((backend, dispatcher), time)| {
+        // At the end of the motion through each place.
+        let errors = contest
+            .errors(std::slice::from_ref(&sequence), |step| step % (STEP_COUNT + 1) == STEP_COUNT);
+        let sides = Contest::BACKENDS.into_iter().zip(&contest.dispatchers).zip(times).zip(errors);
+        let rows = sides.map(|(((backend, dispatcher), time), errors)| {
             self.row(JOURNEY, backend)
                 .with("query_count", sequence.poses.len())
                 .with("teleport_count", motions.len() - 1)
                 .with("time", time)
-                .with("errors", self.journey_errors(&sequence, dispatcher))
+                .with("errors", errors)
                 .with("differing", differing_from_fresh(&sequence, dispatcher))
         });
         rows.collect::<Vec<_>>().into_iter()
-    }
-
-    /// Errors at the end of the motion through each place.
-    fn journey_errors(&self, sequence: &Sequence, dispatcher: &SharedDispatcher) -> ContactErrors {
-        let mut answers = Vec::new();
-        sequence.walk(dispatcher, |step, manifolds| {
-            if step % (STEP_COUNT + 1) == STEP_COUNT {
-                let pose = &sequence.poses[step];
-                let question = Question::new(pose, [&*self.shape; 2], PREDICTION);
-                answers.push((question, manifolds.to_vec()));
-            }
-        });
-        let judge = Judge::new([&self.shape]);
-        let errors = answers.par_iter().with_max_len(1).map(|(question, manifolds)| {
-            ContactErrors::of(&judge.truth(question), *question, manifolds)
-        });
-        errors.collect::<Vec<_>>().into_iter().sum()
     }
 }
 

@@ -13,6 +13,7 @@ use super::figures::Figures;
 use super::kit::{Form, Kit};
 use crate::mesh::{self, Mesh};
 use crate::scene::{SceneError, random};
+use crate::study::shape;
 
 /// Thickness of plates that are a unit wide.
 const THICKNESS: f32 = 0.03;
@@ -84,10 +85,7 @@ fn plates(kit: &Kit, target: Target) -> Result<Figures, SceneError> {
     const SPEED: f32 = 30.0;
     let mesh = target.mesh();
     let fixed = kit.collider(&Form::mesh(mesh.clone()))?;
-    let surface = SharedShape::new(
-        mesh.trimesh(Default::default())
-            .map_err(|cause| SceneError { mesh: mesh.name.clone(), cause })?,
-    );
+    let surface = shape(&mesh)?;
     let inside = Depths::new(&mesh)?;
     let half_extents = Vec3::new(0.5, 0.5 * THICKNESS, 0.5);
     let plate = kit.collider(&Form::cuboid(half_extents, 4))?;

@@ -12,7 +12,7 @@ use rapier3d::pipeline::PhysicsWorld;
 
 use crate::mesh::{self, Mesh};
 use crate::replay::Recorder;
-use crate::scene::SceneError;
+use crate::scene::{SceneError, shape};
 
 named! {
     /// Who answers, and what bodies are made of.
@@ -157,9 +157,7 @@ impl Kit {
             Column::StockFlag | Column::SbbkFlag => TriMeshFlags::FIX_INTERNAL_EDGES,
             _ => TriMeshFlags::empty(),
         };
-        let shape = mesh.trimesh(flags);
-        let shape = shape.map_err(|cause| SceneError { mesh: mesh.name.clone(), cause })?;
-        Ok(SharedShape::new(shape))
+        shape(mesh, flags)
     }
 
     /// Numbers that depend on the seed alone.

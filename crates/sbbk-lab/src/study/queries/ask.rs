@@ -1,11 +1,11 @@
 //! The questions, where they are asked, and what is kept of the answers.
 
-use rapier3d::geometry::{ContactManifold, SharedShape};
+use rapier3d::geometry::SharedShape;
 use rapier3d::math::Real;
 use rapier3d::parry::query::details::ShapeCastOptions;
 use rapier3d::parry::query::{ClosestPoints, NonlinearRigidMotion};
 
-use crate::backend::SharedDispatcher;
+use crate::backend::{Memory, SharedDispatcher};
 pub(super) use crate::study::motion::Place as Placed;
 
 named! {
@@ -156,11 +156,9 @@ pub(super) fn ask(
             Answered::Time(found.expect(supported).map(|hit| hit.time_of_impact))
         }
         Query::Contacts => {
-            let (mut manifolds, mut workspace) = (Vec::<ContactManifold>::new(), None);
-            dispatcher
-                .contact_manifolds(pos12, mesh, mesh, 0.0, &mut manifolds, &mut workspace)
-                .expect(supported);
-            Answered::Pairs(manifolds.iter().filter(|m| !m.points.is_empty()).count())
+            let mut memory = Memory::default();
+            memory.ask(dispatcher, [mesh; 2], pos12, 0.0);
+            Answered::Pairs(memory.manifolds.iter().filter(|m| !m.points.is_empty()).count())
         }
     }
 }

@@ -1,0 +1,36 @@
+//! A pair of shapes as the narrow phase asks about it.
+
+use rapier3d::geometry::ContactManifold;
+use rapier3d::math::{Pose, Real};
+use rapier3d::parry::query::ContactManifoldsWorkspace;
+use rapier3d::parry::shape::Shape;
+
+use super::SharedDispatcher;
+
+/// What a host keeps of a pair of shapes from query to query.
+#[derive(Default)]
+pub struct Memory {
+    /// The answer to the last query.
+    pub manifolds: Vec<ContactManifold>,
+    workspace: Option<ContactManifoldsWorkspace>,
+}
+
+impl Memory {
+    /// Brings the manifolds up to date.
+    ///
+    /// # Panics
+    ///
+    /// If the dispatcher does not answer for such shapes.
+    pub fn ask(
+        &mut self,
+        dispatcher: &SharedDispatcher,
+        [shape1, shape2]: [&dyn Shape; 2],
+        pos12: &Pose,
+        prediction: Real,
+    ) {
+        let Self { manifolds, workspace } = self;
+        dispatcher
+            .contact_manifolds(pos12, shape1, shape2, prediction, manifolds, workspace)
+            .expect("every backend answers for a mesh and the shapes of the studies");
+    }
+}
