@@ -118,12 +118,24 @@ impl Panel {
         rows: impl Iterator<Item = &'a Row> + Clone,
     ) -> Self {
         let labels = ["µs a query", "wrong contacts for 100 true ones"];
+        let point =
+            |row: &Row| Some([row.number("time.median"), 100.0 * row.error_share("errors")?]);
         let panel = Self::new(title, labels, Scale::ZeroAt(NONE_WRONG));
-        [Backend::Sbbk, Backend::Stock].into_iter().fold(panel, |panel, backend| {
+        panel.backends(&[Backend::Sbbk, Backend::Stock], rows, false, point)
+    }
+
+    /// Adds what `point` makes of the rows of each backend: a line, or points alone.
+    pub fn backends<'a>(
+        self,
+        backends: &[Backend],
+        rows: impl Iterator<Item = &'a Row> + Clone,
+        is_line: bool,
+        point: impl Fn(&Row) -> Option<[f64; 2]>,
+    ) -> Self {
+        backends.iter().fold(self, |panel, &backend| {
             let rows = rows.clone().filter(|row| row.is("backend", backend));
-            let point =
-                |row: &Row| Some([row.number("time.median"), 100.0 * row.error_share("errors")?]);
-            panel.points(&backend.to_string(), Look::of(backend), rows.filter_map(point))
+            let (label, look) = (backend.to_string(), Look::of(backend));
+            panel.series(&label, look, is_line, rows.filter_map(&point))
         })
     }
 

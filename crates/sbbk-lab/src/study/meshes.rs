@@ -8,11 +8,10 @@ use super::contacts::places;
 use super::pair::{Contest, Sequence, query_count};
 use super::turns::{race, timed};
 use super::{Progress, StudyError, shape, tree};
-use crate::backend::Backend;
 use crate::mesh::Mesh;
 use crate::metrics::{Summary, ratio};
 use crate::report::{
-    ERROR_NOTE, Look, Panel, Row, Scale, TIME_NOTE, Table, TableSpec, errors, faster, number, time,
+    ERROR_NOTE, Panel, Row, Scale, TIME_NOTE, Table, TableSpec, errors, faster, number, time,
 };
 
 const MESHES: &str = "trees and first queries";
@@ -107,14 +106,11 @@ pub(super) fn table(rows: &[Row]) -> Table {
 /// Time against error of first queries, for each true pair of triangles.
 pub(super) fn panel(rows: &[Row]) -> Panel {
     let labels = ["µs for each true triangle pair", "wrong triangle pairs for 100 true ones"];
+    let point = |row: &Row| {
+        let time = row.number("time.median") * row.number("pose_count");
+        Some([time / row.number("errors.true_pairs"), 100.0 * row.error_share("errors")?])
+    };
+    let rows = rows.iter().filter(|row| row.study == MESHES);
     let panel = Panel::new("Time against error, first queries", labels, Scale::Linear);
-    [Backend::Stock, Backend::Sbbk].into_iter().fold(panel, |panel, backend| {
-        let is_shown = move |row: &&Row| row.study == MESHES && row.is("backend", backend);
-        let point = |row: &Row| {
-            let time = row.number("time.median") * row.number("pose_count");
-            Some([time / row.number("errors.true_pairs"), 100.0 * row.error_share("errors")?])
-        };
-        let points = rows.iter().filter(is_shown).filter_map(point);
-        panel.points(&backend.to_string(), Look::of(backend), points)
-    })
+    panel.backends(&Contest::BACKENDS, rows, false, point)
 }

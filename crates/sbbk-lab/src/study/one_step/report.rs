@@ -1,7 +1,7 @@
 //! A table and a picture of single steps.
 
 use super::{LEAD, OneStepPlan};
-use crate::report::{Look, Panel, Row, Scale, Table, TableSpec, number, time};
+use crate::report::{Panel, Row, Scale, Table, TableSpec, number, time};
 
 pub(super) const STUDY: &str = "one step";
 
@@ -41,11 +41,8 @@ pub(super) fn panels(plan: &OneStepPlan, rows: &[Row]) -> Vec<Panel> {
     let panel = |(title, label, path): (&str, &'static str, &'static str)| {
         let labels = [label, "error, as a share of the contact impulse"];
         let panel = Panel::new(title, labels, Scale::Logarithmic);
-        plan.backends.iter().fold(panel, |panel, &backend| {
-            let rows = rows.iter().filter(|row| row.is("backend", backend));
-            let points = rows.map(|row| [row.number(path), row.number("error.median")]);
-            panel.line(&backend.to_string(), Look::of(backend), points)
-        })
+        let point = |row: &Row| Some([row.number(path), row.number("error.median")]);
+        panel.backends(&plan.backends, rows.iter(), true, point)
     };
     let wanted = [
         ("One step: whole steps", "ms a step", "step.median"),

@@ -23,7 +23,7 @@ use super::{Progress, StudyError, shape};
 use crate::backend::{Backend, SharedDispatcher};
 use crate::mesh::{self, Mesh};
 use crate::metrics::Environment;
-use crate::report::{Look, Panel, Results, Row, Scale, Table, TableSpec, faster, number, time};
+use crate::report::{Panel, Results, Row, Scale, Table, TableSpec, faster, number, time};
 
 const QUERIES: &str = "queries, µs";
 /// Longest side of the meshes, in units.
@@ -200,11 +200,7 @@ fn tables(rows: &[Row]) -> Vec<Table> {
 fn panel(rows: &[Row], query: Query, distance: Distance) -> Panel {
     let labels = ["triangles of each mesh", "µs a query"];
     let panel = Panel::new(format!("{query}, {distance}"), labels, Scale::Logarithmic);
-    Contest::BACKENDS.into_iter().fold(panel, |panel, backend| {
-        let rows = rows.iter().filter(|row| {
-            row.is("backend", backend) && row.is("query", query) && row.is("place", distance)
-        });
-        let point = |row: &Row| [row.number("triangle_count"), row.number("time.median")];
-        panel.line(&backend.to_string(), Look::of(backend), rows.map(point))
-    })
+    let rows = rows.iter().filter(|row| row.is("query", query) && row.is("place", distance));
+    let point = |row: &Row| Some([row.number("triangle_count"), row.number("time.median")]);
+    panel.backends(&Contest::BACKENDS, rows, true, point)
 }
