@@ -1,6 +1,6 @@
 //! A step of this crate's broad phase and of Parry's tree, which Rapier uses, on the same frames.
 //!
-//! `cargo bench --bench broad_phase`, with a part of a name such as `pile/2000` to
+//! `cargo bench --features bench --bench broad_phase`, with a part of a name such as `pile/2000` to
 //! run less. Before they are timed, both are compared with brute force.
 
 mod candidate;

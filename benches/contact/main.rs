@@ -1,5 +1,5 @@
 //! Time per triangle pair of the contact generator, over the pairs of two bumpy spheres that
-//! truly lie within the margin: `cargo bench -p sbbk-core --bench contact`.
+//! truly lie within the margin: `cargo bench --features bench --bench contact`.
 //!
 //! *coarse* has triangles far larger than the margin, most of which cross or meet edge to edge;
 //! *fine* has triangles about as large as the margin, most of which meet vertex to edge.
