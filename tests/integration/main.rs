@@ -15,6 +15,7 @@
 //! | soft: the others | `soft_pairs::histories` | `soft_pairs::histories` | `soft_pairs::worlds` |
 //!
 //! Queries without manifolds are in `queries`, `nonlinear` and, of meshes without trees, `walks`.
+//! `features.rs` has the tests that are run again with Rapier's features.
 
 /// A steady contact allocates nothing.
 mod allocation;
