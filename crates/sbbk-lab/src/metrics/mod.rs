@@ -18,6 +18,6 @@ pub use error::{ErrorCount, Judge, Truth, is_right_depth, sample_indices};
 pub use fingerprint::Fingerprint;
 pub use pose_pairs::{PosePairs, Sweep};
 pub use run::{Run, RunPlan, Runner, Sample, run};
-pub use statistics::{Summary, geometric_mean, ratio};
+pub use statistics::{Summary, geometric_mean, power_law, ratio};
 pub use step::{StepTimes, timed_step};
 pub use world_state::{WorldState, solver_points};

@@ -1,6 +1,7 @@
 //! Results as rows, and what is made of them: tables, files and plots.
 
 mod files;
+mod html;
 mod plot;
 mod row;
 mod table;
@@ -10,6 +11,7 @@ use std::fmt;
 use serde::Serialize;
 
 pub use files::{ReportError, check_files, replace_file};
+pub use html::{Section, write_html};
 pub use plot::{Look, Panel, Scale};
 pub use row::Row;
 pub use table::{Column, Table, TableSpec, errors, faster, number, sides, time};
@@ -36,6 +38,18 @@ pub struct Results {
     /// The picture, from left to right.
     #[serde(skip)]
     pub panels: Vec<Panel>,
+}
+
+impl Results {
+    /// All of them as those of one study; `None` if there are none.
+    pub fn joined(all: impl IntoIterator<Item = Self>) -> Option<Self> {
+        all.into_iter().reduce(|mut joined, other| {
+            joined.rows.extend(other.rows);
+            joined.tables.extend(other.tables);
+            joined.panels.extend(other.panels);
+            joined
+        })
+    }
 }
 
 impl fmt::Display for Results {

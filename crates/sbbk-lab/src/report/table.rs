@@ -237,13 +237,20 @@ fn groups<'a>(rows: &[&'a Row], key: impl Fn(&Row) -> Vec<String>) -> Vec<Vec<&'
     groups.into_iter().map(|group| group.1).collect()
 }
 
+impl Table {
+    /// Whether a column is text, which is aligned to the left.
+    pub(super) fn is_text(&self, column: usize) -> bool {
+        self.is_text.get(column).is_some_and(|is_text| *is_text)
+    }
+}
+
 impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut table = Drawn::new();
         table.load_style(ASCII_MARKDOWN).set_header(&self.header);
         table.add_rows(&self.lines);
         for (index, column) in table.column_iter_mut().enumerate() {
-            if !self.is_text.get(index).is_some_and(|is_text| *is_text) {
+            if !self.is_text(index) {
                 column.set_cell_alignment(CellAlignment::Right);
             }
         }

@@ -8,6 +8,7 @@
 pub mod compare;
 pub mod contacts;
 pub mod convex;
+pub mod cost;
 pub mod determinism;
 pub mod everyday;
 pub mod front;

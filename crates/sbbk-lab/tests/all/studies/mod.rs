@@ -9,6 +9,7 @@ mod front;
 mod hard;
 mod long_runs;
 mod one_step;
+mod report;
 mod soft;
 mod support;
 mod terrain;
