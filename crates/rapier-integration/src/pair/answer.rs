@@ -74,9 +74,9 @@ where
     let [mut contacts, mut spare] = std::mem::take(P::Query::contacts(&mut scratch));
     let candidates = &mut coherence.candidates;
     find_contacts(&mut query, candidates, limits, &mut scratch, [&mut contacts, &mut spare]);
-    if let Some(size) = query.patch_size(&contacts) {
+    if let Some(plan) = query.patch_plan(&contacts) {
         let found = Contacts { query: &mut query, candidates, contacts: &contacts, limits };
-        write_patches(found, size, &mut scratch, &mut memory.pool, manifolds);
+        write_patches(found, plan, &mut scratch, &mut memory.pool, manifolds);
     } else {
         coherence.find_places(&mut scratch.lookup, manifolds);
         let (candidates, query) = (&mut coherence.candidates, &mut query);

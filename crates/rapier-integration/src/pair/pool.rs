@@ -3,6 +3,8 @@
 
 use parry3d::query::{ContactManifold, TrackedContact};
 
+use super::patches::PatchPoint;
+
 /// Manifolds that are in use or spare.
 ///
 /// As long as no manifold comes or goes, all stay in their place in the host's list: to move one
@@ -21,7 +23,7 @@ pub(super) struct ManifoldPool<M, C> {
     pub(super) previous_points: Vec<TrackedContact<C>>,
     /// Memory for the points that the patches of a pair had before, and for those that one may have.
     pub(super) old_points: Vec<TrackedContact<C>>,
-    pub(super) patch_points: Vec<TrackedContact<C>>,
+    pub(super) patch_points: Vec<PatchPoint<C>>,
 }
 
 /// How much memory to keep: as much as was needed of late. What was not needed for some queries is
