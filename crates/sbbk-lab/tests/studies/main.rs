@@ -4,6 +4,7 @@ mod advise;
 mod compare;
 mod contacts;
 mod convex;
+mod engines;
 mod everyday;
 mod front;
 mod hard;
