@@ -1,9 +1,9 @@
 //! The pile of heads in Rapier and in other engines: `benches/engines` has the others, and runs all.
 //!
 //! ```text
-//! cargo run --release --example engines -- export scene.txt
-//! cargo run --release --example engines -- run patches scene.txt patches.1
-//! cargo run --release --example engines -- judge scene.txt patches.1 patches.2 bullet.1
+//! cargo run --release --example engines -- export scene
+//! cargo run --release --example engines -- run patches scene patches.1
+//! cargo run --release --example engines -- judge scene patches.1 patches.2 bullet.1
 //! ```
 
 use std::error::Error;

@@ -18,16 +18,13 @@ inline float memory(const std::string &name) {
     return 0;
 }
 
-// The scene. Its numbers are separated by their names and white space.
+// The scene.
 class Scene {
 public:
     explicit Scene(const char *path) {
-        std::ifstream file(path);
-        for (std::string word; file >> word;) {
-            char *end;
-            const float number = std::strtof(word.c_str(), &end);
-            if (*end == 0) numbers.push_back(number);
-        }
+        std::ifstream file(path, std::ios::binary);
+        for (float number; file.read(reinterpret_cast<char *>(&number), sizeof number);)
+            numbers.push_back(number);
         time_step = take(), gravity = take(), friction = take();
         floor = take<3>();
         steps = int(take());

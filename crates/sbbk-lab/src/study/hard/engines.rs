@@ -1,9 +1,9 @@
 //! The pile of heads in several engines, each a program of its own. All read the same file, so that
 //! they start from the same bits; each writes what it did in every step; one judge reads that.
 
-use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
+use std::iter;
 use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
@@ -96,48 +96,37 @@ impl EnginePile {
         Kit { column, recycling: true, seed: 1, film: None }
     }
 
-    /// Writes it as numbers with their names; all are the shortest that are read as the same bits.
+    /// Writes it as numbers in f32, lists after their lengths.
     ///
     /// Errors: the file cannot be written.
     pub fn write(&self, path: &Path) -> io::Result<()> {
-        let mut text = String::new();
-        let mut line = |name: &str, numbers: &[f32]| {
-            text.push_str(name);
-            // Writing to a string does not fail.
-            numbers.iter().for_each(|number| _ = write!(text, " {number}"));
-            text.push('\n');
-        };
-        line("time_step", &[self.time_step]);
-        line("gravity", &[self.gravity]);
-        line("friction", &[self.friction]);
-        line("floor", &self.floor.to_array());
-        line("steps", &[STEPS as f32]);
-        line("mass", &[self.mass]);
-        line("inertia", &self.inertia.to_array());
-        line("vertices", &[self.mesh.vertex_count() as f32]);
-        self.mesh.vertices.iter().for_each(|vertex| line("", &vertex.to_array()));
-        line("triangles", &[self.mesh.triangle_count() as f32]);
-        self.mesh.triangles.iter().for_each(|indices| line("", &indices.map(|i| i as f32)));
-        line("heads", &[self.poses.len() as f32]);
-        for Pose3 { translation, rotation, .. } in &self.poses {
-            line("", &[&translation.to_array()[..], &rotation.to_array()].concat());
+        fn list<const N: usize>(items: impl ExactSizeIterator<Item = [f32; N]>) -> Vec<f32> {
+            iter::once(items.len() as f32).chain(items.flatten()).collect()
         }
-        line("parts", &[self.parts.len() as f32]);
-        for part in &self.parts {
-            line("points", &[part.len() as f32]);
-            part.iter().for_each(|point| line("", &point.to_array()));
-        }
-        fs::write(path, text)
+        let poses = self
+            .poses
+            .iter()
+            .map(|Pose3 { translation: t, rotation: r, .. }| [t.x, t.y, t.z, r.x, r.y, r.z, r.w]);
+        let mut numbers = [
+            vec![self.time_step, self.gravity, self.friction],
+            self.floor.to_array().to_vec(),
+            vec![STEPS as f32, self.mass],
+            self.inertia.to_array().to_vec(),
+            list(self.mesh.vertices.iter().map(Vec3::to_array)),
+            list(self.mesh.triangles.iter().map(|indices| indices.map(|index| index as f32))),
+            list(poses),
+            vec![self.parts.len() as f32],
+        ]
+        .concat();
+        numbers.extend(self.parts.iter().flat_map(|part| list(part.iter().map(Vec3::to_array))));
+        fs::write(path, bytes(&numbers))
     }
 
     /// Reads it again.
     ///
     /// Errors: the file cannot be read, or is none of these.
     pub fn read(path: &Path) -> io::Result<Self> {
-        let text = fs::read_to_string(path)?;
-        let numbers: Vec<f32> =
-            text.split_ascii_whitespace().filter_map(|word| word.parse().ok()).collect();
-        Self::from_numbers(&mut numbers.into_iter())
+        Self::from_numbers(&mut read_numbers(path)?.into_iter())
             .ok_or_else(|| invalid(format!("{} breaks off", path.display())))
     }
 
@@ -197,9 +186,7 @@ impl EnginePile {
                 numbers.extend(body.rotation().to_array());
                 numbers.extend([body.linvel(), body.angvel()].map(|v| v.to_array()).concat());
             }
-            for number in numbers {
-                file.write_all(&number.to_le_bytes())?;
-            }
+            file.write_all(&bytes(&numbers))?;
         }
         Ok(file.flush()?)
     }
@@ -259,10 +246,8 @@ impl EnginePile {
     }
 
     fn read_run(&self, path: &Path) -> io::Result<Run> {
-        let bytes = fs::read(path)?;
+        let numbers = read_numbers(path)?;
         let step_size = HEADER + STATE * self.poses.len();
-        let (numbers, _) = bytes.as_chunks();
-        let numbers: Vec<f32> = numbers.iter().map(|&bytes| f32::from_le_bytes(bytes)).collect();
         if numbers.len() != STEPS * step_size {
             let text = format!("{}: not {} steps of {step_size} numbers", path.display(), STEPS);
             return Err(invalid(text));
@@ -386,6 +371,16 @@ impl Run {
     fn heads(&self, step: usize) -> impl Iterator<Item = &[f32]> {
         self.step(step)[HEADER..].chunks_exact(STATE)
     }
+}
+
+fn bytes(numbers: &[f32]) -> Vec<u8> {
+    numbers.iter().flat_map(|number| number.to_le_bytes()).collect()
+}
+
+fn read_numbers(path: &Path) -> io::Result<Vec<f32>> {
+    let bytes = fs::read(path)?;
+    let (numbers, _) = bytes.as_chunks();
+    Ok(numbers.iter().map(|&bytes| f32::from_le_bytes(bytes)).collect())
 }
 
 fn invalid(text: String) -> io::Error {
