@@ -150,7 +150,9 @@ impl<S: Surfaces> Judge<'_, S> {
         let Outward { contact, is_extremal } = outward(t1, t2, is_solid, is_end, None, points)?;
         let is_overlap = is_crossing || contact.distance <= 0.0;
         let is_shallow = contact.distance >= -greatest;
-        let is_meant = is_overlap && (is_shallow || is_extremal && self.is_deep(local, &contact));
+        let is_meant = is_overlap
+            && regions.agrees(self.pair, contact.normal)
+            && (is_shallow || is_extremal && self.is_deep(local, &contact));
         is_meant.then_some(contact)
     }
 
