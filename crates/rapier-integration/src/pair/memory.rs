@@ -16,15 +16,14 @@ use sbbk_core::traverse::Slack;
 
 use super::merge::{Lookup, are_in_place};
 use super::order::Candidate;
-use super::pool::{Demand, ManifoldPool};
+use super::pool::Demand;
 use super::pose::PairPose;
 use crate::mesh::Change;
 
 /// The memory of a pair whose candidates have hints `H`. Losing it costs time only.
 #[derive(Clone)]
-pub(super) struct PairMemory<M, C, H> {
+pub(super) struct PairMemory<H> {
     pub(super) coherence: Coherence<H>,
-    pub(super) pool: ManifoldPool<M, C>,
     demand: Demand,
 }
 
@@ -48,13 +47,9 @@ struct Answered {
     manifold_count: usize,
 }
 
-impl<M, C, H> Default for PairMemory<M, C, H> {
+impl<H> Default for PairMemory<H> {
     fn default() -> Self {
-        Self {
-            coherence: Coherence::default(),
-            pool: ManifoldPool::default(),
-            demand: Demand::default(),
-        }
+        Self { coherence: Coherence::default(), demand: Demand::default() }
     }
 }
 
@@ -64,12 +59,16 @@ impl<H> Default for Coherence<H> {
     }
 }
 
-impl<M, C: Default + Copy, H> PairMemory<M, C, H> {
+impl<H> PairMemory<H> {
     /// Forgets what a change of the shapes makes worthless: the candidates, and the manifolds if
     /// their triangles are others now. Where only vertices moved, or another dispatcher answered
     /// before, manifolds keep their data, but Parry's generator must not take their points for its
     /// own.
-    pub(super) fn follow(&mut self, change: Change, manifolds: &mut Vec<ContactManifold<M, C>>) {
+    pub(super) fn follow<M, C: Default + Copy>(
+        &mut self,
+        change: Change,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+    ) {
         match change {
             Change::Unchanged => return,
             Change::Unknown | Change::Deformed => {

@@ -36,7 +36,6 @@ pub(super) fn write_patches<Q, M, C>(
     M: Default + Clone + Send + Sync + 'static,
     C: Default + Copy + Send + Sync + 'static,
 {
-    pool.begin();
     let mut patches = std::mem::take(&mut scratch.patches);
     patches.members.clear();
     let mut blank = pool.take();
