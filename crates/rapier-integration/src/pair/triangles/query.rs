@@ -192,6 +192,8 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
                 clip(t1, t2, contact.normal, points);
                 if has_closest {
                     push_closest(t1, t2, &contact, points);
+                } else {
+                    deepen(points, &contact);
                 }
                 let deepest = -shapes.near();
                 points.iter_mut().for_each(|point| point.distance = point.distance.max(deepest));
@@ -210,5 +212,18 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
                 );
             }
         });
+    }
+}
+
+/// Makes points as deep as a contact that is deeper than all of them.
+fn deepen(points: &mut ManifoldPoints, contact: &TriangleContact) {
+    let distances = points.iter().map(|point| point.distance);
+    let beyond = distances.fold(f64::INFINITY, f64::min) - contact.distance;
+    if beyond > 0.0 {
+        for point in points {
+            point.point1 += 0.5 * beyond * contact.normal;
+            point.point2 -= 0.5 * beyond * contact.normal;
+            point.distance -= beyond;
+        }
     }
 }

@@ -170,6 +170,12 @@ impl Regions {
         self.held.get(&first).is_some_and(|hold| !hold.is_enough())
     }
 
+    /// Whether no contact beyond doubt holds the region of a pair.
+    pub(super) fn is_unheld(&mut self, pair: [u32; 2]) -> bool {
+        let first = self.first_of(pair);
+        self.held.get(&first).is_some_and(|hold| hold.good == 0)
+    }
+
     /// Whether a contact of a region does not push against those beyond doubt. Without: plates at
     /// 30 m/s that a spike stops come through on it.
     pub(super) fn agrees(&mut self, pair: [u32; 2], normal: DVec3) -> bool {
