@@ -8,6 +8,7 @@ mod engines;
 mod everyday;
 mod front;
 mod hard;
+mod layers;
 mod long_runs;
 mod one_step;
 mod report;
