@@ -21,7 +21,7 @@ impl LayerPlan {
     ///
     /// The paper leaves the choice of layers for each mesh to future work (section 5). It was measured
     /// and dropped: on pairs of ten kinds of 96 to 20,000 triangles no other plan, k or size of leaf
-    /// gains more than 5 % (boxes, on a cuboid, 0.2 µs a query), and boxes lose up to a fifth
+    /// gains more than 6 % (boxes, on a cuboid: 0.2 µs a query), and boxes lose up to a fifth
     /// elsewhere. The study `layers` of the repository prints the table.
     pub const SBBK: Self = Self { sphere_root: true, kdop_from_depth: Some(4) };
 
