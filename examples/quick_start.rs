@@ -46,10 +46,9 @@ fn main() {
 fn world() -> (PhysicsWorld, Vec<(&'static str, RigidBodyHandle)>) {
     let mut world = PhysicsWorld::new();
 
-    // The flag gives the floor an inside: bodies that sink in are pushed out on the right side.
     let (vertices, indices) = Cuboid::new(Vector::new(10.0, 0.5, 10.0)).to_trimesh();
-    let floor = trimesh(vertices, indices, TriMeshFlags::FIX_INTERNAL_EDGES);
-    world.insert(RigidBodyBuilder::fixed(), floor.translation(Vector::new(0.0, -0.5, 0.0)));
+    let floor = trimesh(vertices, indices).translation(Vector::new(0.0, -0.5, 0.0));
+    world.insert(RigidBodyBuilder::fixed(), floor);
 
     let (ball, cylinder, cuboid) =
         (Ball::new(0.5), Cylinder::new(0.2, 0.5), Cuboid::new(Vector::new(0.6, 0.2, 0.4)));
@@ -63,13 +62,13 @@ fn world() -> (PhysicsWorld, Vec<(&'static str, RigidBodyHandle)>) {
         let tilt = Vector::new(0.1, 0.0, 0.2);
         let body =
             RigidBodyBuilder::dynamic().translation(place).rotation(tilt).angular_damping(0.5);
-        let collider = trimesh(vertices, indices, TriMeshFlags::FIX_INTERNAL_EDGES);
-        (name, world.insert(body, collider).0)
+        (name, world.insert(body, trimesh(vertices, indices)).0)
     });
     let bodies = bodies.collect();
     (world, bodies)
 }
 
-fn trimesh(vertices: Vec<Vector>, indices: Vec<[u32; 3]>, flags: TriMeshFlags) -> ColliderBuilder {
-    ColliderBuilder::trimesh_with_flags(vertices, indices, flags).expect("it has triangles")
+/// Without a flag. For convex bodies the floor would have `TriMeshFlags::FIX_INTERNAL_EDGES`.
+fn trimesh(vertices: Vec<Vector>, indices: Vec<[u32; 3]>) -> ColliderBuilder {
+    ColliderBuilder::trimesh(vertices, indices).expect("it has triangles")
 }

@@ -249,3 +249,29 @@ fn a_box_slides_over_internal_edges_of_a_surface() {
         check_slide(&both, velocity);
     }
 }
+
+/// Would catch boxes that stay in a slab, with the sides of their triangles at its surface.
+#[test]
+fn boxes_of_many_triangles_come_up_out_of_a_slab() {
+    let solid = |half_extents: Vec3| {
+        ColliderBuilder::new(SharedShape::new(shape_with(
+            &mesh::cuboid(half_extents, 8),
+            TriMeshFlags::empty(),
+        )))
+    };
+    for depth in [0.22, 0.83, 0.95] {
+        let mut world = PhysicsWorld::new();
+        world.narrow_phase.set_query_dispatcher(having(ContactSet::Surfaces));
+        world.insert(
+            RigidBodyBuilder::fixed().translation(-Vec3::Y),
+            solid(Vec3::new(5.0, 1.0, 5.0)),
+        );
+        let body = RigidBodyBuilder::dynamic().translation((0.5 - depth) * Vec3::Y);
+        let (body, _) = world.insert(body, solid(Vec3::splat(0.5)));
+        for _ in 0..180 {
+            world.step();
+        }
+        let height = world.bodies[body].translation().y;
+        assert!((height - 0.5).abs() < 0.02, "from {depth} to {height}");
+    }
+}

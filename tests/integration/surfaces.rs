@@ -224,7 +224,8 @@ fn surfaces_have_some_of_the_contacts_of_triangles() {
         some += found.len();
         all += expected.len();
     });
-    assert!(some > 500 && 2 * some < all, "{some} of {all}");
+    // Of a third of the poses, which are deep, most contacts are needed.
+    assert!(some > 500 && 3 * some < 2 * all, "{some} of {all}");
 }
 
 /// Meshes that cross have a contact. Would catch bodies that fall through each other where no contact

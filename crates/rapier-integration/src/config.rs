@@ -37,10 +37,12 @@ pub enum ContactDetail {
     /// Rapier's solver would take one.
     #[default]
     Every,
-    /// A few manifolds for two shapes: each is a direction and a place with at most four points,
-    /// which are chosen before they are made. The deepest point is always among them. For exact
-    /// contacts of rigid meshes; pairs of which one may deform have every contact. Of a manifold,
-    /// the subshapes are those of its deepest contact.
+    /// A few manifolds for two shapes: of each direction up to four points, the outermost ones that
+    /// carry, and others as deep that are far from these. They are chosen before they are made; the
+    /// deepest point is always among them. Bodies come to rest sooner than on every contact, of which
+    /// Rapier's solver takes four by their spread alone. For exact contacts of rigid meshes; pairs of
+    /// which one may deform have every contact. Of a manifold, the subshapes are those of its deepest
+    /// contact.
     Patches,
 }
 

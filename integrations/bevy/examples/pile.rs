@@ -1,7 +1,7 @@
 //! Mesh tori fall into a pile: with SBBK, or with stock Rapier.
 //!
 //! ```text
-//! cargo run --ignore-rust-version --example pile
+//! cargo run --release --ignore-rust-version --example pile
 //! cargo run --release --ignore-rust-version --features window --example pile [-- stock]
 //! ```
 //!

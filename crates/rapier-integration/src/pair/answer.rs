@@ -41,7 +41,7 @@ where
     M: Default + Clone + Send + Sync + 'static,
     C: Default + Copy + Send + Sync + 'static,
 {
-    let PairState::<M, C, P::Known, P::Hint> { shapes, memory } = state_in(workspace, manifolds);
+    let PairState::<P::Known, P::Hint> { shapes, memory } = state_in(workspace, manifolds);
     if P::is_unknown(shapes) {
         cache.met();
     }
@@ -74,14 +74,15 @@ where
     let [mut contacts, mut spare] = std::mem::take(P::Query::contacts(&mut scratch));
     let candidates = &mut coherence.candidates;
     find_contacts(&mut query, candidates, limits, &mut scratch, [&mut contacts, &mut spare]);
-    if let Some(size) = query.patch_size(&contacts) {
+    let mut pool = ManifoldPool::borrow();
+    if let Some(plan) = query.patch_plan(&contacts) {
         let found = Contacts { query: &mut query, candidates, contacts: &contacts, limits };
-        write_patches(found, size, &mut scratch, &mut memory.pool, manifolds);
+        write_patches(found, plan, &mut scratch, &mut pool, manifolds);
     } else {
         coherence.find_places(&mut scratch.lookup, manifolds);
         let (candidates, query) = (&mut coherence.candidates, &mut query);
         let found = Contacts { query, candidates, contacts: &contacts, limits };
-        write_every(found, &mut scratch, &mut memory.pool, manifolds);
+        write_every(found, &mut scratch, &mut pool, manifolds);
     }
     if let Some(limit) = scratch.demand.note(contacts.len()) {
         // Candidates come and go more than manifolds do: some hundred kilobytes a thread stay.
@@ -91,7 +92,9 @@ where
         scratch.is_done.shrink_to(limit);
         scratch.lookup.shrink_to(limit);
         scratch.patches.shrink_to(limit);
+        pool.shrink_to(limit);
     }
+    pool.give_back();
     *P::Query::contacts(&mut scratch) = [contacts, spare];
     SCRATCH.set(Some(scratch));
     memory.end(query.pose(), manifolds.len());
@@ -157,7 +160,6 @@ fn write_every<Q, M, C>(
     M: Default + Clone + Send + Sync + 'static,
     C: Default + Copy + Send + Sync + 'static,
 {
-    pool.begin();
     let mut is_done = std::mem::take(&mut scratch.is_done);
     is_done.clear();
     is_done.resize(manifolds.len(), false);

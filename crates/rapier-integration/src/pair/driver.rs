@@ -11,7 +11,7 @@ use sbbk_core::volumes::Sphere;
 use super::convex::{Near, PlacedPart};
 use super::merge::Lookup;
 use super::order::{Candidate, OrderKey};
-use super::outline::{Outline, Patches};
+use super::outline::{Outline, PatchPlan, Patches};
 use super::pool::Demand;
 use super::pose::PairPose;
 use super::triangles::{Found, Regions};
@@ -84,8 +84,8 @@ pub(crate) trait PairQuery {
     /// Memory for contacts, lent from query to query.
     fn contacts(scratch: &mut Scratch) -> &mut [ContactList<Self::Contact>; 2];
 
-    /// Up to how far apart contacts may be in one patch; `None` if every contact has a manifold.
-    fn patch_size(&self, contacts: &[(u32, Self::Contact)]) -> Option<Real>;
+    /// How patches are made; `None` if every contact has a manifold.
+    fn patch_plan(&self, contacts: &[(u32, Self::Contact)]) -> Option<PatchPlan>;
 
     /// What a patch needs to know of a contact. `None` if it has no points after all.
     fn outline(

@@ -16,15 +16,14 @@ use sbbk_core::traverse::Slack;
 
 use super::merge::{Lookup, are_in_place};
 use super::order::Candidate;
-use super::pool::{Demand, ManifoldPool};
+use super::pool::Demand;
 use super::pose::PairPose;
 use crate::mesh::Change;
 
 /// The memory of a pair whose candidates have hints `H`. Losing it costs time only.
 #[derive(Clone)]
-pub(super) struct PairMemory<M, C, H> {
+pub(super) struct PairMemory<H> {
     pub(super) coherence: Coherence<H>,
-    pub(super) pool: ManifoldPool<M, C>,
     demand: Demand,
 }
 
@@ -48,13 +47,9 @@ struct Answered {
     manifold_count: usize,
 }
 
-impl<M, C, H> Default for PairMemory<M, C, H> {
+impl<H> Default for PairMemory<H> {
     fn default() -> Self {
-        Self {
-            coherence: Coherence::default(),
-            pool: ManifoldPool::default(),
-            demand: Demand::default(),
-        }
+        Self { coherence: Coherence::default(), demand: Demand::default() }
     }
 }
 
@@ -64,12 +59,16 @@ impl<H> Default for Coherence<H> {
     }
 }
 
-impl<M, C: Default + Copy, H> PairMemory<M, C, H> {
+impl<H> PairMemory<H> {
     /// Forgets what a change of the shapes makes worthless: the candidates, and the manifolds if
     /// their triangles are others now. Where only vertices moved, or another dispatcher answered
     /// before, manifolds keep their data, but Parry's generator must not take their points for its
     /// own.
-    pub(super) fn follow(&mut self, change: Change, manifolds: &mut Vec<ContactManifold<M, C>>) {
+    pub(super) fn follow<M, C: Default + Copy>(
+        &mut self,
+        change: Change,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+    ) {
         match change {
             Change::Unchanged => return,
             Change::Unknown | Change::Deformed => {
@@ -146,11 +145,11 @@ mod tests {
     #[test]
     fn only_the_question_that_was_answered_is() {
         let pose = |x: Real, prediction| PairPose::new(&Pose::translation(x, 0.0, 0.0), prediction);
-        let mut memory = PairMemory::<(), (), ()>::default();
+        let mut memory = PairMemory::<()>::default();
         assert!(!memory.coherence.is_answered(&pose(1.0, 0.1), 0));
         memory.coherence.begin().candidates.push(Candidate::new([1, 2]));
         memory.end(&pose(1.0, 0.1), 3);
-        let is_answered = |memory: &PairMemory<_, _, _>, x, prediction, count| {
+        let is_answered = |memory: &PairMemory<()>, x, prediction, count| {
             memory.coherence.is_answered(&pose(x, prediction), count)
         };
         assert!(is_answered(&memory, 1.0, 0.1, 3) && !is_answered(&memory, 1.0, 0.1, 2));
@@ -163,7 +162,7 @@ mod tests {
     /// Would catch candidates of one great overlap whose memory a pair keeps for ever.
     #[test]
     fn memory_of_candidates_is_given_back() {
-        let mut memory = PairMemory::<(), (), ()>::default();
+        let mut memory = PairMemory::<()>::default();
         let pose = PairPose::new(&Pose::IDENTITY, 0.1);
         let mut query = |count: u32| {
             let candidates = &mut memory.coherence.begin().candidates;

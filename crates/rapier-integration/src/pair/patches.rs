@@ -1,27 +1,33 @@
 //! A few manifolds for all contacts of two shapes, each with at most four points.
 //!
-//! A *patch* is a direction and a place: contacts whose normals agree and that are near each other.
-//! Rapier's solver uses four points of those with one direction: the deepest, the one farthest from
-//! it, and the outermost ones on both sides of the line between these. The same choice is made here
-//! twice: of contacts, by their closest points, before their other points are made, and of the
-//! points of those that were chosen.
+//! A *patch* has a direction: contacts whose normals agree. Four of them carry a body as well as all
+//! do (`outline.rs` chooses). The choice is made twice: of contacts, by their closest points, before
+//! their other points are made, and of the points of those that were chosen.
 
-use parry3d::math::Real;
+use parry3d::math::{Real, Vector};
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::PackedFeatureId;
 
 use super::driver::{Contacts, PairQuery, Scratch};
-use super::outline::{Member, outermost};
+use super::outline::{Member, PatchPlan};
 use super::pool::{ManifoldPool, reset};
 
 /// Normals of a patch and of one of the step before that may be the same patch.
 const LIKE_NORMAL: Real = 0.9;
 
+/// A point of a patch, and the contact that it is of.
+#[derive(Copy, Clone)]
+pub(super) struct PatchPoint<C> {
+    point: TrackedContact<C>,
+    of: u32,
+    normals: [Vector; 2],
+}
+
 /// Replaces `manifolds` by patches. Those that were there before keep their data, and so do points
 /// of the same features.
 pub(super) fn write_patches<Q, M, C>(
     Contacts { query, candidates, contacts, limits }: Contacts<'_, Q>,
-    size: Real,
+    plan: PatchPlan,
     scratch: &mut Scratch,
     pool: &mut ManifoldPool<M, C>,
     manifolds: &mut Vec<ContactManifold<M, C>>,
@@ -30,7 +36,6 @@ pub(super) fn write_patches<Q, M, C>(
     M: Default + Clone + Send + Sync + 'static,
     C: Default + Copy + Send + Sync + 'static,
 {
-    pool.begin();
     let mut patches = std::mem::take(&mut scratch.patches);
     patches.members.clear();
     let mut blank = pool.take();
@@ -46,7 +51,7 @@ pub(super) fn write_patches<Q, M, C>(
         }
         patches.members.push(Member { outline, contact: place, patch: 0 });
     }
-    patches.divide(size);
+    patches.divide(plan);
     let mut old_points = std::mem::take(&mut pool.old_points);
     let mut points = std::mem::take(&mut pool.patch_points);
     old_points.clear();
@@ -54,52 +59,61 @@ pub(super) fn write_patches<Q, M, C>(
     for members in patches.members.chunk_by(|a, b| a.patch == b.patch) {
         points.clear();
         patches.points.clear();
-        patches.points.extend(members.iter().map(|member| member.outline.point));
-        let chosen = outermost(&patches.points, members[0].outline.normal);
-        let mut of_patch = None;
+        patches.points.extend(members.iter().map(|member| member.outline.place()));
+        let chosen = plan.outermost(&patches.points, members[0].outline.normal);
         for member in chosen {
             let (of, contact) = contacts[members[member].contact as usize];
             let candidate = &mut candidates[of as usize];
             reset(&mut blank);
             query.name(candidate, &mut blank);
             query.write(contact, candidate, limits, scratch, &mut pool.previous_points, &mut blank);
-            points.extend(blank.points.iter().map(|&point| named(point, candidate.subshapes)));
-            if !blank.points.is_empty() {
-                of_patch.get_or_insert((of, blank.local_n1, blank.local_n2));
-            }
+            let normals = [blank.local_n1, blank.local_n2];
+            points.extend(blank.points.iter().map(|&point| PatchPoint {
+                point: named(point, candidate.subshapes),
+                of,
+                normals,
+            }));
         }
-        let Some((of, local_n1, local_n2)) = of_patch else {
+        // The deepest one comes first.
+        let Some(deepest) = (0..points.len())
+            .min_by(|&a, &b| points[a].point.dist.total_cmp(&points[b].point.dist))
+        else {
             continue;
         };
-        // The deepest one comes first.
-        if let Some(deepest) =
-            (0..points.len()).min_by(|&a, &b| points[a].dist.total_cmp(&points[b].dist))
-        {
-            points.swap(0, deepest);
-        }
-        // One that was taken has no normal.
-        let like = |old: &ContactManifold<M, C>| old.local_n1.dot(local_n1);
-        let likes = manifolds.iter().map(like).enumerate().filter(|(_, like)| *like >= LIKE_NORMAL);
-        let place = likes.max_by(|(_, a), (_, b)| a.total_cmp(b));
-        let mut manifold = match place.map(|(place, _)| place) {
-            Some(place) => std::mem::take(&mut manifolds[place]),
-            None => pool.take(),
-        };
-        query.name(&candidates[of as usize], &mut manifold);
-        (manifold.local_n1, manifold.local_n2) = (local_n1, local_n2);
+        points.swap(0, deepest);
         patches.points.clear();
-        patches.points.extend(points.iter().map(|point| point.local_p1));
-        manifold.points.clear();
-        manifold.points.extend(outermost(&patches.points, local_n1).into_iter().map(|i| {
-            let mut point = points[i];
-            let is_same =
-                |old: &&TrackedContact<C>| old.fid1 == point.fid1 && old.fid2 == point.fid2;
-            if let Some(old) = old_points.iter().find(is_same) {
-                point.data = old.data;
-            }
-            point
-        }));
-        pool.keep_new(Some(manifold), manifolds);
+        let places = points.iter().map(|PatchPoint { point, .. }| (point.local_p1, point.dist));
+        patches.points.extend(places);
+        let mut chosen = plan.outermost(&patches.points, points[0].normals[0]);
+        while let Some(&first) = chosen.first() {
+            let PatchPoint { of, normals: [local_n1, local_n2], .. } = points[first];
+            // One that was taken has no normal.
+            let like = |old: &ContactManifold<M, C>| old.local_n1.dot(local_n1);
+            let likes =
+                manifolds.iter().map(like).enumerate().filter(|(_, like)| *like >= LIKE_NORMAL);
+            let place = likes.max_by(|(_, a), (_, b)| a.total_cmp(b));
+            let mut manifold = match place.map(|(place, _)| place) {
+                Some(place) => std::mem::take(&mut manifolds[place]),
+                None => pool.take(),
+            };
+            query.name(&candidates[of as usize], &mut manifold);
+            (manifold.local_n1, manifold.local_n2) = (local_n1, local_n2);
+            manifold.points.clear();
+            chosen.retain(|i| {
+                let PatchPoint { mut point, normals, .. } = points[*i];
+                let is_of_normal = normals[0].dot(local_n1) >= plan.one_normal;
+                if is_of_normal {
+                    let is_same =
+                        |old: &&TrackedContact<C>| old.fid1 == point.fid1 && old.fid2 == point.fid2;
+                    if let Some(old) = old_points.iter().find(is_same) {
+                        point.data = old.data;
+                    }
+                    manifold.points.push(point);
+                }
+                !is_of_normal
+            });
+            pool.keep_new(Some(manifold), manifolds);
+        }
     }
     pool.retire(blank);
     // Those without points were taken.

@@ -12,12 +12,12 @@ use super::memory::PairMemory;
 ///
 /// Everything in it can be lost at any time and costs only time then.
 #[derive(Clone)]
-pub(super) struct PairState<M, C, S, H> {
+pub(super) struct PairState<S, H> {
     pub(super) shapes: S,
-    pub(super) memory: PairMemory<M, C, H>,
+    pub(super) memory: PairMemory<H>,
 }
 
-impl<M, C, S: Default, H> Default for PairState<M, C, S, H> {
+impl<S: Default, H> Default for PairState<S, H> {
     fn default() -> Self {
         Self { shapes: S::default(), memory: PairMemory::default() }
     }
@@ -32,17 +32,17 @@ impl<M, C, S: Default, H> Default for PairState<M, C, S, H> {
 pub(super) fn state_in<'a, M, C, S, H>(
     workspace: &'a mut Option<ContactManifoldsWorkspace>,
     manifolds: &mut Vec<ContactManifold<M, C>>,
-) -> &'a mut PairState<M, C, S, H>
+) -> &'a mut PairState<S, H>
 where
-    PairState<M, C, S, H>: Clone + Default + Send + Sync + 'static,
+    PairState<S, H>: Clone + Default + Send + Sync + 'static,
 {
     if workspace.is_none() {
         manifolds.clear();
     }
     let is_ours =
-        |workspace: &ContactManifoldsWorkspace| workspace.0.is::<Stored<PairState<M, C, S, H>>>();
+        |workspace: &ContactManifoldsWorkspace| workspace.0.is::<Stored<PairState<S, H>>>();
     if !workspace.as_ref().is_some_and(is_ours) {
-        *workspace = Some(Stored(PairState::<M, C, S, H>::default()).into());
+        *workspace = Some(Stored(PairState::<S, H>::default()).into());
     }
     let state = workspace.as_mut().and_then(|workspace| workspace.0.downcast_mut());
     let Stored(state) = state.expect("the workspace was made of this type just now");

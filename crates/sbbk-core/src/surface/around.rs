@@ -41,6 +41,10 @@ const RISE: f64 = 0.05;
 /// Lower: of a body that rocks from point to point, the next one comes as a surprise.
 const RISE_TO_FACE: f64 = 0.3;
 
+/// Sine of the angle to a flat side, of triangles of it and of directions along it. Higher: a nut
+/// locks on its bolt.
+const FLAT: f64 = 1.0e-3;
+
 impl Around<'_> {
     /// Whether a unit direction leads from a feature out in front of all triangles around it: what
     /// it leads to is nowhere nearer, and of a solid it leads out. It should be that from a point of
@@ -65,7 +69,7 @@ impl Around<'_> {
             height > 0.0 && height * height > rise * rise * edge.length_squared()
         };
         let (mut height, mut has_risen) = (0.0, false);
-        self.around(triangle, feature, |u, v| {
+        self.around(triangle, feature, |_, u, v| {
             has_risen = rises(u) || rises(v);
             if has_risen {
                 return ControlFlow::Break(());
@@ -87,20 +91,56 @@ impl Around<'_> {
             return is_upright && height < 0.0;
         }
         let mut height = 0.0;
-        self.around(triangle, feature, |u, v| {
+        self.around(triangle, feature, |_, u, v| {
             height += u.cross(v).dot(direction);
             ControlFlow::Continue(())
         });
         height < 0.0
     }
 
+    /// How far a flat side goes on beyond a triangle of it in a unit direction, from vertex to vertex,
+    /// up to `most`; 0 if the direction does not lie in the side.
+    pub fn side_beyond(&self, triangle: u32, direction: DVec3, most: f64) -> f64 {
+        let normal = self.normal(triangle);
+        if normal.dot(direction).abs() > FLAT * normal.length() {
+            return 0.0;
+        }
+        let height = |half_edge: &u32| self.corner(*half_edge, 0).dot(direction);
+        let corners = 3 * triangle..3 * triangle + 3;
+        let highest = corners.max_by(|a, b| height(a).total_cmp(&height(b)));
+        let (mut at, mut beyond) = (highest.unwrap_or_default(), 0.0);
+        while beyond < most {
+            let (mut rise, mut to) = (0.0, at);
+            self.around(at / 3, Feature::Vertex((at % 3) as u8), |half_edge, u, v| {
+                for (edge, end) in [(u, next(half_edge)), (v, previous(half_edge))] {
+                    let (height, length) = (edge.dot(direction), edge.length());
+                    let is_flat = edge.dot(normal).abs() <= FLAT * length * normal.length();
+                    if is_flat && height > rise && height > RISE * length {
+                        (rise, to) = (height, end);
+                    }
+                }
+                ControlFlow::Continue(())
+            });
+            if to == at {
+                break;
+            }
+            (at, beyond) = (to, beyond + rise);
+        }
+        beyond.min(most)
+    }
+
     /// How far a direction points along the normal of a triangle, times twice the area, and whether
     /// it is nearly upright.
     fn over_face(&self, triangle: u32, direction: DVec3) -> (f64, bool) {
-        let [a, b, c] = [0, 1, 2].map(|i| self.corner(3 * triangle, i));
-        let normal = (b - a).cross(c - a);
+        let normal = self.normal(triangle);
         let height = normal.dot(direction);
         (height, height.abs() > (1.0 - RISE) * normal.length())
+    }
+
+    /// The normal of a triangle, as long as twice its area.
+    fn normal(&self, triangle: u32) -> DVec3 {
+        let [a, b, c] = [0, 1, 2].map(|i| self.corner(3 * triangle, i));
+        (b - a).cross(c - a)
     }
 
     /// Visits the triangles around an edge or a vertex by their two edges from there, while it is
@@ -110,18 +150,18 @@ impl Around<'_> {
         &self,
         triangle: u32,
         feature: Feature,
-        mut visit: impl FnMut(DVec3, DVec3) -> ControlFlow<()>,
+        mut visit: impl FnMut(u32, DVec3, DVec3) -> ControlFlow<()>,
     ) {
         let first = half_edge(triangle, feature);
         let start = self.corner(first, 0);
         let (first_u, first_v) = (self.corner(first, 1) - start, self.corner(first, 2) - start);
-        if visit(first_u, first_v).is_break() {
+        if visit(first, first_u, first_v).is_break() {
             return;
         }
         if !matches!(feature, Feature::Vertex(_)) {
             if let Some(twin) = self.twins.twin(first) {
                 let start = self.corner(twin, 0);
-                let _ = visit(self.corner(twin, 1) - start, self.corner(twin, 2) - start);
+                let _ = visit(twin, self.corner(twin, 1) - start, self.corner(twin, 2) - start);
             }
             return;
         }
@@ -132,7 +172,7 @@ impl Around<'_> {
             }
             at = twin;
             let v = self.corner(at, 2) - start;
-            if visit(u, v).is_break() {
+            if visit(at, u, v).is_break() {
                 return;
             }
             u = v;
@@ -142,7 +182,7 @@ impl Around<'_> {
         while let Some(twin) = self.twins.twin(at) {
             at = next(twin);
             let u = self.corner(at, 1) - start;
-            if visit(u, v).is_break() {
+            if visit(at, u, v).is_break() {
                 return;
             }
             v = u;

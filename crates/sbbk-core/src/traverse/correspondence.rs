@@ -45,14 +45,17 @@ where
     /// [`rounding`](crate::volumes::rounding).
     pub(super) fn new(placement: &Placement, margin: f32, rounding: f32) -> Self {
         let to_frame2 = placement.rotation.transpose();
+        let axes = [to_frame2.x_axis, to_frame2.y_axis, to_frame2.z_axis];
+        let seen = Directions::<AXES>::project_components(axes);
+        let offsets = Directions::<AXES>::project_components(placement.translation.to_array());
         let directions = <Directions<AXES> as DirectionSet<AXES>>::DIRECTIONS;
         let rounding = 6.0 * rounding;
         let slabs = std::array::from_fn(|axis| {
-            let direction = directions[axis].as_dvec3();
-            let terms = Directions::<AXES>::correspondence(to_frame2 * direction);
-            let slack = f64::from(margin) * direction.length() + f64::from(rounding);
+            let terms = Directions::<AXES>::correspondence(seen[axis]);
+            let length = directions[axis].as_dvec3().length();
+            let slack = f64::from(margin) * length + f64::from(rounding);
             Slab {
-                offset: direction.dot(placement.translation) as f32,
+                offset: offsets[axis] as f32,
                 coefficients: each(|i| terms[i].1 as f32),
                 indices: each(|i| terms[i].0 as u8),
                 slack: (slack as f32).next_up(),

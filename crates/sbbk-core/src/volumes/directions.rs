@@ -21,7 +21,7 @@
 //! |---|---|---|
 //! | 14 | (1,0,0), (1,1,1), (1,1,-1) | `x - y`, `(y + z)/2`, `(y - z)/2` |
 //! | 18 | (1,0,0), (1,1,0), (1,0,1) if `x >= y + z` | `x - y - z`, `y`, `z` |
-//! | 18 | (1,1,0), (1,0,1), (0,1,1) else | `(x + y - z)/2`, `(x + z - y)/2`, `(y + z - x)/2` |
+//! | 18 | (0,1,1), (1,1,0), (1,0,1) else | `(y + z - x)/2`, `(x + y - z)/2`, `(x + z - y)/2` |
 //! | 26 | (1,0,0), (1,1,0), (1,1,1) | `x - y`, `y - z`, `z` |
 
 use std::ops::{Add, Sub};
@@ -46,8 +46,14 @@ pub type Slabs<const AXES: usize> = [f32; AXES];
 #[doc(hidden)]
 pub type Member = [i8; 3];
 
-/// The slab of a direction and its sign there; by [`member_index`].
-type SlabTable = [(u8, i8); 27];
+/// The slab of a direction, and its sign there.
+type Slab = (u8, i8);
+
+/// By [`member_index`].
+type SlabTable = [Slab; 27];
+
+/// The slabs of a cone's members, by the [`code`] of a direction in it.
+type ConeTable = [[Slab; 3]; 128];
 
 /// A set of directions that is closed under the symmetries of the cube. Sealed: an unsupported k
 /// does not compile.
@@ -55,8 +61,13 @@ pub trait DirectionSet<const AXES: usize>: sealed::Sealed {
     /// The slabs' directions, one of each opposite two. The first three are x, y and z.
     const DIRECTIONS: [Vec3; AXES];
 
+    /// The members of the cones of directions with components `x >= y >= z >= 0`; twice the same
+    /// where there is one.
     #[doc(hidden)]
-    const SLABS: SlabTable = slab_table(&Self::DIRECTIONS);
+    const CONES: [[Member; 3]; 2];
+
+    #[doc(hidden)]
+    const SLABS: ConeTable = cone_table(&Self::DIRECTIONS, &Self::CONES);
 
     /// The projections of a point on all directions. Written out, as `x·0 + y·1 + z·1` costs three
     /// products that no compiler may leave out; fitting k-DOPs was a tenth of a build.
@@ -69,28 +80,23 @@ pub trait DirectionSet<const AXES: usize>: sealed::Sealed {
     #[doc(hidden)]
     fn project_components<T: Component>(components: [T; 3]) -> [T; AXES];
 
-    /// The cone of three adjacent directions that contains the direction with components `x >= y >=
-    /// z >= 0`, with their coefficients. Hidden, as only the crate and its tests call it.
+    /// Which cone contains the direction with components `x >= y >= z >= 0`, and the coefficients of
+    /// its members. Hidden, as only the crate and its tests call it.
     #[doc(hidden)]
-    fn cone(sorted: DVec3) -> [(Member, f64); 3];
+    fn coefficients(sorted: DVec3) -> (usize, [f64; 3]);
 
     /// `direction` as a non-negative combination of three adjacent directions of the set: for each
     /// the slab's index and the coefficient, negative where the slab's opposite direction is meant.
+    /// Which they are is read from a table: sorting axes and turning members took twice the time of
+    /// it all.
     #[inline]
     fn correspondence(direction: DVec3) -> [(usize, f64); 3] {
-        let magnitude = direction.abs().to_array();
-        let order = descending_order(magnitude);
-        let [x, y, z] = order;
-        let cone = Self::cone(DVec3::new(magnitude[x], magnitude[y], magnitude[z]));
-        let signs = direction.to_array().map(|component| if component < 0.0 { -1 } else { 1 });
+        let magnitude = direction.abs();
+        let (cone, coefficients) = Self::coefficients(descending(magnitude));
+        let slabs = &Self::SLABS[code(direction, magnitude, cone)];
         let term = |i: usize| {
-            let (canonical, coefficient) = cone[i];
-            let mut member = [0; 3];
-            for rank in 0..3 {
-                member[order[rank]] = canonical[rank] * signs[order[rank]];
-            }
-            let (slab, sign) = Self::SLABS[member_index(member)];
-            (usize::from(slab), f64::from(sign) * coefficient)
+            let (slab, sign) = slabs[i];
+            (usize::from(slab), f64::from(sign) * coefficients[i])
         };
         [term(0), term(1), term(2)]
     }
@@ -116,6 +122,43 @@ const fn slab_table(directions: &[Vec3]) -> SlabTable {
         table[member_index(member)] = (slab as u8, 1);
         table[member_index([-member[0], -member[1], -member[2]])] = (slab as u8, -1);
         slab += 1;
+    }
+    table
+}
+
+/// The order of a direction's components, their signs and its cone, as bits.
+#[inline(always)]
+fn code(direction: DVec3, magnitude: DVec3, cone: usize) -> usize {
+    let DVec3 { x, y, z } = magnitude;
+    let order = [x >= y, y >= z, x >= z];
+    let negative = direction.to_array().map(|component| component < 0.0);
+    let bits = order.into_iter().chain(negative).enumerate();
+    bits.fold(cone << 6, |code, (i, bit)| code | usize::from(bit) << i)
+}
+
+/// What each [`code`] stands for. Some orders are none: nothing is asked of these.
+const fn cone_table(directions: &[Vec3], cones: &[[Member; 3]; 2]) -> ConeTable {
+    let slabs = slab_table(directions);
+    let mut table = [[(0, 0); 3]; 128];
+    let mut code = 0;
+    while code < table.len() {
+        let [x_before_y, y_before_z, x_before_z] = [code & 1, code >> 1 & 1, code >> 2 & 1];
+        // How many components are before each.
+        let ranks =
+            [2 - x_before_y - x_before_z, 1 + x_before_y - y_before_z, y_before_z + x_before_z];
+        let mut i = 0;
+        while i < 3 {
+            let mut member = [0; 3];
+            let mut axis = 0;
+            while axis < 3 {
+                let sign = 1 - 2 * (code >> (3 + axis) & 1) as i8;
+                member[axis] = sign * cones[code >> 6][i][ranks[axis]];
+                axis += 1;
+            }
+            table[code][i] = slabs[member_index(member)];
+            i += 1;
+        }
+        code += 1;
     }
     table
 }
@@ -149,6 +192,7 @@ const fn concatenate<const AXES: usize>(sets: [&[Vec3]; 3]) -> [Vec3; AXES] {
 
 impl DirectionSet<7> for Directions<7> {
     const DIRECTIONS: [Vec3; 7] = concatenate([&FACES, &CORNERS, &[]]);
+    const CONES: [[Member; 3]; 2] = [[[1, 0, 0], [1, 1, 1], [1, 1, -1]]; 2];
 
     #[inline(always)]
     fn project_components<T: Component>([x, y, z]: [T; 3]) -> [T; 7] {
@@ -156,37 +200,34 @@ impl DirectionSet<7> for Directions<7> {
         [x, y, z, a + z, a - z, b + z, b - z]
     }
 
-    #[inline]
-    fn cone(s: DVec3) -> [(Member, f64); 3] {
-        [([1, 0, 0], s.x - s.y), ([1, 1, 1], 0.5 * (s.y + s.z)), ([1, 1, -1], 0.5 * (s.y - s.z))]
+    #[inline(always)]
+    fn coefficients(s: DVec3) -> (usize, [f64; 3]) {
+        (0, [s.x - s.y, 0.5 * (s.y + s.z), 0.5 * (s.y - s.z)])
     }
 }
 
 impl DirectionSet<9> for Directions<9> {
     const DIRECTIONS: [Vec3; 9] = concatenate([&FACES, &EDGES, &[]]);
+    const CONES: [[Member; 3]; 2] =
+        [[[1, 0, 0], [1, 1, 0], [1, 0, 1]], [[0, 1, 1], [1, 1, 0], [1, 0, 1]]];
 
     #[inline(always)]
     fn project_components<T: Component>([x, y, z]: [T; 3]) -> [T; 9] {
         [x, y, z, x + y, x - y, x + z, x - z, y + z, y - z]
     }
 
-    #[inline]
-    fn cone(s: DVec3) -> [(Member, f64); 3] {
-        let (edge_xy, edge_xz) = ([1, 1, 0], [1, 0, 1]);
-        if s.x >= s.y + s.z {
-            [([1, 0, 0], s.x - s.y - s.z), (edge_xy, s.y), (edge_xz, s.z)]
-        } else {
-            [
-                (edge_xy, 0.5 * (s.x + s.y - s.z)),
-                (edge_xz, 0.5 * (s.x + s.z - s.y)),
-                ([0, 1, 1], 0.5 * (s.y + s.z - s.x)),
-            ]
-        }
+    #[inline(always)]
+    fn coefficients(s: DVec3) -> (usize, [f64; 3]) {
+        // Beyond the face that both cones have, half of what is missing goes to its two members.
+        let beyond = s.x - s.y - s.z;
+        let half = 0.5 * smaller(beyond, 0.0);
+        (usize::from(beyond < 0.0), [larger(beyond, -0.5 * beyond), s.y + half, s.z + half])
     }
 }
 
 impl DirectionSet<13> for Directions<13> {
     const DIRECTIONS: [Vec3; 13] = concatenate([&FACES, &EDGES, &CORNERS]);
+    const CONES: [[Member; 3]; 2] = [[[1, 0, 0], [1, 1, 0], [1, 1, 1]]; 2];
 
     #[inline(always)]
     fn project_components<T: Component>([x, y, z]: [T; 3]) -> [T; 13] {
@@ -194,21 +235,26 @@ impl DirectionSet<13> for Directions<13> {
         [x, y, z, a, b, x + z, x - z, y + z, y - z, a + z, a - z, b + z, b - z]
     }
 
-    #[inline]
-    fn cone(s: DVec3) -> [(Member, f64); 3] {
-        [([1, 0, 0], s.x - s.y), ([1, 1, 0], s.y - s.z), ([1, 1, 1], s.z)]
+    #[inline(always)]
+    fn coefficients(s: DVec3) -> (usize, [f64; 3]) {
+        (0, [s.x - s.y, s.y - s.z, s.z])
     }
 }
 
-/// The axes from the largest component to the smallest. Not sorted if one is NaN: then nothing
-/// overlaps anyway.
-#[inline]
-fn descending_order(v: [f64; 3]) -> [usize; 3] {
-    let mut order = [0, 1, 2];
-    for (i, j) in [(0, 1), (1, 2), (0, 1)] {
-        if v[order[i]] < v[order[j]] {
-            order.swap(i, j);
-        }
-    }
-    order
+/// The components from the largest to the smallest. Any if one is NaN: then nothing overlaps anyway.
+#[inline(always)]
+fn descending(DVec3 { x, y, z }: DVec3) -> DVec3 {
+    let (high, low) = (larger(x, y), smaller(x, y));
+    DVec3::new(larger(high, z), larger(low, smaller(high, z)), smaller(low, z))
+}
+
+/// One instruction, as `f64::max` is not.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+#[inline(always)]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }

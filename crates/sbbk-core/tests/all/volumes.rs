@@ -112,11 +112,11 @@ fn cones_contain_their_directions() {
         sorted.sort_by(|a, b| b.total_cmp(a));
         let sorted = DVec3::from_array(sorted);
         let cones = [
-            Directions::<7>::cone(sorted),
-            Directions::<9>::cone(sorted),
-            Directions::<13>::cone(sorted),
+            Directions::<7>::coefficients(sorted),
+            Directions::<9>::coefficients(sorted),
+            Directions::<13>::coefficients(sorted),
         ];
-        for (_, coefficient) in cones.into_iter().flatten() {
+        for coefficient in cones.into_iter().flat_map(|(_, coefficients)| coefficients) {
             assert!(coefficient >= -1e-15, "{sorted:?}");
         }
     }

@@ -14,6 +14,7 @@ pub mod everyday;
 pub mod front;
 pub mod hard;
 mod helicopter;
+pub mod layers;
 mod meshes;
 mod motion;
 pub mod one_step;

@@ -18,7 +18,7 @@ use crate::ContactGenerator;
 use crate::mesh::{Change, KnownMesh, TreeCache};
 use crate::pair::driver::{ContactList, Limits, Moving, Pair, PairQuery, Scratch, Seen};
 use crate::pair::order::{Candidate, OrderKey};
-use crate::pair::outline::{Outline, patch_size};
+use crate::pair::outline::{Outline, PatchPlan};
 use crate::pair::pose::{MeshPlace, PairPose};
 
 impl<'a> Pair for ConvexPair<'a> {
@@ -238,9 +238,9 @@ impl PairQuery for ConvexQuery<'_> {
         &mut scratch.convex_contacts
     }
 
-    fn patch_size(&self, _: &[(u32, Near)]) -> Option<Real> {
+    fn patch_plan(&self, _: &[(u32, Near)]) -> Option<PatchPlan> {
         let has_patches = self.pair.has_patches && self.pair.mesh.is_rigid();
-        has_patches.then(|| patch_size(self.moving().ball.radius))
+        has_patches.then(|| PatchPlan::new(self.pose().prediction, self.moving().ball.radius))
     }
 
     fn outline(

@@ -34,7 +34,7 @@ use crate::ContactGenerator;
 use crate::mesh::{Change, Hierarchy, KnownMesh, TreeCache};
 use crate::pair::driver::{Moving, Pair, Scratch};
 use crate::pair::order::OrderKey;
-use crate::pair::outline::patch_size;
+use crate::pair::outline::PatchPlan;
 use crate::pair::pose::{MeshPlace, PairPose};
 
 /// A mesh and a height field.
@@ -88,8 +88,8 @@ impl<'a> Pair for FieldPair<'a> {
             pose: self.pose,
             parrys_pose: self.pose.pos12,
             generator: self.contacts,
-            patch_size: (self.has_patches && self.mesh.is_rigid())
-                .then(|| patch_size(self.mesh.ball().radius)),
+            patches: (self.has_patches && self.mesh.is_rigid())
+                .then(|| PatchPlan::new(self.pose.prediction, self.mesh.ball().radius)),
             points: ManifoldPoints::new(),
         };
         (change, query)

@@ -66,7 +66,8 @@ pub(super) struct Judge<'a, S> {
 
 impl<S: Surfaces> Judge<'_, S> {
     /// The contact of the surfaces that the contact of their triangles stands for, if there is one:
-    /// perhaps only in a second round. `points` stays empty if it is the same.
+    /// perhaps only in a second round. `points` stays empty if it is the same. Else it can be deeper
+    /// than its points, as a flat side goes on beyond a triangle.
     #[inline(always)]
     pub(super) fn verdict(
         &self,
@@ -150,8 +151,25 @@ impl<S: Surfaces> Judge<'_, S> {
         let Outward { contact, is_extremal } = outward(t1, t2, is_solid, is_end, None, points)?;
         let is_overlap = is_crossing || contact.distance <= 0.0;
         let is_shallow = contact.distance >= -greatest;
-        let is_meant = is_overlap && (is_shallow || is_extremal && self.is_deep(local, &contact));
-        is_meant.then_some(contact)
+        let is_meant = is_overlap
+            && regions.agrees(self.pair, contact.normal)
+            && (is_shallow || is_extremal && self.is_deep(local, &contact));
+        if !is_meant {
+            return None;
+        }
+        // Between two rows of triangles of a flat side there is no overlap with either: a box that sank
+        // into a slab along its sides would rest there.
+        let most = (contact.distance + greatest).max(0.0);
+        let side_beyond = |i: usize, direction: DVec3| {
+            around[i]
+                .map_or(0.0, |around| around.side_beyond(self.pair[i], own(i, direction), most))
+        };
+        let beyond = if regions.is_unheld(self.pair) {
+            side_beyond(0, contact.normal) + side_beyond(1, -contact.normal)
+        } else {
+            0.0
+        };
+        Some(TriangleContact { distance: contact.distance - beyond.min(most), ..contact })
     }
 
     /// How the middle of a solid lies to the triangle of a sheet.

@@ -19,7 +19,7 @@ use crate::ContactGenerator;
 use crate::mesh::{Change, Hierarchy, KnownMesh, MeshSurface, PreparedMesh, TreeCache};
 use crate::pair::driver::{Moving, Pair, Scratch};
 use crate::pair::order::OrderKey;
-use crate::pair::outline::patch_size;
+use crate::pair::outline::PatchPlan;
 use crate::pair::pose::PairPose;
 
 /// Two meshes.
@@ -85,7 +85,8 @@ impl<'a> Pair for MeshPair<'a> {
             pose: self.pose,
             parrys_pose: self.parrys_pose(is_second_first),
             generator: self.contacts,
-            patch_size: (self.has_patches && are_rigid).then(|| patch_size(radius)),
+            patches: (self.has_patches && are_rigid)
+                .then(|| PatchPlan::new(self.pose.prediction, radius)),
             points: ManifoldPoints::new(),
         };
         (change, query)

@@ -13,7 +13,7 @@ use super::judge::{Judge, Surfaces};
 use crate::ContactGenerator;
 use crate::pair::driver::{ContactList, Limits, Moving, PairQuery, Scratch, Seen};
 use crate::pair::order::{Candidate, OrderKey};
-use crate::pair::outline::Outline;
+use crate::pair::outline::{Outline, PatchPlan};
 use crate::pair::pose::PairPose;
 
 /// The features that were closest at the last query, to be tried first.
@@ -48,7 +48,7 @@ pub(crate) struct TriangleQuery<'q, S> {
     /// The pose that stock Parry passes on, bit for bit.
     pub(super) parrys_pose: Pose,
     pub(super) generator: ContactGenerator,
-    pub(super) patch_size: Option<Real>,
+    pub(super) patches: Option<PatchPlan>,
     /// Memory for the points of a contact.
     pub(super) points: ManifoldPoints,
 }
@@ -138,14 +138,14 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
     /// Where all contacts are far, a patch a direction. Of more than four points of one Rapier's
     /// solver leaves out those beyond the prediction distance without soft CCD: a plate that falls
     /// flat would turn about one point, and through what it falls on.
-    fn patch_size(&self, contacts: &[(u32, Found)]) -> Option<Real> {
+    fn patch_plan(&self, contacts: &[(u32, Found)]) -> Option<PatchPlan> {
         let near = self.shapes.near();
         let are_far = contacts.iter().all(|(_, found)| found.contact.distance > near);
         let may_be_far = f64::from(self.pose.prediction) > near;
         if may_be_far && are_far {
-            return Some(Real::INFINITY);
+            return Some(PatchPlan::FAR);
         }
-        self.patch_size.map(|size| if may_be_far { Real::INFINITY } else { size })
+        self.patches
     }
 
     fn outline(
@@ -192,6 +192,8 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
                 clip(t1, t2, contact.normal, points);
                 if has_closest {
                     push_closest(t1, t2, &contact, points);
+                } else {
+                    deepen(points, &contact);
                 }
                 let deepest = -shapes.near();
                 points.iter_mut().for_each(|point| point.distance = point.distance.max(deepest));
@@ -210,5 +212,18 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
                 );
             }
         });
+    }
+}
+
+/// Makes points as deep as a contact that is deeper than all of them.
+fn deepen(points: &mut ManifoldPoints, contact: &TriangleContact) {
+    let distances = points.iter().map(|point| point.distance);
+    let beyond = distances.fold(f64::INFINITY, f64::min) - contact.distance;
+    if beyond > 0.0 {
+        for point in points {
+            point.point1 += 0.5 * beyond * contact.normal;
+            point.point2 -= 0.5 * beyond * contact.normal;
+            point.distance -= beyond;
+        }
     }
 }

@@ -13,6 +13,7 @@ mod bowls;
 mod ccd;
 mod chain;
 mod depth;
+pub mod engines;
 mod figures;
 mod gears;
 mod kit;

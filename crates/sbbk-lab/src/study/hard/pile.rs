@@ -2,14 +2,14 @@
 
 use std::time::Instant;
 
-use glamx::Vec3;
+use glamx::{Pose3, Vec3};
 use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::geometry::ColliderBuilder;
 
 use super::Trial;
 use super::depth::{Depths, PairDepths, touching_pairs};
 use super::figures::{Figures, Gain, energy, largest, places};
-use super::kit::{Form, Kit};
+use super::kit::{Form, Kit, World};
 use super::report::STEP_TIME;
 use crate::metrics::{Summary, solver_points};
 use crate::scene::{MonkeyPile, SceneError};
@@ -21,6 +21,8 @@ const HIGH_AT: usize = 180;
 const FULL_AT: usize = 60;
 /// Pairs whose depth is judged.
 const PAIRS: usize = 150;
+/// Half extents of the floor.
+pub(super) const FLOOR: Vec3 = Vec3::new(100.0, 1.0, 100.0);
 
 pub(super) fn trials(heads: &[usize]) -> Vec<Trial> {
     let trial = |&heads: &usize| {
@@ -30,16 +32,30 @@ pub(super) fn trials(heads: &[usize]) -> Vec<Trial> {
     heads.iter().map(trial).collect()
 }
 
-fn run(kit: &Kit, heads: usize) -> Result<Figures, SceneError> {
-    let pile = MonkeyPile { seed: kit.seed, ..MonkeyPile::with_heads(heads) };
+/// A floor, whose top is at height 0, and above it bodies that do not sleep.
+pub(super) fn build(
+    kit: &Kit,
+    floor: Vec3,
+    poses: impl IntoIterator<Item = Pose3>,
+    collider: &ColliderBuilder,
+) -> (World, Vec<RigidBodyHandle>) {
     let mut world = kit.world();
-    let floor = RigidBodyBuilder::fixed().translation(-Vec3::Y);
-    world.insert(floor, ColliderBuilder::cuboid(100.0, 1.0, 100.0));
-    let collider = kit.collider(&Form::mesh(pile.mesh.clone()))?;
-    let bodies = pile.poses().into_iter().map(|pose| {
+    let Vec3 { x, y, z } = floor;
+    world.insert(
+        RigidBodyBuilder::fixed().translation(-y * Vec3::Y),
+        ColliderBuilder::cuboid(x, y, z),
+    );
+    let bodies = poses.into_iter().map(|pose| {
         world.insert(RigidBodyBuilder::dynamic().pose(pose).can_sleep(false), collider.clone()).0
     });
-    let bodies: Vec<RigidBodyHandle> = bodies.collect();
+    let bodies = bodies.collect();
+    (world, bodies)
+}
+
+fn run(kit: &Kit, heads: usize) -> Result<Figures, SceneError> {
+    let pile = MonkeyPile { seed: kit.seed, ..MonkeyPile::with_heads(heads) };
+    let collider = kit.collider(&Form::mesh(pile.mesh.clone()))?;
+    let (mut world, bodies) = build(kit, FLOOR, pile.poses(), &collider);
     let start = energy(&world, &bodies);
     let (mut gain, mut deep) = (Gain::default(), PairDepths::default());
     let (mut times, mut points) = (Vec::new(), 0.0);

@@ -1,4 +1,7 @@
-//! A cube that slides and a ball that rolls over fine meshes, beside the same on a cuboid.
+//! A cube that slides and a ball that rolls over fine meshes, beside the same on a cuboid, which the
+//! same answers for: the ball has facets, and what these cost is no matter of the floor. (With steps
+//! an eighth as long it comes 17.1 to 17.2 units far, whoever answers; at a sixtieth of a second 19.6
+//! in stock Rapier, 16.3 as a convex hull, 15.4 with patches.)
 
 use glamx::{Pose3, Quat, Vec3};
 use rapier3d::dynamics::RigidBodyBuilder;
@@ -25,7 +28,7 @@ const LAST: usize = 60;
 enum Rider {
     /// A unit high, slides with little friction.
     Cube,
-    /// A unit in radius, rolls. It is so fine and slow that on a cuboid it loses little.
+    /// A unit in radius, rolls.
     Ball,
 }
 
@@ -135,16 +138,15 @@ impl Rider {
 fn run(kit: &Kit, rider: Rider, floor: &Mesh) -> Result<Figures, SceneError> {
     let Vec3 { x, y, z } = HALF_EXTENTS;
     let cuboid = ColliderBuilder::cuboid(x, y, z).translation(-Vec3::Y * y);
-    let control =
-        rider.ride(&Kit { column: Column::Control, film: None, ..kit.clone() }, cuboid.clone())?;
+    let control = rider.ride(&Kit { film: None, ..kit.clone() }, cuboid.clone())?;
     let floor = match kit.column {
         Column::Control => cuboid,
         _ => ColliderBuilder::new(kit.mesh_shape(floor)?),
     };
     let ride = rider.ride(kit, floor)?;
     Ok(Figures::default()
-        .within("path to control's", ride.path / control.path, 0.98, 1.02)
-        .within("speed to control's", ride.speed / control.speed, 0.98, 1.02)
+        .within("path to that on a cuboid", ride.path / control.path, 0.98, 1.02)
+        .within("speed to that on a cuboid", ride.speed / control.speed, 0.98, 1.02)
         .at_most("bump", ride.bump - control.bump, 0.1)
-        .note("control's path", control.path))
+        .note("path on a cuboid", control.path))
 }

@@ -1,0 +1,390 @@
+//! The pile of heads in several engines, each a program of its own. All read the same file, so that
+//! they start from the same bits; each writes what it did in every step; one judge reads that.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::iter;
+use std::ops::Range;
+use std::path::Path;
+use std::time::Instant;
+
+use glamx::{DQuat, DVec3, Pose3, Quat, Vec3};
+use rapier3d::geometry::{ColliderBuilder, SharedShape};
+use rapier3d::parry::mass_properties::MassProperties;
+use serde_json::Value;
+
+use super::Column;
+use super::depth::Depths;
+use super::figures::Gain;
+use super::kit::{Form, Kit};
+use super::pile::{FLOOR, build};
+use crate::mesh::Mesh;
+use crate::metrics::{Environment, Summary, solver_points};
+use crate::report::{Results, Row, TableSpec, number};
+use crate::scene::{MonkeyPile, SceneError};
+use crate::study::shape;
+
+const STUDY: &str = "engines";
+/// Ten seconds, and the steps of them that are timed: in motion, and at rest.
+const STEPS: usize = 600;
+const MOVING: Range<usize> = 60..180;
+const RESTING: Range<usize> = 540..600;
+/// Pairs that are deeper, in units, are inside each other: half a percent of a head, and ten times
+/// the depth that Rapier allows.
+const INSIDE: f64 = 0.01;
+/// Numbers of a step in the file of a run, before those of the heads: milliseconds, points of
+/// contact, and the greatest memory until then in MiB, of the process and above that with an empty
+/// world.
+const HEADER: usize = 4;
+/// Numbers of a head: place, orientation (x, y, z, w), velocity, angular velocity.
+const STATE: usize = 13;
+
+/// The scene, as every engine gets it.
+///
+/// The frame of the head is that of its principal axes of inertia, with the centre of mass as
+/// origin: engines that ask for it need not round anything.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EnginePile {
+    /// Seconds a step.
+    pub time_step: f32,
+    /// Along negative `y`.
+    pub gravity: f32,
+    /// Coefficient of each contact. There is no restitution.
+    pub friction: f32,
+    /// Half extents of a fixed box, whose top is at height 0.
+    pub floor: Vec3,
+    /// Mass of a head.
+    pub mass: f32,
+    /// Its moments of inertia about the axes.
+    pub inertia: Vec3,
+    /// The head.
+    pub mesh: Mesh,
+    /// Where the heads start, at rest.
+    pub poses: Vec<Pose3>,
+    /// Points whose hulls are the convex parts of a head.
+    pub parts: Vec<Vec<Vec3>>,
+}
+
+impl EnginePile {
+    /// A pile of closed heads, with Parry's decomposition of them.
+    ///
+    /// Errors: the mesh has no triangles.
+    pub fn new(pile: &MonkeyPile) -> Result<Self, SceneError> {
+        let properties = shape(&pile.mesh)?.mass_properties(1.0);
+        let axes =
+            Pose3::from_parts(properties.local_com, properties.principal_inertia_local_frame);
+        let mesh = pile.mesh.clone().posed(&axes.inverse()).named("head");
+        let convex = SharedShape::convex_decomposition(&mesh.vertices, &mesh.triangles);
+        let parts = convex.as_compound().into_iter().flat_map(|compound| compound.shapes());
+        let parts = parts.filter_map(|(_, part)| Some(part.as_convex_polyhedron()?.points()));
+        let parts = parts.map(<[Vec3]>::to_vec).collect();
+        let world = Self::kit(Column::Stock).world();
+        Ok(Self {
+            time_step: world.integration_parameters.dt,
+            gravity: -world.gravity.y,
+            friction: ColliderBuilder::default_friction(),
+            floor: FLOOR,
+            mass: properties.mass(),
+            inertia: properties.principal_inertia(),
+            poses: MonkeyPile { mesh: mesh.clone(), ..pile.clone() }.poses(),
+            mesh,
+            parts,
+        })
+    }
+
+    fn kit(column: Column) -> Kit {
+        Kit { column, recycling: true, seed: 1, film: None }
+    }
+
+    /// Writes it as numbers in f32, lists after their lengths.
+    ///
+    /// Errors: the file cannot be written.
+    pub fn write(&self, path: &Path) -> io::Result<()> {
+        fn list<const N: usize>(items: impl ExactSizeIterator<Item = [f32; N]>) -> Vec<f32> {
+            iter::once(items.len() as f32).chain(items.flatten()).collect()
+        }
+        let poses = self
+            .poses
+            .iter()
+            .map(|Pose3 { translation: t, rotation: r, .. }| [t.x, t.y, t.z, r.x, r.y, r.z, r.w]);
+        let mut numbers = [
+            vec![self.time_step, self.gravity, self.friction],
+            self.floor.to_array().to_vec(),
+            vec![STEPS as f32, self.mass],
+            self.inertia.to_array().to_vec(),
+            list(self.mesh.vertices.iter().map(Vec3::to_array)),
+            list(self.mesh.triangles.iter().map(|indices| indices.map(|index| index as f32))),
+            list(poses),
+            vec![self.parts.len() as f32],
+        ]
+        .concat();
+        numbers.extend(self.parts.iter().flat_map(|part| list(part.iter().map(Vec3::to_array))));
+        fs::write(path, bytes(&numbers))
+    }
+
+    /// Reads it again.
+    ///
+    /// Errors: the file cannot be read, or is none of these.
+    pub fn read(path: &Path) -> io::Result<Self> {
+        Self::from_numbers(&mut read_numbers(path)?.into_iter())
+            .ok_or_else(|| invalid(format!("{} breaks off", path.display())))
+    }
+
+    fn from_numbers(numbers: &mut impl Iterator<Item = f32>) -> Option<Self> {
+        fn take<const N: usize>(numbers: &mut impl Iterator<Item = f32>) -> Option<[f32; N]> {
+            let mut taken = [0.0; N];
+            for number in &mut taken {
+                *number = numbers.next()?;
+            }
+            Some(taken)
+        }
+        fn list<const N: usize, T>(
+            numbers: &mut impl Iterator<Item = f32>,
+            make: impl Fn([f32; N]) -> T,
+        ) -> Option<Vec<T>> {
+            let [count] = take(numbers)?;
+            (0..count as usize).map(|_| take(numbers).map(&make)).collect()
+        }
+        let [time_step, gravity, friction] = take(numbers)?;
+        let floor = Vec3::from_array(take(numbers)?);
+        let [_steps, mass] = take(numbers)?;
+        let inertia = Vec3::from_array(take(numbers)?);
+        let vertices = list(numbers, Vec3::from_array)?;
+        let triangles = list(numbers, |indices: [f32; 3]| indices.map(|index| index as u32))?;
+        let poses = list(numbers, |[x, y, z, i, j, k, w]| {
+            Pose3::from_parts(Vec3::new(x, y, z), Quat::from_xyzw(i, j, k, w))
+        })?;
+        let [count] = take(numbers)?;
+        let parts = (0..count as usize).map(|_| list(numbers, Vec3::from_array));
+        let parts = parts.collect::<Option<_>>()?;
+        let mesh = Mesh::new("head", vertices, triangles);
+        Some(Self { time_step, gravity, friction, floor, mass, inertia, mesh, poses, parts })
+    }
+
+    /// Runs it in Rapier and writes the file of the run.
+    ///
+    /// Errors: the file cannot be written, or the mesh has no triangles.
+    pub fn run(&self, column: Column, path: &Path) -> Result<(), Box<dyn std::error::Error>> {
+        let mut file = BufWriter::new(File::create(path)?);
+        let kit = Self::kit(column);
+        kit.world().step();
+        let empty = memory("VmRSS");
+        let form = Form::parts(self.mesh.clone(), self.parts.iter().cloned());
+        let properties = MassProperties::new(Vec3::ZERO, self.mass, self.inertia);
+        let collider = kit.collider(&form)?.friction(self.friction).mass_properties(properties);
+        let (mut world, bodies) = build(&kit, self.floor, self.poses.iter().copied(), &collider);
+        world.integration_parameters.dt = self.time_step;
+        world.gravity = -self.gravity * Vec3::Y;
+        for _ in 0..STEPS {
+            let clock = Instant::now();
+            world.step();
+            let time = 1e3 * clock.elapsed().as_secs_f32();
+            let memory = memory("VmHWM");
+            let mut numbers = vec![time, solver_points(&world) as f32, memory, memory - empty];
+            for body in bodies.iter().map(|&body| &world.bodies[body]) {
+                numbers.extend(body.translation().to_array());
+                numbers.extend(body.rotation().to_array());
+                numbers.extend([body.linvel(), body.angvel()].map(|v| v.to_array()).concat());
+            }
+            file.write_all(&bytes(&numbers))?;
+        }
+        Ok(file.flush()?)
+    }
+
+    /// Reads what engines did, each in several runs that are alike, and makes one table of it.
+    ///
+    /// Errors: a file cannot be read or does not have all steps, or runs of an engine differ.
+    pub fn judge(&self, engines: &[(String, Vec<&Path>)]) -> io::Result<Results> {
+        let mut rows = Vec::new();
+        let depths = Depths::new(&self.mesh).map_err(io::Error::other)?;
+        for (engine, paths) in engines {
+            let runs = paths.iter().map(|path| self.read_run(path));
+            let runs = runs.collect::<io::Result<Vec<Run>>>()?;
+            let is_alike =
+                |run: &Run| (0..STEPS).all(|step| run.heads(step).eq(runs[0].heads(step)));
+            if !runs.iter().all(is_alike) {
+                return Err(invalid(format!("runs of {engine} differ")));
+            }
+            let figures = self.figures(&runs, &depths);
+            rows.extend(figures.into_iter().map(|(figure, value)| {
+                Row::new(STUDY, engine).key("figure", figure).with("value", value)
+            }));
+        }
+        let title = format!(
+            "The pile of {} heads of {} triangles in several engines",
+            self.poses.len(),
+            self.mesh.triangle_count()
+        );
+        let columns = engines.iter().map(|(name, _)| number(name, "value").of(name));
+        let table = TableSpec::new(title, STUDY, &["figure"], columns)
+            .note(format!(
+                "in motion: steps {} to {}, at rest: {} to {}; of each step the least time of \
+                     the runs, all of which do the same",
+                MOVING.start + 1,
+                MOVING.end,
+                RESTING.start + 1,
+                RESTING.end
+            ))
+            .note(format!(
+                "depth: of the deepest vertex, by winding number and distance to the surface; of \
+                     a head: the greatest of its pairs; inside each other: deeper than {} mm; \
+                     units are metres",
+                1e3 * INSIDE
+            ))
+            .note(format!(
+                "control: stock with the {} parts of Parry's decomposition",
+                self.parts.len()
+            ));
+        let tables = vec![table.of(&rows)];
+        Ok(Results { environment: Environment::detect(), rows, tables, panels: Vec::new() })
+    }
+
+    fn read_run(&self, path: &Path) -> io::Result<Run> {
+        let numbers = read_numbers(path)?;
+        let step_size = HEADER + STATE * self.poses.len();
+        if numbers.len() != STEPS * step_size {
+            let text = format!("{}: not {} steps of {step_size} numbers", path.display(), STEPS);
+            return Err(invalid(text));
+        }
+        Ok(Run { numbers, step_size })
+    }
+
+    /// What the table shows of an engine.
+    fn figures(&self, runs: &[Run], depths: &Depths) -> Vec<(&'static str, Value)> {
+        let run = &runs[0];
+        let times = |steps: Range<usize>| {
+            let least = |step| runs.iter().map(|run| run.header(step)[0]).fold(f64::NAN, f64::min);
+            let summary = Summary::of(steps.map(least));
+            summary.map_or([f64::NAN; 2], |times| [times.median, times.mean])
+        };
+        let mean = |steps: Range<usize>, of: &dyn Fn(usize) -> f64| {
+            steps.clone().map(of).sum::<f64>() / steps.len() as f64
+        };
+        let of_heads = |step, of: &dyn Fn(&[f32]) -> f64| {
+            run.heads(step).map(of).sum::<f64>() / self.poses.len() as f64
+        };
+        let height = |step| of_heads(step, &|head| f64::from(head[1]));
+        let kinetic = |step| of_heads(step, &|head| self.kinetic(head));
+        let weight = f64::from(self.mass) * f64::from(self.gravity);
+        let heights = self.poses.iter().map(|pose| f64::from(pose.translation.y));
+        let start = weight * heights.sum::<f64>() / self.poses.len() as f64;
+        let mut gain = Gain::default();
+        gain.see(start);
+        (0..STEPS).for_each(|step| gain.see(kinetic(step) + weight * height(step)));
+        let [moving, resting] = [MOVING, RESTING].map(times);
+        let [after_2, after_10] = [119, STEPS - 1].map(|step| self.depths(run, step, depths));
+        let [.., process, above] = run.header(STEPS - 1);
+        vec![
+            ("step in motion, median, ms", moving[0].into()),
+            ("step in motion, mean, ms", moving[1].into()),
+            ("step at rest, median, ms", resting[0].into()),
+            ("step at rest, mean, ms", resting[1].into()),
+            ("points in motion", mean(MOVING, &|step| run.header(step)[1]).into()),
+            ("points at rest", mean(RESTING, &|step| run.header(step)[1]).into()),
+            ("mean height after 2 s", height(119).into()),
+            ("mean height after 3 s", height(179).into()),
+            ("mean height after 10 s", height(STEPS - 1).into()),
+            ("kinetic energy in motion, J a head", mean(MOVING, &kinetic).into()),
+            ("kinetic energy at rest, mJ a head", (1e3 * mean(RESTING, &kinetic)).into()),
+            ("energy gained, of that at the start", (gain.most / start).into()),
+            ("mean depth of a head after 2 s, mm", (1e3 * after_2.mean).into()),
+            ("deepest pair after 2 s, mm", (1e3 * after_2.deepest).into()),
+            ("pairs inside each other after 2 s", after_2.inside.into()),
+            ("mean depth of a head after 10 s, mm", (1e3 * after_10.mean).into()),
+            ("deepest pair after 10 s, mm", (1e3 * after_10.deepest).into()),
+            ("pairs inside each other after 10 s", after_10.inside.into()),
+            ("peak memory above an empty world, MiB", above.into()),
+            ("peak memory of the process, MiB", process.into()),
+        ]
+    }
+
+    /// Kinetic energy of a head.
+    fn kinetic(&self, head: &[f32]) -> f64 {
+        let [_, _, _, i, j, k, w, velocities @ ..] =
+            std::array::from_fn::<f64, STATE, _>(|index| f64::from(head[index]));
+        let [linear, angular] = [0, 3].map(|index| DVec3::from_slice(&velocities[index..]));
+        let angular = DQuat::from_xyzw(i, j, k, w).normalize().inverse() * angular;
+        let inertia = self.inertia.as_dvec3();
+        0.5 * (f64::from(self.mass) * linear.length_squared() + inertia.dot(angular * angular))
+    }
+
+    /// How deep heads are in each other, all pairs of them.
+    fn depths(&self, run: &Run, step: usize, depths: &Depths) -> HeadDepths {
+        let pose = |head: &[f32]| {
+            let rotation = Quat::from_slice(&head[3..]).normalize();
+            Pose3::from_parts(Vec3::from_slice(head), rotation)
+        };
+        let poses: Vec<Pose3> = run.heads(step).map(pose).collect();
+        let lengths = self.mesh.vertices.iter().map(|vertex| vertex.length());
+        let reach = 2.0 * lengths.fold(0.0, f32::max);
+        let mut of_heads = vec![0.0_f64; poses.len()];
+        let mut found = HeadDepths::default();
+        for (one, pose) in poses.iter().enumerate() {
+            for (other, others) in poses.iter().enumerate().skip(one + 1) {
+                // NaN is not far.
+                if pose.translation.distance(others.translation) > reach {
+                    continue;
+                }
+                let depth = f64::from(depths.between(pose, depths, others));
+                found.inside += usize::from(depth > INSIDE);
+                // NaN stays.
+                found.deepest = if depth <= found.deepest { found.deepest } else { depth };
+                for head in [one, other] {
+                    of_heads[head] = of_heads[head].max(depth);
+                }
+            }
+        }
+        found.mean = of_heads.iter().sum::<f64>() / poses.len() as f64;
+        found
+    }
+}
+
+/// How deep heads are in each other.
+#[derive(Default)]
+struct HeadDepths {
+    mean: f64,
+    deepest: f64,
+    inside: usize,
+}
+
+/// The file of a run.
+struct Run {
+    numbers: Vec<f32>,
+    step_size: usize,
+}
+
+impl Run {
+    fn step(&self, step: usize) -> &[f32] {
+        &self.numbers[step * self.step_size..][..self.step_size]
+    }
+
+    fn header(&self, step: usize) -> [f64; HEADER] {
+        std::array::from_fn(|index| f64::from(self.step(step)[index]))
+    }
+
+    fn heads(&self, step: usize) -> impl Iterator<Item = &[f32]> {
+        self.step(step)[HEADER..].chunks_exact(STATE)
+    }
+}
+
+fn bytes(numbers: &[f32]) -> Vec<u8> {
+    numbers.iter().flat_map(|number| number.to_le_bytes()).collect()
+}
+
+fn read_numbers(path: &Path) -> io::Result<Vec<f32>> {
+    let bytes = fs::read(path)?;
+    let (numbers, _) = bytes.as_chunks();
+    Ok(numbers.iter().map(|&bytes| f32::from_le_bytes(bytes)).collect())
+}
+
+fn invalid(text: String) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, text)
+}
+
+/// Memory of this process in MiB, as Linux tells it; else 0.
+fn memory(name: &str) -> f32 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find(|line| line.starts_with(name));
+    let number = line.and_then(|line| line.split_ascii_whitespace().nth(1)?.parse::<f32>().ok());
+    number.unwrap_or(0.0) / 1024.0
+}

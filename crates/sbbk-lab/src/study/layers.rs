@@ -1,0 +1,277 @@
+//! Which layers of a tree should be boxes and which k-DOPs: fixed plans beside the default one, on
+//! pairs of meshes of different kinds.
+//!
+//! Bare trees list all contacts of triangles at a pose, with every kind of k-DOP and size of leaf; the
+//! dispatcher, which has 18-DOPs and leaves of four triangles, is asked as a user asks it.
+
+use std::hint::black_box;
+use std::sync::Arc;
+use std::time::Duration;
+
+use glamx::Vec3;
+use oorandom::Rand32;
+use rapier_integration::{SbbkConfig, SbbkDispatcher};
+use rapier3d::geometry::SharedShape;
+use rapier3d::math::Real;
+use sbbk_core::query::{SearchScratch, contacts};
+use sbbk_core::traverse::Placement;
+use sbbk_core::tree::{BATCH, BuildError, BuildOptions, LayerPlan, Tree};
+use sbbk_core::volumes::{DirectionSet, Directions};
+
+use super::motion::{Approach, Mode, Place, mode_notes};
+use super::pair::{Contest, Sequence, query_count, sweep};
+use super::turns::{race, timed};
+use super::{Progress, StudyError, shape};
+use crate::backend::SharedDispatcher;
+use crate::mesh::{self, Mesh, Thread};
+use crate::metrics::Environment;
+use crate::report::{Results, Row, Table, TableSpec, faster, number};
+
+const BARE: &str = "layers: bare trees";
+const DISPATCHER: &str = "layers: dispatcher";
+/// Rapier's default.
+const PREDICTION: Real = 0.02;
+/// How far the second mesh goes beyond the first touch, in units; negative: short of it.
+const ADVANCES: [Real; 4] = [-0.95 * PREDICTION, -0.5 * PREDICTION, 0.0, PREDICTION];
+
+/// The default first: the others are compared with it.
+const PLANS: [(&str, LayerPlan); 6] = [
+    ("default", LayerPlan::SBBK),
+    ("boxes", LayerPlan::AABB_ONLY),
+    ("sphere, boxes", LayerPlan { sphere_root: true, kdop_from_depth: None }),
+    ("from 1", LayerPlan { sphere_root: true, kdop_from_depth: Some(1) }),
+    ("from 6", LayerPlan { sphere_root: true, kdop_from_depth: Some(6) }),
+    ("from 8", LayerPlan { sphere_root: true, kdop_from_depth: Some(8) }),
+];
+/// What bare trees can besides.
+const OTHERS: [&str; 3] = ["14-DOPs", "26-DOPs", "leaves of 2"];
+
+const LEAST: &str = "times: means over the poses of the least time at each; plans take turns there";
+
+/// What to compare, and how thoroughly.
+#[derive(Clone, Debug)]
+pub struct LayersPlan {
+    /// Pairs of meshes.
+    pub pairs: Vec<[Mesh; 2]>,
+    /// Approaches of each pair, with four poses each.
+    pub approach_count: usize,
+    /// How often everything is timed.
+    pub repeats: usize,
+}
+
+impl LayersPlan {
+    /// Ten pairs of meshes of 96 to 20,000 triangles, 16 poses each; about three minutes.
+    pub fn standard() -> Self {
+        let own = |mesh: Mesh| [(); 2].map(|()| mesh.clone().centred().scaled_to(2.0));
+        let head = || mesh::monkey_head_with(11);
+        let under_head =
+            |mesh: Mesh| [mesh.centred().scaled_to(4.0), head().centred().scaled_to(0.5)];
+        let thread =
+            Thread { root: 0.9, height: 0.1, pitch: 0.2, thicker: 0.0, turns: 6, segments: 96 };
+        let pairs = vec![
+            own(mesh::torus(0.7, 0.3, 8, 6)),
+            own(mesh::cuboid(Vec3::ONE, 5)),
+            own(mesh::ball(1.0, 8)),
+            own(head()),
+            own(mesh::slab(Vec3::new(1.0, 0.03, 0.03), [40, 2, 2]).named("rod")),
+            own(thread.bolt().named("bolt")),
+            own(soup(5000)),
+            own(mesh::monkey_head_with(23)),
+            under_head(mesh::hills(40.0, 100)),
+            under_head(mesh::floor(2.0, 70)),
+        ];
+        Self { pairs, approach_count: 4, repeats: 21 }
+    }
+
+    /// The first four pairs, two approaches each: for trying, not for quoting.
+    pub fn quick() -> Self {
+        let mut standard = Self::standard();
+        standard.pairs.truncate(4);
+        Self { approach_count: 2, repeats: 5, ..standard }
+    }
+}
+
+/// Triangles at random in a cube, each by itself.
+fn soup(count: usize) -> Mesh {
+    let mut random = Rand32::new(7);
+    let mut point = || Vec3::from([(); 3].map(|()| 2.0 * random.rand_float() - 1.0));
+    let corners = (0..count).flat_map(|_| {
+        let centre = point();
+        [(); 3].map(|()| centre + 0.08 * point())
+    });
+    let vertices: Vec<Vec3> = corners.collect();
+    let triangles = (0..count as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    Mesh::new("soup", vertices, triangles)
+}
+
+/// Measures all that `plan` asks for.
+///
+/// Errors: a mesh has no triangles.
+pub fn layers(plan: &LayersPlan, progress: &Progress) -> Result<Results, StudyError> {
+    progress.phase("layers", plan.pairs.len());
+    let mut rows = Vec::new();
+    for meshes in &plan.pairs {
+        let case = Case::new(meshes, plan)?;
+        rows.extend(case.bare(plan.repeats)?);
+        rows.extend(case.dispatcher(plan.repeats));
+        progress.step();
+    }
+    progress.finish();
+    let tables = tables(&rows);
+    Ok(Results { environment: Environment::detect(), rows, tables, panels: Vec::new() })
+}
+
+struct Case<'a> {
+    meshes: &'a [Mesh; 2],
+    shapes: [SharedShape; 2],
+    /// A place of each approach and advance.
+    places: Vec<Place>,
+}
+
+/// Asks at a place, and takes the time.
+type Ask<'a> = Box<dyn Fn(usize) -> Duration + 'a>;
+
+impl<'a> Case<'a> {
+    fn new(meshes: &'a [Mesh; 2], plan: &LayersPlan) -> Result<Self, StudyError> {
+        let shapes = [shape(&meshes[0])?, shape(&meshes[1])?];
+        let contest = Contest::new(&shapes);
+        let approaches = (0..plan.approach_count as u64).map(|seed| {
+            Approach::random(contest.sbbk(), shapes.each_ref(), &mut Rand32::new(seed))
+        });
+        let places = approaches.flat_map(|approach| ADVANCES.map(|way| approach.place(way)));
+        Ok(Self { meshes, places: places.collect(), shapes })
+    }
+
+    fn row(&self, study: &'static str, mode: Mode, plan: &str) -> Row {
+        let [one, two] = self.meshes;
+        let beside = if one.name == two.name { "itself" } else { &two.name };
+        Row::new(study, plan)
+            .key("mode", mode.to_string())
+            .key("mesh", &*one.name)
+            .key("triangle_count", one.triangle_count())
+            .key("beside", beside)
+    }
+
+    /// First queries of bare trees.
+    fn bare(&self, repeats: usize) -> Result<impl Iterator<Item = Row>, StudyError> {
+        let options = |layers| BuildOptions { layers, leaf_size: BATCH };
+        let default = options(LayerPlan::SBBK);
+        let mut asks = Vec::new();
+        for (_, layers) in PLANS {
+            asks.push(self.ask::<9>(options(layers))?);
+        }
+        asks.push(self.ask::<7>(default)?);
+        asks.push(self.ask::<13>(default)?);
+        asks.push(self.ask::<9>(BuildOptions { leaf_size: 2, ..default })?);
+        let times = self.fastest(&asks, repeats, 1.0, |ask, place| ask(place));
+        let names = PLANS.map(|(name, _)| name).into_iter().chain(OTHERS);
+        let rows = names
+            .zip(times)
+            .map(|(name, time)| self.row(BARE, Mode::Fresh, name).with("time", time));
+        Ok(rows.collect::<Vec<_>>().into_iter())
+    }
+
+    fn ask<const AXES: usize>(&self, options: BuildOptions) -> Result<Ask<'_>, StudyError>
+    where
+        Directions<AXES>: DirectionSet<AXES>,
+    {
+        let tree = |mesh: &Mesh| {
+            Tree::<AXES>::build(&mesh.vertices, &mesh.triangles, &options)
+                .map_err(|cause: BuildError| StudyError::Tree { mesh: mesh.name.clone(), cause })
+        };
+        let trees = [tree(&self.meshes[0])?, tree(&self.meshes[1])?];
+        Ok(Box::new(move |place| {
+            let placement = Placement::new(&self.places[place].pos12);
+            let (mut scratch, mut found) = (SearchScratch::default(), 0);
+            let trees = (&trees[0], &trees[1]);
+            let prediction = PREDICTION.into();
+            let (time, ()) =
+                timed(|| contacts(trees, placement, prediction, &mut scratch, |_| found += 1));
+            black_box(found);
+            time
+        }))
+    }
+
+    /// All modes of the dispatcher.
+    fn dispatcher(&self, repeats: usize) -> Vec<Row> {
+        let dispatchers = PLANS.map(|(_, layers)| {
+            let mut config = SbbkConfig::default();
+            config.layers = layers;
+            SbbkDispatcher::new(config)
+        });
+        let prepare = |dispatcher: &SbbkDispatcher| {
+            self.shapes.each_ref().map(|shape| dispatcher.prepare_shape(shape))
+        };
+        let _primed = dispatchers.each_ref().map(prepare);
+        let shared = dispatchers.map(|dispatcher| -> SharedDispatcher { Arc::new(dispatcher) });
+        let rows = Mode::ALL.into_iter().flat_map(|mode| {
+            let sequence = |place| Sequence {
+                shapes: self.shapes.each_ref(),
+                poses: mode.poses(&self.shapes[1], place, PREDICTION),
+                prediction: PREDICTION,
+            };
+            let sequences: Vec<Sequence> = self.places.iter().map(sequence).collect();
+            let queries = query_count(&sequences[..1]);
+            let times = self.fastest(&shared, repeats, queries, |dispatcher, place| {
+                sweep(dispatcher, &sequences[place..=place])
+            });
+            let rows = PLANS.iter().zip(times);
+            let rows =
+                rows.map(|((name, _), time)| self.row(DISPATCHER, mode, name).with("time", time));
+            rows.collect::<Vec<_>>()
+        });
+        rows.collect()
+    }
+
+    /// Microseconds a query of each contestant, of `queries` at a place: the least time of all repeats at
+    /// each place, and of these the mean. Contestants take turns at each place, and each is asked twice,
+    /// so that none pays for what another has put into the caches.
+    fn fastest<C>(
+        &self,
+        contestants: &[C],
+        repeats: usize,
+        queries: f64,
+        ask: impl Fn(&C, usize) -> Duration,
+    ) -> Vec<f64> {
+        let mut sums = vec![0.0; contestants.len()];
+        for place in 0..self.places.len() {
+            let times = race(contestants, repeats, 1e6 / queries, |contestant| {
+                ask(contestant, place);
+                ask(contestant, place)
+            });
+            for (sum, time) in sums.iter_mut().zip(times) {
+                *sum += time.min / self.places.len() as f64;
+            }
+        }
+        sums
+    }
+}
+
+fn tables(rows: &[Row]) -> Vec<Table> {
+    let [default, ..] = PLANS.map(|(name, _)| name);
+    let table = |study, title: &str, keys, names: Vec<&str>, notes: Vec<String>| {
+        let ratios = names.into_iter().filter(|name| *name != default);
+        let ratios = ratios.map(|name| faster(name, "time", default).of(name));
+        let note = "ratios: how many times faster than the default, 18-DOPs from depth 4";
+        let columns = [number("default, µs", "time").of(default)].into_iter().chain(ratios);
+        let spec = TableSpec::new(title, study, keys, columns);
+        spec.note(note).note(LEAST).notes(notes).of(rows)
+    };
+    let plans: Vec<&str> = PLANS.iter().map(|(name, _)| *name).collect();
+    vec![
+        table(
+            BARE,
+            "Layers: bare trees, all contacts of triangles, first queries",
+            &["mesh", "triangle_count", "beside"],
+            [&plans[..], &OTHERS].concat(),
+            Vec::new(),
+        ),
+        table(
+            DISPATCHER,
+            "Layers: the dispatcher",
+            &["mode", "mesh", "triangle_count", "beside"],
+            plans,
+            mode_notes(),
+        ),
+    ]
+}
