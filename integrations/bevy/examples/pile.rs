@@ -76,7 +76,7 @@ fn build(app: &mut App, is_stock: bool) {
 
 fn spawn(mut commands: Commands) {
     let floor = Transform::from_xyz(0.0, -0.5, 0.0);
-    commands.spawn((RigidBody::Fixed, Collider::cuboid(10.0, 0.5, 10.0), floor));
+    commands.spawn((RigidBody::Fixed, Collider::cuboid(20.0, 0.5, 20.0), floor));
     let (vertices, triangles) = torus();
     let collider = Collider::trimesh(vertices, triangles).expect("it has triangles");
     for index in 0..TORI {
@@ -125,7 +125,7 @@ fn window(is_stock: bool) {
         commands.spawn((Camera3d::default(), eye));
         let sun = Transform::from_xyz(4.0, 8.0, 2.0).looking_at(Vec3::ZERO, Vec3::Y);
         commands.spawn((DirectionalLight { shadow_maps_enabled: true, ..default() }, sun));
-        let floor = meshes.add(Cuboid::new(20.0, 1.0, 20.0));
+        let floor = meshes.add(Cuboid::new(40.0, 1.0, 40.0));
         let (vertices, triangles) = torus();
         let torus = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
             .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, vertices)
