@@ -39,6 +39,8 @@ mod edited_mesh;
 mod exact;
 /// Meshes against height fields.
 mod heightfield;
+/// Bodies wholly inside a solid.
+mod inside;
 /// Which contacts of triangles are contacts of surfaces, near and far.
 mod judged;
 /// Contacts beside those of stock.

@@ -15,7 +15,7 @@ use crate::support::{Dispatcher, Pair, direction, distance, nudge, rotation, sha
 
 /// The least cosine of the normals in one patch; where cones turn them, the deepest contact may come
 /// to nothing, and the others are as near to its normal.
-const SAME_NORMAL: Real = 0.996;
+const SAME_NORMAL: Real = 0.99;
 const NEAR_ONE_NORMAL: Real = 2.0 * SAME_NORMAL * SAME_NORMAL - 1.0;
 
 fn detailed(detail: ContactDetail) -> SbbkDispatcher {

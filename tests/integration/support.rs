@@ -103,6 +103,12 @@ pub fn stock(query: &Query) -> Vec<Manifold> {
     manifolds
 }
 
+/// A mesh whose triangles are wound the other way.
+pub fn turned_inside_out(mut mesh: Mesh) -> Mesh {
+    mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    mesh
+}
+
 /// Both sets of contacts, the default one first.
 pub const SETS: [ContactSet; 2] = [ContactSet::Surfaces, ContactSet::Triangles];
 

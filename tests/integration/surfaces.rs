@@ -12,7 +12,7 @@ use sbbk_lab::mesh::{self, Mesh};
 
 use crate::support::{
     Manifold, Pair, Query, assert_same, distance, fresh, nudge, per_triangle, sequence, shape,
-    shape_with, touching, triangles,
+    shape_with, touching, triangles, turned_inside_out,
 };
 
 fn ask(query: &Query) -> Vec<Manifold> {
@@ -135,11 +135,6 @@ fn a_cube_is_pushed_to_its_own_side_of_a_sheet() {
             assert!(2 * sideways < found.len(), "{sideways} of {} at {height}", found.len());
         }
     }
-}
-
-fn turned_inside_out(mut mesh: Mesh) -> Mesh {
-    mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
-    mesh
 }
 
 /// Every bit of manifolds, and their order.

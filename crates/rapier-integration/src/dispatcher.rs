@@ -13,7 +13,9 @@ use sbbk_core::surface::SurfaceKind;
 use sbbk_core::traverse::DescentCounts;
 use sbbk_core::tree::{BuildError, Tree};
 
-use crate::mesh::{Hierarchy, PreparedRef, Registered, TreeCache, are_near, is_near};
+use crate::mesh::{
+    Hierarchy, PreparedRef, Registered, TreeCache, are_near, is_near, may_be_inside,
+};
 use crate::pair::{
     Answer, ConvexPair, ConvexSearch, FewPair, FieldPair, MeshPair, MeshPlace, Pair, PairPose,
     Parts, answer, is_few,
@@ -224,14 +226,17 @@ impl SbbkDispatcher {
                     return Answer::Unsupported;
                 }
                 let meshes = [mesh1, mesh2];
-                if is_new && self.are_apart(are_near(meshes, pos12, prediction), meshes) {
+                let has_surfaces = is_exact && contact_set == ContactSet::Surfaces;
+                if is_new
+                    && self.are_apart(are_near(meshes, pos12, prediction), meshes)
+                    && !(has_surfaces && may_be_inside(meshes, pos12))
+                {
                     return self.counted(Answer::Apart);
                 }
                 let Some(meshes) = self.look_at(meshes) else {
                     return Answer::Unsupported;
                 };
                 let pose = &PairPose::new(pos12, prediction);
-                let has_surfaces = is_exact && contact_set == ContactSet::Surfaces;
                 let pair = MeshPair { pose, meshes, contacts, has_surfaces, has_patches };
                 return self.ask(&pair, manifolds, workspace);
             }

@@ -40,6 +40,18 @@ pub(crate) fn are_near([mesh1, mesh2]: [&TriMesh; 2], pos12: &Pose, margin: Real
     }
 }
 
+/// Whether one mesh may be inside another, as far as their boxes tell.
+pub(crate) fn may_be_inside([mesh1, mesh2]: [&TriMesh; 2], pos12: &Pose) -> bool {
+    let [root1, root2] = [mesh1, mesh2].map(|mesh| mesh.bvh().root_aabb());
+    let size = |root: &Aabb| root.half_extents().length_squared();
+    let first = |mesh: &TriMesh| mesh.vertices()[mesh.indices()[0][0] as usize];
+    if size(&root1) < size(&root2) {
+        root2.contains_local_point(pos12.inverse() * first(mesh1))
+    } else {
+        root1.contains_local_point(pos12 * first(mesh2))
+    }
+}
+
 fn is_finite(aabb: &Aabb) -> bool {
     aabb.mins.is_finite() && aabb.maxs.is_finite()
 }

@@ -73,7 +73,16 @@ where
     };
     let [mut contacts, mut spare] = std::mem::take(P::Query::contacts(&mut scratch));
     let candidates = &mut coherence.candidates;
+    let found = candidates.len();
     find_contacts(&mut query, candidates, limits, &mut scratch, [&mut contacts, &mut spare]);
+    if contacts.is_empty()
+        && let Some((subshapes, contact)) = query.inside(&mut coherence.outside, limits, &scratch)
+    {
+        let of_it = |m: &ContactManifold<M, C>| [m.subshape1, m.subshape2] == subshapes;
+        let place = manifolds.iter().position(of_it).and_then(Place::new);
+        contacts.push((candidates.len() as u32, contact));
+        candidates.push(Candidate { place, ..Candidate::new(subshapes) });
+    }
     let mut pool = ManifoldPool::borrow();
     if let Some(plan) = query.patch_plan(&contacts) {
         let found = Contacts { query: &mut query, candidates, contacts: &contacts, limits };
@@ -95,6 +104,7 @@ where
         pool.shrink_to(limit);
     }
     pool.give_back();
+    coherence.candidates.truncate(found);
     *P::Query::contacts(&mut scratch) = [contacts, spare];
     SCRATCH.set(Some(scratch));
     memory.end(query.pose(), manifolds.len());

@@ -81,6 +81,18 @@ pub(crate) trait PairQuery {
         false
     }
 
+    /// If no candidate has a contact: the one that takes one shape out of the other, and the subshapes
+    /// that it is written to. `outside` is a lower bound of the travel of the pair at which there may be
+    /// one.
+    fn inside(
+        &mut self,
+        _outside: &mut f64,
+        _: Limits,
+        _: &Scratch,
+    ) -> Option<([u32; 2], Self::Contact)> {
+        None
+    }
+
     /// Memory for contacts, lent from query to query.
     fn contacts(scratch: &mut Scratch) -> &mut [ContactList<Self::Contact>; 2];
 

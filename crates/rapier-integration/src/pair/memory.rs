@@ -37,6 +37,8 @@ pub(super) struct Coherence<H> {
     pub(super) slack: Slack,
     /// Those of the last descent, in stock order.
     pub(super) candidates: Vec<Candidate<H>>,
+    /// See [`PairQuery::inside`](super::driver::PairQuery::inside).
+    pub(super) outside: f64,
 }
 
 /// A query, and how many manifolds it left.
@@ -55,7 +57,8 @@ impl<H> Default for PairMemory<H> {
 
 impl<H> Default for Coherence<H> {
     fn default() -> Self {
-        Self { last: None, is_whole: false, slack: Slack::default(), candidates: Vec::new() }
+        let outside = f64::NEG_INFINITY;
+        Self { last: None, is_whole: false, slack: Slack::default(), candidates: vec![], outside }
     }
 }
 
@@ -114,6 +117,7 @@ impl<H: Copy + Default + PartialEq> Coherence<H> {
         let (old, new) = self.candidates.split_at_mut(old_count);
         lookup.hand_on(old, new);
         self.candidates.drain(..old_count);
+        self.outside = f64::NEG_INFINITY;
     }
 
     /// Makes sure that candidates know the places of their manifolds in the host's list, which a

@@ -103,10 +103,8 @@ pub(super) fn write_patches<Q, M, C>(
                 let PatchPoint { mut point, normals, .. } = points[*i];
                 let is_of_normal = normals[0].dot(local_n1) >= plan.one_normal;
                 if is_of_normal {
-                    let is_same =
-                        |old: &&TrackedContact<C>| old.fid1 == point.fid1 && old.fid2 == point.fid2;
-                    if let Some(old) = old_points.iter().find(is_same) {
-                        point.data = old.data;
+                    if let Some(old) = place_of(&point, &old_points, plan.same_point()) {
+                        point.data = old_points.swap_remove(old).data;
                     }
                     manifold.points.push(point);
                 }
@@ -122,6 +120,23 @@ pub(super) fn write_patches<Q, M, C>(
     pool.end(manifolds);
     (pool.old_points, pool.patch_points) = (old_points, points);
     scratch.patches = patches;
+}
+
+/// The place of the point of the step before that a point is: of the same features, or else the one
+/// nearest to it within some distance. (A corner of two triangles has two names.)
+fn place_of<C>(
+    point: &TrackedContact<C>,
+    old_points: &[TrackedContact<C>],
+    same_point: Real,
+) -> Option<usize> {
+    let is_same = |old: &TrackedContact<C>| old.fid1 == point.fid1 && old.fid2 == point.fid2;
+    let distance = |old: &TrackedContact<C>| old.local_p1.distance(point.local_p1);
+    let nearest = || {
+        let distances = old_points.iter().map(distance).enumerate();
+        let (place, distance) = distances.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
+        (distance <= same_point).then_some(place)
+    };
+    old_points.iter().position(is_same).or_else(nearest)
 }
 
 /// A point whose features have names of their own among all of both shapes.

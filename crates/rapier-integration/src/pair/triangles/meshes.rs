@@ -1,10 +1,11 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use glamx::DVec3;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::NormalConstraints;
-use parry3d::shape::{CompositeShapeRef, Triangle};
-use sbbk_core::contact::ManifoldPoints;
+use parry3d::shape::Triangle;
+use sbbk_core::contact::{ManifoldPoints, TriangleContact};
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::surface::Around;
 use sbbk_core::traverse::{Counters, Descent, PairFrame, Verdict, Visitor, descend};
@@ -12,6 +13,7 @@ use sbbk_core::tree::LeafBatch;
 use sbbk_core::volumes::Sphere;
 
 use super::exact::Constraints;
+use super::inside::nearest;
 use super::judge::Surfaces;
 use super::query::{Hint, TriangleQuery, TriangleShapes};
 use super::walk::walk;
@@ -95,14 +97,14 @@ impl<'a> Pair for MeshPair<'a> {
 
 /// Two meshes and, if both have them, their trees.
 pub(crate) struct Meshes<'q> {
-    pair: &'q MeshPair<'q>,
+    pub(super) pair: &'q MeshPair<'q>,
     trees: Option<[&'q PreparedMesh; 2]>,
     /// If contacts are those of surfaces.
-    surfaces: [Option<MeshSurface<'q>>; 2],
+    pub(super) surfaces: [Option<MeshSurface<'q>>; 2],
     /// [`Surfaces::near`].
     near: f64,
     /// Whether Parry walks mesh 2 first.
-    is_second_first: bool,
+    pub(super) is_second_first: bool,
     cache: &'q TreeCache,
 }
 
@@ -163,6 +165,19 @@ impl TriangleShapes for Meshes<'_> {
         Some([mesh1.triangle(triangle1), mesh2.triangle(triangle2)])
     }
 
+    fn way_apart(&self) -> Option<DVec3> {
+        self.way_apart()
+    }
+
+    fn inside(
+        &self,
+        is_deep: bool,
+        outside: &mut f64,
+        travel: f64,
+    ) -> Option<([u32; 2], TriangleContact)> {
+        self.inside(is_deep, outside, travel)
+    }
+
     #[inline(always)]
     fn with_constraints(&self, triangles: [u32; 2], then: impl FnOnce(Constraints<'_>)) {
         if let Some(prepared) = self.trees {
@@ -190,13 +205,8 @@ impl Surfaces for Meshes<'_> {
     }
 
     fn is_deep(&self, i: usize, point: Vector, distance: Real) -> bool {
-        let mesh = self.pair.meshes[i].mesh;
-        let nearest = CompositeShapeRef(mesh).project_local_point(point, Real::MAX, false);
-        nearest.is_some_and(|(triangle, nearest)| {
-            let away = point - nearest.point;
-            // Nearest to a point inside is a face.
-            let into = mesh.triangle(triangle).normal().map_or(0.0, |normal| -away.dot(normal));
-            into > distance && into > 0.9 * away.length()
+        nearest(self.pair.meshes[i].mesh, point).is_some_and(|(_, nearest, is_behind)| {
+            is_behind && nearest.point.distance(point) > distance
         })
     }
 }

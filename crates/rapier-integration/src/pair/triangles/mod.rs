@@ -7,6 +7,7 @@
 mod exact;
 mod field;
 mod heightfield;
+mod inside;
 mod judge;
 mod meshes;
 mod query;

@@ -1,3 +1,4 @@
+use glamx::DVec3;
 use parry3d::math::{Pose, Real};
 use parry3d::query::{
     ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, TrackedContact,
@@ -37,9 +38,31 @@ pub(crate) trait TriangleShapes: Surfaces {
     /// The triangles; `None` if one does not exist.
     fn triangles(&self, triangles: [u32; 2]) -> Option<[Triangle; 2]>;
 
+    /// The direction in which shape 2 leaves shape 1, if one is deep in the other.
+    fn way_apart(&self) -> Option<DVec3> {
+        None
+    }
+
+    /// If nothing touches: the contact that takes one shape out of the other, see [`Meshes::inside`].
+    ///
+    /// [`Meshes::inside`]: super::meshes::Meshes::inside
+    fn inside(
+        &self,
+        _is_deep: bool,
+        _outside: &mut f64,
+        _travel: f64,
+    ) -> Option<([u32; 2], TriangleContact)> {
+        None
+    }
+
     /// Hands on the cones that the normals of both must be in.
     fn with_constraints(&self, triangles: [u32; 2], then: impl FnOnce(Constraints<'_>));
 }
+
+/// The least limit of depths, in prediction distances. Rapier recycles contacts until bodies have moved
+/// by 2.5 of its own: lower, a small body that is deep in another moves out by as much as its contacts
+/// are deep, and falls asleep there.
+const RECYCLED: f64 = 4.0;
 
 /// A query about two shapes made of triangles.
 pub(crate) struct TriangleQuery<'q, S> {
@@ -57,9 +80,25 @@ pub(crate) struct TriangleQuery<'q, S> {
 #[derive(Copy, Clone)]
 pub(crate) struct Found {
     contact: TriangleContact,
-    /// Whether it is that of the triangles: its closest points are contacts too. Else it is one along
-    /// an axis that leads out of solids.
-    has_closest: bool,
+    of: Of,
+}
+
+/// What a contact is of.
+#[derive(Copy, Clone, PartialEq)]
+enum Of {
+    /// Two triangles: its closest points are contacts too.
+    Triangles,
+    /// Two triangles, along an axis that leads out of solids.
+    Axis,
+    /// Whole shapes, one in the other.
+    Shapes,
+}
+
+impl Of {
+    /// The cones that the normal of the contact must be in.
+    fn constraints(self, of_triangles: Constraints<'_>) -> Constraints<'_> {
+        if self == Self::Shapes { [None; 2] } else { of_triangles }
+    }
 }
 
 impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
@@ -124,11 +163,24 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         let judge = Judge { shapes: &self.shapes, pose: self.pose, pair: candidate.subshapes };
         let points = &mut self.points;
         let contact = judge.verdict(&local, contact, &mut scratch.regions, points);
-        contact.map(|contact| Found { contact, has_closest: points.is_empty() }).into()
+        let of = if points.is_empty() { Of::Triangles } else { Of::Axis };
+        contact.map(|contact| Found { contact, of }).into()
     }
 
     fn needs_more(&mut self, scratch: &mut Scratch) -> bool {
-        scratch.regions.close()
+        let way = scratch.regions.is_undecided().then(|| self.shapes.way_apart()).flatten();
+        scratch.regions.close(way)
+    }
+
+    fn inside(
+        &mut self,
+        outside: &mut f64,
+        limits: Limits,
+        scratch: &Scratch,
+    ) -> Option<([u32; 2], Found)> {
+        let is_deep = scratch.regions.has_way();
+        let (triangles, contact) = self.shapes.inside(is_deep, outside, limits.travel)?;
+        Some((triangles, Found { contact, of: Of::Shapes }))
     }
 
     fn contacts(scratch: &mut Scratch) -> &mut [ContactList<Found>; 2] {
@@ -150,7 +202,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
 
     fn outline(
         &self,
-        Found { contact, .. }: &Found,
+        Found { contact, of }: &Found,
         candidate: &Candidate<Hint>,
         _: &mut Scratch,
     ) -> Option<Outline> {
@@ -159,6 +211,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         let pos12 = &self.pose.pos12;
         let (mut normal, mut has_cones) = (None, false);
         self.shapes.with_constraints(candidate.subshapes, |constraints| {
+            let constraints = of.constraints(constraints);
             normal = constrained_normal(contact, constraints, pos12);
             has_cones = constraints.iter().any(Option::is_some);
         });
@@ -171,7 +224,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
     #[inline(always)]
     fn write<M, C>(
         &mut self,
-        Found { contact, has_closest }: Found,
+        Found { contact, of }: Found,
         candidate: &mut Candidate<Hint>,
         _: Limits,
         _: &mut Scratch,
@@ -187,15 +240,19 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         };
         shapes.with_constraints(candidate.subshapes, |constraints| match generator {
             ContactGenerator::Exact => {
+                let constraints = of.constraints(constraints);
                 let local = local_pair(&pose.placement12, &triangles);
                 let [t1, t2] = &local.corners;
-                clip(t1, t2, contact.normal, points);
-                if has_closest {
-                    push_closest(t1, t2, &contact, points);
-                } else {
-                    deepen(points, &contact);
+                points.clear();
+                if of != Of::Shapes {
+                    clip(t1, t2, contact.normal, points);
                 }
-                let deepest = -shapes.near();
+                if of == Of::Axis {
+                    deepen(points, &contact);
+                } else {
+                    push_closest(t1, t2, &contact, points);
+                }
+                let deepest = -shapes.near().max(RECYCLED * f64::from(pose.prediction));
                 points.iter_mut().for_each(|point| point.distance = point.distance.max(deepest));
                 fill(pose, &local, &contact, points, constraints, previous_points, manifold);
             }

@@ -14,6 +14,8 @@ pub(crate) struct Regions {
     found: Vec<Crossing>,
     /// Whether contacts in doubt are still put off.
     is_first_round: bool,
+    /// The direction in which mesh 2 leaves mesh 1, where contacts do not agree on one.
+    way: Option<DVec3>,
     /// Pairs whose contact pushes the wrong way.
     wrong: FxHashSet<[u32; 2]>,
     /// The triangles of a region, by mesh and triangle.
@@ -98,7 +100,13 @@ impl Regions {
     pub(crate) fn begin(&mut self) {
         self.found.clear();
         self.wrong.clear();
+        self.way = None;
         self.is_first_round = true;
+    }
+
+    /// Whether a way is known that one body leaves the other.
+    pub(super) fn has_way(&self) -> bool {
+        self.way.is_some()
     }
 
     pub(super) fn is_first_round(&self) -> bool {
@@ -117,13 +125,28 @@ impl Regions {
         self.found.push(Crossing { pair, is_good: good.is_some(), normal, depth, sheet });
     }
 
+    /// Whether contacts beyond doubt push about as much one way as the other: what goes through a solid
+    /// and sticks out on both sides would stay.
+    pub(super) fn is_undecided(&self) -> bool {
+        let good = self.found.iter().filter(|found| found.is_good);
+        let (count, sum) =
+            good.fold((0, DVec3::ZERO), |(count, sum), found| (count + 1, sum + found.normal));
+        let is_none_better = sum.length() <= SAME_SIDE * f64::from(count);
+        self.is_first_round && !self.found.is_empty() && is_none_better
+    }
+
     /// Ends the first round. Whether there are regions that too little holds, or contacts that push the
-    /// wrong way.
-    pub(super) fn close(&mut self) -> bool {
+    /// wrong way: also those against the `way` that mesh 2 leaves mesh 1, if it is known.
+    pub(super) fn close(&mut self, way: Option<DVec3>) -> bool {
         if !std::mem::take(&mut self.is_first_round) {
             return false;
         }
         self.find_wrong();
+        self.way = way;
+        let is_against = |found: &&Crossing| {
+            found.is_good && way.is_some_and(|way| found.normal.dot(way) < -SAME_SIDE)
+        };
+        self.wrong.extend(self.found.iter().filter(is_against).map(|found| found.pair));
         self.found.sort_unstable_by_key(|found| found.pair);
         let is_on = |side: f64| self.found.iter().any(|found| found.side() == side);
         let is_torn = is_on(1.0) && is_on(-1.0);
@@ -180,7 +203,8 @@ impl Regions {
     /// 30 m/s that a spike stops come through on it.
     pub(super) fn agrees(&mut self, pair: [u32; 2], normal: DVec3) -> bool {
         let first = self.first_of(pair);
-        self.held.get(&first).is_none_or(|hold| hold.normals.dot(normal) >= 0.0)
+        self.way.is_none_or(|way| way.dot(normal) >= -SAME_SIDE)
+            && self.held.get(&first).is_none_or(|hold| hold.normals.dot(normal) >= 0.0)
     }
 
     /// A triangle that is in a thin body, or has a thin one around it, has both its sides near, which
@@ -263,8 +287,8 @@ mod tests {
                 regions.add(pair, contact, None);
                 assert!(!regions.is_settled(pair));
             }
-            assert!(regions.is_first_round() && regions.close());
-            assert!(!regions.is_first_round() && !regions.close());
+            assert!(regions.is_first_round() && regions.close(None));
+            assert!(!regions.is_first_round() && !regions.close(None));
             let held = [[1, 1], [1, 2], [3, 2]].map(|pair| regions.is_lost(pair));
             assert_eq!(held, [false; 3]);
             assert!(regions.is_lost([7, 7]) && regions.is_lost([7, 8]));
@@ -274,11 +298,11 @@ mod tests {
         }
         regions.begin();
         regions.add([1, 1], Some(&good), None);
-        assert!(!regions.close(), "all is good");
+        assert!(!regions.close(None), "all is good");
         regions.begin();
         regions.add([1, 1], None, None);
         regions.add([1, 2], Some(&good), None);
-        assert!(!regions.close(), "the region is held");
+        assert!(!regions.close(None), "the region is held");
     }
 
     /// Would catch a large region that turns about its only contact beyond doubt, small ones that are
@@ -293,7 +317,7 @@ mod tests {
             for i in 0..pairs {
                 regions.add([1, i], Some(&good).filter(|_| i < contacts), None);
             }
-            let needs_more = regions.close();
+            let needs_more = regions.close(None);
             assert_eq!(needs_more, regions.held.get(&(0, 1)).is_some_and(|hold| !hold.is_enough()));
             assert!(!needs_more || regions.is_settled([1, 0]));
             assert!(regions.agrees([1, 0], DVec3::new(1.0, 0.1, 0.0)));
@@ -302,6 +326,33 @@ mod tests {
         };
         assert_eq!([8, 9].map(|pairs| is_lost(pairs, 1)), [false, true]);
         assert_eq!([16, 17].map(|pairs| is_lost(pairs, 2)), [false, true]);
+    }
+
+    /// Would catch a body that goes through a solid and is held there, one whose way out is asked for
+    /// though its contacts agree, and contacts along or across the way that are dropped.
+    #[test]
+    fn of_contacts_both_ways_those_along_the_way_stay() {
+        let regions = |normals: &[DVec3]| {
+            let mut regions = Regions::default();
+            regions.begin();
+            for (i, &normal) in (1..).zip(normals) {
+                regions.add([i, i], Some(&pushing(normal, 0.1)), None);
+            }
+            regions
+        };
+        let aslant = DVec3::new(0.9, -0.4, 0.0).normalize();
+        assert!(!regions(&[DVec3::Y, DVec3::Y, aslant]).is_undecided());
+        assert!(!regions(&[]).is_undecided());
+        let mut both = regions(&[DVec3::Y, -DVec3::Y, aslant]);
+        assert!(both.is_undecided() && !both.has_way());
+        assert!(both.close(Some(DVec3::Y)) && both.has_way());
+        assert_eq!([1, 2, 3].map(|i| both.is_settled([i, i])), [true, false, true]);
+        assert!(both.is_lost([2, 2]) && !both.agrees([2, 2], -DVec3::Y));
+        assert!(both.agrees([2, 2], DVec3::X) && both.agrees([2, 2], aslant));
+        let mut none = Regions::default();
+        none.begin();
+        none.add([1, 1], None, None);
+        assert!(none.is_undecided(), "none is good");
     }
 
     /// Would catch a thin body that is pushed both ways, or by its farther side.
@@ -313,7 +364,7 @@ mod tests {
             let leaning = DVec3::new(lean.sin(), -lean.cos(), 0.0);
             regions.add([1, 1], Some(&pushing(DVec3::Y, up)), None);
             regions.add([1, 2], Some(&pushing(leaning, down)), None);
-            regions.close().then(|| [[1, 1], [1, 2]].map(|pair| regions.is_settled(pair)))
+            regions.close(None).then(|| [[1, 1], [1, 2]].map(|pair| regions.is_settled(pair)))
         };
         assert_eq!(both(0.1, 0.3, 0.0), Some([true, false]));
         assert_eq!(both(0.3, 0.1, 0.5), Some([false, true]));
@@ -335,7 +386,7 @@ mod tests {
             // Far from these, all the same way.
             let sheet = Some(Sheet { away: DVec3::Y, height: 1.0 });
             regions.add([7, 7], Some(&pushing(-DVec3::Y, 0.1)), sheet);
-            regions.close();
+            regions.close(None);
             [[1, 1], [2, 1], [7, 7]].map(|pair| regions.is_settled(pair))
         };
         let both = [DVec3::Y, -DVec3::Y];

@@ -1,0 +1,112 @@
+//! Which way a mesh leaves a solid that it is deep in, where triangles do not tell: wholly inside, none
+//! need be near each other; on both sides of it, as many push each way.
+
+use glamx::DVec3;
+use parry3d::math::{Real, Vector};
+use parry3d::query::{PointProjection, PointQuery};
+use parry3d::shape::{CompositeShapeRef, TriMesh};
+use sbbk_core::contact::{Feature, FeaturePair, TriangleContact};
+
+use super::judge::Surfaces;
+use super::meshes::Meshes;
+use crate::pair::pose::PairPose;
+
+/// Of a distance in f32, what surely is left of it.
+const SURE: f64 = 0.99;
+
+impl Meshes<'_> {
+    /// If no contact was found: the one that takes the smaller mesh out of the larger one by the way
+    /// that is shortest from its middle, and the triangles that it is written to.
+    ///
+    /// If it is not known to be deep in it, one vertex is asked for, as what pierces a surface has other contacts. `outside` is how far the
+    /// vertex was from the solid when it was last looked at, plus the travel of the pair then.
+    pub(super) fn inside(
+        &self,
+        is_deep: bool,
+        outside: &mut f64,
+        travel: f64,
+    ) -> Option<([u32; 2], TriangleContact)> {
+        let outer = usize::from(self.is_second_first);
+        let [held, holder] = [1 - outer, outer].map(|i| &self.pair.meshes[i]);
+        let vertex = self.to_other(1 - outer, held.corners(0)[0]);
+        if !is_deep {
+            if *outside > travel || self.surfaces[outer].is_none() {
+                return None;
+            }
+            let from_box = f64::from(holder.root().distance_to_local_point(vertex, true));
+            if from_box > 0.0 {
+                *outside = SURE * from_box + travel;
+                return None;
+            }
+            let (_, near, is_behind) = nearest(holder.mesh, vertex)?;
+            if !is_behind {
+                *outside = SURE * f64::from(near.point.distance(vertex)) + travel;
+                return None;
+            }
+            if !self.is_solid(outer) {
+                *outside = f64::INFINITY;
+                return None;
+            }
+        }
+        let middle = self.to_other(1 - outer, held.ball().centre);
+        let (triangle, exit, from) = [middle, vertex].into_iter().find_map(|from| {
+            let (triangle, exit, is_behind) = nearest(holder.mesh, from)?;
+            is_behind.then_some((triangle, exit.point, from))
+        })?;
+        let mut subshapes = [0; 2];
+        subshapes[outer] = triangle;
+        let origin = self.pair.meshes[0].corners(subshapes[0])[0];
+        let mut points = [exit, from].map(|point| match outer {
+            0 => point.as_dvec3() - origin.as_dvec3(),
+            _ => self.pair.pose.placement12.to_frame1(point, origin),
+        });
+        if outer == 1 {
+            points.reverse();
+        }
+        let [point1, point2] = points;
+        let normal = (point1 - point2).try_normalize()?;
+        let distance = (point2 - point1).dot(normal);
+        let features = FeaturePair::new(Feature::Face, Feature::Face);
+        Some((subshapes, TriangleContact { normal, distance, point1, point2, features }))
+    }
+
+    /// If the smaller mesh is deep in the other one, where its middle is in both: the direction in which
+    /// mesh 2 leaves mesh 1 by the way that is shortest from there. Of two alike, by the shorter way.
+    pub(super) fn way_apart(&self) -> Option<DVec3> {
+        let meshes = &self.pair.meshes;
+        let way_of = |inner: usize| {
+            let middle = meshes[inner].ball().centre;
+            let placed = self.to_other(inner, middle);
+            let (_, _, is_in_itself) = nearest(meshes[inner].mesh, middle)?;
+            let (_, exit, is_in_other) = nearest(meshes[1 - inner].mesh, placed)?;
+            let out = exit.point - placed;
+            let out = if inner == 0 { -(self.pair.pose.pos12.rotation * out) } else { out };
+            (is_in_itself && is_in_other).then_some(out.as_dvec3())
+        };
+        let [size1, size2] = meshes.map(|mesh| mesh.size_squared());
+        let inner = [size1 <= size2, size2 <= size1];
+        let ways = (0..2).filter(|&i| inner[i] && self.is_solid(0) && self.is_solid(1));
+        let shortest = ways.filter_map(way_of).min_by(|a, b| a.length().total_cmp(&b.length()));
+        shortest?.try_normalize()
+    }
+
+    /// A point of one mesh in the frame of the other.
+    fn to_other(&self, i: usize, point: Vector) -> Vector {
+        let PairPose { placement12, placement21, .. } = self.pair.pose;
+        [placement21, placement12][i].to_frame1(point, Vector::ZERO).as_vec3()
+    }
+
+    fn is_solid(&self, i: usize) -> bool {
+        self.around(i).is_some_and(|around| around.is_solid)
+    }
+}
+
+/// The point of a mesh that is nearest to another, its triangle, and whether it is seen from behind:
+/// nearest to a point inside is a face.
+pub(super) fn nearest(mesh: &TriMesh, point: Vector) -> Option<(u32, PointProjection, bool)> {
+    let (triangle, nearest) =
+        CompositeShapeRef(mesh).project_local_point(point, Real::MAX, false)?;
+    let away = point - nearest.point;
+    let into = mesh.triangle(triangle).normal().map_or(0.0, |normal| -away.dot(normal));
+    Some((triangle, nearest, into > 0.9 * away.length()))
+}

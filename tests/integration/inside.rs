@@ -1,0 +1,152 @@
+//! Bodies wholly inside a solid, where no triangles are near each other.
+
+use glamx::{Quat, Vec3};
+use oorandom::Rand32;
+use rapier_integration::{ContactDetail, SbbkConfig, SbbkDispatcher};
+use rapier3d::math::{Pose, Real, Vector};
+use rapier3d::parry::query::PointQuery;
+use rapier3d::parry::shape::{SharedShape, TriMeshFlags};
+use rapier3d::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder};
+use sbbk_lab::mesh::{self, Mesh};
+
+use crate::support::{
+    Manifold, Pair, Query, assert_same, counting, distance, fresh, nudge, per_triangle, shape,
+    shape_with, turned_inside_out,
+};
+
+const HALF: Vec3 = Vec3::new(2.0, 1.0, 2.0);
+
+fn slab(cells: u32) -> Mesh {
+    mesh::cuboid(HALF, cells)
+}
+
+fn ask(query: &Query) -> Vec<Manifold> {
+    fresh(&SbbkDispatcher::default(), query)
+}
+
+/// Would catch a body that stays inside or leaves by the far side, turns on its way out as it is not
+/// pushed at its middle, or depends on its order in the pair or on the number of triangles.
+#[test]
+fn a_body_in_a_solid_leaves_by_the_nearer_side() {
+    let bodies =
+        [mesh::cuboid(Vec3::splat(0.2), 2), mesh::monkey_head_with(6).centred().scaled_to(0.4)];
+    for (cells, body) in [1, 9].into_iter().flat_map(|cells| bodies.iter().map(move |b| (cells, b)))
+    {
+        let (slab, body) = (shape(&slab(cells)), shape(body));
+        for detail in [ContactDetail::Every, ContactDetail::Patches] {
+            let mut config = SbbkConfig::default();
+            config.detail = detail;
+            let dispatcher = SbbkDispatcher::new(config);
+            for (place, out, depth) in [
+                ([0.2, 0.3, 0.1], Vector::Y, 0.7),
+                ([0.2, -0.3, 0.1], -Vector::Y, 0.7),
+                ([1.6, 0.1, -0.3], Vector::X, 0.4),
+                ([0.1, 0.2, -1.5], -Vector::Z, 0.5),
+            ] {
+                let turn = Quat::from_rotation_x(0.7);
+                let pose = Pose::from_parts(Vec3::from_array(place), turn);
+                let query = Query::new(&slab, &body, pose);
+                for (query, sign) in [(query, 1.0), (query.swapped(), -1.0)] {
+                    let found = fresh(&dispatcher, &query);
+                    let [manifold] = &found[..] else { panic!("{} manifolds", found.len()) };
+                    let normal = if sign > 0.0 { manifold.local_n1 } else { manifold.local_n2 };
+                    assert!((normal - out).length() < 1e-3, "{normal} at {place:?}");
+                    // As deep as any contact may be: at least so deep that Rapier looks again.
+                    let [root1, root2] = query.meshes.map(|mesh| mesh.local_aabb().half_extents());
+                    let most =
+                        (0.1 * root1.length().min(root2.length())).max(4.0 * query.prediction);
+                    assert!((distance(manifold) + most.min(depth)).abs() < 1e-3);
+                    let [point] = &manifold.points[..] else { panic!("one point") };
+                    let at = if sign > 0.0 { point.local_p2 } else { point.local_p1 };
+                    assert!((at - body.local_aabb().center()).length() < 1e-4, "{at}");
+                }
+            }
+        }
+    }
+}
+
+/// Would catch bodies in a hollow, in the half space behind a sheet, in a mesh of which nobody knows
+/// what it bounds, or of soft ones, pushed out of what is no inside.
+#[test]
+fn what_is_in_no_solid_is_left_alone() {
+    let body = shape(&mesh::cuboid(Vec3::splat(0.2), 1));
+    let hollow = [slab(3), turned_inside_out(mesh::cuboid(0.8 * HALF, 3))];
+    let hollow = shape(&Mesh::merged("hollow", &hollow));
+    let inverted = shape(&turned_inside_out(slab(2)));
+    let bowl = shape(&mesh::terrain(4.0, 10, 2.0));
+    let unknown = shape(&slab(40));
+    assert!(unknown.num_triangles() > 8192);
+    let soft = shape_with(&slab(2), TriMeshFlags::DEFORMABLE);
+    for mesh in [&hollow, &inverted, &bowl, &unknown, &soft] {
+        let mut random = Rand32::new(30);
+        for _ in 0..30 {
+            let place = 0.5 * Vec3::new(random.rand_float() - 0.5, 0.0, random.rand_float() - 0.5);
+            let place = place + 0.4 * (random.rand_float() - 0.5) * Vec3::Y;
+            let query = Query::new(mesh, &body, Pose::from_parts(place, Quat::IDENTITY));
+            assert!(ask(&query).len() <= fresh(&per_triangle(), &query).len());
+        }
+    }
+    // In its wall it is pushed out.
+    let small = shape(&mesh::cuboid(Vec3::splat(0.1), 1));
+    let in_wall = ask(&Query::new(&hollow, &small, Pose::translation(1.85, 0.0, 0.0)));
+    assert!(in_wall.len() == 1 && in_wall[0].local_n1 == Vector::X);
+    // A large one is known once it is registered.
+    let (registered, dispatcher) = (SharedShape::new(unknown), SbbkDispatcher::default());
+    let _tree = dispatcher.prepare_shape(&registered).unwrap().unwrap();
+    let query =
+        Query::new(registered.as_trimesh().unwrap(), &body, Pose::translation(0.3, 0.5, 0.0));
+    assert_eq!(fresh(&dispatcher, &query).len(), 1);
+}
+
+/// A walk in and out of a solid, of bodies that are small beside their steps and beside what a descent
+/// looks ahead. Would catch a body remembered as inside or outside.
+#[test]
+fn inside_is_never_remembered() {
+    let slab = shape(&slab(4));
+    let kept = counting();
+    let unaware = SbbkDispatcher::default();
+    let [mut inside, mut none] = [0; 2];
+    for size in [0.005, 0.05, 0.5] {
+        let body = shape(&mesh::ball(size, 2));
+        let mut random = Rand32::new(31);
+        for prediction in [0.002, 0.2] {
+            let mut pair: Pair = Pair::default();
+            let mut pose = Pose::translation(0.1, 0.9, 0.2);
+            for step in 0..400 {
+                let stride = [0.0, 0.001, 0.01, 0.1][step % 4];
+                pose = nudge(&mut random, stride) * pose;
+                if slab.local_aabb().distance_to_local_point(pose.translation, true) > 0.3 {
+                    pose = Pose::translation(0.1, 0.9, 0.2);
+                }
+                let query = Query::new(&slab, &body, pose).within(prediction);
+                let expected = fresh(&unaware, &query);
+                assert_same(&pair.ask(&kept, &query).manifolds, &expected, 0.0);
+                inside += usize::from(expected.len() == 1 && distance(&expected[0]) < 0.0);
+                none += usize::from(expected.is_empty());
+            }
+        }
+    }
+    let reused = kept.stats().reused_queries;
+    assert!(inside > 300 && none > 100 && reused > 100, "{inside} {none} {reused}");
+}
+
+/// Would catch a body that is let fall through the solid it starts in, is thrown out of it, or stops
+/// where its triangles meet those of the surface.
+#[test]
+fn a_body_that_starts_in_a_solid_comes_out_slowly() {
+    for cells in [1, 6] {
+        let mut world = PhysicsWorld::new();
+        world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
+        let collider = |mesh: &Mesh| ColliderBuilder::new(SharedShape::new(shape(mesh)));
+        world.insert(RigidBodyBuilder::fixed(), collider(&slab(cells)));
+        let at = RigidBodyBuilder::dynamic().translation(Vec3::new(0.2, 0.3, 0.1));
+        let (body, _) = world.insert(at, collider(&mesh::cuboid(Vec3::splat(0.25), cells)));
+        let mut fastest: Real = 0.0;
+        for _ in 0..240 {
+            world.step();
+            fastest = fastest.max(world.bodies[body].linvel().length());
+        }
+        let height = world.bodies[body].translation().y;
+        assert!((height - 1.25).abs() < 0.01 && fastest < 5.0, "{height} {fastest}");
+    }
+}
