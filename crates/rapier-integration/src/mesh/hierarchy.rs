@@ -40,16 +40,34 @@ pub(crate) fn are_near([mesh1, mesh2]: [&TriMesh; 2], pos12: &Pose, margin: Real
     }
 }
 
-/// Whether one mesh may be inside another, as far as their boxes tell.
+/// Whether the smaller mesh may be inside the larger one, as its first vertex is covered.
 pub(crate) fn may_be_inside([mesh1, mesh2]: [&TriMesh; 2], pos12: &Pose) -> bool {
-    let [root1, root2] = [mesh1, mesh2].map(|mesh| mesh.bvh().root_aabb());
-    let size = |root: &Aabb| root.half_extents().length_squared();
+    let [size1, size2] =
+        [mesh1, mesh2].map(|mesh| mesh.bvh().root_aabb().half_extents().length_squared());
     let first = |mesh: &TriMesh| mesh.vertices()[mesh.indices()[0][0] as usize];
-    if size(&root1) < size(&root2) {
-        root2.contains_local_point(pos12.inverse() * first(mesh1))
+    if size1 < size2 {
+        is_covered(mesh2, pos12.inverse() * first(mesh1))
     } else {
-        root1.contains_local_point(pos12 * first(mesh2))
+        is_covered(mesh1, pos12 * first(mesh2))
     }
+}
+
+/// Whether a mesh may be between a point and each side of the box around it: so it is where the point is
+/// inside, and not above a ground.
+pub(crate) fn is_covered(mesh: &TriMesh, point: Vec3) -> bool {
+    let root = mesh.bvh().root_aabb();
+    if !root.contains_local_point(point) {
+        return false;
+    }
+    let sides = [root.mins - point, root.maxs - point];
+    let mut ways = sides.map(|side| [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| side * axis));
+    let ways = ways.as_flattened_mut();
+    // A short way is the one that is most likely clear, and soonest looked along.
+    ways.sort_unstable_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
+    ways.iter().all(|&way| {
+        let way = BvhNode::leaf(Aabb::from_points([point, point + way]), 0);
+        mesh.bvh().leaves(|node| node.intersects(&way)).next().is_some()
+    })
 }
 
 fn is_finite(aabb: &Aabb) -> bool {

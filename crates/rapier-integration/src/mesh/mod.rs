@@ -14,7 +14,9 @@ mod registry;
 mod soundness;
 
 pub(crate) use cache::{CacheCounts, CachedMesh, PreparedRef, TreeCache};
-pub(crate) use hierarchy::{Hierarchy, Ranks, are_near, box_of, is_near, may_be_inside};
+pub(crate) use hierarchy::{
+    Hierarchy, Ranks, are_near, box_of, is_covered, is_near, may_be_inside,
+};
 pub(crate) use identity::MeshToken;
 pub(crate) use known::{Change, KnownMesh, MeshSurface};
 pub(crate) use prepared::PreparedMesh;

@@ -57,7 +57,8 @@ where
     let plan = coherence.slack.plan(moving.ball, moving.placement, reach, P::Query::GREATEST_SLACK);
     let (answer, margin) = match plan {
         SlackPlan::Reuse { margin, .. } => (Answer::Reused, margin),
-        SlackPlan::Descend { margin } => {
+        SlackPlan::Descend { margin, travel } => {
+            coherence.outside -= travel;
             let mut lookup = std::mem::take(&mut scratch.lookup);
             coherence.find(&mut lookup, |candidates| {
                 query.descend(margin, &mut counters, &mut scratch, candidates);

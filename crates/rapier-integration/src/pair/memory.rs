@@ -117,7 +117,6 @@ impl<H: Copy + Default + PartialEq> Coherence<H> {
         let (old, new) = self.candidates.split_at_mut(old_count);
         lookup.hand_on(old, new);
         self.candidates.drain(..old_count);
-        self.outside = f64::NEG_INFINITY;
     }
 
     /// Makes sure that candidates know the places of their manifolds in the host's list, which a

@@ -57,6 +57,8 @@ pub enum SlackPlan {
     Descend {
         /// The prediction distance plus the slack.
         margin: f32,
+        /// [`Slack::travel`] since the descent before.
+        travel: f64,
     },
 }
 
@@ -87,9 +89,8 @@ impl Slack {
         let slack = step.map_or(0.0, |step| slack(step, f64::from(prediction), greatest_slack));
         let wide = prediction + slack as f32;
         let margin = if wide.is_finite() { wide } else { prediction };
-        self.travel = 0.0;
         self.descent = (margin > prediction).then_some((*placement, margin));
-        SlackPlan::Descend { margin }
+        SlackPlan::Descend { margin, travel: std::mem::take(&mut self.travel) }
     }
 
     /// The margin of the last descent, if what it found is to be kept.

@@ -392,7 +392,7 @@ fn slack_stays_finite() {
         let mut slack = Slack::default();
         for _ in 0..3 {
             match slack.plan(ball, &placement, prediction, 8.0) {
-                SlackPlan::Descend { margin } => {
+                SlackPlan::Descend { margin, .. } => {
                     assert!(margin.is_finite() && margin >= prediction)
                 }
                 SlackPlan::Reuse { margin, .. } => assert!(margin.is_finite()),

@@ -61,7 +61,7 @@ fn candidates_are_complete_while_they_are_reused() {
             let placement = Placement::new(&pose);
             let expected = points.within(&placement, prediction.into());
             match slack.plan(BALL, &placement, prediction, greatest_slack) {
-                SlackPlan::Descend { margin } => {
+                SlackPlan::Descend { margin, .. } => {
                     assert!(margin >= prediction);
                     assert_eq!(slack.travel(), 0.0);
                     assert!(slack.margin().is_none_or(|kept| kept == margin && kept > prediction));
@@ -101,10 +101,14 @@ fn margin_after(step: f32, prediction: f32) -> (f32, bool) {
     let mut slack = Slack::default();
     let at = |x: f32| Placement::new(&Pose3::translation(x, 0.0, 0.0));
     let first = slack.plan(BALL, &at(0.0), prediction, 1.0);
-    assert_eq!(first, SlackPlan::Descend { margin: prediction }, "a first query looks farther");
+    assert_eq!(
+        first,
+        SlackPlan::Descend { margin: prediction, travel: 0.0 },
+        "a first query looks farther"
+    );
     assert_eq!(slack.margin(), None);
     match slack.plan(BALL, &at(step), prediction, 1.0) {
-        SlackPlan::Descend { margin } => (margin, slack.margin().is_some()),
+        SlackPlan::Descend { margin, .. } => (margin, slack.margin().is_some()),
         plan => panic!("{plan:?} without a descent to reuse"),
     }
 }
@@ -147,7 +151,7 @@ fn queries_that_are_not_finite_are_descents() {
                 assert!(matches!(plan, SlackPlan::Reuse { .. }));
                 continue;
             }
-            let SlackPlan::Descend { margin } = plan else { panic!("{plan:?}") };
+            let SlackPlan::Descend { margin, .. } = plan else { panic!("{plan:?}") };
             assert_eq!(margin.to_bits(), prediction.to_bits());
             assert_eq!(slack.margin(), None);
             let next = slack.plan(BALL, &good, 0.02, 1.0);

@@ -9,17 +9,22 @@ use sbbk_core::contact::{Feature, FeaturePair, TriangleContact};
 
 use super::judge::Surfaces;
 use super::meshes::Meshes;
+use crate::mesh::is_covered;
 use crate::pair::pose::PairPose;
 
 /// Of a distance in f32, what surely is left of it.
 const SURE: f64 = 0.99;
 
+/// Of [`nearest`], from where a point counts as inside: nearest to such a one is a face.
+pub(super) const BEHIND: Real = 0.9;
+
 impl Meshes<'_> {
     /// If no contact was found: the one that takes the smaller mesh out of the larger one by the way
     /// that is shortest from its middle, and the triangles that it is written to.
     ///
-    /// If it is not known to be deep in it, one vertex is asked for, as what pierces a surface has other contacts. `outside` is how far the
-    /// vertex was from the solid when it was last looked at, plus the travel of the pair then.
+    /// If it is not known to be deep in it, one vertex is asked for, as what pierces a surface has other
+    /// contacts. `outside` is how far the vertex surely was from the solid when it was last looked at,
+    /// plus the travel of the pair then.
     pub(super) fn inside(
         &self,
         is_deep: bool,
@@ -38,9 +43,12 @@ impl Meshes<'_> {
                 *outside = SURE * from_box + travel;
                 return None;
             }
-            let (_, near, is_behind) = nearest(holder.mesh, vertex)?;
-            if !is_behind {
+            let is_covered = is_covered(holder.mesh, vertex);
+            let (_, near, behind) = nearest(holder.mesh, vertex)?;
+            if !is_covered || behind < -BEHIND {
                 *outside = SURE * f64::from(near.point.distance(vertex)) + travel;
+            }
+            if !is_covered || behind < BEHIND {
                 return None;
             }
             if !self.is_solid(outer) {
@@ -50,8 +58,8 @@ impl Meshes<'_> {
         }
         let middle = self.to_other(1 - outer, held.ball().centre);
         let (triangle, exit, from) = [middle, vertex].into_iter().find_map(|from| {
-            let (triangle, exit, is_behind) = nearest(holder.mesh, from)?;
-            is_behind.then_some((triangle, exit.point, from))
+            let (triangle, exit, behind) = nearest(holder.mesh, from)?;
+            (behind >= BEHIND).then_some((triangle, exit.point, from))
         })?;
         let mut subshapes = [0; 2];
         subshapes[outer] = triangle;
@@ -75,13 +83,19 @@ impl Meshes<'_> {
     pub(super) fn way_apart(&self) -> Option<DVec3> {
         let meshes = &self.pair.meshes;
         let way_of = |inner: usize| {
-            let middle = meshes[inner].ball().centre;
+            let (one, other) = (&meshes[inner], &meshes[1 - inner]);
+            let middle = one.ball().centre;
             let placed = self.to_other(inner, middle);
-            let (_, _, is_in_itself) = nearest(meshes[inner].mesh, middle)?;
-            let (_, exit, is_in_other) = nearest(meshes[1 - inner].mesh, placed)?;
+            if !is_covered(other.mesh, placed) {
+                return None;
+            }
+            let (_, exit, behind) = nearest(other.mesh, placed)?;
+            if behind < BEHIND || !is_covered(one.mesh, middle) {
+                return None;
+            }
             let out = exit.point - placed;
             let out = if inner == 0 { -(self.pair.pose.pos12.rotation * out) } else { out };
-            (is_in_itself && is_in_other).then_some(out.as_dvec3())
+            (nearest(one.mesh, middle)?.2 >= BEHIND).then_some(out.as_dvec3())
         };
         let [size1, size2] = meshes.map(|mesh| mesh.size_squared());
         let inner = [size1 <= size2, size2 <= size1];
@@ -101,12 +115,12 @@ impl Meshes<'_> {
     }
 }
 
-/// The point of a mesh that is nearest to another, its triangle, and whether it is seen from behind:
-/// nearest to a point inside is a face.
-pub(super) fn nearest(mesh: &TriMesh, point: Vector) -> Option<(u32, PointProjection, bool)> {
+/// The point of a mesh that is nearest to another, its triangle, and how far that is seen from behind:
+/// the cosine of the angle to its back, 0 of a point on it.
+pub(super) fn nearest(mesh: &TriMesh, point: Vector) -> Option<(u32, PointProjection, Real)> {
     let (triangle, nearest) =
         CompositeShapeRef(mesh).project_local_point(point, Real::MAX, false)?;
-    let away = point - nearest.point;
-    let into = mesh.triangle(triangle).normal().map_or(0.0, |normal| -away.dot(normal));
-    Some((triangle, nearest, into > 0.9 * away.length()))
+    let away = (point - nearest.point).normalize_or_zero();
+    let behind = mesh.triangle(triangle).normal().map_or(0.0, |normal| -away.dot(normal));
+    Some((triangle, nearest, behind))
 }

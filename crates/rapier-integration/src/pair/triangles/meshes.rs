@@ -13,7 +13,7 @@ use sbbk_core::tree::LeafBatch;
 use sbbk_core::volumes::Sphere;
 
 use super::exact::Constraints;
-use super::inside::nearest;
+use super::inside::{BEHIND, nearest};
 use super::judge::Surfaces;
 use super::query::{Hint, TriangleQuery, TriangleShapes};
 use super::walk::walk;
@@ -205,8 +205,8 @@ impl Surfaces for Meshes<'_> {
     }
 
     fn is_deep(&self, i: usize, point: Vector, distance: Real) -> bool {
-        nearest(self.pair.meshes[i].mesh, point).is_some_and(|(_, nearest, is_behind)| {
-            is_behind && nearest.point.distance(point) > distance
+        nearest(self.pair.meshes[i].mesh, point).is_some_and(|(_, nearest, behind)| {
+            behind >= BEHIND && nearest.point.distance(point) > distance
         })
     }
 }

@@ -76,7 +76,7 @@ impl<'a> Search<'a> {
         let Self { tree, prediction, .. } = *self;
         match &mut self.slack {
             Some(slack) => slack.plan(tree.bounding_ball(), placement, prediction, GREATEST_SLACK),
-            None => SlackPlan::Descend { margin: prediction },
+            None => SlackPlan::Descend { margin: prediction, travel: 0.0 },
         }
     }
 
@@ -91,7 +91,7 @@ impl<'a> Search<'a> {
     /// Finds the pairs of leaves; how many there are.
     pub fn traverse(&mut self, pos12: &Pose3, counters: impl Counters) -> usize {
         let placement = Placement::new(pos12);
-        if let SlackPlan::Descend { margin } = self.plan(&placement) {
+        if let SlackPlan::Descend { margin, .. } = self.plan(&placement) {
             let mut frame = PairFrame::at((self.tree, self.tree), placement, margin);
             let mut collected = Collected(take(&mut self.leaf_pairs));
             collected.0.clear();
@@ -123,7 +123,7 @@ impl<'a> Search<'a> {
                     }
                 }
             }
-            SlackPlan::Descend { margin } => {
+            SlackPlan::Descend { margin, .. } => {
                 let mut frame = PairFrame::at((self.tree, self.tree), placement, margin);
                 tested.margin = f64::from(margin);
                 tested.test = Some(LeafTest::new(&frame));

@@ -26,6 +26,7 @@ mod screw;
 mod sheets;
 mod stacks;
 mod sunk;
+mod tray;
 mod walls;
 
 use std::path::PathBuf;
@@ -74,6 +75,8 @@ pub enum Group {
     Pit,
     /// Cubes on sheets without an inside.
     Sheets,
+    /// Small things on a tray.
+    Tray,
 }
 
 /// What to run.
@@ -192,6 +195,7 @@ pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError>
             Group::Sunk => sunk::trials(),
             Group::Road => road::trials(),
             Group::Sheets => sheets::trials(),
+            Group::Tray => tray::trials(),
         };
         trials.retain(|trial| trial.name.contains(&plan.name));
         let mut jobs: Vec<(&Trial, Kit)> = trials
@@ -202,7 +206,7 @@ pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError>
         let films = if replay.is_some() { film(&mut jobs) } else { Vec::new() };
         let name = group.to_possible_value().map_or_else(String::new, |v| v.get_name().to_owned());
         progress.phase(name, jobs.len());
-        let threads = if *group == Group::Pile { 1 } else { plan.threads };
+        let threads = if matches!(group, Group::Pile | Group::Tray) { 1 } else { plan.threads };
         let found = run_all(&jobs, threads, progress)?;
         if let Some((trial, path)) = replay {
             let recorders = films

@@ -80,7 +80,7 @@ pub(super) fn tables(plan: &HardPlan, rows: &[Row]) -> Vec<Table> {
         others.map(|c| faster(&format!("{c} vs stock"), "worst", Column::Stock).of(c))
     });
     let times = TableSpec::new(
-        "Piles: median of the steps' times, milliseconds",
+        "Piles and the tray: median of the steps' times, milliseconds",
         FIGURES,
         keys,
         columns("worst").chain(stock.into_iter().flatten()),
