@@ -47,7 +47,7 @@ fn walk(name: &str, shape: &SharedShape, size: Real, flipped: bool, seed: u64) -
 
 /// Would catch candidates that are kept too long, bounds of distance that are too high, axes that
 /// do not hold at another pose, manifolds given to another triangle, and anything else that depends
-/// on where the pair was before. Proves that candidates were kept.
+/// on where the pair was before. Proves that candidates were kept, but for balls.
 #[test]
 fn motion_is_no_part_of_the_answer() {
     let floor = ("floor", floor());
@@ -55,8 +55,9 @@ fn motion_is_no_part_of_the_answer() {
         for flipped in [false, true] {
             let [all, unchanged, reused, descended] = walk(name, &shape, 0.6, flipped, seed as u64);
             assert_eq!(all, 400);
+            // A ball keeps no candidates: to make its contacts anew takes less time than to use some.
             assert!(
-                reused >= 20 && descended > 10,
+                descended > 10 && if name == "ball" { reused == 0 } else { reused >= 20 },
                 "{name}: {reused} reused, {descended} descended"
             );
             assert!(unchanged > 0, "{name}: always moved");

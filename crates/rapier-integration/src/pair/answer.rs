@@ -4,6 +4,7 @@
 //! 2. What changed since the last query is forgotten. Two meshes get their trees, if they are there
 //!    or cost little.
 //! 3. The same question as the last one has the same answer.
+//!    (Balls have steps 4 to 6 in one, [`PairQuery::write_at_once`].)
 //! 4. [`Slack`](sbbk_core::traverse::Slack) says whether the candidates of the last descent still
 //!    serve. If not, a descent finds new ones.
 //! 5. Each candidate that may be in reach gets its exact contact.
@@ -17,6 +18,7 @@ use parry3d::query::{ContactManifold, ContactManifoldsWorkspace};
 use sbbk_core::traverse::{Counters, SlackPlan};
 
 use super::driver::{Answer, ContactList, Contacts, Limits, Pair, PairQuery, Scratch, Seen};
+use super::memory::Coherence;
 use super::order::{Candidate, Place};
 use super::patches::write_patches;
 use super::pool::{ManifoldPool, reset};
@@ -53,6 +55,18 @@ where
     let coherence = memory.coherence.begin();
     let mut scratch = SCRATCH.take().unwrap_or_default();
     scratch.parts.clear();
+    let mut pool = ManifoldPool::borrow();
+    if query.write_at_once(&mut counters, &mut scratch, &mut pool, manifolds) {
+        *coherence = Coherence::default();
+        if let Some(limit) = scratch.demand.note(manifolds.len()) {
+            scratch.lookup.shrink_to(limit);
+            pool.shrink_to(limit);
+        }
+        pool.give_back();
+        SCRATCH.set(Some(scratch));
+        memory.end(query.pose(), manifolds.len());
+        return Answer::Descended;
+    }
     let (moving, reach) = (query.moving(), query.reach());
     let plan = coherence.slack.plan(moving.ball, moving.placement, reach, P::Query::GREATEST_SLACK);
     let (answer, margin) = match plan {
@@ -84,7 +98,6 @@ where
         contacts.push((candidates.len() as u32, contact));
         candidates.push(Candidate { place, ..Candidate::new(subshapes) });
     }
-    let mut pool = ManifoldPool::borrow();
     if let Some(plan) = query.patch_plan(&contacts) {
         let found = Contacts { query: &mut query, candidates, contacts: &contacts, limits };
         write_patches(found, plan, &mut scratch, &mut pool, manifolds);

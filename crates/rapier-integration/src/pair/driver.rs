@@ -12,7 +12,7 @@ use super::convex::{Near, PlacedPart};
 use super::merge::Lookup;
 use super::order::{Candidate, OrderKey};
 use super::outline::{Outline, PatchPlan, Patches};
-use super::pool::Demand;
+use super::pool::{Demand, ManifoldPool};
 use super::pose::PairPose;
 use super::triangles::{Found, Regions};
 use crate::mesh::{Change, Ranks, TreeCache};
@@ -56,6 +56,22 @@ pub(crate) trait PairQuery {
     /// The distance up to which there may be contacts.
     fn reach(&self) -> Real {
         self.pose().prediction
+    }
+
+    /// Where contacts cost less than to keep candidates does: replaces `manifolds` by one for each, in
+    /// stock order, and keeps nothing. Whether it has.
+    fn write_at_once<M, C>(
+        &self,
+        _: &mut impl Counters,
+        _: &mut Scratch,
+        _: &mut ManifoldPool<M, C>,
+        _: &mut Vec<ContactManifold<M, C>>,
+    ) -> bool
+    where
+        M: Default + 'static,
+        C: Default + Copy + 'static,
+    {
+        false
     }
 
     /// Adds all candidates within `margin`, and few others, in the order of stock's manifolds.

@@ -23,7 +23,7 @@ thread_local! {
 ///
 /// As long as no manifold comes or goes, all stay in their place in the host's list: to move one
 /// takes as long as to update its distances.
-pub(super) struct ManifoldPool<M, C> {
+pub(crate) struct ManifoldPool<M, C> {
     /// Length of the prefix of the host's list that stays in place. Zero once `next` is in use;
     /// `next` then holds all that is kept.
     in_place: usize,
@@ -97,6 +97,11 @@ impl<M: Default + 'static, C: Default + Copy + 'static> ManifoldPool<M, C> {
     pub(super) fn end(&mut self, manifolds: &mut Vec<ContactManifold<M, C>>) {
         manifolds.truncate(std::mem::take(&mut self.in_place));
         manifolds.append(&mut self.next);
+    }
+
+    /// How many manifolds at the front of the host's list have stayed there.
+    pub(super) fn in_place(&self) -> usize {
+        self.in_place
     }
 
     /// An empty manifold.

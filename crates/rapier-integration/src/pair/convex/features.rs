@@ -30,7 +30,7 @@ pub(crate) fn core_contact(
     margin: f64,
 ) -> Option<ConvexContact> {
     match shape {
-        ConvexShape::Ball(_) => convex_contact(triangle, &PointSupport(DVec3::ZERO), margin),
+        ConvexShape::Ball(_) => ball_contact(triangle, margin),
         ConvexShape::HalfSpace(half_space) => {
             half_space_contact(triangle, half_space.normal.as_dvec3(), margin)
         }
@@ -39,6 +39,12 @@ pub(crate) fn core_contact(
         }
         ConvexShape::Features { shape, .. } => feature_contact(triangle, shape, hull, margin),
     }
+}
+
+/// That of a ball.
+#[inline(always)]
+pub(super) fn ball_contact(triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
+    convex_contact(triangle, &PointSupport(DVec3::ZERO), margin)
 }
 
 /// Whether a triangle is at most `reach` from a shape without its radius, or crosses it.

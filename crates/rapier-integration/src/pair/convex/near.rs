@@ -34,6 +34,21 @@ pub(super) fn triangles_near(
             normal.dot(centre.as_dvec3()) - normal.abs().dot(extent.as_dvec3()) <= height
         };
         mesh.near(is_below, found)
+    } else if let ConvexShape::Ball(ball) = shape {
+        if !placed.placement.is_finite() {
+            return;
+        }
+        // The centre, boxes, and some ten operations with them, are rounded.
+        let centre = placed.inverse.translation.as_vec3();
+        let (reach, size) = (ball.radius + margin, magnitude + centre.abs().max_element());
+        let beyond = (reach + gamma(16) * (size + reach)).max(Real::MIN_POSITIVE.sqrt());
+        let is_near = |node: TestedBox| {
+            count();
+            let (middle, extent) = node.centre_extent();
+            let beside = ((middle - centre).abs() - extent).max(Vec3::ZERO);
+            beside.length_squared() <= beyond * beyond
+        };
+        mesh.near(is_near, found)
     } else {
         let (min, max, radius) = placed.extent.bounds();
         let size = min.abs().max(max.abs()).max_element();

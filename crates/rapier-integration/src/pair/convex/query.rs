@@ -5,20 +5,24 @@ use glamx::Vec3;
 use parry3d::math::Real;
 use parry3d::query::details::NormalConstraints;
 use parry3d::query::{ContactManifold, TrackedContact};
+use parry3d::shape::Triangle;
 use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::traverse::Counters;
 use sbbk_core::volumes::rounding::gamma;
 
-use super::features::core_contact;
+use super::features::{ball_contact, core_contact};
 use super::near::triangles_near;
 use super::pair::ConvexPair;
 use super::parts::{KnownParts, Part, Parts};
 use super::placed::{PlacedPart, Question};
+use super::shape::ConvexShape;
 use crate::ContactGenerator;
 use crate::mesh::{Change, KnownMesh, TreeCache};
 use crate::pair::driver::{ContactList, Limits, Moving, Pair, PairQuery, Scratch, Seen};
+use crate::pair::merge::Merge;
 use crate::pair::order::{Candidate, OrderKey};
 use crate::pair::outline::{Outline, PatchPlan};
+use crate::pair::pool::ManifoldPool;
 use crate::pair::pose::{MeshPlace, PairPose};
 
 impl<'a> Pair for ConvexPair<'a> {
@@ -94,6 +98,10 @@ impl ConvexQuery<'_> {
         });
     }
 
+    fn has_patches(&self) -> bool {
+        self.pair.has_patches && self.pair.mesh.is_rigid()
+    }
+
     /// A part at its place, as this query has it.
     #[inline]
     fn placed<'s>(&self, index: u32, part: &Part<'_>, scratch: &'s mut Scratch) -> &'s PlacedPart {
@@ -109,7 +117,7 @@ impl ConvexQuery<'_> {
             parts[slot] = None;
         }
         parts[slot].get_or_insert_with(|| {
-            PlacedPart::new(index, part, self.pair, self.known_parts.extent(index))
+            PlacedPart::new(index, part, self.pair, self.known_parts.extent(index)).unturned(part)
         })
     }
 }
@@ -149,6 +157,51 @@ impl PairQuery for ConvexQuery<'_> {
         let offset = self.pose().pos12.translation.abs().max_element();
         let largest = self.pair.mesh.magnitude() + offset + size;
         (self.pair.sight(radius) + gamma(64) * largest).min(Real::MAX)
+    }
+
+    /// Of a ball: there neither a contact nor the test of a box takes long.
+    fn write_at_once<M, C>(
+        &self,
+        counters: &mut impl Counters,
+        scratch: &mut Scratch,
+        pool: &mut ManifoldPool<M, C>,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+    ) -> bool
+    where
+        M: Default + 'static,
+        C: Default + Copy + 'static,
+    {
+        let ConvexPair { ref mesh, parts, mesh_place, contacts, .. } = *self.pair;
+        let Parts::One(shape @ ConvexShape::Ball(ball)) = parts else { return false };
+        if contacts == ContactGenerator::Parry || self.has_patches() {
+            return false;
+        }
+        let mut lookup = std::mem::take(&mut scratch.lookup);
+        let mut merge = Merge::begin(pool, manifolds, &mut lookup);
+        let part = Part { pose: None, shape, cone: None };
+        let placed = self.placed(0, &part, scratch);
+        let (prediction, margin) = (self.pose().prediction, self.reach());
+        let (radius, farthest) = (f64::from(ball.radius), f64::from(prediction));
+        triangles_near(placed, shape, mesh, margin, counters, |index| {
+            let corners = mesh.corners(index);
+            let reach = f64::from(margin) + radius;
+            if let Some(contact) = ball_contact(&placed.place(corners), reach)
+                && contact.distance - radius <= farthest
+            {
+                let cone = mesh.mesh.triangle_normal_constraints(index);
+                let cone = cone.as_ref().map(|cone| cone as &dyn NormalConstraints);
+                let triangle = &Triangle::from(corners);
+                let (part, mesh_place) = (&part, mesh_place);
+                let question = Question { placed, part, triangle, cone, mesh_place, prediction };
+                merge.write(mesh_place.swap([index, 0]), |manifold| {
+                    question.touch_ball(ball.radius, &contact, manifold);
+                });
+            }
+            ControlFlow::Continue(())
+        });
+        merge.end();
+        scratch.lookup = lookup;
+        true
     }
 
     fn descend(
@@ -239,8 +292,8 @@ impl PairQuery for ConvexQuery<'_> {
     }
 
     fn patch_plan(&self, _: &[(u32, Near)]) -> Option<PatchPlan> {
-        let has_patches = self.pair.has_patches && self.pair.mesh.is_rigid();
-        has_patches.then(|| PatchPlan::new(self.pose().prediction, self.moving().ball.radius))
+        self.has_patches()
+            .then(|| PatchPlan::new(self.pose().prediction, self.moving().ball.radius))
     }
 
     fn outline(
