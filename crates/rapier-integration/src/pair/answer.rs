@@ -4,12 +4,13 @@
 //! 2. What changed since the last query is forgotten. Two meshes get their trees, if they are there
 //!    or cost little.
 //! 3. The same question as the last one has the same answer.
-//!    (Balls have steps 4 to 6 in one, [`PairQuery::write_at_once`].)
 //! 4. [`Slack`](sbbk_core::traverse::Slack) says whether the candidates of the last descent still
 //!    serve. If not, a descent finds new ones.
 //! 5. Each candidate that may be in reach gets its exact contact.
 //! 6. Each contact is written to its manifold of the query before or to a new one; or
 //!    [`patches`](super::patches) are made of all.
+//!
+//! A kind may have steps 4 to 6 in one ([`PairQuery::write_at_once`]), and keep no candidates.
 
 use std::cell::Cell;
 use std::sync::Arc;
