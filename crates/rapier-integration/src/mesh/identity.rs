@@ -152,3 +152,51 @@ impl MeshToken {
         Self(xxh3_64(bytemuck::cast_slice(&words)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Triangles in a row, or with their places in another order.
+    fn row(place: impl Fn(usize) -> usize, flags: TriMeshFlags) -> TriMesh {
+        let corners = |i| {
+            let x = place(i) as f32;
+            [[x, 0.0, 0.0], [x + 1.0, 0.0, 0.0], [x, 1.0, 0.0]].map(Vector::from_array)
+        };
+        let triangles = (0..16).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        TriMesh::with_flags((0..16).flat_map(corners).collect(), triangles, flags).unwrap()
+    }
+
+    /// Would catch a part of what prepared meshes are made of that does not count.
+    #[test]
+    fn all_that_is_prepared_is_hashed() {
+        let mesh = row(|i| i, TriMeshFlags::empty());
+        let hash = ContentHash::of(&mesh);
+        assert_eq!(ContentHash::of(&mesh.clone()), hash);
+        assert_ne!(ContentHash::of(&row(|i| i, TriMeshFlags::DEFORMABLE)), hash, "flags");
+        let mut triangles = mesh.indices().to_vec();
+        triangles[7].swap(1, 2);
+        let reversed = TriMesh::new(mesh.vertices().to_vec(), triangles).unwrap();
+        assert_ne!(ContentHash::of(&reversed), hash, "triangles");
+        let mut moved = row(|i| i * 7 % 16, TriMeshFlags::empty());
+        moved.set_vertices(mesh.vertices());
+        assert_ne!(ContentHash::of(&moved), hash, "hierarchy");
+    }
+
+    /// Would catch an edit in place that a pair does not see, and a mesh taken for its clone.
+    #[test]
+    fn edits_in_place_change_the_token() {
+        let mut mesh = row(|i| i, TriMeshFlags::empty());
+        let clone = mesh.clone();
+        assert_ne!(MeshToken::of(&clone), MeshToken::of(&mesh));
+        // Vertices that are no sample move the box, at either end; one that is moves within it.
+        for (vertex, to) in [(1, [1.0, 0.0, -1.0]), (4, [2.0, 0.0, 1.0]), (24, [8.1, 0.1, 0.0])] {
+            let before = MeshToken::of(&mesh);
+            mesh.update_vertices(|vertices| vertices[vertex] = Vector::from_array(to));
+            assert_ne!(MeshToken::of(&mesh), before, "vertex {vertex}");
+        }
+        let before = MeshToken::of(&mesh);
+        mesh.set_flags(TriMeshFlags::DEFORMABLE).unwrap();
+        assert_ne!(MeshToken::of(&mesh), before, "flags");
+    }
+}
