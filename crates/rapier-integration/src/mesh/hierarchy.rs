@@ -65,7 +65,8 @@ pub(crate) fn is_covered(mesh: &TriMesh, point: Vec3) -> bool {
     // A short way is the one that is most likely clear, and soonest looked along.
     ways.sort_unstable_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
     ways.iter().all(|&way| {
-        let way = BvhNode::leaf(Aabb::from_points([point, point + way]), 0);
+        // Beyond the side, where rounding may leave a face out.
+        let way = BvhNode::leaf(Aabb::from_points([point, point + 2.0 * way]), 0);
         mesh.bvh().leaves(|node| node.intersects(&way)).next().is_some()
     })
 }
