@@ -125,5 +125,5 @@ fn many_idle_trees_cost_no_time() {
     let fastest = |times: &[Duration]| *times.iter().min().unwrap();
     let [few, many] = [fastest(&times[..8]), fastest(&times[80..])];
     assert_eq!(dispatcher.stats().idle_trees, 100 * BATCH);
-    assert!(many < 4 * few, "{few:?} among few, {many:?} among many");
+    assert!(many < 8 * few, "{few:?} among few, {many:?} among many");
 }

@@ -24,6 +24,8 @@ pub(crate) struct PatchPlan {
     size: Real,
     /// The least cosine of normals of one manifold of a patch.
     pub(super) one_normal: Real,
+    /// Points nearer to each other than this are one that has moved.
+    pub(super) same_point: Real,
 }
 
 /// [`PatchPlan::level`] as a share of the prediction distance, or of a tenth of the radius if that is
@@ -48,13 +50,15 @@ impl PatchPlan {
     /// All contacts are far: what is deepest may change before they touch, and of two manifolds alike
     /// to Rapier's solver with more than four points it leaves one point.
     pub(super) const FAR: Self =
-        Self { level: Real::INFINITY, size: Real::INFINITY, one_normal: -1.0 };
+        Self { level: Real::INFINITY, size: Real::INFINITY, one_normal: -1.0, same_point: 0.0 };
 
     /// For two shapes, the smaller one of that radius.
     pub(super) fn new(prediction: Real, radius: Real) -> Self {
         let near = 0.1 * radius;
         let reach = if prediction > 0.0 { prediction.min(near) } else { near };
-        Self { level: LEVEL * reach, size: PATCH_SIZE * radius, one_normal: ONE_NORMAL }
+        let size = PATCH_SIZE * radius;
+        let same_point = SAME_POINT * size;
+        Self { level: LEVEL * reach, size, one_normal: ONE_NORMAL, same_point }
     }
 }
 
@@ -167,11 +171,6 @@ fn first_or_new(
 }
 
 impl PatchPlan {
-    /// Points nearer to each other than this are one that has moved.
-    pub(super) fn same_point(self) -> Real {
-        SAME_POINT * self.size
-    }
-
     /// Up to four of `points`, each with its distance: the first and deepest one, the one farthest
     /// from it, and those farthest from the line between these on both sides, as seen along `normal`.
     /// A point that hangs over the other shape counts as if it were nearer to the first one: a body
@@ -223,7 +222,8 @@ mod tests {
         patches.members.iter().map(|member| (member.contact, member.patch)).collect()
     }
 
-    const PLAN: PatchPlan = PatchPlan { level: 0.01, size: 1.0, one_normal: ONE_NORMAL };
+    const PLAN: PatchPlan =
+        PatchPlan { level: 0.01, size: 1.0, one_normal: ONE_NORMAL, same_point: 0.0 };
 
     fn outline(x: Real, distance: Real) -> Outline {
         let point = Vec3::new(x, 0.0, 0.0);

@@ -103,7 +103,7 @@ pub(super) fn write_patches<Q, M, C>(
                 let PatchPoint { mut point, normals, .. } = points[*i];
                 let is_of_normal = normals[0].dot(local_n1) >= plan.one_normal;
                 if is_of_normal {
-                    if let Some(old) = place_of(&point, &old_points, plan.same_point()) {
+                    if let Some(old) = place_of(&point, &old_points, plan.same_point) {
                         point.data = old_points.swap_remove(old).data;
                     }
                     manifold.points.push(point);
@@ -132,7 +132,7 @@ fn place_of<C>(
     let is_same = |old: &TrackedContact<C>| old.fid1 == point.fid1 && old.fid2 == point.fid2;
     let distance = |old: &TrackedContact<C>| old.local_p1.distance(point.local_p1);
     let nearest = || {
-        let distances = old_points.iter().map(distance).enumerate();
+        let distances = old_points.iter().map(distance).enumerate().filter(|_| same_point > 0.0);
         let (place, distance) = distances.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
         (distance <= same_point).then_some(place)
     };

@@ -25,7 +25,7 @@ const LEAST: f32 = 0.03;
 const MOST: f32 = 0.08;
 /// Half the tray's diagonal, the height of its rim, and its thickness.
 const HALF: f32 = 0.45;
-const RIM: f32 = 0.08;
+const RIM: f32 = 0.25;
 const WALL: f32 = 0.02;
 
 pub(super) fn trials() -> Vec<Trial> {
