@@ -232,7 +232,7 @@ fn crossing(Depth { outward, depth, on_triangle, .. }: Depth) -> ConvexContact {
 #[inline(always)]
 fn toward_origin<S: SupportMap>(difference: &Difference<S>, triangle: &[DVec3; 3]) -> DVec3 {
     let [a, b, c]: [Vertex; 3] = difference.at(DVec3::ZERO);
-    let nearest = simplex::face(a, b, c).nearest;
+    let nearest = simplex::side(a, b, c).nearest;
     if nearest != DVec3::ZERO {
         return nearest;
     }

@@ -103,7 +103,7 @@ pub(super) fn search<S: SupportMap>(
     if is_far(bound, toward.length_squared()) {
         return end(Outcome::Far, 0);
     }
-    let mut simplex = simplex::face(a, b, c);
+    let mut simplex = simplex::side(a, b, c);
     // The same along the normal of the triangle: where a shape rests on it, that is the answer,
     // and its support point is worth two rounds of any other contact.
     let [corner1, corner2, corner3] = *difference.triangle;
@@ -113,7 +113,7 @@ pub(super) fn search<S: SupportMap>(
     if is_far(a.point.dot(normal), normal.length_squared()) {
         return end(Outcome::Far, 0);
     }
-    let flat = simplex::face(a, b, c);
+    let flat = simplex::side(a, b, c);
     if flat.squared < simplex.squared {
         simplex = flat;
     }

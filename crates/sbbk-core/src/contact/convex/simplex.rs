@@ -59,7 +59,7 @@ impl Simplex {
         let [b, c, d] = self.vertices;
         match self.len {
             1 => Step::Beside(segment(new, b)),
-            2 => Step::Beside(face(new, b, c)),
+            2 => Step::Beside(side(new, b, c)),
             _ => tetrahedron(new, b, c, d),
         }
     }
@@ -200,6 +200,12 @@ pub(super) fn thin_normal([a, b, c]: [DVec3; 3]) -> Option<(DVec3, f64)> {
     is_wide.then_some((normal, squared))
 }
 
+/// [`face`], not inlined: a search has thirty of them.
+#[inline(never)]
+pub(super) fn side(a: Vertex, b: Vertex, c: Vertex) -> Simplex {
+    face(a, b, c)
+}
+
 /// `a` is the newest vertex; the others are a face.
 #[inline(always)]
 fn tetrahedron(a: Vertex, b: Vertex, c: Vertex, d: Vertex) -> Step {
@@ -217,17 +223,17 @@ fn tetrahedron(a: Vertex, b: Vertex, c: Vertex, d: Vertex) -> Step {
     let old = 1.0 - (inside[0] + inside[1] + inside[2]);
     match inside.map(|side| side > 0.0) {
         [true, true, true] if old > 0.0 => Step::Around([a, b, c, d]),
-        [true, true, true] => Step::Beside(face(b, c, d)),
-        [false, true, true] => Step::Beside(face(a, b, c)),
-        [true, false, true] => Step::Beside(face(a, c, d)),
-        [true, true, false] => Step::Beside(face(a, d, b)),
+        [true, true, true] => Step::Beside(side(b, c, d)),
+        [false, true, true] => Step::Beside(side(a, b, c)),
+        [true, false, true] => Step::Beside(side(a, c, d)),
+        [true, true, false] => Step::Beside(side(a, d, b)),
         [in_abc, in_acd, in_adb] => {
-            let mut nearest = if in_abc { face(a, c, d) } else { face(a, b, c) };
+            let mut nearest = if in_abc { side(a, c, d) } else { side(a, b, c) };
             if !in_abc && !in_acd {
-                nearest = nearest.nearer(face(a, c, d));
+                nearest = nearest.nearer(side(a, c, d));
             }
             if !in_adb {
-                nearest = nearest.nearer(face(a, d, b));
+                nearest = nearest.nearer(side(a, d, b));
             }
             Step::Beside(nearest)
         }
@@ -236,6 +242,6 @@ fn tetrahedron(a: Vertex, b: Vertex, c: Vertex, d: Vertex) -> Step {
 
 #[cold]
 fn flat_tetrahedron(a: Vertex, b: Vertex, c: Vertex, d: Vertex) -> Step {
-    let sides = face(a, b, c).nearer(face(a, c, d)).nearer(face(a, d, b));
-    Step::Beside(sides.nearer(face(b, c, d)))
+    let sides = side(a, b, c).nearer(side(a, c, d)).nearer(side(a, d, b));
+    Step::Beside(sides.nearer(side(b, c, d)))
 }
