@@ -3,6 +3,7 @@
 use glamx::{DVec3, Vec3};
 use parry3d::math::{Real, Vector};
 use parry3d::shape::{Ball, Cuboid, HalfSpace, PolygonalFeatureMap, Shape, ShapeType};
+use sbbk_core::volumes::Sphere;
 use sbbk_core::volumes::rounding::gamma;
 
 /// A convex shape that Parry has contacts with triangles for, by how Parry makes them.
@@ -72,6 +73,12 @@ pub(super) struct Extent {
     skew: Vec3,
 }
 
+/// The ball around a box, wider by what some ten operations on its coordinates lose.
+pub(super) fn ball_around(min: Vec3, max: Vec3) -> Sphere {
+    let (centre, half) = (0.5 * (min + max), 0.5 * (max - min).length());
+    Sphere { centre, radius: half + gamma(32) * (centre.length() + half) }
+}
+
 /// A direction in which a shape is not likely to have a face or an axis.
 const SKEW: Vec3 = Vec3::new(0.267, 0.535, 0.802);
 
@@ -120,6 +127,13 @@ impl Extent {
     /// Whether it goes on without end.
     pub(super) fn is_endless(&self) -> bool {
         self.shape_type == ShapeType::HalfSpace
+    }
+
+    /// A ball around it.
+    pub(super) fn ball(&self) -> Sphere {
+        let Sphere { centre, radius } = ball_around(self.min, self.max);
+        let radius = (radius + self.radius) * (1.0 + gamma(8));
+        Sphere { centre, radius: if self.is_endless() { Real::INFINITY } else { radius } }
     }
 
     /// The box around the shape without its radius, and the radius.
