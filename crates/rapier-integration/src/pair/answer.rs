@@ -69,7 +69,7 @@ where
         return Answer::Descended;
     }
     let (moving, reach) = (query.moving(), query.reach());
-    let plan = coherence.slack.plan(moving.ball, moving.placement, reach, P::Query::GREATEST_SLACK);
+    let plan = coherence.slack.plan(moving.ball, moving.placement, reach, P::Query::SLACK);
     let (answer, margin) = match plan {
         SlackPlan::Reuse { margin, .. } => (Answer::Reused, margin),
         SlackPlan::Descend { margin, travel } => {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use parry3d::math::Real;
 use parry3d::query::{ContactManifold, TrackedContact};
-use sbbk_core::traverse::{Counters, DescentScratch, Placement};
+use sbbk_core::traverse::{Counters, DescentScratch, Placement, SlackLimits};
 use sbbk_core::volumes::Sphere;
 
 use super::convex::{Near, PlacedPart};
@@ -45,8 +45,8 @@ pub(crate) trait PairQuery {
     /// What is known of the contact of a candidate before its manifold is at hand.
     type Contact: Copy;
 
-    /// Greatest slack of a descent as a share of [`reach`](Self::reach).
-    const GREATEST_SLACK: f64;
+    /// How much farther than [`reach`](Self::reach) descents may look.
+    const SLACK: SlackLimits;
 
     fn pose(&self) -> &PairPose;
 

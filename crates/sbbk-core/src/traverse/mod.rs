@@ -35,6 +35,6 @@ pub(crate) use gaps::{Cutoff, GapCounts, SignedGaps};
 pub(crate) use overlap::OrderedOverlap;
 pub use placement::Placement;
 pub(crate) use side::Side;
-pub use slack::{GREATEST_SLACK, Slack, SlackPlan};
+pub use slack::{Slack, SlackLimits, SlackPlan};
 pub(crate) use toward::Toward;
 pub use visitor::{LeafPairs, NodePair, Verdict, Visitor};

@@ -13,9 +13,6 @@
 use super::Placement;
 use crate::volumes::Sphere;
 
-/// Slack in steps of the present motion. More: fewer descents, and more candidates that do not
-/// touch.
-const SLACK_STEPS: f64 = 8.0;
 /// Least slack as a share of the prediction distance, for bodies at rest that jitter. More: as
 /// above; less: jitter that grows uses it up.
 const LEAST_SLACK: f64 = 0.1;
@@ -24,9 +21,21 @@ const LEAST_SLACK: f64 = 0.1;
 /// those of a ball that rolls over a terrain 1.2 times).
 const LEAST_STEPS: f64 = 3.0;
 
-/// Greatest slack as a share of the prediction distance, where what is found gets an exact test.
-/// More: pairs of triangles that do not touch get one; less: more descents.
-pub const GREATEST_SLACK: f64 = 1.0;
+/// How much farther than asked descents may look.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct SlackLimits {
+    /// Slack in steps of the present motion. More: fewer descents, and more candidates that do not
+    /// touch.
+    pub steps: f64,
+    /// Greatest slack as a share of the prediction distance. More: candidates that do not touch get
+    /// an exact test; less: more descents.
+    pub greatest: f64,
+}
+
+impl SlackLimits {
+    /// Where what is found are pairs of triangles, that get an exact test.
+    pub const TRIANGLES: Self = Self { steps: 8.0, greatest: 1.0 };
+}
 
 /// Plans the queries of one pair: when to descend, and how far to look.
 ///
@@ -64,8 +73,7 @@ pub enum SlackPlan {
 
 impl Slack {
     /// Plans a query, and remembers it. What moves is in `ball` of its own frame, and that is at
-    /// `placement`. `greatest_slack` is a share of the prediction distance, [`GREATEST_SLACK`] for
-    /// two meshes. Constant time.
+    /// `placement`. Constant time.
     ///
     /// If the placement or the prediction distance is not finite, it is a descent without slack.
     pub fn plan(
@@ -73,7 +81,7 @@ impl Slack {
         ball: Sphere,
         placement: &Placement,
         prediction: f32,
-        greatest_slack: f64,
+        limits: SlackLimits,
     ) -> SlackPlan {
         let motion_since =
             |then: &Placement| placement.motion_bound(then, ball.centre, ball.radius);
@@ -86,7 +94,7 @@ impl Slack {
             }
         }
         // Of the first query nothing is known, not even whether there will be another one.
-        let slack = step.map_or(0.0, |step| slack(step, f64::from(prediction), greatest_slack));
+        let slack = step.map_or(0.0, |step| slack(step, f64::from(prediction), limits));
         let wide = prediction + slack as f32;
         let margin = if wide.is_finite() { wide } else { prediction };
         self.descent = (margin > prediction).then_some((*placement, margin));
@@ -107,10 +115,10 @@ impl Slack {
 
 /// How much farther than the prediction distance a descent should look, for a pair that moved by
 /// `step` since the query before. Not finite motion gives none.
-fn slack(step: f64, prediction: f64, greatest_slack: f64) -> f64 {
-    let greatest = greatest_slack * prediction;
+fn slack(step: f64, prediction: f64, limits: SlackLimits) -> f64 {
+    let greatest = limits.greatest * prediction;
     if LEAST_STEPS * step <= greatest {
-        (SLACK_STEPS * step).max(LEAST_SLACK * prediction).min(greatest)
+        (limits.steps * step).max(LEAST_SLACK * prediction).min(greatest)
     } else {
         0.0
     }

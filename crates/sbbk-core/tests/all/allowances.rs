@@ -7,8 +7,8 @@ use glamx::{DVec3, Pose3, Vec3};
 use sbbk_core::field::{FieldFrame, HeightGrid};
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::traverse::{
-    BoxTest, Descent, DescentScratch, PairFrame, Placement, Slack, SlackPlan, TestedBox, Verdict,
-    Visitor, descend,
+    BoxTest, Descent, DescentScratch, PairFrame, Placement, Slack, SlackLimits, SlackPlan,
+    TestedBox, Verdict, Visitor, descend,
 };
 use sbbk_core::tree::{BuildOptions, LayerPlan, LeafBatch, Tree};
 use sbbk_core::truth;
@@ -391,7 +391,12 @@ fn slack_stays_finite() {
     for prediction in [2.0e19, 3.0e38, f32::MAX] {
         let mut slack = Slack::default();
         for _ in 0..3 {
-            match slack.plan(ball, &placement, prediction, 8.0) {
+            match slack.plan(
+                ball,
+                &placement,
+                prediction,
+                SlackLimits { steps: 16.0, greatest: 8.0 },
+            ) {
                 SlackPlan::Descend { margin, .. } => {
                     assert!(margin.is_finite() && margin >= prediction)
                 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use crate::support::Random;
 use glamx::{Pose3, Quat, Vec3};
-use sbbk_core::traverse::{Placement, Slack, SlackPlan};
+use sbbk_core::traverse::{Placement, Slack, SlackLimits, SlackPlan};
 use sbbk_core::volumes::Sphere;
 
 const BALL: Sphere = Sphere { centre: Vec3::new(0.3, -0.2, 0.1), radius: 0.7 };
@@ -46,7 +46,8 @@ fn candidates_are_complete_while_they_are_reused() {
     let (mut reused, mut skipped, mut found) = (0, 0, 0);
     for walk in 0..60 {
         let points = Points::random(&mut random);
-        let greatest_slack = [1.0, 8.0][walk % 2];
+        let of_shapes = SlackLimits { steps: 16.0, greatest: 8.0 };
+        let limits = [SlackLimits::TRIANGLES, of_shapes][walk % 2];
         let (mut slack, mut pose) = (Slack::default(), random.pose(0.5));
         let (mut stride, mut prediction) = (1e-3, 0.05_f32);
         // The distance of each candidate when it was last known, plus the travel then.
@@ -60,7 +61,7 @@ fn candidates_are_complete_while_they_are_reused() {
             }
             let placement = Placement::new(&pose);
             let expected = points.within(&placement, prediction.into());
-            match slack.plan(BALL, &placement, prediction, greatest_slack) {
+            match slack.plan(BALL, &placement, prediction, limits) {
                 SlackPlan::Descend { margin, .. } => {
                     assert!(margin >= prediction);
                     assert_eq!(slack.travel(), 0.0);
@@ -100,14 +101,14 @@ fn candidates_are_complete_while_they_are_reused() {
 fn margin_after(step: f32, prediction: f32) -> (f32, bool) {
     let mut slack = Slack::default();
     let at = |x: f32| Placement::new(&Pose3::translation(x, 0.0, 0.0));
-    let first = slack.plan(BALL, &at(0.0), prediction, 1.0);
+    let first = slack.plan(BALL, &at(0.0), prediction, SlackLimits::TRIANGLES);
     assert_eq!(
         first,
         SlackPlan::Descend { margin: prediction, travel: 0.0 },
         "a first query looks farther"
     );
     assert_eq!(slack.margin(), None);
-    match slack.plan(BALL, &at(step), prediction, 1.0) {
+    match slack.plan(BALL, &at(step), prediction, SlackLimits::TRIANGLES) {
         SlackPlan::Descend { margin, .. } => (margin, slack.margin().is_some()),
         plan => panic!("{plan:?} without a descent to reuse"),
     }
@@ -141,11 +142,11 @@ fn queries_that_are_not_finite_are_descents() {
         for (placement, prediction) in [(&bad_pose, 0.02), (&good, broken)] {
             let mut slack = Slack::default();
             for _ in 0..2 {
-                slack.plan(BALL, &good, 0.02, 1.0);
+                slack.plan(BALL, &good, 0.02, SlackLimits::TRIANGLES);
             }
-            let again = slack.clone().plan(BALL, &good, 0.02, 1.0);
+            let again = slack.clone().plan(BALL, &good, 0.02, SlackLimits::TRIANGLES);
             assert!(matches!(again, SlackPlan::Reuse { .. }), "{again:?}");
-            let plan = slack.plan(BALL, placement, prediction, 1.0);
+            let plan = slack.plan(BALL, placement, prediction, SlackLimits::TRIANGLES);
             // Within less than nothing, what is known is more than enough.
             if prediction == f32::NEG_INFINITY {
                 assert!(matches!(plan, SlackPlan::Reuse { .. }));
@@ -154,7 +155,7 @@ fn queries_that_are_not_finite_are_descents() {
             let SlackPlan::Descend { margin, .. } = plan else { panic!("{plan:?}") };
             assert_eq!(margin.to_bits(), prediction.to_bits());
             assert_eq!(slack.margin(), None);
-            let next = slack.plan(BALL, &good, 0.02, 1.0);
+            let next = slack.plan(BALL, &good, 0.02, SlackLimits::TRIANGLES);
             assert!(matches!(next, SlackPlan::Descend { .. }), "{next:?}");
         }
     }

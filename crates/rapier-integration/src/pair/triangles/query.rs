@@ -7,7 +7,7 @@ use parry3d::shape::Triangle;
 use sbbk_core::contact::{
     FeaturePair, ManifoldPoints, TriangleContact, clip, contact, contact_from, push_closest,
 };
-use sbbk_core::traverse::{Counters, GREATEST_SLACK};
+use sbbk_core::traverse::{Counters, SlackLimits};
 
 use super::exact::{Constraints, constrained_normal, fill, local_pair};
 use super::judge::{Judge, Surfaces};
@@ -105,7 +105,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
     type Hint = Hint;
     type Contact = Found;
 
-    const GREATEST_SLACK: f64 = GREATEST_SLACK;
+    const SLACK: SlackLimits = SlackLimits::TRIANGLES;
 
     fn pose(&self) -> &PairPose {
         self.pose

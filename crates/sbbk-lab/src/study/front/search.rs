@@ -8,7 +8,7 @@ use sbbk_core::front::{Front, FrontOptions};
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::query::TrianglePair;
 use sbbk_core::traverse::{
-    Counters, Descent, DescentScratch, GREATEST_SLACK, PairFrame, Placement, Slack, SlackPlan,
+    Counters, Descent, DescentScratch, PairFrame, Placement, Slack, SlackLimits, SlackPlan,
     Verdict, Visitor, descend,
 };
 use sbbk_core::tree::{LeafBatch, Tree};
@@ -75,7 +75,9 @@ impl<'a> Search<'a> {
     fn plan(&mut self, placement: &Placement) -> SlackPlan {
         let Self { tree, prediction, .. } = *self;
         match &mut self.slack {
-            Some(slack) => slack.plan(tree.bounding_ball(), placement, prediction, GREATEST_SLACK),
+            Some(slack) => {
+                slack.plan(tree.bounding_ball(), placement, prediction, SlackLimits::TRIANGLES)
+            }
             None => SlackPlan::Descend { margin: prediction, travel: 0.0 },
         }
     }
