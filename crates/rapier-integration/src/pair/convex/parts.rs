@@ -230,3 +230,63 @@ impl KnownParts {
         self.ranks.get(part as usize).copied().unwrap_or(0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use parry3d::shape::SharedShape;
+
+    use super::*;
+
+    /// Would catch a ball that parts stick out of, so that a pair counts as having moved less than it
+    /// has, and a bound of coordinates that some are beyond.
+    #[test]
+    fn what_is_known_of_parts_holds_them() {
+        let [a, b, c] =
+            [Vec3::new(3.0, 0.1, 0.0), Vec3::new(2.0, 0.5, 0.3), Vec3::new(2.5, 1.0, -1.0)];
+        let shapes = [
+            SharedShape::cuboid(0.5, 0.3, 2.0),
+            SharedShape::capsule(a, b, 0.4),
+            SharedShape::round_triangle(a, b, c, 0.2),
+            SharedShape::round_cone(0.7, 0.3, 0.1),
+            SharedShape::convex_hull(&[a, b, c, Vec3::ZERO, Vec3::ONE]).unwrap(),
+        ];
+        let at =
+            |x: Real| Pose::from_parts(Vec3::new(x, -2.0, 1.0), glamx::Quat::from_rotation_z(x));
+        let posed = shapes.iter().zip([0.0, 5.0, -3.0, 9.0, 2.0]).map(|(s, x)| (at(x), s.clone()));
+        let compound = SharedShape::compound(posed.collect());
+        for whole in shapes.iter().chain([&compound]) {
+            let parts = Parts::of(&**whole).unwrap();
+            let mut known = KnownParts::default();
+            known.update(&parts);
+            let ball = known.ball();
+            for index in 0..known.extents.len() as u32 {
+                parts.with(index, |part| {
+                    let ConvexShape::Features { map, radius, .. } = part.shape else { return };
+                    for direction in [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, Vec3::NEG_ONE]
+                    {
+                        let direction = direction.normalize();
+                        let point = map.local_support_point(direction) + direction * radius;
+                        let point = part.pose.map_or(point, |pose| *pose * point);
+                        assert!(point.distance(ball.centre) <= ball.radius);
+                    }
+                });
+            }
+            assert!(known.magnitude >= known.size(&parts));
+        }
+    }
+
+    /// Would catch a half-space in a compound that counts as being in a box.
+    #[test]
+    fn a_half_space_is_in_no_ball() {
+        let shapes = [SharedShape::halfspace(Vec3::Y), SharedShape::ball(1.0)];
+        let compound =
+            SharedShape::compound(shapes.iter().map(|s| (Pose::IDENTITY, s.clone())).collect());
+        for whole in [&shapes[0], &compound] {
+            let parts = Parts::of(&**whole).unwrap();
+            let mut known = KnownParts::default();
+            known.update(&parts);
+            assert_eq!(known.ball().radius, Real::INFINITY);
+            assert!(known.magnitude.is_finite());
+        }
+    }
+}
