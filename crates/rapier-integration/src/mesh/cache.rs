@@ -440,3 +440,71 @@ impl Drop for PreparedRef {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use parry3d::math::Vector;
+    use parry3d::shape::{Ball, TriMeshFlags};
+
+    use super::*;
+
+    fn ball(radius: f32) -> TriMesh {
+        let (vertices, triangles) = Ball::new(radius).to_trimesh(8, 4);
+        TriMesh::new(vertices, triangles).unwrap()
+    }
+
+    fn cache(idle_bytes_limit: usize) -> Arc<TreeCache> {
+        Arc::new(TreeCache::new(BuildOptions::default(), idle_bytes_limit))
+    }
+
+    /// Would catch idle trees that go though they keep to the limit, or stay though they do not, and a
+    /// copy that does not count.
+    #[test]
+    fn idle_trees_keep_to_the_limit_in_bytes() {
+        let mesh = ball(1.0);
+        let wide = cache(usize::MAX);
+        drop(wide.prepare(&mesh).unwrap());
+        let bytes = wide.counts().bytes;
+        for (limit, stay) in [(bytes, 1), (bytes - 1, 0)] {
+            let cache = cache(limit);
+            drop(cache.prepare(&mesh).unwrap());
+            assert_eq!((cache.counts().trees, cache.counts().idle_trees), (stay, stay), "{limit}");
+        }
+        drop(wide.prepare_for_queries(&mesh).unwrap());
+        let copy = size_of_val(mesh.vertices()) + size_of_val(mesh.indices());
+        assert_eq!(wide.counts().bytes, bytes + copy);
+    }
+
+    /// Would catch a mesh of which nothing is known that is kept, as it has as many triangles as
+    /// another one.
+    #[test]
+    fn only_what_is_there_is_recognised() {
+        let (cache, known, other) = (cache(usize::MAX), ball(1.0), ball(2.0));
+        let _known = cache.prepare(&known).unwrap();
+        (0..1000).for_each(|_| cache.did_without());
+        assert!(cache.recognise(&other).is_none());
+        assert!(cache.recognise(&known).is_some());
+    }
+
+    /// Would catch a mesh that is what it looks like, though the user says that it is something else.
+    #[test]
+    fn what_a_mesh_bounds_can_be_settled() {
+        let (cache, mesh) = (cache(usize::MAX), ball(1.0));
+        let known = cache.know(&mesh);
+        known.settle_kind(SurfaceKind::Sheet);
+        assert_eq!((cache.counts().solids, cache.counts().sheets), (0, 1));
+        assert_eq!(known.surface(&mesh).1, SurfaceKind::Sheet);
+        assert_eq!((cache.counts().solids, cache.counts().sheets), (0, 1));
+    }
+
+    /// Would catch a mesh that deforms left to Parry, and one that does not left to SBBK.
+    #[test]
+    fn of_broken_meshes_those_that_deform_are_answered_for() {
+        for (flags, is_seen) in [(TriMeshFlags::DEFORMABLE, true), (TriMeshFlags::empty(), false)] {
+            let corners = vec![Vector::ZERO, Vector::X, Vector::Y, Vector::NAN];
+            let triangles = vec![[0, 1, 2], [1, 2, 3]];
+            let mesh = TriMesh::with_flags(corners, triangles, flags).unwrap();
+            assert_eq!(cache(0).look_at(&mesh).is_some(), is_seen);
+        }
+    }
+}

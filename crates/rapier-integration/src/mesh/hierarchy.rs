@@ -235,3 +235,51 @@ pub(crate) fn box_of(node: &BvhNode) -> TestedBox {
 fn around(boxes: impl Iterator<Item = Aabb>) -> Aabb {
     boxes.fold(Aabb::new_invalid(), |all, one| all.merged(&one))
 }
+
+#[cfg(test)]
+mod tests {
+    use parry3d::shape::TriMeshFlags;
+
+    use super::*;
+
+    /// Triangles in a row along x, some with a corner that is not finite. Would catch one of these that
+    /// is found, a whole one that boxes above it hide, one that is far, and a box around all that is
+    /// none.
+    #[test]
+    fn whole_triangles_of_a_broken_mesh_are_found_in_their_order() {
+        let corner = |i: u32| match i {
+            3 => Vec3::NAN,
+            40 => Vec3::INFINITY,
+            _ => Vec3::new((i / 3) as f32, (i % 3) as f32, (i % 3 / 2) as f32),
+        };
+        let triangles = (0..20).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let vertices = (0..60).map(corner).collect();
+        let mesh = TriMesh::with_flags(vertices, triangles, TriMeshFlags::DEFORMABLE).unwrap();
+        let seen = Hierarchy::new(&mesh, MeshToken::of(&mesh), 0, true);
+        let near = |box_of_it: TestedBox| {
+            let mut found = Vec::new();
+            let (centre, extent) = box_of_it.centre_extent();
+            let meets = |node: TestedBox| {
+                let (other, other_extent) = node.centre_extent();
+                let apart = (other - centre).abs().cmpgt(extent + other_extent);
+                !apart.any()
+            };
+            let _ = seen.near(meets, |triangle| {
+                found.push(triangle);
+                ControlFlow::Continue(())
+            });
+            found
+        };
+        let whole: Vec<u32> = (0..20).filter(|i| ![1, 13].contains(i)).collect();
+        assert_eq!(near(TestedBox::new(Vec3::splat(-1.0), Vec3::splat(30.0))), whole);
+        assert_eq!(near(TestedBox::new(Vec3::splat(3.9), Vec3::new(5.1, 30.0, 30.0))), []);
+        assert_eq!(
+            near(TestedBox::new(Vec3::new(3.9, 0.0, 0.0), Vec3::new(5.1, 1.0, 1.0))),
+            [4, 5]
+        );
+        assert_eq!((seen.root().mins, seen.root().maxs), (Vec3::ZERO, Vec3::new(19.0, 2.0, 1.0)));
+        let mut ranks = Ranks::default();
+        seen.rank([7, 2, 13].into_iter(), &mut ranks);
+        assert_eq!([2, 7, 13].map(|index| ranks.of(index)), [2, 7, 13]);
+    }
+}

@@ -181,6 +181,16 @@ mod tests {
         let mut moved = row(|i| i * 7 % 16, TriMeshFlags::empty());
         moved.set_vertices(mesh.vertices());
         assert_ne!(ContentHash::of(&moved), hash, "hierarchy");
+        // Parry fits the normals of edges to a mesh that is scaled, and those of a new one are others.
+        let hinge = |height: f32| {
+            let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, height], [0.0, -1.0, height]];
+            let flags = TriMeshFlags::FIX_INTERNAL_EDGES;
+            let corners = corners.map(Vector::from_array).to_vec();
+            TriMesh::with_flags(corners, vec![[0, 1, 2], [1, 0, 3]], flags).unwrap()
+        };
+        let (new, scaled) = (hinge(1.0), hinge(4.0).scaled(Vector::new(1.0, 1.0, 0.25)));
+        assert_eq!(new.vertices(), scaled.vertices());
+        assert_ne!(ContentHash::of(&new), ContentHash::of(&scaled), "normals of edges");
     }
 
     /// Would catch an edit in place that a pair does not see, and a mesh taken for its clone.

@@ -156,3 +156,60 @@ impl MeshSurface<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use parry3d::shape::{Ball, SharedShape, TriMeshFlags};
+    use sbbk_core::tree::BuildOptions;
+
+    use super::*;
+    use crate::mesh::credit::Credit;
+
+    /// A ball of so many rows of triangles.
+    fn mesh(rows: u32, flags: TriMeshFlags) -> TriMesh {
+        let (vertices, triangles) = Ball::new(1.0).to_trimesh(2 * rows, rows);
+        TriMesh::with_flags(vertices, triangles, flags).unwrap()
+    }
+
+    /// Would catch a mesh that is taken for the one before, or for another than that, or contacts that
+    /// another dispatcher has made taken for its own.
+    #[test]
+    fn what_became_of_a_mesh() {
+        let [one, other] = [3, 4].map(|rows| mesh(rows, TriMeshFlags::empty()));
+        let soft = mesh(3, TriMeshFlags::DEFORMABLE);
+        let seen = |mesh, owner| Hierarchy::new(mesh, MeshToken::of(mesh), owner, false);
+        let mut known = KnownMesh::default();
+        for (mesh, owner, change) in [
+            (&one, 0, Change::Unknown),
+            (&one, 0, Change::Unchanged),
+            (&one, 1, Change::Unknown),
+            (&one, 1, Change::Unchanged),
+            (&other, 1, Change::Replaced),
+            (&soft, 1, Change::Replaced),
+            (&soft, 1, Change::Deformed),
+            (&one, 1, Change::Replaced),
+        ] {
+            assert_eq!(known.update(&seen(mesh, owner)), change);
+        }
+    }
+
+    /// Would catch a large mesh that is looked at as a whole unasked, or is not though it is
+    /// registered, and one that is taken for a solid where only its neighbourhood is known.
+    #[test]
+    fn large_meshes_are_whole_if_they_are_registered() {
+        let cache = Arc::new(TreeCache::new(BuildOptions::default(), 0));
+        let shape = SharedShape::new(mesh(100, TriMeshFlags::empty()));
+        let mesh = shape.as_trimesh().unwrap();
+        assert!(mesh.indices().len() > Credit::MOST as usize);
+        let surface_is_solid = || {
+            let mut known = KnownMesh::default();
+            known.update(&Hierarchy::new(mesh, MeshToken::of(mesh), 0, false));
+            let known = known.look_up(mesh, &cache).unwrap();
+            let is_whole = matches!(known.surface, MeshSurface::Whole { .. });
+            (is_whole, known.surface.around(mesh).is_solid)
+        };
+        assert_eq!(surface_is_solid(), (false, false));
+        let _registered = cache.register(&shape, mesh).unwrap();
+        assert_eq!(surface_is_solid(), (true, true));
+    }
+}

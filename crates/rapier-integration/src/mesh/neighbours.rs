@@ -47,7 +47,7 @@ fn twins_of(mesh: &TriMesh, triangle: u32) -> [Option<u32>; 3] {
         for (i, j) in (0..9).map(|pair| (pair / 3, pair % 3)) {
             let [a, b] = [own[i], own[(i + 1) % 3]];
             let [c, d] = [theirs[j], theirs[(j + 1) % 3]];
-            if a == d && b == c && a != b {
+            if a == d && b == c {
                 backward[i] += 1;
                 twins[i] = Some(3 * other + j as u32);
             } else if a == c && b == d {

@@ -135,7 +135,6 @@ fn find_contacts<Q: PairQuery>(
     [contacts, before]: [&mut ContactList<Q::Contact>; 2],
 ) {
     scratch.regions.begin();
-    before.clear();
     let farthest = limits.reach + limits.travel;
     loop {
         contacts.clear();

@@ -14,21 +14,14 @@ const FEW: usize = 16;
 pub(super) struct Lookup(FxHashMap<[u32; 2], u32>);
 
 impl Lookup {
-    /// Hands on to `new` candidates what is known of those of the same subshapes among `old`: hints,
-    /// unless they have one, and places.
-    pub(super) fn hand_on<H: Copy + Default + PartialEq>(
-        &mut self,
-        old: &[Candidate<H>],
-        new: &mut [Candidate<H>],
-    ) {
+    /// Hands on to `new` candidates what is known of those of the same subshapes among `old`: hints and
+    /// places.
+    pub(super) fn hand_on<H: Copy>(&mut self, old: &[Candidate<H>], new: &mut [Candidate<H>]) {
         if old.is_empty() {
             return;
         }
         let hand_on = |old: &Candidate<H>, candidate: &mut Candidate<H>| {
-            candidate.place = old.place;
-            if candidate.hint == H::default() {
-                candidate.hint = old.hint;
-            }
+            (candidate.place, candidate.hint) = (old.place, old.hint);
         };
         if old.len() <= FEW {
             for candidate in new {

@@ -168,7 +168,7 @@ pub(super) fn reset<M: Default, C>(manifold: &mut ContactManifold<M, C>) {
 #[cfg(test)]
 mod tests {
     use oorandom::Rand32;
-    use parry3d::math::Vector;
+    use parry3d::math::{Pose, Vector};
     use parry3d::shape::PackedFeatureId;
 
     use super::*;
@@ -180,6 +180,23 @@ mod tests {
         let (at, id) = (Vector::ZERO, PackedFeatureId::UNKNOWN);
         manifold.points.extend(has_points.then(|| TrackedContact::new(at, at, id, id, 0.0)));
         manifold
+    }
+
+    /// Would catch anything of the pair before in a manifold that is used again.
+    #[test]
+    fn a_spare_manifold_is_as_a_new_one() {
+        let mut pool = ManifoldPool::<u32, ()>::default();
+        let mut used = ContactManifold::<u32, ()>::with_data(3, 4, 5);
+        (used.local_n1, used.local_n2) = (Vector::X, Vector::Y);
+        used.set_subshape_pos1(Some(Pose::IDENTITY));
+        used.set_subshape_pos2(Some(Pose::IDENTITY));
+        let (at, id) = (Vector::ZERO, PackedFeatureId::UNKNOWN);
+        used.points.push(TrackedContact::new(at, at, id, id, 0.0));
+        pool.retire(used);
+        let spare = pool.take();
+        assert!(spare.points.capacity() > 0 && spare.points.is_empty() && spare.data == 0);
+        assert_eq!([spare.local_n1, spare.local_n2], [Vector::ZERO; 2]);
+        assert!(spare.subshape_pos1().is_none() && spare.subshape_pos2().is_none());
     }
 
     /// Would catch manifolds that are lost, doubled or out of order when some stay in place, some

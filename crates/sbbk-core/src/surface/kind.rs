@@ -134,5 +134,6 @@ mod tests {
         assert_eq!(left(&[out[0], out[1], back[2]]), [[0, 1]]);
         assert!(left(&[out[0], back[1], out[2], back[0]]).is_empty());
         assert_eq!(left(&[out[0], out[1]]), [[0, 1]; 2]);
+        assert!(left(&[[0, 2]]).is_empty(), "an edge between ends at one place");
     }
 }

@@ -17,9 +17,6 @@ pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Numbers, Vec<[
     for (triangle, corners) in (0..).zip(triangles) {
         let [a, b, c] = corners.map(|corner| welded[corner as usize]);
         for (i, [start, end]) in (0..).zip([[a, b], [b, c], [c, a]]) {
-            if start == end {
-                continue;
-            }
             let way = usize::from(start > end);
             let (low, high) = if way == 0 { (start, end) } else { (end, start) };
             let head = &mut first[low as usize];

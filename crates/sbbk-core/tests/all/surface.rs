@@ -532,6 +532,21 @@ fn kinds_stay() {
     }
 }
 
+/// Would catch the volume of a solid with a hole that depends on where the origin is.
+#[test]
+fn a_solid_with_a_hole_is_one_anywhere() {
+    let open = {
+        let mut ball = ball();
+        ball.triangles
+            .retain(|corners| corners.iter().all(|&v| ball.vertices[v as usize].z < 0.95));
+        ball
+    };
+    for away in Vec3::AXES.into_iter().flat_map(|axis| [100.0 * axis, -100.0 * axis]) {
+        let moved = mapped(open.clone(), |v| v + away);
+        assert_eq!(Surface::new(&moved.vertices, &moved.triangles).kind(), Solid, "at {away}");
+    }
+}
+
 /// Would catch a side that ends with its triangles, goes on round an edge, or is one for directions that
 /// lead out of it.
 #[test]

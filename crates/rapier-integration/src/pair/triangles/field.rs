@@ -16,11 +16,11 @@ impl Field<'_> {
     }
 
     /// The reverse of [`id`](Self::id) as far as its order goes: the cells along z, then x, the
-    /// left triangle first. A number that is not a triangle's sorts last.
+    /// left triangle first.
     pub(super) fn rank(self, id: u32) -> u32 {
         let count = self.cell_count();
         let (cell, side) = (id as usize % count, id as usize / count);
-        if side < 2 { (2 * cell + side) as u32 } else { u32::MAX }
+        (2 * cell + side) as u32
     }
 
     /// The triangle of a number, if it is there and no corner is NaN or infinite.

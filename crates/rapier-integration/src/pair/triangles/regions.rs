@@ -305,6 +305,19 @@ mod tests {
         assert!(!regions.close(None), "the region is held");
     }
 
+    /// Would catch a thin body that is pushed both ways, whichever of the two meshes it is.
+    #[test]
+    fn of_two_sides_of_a_thin_body_the_nearer_one_counts() {
+        for pair in [|thin, other| [thin, other], |thin, other| [other, thin]] {
+            let mut regions = Regions::default();
+            regions.begin();
+            regions.add(pair(5, 1), Some(&pushing(DVec3::Y, 0.1)), None);
+            regions.add(pair(5, 2), Some(&pushing(-DVec3::Y, 0.3)), None);
+            assert!(regions.close(None));
+            assert!(regions.is_settled(pair(5, 1)) && !regions.is_settled(pair(5, 2)));
+        }
+    }
+
     /// Would catch a large region that turns about its only contact beyond doubt, small ones that are
     /// looked at twice, contacts beyond doubt that a second round decides anew, and others that push
     /// against them.

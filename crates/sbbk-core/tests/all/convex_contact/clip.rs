@@ -100,3 +100,28 @@ fn other_numbers_of_corners_have_no_points() {
         assert!(points.is_empty());
     }
 }
+
+/// Would catch an edge that is counted for two: it has two points at most.
+#[test]
+fn an_edge_across_a_triangle_has_two_points() {
+    let triangle = [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]].map(|[x, z]| DVec3::new(x, 0.0, z));
+    let edge = [DVec3::new(-1.0, 0.5, 1.0), DVec3::new(5.0, 0.5, 1.0)];
+    let mut points = FeaturePoints::new();
+    clip_feature(&triangle, &edge, DVec3::Y, &mut points);
+    assert_eq!(points.len(), 2, "{points:?}");
+    assert!(points.iter().all(|point| (point.distance - 0.5).abs() < 1e-15), "{points:?}");
+}
+
+/// Would catch a point on a face that is seen edge on: how far that is along the normal is rounding.
+#[test]
+fn a_face_edge_on_has_no_points() {
+    let triangle = [[0.5, 5.0, 0.0], [0.4, 6.0, 3.0], [0.6, 6.0, 3.0]].map(DVec3::from_array);
+    let count = |lean: f64| {
+        let corners = [[0.0, -1.0, -1.0], [1.0, -1.0, -1.0], [1.0, 1.0, 1.0], [0.0, 1.0, 1.0]];
+        let face = corners.map(|[x, y, z]| DVec3::new(x, y, lean * z));
+        let mut points = FeaturePoints::new();
+        clip_feature(&triangle, &face, -DVec3::Y, &mut points);
+        points.iter().filter(|point| point.features == [Feature::Vertex(0), Feature::Face]).count()
+    };
+    assert_eq!([0.1, 1e-9].map(count), [1, 0]);
+}

@@ -2,9 +2,11 @@
 
 use super::shape::{Core, Kind, Rng, Shape};
 use super::truth::{check, size};
-use glamx::DVec3;
+use crate::support::Random;
+use glamx::{DVec3, Vec3};
 use sbbk_core::contact::convex::{
-    ConeSupport, CuboidSupport, CylinderSupport, PointSupport, convex_contact,
+    ConeSupport, CuboidSupport, CylinderSupport, HullPoints, HullSupport, PointSupport,
+    SegmentSupport, SupportMap, convex_contact,
 };
 
 /// Triangles that are points, segments and slivers against every polytope.
@@ -207,4 +209,77 @@ fn support_maps_that_lie() {
         };
         convex_contact(&[DVec3::ZERO, DVec3::X * 0.1, DVec3::Z * 0.1], &liar, 1.0);
     }
+}
+
+/// Would catch a cone and a cylinder of no size that are not a point, and a contact at no place where
+/// squares are infinite.
+#[test]
+fn no_size_and_no_end() {
+    let triangle = [[-1.0, 0.3, -1.0], [2.0, 0.4, -1.0], [0.0, 0.5, 2.0]].map(DVec3::from_array);
+    let point = convex_contact(&triangle, &PointSupport(DVec3::ZERO), 1.0).expect("it is near");
+    let (half_height, radius) = (0.0, 0.0);
+    let cone = convex_contact(&triangle, &ConeSupport { half_height, radius }, 1.0);
+    let cylinder = convex_contact(&triangle, &CylinderSupport { half_height, radius }, 1.0);
+    for contact in [cone, cylinder] {
+        let contact = contact.expect("it is near");
+        assert!((contact.distance - point.distance).abs() < 1e-12, "{contact:?}");
+    }
+    for size in [1e80, 1e160, 1e300] {
+        let huge = triangle.map(|corner| corner * size);
+        let segment = SegmentSupport([-DVec3::ONE, DVec3::X]);
+        for contact in [
+            convex_contact(&huge, &segment, f64::INFINITY),
+            convex_contact(&huge, &PointSupport(DVec3::ONE), f64::INFINITY),
+            convex_contact(&huge, &CuboidSupport(DVec3::ONE), f64::INFINITY),
+            convex_contact(&huge, &ConeSupport { half_height: 1.0, radius: 1.0 }, f64::INFINITY),
+        ] {
+            let is_somewhere = contact.is_none_or(|c| (c.on_shape + c.normal).is_finite());
+            assert!(is_somewhere, "{contact:?}");
+        }
+    }
+}
+
+/// Would catch a support point that rounding to f32 has chosen, or another one of several that are
+/// as far than the first: on a lattice, and of points in a plane up to rounding, of any size.
+#[test]
+fn support_points_of_hulls_are_the_first_of_the_farthest() {
+    let mut random = Random(9);
+    for i in 0..4000 {
+        let lattice = Vec3::from_array([0; 3].map(|_| (random.bits() % 3) as f32 - 1.0));
+        let (is_lattice, unit) = (i % 2 == 0, [1.0, 1e-42][i / 2 % 2]);
+        let direction = if is_lattice { lattice } else { random.vector(1.0).with_y(1.0) };
+        if direction == Vec3::ZERO {
+            continue;
+        }
+        let mut point = || {
+            if is_lattice {
+                return unit * Vec3::from_array([0; 3].map(|_| (random.bits() % 3) as f32));
+            }
+            let at = random.vector(100.0);
+            unit * at.with_y(1.0 - direction.x * at.x - direction.z * at.z)
+        };
+        let points: Vec<Vec3> = (0..30).map(|_| point()).collect();
+        let wide: Vec<DVec3> = points.iter().map(|point| point.as_dvec3()).collect();
+        let expected = HullSupport(&wide).support(direction.as_dvec3());
+        let found = HullPoints::new(points).support(direction.as_dvec3());
+        assert_eq!(found, expected, "along {direction}");
+    }
+}
+
+/// Edges in the plane of a cone's base. Would catch the level way out past the rim left out.
+#[test]
+fn edges_in_the_plane_of_a_rim() {
+    let mut random = Random(12);
+    let cone = ConeSupport { half_height: 0.5, radius: 1.0 };
+    let mut crossing = 0;
+    for _ in 0..1000 {
+        let [a, b, c] = [(); 3].map(|()| random.vector(1.5).as_dvec3());
+        let triangle = [a.with_y(-0.5), b.with_y(-0.5), c];
+        let found = convex_contact(&triangle, &cone, 1.0);
+        let expected = convex_contact(&triangle, &|way: DVec3| cone.support(way), 1.0);
+        let [found, expected] = [found, expected].map(|c| c.map_or(1.0, |c| c.distance));
+        assert!((found - expected).abs() < 1e-5, "{found} {expected} {triangle:?}");
+        crossing += usize::from(found < -1e-3);
+    }
+    assert!(crossing > 100, "{crossing}");
 }

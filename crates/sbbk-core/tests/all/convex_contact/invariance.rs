@@ -55,6 +55,9 @@ fn margin() {
                 }
             }
             assert_eq!(shape.contact(&triangle, wide.distance - 1.0e-3), None);
+            if wide.distance > 0.0 {
+                assert_eq!(shape.contact(&triangle, wide.distance), Some(wide));
+            }
         });
     }
 }

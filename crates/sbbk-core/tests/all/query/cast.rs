@@ -90,9 +90,16 @@ fn impacts_count_until_the_last_moment() {
     let mut random = Random(17);
     let mut hits = 0;
     for i in 0..1500 {
-        let [one, two] = [12, 9].map(|count| soup(&mut random, count, 0.6));
-        let pose = Pose3::from_parts(4.0 * random.vector(1.0).normalize(), random.rotation());
+        let [mut one, mut two] = [12, 9].map(|count| soup(&mut random, count, 0.6));
+        let mut pose = Pose3::from_parts(4.0 * random.vector(1.0).normalize(), random.rotation());
         let velocity = 0.7 * random.vector(1.0) - 0.5 * pose.translation;
+        if i % 4 > 1 {
+            // Both far from their origins.
+            let [far1, far2] = [1000.0 * Vec3::ONE, 700.0 * Vec3::Y];
+            one.vertices.iter_mut().for_each(|v| *v += far1);
+            two.vertices.iter_mut().for_each(|v| *v += far2);
+            pose.translation += far1 - pose.rotation * far2;
+        }
         // Along an axis too.
         let velocity = if i % 3 == 0 { velocity * Vec3::AXES[i % 9 / 3] } else { velocity };
         let target = [0.0, 0.05][i % 2];
@@ -157,6 +164,43 @@ fn statuses() {
     }
 }
 
+/// A triangle by its corners.
+fn triangle(corners: [[f32; 3]; 3]) -> Soup {
+    Soup { vertices: corners.map(Vec3::from_array).to_vec(), triangles: vec![[0, 1, 2]] }
+}
+
+/// Would catch boxes of triangles that pass each other where corners just touch, beside a side that
+/// stands still or a long way off, where the corners miss each other by less than rounding; an impact
+/// after the last moment of triangles whose boxes meet before; and a gap of less than rounding that
+/// counts.
+#[test]
+fn triangles_that_just_touch_are_met() {
+    let origin = Pose3::IDENTITY;
+    let below = triangle([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]);
+    let above = triangle([[-2.0, 1.0, 0.0], [-3.0, 2.0, 0.0], [-3.0, 2.0, 1.0]]);
+    let hit = ask([&below, &above], &origin, Vec3::X, options(5.0, 0.0)).expect("corners meet");
+    assert!((hit.time - 2.0).abs() < 1e-9, "{hit:?}");
+
+    // They leave each other along y a part in 10¹⁴ of the time before they meet along x.
+    let right = triangle([[0.0; 3], [1.0, 1.0, 0.0], [1.0, 1.0, 1.0]]);
+    let left = triangle([[0.0; 3], [-1.0, -1.0, 0.0], [-1.0, -1.0, 1.0]]);
+    let away = Pose3::translation(-16_777_215.0, 16_777_213.0, 0.0);
+    let velocity = Vec3::new(8_388_608.0, -8_388_607.0, 0.0);
+    let hit = ask([&right, &left], &away, velocity, options(5.0, 0.0)).expect("corners meet");
+    assert!((hit.time - 2.0).abs() < 1e-6, "{hit:?}");
+
+    let wall = triangle([[0.0; 3], [1.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    let small = triangle([[0.9, 0.1, 0.1], [0.9, 0.11, 0.1], [0.9, 0.1, 0.11]]);
+    let ask_until = |end| ask([&wall, &small], &origin, -Vec3::X, options(end, 0.0));
+    assert!(ask_until(1.0).is_some());
+    assert_eq!(ask_until(0.5), None);
+
+    let wide = triangle([[0.0; 3], [1e6, 0.0, 0.0], [0.0, 1e6, 0.0]]);
+    let hardly = Pose3::translation(0.0, 0.0, 2.0_f32.powi(-24));
+    let hit = ask([&wide; 2], &hardly, Vec3::Z, options(1.0, 0.0)).expect("they touch");
+    assert!(hit.time == 0.0 && hit.pair.is_touching, "{hit:?}");
+}
+
 /// Numbers that are none have no answer.
 #[test]
 fn numbers_that_are_none() {
@@ -169,6 +213,9 @@ fn numbers_that_are_none() {
         assert_eq!(ask([&ball; 2], &nowhere, -Vec3::X, options(1.0, 0.0)), None);
     }
     assert_eq!(ask([&ball; 2], &pose, -Vec3::X, options(f32::NAN, 0.0)), None);
+    let crossing = Pose3::translation(1.0, 0.0, 0.0);
+    assert_eq!(ask([&ball; 2], &crossing, -Vec3::X, options(1.0, -0.001)), None);
+    assert!(ask([&ball; 2], &crossing, -Vec3::X, options(0.0, 0.0)).is_some(), "no time is needed");
     assert!(ask([&ball; 2], &pose, -Vec3::X, options(f32::INFINITY, 0.0)).is_some());
 }
 
@@ -209,4 +256,26 @@ fn advancement_stops_at_the_first_touch() {
         }
     }
     assert!((5..36).contains(&hits), "{hits} hits");
+}
+
+/// Triangles head on, with steps, times and distances that are just enough. Would catch an answer
+/// that is lost at the last time, one that is later than that, and a touch that is none without a
+/// tolerance.
+#[test]
+fn advancement_goes_to_the_last_moment() {
+    let floor = tree(&triangle([[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]]));
+    let ask = |options| {
+        let placement_at = |time| Placement::new(&Pose3::translation(0.5, 0.5, 1.0 - time as f32));
+        advance((&floor, &floor), placement_at, options, &mut SearchScratch::default())
+    };
+    let exact =
+        AdvanceOptions { start: 0.0, end: 4.0, speed_bound: 1.0, tolerance: 0.0, step_limit: 10 };
+    let hit = ask(exact).expect("they meet");
+    assert!(hit.has_converged && hit.time == 1.0, "{hit:?}");
+    let hit = ask(AdvanceOptions { step_limit: 0, ..exact }).expect("a bound of the time");
+    assert!(!hit.has_converged && hit.time == 0.0, "{hit:?}");
+    let near = AdvanceOptions { tolerance: 0.125, ..exact };
+    let hit = ask(AdvanceOptions { start: 0.9375, end: 0.9375, ..near }).expect("they are near");
+    assert!(hit.has_converged && hit.time == 0.9375, "{hit:?}");
+    assert!(ask(AdvanceOptions { end: 0.9375, ..near }).is_none_or(|hit| hit.time <= 0.9375));
 }

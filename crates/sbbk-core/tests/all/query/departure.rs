@@ -216,4 +216,9 @@ fn numbers_that_are_none() {
     }
     assert_eq!(still.ask([&ball; 2], f64::NAN), None);
     assert_eq!(still.ask([&ball; 2], -1.0), None);
+    // Pole against pole.
+    let start = Pose3::translation(0.0, 0.0, 2.000_000_5);
+    let closer = Motion { start, velocity: -Vec3::Z, ..still };
+    assert!(closer.ask([&ball; 2], 0.0).is_some_and(|hit| hit.time == 0.0));
+    assert_eq!(closer.ask([&ball; 2], -1.0), None, "it ends before it starts");
 }

@@ -215,3 +215,26 @@ fn meshes_touch_up_to_rounding() {
         assert!(cast((&tree1, &tree2), placement, middle - c, options, scratch).is_some());
     }
 }
+
+/// Would catch a search that finds no way down where squares of distances are infinite.
+#[test]
+fn huge_meshes_have_a_nearest_pair() {
+    let ball = bumpy_ball(4, 0.0);
+    let huge = Soup { vertices: ball.vertices.iter().map(|v| v * 1e25).collect(), ..ball };
+    let pose = Pose3::translation(0.0, 0.0, 3e25);
+    let pair = ask([&huge; 2], &pose, f64::INFINITY, nearest).expect("all are finite");
+    assert!((pair.contact.distance / 1e25 - 1.0).abs() < 1e-6, "{pair:?}");
+}
+
+/// Would catch triangles that touch but for rounding and do not count, and a normal that is longer
+/// where a rotation scales.
+#[test]
+fn a_pair_by_itself_is_as_in_a_search() {
+    let corners = [Vec3::ZERO, 1e6 * Vec3::X, 1e6 * Vec3::Y];
+    let hardly = Placement::new(&Pose3::translation(0.0, 0.0, 2.0_f32.powi(-24)));
+    let pair = FoundPair::of(&hardly, (3, corners), (5, corners), 0.0).expect("they touch");
+    assert!(pair.is_touching && pair.contact.distance > 0.0, "{pair:?}");
+    let scaling = Placement::new(&Pose3::from_parts(Vec3::Z, Quat::from_xyzw(0.0, 0.0, 0.0, 1.5)));
+    let pair = FoundPair::of(&scaling, (3, corners), (5, corners), 2.0).expect("they are near");
+    assert!((pair.normal2(&scaling) + Vec3::Z).length() < 1e-6, "{pair:?}");
+}
