@@ -8,7 +8,8 @@ use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::parry::shape::{
-    Compound, CompoundFlags, HeightField, SharedShape, TriMesh, TriMeshFlags,
+    Compound, CompoundFlags, HeightField, Polyline, PolylineFlags, Shape, SharedShape, TriMesh,
+    TriMeshFlags,
 };
 use rapier3d::parry::utils::Array2;
 use sbbk_lab::mesh;
@@ -336,4 +337,83 @@ fn compounds_rest_on_a_mesh_as_with_stock() {
     }
     let stats = dispatcher.stats();
     assert!(stats.queries > 50 && stats.unsupported_queries == 0, "SBBK did not answer: {stats:?}");
+}
+
+/// Would catch a part that stands for another one of the same compound, which has many.
+#[test]
+fn each_of_many_parts_is_where_it_is() {
+    let floor = shape_with(&mesh::floor(200.0, 40), TriMeshFlags::empty());
+    let part = |i: i32| {
+        let at = Vec3::new((i % 13) as Real * 3.0, 0.001 * i as Real, (i / 13) as Real * 3.0);
+        (Pose::from_translation(at), SharedShape::cuboid(0.5, 0.5, 0.5))
+    };
+    let compound = Compound::new((0..130).map(part).collect());
+    let pose = Pose::translation(-20.0, 0.45, -15.0);
+    let question =
+        Question { mesh: &floor, compound: &compound, pose, prediction: 0.2, flipped: false };
+    let mut nearest = vec![Real::INFINITY; 130];
+    for manifold in question.fresh(&SbbkDispatcher::default()) {
+        let nearest = &mut nearest[manifold.subshape2 as usize];
+        *nearest = nearest.min(distance(&manifold));
+    }
+    for (i, distance) in nearest.into_iter().enumerate() {
+        assert!((distance - (0.001 * i as Real - 0.05)).abs() < 1e-4, "part {i} at {distance}");
+    }
+}
+
+/// A compound whose parts are far out, and a long mesh on a half-space, turn a little at a time. Would
+/// catch contacts lost as the ball that is to hold what moves is too small.
+#[test]
+fn what_is_far_out_is_seen_as_the_whole_turns() {
+    let floor = shape_with(&mesh::floor(40.0, 160), TriMeshFlags::empty());
+    let bar = shape_with(&mesh::slab(Vec3::new(10.0, 0.3, 0.3), [20, 1, 1]), TriMeshFlags::empty());
+    let part = |sign: Real| {
+        let at = sign * Vec3::new(8.0, 0.0, 8.0);
+        (Pose::from_translation(at), SharedShape::cuboid(0.3, 0.3, 0.3))
+    };
+    let compound = Compound::new(vec![part(1.0), part(-1.0)]);
+    let half_space = SharedShape::halfspace(Vec3::Y);
+    let dispatcher = SbbkDispatcher::default();
+    let mut touched = 0;
+    for (mesh, other, at, axis) in [
+        (&floor, &compound as &dyn Shape, Vec3::new(0.1, 0.29, 0.2), Vec3::Y),
+        // In the frame of the mesh.
+        (&bar, &*half_space as &dyn Shape, Vec3::new(0.0, -2.0, 0.0), Vec3::Z),
+    ] {
+        for sign in [1.0, -1.0] {
+            let mut pair: Pair = Pair::default();
+            for step in 0..600 {
+                let turn = Quat::from_axis_angle(axis, 0.0005 * sign * step as Real);
+                let pose = if std::ptr::eq(mesh, &floor) {
+                    Pose::from_parts(at, turn)
+                } else {
+                    Pose::from_parts(Vec3::ZERO, turn) * Pose::from_translation(at)
+                };
+                pair.ask_of(&dispatcher, [mesh, other], pose, false, 0.02);
+                let mut fresh: Pair = Pair::default();
+                fresh.ask_of(&dispatcher, [mesh, other], pose, false, 0.02);
+                let names = |pair: &Pair| {
+                    pair.manifolds.iter().map(|m| [m.subshape1, m.subshape2]).collect::<Vec<_>>()
+                };
+                assert_eq!(names(&pair), names(&fresh), "step {step}");
+                touched += pair.manifolds.len();
+            }
+        }
+    }
+    assert!(touched > 100, "{touched}");
+}
+
+/// Would catch contacts of a polyline where it was: the vertices of one that deforms may move at any
+/// time.
+#[test]
+fn polylines_that_deform_are_left_to_stock() {
+    let floor = shape_with(&mesh::floor(8.0, 8), TriMeshFlags::empty());
+    let corners = vec![Vec3::new(-1.0, 0.01, 0.1), Vec3::new(1.0, 0.01, 0.2)];
+    for (flags, queries) in [(PolylineFlags::empty(), 1), (PolylineFlags::DEFORMABLE, 0)] {
+        let line = Polyline::with_flags(corners.clone(), None, flags);
+        let dispatcher = counting();
+        let mut pair: Pair = Pair::default();
+        pair.ask_of(&dispatcher, [&floor, &line], Pose::IDENTITY, false, 0.02);
+        assert_eq!(dispatcher.stats().queries, queries, "{flags:?}");
+    }
 }

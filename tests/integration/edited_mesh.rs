@@ -221,3 +221,20 @@ fn a_shape_put_in_place_of_another_is_seen() {
         world.colliders[collider].set_shape(SharedShape::new(mesh));
     });
 }
+
+/// Would catch a change of the second mesh that nobody sees.
+#[test]
+fn another_second_mesh_is_seen() {
+    let [one, two, other] = [torus(), torus(), shape(&mesh::torus(1.0, 0.45, 20, 14))];
+    let dispatcher = SbbkDispatcher::default();
+    let mut pair: Pair = Pair::default();
+    for second in [&two, &other, &two] {
+        let query = Query::new(&one, second, beside());
+        for _ in 0..2 {
+            pair.ask(&dispatcher, &query);
+        }
+        let expected = fresh(&dispatcher, &query);
+        assert!(!expected.is_empty());
+        assert_same(&pair.manifolds, &expected, 0.0);
+    }
+}

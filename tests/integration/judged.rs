@@ -61,3 +61,15 @@ fn corners_above_a_face_count_though_others_are_nearer() {
     };
     assert!(at_corners(0.0, 0.002) > 0 && at_corners(0.069, 0.073) > 0, "{found:?}");
 }
+
+/// A plate that falls flat, far above a floor, has one manifold: of more, each with points beyond the
+/// prediction distance, Rapier's solver would leave out what keeps the plate from turning.
+#[test]
+fn far_contacts_of_one_direction_are_one_patch() {
+    let floor = shape(&mesh::floor(0.8, 8));
+    let plate = shape(&mesh::slab(Vec3::new(0.5, 0.05, 0.5), [2, 1, 2]));
+    let query = Query::new(&floor, &plate, Pose::translation(0.01, 0.45, 0.02)).within(0.402);
+    let found = fresh(&having(ContactSet::Surfaces), &query);
+    let [patch] = &found[..] else { panic!("{} manifolds", found.len()) };
+    assert!(patch.points.len() == 4 && (distance(patch) - 0.4).abs() < 1e-5, "{patch:?}");
+}

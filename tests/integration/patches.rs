@@ -1,5 +1,7 @@
 //! A few manifolds for all contacts of two shapes, beside every contact at the same pose.
 
+use std::collections::BTreeSet;
+
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
 use rapier_integration::{ContactDetail, SbbkConfig, SbbkDispatcher};
@@ -7,7 +9,7 @@ use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::ColliderBuilder;
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::{ContactManifold, TrackedContact};
-use rapier3d::parry::shape::{HeightField, Shape, SharedShape, TriMeshFlags};
+use rapier3d::parry::shape::{HeightField, PackedFeatureId, Shape, SharedShape, TriMeshFlags};
 use rapier3d::pipeline::PhysicsWorld;
 use sbbk_lab::mesh::{self, Mesh};
 
@@ -271,6 +273,13 @@ fn patches_and_points_keep_their_data() {
     };
     let before = named(&pair);
     assert!(before.len() >= 4, "{before:?}");
+    // Corners of two triangles of the floor have a name each, which says what they are.
+    let names: BTreeSet<_> = before.iter().map(|(fid1, fid2, _)| [fid1.0, fid2.0]).collect();
+    assert_eq!(names.len(), before.len(), "{before:?}");
+    let is_known = |(fid1, fid2, _): &(PackedFeatureId, PackedFeatureId, u32)| {
+        [fid1, fid2].iter().all(|id| id.is_vertex() || id.is_edge() || id.is_face())
+    };
+    assert!(before.iter().all(is_known), "{before:?}");
     for step in 1..20 {
         ask(&mut pair, &dispatcher, [&floor, &cube], &at(1e-4 * step as Real), 0.002);
         assert_eq!(named(&pair), before);
@@ -280,6 +289,8 @@ fn patches_and_points_keep_their_data() {
     ask(&mut pair, &dispatcher, [&floor, &cube], &Pose::translation(0.3, -0.4995, 0.2), 0.002);
     assert!(!pair.manifolds.is_empty());
     assert!(pair.manifolds.iter().all(|manifold| manifold.data == 0));
+    let other = fresh(&dispatcher, [&floor, &cube], &at(0.0), 0.002);
+    assert!(other.iter().flat_map(|m| &m.points).all(|point| point.data == 0), "another pair's");
 }
 
 /// Soft bodies need each contact's triangle. Would catch patches of a mesh that may deform.
@@ -293,5 +304,31 @@ fn meshes_that_deform_have_every_contact() {
             .map(|detail| fresh(&detailed(detail), [&soft, other], &at, 0.02));
         assert!(every.len() > 10, "{}", every.len());
         assert_eq!(bare(&patches), bare(&every));
+    }
+}
+
+/// A cube in a groove whose sides are so flat that their normals are much alike. Would catch a patch
+/// that gets the data of the other one.
+#[test]
+fn each_patch_keeps_the_data_of_the_one_most_like_it() {
+    let bent = |v: Vec3| v + Vec3::Y * 0.15 * v.x.abs();
+    let groove = shape(&mesh::floor(4.0, 2).mapped(bent));
+    let keel = shape(&mesh::cuboid(Vec3::splat(0.5), 2).mapped(bent));
+    let dispatcher = detailed(ContactDetail::Patches);
+    let at = |z: Real| Pose::translation(0.0, 0.4995, 0.1 + z);
+    let mut pair = Pair::default();
+    ask(&mut pair, &dispatcher, [&groove, &keel], &at(0.0), 0.002);
+    let side = |manifold: &Manifold| if manifold.local_n1.x > 0.0 { 7 } else { 8 };
+    assert_eq!(pair.manifolds.iter().map(side).collect::<BTreeSet<_>>().len(), 2);
+    for step in 1..20 {
+        for manifold in &mut pair.manifolds {
+            manifold.data = side(manifold);
+        }
+        // A host may move them.
+        pair.manifolds.rotate_left(step % 2);
+        ask(&mut pair, &dispatcher, [&groove, &keel], &at(1e-5 * step as Real), 0.002);
+        for manifold in &pair.manifolds {
+            assert_eq!(manifold.data, side(manifold), "{step}");
+        }
     }
 }

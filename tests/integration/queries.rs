@@ -356,14 +356,19 @@ fn bumps_come_and_go_under_a_sensor() {
     let is_near = |vertex: &u32| smooth.vertices()[*vertex as usize].x > 0.9;
     let near: Vec<u32> = (0..ball_vertices).filter(is_near).collect();
     let (mut met, mut missed) = (0, 0);
-    for i in 0..300 {
+    for i in 0..600 {
         let vertex = match i % 4 {
             0 => random.rand_range(0..ball_vertices),
             _ => near[random.rand_range(0..near.len() as u32) as usize],
         } as usize;
         let height = if random.rand_float() < 0.3 { 1.2 } else { 1.0 };
         edited.update_vertices(|vertices| vertices[vertex] = height * smooth.vertices()[vertex]);
-        let answer = dispatcher.intersection_test(&place, &edited, &probe).unwrap();
+        // First the one and then the other is the edited one.
+        let answer = if i < 300 {
+            dispatcher.intersection_test(&place, &edited, &probe).unwrap()
+        } else {
+            dispatcher.intersection_test(&place.inverse(), &probe, &edited).unwrap()
+        };
         let truth = least([&edited, &probe], &place, 0.01) <= 0.0;
         assert_eq!(answer.intersecting, truth);
         *(if truth { &mut met } else { &mut missed }) += 1;

@@ -399,3 +399,31 @@ fn deformable_meshes_have_no_surfaces() {
         assert!(!fresh(&DefaultQueryDispatcher, &query).is_empty());
     }
 }
+
+/// Two pairs of cubes far from each other, of which one is barely sunk and one halfway: as one pair
+/// of meshes they have the contacts that they have as two. Would catch contacts of a region that go
+/// as another region needs more.
+#[test]
+fn regions_do_not_mind_each_other() {
+    let both = |shift: Vec3| {
+        let cube = mesh::cuboid(Vec3::splat(0.5), 1);
+        let other = cube.clone().mapped(|v| v + 10.0 * Vec3::X + shift);
+        shape(&Mesh::merged("cubes", &[cube, other]))
+    };
+    let one = both(Vec3::ZERO);
+    for sunk in [0.3, 0.45, 0.7] {
+        let two = both(-Vec3::Y * sunk);
+        let at = Pose::from_parts(Vector::new(0.1, 0.99, 0.05), glamx::Quat::from_rotation_y(0.02));
+        let found = ask(&Query::new(&one, &two, at));
+        let near = |manifold: &&Manifold| triangles(manifold).iter().all(|t| *t < 12);
+        let expected = ask(&Query::new(&cube(), &cube(), at));
+        let here: Vec<Manifold> = found.iter().filter(near).cloned().collect();
+        let sorted = |found: &[Manifold]| {
+            let mut all: Vec<_> = found.iter().map(|m| (triangles(m), distance(m))).collect();
+            all.sort_by_key(|(triangles, _)| *triangles);
+            all
+        };
+        assert!(!here.is_empty() && here.len() < found.len(), "{sunk}");
+        assert_eq!(sorted(&here), sorted(&expected), "{sunk}");
+    }
+}

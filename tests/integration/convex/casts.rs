@@ -3,13 +3,15 @@ use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::math::Real;
 use rapier3d::parry::query::details::ShapeCastOptions;
-use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher, ShapeCastStatus};
+use rapier3d::parry::query::{
+    ClosestPoints, DefaultQueryDispatcher, QueryDispatcher, ShapeCastStatus,
+};
 use rapier3d::parry::shape::{Shape, SharedShape, TriMesh};
 use sbbk_lab::mesh;
 
 use super::queries::{least, truth};
 use super::shapes::{body, pose, shapes};
-use crate::support::{direction, shape};
+use crate::support::{direction, rotation, shape};
 
 /// Times before an impact at which brute force looks whether there was an earlier one.
 const LOOKS: usize = 6;
@@ -26,7 +28,7 @@ fn first_impacts_are_those_of_brute_force() {
         for (seed, (name, other)) in (0..).zip(shapes(0.3 * size)) {
             let body = body(&other);
             let mut random = Rand32::new(seed);
-            for i in 0..2 {
+            for i in 0..4 {
                 let is_mesh_first = i % 2 == 0;
                 let way = direction(&mut random);
                 let mut in_mesh = pose(&mut random, &mesh, 0.3 * size);
@@ -124,4 +126,45 @@ fn bodies_that_cross_at_the_start() {
         assert!(cast(1.5, Vec3::X, 0.0, true).is_none());
         assert!(cast(1.5, down * Real::NAN, 0.0, true).is_none());
     }
+}
+
+/// Would catch an impact lost to the rounding of its bounds: each is there until its very time, and
+/// each nearest triangle up to its very distance.
+#[test]
+fn impacts_and_distances_count_up_to_the_last_digit() {
+    let dispatcher = SbbkDispatcher::default();
+    let (mut hits, mut near) = (0, 0);
+    for (seed, (name, other)) in (0..).zip(shapes(0.6)) {
+        let mut random = Rand32::new(seed);
+        let ground = mesh::terrain(8.0, 12, 0.7).mapped(|v| v + 30.0 * Vec3::ONE);
+        let mesh = shape(&ground);
+        for i in 0..40 {
+            let turn = rotation(&mut random);
+            let way = direction(&mut random);
+            let target = [0.0, 0.05][i % 2];
+            let mut pos12 = Pose3::from_parts(30.0 * Vec3::ONE + 3.0 * way, turn);
+            pos12.translation.y = 33.0;
+            let velocity = 0.5 * direction(&mut random) - Vec3::Y;
+            let cast = |max_time_of_impact| {
+                let default = ShapeCastOptions::default();
+                let options =
+                    ShapeCastOptions { max_time_of_impact, target_distance: target, ..default };
+                dispatcher.cast_shapes(&pos12, velocity, &mesh, &*other, options).unwrap()
+            };
+            if let Some(hit) = cast(100.0).filter(|hit| hit.time_of_impact > 0.0) {
+                let again = cast(hit.time_of_impact.next_up()).map(|hit| hit.time_of_impact);
+                assert_eq!(again, Some(hit.time_of_impact), "{name}, {i}");
+                hits += 1;
+            }
+            let distance = dispatcher.distance(&pos12, &mesh, &*other).unwrap().distance;
+            // Those of balls are Parry's.
+            if distance > 0.0 && name != "ball" {
+                let limit = distance.next_up();
+                let found = dispatcher.closest_points(&pos12, &mesh, &*other, limit).unwrap();
+                assert!(matches!(found, ClosestPoints::WithinMargin(..)), "{name}, {i}");
+                near += 1;
+            }
+        }
+    }
+    assert!(hits > 200 && near > 300, "{hits} hits, {near} near");
 }

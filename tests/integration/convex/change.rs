@@ -1,5 +1,6 @@
 use oorandom::Rand32;
-use rapier_integration::ContactGenerator;
+use rapier_integration::{ContactGenerator, SbbkDispatcher};
+use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::TriMeshFlags;
 use sbbk_lab::mesh;
@@ -52,5 +53,29 @@ fn stock_can_hand_over_a_pair() {
         assert_eq!(found, expected, "{name}");
         let mut points = pair.manifolds.iter().flat_map(|manifold| &manifold.points);
         assert!(points.all(|point| point.data > 0), "{name}: data is lost");
+    }
+}
+
+/// Would catch impulses that are lost as a shape slides, or that another triangle gets.
+#[test]
+fn points_keep_their_data() {
+    let floor = shape_with(&mesh::floor(4.0, 2), TriMeshFlags::empty());
+    let dispatcher = SbbkDispatcher::default();
+    for (name, shape) in shapes(1.0) {
+        if !["cuboid", "round cuboid"].contains(&name) {
+            continue;
+        }
+        let mut pair = Pair::<(), u32>::default();
+        let mut before: Vec<u32> = Vec::new();
+        for step in 0..5 {
+            let pose = Pose::translation(0.3 + 1e-5 * step as Real, 0.3, 0.2);
+            pair.ask_of(&dispatcher, [&floor, &*shape], pose, false, 0.002);
+            let points = || pair.manifolds.iter().flat_map(|manifold| &manifold.points);
+            let data: Vec<u32> = points().map(|point| point.data).collect();
+            assert!(!data.is_empty() && (step == 0 || data == before), "{name}: {data:?}");
+            before = (1..).take(data.len()).collect();
+            let points = pair.manifolds.iter_mut().flat_map(|manifold| &mut manifold.points);
+            points.zip(&before).for_each(|(point, mark)| point.data = *mark);
+        }
     }
 }

@@ -107,3 +107,51 @@ fn contacts_keep_their_data_where_a_ball_rolls() {
     }
     assert!(kept > 300 && came > 4, "{kept} kept, {came} came");
 }
+
+/// Would catch manifolds of a mesh that is gone, and of another dispatcher those that are dropped.
+#[test]
+fn without_a_workspace_no_manifold_survives() {
+    let (mesh, shape) = (ground(TriMeshFlags::empty()), SharedShape::ball(0.8));
+    let question = Question {
+        mesh: &mesh,
+        shape: &shape,
+        pose: Pose::translation(0.3, 1.4, 0.1),
+        prediction: 0.2,
+        flipped: false,
+    };
+    let dispatcher = SbbkDispatcher::default();
+    let mut pair = Pair::<(), Impulse>::default();
+    question.ask(&dispatcher, &mut pair);
+    assert!(!pair.manifolds.is_empty());
+    pair.manifolds.iter_mut().for_each(|m| m.points[0].data = Impulse(7));
+    question.ask(&SbbkDispatcher::default(), &mut pair);
+    assert!(pair.manifolds.iter().all(|m| m.points[0].data == Impulse(7)));
+    pair.workspace = None;
+    question.ask(&dispatcher, &mut pair);
+    assert!(pair.manifolds.iter().all(|m| m.points[0].data == Impulse(0)));
+}
+
+/// Would catch whole triangles that are lost since others of the mesh are not finite, and contacts of
+/// those.
+#[test]
+fn whole_triangles_of_a_broken_mesh_are_touched() {
+    let mut mesh = ground(TriMeshFlags::DEFORMABLE);
+    let (pose, shape) = (Pose::translation(0.3, 1.4, 0.1), SharedShape::ball(0.8));
+    let touched = |mesh: &TriMesh| {
+        let question = Question { mesh, shape: &shape, pose, prediction: 0.2, flipped: false };
+        let found = question.fresh(&SbbkDispatcher::default());
+        let mut touched: Vec<u32> = found.iter().map(|m| question.triangle_of(m)).collect();
+        touched.sort_unstable();
+        touched
+    };
+    let before = touched(&mesh);
+    assert!(before.len() > 1);
+    for broken in 0..mesh.vertices().len() as u32 {
+        let whole = mesh.clone();
+        mesh.update_vertices(|vertices| vertices[broken as usize] = Vector::NAN);
+        let is_whole = |triangle: &&u32| !mesh.indices()[**triangle as usize].contains(&broken);
+        let expected: Vec<u32> = before.iter().filter(is_whole).copied().collect();
+        assert_eq!(touched(&mesh), expected);
+        mesh = whole;
+    }
+}

@@ -172,3 +172,29 @@ fn a_huge_floor_loses_no_contact() {
     }
     assert!(count > 1000, "{count} contacts");
 }
+
+/// Would catch points that a constrained normal puts far deeper than the shape is: Parry drops those
+/// that are five times as deep.
+#[test]
+fn constrained_normals_make_no_deep_points() {
+    let bumps = mesh::terrain(4.0, 12, 0.7);
+    let [free, fixed] = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES]
+        .map(|flags| shape_with(&bumps, flags));
+    let dispatcher = SbbkDispatcher::default();
+    let shape = SharedShape::cuboid(0.4, 0.3, 0.2);
+    let (mut random, mut seen) = (Rand32::new(8), 0);
+    for _ in 0..400 {
+        let pose = pose(&mut random, &free, 0.3);
+        let ask = |mesh| Question { mesh, shape: &shape, pose, prediction: 0.02, flipped: false };
+        let depths: BTreeMap<u32, Real> =
+            ask(&free).fresh(&dispatcher).iter().map(|m| (m.subshape1, distance(m))).collect();
+        for manifold in ask(&fixed).fresh(&dispatcher) {
+            let depth = depths[&manifold.subshape1].min(0.0);
+            if depth < 0.0 {
+                assert!(distance(&manifold) >= 5.0 * depth - 1e-6, "{manifold:?} {depth}");
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen > 500, "{seen}");
+}

@@ -143,3 +143,23 @@ fn a_corner_on_a_plane() {
     let above = Pose3::translation(0.0, -low + 1.0e-5, 0.0);
     assert!(!dispatcher.intersection_test(&above, &*plane, &mesh).unwrap().intersecting);
 }
+
+/// Would catch the nearest triangle left out as it is just at the limit, and an answer to no limit.
+#[test]
+fn a_limit_that_is_the_distance_is_enough() {
+    let dispatcher = SbbkDispatcher::default();
+    let floor = shape(&mesh::floor(8.0, 8));
+    for (name, other) in [
+        ("cuboid", SharedShape::cuboid(0.5, 0.5, 0.5)),
+        ("cylinder", SharedShape::cylinder(0.5, 0.25)),
+        ("capsule", SharedShape::capsule_y(0.25, 0.25)),
+    ] {
+        let high = Pose3::translation(0.25, 1.5, 0.25);
+        let closest = |limit| dispatcher.closest_points(&high, &floor, &*other, limit).unwrap();
+        assert!(matches!(closest(1.0), ClosestPoints::WithinMargin(..)), "{name}");
+        assert_eq!(closest(0.99), ClosestPoints::Disjoint, "{name}");
+        let low = Pose3::translation(0.25, 0.5, 0.25);
+        let none = dispatcher.closest_points(&low, &floor, &*other, f32::NAN).unwrap();
+        assert_eq!(none, ClosestPoints::Disjoint, "{name}");
+    }
+}

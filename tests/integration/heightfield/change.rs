@@ -29,6 +29,8 @@ fn an_edited_field_is_noticed() {
     assert!(check(&terrain, &mut pair) > 0);
     terrain.field.set_scale(Vec3::new(5.0, 1.1, 4.5));
     assert!(check(&terrain, &mut pair) > 0);
+    terrain.field.set_scale(Vec3::new(5.5, 1.1, 4.5));
+    assert!(check(&terrain, &mut pair) > 0);
     terrain.field.set_flags(HeightFieldFlags::FIX_INTERNAL_EDGES);
     check(&terrain, &mut pair);
     terrain = Terrain::random(&mut random, [14, 17], Vec3::new(6.0, 1.0, 4.0));

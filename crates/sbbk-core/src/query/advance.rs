@@ -43,6 +43,7 @@ pub struct Advance {
 
 /// The first time at which mesh 2, at `placement_at(time)` in the frame of mesh 1, is within the
 /// tolerance of it; `None` if there is no such time until the end, or if a number is not finite.
+/// Meshes that are within the tolerance at the end, and would touch later, may have none.
 pub fn advance<const AXES: usize>(
     trees: (&Tree<AXES>, &Tree<AXES>),
     placement_at: impl Fn(f64) -> Placement,
