@@ -46,7 +46,9 @@ pub(crate) trait Surfaces {
 }
 
 /// How much deeper than the least translation, or than the prediction distance if that is more, a
-/// contact may be that is taken without a second look. Parry's number for constrained normals.
+/// contact may be that is taken without a second look. Parry's number for constrained normals. (Of a
+/// prediction distance not more than [`Surfaces::near`] counts: small bodies would be pushed out of each
+/// other on their far sides, and gain four times the energy on a tray.)
 const SHALLOW: f64 = 5.0;
 
 /// How far behind a sheet the middle of a thin solid may be, in radii, that is still pushed to the
@@ -131,7 +133,8 @@ impl<S: Surfaces> Judge<'_, S> {
         }
         let is_end = |i: usize, feature: Feature, axis: DVec3| is_front(i, feature, axis, false);
         let [t1, t2] = &local.corners;
-        let greatest = SHALLOW * distance.abs().max(f64::from(self.pose.prediction));
+        let shallow = f64::from(self.pose.prediction).min(self.shapes.near());
+        let greatest = SHALLOW * distance.abs().max(shallow);
         if regions.is_first_round() {
             let good = outward(t1, t2, is_solid, is_end, Some(greatest), points);
             let contact = good.map(|good| good.contact);
