@@ -93,6 +93,26 @@ fn faces_that_have_passed_each_other_part_the_way_they_came() {
     }
 }
 
+/// Would catch bodies as small as the prediction distance that are pushed out of each other by their
+/// far sides, which no depth then tells from the near ones.
+#[test]
+fn small_bodies_are_not_pushed_out_on_their_far_sides() {
+    let bodies = [
+        shape(&mesh::torus(0.02, 0.008, 24, 12)),
+        shape(&mesh::monkey_head_with(8).centred().scaled_to(0.05)),
+        shape(&mesh::cuboid(Vec3::new(0.03, 0.02, 0.012), 6)),
+    ];
+    // By this way back they part.
+    let depth = 0.03;
+    let mut random = Rand32::new(31);
+    for i in 0..90 {
+        let (one, other) = (&bodies[i % 3], &bodies[i / 3 % 3]);
+        let query = Query::new(one, other, touching(&mut random, [one, other], depth));
+        let deepest = ask(&query).iter().map(distance).fold(0.0, Real::min);
+        assert!(deepest > -depth, "{deepest}");
+    }
+}
+
 /// Would catch contacts of edges within a floor: the points of a cube that lies on many small
 /// triangles all push up.
 #[test]
