@@ -201,6 +201,43 @@ fn triangles_that_just_touch_are_met() {
     assert!(hit.time == 0.0 && hit.pair.is_touching, "{hit:?}");
 }
 
+/// Would catch walls that small boxes far from the origin pass over by less than rounding, where a
+/// corner grazes the top edge: among other triangles the answer is that of the two alone, which have
+/// no boxes.
+#[test]
+fn rounding_lets_no_corner_pass() {
+    let mut random = Random(23);
+    let mut hits = 0;
+    for _ in 0..1000 {
+        let [top, far] = [0; 2].map(|_| 1000.0 * random.vector(1.0));
+        let turn = random.rotation();
+        let wall = [[0.0, 0.0, -1.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]].map(Vec3::from_array);
+        // Its last corner is the lowest one of its box in the frame of the wall.
+        let lowest = -(turn.inverse() * Vec3::Y).signum();
+        let with_others = |corners: [Vec3; 3], at: Vec3| {
+            let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+            let part =
+                |i| corners.map(|v| at + 0.002 * v.lerp(middle, if i > 0 { 0.5 } else { 0.0 }));
+            let vertices = (0..12).flat_map(part).collect();
+            Soup { vertices, triangles: (0..12).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect() }
+        };
+        let meshes =
+            [with_others(wall, top), with_others([Vec3::ZERO, lowest.with_x(0.0), lowest], far)];
+        let alone = meshes
+            .each_ref()
+            .map(|soup| Soup { vertices: soup.vertices[..3].to_vec(), triangles: vec![[0, 1, 2]] });
+        let corner = turn * alone[1].vertices[2];
+        let pose = Pose3::from_parts(top + 0.01 * Vec3::X - corner, turn);
+        let ask = |[one, two]: &[Soup; 2]| {
+            ask([one, two], &pose, -Vec3::X, options(1.0, 0.0)).map(|hit| hit.time)
+        };
+        let hit = ask(&alone);
+        hits += i32::from(hit.is_some());
+        assert!(hit.is_none() || ask(&meshes) == hit, "{hit:?} {:?}", ask(&meshes));
+    }
+    assert!(hits > 300, "{hits} hits");
+}
+
 /// Numbers that are none have no answer.
 #[test]
 fn numbers_that_are_none() {
