@@ -57,5 +57,5 @@ mod triangle_contact;
 pub use clip::{MANIFOLD_CAPACITY, ManifoldPoint, ManifoldPoints, clip, push_closest};
 pub use feature::{Feature, FeaturePair};
 pub use generate::{contact, contact_from, manifold};
-pub use outward::{Outward, outward};
+pub use outward::outward;
 pub use triangle_contact::TriangleContact;

@@ -29,20 +29,12 @@ const SHOWN: f64 = 0.9;
 /// Vertices this close to the farthest one along an axis are as far, in triangle sizes.
 const LEVEL: f64 = 1.0e-6;
 
-/// An outward contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outward {
-    /// The distance is that of the deepest points.
-    pub contact: TriangleContact,
-    /// Whether the surfaces around both triangles end where these do, along the normal.
-    pub is_extremal: bool,
-}
-
 /// The contact of two triangles that overlap, along the outward axis of least overlap. `solid` says
 /// which triangles are of a solid, whose outside their normals point to; `is_extremal` whether no
 /// triangle around a feature of triangle 1 (0) or 2 (1) is farther in a direction. Extremal axes
-/// go first. `out` gets the points, as [`clip`](super::clip) has them. None if the triangles face away
-/// from each other, or have no points in line with the axis.
+/// go first. The distance is that of the deepest points. `out` gets the points, as
+/// [`clip`](super::clip) has them. None if the triangles face away from each other, or have no points
+/// in line with the axis.
 ///
 /// `most`, if given, asks at less cost: for an extremal contact that is no deeper, or none.
 pub fn outward(
@@ -52,7 +44,7 @@ pub fn outward(
     is_extremal: impl Fn(usize, Feature, DVec3) -> bool,
     most: Option<f64>,
     out: &mut ManifoldPoints,
-) -> Option<Outward> {
+) -> Option<TriangleContact> {
     let triangles @ [t1, t2] = [&Triangle::new(t1), &Triangle::new(t2)];
     let axes = axes(triangles, solid, most.map_or(f64::INFINITY, |most| most / SHOWN));
     let ends = |i: usize, t: &Triangle, axis: DVec3| is_extremal(i, farthest(t, axis), axis);
@@ -62,9 +54,8 @@ pub fn outward(
     clip_triangles(t1, t2, normal, out);
     let contact = deepest(out, normal)?;
     let contact = TriangleContact { features: contact.features.crossing(), ..contact };
-    let is_extremal = extremal.is_some() && contact.distance <= SHOWN * gap;
-    let is_wanted = most.is_none_or(|most| is_extremal && contact.distance >= -most);
-    is_wanted.then_some(Outward { contact, is_extremal })
+    let is_shown = contact.distance <= SHOWN * gap;
+    most.is_none_or(|most| is_shown && contact.distance >= -most).then_some(contact)
 }
 
 /// The gap along an axis, and the axis.

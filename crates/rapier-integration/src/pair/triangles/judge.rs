@@ -13,7 +13,7 @@
 
 use glamx::DVec3;
 use parry3d::math::{Real, Vector};
-use sbbk_core::contact::{Feature, ManifoldPoints, Outward, TriangleContact, outward};
+use sbbk_core::contact::{Feature, ManifoldPoints, TriangleContact, outward};
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::Around;
 use sbbk_core::volumes::Sphere;
@@ -136,9 +136,7 @@ impl<S: Surfaces> Judge<'_, S> {
         let shallow = f64::from(self.pose.prediction).min(self.shapes.near());
         let greatest = SHALLOW * distance.abs().max(shallow);
         if regions.is_first_round() {
-            let good = outward(t1, t2, is_solid, is_end, Some(greatest), points);
-            let contact = good.map(|good| good.contact);
-            let contact = contact.filter(|contact| is_crossing || contact.distance <= 0.0);
+            let contact = outward(t1, t2, is_solid, is_end, Some(greatest), points);
             if contact.is_none()
                 && !is_crossing
                 && distance.abs() < TOUCHING * (size(t1) + size(t2))
@@ -151,12 +149,12 @@ impl<S: Surfaces> Judge<'_, S> {
         if !regions.is_lost(self.pair) {
             return None;
         }
-        let Outward { contact, is_extremal } = outward(t1, t2, is_solid, is_end, None, points)?;
+        let contact = outward(t1, t2, is_solid, is_end, None, points)?;
         let is_overlap = is_crossing || contact.distance <= 0.0;
         let is_shallow = contact.distance >= -greatest;
         let is_meant = is_overlap
             && regions.agrees(self.pair, contact.normal)
-            && (is_shallow || is_extremal && self.is_deep(local, &contact));
+            && (is_shallow || self.is_deep(local, &contact));
         if !is_meant {
             return None;
         }
