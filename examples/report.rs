@@ -19,6 +19,7 @@ use sbbk_lab::study::compare::{ComparePlan, compare};
 use sbbk_lab::study::contacts::{ContactsPlan, contacts};
 use sbbk_lab::study::cost::{CostPlan, cost};
 use sbbk_lab::study::everyday::{EverydayPlan, everyday};
+use sbbk_lab::study::floor::{FloorPlan, floor};
 use sbbk_lab::study::hard::{HardPlan, hard};
 use sbbk_lab::study::one_step::{OneStepPlan, one_step};
 use sbbk_lab::study::{Progress, StudyError};
@@ -30,6 +31,7 @@ enum Part {
     Contacts,
     Paper,
     Cost,
+    Floor,
     Everyday,
     Hard,
 }
@@ -83,6 +85,11 @@ impl Arguments {
                 let plan = self.plan(CostPlan::standard, CostPlan::quick);
                 let text = "Piles of more and more heads, and of heads of more and more triangles.";
                 ("Cost", text, cost(&CostPlan { backends, ..plan }, progress)?)
+            }
+            Part::Floor => {
+                let plan = self.plan(FloorPlan::standard, FloorPlan::quick);
+                let text = "What the search for contacts takes above the writing of them.";
+                ("The floor", text, floor(&plan, progress)?)
             }
             Part::Everyday => {
                 let plan = self.plan(EverydayPlan::standard, EverydayPlan::quick);

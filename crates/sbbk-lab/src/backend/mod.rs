@@ -18,6 +18,7 @@ mod kind;
 mod memory;
 mod primed;
 mod probe;
+mod tape;
 mod timed;
 
 pub use answer::{Answer, Question, Reported, shape_address};
@@ -25,4 +26,5 @@ pub use kind::{Backend, Dispatcher, Installed, SharedDispatcher};
 pub use memory::Memory;
 pub use primed::Primed;
 pub use probe::{PairKind, Probe, Tally, clock_cost};
+pub use tape::{Tape, Taped};
 pub use timed::Timed;

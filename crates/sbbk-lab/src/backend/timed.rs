@@ -37,29 +37,54 @@ macro_rules! forward {
     )*};
 }
 
+/// The queries without manifolds, answered by `self.inner`.
+macro_rules! forward_queries {
+    () => {
+        forward! {
+            intersection_test(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> ShapeIntersection;
+            distance(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> ShapeDistance;
+            contact(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, near: Real) -> Option<Contact>;
+            closest_points(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, near: Real) -> ClosestPoints;
+            cast_shapes(
+                pos12: &Pose,
+                local_vel12: Vector,
+                g1: &dyn Shape,
+                g2: &dyn Shape,
+                options: ShapeCastOptions
+            ) -> Option<ShapeCastHit>;
+            cast_shapes_nonlinear(
+                motion1: &NonlinearRigidMotion,
+                g1: &dyn Shape,
+                motion2: &NonlinearRigidMotion,
+                g2: &dyn Shape,
+                start_time: Real,
+                end_time: Real,
+                stop_at_penetration: bool
+            ) -> Option<ShapeCastHit>;
+        }
+    };
+}
+
+/// The same for two convex shapes with a manifold.
+macro_rules! forward_pair {
+    ($manifold:ty, $contact:ty) => {
+        forward! {
+            contact_manifold_convex_convex(
+                pos12: &Pose,
+                g1: &dyn Shape,
+                g2: &dyn Shape,
+                normal_constraints1: Option<&dyn NormalConstraints>,
+                normal_constraints2: Option<&dyn NormalConstraints>,
+                prediction: Real,
+                manifold: &mut rapier3d::parry::query::ContactManifold<$manifold, $contact>
+            ) -> ();
+        }
+    };
+}
+pub(super) use {forward, forward_pair, forward_queries};
+
 impl<D: QueryDispatcher + ?Sized> QueryDispatcher for Timed<D> {
-    forward! {
-        intersection_test(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> ShapeIntersection;
-        distance(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> ShapeDistance;
-        contact(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, near: Real) -> Option<Contact>;
-        closest_points(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, near: Real) -> ClosestPoints;
-        cast_shapes(
-            pos12: &Pose,
-            local_vel12: Vector,
-            g1: &dyn Shape,
-            g2: &dyn Shape,
-            options: ShapeCastOptions
-        ) -> Option<ShapeCastHit>;
-        cast_shapes_nonlinear(
-            motion1: &NonlinearRigidMotion,
-            g1: &dyn Shape,
-            motion2: &NonlinearRigidMotion,
-            g2: &dyn Shape,
-            start_time: Real,
-            end_time: Real,
-            stop_at_penetration: bool
-        ) -> Option<ShapeCastHit>;
-    }
+    forward_queries!();
 }
 
 impl<M, C, D> PersistentQueryDispatcher<M, C> for Timed<D>
@@ -86,17 +111,7 @@ where
         result
     }
 
-    forward! {
-        contact_manifold_convex_convex(
-            pos12: &Pose,
-            g1: &dyn Shape,
-            g2: &dyn Shape,
-            normal_constraints1: Option<&dyn NormalConstraints>,
-            normal_constraints2: Option<&dyn NormalConstraints>,
-            prediction: Real,
-            manifold: &mut ContactManifold<M, C>
-        ) -> ();
-    }
+    forward_pair!(M, C);
 }
 
 #[cfg(test)]

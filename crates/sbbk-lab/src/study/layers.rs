@@ -4,18 +4,19 @@
 //! Bare trees list all contacts of triangles at a pose, with every kind of k-DOP and size of leaf; the
 //! dispatcher, which has 18-DOPs and leaves of four triangles, is asked as a user asks it.
 
+use std::cell::RefCell;
 use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Duration;
 
-use glamx::Vec3;
+use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
 use rapier_integration::{SbbkConfig, SbbkDispatcher};
 use rapier3d::geometry::SharedShape;
 use rapier3d::math::Real;
 use sbbk_core::query::{SearchScratch, contacts};
 use sbbk_core::traverse::Placement;
-use sbbk_core::tree::{BATCH, BuildError, BuildOptions, LayerPlan, Tree};
+use sbbk_core::tree::{BATCH, BuildOptions, LayerPlan, Tree};
 use sbbk_core::volumes::{DirectionSet, Directions};
 
 use super::motion::{Approach, Mode, Place, mode_notes};
@@ -43,8 +44,10 @@ const PLANS: [(&str, LayerPlan); 6] = [
     ("from 6", LayerPlan { sphere_root: true, kdop_from_depth: Some(6) }),
     ("from 8", LayerPlan { sphere_root: true, kdop_from_depth: Some(8) }),
 ];
-/// What bare trees can besides.
-const OTHERS: [&str; 3] = ["14-DOPs", "26-DOPs", "leaves of 2"];
+/// What bare trees can besides. The last two are the paper's AABB trees: boxes of both along the axes of
+/// one frame, for which those of the second mesh must be fitted anew when it moves.
+const OTHERS: [&str; 5] =
+    ["14-DOPs", "26-DOPs", "leaves of 2", "one frame", "one frame, with the refit"];
 
 const LEAST: &str = "times: means over the poses of the least time at each; plans take turns there";
 
@@ -163,6 +166,8 @@ impl<'a> Case<'a> {
         asks.push(self.ask::<7>(default)?);
         asks.push(self.ask::<13>(default)?);
         asks.push(self.ask::<9>(BuildOptions { leaf_size: 2, ..default })?);
+        asks.push(self.ask_in_one_frame(false)?);
+        asks.push(self.ask_in_one_frame(true)?);
         let times = self.fastest(&asks, repeats, 1.0, |ask, place| ask(place));
         let names = PLANS.map(|(name, _)| name).into_iter().chain(OTHERS);
         let rows = names
@@ -175,21 +180,42 @@ impl<'a> Case<'a> {
     where
         Directions<AXES>: DirectionSet<AXES>,
     {
-        let tree = |mesh: &Mesh| {
-            Tree::<AXES>::build(&mesh.vertices, &mesh.triangles, &options)
-                .map_err(|cause: BuildError| StudyError::Tree { mesh: mesh.name.clone(), cause })
-        };
-        let trees = [tree(&self.meshes[0])?, tree(&self.meshes[1])?];
+        let trees = [self.tree::<AXES>(0, options)?, self.tree(1, options)?];
         Ok(Box::new(move |place| {
-            let placement = Placement::new(&self.places[place].pos12);
-            let (mut scratch, mut found) = (SearchScratch::default(), 0);
-            let trees = (&trees[0], &trees[1]);
-            let prediction = PREDICTION.into();
-            let (time, ()) =
-                timed(|| contacts(trees, placement, prediction, &mut scratch, |_| found += 1));
-            black_box(found);
-            time
+            contacts_of([&trees[0], &trees[1]], Placement::new(&self.places[place].pos12))
         }))
+    }
+
+    /// Boxes of both meshes in the frame of the first. Whether to count what it takes to fit them.
+    fn ask_in_one_frame(&self, counts_refit: bool) -> Result<Ask<'_>, StudyError> {
+        let options = BuildOptions { layers: LayerPlan::AABB_ONLY, leaf_size: BATCH };
+        let tree1 = self.tree::<9>(0, options)?;
+        let second = RefCell::new((self.tree::<9>(1, options)?, self.meshes[1].vertices.clone()));
+        let Mesh { vertices, triangles, .. } = &self.meshes[1];
+        Ok(Box::new(move |place| {
+            let (tree2, moved) = &mut *second.borrow_mut();
+            let (refit, cost) = timed(|| {
+                let pose = &self.places[place].pos12;
+                moved.iter_mut().zip(vertices).for_each(|(to, from)| *to = pose * *from);
+                tree2.refit(moved, triangles)
+            });
+            debug_assert!(cost.is_ok(), "it is finite, and of the same triangles");
+            let time = contacts_of([&tree1, tree2], Placement::new(&Pose3::IDENTITY));
+            if counts_refit { refit + time } else { time }
+        }))
+    }
+
+    fn tree<const AXES: usize>(
+        &self,
+        index: usize,
+        options: BuildOptions,
+    ) -> Result<Tree<AXES>, StudyError>
+    where
+        Directions<AXES>: DirectionSet<AXES>,
+    {
+        let mesh = &self.meshes[index];
+        Tree::build(&mesh.vertices, &mesh.triangles, &options)
+            .map_err(|cause| StudyError::Tree { mesh: mesh.name.clone(), cause })
     }
 
     /// All modes of the dispatcher.
@@ -245,6 +271,22 @@ impl<'a> Case<'a> {
         }
         sums
     }
+}
+
+/// The time of all contacts of triangles.
+fn contacts_of<const AXES: usize>(
+    [tree1, tree2]: [&Tree<AXES>; 2],
+    placement: Placement,
+) -> Duration
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    let (mut scratch, mut found) = (SearchScratch::default(), 0);
+    let prediction = PREDICTION.into();
+    let (time, ()) =
+        timed(|| contacts((tree1, tree2), placement, prediction, &mut scratch, |_| found += 1));
+    black_box(found);
+    time
 }
 
 fn tables(rows: &[Row]) -> Vec<Table> {

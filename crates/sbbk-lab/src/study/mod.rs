@@ -11,6 +11,7 @@ pub mod convex;
 pub mod cost;
 pub mod determinism;
 pub mod everyday;
+pub mod floor;
 pub mod front;
 pub mod hard;
 mod helicopter;

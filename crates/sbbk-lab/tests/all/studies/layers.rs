@@ -16,7 +16,7 @@ fn every_plan_is_measured_on_every_pair() {
     let plan = LayersPlan { pairs, approach_count: 1, repeats: 1 };
     let study = layers(&plan, &Progress::hidden()).unwrap();
     let modes = 3;
-    assert_eq!(study.rows.len(), 2 * (9 + 6 * modes));
+    assert_eq!(study.rows.len(), 2 * (11 + 6 * modes));
     assert!(study.rows.iter().all(|row| row.number("time") > 0.0));
     assert_eq!(support::line_counts(&study), [2, 2 * modes]);
 }

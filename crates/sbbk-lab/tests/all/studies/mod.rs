@@ -6,6 +6,7 @@ mod contacts;
 mod convex;
 mod engines;
 mod everyday;
+mod floor;
 mod front;
 mod hard;
 mod layers;
