@@ -26,7 +26,7 @@ mod query;
 mod shape;
 
 pub(crate) use cast::FoundCast;
-pub(crate) use nearest::ConvexSearch;
+pub(crate) use nearest::{ConvexSearch, FoundTriangle};
 pub(crate) use pair::ConvexPair;
 pub(crate) use parts::Parts;
 pub(super) use placed::PlacedPart;

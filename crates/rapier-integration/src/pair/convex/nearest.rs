@@ -6,6 +6,8 @@ use parry3d::math::{Real, Vector};
 use parry3d::partitioning::BvhNode;
 use parry3d::shape::Shape;
 use sbbk_core::contact::convex::{ConvexContact, HullPoints};
+use sbbk_core::traverse::Placement;
+use sbbk_core::volumes::Sphere;
 
 use super::features::{core_contact, core_touches};
 use super::near::{gap_of, triangles_near};
@@ -14,6 +16,7 @@ use super::parts::{Part, Parts};
 use super::placed::PlacedPart;
 use super::shape::{ConvexShape, Extent};
 use crate::mesh::{Hierarchy, box_of};
+use crate::pair::pose::MeshPlace;
 
 /// Bodies this close touch, as a share of their coordinates in the frame of the shape: what rounding
 /// can do to a distance of zero.
@@ -36,7 +39,7 @@ pub(crate) struct ConvexSearch<'a> {
 pub(crate) struct FoundTriangle {
     pub(crate) triangle: u32,
     /// In the frame of the shape, from the mesh to the shape.
-    pub(super) contact: ConvexContact,
+    pub(crate) contact: ConvexContact,
     pub(crate) is_touching: bool,
 }
 
@@ -53,6 +56,21 @@ impl<'a> ConvexSearch<'a> {
         let part = Part { pose: None, shape: convex, cone: None };
         let placed = PlacedPart::new(0, &part, pair, Extent::of(convex));
         Some(Self { mesh: pair.mesh, shape, convex, placed, hull: OnceLock::new() })
+    }
+
+    /// Puts shape 2 of the pair elsewhere in the frame of shape 1.
+    pub(crate) fn place(&mut self, mesh_place: MeshPlace, placement: &Placement) {
+        self.placed = self.placed.moved(mesh_place, placement);
+    }
+
+    /// Balls around the mesh and the shape.
+    pub(crate) fn balls(&self) -> [Sphere; 2] {
+        [self.mesh.ball(), self.placed.extent.ball()]
+    }
+
+    /// How far the shape must sink in to come out behind a triangle, as Parry has it.
+    pub(crate) fn thickness(&self) -> Real {
+        self.shape.ccd_thickness()
     }
 
     /// A triangle that touches or crosses the shape; the first one that the walk comes across.
@@ -85,20 +103,36 @@ impl<'a> ConvexSearch<'a> {
             return if nearest.is_touching { self.deepest(0.0) } else { Some(nearest) };
         }
         let mut deepest = None::<FoundTriangle>;
-        let margin = (limit.max(0.0) as Real).next_up();
-        triangles_near(&self.placed, self.convex, &self.mesh, margin, (), |triangle| {
-            if let Some(found) = self.triangle(triangle, limit)
-                && deepest.is_none_or(|deepest| found.contact.distance < deepest.contact.distance)
-            {
+        self.within(limit, |found| {
+            if deepest.is_none_or(|deepest| found.contact.distance < deepest.contact.distance) {
                 deepest = Some(found);
             }
-            ControlFlow::Continue(())
         });
         deepest
     }
 
+    /// Calls `found` with the triangles that touch or are within `limit`.
+    pub(crate) fn within(&self, limit: f64, mut found: impl FnMut(FoundTriangle)) {
+        let margin = (limit.max(0.0) as Real).next_up();
+        triangles_near(&self.placed, self.convex, &self.mesh, margin, (), |triangle| {
+            if let Some(triangle) = self.triangle(triangle, limit) {
+                found(triangle);
+            }
+            ControlFlow::Continue(())
+        });
+    }
+
     /// The nearest triangle within `limit`: one that touches, if any does.
     pub(crate) fn nearest(&self, limit: f64) -> Option<FoundTriangle> {
+        self.nearest_of(limit, |_| true)
+    }
+
+    /// The same of the triangles that count.
+    pub(crate) fn nearest_of(
+        &self,
+        limit: f64,
+        counts: impl Fn(u32) -> bool,
+    ) -> Option<FoundTriangle> {
         if !self.placed.placement.is_finite() || limit.is_nan() {
             return None;
         }
@@ -110,7 +144,7 @@ impl<'a> ConvexSearch<'a> {
             limit,
             |node: &BvhNode, _| gap(box_of(node)),
             |triangle, best| {
-                let found = self.triangle(triangle, best.into())?;
+                let found = counts(triangle).then(|| self.triangle(triangle, best.into()))??;
                 Some((found.distance().max(0.0), found))
             },
         );

@@ -1,0 +1,166 @@
+//! Casts along the curves of rigid motions: of two meshes, or of a mesh and a convex shape.
+
+use glamx::{DMat3, DQuat, DVec3};
+use parry3d::math::{Real, Vector};
+use parry3d::query::{NonlinearRigidMotion, ShapeCastHit, ShapeCastStatus};
+use sbbk_core::query::{Advance, AdvanceOptions, Bodies, PartPair, advance, advance_from_contact};
+use sbbk_core::traverse::Placement;
+use sbbk_core::volumes::Sphere;
+
+/// Bodies this close have met, as a share of the size of the smaller one. Higher: fewer steps,
+/// earlier impacts.
+const TOLERANCE: f64 = 1.0e-6;
+
+/// Steps. Head-on motions take 10 to 30, turning ones up to some hundred.
+const STEP_LIMIT: usize = 2000;
+
+/// What poses lose as their quaternions, rounded to f32, are not of unit length: points are up to this
+/// share faster.
+const STRETCH: f64 = 1.0e-6;
+
+/// Two bodies on their ways: what is asked.
+#[derive(Copy, Clone)]
+pub(crate) struct NonlinearCast<'a> {
+    pub(crate) motions: [&'a NonlinearRigidMotion; 2],
+    pub(crate) start: Real,
+    pub(crate) end: Real,
+    pub(crate) stop_at_penetration: bool,
+}
+
+/// How far two bodies extend.
+pub(super) struct Extents {
+    /// Balls around them.
+    pub(super) balls: [Sphere; 2],
+    /// By how much one must sink into the other to come out behind it, as Parry has it.
+    pub(super) thickness: Real,
+}
+
+/// Where two parts touch: a point of each and its outward unit normal, in its frame.
+#[derive(Copy, Clone)]
+pub(crate) struct Touch {
+    pub(super) points: [Vector; 2],
+    pub(super) normals: [Vector; 2],
+}
+
+impl NonlinearCast<'_> {
+    /// The first impact; `touch` tells of a pair that is found where it touches.
+    ///
+    /// If contacts at the start are not to stop the cast, Parry asks of each triangle that touches
+    /// then whether its velocity and that of the other body approach until the end by more than the
+    /// thickness of both, and leaves it out if they do not. (Of a thick body that turns it goes on to
+    /// look at some times between.) Here it is left out for good.
+    pub(super) fn first_impact<B: Bodies>(
+        &self,
+        bodies: &mut B,
+        extents: &Extents,
+        touch: impl Fn(&B::Pair, &Placement) -> Touch,
+    ) -> Option<ShapeCastHit> {
+        let [size1, size2] = extents.balls.map(|ball| f64::from(ball.radius));
+        let options = AdvanceOptions {
+            start: self.start.into(),
+            end: self.end.into(),
+            speed_bound: self.speed_bound(extents.balls),
+            tolerance: TOLERANCE * size1.min(size2),
+            step_limit: STEP_LIMIT,
+        };
+        let placement_at = |time| {
+            let [place1, place2] = self.motions.map(|motion| place(motion, time));
+            place1.inverted().of(&place2)
+        };
+        let found = if self.stop_at_penetration {
+            advance(bodies, placement_at, options)
+        } else {
+            let enough = options.tolerance + f64::from(extents.thickness);
+            advance_from_contact(bodies, placement_at, options, |pair, placement| {
+                let speed = self.approach_speed(&touch(pair, placement));
+                speed * (options.end - options.start) > enough
+            })
+        };
+        let Advance { time, pair, placement, has_converged } = found?;
+        let is_at_start = time == options.start;
+        let status = if !has_converged {
+            ShapeCastStatus::OutOfIterations
+        } else if is_at_start && self.stop_at_penetration {
+            ShapeCastStatus::PenetratingOrWithinTargetDist
+        } else {
+            ShapeCastStatus::Converged
+        };
+        let Touch { points: [witness1, witness2], normals: [normal1, normal2] } =
+            touch(&pair, &placement);
+        let [subshape1, subshape2] = pair.name();
+        Some(ShapeCastHit {
+            time_of_impact: time as Real,
+            witness1,
+            witness2,
+            normal1,
+            normal2,
+            status,
+            subshape1,
+            subshape2,
+        })
+    }
+
+    /// No point of one body moves faster than this against the other.
+    ///
+    /// With `v` the velocity of centre 2 against centre 1, `w` the turning of a body and `r` how far
+    /// its points are from its centre, that is at most `|v| + |w1| r1 + |w2| r2`. In the frame of body
+    /// 1, all of which turns about centre 1, points of body 2 have `|v - w1 × c| + |w2 - w1| r2`, with
+    /// `c` from centre 1 to centre 2; in that of body 2 likewise. As `c` is linear in time, each is
+    /// greatest at the start or at the end. These know no end of one body: a half-space may turn.
+    fn speed_bound(&self, balls: [Sphere; 2]) -> f64 {
+        let [motion1, motion2] = self.motions;
+        let [reach1, reach2] = [0, 1].map(|i| {
+            let ball = &balls[i];
+            let centre = (self.motions[i].local_center - ball.centre).as_dvec3().length();
+            centre + f64::from(ball.radius)
+        });
+        let [turn1, turn2] = self.motions.map(|motion| motion.angvel.as_dvec3());
+        let [from1, from2] = self.motions.map(centre);
+        let velocity = motion2.linvel.as_dvec3() - motion1.linvel.as_dvec3();
+        let turned =
+            |turn: DVec3, reach: f64| if turn == DVec3::ZERO { 0.0 } else { turn.length() * reach };
+        let seen = |turn: DVec3, reach: f64| {
+            let [start, end] = [self.start, self.end].map(|time| {
+                let between = from2 - from1 + velocity * f64::from(time);
+                (velocity - turn.cross(between)).length()
+            });
+            start.max(end) + turned(turn2 - turn1, reach)
+        };
+        let in_space = velocity.length() + turned(turn1, reach1) + turned(turn2, reach2);
+        let least = in_space.min(seen(turn1, reach2)).min(seen(turn2, reach1));
+        least * (1.0 + STRETCH)
+    }
+
+    /// How fast two bodies that touch approach along their normal at the start.
+    fn approach_speed(&self, touch: &Touch) -> f64 {
+        let rotations = self.motions.map(|motion| place(motion, self.start.into()).rotation);
+        let [velocity1, velocity2] = [0, 1].map(|i| {
+            let motion = self.motions[i];
+            let arm = rotations[i] * (touch.points[i] - motion.local_center).as_dvec3();
+            motion.linvel.as_dvec3() + motion.angvel.as_dvec3().cross(arm)
+        });
+        let normal: DVec3 = rotations[0] * touch.normals[0].as_dvec3();
+        (velocity1 - velocity2).dot(normal)
+    }
+}
+
+/// The centre of a motion at its beginning.
+fn centre(motion: &NonlinearRigidMotion) -> DVec3 {
+    Placement::new(&motion.start).to_frame1(motion.local_center, Vector::ZERO)
+}
+
+/// Where a motion takes a body, in f64: Parry's `position_at_time` rounds.
+fn place(motion: &NonlinearRigidMotion, time: f64) -> Placement {
+    let turn = DQuat::from_scaled_axis(motion.angvel.as_dvec3() * time);
+    let turn = Placement {
+        rotation: DMat3::from_quat(turn),
+        translation: DVec3::ZERO,
+        inverse: DMat3::from_quat(turn.inverse()),
+    };
+    let start = Placement::new(&motion.start);
+    let centre = centre(motion);
+    let from_centre = Placement { translation: start.translation - centre, ..start };
+    let mut place = turn.of(&from_centre);
+    place.translation += centre + motion.linvel.as_dvec3() * time;
+    place
+}

@@ -1,0 +1,226 @@
+use std::f32::consts::FRAC_PI_2;
+
+use glamx::{DAffine3, DQuat, DVec3, Pose3, Vec3};
+use oorandom::Rand32;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::math::Real;
+use rapier3d::parry::query::{
+    DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus,
+};
+use rapier3d::parry::shape::{Shape, SharedShape, TriMesh};
+use sbbk_core::truth::ConvexBody;
+use sbbk_lab::mesh;
+
+use super::queries::{least, truth_at, truth_of};
+use super::shapes::{body, lattice_pose, pose, shapes};
+use crate::support::{direction, reach, rotation, shape};
+
+/// A mesh and a shape on their ways until the time of one unit.
+struct Cast<'a> {
+    mesh: &'a TriMesh,
+    shape: &'a SharedShape,
+    /// Of the mesh and of the shape.
+    motions: [NonlinearRigidMotion; 2],
+    is_mesh_first: bool,
+}
+
+impl Cast<'_> {
+    fn swap<T>(&self, [one, two]: [T; 2]) -> [T; 2] {
+        if self.is_mesh_first { [one, two] } else { [two, one] }
+    }
+
+    fn ask(&self, dispatcher: &dyn QueryDispatcher, stop: bool) -> Option<ShapeCastHit> {
+        let [g1, g2] = self.swap::<&dyn Shape>([self.mesh, &*self.shape.0]);
+        let [motion1, motion2] = self.swap(self.motions);
+        dispatcher
+            .cast_shapes_nonlinear(&motion1, g1, &motion2, g2, 0.0, 1.0, stop)
+            .expect("supported")
+    }
+
+    /// Where mesh and shape are, in f64.
+    fn places(&self, time: f64) -> [DAffine3; 2] {
+        self.motions.map(|motion| {
+            let affine = |pose: Pose3| {
+                let turn = pose.rotation.as_dquat().normalize();
+                DAffine3::from_rotation_translation(turn, pose.translation.as_dvec3())
+            };
+            let start = affine(motion.start);
+            let centre = start.transform_point3(motion.local_center.as_dvec3());
+            let turn = DQuat::from_scaled_axis(motion.angvel.as_dvec3() * time);
+            let there = centre + motion.linvel.as_dvec3() * time;
+            DAffine3::from_translation(there)
+                * DAffine3::from_quat(turn)
+                * DAffine3::from_translation(-centre)
+                * start
+        })
+    }
+
+    /// The least distance, or minus the greatest depth, of a triangle.
+    fn distance(&self, body: &ConvexBody, time: f64) -> f64 {
+        let [mesh, shape] = self.places(time);
+        least(&truth_at(self.mesh, body, shape.inverse() * mesh))
+    }
+
+    /// No point of one moves faster than this against the other: seen from where the shape is, and
+    /// without what both turn alike.
+    fn speed(&self, size: f64) -> f64 {
+        let [mesh, shape] = &self.motions;
+        let arm = |motion: &NonlinearRigidMotion| f64::from(motion.local_center.length()) + size;
+        let turn = |motion: &NonlinearRigidMotion| f64::from(motion.angvel.length());
+        let linear = f64::from((mesh.linvel - shape.linvel).length());
+        let is_endless = self.shape.as_halfspace().is_some();
+        let shape_arm = if is_endless {
+            let between = |time: f64| {
+                let [mesh_place, shape_place] = self.places(time);
+                let centre = |place: DAffine3, motion: &NonlinearRigidMotion| {
+                    place.transform_point3(motion.local_center.as_dvec3())
+                };
+                centre(mesh_place, mesh).distance(centre(shape_place, shape))
+            };
+            between(0.0).max(between(1.0)) + arm(mesh)
+        } else {
+            arm(shape)
+        };
+        linear + turn(mesh) * arm(mesh) + turn(shape) * shape_arm
+    }
+
+    /// The least distance on the way to a time, and whether the march got there: no touch deeper than
+    /// `tolerance` is missed. Triangles are looked at when they may be the nearest.
+    fn march(&self, body: &ConvexBody, speed: f64, tolerance: f64, end: f64) -> (f64, bool) {
+        let (mut time, mut nearest) = (0.0, f64::INFINITY);
+        let mut clear = vec![f64::NEG_INFINITY; self.mesh.indices().len()];
+        for _ in 0..500 {
+            let [mesh, shape] = self.places(time);
+            let in_shape = shape.inverse() * mesh;
+            let mut distance = f64::INFINITY;
+            for (clear, triangle) in clear.iter_mut().zip(self.mesh.triangles()) {
+                if *clear < distance {
+                    *clear = truth_of(&triangle, body, in_shape);
+                    distance = distance.min(*clear);
+                }
+            }
+            nearest = nearest.min(distance);
+            let step = distance.abs().max(tolerance);
+            clear.iter_mut().for_each(|clear| *clear -= step);
+            time += step / speed;
+            if time >= end {
+                return (nearest, true);
+            }
+        }
+        (nearest, false)
+    }
+}
+
+fn motion(
+    random: &mut Rand32,
+    start: Pose3,
+    size: Real,
+    speeds: [Real; 2],
+) -> NonlinearRigidMotion {
+    let [velocity, spin] = speeds;
+    let centre = 0.2 * size * direction(random);
+    let velocity = velocity * size * direction(random);
+    NonlinearRigidMotion::new(start, centre, velocity, spin * direction(random))
+}
+
+/// A velocity, a spin and a place of few digits, which lets faces, edges and corners meet at once.
+fn lattice_motion(random: &mut Rand32, start: Pose3, size: Real) -> NonlinearRigidMotion {
+    let mut axis = || [Vec3::X, -Vec3::Y, Vec3::Z, Vec3::ZERO][random.rand_range(0..4) as usize];
+    let [velocity, spin, centre] = [axis(), axis(), axis()];
+    NonlinearRigidMotion::new(start, 0.5 * size * centre, 2.0 * size * velocity, FRAC_PI_2 * spin)
+}
+
+/// Would catch a bound of the speed that is too low or of the wrong body, a placement in the wrong
+/// order, a triangle that a bound leaves out, an impact that is not the first one or none, and points
+/// and normals that are not where the bodies meet.
+#[test]
+fn first_impacts_are_those_of_brute_force() {
+    let dispatcher = SbbkDispatcher::default();
+    let (mut hits, mut misses, mut unclear, mut stocks_wrong) = (0, 0, 0, 0);
+    for (size, far) in [(0.01, 0.0), (2.0, 0.0), (2.0, 1.0e3), (40.0, 0.0)] {
+        let mesh = shape(&mesh::monkey_head_with(4).centred().scaled_to(size));
+        let tolerance = 3.0e-6 * f64::from(size);
+        for (seed, (name, other)) in (0..).zip(shapes(0.3 * size)) {
+            let body = body(&other);
+            for i in 0..6_u64 {
+                let random = &mut Rand32::new(100 * seed + i);
+                let mut in_mesh = pose(random, &mesh, 0.3 * size);
+                in_mesh.translation += 0.8 * size * direction(random);
+                let mut place = Pose3::from_parts(0.5 * size * direction(random), rotation(random));
+                place.translation += far * size * Vec3::X;
+                let motions = if i < 4 {
+                    let spin = [0.0, 1.0, 3.0, 1.0][i as usize];
+                    let mesh_speeds = [[0.0, 0.0], [0.5, 1.0]][(i / 2) as usize];
+                    let mesh_motion = motion(random, place, size, mesh_speeds);
+                    let mut shape_motion = motion(random, place * in_mesh, size, [0.5, spin]);
+                    shape_motion.linvel -= place.rotation * in_mesh.translation;
+                    [mesh_motion, shape_motion]
+                } else {
+                    let mut start = lattice_pose(random);
+                    start.translation *= 2.0 * size;
+                    start.translation.x += far * size;
+                    let still = Pose3::translation(far * size, 0.0, 0.0);
+                    let mesh_motion = lattice_motion(random, still, 0.25 * size);
+                    [mesh_motion, lattice_motion(random, start, size)]
+                };
+                let cast = Cast { mesh: &mesh, shape: &other, motions, is_mesh_first: i % 2 == 0 };
+                if cast.distance(&body, 0.0) <= tolerance {
+                    continue;
+                }
+                let says = format!("{name}, {size}, {i}");
+                let found = cast.ask(&dispatcher, true);
+                let end = found.map_or(1.0, |hit| f64::from(hit.time_of_impact));
+                let speed = cast.speed(f64::from(reach(&mesh).max(reach_of(&other))));
+                // Times are rounded to f32.
+                let rounded = tolerance + 1.0e-7 * speed;
+                let (closest, is_through) = cast.march(&body, speed, tolerance, end);
+                unclear += usize::from(!is_through);
+                assert!(closest > -rounded, "{says}: {closest} on the way to {found:?}");
+                let is_near = |hit: &ShapeCastHit| {
+                    cast.distance(&body, f64::from(hit.time_of_impact)).abs() <= rounded
+                };
+                // Stock has no answer for half-spaces.
+                let stock = cast.ask(&DefaultQueryDispatcher, true);
+                let is_stock_right =
+                    stock.is_some() == found.is_some() && stock.is_none_or(|hit| is_near(&hit));
+                stocks_wrong += usize::from(!is_stock_right);
+                let Some(hit) = found else {
+                    misses += 1;
+                    continue;
+                };
+                hits += 1;
+                assert_eq!(hit.status, ShapeCastStatus::Converged, "{says} {hit:?}");
+                assert!(is_near(&hit), "{says}: {hit:?} {}", cast.distance(&body, end));
+                let [pos1, pos2] = cast.swap(cast.places(end));
+                let [point1, point2] = [
+                    pos1.transform_point3(hit.witness1.as_dvec3()),
+                    pos2.transform_point3(hit.witness2.as_dvec3()),
+                ];
+                assert!(point1.distance(point2) <= 2.0 * rounded, "{says} {hit:?}");
+                let [normal1, normal2]: [DVec3; 2] = [
+                    pos1.transform_vector3(hit.normal1.as_dvec3()),
+                    pos2.transform_vector3(hit.normal2.as_dvec3()),
+                ];
+                assert!((normal1 + normal2).length() < 1.0e-5, "{says} {hit:?}");
+                let [of_mesh, of_shape] = cast.swap([hit.subshape1, hit.subshape2]);
+                assert_eq!(of_shape, 0, "{says}");
+                let [mesh_place, shape_place] = cast.places(end);
+                let own = truth_at(&mesh, &body, shape_place.inverse() * mesh_place);
+                assert!(own[of_mesh as usize].abs() <= rounded, "{says} {hit:?}");
+            }
+        }
+    }
+    println!("{hits} {misses} {unclear} {stocks_wrong}");
+    assert!(hits > 100 && misses > 60 && unclear < 20, "{hits} {misses} {unclear}");
+    assert!(stocks_wrong > 20, "{stocks_wrong}");
+}
+
+/// How far a shape of these tests reaches.
+fn reach_of(shape: &SharedShape) -> Real {
+    let around = shape.compute_local_aabb();
+    if shape.as_halfspace().is_some() {
+        0.0
+    } else {
+        around.mins.abs().max(around.maxs.abs()).length()
+    }
+}
