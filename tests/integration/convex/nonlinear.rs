@@ -137,19 +137,19 @@ fn lattice_motion(random: &mut Rand32, start: Pose3, size: Real) -> NonlinearRig
 fn first_impacts_are_those_of_brute_force() {
     let dispatcher = SbbkDispatcher::default();
     let (mut hits, mut misses, mut unclear, mut stocks_wrong) = (0, 0, 0, 0);
-    for (size, far) in [(0.01, 0.0), (2.0, 0.0), (2.0, 1.0e3), (40.0, 0.0)] {
+    for (size, far) in [(0.01, 0.0), (2.0, 1.0e3), (40.0, 0.0)] {
         let mesh = shape(&mesh::monkey_head_with(4).centred().scaled_to(size));
         let tolerance = 3.0e-6 * f64::from(size);
         for (seed, (name, other)) in (0..).zip(shapes(0.3 * size)) {
             let body = body(&other);
-            for i in 0..6_u64 {
+            for i in 0..4_u64 {
                 let random = &mut Rand32::new(100 * seed + i);
                 let mut in_mesh = pose(random, &mesh, 0.3 * size);
                 in_mesh.translation += 0.8 * size * direction(random);
                 let mut place = Pose3::from_parts(0.5 * size * direction(random), rotation(random));
                 place.translation += far * size * Vec3::X;
-                let motions = if i < 4 {
-                    let spin = [0.0, 1.0, 3.0, 1.0][i as usize];
+                let motions = if i < 3 {
+                    let spin = [0.0, 1.0, 3.0][i as usize];
                     let mesh_speeds = [[0.0, 0.0], [0.5, 1.0]][(i / 2) as usize];
                     let mesh_motion = motion(random, place, size, mesh_speeds);
                     let mut shape_motion = motion(random, place * in_mesh, size, [0.5, spin]);
@@ -210,8 +210,7 @@ fn first_impacts_are_those_of_brute_force() {
             }
         }
     }
-    println!("{hits} {misses} {unclear} {stocks_wrong}");
-    assert!(hits > 100 && misses > 60 && unclear < 20, "{hits} {misses} {unclear}");
+    assert!(hits > 60 && misses > 40 && unclear < 5, "{hits} {misses} {unclear}");
     assert!(stocks_wrong > 20, "{stocks_wrong}");
 }
 
@@ -222,5 +221,196 @@ fn reach_of(shape: &SharedShape) -> Real {
         0.0
     } else {
         around.mins.abs().max(around.maxs.abs()).length()
+    }
+}
+
+/// A floor with a wall at the end, of triangles a unit wide or of a few large ones.
+fn room(cells: u32) -> TriMesh {
+    let floor = mesh::floor(20.0, cells);
+    let (mut vertices, mut triangles) = (floor.vertices, floor.triangles);
+    let first = vertices.len() as u32;
+    vertices.extend([[5.0, -1.0, -9.0], [5.0, -1.0, 9.0], [5.0, 9.0, 0.0]].map(Vec3::from));
+    triangles.push([first, first + 1, first + 2]);
+    TriMesh::new(vertices, triangles).unwrap()
+}
+
+fn still() -> NonlinearRigidMotion {
+    NonlinearRigidMotion::identity()
+}
+
+/// What touches at the start, at every size and in both orders, known exactly and as in stock: a body
+/// that crosses a floor stops a cast that may stop there; else it is stopped by the floor if it would
+/// come out behind it, and not if it leaves it or hardly sinks; what slides along it is stopped by the
+/// wall. Would catch an option that is not obeyed, a thickness that is forgotten or of another unit,
+/// velocities of the wrong points, and an order that is forgotten.
+#[test]
+fn casts_from_contact() {
+    let ours = SbbkDispatcher::default();
+    for (size, is_mesh_first) in [0.01, 1.0, 40.0].into_iter().flat_map(|s| [(s, true), (s, false)])
+    {
+        let mesh = room(1).scaled(Vec3::splat(size));
+        for (name, other) in [
+            ("cylinder", SharedShape::cylinder(0.5 * size, 0.3 * size)),
+            ("cuboid", SharedShape::cuboid(0.3 * size, 0.5 * size, 0.2 * size)),
+            ("ball", SharedShape::ball(0.5 * size)),
+            (
+                "hull",
+                SharedShape::convex_hull(&mesh::cuboid(Vec3::splat(0.5 * size), 1).vertices)
+                    .unwrap(),
+            ),
+        ] {
+            let cast =
+                |dispatcher: &dyn QueryDispatcher, height: Real, velocity: Vec3, stop: bool| {
+                    let start = Pose3::translation(0.0, height * size, 0.0);
+                    let moving =
+                        NonlinearRigidMotion::new(start, Vec3::ZERO, velocity * size, Vec3::ZERO);
+                    let motions = [still(), moving];
+                    Cast { mesh: &mesh, shape: &other, motions, is_mesh_first }
+                        .ask(dispatcher, stop)
+                };
+            let says = format!("{name}, {size}, {is_mesh_first}");
+            let crossing = cast(&ours, 0.4, Vec3::Y, true).expect("crosses");
+            assert_eq!(crossing.time_of_impact, 0.0, "{says}");
+            assert_eq!(crossing.status, ShapeCastStatus::PenetratingOrWithinTargetDist, "{says}");
+            let normals = [crossing.normal1, crossing.normal2];
+            let [of_mesh, of_shape] =
+                if is_mesh_first { normals } else { [normals[1], normals[0]] };
+            assert!((of_mesh - Vec3::Y).length() < 1e-6 && (of_shape + Vec3::Y).length() < 1e-6);
+            for (velocity, is_stopped) in [
+                (Vec3::Y, false),
+                (-0.01 * Vec3::Y, false),
+                (-2.0 * Vec3::Y, true),
+                (Vec3::X, false),
+            ] {
+                let found = cast(&ours, 0.4, velocity, false);
+                assert_eq!(found.is_some(), is_stopped, "{says} {velocity}: {found:?}");
+                if let Some(hit) = found {
+                    assert_eq!((hit.time_of_impact, hit.status), (0.0, ShapeCastStatus::Converged));
+                }
+                let stock = cast(&DefaultQueryDispatcher, 0.4, velocity, false);
+                assert!(
+                    size != 1.0 || stock.is_some() == is_stopped,
+                    "{says} {velocity}: {stock:?}"
+                );
+            }
+            let slid = cast(&ours, 0.4, 10.0 * Vec3::X, false).expect("meets the wall");
+            let wide = other.compute_local_aabb().maxs.x / size;
+            assert!((slid.time_of_impact - (0.5 - 0.1 * wide)).abs() < 1e-5, "{says} {slid:?}");
+            assert_eq!(slid.status, ShapeCastStatus::Converged, "{says}");
+        }
+    }
+}
+
+/// Bodies that glide along a floor, just above it and turning, are stopped by the wall and by nothing
+/// before: at once where the bound of the speed alone takes a step for each height above the floor.
+/// Would catch a cast that runs out of steps, a plane that a body crosses, and a time of a triangle
+/// that is not the soonest.
+#[test]
+fn what_glides_along_a_floor_meets_the_wall() {
+    let dispatcher = SbbkDispatcher::default();
+    for (cells, height) in [(1, 1e-2), (1, 1e-4), (20, 1e-2), (20, 1e-4)] {
+        let mesh = room(cells);
+        for (name, other) in shapes(1.0).into_iter().filter(|(name, _)| *name != "half-space") {
+            let low = other.compute_local_aabb().mins.y;
+            let start = Pose3::translation(-3.0, height - low, 0.0);
+            let cast = |velocity: Vec3| {
+                let moving = NonlinearRigidMotion::new(start, Vec3::ZERO, velocity, Vec3::Y);
+                let cast = Cast {
+                    mesh: &mesh,
+                    shape: &other,
+                    motions: [still(), moving],
+                    is_mesh_first: true,
+                };
+                let found = cast.ask(&dispatcher, true);
+                found.map(|hit| (hit, cast.distance(&body(&other), f64::from(hit.time_of_impact))))
+            };
+            let (hit, left) = cast(9.0 * Vec3::X).expect("meets the wall");
+            let says = format!("{name}, {cells}, {height}: {hit:?}");
+            assert_eq!(hit.status, ShapeCastStatus::Converged, "{says}");
+            assert!(left.abs() < 1e-5 && hit.time_of_impact > 0.8, "{says}");
+            assert_eq!(hit.subshape1, mesh.indices().len() as u32 - 1, "{says}");
+            assert!(cast(-3.0 * Vec3::X).is_none(), "{says}");
+        }
+    }
+}
+
+/// Would catch a half-space whose turning counts as that of a body about its centre, or not at all:
+/// it comes up from below, and meets the far corner of a box first.
+#[test]
+fn half_spaces_turn() {
+    let dispatcher = SbbkDispatcher::default();
+    let cube = shape(&mesh::cuboid(Vec3::splat(0.5), 1));
+    let ground = SharedShape::halfspace(Vec3::Y);
+    for is_mesh_first in [true, false] {
+        let cast = |spin: Real| {
+            let turning =
+                NonlinearRigidMotion::new(Pose3::IDENTITY, Vec3::ZERO, Vec3::ZERO, spin * Vec3::Z);
+            let there = NonlinearRigidMotion::constant_position(Pose3::translation(3.0, 1.5, 0.0));
+            Cast { mesh: &cube, shape: &ground, motions: [there, turning], is_mesh_first }
+                .ask(&dispatcher, true)
+        };
+        let hit = cast(0.5).expect("it comes up");
+        assert!((0.5 * hit.time_of_impact - (1.0_f32 / 3.5).atan()).abs() < 1e-5, "{hit:?}");
+        assert_eq!(hit.status, ShapeCastStatus::Converged);
+        assert!(cast(0.25).is_none());
+    }
+}
+
+/// Meshes are surfaces: a body in the hollow of one is apart from it, and meets it from inside.
+#[test]
+fn what_is_in_a_hollow_is_apart() {
+    let dispatcher = SbbkDispatcher::default();
+    let hollow = shape(&mesh::ball(3.0, 6));
+    for (name, other) in shapes(1.0).into_iter().filter(|(name, _)| *name != "half-space") {
+        for (velocity, is_met) in [(Vec3::ZERO, false), (4.0 * Vec3::X, true)] {
+            let moving =
+                NonlinearRigidMotion::new(Pose3::IDENTITY, Vec3::ZERO, velocity, 3.0 * Vec3::ONE);
+            let cast = Cast {
+                mesh: &hollow,
+                shape: &other,
+                motions: [still(), moving],
+                is_mesh_first: true,
+            };
+            for stop in [true, false] {
+                assert_eq!(cast.ask(&dispatcher, stop).is_some(), is_met, "{name}");
+            }
+        }
+    }
+}
+
+/// Motions and times that are no numbers: nothing is found, nothing panics or goes on for ever. Bodies
+/// that do not move are met where they touch, however long.
+#[test]
+fn numbers_that_are_none() {
+    let dispatcher = SbbkDispatcher::default();
+    let mesh = shape(&mesh::monkey_head_with(4));
+    for (name, other) in shapes(1.0) {
+        for bad in [f32::NAN, f32::INFINITY] {
+            let bad = Vec3::new(bad, 0.0, 0.0);
+            let away = Pose3::translation(0.0, 0.0, 9.0);
+            for motion in [
+                NonlinearRigidMotion::constant_position(Pose3::from_translation(bad)),
+                NonlinearRigidMotion::new(away, bad, Vec3::X, Vec3::X),
+                NonlinearRigidMotion::new(away, Vec3::X, bad, Vec3::X),
+                NonlinearRigidMotion::new(away, Vec3::X, Vec3::X, bad),
+            ] {
+                for (motions, stop) in [([still(), motion], true), ([motion, still()], false)] {
+                    let cast = Cast { mesh: &mesh, shape: &other, motions, is_mesh_first: true };
+                    assert!(cast.ask(&dispatcher, stop).is_none(), "{name} {motion:?}");
+                }
+            }
+        }
+        let until = |end: Real| {
+            let (m, s) = (still(), still());
+            dispatcher.cast_shapes_nonlinear(&m, &mesh, &s, &*other, 0.0, end, true).unwrap()
+        };
+        for end in [-1.0, f32::NAN] {
+            assert!(until(end).is_none(), "{name}");
+        }
+        let touches =
+            dispatcher.distance(&Pose3::IDENTITY, &mesh, &*other).unwrap().distance == 0.0;
+        for end in [0.0, 1.0, f32::MAX, f32::INFINITY] {
+            assert_eq!(until(end).is_some(), touches, "{name} {end}");
+        }
     }
 }

@@ -8,7 +8,7 @@ use sbbk_core::traverse::Placement;
 use sbbk_core::tree::Tree;
 
 use super::lookup::{MeshQuery, Trees};
-use super::nonlinear::{Extents, NonlinearCast, Touch};
+use super::nonlinear::{NonlinearCast, Touch};
 
 impl MeshQuery<'_> {
     /// As [`Trees::cast`]; `None` if a mesh has no tree, and Parry must answer.
@@ -72,8 +72,8 @@ impl Trees {
             normals: [pair.normal1(), pair.normal2(placement)],
         };
         self.search(|scratch| {
-            let extents = Extents { balls, thickness: 0.0 };
-            cast.first_impact(&mut Meshes { trees, scratch }, &extents, touch)
+            let meshes = &mut Meshes { trees, scratch };
+            cast.first_impact(meshes, cast.options(balls), 0.0, touch)
         })
     }
 }

@@ -6,55 +6,15 @@ use parry3d::query::{
     ClosestPoints, Contact, ShapeCastHit, ShapeCastStatus, ShapeDistance, ShapeIntersection,
 };
 
-use sbbk_core::query::{Bodies, PartPair};
-use sbbk_core::traverse::Placement;
-
-use super::nonlinear::{Extents, NonlinearCast, Touch};
+use super::moving::MovingConvex;
+use super::nonlinear::NonlinearCast;
 use super::proximity::limit_of;
-use crate::pair::{ConvexSearch, FoundCast, FoundTriangle, MeshPlace};
+use crate::pair::{ConvexSearch, FoundCast, MeshPlace};
 
 /// A mesh and a convex shape of which something is asked.
 pub(crate) struct ConvexQuery<'a> {
     pub(crate) search: ConvexSearch<'a>,
     pub(crate) mesh_place: MeshPlace,
-}
-
-/// A triangle of a mesh and a convex shape, where they are found to touch.
-#[derive(Copy, Clone)]
-pub(crate) struct FoundTouch {
-    name: [u32; 2],
-    distance: f64,
-    touch: Touch,
-}
-
-impl PartPair for FoundTouch {
-    fn distance(&self) -> f64 {
-        self.distance
-    }
-
-    fn name(&self) -> [u32; 2] {
-        self.name
-    }
-}
-
-impl Bodies for ConvexQuery<'_> {
-    type Pair = FoundTouch;
-
-    fn nearest(
-        &mut self,
-        placement: &Placement,
-        reach: f64,
-        besides: &[[u32; 2]],
-    ) -> Option<FoundTouch> {
-        self.search.place(self.mesh_place, placement);
-        let counts = |triangle| besides.binary_search(&self.subshapes(triangle)).is_err();
-        self.search.nearest_of(reach, counts).map(|found| self.touch(&found))
-    }
-
-    fn within(&mut self, placement: &Placement, reach: f64, mut found: impl FnMut(FoundTouch)) {
-        self.search.place(self.mesh_place, placement);
-        self.search.within(reach, |triangle| found(self.touch(&triangle)));
-    }
 }
 
 impl ConvexQuery<'_> {
@@ -133,20 +93,11 @@ impl ConvexQuery<'_> {
     }
 
     /// The first impact of both on their ways.
-    pub(crate) fn cast_nonlinear(mut self, cast: &NonlinearCast<'_>) -> Option<ShapeCastHit> {
-        let balls = self.mesh_place.swap(self.search.balls());
-        let extents = Extents { balls, thickness: self.search.thickness() };
-        cast.first_impact(&mut self, &extents, |found, _| found.touch)
-    }
-
-    fn touch(&self, found: &FoundTriangle) -> FoundTouch {
-        let points = self.mesh_place.swap(self.search.points(found));
-        let normals = self.mesh_place.swap(self.search.normals(found));
-        FoundTouch {
-            name: self.subshapes(found.triangle),
-            distance: found.contact.distance,
-            touch: Touch { points, normals },
-        }
+    pub(crate) fn cast_nonlinear(self, cast: &NonlinearCast<'_>) -> Option<ShapeCastHit> {
+        let thickness = self.search.thickness();
+        let options = cast.options(self.mesh_place.swap(self.search.balls()));
+        let mut moving = MovingConvex::new(self.search, self.mesh_place, cast, options);
+        cast.first_impact(&mut moving, options, thickness, |found, _| found.touch)
     }
 
     fn subshapes(&self, triangle: u32) -> [u32; 2] {

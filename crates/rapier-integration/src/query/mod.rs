@@ -9,6 +9,7 @@
 mod casts;
 mod convex;
 mod lookup;
+mod moving;
 mod nonlinear;
 mod proximity;
 mod walk;

@@ -27,14 +27,6 @@ pub(crate) struct NonlinearCast<'a> {
     pub(crate) stop_at_penetration: bool,
 }
 
-/// How far two bodies extend.
-pub(super) struct Extents {
-    /// Balls around them.
-    pub(super) balls: [Sphere; 2],
-    /// By how much one must sink into the other to come out behind it, as Parry has it.
-    pub(super) thickness: Real,
-}
-
 /// Where two parts touch: a point of each and its outward unit normal, in its frame.
 #[derive(Copy, Clone)]
 pub(crate) struct Touch {
@@ -43,7 +35,26 @@ pub(crate) struct Touch {
 }
 
 impl NonlinearCast<'_> {
-    /// The first impact; `touch` tells of a pair that is found where it touches.
+    /// Where body 2 is in the frame of body 1.
+    pub(super) fn placement_at(&self, time: f64) -> Placement {
+        let [place1, place2] = self.motions.map(|motion| place(motion, time));
+        place1.inverted().of(&place2)
+    }
+
+    /// For bodies in balls.
+    pub(super) fn options(&self, balls: [Sphere; 2]) -> AdvanceOptions {
+        let [size1, size2] = balls.map(|ball| f64::from(ball.radius));
+        AdvanceOptions {
+            start: self.start.into(),
+            end: self.end.into(),
+            speed_bound: self.speed_bound(balls),
+            tolerance: TOLERANCE * size1.min(size2),
+            step_limit: STEP_LIMIT,
+        }
+    }
+
+    /// The first impact; `touch` tells of a pair that is found where it touches, `thickness` is how
+    /// far one body must sink into the other to come out behind it, as Parry has it.
     ///
     /// If contacts at the start are not to stop the cast, Parry asks of each triangle that touches
     /// then whether its velocity and that of the other body approach until the end by more than the
@@ -52,25 +63,15 @@ impl NonlinearCast<'_> {
     pub(super) fn first_impact<B: Bodies>(
         &self,
         bodies: &mut B,
-        extents: &Extents,
+        options: AdvanceOptions,
+        thickness: Real,
         touch: impl Fn(&B::Pair, &Placement) -> Touch,
     ) -> Option<ShapeCastHit> {
-        let [size1, size2] = extents.balls.map(|ball| f64::from(ball.radius));
-        let options = AdvanceOptions {
-            start: self.start.into(),
-            end: self.end.into(),
-            speed_bound: self.speed_bound(extents.balls),
-            tolerance: TOLERANCE * size1.min(size2),
-            step_limit: STEP_LIMIT,
-        };
-        let placement_at = |time| {
-            let [place1, place2] = self.motions.map(|motion| place(motion, time));
-            place1.inverted().of(&place2)
-        };
+        let placement_at = |time| self.placement_at(time);
         let found = if self.stop_at_penetration {
             advance(bodies, placement_at, options)
         } else {
-            let enough = options.tolerance + f64::from(extents.thickness);
+            let enough = options.tolerance + f64::from(thickness);
             advance_from_contact(bodies, placement_at, options, |pair, placement| {
                 let speed = self.approach_speed(&touch(pair, placement));
                 speed * (options.end - options.start) > enough
@@ -109,16 +110,10 @@ impl NonlinearCast<'_> {
     /// greatest at the start or at the end. These know no end of one body: a half-space may turn.
     fn speed_bound(&self, balls: [Sphere; 2]) -> f64 {
         let [motion1, motion2] = self.motions;
-        let [reach1, reach2] = [0, 1].map(|i| {
-            let ball = &balls[i];
-            let centre = (self.motions[i].local_center - ball.centre).as_dvec3().length();
-            centre + f64::from(ball.radius)
-        });
+        let [reach1, reach2] = [0, 1].map(|i| self.reach(i, &balls[i]));
         let [turn1, turn2] = self.motions.map(|motion| motion.angvel.as_dvec3());
         let [from1, from2] = self.motions.map(centre);
         let velocity = motion2.linvel.as_dvec3() - motion1.linvel.as_dvec3();
-        let turned =
-            |turn: DVec3, reach: f64| if turn == DVec3::ZERO { 0.0 } else { turn.length() * reach };
         let seen = |turn: DVec3, reach: f64| {
             let [start, end] = [self.start, self.end].map(|time| {
                 let between = from2 - from1 + velocity * f64::from(time);
@@ -129,6 +124,33 @@ impl NonlinearCast<'_> {
         let in_space = velocity.length() + turned(turn1, reach1) + turned(turn2, reach2);
         let least = in_space.min(seen(turn1, reach2)).min(seen(turn2, reach1));
         least * (1.0 + STRETCH)
+    }
+
+    /// How far a ball around a body reaches from the centre of its motion.
+    pub(super) fn reach(&self, body: usize, ball: &Sphere) -> f64 {
+        let centre = self.motions[body].local_center - ball.centre;
+        centre.as_dvec3().length() + f64::from(ball.radius)
+    }
+
+    /// Points of two bodies do not approach faster than this along a direction of space, from a time
+    /// on; at that time it points from one body to the other, and is given in the frame of the one.
+    ///
+    /// A point at `r` from the centre of its motion has the velocity `w × r` against it, of which
+    /// `a·(w × r) = r·(a × w)` is along `a`; `r` turns, but is as long as before.
+    pub(super) fn approach_bound(
+        &self,
+        body: usize,
+        axis: Vector,
+        time: f64,
+        reaches: [f64; 2],
+    ) -> f64 {
+        let rotation = place(self.motions[body], time).rotation;
+        let axis: DVec3 = (rotation * axis.as_dvec3()).normalize();
+        let other = self.motions[1 - body].linvel.as_dvec3();
+        let linear = (self.motions[body].linvel.as_dvec3() - other).dot(axis);
+        let turns = self.motions.map(|motion| axis.cross(motion.angvel.as_dvec3()));
+        let least = linear + turned(turns[0], reaches[0]) + turned(turns[1], reaches[1]);
+        least.max(0.0) * (1.0 + STRETCH)
     }
 
     /// How fast two bodies that touch approach along their normal at the start.
@@ -142,6 +164,11 @@ impl NonlinearCast<'_> {
         let normal: DVec3 = rotations[0] * touch.normals[0].as_dvec3();
         (velocity1 - velocity2).dot(normal)
     }
+}
+
+/// How fast what turns moves, even if it has no end.
+fn turned(turn: DVec3, reach: f64) -> f64 {
+    if turn == DVec3::ZERO { 0.0 } else { turn.length() * reach }
 }
 
 /// The centre of a motion at its beginning.

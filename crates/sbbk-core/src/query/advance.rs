@@ -31,6 +31,12 @@ pub trait Bodies {
 
     /// Calls `found` with all pairs that are at most `reach` apart.
     fn within(&mut self, placement: &Placement, reach: f64, found: impl FnMut(Self::Pair));
+
+    /// For how long from `time` on no pair meets, as far as more is known than the distance of the
+    /// nearest; the others are named in `besides`.
+    fn clear_time(&mut self, _nearest: &Self::Pair, _time: f64, _besides: &[[u32; 2]]) -> f64 {
+        0.0
+    }
 }
 
 /// A pair of parts of two bodies.
@@ -149,7 +155,8 @@ pub(super) fn advance_besides<B: Bodies>(
         if has_converged {
             break;
         }
-        time += pair.distance() / speed_bound;
+        let clear = pair.distance() / speed_bound;
+        time += clear.max(bodies.clear_time(&pair, time, besides));
     }
     last
 }

@@ -62,7 +62,7 @@ impl PlacedPart {
 
     /// The same part, which is a whole shape, where shape 2 of the pair is at `placement` in the frame
     /// of shape 1.
-    pub(super) fn moved(&self, mesh_place: MeshPlace, placement: &Placement) -> Self {
+    pub(crate) fn moved(&self, mesh_place: MeshPlace, placement: &Placement) -> Self {
         let [inverse, placement] = mesh_place.swap([*placement, placement.inverted()]);
         let [to_mesh, to_part] = [&inverse, &placement].map(rounded);
         Self {
