@@ -465,7 +465,7 @@ where
 }
 
 /// Queries without manifolds: of two rigid meshes from their trees or Parry's hierarchies, of one and
-/// a convex shape from Parry's hierarchy, all others Parry's.
+/// a convex shape from Parry's hierarchy; all others, and casts of meshes without trees, are Parry's.
 impl QueryDispatcher for SbbkDispatcher {
     fn intersection_test(
         &self,

@@ -1,6 +1,6 @@
 use std::f32::consts::FRAC_PI_2;
 
-use glamx::{DAffine3, DQuat, DVec3, Pose3, Vec3};
+use glamx::{DAffine3, DQuat, DVec3, Pose3, Quat, Vec3};
 use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::math::Real;
@@ -297,6 +297,44 @@ fn casts_from_contact() {
             let wide = other.compute_local_aabb().maxs.x / size;
             assert!((slid.time_of_impact - (0.5 - 0.1 * wide)).abs() < 1e-5, "{says} {slid:?}");
             assert_eq!(slid.status, ShapeCastStatus::Converged, "{says}");
+        }
+    }
+}
+
+/// A pole stands askew on a floor of two triangles and falls about its middle, faster than it sinks: the
+/// end that touches leaves, and the other one comes down. Would catch a floor that does not count as it
+/// was touched at the start: the pole came out below.
+#[test]
+fn what_turns_comes_down_with_its_other_end() {
+    let mesh = room(1);
+    for (name, other) in [
+        ("cylinder", SharedShape::cylinder(1.0, 0.1)),
+        ("cuboid", SharedShape::cuboid(0.1, 1.0, 0.1)),
+        ("capsule", SharedShape::capsule_y(1.0, 0.1)),
+    ] {
+        for is_mesh_first in [true, false] {
+            let turn = Quat::from_rotation_z(0.5);
+            let low = other.compute_aabb(&Pose3::from_rotation(turn)).mins.y;
+            let start = Pose3::from_parts(Vec3::new(0.3, -low, 0.1), turn);
+            let ask = |dispatcher: &dyn QueryDispatcher, spin: Real, sinking: Real| {
+                let (velocity, spin) = (-sinking * Vec3::Y, spin * Vec3::Z);
+                let moving = NonlinearRigidMotion::new(start, Vec3::ZERO, velocity, spin);
+                Cast { mesh: &mesh, shape: &other, motions: [still(), moving], is_mesh_first }
+                    .ask(dispatcher, false)
+            };
+            for (spin, sinking, is_met) in
+                [(6.0, 0.3, true), (-0.5, -0.5, false), (0.0, 0.0, false)]
+            {
+                let found = ask(&SbbkDispatcher::default(), spin, sinking);
+                let stock = ask(&DefaultQueryDispatcher, spin, sinking);
+                assert_eq!(found.is_some(), is_met, "{name} {spin}: {found:?} for {stock:?}");
+                assert_eq!(stock.is_some(), is_met, "{name} {spin}: {stock:?}");
+                if let (Some(hit), Some(stock)) = (found, stock) {
+                    assert_eq!(hit.status, ShapeCastStatus::Converged, "{name}");
+                    let [hit, stock] = [hit, stock].map(|hit| hit.time_of_impact);
+                    assert!((0.85 * stock..=stock).contains(&hit), "{name} {hit} {stock}");
+                }
+            }
         }
     }
 }

@@ -71,9 +71,10 @@ impl Trees {
             points: [pair.point1(), pair.point2(placement)],
             normals: [pair.normal1(), pair.normal2(placement)],
         };
-        self.search(|scratch| {
+        let found = self.search(|scratch| {
             let meshes = &mut Meshes { trees, scratch };
             cast.first_impact(meshes, cast.options(balls), 0.0, touch)
-        })
+        })?;
+        Some(cast.hit(&found, &touch(&found.pair, &found.placement)))
     }
 }

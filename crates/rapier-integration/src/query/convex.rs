@@ -94,10 +94,8 @@ impl ConvexQuery<'_> {
 
     /// The first impact of both on their ways.
     pub(crate) fn cast_nonlinear(self, cast: &NonlinearCast<'_>) -> Option<ShapeCastHit> {
-        let thickness = self.search.thickness();
-        let options = cast.options(self.mesh_place.swap(self.search.balls()));
-        let mut moving = MovingConvex::new(self.search, self.mesh_place, cast, options);
-        cast.first_impact(&mut moving, options, thickness, |found, _| found.touch)
+        let found = MovingConvex::new(self.search, self.mesh_place, cast).first_impact()?;
+        Some(cast.hit(&found, &found.pair.touch))
     }
 
     fn subshapes(&self, triangle: u32) -> [u32; 2] {

@@ -6,8 +6,8 @@
 //! that may be met within some time is advanced by itself, and the bodies by as much as the soonest:
 //! at once to the impact, if there is one, else by a time that is doubled.
 
-use parry3d::math::Vector;
-use sbbk_core::query::{AdvanceOptions, Bodies, PartPair, advance};
+use parry3d::math::{Real, Vector};
+use sbbk_core::query::{Advance, AdvanceOptions, Bodies, PartPair, advance};
 use sbbk_core::traverse::Placement;
 
 use super::nonlinear::{NonlinearCast, Touch};
@@ -30,6 +30,8 @@ pub(super) struct MovingConvex<'a, 'q> {
     mesh_place: MeshPlace,
     cast: &'q NonlinearCast<'q>,
     options: AdvanceOptions,
+    /// Triangles that the shape touches at the start, if that is asked.
+    touching: Vec<u32>,
     /// Steps taken.
     steps: usize,
     /// How far ahead triangles were advanced of late.
@@ -41,9 +43,38 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         search: ConvexSearch<'a>,
         mesh_place: MeshPlace,
         cast: &'q NonlinearCast<'q>,
-        options: AdvanceOptions,
     ) -> Self {
-        Self { search, mesh_place, cast, options, steps: 0, ahead: 0.0 }
+        let options = cast.options(mesh_place.swap(search.balls()));
+        Self { search, mesh_place, cast, options, touching: Vec::new(), steps: 0, ahead: 0.0 }
+    }
+
+    /// The first impact. What is left out as it touches at the start and does not approach is looked
+    /// at again: a shape that turns may come down with another end.
+    pub(super) fn first_impact(&mut self) -> Option<Advance<FoundTouch>> {
+        let (cast, options, thickness) = (self.cast, self.options, self.search.thickness());
+        let found = cast.first_impact(self, options, thickness, |found, _| found.touch);
+        if found.is_some_and(|found| found.time == options.start) {
+            return found;
+        }
+        let again =
+            self.touching.iter().filter_map(|&triangle| self.meets_again(triangle, thickness));
+        found.into_iter().chain(again).min_by(|one, two| one.time.total_cmp(&two.time))
+    }
+
+    /// When the shape meets a triangle that it touches at the start: at a time of some, as Parry has
+    /// it, from which on it would come out behind it.
+    fn meets_again(&self, triangle: u32, thickness: Real) -> Option<Advance<FoundTouch>> {
+        let Self { cast, options, .. } = self;
+        let mut one = MovingTriangle::new(self, triangle);
+        cast.looks(thickness).find_map(|time| {
+            let placement = cast.placement_at(time);
+            let pair = one.nearest(&placement, f64::INFINITY, &[])?;
+            if !cast.approaches(&pair.touch, time, f64::from(thickness) + pair.distance.max(0.0)) {
+                return None;
+            }
+            let options = AdvanceOptions { start: time, ..*options };
+            advance(&mut one, |time| cast.placement_at(time), options)
+        })
     }
 
     fn place(&mut self, placement: &Placement) {
@@ -100,8 +131,9 @@ impl Bodies for MovingConvex<'_, '_> {
 
     fn within(&mut self, placement: &Placement, reach: f64, mut found: impl FnMut(FoundTouch)) {
         self.place(placement);
-        let Self { search, mesh_place, .. } = self;
+        let Self { search, mesh_place, touching, .. } = self;
         search.within(reach, |triangle| {
+            touching.push(triangle.triangle);
             found(FoundTouch::new(&triangle, &search.placed, *mesh_place));
         });
     }

@@ -14,6 +14,9 @@ const TOLERANCE: f64 = 1.0e-6;
 /// Steps. Head-on motions take 10 to 30, turning ones up to some hundred.
 const STEP_LIMIT: usize = 2000;
 
+/// At least and at most how often to look at what touches at the start and turns.
+const LOOKS: (f64, f64) = (10.0, 100.0);
+
 /// What poses lose as their quaternions, rounded to f32, are not of unit length: points are up to this
 /// share faster.
 const STRETCH: f64 = 1.0e-6;
@@ -59,26 +62,28 @@ impl NonlinearCast<'_> {
     /// If contacts at the start are not to stop the cast, Parry asks of each triangle that touches
     /// then whether its velocity and that of the other body approach until the end by more than the
     /// thickness of both, and leaves it out if they do not. (Of a thick body that turns it goes on to
-    /// look at some times between.) Here it is left out for good.
+    /// look at some times between: see `moving.rs`.) Here it is left out for good.
     pub(super) fn first_impact<B: Bodies>(
         &self,
         bodies: &mut B,
         options: AdvanceOptions,
         thickness: Real,
         touch: impl Fn(&B::Pair, &Placement) -> Touch,
-    ) -> Option<ShapeCastHit> {
+    ) -> Option<Advance<B::Pair>> {
         let placement_at = |time| self.placement_at(time);
-        let found = if self.stop_at_penetration {
-            advance(bodies, placement_at, options)
-        } else {
-            let enough = options.tolerance + f64::from(thickness);
-            advance_from_contact(bodies, placement_at, options, |pair, placement| {
-                let speed = self.approach_speed(&touch(pair, placement));
-                speed * (options.end - options.start) > enough
-            })
-        };
-        let Advance { time, pair, placement, has_converged } = found?;
-        let is_at_start = time == options.start;
+        if self.stop_at_penetration {
+            return advance(bodies, placement_at, options);
+        }
+        advance_from_contact(bodies, placement_at, options, |pair, placement| {
+            let length = options.tolerance + f64::from(thickness);
+            self.approaches(&touch(pair, placement), options.start, length)
+        })
+    }
+
+    /// An impact as Parry has it, with what is where the pair touches.
+    pub(super) fn hit<P: PartPair>(&self, found: &Advance<P>, touch: &Touch) -> ShapeCastHit {
+        let Advance { time, ref pair, has_converged, .. } = *found;
+        let is_at_start = time == f64::from(self.start);
         let status = if !has_converged {
             ShapeCastStatus::OutOfIterations
         } else if is_at_start && self.stop_at_penetration {
@@ -86,10 +91,9 @@ impl NonlinearCast<'_> {
         } else {
             ShapeCastStatus::Converged
         };
-        let Touch { points: [witness1, witness2], normals: [normal1, normal2] } =
-            touch(&pair, &placement);
+        let Touch { points: [witness1, witness2], normals: [normal1, normal2] } = *touch;
         let [subshape1, subshape2] = pair.name();
-        Some(ShapeCastHit {
+        ShapeCastHit {
             time_of_impact: time as Real,
             witness1,
             witness2,
@@ -98,7 +102,7 @@ impl NonlinearCast<'_> {
             status,
             subshape1,
             subshape2,
-        })
+        }
     }
 
     /// No point of one body moves faster than this against the other.
@@ -153,16 +157,29 @@ impl NonlinearCast<'_> {
         least.max(0.0) * (1.0 + STRETCH)
     }
 
-    /// How fast two bodies that touch approach along their normal at the start.
-    fn approach_speed(&self, touch: &Touch) -> f64 {
-        let rotations = self.motions.map(|motion| place(motion, self.start.into()).rotation);
+    /// Whether points of two bodies, with the velocities of a time, approach by more than a length
+    /// until the end.
+    pub(super) fn approaches(&self, touch: &Touch, time: f64, length: f64) -> bool {
+        let rotations = self.motions.map(|motion| place(motion, time).rotation);
         let [velocity1, velocity2] = [0, 1].map(|i| {
             let motion = self.motions[i];
             let arm = rotations[i] * (touch.points[i] - motion.local_center).as_dvec3();
             motion.linvel.as_dvec3() + motion.angvel.as_dvec3().cross(arm)
         });
         let normal: DVec3 = rotations[0] * touch.normals[0].as_dvec3();
-        (velocity1 - velocity2).dot(normal)
+        (velocity1 - velocity2).dot(normal) * (f64::from(self.end) - time) > length
+    }
+
+    /// Times at which to look at a body again that touches at the start and turns: between two of them
+    /// it moves by no more than its thickness. None if it does not turn, or has no thickness.
+    pub(super) fn looks(&self, thickness: Real) -> impl Iterator<Item = f64> {
+        let [motion1, motion2] = self.motions;
+        let is_needed = thickness > 0.0 && motion1.angvel != motion2.angvel;
+        let (start, span) = (f64::from(self.start), f64::from(self.end - self.start));
+        let travel = span * f64::from((motion2.linvel - motion1.linvel).length());
+        let count = (travel / f64::from(thickness)).clamp(LOOKS.0, LOOKS.1).ceil();
+        let count = if is_needed { count as u32 } else { 0 };
+        (1..count).map(move |look| start + span * f64::from(look) / f64::from(count))
     }
 }
 
