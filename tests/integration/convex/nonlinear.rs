@@ -391,6 +391,16 @@ fn half_spaces_turn() {
         assert!((0.5 * hit.time_of_impact - (1.0_f32 / 3.5).atan()).abs() < 1e-5, "{hit:?}");
         assert_eq!(hit.status, ShapeCastStatus::Converged);
         assert!(cast(0.25).is_none());
+        // With no end of the time.
+        let turning = NonlinearRigidMotion::new(Pose3::IDENTITY, Vec3::X, Vec3::Y, Vec3::Z);
+        let slab = SharedShape::cuboid(9.0, 0.5, 9.0);
+        let up = Pose3::translation(0.0, 8.0, 0.0);
+        let rising = NonlinearRigidMotion::new(up, Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
+        let cast = |end| {
+            dispatcher.cast_shapes_nonlinear(&rising, &cube, &turning, &*slab, 0.0, end, true)
+        };
+        let [short, long] = [9.0, f32::INFINITY].map(|end| cast(end).unwrap().expect("meets it"));
+        assert!((short.time_of_impact - long.time_of_impact).abs() < 1e-5, "{short:?} {long:?}");
     }
 }
 

@@ -158,17 +158,11 @@ impl Bodies for MovingConvex<'_, '_> {
             let found = advance(&mut one, |time| cast.placement_at(time), options)?;
             Some(found.time - time)
         });
-        match soonest {
-            // Times are compared in f32.
-            Some(soonest) => soonest * (1.0 - 1.0e-6),
-            None => {
-                if ahead < self.ahead {
-                    f64::INFINITY
-                } else {
-                    ahead
-                }
-            }
+        if soonest.is_none() && ahead < self.ahead {
+            return f64::INFINITY;
         }
+        // Times are compared in f32.
+        soonest.unwrap_or(ahead) * (1.0 - 1.0e-6)
     }
 }
 

@@ -119,12 +119,16 @@ impl NonlinearCast<'_> {
         let [from1, from2] = self.motions.map(centre);
         let velocity = motion2.linvel.as_dvec3() - motion1.linvel.as_dvec3();
         let seen = |turn: DVec3, reach: f64| {
-            let [start, end] = [self.start, self.end].map(|time| {
+            let fastest = [self.start, self.end].map(|time| {
                 let between = from2 - from1 + velocity * f64::from(time);
-                (velocity - turn.cross(between)).length()
+                let turning = if turn == DVec3::ZERO { DVec3::ZERO } else { turn.cross(between) };
+                (velocity - turning).length()
             });
-            start.max(end) + turned(turn2 - turn1, reach)
+            // Not `max`: at a time without end it is NaN, and so is the sum.
+            let [start, end] = fastest;
+            (if end <= start { start } else { end }) + turned(turn2 - turn1, reach)
         };
+        // Of numbers and NaN the numbers.
         let in_space = velocity.length() + turned(turn1, reach1) + turned(turn2, reach2);
         let least = in_space.min(seen(turn1, reach2)).min(seen(turn2, reach1));
         least * (1.0 + STRETCH)
@@ -171,7 +175,8 @@ impl NonlinearCast<'_> {
     }
 
     /// Times at which to look at a body again that touches at the start and turns: between two of them
-    /// it moves by no more than its thickness. None if it does not turn, or has no thickness.
+    /// it travels no more than its thickness, or a hundredth of the way. None if it does not turn, or
+    /// has no thickness.
     pub(super) fn looks(&self, thickness: Real) -> impl Iterator<Item = f64> {
         let [motion1, motion2] = self.motions;
         let is_needed = thickness > 0.0 && motion1.angvel != motion2.angvel;
