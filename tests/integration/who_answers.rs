@@ -96,10 +96,10 @@ fn contacts_of_each_kind() {
     }
 }
 
-/// Each query without manifolds: of two small rigid meshes from trees, which it needs; nonlinear casts
-/// of all else, queries about what is neither rigid nor one convex shape, and all but linear casts of
-/// balls are Parry's to the last bit. (What SBBK says of the others is in `convex/queries.rs` and
-/// `convex/casts.rs`.)
+/// Each query without manifolds: of two small rigid meshes from trees, which it needs; queries about
+/// what is neither rigid nor one convex shape, and all but casts of balls are Parry's to the last bit.
+/// (What SBBK says of the others is in `convex/queries.rs`, `convex/casts.rs` and
+/// `convex/nonlinear.rs`.)
 #[test]
 fn queries_of_each_kind() {
     let pos12 = Pose::translation(2.5, 0.2, 0.1);
@@ -134,8 +134,7 @@ fn queries_of_each_kind() {
                 let trees = dispatcher.stats().tree_builds;
                 assert_eq!(trees, if is_ours { 2 } else { 0 }, "{query} of {name}");
                 let is_convex = match query {
-                    "cast_shapes" => other.is_convex(),
-                    "cast_shapes_nonlinear" => false,
+                    "cast_shapes" | "cast_shapes_nonlinear" => other.is_convex(),
                     _ => other.is_convex() && name != "ball",
                 };
                 let is_searched = is_convex && std::ptr::eq(mesh, &rigid);

@@ -20,7 +20,7 @@ use crate::pair::{
     Answer, ConvexPair, ConvexSearch, FewPair, FieldPair, MeshPair, MeshPlace, Pair, PairPose,
     Parts, answer, is_few,
 };
-use crate::query::{ConvexQuery, MeshQuery};
+use crate::query::{ConvexQuery, MeshQuery, NonlinearCast};
 use crate::stats::QueryCounters;
 use crate::{ContactDetail, ContactGenerator, ContactSet, SbbkConfig, SbbkStats, TriangleContacts};
 
@@ -465,8 +465,7 @@ where
 }
 
 /// Queries without manifolds: of two rigid meshes from their trees or Parry's hierarchies, of one and
-/// a convex shape from Parry's hierarchy, all others Parry's. Nonlinear casts are Parry's too, but of
-/// meshes with trees.
+/// a convex shape from Parry's hierarchy; all others, and casts of meshes without trees, are Parry's.
 impl QueryDispatcher for SbbkDispatcher {
     fn intersection_test(
         &self,
@@ -582,12 +581,19 @@ impl QueryDispatcher for SbbkDispatcher {
         end_time: Real,
         stop_at_penetration: bool,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        let (motions, times) = ([motion1, motion2], (start_time, end_time));
+        let motions = [motion1, motion2];
         let cast =
-            |meshes: MeshQuery<'_>| meshes.cast_nonlinear(motions, times, stop_at_penetration);
-        let [mesh1, mesh2] = [g1, g2].map(rigid_mesh);
-        let meshes = mesh1.zip(mesh2).and_then(|(mesh1, mesh2)| self.mesh_query([mesh1, mesh2]));
-        match meshes.and_then(cast) {
+            &NonlinearCast { motions, start: start_time, end: end_time, stop_at_penetration };
+        let [pos1, pos2] = motions.map(|motion| motion.position_at_time(start_time));
+        let found = self.search(
+            &pos1.inv_mul(&pos2),
+            [g1, g2],
+            Balls::Ours,
+            None,
+            |meshes| meshes.cast_nonlinear(cast),
+            |pair| Some(pair.cast_nonlinear(cast)),
+        );
+        match found.flatten() {
             Some(hit) => Ok(hit),
             None => DefaultQueryDispatcher.cast_shapes_nonlinear(
                 motion1,

@@ -119,13 +119,16 @@
 //! # Queries without manifolds
 //!
 //! Of two rigid meshes `intersection_test`, `distance`, `closest_points`, `contact`, `cast_shapes`
-//! and `cast_shapes_nonlinear` are SBBK's, with the exception below; of all other pairs, deformable
-//! meshes among them, Parry's.
+//! and `cast_shapes_nonlinear` are SBBK's, with the exception below; of one and a convex shape too,
+//! but of a ball only casts; of all other pairs, deformable meshes among them, Parry's.
 //!
 //! * A mesh is a surface, as in stock: one inside another does not meet it.
 //! * `contact` is that of the deepest pair of triangles or, where none cross, of the nearest.
 //! * With `stop_at_penetration` off, a cast leaves out pairs of triangles that touch at the start
-//!   and do not approach.
+//!   and do not approach. A nonlinear one of a convex shape leaves out the triangles which it would
+//!   not sink into by more than its `ccd_thickness`, as Parry does, and like Parry it looks at them
+//!   again at some times if the shape turns.
+//! * A nonlinear cast stops as soon as the bodies are within a millionth of the size of the smaller.
 //! * A pose that is not finite finds nothing.
 //!
 //! A host keeps no state for these queries, so each one has to find the trees of its meshes:

@@ -13,6 +13,8 @@ mod few;
 mod fresh;
 /// Motion against fresh queries.
 mod motion;
+/// Nonlinear casts, against brute force.
+mod nonlinear;
 /// Queries without manifolds, against brute force.
 mod queries;
 /// What is asked, and Parry's answer triangle by triangle.

@@ -3,7 +3,7 @@ use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::math::Real;
 use rapier3d::parry::query::{ClosestPoints, DefaultQueryDispatcher, QueryDispatcher};
-use rapier3d::parry::shape::{Shape, SharedShape, TriMesh};
+use rapier3d::parry::shape::{Shape, SharedShape, TriMesh, Triangle};
 use sbbk_core::truth::ConvexBody;
 use sbbk_lab::mesh;
 
@@ -20,9 +20,18 @@ pub(super) fn truth(
     let DPose3 { rotation, translation } = DPose3::from(*pos12);
     let [x, y, z] = DVec3::AXES.map(|axis| rotation * axis);
     let pose = DAffine3::from_mat3_translation(DMat3::from_cols(x, y, z), translation);
-    let pose = if is_mesh_first { pose.inverse() } else { pose };
-    let place = |corner: Vec3| pose.transform_point3(corner.as_dvec3());
-    mesh.triangles().map(|t| body.distance(&[t.a, t.b, t.c].map(place))).collect()
+    truth_at(mesh, body, if is_mesh_first { pose.inverse() } else { pose })
+}
+
+/// The same with the mesh at a place in the frame of the body.
+pub(super) fn truth_at(mesh: &TriMesh, body: &ConvexBody, pose: DAffine3) -> Vec<f64> {
+    mesh.triangles().map(|triangle| truth_of(&triangle, body, pose)).collect()
+}
+
+/// That of a triangle.
+pub(super) fn truth_of(triangle: &Triangle, body: &ConvexBody, pose: DAffine3) -> f64 {
+    let place = |corner: &Vec3| pose.transform_point3(corner.as_dvec3());
+    body.distance(&triangle.vertices().each_ref().map(place))
 }
 
 pub(super) fn least(distances: &[f64]) -> f64 {

@@ -22,7 +22,7 @@ mod state;
 mod triangles;
 
 pub(crate) use answer::answer;
-pub(crate) use convex::{ConvexPair, ConvexSearch, FoundCast, Parts};
+pub(crate) use convex::{ConvexPair, ConvexSearch, FoundCast, FoundTriangle, Parts, PlacedPart};
 pub(crate) use driver::{Answer, Pair};
 pub(crate) use few::{FewPair, is_few};
 pub(crate) use pose::{MeshPlace, PairPose};

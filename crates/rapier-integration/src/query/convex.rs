@@ -1,5 +1,4 @@
-//! A mesh and a convex shape: distance, closest points, intersection, the deepest contact and linear
-//! casts.
+//! A mesh and a convex shape: distance, closest points, intersection, the deepest contact and casts.
 
 use parry3d::math::{Real, Vector};
 use parry3d::query::details::ShapeCastOptions;
@@ -7,6 +6,8 @@ use parry3d::query::{
     ClosestPoints, Contact, ShapeCastHit, ShapeCastStatus, ShapeDistance, ShapeIntersection,
 };
 
+use super::moving::MovingConvex;
+use super::nonlinear::NonlinearCast;
 use super::proximity::limit_of;
 use crate::pair::{ConvexSearch, FoundCast, MeshPlace};
 
@@ -89,6 +90,12 @@ impl ConvexQuery<'_> {
             subshape1,
             subshape2,
         })
+    }
+
+    /// The first impact of both on their ways.
+    pub(crate) fn cast_nonlinear(self, cast: &NonlinearCast<'_>) -> Option<ShapeCastHit> {
+        let found = MovingConvex::new(self.search, self.mesh_place, cast).first_impact()?;
+        Some(cast.hit(&found, &found.pair.touch))
     }
 
     fn subshapes(&self, triangle: u32) -> [u32; 2] {

@@ -3,14 +3,17 @@
 //! Hosts keep nothing for such a query, so each one has to find the trees of its meshes anew
 //! ([`lookup`]). With trees the search is that of [`sbbk_core::query`]. Where a mesh is large and
 //! not registered it goes down Parry's hierarchies and decides by the same exact contacts
-//! ([`walk`]); casts are Parry's then. A mesh and a convex shape ([`convex`]) have no trees; their
-//! nonlinear casts are Parry's.
+//! ([`walk`]); casts are Parry's then. A mesh and a convex shape ([`convex`]) have no trees.
+//! Casts along curves are one search for both ([`nonlinear`]).
 
 mod casts;
 mod convex;
 mod lookup;
+mod moving;
+mod nonlinear;
 mod proximity;
 mod walk;
 
 pub(crate) use convex::ConvexQuery;
 pub(crate) use lookup::MeshQuery;
+pub(crate) use nonlinear::NonlinearCast;

@@ -38,7 +38,7 @@ mod seek;
 mod sweep;
 mod triangles;
 
-pub use advance::{Advance, AdvanceOptions, advance};
+pub use advance::{Advance, AdvanceOptions, Bodies, Meshes, PartPair, advance};
 pub use cast::{Cast, CastOptions, cast};
 pub use contacts::contacts;
 pub use departure::advance_from_contact;

@@ -26,8 +26,8 @@ mod query;
 mod shape;
 
 pub(crate) use cast::FoundCast;
-pub(crate) use nearest::ConvexSearch;
+pub(crate) use nearest::{ConvexSearch, FoundTriangle};
 pub(crate) use pair::ConvexPair;
 pub(crate) use parts::Parts;
-pub(super) use placed::PlacedPart;
+pub(crate) use placed::PlacedPart;
 pub(super) use query::Near;

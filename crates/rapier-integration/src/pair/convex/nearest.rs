@@ -6,6 +6,7 @@ use parry3d::math::{Real, Vector};
 use parry3d::partitioning::BvhNode;
 use parry3d::shape::Shape;
 use sbbk_core::contact::convex::{ConvexContact, HullPoints};
+use sbbk_core::volumes::Sphere;
 
 use super::features::{core_contact, core_touches};
 use super::near::{gap_of, triangles_near};
@@ -24,10 +25,10 @@ const WIDE: f64 = 0.1;
 
 /// A mesh and one convex shape, to be searched.
 pub(crate) struct ConvexSearch<'a> {
-    pub(super) mesh: Hierarchy<'a>,
+    pub(crate) mesh: Hierarchy<'a>,
     pub(super) shape: &'a dyn Shape,
     pub(super) convex: ConvexShape<'a>,
-    pub(super) placed: PlacedPart,
+    pub(crate) placed: PlacedPart,
     pub(super) hull: OnceLock<HullPoints>,
 }
 
@@ -36,13 +37,26 @@ pub(crate) struct ConvexSearch<'a> {
 pub(crate) struct FoundTriangle {
     pub(crate) triangle: u32,
     /// In the frame of the shape, from the mesh to the shape.
-    pub(super) contact: ConvexContact,
+    pub(crate) contact: ConvexContact,
     pub(crate) is_touching: bool,
 }
 
 impl FoundTriangle {
     pub(crate) fn distance(&self) -> Real {
         self.contact.distance as Real
+    }
+
+    /// The points on the mesh and on the shape, each in its frame.
+    pub(crate) fn points(&self, placed: &PlacedPart) -> [Vector; 2] {
+        let ConvexContact { on_triangle, on_shape, .. } = self.contact;
+        [placed.at_mesh(on_triangle), on_shape.as_vec3()]
+    }
+
+    /// The unit normals of the mesh and of the shape, each in its frame and outward.
+    pub(crate) fn normals(&self, placed: &PlacedPart) -> [Vector; 2] {
+        let normal = self.contact.normal;
+        let at_mesh: DVec3 = placed.placement.inverse * normal;
+        [at_mesh.normalize(), -normal].map(|normal| normal.as_vec3())
     }
 }
 
@@ -53,6 +67,22 @@ impl<'a> ConvexSearch<'a> {
         let part = Part { pose: None, shape: convex, cone: None };
         let placed = PlacedPart::new(0, &part, pair, Extent::of(convex));
         Some(Self { mesh: pair.mesh, shape, convex, placed, hull: OnceLock::new() })
+    }
+
+    /// Balls around the mesh and the shape.
+    pub(crate) fn balls(&self) -> [Sphere; 2] {
+        [self.mesh.ball(), self.placed.extent.ball()]
+    }
+
+    /// How far a triangle and the shape, at another place, are apart along a direction from the shape
+    /// to the triangle: at most their distance.
+    pub(crate) fn gap(&self, placed: &PlacedPart, triangle: u32, axis: Vector) -> f64 {
+        placed.gap(self.convex, &self.mesh.mesh.triangle(triangle), axis)
+    }
+
+    /// How far the shape must sink in to come out behind a triangle, as Parry has it.
+    pub(crate) fn thickness(&self) -> Real {
+        self.shape.ccd_thickness()
     }
 
     /// A triangle that touches or crosses the shape; the first one that the walk comes across.
@@ -85,45 +115,92 @@ impl<'a> ConvexSearch<'a> {
             return if nearest.is_touching { self.deepest(0.0) } else { Some(nearest) };
         }
         let mut deepest = None::<FoundTriangle>;
-        let margin = (limit.max(0.0) as Real).next_up();
-        triangles_near(&self.placed, self.convex, &self.mesh, margin, (), |triangle| {
-            if let Some(found) = self.triangle(triangle, limit)
-                && deepest.is_none_or(|deepest| found.contact.distance < deepest.contact.distance)
-            {
+        self.within(limit, |found| {
+            if deepest.is_none_or(|deepest| found.contact.distance < deepest.contact.distance) {
                 deepest = Some(found);
             }
-            ControlFlow::Continue(())
         });
         deepest
     }
 
+    /// Calls `found` with the triangles that touch or are within `limit`.
+    pub(crate) fn within(&self, limit: f64, mut found: impl FnMut(FoundTriangle)) {
+        let margin = (limit.max(0.0) as Real).next_up();
+        triangles_near(&self.placed, self.convex, &self.mesh, margin, (), |triangle| {
+            if let Some(triangle) = self.triangle(&self.placed, triangle, limit) {
+                found(triangle);
+            }
+            ControlFlow::Continue(())
+        });
+    }
+
     /// The nearest triangle within `limit`: one that touches, if any does.
     pub(crate) fn nearest(&self, limit: f64) -> Option<FoundTriangle> {
+        self.nearest_of(limit, |_| true)
+    }
+
+    /// The same of the triangles that count.
+    pub(crate) fn nearest_of(
+        &self,
+        limit: f64,
+        counts: impl Fn(u32) -> bool,
+    ) -> Option<FoundTriangle> {
+        self.best(limit, 1.0, |triangle, limit| {
+            let found =
+                counts(triangle).then(|| self.triangle(&self.placed, triangle, limit))??;
+            Some((found.distance().max(0.0), found))
+        })
+    }
+
+    /// The least time of a triangle up to a limit; none is less than its distance over `speed`.
+    pub(crate) fn soonest(
+        &self,
+        limit: f64,
+        speed: f64,
+        time: impl Fn(u32, f64) -> Option<f64>,
+    ) -> Option<f64> {
+        self.best(limit, 1.0 / speed, |triangle, limit| {
+            let time = time(triangle, limit)?;
+            Some((time as Real, time))
+        })
+    }
+
+    /// What has the least cost of all triangles, up to a limit; none is less than the distance times
+    /// `unit`.
+    fn best<T>(
+        &self,
+        limit: f64,
+        unit: f64,
+        cost: impl Fn(u32, f64) -> Option<(Real, T)>,
+    ) -> Option<T> {
         if !self.placed.placement.is_finite() || limit.is_nan() {
             return None;
         }
         let around = self.shape.compute_aabb(self.placed.pose_in_mesh());
         let gap = gap_of(&self.placed, self.convex, &self.mesh, around);
+        let unit = unit as Real;
         // Costs are compared with less-than: the least number above the limit is the first one out.
         let limit = (limit.min(f64::from(Real::MAX)) as Real).next_up();
         let found = self.mesh.mesh.bvh().find_best(
             limit,
-            |node: &BvhNode, _| gap(box_of(node)),
-            |triangle, best| {
-                let found = self.triangle(triangle, best.into())?;
-                Some((found.distance().max(0.0), found))
-            },
+            |node: &BvhNode, _| gap(box_of(node)) * unit,
+            |triangle, best| cost(triangle, best.into()),
         );
         found.map(|(_, (_, found))| found)
     }
 
     /// The contact of a triangle, if it touches or is at most `margin` away.
-    fn triangle(&self, triangle: u32, margin: f64) -> Option<FoundTriangle> {
-        let corners = self.placed.place(self.mesh.corners(triangle));
+    pub(crate) fn triangle(
+        &self,
+        placed: &PlacedPart,
+        triangle: u32,
+        margin: f64,
+    ) -> Option<FoundTriangle> {
+        let corners = placed.place(self.mesh.corners(triangle));
         let touching = TOUCHING * self.size(&corners);
         let radius = f64::from(self.convex.radius());
         let reach = margin.max(touching) + radius;
-        if self.placed.is_beyond(&corners, reach) {
+        if placed.is_beyond(&corners, reach) {
             return None;
         }
         let mut contact = core_contact(&corners, self.convex, &self.hull, reach)?;
@@ -139,14 +216,11 @@ impl<'a> ConvexSearch<'a> {
 
     /// The points on the mesh and on the shape, each in its frame.
     pub(crate) fn points(&self, found: &FoundTriangle) -> [Vector; 2] {
-        let ConvexContact { on_triangle, on_shape, .. } = found.contact;
-        [self.placed.at_mesh(on_triangle), on_shape.as_vec3()]
+        found.points(&self.placed)
     }
 
     /// The unit normals of the mesh and of the shape, each in its frame and outward.
     pub(crate) fn normals(&self, found: &FoundTriangle) -> [Vector; 2] {
-        let normal = found.contact.normal;
-        let at_mesh: DVec3 = self.placed.placement.inverse * normal;
-        [at_mesh.normalize(), -normal].map(|normal| normal.as_vec3())
+        found.normals(&self.placed)
     }
 }

@@ -1,7 +1,7 @@
 //! A triangle and a convex shape at a pose, and the manifold of their contact: an exact one, or
 //! that of Parry's routine, asked by its own name.
 
-use glamx::{DVec3, Vec3};
+use glamx::{DQuat, DVec3, Vec3};
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::{
     NormalConstraints, contact_manifold_convex_ball, contact_manifold_cuboid_triangle,
@@ -58,6 +58,22 @@ impl PlacedPart {
             _ => whole,
         };
         Self { index, extent, placement, inverse, centre: None, to_part, to_mesh }
+    }
+
+    /// The same part, which is a whole shape, where shape 2 of the pair is at `placement` in the frame
+    /// of shape 1.
+    pub(crate) fn moved(&self, mesh_place: MeshPlace, placement: &Placement) -> Self {
+        let [inverse, placement] = mesh_place.swap([*placement, placement.inverted()]);
+        let [to_mesh, to_part] = [&inverse, &placement].map(rounded);
+        Self {
+            index: self.index,
+            extent: self.extent,
+            placement,
+            inverse,
+            centre: None,
+            to_part,
+            to_mesh,
+        }
     }
 
     /// The same in the axes of the mesh, if it is a ball: contacts then are, but for what is written
@@ -128,6 +144,12 @@ impl PlacedPart {
         let lowest = lowest.fold(f64::INFINITY, f64::min) + axis.dot(self.placement.translation);
         (lowest - self.extent.reach(shape, axis)) / axis.length()
     }
+}
+
+/// A placement as a pose, but for a turn by a quaternion that is not of unit length.
+fn rounded(placement: &Placement) -> Pose {
+    let turn = DQuat::from_mat3(&placement.rotation).normalize();
+    Pose::from_parts(placement.translation.as_vec3(), turn.as_quat())
 }
 
 /// Which contacts do a triangle and a part have?

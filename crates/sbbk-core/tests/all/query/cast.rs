@@ -1,6 +1,6 @@
 use glamx::{DVec3, Pose3, Quat, Vec3};
 use proptest::prelude::*;
-use sbbk_core::query::{AdvanceOptions, Cast, CastOptions, SearchScratch, advance, cast};
+use sbbk_core::query::{AdvanceOptions, Cast, CastOptions, Meshes, SearchScratch, advance, cast};
 use sbbk_core::traverse::Placement;
 use sbbk_core::tree::{BuildOptions, Tree};
 
@@ -279,7 +279,8 @@ fn advancement_stops_at_the_first_touch() {
             tolerance: 1e-5,
             step_limit: 10_000,
         };
-        let found = advance((&tree, &tree), placement_at, options, &mut SearchScratch::default());
+        let scratch = &mut SearchScratch::default();
+        let found = advance(&mut Meshes { trees: (&tree, &tree), scratch }, placement_at, options);
         let end = found.map_or(4.0, |found| found.time);
         for step in 0..8 {
             let distance =
@@ -303,7 +304,8 @@ fn advancement_goes_to_the_last_moment() {
     let floor = tree(&triangle([[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]]));
     let ask = |options| {
         let placement_at = |time| Placement::new(&Pose3::translation(0.5, 0.5, 1.0 - time as f32));
-        advance((&floor, &floor), placement_at, options, &mut SearchScratch::default())
+        let scratch = &mut SearchScratch::default();
+        advance(&mut Meshes { trees: (&floor, &floor), scratch }, placement_at, options)
     };
     let exact =
         AdvanceOptions { start: 0.0, end: 4.0, speed_bound: 1.0, tolerance: 0.0, step_limit: 10 };

@@ -1,6 +1,6 @@
 use glamx::{DPose3, DVec3, Pose3, Quat, Vec3};
 use sbbk_core::query::{
-    Advance, AdvanceOptions, FoundPair, SearchScratch, advance, advance_from_contact,
+    Advance, AdvanceOptions, FoundPair, Meshes, SearchScratch, advance, advance_from_contact,
 };
 use sbbk_core::traverse::Placement;
 use sbbk_core::tree::{BuildOptions, Tree};
@@ -31,7 +31,7 @@ impl Motion {
         -normal.dot(self.velocity.as_dvec3())
     }
 
-    fn ask(&self, meshes: [&Soup; 2], end: f64) -> Option<Advance> {
+    fn ask(&self, meshes: [&Soup; 2], end: f64) -> Option<Advance<FoundPair>> {
         let [tree1, tree2] = meshes.map(tree);
         let reach = meshes[1].vertices.iter().map(|v| f64::from(v.length())).fold(0.0, f64::max);
         let speed_bound = f64::from(self.velocity.length()) + reach * f64::from(self.spin.length());
@@ -46,7 +46,8 @@ impl Motion {
             |pair: &FoundPair, _: &Placement| self.approach(pair.contact.normal) > 1e-6;
         let placement_at = |time| Placement::new(&self.at(time));
         let scratch = &mut SearchScratch::default();
-        advance_from_contact((&tree1, &tree2), placement_at, options, approaches, scratch)
+        let meshes = &mut Meshes { trees: (&tree1, &tree2), scratch };
+        advance_from_contact(meshes, placement_at, options, approaches)
     }
 }
 
@@ -129,7 +130,7 @@ fn beside_a_march() {
     assert!(skipped < 150, "{skipped} skipped");
 }
 
-fn check_start(motion: &Motion, touching: &[TruthPair], hit: Option<Advance>) {
+fn check_start(motion: &Motion, touching: &[TruthPair], hit: Option<Advance<FoundPair>>) {
     let hit = hit.expect("a pair approaches");
     assert!(hit.time == 0.0 && hit.has_converged);
     let impacts = touching.iter().filter(|pair| motion.approach(pair.normal) > 0.0);
@@ -190,11 +191,12 @@ fn from_apart_nothing_is_left_out() {
             tolerance: TOLERANCE,
             step_limit: 1000,
         };
-        let (trees, scratch) = ((&tree, &tree), &mut SearchScratch::default());
+        let scratch = &mut SearchScratch::default();
+        let meshes = &mut Meshes { trees: (&tree, &tree), scratch };
         let placement_at = |time| Placement::new(&motion.at(time));
-        let plain = advance(trees, placement_at, options, scratch);
+        let plain = advance(meshes, placement_at, options);
         let never = |_: &FoundPair, _: &Placement| panic!("nothing touches at the start");
-        assert_eq!(advance_from_contact(trees, placement_at, options, never, scratch), plain);
+        assert_eq!(advance_from_contact(meshes, placement_at, options, never), plain);
         hits += usize::from(plain.is_some());
     }
     assert!((5..30).contains(&hits), "{hits} hits");

@@ -1,0 +1,464 @@
+use std::f32::consts::FRAC_PI_2;
+
+use glamx::{DAffine3, DQuat, DVec3, Pose3, Quat, Vec3};
+use oorandom::Rand32;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::math::Real;
+use rapier3d::parry::query::{
+    DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus,
+};
+use rapier3d::parry::shape::{Shape, SharedShape, TriMesh};
+use sbbk_core::truth::ConvexBody;
+use sbbk_lab::mesh;
+
+use super::queries::{least, truth_at, truth_of};
+use super::shapes::{body, lattice_pose, pose, shapes};
+use crate::support::{direction, reach, rotation, shape};
+
+/// A mesh and a shape on their ways until the time of one unit.
+struct Cast<'a> {
+    mesh: &'a TriMesh,
+    shape: &'a SharedShape,
+    /// Of the mesh and of the shape.
+    motions: [NonlinearRigidMotion; 2],
+    is_mesh_first: bool,
+}
+
+impl Cast<'_> {
+    fn swap<T>(&self, [one, two]: [T; 2]) -> [T; 2] {
+        if self.is_mesh_first { [one, two] } else { [two, one] }
+    }
+
+    fn ask(&self, dispatcher: &dyn QueryDispatcher, stop: bool) -> Option<ShapeCastHit> {
+        let [g1, g2] = self.swap::<&dyn Shape>([self.mesh, &*self.shape.0]);
+        let [motion1, motion2] = self.swap(self.motions);
+        dispatcher
+            .cast_shapes_nonlinear(&motion1, g1, &motion2, g2, 0.0, 1.0, stop)
+            .expect("supported")
+    }
+
+    /// Where mesh and shape are, in f64.
+    fn places(&self, time: f64) -> [DAffine3; 2] {
+        self.motions.map(|motion| {
+            let affine = |pose: Pose3| {
+                let turn = pose.rotation.as_dquat().normalize();
+                DAffine3::from_rotation_translation(turn, pose.translation.as_dvec3())
+            };
+            let start = affine(motion.start);
+            let centre = start.transform_point3(motion.local_center.as_dvec3());
+            let turn = DQuat::from_scaled_axis(motion.angvel.as_dvec3() * time);
+            let there = centre + motion.linvel.as_dvec3() * time;
+            DAffine3::from_translation(there)
+                * DAffine3::from_quat(turn)
+                * DAffine3::from_translation(-centre)
+                * start
+        })
+    }
+
+    /// The least distance, or minus the greatest depth, of a triangle.
+    fn distance(&self, body: &ConvexBody, time: f64) -> f64 {
+        let [mesh, shape] = self.places(time);
+        least(&truth_at(self.mesh, body, shape.inverse() * mesh))
+    }
+
+    /// No point of one moves faster than this against the other: seen from where the shape is, and
+    /// without what both turn alike.
+    fn speed(&self, size: f64) -> f64 {
+        let [mesh, shape] = &self.motions;
+        let arm = |motion: &NonlinearRigidMotion| f64::from(motion.local_center.length()) + size;
+        let turn = |motion: &NonlinearRigidMotion| f64::from(motion.angvel.length());
+        let linear = f64::from((mesh.linvel - shape.linvel).length());
+        let is_endless = self.shape.as_halfspace().is_some();
+        let shape_arm = if is_endless {
+            let between = |time: f64| {
+                let [mesh_place, shape_place] = self.places(time);
+                let centre = |place: DAffine3, motion: &NonlinearRigidMotion| {
+                    place.transform_point3(motion.local_center.as_dvec3())
+                };
+                centre(mesh_place, mesh).distance(centre(shape_place, shape))
+            };
+            between(0.0).max(between(1.0)) + arm(mesh)
+        } else {
+            arm(shape)
+        };
+        linear + turn(mesh) * arm(mesh) + turn(shape) * shape_arm
+    }
+
+    /// The least distance on the way to a time, and whether the march got there: no touch deeper than
+    /// `tolerance` is missed. Triangles are looked at when they may be the nearest.
+    fn march(&self, body: &ConvexBody, speed: f64, tolerance: f64, end: f64) -> (f64, bool) {
+        let (mut time, mut nearest) = (0.0, f64::INFINITY);
+        let mut clear = vec![f64::NEG_INFINITY; self.mesh.indices().len()];
+        for _ in 0..500 {
+            let [mesh, shape] = self.places(time);
+            let in_shape = shape.inverse() * mesh;
+            let mut distance = f64::INFINITY;
+            for (clear, triangle) in clear.iter_mut().zip(self.mesh.triangles()) {
+                if *clear < distance {
+                    *clear = truth_of(&triangle, body, in_shape);
+                    distance = distance.min(*clear);
+                }
+            }
+            nearest = nearest.min(distance);
+            let step = distance.abs().max(tolerance);
+            clear.iter_mut().for_each(|clear| *clear -= step);
+            time += step / speed;
+            if time >= end {
+                return (nearest, true);
+            }
+        }
+        (nearest, false)
+    }
+}
+
+fn motion(
+    random: &mut Rand32,
+    start: Pose3,
+    size: Real,
+    speeds: [Real; 2],
+) -> NonlinearRigidMotion {
+    let [velocity, spin] = speeds;
+    let centre = 0.2 * size * direction(random);
+    let velocity = velocity * size * direction(random);
+    NonlinearRigidMotion::new(start, centre, velocity, spin * direction(random))
+}
+
+/// A velocity, a spin and a place of few digits, which lets faces, edges and corners meet at once.
+fn lattice_motion(random: &mut Rand32, start: Pose3, size: Real) -> NonlinearRigidMotion {
+    let mut axis = || [Vec3::X, -Vec3::Y, Vec3::Z, Vec3::ZERO][random.rand_range(0..4) as usize];
+    let [velocity, spin, centre] = [axis(), axis(), axis()];
+    NonlinearRigidMotion::new(start, 0.5 * size * centre, 2.0 * size * velocity, FRAC_PI_2 * spin)
+}
+
+/// Would catch a bound of the speed that is too low or of the wrong body, a placement in the wrong
+/// order, a triangle that a bound leaves out, an impact that is not the first one or none, and points
+/// and normals that are not where the bodies meet.
+#[test]
+fn first_impacts_are_those_of_brute_force() {
+    let dispatcher = SbbkDispatcher::default();
+    let (mut hits, mut misses, mut unclear, mut stocks_wrong) = (0, 0, 0, 0);
+    for (size, far) in [(0.01, 0.0), (2.0, 1.0e3), (40.0, 0.0)] {
+        let mesh = shape(&mesh::monkey_head_with(4).centred().scaled_to(size));
+        let tolerance = 3.0e-6 * f64::from(size);
+        for (seed, (name, other)) in (0..).zip(shapes(0.3 * size)) {
+            let body = body(&other);
+            for i in 0..4_u64 {
+                let random = &mut Rand32::new(100 * seed + i);
+                let mut in_mesh = pose(random, &mesh, 0.3 * size);
+                in_mesh.translation += 0.8 * size * direction(random);
+                let mut place = Pose3::from_parts(0.5 * size * direction(random), rotation(random));
+                place.translation += far * size * Vec3::X;
+                let motions = if i < 3 {
+                    let spin = [0.0, 1.0, 3.0][i as usize];
+                    let mesh_speeds = [[0.0, 0.0], [0.5, 1.0]][(i / 2) as usize];
+                    let mesh_motion = motion(random, place, size, mesh_speeds);
+                    let mut shape_motion = motion(random, place * in_mesh, size, [0.5, spin]);
+                    shape_motion.linvel -= place.rotation * in_mesh.translation;
+                    [mesh_motion, shape_motion]
+                } else {
+                    let mut start = lattice_pose(random);
+                    start.translation *= 2.0 * size;
+                    start.translation.x += far * size;
+                    let still = Pose3::translation(far * size, 0.0, 0.0);
+                    let mesh_motion = lattice_motion(random, still, 0.25 * size);
+                    [mesh_motion, lattice_motion(random, start, size)]
+                };
+                let cast = Cast { mesh: &mesh, shape: &other, motions, is_mesh_first: i % 2 == 0 };
+                if cast.distance(&body, 0.0) <= tolerance {
+                    continue;
+                }
+                let says = format!("{name}, {size}, {i}");
+                let found = cast.ask(&dispatcher, true);
+                let end = found.map_or(1.0, |hit| f64::from(hit.time_of_impact));
+                let speed = cast.speed(f64::from(reach(&mesh).max(reach_of(&other))));
+                // Times are rounded to f32.
+                let rounded = tolerance + 1.0e-7 * speed;
+                let (closest, is_through) = cast.march(&body, speed, tolerance, end);
+                unclear += usize::from(!is_through);
+                assert!(closest > -rounded, "{says}: {closest} on the way to {found:?}");
+                let is_near = |hit: &ShapeCastHit| {
+                    cast.distance(&body, f64::from(hit.time_of_impact)).abs() <= rounded
+                };
+                // Stock has no answer for half-spaces.
+                let stock = cast.ask(&DefaultQueryDispatcher, true);
+                let is_stock_right =
+                    stock.is_some() == found.is_some() && stock.is_none_or(|hit| is_near(&hit));
+                stocks_wrong += usize::from(!is_stock_right);
+                let Some(hit) = found else {
+                    misses += 1;
+                    continue;
+                };
+                hits += 1;
+                assert_eq!(hit.status, ShapeCastStatus::Converged, "{says} {hit:?}");
+                assert!(is_near(&hit), "{says}: {hit:?} {}", cast.distance(&body, end));
+                let [pos1, pos2] = cast.swap(cast.places(end));
+                let [point1, point2] = [
+                    pos1.transform_point3(hit.witness1.as_dvec3()),
+                    pos2.transform_point3(hit.witness2.as_dvec3()),
+                ];
+                assert!(point1.distance(point2) <= 2.0 * rounded, "{says} {hit:?}");
+                let [normal1, normal2]: [DVec3; 2] = [
+                    pos1.transform_vector3(hit.normal1.as_dvec3()),
+                    pos2.transform_vector3(hit.normal2.as_dvec3()),
+                ];
+                assert!((normal1 + normal2).length() < 1.0e-5, "{says} {hit:?}");
+                let [of_mesh, of_shape] = cast.swap([hit.subshape1, hit.subshape2]);
+                assert_eq!(of_shape, 0, "{says}");
+                let [mesh_place, shape_place] = cast.places(end);
+                let own = truth_at(&mesh, &body, shape_place.inverse() * mesh_place);
+                assert!(own[of_mesh as usize].abs() <= rounded, "{says} {hit:?}");
+            }
+        }
+    }
+    assert!(hits > 60 && misses > 40 && unclear < 5, "{hits} {misses} {unclear}");
+    assert!(stocks_wrong > 20, "{stocks_wrong}");
+}
+
+/// How far a shape of these tests reaches.
+fn reach_of(shape: &SharedShape) -> Real {
+    let around = shape.compute_local_aabb();
+    if shape.as_halfspace().is_some() {
+        0.0
+    } else {
+        around.mins.abs().max(around.maxs.abs()).length()
+    }
+}
+
+/// A floor with a wall at the end, of triangles a unit wide or of a few large ones.
+fn room(cells: u32) -> TriMesh {
+    let floor = mesh::floor(20.0, cells);
+    let (mut vertices, mut triangles) = (floor.vertices, floor.triangles);
+    let first = vertices.len() as u32;
+    vertices.extend([[5.0, -1.0, -9.0], [5.0, -1.0, 9.0], [5.0, 9.0, 0.0]].map(Vec3::from));
+    triangles.push([first, first + 1, first + 2]);
+    TriMesh::new(vertices, triangles).unwrap()
+}
+
+fn still() -> NonlinearRigidMotion {
+    NonlinearRigidMotion::identity()
+}
+
+/// What touches at the start, at every size and in both orders, known exactly and as in stock: a body
+/// that crosses a floor stops a cast that may stop there; else it is stopped by the floor if it would
+/// come out behind it, and not if it leaves it or hardly sinks; what slides along it is stopped by the
+/// wall. Would catch an option that is not obeyed, a thickness that is forgotten or of another unit,
+/// velocities of the wrong points, and an order that is forgotten.
+#[test]
+fn casts_from_contact() {
+    let ours = SbbkDispatcher::default();
+    for (size, is_mesh_first) in [0.01, 1.0, 40.0].into_iter().flat_map(|s| [(s, true), (s, false)])
+    {
+        let mesh = room(1).scaled(Vec3::splat(size));
+        for (name, other) in [
+            ("cylinder", SharedShape::cylinder(0.5 * size, 0.3 * size)),
+            ("cuboid", SharedShape::cuboid(0.3 * size, 0.5 * size, 0.2 * size)),
+            ("ball", SharedShape::ball(0.5 * size)),
+            (
+                "hull",
+                SharedShape::convex_hull(&mesh::cuboid(Vec3::splat(0.5 * size), 1).vertices)
+                    .unwrap(),
+            ),
+        ] {
+            let cast =
+                |dispatcher: &dyn QueryDispatcher, height: Real, velocity: Vec3, stop: bool| {
+                    let start = Pose3::translation(0.0, height * size, 0.0);
+                    let moving =
+                        NonlinearRigidMotion::new(start, Vec3::ZERO, velocity * size, Vec3::ZERO);
+                    let motions = [still(), moving];
+                    Cast { mesh: &mesh, shape: &other, motions, is_mesh_first }
+                        .ask(dispatcher, stop)
+                };
+            let says = format!("{name}, {size}, {is_mesh_first}");
+            let crossing = cast(&ours, 0.4, Vec3::Y, true).expect("crosses");
+            assert_eq!(crossing.time_of_impact, 0.0, "{says}");
+            assert_eq!(crossing.status, ShapeCastStatus::PenetratingOrWithinTargetDist, "{says}");
+            let normals = [crossing.normal1, crossing.normal2];
+            let [of_mesh, of_shape] =
+                if is_mesh_first { normals } else { [normals[1], normals[0]] };
+            assert!((of_mesh - Vec3::Y).length() < 1e-6 && (of_shape + Vec3::Y).length() < 1e-6);
+            for (velocity, is_stopped) in [
+                (Vec3::Y, false),
+                (-0.01 * Vec3::Y, false),
+                (-2.0 * Vec3::Y, true),
+                (Vec3::X, false),
+            ] {
+                let found = cast(&ours, 0.4, velocity, false);
+                assert_eq!(found.is_some(), is_stopped, "{says} {velocity}: {found:?}");
+                if let Some(hit) = found {
+                    assert_eq!((hit.time_of_impact, hit.status), (0.0, ShapeCastStatus::Converged));
+                }
+                let stock = cast(&DefaultQueryDispatcher, 0.4, velocity, false);
+                assert!(
+                    size != 1.0 || stock.is_some() == is_stopped,
+                    "{says} {velocity}: {stock:?}"
+                );
+            }
+            let slid = cast(&ours, 0.4, 10.0 * Vec3::X, false).expect("meets the wall");
+            let wide = other.compute_local_aabb().maxs.x / size;
+            assert!((slid.time_of_impact - (0.5 - 0.1 * wide)).abs() < 1e-5, "{says} {slid:?}");
+            assert_eq!(slid.status, ShapeCastStatus::Converged, "{says}");
+        }
+    }
+}
+
+/// A pole stands askew on a floor of two triangles and falls about its middle, faster than it sinks: the
+/// end that touches leaves, and the other one comes down. Would catch a floor that does not count as it
+/// was touched at the start: the pole came out below.
+#[test]
+fn what_turns_comes_down_with_its_other_end() {
+    let mesh = room(1);
+    for (name, other) in [
+        ("cylinder", SharedShape::cylinder(1.0, 0.1)),
+        ("cuboid", SharedShape::cuboid(0.1, 1.0, 0.1)),
+        ("capsule", SharedShape::capsule_y(1.0, 0.1)),
+    ] {
+        for is_mesh_first in [true, false] {
+            let turn = Quat::from_rotation_z(0.5);
+            let low = other.compute_aabb(&Pose3::from_rotation(turn)).mins.y;
+            let start = Pose3::from_parts(Vec3::new(0.3, -low, 0.1), turn);
+            let ask = |dispatcher: &dyn QueryDispatcher, spin: Real, sinking: Real| {
+                let (velocity, spin) = (-sinking * Vec3::Y, spin * Vec3::Z);
+                let moving = NonlinearRigidMotion::new(start, Vec3::ZERO, velocity, spin);
+                Cast { mesh: &mesh, shape: &other, motions: [still(), moving], is_mesh_first }
+                    .ask(dispatcher, false)
+            };
+            for (spin, sinking, is_met) in
+                [(6.0, 0.3, true), (-0.5, -0.5, false), (0.0, 0.0, false)]
+            {
+                let found = ask(&SbbkDispatcher::default(), spin, sinking);
+                let stock = ask(&DefaultQueryDispatcher, spin, sinking);
+                assert_eq!(found.is_some(), is_met, "{name} {spin}: {found:?} for {stock:?}");
+                assert_eq!(stock.is_some(), is_met, "{name} {spin}: {stock:?}");
+                if let (Some(hit), Some(stock)) = (found, stock) {
+                    assert_eq!(hit.status, ShapeCastStatus::Converged, "{name}");
+                    let [hit, stock] = [hit, stock].map(|hit| hit.time_of_impact);
+                    assert!((0.85 * stock..=stock).contains(&hit), "{name} {hit} {stock}");
+                }
+            }
+        }
+    }
+}
+
+/// Bodies that glide along a floor, just above it and turning, are stopped by the wall and by nothing
+/// before: at once where the bound of the speed alone takes a step for each height above the floor.
+/// Would catch a cast that runs out of steps, a plane that a body crosses, and a time of a triangle
+/// that is not the soonest.
+#[test]
+fn what_glides_along_a_floor_meets_the_wall() {
+    let dispatcher = SbbkDispatcher::default();
+    for (cells, height) in [(1, 1e-2), (1, 1e-4), (20, 1e-2), (20, 1e-4)] {
+        let mesh = room(cells);
+        for (name, other) in shapes(1.0).into_iter().filter(|(name, _)| *name != "half-space") {
+            let low = other.compute_local_aabb().mins.y;
+            let start = Pose3::translation(-3.0, height - low, 0.0);
+            let cast = |velocity: Vec3| {
+                let moving = NonlinearRigidMotion::new(start, Vec3::ZERO, velocity, Vec3::Y);
+                let cast = Cast {
+                    mesh: &mesh,
+                    shape: &other,
+                    motions: [still(), moving],
+                    is_mesh_first: true,
+                };
+                let found = cast.ask(&dispatcher, true);
+                found.map(|hit| (hit, cast.distance(&body(&other), f64::from(hit.time_of_impact))))
+            };
+            let (hit, left) = cast(9.0 * Vec3::X).expect("meets the wall");
+            let says = format!("{name}, {cells}, {height}: {hit:?}");
+            assert_eq!(hit.status, ShapeCastStatus::Converged, "{says}");
+            assert!(left.abs() < 1e-5 && hit.time_of_impact > 0.8, "{says}");
+            assert_eq!(hit.subshape1, mesh.indices().len() as u32 - 1, "{says}");
+            assert!(cast(-3.0 * Vec3::X).is_none(), "{says}");
+        }
+    }
+}
+
+/// Would catch a half-space whose turning counts as that of a body about its centre, or not at all:
+/// it comes up from below, and meets the far corner of a box first.
+#[test]
+fn half_spaces_turn() {
+    let dispatcher = SbbkDispatcher::default();
+    let cube = shape(&mesh::cuboid(Vec3::splat(0.5), 1));
+    let ground = SharedShape::halfspace(Vec3::Y);
+    for is_mesh_first in [true, false] {
+        let cast = |spin: Real| {
+            let turning =
+                NonlinearRigidMotion::new(Pose3::IDENTITY, Vec3::ZERO, Vec3::ZERO, spin * Vec3::Z);
+            let there = NonlinearRigidMotion::constant_position(Pose3::translation(3.0, 1.5, 0.0));
+            Cast { mesh: &cube, shape: &ground, motions: [there, turning], is_mesh_first }
+                .ask(&dispatcher, true)
+        };
+        let hit = cast(0.5).expect("it comes up");
+        assert!((0.5 * hit.time_of_impact - (1.0_f32 / 3.5).atan()).abs() < 1e-5, "{hit:?}");
+        assert_eq!(hit.status, ShapeCastStatus::Converged);
+        assert!(cast(0.25).is_none());
+        // With no end of the time.
+        let turning = NonlinearRigidMotion::new(Pose3::IDENTITY, Vec3::X, Vec3::Y, Vec3::Z);
+        let slab = SharedShape::cuboid(9.0, 0.5, 9.0);
+        let up = Pose3::translation(0.0, 8.0, 0.0);
+        let rising = NonlinearRigidMotion::new(up, Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
+        let cast = |end| {
+            dispatcher.cast_shapes_nonlinear(&rising, &cube, &turning, &*slab, 0.0, end, true)
+        };
+        let [short, long] = [9.0, f32::INFINITY].map(|end| cast(end).unwrap().expect("meets it"));
+        assert!((short.time_of_impact - long.time_of_impact).abs() < 1e-5, "{short:?} {long:?}");
+    }
+}
+
+/// Meshes are surfaces: a body in the hollow of one is apart from it, and meets it from inside.
+#[test]
+fn what_is_in_a_hollow_is_apart() {
+    let dispatcher = SbbkDispatcher::default();
+    let hollow = shape(&mesh::ball(3.0, 6));
+    for (name, other) in shapes(1.0).into_iter().filter(|(name, _)| *name != "half-space") {
+        for (velocity, is_met) in [(Vec3::ZERO, false), (4.0 * Vec3::X, true)] {
+            let moving =
+                NonlinearRigidMotion::new(Pose3::IDENTITY, Vec3::ZERO, velocity, 3.0 * Vec3::ONE);
+            let cast = Cast {
+                mesh: &hollow,
+                shape: &other,
+                motions: [still(), moving],
+                is_mesh_first: true,
+            };
+            for stop in [true, false] {
+                assert_eq!(cast.ask(&dispatcher, stop).is_some(), is_met, "{name}");
+            }
+        }
+    }
+}
+
+/// Motions and times that are no numbers: nothing is found, nothing panics or goes on for ever. Bodies
+/// that do not move are met where they touch, however long.
+#[test]
+fn numbers_that_are_none() {
+    let dispatcher = SbbkDispatcher::default();
+    let mesh = shape(&mesh::monkey_head_with(4));
+    for (name, other) in shapes(1.0) {
+        for bad in [f32::NAN, f32::INFINITY] {
+            let bad = Vec3::new(bad, 0.0, 0.0);
+            let away = Pose3::translation(0.0, 0.0, 9.0);
+            for motion in [
+                NonlinearRigidMotion::constant_position(Pose3::from_translation(bad)),
+                NonlinearRigidMotion::new(away, bad, Vec3::X, Vec3::X),
+                NonlinearRigidMotion::new(away, Vec3::X, bad, Vec3::X),
+                NonlinearRigidMotion::new(away, Vec3::X, Vec3::X, bad),
+            ] {
+                for (motions, stop) in [([still(), motion], true), ([motion, still()], false)] {
+                    let cast = Cast { mesh: &mesh, shape: &other, motions, is_mesh_first: true };
+                    assert!(cast.ask(&dispatcher, stop).is_none(), "{name} {motion:?}");
+                }
+            }
+        }
+        let until = |end: Real| {
+            let (m, s) = (still(), still());
+            dispatcher.cast_shapes_nonlinear(&m, &mesh, &s, &*other, 0.0, end, true).unwrap()
+        };
+        for end in [-1.0, f32::NAN] {
+            assert!(until(end).is_none(), "{name}");
+        }
+        let touches =
+            dispatcher.distance(&Pose3::IDENTITY, &mesh, &*other).unwrap().distance == 0.0;
+        for end in [0.0, 1.0, f32::MAX, f32::INFINITY] {
+            assert_eq!(until(end).is_some(), touches, "{name} {end}");
+        }
+    }
+}
