@@ -8,6 +8,7 @@ use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
 use rapier3d::geometry::{SharedShape, TriMeshFlags};
 use rapier3d::math::Real;
+use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d::parry::query::details::ShapeCastOptions;
 
 use super::ground::{Ground, above, head};
@@ -27,8 +28,15 @@ named! {
         Contact = "contact",
         Manifolds = "manifolds, no workspace",
         Cast = "cast",
+        NonlinearCast = "nonlinear cast",
     }
 }
+
+/// How a body moves in casts, and turns in nonlinear ones, a second.
+const WAY: Vec3 = Vec3::new(0.2, -1.0, 0.1);
+const TURN: Vec3 = Vec3::new(0.3, 0.7, 1.1);
+/// How long.
+const SECONDS: Real = 10.0;
 
 impl Query {
     /// Asks once; the answer as a number: 0 or 1, a distance or a time.
@@ -55,9 +63,16 @@ impl Query {
                 distances.reduce(Real::min).filter(|&distance| distance <= PREDICTION)
             }
             Self::Cast => {
-                let options = ShapeCastOptions::with_max_time_of_impact(10.0);
-                let way = Vec3::new(0.2, -1.0, 0.1);
-                let hit = dispatcher.cast_shapes(pos12, way, ground, body, options).ok()??;
+                let options = ShapeCastOptions::with_max_time_of_impact(SECONDS);
+                let hit = dispatcher.cast_shapes(pos12, WAY, ground, body, options).ok()??;
+                Some(hit.time_of_impact)
+            }
+            Self::NonlinearCast => {
+                let still = NonlinearRigidMotion::identity();
+                let motion = NonlinearRigidMotion::new(*pos12, Vec3::ZERO, WAY, TURN);
+                let hit = dispatcher
+                    .cast_shapes_nonlinear(&still, ground, &motion, body, 0.0, SECONDS, true)
+                    .ok()??;
                 Some(hit.time_of_impact)
             }
         }
@@ -76,17 +91,23 @@ const WORST: f64 = 2.0e6;
 /// How far answers may differ, in units.
 const BAND: Real = 0.05 * PREDICTION;
 
-/// All queries of a ball and a head on a terrain.
+/// All queries of a ball, a capsule and a head on a terrain; but for nonlinear casts of the head,
+/// which take stock seconds.
 ///
 /// Errors: none but those of a mesh without triangles, which these are not.
 pub(super) fn queries(ground: &Ground, repeats: usize) -> Result<Vec<Row>, SceneError> {
-    let bodies =
-        [("ball", SharedShape::ball(0.5)), ("head", shape(&head(), TriMeshFlags::empty())?)];
+    let bodies = [
+        ("ball", SharedShape::ball(0.5)),
+        ("capsule", SharedShape::capsule_y(0.3, 0.2)),
+        ("head", shape(&head(), TriMeshFlags::empty())?),
+    ];
     let mut rows = Vec::new();
     for (name, body) in &bodies {
         for (place, height) in PLACES {
             let poses: Vec<Pose3> = places(ground, height);
-            for query in Query::ALL {
+            let is_slow =
+                |&query: &Query| query == Query::NonlinearCast && body.as_trimesh().is_some();
+            for query in Query::ALL.into_iter().filter(|query| !is_slow(query)) {
                 let key = |row: Row| {
                     let row = row.key("query", query.to_string()).key("body", *name);
                     row.key("place", place).key("triangles", ground.triangle_count)
