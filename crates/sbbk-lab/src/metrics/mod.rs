@@ -14,7 +14,7 @@ mod step;
 mod world_state;
 
 pub use environment::Environment;
-pub use error::{ErrorCount, Judge, Truth, is_right_depth, sample_indices};
+pub use error::{ContactErrors, ErrorCount, Judge, TrueContact, Truth, sample_indices};
 pub use fingerprint::Fingerprint;
 pub use pose_pairs::{PosePairs, Sweep};
 pub use run::{Run, RunPlan, Runner, Sample, run};

@@ -150,7 +150,10 @@ fn sampled_step(
         let answers = sample_indices(count, limit).into_iter().map(answer);
         let errors = answers.map(|answer| {
             let truth = judge.truth(&answer.question);
-            if has_surfaces { truth.judge_surfaces(&answer) } else { truth.judge(&answer) }
+            match has_surfaces {
+                true => truth.judge_surfaces(&answer.reported),
+                false => truth.judge(&answer.reported).pairs,
+            }
         });
         ErrorCount { sampled_from: count, ..errors.sum() }
     };

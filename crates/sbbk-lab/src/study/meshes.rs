@@ -57,7 +57,7 @@ fn measure(mesh: &Mesh) -> Result<[Row; 2], StudyError> {
         |pos12| Sequence { shapes: [&shape; 2], poses: vec![pos12], prediction: PREDICTION };
     let sequences: Vec<Sequence> = places.map(|place| sequence(place.pos12)).collect();
     let queries = contest.race(count(REPEATS), &sequences);
-    let errors = contest.errors(&sequences, |_| true).map(|errors| errors.pairs);
+    let errors = contest.mesh_errors(&sequences, |_| true).map(|errors| errors.pairs);
     // First queries after which the time they save has paid for the tree.
     let saved = queries[0].median - queries[1].median;
     let paid = |build: &Summary| ratio(1e3 * build.median, saved).filter(|count| *count > 0.0);

@@ -11,10 +11,9 @@ use rapier3d::geometry::{ContactManifold, SharedShape};
 use rapier3d::math::Real;
 use rayon::prelude::*;
 
-use super::contacts::ContactErrors;
 use super::turns::{race, timed};
 use crate::backend::{Backend, Dispatcher, Memory, Primed, Question, SharedDispatcher};
-use crate::metrics::{Judge, Summary, Truth};
+use crate::metrics::{ContactErrors, Judge, Summary, Truth};
 
 /// How dispatchers are called, for notes.
 pub(super) const DIRECT_NOTE: &str = "dispatchers called directly: contact skins and contact \
@@ -56,34 +55,45 @@ impl Contest {
         })
     }
 
-    /// Errors of both in some steps of sequences of meshes.
+    /// Errors of both, where `truth` tells it of a step of a sequence, both by their numbers.
     pub fn errors(
+        &self,
+        sequences: &[Sequence],
+        truth: impl Fn(usize, usize) -> Option<Truth> + Sync,
+    ) -> [ContactErrors; 2] {
+        errors(self.dispatchers.each_ref().map(|dispatcher| &dispatcher.shared), sequences, truth)
+    }
+
+    /// Errors of both in some steps of sequences of meshes.
+    pub fn mesh_errors(
         &self,
         sequences: &[Sequence],
         is_judged: impl Fn(usize) -> bool + Sync,
     ) -> [ContactErrors; 2] {
-        let of_sequence = |sequence: &Sequence| {
-            let judge = Judge::new(sequence.shapes);
-            let steps = (0..sequence.poses.len()).into_par_iter().with_max_len(1);
-            let truths = steps.map(|step| {
-                let question = sequence.question(step);
-                is_judged(step).then(|| (question, judge.truth(&question)))
-            });
-            let truths: Vec<Option<(Question, Truth)>> = truths.collect();
-            self.dispatchers.each_ref().map(|dispatcher| {
-                let mut errors = ContactErrors::default();
-                sequence.walk(dispatcher, |step, manifolds| {
-                    if let Some((question, truth)) = &truths[step] {
-                        errors += ContactErrors::of(truth, *question, manifolds);
-                    }
-                });
-                errors
-            })
-        };
-        let errors = sequences.par_iter().with_max_len(1).map(of_sequence);
-        let errors: Vec<[ContactErrors; 2]> = errors.collect();
-        [0, 1].map(|side| errors.iter().map(|sides| sides[side]).sum())
+        self.errors(sequences, |index, step| is_judged(step).then(|| sequences[index].truth(step)))
     }
+}
+
+/// Errors of each dispatcher, where `truth` tells it of a step of a sequence, both by their numbers.
+pub(super) fn errors<const N: usize>(
+    dispatchers: [&SharedDispatcher; N],
+    sequences: &[Sequence],
+    truth: impl Fn(usize, usize) -> Option<Truth> + Sync,
+) -> [ContactErrors; N] {
+    let of_sequence = |(index, sequence): (usize, &Sequence)| {
+        let steps = (0..sequence.poses.len()).into_par_iter().with_max_len(1);
+        let truths: Vec<Option<Truth>> = steps.map(|step| truth(index, step)).collect();
+        dispatchers.map(|dispatcher| {
+            let mut errors = ContactErrors::default();
+            sequence.walk(dispatcher, |step, manifolds| {
+                errors += (truths[step].iter()).map(|t| t.judge_manifolds(manifolds)).sum();
+            });
+            errors
+        })
+    };
+    let errors = sequences.par_iter().enumerate().with_max_len(1).map(of_sequence);
+    let errors: Vec<[ContactErrors; N]> = errors.collect();
+    std::array::from_fn(|side| errors.iter().map(|sides| sides[side]).sum())
 }
 
 /// Number of queries that [`sweep`] times.
@@ -110,9 +120,11 @@ pub(super) fn sweep(dispatcher: &SharedDispatcher, sequences: &[Sequence]) -> Du
 }
 
 impl Sequence<'_> {
-    /// What is asked in a step.
-    pub fn question(&self, step: usize) -> Question {
-        Question::new(&self.poses[step], self.shapes.map(|shape| &**shape), self.prediction)
+    /// The truth about a step of two meshes.
+    fn truth(&self, step: usize) -> Truth {
+        let shapes = self.shapes.map(|shape| &**shape);
+        let question = Question::new(&self.poses[step], shapes, self.prediction);
+        Judge::new(self.shapes).truth(&question)
     }
 
     fn ask(&self, memory: &mut Memory, dispatcher: &SharedDispatcher, pose: &Pose3) {

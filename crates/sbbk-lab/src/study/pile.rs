@@ -139,7 +139,7 @@ fn same_poses(
         for (dispatcher, errors) in dispatchers.iter().zip(&mut errors) {
             let answers = pairs.answers(dispatcher, index);
             for ((answer, truth), error) in answers.iter().zip(&truths).zip(errors) {
-                *error += truth.judge(answer);
+                *error += truth.judge(&answer.reported).pairs;
             }
         }
     }

@@ -208,7 +208,8 @@ impl SoakRun {
         let judge = Judge::new(shapes);
         let sampled = sample_indices(answers.len(), limit).into_iter();
         let errors = sampled
-            .map(|index| judge.truth(&answers[index].question).judge_surfaces(&answers[index]))
+            .map(|index| &answers[index])
+            .map(|answer| judge.truth(&answer.question).judge_surfaces(&answer.reported))
             .sum();
         ErrorCount { sampled_from: answers.len(), ..errors }
     }

@@ -95,7 +95,7 @@ fn judged(scene: &SoftHeads, backend: Backend, plan: &SoftPlan) -> Result<ErrorC
         installed.probe.start_recording();
         built.world.step();
         for answer in installed.probe.take_answers() {
-            errors += judge.truth(&answer.question).judge(&answer);
+            errors += judge.truth(&answer.question).judge(&answer.reported).pairs;
         }
     }
     Ok(errors)

@@ -12,18 +12,18 @@ use std::sync::Arc;
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
 use rapier_integration::{SbbkConfig, SbbkDispatcher};
-use rapier3d::geometry::{ContactManifold, SharedShape};
+use rapier3d::geometry::SharedShape;
 use rapier3d::math::Real;
 
 use super::motion::{Approach, Mode, Place};
-use super::pair::{Contest, Sequence, query_count, sweep};
+use super::pair::{Contest, Sequence, errors, query_count, sweep};
 use super::turns::race;
 use super::{Progress, StudyError, shape};
-use crate::backend::{Answer, Backend, Question, Reported, SharedDispatcher};
+use crate::backend::{Backend, Question, SharedDispatcher};
 use crate::mesh;
 use crate::metrics::{Environment, ErrorCount, Judge};
 use crate::report::{
-    ERROR_NOTE, Look, Panel, Results, Row, Scale, TIME_NOTE, Table, TableSpec, errors, number, time,
+    self, ERROR_NOTE, Look, Panel, Results, Row, Scale, TIME_NOTE, Table, TableSpec, number, time,
 };
 use crate::scene::{Ground, HeadsOnTerrain, Scene, SceneError};
 
@@ -125,41 +125,20 @@ impl Way<'_> {
     }
 
     /// Errors of the first and the last answer of each motion, against the terrain as a mesh.
-    fn errors(
-        &self,
-        sequences: &[Sequence],
-        [ground, head]: [&SharedShape; 2],
-        cells: u32,
-    ) -> ErrorCount {
-        let judge = Judge::new([ground, head]);
-        let mut errors = ErrorCount::default();
-        for sequence in sequences {
-            sequence.walk(self.dispatcher, |step, manifolds| {
-                if step == 0 || step + 1 == sequence.poses.len() {
-                    let pose = &sequence.poses[step];
-                    let question = Question::new(pose, [&**ground, &**head], PREDICTION);
-                    let reported = manifolds.iter().filter_map(|m| self.reported(m, cells));
-                    let answer = Answer { question, reported: reported.collect() };
-                    errors += judge.truth(&question).judge(&answer);
+    fn errors(&self, sequences: &[Sequence], meshes: [&SharedShape; 2], cells: u32) -> ErrorCount {
+        let judge = Judge::new(meshes);
+        let [errors] = errors([self.dispatcher], sequences, |index, step| {
+            let poses = &sequences[index].poses;
+            (step == 0 || step + 1 == poses.len()).then(|| {
+                let shapes = meshes.map(|shape| &**shape);
+                let truth = judge.truth(&Question::new(&poses[step], shapes, PREDICTION));
+                match self.ground {
+                    Ground::Mesh => truth,
+                    Ground::HeightField => truth.renumbered(|t, other| (in_field(t, cells), other)),
                 }
-            });
-        }
-        errors
-    }
-
-    /// A manifold with the number that its triangle has in the mesh of the terrain.
-    fn reported(&self, manifold: &ContactManifold, cells: u32) -> Option<Reported> {
-        let distances = manifold.points.iter().map(|point| point.dist);
-        let distance = distances.reduce(Real::min).filter(|&distance| distance <= PREDICTION)?;
-        let id = manifold.subshape1;
-        let triangle1 = match self.ground {
-            Ground::Mesh => id,
-            Ground::HeightField => {
-                let (cell, side) = (id % (cells * cells), id / (cells * cells));
-                2 * ((cell % cells) * cells + cell / cells) + side
-            }
-        };
-        Some(Reported { triangle1, triangle2: manifold.subshape2, distance })
+            })
+        });
+        errors.pairs
     }
 
     /// Cells whose heights a first query reads, on the mean; `None` on a mesh.
@@ -172,6 +151,12 @@ impl Way<'_> {
         sequences.iter().for_each(|sequence| sequence.walk(&dispatcher, |_, _| ()));
         Some(counting.stats().descent.cells as f64 / sequences.len().max(1) as f64)
     }
+}
+
+/// The number that a triangle of the mesh has in the height field.
+fn in_field(triangle: u32, cells: u32) -> u32 {
+    let (cell, side) = (triangle / 2, triangle % 2);
+    (cell % cells) * cells + cell / cells + side * cells * cells
 }
 
 fn of_size(plan: &TerrainPlan, cells: u32) -> Result<Vec<Row>, StudyError> {
@@ -237,7 +222,7 @@ fn tables(rows: &[Row], fall_steps: usize) -> Vec<Table> {
             time("first", "fresh"),
             time("steady, 0.05 a step", "steady"),
             number("cells read", "cells_read"),
-            errors("errors", "errors"),
+            report::errors("errors", "errors"),
         ],
     )
     .note("cells: along a side; stock Rapier has no contacts of a mesh and a height field")

@@ -12,9 +12,9 @@ use rapier3d::parry::shape::Triangle;
 use rayon::prelude::*;
 use sbbk_core::truth::{self, TruthPair};
 
-use super::{Case, ContactErrors, MOTION_LIMIT, PAIRS, SHORT_REPEATS};
+use super::{Case, MOTION_LIMIT, PAIRS, SHORT_REPEATS};
 use crate::backend::Memory;
-use crate::metrics::sample_indices;
+use crate::metrics::{ContactErrors, Truth, sample_indices};
 use crate::report::Row;
 use crate::study::motion::{Mode, STEP_COUNT};
 use crate::study::pair::{Contest, Sequence};
@@ -194,7 +194,8 @@ fn judge<G: Generator>(all: &[Moving]) -> ContactErrors {
             generator.update(pose, pair, *prediction);
         }
         let manifold = generator.update(last, pair, *prediction);
-        ContactErrors::of_pair(&truth(pair, last), manifold, *prediction)
+        let truth = Truth::of_triangles([truth(pair, last)], *prediction);
+        truth.judge_manifolds(std::slice::from_ref(manifold))
     });
     errors.sum()
 }

@@ -5,11 +5,10 @@ use oorandom::Rand32;
 use rapier3d::geometry::SharedShape;
 use rapier3d::math::Real;
 
-use super::errors::{Judge, Truth};
+use super::errors::Judge;
 use super::kinds::{Kind, Upright};
 use crate::report::Row;
 use crate::scene::random;
-use crate::study::contacts::errors::ContactErrors;
 use crate::study::motion::{Approach, Mode, Place};
 use crate::study::pair::{Contest, Sequence};
 
@@ -72,22 +71,11 @@ impl<'a> Pair<'a> {
 
     /// The errors of both sides.
     pub fn rows(&self, study: &'static str, sequences: &[Sequence]) -> [Row; 2] {
-        let mut errors = [ContactErrors::default(); 2];
-        for (index, sequence) in sequences.iter().enumerate() {
-            let truth = sequence
-                .poses
-                .iter()
-                .step_by(JUDGED)
-                .map(|pos12| self.judge.truth(pos12, is_mesh_first(index), self.prediction));
-            let truth: Vec<Truth> = truth.collect();
-            for (dispatcher, errors) in self.contest.dispatchers.iter().zip(&mut errors) {
-                sequence.walk(dispatcher, |step, manifolds| {
-                    if step % JUDGED == 0 {
-                        *errors += truth[step / JUDGED].judge(manifolds, |index| index);
-                    }
-                });
-            }
-        }
+        let errors = self.contest.errors(sequences, |index, step| {
+            let pos12 = &sequences[index].poses[step];
+            (step % JUDGED == 0)
+                .then(|| self.judge.truth(pos12, is_mesh_first(index), self.prediction))
+        });
         let parts = self.kind.shape.as_compound().map(|compound| compound.shapes().len());
         let row = |side: usize| {
             Row::new(study, Contest::BACKENDS[side])

@@ -232,8 +232,9 @@ impl<'a> Posed<'a> {
         let contest = Contest::new([&self.shape]);
         let times = contest.race(repeats, std::slice::from_ref(&sequence));
         // At the end of the motion through each place.
-        let errors = contest
-            .errors(std::slice::from_ref(&sequence), |step| step % (STEP_COUNT + 1) == STEP_COUNT);
+        let errors = contest.mesh_errors(std::slice::from_ref(&sequence), |step| {
+            step % (STEP_COUNT + 1) == STEP_COUNT
+        });
         let sides = Contest::BACKENDS.into_iter().zip(&contest.dispatchers).zip(times).zip(errors);
         let rows = sides.map(|(((backend, dispatcher), time), errors)| {
             self.row(JOURNEY, backend)
