@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{ErrorCount, Judge, PosePairs, StepTimes, WorldState, sample_indices, timed_step};
+use super::{ErrorCount, Judge, Sequence, StepTimes, WorldState, sample_indices, timed_step};
 use crate::backend::{Answer, Backend, Installed, Primed};
 use crate::scene::{Scene, SceneError, SceneWorld};
 
@@ -59,7 +59,7 @@ pub struct Sample {
     pub updated: ErrorCount,
     /// The pairs, for asking other backends.
     #[serde(skip)]
-    pub pairs: PosePairs,
+    pub pairs: Vec<Sequence>,
 }
 
 impl Run {
@@ -142,32 +142,29 @@ fn sampled_step(
     limit: usize,
 ) -> Sample {
     installed.probe.start_recording();
-    let pairs = PosePairs::capture(world, |world| world.step());
-    let updated = installed.probe.take_answers();
+    let pairs = Sequence::captured(world, |world| world.step());
+    let answers = installed.probe.take_answers();
     let judge = Judge::new(world.colliders.iter().map(|(_, collider)| collider.shared_shape()));
-    // At most `limit` of `count` answers.
-    let judged = |count: usize, has_surfaces: bool, answer: &dyn Fn(usize) -> Answer| {
-        let answers = sample_indices(count, limit).into_iter().map(answer);
-        let errors = answers.map(|answer| {
-            let truth = judge.truth(&answer.question);
-            match has_surfaces {
-                true => truth.judge_surfaces(&answer.reported),
-                false => truth.judge(&answer.reported).pairs,
-            }
-        });
-        ErrorCount { sampled_from: count, ..errors.sum() }
-    };
+    let updated = sample_indices(answers.len(), limit).into_iter().map(|index| {
+        let Answer { question, reported } = &answers[index];
+        let truth = judge.truth(question);
+        match backend.has_surfaces() {
+            true => truth.judge_surfaces(reported),
+            false => truth.judge(reported).pairs,
+        }
+    });
+    let sampled = sample_indices(pairs.len(), limit).into_iter().map(|index| pairs[index].clone());
+    let sampled: Vec<Sequence> = sampled.collect();
     let dispatcher = backend.per_triangle();
-    let _primed = Primed::new(&dispatcher, pairs.shapes());
-    let fresh = |index| {
-        let [fresh, _] = pairs.answers(&dispatcher, index);
-        fresh
-    };
+    let _primed = Primed::new(&dispatcher, sampled.iter().flat_map(|pair| &pair.shapes));
+    let [fresh] = Sequence::errors(&sampled, [&dispatcher.shared], |index, step| {
+        (step == 0).then(|| sampled[index].truth(step))
+    });
     Sample {
         step,
         state: WorldState::of(world, watched),
-        fresh: judged(pairs.pair_count(), false, &fresh),
-        updated: judged(updated.len(), backend.has_surfaces(), &|index| updated[index].clone()),
+        fresh: ErrorCount { sampled_from: pairs.len(), ..fresh.pairs },
+        updated: ErrorCount { sampled_from: answers.len(), ..updated.sum() },
         pairs,
     }
 }

@@ -19,12 +19,12 @@ use sbbk_core::tree::{BATCH, BuildError, BuildOptions, LayerPlan, Tree};
 use sbbk_core::volumes::{DirectionSet, Directions};
 
 use super::motion::{Approach, Mode, Place, mode_notes};
-use super::pair::{Contest, Sequence, query_count, sweep};
+use super::pair::{Contest, query_count, sweep};
 use super::turns::{race, timed};
 use super::{Progress, StudyError, shape};
 use crate::backend::SharedDispatcher;
 use crate::mesh::{self, Mesh, Thread};
-use crate::metrics::Environment;
+use crate::metrics::{Environment, Sequence};
 use crate::report::{Results, Row, Table, TableSpec, faster, number};
 
 const BARE: &str = "layers: bare trees";
@@ -205,11 +205,7 @@ impl<'a> Case<'a> {
         let _primed = dispatchers.each_ref().map(prepare);
         let shared = dispatchers.map(|dispatcher| -> SharedDispatcher { Arc::new(dispatcher) });
         let rows = Mode::ALL.into_iter().flat_map(|mode| {
-            let sequence = |place| Sequence {
-                shapes: self.shapes.each_ref(),
-                poses: mode.poses(&self.shapes[1], place, PREDICTION),
-                prediction: PREDICTION,
-            };
+            let sequence = |place| mode.sequence(self.shapes.each_ref(), place, PREDICTION);
             let sequences: Vec<Sequence> = self.places.iter().map(sequence).collect();
             let queries = query_count(&sequences[..1]);
             let times = self.fastest(&shared, repeats, queries, |dispatcher, place| {

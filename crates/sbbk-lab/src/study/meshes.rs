@@ -5,11 +5,12 @@ use std::time::Duration;
 use sbbk_core::tree::LayerPlan;
 
 use super::contacts::places;
-use super::pair::{Contest, Sequence, query_count};
+use super::motion::Mode;
+use super::pair::{Contest, query_count};
 use super::turns::{race, timed};
 use super::{Progress, StudyError, shape, tree};
 use crate::mesh::Mesh;
-use crate::metrics::{Summary, ratio};
+use crate::metrics::{Sequence, Summary, ratio};
 use crate::report::{
     ERROR_NOTE, Panel, Row, Scale, TIME_NOTE, Table, TableSpec, errors, faster, number, time,
 };
@@ -53,9 +54,8 @@ fn measure(mesh: &Mesh) -> Result<[Row; 2], StudyError> {
     let contest = Contest::new([&shape]);
     let places = (0..count(APPROACHES) as u64)
         .flat_map(|seed| places(&contest, &shape, 2.0, PREDICTION, seed));
-    let sequence =
-        |pos12| Sequence { shapes: [&shape; 2], poses: vec![pos12], prediction: PREDICTION };
-    let sequences: Vec<Sequence> = places.map(|place| sequence(place.pos12)).collect();
+    let sequence = |place| Mode::Fresh.sequence([&shape; 2], &place, PREDICTION);
+    let sequences: Vec<Sequence> = places.map(sequence).collect();
     let queries = contest.race(count(REPEATS), &sequences);
     let errors = contest.mesh_errors(&sequences, |_| true).map(|errors| errors.pairs);
     // First queries after which the time they save has paid for the tree.

@@ -6,14 +6,11 @@
 
 use std::time::Duration;
 
-use glamx::Pose3;
-use rapier3d::geometry::{ContactManifold, SharedShape};
-use rapier3d::math::Real;
-use rayon::prelude::*;
+use rapier3d::geometry::SharedShape;
 
 use super::turns::{race, timed};
-use crate::backend::{Backend, Dispatcher, Memory, Primed, Question, SharedDispatcher};
-use crate::metrics::{ContactErrors, Judge, Summary, Truth};
+use crate::backend::{Backend, Dispatcher, Memory, Primed, SharedDispatcher};
+use crate::metrics::{ContactErrors, Sequence, Summary, Truth};
 
 /// How dispatchers are called, for notes.
 pub(super) const DIRECT_NOTE: &str = "dispatchers called directly: contact skins and contact \
@@ -24,14 +21,6 @@ pub(super) const DIRECT_NOTE: &str = "dispatchers called directly: contact skins
 pub(super) struct Contest {
     pub dispatchers: [Dispatcher; 2],
     _primed: [Primed; 2],
-}
-
-/// Two shapes, asked for their contacts at one pose after the other, each with what the query
-/// before left.
-pub(super) struct Sequence<'a> {
-    pub shapes: [&'a SharedShape; 2],
-    pub poses: Vec<Pose3>,
-    pub prediction: Real,
 }
 
 impl Contest {
@@ -61,7 +50,8 @@ impl Contest {
         sequences: &[Sequence],
         truth: impl Fn(usize, usize) -> Option<Truth> + Sync,
     ) -> [ContactErrors; 2] {
-        errors(self.dispatchers.each_ref().map(|dispatcher| &dispatcher.shared), sequences, truth)
+        let dispatchers = self.dispatchers.each_ref().map(|dispatcher| &dispatcher.shared);
+        Sequence::errors(sequences, dispatchers, truth)
     }
 
     /// Errors of both in some steps of sequences of meshes.
@@ -74,28 +64,6 @@ impl Contest {
     }
 }
 
-/// Errors of each dispatcher, where `truth` tells it of a step of a sequence, both by their numbers.
-pub(super) fn errors<const N: usize>(
-    dispatchers: [&SharedDispatcher; N],
-    sequences: &[Sequence],
-    truth: impl Fn(usize, usize) -> Option<Truth> + Sync,
-) -> [ContactErrors; N] {
-    let of_sequence = |(index, sequence): (usize, &Sequence)| {
-        let steps = (0..sequence.poses.len()).into_par_iter().with_max_len(1);
-        let truths: Vec<Option<Truth>> = steps.map(|step| truth(index, step)).collect();
-        dispatchers.map(|dispatcher| {
-            let mut errors = ContactErrors::default();
-            sequence.walk(dispatcher, |step, manifolds| {
-                errors += (truths[step].iter()).map(|t| t.judge_manifolds(manifolds)).sum();
-            });
-            errors
-        })
-    };
-    let errors = sequences.par_iter().enumerate().with_max_len(1).map(of_sequence);
-    let errors: Vec<[ContactErrors; N]> = errors.collect();
-    std::array::from_fn(|side| errors.iter().map(|sides| sides[side]).sum())
-}
-
 /// Number of queries that [`sweep`] times.
 pub(super) fn query_count(sequences: &[Sequence]) -> f64 {
     sequences.iter().map(|sequence| (sequence.poses.len() - 1).max(1)).sum::<usize>() as f64
@@ -106,41 +74,12 @@ pub(super) fn query_count(sequences: &[Sequence]) -> f64 {
 pub(super) fn sweep(dispatcher: &SharedDispatcher, sequences: &[Sequence]) -> Duration {
     let time = |sequence: &Sequence| {
         let mut memory = Memory::default();
-        let mut ask = |pose: &Pose3| sequence.ask(&mut memory, dispatcher, pose);
-        match &sequence.poses[..] {
-            [pose] => timed(|| sequence.ask(&mut Memory::default(), dispatcher, pose)).0,
-            [first, rest @ ..] => {
-                ask(first);
-                timed(|| rest.iter().for_each(ask)).0
-            }
-            [] => Duration::ZERO,
+        if sequence.poses.len() == 1 {
+            return timed(|| sequence.ask(&mut Memory::default(), dispatcher, 0)).0;
         }
+        sequence.ask(&mut memory, dispatcher, 0);
+        let steps = 1..sequence.poses.len();
+        timed(|| steps.for_each(|step| sequence.ask(&mut memory, dispatcher, step))).0
     };
     sequences.iter().map(time).sum()
-}
-
-impl Sequence<'_> {
-    /// The truth about a step of two meshes.
-    fn truth(&self, step: usize) -> Truth {
-        let shapes = self.shapes.map(|shape| &**shape);
-        let question = Question::new(&self.poses[step], shapes, self.prediction);
-        Judge::new(self.shapes).truth(&question)
-    }
-
-    fn ask(&self, memory: &mut Memory, dispatcher: &SharedDispatcher, pose: &Pose3) {
-        memory.ask(dispatcher, self.shapes.map(|shape| &**shape), pose, self.prediction);
-    }
-
-    /// Asks everything, and shows the manifolds after each query, by its number.
-    pub fn walk(
-        &self,
-        dispatcher: &SharedDispatcher,
-        mut seen: impl FnMut(usize, &[ContactManifold]),
-    ) {
-        let mut memory = Memory::default();
-        for (index, pose) in self.poses.iter().enumerate() {
-            self.ask(&mut memory, dispatcher, pose);
-            seen(index, &memory.manifolds);
-        }
-    }
 }

@@ -16,14 +16,14 @@ use rapier3d::geometry::SharedShape;
 use rapier3d::math::Real;
 
 use super::motion::{Approach, Mode, Place};
-use super::pair::{Contest, Sequence, errors, query_count, sweep};
+use super::pair::{Contest, query_count, sweep};
 use super::turns::race;
 use super::{Progress, StudyError, shape};
 use crate::backend::{Backend, Question, SharedDispatcher};
 use crate::mesh;
-use crate::metrics::{Environment, ErrorCount, Judge};
+use crate::metrics::{Environment, ErrorCount, Judge, Sequence};
 use crate::report::{
-    self, ERROR_NOTE, Look, Panel, Results, Row, Scale, TIME_NOTE, Table, TableSpec, number, time,
+    ERROR_NOTE, Look, Panel, Results, Row, Scale, TIME_NOTE, Table, TableSpec, errors, number, time,
 };
 use crate::scene::{Ground, HeadsOnTerrain, Scene, SceneError};
 
@@ -110,24 +110,15 @@ struct Way<'a> {
 }
 
 impl Way<'_> {
-    fn sequences<'a>(
-        &'a self,
-        head: &'a SharedShape,
-        places: &[Place],
-        mode: Mode,
-    ) -> Vec<Sequence<'a>> {
-        let sequence = |place: &Place| Sequence {
-            shapes: [self.shape, head],
-            poses: mode.poses(head, place, PREDICTION),
-            prediction: PREDICTION,
-        };
+    fn sequences(&self, head: &SharedShape, places: &[Place], mode: Mode) -> Vec<Sequence> {
+        let sequence = |place| mode.sequence([self.shape, head], place, PREDICTION);
         places.iter().map(sequence).collect()
     }
 
     /// Errors of the first and the last answer of each motion, against the terrain as a mesh.
     fn errors(&self, sequences: &[Sequence], meshes: [&SharedShape; 2], cells: u32) -> ErrorCount {
         let judge = Judge::new(meshes);
-        let [errors] = errors([self.dispatcher], sequences, |index, step| {
+        let [errors] = Sequence::errors(sequences, [self.dispatcher], |index, step| {
             let poses = &sequences[index].poses;
             (step == 0 || step + 1 == poses.len()).then(|| {
                 let shapes = meshes.map(|shape| &**shape);
@@ -222,7 +213,7 @@ fn tables(rows: &[Row], fall_steps: usize) -> Vec<Table> {
             time("first", "fresh"),
             time("steady, 0.05 a step", "steady"),
             number("cells read", "cells_read"),
-            report::errors("errors", "errors"),
+            errors("errors", "errors"),
         ],
     )
     .note("cells: along a side; stock Rapier has no contacts of a mesh and a height field")

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rapier3d::parry::query::DefaultQueryDispatcher;
 use sbbk_lab::backend::{Backend, PairKind, Probe, SharedDispatcher, Timed};
-use sbbk_lab::metrics::{PosePairs, RunPlan, WorldState, run};
+use sbbk_lab::metrics::{RunPlan, Sequence, WorldState, run};
 use sbbk_lab::scene::{BoxStack, HelicopterBallDrop, MonkeyPile, Scene};
 
 const PLAN: RunPlan =
@@ -48,21 +48,16 @@ fn captured_pairs_are_asked_once_fresh_and_once_steady() {
     let pairs = || built.world.contact_pairs();
     let heads = pairs().filter(|pair| pair.collider1 != floor && pair.collider2 != floor).count();
     assert!(heads > 10 && heads < pairs().count(), "heads lie on heads and on the floor");
-    let captured = PosePairs::capture(&mut built.world, |world| world.step());
-    assert_eq!(captured.pair_count(), heads);
-    let moved = |&index: &usize| {
-        let [first, second] = [0, 1].map(|pose_index| captured.question(index, pose_index));
-        first.shapes == second.shapes && first.pos12 != second.pos12
-    };
-    assert!((0..heads).filter(moved).count() > heads / 2, "a step moves most pairs");
+    let captured = Sequence::captured(&mut built.world, |world| world.step());
+    assert_eq!(captured.len(), heads);
+    let moved = |pair: &&Sequence| pair.poses.len() == 2 && pair.poses[0] != pair.poses[1];
+    assert!(captured.iter().filter(moved).count() > heads / 2, "a step moves most pairs");
 
     let probe = Probe::default();
     let timed: SharedDispatcher =
         Arc::new(Timed::new(Arc::new(DefaultQueryDispatcher), probe.clone()));
-    let sweep = captured.sweep(&timed);
-    let tally = probe.tally(PairKind::MeshMesh);
-    assert_eq!(tally.calls, 2 * heads as u64);
-    assert!(tally.time <= sweep.fresh + sweep.steady);
+    captured.iter().for_each(|pair| pair.walk(&timed, |_, _| ()));
+    assert_eq!(probe.tally(PairKind::MeshMesh).calls, 2 * heads as u64);
 }
 
 /// Would catch heights or energies of the wrong bodies: heads that fall freely keep their energy,

@@ -16,11 +16,11 @@ use serde_json::Value;
 
 use self::generators::generators;
 use super::motion::{Approach, Mode, Place, STEP_COUNT, mode_notes};
-use super::pair::{Contest, DIRECT_NOTE, Sequence};
+use super::pair::{Contest, DIRECT_NOTE};
 use super::{Progress, StudyError, shape};
 use crate::backend::Memory;
 use crate::mesh::{self, Mesh};
-use crate::metrics::{ContactErrors, Environment};
+use crate::metrics::{ContactErrors, Environment, Sequence};
 use crate::report::{Panel, Results, Row, TIME_NOTE, Table, TableSpec, number, sides};
 
 const EXACTNESS: &str = "contacts: exactness";
@@ -239,14 +239,9 @@ impl<'a> Case<'a> {
     }
 
     /// What is asked in a mode.
-    fn sequences(&self, mode: Mode, limit: usize) -> Vec<Sequence<'a>> {
+    fn sequences(&self, mode: Mode, limit: usize) -> Vec<Sequence> {
         let places = self.places.iter().take(limit);
-        let sequence = |place: &Place| Sequence {
-            shapes: [self.shape; 2],
-            poses: mode.poses(self.shape, place, self.prediction),
-            prediction: self.prediction,
-        };
-        places.map(sequence).collect()
+        places.map(|place| mode.sequence([self.shape; 2], place, self.prediction)).collect()
     }
 
     fn row(&self, study: &'static str, backend: impl ToString) -> Row {

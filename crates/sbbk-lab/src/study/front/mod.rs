@@ -22,12 +22,12 @@ use sbbk_core::tree::{LayerPlan, Tree};
 use self::search::{Search, Variant};
 use super::contacts::{ERROR_NOTE, places};
 use super::motion::{Place, motion};
-use super::pair::{Contest, Sequence};
+use super::pair::Contest;
 use super::turns::{race, timed};
 use super::{Progress, StudyError, shape, tree};
 use crate::backend::{Memory, SharedDispatcher};
 use crate::mesh::{self, Mesh};
-use crate::metrics::{Environment, Summary};
+use crate::metrics::{Environment, Sequence, Summary};
 use crate::report::{
     Look, Panel, Results, Row, Scale, TIME_NOTE, Table, TableSpec, faster, number, sides, time,
 };
@@ -227,8 +227,8 @@ impl<'a> Posed<'a> {
     /// Coherent motion with teleports, through the whole dispatcher.
     fn journey(&self, repeats: usize) -> impl Iterator<Item = Row> {
         let motions = self.motions(Motion::Slow);
-        let sequence =
-            Sequence { shapes: [&self.shape; 2], poses: motions.concat(), prediction: PREDICTION };
+        let shapes = [(); 2].map(|()| self.shape.clone());
+        let sequence = Sequence { shapes, poses: motions.concat(), prediction: PREDICTION };
         let contest = Contest::new([&self.shape]);
         let times = contest.race(repeats, std::slice::from_ref(&sequence));
         // At the end of the motion through each place.
@@ -262,8 +262,7 @@ fn differing_from_fresh(sequence: &Sequence, dispatcher: &SharedDispatcher) -> u
     let mut differing = 0;
     sequence.walk(dispatcher, |step, kept| {
         let mut fresh = Memory::default();
-        let shapes = sequence.shapes.map(|shape| &**shape);
-        fresh.ask(dispatcher, shapes, &sequence.poses[step], PREDICTION);
+        sequence.ask(&mut fresh, dispatcher, step);
         let fresh = &fresh.manifolds;
         let pairs = kept.iter().zip(fresh).filter(|(a, b)| !is_same(a, b));
         differing += kept.len().abs_diff(fresh.len()) + pairs.count();
