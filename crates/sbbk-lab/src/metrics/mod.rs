@@ -19,5 +19,5 @@ pub use fingerprint::Fingerprint;
 pub use run::{Run, RunPlan, Runner, Sample, run};
 pub use sequence::Sequence;
 pub use statistics::{Summary, geometric_mean, power_law, ratio};
-pub use step::{StepTimes, timed_step};
+pub use step::{StepTimes, judged_step, timed_step};
 pub use world_state::{WorldState, solver_points};

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::{ErrorCount, Judge, Sequence, StepTimes, WorldState, sample_indices, timed_step};
-use crate::backend::{Answer, Backend, Installed, Primed};
+use super::{ErrorCount, Sequence, StepTimes, WorldState, judged_step, sample_indices, timed_step};
+use crate::backend::{Backend, Installed, Primed};
 use crate::scene::{Scene, SceneError, SceneWorld};
 
 /// How long to run, and what to look at.
@@ -141,17 +141,9 @@ fn sampled_step(
     step: usize,
     limit: usize,
 ) -> Sample {
-    installed.probe.start_recording();
-    let pairs = Sequence::captured(world, |world| world.step());
-    let answers = installed.probe.take_answers();
-    let judge = Judge::new(world.colliders.iter().map(|(_, collider)| collider.shared_shape()));
-    let updated = sample_indices(answers.len(), limit).into_iter().map(|index| {
-        let Answer { question, reported } = &answers[index];
-        let truth = judge.truth(question);
-        match backend.has_surfaces() {
-            true => truth.judge_surfaces(reported),
-            false => truth.judge(reported).pairs,
-        }
+    let mut updated = ErrorCount::default();
+    let pairs = Sequence::captured(world, |world| {
+        updated = judged_step(world, &installed.probe, limit, backend.has_surfaces());
     });
     let sampled = sample_indices(pairs.len(), limit).into_iter().map(|index| pairs[index].clone());
     let sampled: Vec<Sequence> = sampled.collect();
@@ -164,7 +156,7 @@ fn sampled_step(
         step,
         state: WorldState::of(world, watched),
         fresh: ErrorCount { sampled_from: pairs.len(), ..fresh.pairs },
-        updated: ErrorCount { sampled_from: answers.len(), ..updated.sum() },
+        updated,
         pairs,
     }
 }

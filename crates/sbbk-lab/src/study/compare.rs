@@ -6,7 +6,7 @@ use super::pile::{self, PilePlan, SamePosesPlan, pile, same_poses_table};
 use super::{Progress, StudyError};
 use crate::backend::Backend;
 use crate::mesh::{self, Mesh};
-use crate::metrics::{Environment, RunPlan};
+use crate::metrics::RunPlan;
 use crate::report::Results;
 use crate::scene::{BallKind, HelicopterBallDrop, MonkeyPile};
 
@@ -116,5 +116,5 @@ pub fn compare(plan: &ComparePlan, progress: &Progress) -> Result<Results, Study
     ];
     let [detection, ratios] = pile::panels(&rows);
     let panels = vec![detection, ratios, meshes::panel(&rows)];
-    Ok(Results { environment: Environment::detect(), rows, tables, panels })
+    Ok(Results::new(rows, tables, panels))
 }

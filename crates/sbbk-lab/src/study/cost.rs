@@ -5,7 +5,7 @@ use super::pile::{PilePlan, pile};
 use super::{Progress, StudyError};
 use crate::backend::Backend;
 use crate::mesh;
-use crate::metrics::{Environment, RunPlan, power_law};
+use crate::metrics::{RunPlan, power_law};
 use crate::report::{Look, Panel, Results, Row, Scale, Table, TableSpec, faster, number, time};
 use crate::scene::MonkeyPile;
 
@@ -90,7 +90,7 @@ pub fn cost(plan: &CostPlan, progress: &Progress) -> Result<Results, StudyError>
     let tables = vec![table(plan, &rows), exponent_table(&exponents)];
     let panels = AXES.map(|axis| panel(plan, &rows, axis)).into();
     rows.extend(exponents);
-    Ok(Results { environment: Environment::detect(), rows, tables, panels })
+    Ok(Results::new(rows, tables, panels))
 }
 
 fn points(rows: &[Row], axis: &str, backend: Backend, path: &str) -> Vec<[f64; 2]> {

@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::{Progress, StudyError};
 use crate::backend::Backend;
-use crate::metrics::{Environment, Fingerprint, StepTimes, Summary, timed_step};
+use crate::metrics::{Fingerprint, StepTimes, Summary, timed_step};
 use crate::report::{Results, Row, Table, TableSpec, faster, number, time};
 use crate::scene::{BoxStack, HeadOnSlope, HelicopterBallDrop, MonkeyPile, Scene};
 
@@ -79,7 +79,7 @@ pub fn determinism(plan: &DeterminismPlan, progress: &Progress) -> Result<Result
     }
     progress.finish();
     let tables = tables(&rows, plan.steps);
-    Ok(Results { environment: Environment::detect(), rows, tables, panels: Vec::new() })
+    Ok(Results::new(rows, tables, Vec::new()))
 }
 
 /// The scenes whose runs under SBBK differ though they repeat under stock: SBBK's own fault.

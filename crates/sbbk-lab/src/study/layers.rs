@@ -24,7 +24,7 @@ use super::turns::{race, timed};
 use super::{Progress, StudyError, shape};
 use crate::backend::SharedDispatcher;
 use crate::mesh::{self, Mesh, Thread};
-use crate::metrics::{Environment, Sequence};
+use crate::metrics::Sequence;
 use crate::report::{Results, Row, Table, TableSpec, faster, number};
 
 const BARE: &str = "layers: bare trees";
@@ -118,7 +118,7 @@ pub fn layers(plan: &LayersPlan, progress: &Progress) -> Result<Results, StudyEr
     }
     progress.finish();
     let tables = tables(&rows);
-    Ok(Results { environment: Environment::detect(), rows, tables, panels: Vec::new() })
+    Ok(Results::new(rows, tables, Vec::new()))
 }
 
 struct Case<'a> {

@@ -16,7 +16,7 @@ use rapier3d::pipeline::PhysicsWorld;
 use super::{Progress, StudyError};
 use crate::backend::{Backend, Probe, Timed};
 use crate::mesh::{self, Mesh};
-use crate::metrics::{Environment, ErrorCount, Judge, Summary, sample_indices, timed_step};
+use crate::metrics::{ErrorCount, Summary, judged_step, timed_step};
 use crate::report::{self, ERROR_NOTE, Results, Row, TableSpec, number, time};
 use crate::scene::Solid;
 
@@ -78,7 +78,7 @@ pub fn soak(plan: &SoakPlan, progress: &Progress) -> Result<(Results, SoakEnd), 
             run.spawn(plan.body_limit)?;
         }
         if step % plan.sample_every == 0 {
-            errors += run.sampled_step(plan.sample_size);
+            errors += judged_step(&mut run.world, &run.probe, plan.sample_size, true);
         } else {
             times.push(timed_step(&mut run.world, &run.probe).step);
         }
@@ -115,7 +115,7 @@ pub fn soak(plan: &SoakPlan, progress: &Progress) -> Result<(Results, SoakEnd), 
     .note("times: min / median over the steps")
     .note(ERROR_NOTE);
     let tables = vec![spec.of(&rows)];
-    Ok((Results { environment: Environment::detect(), rows, tables, panels: Vec::new() }, end))
+    Ok((Results::new(rows, tables, Vec::new()), end))
 }
 
 struct SoakRun {
@@ -197,21 +197,6 @@ impl SoakRun {
 
     fn between(&mut self, low: f32, high: f32) -> f32 {
         low + (high - low) * self.random.rand_float()
-    }
-
-    /// Steps once and judges what Rapier was told.
-    fn sampled_step(&mut self, limit: usize) -> ErrorCount {
-        self.probe.start_recording();
-        self.world.step();
-        let answers = self.probe.take_answers();
-        let shapes = self.world.colliders.iter().map(|(_, collider)| collider.shared_shape());
-        let judge = Judge::new(shapes);
-        let sampled = sample_indices(answers.len(), limit).into_iter();
-        let errors = sampled
-            .map(|index| &answers[index])
-            .map(|answer| judge.truth(&answer.question).judge_surfaces(&answer.reported))
-            .sum();
-        ErrorCount { sampled_from: answers.len(), ..errors }
     }
 
     /// Of the steps up to this one, in milliseconds and MiB.

@@ -4,7 +4,7 @@ use super::pair::Contest;
 use super::turns::in_turn;
 use super::{Progress, StudyError};
 use crate::backend::Backend;
-use crate::metrics::{Environment, ErrorCount, Judge, StepTimes, Summary, timed_step};
+use crate::metrics::{ErrorCount, StepTimes, Summary, judged_step, timed_step};
 use crate::report::{
     ERROR_NOTE, Look, Panel, Results, Row, Scale, TIME_NOTE, Table, TableSpec, errors, faster,
     number, time,
@@ -46,7 +46,7 @@ pub fn soft(plan: &SoftPlan, progress: &Progress) -> Result<Results, StudyError>
     let rows = heads(&scene, plan, progress)?;
     progress.finish();
     let (tables, panels) = (vec![table(&rows, &scene)], vec![panel(&rows)]);
-    Ok(Results { environment: Environment::detect(), rows, tables, panels })
+    Ok(Results::new(rows, tables, panels))
 }
 
 /// Runs the scene under both backends. Times are means over the steps of a run.
@@ -80,22 +80,16 @@ fn heads(scene: &SoftHeads, plan: &SoftPlan, progress: &Progress) -> Result<Vec<
     rows.collect()
 }
 
-/// The answers of some steps, judged by the vertices at the start of the step, where Rapier asks.
+/// The answers of some steps.
 fn judged(scene: &SoftHeads, backend: Backend, plan: &SoftPlan) -> Result<ErrorCount, SceneError> {
     let mut built = scene.build()?;
     let installed = backend.install(&mut built.world);
     let mut errors = ErrorCount::default();
     for step in 1..=plan.steps {
-        if !step.is_multiple_of(plan.judged_every) {
+        if step.is_multiple_of(plan.judged_every) {
+            errors += judged_step(&mut built.world, &installed.probe, usize::MAX, false);
+        } else {
             built.world.step();
-            continue;
-        }
-        let shapes = built.world.colliders.iter().map(|(_, collider)| collider.shared_shape());
-        let judge = Judge::new(shapes);
-        installed.probe.start_recording();
-        built.world.step();
-        for answer in installed.probe.take_answers() {
-            errors += judge.truth(&answer.question).judge(&answer.reported).pairs;
         }
     }
     Ok(errors)

@@ -21,7 +21,7 @@ use super::turns::race;
 use super::{Progress, StudyError, shape};
 use crate::backend::{Backend, Question, SharedDispatcher};
 use crate::mesh;
-use crate::metrics::{Environment, ErrorCount, Judge, Sequence};
+use crate::metrics::{ErrorCount, Judge, Sequence};
 use crate::report::{
     ERROR_NOTE, Look, Panel, Results, Row, Scale, TIME_NOTE, Table, TableSpec, errors, number, time,
 };
@@ -98,7 +98,7 @@ pub fn terrain(plan: &TerrainPlan, progress: &Progress) -> Result<Results, Study
         falls(&rows),
     ];
     let tables = tables(&rows, plan.fall_steps);
-    Ok(Results { environment: Environment::detect(), rows, tables, panels })
+    Ok(Results::new(rows, tables, panels))
 }
 
 /// A terrain and who answers for it.

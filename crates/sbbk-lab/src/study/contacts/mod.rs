@@ -20,7 +20,7 @@ use super::pair::{Contest, DIRECT_NOTE};
 use super::{Progress, StudyError, shape};
 use crate::backend::Memory;
 use crate::mesh::{self, Mesh};
-use crate::metrics::{ContactErrors, Environment, Sequence};
+use crate::metrics::{ContactErrors, Sequence};
 use crate::report::{Panel, Results, Row, TIME_NOTE, Table, TableSpec, number, sides};
 
 const EXACTNESS: &str = "contacts: exactness";
@@ -177,7 +177,7 @@ pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Result<Results, Stu
         Panel::time_against_error(motion, speed(Mode::SLOW).chain(speed(Mode::FAST))),
     ];
     let tables = tables(&rows, cases.iter().filter(|case| case.true_pairs()[1] == 0).count());
-    Ok(Results { environment: Environment::detect(), rows, tables, panels })
+    Ok(Results::new(rows, tables, panels))
 }
 
 /// How far the second mesh goes beyond the first touch, in units; negative: short of it. The

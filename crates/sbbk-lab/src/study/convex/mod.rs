@@ -20,7 +20,6 @@ use super::motion::{Mode, Place, mode_notes};
 use super::pair::{Contest, DIRECT_NOTE};
 use super::{Progress, StudyError, shape};
 use crate::mesh::{self, Mesh};
-use crate::metrics::Environment;
 use crate::report::{Panel, Results, Row, TIME_NOTE, Table, TableSpec, errors, number, sides};
 
 /// What to compare, and how thoroughly.
@@ -117,8 +116,8 @@ pub fn convex(plan: &ConvexPlan, progress: &Progress) -> Result<Results, StudyEr
         }
     }
     progress.finish();
-    let environment = Environment::detect();
-    Ok(Results { environment, tables: tables(plan, &rows), rows, panels: panels.into() })
+    let tables = tables(plan, &rows);
+    Ok(Results::new(rows, tables, panels.into()))
 }
 
 /// Times and errors of one mesh.

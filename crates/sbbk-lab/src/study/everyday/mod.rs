@@ -27,7 +27,6 @@ use rapier3d::math::Real;
 use self::ground::Ground;
 use self::measure::Everyday;
 use super::{Progress, StudyError};
-use crate::metrics::Environment;
 use crate::report::{Results, Row};
 
 const BODIES: &str = "everyday: bodies on terrains";
@@ -190,7 +189,7 @@ pub fn everyday(plan: &EverydayPlan, progress: &Progress) -> Result<Results, Stu
         return Err(StudyError::NoScene(plan.name.clone()));
     }
     let (tables, panels) = (report::tables(plan, &rows), report::panels(&rows));
-    Ok(Results { environment: Environment::detect(), rows, tables, panels })
+    Ok(Results::new(rows, tables, panels))
 }
 
 impl EverydayPlan {

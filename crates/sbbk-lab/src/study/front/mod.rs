@@ -27,7 +27,7 @@ use super::turns::{race, timed};
 use super::{Progress, StudyError, shape, tree};
 use crate::backend::{Memory, SharedDispatcher};
 use crate::mesh::{self, Mesh};
-use crate::metrics::{Environment, Sequence, Summary};
+use crate::metrics::{Sequence, Summary};
 use crate::report::{
     Look, Panel, Results, Row, Scale, TIME_NOTE, Table, TableSpec, faster, number, sides, time,
 };
@@ -145,7 +145,8 @@ pub fn front(plan: &FrontPlan, progress: &Progress) -> Result<Results, StudyErro
     }
     progress.finish();
     let panels = Motion::ALL.map(|motion| panel(&rows, motion)).into();
-    Ok(Results { environment: Environment::detect(), tables: tables(&rows), rows, panels })
+    let tables = tables(&rows);
+    Ok(Results::new(rows, tables, panels))
 }
 
 impl<'a> Posed<'a> {

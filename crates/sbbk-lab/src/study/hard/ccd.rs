@@ -95,12 +95,12 @@ fn plates(kit: &Kit, target: Target) -> Result<Figures, SceneError> {
     for index in 0..PHASES {
         let phase = index as f32 / PHASES as f32;
         let mut world = kit.world();
-        world.insert(RigidBodyBuilder::fixed(), fixed.clone());
+        world.fix(Vec3::ZERO, fixed.clone());
         let turn = Quat::from_rotation_y(phase * TAU) * Quat::from_rotation_x(0.6 * phase);
         let place = Vec3::new(0.1 * phase, 2.0 + phase * SPEED * STEP, 0.05);
         let body = RigidBodyBuilder::dynamic().pose(Pose3::from_parts(place, turn));
         let body = body.linvel(-SPEED * Vec3::Y).soft_ccd_prediction(0.6);
-        let (body, _) = world.insert(body, plate.clone());
+        let body = world.add(body, &plate);
         let mut stuck = 0;
         for _ in 0..60 {
             world.step();
@@ -138,9 +138,9 @@ fn boxes(kit: &Kit) -> Result<Figures, SceneError> {
             let place = Vec3::new(side * distance, 0.0, 0.0);
             let body = RigidBodyBuilder::dynamic().translation(place);
             let body = body.linvel(-side * SPEED * Vec3::X).soft_ccd_prediction(2.5);
-            world.insert(body, collider.clone()).0
+            world.add(body, &collider)
         });
-        (0..60).for_each(|_| world.step());
+        world.run(60);
         let [left, right] = bodies.map(|body| world.bodies[body].translation().x);
         let are_apart = right - left > 1.8 * HALF;
         passed += usize::from(!are_apart);
@@ -157,10 +157,10 @@ fn slabs(kit: &Kit, cell: f32) -> Result<Figures, SceneError> {
     let mut passed = 0;
     for _ in 0..60 {
         let mut world = kit.world();
-        world.insert(RigidBodyBuilder::fixed(), floor.clone());
+        world.fix(Vec3::ZERO, floor.clone());
         let pose = Pose3::from_parts(Vec3::new(0.1, 1.75, 0.2), random::rotation(&mut random));
-        let (body, _) = world.insert(RigidBodyBuilder::dynamic().pose(pose), slab.clone());
-        (0..150).for_each(|_| world.step());
+        let body = world.add(RigidBodyBuilder::dynamic().pose(pose), &slab);
+        world.run(150);
         let is_above = world.bodies[body].translation().y > 0.0;
         passed += usize::from(!is_above);
     }

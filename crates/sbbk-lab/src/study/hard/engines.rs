@@ -19,7 +19,7 @@ use super::figures::Gain;
 use super::kit::{Form, Kit};
 use super::pile::{FLOOR, build};
 use crate::mesh::Mesh;
-use crate::metrics::{Environment, Summary, solver_points};
+use crate::metrics::{Summary, solver_points};
 use crate::report::{Results, Row, TableSpec, number};
 use crate::scene::{MonkeyPile, SceneError};
 use crate::study::shape;
@@ -172,7 +172,7 @@ impl EnginePile {
         let form = Form::parts(self.mesh.clone(), self.parts.iter().cloned());
         let properties = MassProperties::new(Vec3::ZERO, self.mass, self.inertia);
         let collider = kit.collider(&form)?.friction(self.friction).mass_properties(properties);
-        let (mut world, bodies) = build(&kit, self.floor, self.poses.iter().copied(), &collider);
+        let mut world = build(&kit, self.floor, self.poses.iter().copied(), &collider);
         world.integration_parameters.dt = self.time_step;
         world.gravity = -self.gravity * Vec3::Y;
         for _ in 0..STEPS {
@@ -181,7 +181,7 @@ impl EnginePile {
             let time = 1e3 * clock.elapsed().as_secs_f32();
             let memory = memory("VmHWM");
             let mut numbers = vec![time, solver_points(&world) as f32, memory, memory - empty];
-            for body in bodies.iter().map(|&body| &world.bodies[body]) {
+            for body in world.watched.iter().map(|&body| &world.bodies[body]) {
                 numbers.extend(body.translation().to_array());
                 numbers.extend(body.rotation().to_array());
                 numbers.extend([body.linvel(), body.angvel()].map(|v| v.to_array()).concat());
@@ -236,7 +236,7 @@ impl EnginePile {
                 self.parts.len()
             ));
         let tables = vec![table.of(&rows)];
-        Ok(Results { environment: Environment::detect(), rows, tables, panels: Vec::new() })
+        Ok(Results::new(rows, tables, Vec::new()))
     }
 
     fn read_run(&self, path: &Path) -> io::Result<Run> {

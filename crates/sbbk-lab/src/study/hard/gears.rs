@@ -53,7 +53,7 @@ fn run(kit: &Kit, speed: f32) -> Result<Figures, SceneError> {
         let axle = world.insert_body(RigidBodyBuilder::fixed().translation(place));
         let body = RigidBodyBuilder::dynamic().translation(place).rotation(Vec3::Z * turn);
         let body = body.angular_damping(load).can_sleep(false);
-        let (body, _) = world.insert(body, collider.clone());
+        let body = world.add(body, &collider);
         let joint = RevoluteJointBuilder::new(Vec3::Z);
         let joint = motor.iter().fold(joint, |joint, &speed| joint.motor_velocity(speed, 1e4));
         world.insert_impulse_joint(axle, body, joint);

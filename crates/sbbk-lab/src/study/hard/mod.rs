@@ -41,7 +41,6 @@ pub use self::kit::Column;
 use self::figures::Figures;
 use self::kit::{Film, Kit};
 use super::{Progress, StudyError};
-use crate::metrics::Environment;
 use crate::replay;
 use crate::report::Results;
 use crate::scene::SceneError;
@@ -225,7 +224,7 @@ pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError>
         return Err(StudyError::NoScene(plan.name.clone()));
     }
     let (tables, panels) = (report::tables(plan, &rows), report::panels(&rows));
-    Ok(Results { environment: Environment::detect(), rows, tables, panels })
+    Ok(Results::new(rows, tables, panels))
 }
 
 /// Lets the first run of the first scene be recorded, on each column.

@@ -118,9 +118,9 @@ impl Rider {
 
     fn ride(self, kit: &Kit, floor: ColliderBuilder) -> Result<Ride, SceneError> {
         let mut world = kit.world();
-        world.insert(RigidBodyBuilder::fixed(), floor.friction(self.friction()));
+        world.fix(Vec3::ZERO, floor.friction(self.friction()));
         let collider = kit.collider(&self.form())?.friction(self.friction());
-        let (body, _) = world.insert(self.start(kit), collider);
+        let body = world.add(self.start(kit), &collider);
         let mut bump = 0.0;
         let mut way = vec![world.bodies[body].translation().x];
         for step in 1..=self.steps() {

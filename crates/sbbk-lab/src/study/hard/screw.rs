@@ -33,11 +33,11 @@ fn run(kit: &Kit, friction: f32) -> Result<Figures, SceneError> {
     let mut world = kit.world();
     world.integration_parameters.contact_clustering = false;
     let bolt = kit.collider(&Form::mesh(BOLT.bolt()))?;
-    world.insert(RigidBodyBuilder::fixed(), bolt.friction(friction));
+    world.fix(Vec3::ZERO, bolt.friction(friction));
     let nut = kit.collider(&Form::mesh(NUT.nut(NUT_RADIUS)))?;
     let start = BOLT.pitch * (BOLT.turns - NUT.turns) as f32;
     let body = RigidBodyBuilder::dynamic().translation(Vec3::Y * start).can_sleep(false);
-    let (body, _) = world.insert(body, nut.friction(friction));
+    let body = world.add(body, &nut.friction(friction));
     let mut turn = Turn::new(&world, body, Vec3::Y);
     // It first falls by the play of the thread.
     let (mut settled, mut place) = ([0.0; 2], start);

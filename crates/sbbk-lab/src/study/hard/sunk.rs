@@ -4,7 +4,7 @@ use glamx::Vec3;
 use rapier3d::dynamics::RigidBodyBuilder;
 
 use super::Trial;
-use super::figures::{Figures, largest, top_speed};
+use super::figures::{Figures, largest};
 use super::kit::{Form, Kit};
 use crate::scene::SceneError;
 
@@ -35,17 +35,16 @@ fn run(kit: &Kit, thickness: f32, cells: u32) -> Result<Figures, SceneError> {
     for index in 0..DEPTHS {
         let depth = LEAST + (MOST - LEAST) * index as f32 / (DEPTHS - 1) as f32;
         let mut world = kit.world();
-        let place = -0.5 * thickness * Vec3::Y;
-        world.insert(RigidBodyBuilder::fixed().translation(place), slab.clone());
+        world.fix(-0.5 * thickness * Vec3::Y, slab.clone());
         let body = RigidBodyBuilder::dynamic().translation(Vec3::Y * (0.5 - depth));
-        let (body, _) = world.insert(body, cube.clone());
+        let body = world.add(body, &cube);
         // One that has left below may fall as fast as it likes.
         let (mut left_below, mut lowest_speed) = (false, 0.0);
         for _ in 0..STEPS {
             world.step();
             left_below |= world.bodies[body].translation().y < -thickness - 0.45;
             if !left_below {
-                lowest_speed = largest([lowest_speed, top_speed(&world, &[body])]);
+                lowest_speed = largest([lowest_speed, world.top_speed()]);
             }
         }
         fastest = largest([fastest, lowest_speed]);

@@ -16,7 +16,7 @@ mod report;
 use self::led::{Led, Motion, Norm};
 use super::{Progress, StudyError};
 use crate::backend::Backend;
-use crate::metrics::{Environment, StepTimes, Summary};
+use crate::metrics::{StepTimes, Summary};
 use crate::report::{Results, Row};
 use crate::scene::{MonkeyPile, Scene};
 
@@ -95,7 +95,7 @@ pub fn one_step(plan: &OneStepPlan, progress: &Progress) -> Result<Results, Stud
     let rows = steps(&scene, plan, progress)?;
     progress.finish();
     let (tables, panels) = (vec![report::table(plan, &rows)], report::panels(plan, &rows));
-    Ok(Results { environment: Environment::detect(), rows, tables, panels })
+    Ok(Results::new(rows, tables, panels))
 }
 
 fn steps(

@@ -22,7 +22,6 @@ use super::turns::{race, timed};
 use super::{Progress, StudyError, shape};
 use crate::backend::{Backend, SharedDispatcher};
 use crate::mesh::{self, Mesh};
-use crate::metrics::Environment;
 use crate::report::{Panel, Results, Row, Scale, Table, TableSpec, faster, number, time};
 
 const QUERIES: &str = "queries, µs";
@@ -104,7 +103,8 @@ pub fn queries(plan: &QueriesPlan, progress: &Progress) -> Result<Results, Study
         panel(&rows, Query::Intersection, Distance::HardlyApart),
         panel(&rows, Query::Cast, Distance::Far),
     ];
-    Ok(Results { environment: Environment::detect(), tables: tables(&rows), rows, panels })
+    let tables = tables(&rows);
+    Ok(Results::new(rows, tables, panels))
 }
 
 /// A mesh of size [`SIZE`], and both dispatchers, which have met it.
