@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{ErrorCount, Sequence, StepTimes, WorldState, judged_step, sample_indices, timed_step};
 use crate::backend::{Backend, Installed, Primed};
-use crate::scene::{Scene, SceneError, SceneWorld};
+use crate::scene::{Scene, SceneWorld};
 
 /// How long to run, and what to look at.
 #[derive(Clone, Copy, Debug, Default)]
@@ -91,14 +91,12 @@ pub struct Runner {
 
 impl Runner {
     /// A run of `scene` on `backend` before its first step.
-    ///
-    /// Errors: the scene cannot be built.
-    pub fn new(scene: &dyn Scene, backend: Backend, plan: RunPlan) -> Result<Self, SceneError> {
-        let mut built = scene.build()?;
+    pub fn new(scene: &dyn Scene, backend: Backend, plan: RunPlan) -> Self {
+        let mut built = scene.build();
         let installed = backend.install(&mut built.world);
         installed.probe.time_every(plan.query_stride);
         let run = Run { backend, times: Vec::with_capacity(plan.steps), samples: Vec::new() };
-        Ok(Self { built, installed, plan, step: 0, run })
+        Self { built, installed, plan, step: 0, run }
     }
 
     /// Steps once: untimed in the warm-up, else timed or sampled.
@@ -126,12 +124,10 @@ impl Runner {
 }
 
 /// Runs `scene` on `backend` from start to end.
-///
-/// Errors: the scene cannot be built.
-pub fn run(scene: &dyn Scene, backend: Backend, plan: RunPlan) -> Result<Run, SceneError> {
-    let mut runner = Runner::new(scene, backend, plan)?;
+pub fn run(scene: &dyn Scene, backend: Backend, plan: RunPlan) -> Run {
+    let mut runner = Runner::new(scene, backend, plan);
     (0..plan.step_count()).for_each(|_| runner.step());
-    Ok(runner.finish())
+    runner.finish()
 }
 
 fn sampled_step(

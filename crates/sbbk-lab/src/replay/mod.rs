@@ -10,7 +10,7 @@
 //!
 //! let pile = MonkeyPile::with_heads(8);
 //! replay::play("page.html".as_ref(), &pile, &[Backend::Stock, Backend::Sbbk], 120)?;
-//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! # Ok::<(), sbbk_lab::report::ReportError>(())
 //! ```
 
 mod difference;
@@ -20,14 +20,13 @@ mod shapes;
 #[cfg(test)]
 mod tests;
 
-use std::error::Error;
 use std::fs;
 use std::io;
 use std::path::Path;
 
 use crate::backend::Backend;
 use crate::report::{ReportError, replace_file};
-use crate::scene::{Scene, SceneError, SceneWorld};
+use crate::scene::{Scene, SceneWorld};
 
 pub use encode::encode;
 pub use recorder::Recorder;
@@ -42,24 +41,24 @@ const PLAY: &str = include_str!("page/play.js");
 
 /// Runs a scene on some backends, all at the same time, and writes their page.
 ///
-/// Errors: the scene cannot be built, or the file cannot be written.
+/// Errors: the file cannot be written.
 pub fn play(
     path: &Path,
     scene: &dyn Scene,
     backends: &[Backend],
     steps: usize,
-) -> Result<(), Box<dyn Error>> {
+) -> Result<(), ReportError> {
     let start = |&backend: &Backend| {
-        let SceneWorld { mut world, .. } = scene.build()?;
+        let SceneWorld { mut world, .. } = scene.build();
         let installed = backend.install(&mut world);
-        Ok((Recorder::new(backend, &world), world, installed))
+        (Recorder::new(backend, &world), world, installed)
     };
-    let mut runs = backends.iter().map(start).collect::<Result<Vec<_>, SceneError>>()?;
+    let mut runs: Vec<_> = backends.iter().map(start).collect();
     for _ in 0..steps {
         runs.iter_mut().for_each(|(recorder, world, _)| recorder.step(world));
     }
     let recorders: Vec<Recorder> = runs.into_iter().map(|(recorder, ..)| recorder).collect();
-    Ok(write(path, &scene.name(), &recorders)?)
+    write(path, &scene.name(), &recorders)
 }
 
 /// Writes the runs of one scene, the first beside the others, into a page.

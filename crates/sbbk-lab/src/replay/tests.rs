@@ -18,7 +18,7 @@ const STEPS: usize = 90;
 const GONE: usize = 70;
 
 fn recorded(backend: Backend) -> Recorder {
-    let mut built = MonkeyPile::with_heads(HEADS).build().unwrap();
+    let mut built = MonkeyPile::with_heads(HEADS).build();
     let installed = backend.install(&mut built.world);
     let mut recorder = Recorder::new(backend, &built.world);
     for step in 0..STEPS {
@@ -138,7 +138,7 @@ fn what_is_written_can_be_read() {
 #[test]
 fn soft_bodies_deform() {
     const FRAMES: usize = 20;
-    let build = || SoftHeads { stiffness: 4.0, ..SoftHeads::with_heads(2) }.build().unwrap().world;
+    let build = || SoftHeads { stiffness: 4.0, ..SoftHeads::with_heads(2) }.build().world;
     let [mut recorded, mut alone] = [build(), build()];
     let mut run = Recorder::new("soft", &recorded);
     for _ in 0..2 * (FRAMES - 1) {

@@ -15,13 +15,13 @@ use rapier3d::geometry::SharedShape;
 use rapier3d::math::Real;
 use sbbk_core::query::{SearchScratch, contacts};
 use sbbk_core::traverse::Placement;
-use sbbk_core::tree::{BATCH, BuildError, BuildOptions, LayerPlan, Tree};
+use sbbk_core::tree::{BATCH, BuildOptions, LayerPlan, Tree};
 use sbbk_core::volumes::{DirectionSet, Directions};
 
 use super::motion::{Approach, Mode, Place, mode_notes};
 use super::pair::{Contest, query_count, sweep};
 use super::turns::{race, timed};
-use super::{Progress, StudyError, shape};
+use super::{Progress, shape};
 use crate::backend::SharedDispatcher;
 use crate::mesh::{self, Mesh, Thread};
 use crate::metrics::Sequence;
@@ -105,20 +105,18 @@ fn soup(count: usize) -> Mesh {
 }
 
 /// Measures all that `plan` asks for.
-///
-/// Errors: a mesh has no triangles.
-pub fn layers(plan: &LayersPlan, progress: &Progress) -> Result<Results, StudyError> {
+pub fn layers(plan: &LayersPlan, progress: &Progress) -> Results {
     progress.phase("layers", plan.pairs.len());
     let mut rows = Vec::new();
     for meshes in &plan.pairs {
-        let case = Case::new(meshes, plan)?;
-        rows.extend(case.bare(plan.repeats)?);
+        let case = Case::new(meshes, plan);
+        rows.extend(case.bare(plan.repeats));
         rows.extend(case.dispatcher(plan.repeats));
         progress.step();
     }
     progress.finish();
     let tables = tables(&rows);
-    Ok(Results::new(rows, tables, Vec::new()))
+    Results::new(rows, tables, Vec::new())
 }
 
 struct Case<'a> {
@@ -132,14 +130,14 @@ struct Case<'a> {
 type Ask<'a> = Box<dyn Fn(usize) -> Duration + 'a>;
 
 impl<'a> Case<'a> {
-    fn new(meshes: &'a [Mesh; 2], plan: &LayersPlan) -> Result<Self, StudyError> {
-        let shapes = [shape(&meshes[0])?, shape(&meshes[1])?];
+    fn new(meshes: &'a [Mesh; 2], plan: &LayersPlan) -> Self {
+        let shapes = [shape(&meshes[0]), shape(&meshes[1])];
         let contest = Contest::new(&shapes);
         let approaches = (0..plan.approach_count as u64).map(|seed| {
             Approach::random(contest.sbbk(), shapes.each_ref(), &mut Rand32::new(seed))
         });
         let places = approaches.flat_map(|approach| ADVANCES.map(|way| approach.place(way)));
-        Ok(Self { meshes, places: places.collect(), shapes })
+        Self { meshes, places: places.collect(), shapes }
     }
 
     fn row(&self, study: &'static str, mode: Mode, plan: &str) -> Row {
@@ -153,34 +151,34 @@ impl<'a> Case<'a> {
     }
 
     /// First queries of bare trees.
-    fn bare(&self, repeats: usize) -> Result<impl Iterator<Item = Row>, StudyError> {
+    fn bare(&self, repeats: usize) -> impl Iterator<Item = Row> {
         let options = |layers| BuildOptions { layers, leaf_size: BATCH };
         let default = options(LayerPlan::SBBK);
         let mut asks = Vec::new();
         for (_, layers) in PLANS {
-            asks.push(self.ask::<9>(options(layers))?);
+            asks.push(self.ask::<9>(options(layers)));
         }
-        asks.push(self.ask::<7>(default)?);
-        asks.push(self.ask::<13>(default)?);
-        asks.push(self.ask::<9>(BuildOptions { leaf_size: 2, ..default })?);
+        asks.push(self.ask::<7>(default));
+        asks.push(self.ask::<13>(default));
+        asks.push(self.ask::<9>(BuildOptions { leaf_size: 2, ..default }));
         let times = self.fastest(&asks, repeats, 1.0, |ask, place| ask(place));
         let names = PLANS.map(|(name, _)| name).into_iter().chain(OTHERS);
         let rows = names
             .zip(times)
             .map(|(name, time)| self.row(BARE, Mode::Fresh, name).with("time", time));
-        Ok(rows.collect::<Vec<_>>().into_iter())
+        rows.collect::<Vec<_>>().into_iter()
     }
 
-    fn ask<const AXES: usize>(&self, options: BuildOptions) -> Result<Ask<'_>, StudyError>
+    fn ask<const AXES: usize>(&self, options: BuildOptions) -> Ask<'_>
     where
         Directions<AXES>: DirectionSet<AXES>,
     {
         let tree = |mesh: &Mesh| {
             Tree::<AXES>::build(&mesh.vertices, &mesh.triangles, &options)
-                .map_err(|cause: BuildError| StudyError::Tree { mesh: mesh.name.clone(), cause })
+                .expect("meshes of the studies are sound")
         };
-        let trees = [tree(&self.meshes[0])?, tree(&self.meshes[1])?];
-        Ok(Box::new(move |place| {
+        let trees = [tree(&self.meshes[0]), tree(&self.meshes[1])];
+        Box::new(move |place| {
             let placement = Placement::new(&self.places[place].pos12);
             let (mut scratch, mut found) = (SearchScratch::default(), 0);
             let trees = (&trees[0], &trees[1]);
@@ -189,7 +187,7 @@ impl<'a> Case<'a> {
                 timed(|| contacts(trees, placement, prediction, &mut scratch, |_| found += 1));
             black_box(found);
             time
-        }))
+        })
     }
 
     /// All modes of the dispatcher.

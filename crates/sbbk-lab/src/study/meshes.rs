@@ -8,7 +8,7 @@ use super::contacts::places;
 use super::motion::Mode;
 use super::pair::{Contest, query_count};
 use super::turns::{race, timed};
-use super::{Progress, StudyError, shape, tree};
+use super::{Progress, shape, tree};
 use crate::mesh::Mesh;
 use crate::metrics::{Sequence, Summary, ratio};
 use crate::report::{
@@ -28,25 +28,23 @@ const TRIANGLES: usize = 100_000;
 
 /// Measures each mesh, scaled to two units, against itself. Builds are in milliseconds, queries in
 /// µs.
-///
-/// Errors: a mesh has no triangles, or a tree cannot be built for it.
-pub(super) fn meshes(meshes: &[Mesh], progress: &Progress) -> Result<Vec<Row>, StudyError> {
+pub(super) fn meshes(meshes: &[Mesh], progress: &Progress) -> Vec<Row> {
     progress.phase("trees and first queries", meshes.len());
     let mut rows = Vec::new();
     for mesh in meshes {
-        rows.extend(measure(&mesh.clone().centred().scaled_to(2.0))?);
+        rows.extend(measure(&mesh.clone().centred().scaled_to(2.0)));
         progress.step();
     }
-    Ok(rows)
+    rows
 }
 
-fn measure(mesh: &Mesh) -> Result<[Row; 2], StudyError> {
+fn measure(mesh: &Mesh) -> [Row; 2] {
     let count =
         |[least, most]: [usize; 2]| (TRIANGLES / mesh.triangle_count().max(1)).clamp(least, most);
-    let shape = shape(mesh)?;
+    let shape = shape(mesh);
     let bytes = [
         shape.as_trimesh().map_or(0, |mesh| mesh.bvh().total_memory_size()),
-        tree(mesh, LayerPlan::SBBK)?.stats().bytes(),
+        tree(mesh, LayerPlan::SBBK).stats().bytes(),
     ];
     let builds: [&dyn Fn() -> Duration; 2] =
         [&|| timed(|| mesh.shared_shape()).0, &|| timed(|| tree(mesh, LayerPlan::SBBK)).0];
@@ -62,7 +60,7 @@ fn measure(mesh: &Mesh) -> Result<[Row; 2], StudyError> {
     let saved = queries[0].median - queries[1].median;
     let paid = |build: &Summary| ratio(1e3 * build.median, saved).filter(|count| *count > 0.0);
     let break_even = [None, paid(&builds[1])];
-    Ok([0, 1].map(|side| {
+    [0, 1].map(|side| {
         Row::new(MESHES, Contest::BACKENDS[side])
             .key("mesh", &*mesh.name)
             .key("triangle_count", mesh.triangle_count())
@@ -73,7 +71,7 @@ fn measure(mesh: &Mesh) -> Result<[Row; 2], StudyError> {
             .with("time", queries[side])
             .with("break_even", break_even[side].map(|count| count.ceil() as u64))
             .with("errors", errors[side])
-    }))
+    })
 }
 
 /// Build time, memory, first queries and break-even.

@@ -12,7 +12,7 @@ use crate::metrics::{
 use crate::report::{
     ERROR_NOTE, Look, Panel, Row, Scale, TIME_NOTE, Table, TableSpec, errors, faster, number, time,
 };
-use crate::scene::{MonkeyPile, Scene, SceneError};
+use crate::scene::{MonkeyPile, Scene};
 
 const RUNS: &str = "pile, whole runs";
 const SAME_POSES: &str = "pile, same poses";
@@ -48,19 +48,13 @@ impl PilePlan {
 
 /// Runs `scene` on the backends of `plan`. Times are means over a run's timed steps, in milliseconds,
 /// summed up over the runs.
-///
-/// Errors: the scene cannot be built.
-pub fn pile(
-    scene: &MonkeyPile,
-    plan: &PilePlan,
-    progress: &Progress,
-) -> Result<Vec<Row>, SceneError> {
+pub fn pile(scene: &MonkeyPile, plan: &PilePlan, progress: &Progress) -> Vec<Row> {
     let mut runs: Vec<Vec<Run>> = plan.backends.iter().map(|_| Vec::new()).collect();
     for repeat in 0..plan.repeats {
         progress.phase(scene.name(), plan.run.step_count());
         let sample_every = if repeat == 0 { plan.run.sample_every } else { 0 };
         let run_plan = RunPlan { sample_every, ..plan.run };
-        let ended = side_by_side(scene, &plan.backends, run_plan, progress)?;
+        let ended = side_by_side(scene, &plan.backends, run_plan, progress);
         ended.into_iter().zip(&mut runs).for_each(|(run, runs)| runs.push(run));
     }
     let mut rows: Vec<Row> = runs.iter().map(|runs| row(scene, runs)).collect();
@@ -70,7 +64,7 @@ pub fn pile(
         progress.phase(phase, plan.repeats * Backend::ALL.len());
         rows.extend(same_poses(scene, &sample.pairs, plan, progress));
     }
-    Ok(rows)
+    rows
 }
 
 /// One run on each backend, all at the same time: each step is done by one world after the other,
@@ -81,9 +75,9 @@ fn side_by_side(
     backends: &[Backend],
     plan: RunPlan,
     progress: &Progress,
-) -> Result<Vec<Run>, SceneError> {
+) -> Vec<Run> {
     let runners = backends.iter().map(|&backend| Runner::new(scene, backend, plan));
-    let mut runners = runners.collect::<Result<Vec<Runner>, _>>()?;
+    let mut runners = runners.collect::<Vec<Runner>>();
     for step in 0..plan.step_count() {
         for turn in 0..runners.len() {
             let index = (step + turn) % runners.len();
@@ -91,7 +85,7 @@ fn side_by_side(
         }
         progress.step();
     }
-    Ok(runners.into_iter().map(Runner::finish).collect())
+    runners.into_iter().map(Runner::finish).collect()
 }
 
 fn pile_row(study: &'static str, backend: Backend, scene: &MonkeyPile) -> Row {
@@ -139,9 +133,9 @@ fn same_poses(
             (step == judged).then(|| sampled[index].truth(step))
         })
     });
-    let Ok(sweeps) = in_turn(&dispatchers, plan.repeats, |dispatcher| {
+    let sweeps = in_turn(&dispatchers, plan.repeats, |dispatcher| {
         progress.step();
-        Ok::<_, std::convert::Infallible>(sweep(dispatcher, pairs))
+        sweep(dispatcher, pairs)
     });
     let answered =
         Backend::ALL.into_iter().zip(sweeps).zip(fresh_errors.iter().zip(&steady_errors));

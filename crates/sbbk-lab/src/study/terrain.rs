@@ -18,14 +18,14 @@ use rapier3d::math::Real;
 use super::motion::{Approach, Mode, Place};
 use super::pair::{Contest, query_count, sweep};
 use super::turns::race;
-use super::{Progress, StudyError, shape};
+use super::{Progress, shape};
 use crate::backend::{Backend, Question, SharedDispatcher};
 use crate::mesh;
 use crate::metrics::{ErrorCount, Judge, Sequence};
 use crate::report::{
     ERROR_NOTE, Look, Panel, Results, Row, Scale, TIME_NOTE, Table, TableSpec, errors, number, time,
 };
-use crate::scene::{Ground, HeadsOnTerrain, Scene, SceneError};
+use crate::scene::{Ground, HeadsOnTerrain, Scene};
 
 const QUERIES: &str = "terrain: queries, µs";
 const FALLS: &str = "terrain: falling heads";
@@ -66,13 +66,11 @@ pub fn falling_heads(ground: Ground) -> HeadsOnTerrain {
 }
 
 /// Measures all that `plan` asks for.
-///
-/// Errors: none but those of a mesh without triangles, which these are not.
-pub fn terrain(plan: &TerrainPlan, progress: &Progress) -> Result<Results, StudyError> {
+pub fn terrain(plan: &TerrainPlan, progress: &Progress) -> Results {
     progress.phase("terrains", plan.cells.len());
     let mut rows = Vec::new();
     for &cells in &plan.cells {
-        rows.extend(of_size(plan, cells)?);
+        rows.extend(of_size(plan, cells));
         progress.step();
     }
     let ways = [
@@ -82,7 +80,7 @@ pub fn terrain(plan: &TerrainPlan, progress: &Progress) -> Result<Results, Study
     ];
     progress.phase("falling heads", ways.len());
     for (backend, ground) in ways {
-        let above = fall(backend, ground, plan.fall_steps)?;
+        let above = fall(backend, ground, plan.fall_steps);
         rows.push(
             Row::new(FALLS, backend)
                 .key("ground", ground.to_string())
@@ -98,7 +96,7 @@ pub fn terrain(plan: &TerrainPlan, progress: &Progress) -> Result<Results, Study
         falls(&rows),
     ];
     let tables = tables(&rows, plan.fall_steps);
-    Ok(Results::new(rows, tables, panels))
+    Results::new(rows, tables, panels)
 }
 
 /// A terrain and who answers for it.
@@ -150,9 +148,9 @@ fn in_field(triangle: u32, cells: u32) -> u32 {
     (cell % cells) * cells + cell / cells + side * cells * cells
 }
 
-fn of_size(plan: &TerrainPlan, cells: u32) -> Result<Vec<Row>, StudyError> {
-    let head = shape(&mesh::monkey_head().centred().scaled_to(2.0))?;
-    let ground = shape(&HeadsOnTerrain::terrain(cells))?;
+fn of_size(plan: &TerrainPlan, cells: u32) -> Vec<Row> {
+    let head = shape(&mesh::monkey_head().centred().scaled_to(2.0));
+    let ground = shape(&HeadsOnTerrain::terrain(cells));
     let field = SharedShape::new(HeadsOnTerrain::field(cells));
     let contest = Contest::new([&head, &ground]);
     let [stock, sbbk] = &contest.dispatchers;
@@ -189,19 +187,19 @@ fn of_size(plan: &TerrainPlan, cells: u32) -> Result<Vec<Row>, StudyError> {
             .with("errors", way.errors(&motions, [&ground, &head], cells))
             .with("cells_read", way.cells_read(&way.sequences(&head, &places, Mode::Fresh)))
     });
-    Ok(rows.collect())
+    rows.collect()
 }
 
 /// How many heads are not under the terrain, after each step.
-fn fall(backend: Backend, ground: Ground, steps: usize) -> Result<Vec<usize>, SceneError> {
-    let mut built = falling_heads(ground).build()?;
+fn fall(backend: Backend, ground: Ground, steps: usize) -> Vec<usize> {
+    let mut built = falling_heads(ground).build();
     let _installed = backend.install(&mut built.world);
     let heads_above = (0..steps).map(|_| {
         built.world.step();
         let heights = built.watched.iter().map(|&body| built.world.bodies[body].translation().y);
         heights.filter(|&height| height > UNDER).count()
     });
-    Ok(heads_above.collect())
+    heads_above.collect()
 }
 
 fn tables(rows: &[Row], fall_steps: usize) -> Vec<Table> {

@@ -20,7 +20,7 @@ fn every_backend_runs_and_is_timed_and_judged() {
     let runs = Backend::ALL.map(|backend| (drop, backend, PLAN.steps));
     for (scene, backend, steps) in [&runs[..], &[(&pile, Backend::Sbbk, 65)]].concat() {
         let name = format!("{} on {backend}", scene.name());
-        let run = run(scene, backend, RunPlan { steps, ..PLAN }).unwrap();
+        let run = run(scene, backend, RunPlan { steps, ..PLAN });
         let sampled: Vec<usize> = run.samples.iter().map(|sample| sample.step).collect();
         assert_eq!(sampled, (8..=PLAN.warm_up + steps).step_by(4).collect::<Vec<_>>(), "{name}");
         assert_eq!(run.times.len(), steps - sampled.len());
@@ -42,7 +42,7 @@ fn every_backend_runs_and_is_timed_and_judged() {
 /// Would catch poses of the wrong step, pairs asked twice or left out, and pairs with the floor.
 #[test]
 fn captured_pairs_are_asked_once_fresh_and_once_steady() {
-    let mut built = MonkeyPile::with_heads(20).build().unwrap();
+    let mut built = MonkeyPile::with_heads(20).build();
     (0..50).for_each(|_| built.world.step());
     let floor = built.world.colliders.iter().next().map(|(handle, _)| handle).unwrap();
     let pairs = || built.world.contact_pairs();
@@ -64,7 +64,7 @@ fn captured_pairs_are_asked_once_fresh_and_once_steady() {
 /// and fall by half of g t squared.
 #[test]
 fn a_free_fall_keeps_its_energy() {
-    let mut built = MonkeyPile::with_heads(10).build().unwrap();
+    let mut built = MonkeyPile::with_heads(10).build();
     built.world.step();
     let first = WorldState::of(&built.world, &built.watched);
     (0..14).for_each(|_| built.world.step());
@@ -80,7 +80,7 @@ fn a_free_fall_keeps_its_energy() {
 /// touch each their neighbours, and hardly sink into them.
 #[test]
 fn a_stack_touches_and_stands() {
-    let mut built = BoxStack::default().build().unwrap();
+    let mut built = BoxStack::default().build();
     (0..120).for_each(|_| built.world.step());
     let state = WorldState::of(&built.world, &built.watched);
     assert_eq!(state.touching_pair_count, 10);

@@ -17,7 +17,7 @@ use serde_json::Value;
 use self::generators::generators;
 use super::motion::{Approach, Mode, Place, STEP_COUNT, mode_notes};
 use super::pair::{Contest, DIRECT_NOTE};
-use super::{Progress, StudyError, shape};
+use super::{Progress, shape};
 use crate::backend::Memory;
 use crate::mesh::{self, Mesh};
 use crate::metrics::{ContactErrors, Sequence};
@@ -128,13 +128,11 @@ struct Case<'a> {
 }
 
 /// Measures all that `plan` asks for.
-///
-/// Errors: a mesh has no triangles.
-pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Result<Results, StudyError> {
+pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Results {
     let mut shapes = Vec::new();
     for mesh in &plan.meshes {
         for &size in &plan.sizes {
-            shapes.push((mesh, size, shape(&mesh.mesh.clone().centred().scaled_to(size))?));
+            shapes.push((mesh, size, shape(&mesh.mesh.clone().centred().scaled_to(size))));
         }
     }
     let contest = Contest::new(shapes.iter().map(|(_, _, shape)| shape));
@@ -177,7 +175,7 @@ pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Result<Results, Stu
         Panel::time_against_error(motion, speed(Mode::SLOW).chain(speed(Mode::FAST))),
     ];
     let tables = tables(&rows, cases.iter().filter(|case| case.true_pairs()[1] == 0).count());
-    Ok(Results::new(rows, tables, panels))
+    Results::new(rows, tables, panels)
 }
 
 /// How far the second mesh goes beyond the first touch, in units; negative: short of it. The

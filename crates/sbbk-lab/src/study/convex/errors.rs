@@ -102,44 +102,24 @@ fn body(shape: &dyn Shape) -> ConvexBody {
     let hull = |points: &[Vector]| {
         ConvexBody::hull(points.iter().map(|point| point.as_dvec3()).collect::<Vec<_>>())
     };
-    let cuboid = |half_lengths: Vector| {
-        let sign = |corner: usize, axis: usize| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 };
-        let corner =
-            |i| half_lengths.as_dvec3() * DVec3::from_array([0, 1, 2].map(|axis| sign(i, axis)));
-        ConvexBody::hull((0..8).map(corner).collect::<Vec<_>>())
-    };
-    let cylinder =
-        |half_height: Real, radius: Real| ConvexBody::cylinder(half_height.into(), radius.into());
-    let cone =
-        |half_height: Real, radius: Real| ConvexBody::cone(half_height.into(), radius.into());
-    let (core, radius) = match shape.as_typed_shape() {
-        TypedShape::Ball(ball) => (ConvexBody::hull([DVec3::ZERO]), ball.radius),
-        TypedShape::Segment(segment) => (hull(&[segment.a, segment.b]), 0.0),
-        TypedShape::Capsule(capsule) => {
-            (hull(&[capsule.segment.a, capsule.segment.b]), capsule.radius)
+    let round = |inner: &dyn Shape, radius: Real| body(inner).rounded(radius.into());
+    match shape.as_typed_shape() {
+        TypedShape::Ball(ball) => ConvexBody::hull([DVec3::ZERO]).rounded(ball.radius.into()),
+        TypedShape::Segment(segment) => hull(&[segment.a, segment.b]),
+        TypedShape::Capsule(capsule) => round(&capsule.segment, capsule.radius),
+        TypedShape::Triangle(triangle) => hull(triangle.vertices()),
+        TypedShape::Cuboid(shape) => hull(&shape.to_trimesh().0),
+        TypedShape::ConvexPolyhedron(shape) => hull(shape.points()),
+        TypedShape::Cylinder(shape) => {
+            ConvexBody::cylinder(shape.half_height.into(), shape.radius.into())
         }
-        TypedShape::Triangle(triangle) => (hull(triangle.vertices()), 0.0),
-        TypedShape::RoundTriangle(round) => {
-            (hull(round.inner_shape.vertices()), round.border_radius)
-        }
-        TypedShape::Cuboid(shape) => (cuboid(shape.half_extents), 0.0),
-        TypedShape::RoundCuboid(round) => {
-            (cuboid(round.inner_shape.half_extents), round.border_radius)
-        }
-        TypedShape::ConvexPolyhedron(shape) => (hull(shape.points()), 0.0),
-        TypedShape::RoundConvexPolyhedron(round) => {
-            (hull(round.inner_shape.points()), round.border_radius)
-        }
-        TypedShape::Cylinder(shape) => (cylinder(shape.half_height, shape.radius), 0.0),
-        TypedShape::RoundCylinder(round) => {
-            (cylinder(round.inner_shape.half_height, round.inner_shape.radius), round.border_radius)
-        }
-        TypedShape::Cone(shape) => (cone(shape.half_height, shape.radius), 0.0),
-        TypedShape::RoundCone(round) => {
-            (cone(round.inner_shape.half_height, round.inner_shape.radius), round.border_radius)
-        }
-        TypedShape::HalfSpace(shape) => (ConvexBody::half_space(shape.normal.as_dvec3()), 0.0),
+        TypedShape::Cone(shape) => ConvexBody::cone(shape.half_height.into(), shape.radius.into()),
+        TypedShape::HalfSpace(shape) => ConvexBody::half_space(shape.normal.as_dvec3()),
+        TypedShape::RoundTriangle(shape) => round(&shape.inner_shape, shape.border_radius),
+        TypedShape::RoundCuboid(shape) => round(&shape.inner_shape, shape.border_radius),
+        TypedShape::RoundConvexPolyhedron(shape) => round(&shape.inner_shape, shape.border_radius),
+        TypedShape::RoundCylinder(shape) => round(&shape.inner_shape, shape.border_radius),
+        TypedShape::RoundCone(shape) => round(&shape.inner_shape, shape.border_radius),
         _ => unreachable!("no convex shape of the study"),
-    };
-    core.rounded(radius.into())
+    }
 }

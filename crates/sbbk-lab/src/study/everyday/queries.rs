@@ -16,7 +16,7 @@ use super::{PREDICTION, QUERIES};
 use crate::backend::{Backend, Dispatcher, Memory, SharedDispatcher};
 use crate::metrics::{ErrorCount, Summary};
 use crate::report::Row;
-use crate::scene::{SceneError, random, shape};
+use crate::scene::{random, shape};
 use crate::study::turns::{in_turn, timed};
 
 named! {
@@ -77,11 +77,9 @@ const WORST: f64 = 2.0e6;
 const BAND: Real = 0.05 * PREDICTION;
 
 /// All queries of a ball and a head on a terrain.
-///
-/// Errors: none but those of a mesh without triangles, which these are not.
-pub(super) fn queries(ground: &Ground, repeats: usize) -> Result<Vec<Row>, SceneError> {
+pub(super) fn queries(ground: &Ground, repeats: usize) -> Vec<Row> {
     let bodies =
-        [("ball", SharedShape::ball(0.5)), ("head", shape(&head(), TriMeshFlags::empty())?)];
+        [("ball", SharedShape::ball(0.5)), ("head", shape(&head(), TriMeshFlags::empty()))];
     let mut rows = Vec::new();
     for (name, body) in &bodies {
         for (place, height) in PLACES {
@@ -96,7 +94,7 @@ pub(super) fn queries(ground: &Ground, repeats: usize) -> Result<Vec<Row>, Scene
             }
         }
     }
-    Ok(rows)
+    rows
 }
 
 /// Anywhere above the middle of the terrain.
@@ -131,9 +129,7 @@ impl Asked<'_> {
         let first =
             dispatchers.each_ref().map(|d| timed(|| black_box(self.ask(d, &self.poses[0]))).0);
         let first = first.map(|time| 1e9 * time.as_secs_f64());
-        let Ok(times) = in_turn(&dispatchers, 2 * repeats + 1, |dispatcher| {
-            Ok::<_, std::convert::Infallible>(self.sweep(dispatcher))
-        });
+        let times = in_turn(&dispatchers, 2 * repeats + 1, |dispatcher| self.sweep(dispatcher));
         let times = times.into_iter().map(Summary::of);
         let answers = self.compare(&dispatchers);
         let rows = backends.into_iter().zip(times).zip(first).map(|((backend, time), first)| {

@@ -24,7 +24,7 @@ use super::contacts::{ERROR_NOTE, places};
 use super::motion::{Place, motion};
 use super::pair::Contest;
 use super::turns::{race, timed};
-use super::{Progress, StudyError, shape, tree};
+use super::{Progress, shape, tree};
 use crate::backend::{Memory, SharedDispatcher};
 use crate::mesh::{self, Mesh};
 use crate::metrics::{Sequence, Summary};
@@ -126,11 +126,9 @@ struct Posed<'a> {
 }
 
 /// Measures all that `plan` asks for.
-///
-/// Errors: a mesh has no triangles.
-pub fn front(plan: &FrontPlan, progress: &Progress) -> Result<Results, StudyError> {
+pub fn front(plan: &FrontPlan, progress: &Progress) -> Results {
     let meshes = plan.meshes.iter().map(|mesh| Posed::new(mesh, plan.approach_count));
-    let meshes = meshes.collect::<Result<Vec<_>, _>>()?;
+    let meshes: Vec<Posed> = meshes.collect();
     progress.phase("front", meshes.len() * (Motion::ALL.len() + 1));
     let mut rows = Vec::new();
     for motion in Motion::ALL {
@@ -146,18 +144,18 @@ pub fn front(plan: &FrontPlan, progress: &Progress) -> Result<Results, StudyErro
     progress.finish();
     let panels = Motion::ALL.map(|motion| panel(&rows, motion)).into();
     let tables = tables(&rows);
-    Ok(Results::new(rows, tables, panels))
+    Results::new(rows, tables, panels)
 }
 
 impl<'a> Posed<'a> {
-    fn new(mesh: &'a Mesh, approach_count: usize) -> Result<Self, StudyError> {
+    fn new(mesh: &'a Mesh, approach_count: usize) -> Self {
         let scaled = mesh.clone().centred().scaled_to(SIZE);
-        let shape = shape(&scaled)?;
+        let shape = shape(&scaled);
         let contest = Contest::new([&shape]);
         let seeds = 0..approach_count as u64;
         let places = seeds.flat_map(|seed| places(&contest, &shape, SIZE, PREDICTION, seed));
         let places = places.collect();
-        Ok(Self { mesh, tree: tree(&scaled, LayerPlan::SBBK)?, shape, places })
+        Self { mesh, tree: tree(&scaled, LayerPlan::SBBK), shape, places }
     }
 
     fn row(&self, study: &'static str, backend: impl ToString) -> Row {

@@ -9,7 +9,6 @@ use super::Trial;
 use super::figures::Figures;
 use super::kit::{Form, Kit};
 use crate::mesh;
-use crate::scene::SceneError;
 
 const BOWLS: usize = 10;
 const RADIUS: f32 = 0.5;
@@ -53,13 +52,13 @@ fn form() -> Form {
     Form::parts(mesh::revolved(&profile, SEGMENTS), patches)
 }
 
-fn run(kit: &Kit) -> Result<Figures, SceneError> {
+fn run(kit: &Kit) -> Figures {
     let inner = RADIUS - THICKNESS;
     // A bowl rests on the inner rim of the one below.
     let apart = (RADIUS * RADIUS - inner * inner).sqrt();
     let mut world = kit.world();
     let mut random = kit.random();
-    let collider = kit.collider(&form())?;
+    let collider = kit.collider(&form());
     for index in 0..BOWLS {
         // The first stands on nothing: it is fixed.
         let body = match index {
@@ -74,8 +73,8 @@ fn run(kit: &Kit) -> Result<Figures, SceneError> {
     let steps = ends.windows(2).map(|pair| pair[1] - pair[0]);
     let is_nested = |step: &Vec3| (step.length() - apart).abs() < 0.5 * apart && step.y > 0.0;
     let lost = steps.filter(|step| !is_nested(step)).count();
-    Ok(Figures::default()
+    Figures::default()
         .none("not nested", lost)
         .at_most("speed", world.top_speed(), 0.25)
-        .note("height of one", (ends[BOWLS - 1].y - ends[0].y) / (BOWLS - 1) as f32))
+        .note("height of one", (ends[BOWLS - 1].y - ends[0].y) / (BOWLS - 1) as f32)
 }

@@ -16,7 +16,7 @@ use crate::backend::Backend;
 use crate::mesh::{self, Mesh};
 use crate::metrics::{Summary, solver_points};
 use crate::replay::Recorder;
-use crate::scene::{SceneError, shape};
+use crate::scene::shape;
 
 named! {
     /// Who answers, and what bodies are made of.
@@ -217,18 +217,16 @@ impl Kit {
     }
 
     /// A collider, the shape of which clones share.
-    ///
-    /// Errors: the mesh has no triangles.
-    pub fn collider(&self, form: &Form) -> Result<ColliderBuilder, SceneError> {
+    pub fn collider(&self, form: &Form) -> ColliderBuilder {
         let shape = match (self.column, &form.control) {
             (Column::Control, Some(control)) => control.clone(),
-            _ => self.mesh_shape(&form.mesh)?,
+            _ => self.mesh_shape(&form.mesh),
         };
-        Ok(ColliderBuilder::new(shape))
+        ColliderBuilder::new(shape)
     }
 
     /// The mesh itself, also in the control.
-    pub fn mesh_shape(&self, mesh: &Mesh) -> Result<SharedShape, SceneError> {
+    pub fn mesh_shape(&self, mesh: &Mesh) -> SharedShape {
         let flags = match self.column {
             Column::StockFlag | Column::SbbkFlag => TriMeshFlags::FIX_INTERNAL_EDGES,
             _ => TriMeshFlags::empty(),

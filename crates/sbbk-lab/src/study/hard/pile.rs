@@ -9,7 +9,7 @@ use super::depth::{Depths, PairDepths, touching_pairs};
 use super::figures::{Figures, largest};
 use super::kit::{Form, Kit, World};
 use super::report::STEP_TIME;
-use crate::scene::{MonkeyPile, SceneError};
+use crate::scene::MonkeyPile;
 
 /// Steps until the heads are judged by their depth, and until they are judged by their height.
 const DEEP_AT: usize = 120;
@@ -45,11 +45,11 @@ pub(super) fn build(
     world
 }
 
-fn run(kit: &Kit, heads: usize) -> Result<Figures, SceneError> {
+fn run(kit: &Kit, heads: usize) -> Figures {
     let pile = MonkeyPile { seed: kit.seed, ..MonkeyPile::with_heads(heads) };
-    let collider = kit.collider(&Form::mesh(pile.mesh.clone()))?;
+    let collider = kit.collider(&Form::mesh(pile.mesh.clone()));
     let mut world = build(kit, FLOOR, pile.poses(), &collider);
-    let (depths, mut deep) = (Depths::new(&pile.mesh)?, PairDepths::default());
+    let (depths, mut deep) = (Depths::new(&pile.mesh), PairDepths::default());
     let watched = world.watch(HIGH_AT, FULL_AT, |world, step| {
         if step == DEEP_AT {
             deep = touching_pairs(world, &depths, PAIRS);
@@ -57,12 +57,12 @@ fn run(kit: &Kit, heads: usize) -> Result<Figures, SceneError> {
     });
     let heights = world.places().into_iter().map(|place| place.y);
     let mean_height = heights.clone().sum::<f32>() / heads as f32;
-    Ok(Figures::default()
+    Figures::default()
         .within("mean height", mean_height, 0.9, 1.4)
         .at_most("highest", largest(heights), 4.5)
         .at_most("deepest", deep.max, 0.05)
         .at_most("mean depth", deep.mean, 0.001)
         .at_most("energy gained", watched.gain, 0.001)
         .at_most("points a step", watched.points, 4000.0 / 200.0 * heads as f64)
-        .note(STEP_TIME, watched.step_time))
+        .note(STEP_TIME, watched.step_time)
 }

@@ -9,7 +9,7 @@ use super::figures::Figures;
 use super::kit::{Form, Kit};
 use super::report::STEP_TIME;
 use crate::mesh::{self, Mesh};
-use crate::scene::{SceneError, random};
+use crate::scene::random;
 
 /// Things along each side of the grid in which they start, and the layers of it.
 const SIDE: usize = 5;
@@ -29,16 +29,18 @@ pub(super) fn trials() -> Vec<Trial> {
     vec![Trial::new("100 things of 3 to 8 cm on a tray", run).without_control().seeded()]
 }
 
-fn tray() -> Mesh {
+/// A square tray with walls all round; half its diagonal inside, and the height of its rim over the
+/// bottom.
+pub(super) fn tray(half: f32, rim: f32, wall: f32) -> Mesh {
+    let outside = half + wall;
     let profile =
-        [[0.0, -WALL], [HALF + WALL, -WALL], [HALF + WALL, RIM], [HALF, RIM], [HALF, 0.0]];
-    let profile = profile.into_iter().chain([[0.0; 2]]).map(Vec2::from_array);
-    mesh::revolved(&profile.collect::<Vec<Vec2>>(), 4).named("tray")
+        [[0.0, -wall], [outside, -wall], [outside, rim], [half, rim], [half, 0.0], [0.0; 2]];
+    mesh::revolved(&profile.map(Vec2::from_array), 4).named("tray")
 }
 
-fn run(kit: &Kit) -> Result<Figures, SceneError> {
+fn run(kit: &Kit) -> Figures {
     let mut world = kit.world();
-    world.fix(Vec3::ZERO, kit.collider(&Form::mesh(tray()))?);
+    world.fix(Vec3::ZERO, kit.collider(&Form::mesh(tray(HALF, RIM, WALL))));
     let kinds = [
         mesh::ball(0.5, 8),
         mesh::torus(0.35, 0.15, 24, 12),
@@ -49,7 +51,7 @@ fn run(kit: &Kit) -> Result<Figures, SceneError> {
     for index in 0..SIDE * SIDE * LAYERS {
         let size = LEAST + (MOST - LEAST) * random.rand_float();
         let kind = kinds[index % kinds.len()].clone().centred().scaled_to(size);
-        let collider: ColliderBuilder = kit.collider(&Form::mesh(kind))?;
+        let collider: ColliderBuilder = kit.collider(&Form::mesh(kind));
         let [x, y, z] = [1, SIDE * SIDE, SIDE].map(|step| (index / step) as f32);
         let middle = 0.5 * (SIDE - 1) as f32;
         let place = Vec3::new(x % SIDE as f32 - middle, y + 0.6, z % SIDE as f32 - middle);
@@ -58,10 +60,10 @@ fn run(kit: &Kit) -> Result<Figures, SceneError> {
     }
     let watched = world.watch(STEPS, FULL_AT, |_, _| ());
     let fell = world.places().iter().filter(|place| place.y < -WALL).count();
-    Ok(Figures::default()
+    Figures::default()
         .none("fell", fell)
         .at_most("speed", world.top_speed(), 0.5)
         .at_most("energy gained", watched.gain, 0.001)
         .note("points a step", watched.points)
-        .note(STEP_TIME, watched.step_time))
+        .note(STEP_TIME, watched.step_time)
 }

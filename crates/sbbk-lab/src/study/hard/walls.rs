@@ -6,7 +6,6 @@ use rapier3d::dynamics::RigidBodyBuilder;
 use super::Trial;
 use super::figures::{Figures, largest};
 use super::kit::{Form, Kit};
-use crate::scene::SceneError;
 
 const STEPS: usize = 480;
 
@@ -78,22 +77,16 @@ fn house() -> Vec<(Vec3, Pose3)> {
 }
 
 /// Boxes, each with half its sides.
-fn run(
-    kit: &Kit,
-    cells: u32,
-    boxes: &[(Vec3, Pose3)],
-    friction: f32,
-    limit: f64,
-) -> Result<Figures, SceneError> {
+fn run(kit: &Kit, cells: u32, boxes: &[(Vec3, Pose3)], friction: f32, limit: f64) -> Figures {
     let mut world = kit.world();
-    let floor = kit.collider(&Form::cuboid(Vec3::new(6.0, 0.5, 6.0), cells))?;
+    let floor = kit.collider(&Form::cuboid(Vec3::new(6.0, 0.5, 6.0), cells));
     world.fix(-0.5 * Vec3::Y, floor.friction(friction));
     for &(half_extents, pose) in boxes {
-        let collider = kit.collider(&Form::cuboid(half_extents, cells))?.friction(friction);
+        let collider = kit.collider(&Form::cuboid(half_extents, cells)).friction(friction);
         world.add(RigidBodyBuilder::dynamic().pose(pose), &collider);
     }
     world.run(STEPS);
     let drifts =
         boxes.iter().zip(world.places()).map(|((_, start), end)| start.translation.distance(end));
-    Ok(Figures::default().at_most("drift", largest(drifts), limit))
+    Figures::default().at_most("drift", largest(drifts), limit)
 }

@@ -27,7 +27,7 @@ fn small() -> Results {
         details: vec![4],
         head: None,
     };
-    compare(&plan, &Progress::hidden()).unwrap()
+    compare(&plan, &Progress::hidden())
 }
 
 /// Would catch an experiment or a backend that is left out, a table whose cells slip into the
