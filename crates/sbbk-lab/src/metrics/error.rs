@@ -112,8 +112,8 @@ struct TruthMesh {
 pub struct Truth {
     contacts: HashMap<(u32, u32), TrueContact>,
     prediction: f64,
-    /// A distance or depth off by more than the first share of the prediction distance, or the
-    /// second of the depth, is wrong.
+    /// What a distance or depth may be off by: the first share of the prediction distance, or the
+    /// second of the depth, whichever is more.
     bands: [f64; 2],
     /// The shape whose outward normal is judged, in its own frame.
     side: usize,
@@ -207,7 +207,9 @@ impl Truth {
         Self::new(pairs.into_iter().map(contact), prediction, [DEPTH_BAND, 0.0], 0)
     }
 
-    /// With these [`bands`](Self::bands), about normals of this side.
+    /// About any subshapes. A distance or depth may be off by the first of the `bands` as a share of
+    /// the prediction distance, or the second as a share of the depth, whichever is more; normals are
+    /// those of the shape number `side`, out of it and in its frame.
     pub fn new(
         contacts: impl IntoIterator<Item = ((u32, u32), TrueContact)>,
         prediction: Real,

@@ -51,9 +51,12 @@ struct RunHeader<'a> {
 }
 
 /// The recordings as text.
-///
-/// Errors: none in practice; the stream is in memory.
-pub fn encode(runs: &[Recorder]) -> io::Result<String> {
+pub fn encode(runs: &[Recorder]) -> String {
+    let packed = packed(runs).expect("a stream in memory is always written");
+    BASE64_STANDARD.encode(packed)
+}
+
+fn packed(runs: &[Recorder]) -> io::Result<Vec<u8>> {
     let mut surfaces: Vec<&Mesh> = Vec::new();
     let mut place = |surface| {
         surfaces.iter().position(|other| *other == surface).unwrap_or_else(|| {
@@ -119,7 +122,7 @@ pub fn encode(runs: &[Recorder]) -> io::Result<String> {
             out.write_all(&planes(&vertices(run, frames, quantum)))?;
         }
     }
-    Ok(BASE64_STANDARD.encode(out.finish()?))
+    out.finish()
 }
 
 /// A thousandth of the smallest moving body.

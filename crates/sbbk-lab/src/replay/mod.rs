@@ -21,7 +21,6 @@ mod shapes;
 mod tests;
 
 use std::fs;
-use std::io;
 use std::path::Path;
 
 use crate::backend::Backend;
@@ -65,10 +64,10 @@ pub fn play(
 ///
 /// Errors: the file cannot be written.
 pub fn write(path: &Path, title: &str, runs: &[Recorder]) -> Result<(), ReportError> {
-    replace_file(path, |path| fs::write(path, page(title, runs)?))
+    replace_file(path, |path| fs::write(path, page(title, runs)))
 }
 
-fn page(title: &str, runs: &[Recorder]) -> io::Result<String> {
+fn page(title: &str, runs: &[Recorder]) -> String {
     let title = title.replace('&', "&amp;").replace('<', "&lt;");
     let parts = [
         ("@title@", title),
@@ -77,8 +76,8 @@ fn page(title: &str, runs: &[Recorder]) -> io::Result<String> {
         ("@decode@", DECODE.to_owned()),
         ("@draw@", DRAW.to_owned()),
         ("@play@", PLAY.to_owned()),
-        ("@data@", encode(runs)?),
+        ("@data@", encode(runs)),
     ];
     let page = TEMPLATE.to_owned();
-    Ok(parts.iter().fold(page, |page, (name, part)| page.replace(name, part)))
+    parts.iter().fold(page, |page, (name, part)| page.replace(name, part))
 }
