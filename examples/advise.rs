@@ -35,7 +35,7 @@ fn main() -> ExitCode {
             let is_robot = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf"));
             let advice = match is_robot {
                 true => advise_robot(path, steps, repeats)?,
-                false => advise(&mesh::load(path)?, steps, repeats)?,
+                false => advise(&mesh::load(path)?, steps, repeats),
             };
             print(advice)?;
         }

@@ -64,9 +64,9 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
                 None => MonkeyPile::with_heads(*heads),
             };
             pile.seed = *seed;
-            Ok(EnginePile::new(&pile)?.write(scene)?)
+            Ok(EnginePile::new(&pile).write(scene)?)
         }
-        Arguments::Run { column, scene, run } => EnginePile::read(scene)?.run(*column, run),
+        Arguments::Run { column, scene, run } => Ok(EnginePile::read(scene)?.run(*column, run)?),
         Arguments::Judge { scene, runs } => {
             let mut engines: Vec<(String, Vec<&Path>)> = Vec::new();
             for run in runs {

@@ -44,5 +44,5 @@ fn main() -> ExitCode {
     plan.urdf = urdf.clone();
     plan.name = scene;
     plan.replay = replay.replay.clone();
-    exit_code(study.run(&plan, everyday, others))
+    exit_code(study.try_run(&plan, everyday, others))
 }

@@ -51,5 +51,5 @@ fn main() -> ExitCode {
     plan.threads = threads;
     plan.name = scene;
     plan.replay = replay.replay.clone();
-    exit_code(study.run(&plan, hard, OtherFiles::written(&replay)))
+    exit_code(study.try_run(&plan, hard, OtherFiles::written(&replay)))
 }

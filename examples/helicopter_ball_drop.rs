@@ -54,7 +54,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let replay = &arguments.replay;
     check_files(arguments.mesh.as_deref().as_slice(), replay.replay.as_deref().as_slice())?;
     let progress = Progress::visible();
-    let rows = helicopter(&scene, &arguments.backend, &plan, &progress)?;
+    let rows = helicopter(&scene, &arguments.backend, &plan, &progress);
     progress.finish();
     let frames = frames(&rows, &plan);
     print(format_args!("{}\n\n{frames}", Environment::detect()))?;

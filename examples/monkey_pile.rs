@@ -67,7 +67,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         same_poses: None,
     };
     let progress = Progress::visible();
-    let rows = pile(&scene, &plan, &progress)?;
+    let rows = pile(&scene, &plan, &progress);
     progress.finish();
     let [times, accuracy] = runs(&rows, &plan.run);
     print(format_args!("{}\n\n{times}\n\n{accuracy}", Environment::detect()))?;

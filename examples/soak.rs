@@ -37,7 +37,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         window,
         ..SoakPlan::default()
     };
-    let (found, SoakEnd { wrong, trees_left }) = soak(&plan, &Progress::visible())?;
+    let (found, SoakEnd { wrong, trees_left }) = soak(&plan, &Progress::visible());
     print(found)?;
     if wrong > 0 || trees_left > 0 {
         return Err(format!("{wrong} wrong contacts, {trees_left} trees left").into());

@@ -8,7 +8,7 @@ fn run(
     scene: &dyn Scene,
     mut before_step: impl FnMut(usize, &mut PhysicsWorld),
 ) -> Vec<Fingerprint> {
-    let mut world = scene.build().unwrap().world;
+    let mut world = scene.build().world;
     world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
     let (mut states, mut touching_steps) = (Vec::new(), 0);
     for step in 0..200 {

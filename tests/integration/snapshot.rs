@@ -14,7 +14,7 @@ const AFTER: usize = 40;
 /// A small pile in full contact, under SBBK or stock.
 fn pile(dispatcher: Option<&SbbkDispatcher>, contact_recycling: bool) -> SceneWorld {
     let scene = MonkeyPile { contact_recycling, ..MonkeyPile::with_heads(8) };
-    let mut pile = scene.build().unwrap();
+    let mut pile = scene.build();
     if let Some(dispatcher) = dispatcher {
         pile.world.narrow_phase.set_query_dispatcher(dispatcher.clone());
     }

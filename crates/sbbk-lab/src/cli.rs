@@ -40,8 +40,20 @@ impl StudyArguments {
     /// Carries out a study under progress bars, prints what it found and writes the files. Before
     /// the work begins, they are tried together with the `others` that the run reads or writes.
     ///
-    /// Errors: the study's own, or the output or a file cannot be written.
+    /// Errors: the output or a file cannot be written.
     pub fn run<P>(
+        &self,
+        plan: &P,
+        study: impl FnOnce(&P, &Progress) -> Results,
+        others: OtherFiles,
+    ) -> Result<Results, Box<dyn Error>> {
+        self.try_run(plan, |plan, progress| Ok(study(plan, progress)), others)
+    }
+
+    /// The same with a study that may fail.
+    ///
+    /// Errors: the study's own, or the output or a file cannot be written.
+    pub fn try_run<P>(
         &self,
         plan: &P,
         study: impl FnOnce(&P, &Progress) -> Result<Results, StudyError>,
@@ -71,14 +83,15 @@ pub struct ReplayArguments {
 impl ReplayArguments {
     /// Runs a scene on some backends and writes their page, if it is wanted.
     ///
-    /// Errors: the scene cannot be built, or the file cannot be written.
+    /// Errors: the file cannot be written.
     pub fn play(
         &self,
         scene: &dyn Scene,
         backends: &[Backend],
         steps: usize,
     ) -> Result<(), Box<dyn Error>> {
-        self.replay.as_deref().map_or(Ok(()), |path| replay::play(path, scene, backends, steps))
+        let path = self.replay.as_deref();
+        Ok(path.map_or(Ok(()), |path| replay::play(path, scene, backends, steps))?)
     }
 }
 

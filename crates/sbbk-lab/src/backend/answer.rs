@@ -1,6 +1,6 @@
 //! What a dispatcher answered for one pair of meshes, kept for judging it afterwards.
 
-use rapier3d::math::{Pose, Real};
+use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::ContactManifold;
 use rapier3d::parry::shape::Shape;
 
@@ -24,6 +24,8 @@ pub struct Reported {
     pub triangle2: u32,
     /// Smallest signed distance among the points of the pair: negative when it penetrates.
     pub distance: Real,
+    /// The normals, each in its mesh's frame and out of it.
+    pub normals: [Vector; 2],
 }
 
 /// One call of `contact_manifolds` for two meshes.
@@ -43,19 +45,27 @@ impl Question {
     }
 }
 
-impl Answer {
-    /// The answer held by `manifolds` after the call.
-    pub fn new<M, C>(question: Question, manifolds: &[ContactManifold<M, C>]) -> Self {
+impl Reported {
+    /// What manifolds hold within the prediction distance.
+    pub fn all<M, C>(manifolds: &[ContactManifold<M, C>], prediction: Real) -> Vec<Self> {
         let reported = manifolds.iter().filter_map(|manifold| {
             let distances = manifold.points.iter().map(|point| point.dist);
-            let distance = distances.reduce(Real::min)?;
-            (distance <= question.prediction).then_some(Reported {
+            let distance = distances.reduce(Real::min).filter(|d| *d <= prediction)?;
+            Some(Self {
                 triangle1: manifold.subshape1,
                 triangle2: manifold.subshape2,
                 distance,
+                normals: [manifold.local_n1, manifold.local_n2],
             })
         });
-        Self { reported: reported.collect(), question }
+        reported.collect()
+    }
+}
+
+impl Answer {
+    /// The answer held by `manifolds` after the call.
+    pub fn new<M, C>(question: Question, manifolds: &[ContactManifold<M, C>]) -> Self {
+        Self { reported: Reported::all(manifolds, question.prediction), question }
     }
 }
 

@@ -88,16 +88,11 @@ impl Backend {
     /// Makes a fresh, timed dispatcher the one that answers `world`'s narrow phase. It is
     /// [`primed`](Primed) with the meshes that are in the world.
     pub fn install(self, world: &mut PhysicsWorld) -> Installed {
-        let dispatcher = self.dispatcher();
+        let (dispatcher, probe) = (self.dispatcher(), Probe::default());
         let shapes = world.colliders.iter().map(|(_, collider)| collider.shared_shape());
-        let installed = Installed {
-            primed: Primed::new(&dispatcher, shapes),
-            dispatcher,
-            probe: Probe::default(),
-        };
-        let timed = Timed::new(installed.dispatcher.shared.clone(), installed.probe.clone());
-        world.narrow_phase.set_query_dispatcher(timed);
-        installed
+        let primed = Primed::new(&dispatcher, shapes);
+        world.narrow_phase.set_query_dispatcher(Timed::new(dispatcher.shared, probe.clone()));
+        Installed { probe, primed }
     }
 }
 
@@ -109,8 +104,6 @@ impl fmt::Display for Backend {
 
 /// What [`Backend::install`] put into a world.
 pub struct Installed {
-    /// The dispatcher, untimed, with the trees that the world's queries use: for asking it afresh.
-    pub dispatcher: Dispatcher,
     /// Times and answers of the world's own queries.
     pub probe: Probe,
     /// Keeps the trees from being dropped while nothing touches.

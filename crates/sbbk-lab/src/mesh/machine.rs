@@ -5,7 +5,7 @@ use std::f32::consts::{PI, TAU};
 use glamx::{Vec2, Vec3};
 
 use super::Mesh;
-use super::shapes::quad_grid;
+use super::shapes::{quad_grid, without_needles};
 
 /// A solid between `-half_width` and `half_width` along `z`. Its outline runs counter-clockwise
 /// seen from `+z`, and all of it must be seen from the origin.
@@ -186,11 +186,4 @@ impl Thread {
         });
         without_needles(&nut).named("nut")
     }
-}
-
-/// The same vertices, without triangles that have two corners in one place.
-fn without_needles(mesh: &Mesh) -> Mesh {
-    let mut solid = mesh.welded();
-    solid.triangles.retain(|&[a, b, c]| a != b && b != c && c != a);
-    solid
 }

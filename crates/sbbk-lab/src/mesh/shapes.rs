@@ -161,7 +161,12 @@ pub(super) fn loft(rings: &[Ring], segments: u32) -> Mesh {
         _ => rim_point(&rings[j as usize - 1], i),
     });
     // The first and the last row are one point each: half of their triangles have no area.
-    let mut solid = grid.welded();
+    without_needles(&grid)
+}
+
+/// The mesh welded, without triangles that have two corners in one place.
+pub(super) fn without_needles(mesh: &Mesh) -> Mesh {
+    let mut solid = mesh.welded();
     solid.triangles.retain(|&[a, b, c]| a != b && b != c && c != a);
     solid
 }

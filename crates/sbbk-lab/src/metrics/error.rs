@@ -4,20 +4,21 @@ use std::collections::HashMap;
 use std::iter::Sum;
 use std::ops::AddAssign;
 
-use glamx::{DPose3, DVec3};
-use rapier3d::geometry::SharedShape;
+use glamx::{DPose3, DVec3, Vec3};
+use rapier3d::geometry::{ContactManifold, SharedShape};
 use rapier3d::math::Real;
 use sbbk_core::truth::{TruthPair, pairs_within};
 use serde::Serialize;
 
-use super::ratio;
-use crate::backend::{Answer, Question, Reported, shape_address};
+use crate::backend::{Question, Reported, shape_address};
 
 /// Pairs whose distance differs from the prediction distance by at most this share of it may be
 /// reported or not. Raised, real misses pass; lowered, f32 rounding of large meshes is blamed.
 const SET_BAND: f64 = 0.01;
 /// A distance or depth off by more than this share of the prediction distance is wrong.
 const DEPTH_BAND: f64 = 0.05;
+/// Degrees between a normal and the true one beyond which it is wrong.
+const NORMAL_BAND: f64 = 0.1;
 
 /// Triangle pairs, right and wrong, summed over the mesh pairs that were judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -28,6 +29,8 @@ pub struct ErrorCount {
     pub sampled_from: usize,
     /// Triangle pairs within the prediction distance, by the truth.
     pub true_pairs: usize,
+    /// Those of them that cross or touch.
+    pub crossing: usize,
     /// Triangle pairs reported with a point within the prediction distance.
     pub reported: usize,
     /// True pairs, by more than 1 % of the prediction distance, that were not reported.
@@ -40,38 +43,56 @@ pub struct ErrorCount {
     pub wrong_depth: usize,
 }
 
+/// Right and wrong contacts, their normals included.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct ContactErrors {
+    /// Missed, phantom and wrong depth.
+    #[serde(flatten)]
+    pub pairs: ErrorCount,
+    /// Reported true pairs of right depth whose normals the truth tells.
+    pub judged_normals: usize,
+    /// Those whose normal is off by more than 0.1 degrees.
+    pub wrong_normal: usize,
+}
+
 impl ErrorCount {
     /// Missed, phantom and wrong pairs.
     pub fn wrong(&self) -> usize {
         self.missed + self.phantom + self.wrong_depth
     }
-
-    /// Wrong pairs for each true pair; may exceed 1. `None` when there were no true pairs.
-    pub fn share(&self) -> Option<f64> {
-        ratio(self.wrong() as f64, self.true_pairs as f64)
-    }
 }
 
-impl AddAssign for ErrorCount {
-    fn add_assign(&mut self, other: Self) {
-        self.mesh_pairs += other.mesh_pairs;
-        self.sampled_from += other.sampled_from;
-        self.true_pairs += other.true_pairs;
-        self.reported += other.reported;
-        self.missed += other.missed;
-        self.phantom += other.phantom;
-        self.wrong_depth += other.wrong_depth;
-    }
+/// Counts that are summed field by field.
+macro_rules! summed {
+    ($name:ident { $($field:ident),* }) => {
+        impl AddAssign for $name {
+            fn add_assign(&mut self, other: Self) {
+                $(self.$field += other.$field;)*
+            }
+        }
+
+        impl Sum for $name {
+            fn sum<I: Iterator<Item = Self>>(counts: I) -> Self {
+                counts.fold(Self::default(), |mut total, count| {
+                    total += count;
+                    total
+                })
+            }
+        }
+    };
 }
 
-impl Sum for ErrorCount {
-    fn sum<I: Iterator<Item = Self>>(counts: I) -> Self {
-        counts.fold(Self::default(), |mut total, count| {
-            total += count;
-            total
-        })
-    }
-}
+summed!(ErrorCount {
+    mesh_pairs,
+    sampled_from,
+    true_pairs,
+    crossing,
+    reported,
+    missed,
+    phantom,
+    wrong_depth
+});
+summed!(ContactErrors { pairs, judged_normals, wrong_normal });
 
 /// Knows the meshes of a world in f64, as they were when it was made, and judges answers about
 /// them.
@@ -86,9 +107,24 @@ struct TruthMesh {
     triangles: Vec<[u32; 3]>,
 }
 
-/// Every triangle pair of one question within the prediction distance and its band.
+/// Every contact of one question within the prediction distance and its band, by the subshapes: the
+/// triangles of two meshes, or one and a part of a convex shape.
 pub struct Truth {
-    contacts: HashMap<(u32, u32), TruthPair>,
+    contacts: HashMap<(u32, u32), TrueContact>,
+    prediction: f64,
+    /// What a distance or depth may be off by: the first share of the prediction distance, or the
+    /// second of the depth, whichever is more.
+    bands: [f64; 2],
+    /// The shape whose outward normal is judged, in its own frame.
+    side: usize,
+}
+
+/// What is true of two subshapes.
+pub struct TrueContact {
+    /// The distance, or minus the depth.
+    pub distance: f64,
+    /// The normals of which each is right; none where that cannot be said.
+    pub normals: Vec<DVec3>,
 }
 
 impl Judge {
@@ -123,12 +159,12 @@ impl Judge {
         let [triangles1, triangles2] = [triangles(mesh1, &near[0]), triangles(mesh2, &near[1])];
         let [vertices1, vertices2] = [&*mesh1.vertices, &*mesh2.vertices];
         let pairs = pairs_within(vertices1, &triangles1, vertices2, &triangles2, pose, margin);
-        let contacts = pairs.into_iter().map(|pair| {
-            let triangle1 = near[0][pair.triangle1 as usize];
-            let triangle2 = near[1][pair.triangle2 as usize];
-            ((triangle1, triangle2), TruthPair { triangle1, triangle2, ..pair })
+        let numbered = pairs.into_iter().map(|pair| TruthPair {
+            triangle1: near[0][pair.triangle1 as usize],
+            triangle2: near[1][pair.triangle2 as usize],
+            ..pair
         });
-        Truth { contacts: contacts.collect() }
+        Truth::of_triangles(numbered, question.prediction)
     }
 }
 
@@ -161,48 +197,80 @@ fn union(boxes: impl IntoIterator<Item = [DVec3; 2]>) -> [DVec3; 2] {
 }
 
 impl Truth {
-    /// The triangle pairs, in no particular order.
+    /// About triangles of two meshes: a depth may be off by 5 % of the prediction distance.
+    pub fn of_triangles(pairs: impl IntoIterator<Item = TruthPair>, prediction: Real) -> Self {
+        let contact = |pair: TruthPair| {
+            let normals = pair.normal_is_unique.then_some(pair.normal).into_iter().collect();
+            let contact = TrueContact { distance: pair.distance, normals };
+            ((pair.triangle1, pair.triangle2), contact)
+        };
+        Self::new(pairs.into_iter().map(contact), prediction, [DEPTH_BAND, 0.0], 0)
+    }
+
+    /// About any subshapes. A distance or depth may be off by the first of the `bands` as a share of
+    /// the prediction distance, or the second as a share of the depth, whichever is more; normals are
+    /// those of the shape number `side`, out of it and in its frame.
+    pub fn new(
+        contacts: impl IntoIterator<Item = ((u32, u32), TrueContact)>,
+        prediction: Real,
+        bands: [f64; 2],
+        side: usize,
+    ) -> Self {
+        let contacts = contacts.into_iter().collect();
+        Self { contacts, prediction: prediction.into(), bands, side }
+    }
+
+    /// The same under other numbers of the subshapes.
+    pub fn renumbered(mut self, number: impl Fn(u32, u32) -> (u32, u32)) -> Self {
+        let contacts = self.contacts.into_iter();
+        self.contacts = contacts.map(|((one, two), truth)| (number(one, two), truth)).collect();
+        self
+    }
+
+    /// The subshapes, in no particular order.
     pub fn pairs(&self) -> impl Iterator<Item = (u32, u32)> {
         self.contacts.keys().copied()
     }
 
-    /// Distance and normal of all triangle pairs, in no particular order.
-    pub fn contacts(&self) -> impl Iterator<Item = &TruthPair> {
-        self.contacts.values()
+    /// Whether any two cross or touch.
+    pub fn meets(&self) -> bool {
+        self.contacts.values().any(|truth| truth.distance <= 0.0)
     }
 
-    /// Distance and normal of a triangle of the first mesh and one of the second; `None` if they
-    /// are farther apart than the prediction distance and its band.
-    pub fn contact(&self, triangle1: u32, triangle2: u32) -> Option<&TruthPair> {
-        self.contacts.get(&(triangle1, triangle2))
+    /// Counts what is wrong in the manifolds that answer the question that this is the truth of.
+    pub fn judge_manifolds(&self, manifolds: &[ContactManifold]) -> ContactErrors {
+        self.judge(&Reported::all(manifolds, self.prediction as Real))
     }
 
-    /// Counts what is wrong in an answer to the question that this is the truth of.
-    pub fn judge(&self, answer: &Answer) -> ErrorCount {
-        let prediction = f64::from(answer.question.prediction);
-        let mut reported: HashMap<(u32, u32), Real> = HashMap::new();
-        let mut errors = ErrorCount {
-            mesh_pairs: 1,
-            sampled_from: 1,
-            reported: answer.reported.len(),
-            ..ErrorCount::default()
-        };
-        for pair in &answer.reported {
-            let key = (pair.triangle1, pair.triangle2);
-            let is_repeated = reported.insert(key, pair.distance).is_some();
+    /// The same of what is reported within the prediction distance.
+    pub fn judge(&self, reported: &[Reported]) -> ContactErrors {
+        let mut seen = HashMap::new();
+        let mut errors = ContactErrors::default();
+        let pairs = &mut errors.pairs;
+        (pairs.mesh_pairs, pairs.sampled_from, pairs.reported) = (1, 1, reported.len());
+        for contact in reported {
+            let key = (contact.triangle1, contact.triangle2);
+            let is_repeated = seen.insert(key, contact.distance).is_some();
             match self.contacts.get(&key) {
-                Some(contact) if !is_repeated => {
-                    let is_wrong =
-                        !is_right_depth(pair.distance, contact, answer.question.prediction);
-                    errors.wrong_depth += usize::from(is_wrong);
+                Some(truth) if !is_repeated => {
+                    let [band, depth_band] = self.bands;
+                    let band = (band * self.prediction).max(depth_band * -truth.distance);
+                    if (f64::from(contact.distance) - truth.distance).abs() > band {
+                        pairs.wrong_depth += 1;
+                    } else if !truth.normals.is_empty() {
+                        let normal = contact.normals[self.side];
+                        errors.judged_normals += 1;
+                        errors.wrong_normal += usize::from(!truth.has(normal));
+                    }
                 }
-                _ => errors.phantom += 1,
+                _ => pairs.phantom += 1,
             }
         }
-        for (key, contact) in &self.contacts {
-            errors.true_pairs += usize::from(contact.distance <= prediction);
-            let is_certain = contact.distance <= (1.0 - SET_BAND) * prediction;
-            errors.missed += usize::from(is_certain && !reported.contains_key(key));
+        for (key, truth) in &self.contacts {
+            pairs.true_pairs += usize::from(truth.distance <= self.prediction);
+            pairs.crossing += usize::from(truth.distance <= 0.0);
+            let is_certain = truth.distance <= (1.0 - SET_BAND) * self.prediction;
+            pairs.missed += usize::from(is_certain && !seen.contains_key(key));
         }
         errors
     }
@@ -210,29 +278,81 @@ impl Truth {
     /// The same for the contacts of surfaces, which are some of those of triangles: where these cross
     /// or have passed each other they are measured along another way, and none need be there but one
     /// if the meshes cross. No way is shorter than the distance of triangles that are apart.
-    pub fn judge_surfaces(&self, answer: &Answer) -> ErrorCount {
-        let band = DEPTH_BAND * f64::from(answer.question.prediction);
-        let is_wrong = |pair: &&Reported| {
-            let truth = self.contact(pair.triangle1, pair.triangle2);
-            let distance = f64::from(pair.distance);
+    pub fn judge_surfaces(&self, reported: &[Reported]) -> ErrorCount {
+        let band = DEPTH_BAND * self.prediction;
+        let is_wrong = |contact: &&Reported| {
+            let truth = self.contacts.get(&(contact.triangle1, contact.triangle2));
+            let distance = f64::from(contact.distance);
             distance > 0.0 && truth.is_some_and(|truth| distance < truth.distance - band)
         };
-        let is_crossing = self.contacts().any(|contact| contact.distance < -band);
+        let is_crossing = self.contacts.values().any(|truth| truth.distance < -band);
         ErrorCount {
-            missed: usize::from(is_crossing && answer.reported.is_empty()),
-            wrong_depth: answer.reported.iter().filter(is_wrong).count(),
-            ..self.judge(answer)
+            missed: usize::from(is_crossing && reported.is_empty()),
+            wrong_depth: reported.iter().filter(is_wrong).count(),
+            ..self.judge(reported).pairs
         }
     }
 }
 
-/// Whether a distance or depth is that of the truth, but for 5 % of the prediction distance.
-pub fn is_right_depth(distance: Real, truth: &TruthPair, prediction: Real) -> bool {
-    (f64::from(distance) - truth.distance).abs() <= DEPTH_BAND * f64::from(prediction)
+impl TrueContact {
+    /// Whether a normal is right. One that is zero is at no angle to anything.
+    fn has(&self, normal: Vec3) -> bool {
+        let angle = |right: &DVec3| normal.as_dvec3().angle_between(*right).to_degrees();
+        self.normals.iter().any(|right| angle(right) <= NORMAL_BAND)
+    }
 }
 
 /// At most `limit` indices below `count`, evenly spread.
 pub fn sample_indices(count: usize, limit: usize) -> Vec<usize> {
     let sample_count = count.min(limit);
     (0..sample_count).map(|i| i * count / sample_count).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use glamx::Quat;
+    use rapier3d::parry::query::TrackedContact;
+    use rapier3d::parry::shape::PackedFeatureId;
+
+    use super::*;
+
+    const PREDICTION: Real = 0.02;
+
+    fn manifold(normal: Vec3, distance: Real) -> ContactManifold {
+        let fid = PackedFeatureId::UNKNOWN;
+        let mut manifold = ContactManifold::new();
+        manifold.points.push(TrackedContact::new(Vec3::ZERO, Vec3::ZERO, fid, fid, distance));
+        manifold.local_n1 = normal;
+        manifold
+    }
+
+    /// Would catch a judge that lets wrong normals pass, blames right ones, or judges where there
+    /// is nothing to judge.
+    #[test]
+    fn normals_are_judged_where_the_truth_is_sure() {
+        let normal = DVec3::new(0.6, 0.0, 0.8);
+        let distance = -0.01;
+        let truth =
+            TruthPair { triangle1: 0, triangle2: 0, distance, normal, normal_is_unique: true };
+        let turned = |degrees: Real| Quat::from_rotation_y(degrees.to_radians()) * normal.as_vec3();
+        let judged = |truth: &TruthPair, normal: Vec3, distance: Real| {
+            let truth = Truth::of_triangles([*truth], PREDICTION);
+            let errors = truth.judge_manifolds(&[manifold(normal, distance)]);
+            (errors.judged_normals, errors.wrong_normal, errors.pairs.wrong() + errors.wrong_normal)
+        };
+        let right = [turned(0.0), turned(0.09), 5.0 * turned(-0.09)];
+        for normal in right {
+            assert_eq!(judged(&truth, normal, -0.01), (1, 0, 0), "{normal}");
+        }
+        let wrong = [turned(0.11), turned(-0.11), -turned(0.0), Vec3::ZERO, Vec3::NAN];
+        for normal in wrong {
+            assert_eq!(judged(&truth, normal, -0.01), (1, 1, 1), "{normal}");
+        }
+        // A wrong depth is one error, not two.
+        assert_eq!(judged(&truth, turned(90.0), -0.02), (0, 0, 1));
+        // Beyond the prediction distance nothing is reported: the pair is missed.
+        assert_eq!(judged(&truth, turned(90.0), 0.03), (0, 0, 1));
+        let unsure = TruthPair { normal_is_unique: false, ..truth };
+        assert_eq!(judged(&unsure, turned(90.0), -0.01), (0, 0, 0));
+    }
 }

@@ -70,7 +70,7 @@ mod tests {
     #[test]
     fn bodies_and_contacts_count() {
         let build = || {
-            let mut built = MonkeyPile::with_heads(2).build().unwrap();
+            let mut built = MonkeyPile::with_heads(2).build();
             built.world.gravity = Vector::ZERO;
             let body = &mut built.world.bodies[built.watched[0]];
             body.set_translation(Vector::Y * 0.5, true);

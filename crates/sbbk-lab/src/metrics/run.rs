@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use super::{ErrorCount, Judge, PosePairs, StepTimes, WorldState, sample_indices, timed_step};
-use crate::backend::{Answer, Backend, Installed, Primed};
-use crate::scene::{Scene, SceneError, SceneWorld};
+use super::{ErrorCount, Sequence, StepTimes, WorldState, judged_step, sample_indices, timed_step};
+use crate::backend::{Backend, Installed, Primed};
+use crate::scene::{Scene, SceneWorld};
 
 /// How long to run, and what to look at.
 #[derive(Clone, Copy, Debug, Default)]
@@ -59,7 +59,7 @@ pub struct Sample {
     pub updated: ErrorCount,
     /// The pairs, for asking other backends.
     #[serde(skip)]
-    pub pairs: PosePairs,
+    pub pairs: Vec<Sequence>,
 }
 
 impl Run {
@@ -91,14 +91,12 @@ pub struct Runner {
 
 impl Runner {
     /// A run of `scene` on `backend` before its first step.
-    ///
-    /// Errors: the scene cannot be built.
-    pub fn new(scene: &dyn Scene, backend: Backend, plan: RunPlan) -> Result<Self, SceneError> {
-        let mut built = scene.build()?;
+    pub fn new(scene: &dyn Scene, backend: Backend, plan: RunPlan) -> Self {
+        let mut built = scene.build();
         let installed = backend.install(&mut built.world);
         installed.probe.time_every(plan.query_stride);
         let run = Run { backend, times: Vec::with_capacity(plan.steps), samples: Vec::new() };
-        Ok(Self { built, installed, plan, step: 0, run })
+        Self { built, installed, plan, step: 0, run }
     }
 
     /// Steps once: untimed in the warm-up, else timed or sampled.
@@ -126,12 +124,10 @@ impl Runner {
 }
 
 /// Runs `scene` on `backend` from start to end.
-///
-/// Errors: the scene cannot be built.
-pub fn run(scene: &dyn Scene, backend: Backend, plan: RunPlan) -> Result<Run, SceneError> {
-    let mut runner = Runner::new(scene, backend, plan)?;
+pub fn run(scene: &dyn Scene, backend: Backend, plan: RunPlan) -> Run {
+    let mut runner = Runner::new(scene, backend, plan);
     (0..plan.step_count()).for_each(|_| runner.step());
-    Ok(runner.finish())
+    runner.finish()
 }
 
 fn sampled_step(
@@ -141,30 +137,22 @@ fn sampled_step(
     step: usize,
     limit: usize,
 ) -> Sample {
-    installed.probe.start_recording();
-    let pairs = PosePairs::capture(world, |world| world.step());
-    let updated = installed.probe.take_answers();
-    let judge = Judge::new(world.colliders.iter().map(|(_, collider)| collider.shared_shape()));
-    // At most `limit` of `count` answers.
-    let judged = |count: usize, has_surfaces: bool, answer: &dyn Fn(usize) -> Answer| {
-        let answers = sample_indices(count, limit).into_iter().map(answer);
-        let errors = answers.map(|answer| {
-            let truth = judge.truth(&answer.question);
-            if has_surfaces { truth.judge_surfaces(&answer) } else { truth.judge(&answer) }
-        });
-        ErrorCount { sampled_from: count, ..errors.sum() }
-    };
+    let mut updated = ErrorCount::default();
+    let pairs = Sequence::captured(world, |world| {
+        updated = judged_step(world, &installed.probe, limit, backend.has_surfaces());
+    });
+    let sampled = sample_indices(pairs.len(), limit).into_iter().map(|index| pairs[index].clone());
+    let sampled: Vec<Sequence> = sampled.collect();
     let dispatcher = backend.per_triangle();
-    let _primed = Primed::new(&dispatcher, pairs.shapes());
-    let fresh = |index| {
-        let [fresh, _] = pairs.answers(&dispatcher, index);
-        fresh
-    };
+    let _primed = Primed::new(&dispatcher, sampled.iter().flat_map(|pair| &pair.shapes));
+    let [fresh] = Sequence::errors(&sampled, [&dispatcher.shared], |index, step| {
+        (step == 0).then(|| sampled[index].truth(step))
+    });
     Sample {
         step,
         state: WorldState::of(world, watched),
-        fresh: judged(pairs.pair_count(), false, &fresh),
-        updated: judged(updated.len(), backend.has_surfaces(), &|index| updated[index].clone()),
+        fresh: ErrorCount { sampled_from: pairs.len(), ..fresh.pairs },
+        updated,
         pairs,
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// Least, middle and mean of some values. Times are reported by minimum and median: the minimum
+/// Least, middle, mean and greatest of some values. Times are reported by minimum and median: the minimum
 /// is the least disturbed by whatever else the machine does, the median is what a user sees.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Summary {
@@ -12,6 +12,8 @@ pub struct Summary {
     pub min: f64,
     /// The middle one, or the mean of the middle two.
     pub median: f64,
+    /// All but a hundredth are no greater.
+    pub p99: f64,
     /// The arithmetic mean.
     pub mean: f64,
     /// The largest.
@@ -29,6 +31,7 @@ impl Summary {
             count,
             min,
             median: 0.5 * (sorted[(count - 1) / 2] + sorted[count / 2]),
+            p99: sorted[(0.99 * count as f64).ceil() as usize - 1],
             mean: sorted.iter().sum::<f64>() / count as f64,
             max,
         })
@@ -65,7 +68,7 @@ pub fn power_law(points: impl IntoIterator<Item = [f64; 2]>) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Would catch a median off by one place, a table that shows "inf times faster" where nothing
+    /// Would catch a median or a percentile off by one place, a table that shows "inf times faster" where nothing
     /// was measured, and a mean of ratios that twice and half as fast do not bring back to one.
     #[test]
     fn numbers_are_summed_up() {
@@ -73,6 +76,8 @@ mod tests {
         assert_eq!((odd.min, odd.median, odd.max), (1.0, 4.0, 9.0));
         let even = Summary::of([9.0, 1.0, 4.0, 2.0]).unwrap();
         assert_eq!((even.count, even.median, even.mean), (4, 3.0, 4.0));
+        let hundreds = Summary::of((1..=200).map(f64::from)).unwrap();
+        assert_eq!((odd.p99, hundreds.p99), (9.0, 198.0));
         assert_eq!(Summary::of([]), None);
 
         assert_eq!([ratio(71.8, 35.9), ratio(0.0, 2.0)], [Some(2.0), Some(0.0)]);

@@ -5,7 +5,8 @@ use std::time::Instant;
 use rapier3d::pipeline::PhysicsWorld;
 use serde::Serialize;
 
-use crate::backend::{PairKind, Probe};
+use super::{ErrorCount, Judge, sample_indices};
+use crate::backend::{Answer, PairKind, Probe};
 
 /// Where the time of one step went, in milliseconds.
 ///
@@ -57,4 +58,25 @@ pub fn timed_step(world: &mut PhysicsWorld, probe: &Probe) -> StepTimes {
         mesh_other: 1e3 * mesh_other.time.as_secs_f64(),
         mesh_mesh_calls: mesh_mesh.calls,
     }
+}
+
+/// Steps `world` once, and judges what Rapier was told of at most `limit` pairs of meshes, by their
+/// vertices at the start of the step, where it asks. `probe` must be that of the world's dispatcher;
+/// contacts of surfaces are judged as [such](super::Truth::judge_surfaces).
+pub fn judged_step(
+    world: &mut PhysicsWorld,
+    probe: &Probe,
+    limit: usize,
+    has_surfaces: bool,
+) -> ErrorCount {
+    let judge = Judge::new(world.colliders.iter().map(|(_, collider)| collider.shared_shape()));
+    probe.start_recording();
+    world.step();
+    let answers = probe.take_answers();
+    let judged = sample_indices(answers.len(), limit).into_iter().map(|index| {
+        let Answer { question, reported } = &answers[index];
+        let truth = judge.truth(question);
+        if has_surfaces { truth.judge_surfaces(reported) } else { truth.judge(reported).pairs }
+    });
+    ErrorCount { sampled_from: answers.len(), ..judged.sum() }
 }

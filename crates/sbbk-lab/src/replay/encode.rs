@@ -19,7 +19,8 @@ use serde::Serialize;
 use super::Recorder;
 use super::difference::Difference;
 use super::recorder::{Frame, STRIDE};
-use super::shapes::Surface;
+use super::shapes::levels;
+use crate::mesh::Mesh;
 
 /// Steps of a quaternion's parts.
 const TURN: f32 = 32767.0;
@@ -50,10 +51,13 @@ struct RunHeader<'a> {
 }
 
 /// The recordings as text.
-///
-/// Errors: none in practice; the stream is in memory.
-pub fn encode(runs: &[Recorder]) -> io::Result<String> {
-    let mut surfaces: Vec<&Surface> = Vec::new();
+pub fn encode(runs: &[Recorder]) -> String {
+    let packed = packed(runs).expect("a stream in memory is always written");
+    BASE64_STANDARD.encode(packed)
+}
+
+fn packed(runs: &[Recorder]) -> io::Result<Vec<u8>> {
+    let mut surfaces: Vec<&Mesh> = Vec::new();
     let mut place = |surface| {
         surfaces.iter().position(|other| *other == surface).unwrap_or_else(|| {
             surfaces.push(surface);
@@ -62,7 +66,7 @@ pub fn encode(runs: &[Recorder]) -> io::Result<String> {
     };
     let places: Vec<Vec<usize>> =
         runs.iter().map(|run| run.shapes.surfaces.iter().map(&mut place).collect()).collect();
-    let mut levels: Vec<[Surface; 2]> = surfaces.iter().map(|surface| surface.levels()).collect();
+    let mut levels: Vec<[Mesh; 2]> = surfaces.iter().map(|surface| levels(surface)).collect();
     // Soft ones have the vertices of the run.
     for (run, places) in runs.iter().zip(&places) {
         for place in run.soft.keys().map(|&object| places[run.objects[object].shape]) {
@@ -81,7 +85,7 @@ pub fn encode(runs: &[Recorder]) -> io::Result<String> {
             soft: run.soft.iter().map(|(&object, frames)| [object, frames[0].len()]).collect(),
         }
     };
-    let size = |surface: &Surface| [surface.vertices.len(), surface.triangles.len()];
+    let size = |surface: &Mesh| [surface.vertices.len(), surface.triangles.len()];
     let quantum = quantum(runs);
     let header = Header {
         quantum,
@@ -118,14 +122,15 @@ pub fn encode(runs: &[Recorder]) -> io::Result<String> {
             out.write_all(&planes(&vertices(run, frames, quantum)))?;
         }
     }
-    Ok(BASE64_STANDARD.encode(out.finish()?))
+    out.finish()
 }
 
 /// A thousandth of the smallest moving body.
 fn quantum(runs: &[Recorder]) -> f32 {
     let moving = |run: &Recorder| -> Vec<f32> {
         let objects = run.objects.iter().filter(|object| !object.is_fixed);
-        objects.map(|object| run.shapes.surfaces[object.shape].radius()).collect()
+        let boxes = objects.map(|object| run.shapes.surfaces[object.shape].bounds());
+        boxes.map(|bounds| bounds.half_extents().length()).collect()
     };
     let least = runs.iter().flat_map(moving).filter(|r| *r > 0.0).fold(f32::INFINITY, f32::min);
     1e-3 * if least.is_finite() { least } else { 1.0 }

@@ -10,7 +10,7 @@
 //!
 //! let pile = MonkeyPile::with_heads(8);
 //! replay::play("page.html".as_ref(), &pile, &[Backend::Stock, Backend::Sbbk], 120)?;
-//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! # Ok::<(), sbbk_lab::report::ReportError>(())
 //! ```
 
 mod difference;
@@ -20,14 +20,12 @@ mod shapes;
 #[cfg(test)]
 mod tests;
 
-use std::error::Error;
 use std::fs;
-use std::io;
 use std::path::Path;
 
 use crate::backend::Backend;
 use crate::report::{ReportError, replace_file};
-use crate::scene::{Scene, SceneError, SceneWorld};
+use crate::scene::{Scene, SceneWorld};
 
 pub use encode::encode;
 pub use recorder::Recorder;
@@ -42,34 +40,34 @@ const PLAY: &str = include_str!("page/play.js");
 
 /// Runs a scene on some backends, all at the same time, and writes their page.
 ///
-/// Errors: the scene cannot be built, or the file cannot be written.
+/// Errors: the file cannot be written.
 pub fn play(
     path: &Path,
     scene: &dyn Scene,
     backends: &[Backend],
     steps: usize,
-) -> Result<(), Box<dyn Error>> {
+) -> Result<(), ReportError> {
     let start = |&backend: &Backend| {
-        let SceneWorld { mut world, .. } = scene.build()?;
+        let SceneWorld { mut world, .. } = scene.build();
         let installed = backend.install(&mut world);
-        Ok((Recorder::new(backend, &world), world, installed))
+        (Recorder::new(backend, &world), world, installed)
     };
-    let mut runs = backends.iter().map(start).collect::<Result<Vec<_>, SceneError>>()?;
+    let mut runs: Vec<_> = backends.iter().map(start).collect();
     for _ in 0..steps {
         runs.iter_mut().for_each(|(recorder, world, _)| recorder.step(world));
     }
     let recorders: Vec<Recorder> = runs.into_iter().map(|(recorder, ..)| recorder).collect();
-    Ok(write(path, &scene.name(), &recorders)?)
+    write(path, &scene.name(), &recorders)
 }
 
 /// Writes the runs of one scene, the first beside the others, into a page.
 ///
 /// Errors: the file cannot be written.
 pub fn write(path: &Path, title: &str, runs: &[Recorder]) -> Result<(), ReportError> {
-    replace_file(path, |path| fs::write(path, page(title, runs)?))
+    replace_file(path, |path| fs::write(path, page(title, runs)))
 }
 
-fn page(title: &str, runs: &[Recorder]) -> io::Result<String> {
+fn page(title: &str, runs: &[Recorder]) -> String {
     let title = title.replace('&', "&amp;").replace('<', "&lt;");
     let parts = [
         ("@title@", title),
@@ -78,8 +76,8 @@ fn page(title: &str, runs: &[Recorder]) -> io::Result<String> {
         ("@decode@", DECODE.to_owned()),
         ("@draw@", DRAW.to_owned()),
         ("@play@", PLAY.to_owned()),
-        ("@data@", encode(runs)?),
+        ("@data@", encode(runs)),
     ];
     let page = TEMPLATE.to_owned();
-    Ok(parts.iter().fold(page, |page, (name, part)| page.replace(name, part)))
+    parts.iter().fold(page, |page, (name, part)| page.replace(name, part))
 }

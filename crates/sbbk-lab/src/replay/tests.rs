@@ -18,7 +18,7 @@ const STEPS: usize = 90;
 const GONE: usize = 70;
 
 fn recorded(backend: Backend) -> Recorder {
-    let mut built = MonkeyPile::with_heads(HEADS).build().unwrap();
+    let mut built = MonkeyPile::with_heads(HEADS).build();
     let installed = backend.install(&mut built.world);
     let mut recorder = Recorder::new(backend, &built.world);
     for step in 0..STEPS {
@@ -86,7 +86,7 @@ impl Stream {
 #[test]
 fn what_is_written_can_be_read() {
     let runs = [Backend::Stock, Backend::Sbbk].map(recorded);
-    let text = encode(&runs).unwrap();
+    let text = encode(&runs);
     let (header, mut stream) = Stream::open(&text);
     let quantum = header["quantum"].as_f64().unwrap() as f32;
     assert!(quantum > 5e-4 && quantum < 2e-3, "{quantum}");
@@ -138,14 +138,14 @@ fn what_is_written_can_be_read() {
 #[test]
 fn soft_bodies_deform() {
     const FRAMES: usize = 20;
-    let build = || SoftHeads { stiffness: 4.0, ..SoftHeads::with_heads(2) }.build().unwrap().world;
+    let build = || SoftHeads { stiffness: 4.0, ..SoftHeads::with_heads(2) }.build().world;
     let [mut recorded, mut alone] = [build(), build()];
     let mut run = Recorder::new("soft", &recorded);
     for _ in 0..2 * (FRAMES - 1) {
         run.step(&mut recorded);
         alone.step();
     }
-    let (header, mut stream) = Stream::open(&encode(std::slice::from_ref(&run)).unwrap());
+    let (header, mut stream) = Stream::open(&encode(std::slice::from_ref(&run)));
     let quantum = header["quantum"].as_f64().unwrap() as f32;
     let numbers = |value: &Value| -> Vec<usize> { serde_json::from_value(value.clone()).unwrap() };
     for level in header["shapes"].as_array().unwrap().iter().flat_map(|s| s.as_array().unwrap()) {
@@ -193,7 +193,7 @@ fn runs_part_at_the_first_contact_that_differs() {
 /// Would catch a page that lacks a part, and titles that are taken for markup.
 #[test]
 fn pages_are_whole() {
-    let page = page("a < b", &[recorded(Backend::Sbbk)]).unwrap();
+    let page = page("a < b", &[recorded(Backend::Sbbk)]);
     assert_eq!(page.matches("a &lt; b").count(), 2);
     let parts = ["style", "library", "decode", "draw", "play", "data", "title"];
     assert!(parts.iter().all(|part| !page.contains(&format!("@{part}@"))));

@@ -123,10 +123,7 @@ impl Results {
     ///
     /// Errors: the file cannot be written.
     pub fn write_plot(&self, path: &Path) -> Result<(), ReportError> {
-        replace_file(path, |path| {
-            let picture = Panel::draw_all(&self.panels)?;
-            fs::write(path, picture).map_err(|cause| cause.to_string())
-        })
+        replace_file(path, |path| fs::write(path, Panel::draw_all(&self.panels)))
     }
 }
 

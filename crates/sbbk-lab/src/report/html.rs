@@ -42,13 +42,10 @@ pub fn write_html(
     command: &str,
     sections: &[Section],
 ) -> Result<(), ReportError> {
-    replace_file(path, |path| {
-        let page = page(title, command, sections)?;
-        fs::write(path, page).map_err(|cause| cause.to_string())
-    })
+    replace_file(path, |path| fs::write(path, page(title, command, sections)))
 }
 
-fn page(title: &str, command: &str, sections: &[Section]) -> Result<String, String> {
+fn page(title: &str, command: &str, sections: &[Section]) -> String {
     let mut page = String::new();
     let title = escaped(title);
     let _ = write!(
@@ -65,13 +62,13 @@ fn page(title: &str, command: &str, sections: &[Section]) -> Result<String, Stri
     for Section { title, text, results } in sections {
         let _ = write!(page, "<section>\n<h2>{}</h2>\n<p>{}</p>\n", escaped(title), escaped(text));
         if !results.panels.is_empty() {
-            let _ = writeln!(page, "{}", Panel::draw_all(&results.panels)?);
+            let _ = writeln!(page, "{}", Panel::draw_all(&results.panels));
         }
         results.tables.iter().for_each(|table| add_table(&mut page, table));
         page.push_str("</section>\n");
     }
     page.push_str("</html>\n");
-    Ok(page)
+    page
 }
 
 fn add_table(page: &mut String, table: &Table) {

@@ -41,6 +41,11 @@ pub struct Results {
 }
 
 impl Results {
+    /// What was found on this machine.
+    pub fn new(rows: Vec<Row>, tables: Vec<Table>, panels: Vec<Panel>) -> Self {
+        Self { environment: Environment::detect(), rows, tables, panels }
+    }
+
     /// All of them as those of one study; `None` if there are none.
     pub fn joined(all: impl IntoIterator<Item = Self>) -> Option<Self> {
         all.into_iter().reduce(|mut joined, other| {

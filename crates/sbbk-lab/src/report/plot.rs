@@ -163,24 +163,23 @@ impl Panel {
     }
 
     /// All panels as an SVG picture.
-    ///
-    /// Errors: what the drawing library says.
-    pub(super) fn draw_all(panels: &[Self]) -> Result<String, String> {
+    pub(super) fn draw_all(panels: &[Self]) -> String {
         let rows = panels.iter().map(|panel| panel.series.len().div_ceil(LEGEND_COLUMNS)).max();
         let legend = LEGEND_ROW * rows.unwrap_or(0) as u32 + LEGEND_ROW / 2;
         let size = (PANEL_SIZE.0 * panels.len().max(1) as u32, PANEL_SIZE.1 + legend);
         let mut picture = String::new();
-        let draw = |area: Area<'_>| -> Result<(), String> {
-            area.fill(&WHITE).map_err(|cause| cause.to_string())?;
+        let draw = |area: Area<'_>| -> Drawn<'_> {
+            area.fill(&WHITE)?;
             for (panel, area) in panels.iter().zip(area.split_evenly((1, panels.len()))) {
                 let (axes, legend) = area.split_vertically(PANEL_SIZE.1);
-                panel.draw(&axes).map_err(|cause| cause.to_string())?;
-                panel.draw_legend(&legend).map_err(|cause| cause.to_string())?;
+                panel.draw(&axes)?;
+                panel.draw_legend(&legend)?;
             }
-            area.present().map_err(|cause| cause.to_string())
+            area.present()
         };
-        draw(SVGBackend::with_string(&mut picture, size).into_drawing_area())?;
-        Ok(picture)
+        let area = SVGBackend::with_string(&mut picture, size).into_drawing_area();
+        draw(area).expect("a picture in memory is always written");
+        picture
     }
 
     /// The range of an axis: of the values themselves, or of their logarithms.

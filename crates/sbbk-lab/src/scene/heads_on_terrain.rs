@@ -9,7 +9,7 @@ use rapier3d::parry::utils::Array2;
 use rapier3d::pipeline::PhysicsWorld;
 use serde::Serialize;
 
-use super::{Scene, SceneError, SceneWorld, Solid};
+use super::{Scene, SceneWorld, Solid};
 use crate::mesh::{self, Mesh};
 
 named! {
@@ -61,14 +61,14 @@ impl Scene for HeadsOnTerrain {
         format!("{} heads on {cells} × {cells} cells ({ground})", side_count * side_count)
     }
 
-    fn build(&self) -> Result<SceneWorld, SceneError> {
+    fn build(&self) -> SceneWorld {
         let mut world = PhysicsWorld::new();
         let terrain = match self.ground {
             Ground::HeightField => ColliderBuilder::new(SharedShape::new(Self::field(self.cells))),
-            Ground::Mesh => Solid::new(&Self::terrain(self.cells))?.collider(),
+            Ground::Mesh => Solid::new(&Self::terrain(self.cells)).collider(),
         };
         world.insert(RigidBodyBuilder::fixed(), terrain);
-        let head = Solid::new(&mesh::monkey_head().centred().scaled_to(2.0))?;
+        let head = Solid::new(&mesh::monkey_head().centred().scaled_to(2.0));
         let Self { side_count, .. } = *self;
         let middle = 0.5 * (side_count as Real - 1.0);
         let watched = (0..side_count * side_count).map(|index| {
@@ -78,6 +78,6 @@ impl Scene for HeadsOnTerrain {
             world.insert(body.angular_damping(1.0), head.collider()).0
         });
         let watched = watched.collect();
-        Ok(SceneWorld { world, watched })
+        SceneWorld { world, watched }
     }
 }

@@ -8,7 +8,7 @@ use rapier3d::math::Real;
 use rapier3d::pipeline::PhysicsWorld;
 use serde::Serialize;
 
-use super::{Scene, SceneError, SceneWorld, Solid};
+use super::{Scene, SceneWorld, Solid};
 use crate::mesh::{self, Mesh};
 
 named! {
@@ -87,16 +87,16 @@ impl Scene for HelicopterBallDrop {
         format!("{ball}, helicopter of {triangle_count} triangles")
     }
 
-    fn build(&self) -> Result<SceneWorld, SceneError> {
+    fn build(&self) -> SceneWorld {
         let mut world = PhysicsWorld::new();
-        let helicopter = Solid::new(&self.helicopter)?;
+        let helicopter = Solid::new(&self.helicopter);
         world.insert(RigidBodyBuilder::fixed(), helicopter.collider());
         let collider = match self.ball {
-            BallKind::Mesh => Solid::new(&self.ball_mesh())?.collider(),
+            BallKind::Mesh => Solid::new(&self.ball_mesh()).collider(),
             BallKind::Primitive => ColliderBuilder::ball(self.ball_radius),
         };
         let body = RigidBodyBuilder::dynamic().translation(self.start());
         let (body, _) = world.insert(body, collider.restitution(0.4));
-        Ok(SceneWorld { world, watched: vec![body] })
+        SceneWorld { world, watched: vec![body] }
     }
 }

@@ -7,10 +7,9 @@
 //! ```
 //! use sbbk_lab::scene::{MonkeyPile, Scene};
 //!
-//! let mut pile = MonkeyPile::with_heads(8).build()?;
+//! let mut pile = MonkeyPile::with_heads(8).build();
 //! pile.world.step();
 //! assert_eq!(pile.watched.len(), 8);
-//! # Ok::<(), sbbk_lab::scene::SceneError>(())
 //! ```
 
 mod heads_on_terrain;
@@ -23,9 +22,7 @@ mod solid;
 
 use rapier3d::dynamics::RigidBodyHandle;
 use rapier3d::geometry::{SharedShape, TriMeshFlags};
-use rapier3d::parry::shape::TriMeshBuilderError;
 use rapier3d::pipeline::PhysicsWorld;
-use thiserror::Error;
 
 use crate::mesh::Mesh;
 
@@ -42,29 +39,17 @@ pub trait Scene {
     fn name(&self) -> String;
 
     /// The world before its first step.
-    ///
-    /// Errors: a mesh of the scene has no triangles.
-    fn build(&self) -> Result<SceneWorld, SceneError>;
-}
-
-/// A scene could not be built.
-#[derive(Debug, Error)]
-#[error("the mesh `{mesh}` cannot collide: {cause}; give it at least one triangle")]
-pub struct SceneError {
-    /// Name of the mesh.
-    pub mesh: String,
-    /// What Parry says about it.
-    #[source]
-    pub cause: TriMeshBuilderError,
+    fn build(&self) -> SceneWorld;
 }
 
 /// Parry's shape of a mesh.
 ///
-/// Errors: the mesh has no triangles.
-pub fn shape(mesh: &Mesh, flags: TriMeshFlags) -> Result<SharedShape, SceneError> {
+/// # Panics
+///
+/// If the mesh has no triangles; those that [`mesh`](crate::mesh) makes and loads have some.
+pub fn shape(mesh: &Mesh, flags: TriMeshFlags) -> SharedShape {
     let shape = mesh.trimesh(flags);
-    let shape = shape.map_err(|cause| SceneError { mesh: mesh.name.clone(), cause })?;
-    Ok(SharedShape::new(shape))
+    SharedShape::new(shape.unwrap_or_else(|cause| panic!("the mesh `{}`: {cause}", mesh.name)))
 }
 
 /// A world and the bodies that its scene is about.

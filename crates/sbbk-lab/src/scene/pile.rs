@@ -8,7 +8,7 @@ use rapier3d::math::Vector;
 use rapier3d::pipeline::PhysicsWorld;
 
 use super::random::rotation;
-use super::{Scene, SceneError, SceneWorld, Solid};
+use super::{Scene, SceneWorld, Solid};
 use crate::mesh::{self, Mesh};
 
 /// Heads released at once from a loose grid above a floor, so that they fall and collide with it
@@ -88,7 +88,7 @@ impl Scene for MonkeyPile {
         format!("{} heads of {triangle_count} triangles", self.heads)
     }
 
-    fn build(&self) -> Result<SceneWorld, SceneError> {
+    fn build(&self) -> SceneWorld {
         let mut world = PhysicsWorld::new();
         world.integration_parameters.contact_recycling = self.contact_recycling;
         let cell = self.cell();
@@ -98,12 +98,12 @@ impl Scene for MonkeyPile {
             RigidBodyBuilder::fixed().translation(Vector::Y * -cell),
             ColliderBuilder::cuboid(side, cell, side),
         );
-        let solid = Solid::new(&self.mesh)?;
+        let solid = Solid::new(&self.mesh);
         let watched = self.poses().into_iter().map(|pose| {
             let body = RigidBodyBuilder::dynamic().pose(pose);
             world.insert(body, solid.collider()).0
         });
         let watched = watched.collect();
-        Ok(SceneWorld { world, watched })
+        SceneWorld { world, watched }
     }
 }

@@ -5,7 +5,7 @@ use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::math::{Real, Vector};
 use rapier3d::pipeline::PhysicsWorld;
 
-use super::{Scene, SceneError, SceneWorld, Solid};
+use super::{Scene, SceneWorld, Solid};
 use crate::mesh;
 
 /// A tower of unit cubes, each a mesh of 12 triangles, a millimetre apart at the start, on a fixed
@@ -28,11 +28,11 @@ impl Scene for BoxStack {
         format!("stack of {} box meshes", self.boxes)
     }
 
-    fn build(&self) -> Result<SceneWorld, SceneError> {
+    fn build(&self) -> SceneWorld {
         const GAP: Real = 0.001;
         let mut world = PhysicsWorld::new();
-        let floor = Solid::new(&mesh::cuboid(Vec3::new(5.0, 0.5, 5.0), 1))?;
-        let cube = Solid::new(&mesh::cuboid(Vec3::splat(0.5), 1))?;
+        let floor = Solid::new(&mesh::cuboid(Vec3::new(5.0, 0.5, 5.0), 1));
+        let cube = Solid::new(&mesh::cuboid(Vec3::splat(0.5), 1));
         world.insert(RigidBodyBuilder::fixed().translation(Vector::Y * -0.5), floor.collider());
         let watched = (0..self.boxes).map(|index| {
             let height = 0.5 + GAP + index as Real * (1.0 + GAP);
@@ -40,7 +40,7 @@ impl Scene for BoxStack {
             world.insert(body, cube.collider()).0
         });
         let watched = watched.collect();
-        Ok(SceneWorld { world, watched })
+        SceneWorld { world, watched }
     }
 }
 
@@ -65,16 +65,16 @@ impl Scene for HeadOnSlope {
         format!("monkey head on a slope of {:.0} degrees", self.angle.to_degrees())
     }
 
-    fn build(&self) -> Result<SceneWorld, SceneError> {
+    fn build(&self) -> SceneWorld {
         let mut world = PhysicsWorld::new();
         let incline = Pose3::rotation(Vector::Z * self.angle);
-        let floor = Solid::new(&mesh::floor(20.0, 20))?;
+        let floor = Solid::new(&mesh::floor(20.0, 20));
         world.insert(RigidBodyBuilder::fixed().pose(incline), floor.collider());
         let head = mesh::monkey_head().centred().scaled_to(2.0);
         // Upright in the frame of the slope, a hundredth of a unit above it.
         let pose = incline * Pose3::translation(0.0, 0.01 - head.bounds().mins.y, 0.0);
         let body = RigidBodyBuilder::dynamic().pose(pose);
-        let (body, _) = world.insert(body, Solid::new(&head)?.collider());
-        Ok(SceneWorld { world, watched: vec![body] })
+        let (body, _) = world.insert(body, Solid::new(&head).collider());
+        SceneWorld { world, watched: vec![body] }
     }
 }

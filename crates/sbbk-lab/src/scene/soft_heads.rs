@@ -4,11 +4,10 @@
 use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
 use rapier3d::dynamics::{RigidBodyBuilder, SoftBodyBuilder, SoftBodyMaterial, SpringCoefficients};
-use rapier3d::parry::shape::TriMeshBuilderError;
 use rapier3d::pipeline::PhysicsWorld;
 
 use super::random::rotation;
-use super::{Scene, SceneError, SceneWorld, Solid};
+use super::{Scene, SceneWorld, Solid};
 use crate::mesh::{self, Mesh};
 
 /// Heads of soft skin, as Rapier's own soft bodies, fall on a fixed helicopter in a row along it.
@@ -58,10 +57,10 @@ impl Scene for SoftHeads {
         format!("{} soft heads of {head} triangles, helicopter of {helicopter}", self.heads)
     }
 
-    fn build(&self) -> Result<SceneWorld, SceneError> {
+    fn build(&self) -> SceneWorld {
         let mut world = PhysicsWorld::new();
         let (head, helicopter) = (Self::head(), mesh::helicopter());
-        world.insert(RigidBodyBuilder::fixed(), Solid::new(&helicopter)?.collider());
+        world.insert(RigidBodyBuilder::fixed(), Solid::new(&helicopter).collider());
         let softness = SpringCoefficients::new(self.stiffness, 1.0);
         let material = SoftBodyMaterial {
             bend_softness: softness,
@@ -70,12 +69,11 @@ impl Scene for SoftHeads {
         };
         let mut watched = Vec::new();
         for pose in self.poses(&helicopter) {
-            let Mesh { name, vertices, triangles } = head.clone().posed(&pose);
-            let soft = SoftBodyBuilder::trimesh(vertices, triangles)
-                .ok_or(SceneError { mesh: name, cause: TriMeshBuilderError::EmptyIndices })?;
+            let Mesh { vertices, triangles, .. } = head.clone().posed(&pose);
+            let soft = SoftBodyBuilder::trimesh(vertices, triangles).expect("a head has triangles");
             let body = world.insert_soft_body(soft.material(material));
             watched.push(world.soft_bodies[body].root_body());
         }
-        Ok(SceneWorld { world, watched })
+        SceneWorld { world, watched }
     }
 }

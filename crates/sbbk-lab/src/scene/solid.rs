@@ -4,7 +4,7 @@ use rapier3d::dynamics::MassProperties;
 use rapier3d::geometry::{ColliderBuilder, SharedShape, TriMeshFlags};
 use rapier3d::math::Real;
 
-use super::{SceneError, shape};
+use super::shape;
 use crate::mesh::Mesh;
 
 /// Mass of a cubic unit of every body. The value is without effect on motion, since all bodies
@@ -27,9 +27,9 @@ pub struct Solid {
 }
 
 impl Solid {
-    /// Prepares `mesh`. Errors: it has no triangles.
-    pub fn new(mesh: &Mesh) -> Result<Self, SceneError> {
-        let shape = shape(mesh, TriMeshFlags::empty())?;
+    /// Prepares `mesh`.
+    pub fn new(mesh: &Mesh) -> Self {
+        let shape = shape(mesh, TriMeshFlags::empty());
         let bounds = mesh.bounds();
         let is_solid = mesh.volume() > LEAST_SOLIDITY * f64::from(bounds.volume());
         let mass_properties = if is_solid {
@@ -39,7 +39,7 @@ impl Solid {
             properties.local_com = bounds.center();
             properties
         };
-        Ok(Self { shape, mass_properties })
+        Self { shape, mass_properties }
     }
 
     /// A collider of this shape; all of them share its memory.

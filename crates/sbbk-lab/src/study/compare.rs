@@ -1,12 +1,12 @@
 //! Both experiments of the paper on all backends, and what lies behind their times.
 
+use super::Progress;
 use super::helicopter::{self, HelicopterPlan, frames, helicopter};
 use super::meshes::{self, meshes};
 use super::pile::{self, PilePlan, SamePosesPlan, pile, same_poses_table};
-use super::{Progress, StudyError};
 use crate::backend::Backend;
 use crate::mesh::{self, Mesh};
-use crate::metrics::{Environment, RunPlan};
+use crate::metrics::RunPlan;
 use crate::report::Results;
 use crate::scene::{BallKind, HelicopterBallDrop, MonkeyPile};
 
@@ -86,13 +86,11 @@ impl ComparePlan {
 }
 
 /// Does all experiments.
-///
-/// Errors: a mesh does not serve.
-pub fn compare(plan: &ComparePlan, progress: &Progress) -> Result<Results, StudyError> {
+pub fn compare(plan: &ComparePlan, progress: &Progress) -> Results {
     let mut rows = helicopter::papers().to_vec();
     for ball in [BallKind::Mesh, BallKind::Primitive] {
         let scene = HelicopterBallDrop { ball, ..HelicopterBallDrop::default() };
-        rows.extend(helicopter(&scene, &Backend::ALL, &plan.helicopter, progress)?);
+        rows.extend(helicopter(&scene, &Backend::ALL, &plan.helicopter, progress));
     }
     rows.extend(pile::papers());
     let recycled = plan.heads.iter().map(|&heads| (heads, true));
@@ -102,9 +100,9 @@ pub fn compare(plan: &ComparePlan, progress: &Progress) -> Result<Results, Study
         let repeats = if is_cheap { plan.pile.repeats } else { 1 };
         let same_poses = plan.pile.same_poses.filter(|_| contact_recycling);
         let plan = PilePlan { repeats, same_poses, ..plan.pile.clone() };
-        rows.extend(pile(&scene, &plan, progress)?);
+        rows.extend(pile(&scene, &plan, progress));
     }
-    rows.extend(meshes(&plan.meshes(), progress)?);
+    rows.extend(meshes(&plan.meshes(), progress));
     progress.finish();
     let [times, accuracy] = pile::runs(&rows, &plan.pile.run);
     let tables = vec![
@@ -116,5 +114,5 @@ pub fn compare(plan: &ComparePlan, progress: &Progress) -> Result<Results, Study
     ];
     let [detection, ratios] = pile::panels(&rows);
     let panels = vec![detection, ratios, meshes::panel(&rows)];
-    Ok(Results { environment: Environment::detect(), rows, tables, panels })
+    Results::new(rows, tables, panels)
 }

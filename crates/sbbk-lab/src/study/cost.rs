@@ -1,11 +1,11 @@
 //! How cost grows: time of collision detection against the number of bodies, and against triangles
 //! a mesh, with the exponents of power laws through them.
 
+use super::Progress;
 use super::pile::{PilePlan, pile};
-use super::{Progress, StudyError};
 use crate::backend::Backend;
 use crate::mesh;
-use crate::metrics::{Environment, RunPlan, power_law};
+use crate::metrics::{RunPlan, power_law};
 use crate::report::{Look, Panel, Results, Row, Scale, Table, TableSpec, faster, number, time};
 use crate::scene::MonkeyPile;
 
@@ -48,9 +48,7 @@ impl CostPlan {
 }
 
 /// Runs all the piles.
-///
-/// Errors: none but those of a mesh without triangles, which these are not.
-pub fn cost(plan: &CostPlan, progress: &Progress) -> Result<Results, StudyError> {
+pub fn cost(plan: &CostPlan, progress: &Progress) -> Results {
     let heads = plan.heads.iter().map(|&heads| (AXES[0], heads, MonkeyPile::with_heads(heads)));
     let fine = plan.details.iter().map(|&detail| {
         let scene = MonkeyPile::of(plan.few, mesh::monkey_head_with(detail));
@@ -66,7 +64,7 @@ pub fn cost(plan: &CostPlan, progress: &Progress) -> Result<Results, StudyError>
         };
         let backends = plan.backends.clone();
         let pile_plan = PilePlan { backends, repeats: 1, run, same_poses: None };
-        let found = pile(&scene, &pile_plan, progress)?;
+        let found = pile(&scene, &pile_plan, progress);
         rows.extend(found.into_iter().map(|found| {
             let row = Row::new(COST, found.backend.clone()).key("growing", axis);
             let row = row.key("count", count);
@@ -90,7 +88,7 @@ pub fn cost(plan: &CostPlan, progress: &Progress) -> Result<Results, StudyError>
     let tables = vec![table(plan, &rows), exponent_table(&exponents)];
     let panels = AXES.map(|axis| panel(plan, &rows, axis)).into();
     rows.extend(exponents);
-    Ok(Results { environment: Environment::detect(), rows, tables, panels })
+    Results::new(rows, tables, panels)
 }
 
 fn points(rows: &[Row], axis: &str, backend: Backend, path: &str) -> Vec<[f64; 2]> {

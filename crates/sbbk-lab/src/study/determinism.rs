@@ -7,9 +7,9 @@ use rapier_integration::SbbkDispatcher;
 use rayon::ThreadPoolBuilder;
 use serde_json::Value;
 
-use super::{Progress, StudyError};
+use super::Progress;
 use crate::backend::Backend;
-use crate::metrics::{Environment, Fingerprint, StepTimes, Summary, timed_step};
+use crate::metrics::{Fingerprint, StepTimes, Summary, timed_step};
 use crate::report::{Results, Row, Table, TableSpec, faster, number, time};
 use crate::scene::{BoxStack, HeadOnSlope, HelicopterBallDrop, MonkeyPile, Scene};
 
@@ -61,9 +61,7 @@ impl fmt::Display for Way {
 }
 
 /// Runs all scenes in all ways.
-///
-/// Errors: a scene cannot be built.
-pub fn determinism(plan: &DeterminismPlan, progress: &Progress) -> Result<Results, StudyError> {
+pub fn determinism(plan: &DeterminismPlan, progress: &Progress) -> Results {
     let mut rows = Vec::new();
     for scene in &plan.scenes {
         for backend in [Backend::Stock, Backend::Sbbk] {
@@ -72,14 +70,14 @@ pub fn determinism(plan: &DeterminismPlan, progress: &Progress) -> Result<Result
             for way in threads.chain([Way::Again]).chain(forgetful) {
                 let name = scene.name();
                 progress.phase(format!("{name}, {backend}, {way}"), plan.steps);
-                let row = run(&**scene, backend, way, plan, progress)?;
+                let row = run(&**scene, backend, way, plan, progress);
                 rows.push(row.key("scene", name).key("run", way.to_string()));
             }
         }
     }
     progress.finish();
     let tables = tables(&rows, plan.steps);
-    Ok(Results { environment: Environment::detect(), rows, tables, panels: Vec::new() })
+    Results::new(rows, tables, Vec::new())
 }
 
 /// The scenes whose runs under SBBK differ though they repeat under stock: SBBK's own fault.
@@ -106,8 +104,8 @@ fn run(
     way: Way,
     plan: &DeterminismPlan,
     progress: &Progress,
-) -> Result<Row, StudyError> {
-    let mut world = scene.build()?.world;
+) -> Row {
+    let mut world = scene.build().world;
     let installed = backend.install(&mut world);
     let threads = match way {
         Way::Threads(count) => count,
@@ -126,11 +124,11 @@ fn run(
     }
     let summary = |time: fn(&StepTimes) -> f64| Summary::of(times.iter().map(time));
     let manifolds: usize = world.contact_pairs().map(|pair| pair.manifolds().len()).sum();
-    Ok(Row::new(WORLDS, backend)
+    Row::new(WORLDS, backend)
         .with("fingerprint", Fingerprint::of(&world).to_string())
         .with("manifold_count", manifolds)
         .with("narrow_phase", summary(|times| times.narrow_phase))
-        .with("step", summary(|times| times.step)))
+        .with("step", summary(|times| times.step))
 }
 
 fn tables(rows: &[Row], steps: usize) -> Vec<Table> {

@@ -7,12 +7,12 @@
 
 use std::sync::Arc;
 
+use super::Progress;
 use super::pile::PilePlan;
-use super::{Progress, StudyError};
 use crate::backend::{Backend, Primed, Probe, SharedDispatcher, Tape, Taped, Timed};
 use crate::metrics::{Environment, Fingerprint, StepTimes, Summary, timed_step};
 use crate::report::{Results, Row, Table, TableSpec, faster, time};
-use crate::scene::{MonkeyPile, Scene, SceneError, SceneWorld};
+use crate::scene::{MonkeyPile, Scene, SceneWorld};
 
 const STUDY: &str = "floor";
 const WAYS: [&str; 2] = ["searched", "written only"];
@@ -41,9 +41,7 @@ impl FloorPlan {
 }
 
 /// Runs piles with every contact and with patches.
-///
-/// Errors: none but those of a mesh without triangles, which these are not.
-pub fn floor(plan: &FloorPlan, progress: &Progress) -> Result<Results, StudyError> {
+pub fn floor(plan: &FloorPlan, progress: &Progress) -> Results {
     let mut rows = Vec::new();
     for &heads in &plan.heads {
         let scene = MonkeyPile::with_heads(heads);
@@ -51,7 +49,7 @@ pub fn floor(plan: &FloorPlan, progress: &Progress) -> Result<Results, StudyErro
             let steps = plan.repeats * (PilePlan::FREE_FALL + plan.steps);
             progress.phase(format!("{heads} heads, {backend}"), steps);
             let runs = (0..plan.repeats).map(|_| run(&scene, backend, plan.steps, progress));
-            let runs = runs.collect::<Result<Vec<_>, _>>()?;
+            let runs: Vec<Run> = runs.collect();
             for (way, name) in WAYS.into_iter().enumerate() {
                 let summary = |time: fn(&StepTimes) -> f64| {
                     let mean = |times: &Vec<StepTimes>| {
@@ -73,7 +71,7 @@ pub fn floor(plan: &FloorPlan, progress: &Progress) -> Result<Results, StudyErro
     }
     progress.finish();
     let tables = vec![table(plan, &rows)];
-    Ok(Results { environment: Environment::detect(), rows, tables, panels: Vec::new() })
+    Results { environment: Environment::detect(), rows, tables, panels: Vec::new() }
 }
 
 struct Run {
@@ -83,17 +81,12 @@ struct Run {
     are_equal: bool,
 }
 
-fn run(
-    scene: &MonkeyPile,
-    backend: Backend,
-    steps: usize,
-    progress: &Progress,
-) -> Result<Run, SceneError> {
+fn run(scene: &MonkeyPile, backend: Backend, steps: usize, progress: &Progress) -> Run {
     let (tape, probes) = (Tape::default(), [(); 3].map(|()| Probe::default()));
     let mut worlds = Vec::new();
     for (i, probe) in probes.iter().enumerate() {
         probe.time_every(PilePlan::QUERY_STRIDE);
-        let SceneWorld { mut world, .. } = scene.build()?;
+        let SceneWorld { mut world, .. } = scene.build();
         let dispatcher = backend.dispatcher();
         let shapes = world.colliders.iter().map(|(_, collider)| collider.shared_shape());
         let primed = Primed::new(&dispatcher, shapes);
@@ -119,7 +112,7 @@ fn run(
     let [first, others @ ..] = &worlds[..] else { unreachable!("there are three") };
     let hash = Fingerprint::of(&first.0);
     let are_equal = others.iter().all(|other| Fingerprint::of(&other.0) == hash);
-    Ok(Run { times, are_equal })
+    Run { times, are_equal }
 }
 
 fn table(plan: &FloorPlan, rows: &[Row]) -> Table {

@@ -20,12 +20,12 @@ use sbbk_core::tree::{BATCH, BuildOptions, LayerPlan, Tree};
 use sbbk_core::volumes::{DirectionSet, Directions};
 
 use super::motion::{Approach, Mode, Place, mode_notes};
-use super::pair::{Contest, Sequence, query_count, sweep};
+use super::pair::{Contest, query_count, sweep};
 use super::turns::{race, timed};
-use super::{Progress, StudyError, shape};
+use super::{Progress, shape};
 use crate::backend::SharedDispatcher;
 use crate::mesh::{self, Mesh, Thread};
-use crate::metrics::Environment;
+use crate::metrics::Sequence;
 use crate::report::{Results, Row, Table, TableSpec, faster, number};
 
 const BARE: &str = "layers: bare trees";
@@ -108,20 +108,18 @@ fn soup(count: usize) -> Mesh {
 }
 
 /// Measures all that `plan` asks for.
-///
-/// Errors: a mesh has no triangles.
-pub fn layers(plan: &LayersPlan, progress: &Progress) -> Result<Results, StudyError> {
+pub fn layers(plan: &LayersPlan, progress: &Progress) -> Results {
     progress.phase("layers", plan.pairs.len());
     let mut rows = Vec::new();
     for meshes in &plan.pairs {
-        let case = Case::new(meshes, plan)?;
-        rows.extend(case.bare(plan.repeats)?);
+        let case = Case::new(meshes, plan);
+        rows.extend(case.bare(plan.repeats));
         rows.extend(case.dispatcher(plan.repeats));
         progress.step();
     }
     progress.finish();
     let tables = tables(&rows);
-    Ok(Results { environment: Environment::detect(), rows, tables, panels: Vec::new() })
+    Results::new(rows, tables, Vec::new())
 }
 
 struct Case<'a> {
@@ -135,14 +133,14 @@ struct Case<'a> {
 type Ask<'a> = Box<dyn Fn(usize) -> Duration + 'a>;
 
 impl<'a> Case<'a> {
-    fn new(meshes: &'a [Mesh; 2], plan: &LayersPlan) -> Result<Self, StudyError> {
-        let shapes = [shape(&meshes[0])?, shape(&meshes[1])?];
+    fn new(meshes: &'a [Mesh; 2], plan: &LayersPlan) -> Self {
+        let shapes = [shape(&meshes[0]), shape(&meshes[1])];
         let contest = Contest::new(&shapes);
         let approaches = (0..plan.approach_count as u64).map(|seed| {
             Approach::random(contest.sbbk(), shapes.each_ref(), &mut Rand32::new(seed))
         });
         let places = approaches.flat_map(|approach| ADVANCES.map(|way| approach.place(way)));
-        Ok(Self { meshes, places: places.collect(), shapes })
+        Self { meshes, places: places.collect(), shapes }
     }
 
     fn row(&self, study: &'static str, mode: Mode, plan: &str) -> Row {
@@ -156,43 +154,43 @@ impl<'a> Case<'a> {
     }
 
     /// First queries of bare trees.
-    fn bare(&self, repeats: usize) -> Result<impl Iterator<Item = Row>, StudyError> {
+    fn bare(&self, repeats: usize) -> impl Iterator<Item = Row> {
         let options = |layers| BuildOptions { layers, leaf_size: BATCH };
         let default = options(LayerPlan::SBBK);
         let mut asks = Vec::new();
         for (_, layers) in PLANS {
-            asks.push(self.ask::<9>(options(layers))?);
+            asks.push(self.ask::<9>(options(layers)));
         }
-        asks.push(self.ask::<7>(default)?);
-        asks.push(self.ask::<13>(default)?);
-        asks.push(self.ask::<9>(BuildOptions { leaf_size: 2, ..default })?);
-        asks.push(self.ask_in_one_frame(false)?);
-        asks.push(self.ask_in_one_frame(true)?);
+        asks.push(self.ask::<7>(default));
+        asks.push(self.ask::<13>(default));
+        asks.push(self.ask::<9>(BuildOptions { leaf_size: 2, ..default }));
+        asks.push(self.ask_in_one_frame(false));
+        asks.push(self.ask_in_one_frame(true));
         let times = self.fastest(&asks, repeats, 1.0, |ask, place| ask(place));
         let names = PLANS.map(|(name, _)| name).into_iter().chain(OTHERS);
         let rows = names
             .zip(times)
             .map(|(name, time)| self.row(BARE, Mode::Fresh, name).with("time", time));
-        Ok(rows.collect::<Vec<_>>().into_iter())
+        rows.collect::<Vec<_>>().into_iter()
     }
 
-    fn ask<const AXES: usize>(&self, options: BuildOptions) -> Result<Ask<'_>, StudyError>
+    fn ask<const AXES: usize>(&self, options: BuildOptions) -> Ask<'_>
     where
         Directions<AXES>: DirectionSet<AXES>,
     {
-        let trees = [self.tree::<AXES>(0, options)?, self.tree(1, options)?];
-        Ok(Box::new(move |place| {
+        let trees = [self.tree::<AXES>(0, options), self.tree(1, options)];
+        Box::new(move |place| {
             contacts_of([&trees[0], &trees[1]], Placement::new(&self.places[place].pos12))
-        }))
+        })
     }
 
     /// Boxes of both meshes in the frame of the first. Whether to count what it takes to fit them.
-    fn ask_in_one_frame(&self, counts_refit: bool) -> Result<Ask<'_>, StudyError> {
+    fn ask_in_one_frame(&self, counts_refit: bool) -> Ask<'_> {
         let options = BuildOptions { layers: LayerPlan::AABB_ONLY, leaf_size: BATCH };
-        let tree1 = self.tree::<9>(0, options)?;
-        let second = RefCell::new((self.tree::<9>(1, options)?, self.meshes[1].vertices.clone()));
+        let tree1 = self.tree::<9>(0, options);
+        let second = RefCell::new((self.tree::<9>(1, options), self.meshes[1].vertices.clone()));
         let Mesh { vertices, triangles, .. } = &self.meshes[1];
-        Ok(Box::new(move |place| {
+        Box::new(move |place| {
             let (tree2, moved) = &mut *second.borrow_mut();
             let (refit, cost) = timed(|| {
                 let pose = &self.places[place].pos12;
@@ -202,20 +200,16 @@ impl<'a> Case<'a> {
             debug_assert!(cost.is_ok(), "it is finite, and of the same triangles");
             let time = contacts_of([&tree1, tree2], Placement::new(&Pose3::IDENTITY));
             if counts_refit { refit + time } else { time }
-        }))
+        })
     }
 
-    fn tree<const AXES: usize>(
-        &self,
-        index: usize,
-        options: BuildOptions,
-    ) -> Result<Tree<AXES>, StudyError>
+    fn tree<const AXES: usize>(&self, index: usize, options: BuildOptions) -> Tree<AXES>
     where
         Directions<AXES>: DirectionSet<AXES>,
     {
         let mesh = &self.meshes[index];
         Tree::build(&mesh.vertices, &mesh.triangles, &options)
-            .map_err(|cause| StudyError::Tree { mesh: mesh.name.clone(), cause })
+            .expect("meshes of the studies are sound")
     }
 
     /// All modes of the dispatcher.
@@ -231,11 +225,7 @@ impl<'a> Case<'a> {
         let _primed = dispatchers.each_ref().map(prepare);
         let shared = dispatchers.map(|dispatcher| -> SharedDispatcher { Arc::new(dispatcher) });
         let rows = Mode::ALL.into_iter().flat_map(|mode| {
-            let sequence = |place| Sequence {
-                shapes: self.shapes.each_ref(),
-                poses: mode.poses(&self.shapes[1], place, PREDICTION),
-                prediction: PREDICTION,
-            };
+            let sequence = |place| mode.sequence(self.shapes.each_ref(), place, PREDICTION);
             let sequences: Vec<Sequence> = self.places.iter().map(sequence).collect();
             let queries = query_count(&sequences[..1]);
             let times = self.fastest(&shared, repeats, queries, |dispatcher, place| {

@@ -5,11 +5,12 @@ use std::time::Duration;
 use sbbk_core::tree::LayerPlan;
 
 use super::contacts::places;
-use super::pair::{Contest, Sequence, query_count};
+use super::motion::Mode;
+use super::pair::{Contest, query_count};
 use super::turns::{race, timed};
-use super::{Progress, StudyError, shape, tree};
+use super::{Progress, shape, tree};
 use crate::mesh::Mesh;
-use crate::metrics::{Summary, ratio};
+use crate::metrics::{Sequence, Summary, ratio};
 use crate::report::{
     ERROR_NOTE, Panel, Row, Scale, TIME_NOTE, Table, TableSpec, errors, faster, number, time,
 };
@@ -27,25 +28,23 @@ const TRIANGLES: usize = 100_000;
 
 /// Measures each mesh, scaled to two units, against itself. Builds are in milliseconds, queries in
 /// µs.
-///
-/// Errors: a mesh has no triangles, or a tree cannot be built for it.
-pub(super) fn meshes(meshes: &[Mesh], progress: &Progress) -> Result<Vec<Row>, StudyError> {
+pub(super) fn meshes(meshes: &[Mesh], progress: &Progress) -> Vec<Row> {
     progress.phase("trees and first queries", meshes.len());
     let mut rows = Vec::new();
     for mesh in meshes {
-        rows.extend(measure(&mesh.clone().centred().scaled_to(2.0))?);
+        rows.extend(measure(&mesh.clone().centred().scaled_to(2.0)));
         progress.step();
     }
-    Ok(rows)
+    rows
 }
 
-fn measure(mesh: &Mesh) -> Result<[Row; 2], StudyError> {
+fn measure(mesh: &Mesh) -> [Row; 2] {
     let count =
         |[least, most]: [usize; 2]| (TRIANGLES / mesh.triangle_count().max(1)).clamp(least, most);
-    let shape = shape(mesh)?;
+    let shape = shape(mesh);
     let bytes = [
         shape.as_trimesh().map_or(0, |mesh| mesh.bvh().total_memory_size()),
-        tree(mesh, LayerPlan::SBBK)?.stats().bytes(),
+        tree(mesh, LayerPlan::SBBK).stats().bytes(),
     ];
     let builds: [&dyn Fn() -> Duration; 2] =
         [&|| timed(|| mesh.shared_shape()).0, &|| timed(|| tree(mesh, LayerPlan::SBBK)).0];
@@ -53,16 +52,15 @@ fn measure(mesh: &Mesh) -> Result<[Row; 2], StudyError> {
     let contest = Contest::new([&shape]);
     let places = (0..count(APPROACHES) as u64)
         .flat_map(|seed| places(&contest, &shape, 2.0, PREDICTION, seed));
-    let sequence =
-        |pos12| Sequence { shapes: [&shape; 2], poses: vec![pos12], prediction: PREDICTION };
-    let sequences: Vec<Sequence> = places.map(|place| sequence(place.pos12)).collect();
+    let sequence = |place| Mode::Fresh.sequence([&shape; 2], &place, PREDICTION);
+    let sequences: Vec<Sequence> = places.map(sequence).collect();
     let queries = contest.race(count(REPEATS), &sequences);
-    let errors = contest.errors(&sequences, |_| true).map(|errors| errors.pairs);
+    let errors = contest.mesh_errors(&sequences, |_| true).map(|errors| errors.pairs);
     // First queries after which the time they save has paid for the tree.
     let saved = queries[0].median - queries[1].median;
     let paid = |build: &Summary| ratio(1e3 * build.median, saved).filter(|count| *count > 0.0);
     let break_even = [None, paid(&builds[1])];
-    Ok([0, 1].map(|side| {
+    [0, 1].map(|side| {
         Row::new(MESHES, Contest::BACKENDS[side])
             .key("mesh", &*mesh.name)
             .key("triangle_count", mesh.triangle_count())
@@ -73,7 +71,7 @@ fn measure(mesh: &Mesh) -> Result<[Row; 2], StudyError> {
             .with("time", queries[side])
             .with("break_even", break_even[side].map(|count| count.ceil() as u64))
             .with("errors", errors[side])
-    }))
+    })
 }
 
 /// Build time, memory, first queries and break-even.

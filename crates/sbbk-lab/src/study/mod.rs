@@ -36,19 +36,16 @@ pub use progress::Progress;
 use std::path::PathBuf;
 
 use rapier3d::geometry::{SharedShape, TriMeshFlags};
-use sbbk_core::tree::{BuildError, BuildOptions, LayerPlan, Tree};
+use sbbk_core::tree::{BuildOptions, LayerPlan, Tree};
 use thiserror::Error;
 
 use crate::mesh::Mesh;
 use crate::report::ReportError;
-use crate::scene::{self, SceneError};
+use crate::scene;
 
-/// A mesh does not serve, a scene is not there, or a page cannot be written.
+/// A robot cannot be loaded, a scene is not there, or a page cannot be written.
 #[derive(Debug, Error)]
 pub enum StudyError {
-    /// A scene could not be built.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
     /// A URDF file could not be loaded.
     #[error("cannot load the robot {}: {cause}", path.display())]
     Robot {
@@ -56,15 +53,6 @@ pub enum StudyError {
         path: PathBuf,
         /// What is wrong with it.
         cause: String,
-    },
-    /// A mesh could not have a tree.
-    #[error("no tree can be built for the mesh `{mesh}`: {cause}")]
-    Tree {
-        /// Name of the mesh.
-        mesh: String,
-        /// What is wrong with it.
-        #[source]
-        cause: BuildError,
     },
     /// No scene has the name that is wanted.
     #[error("no scene of these has `{0}` in its name")]
@@ -75,13 +63,12 @@ pub enum StudyError {
 }
 
 /// Parry's shape of a mesh without flags.
-fn shape(mesh: &Mesh) -> Result<SharedShape, SceneError> {
+fn shape(mesh: &Mesh) -> SharedShape {
     scene::shape(mesh, TriMeshFlags::empty())
 }
 
 /// The tree of a mesh.
-fn tree(mesh: &Mesh, layers: LayerPlan) -> Result<Tree, StudyError> {
+fn tree(mesh: &Mesh, layers: LayerPlan) -> Tree {
     let options = BuildOptions { layers, ..BuildOptions::default() };
-    Tree::build(&mesh.vertices, &mesh.triangles, &options)
-        .map_err(|cause| StudyError::Tree { mesh: mesh.name.clone(), cause })
+    Tree::build(&mesh.vertices, &mesh.triangles, &options).expect("meshes of the studies are sound")
 }

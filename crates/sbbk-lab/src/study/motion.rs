@@ -9,6 +9,7 @@ use rapier3d::geometry::{SharedShape, TriMesh};
 use rapier3d::math::Real;
 
 use crate::backend::SharedDispatcher;
+use crate::metrics::Sequence;
 use crate::scene::random;
 
 /// Steps of one motion, after its first query.
@@ -34,12 +35,13 @@ impl Mode {
     pub const FAST: Self = Self::Steady(0.5);
     pub const ALL: [Self; 3] = [Self::Fresh, Self::SLOW, Self::FAST];
 
-    /// The poses of the queries at a place, see [`motion`].
-    pub fn poses(self, shape: &SharedShape, place: &Place, prediction: Real) -> Vec<Pose3> {
-        match self {
+    /// The queries of two shapes at a place, see [`motion`].
+    pub fn sequence(self, shapes: [&SharedShape; 2], place: &Place, prediction: Real) -> Sequence {
+        let poses = match self {
             Self::Fresh => vec![place.pos12],
-            Self::Steady(share) => motion(shape, place, share * prediction, STEP_COUNT),
-        }
+            Self::Steady(share) => motion(shapes[1], place, share * prediction, STEP_COUNT),
+        };
+        Sequence { shapes: shapes.map(SharedShape::clone), poses, prediction }
     }
 }
 

@@ -6,15 +6,11 @@
 
 use std::time::Duration;
 
-use glamx::Pose3;
-use rapier3d::geometry::{ContactManifold, SharedShape};
-use rapier3d::math::Real;
-use rayon::prelude::*;
+use rapier3d::geometry::SharedShape;
 
-use super::contacts::ContactErrors;
 use super::turns::{race, timed};
-use crate::backend::{Backend, Dispatcher, Memory, Primed, Question, SharedDispatcher};
-use crate::metrics::{Judge, Summary, Truth};
+use crate::backend::{Backend, Dispatcher, Memory, Primed, SharedDispatcher};
+use crate::metrics::{ContactErrors, Sequence, Summary, Truth};
 
 /// How dispatchers are called, for notes.
 pub(super) const DIRECT_NOTE: &str = "dispatchers called directly: contact skins and contact \
@@ -25,14 +21,6 @@ pub(super) const DIRECT_NOTE: &str = "dispatchers called directly: contact skins
 pub(super) struct Contest {
     pub dispatchers: [Dispatcher; 2],
     _primed: [Primed; 2],
-}
-
-/// Two shapes, asked for their contacts at one pose after the other, each with what the query
-/// before left.
-pub(super) struct Sequence<'a> {
-    pub shapes: [&'a SharedShape; 2],
-    pub poses: Vec<Pose3>,
-    pub prediction: Real,
 }
 
 impl Contest {
@@ -56,33 +44,23 @@ impl Contest {
         })
     }
 
-    /// Errors of both in some steps of sequences of meshes.
+    /// Errors of both, where `truth` tells it of a step of a sequence, both by their numbers.
     pub fn errors(
+        &self,
+        sequences: &[Sequence],
+        truth: impl Fn(usize, usize) -> Option<Truth> + Sync,
+    ) -> [ContactErrors; 2] {
+        let dispatchers = self.dispatchers.each_ref().map(|dispatcher| &dispatcher.shared);
+        Sequence::errors(sequences, dispatchers, truth)
+    }
+
+    /// Errors of both in some steps of sequences of meshes.
+    pub fn mesh_errors(
         &self,
         sequences: &[Sequence],
         is_judged: impl Fn(usize) -> bool + Sync,
     ) -> [ContactErrors; 2] {
-        let of_sequence = |sequence: &Sequence| {
-            let judge = Judge::new(sequence.shapes);
-            let steps = (0..sequence.poses.len()).into_par_iter().with_max_len(1);
-            let truths = steps.map(|step| {
-                let question = sequence.question(step);
-                is_judged(step).then(|| (question, judge.truth(&question)))
-            });
-            let truths: Vec<Option<(Question, Truth)>> = truths.collect();
-            self.dispatchers.each_ref().map(|dispatcher| {
-                let mut errors = ContactErrors::default();
-                sequence.walk(dispatcher, |step, manifolds| {
-                    if let Some((question, truth)) = &truths[step] {
-                        errors += ContactErrors::of(truth, *question, manifolds);
-                    }
-                });
-                errors
-            })
-        };
-        let errors = sequences.par_iter().with_max_len(1).map(of_sequence);
-        let errors: Vec<[ContactErrors; 2]> = errors.collect();
-        [0, 1].map(|side| errors.iter().map(|sides| sides[side]).sum())
+        self.errors(sequences, |index, step| is_judged(step).then(|| sequences[index].truth(step)))
     }
 }
 
@@ -96,39 +74,12 @@ pub(super) fn query_count(sequences: &[Sequence]) -> f64 {
 pub(super) fn sweep(dispatcher: &SharedDispatcher, sequences: &[Sequence]) -> Duration {
     let time = |sequence: &Sequence| {
         let mut memory = Memory::default();
-        let mut ask = |pose: &Pose3| sequence.ask(&mut memory, dispatcher, pose);
-        match &sequence.poses[..] {
-            [pose] => timed(|| sequence.ask(&mut Memory::default(), dispatcher, pose)).0,
-            [first, rest @ ..] => {
-                ask(first);
-                timed(|| rest.iter().for_each(ask)).0
-            }
-            [] => Duration::ZERO,
+        if sequence.poses.len() == 1 {
+            return timed(|| sequence.ask(&mut Memory::default(), dispatcher, 0)).0;
         }
+        sequence.ask(&mut memory, dispatcher, 0);
+        let steps = 1..sequence.poses.len();
+        timed(|| steps.for_each(|step| sequence.ask(&mut memory, dispatcher, step))).0
     };
     sequences.iter().map(time).sum()
-}
-
-impl Sequence<'_> {
-    /// What is asked in a step.
-    pub fn question(&self, step: usize) -> Question {
-        Question::new(&self.poses[step], self.shapes.map(|shape| &**shape), self.prediction)
-    }
-
-    fn ask(&self, memory: &mut Memory, dispatcher: &SharedDispatcher, pose: &Pose3) {
-        memory.ask(dispatcher, self.shapes.map(|shape| &**shape), pose, self.prediction);
-    }
-
-    /// Asks everything, and shows the manifolds after each query, by its number.
-    pub fn walk(
-        &self,
-        dispatcher: &SharedDispatcher,
-        mut seen: impl FnMut(usize, &[ContactManifold]),
-    ) {
-        let mut memory = Memory::default();
-        for (index, pose) in self.poses.iter().enumerate() {
-            self.ask(&mut memory, dispatcher, pose);
-            seen(index, &memory.manifolds);
-        }
-    }
 }

@@ -3,18 +3,16 @@
 //! Two runs of one scene soon differ, as chaos makes a different last bit of a contact into a
 //! different trajectory; so the same pairs at the same poses are timed as well.
 
-use std::time::Duration;
-
 use super::Progress;
-use super::turns::in_turn;
-use crate::backend::{Backend, Primed};
+use super::turns::{in_turn, timed};
+use crate::backend::{Backend, Memory, Primed, SharedDispatcher};
 use crate::metrics::{
-    ErrorCount, Judge, PosePairs, Run, RunPlan, Runner, StepTimes, Summary, Sweep, sample_indices,
+    ErrorCount, Run, RunPlan, Runner, Sequence, StepTimes, Summary, sample_indices,
 };
 use crate::report::{
     ERROR_NOTE, Look, Panel, Row, Scale, TIME_NOTE, Table, TableSpec, errors, faster, number, time,
 };
-use crate::scene::{MonkeyPile, Scene, SceneError};
+use crate::scene::{MonkeyPile, Scene};
 
 const RUNS: &str = "pile, whole runs";
 const SAME_POSES: &str = "pile, same poses";
@@ -50,19 +48,13 @@ impl PilePlan {
 
 /// Runs `scene` on the backends of `plan`. Times are means over a run's timed steps, in milliseconds,
 /// summed up over the runs.
-///
-/// Errors: the scene cannot be built.
-pub fn pile(
-    scene: &MonkeyPile,
-    plan: &PilePlan,
-    progress: &Progress,
-) -> Result<Vec<Row>, SceneError> {
+pub fn pile(scene: &MonkeyPile, plan: &PilePlan, progress: &Progress) -> Vec<Row> {
     let mut runs: Vec<Vec<Run>> = plan.backends.iter().map(|_| Vec::new()).collect();
     for repeat in 0..plan.repeats {
         progress.phase(scene.name(), plan.run.step_count());
         let sample_every = if repeat == 0 { plan.run.sample_every } else { 0 };
         let run_plan = RunPlan { sample_every, ..plan.run };
-        let ended = side_by_side(scene, &plan.backends, run_plan, progress)?;
+        let ended = side_by_side(scene, &plan.backends, run_plan, progress);
         ended.into_iter().zip(&mut runs).for_each(|(run, runs)| runs.push(run));
     }
     let mut rows: Vec<Row> = runs.iter().map(|runs| row(scene, runs)).collect();
@@ -72,7 +64,7 @@ pub fn pile(
         progress.phase(phase, plan.repeats * Backend::ALL.len());
         rows.extend(same_poses(scene, &sample.pairs, plan, progress));
     }
-    Ok(rows)
+    rows
 }
 
 /// One run on each backend, all at the same time: each step is done by one world after the other,
@@ -83,9 +75,9 @@ fn side_by_side(
     backends: &[Backend],
     plan: RunPlan,
     progress: &Progress,
-) -> Result<Vec<Run>, SceneError> {
+) -> Vec<Run> {
     let runners = backends.iter().map(|&backend| Runner::new(scene, backend, plan));
-    let mut runners = runners.collect::<Result<Vec<Runner>, _>>()?;
+    let mut runners = runners.collect::<Vec<Runner>>();
     for step in 0..plan.step_count() {
         for turn in 0..runners.len() {
             let index = (step + turn) % runners.len();
@@ -93,7 +85,7 @@ fn side_by_side(
         }
         progress.step();
     }
-    Ok(runners.into_iter().map(Runner::finish).collect())
+    runners.into_iter().map(Runner::finish).collect()
 }
 
 fn pile_row(study: &'static str, backend: Backend, scene: &MonkeyPile) -> Row {
@@ -126,40 +118,49 @@ fn row(scene: &MonkeyPile, runs: &[Run]) -> Row {
 /// Every backend asked about all of `pairs`: milliseconds for all.
 fn same_poses(
     scene: &MonkeyPile,
-    pairs: &PosePairs,
+    pairs: &[Sequence],
     plan: SamePosesPlan,
     progress: &Progress,
 ) -> Vec<Row> {
     let dispatchers = Backend::ALL.map(Backend::per_triangle);
-    let _primed = dispatchers.each_ref().map(|dispatcher| Primed::new(dispatcher, pairs.shapes()));
-    let mut errors = [[ErrorCount::default(); 2]; Backend::ALL.len()];
-    let judge = Judge::new(pairs.shapes());
-    for index in sample_indices(pairs.pair_count(), plan.sample_size) {
-        let truths = [0, 1].map(|pose_index| judge.truth(&pairs.question(index, pose_index)));
-        for (dispatcher, errors) in dispatchers.iter().zip(&mut errors) {
-            let answers = pairs.answers(dispatcher, index);
-            for ((answer, truth), error) in answers.iter().zip(&truths).zip(errors) {
-                *error += truth.judge(answer);
-            }
-        }
-    }
-    let Ok(sweeps) = in_turn(&dispatchers, plan.repeats, |dispatcher| {
-        progress.step();
-        Ok::<_, std::convert::Infallible>(pairs.sweep(dispatcher))
+    let shapes = pairs.iter().flat_map(|pair| &pair.shapes);
+    let _primed = dispatchers.each_ref().map(|d| Primed::new(d, shapes.clone()));
+    let sampled = sample_indices(pairs.len(), plan.sample_size).into_iter();
+    let sampled: Vec<Sequence> = sampled.map(|index| pairs[index].clone()).collect();
+    let shared = dispatchers.each_ref().map(|dispatcher| &dispatcher.shared);
+    let [fresh_errors, steady_errors] = [0, 1].map(|judged| {
+        Sequence::errors(&sampled, shared, |index, step| {
+            (step == judged).then(|| sampled[index].truth(step))
+        })
     });
-    let answered = Backend::ALL.into_iter().zip(sweeps).zip(errors);
-    let rows = answered.map(|((backend, sweeps), [fresh_error, steady_error])| {
-        let milliseconds = |time: fn(&Sweep) -> Duration| {
-            Summary::of(sweeps.iter().map(|sweep| 1e3 * time(sweep).as_secs_f64()))
-        };
+    let sweeps = in_turn(&dispatchers, plan.repeats, |dispatcher| {
+        progress.step();
+        sweep(dispatcher, pairs)
+    });
+    let answered =
+        Backend::ALL.into_iter().zip(sweeps).zip(fresh_errors.iter().zip(&steady_errors));
+    let rows = answered.map(|((backend, sweeps), (fresh_error, steady_error))| {
+        let times = |pose: usize| Summary::of(sweeps.iter().map(|times| times[pose]));
         pile_row(SAME_POSES, backend, scene)
-            .with("pair_count", pairs.pair_count())
-            .with("fresh", milliseconds(|sweep| sweep.fresh))
-            .with("steady", milliseconds(|sweep| sweep.steady))
-            .with("fresh_error", fresh_error)
-            .with("steady_error", steady_error)
+            .with("pair_count", pairs.len())
+            .with("fresh", times(0))
+            .with("steady", times(1))
+            .with("fresh_error", fresh_error.pairs)
+            .with("steady_error", steady_error.pairs)
     });
     rows.collect()
+}
+
+/// Milliseconds of all pairs at their first poses, without the time to free the manifolds, and then
+/// of all at their second ones.
+fn sweep(dispatcher: &SharedDispatcher, pairs: &[Sequence]) -> [f64; 2] {
+    let mut memories: Vec<Memory> = pairs.iter().map(|_| Memory::default()).collect();
+    [0, 1].map(|pose| {
+        let asked = pairs.iter().zip(&mut memories);
+        let (time, ()) =
+            timed(|| asked.for_each(|(pair, memory)| pair.ask(memory, dispatcher, pose)));
+        1e3 * time.as_secs_f64()
+    })
 }
 
 /// What tables call the paper's pile, its size, and its "whole time of CD process" in milliseconds;

@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 ///
 /// Nothing is drawn when the error stream is not a terminal.
 #[derive(Clone, Debug)]
-pub struct Progress(Option<ProgressBar>);
+pub struct Progress(ProgressBar);
 
 impl Progress {
     /// Bars on the error stream.
@@ -19,34 +19,28 @@ impl Progress {
             bar.set_style(style);
         }
         bar.enable_steady_tick(Duration::from_millis(500));
-        Self(Some(bar))
+        Self(bar)
     }
 
     /// No bars.
     pub fn hidden() -> Self {
-        Self(None)
+        Self(ProgressBar::hidden())
     }
 
     /// Starts the bar of a new phase of `length` steps.
     pub fn phase(&self, message: impl Into<String>, length: usize) {
-        if let Some(bar) = &self.0 {
-            bar.reset();
-            bar.set_length(length as u64);
-            bar.set_message(message.into());
-        }
+        self.0.reset();
+        self.0.set_length(length as u64);
+        self.0.set_message(message.into());
     }
 
     /// One step of the phase is done.
     pub fn step(&self) {
-        if let Some(bar) = &self.0 {
-            bar.inc(1);
-        }
+        self.0.inc(1);
     }
 
     /// Takes the bar away.
     pub fn finish(&self) {
-        if let Some(bar) = &self.0 {
-            bar.finish_and_clear();
-        }
+        self.0.finish_and_clear();
     }
 }

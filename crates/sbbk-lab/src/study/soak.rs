@@ -13,10 +13,10 @@ use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::math::Vector;
 use rapier3d::pipeline::PhysicsWorld;
 
-use super::{Progress, StudyError};
+use super::Progress;
 use crate::backend::{Backend, Probe, Timed};
 use crate::mesh::{self, Mesh};
-use crate::metrics::{Environment, ErrorCount, Judge, Summary, sample_indices, timed_step};
+use crate::metrics::{ErrorCount, Summary, judged_step, timed_step};
 use crate::report::{self, ERROR_NOTE, Results, Row, TableSpec, number, time};
 use crate::scene::Solid;
 
@@ -66,19 +66,17 @@ pub struct SoakEnd {
 }
 
 /// Runs it: window by window, and the end.
-///
-/// Errors: a mesh of the scene has no triangles.
-pub fn soak(plan: &SoakPlan, progress: &Progress) -> Result<(Results, SoakEnd), StudyError> {
-    let mut run = SoakRun::new()?;
+pub fn soak(plan: &SoakPlan, progress: &Progress) -> (Results, SoakEnd) {
+    let mut run = SoakRun::new();
     let mut rows = Vec::new();
     progress.phase("bodies come and go", plan.steps);
     let (mut times, mut errors) = (Vec::new(), ErrorCount::default());
     for step in 1..=plan.steps {
         if step % plan.spawn_every == 0 {
-            run.spawn(plan.body_limit)?;
+            run.spawn(plan.body_limit);
         }
         if step % plan.sample_every == 0 {
-            errors += run.sampled_step(plan.sample_size);
+            errors += judged_step(&mut run.world, &run.probe, plan.sample_size, true);
         } else {
             times.push(timed_step(&mut run.world, &run.probe).step);
         }
@@ -115,7 +113,7 @@ pub fn soak(plan: &SoakPlan, progress: &Progress) -> Result<(Results, SoakEnd), 
     .note("times: min / median over the steps")
     .note(ERROR_NOTE);
     let tables = vec![spec.of(&rows)];
-    Ok((Results { environment: Environment::detect(), rows, tables, panels: Vec::new() }, end))
+    (Results::new(rows, tables, Vec::new()), end)
 }
 
 struct SoakRun {
@@ -132,33 +130,33 @@ struct SoakRun {
 
 impl SoakRun {
     /// A mesh floor, and nothing on it.
-    fn new() -> Result<Self, StudyError> {
+    fn new() -> Self {
         let mut world = PhysicsWorld::new();
-        let floor = Solid::new(&mesh::terrain(24.0, 24, 0.6))?;
+        let floor = Solid::new(&mesh::terrain(24.0, 24, 0.6));
         world.insert(RigidBodyBuilder::fixed(), floor.collider());
         let mut config = SbbkConfig::default();
         config.idle_tree_bytes = IDLE_TREE_BYTES;
         let dispatcher = Arc::new(SbbkDispatcher::new(config));
         let probe = Probe::default();
         world.narrow_phase.set_query_dispatcher(Timed::new(dispatcher.clone(), probe.clone()));
-        Ok(Self {
+        Self {
             world,
             dispatcher,
             probe,
             random: Rand32::new(1),
             bodies: VecDeque::new(),
-            head: Solid::new(&mesh::monkey_head_with(6).centred().scaled_to(1.5))?,
+            head: Solid::new(&mesh::monkey_head_with(6).centred().scaled_to(1.5)),
             body_count: 0,
-        })
+        }
     }
 
     /// One more body. Of each four, one has a mesh that it shares with others, two have a mesh of
     /// their own, and one exchanges the mesh of a living body.
-    fn spawn(&mut self, limit: usize) -> Result<(), StudyError> {
+    fn spawn(&mut self, limit: usize) {
         self.body_count += 1;
         let solid = match self.body_count % 4 {
             0 => self.head.clone(),
-            _ => Solid::new(&self.new_mesh())?,
+            _ => Solid::new(&self.new_mesh()),
         };
         let collider = solid.collider().build();
         if self.body_count % 4 == 1
@@ -173,7 +171,6 @@ impl SoakRun {
         while self.bodies.len() > limit {
             self.remove_oldest();
         }
-        Ok(())
     }
 
     fn remove_oldest(&mut self) {
@@ -197,20 +194,6 @@ impl SoakRun {
 
     fn between(&mut self, low: f32, high: f32) -> f32 {
         low + (high - low) * self.random.rand_float()
-    }
-
-    /// Steps once and judges what Rapier was told.
-    fn sampled_step(&mut self, limit: usize) -> ErrorCount {
-        self.probe.start_recording();
-        self.world.step();
-        let answers = self.probe.take_answers();
-        let shapes = self.world.colliders.iter().map(|(_, collider)| collider.shared_shape());
-        let judge = Judge::new(shapes);
-        let sampled = sample_indices(answers.len(), limit).into_iter();
-        let errors = sampled
-            .map(|index| judge.truth(&answers[index].question).judge_surfaces(&answers[index]))
-            .sum();
-        ErrorCount { sampled_from: answers.len(), ..errors }
     }
 
     /// Of the steps up to this one, in milliseconds and MiB.

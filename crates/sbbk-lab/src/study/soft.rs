@@ -1,15 +1,15 @@
 //! Meshes that deform: soft monkey heads on a rigid helicopter, stock beside SBBK.
 
+use super::Progress;
 use super::pair::Contest;
 use super::turns::in_turn;
-use super::{Progress, StudyError};
 use crate::backend::Backend;
-use crate::metrics::{Environment, ErrorCount, Judge, StepTimes, Summary, timed_step};
+use crate::metrics::{ErrorCount, StepTimes, Summary, judged_step, timed_step};
 use crate::report::{
     ERROR_NOTE, Look, Panel, Results, Row, Scale, TIME_NOTE, Table, TableSpec, errors, faster,
     number, time,
 };
-use crate::scene::{Scene, SceneError, SoftHeads};
+use crate::scene::{Scene, SoftHeads};
 
 const HEADS: &str = "soft heads, ms";
 
@@ -39,29 +39,27 @@ impl SoftPlan {
 }
 
 /// Measures them.
-///
-/// Errors: a mesh does not serve.
-pub fn soft(plan: &SoftPlan, progress: &Progress) -> Result<Results, StudyError> {
+pub fn soft(plan: &SoftPlan, progress: &Progress) -> Results {
     let scene = SoftHeads::with_heads(plan.heads);
-    let rows = heads(&scene, plan, progress)?;
+    let rows = heads(&scene, plan, progress);
     progress.finish();
     let (tables, panels) = (vec![table(&rows, &scene)], vec![panel(&rows)]);
-    Ok(Results { environment: Environment::detect(), rows, tables, panels })
+    Results::new(rows, tables, panels)
 }
 
 /// Runs the scene under both backends. Times are means over the steps of a run.
-fn heads(scene: &SoftHeads, plan: &SoftPlan, progress: &Progress) -> Result<Vec<Row>, SceneError> {
+fn heads(scene: &SoftHeads, plan: &SoftPlan, progress: &Progress) -> Vec<Row> {
     let backends = Contest::BACKENDS;
     progress.phase(scene.name(), (plan.repeats + 1) * backends.len());
     let runs = in_turn(&backends, plan.repeats, |&backend| {
         progress.step();
-        let mut built = scene.build()?;
+        let mut built = scene.build();
         let installed = backend.install(&mut built.world);
         let step = |_| timed_step(&mut built.world, &installed.probe);
-        Ok::<Vec<StepTimes>, SceneError>((0..plan.steps).map(step).collect())
-    })?;
+        (0..plan.steps).map(step).collect()
+    });
     let rows = backends.into_iter().zip(&runs).map(|(backend, runs)| {
-        let errors = judged(scene, backend, plan)?;
+        let errors = judged(scene, backend, plan);
         progress.step();
         let mean = |time: fn(&StepTimes) -> f64| {
             let total = |run: &Vec<StepTimes>| run.iter().map(time).sum::<f64>();
@@ -69,36 +67,30 @@ fn heads(scene: &SoftHeads, plan: &SoftPlan, progress: &Progress) -> Result<Vec<
         };
         let in_step = |step: usize| Summary::of(runs.iter().map(|run| run[step].mesh_mesh));
         let by_step: Vec<f64> = (0..plan.steps).filter_map(in_step).map(|t| t.median).collect();
-        Ok(Row::new(HEADS, backend)
+        Row::new(HEADS, backend)
             .key("scene", scene.name())
             .with("step", mean(|times| times.step))
             .with("queries", mean(|times| times.mesh_mesh))
             .with("queries_by_step", by_step)
             .with("calls", runs[0].iter().map(|times| times.mesh_mesh_calls).sum::<u64>())
-            .with("errors", errors))
+            .with("errors", errors)
     });
     rows.collect()
 }
 
-/// The answers of some steps, judged by the vertices at the start of the step, where Rapier asks.
-fn judged(scene: &SoftHeads, backend: Backend, plan: &SoftPlan) -> Result<ErrorCount, SceneError> {
-    let mut built = scene.build()?;
+/// The answers of some steps.
+fn judged(scene: &SoftHeads, backend: Backend, plan: &SoftPlan) -> ErrorCount {
+    let mut built = scene.build();
     let installed = backend.install(&mut built.world);
     let mut errors = ErrorCount::default();
     for step in 1..=plan.steps {
-        if !step.is_multiple_of(plan.judged_every) {
+        if step.is_multiple_of(plan.judged_every) {
+            errors += judged_step(&mut built.world, &installed.probe, usize::MAX, false);
+        } else {
             built.world.step();
-            continue;
-        }
-        let shapes = built.world.colliders.iter().map(|(_, collider)| collider.shared_shape());
-        let judge = Judge::new(shapes);
-        installed.probe.start_recording();
-        built.world.step();
-        for answer in installed.probe.take_answers() {
-            errors += judge.truth(&answer.question).judge(&answer);
         }
     }
-    Ok(errors)
+    errors
 }
 
 fn table(rows: &[Row], scene: &SoftHeads) -> Table {

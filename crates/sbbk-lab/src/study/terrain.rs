@@ -12,20 +12,20 @@ use std::sync::Arc;
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
 use rapier_integration::{SbbkConfig, SbbkDispatcher};
-use rapier3d::geometry::{ContactManifold, SharedShape};
+use rapier3d::geometry::SharedShape;
 use rapier3d::math::Real;
 
 use super::motion::{Approach, Mode, Place};
-use super::pair::{Contest, Sequence, query_count, sweep};
+use super::pair::{Contest, query_count, sweep};
 use super::turns::race;
-use super::{Progress, StudyError, shape};
-use crate::backend::{Answer, Backend, Question, Reported, SharedDispatcher};
+use super::{Progress, shape};
+use crate::backend::{Backend, Question, SharedDispatcher};
 use crate::mesh;
-use crate::metrics::{Environment, ErrorCount, Judge};
+use crate::metrics::{ErrorCount, Judge, Sequence};
 use crate::report::{
     ERROR_NOTE, Look, Panel, Results, Row, Scale, TIME_NOTE, Table, TableSpec, errors, number, time,
 };
-use crate::scene::{Ground, HeadsOnTerrain, Scene, SceneError};
+use crate::scene::{Ground, HeadsOnTerrain, Scene};
 
 const QUERIES: &str = "terrain: queries, µs";
 const FALLS: &str = "terrain: falling heads";
@@ -66,13 +66,11 @@ pub fn falling_heads(ground: Ground) -> HeadsOnTerrain {
 }
 
 /// Measures all that `plan` asks for.
-///
-/// Errors: none but those of a mesh without triangles, which these are not.
-pub fn terrain(plan: &TerrainPlan, progress: &Progress) -> Result<Results, StudyError> {
+pub fn terrain(plan: &TerrainPlan, progress: &Progress) -> Results {
     progress.phase("terrains", plan.cells.len());
     let mut rows = Vec::new();
     for &cells in &plan.cells {
-        rows.extend(of_size(plan, cells)?);
+        rows.extend(of_size(plan, cells));
         progress.step();
     }
     let ways = [
@@ -82,7 +80,7 @@ pub fn terrain(plan: &TerrainPlan, progress: &Progress) -> Result<Results, Study
     ];
     progress.phase("falling heads", ways.len());
     for (backend, ground) in ways {
-        let above = fall(backend, ground, plan.fall_steps)?;
+        let above = fall(backend, ground, plan.fall_steps);
         rows.push(
             Row::new(FALLS, backend)
                 .key("ground", ground.to_string())
@@ -98,7 +96,7 @@ pub fn terrain(plan: &TerrainPlan, progress: &Progress) -> Result<Results, Study
         falls(&rows),
     ];
     let tables = tables(&rows, plan.fall_steps);
-    Ok(Results { environment: Environment::detect(), rows, tables, panels })
+    Results::new(rows, tables, panels)
 }
 
 /// A terrain and who answers for it.
@@ -110,56 +108,26 @@ struct Way<'a> {
 }
 
 impl Way<'_> {
-    fn sequences<'a>(
-        &'a self,
-        head: &'a SharedShape,
-        places: &[Place],
-        mode: Mode,
-    ) -> Vec<Sequence<'a>> {
-        let sequence = |place: &Place| Sequence {
-            shapes: [self.shape, head],
-            poses: mode.poses(head, place, PREDICTION),
-            prediction: PREDICTION,
-        };
+    fn sequences(&self, head: &SharedShape, places: &[Place], mode: Mode) -> Vec<Sequence> {
+        let sequence = |place| mode.sequence([self.shape, head], place, PREDICTION);
         places.iter().map(sequence).collect()
     }
 
     /// Errors of the first and the last answer of each motion, against the terrain as a mesh.
-    fn errors(
-        &self,
-        sequences: &[Sequence],
-        [ground, head]: [&SharedShape; 2],
-        cells: u32,
-    ) -> ErrorCount {
-        let judge = Judge::new([ground, head]);
-        let mut errors = ErrorCount::default();
-        for sequence in sequences {
-            sequence.walk(self.dispatcher, |step, manifolds| {
-                if step == 0 || step + 1 == sequence.poses.len() {
-                    let pose = &sequence.poses[step];
-                    let question = Question::new(pose, [&**ground, &**head], PREDICTION);
-                    let reported = manifolds.iter().filter_map(|m| self.reported(m, cells));
-                    let answer = Answer { question, reported: reported.collect() };
-                    errors += judge.truth(&question).judge(&answer);
+    fn errors(&self, sequences: &[Sequence], meshes: [&SharedShape; 2], cells: u32) -> ErrorCount {
+        let judge = Judge::new(meshes);
+        let [errors] = Sequence::errors(sequences, [self.dispatcher], |index, step| {
+            let poses = &sequences[index].poses;
+            (step == 0 || step + 1 == poses.len()).then(|| {
+                let shapes = meshes.map(|shape| &**shape);
+                let truth = judge.truth(&Question::new(&poses[step], shapes, PREDICTION));
+                match self.ground {
+                    Ground::Mesh => truth,
+                    Ground::HeightField => truth.renumbered(|t, other| (in_field(t, cells), other)),
                 }
-            });
-        }
-        errors
-    }
-
-    /// A manifold with the number that its triangle has in the mesh of the terrain.
-    fn reported(&self, manifold: &ContactManifold, cells: u32) -> Option<Reported> {
-        let distances = manifold.points.iter().map(|point| point.dist);
-        let distance = distances.reduce(Real::min).filter(|&distance| distance <= PREDICTION)?;
-        let id = manifold.subshape1;
-        let triangle1 = match self.ground {
-            Ground::Mesh => id,
-            Ground::HeightField => {
-                let (cell, side) = (id % (cells * cells), id / (cells * cells));
-                2 * ((cell % cells) * cells + cell / cells) + side
-            }
-        };
-        Some(Reported { triangle1, triangle2: manifold.subshape2, distance })
+            })
+        });
+        errors.pairs
     }
 
     /// Cells whose heights a first query reads, on the mean; `None` on a mesh.
@@ -174,9 +142,15 @@ impl Way<'_> {
     }
 }
 
-fn of_size(plan: &TerrainPlan, cells: u32) -> Result<Vec<Row>, StudyError> {
-    let head = shape(&mesh::monkey_head().centred().scaled_to(2.0))?;
-    let ground = shape(&HeadsOnTerrain::terrain(cells))?;
+/// The number that a triangle of the mesh has in the height field.
+fn in_field(triangle: u32, cells: u32) -> u32 {
+    let (cell, side) = (triangle / 2, triangle % 2);
+    (cell % cells) * cells + cell / cells + side * cells * cells
+}
+
+fn of_size(plan: &TerrainPlan, cells: u32) -> Vec<Row> {
+    let head = shape(&mesh::monkey_head().centred().scaled_to(2.0));
+    let ground = shape(&HeadsOnTerrain::terrain(cells));
     let field = SharedShape::new(HeadsOnTerrain::field(cells));
     let contest = Contest::new([&head, &ground]);
     let [stock, sbbk] = &contest.dispatchers;
@@ -213,19 +187,19 @@ fn of_size(plan: &TerrainPlan, cells: u32) -> Result<Vec<Row>, StudyError> {
             .with("errors", way.errors(&motions, [&ground, &head], cells))
             .with("cells_read", way.cells_read(&way.sequences(&head, &places, Mode::Fresh)))
     });
-    Ok(rows.collect())
+    rows.collect()
 }
 
 /// How many heads are not under the terrain, after each step.
-fn fall(backend: Backend, ground: Ground, steps: usize) -> Result<Vec<usize>, SceneError> {
-    let mut built = falling_heads(ground).build()?;
+fn fall(backend: Backend, ground: Ground, steps: usize) -> Vec<usize> {
+    let mut built = falling_heads(ground).build();
     let _installed = backend.install(&mut built.world);
     let heads_above = (0..steps).map(|_| {
         built.world.step();
         let heights = built.watched.iter().map(|&body| built.world.bodies[body].translation().y);
         heights.filter(|&height| height > UNDER).count()
     });
-    Ok(heads_above.collect())
+    heads_above.collect()
 }
 
 fn tables(rows: &[Row], fall_steps: usize) -> Vec<Table> {

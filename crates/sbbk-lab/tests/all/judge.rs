@@ -3,7 +3,7 @@
 use rapier3d::geometry::{ContactManifold, SharedShape};
 use rapier3d::math::{Pose, Real, Vector};
 use sbbk_core::truth::pairs_within;
-use sbbk_lab::backend::{Answer, Backend, Question};
+use sbbk_lab::backend::{Backend, Question};
 use sbbk_lab::mesh;
 use sbbk_lab::metrics::{Judge, Truth, sample_indices};
 
@@ -11,7 +11,6 @@ const PREDICTION: Real = 0.02;
 
 /// Two heads pressed into each other, and what SBBK leaves behind for them.
 struct Case {
-    question: Question,
     truth: Truth,
     manifolds: Vec<ContactManifold>,
 }
@@ -28,12 +27,12 @@ impl Case {
             .unwrap();
         manifolds.retain(|manifold| !manifold.points.is_empty());
         let truth = Judge::new([&head]).truth(&question);
-        Self { question, truth, manifolds }
+        Self { truth, manifolds }
     }
 
     /// Missed, phantom and wrong depth.
     fn errors(&self, manifolds: &[ContactManifold]) -> [usize; 3] {
-        let errors = self.truth.judge(&Answer::new(self.question, manifolds));
+        let errors = self.truth.judge_manifolds(manifolds).pairs;
         assert_eq!(errors.wrong(), errors.missed + errors.phantom + errors.wrong_depth);
         [errors.missed, errors.phantom, errors.wrong_depth]
     }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rapier3d::parry::query::DefaultQueryDispatcher;
 use sbbk_lab::backend::{Backend, PairKind, Probe, SharedDispatcher, Timed};
-use sbbk_lab::metrics::{PosePairs, RunPlan, WorldState, run};
+use sbbk_lab::metrics::{RunPlan, Sequence, WorldState, run};
 use sbbk_lab::scene::{BoxStack, HelicopterBallDrop, MonkeyPile, Scene};
 
 const PLAN: RunPlan =
@@ -20,7 +20,7 @@ fn every_backend_runs_and_is_timed_and_judged() {
     let runs = Backend::ALL.map(|backend| (drop, backend, PLAN.steps));
     for (scene, backend, steps) in [&runs[..], &[(&pile, Backend::Sbbk, 65)]].concat() {
         let name = format!("{} on {backend}", scene.name());
-        let run = run(scene, backend, RunPlan { steps, ..PLAN }).unwrap();
+        let run = run(scene, backend, RunPlan { steps, ..PLAN });
         let sampled: Vec<usize> = run.samples.iter().map(|sample| sample.step).collect();
         assert_eq!(sampled, (8..=PLAN.warm_up + steps).step_by(4).collect::<Vec<_>>(), "{name}");
         assert_eq!(run.times.len(), steps - sampled.len());
@@ -42,34 +42,29 @@ fn every_backend_runs_and_is_timed_and_judged() {
 /// Would catch poses of the wrong step, pairs asked twice or left out, and pairs with the floor.
 #[test]
 fn captured_pairs_are_asked_once_fresh_and_once_steady() {
-    let mut built = MonkeyPile::with_heads(20).build().unwrap();
+    let mut built = MonkeyPile::with_heads(20).build();
     (0..50).for_each(|_| built.world.step());
     let floor = built.world.colliders.iter().next().map(|(handle, _)| handle).unwrap();
     let pairs = || built.world.contact_pairs();
     let heads = pairs().filter(|pair| pair.collider1 != floor && pair.collider2 != floor).count();
     assert!(heads > 10 && heads < pairs().count(), "heads lie on heads and on the floor");
-    let captured = PosePairs::capture(&mut built.world, |world| world.step());
-    assert_eq!(captured.pair_count(), heads);
-    let moved = |&index: &usize| {
-        let [first, second] = [0, 1].map(|pose_index| captured.question(index, pose_index));
-        first.shapes == second.shapes && first.pos12 != second.pos12
-    };
-    assert!((0..heads).filter(moved).count() > heads / 2, "a step moves most pairs");
+    let captured = Sequence::captured(&mut built.world, |world| world.step());
+    assert_eq!(captured.len(), heads);
+    let moved = |pair: &&Sequence| pair.poses.len() == 2 && pair.poses[0] != pair.poses[1];
+    assert!(captured.iter().filter(moved).count() > heads / 2, "a step moves most pairs");
 
     let probe = Probe::default();
     let timed: SharedDispatcher =
         Arc::new(Timed::new(Arc::new(DefaultQueryDispatcher), probe.clone()));
-    let sweep = captured.sweep(&timed);
-    let tally = probe.tally(PairKind::MeshMesh);
-    assert_eq!(tally.calls, 2 * heads as u64);
-    assert!(tally.time <= sweep.fresh + sweep.steady);
+    captured.iter().for_each(|pair| pair.walk(&timed, |_, _| ()));
+    assert_eq!(probe.tally(PairKind::MeshMesh).calls, 2 * heads as u64);
 }
 
 /// Would catch heights or energies of the wrong bodies: heads that fall freely keep their energy,
 /// and fall by half of g t squared.
 #[test]
 fn a_free_fall_keeps_its_energy() {
-    let mut built = MonkeyPile::with_heads(10).build().unwrap();
+    let mut built = MonkeyPile::with_heads(10).build();
     built.world.step();
     let first = WorldState::of(&built.world, &built.watched);
     (0..14).for_each(|_| built.world.step());
@@ -85,7 +80,7 @@ fn a_free_fall_keeps_its_energy() {
 /// touch each their neighbours, and hardly sink into them.
 #[test]
 fn a_stack_touches_and_stands() {
-    let mut built = BoxStack::default().build().unwrap();
+    let mut built = BoxStack::default().build();
     (0..120).for_each(|_| built.world.step());
     let state = WorldState::of(&built.world, &built.watched);
     assert_eq!(state.touching_pair_count, 10);

@@ -12,12 +12,12 @@ use rapier3d::parry::shape::Triangle;
 use rayon::prelude::*;
 use sbbk_core::truth::{self, TruthPair};
 
-use super::{Case, ContactErrors, MOTION_LIMIT, PAIRS, SHORT_REPEATS};
+use super::{Case, MOTION_LIMIT, PAIRS, SHORT_REPEATS};
 use crate::backend::Memory;
-use crate::metrics::sample_indices;
+use crate::metrics::{ContactErrors, Sequence, Truth, sample_indices};
 use crate::report::Row;
 use crate::study::motion::{Mode, STEP_COUNT};
-use crate::study::pair::{Contest, Sequence};
+use crate::study::pair::Contest;
 use crate::study::turns::{race, timed};
 
 /// At most this many pairs of each motion: enough for a mean, and the truth of each is worked out
@@ -120,10 +120,10 @@ fn moving(case: &Case, contest: &Contest, mode: Mode) -> Vec<Moving> {
     let mesh = case.shape.as_trimesh().expect("cases are about meshes");
     let within = (1.0 - BAND) * f64::from(case.prediction);
     let contacts = case.sequences(mode, MOTION_LIMIT).into_par_iter().with_max_len(1);
-    let contacts = contacts.map(|Sequence { shapes, poses, prediction }| {
+    let contacts = contacts.map(|sequence| {
         let mut memory = Memory::default();
-        let shapes = shapes.map(|shape| &**shape);
-        memory.ask(contest.sbbk(), shapes, &poses[STEP_COUNT / 2], prediction);
+        sequence.ask(&mut memory, contest.sbbk(), STEP_COUNT / 2);
+        let Sequence { poses, prediction, .. } = sequence;
         let manifolds = &memory.manifolds;
         let sampled = sample_indices(manifolds.len(), PAIR_LIMIT).into_iter();
         let indices = sampled.map(|i| [manifolds[i].subshape1, manifolds[i].subshape2]);
@@ -194,7 +194,8 @@ fn judge<G: Generator>(all: &[Moving]) -> ContactErrors {
             generator.update(pose, pair, *prediction);
         }
         let manifold = generator.update(last, pair, *prediction);
-        ContactErrors::of_pair(&truth(pair, last), manifold, *prediction)
+        let truth = Truth::of_triangles([truth(pair, last)], *prediction);
+        truth.judge_manifolds(std::slice::from_ref(manifold))
     });
     errors.sum()
 }

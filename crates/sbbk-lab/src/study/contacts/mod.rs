@@ -6,10 +6,7 @@
 //! orientation, and is stopped at five places from nearly apart to deep inside. Every answer is
 //! compared with brute force in f64, and both dispatchers answer in turn.
 
-pub(super) mod errors;
 mod generators;
-
-pub(super) use errors::ContactErrors;
 
 use oorandom::Rand32;
 use rapier3d::geometry::SharedShape;
@@ -19,11 +16,11 @@ use serde_json::Value;
 
 use self::generators::generators;
 use super::motion::{Approach, Mode, Place, STEP_COUNT, mode_notes};
-use super::pair::{Contest, DIRECT_NOTE, Sequence};
-use super::{Progress, StudyError, shape};
+use super::pair::{Contest, DIRECT_NOTE};
+use super::{Progress, shape};
 use crate::backend::Memory;
 use crate::mesh::{self, Mesh};
-use crate::metrics::{Environment, Judge};
+use crate::metrics::{ContactErrors, Sequence};
 use crate::report::{Panel, Results, Row, TIME_NOTE, Table, TableSpec, number, sides};
 
 const EXACTNESS: &str = "contacts: exactness";
@@ -128,21 +125,14 @@ struct Case<'a> {
     places: Vec<Place>,
     /// Of first queries at all places, by stock and SBBK.
     errors: [ContactErrors; 2],
-    apart: usize,
-    crossing: usize,
 }
 
-/// What was found at one pose.
-type Found = (usize, [ContactErrors; 2]);
-
 /// Measures all that `plan` asks for.
-///
-/// Errors: a mesh has no triangles.
-pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Result<Results, StudyError> {
+pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Results {
     let mut shapes = Vec::new();
     for mesh in &plan.meshes {
         for &size in &plan.sizes {
-            shapes.push((mesh, size, shape(&mesh.mesh.clone().centred().scaled_to(size))?));
+            shapes.push((mesh, size, shape(&mesh.mesh.clone().centred().scaled_to(size))));
         }
     }
     let contest = Contest::new(shapes.iter().map(|(_, _, shape)| shape));
@@ -154,9 +144,10 @@ pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Result<Results, Stu
                 .map(move |&prediction| Case::new(mesh, *size, prediction, shape))
         })
         .collect();
-    progress.phase("poses and brute force", plan.pose_count());
+    progress.phase("poses and brute force", cases.len());
     let cases: Vec<Case> = (cases.into_par_iter().enumerate().with_max_len(1))
-        .map(|(index, case)| case.posed(index, &contest).judged(&contest, progress))
+        .map(|(index, case)| case.posed(index, &contest).judged(&contest))
+        .inspect(|_| progress.step())
         .collect();
     progress.phase("first queries", cases.len());
     let mut rows: Vec<Row> = Vec::new();
@@ -183,8 +174,8 @@ pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Result<Results, Stu
         Panel::time_against_error(first, exactness),
         Panel::time_against_error(motion, speed(Mode::SLOW).chain(speed(Mode::FAST))),
     ];
-    let tables = tables(&rows, cases.iter().filter(|case| case.crossing == 0).count());
-    Ok(Results { environment: Environment::detect(), rows, tables, panels })
+    let tables = tables(&rows, cases.iter().filter(|case| case.true_pairs()[1] == 0).count());
+    Results::new(rows, tables, panels)
 }
 
 /// How far the second mesh goes beyond the first touch, in units; negative: short of it. The
@@ -220,8 +211,7 @@ pub(super) fn places(
 
 impl<'a> Case<'a> {
     fn new(mesh: &'a ApproachedMesh, size: Real, prediction: Real, shape: &'a SharedShape) -> Self {
-        let (places, errors) = (Vec::new(), Default::default());
-        Self { mesh, size, prediction, shape, places, errors, apart: 0, crossing: 0 }
+        Self { mesh, size, prediction, shape, places: Vec::new(), errors: Default::default() }
     }
 
     /// With its places. Each approach has a seed of its own, so that the poses do not depend on the
@@ -235,39 +225,21 @@ impl<'a> Case<'a> {
     }
 
     /// With what is true, and what is wrong with the answers of both.
-    fn judged(mut self, contest: &Contest, progress: &Progress) -> Self {
-        let judge = Judge::new([self.shape]);
-        let sequences = self.sequences(Mode::Fresh, usize::MAX);
-        let found: Vec<Found> = (sequences.par_iter().with_max_len(1))
-            .map(|sequence| {
-                let question = sequence.question(0);
-                let truth = judge.truth(&question);
-                let errors = contest.dispatchers.each_ref().map(|dispatcher| {
-                    let mut errors = ContactErrors::default();
-                    sequence.walk(dispatcher, |_, manifolds| {
-                        errors = ContactErrors::of(&truth, question, manifolds);
-                    });
-                    errors
-                });
-                progress.step();
-                (truth.contacts().filter(|pair| pair.distance <= 0.0).count(), errors)
-            })
-            .collect();
-        self.errors = [0, 1].map(|side| found.iter().map(|found| found.1[side]).sum());
-        self.crossing = found.iter().map(|found| found.0).sum();
-        self.apart = self.errors[0].pairs.true_pairs - self.crossing;
+    fn judged(mut self, contest: &Contest) -> Self {
+        self.errors = contest.mesh_errors(&self.sequences(Mode::Fresh, usize::MAX), |_| true);
         self
     }
 
+    /// The true contacts, and those of them that cross.
+    fn true_pairs(&self) -> [usize; 2] {
+        let pairs = self.errors[0].pairs;
+        [pairs.true_pairs, pairs.crossing]
+    }
+
     /// What is asked in a mode.
-    fn sequences(&self, mode: Mode, limit: usize) -> Vec<Sequence<'a>> {
+    fn sequences(&self, mode: Mode, limit: usize) -> Vec<Sequence> {
         let places = self.places.iter().take(limit);
-        let sequence = |place: &Place| Sequence {
-            shapes: [self.shape; 2],
-            poses: mode.poses(self.shape, place, self.prediction),
-            prediction: self.prediction,
-        };
-        places.map(sequence).collect()
+        places.map(|place| mode.sequence([self.shape; 2], place, self.prediction)).collect()
     }
 
     fn row(&self, study: &'static str, backend: impl ToString) -> Row {
@@ -276,17 +248,18 @@ impl<'a> Case<'a> {
     }
 
     fn exactness(&self, contest: &Contest, repeats: usize) -> impl Iterator<Item = Row> {
-        let affordable = REPEATED_PAIRS / (self.apart + self.crossing).max(1);
+        let [true_pairs, crossing] = self.true_pairs();
+        let affordable = REPEATED_PAIRS / true_pairs.max(1);
         let sequences = self.sequences(Mode::Fresh, usize::MAX);
         let times = contest.race(affordable.clamp(1, repeats.max(1)), &sequences);
         let sides = Contest::BACKENDS.into_iter().zip(times).zip(self.errors);
-        sides.map(|((backend, time), errors)| {
+        sides.map(move |((backend, time), errors)| {
             self.row(EXACTNESS, backend)
                 .key("size", decimal(self.size))
                 .key("prediction", decimal(self.prediction))
                 .with("pose_count", self.places.len())
-                .with("apart", self.apart)
-                .with("crossing", self.crossing)
+                .with("apart", true_pairs - crossing)
+                .with("crossing", crossing)
                 .with("time", time)
                 .with("errors", errors)
         })
@@ -302,9 +275,8 @@ impl<'a> Case<'a> {
             let times = contest.race(repeats, &sequences);
             let errors = match is_fresh {
                 true => self.errors,
-                false => {
-                    contest.errors(&sequences, |step| step == STEP_COUNT / 2 || step == STEP_COUNT)
-                }
+                false => contest
+                    .mesh_errors(&sequences, |step| step == STEP_COUNT / 2 || step == STEP_COUNT),
             };
             let sides = Contest::BACKENDS.into_iter().zip(times).zip(errors);
             let rows = sides.map(|((backend, time), errors)| {

@@ -18,9 +18,8 @@ use self::kinds::kinds;
 use self::pair::Pair;
 use super::motion::{Mode, Place, mode_notes};
 use super::pair::{Contest, DIRECT_NOTE};
-use super::{Progress, StudyError, shape};
+use super::{Progress, shape};
 use crate::mesh::{self, Mesh};
-use crate::metrics::Environment;
 use crate::report::{Panel, Results, Row, TIME_NOTE, Table, TableSpec, errors, number, sides};
 
 /// What to compare, and how thoroughly.
@@ -101,10 +100,8 @@ impl ConvexPlan {
 }
 
 /// Measures all that `plan` asks for.
-///
-/// Errors: a mesh has no triangles.
-pub fn convex(plan: &ConvexPlan, progress: &Progress) -> Result<Results, StudyError> {
-    let mut rows = timed(plan, progress)?;
+pub fn convex(plan: &ConvexPlan, progress: &Progress) -> Results {
+    let mut rows = timed(plan, progress);
     let panels = MODES.map(|mode| {
         let is_shown = move |row: &&Row| row.is("mode", mode);
         Panel::time_against_error(format!("Queries, {mode}"), rows.iter().filter(is_shown))
@@ -112,19 +109,19 @@ pub fn convex(plan: &ConvexPlan, progress: &Progress) -> Result<Results, StudyEr
     progress.phase("sizes", plan.meshes.len() * plan.sizes.len());
     for mesh in &plan.meshes {
         for &size in &plan.sizes {
-            rows.extend(sized(plan, mesh, size)?);
+            rows.extend(sized(plan, mesh, size));
             progress.step();
         }
     }
     progress.finish();
-    let environment = Environment::detect();
-    Ok(Results { environment, tables: tables(plan, &rows), rows, panels: panels.into() })
+    let tables = tables(plan, &rows);
+    Results::new(rows, tables, panels.into())
 }
 
 /// Times and errors of one mesh.
-fn timed(plan: &ConvexPlan, progress: &Progress) -> Result<Vec<Row>, StudyError> {
+fn timed(plan: &ConvexPlan, progress: &Progress) -> Vec<Row> {
     let ConvexPlan { prediction, .. } = *plan;
-    let mesh = shape(&plan.mesh)?;
+    let mesh = shape(&plan.mesh);
     let contest = Contest::new([&mesh]);
     let length = plan.mesh.bounds().extents().max_element();
     let about = ADVANCES.map(|advance| advance * prediction);
@@ -156,13 +153,13 @@ fn timed(plan: &ConvexPlan, progress: &Progress) -> Result<Vec<Row>, StudyError>
         }
         progress.step();
     }
-    Ok(rows)
+    rows
 }
 
 /// The errors of first queries of a mesh of this length.
-fn sized(plan: &ConvexPlan, mesh: &Mesh, size: f64) -> Result<Vec<Row>, StudyError> {
-    let base = shape(&mesh.clone().scaled_to(LENGTH as Real))?;
-    let scaled = shape(&mesh.clone().scaled_to(size as Real))?;
+fn sized(plan: &ConvexPlan, mesh: &Mesh, size: f64) -> Vec<Row> {
+    let base = shape(&mesh.clone().scaled_to(LENGTH as Real));
+    let scaled = shape(&mesh.clone().scaled_to(size as Real));
     let contests = [Contest::new([&base]), Contest::new([&scaled])];
     let factor = (size / LENGTH) as Real;
     let predictions = plan.predictions.iter().filter(|&&p| ConvexPlan::asks(mesh, size, p));
@@ -192,7 +189,7 @@ fn sized(plan: &ConvexPlan, mesh: &Mesh, size: f64) -> Result<Vec<Row>, StudyErr
                 .with("place_count", places.len())
         }));
     }
-    Ok(rows)
+    rows
 }
 
 fn tables(plan: &ConvexPlan, rows: &[Row]) -> Vec<Table> {

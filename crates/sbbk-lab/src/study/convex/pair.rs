@@ -1,17 +1,17 @@
 //! A mesh and a shape of one kind: the ways of one to the other, and what both sides answer there.
 
-use glamx::{Pose3, Quat, Vec3};
+use glamx::{Quat, Vec3};
 use oorandom::Rand32;
 use rapier3d::geometry::SharedShape;
 use rapier3d::math::Real;
 
-use super::errors::{Judge, Truth};
+use super::errors::Judge;
 use super::kinds::{Kind, Upright};
+use crate::metrics::Sequence;
 use crate::report::Row;
 use crate::scene::random;
-use crate::study::contacts::errors::ContactErrors;
 use crate::study::motion::{Approach, Mode, Place};
-use crate::study::pair::{Contest, Sequence};
+use crate::study::pair::Contest;
 
 /// Of the queries of a motion one in so many is judged, the first and the last among them.
 const JUDGED: usize = 4;
@@ -56,38 +56,26 @@ impl<'a> Pair<'a> {
     }
 
     /// The queries at some places, every other time with the mesh first.
-    pub fn sequences(&self, places: &[Place], mode: Mode) -> Vec<Sequence<'a>> {
-        let Self { mesh, kind, prediction, .. } = *self;
+    pub fn sequences(&self, places: &[Place], mode: Mode) -> Vec<Sequence> {
         let sequence = |(index, place): (usize, &Place)| {
-            let poses = mode.poses(mesh, place, prediction).into_iter();
-            let (shapes, poses): (_, Vec<Pose3>) = if is_mesh_first(index) {
-                ([mesh, &kind.shape], poses.map(|pose| pose.inverse()).collect())
-            } else {
-                ([&kind.shape, mesh], poses.collect())
-            };
-            Sequence { shapes, poses, prediction }
+            let shapes = [&self.kind.shape, self.mesh];
+            let mut sequence = mode.sequence(shapes, place, self.prediction);
+            if is_mesh_first(index) {
+                sequence.shapes.reverse();
+                sequence.poses.iter_mut().for_each(|pose| *pose = pose.inverse());
+            }
+            sequence
         };
         places.iter().enumerate().map(sequence).collect()
     }
 
     /// The errors of both sides.
     pub fn rows(&self, study: &'static str, sequences: &[Sequence]) -> [Row; 2] {
-        let mut errors = [ContactErrors::default(); 2];
-        for (index, sequence) in sequences.iter().enumerate() {
-            let truth = sequence
-                .poses
-                .iter()
-                .step_by(JUDGED)
-                .map(|pos12| self.judge.truth(pos12, is_mesh_first(index), self.prediction));
-            let truth: Vec<Truth> = truth.collect();
-            for (dispatcher, errors) in self.contest.dispatchers.iter().zip(&mut errors) {
-                sequence.walk(dispatcher, |step, manifolds| {
-                    if step % JUDGED == 0 {
-                        *errors += truth[step / JUDGED].judge(manifolds, |index| index);
-                    }
-                });
-            }
-        }
+        let errors = self.contest.errors(sequences, |index, step| {
+            let pos12 = &sequences[index].poses[step];
+            (step % JUDGED == 0)
+                .then(|| self.judge.truth(pos12, is_mesh_first(index), self.prediction))
+        });
         let parts = self.kind.shape.as_compound().map(|compound| compound.shapes().len());
         let row = |side: usize| {
             Row::new(study, Contest::BACKENDS[side])

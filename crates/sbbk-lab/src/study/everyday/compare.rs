@@ -90,9 +90,10 @@ impl Comparison {
         }
         if self.triangles.wrong() > before && self.judged[0].mesh_pairs < JUDGED {
             let pair = Pair { shapes: shapes.each_ref(), pos12: *pos12, prediction };
-            let errors = pair.judge(answers.each_ref().map(|manifolds| &manifolds[..]));
-            for (sum, errors) in self.judged.iter_mut().zip(errors.into_iter().flatten()) {
-                *sum += errors;
+            if let Some(truth) = pair.truth() {
+                for (sum, manifolds) in self.judged.iter_mut().zip(&answers) {
+                    *sum += truth.judge_manifolds(manifolds).pairs;
+                }
             }
         }
     }

@@ -8,7 +8,7 @@ use rapier3d::math::Real;
 use rapier3d::pipeline::PhysicsWorld;
 
 use crate::mesh::{self, Mesh};
-use crate::scene::{SceneError, random, shape};
+use crate::scene::{random, shape};
 
 /// A terrain of hills, all worlds of a scene sharing one mesh.
 #[derive(Clone)]
@@ -24,10 +24,10 @@ const SPACING: f32 = 1.6;
 
 impl Ground {
     /// `cells` along a side, each `cell` units long.
-    pub fn new(cells: u32, cell: f32, flags: TriMeshFlags) -> Result<Self, SceneError> {
+    pub fn new(cells: u32, cell: f32, flags: TriMeshFlags) -> Self {
         let size = cell * cells as f32;
-        let shape = shape(&mesh::hills(size, cells), flags)?;
-        Ok(Self { shape, size, triangle_count: 2 * cells * cells })
+        let shape = shape(&mesh::hills(size, cells), flags);
+        Self { shape, size, triangle_count: 2 * cells * cells }
     }
 
     /// A world with nothing else.

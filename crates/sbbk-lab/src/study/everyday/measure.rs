@@ -6,21 +6,20 @@ use std::time::{Duration, Instant};
 use rapier_integration::{PreparedTree, SbbkDispatcher};
 use rapier3d::geometry::SharedShape;
 use rapier3d::pipeline::PhysicsWorld;
-use serde::Serialize;
 
 use super::compare::Comparison;
 use crate::backend::{Backend, shape_address};
+use crate::metrics::Summary;
 use crate::replay::{self, Recorder};
-use crate::report::Row;
-use crate::scene::SceneError;
-use crate::study::StudyError;
+use crate::report::{ReportError, Row};
+use crate::study::pair::Contest;
 
 /// A world that can be built again and again, and what moves in it besides.
 pub(super) struct Everyday<'a> {
     /// Study and keys of the rows.
     pub row: Row,
     pub steps: usize,
-    pub build: Box<dyn Fn() -> Result<Driven, SceneError> + 'a>,
+    pub build: Box<dyn Fn() -> Driven + 'a>,
     /// Shapes that SBBK prepares before.
     pub prepared: Vec<SharedShape>,
 }
@@ -62,32 +61,6 @@ const IGNORED: f64 = 1.0;
 /// How much worse the worst step may be, in microseconds.
 const WORST: f64 = 2000.0;
 
-/// Times of some steps, in microseconds.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub(super) struct Spread {
-    /// The middle one.
-    pub median: f64,
-    /// All but a hundredth are less.
-    pub p99: f64,
-    /// The largest.
-    pub worst: f64,
-    /// The arithmetic mean.
-    pub mean: f64,
-}
-
-impl Spread {
-    /// Zeros if there are no times.
-    pub fn of(mut times: Vec<f64>) -> Self {
-        times.sort_unstable_by(f64::total_cmp);
-        let at = |share: f64| {
-            let index = (share * times.len() as f64).ceil() as usize;
-            times.get(index.saturating_sub(1)).copied().unwrap_or(0.0)
-        };
-        let mean = times.iter().sum::<f64>() / times.len().max(1) as f64;
-        Self { median: at(0.5), p99: at(0.99), worst: at(1.0), mean }
-    }
-}
-
 /// What a user would say of SBBK's times beside stock's; `ignored` is what is too little to be
 /// seen, in the same unit.
 pub(super) fn verdict(stock: [f64; 2], sbbk: [f64; 2], ignored: f64, worst: f64) -> &'static str {
@@ -101,8 +74,8 @@ pub(super) fn verdict(stock: [f64; 2], sbbk: [f64; 2], ignored: f64, worst: f64)
     }
 }
 
-/// What was seen of one backend: of each step the least times over the repeats, as every run of a
-/// backend does the same.
+/// What was seen of one backend: of each step the least times over the repeats, in microseconds, as
+/// every run of a backend does the same.
 #[derive(Default)]
 struct Side {
     detection: Vec<f64>,
@@ -113,53 +86,50 @@ struct Side {
 
 impl<'a> Everyday<'a> {
     /// With nothing prepared.
-    pub fn new(
-        row: Row,
-        steps: usize,
-        build: impl Fn() -> Result<Driven, SceneError> + 'a,
-    ) -> Self {
+    pub fn new(row: Row, steps: usize, build: impl Fn() -> Driven + 'a) -> Self {
         Self { row, steps, build: Box::new(build), prepared: Vec::new() }
     }
 
     /// Runs the scene `repeats` times on both backends, step by step in turns.
-    ///
-    /// Errors: the scene cannot be built.
-    pub fn measure(&self, repeats: usize) -> Result<[Row; 2], SceneError> {
+    pub fn measure(&self, repeats: usize) -> [Row; 2] {
         let mut sides: [Side; 2] = Default::default();
         let mut comparison = Comparison::new();
         for repeat in 0..repeats.max(1) {
-            self.run(&mut sides, (repeat == 0).then_some(&mut comparison))?;
+            self.run(&mut sides, (repeat == 0).then_some(&mut comparison));
         }
-        let [stock, sbbk] = sides.map(|side| (side.row_values(), side));
-        let of = |detection: &Spread| [detection.median, detection.worst];
-        let limit = stock.0.0.worst + WORST;
-        let bad_steps = sbbk.1.detection.iter().filter(|&&time| time > limit).count();
-        let verdict = verdict(of(&stock.0.0), of(&sbbk.0.0), IGNORED, WORST);
-        let row = |backend: Backend, ((detection, step), side): (_, Side)| {
-            let row = Row { backend: backend.to_string(), ..self.row.clone() };
+        let summaries = sides.each_ref().map(|side| {
+            [&side.detection, &side.step].map(|times| Summary::of(times.iter().copied()))
+        });
+        let [stock, sbbk] =
+            summaries.map(|[detection, _]| detection.map_or([0.0; 2], |d| [d.median, d.max]));
+        let is_bad = |time: &&f64| **time > stock[1] + WORST;
+        let row = |side: usize| {
+            let backend = Contest::BACKENDS[side].to_string();
             let mebibytes = |bytes: usize| bytes as f64 / (1 << 20) as f64;
-            row.with("steps", self.steps)
-                .with("detection", detection)
-                .with("step", step)
-                .with("mesh_mebibytes", mebibytes(side.mesh_bytes))
-                .with("plugin_mebibytes", mebibytes(side.plugin_bytes))
+            Row { backend, ..self.row.clone() }
+                .with("steps", self.steps)
+                .with("detection", summaries[side][0])
+                .with("step", summaries[side][1])
+                .with("mesh_mebibytes", mebibytes(sides[side].mesh_bytes))
+                .with("plugin_mebibytes", mebibytes(sides[side].plugin_bytes))
+                .with("judged", comparison.judged[side])
         };
-        let sbbk = row(Backend::Sbbk, sbbk).with("verdict", verdict).with("bad_steps", bad_steps);
-        let [by_stock, by_sbbk] = comparison.judged;
-        let stock = row(Backend::Stock, stock).with("judged", by_stock);
-        let sbbk = sbbk.with("pairs", comparison.pairs).with("judged", by_sbbk);
-        let sbbk = sbbk.with("triangles_of_pairs", comparison.triangles);
-        Ok([stock, sbbk])
+        let sbbk = row(1)
+            .with("verdict", verdict(stock, sbbk, IGNORED, WORST))
+            .with("bad_steps", sides[1].detection.iter().filter(is_bad).count())
+            .with("pairs", comparison.pairs)
+            .with("triangles_of_pairs", comparison.triangles);
+        [row(0), sbbk]
     }
 
     /// Runs it once more on either backend, and writes a page that plays both.
     ///
-    /// Errors: the scene cannot be built, or the page cannot be written.
-    pub fn play(&self, path: &Path) -> Result<(), StudyError> {
+    /// Errors: the page cannot be written.
+    pub fn play(&self, path: &Path) -> Result<(), ReportError> {
         let sbbk = SbbkDispatcher::default();
         let mut runs = Vec::new();
         for (backend, dispatcher) in [(Backend::Stock, None), (Backend::Sbbk, Some(&sbbk))] {
-            let (Driven { mut world, mut drive }, _prepared) = self.start(dispatcher)?;
+            let (Driven { mut world, mut drive }, _prepared) = self.start(dispatcher);
             let mut recorder = Recorder::new(backend, &world);
             for step in 0..self.steps {
                 drive(&mut world, step);
@@ -167,7 +137,7 @@ impl<'a> Everyday<'a> {
             }
             runs.push(recorder);
         }
-        Ok(replay::write(path, &self.name(), &runs)?)
+        replay::write(path, &self.name(), &runs)
     }
 
     /// What tables call it.
@@ -180,26 +150,19 @@ impl<'a> Everyday<'a> {
         keys.collect::<Vec<_>>().join(", ")
     }
 
-    fn start(
-        &self,
-        dispatcher: Option<&SbbkDispatcher>,
-    ) -> Result<(Driven, Vec<Option<PreparedTree>>), SceneError> {
-        let mut driven = (self.build)()?;
-        let Some(dispatcher) = dispatcher else { return Ok((driven, Vec::new())) };
+    fn start(&self, dispatcher: Option<&SbbkDispatcher>) -> (Driven, Vec<Option<PreparedTree>>) {
+        let mut driven = (self.build)();
+        let Some(dispatcher) = dispatcher else { return (driven, Vec::new()) };
         driven.world.narrow_phase.set_query_dispatcher(dispatcher.clone());
         let trees = self.prepared.iter().filter_map(|shape| dispatcher.prepare_shape(shape).ok());
-        Ok((driven, trees.collect()))
+        (driven, trees.collect())
     }
 
     /// Both worlds at once, so that what else the machine does slows both, each first in turn.
-    fn run(
-        &self,
-        sides: &mut [Side; 2],
-        mut comparison: Option<&mut Comparison>,
-    ) -> Result<(), SceneError> {
+    fn run(&self, sides: &mut [Side; 2], mut comparison: Option<&mut Comparison>) {
         let dispatcher = SbbkDispatcher::default();
-        let (stock, _) = self.start(None)?;
-        let (sbbk, _prepared) = self.start(Some(&dispatcher))?;
+        let (stock, _) = self.start(None);
+        let (sbbk, _prepared) = self.start(Some(&dispatcher));
         let mut worlds = [stock, sbbk];
         for Driven { world, .. } in &mut worlds {
             world.physics_pipeline.counters.enable();
@@ -212,7 +175,7 @@ impl<'a> Everyday<'a> {
                 for (side, Driven { world, .. }) in sides.iter_mut().zip(&worlds) {
                     side.mesh_bytes = side.mesh_bytes.max(mesh_bytes(world));
                 }
-                sides[1].plugin_bytes = sides[1].plugin_bytes.max(plugin_bytes(&dispatcher));
+                sides[1].plugin_bytes = sides[1].plugin_bytes.max(dispatcher.stats().tree_bytes);
             }
             if let Some(comparison) = &mut comparison {
                 let stock = &worlds[0].world;
@@ -223,7 +186,6 @@ impl<'a> Everyday<'a> {
                 }
             }
         }
-        Ok(())
     }
 }
 
@@ -236,10 +198,6 @@ impl Side {
         let detection = asked + world.physics_pipeline.counters.cd.narrow_phase_time.time();
         keep_least(&mut self.detection, step, detection);
         keep_least(&mut self.step, step, whole);
-    }
-
-    fn row_values(&self) -> (Spread, Spread) {
-        (Spread::of(self.detection.clone()), Spread::of(self.step.clone()))
     }
 }
 
@@ -260,9 +218,4 @@ fn mesh_bytes(world: &PhysicsWorld) -> usize {
     meshes.sort_unstable();
     meshes.dedup();
     meshes.into_iter().map(|(_, bytes)| bytes).sum()
-}
-
-fn plugin_bytes(dispatcher: &SbbkDispatcher) -> usize {
-    let stats = dispatcher.stats();
-    stats.tree_bytes
 }

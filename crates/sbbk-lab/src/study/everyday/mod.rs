@@ -27,7 +27,6 @@ use rapier3d::math::Real;
 use self::ground::Ground;
 use self::measure::Everyday;
 use super::{Progress, StudyError};
-use crate::metrics::Environment;
 use crate::report::{Results, Row};
 
 const BODIES: &str = "everyday: bodies on terrains";
@@ -151,35 +150,34 @@ impl EverydayPlan {
 
 /// Measures all that `plan` asks for.
 ///
-/// Errors: there is no such world, the URDF file cannot be loaded, or the page cannot be written. Not those of a mesh without
-/// triangles, which these are not.
+/// Errors: there is no such world, the URDF file cannot be loaded, or the page cannot be written.
 pub fn everyday(plan: &EverydayPlan, progress: &Progress) -> Result<Results, StudyError> {
     let mut worlds = Worlds { plan, progress, replay: plan.replay.as_deref() };
     let mut rows = Vec::new();
     for group in &plan.groups {
         rows.extend(match group {
             Group::Terrains => on_terrains(&mut worlds)?,
-            Group::Queries => queries(plan, progress)?,
+            Group::Queries => queries(plan, progress),
             Group::Single => {
-                let large = plan.large()?;
-                let world = Ground::new(plan.world_cells, 1.0, TriMeshFlags::empty())?;
-                let small = Ground::new(64, 0.5, TriMeshFlags::empty())?;
-                let mut scenes = scenes::bouncing(&large, 5 * plan.steps)?;
-                scenes.extend(scenes::crossing(&world, 2 * plan.steps)?);
+                let large = plan.large();
+                let world = Ground::new(plan.world_cells, 1.0, TriMeshFlags::empty());
+                let small = Ground::new(64, 0.5, TriMeshFlags::empty());
+                let mut scenes = scenes::bouncing(&large, 5 * plan.steps);
+                scenes.extend(scenes::crossing(&world, 2 * plan.steps));
                 scenes.push(scenes::rolling_population(&small, plan.small_meshes));
                 worlds.measure("single bodies, many meshes", &scenes)?
             }
             Group::Flags => {
                 let [all, fixed] = [TriMeshFlags::all(), TriMeshFlags::FIX_INTERNAL_EDGES];
-                let all = Ground::new(plan.deformable_cells, 0.5, all)?;
-                let fixed = Ground::new(plan.deformable_cells, 0.5, fixed)?;
-                let mut scenes = scenes::all_flags(&all, plan.steps)?;
+                let all = Ground::new(plan.deformable_cells, 0.5, all);
+                let fixed = Ground::new(plan.deformable_cells, 0.5, fixed);
+                let mut scenes = scenes::all_flags(&all, plan.steps);
                 scenes.extend(robots::robots(&fixed, plan.urdf.as_deref(), plan.steps)?);
                 worlds.measure("all flags, and robots", &scenes)?
             }
             Group::Sensors => {
-                let large = plan.large()?;
-                let scenes = scenes::sensors(&large, plan.steps)?;
+                let large = plan.large();
+                let scenes = scenes::sensors(&large, plan.steps);
                 worlds.measure("sensors and characters", &scenes)?
             }
             Group::Pile => worlds.measure("pile", &[scenes::pile(plan.heads, plan.steps)])?,
@@ -190,13 +188,13 @@ pub fn everyday(plan: &EverydayPlan, progress: &Progress) -> Result<Results, Stu
         return Err(StudyError::NoScene(plan.name.clone()));
     }
     let (tables, panels) = (report::tables(plan, &rows), report::panels(&rows));
-    Ok(Results { environment: Environment::detect(), rows, tables, panels })
+    Ok(Results::new(rows, tables, panels))
 }
 
 impl EverydayPlan {
     /// The terrain for single bodies and sensors.
-    fn large(&self) -> Result<Ground, StudyError> {
-        Ok(Ground::new(self.cells, 0.5, TriMeshFlags::FIX_INTERNAL_EDGES)?)
+    fn large(&self) -> Ground {
+        Ground::new(self.cells, 0.5, TriMeshFlags::FIX_INTERNAL_EDGES)
     }
 }
 
@@ -215,7 +213,7 @@ impl Worlds<'_> {
         self.progress.phase(phase, scenes.len());
         let mut rows = Vec::new();
         for scene in scenes {
-            rows.extend(scene.measure(self.plan.repeats)?);
+            rows.extend(scene.measure(self.plan.repeats));
             self.replay.take().map(|path| scene.play(path)).transpose()?;
             self.progress.step();
         }
@@ -232,7 +230,7 @@ fn on_terrains(worlds: &mut Worlds) -> Result<Vec<Row>, StudyError> {
             true => TriMeshFlags::FIX_INTERNAL_EDGES,
             false => TriMeshFlags::empty(),
         };
-        let ground = Ground::new(cells, cell, flags)?;
+        let ground = Ground::new(cells, cell, flags);
         let scenes = scenes::bodies(ground_plan, &ground, plan.bodies, plan.steps);
         let phase = format!("bodies on terrain {} of {}", index + 1, plan.grounds.len());
         rows.extend(worlds.measure(&phase, &scenes)?);
@@ -240,13 +238,13 @@ fn on_terrains(worlds: &mut Worlds) -> Result<Vec<Row>, StudyError> {
     Ok(rows)
 }
 
-fn queries(plan: &EverydayPlan, progress: &Progress) -> Result<Vec<Row>, StudyError> {
+fn queries(plan: &EverydayPlan, progress: &Progress) -> Vec<Row> {
     progress.phase("queries on terrains", plan.query_cells.len());
     let mut rows = Vec::new();
     for &cells in &plan.query_cells {
-        let ground = Ground::new(cells, 0.5, TriMeshFlags::empty())?;
-        rows.extend(queries::queries(&ground, plan.repeats)?);
+        let ground = Ground::new(cells, 0.5, TriMeshFlags::empty());
+        rows.extend(queries::queries(&ground, plan.repeats));
         progress.step();
     }
-    Ok(rows)
+    rows
 }

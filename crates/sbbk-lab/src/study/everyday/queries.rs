@@ -17,7 +17,7 @@ use super::{PREDICTION, QUERIES};
 use crate::backend::{Backend, Dispatcher, Memory, SharedDispatcher};
 use crate::metrics::{ErrorCount, Summary};
 use crate::report::Row;
-use crate::scene::{SceneError, random, shape};
+use crate::scene::{random, shape};
 use crate::study::turns::{in_turn, timed};
 
 named! {
@@ -93,13 +93,11 @@ const BAND: Real = 0.05 * PREDICTION;
 
 /// All queries of a ball, a capsule and a head on a terrain; but for nonlinear casts of the head,
 /// which take stock seconds.
-///
-/// Errors: none but those of a mesh without triangles, which these are not.
-pub(super) fn queries(ground: &Ground, repeats: usize) -> Result<Vec<Row>, SceneError> {
+pub(super) fn queries(ground: &Ground, repeats: usize) -> Vec<Row> {
     let bodies = [
         ("ball", SharedShape::ball(0.5)),
         ("capsule", SharedShape::capsule_y(0.3, 0.2)),
-        ("head", shape(&head(), TriMeshFlags::empty())?),
+        ("head", shape(&head(), TriMeshFlags::empty())),
     ];
     let mut rows = Vec::new();
     for (name, body) in &bodies {
@@ -117,7 +115,7 @@ pub(super) fn queries(ground: &Ground, repeats: usize) -> Result<Vec<Row>, Scene
             }
         }
     }
-    Ok(rows)
+    rows
 }
 
 /// Anywhere above the middle of the terrain.
@@ -152,9 +150,7 @@ impl Asked<'_> {
         let first =
             dispatchers.each_ref().map(|d| timed(|| black_box(self.ask(d, &self.poses[0]))).0);
         let first = first.map(|time| 1e9 * time.as_secs_f64());
-        let Ok(times) = in_turn(&dispatchers, 2 * repeats + 1, |dispatcher| {
-            Ok::<_, std::convert::Infallible>(self.sweep(dispatcher))
-        });
+        let times = in_turn(&dispatchers, 2 * repeats + 1, |dispatcher| self.sweep(dispatcher));
         let times = times.into_iter().map(Summary::of);
         let answers = self.compare(&dispatchers);
         let rows = backends.into_iter().zip(times).zip(first).map(|((backend, time), first)| {

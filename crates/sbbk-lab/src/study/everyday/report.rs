@@ -67,8 +67,8 @@ fn world_columns(counts_bodies: bool) -> Vec<Column> {
         faster("ratio", "detection.median", Backend::Stock).of("sbbk"),
         number("p99, stock", "detection.p99").of("stock"),
         number("sbbk", "detection.p99").of("sbbk"),
-        number("worst, stock", "detection.worst").of("stock"),
-        number("sbbk", "detection.worst").of("sbbk"),
+        number("worst, stock", "detection.max").of("stock"),
+        number("sbbk", "detection.max").of("sbbk"),
         number("bad", "bad_steps").of("sbbk"),
         faster("whole step", "step.median", Backend::Stock).of("sbbk"),
         number("mesh, MiB", "mesh_mebibytes").of("sbbk"),
@@ -123,7 +123,7 @@ pub(super) fn panels(rows: &[Row]) -> Vec<Panel> {
             [stock, stock / sbbk]
         };
         ratios = ratios.points(label, look, pairs.iter().copied().map(ratio));
-        let worsts = |sides: [&Row; 2]| sides.map(|row| row.number("detection.worst"));
+        let worsts = |sides: [&Row; 2]| sides.map(|row| row.number("detection.max"));
         worst = worst.points(label, look, pairs.into_iter().map(worsts));
     }
     let equal =

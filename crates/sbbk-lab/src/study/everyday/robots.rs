@@ -60,12 +60,12 @@ pub(super) fn robots<'a>(
             let mut world = ground.world();
             let legs = robots.iter().flat_map(|robot| insert(&mut world, robot.clone()));
             let legs: Vec<Leg> = legs.collect();
-            Ok(Driven::by(world, move |world, step| {
+            Driven::by(world, move |world, step| {
                 if walks {
                     legs.iter().for_each(|leg| leg.swing(world, step));
                 }
                 Duration::ZERO
-            }))
+            })
         };
         scenes.push(Everyday::new(row, steps, build));
     }

@@ -15,9 +15,7 @@ use super::measure::{Driven, Everyday};
 use super::{BODIES, DEFORMABLE, GroundPlan, PILE, SENSORS, SINGLE};
 use crate::mesh;
 use crate::report::Row;
-use crate::scene::{MonkeyPile, Scene, SceneError, Solid, random, shape};
-
-type Scenes<'a> = Result<Vec<Everyday<'a>>, SceneError>;
+use crate::scene::{MonkeyPile, Scene, Solid, random, shape};
 
 /// Bodies of each kind on one terrain.
 pub(super) fn bodies<'a>(
@@ -37,7 +35,7 @@ pub(super) fn bodies<'a>(
         let build = move || {
             let mut world = ground.world();
             ground.scatter(&mut world, &shapes, count);
-            Ok(Driven::alone(world))
+            Driven::alone(world)
         };
         Everyday::new(row, steps, build)
     };
@@ -46,7 +44,7 @@ pub(super) fn bodies<'a>(
 
 /// A ball and meshes, one in each world, that bounce on a terrain, higher than its rim: between two
 /// landings their box leaves that of the terrain.
-pub(super) fn bouncing(ground: &Ground, steps: usize) -> Scenes<'_> {
+pub(super) fn bouncing(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
     /// Four times as fast as under plain gravity, and not so fast that a step is more than a body.
     const GRAVITY: f32 = 4.0;
     const SPEED: f32 = 24.0;
@@ -57,34 +55,34 @@ pub(super) fn bouncing(ground: &Ground, steps: usize) -> Scenes<'_> {
             let body = RigidBodyBuilder::dynamic().translation(start).gravity_scale(GRAVITY);
             let collider = ColliderBuilder::new(shape.clone()).restitution(0.7);
             let (body, _) = world.insert(body, collider);
-            Ok(Driven::by(world, move |world, _| {
+            Driven::by(world, move |world, _| {
                 let body = &mut world.bodies[body];
                 let up = body.linvel().y;
                 let is_landing = up > 0.0 && body.translation().y < start.y - 5.0;
                 body.set_linvel(Vec3::Y * if is_landing { SPEED } else { up }, true);
                 Duration::ZERO
-            }))
+            })
         })
     };
-    Ok(wanderers()?.map(scene).into())
+    wanderers().map(scene).into()
 }
 
 /// The same, carried over the terrain from one side to the other, always touching it.
-pub(super) fn crossing(ground: &Ground, steps: usize) -> Scenes<'_> {
+pub(super) fn crossing(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
     let scene = |(name, shape): (&str, SharedShape)| {
         named(SINGLE, &format!("a {name} crosses once"), ground, steps, move || {
             let mut world = ground.world();
             let collider = ColliderBuilder::new(shape.clone());
             let (body, _) = world.insert(RigidBodyBuilder::dynamic(), collider);
             let size = ground.size;
-            Ok(Driven::by(world, move |world, step| {
+            Driven::by(world, move |world, step| {
                 let x = (size - 8.0) * (step as f32 / steps as f32 - 0.5);
                 put(world, body, above(size, [x, 0.3 * x], 0.45));
                 Duration::ZERO
-            }))
+            })
         })
     };
-    Ok(wanderers()?.map(scene).into())
+    wanderers().map(scene).into()
 }
 
 /// Small meshes, no two alike, that fall on a terrain and are taken away again: `count` in all.
@@ -97,14 +95,14 @@ pub(super) fn rolling_population(ground: &Ground, count: usize) -> Everyday<'_> 
         let mut random = Rand32::new(5);
         let mut bodies: VecDeque<RigidBodyHandle> = VecDeque::new();
         let (size, mut made) = (ground.size, 0);
-        Ok(Driven::by(ground.world(), move |world, step| {
+        Driven::by(ground.world(), move |world, step| {
             while made < EACH_STEP * (step + 1) {
                 made += 1;
                 let mut between = |low: f32, high: f32| low + (high - low) * random.rand_float();
                 let stretch = Vec3::from_array([(); 3].map(|()| between(0.3, 0.6)));
                 let start = above(size, [(); 2].map(|()| between(-8.0, 8.0)), 1.5);
                 let small = mesh::ball(1.0, made as u32 % 5 + 2).mapped(|vertex| stretch * vertex);
-                let solid = Solid::new(&small).expect("a ball has triangles");
+                let solid = Solid::new(&small);
                 let body = RigidBodyBuilder::dynamic().translation(start);
                 bodies.push_back(world.insert(body, solid.collider()).0);
                 if bodies.len() > AT_ONCE {
@@ -112,28 +110,28 @@ pub(super) fn rolling_population(ground: &Ground, count: usize) -> Everyday<'_> 
                 }
             }
             Duration::ZERO
-        }))
+        })
     })
 }
 
 /// Balls, and mesh bodies, on a terrain; all meshes with all flags, `DEFORMABLE` among them.
-pub(super) fn all_flags(ground: &Ground, steps: usize) -> Scenes<'_> {
-    let head = shape(&head(), TriMeshFlags::all())?;
+pub(super) fn all_flags(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
+    let head = shape(&head(), TriMeshFlags::all());
     let scenes = [("50 balls", SharedShape::ball(0.5), 50), ("20 heads", head, 20)];
     let scene = |(name, shape, count)| {
         named(DEFORMABLE, name, ground, steps, move || {
             let mut world = ground.world();
             ground.scatter(&mut world, std::slice::from_ref(&shape), count);
-            Ok(Driven::alone(world))
+            Driven::alone(world)
         })
     };
-    Ok(scenes.map(scene).into())
+    scenes.map(scene).into()
 }
 
 /// Twenty heads as sensors in slow flight at several heights, and ten characters that walk.
-pub(super) fn sensors(ground: &Ground, steps: usize) -> Scenes<'_> {
+pub(super) fn sensors(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
     const SPEED: f32 = 0.02;
-    let head = shape(&head(), TriMeshFlags::empty())?;
+    let head = shape(&head(), TriMeshFlags::empty());
     let places = [("in", 0.3), ("near", 0.8), ("above", 2.0)];
     let mut scenes: Vec<Everyday<'_>> = Vec::new();
     for (place, height) in places {
@@ -149,17 +147,17 @@ pub(super) fn sensors(ground: &Ground, steps: usize) -> Scenes<'_> {
             });
             let bodies: Vec<RigidBodyHandle> = bodies.collect();
             let size = ground.size;
-            Ok(Driven::by(world, move |world, step| {
+            Driven::by(world, move |world, step| {
                 for (&body, start) in bodies.iter().zip(&poses) {
                     let Vec3 { x, z, .. } = start.translation;
                     put(world, body, above(size, [x + SPEED * step as f32, z], height));
                 }
                 Duration::ZERO
-            }))
+            })
         }));
     }
-    scenes.push(named(SENSORS, "10 characters walk", ground, steps, || Ok(characters(ground))));
-    Ok(scenes)
+    scenes.push(named(SENSORS, "10 characters walk", ground, steps, || characters(ground)));
+    scenes
 }
 
 /// Capsules moved by Rapier's character controller, which asks for casts and contacts.
@@ -204,7 +202,7 @@ fn characters(ground: &Ground) -> Driven {
 pub(super) fn pile(heads: usize, steps: usize) -> Everyday<'static> {
     let pile = MonkeyPile::with_heads(heads);
     let row = Row::new(PILE, "").key("scene", pile.name());
-    let build = move || Ok(Driven::alone(pile.build()?.world));
+    let build = move || Driven::alone(pile.build().world);
     Everyday::new(row, steps, build)
 }
 
@@ -213,18 +211,18 @@ fn named<'a>(
     name: &str,
     ground: &Ground,
     steps: usize,
-    build: impl Fn() -> Result<Driven, SceneError> + 'a,
+    build: impl Fn() -> Driven + 'a,
 ) -> Everyday<'a> {
     let row = Row::new(study, "").key("scene", name).key("triangles", ground.triangle_count);
     Everyday::new(row, steps, build)
 }
 
 /// A ball, and meshes of about its size.
-fn wanderers() -> Result<[(&'static str, SharedShape); 3], SceneError> {
+fn wanderers() -> [(&'static str, SharedShape); 3] {
     let mesh = |mesh| shape(&mesh, TriMeshFlags::empty());
-    Ok([
+    [
         ("ball", SharedShape::ball(0.5)),
-        ("mesh ball", mesh(mesh::ball(0.5, 8))?),
-        ("head", mesh(head())?),
-    ])
+        ("mesh ball", mesh(mesh::ball(0.5, 8))),
+        ("head", mesh(head())),
+    ]
 }

@@ -30,15 +30,13 @@ type Insert = dyn Fn(&mut PhysicsWorld, Pose3);
 
 impl Subject {
     /// A mesh, moved to the origin.
-    ///
-    /// Errors: it has no triangles.
-    pub fn mesh(mesh: &Mesh) -> Result<Self, StudyError> {
-        let solid = Solid::new(&mesh.clone().centred())?;
+    pub fn mesh(mesh: &Mesh) -> Self {
+        let solid = Solid::new(&mesh.clone().centred());
         let parts = vec![(Pose3::IDENTITY, solid.collider().shape)];
         let insert = move |world: &mut PhysicsWorld, pose| {
             world.insert(RigidBodyBuilder::dynamic().pose(pose), solid.collider());
         };
-        Ok(Self { name: mesh.name.clone(), is_robot: false, parts, insert: Box::new(insert) })
+        Self { name: mesh.name.clone(), is_robot: false, parts, insert: Box::new(insert) }
     }
 
     /// The robot of a URDF file, its meshes without flags, turned upright; no link is fixed.

@@ -1,11 +1,11 @@
 //! Who is right where stock and SBBK differ: by brute force in f64, over the triangles near by.
 
-use rapier3d::geometry::{ContactManifold, SharedShape, TriMesh, TriMeshFlags};
+use rapier3d::geometry::{SharedShape, TriMesh, TriMeshFlags};
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::bounding_volume::BoundingVolume;
 
-use crate::backend::{Answer, Question};
-use crate::metrics::{ErrorCount, Judge, Truth};
+use crate::backend::Question;
+use crate::metrics::{Judge, Truth};
 use crate::study::convex::errors::Judge as ConvexJudge;
 
 /// A pair of shapes, at least one of them a mesh.
@@ -18,14 +18,14 @@ pub(super) struct Pair<'a> {
 /// The triangles of a mesh that come near a shape, as a mesh of their own.
 struct Near {
     shape: SharedShape,
-    /// Their numbers in the whole mesh, ascending.
+    /// Their numbers in the whole mesh.
     triangles: Vec<u32>,
 }
 
 impl Pair<'_> {
-    /// The errors of some answers; `None` if it cannot be judged: with `FIX_INTERNAL_EDGES`
-    /// contacts are not those of the triangles alone.
-    pub fn judge(&self, answers: [&[ContactManifold]; 2]) -> Option<[ErrorCount; 2]> {
+    /// What is true of them; `None` if that cannot be said: with `FIX_INTERNAL_EDGES` contacts are
+    /// not those of the triangles alone.
+    pub fn truth(&self) -> Option<Truth> {
         let Self { shapes: [shape1, shape2], pos12, prediction } = self;
         let meshes = [shape1, shape2].map(|shape| shape.as_trimesh());
         let is_plain = |mesh: &TriMesh| !mesh.flags().contains(TriMeshFlags::FIX_INTERNAL_EDGES);
@@ -33,41 +33,26 @@ impl Pair<'_> {
             return None;
         }
         Some(match self.near() {
-            [Some(Some(near1)), Some(Some(near2))] => {
-                let (question, truth) = self.truth([&near1, &near2]);
-                answers.map(|manifolds| {
-                    let mut answer = Answer::new(question, manifolds);
-                    for pair in &mut answer.reported {
-                        pair.triangle1 = near1.number(pair.triangle1);
-                        pair.triangle2 = near2.number(pair.triangle2);
-                    }
-                    truth.judge(&answer)
-                })
+            [Some(near1), Some(near2)] => self.truth_near([&near1?, &near2?]),
+            [Some(near), None] => {
+                let near = near?;
+                let truth = ConvexJudge::new(&near.shape, shape2).truth(pos12, true, *prediction);
+                truth.renumbered(|triangle, part| (near.number(triangle), part))
             }
-            [Some(Some(near)), None] => {
-                let judge = ConvexJudge::new(&near.shape, shape2);
-                let truth = judge.truth(pos12, true, *prediction);
-                answers.map(|manifolds| truth.judge(manifolds, |index| near.number(index)).pairs)
+            [None, Some(near)] => {
+                let near = near?;
+                let truth = ConvexJudge::new(&near.shape, shape1).truth(pos12, false, *prediction);
+                truth.renumbered(|part, triangle| (part, near.number(triangle)))
             }
-            [None, Some(Some(near))] => {
-                let judge = ConvexJudge::new(&near.shape, shape1);
-                let truth = judge.truth(pos12, false, *prediction);
-                answers.map(|manifolds| truth.judge(manifolds, |index| near.number(index)).pairs)
-            }
-            _ => return None,
+            [None, None] => return None,
         })
     }
 
     /// Whether the surfaces of two meshes meet; `None` of a mesh and another shape.
     pub fn meets(&self) -> Option<bool> {
         let [near1, near2] = self.near();
-        Some(match (near1?, near2?) {
-            (Some(near1), Some(near2)) => {
-                let (_, truth) = self.truth([&near1, &near2]);
-                truth.contacts().any(|pair| pair.distance <= 0.0)
-            }
-            _ => false,
-        })
+        let near = near1?.zip(near2?);
+        Some(near.is_some_and(|(near1, near2)| self.truth_near([&near1, &near2]).meets()))
     }
 
     /// Of each mesh the triangles near the other shape, if there are any.
@@ -79,10 +64,11 @@ impl Pair<'_> {
         [near(shape1, shape2, pos12), near(shape2, shape1, &pos12.inverse())]
     }
 
-    fn truth(&self, near: [&Near; 2]) -> (Question, Truth) {
+    fn truth_near(&self, near: [&Near; 2]) -> Truth {
         let shapes = near.map(|near| &near.shape);
         let question = Question::new(&self.pos12, shapes.map(|shape| &**shape), self.prediction);
-        (question, Judge::new(shapes).truth(&question))
+        let truth = Judge::new(shapes).truth(&question);
+        truth.renumbered(|one, two| (near[0].number(one), near[1].number(two)))
     }
 }
 
@@ -90,8 +76,7 @@ impl Near {
     /// `None` if there are no such triangles. `pose` is that of the shape in the mesh's frame.
     fn new(mesh: &TriMesh, shape: &SharedShape, pose: &Pose, prediction: Real) -> Option<Self> {
         let bounds = shape.compute_aabb(pose).loosened(2.0 * prediction);
-        let mut triangles: Vec<u32> = mesh.bvh().intersect_aabb(&bounds).collect();
-        triangles.sort_unstable();
+        let triangles: Vec<u32> = mesh.bvh().intersect_aabb(&bounds).collect();
         let corners =
             triangles.iter().flat_map(|&index| mesh.triangle(index).vertices().to_owned());
         let vertices: Vec<Vector> = corners.collect();
@@ -100,8 +85,8 @@ impl Near {
         Some(Self { shape, triangles })
     }
 
-    /// The number here of a triangle of the whole mesh; of one that is not near, none.
+    /// The number in the whole mesh of a triangle of these.
     fn number(&self, triangle: u32) -> u32 {
-        self.triangles.binary_search(&triangle).map_or(u32::MAX, |index| index as u32)
+        self.triangles[triangle as usize]
     }
 }

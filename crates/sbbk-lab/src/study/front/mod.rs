@@ -22,12 +22,12 @@ use sbbk_core::tree::{LayerPlan, Tree};
 use self::search::{Search, Variant};
 use super::contacts::{ERROR_NOTE, places};
 use super::motion::{Place, motion};
-use super::pair::{Contest, Sequence};
+use super::pair::Contest;
 use super::turns::{race, timed};
-use super::{Progress, StudyError, shape, tree};
+use super::{Progress, shape, tree};
 use crate::backend::{Memory, SharedDispatcher};
 use crate::mesh::{self, Mesh};
-use crate::metrics::{Environment, Summary};
+use crate::metrics::{Sequence, Summary};
 use crate::report::{
     Look, Panel, Results, Row, Scale, TIME_NOTE, Table, TableSpec, faster, number, sides, time,
 };
@@ -126,11 +126,9 @@ struct Posed<'a> {
 }
 
 /// Measures all that `plan` asks for.
-///
-/// Errors: a mesh has no triangles.
-pub fn front(plan: &FrontPlan, progress: &Progress) -> Result<Results, StudyError> {
+pub fn front(plan: &FrontPlan, progress: &Progress) -> Results {
     let meshes = plan.meshes.iter().map(|mesh| Posed::new(mesh, plan.approach_count));
-    let meshes = meshes.collect::<Result<Vec<_>, _>>()?;
+    let meshes: Vec<Posed> = meshes.collect();
     progress.phase("front", meshes.len() * (Motion::ALL.len() + 1));
     let mut rows = Vec::new();
     for motion in Motion::ALL {
@@ -145,18 +143,19 @@ pub fn front(plan: &FrontPlan, progress: &Progress) -> Result<Results, StudyErro
     }
     progress.finish();
     let panels = Motion::ALL.map(|motion| panel(&rows, motion)).into();
-    Ok(Results { environment: Environment::detect(), tables: tables(&rows), rows, panels })
+    let tables = tables(&rows);
+    Results::new(rows, tables, panels)
 }
 
 impl<'a> Posed<'a> {
-    fn new(mesh: &'a Mesh, approach_count: usize) -> Result<Self, StudyError> {
+    fn new(mesh: &'a Mesh, approach_count: usize) -> Self {
         let scaled = mesh.clone().centred().scaled_to(SIZE);
-        let shape = shape(&scaled)?;
+        let shape = shape(&scaled);
         let contest = Contest::new([&shape]);
         let seeds = 0..approach_count as u64;
         let places = seeds.flat_map(|seed| places(&contest, &shape, SIZE, PREDICTION, seed));
         let places = places.collect();
-        Ok(Self { mesh, tree: tree(&scaled, LayerPlan::SBBK)?, shape, places })
+        Self { mesh, tree: tree(&scaled, LayerPlan::SBBK), shape, places }
     }
 
     fn row(&self, study: &'static str, backend: impl ToString) -> Row {
@@ -227,13 +226,14 @@ impl<'a> Posed<'a> {
     /// Coherent motion with teleports, through the whole dispatcher.
     fn journey(&self, repeats: usize) -> impl Iterator<Item = Row> {
         let motions = self.motions(Motion::Slow);
-        let sequence =
-            Sequence { shapes: [&self.shape; 2], poses: motions.concat(), prediction: PREDICTION };
+        let shapes = [(); 2].map(|()| self.shape.clone());
+        let sequence = Sequence { shapes, poses: motions.concat(), prediction: PREDICTION };
         let contest = Contest::new([&self.shape]);
         let times = contest.race(repeats, std::slice::from_ref(&sequence));
         // At the end of the motion through each place.
-        let errors = contest
-            .errors(std::slice::from_ref(&sequence), |step| step % (STEP_COUNT + 1) == STEP_COUNT);
+        let errors = contest.mesh_errors(std::slice::from_ref(&sequence), |step| {
+            step % (STEP_COUNT + 1) == STEP_COUNT
+        });
         let sides = Contest::BACKENDS.into_iter().zip(&contest.dispatchers).zip(times).zip(errors);
         let rows = sides.map(|(((backend, dispatcher), time), errors)| {
             self.row(JOURNEY, backend)
@@ -261,8 +261,7 @@ fn differing_from_fresh(sequence: &Sequence, dispatcher: &SharedDispatcher) -> u
     let mut differing = 0;
     sequence.walk(dispatcher, |step, kept| {
         let mut fresh = Memory::default();
-        let shapes = sequence.shapes.map(|shape| &**shape);
-        fresh.ask(dispatcher, shapes, &sequence.poses[step], PREDICTION);
+        sequence.ask(&mut fresh, dispatcher, step);
         let fresh = &fresh.manifolds;
         let pairs = kept.iter().zip(fresh).filter(|(a, b)| !is_same(a, b));
         differing += kept.len().abs_diff(fresh.len()) + pairs.count();

@@ -3,13 +3,12 @@
 use std::f32::consts::{FRAC_PI_2, TAU};
 
 use glamx::{Vec2, Vec3};
-use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
+use rapier3d::dynamics::RigidBodyBuilder;
 
 use super::Trial;
-use super::figures::{Figures, places, top_speed};
+use super::figures::Figures;
 use super::kit::{Form, Kit};
 use crate::mesh;
-use crate::scene::SceneError;
 
 const BOWLS: usize = 10;
 const RADIUS: f32 = 0.5;
@@ -53,31 +52,29 @@ fn form() -> Form {
     Form::parts(mesh::revolved(&profile, SEGMENTS), patches)
 }
 
-fn run(kit: &Kit) -> Result<Figures, SceneError> {
+fn run(kit: &Kit) -> Figures {
     let inner = RADIUS - THICKNESS;
     // A bowl rests on the inner rim of the one below.
     let apart = (RADIUS * RADIUS - inner * inner).sqrt();
     let mut world = kit.world();
     let mut random = kit.random();
-    let collider = kit.collider(&form())?;
-    let bodies = (0..BOWLS).map(|index| {
+    let collider = kit.collider(&form());
+    for index in 0..BOWLS {
         // The first stands on nothing: it is fixed.
         let body = match index {
             0 => RigidBodyBuilder::fixed(),
             _ => RigidBodyBuilder::dynamic(),
         };
         let body = body.translation(Vec3::Y * index as f32 * (apart + GAP));
-        let body = body.rotation(Vec3::Y * TAU * random.rand_float());
-        world.insert(body, collider.clone()).0
-    });
-    let bodies: Vec<RigidBodyHandle> = bodies.collect();
-    (0..STEPS).for_each(|_| world.step());
-    let ends = places(&world, &bodies);
+        world.add(body.rotation(Vec3::Y * TAU * random.rand_float()), &collider);
+    }
+    world.run(STEPS);
+    let ends = world.places();
     let steps = ends.windows(2).map(|pair| pair[1] - pair[0]);
     let is_nested = |step: &Vec3| (step.length() - apart).abs() < 0.5 * apart && step.y > 0.0;
     let lost = steps.filter(|step| !is_nested(step)).count();
-    Ok(Figures::default()
+    Figures::default()
         .none("not nested", lost)
-        .at_most("speed", top_speed(&world, &bodies), 0.25)
-        .note("height of one", (ends[BOWLS - 1].y - ends[0].y) / (BOWLS - 1) as f32))
+        .at_most("speed", world.top_speed(), 0.25)
+        .note("height of one", (ends[BOWLS - 1].y - ends[0].y) / (BOWLS - 1) as f32)
 }

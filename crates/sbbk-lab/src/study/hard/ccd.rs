@@ -12,7 +12,7 @@ use super::depth::Depths;
 use super::figures::Figures;
 use super::kit::{Form, Kit};
 use crate::mesh::{self, Mesh};
-use crate::scene::{SceneError, random};
+use crate::scene::random;
 use crate::study::shape;
 
 /// Thickness of plates that are a unit wide.
@@ -81,26 +81,26 @@ const STUCK: usize = 4;
 
 /// Plates that fly down, turned and placed in many ways. One has passed if it ends below, or if for
 /// longer than an impact its middle is in the target or a spike or an edge crosses both its faces.
-fn plates(kit: &Kit, target: Target) -> Result<Figures, SceneError> {
+fn plates(kit: &Kit, target: Target) -> Figures {
     const SPEED: f32 = 30.0;
     let mesh = target.mesh();
-    let fixed = kit.collider(&Form::mesh(mesh.clone()))?;
-    let surface = shape(&mesh)?;
-    let inside = Depths::new(&mesh)?;
+    let fixed = kit.collider(&Form::mesh(mesh.clone()));
+    let surface = shape(&mesh);
+    let inside = Depths::new(&mesh);
     let half_extents = Vec3::new(0.5, 0.5 * THICKNESS, 0.5);
-    let plate = kit.collider(&Form::cuboid(half_extents, 4))?;
+    let plate = kit.collider(&Form::cuboid(half_extents, 4));
     let face = SharedShape::cuboid(0.45, 0.01 * THICKNESS, 0.45);
     let is_pointed = matches!(target, Target::Spike | Target::Edge);
     let mut passed = 0;
     for index in 0..PHASES {
         let phase = index as f32 / PHASES as f32;
         let mut world = kit.world();
-        world.insert(RigidBodyBuilder::fixed(), fixed.clone());
+        world.fix(Vec3::ZERO, fixed.clone());
         let turn = Quat::from_rotation_y(phase * TAU) * Quat::from_rotation_x(0.6 * phase);
         let place = Vec3::new(0.1 * phase, 2.0 + phase * SPEED * STEP, 0.05);
         let body = RigidBodyBuilder::dynamic().pose(Pose3::from_parts(place, turn));
         let body = body.linvel(-SPEED * Vec3::Y).soft_ccd_prediction(0.6);
-        let (body, _) = world.insert(body, plate.clone());
+        let body = world.add(body, &plate);
         let mut stuck = 0;
         for _ in 0..60 {
             world.step();
@@ -120,15 +120,15 @@ fn plates(kit: &Kit, target: Target) -> Result<Figures, SceneError> {
         let is_below = !is_pointed && end.y < -0.5 * THICKNESS;
         passed += usize::from(is_below || stuck > STUCK || !end.is_finite());
     }
-    Ok(Figures::default().none("passed", passed))
+    Figures::default().none("passed", passed)
 }
 
 /// Boxes that fly at each other without gravity, at several phases of a step.
-fn boxes(kit: &Kit) -> Result<Figures, SceneError> {
+fn boxes(kit: &Kit) -> Figures {
     const SPEED: f32 = 60.0;
     // Smaller cuboids of Rapier's own pass through each other.
     const HALF: f32 = 1.0;
-    let collider = kit.collider(&Form::cuboid(Vec3::splat(HALF), 4))?;
+    let collider = kit.collider(&Form::cuboid(Vec3::splat(HALF), 4));
     let mut passed = 0;
     for index in 0..PHASES {
         let mut world = kit.world();
@@ -138,31 +138,31 @@ fn boxes(kit: &Kit) -> Result<Figures, SceneError> {
             let place = Vec3::new(side * distance, 0.0, 0.0);
             let body = RigidBodyBuilder::dynamic().translation(place);
             let body = body.linvel(-side * SPEED * Vec3::X).soft_ccd_prediction(2.5);
-            world.insert(body, collider.clone()).0
+            world.add(body, &collider)
         });
-        (0..60).for_each(|_| world.step());
+        world.run(60);
         let [left, right] = bodies.map(|body| world.bodies[body].translation().x);
         let are_apart = right - left > 1.8 * HALF;
         passed += usize::from(!are_apart);
     }
-    Ok(Figures::default().none("passed", passed))
+    Figures::default().none("passed", passed)
 }
 
 /// Slabs that fall from a unit above, turned at random.
-fn slabs(kit: &Kit, cell: f32) -> Result<Figures, SceneError> {
+fn slabs(kit: &Kit, cell: f32) -> Figures {
     const SIZE: f32 = 10.0;
-    let floor = kit.collider(&Form::mesh(mesh::floor(SIZE, (SIZE / cell) as u32)))?;
-    let slab = kit.collider(&Form::cuboid(Vec3::new(0.5, 0.5 * THICKNESS, 0.5), 1))?;
+    let floor = kit.collider(&Form::mesh(mesh::floor(SIZE, (SIZE / cell) as u32)));
+    let slab = kit.collider(&Form::cuboid(Vec3::new(0.5, 0.5 * THICKNESS, 0.5), 1));
     let mut random = kit.random();
     let mut passed = 0;
     for _ in 0..60 {
         let mut world = kit.world();
-        world.insert(RigidBodyBuilder::fixed(), floor.clone());
+        world.fix(Vec3::ZERO, floor.clone());
         let pose = Pose3::from_parts(Vec3::new(0.1, 1.75, 0.2), random::rotation(&mut random));
-        let (body, _) = world.insert(RigidBodyBuilder::dynamic().pose(pose), slab.clone());
-        (0..150).for_each(|_| world.step());
+        let body = world.add(RigidBodyBuilder::dynamic().pose(pose), &slab);
+        world.run(150);
         let is_above = world.bodies[body].translation().y > 0.0;
         passed += usize::from(!is_above);
     }
-    Ok(Figures::default().none("passed", passed))
+    Figures::default().none("passed", passed)
 }

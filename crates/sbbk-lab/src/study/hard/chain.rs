@@ -3,13 +3,12 @@
 use std::f32::consts::{FRAC_PI_2, TAU};
 
 use glamx::{Pose3, Quat, Vec3};
-use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
+use rapier3d::dynamics::RigidBodyBuilder;
 
 use super::Trial;
-use super::figures::{Figures, Gain, energy, largest, places};
+use super::figures::{Figures, Gain, largest};
 use super::kit::{Form, Kit};
 use crate::mesh;
-use crate::scene::SceneError;
 
 /// Rings of the chain; one more is the weight.
 const RINGS: usize = 10;
@@ -47,13 +46,13 @@ fn form() -> Form {
     Form::parts(torus, (0..ring_segments).map(part))
 }
 
-fn run(kit: &Kit, load: f32) -> Result<Figures, SceneError> {
+fn run(kit: &Kit, load: f32) -> Figures {
     let mut world = kit.world();
     // With Rapier's defaults a chain of hulls parts as well.
     world.integration_parameters.length_unit = RADIUS / 4.0;
     world.integration_parameters.num_solver_iterations = 16;
-    let collider = kit.collider(&form())?;
-    let bodies = (0..=RINGS).map(|index| {
+    let collider = kit.collider(&form());
+    for index in 0..=RINGS {
         let body = match index {
             0 => RigidBodyBuilder::fixed(),
             _ => RigidBodyBuilder::dynamic(),
@@ -64,23 +63,22 @@ fn run(kit: &Kit, load: f32) -> Result<Figures, SceneError> {
         let place = -Vec3::Y * index as f32 * (PITCH - SLACK);
         let density = if index == RINGS { load * RINGS as f32 } else { 1.0 };
         let body = body.pose(Pose3::from_parts(place, turn)).can_sleep(false);
-        world.insert(body, collider.clone().density(density)).0
-    });
-    let bodies: Vec<RigidBodyHandle> = bodies.collect();
+        world.add(body, &collider.clone().density(density));
+    }
     world.step();
     let mut gain = Gain::default();
     for _ in 1..STEPS {
         world.step();
-        gain.see(energy(&world, &bodies[1..]));
+        gain.see(world.energy());
     }
-    let ends = places(&world, &bodies);
+    let ends = world.places();
     let apart: Vec<f32> = ends.windows(2).map(|pair| pair[0].distance(pair[1])).collect();
     let linked = apart.iter().filter(|&&apart| apart < PITCH + TUBE).count();
-    let mass: f32 = bodies[1..].iter().map(|&body| world.bodies[body].mass()).sum();
+    let mass: f32 = world.watched[1..].iter().map(|&body| world.bodies[body].mass()).sum();
     // As a share of what it takes to lift all by one ring.
     let lift = mass * -world.gravity.y * PITCH;
-    Ok(Figures::default()
+    Figures::default()
         .none("parted", RINGS - linked)
         .at_most("energy gained", gain.most / f64::from(lift), 0.05)
-        .note("longest link", largest(apart) / PITCH))
+        .note("longest link", largest(apart) / PITCH)
 }

@@ -9,7 +9,6 @@ use rapier3d::pipeline::PhysicsWorld;
 
 use crate::mesh::Mesh;
 use crate::metrics::sample_indices;
-use crate::scene::SceneError;
 use crate::study::shape;
 
 /// A mesh that can be asked how deep a point is in it.
@@ -21,15 +20,14 @@ pub(super) struct Depths {
 }
 
 impl Depths {
-    /// Errors: the mesh has no triangles.
-    pub fn new(mesh: &Mesh) -> Result<Self, SceneError> {
+    pub fn new(mesh: &Mesh) -> Self {
         let corners = (0..mesh.triangle_count()).map(|index| mesh.corners(index));
-        Ok(Self {
+        Self {
             vertices: mesh.vertices.clone(),
             triangles: corners.map(|corners| corners.map(Vec3::as_dvec3)).collect(),
             bounds: mesh.bounds(),
-            shape: shape(mesh)?,
-        })
+            shape: shape(mesh),
+        }
     }
 
     /// Distance of a point to the surface if it is inside, else 0.

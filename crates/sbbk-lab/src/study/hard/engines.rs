@@ -19,9 +19,9 @@ use super::figures::Gain;
 use super::kit::{Form, Kit};
 use super::pile::{FLOOR, build};
 use crate::mesh::Mesh;
-use crate::metrics::{Environment, Summary, solver_points};
+use crate::metrics::{Summary, solver_points};
 use crate::report::{Results, Row, TableSpec, number};
-use crate::scene::{MonkeyPile, SceneError};
+use crate::scene::MonkeyPile;
 use crate::study::shape;
 
 const STUDY: &str = "engines";
@@ -67,10 +67,8 @@ pub struct EnginePile {
 
 impl EnginePile {
     /// A pile of closed heads, with Parry's decomposition of them.
-    ///
-    /// Errors: the mesh has no triangles.
-    pub fn new(pile: &MonkeyPile) -> Result<Self, SceneError> {
-        let properties = shape(&pile.mesh)?.mass_properties(1.0);
+    pub fn new(pile: &MonkeyPile) -> Self {
+        let properties = shape(&pile.mesh).mass_properties(1.0);
         let axes =
             Pose3::from_parts(properties.local_com, properties.principal_inertia_local_frame);
         let mesh = pile.mesh.clone().posed(&axes.inverse()).named("head");
@@ -79,7 +77,7 @@ impl EnginePile {
         let parts = parts.filter_map(|(_, part)| Some(part.as_convex_polyhedron()?.points()));
         let parts = parts.map(<[Vec3]>::to_vec).collect();
         let world = Self::kit(Column::Stock).world();
-        Ok(Self {
+        Self {
             time_step: world.integration_parameters.dt,
             gravity: -world.gravity.y,
             friction: ColliderBuilder::default_friction(),
@@ -89,7 +87,7 @@ impl EnginePile {
             poses: MonkeyPile { mesh: mesh.clone(), ..pile.clone() }.poses(),
             mesh,
             parts,
-        })
+        }
     }
 
     fn kit(column: Column) -> Kit {
@@ -163,16 +161,16 @@ impl EnginePile {
 
     /// Runs it in Rapier and writes the file of the run.
     ///
-    /// Errors: the file cannot be written, or the mesh has no triangles.
-    pub fn run(&self, column: Column, path: &Path) -> Result<(), Box<dyn std::error::Error>> {
+    /// Errors: the file cannot be written.
+    pub fn run(&self, column: Column, path: &Path) -> io::Result<()> {
         let mut file = BufWriter::new(File::create(path)?);
         let kit = Self::kit(column);
         kit.world().step();
         let empty = memory("VmRSS");
         let form = Form::parts(self.mesh.clone(), self.parts.iter().cloned());
         let properties = MassProperties::new(Vec3::ZERO, self.mass, self.inertia);
-        let collider = kit.collider(&form)?.friction(self.friction).mass_properties(properties);
-        let (mut world, bodies) = build(&kit, self.floor, self.poses.iter().copied(), &collider);
+        let collider = kit.collider(&form).friction(self.friction).mass_properties(properties);
+        let mut world = build(&kit, self.floor, self.poses.iter().copied(), &collider);
         world.integration_parameters.dt = self.time_step;
         world.gravity = -self.gravity * Vec3::Y;
         for _ in 0..STEPS {
@@ -181,14 +179,14 @@ impl EnginePile {
             let time = 1e3 * clock.elapsed().as_secs_f32();
             let memory = memory("VmHWM");
             let mut numbers = vec![time, solver_points(&world) as f32, memory, memory - empty];
-            for body in bodies.iter().map(|&body| &world.bodies[body]) {
+            for body in world.watched.iter().map(|&body| &world.bodies[body]) {
                 numbers.extend(body.translation().to_array());
                 numbers.extend(body.rotation().to_array());
                 numbers.extend([body.linvel(), body.angvel()].map(|v| v.to_array()).concat());
             }
             file.write_all(&bytes(&numbers))?;
         }
-        Ok(file.flush()?)
+        file.flush()
     }
 
     /// Reads what engines did, each in several runs that are alike, and makes one table of it.
@@ -196,7 +194,7 @@ impl EnginePile {
     /// Errors: a file cannot be read or does not have all steps, or runs of an engine differ.
     pub fn judge(&self, engines: &[(String, Vec<&Path>)]) -> io::Result<Results> {
         let mut rows = Vec::new();
-        let depths = Depths::new(&self.mesh).map_err(io::Error::other)?;
+        let depths = Depths::new(&self.mesh);
         for (engine, paths) in engines {
             let runs = paths.iter().map(|path| self.read_run(path));
             let runs = runs.collect::<io::Result<Vec<Run>>>()?;
@@ -236,7 +234,7 @@ impl EnginePile {
                 self.parts.len()
             ));
         let tables = vec![table.of(&rows)];
-        Ok(Results { environment: Environment::detect(), rows, tables, panels: Vec::new() })
+        Ok(Results::new(rows, tables, Vec::new()))
     }
 
     fn read_run(&self, path: &Path) -> io::Result<Run> {

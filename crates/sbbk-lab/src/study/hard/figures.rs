@@ -1,9 +1,5 @@
 //! Figures with limits, and what they say of a run.
 
-use glamx::Vec3;
-use rapier3d::dynamics::RigidBodyHandle;
-use rapier3d::pipeline::PhysicsWorld;
-
 /// What was measured in a run.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Figures(pub Vec<Figure>);
@@ -65,27 +61,6 @@ impl Figures {
     }
 }
 
-/// The highest speed of some bodies in a world, now; NaN if one has flown out of all numbers.
-pub(super) fn top_speed(world: &PhysicsWorld, bodies: &[RigidBodyHandle]) -> f32 {
-    let speeds = bodies.iter().map(|&body| world.bodies[body].linvel().length());
-    speeds.reduce(|a, b| if a >= b { a } else { b }).unwrap_or(0.0)
-}
-
-/// Where bodies are.
-pub(super) fn places(world: &PhysicsWorld, bodies: &[RigidBodyHandle]) -> Vec<Vec3> {
-    bodies.iter().map(|&body| world.bodies[body].translation()).collect()
-}
-
-/// Kinetic and potential energy of some bodies. Those that sleep have none of motion.
-pub(super) fn energy(world: &PhysicsWorld, bodies: &[RigidBodyHandle]) -> f64 {
-    let energies = bodies.iter().map(|&body| {
-        let body = &world.bodies[body];
-        let height = f64::from(-world.gravity.dot(body.center_of_mass()));
-        f64::from(body.kinetic_energy()) + f64::from(body.mass()) * height
-    });
-    energies.sum()
-}
-
 /// Watches a quantity that should never rise.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gain {
@@ -111,5 +86,5 @@ impl Gain {
 
 /// The largest of some numbers; NaN if one is, 0 if there are none.
 pub(super) fn largest(values: impl IntoIterator<Item = f32>) -> f32 {
-    values.into_iter().reduce(|a, b| if b <= a { a } else { b }).unwrap_or(0.0)
+    values.into_iter().reduce(|a, b| if a.is_nan() || b <= a { a } else { b }).unwrap_or(0.0)
 }

@@ -10,7 +10,6 @@ use super::Trial;
 use super::figures::Figures;
 use super::kit::{Form, Kit};
 use crate::mesh::Gear;
-use crate::scene::SceneError;
 
 const GEAR: Gear = Gear { teeth: 20, module: 0.1, thinned: 0.01, half_width: 0.2 };
 /// Friction of all machines: that of greased metal.
@@ -45,15 +44,15 @@ fn form() -> Form {
     Form::parts(GEAR.mesh(), teeth.chain([disc]))
 }
 
-fn run(kit: &Kit, speed: f32) -> Result<Figures, SceneError> {
+fn run(kit: &Kit, speed: f32) -> Figures {
     let mut world = kit.world();
-    let collider = kit.collider(&form())?.friction(FRICTION);
+    let collider = kit.collider(&form()).friction(FRICTION);
     let mut wheel = |x: f32, turn: f32, load: f32, motor: Option<f32>| {
         let place = Vec3::X * x;
         let axle = world.insert_body(RigidBodyBuilder::fixed().translation(place));
         let body = RigidBodyBuilder::dynamic().translation(place).rotation(Vec3::Z * turn);
         let body = body.angular_damping(load).can_sleep(false);
-        let (body, _) = world.insert(body, collider.clone());
+        let body = world.add(body, &collider);
         let joint = RevoluteJointBuilder::new(Vec3::Z);
         let joint = motor.iter().fold(joint, |joint, &speed| joint.motor_velocity(speed, 1e4));
         world.insert_impulse_joint(axle, body, joint);
@@ -75,11 +74,11 @@ fn run(kit: &Kit, speed: f32) -> Result<Figures, SceneError> {
     let seconds = (STEPS - SPEED_UP) as f32 * world.integration_parameters.dt;
     let reached = (turns[0].angle - after_speed_up) / seconds / speed;
     let backlash = 2.0 * GEAR.thinned / GEAR.pitch_radius();
-    Ok(Figures::default().within("driver's speed", reached, 0.99, 1.01).at_most(
+    Figures::default().within("driver's speed", reached, 0.99, 1.01).at_most(
         "driven away by",
         away,
         f64::from(backlash),
-    ))
+    )
 }
 
 /// Counts the turns of a body about an axis.

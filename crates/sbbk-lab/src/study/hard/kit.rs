@@ -2,17 +2,21 @@
 
 use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 use clap::ValueEnum;
 use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
-use rapier_integration::{ContactDetail, SbbkConfig, SbbkDispatcher};
+use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::geometry::{ColliderBuilder, SharedShape, TriMeshFlags};
 use rapier3d::pipeline::PhysicsWorld;
 
+use super::figures::{Gain, largest};
+use crate::backend::Backend;
 use crate::mesh::{self, Mesh};
+use crate::metrics::{Summary, solver_points};
 use crate::replay::Recorder;
-use crate::scene::{SceneError, shape};
+use crate::scene::shape;
 
 named! {
     /// Who answers, and what bodies are made of.
@@ -85,12 +89,86 @@ pub(super) struct World {
     film: Option<Film>,
     recorder: Option<Recorder>,
     name: String,
+    /// Those that the scene is about, in the order in which they came.
+    pub watched: Vec<RigidBodyHandle>,
+}
+
+/// What was seen in the steps of a world.
+pub(super) struct Watched {
+    /// The greatest rise of the bodies' energy, as a share of that at the start.
+    pub gain: f64,
+    /// Median time of the steps that count, in milliseconds.
+    pub step_time: f64,
+    /// Points that the solver had in these, on the mean.
+    pub points: f64,
 }
 
 impl World {
+    /// Adds something that does not move.
+    pub fn fix(&mut self, place: Vec3, collider: ColliderBuilder) {
+        self.insert(RigidBodyBuilder::fixed().translation(place), collider);
+    }
+
+    /// Adds a body that the scene is about.
+    pub fn add(&mut self, body: RigidBodyBuilder, collider: &ColliderBuilder) -> RigidBodyHandle {
+        let (body, _) = self.insert(body, collider.clone());
+        self.watched.push(body);
+        body
+    }
+
+    /// Steps so often.
+    pub fn run(&mut self, steps: usize) {
+        (0..steps).for_each(|_| self.step());
+    }
+
+    /// The same; times and points are those of the steps after `full`. Calls `seen` after each step
+    /// with its number, from one.
+    pub fn watch(
+        &mut self,
+        steps: usize,
+        full: usize,
+        mut seen: impl FnMut(&Self, usize),
+    ) -> Watched {
+        let start = self.energy();
+        let (mut gain, mut times, mut points) = (Gain::default(), Vec::new(), 0.0);
+        for step in 1..=steps {
+            let clock = Instant::now();
+            self.step();
+            let time = 1e3 * clock.elapsed().as_secs_f64();
+            gain.see(self.energy());
+            if step > full {
+                times.push(time);
+                points += solver_points(self) as f64 / (steps - full) as f64;
+            }
+            seen(self, step);
+        }
+        let step_time = Summary::of(times).map_or(f64::NAN, |times| times.median);
+        Watched { gain: gain.most / start, step_time, points }
+    }
+
+    /// The highest speed of a body, now; NaN if one has flown out of all numbers.
+    pub fn top_speed(&self) -> f32 {
+        largest(self.watched.iter().map(|&body| self.bodies[body].linvel().length()))
+    }
+
+    /// Where bodies are.
+    pub fn places(&self) -> Vec<Vec3> {
+        self.watched.iter().map(|&body| self.bodies[body].translation()).collect()
+    }
+
+    /// Kinetic and potential energy of the bodies. Those that sleep have none of motion.
+    pub fn energy(&self) -> f64 {
+        let energies = self.watched.iter().map(|&body| {
+            let body = &self.bodies[body];
+            let height = f64::from(-self.gravity.dot(body.center_of_mass()));
+            f64::from(body.kinetic_energy()) + f64::from(body.mass()) * height
+        });
+        energies.sum()
+    }
+
     /// Steps once.
     pub fn step(&mut self) {
-        let Self { world, film, recorder, name } = self;
+        let Self { world, film, recorder, name, .. } = self;
         match film {
             Some(_) => recorder.get_or_insert_with(|| Recorder::new(name, world)).step(world),
             None => world.step(),
@@ -126,33 +204,29 @@ impl Kit {
     pub fn world(&self) -> World {
         let mut world = PhysicsWorld::new();
         world.integration_parameters.contact_recycling = self.recycling;
-        let detail = match self.column {
-            Column::Stock | Column::StockFlag | Column::Control => None,
-            Column::Sbbk | Column::SbbkFlag => Some(ContactDetail::Every),
-            Column::Patches => Some(ContactDetail::Patches),
+        let backend = match self.column {
+            Column::Stock | Column::StockFlag | Column::Control => Backend::Stock,
+            Column::Sbbk | Column::SbbkFlag => Backend::Sbbk,
+            Column::Patches => Backend::Patches,
         };
-        if let Some(detail) = detail {
-            let mut config = SbbkConfig::default();
-            config.detail = detail;
-            world.narrow_phase.set_query_dispatcher(SbbkDispatcher::new(config));
+        if let Some(sbbk) = backend.dispatcher().sbbk {
+            world.narrow_phase.set_query_dispatcher(sbbk);
         }
         let (film, name) = (self.film.clone(), self.column.to_string());
-        World { world, film, recorder: None, name }
+        World { world, film, recorder: None, name, watched: Vec::new() }
     }
 
     /// A collider, the shape of which clones share.
-    ///
-    /// Errors: the mesh has no triangles.
-    pub fn collider(&self, form: &Form) -> Result<ColliderBuilder, SceneError> {
+    pub fn collider(&self, form: &Form) -> ColliderBuilder {
         let shape = match (self.column, &form.control) {
             (Column::Control, Some(control)) => control.clone(),
-            _ => self.mesh_shape(&form.mesh)?,
+            _ => self.mesh_shape(&form.mesh),
         };
-        Ok(ColliderBuilder::new(shape))
+        ColliderBuilder::new(shape)
     }
 
     /// The mesh itself, also in the control.
-    pub fn mesh_shape(&self, mesh: &Mesh) -> Result<SharedShape, SceneError> {
+    pub fn mesh_shape(&self, mesh: &Mesh) -> SharedShape {
         let flags = match self.column {
             Column::StockFlag | Column::SbbkFlag => TriMeshFlags::FIX_INTERNAL_EDGES,
             _ => TriMeshFlags::empty(),

@@ -41,10 +41,8 @@ pub use self::kit::Column;
 use self::figures::Figures;
 use self::kit::{Film, Kit};
 use super::{Progress, StudyError};
-use crate::metrics::Environment;
 use crate::replay;
 use crate::report::Results;
-use crate::scene::SceneError;
 
 /// A kind of scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -140,14 +138,11 @@ struct Trial {
     run: Box<RunTrial>,
 }
 
-type RunTrial = dyn Fn(&Kit) -> Result<Figures, SceneError> + Send + Sync;
+type RunTrial = dyn Fn(&Kit) -> Figures + Send + Sync;
 
 impl Trial {
     /// A scene that is the same whatever the seed, with a control.
-    fn new(
-        name: impl Into<String>,
-        run: impl Fn(&Kit) -> Result<Figures, SceneError> + Send + Sync + 'static,
-    ) -> Self {
+    fn new(name: impl Into<String>, run: impl Fn(&Kit) -> Figures + Send + Sync + 'static) -> Self {
         Self { name: name.into(), has_control: true, has_seeds: false, run: Box::new(run) }
     }
 
@@ -176,7 +171,7 @@ impl Trial {
 
 /// Runs all that `plan` asks for.
 ///
-/// Errors: there is no such scene, the page cannot be written, or a mesh has no triangles, which these have.
+/// Errors: there is no such scene, or the page cannot be written.
 pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError> {
     let mut rows = Vec::new();
     let mut replay = plan.replay.as_deref();
@@ -207,7 +202,7 @@ pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError>
         let name = group.to_possible_value().map_or_else(String::new, |v| v.get_name().to_owned());
         progress.phase(name, jobs.len());
         let threads = if matches!(group, Group::Pile | Group::Tray) { 1 } else { plan.threads };
-        let found = run_all(&jobs, threads, progress)?;
+        let found = run_all(&jobs, threads, progress);
         if let Some((trial, path)) = replay {
             let recorders = films
                 .iter()
@@ -225,7 +220,7 @@ pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError>
         return Err(StudyError::NoScene(plan.name.clone()));
     }
     let (tables, panels) = (report::tables(plan, &rows), report::panels(&rows));
-    Ok(Results { environment: Environment::detect(), rows, tables, panels })
+    Ok(Results::new(rows, tables, panels))
 }
 
 /// Lets the first run of the first scene be recorded, on each column.
@@ -243,11 +238,7 @@ fn film(jobs: &mut [(&Trial, Kit)]) -> Vec<Film> {
 }
 
 /// Runs some jobs, so many at once.
-fn run_all(
-    jobs: &[(&Trial, Kit)],
-    threads: usize,
-    progress: &Progress,
-) -> Result<Vec<Figures>, SceneError> {
+fn run_all(jobs: &[(&Trial, Kit)], threads: usize, progress: &Progress) -> Vec<Figures> {
     let next = AtomicUsize::new(0);
     let found: Mutex<Vec<_>> = Mutex::new(jobs.iter().map(|_| None).collect());
     thread::scope(|scope| {

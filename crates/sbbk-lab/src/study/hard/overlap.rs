@@ -1,14 +1,14 @@
 //! Bodies that are released in each other.
 
 use glamx::{Pose3, Vec3};
-use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
+use rapier3d::dynamics::RigidBodyBuilder;
 
 use super::Trial;
 use super::depth::Depths;
-use super::figures::{Figures, largest, top_speed};
+use super::figures::{Figures, largest};
 use super::kit::{Form, Kit};
 use crate::mesh;
-use crate::scene::{SceneError, random};
+use crate::scene::random;
 
 const BODIES: usize = 8;
 const STEPS: usize = 120;
@@ -23,33 +23,32 @@ pub(super) fn trials() -> Vec<Trial> {
     vec![balls.seeded(), heads.without_control().seeded()]
 }
 
-fn run(kit: &Kit, form: &Form) -> Result<Figures, SceneError> {
+fn run(kit: &Kit, form: &Form) -> Figures {
     let mut world = kit.world();
     world.gravity = Vec3::ZERO;
     let mut random = kit.random();
-    let collider = kit.collider(form)?;
-    let bodies = (0..BODIES).map(|_| {
+    let collider = kit.collider(form);
+    for _ in 0..BODIES {
         let place = Vec3::from_array([(); 3].map(|()| SPREAD * (random.rand_float() - 0.5)));
         let pose = Pose3::from_parts(place, random::rotation(&mut random));
-        world.insert(RigidBodyBuilder::dynamic().pose(pose), collider.clone()).0
-    });
-    let bodies: Vec<RigidBodyHandle> = bodies.collect();
+        world.add(RigidBodyBuilder::dynamic().pose(pose), &collider);
+    }
     let mut fastest = 0.0_f32;
     for _ in 0..STEPS {
         world.step();
-        fastest = largest([fastest, top_speed(&world, &bodies)]);
+        fastest = largest([fastest, world.top_speed()]);
     }
-    let depths = Depths::new(&form.mesh)?;
-    let poses = bodies.iter().map(|&body| *world.bodies[body].position());
+    let depths = Depths::new(&form.mesh);
+    let poses = world.watched.iter().map(|&body| *world.bodies[body].position());
     let poses: Vec<Pose3> = poses.collect();
     let pairs = (1..BODIES).flat_map(|j| (0..j).map(move |i| [i, j]));
     let depths = pairs.map(|[i, j]| depths.between(&poses[i], &depths, &poses[j]));
     let depths: Vec<f32> = depths.collect();
     let apart = depths.iter().filter(|&&depth| depth <= APART).count();
-    Ok(Figures::default()
+    Figures::default()
         .none("pairs not apart", depths.len() - apart)
         .at_most("speed", fastest, 5.0)
-        .note("deepest", largest(depths)))
+        .note("deepest", largest(depths))
 }
 
 /// Pairs that are no deeper in each other only touch.

@@ -1,14 +1,15 @@
 //! Heads that come to rest in a pit, of several sizes.
 
-use glamx::{Pose3, Vec2, Vec3};
-use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
+use glamx::{Pose3, Vec3};
+use rapier3d::dynamics::RigidBodyBuilder;
 
 use super::Trial;
 use super::depth::{Depths, touching_pairs};
-use super::figures::{Figures, Gain, energy, largest, places, top_speed};
+use super::figures::{Figures, largest};
 use super::kit::{Form, Kit};
-use crate::mesh::{self, Mesh};
-use crate::scene::{SceneError, random};
+use super::tray::tray;
+use crate::mesh;
+use crate::scene::random;
 
 /// Heads along each side of the cube in which they start.
 const SIDE: usize = 4;
@@ -26,49 +27,35 @@ pub(super) fn trials() -> Vec<Trial> {
     [0.02, 1.0, 50.0].map(trial).into()
 }
 
-/// A square pit with walls all round.
-fn pit() -> Mesh {
-    let profile =
-        [[0.0, -WALL], [HALF + WALL, -WALL], [HALF + WALL, DEPTH], [HALF, DEPTH], [HALF, 0.0]];
-    let profile = profile.into_iter().chain([[0.0; 2]]).map(Vec2::from_array);
-    mesh::revolved(&profile.collect::<Vec<Vec2>>(), 4).named("pit")
-}
-
 /// All lengths are in heads, of which Rapier is told, and so is gravity: a different size is a
 /// different unit.
-fn run(kit: &Kit, size: f32) -> Result<Figures, SceneError> {
+fn run(kit: &Kit, size: f32) -> Figures {
     let mut world = kit.world();
     world.integration_parameters.length_unit = size;
     world.gravity *= size;
-    world.insert(RigidBodyBuilder::fixed(), kit.collider(&Form::mesh(pit().scaled(size)))?);
+    world.fix(Vec3::ZERO, kit.collider(&Form::mesh(tray(HALF, DEPTH, WALL).scaled(size))));
     let head = mesh::monkey_head().centred().scaled_to(size);
-    let collider = kit.collider(&Form::mesh(head.clone()))?;
+    let collider = kit.collider(&Form::mesh(head.clone()));
     let mut random = kit.random();
-    let bodies = (0..SIDE * SIDE * SIDE).map(|index| {
+    for index in 0..SIDE * SIDE * SIDE {
         let [x, y, z] = [1, SIDE * SIDE, SIDE].map(|step| (index / step % SIDE) as f32);
         let place = 1.15 * Vec3::new(x - 1.5, y + 0.7, z - 1.5);
         // Sides of the pit are between the axes.
         let place = Pose3::rotation(Vec3::Y * std::f32::consts::FRAC_PI_4) * place;
         let pose = Pose3::from_parts(size * place, random::rotation(&mut random));
-        world.insert(RigidBodyBuilder::dynamic().pose(pose), collider.clone()).0
-    });
-    let bodies: Vec<RigidBodyHandle> = bodies.collect();
-    let start = energy(&world, &bodies);
-    let mut gain = Gain::default();
-    for _ in 0..STEPS {
-        world.step();
-        gain.see(energy(&world, &bodies));
+        world.add(RigidBodyBuilder::dynamic().pose(pose), &collider);
     }
-    let awake = bodies.iter().filter(|&&body| !world.bodies[body].is_sleeping()).count();
-    let depths = touching_pairs(&world, &Depths::new(&head)?, 150);
-    let ends = places(&world, &bodies);
+    let watched = world.watch(STEPS, STEPS, |_, _| ());
+    let awake = world.watched.iter().filter(|&&body| !world.bodies[body].is_sleeping()).count();
+    let depths = touching_pairs(&world, &Depths::new(&head), 150);
+    let ends = world.places();
     let kept = ends.iter().filter(|end| end.y > 0.0).count();
     let per_size = f64::from(size);
-    Ok(Figures::default()
-        .at_most("speed", f64::from(top_speed(&world, &bodies)) / per_size, 0.05)
+    Figures::default()
+        .at_most("speed", f64::from(world.top_speed()) / per_size, 0.05)
         .at_most("deepest", depths.max / per_size, 0.025)
-        .at_most("energy gained", gain.most / start, 0.001)
+        .at_most("energy gained", watched.gain, 0.001)
         .none("lost", ends.len() - kept)
         .note("awake", awake as f64)
-        .note("highest", f64::from(largest(ends.iter().map(|end| end.y))) / per_size))
+        .note("highest", f64::from(largest(ends.iter().map(|end| end.y))) / per_size)
 }

@@ -11,7 +11,7 @@ use super::Trial;
 use super::figures::{Figures, largest};
 use super::kit::{Column, Form, Kit};
 use crate::mesh::{self, Mesh};
-use crate::scene::{SceneError, random};
+use crate::scene::random;
 
 /// Length of a floor along the way, and its width.
 const LENGTH: f32 = 30.0;
@@ -116,11 +116,11 @@ impl Rider {
         }
     }
 
-    fn ride(self, kit: &Kit, floor: ColliderBuilder) -> Result<Ride, SceneError> {
+    fn ride(self, kit: &Kit, floor: ColliderBuilder) -> Ride {
         let mut world = kit.world();
-        world.insert(RigidBodyBuilder::fixed(), floor.friction(self.friction()));
-        let collider = kit.collider(&self.form())?.friction(self.friction());
-        let (body, _) = world.insert(self.start(kit), collider);
+        world.fix(Vec3::ZERO, floor.friction(self.friction()));
+        let collider = kit.collider(&self.form()).friction(self.friction());
+        let body = world.add(self.start(kit), &collider);
         let mut bump = 0.0;
         let mut way = vec![world.bodies[body].translation().x];
         for step in 1..=self.steps() {
@@ -131,22 +131,22 @@ impl Rider {
             }
         }
         let end = way[self.steps()];
-        Ok(Ride { path: end - way[0], speed: end - way[self.steps() - LAST], bump })
+        Ride { path: end - way[0], speed: end - way[self.steps() - LAST], bump }
     }
 }
 
-fn run(kit: &Kit, rider: Rider, floor: &Mesh) -> Result<Figures, SceneError> {
+fn run(kit: &Kit, rider: Rider, floor: &Mesh) -> Figures {
     let Vec3 { x, y, z } = HALF_EXTENTS;
     let cuboid = ColliderBuilder::cuboid(x, y, z).translation(-Vec3::Y * y);
-    let control = rider.ride(&Kit { film: None, ..kit.clone() }, cuboid.clone())?;
+    let control = rider.ride(&Kit { film: None, ..kit.clone() }, cuboid.clone());
     let floor = match kit.column {
         Column::Control => cuboid,
-        _ => ColliderBuilder::new(kit.mesh_shape(floor)?),
+        _ => ColliderBuilder::new(kit.mesh_shape(floor)),
     };
-    let ride = rider.ride(kit, floor)?;
-    Ok(Figures::default()
+    let ride = rider.ride(kit, floor);
+    Figures::default()
         .within("path to that on a cuboid", ride.path / control.path, 0.98, 1.02)
         .within("speed to that on a cuboid", ride.speed / control.speed, 0.98, 1.02)
         .at_most("bump", ride.bump - control.bump, 0.1)
-        .note("path on a cuboid", control.path))
+        .note("path on a cuboid", control.path)
 }

@@ -10,7 +10,6 @@ use super::figures::Figures;
 use super::gears::Turn;
 use super::kit::{Form, Kit};
 use crate::mesh::Thread;
-use crate::scene::SceneError;
 
 /// Its lead angle is 1.9 degrees.
 const BOLT: Thread =
@@ -29,15 +28,15 @@ pub(super) fn trials() -> Vec<Trial> {
 }
 
 /// Without contact clustering, which takes all normals within five degrees for one.
-fn run(kit: &Kit, friction: f32) -> Result<Figures, SceneError> {
+fn run(kit: &Kit, friction: f32) -> Figures {
     let mut world = kit.world();
     world.integration_parameters.contact_clustering = false;
-    let bolt = kit.collider(&Form::mesh(BOLT.bolt()))?;
-    world.insert(RigidBodyBuilder::fixed(), bolt.friction(friction));
-    let nut = kit.collider(&Form::mesh(NUT.nut(NUT_RADIUS)))?;
+    let bolt = kit.collider(&Form::mesh(BOLT.bolt()));
+    world.fix(Vec3::ZERO, bolt.friction(friction));
+    let nut = kit.collider(&Form::mesh(NUT.nut(NUT_RADIUS)));
     let start = BOLT.pitch * (BOLT.turns - NUT.turns) as f32;
     let body = RigidBodyBuilder::dynamic().translation(Vec3::Y * start).can_sleep(false);
-    let (body, _) = world.insert(body, nut.friction(friction));
+    let body = world.add(body, &nut.friction(friction));
     let mut turn = Turn::new(&world, body, Vec3::Y);
     // It first falls by the play of the thread.
     let (mut settled, mut place) = ([0.0; 2], start);
@@ -56,7 +55,7 @@ fn run(kit: &Kit, friction: f32) -> Result<Figures, SceneError> {
     let descent = (settled[1] - place) / BOLT.pitch;
     let turns = (settled[0] - turn.angle) / TAU;
     let figures = Figures::default();
-    Ok(match friction > 0.03 {
+    match friction > 0.03 {
         true => figures.within("pitches down", descent, -0.1, 0.3),
         false => figures.within("pitches down", descent, 1.0, f64::from(BOLT.turns)).within(
             "turns a pitch",
@@ -64,7 +63,7 @@ fn run(kit: &Kit, friction: f32) -> Result<Figures, SceneError> {
             0.98,
             1.02,
         ),
-    })
+    }
 }
 
 /// Steps until it rests on the thread.

@@ -1,13 +1,13 @@
 //! Cubes that fall slowly on sheets: one layer of triangles, which has no inside.
 
 use glamx::Vec3;
-use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
+use rapier3d::dynamics::RigidBodyBuilder;
 
 use super::Trial;
-use super::figures::{Figures, largest, places};
+use super::figures::{Figures, largest};
 use super::kit::{Form, Kit};
 use crate::mesh::{self, Mesh};
-use crate::scene::{SceneError, random};
+use crate::scene::random;
 
 /// Cubes along a side of the square in which they start, the distance between them, and the half
 /// of their side.
@@ -41,28 +41,27 @@ fn sheet(is_bent: bool, from_behind: bool) -> Mesh {
     sheet
 }
 
-fn run(kit: &Kit, is_bent: bool, from_behind: bool) -> Result<Figures, SceneError> {
+fn run(kit: &Kit, is_bent: bool, from_behind: bool) -> Figures {
     let height = |place: Vec3| {
         let height = mesh::hill_height(SIZE, place.x, place.z);
         if is_bent { height } else { 0.0 }
     };
     let mut world = kit.world();
-    let sheet = kit.collider(&Form::mesh(sheet(is_bent, from_behind)))?;
-    world.insert(RigidBodyBuilder::fixed(), sheet);
-    let cube = kit.collider(&Form::cuboid(Vec3::splat(HALF), 2))?;
+    let sheet = kit.collider(&Form::mesh(sheet(is_bent, from_behind)));
+    world.fix(Vec3::ZERO, sheet);
+    let cube = kit.collider(&Form::cuboid(Vec3::splat(HALF), 2));
     let mut random = kit.random();
-    let bodies = (0..ROW * ROW).map(|index| {
+    for index in 0..ROW * ROW {
         let [x, z] = [index % ROW, index / ROW].map(|k| SPACING * (k as f32 - 3.5));
         let place = Vec3::new(x, 0.0, z);
         // A cube's corners are no farther from its middle than this.
         let up = height(place) + 1.75 * HALF + DROP;
         let turn = random::rotation(&mut random);
         let body = RigidBodyBuilder::dynamic().translation(place.with_y(up));
-        world.insert(body.rotation(turn.to_scaled_axis()), cube.clone()).0
-    });
-    let bodies: Vec<RigidBodyHandle> = bodies.collect();
-    (0..STEPS).for_each(|_| world.step());
-    let below = places(&world, &bodies).into_iter().map(|place| height(place) - place.y);
+        world.add(body.rotation(turn.to_scaled_axis()), &cube);
+    }
+    world.run(STEPS);
+    let below = world.places().into_iter().map(|place| height(place) - place.y);
     let kept = below.clone().filter(|&below| below <= 0.0).count();
-    Ok(Figures::default().none("passed", bodies.len() - kept).note("lowest", -largest(below)))
+    Figures::default().none("passed", ROW * ROW - kept).note("lowest", -largest(below))
 }

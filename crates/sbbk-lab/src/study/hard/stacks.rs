@@ -1,12 +1,11 @@
 //! Towers of cubes.
 
 use glamx::Vec3;
-use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
+use rapier3d::dynamics::RigidBodyBuilder;
 
 use super::Trial;
-use super::figures::{Figures, largest, places};
+use super::figures::{Figures, largest};
 use super::kit::{Form, Kit};
-use crate::scene::SceneError;
 
 /// Cubes of a tower, and steps.
 const CUBES: usize = 10;
@@ -23,20 +22,18 @@ pub(super) fn trials() -> Vec<Trial> {
     trials
 }
 
-fn run(kit: &Kit, cells: u32, gap: f32) -> Result<Figures, SceneError> {
+fn run(kit: &Kit, cells: u32, gap: f32) -> Figures {
     let mut world = kit.world();
-    let floor = kit.collider(&Form::cuboid(Vec3::new(5.0, 0.5, 5.0), cells))?;
-    world.insert(RigidBodyBuilder::fixed().translation(-0.5 * Vec3::Y), floor);
-    let cube = kit.collider(&Form::cuboid(Vec3::splat(0.5), cells))?;
+    let floor = kit.collider(&Form::cuboid(Vec3::new(5.0, 0.5, 5.0), cells));
+    world.fix(-0.5 * Vec3::Y, floor);
+    let cube = kit.collider(&Form::cuboid(Vec3::splat(0.5), cells));
     let start = |index: usize| Vec3::Y * (0.5 + gap + index as f32 * (1.0 + gap));
-    let bodies = (0..CUBES).map(|index| {
-        let body = RigidBodyBuilder::dynamic().translation(start(index));
-        world.insert(body, cube.clone()).0
-    });
-    let bodies: Vec<RigidBodyHandle> = bodies.collect();
-    (0..STEPS).for_each(|_| world.step());
-    let ends = places(&world, &bodies);
+    for index in 0..CUBES {
+        world.add(RigidBodyBuilder::dynamic().translation(start(index)), &cube);
+    }
+    world.run(STEPS);
+    let ends = world.places();
     let drift = largest(ends.iter().map(|end| end.with_y(0.0).length()));
     let fallen = (0..CUBES).filter(|&index| (ends[index].y - 0.5 - index as f32).abs() > 0.1);
-    Ok(Figures::default().at_most("drift", drift, 0.03).none("fallen", fallen.count()))
+    Figures::default().at_most("drift", drift, 0.03).none("fallen", fallen.count())
 }

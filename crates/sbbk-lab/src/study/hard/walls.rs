@@ -4,9 +4,8 @@ use glamx::{Pose3, Quat, Vec3};
 use rapier3d::dynamics::RigidBodyBuilder;
 
 use super::Trial;
-use super::figures::{Figures, largest, places};
+use super::figures::{Figures, largest};
 use super::kit::{Form, Kit};
-use crate::scene::SceneError;
 
 const STEPS: usize = 480;
 
@@ -78,24 +77,16 @@ fn house() -> Vec<(Vec3, Pose3)> {
 }
 
 /// Boxes, each with half its sides.
-fn run(
-    kit: &Kit,
-    cells: u32,
-    boxes: &[(Vec3, Pose3)],
-    friction: f32,
-    limit: f64,
-) -> Result<Figures, SceneError> {
+fn run(kit: &Kit, cells: u32, boxes: &[(Vec3, Pose3)], friction: f32, limit: f64) -> Figures {
     let mut world = kit.world();
-    let floor = kit.collider(&Form::cuboid(Vec3::new(6.0, 0.5, 6.0), cells))?;
-    let ground = RigidBodyBuilder::fixed().translation(-0.5 * Vec3::Y);
-    world.insert(ground, floor.friction(friction));
-    let mut bodies = Vec::new();
+    let floor = kit.collider(&Form::cuboid(Vec3::new(6.0, 0.5, 6.0), cells));
+    world.fix(-0.5 * Vec3::Y, floor.friction(friction));
     for &(half_extents, pose) in boxes {
-        let collider = kit.collider(&Form::cuboid(half_extents, cells))?.friction(friction);
-        bodies.push(world.insert(RigidBodyBuilder::dynamic().pose(pose), collider).0);
+        let collider = kit.collider(&Form::cuboid(half_extents, cells)).friction(friction);
+        world.add(RigidBodyBuilder::dynamic().pose(pose), &collider);
     }
-    (0..STEPS).for_each(|_| world.step());
-    let ends = places(&world, &bodies).into_iter();
-    let drifts = boxes.iter().zip(ends).map(|((_, start), end)| start.translation.distance(end));
-    Ok(Figures::default().at_most("drift", largest(drifts), limit))
+    world.run(STEPS);
+    let drifts =
+        boxes.iter().zip(world.places()).map(|((_, start), end)| start.translation.distance(end));
+    Figures::default().at_most("drift", largest(drifts), limit)
 }

@@ -7,7 +7,7 @@ use rapier3d::math::{Pose, Vector};
 
 use crate::backend::{Backend, Installed};
 use crate::metrics::{StepTimes, solver_points, timed_step};
-use crate::scene::{Scene, SceneError, SceneWorld};
+use crate::scene::{Scene, SceneWorld};
 
 /// Where a body is, and how it moves.
 #[derive(Clone, Copy, Debug)]
@@ -24,22 +24,20 @@ impl Motion {
 }
 
 /// The watched bodies before each step of a run with default parameters, and after `last` steps.
-///
-/// Errors: the scene cannot be built.
 pub(super) fn run(
     scene: &dyn Scene,
     backend: Backend,
     last: usize,
     mut done: impl FnMut(),
-) -> Result<Vec<Vec<Motion>>, SceneError> {
-    let mut led = Led::new(scene, backend)?;
+) -> Vec<Vec<Motion>> {
+    let mut led = Led::new(scene, backend);
     let mut run = vec![led.motions()];
     for _ in 0..last {
         led.built.world.step();
         run.push(led.motions());
         done();
     }
-    Ok(run)
+    run
 }
 
 /// A world of a scene whose bodies are led.
@@ -51,22 +49,19 @@ pub(super) struct Led {
 }
 
 impl Led {
-    /// Errors: the scene cannot be built.
-    pub fn new(scene: &dyn Scene, backend: Backend) -> Result<Self, SceneError> {
-        let mut built = scene.build()?;
+    pub fn new(scene: &dyn Scene, backend: Backend) -> Self {
+        let mut built = scene.build();
         let installed = backend.install(&mut built.world);
-        Ok(Self { built, installed, times: Vec::new() })
+        Self { built, installed, times: Vec::new() }
     }
 
     /// A world in which bodies do not meet.
-    ///
-    /// Errors: the scene cannot be built.
-    pub fn without_contacts(scene: &dyn Scene) -> Result<Self, SceneError> {
-        let mut led = Self::new(scene, Backend::Stock)?;
+    pub fn without_contacts(scene: &dyn Scene) -> Self {
+        let mut led = Self::new(scene, Backend::Stock);
         for (_, collider) in led.built.world.colliders.iter_mut() {
             collider.set_collision_groups(InteractionGroups::none());
         }
-        Ok(led)
+        led
     }
 
     pub fn parameters(&mut self) -> &mut IntegrationParameters {
@@ -109,10 +104,8 @@ struct Inertia {
 
 impl Norm {
     /// That of a scene's bodies as they stand.
-    ///
-    /// Errors: the scene cannot be built.
-    pub fn of(scene: &dyn Scene, state: &[Motion]) -> Result<Self, SceneError> {
-        let built = scene.build()?;
+    pub fn of(scene: &dyn Scene, state: &[Motion]) -> Self {
+        let built = scene.build();
         let inertia = |(&handle, motion): (&RigidBodyHandle, &Motion)| {
             let properties = built.world.bodies[handle].mass_properties().local_mprops;
             Inertia {
@@ -121,7 +114,7 @@ impl Norm {
                 axes: motion.pose.rotation * properties.principal_inertia_local_frame,
             }
         };
-        Ok(Self(built.watched.iter().zip(state).map(inertia).collect()))
+        Self(built.watched.iter().zip(state).map(inertia).collect())
     }
 
     /// Between two motions of all bodies.
@@ -152,26 +145,26 @@ mod tests {
             "brick".to_owned()
         }
 
-        fn build(&self) -> Result<SceneWorld, SceneError> {
+        fn build(&self) -> SceneWorld {
             let mut world = PhysicsWorld::new();
             let body = RigidBodyBuilder::dynamic().rotation(Vector::new(0.4, 1.1, -0.3));
             let body = body.linvel(Vector::new(1.0, -2.0, 0.5)).angvel(Vector::new(3.0, 1.0, -2.0));
             let (body, _) = world.insert(body, ColliderBuilder::cuboid(0.2, 0.5, 1.1));
-            Ok(SceneWorld { world, watched: vec![body] })
+            SceneWorld { world, watched: vec![body] }
         }
     }
 
     /// Would catch moments of inertia about the wrong axes, and a norm that is not that of energy.
     #[test]
     fn the_norm_is_the_root_of_twice_the_energy() {
-        let mut led = Led::new(&Brick, Backend::Stock).unwrap();
+        let mut led = Led::new(&Brick, Backend::Stock);
         led.built.world.gravity = Vector::ZERO;
         // Rapier knows a body's inertia in the world after a step.
         let moving = led.motions();
         led.lead(std::slice::from_ref(&moving));
         let energy = f64::from(led.built.world.bodies[led.built.watched[0]].kinetic_energy());
         let motions = led.motions();
-        let norm = Norm::of(&Brick, &motions).unwrap();
+        let norm = Norm::of(&Brick, &motions);
         let still = [Motion { linear: Vector::ZERO, angular: Vector::ZERO, ..motions[0] }];
         let distance = norm.distance(&motions, &still);
         assert!((distance * distance / (2.0 * energy) - 1.0).abs() < 1e-4, "{distance} {energy}");

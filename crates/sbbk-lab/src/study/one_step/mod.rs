@@ -14,9 +14,9 @@ mod led;
 mod report;
 
 use self::led::{Led, Motion, Norm};
-use super::{Progress, StudyError};
+use super::Progress;
 use crate::backend::Backend;
-use crate::metrics::{Environment, StepTimes, Summary};
+use crate::metrics::{StepTimes, Summary};
 use crate::report::{Results, Row};
 use crate::scene::{MonkeyPile, Scene};
 
@@ -88,21 +88,15 @@ struct Seen {
 }
 
 /// Makes all the steps.
-///
-/// Errors: the scene cannot be built.
-pub fn one_step(plan: &OneStepPlan, progress: &Progress) -> Result<Results, StudyError> {
+pub fn one_step(plan: &OneStepPlan, progress: &Progress) -> Results {
     let scene = MonkeyPile::with_heads(plan.heads);
-    let rows = steps(&scene, plan, progress)?;
+    let rows = steps(&scene, plan, progress);
     progress.finish();
     let (tables, panels) = (vec![report::table(plan, &rows)], report::panels(plan, &rows));
-    Ok(Results { environment: Environment::detect(), rows, tables, panels })
+    Results::new(rows, tables, panels)
 }
 
-fn steps(
-    scene: &dyn Scene,
-    plan: &OneStepPlan,
-    progress: &Progress,
-) -> Result<Vec<Row>, StudyError> {
+fn steps(scene: &dyn Scene, plan: &OneStepPlan, progress: &Progress) -> Vec<Row> {
     let exact = |name: &str, substeps| Way {
         name: name.to_owned(),
         backend: plan.reference,
@@ -126,19 +120,19 @@ fn steps(
 
     let last = plan.moments.iter().copied().max().unwrap_or(0);
     progress.phase(format!("{}, the run", scene.name()), last);
-    let run = led::run(scene, plan.reference, last, || progress.step())?;
+    let run = led::run(scene, plan.reference, last, || progress.step());
     progress.phase(format!("{}, its steps", scene.name()), plan.moments.len() * ways.len());
     let mut seen: Vec<Seen> = ways.iter().map(|_| Seen::default()).collect();
     for &moment in &plan.moments {
         let lead = &run[moment.saturating_sub(LEAD)..=moment];
-        let (right, _) = step(scene, &reference, lead)?;
-        let free = Led::without_contacts(scene)?.lead(&run[moment..=moment]);
-        let norm = Norm::of(scene, &run[moment])?;
+        let (right, _) = step(scene, &reference, lead);
+        let free = Led::without_contacts(scene).lead(&run[moment..=moment]);
+        let norm = Norm::of(scene, &run[moment]);
         let impulse = norm.distance(&right, &free);
         // A slow spell of the machine meets all ways.
         for index in 0..ways.len() {
             let index = (index + moment) % ways.len();
-            let (motions, mut led) = step(scene, &ways[index], lead)?;
+            let (motions, mut led) = step(scene, &ways[index], lead);
             let seen = &mut seen[index];
             seen.errors.push(norm.distance(&motions, &right) / impulse);
             seen.points.push(led.solver_points() as f64);
@@ -146,23 +140,19 @@ fn steps(
             progress.step();
         }
     }
-    Ok(ways.iter().zip(seen).map(|(way, seen)| row(scene, way, seen)).collect())
+    ways.iter().zip(seen).map(|(way, seen)| row(scene, way, seen)).collect()
 }
 
 /// The step after those that lead to it.
-fn step(
-    scene: &dyn Scene,
-    way: &Way,
-    lead: &[Vec<Motion>],
-) -> Result<(Vec<Motion>, Led), StudyError> {
-    let mut led = Led::new(scene, way.backend)?;
+fn step(scene: &dyn Scene, way: &Way, lead: &[Vec<Motion>]) -> (Vec<Motion>, Led) {
+    let mut led = Led::new(scene, way.backend);
     let parameters = led.parameters();
     parameters.num_solver_iterations = way.substeps;
     if !way.is_thinned {
         parameters.contact_clustering = false;
         parameters.contact_recycling = false;
     }
-    Ok((led.lead(lead), led))
+    (led.lead(lead), led)
 }
 
 fn row(scene: &dyn Scene, way: &Way, seen: Seen) -> Row {

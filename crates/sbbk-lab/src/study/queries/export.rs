@@ -23,7 +23,7 @@ pub fn export(plan: &QueriesPlan, results: &Results, folder: &Path) -> Result<()
         let name = format!("{}-{}.obj", mesh.name.replace(' ', "-"), mesh.triangle_count());
         let text = obj(&mesh.clone().centred().scaled_to(SIZE))?;
         replace_file(&folder.join(&name), |path| fs::write(path, text))?;
-        let asked = Asked::new(mesh)?;
+        let asked = Asked::new(mesh);
         let questions = Query::ALL
             .into_iter()
             .flat_map(|query| query.distances().iter().map(move |&distance| (query, distance)));

@@ -19,10 +19,9 @@ use self::judge::{Judge, QueryErrors};
 use super::motion::Approach;
 use super::pair::Contest;
 use super::turns::{race, timed};
-use super::{Progress, StudyError, shape};
+use super::{Progress, shape};
 use crate::backend::{Backend, SharedDispatcher};
 use crate::mesh::{self, Mesh};
-use crate::metrics::Environment;
 use crate::report::{Panel, Results, Row, Scale, Table, TableSpec, faster, number, time};
 
 const QUERIES: &str = "queries, µs";
@@ -73,14 +72,12 @@ impl QueriesPlan {
 }
 
 /// Measures all that `plan` asks for.
-///
-/// Errors: a mesh has no triangles.
-pub fn queries(plan: &QueriesPlan, progress: &Progress) -> Result<Results, StudyError> {
+pub fn queries(plan: &QueriesPlan, progress: &Progress) -> Results {
     let row_count: usize = Query::ALL.map(|query| query.distances().len()).into_iter().sum();
     progress.phase("queries", row_count * plan.meshes.len());
     let mut rows = Vec::new();
     for QueriedMesh { mesh, pose_count } in &plan.meshes {
-        let asked = Asked::new(mesh)?;
+        let asked = Asked::new(mesh);
         let is_asked = |query: &Query| mesh.triangle_count() <= query.largest_mesh();
         for query in Query::ALL.into_iter().filter(is_asked) {
             for &distance in query.distances() {
@@ -104,7 +101,8 @@ pub fn queries(plan: &QueriesPlan, progress: &Progress) -> Result<Results, Study
         panel(&rows, Query::Intersection, Distance::HardlyApart),
         panel(&rows, Query::Cast, Distance::Far),
     ];
-    Ok(Results { environment: Environment::detect(), tables: tables(&rows), rows, panels })
+    let tables = tables(&rows);
+    Results::new(rows, tables, panels)
 }
 
 /// A mesh of size [`SIZE`], and both dispatchers, which have met it.
@@ -115,9 +113,9 @@ struct Asked {
 }
 
 impl Asked {
-    fn new(mesh: &Mesh) -> Result<Self, StudyError> {
-        let shape = shape(&mesh.clone().centred().scaled_to(SIZE))?;
-        Ok(Self { contest: Contest::new([&shape]), judge: Judge::new(&shape, SIZE), shape })
+    fn new(mesh: &Mesh) -> Self {
+        let shape = shape(&mesh.clone().centred().scaled_to(SIZE));
+        Self { contest: Contest::new([&shape]), judge: Judge::new(&shape, SIZE), shape }
     }
 
     /// Poses at a distance: the second mesh comes in a random orientation, along a random

@@ -5,7 +5,7 @@ use sbbk_lab::mesh;
 use sbbk_lab::study::everyday::{Advice, advise, advise_robot};
 
 fn measured(mesh: &sbbk_lab::mesh::Mesh) -> (Advice, Vec<String>) {
-    let advice = advise(mesh, 60, 1).unwrap();
+    let advice = advise(mesh, 60, 1);
     let text = advice.to_string();
     (advice, text.lines().map(str::to_owned).collect())
 }

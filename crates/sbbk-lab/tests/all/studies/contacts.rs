@@ -20,7 +20,7 @@ fn every_case_has_contacts_and_sbbk_has_them_right() {
         speed_repeats: 1,
         ..ContactsPlan::standard()
     };
-    let study = contacts(&plan, &Progress::hidden()).unwrap();
+    let study = contacts(&plan, &Progress::hidden());
     let [exactness, queries, pairs] =
         ["contacts: exactness", "contacts: queries, µs", "contacts: pairs, ns"]
             .map(|part| ["stock", "sbbk"].map(|side| support::rows(&study, part, side)));

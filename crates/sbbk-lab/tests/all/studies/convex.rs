@@ -22,7 +22,7 @@ fn sbbks_contacts_are_right() {
         predictions: vec![0.0001, 0.02],
         ..ConvexPlan::standard()
     };
-    let study = convex(&plan, &Progress::hidden()).unwrap();
+    let study = convex(&plan, &Progress::hidden());
     for row in &study.rows {
         let is_steady = row.get("mode").is_some_and(|mode| mode != "fresh");
         let places = if row.is("depth", "deep") { 2 } else { 5 };

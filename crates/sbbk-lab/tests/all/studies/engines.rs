@@ -24,7 +24,7 @@ fn value(results: &Results, engine: &str, figure: &str) -> f64 {
 /// be, and a run that they could not have written.
 #[test]
 fn engines_get_the_same_heads() {
-    let pile = EnginePile::new(&MonkeyPile::with_heads(2)).unwrap();
+    let pile = EnginePile::new(&MonkeyPile::with_heads(2));
     let folder = tempfile::tempdir().unwrap();
     let [scene, run] = ["scene", "patches.1"].map(|name| folder.path().join(name));
     pile.write(&scene).unwrap();
@@ -53,7 +53,7 @@ fn engines_get_the_same_heads() {
 /// up though they went other ways, and files that break off.
 #[test]
 fn figures_are_those_of_the_file() {
-    let pile = EnginePile::new(&MonkeyPile::of(2, mesh::ball(1.0, 8))).unwrap();
+    let pile = EnginePile::new(&MonkeyPile::of(2, mesh::ball(1.0, 8)));
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, slower: f32, apart: f32| {
         let mut numbers = Vec::new();

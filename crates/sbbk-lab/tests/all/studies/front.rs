@@ -12,7 +12,7 @@ use super::support;
 fn all_variants_agree_and_can_be_reported() {
     let meshes = vec![mesh::ball(1.0, 6), mesh::torus(0.7, 0.3, 24, 12)];
     let plan = FrontPlan { meshes, approach_count: 1, repeats: 1 };
-    let study = front(&plan, &Progress::hidden()).unwrap();
+    let study = front(&plan, &Progress::hidden());
     let variants =
         ["fresh descent", "front of the paper", "adaptive front", "slack, as the dispatcher"]
             .map(|variant| support::rows(&study, "front", variant));

@@ -14,7 +14,7 @@ fn every_plan_is_measured_on_every_pair() {
         [mesh::floor(4.0, 6), mesh::torus(0.7, 0.3, 8, 6)],
     ];
     let plan = LayersPlan { pairs, approach_count: 1, repeats: 1 };
-    let study = layers(&plan, &Progress::hidden()).unwrap();
+    let study = layers(&plan, &Progress::hidden());
     let modes = 3;
     assert_eq!(study.rows.len(), 2 * (11 + 6 * modes));
     assert!(study.rows.iter().all(|row| row.number("time") > 0.0));

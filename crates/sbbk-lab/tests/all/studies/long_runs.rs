@@ -16,7 +16,7 @@ fn runs_are_compared_within_a_backend() {
         steps: 60,
         thread_counts: vec![1, 2],
     };
-    let mut found = determinism(&plan, &Progress::hidden()).unwrap();
+    let mut found = determinism(&plan, &Progress::hidden());
     let runs = |backend| {
         let rows = support::rows(&found, "determinism", backend);
         rows.iter().map(|row| row.keys["run"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
@@ -45,7 +45,7 @@ fn nothing_is_left_behind() {
         sample_every: 20,
         sample_size: 5,
     };
-    let (soak, end) = soak(&plan, &Progress::hidden()).unwrap();
+    let (soak, end) = soak(&plan, &Progress::hidden());
     assert_eq!((soak.rows.len(), end.wrong, end.trees_left), (2, 0, 0));
     assert!(soak.tables[0].title.starts_with("400 bodies"), "{}", soak.tables[0]);
     let last = &soak.rows[1];

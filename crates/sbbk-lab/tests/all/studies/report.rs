@@ -14,7 +14,7 @@ use super::support;
 #[test]
 fn cost_grows_and_is_shown_on_a_page() {
     let plan = CostPlan { heads: vec![10, 40], details: vec![6, 24], few: 10, ..CostPlan::quick() };
-    let study = cost(&plan, &Progress::hidden()).unwrap();
+    let study = cost(&plan, &Progress::hidden());
     for backend in ["stock", "sbbk"] {
         let exponents = support::rows(&study, "cost: exponents", backend);
         for row in exponents {

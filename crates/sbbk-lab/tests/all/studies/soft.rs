@@ -10,7 +10,7 @@ use super::support;
 #[test]
 fn soft_heads_touch_and_nothing_is_lost() {
     let plan = SoftPlan { heads: 1, steps: 45, repeats: 1, judged_every: 5 };
-    let study = soft(&plan, &Progress::hidden()).unwrap();
+    let study = soft(&plan, &Progress::hidden());
     let sbbk = support::rows(&study, "soft heads, ms", "sbbk")[0];
     assert!(sbbk.count("errors.true_pairs") > 100, "{sbbk:?}");
     assert_eq!(sbbk.wrong("errors"), 0, "{sbbk:?}");

@@ -11,7 +11,7 @@ use super::support;
 #[test]
 fn heads_stay_on_terrains_and_contacts_are_right() {
     let plan = TerrainPlan { cells: vec![32], place_count: 3, repeats: 1, fall_steps: 90 };
-    let study = terrain(&plan, &Progress::hidden()).unwrap();
+    let study = terrain(&plan, &Progress::hidden());
     let of = |part| -> Vec<&Row> { study.rows.iter().filter(|row| row.study == part).collect() };
     let way = |row: &&Row| (row.backend.clone(), row.keys["ground"].as_str().unwrap().to_owned());
     let way_of = |backend: &str, ground: &str| (backend.to_owned(), ground.to_owned());
