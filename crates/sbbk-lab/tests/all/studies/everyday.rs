@@ -58,6 +58,6 @@ fn contacts_are_compared_in_every_scene() {
     let wrong = |rows: &[&Row]| rows.iter().map(|row| row.wrong("judged")).sum::<u64>();
     assert!(wrong(&stock) > 100 * wrong(&sbbk).max(1), "{} {}", wrong(&stock), wrong(&sbbk));
 
-    assert_eq!(support::line_counts(&study), [14 + 2, 7, 4, 4, 1, 30 + 10]);
+    assert_eq!(support::line_counts(&study), [14 + 2, 7, 4, 4, 1, 51 + 17]);
     assert!(support::report(&study).svg.contains("manifolds, no workspace"));
 }
