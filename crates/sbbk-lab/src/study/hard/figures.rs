@@ -80,11 +80,30 @@ impl Gain {
         self.least = self.least.min(value);
         let rise = value - self.least;
         // NaN stays.
-        self.most = if rise <= self.most { self.most } else { rise };
+        self.most = if self.most.is_nan() || rise <= self.most { self.most } else { rise };
     }
 }
 
 /// The largest of some numbers; NaN if one is, 0 if there are none.
 pub(super) fn largest(values: impl IntoIterator<Item = f32>) -> f32 {
     values.into_iter().reduce(|a, b| if a.is_nan() || b <= a { a } else { b }).unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Would catch a NaN that later numbers hide, and a fall that counts as a rise.
+    #[test]
+    fn nan_stays() {
+        let gain = |values: &[f64]| {
+            let mut gain = Gain::default();
+            values.iter().for_each(|&value| gain.see(value));
+            gain.most
+        };
+        assert_eq!(gain(&[3.0, 1.0, 2.0, 0.5]), 1.0);
+        assert!(gain(&[1.0, f64::NAN, 2.0]).is_nan());
+        assert_eq!(largest([1.0, 3.0, 2.0]), 3.0);
+        assert!(largest([1.0, f32::NAN, 2.0]).is_nan() && largest([f32::NAN, 2.0]).is_nan());
+    }
 }
