@@ -339,6 +339,49 @@ fn what_turns_comes_down_with_its_other_end() {
     }
 }
 
+/// A pole as above, on one triangle, turns by half a turn, or by some, in a tenth of the time: it looks
+/// the same after each tenth, and comes down between. Would catch looks that do not count what turns.
+#[test]
+fn what_turns_fast_comes_down_with_its_other_end() {
+    let corners = [[-50.0, 0.0, 50.0], [50.0, 0.0, 50.0], [0.0, 0.0, -50.0]].map(Vec3::from);
+    let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
+    let pole = SharedShape::cuboid(0.1, 1.0, 0.1);
+    let turn = Quat::from_rotation_z(0.5);
+    let low = pole.compute_aabb(&Pose3::from_rotation(turn)).mins.y;
+    let start = Pose3::from_parts(-low * Vec3::Y, turn);
+    for (spin, met) in [(31.4, 0.0666), (60.0, 0.0352), (200.0, 0.0107)] {
+        let moving = NonlinearRigidMotion::new(start, Vec3::ZERO, -0.3 * Vec3::Y, spin * Vec3::Z);
+        let cast =
+            Cast { mesh: &mesh, shape: &pole, motions: [still(), moving], is_mesh_first: true };
+        let hit = cast.ask(&SbbkDispatcher::default(), false).expect("comes down");
+        assert!((hit.time_of_impact - met).abs() < 1e-4, "{spin}: {hit:?}");
+    }
+}
+
+/// A box that turns in place or glides, and that no turn takes as low as the floor, for as long as there
+/// is and as fast as can be. Would catch a turning that counts as an approach of the whole body: the
+/// cast took a minute and ended with an impact that is none.
+#[test]
+fn what_turns_above_a_floor_does_not_meet_it() {
+    let dispatcher = SbbkDispatcher::default();
+    let mesh = shape(&mesh::floor(20.0, 20));
+    let cube = SharedShape::cuboid(0.5, 0.5, 0.5);
+    for (height, velocity, spin, end) in [
+        (5.0, Vec3::ZERO, 2.0, Real::MAX),
+        (0.87, Vec3::X, 1.0e4, 5.0),
+        (0.87, Vec3::X, 1.0e6, 5.0),
+    ] {
+        let start = Pose3::translation(0.0, height, 0.0);
+        let spin = spin * Vec3::new(0.6, 0.0, 0.8);
+        let moving = NonlinearRigidMotion::new(start, Vec3::ZERO, velocity, spin);
+        let (m, s) = (still(), moving);
+        let found = dispatcher.cast_shapes_nonlinear(&m, &mesh, &s, &*cube, 0.0, end, true);
+        assert!(found.unwrap().is_none(), "{height} {spin}: {found:?}");
+        let found = dispatcher.cast_shapes_nonlinear(&s, &*cube, &m, &mesh, 0.0, end, true);
+        assert!(found.unwrap().is_none(), "{height} {spin}: {found:?}");
+    }
+}
+
 /// Bodies that glide along a floor, just above it and turning, are stopped by the wall and by nothing
 /// before: at once where the bound of the speed alone takes a step for each height above the floor.
 /// Would catch a cast that runs out of steps, a plane that a body crosses, and a time of a triangle

@@ -9,6 +9,7 @@
 use parry3d::math::{Real, Vector};
 use sbbk_core::query::{Advance, AdvanceOptions, Bodies, PartPair, advance};
 use sbbk_core::traverse::Placement;
+use sbbk_core::volumes::Sphere;
 
 use super::nonlinear::{NonlinearCast, Touch};
 use crate::pair::{ConvexSearch, FoundTriangle, MeshPlace, PlacedPart};
@@ -213,6 +214,15 @@ impl Bodies for MovingTriangle<'_> {
         let [_, shape_body] = mesh_place.swap([0, 1]);
         let axis = nearest.touch.normals[shape_body];
         let gap = search.gap(placed, self.triangle, axis).max(0.0);
-        gap / cast.approach_bound(shape_body, axis, time, self.reaches)
+        let clear = gap / cast.approach_bound(shape_body, axis, time, self.reaches);
+        // The shape stays in a ball around the centre of its motion, which does not turn.
+        let centre = cast.motions[shape_body].local_center;
+        let radius = (self.reaches[shape_body] * (1.0 + 1.0e-6)) as Real;
+        let around = Sphere { centre, radius };
+        let gap = search.gap_of_ball(placed, self.triangle, axis, &around).max(0.0);
+        let mut reaches = self.reaches;
+        reaches[shape_body] = 0.0;
+        // Of numbers and NaN the numbers: 0 may be divided by 0.
+        clear.max(gap / cast.approach_bound(shape_body, axis, time, reaches))
     }
 }

@@ -17,6 +17,10 @@ const STEP_LIMIT: usize = 2000;
 /// At least and at most how often to look at what touches at the start and turns.
 const LOOKS: (f64, f64) = (10.0, 100.0);
 
+/// How far what touches at the start turns from look to look, in radians: a long body that is looked
+/// at after each half turn, or two, always looks the same.
+const TURN: f64 = 0.5;
+
 /// What poses lose as their quaternions, rounded to f32, are not of unit length: points are up to this
 /// share faster.
 const STRETCH: f64 = 1.0e-6;
@@ -175,14 +179,15 @@ impl NonlinearCast<'_> {
     }
 
     /// Times at which to look at a body again that touches at the start and turns: between two of them
-    /// it travels no more than its thickness, or a hundredth of the way. None if it does not turn, or
-    /// has no thickness.
+    /// it travels no more than its thickness and turns no more than [`TURN`], or both by a hundredth of
+    /// the way. None if it does not turn, or has no thickness.
     pub(super) fn looks(&self, thickness: Real) -> impl Iterator<Item = f64> {
         let [motion1, motion2] = self.motions;
         let is_needed = thickness > 0.0 && motion1.angvel != motion2.angvel;
         let (start, span) = (f64::from(self.start), f64::from(self.end - self.start));
         let travel = span * f64::from((motion2.linvel - motion1.linvel).length());
-        let count = (travel / f64::from(thickness)).clamp(LOOKS.0, LOOKS.1).ceil();
+        let turn = span * (motion2.angvel - motion1.angvel).as_dvec3().length() / TURN;
+        let count = (travel / f64::from(thickness)).max(turn).clamp(LOOKS.0, LOOKS.1).ceil();
         let count = if is_needed { count as u32 } else { 0 };
         (1..count).map(move |look| start + span * f64::from(look) / f64::from(count))
     }

@@ -80,6 +80,17 @@ impl<'a> ConvexSearch<'a> {
         placed.gap(self.convex, &self.mesh.mesh.triangle(triangle), axis)
     }
 
+    /// The same of a triangle and a ball in the frame of the shape.
+    pub(crate) fn gap_of_ball(
+        &self,
+        placed: &PlacedPart,
+        triangle: u32,
+        axis: Vector,
+        ball: &Sphere,
+    ) -> f64 {
+        placed.gap_of_ball(ball, &self.mesh.mesh.triangle(triangle), axis)
+    }
+
     /// How far the shape must sink in to come out behind a triangle, as Parry has it.
     pub(crate) fn thickness(&self) -> Real {
         self.shape.ccd_thickness()

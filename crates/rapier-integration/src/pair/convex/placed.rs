@@ -11,6 +11,7 @@ use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::Triangle;
 use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::traverse::Placement;
+use sbbk_core::volumes::Sphere;
 
 use super::ball::{keep_one, ray_length};
 use super::features::{Normals, Point, Touching};
@@ -139,10 +140,21 @@ impl PlacedPart {
     /// triangle in the frame of the part: at most their distance.
     pub(super) fn gap(&self, shape: ConvexShape<'_>, triangle: &Triangle, axis: Vec3) -> f64 {
         let axis = axis.as_dvec3();
+        (self.lowest(triangle, axis) - self.extent.reach(shape, axis)) / axis.length()
+    }
+
+    /// The same of a ball in the frame of the part.
+    pub(super) fn gap_of_ball(&self, ball: &Sphere, triangle: &Triangle, axis: Vec3) -> f64 {
+        let axis = axis.as_dvec3();
+        let centre = axis.dot(ball.centre.as_dvec3());
+        (self.lowest(triangle, axis) - centre) / axis.length() - f64::from(ball.radius)
+    }
+
+    /// The least coordinate of a triangle along `axis`, in the frame of the part.
+    fn lowest(&self, triangle: &Triangle, axis: DVec3) -> f64 {
         let at_mesh: DVec3 = self.placement.rotation.transpose() * axis;
         let lowest = triangle.vertices().iter().map(|x| at_mesh.dot(x.as_dvec3()));
-        let lowest = lowest.fold(f64::INFINITY, f64::min) + axis.dot(self.placement.translation);
-        (lowest - self.extent.reach(shape, axis)) / axis.length()
+        lowest.fold(f64::INFINITY, f64::min) + axis.dot(self.placement.translation)
     }
 }
 
