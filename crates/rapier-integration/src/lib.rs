@@ -128,7 +128,8 @@
 //!   and do not approach. A nonlinear one of a convex shape leaves out the triangles which it would
 //!   not sink into by more than its `ccd_thickness`, as Parry does, and like Parry it looks at them
 //!   again at some times if the shape turns.
-//! * A nonlinear cast stops as soon as the bodies are within a millionth of the size of the smaller.
+//! * A nonlinear cast stops as soon as the bodies are within a millionth of the radius of
+//!   the ball around the smaller.
 //! * A pose that is not finite finds nothing.
 //!
 //! A host keeps no state for these queries, so each one has to find the trees of its meshes:

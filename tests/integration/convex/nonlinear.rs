@@ -434,7 +434,17 @@ fn half_spaces_turn() {
         assert!((0.5 * hit.time_of_impact - (1.0_f32 / 3.5).atan()).abs() < 1e-5, "{hit:?}");
         assert_eq!(hit.status, ShapeCastStatus::Converged);
         assert!(cast(0.25).is_none());
-        // With no end of the time.
+        // The same with no end of the time, as nothing moves along a line.
+        let there = NonlinearRigidMotion::constant_position(Pose3::translation(3.0, 1.5, 0.0));
+        let turning =
+            NonlinearRigidMotion::new(Pose3::IDENTITY, Vec3::ZERO, Vec3::ZERO, 0.5 * Vec3::Z);
+        let endless = dispatcher
+            .cast_shapes_nonlinear(&there, &cube, &turning, &*ground, 0.0, f32::INFINITY, true)
+            .unwrap();
+        let endless = endless.expect("it comes up");
+        assert!((endless.time_of_impact - hit.time_of_impact).abs() < 1e-5, "{endless:?}");
+        assert_eq!(endless.status, ShapeCastStatus::Converged);
+        // Any bodies with no end of the time.
         let turning = NonlinearRigidMotion::new(Pose3::IDENTITY, Vec3::X, Vec3::Y, Vec3::Z);
         let slab = SharedShape::cuboid(9.0, 0.5, 9.0);
         let up = Pose3::translation(0.0, 8.0, 0.0);
@@ -445,6 +455,25 @@ fn half_spaces_turn() {
         let [short, long] = [9.0, f32::INFINITY].map(|end| cast(end).unwrap().expect("meets it"));
         assert!((short.time_of_impact - long.time_of_impact).abs() < 1e-5, "{short:?} {long:?}");
     }
+}
+
+/// Would catch a tolerance of zero: a mesh that is a point has no size, and takes all steps there are.
+#[test]
+fn a_point_that_falls_is_met() {
+    let dispatcher = SbbkDispatcher::default();
+    let point = TriMesh::new(vec![Vec3::ZERO; 3], vec![[0, 1, 2]]).expect("it has a triangle");
+    let at = Pose3::translation(0.1, 3.0, 0.2);
+    let falling = NonlinearRigidMotion::new(at, Vec3::ZERO, -Vec3::Y, Vec3::new(0.3, 0.1, 0.2));
+    let mut hits = 0;
+    for (name, other) in shapes(1.0) {
+        let hit = dispatcher
+            .cast_shapes_nonlinear(&falling, &point, &still(), &*other, 0.0, 9.0, true)
+            .unwrap();
+        let Some(hit) = hit else { continue };
+        assert_eq!(hit.status, ShapeCastStatus::Converged, "{name} {hit:?}");
+        hits += 1;
+    }
+    assert!(hits > 8, "{hits}");
 }
 
 /// Meshes are surfaces: a body in the hollow of one is apart from it, and meets it from inside.

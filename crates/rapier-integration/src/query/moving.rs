@@ -35,7 +35,8 @@ pub(super) struct MovingConvex<'a, 'q> {
     touching: Vec<u32>,
     /// Steps taken.
     steps: usize,
-    /// How far ahead triangles were advanced of late.
+    /// For how long triangles were advanced by themselves in the last step. At least doubled each
+    /// step.
     ahead: f64,
 }
 
@@ -57,23 +58,25 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         if found.is_some_and(|found| found.time == options.start) {
             return found;
         }
-        let again =
-            self.touching.iter().filter_map(|&triangle| self.meets_again(triangle, thickness));
-        found.into_iter().chain(again).min_by(|one, two| one.time.total_cmp(&two.time))
+        self.touching.iter().fold(found, |found, &triangle| {
+            let end = found.map_or(options.end, |found| found.time);
+            let again = self.meets_again(triangle, thickness, end);
+            again.filter(|again| again.time < end || found.is_none()).or(found)
+        })
     }
 
-    /// When the shape meets a triangle that it touches at the start: at a time of some, as Parry has
-    /// it, from which on it would come out behind it.
-    fn meets_again(&self, triangle: u32, thickness: Real) -> Option<Advance<FoundTouch>> {
+    /// When, until some time, the shape meets a triangle that it touches at the start: from one of some
+    /// times on, as Parry has it, after which it would come out behind it.
+    fn meets_again(&self, triangle: u32, thickness: Real, end: f64) -> Option<Advance<FoundTouch>> {
         let Self { cast, options, .. } = self;
         let mut one = MovingTriangle::new(self, triangle);
-        cast.looks(thickness).find_map(|time| {
+        cast.looks(thickness).take_while(|&time| time <= end).find_map(|time| {
             let placement = cast.placement_at(time);
             let pair = one.nearest(&placement, f64::INFINITY, &[])?;
             if !cast.approaches(&pair.touch, time, f64::from(thickness) + pair.distance.max(0.0)) {
                 return None;
             }
-            let options = AdvanceOptions { start: time, ..*options };
+            let options = AdvanceOptions { start: time, end, ..*options };
             advance(&mut one, |time| cast.placement_at(time), options)
         })
     }
@@ -162,7 +165,7 @@ impl Bodies for MovingConvex<'_, '_> {
         if soonest.is_none() && ahead < self.ahead {
             return f64::INFINITY;
         }
-        // Times are compared in f32.
+        // Compared in f32: another triangle may be sooner by a rounding.
         soonest.unwrap_or(ahead) * (1.0 - 1.0e-6)
     }
 }

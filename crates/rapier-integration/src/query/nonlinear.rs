@@ -7,14 +7,19 @@ use sbbk_core::query::{Advance, AdvanceOptions, Bodies, PartPair, advance, advan
 use sbbk_core::traverse::Placement;
 use sbbk_core::volumes::Sphere;
 
-/// Bodies this close have met, as a share of the size of the smaller one. Higher: fewer steps,
-/// earlier impacts.
+/// Bodies this close have met, as a share of the radius of the ball around the smaller one. Higher:
+/// fewer steps, earlier impacts.
 const TOLERANCE: f64 = 1.0e-6;
+
+/// The same as a share of how far their centres are apart, for a body that is a point: poses are
+/// hardly better.
+const PRECISION: f64 = 1.0e-12;
 
 /// Steps. Head-on motions take 10 to 30, turning ones up to some hundred.
 const STEP_LIMIT: usize = 2000;
 
-/// At least and at most how often to look at what touches at the start and turns.
+/// Into how many parts, at least and at most, the time is divided for looks at what touches at the
+/// start and turns.
 const LOOKS: (f64, f64) = (10.0, 100.0);
 
 /// How far what touches at the start turns from look to look, in radians: a long body that is looked
@@ -51,11 +56,12 @@ impl NonlinearCast<'_> {
     /// For bodies in balls.
     pub(super) fn options(&self, balls: [Sphere; 2]) -> AdvanceOptions {
         let [size1, size2] = balls.map(|ball| f64::from(ball.radius));
+        let [from1, from2] = self.motions.map(centre);
         AdvanceOptions {
             start: self.start.into(),
             end: self.end.into(),
             speed_bound: self.speed_bound(balls),
-            tolerance: TOLERANCE * size1.min(size2),
+            tolerance: (TOLERANCE * size1.min(size2)).max(PRECISION * from1.distance(from2)),
             step_limit: STEP_LIMIT,
         }
     }
@@ -66,7 +72,8 @@ impl NonlinearCast<'_> {
     /// If contacts at the start are not to stop the cast, Parry asks of each triangle that touches
     /// then whether its velocity and that of the other body approach until the end by more than the
     /// thickness of both, and leaves it out if they do not. (Of a thick body that turns it goes on to
-    /// look at some times between: see `moving.rs`.) Here it is left out for good.
+    /// look at some times between.) Here it is left out; what is convex is looked at again in
+    /// `moving.rs`, meshes are not.
     pub(super) fn first_impact<B: Bodies>(
         &self,
         bodies: &mut B,
@@ -115,7 +122,8 @@ impl NonlinearCast<'_> {
     /// its points are from its centre, that is at most `|v| + |w1| r1 + |w2| r2`. In the frame of body
     /// 1, all of which turns about centre 1, points of body 2 have `|v - w1 × c| + |w2 - w1| r2`, with
     /// `c` from centre 1 to centre 2; in that of body 2 likewise. As `c` is linear in time, each is
-    /// greatest at the start or at the end. These know no end of one body: a half-space may turn.
+    /// greatest at the start or at the end. Each of these takes the reach of one body only: it stays
+    /// finite if the other is a half-space that turns.
     fn speed_bound(&self, balls: [Sphere; 2]) -> f64 {
         let [motion1, motion2] = self.motions;
         let [reach1, reach2] = [0, 1].map(|i| self.reach(i, &balls[i]));
@@ -124,7 +132,7 @@ impl NonlinearCast<'_> {
         let velocity = motion2.linvel.as_dvec3() - motion1.linvel.as_dvec3();
         let seen = |turn: DVec3, reach: f64| {
             let fastest = [self.start, self.end].map(|time| {
-                let between = from2 - from1 + velocity * f64::from(time);
+                let between = from2 - from1 + moved(velocity, time);
                 let turning = if turn == DVec3::ZERO { DVec3::ZERO } else { turn.cross(between) };
                 (velocity - turning).length()
             });
@@ -196,6 +204,11 @@ impl NonlinearCast<'_> {
 /// How fast what turns moves, even if it has no end.
 fn turned(turn: DVec3, reach: f64) -> f64 {
     if turn == DVec3::ZERO { 0.0 } else { turn.length() * reach }
+}
+
+/// How far what moves comes, even in a time without end.
+fn moved(velocity: DVec3, time: Real) -> DVec3 {
+    if velocity == DVec3::ZERO { DVec3::ZERO } else { velocity * f64::from(time) }
 }
 
 /// The centre of a motion at its beginning.

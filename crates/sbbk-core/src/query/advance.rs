@@ -32,8 +32,8 @@ pub trait Bodies {
     /// Calls `found` with all pairs that are at most `reach` apart.
     fn within(&mut self, placement: &Placement, reach: f64, found: impl FnMut(Self::Pair));
 
-    /// For how long from `time` on no pair meets, as far as more is known than the distance of the
-    /// nearest; the others are named in `besides`.
+    /// A time, counted from `time`, in which no pair but those in `besides` meets. 0 if nothing but
+    /// the distance of the nearest is known.
     fn clear_time(&mut self, _nearest: &Self::Pair, _time: f64, _besides: &[[u32; 2]]) -> f64 {
         0.0
     }
@@ -145,8 +145,8 @@ pub(super) fn advance_besides<B: Bodies>(
         if !in_time {
             return None;
         }
-        // Beyond what can be travelled until the end nothing matters; without speed, and without
-        // end, that is nothing.
+        // Bodies farther apart than they can travel until the end do not meet. No speed times a time
+        // without end is NaN, of which `max` makes 0.
         let reach = (speed_bound * (end - time)).max(0.0) + tolerance;
         let placement = placement_at(time);
         let pair = bodies.nearest(&placement, reach, besides)?;

@@ -56,7 +56,7 @@ impl ConvexSearch<'_> {
         let around = self.shape.compute_aabb(self.placed.pose_in_mesh());
         let time = time_of(&self.placed, self.convex, &self.mesh, around, of_shape, target);
         let latest = f64::from(max_time_of_impact);
-        // Costs are compared with less-than: the least number above the limit is the first one out.
+        // Parry asks for costs below the limit: with the next number above it those equal count too.
         let found = self.mesh.mesh.bvh().find_best(
             max_time_of_impact.next_up(),
             |node: &BvhNode, _| time(box_of(node)),

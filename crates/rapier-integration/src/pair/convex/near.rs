@@ -64,8 +64,8 @@ pub(super) fn triangles_near(
     counters.aabb_tests(tested.get());
 }
 
-/// At most how far boxes of a mesh are from a part: as Parry has it, by the box around the part in
-/// the frame of the mesh.
+/// A lower bound of the distance of boxes of a mesh from a part: as Parry has it, by the box around the
+/// part in the frame of the mesh.
 pub(super) fn gap_of(
     placed: &PlacedPart,
     shape: ConvexShape<'_>,

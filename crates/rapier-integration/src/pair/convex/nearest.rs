@@ -190,7 +190,7 @@ impl<'a> ConvexSearch<'a> {
         let around = self.shape.compute_aabb(self.placed.pose_in_mesh());
         let gap = gap_of(&self.placed, self.convex, &self.mesh, around);
         let unit = unit as Real;
-        // Costs are compared with less-than: the least number above the limit is the first one out.
+        // Parry asks for costs below the limit: with the next number above it those equal count too.
         let limit = (limit.min(f64::from(Real::MAX)) as Real).next_up();
         let found = self.mesh.mesh.bvh().find_best(
             limit,
