@@ -41,7 +41,9 @@ proptest! {
         let hit = ask([&one, &two], &pose, velocity, options(3.0, target));
         let target = f64::from(target);
         let end = hit.map_or(3.0, |hit| hit.time);
-        for step in 0..200 {
+        // At a start within the target distance there is nothing before it.
+        let steps = if hit.is_some_and(|hit| hit.is_penetrating) { 0 } else { 200 };
+        for step in 0..steps {
             let time = end * f64::from(step) / 200.0;
             let distance = distance_at([&one, &two], &pose, velocity, time);
             prop_assert!(distance > target - 1e-5, "{distance} at {time}, before {hit:?}");
