@@ -132,8 +132,9 @@ impl<const AXES: usize> CastSearch<'_, AXES> {
 
     /// Whether the boxes of the triangles come within the target distance early enough.
     fn boxes_meet(&self, pair: &TrianglePair, target: f64) -> bool {
-        let [(min1, max1), (min2, max2)] =
-            pair.corners.map(|[a, b, c]| (a.min(b).min(c), a.max(b).max(c)));
+        // Written out, as `array::map` is not always inlined: a cast took 1.2 times as long.
+        let [corners1, corners2] = &pair.corners;
+        let ((min1, max1), (min2, max2)) = (bounds(corners1), bounds(corners2));
         let slack = target + 1.0e-12 * ((max1 - min1) + (max2 - min2)).element_sum();
         let (near, far) = (min1 - max2 - slack, max1 - min2 + slack);
         let (mut start, mut end) = (0.0, self.latest);
@@ -146,6 +147,12 @@ impl<const AXES: usize> CastSearch<'_, AXES> {
         }
         start <= end * (1.0 + 1.0e-12)
     }
+}
+
+/// The lowest and the highest coordinates.
+#[inline(always)]
+fn bounds(&[a, b, c]: &[DVec3; 3]) -> (DVec3, DVec3) {
+    (a.min(b).min(c), a.max(b).max(c))
 }
 
 /// Two triangles, the second one moving.
