@@ -39,7 +39,8 @@
 //! these are larger. Those of curved shapes are exact to 1e-7 of themselves, directions to 0.03
 //! degrees. Depths are exact to 1e-10 of themselves, those of curved shapes to 1e-5. Bodies closer
 //! than 1e-10 of their size may count as touching: their distance is off by less than that; needles a
-//! billionth as wide as long, closer than 5e-10, by up to 1e-8 of their length. A contact is a function of its arguments, bit for bit: no search starts from an earlier one.
+//! billionth as wide as long, closer than 5e-10, by up to 1e-8 of their length. A contact is a function
+//! of its arguments, bit for bit: no search starts from an earlier one.
 
 mod apart;
 mod clip;
