@@ -191,7 +191,15 @@ impl SbbkDispatcher {
         let [mesh] = self.look_at([mesh])?;
         let pose = &PairPose::new(pos12, 0.0);
         let contacts = ContactGenerator::Exact;
-        let pair = ConvexPair { pose, mesh, parts, mesh_place, contacts, has_patches: false };
+        let pair = ConvexPair {
+            pose,
+            mesh,
+            parts,
+            mesh_place,
+            contacts,
+            has_surfaces: false,
+            has_patches: false,
+        };
         Some(of_convex(ConvexQuery { search: ConvexSearch::new(&pair, other)?, mesh_place }))
     }
 
@@ -216,6 +224,7 @@ impl SbbkDispatcher {
     {
         let SbbkConfig { contacts, contact_set, detail, kinds, .. } = self.config;
         let is_exact = contacts == ContactGenerator::Exact;
+        let has_surfaces = is_exact && contact_set == ContactSet::Surfaces;
         let has_patches = is_exact && detail == ContactDetail::Patches;
         // Of such a pair nothing needs to be kept while it is apart. Not if there are manifolds: where
         // Rapier finds no workspace it keeps pointers to manifolds that are gone.
@@ -226,7 +235,6 @@ impl SbbkDispatcher {
                     return Answer::Unsupported;
                 }
                 let meshes = [mesh1, mesh2];
-                let has_surfaces = is_exact && contact_set == ContactSet::Surfaces;
                 if is_new
                     && self.are_apart(are_near(meshes, pos12, prediction), meshes)
                     && !(has_surfaces && may_be_inside(meshes, pos12))
@@ -247,7 +255,8 @@ impl SbbkDispatcher {
         if kinds.convex_shapes
             && let Some(ball) = other.as_ball().filter(|ball| is_few(mesh, ball))
         {
-            let pair = FewPair { mesh, is_broken: self.is_broken(mesh), ball, mesh_place };
+            let is_broken = self.is_broken(mesh);
+            let pair = FewPair { mesh, is_broken, ball, mesh_place, has_surfaces };
             return self.touch_few(pair, pos12, prediction, manifolds, workspace);
         }
         let is_answered = |parts: &Parts<'_>| match parts {
@@ -271,7 +280,8 @@ impl SbbkDispatcher {
         };
         let pose = &PairPose::new(pos12, prediction);
         if let Some(parts) = parts {
-            let pair = ConvexPair { pose, mesh, parts, mesh_place, contacts, has_patches };
+            let pair =
+                ConvexPair { pose, mesh, parts, mesh_place, contacts, has_surfaces, has_patches };
             self.ask(&pair, manifolds, workspace)
         } else if let Some(field) = field {
             let pair = FieldPair { pose, mesh, field, mesh_place, contacts, has_patches };

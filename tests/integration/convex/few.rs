@@ -1,12 +1,12 @@
 use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
+use rapier_integration::{ContactSet, SbbkDispatcher};
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshFlags};
 use sbbk_lab::mesh;
 
 use super::question::{Question, bits, touches};
-use crate::support::{Manifold, Pair, counting, rotation, shape_with};
+use crate::support::{Manifold, Pair, counting_of, per_triangle, rotation, shape_with};
 
 /// Of 192 triangles, two units wide, bent.
 fn ground(flags: TriMeshFlags) -> TriMesh {
@@ -22,7 +22,7 @@ fn balls_on_large_triangles_touch_as_with_stock() {
     for flags in [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES] {
         let ground = ground(flags);
         for (seed, radius) in [0.05, 0.4, 1.0].into_iter().enumerate() {
-            let (dispatcher, unaware) = (counting(), SbbkDispatcher::default());
+            let (dispatcher, unaware) = (counting_of(ContactSet::Triangles), per_triangle());
             let shape = SharedShape::ball(radius);
             let mut random = Rand32::new(seed as u64);
             let mut pairs: [Pair; 2] = Default::default();
@@ -86,7 +86,7 @@ struct Impulse(u32);
 #[test]
 fn contacts_keep_their_data_where_a_ball_rolls() {
     let (ground, shape) = (ground(TriMeshFlags::empty()), SharedShape::ball(0.8));
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = per_triangle();
     let mut pair = Pair::<(), Impulse>::default();
     let (mut kept, mut came) = (0, 0);
     for i in 0..400 {

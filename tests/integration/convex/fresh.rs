@@ -10,7 +10,7 @@ use sbbk_lab::mesh;
 
 use super::question::{Question, bits, touches};
 use super::shapes::{PREDICTIONS, body, lattice_pose, pose, shapes};
-use crate::support::{Manifold, distance, generating, rotation, shape_with};
+use crate::support::{Manifold, distance, generating, per_triangle, rotation, shape_with};
 
 /// The same for stock's dispatcher: its manifolds with a point within the prediction distance are
 /// ours.
@@ -61,7 +61,7 @@ fn fresh_contacts_are_those_of_parrys_routine_on_all_triangles() {
 fn exact_contacts_are_where_parry_measures_them() {
     const TOLERANCE: Real = 2e-3;
     const PARRYS_ERROR: Real = 2e-2;
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = per_triangle();
     let mut random = Rand32::new(3);
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
     for size in [0.6, 3.0] {
@@ -121,7 +121,7 @@ fn a_box_that_lies_flat_touches_at_its_corners() {
 /// invented.
 #[test]
 fn exact_contacts_are_the_true_ones() {
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = per_triangle();
     let mut random = Rand32::new(4);
     for scale in [0.01, 1.0, 100.0] {
         let head = shape_with(&mesh::monkey_head().scaled(scale), TriMeshFlags::empty());
@@ -149,7 +149,7 @@ fn exact_contacts_are_the_true_ones() {
 /// off too early.
 #[test]
 fn a_huge_floor_loses_no_contact() {
-    let [parrys, exact] = [ContactGenerator::Parry, ContactGenerator::Exact].map(generating);
+    let [parrys, exact] = [generating(ContactGenerator::Parry), per_triangle()];
     let mut random = Rand32::new(2);
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
     let mut count = 0;
@@ -180,7 +180,7 @@ fn constrained_normals_make_no_deep_points() {
     let bumps = mesh::terrain(4.0, 12, 0.7);
     let [free, fixed] = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES]
         .map(|flags| shape_with(&bumps, flags));
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = per_triangle();
     let shape = SharedShape::cuboid(0.4, 0.3, 0.2);
     let (mut random, mut seen) = (Rand32::new(8), 0);
     for _ in 0..400 {

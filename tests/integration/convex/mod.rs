@@ -21,5 +21,7 @@ mod queries;
 mod question;
 /// A head at rest on a floor.
 mod rest;
+/// Contacts at edges within a surface.
+mod seams;
 /// A shape of each kind, and where it meets a mesh.
 mod shapes;

@@ -31,6 +31,14 @@ thread_local! {
     static SCRATCH: Cell<Option<Box<Scratch>>> = Cell::default();
 }
 
+/// Lends the memory of the thread.
+pub(super) fn with_scratch<T>(then: impl FnOnce(&mut Scratch) -> T) -> T {
+    let mut scratch = SCRATCH.take().unwrap_or_default();
+    let result = then(&mut scratch);
+    SCRATCH.set(Some(scratch));
+    result
+}
+
 /// Brings the manifolds of a pair up to date.
 pub(crate) fn answer<P, M, C>(
     pair: &P,
@@ -91,6 +99,7 @@ where
     let candidates = &mut coherence.candidates;
     let found = candidates.len();
     find_contacts(&mut query, candidates, limits, &mut scratch, [&mut contacts, &mut spare]);
+    query.settle(candidates, &mut contacts, &mut scratch);
     if contacts.is_empty()
         && let Some((subshapes, contact)) = query.inside(&mut coherence.outside, limits, &scratch)
     {
@@ -116,6 +125,7 @@ where
         scratch.is_done.shrink_to(limit);
         scratch.lookup.shrink_to(limit);
         scratch.patches.shrink_to(limit);
+        scratch.seams.shrink_to(limit);
         pool.shrink_to(limit);
     }
     pool.give_back();

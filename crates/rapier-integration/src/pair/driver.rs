@@ -14,6 +14,7 @@ use super::order::{Candidate, OrderKey};
 use super::outline::{Outline, PatchPlan, Patches};
 use super::pool::{Demand, ManifoldPool};
 use super::pose::PairPose;
+use super::seams::Seams;
 use super::triangles::{Found, Regions};
 use crate::mesh::{Change, Ranks, TreeCache};
 
@@ -95,6 +96,10 @@ pub(crate) trait PairQuery {
     /// is asked for once more.
     fn needs_more(&mut self, _: &mut Scratch) -> bool {
         false
+    }
+
+    /// Says of contacts, now that all are known, which are along other normals than their own.
+    fn settle(&self, _: &[Candidate<Self::Hint>], _: &mut [(u32, Self::Contact)], _: &mut Scratch) {
     }
 
     /// If no candidate has a contact: the one that takes one shape out of the other, and the subshapes
@@ -207,6 +212,7 @@ pub(crate) struct Scratch {
     pub(super) triangle_contacts: [ContactList<Found>; 2],
     pub(super) convex_contacts: [ContactList<Near>; 2],
     pub(super) patches: Patches,
+    pub(super) seams: Seams,
     pub(super) lookup: Lookup,
     /// Which manifolds of the query before are dealt with.
     pub(super) is_done: Vec<bool>,

@@ -5,15 +5,19 @@
 //! scale. Nothing is kept but the manifolds; stock also keeps those without points, and asks about
 //! all triangles of a box that is wider than the ball's.
 
+use glamx::DVec3;
 use parry3d::bounding_volume::BoundingVolume;
 use parry3d::math::{Pose, Real};
 use parry3d::partitioning::BvhNode;
 use parry3d::query::details::{NormalConstraints, contact_manifold_convex_ball};
 use parry3d::query::{ContactManifold, ContactManifoldsWorkspace};
-use parry3d::shape::{Ball, Shape, TriMesh};
+use parry3d::shape::{Ball, Shape, TriMesh, TriMeshFlags};
 use sbbk_core::volumes::rounding::gamma;
 
+use super::answer::with_scratch;
+use super::convex::ball_contact;
 use super::pose::MeshPlace;
+use super::seams::{Known, Seam, Touched};
 use super::state::state_in;
 use crate::mesh::whole_ones;
 
@@ -35,6 +39,8 @@ pub(crate) struct FewPair<'a> {
     pub(crate) is_broken: bool,
     pub(crate) ball: &'a Ball,
     pub(crate) mesh_place: MeshPlace,
+    /// Whether contacts are those of the surface of the mesh.
+    pub(crate) has_surfaces: bool,
 }
 
 impl FewPair<'_> {
@@ -71,7 +77,7 @@ impl FewPair<'_> {
         M: Default,
         C: Default + Copy,
     {
-        let Self { mesh, is_broken, ball, mesh_place } = *self;
+        let Self { mesh, is_broken, ball, mesh_place, .. } = *self;
         let is_second = mesh_place.is_second();
         // With stock's roundings: it turns the pose about on its way to the mesh and back.
         let ball_in_mesh = if is_second { pos12.inverse().inverse().inverse() } else { *pos12 };
@@ -127,5 +133,33 @@ impl FewPair<'_> {
             mesh.bvh().leaves(|node| node.intersects(&near)).for_each(visit);
         }
         manifolds.truncate(count);
+        // As `ConvexQuery::turn`.
+        let others = TriMeshFlags::FIX_INTERNAL_EDGES | TriMeshFlags::DEFORMABLE;
+        if count > 1 && self.has_surfaces && !mesh.flags().intersects(others) {
+            self.leave_out_seams(ball_in_mesh.translation.as_dvec3(), manifolds);
+        }
+    }
+
+    /// Leaves out contacts that are none of the surface.
+    fn leave_out_seams<M, C>(&self, centre: DVec3, manifolds: &mut Vec<ContactManifold<M, C>>) {
+        let corners = |manifold: &ContactManifold<M, C>| {
+            let [triangle, _] = self.mesh_place.swap([manifold.subshape1, manifold.subshape2]);
+            *self.mesh.triangle(triangle).vertices()
+        };
+        let known = |manifold: &ContactManifold<M, C>| {
+            let corners = corners(manifold).map(|corner| corner.as_dvec3() - centre);
+            let contact = ball_contact(&corners, f64::INFINITY);
+            contact.map_or(Known::NONE, |contact| Known::new(contact.feature(&corners), &contact))
+        };
+        let touched =
+            |manifold: &ContactManifold<M, C>| Touched { part: 0, corners: corners(manifold) };
+        with_scratch(|scratch| {
+            for seam in scratch.seams.find(manifolds, known, touched, |_, _| false) {
+                if let Seam::Like(contact, _) = *seam {
+                    manifolds[contact as usize].points.clear();
+                }
+            }
+            manifolds.retain(|manifold| !manifold.points.is_empty());
+        });
     }
 }

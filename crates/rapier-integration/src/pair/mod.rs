@@ -18,6 +18,7 @@ mod outline;
 mod patches;
 mod pool;
 mod pose;
+mod seams;
 mod state;
 mod triangles;
 

@@ -43,7 +43,7 @@ pub(crate) fn core_contact(
 
 /// That of a ball.
 #[inline(always)]
-pub(super) fn ball_contact(triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
+pub(crate) fn ball_contact(triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
     convex_contact(triangle, &PointSupport(DVec3::ZERO), margin)
 }
 
@@ -163,6 +163,8 @@ pub(super) struct Touching<'a> {
     pub(super) corners: &'a [DVec3; 3],
     pub(super) shape: ConvexShape<'a>,
     pub(super) contact: &'a ConvexContact,
+    /// Whether the contact is along another normal than its own.
+    pub(super) is_turned: bool,
 }
 
 /// A point of a manifold, radii not counted.
@@ -180,8 +182,9 @@ impl Touching<'_> {
     ///
     /// `turned` is the normal if cones have turned it, in the direction of the contact's.
     pub(super) fn points(&self, turned: Option<DVec3>, mut each: impl FnMut(Point)) {
-        let Self { corners, shape, contact } = *self;
+        let Self { corners, shape, contact, is_turned } = *self;
         let ConvexContact { distance, normal, on_triangle, on_shape } = *contact;
+        let is_own = !is_turned && turned.is_none();
         let normal = turned.unwrap_or(normal);
         let toward = -normal.as_vec3();
         let mut feature = PolygonalFeature::default();
@@ -203,17 +206,18 @@ impl Touching<'_> {
         let mut points = FeaturePoints::new();
         clip_feature(corners, &polygon[..feature.num_vertices], normal, &mut points);
         // Features of curved shapes are rounded to f32, and edges of a hull are nearly faces: points
-        // that are nearer than the closest ones by more than that are not on the shape.
+        // that are nearer than the closest ones by more than that, or beyond the farthest one along the
+        // normal, are not on the shape.
         let size = polygon.iter().fold(0.0, |size: f64, x| size.max(x.abs().max_element()));
         let slack = f64::from(gamma(64)) * size;
         let mut has_closest = false;
         for point in &points {
-            if turned.is_none() && point.distance < distance - slack {
+            let beyond = normal.dot(contact.on_shape - point.on_shape);
+            if is_own && point.distance < distance - slack || is_turned && beyond > slack {
                 continue;
             }
             has_closest |= point.distance <= distance + slack;
-            let distance =
-                if turned.is_none() { point.distance.max(distance) } else { point.distance };
+            let distance = if is_own { point.distance.max(distance) } else { point.distance };
             let of_triangle = match point.features[0] {
                 Feature::Vertex(i) => TRIANGLE.vids[usize::from(i)],
                 Feature::Edge(i) => TRIANGLE.eids[usize::from(i)],
@@ -228,7 +232,7 @@ impl Touching<'_> {
             let FeaturePoint { on_triangle, on_shape, .. } = *point;
             each(Point { on_triangle, on_shape, distance, features });
         }
-        if turned.is_none() && (is_round || !has_closest) {
+        if is_own && (is_round || !has_closest) {
             let features = [PackedFeatureId::UNKNOWN; 2];
             each(Point { on_triangle, on_shape, distance, features });
         }

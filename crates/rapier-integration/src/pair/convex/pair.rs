@@ -14,6 +14,8 @@ pub(crate) struct ConvexPair<'a> {
     pub(crate) parts: Parts<'a>,
     pub(crate) mesh_place: MeshPlace,
     pub(crate) contacts: ContactGenerator,
+    /// Whether contacts are those of the surface of the mesh.
+    pub(crate) has_surfaces: bool,
     pub(crate) has_patches: bool,
 }
 

@@ -18,6 +18,7 @@ use super::features::{Normals, Point, Touching};
 use super::half_space::half_space_points;
 use super::pair::ConvexPair;
 use super::parts::{Part, Parts};
+use super::query::Touch;
 use super::shape::{ConvexShape, Extent};
 use crate::ContactGenerator;
 use crate::pair::outline::Outline;
@@ -188,7 +189,7 @@ impl Question<'_> {
     /// new one.
     pub(super) fn refresh<M, C>(
         &self,
-        contact: Option<&ConvexContact>,
+        touch: Option<&Touch>,
         previous_points: &mut Vec<TrackedContact<C>>,
         manifold: &mut ContactManifold<M, C>,
     ) where
@@ -197,19 +198,21 @@ impl Question<'_> {
     {
         if let ConvexShape::Ball(ball) = self.part.shape {
             // One point, whose data stays in place.
-            return match contact {
-                Some(contact) => self.touch_ball(ball.radius, contact, manifold),
+            return match touch {
+                // The nearest triangle has the nearest point.
+                Some(touch) if touch.is_turned => manifold.points.clear(),
+                Some(touch) => self.touch_ball(ball.radius, &touch.contact, manifold),
                 None => self.ask_parry(manifold),
             };
         }
         std::mem::swap(&mut manifold.points, previous_points);
         manifold.points.clear();
         manifold.local_n1 = Vec3::ZERO;
-        match (contact, self.part.shape) {
-            (Some(contact), ConvexShape::Features { .. } | ConvexShape::Cuboid(_)) => {
-                self.touch(contact, manifold);
+        match (touch, self.part.shape) {
+            (Some(touch), ConvexShape::Features { .. } | ConvexShape::Cuboid(_)) => {
+                self.touch(touch, manifold);
             }
-            (Some(contact), ConvexShape::HalfSpace(half_space)) => {
+            (Some(Touch { contact, .. }), ConvexShape::HalfSpace(half_space)) => {
                 let Self { triangle, mesh_place, prediction, .. } = *self;
                 let (corners, flipped) = (self.placed.corners(triangle), !mesh_place.is_second());
                 half_space_points(half_space, triangle, &corners, prediction, flipped, manifold);
@@ -220,8 +223,38 @@ impl Question<'_> {
         manifold.match_contacts(previous_points);
     }
 
+    /// Whether the triangle goes on beyond the contact of another one, along its normal.
+    pub(super) fn is_beyond(&self, other: &ConvexContact) -> bool {
+        /// The greatest sine of a corner that does not, as normals go that count as alike.
+        const LEVEL: f64 = 2.0e-3;
+        let ConvexContact { on_triangle, normal, .. } = *other;
+        let corners = self.placed.corners(self.triangle).map(|corner| corner - on_triangle);
+        corners.iter().any(|corner| normal.dot(*corner) > LEVEL * corner.length())
+    }
+
+    /// The contact along the normal of the triangle, on the side of the middle of the part: as if the
+    /// triangle went on without end.
+    pub(super) fn of_face(&self) -> Option<ConvexContact> {
+        let Self { placed: PlacedPart { extent, .. }, part, .. } = *self;
+        let [a, b, c] = self.placed.corners(self.triangle);
+        let normal = (b - a).cross(c - a).try_normalize()?;
+        let middle = extent.ball().centre.as_dvec3();
+        let normal = if normal.dot(middle - a) < 0.0 { -normal } else { normal };
+        let reach = extent.reach(part.shape, -normal) - f64::from(part.shape.radius());
+        let distance = -normal.dot(a) - reach;
+        let on_shape = match part.shape {
+            ConvexShape::Features { map, .. } => {
+                map.local_support_point(-normal.as_vec3()).as_dvec3()
+            }
+            _ => normal * -reach,
+        };
+        let on_triangle = on_shape - normal * distance;
+        Some(ConvexContact { distance, normal, on_triangle, on_shape })
+    }
+
     /// In the frame of the part; `None` where the cones reject the contact.
-    pub(super) fn outline(&self, contact: &ConvexContact) -> Option<Outline> {
+    pub(super) fn outline(&self, touch: &Touch) -> Option<Outline> {
+        let Touch { contact, is_turned, .. } = touch;
         let (pos12, cones) = self.pair();
         let Normals { normals, .. } = Normals::new(pos12, self.normals(contact), cones)?;
         let [of_mesh, of_part] = self.mesh_place.swap(normals);
@@ -231,7 +264,7 @@ impl Question<'_> {
             normal,
             point: contact.on_triangle.as_vec3(),
             distance: (contact.distance - f64::from(self.part.shape.radius())) as Real,
-            has_cones: cones.iter().any(Option::is_some),
+            has_cones: *is_turned || cones.iter().any(Option::is_some),
         })
     }
 
@@ -253,7 +286,7 @@ impl Question<'_> {
     /// empty where the cones reject the contact.
     fn touch<M, C: Default + Copy>(
         &self,
-        contact: &ConvexContact,
+        &Touch { ref contact, is_turned, .. }: &Touch,
         manifold: &mut ContactManifold<M, C>,
     ) {
         let Self { placed, part, triangle, mesh_place, .. } = *self;
@@ -268,11 +301,12 @@ impl Question<'_> {
         let turned = are_turned.then(|| -to_triangle.as_dvec3().normalize());
         let depth = contact.distance;
         let has_cones = cones.iter().any(Option::is_some);
+        let is_limited = is_turned || has_cones && depth < 0.0;
         let corners = &placed.corners(triangle);
-        Touching { corners, shape, contact }.points(turned, |point| {
+        Touching { corners, shape, contact, is_turned }.points(turned, |point| {
             let Point { on_triangle, on_shape, distance, features } = point;
-            // As Parry: points that a constrained normal puts much deeper than the bodies are.
-            if has_cones && depth < 0.0 && distance < 5.0 * depth {
+            // As Parry: points that a turned normal puts much deeper than the bodies are.
+            if is_limited && distance < 5.0 * depth.min(0.0) {
                 return;
             }
             let points = [placed.at_mesh(on_triangle), on_shape.as_vec3() + to_triangle * radius];

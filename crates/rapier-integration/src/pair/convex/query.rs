@@ -1,11 +1,12 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use glamx::Vec3;
+use glamx::{DVec3, Vec3};
 use parry3d::math::Real;
 use parry3d::query::details::NormalConstraints;
 use parry3d::query::{ContactManifold, TrackedContact};
-use parry3d::shape::Triangle;
+use parry3d::shape::TriMeshFlags;
+use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::traverse::{Counters, SlackLimits};
 use sbbk_core::volumes::rounding::gamma;
@@ -24,6 +25,7 @@ use crate::pair::order::{Candidate, OrderKey};
 use crate::pair::outline::{Outline, PatchPlan};
 use crate::pair::pool::ManifoldPool;
 use crate::pair::pose::{MeshPlace, PairPose};
+use crate::pair::seams::{Known, Seam, Touched};
 
 impl<'a> Pair for ConvexPair<'a> {
     /// The mesh, and the parts that the candidates are of.
@@ -96,6 +98,58 @@ impl ConvexQuery<'_> {
                 prediction,
             });
         });
+    }
+
+    /// Turns contacts that are none of the surface. `subshapes` has triangle and part of each.
+    fn turn(
+        &self,
+        contacts: &mut [(u32, Near)],
+        subshapes: impl Fn(u32) -> [u32; 2],
+        scratch: &mut Scratch,
+    ) {
+        let ConvexPair { ref mesh, has_surfaces, .. } = *self.pair;
+        // Soft bodies need each triangle, and cones turn normals in their own way.
+        let has_cones = mesh.mesh.flags().contains(TriMeshFlags::FIX_INTERNAL_EDGES);
+        if !has_surfaces || has_cones || !mesh.is_rigid() {
+            return;
+        }
+        let mut seams = std::mem::take(&mut scratch.seams);
+        let known = |(_, Near(touch)): &(u32, Near)| {
+            touch.as_ref().map_or(Known::NONE, |touch| Known::new(touch.feature, &touch.contact))
+        };
+        let touched = |&(of, _): &(u32, Near)| {
+            let [triangle, part] = subshapes(of);
+            Touched { part, corners: mesh.corners(triangle) }
+        };
+        let is_beyond = |&(of, _): &(u32, Near), (_, Near(other)): &(u32, Near)| {
+            let [triangle, part] = subshapes(of);
+            let mut is_beyond = false;
+            self.ask(triangle, part, scratch, |question| {
+                is_beyond = other.is_some_and(|other| question.is_beyond(&other.contact));
+            });
+            is_beyond
+        };
+        for &seam in seams.find(contacts, known, touched, is_beyond) {
+            let (contact, along) = match seam {
+                Seam::Face(contact) => {
+                    let [triangle, part] = subshapes(contacts[contact as usize].0);
+                    let mut along = None;
+                    self.ask(triangle, part, scratch, |question| along = question.of_face());
+                    (contact, along)
+                }
+                Seam::Like(contact, end) => {
+                    let Near(end) = contacts[end as usize].1;
+                    (contact, end.map(|end| end.contact))
+                }
+            };
+            let (_, Near(touch)) = &mut contacts[contact as usize];
+            if let (Some(touch), Some(along)) = (touch, along) {
+                let on_triangle = touch.contact.on_triangle;
+                touch.contact = ConvexContact { on_triangle, ..along };
+                touch.is_turned = true;
+            }
+        }
+        scratch.seams = seams;
     }
 
     fn has_patches(&self) -> bool {
@@ -178,31 +232,38 @@ impl PairQuery for ConvexQuery<'_> {
         if contacts == ContactGenerator::Parry || self.has_patches() {
             return false;
         }
-        let mut lookup = std::mem::take(&mut scratch.lookup);
-        let mut merge = Merge::begin(pool, manifolds, &mut lookup);
+        let mut contacts = std::mem::take(&mut scratch.convex_contacts[0]);
+        contacts.clear();
         let part = Part { pose: None, shape, cone: None };
         let placed = self.placed(0, &part, scratch);
         let (prediction, margin) = (self.pose().prediction, self.reach());
         let (radius, farthest) = (f64::from(ball.radius), f64::from(prediction));
         triangles_near(placed, shape, mesh, margin, counters, |index| {
-            let corners = mesh.corners(index);
-            let reach = f64::from(margin) + radius;
-            if let Some(contact) = ball_contact(&placed.place(corners), reach)
+            let corners = placed.place(mesh.corners(index));
+            if let Some(contact) = ball_contact(&corners, f64::from(margin) + radius)
                 && contact.distance - radius <= farthest
             {
-                let cone = mesh.mesh.triangle_normal_constraints(index);
-                let cone = cone.as_ref().map(|cone| cone as &dyn NormalConstraints);
-                let triangle = &Triangle::from(corners);
-                let (part, mesh_place) = (&part, mesh_place);
-                let question = Question { placed, part, triangle, cone, mesh_place, prediction };
-                merge.write(mesh_place.swap([index, 0]), |manifold| {
-                    question.touch_ball(ball.radius, &contact, manifold);
-                });
+                contacts.push((index, Near(Some(Touch::new(contact, &corners)))));
             }
             ControlFlow::Continue(())
         });
+        self.turn(&mut contacts, |triangle| [triangle, 0], scratch);
+        let mut lookup = std::mem::take(&mut scratch.lookup);
+        let mut merge = Merge::begin(pool, manifolds, &mut lookup);
+        for (index, touch) in
+            contacts.iter().filter_map(|&(index, Near(touch))| Some((index, touch?)))
+        {
+            if !touch.is_turned {
+                merge.write(mesh_place.swap([index, 0]), |manifold| {
+                    self.ask(index, 0, scratch, |question| {
+                        question.touch_ball(ball.radius, &touch.contact, manifold);
+                    });
+                });
+            }
+        }
         merge.end();
         scratch.lookup = lookup;
+        scratch.convex_contacts[0] = contacts;
         true
     }
 
@@ -273,9 +334,19 @@ impl PairQuery for ConvexQuery<'_> {
             let distance = contact.map_or(limits.margin, |contact| contact.distance - radius);
             candidate.clear = distance + limits.travel;
             let is_near = distance <= f64::from(self.pair.pose.prediction);
-            is_near.then_some(Near(contact))
+            is_near.then(|| Near(contact.map(|contact| Touch::new(contact, &corners))))
         });
         contact.flatten().into()
+    }
+
+    fn settle(
+        &self,
+        candidates: &[Candidate<Vec3>],
+        contacts: &mut [(u32, Near)],
+        scratch: &mut Scratch,
+    ) {
+        let subshapes = |of: u32| candidates[of as usize].subshapes;
+        self.turn(contacts, |of| self.pair.mesh_place.swap(subshapes(of)), scratch);
     }
 
     fn name<M, C>(&self, candidate: &Candidate<Vec3>, manifold: &mut ContactManifold<M, C>) {
@@ -302,21 +373,21 @@ impl PairQuery for ConvexQuery<'_> {
 
     fn outline(
         &self,
-        Near(contact): &Near,
+        Near(touch): &Near,
         candidate: &Candidate<Vec3>,
         scratch: &mut Scratch,
     ) -> Option<Outline> {
-        let contact = contact.as_ref()?;
+        let touch = touch.as_ref()?;
         let [triangle, index] = self.pair.mesh_place.swap(candidate.subshapes);
         let mut outline = None;
-        self.ask(triangle, index, scratch, |question| outline = question.outline(contact));
+        self.ask(triangle, index, scratch, |question| outline = question.outline(touch));
         outline
     }
 
     #[inline(always)]
     fn write<M, C>(
         &mut self,
-        Near(contact): Near,
+        Near(touch): Near,
         candidate: &mut Candidate<Vec3>,
         _: Limits,
         scratch: &mut Scratch,
@@ -328,7 +399,7 @@ impl PairQuery for ConvexQuery<'_> {
     {
         let [index, part] = self.pair.mesh_place.swap(candidate.subshapes);
         self.ask(index, part, scratch, |question| {
-            question.refresh(contact.as_ref(), previous_points, manifold);
+            question.refresh(touch.as_ref(), previous_points, manifold);
             if manifold.points.is_empty()
                 && let Some(axis) = question.axis_of(manifold)
             {
@@ -338,7 +409,26 @@ impl PairQuery for ConvexQuery<'_> {
     }
 }
 
-/// The contact of a triangle that may be in reach, if it is known already: that with the core of the
-/// shape.
+/// A triangle that may be in reach: its contact, if that is known already.
 #[derive(Copy, Clone)]
-pub(crate) struct Near(Option<ConvexContact>);
+pub(crate) struct Near(Option<Touch>);
+
+/// The contact of a triangle with the core of a shape.
+#[derive(Copy, Clone)]
+pub(crate) struct Touch {
+    pub(super) contact: ConvexContact,
+    /// The part of the triangle that touches.
+    feature: Feature,
+    /// Whether it is along another normal than its own: distance and point of the shape are of the
+    /// farthest point of the shape along that. See [`Seams`].
+    ///
+    /// [`Seams`]: crate::pair::seams::Seams
+    pub(super) is_turned: bool,
+}
+
+impl Touch {
+    #[inline(always)]
+    fn new(contact: ConvexContact, corners: &[DVec3; 3]) -> Self {
+        Self { contact, feature: contact.feature(corners), is_turned: false }
+    }
+}

@@ -49,6 +49,7 @@ mod curved;
 mod depth;
 mod difference;
 mod faces;
+mod feature;
 mod half_space;
 mod hull;
 mod hull_surface;

@@ -1,7 +1,9 @@
-//! A cube that slides and a ball that rolls over fine meshes, beside the same on a cuboid, which the
-//! same answers for: the ball has facets, and what these cost is no matter of the floor. (With steps
-//! an eighth as long it comes 17.1 to 17.2 units far, whoever answers; at a sixtieth of a second 19.6
-//! in stock Rapier, 16.3 as a convex hull, 15.4 with patches.)
+//! Bodies that slide and roll over fine meshes, meshes themselves and convex shapes, beside the same on
+//! a cuboid, which the same answers for: a mesh ball has facets, and what these cost is no matter of the
+//! floor. (With steps an eighth as long it comes 17.1 to 17.2 units far, whoever answers; at a sixtieth
+//! of a second 19.6 in stock Rapier, 16.3 as a convex hull, 15.4 with patches.)
+
+use std::f32::consts::FRAC_PI_2;
 
 use glamx::{Pose3, Quat, Vec3};
 use rapier3d::dynamics::RigidBodyBuilder;
@@ -23,18 +25,28 @@ const GAP: f32 = 0.001;
 const LANDING: usize = 20;
 const LAST: usize = 60;
 
-/// What moves.
+/// What moves: what slides is a unit high and has little friction, what rolls is a unit in radius.
 #[derive(Clone, Copy)]
 enum Rider {
-    /// A unit high, slides with little friction.
-    Cube,
-    /// A unit in radius, rolls.
+    MeshCube,
+    MeshBall,
+    Cuboid,
     Ball,
+    Capsule,
+    Cylinder,
 }
 
 pub(super) fn trials() -> Vec<Trial> {
     let mut trials = Vec::new();
-    for (rider, name) in [(Rider::Cube, "cube slides"), (Rider::Ball, "ball rolls")] {
+    let riders = [
+        (Rider::MeshCube, "cube slides"),
+        (Rider::MeshBall, "ball rolls"),
+        (Rider::Cuboid, "cuboid slides"),
+        (Rider::Ball, "smooth ball rolls"),
+        (Rider::Capsule, "capsule rolls"),
+        (Rider::Cylinder, "cylinder rolls"),
+    ];
+    for (rider, name) in riders {
         for cell in [0.5, 0.1] {
             for is_slab in [false, true] {
                 let floor = if is_slab { "a slab" } else { "a sheet" };
@@ -66,60 +78,59 @@ struct Ride {
 }
 
 impl Rider {
+    fn rolls(self) -> bool {
+        !matches!(self, Self::MeshCube | Self::Cuboid)
+    }
+
     /// Of its middle, in units.
     fn height(self) -> f32 {
-        match self {
-            Self::Cube => 0.5,
-            Self::Ball => 1.0,
-        }
+        if self.rolls() { 1.0 } else { 0.5 }
     }
 
     /// At the start, in units a second.
     fn speed(self) -> f32 {
-        match self {
-            Self::Cube => 8.0,
-            Self::Ball => 3.5,
-        }
+        if self.rolls() { 3.5 } else { 8.0 }
     }
 
     /// In which it comes about 20 units far.
     fn steps(self) -> usize {
-        match self {
-            Self::Cube => 180,
-            Self::Ball => 340,
-        }
+        if self.rolls() { 340 } else { 180 }
     }
 
     fn start(self, kit: &Kit) -> RigidBodyBuilder {
         let mut random = kit.random();
         let place = Vec3::new(2.0 - 0.5 * LENGTH, self.height() + GAP, random.rand_float());
-        let (turn, roll) = match self {
-            Self::Cube => (Quat::from_rotation_y(random.rand_float()), 0.0),
-            Self::Ball => (random::rotation(&mut random), self.speed() / self.height()),
+        let turn = match self {
+            Self::MeshCube | Self::Cuboid => Quat::from_rotation_y(random.rand_float()),
+            Self::MeshBall | Self::Ball => random::rotation(&mut random),
+            Self::Capsule | Self::Cylinder => Quat::from_rotation_x(FRAC_PI_2),
         };
+        let roll = if self.rolls() { self.speed() / self.height() } else { 0.0 };
         let body = RigidBodyBuilder::dynamic().pose(Pose3::from_parts(place, turn));
         body.linvel(self.speed() * Vec3::X).angvel(-roll * Vec3::Z).can_sleep(false)
     }
 
-    fn form(self) -> Form {
+    fn collider(self, kit: &Kit) -> ColliderBuilder {
+        let size = self.height();
         match self {
-            Self::Cube => Form::cuboid(Vec3::splat(self.height()), 4),
+            Self::MeshCube => kit.collider(&Form::cuboid(Vec3::splat(size), 4)),
             // Rolls as the mesh that it is, in the control as well.
-            Self::Ball => Form::mesh(mesh::ball(self.height(), 32)),
+            Self::MeshBall => kit.collider(&Form::mesh(mesh::ball(size, 32))),
+            Self::Cuboid => ColliderBuilder::cuboid(size, size, size),
+            Self::Ball => ColliderBuilder::ball(size),
+            Self::Capsule => ColliderBuilder::capsule_y(size, size),
+            Self::Cylinder => ColliderBuilder::cylinder(size, size),
         }
     }
 
     fn friction(self) -> f32 {
-        match self {
-            Self::Cube => 0.1,
-            Self::Ball => 0.5,
-        }
+        if self.rolls() { 0.5 } else { 0.1 }
     }
 
     fn ride(self, kit: &Kit, floor: ColliderBuilder) -> Ride {
         let mut world = kit.world();
         world.fix(Vec3::ZERO, floor.friction(self.friction()));
-        let collider = kit.collider(&self.form()).friction(self.friction());
+        let collider = self.collider(kit).friction(self.friction());
         let body = world.add(self.start(kit), &collider);
         let mut bump = 0.0;
         let mut way = vec![world.bodies[body].translation().x];

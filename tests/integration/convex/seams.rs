@@ -1,0 +1,170 @@
+use std::collections::BTreeMap;
+
+use glamx::{Pose3, Quat, Vec3};
+use oorandom::Rand32;
+use rapier_integration::{ContactSet, SbbkDispatcher};
+use rapier3d::dynamics::RigidBodyBuilder;
+use rapier3d::geometry::{ColliderBuilder, SharedShape};
+use rapier3d::parry::query::{PointQuery, TrackedContact};
+use rapier3d::parry::shape::TriMeshFlags;
+use rapier3d::pipeline::PhysicsWorld;
+use sbbk_lab::mesh::{self, Mesh};
+
+use super::question::Question;
+use super::shapes::shapes;
+use crate::support::{Manifold, distance, having, per_triangle, rotation, shape_with};
+
+/// Bodies 0.01 deep in a flat floor of small triangles. Would catch a contact at an edge between two
+/// of them, a tip right at an edge, points that are not below the body, and a body with no contact left.
+#[test]
+fn a_floor_of_triangles_is_flat() {
+    const DEPTH: f32 = 0.01;
+    let [surfaces, triangles] = [SbbkDispatcher::default(), per_triangle()];
+    let mut random = Rand32::new(1);
+    let floor = shape_with(&mesh::floor(6.0, 40), TriMeshFlags::empty());
+    let mut slanted = 0;
+    // What is flat may be below a triangle that it crosses.
+    let is_thick = |name: &str| !["half-space", "segment", "triangle"].contains(&name);
+    for (name, shape) in shapes(1.0).into_iter().filter(|(name, _)| is_thick(name)) {
+        let mut cases = 0;
+        for i in 0..200 {
+            let turn = if i % 4 == 0 { Quat::IDENTITY } else { rotation(&mut random) };
+            let [x, z] = [(); 2].map(|()| if i % 8 < 4 { 0.15 } else { random.rand_float() });
+            let aabb = shape.compute_aabb(&Pose3::from_rotation(turn));
+            let pose = Pose3::from_parts(Vec3::new(x, -aabb.mins.y - DEPTH, z), turn);
+            // The middle of a flat one may be in the floor.
+            if aabb.mins.y > -0.1 {
+                continue;
+            }
+            let question = Question {
+                mesh: &floor,
+                shape: &shape,
+                pose,
+                prediction: 0.02,
+                flipped: i % 2 == 0,
+            };
+            let up = |manifold: &Manifold| {
+                let normal = if question.flipped { manifold.local_n2 } else { manifold.local_n1 };
+                normal.y > 0.999_998
+            };
+            let found = question.fresh(&surfaces);
+            assert!(found.iter().all(up), "{name}, {i}: {found:?}");
+            let deepest = found.iter().map(distance).fold(f32::INFINITY, f32::min);
+            assert!((deepest + DEPTH).abs() < 2e-5, "{name}, {i}: {deepest}");
+            slanted += question.fresh(&triangles).iter().filter(|&manifold| !up(manifold)).count();
+            cases += 1;
+        }
+        assert!(cases > 50, "{name}: {cases}");
+    }
+    assert!(slanted > 1000, "{slanted} of triangles by themselves");
+}
+
+/// Where two shapes are nearest.
+fn nearest(manifold: &Manifold) -> Option<&TrackedContact<()>> {
+    manifold.points.iter().min_by(|a, b| a.dist.total_cmp(&b.dist))
+}
+
+/// Contacts of each triangle by itself, and by brute force those of them that no other triangle at the
+/// point is nearer than: these are those of the surface, and others are along the normal of one of
+/// these or of a face. Would catch neighbours that are missed, as their vertices are not shared; a
+/// contact that is left out although it is a minimum; and a nearest one that is.
+#[test]
+fn contacts_of_a_surface_are_the_nearest_at_their_points() {
+    const CLOSE: f32 = 1e-5;
+    let [surfaces, triangles] = [SbbkDispatcher::default(), per_triangle()];
+    let mut random = Rand32::new(5);
+    let bumps = mesh::terrain(4.0, 16, 0.5);
+    let split = Mesh {
+        name: bumps.name.clone(),
+        vertices: bumps.triangles.iter().flatten().map(|&i| bumps.vertices[i as usize]).collect(),
+        triangles: (0..bumps.triangles.len() as u32)
+            .map(|i| [0, 1, 2].map(|k| 3 * i + k))
+            .collect(),
+    };
+    let meshes = [bumps, split].map(|mesh| shape_with(&mesh, TriMeshFlags::empty()));
+    let (mut kept, mut turned, mut left_out) = (0, 0, 0);
+    for (name, shape) in shapes(1.0).into_iter().filter(|(name, _)| *name != "half-space") {
+        for i in 0..60 {
+            let mesh = &meshes[i % 2];
+            let at = mesh.triangle(random.rand_range(0..512)).center();
+            let turn = rotation(&mut random);
+            let low = shape.compute_aabb(&Pose3::from_rotation(turn)).mins.y;
+            let height = 0.06 * random.rand_float() - 0.03;
+            let pose = Pose3::from_parts(at + Vec3::Y * (height - low), turn);
+            let question = Question { mesh, shape: &shape, pose, prediction: 0.05, flipped: false };
+            let own = question.fresh(&triangles);
+            let found = question.fresh(&surfaces);
+            let found: BTreeMap<u32, &Manifold> = found.iter().map(|m| (m.subshape1, m)).collect();
+            assert!(found.keys().all(|found| own.iter().any(|m| m.subshape1 == *found)));
+            for manifold in &own {
+                let triangle = mesh.triangle(manifold.subshape1);
+                let face = triangle.normal().expect("no triangle is degenerate");
+                let along = manifold.local_n1.dot(face).abs();
+                let is_face = along > 0.999_999_5;
+                if !is_face && along > 0.999_99 {
+                    continue;
+                }
+                let Some(nearest) = nearest(manifold) else { continue };
+                let gap = |other: &Manifold| {
+                    let triangle = mesh.triangle(other.subshape1);
+                    let is_there =
+                        triangle.distance_to_local_point(nearest.local_p1, false) < CLOSE;
+                    if is_there { distance(other) - nearest.dist } else { f32::INFINITY }
+                };
+                let is_level = |other: &&Manifold| gap(other).abs() < CLOSE;
+                let level: Vec<u32> = own.iter().filter(is_level).map(|m| m.subshape1).collect();
+                let gap = own.iter().map(gap).fold(f32::INFINITY, f32::min);
+                let same = |other: &Manifold| other.local_n1.dot(manifold.local_n1) > 0.999_99;
+                let now = found.get(&manifold.subshape1).copied();
+                if is_face {
+                    assert!(now.is_some_and(same), "{name}, {i}: {manifold:?}, {now:?}");
+                    kept += 1;
+                } else if gap >= 0.0 && nearest.dist > CLOSE {
+                    // One of those that are nearest at the same point.
+                    let mut now = level.iter().filter_map(|triangle| found.get(triangle));
+                    assert!(now.any(|now| same(now)), "{name}, {i}: {manifold:?}, {level:?}");
+                    kept += 1;
+                } else if gap < -CLOSE
+                    && let Some(now) = now
+                {
+                    let is_nearer = |m: &&Manifold| distance(m) < nearest.dist;
+                    let is_of = |m: &Manifold| m.local_n1.dot(now.local_n1) > 0.999_99;
+                    let is_of_nearer = own.iter().filter(is_nearer).any(is_of)
+                        || mesh.triangles().any(|t| {
+                            t.normal().is_some_and(|n| n.dot(now.local_n1).abs() > 0.999_99)
+                        });
+                    assert!(is_of_nearer, "{name}, {i}: {manifold:?}, {now:?}");
+                    turned += usize::from(!same(now));
+                } else if gap < -CLOSE {
+                    left_out += 1;
+                }
+            }
+        }
+    }
+    assert!(kept > 600 && turned > 1000 && left_out > 1000, "{kept}, {turned}, {left_out}");
+}
+
+/// Would catch a body that stumbles over the edges of a floor: it slides as far as on a cuboid.
+#[test]
+fn a_box_slides_over_fine_triangles() {
+    let slide = |floor: ColliderBuilder, dispatcher: SbbkDispatcher| {
+        let mut world = PhysicsWorld::new();
+        world.narrow_phase.set_query_dispatcher(dispatcher);
+        let fixed = RigidBodyBuilder::fixed();
+        world.insert(fixed, floor.friction(0.1));
+        let body = RigidBodyBuilder::dynamic().translation(Vec3::new(-2.5, 0.501, 0.1));
+        let body = body.linvel(4.0 * Vec3::X).rotation(0.3 * Vec3::Y);
+        let collider = ColliderBuilder::cuboid(0.5, 0.5, 0.5).friction(0.1);
+        let (body, _) = world.insert(body, collider);
+        (0..60).for_each(|_| world.step());
+        world.bodies[body].translation().x + 2.5
+    };
+    let floor = shape_with(&mesh::floor(8.0, 80), TriMeshFlags::empty());
+    let fine = || ColliderBuilder::new(SharedShape::new(floor.clone()));
+    let smooth = ColliderBuilder::cuboid(4.0, 0.5, 4.0).translation(-0.5 * Vec3::Y);
+    let expected = slide(smooth, SbbkDispatcher::default());
+    let found = slide(fine(), SbbkDispatcher::default());
+    assert!((found / expected - 1.0).abs() < 0.02, "{found} in place of {expected}");
+    let of_triangles = slide(fine(), having(ContactSet::Triangles));
+    assert!(of_triangles < 0.5 * expected, "{of_triangles}: the test shows nothing");
+}
