@@ -31,14 +31,6 @@ thread_local! {
     static SCRATCH: Cell<Option<Box<Scratch>>> = Cell::default();
 }
 
-/// Lends the memory of the thread.
-pub(super) fn with_scratch<T>(then: impl FnOnce(&mut Scratch) -> T) -> T {
-    let mut scratch = SCRATCH.take().unwrap_or_default();
-    let result = then(&mut scratch);
-    SCRATCH.set(Some(scratch));
-    result
-}
-
 /// Brings the manifolds of a pair up to date.
 pub(crate) fn answer<P, M, C>(
     pair: &P,

@@ -5,19 +5,18 @@
 //! scale. Nothing is kept but the manifolds; stock also keeps those without points, and asks about
 //! all triangles of a box that is wider than the ball's.
 
-use glamx::DVec3;
 use parry3d::bounding_volume::BoundingVolume;
-use parry3d::math::{Pose, Real};
+use parry3d::math::{Pose, Real, Vector};
 use parry3d::partitioning::BvhNode;
 use parry3d::query::details::{NormalConstraints, contact_manifold_convex_ball};
 use parry3d::query::{ContactManifold, ContactManifoldsWorkspace};
 use parry3d::shape::{Ball, Shape, TriMesh, TriMeshFlags};
+use sbbk_core::contact::Feature;
+use sbbk_core::contact::convex::feature_at;
 use sbbk_core::volumes::rounding::gamma;
 
-use super::answer::with_scratch;
-use super::convex::ball_contact;
 use super::pose::MeshPlace;
-use super::seams::{Known, Seam, Touched};
+use super::seams::Touched;
 use super::state::state_in;
 use crate::mesh::whole_ones;
 
@@ -136,30 +135,42 @@ impl FewPair<'_> {
         // As `ConvexQuery::turn`.
         let others = TriMeshFlags::FIX_INTERNAL_EDGES | TriMeshFlags::DEFORMABLE;
         if count > 1 && self.has_surfaces && !mesh.flags().intersects(others) {
-            self.leave_out_seams(ball_in_mesh.translation.as_dvec3(), manifolds);
+            self.leave_out_seams(manifolds);
         }
     }
 
-    /// Leaves out contacts that are none of the surface.
-    fn leave_out_seams<M, C>(&self, centre: DVec3, manifolds: &mut Vec<ContactManifold<M, C>>) {
-        let corners = |manifold: &ContactManifold<M, C>| {
-            let [triangle, _] = self.mesh_place.swap([manifold.subshape1, manifold.subshape2]);
-            *self.mesh.triangle(triangle).vertices()
+    /// Leaves out contacts that are none of the surface, see [`seams`](super::seams).
+    fn leave_out_seams<M, C>(&self, manifolds: &mut Vec<ContactManifold<M, C>>) {
+        /// What Parry may round away, as a share of the coordinates.
+        const ROUNDED: Real = 1.0e-6;
+        let Self { mesh, ball, mesh_place, .. } = *self;
+        let touched = |manifold: &ContactManifold<M, C>| {
+            let [triangle, _] = mesh_place.swap([manifold.subshape1, manifold.subshape2]);
+            let corners = mesh.indices()[triangle as usize];
+            Touched { part: 0, corners: corners.map(|vertex| mesh.vertices()[vertex as usize]) }
         };
-        let known = |manifold: &ContactManifold<M, C>| {
-            let corners = corners(manifold).map(|corner| corner.as_dvec3() - centre);
-            let contact = ball_contact(&corners, f64::INFINITY);
-            contact.map_or(Known::NONE, |contact| Known::new(contact.feature(&corners), &contact))
-        };
-        let touched =
-            |manifold: &ContactManifold<M, C>| Touched { part: 0, corners: corners(manifold) };
-        with_scratch(|scratch| {
-            for seam in scratch.seams.find(manifolds, known, touched, |_, _| false) {
-                if let Seam::Like(contact, _) = *seam {
-                    manifolds[contact as usize].points.clear();
-                }
+        let is_at_seam = |all: &[ContactManifold<M, C>], manifold: &ContactManifold<M, C>| {
+            let point = &manifold.points[0];
+            let [on_triangle, _] = mesh_place.swap([point.local_p1, point.local_p2]);
+            let slack = ROUNDED * (on_triangle.abs().max_element() + ball.radius);
+            let is_nearer =
+                |other: &&ContactManifold<M, C>| other.points[0].dist < point.dist - slack;
+            let mut nearer = all.iter().filter(is_nearer).peekable();
+            if nearer.peek().is_none() {
+                return false;
             }
-            manifolds.retain(|manifold| !manifold.points.is_empty());
-        });
+            let own = touched(manifold);
+            let [normal, _] = mesh_place.swap([manifold.local_n1, manifold.local_n2]);
+            let corners = own.corners.map(|corner| corner.as_dvec3());
+            let feature = feature_at(&corners, on_triangle.as_dvec3(), normal.as_dvec3());
+            feature != Feature::Face && nearer.any(|other| touched(other).has(&own, feature))
+        };
+        for i in 0..manifolds.len() {
+            if is_at_seam(manifolds, &manifolds[i]) {
+                // It stays until all are seen: others may be told by it.
+                manifolds[i].local_n1 = Vector::ZERO;
+            }
+        }
+        manifolds.retain(|manifold| manifold.local_n1 != Vector::ZERO);
     }
 }

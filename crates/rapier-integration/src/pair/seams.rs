@@ -26,6 +26,7 @@ use sbbk_core::contact::convex::ConvexContact;
 /// Memory for the search.
 #[derive(Default)]
 pub(crate) struct Seams {
+    known: Vec<Known>,
     /// The edges and corners where contacts are, by number.
     places: FxHashMap<Place, u32>,
     /// Contacts at an edge or a corner, and its number.
@@ -46,19 +47,20 @@ pub(crate) struct Known {
     /// The part of the triangle that touches.
     pub(crate) feature: Feature,
     pub(crate) distance: f64,
-    /// Of the coordinates that it is computed from.
-    pub(crate) size: f64,
+    /// How far rounding may put it off.
+    pub(crate) slack: f64,
 }
 
 impl Known {
     pub(crate) fn new(feature: Feature, contact: &ConvexContact) -> Self {
         let ConvexContact { distance, on_triangle, .. } = *contact;
-        Self { feature, distance, size: on_triangle.abs().max_element() + distance.abs() }
+        let size = on_triangle.abs().max_element() + distance.abs();
+        Self { feature, distance, slack: EQUAL * size }
     }
 
     /// Of a triangle that has no contact: it has no part in this.
     pub(crate) const NONE: Self =
-        Self { feature: Feature::Face, distance: f64::INFINITY, size: 0.0 };
+        Self { feature: Feature::Face, distance: f64::INFINITY, slack: 0.0 };
 }
 
 /// What becomes of a contact, by its place in the list.
@@ -80,69 +82,95 @@ pub(crate) struct Touched {
 type Place = (u32, [[u32; 3]; 2]);
 
 impl Touched {
+    /// The ends of an edge, or a corner twice.
+    fn ends(&self, feature: Feature) -> [Vec3; 2] {
+        let [a, b, c] = self.corners;
+        match feature {
+            Feature::Vertex(i) => [self.corners[usize::from(i)]; 2],
+            Feature::Edge(1) => [b, c],
+            Feature::Edge(2) => [c, a],
+            Feature::Edge(_) | Feature::Face => [a, b],
+        }
+    }
+
     fn place(&self, feature: Feature) -> Place {
         // Zero has two signs.
-        let name = |i: u8| (self.corners[usize::from(i)] + 0.0).to_array().map(f32::to_bits);
-        let mut ends = match feature {
-            Feature::Vertex(i) => [name(i); 2],
-            Feature::Edge(i) => [name(i), name((i + 1) % 3)],
-            Feature::Face => [name(0), name(1)],
-        };
+        let mut ends = self.ends(feature).map(|end| (end + 0.0).to_array().map(f32::to_bits));
         ends.sort_unstable();
         (self.part, ends)
     }
+
+    /// Whether it has an edge or a corner of another triangle.
+    pub(crate) fn has(&self, other: &Self, feature: Feature) -> bool {
+        self.part == other.part && other.ends(feature).iter().all(|end| self.corners.contains(end))
+    }
 }
 
+/// So many contacts are looked through one by one. More: slower for round bodies on fine meshes.
+const FEW: usize = 16;
+
 impl Seams {
-    /// The contacts of a list that are none of the surface. `known` tells what is [`Known`] of each,
-    /// `is_beyond` whether the triangle of one goes on beyond another along
-    /// the other's normal.
+    /// The contacts of a list that are none of the surface. `known_of` tells what is [`Known`] of each,
+    /// `is_beyond` whether the triangle of one goes on beyond another along the other's normal.
     pub(crate) fn find<C>(
         &mut self,
         contacts: &[C],
-        known: impl Fn(&C) -> Known,
+        known_of: impl Fn(&C) -> Known,
         touched: impl Fn(&C) -> Touched,
         mut is_beyond: impl FnMut(&C, &C) -> bool,
     ) -> &[Seam] {
-        let Self { places, asking, around, ends, found } = self;
+        let Self { known, places, asking, around, ends, found } = self;
         found.clear();
         if contacts.len() < 2 {
             return found;
         }
         asking.clear();
-        places.clear();
-        for (contact, of) in (0..).zip(contacts) {
-            let Known { feature, .. } = known(of);
-            if feature != Feature::Face {
+        around.clear();
+        known.clear();
+        known.extend(contacts.iter().map(known_of));
+        let features = known.iter().map(|known| known.feature).zip(0..).zip(contacts);
+        let asks = features.filter(|((feature, _), _)| *feature != Feature::Face);
+        if contacts.len() <= FEW {
+            for (number, ((feature, contact), of)) in (0..).zip(asks) {
+                asking.push((contact, number));
+                let own = touched(of);
+                let others =
+                    (0..).zip(contacts).filter(|(_, other)| touched(other).has(&own, feature));
+                around.extend(others.map(|(other, _)| (number, other)));
+            }
+        } else {
+            places.clear();
+            for ((feature, contact), of) in asks {
                 let number = places.len() as u32;
                 let number = *places.entry(touched(of).place(feature)).or_insert(number);
                 asking.push((contact, number));
             }
+            if asking.is_empty() {
+                return found;
+            }
+            for (contact, of) in (0..).zip(contacts) {
+                let triangle = touched(of);
+                let features = (0..3).flat_map(|i| [Feature::Edge(i), Feature::Vertex(i)]);
+                let numbers = features.filter_map(|feature| places.get(&triangle.place(feature)));
+                around.extend(numbers.map(|&number| (number, contact)));
+            }
+            around.sort_unstable();
         }
         if asking.is_empty() {
             return found;
         }
-        around.clear();
-        for (contact, of) in (0..).zip(contacts) {
-            let triangle = touched(of);
-            let features = (0..3).flat_map(|i| [Feature::Edge(i), Feature::Vertex(i)]);
-            let numbers = features.filter_map(|feature| places.get(&triangle.place(feature)));
-            around.extend(numbers.map(|&number| (number, contact)));
-        }
-        around.sort_unstable();
         let at = |number: u32| {
             let start = around.partition_point(|&(other, _)| other < number);
             let at = around[start..].iter().take_while(move |&&(other, _)| other == number);
             at.map(|&(_, contact)| contact)
         };
-        let distance = |contact: u32| known(&contacts[contact as usize]).distance;
+        let distance = |contact: u32| known[contact as usize].distance;
         ends.clear();
         ends.extend(0..contacts.len() as u32);
         for &(contact, number) in &*asking {
             let nearest = at(number).min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
-            let Known { distance: own, size, .. } = known(&contacts[contact as usize]);
-            if let Some(nearest) = nearest.filter(|&nearest| distance(nearest) < own - EQUAL * size)
-            {
+            let Known { distance: own, slack, .. } = known[contact as usize];
+            if let Some(nearest) = nearest.filter(|&nearest| distance(nearest) < own - slack) {
                 ends[contact as usize] = nearest;
             }
         }
@@ -168,6 +196,7 @@ impl Seams {
     }
 
     pub(super) fn shrink_to(&mut self, limit: usize) {
+        self.known.shrink_to(limit);
         self.places.shrink_to(limit);
         self.asking.shrink_to(limit);
         self.around.shrink_to(limit);

@@ -43,7 +43,7 @@ pub(crate) fn core_contact(
 
 /// That of a ball.
 #[inline(always)]
-pub(crate) fn ball_contact(triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
+pub(super) fn ball_contact(triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
     convex_contact(triangle, &PointSupport(DVec3::ZERO), margin)
 }
 

@@ -26,7 +26,6 @@ mod query;
 mod shape;
 
 pub(crate) use cast::FoundCast;
-pub(super) use features::ball_contact;
 pub(crate) use nearest::{ConvexSearch, FoundTriangle};
 pub(crate) use pair::ConvexPair;
 pub(crate) use parts::Parts;

@@ -7,7 +7,7 @@ use parry3d::query::details::NormalConstraints;
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::TriMeshFlags;
 use sbbk_core::contact::Feature;
-use sbbk_core::contact::convex::ConvexContact;
+use sbbk_core::contact::convex::{ConvexContact, feature_at};
 use sbbk_core::traverse::{Counters, SlackLimits};
 use sbbk_core::volumes::rounding::gamma;
 
@@ -429,6 +429,7 @@ pub(crate) struct Touch {
 impl Touch {
     #[inline(always)]
     fn new(contact: ConvexContact, corners: &[DVec3; 3]) -> Self {
-        Self { contact, feature: contact.feature(corners), is_turned: false }
+        let feature = feature_at(corners, contact.on_triangle, contact.normal);
+        Self { contact, feature, is_turned: false }
     }
 }

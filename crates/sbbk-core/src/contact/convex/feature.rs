@@ -1,6 +1,5 @@
 use glamx::DVec3;
 
-use super::ConvexContact;
 use crate::contact::Feature;
 
 /// Least squared cosine of the normals of a contact and of a triangle that touches with its face: a
@@ -11,32 +10,58 @@ const FACE: f64 = 1.0 - 3.1e-6;
 /// search for points of curved shapes, can do to a zero.
 const NONE: f64 = 1.0e-4;
 
-impl ConvexContact {
-    /// The part of the triangle that touches: its face if the normal is that of the triangle, else the
-    /// edge or the corner that the point is on.
-    pub fn feature(&self, triangle: &[DVec3; 3]) -> Feature {
-        let [a, b, c] = *triangle;
-        let face = (b - a).cross(c - a);
-        let size = face.length_squared();
-        let along = self.normal.dot(face);
-        if along * along >= FACE * size {
-            return Feature::Face;
-        }
-        // How much of the point each corner has, times `size`.
-        let weight = |i: usize| {
-            let [from, to] = [triangle[(i + 1) % 3], triangle[(i + 2) % 3]];
-            (to - from).cross(self.on_triangle - from).dot(face)
-        };
-        let weights = [weight(0), weight(1), weight(2)];
-        let is_none = weights.map(|weight| weight <= NONE * size);
-        match is_none {
-            [false, true, true] => Feature::Vertex(0),
-            [true, false, true] => Feature::Vertex(1),
-            [true, true, false] => Feature::Vertex(2),
-            [false, false, true] => Feature::Edge(0),
-            [true, false, false] => Feature::Edge(1),
-            [false, true, false] => Feature::Edge(2),
-            _ => Feature::Face,
+/// The part of a triangle that touches something at a point of its border or its face, along a unit
+/// normal: its face if the normal is that of the triangle, else the edge or the corner that the point is
+/// on.
+pub fn feature_at(triangle: &[DVec3; 3], point: DVec3, normal: DVec3) -> Feature {
+    let [a, b, c] = *triangle;
+    let face = (b - a).cross(c - a);
+    let size = face.length_squared();
+    let along = normal.dot(face);
+    if along * along >= FACE * size {
+        return Feature::Face;
+    }
+    // How much of the point each corner has, times `size`.
+    let weight = |i: usize| {
+        let [from, to] = [triangle[(i + 1) % 3], triangle[(i + 2) % 3]];
+        (to - from).cross(point - from).dot(face)
+    };
+    match [0, 1, 2].map(|i| weight(i) <= NONE * size) {
+        [false, true, true] => Feature::Vertex(0),
+        [true, false, true] => Feature::Vertex(1),
+        [true, true, false] => Feature::Vertex(2),
+        [false, false, true] => Feature::Edge(0),
+        [true, false, false] => Feature::Edge(1),
+        [false, true, false] => Feature::Edge(2),
+        _ => Feature::Face,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Would catch parts that are told wrongly, and a triangle without a plane that has any.
+    #[test]
+    fn parts_of_a_triangle_are_told_by_points_and_normals() {
+        let triangle = [DVec3::ZERO, 4.0 * DVec3::X, 4.0 * DVec3::Y];
+        let [a, b, c] = triangle;
+        let aslant = DVec3::new(0.1, -0.2, 1.0).normalize();
+        let parts = [
+            (a, Feature::Vertex(0)),
+            (b, Feature::Vertex(1)),
+            (c, Feature::Vertex(2)),
+            (a.midpoint(b), Feature::Edge(0)),
+            (b.lerp(c, 0.01), Feature::Edge(1)),
+            (c.lerp(a, 0.99), Feature::Edge(2)),
+            (DVec3::ONE.with_z(0.0), Feature::Face),
+        ];
+        for (point, part) in parts {
+            for normal in [aslant, -aslant] {
+                assert_eq!(feature_at(&triangle, point, normal), part, "{point}");
+            }
+            assert_eq!(feature_at(&triangle, point, DVec3::Z), Feature::Face);
+            assert_eq!(feature_at(&[a, b, b], point, aslant), Feature::Face);
         }
     }
 }

@@ -63,6 +63,7 @@ mod support;
 pub use clip::{FEATURE_CORNERS, FeaturePoint, FeaturePoints, clip_feature};
 pub use cuboid::CuboidSupport;
 pub use curved::{ConeSupport, CylinderSupport};
+pub use feature::feature_at;
 pub use half_space::half_space_contact;
 pub use hull::HullPoints;
 pub use segment::{PointSupport, SegmentSupport};
