@@ -16,15 +16,15 @@ pub enum ContactGenerator {
     Parry,
 }
 
-/// Which contacts two meshes have.
+/// Which contacts two meshes have, and a mesh and convex shapes.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum ContactSet {
     /// Those of their surfaces: what touches is pushed out of a mesh that bounds a solid, not through
-    /// it, and edges within a surface do not count. For rigid meshes and
-    /// [`ContactGenerator::Exact`]; see the documentation of this crate.
+    /// it, and edges within a surface do not count. Against convex shapes only the latter. For rigid
+    /// meshes and [`ContactGenerator::Exact`]; see the documentation of this crate.
     #[default]
     Surfaces,
-    /// Those of each two triangles by themselves, as in stock Rapier: for comparison.
+    /// Those of each triangle by itself, as in stock Rapier: for comparison.
     Triangles,
 }
 

@@ -76,9 +76,12 @@
 //! triangles are found where it is touched. [`PreparedTree::bounds`] says what a mesh bounds where
 //! SBBK would think otherwise; [`SbbkStats`] counts the kinds.
 //!
+//! Of a rigid mesh and a convex shape, contacts at edges within the surface are along the normal of the
+//! nearest triangle there, so that bodies slide and roll. Inside and outside are as in stock.
+//!
 //! With [`ContactSet::Triangles`] all is as in stock: of meshes without
-//! `TriMeshFlags::FIX_INTERNAL_EDGES` triangles have no outside. Deformable meshes, height fields and
-//! convex shapes have these contacts always. A body that lies wholly inside another, farther from
+//! `TriMeshFlags::FIX_INTERNAL_EDGES` triangles have no outside. Deformable meshes and height fields have
+//! these contacts always. A body that lies wholly inside another, farther from
 //! its surface than the prediction distance, has no contact either way.
 //!
 //! # Who answers
