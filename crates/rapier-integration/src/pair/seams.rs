@@ -13,7 +13,8 @@
 //! The contact is then one along the normal of the nearest triangle there. If the same is true of that
 //! one, of the nearest there, and so on: each is nearer than the one before, so there is an end. A tip
 //! that crosses right at an edge can be parted from both triangles by less than from the surface. So if
-//! at the end a triangle goes on beyond, the normal is that of the face.
+//! at the end a triangle goes on beyond, the normal is that of the face, where that leaves points at which
+//! the bodies cross: beside the border of a mesh it need not.
 //!
 //! Neighbours are told by their corners: nothing need be known of the mesh, and vertices need not be
 //! shared. (`FIX_INTERNAL_EDGES` needs a normal for each vertex and edge.)

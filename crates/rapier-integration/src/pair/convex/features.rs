@@ -232,11 +232,28 @@ impl Touching<'_> {
             let FeaturePoint { on_triangle, on_shape, .. } = *point;
             each(Point { on_triangle, on_shape, distance, features });
         }
+        let features = [PackedFeatureId::UNKNOWN; 2];
         if is_own && (is_round || !has_closest) {
-            let features = [PackedFeatureId::UNKNOWN; 2];
+            each(Point { on_triangle, on_shape, distance, features });
+        }
+        // The farthest point of a shape may be beside its feature, if that is a square in place of a disc.
+        if is_turned
+            && is_round
+            && let Some(distance) = height(corners, on_shape, normal)
+        {
+            let on_triangle = on_shape - normal * distance;
             each(Point { on_triangle, on_shape, distance, features });
         }
     }
+}
+
+/// How far a point is from a triangle along a normal; `None` if it is not over it.
+fn height(&[a, b, c]: &[DVec3; 3], point: DVec3, normal: DVec3) -> Option<f64> {
+    let face = (b - a).cross(c - a);
+    let height = (point - a).dot(face) / normal.dot(face);
+    let foot = point - normal * height;
+    let is_beside = |from: DVec3, to: DVec3| (to - from).cross(foot - from).dot(face) >= 0.0;
+    (is_beside(a, b) && is_beside(b, c) && is_beside(c, a)).then_some(height)
 }
 
 /// A triangle, for the names of its features. Made once, as the faces of cuboids are: Parry's

@@ -5,7 +5,8 @@
 //! step. Here the same hierarchy is asked with the box of the shape in the shape's own frame, or
 //! with the plane of a half-space ([`near`]). A candidate is a triangle of the mesh and a part of
 //! the shape ([`parts`]). Its contact gives a lower bound of their distance: it is not looked at
-//! again until the pair has moved so far that they could touch ([`query`]).
+//! again until the pair has moved so far that they could touch ([`query`]). Contacts at edges
+//! within the surface are turned ([`surface`]).
 //!
 //! Contacts are a function of the pose, as those of two triangles are: exact ones ([`features`],
 //! [`ball`], [`half_space`]), or, if the host wants that, those of Parry's routine asked as if
@@ -24,10 +25,11 @@ mod parts;
 mod placed;
 mod query;
 mod shape;
+mod surface;
 
 pub(crate) use cast::FoundCast;
 pub(crate) use nearest::{ConvexSearch, FoundTriangle};
 pub(crate) use pair::ConvexPair;
 pub(crate) use parts::Parts;
 pub(crate) use placed::PlacedPart;
-pub(super) use query::Near;
+pub(super) use surface::Near;

@@ -18,8 +18,8 @@ use super::features::{Normals, Point, Touching};
 use super::half_space::half_space_points;
 use super::pair::ConvexPair;
 use super::parts::{Part, Parts};
-use super::query::Touch;
 use super::shape::{ConvexShape, Extent};
+use super::surface::Touch;
 use crate::ContactGenerator;
 use crate::pair::outline::Outline;
 use crate::pair::pose::{MeshPlace, PairPose};
@@ -250,6 +250,15 @@ impl Question<'_> {
         };
         let on_triangle = on_shape - normal * distance;
         Some(ConvexContact { distance, normal, on_triangle, on_shape })
+    }
+
+    /// Whether a contact along another normal than its own has points at which the bodies cross.
+    pub(super) fn is_crossing(&self, contact: &ConvexContact) -> bool {
+        let (corners, shape) = (&self.placed.corners(self.triangle), self.part.shape);
+        let mut is_crossing = false;
+        Touching { corners, shape, contact, is_turned: true }
+            .points(None, |point| is_crossing |= point.distance < 0.0);
+        is_crossing
     }
 
     /// In the frame of the part; `None` where the cones reject the contact.

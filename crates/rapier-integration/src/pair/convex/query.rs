@@ -1,13 +1,10 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use glamx::{DVec3, Vec3};
+use glamx::Vec3;
 use parry3d::math::Real;
 use parry3d::query::details::NormalConstraints;
 use parry3d::query::{ContactManifold, TrackedContact};
-use parry3d::shape::TriMeshFlags;
-use sbbk_core::contact::Feature;
-use sbbk_core::contact::convex::{ConvexContact, feature_at};
 use sbbk_core::traverse::{Counters, SlackLimits};
 use sbbk_core::volumes::rounding::gamma;
 
@@ -17,6 +14,7 @@ use super::pair::ConvexPair;
 use super::parts::{KnownParts, Part, Parts};
 use super::placed::{PlacedPart, Question};
 use super::shape::ConvexShape;
+use super::surface::{Near, Touch};
 use crate::ContactGenerator;
 use crate::mesh::{Change, KnownMesh, TreeCache};
 use crate::pair::driver::{ContactList, Limits, Moving, Pair, PairQuery, Scratch, Seen};
@@ -25,7 +23,6 @@ use crate::pair::order::{Candidate, OrderKey};
 use crate::pair::outline::{Outline, PatchPlan};
 use crate::pair::pool::ManifoldPool;
 use crate::pair::pose::{MeshPlace, PairPose};
-use crate::pair::seams::{Known, Seam, Touched};
 
 impl<'a> Pair for ConvexPair<'a> {
     /// The mesh, and the parts that the candidates are of.
@@ -55,7 +52,7 @@ impl<'a> Pair for ConvexPair<'a> {
 
 /// A mesh and the parts.
 pub(crate) struct ConvexQuery<'q> {
-    pair: &'q ConvexPair<'q>,
+    pub(super) pair: &'q ConvexPair<'q>,
     known_parts: &'q KnownParts,
 }
 
@@ -81,7 +78,13 @@ impl ConvexQuery<'_> {
 
     /// Hands on what there is to ask about a triangle and a part.
     #[inline(always)]
-    fn ask(&self, index: u32, part: u32, scratch: &mut Scratch, then: impl FnOnce(Question<'_>)) {
+    pub(super) fn ask(
+        &self,
+        index: u32,
+        part: u32,
+        scratch: &mut Scratch,
+        then: impl FnOnce(Question<'_>),
+    ) {
         let ConvexPair { pose, mesh, parts, mesh_place, .. } = *self.pair;
         let triangle = mesh.mesh.triangle(index);
         let cone = mesh.mesh.triangle_normal_constraints(index);
@@ -98,58 +101,6 @@ impl ConvexQuery<'_> {
                 prediction,
             });
         });
-    }
-
-    /// Turns contacts that are none of the surface. `subshapes` has triangle and part of each.
-    fn turn(
-        &self,
-        contacts: &mut [(u32, Near)],
-        subshapes: impl Fn(u32) -> [u32; 2],
-        scratch: &mut Scratch,
-    ) {
-        let ConvexPair { ref mesh, has_surfaces, .. } = *self.pair;
-        // Soft bodies need each triangle, and cones turn normals in their own way.
-        let has_cones = mesh.mesh.flags().contains(TriMeshFlags::FIX_INTERNAL_EDGES);
-        if !has_surfaces || has_cones || !mesh.is_rigid() {
-            return;
-        }
-        let mut seams = std::mem::take(&mut scratch.seams);
-        let known = |(_, Near(touch)): &(u32, Near)| {
-            touch.as_ref().map_or(Known::NONE, |touch| Known::new(touch.feature, &touch.contact))
-        };
-        let touched = |&(of, _): &(u32, Near)| {
-            let [triangle, part] = subshapes(of);
-            Touched { part, corners: mesh.corners(triangle) }
-        };
-        let is_beyond = |&(of, _): &(u32, Near), (_, Near(other)): &(u32, Near)| {
-            let [triangle, part] = subshapes(of);
-            let mut is_beyond = false;
-            self.ask(triangle, part, scratch, |question| {
-                is_beyond = other.is_some_and(|other| question.is_beyond(&other.contact));
-            });
-            is_beyond
-        };
-        for &seam in seams.find(contacts, known, touched, is_beyond) {
-            let (contact, along) = match seam {
-                Seam::Face(contact) => {
-                    let [triangle, part] = subshapes(contacts[contact as usize].0);
-                    let mut along = None;
-                    self.ask(triangle, part, scratch, |question| along = question.of_face());
-                    (contact, along)
-                }
-                Seam::Like(contact, end) => {
-                    let Near(end) = contacts[end as usize].1;
-                    (contact, end.map(|end| end.contact))
-                }
-            };
-            let (_, Near(touch)) = &mut contacts[contact as usize];
-            if let (Some(touch), Some(along)) = (touch, along) {
-                let on_triangle = touch.contact.on_triangle;
-                touch.contact = ConvexContact { on_triangle, ..along };
-                touch.is_turned = true;
-            }
-        }
-        scratch.seams = seams;
     }
 
     fn has_patches(&self) -> bool {
@@ -406,30 +357,5 @@ impl PairQuery for ConvexQuery<'_> {
                 candidate.hint = axis;
             }
         });
-    }
-}
-
-/// A triangle that may be in reach: its contact, if that is known already.
-#[derive(Copy, Clone)]
-pub(crate) struct Near(Option<Touch>);
-
-/// The contact of a triangle with the core of a shape.
-#[derive(Copy, Clone)]
-pub(crate) struct Touch {
-    pub(super) contact: ConvexContact,
-    /// The part of the triangle that touches.
-    feature: Feature,
-    /// Whether it is along another normal than its own: distance and point of the shape are of the
-    /// farthest point of the shape along that. See [`Seams`].
-    ///
-    /// [`Seams`]: crate::pair::seams::Seams
-    pub(super) is_turned: bool,
-}
-
-impl Touch {
-    #[inline(always)]
-    fn new(contact: ConvexContact, corners: &[DVec3; 3]) -> Self {
-        let feature = feature_at(corners, contact.on_triangle, contact.normal);
-        Self { contact, feature, is_turned: false }
     }
 }

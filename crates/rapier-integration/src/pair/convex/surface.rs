@@ -1,0 +1,93 @@
+//! Which contacts of a mesh and convex shapes are those of the surface: none at edges within it.
+
+use glamx::DVec3;
+use parry3d::shape::TriMeshFlags;
+use sbbk_core::contact::Feature;
+use sbbk_core::contact::convex::{ConvexContact, feature_at};
+
+use super::pair::ConvexPair;
+use super::query::ConvexQuery;
+use crate::pair::driver::Scratch;
+use crate::pair::seams::{Known, Seam, Touched};
+
+/// A triangle that may be in reach: its contact, if that is known already.
+#[derive(Copy, Clone)]
+pub(crate) struct Near(pub(super) Option<Touch>);
+
+/// The contact of a triangle with the core of a shape.
+#[derive(Copy, Clone)]
+pub(crate) struct Touch {
+    pub(super) contact: ConvexContact,
+    /// The part of the triangle that touches.
+    feature: Feature,
+    /// Whether it is along another normal than its own: distance and point of the shape are of the
+    /// farthest point of the shape along that. See [`Seams`].
+    ///
+    /// [`Seams`]: crate::pair::seams::Seams
+    pub(super) is_turned: bool,
+}
+
+impl Touch {
+    #[inline(always)]
+    pub(super) fn new(contact: ConvexContact, corners: &[DVec3; 3]) -> Self {
+        let feature = feature_at(corners, contact.on_triangle, contact.normal);
+        Self { contact, feature, is_turned: false }
+    }
+}
+
+impl ConvexQuery<'_> {
+    /// Turns contacts that are none of the surface. `subshapes` has triangle and part of each.
+    pub(super) fn turn(
+        &self,
+        contacts: &mut [(u32, Near)],
+        subshapes: impl Fn(u32) -> [u32; 2],
+        scratch: &mut Scratch,
+    ) {
+        let ConvexPair { ref mesh, has_surfaces, .. } = *self.pair;
+        // Soft bodies need each triangle, and cones turn normals in their own way.
+        let has_cones = mesh.mesh.flags().contains(TriMeshFlags::FIX_INTERNAL_EDGES);
+        if !has_surfaces || has_cones || !mesh.is_rigid() {
+            return;
+        }
+        let mut seams = std::mem::take(&mut scratch.seams);
+        let known = |(_, Near(touch)): &(u32, Near)| {
+            touch.as_ref().map_or(Known::NONE, |touch| Known::new(touch.feature, &touch.contact))
+        };
+        let touched = |&(of, _): &(u32, Near)| {
+            let [triangle, part] = subshapes(of);
+            Touched { part, corners: mesh.corners(triangle) }
+        };
+        let is_beyond = |&(of, _): &(u32, Near), (_, Near(other)): &(u32, Near)| {
+            let [triangle, part] = subshapes(of);
+            let mut is_beyond = false;
+            self.ask(triangle, part, scratch, |question| {
+                is_beyond = other.is_some_and(|other| question.is_beyond(&other.contact));
+            });
+            is_beyond
+        };
+        for &seam in seams.find(contacts, known, touched, is_beyond) {
+            let (contact, along) = match seam {
+                Seam::Face(contact) => {
+                    let [triangle, part] = subshapes(contacts[contact as usize].0);
+                    let mut along = None;
+                    self.ask(triangle, part, scratch, |question| {
+                        // What hangs over the border of the mesh is not over the triangle.
+                        along = question.of_face().filter(|along| question.is_crossing(along));
+                    });
+                    (contact, along)
+                }
+                Seam::Like(contact, end) => {
+                    let Near(end) = contacts[end as usize].1;
+                    (contact, end.map(|end| end.contact))
+                }
+            };
+            let (_, Near(touch)) = &mut contacts[contact as usize];
+            if let (Some(touch), Some(along)) = (touch, along) {
+                let on_triangle = touch.contact.on_triangle;
+                touch.contact = ConvexContact { on_triangle, ..along };
+                touch.is_turned = true;
+            }
+        }
+        scratch.seams = seams;
+    }
+}
