@@ -13,8 +13,8 @@
 //! The contact is then one along the normal of the nearest triangle there. If the same is true of that
 //! one, of the nearest there, and so on: each is nearer than the one before, so there is an end. A tip
 //! that crosses right at an edge can be parted from both triangles by less than from the surface. So if
-//! at the end a triangle goes on beyond, the normal is that of the face, where that leaves points at which
-//! the bodies cross: beside the border of a mesh it need not.
+//! at the end a triangle goes on beyond, the normal is that of the face. Not if neither that nor a face beside
+//! it has a point at which the bodies cross: what is deepest may hang over the border of the mesh.
 //!
 //! Neighbours are told by their corners: nothing need be known of the mesh, and vertices need not be
 //! shared. (`FIX_INTERNAL_EDGES` needs a normal for each vertex and edge.)
@@ -99,6 +99,11 @@ impl Touched {
         let mut ends = self.ends(feature).map(|end| (end + 0.0).to_array().map(f32::to_bits));
         ends.sort_unstable();
         (self.part, ends)
+    }
+
+    /// Whether it has a corner with another triangle.
+    pub(crate) fn meets(&self, other: &Self) -> bool {
+        self.part == other.part && other.corners.iter().any(|corner| self.corners.contains(corner))
     }
 
     /// Whether it has an edge or a corner of another triangle.

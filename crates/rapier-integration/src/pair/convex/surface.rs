@@ -68,11 +68,21 @@ impl ConvexQuery<'_> {
         for &seam in seams.find(contacts, known, touched, is_beyond) {
             let (contact, along) = match seam {
                 Seam::Face(contact) => {
-                    let [triangle, part] = subshapes(contacts[contact as usize].0);
+                    let own = contacts[contact as usize];
+                    let (triangle, depth) = (touched(&own), known(&own).distance);
+                    let is_held = contacts.iter().any(|other| {
+                        let Known { feature, distance, .. } = known(other);
+                        let is_turned = other.1.0.is_some_and(|other| other.is_turned);
+                        (feature == Feature::Face || is_turned)
+                            && distance < depth
+                            && touched(other).meets(&triangle)
+                    });
+                    let [triangle, part] = subshapes(own.0);
                     let mut along = None;
                     self.ask(triangle, part, scratch, |question| {
                         // What hangs over the border of the mesh is not over the triangle.
-                        along = question.of_face().filter(|along| question.is_crossing(along));
+                        along = question.of_face();
+                        along = along.filter(|along| is_held || question.is_crossing(along));
                     });
                     (contact, along)
                 }
