@@ -13,8 +13,8 @@
 //! The contact is then one along the normal of the nearest triangle there. If the same is true of that
 //! one, of the nearest there, and so on: each is nearer than the one before, so there is an end. A tip
 //! that crosses right at an edge can be parted from both triangles by less than from the surface. So if
-//! at the end a triangle goes on beyond, the normal is that of the face. Not if neither that nor a face beside
-//! it has a point at which the bodies cross: what is deepest may hang over the border of the mesh.
+//! at the end a triangle goes on beyond, the normal is that of the face, or of a face beside it, whichever
+//! has points at which the bodies cross. Beside the border of a mesh none may have.
 //!
 //! Neighbours are told by their corners: nothing need be known of the mesh, and vertices need not be
 //! shared. (`FIX_INTERNAL_EDGES` needs a normal for each vertex and edge.)
@@ -67,7 +67,7 @@ impl Known {
 /// What becomes of a contact, by its place in the list.
 #[derive(Copy, Clone, Debug)]
 pub(crate) enum Seam {
-    /// It is along the normal of its triangle.
+    /// It is along the normal of its triangle or of one beside it.
     Face(u32),
     /// It is as the second one, whose `Face` comes first if it has one.
     Like(u32, u32),

@@ -68,22 +68,20 @@ impl ConvexQuery<'_> {
         for &seam in seams.find(contacts, known, touched, is_beyond) {
             let (contact, along) = match seam {
                 Seam::Face(contact) => {
-                    let own = contacts[contact as usize];
-                    let (triangle, depth) = (touched(&own), known(&own).distance);
-                    let is_held = contacts.iter().any(|other| {
-                        let Known { feature, distance, .. } = known(other);
-                        let is_turned = other.1.0.is_some_and(|other| other.is_turned);
-                        (feature == Feature::Face || is_turned)
-                            && distance < depth
-                            && touched(other).meets(&triangle)
-                    });
-                    let [triangle, part] = subshapes(own.0);
+                    // What is deepest may be over a triangle beside it, or hang over the border.
+                    let own = touched(&contacts[contact as usize]);
+                    let beside = contacts.iter().filter(|other| touched(other).meets(&own));
                     let mut along = None;
-                    self.ask(triangle, part, scratch, |question| {
-                        // What hangs over the border of the mesh is not over the triangle.
-                        along = question.of_face();
-                        along = along.filter(|along| is_held || question.is_crossing(along));
-                    });
+                    for &(of, _) in [contacts[contact as usize]].iter().chain(beside) {
+                        let [triangle, part] = subshapes(of);
+                        self.ask(triangle, part, scratch, |question| {
+                            let face = question.of_face();
+                            along = face.filter(|face| question.is_crossing(face));
+                        });
+                        if along.is_some() {
+                            break;
+                        }
+                    }
                     (contact, along)
                 }
                 Seam::Like(contact, end) => {
