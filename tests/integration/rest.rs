@@ -114,7 +114,7 @@ fn a_head_rests_on_a_slope() {
 #[test]
 fn a_head_that_nothing_holds_tips_over_and_rests() {
     let mut both = Both::new(Surfaces, || build(&HeadOnSlope { angle: 0.0 }));
-    both.step(600);
+    both.step(1000);
     let [stock, sbbk] = both.bodies().next().expect("one head");
     let turned = |body: &RigidBody| 2.0 * body.rotation().xyz().length().asin();
     assert!(turned(stock) < 0.02 && turned(sbbk) > 1.0);

@@ -63,8 +63,8 @@
 //!   tenth of the radius of the smaller mesh, so that deep bodies come out slowly.
 //! * Any other mesh is a *sheet* and met from both sides: terrains, walls, bowls, vases with a wide
 //!   neck, soups of triangles. So is a closed mesh whose normals point inwards
-//!   ([`SbbkStats::inside_out`]). A thin solid in the midst of a sheet goes to the side that its
-//!   middle is on, in doubt to the front.
+//!   ([`SbbkStats::inside_out`]). A thin solid in the midst of a larger sheet goes to the
+//!   side that its middle is on, or to the front while this is little behind.
 //! * Contacts apart are local minima of the distance, so edges within a face and walls that pass by
 //!   make none. Not those that soft CCD looks at, farther than a tenth of that radius: plates turn
 //!   before they land. Where none is nearer, they have at most four points a direction.

@@ -12,11 +12,11 @@
 //! of these ([`Regions`]), it gets the best that there is.
 
 use glamx::DVec3;
+use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Real, Vector};
 use sbbk_core::contact::{Feature, ManifoldPoints, TriangleContact, outward};
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::Around;
-use sbbk_core::volumes::Sphere;
 
 use super::regions::{Regions, Sheet};
 use crate::pair::pose::PairPose;
@@ -34,9 +34,9 @@ pub(crate) trait Surfaces {
         f64::INFINITY
     }
 
-    /// A ball that holds a shape, in its frame.
-    fn ball(&self, _: usize) -> Sphere {
-        Sphere { centre: Vector::ZERO, radius: 0.0 }
+    /// The box around a shape, in its frame.
+    fn bounds(&self, _: usize) -> Aabb {
+        Aabb::new_invalid()
     }
 
     /// Whether a point, in the frame of the shape, is deeper in it than some distance.
@@ -51,10 +51,12 @@ pub(crate) trait Surfaces {
 /// other on their far sides, and gain four times the energy on a tray.)
 const SHALLOW: f64 = 5.0;
 
-/// How far behind a sheet the middle of a thin solid may be, in radii, that is still pushed to the
-/// front: most sheets are grounds. Higher: what comes from behind is pulled through. Lower: plates
-/// that one step has brought to the midst of a ground fall out below.
-const LEAN: f64 = 0.02;
+/// How far behind a sheet the middle of a thin solid may be, as a share of half its height over the sheet,
+/// that is still pushed to the front: most sheets are grounds. Of 1000 slabs of 3 cm that fall 1.75 units
+/// on triangles of 0.5, 12 pass from the front and 335 from the back. Higher: what comes from behind is
+/// pulled through. Lower: what one step has brought to the midst of a ground falls out below (with 0.15,
+/// 36 and 173; with 0, as many from the front as from the back).
+const LEAN: f64 = 0.33;
 
 /// Distances below this share of their sizes do not tell on which side of each other triangles are.
 const TOUCHING: f64 = 1.0e-9;
@@ -173,22 +175,30 @@ impl<S: Surfaces> Judge<'_, S> {
         Some(TriangleContact { distance: contact.distance - beyond.min(most), ..contact })
     }
 
-    /// How the middle of a solid lies to the triangle of a sheet.
+    /// How the middle of a solid lies to the triangle of a sheet. The middle of a larger one tells nothing: of
+    /// 100 half balls in a bowl with a wall of 3 cm, 54 would fall out.
     fn sheet(&self, is_solid: [bool; 2], local: &TrianglePair) -> Option<Sheet> {
         let solid = match is_solid {
             [true, false] => 0,
             [false, true] => 1,
             _ => return None,
         };
-        let Sphere { centre, radius } = self.shapes.ball(solid);
-        let centre = match solid {
-            0 => centre.as_dvec3() - local.origin.as_dvec3(),
-            _ => self.pose.placement12.to_frame1(centre, local.origin),
+        let [bounds, others] = [solid, 1 - solid].map(|i| self.shapes.bounds(i));
+        if bounds.half_extents().length() > others.half_extents().length() {
+            return None;
+        }
+        let middle = match solid {
+            0 => bounds.center().as_dvec3() - local.origin.as_dvec3(),
+            _ => self.pose.placement12.to_frame1(bounds.center(), local.origin),
         };
         let [a, b, c] = local.corners[1 - solid];
         let normal = (b - a).cross(c - a).normalize_or_zero();
-        let away = if solid == 0 { -normal } else { normal };
-        Some(Sheet { away, height: normal.dot(centre - a) + LEAN * f64::from(radius) })
+        let (away, own) = match solid {
+            0 => (-normal, normal),
+            _ => (normal, self.pose.placement12.inverse * normal),
+        };
+        let half_height = own.abs().dot(bounds.half_extents().as_dvec3());
+        Some(Sheet { away, height: normal.dot(middle - a) + LEAN * half_height })
     }
 
     /// Whether a contact is deep because the surface of a body is far, not because this triangle is

@@ -2,6 +2,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use glamx::DVec3;
+use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::NormalConstraints;
 use parry3d::shape::Triangle;
@@ -10,7 +11,6 @@ use sbbk_core::leaf::LeafTest;
 use sbbk_core::surface::Around;
 use sbbk_core::traverse::{Counters, Descent, PairFrame, Verdict, Visitor, descend};
 use sbbk_core::tree::LeafBatch;
-use sbbk_core::volumes::Sphere;
 
 use super::exact::Constraints;
 use super::inside::{BEHIND, nearest};
@@ -200,8 +200,8 @@ impl Surfaces for Meshes<'_> {
         self.near
     }
 
-    fn ball(&self, i: usize) -> Sphere {
-        self.pair.meshes[i].ball()
+    fn bounds(&self, i: usize) -> Aabb {
+        *self.pair.meshes[i].root()
     }
 
     fn is_deep(&self, i: usize, point: Vector, distance: Real) -> bool {

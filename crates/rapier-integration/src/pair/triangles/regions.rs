@@ -22,8 +22,6 @@ pub(crate) struct Regions {
     regions: Groups<Node>,
     /// By the first triangle of a region: what holds it.
     held: FxHashMap<Node, Hold>,
-    /// By the first triangle of a region.
-    torn: FxHashMap<Node, Torn>,
 }
 
 /// How many pairs a region has, and how many of them have a contact beyond doubt.
@@ -35,6 +33,10 @@ struct Hold {
     is_thin: bool,
     /// The sum of the normals of contacts beyond doubt.
     normals: DVec3,
+    /// Off a sheet, to the side that the middle of a solid is on; zero without.
+    leave: DVec3,
+    /// Whether contacts beyond doubt push off its front and its back.
+    sides: [bool; 2],
 }
 
 /// How many pairs of a region one contact beyond doubt stands for. Higher: bodies deep in each other
@@ -49,16 +51,6 @@ impl Hold {
     }
 }
 
-/// Where a solid crosses a sheet.
-#[derive(Default)]
-struct Torn {
-    /// The sum of the heights of its middle.
-    height: f64,
-    /// Whether it is pushed to each side.
-    to_front: bool,
-    to_back: bool,
-}
-
 /// A triangle of mesh 1 (0) or 2 (1).
 type Node = (usize, u32);
 
@@ -71,7 +63,7 @@ struct Crossing {
     /// Of such a contact, from mesh 1 to mesh 2.
     normal: DVec3,
     depth: f64,
-    /// If one of the two is a sheet, and the other a solid.
+    /// If one of the two is a sheet, and the other a smaller solid.
     sheet: Option<Sheet>,
 }
 
@@ -158,17 +150,11 @@ impl Regions {
         for &Crossing { pair: [triangle1, triangle2], .. } in &self.found {
             self.regions.join((0, triangle1), (1, triangle2));
         }
-        if is_torn {
-            self.find_torn();
-        }
-        for i in 0..self.found.len() {
-            let found = self.found[i];
-            let (first, is_fine) = (self.first_of(found.pair), self.is_fine(&found));
-            let hold = self.held.entry(first).or_default();
-            hold.pairs += 1;
-            hold.good += u32::from(is_fine);
-            hold.normals += if is_fine { found.normal } else { DVec3::ZERO };
-            hold.is_thin |= self.wrong.contains(&found.pair);
+        self.find_held();
+        let has_sheet = self.found.iter().any(|found| found.sheet.is_some());
+        if has_sheet && self.find_torn() {
+            self.held.clear();
+            self.find_held();
         }
         !self.wrong.is_empty() || self.held.values().any(|hold| !hold.is_enough())
     }
@@ -199,21 +185,26 @@ impl Regions {
         self.held.get(&first).is_some_and(|hold| hold.good == 0)
     }
 
-    /// Whether a contact of a region does not push against those beyond doubt. Without: plates at
-    /// 30 m/s that a spike stops come through on it.
+    /// Whether a contact of a region does not push against those beyond doubt, nor through a sheet.
+    /// Without: plates at 30 m/s that a spike stops come through on it.
     pub(super) fn agrees(&mut self, pair: [u32; 2], normal: DVec3) -> bool {
         let first = self.first_of(pair);
         self.way.is_none_or(|way| way.dot(normal) >= -SAME_SIDE)
-            && self.held.get(&first).is_none_or(|hold| hold.normals.dot(normal) >= 0.0)
+            && self
+                .held
+                .get(&first)
+                .is_none_or(|hold| hold.normals.dot(normal) >= 0.0 && hold.leave.dot(normal) >= 0.0)
     }
 
     /// A triangle that is in a thin body, or has a thin one around it, has both its sides near, which
-    /// push against each other. The one that is farther away is wrong.
+    /// push against each other. The one that is farther away is wrong. (Of a solid on a sheet the side is
+    /// one for a region: triangles by themselves let four times as many slabs through large triangles.)
     fn find_wrong(&mut self) {
         for side in 0..2 {
             self.found.sort_unstable_by_key(|found| (found.pair[side], found.pair));
             for of_one in self.found.chunk_by(|a, b| a.pair[side] == b.pair[side]) {
-                for found in of_one.iter().filter(|found| found.is_good) {
+                let of_bodies = |found: &&Crossing| found.is_good && found.sheet.is_none();
+                for found in of_one.iter().filter(of_bodies) {
                     let deepest = |sign: f64| {
                         let like = |other: &&Crossing| {
                             other.is_good && sign * other.normal.dot(found.normal) > SAME_SIDE
@@ -229,26 +220,39 @@ impl Regions {
         }
     }
 
-    /// A thin solid in the midst of a sheet is pushed to both sides of it, and held there. It goes to
-    /// the side that its middle is on, as seen from where it crosses the sheet.
-    fn find_torn(&mut self) {
-        self.torn.clear();
+    /// Says what holds the regions.
+    fn find_held(&mut self) {
         for i in 0..self.found.len() {
             let found = self.found[i];
-            let first = self.first_of(found.pair);
-            let torn = self.torn.entry(first).or_default();
-            torn.height += found.sheet.map_or(0.0, |sheet| sheet.height);
-            torn.to_front |= found.side() > 0.0;
-            torn.to_back |= found.side() < 0.0;
+            let (first, is_fine) = (self.first_of(found.pair), self.is_fine(&found));
+            let hold = self.held.entry(first).or_default();
+            hold.pairs += 1;
+            hold.good += u32::from(is_fine);
+            hold.normals += if is_fine { found.normal } else { DVec3::ZERO };
+            // Of a sheet it is known which way that is.
+            hold.is_thin |= found.sheet.is_none() && self.wrong.contains(&found.pair);
+            hold.leave += found.sheet.map_or(DVec3::ZERO, |sheet| sheet.height * sheet.away);
+            hold.sides[0] |= is_fine && found.side() > 0.0;
+            hold.sides[1] |= is_fine && found.side() < 0.0;
         }
+    }
+
+    /// A thin solid in the midst of a sheet is pushed to both sides of it, and held there, or by too
+    /// few. It goes to the side that its middle is on, as seen from where it crosses the sheet. Whether
+    /// contacts push the other way.
+    fn find_torn(&mut self) -> bool {
+        let before = self.wrong.len();
         for i in 0..self.found.len() {
             let found = self.found[i];
             let first = self.first_of(found.pair);
-            let torn = self.torn.get(&first).filter(|torn| torn.to_front && torn.to_back);
-            if torn.is_some_and(|torn| found.side() * torn.height < 0.0) {
+            let is_doubtful = |hold: &&Hold| hold.sides == [true; 2] || !hold.is_enough();
+            let leave = self.held.get(&first).filter(is_doubtful).map(|hold| hold.leave);
+            let is_against = |leave: DVec3| found.normal.dot(leave) < -SAME_SIDE * leave.length();
+            if found.is_good && leave.is_some_and(is_against) {
                 self.wrong.insert(found.pair);
             }
         }
+        self.wrong.len() > before
     }
 
     /// The first triangle of the region of a pair.
@@ -406,5 +410,28 @@ mod tests {
         assert_eq!(pushed([0.2, -0.1], both), [true, false, true]);
         assert_eq!(pushed([0.1, -0.2], both), [false, true, true]);
         assert_eq!(pushed([-0.1; 2], [DVec3::Y; 2]), [true; 3]);
+    }
+
+    /// Would catch a thin solid that the few good contacts of a large region push through a sheet, and
+    /// others that do so.
+    #[test]
+    fn few_contacts_do_not_push_through_a_sheet() {
+        let down = pushing(-DVec3::Y, 0.1);
+        let close = |height: f64, pairs: u32| {
+            let mut regions = Regions::default();
+            regions.begin();
+            for i in 0..pairs {
+                let good = Some(&down).filter(|_| i == 0);
+                regions.add([1, i], good, Some(Sheet { away: DVec3::Y, height }));
+            }
+            let needs_more = regions.close(None);
+            (needs_more && regions.is_lost([1, 0]), regions.is_settled([1, 0]), regions)
+        };
+        let (is_lost, is_settled, mut regions) = close(0.01, CARRIED + 1);
+        assert!(is_lost && !is_settled);
+        assert!(regions.agrees([1, 0], DVec3::Y) && !regions.agrees([1, 0], -DVec3::Y));
+        let (is_lost, is_settled, mut regions) = close(-0.01, CARRIED + 1);
+        assert!(is_lost && is_settled && !regions.agrees([1, 0], DVec3::Y));
+        assert!(!close(0.01, CARRIED).0, "it is held");
     }
 }

@@ -80,7 +80,9 @@ impl Target {
 const STUCK: usize = 4;
 
 /// Plates that fly down, turned and placed in many ways. One has passed if it ends below, or if for
-/// longer than an impact its middle is in the target or a spike or an edge crosses both its faces.
+/// longer than an impact its middle is in the target or a spike or an edge crosses both its faces. (An edge
+/// crosses the faces of 6 of 400 with patches, of 27 with every contact, of 203 in stock Rapier, and of 261
+/// there if plate and edge are convex shapes.)
 fn plates(kit: &Kit, target: Target) -> Figures {
     const SPEED: f32 = 30.0;
     let mesh = target.mesh();
