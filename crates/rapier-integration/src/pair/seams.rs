@@ -28,15 +28,23 @@ use sbbk_core::contact::convex::ConvexContact;
 #[derive(Default)]
 pub(crate) struct Seams {
     known: Vec<Known>,
-    /// The edges and corners where contacts are, by number.
-    places: FxHashMap<Place, u32>,
-    /// Contacts at an edge or a corner, and its number.
-    asking: Vec<(u32, u32)>,
-    /// Edges and corners, and the contacts of triangles that have them, in order.
-    around: Vec<(u32, u32)>,
+    touched: Vec<Touched>,
+    /// Places in `asking`, by the name of the edge or corner.
+    names: FxHashMap<u64, u32>,
+    asking: Vec<Asking>,
     /// For each contact the one whose normal it takes.
     ends: Vec<u32>,
     found: Vec<Seam>,
+}
+
+/// A contact at an edge or a corner.
+#[derive(Copy, Clone)]
+struct Asking {
+    contact: u32,
+    /// The first that asks of the same edge or corner, by its place.
+    first: u32,
+    /// Of the first: the nearest contact there.
+    nearest: (f64, u32),
 }
 
 /// Distances that differ by less than this share of the size are equal: those of two triangles whose
@@ -79,9 +87,6 @@ pub(crate) struct Touched {
     pub(crate) corners: [Vec3; 3],
 }
 
-/// The part of a shape, and the ends of an edge, in order, or a corner twice.
-type Place = (u32, [[u32; 3]; 2]);
-
 impl Touched {
     /// The ends of an edge, or a corner twice.
     fn ends(&self, feature: Feature) -> [Vec3; 2] {
@@ -94,11 +99,26 @@ impl Touched {
         }
     }
 
-    fn place(&self, feature: Feature) -> Place {
-        // Zero has two signs.
-        let mut ends = self.ends(feature).map(|end| (end + 0.0).to_array().map(f32::to_bits));
-        ends.sort_unstable();
-        (self.part, ends)
+    /// Names of its edges and corners: others may, but hardly do, have the same.
+    fn names(&self) -> [(Feature, u64); 6] {
+        const ODD: [u64; 3] = [0x9e37_79b9_7f4a_7c15, 0xc2b2_ae3d_27d4_eb4f, 0x1656_67b1_9e37_79f9];
+        let corner = |corner: Vec3| {
+            // Zero has two signs.
+            let bits = (corner + 0.0).to_array().map(|x| u64::from(x.to_bits()));
+            let mixed = (0..3).fold(u64::from(self.part), |sum, i| {
+                (sum ^ bits[i]).wrapping_mul(ODD[i]).rotate_left(29)
+            });
+            mixed.wrapping_mul(ODD[0])
+        };
+        let [a, b, c] = self.corners.map(corner);
+        [
+            (Feature::Vertex(0), a),
+            (Feature::Vertex(1), b),
+            (Feature::Vertex(2), c),
+            (Feature::Edge(0), a.wrapping_add(b)),
+            (Feature::Edge(1), b.wrapping_add(c)),
+            (Feature::Edge(2), c.wrapping_add(a)),
+        ]
     }
 
     /// Whether it has a corner with another triangle.
@@ -122,72 +142,76 @@ impl Seams {
         &mut self,
         contacts: &[C],
         known_of: impl Fn(&C) -> Known,
-        touched: impl Fn(&C) -> Touched,
+        touched_by: impl Fn(&C) -> Touched,
         mut is_beyond: impl FnMut(&C, &C) -> bool,
     ) -> &[Seam] {
-        let Self { known, places, asking, around, ends, found } = self;
+        let Self { known, touched, names, asking, ends, found } = self;
         found.clear();
         if contacts.len() < 2 {
             return found;
         }
-        asking.clear();
-        around.clear();
         known.clear();
         known.extend(contacts.iter().map(known_of));
-        let features = known.iter().map(|known| known.feature).zip(0..).zip(contacts);
-        let asks = features.filter(|((feature, _), _)| *feature != Feature::Face);
-        if contacts.len() <= FEW {
-            for (number, ((feature, contact), of)) in (0..).zip(asks) {
-                asking.push((contact, number));
-                let own = touched(of);
-                let others =
-                    (0..).zip(contacts).filter(|(_, other)| touched(other).has(&own, feature));
-                around.extend(others.map(|(other, _)| (number, other)));
-            }
-        } else {
-            places.clear();
-            for ((feature, contact), of) in asks {
-                let number = places.len() as u32;
-                let number = *places.entry(touched(of).place(feature)).or_insert(number);
-                asking.push((contact, number));
-            }
-            if asking.is_empty() {
-                return found;
-            }
-            for (contact, of) in (0..).zip(contacts) {
-                let triangle = touched(of);
-                let features = (0..3).flat_map(|i| [Feature::Edge(i), Feature::Vertex(i)]);
-                let numbers = features.filter_map(|feature| places.get(&triangle.place(feature)));
-                around.extend(numbers.map(|&number| (number, contact)));
-            }
-            around.sort_unstable();
-        }
+        asking.clear();
+        asking.extend((0..).zip(&*known).filter(|(_, known)| known.feature != Feature::Face).map(
+            |(contact, known)| Asking { contact, first: 0, nearest: (known.distance, contact) },
+        ));
         if asking.is_empty() {
             return found;
         }
-        let at = |number: u32| {
-            let start = around.partition_point(|&(other, _)| other < number);
-            let at = around[start..].iter().take_while(move |&&(other, _)| other == number);
-            at.map(|&(_, contact)| contact)
+        touched.clear();
+        touched.extend(contacts.iter().map(touched_by));
+        let is_there = |asking: u32, other: u32| {
+            touched[other as usize].has(&touched[asking as usize], known[asking as usize].feature)
         };
-        let distance = |contact: u32| known[contact as usize].distance;
+        let come_nearer = |asking: &mut Asking, other: u32| {
+            let distance = known[other as usize].distance;
+            if distance < asking.nearest.0 && is_there(asking.contact, other) {
+                asking.nearest = (distance, other);
+            }
+        };
+        let all = 0..contacts.len() as u32;
+        if contacts.len() <= FEW {
+            for (place, asking) in (0..).zip(&mut *asking) {
+                asking.first = place;
+                all.clone().for_each(|other| come_nearer(asking, other));
+            }
+        } else {
+            names.clear();
+            for place in 0..asking.len() {
+                let contact = asking[place].contact;
+                let feature = known[contact as usize].feature;
+                let mut all = touched[contact as usize].names().into_iter();
+                let name = all.find(|(part, _)| *part == feature).map_or(0, |(_, name)| name);
+                let first = *names.entry(name).or_insert(place as u32);
+                let is_same = is_there(asking[first as usize].contact, contact);
+                asking[place].first = if is_same { first } else { place as u32 };
+            }
+            for (other, triangle) in (0..).zip(&*touched) {
+                for (_, name) in triangle.names() {
+                    if let Some(&first) = names.get(&name) {
+                        come_nearer(&mut asking[first as usize], other);
+                    }
+                }
+            }
+        }
         ends.clear();
-        ends.extend(0..contacts.len() as u32);
-        for &(contact, number) in &*asking {
-            let nearest = at(number).min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
+        ends.extend(all.clone());
+        for i in 0..asking.len() {
+            let Asking { contact, first, .. } = asking[i];
+            let (distance, nearest) = asking[first as usize].nearest;
             let Known { distance: own, slack, .. } = known[contact as usize];
-            if let Some(nearest) = nearest.filter(|&nearest| distance(nearest) < own - slack) {
+            if distance < own - slack {
                 ends[contact as usize] = nearest;
+            } else if own < 0.0 {
+                let at = |contact: u32| &contacts[contact as usize];
+                let mut others = all.clone().filter(|&other| is_there(contact, other));
+                if others.any(|other| is_beyond(at(other), at(contact))) {
+                    found.push(Seam::Face(contact));
+                }
             }
         }
-        for &(contact, number) in &*asking {
-            let is_end = ends[contact as usize] == contact && distance(contact) < 0.0;
-            let own = &contacts[contact as usize];
-            if is_end && at(number).any(|other| is_beyond(&contacts[other as usize], own)) {
-                found.push(Seam::Face(contact));
-            }
-        }
-        for &(contact, _) in &*asking {
+        for &Asking { contact, .. } in &*asking {
             let mut end = ends[contact as usize];
             while ends[end as usize] != end {
                 end = ends[end as usize];
@@ -203,9 +227,9 @@ impl Seams {
 
     pub(super) fn shrink_to(&mut self, limit: usize) {
         self.known.shrink_to(limit);
-        self.places.shrink_to(limit);
+        self.touched.shrink_to(limit);
+        self.names.shrink_to(limit);
         self.asking.shrink_to(limit);
-        self.around.shrink_to(limit);
         self.ends.shrink_to(limit);
         self.found.shrink_to(limit);
     }
