@@ -105,10 +105,12 @@ impl Touched {
         let corner = |corner: Vec3| {
             // Zero has two signs.
             let bits = (corner + 0.0).to_array().map(|x| u64::from(x.to_bits()));
-            let mixed = (0..3).fold(u64::from(self.part), |sum, i| {
+            // Not zero at the origin: an edge from there would have the name of its other end.
+            let name = (0..3).fold(!u64::from(self.part), |sum, i| {
                 (sum ^ bits[i]).wrapping_mul(ODD[i]).rotate_left(29)
             });
-            mixed.wrapping_mul(ODD[0])
+            // Without, both diagonals of a cell of a lattice have the same sum.
+            (0..2).fold(name, |name, i| (name ^ name >> 32).wrapping_mul(ODD[i]))
         };
         let [a, b, c] = self.corners.map(corner);
         [
