@@ -26,10 +26,11 @@ mod placed;
 mod query;
 mod shape;
 mod surface;
+mod touch;
 
 pub(crate) use cast::FoundCast;
 pub(crate) use nearest::{ConvexSearch, FoundTriangle};
 pub(crate) use pair::ConvexPair;
 pub(crate) use parts::Parts;
 pub(crate) use placed::PlacedPart;
-pub(super) use surface::Near;
+pub(super) use touch::Near;

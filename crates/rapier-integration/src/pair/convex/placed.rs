@@ -19,7 +19,7 @@ use super::half_space::half_space_points;
 use super::pair::ConvexPair;
 use super::parts::{Part, Parts};
 use super::shape::{ConvexShape, Extent};
-use super::surface::Touch;
+use super::touch::Touch;
 use crate::ContactGenerator;
 use crate::pair::outline::Outline;
 use crate::pair::pose::{MeshPlace, PairPose};

@@ -14,7 +14,7 @@ use super::pair::ConvexPair;
 use super::parts::{KnownParts, Part, Parts};
 use super::placed::{PlacedPart, Question};
 use super::shape::ConvexShape;
-use super::surface::{Near, Touch};
+use super::touch::{Near, Touch};
 use crate::ContactGenerator;
 use crate::mesh::{Change, KnownMesh, TreeCache};
 use crate::pair::driver::{ContactList, Limits, Moving, Pair, PairQuery, Scratch, Seen};

@@ -1,39 +1,13 @@
 //! Which contacts of a mesh and convex shapes are those of the surface: none at edges within it.
 
-use glamx::DVec3;
 use parry3d::shape::TriMeshFlags;
-use sbbk_core::contact::Feature;
-use sbbk_core::contact::convex::{ConvexContact, feature_at};
+use sbbk_core::contact::convex::ConvexContact;
 
 use super::pair::ConvexPair;
 use super::query::ConvexQuery;
+use super::touch::Near;
 use crate::pair::driver::Scratch;
 use crate::pair::seams::{Known, Seam, Touched};
-
-/// A triangle that may be in reach: its contact, if that is known already.
-#[derive(Copy, Clone)]
-pub(crate) struct Near(pub(super) Option<Touch>);
-
-/// The contact of a triangle with the core of a shape.
-#[derive(Copy, Clone)]
-pub(crate) struct Touch {
-    pub(super) contact: ConvexContact,
-    /// The part of the triangle that touches.
-    feature: Feature,
-    /// Whether it is along another normal than its own: distance and point of the shape are of the
-    /// farthest point of the shape along that. See [`Seams`].
-    ///
-    /// [`Seams`]: crate::pair::seams::Seams
-    pub(super) is_turned: bool,
-}
-
-impl Touch {
-    #[inline(always)]
-    pub(super) fn new(contact: ConvexContact, corners: &[DVec3; 3]) -> Self {
-        let feature = feature_at(corners, contact.on_triangle, contact.normal);
-        Self { contact, feature, is_turned: false }
-    }
-}
 
 impl ConvexQuery<'_> {
     /// Turns contacts that are none of the surface. `subshapes` has triangle and part of each.
