@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! cargo run --release --example engines -- export scene
-//! cargo run --release --example engines -- run patches scene patches.1
-//! cargo run --release --example engines -- judge scene patches.1 patches.2 bullet.1
+//! cargo run --release --example engines -- run sbbk scene sbbk.1
+//! cargo run --release --example engines -- judge scene sbbk.1 sbbk.2 bullet.1
 //! ```
 
 use std::error::Error;

@@ -1,12 +1,12 @@
 use allocation_counter::measure;
 use oorandom::Rand32;
-use rapier_integration::{ContactDetail, SbbkConfig, SbbkDispatcher, SbbkStats};
+use rapier_integration::{SbbkDispatcher, SbbkStats};
 use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
 use sbbk_lab::mesh;
 
-use crate::support::{Pair, Query, counting, nudge, shape, shape_with, touching};
+use crate::support::{Pair, Query, counting, counting_patches, nudge, shape, shape_with, touching};
 
 /// Poses of a body that shakes about its place, over and over.
 const POSES: usize = 20;
@@ -96,9 +96,7 @@ fn constrained_normals_allocate_nothing() {
 /// Would catch patches that are divided up in new memory, or whose manifolds are made anew.
 #[test]
 fn patches_allocate_nothing() {
-    let mut config = SbbkConfig::default();
-    config.detail = ContactDetail::Patches;
-    let dispatcher = SbbkDispatcher::new(config);
+    let dispatcher = counting_patches();
     for flags in [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES] {
         let head = shape_with(&mesh::monkey_head(), flags);
         for stride in [1e-4, 2.5e-2] {

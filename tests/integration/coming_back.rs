@@ -15,7 +15,8 @@ use sbbk_lab::mesh;
 use sbbk_lab::metrics::Fingerprint;
 
 use crate::support::{
-    Dispatcher, Manifold, Pair, counting, direction, nudge, rotation, shape_with,
+    Dispatcher, Manifold, Pair, counting, counting_patches, direction, every, nudge, rotation,
+    shape_with,
 };
 
 /// A ground of every kind that a mesh can meet, flat at height 0 near x = -5 and x = 5.
@@ -304,7 +305,8 @@ fn turned_meshes_far_from_their_origin_are_seen() {
 #[test]
 fn no_prediction_distance_is_too_large() {
     for_each_pair(|name, question| {
-        let near = question.fresh(at(-5.0));
+        let mut near: Pair = Pair::default();
+        question.ask(&every(), &mut near, at(-5.0));
         let triangles = |manifolds: &[Manifold]| -> Vec<[u32; 2]> {
             manifolds.iter().map(|m| [m.subshape1, m.subshape2]).collect()
         };
@@ -312,10 +314,10 @@ fn no_prediction_distance_is_too_large() {
             let mut pair: Pair = Pair::default();
             let question = Question { prediction, ..*question };
             for _ in 0..2 {
-                question.ask(&SbbkDispatcher::default(), &mut pair, at(-5.0));
+                question.ask(&every(), &mut pair, at(-5.0));
                 let found = triangles(&pair.manifolds);
                 let is_lost = |near: &&[u32; 2]| !found.contains(near);
-                let lost = triangles(&near).iter().filter(is_lost).count();
+                let lost = triangles(&near.manifolds).iter().filter(is_lost).count();
                 assert_eq!(lost, 0, "{name} within {prediction}");
             }
         }
@@ -396,7 +398,7 @@ fn mixed_world(unit: Real, has_soft_ccd: bool) -> PhysicsWorld {
 fn convex_worlds_forget_everything_and_go_on_alike() {
     for unit in [0.01, 0.1, 1.0, 100.0] {
         for has_soft_ccd in [false, true] {
-            let dispatcher = counting();
+            let dispatcher = counting_patches();
             let mut remembering = mixed_world(unit, has_soft_ccd);
             remembering.narrow_phase.set_query_dispatcher(dispatcher.clone());
             let mut forgetting = mixed_world(unit, has_soft_ccd);

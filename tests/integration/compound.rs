@@ -15,8 +15,8 @@ use rapier3d::parry::utils::Array2;
 use sbbk_lab::mesh;
 
 use crate::support::{
-    Dispatcher, Manifold, Pair, assert_same, counting, direction, distance, generating, nudge,
-    rotation, shape_with,
+    Dispatcher, Manifold, Pair, assert_same, counting, direction, distance, every, generating,
+    nudge, rotation, shape_with,
 };
 use crate::worlds::Bodies;
 
@@ -162,7 +162,7 @@ fn motion_is_no_part_of_the_answer() {
     let head = shape_with(&mesh::monkey_head_with(6), TriMeshFlags::empty());
     for (seed, (name, compound)) in compounds(1.0).into_iter().enumerate() {
         let dispatcher = counting();
-        let unaware = SbbkDispatcher::default();
+        let unaware = every();
         let _tree = unaware.prepare(&head).unwrap();
         let mut random = Rand32::new(seed as u64);
         let pose = near_pose(&mut random, &head, &compound, 0.0);
@@ -236,7 +236,7 @@ fn steady_contact_allocates_nothing() {
 #[test]
 fn poses_that_are_none_have_no_contacts() {
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = every();
     let (_, compound) = compounds(1.0).remove(0);
     for broken in [Real::NAN, Real::INFINITY, -Real::INFINITY] {
         let shift = Pose::from_parts(Vec3::new(0.1, broken, 0.0), Quat::IDENTITY);
@@ -352,7 +352,7 @@ fn each_of_many_parts_is_where_it_is() {
     let question =
         Question { mesh: &floor, compound: &compound, pose, prediction: 0.2, flipped: false };
     let mut nearest = vec![Real::INFINITY; 130];
-    for manifold in question.fresh(&SbbkDispatcher::default()) {
+    for manifold in question.fresh(&every()) {
         let nearest = &mut nearest[manifold.subshape2 as usize];
         *nearest = nearest.min(distance(&manifold));
     }
@@ -373,7 +373,7 @@ fn what_is_far_out_is_seen_as_the_whole_turns() {
     };
     let compound = Compound::new(vec![part(1.0), part(-1.0)]);
     let half_space = SharedShape::halfspace(Vec3::Y);
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = every();
     let mut touched = 0;
     for (mesh, other, at, axis) in [
         (&floor, &compound as &dyn Shape, Vec3::new(0.1, 0.29, 0.2), Vec3::Y),

@@ -9,8 +9,8 @@ use rapier3d::parry::shape::{PackedFeatureId, TriMesh};
 use sbbk_lab::mesh;
 
 use crate::support::{
-    Manifold, Pair, Query, TrianglePair, assert_same, by_triangles, fresh, generating, nudge,
-    per_triangle, rebuilt, sequence, shape, stock, touching, triangles,
+    Manifold, Pair, Query, TrianglePair, assert_same, by_triangles, every, fresh, generating,
+    nudge, per_triangle, rebuilt, sequence, shape, stock, touching, triangles,
 };
 
 /// Marks manifolds and points, to see which of them survive.
@@ -139,8 +139,8 @@ fn with_a_foreign_workspace_manifolds_keep_their_data() {
     pair.ask(&DefaultQueryDispatcher, &query).mark();
     let before = pair.manifolds.clone();
     let before = by_triangles(&before);
-    pair.ask(&SbbkDispatcher::default(), &query);
-    assert_same(&pair.manifolds, &fresh(&SbbkDispatcher::default(), &query), 0.0);
+    pair.ask(&every(), &query);
+    assert_same(&pair.manifolds, &fresh(&every(), &query), 0.0);
     let mut kept_points = 0;
     for manifold in &pair.manifolds {
         let old = before[&triangles(manifold)];
@@ -167,7 +167,7 @@ fn fids<C>(point: &rapier3d::parry::query::TrackedContact<C>) -> FeatureIds {
 fn points_keep_their_data_by_their_features() {
     let [one, two] = rings();
     let mut random = Rand32::new(6);
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = every();
     let mut query = Query::new(&one, &two, touching(&mut random, [&one, &two], 0.05));
     let mut pair = MarkedPair::default();
     pair.ask(&dispatcher, &query);

@@ -10,8 +10,8 @@ use rapier3d::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder};
 use sbbk_lab::mesh::{self, Mesh};
 
 use crate::support::{
-    Manifold, Pair, Query, assert_same, counting, distance, fresh, nudge, per_triangle, shape,
-    shape_with, turned_inside_out,
+    Manifold, Pair, Query, assert_same, counting, distance, every, fresh, nudge, per_triangle,
+    shape, shape_with, turned_inside_out,
 };
 
 const HALF: Vec3 = Vec3::new(2.0, 1.0, 2.0);
@@ -91,7 +91,7 @@ fn what_is_in_no_solid_is_left_alone() {
     let in_wall = ask(&Query::new(&hollow, &small, Pose::translation(1.85, 0.0, 0.0)));
     assert!(in_wall.len() == 1 && in_wall[0].local_n1 == Vector::X);
     // A large one is known once it is registered.
-    let (registered, dispatcher) = (SharedShape::new(unknown), SbbkDispatcher::default());
+    let (registered, dispatcher) = (SharedShape::new(unknown), every());
     let _tree = dispatcher.prepare_shape(&registered).unwrap().unwrap();
     let query =
         Query::new(registered.as_trimesh().unwrap(), &body, Pose::translation(0.3, 0.5, 0.0));
@@ -104,7 +104,7 @@ fn what_is_in_no_solid_is_left_alone() {
 fn inside_is_never_remembered() {
     let slab = shape(&slab(4));
     let kept = counting();
-    let unaware = SbbkDispatcher::default();
+    let unaware = every();
     let [mut inside, mut none] = [0; 2];
     for size in [0.005, 0.05, 0.5] {
         let body = shape(&mesh::ball(size, 2));

@@ -6,8 +6,8 @@ use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
 use sbbk_lab::mesh;
 
 use crate::support::{
-    Pair, Query, assert_same, by_triangles, counting, counting_of, distance, fresh, having, nudge,
-    reach, sequence, shape, shape_with, touching,
+    Pair, Query, assert_same, by_triangles, counting, counting_of, distance, every, fresh, having,
+    nudge, reach, sequence, shape, shape_with, touching,
 };
 
 /// How far a step may go, in units and radians: far below any slack, about as much, and farther
@@ -68,7 +68,7 @@ impl<'a> Walk<'a> {
 /// kept.
 fn walk(seed: u64, steps: usize, meshes: [&TriMesh; 2]) {
     let kept = counting();
-    let unaware = SbbkDispatcher::default();
+    let unaware = every();
     // Holds the trees of the fresh queries.
     let mut hold: Pair = Pair::default();
     let mut walk = Walk::new(seed, meshes);
@@ -232,8 +232,8 @@ const MEDDLING: [Meddling; 4] =
 fn thousands_of_histories_end_alike() {
     let ring = shape(&mesh::torus(1.0, 0.4, 12, 8));
     let ball = shape(&mesh::ball(0.5, 3));
-    let (kept, another) = (counting(), SbbkDispatcher::default());
-    let unaware = SbbkDispatcher::default();
+    let (kept, another) = (counting(), every());
+    let unaware = every();
     let mut manifold_count = 0;
     for seed in 0..2500 {
         let mut random = Rand32::new(seed);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
-use rapier_integration::{ContactGenerator, ContactSet, SbbkConfig, SbbkDispatcher};
+use rapier_integration::{ContactDetail, ContactGenerator, ContactSet, SbbkConfig, SbbkDispatcher};
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::{
     ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
@@ -112,24 +112,43 @@ pub fn turned_inside_out(mut mesh: Mesh) -> Mesh {
 /// Both sets of contacts, the default one first.
 pub const SETS: [ContactSet; 2] = [ContactSet::Surfaces, ContactSet::Triangles];
 
-/// A dispatcher that counts its queries.
+/// A dispatcher with a manifold for every contact: what can be compared triangle by triangle.
+pub fn every() -> SbbkDispatcher {
+    having(ContactSet::default())
+}
+
+/// The same, which counts its queries.
 pub fn counting() -> SbbkDispatcher {
     counting_of(ContactSet::default())
 }
 
-/// The same, for contacts of this set.
-pub fn counting_of(contact_set: ContactSet) -> SbbkDispatcher {
+/// A dispatcher as a user gets it, which counts its queries.
+pub fn counting_patches() -> SbbkDispatcher {
     let mut config = SbbkConfig::default();
+    config.count_queries = true;
+    SbbkDispatcher::new(config)
+}
+
+/// A dispatcher with every contact of this set, which counts its queries.
+pub fn counting_of(contact_set: ContactSet) -> SbbkDispatcher {
+    let mut config = every_config();
     config.contact_set = contact_set;
     config.count_queries = true;
     SbbkDispatcher::new(config)
 }
 
-/// A dispatcher whose contacts are of this set.
+/// A dispatcher with every contact of this set.
 pub fn having(contact_set: ContactSet) -> SbbkDispatcher {
-    let mut config = SbbkConfig::default();
+    let mut config = every_config();
     config.contact_set = contact_set;
     SbbkDispatcher::new(config)
+}
+
+/// The configuration of [`every`].
+pub fn every_config() -> SbbkConfig {
+    let mut config = SbbkConfig::default();
+    config.detail = ContactDetail::Every;
+    config
 }
 
 /// A dispatcher whose contacts are those of each two triangles by themselves: what stock, brute
@@ -138,9 +157,9 @@ pub fn per_triangle() -> SbbkDispatcher {
     having(ContactSet::Triangles)
 }
 
-/// A dispatcher whose contacts come from `contacts`.
+/// A dispatcher with every contact, from `contacts`.
 pub fn generating(contacts: ContactGenerator) -> SbbkDispatcher {
-    let mut config = SbbkConfig::default();
+    let mut config = every_config();
     config.contacts = contacts;
     SbbkDispatcher::new(config)
 }

@@ -4,19 +4,18 @@ use std::collections::BTreeSet;
 
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshFlags};
 use sbbk_lab::mesh::{self, Mesh};
 
 use crate::support::{
-    Manifold, Pair, Query, assert_same, distance, fresh, nudge, per_triangle, sequence, shape,
-    shape_with, touching, triangles, turned_inside_out,
+    Manifold, Pair, Query, assert_same, distance, every, fresh, nudge, per_triangle, sequence,
+    shape, shape_with, touching, triangles, turned_inside_out,
 };
 
 fn ask(query: &Query) -> Vec<Manifold> {
-    fresh(&SbbkDispatcher::default(), query)
+    fresh(&every(), query)
 }
 
 /// A cube of edge length 1 about the origin, of 12 triangles.
@@ -321,7 +320,7 @@ fn either_mesh_may_come_first() {
 /// Would catch neighbours, regions or sides that are remembered from another pose.
 #[test]
 fn memory_is_never_part_of_the_answer() {
-    let [kept, unaware] = [(); 2].map(|()| SbbkDispatcher::default());
+    let [kept, unaware] = [(); 2].map(|()| every());
     let mut count = 0;
     for_each_pose(18, |[one, two], mut pose, random| {
         let mut pair: Pair = Pair::default();
@@ -340,8 +339,8 @@ fn memory_is_never_part_of_the_answer() {
 /// the tree only.
 #[test]
 fn answers_without_trees_are_those_with_trees() {
-    let prepared = SbbkDispatcher::default();
-    let spent = SbbkDispatcher::default();
+    let prepared = every();
+    let spent = every();
     // Others that take all that may be spent on trees.
     for i in 0..6 {
         let other = shape(&mesh::ball(1.0 + 0.01 * i as Real, 14));
@@ -371,7 +370,7 @@ fn large_meshes_are_solids_if_they_are_registered() {
     assert!(slab.triangle_count() > 8192);
     let (slab, cube) = (SharedShape::new(shape(&slab)), cube());
     let ground = slab.as_trimesh().unwrap();
-    let (unaware, knowing) = (SbbkDispatcher::default(), SbbkDispatcher::default());
+    let (unaware, knowing) = (every(), every());
     let _tree = knowing.prepare_shape(&slab).unwrap().unwrap();
     let query = |height: Real| {
         let turn = Quat::from_rotation_y(0.3);

@@ -8,7 +8,7 @@ use rapier3d::parry::shape::{SharedShape, TriMesh};
 use rapier3d::prelude::{PhysicsWorld, RigidBodyBuilder};
 use sbbk_lab::mesh;
 
-use crate::support::{Manifold, Query, distance, fresh, shape};
+use crate::support::{Manifold, Query, distance, every, fresh, shape};
 
 /// Half the thickness of plates that are a unit wide.
 const HALF: Real = 0.015;
@@ -23,7 +23,7 @@ fn floor() -> TriMesh {
 }
 
 fn ask(query: &Query) -> Vec<Manifold> {
-    fresh(&SbbkDispatcher::default(), query)
+    fresh(&every(), query)
 }
 
 /// Would catch a plate that is held in the midst of a sheet by contacts that push to both sides, and

@@ -11,8 +11,8 @@ use rapier3d::parry::shape::{Shape, SharedShape, TriMesh, TriMeshFlags};
 use sbbk_lab::mesh;
 
 use crate::support::{
-    Manifold, Pair, Query, assert_same, counting, fresh, generating, nudge, per_triangle, rotation,
-    shape, shape_with, touching,
+    Manifold, Pair, Query, assert_same, counting, every, fresh, generating, nudge, per_triangle,
+    rotation, shape, shape_with, touching,
 };
 
 /// 9600 triangles, four units across.
@@ -82,7 +82,7 @@ fn motion_without_trees_is_no_part_of_the_answer() {
         pose = nudge(&mut random, [1e-4, 1e-3, 2e-2][i / 100]) * pose;
         let query = Query::new(as_mesh(&ring), as_mesh(&head), pose);
         pair.ask(&dispatcher, &query);
-        assert_eq!(bits(&pair.manifolds), bits(&fresh(&SbbkDispatcher::default(), &query)), "{i}");
+        assert_eq!(bits(&pair.manifolds), bits(&fresh(&every(), &query)), "{i}");
     }
     let stats = dispatcher.stats();
     assert!(stats.walks > 50 && stats.reused_queries > 100, "{stats:?}");
@@ -197,7 +197,7 @@ fn meshes_that_land_together_are_not_all_built_at_once() {
 #[test]
 fn queries_without_trees_are_those_with_trees() {
     let (ring, head) = (large(TriMeshFlags::empty()), head(TriMeshFlags::empty()));
-    let (walking, prepared) = (SbbkDispatcher::default(), SbbkDispatcher::default());
+    let (walking, prepared) = (every(), every());
     let _trees = [&ring, &head].map(|shape| prepared.prepare_shape(shape).unwrap());
     let mut random = Rand32::new(6);
     let (mut crossing, mut apart) = (0, 0);

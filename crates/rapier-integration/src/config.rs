@@ -35,14 +35,14 @@ pub enum ContactDetail {
     /// where two surfaces are no nearer than a tenth of the smaller radius, within the prediction
     /// distance of soft CCD, they have one manifold of at most four points a direction: of more
     /// Rapier's solver would take one.
-    #[default]
     Every,
     /// A few manifolds for two shapes: of each direction up to four points, the outermost ones that
     /// carry, and others as deep that are far from these. They are chosen before they are made; the
     /// deepest point is always among them. Bodies come to rest sooner than on every contact, of which
     /// Rapier's solver takes four by their spread alone. For exact contacts of rigid meshes; pairs of
-    /// which one may deform have every contact. Of a manifold, the subshapes are those of its deepest
-    /// contact.
+    /// which one may deform have every contact, and so do convex shapes on meshes with
+    /// `FIX_INTERNAL_EDGES`. Of a manifold, the subshapes are those of its deepest contact.
+    #[default]
     Patches,
 }
 
@@ -107,7 +107,7 @@ impl Default for SbbkConfig {
             layers: LayerPlan::SBBK,
             contacts: ContactGenerator::Exact,
             contact_set: ContactSet::Surfaces,
-            detail: ContactDetail::Every,
+            detail: ContactDetail::default(),
             kinds: Kinds::default(),
             idle_tree_bytes: 16 << 20,
             count_queries: false,

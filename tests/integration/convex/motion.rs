@@ -1,19 +1,18 @@
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
 use rapier3d::math::Real;
 use rapier3d::parry::shape::{SharedShape, TriMeshFlags};
 use sbbk_lab::mesh;
 
 use super::question::{Question, bits};
 use super::shapes::{PREDICTIONS, floor, pose, shapes};
-use crate::support::{Pair, counting, nudge, shape_with};
+use crate::support::{Pair, counting, every, nudge, shape_with};
 
 /// A pair in motion: small steps, at times a jump, another prediction distance, or a workspace
 /// taken away. After each step, the answer of a dispatcher that has never heard of the pair, bit
 /// for bit; after some, that of Parry's routine on all triangles.
 fn walk(name: &str, shape: &SharedShape, size: Real, flipped: bool, seed: u64) -> [u64; 4] {
-    let (dispatcher, unaware) = (counting(), SbbkDispatcher::default());
+    let (dispatcher, unaware) = (counting(), every());
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
     let _tree = unaware.prepare(&head).unwrap();
     let mut random = Rand32::new(seed);
@@ -69,7 +68,7 @@ fn motion_is_no_part_of_the_answer() {
 #[test]
 fn poses_that_are_none_have_no_contacts() {
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = every();
     for (name, shape) in shapes(0.6) {
         for broken in [Real::NAN, Real::INFINITY, -Real::INFINITY] {
             let shift = Pose3::from_parts(Vec3::new(0.1, broken, 0.0), Quat::IDENTITY);

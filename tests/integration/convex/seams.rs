@@ -12,14 +12,14 @@ use sbbk_lab::mesh::{self, Mesh};
 
 use super::question::Question;
 use super::shapes::shapes;
-use crate::support::{Manifold, distance, having, per_triangle, rotation, shape_with};
+use crate::support::{Manifold, distance, every, having, per_triangle, rotation, shape_with};
 
 /// Bodies 0.01 deep in a flat floor of small triangles. Would catch a contact at an edge between two
 /// of them, a tip right at an edge, points that are not below the body, and a body with no contact left.
 #[test]
 fn a_floor_of_triangles_is_flat() {
     const DEPTH: f32 = 0.01;
-    let [surfaces, triangles] = [SbbkDispatcher::default(), per_triangle()];
+    let [surfaces, triangles] = [every(), per_triangle()];
     let mut random = Rand32::new(1);
     let floor = shape_with(&mesh::floor(6.0, 40), TriMeshFlags::empty());
     let mut slanted = 0;
@@ -74,7 +74,7 @@ fn nearest(manifold: &Manifold) -> Option<&TrackedContact<()>> {
 #[test]
 fn contacts_of_a_surface_are_the_nearest_at_their_points() {
     const CLOSE: f32 = 1e-5;
-    let [surfaces, triangles] = [SbbkDispatcher::default(), per_triangle()];
+    let [surfaces, triangles] = [every(), per_triangle()];
     let mut random = Rand32::new(5);
     let bumps = mesh::terrain(4.0, 16, 0.5);
     let split = Mesh {

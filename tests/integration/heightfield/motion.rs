@@ -1,12 +1,11 @@
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
 use rapier3d::math::{Pose, Real};
 use sbbk_lab::mesh;
 
 use super::question::Question;
 use super::terrain::{Terrain, place, rolling, terrains};
-use crate::support::{Pair, assert_same, counting, nudge, shape};
+use crate::support::{Pair, assert_same, counting, every, nudge, shape};
 
 /// Would catch candidates kept too long, cells that are not looked at again, and anything else that
 /// depends on where the pair was before. Proves that candidates were kept.
@@ -17,7 +16,7 @@ fn motion_never_differs_from_fresh_queries() {
     for (seed, is_mesh_first) in [(0, false), (1, true), (2, false), (4, true), (5, false)] {
         let terrain = &terrains[seed];
         let mut random = Rand32::new(seed as u64);
-        let (dispatcher, unaware) = (counting(), SbbkDispatcher::default());
+        let (dispatcher, unaware) = (counting(), every());
         let _tree = unaware.prepare(&head).unwrap();
         let pose = place(&mut random, terrain, &head, 0.02);
         let mut question = Question { is_mesh_first, ..Question::new(terrain, &head, pose) };
@@ -56,7 +55,7 @@ fn motion_never_differs_from_fresh_queries() {
 fn poses_that_are_none_have_no_contacts() {
     let terrain = Terrain::new(rolling(6.0, 20, 0.5));
     let head = shape(&mesh::monkey_head());
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = every();
     for broken in [Real::NAN, Real::INFINITY, -Real::INFINITY] {
         let shift = Pose::from_parts(Vec3::new(0.1, broken, 0.0), Quat::IDENTITY);
         let turn = Pose::from_parts(Vec3::ZERO, Quat::from_xyzw(broken, 0.0, 0.0, 1.0));

@@ -1,13 +1,12 @@
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::shape::{HeightField, TriMeshFlags};
 use sbbk_lab::mesh;
 
 use super::question::Question;
 use super::terrain::{Terrain, heights, place, terrains};
-use crate::support::{assert_same, fresh, per_triangle, shape, shape_with};
+use crate::support::{assert_same, every, fresh, per_triangle, shape, shape_with};
 use crate::truth::Tally;
 
 /// Would catch cells that are cut off too early, triangles that are taken for others, holes that
@@ -15,7 +14,7 @@ use crate::truth::Tally;
 /// Against brute force over all triangles in f64.
 #[test]
 fn contacts_are_those_of_brute_force() {
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = every();
     let mut random = Rand32::new(2);
     let meshes = [mesh::monkey_head_with(6), mesh::ball(0.7, 6), mesh::cuboid(Vec3::splat(0.6), 1)];
     let meshes = meshes.map(|mesh| shape(&mesh));
@@ -38,7 +37,7 @@ fn contacts_are_those_of_brute_force() {
 /// Poses on a lattice against heights on a lattice: faces in one plane, edges on edges.
 #[test]
 fn lattice_contacts_are_those_of_brute_force() {
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = every();
     let mut random = Rand32::new(3);
     let terrain = Terrain::lattice(&mut random);
     let cuboid = shape(&mesh::cuboid(Vec3::splat(0.5), 2));
@@ -84,7 +83,7 @@ fn contacts_equal_those_of_the_terrain_as_a_mesh() {
 /// A triangle with a height that is NaN or infinite is a hole; its neighbours are not.
 #[test]
 fn heights_that_are_none_make_holes() {
-    let dispatcher = SbbkDispatcher::default();
+    let dispatcher = every();
     let mut random = Rand32::new(5);
     let ball = shape(&mesh::ball(0.7, 6));
     for broken in [Real::NAN, Real::INFINITY, -Real::INFINITY] {

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use glamx::{DPose3, DVec3, Pose3, Vec3};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher, QueryDispatcher};
 use parry3d::shape::{Ball, Shape, TriMesh};
-use rapier_integration::{ContactSet, SbbkConfig, SbbkDispatcher};
+use rapier_integration::{ContactDetail, ContactSet, SbbkConfig, SbbkDispatcher};
 use sbbk_core::truth::{TruthPair, pairs_within};
 
 fn ball(radius: f32) -> TriMesh {
@@ -27,6 +27,7 @@ fn contacts_of_two_meshes_are_true() {
     const PREDICTION: f32 = 0.02;
     let mut config = SbbkConfig::default();
     config.contact_set = ContactSet::Triangles;
+    config.detail = ContactDetail::Every;
     let dispatcher = SbbkDispatcher::new(config);
     let (one, two) = (ball(1.0), ball(0.7));
     let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();

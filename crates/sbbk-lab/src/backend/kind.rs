@@ -43,8 +43,8 @@ pub enum Backend {
     AabbOnly,
     /// SBBK as a user gets it.
     Sbbk,
-    /// SBBK with a few manifolds for all contacts of a pair.
-    Patches,
+    /// SBBK with a manifold for every contact, as in stock.
+    Every,
     /// SBBK, with Parry generating the contacts of the triangles that it finds.
     SbbkParry,
 }
@@ -55,32 +55,35 @@ impl Backend {
 
     /// A fresh dispatcher, with nothing cached.
     pub fn dispatcher(self) -> Dispatcher {
-        self.having(ContactSet::Surfaces)
+        self.having(ContactSet::Surfaces, self.detail())
     }
 
     /// The same, for the contacts of each two triangles of meshes by themselves. These are what
     /// stock has, and what can be judged by brute force over all triangles.
     pub fn per_triangle(self) -> Dispatcher {
-        self.having(ContactSet::Triangles)
+        self.having(ContactSet::Triangles, ContactDetail::Every)
     }
 
     /// Whether two rigid meshes have the contacts of their surfaces.
     pub fn has_surfaces(self) -> bool {
-        matches!(self, Self::AabbOnly | Self::Sbbk | Self::Patches)
+        matches!(self, Self::AabbOnly | Self::Sbbk | Self::Every)
     }
 
-    fn having(self, contact_set: ContactSet) -> Dispatcher {
+    fn detail(self) -> ContactDetail {
+        if self == Self::Every { ContactDetail::Every } else { ContactDetail::default() }
+    }
+
+    fn having(self, contact_set: ContactSet, detail: ContactDetail) -> Dispatcher {
         let mut config = SbbkConfig::default();
         match self {
             Self::Stock => {
                 return Dispatcher { shared: Arc::new(DefaultQueryDispatcher), sbbk: None };
             }
             Self::AabbOnly => config = SbbkConfig::aabb_only(),
-            Self::Sbbk => {}
-            Self::Patches => config.detail = ContactDetail::Patches,
+            Self::Sbbk | Self::Every => {}
             Self::SbbkParry => config.contacts = ContactGenerator::Parry,
         }
-        config.contact_set = contact_set;
+        (config.contact_set, config.detail) = (contact_set, detail);
         let sbbk = SbbkDispatcher::new(config);
         Dispatcher { shared: Arc::new(sbbk.clone()), sbbk: Some(sbbk) }
     }

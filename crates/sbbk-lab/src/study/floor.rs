@@ -45,7 +45,7 @@ pub fn floor(plan: &FloorPlan, progress: &Progress) -> Results {
     let mut rows = Vec::new();
     for &heads in &plan.heads {
         let scene = MonkeyPile::with_heads(heads);
-        for backend in [Backend::Sbbk, Backend::Patches] {
+        for backend in [Backend::Sbbk, Backend::Every] {
             let steps = plan.repeats * (PilePlan::FREE_FALL + plan.steps);
             progress.phase(format!("{heads} heads, {backend}"), steps);
             let runs = (0..plan.repeats).map(|_| run(&scene, backend, plan.steps, progress));

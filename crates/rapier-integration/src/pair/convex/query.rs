@@ -5,6 +5,7 @@ use glamx::Vec3;
 use parry3d::math::Real;
 use parry3d::query::details::NormalConstraints;
 use parry3d::query::{ContactManifold, TrackedContact};
+use parry3d::shape::TriMeshFlags;
 use sbbk_core::traverse::{Counters, SlackLimits};
 use sbbk_core::volumes::rounding::gamma;
 
@@ -103,8 +104,15 @@ impl ConvexQuery<'_> {
         });
     }
 
+    /// Not with cones: they move points, so that each contact would have to be made before the choice
+    /// and once more after it (0.85 to 0.95 times as fast as stock; every contact is as fast).
     fn has_patches(&self) -> bool {
-        self.pair.has_patches && self.pair.mesh.is_rigid()
+        self.pair.has_patches && self.pair.mesh.is_rigid() && !self.has_cones()
+    }
+
+    /// Whether the mesh has cones that normals must be in.
+    pub(super) fn has_cones(&self) -> bool {
+        self.pair.mesh.mesh.flags().contains(TriMeshFlags::FIX_INTERNAL_EDGES)
     }
 
     /// A part at its place, as this query has it.

@@ -1,6 +1,5 @@
 //! Which contacts of a mesh and convex shapes are those of the surface: none at edges within it.
 
-use parry3d::shape::TriMeshFlags;
 use sbbk_core::contact::convex::ConvexContact;
 
 use super::pair::ConvexPair;
@@ -19,8 +18,7 @@ impl ConvexQuery<'_> {
     ) {
         let ConvexPair { ref mesh, has_surfaces, .. } = *self.pair;
         // Soft bodies need each triangle, and cones turn normals in their own way.
-        let has_cones = mesh.mesh.flags().contains(TriMeshFlags::FIX_INTERNAL_EDGES);
-        if !has_surfaces || has_cones || !mesh.is_rigid() {
+        if !has_surfaces || self.has_cones() || !mesh.is_rigid() {
             return;
         }
         let mut seams = std::mem::take(&mut scratch.seams);

@@ -28,8 +28,8 @@ named! {
         StockFlag = "stock + flag",
         /// SBBK, plain meshes.
         Sbbk = "sbbk",
-        /// SBBK with patches, plain meshes.
-        Patches = "patches",
+        /// SBBK with every contact, plain meshes.
+        Every = "every",
         /// SBBK, all meshes with `TriMeshFlags::FIX_INTERNAL_EDGES`.
         SbbkFlag = "sbbk + flag",
         /// Stock Rapier, convex shapes instead of the meshes, where there are such.
@@ -207,7 +207,7 @@ impl Kit {
         let backend = match self.column {
             Column::Stock | Column::StockFlag | Column::Control => Backend::Stock,
             Column::Sbbk | Column::SbbkFlag => Backend::Sbbk,
-            Column::Patches => Backend::Patches,
+            Column::Every => Backend::Every,
         };
         if let Some(sbbk) = backend.dispatcher().sbbk {
             world.narrow_phase.set_query_dispatcher(sbbk);

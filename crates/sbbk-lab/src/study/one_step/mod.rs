@@ -42,10 +42,10 @@ impl OneStepPlan {
     pub fn standard() -> Self {
         Self {
             heads: 200,
-            backends: vec![Backend::Stock, Backend::Sbbk],
+            backends: vec![Backend::Stock, Backend::Sbbk, Backend::Every],
             substeps: vec![1, 2, 4, 8, 16, 32],
             moments: vec![45, 60, 75, 90, 120, 150, 200, 300],
-            reference: Backend::Sbbk,
+            reference: Backend::Every,
             reference_substeps: 256,
         }
     }

@@ -26,7 +26,7 @@ fn value(results: &Results, engine: &str, figure: &str) -> f64 {
 fn engines_get_the_same_heads() {
     let pile = EnginePile::new(&MonkeyPile::with_heads(2));
     let folder = tempfile::tempdir().unwrap();
-    let [scene, run] = ["scene", "patches.1"].map(|name| folder.path().join(name));
+    let [scene, run] = ["scene", "sbbk.1"].map(|name| folder.path().join(name));
     pile.write(&scene).unwrap();
     assert_eq!(EnginePile::read(&scene).unwrap(), pile);
 
@@ -37,10 +37,10 @@ fn engines_get_the_same_heads() {
     assert!(properties.local_com.length() < 1e-5 && pile.inertia.max_element() > 0.1);
     assert!(pile.parts.len() > 1);
 
-    for column in [Column::Patches, Column::Control] {
+    for column in [Column::Sbbk, Column::Control] {
         pile.run(column, &run).unwrap();
-        let found = pile.judge(&[("patches".to_owned(), vec![&run])]).unwrap();
-        let figure = |name| value(&found, "patches", name);
+        let found = pile.judge(&[("sbbk".to_owned(), vec![&run])]).unwrap();
+        let figure = |name| value(&found, "sbbk", name);
         assert!((0.6..0.9).contains(&figure("mean height after 10 s")), "{found}");
         assert!(figure("energy gained, of that at the start") < 0.02, "{found}");
     }
