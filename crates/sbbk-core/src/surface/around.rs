@@ -69,15 +69,17 @@ impl Around<'_> {
             height > 0.0 && height * height > rise * rise * edge.length_squared()
         };
         let (mut height, mut has_risen) = (0.0, false);
-        self.around(triangle, feature, |_, u, v| {
-            has_risen = rises(u) || rises(v);
+        self.around(triangle, feature, |Fan { edges: [u, v], are_new, .. }| {
+            has_risen = are_new[0] && rises(u) || are_new[1] && rises(v);
             if has_risen {
                 return ControlFlow::Break(());
             }
-            height += u.cross(v).dot(direction);
+            if self.is_solid {
+                height += u.cross(v).dot(direction);
+            }
             ControlFlow::Continue(())
         });
-        let leads_in = self.is_solid && height < 0.0;
+        let leads_in = height < 0.0;
         !has_risen && !leads_in
     }
 
@@ -91,7 +93,7 @@ impl Around<'_> {
             return is_upright && height < 0.0;
         }
         let mut height = 0.0;
-        self.around(triangle, feature, |_, u, v| {
+        self.around(triangle, feature, |Fan { edges: [u, v], .. }| {
             height += u.cross(v).dot(direction);
             ControlFlow::Continue(())
         });
@@ -111,16 +113,20 @@ impl Around<'_> {
         let (mut at, mut beyond) = (highest.unwrap_or_default(), 0.0);
         while beyond < most {
             let (mut rise, mut to) = (0.0, at);
-            self.around(at / 3, Feature::Vertex((at % 3) as u8), |half_edge, u, v| {
-                for (edge, end) in [(u, next(half_edge)), (v, previous(half_edge))] {
-                    let (height, length) = (edge.dot(direction), edge.length());
-                    let is_flat = edge.dot(normal).abs() <= FLAT * length * normal.length();
-                    if is_flat && height > rise && height > RISE * length {
-                        (rise, to) = (height, end);
+            self.around(
+                at / 3,
+                Feature::Vertex((at % 3) as u8),
+                |Fan { half_edge, edges: [u, v], .. }| {
+                    for (edge, end) in [(u, next(half_edge)), (v, previous(half_edge))] {
+                        let (height, length) = (edge.dot(direction), edge.length());
+                        let is_flat = edge.dot(normal).abs() <= FLAT * length * normal.length();
+                        if is_flat && height > rise && height > RISE * length {
+                            (rise, to) = (height, end);
+                        }
                     }
-                }
-                ControlFlow::Continue(())
-            });
+                    ControlFlow::Continue(())
+                },
+            );
             if to == at {
                 break;
             }
@@ -143,25 +149,27 @@ impl Around<'_> {
         (b - a).cross(c - a)
     }
 
-    /// Visits the triangles around an edge or a vertex by their two edges from there, while it is
-    /// told to.
+    /// Visits the triangles around an edge or a vertex, the given one first, while it is told to.
     #[inline(always)]
     fn around(
         &self,
         triangle: u32,
         feature: Feature,
-        mut visit: impl FnMut(u32, DVec3, DVec3) -> ControlFlow<()>,
+        mut visit: impl FnMut(Fan) -> ControlFlow<()>,
     ) {
         let first = half_edge(triangle, feature);
         let start = self.corner(first, 0);
-        let (first_u, first_v) = (self.corner(first, 1) - start, self.corner(first, 2) - start);
-        if visit(first, first_u, first_v).is_break() {
+        let edge = |half_edge: u32, i: usize| self.corner(half_edge, i) - start;
+        let [first_u, first_v] = [1, 2].map(|i| edge(first, i));
+        let own = Fan { half_edge: first, edges: [first_u, first_v], are_new: [true; 2] };
+        if visit(own).is_break() {
             return;
         }
         if !matches!(feature, Feature::Vertex(_)) {
-            if let Some(twin) = self.twins.twin(first) {
-                let start = self.corner(twin, 0);
-                let _ = visit(twin, self.corner(twin, 1) - start, self.corner(twin, 2) - start);
+            if let Some(half_edge) = self.twins.twin(first) {
+                let start = self.corner(half_edge, 0);
+                let [u, v] = [1, 2].map(|i| self.corner(half_edge, i) - start);
+                let _ = visit(Fan { half_edge, edges: [u, v], are_new: [true; 2] });
             }
             return;
         }
@@ -171,8 +179,8 @@ impl Around<'_> {
                 return;
             }
             at = twin;
-            let v = self.corner(at, 2) - start;
-            if visit(at, u, v).is_break() {
+            let v = edge(at, 2);
+            if visit(Fan { half_edge: at, edges: [u, v], are_new: [false, true] }).is_break() {
                 return;
             }
             u = v;
@@ -181,8 +189,8 @@ impl Around<'_> {
         let (mut at, mut v) = (first, first_u);
         while let Some(twin) = self.twins.twin(at) {
             at = next(twin);
-            let u = self.corner(at, 1) - start;
-            if visit(at, u, v).is_break() {
+            let u = edge(at, 1);
+            if visit(Fan { half_edge: at, edges: [u, v], are_new: [true, false] }).is_break() {
                 return;
             }
             v = u;
@@ -195,6 +203,16 @@ impl Around<'_> {
         let triangle = self.triangles[half_edge as usize / 3];
         self.vertices[triangle[(half_edge as usize + i) % 3] as usize].as_dvec3()
     }
+}
+
+/// A triangle at an edge or a vertex.
+struct Fan {
+    /// Starts at the vertex, or at an end of the edge.
+    half_edge: u32,
+    /// Two edges of the triangle, from there.
+    edges: [DVec3; 2],
+    /// Whether no triangle before it has them too.
+    are_new: [bool; 2],
 }
 
 fn half_edge(triangle: u32, feature: Feature) -> u32 {

@@ -116,18 +116,20 @@ impl<S: Surfaces> Judge<'_, S> {
             }
             let features = [features.feature1(), features.feature2()];
             let directions = [normal, -normal];
-            let are_front = [0, 1]
-                .map(|i| is_front(i, features[i], directions[i], features[1 - i] == Feature::Face));
+            let is_in_front = |i: usize| {
+                is_front(i, features[i], directions[i], features[1 - i] == Feature::Face)
+            };
             let is_behind = |i: usize| {
                 around[i].is_some_and(|around| {
                     around.is_behind(self.pair[i], features[i], own(i, directions[i]))
                 })
             };
-            if are_front == [true; 2] {
+            let is_first_in_front = is_in_front(0);
+            if is_first_in_front && is_in_front(1) {
                 return Some(contact);
             }
             // What is in front is not behind: this spares a look.
-            let may_have_passed = has_solid && (0..2).all(|i| !(is_solid[i] && are_front[i]));
+            let may_have_passed = has_solid && !(is_solid[0] && is_first_in_front);
             let have_passed = may_have_passed && (0..2).all(|i| !is_solid[i] || is_behind(i));
             if !have_passed {
                 return None;
