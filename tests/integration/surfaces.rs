@@ -248,6 +248,51 @@ fn surfaces_have_some_of_the_contacts_of_triangles() {
     assert!(some > 500 && 3 * some < 2 * all, "{some} of {all}");
 }
 
+/// Two cubes edge to edge, and two balls. Would catch edges that are walls to each other before they are
+/// about to touch, in either order and at any prediction distance, and round bodies that lose contacts.
+#[test]
+fn edges_may_pass_each_other() {
+    let (cube, ball) = (cube(), shape(&mesh::ball(1.0, 12)));
+    let up = Vec3::new(0.0, 1.0, 1.0).normalize();
+    let turn = Quat::from_axis_angle(up, 0.5);
+    for (gap, prediction) in [(0.004, 0.02), (0.006, 0.02), (0.019, 0.02), (0.019, 0.1)] {
+        let at = |radius: Real| Pose::from_parts((2.0 * radius + gap) * up, turn);
+        let query = Query::new(&cube, &cube, at(0.5_f32.sqrt())).within(prediction);
+        let is_near = gap <= 0.25 * prediction;
+        for query in [query, query.swapped()] {
+            assert!(!fresh(&per_triangle(), &query).is_empty());
+            assert_eq!(!ask(&query).is_empty(), is_near, "{gap} within {prediction}");
+        }
+        let balls = Query::new(&ball, &ball, at(1.0 - 0.001)).within(prediction);
+        assert!(!ask(&balls).is_empty(), "{gap} within {prediction}");
+    }
+}
+
+/// A cube that leans over a floor of small triangles. Would catch its edges held up by those within the
+/// floor, along normals that are neither the floor's nor the cube's.
+#[test]
+fn edges_within_a_flat_side_hold_no_edges() {
+    let (cube, floor) = (cube(), shape(&mesh::floor(4.0, 40)));
+    let mut random = Rand32::new(17);
+    let [mut count, mut odd] = [0; 2];
+    for lean in [0.005, 0.01, 0.02, 0.04] {
+        for _ in 0..20 {
+            let turn = Quat::from_rotation_y(6.0 * random.rand_float());
+            let turn = turn * Quat::from_rotation_x(lean) * Quat::from_rotation_z(0.4 * lean);
+            let lowest = cube.vertices().iter().map(|&vertex| (turn * vertex).y).reduce(Real::min);
+            let place = nudge(&mut random, 0.3).translation.with_y(0.003 - lowest.unwrap());
+            let query = Query::new(&floor, &cube, Pose::from_parts(place, turn));
+            for Manifold { local_n1, .. } in ask(&query) {
+                let is_of_face = |normal: Vector| (local_n1 - normal).length() < 1e-5;
+                count += 1;
+                odd += usize::from(!is_of_face(Vector::Y) && !is_of_face(turn * Vector::Y));
+            }
+        }
+    }
+    // At corners of the floor's triangles that are below an edge of the cube.
+    assert!(count > 1000 && odd < count / 50, "{odd} of {count}");
+}
+
 /// Meshes that cross have a contact. Would catch bodies that fall through each other where no contact
 /// leads out.
 #[test]

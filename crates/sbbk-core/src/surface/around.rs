@@ -42,28 +42,34 @@ const RISE: f64 = 0.05;
 const RISE_TO_FACE: f64 = 0.3;
 
 /// Sine of the angle to a flat side, of triangles of it and of directions along it. Higher: a nut
-/// locks on its bolt.
+/// locks on its bolt. With [`RISE`] at edges within flat sides, of two gears at 5 rad/s one runs ahead of
+/// the other by 0.024 in place of 0.015 rad, and by 0.06 with a manifold for every contact.
 const FLAT: f64 = 1.0e-3;
 
 impl Around<'_> {
     /// Whether a unit direction leads from a feature out in front of all triangles around it: what
     /// it leads to is nowhere nearer, and of a solid it leads out. It should be that from a point of
     /// the feature to the nearest point of something else: across the face, from an edge, or from a
-    /// vertex into its Voronoi cell. `to_face` says that a face is there: it may be held up by the
-    /// feature though a neighbour is a little nearer.
+    /// vertex into its Voronoi cell. `to` is the feature that is there, if it is known. A face may be
+    /// held up by the feature though a neighbour is a little nearer; an edge by no edge within a flat
+    /// side.
     pub fn is_front(
         &self,
         triangle: u32,
         feature: Feature,
         direction: DVec3,
-        to_face: bool,
+        to: Option<Feature>,
     ) -> bool {
         if feature == Feature::Face {
             let (height, is_upright) = self.over_face(triangle, direction);
             let leads_in = self.is_solid && height < 0.0;
             return is_upright && !leads_in;
         }
-        let rise = if to_face { RISE_TO_FACE } else { RISE };
+        let rise = match (feature, to) {
+            (_, Some(Feature::Face)) => RISE_TO_FACE,
+            (Feature::Edge(_), Some(Feature::Edge(_))) if self.is_flat(triangle, feature) => FLAT,
+            _ => RISE,
+        };
         let rises = |edge: DVec3| {
             let height = edge.dot(direction);
             height > 0.0 && height * height > rise * rise * edge.length_squared()
@@ -81,6 +87,14 @@ impl Around<'_> {
         });
         let leads_in = height < 0.0;
         !has_risen && !leads_in
+    }
+
+    /// Whether the triangles at an edge are in one plane.
+    fn is_flat(&self, triangle: u32, edge: Feature) -> bool {
+        let Some(twin) = self.twins.twin(half_edge(triangle, edge)) else { return false };
+        let across = self.corner(twin, 2) - self.corner(twin, 0);
+        let normal = self.normal(triangle);
+        across.dot(normal).abs() <= FLAT * across.length() * normal.length()
     }
 
     /// Whether such a direction leads into the solid.

@@ -17,10 +17,10 @@
 //!
 //! let around = surface.around(&vertices, &triangles);
 //! // Down from the origin nothing of the solid is nearer to what is there.
-//! assert!(around.is_front(0, Feature::Vertex(0), -DVec3::ONE, false));
+//! assert!(around.is_front(0, Feature::Vertex(0), -DVec3::ONE, None));
 //! // Along this one the next vertex on the x axis is nearer.
 //! let along_x = DVec3::new(1.0, -1.0, -1.0);
-//! assert!(!around.is_front(0, Feature::Vertex(0), along_x, false));
+//! assert!(!around.is_front(0, Feature::Vertex(0), along_x, None));
 //! assert!(around.is_behind(0, Feature::Vertex(0), DVec3::ONE));
 //! ```
 

@@ -130,7 +130,7 @@ enum Side {
 
 fn side(around: &Around<'_>, triangle: u32, feature: Feature, direction: DVec3) -> Side {
     let is_behind = around.is_behind(triangle, feature, direction);
-    match around.is_front(triangle, feature, direction, false) {
+    match around.is_front(triangle, feature, direction, None) {
         true if is_behind => panic!("in front and behind"),
         true => Side::Front,
         false if is_behind => Side::Behind,
@@ -277,8 +277,8 @@ fn a_face_is_met_before_it_is_nearest() {
         (0.4, false, false),
     ] {
         let down = DVec3::new(f64::sin(lean), -f64::cos(lean), 0.0);
-        let is_front = |to_face| around.is_front(triangle, feature, down, to_face);
-        assert_eq!([is_front(false), is_front(true)], [free, to_face], "{lean}");
+        let is_front = |to| around.is_front(triangle, feature, down, to);
+        assert_eq!([is_front(None), is_front(Some(Feature::Face))], [free, to_face], "{lean}");
     }
 }
 

@@ -4,7 +4,8 @@
 //! if
 //!
 //! * apart, nothing around its points is nearer: a local minimum of the distance, which leads out
-//!   of solids. Others are of internal edges, or of walls that pass by;
+//!   of solids. Others are of internal edges, or of walls that pass by. Of sharp edges and corners
+//!   only those that are about to touch: what is farther may pass by;
 //! * crossing, it leads out of solids, and the surfaces end where the overlap does, a local minimum
 //!   of the overlap. So do triangles of solids that have passed each other.
 //!
@@ -58,6 +59,17 @@ const SHALLOW: f64 = 5.0;
 /// 36 and 173; with 0, as many from the front as from the back).
 const LEAN: f64 = 0.33;
 
+/// A contact of edges or corners that are farther from each other than this share of the prediction
+/// distance is one only if its normal is near those of both triangles. Rapier's solver lets bodies come no
+/// nearer along it in a step than they are, and sharp edges pass each other. Higher: of two gears at 5 rad/s
+/// the driver is braked to 0.991 of its speed and the other runs ahead by 0.032 rad (with 1; with 0.25 0.997
+/// and 0.015). Lower: gears run no better, and edges meet with less warning.
+const DISTANT: f64 = 0.25;
+
+/// The cosine of the greatest such angle. Higher: smooth bodies lose contacts, too; with 1 a chain under 50
+/// times its weight gains 0.062 of its energy in place of 0.009. Lower: gears are braked.
+const NEAR_NORMAL: f64 = 0.87;
+
 /// Distances below this share of their sizes do not tell on which side of each other triangles are.
 const TOUCHING: f64 = 1.0e-9;
 
@@ -97,10 +109,9 @@ impl<S: Surfaces> Judge<'_, S> {
     ) -> Option<TriangleContact> {
         let inverse = self.pose.placement12.inverse;
         let own = |i: usize, direction: DVec3| if i == 0 { direction } else { inverse * direction };
-        let is_front = |i: usize, feature: Feature, direction: DVec3, to_face: bool| {
-            let is_front = |around: Around<'_>| {
-                around.is_front(self.pair[i], feature, own(i, direction), to_face)
-            };
+        let is_front = |i: usize, feature: Feature, direction: DVec3, to: Option<Feature>| {
+            let is_front =
+                |around: Around<'_>| around.is_front(self.pair[i], feature, own(i, direction), to);
             around[i].is_none_or(is_front)
         };
         let is_solid = around.map(|around| around.is_some_and(|around| around.is_solid));
@@ -115,10 +126,15 @@ impl<S: Surfaces> Judge<'_, S> {
                 return Some(contact);
             }
             let features = [features.feature1(), features.feature2()];
+            if distance > DISTANT * f64::from(self.pose.prediction)
+                && !features.contains(&Feature::Face)
+                && local.corners.iter().any(|corners| leans(corners, normal))
+            {
+                return None;
+            }
             let directions = [normal, -normal];
-            let is_in_front = |i: usize| {
-                is_front(i, features[i], directions[i], features[1 - i] == Feature::Face)
-            };
+            let is_in_front =
+                |i: usize| is_front(i, features[i], directions[i], Some(features[1 - i]));
             let is_behind = |i: usize| {
                 around[i].is_some_and(|around| {
                     around.is_behind(self.pair[i], features[i], own(i, directions[i]))
@@ -135,7 +151,7 @@ impl<S: Surfaces> Judge<'_, S> {
                 return None;
             }
         }
-        let is_end = |i: usize, feature: Feature, axis: DVec3| is_front(i, feature, axis, false);
+        let is_end = |i: usize, feature: Feature, axis: DVec3| is_front(i, feature, axis, None);
         let [t1, t2] = &local.corners;
         let shallow = f64::from(self.pose.prediction).min(self.shapes.near());
         let greatest = SHALLOW * distance.abs().max(shallow);
@@ -211,6 +227,12 @@ impl<S: Surfaces> Judge<'_, S> {
         let point2 = self.pose.placement12.to_frame2(contact.point1, local.origin).as_vec3();
         self.shapes.is_deep(0, point1, within) || self.shapes.is_deep(1, point2, within)
     }
+}
+
+/// Whether a unit direction is far from the normals of a triangle.
+fn leans([a, b, c]: &[DVec3; 3], direction: DVec3) -> bool {
+    let normal = (*b - *a).cross(*c - *a);
+    normal.dot(direction).abs() < NEAR_NORMAL * normal.length()
 }
 
 /// The longer of two sides.

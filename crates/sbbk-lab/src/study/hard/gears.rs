@@ -1,10 +1,7 @@
 //! A gear that drives another one.
 //!
-//! At 5 rad/s contacts of edges that are one or two centimetres apart brake it: the solver lets teeth that
-//! roll past each other come no nearer across them in a step than they are. With a prediction distance of
-//! 0.005 the driver has 1.001 of its speed, with patches 0.998; with 0.05 it has 0.90 and 0.91. Convex teeth
-//! have only the nearest contact of each two. (Without contacts of two edges beyond a quarter of the
-//! prediction distance it has 0.999 and 0.997, but stacks of cubes drift by 0.013 in place of 0.005.)
+//! At 5 rad/s teeth come 8 cm far in a step, four prediction distances. The solver lets them come no nearer
+//! to each other along a contact than they are, so contacts of edges that only pass each other brake.
 
 use std::f32::consts::PI;
 
