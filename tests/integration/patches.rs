@@ -77,6 +77,7 @@ fn assert_stand_for(
                 && m.local_n2 == patch.local_n2
                 && m.subshape_pos1() == patch.subshape_pos1()
                 && m.subshape_pos2() == patch.subshape_pos2()
+                && m.points.iter().any(|point| point.dist == distance(patch))
         };
         assert!(every.iter().any(|m| is_that(&m)), "{what}: a patch of no contact");
         for point in &patch.points {

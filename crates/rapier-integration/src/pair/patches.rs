@@ -85,8 +85,10 @@ pub(super) fn write_patches<Q, M, C>(
         let places = points.iter().map(|PatchPoint { point, .. }| (point.local_p1, point.dist));
         patches.points.extend(places);
         let mut chosen = plan.outermost(&patches.points, points[0].normals[0]);
-        while let Some(&first) = chosen.first() {
-            let PatchPoint { of, normals: [local_n1, local_n2], .. } = points[first];
+        let distance = |i: &usize| points[*i].point.dist;
+        while let Some(&deepest) = chosen.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        {
+            let PatchPoint { of, normals: [local_n1, local_n2], .. } = points[deepest];
             // One that was taken has no normal.
             let like = |old: &ContactManifold<M, C>| old.local_n1.dot(local_n1);
             let likes =
