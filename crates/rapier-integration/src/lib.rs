@@ -23,6 +23,9 @@
 //!   depths and normals wrong.
 //! * Two meshes have the contacts of their *surfaces*, see below: stacks of meshes stand, gears turn,
 //!   boxes slide over the edges of a floor, and what has sunk into a body comes out again.
+//! * A pair has *patches* ([`ContactDetail::Patches`]): a few manifolds of at most four points that
+//!   carry, named after their deepest contacts. Stock has a manifold for each triangle, or each two;
+//!   [`ContactDetail::Every`] gives these.
 //! * Queries about meshes are faster, several times for two meshes; the repository's README has the
 //!   figures.
 //! * Contacts depend on the pose and the shapes alone, bit for bit. What is remembered from earlier
@@ -66,7 +69,8 @@
 //!   ([`SbbkStats::inside_out`]). A thin solid in the midst of a larger sheet goes to the
 //!   side that its middle is on, or to the front while this is little behind.
 //! * Contacts apart are local minima of the distance, so edges within a face and walls that pass by
-//!   make none. Not those that soft CCD looks at, farther than a tenth of that radius: plates turn
+//!   make none; of sharp edges and corners only those nearer than a quarter of the prediction distance,
+//!   as they may pass each other. Not those that soft CCD looks at, farther than a tenth of that radius: plates turn
 //!   before they land. Where none is nearer, they have at most four points a direction.
 //! * Surfaces that cross never stay without a contact.
 //!
@@ -105,8 +109,8 @@
 //! have Parry's contacts: these are exact at every scale, and there nothing is quicker.
 //!
 //! SBBK's contacts of a convex shape are those of [`sbbk_core::contact::convex`], computed in f64;
-//! Parry says which feature of a polyhedron, cylinder or cone faces the triangle. Manifolds are in
-//! the order of stock's. With [`ContactGenerator::Parry`] the contacts of two meshes are those of
+//! Parry says which feature of a polyhedron, cylinder or cone faces the triangle. Every contact has its
+//! manifold in the order of stock's. With [`ContactGenerator::Parry`] the contacts of two meshes are those of
 //! Parry's routine, which keeps points from step to step as it does in stock; convex shapes of
 //! every kind have those of Parry's routine asked anew.
 //!
