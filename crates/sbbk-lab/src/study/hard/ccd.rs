@@ -82,7 +82,8 @@ const STUCK: usize = 4;
 /// Plates that fly down, turned and placed in many ways. One has passed if it ends below, or if for
 /// longer than an impact its middle is in the target or a spike or an edge crosses both its faces. (An edge
 /// crosses the faces of 6 of 400 with patches, of 27 with every contact, of 203 in stock Rapier, and of 261
-/// there if plate and edge are convex shapes.)
+/// there if plate and edge are convex shapes. Rapier looks ahead by linear velocities alone: a plate that an
+/// edge has stopped and turns at 36 rad/s, 0.6 rad a step, is looked for as far as its middle moves.)
 fn plates(kit: &Kit, target: Target) -> Figures {
     const SPEED: f32 = 30.0;
     let mesh = target.mesh();
