@@ -136,12 +136,13 @@ fn field() -> SharedShape {
 /// Shapes that meet the mesh, each about 2 units across.
 fn partners() -> Vec<(&'static str, SharedShape)> {
     let part = |x: Real| (Pose::translation(x, 0.0, 0.0), SharedShape::cuboid(0.3, 0.5, 0.4));
+    let balls = [-0.3, 0.3].map(|x| (Pose::translation(x, 0.0, 0.0), SharedShape::ball(0.7)));
     let torus = mesh::torus(0.7, 0.3, 24, 12);
     vec![
         ("torus", SharedShape::new(shape(&torus))),
         ("fixed torus", SharedShape::new(shape_with(&torus, TriMeshFlags::FIX_INTERNAL_EDGES))),
         ("coarse box", SharedShape::new(shape(&mesh::cuboid(Vec3::splat(0.7), 1)))),
-        ("ball", SharedShape::ball(0.9)),
+        ("balls", SharedShape::compound(balls.to_vec())),
         ("cuboid", SharedShape::cuboid(0.8, 0.5, 0.6)),
         ("capsule", SharedShape::capsule_y(0.5, 0.4)),
         ("cylinder", SharedShape::cylinder(0.6, 0.5)),

@@ -40,7 +40,7 @@ pub enum ContactDetail {
     /// carry, and others as deep that are far from these. They are chosen before they are made; the
     /// deepest point is always among them. Bodies come to rest sooner than on every contact, of which
     /// Rapier's solver takes four by their spread alone. For exact contacts of rigid meshes; pairs of
-    /// which one may deform have every contact, and so do convex shapes on meshes with
+    /// which one may deform have every contact, and so do balls, and convex shapes on meshes with
     /// `FIX_INTERNAL_EDGES`. Of a manifold, the subshapes are those of its deepest contact.
     #[default]
     Patches,

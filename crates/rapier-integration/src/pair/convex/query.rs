@@ -104,10 +104,14 @@ impl ConvexQuery<'_> {
         });
     }
 
-    /// Not with cones: they move points, so that each contact would have to be made before the choice
-    /// and once more after it (0.85 to 0.95 times as fast as stock; every contact is as fast).
+    /// Not of a ball: it has few contacts that are of the surface, and a point of each (with patches
+    /// whole steps of balls on fine terrains were 1.47 times as fast as stock's in place of 1.84). Not with
+    /// cones: they move points, so that each contact would have to be made before the choice and once more
+    /// after it (0.85 to 0.95 times as fast as stock; every contact is as fast).
     fn has_patches(&self) -> bool {
-        self.pair.has_patches && self.pair.mesh.is_rigid() && !self.has_cones()
+        let ConvexPair { ref mesh, parts, has_patches, .. } = *self.pair;
+        let is_ball = matches!(parts, Parts::One(ConvexShape::Ball(_)));
+        has_patches && mesh.is_rigid() && !is_ball && !self.has_cones()
     }
 
     /// Whether the mesh has cones that normals must be in.
@@ -188,7 +192,7 @@ impl PairQuery for ConvexQuery<'_> {
     {
         let ConvexPair { ref mesh, parts, mesh_place, contacts, .. } = *self.pair;
         let Parts::One(shape @ ConvexShape::Ball(ball)) = parts else { return false };
-        if contacts == ContactGenerator::Parry || self.has_patches() {
+        if contacts == ContactGenerator::Parry {
             return false;
         }
         let mut contacts = std::mem::take(&mut scratch.convex_contacts[0]);
