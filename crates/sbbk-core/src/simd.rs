@@ -1,6 +1,6 @@
 //! Numbers in lanes: code that runs over one lane or four, and the layouts of nodes over four.
 
-use std::ops::{Add, BitOr, Mul, Sub};
+use std::ops::{Add, BitAnd, BitOr, Mul, Sub};
 
 use wide::f32x4;
 
@@ -10,13 +10,15 @@ pub(crate) trait Lane:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
 {
     /// A truth value a lane.
-    type Mask: Copy + BitOr<Output = Self::Mask>;
+    type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask>;
 
     fn splat(x: f32) -> Self;
     /// The smaller of two numbers; either one if one is NaN.
     fn smaller(self, other: Self) -> Self;
     /// The larger of two numbers; either one if one is NaN.
     fn larger(self, other: Self) -> Self;
+    /// One over the square root.
+    fn inverse_root(self) -> Self;
     /// False where a lane is NaN.
     fn above(self, other: Self) -> Self::Mask;
     fn all(mask: Self::Mask) -> bool;
@@ -35,6 +37,10 @@ impl Lane for f32 {
 
     fn larger(self, other: Self) -> Self {
         if self > other { self } else { other }
+    }
+
+    fn inverse_root(self) -> Self {
+        1.0 / self.sqrt()
     }
 
     fn above(self, other: Self) -> bool {
@@ -62,6 +68,11 @@ impl Lane for f32x4 {
     #[inline(always)]
     fn larger(self, other: Self) -> Self {
         self.fast_max(other)
+    }
+
+    #[inline(always)]
+    fn inverse_root(self) -> Self {
+        f32x4::splat(1.0) / self.sqrt()
     }
 
     #[inline(always)]

@@ -21,7 +21,7 @@ impl Walk<'_> {
     /// A pair of triangles that touch or cross; the first one that the walk comes across.
     pub(super) fn meeting(&self, placement: Placement) -> Option<FoundPair> {
         let mut meeting = None;
-        walk(self.0, placement, 0.0, (), &mut Vec::new(), |pair| {
+        walk(self.0, placement, 0.0, None, (), &mut Vec::new(), |pair| {
             meeting = self.pair(&placement, pair, 0.0).filter(|pair| pair.is_touching);
             if meeting.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
@@ -38,14 +38,23 @@ impl Walk<'_> {
             return if nearest.is_touching { self.deepest(placement, 0.0) } else { Some(nearest) };
         }
         let mut deepest = None::<FoundPair>;
-        walk(self.0, placement, (limit.max(0.0) as Real).next_up(), (), &mut Vec::new(), |pair| {
-            if let Some(pair) = self.pair(&placement, pair, limit)
-                && deepest.is_none_or(|deepest| pair.contact.distance < deepest.contact.distance)
-            {
-                deepest = Some(pair);
-            }
-            ControlFlow::Continue(())
-        });
+        walk(
+            self.0,
+            placement,
+            (limit.max(0.0) as Real).next_up(),
+            None,
+            (),
+            &mut Vec::new(),
+            |pair| {
+                if let Some(pair) = self.pair(&placement, pair, limit)
+                    && deepest
+                        .is_none_or(|deepest| pair.contact.distance < deepest.contact.distance)
+                {
+                    deepest = Some(pair);
+                }
+                ControlFlow::Continue(())
+            },
+        );
         deepest
     }
 

@@ -5,9 +5,11 @@
 //! of leaf 2. It is conservative and nearly exact; what survives goes to the exact test in f64
 //! ([`contact`](crate::contact)).
 
+mod beside;
 mod placed;
 mod separation;
 
+pub use beside::Beside;
 pub(crate) use placed::PlacedTest;
 
 use wide::f32x4;
@@ -15,23 +17,33 @@ use wide::f32x4;
 use crate::simd::{V3, each, each_bit};
 use crate::traverse::PairFrame;
 use crate::tree::LeafBatch;
+use beside::beside;
 use separation::{Corners, LeafFrame, apart, apart_by_centroids};
 
 /// Tests pairs of leaves at one pose. Made once a query.
 #[derive(Copy, Clone)]
-pub struct LeafTest(LeafFrame);
+pub struct LeafTest {
+    frame: LeafFrame,
+    beside: Option<Beside>,
+}
 
 impl LeafTest {
     /// For the pose and margin of `frame`.
     pub fn new<const AXES: usize>(frame: &PairFrame<AXES>) -> Self {
-        Self(LeafFrame::new(frame))
+        Self { frame: LeafFrame::new(frame), beside: None }
     }
 
     /// The same test with another margin.
     #[inline]
     #[must_use]
     pub fn within(&self, margin: f32) -> Self {
-        Self(self.0.within(margin))
+        Self { frame: self.frame.within(margin), ..*self }
+    }
+
+    /// The same test without pairs that are `beside` each other.
+    #[must_use]
+    pub fn without(self, beside: Option<Beside>) -> Self {
+        Self { beside, ..self }
     }
 
     /// Calls `found(lane1, lane2)` for the pairs of triangles that no axis separates by more than
@@ -43,7 +55,14 @@ impl LeafTest {
         batch2: &LeafBatch,
         found: impl FnMut(usize, usize),
     ) {
-        self.not_apart(batch1, batch2, apart, found);
+        let Some(no_use) = &self.beside else {
+            return self.not_apart(batch1, batch2, apart, found);
+        };
+        let test = |frame: &LeafFrame, one: &Corners<f32x4>, two: &Corners<f32x4>| {
+            let apart = apart(frame, one, two);
+            if apart.all() { apart } else { apart | beside(no_use, frame, one, two) }
+        };
+        self.not_apart(batch1, batch2, test, found);
     }
 
     /// As [`survivors`](Self::survivors), with one more axis, for triangles that may be far apart
@@ -71,7 +90,7 @@ impl LeafTest {
         test: impl Fn(&LeafFrame, &Corners<f32x4>, &Corners<f32x4>) -> f32x4,
         mut found: impl FnMut(usize, usize),
     ) {
-        let frame = &self.0;
+        let frame = &self.frame;
         let two = Corners::from_frame2(frame, batch2.lanes());
         let used = used(batch2);
         for lane1 in 0..batch1.count() {
@@ -94,7 +113,10 @@ impl LeafTest {
         for lane1 in 0..batch1.count() {
             let one = Corners::new(one_lane(batch1, lane1));
             for lane2 in 0..batch2.count() {
-                if !apart(&self.0, &one, &Corners::from_frame2(&self.0, one_lane(batch2, lane2))) {
+                let two = Corners::from_frame2(&self.frame, one_lane(batch2, lane2));
+                let is_of_no_use = |no_use| beside(no_use, &self.frame, &one, &two);
+                let no_use = self.beside.as_ref();
+                if !apart(&self.frame, &one, &two) && !no_use.is_some_and(is_of_no_use) {
                     found(lane1, lane2);
                 }
             }

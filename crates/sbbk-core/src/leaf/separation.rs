@@ -30,14 +30,14 @@ use crate::traverse::{PairFrame, Placement};
 
 /// What products of tiny numbers lose to underflow: a few times 2⁻¹⁴⁹ a term, in the squares next
 /// to nothing for larger gaps.
-const UNDERFLOW: f32 = f32::MIN_POSITIVE;
+pub(super) const UNDERFLOW: f32 = f32::MIN_POSITIVE;
 
 /// The pose and margin of a pair of trees, for the leaves.
 #[derive(Copy, Clone)]
 pub(super) struct LeafFrame {
     rotation: [[f32; 3]; 3],
     translation: [f32; 3],
-    rounding: f32,
+    pub(super) rounding: f32,
     margin: f32,
 }
 
@@ -73,8 +73,8 @@ impl LeafFrame {
 #[derive(Copy, Clone)]
 pub(super) struct Corners<L> {
     corners: [V3<L>; 3],
-    min: V3<L>,
-    max: V3<L>,
+    pub(super) min: V3<L>,
+    pub(super) max: V3<L>,
 }
 
 impl<L: Lane> Corners<L> {
@@ -155,7 +155,7 @@ pub(super) fn apart<L: Lane>(frame: &LeafFrame, one: &Corners<L>, two: &Corners<
 
 /// The corners of both triangles from a corner of triangle 1.
 #[inline(always)]
-fn from_corner<L: Lane>(one: &Corners<L>, two: &Corners<L>) -> [[V3<L>; 3]; 2] {
+pub(super) fn from_corner<L: Lane>(one: &Corners<L>, two: &Corners<L>) -> [[V3<L>; 3]; 2] {
     let origin = one.corners[0];
     let from_origin = |triangle: &Corners<L>| each(|i| sub(triangle.corners[i], origin));
     [from_origin(one), from_origin(two)]

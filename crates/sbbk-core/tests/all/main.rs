@@ -1,6 +1,7 @@
 //! All tests of the crate's interface, in one binary.
 
 mod allowances;
+mod beside;
 mod broad_phase;
 mod contact_truth;
 mod convex_contact;

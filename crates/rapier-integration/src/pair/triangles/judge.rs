@@ -16,6 +16,7 @@ use glamx::DVec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Real, Vector};
 use sbbk_core::contact::{Feature, ManifoldPoints, TriangleContact, outward};
+use sbbk_core::leaf::Beside;
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::Around;
 
@@ -81,6 +82,17 @@ pub(super) struct Judge<'a, S> {
 }
 
 impl<S: Surfaces> Judge<'_, S> {
+    /// Which pairs of triangles, of those that a descent within `margin` finds, only
+    /// [pass by](Self::passes_by) while it serves.
+    pub(super) fn beside(shapes: &S, prediction: Real, margin: Real) -> Option<Beside> {
+        let has_surface = (0..2).any(|i| shapes.around(i).is_some());
+        let is_near = f64::from(prediction) <= shapes.near();
+        (has_surface && is_near).then(|| {
+            let travel = margin - prediction;
+            Beside::new(DISTANT as Real * prediction, NEAR_NORMAL as Real, prediction, travel)
+        })
+    }
+
     /// The contact of the surfaces that the contact of their triangles stands for, if there is one:
     /// perhaps only in a second round. `points` stays empty if it is the same. Else it can be deeper
     /// than its points, as a flat side goes on beyond a triangle.
@@ -97,6 +109,14 @@ impl<S: Surfaces> Judge<'_, S> {
             [None, None] => Some(contact),
             around => self.by_surfaces(around, local, contact, regions, points),
         }
+    }
+
+    /// Whether edges or corners are far from each other, and may pass each other.
+    fn passes_by(&self, local: &TrianglePair, contact: &TriangleContact) -> bool {
+        let TriangleContact { normal, distance, features, .. } = *contact;
+        distance > DISTANT * f64::from(self.pose.prediction)
+            && ![features.feature1(), features.feature2()].contains(&Feature::Face)
+            && local.corners.iter().any(|corners| leans(corners, normal))
     }
 
     fn by_surfaces(
@@ -125,13 +145,10 @@ impl<S: Surfaces> Judge<'_, S> {
             if distance > self.shapes.near() {
                 return Some(contact);
             }
-            let features = [features.feature1(), features.feature2()];
-            if distance > DISTANT * f64::from(self.pose.prediction)
-                && !features.contains(&Feature::Face)
-                && local.corners.iter().any(|corners| leans(corners, normal))
-            {
+            if self.passes_by(local, &contact) {
                 return None;
             }
+            let features = [features.feature1(), features.feature2()];
             let directions = [normal, -normal];
             let is_in_front =
                 |i: usize| is_front(i, features[i], directions[i], Some(features[1 - i]));
@@ -238,4 +255,79 @@ fn leans([a, b, c]: &[DVec3; 3], direction: DVec3) -> bool {
 /// The longer of two sides.
 fn size([a, b, c]: &[DVec3; 3]) -> f64 {
     (*b - *a).length().max((*c - *a).length())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use parry3d::math::Pose;
+    use parry3d::shape::{Ball, SharedShape, TriMesh};
+    use sbbk_core::contact::contact;
+    use sbbk_core::tree::BuildOptions;
+
+    use super::*;
+    use crate::ContactGenerator;
+    use crate::mesh::TreeCache;
+    use crate::pair::driver::{Pair, Scratch};
+    use crate::pair::triangles::MeshPair;
+    use crate::pair::triangles::exact::local_pair;
+    use crate::pair::triangles::query::TriangleShapes;
+
+    /// Rough balls of triangles about as large as the prediction distance, with trees and without,
+    /// apart and crossing. Would catch contacts lost among what [`Judge::beside`] leaves out.
+    #[test]
+    fn triangles_beside_each_other_pass_by() {
+        let cache = Arc::new(TreeCache::new(BuildOptions::default(), 1 << 30));
+        let shapes = [20, 30].map(|rows| {
+            let (mut vertices, triangles) = Ball::new(1.0).to_trimesh(2 * rows, rows);
+            for (i, vertex) in (0_u32..).zip(&mut vertices) {
+                *vertex *= 1.0 + 0.002 * (i * i % 31) as Real;
+            }
+            SharedShape::new(TriMesh::new(vertices, triangles).unwrap())
+        });
+        let meshes = shapes.each_ref().map(|shape| shape.as_trimesh().unwrap());
+        let seen = meshes.map(|mesh| cache.look_at(mesh).unwrap());
+        let mut counts = [0; 2];
+        for (i, gap) in [(1, 0.03), (2, 0.0), (3, -0.03), (4, -0.06)] {
+            let turn = Vector::new(0.3, 0.1 * i as Real, 0.7);
+            let place = turn.normalize() * (2.06 + gap);
+            let pose = PairPose::new(&Pose::new(place, turn), 0.08);
+            let mesh_pair = MeshPair {
+                pose: &pose,
+                meshes: seen,
+                contacts: ContactGenerator::Exact,
+                has_surfaces: true,
+                has_patches: false,
+            };
+            for has_trees in [false, true] {
+                let registered = has_trees
+                    .then(|| [0, 1].map(|i| cache.register(&shapes[i], meshes[i]).unwrap()));
+                let mut known = Default::default();
+                let shapes = mesh_pair.open(&cache, &mut known).1.shapes;
+                let mut found = Vec::new();
+                let scratch = &mut Scratch::default();
+                shapes.descend(pose.prediction, &mut (), scratch, &mut found);
+                let mut found: Vec<_> = found.into_iter().map(|(_, pair)| pair).collect();
+                found.sort_unstable();
+                let count = meshes.map(|mesh| mesh.indices().len() as u32);
+                for pair in (0..count[0]).flat_map(|i| (0..count[1]).map(move |j| [i, j])) {
+                    let local = local_pair(&pose.placement12, &shapes.triangles(pair).unwrap());
+                    let [t1, t2] = &local.corners;
+                    if t1[0].distance(t2[0]) > 1.0 {
+                        continue;
+                    }
+                    let contact = contact(t1, t2, f64::from(pose.prediction));
+                    let Some(contact) = contact else { continue };
+                    let judge = Judge { shapes: &shapes, pose: &pose, pair };
+                    let passes_by = judge.passes_by(&local, &contact);
+                    let is_found = found.binary_search(&pair).is_ok();
+                    assert!(is_found || passes_by, "{pair:?}, {contact:?}");
+                    counts[usize::from(is_found)] += 1;
+                }
+                drop(registered);
+            }
+        }
+        assert!(counts.into_iter().all(|count| count > 500), "{counts:?}");
+    }
 }

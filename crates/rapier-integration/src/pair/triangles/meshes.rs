@@ -14,7 +14,7 @@ use sbbk_core::tree::LeafBatch;
 
 use super::exact::Constraints;
 use super::inside::{BEHIND, nearest};
-use super::judge::Surfaces;
+use super::judge::{Judge, Surfaces};
 use super::query::{Hint, TriangleQuery, TriangleShapes};
 use super::walk::walk;
 use crate::ContactGenerator;
@@ -132,10 +132,11 @@ impl TriangleShapes for Meshes<'_> {
         found: &mut Vec<(OrderKey, [u32; 2])>,
     ) {
         let placement12 = self.pair.pose.placement12;
+        let beside = Judge::beside(self, self.pair.pose.prediction, margin);
         let Some(prepared) = self.trees else {
             let meshes = self.pair.meshes.each_ref();
             let near = &mut scratch.near;
-            walk(meshes, placement12, margin, counters, near, |pair| {
+            walk(meshes, placement12, margin, beside, counters, near, |pair| {
                 found.push((OrderKey::default(), pair));
                 ControlFlow::Continue(())
             });
@@ -149,7 +150,7 @@ impl TriangleShapes for Meshes<'_> {
         };
         let trees = (&prepared[0].tree, &prepared[1].tree);
         let mut frame = PairFrame::at(trees, placement12, margin);
-        let (test, stack) = (LeafTest::new(&frame), &mut scratch.descent);
+        let (test, stack) = (LeafTest::new(&frame).without(beside), &mut scratch.descent);
         let mut collector = Collector(|batch1: &LeafBatch, batch2: &LeafBatch| {
             test.survivors(batch1, batch2, |lane1, lane2| {
                 let pair = [batch1.triangles()[lane1], batch2.triangles()[lane2]];

@@ -11,18 +11,19 @@ use std::cell::Cell;
 use std::ops::ControlFlow;
 
 use arrayvec::ArrayVec;
-use sbbk_core::leaf::LeafTest;
+use sbbk_core::leaf::{Beside, LeafTest};
 use sbbk_core::traverse::{BoxTest, Counters, NearBox, PairFrame, Placement, TestedBox};
 use sbbk_core::tree::{BATCH, LeafBatch};
 
 use crate::mesh::Hierarchy;
 
-/// Calls `found` with all pairs of triangles within `margin`, and few others, in any order, until it
-/// has enough. `near` is memory.
+/// Calls `found` with all pairs of triangles within `margin` but those `beside` each other, and few
+/// others, in any order, until it has enough. `near` is memory.
 pub(crate) fn walk(
     [mesh1, mesh2]: [&Hierarchy<'_>; 2],
     placement12: Placement,
     margin: f32,
+    beside: Option<Beside>,
     mut counters: impl Counters,
     near: &mut Vec<u32>,
     mut found: impl FnMut([u32; 2]) -> ControlFlow<()>,
@@ -30,9 +31,9 @@ pub(crate) fn walk(
     let tested = Cell::new(0);
     if mesh1.size_squared() < mesh2.size_squared() {
         let found = |[two, one]: [u32; 2]| found([one, two]);
-        walk_larger([mesh2, mesh1], placement12.inverted(), margin, &tested, near, found);
+        walk_larger([mesh2, mesh1], placement12.inverted(), margin, beside, &tested, near, found);
     } else {
-        walk_larger([mesh1, mesh2], placement12, margin, &tested, near, found);
+        walk_larger([mesh1, mesh2], placement12, margin, beside, &tested, near, found);
     }
     counters.aabb_tests(tested.get());
 }
@@ -42,6 +43,7 @@ fn walk_larger(
     [mesh1, mesh2]: [&Hierarchy<'_>; 2],
     placement12: Placement,
     margin: f32,
+    beside: Option<Beside>,
     tested: &Cell<u32>,
     near1: &mut Vec<u32>,
     mut found: impl FnMut([u32; 2]) -> ControlFlow<()>,
@@ -70,7 +72,7 @@ fn walk_larger(
     let margin2 = ((f64::from(margin) / scale) as f32).next_up();
     let in_frame2 = BoxTest::new([m2, m1], &placement12.inverted(), margin2);
     let frame: PairFrame = PairFrame::within([m1, m2], placement12, margin);
-    let test = LeafTest::new(&frame);
+    let test = LeafTest::new(&frame).without(beside);
     let _ = near1.chunks(BATCH).try_for_each(|triangles| {
         let batch1 = LeafBatch::gather(triangles, |triangle| mesh1.corners(triangle));
         let group = in_frame2.of(mesh1.tested(triangles));
