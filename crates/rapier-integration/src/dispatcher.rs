@@ -284,7 +284,8 @@ impl SbbkDispatcher {
                 ConvexPair { pose, mesh, parts, mesh_place, contacts, has_surfaces, has_patches };
             self.ask(&pair, manifolds, workspace)
         } else if let Some(field) = field {
-            let pair = FieldPair { pose, mesh, field, mesh_place, contacts, has_patches };
+            let pair =
+                FieldPair { pose, mesh, field, mesh_place, contacts, has_surfaces, has_patches };
             self.ask(&pair, manifolds, workspace)
         } else {
             Answer::Unsupported

@@ -7,13 +7,13 @@ use sbbk_lab::mesh;
 
 use super::question::Question;
 use super::terrain::{Terrain, place};
-use crate::support::{Manifold, assert_same, every, shape_with};
+use crate::support::{Manifold, assert_same, per_triangle, shape_with};
 
 /// Would catch constraints of a neighbour, of the wrong shape or none at all: each manifold is the
 /// one that the generator makes of its two triangles and their cones.
 #[test]
 fn internal_edges_of_the_field_are_fixed() {
-    let dispatcher = every();
+    let dispatcher = per_triangle();
     let mut random = Rand32::new(6);
     let mut terrain = Terrain::random(&mut random, [14, 17], Vec3::new(6.0, 0.6, 4.0));
     let mesh = shape_with(&mesh::monkey_head_with(6), TriMeshFlags::FIX_INTERNAL_EDGES);

@@ -1,12 +1,14 @@
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
+use rapier_integration::SurfaceKind;
 use rapier3d::math::{Pose, Real};
-use rapier3d::parry::shape::{HeightField, TriMeshFlags};
+use rapier3d::parry::query::PointQuery;
+use rapier3d::parry::shape::{HeightField, TriMeshFlags, Triangle};
 use sbbk_lab::mesh;
 
 use super::question::Question;
 use super::terrain::{Terrain, heights, place, terrains};
-use crate::support::{assert_same, every, fresh, per_triangle, shape, shape_with};
+use crate::support::{assert_same, distance, every, fresh, per_triangle, shape, shape_with};
 use crate::truth::Tally;
 
 /// Would catch cells that are cut off too early, triangles that are taken for others, holes that
@@ -14,7 +16,7 @@ use crate::truth::Tally;
 /// Against brute force over all triangles in f64.
 #[test]
 fn contacts_are_those_of_brute_force() {
-    let dispatcher = every();
+    let dispatcher = per_triangle();
     let mut random = Rand32::new(2);
     let meshes = [mesh::monkey_head_with(6), mesh::ball(0.7, 6), mesh::cuboid(Vec3::splat(0.6), 1)];
     let meshes = meshes.map(|mesh| shape(&mesh));
@@ -37,7 +39,7 @@ fn contacts_are_those_of_brute_force() {
 /// Poses on a lattice against heights on a lattice: faces in one plane, edges on edges.
 #[test]
 fn lattice_contacts_are_those_of_brute_force() {
-    let dispatcher = every();
+    let dispatcher = per_triangle();
     let mut random = Rand32::new(3);
     let terrain = Terrain::lattice(&mut random);
     let cuboid = shape(&mesh::cuboid(Vec3::splat(0.5), 2));
@@ -80,10 +82,61 @@ fn contacts_equal_those_of_the_terrain_as_a_mesh() {
     assert!(count > 5000, "{count} contacts");
 }
 
+/// The same of surfaces, where a terrain is the top of a solid. Would catch neighbours other than
+/// those of the mesh, holes taken for ground, a top that is below, and corners in another order.
+///
+/// Of meshes whose middle is above the ground: to an open mesh, nothing is wholly inside. And without
+/// contacts deeper than five prediction distances, that hang on which one of several nearest triangles
+/// is looked at.
+#[test]
+fn surfaces_are_those_of_the_terrain_as_a_solid() {
+    let mut random = Rand32::new(6);
+    let meshes = [mesh::monkey_head(), mesh::cuboid(Vec3::splat(0.6), 4), mesh::ball(0.7, 12)];
+    let meshes = meshes.map(|mesh| shape(&mesh));
+    let (mut count, mut deep, mut fewer) = (0, 0, 0);
+    for terrain in &terrains() {
+        let has_top = terrain.field.scale().x > 0.0;
+        let dispatcher = every();
+        let prepared = dispatcher.prepare(&terrain.mesh).unwrap();
+        prepared.bounds(if has_top { SurfaceKind::Solid } else { SurfaceKind::Sheet });
+        for i in 0..60 {
+            let mesh = &meshes[i % 3];
+            let depth = [0.05, -0.01, 0.005][i / 3 % 3];
+            let pose = place(&mut random, terrain, mesh, depth);
+            if is_under(terrain, pose * mesh.local_aabb().center()) {
+                continue;
+            }
+            let question = Question::new(terrain, mesh, pose);
+            let question = Question { is_mesh_first: i % 2 == 1, ..question };
+            let mut found = question.renumbered(&question.fresh(&dispatcher));
+            let mut expected = fresh(&dispatcher, &question.of_meshes());
+            fewer += question.fresh(&per_triangle()).len().saturating_sub(found.len());
+            for manifolds in [&mut found, &mut expected] {
+                let all = manifolds.len();
+                manifolds.retain(|manifold| distance(manifold) > -5.0 * question.prediction);
+                deep += all - manifolds.len();
+                manifolds.sort_by_key(|manifold| [manifold.subshape1, manifold.subshape2]);
+            }
+            assert_same(&found, &expected, 0.0);
+            count += found.len();
+        }
+    }
+    assert!(count > 2000 && deep < count / 2, "{count} contacts, {deep} deep");
+    assert!(fewer > count, "{fewer} fewer than of triangles");
+}
+
+/// Whether a point is behind the triangle of a terrain that is nearest to it.
+fn is_under(terrain: &Terrain, point: Vec3) -> bool {
+    let distance = |triangle: &Triangle| triangle.distance_to_local_point(point, false);
+    let triangles = terrain.mesh.triangles();
+    let nearest = triangles.min_by(|one, two| distance(one).total_cmp(&distance(two))).unwrap();
+    nearest.normal().is_some_and(|normal| normal.dot(point - nearest.a) < 0.0)
+}
+
 /// A triangle with a height that is NaN or infinite is a hole; its neighbours are not.
 #[test]
 fn heights_that_are_none_make_holes() {
-    let dispatcher = every();
+    let dispatcher = per_triangle();
     let mut random = Rand32::new(5);
     let ball = shape(&mesh::ball(0.7, 6));
     for broken in [Real::NAN, Real::INFINITY, -Real::INFINITY] {

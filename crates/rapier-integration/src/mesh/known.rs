@@ -1,7 +1,7 @@
 use std::sync::{Arc, OnceLock};
 
 use parry3d::shape::{CompositeShape, TriMesh};
-use sbbk_core::surface::{Around, SurfaceKind};
+use sbbk_core::surface::{Around, MeshFacets, SurfaceKind, Twins};
 
 use super::cache::{PreparedRef, TreeCache};
 use super::hierarchy::Hierarchy;
@@ -88,6 +88,24 @@ impl KnownMesh {
         mesh: &'a TriMesh,
         cache: &'a Arc<TreeCache>,
     ) -> Option<Known<'a>> {
+        self.look(mesh, cache, true)
+    }
+
+    /// The same for a pair that has no use for a tree.
+    pub(crate) fn look_around<'a>(
+        &'a mut self,
+        mesh: &'a TriMesh,
+        cache: &'a Arc<TreeCache>,
+    ) -> Option<MeshSurface<'a>> {
+        Some(self.look(mesh, cache, false)?.surface)
+    }
+
+    fn look<'a>(
+        &'a mut self,
+        mesh: &'a TriMesh,
+        cache: &'a Arc<TreeCache>,
+        wants_tree: bool,
+    ) -> Option<Known<'a>> {
         /// Queries from one try to the next. More: trees come later; fewer: each costs two locks.
         const PATIENCE: u8 = 7;
         let Self::Rigid { entry, wait, is_whole, neighbours, .. } = self else {
@@ -106,12 +124,13 @@ impl KnownMesh {
                         *is_whole = cache.is_small(mesh);
                         None
                     }
+                    None if !wants_tree => None,
                     None if *is_whole => Some(cache.know(mesh)),
                     None => cache.recognise(mesh),
                 };
                 *entry = found.map(OnceLock::from).unwrap_or_default();
             }
-            if let Some(entry) = entry.get() {
+            if let Some(entry) = entry.get().filter(|_| wants_tree) {
                 cache.afford(mesh, entry);
             }
             *wait = if is_first { 0 } else { PATIENCE - 1 };
@@ -145,15 +164,16 @@ pub(crate) enum MeshSurface<'a> {
 impl MeshSurface<'_> {
     /// The surface of `mesh`, which must be this one.
     #[inline]
-    pub(crate) fn around<'a>(&'a self, mesh: &'a TriMesh) -> Around<'a> {
-        let (vertices, triangles) = (mesh.vertices(), mesh.indices());
-        match self {
+    pub(crate) fn around<'a>(&'a self, mesh: &'a TriMesh) -> Around<MeshFacets<'a>> {
+        let (twins, is_solid): (&dyn Twins, bool) = match self {
             Self::Whole { entry, cache } => {
                 let (twins, kind) = entry.get_or_init(|| cache.know(mesh)).surface(mesh);
-                Around { twins, is_solid: kind == SurfaceKind::Solid, vertices, triangles }
+                (twins, kind == SurfaceKind::Solid)
             }
-            Self::Near(twins) => Around { twins, is_solid: false, vertices, triangles },
-        }
+            Self::Near(twins) => (twins, false),
+        };
+        let facets = MeshFacets { twins, vertices: mesh.vertices(), triangles: mesh.indices() };
+        Around { facets, is_solid }
     }
 }
 

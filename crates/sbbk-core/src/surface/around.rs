@@ -12,6 +12,12 @@ pub trait Twins {
     fn twin(&self, half_edge: u32) -> Option<u32>;
 }
 
+/// The triangles of a surface, and where they are: of a mesh, or of what has no list of them.
+pub trait Facets: Twins {
+    /// A corner of the triangle of a half-edge, counted from its start.
+    fn corner(&self, half_edge: u32, i: usize) -> DVec3;
+}
+
 impl Twins for Surface {
     #[inline]
     fn twin(&self, half_edge: u32) -> Option<u32> {
@@ -19,17 +25,39 @@ impl Twins for Surface {
     }
 }
 
-/// A mesh and how its triangles hang together.
+/// The triangles of a mesh, and how they hang together.
 #[derive(Clone, Copy)]
-pub struct Around<'a> {
+pub struct MeshFacets<'a> {
     /// The neighbours of the triangles of this mesh.
     pub twins: &'a dyn Twins,
-    /// Whether the mesh is a solid.
-    pub is_solid: bool,
     /// The vertices of the mesh.
     pub vertices: &'a [Vec3],
     /// The triangles of the mesh.
     pub triangles: &'a [[u32; 3]],
+}
+
+impl Twins for MeshFacets<'_> {
+    #[inline(always)]
+    fn twin(&self, half_edge: u32) -> Option<u32> {
+        self.twins.twin(half_edge)
+    }
+}
+
+impl Facets for MeshFacets<'_> {
+    #[inline(always)]
+    fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
+        let triangle = self.triangles[half_edge as usize / 3];
+        self.vertices[triangle[(half_edge as usize + i) % 3] as usize].as_dvec3()
+    }
+}
+
+/// A surface, seen from its triangles.
+#[derive(Clone, Copy)]
+pub struct Around<F> {
+    /// The triangles.
+    pub facets: F,
+    /// Whether the surface bounds a solid.
+    pub is_solid: bool,
 }
 
 /// How far a neighbour may rise towards a direction before it is nearer, as a sine. Higher: bodies
@@ -46,7 +74,7 @@ const RISE_TO_FACE: f64 = 0.3;
 /// the other by 0.024 in place of 0.015 rad, and by 0.06 with a manifold for every contact.
 const FLAT: f64 = 1.0e-3;
 
-impl Around<'_> {
+impl<F: Facets> Around<F> {
     /// Whether a unit direction leads from a feature out in front of all triangles around it: what
     /// it leads to is nowhere nearer, and of a solid it leads out. It should be that from a point of
     /// the feature to the nearest point of something else: across the face, from an edge, or from a
@@ -91,7 +119,7 @@ impl Around<'_> {
 
     /// Whether the triangles at an edge are in one plane.
     fn is_flat(&self, triangle: u32, edge: Feature) -> bool {
-        let Some(twin) = self.twins.twin(half_edge(triangle, edge)) else { return false };
+        let Some(twin) = self.facets.twin(half_edge(triangle, edge)) else { return false };
         let across = self.corner(twin, 2) - self.corner(twin, 0);
         let normal = self.normal(triangle);
         across.dot(normal).abs() <= FLAT * across.length() * normal.length()
@@ -180,7 +208,7 @@ impl Around<'_> {
             return;
         }
         if !matches!(feature, Feature::Vertex(_)) {
-            if let Some(half_edge) = self.twins.twin(first) {
+            if let Some(half_edge) = self.facets.twin(first) {
                 let start = self.corner(half_edge, 0);
                 let [u, v] = [1, 2].map(|i| self.corner(half_edge, i) - start);
                 let _ = visit(Fan { half_edge, edges: [u, v], are_new: [true; 2] });
@@ -188,7 +216,7 @@ impl Around<'_> {
             return;
         }
         let (mut at, mut u) = (first, first_v);
-        while let Some(twin) = self.twins.twin(previous(at)) {
+        while let Some(twin) = self.facets.twin(previous(at)) {
             if twin == first {
                 return;
             }
@@ -201,7 +229,7 @@ impl Around<'_> {
         }
         // A border: on from the other side.
         let (mut at, mut v) = (first, first_u);
-        while let Some(twin) = self.twins.twin(at) {
+        while let Some(twin) = self.facets.twin(at) {
             at = next(twin);
             let u = edge(at, 1);
             if visit(Fan { half_edge: at, edges: [u, v], are_new: [true, false] }).is_break() {
@@ -211,11 +239,9 @@ impl Around<'_> {
         }
     }
 
-    /// A corner of the triangle of a half-edge, counted from its start.
     #[inline(always)]
     fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
-        let triangle = self.triangles[half_edge as usize / 3];
-        self.vertices[triangle[(half_edge as usize + i) % 3] as usize].as_dvec3()
+        self.facets.corner(half_edge, i)
     }
 }
 

@@ -28,7 +28,7 @@ mod around;
 mod kind;
 mod twins;
 
-pub use around::{Around, Twins};
+pub use around::{Around, Facets, MeshFacets, Twins};
 pub use kind::SurfaceKind;
 
 use glamx::Vec3;
@@ -61,8 +61,13 @@ impl Surface {
     }
 
     /// With the mesh that it is of.
-    pub fn around<'a>(&'a self, vertices: &'a [Vec3], triangles: &'a [[u32; 3]]) -> Around<'a> {
-        Around { twins: self, is_solid: self.kind == SurfaceKind::Solid, vertices, triangles }
+    pub fn around<'a>(
+        &'a self,
+        vertices: &'a [Vec3],
+        triangles: &'a [[u32; 3]],
+    ) -> Around<MeshFacets<'a>> {
+        let facets = MeshFacets { twins: self, vertices, triangles };
+        Around { facets, is_solid: self.kind == SurfaceKind::Solid }
     }
 
     /// Memory, with this value but without the mesh itself.

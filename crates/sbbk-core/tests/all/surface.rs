@@ -5,7 +5,7 @@ use std::f32::consts::{FRAC_PI_2, PI, TAU};
 use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
 use glamx::{DVec3, Quat, Vec3};
 use sbbk_core::contact::Feature;
-use sbbk_core::surface::{Around, Surface, SurfaceKind, Twins};
+use sbbk_core::surface::{Around, Facets, Surface, SurfaceKind, Twins};
 
 use SurfaceKind::{InsideOut, Sheet, Solid};
 
@@ -128,7 +128,7 @@ enum Side {
     Beside,
 }
 
-fn side(around: &Around<'_>, triangle: u32, feature: Feature, direction: DVec3) -> Side {
+fn side(around: &Around<impl Facets>, triangle: u32, feature: Feature, direction: DVec3) -> Side {
     let is_behind = around.is_behind(triangle, feature, direction);
     match around.is_front(triangle, feature, direction, None) {
         true if is_behind => panic!("in front and behind"),
@@ -563,12 +563,8 @@ fn a_flat_side_goes_on_to_its_end() {
         mesh.triangles.extend([[a, a + 1, b + 1], [a, b + 1, b]]);
     }
     let surface = Surface::new(&mesh.vertices, &mesh.triangles);
-    let around = Around {
-        twins: &surface,
-        is_solid: false,
-        vertices: &mesh.vertices,
-        triangles: &mesh.triangles,
-    };
+    let around = surface.around(&mesh.vertices, &mesh.triangles);
+    let around = Around { is_solid: false, ..around };
     for triangle in 0..2 * CELLS * (CELLS - 1) {
         let top = 1 + triangle / (2 * CELLS);
         let beyond = |direction, most| around.side_beyond(triangle, direction, most);

@@ -1,12 +1,16 @@
-use glamx::Vec3;
-use parry3d::shape::{HeightField, Triangle};
+use glamx::{DVec3, Vec3};
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::math::{Real, Vector};
+use parry3d::query::PointQuery;
+use parry3d::shape::{HeightField, HeightFieldCellStatus, Triangle};
 use sbbk_core::field::{FieldTriangle, HeightGrid};
+use sbbk_core::surface::{Facets, Twins};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// Parry's height field as the descent sees it. What Parry calls rows lies along z, columns along
 /// x.
 #[derive(Copy, Clone)]
-pub(super) struct Field<'a>(pub(super) &'a HeightField);
+pub(crate) struct Field<'a>(pub(super) &'a HeightField);
 
 impl Field<'_> {
     /// Parry's number of a triangle: left ones first, along z, then x.
@@ -15,11 +19,51 @@ impl Field<'_> {
         (cell + side * self.cell_count()) as u32
     }
 
+    /// The reverse of [`id`](Self::id).
+    fn of_id(self, id: u32) -> FieldTriangle {
+        let (cell, side) = (id as usize % self.cell_count(), id as usize / self.cell_count());
+        FieldTriangle { cell: [cell / self.0.nrows(), cell % self.0.nrows()], side }
+    }
+
+    /// The places of the corners of a triangle on the grid: columns and rows. Parry's order of corners,
+    /// by which normals point up.
+    fn places(self, FieldTriangle { cell: [column, row], side }: FieldTriangle) -> [[usize; 2]; 3] {
+        let status = self.0.cell_status(row, column);
+        let corners = match (status.contains(HeightFieldCellStatus::ZIGZAG_SUBDIVISION), side) {
+            (false, 0) => [[0, 0], [0, 1], [1, 0]],
+            (false, _) => [[0, 1], [1, 1], [1, 0]],
+            (true, 0) => [[0, 0], [0, 1], [1, 1]],
+            (true, _) => [[0, 0], [1, 1], [1, 0]],
+        };
+        corners.map(|[right, up]| [column + right, row + up])
+    }
+
+    /// Whether what is below the surface is solid: not if a negative scale has turned its normals down.
+    pub(super) fn is_solid(self) -> bool {
+        self.0.scale().x * self.0.scale().z > 0.0
+    }
+
+    /// The point of the surface that is nearest to another, and how far that is seen from below, as
+    /// [`nearest`](super::inside::nearest) of a mesh has it.
+    pub(super) fn nearest(self, point: Vector) -> Option<(Vector, Real)> {
+        let nearest = self.0.project_local_point(point, false).point;
+        let away = (point - nearest).normalize_or_zero();
+        let touched = Aabb::new(nearest, nearest).loosened(NEARLY * nearest.abs().max_element());
+        let (mut least, mut behind) = (Real::INFINITY, None);
+        self.0.map_elements_in_local_aabb(&touched, &mut |_, triangle| {
+            let distance = triangle.distance_to_local_point(point, false);
+            if distance < least {
+                least = distance;
+                behind = triangle.normal().map(|normal| -away.dot(normal));
+            }
+        });
+        Some((nearest, behind?))
+    }
+
     /// The reverse of [`id`](Self::id) as far as its order goes: the cells along z, then x, the
     /// left triangle first.
     pub(super) fn rank(self, id: u32) -> u32 {
-        let count = self.cell_count();
-        let (cell, side) = (id as usize % count, id as usize / count);
+        let (cell, side) = (id as usize % self.cell_count(), id as usize / self.cell_count());
         (2 * cell + side) as u32
     }
 
@@ -31,6 +75,44 @@ impl Field<'_> {
 
     fn cell_count(self) -> usize {
         self.0.nrows() * self.0.ncols()
+    }
+}
+
+impl Twins for Field<'_> {
+    fn twin(&self, half_edge: u32) -> Option<u32> {
+        let triangle = self.of_id(half_edge / 3);
+        let own = self.places(triangle);
+        let [from, to] = [0, 1].map(|i| own[(half_edge as usize + i) % 3]);
+        let [column, row] = triangle.cell;
+        // Along a line of the grid the neighbour is in the other cell beside it; else the edge is the
+        // diagonal of its cell.
+        let beyond =
+            |line: usize, cell: usize| if line == cell { line.wrapping_sub(1) } else { line };
+        let cell = match [0, 1].map(|axis| from[axis] == to[axis]) {
+            [true, _] => [beyond(from[0], column), row],
+            [_, true] => [column, beyond(from[1], row)],
+            _ => triangle.cell,
+        };
+        let [columns, rows] = self.cell_counts();
+        if cell[0] >= columns || cell[1] >= rows {
+            return None;
+        }
+        [0, 1].into_iter().find_map(|side| {
+            let other = FieldTriangle { cell, side };
+            let theirs = self.places(other);
+            let edge = (0..3).find(|&i| [theirs[i], theirs[(i + 1) % 3]] == [to, from])?;
+            let id = self.id(other);
+            self.triangle(id).map(|_| 3 * id + edge as u32)
+        })
+    }
+}
+
+impl Facets for Field<'_> {
+    fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
+        let triangle = self.triangle(half_edge / 3);
+        triangle.map_or(DVec3::NAN, |triangle| {
+            triangle.vertices()[(half_edge as usize + i) % 3].as_dvec3()
+        })
     }
 }
 
@@ -56,6 +138,9 @@ impl HeightGrid for Field<'_> {
         [left, right].map(|triangle| triangle.map(|Triangle { a, b, c }| [a, b, c]))
     }
 }
+
+/// What projecting a point onto a triangle may lose, as a share of its coordinates: a few roundings.
+const NEARLY: Real = 1.0e-6;
 
 /// Tells in constant time that a field is most likely still the one it was: addresses, sizes,
 /// scale, flags, and some heights. Heights cannot be edited in place.

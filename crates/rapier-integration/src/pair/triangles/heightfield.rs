@@ -18,20 +18,24 @@ use std::cell::RefCell;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use parry3d::math::Real;
+use glamx::DVec3;
+use parry3d::bounding_volume::Aabb;
+use parry3d::math::{Real, Vector};
 use parry3d::query::details::NormalConstraints;
 use parry3d::shape::{HeightField, Triangle, TrianglePseudoNormals};
 use sbbk_core::contact::ManifoldPoints;
 use sbbk_core::field::{FieldFrame, FieldLeaves};
+use sbbk_core::surface::{Around, Facets, MeshFacets, Twins};
 use sbbk_core::traverse::{Counters, Placement};
 use sbbk_core::tree::{BATCH, LeafBatch};
 
 use super::exact::Constraints;
 use super::field::{Field, FieldToken};
-use super::judge::Surfaces;
+use super::inside::{nearest, way_out};
+use super::judge::{Surfaces, near};
 use super::query::{Hint, TriangleQuery, TriangleShapes};
 use crate::ContactGenerator;
-use crate::mesh::{Change, Hierarchy, KnownMesh, TreeCache};
+use crate::mesh::{Change, Hierarchy, KnownMesh, MeshSurface, TreeCache, is_covered};
 use crate::pair::driver::{Moving, Pair, Scratch};
 use crate::pair::order::OrderKey;
 use crate::pair::outline::PatchPlan;
@@ -45,6 +49,8 @@ pub(crate) struct FieldPair<'a> {
     pub(crate) field: &'a HeightField,
     pub(crate) mesh_place: MeshPlace,
     pub(crate) contacts: ContactGenerator,
+    /// Whether contacts are those of surfaces.
+    pub(crate) has_surfaces: bool,
     pub(crate) has_patches: bool,
 }
 
@@ -70,7 +76,7 @@ impl<'a> Pair for FieldPair<'a> {
 
     fn open<'q>(
         &'q self,
-        _: &'q Arc<TreeCache>,
+        cache: &'q Arc<TreeCache>,
         (known_mesh, known_field): &'q mut Self::Known,
     ) -> (Change, Self::Query<'q>) {
         let mut change = known_mesh.update(&self.mesh);
@@ -78,9 +84,14 @@ impl<'a> Pair for FieldPair<'a> {
         if known_field.replace(field).is_some_and(|known| known != field) {
             change = Change::Replaced;
         }
+        let radius = self.mesh.ball().radius;
+        let surface = self.has_surfaces.then(|| known_mesh.look_around(self.mesh.mesh, cache));
+        let surface = surface.flatten();
         let shapes = MeshAndField {
             pair: self,
             field: Field(self.field),
+            near: near(surface.is_some(), radius),
+            surface,
             cone: RefCell::new((u32::MAX, None)),
         };
         let query = TriangleQuery {
@@ -89,7 +100,7 @@ impl<'a> Pair for FieldPair<'a> {
             parrys_pose: self.pose.pos12,
             generator: self.contacts,
             patches: (self.has_patches && self.mesh.is_rigid())
-                .then(|| PatchPlan::new(self.pose.prediction, self.mesh.ball().radius)),
+                .then(|| PatchPlan::new(self.pose.prediction, radius)),
             points: ManifoldPoints::new(),
         };
         (change, query)
@@ -100,12 +111,82 @@ impl<'a> Pair for FieldPair<'a> {
 pub(crate) struct MeshAndField<'q> {
     pair: &'q FieldPair<'q>,
     field: Field<'q>,
+    /// That of the mesh, if contacts are those of surfaces.
+    surface: Option<MeshSurface<'q>>,
+    /// [`Surfaces::near`].
+    near: f64,
     /// The cone of the triangle of the field that was asked for last. Its contacts follow each
     /// other, and Parry makes it from the normals of four triangles.
     cone: RefCell<(u32, Option<TrianglePseudoNormals>)>,
 }
 
-impl Surfaces for MeshAndField<'_> {}
+/// The triangles of either.
+pub(crate) enum MeshOrField<'a> {
+    Mesh(MeshFacets<'a>),
+    Field(Field<'a>),
+}
+
+impl Twins for MeshOrField<'_> {
+    fn twin(&self, half_edge: u32) -> Option<u32> {
+        match self {
+            Self::Mesh(mesh) => mesh.twin(half_edge),
+            Self::Field(field) => field.twin(half_edge),
+        }
+    }
+}
+
+impl Facets for MeshOrField<'_> {
+    fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
+        match self {
+            Self::Mesh(mesh) => mesh.corner(half_edge, i),
+            Self::Field(field) => field.corner(half_edge, i),
+        }
+    }
+}
+
+impl MeshAndField<'_> {
+    fn is_field(&self, i: usize) -> bool {
+        (i == 1) != self.pair.mesh_place.is_second()
+    }
+}
+
+impl Surfaces for MeshAndField<'_> {
+    type Facets<'f>
+        = MeshOrField<'f>
+    where
+        Self: 'f;
+
+    /// A height field is the top of a solid.
+    fn around(&self, i: usize) -> Option<Around<MeshOrField<'_>>> {
+        let surface = self.surface.as_ref()?;
+        if self.is_field(i) {
+            let facets = MeshOrField::Field(self.field);
+            return Some(Around { facets, is_solid: self.field.is_solid() });
+        }
+        let Around { facets, is_solid } = surface.around(self.pair.mesh.mesh);
+        Some(Around { facets: MeshOrField::Mesh(facets), is_solid })
+    }
+
+    fn near(&self) -> f64 {
+        self.near
+    }
+
+    fn bounds(&self, i: usize) -> Aabb {
+        if self.is_field(i) { *self.pair.field.root_aabb() } else { *self.pair.mesh.root() }
+    }
+
+    fn is_covered(&self, i: usize, point: Vector) -> bool {
+        self.is_field(i) || is_covered(self.pair.mesh.mesh, point)
+    }
+
+    fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)> {
+        if self.is_field(i) {
+            return self.field.nearest(point);
+        }
+        let (_, nearest, behind) = nearest(self.pair.mesh.mesh, point)?;
+        Some((nearest.point, behind))
+    }
+}
 
 impl TriangleShapes for MeshAndField<'_> {
     fn moving(&self) -> Moving<'_> {
@@ -152,6 +233,11 @@ impl TriangleShapes for MeshAndField<'_> {
         let place = self.pair.mesh_place;
         let [mesh, field] = place.swap(triangles);
         Some(place.swap([self.pair.mesh.mesh.triangle(mesh), self.field.triangle(field)?]))
+    }
+
+    fn way_apart(&self) -> Option<DVec3> {
+        let of_mesh = usize::from(self.is_field(0));
+        way_out(self, self.pair.pose, of_mesh, self.pair.mesh.ball().centre)?.try_normalize()
     }
 
     fn with_constraints(&self, triangles: [u32; 2], then: impl FnOnce(Constraints<'_>)) {

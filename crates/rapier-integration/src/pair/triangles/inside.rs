@@ -15,7 +15,7 @@ use crate::pair::pose::PairPose;
 /// Of a distance in f32, what surely is left of it.
 const SURE: f64 = 0.99;
 
-/// Of [`nearest`], from where a point counts as inside: nearest to such a one is a face.
+/// Of [`nearest`] and [`Surfaces::nearest`], from where a point counts as inside: nearest to such a one is a face.
 pub(super) const BEHIND: Real = 0.9;
 
 impl Meshes<'_> {
@@ -33,7 +33,7 @@ impl Meshes<'_> {
     ) -> Option<([u32; 2], TriangleContact)> {
         let outer = usize::from(self.is_second_first);
         let [held, holder] = [1 - outer, outer].map(|i| &self.pair.meshes[i]);
-        let vertex = self.to_other(1 - outer, held.corners(0)[0]);
+        let vertex = to_other(self.pair.pose, 1 - outer, held.corners(0)[0]);
         if !is_deep {
             if *outside > travel || self.surfaces[outer].is_none() {
                 return None;
@@ -51,12 +51,12 @@ impl Meshes<'_> {
             if !is_covered || behind < BEHIND {
                 return None;
             }
-            if !self.is_solid(outer) {
+            if !is_solid(self, outer) {
                 *outside = f64::INFINITY;
                 return None;
             }
         }
-        let middle = self.to_other(1 - outer, held.ball().centre);
+        let middle = to_other(self.pair.pose, 1 - outer, held.ball().centre);
         let (triangle, exit, from) = [middle, vertex].into_iter().find_map(|from| {
             let (triangle, exit, behind) = nearest(holder.mesh, from)?;
             (behind >= BEHIND).then_some((triangle, exit.point, from))
@@ -81,38 +81,49 @@ impl Meshes<'_> {
     /// If the smaller mesh is deep in the other one, where its middle is in both: the direction in which
     /// mesh 2 leaves mesh 1 by the way that is shortest from there. Of two alike, by the shorter way.
     pub(super) fn way_apart(&self) -> Option<DVec3> {
-        let meshes = &self.pair.meshes;
-        let way_of = |inner: usize| {
-            let (one, other) = (&meshes[inner], &meshes[1 - inner]);
-            let middle = one.ball().centre;
-            let placed = self.to_other(inner, middle);
-            if !is_covered(other.mesh, placed) {
-                return None;
-            }
-            let (_, exit, behind) = nearest(other.mesh, placed)?;
-            if behind < BEHIND || !is_covered(one.mesh, middle) {
-                return None;
-            }
-            let out = exit.point - placed;
-            let out = if inner == 0 { -(self.pair.pose.pos12.rotation * out) } else { out };
-            (nearest(one.mesh, middle)?.2 >= BEHIND).then_some(out.as_dvec3())
-        };
-        let [size1, size2] = meshes.map(|mesh| mesh.size_squared());
-        let inner = [size1 <= size2, size2 <= size1];
-        let ways = (0..2).filter(|&i| inner[i] && self.is_solid(0) && self.is_solid(1));
-        let shortest = ways.filter_map(way_of).min_by(|a, b| a.length().total_cmp(&b.length()));
-        shortest?.try_normalize()
+        let [one, two] = &self.pair.meshes;
+        let [size1, size2] = [one, two].map(|mesh| mesh.size_squared());
+        let inner = [(0, one, size1 <= size2), (1, two, size2 <= size1)];
+        let ways = inner.into_iter().filter(|(.., is_inner)| *is_inner);
+        let ways =
+            ways.filter_map(|(i, mesh, _)| way_out(self, self.pair.pose, i, mesh.ball().centre));
+        ways.min_by(|a, b| a.length().total_cmp(&b.length()))?.try_normalize()
     }
+}
 
-    /// A point of one mesh in the frame of the other.
-    fn to_other(&self, i: usize, point: Vector) -> Vector {
-        let PairPose { placement12, placement21, .. } = self.pair.pose;
-        [placement21, placement12][i].to_frame1(point, Vector::ZERO).as_vec3()
+/// The way in which shape 2 leaves shape 1 that is shortest from a point of one of them, in its frame, if
+/// that is in both and both are solids.
+pub(super) fn way_out(
+    shapes: &impl Surfaces,
+    pose: &PairPose,
+    inner: usize,
+    middle: Vector,
+) -> Option<DVec3> {
+    if !(0..2).all(|i| is_solid(shapes, i)) {
+        return None;
     }
+    let placed = to_other(pose, inner, middle);
+    let exit = |i: usize, point: Vector| {
+        let (exit, behind) = shapes.is_covered(i, point).then(|| shapes.nearest(i, point))??;
+        (behind >= BEHIND).then_some(exit)
+    };
+    let out = exit(1 - inner, placed)? - placed;
+    exit(inner, middle)?;
+    let out = if inner == 0 { -(pose.pos12.rotation * out) } else { out };
+    Some(out.as_dvec3())
+}
 
-    fn is_solid(&self, i: usize) -> bool {
-        self.around(i).is_some_and(|around| around.is_solid)
-    }
+/// A point of one shape in the frame of the other.
+fn to_other(
+    PairPose { placement12, placement21, .. }: &PairPose,
+    i: usize,
+    point: Vector,
+) -> Vector {
+    [placement21, placement12][i].to_frame1(point, Vector::ZERO).as_vec3()
+}
+
+fn is_solid(shapes: &impl Surfaces, i: usize) -> bool {
+    shapes.around(i).is_some_and(|around| around.is_solid)
 }
 
 /// The point of a mesh that is nearest to another, its triangle, and how far that is seen from behind:

@@ -18,33 +18,45 @@ use parry3d::math::{Real, Vector};
 use sbbk_core::contact::{Feature, ManifoldPoints, TriangleContact, outward};
 use sbbk_core::leaf::Beside;
 use sbbk_core::query::TrianglePair;
-use sbbk_core::surface::Around;
+use sbbk_core::surface::{Around, Facets};
 
+use super::inside::BEHIND;
 use super::regions::{Regions, Sheet};
 use crate::pair::pose::PairPose;
 
 /// What is known of the surfaces of two shapes.
 pub(crate) trait Surfaces {
+    /// The triangles of either shape.
+    type Facets<'f>: Facets
+    where
+        Self: 'f;
+
     /// The surface of shape 1 (0) or 2 (1), if it is known.
-    fn around(&self, _: usize) -> Option<Around<'_>> {
-        None
-    }
+    fn around(&self, i: usize) -> Option<Around<Self::Facets<'_>>>;
 
     /// The distance up to which contacts must be local minima, and the greatest depth. Farther ones
     /// are looked at by soft CCD: bodies turn before they meet.
-    fn near(&self) -> f64 {
-        f64::INFINITY
-    }
+    fn near(&self) -> f64;
 
     /// The box around a shape, in its frame.
-    fn bounds(&self, _: usize) -> Aabb {
-        Aabb::new_invalid()
-    }
+    fn bounds(&self, i: usize) -> Aabb;
 
-    /// Whether a point, in the frame of the shape, is deeper in it than some distance.
-    fn is_deep(&self, _: usize, _: Vector, _: Real) -> bool {
-        false
-    }
+    /// Whether a point, in the frame of the shape, may be inside of it.
+    fn is_covered(&self, i: usize, point: Vector) -> bool;
+
+    /// The point of a surface that is nearest to another, in its frame, and how far that is seen from
+    /// behind: the cosine of the angle to the back of the surface.
+    fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)>;
+}
+
+/// [`Surfaces::near`] as a share of the radius of the smaller shape. Higher: plates that soft CCD
+/// sees turn through what they meet; less: small bodies in a large prediction distance have contacts
+/// that are no local minima.
+const NEAR: f64 = 0.1;
+
+/// [`Surfaces::near`] of shapes of which the smaller one has this radius.
+pub(super) fn near(has_surface: bool, radius: Real) -> f64 {
+    if has_surface { NEAR * f64::from(radius) } else { f64::INFINITY }
 }
 
 /// How much deeper than the least translation, or than the prediction distance if that is more, a
@@ -121,7 +133,7 @@ impl<S: Surfaces> Judge<'_, S> {
 
     fn by_surfaces(
         &self,
-        around: [Option<Around<'_>>; 2],
+        around: [Option<Around<S::Facets<'_>>>; 2],
         local: &TrianglePair,
         contact: TriangleContact,
         regions: &mut Regions,
@@ -131,10 +143,11 @@ impl<S: Surfaces> Judge<'_, S> {
         let own = |i: usize, direction: DVec3| if i == 0 { direction } else { inverse * direction };
         let is_front = |i: usize, feature: Feature, direction: DVec3, to: Option<Feature>| {
             let is_front =
-                |around: Around<'_>| around.is_front(self.pair[i], feature, own(i, direction), to);
-            around[i].is_none_or(is_front)
+                |around: &Around<_>| around.is_front(self.pair[i], feature, own(i, direction), to);
+            around[i].as_ref().is_none_or(is_front)
         };
-        let is_solid = around.map(|around| around.is_some_and(|around| around.is_solid));
+        let is_solid =
+            around.each_ref().map(|around| around.as_ref().is_some_and(|around| around.is_solid));
         let has_solid = is_solid[0] || is_solid[1];
         let TriangleContact { normal, distance, features, .. } = contact;
         let is_crossing = features.is_crossing();
@@ -153,7 +166,7 @@ impl<S: Surfaces> Judge<'_, S> {
             let is_in_front =
                 |i: usize| is_front(i, features[i], directions[i], Some(features[1 - i]));
             let is_behind = |i: usize| {
-                around[i].is_some_and(|around| {
+                around[i].as_ref().is_some_and(|around| {
                     around.is_behind(self.pair[i], features[i], own(i, directions[i]))
                 })
             };
@@ -200,6 +213,7 @@ impl<S: Surfaces> Judge<'_, S> {
         let most = (contact.distance + greatest).max(0.0);
         let side_beyond = |i: usize, direction: DVec3| {
             around[i]
+                .as_ref()
                 .map_or(0.0, |around| around.side_beyond(self.pair[i], own(i, direction), most))
         };
         let beyond = if regions.is_unheld(self.pair) {
@@ -242,7 +256,11 @@ impl<S: Surfaces> Judge<'_, S> {
         let within = (-contact.distance / SHALLOW) as Real;
         let point1 = (local.origin.as_dvec3() + contact.point2).as_vec3();
         let point2 = self.pose.placement12.to_frame2(contact.point1, local.origin).as_vec3();
-        self.shapes.is_deep(0, point1, within) || self.shapes.is_deep(1, point2, within)
+        (0..2).zip([point1, point2]).any(|(i, point)| {
+            self.shapes.nearest(i, point).is_some_and(|(nearest, behind)| {
+                behind >= BEHIND && nearest.distance(point) > within
+            })
+        })
     }
 }
 

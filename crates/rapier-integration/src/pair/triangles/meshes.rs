@@ -8,17 +8,17 @@ use parry3d::query::details::NormalConstraints;
 use parry3d::shape::Triangle;
 use sbbk_core::contact::{ManifoldPoints, TriangleContact};
 use sbbk_core::leaf::LeafTest;
-use sbbk_core::surface::Around;
+use sbbk_core::surface::{Around, MeshFacets};
 use sbbk_core::traverse::{Counters, Descent, PairFrame, Verdict, Visitor, descend};
 use sbbk_core::tree::LeafBatch;
 
 use super::exact::Constraints;
-use super::inside::{BEHIND, nearest};
-use super::judge::{Judge, Surfaces};
+use super::inside::nearest;
+use super::judge::{Judge, Surfaces, near};
 use super::query::{Hint, TriangleQuery, TriangleShapes};
 use super::walk::walk;
 use crate::ContactGenerator;
-use crate::mesh::{Change, Hierarchy, KnownMesh, MeshSurface, PreparedMesh, TreeCache};
+use crate::mesh::{Change, Hierarchy, KnownMesh, MeshSurface, PreparedMesh, TreeCache, is_covered};
 use crate::pair::driver::{Moving, Pair, Scratch};
 use crate::pair::order::OrderKey;
 use crate::pair::outline::PatchPlan;
@@ -80,7 +80,7 @@ impl<'a> Pair for MeshPair<'a> {
         let [radius1, radius2] = [mesh1, mesh2].map(|mesh| mesh.ball().radius);
         let radius = radius1.min(radius2);
         let has_surface = surfaces.iter().any(Option::is_some);
-        let near = if has_surface { NEAR * f64::from(radius) } else { f64::INFINITY };
+        let near = near(has_surface, radius);
         let is_second_first = self.is_second_first();
         let query = TriangleQuery {
             shapes: Meshes { pair: self, trees, surfaces, near, is_second_first, cache },
@@ -107,11 +107,6 @@ pub(crate) struct Meshes<'q> {
     pub(super) is_second_first: bool,
     cache: &'q TreeCache,
 }
-
-/// [`Surfaces::near`] as a share of the radius of the smaller mesh. Higher: plates that soft CCD
-/// sees turn through what they meet; less: small bodies in a large prediction distance have contacts
-/// that are no local minima.
-const NEAR: f64 = 0.1;
 
 impl Meshes<'_> {
     fn key(&self, ranks: [u32; 2]) -> OrderKey {
@@ -192,8 +187,13 @@ impl TriangleShapes for Meshes<'_> {
 }
 
 impl Surfaces for Meshes<'_> {
+    type Facets<'f>
+        = MeshFacets<'f>
+    where
+        Self: 'f;
+
     #[inline]
-    fn around(&self, i: usize) -> Option<Around<'_>> {
+    fn around(&self, i: usize) -> Option<Around<MeshFacets<'_>>> {
         Some(self.surfaces[i].as_ref()?.around(self.pair.meshes[i].mesh))
     }
 
@@ -205,10 +205,13 @@ impl Surfaces for Meshes<'_> {
         *self.pair.meshes[i].root()
     }
 
-    fn is_deep(&self, i: usize, point: Vector, distance: Real) -> bool {
-        nearest(self.pair.meshes[i].mesh, point).is_some_and(|(_, nearest, behind)| {
-            behind >= BEHIND && nearest.point.distance(point) > distance
-        })
+    fn is_covered(&self, i: usize, point: Vector) -> bool {
+        is_covered(self.pair.meshes[i].mesh, point)
+    }
+
+    fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)> {
+        let (_, nearest, behind) = nearest(self.pair.meshes[i].mesh, point)?;
+        Some((nearest.point, behind))
     }
 }
 

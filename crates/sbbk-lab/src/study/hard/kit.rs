@@ -8,7 +8,8 @@ use clap::ValueEnum;
 use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
 use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
-use rapier3d::geometry::{ColliderBuilder, SharedShape, TriMeshFlags};
+use rapier3d::geometry::{ColliderBuilder, HeightFieldFlags, SharedShape, TriMeshFlags};
+use rapier3d::parry::utils::Array2;
 use rapier3d::pipeline::PhysicsWorld;
 
 use super::figures::{Gain, largest};
@@ -232,6 +233,17 @@ impl Kit {
             _ => TriMeshFlags::empty(),
         };
         shape(mesh, flags)
+    }
+
+    /// A flat height field at height 0, of so many cells along z and x.
+    pub fn flat_field(&self, cells: [u32; 2], size: Vec3) -> SharedShape {
+        let flags = match self.column {
+            Column::StockFlag | Column::SbbkFlag => HeightFieldFlags::FIX_INTERNAL_EDGES,
+            _ => HeightFieldFlags::empty(),
+        };
+        let [rows, columns] = cells.map(|cells| cells as usize + 1);
+        let heights = Array2::repeat(rows, columns, 0.0);
+        SharedShape::heightfield_with_flags(heights, size, flags)
     }
 
     /// Numbers that depend on the seed alone.

@@ -9,12 +9,12 @@ use std::f32::consts::FRAC_PI_2;
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
 use rapier3d::dynamics::RigidBodyBuilder;
-use rapier3d::geometry::ColliderBuilder;
+use rapier3d::geometry::{ColliderBuilder, SharedShape};
 
 use super::Trial;
 use super::figures::{Figures, largest};
 use super::kit::{Column, Form, Kit};
-use crate::mesh::{self, Mesh};
+use crate::mesh;
 use crate::scene::random;
 
 /// Length of a floor along the way, and its width.
@@ -26,6 +26,14 @@ const GAP: f32 = 0.001;
 /// Steps at the start in which the body lands, and those at the end that tell its speed.
 const LANDING: usize = 20;
 const LAST: usize = 60;
+
+/// Made of triangles.
+#[derive(Clone, Copy, PartialEq)]
+enum Floor {
+    Sheet,
+    Slab,
+    HeightField,
+}
 
 /// What moves: what slides is a unit high and has little friction, what rolls is a unit in radius.
 #[derive(Clone, Copy)]
@@ -50,10 +58,13 @@ pub(super) fn trials() -> Vec<Trial> {
     ];
     for (rider, name) in riders {
         for cell in [0.5, 0.1] {
-            for is_slab in [false, true] {
-                let floor = if is_slab { "a slab" } else { "a sheet" };
-                let name = format!("{name} on {floor} of triangles of {cell}");
-                let run = move |kit: &Kit| run(kit, rider, &floor_mesh(cell, is_slab));
+            for floor in [Floor::Sheet, Floor::Slab, Floor::HeightField] {
+                // Of convex shapes on height fields Parry answers.
+                if floor == Floor::HeightField && !rider.is_mesh() {
+                    continue;
+                }
+                let name = format!("{name} on a {} of triangles of {cell}", floor.name());
+                let run = move |kit: &Kit| run(kit, rider, floor.shape(kit, cell));
                 trials.push(Trial::new(name, run).seeded());
             }
         }
@@ -61,15 +72,31 @@ pub(super) fn trials() -> Vec<Trial> {
     trials
 }
 
-/// Its upper side is at height 0.
-fn floor_mesh(cell: f32, is_slab: bool) -> Mesh {
-    let cells = [LENGTH / cell, 1.0, WIDTH / cell].map(|cells| cells.round() as u32);
-    let mut floor = mesh::slab(HALF_EXTENTS, cells).mapped(|v| v - Vec3::Y * HALF_EXTENTS.y);
-    if !is_slab {
-        let vertices = &floor.vertices;
-        floor.triangles.retain(|triangle| triangle.iter().all(|&i| vertices[i as usize].y == 0.0));
+impl Floor {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Sheet => "sheet",
+            Self::Slab => "slab",
+            Self::HeightField => "height field",
+        }
     }
-    floor.welded()
+
+    /// Its upper side is at height 0.
+    fn shape(self, kit: &Kit, cell: f32) -> SharedShape {
+        let [columns, rows] = [LENGTH, WIDTH].map(|side| (side / cell).round() as u32);
+        if self == Self::HeightField {
+            return kit.flat_field([rows, columns], 2.0 * HALF_EXTENTS);
+        }
+        let cells = [columns, 1, rows];
+        let mut floor = mesh::slab(HALF_EXTENTS, cells).mapped(|v| v - Vec3::Y * HALF_EXTENTS.y);
+        if self == Self::Sheet {
+            let vertices = &floor.vertices;
+            let is_top =
+                |triangle: &[u32; 3]| triangle.iter().all(|&i| vertices[i as usize].y == 0.0);
+            floor.triangles.retain(is_top);
+        }
+        kit.mesh_shape(&floor.welded())
+    }
 }
 
 /// How far a body has come, in all and in the last second, and its highest speed upwards.
@@ -80,6 +107,10 @@ struct Ride {
 }
 
 impl Rider {
+    fn is_mesh(self) -> bool {
+        matches!(self, Self::MeshCube | Self::MeshBall)
+    }
+
     fn rolls(self) -> bool {
         !matches!(self, Self::MeshCube | Self::Cuboid)
     }
@@ -165,13 +196,13 @@ impl Rider {
     }
 }
 
-fn run(kit: &Kit, rider: Rider, floor: &Mesh) -> Figures {
+fn run(kit: &Kit, rider: Rider, floor: SharedShape) -> Figures {
     let Vec3 { x, y, z } = HALF_EXTENTS;
     let cuboid = ColliderBuilder::cuboid(x, y, z).translation(-Vec3::Y * y);
     let control = rider.rides(&Kit { film: None, ..kit.clone() }, &cuboid);
     let floor = match kit.column {
         Column::Control => cuboid,
-        _ => ColliderBuilder::new(kit.mesh_shape(floor)),
+        _ => ColliderBuilder::new(floor),
     };
     let ride = rider.rides(kit, &floor);
     Figures::default()

@@ -1,7 +1,8 @@
-//! Boxes that start in a slab.
+//! Boxes that start in a slab, or in the ground.
 
 use glamx::Vec3;
 use rapier3d::dynamics::RigidBodyBuilder;
+use rapier3d::geometry::ColliderBuilder;
 
 use super::Trial;
 use super::figures::{Figures, largest};
@@ -11,30 +12,47 @@ use super::kit::{Form, Kit};
 const DEPTHS: usize = 10;
 const LEAST: f32 = 0.1;
 const MOST: f32 = 1.2;
+/// The same in the ground: what is wholly below it is left alone, as in a cave.
+const MOST_IN_GROUND: f32 = 0.9;
 const STEPS: usize = 180;
 /// Where both ways out are about as long, either is right.
 const DOUBT: f32 = 0.25;
 
 pub(super) fn trials() -> Vec<Trial> {
     let mut trials = Vec::new();
-    for thickness in [2.0, 0.8] {
-        for cells in [1, 8] {
-            let triangles = 12 * cells * cells;
+    for cells in [1, 8] {
+        let triangles = 12 * cells * cells;
+        for thickness in [2.0, 0.8] {
             let name = format!("boxes in a slab of {thickness}, {triangles} triangles each");
-            trials.push(Trial::new(name, move |kit| run(kit, thickness, cells)));
+            trials.push(Trial::new(name, move |kit| {
+                let slab = Form::cuboid(Vec3::new(5.0, 0.5 * thickness, 5.0), cells);
+                run(
+                    kit,
+                    kit.collider(&slab).translation(-0.5 * thickness * Vec3::Y),
+                    thickness,
+                    cells,
+                )
+            }));
         }
+        let name = format!("boxes in a height field, {triangles} triangles each");
+        let trial = Trial::new(name, move |kit| {
+            let field = ColliderBuilder::new(kit.flat_field([10 * cells; 2], Vec3::splat(10.0)));
+            run(kit, field, f32::INFINITY, cells)
+        });
+        trials.push(trial.without_control());
     }
     trials
 }
 
-fn run(kit: &Kit, thickness: f32, cells: u32) -> Figures {
-    let slab = kit.collider(&Form::cuboid(Vec3::new(5.0, 0.5 * thickness, 5.0), cells));
+/// With a ground, of so much thickness, whose upper side is at height 0.
+fn run(kit: &Kit, ground: ColliderBuilder, thickness: f32, cells: u32) -> Figures {
     let cube = kit.collider(&Form::cuboid(Vec3::splat(0.5), cells));
+    let most = if thickness.is_finite() { MOST } else { MOST_IN_GROUND };
     let (mut inside, mut wrong_side, mut fastest) = (0, 0, 0.0_f32);
     for index in 0..DEPTHS {
-        let depth = LEAST + (MOST - LEAST) * index as f32 / (DEPTHS - 1) as f32;
+        let depth = LEAST + (most - LEAST) * index as f32 / (DEPTHS - 1) as f32;
         let mut world = kit.world();
-        world.fix(-0.5 * thickness * Vec3::Y, slab.clone());
+        world.fix(Vec3::ZERO, ground.clone());
         let body = RigidBodyBuilder::dynamic().translation(Vec3::Y * (0.5 - depth));
         let body = world.add(body, &cube);
         // One that has left below may fall as fast as it likes.

@@ -35,10 +35,13 @@ fn the_control_passes_and_sheets_hold_plain_meshes() {
         let sheets = verdicts(column, "sheet");
         assert!(sheets.len() == 4 && passed(&sheets), "{sheets:?}");
     }
+    let fields = verdicts(Column::Sbbk, "height field");
+    assert!(fields.len() == 2 && passed(&fields), "{fields:?}");
+    assert!(!passed(&verdicts(Column::Stock, "height field")));
     // With the flag a sheet has a front only.
     assert!(passed(&verdicts(Column::StockFlag, "front")));
     assert!(verdicts(Column::StockFlag, "back").iter().all(|row| row.count("passed") == 0));
 
-    assert_eq!(support::line_counts(&study), [8, 4 * 3 + 4 * 2]);
+    assert_eq!(support::line_counts(&study), [10, 6 * 3 + 4 * 2]);
     assert!(support::report(&study).svg.contains("Hard scenes"));
 }
