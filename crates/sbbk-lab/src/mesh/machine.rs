@@ -100,6 +100,54 @@ impl Gear {
     }
 }
 
+/// A rack along the `y` axis that a [`Gear`] runs on.
+#[derive(Clone, Copy, Debug)]
+pub struct Rack {
+    /// That runs on it, with its axis at the origin.
+    pub gear: Gear,
+    /// Teeth, half of them to either side of the gap that the first tooth of the gear is in.
+    pub teeth: u32,
+    /// From the line on which the gear rolls to its back, in units.
+    pub depth: f32,
+}
+
+impl Rack {
+    /// The corners of a tooth along `y`, from foot to foot.
+    pub fn tooth(&self, tooth: u32) -> [Vec2; 4] {
+        let Gear { module, thinned, .. } = self.gear;
+        let pitch = PI * module;
+        let middle = pitch * (tooth as f32 + 0.5 - 0.5 * self.teeth as f32);
+        let line = self.gear.pitch_radius();
+        // Half as thick as the pitch where the gear rolls.
+        let half = 0.25 * pitch - 0.5 * thinned;
+        let at = |side: f32, beyond: f32| {
+            let half = half - beyond * Gear::PRESSURE_ANGLE.tan();
+            Vec2::new(line - beyond, middle + side * half)
+        };
+        let [foot, head] = [-1.25 * module, module];
+        [at(-1.0, foot), at(-1.0, head), at(1.0, head), at(1.0, foot)]
+    }
+
+    /// The whole rack.
+    pub fn mesh(&self) -> Mesh {
+        let line: Vec<Vec2> = (0..self.teeth).flat_map(|tooth| self.tooth(tooth)).collect();
+        let back = self.gear.pitch_radius() + self.depth;
+        let rows = line.len() as u32;
+        let solid = quad_grid([4, rows + 1], |i, j| {
+            let point = line[(j.max(1) - 1).min(rows - 1) as usize];
+            let half_width = self.gear.half_width;
+            match i % 4 {
+                _ if j == 0 || j > rows => Vec3::new(back, point.y, 0.0),
+                0 => Vec3::new(back, point.y, -half_width),
+                1 => point.extend(-half_width),
+                2 => point.extend(half_width),
+                _ => Vec3::new(back, point.y, half_width),
+            }
+        });
+        without_needles(&solid).named("rack")
+    }
+}
+
 /// A screw thread about the `y` axis, from height 0 upwards.
 #[derive(Clone, Copy, Debug)]
 pub struct Thread {
@@ -109,8 +157,10 @@ pub struct Thread {
     pub height: f32,
     /// Rise of one turn, in units.
     pub pitch: f32,
-    /// What the thread is thicker at its upper and its lower side than 0.4 of the pitch at its
-    /// foot, as a share of the pitch, at most 0.25.
+    /// How far the flanks lean at either side, as a share of the pitch.
+    pub flank: f32,
+    /// What the thread is thicker at its upper and its lower side than 0.2 of the pitch at its top, as a
+    /// share of the pitch: with the flank, less than 0.4.
     pub thicker: f32,
     /// Turns of the part.
     pub turns: u32,
@@ -124,7 +174,8 @@ impl Thread {
     /// nut go up and down.
     fn profile(&self) -> [[f32; 2]; 5] {
         let [low, high] = [-self.thicker, self.thicker];
-        [[0.0, 0.0], [0.3 + low, 0.0], [0.4 + low, 1.0], [0.6 + high, 1.0], [0.7 + high, 0.0]]
+        let [foot, end] = [0.4 - self.flank, 0.6 + self.flank];
+        [[0.0, 0.0], [foot + low, 0.0], [0.4 + low, 1.0], [0.6 + high, 1.0], [end + high, 0.0]]
     }
 
     /// Corners of the profile over all turns, those of one more, as the thread winds, and the end.

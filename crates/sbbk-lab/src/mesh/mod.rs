@@ -21,6 +21,6 @@ mod shapes;
 pub use container::Mesh;
 pub use file::{MeshError, load};
 pub use helicopter::helicopter;
-pub use machine::{Gear, Thread, prism, revolved};
+pub use machine::{Gear, Rack, Thread, prism, revolved};
 pub use monkey::{monkey_head, monkey_head_with};
 pub use shapes::{ball, cuboid, floor, hill_height, hills, slab, terrain, torus};

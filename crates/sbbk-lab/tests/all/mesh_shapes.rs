@@ -155,19 +155,28 @@ fn meshes_are_scaled_centred_posed_and_made_shapes() {
 #[test]
 fn parts_of_machines_are_closed_and_have_their_volume() {
     use glamx::Vec2;
-    use sbbk_lab::mesh::{Gear, Mesh, Thread, prism, revolved};
+    use sbbk_lab::mesh::{Gear, Mesh, Rack, Thread, prism, revolved};
 
-    let thread =
-        Thread { root: 0.9, height: 0.1, pitch: 0.2, thicker: 0.0, turns: 6, segments: 48 };
+    let thread = Thread {
+        root: 0.9,
+        height: 0.1,
+        pitch: 0.2,
+        flank: 0.1,
+        thicker: 0.0,
+        turns: 6,
+        segments: 48,
+    };
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(Vec2::from_array);
     let ring = [[1.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 0.0]].map(Vec2::from_array);
     let gear = Gear { teeth: 20, module: 0.1, thinned: 0.01, half_width: 0.2 };
     let bolt = 0.93 * 0.93 * 1.2 * std::f64::consts::PI;
-    let parts: [(Mesh, f64); 5] = [
+    let rack = Rack { gear, teeth: 10, depth: 0.3 };
+    let parts: [(Mesh, f64); 6] = [
         (prism(&corners, 0.5), 4.0),
         (revolved(&ring, 64), 3.0 * std::f64::consts::PI),
         // Teeth are thinner above the pitch circle than gaps are below it.
         (gear.mesh(), 0.96 * 0.4 * std::f64::consts::PI),
+        (rack.mesh(), 0.4 * (0.3 * 9.84 * 0.1 * std::f64::consts::PI - 0.01)),
         (thread.bolt(), bolt),
         (thread.nut(1.2), 1.44 * 1.2 * std::f64::consts::PI - bolt),
     ];
