@@ -57,8 +57,13 @@ impl ConvexQuery<'_> {
                     (contact, along)
                 }
                 Seam::Like(contact, end) => {
-                    let Near(end) = contacts[end as usize].1;
-                    (contact, end.map(|end| end.contact))
+                    let [own, end] =
+                        [contact, end].map(|i| Some(contacts[i as usize].1.0?.contact));
+                    // Along its own normal it stays what it is, and patches need not make its points to
+                    // know how deep they are: of heads on a flat floor half of the contacts.
+                    let is_turn =
+                        |end: &ConvexContact| own.is_some_and(|own| own.normal != end.normal);
+                    (contact, end.filter(is_turn))
                 }
             };
             let (_, Near(touch)) = &mut contacts[contact as usize];
