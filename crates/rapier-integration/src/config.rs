@@ -1,3 +1,4 @@
+use sbbk_core::surface::SurfaceKind;
 use sbbk_core::tree::{BuildOptions, LayerPlan};
 
 /// Which code turns two triangles, or a triangle and a convex shape, within the prediction distance
@@ -16,7 +17,7 @@ pub enum ContactGenerator {
     Parry,
 }
 
-/// Which contacts two meshes have, and a mesh and convex shapes.
+/// Which contacts two meshes have, and a mesh and a height field or convex shapes.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum ContactSet {
     /// Those of their surfaces: what touches is pushed out of a mesh that bounds a solid, not through
@@ -87,6 +88,10 @@ pub struct SbbkConfig {
     pub contacts: ContactGenerator,
     /// Which of them two meshes have.
     pub contact_set: ContactSet,
+    /// What height fields bound, for meshes with [`ContactSet::Surfaces`]:
+    /// [`Solid`](SurfaceKind::Solid), as all is ground below their upper side, or
+    /// [`Sheet`](SurfaceKind::Sheet), to be met from below as well, as a roof.
+    pub height_fields: SurfaceKind,
     /// How many of them a host gets.
     pub detail: ContactDetail,
     /// What is answered.
@@ -107,6 +112,7 @@ impl Default for SbbkConfig {
             layers: LayerPlan::SBBK,
             contacts: ContactGenerator::Exact,
             contact_set: ContactSet::Surfaces,
+            height_fields: SurfaceKind::Solid,
             detail: ContactDetail::default(),
             kinds: Kinds::default(),
             idle_tree_bytes: 16 << 20,

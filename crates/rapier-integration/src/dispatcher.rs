@@ -222,7 +222,7 @@ impl SbbkDispatcher {
         M: Default + Clone + Send + Sync + 'static,
         C: Default + Copy + Send + Sync + 'static,
     {
-        let SbbkConfig { contacts, contact_set, detail, kinds, .. } = self.config;
+        let SbbkConfig { contacts, contact_set, height_fields, detail, kinds, .. } = self.config;
         let is_exact = contacts == ContactGenerator::Exact;
         let has_surfaces = is_exact && contact_set == ContactSet::Surfaces;
         let has_patches = is_exact && detail == ContactDetail::Patches;
@@ -284,8 +284,17 @@ impl SbbkDispatcher {
                 ConvexPair { pose, mesh, parts, mesh_place, contacts, has_surfaces, has_patches };
             self.ask(&pair, manifolds, workspace)
         } else if let Some(field) = field {
-            let pair =
-                FieldPair { pose, mesh, field, mesh_place, contacts, has_surfaces, has_patches };
+            let has_ground = height_fields == SurfaceKind::Solid;
+            let pair = FieldPair {
+                pose,
+                mesh,
+                field,
+                mesh_place,
+                contacts,
+                has_surfaces,
+                has_ground,
+                has_patches,
+            };
             self.ask(&pair, manifolds, workspace)
         } else {
             Answer::Unsupported

@@ -83,8 +83,12 @@
 //! Of a rigid mesh and a convex shape, contacts at edges within the surface are along the normal of the
 //! nearest triangle there, so that bodies slide and roll. Inside and outside are as in stock.
 //!
+//! A height field is the top of a solid for rigid meshes: they do not stumble over its edges, and what
+//! has sunk into it comes up. What is wholly below it is left alone, as in a cave, and passes it from
+//! there. [`SbbkConfig::height_fields`] makes it a sheet.
+//!
 //! With [`ContactSet::Triangles`] all is as in stock: of meshes without
-//! `TriMeshFlags::FIX_INTERNAL_EDGES` triangles have no outside. Deformable meshes and height fields have
+//! `TriMeshFlags::FIX_INTERNAL_EDGES` triangles have no outside. Deformable meshes have
 //! these contacts always. A body that lies wholly inside another, farther from
 //! its surface than the prediction distance, has no contact either way.
 //!

@@ -1,6 +1,6 @@
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
-use rapier_integration::SurfaceKind;
+use rapier_integration::{SbbkDispatcher, SurfaceKind};
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::PointQuery;
 use rapier3d::parry::shape::{HeightField, TriMeshFlags, Triangle};
@@ -8,7 +8,7 @@ use sbbk_lab::mesh;
 
 use super::question::Question;
 use super::terrain::{Terrain, heights, place, terrains};
-use crate::support::{assert_same, distance, every, fresh, per_triangle, shape, shape_with};
+use crate::support::{assert_same, distance, every_config, fresh, per_triangle, shape, shape_with};
 use crate::truth::Tally;
 
 /// Would catch cells that are cut off too early, triangles that are taken for others, holes that
@@ -82,23 +82,30 @@ fn contacts_equal_those_of_the_terrain_as_a_mesh() {
     assert!(count > 5000, "{count} contacts");
 }
 
-/// The same of surfaces, where a terrain is the top of a solid. Would catch neighbours other than
-/// those of the mesh, holes taken for ground, a top that is below, and corners in another order.
+/// The same of surfaces, where a terrain is the top of a solid or a sheet. Would catch neighbours other
+/// than those of the mesh, holes taken for ground, a top that is below, and corners in another order.
 ///
 /// Of meshes whose middle is above the ground: to an open mesh, nothing is wholly inside. And without
 /// contacts deeper than five prediction distances, that hang on which one of several nearest triangles
 /// is looked at.
 #[test]
-fn surfaces_are_those_of_the_terrain_as_a_solid() {
+fn surfaces_are_those_of_the_terrain_as_a_mesh() {
     let mut random = Rand32::new(6);
     let meshes = [mesh::monkey_head(), mesh::cuboid(Vec3::splat(0.6), 4), mesh::ball(0.7, 12)];
     let meshes = meshes.map(|mesh| shape(&mesh));
     let (mut count, mut deep, mut fewer) = (0, 0, 0);
-    for terrain in &terrains() {
-        let has_top = terrain.field.scale().x > 0.0;
-        let dispatcher = every();
+    let terrains = terrains();
+    let kinds = [SurfaceKind::Solid, SurfaceKind::Sheet];
+    for (terrain, height_fields) in
+        terrains.iter().flat_map(|terrain| kinds.map(|kind| (terrain, kind)))
+    {
+        let mut config = every_config();
+        config.height_fields = height_fields;
+        let dispatcher = SbbkDispatcher::new(config);
         let prepared = dispatcher.prepare(&terrain.mesh).unwrap();
-        prepared.bounds(if has_top { SurfaceKind::Solid } else { SurfaceKind::Sheet });
+        // A negative scale turns normals down.
+        let has_top = terrain.field.scale().x > 0.0;
+        prepared.bounds(if has_top { height_fields } else { SurfaceKind::Sheet });
         for i in 0..60 {
             let mesh = &meshes[i % 3];
             let depth = [0.05, -0.01, 0.005][i / 3 % 3];

@@ -38,8 +38,8 @@ impl Field<'_> {
         corners.map(|[right, up]| [column + right, row + up])
     }
 
-    /// Whether what is below the surface is solid: not if a negative scale has turned its normals down.
-    pub(super) fn is_solid(self) -> bool {
+    /// Whether the normals of its triangles point up: not if a negative scale has turned them.
+    pub(super) fn points_up(self) -> bool {
         self.0.scale().x * self.0.scale().z > 0.0
     }
 

@@ -51,6 +51,8 @@ pub(crate) struct FieldPair<'a> {
     pub(crate) contacts: ContactGenerator,
     /// Whether contacts are those of surfaces.
     pub(crate) has_surfaces: bool,
+    /// Whether what is below the field is solid.
+    pub(crate) has_ground: bool,
     pub(crate) has_patches: bool,
 }
 
@@ -156,12 +158,12 @@ impl Surfaces for MeshAndField<'_> {
     where
         Self: 'f;
 
-    /// A height field is the top of a solid.
     fn around(&self, i: usize) -> Option<Around<MeshOrField<'_>>> {
         let surface = self.surface.as_ref()?;
         if self.is_field(i) {
             let facets = MeshOrField::Field(self.field);
-            return Some(Around { facets, is_solid: self.field.is_solid() });
+            let is_solid = self.pair.has_ground && self.field.points_up();
+            return Some(Around { facets, is_solid });
         }
         let Around { facets, is_solid } = surface.around(self.pair.mesh.mesh);
         Some(Around { facets: MeshOrField::Mesh(facets), is_solid })
