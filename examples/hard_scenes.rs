@@ -6,12 +6,16 @@
 //! cargo run --release --example hard_scenes -- --quick --csv hard.csv
 //! cargo run --release --example hard_scenes -- --only gears,sunk --backends stock,sbbk --verbose
 //! cargo run --release --example hard_scenes -- --quick --only gears --replay gears.html
+//! cargo run --release --example hard_scenes -- --quick --only pile --mesh bunny.obj
 //! ```
 
+use std::error::Error;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
 use sbbk_lab::cli::{OtherFiles, ReplayArguments, StudyArguments, exit_code};
+use sbbk_lab::mesh;
 use sbbk_lab::study::hard::{Column, Group, HardPlan, hard};
 
 /// Runs difficult scenes of meshes to their end, and judges them.
@@ -28,6 +32,9 @@ struct Arguments {
     /// Runs only scenes with this in their names
     #[arg(long, value_name = "TEXT", default_value = "")]
     scene: String,
+    /// What the piles are of: an OBJ, STL or glTF file instead of the built-in monkey
+    #[arg(long, value_name = "FILE")]
+    mesh: Option<PathBuf>,
     #[command(flatten)]
     replay: ReplayArguments,
     /// Shows all figures of all scenes
@@ -39,7 +46,11 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
-    let Arguments { study, only, backends, scene, replay, verbose, threads } = Arguments::parse();
+    exit_code(run(Arguments::parse()))
+}
+
+fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
+    let Arguments { study, only, backends, scene, mesh, replay, verbose, threads } = arguments;
     let mut plan = study.plan(HardPlan::standard, HardPlan::quick);
     if !only.is_empty() {
         plan.groups = only;
@@ -51,5 +62,8 @@ fn main() -> ExitCode {
     plan.threads = threads;
     plan.name = scene;
     plan.replay = replay.replay.clone();
-    exit_code(study.try_run(&plan, hard, OtherFiles::written(&replay)))
+    plan.mesh = mesh.as_deref().map(mesh::load).transpose()?;
+    let files = OtherFiles { read: mesh.as_deref(), ..OtherFiles::written(&replay) };
+    study.try_run(&plan, hard, files)?;
+    Ok(())
 }

@@ -41,6 +41,7 @@ pub use self::kit::Column;
 use self::figures::Figures;
 use self::kit::{Film, Kit};
 use super::{Progress, StudyError};
+use crate::mesh::Mesh;
 use crate::replay;
 use crate::report::Results;
 
@@ -90,6 +91,8 @@ pub struct HardPlan {
     pub seeds: u64,
     /// Heads in the piles.
     pub heads: Vec<usize>,
+    /// What the piles are of in place of heads.
+    pub mesh: Option<Mesh>,
     /// Runs at once, but for scenes of which the time counts.
     pub threads: usize,
     /// Whether to show all figures.
@@ -109,6 +112,7 @@ impl HardPlan {
             recycling: vec![true, false],
             seeds: 3,
             heads: vec![200, 500],
+            mesh: None,
             threads: 2,
             shows_figures: false,
             name: String::new(),
@@ -177,7 +181,7 @@ pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError>
     let mut replay = plan.replay.as_deref();
     for group in &plan.groups {
         let mut trials = match group {
-            Group::Pile => pile::trials(&plan.heads),
+            Group::Pile => pile::trials(&plan.heads, plan.mesh.as_ref()),
             Group::Stacks => stacks::trials(),
             Group::Bowls => bowls::trials(),
             Group::Walls => walls::trials(),

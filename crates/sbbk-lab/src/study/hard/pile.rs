@@ -9,6 +9,7 @@ use super::depth::{Depths, PairDepths, touching_pairs};
 use super::figures::{Figures, largest};
 use super::kit::{Form, Kit, World};
 use super::report::STEP_TIME;
+use crate::mesh::Mesh;
 use crate::scene::MonkeyPile;
 
 /// Steps until the heads are judged by their depth, and until they are judged by their height.
@@ -21,10 +22,16 @@ const PAIRS: usize = 150;
 /// Half extents of the floor.
 pub(super) const FLOOR: Vec3 = Vec3::new(100.0, 1.0, 100.0);
 
-pub(super) fn trials(heads: &[usize]) -> Vec<Trial> {
+/// Piles of so many heads, or of another mesh in place of the head.
+pub(super) fn trials(heads: &[usize], mesh: Option<&Mesh>) -> Vec<Trial> {
     let trial = |&heads: &usize| {
-        let name = format!("pile of {heads} heads");
-        Trial::new(name, move |kit| run(kit, heads)).without_control().seeded()
+        let (name, pile, heights) = match mesh {
+            // How high they lie depends on the mesh.
+            Some(mesh) => (&*mesh.name, MonkeyPile::of(heads, mesh.clone()), [0.0, f64::INFINITY]),
+            None => ("heads", MonkeyPile::with_heads(heads), [0.9, 1.4]),
+        };
+        let run = move |kit: &Kit| run(kit, &pile, heights);
+        Trial::new(format!("pile of {heads} {name}"), run).without_control().seeded()
     };
     heads.iter().map(trial).collect()
 }
@@ -45,8 +52,8 @@ pub(super) fn build(
     world
 }
 
-fn run(kit: &Kit, heads: usize) -> Figures {
-    let pile = MonkeyPile { seed: kit.seed, ..MonkeyPile::with_heads(heads) };
+fn run(kit: &Kit, pile: &MonkeyPile, [lowest, highest]: [f64; 2]) -> Figures {
+    let (pile, heads) = (MonkeyPile { seed: kit.seed, ..pile.clone() }, pile.heads);
     let collider = kit.collider(&Form::mesh(pile.mesh.clone()));
     let mut world = build(kit, FLOOR, pile.poses(), &collider);
     let (depths, mut deep) = (Depths::new(&pile.mesh), PairDepths::default());
@@ -58,7 +65,7 @@ fn run(kit: &Kit, heads: usize) -> Figures {
     let heights = world.places().into_iter().map(|place| place.y);
     let mean_height = heights.clone().sum::<f32>() / heads as f32;
     Figures::default()
-        .within("mean height", mean_height, 0.9, 1.4)
+        .within("mean height", mean_height, lowest, highest)
         .at_most("highest", largest(heights), 4.5)
         .at_most("deepest", deep.max, 0.05)
         .at_most("mean depth", deep.mean, 0.001)
