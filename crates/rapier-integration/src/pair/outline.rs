@@ -14,9 +14,15 @@ const MOST_POINTS: usize = 4;
 /// step errs as little. Lower: gears of 20 teeth at 5 rad/s lose more of their speed.
 const SAME_NORMAL: Real = 0.99;
 
+/// The same for what is [far](PatchPlan::far).
+const SAME_FAR_NORMAL: Real = 0.97;
+
 /// How patches are made of contacts.
 #[derive(Copy, Clone, Debug)]
 pub(crate) struct PatchPlan {
+    /// Contacts that are farther than this are of the direction of a nearer one, or of each other, if their
+    /// normals are not far from its.
+    far: Real,
     /// Contacts that are less than this farther than the deepest one of their direction carry as it
     /// does.
     level: Real,
@@ -49,8 +55,13 @@ const SAME_POINT: Real = 0.02;
 impl PatchPlan {
     /// All contacts are far: what is deepest may change before they touch, and of two manifolds alike
     /// to Rapier's solver with more than four points it leaves one point.
-    pub(super) const FAR: Self =
-        Self { level: Real::INFINITY, size: Real::INFINITY, one_normal: -1.0, same_point: 0.0 };
+    pub(super) const FAR: Self = Self {
+        far: Real::INFINITY,
+        level: Real::INFINITY,
+        size: Real::INFINITY,
+        one_normal: -1.0,
+        same_point: 0.0,
+    };
 
     /// For two shapes, the smaller one of that radius.
     pub(super) fn new(prediction: Real, radius: Real) -> Self {
@@ -58,7 +69,7 @@ impl PatchPlan {
         let reach = if prediction > 0.0 { prediction.min(near) } else { near };
         let size = PATCH_SIZE * radius;
         let same_point = SAME_POINT * size;
-        Self { level: LEVEL * reach, size, one_normal: ONE_NORMAL, same_point }
+        Self { far: near, level: LEVEL * reach, size, one_normal: ONE_NORMAL, same_point }
     }
 }
 
@@ -122,8 +133,10 @@ impl Patches {
         members.sort_unstable_by(by_depth);
         openers.clear();
         for Member { outline, patch, .. } in &mut *members {
+            let is_far = outline.distance > plan.far;
+            let same_normal = if is_far { SAME_FAR_NORMAL } else { SAME_NORMAL };
             let is_like = |opener: &Outline| {
-                opener.part == outline.part && opener.normal.dot(outline.normal) >= SAME_NORMAL
+                opener.part == outline.part && opener.normal.dot(outline.normal) >= same_normal
             };
             *patch = first_or_new(openers, 0, is_like, outline);
         }
@@ -223,7 +236,7 @@ mod tests {
     }
 
     const PLAN: PatchPlan =
-        PatchPlan { level: 0.01, size: 1.0, one_normal: ONE_NORMAL, same_point: 0.0 };
+        PatchPlan { far: 1.0, level: 0.01, size: 1.0, one_normal: ONE_NORMAL, same_point: 0.0 };
 
     fn outline(x: Real, distance: Real) -> Outline {
         let point = Vec3::new(x, 0.0, 0.0);
@@ -262,6 +275,14 @@ mod tests {
         };
         assert_eq!(patches(&[outline(0.0, -0.1), turned(8.0)], PLAN), [(0, 0), (1, 0)]);
         assert_eq!(patches(&[outline(0.0, -0.1), turned(8.2)], PLAN), [(0, 0), (1, 1)]);
+        // What is far is of a direction up to 14 degrees off, and spared there.
+        let is_kept = |degrees: Real| {
+            let four = [0.0, 1.0, 2.0, 3.0].map(|x| outline(x, -0.1));
+            let far = Outline { distance: 1.1, ..turned(degrees) };
+            let kept = patches(&[&four[..], &[far]].concat(), PLAN);
+            kept.iter().any(|(contact, _)| *contact == 4)
+        };
+        assert_eq!([13.9, 14.2].map(is_kept), [false, true]);
     }
 
     /// Would catch points of one side only, a second one that is not the farthest, points that come

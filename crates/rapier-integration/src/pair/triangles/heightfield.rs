@@ -7,6 +7,9 @@
 //! Manifolds are in the order in which Parry walks a field and a compound: cell by cell along z,
 //! then x, the left triangle first; then by the place of the mesh's triangle in Parry's hierarchy.
 //!
+//! A rigid mesh has the contacts of its surface and that of the field, whose neighbours and corners are
+//! read from the grid when they are asked for ([`Field`]).
+//!
 //! # Edits
 //!
 //! Only the candidates of a pair are kept. Rapier drops them when a shape was edited. Should a host
