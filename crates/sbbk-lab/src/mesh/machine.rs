@@ -169,6 +169,17 @@ pub struct Thread {
 }
 
 impl Thread {
+    /// That of a bolt with a lead angle of 1.9 degrees.
+    pub const BOLT: Self = Self {
+        root: 0.9,
+        height: 0.1,
+        pitch: 0.2,
+        flank: 0.1,
+        thicker: 0.0,
+        turns: 6,
+        segments: 48,
+    };
+
     /// Where the corners of the profile are in each turn, as a share of the pitch, and how much of
     /// the height they stand out. Slopes are steep, so that facets of bolt and nut hardly make the
     /// nut go up and down.

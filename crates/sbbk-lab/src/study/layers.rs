@@ -69,15 +69,7 @@ impl LayersPlan {
         let head = || mesh::monkey_head_with(11);
         let under_head =
             |mesh: Mesh| [mesh.centred().scaled_to(4.0), head().centred().scaled_to(0.5)];
-        let thread = Thread {
-            root: 0.9,
-            height: 0.1,
-            pitch: 0.2,
-            flank: 0.1,
-            thicker: 0.0,
-            turns: 6,
-            segments: 96,
-        };
+        let thread = Thread { segments: 96, ..Thread::BOLT };
         let pairs = vec![
             own(mesh::torus(0.7, 0.3, 8, 6)),
             own(mesh::cuboid(Vec3::ONE, 5)),

@@ -157,15 +157,7 @@ fn parts_of_machines_are_closed_and_have_their_volume() {
     use glamx::Vec2;
     use sbbk_lab::mesh::{Gear, Mesh, Rack, Thread, prism, revolved};
 
-    let thread = Thread {
-        root: 0.9,
-        height: 0.1,
-        pitch: 0.2,
-        flank: 0.1,
-        thicker: 0.0,
-        turns: 6,
-        segments: 48,
-    };
+    let thread = Thread::BOLT;
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(Vec2::from_array);
     let ring = [[1.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 0.0]].map(Vec2::from_array);
     let gear = Gear { teeth: 20, module: 0.1, thinned: 0.01, half_width: 0.2 };

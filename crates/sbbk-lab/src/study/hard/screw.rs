@@ -11,9 +11,7 @@ use super::gears::Turn;
 use super::kit::{Form, Kit};
 use crate::mesh::Thread;
 
-/// Its lead angle is 1.9 degrees.
-const BOLT: Thread =
-    Thread { root: 0.9, height: 0.1, pitch: 0.2, flank: 0.1, thicker: 0.0, turns: 6, segments: 48 };
+const BOLT: Thread = Thread::BOLT;
 /// With a tenth of a pitch of play, and so much less deep.
 const NUT: Thread = Thread { root: 0.92, thicker: 0.05, turns: 2, ..BOLT };
 const NUT_RADIUS: f32 = 1.2;
