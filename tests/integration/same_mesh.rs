@@ -7,7 +7,7 @@ use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
 use sbbk_lab::mesh;
 
 use crate::support::{
-    Pair, Query, assert_same, every, fresh, rebuilt, sequence, shape, shape_with, touching,
+    Pair, Query, assert_same, fresh, per_triangle, rebuilt, sequence, shape, shape_with, touching,
 };
 
 /// Two of them touch when a bit more than a radius apart.
@@ -254,13 +254,13 @@ fn check_shared(meshes: [&TriMesh; 2], other: &TriMesh, depths: &[f32]) -> usize
     let mut random = Rand32::new(1);
     let mut unlike = 0;
     for [first, second] in [[one, two], [two, one]] {
-        let shared = every();
+        let shared = per_triangle();
         let _kept = shared.prepare(first).unwrap();
         for &depth in depths {
             let query = Query::new(second, other, touching(&mut random, [second, other], depth));
             let alone = |mesh| {
                 let query = Query { meshes: [mesh, other], ..query };
-                fresh(&every(), &query)
+                fresh(&per_triangle(), &query)
             };
             let expected = alone(second);
             assert_same(&fresh(&shared, &query), &expected, 0.0);

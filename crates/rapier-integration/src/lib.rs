@@ -87,6 +87,9 @@
 //! has sunk into it comes up. What is wholly below it is left alone, as in a cave, and passes it from
 //! there. [`SbbkConfig::height_fields`] makes it a sheet.
 //!
+//! `TriMeshFlags::FIX_INTERNAL_EDGES` changes nothing about any of these contacts: surfaces have no
+//! internal edges, and know outside from inside.
+//!
 //! With [`ContactSet::Triangles`] all is as in stock: of meshes without
 //! `TriMeshFlags::FIX_INTERNAL_EDGES` triangles have no outside. Deformable meshes have
 //! these contacts always. A body that lies wholly inside another, farther from

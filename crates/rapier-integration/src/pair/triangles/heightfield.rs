@@ -246,6 +246,9 @@ impl TriangleShapes for MeshAndField<'_> {
     }
 
     fn with_constraints(&self, triangles: [u32; 2], then: impl FnOnce(Constraints<'_>)) {
+        if self.surface.is_some() {
+            return then([None; 2]);
+        }
         let place = self.pair.mesh_place;
         let [mesh, field] = place.swap(triangles);
         let of_mesh = self.pair.mesh.mesh.triangle_normal_constraints(mesh);
