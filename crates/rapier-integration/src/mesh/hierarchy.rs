@@ -10,7 +10,8 @@ use glamx::Vec3;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
 use parry3d::partitioning::BvhNode;
-use parry3d::shape::{CompositeShape, Shape, TriMesh};
+use parry3d::query::PointProjection;
+use parry3d::shape::{CompositeShape, CompositeShapeRef, Shape, TriMesh};
 use rustc_hash::FxHashMap;
 use sbbk_core::traverse::TestedBox;
 use sbbk_core::volumes::Sphere;
@@ -69,6 +70,16 @@ pub(crate) fn is_covered(mesh: &TriMesh, point: Vec3) -> bool {
         let way = BvhNode::leaf(Aabb::from_points([point, point + 2.0 * way]), 0);
         mesh.bvh().leaves(|node| node.intersects(&way)).next().is_some()
     })
+}
+
+/// The point of a mesh that is nearest to another, its triangle, and how far that is seen from behind:
+/// the cosine of the angle to its back, 0 of a point on it.
+pub(crate) fn nearest(mesh: &TriMesh, point: Vec3) -> Option<(u32, PointProjection, Real)> {
+    let (triangle, nearest) =
+        CompositeShapeRef(mesh).project_local_point(point, Real::MAX, false)?;
+    let away = (point - nearest.point).normalize_or_zero();
+    let behind = mesh.triangle(triangle).normal().map_or(0.0, |normal| -away.dot(normal));
+    Some((triangle, nearest, behind))
 }
 
 fn is_finite(aabb: &Aabb) -> bool {

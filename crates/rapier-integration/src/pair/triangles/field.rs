@@ -44,7 +44,7 @@ impl Field<'_> {
     }
 
     /// The point of the surface that is nearest to another, and how far that is seen from below, as
-    /// [`nearest`](super::inside::nearest) of a mesh has it.
+    /// [`nearest`](crate::mesh::nearest) of a mesh has it.
     pub(super) fn nearest(self, point: Vector) -> Option<(Vector, Real)> {
         let nearest = self.0.project_local_point(point, false).point;
         let away = (point - nearest).normalize_or_zero();

@@ -34,11 +34,11 @@ use sbbk_core::tree::{BATCH, LeafBatch};
 
 use super::exact::Constraints;
 use super::field::{Field, FieldToken};
-use super::inside::{nearest, way_out};
+use super::inside::way_out;
 use super::judge::{Surfaces, near};
 use super::query::{Hint, TriangleQuery, TriangleShapes};
 use crate::ContactGenerator;
-use crate::mesh::{Change, Hierarchy, KnownMesh, MeshSurface, TreeCache, is_covered};
+use crate::mesh::{Change, Hierarchy, KnownMesh, MeshSurface, TreeCache, is_covered, nearest};
 use crate::pair::driver::{Moving, Pair, Scratch};
 use crate::pair::order::OrderKey;
 use crate::pair::outline::PatchPlan;

@@ -2,21 +2,17 @@
 //! need be near each other; on both sides of it, as many push each way.
 
 use glamx::DVec3;
-use parry3d::math::{Real, Vector};
-use parry3d::query::{PointProjection, PointQuery};
-use parry3d::shape::{CompositeShapeRef, TriMesh};
+use parry3d::math::Vector;
+use parry3d::query::PointQuery;
 use sbbk_core::contact::{Feature, FeaturePair, TriangleContact};
 
-use super::judge::Surfaces;
+use super::judge::{BEHIND, Surfaces};
 use super::meshes::Meshes;
-use crate::mesh::is_covered;
+use crate::mesh::{is_covered, nearest};
 use crate::pair::pose::PairPose;
 
 /// Of a distance in f32, what surely is left of it.
 const SURE: f64 = 0.99;
-
-/// Of [`nearest`] and [`Surfaces::nearest`], from where a point counts as inside: nearest to such a one is a face.
-pub(super) const BEHIND: Real = 0.9;
 
 impl Meshes<'_> {
     /// If no contact was found: the one that takes the smaller mesh out of the larger one by the way
@@ -124,14 +120,4 @@ fn to_other(
 
 fn is_solid(shapes: &impl Surfaces, i: usize) -> bool {
     shapes.around(i).is_some_and(|around| around.is_solid)
-}
-
-/// The point of a mesh that is nearest to another, its triangle, and how far that is seen from behind:
-/// the cosine of the angle to its back, 0 of a point on it.
-pub(super) fn nearest(mesh: &TriMesh, point: Vector) -> Option<(u32, PointProjection, Real)> {
-    let (triangle, nearest) =
-        CompositeShapeRef(mesh).project_local_point(point, Real::MAX, false)?;
-    let away = (point - nearest.point).normalize_or_zero();
-    let behind = mesh.triangle(triangle).normal().map_or(0.0, |normal| -away.dot(normal));
-    Some((triangle, nearest, behind))
 }

@@ -20,7 +20,6 @@ use sbbk_core::leaf::Beside;
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Facets};
 
-use super::inside::BEHIND;
 use super::regions::{Regions, Sheet};
 use crate::pair::pose::PairPose;
 
@@ -48,6 +47,9 @@ pub(crate) trait Surfaces {
     /// behind: the cosine of the angle to the back of the surface.
     fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)>;
 }
+
+/// Of [`Surfaces::nearest`], from where a point counts as inside: nearest to such a one is a face.
+pub(super) const BEHIND: Real = 0.9;
 
 /// [`Surfaces::near`] as a share of the radius of the smaller shape. Higher: plates that soft CCD
 /// sees turn through what they meet; less: small bodies in a large prediction distance have contacts

@@ -13,12 +13,13 @@ use sbbk_core::traverse::{Counters, Descent, PairFrame, Verdict, Visitor, descen
 use sbbk_core::tree::LeafBatch;
 
 use super::exact::Constraints;
-use super::inside::nearest;
 use super::judge::{Judge, Surfaces, near};
 use super::query::{Hint, TriangleQuery, TriangleShapes};
 use super::walk::walk;
 use crate::ContactGenerator;
-use crate::mesh::{Change, Hierarchy, KnownMesh, MeshSurface, PreparedMesh, TreeCache, is_covered};
+use crate::mesh::{
+    Change, Hierarchy, KnownMesh, MeshSurface, PreparedMesh, TreeCache, is_covered, nearest,
+};
 use crate::pair::driver::{Moving, Pair, Scratch};
 use crate::pair::order::OrderKey;
 use crate::pair::outline::PatchPlan;

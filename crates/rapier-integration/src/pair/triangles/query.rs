@@ -43,9 +43,7 @@ pub(crate) trait TriangleShapes: Surfaces {
         None
     }
 
-    /// If nothing touches: the contact that takes one shape out of the other, see [`Meshes::inside`].
-    ///
-    /// [`Meshes::inside`]: super::meshes::Meshes::inside
+    /// If nothing touches: the contact that takes one shape out of the other, as two meshes have it.
     fn inside(
         &self,
         _is_deep: bool,

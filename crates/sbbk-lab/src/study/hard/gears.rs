@@ -74,14 +74,12 @@ struct Machine {
     speed: f32,
     /// What the driver turns for one radian of the wheel.
     ratio: f32,
-    backlash: f32,
     steps: usize,
 }
 
 impl Machine {
     fn new(kit: &Kit, speed: f32) -> Self {
-        let backlash = 2.0 * GEAR.thinned / GEAR.pitch_radius();
-        Self { world: kit.world(), speed, ratio: 1.0, backlash, steps: STEPS }
+        Self { world: kit.world(), speed, ratio: 1.0, steps: STEPS }
     }
 
     /// Adds a part that a joint holds where it is.
@@ -121,10 +119,11 @@ impl Machine {
         }
         let seconds = (self.steps - SPEED_UP) as f32 * self.world.integration_parameters.dt;
         let reached = (turn.angle - after_speed_up) / seconds / self.speed;
+        let backlash = 2.0 * GEAR.thinned / GEAR.pitch_radius();
         Figures::default().within("driver's speed", reached, 0.99, 1.01).at_most(
             "driven away by",
             away,
-            f64::from(self.backlash),
+            f64::from(backlash),
         )
     }
 }
@@ -151,10 +150,9 @@ fn rack(kit: &Kit, speed: f32) -> Figures {
     machine.steps = machine.steps.min((10.0 / speed * 60.0) as usize);
     let driver = machine.part(kit, &gear(), RigidBodyBuilder::dynamic(), machine.motor(Vec3::Z));
     let teeth = (0..RACK.teeth).map(|tooth| RACK.tooth(tooth));
-    let mut corners: Vec<Vec2> = teeth.clone().flatten().collect();
-    let [first, last] = [corners[0], corners[corners.len() - 1]];
-    corners = [first, last].map(|foot| foot + RACK.depth * Vec2::X).into();
-    let bar = pulled(&[first, last, corners[0], corners[1]]);
+    let feet = [RACK.tooth(0)[0], RACK.tooth(RACK.teeth - 1)[3]];
+    let back = feet.map(|foot| foot + RACK.depth * Vec2::X);
+    let bar = pulled(&[feet, back].concat());
     let form = Form::parts(RACK.mesh(), teeth.map(|tooth| pulled(&tooth)).chain([bar]));
     // Whole teeth below the middle.
     let start = -16.0 * PI * GEAR.module;
