@@ -92,6 +92,14 @@ pub struct SbbkConfig {
     /// [`Solid`](SurfaceKind::Solid), as all is ground below their upper side, or
     /// [`Sheet`](SurfaceKind::Sheet), to be met from below as well, as a roof.
     pub height_fields: SurfaceKind,
+    /// Whether convex shapes, too, leave meshes that bound a solid, with [`ContactSet::Surfaces`]: one
+    /// whose middle is inside goes the shortest way from there to the surface. Not by default, as in stock
+    /// Rapier: a room that is modelled by one closed surface, its faces outward, counts as a solid, and what
+    /// lives in it would be thrown out. Say of such meshes that they are sheets
+    /// ([`PreparedTree::bounds`](crate::PreparedTree::bounds)), and register those of more than 8192
+    /// triangles ([`SbbkDispatcher::prepare_shape`](crate::SbbkDispatcher::prepare_shape)), which count as
+    /// sheets otherwise.
+    pub convex_leave_solids: bool,
     /// How many of them a host gets.
     pub detail: ContactDetail,
     /// What is answered.
@@ -113,6 +121,7 @@ impl Default for SbbkConfig {
             contacts: ContactGenerator::Exact,
             contact_set: ContactSet::Surfaces,
             height_fields: SurfaceKind::Solid,
+            convex_leave_solids: false,
             detail: ContactDetail::default(),
             kinds: Kinds::default(),
             idle_tree_bytes: 16 << 20,

@@ -198,6 +198,7 @@ impl SbbkDispatcher {
             mesh_place,
             contacts,
             has_surfaces: false,
+            leave_solids: false,
             has_patches: false,
         };
         Some(of_convex(ConvexQuery { search: ConvexSearch::new(&pair, other)?, mesh_place }))
@@ -225,6 +226,7 @@ impl SbbkDispatcher {
         let SbbkConfig { contacts, contact_set, height_fields, detail, kinds, .. } = self.config;
         let is_exact = contacts == ContactGenerator::Exact;
         let has_surfaces = is_exact && contact_set == ContactSet::Surfaces;
+        let leave_solids = has_surfaces && self.config.convex_leave_solids;
         let has_patches = is_exact && detail == ContactDetail::Patches;
         // Of such a pair nothing needs to be kept while it is apart. Not if there are manifolds: where
         // Rapier finds no workspace it keeps pointers to manifolds that are gone.
@@ -253,7 +255,7 @@ impl SbbkDispatcher {
             (None, None) => return Answer::Unsupported,
         };
         if kinds.convex_shapes
-            && let Some(ball) = other.as_ball().filter(|ball| is_few(mesh, ball))
+            && let Some(ball) = other.as_ball().filter(|ball| !leave_solids && is_few(mesh, ball))
         {
             let is_broken = self.is_broken(mesh);
             let pair = FewPair { mesh, is_broken, ball, mesh_place, has_surfaces };
@@ -269,7 +271,7 @@ impl SbbkDispatcher {
             return Answer::Unsupported;
         }
         // Parry's routine sees a little farther than the prediction distance.
-        if is_new && parts.is_some() && is_exact {
+        if is_new && parts.is_some() && is_exact && !leave_solids {
             let in_mesh = if mesh_place.is_second() { pos12.inverse() } else { *pos12 };
             if self.are_apart(is_near(mesh, other, &in_mesh, prediction), [mesh]) {
                 return self.counted(Answer::Apart);
@@ -280,8 +282,16 @@ impl SbbkDispatcher {
         };
         let pose = &PairPose::new(pos12, prediction);
         if let Some(parts) = parts {
-            let pair =
-                ConvexPair { pose, mesh, parts, mesh_place, contacts, has_surfaces, has_patches };
+            let pair = ConvexPair {
+                pose,
+                mesh,
+                parts,
+                mesh_place,
+                contacts,
+                has_surfaces,
+                leave_solids,
+                has_patches,
+            };
             self.ask(&pair, manifolds, workspace)
         } else if let Some(field) = field {
             let has_ground = height_fields == SurfaceKind::Solid;

@@ -25,3 +25,5 @@ mod rest;
 mod seams;
 /// A shape of each kind, and where it meets a mesh.
 mod shapes;
+/// Shapes that start in solids.
+mod solids;

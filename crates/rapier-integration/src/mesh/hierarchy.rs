@@ -72,6 +72,9 @@ pub(crate) fn is_covered(mesh: &TriMesh, point: Vec3) -> bool {
     })
 }
 
+/// Of [`nearest`], from where a point counts as inside: nearest to such a one is a face.
+pub(crate) const BEHIND: Real = 0.9;
+
 /// The point of a mesh that is nearest to another, its triangle, and how far that is seen from behind:
 /// the cosine of the angle to its back, 0 of a point on it.
 pub(crate) fn nearest(mesh: &TriMesh, point: Vec3) -> Option<(u32, PointProjection, Real)> {

@@ -91,14 +91,10 @@ where
     let candidates = &mut coherence.candidates;
     let found = candidates.len();
     find_contacts(&mut query, candidates, limits, &mut scratch, [&mut contacts, &mut spare]);
-    query.settle(candidates, &mut contacts, &mut scratch);
-    if contacts.is_empty()
-        && let Some((subshapes, contact)) = query.inside(&mut coherence.outside, limits, &scratch)
-    {
-        let of_it = |m: &ContactManifold<M, C>| [m.subshape1, m.subshape2] == subshapes;
-        let place = manifolds.iter().position(of_it).and_then(Place::new);
-        contacts.push((candidates.len() as u32, contact));
-        candidates.push(Candidate { place, ..Candidate::new(subshapes) });
+    query.settle(candidates, &mut contacts, limits, &mut coherence.outside, &mut scratch);
+    for Candidate { subshapes, place, .. } in &mut candidates[found..] {
+        let of_it = |m: &ContactManifold<M, C>| [m.subshape1, m.subshape2] == *subshapes;
+        *place = manifolds.iter().position(of_it).and_then(Place::new);
     }
     if let Some(plan) = query.patch_plan(&contacts) {
         let found = Contacts { query: &mut query, candidates, contacts: &contacts, limits };

@@ -98,21 +98,17 @@ pub(crate) trait PairQuery {
         false
     }
 
-    /// Says of contacts, now that all are known, which are along other normals than their own.
-    fn settle(&self, _: &[Candidate<Self::Hint>], _: &mut [(u32, Self::Contact)], _: &mut Scratch) {
-    }
-
-    /// If no candidate has a contact: the one that takes one shape out of the other, and the subshapes
-    /// that it is written to. `outside` is a lower bound of the travel of the pair at which there may be
-    /// one.
-    fn inside(
+    /// Makes contacts, now that all are known, those of the shapes as a whole: some are along other
+    /// normals than their own, and what is inside of something has one that takes it out. It may be of a
+    /// new candidate. `outside` is a lower bound of the travel of the pair at which it may be needed.
+    fn settle(
         &mut self,
-        _outside: &mut f64,
-        _: Limits,
-        _: &Scratch,
-    ) -> Option<([u32; 2], Self::Contact)> {
-        None
-    }
+        candidates: &mut Vec<Candidate<Self::Hint>>,
+        contacts: &mut ContactList<Self::Contact>,
+        limits: Limits,
+        outside: &mut f64,
+        scratch: &mut Scratch,
+    );
 
     /// Memory for contacts, lent from query to query.
     fn contacts(scratch: &mut Scratch) -> &mut [ContactList<Self::Contact>; 2];

@@ -37,7 +37,7 @@ pub(super) struct Coherence<H> {
     pub(super) slack: Slack,
     /// Those of the last descent, in stock order.
     pub(super) candidates: Vec<Candidate<H>>,
-    /// See [`PairQuery::inside`](super::driver::PairQuery::inside).
+    /// See [`PairQuery::settle`](super::driver::PairQuery::settle).
     pub(super) outside: f64,
 }
 

@@ -51,3 +51,16 @@ impl<H: Default> Candidate<H> {
         Self { subshapes, place: None, clear: f64::NEG_INFINITY, hint: H::default() }
     }
 }
+
+/// The place of the candidate of two subshapes in a list, to whose end it is added if it is not there.
+pub(super) fn candidate_of<H: Default>(
+    candidates: &mut Vec<Candidate<H>>,
+    subshapes: [u32; 2],
+) -> u32 {
+    let known = candidates.iter().position(|candidate| candidate.subshapes == subshapes);
+    let place = known.unwrap_or_else(|| {
+        candidates.push(Candidate::new(subshapes));
+        candidates.len() - 1
+    });
+    place as u32
+}

@@ -20,6 +20,7 @@ use sbbk_core::contact::convex::{
 use sbbk_core::volumes::rounding::gamma;
 
 use super::shape::ConvexShape;
+use super::touch::Along;
 
 /// The contact of a triangle with a shape without its radius, in the shape's frame. `hull` has the
 /// points of the shape, if it is the hull of some and has been asked about before.
@@ -163,8 +164,7 @@ pub(super) struct Touching<'a> {
     pub(super) corners: &'a [DVec3; 3],
     pub(super) shape: ConvexShape<'a>,
     pub(super) contact: &'a ConvexContact,
-    /// Whether the contact is along another normal than its own.
-    pub(super) is_turned: bool,
+    pub(super) along: Along,
 }
 
 /// A point of a manifold, radii not counted.
@@ -182,8 +182,13 @@ impl Touching<'_> {
     ///
     /// `turned` is the normal if cones have turned it, in the direction of the contact's.
     pub(super) fn points(&self, turned: Option<DVec3>, mut each: impl FnMut(Point)) {
-        let Self { corners, shape, contact, is_turned } = *self;
+        let Self { corners, shape, contact, along } = *self;
         let ConvexContact { distance, normal, on_triangle, on_shape } = *contact;
+        let unnamed = [PackedFeatureId::UNKNOWN; 2];
+        if along == Along::WayOut {
+            return each(Point { on_triangle, on_shape, distance, features: unnamed });
+        }
+        let is_turned = along == Along::Other;
         let is_own = !is_turned && turned.is_none();
         let normal = turned.unwrap_or(normal);
         let toward = -normal.as_vec3();
@@ -232,9 +237,8 @@ impl Touching<'_> {
             let FeaturePoint { on_triangle, on_shape, .. } = *point;
             each(Point { on_triangle, on_shape, distance, features });
         }
-        let features = [PackedFeatureId::UNKNOWN; 2];
         if is_own && (is_round || !has_closest) {
-            each(Point { on_triangle, on_shape, distance, features });
+            each(Point { on_triangle, on_shape, distance, features: unnamed });
         }
         // The farthest point of a shape may be beside its feature, if that is a square in place of a disc.
         if is_turned
@@ -242,7 +246,7 @@ impl Touching<'_> {
             && let Some(distance) = height(corners, on_shape, normal)
         {
             let on_triangle = on_shape - normal * distance;
-            each(Point { on_triangle, on_shape, distance, features });
+            each(Point { on_triangle, on_shape, distance, features: unnamed });
         }
     }
 }

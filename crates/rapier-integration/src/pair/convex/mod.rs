@@ -18,6 +18,7 @@ mod ball;
 mod cast;
 mod features;
 mod half_space;
+mod inside;
 mod near;
 mod nearest;
 mod pair;

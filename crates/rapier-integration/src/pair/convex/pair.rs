@@ -16,6 +16,8 @@ pub(crate) struct ConvexPair<'a> {
     pub(crate) contacts: ContactGenerator,
     /// Whether contacts are those of the surface of the mesh.
     pub(crate) has_surfaces: bool,
+    /// Whether parts are led out of the mesh, if it bounds a solid.
+    pub(crate) leave_solids: bool,
     pub(crate) has_patches: bool,
 }
 

@@ -19,7 +19,7 @@ use super::half_space::half_space_points;
 use super::pair::ConvexPair;
 use super::parts::{Part, Parts};
 use super::shape::{ConvexShape, Extent};
-use super::touch::Touch;
+use super::touch::{Along, Touch};
 use crate::ContactGenerator;
 use crate::pair::outline::Outline;
 use crate::pair::pose::{MeshPlace, PairPose};
@@ -200,7 +200,7 @@ impl Question<'_> {
             // One point, whose data stays in place.
             return match touch {
                 // The nearest triangle has the nearest point.
-                Some(touch) if touch.is_turned => manifold.points.clear(),
+                Some(touch) if touch.along == Along::Other => manifold.points.clear(),
                 Some(touch) => self.touch_ball(ball.radius, &touch.contact, manifold),
                 None => self.ask_parry(manifold),
             };
@@ -256,14 +256,14 @@ impl Question<'_> {
     pub(super) fn is_crossing(&self, contact: &ConvexContact) -> bool {
         let (corners, shape) = (&self.placed.corners(self.triangle), self.part.shape);
         let mut is_crossing = false;
-        Touching { corners, shape, contact, is_turned: true }
+        Touching { corners, shape, contact, along: Along::Other }
             .points(None, |point| is_crossing |= point.distance < 0.0);
         is_crossing
     }
 
     /// In the frame of the part; `None` where the cones reject the contact.
     pub(super) fn outline(&self, touch: &Touch) -> Option<Outline> {
-        let Touch { contact, is_turned, .. } = touch;
+        let Touch { contact, along, .. } = touch;
         let (pos12, cones) = self.pair();
         let Normals { normals, .. } = Normals::new(pos12, self.normals(contact), cones)?;
         let [of_mesh, of_part] = self.mesh_place.swap(normals);
@@ -273,7 +273,7 @@ impl Question<'_> {
             normal,
             point: contact.on_triangle.as_vec3(),
             distance: (contact.distance - f64::from(self.part.shape.radius())) as Real,
-            has_cones: *is_turned || cones.iter().any(Option::is_some),
+            has_cones: *along == Along::Other || cones.iter().any(Option::is_some),
         })
     }
 
@@ -295,7 +295,7 @@ impl Question<'_> {
     /// empty where the cones reject the contact.
     fn touch<M, C: Default + Copy>(
         &self,
-        &Touch { ref contact, is_turned, .. }: &Touch,
+        &Touch { ref contact, along, .. }: &Touch,
         manifold: &mut ContactManifold<M, C>,
     ) {
         let Self { placed, part, triangle, mesh_place, .. } = *self;
@@ -310,9 +310,9 @@ impl Question<'_> {
         let turned = are_turned.then(|| -to_triangle.as_dvec3().normalize());
         let depth = contact.distance;
         let has_cones = cones.iter().any(Option::is_some);
-        let is_limited = is_turned || has_cones && depth < 0.0;
+        let is_limited = along == Along::Other || has_cones && depth < 0.0;
         let corners = &placed.corners(triangle);
-        Touching { corners, shape, contact, is_turned }.points(turned, |point| {
+        Touching { corners, shape, contact, along }.points(turned, |point| {
             let Point { on_triangle, on_shape, distance, features } = point;
             // As Parry: points that a turned normal puts much deeper than the bodies are.
             if is_limited && distance < 5.0 * depth.min(0.0) {

@@ -15,9 +15,9 @@ use super::pair::ConvexPair;
 use super::parts::{KnownParts, Part, Parts};
 use super::placed::{PlacedPart, Question};
 use super::shape::ConvexShape;
-use super::touch::{Near, Touch};
+use super::touch::{Along, Near, Touch};
 use crate::ContactGenerator;
-use crate::mesh::{Change, KnownMesh, TreeCache};
+use crate::mesh::{Change, KnownMesh, MeshSurface, TreeCache};
 use crate::pair::driver::{ContactList, Limits, Moving, Pair, PairQuery, Scratch, Seen};
 use crate::pair::merge::Merge;
 use crate::pair::order::{Candidate, OrderKey};
@@ -40,14 +40,15 @@ impl<'a> Pair for ConvexPair<'a> {
 
     fn open<'q>(
         &'q self,
-        _: &'q Arc<TreeCache>,
+        cache: &'q Arc<TreeCache>,
         (known_mesh, known_parts): &'q mut Self::Known,
     ) -> (Change, Self::Query<'q>) {
         let mut change = known_mesh.update(&self.mesh);
         if known_parts.update(&self.parts) {
             change = Change::Replaced;
         }
-        (change, ConvexQuery { pair: self, known_parts })
+        let surface = self.leave_solids.then(|| known_mesh.look_around(self.mesh.mesh, cache));
+        (change, ConvexQuery { pair: self, known_parts, surface: surface.flatten() })
     }
 }
 
@@ -55,6 +56,8 @@ impl<'a> Pair for ConvexPair<'a> {
 pub(crate) struct ConvexQuery<'q> {
     pub(super) pair: &'q ConvexPair<'q>,
     known_parts: &'q KnownParts,
+    /// That of the mesh, if parts are to be led out of it.
+    pub(super) surface: Option<MeshSurface<'q>>,
 }
 
 impl ConvexQuery<'_> {
@@ -121,7 +124,12 @@ impl ConvexQuery<'_> {
 
     /// A part at its place, as this query has it.
     #[inline]
-    fn placed<'s>(&self, index: u32, part: &Part<'_>, scratch: &'s mut Scratch) -> &'s PlacedPart {
+    pub(super) fn placed<'s>(
+        &self,
+        index: u32,
+        part: &Part<'_>,
+        scratch: &'s mut Scratch,
+    ) -> &'s PlacedPart {
         /// Parts that are kept at hand. More: parts that stock walks last are placed again less
         /// often.
         const AT_HAND: usize = 64;
@@ -210,13 +218,17 @@ impl PairQuery for ConvexQuery<'_> {
             }
             ControlFlow::Continue(())
         });
+        if let Some((triangle, touch)) = self.way_out(0, 0.0, scratch) {
+            contacts.clear();
+            contacts.push((triangle, Near(Some(touch))));
+        }
         self.turn(&mut contacts, |triangle| [triangle, 0], scratch);
         let mut lookup = std::mem::take(&mut scratch.lookup);
         let mut merge = Merge::begin(pool, manifolds, &mut lookup);
         for (index, touch) in
             contacts.iter().filter_map(|&(index, Near(touch))| Some((index, touch?)))
         {
-            if !touch.is_turned {
+            if touch.along != Along::Other {
                 merge.write(mesh_place.swap([index, 0]), |manifold| {
                     self.ask(index, 0, scratch, |question| {
                         question.touch_ball(ball.radius, &touch.contact, manifold);
@@ -303,11 +315,14 @@ impl PairQuery for ConvexQuery<'_> {
     }
 
     fn settle(
-        &self,
-        candidates: &[Candidate<Vec3>],
-        contacts: &mut [(u32, Near)],
+        &mut self,
+        candidates: &mut Vec<Candidate<Vec3>>,
+        contacts: &mut ContactList<Near>,
+        _: Limits,
+        _: &mut f64,
         scratch: &mut Scratch,
     ) {
+        self.lead_out(candidates, contacts, scratch);
         let subshapes = |of: u32| candidates[of as usize].subshapes;
         self.turn(contacts, |of| self.pair.mesh_place.swap(subshapes(of)), scratch);
     }

@@ -1,6 +1,6 @@
 //! Parry's convex shapes, as far as a walk over a mesh has to know them.
 
-use glamx::{DVec3, Vec3};
+use glamx::{DVec3, Vec3, Vec3Swizzles};
 use parry3d::math::{Real, Vector};
 use parry3d::shape::{Ball, Cuboid, HalfSpace, PolygonalFeatureMap, Shape, ShapeType};
 use sbbk_core::volumes::Sphere;
@@ -53,6 +53,24 @@ impl ConvexShape<'_> {
             Self::Ball(ball) => ball.radius,
             Self::Features { radius, .. } => radius,
             Self::HalfSpace(_) | Self::Cuboid(_) => 0.0,
+        }
+    }
+}
+
+impl ConvexShape<'_> {
+    /// A point within the shape; none of a half-space.
+    pub(super) fn middle(&self) -> Option<DVec3> {
+        match self {
+            Self::Ball(_) | Self::Cuboid(_) => Some(DVec3::ZERO),
+            Self::HalfSpace(_) => None,
+            Self::Features { map, .. } => {
+                // Along an axis of the shape both ends of it can be one corner.
+                let ends = [SKEW, SKEW.yzx(), SKEW.zxy()].map(|axis| {
+                    let [one, other] = [axis, -axis].map(|axis| map.local_support_point(axis));
+                    (one + other).as_dvec3()
+                });
+                Some(ends.into_iter().sum::<DVec3>() / 6.0)
+            }
         }
     }
 }

@@ -4,7 +4,7 @@ use sbbk_core::contact::convex::ConvexContact;
 
 use super::pair::ConvexPair;
 use super::query::ConvexQuery;
-use super::touch::Near;
+use super::touch::{Along, Near};
 use crate::pair::driver::Scratch;
 use crate::pair::seams::{Known, Seam, Touched};
 
@@ -70,7 +70,7 @@ impl ConvexQuery<'_> {
             if let (Some(touch), Some(along)) = (touch, along) {
                 let on_triangle = touch.contact.on_triangle;
                 touch.contact = ConvexContact { on_triangle, ..along };
-                touch.is_turned = true;
+                touch.along = Along::Other;
             }
         }
         scratch.seams = seams;

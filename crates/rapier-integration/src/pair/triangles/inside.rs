@@ -6,9 +6,9 @@ use parry3d::math::Vector;
 use parry3d::query::PointQuery;
 use sbbk_core::contact::{Feature, FeaturePair, TriangleContact};
 
-use super::judge::{BEHIND, Surfaces};
+use super::judge::Surfaces;
 use super::meshes::Meshes;
-use crate::mesh::{is_covered, nearest};
+use crate::mesh::{BEHIND, is_covered, nearest};
 use crate::pair::pose::PairPose;
 
 /// Of a distance in f32, what surely is left of it.

@@ -21,6 +21,7 @@ use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Facets};
 
 use super::regions::{Regions, Sheet};
+use crate::mesh::BEHIND;
 use crate::pair::pose::PairPose;
 
 /// What is known of the surfaces of two shapes.
@@ -47,9 +48,6 @@ pub(crate) trait Surfaces {
     /// behind: the cosine of the angle to the back of the surface.
     fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)>;
 }
-
-/// Of [`Surfaces::nearest`], from where a point counts as inside: nearest to such a one is a face.
-pub(super) const BEHIND: Real = 0.9;
 
 /// [`Surfaces::near`] as a share of the radius of the smaller shape. Higher: plates that soft CCD
 /// sees turn through what they meet; less: small bodies in a large prediction distance have contacts

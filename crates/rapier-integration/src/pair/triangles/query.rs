@@ -13,7 +13,7 @@ use super::exact::{Constraints, constrained_normal, fill, local_pair};
 use super::judge::{Judge, Surfaces};
 use crate::ContactGenerator;
 use crate::pair::driver::{ContactList, Limits, Moving, PairQuery, Scratch, Seen};
-use crate::pair::order::{Candidate, OrderKey};
+use crate::pair::order::{Candidate, OrderKey, candidate_of};
 use crate::pair::outline::{Outline, PatchPlan};
 use crate::pair::pose::PairPose;
 
@@ -170,15 +170,22 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         scratch.regions.close(way)
     }
 
-    fn inside(
+    fn settle(
         &mut self,
-        outside: &mut f64,
+        candidates: &mut Vec<Candidate<Hint>>,
+        contacts: &mut ContactList<Found>,
         limits: Limits,
-        scratch: &Scratch,
-    ) -> Option<([u32; 2], Found)> {
+        outside: &mut f64,
+        scratch: &mut Scratch,
+    ) {
+        if !contacts.is_empty() {
+            return;
+        }
         let is_deep = scratch.regions.has_way();
-        let (triangles, contact) = self.shapes.inside(is_deep, outside, limits.travel)?;
-        Some((triangles, Found { contact, of: Of::Shapes }))
+        if let Some((triangles, contact)) = self.shapes.inside(is_deep, outside, limits.travel) {
+            let found = Found { contact, of: Of::Shapes };
+            contacts.push((candidate_of(candidates, triangles), found));
+        }
     }
 
     fn contacts(scratch: &mut Scratch) -> &mut [ContactList<Found>; 2] {

@@ -1,0 +1,128 @@
+use glamx::{Quat, Vec3};
+use rapier_integration::{ContactDetail, SbbkConfig, SbbkDispatcher};
+use rapier3d::geometry::ColliderBuilder;
+use rapier3d::math::{Pose, Real};
+use rapier3d::parry::query::{ContactManifold, PersistentQueryDispatcher};
+use rapier3d::parry::shape::SharedShape;
+use rapier3d::prelude::{PhysicsWorld, RigidBodyBuilder};
+use sbbk_core::surface::SurfaceKind;
+use sbbk_lab::mesh;
+
+use super::shapes::shapes;
+
+fn leading_out(detail: ContactDetail) -> SbbkDispatcher {
+    let mut config = SbbkConfig::default();
+    (config.convex_leave_solids, config.detail) = (true, detail);
+    SbbkDispatcher::new(config)
+}
+
+/// Shapes with a mass, about a unit across, and a compound of some.
+fn bodies() -> Vec<(&'static str, SharedShape)> {
+    let flat = ["segment", "triangle", "round triangle", "half-space"];
+    let mut bodies = shapes(1.0);
+    bodies.retain(|(name, _)| !flat.contains(name));
+    let side = |x: Real| Pose::from_parts(x * Vec3::X, Quat::from_rotation_z(0.4));
+    let parts = vec![(side(-0.4), bodies[0].1.clone()), (side(0.4), bodies[1].1.clone())];
+    bodies.push(("compound", SharedShape::compound(parts)));
+    bodies
+}
+
+/// A world of a mesh and a shape that starts at `height`; where that is after three seconds, and its
+/// greatest speed above -3.
+fn fall(
+    dispatcher: SbbkDispatcher,
+    mesh: &SharedShape,
+    shape: &SharedShape,
+    height: Real,
+) -> [Real; 2] {
+    let mut world = PhysicsWorld::new();
+    world.narrow_phase.set_query_dispatcher(dispatcher);
+    world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(mesh.clone()));
+    let body = RigidBodyBuilder::dynamic().translation(Vec3::new(0.37, height, 0.21));
+    let (body, _) = world.insert(body, ColliderBuilder::new(shape.clone()));
+    let mut fastest: Real = 0.0;
+    for _ in 0..180 {
+        world.step();
+        let body = &world.bodies[body];
+        if body.translation().y > -3.0 {
+            fastest = fastest.max(body.linvel().length());
+        }
+    }
+    [world.bodies[body].translation().y, fastest]
+}
+
+/// Slabs of two units, whose upper side is at 0, of few triangles and of many. Would catch bodies that
+/// stay in them, leave by the longer way or are flung out.
+#[test]
+fn convex_shapes_leave_solids_by_the_shorter_way() {
+    let mut stay = 0;
+    for cells in [1, 8] {
+        let slab = mesh::cuboid(Vec3::new(5.0, 1.0, 5.0), cells);
+        let slab = slab.mapped(|vertex| vertex - Vec3::Y).shared_shape().unwrap();
+        for (name, shape) in bodies() {
+            for height in [-0.1, -0.5, -0.8, -1.3, -1.8] {
+                let [end, fastest] =
+                    fall(leading_out(ContactDetail::Patches), &slab, &shape, height);
+                let has_left = if height > -1.0 { end > 0.0 } else { end < -2.0 };
+                assert!(has_left, "{name} from {height} is at {end}, {cells} cells");
+                assert!(fastest < 5.0, "{name} from {height} has a speed of {fastest}");
+                let [end, _] = fall(SbbkDispatcher::default(), &slab, &shape, height);
+                stay += usize::from(end > -2.0 && end < 0.0);
+            }
+        }
+    }
+    assert!(stay > 10, "{stay} stay by default: what is this test worth?");
+}
+
+/// A room that is modelled by one closed surface. Would catch a body that is thrown out of it by default,
+/// or though it is said to be a sheet.
+#[test]
+fn rooms_that_are_sheets_keep_what_is_in_them() {
+    let room = mesh::cuboid(Vec3::splat(4.0), 4).shared_shape().unwrap();
+    for (name, shape) in bodies() {
+        let dispatcher = leading_out(ContactDetail::Patches);
+        let prepared = dispatcher.prepare_shape(&room).unwrap().unwrap();
+        prepared.bounds(SurfaceKind::Sheet);
+        for (dispatcher, is_kept) in [
+            (dispatcher, true),
+            (SbbkDispatcher::default(), true),
+            (leading_out(ContactDetail::Patches), false),
+        ] {
+            let [end, _] = fall(dispatcher, &room, &shape, -3.0);
+            assert_eq!(end > -4.0, is_kept, "{name} is at {end}");
+        }
+    }
+}
+
+/// Would catch a way out that is not the shortest one, is lost in one order of the shapes or where no
+/// triangle is near, or has company.
+#[test]
+fn the_way_out_is_the_only_contact() {
+    type Manifolds = Vec<ContactManifold<(), ()>>;
+    let block = mesh::cuboid(Vec3::splat(9.0), 6).shared_shape().unwrap();
+    for (name, shape) in bodies().iter().filter(|(name, _)| *name != "compound") {
+        for detail in [ContactDetail::Patches, ContactDetail::Every] {
+            let dispatcher = leading_out(detail);
+            let (mut manifolds, mut swapped) = (Manifolds::new(), Manifolds::new());
+            let (mut workspace, mut workspace2) = (None, None);
+            for depth in [0.3, 1.0, 4.0] {
+                let pose =
+                    Pose::from_parts(Vec3::new(9.0 - depth, 0.3, 0.2), Quat::from_rotation_y(0.7));
+                let (a, b, back) = (&*block.0, &*shape.0, pose.inverse());
+                dispatcher
+                    .contact_manifolds(&pose, a, b, 0.02, &mut manifolds, &mut workspace)
+                    .unwrap();
+                dispatcher
+                    .contact_manifolds(&back, b, a, 0.02, &mut swapped, &mut workspace2)
+                    .unwrap();
+                let [one] = &manifolds[..] else { panic!("{name}: {}", manifolds.len()) };
+                let [two] = &swapped[..] else { panic!("{name}: {}", swapped.len()) };
+                for (normal, points) in [(one.local_n1, &one.points), (two.local_n2, &two.points)] {
+                    assert!(normal.distance(Vec3::X) < 1.0e-5, "{name}: {normal}");
+                    let [point] = &points[..] else { panic!("{name}: {} points", points.len()) };
+                    assert!(point.dist < -depth, "{name} at {depth}: {}", point.dist);
+                }
+            }
+        }
+    }
+}
