@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
-use rapier_integration::{ContactDetail, SbbkConfig, SbbkDispatcher};
+use rapier_integration::{ContactDetail, ContactSet, SbbkConfig, SbbkDispatcher};
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::ColliderBuilder;
 use rapier3d::math::{Pose, Real, Vector};
@@ -332,5 +332,53 @@ fn each_patch_keeps_the_data_of_the_one_most_like_it() {
         for manifold in &pair.manifolds {
             assert_eq!(manifold.data, side(manifold), "{step}");
         }
+    }
+}
+
+/// A table whose legs are alike, as shape 1, that slides to other triangles of a floor. Would catch a leg
+/// that gets the data of another one, as all have their points at the same places in their frames.
+#[test]
+fn each_part_of_a_compound_keeps_its_data() {
+    let leg = SharedShape::cuboid(0.1, 0.5, 0.1);
+    let feet = [[0.0, 0.0], [2.0, 0.0], [0.0, 2.0], [2.0, 2.0]];
+    let feet = feet.map(|[x, z]| (Pose::translation(x, 0.0, z), leg.clone()));
+    let (table, floor) = (SharedShape::compound(feet.into()), shape(&mesh::floor(16.0, 16)));
+    let dispatcher = detailed(ContactDetail::Patches);
+    let at = |x: Real| Pose::translation(-0.3 - x, -0.4995, 0.35);
+    let mut pair = Pair::<u32, u32>::default();
+    ask(&mut pair, &dispatcher, [&*table.0, &floor], &at(0.0), 0.002);
+    assert_eq!(pair.manifolds.len(), 4);
+    let mut handed_on = 0;
+    for step in 1..60 {
+        for manifold in &mut pair.manifolds {
+            let leg = manifold.subshape1 + 1;
+            manifold.points.iter_mut().for_each(|point| point.data = leg);
+        }
+        ask(&mut pair, &dispatcher, [&*table.0, &floor], &at(0.001 * step as Real), 0.002);
+        for manifold in &pair.manifolds {
+            let leg = manifold.subshape1 + 1;
+            for point in &manifold.points {
+                assert!([0, leg].contains(&point.data), "leg {leg} has that of {}", point.data);
+                handed_on += usize::from(point.data == leg);
+            }
+        }
+    }
+    assert!(handed_on > 500, "{handed_on}");
+}
+
+/// Turns as files have them are of unit length to four digits, and cones then leave normals that are
+/// not. Would catch patches without end.
+#[test]
+fn normals_of_any_length_make_patches() {
+    let head = mesh::monkey_head();
+    let [bare, cones] = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES]
+        .map(|flags| shape_with(&head, flags));
+    let mut config = SbbkConfig::default();
+    config.contact_set = ContactSet::Triangles;
+    let dispatcher = SbbkDispatcher::new(config);
+    let turn = Quat::from_xyzw(0.7071, 0.0, 0.0, 0.7071);
+    for x in [0.5, 0.9, 1.1] {
+        let found = fresh(&dispatcher, [&bare, &cones], &Pose::from_parts(x * Vec3::X, turn), 0.02);
+        assert!(!found.is_empty() && found.iter().all(|manifold| !manifold.points.is_empty()));
     }
 }

@@ -432,6 +432,40 @@ fn large_meshes_are_solids_if_they_are_registered() {
     assert!(!found.is_empty() && found.len() < all.len());
 }
 
+/// Would catch a pair in contact whose mesh turns into a solid as it is registered.
+#[test]
+fn pairs_that_have_met_go_on_as_they_are() {
+    let slab = SharedShape::new(shape(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 40)));
+    let (ground, cube, dispatcher) = (slab.as_trimesh().unwrap(), cube(), every());
+    let at = |step: usize| {
+        let turn = Quat::from_rotation_y(0.3 + 0.01 * step as f32);
+        Query::new(ground, &cube, Pose::from_parts(Vec3::new(0.1, 0.2, 0.2), turn))
+    };
+    let (mut known, mut trees) = (Pair::default(), Vec::new());
+    for step in 0..30 {
+        let expected = fresh(&every(), &at(step));
+        let found = bits(&known.ask(&dispatcher, &at(step)).manifolds);
+        assert!(found == bits(&expected), "{step}");
+        if step == 3 {
+            trees.extend(dispatcher.prepare_shape(&slab).unwrap());
+        }
+    }
+    let of_a_solid = bits(&fresh(&dispatcher, &at(30)));
+    assert!(of_a_solid != bits(&fresh(&every(), &at(30))), "what is this test worth?");
+}
+
+/// Would catch surfaces that are looked for, which takes a hash of the mesh, before triangles touch.
+#[test]
+fn meshes_that_touch_nothing_have_no_surface() {
+    let (ball, dispatcher) = (shape(&mesh::ball(1.0, 12)), every());
+    let corner = Pose::from_translation(1.3 * Vec3::ONE);
+    assert!(fresh(&dispatcher, &Query::new(&ball, &ball, corner)).is_empty());
+    assert_eq!(dispatcher.stats().solids, 0);
+    let near = Pose::from_translation(1.99 * Vec3::X);
+    assert!(!fresh(&dispatcher, &Query::new(&ball, &ball, near)).is_empty());
+    assert_eq!(dispatcher.stats().solids, 1);
+}
+
 /// Would catch numbers that have a unit: everything times a power of two, the prediction distance as
 /// well, has the contacts of the same triangles.
 #[test]

@@ -255,7 +255,8 @@ impl SbbkDispatcher {
             (None, None) => return Answer::Unsupported,
         };
         if kinds.convex_shapes
-            && let Some(ball) = other.as_ball().filter(|ball| !leave_solids && is_few(mesh, ball))
+            && let Some(ball) =
+                other.as_ball().filter(|ball| !leave_solids && is_few(mesh, ball, prediction))
         {
             let is_broken = self.is_broken(mesh);
             let pair = FewPair { mesh, is_broken, ball, mesh_place, has_surfaces };
@@ -415,10 +416,12 @@ impl PreparedTree {
     }
 
     /// Says what the mesh bounds, where SBBK would take it for something else: a vase with a narrow
-    /// neck for a solid, a mask for a sheet. For all meshes with this content, as long as one of them
-    /// is in use. Without effect when it was said before; say it before the mesh meets another.
-    pub fn bounds(&self, kind: SurfaceKind) {
-        self.tree.settle_kind(kind);
+    /// neck for a solid, a mask for a sheet ([`InsideOut`](SurfaceKind::InsideOut) is met as a sheet). For
+    /// all meshes with this content, as long as one of them is in use; of more than 8192 triangles for
+    /// those that [`prepare_shape`](SbbkDispatcher::prepare_shape) has registered, as all others are
+    /// sheets. Say it before the mesh meets another, and once: false if something else was said before.
+    pub fn bounds(&self, kind: SurfaceKind) -> bool {
+        self.tree.settle_kind(kind)
     }
 }
 

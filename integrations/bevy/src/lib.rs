@@ -105,9 +105,10 @@ fn set_dispatcher(
 fn prepare_meshes(
     mut commands: Commands,
     sbbk: Res<Sbbk>,
-    colliders: Query<(Entity, &Collider), Changed<Collider>>,
+    colliders: Query<(Entity, Ref<Collider>)>,
 ) {
-    for (entity, collider) in &colliders {
+    let is_asked = |collider: &Ref<Collider>| sbbk.is_changed() || collider.is_changed();
+    for (entity, collider) in colliders.iter().filter(|(_, collider)| is_asked(collider)) {
         // A mesh that cannot have a tree is answered by Parry, and counted in `SbbkStats`.
         match sbbk.prepare_shape(&collider.raw) {
             Ok(Some(tree)) => commands.entity(entity).insert(SbbkTree(tree)),

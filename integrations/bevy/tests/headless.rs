@@ -165,6 +165,10 @@ fn meshes_are_prepared_when_colliders_are_added() {
         // Trees of both, found by all queries, or walks without.
         assert_eq!(stats_now.walks == 0, is_prepared, "{stats_now:?}");
         assert_eq!(stats_now.solids, if is_prepared { 2 } else { 1 }, "{stats_now:?}");
+        let other = Sbbk(SbbkDispatcher::default());
+        app.insert_resource(other.clone());
+        run(&mut app, 1);
+        assert_eq!(other.stats().trees > 0, is_prepared, "another dispatcher");
         app.world_mut().entity_mut(large).insert(Collider::ball(1.0));
         run(&mut app, 2);
         assert!(app.world().get::<SbbkTree>(large).is_none());

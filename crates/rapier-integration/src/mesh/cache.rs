@@ -133,9 +133,9 @@ impl CachedMesh {
         (surface, self.kind.get().copied().unwrap_or(surface.kind()))
     }
 
-    /// Settles what the mesh bounds; in vain if that is settled already.
-    pub(crate) fn settle_kind(&self, kind: SurfaceKind) {
-        let _ = self.kind.set(kind);
+    /// Settles what the mesh bounds, unless that is settled already. Whether it is that now.
+    pub(crate) fn settle_kind(&self, kind: SurfaceKind) -> bool {
+        *self.kind.get_or_init(|| kind) == kind
     }
 
     /// What the mesh bounds, if anything had to know.
@@ -340,6 +340,9 @@ impl TreeCache {
             entry.mesh.users.load(Ordering::Acquire) == 1 && queried()
         };
         let queried = entries.by_content.values().filter(is_queried).count();
+        let has_tree = |content: &ContentHash| {
+            entries.by_content.get(content).is_some_and(|entry| entry.mesh.tree().is_some())
+        };
         let of_kind = |kind| {
             entries.by_content.values().filter(|entry| entry.mesh.kind() == Some(kind)).count()
         };
@@ -348,7 +351,7 @@ impl TreeCache {
             sheets: of_kind(SurfaceKind::Sheet),
             inside_out: of_kind(SurfaceKind::InsideOut),
             trees: entries.by_content.values().filter(|e| e.mesh.tree().is_some()).count(),
-            idle_trees: entries.idle.len() + queried,
+            idle_trees: entries.idle.values().filter(|content| has_tree(content)).count() + queried,
             bytes: entries.by_content.values().map(|entry| entry.mesh.bytes()).sum(),
             builds: self.builds.load(Ordering::Relaxed),
             hits: self.hits.load(Ordering::Relaxed),

@@ -110,6 +110,11 @@ fn has_near(mesh: &TriMesh, aabb: &Aabb, pos12: &Pose, margin: Real) -> bool {
 pub(crate) struct Ranks(FxHashMap<u32, u32>);
 
 impl Ranks {
+    /// Gives back memory beyond so many triangles.
+    pub(crate) fn shrink_to(&mut self, limit: usize) {
+        self.0.shrink_to(limit);
+    }
+
     /// That of a triangle. One that was not given any sorts last.
     #[inline(always)]
     pub(crate) fn of(&self, triangle: u32) -> u32 {

@@ -23,7 +23,8 @@ pub(crate) enum KnownMesh {
         entry: OnceLock<PreparedRef>,
         /// Without a tree, for so many more queries; not known before the first one.
         wait: Option<u8>,
-        /// Whether `entry` can be had at the first query of any pair: so that answers may depend on it.
+        /// Whether answers may depend on `entry`, as it could be had at the first query of the pair:
+        /// settled there.
         is_whole: bool,
         neighbours: Neighbours,
     },
@@ -117,7 +118,7 @@ impl KnownMesh {
             if entry.get().is_none() {
                 let found = match cache.registered_tree(mesh) {
                     Some(registered) => {
-                        *is_whole = true;
+                        *is_whole |= is_first;
                         Some(registered)
                     }
                     None if is_first => {

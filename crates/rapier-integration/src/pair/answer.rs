@@ -60,7 +60,7 @@ where
     if query.write_at_once(&mut counters, &mut scratch, &mut pool, manifolds) {
         *coherence = Coherence::default();
         if let Some(limit) = scratch.demand.note(manifolds.len()) {
-            scratch.lookup.shrink_to(limit);
+            scratch.shrink_to(limit);
             pool.shrink_to(limit);
         }
         pool.give_back();
@@ -105,20 +105,14 @@ where
         let found = Contacts { query, candidates, contacts: &contacts, limits };
         write_every(found, &mut scratch, &mut pool, manifolds);
     }
-    if let Some(limit) = scratch.demand.note(contacts.len()) {
-        // Candidates come and go more than manifolds do: some hundred kilobytes a thread stay.
-        for list in [&mut contacts, &mut spare] {
-            list.shrink_to(limit.max(1024));
-        }
-        scratch.is_done.shrink_to(limit);
-        scratch.lookup.shrink_to(limit);
-        scratch.patches.shrink_to(limit);
-        scratch.seams.shrink_to(limit);
+    coherence.candidates.truncate(found);
+    let needed = contacts.len();
+    *P::Query::contacts(&mut scratch) = [contacts, spare];
+    if let Some(limit) = scratch.demand.note(needed) {
+        scratch.shrink_to(limit);
         pool.shrink_to(limit);
     }
     pool.give_back();
-    coherence.candidates.truncate(found);
-    *P::Query::contacts(&mut scratch) = [contacts, spare];
     SCRATCH.set(Some(scratch));
     memory.end(query.pose(), manifolds.len());
     answer

@@ -215,6 +215,21 @@ pub(crate) struct Scratch {
     pub(super) demand: Demand,
 }
 
+impl Scratch {
+    /// Gives back memory beyond so many contacts. Candidates come and go more than these do: some hundred
+    /// kilobytes a thread stay.
+    pub(super) fn shrink_to(&mut self, limit: usize) {
+        let Self { ordered, ranks, near, regions, patches, seams, lookup, is_done, .. } = self;
+        let many = limit.max(1024);
+        self.triangle_contacts.iter_mut().for_each(|list| list.shrink_to(many));
+        self.convex_contacts.iter_mut().for_each(|list| list.shrink_to(many));
+        ranks.iter_mut().for_each(|ranks| ranks.shrink_to(many));
+        (ordered.shrink_to(many), near.shrink_to(many), regions.shrink_to(many));
+        (patches.shrink_to(limit), seams.shrink_to(limit), lookup.shrink_to(limit));
+        is_done.shrink_to(limit);
+    }
+}
+
 /// Contacts and the candidates that they are of, by their places, in order. Most candidates have
 /// none.
 pub(crate) type ContactList<C> = Vec<(u32, C)>;

@@ -20,13 +20,15 @@ use super::seams::Touched;
 use super::state::state_in;
 use crate::mesh::whole_ones;
 
-/// Whether a ball touches about six triangles of a mesh at a time or fewer, by their mean size.
-pub(crate) fn is_few(mesh: &TriMesh, ball: &Ball) -> bool {
+/// Whether a ball is within a prediction distance of about six triangles of a mesh or fewer, by their mean
+/// size.
+pub(crate) fn is_few(mesh: &TriMesh, ball: &Ball, prediction: Real) -> bool {
     /// So many triangles for half of a ball's box. More: balls on finer meshes take up to 1.2 times
     /// as long; fewer: those on coarser ones do.
     const FEW: Real = 6.0;
     let size = mesh.bvh().root_aabb().half_extents().length_squared();
-    let count = mesh.indices().len() as Real * ball.radius * ball.radius;
+    let reach = ball.radius + prediction.max(0.0);
+    let count = mesh.indices().len() as Real * reach * reach;
     size.is_finite() && count < FEW * size
 }
 

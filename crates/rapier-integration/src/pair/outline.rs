@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use arrayvec::ArrayVec;
 use glamx::Vec3;
 use parry3d::math::Real;
+use parry3d::query::TrackedContact;
 
 /// The points of a patch. Rapier's solver uses no more.
 const MOST_POINTS: usize = 4;
@@ -108,6 +109,21 @@ pub(super) struct Member {
     /// Its place among the contacts.
     pub(super) contact: u32,
     pub(super) patch: u32,
+}
+
+/// A point of a patch, and the contact that it is of.
+#[derive(Copy, Clone)]
+pub(super) struct PatchPoint<C> {
+    pub(super) point: TrackedContact<C>,
+    pub(super) of: u32,
+    pub(super) normals: [Vec3; 2],
+}
+
+/// A point that the patches of a pair had before, and the part that it is of.
+#[derive(Copy, Clone)]
+pub(super) struct OldPoint<C> {
+    pub(super) point: TrackedContact<C>,
+    pub(super) part: u32,
 }
 
 /// Of a contact that is left out.

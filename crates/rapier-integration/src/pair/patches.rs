@@ -4,24 +4,16 @@
 //! do (`outline.rs` chooses). The choice is made twice: of contacts, by their closest points, before
 //! their other points are made, and of the points of those that were chosen.
 
-use parry3d::math::{Real, Vector};
+use parry3d::math::Real;
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::PackedFeatureId;
 
 use super::driver::{Contacts, PairQuery, Scratch};
-use super::outline::{Member, PatchPlan};
+use super::outline::{Member, OldPoint, PatchPlan, PatchPoint};
 use super::pool::{ManifoldPool, reset};
 
 /// Normals of a patch and of one of the step before that may be the same patch.
 const LIKE_NORMAL: Real = 0.9;
-
-/// A point of a patch, and the contact that it is of.
-#[derive(Copy, Clone)]
-pub(super) struct PatchPoint<C> {
-    point: TrackedContact<C>,
-    of: u32,
-    normals: [Vector; 2],
-}
 
 /// Replaces `manifolds` by patches. Those that were there before keep their data, and so do points
 /// of the same features.
@@ -55,7 +47,10 @@ pub(super) fn write_patches<Q, M, C>(
     let mut old_points = std::mem::take(&mut pool.old_points);
     let mut points = std::mem::take(&mut pool.patch_points);
     old_points.clear();
-    old_points.extend(manifolds.iter().flat_map(|manifold| &manifold.points));
+    old_points.extend(manifolds.iter().flat_map(|manifold| {
+        let part = part_of(manifold);
+        manifold.points.iter().map(move |&point| OldPoint { point, part })
+    }));
     for members in patches.members.chunk_by(|a, b| a.patch == b.patch) {
         points.clear();
         patches.points.clear();
@@ -103,10 +98,12 @@ pub(super) fn write_patches<Q, M, C>(
             manifold.points.clear();
             chosen.retain(|i| {
                 let PatchPoint { mut point, normals, .. } = points[*i];
-                let is_of_normal = normals[0].dot(local_n1) >= plan.one_normal;
+                // Also where cones have left no unit vector.
+                let is_of_normal = *i == deepest || normals[0].dot(local_n1) >= plan.one_normal;
                 if is_of_normal {
-                    if let Some(old) = place_of(&point, &old_points, plan.same_point) {
-                        point.data = old_points.swap_remove(old).data;
+                    let part = part_of(&manifold);
+                    if let Some(old) = place_of(&point, part, &old_points, plan.same_point) {
+                        point.data = old_points.swap_remove(old).point.data;
                     }
                     manifold.points.push(point);
                 }
@@ -124,17 +121,28 @@ pub(super) fn write_patches<Q, M, C>(
     scratch.patches = patches;
 }
 
-/// The place of the point of the step before that a point is: of the same features, or else the one
-/// nearest to it within some distance. (A corner of two triangles has two names.)
+/// The part in whose frame the points of a manifold are; 0 if they are in that of the whole.
+fn part_of<M, C>(manifold: &ContactManifold<M, C>) -> u32 {
+    let of1 = manifold.subshape_pos1().map(|_| manifold.subshape1);
+    of1.or(manifold.subshape_pos2().map(|_| manifold.subshape2)).unwrap_or(0)
+}
+
+/// The place of the point of the step before that a point of a part is: of the same features, or else
+/// the one nearest to it within some distance. (A corner of two triangles has two names.)
 fn place_of<C>(
     point: &TrackedContact<C>,
-    old_points: &[TrackedContact<C>],
+    part: u32,
+    old_points: &[OldPoint<C>],
     same_point: Real,
 ) -> Option<usize> {
-    let is_same = |old: &TrackedContact<C>| old.fid1 == point.fid1 && old.fid2 == point.fid2;
-    let distance = |old: &TrackedContact<C>| old.local_p1.distance(point.local_p1);
+    let is_same = |old: &OldPoint<C>| {
+        old.part == part && old.point.fid1 == point.fid1 && old.point.fid2 == point.fid2
+    };
+    let distance = |old: &OldPoint<C>| old.point.local_p1.distance(point.local_p1);
     let nearest = || {
-        let distances = old_points.iter().map(distance).enumerate().filter(|_| same_point > 0.0);
+        let of_part = old_points.iter().enumerate().filter(|(_, old)| old.part == part);
+        let distances = of_part.map(|(place, old)| (place, distance(old)));
+        let distances = distances.filter(|_| same_point > 0.0);
         let (place, distance) = distances.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
         (distance <= same_point).then_some(place)
     };

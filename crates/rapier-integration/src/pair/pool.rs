@@ -6,7 +6,7 @@ use std::cell::Cell;
 
 use parry3d::query::{ContactManifold, TrackedContact};
 
-use super::patches::PatchPoint;
+use super::outline::{OldPoint, PatchPoint};
 
 /// So many spare manifolds stay with a thread, at some 500 bytes. More serve pairs that lose and gain
 /// more contacts at once.
@@ -32,7 +32,7 @@ pub(crate) struct ManifoldPool<M, C> {
     /// Memory for the points that a manifold had before.
     pub(super) previous_points: Vec<TrackedContact<C>>,
     /// Memory for the points that the patches of a pair had before, and for those that one may have.
-    pub(super) old_points: Vec<TrackedContact<C>>,
+    pub(super) old_points: Vec<OldPoint<C>>,
     pub(super) patch_points: Vec<PatchPoint<C>>,
 }
 
@@ -91,6 +91,7 @@ impl<M: Default + 'static, C: Default + Copy + 'static> ManifoldPool<M, C> {
     pub(super) fn shrink_to(&mut self, limit: usize) {
         self.next.shrink_to(limit);
         self.old_points.shrink_to(limit);
+        self.patch_points.shrink_to(limit);
     }
 
     /// Ends the manifolds of a query: `manifolds` become those that were kept.

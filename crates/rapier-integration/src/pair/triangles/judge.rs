@@ -97,7 +97,8 @@ impl<S: Surfaces> Judge<'_, S> {
     /// Which pairs of triangles, of those that a descent within `margin` finds, only
     /// [pass by](Self::passes_by) while it serves.
     pub(super) fn beside(shapes: &S, prediction: Real, margin: Real) -> Option<Beside> {
-        let has_surface = (0..2).any(|i| shapes.around(i).is_some());
+        // Not by the surfaces themselves: they are looked for where triangles touch.
+        let has_surface = shapes.near() < f64::INFINITY;
         let is_near = f64::from(prediction) <= shapes.near();
         (has_surface && is_near).then(|| {
             let travel = margin - prediction;

@@ -96,6 +96,13 @@ impl Regions {
         self.is_first_round = true;
     }
 
+    /// Gives back memory beyond so many pairs, between queries.
+    pub(crate) fn shrink_to(&mut self, limit: usize) {
+        if self.found.capacity() > limit {
+            *self = Self::default();
+        }
+    }
+
     /// Whether a way is known that one body leaves the other.
     pub(super) fn has_way(&self) -> bool {
         self.way.is_some()
