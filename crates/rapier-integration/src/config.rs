@@ -29,7 +29,8 @@ pub enum ContactSet {
     Triangles,
 }
 
-/// How many of the contacts of two shapes a host gets.
+/// How many of the contacts of two shapes a host gets: what the field calls contact or manifold
+/// reduction.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum ContactDetail {
     /// Each triangle that touches, or each two, has a manifold of its own, as in stock Rapier. But
@@ -86,7 +87,7 @@ pub struct SbbkConfig {
     pub layers: LayerPlan,
     /// Where contact points come from.
     pub contacts: ContactGenerator,
-    /// Which of them two meshes have.
+    /// Contacts of surfaces, or of each two triangles.
     pub contact_set: ContactSet,
     /// What height fields bound, for meshes with [`ContactSet::Surfaces`]:
     /// [`Solid`](SurfaceKind::Solid), as all is ground below their upper side, or
@@ -100,7 +101,7 @@ pub struct SbbkConfig {
     /// triangles ([`SbbkDispatcher::prepare_shape`](crate::SbbkDispatcher::prepare_shape)), which count as
     /// sheets otherwise.
     pub convex_leave_solids: bool,
-    /// How many of them a host gets.
+    /// Whether the contacts of a pair are reduced to patches, or all reported.
     pub detail: ContactDetail,
     /// What is answered.
     pub kinds: Kinds,

@@ -228,8 +228,8 @@ impl SbbkDispatcher {
         let has_surfaces = is_exact && contact_set == ContactSet::Surfaces;
         let leave_solids = has_surfaces && self.config.convex_leave_solids;
         let has_patches = is_exact && detail == ContactDetail::Patches;
-        // Of such a pair nothing needs to be kept while it is apart. Not if there are manifolds: where
-        // Rapier finds no workspace it keeps pointers to manifolds that are gone.
+        // Of such a pair nothing needs to be kept while it is apart. One that has manifolds must keep a
+        // workspace: Rapier takes a missing one for a new pair, and keeps pointers to manifolds that are gone.
         let is_new = workspace.is_none() && manifolds.is_empty();
         let (mesh, other, mesh_place) = match (g1.as_trimesh(), g2.as_trimesh()) {
             (Some(mesh1), Some(mesh2)) => {

@@ -63,15 +63,17 @@
 //! * A mesh that bounds a *solid* ([`SurfaceKind::Solid`]) pushes out what has sunk into it. It is
 //!   wound consistently, with normals that point outwards, and closed or nearly: its holes together
 //!   are at most 6 % of its surface. Vertices at one place count as one. Depths count up to a
-//!   tenth of the radius of the smaller mesh, so that deep bodies come out slowly.
+//!   tenth of the radius of the smaller mesh, or four prediction distances if that is more, so that deep
+//!   bodies come out slowly.
 //! * Any other mesh is a *sheet* and met from both sides: terrains, walls, bowls, vases with a wide
 //!   neck, soups of triangles. So is a closed mesh whose normals point inwards
 //!   ([`SbbkStats::inside_out`]). A thin solid in the midst of a larger sheet goes to the
 //!   side that its middle is on, or to the front while this is little behind.
 //! * Contacts apart are local minima of the distance, so edges within a face and walls that pass by
-//!   make none; of sharp edges and corners only those nearer than a quarter of the prediction distance,
-//!   as they may pass each other. Not those that soft CCD looks at, farther than a tenth of that radius: plates turn
-//!   before they land. Where none is nearer, they have at most four points a direction.
+//!   make none; of sharp edges and corners only those nearer than a quarter of the prediction distance
+//!   count, as they may pass each other. Contacts farther than a tenth of that radius, which only soft CCD
+//!   asks for, are exempt: bodies may turn before they meet. If all are that far, each direction has at
+//!   most four points.
 //! * Surfaces that cross never stay without a contact.
 //!
 //! What a mesh bounds is found when it first meets another mesh, in about a third of the time that a
@@ -81,7 +83,8 @@
 //! SBBK would think otherwise; [`SbbkStats`] counts the kinds.
 //!
 //! Of a rigid mesh and a convex shape, contacts at edges within the surface are along the normal of the
-//! nearest triangle there, so that bodies slide and roll. Inside and outside are as in stock.
+//! nearest triangle there, so that bodies slide and roll. Inside and outside are as in stock, unless
+//! [`SbbkConfig::convex_leave_solids`] leads convex shapes out of solids, too.
 //!
 //! A height field is the top of a solid for rigid meshes: they do not stumble over its edges, and what
 //! has sunk into it comes up. What is wholly below it is left alone, as in a cave, and passes it from
@@ -92,13 +95,15 @@
 //!
 //! With [`ContactSet::Triangles`] all is as in stock: of meshes without
 //! `TriMeshFlags::FIX_INTERNAL_EDGES` triangles have no outside. Deformable meshes have
-//! these contacts always. A body that lies wholly inside another, farther from
-//! its surface than the prediction distance, has no contact either way.
+//! these contacts always. There a body that lies wholly inside another, farther from its surface than the
+//! prediction distance, has no contact.
 //!
 //! # Who answers
 //!
 //! By what a mesh meets, in either order of the two shapes. Pairs without a mesh are Parry's, as
-//! without this crate.
+//! without this crate (but for [`contact_manifold_convex_convex`] of two single triangles).
+//!
+//! [`contact_manifold_convex_convex`]: parry3d::query::PersistentQueryDispatcher::contact_manifold_convex_convex
 //!
 //! | a mesh and | pairs found by | contact points by |
 //! |---|---|---|
@@ -116,8 +121,8 @@
 //! have Parry's contacts: these are exact at every scale, and there nothing is quicker.
 //!
 //! SBBK's contacts of a convex shape are those of [`sbbk_core::contact::convex`], computed in f64;
-//! Parry says which feature of a polyhedron, cylinder or cone faces the triangle. Every contact has its
-//! manifold in the order of stock's. With [`ContactGenerator::Parry`] the contacts of two meshes are those of
+//! Parry says which feature of a polyhedron, cylinder or cone faces the triangle. With
+//! [`ContactDetail::Every`] each contact has its manifold in the order of stock's. With [`ContactGenerator::Parry`] the contacts of two meshes are those of
 //! Parry's routine, which keeps points from step to step as it does in stock; convex shapes of
 //! every kind have those of Parry's routine asked anew.
 //!
@@ -193,14 +198,16 @@
 //!
 //! # Threads
 //!
-//! Queries may come from many threads at once. Contact queries take no lock, but for two rigid
-//! meshes of which one has no tree yet: these look for it under a lock, for a moment. A tree is
-//! built outside of it. Results do not depend on the number of threads.
+//! Queries may come from many threads at once. Contact queries take no lock, but for rigid meshes that
+//! meet another or a height field and of which not all is known yet: these look for it under a lock, for
+//! a moment. A tree is built outside of it. Results do not depend on the number of threads.
 //!
 //! # Snapshots
 //!
 //! A Rapier world can be saved and restored, with or without this crate. Rapier does not store its
-//! dispatcher: set it again after restoring. The world then goes on as if it had not been saved.
+//! dispatcher: set it again after restoring, and register large meshes again
+//! ([`SbbkDispatcher::prepare_shape`]), as restored shapes are others. The world then goes on as if it had
+//! not been saved.
 //!
 //! # Features
 //!

@@ -53,8 +53,8 @@ pub(crate) fn may_be_inside([mesh1, mesh2]: [&TriMesh; 2], pos12: &Pose) -> bool
     }
 }
 
-/// Whether a mesh may be between a point and each side of the box around it: so it is where the point is
-/// inside, and not above a ground.
+/// Whether the box of some triangle lies in each of the six directions of the axes from a point: so it is
+/// for every point inside a closed mesh, and not above a terrain.
 pub(crate) fn is_covered(mesh: &TriMesh, point: Vec3) -> bool {
     let root = mesh.bvh().root_aabb();
     if !root.contains_local_point(point) {
@@ -170,7 +170,7 @@ impl<'a> Hierarchy<'a> {
     }
 
     /// The root box in the frame that the mesh is in at `pose`, grown by `reach` and by what
-    /// rounding takes from it. (That of a convex query allows for as much itself.) Without a finite pose the mesh is nowhere: a box that meets none.
+    /// rounding takes from it. Without a finite pose the mesh is nowhere: a box that meets none.
     pub(crate) fn placed_root(&self, pose: &Pose, reach: Real) -> Aabb {
         let root = self.root();
         let size = root.half_extents().length() + root.center().length();

@@ -159,7 +159,7 @@ impl<C> From<Option<C>> for Seen<C> {
     }
 }
 
-/// A ball that holds the moving shape in its own frame, and where that frame is in the other's.
+/// A ball around the shape that moves, in its own frame, and the pose of that frame in the other's.
 pub(crate) struct Moving<'a> {
     pub(super) ball: Sphere,
     pub(super) placement: &'a Placement,

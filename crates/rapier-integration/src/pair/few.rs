@@ -80,7 +80,7 @@ impl FewPair<'_> {
     {
         let Self { mesh, is_broken, ball, mesh_place, .. } = *self;
         let is_second = mesh_place.is_second();
-        // With stock's roundings: it turns the pose about on its way to the mesh and back.
+        // Bit for bit as in stock, which inverts the pose two more times.
         let ball_in_mesh = if is_second { pos12.inverse().inverse().inverse() } else { *pos12 };
         let aabb = ball.compute_aabb(&ball_in_mesh);
         // Some ten operations on these coordinates.

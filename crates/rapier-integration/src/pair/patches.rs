@@ -84,7 +84,7 @@ pub(super) fn write_patches<Q, M, C>(
         while let Some(&deepest) = chosen.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
         {
             let PatchPoint { of, normals: [local_n1, local_n2], .. } = points[deepest];
-            // One that was taken has no normal.
+            // In the place of one that was taken is an empty one, whose normal is zero.
             let like = |old: &ContactManifold<M, C>| old.local_n1.dot(local_n1);
             let likes =
                 manifolds.iter().map(like).enumerate().filter(|(_, like)| *like >= LIKE_NORMAL);

@@ -20,7 +20,7 @@ pub enum SurfaceKind {
     Sheet,
 }
 
-/// Holes of a solid together, as a share of its surface. The eyes of a monkey's head take 0.049 of it,
+/// Holes of a solid together, as a share of its surface; of a hole with a lid the gap counts. The eyes of a monkey's head take 0.049 of it,
 /// the opening of a glove 0.1, that of a half sphere a half, of a box without lid a fifth. Higher:
 /// bodies in a vase are pushed out of it. Lower: a head with a hole is a sheet.
 const GREATEST_HOLES: f64 = 0.06;
@@ -48,18 +48,9 @@ pub(super) fn of(vertices: &[Vec3], triangles: &[[u32; 3]], uneven: &[[u32; 2]])
         volume += a.dot(twice) / 6.0;
         extent = extent.max(a.length());
     }
-    // Of each loop of borders what covers it from its middle. Its vector area, which is less, is none
-    // where a loop leads around two holes: the ends of a tube with a slit.
-    let holes: f64 = loops(&without_seams(uneven, corner, SEAM * extent))
-        .iter()
-        .map(|edges| {
-            let starts: DVec3 = edges.iter().map(|&[start, _]| corner(start)).sum();
-            let middle = starts / edges.len() as f64;
-            let cover = |&[a, b]: &[u32; 2]| (corner(a) - middle).cross(corner(b) - middle);
-            edges.iter().map(|edge| cover(edge).length() / 2.0).sum::<f64>()
-        })
-        .sum();
-    let is_closed = holes <= GREATEST_HOLES * area;
+    let borders = loops(&without_seams(uneven, corner, SEAM * extent));
+    let borders = borders.iter().map(|edges| Border::new(edges, corner)).collect();
+    let is_closed = holes(borders) <= GREATEST_HOLES * area;
     let least = LEAST_VOLUME * area * extent;
     if is_closed && volume > least {
         SurfaceKind::Solid
@@ -68,6 +59,67 @@ pub(super) fn of(vertices: &[Vec3], triangles: &[[u32; 3]], uneven: &[[u32; 2]])
     } else {
         SurfaceKind::Sheet
     }
+}
+
+/// A loop of borders.
+struct Border {
+    middle: DVec3,
+    length: f64,
+    /// What covers it from its middle.
+    cover: f64,
+    /// The vector area of that: less, and none of a loop that leads around two holes, as that of a tube with
+    /// a slit.
+    area: DVec3,
+}
+
+/// How much of its cover the vector area of a loop around one hole is at least.
+const ONE_HOLE: f64 = 0.9;
+
+/// So many of the largest loops may close each other.
+const MOST_LIDS: usize = 32;
+
+impl Border {
+    fn new(edges: &[[u32; 2]], corner: impl Fn(u32) -> DVec3) -> Self {
+        let starts: DVec3 = edges.iter().map(|&[start, _]| corner(start)).sum();
+        let middle = starts / edges.len() as f64;
+        let (mut length, mut cover, mut area) = (0.0, 0.0, DVec3::ZERO);
+        for [start, end] in edges.iter().map(|edge| edge.map(&corner)) {
+            let part = (start - middle).cross(end - middle) / 2.0;
+            length += start.distance(end);
+            cover += part.length();
+            area += part;
+        }
+        Self { middle, length, cover, area }
+    }
+
+    /// What the strip between two loops spares that run around each other the opposite way, as the rim of a
+    /// pot and that of its lid do, beside a cover of each.
+    fn spared_by(&self, lid: &Self) -> f64 {
+        let is_hole = |border: &Self| border.area.length() >= ONE_HOLE * border.cover;
+        if !is_hole(self) || !is_hole(lid) {
+            return 0.0;
+        }
+        let apart = 0.5 * (self.length + lid.length) * self.middle.distance(lid.middle);
+        self.cover + lid.cover - (self.area + lid.area).length() - apart
+    }
+}
+
+/// What it takes to close all loops: a cover of each, or the strip between a hole and its lid.
+fn holes(mut borders: Vec<Border>) -> f64 {
+    borders.sort_unstable_by(|a, b| b.cover.total_cmp(&a.cover));
+    let all: f64 = borders.iter().map(|border| border.cover).sum();
+    borders.truncate(MOST_LIDS);
+    let pairs = (0..borders.len()).flat_map(|i| (0..i).map(move |j| [i, j]));
+    let spared = pairs.map(|[i, j]| (borders[i].spared_by(&borders[j]), [i, j]));
+    let mut spared: Vec<_> = spared.filter(|(spared, _)| *spared > 0.0).collect();
+    spared.sort_unstable_by(|(a, _), (b, _)| b.total_cmp(a));
+    let mut is_closed = vec![false; borders.len()];
+    let of_lids = spared.into_iter().filter(|(_, pair)| {
+        let is_new = pair.iter().all(|&i| !is_closed[i]);
+        pair.iter().for_each(|&i| is_closed[i] |= is_new);
+        is_new
+    });
+    all - of_lids.map(|(spared, _)| spared).sum::<f64>()
 }
 
 /// The edges that no other makes up for, where vertices as close as that are one.

@@ -388,6 +388,13 @@ fn glove(length: f32) -> Soup {
     lathe(&arc(0.5).into_iter().chain(straight).collect::<Vec<_>>(), TAU, true)
 }
 
+/// A pot of radius 1 with a disc of a radius over its opening; upside down if that is negative.
+fn with_lid(radius: f32, height: f32) -> Soup {
+    let lid = lathe(&[[radius.abs(), 0.0], [0.0, 0.0]], TAU, true);
+    let lid = if radius < 0.0 { turned_inside_out(lid) } else { lid };
+    together([glove(1.0), mapped(lid, |v| v + Vec3::Z * (1.0 + height))])
+}
+
 /// A tube of radius 1, open at both ends.
 fn tube(turn: f32, welded: bool) -> Soup {
     let profile: Vec<_> = (0..=20).map(|i: u8| [1.0, 0.3 * f32::from(i)]).collect();
@@ -474,6 +481,11 @@ fn kinds() -> Vec<(&'static str, Soup, SurfaceKind)> {
         ("ball with a triangle turned", with_turned(ball(), 300), Solid),
         ("cube with a triangle turned", with_turned(cube(), 3), Sheet),
         ("bottle", glove(70.0), Solid),
+        ("pot with a lid", with_lid(0.93, 0.0), Solid),
+        ("pot with a lid in it", with_lid(0.97, -0.02), Solid),
+        ("pot with a small lid", with_lid(0.8, 0.0), Sheet),
+        ("pot with a lid that floats", with_lid(0.95, 0.3), Sheet),
+        ("pot with a lid upside down", with_lid(-0.95, 0.0), Sheet),
         ("glove", glove(4.0), Sheet),
         ("bowl", lathe(&arc(0.5), TAU, true), Sheet),
         ("deep bowl", lathe(&arc(0.8), TAU, true), Sheet),

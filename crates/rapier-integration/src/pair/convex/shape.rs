@@ -83,7 +83,7 @@ impl ConvexShape<'_> {
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub(super) struct Extent {
     shape_type: ShapeType,
-    /// Around the core that Parry's routine knows.
+    /// The border of round shapes, capsules and balls; 0 of others.
     pub(super) radius: Real,
     min: Vec3,
     max: Vec3,

@@ -34,8 +34,9 @@ pub(crate) trait Surfaces {
     /// The surface of shape 1 (0) or 2 (1), if it is known.
     fn around(&self, i: usize) -> Option<Around<Self::Facets<'_>>>;
 
-    /// The distance up to which contacts must be local minima, and the greatest depth. Farther ones
-    /// are looked at by soft CCD: bodies turn before they meet.
+    /// The distance up to which contacts must be local minima; infinite without surfaces. Farther ones,
+    /// which only soft CCD asks for, are all kept, as bodies may turn before they meet. Depths are cut at
+    /// this, or at four prediction distances if that is more.
     fn near(&self) -> f64;
 
     /// The box around a shape, in its frame.

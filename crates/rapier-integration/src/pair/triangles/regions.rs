@@ -29,7 +29,7 @@ pub(crate) struct Regions {
 struct Hold {
     pairs: u32,
     good: u32,
-    /// Whether a contact pushes the wrong way: others could do so as well.
+    /// Whether a contact was of the far side of a thin body: no others are added.
     is_thin: bool,
     /// The sum of the normals of contacts beyond doubt.
     normals: DVec3,
