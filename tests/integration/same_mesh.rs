@@ -74,16 +74,16 @@ fn two_thousand_copies_share_one_tree() {
     assert_eq!(dispatcher.stats().tree_bytes, bytes);
 }
 
-/// Would catch a tree used for another size of the same mesh, and one shared by meshes whose
-/// contact normals are constrained and not.
+/// Would catch a tree used for another size of the same mesh, and a second one of a mesh whose contact
+/// normals are constrained.
 #[test]
-fn another_scale_or_other_normals_are_another_mesh() {
+fn another_scale_is_another_mesh_and_another_flag_is_none() {
     let dispatcher = SbbkDispatcher::default();
     let mesh = ball();
     let larger = mesh.clone().scaled(Vector::splat(1.25));
     let fixed = shape_with(&mesh::ball(1.0, 6), TriMeshFlags::FIX_INTERNAL_EDGES);
     assert_eq!((mesh.vertices(), mesh.indices()), (fixed.vertices(), fixed.indices()));
-    for (other, trees) in [(&larger, 2), (&fixed, 3)] {
+    for (other, trees) in [(&larger, 2), (&fixed, 2)] {
         let pair = touch(&dispatcher, &mesh, other);
         assert_eq!(dispatcher.stats().trees, trees);
         let expected = fresh(&SbbkDispatcher::default(), &Query::new(&mesh, other, near()));

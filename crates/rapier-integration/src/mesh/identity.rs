@@ -5,11 +5,10 @@
 //! shape is held here: [`registry`](super::registry)). So there are two notions:
 //!
 //! * [`ContentHash`], 128 bits over all that a [`PreparedMesh`](super::PreparedMesh) is made of:
-//!   vertices, triangles, flags, Parry's hierarchy (the stock order of contacts) and, where they
-//!   constrain contact normals, the pseudo-normals of the edges. Equal vertices and triangles do
-//!   not make the last two equal: Parry fits them to a mesh that is edited or scaled, and builds
-//!   those of a new mesh. Meshes with equal hashes share one prepared mesh, wherever they are:
-//!   clones, copies restored from a snapshot, the same file loaded twice. The hash reads the whole
+//!   vertices, triangles, whether it deforms, and Parry's hierarchy (the stock order of contacts). Equal
+//!   vertices and triangles do not make the last one equal: Parry fits it to a mesh that is edited or
+//!   scaled, and builds that of a new mesh. Meshes with equal hashes share one prepared mesh, wherever they
+//!   are: clones, copies restored from a snapshot, the same file loaded twice. The hash reads the whole
 //!   mesh (about 4 µs for 1000 triangles), so it is asked for only where a tree is built, once by each
 //!   pair of two meshes about those that are small, and about a large one where one with as many
 //!   triangles is there.
@@ -44,24 +43,15 @@ impl ContentHash {
         add_topology(mesh, &mut hasher);
         hasher.update(bytemuck::cast_slice(mesh.vertices()));
         add_hierarchy(mesh, &mut hasher);
-        if mesh.flags().contains(TriMeshFlags::FIX_INTERNAL_EDGES)
-            && let Some(normals) = mesh.pseudo_normals()
-        {
-            hasher.update(bytemuck::cast_slice(&normals.edges_pseudo_normal));
-        }
         Self(hasher.digest128())
     }
 }
 
-/// Adds the triangles, and the flags that concern contacts.
+/// Adds the triangles, and whether they deform.
 fn add_topology(mesh: &TriMesh, hasher: &mut Xxh3) {
     hasher.write_usize(mesh.vertices().len());
     hasher.write_usize(mesh.indices().len());
-    // What a prepared mesh depends on: normal cones, and what becomes of a mesh that is not finite.
-    let flags = TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED
-        | TriMeshFlags::FIX_INTERNAL_EDGES
-        | TriMeshFlags::DEFORMABLE;
-    hasher.write_u16((mesh.flags() & flags).bits());
+    hasher.write_u16((mesh.flags() & TriMeshFlags::DEFORMABLE).bits());
     hasher.update(bytemuck::cast_slice(mesh.indices()));
 }
 
@@ -181,16 +171,6 @@ mod tests {
         let mut moved = row(|i| i * 7 % 16, TriMeshFlags::empty());
         moved.set_vertices(mesh.vertices());
         assert_ne!(ContentHash::of(&moved), hash, "hierarchy");
-        // Parry fits the normals of edges to a mesh that is scaled, and those of a new one are others.
-        let hinge = |height: f32| {
-            let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, height], [0.0, -1.0, height]];
-            let flags = TriMeshFlags::FIX_INTERNAL_EDGES;
-            let corners = corners.map(Vector::from_array).to_vec();
-            TriMesh::with_flags(corners, vec![[0, 1, 2], [1, 0, 3]], flags).unwrap()
-        };
-        let (new, scaled) = (hinge(1.0), hinge(4.0).scaled(Vector::new(1.0, 1.0, 0.25)));
-        assert_eq!(new.vertices(), scaled.vertices());
-        assert_ne!(ContentHash::of(&new), ContentHash::of(&scaled), "normals of edges");
     }
 
     /// Would catch an edit in place that a pair does not see, and a mesh taken for its clone.

@@ -224,8 +224,12 @@ impl Scratch {
         self.triangle_contacts.iter_mut().for_each(|list| list.shrink_to(many));
         self.convex_contacts.iter_mut().for_each(|list| list.shrink_to(many));
         ranks.iter_mut().for_each(|ranks| ranks.shrink_to(many));
-        (ordered.shrink_to(many), near.shrink_to(many), regions.shrink_to(many));
-        (patches.shrink_to(limit), seams.shrink_to(limit), lookup.shrink_to(limit));
+        ordered.shrink_to(many);
+        near.shrink_to(many);
+        regions.shrink_to(many);
+        patches.shrink_to(limit);
+        seams.shrink_to(limit);
+        lookup.shrink_to(limit);
         is_done.shrink_to(limit);
     }
 }

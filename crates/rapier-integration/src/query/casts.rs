@@ -1,14 +1,15 @@
 //! Casts of two meshes: along a line, and along the curves of rigid motions.
 
-use parry3d::math::{Pose, Real, Vector};
+use parry3d::math::{Pose, Vector};
+use parry3d::query::ShapeCastHit;
 use parry3d::query::details::ShapeCastOptions;
-use parry3d::query::{ShapeCastHit, ShapeCastStatus};
-use sbbk_core::query::{Cast, CastOptions, FoundPair, Meshes, cast};
+use sbbk_core::query::{Cast, CastOptions, FoundPair, Meshes, PartPair, cast};
 use sbbk_core::traverse::Placement;
 use sbbk_core::tree::Tree;
 
 use super::lookup::{MeshQuery, Trees};
-use super::nonlinear::{NonlinearCast, Touch};
+use super::nonlinear::NonlinearCast;
+use super::touch::{Touch, status};
 
 impl MeshQuery<'_> {
     /// As [`Trees::cast`]; `None` if a mesh has no tree, and Parry must answer.
@@ -43,38 +44,28 @@ impl Trees {
         };
         let cast: Cast =
             self.search(|scratch| cast(self.both(), placement, velocity12, core_options, scratch))?;
-        let status = if cast.is_penetrating {
-            ShapeCastStatus::PenetratingOrWithinTargetDist
-        } else {
-            ShapeCastStatus::Converged
-        };
         // Where the point of mesh 2 was before it moved.
         let mut pair = cast.pair;
         pair.contact.point2 -= velocity12.as_dvec3() * cast.time;
-        Some(ShapeCastHit {
-            time_of_impact: cast.time as Real,
-            witness1: pair.point1(),
-            witness2: pair.point2(&placement),
-            normal1: pair.normal1(),
-            normal2: pair.normal2(&placement),
-            status,
-            subshape1: pair.triangle1,
-            subshape2: pair.triangle2,
-        })
+        Some(touch(&pair, &placement).hit(pair.name(), cast.time, status(cast.is_penetrating)))
     }
 
     /// The first impact of two meshes on their ways.
     fn cast_nonlinear(&self, cast: &NonlinearCast<'_>) -> Option<ShapeCastHit> {
         let trees = self.both();
         let balls = [trees.0, trees.1].map(Tree::bounding_ball);
-        let touch = |pair: &FoundPair, placement: &Placement| Touch {
-            points: [pair.point1(), pair.point2(placement)],
-            normals: [pair.normal1(), pair.normal2(placement)],
-        };
         let found = self.search(|scratch| {
             let meshes = &mut Meshes { trees, scratch };
             cast.first_impact(meshes, cast.options(balls), 0.0, touch)
         })?;
         Some(cast.hit(&found, &touch(&found.pair, &found.placement)))
+    }
+}
+
+/// Where two triangles touch.
+pub(super) fn touch(pair: &FoundPair, placement: &Placement) -> Touch {
+    Touch {
+        points: [pair.point1(), pair.point2(placement)],
+        normals: [pair.normal1(), pair.normal2(placement)],
     }
 }

@@ -2,14 +2,13 @@
 
 use parry3d::math::{Real, Vector};
 use parry3d::query::details::ShapeCastOptions;
-use parry3d::query::{
-    ClosestPoints, Contact, ShapeCastHit, ShapeCastStatus, ShapeDistance, ShapeIntersection,
-};
+use parry3d::query::{ClosestPoints, Contact, ShapeCastHit, ShapeDistance, ShapeIntersection};
 
 use super::moving::MovingConvex;
 use super::nonlinear::NonlinearCast;
 use super::proximity::limit_of;
-use crate::pair::{ConvexSearch, FoundCast, MeshPlace};
+use super::touch::{Touch, status};
+use crate::pair::{ConvexSearch, FoundCast, FoundTriangle, MeshPlace};
 
 /// A mesh and a convex shape of which something is asked.
 pub(crate) struct ConvexQuery<'a> {
@@ -56,11 +55,7 @@ impl ConvexQuery<'_> {
     /// The contact of the deepest triangle or, where none crosses, of the nearest.
     pub(crate) fn contact(&self, prediction: Real) -> Option<Contact> {
         let found = self.search.deepest(limit_of(prediction))?;
-        let [point1, point2] = self.mesh_place.swap(self.search.points(&found));
-        let [normal1, normal2] = self.mesh_place.swap(self.search.normals(&found));
-        let mut contact = Contact::new(point1, point2, normal1, normal2, found.distance());
-        [contact.subshape1, contact.subshape2] = self.subshapes(found.triangle);
-        Some(contact)
+        Some(self.touch(&found).contact(self.subshapes(found.triangle), found.distance()))
     }
 
     /// The first impact of shape 2, moving by `velocity12` in the frame of shape 1.
@@ -71,31 +66,21 @@ impl ConvexQuery<'_> {
     ) -> Option<ShapeCastHit> {
         let cast = self.search.cast(self.mesh_place, velocity12.as_dvec3(), options)?;
         let FoundCast { time, found, is_penetrating } = cast;
-        let status = if is_penetrating {
-            ShapeCastStatus::PenetratingOrWithinTargetDist
-        } else {
-            ShapeCastStatus::Converged
-        };
-        let [witness1, witness2] = self.mesh_place.swap(self.search.points(&found));
-        let [normal1, normal2] = self.mesh_place.swap(self.search.normals(&found));
-        let [subshape1, subshape2] = self.subshapes(found.triangle);
-        let time_of_impact = time as Real;
-        Some(ShapeCastHit {
-            time_of_impact,
-            witness1,
-            witness2,
-            normal1,
-            normal2,
-            status,
-            subshape1,
-            subshape2,
-        })
+        let subshapes = self.subshapes(found.triangle);
+        Some(self.touch(&found).hit(subshapes, time, status(is_penetrating)))
     }
 
     /// The first impact of both on their ways.
     pub(crate) fn cast_nonlinear(self, cast: &NonlinearCast<'_>) -> Option<ShapeCastHit> {
         let found = MovingConvex::new(self.search, self.mesh_place, cast).first_impact()?;
         Some(cast.hit(&found, &found.pair.touch))
+    }
+
+    fn touch(&self, found: &FoundTriangle) -> Touch {
+        Touch {
+            points: self.mesh_place.swap(self.search.points(found)),
+            normals: self.mesh_place.swap(self.search.normals(found)),
+        }
     }
 
     fn subshapes(&self, triangle: u32) -> [u32; 2] {

@@ -12,6 +12,7 @@ mod lookup;
 mod moving;
 mod nonlinear;
 mod proximity;
+mod touch;
 mod walk;
 
 pub(crate) use convex::ConvexQuery;

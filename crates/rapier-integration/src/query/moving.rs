@@ -11,7 +11,8 @@ use sbbk_core::query::{Advance, AdvanceOptions, Bodies, PartPair, advance};
 use sbbk_core::traverse::Placement;
 use sbbk_core::volumes::Sphere;
 
-use super::nonlinear::{NonlinearCast, Touch};
+use super::nonlinear::NonlinearCast;
+use super::touch::Touch;
 use crate::pair::{ConvexSearch, FoundTriangle, MeshPlace, PlacedPart};
 
 /// Steps by the distance alone, before triangles are advanced by themselves. Most casts need no more and

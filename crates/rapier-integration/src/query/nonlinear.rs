@@ -7,6 +7,8 @@ use sbbk_core::query::{Advance, AdvanceOptions, Bodies, PartPair, advance, advan
 use sbbk_core::traverse::Placement;
 use sbbk_core::volumes::Sphere;
 
+use super::touch::Touch;
+
 /// Bodies this close have met, as a share of the radius of the ball around the smaller one. Higher:
 /// fewer steps, earlier impacts.
 const TOLERANCE: f64 = 1.0e-6;
@@ -37,13 +39,6 @@ pub(crate) struct NonlinearCast<'a> {
     pub(crate) start: Real,
     pub(crate) end: Real,
     pub(crate) stop_at_penetration: bool,
-}
-
-/// Where two parts touch: a point of each and its outward unit normal, in its frame.
-#[derive(Copy, Clone)]
-pub(crate) struct Touch {
-    pub(super) points: [Vector; 2],
-    pub(super) normals: [Vector; 2],
 }
 
 impl NonlinearCast<'_> {
@@ -102,18 +97,7 @@ impl NonlinearCast<'_> {
         } else {
             ShapeCastStatus::Converged
         };
-        let Touch { points: [witness1, witness2], normals: [normal1, normal2] } = *touch;
-        let [subshape1, subshape2] = pair.name();
-        ShapeCastHit {
-            time_of_impact: time as Real,
-            witness1,
-            witness2,
-            normal1,
-            normal2,
-            status,
-            subshape1,
-            subshape2,
-        }
+        touch.hit(pair.name(), time, status)
     }
 
     /// No point of one body moves faster than this against the other.

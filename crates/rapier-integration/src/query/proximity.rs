@@ -2,9 +2,10 @@
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::{ClosestPoints, Contact, ShapeDistance, ShapeIntersection};
-use sbbk_core::query::{FoundPair, deepest, meeting, nearest};
+use sbbk_core::query::{FoundPair, PartPair, deepest, meeting, nearest};
 use sbbk_core::traverse::Placement;
 
+use super::casts::touch;
 use super::lookup::{MeshQuery, Trees};
 
 impl MeshQuery<'_> {
@@ -58,12 +59,8 @@ impl MeshQuery<'_> {
             Some(trees) => trees.deepest(placement, limit),
             None => self.walk().deepest(placement, limit),
         }?;
-        let points = (pair.point1(), pair.point2(&placement));
-        let normals = (pair.normal1(), pair.normal2(&placement));
         let distance = pair.contact.distance as Real;
-        let mut contact = Contact::new(points.0, points.1, normals.0, normals.1, distance);
-        (contact.subshape1, contact.subshape2) = (pair.triangle1, pair.triangle2);
-        Some(contact)
+        Some(touch(&pair, &placement).contact(pair.name(), distance))
     }
 
     fn nearest(&self, placement: Placement, limit: f64) -> Option<FoundPair> {

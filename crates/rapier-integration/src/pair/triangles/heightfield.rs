@@ -245,10 +245,7 @@ impl TriangleShapes for MeshAndField<'_> {
         way_out(self, self.pair.pose, of_mesh, self.pair.mesh.ball().centre)?.try_normalize()
     }
 
-    fn with_constraints(&self, triangles: [u32; 2], then: impl FnOnce(Constraints<'_>)) {
-        if self.surface.is_some() {
-            return then([None; 2]);
-        }
+    fn with_cones(&self, triangles: [u32; 2], then: impl FnOnce(Constraints<'_>)) {
         let place = self.pair.mesh_place;
         let [mesh, field] = place.swap(triangles);
         let of_mesh = self.pair.mesh.mesh.triangle_normal_constraints(mesh);

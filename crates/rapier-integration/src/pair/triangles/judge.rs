@@ -39,6 +39,11 @@ pub(crate) trait Surfaces {
     /// this, or at four prediction distances if that is more.
     fn near(&self) -> f64;
 
+    /// Whether contacts are those of surfaces.
+    fn has_surface(&self) -> bool {
+        self.near() < f64::INFINITY
+    }
+
     /// The box around a shape, in its frame.
     fn bounds(&self, i: usize) -> Aabb;
 
@@ -99,9 +104,8 @@ impl<S: Surfaces> Judge<'_, S> {
     /// [pass by](Self::passes_by) while it serves.
     pub(super) fn beside(shapes: &S, prediction: Real, margin: Real) -> Option<Beside> {
         // Not by the surfaces themselves: they are looked for where triangles touch.
-        let has_surface = shapes.near() < f64::INFINITY;
         let is_near = f64::from(prediction) <= shapes.near();
-        (has_surface && is_near).then(|| {
+        (shapes.has_surface() && is_near).then(|| {
             let travel = margin - prediction;
             Beside::new(DISTANT as Real * prediction, NEAR_NORMAL as Real, prediction, travel)
         })

@@ -175,16 +175,7 @@ impl TriangleShapes for Meshes<'_> {
         self.inside(is_deep, outside, travel)
     }
 
-    #[inline(always)]
-    fn with_constraints(&self, triangles: [u32; 2], then: impl FnOnce(Constraints<'_>)) {
-        // Surfaces have what cones are for, and no cone to lean out of: stacks of flagged cubes stand.
-        if self.surfaces.iter().any(Option::is_some) {
-            return then([None; 2]);
-        }
-        if let Some(prepared) = self.trees {
-            let cones = [0, 1].map(|i| prepared[i].normal_constraints(triangles[i]));
-            return then(cones.map(|cone| cone.map(|cone| cone as &dyn NormalConstraints)));
-        }
+    fn with_cones(&self, triangles: [u32; 2], then: impl FnOnce(Constraints<'_>)) {
         let cones =
             [0, 1].map(|i| self.pair.meshes[i].mesh.triangle_normal_constraints(triangles[i]));
         then(cones.each_ref().map(|cone| cone.as_ref().map(|cone| cone as &dyn NormalConstraints)));

@@ -53,8 +53,15 @@ pub(crate) trait TriangleShapes: Surfaces {
         None
     }
 
-    /// Hands on the cones that the normals of both must be in.
-    fn with_constraints(&self, triangles: [u32; 2], then: impl FnOnce(Constraints<'_>));
+    /// Hands on the cones of both triangles.
+    fn with_cones(&self, triangles: [u32; 2], then: impl FnOnce(Constraints<'_>));
+
+    /// Hands on the cones that the normals of both must be in. Surfaces have what cones are for, and no
+    /// cone to lean out of: stacks of flagged cubes stand.
+    #[inline(always)]
+    fn with_constraints(&self, triangles: [u32; 2], then: impl FnOnce(Constraints<'_>)) {
+        if self.has_surface() { then([None; 2]) } else { self.with_cones(triangles, then) }
+    }
 }
 
 /// The least limit of depths, in prediction distances. Rapier recycles contacts until bodies have moved

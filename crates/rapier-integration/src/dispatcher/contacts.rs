@@ -1,0 +1,234 @@
+//! Contacts: which kind of pair two shapes are, and who answers for it.
+
+use parry3d::math::{Pose, Real};
+use parry3d::query::details::NormalConstraints;
+use parry3d::query::{
+    ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
+    Unsupported,
+};
+use parry3d::shape::{CompositeShape, Shape, TriMesh};
+use sbbk_core::surface::SurfaceKind;
+use sbbk_core::traverse::DescentCounts;
+
+use super::SbbkDispatcher;
+use crate::mesh::{are_near, is_near, may_be_inside};
+use crate::pair::{
+    Answer, ConvexPair, FewPair, FieldPair, MeshPair, MeshPlace, Pair, PairPose, Parts, answer,
+    is_few,
+};
+use crate::{ContactDetail, ContactGenerator, ContactSet, SbbkConfig, TriangleContacts};
+
+impl SbbkDispatcher {
+    /// The contacts of a pair of shapes, if SBBK answers for them.
+    fn answer<M, C>(
+        &self,
+        pos12: &Pose,
+        [g1, g2]: [&dyn Shape; 2],
+        prediction: Real,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Answer
+    where
+        M: Default + Clone + Send + Sync + 'static,
+        C: Default + Copy + Send + Sync + 'static,
+    {
+        let SbbkConfig { contacts, contact_set, height_fields, detail, kinds, .. } = self.config;
+        let is_exact = contacts == ContactGenerator::Exact;
+        let has_surfaces = is_exact && contact_set == ContactSet::Surfaces;
+        let leave_solids = has_surfaces && self.config.convex_leave_solids;
+        let has_patches = is_exact && detail == ContactDetail::Patches;
+        // Of such a pair nothing needs to be kept while it is apart. One that has manifolds must keep a
+        // workspace: Rapier takes a missing one for a new pair, and keeps pointers to manifolds that are gone.
+        let is_new = workspace.is_none() && manifolds.is_empty();
+        let (mesh, other, mesh_place) = match (g1.as_trimesh(), g2.as_trimesh()) {
+            (Some(mesh1), Some(mesh2)) => {
+                if !kinds.meshes {
+                    return Answer::Unsupported;
+                }
+                let meshes = [mesh1, mesh2];
+                if is_new
+                    && self.are_apart(are_near(meshes, pos12, prediction), meshes)
+                    && !(has_surfaces && may_be_inside(meshes, pos12))
+                {
+                    return self.counted(Answer::Apart);
+                }
+                let Some(meshes) = self.look_at(meshes) else {
+                    return Answer::Unsupported;
+                };
+                let pose = &PairPose::new(pos12, prediction);
+                let pair = MeshPair { pose, meshes, contacts, has_surfaces, has_patches };
+                return self.ask(&pair, manifolds, workspace);
+            }
+            (Some(mesh), None) => (mesh, g2, MeshPlace::First),
+            (None, Some(mesh)) => (mesh, g1, MeshPlace::Second),
+            (None, None) => return Answer::Unsupported,
+        };
+        if kinds.convex_shapes
+            && let Some(ball) =
+                other.as_ball().filter(|ball| !leave_solids && is_few(mesh, ball, prediction))
+        {
+            let is_broken = self.is_broken(mesh);
+            let pair = FewPair { mesh, is_broken, ball, mesh_place, has_surfaces };
+            return self.touch_few(pair, pos12, prediction, manifolds, workspace);
+        }
+        let is_answered = |parts: &Parts<'_>| match parts {
+            Parts::One(_) => kinds.convex_shapes,
+            Parts::Many(_) => kinds.composites,
+        };
+        let parts = Parts::of(other).filter(is_answered);
+        let field = other.as_heightfield().filter(|_| kinds.height_fields);
+        if parts.is_none() && field.is_none() {
+            return Answer::Unsupported;
+        }
+        // Parry's routine sees a little farther than the prediction distance.
+        if is_new && parts.is_some() && is_exact && !leave_solids {
+            let in_mesh = if mesh_place.is_second() { pos12.inverse() } else { *pos12 };
+            if self.are_apart(is_near(mesh, other, &in_mesh, prediction), [mesh]) {
+                return self.counted(Answer::Apart);
+            }
+        }
+        let Some([mesh]) = self.look_at([mesh]) else {
+            return Answer::Unsupported;
+        };
+        let pose = &PairPose::new(pos12, prediction);
+        if let Some(parts) = parts {
+            let pair = ConvexPair {
+                pose,
+                mesh,
+                parts,
+                mesh_place,
+                contacts,
+                has_surfaces,
+                leave_solids,
+                has_patches,
+            };
+            self.ask(&pair, manifolds, workspace)
+        } else if let Some(field) = field {
+            let has_ground = height_fields == SurfaceKind::Solid;
+            let pair = FieldPair {
+                pose,
+                mesh,
+                field,
+                mesh_place,
+                contacts,
+                has_surfaces,
+                has_ground,
+                has_patches,
+            };
+            self.ask(&pair, manifolds, workspace)
+        } else {
+            Answer::Unsupported
+        }
+    }
+
+    /// Whether shapes are apart, if Parry's hierarchies say so: above a vertex that is NaN they mean
+    /// nothing.
+    fn are_apart<const COUNT: usize>(&self, are_near: bool, meshes: [&TriMesh; COUNT]) -> bool {
+        !are_near && !meshes.iter().any(|mesh| self.is_broken(mesh))
+    }
+
+    /// Whether a mesh may deform and has vertices that are NaN or infinite.
+    fn is_broken(&self, mesh: &TriMesh) -> bool {
+        mesh.is_deformable() && self.cache.look_at(mesh).is_some_and(|mesh| mesh.is_broken())
+    }
+
+    /// The contacts of a mesh and a ball that touches few triangles, counted.
+    fn touch_few<M, C>(
+        &self,
+        pair: FewPair<'_>,
+        pos12: &Pose,
+        prediction: Real,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Answer
+    where
+        M: Default + Clone + Send + Sync + 'static,
+        C: Default + Copy + Send + Sync + 'static,
+    {
+        let is_first = workspace.is_none();
+        pair.answer(pos12, prediction, manifolds, workspace);
+        if is_first && workspace.is_some() {
+            self.cache.met();
+        }
+        self.counted(if workspace.is_some() { Answer::Descended } else { Answer::Apart })
+    }
+
+    /// An answer that took no descent, counted.
+    fn counted(&self, answer: Answer) -> Answer {
+        if self.config.count_queries {
+            self.counters.add(answer, &DescentCounts::default());
+        }
+        answer
+    }
+
+    /// The contacts of a pair, counted; `Unsupported` if Parry must answer.
+    fn ask<M, C>(
+        &self,
+        pair: &impl Pair,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Answer
+    where
+        M: Default + Clone + Send + Sync + 'static,
+        C: Default + Copy + Send + Sync + 'static,
+    {
+        if !self.config.count_queries {
+            return answer(pair, &self.cache, (), manifolds, workspace);
+        }
+        let mut counts = DescentCounts::default();
+        let answer = answer(pair, &self.cache, &mut counts, manifolds, workspace);
+        self.counters.add(answer, &counts);
+        answer
+    }
+}
+
+impl<M, C> PersistentQueryDispatcher<M, C> for SbbkDispatcher
+where
+    M: Default + Clone + Send + Sync + 'static,
+    C: Default + Copy + Send + Sync + 'static,
+{
+    fn contact_manifolds(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: Real,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Result<(), Unsupported> {
+        let answer = self.answer(pos12, [g1, g2], prediction, manifolds, workspace);
+        if answer != Answer::Unsupported {
+            return Ok(());
+        }
+        DefaultQueryDispatcher.contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace)
+    }
+
+    fn contact_manifold_convex_convex(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        normal_constraints1: Option<&dyn NormalConstraints>,
+        normal_constraints2: Option<&dyn NormalConstraints>,
+        prediction: Real,
+        manifold: &mut ContactManifold<M, C>,
+    ) -> Result<(), Unsupported> {
+        if let (ContactGenerator::Exact, Some(triangle1), Some(triangle2)) =
+            (self.config.contacts, g1.as_triangle(), g2.as_triangle())
+        {
+            let constraints = [normal_constraints1, normal_constraints2];
+            let triangles = [triangle1, triangle2];
+            TriangleContacts::default().update(pos12, triangles, constraints, prediction, manifold);
+            return Ok(());
+        }
+        DefaultQueryDispatcher.contact_manifold_convex_convex(
+            pos12,
+            g1,
+            g2,
+            normal_constraints1,
+            normal_constraints2,
+            prediction,
+            manifold,
+        )
+    }
+}
