@@ -223,8 +223,9 @@ impl PatchPlan {
         };
         let second = most(&|point| (point - first).length_squared());
         let across = (points[second].0 - first).cross(normal);
-        let sides = [1.0, -1.0]
-            .map(|sign| most(&|point| (sign * (point - first).dot(across)).max(0.0).powi(2)));
+        let side =
+            |sign: Real| most(&|point| (sign * (point - first).dot(across)).max(0.0).powi(2));
+        let sides = [side(1.0), side(-1.0)];
         let mut chosen = ArrayVec::new();
         for point in [0, second].into_iter().chain(sides) {
             if !chosen.contains(&point) {

@@ -112,7 +112,8 @@ impl Touched {
             // Without, both diagonals of a cell of a lattice have the same sum.
             (0..2).fold(name, |name, i| (name ^ name >> 32).wrapping_mul(ODD[i]))
         };
-        let [a, b, c] = self.corners.map(corner);
+        let [a, b, c] = self.corners;
+        let [a, b, c] = [corner(a), corner(b), corner(c)];
         [
             (Feature::Vertex(0), a),
             (Feature::Vertex(1), b),

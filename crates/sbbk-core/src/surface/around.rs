@@ -4,6 +4,7 @@ use glamx::{DVec3, Vec3};
 
 use super::Surface;
 use crate::contact::Feature;
+use crate::simd::each;
 
 /// Which triangles of a mesh share edges. Half-edge `3 t + i` runs from vertex `i` of triangle `t`
 /// to the next one.
@@ -187,7 +188,7 @@ impl<F: Facets> Around<F> {
 
     /// The normal of a triangle, as long as twice its area.
     fn normal(&self, triangle: u32) -> DVec3 {
-        let [a, b, c] = [0, 1, 2].map(|i| self.corner(3 * triangle, i));
+        let [a, b, c] = each(|i| self.corner(3 * triangle, i));
         (b - a).cross(c - a)
     }
 
@@ -202,7 +203,7 @@ impl<F: Facets> Around<F> {
         let first = half_edge(triangle, feature);
         let start = self.corner(first, 0);
         let edge = |half_edge: u32, i: usize| self.corner(half_edge, i) - start;
-        let [first_u, first_v] = [1, 2].map(|i| edge(first, i));
+        let [first_u, first_v] = [edge(first, 1), edge(first, 2)];
         let own = Fan { half_edge: first, edges: [first_u, first_v], are_new: [true; 2] };
         if visit(own).is_break() {
             return;
@@ -210,7 +211,8 @@ impl<F: Facets> Around<F> {
         if !matches!(feature, Feature::Vertex(_)) {
             if let Some(half_edge) = self.facets.twin(first) {
                 let start = self.corner(half_edge, 0);
-                let [u, v] = [1, 2].map(|i| self.corner(half_edge, i) - start);
+                let edge = |i: usize| self.corner(half_edge, i) - start;
+                let [u, v] = [edge(1), edge(2)];
                 let _ = visit(Fan { half_edge, edges: [u, v], are_new: [true; 2] });
             }
             return;

@@ -1,6 +1,7 @@
 use glamx::DVec3;
 
 use crate::contact::Feature;
+use crate::simd::each;
 
 /// Least squared cosine of the normals of a contact and of a triangle that touches with its face: a
 /// tenth of a degree, three times as much as normals of curved shapes are off.
@@ -26,7 +27,7 @@ pub fn feature_at(triangle: &[DVec3; 3], point: DVec3, normal: DVec3) -> Feature
         let [from, to] = [triangle[(i + 1) % 3], triangle[(i + 2) % 3]];
         (to - from).cross(point - from).dot(face)
     };
-    match [0, 1, 2].map(|i| weight(i) <= NONE * size) {
+    match each(|i| weight(i) <= NONE * size) {
         [false, true, true] => Feature::Vertex(0),
         [true, false, true] => Feature::Vertex(1),
         [true, true, false] => Feature::Vertex(2),
