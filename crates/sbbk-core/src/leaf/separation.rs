@@ -24,13 +24,37 @@
 //! Margins and coordinates of any size will do: where a projection overflows, so does `r²·|n|²`, as
 //! `r` is more than a millionth of `W`; and where squares are infinite or NaN, nothing is taken for
 //! separated.
+//!
+//! # Products of edges
+//!
+//! Along `e1 × e2` both ends of an edge are level, and the third corner of triangle 1 is behind them by
+//! `n1·e2`, that of triangle 2 ahead by `n2·e1`, with `n1` and `n2` the normals as long as twice the
+//! areas. So an axis takes one projection in place of six: of the way from the one edge to the other.
+//!
+//! That is so of the exact product. In units of `u·X1·X2·S`, with `X1` and `X2` the longest sides of the
+//! boxes around the triangles and `S` that of the box around both, at most this is lost. A component of
+//! the product, up to `2·X1·X2`, is off by 4. The way's projection: three terms of 2, six roundings each,
+//! 36. Third corners: three terms of 2, five roundings each, 30; edges that do not add up to nothing, by
+//! 3 in each component, 18; and that are not quite the ways between corners, 6; which makes 108 for both
+//! triangles. A gap is less than the way's projection, up to 6, and so is what it is the sum of: three
+//! additions, 18. `|n|` may be 7 too short, and the margin is below `√3·S` if a gap exceeds it: 12. In
+//! all 174. Gaps are less by `γ_200`, of `X1 + X2 + m` for `S`: where that is less, the boxes are apart.
+//! With edges nearly along each other that is much for the length of the axis, and they are not taken for
+//! separated.
+//!
+//! Squares of gaps are above [`UNDERFLOW`], and gaps below `6·X1·X2·S`: what is lost to underflow is a
+//! thousandth of the rest while `S` is below `2⁵⁰`. Products of larger coordinates are not asked.
 
 use crate::simd::{Lane, V3, cross, dot, each, largest, smallest, sub};
 use crate::traverse::{PairFrame, Placement};
+use crate::volumes::rounding::gamma;
 
 /// What products of tiny numbers lose to underflow: a few times 2⁻¹⁴⁹ a term, in the squares next
 /// to nothing for larger gaps.
 pub(super) const UNDERFLOW: f32 = f32::MIN_POSITIVE;
+
+/// `r` of coordinates whose products are asked: they are below `2⁴⁹`.
+const LARGEST: f32 = 5.0e8;
 
 /// The pose and margin of a pair of trees, for the leaves.
 #[derive(Copy, Clone)]
@@ -39,6 +63,8 @@ pub(super) struct LeafFrame {
     translation: [f32; 3],
     pub(super) rounding: f32,
     margin: f32,
+    /// What products of edges lose, as a share; infinite where they are not asked.
+    products: f32,
 }
 
 impl LeafFrame {
@@ -53,6 +79,7 @@ impl LeafFrame {
             translation: placement.translation.as_vec3().to_array(),
             rounding: 0.0,
             margin: 0.0,
+            products: 0.0,
         }
     }
 
@@ -65,7 +92,8 @@ impl LeafFrame {
     /// With the margin, zero if it is less, and `r` of the module's documentation.
     #[inline(always)]
     pub(super) fn with_margin(self, margin: f32, rounding: f32) -> Self {
-        Self { margin: margin.max(0.0) + 6.0 * rounding, rounding, ..self }
+        let products = if rounding < LARGEST { gamma(200) } else { f32::INFINITY };
+        Self { margin: margin.max(0.0) + 6.0 * rounding, rounding, products, ..self }
     }
 }
 
@@ -136,21 +164,60 @@ pub(super) fn apart<L: Lane>(frame: &LeafFrame, one: &Corners<L>, two: &Corners<
         return apart;
     }
     let corners = from_corner(one, two);
-    let edges_of = |c: [V3<L>; 3]| each(|i| sub(c[(i + 1) % 3], c[i]));
-    let edges = [edges_of(corners[0]), edges_of(corners[1])];
+    let edge =
+        |triangle: usize, i: usize| sub(corners[triangle][(i + 1) % 3], corners[triangle][i]);
     let margin_squared = L::splat(frame.margin * frame.margin);
-    for [edge1, edge2, _] in edges {
-        apart = apart | separates(cross(edge1, edge2), &corners, margin_squared);
+    let normal1 = cross(corners[0][1], corners[0][2]);
+    apart = apart | separates(normal1, &corners, margin_squared);
+    if L::all(apart) {
+        return apart;
     }
-    for edge1 in edges[0] {
-        if L::all(apart) {
-            return apart;
-        }
-        for edge2 in edges[1] {
-            apart = apart | separates(cross(edge1, edge2), &corners, margin_squared);
-        }
+    let normal2 = cross(edge(1, 0), edge(1, 1));
+    apart = apart | separates(normal2, &corners, margin_squared);
+    if L::all(apart) {
+        return apart;
     }
-    apart
+    let lost = lost_by_products(frame, one, two);
+    // How far the third corner is behind an edge, not above zero, and ahead of it, not below.
+    let thirds = |normal: V3<L>, edge: V3<L>| {
+        let along = dot(normal, edge);
+        [along.smaller(L::splat(0.0)), along.larger(L::splat(0.0))]
+    };
+    let thirds1 = each(|j| {
+        let [behind, ahead] = thirds(normal1, edge(1, j));
+        [behind - lost, ahead + lost]
+    });
+    let separated_by = |i: usize| {
+        let edge1 = edge(0, i);
+        let [behind2, ahead2] = thirds(normal2, edge1);
+        let [a, b, c] = each(|j| {
+            let axis = cross(edge1, edge(1, j));
+            let along = dot(axis, sub(corners[1][j], corners[0][i]));
+            let [behind1, ahead1] = thirds1[j];
+            let above = along + (behind1 + behind2);
+            let below = L::splat(0.0) - (along + (ahead1 + ahead2));
+            is_beyond(above.larger(below), axis, margin_squared)
+        });
+        a | b | c
+    };
+    apart = apart | separated_by(0);
+    if L::all(apart) {
+        return apart;
+    }
+    apart = apart | separated_by(1);
+    if L::all(apart) {
+        return apart;
+    }
+    apart | separated_by(2)
+}
+
+/// What gaps along products of edges are less by, times the length of the product.
+#[inline(always)]
+fn lost_by_products<L: Lane>(frame: &LeafFrame, one: &Corners<L>, two: &Corners<L>) -> L {
+    let size = |corners: &Corners<L>| largest(sub(corners.max, corners.min));
+    let (size1, size2) = (size(one), size(two));
+    let span = size1 + size2 + L::splat(frame.margin);
+    L::splat(frame.products) * size1 * size2 * span
 }
 
 /// The corners of both triangles from a corner of triangle 1.
@@ -161,13 +228,21 @@ pub(super) fn from_corner<L: Lane>(one: &Corners<L>, two: &Corners<L>) -> [[V3<L
     [from_origin(one), from_origin(two)]
 }
 
+/// Which triangles, from a corner of triangle 1, an axis separates by more than the margin.
 #[inline(always)]
 fn separates<L: Lane>(axis: V3<L>, corners: &[[V3<L>; 3]; 2], margin_squared: L) -> L::Mask {
-    let along = |corners: &[V3<L>; 3]| each(|i| dot(axis, corners[i]));
-    let (along1, along2) = (along(&corners[0]), along(&corners[1]));
+    let [[_, b, c], two] = corners;
+    let along1 = [L::splat(0.0), dot(axis, *b), dot(axis, *c)];
+    let along2 = each(|i| dot(axis, two[i]));
     let above = smallest(along2) - largest(along1);
     let below = smallest(along1) - largest(along2);
-    let gap = above.larger(below).larger(L::splat(0.0));
+    is_beyond(above.larger(below), axis, margin_squared)
+}
+
+/// Whether a gap along an axis, times its length, is wider than the margin.
+#[inline(always)]
+fn is_beyond<L: Lane>(gap: L, axis: V3<L>, margin_squared: L) -> L::Mask {
+    let gap = gap.larger(L::splat(0.0));
     let reach = margin_squared * dot(axis, axis) + L::splat(UNDERFLOW);
     (gap * gap).above(reach)
 }

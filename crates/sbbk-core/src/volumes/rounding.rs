@@ -26,6 +26,7 @@
 //! | `Toward`, nodes | coefficients that sum to 2, slabs up to `3·M`, 14 roundings a term | `γ_14·(6·M1 + 2·T + 6·s·M2)` | `6·r` |
 //! | `Toward`, leaves | components that sum to 1.8, 7 roundings | `γ_7·1.8·(M1 + T + s·M2)` | `r` |
 //! | `LeafTest` | see `leaf/separation.rs` | `4·r`, `γ_6·m` with `m <= 2·√3·W` | `6·r` |
+//! | the same, products of edges | see there | `174·u` of sizes of triangles | `γ_200` of these |
 //! | `PlacedTest` | the same, and an origin taken away | `γ_18` for `γ_16` | the same |
 //! | `FieldFrame` | lines `(c·fl(1/n) - 1/2)·scale`, heights times their scale | `γ_4` of the field, `γ_1` of heights | `γ_8`, `γ_4` |
 //! | `Placement::motion_bound` | f64 | a few `1e-16` of the terms | `1e-14` |

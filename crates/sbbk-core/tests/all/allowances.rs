@@ -102,14 +102,15 @@ impl Pair {
         Self::of(random, [face, two], far)
     }
 
-    /// Edges across each other, `n` at a right angle to both.
-    fn edges(random: &mut Random, n: DVec3, gap: f64, far: f32) -> Self {
+    /// Edges across each other, nearly along each other if `across` is small, `n` at a right angle to
+    /// both.
+    fn edges(random: &mut Random, n: DVec3, gap: f64, far: f32, across: f64) -> Self {
         let u = n.any_orthonormal_vector();
         let v = n.cross(u);
         let tip = n * gap;
         let one = [u, -u, -n + 0.2 * v];
-        let w = (0.4 * u + v).normalize();
-        Self::of(random, [one, [tip + w, tip - w, tip + n + 0.1 * u]], far)
+        let w = (0.4 * u + across * v).normalize();
+        Self::of(random, [one, [tip + 1.7 * w, tip - 0.3 * w, tip + n + 0.1 * u]], far)
     }
 
     fn check<const AXES: usize>(&self, layers: LayerPlan)
@@ -158,7 +159,7 @@ fn triangles_the_margin_apart_are_found() {
         let gap = f64::from(random.range(0.01, 1.0));
         let mut pair = match i % 2 {
             0 => Pair::corner_and_face(random, n, gap, far),
-            _ => Pair::edges(random, n, gap, far),
+            _ => Pair::edges(random, n, gap, far, 1.0),
         };
         if i % 3 == 0 {
             let tiny = 1.0e-7;
@@ -172,6 +173,18 @@ fn triangles_the_margin_apart_are_found() {
         if pair.distance > 0.0 {
             pair.check::<9>(KDOPS);
         }
+    }
+}
+
+/// Edges nearly along each other, whose product is off by much for its length.
+#[test]
+fn edges_along_each_other_the_margin_apart_are_found() {
+    let random = &mut Random(7);
+    for i in 0..4000 {
+        let n = random.vector(1.0).as_dvec3().normalize();
+        let gap = f64::from(random.range(0.01, 1.0));
+        let across = [1.0e-2, 1.0e-3, 1.0e-4, 1.0e-5][i % 4];
+        Pair::edges(random, n, gap, 0.0, across).check::<9>(KDOPS);
     }
 }
 
