@@ -102,6 +102,13 @@ fn cuboid_contact(
     if of_box.width > beyond {
         return None;
     }
+    let doubtful = pair.doubtful();
+    if of_box.width > doubtful
+        && let Facet::Box(axis) = facet
+        && let Some(contact) = pair.over_face(axis, of_box.outward[axis])
+    {
+        return Some(contact);
+    }
     let of_triangle = pair.triangle_gap();
     let mut widest = (of_box, facet);
     if let Some(gap) = of_triangle {
@@ -112,7 +119,6 @@ fn cuboid_contact(
             widest = (gap, Facet::Triangle);
         }
     }
-    let doubtful = pair.doubtful();
     if widest.0.width <= doubtful {
         widest = pair.edge_gap(widest);
     }
@@ -138,6 +144,24 @@ impl Pair<'_, CuboidSupport> {
             }
         }
         (Gap { width, outward: DVec3::AXES[axis] * sign }, Facet::Box(axis))
+    }
+
+    /// The contact of a triangle that is apart over the inside of a face of the box: that of its lowest
+    /// corner, as for most triangles near a floor.
+    #[inline(always)]
+    fn over_face(&self, axis: usize, sign: f64) -> Option<ConvexContact> {
+        let [mut lowest, b, c] = *self.triangle;
+        let inside = self.solid.0 - lowest.abs().max(b.abs()).max(c.abs());
+        let is_over = |i: usize| inside[(axis + i) % 3] > 10.0 * self.doubtful();
+        if !(is_over(1) && is_over(2)) {
+            return None;
+        }
+        for corner in [b, c] {
+            if corner[axis] * sign < lowest[axis] * sign {
+                lowest = corner;
+            }
+        }
+        Some(ConvexContact::apart(lowest, -self.solid.outside(lowest)))
     }
 
     /// The widest of a gap and those along the products of an edge and an axis of the box.
