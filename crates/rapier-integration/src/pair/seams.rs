@@ -19,7 +19,7 @@
 //! Neighbours are told by their corners: nothing need be known of the mesh, and vertices need not be
 //! shared. (`FIX_INTERNAL_EDGES` needs a normal for each vertex and edge.)
 
-use glamx::Vec3;
+use glamx::{DVec3, Vec3};
 use rustc_hash::FxHashMap;
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
@@ -45,6 +45,8 @@ struct Asking {
     first: u32,
     /// Of the first: the nearest contact there.
     nearest: (f64, u32),
+    /// Of the first, once that is known: whether a triangle there goes on beyond it.
+    is_passed: Option<bool>,
 }
 
 /// Distances that differ by less than this share of the size are equal: those of two triangles whose
@@ -58,18 +60,24 @@ pub(crate) struct Known {
     pub(crate) distance: f64,
     /// How far rounding may put it off.
     pub(crate) slack: f64,
+    /// The point of the triangle, and the normal.
+    pub(crate) place: [DVec3; 2],
 }
 
 impl Known {
     pub(crate) fn new(feature: Feature, contact: &ConvexContact) -> Self {
-        let ConvexContact { distance, on_triangle, .. } = *contact;
+        let ConvexContact { distance, on_triangle, normal, .. } = *contact;
         let size = on_triangle.abs().max_element() + distance.abs();
-        Self { feature, distance, slack: EQUAL * size }
+        Self { feature, distance, slack: EQUAL * size, place: [on_triangle, normal] }
     }
 
     /// Of a triangle that has no contact: it has no part in this.
-    pub(crate) const NONE: Self =
-        Self { feature: Feature::Face, distance: f64::INFINITY, slack: 0.0 };
+    pub(crate) const NONE: Self = Self {
+        feature: Feature::Face,
+        distance: f64::INFINITY,
+        slack: 0.0,
+        place: [DVec3::ZERO; 2],
+    };
 }
 
 /// What becomes of a contact, by its place in the list.
@@ -157,7 +165,12 @@ impl Seams {
         known.extend(contacts.iter().map(known_of));
         asking.clear();
         asking.extend((0..).zip(&*known).filter(|(_, known)| known.feature != Feature::Face).map(
-            |(contact, known)| Asking { contact, first: 0, nearest: (known.distance, contact) },
+            |(contact, known)| Asking {
+                contact,
+                first: 0,
+                nearest: (known.distance, contact),
+                is_passed: None,
+            },
         ));
         if asking.is_empty() {
             return found;
@@ -202,14 +215,23 @@ impl Seams {
         ends.extend(all.clone());
         for i in 0..asking.len() {
             let Asking { contact, first, .. } = asking[i];
-            let (distance, nearest) = asking[first as usize].nearest;
-            let Known { distance: own, slack, .. } = known[contact as usize];
+            let Asking { contact: of_first, nearest: (distance, nearest), is_passed, .. } =
+                asking[first as usize];
+            let Known { distance: own, slack, place, .. } = known[contact as usize];
             if distance < own - slack {
                 ends[contact as usize] = nearest;
             } else if own < 0.0 {
-                let at = |contact: u32| &contacts[contact as usize];
-                let mut others = all.clone().filter(|&other| is_there(contact, other));
-                if others.any(|other| is_beyond(at(other), at(contact))) {
+                // All triangles at a corner that is deepest have it for their contact.
+                let is_same = known[of_first as usize].place == place;
+                let is_passed = is_passed.filter(|_| is_same).unwrap_or_else(|| {
+                    let at = |contact: u32| &contacts[contact as usize];
+                    let mut others = all.clone().filter(|&other| is_there(contact, other));
+                    others.any(|other| is_beyond(at(other), at(contact)))
+                });
+                if is_same {
+                    asking[first as usize].is_passed = Some(is_passed);
+                }
+                if is_passed {
                     found.push(Seam::Face(contact));
                 }
             }
