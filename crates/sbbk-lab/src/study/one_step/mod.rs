@@ -44,7 +44,7 @@ impl OneStepPlan {
             heads: 200,
             backends: vec![Backend::Stock, Backend::Sbbk, Backend::Every],
             substeps: vec![1, 2, 4, 8, 16, 32],
-            moments: vec![45, 60, 75, 90, 120, 150, 200, 300],
+            moments: (45..=300).step_by(15).collect(),
             reference: Backend::Every,
             reference_substeps: 256,
         }
