@@ -11,10 +11,11 @@
 //!   be parted by the same translation and would be no deeper. So it goes on beyond.
 //!
 //! The contact is then one along the normal of the nearest triangle there. If the same is true of that
-//! one, of the nearest there, and so on: each is nearer than the one before, so there is an end. A tip
-//! that crosses right at an edge can be parted from both triangles by less than from the surface. So if
-//! at the end a triangle goes on beyond, the normal is that of the face, or of a face beside it, whichever
-//! has points at which the bodies cross. Beside the border of a mesh none may have.
+//! one, of the nearest there, and so on: each is nearer than the one before, so there is an end. A tip of the
+//! shape that crosses right at an edge can be nearer to the outside of both triangles than to that of the
+//! surface. So where the last triangle, or another one at the same edge, goes on beyond the contact along its
+//! normal, the normal is that of the face of this triangle or of one beside it, whichever has points at which
+//! the bodies cross. Beside the border of a mesh none may have.
 //!
 //! Neighbours are told by their corners: nothing need be known of the mesh, and vertices need not be
 //! shared. (`FIX_INTERNAL_EDGES` needs a normal for each vertex and edge.)
