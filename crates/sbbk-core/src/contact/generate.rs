@@ -5,7 +5,7 @@ use super::clip::{ManifoldPoints, clip_triangles, push_closest_points};
 use super::closest::{Closest, TIE, closest, crossing, is_over, proved, within_edge};
 use super::edges::{closest_edges, proved_edges};
 use super::feature::{Feature, FeaturePair};
-use super::touching::{at_axis, touching};
+use super::touching::{near_axis, touching};
 use super::triangle::Triangle;
 use super::triangle_contact::TriangleContact;
 use glamx::DVec3;
@@ -176,7 +176,7 @@ fn on_edges(t1: &Triangle, t2: &Triangle) -> TriangleContact {
 /// on the body; only where axes tie another vertex or edge may do.
 fn overlap(t1: &Triangle, t2: &Triangle, axis: &Axis) -> TriangleContact {
     let (contact, fits) = features_at(t1, t2, axis);
-    let contact = if fits { contact } else { at_axis(t1, t2, axis).unwrap_or(contact) };
+    let contact = if fits { contact } else { near_axis(t1, t2, axis) };
     TriangleContact { features: contact.features.crossing(), ..contact }
 }
 

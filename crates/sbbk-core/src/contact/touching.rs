@@ -29,18 +29,31 @@ pub(super) fn touching(t1: &Triangle, t2: &Triangle, best: Axis) -> TriangleCont
     if nearest.distance > depth + ROUNDING * (t1.size + t2.size) {
         TriangleContact::new(features, nearest)
     } else if exists {
-        let (Axis { normal, gap: distance, .. }, point1) = (axis, nearest.point1);
-        let point2 = point1 + normal * distance;
-        let contact = TriangleContact { normal, distance, point1, point2, features };
-        at_axis(t1, t2, &axis).unwrap_or(contact)
+        at_axis(t1, t2, &axis).unwrap_or_else(|| in_line(&axis, features, &nearest))
     } else {
         on_one_line(t1, t2, features, &nearest)
     }
 }
 
+/// The contact on an axis from features that touch.
+fn in_line(axis: &Axis, features: FeaturePair, nearest: &Closest) -> TriangleContact {
+    let (Axis { normal, gap: distance, .. }, point1) = (*axis, nearest.point1);
+    TriangleContact { normal, distance, point1, point2: point1 + normal * distance, features }
+}
+
+/// The contact on an axis of triangles that overlap, of which neither features of the axis nor corners of
+/// the overlap show how deep: one may be a segment with a corner in its midst.
+#[cold]
+pub(super) fn near_axis(t1: &Triangle, t2: &Triangle, axis: &Axis) -> TriangleContact {
+    at_axis(t1, t2, axis).unwrap_or_else(|| {
+        let (features, nearest) = nearest_features(t1, t2);
+        in_line(axis, features, &nearest)
+    })
+}
+
 /// The contact on an axis where many features tie: the deepest of the points seen along it. None
 /// when no point is as deep as the gap says.
-pub(super) fn at_axis(t1: &Triangle, t2: &Triangle, axis: &Axis) -> Option<TriangleContact> {
+fn at_axis(t1: &Triangle, t2: &Triangle, axis: &Axis) -> Option<TriangleContact> {
     let mut points = ManifoldPoints::new();
     clip_triangles(t1, t2, axis.normal, &mut points);
     let deepest = deepest(&points, axis.normal)?;

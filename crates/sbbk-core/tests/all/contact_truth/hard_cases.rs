@@ -199,3 +199,21 @@ fn right_angles() {
         }
     }
 }
+
+/// A segment with a corner in its midst that crosses the end of a needle. Would catch points that are not
+/// opposite each other, as the two parts of the segment have one direction.
+#[test]
+fn a_segment_with_a_corner_in_its_midst() {
+    let needle = [
+        DVec3::new(-1.75, 1.625, -1.5),
+        DVec3::new(-1.5, -1.5, 1.5),
+        DVec3::new(-1.750091563910246, 1.6249084621667862, -1.5000915378332138),
+    ];
+    let segment = [
+        DVec3::new(-1.750091552734375, 1.624908447265625, -1.500091552734375),
+        DVec3::new(-1.749114990234375, 1.626129150390625, -1.498504638671875),
+        DVec3::new(-1.749359130859375, 1.625823974609375, -1.4989013671875),
+    ];
+    check(&needle, &segment);
+    check(&segment, &needle);
+}
