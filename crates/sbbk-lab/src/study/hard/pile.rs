@@ -22,15 +22,28 @@ const PAIRS: usize = 150;
 /// Half extents of the floor.
 pub(super) const FLOOR: Vec3 = Vec3::new(100.0, 1.0, 100.0);
 
+/// What is right depends on the mesh.
+#[derive(Copy, Clone)]
+struct Limits {
+    /// The least and the greatest mean height.
+    heights: [f64; 2],
+    /// The most points that the solver gets of each body.
+    points: f64,
+}
+
+impl Limits {
+    const HEADS: Self = Self { heights: [0.9, 1.4], points: 20.0 };
+    const NONE: Self = Self { heights: [0.0, f64::INFINITY], points: f64::INFINITY };
+}
+
 /// Piles of so many heads, or of another mesh in place of the head.
 pub(super) fn trials(heads: &[usize], mesh: Option<&Mesh>) -> Vec<Trial> {
     let trial = |&heads: &usize| {
-        let (name, pile, heights) = match mesh {
-            // How high they lie depends on the mesh.
-            Some(mesh) => (&*mesh.name, MonkeyPile::of(heads, mesh.clone()), [0.0, f64::INFINITY]),
-            None => ("heads", MonkeyPile::with_heads(heads), [0.9, 1.4]),
+        let (name, pile, limits) = match mesh {
+            Some(mesh) => (&*mesh.name, MonkeyPile::of(heads, mesh.clone()), Limits::NONE),
+            None => ("heads", MonkeyPile::with_heads(heads), Limits::HEADS),
         };
-        let run = move |kit: &Kit| run(kit, &pile, heights);
+        let run = move |kit: &Kit| run(kit, &pile, limits);
         Trial::new(format!("pile of {heads} {name}"), run).without_control().seeded()
     };
     heads.iter().map(trial).collect()
@@ -52,7 +65,8 @@ pub(super) fn build(
     world
 }
 
-fn run(kit: &Kit, pile: &MonkeyPile, [lowest, highest]: [f64; 2]) -> Figures {
+fn run(kit: &Kit, pile: &MonkeyPile, limits: Limits) -> Figures {
+    let Limits { heights: [lowest, highest], points } = limits;
     let (pile, heads) = (MonkeyPile { seed: kit.seed, ..pile.clone() }, pile.heads);
     let collider = kit.collider(&Form::mesh(pile.mesh.clone()));
     let mut world = build(kit, FLOOR, pile.poses(), &collider);
@@ -70,6 +84,6 @@ fn run(kit: &Kit, pile: &MonkeyPile, [lowest, highest]: [f64; 2]) -> Figures {
         .at_most("deepest", deep.max, 0.05)
         .at_most("mean depth", deep.mean, 0.001)
         .at_most("energy gained", watched.gain, 0.001)
-        .at_most("points a step", watched.points, 4000.0 / 200.0 * heads as f64)
+        .at_most("points a step", watched.points, points * heads as f64)
         .note(STEP_TIME, watched.step_time)
 }
