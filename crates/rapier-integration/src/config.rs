@@ -99,7 +99,8 @@ pub struct SbbkConfig {
     /// lives in it would be thrown out. Say of such meshes that they are sheets
     /// ([`PreparedTree::bounds`](crate::PreparedTree::bounds)), and register those of more than 8192
     /// triangles ([`SbbkDispatcher::prepare_shape`](crate::SbbkDispatcher::prepare_shape)), which count as
-    /// sheets otherwise.
+    /// sheets otherwise. Each part of a compound goes its own way. Where an edge is nearest to the middle, as
+    /// below a ditch, contacts stay as in stock.
     pub convex_leave_solids: bool,
     /// Whether the contacts of a pair are reduced to patches, or all reported.
     pub detail: ContactDetail,

@@ -62,7 +62,7 @@
 //!
 //! * A mesh that bounds a *solid* ([`SurfaceKind::Solid`]) pushes out what has sunk into it. It is
 //!   wound consistently, with normals that point outwards, and closed or nearly: its holes together
-//!   are at most 6 % of its surface. Vertices at one place count as one. Depths count up to a
+//!   are at most 6 % of its surface, of a hole with a lid the gap. Vertices at one place count as one. Depths count up to a
 //!   tenth of the radius of the smaller mesh, or four prediction distances if that is more, so that deep
 //!   bodies come out slowly.
 //! * Any other mesh is a *sheet* and met from both sides: terrains, walls, bowls, vases with a wide
@@ -199,8 +199,8 @@
 //! # Threads
 //!
 //! Queries may come from many threads at once. Contact queries take no lock, but for rigid meshes that
-//! meet another or a height field and of which not all is known yet: these look for it under a lock, for
-//! a moment. A tree is built outside of it. Results do not depend on the number of threads.
+//! meet another, a height field or a convex shape that is to leave solids, and of which not all is known
+//! yet: these look for it under a lock, for a moment. A tree is built outside of it. Results do not depend on the number of threads.
 //!
 //! # Snapshots
 //!

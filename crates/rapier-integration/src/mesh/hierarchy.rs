@@ -110,8 +110,9 @@ fn has_near(mesh: &TriMesh, aabb: &Aabb, pos12: &Pose, margin: Real) -> bool {
 pub(crate) struct Ranks(FxHashMap<u32, u32>);
 
 impl Ranks {
-    /// Gives back memory beyond so many triangles.
+    /// Forgets all, and gives back memory beyond so many triangles.
     pub(crate) fn shrink_to(&mut self, limit: usize) {
+        self.0.clear();
         self.0.shrink_to(limit);
     }
 

@@ -94,7 +94,7 @@ where
     query.settle(candidates, &mut contacts, limits, &mut coherence.outside, &mut scratch);
     for Candidate { subshapes, place, .. } in &mut candidates[found..] {
         let of_it = |m: &ContactManifold<M, C>| [m.subshape1, m.subshape2] == *subshapes;
-        *place = manifolds.iter().position(of_it).and_then(Place::new);
+        *place = place.or_else(|| Place::new(manifolds.iter().position(of_it)?));
     }
     if let Some(plan) = query.patch_plan(&contacts) {
         let found = Contacts { query: &mut query, candidates, contacts: &contacts, limits };

@@ -221,16 +221,24 @@ impl Scratch {
     pub(super) fn shrink_to(&mut self, limit: usize) {
         let Self { ordered, ranks, near, regions, patches, seams, lookup, is_done, .. } = self;
         let many = limit.max(1024);
-        self.triangle_contacts.iter_mut().for_each(|list| list.shrink_to(many));
-        self.convex_contacts.iter_mut().for_each(|list| list.shrink_to(many));
+        shrink(&mut self.triangle_contacts, many);
+        shrink(&mut self.convex_contacts, many);
+        shrink([ordered], many);
+        shrink([near], many);
         ranks.iter_mut().for_each(|ranks| ranks.shrink_to(many));
-        ordered.shrink_to(many);
-        near.shrink_to(many);
         regions.shrink_to(many);
         patches.shrink_to(limit);
         seams.shrink_to(limit);
         lookup.shrink_to(limit);
         is_done.shrink_to(limit);
+    }
+}
+
+/// Gives back memory of lists whose content has served.
+fn shrink<'a, T: 'a>(lists: impl IntoIterator<Item = &'a mut Vec<T>>, limit: usize) {
+    for list in lists {
+        list.clear();
+        list.shrink_to(limit);
     }
 }
 

@@ -52,15 +52,14 @@ impl<H: Default> Candidate<H> {
     }
 }
 
-/// The place of the candidate of two subshapes in a list, to whose end it is added if it is not there.
-pub(super) fn candidate_of<H: Default>(
+/// Adds a candidate of two subshapes, whose manifold is that of another of these, if there is one. Its place
+/// in the list: behind those of the descent, whatever that has found.
+pub(super) fn push_candidate<H: Default>(
     candidates: &mut Vec<Candidate<H>>,
     subshapes: [u32; 2],
 ) -> u32 {
-    let known = candidates.iter().position(|candidate| candidate.subshapes == subshapes);
-    let place = known.unwrap_or_else(|| {
-        candidates.push(Candidate::new(subshapes));
-        candidates.len() - 1
-    });
-    place as u32
+    let same = candidates.iter_mut().find(|candidate| candidate.subshapes == subshapes);
+    let place = same.and_then(|same| same.place.take());
+    candidates.push(Candidate { place, ..Candidate::new(subshapes) });
+    candidates.len() as u32 - 1
 }

@@ -20,9 +20,9 @@ pub enum SurfaceKind {
     Sheet,
 }
 
-/// Holes of a solid together, as a share of its surface; of a hole with a lid the gap counts. The eyes of a monkey's head take 0.049 of it,
-/// the opening of a glove 0.1, that of a half sphere a half, of a box without lid a fifth. Higher:
-/// bodies in a vase are pushed out of it. Lower: a head with a hole is a sheet.
+/// Holes of a solid together, as a share of its surface; of a hole with a lid the gap counts. The eyes of a
+/// monkey's head take 0.049 of it, the opening of a glove 0.1, that of a half sphere a half, of a box without
+/// lid a fifth. Higher: bodies in a vase are pushed out of it. Lower: a head with a hole is a sheet.
 const GREATEST_HOLES: f64 = 0.06;
 
 /// How far a border may be from another one that it closes, as a share of the extent: a seam where

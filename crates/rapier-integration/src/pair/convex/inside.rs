@@ -14,7 +14,7 @@ use super::query::ConvexQuery;
 use super::touch::{Along, Near, Touch};
 use crate::mesh::{BEHIND, is_covered, nearest};
 use crate::pair::driver::{ContactList, Scratch};
-use crate::pair::order::{Candidate, candidate_of};
+use crate::pair::order::{Candidate, push_candidate};
 
 /// The depth of a contact, as a share of the radius of the part, from which on half of the part may be
 /// inside though its middle is not: that of a cone is a third of its height over the base.
@@ -22,7 +22,7 @@ const DEEP: f64 = 0.1;
 
 impl ConvexQuery<'_> {
     /// If a part is in the solid by more than half: its way out, and the triangle that it leads to.
-    /// `deepest` is the least distance of its contacts.
+    /// `deepest` is the least distance of its contacts without its radius.
     pub(super) fn way_out(
         &self,
         part: u32,
@@ -35,7 +35,8 @@ impl ConvexQuery<'_> {
             let middle = shape.shape.middle()?;
             let placed = self.placed(part, &shape, scratch);
             let from = placed.at_mesh(middle);
-            let is_deep = deepest < -DEEP * f64::from(placed.extent.ball().radius);
+            let (radius, border) = (placed.extent.ball().radius, shape.shape.radius());
+            let is_deep = deepest - f64::from(border) < -DEEP * f64::from(radius);
             if !is_deep && !is_covered(mesh, from) {
                 return None;
             }
@@ -50,7 +51,7 @@ impl ConvexQuery<'_> {
             if above >= below {
                 return None;
             }
-            let distance = f64::from(shape.shape.radius()) - below;
+            let distance = f64::from(border) - below;
             // In line with the middle: nothing turns.
             let on_shape = middle + (normal.dot(a - middle) + distance) * normal;
             let on_triangle = on_shape - distance * normal;
@@ -75,12 +76,11 @@ impl ConvexQuery<'_> {
             let distances = contacts.iter().filter(|(of, _)| is_of_it(*of));
             let distances =
                 distances.filter_map(|(_, Near(touch))| Some(touch.as_ref()?.contact.distance));
-            let deepest = distances.fold(0.0, f64::min);
+            let deepest = distances.fold(f64::INFINITY, f64::min);
             let Some((triangle, touch)) = self.way_out(part, deepest, scratch) else { return };
             contacts.retain(|(of, _)| !is_of_it(*of));
-            let of = candidate_of(candidates, mesh_place.swap([triangle, part]));
+            let of = push_candidate(candidates, mesh_place.swap([triangle, part]));
             contacts.push((of, Near(Some(touch))));
         });
-        contacts.sort_unstable_by_key(|(of, _)| *of);
     }
 }

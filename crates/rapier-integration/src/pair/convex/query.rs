@@ -218,7 +218,7 @@ impl PairQuery for ConvexQuery<'_> {
             }
             ControlFlow::Continue(())
         });
-        if let Some((triangle, touch)) = self.way_out(0, 0.0, scratch) {
+        if let Some((triangle, touch)) = self.way_out(0, f64::INFINITY, scratch) {
             contacts.clear();
             contacts.push((triangle, Near(Some(touch))));
         }

@@ -13,7 +13,7 @@ use super::exact::{Constraints, constrained_normal, fill, local_pair};
 use super::judge::{Judge, Surfaces};
 use crate::ContactGenerator;
 use crate::pair::driver::{ContactList, Limits, Moving, PairQuery, Scratch, Seen};
-use crate::pair::order::{Candidate, OrderKey, candidate_of};
+use crate::pair::order::{Candidate, OrderKey, push_candidate};
 use crate::pair::outline::{Outline, PatchPlan};
 use crate::pair::pose::PairPose;
 
@@ -191,7 +191,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         let is_deep = scratch.regions.has_way();
         if let Some((triangles, contact)) = self.shapes.inside(is_deep, outside, limits.travel) {
             let found = Found { contact, of: Of::Shapes };
-            contacts.push((candidate_of(candidates, triangles), found));
+            contacts.push((push_candidate(candidates, triangles), found));
         }
     }
 
