@@ -82,7 +82,7 @@ impl SbbkDispatcher {
         }
         // Parry's routine sees a little farther than the prediction distance.
         if is_new && parts.is_some() && is_exact && !leave_solids {
-            let in_mesh = if mesh_place.is_second() { pos12.inverse() } else { *pos12 };
+            let in_mesh = mesh_place.shape_in_mesh(pos12);
             if self.are_apart(is_near(mesh, other, &in_mesh, prediction), [mesh]) {
                 return self.counted(Answer::Apart);
             }

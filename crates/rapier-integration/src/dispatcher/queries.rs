@@ -46,7 +46,7 @@ impl SbbkDispatcher {
             return None;
         }
         if let Some((distance, apart)) = apart {
-            let in_mesh = if mesh_place.is_second() { pos12.inverse() } else { *pos12 };
+            let in_mesh = mesh_place.shape_in_mesh(pos12);
             if !is_near(mesh, other, &in_mesh, distance) {
                 return Some(apart);
             }

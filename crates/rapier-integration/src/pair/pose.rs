@@ -46,6 +46,11 @@ impl MeshPlace {
         }
     }
 
+    /// The other shape in the frame of the mesh.
+    pub(crate) fn shape_in_mesh(self, pos12: &Pose) -> Pose {
+        if self.is_second() { pos12.inverse() } else { *pos12 }
+    }
+
     pub(crate) fn is_second(self) -> bool {
         self == Self::Second
     }

@@ -200,6 +200,7 @@ pub(super) fn apart<L: Lane>(frame: &LeafFrame, one: &Corners<L>, two: &Corners<
         });
         a | b | c
     };
+    // Written out: with loops one projection spared a pile 0.03 to 0.4 % of its instructions in place of 2.
     apart = apart | separated_by(0);
     if L::all(apart) {
         return apart;
