@@ -83,8 +83,9 @@ impl Default for Kinds {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SbbkConfig {
-    /// The volume of each layer of the trees.
-    pub layers: LayerPlan,
+    /// The volume of each layer of the trees. `None`: for each mesh what is fastest by a model
+    /// ([`LayerPlan`]).
+    pub layers: Option<LayerPlan>,
     /// Where contact points come from.
     pub contacts: ContactGenerator,
     /// Contacts of surfaces, or of each two triangles.
@@ -119,7 +120,7 @@ pub struct SbbkConfig {
 impl Default for SbbkConfig {
     fn default() -> Self {
         Self {
-            layers: LayerPlan::SBBK,
+            layers: None,
             contacts: ContactGenerator::Exact,
             contact_set: ContactSet::Surfaces,
             height_fields: SurfaceKind::Solid,
@@ -136,7 +137,7 @@ impl SbbkConfig {
     /// The comparison of the SBBK paper: the same code with AABBs in every layer, no sphere at the
     /// root and no k-DOPs below.
     pub fn aabb_only() -> Self {
-        Self { layers: LayerPlan::AABB_ONLY, ..Self::default() }
+        Self { layers: Some(LayerPlan::AABB_ONLY), ..Self::default() }
     }
 
     pub(crate) fn build_options(&self) -> BuildOptions {

@@ -44,7 +44,7 @@ impl Pair {
     /// Near each other, near the origin of their frames or far from it.
     fn random(random: &mut Random, i: usize) -> Self {
         let layers = LayerPlan { sphere_root: true, kdop_from_depth: Some(1) };
-        let options = BuildOptions { layers, leaf_size: 1 };
+        let options = BuildOptions { layers: Some(layers), leaf_size: 1 };
         let far = [0.0, 1.0, 30.0, 1.0e3][i % 4];
         let places = [(); 2].map(|()| random.vector(1.0) * far);
         let trees = places.map(|place| {

@@ -27,8 +27,9 @@ const DEEPEST_BY_COST: u32 = 64;
 /// How a tree is built.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct BuildOptions {
-    /// The volume of each layer.
-    pub layers: LayerPlan,
+    /// The volume of each layer. `None`: boxes, and k-DOPs below if they pay for this mesh, by the model
+    /// that [`LayerPlan`] tells of.
+    pub layers: Option<LayerPlan>,
     /// Triangles in a leaf at most, 1 to [`BATCH`]; other values are clamped. Larger leaves make
     /// smaller trees and more triangle tests.
     pub leaf_size: usize,
@@ -36,7 +37,7 @@ pub struct BuildOptions {
 
 impl Default for BuildOptions {
     fn default() -> Self {
-        Self { layers: LayerPlan::default(), leaf_size: BATCH }
+        Self { layers: None, leaf_size: BATCH }
     }
 }
 

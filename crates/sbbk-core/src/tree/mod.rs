@@ -127,7 +127,7 @@ where
         triangles: &[[u32; 3]],
         options: &BuildOptions,
     ) -> Result<Self, BuildError> {
-        options.layers.check()?;
+        options.layers.as_ref().map_or(Ok(()), LayerPlan::check)?;
         check_mesh(vertices, triangles)?;
         Ok(pack::pack(build::build(vertices, triangles, options), vertices, triangles, options))
     }

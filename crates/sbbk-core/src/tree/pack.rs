@@ -6,10 +6,10 @@
 use arrayvec::ArrayVec;
 use glamx::Vec3;
 
-use super::Tree;
 use super::build::{BuildNode, BuildOptions, BuildTree, Content};
 use super::node::{BATCH, LeafBatch, Link, Pair};
 use super::stats::BuildStats;
+use super::{LayerPlan, Tree};
 use crate::volumes::{DirectionSet, Directions, Kdop, Sphere};
 
 pub(super) fn pack<const AXES: usize>(
@@ -21,10 +21,12 @@ pub(super) fn pack<const AXES: usize>(
 where
     Directions<AXES>: DirectionSet<AXES>,
 {
-    let layers = options.layers;
+    let candidate = options.layers.unwrap_or(LayerPlan::SBBK);
+    let kdops = kdops::<AXES>(&built, vertices, triangles, candidate);
+    let kdop_cut = options.layers.is_none().then(|| candidate.kdop_cut(&built.nodes, &kdops));
+    let layers = kdop_cut.map_or(candidate, LayerPlan::chosen);
     let (leaves, leaf_links) = leaves(&built, vertices, triangles);
-    let kdops = kdops::<AXES>(&built, vertices, triangles, options);
-    let numbers = number_nodes(&built.nodes, options);
+    let numbers = number_nodes(&built.nodes, layers);
 
     // Entry 0 holds the root itself, in lane 0.
     let mut aabb_pairs = vec![Pair::EMPTY; 1 + numbers.aabb_count];
@@ -62,7 +64,8 @@ where
         magnitude: built.nodes[0].aabb.magnitude(),
         stats: BuildStats::default(),
     };
-    tree.stats = BuildStats::of(&tree, &built, vertices, triangles);
+    tree.stats =
+        BuildStats { layers, kdop_cut, ..BuildStats::of(&tree, &built, vertices, triangles) };
     tree
 }
 
@@ -89,17 +92,17 @@ fn kdops<const AXES: usize>(
     built: &BuildTree,
     vertices: &[Vec3],
     triangles: &[[u32; 3]],
-    options: &BuildOptions,
+    layers: LayerPlan,
 ) -> Vec<Kdop<AXES>>
 where
     Directions<AXES>: DirectionSet<AXES>,
 {
-    if options.layers.kdop_from_depth.is_none() {
+    if layers.kdop_from_depth.is_none() {
         return Vec::new();
     }
     let mut kdops = vec![Kdop::EMPTY; built.nodes.len()];
     for (place, node) in built.nodes.iter().enumerate().rev() {
-        if !options.layers.is_kdop(node.depth) {
+        if !layers.is_kdop(node.depth) {
             continue;
         }
         kdops[place] = match &node.content {
@@ -126,8 +129,8 @@ struct Numbers {
     kdop_count: usize,
 }
 
-fn number_nodes(nodes: &[BuildNode], options: &BuildOptions) -> Numbers {
-    let children_are_kdops = |node: &BuildNode| options.layers.is_kdop(node.depth + 1);
+fn number_nodes(nodes: &[BuildNode], layers: LayerPlan) -> Numbers {
+    let children_are_kdops = |node: &BuildNode| layers.is_kdop(node.depth + 1);
     let is_inner = |node: &BuildNode| matches!(node.content, Content::Inner(_));
 
     let mut upper: Vec<u32> = (0..nodes.len() as u32)

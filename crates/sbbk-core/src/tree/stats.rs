@@ -1,8 +1,8 @@
 use glamx::Vec3;
 
-use super::Tree;
 use super::build::{BuildTree, Content};
 use super::node::{LeafBatch, Pair};
+use super::{LayerPlan, Tree};
 use crate::volumes::Sphere;
 
 /// What a build made.
@@ -21,6 +21,11 @@ pub struct BuildStats {
     /// heuristic's `Σ area(inner)·2 + Σ area(leaf)·count`, over the root's area. Zero if that is
     /// zero.
     pub sah_cost: f32,
+    /// The volume of each layer, as asked for or chosen.
+    pub layers: LayerPlan,
+    /// Why they were chosen: how much of the boxes that a random query meets k-DOPs from depth 4 on cut
+    /// off. `None`: they were asked for.
+    pub kdop_cut: Option<f32>,
     /// Memory of the sphere.
     pub sphere_bytes: usize,
     /// Memory of the AABB layers.
@@ -32,6 +37,7 @@ pub struct BuildStats {
 }
 
 impl BuildStats {
+    /// All but what is known of the layers.
     pub(super) fn of<const AXES: usize>(
         tree: &Tree<AXES>,
         built: &BuildTree,
@@ -63,6 +69,7 @@ impl BuildStats {
             aabb_bytes: tree.aabb_pairs.len() * size_of::<Pair<3>>(),
             kdop_bytes: tree.kdop_pairs.len() * size_of::<Pair<AXES>>(),
             leaf_bytes: tree.leaves.len() * size_of::<LeafBatch>(),
+            ..Self::default()
         }
     }
 

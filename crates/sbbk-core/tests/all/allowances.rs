@@ -22,7 +22,7 @@ where
 {
     let triangles: Vec<_> =
         (0..corners.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    let options = BuildOptions { layers, leaf_size: 1 };
+    let options = BuildOptions { layers: Some(layers), leaf_size: 1 };
     Tree::build(corners, &triangles, &options).unwrap()
 }
 
@@ -363,7 +363,7 @@ fn any_finite_margin_finds_everything() {
     let flat = crate::support::Soup { vertices: vec![Vec3::ZERO; 3], triangles: vec![[0, 1, 2]] };
     for soup in [&ball, &flat] {
         for layers in [KDOPS, LayerPlan::SBBK, LayerPlan::AABB_ONLY] {
-            let options = BuildOptions { layers, ..BuildOptions::default() };
+            let options = BuildOptions { layers: Some(layers), ..BuildOptions::default() };
             let tree: Tree = Tree::build(&soup.vertices, &soup.triangles, &options).unwrap();
             let count = soup.triangles.len();
             for margin in [1.0e4, 1.0e15, 2.0e19, 1.0e30, f32::MAX] {

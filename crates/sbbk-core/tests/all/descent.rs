@@ -53,7 +53,7 @@ fn tree<const AXES: usize>(soup: &Soup, layers: LayerPlan) -> Tree<AXES>
 where
     Directions<AXES>: DirectionSet<AXES>,
 {
-    let options = BuildOptions { layers, ..BuildOptions::default() };
+    let options = BuildOptions { layers: Some(layers), ..BuildOptions::default() };
     let tree = Tree::build(&soup.vertices, &soup.triangles, &options).unwrap();
     assert_eq!(tree.validate(), Ok(()));
     tree
@@ -193,7 +193,7 @@ fn counts_of_complete_trees_are_the_papers() {
         // Equal triangles are halved by number: the tree is complete.
         let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
         let triangles = vec![[0, 1, 2]; count];
-        let options = BuildOptions { layers: LayerPlan::SBBK, leaf_size: 1 };
+        let options = BuildOptions { layers: Some(LayerPlan::SBBK), leaf_size: 1 };
         let tree: Tree = Tree::build(&vertices, &triangles, &options).unwrap();
         assert_eq!(tree.stats().depth, levels - 1);
         for (descent, expected) in [

@@ -129,7 +129,7 @@ fn spheres_are_round() {
 fn layers_hold_the_mesh() {
     let ball = bumpy_ball(12, 0.2);
     let options = BuildOptions {
-        layers: LayerPlan { sphere_root: true, kdop_from_depth: Some(3) },
+        layers: Some(LayerPlan { sphere_root: true, kdop_from_depth: Some(3) }),
         ..BuildOptions::default()
     };
     let tree: Tree = Tree::build(&ball.vertices, &ball.triangles, &options).unwrap();

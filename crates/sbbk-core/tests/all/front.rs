@@ -386,7 +386,7 @@ fn coarse_coordinates_and_other_layers() {
     ];
     let mut total = 0;
     for layers in plans {
-        let options = BuildOptions { layers, ..BuildOptions::default() };
+        let options = BuildOptions { layers: Some(layers), ..BuildOptions::default() };
         let tree: Tree = Tree::build(&ball.vertices, &ball.triangles, &options).unwrap();
         for options in BOTH {
             let mut front = Front::new(options);

@@ -22,7 +22,7 @@ fn build<const AXES: usize>(soup: &Soup, layers: LayerPlan) -> Tree<AXES>
 where
     Directions<AXES>: DirectionSet<AXES>,
 {
-    let options = BuildOptions { layers, ..BuildOptions::default() };
+    let options = BuildOptions { layers: Some(layers), ..BuildOptions::default() };
     Tree::build(&soup.vertices, &soup.triangles, &options)
         .expect("the soups of these tests are valid")
 }

@@ -7,7 +7,7 @@ use sbbk_core::tree::{BATCH, BuildError, BuildOptions, LayerPlan, Node, Tree};
 use sbbk_core::volumes::{DirectionSet, Directions};
 
 fn options(kdop_from_depth: Option<u32>, leaf_size: usize) -> BuildOptions {
-    BuildOptions { layers: LayerPlan { sphere_root: true, kdop_from_depth }, leaf_size }
+    BuildOptions { layers: Some(LayerPlan { sphere_root: true, kdop_from_depth }), leaf_size }
 }
 
 fn check<const AXES: usize>(soup: &Soup, options: &BuildOptions) -> Tree<AXES>
@@ -114,7 +114,8 @@ fn the_ball_around_a_box_holds_its_corners() {
         let triangles = (0..6).map(|i| [i, i + 1, i + 2]).collect();
         let soup = Soup { vertices, triangles };
         let plan = LayerPlan { sphere_root: false, kdop_from_depth: None };
-        let ball = check::<9>(&soup, &BuildOptions { layers: plan, leaf_size: 4 }).bounding_ball();
+        let ball =
+            check::<9>(&soup, &BuildOptions { layers: Some(plan), leaf_size: 4 }).bounding_ball();
         for vertex in soup.vertices {
             let distance = (vertex.as_dvec3() - ball.centre.as_dvec3()).length();
             assert!(distance <= f64::from(ball.radius), "{vertex} is outside of {ball:?}");
@@ -128,7 +129,7 @@ fn the_ball_around_a_box_holds_its_corners() {
 fn the_walk_reaches_everything() {
     let ball = bumpy_ball(12, 0.2);
     let plan = LayerPlan { sphere_root: true, kdop_from_depth: Some(3) };
-    let tree = check::<9>(&ball, &BuildOptions { layers: plan, leaf_size: 3 });
+    let tree = check::<9>(&ball, &BuildOptions { layers: Some(plan), leaf_size: 3 });
     let mut slots = std::collections::HashSet::new();
     let mut seen = vec![0; ball.triangles.len()];
     let (mut inner_count, mut leaf_count, mut deepest) = (0, 0, 0);
@@ -237,7 +238,8 @@ fn statistics_follow_the_plan() {
     let ball = bumpy_ball(20, 0.1);
     let sbbk = *check::<9>(&ball, &options(Some(4), 4)).stats();
     let boxes =
-        *check::<9>(&ball, &BuildOptions { layers: LayerPlan::AABB_ONLY, leaf_size: 4 }).stats();
+        *check::<9>(&ball, &BuildOptions { layers: Some(LayerPlan::AABB_ONLY), leaf_size: 4 })
+            .stats();
     assert_eq!((boxes.sphere_bytes, boxes.kdop_bytes), (0, 0));
     assert!(sbbk.sphere_bytes > 0 && sbbk.kdop_bytes > sbbk.aabb_bytes);
     assert_eq!(sbbk.leaf_bytes, boxes.leaf_bytes);

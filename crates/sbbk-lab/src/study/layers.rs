@@ -1,5 +1,5 @@
-//! Which layers of a tree should be boxes and which k-DOPs: fixed plans beside the default one, on
-//! pairs of meshes of different kinds.
+//! Which layers of a tree should be boxes and which k-DOPs: fixed plans beside the one that the build
+//! chooses, on pairs of meshes of different kinds; what it chooses, why, and what the choice takes.
 //!
 //! Bare trees list all contacts of triangles at a pose, with every kind of k-DOP and size of leaf; the
 //! dispatcher, which has 18-DOPs and leaves of four triangles, is asked as a user asks it.
@@ -9,7 +9,7 @@ use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Duration;
 
-use glamx::{Pose3, Vec3};
+use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
 use rapier_integration::{SbbkConfig, SbbkDispatcher};
 use rapier3d::geometry::SharedShape;
@@ -30,21 +30,24 @@ use crate::report::{Results, Row, Table, TableSpec, faster, number};
 
 const BARE: &str = "layers: bare trees";
 const DISPATCHER: &str = "layers: dispatcher";
+const CHOICE: &str = "layers: choice";
 /// Rapier's default.
 const PREDICTION: Real = 0.02;
 /// How far the second mesh goes beyond the first touch, in units; negative: short of it.
 const ADVANCES: [Real; 4] = [-0.95 * PREDICTION, -0.5 * PREDICTION, 0.0, PREDICTION];
 
+const CHOSEN: &str = "chosen";
 /// The default first: the others are compared with it.
-const PLANS: [(&str, LayerPlan); 6] = [
-    ("default", LayerPlan::SBBK),
-    ("boxes", LayerPlan::AABB_ONLY),
-    ("sphere, boxes", LayerPlan { sphere_root: true, kdop_from_depth: None }),
-    ("from 1", LayerPlan { sphere_root: true, kdop_from_depth: Some(1) }),
-    ("from 6", LayerPlan { sphere_root: true, kdop_from_depth: Some(6) }),
-    ("from 8", LayerPlan { sphere_root: true, kdop_from_depth: Some(8) }),
+const PLANS: [(&str, Option<LayerPlan>); 7] = [
+    (CHOSEN, None),
+    ("from 4", Some(LayerPlan::SBBK)),
+    ("boxes", Some(LayerPlan::AABB_ONLY)),
+    ("sphere, boxes", Some(LayerPlan { sphere_root: true, kdop_from_depth: None })),
+    ("from 1", Some(LayerPlan { sphere_root: true, kdop_from_depth: Some(1) })),
+    ("from 6", Some(LayerPlan { sphere_root: true, kdop_from_depth: Some(6) })),
+    ("from 8", Some(LayerPlan { sphere_root: true, kdop_from_depth: Some(8) })),
 ];
-/// What bare trees can besides. The last two are the paper's AABB trees: boxes of both along the axes of
+/// What bare trees can besides, with k-DOPs from depth 4 on. The last two are the paper's AABB trees: boxes of both along the axes of
 /// one frame, for which those of the second mesh must be fitted anew when it moves.
 const OTHERS: [&str; 5] =
     ["14-DOPs", "26-DOPs", "leaves of 2", "one frame", "one frame, with the refit"];
@@ -63,26 +66,36 @@ pub struct LayersPlan {
 }
 
 impl LayersPlan {
-    /// Ten pairs of meshes of 96 to 20,000 triangles, 16 poses each; about three minutes.
+    /// Fifteen pairs of meshes of 96 to 20,000 triangles, 32 poses each; about five minutes.
     pub fn standard() -> Self {
         let own = |mesh: Mesh| [(); 2].map(|()| mesh.clone().centred().scaled_to(2.0));
         let head = || mesh::monkey_head_with(11);
-        let under_head =
-            |mesh: Mesh| [mesh.centred().scaled_to(4.0), head().centred().scaled_to(0.5)];
+        let under = |mesh: Mesh, small: Mesh| {
+            [mesh.centred().scaled_to(4.0), small.centred().scaled_to(0.5)]
+        };
+        let cuboid = || mesh::cuboid(Vec3::ONE, 5);
+        let turn = Quat::from_rotation_y(0.4) * Quat::from_rotation_x(0.3);
+        let turned = |mesh: Mesh| mesh.mapped(|vertex| turn * vertex);
+        let floor = || mesh::floor(2.0, 70);
         let thread = Thread { segments: 96, ..Thread::BOLT };
         let pairs = vec![
             own(mesh::torus(0.7, 0.3, 8, 6)),
-            own(mesh::cuboid(Vec3::ONE, 5)),
+            own(cuboid()),
             own(mesh::ball(1.0, 8)),
             own(head()),
+            own(turned(cuboid()).named("turned cuboid")),
             own(mesh::slab(Vec3::new(1.0, 0.03, 0.03), [40, 2, 2]).named("rod")),
+            own(mesh::helicopter()),
             own(thread.bolt().named("bolt")),
             own(soup(5000)),
             own(mesh::monkey_head_with(23)),
-            under_head(mesh::hills(40.0, 100)),
-            under_head(mesh::floor(2.0, 70)),
+            under(mesh::hills(40.0, 100), head()),
+            under(floor(), head()),
+            under(floor(), cuboid()),
+            under(turned(floor()).named("turned floor"), head()),
+            under(city(), head()),
         ];
-        Self { pairs, approach_count: 4, repeats: 21 }
+        Self { pairs, approach_count: 8, repeats: 15 }
     }
 
     /// The first four pairs, two approaches each: for trying, not for quoting.
@@ -91,6 +104,16 @@ impl LayersPlan {
         standard.pairs.truncate(4);
         Self { approach_count: 2, repeats: 5, ..standard }
     }
+}
+
+/// Blocks of five heights along the axes, in rows.
+fn city() -> Mesh {
+    let block = |i: u32| {
+        let half_extents = Vec3::new(0.3, 0.3 + 0.1 * (7 * i % 5) as f32, 0.3);
+        let place = Vec3::new((i % 8) as f32, half_extents.y, (i / 8) as f32);
+        mesh::cuboid(half_extents, 3).mapped(|vertex| vertex + place)
+    };
+    Mesh::merged("city", &(0..64).map(block).collect::<Vec<_>>())
 }
 
 /// Triangles at random in a cube, each by itself.
@@ -114,6 +137,16 @@ pub fn layers(plan: &LayersPlan, progress: &Progress) -> Results {
         let case = Case::new(meshes, plan);
         rows.extend(case.bare(plan.repeats));
         rows.extend(case.dispatcher(plan.repeats));
+        for mesh in meshes {
+            let is_known = |row: &Row| {
+                row.study == CHOICE
+                    && row.is("mesh", &mesh.name)
+                    && row.count("triangle_count") == mesh.triangle_count() as u64
+            };
+            if !rows.iter().any(is_known) {
+                rows.push(choice(mesh, plan.repeats));
+            }
+        }
         progress.step();
     }
     progress.finish();
@@ -155,14 +188,14 @@ impl<'a> Case<'a> {
     /// First queries of bare trees.
     fn bare(&self, repeats: usize) -> impl Iterator<Item = Row> {
         let options = |layers| BuildOptions { layers, leaf_size: BATCH };
-        let default = options(LayerPlan::SBBK);
+        let from_4 = options(Some(LayerPlan::SBBK));
         let mut asks = Vec::new();
         for (_, layers) in PLANS {
             asks.push(self.ask::<9>(options(layers)));
         }
-        asks.push(self.ask::<7>(default));
-        asks.push(self.ask::<13>(default));
-        asks.push(self.ask::<9>(BuildOptions { leaf_size: 2, ..default }));
+        asks.push(self.ask::<7>(from_4));
+        asks.push(self.ask::<13>(from_4));
+        asks.push(self.ask::<9>(BuildOptions { leaf_size: 2, ..from_4 }));
         asks.push(self.ask_in_one_frame(false));
         asks.push(self.ask_in_one_frame(true));
         let times = self.fastest(&asks, repeats, 1.0, |ask, place| ask(place));
@@ -185,7 +218,7 @@ impl<'a> Case<'a> {
 
     /// Boxes of both meshes in the frame of the first. Whether to count what it takes to fit them.
     fn ask_in_one_frame(&self, counts_refit: bool) -> Ask<'_> {
-        let options = BuildOptions { layers: LayerPlan::AABB_ONLY, leaf_size: BATCH };
+        let options = BuildOptions { layers: Some(LayerPlan::AABB_ONLY), leaf_size: BATCH };
         let tree1 = self.tree::<9>(0, options);
         let second = RefCell::new((self.tree::<9>(1, options), self.meshes[1].vertices.clone()));
         let Mesh { vertices, triangles, .. } = &self.meshes[1];
@@ -206,9 +239,7 @@ impl<'a> Case<'a> {
     where
         Directions<AXES>: DirectionSet<AXES>,
     {
-        let mesh = &self.meshes[index];
-        Tree::build(&mesh.vertices, &mesh.triangles, &options)
-            .expect("meshes of the studies are sound")
+        build(&self.meshes[index], &options)
     }
 
     /// All modes of the dispatcher.
@@ -262,6 +293,30 @@ impl<'a> Case<'a> {
     }
 }
 
+fn build<const AXES: usize>(mesh: &Mesh, options: &BuildOptions) -> Tree<AXES>
+where
+    Directions<AXES>: DirectionSet<AXES>,
+{
+    Tree::build(&mesh.vertices, &mesh.triangles, options).expect("meshes of the studies are sound")
+}
+
+/// What a build chooses, and how much longer than one that is told so it takes.
+fn choice(mesh: &Mesh, repeats: usize) -> Row {
+    let chosen = *build::<9>(mesh, &BuildOptions::default()).stats();
+    let plans = [None, Some(chosen.layers)];
+    let times = race(&plans, repeats.max(1), 1e6, |layers| {
+        let options = BuildOptions { layers: *layers, ..BuildOptions::default() };
+        timed(|| black_box(build::<9>(mesh, &options))).0
+    });
+    Row::new(CHOICE, CHOSEN)
+        .key("mesh", &*mesh.name)
+        .key("triangle_count", mesh.triangle_count())
+        .with("kdop_from_depth", chosen.layers.kdop_from_depth)
+        .with("kdop_cut", chosen.kdop_cut)
+        .with("build", times[0].min)
+        .with("share", 100.0 * (1.0 - times[1].min / times[0].min))
+}
+
 /// The time of all contacts of triangles.
 fn contacts_of<const AXES: usize>(
     [tree1, tree2]: [&Tree<AXES>; 2],
@@ -279,12 +334,11 @@ where
 }
 
 fn tables(rows: &[Row]) -> Vec<Table> {
-    let [default, ..] = PLANS.map(|(name, _)| name);
     let table = |study, title: &str, keys, names: Vec<&str>, notes: Vec<String>| {
-        let ratios = names.into_iter().filter(|name| *name != default);
-        let ratios = ratios.map(|name| faster(name, "time", default).of(name));
-        let note = "ratios: how many times faster than the default, 18-DOPs from depth 4";
-        let columns = [number("default, µs", "time").of(default)].into_iter().chain(ratios);
+        let ratios = names.into_iter().filter(|name| *name != CHOSEN);
+        let ratios = ratios.map(|name| faster(name, "time", CHOSEN).of(name));
+        let note = "ratios: how many times faster than the plan that is chosen";
+        let columns = [number("chosen, µs", "time").of(CHOSEN)].into_iter().chain(ratios);
         let spec = TableSpec::new(title, study, keys, columns);
         spec.note(note).note(LEAST).notes(notes).of(rows)
     };
@@ -304,5 +358,19 @@ fn tables(rows: &[Row]) -> Vec<Table> {
             plans,
             mode_notes(),
         ),
+        TableSpec::new(
+            "Layers: what is chosen",
+            CHOICE,
+            &["mesh", "triangle_count"],
+            [
+                number("k-DOPs cut off", "kdop_cut").of(CHOSEN),
+                number("k-DOPs from", "kdop_from_depth").of(CHOSEN),
+                number("build, µs", "build").of(CHOSEN),
+                number("the choice, % of it", "share").of(CHOSEN),
+            ],
+        )
+        .note("nothing in \"k-DOPs from\": they do not pay, so all layers are boxes")
+        .note("least times; the choice: what the build takes longer than one that is told the plan")
+        .of(rows),
     ]
 }

@@ -69,6 +69,6 @@ fn shape(mesh: &Mesh) -> SharedShape {
 
 /// The tree of a mesh.
 fn tree(mesh: &Mesh, layers: LayerPlan) -> Tree {
-    let options = BuildOptions { layers, ..BuildOptions::default() };
+    let options = BuildOptions { layers: Some(layers), ..BuildOptions::default() };
     Tree::build(&mesh.vertices, &mesh.triangles, &options).expect("meshes of the studies are sound")
 }

@@ -14,7 +14,7 @@ fn tree<const AXES: usize>(soup: &Soup, layers: LayerPlan) -> Tree<AXES>
 where
     sbbk_core::volumes::Directions<AXES>: sbbk_core::volumes::DirectionSet<AXES>,
 {
-    let options = BuildOptions { layers, ..BuildOptions::default() };
+    let options = BuildOptions { layers: Some(layers), ..BuildOptions::default() };
     Tree::build(&soup.vertices, &soup.triangles, &options).expect("soups are valid")
 }
 
