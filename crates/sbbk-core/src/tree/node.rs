@@ -10,7 +10,7 @@ use wide::f32x4;
 
 use crate::simd::{PerChild, V3, each};
 use crate::volumes::rounding::{HalfLength, centre_extent};
-use crate::volumes::{Aabb, Kdop};
+use crate::volumes::{Aabb, DirectionSet, Directions, Kdop};
 
 /// Triangles in a leaf at most, and lanes of the triangle test.
 pub const BATCH: usize = 4;
@@ -215,6 +215,33 @@ impl LeafBatch {
         each(|corner| each(|axis| f32x4::new(self.corners[corner][axis])))
     }
 
+    /// The least and the largest of what `project` makes of the corners.
+    #[inline(always)]
+    pub(super) fn ends<const N: usize>(
+        &self,
+        project: impl Fn(V3<f32x4>) -> [f32x4; N],
+    ) -> [[f32; N]; 2] {
+        let (mut low, mut high) =
+            ([f32x4::splat(f32::INFINITY); N], [f32x4::splat(f32::NEG_INFINITY); N]);
+        for corner in self.lanes() {
+            let projections = project(corner);
+            for axis in 0..N {
+                low[axis] = low[axis].fast_min(projections[axis]);
+                high[axis] = high[axis].fast_max(projections[axis]);
+            }
+        }
+        [reduce(&low, f32x4::fast_min), reduce(&high, f32x4::fast_max)]
+    }
+
+    /// The k-DOP around all triangles.
+    pub(super) fn kdop<const AXES: usize>(&self) -> Kdop<AXES>
+    where
+        Directions<AXES>: DirectionSet<AXES>,
+    {
+        let [min, max] = self.ends(Directions::<AXES>::project_components);
+        Kdop::of_projections(min, max)
+    }
+
     /// The corners of the triangle in `lane`.
     #[inline]
     pub fn corners(&self, lane: usize) -> [Vec3; 3] {
@@ -223,4 +250,21 @@ impl LeafBatch {
             Vec3::new(x[lane], y[lane], z[lane])
         })
     }
+}
+
+/// Combines the lanes of each of the values.
+#[inline(always)]
+fn reduce<const N: usize>(
+    values: &[f32x4; N],
+    combine: impl Fn(f32x4, f32x4) -> f32x4,
+) -> [f32; N] {
+    let mut reduced = [0.0; N];
+    for first in (0..N).step_by(BATCH) {
+        let lane = |i: usize| values[(first + i).min(N - 1)];
+        let [a, b, c, d] = f32x4::transpose([lane(0), lane(1), lane(2), lane(3)]);
+        let combined = combine(combine(a, b), combine(c, d)).to_array();
+        let count = BATCH.min(N - first);
+        reduced[first..first + count].copy_from_slice(&combined[..count]);
+    }
+    reduced
 }

@@ -3,11 +3,10 @@
 //! Upper nodes are numbered breadth first, so that the ones every descent visits share cache lines;
 //! the k-DOP layers follow in the order of the build (depth first, siblings adjacent).
 
-use arrayvec::ArrayVec;
 use glamx::Vec3;
 
 use super::build::{BuildNode, BuildOptions, BuildTree, Content};
-use super::node::{BATCH, LeafBatch, Link, Pair};
+use super::node::{LeafBatch, Link, Pair};
 use super::stats::BuildStats;
 use super::{LayerPlan, Tree};
 use crate::volumes::{DirectionSet, Directions, Kdop, Sphere};
@@ -22,10 +21,10 @@ where
     Directions<AXES>: DirectionSet<AXES>,
 {
     let candidate = options.layers.unwrap_or(LayerPlan::SBBK);
-    let kdops = kdops::<AXES>(&built, vertices, triangles, candidate);
+    let (leaves, leaf_links) = leaves(&built, vertices, triangles);
+    let kdops = kdops::<AXES>(&built.nodes, (&leaves, &leaf_links), candidate);
     let kdop_cut = options.layers.is_none().then(|| candidate.kdop_cut(&built.nodes, &kdops));
     let layers = kdop_cut.map_or(candidate, LayerPlan::chosen);
-    let (leaves, leaf_links) = leaves(&built, vertices, triangles);
     let numbers = number_nodes(&built.nodes, layers);
 
     // Entry 0 holds the root itself, in lane 0.
@@ -89,9 +88,8 @@ fn leaves(
 
 /// The k-DOPs of the nodes in the k-DOP layers, bottom up; empty ones above.
 fn kdops<const AXES: usize>(
-    built: &BuildTree,
-    vertices: &[Vec3],
-    triangles: &[[u32; 3]],
+    nodes: &[BuildNode],
+    (leaves, leaf_links): (&[LeafBatch], &[Link]),
     layers: LayerPlan,
 ) -> Vec<Kdop<AXES>>
 where
@@ -100,8 +98,8 @@ where
     if layers.kdop_from_depth.is_none() {
         return Vec::new();
     }
-    let mut kdops = vec![Kdop::EMPTY; built.nodes.len()];
-    for (place, node) in built.nodes.iter().enumerate().rev() {
+    let mut kdops = vec![Kdop::EMPTY; nodes.len()];
+    for (place, node) in nodes.iter().enumerate().rev() {
         if !layers.is_kdop(node.depth) {
             continue;
         }
@@ -109,13 +107,7 @@ where
             Content::Inner([first, second]) => {
                 kdops[*first as usize].merge(&kdops[*second as usize])
             }
-            Content::Leaf(range) => {
-                let members = &built.order[range.start as usize..range.end as usize];
-                let corners = members.iter().flat_map(|&triangle| triangles[triangle as usize]);
-                let points: ArrayVec<Vec3, { 3 * BATCH }> =
-                    corners.map(|vertex| vertices[vertex as usize]).collect();
-                Kdop::fit(&points)
-            }
+            Content::Leaf(_) => leaves[leaf_links[place].index() as usize].kdop(),
         };
     }
     kdops

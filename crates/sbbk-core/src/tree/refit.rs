@@ -12,7 +12,7 @@
 use glamx::Vec3;
 use wide::f32x4;
 
-use super::node::{BATCH, LeafBatch, Link, Pair};
+use super::node::{LeafBatch, Link, Pair};
 use super::{BuildError, Tree, check_mesh};
 use crate::volumes::{Aabb, DirectionSet, Directions, Kdop, Sphere};
 
@@ -210,8 +210,6 @@ where
         let [a, b, c, d] = batch.triangles;
         let triangle = |triangle: u32| self.triangles[triangle as usize];
         let members = [triangle(a), triangle(b), triangle(c), triangle(d)];
-        let (mut low, mut high) =
-            ([f32x4::splat(f32::INFINITY); N], [f32x4::splat(f32::NEG_INFINITY); N]);
         for corner in 0..3 {
             let point = |lane: usize| {
                 let Vec3 { x, y, z } = self.vertices[members[lane][corner] as usize];
@@ -222,29 +220,7 @@ where
             let [cx, cy, cz] = self.centre;
             let (dx, dy, dz) = (x - cx, y - cy, z - cz);
             self.farthest_squared = self.farthest_squared.fast_max(dx * dx + dy * dy + dz * dz);
-            let projections = project([x, y, z]);
-            for axis in 0..N {
-                low[axis] = low[axis].fast_min(projections[axis]);
-                high[axis] = high[axis].fast_max(projections[axis]);
-            }
         }
-        [reduce(&low, f32x4::fast_min), reduce(&high, f32x4::fast_max)]
+        batch.ends(project)
     }
-}
-
-/// Combines the lanes of each of the values.
-#[inline(always)]
-fn reduce<const N: usize>(
-    values: &[f32x4; N],
-    combine: impl Fn(f32x4, f32x4) -> f32x4,
-) -> [f32; N] {
-    let mut reduced = [0.0; N];
-    for first in (0..N).step_by(BATCH) {
-        let lane = |i: usize| values[(first + i).min(N - 1)];
-        let [a, b, c, d] = f32x4::transpose([lane(0), lane(1), lane(2), lane(3)]);
-        let combined = combine(combine(a, b), combine(c, d)).to_array();
-        let count = BATCH.min(N - first);
-        reduced[first..first + count].copy_from_slice(&combined[..count]);
-    }
-    reduced
 }

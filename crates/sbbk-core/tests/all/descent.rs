@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
+use crate::support::{Random, Soup, bumpy_ball, cube, lattice_soup, soup};
 use glamx::{Pose3, Quat, Vec3};
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::traverse::{
@@ -49,11 +49,11 @@ where
     (visitor.pairs, counts)
 }
 
-fn tree<const AXES: usize>(soup: &Soup, layers: LayerPlan) -> Tree<AXES>
+fn tree<const AXES: usize>(soup: &Soup, layers: impl Into<Option<LayerPlan>>) -> Tree<AXES>
 where
     Directions<AXES>: DirectionSet<AXES>,
 {
-    let options = BuildOptions { layers: Some(layers), ..BuildOptions::default() };
+    let options = BuildOptions { layers: layers.into(), ..BuildOptions::default() };
     let tree = Tree::build(&soup.vertices, &soup.triangles, &options).unwrap();
     assert_eq!(tree.validate(), Ok(()));
     tree
@@ -86,9 +86,10 @@ where
 {
     let truth = truth(soup1, soup2, pos12, margin);
     let plans = [
-        LayerPlan::SBBK,
-        LayerPlan::AABB_ONLY,
-        LayerPlan { sphere_root: false, kdop_from_depth: Some(1) },
+        None,
+        Some(LayerPlan::SBBK),
+        Some(LayerPlan::AABB_ONLY),
+        Some(LayerPlan { sphere_root: false, kdop_from_depth: Some(1) }),
     ];
     for plan in plans {
         let trees = (tree::<AXES>(soup1, plan), tree::<AXES>(soup2, plan));
@@ -99,6 +100,23 @@ where
         }
     }
     truth.len()
+}
+
+/// Would catch layers that are taken for alike on both sides: of these two one has k-DOPs.
+#[test]
+fn finds_every_pair_where_one_tree_chose_boxes() {
+    let mut random = Random(31);
+    let (cube, ball) = (cube(6), bumpy_ball(10, 0.2));
+    let has_kdops = |soup: &Soup| tree::<9>(soup, None).stats().kdop_bytes > 0;
+    assert_eq!([&cube, &ball].map(has_kdops), [false, true]);
+    let mut total = 0;
+    for i in 0..40 {
+        let pose = random.pose(1.5);
+        let margin = [0.0, 0.02][i % 2];
+        total += check::<9>(&cube, &ball, &pose, margin);
+        total += check::<9>(&ball, &cube, &pose, margin);
+    }
+    assert!(total > 1000, "the poses hardly touch: {total}");
 }
 
 /// A hole in a volume, a wrong lane, a margin that is too small: each loses a pair here.

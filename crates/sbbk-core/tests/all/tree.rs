@@ -1,8 +1,8 @@
 //! Building: every triangle once, every volume around what is below it, every fault of the input
 //! reported.
 
-use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
-use glamx::Vec3;
+use crate::support::{Random, Soup, bumpy_ball, cube, lattice_soup, soup};
+use glamx::{Quat, Vec3};
 use sbbk_core::tree::{BATCH, BuildError, BuildOptions, LayerPlan, Node, Tree};
 use sbbk_core::volumes::{DirectionSet, Directions};
 
@@ -47,6 +47,70 @@ fn large_tree_is_valid_and_shallow() {
     let ball = bumpy_ball(60, 0.1);
     let tree = check::<9>(&ball, &BuildOptions::default());
     assert!(ball.triangles.len() > 14_000 && tree.stats().depth < 25, "{:?}", tree.stats());
+}
+
+/// Boxes where surfaces are flat and along the axes, k-DOPs elsewhere. Would catch widths of other
+/// slabs, nodes that are not weighed, and a choice that depends on size or, within rounding, on place.
+#[test]
+fn kdops_are_chosen_where_they_cut_off_something() {
+    let floor = |cells: u32| {
+        let mut floor = cube(cells);
+        floor.triangles.truncate(2 * (cells * cells) as usize);
+        floor
+    };
+    let turned = |mut soup: Soup| {
+        let turn = Quat::from_rotation_x(0.3) * Quat::from_rotation_y(0.4);
+        soup.vertices.iter_mut().for_each(|vertex| *vertex = turn * *vertex);
+        soup
+    };
+    for (soup, cut, kdop_from_depth) in [
+        (floor(30), -0.001..0.001, None),
+        (cube(5), 0.01..0.03, None),
+        (cube(20), 0.01..0.03, None),
+        (turned(floor(30)), 0.1..0.2, Some(4)),
+        (turned(cube(5)), 0.1..0.2, Some(4)),
+        (bumpy_ball(5, 0.0), 0.08..0.2, Some(4)),
+        (bumpy_ball(30, 0.2), 0.1..0.3, Some(4)),
+    ] {
+        for (size, place) in [(1.0, 0.0), (1e-6, 0.0), (1e6, 0.0), (1.0, 100.0)] {
+            let vertices = soup.vertices.iter().map(|v| size * *v + Vec3::splat(place)).collect();
+            let soup = Soup { vertices, triangles: soup.triangles.clone() };
+            let stats = *check::<9>(&soup, &BuildOptions::default()).stats();
+            let found = stats.kdop_cut.expect("no plan was given");
+            assert!(cut.contains(&found), "{found} is not in {cut:?}");
+            assert_eq!(stats.layers, LayerPlan { sphere_root: true, kdop_from_depth });
+        }
+    }
+}
+
+/// The choice is that of the mesh alone, and the tree is that of the plan. Would catch k-DOPs of a tree
+/// without, or none of one with.
+#[test]
+fn a_chosen_tree_is_the_tree_of_its_plan() {
+    let mut random = Random(24);
+    for soup in [cube(7), bumpy_ball(9, 0.1), soup(&mut random, 300, 0.1)] {
+        let chosen = check::<9>(&soup, &BuildOptions::default());
+        let again = check::<9>(&soup, &BuildOptions::default());
+        assert_eq!(format!("{chosen:?}"), format!("{again:?}"));
+        let layers = Some(chosen.stats().layers);
+        let told = check::<9>(&soup, &BuildOptions { layers, ..BuildOptions::default() });
+        assert_eq!(told.stats().kdop_cut, None);
+        let mut expected = *told.stats();
+        expected.kdop_cut = chosen.stats().kdop_cut;
+        assert_eq!(*chosen.stats(), expected);
+    }
+}
+
+/// Of a mesh without area all boxes weigh nothing; of one too large for f32 some weigh infinitely.
+#[test]
+fn what_cannot_be_weighed_has_boxes() {
+    for size in [0.0, 3e38] {
+        let corner = |i: u32| size * Vec3::new(i as f32 / 300.0, 0.0, (i % 2) as f32);
+        let vertices = (0..300).map(corner).collect();
+        let triangles = (0..100).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let tree = check::<9>(&Soup { vertices, triangles }, &BuildOptions::default());
+        assert_eq!(tree.stats().layers.kdop_from_depth, None, "{:?}", tree.stats().kdop_cut);
+    }
 }
 
 /// Equal centroids cannot be separated by a plane: halving keeps the depth logarithmic.

@@ -85,6 +85,26 @@ pub fn bumpy_ball(rings: u32, bumps: f32) -> Soup {
     Soup { vertices, triangles }
 }
 
+/// A cube of half-length 1 along the axes: `2 · cells²` triangles on each side, one side after the
+/// other.
+pub fn cube(cells: u32) -> Soup {
+    let along = |cell: u32| 2.0 * cell as f32 / cells as f32 - 1.0;
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for side in 0..6 {
+        for cell in 0..cells * cells {
+            let first = vertices.len() as u32;
+            for [u, v] in [[0, 0], [1, 0], [1, 1], [0, 1]] {
+                let mut corner = Vec3::splat(if side < 3 { -1.0 } else { 1.0 });
+                corner[(side + 1) % 3] = along(cell % cells + u);
+                corner[(side + 2) % 3] = along(cell / cells + v);
+                vertices.push(corner);
+            }
+            triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+        }
+    }
+    Soup { vertices, triangles }
+}
+
 /// Triangles with no connection, of edges up to `size`, in a cube of half-length 1.
 pub fn soup(random: &mut Random, count: u32, size: f32) -> Soup {
     let mut vertices = Vec::new();

@@ -36,8 +36,9 @@ const PREDICTION: Real = 0.02;
 /// How far the second mesh goes beyond the first touch, in units; negative: short of it.
 const ADVANCES: [Real; 4] = [-0.95 * PREDICTION, -0.5 * PREDICTION, 0.0, PREDICTION];
 
+/// The plan that is chosen for each mesh.
 const CHOSEN: &str = "chosen";
-/// The default first: the others are compared with it.
+/// The others are compared with the first.
 const PLANS: [(&str, Option<LayerPlan>); 7] = [
     (CHOSEN, None),
     ("from 4", Some(LayerPlan::SBBK)),
@@ -47,7 +48,7 @@ const PLANS: [(&str, Option<LayerPlan>); 7] = [
     ("from 6", Some(LayerPlan { sphere_root: true, kdop_from_depth: Some(6) })),
     ("from 8", Some(LayerPlan { sphere_root: true, kdop_from_depth: Some(8) })),
 ];
-/// What bare trees can besides, with k-DOPs from depth 4 on. The last two are the paper's AABB trees: boxes of both along the axes of
+/// What bare trees can besides. The last two are the paper's AABB trees: boxes of both along the axes of
 /// one frame, for which those of the second mesh must be fitted anew when it moves.
 const OTHERS: [&str; 5] =
     ["14-DOPs", "26-DOPs", "leaves of 2", "one frame", "one frame, with the refit"];
@@ -137,14 +138,10 @@ pub fn layers(plan: &LayersPlan, progress: &Progress) -> Results {
         let case = Case::new(meshes, plan);
         rows.extend(case.bare(plan.repeats));
         rows.extend(case.dispatcher(plan.repeats));
-        for mesh in meshes {
-            let is_known = |row: &Row| {
-                row.study == CHOICE
-                    && row.is("mesh", &mesh.name)
-                    && row.count("triangle_count") == mesh.triangle_count() as u64
-            };
-            if !rows.iter().any(is_known) {
-                rows.push(choice(mesh, plan.repeats));
+        for row in meshes.each_ref().map(|mesh| choice(mesh, plan.repeats)) {
+            let is_same = |known: &Row| known.study == row.study && known.keys == row.keys;
+            if !rows.iter().any(is_same) {
+                rows.push(row);
             }
         }
         progress.step();
@@ -188,14 +185,14 @@ impl<'a> Case<'a> {
     /// First queries of bare trees.
     fn bare(&self, repeats: usize) -> impl Iterator<Item = Row> {
         let options = |layers| BuildOptions { layers, leaf_size: BATCH };
-        let from_4 = options(Some(LayerPlan::SBBK));
+        let default = options(None);
         let mut asks = Vec::new();
         for (_, layers) in PLANS {
             asks.push(self.ask::<9>(options(layers)));
         }
-        asks.push(self.ask::<7>(from_4));
-        asks.push(self.ask::<13>(from_4));
-        asks.push(self.ask::<9>(BuildOptions { leaf_size: 2, ..from_4 }));
+        asks.push(self.ask::<7>(default));
+        asks.push(self.ask::<13>(default));
+        asks.push(self.ask::<9>(BuildOptions { leaf_size: 2, ..default }));
         asks.push(self.ask_in_one_frame(false));
         asks.push(self.ask_in_one_frame(true));
         let times = self.fastest(&asks, repeats, 1.0, |ask, place| ask(place));
