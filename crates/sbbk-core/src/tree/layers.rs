@@ -4,10 +4,12 @@ use super::BuildError;
 use super::build::BuildNode;
 use crate::volumes::{DirectionSet, Directions, Kdop};
 
-/// The least [`BuildStats::kdop_cut`](super::BuildStats::kdop_cut) with which k-DOPs pay. Of 45 meshes,
-/// with 18-DOPs: below it boxes in all layers are as fast or up to 8 % faster, above it k-DOPs are up to
-/// 24 % faster, and nowhere more than 3 % slower.
+/// The least [`BuildStats::kdop_cut`](super::BuildStats::kdop_cut) with which k-DOPs pay. Measured with
+/// 18-DOPs.
 const LEAST_CUT: f32 = 0.07;
+/// What a layer above depth 4 must cut off by itself. Such are those of trees of about a hundred triangles
+/// and fewer, which have few others.
+const LEAST_CUT_OF_LAYER: f32 = 0.05;
 
 /// Which volume each layer of a tree has.
 ///
@@ -19,14 +21,15 @@ const LEAST_CUT: f32 = 0.07;
 /// # The choice
 ///
 /// The paper leaves the choice of layers for each mesh to future work (section 5). A build that is given
-/// no plan makes it by a model of what a query costs. Those that reach a node are as many as its box is
-/// large, by the surface area heuristic. Its k-DOP spares them as much as it is narrower along its diagonal
-/// slabs than its box is. The sum over the layers from depth 4 on, as a share of all boxes that a query
-/// meets, is [`BuildStats::kdop_cut`](super::BuildStats::kdop_cut): 0 for a floor, 0.02 for a cuboid along
-/// the axes, 0.06 for gentle hills, 0.14 to 0.2 for what is round. Above 0.055 the tree has
-/// [`SBBK`](Self::SBBK)'s layers, else a sphere and boxes. The choice depends on nothing but the mesh.
+/// no plan makes it by a model of what a query costs. As many queries reach a node as its box is large, by
+/// the surface area heuristic, and its k-DOP spares as much of them as it is narrower along its diagonal
+/// slabs than the box is. The sum over the layers from depth 4 on, as a share of all boxes that a query
+/// meets, is [`BuildStats::kdop_cut`](super::BuildStats::kdop_cut): 0 for a floor and 0.02 for a cuboid
+/// along the axes, 0.06 for gentle hills, 0.1 to 0.2 for what is round or turned. Above 0.07 these layers
+/// have k-DOPs, and so has each layer above them that cuts off 0.05 by itself; else all are boxes. The
+/// choice is a function of the mesh.
 ///
-/// What is best for all meshes is not chosen: `docs/measurements.md` of the repository has the figures.
+/// What is best for all meshes alike is not chosen: the sphere, k, the size of leaves.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct LayerPlan {
     /// Whether the root is tested as a sphere first. One distance test a pair of bodies.
@@ -44,10 +47,8 @@ impl LayerPlan {
     /// Boxes in all layers: what the paper compares with.
     pub const AABB_ONLY: Self = Self { sphere_root: false, kdop_from_depth: None };
 
-    /// The plan for a mesh of which [`Self::SBBK`] cuts off so much.
-    pub(super) fn chosen(kdop_cut: f32) -> Self {
-        if kdop_cut > LEAST_CUT { Self::SBBK } else { Self { kdop_from_depth: None, ..Self::SBBK } }
-    }
+    /// What is fitted before the choice.
+    pub(super) const CANDIDATE: Self = Self { sphere_root: true, kdop_from_depth: Some(1) };
 
     pub(super) fn check(&self) -> Result<(), BuildError> {
         match self.kdop_from_depth {
@@ -61,29 +62,37 @@ impl LayerPlan {
         self.kdop_from_depth.is_some_and(|from| depth >= from)
     }
 
-    /// How much of the boxes that a query meets the `kdops` of this plan cut off.
-    pub(super) fn kdop_cut<const AXES: usize>(
-        &self,
+    /// The choice for a tree with these `kdops` of the [`Self::CANDIDATE`], and what they cut off.
+    pub(super) fn choose<const AXES: usize>(
         nodes: &[BuildNode],
         kdops: &[Kdop<AXES>],
-    ) -> f32
+    ) -> (Self, f32)
     where
         Directions<AXES>: DirectionSet<AXES>,
     {
         let diagonals = &Directions::<AXES>::DIRECTIONS[3..];
         let per_edge: Vec3 = diagonals.iter().map(|direction| direction.abs()).sum();
-        let (mut cut, mut all) = (0.0, 0.0);
+        // By depth; the last is that of all layers from there on.
+        let mut cuts = [0.0; 5];
+        let mut all = 0.0;
         for (node, kdop) in nodes.iter().zip(kdops) {
             let area = f64::from(node.aabb.half_area());
             all += area;
             let box_width = per_edge.dot(node.aabb.max - node.aabb.min);
-            if self.is_kdop(node.depth) && box_width > 0.0 {
+            if node.depth > 0 && box_width > 0.0 {
                 let width: f32 = (3..AXES).map(|axis| kdop.max[axis] - kdop.min[axis]).sum();
-                cut += area * f64::from(1.0 - width / box_width);
+                cuts[node.depth.min(4) as usize] += area * f64::from(1.0 - width / box_width);
             }
         }
-        let share = cut / all;
-        if share.is_finite() { share as f32 } else { 0.0 }
+        // Where boxes have no area, or an infinite one, nothing is known.
+        let shares = cuts.map(|cut| if (cut / all).is_finite() { (cut / all) as f32 } else { 0.0 });
+        let (mut from, mut kdop_cut) = (4, shares[4]);
+        while from > 1 && shares[from - 1] > LEAST_CUT_OF_LAYER {
+            from -= 1;
+            kdop_cut += shares[from];
+        }
+        let kdop_from_depth = (kdop_cut > LEAST_CUT).then_some(from as u32);
+        (Self { kdop_from_depth, ..Self::CANDIDATE }, kdop_cut)
     }
 }
 

@@ -20,11 +20,16 @@ pub(super) fn pack<const AXES: usize>(
 where
     Directions<AXES>: DirectionSet<AXES>,
 {
-    let candidate = options.layers.unwrap_or(LayerPlan::SBBK);
     let (leaves, leaf_links) = leaves(&built, vertices, triangles);
+    let candidate = options.layers.unwrap_or(LayerPlan::CANDIDATE);
     let kdops = kdops::<AXES>(&built.nodes, (&leaves, &leaf_links), candidate);
-    let kdop_cut = options.layers.is_none().then(|| candidate.kdop_cut(&built.nodes, &kdops));
-    let layers = kdop_cut.map_or(candidate, LayerPlan::chosen);
+    let (layers, kdop_cut) = match options.layers {
+        Some(layers) => (layers, None),
+        None => {
+            let (layers, cut) = LayerPlan::choose(&built.nodes, &kdops);
+            (layers, Some(cut))
+        }
+    };
     let numbers = number_nodes(&built.nodes, layers);
 
     // Entry 0 holds the root itself, in lane 0.

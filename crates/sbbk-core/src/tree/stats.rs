@@ -23,8 +23,8 @@ pub struct BuildStats {
     pub sah_cost: f32,
     /// The volume of each layer, as asked for or chosen.
     pub layers: LayerPlan,
-    /// Why they were chosen: how much of the boxes that a random query meets k-DOPs from depth 4 on cut
-    /// off. `None`: they were asked for.
+    /// Why they were chosen: how much of the boxes that a random query meets k-DOPs cut off, or would, from
+    /// depth 4 on or those that were chosen. `None`: the layers were asked for.
     pub kdop_cut: Option<f32>,
     /// Memory of the sphere.
     pub sphere_bytes: usize,

@@ -69,7 +69,7 @@ fn kdops_are_chosen_where_they_cut_off_something() {
         (cube(20), 0.01..0.03, None),
         (turned(floor(30)), 0.1..0.2, Some(4)),
         (turned(cube(5)), 0.1..0.2, Some(4)),
-        (bumpy_ball(5, 0.0), 0.08..0.2, Some(4)),
+        (turned(cube(2)), 0.1..0.2, Some(3)),
         (bumpy_ball(30, 0.2), 0.1..0.3, Some(4)),
     ] {
         for (size, place) in [(1.0, 0.0), (1e-6, 0.0), (1e6, 0.0), (1.0, 100.0)] {

@@ -9,7 +9,7 @@ use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Duration;
 
-use glamx::{Pose3, Quat, Vec3};
+use glamx::{Pose3, Quat, Vec2, Vec3};
 use oorandom::Rand32;
 use rapier_integration::{SbbkConfig, SbbkDispatcher};
 use rapier3d::geometry::SharedShape;
@@ -67,7 +67,7 @@ pub struct LayersPlan {
 }
 
 impl LayersPlan {
-    /// Fifteen pairs of meshes of 96 to 20,000 triangles, 32 poses each; about five minutes.
+    /// Seventeen pairs of meshes of 48 to 20,000 triangles, 32 poses each; about four minutes.
     pub fn standard() -> Self {
         let own = |mesh: Mesh| [(); 2].map(|()| mesh.clone().centred().scaled_to(2.0));
         let head = || mesh::monkey_head_with(11);
@@ -78,13 +78,16 @@ impl LayersPlan {
         let turn = Quat::from_rotation_y(0.4) * Quat::from_rotation_x(0.3);
         let turned = |mesh: Mesh| mesh.mapped(|vertex| turn * vertex);
         let floor = || mesh::floor(2.0, 70);
+        let cylinder = mesh::revolved(&[Vec2::new(-1.0, 0.5), Vec2::new(1.0, 0.5)], 24);
         let thread = Thread { segments: 96, ..Thread::BOLT };
         let pairs = vec![
             own(mesh::torus(0.7, 0.3, 8, 6)),
             own(cuboid()),
             own(mesh::ball(1.0, 8)),
             own(head()),
+            own(mesh::monkey_head_with(3)),
             own(turned(cuboid()).named("turned cuboid")),
+            own(turned(cylinder).named("turned cylinder")),
             own(mesh::slab(Vec3::new(1.0, 0.03, 0.03), [40, 2, 2]).named("rod")),
             own(mesh::helicopter()),
             own(thread.bolt().named("bolt")),
