@@ -7,8 +7,7 @@ use crate::volumes::{DirectionSet, Directions, Kdop};
 /// The least [`BuildStats::kdop_cut`](super::BuildStats::kdop_cut) with which k-DOPs pay. Measured with
 /// 18-DOPs.
 const LEAST_CUT: f32 = 0.07;
-/// What a layer above depth 4 must cut off by itself. Such are those of trees of about a hundred triangles
-/// and fewer, which have few others.
+/// What a layer above depth 4 must cut off by itself.
 const LEAST_CUT_OF_LAYER: f32 = 0.05;
 
 /// Which volume each layer of a tree has.
@@ -23,11 +22,11 @@ const LEAST_CUT_OF_LAYER: f32 = 0.05;
 /// The paper leaves the choice of layers for each mesh to future work (section 5). A build that is given
 /// no plan makes it by a model of what a query costs. As many queries reach a node as its box is large, by
 /// the surface area heuristic, and its k-DOP spares as much of them as it is narrower along its diagonal
-/// slabs than the box is. The sum over the layers from depth 4 on, as a share of all boxes that a query
-/// meets, is [`BuildStats::kdop_cut`](super::BuildStats::kdop_cut): 0 for a floor and 0.02 for a cuboid
-/// along the axes, 0.06 for gentle hills, 0.1 to 0.2 for what is round or turned. Above 0.07 these layers
-/// have k-DOPs, and so has each layer above them that cuts off 0.05 by itself; else all are boxes. The
-/// choice is a function of the mesh.
+/// slabs than the box is. k-DOPs are to begin at depth 4, or higher if each layer down to there cuts off
+/// 0.05 of all boxes that a query meets by itself, as in trees of about a hundred triangles and fewer. What
+/// they cut off in sum is [`BuildStats::kdop_cut`](super::BuildStats::kdop_cut): 0 for a floor and 0.02
+/// for a cuboid along the axes, 0.06 for gentle hills, 0.1 to 0.2 for what is round or turned. Above 0.07
+/// the tree has them, else all its layers are boxes. The choice is a function of the mesh.
 ///
 /// What is best for all meshes alike is not chosen: the sphere, k, the size of leaves.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
