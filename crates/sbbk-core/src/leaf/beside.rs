@@ -36,8 +36,9 @@ const UPRIGHT: f32 = 0.02;
 const TRAVEL: f32 = 1.25;
 
 /// Triangles that are longer than this many times the reach are not looked at: few of those near
-/// each other are beside each other, and to find these takes as long as they do.
-const FINE: f32 = 2.0;
+/// each other are beside each other, and to find these takes as long as they do. (With 2, a pile of heads of
+/// 70,688 triangles, five times as long as the reach, takes 1.1 times as long.)
+const FINE: f32 = 8.0;
 
 /// Squares of lengths of products that are less than this are lost to underflow.
 const TINY: f32 = 1.0e-30;

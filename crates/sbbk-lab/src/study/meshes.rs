@@ -2,8 +2,6 @@
 
 use std::time::Duration;
 
-use sbbk_core::tree::LayerPlan;
-
 use super::contacts::places;
 use super::motion::Mode;
 use super::pair::{Contest, query_count};
@@ -44,10 +42,10 @@ fn measure(mesh: &Mesh) -> [Row; 2] {
     let shape = shape(mesh);
     let bytes = [
         shape.as_trimesh().map_or(0, |mesh| mesh.bvh().total_memory_size()),
-        tree(mesh, LayerPlan::SBBK).stats().bytes(),
+        tree(mesh, None).stats().bytes(),
     ];
     let builds: [&dyn Fn() -> Duration; 2] =
-        [&|| timed(|| mesh.shared_shape()).0, &|| timed(|| tree(mesh, LayerPlan::SBBK)).0];
+        [&|| timed(|| mesh.shared_shape()).0, &|| timed(|| tree(mesh, None)).0];
     let builds = race(&builds, count(REPEATS), 1e3, |build| build());
     let contest = Contest::new([&shape]);
     let places = (0..count(APPROACHES) as u64)

@@ -68,7 +68,7 @@ fn shape(mesh: &Mesh) -> SharedShape {
 }
 
 /// The tree of a mesh.
-fn tree(mesh: &Mesh, layers: LayerPlan) -> Tree {
-    let options = BuildOptions { layers: Some(layers), ..BuildOptions::default() };
+fn tree(mesh: &Mesh, layers: Option<LayerPlan>) -> Tree {
+    let options = BuildOptions { layers, ..BuildOptions::default() };
     Tree::build(&mesh.vertices, &mesh.triangles, &options).expect("meshes of the studies are sound")
 }

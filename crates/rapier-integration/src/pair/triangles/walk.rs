@@ -2,7 +2,8 @@
 //! tree.
 //!
 //! The triangles of the larger mesh that are near the other as a whole come first: often there are
-//! none. Each four of them then go down the other hierarchy together.
+//! none. Of these, many together go down the other hierarchy until something is near them, and then each
+//! four of them. (Fours at once: a pile of heads of 70,688 triangles takes 1.1 times as long.)
 //!
 //! Tried: Parry's simultaneous walk (`Bvh::leaf_pairs`). For two heads it takes as long; a head above
 //! a terrain of 320,000 triangles took 28 µs where this takes 1.
@@ -16,6 +17,13 @@ use sbbk_core::traverse::{BoxTest, Counters, NearBox, PairFrame, Placement, Test
 use sbbk_core::tree::{BATCH, LeafBatch};
 
 use crate::mesh::Hierarchy;
+
+/// Triangles that follow each other in a hierarchy, and so are near each other, that are looked at together
+/// first.
+const MANY: usize = 64;
+
+/// Fewer of them are not.
+const FEW: usize = 16;
 
 /// Calls `found` with all pairs of triangles within `margin` but those `beside` each other, and few
 /// others, in any order, until it has enough. `near` is memory.
@@ -73,7 +81,13 @@ fn walk_larger(
     let in_frame2 = BoxTest::new([m2, m1], &placement12.inverted(), margin2);
     let frame: PairFrame = PairFrame::within([m1, m2], placement12, margin);
     let test = LeafTest::new(&frame).without(beside);
-    let _ = near1.chunks(BATCH).try_for_each(|triangles| {
+    let is_near = |many: &&[u32]| {
+        let group = in_frame2.of(mesh1.tested(many));
+        let is_first_enough = |_| ControlFlow::Break(());
+        many.len() < FEW || mesh2.near(|node| meets(&group, node), is_first_enough).is_break()
+    };
+    let fours = near1.chunks(MANY).filter(is_near).flat_map(|many| many.chunks(BATCH));
+    let _ = { fours }.try_for_each(|triangles| {
         let batch1 = LeafBatch::gather(triangles, |triangle| mesh1.corners(triangle));
         let group = in_frame2.of(mesh1.tested(triangles));
         let mut decide = |near2: &[u32]| {

@@ -155,7 +155,7 @@ impl<'a> Posed<'a> {
         let seeds = 0..approach_count as u64;
         let places = seeds.flat_map(|seed| places(&contest, &shape, SIZE, PREDICTION, seed));
         let places = places.collect();
-        Self { mesh, tree: tree(&scaled, LayerPlan::SBBK), shape, places }
+        Self { mesh, tree: tree(&scaled, Some(LayerPlan::SBBK)), shape, places }
     }
 
     fn row(&self, study: &'static str, backend: impl ToString) -> Row {
