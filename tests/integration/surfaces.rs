@@ -406,8 +406,8 @@ fn answers_without_trees_are_those_with_trees() {
     assert!(count > 100, "{count} contacts without trees");
 }
 
-/// Meshes of more than 8192 triangles, registered and not. Would catch a large mesh that is looked at
-/// as a whole in the midst of a step, one that is registered and not known as a solid, and edges
+/// Meshes of more than 8192 triangles, registered and not, and a small one. Would catch a large mesh that is
+/// looked at as a whole in the midst of a step, one that is registered and not known as a solid, and edges
 /// within a large surface that count.
 #[test]
 fn large_meshes_are_solids_if_they_are_registered() {
@@ -430,6 +430,27 @@ fn large_meshes_are_solids_if_they_are_registered() {
     assert_along(&fresh(&knowing, &sunk), Vector::Y, 1e-3);
     let [found, all] = [fresh(&unaware, &sunk), fresh(&per_triangle(), &sunk)];
     assert!(!found.is_empty() && found.len() < all.len());
+}
+
+/// Would catch two large meshes that lock into each other as nobody has registered them, and memory of the
+/// pair that has a part in it.
+#[test]
+fn large_meshes_are_solids_to_each_other() {
+    let slab = SharedShape::new(shape(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 40)));
+    let ground = slab.as_trimesh().unwrap();
+    let (unaware, knowing) = (every(), every());
+    let _tree = knowing.prepare_shape(&slab).unwrap().unwrap();
+    let mut pair = Pair::default();
+    for step in 0..12 {
+        let turn = Quat::from_rotation_y(0.3 + 0.01 * step as Real);
+        let sunk = Vec3::new(0.1, 0.99 - 0.004 * step as Real, 0.2);
+        let query = Query::new(ground, ground, Pose::from_parts(sunk, turn));
+        let expected = fresh(&knowing, &query);
+        assert!(!expected.is_empty());
+        assert_eq!(bits(&fresh(&unaware, &query)), bits(&expected), "{step}");
+        assert_eq!(bits(&pair.ask(&unaware, &query).manifolds), bits(&expected), "{step}");
+    }
+    assert_eq!((unaware.stats().solids, unaware.stats().trees), (1, 0));
 }
 
 /// Would catch a pair in contact whose mesh turns into a solid as it is registered.

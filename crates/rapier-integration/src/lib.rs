@@ -77,9 +77,10 @@
 //! * Surfaces that cross never stay without a contact.
 //!
 //! What a mesh bounds is found when it first meets another mesh, in about a third of the time that a
-//! tree takes. It is never looked for in a mesh of more than 8192 triangles that is not
-//! [registered](SbbkDispatcher::prepare_shape): such a mesh is a sheet, of which the neighbours of
-//! triangles are found where it is touched. [`PreparedTree::bounds`] says what a mesh bounds where
+//! tree takes. In a mesh of more than 8192 triangles that is not
+//! [registered](SbbkDispatcher::prepare_shape) it is looked for where it meets another such mesh, and
+//! never in one of more than 131,072. Else such a mesh is a sheet, of which the neighbours of triangles
+//! are found where it is touched. [`PreparedTree::bounds`] says what a mesh bounds where
 //! SBBK would think otherwise; [`SbbkStats`] counts the kinds.
 //!
 //! Of a rigid mesh and a convex shape, contacts at edges within the surface are along the normal of the

@@ -78,8 +78,9 @@ impl KnownMesh {
         change
     }
 
-    /// What is known of a mesh that [`update`](Self::update) has seen: what all pairs share of it, if
-    /// it is small or registered, with its tree if that is there or can be had at once.
+    /// What is known of a mesh that [`update`](Self::update) has seen and that meets one of so many
+    /// triangles: what all pairs share of it, [if that may be looked for](TreeCache::is_whole) or it is
+    /// registered, with its tree if that is there or can be had at once.
     ///
     /// The first query does not look for the tree of a mesh that is not registered: to tell which mesh
     /// it is takes a hash of all of it, 40 % of a query of two meshes of some 1000 triangles that finds
@@ -87,23 +88,25 @@ impl KnownMesh {
     pub(crate) fn look_up<'a>(
         &'a mut self,
         mesh: &'a TriMesh,
+        other_count: usize,
         cache: &'a Arc<TreeCache>,
     ) -> Option<Known<'a>> {
-        self.look(mesh, cache, true)
+        self.look(mesh, other_count, cache, true)
     }
 
-    /// The same for a pair that has no use for a tree.
+    /// The same of a mesh that meets none, and has no use for a tree.
     pub(crate) fn look_around<'a>(
         &'a mut self,
         mesh: &'a TriMesh,
         cache: &'a Arc<TreeCache>,
     ) -> Option<MeshSurface<'a>> {
-        Some(self.look(mesh, cache, false)?.surface)
+        Some(self.look(mesh, 0, cache, false)?.surface)
     }
 
     fn look<'a>(
         &'a mut self,
         mesh: &'a TriMesh,
+        other_count: usize,
         cache: &'a Arc<TreeCache>,
         wants_tree: bool,
     ) -> Option<Known<'a>> {
@@ -122,11 +125,11 @@ impl KnownMesh {
                         Some(registered)
                     }
                     None if is_first => {
-                        *is_whole = cache.is_small(mesh);
+                        *is_whole = cache.is_whole(mesh, other_count);
                         None
                     }
                     None if !wants_tree => None,
-                    None if *is_whole => Some(cache.know(mesh)),
+                    None if cache.is_small(mesh) => Some(cache.know(mesh)),
                     None => cache.recognise(mesh),
                 };
                 *entry = found.map(OnceLock::from).unwrap_or_default();
@@ -156,7 +159,7 @@ pub(crate) struct Known<'a> {
 
 /// How the triangles of a mesh hang together.
 pub(crate) enum MeshSurface<'a> {
-    /// Of the mesh as a whole, found when it is needed. The same for all pairs and queries.
+    /// Of the mesh as a whole, found when it is needed.
     Whole { entry: &'a OnceLock<PreparedRef>, cache: &'a Arc<TreeCache> },
     /// Where it is met, of a mesh that is too large to be looked at unasked. It is no solid.
     Near(NearTwins<'a>),
@@ -214,23 +217,31 @@ mod tests {
         }
     }
 
-    /// Would catch a large mesh that is looked at as a whole unasked, or is not though it is
-    /// registered, and one that is taken for a solid where only its neighbourhood is known.
+    /// Would catch a large mesh that is looked at as a whole unasked where small ones meet it, or is not
+    /// though it is registered or meets one as large, and one that is taken for a solid where only its
+    /// neighbourhood is known.
     #[test]
-    fn large_meshes_are_whole_if_they_are_registered() {
+    fn large_meshes_are_whole_if_they_are_registered_or_meet_large_ones() {
         let cache = Arc::new(TreeCache::new(BuildOptions::default(), 0));
-        let shape = SharedShape::new(mesh(100, TriMeshFlags::empty()));
-        let mesh = shape.as_trimesh().unwrap();
-        assert!(mesh.indices().len() > Credit::MOST as usize);
-        let surface_is_solid = || {
+        let shapes = [100, 260].map(|rows| SharedShape::new(mesh(rows, TriMeshFlags::empty())));
+        let meshes = shapes.each_ref().map(|shape| shape.as_trimesh().unwrap());
+        let [large, larger] = meshes;
+        let [count, larger_count] = meshes.map(|mesh| mesh.indices().len());
+        assert!(count > Credit::MOST as usize && larger_count > TreeCache::LARGEST_WHOLE);
+        let surface_is_solid = |mesh: &TriMesh, other_count| {
             let mut known = KnownMesh::default();
             known.update(&Hierarchy::new(mesh, MeshToken::of(mesh), 0, false));
-            let known = known.look_up(mesh, &cache).unwrap();
+            let known = known.look_up(mesh, other_count, &cache).unwrap();
             let is_whole = matches!(known.surface, MeshSurface::Whole { .. });
             (is_whole, known.surface.around(mesh).is_solid)
         };
-        assert_eq!(surface_is_solid(), (false, false));
-        let _registered = cache.register(&shape, mesh).unwrap();
-        assert_eq!(surface_is_solid(), (true, true));
+        let small = Credit::MOST as usize;
+        assert_eq!(surface_is_solid(large, small), (false, false));
+        assert_eq!(surface_is_solid(large, small + 1), (true, true));
+        assert_eq!(surface_is_solid(larger, larger_count), (false, false));
+        for (shape, mesh) in shapes.iter().zip(meshes) {
+            let _registered = cache.register(shape, mesh).unwrap();
+            assert_eq!(surface_is_solid(mesh, 0), (true, true));
+        }
     }
 }

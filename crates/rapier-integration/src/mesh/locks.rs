@@ -27,7 +27,7 @@ fn pairs_that_have_their_trees_take_no_lock() {
     // The first query does not look for it.
     for has_tree in [false, true] {
         known.update(&cache.look_at(&mesh).expect("it is finite"));
-        let found = known.look_up(&mesh, &cache).expect("it is rigid");
+        let found = known.look_up(&mesh, 0, &cache).expect("it is rigid");
         assert_eq!(found.tree.is_some(), has_tree);
     }
 
@@ -38,7 +38,7 @@ fn pairs_that_have_their_trees_take_no_lock() {
         for _ in 0..20 {
             assert!(same.look_at(&broken).is_none() && same.look_at(&soft).is_some());
             known.update(&same.look_at(&mesh).expect("it is finite"));
-            assert!(known.look_up(&mesh, &same).is_some_and(|known| known.tree.is_some()));
+            assert!(known.look_up(&mesh, 0, &same).is_some_and(|known| known.tree.is_some()));
         }
         // To drop what is known takes the lock.
         let _ = done.send(known);

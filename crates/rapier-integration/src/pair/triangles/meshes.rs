@@ -71,7 +71,8 @@ impl<'a> Pair for MeshPair<'a> {
         let change = known1.update(mesh1).max(known2.update(mesh2));
         let are_rigid = mesh1.is_rigid() && mesh2.is_rigid();
         let known = if are_rigid {
-            [known1.look_up(mesh1.mesh, cache), known2.look_up(mesh2.mesh, cache)]
+            let [count1, count2] = [mesh1, mesh2].map(|mesh| mesh.mesh.indices().len());
+            [known1.look_up(mesh1.mesh, count2, cache), known2.look_up(mesh2.mesh, count1, cache)]
         } else {
             [None, None]
         };
