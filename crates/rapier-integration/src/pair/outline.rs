@@ -18,12 +18,26 @@ const SAME_NORMAL: Real = 0.99;
 /// The same for what is [far](PatchPlan::far).
 const SAME_FAR_NORMAL: Real = 0.97;
 
+/// The same for what is [over](PatchPlan::over) a contact. Higher: a pile of 200 heads at rest has more
+/// points, 8 % with 0.97.
+const SAME_NORMAL_OVER: Real = 0.9;
+
+/// [`PatchPlan::over`] as a share of the prediction distance. Higher: that pile has 2035 points in place of
+/// 1949 (0.25), or 2143 (0.4). Without: 2624, most of which carry nothing. Lower: not tried.
+const OVER: Real = 0.1;
+
 /// How patches are made of contacts.
 #[derive(Copy, Clone, Debug)]
 pub(crate) struct PatchPlan {
     /// Contacts that are farther than this are of the direction of a nearer one, or of each other, if their
     /// normals are not far from its.
     far: Real,
+    /// Contacts that are farther than this are of the direction of one that touches near them, if their
+    /// normals are not too far from its: bodies that slide or roll from there meet others. (Where nothing need
+    /// touch: of two gears at 5 rad/s teeth pass each other by 0.05 rad, as contacts of one direction are not
+    /// there yet and those of the next are left out. Not of bodies as small as the prediction distance: on a tray
+    /// they gain 0.013 of their energy.)
+    over: Real,
     /// Contacts that are less than this farther than the deepest one of their direction carry as it
     /// does.
     level: Real,
@@ -58,6 +72,7 @@ impl PatchPlan {
     /// to Rapier's solver with more than four points it leaves one point.
     pub(super) const FAR: Self = Self {
         far: Real::INFINITY,
+        over: Real::INFINITY,
         level: Real::INFINITY,
         size: Real::INFINITY,
         one_normal: -1.0,
@@ -68,9 +83,10 @@ impl PatchPlan {
     pub(super) fn new(prediction: Real, radius: Real) -> Self {
         let near = 0.1 * radius;
         let reach = if prediction > 0.0 { prediction.min(near) } else { near };
+        let over = if prediction < near { OVER * prediction } else { Real::INFINITY };
         let size = PATCH_SIZE * radius;
         let same_point = SAME_POINT * size;
-        Self { far: near, level: LEVEL * reach, size, one_normal: ONE_NORMAL, same_point }
+        Self { far: near, over, level: LEVEL * reach, size, one_normal: ONE_NORMAL, same_point }
     }
 }
 
@@ -151,8 +167,15 @@ impl Patches {
         for Member { outline, patch, .. } in &mut *members {
             let is_far = outline.distance > plan.far;
             let same_normal = if is_far { SAME_FAR_NORMAL } else { SAME_NORMAL };
+            let is_over = |opener: &Outline| {
+                outline.distance > plan.over
+                    && opener.distance <= 0.0
+                    && opener.point.distance(outline.point) <= plan.size
+            };
             let is_like = |opener: &Outline| {
-                opener.part == outline.part && opener.normal.dot(outline.normal) >= same_normal
+                let cosine = opener.normal.dot(outline.normal);
+                opener.part == outline.part
+                    && (cosine >= same_normal || cosine >= SAME_NORMAL_OVER && is_over(opener))
             };
             *patch = first_or_new(openers, 0, is_like, outline);
         }
@@ -252,8 +275,14 @@ mod tests {
         patches.members.iter().map(|member| (member.contact, member.patch)).collect()
     }
 
-    const PLAN: PatchPlan =
-        PatchPlan { far: 1.0, level: 0.01, size: 1.0, one_normal: ONE_NORMAL, same_point: 0.0 };
+    const PLAN: PatchPlan = PatchPlan {
+        far: 1.0,
+        over: 0.3,
+        level: 0.01,
+        size: 1.0,
+        one_normal: ONE_NORMAL,
+        same_point: 0.0,
+    };
 
     fn outline(x: Real, distance: Real) -> Outline {
         let point = Vec3::new(x, 0.0, 0.0);
@@ -292,10 +321,18 @@ mod tests {
         };
         assert_eq!(patches(&[outline(0.0, -0.1), turned(8.0)], PLAN), [(0, 0), (1, 0)]);
         assert_eq!(patches(&[outline(0.0, -0.1), turned(8.2)], PLAN), [(0, 0), (1, 1)]);
+        // What is over one that touches is of its direction up to 25 degrees off, if it is near.
+        let over = |distance: Real, touching: Real, x: Real| {
+            let over = Outline { point: Vec3::new(x, 0.0, 0.0), distance, ..turned(25.0) };
+            patches(&[outline(0.0, touching), over], PLAN)[1].1 == 0
+        };
+        assert!(over(0.4, 0.0, 0.9));
+        assert!(!over(0.2, 0.0, 0.9) && !over(0.4, 0.1, 0.9) && !over(0.4, 0.0, 1.1));
         // What is far is of a direction up to 14 degrees off, and spared there.
         let is_kept = |degrees: Real| {
             let four = [0.0, 1.0, 2.0, 3.0].map(|x| outline(x, -0.1));
-            let far = Outline { distance: 1.1, ..turned(degrees) };
+            let point = Vec3::new(-2.0, 0.0, 0.0);
+            let far = Outline { point, distance: 1.1, ..turned(degrees) };
             let kept = patches(&[&four[..], &[far]].concat(), PLAN);
             kept.iter().any(|(contact, _)| *contact == 4)
         };
