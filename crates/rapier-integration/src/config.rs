@@ -39,7 +39,8 @@ pub enum ContactDetail {
     /// Rapier's solver would take one.
     Every,
     /// A few manifolds for two shapes: of each direction up to four points, the outermost ones that
-    /// carry, and others as deep that are far from these. They are chosen before they are made; the
+    /// carry, and others as deep that are far from these; what hangs beside one that touches is of its
+    /// direction if it leans less than 26 degrees from it. They are chosen before they are made; the
     /// deepest point is always among them. Bodies come to rest sooner than on every contact, of which
     /// Rapier's solver takes four by their spread alone. For exact contacts of rigid meshes; pairs of
     /// which one may deform have every contact, and so do balls, and convex shapes on meshes with
