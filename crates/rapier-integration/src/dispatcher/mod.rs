@@ -188,7 +188,8 @@ impl PreparedTree {
     /// Says what the mesh bounds, where SBBK would take it for something else: a vase with a narrow
     /// neck for a solid, a mask for a sheet ([`InsideOut`](SurfaceKind::InsideOut) is met as a sheet). For
     /// all meshes with this content, as long as one of them is in use; of more than 8192 triangles it takes
-    /// [`prepare_shape`](SbbkDispatcher::prepare_shape), as others are sheets to smaller meshes. Say it before the mesh meets another, and once: false if something else was said before.
+    /// [`prepare_shape`](SbbkDispatcher::prepare_shape), as others are sheets to smaller meshes. Say it
+    /// before the mesh meets another, and once: false if something else was said before.
     pub fn bounds(&self, kind: SurfaceKind) -> bool {
         self.tree.settle_kind(kind)
     }

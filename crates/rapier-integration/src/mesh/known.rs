@@ -94,7 +94,7 @@ impl KnownMesh {
         self.look(mesh, other_count, cache, true)
     }
 
-    /// The same of a mesh that meets none, and has no use for a tree.
+    /// The same of a mesh that meets no other mesh, and has no use for a tree.
     pub(crate) fn look_around<'a>(
         &'a mut self,
         mesh: &'a TriMesh,

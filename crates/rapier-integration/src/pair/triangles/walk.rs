@@ -86,8 +86,8 @@ fn walk_larger(
         let is_first_enough = |_| ControlFlow::Break(());
         many.len() < FEW || mesh2.near(|node| meets(&group, node), is_first_enough).is_break()
     };
-    let fours = near1.chunks(MANY).filter(is_near).flat_map(|many| many.chunks(BATCH));
-    let _ = { fours }.try_for_each(|triangles| {
+    let mut fours = near1.chunks(MANY).filter(is_near).flat_map(|many| many.chunks(BATCH));
+    let _ = fours.try_for_each(|triangles| {
         let batch1 = LeafBatch::gather(triangles, |triangle| mesh1.corners(triangle));
         let group = in_frame2.of(mesh1.tested(triangles));
         let mut decide = |near2: &[u32]| {
