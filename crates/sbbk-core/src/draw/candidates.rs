@@ -8,7 +8,6 @@ use super::{CANDIDATES, Colour};
 use crate::leaf::LeafTest;
 use crate::traverse::{Descent, DescentScratch, PairFrame, Verdict, Visitor, descend};
 use crate::tree::{LeafBatch, Tree};
-use crate::volumes::{DirectionSet, Directions};
 
 /// Draws the candidates of a query: the triangles of two meshes, at these poses, that volumes and
 /// leaf tests do not show to be farther apart than `margin`. Each once, as three lines.
@@ -25,14 +24,12 @@ use crate::volumes::{DirectionSet, Directions};
 /// assert_eq!(lines, 3 * (3 + 3));
 /// # Ok::<(), sbbk_core::tree::BuildError>(())
 /// ```
-pub fn candidates<const AXES: usize>(
-    trees: (&Tree<AXES>, &Tree<AXES>),
+pub fn candidates(
+    trees: (&Tree, &Tree),
     poses: [&Pose3; 2],
     margin: f32,
     mut line: impl FnMut(Vec3, Vec3, Colour),
-) where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+) {
     let mut frame = PairFrame::new(trees.0, trees.1, &poses[0].inv_mul(poses[1]), margin);
     let mut found = Candidates { test: LeafTest::new(&frame), sides: Default::default() };
     let scratch = &mut DescentScratch::default();

@@ -24,7 +24,7 @@ use std::f32::consts::TAU;
 use glamx::{Pose3, Vec3};
 
 use crate::tree::Tree;
-use crate::volumes::{Aabb, DirectionSet, Directions, Kdop, Sphere};
+use crate::volumes::{Aabb, Kdop, Sphere, directions};
 use polytope::edges;
 
 pub use candidates::candidates;
@@ -48,14 +48,7 @@ const CIRCLE_LINES: u32 = 32;
 
 /// Draws the volumes of the nodes at `depth`, and of leaves above it: together they hold the whole
 /// mesh, which is at `pose`. The root, at depth 0, is drawn as its sphere if it has one.
-pub fn layer<const AXES: usize>(
-    tree: &Tree<AXES>,
-    depth: u32,
-    pose: &Pose3,
-    mut line: impl FnMut(Vec3, Vec3, Colour),
-) where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+pub fn layer(tree: &Tree, depth: u32, pose: &Pose3, mut line: impl FnMut(Vec3, Vec3, Colour)) {
     let mut draw = |a, b, colour| line(pose * a, pose * b, colour);
     let mut nodes = vec![tree.root()];
     while let Some(node) = nodes.pop() {
@@ -90,9 +83,6 @@ pub fn aabb(aabb: &Aabb, line: impl FnMut(Vec3, Vec3)) {
 }
 
 /// Draws the edges of a k-DOP. Nothing, if it is empty.
-pub fn kdop<const AXES: usize>(kdop: &Kdop<AXES>, line: impl FnMut(Vec3, Vec3))
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
-    edges(&<Directions<AXES> as DirectionSet<AXES>>::DIRECTIONS, &kdop.min, &kdop.max, line);
+pub fn kdop(kdop: &Kdop, line: impl FnMut(Vec3, Vec3)) {
+    edges(&directions::DIRECTIONS, &kdop.min, &kdop.max, line);
 }

@@ -11,7 +11,6 @@ use super::options::FrontOptions;
 use super::policy::Policy;
 use crate::traverse::{Counters, Descent, DescentScratch, PairFrame, Verdict, Visitor, descend};
 use crate::tree::{LeafBatch, Tree};
-use crate::volumes::{DirectionSet, Directions};
 
 /// An adaptive front is built anew when it has more than this many times the cells that it was
 /// built with, and [`SPARE_CELLS`]: its bound. Lower: more fresh descents for pairs that close in.
@@ -89,16 +88,14 @@ impl Front {
     /// Of the visitor, only [`Visitor::leaves`] is called, as the pairs above are not visited; it
     /// may stop. A pose or margin that is not finite finds nothing, and the next query starts at
     /// the roots.
-    pub fn visit<const AXES: usize, V: Visitor, C: Counters>(
+    pub fn visit<V: Visitor, C: Counters>(
         &mut self,
-        trees: (&Tree<AXES>, &Tree<AXES>),
-        frame: &mut PairFrame<AXES>,
+        trees: (&Tree, &Tree),
+        frame: &mut PairFrame,
         scratch: &mut DescentScratch,
         mut counters: C,
         visitor: &mut V,
-    ) where
-        Directions<AXES>: DirectionSet<AXES>,
-    {
+    ) {
         self.stats.queries += 1;
         self.check(trees);
         if !frame.placement().is_finite() || frame.margin().is_nan() {
@@ -137,7 +134,7 @@ impl Front {
     }
 
     /// Clears the front if it cannot be one of these trees.
-    fn check<const AXES: usize>(&mut self, (tree1, tree2): (&Tree<AXES>, &Tree<AXES>)) {
+    fn check(&mut self, (tree1, tree2): (&Tree, &Tree)) {
         let sizes = [
             tree1.node_count(),
             tree2.node_count(),

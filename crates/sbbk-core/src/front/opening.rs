@@ -5,7 +5,6 @@ use wide::f32x4;
 use crate::simd::{Inner, Outer, Same};
 use crate::traverse::{Counters, PairFrame, Side, Sides};
 use crate::tree::{Link, Slot, Tree};
-use crate::volumes::{DirectionSet, Directions};
 
 /// A pair of nodes.
 pub(super) type SlotPair = (Slot, Slot);
@@ -50,21 +49,14 @@ pub(super) trait PairTest {
 }
 
 /// Two trees at a pose.
-pub(super) struct TreePair<'a, C, const AXES: usize> {
-    trees: (&'a Tree<AXES>, &'a Tree<AXES>),
-    frame: &'a mut PairFrame<AXES>,
+pub(super) struct TreePair<'a, C> {
+    trees: (&'a Tree, &'a Tree),
+    frame: &'a mut PairFrame,
     counters: C,
 }
 
-impl<'a, C: Counters, const AXES: usize> TreePair<'a, C, AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
-    pub(super) fn new(
-        trees: (&'a Tree<AXES>, &'a Tree<AXES>),
-        frame: &'a mut PairFrame<AXES>,
-        counters: C,
-    ) -> Self {
+impl<'a, C: Counters> TreePair<'a, C> {
+    pub(super) fn new(trees: (&'a Tree, &'a Tree), frame: &'a mut PairFrame, counters: C) -> Self {
         Self { trees, frame, counters }
     }
 
@@ -82,10 +74,7 @@ where
     }
 }
 
-impl<C: Counters, const AXES: usize> PairTest for TreePair<'_, C, AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+impl<C: Counters> PairTest for TreePair<'_, C> {
     fn roots(&self) -> Opening {
         self.opening((Slot::ROOT.node(), Slot::ROOT.node()), Sides::Both, 0, 0b0001)
     }

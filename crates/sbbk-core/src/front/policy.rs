@@ -23,7 +23,7 @@ pub(super) struct Policy {
 
 impl Policy {
     /// Whether to build a front, after a motion of `step` since the query before.
-    pub(super) fn builds<const AXES: usize>(&mut self, step: f64, tree2: &Tree<AXES>) -> bool {
+    pub(super) fn builds(&mut self, step: f64, tree2: &Tree) -> bool {
         let slow = self.slow.get_or_insert_with(|| {
             // The leaves of a surface of 4π·r², each about square.
             let leaf = f64::from(tree2.bounding_ball().radius)

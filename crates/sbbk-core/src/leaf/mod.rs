@@ -29,7 +29,7 @@ pub struct LeafTest {
 
 impl LeafTest {
     /// For the pose and margin of `frame`.
-    pub fn new<const AXES: usize>(frame: &PairFrame<AXES>) -> Self {
+    pub fn new(frame: &PairFrame) -> Self {
         Self { frame: LeafFrame::new(frame), beside: None }
     }
 

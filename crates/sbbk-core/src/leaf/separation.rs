@@ -68,7 +68,7 @@ pub(super) struct LeafFrame {
 }
 
 impl LeafFrame {
-    pub(super) fn new<const AXES: usize>(frame: &PairFrame<AXES>) -> Self {
+    pub(super) fn new(frame: &PairFrame) -> Self {
         Self::at(frame.placement()).with_margin(frame.margin(), frame.rounding[0])
     }
 

@@ -7,7 +7,6 @@
 
 use crate::traverse::Placement;
 use crate::tree::Tree;
-use crate::volumes::{DirectionSet, Directions};
 
 use super::contacts::contacts;
 use super::nearest::{Goal, nearest, search_besides};
@@ -49,9 +48,9 @@ pub trait PartPair: Copy {
 }
 
 /// Two meshes, with the memory to search them.
-pub struct Meshes<'a, const AXES: usize> {
+pub struct Meshes<'a> {
     /// The trees of mesh 1 and mesh 2.
-    pub trees: (&'a Tree<AXES>, &'a Tree<AXES>),
+    pub trees: (&'a Tree, &'a Tree),
     /// Memory of the search.
     pub scratch: &'a mut SearchScratch,
 }
@@ -66,10 +65,7 @@ impl PartPair for FoundPair {
     }
 }
 
-impl<const AXES: usize> Bodies for Meshes<'_, AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+impl Bodies for Meshes<'_> {
     type Pair = FoundPair;
 
     fn nearest(

@@ -19,7 +19,6 @@ use crate::contact::{TriangleContact, contact};
 use crate::traverse::{Cutoff, PairFrame, Placement};
 use crate::tree::{LeafBatch, Tree};
 use crate::volumes::rounding::gamma;
-use crate::volumes::{DirectionSet, Directions};
 
 use super::seek::{Bounds, FOUND, SearchScratch, seek};
 use super::sweep::Sweep;
@@ -60,16 +59,13 @@ const STEP_LIMIT: usize = 100;
 /// The first impact of mesh 2, placed at `placement` in the frame of mesh 1 and moving by
 /// `velocity` there; `None` if there is none until `options.max_time`, or if a number is NaN or
 /// infinite.
-pub fn cast<const AXES: usize>(
-    trees: (&Tree<AXES>, &Tree<AXES>),
+pub fn cast(
+    trees: (&Tree, &Tree),
     placement: Placement,
     velocity: Vec3,
     options: CastOptions,
     scratch: &mut SearchScratch,
-) -> Option<Cast>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+) -> Option<Cast> {
     let CastOptions { max_time, target_distance, .. } = options;
     let is_possible = max_time >= 0.0 && target_distance >= 0.0 && target_distance.is_finite();
     if !is_possible || !velocity.is_finite() || !placement.is_finite() {
@@ -97,8 +93,8 @@ where
     search.found
 }
 
-struct CastSearch<'a, const AXES: usize> {
-    sweep: Sweep<'a, AXES>,
+struct CastSearch<'a> {
+    sweep: Sweep<'a>,
     placement: Placement,
     velocity: DVec3,
     options: CastOptions,
@@ -107,7 +103,7 @@ struct CastSearch<'a, const AXES: usize> {
     found: Option<Cast>,
 }
 
-impl<const AXES: usize> CastSearch<'_, AXES> {
+impl CastSearch<'_> {
     fn triangles(&mut self, one: LeafTriangle<'_>, two: LeafTriangle<'_>) {
         let pair = TrianglePair::new(&self.placement, one.corners(), two.corners());
         let target = f64::from(self.options.target_distance);
@@ -198,11 +194,8 @@ impl TriangleCast<'_> {
     }
 }
 
-impl<'a, const AXES: usize> Bounds<AXES> for CastSearch<'a, AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
-    type Compare = Sweep<'a, AXES>;
+impl<'a> Bounds for CastSearch<'a> {
+    type Compare = Sweep<'a>;
 
     #[inline(always)]
     fn compare(&mut self) -> &mut Self::Compare {

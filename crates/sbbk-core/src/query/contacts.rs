@@ -5,7 +5,6 @@ use crate::leaf::LeafTest;
 use crate::traverse::{Descent, PairFrame, Placement, Verdict, Visitor, descend};
 use crate::tree::{LeafBatch, Tree};
 use crate::volumes::rounding::gamma;
-use crate::volumes::{DirectionSet, Directions};
 
 use super::seek::SearchScratch;
 use super::triangles::{FoundPair, LeafTriangle, TrianglePair};
@@ -19,15 +18,13 @@ use super::triangles::{FoundPair, LeafTriangle, TrianglePair};
 ///
 /// For the points of a manifold see [`clip`](crate::contact::clip); for one pair out of all,
 /// [`nearest`](super::nearest()) is much faster.
-pub fn contacts<const AXES: usize>(
-    trees: (&Tree<AXES>, &Tree<AXES>),
+pub fn contacts(
+    trees: (&Tree, &Tree),
     placement: Placement,
     margin: f64,
     scratch: &mut SearchScratch,
     found: impl FnMut(FoundPair),
-) where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+) {
     if !placement.is_finite() || !(0.0..).contains(&margin) {
         return;
     }

@@ -8,16 +8,12 @@ use wide::f32x4;
 use crate::simd::{Spread, dot};
 use crate::traverse::{Compare, PairFrame, Side, Sides, expand};
 use crate::tree::{LeafBatch, Slot, Tree};
-use crate::volumes::{DirectionSet, Directions};
 
 /// Down both trees from the roots, always to the children whose centres are nearest to each other.
-pub(super) fn near_leaves<'a, const AXES: usize>(
-    (tree1, tree2): (&'a Tree<AXES>, &'a Tree<AXES>),
-    frame: &PairFrame<AXES>,
-) -> (&'a LeafBatch, &'a LeafBatch)
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+pub(super) fn near_leaves<'a>(
+    (tree1, tree2): (&'a Tree, &'a Tree),
+    frame: &PairFrame,
+) -> (&'a LeafBatch, &'a LeafBatch) {
     let mut slots = (Slot::ROOT, Slot::ROOT);
     loop {
         let links = (tree1.link(slots.0), tree2.link(slots.1));
@@ -36,19 +32,16 @@ where
 }
 
 /// Compares nodes by the squared distance of their centres.
-struct Centres<'a, const AXES: usize>(&'a PairFrame<AXES>);
+struct Centres<'a>(&'a PairFrame);
 
-impl<const AXES: usize> Compare<AXES> for Centres<'_, AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+impl Compare for Centres<'_> {
     type Key = f32;
 
     #[inline(always)]
     fn compare(
         &mut self,
-        side1: &Side<'_, impl Spread, AXES>,
-        side2: &Side<'_, impl Spread, AXES>,
+        side1: &Side<'_, impl Spread>,
+        side2: &Side<'_, impl Spread>,
         lanes: u32,
     ) -> (u32, [f32; 4]) {
         let offset = self.0.along1(side1, side2, f32x4::ZERO).offset;

@@ -8,7 +8,6 @@ use crate::contact::contact;
 use crate::leaf::LeafTest;
 use crate::traverse::{OrderedOverlap, PairFrame, Placement};
 use crate::tree::{LeafBatch, Tree};
-use crate::volumes::{DirectionSet, Directions};
 
 use super::seek::{Bounds, FOUND, SearchScratch, seek};
 use super::triangles::{FoundPair, LeafTriangle, TrianglePair};
@@ -18,14 +17,11 @@ use super::triangles::{FoundPair, LeafTriangle, TrianglePair};
 ///
 /// Triangles touch up to 1e-12 of their size. As [`nearest`](super::nearest()) with a limit of
 /// zero, but for the choice among several pairs, and faster.
-pub fn meeting<const AXES: usize>(
-    trees: (&Tree<AXES>, &Tree<AXES>),
+pub fn meeting(
+    trees: (&Tree, &Tree),
     placement: Placement,
     scratch: &mut SearchScratch,
-) -> Option<FoundPair>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+) -> Option<FoundPair> {
     if !placement.is_finite() {
         return None;
     }
@@ -37,14 +33,14 @@ where
     search.found
 }
 
-struct MeetingSearch<'a, const AXES: usize> {
-    overlap: OrderedOverlap<'a, AXES>,
+struct MeetingSearch<'a> {
+    overlap: OrderedOverlap<'a>,
     placement: Placement,
     test: LeafTest,
     found: Option<FoundPair>,
 }
 
-impl<const AXES: usize> MeetingSearch<'_, AXES> {
+impl MeetingSearch<'_> {
     fn triangles(&mut self, one: LeafTriangle<'_>, two: LeafTriangle<'_>) {
         if self.found.is_some() {
             return;
@@ -57,11 +53,8 @@ impl<const AXES: usize> MeetingSearch<'_, AXES> {
     }
 }
 
-impl<'a, const AXES: usize> Bounds<AXES> for MeetingSearch<'a, AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
-    type Compare = OrderedOverlap<'a, AXES>;
+impl<'a> Bounds for MeetingSearch<'a> {
+    type Compare = OrderedOverlap<'a>;
 
     #[inline(always)]
     fn compare(&mut self) -> &mut Self::Compare {

@@ -6,7 +6,6 @@ use crate::contact::contact;
 use crate::leaf::LeafTest;
 use crate::traverse::{Cutoff, GapCounts, PairFrame, Placement, SignedGaps, Toward};
 use crate::tree::{LeafBatch, Tree};
-use crate::volumes::{DirectionSet, Directions};
 
 use super::guess::near_leaves;
 use super::seek::{Bounds, FOUND, SearchScratch, seek};
@@ -27,42 +26,33 @@ pub(super) enum Goal {
 ///
 /// Triangles touch up to 1e-12 of their size. With a limit of zero this is the test whether the
 /// surfaces meet; [`meeting`](super::meeting()) is faster.
-pub fn nearest<const AXES: usize>(
-    trees: (&Tree<AXES>, &Tree<AXES>),
+pub fn nearest(
+    trees: (&Tree, &Tree),
     placement: Placement,
     limit: f64,
     scratch: &mut SearchScratch,
-) -> Option<FoundPair>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+) -> Option<FoundPair> {
     search(trees, placement, limit, Goal::Nearest, scratch).0
 }
 
 /// As [`nearest`], but if several pairs touch or cross, the deepest.
-pub fn deepest<const AXES: usize>(
-    trees: (&Tree<AXES>, &Tree<AXES>),
+pub fn deepest(
+    trees: (&Tree, &Tree),
     placement: Placement,
     limit: f64,
     scratch: &mut SearchScratch,
-) -> Option<FoundPair>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+) -> Option<FoundPair> {
     search(trees, placement, limit, Goal::Deepest, scratch).0
 }
 
 /// The pair, and the work that it took.
-fn search<const AXES: usize>(
-    trees: (&Tree<AXES>, &Tree<AXES>),
+fn search(
+    trees: (&Tree, &Tree),
     placement: Placement,
     limit: f64,
     goal: Goal,
     scratch: &mut SearchScratch,
-) -> (Option<FoundPair>, GapCounts)
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+) -> (Option<FoundPair>, GapCounts) {
     // Not `min`: a limit that is NaN stays, and admits nothing.
     let some = some_distance(trees, &placement);
     let best = if some < limit { some } else { limit };
@@ -70,17 +60,14 @@ where
 }
 
 /// The same of all pairs of triangles but some, which are given in ascending order.
-pub(super) fn search_besides<const AXES: usize>(
-    trees: (&Tree<AXES>, &Tree<AXES>),
+pub(super) fn search_besides(
+    trees: (&Tree, &Tree),
     placement: Placement,
     best: f64,
     goal: Goal,
     besides: &[[u32; 2]],
     scratch: &mut SearchScratch,
-) -> (Option<FoundPair>, GapCounts)
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+) -> (Option<FoundPair>, GapCounts) {
     // Not `best < 0`: a limit that is NaN admits nothing.
     let admits = best >= 0.0;
     if !admits || !placement.is_finite() {
@@ -101,17 +88,14 @@ where
 }
 
 /// The distance of two vertices: the least is not above it.
-fn some_distance<const AXES: usize>(
-    (tree1, tree2): (&Tree<AXES>, &Tree<AXES>),
-    placement: &Placement,
-) -> f64 {
+fn some_distance((tree1, tree2): (&Tree, &Tree), placement: &Placement) -> f64 {
     let [vertex1, vertex2] = [tree1, tree2].map(|tree| tree.leaf(0).corners(0)[0]);
     let distance = placement.to_frame1(vertex2, vertex1).length();
     distance * (1.0 + 1.0e-9)
 }
 
-struct NearestSearch<'a, const AXES: usize> {
-    gaps: SignedGaps<'a, AXES>,
+struct NearestSearch<'a> {
+    gaps: SignedGaps<'a>,
     placement: Placement,
     test: LeafTest,
     goal: Goal,
@@ -122,10 +106,7 @@ struct NearestSearch<'a, const AXES: usize> {
     found: Option<FoundPair>,
 }
 
-impl<const AXES: usize> NearestSearch<'_, AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+impl NearestSearch<'_> {
     fn triangles(&mut self, one: LeafTriangle<'_>, two: LeafTriangle<'_>) {
         if self.gaps.cutoff.limit == FOUND {
             return;
@@ -163,11 +144,8 @@ where
     }
 }
 
-impl<'a, const AXES: usize> Bounds<AXES> for NearestSearch<'a, AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
-    type Compare = SignedGaps<'a, AXES>;
+impl<'a> Bounds for NearestSearch<'a> {
+    type Compare = SignedGaps<'a>;
 
     #[inline(always)]
     fn compare(&mut self) -> &mut Self::Compare {

@@ -6,12 +6,11 @@
 
 use crate::traverse::{Compare, DescentScratch, Sides, expand};
 use crate::tree::{LeafBatch, Slot, Tree};
-use crate::volumes::{DirectionSet, Directions};
 
 /// What is sought.
-pub(super) trait Bounds<const AXES: usize> {
+pub(super) trait Bounds {
     /// Finds lower bounds for pairs of nodes.
-    type Compare: Compare<AXES, Key = f32>;
+    type Compare: Compare<Key = f32>;
 
     /// What finds them.
     fn compare(&mut self) -> &mut Self::Compare;
@@ -41,13 +40,11 @@ struct Candidate {
 pub(super) const FOUND: f32 = f32::NEG_INFINITY;
 
 /// Goes through all pairs of leaves that may matter.
-pub(super) fn seek<const AXES: usize, B: Bounds<AXES>>(
-    (tree1, tree2): (&Tree<AXES>, &Tree<AXES>),
+pub(super) fn seek<B: Bounds>(
+    (tree1, tree2): (&Tree, &Tree),
     bounds: &mut B,
     scratch: &mut SearchScratch,
-) where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+) {
     let stack = &mut scratch.stack;
     stack.clear();
     stack.push(Candidate { key: f32::NEG_INFINITY, slots: (Slot::ROOT, Slot::ROOT) });

@@ -17,11 +17,10 @@ use wide::f32x4;
 use crate::simd::Spread;
 use crate::traverse::{Along, Compare, Cutoff, PairFrame, Side};
 use crate::volumes::rounding::gamma;
-use crate::volumes::{DirectionSet, Directions};
 
 /// Lower bounds of times of impact.
-pub(super) struct Sweep<'a, const AXES: usize> {
-    pub(super) frame: &'a mut PairFrame<AXES>,
+pub(super) struct Sweep<'a> {
+    pub(super) frame: &'a mut PairFrame,
     /// Of mesh 2 against mesh 1, in frame 1.
     pub(super) velocity: Vec3,
     /// One over the length of the velocity, not more; infinite if that is zero.
@@ -32,17 +31,10 @@ pub(super) struct Sweep<'a, const AXES: usize> {
     pub(super) cutoff: Cutoff,
 }
 
-impl<const AXES: usize> Sweep<'_, AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+impl Sweep<'_> {
     /// The earliest times, infinite where the nodes pass each other.
     #[inline(always)]
-    fn times(
-        &mut self,
-        side1: &Side<'_, impl Spread, AXES>,
-        side2: &Side<'_, impl Spread, AXES>,
-    ) -> f32x4 {
+    fn times(&mut self, side1: &Side<'_, impl Spread>, side2: &Side<'_, impl Spread>) -> f32x4 {
         let target = f32x4::splat(self.target);
         let apart = self.frame.signed_gaps(side1, side2) - target;
         let mut start = (apart * f32x4::splat(self.inverse_speed)).fast_max(f32x4::ZERO);
@@ -63,17 +55,14 @@ where
     }
 }
 
-impl<const AXES: usize> Compare<AXES> for Sweep<'_, AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+impl Compare for Sweep<'_> {
     type Key = f32;
 
     #[inline(always)]
     fn compare(
         &mut self,
-        side1: &Side<'_, impl Spread, AXES>,
-        side2: &Side<'_, impl Spread, AXES>,
+        side1: &Side<'_, impl Spread>,
+        side2: &Side<'_, impl Spread>,
         lanes: u32,
     ) -> (u32, [f32; 4]) {
         let times = self.times(side1, side2);

@@ -10,7 +10,7 @@ use super::{OrderedOverlap, PairFrame, Side, Toward};
 use crate::simd::{Inner, Outer, each};
 use crate::support::Random;
 use crate::tree::{BuildOptions, Children, Intervals, LayerPlan, Slot, Tree};
-use crate::volumes::{DirectionSet, Directions};
+use crate::volumes::{SLABS, directions};
 
 /// What was lost in the direction that matters, as a share of what is allowed.
 struct Loss {
@@ -63,13 +63,13 @@ impl Pair {
         PairFrame::new(&self.trees[0], &self.trees[1], &self.pos12, margin)
     }
 
-    fn children(&self) -> [Children<'_, 9>; 2] {
+    fn children(&self) -> [Children<'_>; 2] {
         let [one, two] = &self.trees;
         [one, two].map(|tree| tree.children(tree.link(Slot::ROOT).index()))
     }
 
     /// The children of both sides as a descent compares them.
-    fn sides(&self) -> (Side<'_, Outer, 9>, Side<'_, Inner, 9>) {
+    fn sides(&self) -> (Side<'_, Outer>, Side<'_, Inner>) {
         let [one, two] = self.children();
         (Side { children: one, spread: Outer }, Side { children: two, spread: Inner })
     }
@@ -78,7 +78,7 @@ impl Pair {
     fn corners(&self, lane: usize) -> [[DVec3; 3]; 2] {
         let placement = self.frame(0.0).placement;
         let [children1, children2] = self.children();
-        let leaf = |tree: &Tree, children: &Children<'_, 9>, child: usize| {
+        let leaf = |tree: &Tree, children: &Children<'_>, child: usize| {
             tree.leaf(children.links[child].index()).corners(0)
         };
         [
@@ -89,7 +89,7 @@ impl Pair {
 
     /// The gaps of the boxes in a lane along the axes of frame 1 and frame 2, and of the k-DOPs
     /// along all slabs of tree 1, in f64.
-    fn exact(&self, lane: usize) -> ([DVec3; 2], [f64; 9]) {
+    fn exact(&self, lane: usize) -> ([DVec3; 2], [f64; SLABS]) {
         let placement = self.frame(0.0).placement;
         let [children1, children2] = self.children();
         let read = |values: Intervals<'_, 3>, child: usize| {
@@ -107,15 +107,15 @@ impl Pair {
         ];
         let (kdops1, kdops2) = (children1.kdops.unwrap(), children2.kdops.unwrap());
         let slabs = std::array::from_fn(|slab| {
-            let direction = Directions::<9>::DIRECTIONS[slab].as_dvec3();
-            let at = |kdops: Intervals<'_, 9>, slab: usize, child: usize| {
+            let direction = directions::DIRECTIONS[slab].as_dvec3();
+            let at = |kdops: Intervals<'_, SLABS>, slab: usize, child: usize| {
                 let extent = f32::from(kdops.extent[slab][child]);
                 (f64::from(kdops.centre[slab][child]), f64::from(extent))
             };
             let (centre, mut reach) = at(kdops1, slab, lane >> 1);
             let mut offset = direction.dot(placement.translation) - centre;
             let seen = placement.rotation.transpose() * direction;
-            for (slab, coefficient) in Directions::<9>::correspondence(seen) {
+            for (slab, coefficient) in directions::correspondence(seen) {
                 let (centre, extent) = at(kdops2, slab, lane & 1);
                 offset += coefficient * centre;
                 reach += coefficient.abs() * extent;

@@ -1,10 +1,9 @@
-use glamx::Vec3;
 use wide::f32x4;
 
 use super::placement::Placement;
 use super::side::KdopSides;
 use crate::simd::{Spread, each};
-use crate::volumes::{DirectionSet, Directions};
+use crate::volumes::{SLABS, directions};
 
 /// For each slab direction of tree 1, three adjacent slabs of tree 2 that bound it: see
 /// [`DirectionSet::correspondence`].
@@ -12,11 +11,18 @@ use crate::volumes::{DirectionSet, Directions};
 /// In centre and half-length form, with `b` the direction in frame 2 and `o = d·t`: the projection
 /// of a node of tree 2 has the centre `o + Σ cᵢ·centreᵢ` and the half-length `Σ |cᵢ|·extentᵢ`.
 #[derive(Copy, Clone, Debug)]
-pub(super) struct Correspondence<const AXES: usize> {
-    slabs: [Slab; AXES],
+pub(super) struct Correspondence {
+    slabs: [Slab; SLABS],
     /// What a comparison of slabs may lose.
     rounding: f32,
 }
+
+/// `1/|d|` of each slab direction, rounded down.
+const INVERSE_LENGTHS: [f32; SLABS] = {
+    let mut inverse = [std::f32::consts::FRAC_1_SQRT_2; SLABS];
+    (inverse[0], inverse[1], inverse[2]) = (1.0, 1.0, 1.0);
+    inverse
+};
 
 /// Scalars, spread over lanes where they are used: a query sets these up once and may test few
 /// nodes.
@@ -37,21 +43,18 @@ struct Along {
     reach: f32x4,
 }
 
-impl<const AXES: usize> Correspondence<AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+impl Correspondence {
     /// `rounding` is that of the boxes in frame 1; slabs lose up to six times as much, see
     /// [`rounding`](crate::volumes::rounding).
     pub(super) fn new(placement: &Placement, margin: f32, rounding: f32) -> Self {
         let to_frame2 = placement.rotation.transpose();
         let axes = [to_frame2.x_axis, to_frame2.y_axis, to_frame2.z_axis];
-        let seen = Directions::<AXES>::project_components(axes);
-        let offsets = Directions::<AXES>::project_components(placement.translation.to_array());
-        let directions = <Directions<AXES> as DirectionSet<AXES>>::DIRECTIONS;
+        let seen = directions::project(axes);
+        let offsets = directions::project(placement.translation.to_array());
+        let directions = directions::DIRECTIONS;
         let rounding = 6.0 * rounding;
         let slabs = std::array::from_fn(|axis| {
-            let terms = Directions::<AXES>::correspondence(seen[axis]);
+            let terms = directions::correspondence(seen[axis]);
             let length = directions[axis].as_dvec3().length();
             let slack = f64::from(margin) * length + f64::from(rounding);
             Slab {
@@ -73,7 +76,7 @@ where
     #[inline(always)]
     pub(super) fn kdops_meet(
         &self,
-        sides: &KdopSides<'_, impl Spread, impl Spread, AXES>,
+        sides: &KdopSides<'_, impl Spread, impl Spread>,
         candidates: u32,
     ) -> u32 {
         let mut remaining = candidates;
@@ -92,15 +95,13 @@ where
     #[inline(always)]
     pub(super) fn gaps(
         &self,
-        sides: &KdopSides<'_, impl Spread, impl Spread, AXES>,
+        sides: &KdopSides<'_, impl Spread, impl Spread>,
         first: usize,
     ) -> f32x4 {
-        let inverse_lengths =
-            const { inverse_lengths(&<Directions<AXES> as DirectionSet<AXES>>::DIRECTIONS) };
         let mut largest = f32x4::splat(f32::NEG_INFINITY);
         for (axis, slab) in self.slabs.iter().enumerate().skip(first) {
             let Along { offset, reach } = slab.along(axis, self.rounding, sides);
-            let gap = (offset.abs() - reach) * f32x4::splat(inverse_lengths[axis]);
+            let gap = (offset.abs() - reach) * f32x4::splat(INVERSE_LENGTHS[axis]);
             largest = largest.fast_max(gap);
         }
         largest
@@ -110,11 +111,11 @@ where
 impl Slab {
     /// Along slab `axis` of tree 1, with reaches longer by `slack`.
     #[inline(always)]
-    fn along<const AXES: usize>(
+    fn along(
         &self,
         axis: usize,
         slack: f32,
-        sides: &KdopSides<'_, impl Spread, impl Spread, AXES>,
+        sides: &KdopSides<'_, impl Spread, impl Spread>,
     ) -> Along {
         let mut offset = f32x4::splat(self.offset) - sides.one.centre(axis);
         let mut reach = f32x4::splat(slack) + sides.one.extent(axis);
@@ -126,21 +127,4 @@ impl Slab {
         }
         Along { offset, reach }
     }
-}
-
-/// `1/|d|` of directions with components in {-1, 0, 1}, rounded down.
-const fn inverse_lengths<const AXES: usize>(directions: &[Vec3; AXES]) -> [f32; AXES] {
-    let mut inverse = [1.0; AXES];
-    let mut axis = 0;
-    while axis < AXES {
-        let d = directions[axis];
-        inverse[axis] = match (d.x * d.x + d.y * d.y + d.z * d.z) as u32 {
-            1 => 1.0,
-            // As f32 it is below 1/√2.
-            2 => std::f32::consts::FRAC_1_SQRT_2,
-            _ => 0.577_350_2,
-        };
-        axis += 1;
-    }
-    inverse
 }

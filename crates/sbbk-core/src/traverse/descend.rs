@@ -16,7 +16,6 @@ use super::side::Side;
 use super::visitor::{NodePair, Verdict, Visitor};
 use crate::simd::Same;
 use crate::tree::{Link, Slot, Tree};
-use crate::volumes::{DirectionSet, Directions};
 
 /// In which order the trees go down.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
@@ -41,16 +40,14 @@ pub struct DescentScratch {
 ///
 /// Finds every pair of triangles within the margin: volumes contain what is below them and tests
 /// are conservative, see [`PairFrame`]. The order of visits depends on the trees only.
-pub fn descend<const AXES: usize, V: Visitor, C: Counters>(
-    (tree1, tree2): (&Tree<AXES>, &Tree<AXES>),
-    frame: &mut PairFrame<AXES>,
+pub fn descend<V: Visitor, C: Counters>(
+    (tree1, tree2): (&Tree, &Tree),
+    frame: &mut PairFrame,
     descent: Descent,
     scratch: &mut DescentScratch,
     mut counters: C,
     visitor: &mut V,
-) where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+) {
     if tree1.sphere().is_some() && tree2.sphere().is_some() {
         counters.sphere_test();
         if !frame.spheres_meet(tree1, tree2) {

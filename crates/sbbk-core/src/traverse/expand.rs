@@ -3,7 +3,6 @@
 use super::side::Side;
 use crate::simd::{Inner, Outer, Same, Spread, each_bit};
 use crate::tree::{Link, Slot, Tree};
-use crate::volumes::{DirectionSet, Directions};
 
 /// Which sides of a pair go down.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -37,30 +36,28 @@ impl Sides {
 }
 
 /// How the children of two nodes are compared, up to four pairs at a time.
-pub(crate) trait Compare<const AXES: usize> {
+pub(crate) trait Compare {
     /// What is found about a pair.
     type Key: Copy;
 
     /// The lanes of `lanes` whose pairs matter, as a mask, and what is known about each lane.
     fn compare(
         &mut self,
-        side1: &Side<'_, impl Spread, AXES>,
-        side2: &Side<'_, impl Spread, AXES>,
+        side1: &Side<'_, impl Spread>,
+        side2: &Side<'_, impl Spread>,
         lanes: u32,
     ) -> (u32, [Self::Key; 4]);
 }
 
 /// Compares the pairs of children and hands on those that matter.
 #[inline(always)]
-pub(crate) fn expand<const AXES: usize, C: Compare<AXES>>(
-    (tree1, tree2): (&Tree<AXES>, &Tree<AXES>),
+pub(crate) fn expand<C: Compare>(
+    (tree1, tree2): (&Tree, &Tree),
     (slot1, slot2): (Slot, Slot),
     sides: Sides,
     compare: &mut C,
     mut push: impl FnMut((Slot, Slot), C::Key),
-) where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+) {
     let links = (tree1.link(slot1), tree2.link(slot2));
     let (node1, node2) = sides.nodes((slot1, slot2), links);
     let (children1, children2) = (tree1.children(node1), tree2.children(node2));

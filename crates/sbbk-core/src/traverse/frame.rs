@@ -7,7 +7,6 @@ use super::side::Side;
 use crate::simd::{Spread, V3, dot, each};
 use crate::tree::Tree;
 use crate::volumes::rounding::gamma;
-use crate::volumes::{DirectionSet, Directions};
 
 /// Everything about a pair of trees that depends on their relative pose and the margin: computed
 /// once a query, in f64, and spread over lanes.
@@ -15,7 +14,7 @@ use crate::volumes::{DirectionSet, Directions};
 /// Tests are conservative: they allow for [`rounding`](crate::volumes::rounding). At a pose that is
 /// not finite no test passes. Any finite margin will do.
 #[derive(Clone, Debug)]
-pub struct PairFrame<const AXES: usize = 9> {
+pub struct PairFrame {
     pub(crate) placement: Placement,
     margin: f32,
     /// What a comparison of boxes may lose, in frame 1 and in frame 2.
@@ -27,7 +26,7 @@ pub struct PairFrame<const AXES: usize = 9> {
     to_frame2: Rows,
     /// Computed when a descent first reaches k-DOPs in both trees: thousands of shallow pairs never
     /// do.
-    correspondence: Option<Correspondence<AXES>>,
+    correspondence: Option<Correspondence>,
 }
 
 /// What comparisons of boxes allow, in frame 1 and in frame 2.
@@ -101,19 +100,15 @@ impl Along {
     }
 }
 
-impl<const AXES: usize> PairFrame<AXES> {
+impl PairFrame {
     /// The frame of `tree2` at the pose `pos12` in the frame of `tree1`, as of [`at`](Self::at).
-    pub fn new(tree1: &Tree<AXES>, tree2: &Tree<AXES>, pos12: &Pose3, margin: f32) -> Self {
+    pub fn new(tree1: &Tree, tree2: &Tree, pos12: &Pose3, margin: f32) -> Self {
         Self::at((tree1, tree2), Placement::new(pos12), margin)
     }
 
     /// The frame of `tree2` at `placement` in the frame of `tree1`. Triangles within `margin` of
     /// each other will be found.
-    pub fn at(
-        (tree1, tree2): (&Tree<AXES>, &Tree<AXES>),
-        placement: Placement,
-        margin: f32,
-    ) -> Self {
+    pub fn at((tree1, tree2): (&Tree, &Tree), placement: Placement, margin: f32) -> Self {
         Self::within([tree1.magnitude(), tree2.magnitude()], placement, margin)
     }
 
@@ -145,7 +140,7 @@ impl<const AXES: usize> PairFrame<AXES> {
     }
 
     /// Whether the root spheres come within the margin; `true` where a tree has none.
-    pub(crate) fn spheres_meet(&self, tree1: &Tree<AXES>, tree2: &Tree<AXES>) -> bool {
+    pub(crate) fn spheres_meet(&self, tree1: &Tree, tree2: &Tree) -> bool {
         let (Some(sphere1), Some(sphere2)) = (tree1.sphere(), tree2.sphere()) else {
             return true;
         };
@@ -160,13 +155,13 @@ impl<const AXES: usize> PairFrame<AXES> {
 
 /// The kernel of all tests of boxes. The nine edge axes are left out: the tests that they save cost
 /// less than they do.
-impl<const AXES: usize> PairFrame<AXES> {
+impl PairFrame {
     /// Along the axes of frame 1, with reaches longer by `slack`.
     #[inline(always)]
     pub(crate) fn along1(
         &self,
-        side1: &Side<'_, impl Spread, AXES>,
-        side2: &Side<'_, impl Spread, AXES>,
+        side1: &Side<'_, impl Spread>,
+        side2: &Side<'_, impl Spread>,
         slack: f32x4,
     ) -> Along {
         let Rows { rows, absolute } = &self.to_frame1;
@@ -182,8 +177,8 @@ impl<const AXES: usize> PairFrame<AXES> {
     #[inline(always)]
     pub(super) fn along2(
         &self,
-        side1: &Side<'_, impl Spread, AXES>,
-        side2: &Side<'_, impl Spread, AXES>,
+        side1: &Side<'_, impl Spread>,
+        side2: &Side<'_, impl Spread>,
         offset: V3<f32x4>,
         slack: f32x4,
     ) -> Along {
@@ -196,13 +191,10 @@ impl<const AXES: usize> PairFrame<AXES> {
     }
 }
 
-impl<const AXES: usize> PairFrame<AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+impl PairFrame {
     /// The correspondence of the slabs, computed once.
     #[inline(always)]
-    pub(super) fn correspondence(&mut self) -> &Correspondence<AXES> {
+    pub(super) fn correspondence(&mut self) -> &Correspondence {
         self.correspondence.get_or_insert_with(|| {
             Correspondence::new(&self.placement, self.margin, self.rounding[0])
         })

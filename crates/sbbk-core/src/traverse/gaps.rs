@@ -25,12 +25,11 @@ use super::side::Side;
 use super::toward::Toward;
 use crate::simd::{Spread, V3, dot, each, largest};
 use crate::volumes::rounding::gamma;
-use crate::volumes::{DirectionSet, Directions};
 
 /// Keeps pairs of nodes that may be nearer than a limit. The key is a lower bound of their signed
 /// distance, negative where their volumes overlap.
-pub(crate) struct SignedGaps<'a, const AXES: usize> {
-    pub(crate) frame: &'a mut PairFrame<AXES>,
+pub(crate) struct SignedGaps<'a> {
+    pub(crate) frame: &'a mut PairFrame,
     pub(crate) cutoff: Cutoff,
     /// Looked along before all else.
     pub(crate) toward: Option<Toward>,
@@ -124,16 +123,13 @@ impl Bound {
     }
 }
 
-impl<const AXES: usize> PairFrame<AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+impl PairFrame {
     /// The bounds of all four lanes, whatever the margin is.
     #[inline(always)]
     pub(crate) fn signed_gaps(
         &mut self,
-        side1: &Side<'_, impl Spread, AXES>,
-        side2: &Side<'_, impl Spread, AXES>,
+        side1: &Side<'_, impl Spread>,
+        side2: &Side<'_, impl Spread>,
     ) -> f32x4 {
         let bound = self.box_bound(side1, side2);
         match side1.kdops_with(side2) {
@@ -149,8 +145,8 @@ where
     #[inline(always)]
     pub(crate) fn gaps_beyond_margin(
         &mut self,
-        side1: &Side<'_, impl Spread, AXES>,
-        side2: &Side<'_, impl Spread, AXES>,
+        side1: &Side<'_, impl Spread>,
+        side2: &Side<'_, impl Spread>,
         lanes: u32,
     ) -> Gaps {
         let bound = self.box_bound(side1, side2);
@@ -167,11 +163,7 @@ where
 
     /// Along the six face axes of boxes.
     #[inline(always)]
-    fn box_bound(
-        &self,
-        side1: &Side<'_, impl Spread, AXES>,
-        side2: &Side<'_, impl Spread, AXES>,
-    ) -> Bound {
+    fn box_bound(&self, side1: &Side<'_, impl Spread>, side2: &Side<'_, impl Spread>) -> Bound {
         let [rounding1, rounding2] = self.rounding.map(f32x4::splat);
         let in_frame1 = self.along1(side1, side2, rounding1);
         let in_frame2 = self.along2(side1, side2, in_frame1.offset, rounding2);
@@ -180,17 +172,14 @@ where
     }
 }
 
-impl<const AXES: usize> Compare<AXES> for SignedGaps<'_, AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+impl Compare for SignedGaps<'_> {
     type Key = f32;
 
     #[inline(always)]
     fn compare(
         &mut self,
-        side1: &Side<'_, impl Spread, AXES>,
-        side2: &Side<'_, impl Spread, AXES>,
+        side1: &Side<'_, impl Spread>,
+        side2: &Side<'_, impl Spread>,
         lanes: u32,
     ) -> (u32, [f32; 4]) {
         let along = match (&self.toward, side1.kdops_with(side2)) {

@@ -7,15 +7,14 @@ use super::expand::Compare;
 use super::frame::PairFrame;
 use super::side::Side;
 use crate::simd::{Spread, largest};
-use crate::volumes::{DirectionSet, Directions};
 
-impl<const AXES: usize> PairFrame<AXES> {
+impl PairFrame {
     /// Bit k: lane k's boxes come within the margin on the six face axes of both.
     #[inline(always)]
     pub(super) fn boxes_meet(
         &self,
-        side1: &Side<'_, impl Spread, AXES>,
-        side2: &Side<'_, impl Spread, AXES>,
+        side1: &Side<'_, impl Spread>,
+        side2: &Side<'_, impl Spread>,
     ) -> u32 {
         let in_frame1 = self.along1(side1, side2, self.slack[0]);
         let meets = in_frame1.meet();
@@ -29,22 +28,19 @@ impl<const AXES: usize> PairFrame<AXES> {
 
 /// Keeps the children whose volumes come within the margin: boxes first, then k-DOPs where both
 /// sides have them.
-pub(super) struct Overlap<'a, C, const AXES: usize> {
-    pub(super) frame: &'a mut PairFrame<AXES>,
+pub(super) struct Overlap<'a, C> {
+    pub(super) frame: &'a mut PairFrame,
     pub(super) counters: &'a mut C,
 }
 
-impl<C: Counters, const AXES: usize> Compare<AXES> for Overlap<'_, C, AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+impl<C: Counters> Compare for Overlap<'_, C> {
     type Key = ();
 
     #[inline(always)]
     fn compare(
         &mut self,
-        side1: &Side<'_, impl Spread, AXES>,
-        side2: &Side<'_, impl Spread, AXES>,
+        side1: &Side<'_, impl Spread>,
+        side2: &Side<'_, impl Spread>,
         lanes: u32,
     ) -> (u32, [(); 4]) {
         self.counters.aabb_tests(lanes.count_ones());
@@ -65,19 +61,16 @@ where
 /// Of other keys (along the axes of one box, the sum of overlaps, the distance of the centres, all
 /// slabs as well) none found a pair of crossing triangles in less time on about a thousand poses of
 /// heads, tori and helicopters, nor in much more.
-pub(crate) struct OrderedOverlap<'a, const AXES: usize>(pub(crate) &'a mut PairFrame<AXES>);
+pub(crate) struct OrderedOverlap<'a>(pub(crate) &'a mut PairFrame);
 
-impl<const AXES: usize> Compare<AXES> for OrderedOverlap<'_, AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+impl Compare for OrderedOverlap<'_> {
     type Key = f32;
 
     #[inline(always)]
     fn compare(
         &mut self,
-        side1: &Side<'_, impl Spread, AXES>,
-        side2: &Side<'_, impl Spread, AXES>,
+        side1: &Side<'_, impl Spread>,
+        side2: &Side<'_, impl Spread>,
         lanes: u32,
     ) -> (u32, [f32; 4]) {
         let frame = &mut *self.0;

@@ -2,29 +2,30 @@ use wide::f32x4;
 
 use crate::simd::{Spread, V3, each};
 use crate::tree::{Children, Intervals};
+use crate::volumes::SLABS;
 
 /// One side of up to four pairs of nodes: the nodes, and how they lie over the lanes.
 #[derive(Copy, Clone)]
-pub(crate) struct Side<'a, S, const AXES: usize> {
-    pub(crate) children: Children<'a, AXES>,
+pub(crate) struct Side<'a, S> {
+    pub(crate) children: Children<'a>,
     pub(crate) spread: S,
 }
 
 /// The k-DOPs of one side.
 #[derive(Copy, Clone)]
-pub(super) struct KdopSide<'a, S, const AXES: usize> {
-    kdops: Intervals<'a, AXES>,
+pub(super) struct KdopSide<'a, S> {
+    kdops: Intervals<'a, SLABS>,
     spread: S,
 }
 
 /// The k-DOPs of both sides.
 #[derive(Copy, Clone)]
-pub(super) struct KdopSides<'a, S1, S2, const AXES: usize> {
-    pub(super) one: KdopSide<'a, S1, AXES>,
-    pub(super) two: KdopSide<'a, S2, AXES>,
+pub(super) struct KdopSides<'a, S1, S2> {
+    pub(super) one: KdopSide<'a, S1>,
+    pub(super) two: KdopSide<'a, S2>,
 }
 
-impl<'a, S: Spread, const AXES: usize> Side<'a, S, AXES> {
+impl<'a, S: Spread> Side<'a, S> {
     /// The centres of the boxes.
     #[inline(always)]
     pub(super) fn centre(&self) -> V3<f32x4> {
@@ -41,8 +42,8 @@ impl<'a, S: Spread, const AXES: usize> Side<'a, S, AXES> {
     #[inline(always)]
     pub(super) fn kdops_with<S2: Spread>(
         &self,
-        other: &Side<'a, S2, AXES>,
-    ) -> Option<KdopSides<'a, S, S2, AXES>> {
+        other: &Side<'a, S2>,
+    ) -> Option<KdopSides<'a, S, S2>> {
         Some(KdopSides {
             one: KdopSide { kdops: self.children.kdops?, spread: self.spread },
             two: KdopSide { kdops: other.children.kdops?, spread: other.spread },
@@ -50,7 +51,7 @@ impl<'a, S: Spread, const AXES: usize> Side<'a, S, AXES> {
     }
 }
 
-impl<S: Spread, const AXES: usize> KdopSide<'_, S, AXES> {
+impl<S: Spread> KdopSide<'_, S> {
     #[inline(always)]
     pub(super) fn centre(&self, slab: usize) -> f32x4 {
         self.spread.spread(&self.kdops.centre[slab])

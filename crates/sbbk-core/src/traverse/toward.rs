@@ -15,7 +15,7 @@ use super::frame::PairFrame;
 use super::side::KdopSides;
 use crate::simd::{Spread, V3, dot, each, largest, smallest};
 use crate::tree::LeafBatch;
-use crate::volumes::{DirectionSet, Directions};
+use crate::volumes::directions;
 
 /// A direction from mesh 1 to mesh 2, in the slabs of both trees.
 #[derive(Copy, Clone, Debug)]
@@ -47,10 +47,7 @@ const LARGEST_ROUNDING: f32 = 1.0e28;
 impl Toward {
     /// Along the unit vector `normal` of frame 1. `None` if coordinates are so large that a
     /// projection may overflow.
-    pub(crate) fn new<const AXES: usize>(frame: &PairFrame<AXES>, normal: DVec3) -> Option<Self>
-    where
-        Directions<AXES>: DirectionSet<AXES>,
-    {
+    pub(crate) fn new(frame: &PairFrame, normal: DVec3) -> Option<Self> {
         let is_safe = frame.rounding.iter().all(|&rounding| rounding < LARGEST_ROUNDING);
         if !is_safe {
             return None;
@@ -61,17 +58,14 @@ impl Toward {
         Some(Self {
             nodes_offset: (along - 6.0 * rounding) as f32,
             leaves_offset: (along - rounding) as f32,
-            directions: directions.map(Direction::new::<AXES>),
+            directions: directions.map(Direction::new),
         })
     }
 
     /// Less than the signed distances of the k-DOPs in four lanes: where they overlap along the
     /// direction, minus the way that parts them.
     #[inline(always)]
-    pub(super) fn gaps<const AXES: usize>(
-        &self,
-        sides: &KdopSides<'_, impl Spread, impl Spread, AXES>,
-    ) -> f32x4 {
+    pub(super) fn gaps(&self, sides: &KdopSides<'_, impl Spread, impl Spread>) -> f32x4 {
         let [direction1, direction2] = &self.directions;
         let mut gap = f32x4::splat(self.nodes_offset);
         for &Term { slab, coefficient } in &direction2.terms {
@@ -99,15 +93,12 @@ impl Toward {
 }
 
 impl Direction {
-    fn new<const AXES: usize>(direction: DVec3) -> Self
-    where
-        Directions<AXES>: DirectionSet<AXES>,
-    {
+    fn new(direction: DVec3) -> Self {
         let term =
             |(slab, coefficient)| Term { slab, coefficient: f32x4::splat(coefficient as f32) };
         Self {
             components: direction.as_vec3().to_array(),
-            terms: Directions::<AXES>::correspondence(direction).map(term),
+            terms: directions::correspondence(direction).map(term),
         }
     }
 

@@ -2,7 +2,7 @@ use glamx::Vec3;
 
 use super::BuildError;
 use super::build::BuildNode;
-use crate::volumes::{DirectionSet, Directions, Kdop};
+use crate::volumes::{Kdop, SLABS, directions};
 
 /// The least [`BuildStats::kdop_cut`](super::BuildStats::kdop_cut) with which k-DOPs pay. Measured with
 /// 18-DOPs.
@@ -62,14 +62,8 @@ impl LayerPlan {
     }
 
     /// The choice for a tree with these `kdops` of the [`Self::CANDIDATE`], and what they cut off.
-    pub(super) fn choose<const AXES: usize>(
-        nodes: &[BuildNode],
-        kdops: &[Kdop<AXES>],
-    ) -> (Self, f32)
-    where
-        Directions<AXES>: DirectionSet<AXES>,
-    {
-        let diagonals = &Directions::<AXES>::DIRECTIONS[3..];
+    pub(super) fn choose(nodes: &[BuildNode], kdops: &[Kdop]) -> (Self, f32) {
+        let diagonals = &directions::DIRECTIONS[3..];
         let per_edge: Vec3 = diagonals.iter().map(|direction| direction.abs()).sum();
         // By depth; the last is that of all layers from there on.
         let mut cuts = [0.0; 5];
@@ -79,7 +73,7 @@ impl LayerPlan {
             all += area;
             let box_width = per_edge.dot(node.aabb.max - node.aabb.min);
             if node.depth > 0 && box_width > 0.0 {
-                let width: f32 = (3..AXES).map(|axis| kdop.max[axis] - kdop.min[axis]).sum();
+                let width: f32 = (3..SLABS).map(|axis| kdop.max[axis] - kdop.min[axis]).sum();
                 cuts[node.depth.min(4) as usize] += area * f64::from(1.0 - width / box_width);
             }
         }

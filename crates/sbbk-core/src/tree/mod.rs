@@ -2,9 +2,8 @@
 //! batches of triangles in the leaves.
 //!
 //! A tree is built in a comfortable form (`build.rs`: binned SAH over primitives, one node after
-//! the other) and packed once into the flat arrays that the descent reads (`pack.rs`). For a mesh
-//! that deforms, its volumes can be fitted anew in place ([`Tree::refit`]); else it never changes.
-//! [`Tree::root`] starts a walk over its nodes.
+//! the other) and packed once into the flat arrays that the descent reads (`pack.rs`). It never
+//! changes. [`Tree::root`] starts a walk over its nodes.
 //!
 //! ```
 //! use glamx::Vec3;
@@ -23,7 +22,6 @@ mod build;
 mod layers;
 mod node;
 mod pack;
-mod refit;
 mod stats;
 mod validate;
 mod walk;
@@ -32,7 +30,6 @@ pub use build::BuildOptions;
 pub use layers::LayerPlan;
 pub use node::{BATCH, LeafBatch, Slot};
 pub(crate) use node::{Children, Intervals, Link};
-pub use refit::RefitCost;
 pub use stats::BuildStats;
 pub use validate::Violation;
 pub use walk::{Leaf, Node};
@@ -41,19 +38,18 @@ use glamx::Vec3;
 use thiserror::Error;
 
 use crate::volumes::rounding::gamma;
-use crate::volumes::{DirectionSet, Directions, Sphere};
+use crate::volumes::{SLABS, Sphere};
 use node::Pair;
 
-/// A bounding volume hierarchy with `AXES` slabs in its k-DOP layers: 7, 9 (the default, 18-DOPs)
-/// or 13.
+/// A bounding volume hierarchy of the triangles of a mesh.
 #[derive(Clone, Debug)]
-pub struct Tree<const AXES: usize = 9> {
+pub struct Tree {
     /// `None` if the plan has no sphere.
     sphere: Option<Sphere>,
     /// Children of the inner nodes of the upper layers. Entry 0 is the root's own volume in lane 0.
     aabb_pairs: Vec<Pair<3>>,
     /// Children of the inner nodes of the lower layers; their node numbers follow those above.
-    kdop_pairs: Vec<Pair<AXES>>,
+    kdop_pairs: Vec<Pair<SLABS>>,
     leaves: Vec<LeafBatch>,
     triangle_count: u32,
     /// The largest absolute coordinate: what rounding errors in this frame are relative to.
@@ -94,14 +90,6 @@ pub enum BuildError {
         /// Its coordinates.
         position: Vec3,
     },
-    /// A tree can be fitted only to as many triangles as it was built of.
-    #[error("the mesh has {count} triangles, but the tree was built of {tree_count}")]
-    OtherTriangleCount {
-        /// The mesh's triangle count.
-        count: usize,
-        /// The tree's.
-        tree_count: u32,
-    },
     /// The layers cannot be ordered as asked.
     #[error(
         "the layer plan starts k-DOPs at depth {depth}, but the root's volume is at depth 0 and the first children at depth 1: use 1 or more"
@@ -112,10 +100,7 @@ pub enum BuildError {
     },
 }
 
-impl<const AXES: usize> Tree<AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+impl Tree {
     /// Builds the tree of a mesh. Degenerate triangles are kept, like any others, and counted in
     /// [`BuildStats`].
     ///
@@ -133,7 +118,7 @@ where
     }
 }
 
-impl<const AXES: usize> Tree<AXES> {
+impl Tree {
     /// Number of triangles of the mesh, degenerate ones included.
     pub fn triangle_count(&self) -> u32 {
         self.triangle_count
@@ -175,7 +160,7 @@ impl<const AXES: usize> Tree<AXES> {
     }
 
     /// The two children of an inner node, their volumes lane by lane.
-    pub(crate) fn children(&self, node: u32) -> Children<'_, AXES> {
+    pub(crate) fn children(&self, node: u32) -> Children<'_> {
         let node = node as usize;
         match self.aabb_pairs.get(node) {
             Some(pair) => Children::from_aabbs(pair),

@@ -10,7 +10,7 @@ use wide::f32x4;
 
 use crate::simd::{PerChild, V3, each};
 use crate::volumes::rounding::{HalfLength, centre_extent};
-use crate::volumes::{Aabb, DirectionSet, Directions, Kdop};
+use crate::volumes::{Aabb, Kdop, SLABS, directions};
 
 /// Triangles in a leaf at most, and lanes of the triangle test.
 pub const BATCH: usize = 4;
@@ -108,20 +108,20 @@ pub(crate) struct Intervals<'a, const COUNT: usize> {
 
 /// The children of an inner node of either layer.
 #[derive(Copy, Clone, Debug)]
-pub(crate) struct Children<'a, const AXES: usize> {
+pub(crate) struct Children<'a> {
     pub(crate) boxes: Intervals<'a, 3>,
     /// In the k-DOP layers.
-    pub(crate) kdops: Option<Intervals<'a, AXES>>,
+    pub(crate) kdops: Option<Intervals<'a, SLABS>>,
     pub(crate) links: &'a [Link; 2],
 }
 
-impl<'a, const AXES: usize> Children<'a, AXES> {
+impl<'a> Children<'a> {
     pub(super) fn from_aabbs(pair: &'a Pair<3>) -> Self {
         let boxes = Intervals { centre: &pair.centre, extent: &pair.extent };
         Self { boxes, kdops: None, links: &pair.links }
     }
 
-    pub(super) fn from_kdops(pair: &'a Pair<AXES>) -> Self {
+    pub(super) fn from_kdops(pair: &'a Pair<SLABS>) -> Self {
         let kdops = Intervals { centre: &pair.centre, extent: &pair.extent };
         let boxes = Intervals { centre: box_of(kdops.centre), extent: box_of(kdops.extent) };
         Self { boxes, kdops: Some(kdops), links: &pair.links }
@@ -134,7 +134,7 @@ impl<'a, const AXES: usize> Children<'a, AXES> {
     }
 
     /// The k-DOP of one child, in the k-DOP layers.
-    pub fn kdop(&self, lane: usize) -> Option<Kdop<AXES>> {
+    pub fn kdop(&self, lane: usize) -> Option<Kdop> {
         self.kdops.map(|kdops| {
             let [min, max] = kdops.ends(lane);
             Kdop { min, max }
@@ -143,7 +143,7 @@ impl<'a, const AXES: usize> Children<'a, AXES> {
 }
 
 #[inline(always)]
-fn box_of<T, const AXES: usize>(slabs: &[T; AXES]) -> &[T; 3] {
+fn box_of<T>(slabs: &[T; SLABS]) -> &[T; 3] {
     slabs.first_chunk().expect("every direction set starts with x, y and z")
 }
 
@@ -234,12 +234,9 @@ impl LeafBatch {
     }
 
     /// The k-DOP around all triangles.
-    pub(super) fn kdop<const AXES: usize>(&self) -> Kdop<AXES>
-    where
-        Directions<AXES>: DirectionSet<AXES>,
-    {
-        let [min, max] = self.ends(Directions::<AXES>::project_components);
-        Kdop::of_projections(min, max)
+    pub(super) fn kdop(&self) -> Kdop {
+        let [min, max] = self.ends(directions::project);
+        Kdop::from_ends(min, max)
     }
 
     /// The corners of the triangle in `lane`.

@@ -9,20 +9,17 @@ use super::build::{BuildNode, BuildOptions, BuildTree, Content};
 use super::node::{LeafBatch, Link, Pair};
 use super::stats::BuildStats;
 use super::{LayerPlan, Tree};
-use crate::volumes::{DirectionSet, Directions, Kdop, Sphere};
+use crate::volumes::{Kdop, Sphere};
 
-pub(super) fn pack<const AXES: usize>(
+pub(super) fn pack(
     built: BuildTree,
     vertices: &[Vec3],
     triangles: &[[u32; 3]],
     options: &BuildOptions,
-) -> Tree<AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+) -> Tree {
     let (leaves, leaf_links) = leaves(&built, vertices, triangles);
     let candidate = options.layers.unwrap_or(LayerPlan::CANDIDATE);
-    let kdops = kdops::<AXES>(&built.nodes, (&leaves, &leaf_links), candidate);
+    let kdops = kdops(&built.nodes, (&leaves, &leaf_links), candidate);
     let (layers, kdop_cut) = match options.layers {
         Some(layers) => (layers, None),
         None => {
@@ -92,14 +89,11 @@ fn leaves(
 }
 
 /// The k-DOPs of the nodes in the k-DOP layers, bottom up; empty ones above.
-fn kdops<const AXES: usize>(
+fn kdops(
     nodes: &[BuildNode],
     (leaves, leaf_links): (&[LeafBatch], &[Link]),
     layers: LayerPlan,
-) -> Vec<Kdop<AXES>>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+) -> Vec<Kdop> {
     if layers.kdop_from_depth.is_none() {
         return Vec::new();
     }

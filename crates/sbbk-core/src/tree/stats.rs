@@ -3,7 +3,7 @@ use glamx::Vec3;
 use super::build::{BuildTree, Content};
 use super::node::{LeafBatch, Pair};
 use super::{LayerPlan, Tree};
-use crate::volumes::Sphere;
+use crate::volumes::{SLABS, Sphere};
 
 /// What a build made.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
@@ -38,8 +38,8 @@ pub struct BuildStats {
 
 impl BuildStats {
     /// All but what is known of the layers.
-    pub(super) fn of<const AXES: usize>(
-        tree: &Tree<AXES>,
+    pub(super) fn of(
+        tree: &Tree,
         built: &BuildTree,
         vertices: &[Vec3],
         triangles: &[[u32; 3]],
@@ -67,7 +67,7 @@ impl BuildStats {
             sah_cost: if root_area > 0.0 { cost / root_area } else { 0.0 },
             sphere_bytes: tree.sphere.map_or(0, |_| size_of::<Sphere>()),
             aabb_bytes: tree.aabb_pairs.len() * size_of::<Pair<3>>(),
-            kdop_bytes: tree.kdop_pairs.len() * size_of::<Pair<AXES>>(),
+            kdop_bytes: tree.kdop_pairs.len() * size_of::<Pair<SLABS>>(),
             leaf_bytes: tree.leaves.len() * size_of::<LeafBatch>(),
             ..Self::default()
         }

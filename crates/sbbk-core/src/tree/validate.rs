@@ -1,6 +1,5 @@
 use super::Tree;
 use super::node::{Link, Slot};
-use crate::volumes::{DirectionSet, Directions, Kdop};
 
 /// The first thing found wrong with a tree.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,10 +32,7 @@ pub enum Violation {
     },
 }
 
-impl<const AXES: usize> Tree<AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+impl Tree {
     /// Checks topology, completeness and that each volume of each layer contains every corner below
     /// it. Costs triangles times depth: for tests and for finding out.
     ///
@@ -96,7 +92,7 @@ where
             for &slot in path {
                 let children = self.children(slot.node());
                 let aabb = children.aabb(slot.lane());
-                let kdop: Option<Kdop<AXES>> = children.kdop(slot.lane());
+                let kdop = children.kdop(slot.lane());
                 let inside = |p| aabb.contains(p) && kdop.is_none_or(|kdop| kdop.contains(p));
                 if !batch.corners(lane).into_iter().all(inside) {
                     return Err(Violation::NotContained { slot, triangle });

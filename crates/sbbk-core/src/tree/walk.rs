@@ -6,8 +6,8 @@ use crate::volumes::{Aabb, Kdop};
 
 /// A node of a tree, to be read: see [`Tree::root`].
 #[derive(Copy, Clone, Debug)]
-pub struct Node<'a, const AXES: usize = 9> {
-    tree: &'a Tree<AXES>,
+pub struct Node<'a> {
+    tree: &'a Tree,
     slot: Slot,
     depth: u32,
 }
@@ -21,7 +21,7 @@ pub struct Leaf<'a> {
     pub batch: &'a LeafBatch,
 }
 
-impl<const AXES: usize> Tree<AXES> {
+impl Tree {
     /// The root, from which all nodes can be reached.
     ///
     /// ```
@@ -38,12 +38,12 @@ impl<const AXES: usize> Tree<AXES> {
     /// }
     /// # Ok::<(), sbbk_core::tree::BuildError>(())
     /// ```
-    pub fn root(&self) -> Node<'_, AXES> {
+    pub fn root(&self) -> Node<'_> {
         Node { tree: self, slot: Slot::ROOT, depth: 0 }
     }
 }
 
-impl<'a, const AXES: usize> Node<'a, AXES> {
+impl<'a> Node<'a> {
     /// The name by which a [`NodePair`](crate::traverse::NodePair) of a descent knows this node.
     pub fn slot(&self) -> Slot {
         self.slot
@@ -60,7 +60,7 @@ impl<'a, const AXES: usize> Node<'a, AXES> {
     }
 
     /// The k-DOP of the node, in the layers that have one.
-    pub fn kdop(&self) -> Option<Kdop<AXES>> {
+    pub fn kdop(&self) -> Option<Kdop> {
         self.tree.children(self.slot.node()).kdop(self.slot.lane())
     }
 

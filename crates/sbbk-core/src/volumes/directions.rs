@@ -1,5 +1,4 @@
-//! The direction sets of the k-DOPs: which slabs a [`Kdop`](super::Kdop) has, and how a direction
-//! of another frame is written in them.
+//! The nine slab directions of an 18-DOP, and other directions written as sums of these.
 //!
 //! All directions have components in {-1, 0, 1}, so that a projection is a sum without products.
 //! They are not normalised: a margin `m` between two slabs is `m·|d|` in their coordinates.
@@ -10,120 +9,88 @@
 //! Detection by Dynamically Aligned DOP-Trees*, 1998) writes a direction `b` of tree 1, seen in the
 //! frame of tree 2, as a combination of three directions of tree 2 with non-negative coefficients,
 //! `b = c₁·d₁ + c₂·d₂ + c₃·d₃`. For every point x of a node of tree 2 then `b·x = Σ cᵢ (dᵢ·x) <= Σ
-//! cᵢ maxᵢ`: a bound for 3 multiply-adds, conservative for any node by LP weak duality, and tight
-//! when the three directions are adjacent, as they then share a vertex of the k-DOP's prototype.
+//! cᵢ maxᵢ`. This bound takes 3 multiply-adds and is conservative for any node by LP weak duality.
+//! It is tight when the three directions are adjacent, as they then share a vertex of the k-DOP's
+//! prototype.
 //!
-//! No search is needed for the triple. The sets are symmetric under all permutations and sign
-//! changes of the axes, so sort the components, `x >= y >= z >= 0`; the cone that contains `b`
-//! follows:
+//! The triple needs no search. The set is symmetric under all permutations and sign changes of the
+//! axes. Sort the components, `x >= y >= z >= 0`; the cone that contains `b` follows:
 //!
-//! | k | cone, sorted components | coefficients |
+//! | sorted components | directions | coefficients |
 //! |---|---|---|
-//! | 14 | (1,0,0), (1,1,1), (1,1,-1) | `x - y`, `(y + z)/2`, `(y - z)/2` |
-//! | 18 | (1,0,0), (1,1,0), (1,0,1) if `x >= y + z` | `x - y - z`, `y`, `z` |
-//! | 18 | (0,1,1), (1,1,0), (1,0,1) else | `(y + z - x)/2`, `(x + y - z)/2`, `(x + z - y)/2` |
-//! | 26 | (1,0,0), (1,1,0), (1,1,1) | `x - y`, `y - z`, `z` |
+//! | `x >= y + z` | (1,0,0), (1,1,0), (1,0,1) | `x - y - z`, `y`, `z` |
+//! | else | (0,1,1), (1,1,0), (1,0,1) | `(y + z - x)/2`, `(x + y - z)/2`, `(x + z - y)/2` |
 
 use std::ops::{Add, Sub};
 
 use glamx::{DVec3, Vec3};
 
-/// Marker for the slab counts that have a direction set: 7, 9 and 13 (k = 14, 18, 26).
-#[derive(Copy, Clone, Debug)]
-pub struct Directions<const AXES: usize>;
+/// Number of slabs of a k-DOP: half of k = 18.
+pub const SLABS: usize = 9;
 
-mod sealed {
-    pub trait Sealed {}
-    impl Sealed for super::Directions<7> {}
-    impl Sealed for super::Directions<9> {}
-    impl Sealed for super::Directions<13> {}
-}
+/// The direction of each slab: the faces of a cube, which are the axes of the box, and its edges.
+pub const DIRECTIONS: [Vec3; SLABS] = [
+    d(1, 0, 0),
+    d(0, 1, 0),
+    d(0, 0, 1),
+    d(1, 1, 0),
+    d(1, -1, 0),
+    d(1, 0, 1),
+    d(1, 0, -1),
+    d(0, 1, 1),
+    d(0, 1, -1),
+];
 
-/// One value a slab.
-pub type Slabs<const AXES: usize> = [f32; AXES];
+/// The three directions that span each cone of sorted components.
+const CONES: [[Member; 3]; 2] =
+    [[[1, 0, 0], [1, 1, 0], [1, 0, 1]], [[0, 1, 1], [1, 1, 0], [1, 0, 1]]];
 
-/// A member of a direction set: components in {-1, 0, 1}.
-#[doc(hidden)]
-pub type Member = [i8; 3];
+/// The three slabs of each [`code`].
+const CONE_SLABS: [[Slab; 3]; 128] = cone_slabs();
 
-/// The slab of a direction, and its sign there.
+/// A direction of a slab, or its opposite.
+type Member = [i8; 3];
+
+/// Index of a slab, and -1 where its opposite direction is meant.
 type Slab = (u8, i8);
 
-/// By [`member_index`].
-type SlabTable = [Slab; 27];
-
-/// The slabs of a cone's members, by the [`code`] of a direction in it.
-type ConeTable = [[Slab; 3]; 128];
-
-/// A set of directions that is closed under the symmetries of the cube. Sealed: an unsupported k
-/// does not compile.
-pub trait DirectionSet<const AXES: usize>: sealed::Sealed {
-    /// The slabs' directions, one of each opposite two. The first three are x, y and z.
-    const DIRECTIONS: [Vec3; AXES];
-
-    /// The members of the cones of directions with components `x >= y >= z >= 0`; twice the same
-    /// where there is one.
-    #[doc(hidden)]
-    const CONES: [[Member; 3]; 2];
-
-    #[doc(hidden)]
-    const SLABS: ConeTable = cone_table(&Self::DIRECTIONS, &Self::CONES);
-
-    /// The projections of a point on all directions. Written out, as `x·0 + y·1 + z·1` costs three
-    /// products that no compiler may leave out; fitting k-DOPs was a tenth of a build.
-    #[inline]
-    fn project(point: Vec3) -> Slabs<AXES> {
-        Self::project_components(point.to_array())
-    }
-
-    /// The same for one point or a lane of several. Hidden, as only the crate calls it.
-    #[doc(hidden)]
-    fn project_components<T: Component>(components: [T; 3]) -> [T; AXES];
-
-    /// Which cone contains the direction with components `x >= y >= z >= 0`, and the coefficients of
-    /// its members. Hidden, as only the crate and its tests call it.
-    #[doc(hidden)]
-    fn coefficients(sorted: DVec3) -> (usize, [f64; 3]);
-
-    /// `direction` as a non-negative combination of three adjacent directions of the set: for each
-    /// the slab's index and the coefficient, negative where the slab's opposite direction is meant.
-    /// Which they are is read from a table: sorting axes and turning members took twice the time of
-    /// it all.
-    #[inline]
-    fn correspondence(direction: DVec3) -> [(usize, f64); 3] {
-        let magnitude = direction.abs();
-        let (cone, coefficients) = Self::coefficients(descending(magnitude));
-        let slabs = &Self::SLABS[code(direction, magnitude, cone)];
-        let term = |i: usize| {
-            let (slab, sign) = slabs[i];
-            (usize::from(slab), f64::from(sign) * coefficients[i])
-        };
-        [term(0), term(1), term(2)]
-    }
+const fn d(x: i8, y: i8, z: i8) -> Vec3 {
+    Vec3::new(x as f32, y as f32, z as f32)
 }
 
-/// A coordinate of one point, or of several in lanes.
-#[doc(hidden)]
-pub trait Component: Copy + Add<Output = Self> + Sub<Output = Self> {}
-
-impl<T: Copy + Add<Output = Self> + Sub<Output = Self>> Component for T {}
-
-/// Where a member stands in a [`SlabTable`].
-const fn member_index([x, y, z]: Member) -> usize {
-    (9 * (x + 1) + 3 * (y + 1) + (z + 1)) as usize
+/// The projections of a point, or of a lane of points, on all directions.
+///
+/// Written out: `x·0 + y·1 + z·1` costs three products that no compiler may leave out.
+#[inline(always)]
+pub fn project<T>([x, y, z]: [T; 3]) -> [T; SLABS]
+where
+    T: Copy + Add<Output = T> + Sub<Output = T>,
+{
+    [x, y, z, x + y, x - y, x + z, x - z, y + z, y - z]
 }
 
-const fn slab_table(directions: &[Vec3]) -> SlabTable {
-    let mut table = [(0, 0); 27];
-    let mut slab = 0;
-    while slab < directions.len() {
-        let d = directions[slab];
-        let member = [d.x as i8, d.y as i8, d.z as i8];
-        table[member_index(member)] = (slab as u8, 1);
-        table[member_index([-member[0], -member[1], -member[2]])] = (slab as u8, -1);
-        slab += 1;
-    }
-    table
+/// Writes `direction` as a non-negative combination of three adjacent directions. Returns each
+/// slab's index and coefficient, negative where the slab's opposite direction is meant.
+#[inline]
+pub fn correspondence(direction: DVec3) -> [(usize, f64); 3] {
+    let magnitude = direction.abs();
+    let (cone, coefficients) = coefficients(descending(magnitude));
+    let slabs = &CONE_SLABS[code(direction, magnitude, cone)];
+    let term = |i: usize| {
+        let (slab, sign) = slabs[i];
+        (usize::from(slab), f64::from(sign) * coefficients[i])
+    };
+    [term(0), term(1), term(2)]
+}
+
+/// The cone that contains the direction with components `x >= y >= z >= 0`, and the coefficients
+/// of its members.
+#[inline(always)]
+fn coefficients(s: DVec3) -> (usize, [f64; 3]) {
+    // Beyond the face between the cones, half of the deficit goes to the two shared members.
+    let beyond = s.x - s.y - s.z;
+    let half = 0.5 * smaller(beyond, 0.0);
+    (usize::from(beyond < 0.0), [larger(beyond, -0.5 * beyond), s.y + half, s.z + half])
 }
 
 /// The order of a direction's components, their signs and its cone, as bits.
@@ -136,14 +103,13 @@ fn code(direction: DVec3, magnitude: DVec3, cone: usize) -> usize {
     bits.fold(cone << 6, |code, (i, bit)| code | usize::from(bit) << i)
 }
 
-/// What each [`code`] stands for. Some orders are none: nothing is asked of these.
-const fn cone_table(directions: &[Vec3], cones: &[[Member; 3]; 2]) -> ConeTable {
-    let slabs = slab_table(directions);
+/// Fills the table of all codes. Codes of impossible orders are never looked up.
+const fn cone_slabs() -> [[Slab; 3]; 128] {
     let mut table = [[(0, 0); 3]; 128];
     let mut code = 0;
     while code < table.len() {
         let [x_before_y, y_before_z, x_before_z] = [code & 1, code >> 1 & 1, code >> 2 & 1];
-        // How many components are before each.
+        // Rank of each component in descending order.
         let ranks =
             [2 - x_before_y - x_before_z, 1 + x_before_y - y_before_z, y_before_z + x_before_z];
         let mut i = 0;
@@ -152,10 +118,10 @@ const fn cone_table(directions: &[Vec3], cones: &[[Member; 3]; 2]) -> ConeTable 
             let mut axis = 0;
             while axis < 3 {
                 let sign = 1 - 2 * (code >> (3 + axis) & 1) as i8;
-                member[axis] = sign * cones[code >> 6][i][ranks[axis]];
+                member[axis] = sign * CONES[code >> 6][i][ranks[axis]];
                 axis += 1;
             }
-            table[code][i] = slabs[member_index(member)];
+            table[code][i] = slab_of(member);
             i += 1;
         }
         code += 1;
@@ -163,92 +129,31 @@ const fn cone_table(directions: &[Vec3], cones: &[[Member; 3]; 2]) -> ConeTable 
     table
 }
 
-const fn d(x: i8, y: i8, z: i8) -> Vec3 {
-    Vec3::new(x as f32, y as f32, z as f32)
-}
-
-const FACES: [Vec3; 3] = [d(1, 0, 0), d(0, 1, 0), d(0, 0, 1)];
-const EDGES: [Vec3; 6] =
-    [d(1, 1, 0), d(1, -1, 0), d(1, 0, 1), d(1, 0, -1), d(0, 1, 1), d(0, 1, -1)];
-const CORNERS: [Vec3; 4] = [d(1, 1, 1), d(1, 1, -1), d(1, -1, 1), d(1, -1, -1)];
-
-/// The sets one after the other; `AXES` must be the sum of their sizes.
-const fn concatenate<const AXES: usize>(sets: [&[Vec3]; 3]) -> [Vec3; AXES] {
-    let mut all = [Vec3::ZERO; AXES];
-    let mut filled = 0;
-    let mut set = 0;
-    while set < sets.len() {
-        let mut i = 0;
-        while i < sets[set].len() {
-            all[filled] = sets[set][i];
-            filled += 1;
-            i += 1;
+/// The slab of a member; slab 0 with sign 0 if none has this direction.
+const fn slab_of([x, y, z]: Member) -> Slab {
+    let mut slab = 0;
+    while slab < SLABS {
+        let d = DIRECTIONS[slab];
+        let [dx, dy, dz] = [d.x as i8, d.y as i8, d.z as i8];
+        if dx == x && dy == y && dz == z {
+            return (slab as u8, 1);
         }
-        set += 1;
+        if dx == -x && dy == -y && dz == -z {
+            return (slab as u8, -1);
+        }
+        slab += 1;
     }
-    assert!(filled == AXES);
-    all
+    (0, 0)
 }
 
-impl DirectionSet<7> for Directions<7> {
-    const DIRECTIONS: [Vec3; 7] = concatenate([&FACES, &CORNERS, &[]]);
-    const CONES: [[Member; 3]; 2] = [[[1, 0, 0], [1, 1, 1], [1, 1, -1]]; 2];
-
-    #[inline(always)]
-    fn project_components<T: Component>([x, y, z]: [T; 3]) -> [T; 7] {
-        let [a, b] = [x + y, x - y];
-        [x, y, z, a + z, a - z, b + z, b - z]
-    }
-
-    #[inline(always)]
-    fn coefficients(s: DVec3) -> (usize, [f64; 3]) {
-        (0, [s.x - s.y, 0.5 * (s.y + s.z), 0.5 * (s.y - s.z)])
-    }
-}
-
-impl DirectionSet<9> for Directions<9> {
-    const DIRECTIONS: [Vec3; 9] = concatenate([&FACES, &EDGES, &[]]);
-    const CONES: [[Member; 3]; 2] =
-        [[[1, 0, 0], [1, 1, 0], [1, 0, 1]], [[0, 1, 1], [1, 1, 0], [1, 0, 1]]];
-
-    #[inline(always)]
-    fn project_components<T: Component>([x, y, z]: [T; 3]) -> [T; 9] {
-        [x, y, z, x + y, x - y, x + z, x - z, y + z, y - z]
-    }
-
-    #[inline(always)]
-    fn coefficients(s: DVec3) -> (usize, [f64; 3]) {
-        // Beyond the face that both cones have, half of what is missing goes to its two members.
-        let beyond = s.x - s.y - s.z;
-        let half = 0.5 * smaller(beyond, 0.0);
-        (usize::from(beyond < 0.0), [larger(beyond, -0.5 * beyond), s.y + half, s.z + half])
-    }
-}
-
-impl DirectionSet<13> for Directions<13> {
-    const DIRECTIONS: [Vec3; 13] = concatenate([&FACES, &EDGES, &CORNERS]);
-    const CONES: [[Member; 3]; 2] = [[[1, 0, 0], [1, 1, 0], [1, 1, 1]]; 2];
-
-    #[inline(always)]
-    fn project_components<T: Component>([x, y, z]: [T; 3]) -> [T; 13] {
-        let [a, b] = [x + y, x - y];
-        [x, y, z, a, b, x + z, x - z, y + z, y - z, a + z, a - z, b + z, b - z]
-    }
-
-    #[inline(always)]
-    fn coefficients(s: DVec3) -> (usize, [f64; 3]) {
-        (0, [s.x - s.y, s.y - s.z, s.z])
-    }
-}
-
-/// The components from the largest to the smallest. Any if one is NaN: then nothing overlaps anyway.
+/// The components from the largest to the smallest. Any order if one is NaN.
 #[inline(always)]
 fn descending(DVec3 { x, y, z }: DVec3) -> DVec3 {
     let (high, low) = (larger(x, y), smaller(x, y));
     DVec3::new(larger(high, z), larger(low, smaller(high, z)), smaller(low, z))
 }
 
-/// One instruction, as `f64::max` is not.
+/// The larger of two numbers in one instruction, which `f64::max` is not.
 #[inline(always)]
 fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
@@ -257,4 +162,20 @@ fn larger(a: f64, b: f64) -> f64 {
 #[inline(always)]
 fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::support::Random;
+
+    /// Would catch a direction outside of the cone that the table gives it.
+    #[test]
+    fn coefficients_of_sorted_directions_are_not_negative() {
+        let mut random = Random(11);
+        for _ in 0..10_000 {
+            let sorted = descending(random.vector(1.0).abs().as_dvec3());
+            assert!(coefficients(sorted).1.into_iter().all(|c| c >= -1e-15), "{sorted:?}");
+        }
+    }
 }

@@ -1,89 +1,66 @@
 use glamx::Vec3;
 
+use super::directions::{SLABS, project};
 use super::rounding::gamma;
-use super::{Aabb, DirectionSet, Directions, Slabs};
 
-/// A discrete oriented polytope of `AXES` slabs, k = 2·`AXES` half-spaces.
+/// A discrete oriented polytope of nine slabs: an 18-DOP.
 ///
-/// The first three slabs are those of the [`Aabb`]. Klosowski et al., *Efficient Collision
+/// The first three slabs are those of the [`Aabb`](super::Aabb). Klosowski et al., *Efficient Collision
 /// Detection Using Bounding Volume Hierarchies of k-DOPs*, 1998.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Kdop<const AXES: usize> {
-    /// The smallest projection on each direction of the [`DirectionSet`].
-    pub min: Slabs<AXES>,
+pub struct Kdop {
+    /// The smallest projection on each of the [`DIRECTIONS`](super::directions::DIRECTIONS).
+    pub min: [f32; SLABS],
     /// The largest projection on each direction.
-    pub max: Slabs<AXES>,
+    pub max: [f32; SLABS],
 }
 
-/// Faces of the cube and its corners.
-pub type Kdop14 = Kdop<7>;
-/// Faces of the cube and its edges: the best of the three in most measurements, here as in the
-/// literature.
-pub type Kdop18 = Kdop<9>;
-/// Faces, edges and corners.
-pub type Kdop26 = Kdop<13>;
+impl Kdop {
+    /// The empty k-DOP, the neutral element of [`merge`](Self::merge).
+    pub const EMPTY: Self = Self { min: [f32::INFINITY; SLABS], max: [f32::NEG_INFINITY; SLABS] };
 
-impl<const AXES: usize> Kdop<AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
-    /// The k-DOP of no point at all: merging with it changes nothing.
-    pub const EMPTY: Self = Self { min: [f32::INFINITY; AXES], max: [f32::NEG_INFINITY; AXES] };
-
-    /// The k-DOP around `points`.
+    /// The k-DOP around `points`. Projections that are NaN are left out.
     pub fn fit(points: &[Vec3]) -> Self {
         let mut kdop = Self::EMPTY;
         for &point in points {
-            let projections = <Directions<AXES> as DirectionSet<AXES>>::project(point);
-            // Comparisons, as `f32::min` has to care about NaN; a NaN is left out here.
-            for axis in 0..AXES {
-                let projection = projections[axis];
-                let (min, max) = (kdop.min[axis], kdop.max[axis]);
-                kdop.min[axis] = if projection < min { projection } else { min };
-                kdop.max[axis] = if projection > max { projection } else { max };
-            }
+            let projections = project(point.to_array());
+            kdop = kdop.merge(&Self { min: projections, max: projections });
         }
-        Self::of_projections(kdop.min, kdop.max)
+        Self::from_ends(kdop.min, kdop.max)
     }
 
     /// The k-DOP around two.
     #[must_use]
     pub fn merge(&self, other: &Self) -> Self {
         let mut merged = *self;
-        for axis in 0..AXES {
-            let (min, max) = (other.min[axis], other.max[axis]);
-            merged.min[axis] = if min < merged.min[axis] { min } else { merged.min[axis] };
-            merged.max[axis] = if max > merged.max[axis] { max } else { merged.max[axis] };
+        // Comparisons cost less than `f32::min`, which treats NaN alike from both sides.
+        for slab in 0..SLABS {
+            let (min, max) = (other.min[slab], other.max[slab]);
+            merged.min[slab] = if min < merged.min[slab] { min } else { merged.min[slab] };
+            merged.max[slab] = if max > merged.max[slab] { max } else { merged.max[slab] };
         }
         merged
     }
 
-    /// Whether `point` is in the k-DOP, computed in f64: fitted points are.
+    /// Returns true if `point` is in the k-DOP, computed in f64. Fitted points are.
     pub fn contains(&self, point: Vec3) -> bool {
-        let coordinates = point.as_dvec3().to_array();
-        let projections = <Directions<AXES> as DirectionSet<AXES>>::project_components(coordinates);
+        let projections = project(point.as_dvec3().to_array());
         let ends = self.min.iter().zip(&self.max);
         ends.zip(projections).all(|((&min, &max), x)| f64::from(min) <= x && x <= f64::from(max))
     }
 
     /// The k-DOP of points whose projections have these ends.
     ///
-    /// All directions but the axes get the slack of the largest coordinates, for what projections
-    /// round: one a corner is no tighter, and takes twice the time.
-    pub(crate) fn of_projections(min: Slabs<AXES>, max: Slabs<AXES>) -> Self {
+    /// All directions except the axes grow by the rounding of a projection of the largest
+    /// coordinates.
+    pub(crate) fn from_ends(min: [f32; SLABS], max: [f32; SLABS]) -> Self {
         let mut kdop = Self { min, max };
         let magnitude = |axis: usize| min[axis].abs().max(max[axis].abs());
-        let slack = gamma(3) * (magnitude(0) + magnitude(1) + magnitude(2));
-        for axis in 3..AXES {
-            kdop.min[axis] -= slack;
-            kdop.max[axis] += slack;
+        let rounding = gamma(3) * (magnitude(0) + magnitude(1) + magnitude(2));
+        for slab in 3..SLABS {
+            kdop.min[slab] -= rounding;
+            kdop.max[slab] += rounding;
         }
         kdop
-    }
-
-    /// The box of the first three slabs.
-    pub(crate) fn aabb(&self) -> Aabb {
-        let corner = |slabs: &Slabs<AXES>| Vec3::new(slabs[0], slabs[1], slabs[2]);
-        Aabb { min: corner(&self.min), max: corner(&self.max) }
     }
 }

@@ -1,33 +1,30 @@
 use glamx::Vec3;
 
 use super::rounding::gamma;
-use super::{DirectionSet, Directions};
 
-/// A ball.
+/// A sphere, filled.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Sphere {
-    /// The middle of the ball.
+    /// The centre.
     pub centre: Vec3,
-    /// Half of its diameter; negative if the sphere is empty.
+    /// The radius; negative if the sphere is empty.
     pub radius: f32,
 }
 
-/// How many times the extremal points are searched anew along the direction to the farthest point.
-/// Each costs one pass over the points. With 4 the radius is within 5 % of the minimum on thousands
-/// of random clouds (a test); more gain a percent and cost build time.
+/// Number of steps towards the farthest point, each a pass over the points. Higher: a slightly
+/// smaller radius; lower: a faster build.
 const REFINEMENTS: usize = 4;
 
-/// What a distance may lose where squares of coordinates underflow: the root of some times 2⁻¹⁴⁹.
+/// Bound on the error of a distance whose squares underflow: the root of a few times 2⁻¹⁴⁹.
 const UNDERFLOW: f32 = 1e-22;
 
 impl Sphere {
-    /// The sphere around `points`, near-minimal; one of a negative radius if there are none. Linear
-    /// in the number of points.
+    /// A near-minimal sphere around `points`; its radius is negative if there are none. Linear in
+    /// the number of points.
     ///
-    /// Starts from the widest of the 7 diameters of the 14-DOP's directions (Larsson, *Fast and
-    /// Tight Fitting Bounding Spheres*, 2008), then walks the centre towards the farthest point by
-    /// a shrinking step (Bădoiu and Clarkson, *Smaller Core-Sets for Balls*, 2003) and keeps the
-    /// best.
+    /// Starts from the widest of 7 diameters (Larsson, *Fast and Tight Fitting Bounding Spheres*,
+    /// 2008). Then moves the centre towards the farthest point by a shrinking step (Bădoiu and
+    /// Clarkson, *Smaller Core-Sets for Balls*, 2003) and keeps the best sphere.
     pub fn fit(points: &[Vec3]) -> Self {
         let Some(&first) = points.first() else {
             return Self { centre: Vec3::ZERO, radius: -1.0 };
@@ -35,7 +32,7 @@ impl Sphere {
         let mut ends = [(first, first); 7];
         let (mut low, mut high) = ([f32::INFINITY; 7], [f32::NEG_INFINITY; 7]);
         for &point in points {
-            let projections = Directions::<7>::project(point);
+            let projections = diameters(point);
             for (axis, &projection) in projections.iter().enumerate() {
                 if projection < low[axis] {
                     (low[axis], ends[axis].0) = (projection, point);
@@ -67,7 +64,7 @@ impl Sphere {
         Self::reaching(best.centre, best.radius)
     }
 
-    /// Whether `point` is in the sphere, computed in f64: fitted points are.
+    /// Returns true if `point` is in the sphere, computed in f64. Fitted points are.
     pub fn contains(&self, point: Vec3) -> bool {
         self.centre.as_dvec3().distance(point.as_dvec3()) <= f64::from(self.radius)
     }
@@ -99,4 +96,10 @@ impl Sphere {
         let centre = self.centre + (point - self.centre) * ((distance - radius) / distance);
         Self { centre, radius }
     }
+}
+
+/// Projections on the faces and corners of a cube.
+fn diameters(Vec3 { x, y, z }: Vec3) -> [f32; 7] {
+    let [a, b] = [x + y, x - y];
+    [x, y, z, a + z, a - z, b + z, b - z]
 }

@@ -12,14 +12,11 @@ use sbbk_core::traverse::{
 };
 use sbbk_core::tree::{BuildOptions, LayerPlan, LeafBatch, Tree};
 use sbbk_core::truth;
-use sbbk_core::volumes::{DirectionSet, Directions, Sphere};
+use sbbk_core::volumes::{SLABS, Sphere, directions};
 
 const KDOPS: LayerPlan = LayerPlan { sphere_root: true, kdop_from_depth: Some(1) };
 
-fn tree<const AXES: usize>(corners: &[Vec3], layers: LayerPlan) -> Tree<AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+fn tree(corners: &[Vec3], layers: LayerPlan) -> Tree {
     let triangles: Vec<_> =
         (0..corners.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let options = BuildOptions { layers: Some(layers), leaf_size: 1 };
@@ -42,15 +39,7 @@ impl Visitor for Count {
 }
 
 /// How many pairs of leaves and of triangles are found.
-fn found<const AXES: usize>(
-    tree1: &Tree<AXES>,
-    tree2: &Tree<AXES>,
-    pos12: &Pose3,
-    margin: f32,
-) -> (usize, usize)
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+fn found(tree1: &Tree, tree2: &Tree, pos12: &Pose3, margin: f32) -> (usize, usize) {
     let mut frame = PairFrame::new(tree1, tree2, pos12, margin);
     let mut count = Count { test: LeafTest::new(&frame), leaf_pairs: 0, survivors: 0 };
     let scratch = &mut DescentScratch::default();
@@ -113,11 +102,8 @@ impl Pair {
         Self::of(random, [one, [tip + 1.7 * w, tip - 0.3 * w, tip + n + 0.1 * u]], far)
     }
 
-    fn check<const AXES: usize>(&self, layers: LayerPlan)
-    where
-        Directions<AXES>: DirectionSet<AXES>,
-    {
-        let [tree1, tree2] = self.corners.each_ref().map(|corners| tree::<AXES>(corners, layers));
+    fn check(&self, layers: LayerPlan) {
+        let [tree1, tree2] = self.corners.each_ref().map(|corners| tree(corners, layers));
         let margin = (self.distance as f32).next_up();
         let (_, survivors) = found(&tree1, &tree2, &self.pos12, margin);
         assert_eq!(survivors, 1, "{margin}, {:?} at {:?}", self.corners, self.pos12);
@@ -137,14 +123,12 @@ fn nodes_the_margin_apart_are_found() {
         let n = match i % 3 {
             0 => [DVec3::X, DVec3::Y, DVec3::Z][i / 3 % 3],
             1 => random.vector(1.0).as_dvec3().normalize(),
-            _ => Directions::<13>::DIRECTIONS[i / 3 % 13].as_dvec3().normalize(),
+            _ => directions::DIRECTIONS[i / 3 % SLABS].as_dvec3().normalize(),
         };
         let gap = f64::from(random.range(0.1, 1.0));
         let pair = Pair::tips(random, n, gap, far);
-        pair.check::<7>(KDOPS);
-        pair.check::<9>(KDOPS);
-        pair.check::<13>(KDOPS);
-        pair.check::<9>(LayerPlan::AABB_ONLY);
+        pair.check(KDOPS);
+        pair.check(LayerPlan::AABB_ONLY);
     }
 }
 
@@ -171,7 +155,7 @@ fn triangles_the_margin_apart_are_found() {
             pair.distance = truth::contact(&one.map(Vec3::as_dvec3), &placed).distance;
         }
         if pair.distance > 0.0 {
-            pair.check::<9>(KDOPS);
+            pair.check(KDOPS);
         }
     }
 }
@@ -184,7 +168,7 @@ fn edges_along_each_other_the_margin_apart_are_found() {
         let n = random.vector(1.0).as_dvec3().normalize();
         let gap = f64::from(random.range(0.01, 1.0));
         let across = [1.0e-2, 1.0e-3, 1.0e-4, 1.0e-5][i % 4];
-        Pair::edges(random, n, gap, 0.0, across).check::<9>(KDOPS);
+        Pair::edges(random, n, gap, 0.0, across).check(KDOPS);
     }
 }
 
@@ -200,7 +184,7 @@ fn tiny_triangles_the_margin_apart_are_found() {
         let face = [2.0 * u, -u + 2.0 * v, -u - 2.0 * v].map(|x| x * size);
         let tip = n * f64::from(random.range(0.5, 2.0));
         let two = [tip, tip + n + 0.3 * u, tip + 0.7 * n - 0.2 * v];
-        Pair::of(random, [face, two], 0.0).check::<9>(KDOPS);
+        Pair::of(random, [face, two], 0.0).check(KDOPS);
     }
 }
 
@@ -318,7 +302,7 @@ fn fields_the_margin_apart_are_found() {
         let placement = Placement::new(&pose);
         let corners = [tip, tip + n + aside, tip + 0.5 * n - aside];
         let corners = corners.map(|x| placement.to_frame2(x, Vec3::ZERO).as_vec3());
-        let tree = tree::<9>(&corners, KDOPS);
+        let tree = tree(&corners, KDOPS);
         let placed = corners.map(|x| placement.to_frame1(x, Vec3::ZERO));
         let cells = (0..11).flat_map(|column| (0..7).map(move |row| [column, row]));
         let triangles = cells.flat_map(|cell| field.triangles(cell)).flatten();

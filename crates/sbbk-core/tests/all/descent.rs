@@ -10,7 +10,6 @@ use sbbk_core::traverse::{
 };
 use sbbk_core::tree::{BuildOptions, LayerPlan, LeafBatch, Tree};
 use sbbk_core::truth::pairs_within;
-use sbbk_core::volumes::{DirectionSet, Directions};
 
 /// Collects the survivors of the leaf test and compares it with its scalar twin on the way.
 struct Survivors {
@@ -32,15 +31,12 @@ impl Visitor for Survivors {
     }
 }
 
-fn survivors<const AXES: usize>(
-    trees: (&Tree<AXES>, &Tree<AXES>),
+fn survivors(
+    trees: (&Tree, &Tree),
     pos12: &Pose3,
     margin: f32,
     descent: Descent,
-) -> (BTreeSet<(u32, u32)>, DescentCounts)
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+) -> (BTreeSet<(u32, u32)>, DescentCounts) {
     let mut frame = PairFrame::new(trees.0, trees.1, pos12, margin);
     let mut visitor = Survivors { test: LeafTest::new(&frame), pairs: BTreeSet::new() };
     let mut counts = DescentCounts::default();
@@ -49,10 +45,7 @@ where
     (visitor.pairs, counts)
 }
 
-fn tree<const AXES: usize>(soup: &Soup, layers: impl Into<Option<LayerPlan>>) -> Tree<AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+fn tree(soup: &Soup, layers: impl Into<Option<LayerPlan>>) -> Tree {
     let options = BuildOptions { layers: layers.into(), ..BuildOptions::default() };
     let tree = Tree::build(&soup.vertices, &soup.triangles, &options).unwrap();
     assert_eq!(tree.validate(), Ok(()));
@@ -80,10 +73,7 @@ fn truth(soup1: &Soup, soup2: &Soup, pos12: &Pose3, margin: f32) -> BTreeSet<(u3
 
 /// All plans and both descents find a superset of the truth, and the leaf test lets little else
 /// through.
-fn check<const AXES: usize>(soup1: &Soup, soup2: &Soup, pos12: &Pose3, margin: f32) -> usize
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+fn check(soup1: &Soup, soup2: &Soup, pos12: &Pose3, margin: f32) -> usize {
     let truth = truth(soup1, soup2, pos12, margin);
     let plans = [
         None,
@@ -92,7 +82,7 @@ where
         Some(LayerPlan { sphere_root: false, kdop_from_depth: Some(1) }),
     ];
     for plan in plans {
-        let trees = (tree::<AXES>(soup1, plan), tree::<AXES>(soup2, plan));
+        let trees = (tree(soup1, plan), tree(soup2, plan));
         for descent in [Descent::Simultaneous, Descent::Single] {
             let (pairs, _) = survivors((&trees.0, &trees.1), pos12, margin, descent);
             let lost: Vec<_> = truth.difference(&pairs).collect();
@@ -107,14 +97,14 @@ where
 fn finds_every_pair_where_one_tree_chose_boxes() {
     let mut random = Random(31);
     let (cube, ball) = (cube(6), bumpy_ball(10, 0.2));
-    let has_kdops = |soup: &Soup| tree::<9>(soup, None).stats().kdop_bytes > 0;
+    let has_kdops = |soup: &Soup| tree(soup, None).stats().kdop_bytes > 0;
     assert_eq!([&cube, &ball].map(has_kdops), [false, true]);
     let mut total = 0;
     for i in 0..40 {
         let pose = random.pose(1.5);
         let margin = [0.0, 0.02][i % 2];
-        total += check::<9>(&cube, &ball, &pose, margin);
-        total += check::<9>(&ball, &cube, &pose, margin);
+        total += check(&cube, &ball, &pose, margin);
+        total += check(&ball, &cube, &pose, margin);
     }
     assert!(total > 1000, "the poses hardly touch: {total}");
 }
@@ -129,9 +119,9 @@ fn finds_every_pair_on_bumpy_balls() {
     for i in 0..60 {
         let pose = random.pose(1.2);
         let margin = [0.0, 0.001, 0.02, 0.2][i % 4];
-        total += check::<9>(&ball, &small, &pose, margin);
-        total += check::<7>(&small, &ball, &pose, margin);
-        total += check::<13>(&ball, &ball, &pose, margin);
+        total += check(&ball, &small, &pose, margin);
+        total += check(&small, &ball, &pose, margin);
+        total += check(&ball, &ball, &pose, margin);
     }
     assert!(total > 10_000, "the poses hardly touch: {total}");
 }
@@ -145,8 +135,8 @@ fn finds_every_pair_of_one_triangle_with_many() {
     for _ in 0..100 {
         let one = soup(&mut random, 1, 1.5);
         let pose = random.pose(0.7);
-        total += check::<9>(&one, &ball, &pose, 0.02);
-        total += check::<9>(&ball, &one, &pose, 0.02);
+        total += check(&one, &ball, &pose, 0.02);
+        total += check(&ball, &one, &pose, 0.02);
     }
     assert!(total > 500, "the poses hardly touch: {total}");
 }
@@ -164,7 +154,7 @@ fn finds_every_pair_on_the_lattice() {
             std::f32::consts::FRAC_PI_2 * (i % 4) as f32,
         );
         let shift = Vec3::from_array([0; 3].map(|_| (random.bits() % 9) as f32 - 4.0));
-        total += check::<9>(&soups[0], &soups[1], &Pose3::from_parts(shift, turn), (i % 2) as f32);
+        total += check(&soups[0], &soups[1], &Pose3::from_parts(shift, turn), (i % 2) as f32);
     }
     assert!(total > 5_000, "the poses hardly touch: {total}");
 }
@@ -180,7 +170,7 @@ fn finds_every_pair_far_from_the_origin() {
         ball.vertices.iter_mut().for_each(|v| *v += offset);
         let rotation = random.rotation();
         let translation = offset - rotation * offset + random.vector(1.0);
-        total += check::<9>(&ball, &ball, &Pose3::from_parts(translation, rotation), 0.02);
+        total += check(&ball, &ball, &Pose3::from_parts(translation, rotation), 0.02);
     }
     assert!(total > 1_000, "the poses hardly touch: {total}");
 }
@@ -195,7 +185,7 @@ fn finds_every_pair_under_denormalised_rotations() {
         for _ in 0..10 {
             let mut pose = random.pose(1.2);
             pose.rotation *= scale;
-            total += check::<9>(&ball, &ball, &pose, 0.01);
+            total += check(&ball, &ball, &pose, 0.01);
         }
     }
     assert!(total > 1_000, "the poses hardly touch: {total}");
@@ -230,7 +220,7 @@ fn counts_of_complete_trees_are_the_papers() {
 #[test]
 fn poses_that_are_not_finite_find_nothing() {
     let ball = bumpy_ball(5, 0.2);
-    let tree = tree::<9>(&ball, LayerPlan::SBBK);
+    let tree = tree(&ball, LayerPlan::SBBK);
     let zero = Quat::from_xyzw(0.0, 0.0, 0.0, 0.0);
     let poses = [
         Pose3::from_translation(Vec3::new(f32::NAN, 0.0, 0.0)),
@@ -249,7 +239,7 @@ fn poses_that_are_not_finite_find_nothing() {
 fn kdops_visit_fewer_leaves() {
     let mut random = Random(6);
     let ball = bumpy_ball(24, 0.15);
-    let trees = [LayerPlan::SBBK, LayerPlan::AABB_ONLY].map(|plan| tree::<9>(&ball, plan));
+    let trees = [LayerPlan::SBBK, LayerPlan::AABB_ONLY].map(|plan| tree(&ball, plan));
     let mut leaf_pairs = [0, 0];
     for _ in 0..20 {
         let pose = Pose3::from_parts(random.vector(1.0).normalize() * 1.9, random.rotation());

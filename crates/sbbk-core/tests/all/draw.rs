@@ -4,7 +4,7 @@ use crate::support::{Random, bumpy_ball};
 use glamx::{Pose3, Vec3};
 use sbbk_core::draw::{self, BOX, KDOP, SPHERE};
 use sbbk_core::tree::{BuildOptions, LayerPlan, Tree};
-use sbbk_core::volumes::{Aabb, DirectionSet, Directions, Kdop, Kdop18, Sphere};
+use sbbk_core::volumes::{Aabb, Kdop, SLABS, Sphere, directions};
 
 fn lines(draw: impl FnOnce(&mut dyn FnMut(Vec3, Vec3))) -> Vec<[Vec3; 2]> {
     let mut lines = Vec::new();
@@ -12,19 +12,13 @@ fn lines(draw: impl FnOnce(&mut dyn FnMut(Vec3, Vec3))) -> Vec<[Vec3; 2]> {
     lines
 }
 
-fn kdop_lines<const AXES: usize>(kdop: &Kdop<AXES>) -> Vec<[Vec3; 2]>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+fn kdop_lines(kdop: &Kdop) -> Vec<[Vec3; 2]> {
     lines(|line| draw::kdop(kdop, line))
 }
 
 /// How far a point is outside a k-DOP, in units of its coordinates; negative inside.
-fn outside<const AXES: usize>(kdop: &Kdop<AXES>, point: Vec3) -> f64
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
-    let slabs = <Directions<AXES> as DirectionSet<AXES>>::DIRECTIONS;
+fn outside(kdop: &Kdop, point: Vec3) -> f64 {
+    let slabs = directions::DIRECTIONS;
     let ends = slabs.iter().zip(kdop.min.iter().zip(&kdop.max));
     ends.map(|(direction, (&min, &max))| {
         let x = direction.as_dvec3().dot(point.as_dvec3());
@@ -34,15 +28,12 @@ where
 }
 
 /// Clouds of points near and far from the origin. Would catch a lost or misplaced edge.
-fn check_clouds<const AXES: usize>()
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+fn check_clouds() {
     let mut random = Random(5);
     for case in 0..40 {
         let centre = random.vector(if case % 2 == 0 { 1.0 } else { 300.0 });
         let points: Vec<Vec3> = (0..30).map(|_| centre + random.vector(1.0)).collect();
-        let kdop = Kdop::<AXES>::fit(&points);
+        let kdop = Kdop::fit(&points);
         let lines = kdop_lines(&kdop);
         let magnitude = f64::from(centre.abs().max_element() + 1.0);
         for point in lines.iter().flatten() {
@@ -62,17 +53,14 @@ where
 
 /// Near the regular body with slabs in general position, where three edges meet at each corner. By
 /// Euler's formula, would catch a lost or doubled edge.
-fn check_edges<const AXES: usize>()
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+fn check_edges() {
     let mut random = Random(6);
-    let slabs = <Directions<AXES> as DirectionSet<AXES>>::DIRECTIONS;
+    let slabs = directions::DIRECTIONS;
     for _ in 0..40 {
         let mut end = |axis: usize| slabs[axis].length() * random.range(1.0, 1.1);
         let max = std::array::from_fn(&mut end);
         let min = std::array::from_fn(|axis| -end(axis));
-        let lines = kdop_lines(&Kdop::<AXES> { min, max });
+        let lines = kdop_lines(&Kdop { min, max });
         let mut corners: Vec<Vec3> = Vec::new();
         for end in lines.iter().flatten() {
             if !corners.iter().any(|corner| corner.distance(*end) < 1e-6) {
@@ -80,18 +68,14 @@ where
             }
         }
         assert_eq!(2 * lines.len(), 3 * corners.len());
-        assert_eq!(lines.len() + 2 - corners.len(), 2 * AXES, "faces");
+        assert_eq!(lines.len() + 2 - corners.len(), 2 * SLABS, "faces");
     }
 }
 
 #[test]
 fn kdops_of_clouds_are_drawn_whole() {
-    check_clouds::<7>();
-    check_clouds::<9>();
-    check_clouds::<13>();
-    check_edges::<7>();
-    check_edges::<9>();
-    check_edges::<13>();
+    check_clouds();
+    check_edges();
 }
 
 /// Bodies whose edges are known, with planes that touch in edges and corners only.
@@ -99,8 +83,7 @@ fn kdops_of_clouds_are_drawn_whole() {
 fn edges_are_counted_right() {
     let ends =
         |face: f32, edge: f32| std::array::from_fn(|axis| if axis < 3 { face } else { edge });
-    let symmetric =
-        |face: f32, edge: f32| Kdop18 { min: ends(-face, -edge), max: ends(face, edge) };
+    let symmetric = |face: f32, edge: f32| Kdop { min: ends(-face, -edge), max: ends(face, edge) };
     // Cube, chamfered cube, rhombic dodecahedron. Of the first, planes touch whole edges.
     for (kdop, count) in [(symmetric(1.0, 2.0), 12), (symmetric(1.0, 1.5), 48)] {
         assert_eq!(kdop_lines(&kdop).len(), count);
@@ -109,7 +92,7 @@ fn edges_are_counted_right() {
     let flat = Aabb { min: Vec3::new(-1.0, 0.0, -1.0), max: Vec3::new(1.0, 0.0, 1.0) };
     assert_eq!(lines(|line| draw::aabb(&flat, line)).len(), 4);
     assert!(lines(|line| draw::aabb(&Aabb::EMPTY, line)).is_empty());
-    assert!(kdop_lines(&Kdop18::EMPTY).is_empty());
+    assert!(kdop_lines(&Kdop::EMPTY).is_empty());
     assert!(lines(|line| draw::sphere(&Sphere::fit(&[]), line)).is_empty());
 }
 

@@ -12,7 +12,6 @@ mod front;
 mod outward;
 mod placement;
 mod query;
-mod refit;
 mod slack;
 #[path = "../support/mod.rs"]
 mod support;

@@ -4,12 +4,11 @@
 //! Bare trees list all contacts of triangles at a pose, with every kind of k-DOP and size of leaf; the
 //! dispatcher, which has 18-DOPs and leaves of four triangles, is asked as a user asks it.
 
-use std::cell::RefCell;
 use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Duration;
 
-use glamx::{Pose3, Quat, Vec2, Vec3};
+use glamx::{Quat, Vec2, Vec3};
 use oorandom::Rand32;
 use rapier_integration::{SbbkConfig, SbbkDispatcher};
 use rapier3d::geometry::SharedShape;
@@ -17,7 +16,6 @@ use rapier3d::math::Real;
 use sbbk_core::query::{SearchScratch, contacts};
 use sbbk_core::traverse::Placement;
 use sbbk_core::tree::{BATCH, BuildOptions, LayerPlan, Tree};
-use sbbk_core::volumes::{DirectionSet, Directions};
 
 use super::motion::{Approach, Mode, Place, mode_notes};
 use super::pair::{Contest, query_count, sweep};
@@ -50,8 +48,7 @@ const PLANS: [(&str, Option<LayerPlan>); 7] = [
 ];
 /// What bare trees can besides. The last two are the paper's AABB trees: boxes of both along the axes of
 /// one frame, for which those of the second mesh must be fitted anew when it moves.
-const OTHERS: [&str; 5] =
-    ["14-DOPs", "26-DOPs", "leaves of 2", "one frame", "one frame, with the refit"];
+const OTHERS: [&str; 1] = ["leaves of 2"];
 
 const LEAST: &str = "times: means over the poses of the least time at each; plans take turns there";
 
@@ -191,13 +188,9 @@ impl<'a> Case<'a> {
         let default = options(None);
         let mut asks = Vec::new();
         for (_, layers) in PLANS {
-            asks.push(self.ask::<9>(options(layers)));
+            asks.push(self.ask(options(layers)));
         }
-        asks.push(self.ask::<7>(default));
-        asks.push(self.ask::<13>(default));
-        asks.push(self.ask::<9>(BuildOptions { leaf_size: 2, ..default }));
-        asks.push(self.ask_in_one_frame(false));
-        asks.push(self.ask_in_one_frame(true));
+        asks.push(self.ask(BuildOptions { leaf_size: 2, ..default }));
         let times = self.fastest(&asks, repeats, 1.0, |ask, place| ask(place));
         let names = PLANS.map(|(name, _)| name).into_iter().chain(OTHERS);
         let rows = names
@@ -206,39 +199,14 @@ impl<'a> Case<'a> {
         rows.collect::<Vec<_>>().into_iter()
     }
 
-    fn ask<const AXES: usize>(&self, options: BuildOptions) -> Ask<'_>
-    where
-        Directions<AXES>: DirectionSet<AXES>,
-    {
-        let trees = [self.tree::<AXES>(0, options), self.tree(1, options)];
+    fn ask(&self, options: BuildOptions) -> Ask<'_> {
+        let trees = [self.tree(0, options), self.tree(1, options)];
         Box::new(move |place| {
             contacts_of([&trees[0], &trees[1]], Placement::new(&self.places[place].pos12))
         })
     }
 
-    /// Boxes of both meshes in the frame of the first. Whether to count what it takes to fit them.
-    fn ask_in_one_frame(&self, counts_refit: bool) -> Ask<'_> {
-        let options = BuildOptions { layers: Some(LayerPlan::AABB_ONLY), leaf_size: BATCH };
-        let tree1 = self.tree::<9>(0, options);
-        let second = RefCell::new((self.tree::<9>(1, options), self.meshes[1].vertices.clone()));
-        let Mesh { vertices, triangles, .. } = &self.meshes[1];
-        Box::new(move |place| {
-            let (tree2, moved) = &mut *second.borrow_mut();
-            let (refit, cost) = timed(|| {
-                let pose = &self.places[place].pos12;
-                moved.iter_mut().zip(vertices).for_each(|(to, from)| *to = pose * *from);
-                tree2.refit(moved, triangles)
-            });
-            debug_assert!(cost.is_ok(), "it is finite, and of the same triangles");
-            let time = contacts_of([&tree1, tree2], Placement::new(&Pose3::IDENTITY));
-            if counts_refit { refit + time } else { time }
-        })
-    }
-
-    fn tree<const AXES: usize>(&self, index: usize, options: BuildOptions) -> Tree<AXES>
-    where
-        Directions<AXES>: DirectionSet<AXES>,
-    {
+    fn tree(&self, index: usize, options: BuildOptions) -> Tree {
         build(&self.meshes[index], &options)
     }
 
@@ -293,20 +261,17 @@ impl<'a> Case<'a> {
     }
 }
 
-fn build<const AXES: usize>(mesh: &Mesh, options: &BuildOptions) -> Tree<AXES>
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+fn build(mesh: &Mesh, options: &BuildOptions) -> Tree {
     Tree::build(&mesh.vertices, &mesh.triangles, options).expect("meshes of the studies are sound")
 }
 
 /// What a build chooses, and how much longer than one that is told so it takes.
 fn choice(mesh: &Mesh, repeats: usize) -> Row {
-    let chosen = *build::<9>(mesh, &BuildOptions::default()).stats();
+    let chosen = *build(mesh, &BuildOptions::default()).stats();
     let plans = [None, Some(chosen.layers)];
     let times = race(&plans, repeats.max(1), 1e6, |layers| {
         let options = BuildOptions { layers: *layers, ..BuildOptions::default() };
-        timed(|| black_box(build::<9>(mesh, &options))).0
+        timed(|| black_box(build(mesh, &options))).0
     });
     Row::new(CHOICE, CHOSEN)
         .key("mesh", &*mesh.name)
@@ -318,13 +283,7 @@ fn choice(mesh: &Mesh, repeats: usize) -> Row {
 }
 
 /// The time of all contacts of triangles.
-fn contacts_of<const AXES: usize>(
-    [tree1, tree2]: [&Tree<AXES>; 2],
-    placement: Placement,
-) -> Duration
-where
-    Directions<AXES>: DirectionSet<AXES>,
-{
+fn contacts_of([tree1, tree2]: [&Tree; 2], placement: Placement) -> Duration {
     let (mut scratch, mut found) = (SearchScratch::default(), 0);
     let prediction = PREDICTION.into();
     let (time, ()) =

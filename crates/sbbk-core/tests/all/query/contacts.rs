@@ -14,7 +14,7 @@ type Distances = BTreeMap<(u32, u32), f64>;
 
 fn found(meshes: [&Soup; 2], pose: &Pose3, margin: f64) -> Vec<FoundPair> {
     let [tree1, tree2] = meshes.map(|soup| {
-        Tree::<9>::build(&soup.vertices, &soup.triangles, &BuildOptions::default()).unwrap()
+        Tree::build(&soup.vertices, &soup.triangles, &BuildOptions::default()).unwrap()
     });
     let mut pairs = Vec::new();
     let scratch = &mut SearchScratch::default();

@@ -10,10 +10,7 @@ use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
 /// Of the size of the meshes: a rounded rotation, `|q| = 1 ± 1e-7`, moves mesh 2 by as much.
 const TOLERANCE: f64 = 1.0e-6;
 
-fn tree<const AXES: usize>(soup: &Soup, layers: LayerPlan) -> Tree<AXES>
-where
-    sbbk_core::volumes::Directions<AXES>: sbbk_core::volumes::DirectionSet<AXES>,
-{
+fn tree(soup: &Soup, layers: LayerPlan) -> Tree {
     let options = BuildOptions { layers: Some(layers), ..BuildOptions::default() };
     Tree::build(&soup.vertices, &soup.triangles, &options).expect("soups are valid")
 }
@@ -22,13 +19,13 @@ where
 type Question = fn((&Tree, &Tree), Placement, f64, &mut SearchScratch) -> Option<FoundPair>;
 
 fn ask(meshes: [&Soup; 2], pose: &Pose3, limit: f64, question: Question) -> Option<FoundPair> {
-    let [tree1, tree2] = meshes.map(|soup| tree::<9>(soup, LayerPlan::SBBK));
+    let [tree1, tree2] = meshes.map(|soup| tree(soup, LayerPlan::SBBK));
     let placement = Placement::new(pose);
     question((&tree1, &tree2), placement, limit, &mut SearchScratch::default())
 }
 
 fn ask_meeting(meshes: [&Soup; 2], pose: &Pose3) -> Option<FoundPair> {
-    let [tree1, tree2] = meshes.map(|soup| tree::<9>(soup, LayerPlan::SBBK));
+    let [tree1, tree2] = meshes.map(|soup| tree(soup, LayerPlan::SBBK));
     meeting((&tree1, &tree2), Placement::new(pose), &mut SearchScratch::default())
 }
 
@@ -124,7 +121,7 @@ proptest! {
         }
     }
 
-    /// Every direction set and plan gives the same distance.
+    /// Every plan gives the same distance.
     #[test]
     fn any_layers(seed: u64) {
         let mut random = Random(seed);
@@ -134,21 +131,14 @@ proptest! {
         let plans = [LayerPlan::AABB_ONLY, LayerPlan::SBBK,
             LayerPlan { sphere_root: false, kdop_from_depth: Some(1) }];
         for plan in plans {
-            let found = [
-                in_layers::<7>([&one, &two], &pose, plan),
-                in_layers::<9>([&one, &two], &pose, plan),
-                in_layers::<13>([&one, &two], &pose, plan),
-            ];
-            prop_assert!(found.iter().all(|d| (d - truth).abs() < 1e-5), "{found:?}, truth {truth}");
+            let found = in_layers([&one, &two], &pose, plan);
+            prop_assert!((found - truth).abs() < 1e-5, "{found}, truth {truth}");
         }
     }
 }
 
-fn in_layers<const AXES: usize>(meshes: [&Soup; 2], pose: &Pose3, plan: LayerPlan) -> f64
-where
-    sbbk_core::volumes::Directions<AXES>: sbbk_core::volumes::DirectionSet<AXES>,
-{
-    let [tree1, tree2] = meshes.map(|soup| tree::<AXES>(soup, plan));
+fn in_layers(meshes: [&Soup; 2], pose: &Pose3, plan: LayerPlan) -> f64 {
+    let [tree1, tree2] = meshes.map(|soup| tree(soup, plan));
     let (placement, mut scratch) = (Placement::new(pose), SearchScratch::default());
     let found = deepest((&tree1, &tree2), placement, f64::INFINITY, &mut scratch);
     found.expect("no limit").contact.distance
@@ -207,7 +197,7 @@ fn meshes_touch_up_to_rounding() {
         assert!(ask(meshes, &Pose3::IDENTITY, 0.0, nearest).is_some());
         assert!(ask_meeting(meshes, &Pose3::IDENTITY).is_some());
         // So do those that part.
-        let [tree1, tree2] = meshes.map(|soup| tree::<9>(soup, LayerPlan::SBBK));
+        let [tree1, tree2] = meshes.map(|soup| tree(soup, LayerPlan::SBBK));
         let options =
             CastOptions { max_time: 1.0, target_distance: 0.0, stop_at_penetration: true };
         let placement = Placement::new(&Pose3::IDENTITY);
