@@ -1,7 +1,7 @@
 use std::sync::{Arc, OnceLock};
 
 use parry3d::shape::{CompositeShape, TriMesh};
-use sbbk_core::surface::{Around, MeshFacets, SurfaceKind, Twins};
+use sbbk_core::surface::{HalfEdges, IndexedTriangles, OneRing, SurfaceKind};
 
 use super::cache::{PreparedRef, TreeCache};
 use super::hierarchy::Hierarchy;
@@ -168,16 +168,17 @@ pub(crate) enum MeshSurface<'a> {
 impl MeshSurface<'_> {
     /// The surface of `mesh`, which must be this one.
     #[inline]
-    pub(crate) fn around<'a>(&'a self, mesh: &'a TriMesh) -> Around<MeshFacets<'a>> {
-        let (twins, is_solid): (&dyn Twins, bool) = match self {
+    pub(crate) fn around<'a>(&'a self, mesh: &'a TriMesh) -> OneRing<IndexedTriangles<'a>> {
+        let (twins, is_solid): (&dyn HalfEdges, bool) = match self {
             Self::Whole { entry, cache } => {
                 let (twins, kind) = entry.get_or_init(|| cache.know(mesh)).surface(mesh);
                 (twins, kind == SurfaceKind::Solid)
             }
             Self::Near(twins) => (twins, false),
         };
-        let facets = MeshFacets { twins, vertices: mesh.vertices(), triangles: mesh.indices() };
-        Around { facets, is_solid }
+        let facets =
+            IndexedTriangles { twins, vertices: mesh.vertices(), triangles: mesh.indices() };
+        OneRing { facets, is_solid }
     }
 }
 

@@ -2,7 +2,7 @@ use std::cell::RefCell;
 
 use parry3d::shape::TriMesh;
 use rustc_hash::FxHashMap;
-use sbbk_core::surface::Twins;
+use sbbk_core::surface::HalfEdges;
 
 /// The neighbours of the triangles of a mesh that a pair has come across: of a mesh that is too large
 /// to look at as a whole.
@@ -27,7 +27,7 @@ impl<'a> NearTwins<'a> {
     }
 }
 
-impl Twins for NearTwins<'_> {
+impl HalfEdges for NearTwins<'_> {
     fn twin(&self, half_edge: u32) -> Option<u32> {
         let (triangle, edge) = (half_edge / 3, half_edge as usize % 3);
         let mut known = self.known.borrow_mut();

@@ -1,4 +1,4 @@
-//! What tells a solid from a sheet.
+//! Classification of meshes as solids or sheets.
 
 use std::collections::BTreeMap;
 
@@ -7,34 +7,36 @@ use rustc_hash::FxHashMap;
 
 use crate::collections::Groups;
 
-/// What a mesh bounds.
+/// The kind of surface that a mesh forms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SurfaceKind {
-    /// A body: closed, or with holes that are small beside it, and wound so that normals point out
-    /// of it. Several components, and hollows in them, may make it up.
+    /// A body with outward normals, closed or nearly so. It may consist of several components, with
+    /// hollows.
     Solid,
-    /// As a solid, but its normals point inwards.
+    /// A body with inward normals.
     InsideOut,
-    /// Anything else: an open surface, triangles that disagree about the outside, a soup. It is met
-    /// from both sides.
+    /// An open surface, a triangle soup, or triangles that disagree about the outside. It collides on
+    /// both sides.
     Sheet,
 }
 
-/// Holes of a solid together, as a share of its surface; of a hole with a lid the gap counts. The eyes of a
-/// monkey's head take 0.049 of it, the opening of a glove 0.1, that of a half sphere a half, of a box without
-/// lid a fifth. Higher: bodies in a vase are pushed out of it. Lower: a head with a hole is a sheet.
+/// Greatest area of all holes of a solid, as a share of its surface; for a hole with a lid the gap
+/// counts. Higher: bodies in a vase are pushed out of it. Lower: a head with a hole is a sheet.
 const GREATEST_HOLES: f64 = 0.06;
 
-/// How far a border may be from another one that it closes, as a share of the extent: a seam where
-/// an angle of a whole turn is not quite that of none. Higher: slits are closed; lower: seams are
-/// holes.
+/// Greatest distance of two borders that close each other, as a share of the extent of the mesh.
+/// Higher: slits count as closed. Lower: seams count as holes.
 const SEAM: f64 = 1.0e-5;
 
-/// Volume over surface times extent. Zero for a sheet of two layers, 1/2000 for a plate a thousandth
-/// as thick as wide.
+/// Least volume of a solid, as a share of its surface times its extent. Higher: thin plates count as
+/// sheets. Lower: sheets of two layers count as solids.
 const LEAST_VOLUME: f64 = 1.0e-6;
 
-pub(super) fn of(vertices: &[Vec3], triangles: &[[u32; 3]], uneven: &[[u32; 2]]) -> SurfaceKind {
+pub(super) fn classify(
+    vertices: &[Vec3],
+    triangles: &[[u32; 3]],
+    unpaired: &[[u32; 2]],
+) -> SurfaceKind {
     let Some(&first) = triangles.first().and_then(|triangle| vertices.get(triangle[0] as usize))
     else {
         return SurfaceKind::Sheet;
@@ -48,9 +50,9 @@ pub(super) fn of(vertices: &[Vec3], triangles: &[[u32; 3]], uneven: &[[u32; 2]])
         volume += a.dot(twice) / 6.0;
         extent = extent.max(a.length());
     }
-    let borders = loops(&without_seams(uneven, corner, SEAM * extent));
+    let borders = loops(&without_seams(unpaired, corner, SEAM * extent));
     let borders = borders.iter().map(|edges| Border::new(edges, corner)).collect();
-    let is_closed = holes(borders) <= GREATEST_HOLES * area;
+    let is_closed = hole_area(borders) <= GREATEST_HOLES * area;
     let least = LEAST_VOLUME * area * extent;
     if is_closed && volume > least {
         SurfaceKind::Solid
@@ -61,21 +63,23 @@ pub(super) fn of(vertices: &[Vec3], triangles: &[[u32; 3]], uneven: &[[u32; 2]])
     }
 }
 
-/// A loop of borders.
+/// A loop of border edges.
 struct Border {
     middle: DVec3,
     length: f64,
-    /// What covers it from its middle.
+    /// Area of the triangles between the middle and the edges.
     cover: f64,
-    /// The vector area of that: less, and none of a loop that leads around two holes, as that of a tube with
-    /// a slit.
+    /// Vector area of these triangles. Shorter than the cover for a loop around two holes, such as
+    /// the border of a tube with a slit.
     area: DVec3,
 }
 
-/// How much of its cover the vector area of a loop around one hole is at least.
+/// Least vector area of a loop around one hole, as a share of its cover. Higher: bent holes need a
+/// cover of their own. Lower: the strip between a slit and a hole counts.
 const ONE_HOLE: f64 = 0.9;
 
-/// So many of the largest loops may close each other.
+/// Number of the largest loops that may close each other. Higher: time by its square. Lower: lids of
+/// small holes count as holes.
 const MOST_LIDS: usize = 32;
 
 impl Border {
@@ -92,9 +96,9 @@ impl Border {
         Self { middle, length, cover, area }
     }
 
-    /// What the strip between two loops spares that run around each other the opposite way, as the rim of a
-    /// pot and that of its lid do, beside a cover of each.
-    fn spared_by(&self, lid: &Self) -> f64 {
+    /// Area saved by the strip between this hole and its lid, compared with a cover of each. Zero
+    /// unless both loops are holes that run in opposite directions.
+    fn area_saved_by(&self, lid: &Self) -> f64 {
         let is_hole = |border: &Self| border.area.length() >= ONE_HOLE * border.cover;
         if !is_hole(self) || !is_hole(lid) {
             return 0.0;
@@ -104,32 +108,32 @@ impl Border {
     }
 }
 
-/// What it takes to close all loops: a cover of each, or the strip between a hole and its lid.
-fn holes(mut borders: Vec<Border>) -> f64 {
+/// Area that closes all loops: a cover of each, or the strip between a hole and its lid.
+fn hole_area(mut borders: Vec<Border>) -> f64 {
     borders.sort_unstable_by(|a, b| b.cover.total_cmp(&a.cover));
     let all: f64 = borders.iter().map(|border| border.cover).sum();
     borders.truncate(MOST_LIDS);
     let pairs = (0..borders.len()).flat_map(|i| (0..i).map(move |j| [i, j]));
-    let spared = pairs.map(|[i, j]| (borders[i].spared_by(&borders[j]), [i, j]));
-    let mut spared: Vec<_> = spared.filter(|(spared, _)| *spared > 0.0).collect();
-    spared.sort_unstable_by(|(a, _), (b, _)| b.total_cmp(a));
+    let saved = pairs.map(|[i, j]| (borders[i].area_saved_by(&borders[j]), [i, j]));
+    let mut saved: Vec<_> = saved.filter(|(saved, _)| *saved > 0.0).collect();
+    saved.sort_unstable_by(|(a, _), (b, _)| b.total_cmp(a));
     let mut is_closed = vec![false; borders.len()];
-    let of_lids = spared.into_iter().filter(|(_, pair)| {
+    let by_lids = saved.into_iter().filter(|(_, pair)| {
         let is_new = pair.iter().all(|&i| !is_closed[i]);
         pair.iter().for_each(|&i| is_closed[i] |= is_new);
         is_new
     });
-    all - of_lids.map(|(spared, _)| spared).sum::<f64>()
+    all - by_lids.map(|(saved, _)| saved).sum::<f64>()
 }
 
-/// The edges that no other makes up for, where vertices as close as that are one.
+/// The edges without a partner that runs back, after vertices within `distance` are merged.
 fn without_seams(
     edges: &[[u32; 2]],
     corner: impl Fn(u32) -> DVec3,
     distance: f64,
 ) -> Vec<[u32; 2]> {
     let cell = |place: DVec3| (place / distance).floor().to_array().map(|x| x as i64);
-    // One vertex of each cell will do.
+    // One vertex of each cell is enough.
     let mut cells: FxHashMap<[i64; 3], u32> = Default::default();
     let mut same: FxHashMap<u32, u32> = Default::default();
     for &vertex in edges.as_flattened() {
@@ -138,8 +142,8 @@ fn without_seams(
             let near =
                 (0..8).map(|i| DVec3::from_array([0, 1, 2].map(|axis| f64::from(i >> axis & 1))));
             let near = near.map(|offset| cell(place + distance * (offset - 0.5)));
-            let known = near.filter_map(|cell| cells.get(&cell).copied()).next();
-            known.unwrap_or_else(|| *cells.entry(cell(place)).or_insert(vertex))
+            let merged = near.filter_map(|cell| cells.get(&cell).copied()).next();
+            merged.unwrap_or_else(|| *cells.entry(cell(place)).or_insert(vertex))
         });
     }
     let mut open: BTreeMap<[u32; 2], usize> = Default::default();
@@ -153,7 +157,7 @@ fn without_seams(
     open.into_iter().flat_map(|(edge, count)| std::iter::repeat_n(edge, count)).collect()
 }
 
-/// Edges that hang together.
+/// The connected components of some edges.
 fn loops(edges: &[[u32; 2]]) -> Vec<Vec<[u32; 2]>> {
     let mut groups = Groups::default();
     edges.iter().for_each(|&[a, b]| groups.join(a, b));
@@ -168,10 +172,8 @@ fn loops(edges: &[[u32; 2]]) -> Vec<Vec<[u32; 2]>> {
 mod tests {
     use super::*;
 
-    /// Would catch edges that make up for several others, for those that run the same way, or for none
-    /// once they have made up for one.
     #[test]
-    fn each_edge_makes_up_for_one_that_runs_back() {
+    fn an_edge_cancels_one_edge_that_runs_back() {
         // Both ends three times, a little apart.
         let corner = |vertex: u32| DVec3::new(f64::from(vertex % 2), 1e-7 * f64::from(vertex), 0.0);
         let left = |edges: &[[u32; 2]]| {

@@ -1,9 +1,8 @@
-//! What lies around a triangle of a mesh, and whether the mesh has an inside.
+//! Adjacency of the triangles of a mesh, and the kind of surface that they form.
 //!
-//! A triangle alone cannot tell on which side of it the body is, nor whether a point on its border
-//! is a corner of the body or in the midst of a flat face. A [`Surface`] can: it knows the
-//! neighbours across each edge, of welded vertices, and from all triangles together whether they
-//! bound a solid.
+//! A triangle alone cannot tell on which side the body is, nor if a point on its border is a corner
+//! of the body or lies within a flat face. A [`Surface`] stores the neighbours across each edge, of
+//! welded vertices, and derives from all triangles if they bound a solid.
 //!
 //! ```
 //! use glamx::{DVec3, Vec3};
@@ -15,29 +14,29 @@
 //! let surface = Surface::new(&vertices, &triangles);
 //! assert_eq!(surface.kind(), SurfaceKind::Solid);
 //!
-//! let around = surface.around(&vertices, &triangles);
-//! // Down from the origin nothing of the solid is nearer to what is there.
-//! assert!(around.is_front(0, Feature::Vertex(0), -DVec3::ONE, None));
-//! // Along this one the next vertex on the x axis is nearer.
+//! let ring = surface.one_ring(&vertices, &triangles);
+//! // Down from the origin no other part of the solid is nearer.
+//! assert!(ring.is_local_minimum(0, Feature::Vertex(0), -DVec3::ONE, None));
+//! // Along this direction the next vertex on the x axis is nearer.
 //! let along_x = DVec3::new(1.0, -1.0, -1.0);
-//! assert!(!around.is_front(0, Feature::Vertex(0), along_x, None));
-//! assert!(around.is_behind(0, Feature::Vertex(0), DVec3::ONE));
+//! assert!(!ring.is_local_minimum(0, Feature::Vertex(0), along_x, None));
+//! assert!(ring.points_inside(0, Feature::Vertex(0), DVec3::ONE));
 //! ```
 
-mod around;
 mod kind;
+mod one_ring;
 mod twins;
 
-pub use around::{Around, Facets, MeshFacets, Twins};
 pub use kind::SurfaceKind;
+pub use one_ring::{Facets, HalfEdges, IndexedTriangles, OneRing};
 
 use glamx::Vec3;
 
 use crate::collections::Numbers;
 
-/// The neighbours of each triangle of a mesh, and what the mesh bounds.
+/// The adjacency of the triangles of a mesh, and the kind of surface.
 ///
-/// Takes 6 bytes a triangle, 12 of a mesh of more than 21,845.
+/// Takes 6 bytes a triangle, 12 for a mesh of more than 21,845 triangles.
 #[derive(Clone, Debug)]
 pub struct Surface {
     twins: Numbers,
@@ -45,32 +44,32 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Vertices at one place are one vertex. Takes about 35 ns a triangle.
+    /// Analyses a mesh. Vertices at one place count as one vertex. Takes about 35 ns a triangle.
     ///
     /// # Panics
     /// If a triangle has an index beyond the vertices.
     pub fn new(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Self {
-        let (twins, uneven) = twins::find(vertices, triangles);
-        let kind = kind::of(vertices, triangles, &uneven);
+        let (twins, unpaired) = twins::find(vertices, triangles);
+        let kind = kind::classify(vertices, triangles, &unpaired);
         Self { twins, kind }
     }
 
-    /// What the mesh bounds.
+    /// The kind of surface.
     pub fn kind(&self) -> SurfaceKind {
         self.kind
     }
 
-    /// With the mesh that it is of.
-    pub fn around<'a>(
+    /// Tests of directions, given the mesh that this surface was made from.
+    pub fn one_ring<'a>(
         &'a self,
         vertices: &'a [Vec3],
         triangles: &'a [[u32; 3]],
-    ) -> Around<MeshFacets<'a>> {
-        let facets = MeshFacets { twins: self, vertices, triangles };
-        Around { facets, is_solid: self.kind == SurfaceKind::Solid }
+    ) -> OneRing<IndexedTriangles<'a>> {
+        let facets = IndexedTriangles { twins: self, vertices, triangles };
+        OneRing { facets, is_solid: self.kind == SurfaceKind::Solid }
     }
 
-    /// Memory, with this value but without the mesh itself.
+    /// Memory of this value in bytes, without the mesh.
     pub fn bytes(&self) -> usize {
         size_of::<Self>() + self.twins.bytes()
     }

@@ -1,4 +1,4 @@
-//! Which half-edges run back along each other.
+//! Pairs of half-edges that run back along each other.
 
 use glamx::Vec3;
 use rustc_hash::FxHashMap;
@@ -7,35 +7,12 @@ use crate::collections::Numbers;
 
 const NONE: u32 = u32::MAX;
 
-/// The twin of each half-edge, if there is exactly one, and the half-edges that no other makes up
-/// for, by their welded ends: borders, and edges along which triangles disagree about the outside.
+/// The twin of each half-edge, if there is exactly one, and the unpaired half-edges by their welded
+/// ends: borders, and edges along which triangles disagree about the outside.
 pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Numbers, Vec<[u32; 2]>) {
-    let welded = weld(vertices);
-    // Each edge is listed with its lesser end. A mesh has one and a half edges a triangle.
-    let mut first = vec![NONE; vertices.len()];
-    let mut edges = Vec::<Edge>::with_capacity(triangles.len() * 3 / 2 + 16);
-    for (triangle, corners) in (0..).zip(triangles) {
-        let [a, b, c] = corners.map(|corner| welded[corner as usize]);
-        for (i, [start, end]) in (0..).zip([[a, b], [b, c], [c, a]]) {
-            let way = usize::from(start > end);
-            let (low, high) = if way == 0 { (start, end) } else { (end, start) };
-            let head = &mut first[low as usize];
-            let mut at = *head;
-            while at != NONE && edges[at as usize].high != high {
-                at = edges[at as usize].next;
-            }
-            if at == NONE {
-                at = edges.len() as u32;
-                edges.push(Edge { low, high, next: *head, last: [NONE; 2], counts: [0; 2] });
-                *head = at;
-            }
-            let edge = &mut edges[at as usize];
-            edge.last[way] = 3 * triangle + i;
-            edge.counts[way] += 1;
-        }
-    }
-    let (mut twins, mut uneven) = (vec![None; 3 * triangles.len()], Vec::new());
-    for Edge { low, high, last: [up, down], counts, .. } in edges {
+    let (edges, _) = edges(&weld(vertices), triangles);
+    let (mut twins, mut unpaired) = (vec![None; 3 * triangles.len()], Vec::new());
+    for Edge { ends: [low, high], last: [up, down], counts, .. } in edges {
         match counts {
             [1, 1] => {
                 twins[up as usize] = Some(down);
@@ -43,22 +20,60 @@ pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Numbers, Vec<[
             }
             [ups, downs] => {
                 let ends = if ups > downs { [low, high] } else { [high, low] };
-                uneven.extend(std::iter::repeat_n(ends, ups.abs_diff(downs) as usize));
+                unpaired.extend(std::iter::repeat_n(ends, ups.abs_diff(downs) as usize));
             }
         }
     }
-    (Numbers::new(twins.into_iter()), uneven)
+    (Numbers::new(twins.into_iter()), unpaired)
 }
 
 /// All half-edges between two vertices.
 struct Edge {
-    low: u32,
-    high: u32,
-    /// Another edge with the same lesser end.
+    /// The lesser vertex, and the other one.
+    ends: [u32; 2],
+    /// The next edge of the same list.
     next: u32,
-    /// The last half-edge up and down, and how many there are.
+    /// The last half-edge up and down, and the number of either.
     last: [u32; 2],
     counts: [u32; 2],
+}
+
+/// All edges in the order of their first half-edges, and the number of list steps.
+///
+/// Each edge is listed at that end which fewer triangles share. The lists of planar graphs then take
+/// a constant number of steps an edge, whatever the valence of single vertices.
+fn edges(welded: &[u32], triangles: &[[u32; 3]]) -> (Vec<Edge>, usize) {
+    let mut valence = vec![0_u32; welded.len()];
+    for &corner in triangles.as_flattened() {
+        valence[welded[corner as usize] as usize] += 1;
+    }
+    let mut first = vec![NONE; welded.len()];
+    // A closed mesh has one and a half edges a triangle.
+    let mut edges = Vec::<Edge>::with_capacity(triangles.len() * 3 / 2 + 16);
+    let mut steps = 0;
+    for (triangle, corners) in (0..).zip(triangles) {
+        let [a, b, c] = corners.map(|corner| welded[corner as usize]);
+        for (i, [start, end]) in (0..).zip([[a, b], [b, c], [c, a]]) {
+            let way = usize::from(start > end);
+            let ends = if way == 0 { [start, end] } else { [end, start] };
+            let [low, high] = ends.map(|end| end as usize);
+            let head = &mut first[if valence[low] <= valence[high] { low } else { high }];
+            let mut at = *head;
+            while at != NONE && edges[at as usize].ends != ends {
+                at = edges[at as usize].next;
+                steps += 1;
+            }
+            if at == NONE {
+                at = edges.len() as u32;
+                edges.push(Edge { ends, next: *head, last: [NONE; 2], counts: [0; 2] });
+                *head = at;
+            }
+            let edge = &mut edges[at as usize];
+            edge.last[way] = 3 * triangle + i;
+            edge.counts[way] += 1;
+        }
+    }
+    (edges, steps)
 }
 
 /// For each vertex the first one at its place.
@@ -68,4 +83,26 @@ fn weld(vertices: &[Vec3]) -> Vec<u32> {
     // Minus zero is zero.
     let place = |vertex: &Vec3| (*vertex + Vec3::ZERO).to_array().map(f32::to_bits);
     (0..).zip(vertices).map(|(i, vertex)| *places.entry(place(vertex)).or_insert(i)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// List steps for a fan of triangles around a hub.
+    fn steps(count: u32, hub_is_first: bool) -> usize {
+        let hub = if hub_is_first { 0 } else { count + 1 };
+        let rim = |i: u32| i + u32::from(hub_is_first);
+        let triangles: Vec<_> = (0..count).map(|i| [hub, rim(i), rim(i + 1)]).collect();
+        let welded: Vec<u32> = (0..count + 2).collect();
+        edges(&welded, &triangles).1
+    }
+
+    #[test]
+    fn steps_of_a_fan_grow_with_its_triangles() {
+        for hub_is_first in [true, false] {
+            let [few, many] = [250, 4000].map(|count| steps(count, hub_is_first));
+            assert!(many <= 17 * few && many < 3 * 4000, "{few} {many}");
+        }
+    }
 }

@@ -5,7 +5,7 @@ use std::f32::consts::{FRAC_PI_2, PI, TAU};
 use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
 use glamx::{DVec3, Quat, Vec3};
 use sbbk_core::contact::Feature;
-use sbbk_core::surface::{Around, Facets, Surface, SurfaceKind, Twins};
+use sbbk_core::surface::{Facets, HalfEdges, OneRing, Surface, SurfaceKind};
 
 use SurfaceKind::{InsideOut, Sheet, Solid};
 
@@ -128,9 +128,9 @@ enum Side {
     Beside,
 }
 
-fn side(around: &Around<impl Facets>, triangle: u32, feature: Feature, direction: DVec3) -> Side {
-    let is_behind = around.is_behind(triangle, feature, direction);
-    match around.is_front(triangle, feature, direction, None) {
+fn side(around: &OneRing<impl Facets>, triangle: u32, feature: Feature, direction: DVec3) -> Side {
+    let is_behind = around.points_inside(triangle, feature, direction);
+    match around.is_local_minimum(triangle, feature, direction, None) {
         true if is_behind => panic!("in front and behind"),
         true => Side::Front,
         false if is_behind => Side::Behind,
@@ -200,7 +200,7 @@ fn sides_are_those_of_all_triangles_around() {
         let twins = brute_twins(&mesh);
         for case in 0..800 {
             let is_solid = case % 2 == 0;
-            let around = Around { is_solid, ..surface.around(&mesh.vertices, &mesh.triangles) };
+            let around = OneRing { is_solid, ..surface.one_ring(&mesh.vertices, &mesh.triangles) };
             let triangle = (random.bits() % mesh.triangles.len() as u64) as u32;
             for feature in features() {
                 let own = triangles_around(&mesh, &twins, triangle, feature);
@@ -231,7 +231,7 @@ fn in_front_of_a_convex_solid_is_what_no_vertex_exceeds() {
     let [mut fronts, mut behinds] = [0; 2];
     for mesh in [bumpy_ball(5, 0.0), cube(), unwelded(&cube())] {
         let surface = Surface::new(&mesh.vertices, &mesh.triangles);
-        let around = surface.around(&mesh.vertices, &mesh.triangles);
+        let around = surface.one_ring(&mesh.vertices, &mesh.triangles);
         assert!(around.is_solid);
         for half_edge in (0..3 * mesh.triangles.len()).cycle().take(20_000) {
             let vertex = corners(&mesh, half_edge)[0].as_dvec3();
@@ -261,7 +261,7 @@ fn in_front_of_a_convex_solid_is_what_no_vertex_exceeds() {
 fn a_face_is_met_before_it_is_nearest() {
     let cube = cube();
     let surface = Surface::new(&cube.vertices, &cube.triangles);
-    let around = surface.around(&cube.vertices, &cube.triangles);
+    let around = surface.one_ring(&cube.vertices, &cube.triangles);
     let half_edges = 0..3 * cube.triangles.len();
     let corner = half_edges.into_iter().find(|&half_edge| {
         let [corner, _, _] = corners(&cube, half_edge);
@@ -277,7 +277,7 @@ fn a_face_is_met_before_it_is_nearest() {
         (0.4, false, false),
     ] {
         let down = DVec3::new(f64::sin(lean), -f64::cos(lean), 0.0);
-        let is_front = |to| around.is_front(triangle, feature, down, to);
+        let is_front = |to| around.is_local_minimum(triangle, feature, down, to);
         assert_eq!([is_front(None), is_front(Some(Feature::Face))], [free, to_face], "{lean}");
     }
 }
@@ -575,8 +575,8 @@ fn a_flat_side_goes_on_to_its_end() {
         mesh.triangles.extend([[a, a + 1, b + 1], [a, b + 1, b]]);
     }
     let surface = Surface::new(&mesh.vertices, &mesh.triangles);
-    let around = surface.around(&mesh.vertices, &mesh.triangles);
-    let around = Around { is_solid: false, ..around };
+    let around = surface.one_ring(&mesh.vertices, &mesh.triangles);
+    let around = OneRing { is_solid: false, ..around };
     for triangle in 0..2 * CELLS * (CELLS - 1) {
         let top = 1 + triangle / (2 * CELLS);
         let beyond = |direction, most| around.side_beyond(triangle, direction, most);

@@ -4,7 +4,7 @@ use parry3d::math::{Real, Vector};
 use parry3d::query::PointQuery;
 use parry3d::shape::{HeightField, HeightFieldCellStatus, Triangle};
 use sbbk_core::field::{FieldTriangle, HeightGrid};
-use sbbk_core::surface::{Facets, Twins};
+use sbbk_core::surface::{Facets, HalfEdges};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// Parry's height field as the descent sees it. What Parry calls rows lies along z, columns along
@@ -78,7 +78,7 @@ impl Field<'_> {
     }
 }
 
-impl Twins for Field<'_> {
+impl HalfEdges for Field<'_> {
     fn twin(&self, half_edge: u32) -> Option<u32> {
         let triangle = self.of_id(half_edge / 3);
         let own = self.places(triangle);

@@ -28,7 +28,7 @@ use parry3d::query::details::NormalConstraints;
 use parry3d::shape::{HeightField, Triangle, TrianglePseudoNormals};
 use sbbk_core::contact::ManifoldPoints;
 use sbbk_core::field::{FieldFrame, FieldLeaves};
-use sbbk_core::surface::{Around, Facets, MeshFacets, Twins};
+use sbbk_core::surface::{Facets, HalfEdges, IndexedTriangles, OneRing};
 use sbbk_core::traverse::{Counters, Placement};
 use sbbk_core::tree::{BATCH, LeafBatch};
 
@@ -127,11 +127,11 @@ pub(crate) struct MeshAndField<'q> {
 
 /// The triangles of either.
 pub(crate) enum MeshOrField<'a> {
-    Mesh(MeshFacets<'a>),
+    Mesh(IndexedTriangles<'a>),
     Field(Field<'a>),
 }
 
-impl Twins for MeshOrField<'_> {
+impl HalfEdges for MeshOrField<'_> {
     fn twin(&self, half_edge: u32) -> Option<u32> {
         match self {
             Self::Mesh(mesh) => mesh.twin(half_edge),
@@ -161,15 +161,15 @@ impl Surfaces for MeshAndField<'_> {
     where
         Self: 'f;
 
-    fn around(&self, i: usize) -> Option<Around<MeshOrField<'_>>> {
+    fn around(&self, i: usize) -> Option<OneRing<MeshOrField<'_>>> {
         let surface = self.surface.as_ref()?;
         if self.is_field(i) {
             let facets = MeshOrField::Field(self.field);
             let is_solid = self.pair.has_ground && self.field.points_up();
-            return Some(Around { facets, is_solid });
+            return Some(OneRing { facets, is_solid });
         }
-        let Around { facets, is_solid } = surface.around(self.pair.mesh.mesh);
-        Some(Around { facets: MeshOrField::Mesh(facets), is_solid })
+        let OneRing { facets, is_solid } = surface.around(self.pair.mesh.mesh);
+        Some(OneRing { facets: MeshOrField::Mesh(facets), is_solid })
     }
 
     fn near(&self) -> f64 {

@@ -18,7 +18,7 @@ use parry3d::math::{Real, Vector};
 use sbbk_core::contact::{Feature, ManifoldPoints, TriangleContact, outward};
 use sbbk_core::leaf::Beside;
 use sbbk_core::query::TrianglePair;
-use sbbk_core::surface::{Around, Facets};
+use sbbk_core::surface::{Facets, OneRing};
 
 use super::regions::{Regions, Sheet};
 use crate::mesh::BEHIND;
@@ -32,7 +32,7 @@ pub(crate) trait Surfaces {
         Self: 'f;
 
     /// The surface of shape 1 (0) or 2 (1), if it is known.
-    fn around(&self, i: usize) -> Option<Around<Self::Facets<'_>>>;
+    fn around(&self, i: usize) -> Option<OneRing<Self::Facets<'_>>>;
 
     /// The distance up to which contacts must be local minima; infinite without surfaces. Farther ones,
     /// which only soft CCD asks for, are all kept, as bodies may turn before they meet. Depths are cut at
@@ -139,7 +139,7 @@ impl<S: Surfaces> Judge<'_, S> {
 
     fn by_surfaces(
         &self,
-        around: [Option<Around<S::Facets<'_>>>; 2],
+        around: [Option<OneRing<S::Facets<'_>>>; 2],
         local: &TrianglePair,
         contact: TriangleContact,
         regions: &mut Regions,
@@ -148,8 +148,9 @@ impl<S: Surfaces> Judge<'_, S> {
         let inverse = self.pose.placement12.inverse;
         let own = |i: usize, direction: DVec3| if i == 0 { direction } else { inverse * direction };
         let is_front = |i: usize, feature: Feature, direction: DVec3, to: Option<Feature>| {
-            let is_front =
-                |around: &Around<_>| around.is_front(self.pair[i], feature, own(i, direction), to);
+            let is_front = |around: &OneRing<_>| {
+                around.is_local_minimum(self.pair[i], feature, own(i, direction), to)
+            };
             around[i].as_ref().is_none_or(is_front)
         };
         let is_solid =
@@ -173,7 +174,7 @@ impl<S: Surfaces> Judge<'_, S> {
                 |i: usize| is_front(i, features[i], directions[i], Some(features[1 - i]));
             let is_behind = |i: usize| {
                 around[i].as_ref().is_some_and(|around| {
-                    around.is_behind(self.pair[i], features[i], own(i, directions[i]))
+                    around.points_inside(self.pair[i], features[i], own(i, directions[i]))
                 })
             };
             let is_first_in_front = is_in_front(0);

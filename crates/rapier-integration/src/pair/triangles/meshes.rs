@@ -8,7 +8,7 @@ use parry3d::query::details::NormalConstraints;
 use parry3d::shape::Triangle;
 use sbbk_core::contact::{ManifoldPoints, TriangleContact};
 use sbbk_core::leaf::LeafTest;
-use sbbk_core::surface::{Around, MeshFacets};
+use sbbk_core::surface::{IndexedTriangles, OneRing};
 use sbbk_core::traverse::{Counters, Descent, PairFrame, Verdict, Visitor, descend};
 use sbbk_core::tree::LeafBatch;
 
@@ -185,12 +185,12 @@ impl TriangleShapes for Meshes<'_> {
 
 impl Surfaces for Meshes<'_> {
     type Facets<'f>
-        = MeshFacets<'f>
+        = IndexedTriangles<'f>
     where
         Self: 'f;
 
     #[inline]
-    fn around(&self, i: usize) -> Option<Around<MeshFacets<'_>>> {
+    fn around(&self, i: usize) -> Option<OneRing<IndexedTriangles<'_>>> {
         Some(self.surfaces[i].as_ref()?.around(self.pair.meshes[i].mesh))
     }
 

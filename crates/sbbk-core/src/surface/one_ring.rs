@@ -1,3 +1,5 @@
+//! Tests of directions at a point of a surface against the triangles around that point.
+
 use std::ops::ControlFlow;
 
 use glamx::{DVec3, Vec3};
@@ -6,45 +8,44 @@ use super::Surface;
 use crate::contact::Feature;
 use crate::simd::each;
 
-/// Which triangles of a mesh share edges. Half-edge `3 t + i` runs from vertex `i` of triangle `t`
-/// to the next one.
-pub trait Twins {
+/// Adjacency of triangles. Half-edge `3 t + i` runs from vertex `i` of triangle `t` to the next one.
+pub trait HalfEdges {
     /// The half-edge that runs back in the neighbour, if there is exactly one.
     fn twin(&self, half_edge: u32) -> Option<u32>;
 }
 
-/// The triangles of a surface, and where they are: of a mesh, or of what has no list of them.
-pub trait Facets: Twins {
-    /// A corner of the triangle of a half-edge, counted from its start.
+/// Triangles with their adjacency and positions.
+pub trait Facets: HalfEdges {
+    /// A corner of the triangle of a half-edge, counted from the start of the half-edge.
     fn corner(&self, half_edge: u32, i: usize) -> DVec3;
 }
 
-impl Twins for Surface {
+impl HalfEdges for Surface {
     #[inline]
     fn twin(&self, half_edge: u32) -> Option<u32> {
         self.twins.get(half_edge)
     }
 }
 
-/// The triangles of a mesh, and how they hang together.
+/// The triangles of an indexed mesh with their adjacency.
 #[derive(Clone, Copy)]
-pub struct MeshFacets<'a> {
-    /// The neighbours of the triangles of this mesh.
-    pub twins: &'a dyn Twins,
-    /// The vertices of the mesh.
+pub struct IndexedTriangles<'a> {
+    /// Adjacency of the triangles.
+    pub twins: &'a dyn HalfEdges,
+    /// Vertices of the mesh.
     pub vertices: &'a [Vec3],
-    /// The triangles of the mesh.
+    /// Triangles of the mesh.
     pub triangles: &'a [[u32; 3]],
 }
 
-impl Twins for MeshFacets<'_> {
+impl HalfEdges for IndexedTriangles<'_> {
     #[inline(always)]
     fn twin(&self, half_edge: u32) -> Option<u32> {
         self.twins.twin(half_edge)
     }
 }
 
-impl Facets for MeshFacets<'_> {
+impl Facets for IndexedTriangles<'_> {
     #[inline(always)]
     fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
         let triangle = self.triangles[half_edge as usize / 3];
@@ -52,37 +53,42 @@ impl Facets for MeshFacets<'_> {
     }
 }
 
-/// A surface, seen from its triangles.
+/// Tests of directions against the one-ring of a vertex or an edge, or against a face.
 #[derive(Clone, Copy)]
-pub struct Around<F> {
-    /// The triangles.
+pub struct OneRing<F> {
+    /// The triangles of the surface.
     pub facets: F,
-    /// Whether the surface bounds a solid.
+    /// True if the surface bounds a solid.
     pub is_solid: bool,
 }
 
-/// How far a neighbour may rise towards a direction before it is nearer, as a sine. Higher: bodies
-/// feel the edges between facets. Lower: a face that lies on another, not quite flat, loses part
-/// of its contacts.
+/// Sine of the angle by which a neighbour may rise towards a direction and still count as no nearer.
+/// Higher: bodies catch on edges between facets. Lower: faces that lie on each other, not quite
+/// flat, lose contacts.
 const RISE: f64 = 0.05;
 
-/// The same where the other surface is a face. Higher: edges within a floor stop what slides over it.
-/// Lower: of a body that rocks from point to point, the next one comes as a surprise.
+/// [`RISE`] if the other feature is a face. Higher: edges within a floor stop bodies that slide over
+/// it. Lower: a body that rocks from point to point gets the next point too late.
 const RISE_TO_FACE: f64 = 0.3;
 
-/// Sine of the angle to a flat side, of triangles of it and of directions along it. Higher: a nut
-/// locks on its bolt. With [`RISE`] at edges within flat sides, of two gears at 5 rad/s one runs ahead of
-/// the other by 0.024 in place of 0.015 rad, and by 0.06 with a manifold for every contact.
+/// Sine of the angle up to which triangles count as one plane, and directions as parallel to it.
+/// Higher: a nut locks on its bolt. Lower: flat sides end at rounding.
 const FLAT: f64 = 1.0e-3;
 
-impl<F: Facets> Around<F> {
-    /// Whether a unit direction leads from a feature out in front of all triangles around it: what
-    /// it leads to is nowhere nearer, and of a solid it leads out. It should be that from a point of
-    /// the feature to the nearest point of something else: across the face, from an edge, or from a
-    /// vertex into its Voronoi cell. `to` is the feature that is there, if it is known. A face may be
-    /// held up by the feature though a neighbour is a little nearer; an edge by no edge within a flat
-    /// side.
-    pub fn is_front(
+/// Triangles that a walk around a vertex visits at most in either direction. Higher: a touch at a
+/// vertex of many triangles takes time by the square of their number. Lower: such vertices are
+/// judged by a part of their one-ring.
+const RING_LIMIT: u32 = 512;
+
+impl<F: Facets> OneRing<F> {
+    /// True if no triangle of the one-ring of a feature comes nearer to the other body in a unit
+    /// direction, and the direction does not lead into the solid.
+    ///
+    /// The direction leads from a point of the feature to the nearest point of the other body: along
+    /// the normal of a face, or within the Voronoi region of an edge or a vertex. `to` is the
+    /// feature there, if known. A neighbour may come slightly nearer to a face; within a flat side,
+    /// an edge is a local minimum for no other edge.
+    pub fn is_local_minimum(
         &self,
         triangle: u32,
         feature: Feature,
@@ -104,7 +110,7 @@ impl<F: Facets> Around<F> {
             height > 0.0 && height * height > rise * rise * edge.length_squared()
         };
         let (mut height, mut has_risen) = (0.0, false);
-        self.around(triangle, feature, |Fan { edges: [u, v], are_new, .. }| {
+        self.visit(triangle, feature, |Wedge { edges: [u, v], are_new, .. }| {
             has_risen = are_new[0] && rises(u) || are_new[1] && rises(v);
             if has_risen {
                 return ControlFlow::Break(());
@@ -118,7 +124,7 @@ impl<F: Facets> Around<F> {
         !has_risen && !leads_in
     }
 
-    /// Whether the triangles at an edge are in one plane.
+    /// True if the triangles at an edge lie in one plane.
     fn is_flat(&self, triangle: u32, edge: Feature) -> bool {
         let Some(twin) = self.facets.twin(half_edge(triangle, edge)) else { return false };
         let across = self.corner(twin, 2) - self.corner(twin, 0);
@@ -126,8 +132,8 @@ impl<F: Facets> Around<F> {
         across.dot(normal).abs() <= FLAT * across.length() * normal.length()
     }
 
-    /// Whether such a direction leads into the solid.
-    pub fn is_behind(&self, triangle: u32, feature: Feature, direction: DVec3) -> bool {
+    /// True if a unit direction from a feature leads into the solid; false for sheets.
+    pub fn points_inside(&self, triangle: u32, feature: Feature, direction: DVec3) -> bool {
         if !self.is_solid {
             return false;
         }
@@ -136,15 +142,15 @@ impl<F: Facets> Around<F> {
             return is_upright && height < 0.0;
         }
         let mut height = 0.0;
-        self.around(triangle, feature, |Fan { edges: [u, v], .. }| {
+        self.visit(triangle, feature, |Wedge { edges: [u, v], .. }| {
             height += u.cross(v).dot(direction);
             ControlFlow::Continue(())
         });
         height < 0.0
     }
 
-    /// How far a flat side goes on beyond a triangle of it in a unit direction, from vertex to vertex,
-    /// up to `most`; 0 if the direction does not lie in the side.
+    /// Length by which the flat side of a triangle continues beyond it in a unit direction, from
+    /// vertex to vertex, up to `most`. 0 if the direction is not parallel to the side.
     pub fn side_beyond(&self, triangle: u32, direction: DVec3, most: f64) -> f64 {
         let normal = self.normal(triangle);
         if normal.dot(direction).abs() > FLAT * normal.length() {
@@ -156,20 +162,17 @@ impl<F: Facets> Around<F> {
         let (mut at, mut beyond) = (highest.unwrap_or_default(), 0.0);
         while beyond < most {
             let (mut rise, mut to) = (0.0, at);
-            self.around(
-                at / 3,
-                Feature::Vertex((at % 3) as u8),
-                |Fan { half_edge, edges: [u, v], .. }| {
-                    for (edge, end) in [(u, next(half_edge)), (v, previous(half_edge))] {
-                        let (height, length) = (edge.dot(direction), edge.length());
-                        let is_flat = edge.dot(normal).abs() <= FLAT * length * normal.length();
-                        if is_flat && height > rise && height > RISE * length {
-                            (rise, to) = (height, end);
-                        }
+            let vertex = Feature::Vertex((at % 3) as u8);
+            self.visit(at / 3, vertex, |Wedge { half_edge, edges: [u, v], .. }| {
+                for (edge, end) in [(u, next(half_edge)), (v, previous(half_edge))] {
+                    let (height, length) = (edge.dot(direction), edge.length());
+                    let is_flat = edge.dot(normal).abs() <= FLAT * length * normal.length();
+                    if is_flat && height > rise && height > RISE * length {
+                        (rise, to) = (height, end);
                     }
-                    ControlFlow::Continue(())
-                },
-            );
+                }
+                ControlFlow::Continue(())
+            });
             if to == at {
                 break;
             }
@@ -178,33 +181,33 @@ impl<F: Facets> Around<F> {
         beyond.min(most)
     }
 
-    /// How far a direction points along the normal of a triangle, times twice the area, and whether
-    /// it is nearly upright.
+    /// Height of a direction along the area vector of a triangle; true if the direction is nearly
+    /// upright.
     fn over_face(&self, triangle: u32, direction: DVec3) -> (f64, bool) {
         let normal = self.normal(triangle);
         let height = normal.dot(direction);
         (height, height.abs() > (1.0 - RISE) * normal.length())
     }
 
-    /// The normal of a triangle, as long as twice its area.
+    /// Normal of a triangle; its length is twice the area.
     fn normal(&self, triangle: u32) -> DVec3 {
         let [a, b, c] = each(|i| self.corner(3 * triangle, i));
         (b - a).cross(c - a)
     }
 
-    /// Visits the triangles around an edge or a vertex, the given one first, while it is told to.
+    /// Visits the one-ring of an edge or a vertex, starting with `triangle`, until `visit` breaks.
     #[inline(always)]
-    fn around(
+    fn visit(
         &self,
         triangle: u32,
         feature: Feature,
-        mut visit: impl FnMut(Fan) -> ControlFlow<()>,
+        mut visit: impl FnMut(Wedge) -> ControlFlow<()>,
     ) {
         let first = half_edge(triangle, feature);
         let start = self.corner(first, 0);
         let edge = |half_edge: u32, i: usize| self.corner(half_edge, i) - start;
         let [first_u, first_v] = [edge(first, 1), edge(first, 2)];
-        let own = Fan { half_edge: first, edges: [first_u, first_v], are_new: [true; 2] };
+        let own = Wedge { half_edge: first, edges: [first_u, first_v], are_new: [true; 2] };
         if visit(own).is_break() {
             return;
         }
@@ -213,28 +216,33 @@ impl<F: Facets> Around<F> {
                 let start = self.corner(half_edge, 0);
                 let edge = |i: usize| self.corner(half_edge, i) - start;
                 let [u, v] = [edge(1), edge(2)];
-                let _ = visit(Fan { half_edge, edges: [u, v], are_new: [true; 2] });
+                let _ = visit(Wedge { half_edge, edges: [u, v], are_new: [true; 2] });
             }
             return;
         }
         let (mut at, mut u) = (first, first_v);
-        while let Some(twin) = self.facets.twin(previous(at)) {
+        for _ in 0..RING_LIMIT {
+            let Some(twin) = self.facets.twin(previous(at)) else { break };
             if twin == first {
                 return;
             }
             at = twin;
             let v = edge(at, 2);
-            if visit(Fan { half_edge: at, edges: [u, v], are_new: [false, true] }).is_break() {
+            if visit(Wedge { half_edge: at, edges: [u, v], are_new: [false, true] }).is_break() {
                 return;
             }
             u = v;
         }
-        // A border: on from the other side.
-        let (mut at, mut v) = (first, first_u);
-        while let Some(twin) = self.facets.twin(at) {
+        // At a border, or past the limit: the other direction.
+        let (last, mut at, mut v) = (at, first, first_u);
+        for _ in 0..RING_LIMIT {
+            let Some(twin) = self.facets.twin(at) else { return };
             at = next(twin);
+            if at == last {
+                return;
+            }
             let u = edge(at, 1);
-            if visit(Fan { half_edge: at, edges: [u, v], are_new: [true, false] }).is_break() {
+            if visit(Wedge { half_edge: at, edges: [u, v], are_new: [true, false] }).is_break() {
                 return;
             }
             v = u;
@@ -247,13 +255,13 @@ impl<F: Facets> Around<F> {
     }
 }
 
-/// A triangle at an edge or a vertex.
-struct Fan {
+/// A triangle of a one-ring.
+struct Wedge {
     /// Starts at the vertex, or at an end of the edge.
     half_edge: u32,
     /// Two edges of the triangle, from there.
     edges: [DVec3; 2],
-    /// Whether no triangle before it has them too.
+    /// True for edges that no earlier triangle of the ring has.
     are_new: [bool; 2],
 }
 
