@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use oorandom::Rand32;
-use rapier_integration::{ContactGenerator, SbbkDispatcher};
+use rapier_integration::SbbkDispatcher;
 use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
@@ -9,8 +9,8 @@ use rapier3d::parry::shape::{PackedFeatureId, TriMesh};
 use sbbk_lab::mesh;
 
 use crate::support::{
-    Manifold, Pair, Query, TrianglePair, assert_same, by_triangles, every, fresh, generating,
-    nudge, per_triangle, rebuilt, sequence, shape, stock, touching, triangles,
+    Manifold, Pair, Query, TrianglePair, assert_same, by_triangles, every, fresh, nudge,
+    per_triangle, rebuilt, sequence, shape, stock, touching, triangles,
 };
 
 /// Marks manifolds and points, to see which of them survive.
@@ -213,20 +213,6 @@ fn the_prediction_distance_may_change_at_every_query() {
     }
     assert!(sizes[1] < sizes[0] && sizes[0] < sizes[5] && sizes[5] < sizes[3], "{sizes:?}");
     assert_eq!([sizes[4], sizes[9]], [sizes[0]; 2]);
-}
-
-/// Would catch a dispatcher that takes over the contacts of another one where nothing moved.
-#[test]
-fn another_generator_makes_its_own_contacts() {
-    let [one, two] = rings();
-    let query = Query::new(&one, &two, touching(&mut Rand32::new(8), [&one, &two], 0.05));
-    let [exact, parry] = [ContactGenerator::Exact, ContactGenerator::Parry].map(generating);
-    let mut pair: Pair = Pair::default();
-    pair.ask(&parry, &query);
-    pair.ask(&exact, &query);
-    assert_same(&pair.manifolds, &fresh(&exact, &query), 1e-6);
-    pair.ask(&parry, &query);
-    assert_same(&pair.manifolds, &fresh(&parry, &query), 1e-6);
 }
 
 /// Would catch a dispatcher that serves Rapier's types only.

@@ -1,4 +1,4 @@
-use rapier_integration::{ContactGenerator, SbbkDispatcher};
+use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::{ColliderBuilder, ColliderHandle, ContactManifold, SharedShape};
 use rapier3d::math::{Pose, Vector};
@@ -7,11 +7,9 @@ use rapier3d::pipeline::PhysicsWorld;
 use sbbk_lab::mesh;
 
 use crate::support::{
-    Manifold, Pair, Query, assert_same, distance, fresh, generating, sequence, shape, shape_with,
+    Manifold, Pair, Query, assert_same, distance, every, fresh, sequence, shape, shape_with,
     triangles,
 };
-
-const GENERATORS: [ContactGenerator; 2] = [ContactGenerator::Exact, ContactGenerator::Parry];
 
 fn torus() -> TriMesh {
     shape(&mesh::torus(1.0, 0.4, 24, 12))
@@ -40,40 +38,25 @@ fn is_same(left: &[Manifold], right: &[Manifold]) -> bool {
 /// edit.
 fn check_edit(flags: TriMeshFlags, edit: impl Fn(&mut TriMesh)) {
     let other = torus();
-    for contacts in GENERATORS {
-        let dispatcher = generating(contacts);
-        let mut edited = SharedShape::new(shape_with(&mesh::torus(1.0, 0.4, 24, 12), flags));
-        let mut pair: Pair = Pair::default();
-        let ask = |pair: &mut Pair, shape: &SharedShape| {
-            let query = Query::new(shape.as_trimesh().unwrap(), &other, beside());
-            // Twice at nearly the same place, so that candidates are kept.
-            for shift in [0.0, 1e-5, 0.0] {
-                pair.ask(&dispatcher, &query.at(Pose::translation(shift, 0.0, 0.0) * beside()));
-            }
-            (std::mem::take(&mut pair.manifolds.clone()), fresh(&generating(contacts), &query))
-        };
-        let (before, _) = ask(&mut pair, &edited);
-        assert!(!before.is_empty());
-        let address = edited.as_trimesh().unwrap().vertices().as_ptr();
-        edit(trimesh(&mut edited));
-        assert_eq!(edited.as_trimesh().unwrap().vertices().as_ptr(), address);
-        let (found, expected) = ask(&mut pair, &edited);
-        assert!(!is_same(&before, &expected), "the edit changes the contacts");
-        match contacts {
-            ContactGenerator::Exact => assert_same(&found, &expected, 1e-5),
-            ContactGenerator::Parry => assert_close(&found, &expected),
+    let dispatcher = every();
+    let mut edited = SharedShape::new(shape_with(&mesh::torus(1.0, 0.4, 24, 12), flags));
+    let mut pair: Pair = Pair::default();
+    let ask = |pair: &mut Pair, shape: &SharedShape| {
+        let query = Query::new(shape.as_trimesh().unwrap(), &other, beside());
+        // Twice at nearly the same place, so that candidates are kept.
+        for shift in [0.0, 1e-5, 0.0] {
+            pair.ask(&dispatcher, &query.at(Pose::translation(shift, 0.0, 0.0) * beside()));
         }
-    }
-}
-
-/// Parry's points depend on where its iterations start: only the triangles and the least distances
-/// are the same, within what its tolerances make of these triangles of about 0.2 units.
-fn assert_close(found: &[Manifold], expected: &[Manifold]) {
-    assert_eq!(sequence(found), sequence(expected));
-    for (found, expected) in found.iter().zip(expected) {
-        let off = (distance(found) - distance(expected)).abs();
-        assert!(off < 2e-3, "{:?} is off by {off}", sequence(std::slice::from_ref(found)));
-    }
+        (std::mem::take(&mut pair.manifolds.clone()), fresh(&every(), &query))
+    };
+    let (before, _) = ask(&mut pair, &edited);
+    assert!(!before.is_empty());
+    let address = edited.as_trimesh().unwrap().vertices().as_ptr();
+    edit(trimesh(&mut edited));
+    assert_eq!(edited.as_trimesh().unwrap().vertices().as_ptr(), address);
+    let (found, expected) = ask(&mut pair, &edited);
+    assert!(!is_same(&before, &expected), "the edit changes the contacts");
+    assert_same(&found, &expected, 1e-5);
 }
 
 #[test]

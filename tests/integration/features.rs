@@ -4,7 +4,6 @@
 #![allow(dead_code, reason = "of what the tests share, these use a part")]
 
 mod allocation;
-mod bits;
 mod coming_back;
 mod convex {
     mod motion;

@@ -6,7 +6,7 @@
 //!
 //! | a mesh and | contacts are right | whatever was before | in worlds |
 //! |---|---|---|---|
-//! | a mesh | `exact`, `bits`, `normals`, `surfaces`, `judged` | `motion`, `edited_mesh` | `rest`, `scenes` |
+//! | a mesh | `exact`, `normals`, `surfaces`, `judged` | `motion`, `edited_mesh` | `rest`, `scenes` |
 //! | a mesh, one of the two without a tree | `walks` | `walks` | `deformable` |
 //! | convex shapes | `convex::fresh` | `convex::motion` | `convex::rest` |
 //! | compounds | `compound` | `compound` | `compound` |
@@ -19,8 +19,6 @@
 
 /// A steady contact allocates nothing.
 mod allocation;
-/// Contacts that Parry generates are stock's, bit for bit.
-mod bits;
 /// Pairs that come back to where they were, are cut short, or forget everything.
 mod coming_back;
 /// Meshes against compounds of convex shapes.

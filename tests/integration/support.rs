@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
-use rapier_integration::{ContactDetail, ContactGenerator, ContactSet, SbbkConfig, SbbkDispatcher};
+use rapier_integration::{ContactDetail, ContactSet, SbbkConfig, SbbkDispatcher};
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::{
     ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
@@ -155,13 +155,6 @@ pub fn every_config() -> SbbkConfig {
 /// force over all triangles, and meshes that deform can be compared with.
 pub fn per_triangle() -> SbbkDispatcher {
     having(ContactSet::Triangles)
-}
-
-/// A dispatcher with every contact, from `contacts`.
-pub fn generating(contacts: ContactGenerator) -> SbbkDispatcher {
-    let mut config = every_config();
-    config.contacts = contacts;
-    SbbkDispatcher::new(config)
 }
 
 pub fn triangles<M, C>(manifold: &ContactManifold<M, C>) -> TrianglePair {

@@ -1,28 +1,12 @@
 use sbbk_core::surface::SurfaceKind;
 use sbbk_core::tree::{BuildOptions, LayerPlan};
 
-/// Which code turns two triangles, or a triangle and a convex shape, within the prediction distance
-/// into contact points.
-#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
-pub enum ContactGenerator {
-    /// SBBK's own ([`sbbk_core::contact`]), of two triangles and of convex shapes of every kind:
-    /// exact at every scale, and faster.
-    #[default]
-    Exact,
-    /// Parry's (GJK, EPA and clipping), called as stock Parry calls it: on a first query the
-    /// contacts are bit-identical to stock's for each pair of triangles within the prediction
-    /// distance, and for each triangle near a convex shape. For comparison, and for programs that
-    /// depend on these bits. Its tolerances are absolute: triangles much smaller than 0.1 units get
-    /// wrong depths.
-    Parry,
-}
-
 /// Which contacts two meshes have, and a mesh and a height field or convex shapes.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum ContactSet {
     /// Those of their surfaces: what touches is pushed out of a mesh that bounds a solid, not through
     /// it, and edges within a surface do not count. Against convex shapes only the latter. For rigid
-    /// meshes and [`ContactGenerator::Exact`]; see the documentation of this crate.
+    /// meshes; see the documentation of this crate.
     #[default]
     Surfaces,
     /// Those of each triangle by itself, as in stock Rapier: for comparison.
@@ -42,7 +26,7 @@ pub enum ContactDetail {
     /// carry, and others as deep that are far from these; what hangs beside one that touches is of its
     /// direction if it leans less than 26 degrees from it. They are chosen before they are made; the
     /// deepest point is always among them. Bodies come to rest sooner than on every contact, of which
-    /// Rapier's solver takes four by their spread alone. For exact contacts of rigid meshes; pairs of
+    /// Rapier's solver takes four by their spread alone. For rigid meshes; pairs of
     /// which one may deform have every contact, and so do balls, and convex shapes on meshes with
     /// `FIX_INTERNAL_EDGES`. Of a manifold, the subshapes are those of its deepest contact.
     #[default]
@@ -87,8 +71,6 @@ pub struct SbbkConfig {
     /// The volume of each layer of the trees. `None`: for each mesh what is fastest by a model
     /// ([`LayerPlan`]).
     pub layers: Option<LayerPlan>,
-    /// Where contact points come from.
-    pub contacts: ContactGenerator,
     /// Contacts of surfaces, or of each two triangles.
     pub contact_set: ContactSet,
     /// What height fields bound, for meshes with [`ContactSet::Surfaces`]:
@@ -122,7 +104,6 @@ impl Default for SbbkConfig {
     fn default() -> Self {
         Self {
             layers: None,
-            contacts: ContactGenerator::Exact,
             contact_set: ContactSet::Surfaces,
             height_fields: SurfaceKind::Solid,
             convex_leave_solids: false,

@@ -123,9 +123,7 @@
 //!
 //! SBBK's contacts of a convex shape are those of [`sbbk_core::contact::convex`], computed in f64;
 //! Parry says which feature of a polyhedron, cylinder or cone faces the triangle. With
-//! [`ContactDetail::Every`] each contact has its manifold in the order of stock's. With [`ContactGenerator::Parry`] the contacts of two meshes are those of
-//! Parry's routine, which keeps points from step to step as it does in stock; convex shapes of
-//! every kind have those of Parry's routine asked anew.
+//! [`ContactDetail::Every`] each contact has its manifold, in the order of subshapes.
 //!
 //! A mesh may deform (`TriMeshFlags::DEFORMABLE`, Rapier's soft bodies), and the other one too. It
 //! has no tree, and pairs keep the data of its manifolds from query to query and nothing else. Where
@@ -226,7 +224,7 @@ mod pair;
 mod query;
 mod stats;
 
-pub use config::{ContactDetail, ContactGenerator, ContactSet, Kinds, SbbkConfig};
+pub use config::{ContactDetail, ContactSet, Kinds, SbbkConfig};
 pub use dispatcher::{PreparedTree, SbbkDispatcher};
 pub use pair::TriangleContacts;
 pub use sbbk_core;

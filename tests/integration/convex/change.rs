@@ -1,5 +1,5 @@
 use oorandom::Rand32;
-use rapier_integration::{ContactGenerator, SbbkDispatcher};
+use rapier_integration::SbbkDispatcher;
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::TriMeshFlags;
@@ -7,7 +7,7 @@ use sbbk_lab::mesh;
 
 use super::question::{Question, bits};
 use super::shapes::{pose, shapes};
-use crate::support::{Pair, counting, generating, shape_with};
+use crate::support::{Pair, counting, per_triangle, shape_with};
 
 /// Would catch candidates of a shape that is no longer there, where a host keeps the workspace of a
 /// pair over an edit.
@@ -37,22 +37,21 @@ fn another_shape_with_the_same_workspace_is_noticed() {
 #[test]
 fn stock_can_hand_over_a_pair() {
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
-    let dispatcher = generating(ContactGenerator::Parry);
+    let dispatcher = per_triangle();
     let mut random = Rand32::new(7);
     for (name, shape) in shapes(0.6) {
         let pose = pose(&mut random, &head, 0.5);
         let question =
             Question { mesh: &head, shape: &shape, pose, prediction: 0.05, flipped: true };
-        let mut pair: Pair<(), u32> = Pair::default();
+        let mut pair: Pair<u32> = Pair::default();
         question.ask(&DefaultQueryDispatcher, &mut pair);
-        let points = pair.manifolds.iter_mut().flat_map(|manifold| &mut manifold.points);
-        points.enumerate().for_each(|(index, point)| point.data = index as u32 + 1);
+        pair.manifolds.iter_mut().for_each(|manifold| manifold.data = manifold.subshape2 + 1);
         question.ask(&dispatcher, &mut pair);
         let expected: Vec<_> = question.fresh(&dispatcher).iter().map(|m| m.subshape2).collect();
         let found: Vec<_> = pair.manifolds.iter().map(|m| m.subshape2).collect();
         assert_eq!(found, expected, "{name}");
-        let mut points = pair.manifolds.iter().flat_map(|manifold| &manifold.points);
-        assert!(points.all(|point| point.data > 0), "{name}: data is lost");
+        let mut manifolds = pair.manifolds.iter();
+        assert!(manifolds.all(|m| m.data == m.subshape2 + 1), "{name}: data is lost");
     }
 }
 

@@ -2,10 +2,7 @@ use std::collections::BTreeMap;
 
 use glamx::Vec3;
 use rapier3d::math::{Pose, Real};
-use rapier3d::parry::query::details::NormalConstraints;
-use rapier3d::parry::query::{
-    ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, QueryDispatcher,
-};
+use rapier3d::parry::query::{ContactManifold, DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::parry::shape::{SharedShape, TriMesh};
 use sbbk_core::traverse::Placement;
 use sbbk_core::truth::ConvexBody;
@@ -60,27 +57,6 @@ impl Question<'_> {
         distance.expect("Parry knows the distance of all these shapes to triangles").distance
     }
 
-    /// Panics unless an answer is that of Parry's routine on all triangles, bit for bit: each
-    /// manifold of ours is one of brute force, and each of brute force that has a point within the
-    /// prediction distance is one of ours. The number of contacts.
-    pub fn check_against_parry(&self, name: &str, found: &[Manifold]) -> usize {
-        let all = self.brute_force();
-        let by_triangle: BTreeMap<u32, &Manifold> =
-            found.iter().map(|manifold| (self.triangle_of(manifold), manifold)).collect();
-        assert_eq!(by_triangle.len(), found.len(), "{name}: two manifolds of one triangle");
-        for (triangle, manifold) in &by_triangle {
-            let expected =
-                all.get(triangle).unwrap_or_else(|| panic!("{name}: {triangle} is invented"));
-            assert!(bits(manifold) == bits(expected), "{name}: {triangle}");
-        }
-        let touching = all.iter().filter(|(_, manifold)| touches(manifold, self.prediction));
-        for (triangle, expected) in touching.clone() {
-            let points = &expected.points;
-            assert!(by_triangle.contains_key(triangle), "{name}: {triangle} is lost, {points:?}");
-        }
-        touching.count()
-    }
-
     /// Panics unless the answer is that of brute force in f64, up to `tolerance`: triangles within
     /// the prediction distance, each at its distance, without normal constraints. The number of
     /// contacts.
@@ -108,45 +84,6 @@ impl Question<'_> {
             }
         }
         found.len()
-    }
-
-    /// Parry's routine on each triangle of the mesh, called as stock calls it; manifolds with
-    /// points.
-    pub fn brute_force(&self) -> BTreeMap<u32, Manifold> {
-        let all = (0..self.mesh.indices().len() as u32).filter_map(|index| {
-            let subshapes = if self.flipped { [0, index] } else { [index, 0] };
-            let mut manifold = Manifold::with_data(subshapes[0], subshapes[1], ());
-            let triangle = self.mesh.triangle(index);
-            let cone = self.mesh.triangle_normal_constraints(index);
-            let cone = cone.as_ref().map(|cone| cone as &dyn NormalConstraints);
-            let (shape, parry) = (&*self.shape.0, DefaultQueryDispatcher);
-            let (pos12, within) = (self.pos12(), self.prediction);
-            let answer = if self.flipped {
-                let pose = pos12.inverse().inverse();
-                parry.contact_manifold_convex_convex(
-                    &pose,
-                    shape,
-                    &triangle,
-                    None,
-                    cone,
-                    within,
-                    &mut manifold,
-                )
-            } else {
-                parry.contact_manifold_convex_convex(
-                    &pos12,
-                    &triangle,
-                    shape,
-                    cone,
-                    None,
-                    within,
-                    &mut manifold,
-                )
-            };
-            answer.expect("Parry knows contacts of all these shapes with triangles");
-            (!manifold.points.is_empty()).then_some((index, manifold))
-        });
-        all.collect()
     }
 }
 

@@ -2,16 +2,14 @@ use std::collections::BTreeSet;
 
 use glamx::Vec3;
 use oorandom::Rand32;
-use rapier_integration::{ContactGenerator, SbbkDispatcher};
+use rapier_integration::SbbkDispatcher;
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::parry::shape::{HeightField, Shape, SharedShape, TriMesh, TriMeshFlags};
 use sbbk_lab::mesh;
 
 use super::question::{PREDICTION, Question, assert_same_set, furniture, hills};
-use crate::support::{
-    Manifold, Pair, Query, by_triangles, counting, distance, generating, shape_with,
-};
+use crate::support::{Manifold, Pair, Query, counting, distance, shape_with};
 use crate::truth::Tally;
 
 fn soft_ball() -> TriMesh {
@@ -120,32 +118,6 @@ fn a_soft_mesh_keeps_its_contacts_with_a_compound() {
         }
     });
     assert!(contacts > 5_000, "{contacts} contacts");
-}
-
-/// Parry's generator, too, is told that vertices have moved where the pose has not. Would catch
-/// manifolds that are not marked.
-#[test]
-fn parrys_generator_is_told_of_moved_vertices() {
-    let dispatcher = generating(ContactGenerator::Parry);
-    let field = hills(&mut Rand32::new(3));
-    let mut soft = soft_ball();
-    let rest = soft.vertices().to_vec();
-    let mut pair: Pair = Pair::default();
-    let mut compared = 0;
-    for frame in 0..60 {
-        deform(&mut soft, &rest, frame);
-        let pose = Pose::translation(0.05, 0.75, 0.1);
-        let question = Question { mesh: &soft, other: &field, pose, is_mesh_first: false };
-        question.ask(&dispatcher, &mut pair);
-        let afresh = question.fresh(&generating(ContactGenerator::Parry));
-        let afresh = by_triangles(&afresh);
-        for (triangles, manifold) in by_triangles(&pair.manifolds) {
-            let off = afresh.get(&triangles).map(|m| (distance(m) - distance(manifold)).abs());
-            assert!(off.is_none_or(|off| off < 2e-3), "{frame}, {triangles:?}: off by {off:?}");
-            compared += usize::from(off.is_some());
-        }
-    }
-    assert!(compared > 600, "{compared} compared");
 }
 
 /// What a host stores with each contact point.

@@ -16,7 +16,7 @@ use crate::pair::{
     Answer, ConvexPair, FewPair, FieldPair, MeshPair, MeshPlace, Pair, PairPose, Parts, answer,
     is_few,
 };
-use crate::{ContactDetail, ContactGenerator, ContactSet, SbbkConfig, TriangleContacts};
+use crate::{ContactDetail, ContactSet, SbbkConfig, TriangleContacts};
 
 impl SbbkDispatcher {
     /// The contacts of a pair of shapes, if SBBK answers for them.
@@ -32,11 +32,10 @@ impl SbbkDispatcher {
         M: Default + Clone + Send + Sync + 'static,
         C: Default + Copy + Send + Sync + 'static,
     {
-        let SbbkConfig { contacts, contact_set, height_fields, detail, kinds, .. } = self.config;
-        let is_exact = contacts == ContactGenerator::Exact;
-        let has_surfaces = is_exact && contact_set == ContactSet::Surfaces;
+        let SbbkConfig { contact_set, height_fields, detail, kinds, .. } = self.config;
+        let has_surfaces = contact_set == ContactSet::Surfaces;
         let leave_solids = has_surfaces && self.config.convex_leave_solids;
-        let has_patches = is_exact && detail == ContactDetail::Patches;
+        let has_patches = detail == ContactDetail::Patches;
         // Of such a pair nothing needs to be kept while it is apart. One that has manifolds must keep a
         // workspace: Rapier takes a missing one for a new pair, and keeps pointers to manifolds that are gone.
         let is_new = workspace.is_none() && manifolds.is_empty();
@@ -56,7 +55,7 @@ impl SbbkDispatcher {
                     return Answer::Unsupported;
                 };
                 let pose = &PairPose::new(pos12, prediction);
-                let pair = MeshPair { pose, meshes, contacts, has_surfaces, has_patches };
+                let pair = MeshPair { pose, meshes, has_surfaces, has_patches };
                 return self.ask(&pair, manifolds, workspace);
             }
             (Some(mesh), None) => (mesh, g2, MeshPlace::First),
@@ -80,8 +79,7 @@ impl SbbkDispatcher {
         if parts.is_none() && field.is_none() {
             return Answer::Unsupported;
         }
-        // Parry's routine sees a little farther than the prediction distance.
-        if is_new && parts.is_some() && is_exact && !leave_solids {
+        if is_new && parts.is_some() && !leave_solids {
             let in_mesh = mesh_place.shape_in_mesh(pos12);
             if self.are_apart(is_near(mesh, other, &in_mesh, prediction), [mesh]) {
                 return self.counted(Answer::Apart);
@@ -97,7 +95,6 @@ impl SbbkDispatcher {
                 mesh,
                 parts,
                 mesh_place,
-                contacts,
                 has_surfaces,
                 leave_solids,
                 has_patches,
@@ -105,16 +102,8 @@ impl SbbkDispatcher {
             self.ask(&pair, manifolds, workspace)
         } else if let Some(field) = field {
             let has_ground = height_fields == SurfaceKind::Solid;
-            let pair = FieldPair {
-                pose,
-                mesh,
-                field,
-                mesh_place,
-                contacts,
-                has_surfaces,
-                has_ground,
-                has_patches,
-            };
+            let pair =
+                FieldPair { pose, mesh, field, mesh_place, has_surfaces, has_ground, has_patches };
             self.ask(&pair, manifolds, workspace)
         } else {
             Answer::Unsupported
@@ -213,9 +202,7 @@ where
         prediction: Real,
         manifold: &mut ContactManifold<M, C>,
     ) -> Result<(), Unsupported> {
-        if let (ContactGenerator::Exact, Some(triangle1), Some(triangle2)) =
-            (self.config.contacts, g1.as_triangle(), g2.as_triangle())
-        {
+        if let (Some(triangle1), Some(triangle2)) = (g1.as_triangle(), g2.as_triangle()) {
             let constraints = [normal_constraints1, normal_constraints2];
             let triangles = [triangle1, triangle2];
             TriangleContacts::default().update(pos12, triangles, constraints, prediction, manifold);

@@ -9,7 +9,6 @@ use parry3d::query::{
 use parry3d::shape::{Shape, TriMesh};
 
 use super::{SbbkDispatcher, rigid_mesh};
-use crate::ContactGenerator;
 use crate::mesh::{are_near, is_near};
 use crate::pair::{ConvexPair, ConvexSearch, MeshPlace, PairPose, Parts};
 use crate::query::{ConvexQuery, MeshQuery, NonlinearCast};
@@ -54,13 +53,11 @@ impl SbbkDispatcher {
         let parts = Parts::of(other).filter(|parts| matches!(parts, Parts::One(_)))?;
         let [mesh] = self.look_at([mesh])?;
         let pose = &PairPose::new(pos12, 0.0);
-        let contacts = ContactGenerator::Exact;
         let pair = ConvexPair {
             pose,
             mesh,
             parts,
             mesh_place,
-            contacts,
             has_surfaces: false,
             leave_solids: false,
             has_patches: false,

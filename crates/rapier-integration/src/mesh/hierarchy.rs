@@ -12,7 +12,6 @@ use parry3d::math::{Pose, Real};
 use parry3d::partitioning::BvhNode;
 use parry3d::query::PointProjection;
 use parry3d::shape::{CompositeShape, CompositeShapeRef, Shape, TriMesh};
-use rustc_hash::FxHashMap;
 use sbbk_core::traverse::TestedBox;
 use sbbk_core::volumes::Sphere;
 use sbbk_core::volumes::rounding::gamma;
@@ -103,24 +102,6 @@ fn has_near(mesh: &TriMesh, aabb: &Aabb, pos12: &Pose, margin: Real) -> bool {
     }
     let aabb = BvhNode::leaf(aabb.loosened(grown), 0);
     mesh.bvh().leaves(|node| node.intersects(&aabb)).next().is_some()
-}
-
-/// The places of some triangles of a mesh in stock order.
-#[derive(Debug, Default)]
-pub(crate) struct Ranks(FxHashMap<u32, u32>);
-
-impl Ranks {
-    /// Forgets all, and gives back memory beyond so many triangles.
-    pub(crate) fn shrink_to(&mut self, limit: usize) {
-        self.0.clear();
-        self.0.shrink_to(limit);
-    }
-
-    /// That of a triangle. One that was not given any sorts last.
-    #[inline(always)]
-    pub(crate) fn of(&self, triangle: u32) -> u32 {
-        self.0.get(&triangle).copied().unwrap_or(u32::MAX)
-    }
 }
 
 /// The hierarchy of a mesh during one query.
@@ -218,24 +199,6 @@ impl<'a> Hierarchy<'a> {
         TestedBox::new(low, corners().fold(Vec3::NEG_INFINITY, Vec3::max))
     }
 
-    /// Gives triangles their places in stock order. Looks at all triangles near them.
-    pub(crate) fn rank(&self, triangles: impl Iterator<Item = u32>, ranks: &mut Ranks) {
-        let ranks = &mut ranks.0;
-        ranks.clear();
-        ranks.extend(triangles.map(|index| (index, u32::MAX)));
-        if self.is_broken {
-            // Of a broken mesh in the order of its triangles.
-            return ranks.iter_mut().for_each(|(index, rank)| *rank = *index);
-        }
-        let all = around(ranks.keys().map(|&index| self.mesh.triangle(index).local_aabb()));
-        let all = BvhNode::leaf(all, 0);
-        for (rank, index) in self.mesh.bvh().leaves(|node| node.intersects(&all)).enumerate() {
-            if let Some(place) = ranks.get_mut(&index) {
-                *place = rank as u32;
-            }
-        }
-    }
-
     /// The corners of a triangle.
     #[inline(always)]
     pub(crate) fn corners(&self, triangle: u32) -> [Vec3; 3] {
@@ -298,8 +261,5 @@ mod tests {
             [4, 5]
         );
         assert_eq!((seen.root().mins, seen.root().maxs), (Vec3::ZERO, Vec3::new(19.0, 2.0, 1.0)));
-        let mut ranks = Ranks::default();
-        seen.rank([7, 2, 13].into_iter(), &mut ranks);
-        assert_eq!([2, 7, 13].map(|index| ranks.of(index)), [2, 7, 13]);
     }
 }

@@ -5,10 +5,8 @@
 //! shape is held here: [`registry`](super::registry)). So there are two notions:
 //!
 //! * [`ContentHash`], 128 bits over all that a [`PreparedMesh`](super::PreparedMesh) is made of:
-//!   vertices, triangles, whether it deforms, and Parry's hierarchy (the stock order of contacts). Equal
-//!   vertices and triangles do not make the last one equal: Parry fits it to a mesh that is edited or
-//!   scaled, and builds that of a new mesh. Meshes with equal hashes share one prepared mesh, wherever they
-//!   are: clones, copies restored from a snapshot, the same file loaded twice. The hash reads the whole
+//!   vertices, triangles, and whether it deforms. Meshes with equal hashes share one prepared mesh,
+//!   wherever they are: clones, copies restored from a snapshot, the same file loaded twice. The hash reads the whole
 //!   mesh (about 4 µs for 1000 triangles), so it is asked for only where a tree is built, once by each
 //!   pair of two meshes about those that are small, and about a large one where one with as many
 //!   triangles is there.
@@ -42,7 +40,6 @@ impl ContentHash {
         let mut hasher = Xxh3::new();
         add_topology(mesh, &mut hasher);
         hasher.update(bytemuck::cast_slice(mesh.vertices()));
-        add_hierarchy(mesh, &mut hasher);
         Self(hasher.digest128())
     }
 }
@@ -53,27 +50,6 @@ fn add_topology(mesh: &TriMesh, hasher: &mut Xxh3) {
     hasher.write_usize(mesh.indices().len());
     hasher.write_u16((mesh.flags() & TriMeshFlags::DEFORMABLE).bits());
     hasher.update(bytemuck::cast_slice(mesh.indices()));
-}
-
-/// Adds the shape of Parry's hierarchy: where each leaf stands in its array of nodes. Parry lays
-/// nodes out as it walks them, so equal places come from equal walks; the first leaves of the walk
-/// are added as a check. A walk over all nodes takes four times as long.
-fn add_hierarchy(mesh: &TriMesh, hasher: &mut Xxh3) {
-    const FIRST: usize = 16;
-    let bvh = mesh.bvh();
-    for leaf in bvh.leaves(|_| true).take(FIRST) {
-        hasher.write_u32(leaf);
-    }
-    let place = |leaf| bvh.leaf_node(leaf).map_or(0, |node| std::ptr::from_ref(node).addr());
-    let start = place(0);
-    let (mut places, count) = ([0; 64], mesh.indices().len() as u32);
-    for first in (0..count).step_by(places.len()) {
-        let used = places.len().min((count - first) as usize);
-        for (place_of, leaf) in places[..used].iter_mut().zip(first..) {
-            *place_of = place(leaf).wrapping_sub(start) as u32;
-        }
-        hasher.update(bytemuck::cast_slice(&places[..used]));
-    }
 }
 
 /// Vertices and triangles of a mesh, to be compared with those of another. For 10,000 vertices and
@@ -168,9 +144,6 @@ mod tests {
         triangles[7].swap(1, 2);
         let reversed = TriMesh::new(mesh.vertices().to_vec(), triangles).unwrap();
         assert_ne!(ContentHash::of(&reversed), hash, "triangles");
-        let mut moved = row(|i| i * 7 % 16, TriMeshFlags::empty());
-        moved.set_vertices(mesh.vertices());
-        assert_ne!(ContentHash::of(&moved), hash, "hierarchy");
     }
 
     /// Would catch an edit in place that a pair does not see, and a mesh taken for its clone.

@@ -15,7 +15,7 @@ mod soundness;
 
 pub(crate) use cache::{CacheCounts, CachedMesh, PreparedRef, TreeCache};
 pub(crate) use hierarchy::{
-    BEHIND, Hierarchy, Ranks, are_near, box_of, is_covered, is_near, may_be_inside, nearest,
+    BEHIND, Hierarchy, are_near, box_of, is_covered, is_near, may_be_inside, nearest,
 };
 pub(crate) use identity::MeshToken;
 pub(crate) use known::{Change, KnownMesh, MeshSurface};

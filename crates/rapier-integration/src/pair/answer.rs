@@ -164,7 +164,7 @@ impl<'c, C> InStep<'c, C> {
     }
 }
 
-/// Replaces `manifolds` by one for each contact, in stock order. Manifolds of subshapes that still
+/// Replaces `manifolds` by one for each contact, in the order of subshapes. Manifolds of subshapes that still
 /// touch keep their data; none is left empty.
 fn write_every<Q, M, C>(
     Contacts { query, candidates, contacts, limits }: Contacts<'_, Q>,

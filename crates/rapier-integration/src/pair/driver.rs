@@ -8,15 +8,15 @@ use parry3d::query::{ContactManifold, TrackedContact};
 use sbbk_core::traverse::{Counters, DescentScratch, Placement, SlackLimits};
 use sbbk_core::volumes::Sphere;
 
-use super::convex::{Near, PlacedPart};
+use super::convex::{PlacedPart, Touch};
 use super::merge::Lookup;
-use super::order::{Candidate, OrderKey};
+use super::order::Candidate;
 use super::outline::{Outline, PatchPlan, Patches};
 use super::pool::{Demand, ManifoldPool};
 use super::pose::PairPose;
 use super::seams::Seams;
 use super::triangles::{Found, Regions};
-use crate::mesh::{Change, Ranks, TreeCache};
+use crate::mesh::{Change, TreeCache};
 
 /// A mesh and another shape, of whose contacts a host asks.
 pub(crate) trait Pair: Copy {
@@ -59,8 +59,8 @@ pub(crate) trait PairQuery {
         self.pose().prediction
     }
 
-    /// Where contacts cost less than to keep candidates does: replaces `manifolds` by one for each, in
-    /// stock order, and keeps nothing. Whether it has.
+    /// Where contacts cost less than to keep candidates does: replaces `manifolds` by one for each, and
+    /// keeps nothing. Whether it has.
     fn write_at_once<M, C>(
         &self,
         _: &mut impl Counters,
@@ -75,7 +75,7 @@ pub(crate) trait PairQuery {
         false
     }
 
-    /// Adds all candidates within `margin`, and few others, in the order of stock's manifolds.
+    /// Adds all candidates within `margin`, and few others, in any order.
     fn descend(
         &mut self,
         margin: Real,
@@ -197,16 +197,12 @@ pub(crate) struct Scratch {
     pub(super) descent: DescentScratch,
     /// The parts of convex shapes that this query has come across.
     pub(super) parts: Vec<Option<PlacedPart>>,
-    /// Pairs of subshapes and their places in the order of manifolds.
-    pub(super) ordered: Vec<(OrderKey, [u32; 2])>,
-    /// Places of triangles in the order of their mesh.
-    pub(super) ranks: [Ranks; 2],
     /// Triangles that a walk has found.
     pub(super) near: Vec<u32>,
     /// Where surfaces cross.
     pub(super) regions: Regions,
     pub(super) triangle_contacts: [ContactList<Found>; 2],
-    pub(super) convex_contacts: [ContactList<Near>; 2],
+    pub(super) convex_contacts: [ContactList<Touch>; 2],
     pub(super) patches: Patches,
     pub(super) seams: Seams,
     pub(super) lookup: Lookup,
@@ -219,13 +215,11 @@ impl Scratch {
     /// Gives back memory beyond so many contacts. Candidates come and go more than these do: some hundred
     /// kilobytes a thread stay.
     pub(super) fn shrink_to(&mut self, limit: usize) {
-        let Self { ordered, ranks, near, regions, patches, seams, lookup, is_done, .. } = self;
+        let Self { near, regions, patches, seams, lookup, is_done, .. } = self;
         let many = limit.max(1024);
         shrink(&mut self.triangle_contacts, many);
         shrink(&mut self.convex_contacts, many);
-        shrink([ordered], many);
         shrink([near], many);
-        ranks.iter_mut().for_each(|ranks| ranks.shrink_to(many));
         regions.shrink_to(many);
         patches.shrink_to(limit);
         seams.shrink_to(limit);

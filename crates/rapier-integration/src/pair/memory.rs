@@ -35,7 +35,7 @@ pub(super) struct Coherence<H> {
     is_whole: bool,
     /// Until when the candidates serve.
     pub(super) slack: Slack,
-    /// Those of the last descent, in stock order.
+    /// Those of the last descent, in the order of subshapes.
     pub(super) candidates: Vec<Candidate<H>>,
     /// See [`PairQuery::settle`](super::driver::PairQuery::settle).
     pub(super) outside: f64,
@@ -65,8 +65,7 @@ impl<H> Default for Coherence<H> {
 impl<H> PairMemory<H> {
     /// Forgets what a change of the shapes makes worthless: the candidates, and the manifolds if
     /// their triangles are others now. Where only vertices moved, or another dispatcher answered
-    /// before, manifolds keep their data, but Parry's generator must not take their points for its
-    /// own.
+    /// before, manifolds keep their data.
     pub(super) fn follow<M, C: Default + Copy>(
         &mut self,
         change: Change,
@@ -74,9 +73,7 @@ impl<H> PairMemory<H> {
     ) {
         match change {
             Change::Unchanged => return,
-            Change::Unknown | Change::Deformed => {
-                manifolds.iter_mut().for_each(ContactManifold::mark_shapes_deformed);
-            }
+            Change::Unknown | Change::Deformed => {}
             Change::Replaced => manifolds.clear(),
         }
         self.coherence = Coherence::default();
@@ -109,12 +106,13 @@ impl<H> Coherence<H> {
 }
 
 impl<H: Copy + Default + PartialEq> Coherence<H> {
-    /// Replaces the candidates by those that `find` adds, in the order of manifolds. What was known
+    /// Replaces the candidates by those that `find` adds, in the order of subshapes. What was known
     /// of the same subshapes is handed on.
     pub(super) fn find(&mut self, lookup: &mut Lookup, find: impl FnOnce(&mut Vec<Candidate<H>>)) {
         let old_count = self.candidates.len();
         find(&mut self.candidates);
         let (old, new) = self.candidates.split_at_mut(old_count);
+        new.sort_unstable_by_key(|candidate| candidate.subshapes);
         lookup.hand_on(old, new);
         self.candidates.drain(..old_count);
     }

@@ -1,20 +1,5 @@
 use std::num::NonZeroU32;
 
-/// The place of a pair of subshapes in the order of stock manifolds.
-///
-/// Parry walks the hierarchy of the shape with the larger box and, for each part found there, the
-/// hierarchy of the other. The order of SBBK depends on the two shapes only: not on the descent, a
-/// thread, or earlier queries.
-#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct OrderKey(u64);
-
-impl OrderKey {
-    /// Of parts with these ranks in the shape walked first and in the other.
-    pub(super) fn new([major, minor]: [u32; 2]) -> Self {
-        Self(u64::from(major) << 32 | u64::from(minor))
-    }
-}
-
 /// A pair of subshapes that may come within the prediction distance.
 #[derive(Copy, Clone, Debug)]
 pub(crate) struct Candidate<H> {

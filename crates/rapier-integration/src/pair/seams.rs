@@ -71,14 +71,6 @@ impl Known {
         let size = on_triangle.abs().max_element() + distance.abs();
         Self { feature, distance, slack: EQUAL * size, place: [on_triangle, normal] }
     }
-
-    /// Of a triangle that has no contact: it has no part in this.
-    pub(crate) const NONE: Self = Self {
-        feature: Feature::Face,
-        distance: f64::INFINITY,
-        slack: 0.0,
-        place: [DVec3::ZERO; 2],
-    };
 }
 
 /// What becomes of a contact, by its place in the list.

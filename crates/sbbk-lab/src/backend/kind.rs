@@ -5,7 +5,7 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use clap::ValueEnum;
-use rapier_integration::{ContactDetail, ContactGenerator, ContactSet, SbbkConfig, SbbkDispatcher};
+use rapier_integration::{ContactDetail, ContactSet, SbbkConfig, SbbkDispatcher};
 use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
 use rapier3d::pipeline::PhysicsWorld;
@@ -45,13 +45,11 @@ pub enum Backend {
     Sbbk,
     /// SBBK with a manifold for every contact, as in stock.
     Every,
-    /// SBBK, with Parry generating the contacts of the triangles that it finds.
-    SbbkParry,
 }
 
 impl Backend {
     /// All backends, stock first.
-    pub const ALL: [Self; 4] = [Self::Stock, Self::AabbOnly, Self::Sbbk, Self::SbbkParry];
+    pub const ALL: [Self; 3] = [Self::Stock, Self::AabbOnly, Self::Sbbk];
 
     /// A fresh dispatcher, with nothing cached.
     pub fn dispatcher(self) -> Dispatcher {
@@ -81,7 +79,6 @@ impl Backend {
             }
             Self::AabbOnly => config = SbbkConfig::aabb_only(),
             Self::Sbbk | Self::Every => {}
-            Self::SbbkParry => config.contacts = ContactGenerator::Parry,
         }
         (config.contact_set, config.detail) = (contact_set, detail);
         let sbbk = SbbkDispatcher::new(config);

@@ -5,13 +5,13 @@
 //! than half of the shape is out along the normal of the triangle it leads outward, and inward from there
 //! on. Then one contact takes the place of all: out by the face that is nearest to the middle.
 
-use glamx::{DVec3, Vec3};
+use glamx::DVec3;
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
 
 use super::pair::ConvexPair;
 use super::query::ConvexQuery;
-use super::touch::{Along, Near, Touch};
+use super::touch::{Along, Touch};
 use crate::mesh::{BEHIND, is_covered, nearest};
 use crate::pair::driver::{ContactList, Scratch};
 use crate::pair::order::{Candidate, push_candidate};
@@ -63,8 +63,8 @@ impl ConvexQuery<'_> {
     /// Makes the ways out of parts that are in the solid their only contacts.
     pub(super) fn lead_out(
         &self,
-        candidates: &mut Vec<Candidate<Vec3>>,
-        contacts: &mut ContactList<Near>,
+        candidates: &mut Vec<Candidate<()>>,
+        contacts: &mut ContactList<Touch>,
         scratch: &mut Scratch,
     ) {
         if self.surface.is_none() {
@@ -74,13 +74,12 @@ impl ConvexQuery<'_> {
         parts.meeting(&self.pair.mesh_box(0.0), |part| {
             let is_of_it = |of: u32| mesh_place.swap(candidates[of as usize].subshapes)[1] == part;
             let distances = contacts.iter().filter(|(of, _)| is_of_it(*of));
-            let distances =
-                distances.filter_map(|(_, Near(touch))| Some(touch.as_ref()?.contact.distance));
+            let distances = distances.map(|(_, touch)| touch.contact.distance);
             let deepest = distances.fold(f64::INFINITY, f64::min);
             let Some((triangle, touch)) = self.way_out(part, deepest, scratch) else { return };
             contacts.retain(|(of, _)| !is_of_it(*of));
             let of = push_candidate(candidates, mesh_place.swap([triangle, part]));
-            contacts.push((of, Near(Some(touch))));
+            contacts.push((of, touch));
         });
     }
 }

@@ -34,4 +34,4 @@ pub(crate) use nearest::{ConvexSearch, FoundTriangle};
 pub(crate) use pair::ConvexPair;
 pub(crate) use parts::Parts;
 pub(crate) use placed::PlacedPart;
-pub(super) use touch::Near;
+pub(super) use touch::Touch;

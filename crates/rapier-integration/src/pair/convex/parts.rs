@@ -96,33 +96,12 @@ impl<'a> Parts<'a> {
             Self::Many(composite) => composite.shape.bvh().intersect_aabb(aabb).for_each(found),
         }
     }
-
-    /// The size by which stock chooses which hierarchy to walk first; none without a hierarchy.
-    pub(super) fn walk_size(&self) -> Option<Real> {
-        match self {
-            Self::One(_) => None,
-            Self::Many(composite) => {
-                Some(composite.shape.bvh().root_aabb().half_extents().length_squared())
-            }
-        }
-    }
-
-    /// All parts of a composite, in the order of its hierarchy.
-    fn leaves(&self) -> impl Iterator<Item = u32> {
-        let bvh = match self {
-            Self::One(_) => None,
-            Self::Many(composite) => Some(composite.shape.bvh()),
-        };
-        bvh.into_iter().flat_map(|bvh| bvh.leaves(|_| true))
-    }
 }
 
 /// What is known of the parts from query to query.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct KnownParts {
     token: Option<Token>,
-    /// The places of the parts of a composite in the order of its hierarchy.
-    ranks: Vec<u32>,
     /// The points of those parts that are hulls, once they have been needed; of one shape the first.
     hulls: Vec<OnceLock<HullPoints>>,
     /// How far each part extends, once that has been needed; of one shape the first. (All at the
@@ -161,12 +140,8 @@ impl KnownParts {
                 self.extents = vec![OnceLock::from(shape)];
             }
             Token::Many(CompositeToken { part_count, aabb, .. }) => {
-                self.ranks = vec![u32::MAX; part_count];
                 self.hulls = vec![OnceLock::new(); part_count];
                 self.extents = vec![OnceLock::new(); part_count];
-                for (rank, part) in parts.leaves().enumerate() {
-                    self.ranks[part as usize] = rank as u32;
-                }
                 let mut offset: Real = 0.0;
                 for part in 0..part_count as u32 {
                     parts.with(part, |part| {
@@ -222,12 +197,6 @@ impl KnownParts {
             };
             (0..self.extents.len() as u32).filter_map(size).fold(0.0, Real::max)
         })
-    }
-
-    /// The place of a part in the order of its hierarchy.
-    #[inline(always)]
-    pub(super) fn rank(&self, part: u32) -> u32 {
-        self.ranks.get(part as usize).copied().unwrap_or(0)
     }
 }
 

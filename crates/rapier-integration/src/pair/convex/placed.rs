@@ -1,12 +1,8 @@
-//! A triangle and a convex shape at a pose, and the manifold of their contact: an exact one, or
-//! that of Parry's routine, asked by its own name.
+//! A triangle and a convex shape at a pose, and the manifold of their contact.
 
 use glamx::{DQuat, DVec3, Vec3};
 use parry3d::math::{Pose, Real};
-use parry3d::query::details::{
-    NormalConstraints, contact_manifold_convex_ball, contact_manifold_cuboid_triangle,
-    contact_manifold_halfspace_pfm, contact_manifold_pfm_pfm,
-};
+use parry3d::query::details::NormalConstraints;
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::Triangle;
 use sbbk_core::contact::convex::ConvexContact;
@@ -17,12 +13,11 @@ use super::ball::{keep_one, ray_length};
 use super::features::{Normals, Point, Touching};
 use super::half_space::half_space_points;
 use super::pair::ConvexPair;
-use super::parts::{Part, Parts};
+use super::parts::Part;
 use super::shape::{ConvexShape, Extent};
 use super::touch::{Along, Touch};
-use crate::ContactGenerator;
 use crate::pair::outline::Outline;
-use crate::pair::pose::{MeshPlace, PairPose};
+use crate::pair::pose::MeshPlace;
 
 /// A part at the pose of a query: what is computed once for all triangles near it.
 pub(crate) struct PlacedPart {
@@ -36,29 +31,22 @@ pub(crate) struct PlacedPart {
     /// Where the mesh has the centre of a ball, if its frame has the axes of the mesh: a ball has none
     /// of its own, and no triangle need be turned.
     centre: Option<DVec3>,
-    /// The mesh in the frame of the part and the reverse, with the roundings of stock.
+    /// The mesh in the frame of the part and the reverse, in f32.
     to_part: Pose,
     to_mesh: Pose,
 }
 
 impl PlacedPart {
     pub(super) fn new(index: u32, part: &Part<'_>, pair: &ConvexPair<'_>, extent: Extent) -> Self {
-        let pose = pair.part_pose(part.pose);
-        let [to_mesh, to_part] = pair.mesh_place.swap([pose, pose.inverse()]);
+        let whole_in_mesh = pair.mesh_place.shape_in_mesh(&pair.pose.pos12);
+        let to_mesh = part.pose.map_or(whole_in_mesh, |part| whole_in_mesh * *part);
+        let to_part = to_mesh.inverse();
         let whole = pair.mesh_place.placements(pair.pose).map(|placement| *placement);
-        let [placement, inverse] = match (pair.parts, pair.contacts, part.pose) {
-            // Not that pose: in f32 the poses of a pair and a part make one that is off by some
-            // 1e-7 of the way.
-            (Parts::Many(_), ContactGenerator::Exact, Some(part)) => {
-                let mesh_in_part = Placement::new(part).inverted().of(&whole[0]);
-                [mesh_in_part, mesh_in_part.inverted()]
-            }
-            (Parts::Many(_), ContactGenerator::Parry, _) => {
-                let of_part = PairPose::new(&pose, pair.pose.prediction);
-                pair.mesh_place.placements(&of_part).map(|placement| *placement)
-            }
-            _ => whole,
-        };
+        // Not from the poses of the part: in f32 these are off by some 1e-7 of the way.
+        let [placement, inverse] = part.pose.map_or(whole, |part| {
+            let mesh_in_part = Placement::new(part).inverted().of(&whole[0]);
+            [mesh_in_part, mesh_in_part.inverted()]
+        });
         Self { index, extent, placement, inverse, centre: None, to_part, to_mesh }
     }
 
@@ -177,19 +165,11 @@ pub(super) struct Question<'a> {
 }
 
 impl Question<'_> {
-    /// Brings the manifold of the triangle up to date: with `contact` if it is known, else as
-    /// Parry's routine does.
-    ///
-    /// Nothing of the step before has a part in the answer: Parry's `try_update_contacts` keeps
-    /// points while they drift, and its GJK begins with the last normal, which for cylinders, cones
-    /// and round shapes was the cause of nearly all wrong depths. Only the data of points with the
-    /// same feature ids is handed on.
-    ///
-    /// The points of the query before are in a buffer of ours meanwhile: Parry copies them into a
-    /// new one.
+    /// Brings the manifold of the triangle up to date with its contact. Points with the feature ids of
+    /// points of the query before keep their data.
     pub(super) fn refresh<M, C>(
         &self,
-        touch: Option<&Touch>,
+        touch: &Touch,
         previous_points: &mut Vec<TrackedContact<C>>,
         manifold: &mut ContactManifold<M, C>,
     ) where
@@ -197,28 +177,24 @@ impl Question<'_> {
         C: Default + Copy,
     {
         if let ConvexShape::Ball(ball) = self.part.shape {
-            // One point, whose data stays in place.
-            return match touch {
-                // The nearest triangle has the nearest point.
-                Some(touch) if touch.along == Along::Other => manifold.points.clear(),
-                Some(touch) => self.touch_ball(ball.radius, &touch.contact, manifold),
-                None => self.ask_parry(manifold),
+            // The nearest triangle has the nearest point, and its data stays in place.
+            return match touch.along {
+                Along::Other => manifold.points.clear(),
+                Along::Own | Along::WayOut => {
+                    self.touch_ball(ball.radius, &touch.contact, manifold)
+                }
             };
         }
         std::mem::swap(&mut manifold.points, previous_points);
         manifold.points.clear();
         manifold.local_n1 = Vec3::ZERO;
-        match (touch, self.part.shape) {
-            (Some(touch), ConvexShape::Features { .. } | ConvexShape::Cuboid(_)) => {
-                self.touch(touch, manifold);
-            }
-            (Some(Touch { contact, .. }), ConvexShape::HalfSpace(half_space)) => {
-                let Self { triangle, mesh_place, prediction, .. } = *self;
-                let (corners, flipped) = (self.placed.corners(triangle), !mesh_place.is_second());
-                half_space_points(half_space, triangle, &corners, prediction, flipped, manifold);
-                [manifold.local_n1, manifold.local_n2] = self.normals(contact);
-            }
-            _ => self.ask_parry(manifold),
+        if let ConvexShape::HalfSpace(half_space) = self.part.shape {
+            let Self { triangle, mesh_place, prediction, .. } = *self;
+            let (corners, flipped) = (self.placed.corners(triangle), !mesh_place.is_second());
+            half_space_points(half_space, triangle, &corners, prediction, flipped, manifold);
+            [manifold.local_n1, manifold.local_n2] = self.normals(&touch.contact);
+        } else {
+            self.touch(touch, manifold);
         }
         manifold.match_contacts(previous_points);
     }
@@ -354,72 +330,5 @@ impl Question<'_> {
         let points = mesh_place.swap([placed.at_mesh(on_triangle), to_triangle * radius]);
         keep_one(points, (distance - f64::from(radius)) as Real, manifold);
         [manifold.local_n1, manifold.local_n2] = normals;
-    }
-
-    /// Parry's routine for the kind of shape, with the arguments that stock's calls end up with.
-    /// Called by its own name: through the dispatcher both shapes are taken apart and put together
-    /// again for each triangle, and its GJK asks a triangle for support points through a table. A
-    /// tenth to a quarter of a query.
-    fn ask_parry<M, C>(&self, manifold: &mut ContactManifold<M, C>)
-    where
-        M: Default,
-        C: Default + Copy,
-    {
-        let Self { placed, part, triangle, cone, mesh_place, prediction } = *self;
-        let PlacedPart { to_part, to_mesh, .. } = placed;
-        let is_mesh_second = mesh_place.is_second();
-        match part.shape {
-            ConvexShape::Ball(ball) => {
-                contact_manifold_convex_ball(
-                    to_mesh,
-                    triangle,
-                    ball,
-                    cone,
-                    part.cone,
-                    prediction,
-                    manifold,
-                    is_mesh_second,
-                );
-            }
-            ConvexShape::Cuboid(cuboid) => contact_manifold_cuboid_triangle(
-                to_part,
-                to_mesh,
-                cuboid,
-                triangle,
-                part.cone,
-                cone,
-                prediction,
-                manifold,
-                !is_mesh_second,
-            ),
-            ConvexShape::HalfSpace(half_space) => contact_manifold_halfspace_pfm(
-                to_part,
-                half_space,
-                triangle,
-                0.0,
-                prediction,
-                manifold,
-                !is_mesh_second,
-            ),
-            ConvexShape::Features { map, radius, .. } if is_mesh_second => {
-                contact_manifold_pfm_pfm(
-                    to_part, map, radius, part.cone, triangle, 0.0, cone, prediction, manifold,
-                );
-            }
-            ConvexShape::Features { map, radius, .. } => contact_manifold_pfm_pfm(
-                to_mesh, triangle, 0.0, cone, map, radius, part.cone, prediction, manifold,
-            ),
-        }
-    }
-
-    /// Where GJK sees that two shapes do not touch, it leaves the direction as the manifold's
-    /// normal. The same in the frame of the part, from the part to the triangle.
-    pub(super) fn axis_of<M, C>(&self, manifold: &ContactManifold<M, C>) -> Option<Vec3> {
-        let normal = manifold.local_n1;
-        let is_gjks = matches!(self.part.shape, ConvexShape::Features { .. });
-        (is_gjks && normal != Vec3::ZERO).then(|| match self.mesh_place {
-            MeshPlace::Second => normal,
-            MeshPlace::First => -(self.placed.placement.rotation * normal.as_dvec3()).as_vec3(),
-        })
     }
 }

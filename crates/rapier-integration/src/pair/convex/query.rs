@@ -1,7 +1,6 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use glamx::Vec3;
 use parry3d::math::Real;
 use parry3d::query::details::NormalConstraints;
 use parry3d::query::{ContactManifold, TrackedContact};
@@ -15,12 +14,11 @@ use super::pair::ConvexPair;
 use super::parts::{KnownParts, Part, Parts};
 use super::placed::{PlacedPart, Question};
 use super::shape::ConvexShape;
-use super::touch::{Along, Near, Touch};
-use crate::ContactGenerator;
+use super::touch::{Along, Touch};
 use crate::mesh::{Change, KnownMesh, MeshSurface, TreeCache};
 use crate::pair::driver::{ContactList, Limits, Moving, Pair, PairQuery, Scratch, Seen};
 use crate::pair::merge::Merge;
-use crate::pair::order::{Candidate, OrderKey};
+use crate::pair::order::Candidate;
 use crate::pair::outline::{Outline, PatchPlan};
 use crate::pair::pool::ManifoldPool;
 use crate::pair::pose::{MeshPlace, PairPose};
@@ -28,7 +26,7 @@ use crate::pair::pose::{MeshPlace, PairPose};
 impl<'a> Pair for ConvexPair<'a> {
     /// The mesh, and the parts that the candidates are of.
     type Known = (KnownMesh, KnownParts);
-    type Hint = Vec3;
+    type Hint = ();
     type Query<'q>
         = ConvexQuery<'q>
     where
@@ -149,10 +147,8 @@ impl ConvexQuery<'_> {
 }
 
 impl PairQuery for ConvexQuery<'_> {
-    /// The direction along which triangle and part were apart when last seen, from the part to the
-    /// triangle, in the frame of the part. Zero if they were not.
-    type Hint = Vec3;
-    type Contact = Near;
+    type Hint = ();
+    type Contact = Touch;
 
     /// A candidate out of reach costs next to nothing, so it can be more than for two meshes. At three
     /// prediction distances a step, a greatest slack of 8 in place of 5 took 1.2 times as long on the
@@ -175,15 +171,13 @@ impl PairQuery for ConvexQuery<'_> {
         }
     }
 
-    /// How far Parry's routines may see: the prediction distance, what GJK adds, and what Parry
-    /// rounds away in f32, some sixty operations on coordinates of the mesh, the pose and the
-    /// shape. More than the error of exact contacts with curved shapes, which is 1e-7 of the
-    /// distance.
+    /// The prediction distance, and what rounds in f32 within some sixty operations on coordinates of
+    /// the mesh, the pose and the shape: more than the error of exact contacts with curved shapes, which
+    /// is 1e-7 of the distance.
     fn reach(&self) -> Real {
-        let KnownParts { radius, magnitude, .. } = *self.known_parts;
         let offset = self.pose().pos12.translation.abs().max_element();
-        let largest = self.pair.mesh.magnitude() + offset + magnitude;
-        (self.pair.sight(radius) + gamma(64) * largest).min(Real::MAX)
+        let largest = self.pair.mesh.magnitude() + offset + self.known_parts.magnitude;
+        (self.pose().prediction.max(0.0) + gamma(64) * largest).min(Real::MAX)
     }
 
     /// Of a ball: there neither a contact nor the test of a box takes long.
@@ -198,11 +192,8 @@ impl PairQuery for ConvexQuery<'_> {
         M: Default + 'static,
         C: Default + Copy + 'static,
     {
-        let ConvexPair { ref mesh, parts, mesh_place, contacts, .. } = *self.pair;
+        let ConvexPair { ref mesh, parts, mesh_place, .. } = *self.pair;
         let Parts::One(shape @ ConvexShape::Ball(ball)) = parts else { return false };
-        if contacts == ContactGenerator::Parry {
-            return false;
-        }
         let mut contacts = std::mem::take(&mut scratch.convex_contacts[0]);
         contacts.clear();
         let part = Part { pose: None, shape, cone: None };
@@ -214,20 +205,18 @@ impl PairQuery for ConvexQuery<'_> {
             if let Some(contact) = ball_contact(&corners, f64::from(margin) + radius)
                 && contact.distance - radius <= farthest
             {
-                contacts.push((index, Near(Some(Touch::new(contact, &corners)))));
+                contacts.push((index, Touch::new(contact, &corners)));
             }
             ControlFlow::Continue(())
         });
         if let Some((triangle, touch)) = self.way_out(0, f64::INFINITY, scratch) {
             contacts.clear();
-            contacts.push((triangle, Near(Some(touch))));
+            contacts.push((triangle, touch));
         }
         self.turn(&mut contacts, |triangle| [triangle, 0], scratch);
         let mut lookup = std::mem::take(&mut scratch.lookup);
         let mut merge = Merge::begin(pool, manifolds, &mut lookup);
-        for (index, touch) in
-            contacts.iter().filter_map(|&(index, Near(touch))| Some((index, touch?)))
-        {
+        for &(index, touch) in &contacts {
             if touch.along != Along::Other {
                 merge.write(mesh_place.swap([index, 0]), |manifold| {
                     self.ask(index, 0, scratch, |question| {
@@ -247,56 +236,28 @@ impl PairQuery for ConvexQuery<'_> {
         margin: Real,
         counters: &mut impl Counters,
         scratch: &mut Scratch,
-        candidates: &mut Vec<Candidate<Vec3>>,
+        candidates: &mut Vec<Candidate<()>>,
     ) {
         let place = self.pair.mesh_place;
-        let Parts::Many(_) = self.pair.parts else {
-            return self.descend_part(0, margin, counters, scratch, |triangle| {
-                candidates.push(Candidate::new(place.swap([triangle, 0])));
-            });
-        };
-        let mut ordered = std::mem::take(&mut scratch.ordered);
-        ordered.clear();
         self.pair.parts.meeting(&self.pair.mesh_box(margin), |part| {
             self.descend_part(part, margin, counters, scratch, |triangle| {
-                ordered.push((OrderKey::default(), [triangle, part]));
+                candidates.push(Candidate::new(place.swap([triangle, part])));
             });
         });
-        let ranks = &mut scratch.ranks[0];
-        self.pair.mesh.rank(ordered.iter().map(|(_, [triangle, _])| *triangle), ranks);
-        let is_mesh_first = self.pair.is_mesh_first();
-        for (key, [triangle, part]) in &mut ordered {
-            let ranks = [ranks.of(*triangle), self.known_parts.rank(*part)];
-            *key = OrderKey::new(if is_mesh_first { ranks } else { [ranks[1], ranks[0]] });
-        }
-        ordered.sort_unstable();
-        candidates.extend(ordered.iter().map(|&(_, pair)| Candidate::new(place.swap(pair))));
-        scratch.ordered = ordered;
     }
 
     #[inline(always)]
     fn contact(
         &mut self,
-        candidate: &mut Candidate<Vec3>,
+        candidate: &mut Candidate<()>,
         limits: Limits,
         scratch: &mut Scratch,
-    ) -> Seen<Near> {
+    ) -> Seen<Touch> {
         let [triangle, part] = self.pair.mesh_place.swap(candidate.subshapes);
         let (mesh, known_parts) = (&self.pair.mesh, self.known_parts);
-        let is_exact = self.pair.contacts == ContactGenerator::Exact;
         let contact = self.pair.parts.with(part, |part_shape| {
             let shape = part_shape.shape;
             let placed = self.placed(part, &part_shape, scratch);
-            if candidate.hint != Vec3::ZERO {
-                let gap = placed.gap(shape, &mesh.mesh.triangle(triangle), candidate.hint);
-                if gap > limits.reach {
-                    candidate.clear = candidate.clear.max(gap + limits.travel);
-                    return None;
-                }
-            }
-            if !is_exact {
-                return Some(Near(None));
-            }
             let radius = f64::from(shape.radius());
             let corners = placed.place(mesh.corners(triangle));
             let reach = limits.margin + radius;
@@ -309,15 +270,15 @@ impl PairQuery for ConvexQuery<'_> {
             let distance = contact.map_or(limits.margin, |contact| contact.distance - radius);
             candidate.clear = distance + limits.travel;
             let is_near = distance <= f64::from(self.pair.pose.prediction);
-            is_near.then(|| Near(contact.map(|contact| Touch::new(contact, &corners))))
+            contact.filter(|_| is_near).map(|contact| Touch::new(contact, &corners))
         });
         contact.flatten().into()
     }
 
     fn settle(
         &mut self,
-        candidates: &mut Vec<Candidate<Vec3>>,
-        contacts: &mut ContactList<Near>,
+        candidates: &mut Vec<Candidate<()>>,
+        contacts: &mut ContactList<Touch>,
         _: Limits,
         _: &mut f64,
         scratch: &mut Scratch,
@@ -327,7 +288,7 @@ impl PairQuery for ConvexQuery<'_> {
         self.turn(contacts, |of| self.pair.mesh_place.swap(subshapes(of)), scratch);
     }
 
-    fn name<M, C>(&self, candidate: &Candidate<Vec3>, manifold: &mut ContactManifold<M, C>) {
+    fn name<M, C>(&self, candidate: &Candidate<()>, manifold: &mut ContactManifold<M, C>) {
         [manifold.subshape1, manifold.subshape2] = candidate.subshapes;
         if let Parts::Many(_) = self.pair.parts {
             let [_, part] = self.pair.mesh_place.swap(candidate.subshapes);
@@ -338,11 +299,11 @@ impl PairQuery for ConvexQuery<'_> {
         }
     }
 
-    fn contacts(scratch: &mut Scratch) -> &mut [ContactList<Near>; 2] {
+    fn contacts(scratch: &mut Scratch) -> &mut [ContactList<Touch>; 2] {
         &mut scratch.convex_contacts
     }
 
-    fn patch_plan(&self, _: &[(u32, Near)]) -> Option<PatchPlan> {
+    fn patch_plan(&self, _: &[(u32, Touch)]) -> Option<PatchPlan> {
         self.has_patches().then(|| {
             let radius = self.known_parts.patch_radius(&self.pair.parts);
             PatchPlan::new(self.pose().prediction, radius.min(self.pair.mesh.ball().radius))
@@ -351,11 +312,10 @@ impl PairQuery for ConvexQuery<'_> {
 
     fn outline(
         &self,
-        Near(touch): &Near,
-        candidate: &Candidate<Vec3>,
+        touch: &Touch,
+        candidate: &Candidate<()>,
         scratch: &mut Scratch,
     ) -> Option<Outline> {
-        let touch = touch.as_ref()?;
         let [triangle, index] = self.pair.mesh_place.swap(candidate.subshapes);
         let mut outline = None;
         self.ask(triangle, index, scratch, |question| outline = question.outline(touch));
@@ -365,8 +325,8 @@ impl PairQuery for ConvexQuery<'_> {
     #[inline(always)]
     fn write<M, C>(
         &mut self,
-        Near(touch): Near,
-        candidate: &mut Candidate<Vec3>,
+        touch: Touch,
+        candidate: &mut Candidate<()>,
         _: Limits,
         scratch: &mut Scratch,
         previous_points: &mut Vec<TrackedContact<C>>,
@@ -377,12 +337,7 @@ impl PairQuery for ConvexQuery<'_> {
     {
         let [index, part] = self.pair.mesh_place.swap(candidate.subshapes);
         self.ask(index, part, scratch, |question| {
-            question.refresh(touch.as_ref(), previous_points, manifold);
-            if manifold.points.is_empty()
-                && let Some(axis) = question.axis_of(manifold)
-            {
-                candidate.hint = axis;
-            }
+            question.refresh(&touch, previous_points, manifold);
         });
     }
 }

@@ -4,7 +4,7 @@ use sbbk_core::contact::convex::ConvexContact;
 
 use super::pair::ConvexPair;
 use super::query::ConvexQuery;
-use super::touch::{Along, Near};
+use super::touch::{Along, Touch};
 use crate::pair::driver::Scratch;
 use crate::pair::seams::{Known, Seam, Touched};
 
@@ -12,7 +12,7 @@ impl ConvexQuery<'_> {
     /// Turns contacts that are none of the surface. `subshapes` has triangle and part of each.
     pub(super) fn turn(
         &self,
-        contacts: &mut [(u32, Near)],
+        contacts: &mut [(u32, Touch)],
         subshapes: impl Fn(u32) -> [u32; 2],
         scratch: &mut Scratch,
     ) {
@@ -22,18 +22,16 @@ impl ConvexQuery<'_> {
             return;
         }
         let mut seams = std::mem::take(&mut scratch.seams);
-        let known = |(_, Near(touch)): &(u32, Near)| {
-            touch.as_ref().map_or(Known::NONE, |touch| Known::new(touch.feature, &touch.contact))
-        };
-        let touched = |&(of, _): &(u32, Near)| {
+        let known = |(_, touch): &(u32, Touch)| Known::new(touch.feature, &touch.contact);
+        let touched = |&(of, _): &(u32, Touch)| {
             let [triangle, part] = subshapes(of);
             Touched { part, corners: mesh.corners(triangle) }
         };
-        let is_beyond = |&(of, _): &(u32, Near), (_, Near(other)): &(u32, Near)| {
+        let is_beyond = |&(of, _): &(u32, Touch), (_, other): &(u32, Touch)| {
             let [triangle, part] = subshapes(of);
             let mut is_beyond = false;
             self.ask(triangle, part, scratch, |question| {
-                is_beyond = other.is_some_and(|other| question.is_beyond(&other.contact));
+                is_beyond = question.is_beyond(&other.contact);
             });
             is_beyond
         };
@@ -57,17 +55,14 @@ impl ConvexQuery<'_> {
                     (contact, along)
                 }
                 Seam::Like(contact, end) => {
-                    let [own, end] =
-                        [contact, end].map(|i| Some(contacts[i as usize].1.0?.contact));
+                    let [own, end] = [contact, end].map(|i| contacts[i as usize].1.contact);
                     // Along its own normal it stays what it is, and patches need not make its points to
                     // know how deep they are: of heads on a flat floor half of the contacts.
-                    let is_turn =
-                        |end: &ConvexContact| own.is_some_and(|own| own.normal != end.normal);
-                    (contact, end.filter(is_turn))
+                    (contact, Some(end).filter(|end| own.normal != end.normal))
                 }
             };
-            let (_, Near(touch)) = &mut contacts[contact as usize];
-            if let (Some(touch), Some(along)) = (touch, along) {
+            let (_, touch) = &mut contacts[contact as usize];
+            if let Some(along) = along {
                 let on_triangle = touch.contact.on_triangle;
                 touch.contact = ConvexContact { on_triangle, ..along };
                 touch.along = Along::Other;

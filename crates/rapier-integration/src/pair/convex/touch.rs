@@ -2,10 +2,6 @@ use glamx::DVec3;
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::{ConvexContact, feature_at};
 
-/// A triangle that may be in reach: its contact, if that is known already.
-#[derive(Copy, Clone)]
-pub(crate) struct Near(pub(super) Option<Touch>);
-
 /// The contact of a triangle with the core of a shape.
 #[derive(Copy, Clone)]
 pub(crate) struct Touch {

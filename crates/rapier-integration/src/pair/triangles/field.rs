@@ -60,13 +60,6 @@ impl Field<'_> {
         Some((nearest, behind?))
     }
 
-    /// The reverse of [`id`](Self::id) as far as its order goes: the cells along z, then x, the
-    /// left triangle first.
-    pub(super) fn rank(self, id: u32) -> u32 {
-        let (cell, side) = (id as usize % self.cell_count(), id as usize / self.cell_count());
-        (2 * cell + side) as u32
-    }
-
     /// The triangle of a number, if it is there and no corner is NaN or infinite.
     pub(super) fn triangle(self, id: u32) -> Option<Triangle> {
         let triangle = self.0.triangle_at_id(id)?;

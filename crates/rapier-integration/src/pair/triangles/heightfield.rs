@@ -4,8 +4,6 @@
 //! goes down Parry's hierarchy of the mesh and reads the cells under it ([`sbbk_core::field`]).
 //!
 //! Triangles of the field have the numbers that Parry gives them in contacts with convex shapes.
-//! Manifolds are in the order in which Parry walks a field and a compound: cell by cell along z,
-//! then x, the left triangle first; then by the place of the mesh's triangle in Parry's hierarchy.
 //!
 //! A rigid mesh has the contacts of its surface and that of the field, whose neighbours and corners are
 //! read from the grid when they are asked for ([`Field`]).
@@ -37,10 +35,8 @@ use super::field::{Field, FieldToken};
 use super::inside::way_out;
 use super::judge::{Surfaces, near};
 use super::query::{Hint, TriangleQuery, TriangleShapes};
-use crate::ContactGenerator;
 use crate::mesh::{Change, Hierarchy, KnownMesh, MeshSurface, TreeCache, is_covered, nearest};
 use crate::pair::driver::{Moving, Pair, Scratch};
-use crate::pair::order::OrderKey;
 use crate::pair::outline::PatchPlan;
 use crate::pair::pose::{MeshPlace, PairPose};
 
@@ -51,7 +47,6 @@ pub(crate) struct FieldPair<'a> {
     pub(crate) mesh: Hierarchy<'a>,
     pub(crate) field: &'a HeightField,
     pub(crate) mesh_place: MeshPlace,
-    pub(crate) contacts: ContactGenerator,
     /// Whether contacts are those of surfaces.
     pub(crate) has_surfaces: bool,
     /// Whether what is below the field is solid.
@@ -102,8 +97,6 @@ impl<'a> Pair for FieldPair<'a> {
         let query = TriangleQuery {
             shapes,
             pose: self.pose,
-            parrys_pose: self.pose.pos12,
-            generator: self.contacts,
             patches: (self.has_patches && self.mesh.is_rigid())
                 .then(|| PatchPlan::new(self.pose.prediction, radius)),
             points: ManifoldPoints::new(),
@@ -203,7 +196,7 @@ impl TriangleShapes for MeshAndField<'_> {
         margin: Real,
         counters: &mut impl Counters,
         scratch: &mut Scratch,
-        found: &mut Vec<(OrderKey, [u32; 2])>,
+        mut found: impl FnMut([u32; 2]),
     ) {
         let mesh = &self.pair.mesh;
         let frame = FieldFrame::new(&self.field, self.pair.mesh_placement(), margin);
@@ -221,15 +214,8 @@ impl TriangleShapes for MeshAndField<'_> {
             let batch = LeafBatch::gather(triangles, |triangle| mesh.corners(triangle));
             leaves.visit(&batch, &mut *counters, |triangle, of_mesh| {
                 let pair = [of_mesh, self.field.id(triangle)];
-                found.push((OrderKey::default(), self.pair.mesh_place.swap(pair)));
+                found(self.pair.mesh_place.swap(pair));
             });
-        }
-        let of_mesh = |pair: [u32; 2]| self.pair.mesh_place.swap(pair)[0];
-        let ranks = &mut scratch.ranks[0];
-        mesh.rank(found.iter().map(|(_, pair)| of_mesh(*pair)), ranks);
-        for (key, pair) in found {
-            let [mesh, field] = self.pair.mesh_place.swap(*pair);
-            *key = OrderKey::new([self.field.rank(field), ranks.of(mesh)]);
         }
     }
 

@@ -27,7 +27,7 @@ impl Meshes<'_> {
         outside: &mut f64,
         travel: f64,
     ) -> Option<([u32; 2], TriangleContact)> {
-        let outer = usize::from(self.is_second_first);
+        let outer = self.pair.larger();
         let [held, holder] = [1 - outer, outer].map(|i| &self.pair.meshes[i]);
         let vertex = to_other(self.pair.pose, 1 - outer, held.corners(0)[0]);
         if !is_deep {

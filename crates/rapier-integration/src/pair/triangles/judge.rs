@@ -292,7 +292,6 @@ mod tests {
     use sbbk_core::tree::BuildOptions;
 
     use super::*;
-    use crate::ContactGenerator;
     use crate::mesh::TreeCache;
     use crate::pair::driver::{Pair, Scratch};
     use crate::pair::triangles::MeshPair;
@@ -318,13 +317,8 @@ mod tests {
             let turn = Vector::new(0.3, 0.1 * i as Real, 0.7);
             let place = turn.normalize() * (2.06 + gap);
             let pose = PairPose::new(&Pose::new(place, turn), 0.08);
-            let mesh_pair = MeshPair {
-                pose: &pose,
-                meshes: seen,
-                contacts: ContactGenerator::Exact,
-                has_surfaces: true,
-                has_patches: false,
-            };
+            let mesh_pair =
+                MeshPair { pose: &pose, meshes: seen, has_surfaces: true, has_patches: false };
             for has_trees in [false, true] {
                 let registered = has_trees
                     .then(|| [0, 1].map(|i| cache.register(&shapes[i], meshes[i]).unwrap()));
@@ -332,8 +326,7 @@ mod tests {
                 let shapes = mesh_pair.open(&cache, &mut known).1.shapes;
                 let mut found = Vec::new();
                 let scratch = &mut Scratch::default();
-                shapes.descend(pose.prediction, &mut (), scratch, &mut found);
-                let mut found: Vec<_> = found.into_iter().map(|(_, pair)| pair).collect();
+                shapes.descend(pose.prediction, &mut (), scratch, |pair| found.push(pair));
                 found.sort_unstable();
                 let count = meshes.map(|mesh| mesh.indices().len() as u32);
                 for pair in (0..count[0]).flat_map(|i| (0..count[1]).map(move |j| [i, j])) {

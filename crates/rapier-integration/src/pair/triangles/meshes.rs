@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use glamx::DVec3;
 use parry3d::bounding_volume::Aabb;
-use parry3d::math::{Pose, Real, Vector};
+use parry3d::math::{Real, Vector};
 use parry3d::query::details::NormalConstraints;
 use parry3d::shape::Triangle;
 use sbbk_core::contact::{ManifoldPoints, TriangleContact};
@@ -16,12 +16,10 @@ use super::exact::Constraints;
 use super::judge::{Judge, Surfaces, near};
 use super::query::{Hint, TriangleQuery, TriangleShapes};
 use super::walk::walk;
-use crate::ContactGenerator;
 use crate::mesh::{
     Change, Hierarchy, KnownMesh, MeshSurface, PreparedMesh, TreeCache, is_covered, nearest,
 };
 use crate::pair::driver::{Moving, Pair, Scratch};
-use crate::pair::order::OrderKey;
 use crate::pair::outline::PatchPlan;
 use crate::pair::pose::PairPose;
 
@@ -30,23 +28,15 @@ use crate::pair::pose::PairPose;
 pub(crate) struct MeshPair<'a> {
     pub(crate) pose: &'a PairPose,
     pub(crate) meshes: [Hierarchy<'a>; 2],
-    pub(crate) contacts: ContactGenerator,
     /// Whether contacts are those of surfaces.
     pub(crate) has_surfaces: bool,
     pub(crate) has_patches: bool,
 }
 
 impl MeshPair<'_> {
-    /// Whether Parry walks mesh 2 first: it does so if its box is larger.
-    fn is_second_first(&self) -> bool {
-        self.meshes[0].size_squared() < self.meshes[1].size_squared()
-    }
-
-    /// The pose that stock Parry passes on: bit for bit, it inverts the pose twice if it does not
-    /// swap the meshes.
-    fn parrys_pose(&self, is_second_first: bool) -> Pose {
-        let pos12 = self.pose.pos12;
-        if is_second_first { pos12 } else { pos12.inverse().inverse() }
+    /// Which mesh has the larger box: 0, or 1 if that is strictly larger.
+    pub(super) fn larger(&self) -> usize {
+        usize::from(self.meshes[0].size_squared() < self.meshes[1].size_squared())
     }
 }
 
@@ -83,12 +73,9 @@ impl<'a> Pair for MeshPair<'a> {
         let radius = radius1.min(radius2);
         let has_surface = surfaces.iter().any(Option::is_some);
         let near = near(has_surface, radius);
-        let is_second_first = self.is_second_first();
         let query = TriangleQuery {
-            shapes: Meshes { pair: self, trees, surfaces, near, is_second_first, cache },
+            shapes: Meshes { pair: self, trees, surfaces, near, cache },
             pose: self.pose,
-            parrys_pose: self.parrys_pose(is_second_first),
-            generator: self.contacts,
             patches: (self.has_patches && are_rigid)
                 .then(|| PatchPlan::new(self.pose.prediction, radius)),
             points: ManifoldPoints::new(),
@@ -105,15 +92,7 @@ pub(crate) struct Meshes<'q> {
     pub(super) surfaces: [Option<MeshSurface<'q>>; 2],
     /// [`Surfaces::near`].
     near: f64,
-    /// Whether Parry walks mesh 2 first.
-    pub(super) is_second_first: bool,
     cache: &'q TreeCache,
-}
-
-impl Meshes<'_> {
-    fn key(&self, ranks: [u32; 2]) -> OrderKey {
-        OrderKey::new(if self.is_second_first { [ranks[1], ranks[0]] } else { ranks })
-    }
 }
 
 impl TriangleShapes for Meshes<'_> {
@@ -126,7 +105,7 @@ impl TriangleShapes for Meshes<'_> {
         margin: Real,
         counters: &mut impl Counters,
         scratch: &mut Scratch,
-        found: &mut Vec<(OrderKey, [u32; 2])>,
+        mut found: impl FnMut([u32; 2]),
     ) {
         let placement12 = self.pair.pose.placement12;
         let beside = Judge::beside(self, self.pair.pose.prediction, margin);
@@ -134,15 +113,9 @@ impl TriangleShapes for Meshes<'_> {
             let meshes = self.pair.meshes.each_ref();
             let near = &mut scratch.near;
             walk(meshes, placement12, margin, beside, counters, near, |pair| {
-                found.push((OrderKey::default(), pair));
+                found(pair);
                 ControlFlow::Continue(())
             });
-            let ranks = &mut scratch.ranks;
-            (0..2)
-                .for_each(|i| meshes[i].rank(found.iter().map(|(_, pair)| pair[i]), &mut ranks[i]));
-            for (key, pair) in found {
-                *key = self.key([0, 1].map(|i| ranks[i].of(pair[i])));
-            }
             return self.cache.did_without();
         };
         let trees = (&prepared[0].tree, &prepared[1].tree);
@@ -150,8 +123,7 @@ impl TriangleShapes for Meshes<'_> {
         let (test, stack) = (LeafTest::new(&frame).without(beside), &mut scratch.descent);
         let mut collector = Collector(|batch1: &LeafBatch, batch2: &LeafBatch| {
             test.survivors(batch1, batch2, |lane1, lane2| {
-                let pair = [batch1.triangles()[lane1], batch2.triangles()[lane2]];
-                found.push((self.key([0, 1].map(|i| prepared[i].rank(pair[i]))), pair));
+                found([batch1.triangles()[lane1], batch2.triangles()[lane2]]);
             });
         });
         descend(trees, &mut frame, Descent::Simultaneous, stack, counters, &mut collector);

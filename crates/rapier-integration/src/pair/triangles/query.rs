@@ -1,8 +1,6 @@
 use glamx::DVec3;
-use parry3d::math::{Pose, Real};
-use parry3d::query::{
-    ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, TrackedContact,
-};
+use parry3d::math::Real;
+use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::Triangle;
 use sbbk_core::contact::{
     FeaturePair, ManifoldPoints, TriangleContact, clip, contact, contact_from, push_closest,
@@ -11,9 +9,8 @@ use sbbk_core::traverse::{Counters, SlackLimits};
 
 use super::exact::{Constraints, constrained_normal, fill, local_pair};
 use super::judge::{Judge, Surfaces};
-use crate::ContactGenerator;
 use crate::pair::driver::{ContactList, Limits, Moving, PairQuery, Scratch, Seen};
-use crate::pair::order::{Candidate, OrderKey, push_candidate};
+use crate::pair::order::{Candidate, push_candidate};
 use crate::pair::outline::{Outline, PatchPlan};
 use crate::pair::pose::PairPose;
 
@@ -25,14 +22,13 @@ pub(crate) trait TriangleShapes: Surfaces {
     /// What moves.
     fn moving(&self) -> Moving<'_>;
 
-    /// Adds all pairs of triangles within `margin`, and few others, with their places in the order
-    /// of manifolds.
+    /// Calls `found` with all pairs of triangles within `margin`, and few others.
     fn descend(
         &self,
         margin: Real,
         counters: &mut impl Counters,
         scratch: &mut Scratch,
-        found: &mut Vec<(OrderKey, [u32; 2])>,
+        found: impl FnMut([u32; 2]),
     );
 
     /// The triangles; `None` if one does not exist.
@@ -73,9 +69,6 @@ const RECYCLED: f64 = 4.0;
 pub(crate) struct TriangleQuery<'q, S> {
     pub(super) shapes: S,
     pub(super) pose: &'q PairPose,
-    /// The pose that stock Parry passes on, bit for bit.
-    pub(super) parrys_pose: Pose,
-    pub(super) generator: ContactGenerator,
     pub(super) patches: Option<PatchPlan>,
     /// Memory for the points of a contact.
     pub(super) points: ManifoldPoints,
@@ -127,12 +120,9 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         scratch: &mut Scratch,
         candidates: &mut Vec<Candidate<Hint>>,
     ) {
-        let mut ordered = std::mem::take(&mut scratch.ordered);
-        ordered.clear();
-        self.shapes.descend(margin, counters, scratch, &mut ordered);
-        ordered.sort_unstable();
-        candidates.extend(ordered.iter().map(|&(_, subshapes)| Candidate::new(subshapes)));
-        scratch.ordered = ordered;
+        self.shapes.descend(margin, counters, scratch, |subshapes| {
+            candidates.push(Candidate::new(subshapes));
+        });
     }
 
     #[inline(always)]
@@ -246,40 +236,26 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         M: Default + Clone + Send + Sync,
         C: Default + Copy + Send + Sync,
     {
-        let Self { shapes, pose, parrys_pose, generator, points, .. } = self;
+        let Self { shapes, pose, points, .. } = self;
         let Some(triangles) = shapes.triangles(candidate.subshapes) else {
             return manifold.points.clear();
         };
-        shapes.with_constraints(candidate.subshapes, |constraints| match generator {
-            ContactGenerator::Exact => {
-                let constraints = of.constraints(constraints);
-                let local = local_pair(&pose.placement12, &triangles);
-                let [t1, t2] = &local.corners;
-                points.clear();
-                if of != Of::Shapes {
-                    clip(t1, t2, contact.normal, points);
-                }
-                if of == Of::Axis {
-                    deepen(points, &contact);
-                } else {
-                    push_closest(t1, t2, &contact, points);
-                }
-                let deepest = -shapes.near().max(RECYCLED * f64::from(pose.prediction));
-                points.iter_mut().for_each(|point| point.distance = point.distance.max(deepest));
-                fill(pose, &local, &contact, points, constraints, previous_points, manifold);
+        shapes.with_constraints(candidate.subshapes, |constraints| {
+            let constraints = of.constraints(constraints);
+            let local = local_pair(&pose.placement12, &triangles);
+            let [t1, t2] = &local.corners;
+            points.clear();
+            if of != Of::Shapes {
+                clip(t1, t2, contact.normal, points);
             }
-            ContactGenerator::Parry => {
-                // Two triangles are a pair that Parry supports.
-                let _ = DefaultQueryDispatcher.contact_manifold_convex_convex(
-                    parrys_pose,
-                    &triangles[0],
-                    &triangles[1],
-                    constraints[0],
-                    constraints[1],
-                    pose.prediction,
-                    manifold,
-                );
+            if of == Of::Axis {
+                deepen(points, &contact);
+            } else {
+                push_closest(t1, t2, &contact, points);
             }
+            let deepest = -shapes.near().max(RECYCLED * f64::from(pose.prediction));
+            points.iter_mut().for_each(|point| point.distance = point.distance.max(deepest));
+            fill(pose, &local, &contact, points, constraints, previous_points, manifold);
         });
     }
 }
