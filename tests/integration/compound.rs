@@ -127,10 +127,10 @@ fn contacts_are_those_of_each_part_by_itself() {
             let dispatcher = per_triangle();
             let mut random = Rand32::new(2);
             let (mut count, mut part_count) = (0, 0);
-            for i in 0..12 {
+            for i in 0..24 {
                 let depth = [0.0, -0.05, -0.3, 0.01][i % 4];
                 let pose = near_pose(&mut random, &head, &compound, depth);
-                let (prediction, flipped) = ([0.02, 0.1, 0.02][i % 3], i % 2 == 0);
+                let (prediction, flipped) = ([0.02, 0.1, 0.02][i % 3], i % 8 < 4);
                 let question =
                     Question { mesh: &head, compound: &compound, pose, prediction, flipped };
                 let named = |m: &Manifold, part: Option<u32>| {
