@@ -4,7 +4,7 @@ use rapier_integration::{SbbkDispatcher, SbbkStats};
 use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use crate::support::{Pair, Query, counting, counting_patches, nudge, shape, shape_with, touching};
 

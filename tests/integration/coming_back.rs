@@ -11,8 +11,8 @@ use rapier3d::parry::utils::Array2;
 use rapier3d::pipeline::PhysicsWorld;
 use rapier3d::prelude::{ColliderBuilder, RigidBodyBuilder, RigidBodyHandle};
 use sbbk_core::traverse::Placement;
-use sbbk_lab::mesh;
-use sbbk_lab::metrics::Fingerprint;
+use sbbk_testkit::mesh;
+use sbbk_testkit::world::Fingerprint;
 
 use crate::support::{
     Dispatcher, Manifold, Pair, counting, counting_patches, direction, every, nudge, rotation,

@@ -12,7 +12,7 @@ use rapier3d::parry::shape::{
     TriMeshFlags,
 };
 use rapier3d::parry::utils::Array2;
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use crate::support::{
     Dispatcher, Manifold, Pair, assert_same, counting, direction, distance, every, nudge,

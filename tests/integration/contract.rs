@@ -6,7 +6,7 @@ use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
 use rapier3d::parry::shape::{PackedFeatureId, TriMesh};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use crate::support::{
     Manifold, Pair, Query, TrianglePair, assert_same, by_triangles, every, fresh, nudge,

@@ -11,8 +11,8 @@ use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
 use rapier3d::parry::shape::{CompositeShape, Shape, SharedShape, TriMesh, TriMeshFlags};
 use rapier3d::pipeline::PhysicsWorld;
-use sbbk_lab::backend::{Probe, Timed, shape_address};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
+use sbbk_testkit::probe::{Probe, Timed, shape_address};
 
 use crate::support::{
     Manifold, Pair, Query, TrianglePair, assert_same, by_triangles, counting, distance, fresh,

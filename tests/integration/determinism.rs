@@ -1,7 +1,7 @@
 use rapier_integration::SbbkDispatcher;
 use rapier3d::pipeline::PhysicsWorld;
-use sbbk_lab::metrics::Fingerprint;
-use sbbk_lab::scene::{BoxStack, HelicopterBallDrop, MonkeyPile, Scene};
+use sbbk_testkit::scene::{BoxStack, HelicopterBallDrop, MonkeyPile, Scene};
+use sbbk_testkit::world::Fingerprint;
 
 /// Runs a scene; `before_step` may meddle with the world. Its state at some steps.
 fn run(

@@ -4,7 +4,7 @@ use rapier3d::geometry::{ColliderBuilder, ColliderHandle, ContactManifold, Share
 use rapier3d::math::{Pose, Vector};
 use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
 use rapier3d::pipeline::PhysicsWorld;
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use crate::support::{
     Manifold, Pair, Query, assert_same, distance, every, fresh, sequence, shape, shape_with,

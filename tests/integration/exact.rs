@@ -2,7 +2,7 @@ use glamx::{Quat, Vec3};
 use oorandom::Rand32;
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::shape::TriMesh;
-use sbbk_lab::mesh::{self, Mesh};
+use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::like_stock;
 use crate::support::{Query, SETS, fresh, having, per_triangle, shape, touching};

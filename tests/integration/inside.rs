@@ -7,7 +7,7 @@ use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::PointQuery;
 use rapier3d::parry::shape::{SharedShape, TriMeshFlags};
 use rapier3d::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder};
-use sbbk_lab::mesh::{self, Mesh};
+use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::support::{
     Manifold, Pair, Query, assert_same, counting, distance, every, fresh, nudge, per_triangle,

@@ -4,7 +4,7 @@ use glamx::{Quat, Vec3};
 use oorandom::Rand32;
 use rapier_integration::ContactSet;
 use rapier3d::math::{Pose, Real};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use crate::support::{
     Manifold, Query, direction, distance, fresh, having, per_triangle, rotation, shape, triangles,

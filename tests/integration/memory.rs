@@ -6,7 +6,7 @@ use rapier_integration::{SbbkConfig, SbbkDispatcher};
 use rapier3d::math::Pose;
 use rapier3d::parry::query::QueryDispatcher;
 use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use crate::support::{shape, shape_with};
 

@@ -3,7 +3,7 @@ use rapier_integration::ContactSet;
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use crate::support::{
     Pair, Query, assert_same, counting, counting_of, every, fresh, having, nudge, reach, sequence,

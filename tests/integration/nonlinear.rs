@@ -6,7 +6,7 @@ use rapier3d::parry::query::{
 };
 use rapier3d::parry::shape::TriMesh;
 use sbbk_core::truth::{TruthPair, pairs_within};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use crate::support::{direction, reach, rotation, shape};
 

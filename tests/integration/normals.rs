@@ -4,7 +4,7 @@ use oorandom::Rand32;
 use rapier3d::math::Vector;
 use rapier3d::parry::query::details::NormalConstraints;
 use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
-use sbbk_lab::mesh::{self, Mesh};
+use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::like_stock;
 use crate::support::{

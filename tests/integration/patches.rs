@@ -11,7 +11,7 @@ use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::{ContactManifold, TrackedContact};
 use rapier3d::parry::shape::{HeightField, PackedFeatureId, Shape, SharedShape, TriMeshFlags};
 use rapier3d::pipeline::PhysicsWorld;
-use sbbk_lab::mesh::{self, Mesh};
+use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::support::{Dispatcher, Pair, direction, distance, nudge, rotation, shape, shape_with};
 

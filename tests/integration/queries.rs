@@ -11,7 +11,7 @@ use rapier3d::parry::query::{
 use rapier3d::parry::shape::{Cuboid, TriMesh, TriMeshFlags};
 use rapier3d::prelude::*;
 use sbbk_core::truth::{TruthPair, pairs_within};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use super::support::{direction, reach, rotation, shape, shape_with};
 

@@ -6,8 +6,8 @@ use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use rapier3d::math::{Real, Vector};
 use rapier3d::parry::shape::TriMeshFlags;
 use rapier3d::pipeline::PhysicsWorld;
-use sbbk_lab::mesh;
-use sbbk_lab::scene::{BoxStack, HeadOnSlope, Scene, SceneWorld};
+use sbbk_testkit::mesh;
+use sbbk_testkit::scene::{BoxStack, HeadOnSlope, Scene, SceneWorld};
 
 use crate::support::{SETS, per_triangle, shape_with};
 

@@ -4,7 +4,7 @@ use oorandom::Rand32;
 use rapier_integration::{SbbkConfig, SbbkDispatcher, SbbkStats};
 use rapier3d::math::{Pose, Vector};
 use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use crate::support::{
     Pair, Query, assert_same, fresh, per_triangle, rebuilt, sequence, shape, shape_with, touching,

@@ -1,7 +1,7 @@
 use rapier3d::geometry::{Collider, ColliderHandle, ContactPair};
 use rapier3d::math::Real;
 use rapier3d::pipeline::PhysicsWorld;
-use sbbk_lab::scene::{HelicopterBallDrop, MonkeyPile, Scene, SceneWorld};
+use sbbk_testkit::scene::{HelicopterBallDrop, MonkeyPile, Scene, SceneWorld};
 
 use crate::support::{Query, SETS, assert_same, fresh, having, per_triangle};
 use crate::truth::Tally;

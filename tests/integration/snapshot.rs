@@ -2,7 +2,7 @@ use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::RigidBodyHandle;
 use rapier3d::math::{Pose, Real};
 use rapier3d::pipeline::PhysicsWorld;
-use sbbk_lab::scene::{MonkeyPile, Scene, SceneWorld};
+use sbbk_testkit::scene::{MonkeyPile, Scene, SceneWorld};
 
 use crate::support::per_triangle;
 

@@ -11,8 +11,8 @@ use rapier3d::parry::query::{
     QueryDispatcher,
 };
 use rapier3d::parry::shape::{Shape, TriMesh, TriMeshFlags};
-use sbbk_lab::mesh::Mesh;
-pub use sbbk_lab::scene::random::{direction, rotation};
+use sbbk_testkit::mesh::Mesh;
+pub use sbbk_testkit::scene::random::{direction, rotation};
 
 /// Manifolds without data, as hosts other than Rapier may have them.
 pub type Manifold = ContactManifold<(), ()>;

@@ -7,7 +7,7 @@ use oorandom::Rand32;
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshFlags};
-use sbbk_lab::mesh::{self, Mesh};
+use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::support::{
     Manifold, Pair, Query, assert_same, distance, every, fresh, nudge, per_triangle, sequence,

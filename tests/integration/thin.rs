@@ -6,7 +6,7 @@ use rapier3d::geometry::ColliderBuilder;
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::shape::{SharedShape, TriMesh};
 use rapier3d::prelude::{PhysicsWorld, RigidBodyBuilder};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use crate::support::{Manifold, Query, distance, every, fresh, shape};
 

@@ -1,8 +1,8 @@
 use rapier3d::geometry::ColliderHandle;
 use rapier3d::math::{Real, Vector};
-use sbbk_lab::mesh;
-use sbbk_lab::metrics::WorldState;
-use sbbk_lab::scene::{HelicopterBallDrop, MonkeyPile, Scene, SceneWorld};
+use sbbk_testkit::mesh;
+use sbbk_testkit::scene::{HelicopterBallDrop, MonkeyPile, Scene, SceneWorld};
+use sbbk_testkit::world::WorldState;
 
 use crate::support::per_triangle;
 

@@ -6,7 +6,7 @@ use rapier_integration::SbbkDispatcher;
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
 use rapier3d::parry::shape::{Shape, TriMesh, TriMeshFlags};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use crate::support::{Dispatcher, Manifold, Pair, Query, assert_same, fresh, shape, shape_with};
 use crate::who_answers::{Who, kinds};

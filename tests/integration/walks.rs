@@ -8,7 +8,7 @@ use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::details::ShapeCastOptions;
 use rapier3d::parry::query::{ClosestPoints, QueryDispatcher};
 use rapier3d::parry::shape::{Shape, SharedShape, TriMesh, TriMeshFlags};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use crate::support::{
     Manifold, Pair, Query, assert_same, counting, every, fresh, nudge, per_triangle, rotation,

@@ -10,7 +10,7 @@ use rapier3d::parry::shape::{HeightField, Shape, SharedShape, TriMesh, TriMeshFl
 use rapier3d::parry::utils::Array2;
 use rapier3d::pipeline::{PhysicsWorld, QueryFilter};
 use rapier3d::prelude::{ColliderBuilder, RigidBodyBuilder};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use crate::support::{Pair, counting, shape, shape_with};
 

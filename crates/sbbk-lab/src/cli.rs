@@ -1,4 +1,4 @@
-//! What every example does around its work: printing, writing files, and ending without a panic.
+//! Arguments, output and errors of the examples.
 
 use std::error::Error;
 use std::fmt::Display;
@@ -9,12 +9,13 @@ use std::process::ExitCode;
 use clap::Args;
 
 use crate::backend::Backend;
+use crate::progress::Progress;
 use crate::replay;
-use crate::report::{Results, check_files};
+use crate::report::{Results, check_outputs, write_file};
 use crate::scene::Scene;
-use crate::study::{Progress, StudyError};
+use crate::study::StudyError;
 
-/// What every study can be asked for.
+/// Arguments of every study.
 #[derive(Args, Clone, Debug, Default)]
 pub struct StudyArguments {
     /// Measures less, within a minute: for trying, not for quoting
@@ -26,53 +27,44 @@ pub struct StudyArguments {
     /// Writes all numbers to a CSV file, one a line
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Draws the results into an SVG file
-    #[arg(long, value_name = "FILE")]
-    plot: Option<PathBuf>,
 }
 
 impl StudyArguments {
-    /// The plan that is wanted.
+    /// Chooses the plan.
     pub fn plan<P>(&self, standard: fn() -> P, quick: fn() -> P) -> P {
         if self.quick { quick() } else { standard() }
     }
 
-    /// Carries out a study under progress bars, prints what it found and writes the files. Before
-    /// the work begins, they are tried together with the `others` that the run reads or writes.
+    /// Runs a study, prints the verdict and the tables, writes the files and prints their paths.
+    /// `read` and `page` are other files of the run.
     ///
-    /// Errors: the output or a file cannot be written.
-    pub fn run<P>(
+    /// Errors: those of the study; a file that cannot be written, which is found before the study.
+    pub fn run(
         &self,
-        plan: &P,
-        study: impl FnOnce(&P, &Progress) -> Results,
-        others: OtherFiles,
+        read: Option<&Path>,
+        page: Option<&Path>,
+        study: impl FnOnce(&Progress) -> Result<Results, StudyError>,
     ) -> Result<Results, Box<dyn Error>> {
-        self.try_run(plan, |plan, progress| Ok(study(plan, progress)), others)
-    }
-
-    /// The same with a study that may fail.
-    ///
-    /// Errors: the study's own, or the output or a file cannot be written.
-    pub fn try_run<P>(
-        &self,
-        plan: &P,
-        study: impl FnOnce(&P, &Progress) -> Result<Results, StudyError>,
-        others: OtherFiles,
-    ) -> Result<Results, Box<dyn Error>> {
-        let Self { json, csv, plot, .. } = self;
-        let outputs = [json, csv, plot].into_iter().map(Option::as_deref).chain([others.written]);
-        let outputs: Vec<&Path> = outputs.flatten().collect();
-        check_files(others.read.as_slice(), &outputs)?;
-        let results = study(plan, &Progress::visible())?;
+        let [json, csv] = [&self.json, &self.csv].map(Option::as_deref);
+        let outputs: Vec<&Path> = [json, csv, page].into_iter().flatten().collect();
+        check_outputs(read.as_slice(), &outputs)?;
+        let progress = Progress::visible();
+        let results = study(&progress)?;
+        progress.finish();
         print(&results)?;
-        json.as_deref().map(|path| results.write_json(path)).transpose()?;
-        csv.as_deref().map(|path| results.write_csv(path)).transpose()?;
-        plot.as_deref().map(|path| results.write_plot(path)).transpose()?;
+        if let Some(path) = json {
+            write_file(path, results.json())?;
+            print_path(path)?;
+        }
+        if let Some(path) = csv {
+            write_file(path, results.csv())?;
+            print_path(path)?;
+        }
         Ok(results)
     }
 }
 
-/// What every run of a scene can be asked for.
+/// Arguments of every run of a scene.
 #[derive(Args, Clone, Debug, Default)]
 pub struct ReplayArguments {
     /// Writes a page that plays a scene, the first of several, on backends side by side
@@ -81,7 +73,7 @@ pub struct ReplayArguments {
 }
 
 impl ReplayArguments {
-    /// Runs a scene on some backends and writes their page, if it is wanted.
+    /// Runs a scene on some backends and writes their page, if `--replay` was given.
     ///
     /// Errors: the file cannot be written.
     pub fn play(
@@ -90,28 +82,28 @@ impl ReplayArguments {
         backends: &[Backend],
         steps: usize,
     ) -> Result<(), Box<dyn Error>> {
-        let path = self.replay.as_deref();
-        Ok(path.map_or(Ok(()), |path| replay::play(path, scene, backends, steps))?)
+        let Some(path) = &self.replay else { return Ok(()) };
+        let progress = Progress::visible();
+        replay::play(path, scene, backends, steps, &progress)?;
+        progress.finish();
+        self.print()
+    }
+
+    /// Prints the path of the page, if `--replay` was given.
+    ///
+    /// Errors: the standard output cannot be written.
+    pub fn print(&self) -> Result<(), Box<dyn Error>> {
+        Ok(self.replay.as_deref().map_or(Ok(()), print_path)?)
     }
 }
 
-/// Files of a run besides its results.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct OtherFiles<'a> {
-    /// A mesh or a robot.
-    pub read: Option<&'a Path>,
-    /// A page.
-    pub written: Option<&'a Path>,
+fn print_path(path: &Path) -> io::Result<()> {
+    let hint =
+        if path.extension().is_some_and(|e| e == "html") { ": open it in a browser" } else { "" };
+    print(format_args!("wrote {}{hint}", path.display()))
 }
 
-impl<'a> OtherFiles<'a> {
-    /// The page of a replay.
-    pub fn written(replay: &'a ReplayArguments) -> Self {
-        Self { read: None, written: replay.replay.as_deref() }
-    }
-}
-
-/// Prints a line. A reader that has gone away, as in `compare | head`, is no error.
+/// Prints a line. A closed pipe, as in `compare | head`, is no error.
 ///
 /// Errors: the standard output cannot be written.
 pub fn print(text: impl Display) -> io::Result<()> {
@@ -121,7 +113,7 @@ pub fn print(text: impl Display) -> io::Result<()> {
     }
 }
 
-/// The exit code of a program: 1 after printing the error, if there is one.
+/// Prints the error, if there is one, and returns the exit code of the program.
 pub fn exit_code<T>(result: Result<T, Box<dyn Error>>) -> ExitCode {
     match result {
         Ok(_) => ExitCode::SUCCESS,

@@ -1,18 +1,21 @@
-//! Scenes, meshes, measurements and replays shared by the examples, tests and benchmarks of SBBK
-//! for Rapier.
+//! The studies that print the tables of README and docs/measurements.md, and the replay of worlds in
+//! a browser.
 //!
-//! [`mesh`] makes and loads meshes, [`scene`] builds worlds from them, [`backend`] chooses who
-//! answers a world's contact queries, [`metrics`] measures one run, [`study`] compares the backends
-//! on the paper's experiments, [`report`] shows the results, and [`replay`] plays runs in a browser.
+//! [`backend`] has the dispatchers that are compared, [`metrics`] measures one run, [`study`]
+//! compares the backends, [`report`] shows the results, and [`replay`] writes pages that play runs.
+//! Meshes and scenes are those of [`sbbk_testkit`].
 
 #[macro_use]
 mod named;
 
 pub mod backend;
 pub mod cli;
-pub mod mesh;
+pub mod mesh_file;
 pub mod metrics;
+pub mod parallel;
+pub mod progress;
 pub mod replay;
 pub mod report;
-pub mod scene;
 pub mod study;
+
+pub use sbbk_testkit::{mesh, scene};

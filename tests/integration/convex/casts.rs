@@ -7,7 +7,7 @@ use rapier3d::parry::query::{
     ClosestPoints, DefaultQueryDispatcher, QueryDispatcher, ShapeCastStatus,
 };
 use rapier3d::parry::shape::{Shape, SharedShape, TriMesh};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use super::queries::{least, truth};
 use super::shapes::{body, pose, shapes};

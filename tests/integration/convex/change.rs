@@ -3,7 +3,7 @@ use rapier_integration::SbbkDispatcher;
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::TriMeshFlags;
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use super::question::{Question, bits};
 use super::shapes::{pose, shapes};

@@ -4,7 +4,7 @@ use rapier_integration::SbbkDispatcher;
 use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::math::Pose;
 use rapier3d::parry::shape::TriMeshFlags;
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use super::question::Question;
 use super::shapes::{floor, near_pose, shapes};

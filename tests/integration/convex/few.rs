@@ -3,7 +3,7 @@ use rapier_integration::{ContactSet, SbbkDispatcher};
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshFlags};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use super::question::{Question, bits, touches};
 use crate::support::{Manifold, Pair, counting_of, per_triangle, rotation, shape_with};

@@ -5,7 +5,7 @@ use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::math::Real;
 use rapier3d::parry::shape::{SharedShape, TriMeshFlags};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use super::question::Question;
 use super::shapes::{PREDICTIONS, body, lattice_pose, pose, shapes};

@@ -2,7 +2,7 @@ use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
 use rapier3d::math::Real;
 use rapier3d::parry::shape::{SharedShape, TriMeshFlags};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use super::question::{Question, bits};
 use super::shapes::{PREDICTIONS, floor, pose, shapes};

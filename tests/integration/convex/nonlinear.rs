@@ -9,7 +9,7 @@ use rapier3d::parry::query::{
 };
 use rapier3d::parry::shape::{Shape, SharedShape, TriMesh};
 use sbbk_core::truth::ConvexBody;
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use super::queries::{least, truth_at, truth_of};
 use super::shapes::{body, lattice_pose, pose, shapes};

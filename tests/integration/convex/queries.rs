@@ -5,7 +5,7 @@ use rapier3d::math::Real;
 use rapier3d::parry::query::{ClosestPoints, DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::parry::shape::{Shape, SharedShape, TriMesh, Triangle};
 use sbbk_core::truth::ConvexBody;
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use super::shapes::{body, pose, shapes};
 use crate::support::shape;

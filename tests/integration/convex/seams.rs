@@ -8,7 +8,7 @@ use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use rapier3d::parry::query::{PointQuery, TrackedContact};
 use rapier3d::parry::shape::TriMeshFlags;
 use rapier3d::pipeline::PhysicsWorld;
-use sbbk_lab::mesh::{self, Mesh};
+use sbbk_testkit::mesh::{self, Mesh};
 
 use super::question::Question;
 use super::shapes::shapes;

@@ -6,7 +6,7 @@ use rapier3d::parry::query::{ContactManifold, PersistentQueryDispatcher};
 use rapier3d::parry::shape::SharedShape;
 use rapier3d::prelude::{PhysicsWorld, RigidBodyBuilder};
 use sbbk_core::surface::SurfaceKind;
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use super::shapes::shapes;
 

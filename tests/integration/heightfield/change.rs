@@ -4,7 +4,7 @@ use rapier_integration::SbbkDispatcher;
 use rapier3d::math::Pose;
 use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::{HeightFieldCellStatus, HeightFieldFlags};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use super::question::Question;
 use super::terrain::{Terrain, place, rolling};

@@ -5,7 +5,7 @@ use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::shape::{HeightField, HeightFieldFlags};
 use rapier3d::parry::utils::Array2;
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use super::question::Question;
 use super::terrain::{Terrain, rolling};

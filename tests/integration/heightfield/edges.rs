@@ -3,7 +3,7 @@ use oorandom::Rand32;
 use rapier_integration::TriangleContacts;
 use rapier3d::parry::query::details::NormalConstraints;
 use rapier3d::parry::shape::{HeightFieldFlags, TriMeshFlags};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use super::question::Question;
 use super::terrain::{Terrain, place};

@@ -2,7 +2,7 @@ use glamx::Vec3;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::math::Real;
 use rapier3d::parry::shape::SharedShape;
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use super::terrain::rolling;
 use crate::worlds::Bodies;

@@ -3,7 +3,7 @@ use oorandom::Rand32;
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::shape::{HeightField, HeightFieldCellStatus, TriMesh};
 use rapier3d::parry::utils::Array2;
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use crate::support::touching;
 

@@ -4,7 +4,7 @@ use rapier_integration::{SbbkDispatcher, SurfaceKind};
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::PointQuery;
 use rapier3d::parry::shape::{HeightField, TriMeshFlags, Triangle};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use super::question::Question;
 use super::terrain::{Terrain, heights, place, terrains};

@@ -2,7 +2,7 @@ use glamx::Vec3;
 use oorandom::Rand32;
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshFlags};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use super::question::{PREDICTION, Question, assert_same_set, furniture, hills};
 use crate::support::{

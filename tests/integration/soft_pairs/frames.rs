@@ -6,7 +6,7 @@ use rapier_integration::SbbkDispatcher;
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::parry::shape::{HeightField, Shape, SharedShape, TriMesh, TriMeshFlags};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use super::question::{PREDICTION, Question, assert_same_set, furniture, hills};
 use crate::support::{Manifold, Pair, Query, counting, distance, shape_with};

@@ -8,7 +8,7 @@ use rapier_integration::SbbkDispatcher;
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::{Shape, SharedShape, TriMesh, TriMeshFlags};
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use super::question::{Question, assert_same_set, furniture, hills, steps};
 use crate::support::{Manifold, Pair, assert_same, rotation, shape_with};

@@ -6,7 +6,7 @@ use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::shape::{HeightField, HeightFieldCellStatus, SharedShape};
 use rapier3d::parry::utils::Array2;
 use rapier3d::pipeline::PhysicsWorld;
-use sbbk_lab::mesh;
+use sbbk_testkit::mesh;
 
 use crate::support::counting;
 

@@ -1,27 +1,27 @@
-//! The backends that are compared.
+//! The backends, and how they come into a world.
 
 use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
 
 use clap::ValueEnum;
-use rapier_integration::{ContactDetail, ContactSet, SbbkConfig, SbbkDispatcher};
-use rapier3d::geometry::{ContactData, ContactManifoldData};
+use rapier_integration::{ContactDetail, ContactSet, PreparedTree, SbbkConfig, SbbkDispatcher};
+use rapier3d::geometry::{ContactData, ContactManifoldData, SharedShape};
 use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
 use rapier3d::pipeline::PhysicsWorld;
 use serde::Serialize;
 
-use super::{Primed, Probe, Timed};
+use super::{Probe, Timed};
 
 /// A dispatcher as Rapier takes it.
 pub type SharedDispatcher = Arc<dyn PersistentQueryDispatcher<ContactManifoldData, ContactData>>;
 
-/// A backend's dispatcher.
+/// The dispatcher of a backend.
 #[derive(Clone)]
 pub struct Dispatcher {
-    /// As Rapier takes it.
+    /// The dispatcher as Rapier takes it.
     pub shared: SharedDispatcher,
-    /// As what it is, unless it is stock's.
+    /// SBBK's dispatcher, unless the backend is stock.
     pub sbbk: Option<SbbkDispatcher>,
 }
 
@@ -33,60 +33,58 @@ impl Deref for Dispatcher {
     }
 }
 
-/// Who answers the contact queries of a world.
+/// A way to find the contacts of a world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Backend {
-    /// Parry's own dispatcher, which Rapier installs when it is told nothing.
+    /// Parry's own dispatcher, Rapier's default.
     Stock,
-    /// SBBK's code with AABBs in every layer: what the paper compares with.
+    /// SBBK with AABBs in every layer: the paper's comparison.
     AabbOnly,
-    /// SBBK as a user gets it.
+    /// SBBK with its default configuration.
     Sbbk,
     /// SBBK with a manifold for every contact, as in stock.
     Every,
 }
 
 impl Backend {
-    /// All backends, stock first.
+    /// The backends of the paper's experiments, stock first.
     pub const ALL: [Self; 3] = [Self::Stock, Self::AabbOnly, Self::Sbbk];
 
-    /// A fresh dispatcher, with nothing cached.
+    /// Makes a fresh dispatcher with nothing cached.
     pub fn dispatcher(self) -> Dispatcher {
-        self.having(ContactSet::Surfaces, self.detail())
+        let detail = match self {
+            Self::Every => ContactDetail::Every,
+            _ => ContactDetail::default(),
+        };
+        self.configured(ContactSet::Surfaces, detail)
     }
 
-    /// The same, for the contacts of each two triangles of meshes by themselves. These are what
-    /// stock has, and what can be judged by brute force over all triangles.
+    /// Makes a fresh dispatcher for the contacts of each two triangles of meshes. These are the
+    /// contacts of stock, and those that brute force over all triangles can judge.
     pub fn per_triangle(self) -> Dispatcher {
-        self.having(ContactSet::Triangles, ContactDetail::Every)
+        self.configured(ContactSet::Triangles, ContactDetail::Every)
     }
 
-    /// Whether two rigid meshes have the contacts of their surfaces.
+    /// True if two rigid meshes have the contacts of their surfaces.
     pub fn has_surfaces(self) -> bool {
-        matches!(self, Self::AabbOnly | Self::Sbbk | Self::Every)
+        self != Self::Stock
     }
 
-    fn detail(self) -> ContactDetail {
-        if self == Self::Every { ContactDetail::Every } else { ContactDetail::default() }
-    }
-
-    fn having(self, contact_set: ContactSet, detail: ContactDetail) -> Dispatcher {
-        let mut config = SbbkConfig::default();
-        match self {
+    fn configured(self, contact_set: ContactSet, detail: ContactDetail) -> Dispatcher {
+        let mut config = match self {
             Self::Stock => {
                 return Dispatcher { shared: Arc::new(DefaultQueryDispatcher), sbbk: None };
             }
-            Self::AabbOnly => config = SbbkConfig::aabb_only(),
-            Self::Sbbk | Self::Every => {}
-        }
+            Self::AabbOnly => SbbkConfig::aabb_only(),
+            Self::Sbbk | Self::Every => SbbkConfig::default(),
+        };
         (config.contact_set, config.detail) = (contact_set, detail);
         let sbbk = SbbkDispatcher::new(config);
         Dispatcher { shared: Arc::new(sbbk.clone()), sbbk: Some(sbbk) }
     }
 
-    /// Makes a fresh, timed dispatcher the one that answers `world`'s narrow phase. It is
-    /// [`primed`](Primed) with the meshes that are in the world.
+    /// Installs a fresh, timed dispatcher in a world, with the trees of all its meshes.
     pub fn install(self, world: &mut PhysicsWorld) -> Installed {
         let (dispatcher, probe) = (self.dispatcher(), Probe::default());
         let shapes = world.colliders.iter().map(|(_, collider)| collider.shared_shape());
@@ -102,10 +100,24 @@ impl fmt::Display for Backend {
     }
 }
 
-/// What [`Backend::install`] put into a world.
+/// Result of [`Backend::install`].
 pub struct Installed {
-    /// Times and answers of the world's own queries.
+    /// Times and answers of the queries of the world.
     pub probe: Probe,
-    /// Keeps the trees from being dropped while nothing touches.
+    /// Trees of the meshes of the world.
     pub primed: Primed,
+}
+
+/// Trees that were built before the first query, so that times do not contain builds.
+pub struct Primed(#[expect(dead_code, reason = "kept alive")] Vec<PreparedTree>);
+
+impl Primed {
+    /// Prepares the meshes among `shapes`.
+    pub fn new<'a>(
+        dispatcher: &Dispatcher,
+        shapes: impl IntoIterator<Item = &'a SharedShape>,
+    ) -> Self {
+        let prepare = |shape| dispatcher.sbbk.as_ref()?.prepare_shape(shape).ok()?;
+        Self(shapes.into_iter().filter_map(prepare).collect())
+    }
 }

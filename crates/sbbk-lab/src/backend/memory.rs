@@ -1,4 +1,4 @@
-//! A pair of shapes as the narrow phase asks about it.
+//! A pair of shapes as the narrow phase keeps it.
 
 use rapier3d::geometry::ContactManifold;
 use rapier3d::math::{Pose, Real};
@@ -7,10 +7,10 @@ use rapier3d::parry::shape::Shape;
 
 use super::SharedDispatcher;
 
-/// What a host keeps of a pair of shapes from query to query.
+/// Data that a host keeps of a pair of shapes from query to query.
 #[derive(Default)]
 pub struct Memory {
-    /// The answer to the last query.
+    /// Result of the last query.
     pub manifolds: Vec<ContactManifold>,
     workspace: Option<ContactManifoldsWorkspace>,
 }
@@ -20,7 +20,7 @@ impl Memory {
     ///
     /// # Panics
     ///
-    /// If the dispatcher does not answer for such shapes.
+    /// If the dispatcher does not support the shapes.
     pub fn ask(
         &mut self,
         dispatcher: &SharedDispatcher,
@@ -31,6 +31,6 @@ impl Memory {
         let Self { manifolds, workspace } = self;
         dispatcher
             .contact_manifolds(pos12, shape1, shape2, prediction, manifolds, workspace)
-            .expect("every backend answers for a mesh and the shapes of the studies");
+            .expect("every backend supports a mesh and the shapes of the studies");
     }
 }

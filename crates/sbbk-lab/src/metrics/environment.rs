@@ -2,28 +2,29 @@
 
 use std::fmt;
 use std::fs;
+use std::process::Command;
 use std::thread::available_parallelism;
 
 use serde::Serialize;
 
 use crate::backend::clock_cost;
 
-/// What a reader must know to compare times with their own.
+/// Machine and build of a measurement.
 #[derive(Clone, Debug, Serialize)]
 pub struct Environment {
     /// Model of the processor, or its architecture where the system does not tell.
     pub cpu: String,
     /// Hardware threads that the process may use.
     pub cores: usize,
-    /// Whether Rapier uses one of them or all: its `parallel` feature.
+    /// Threads that Rapier uses.
     pub rapier: &'static str,
     /// Version of the compiler.
-    pub rustc: &'static str,
-    /// Optimised, or with debug assertions.
+    pub rustc: String,
+    /// `release`, or with debug assertions.
     pub profile: &'static str,
     /// Vector instructions that the compiler was allowed to use.
     pub simd: &'static str,
-    /// What the clock adds to each timed query, in nanoseconds.
+    /// Time that the clock adds to each timed query, in nanoseconds.
     pub clock_ns: u64,
 }
 
@@ -33,8 +34,8 @@ impl Environment {
         Self {
             cpu: cpu_model().unwrap_or_else(|| std::env::consts::ARCH.to_owned()),
             cores: available_parallelism().map_or(1, usize::from),
-            rapier: if cfg!(feature = "parallel") { "parallel" } else { "on one thread" },
-            rustc: env!("SBBK_LAB_RUSTC"),
+            rapier: "on one thread",
+            rustc: rustc(),
             profile: if cfg!(debug_assertions) { "debug assertions" } else { "release" },
             simd: match () {
                 () if cfg!(target_feature = "avx512f") => "avx512f",
@@ -63,4 +64,11 @@ fn cpu_model() -> Option<String> {
     let info = fs::read_to_string("/proc/cpuinfo").ok()?;
     let line = info.lines().find(|line| line.starts_with("model name"))?;
     Some(line.split_once(':')?.1.trim().to_owned())
+}
+
+/// Version of the compiler in the path, which built this program if nothing was changed since.
+fn rustc() -> String {
+    let output = Command::new("rustc").arg("--version").output();
+    let text = output.ok().and_then(|output| String::from_utf8(output.stdout).ok());
+    text.map_or_else(|| "rustc of unknown version".to_owned(), |text| text.trim().to_owned())
 }

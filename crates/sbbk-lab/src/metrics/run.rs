@@ -1,7 +1,5 @@
 //! Whole runs of a scene on one backend.
 
-use serde::Serialize;
-
 use super::{ErrorCount, Sequence, StepTimes, WorldState, judged_step, sample_indices, timed_step};
 use crate::backend::{Backend, Installed, Primed};
 use crate::scene::{Scene, SceneWorld};
@@ -30,7 +28,7 @@ impl RunPlan {
 }
 
 /// What [`run`] measured.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 pub struct Run {
     /// The backend.
     pub backend: Backend,
@@ -43,7 +41,7 @@ pub struct Run {
 /// What was seen in a sampled step.
 ///
 /// Both errors are judged at the poses at the start of the step, where Rapier asks.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 pub struct Sample {
     /// Number of the step.
     pub step: usize,
@@ -58,7 +56,6 @@ pub struct Sample {
     /// surfaces are judged as [such](super::Truth::judge_surfaces).
     pub updated: ErrorCount,
     /// The pairs, for asking other backends.
-    #[serde(skip)]
     pub pairs: Vec<Sequence>,
 }
 

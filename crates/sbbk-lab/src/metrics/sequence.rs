@@ -7,10 +7,10 @@
 use rapier3d::geometry::{ColliderHandle, ContactManifold, SharedShape};
 use rapier3d::math::{Pose, Real};
 use rapier3d::pipeline::PhysicsWorld;
-use rayon::prelude::*;
 
 use super::{ContactErrors, Judge, Truth};
 use crate::backend::{Memory, Question, SharedDispatcher};
+use crate::parallel;
 
 /// Two shapes, asked for their contacts at one pose after the other, each with what the query
 /// before left.
@@ -84,9 +84,9 @@ impl Sequence {
         dispatchers: [&SharedDispatcher; N],
         truth: impl Fn(usize, usize) -> Option<Truth> + Sync,
     ) -> [ContactErrors; N] {
-        let of_sequence = |(index, sequence): (usize, &Self)| {
-            let steps = (0..sequence.poses.len()).into_par_iter().with_max_len(1);
-            let truths: Vec<Option<Truth>> = steps.map(|step| truth(index, step)).collect();
+        let errors = parallel::map(sequences, parallel::threads(), |index, sequence| {
+            let truths: Vec<Option<Truth>> =
+                (0..sequence.poses.len()).map(|step| truth(index, step)).collect();
             dispatchers.map(|dispatcher| {
                 let mut errors = ContactErrors::default();
                 sequence.walk(dispatcher, |step, manifolds| {
@@ -94,9 +94,7 @@ impl Sequence {
                 });
                 errors
             })
-        };
-        let errors = sequences.par_iter().enumerate().with_max_len(1).map(of_sequence);
-        let errors: Vec<[ContactErrors; N]> = errors.collect();
+        });
         std::array::from_fn(|side| errors.iter().map(|sides| sides[side]).sum())
     }
 }

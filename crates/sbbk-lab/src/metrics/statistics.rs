@@ -52,18 +52,6 @@ pub fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     Some(logarithms.mean.exp())
 }
 
-/// The exponent `k` of the power law `y = c x^k` that is nearest to some points, by least squares
-/// over logarithms; `None` unless all are positive and two differ in `x`.
-pub fn power_law(points: impl IntoIterator<Item = [f64; 2]>) -> Option<f64> {
-    let logs: Vec<[f64; 2]> = points.into_iter().map(|point| point.map(f64::ln)).collect();
-    let mean = |axis: usize| logs.iter().map(|log| log[axis]).sum::<f64>() / logs.len() as f64;
-    let [x, y] = [mean(0), mean(1)];
-    let product = |log: &[f64; 2]| (log[0] - x) * (log[1] - y);
-    let square = |log: &[f64; 2]| (log[0] - x).powi(2);
-    let exponent = ratio(logs.iter().map(product).sum(), logs.iter().map(square).sum());
-    exponent.filter(|_| logs.len() > 1)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -88,9 +76,5 @@ mod tests {
         }
         assert!((geometric_mean([2.0, 0.5]).unwrap() - 1.0).abs() < 1e-12);
         assert_eq!(geometric_mean([]), None);
-
-        let law = power_law([1.0, 2.0, 5.0].map(|x: f64| [x, 3.0 * x.powf(1.5)])).unwrap();
-        assert!((law - 1.5).abs() < 1e-12, "{law}");
-        assert_eq!([power_law([[2.0, 1.0], [2.0, 3.0]]), power_law([])], [None, None]);
     }
 }

@@ -3,7 +3,6 @@
 use std::time::Instant;
 
 use rapier3d::pipeline::PhysicsWorld;
-use serde::Serialize;
 
 use super::{ErrorCount, Judge, sample_indices};
 use crate::backend::{Answer, PairKind, Probe};
@@ -13,7 +12,7 @@ use crate::backend::{Answer, PairKind, Probe};
 /// Broad phase, narrow phase and solver are Rapier's own timers. The narrow phase holds the
 /// contact queries and what Rapier does with their manifolds (solver contacts, clustering), which
 /// is why the queries are timed apart.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepTimes {
     /// The whole step, from outside.
     pub step: f64,

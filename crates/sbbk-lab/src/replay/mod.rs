@@ -5,11 +5,12 @@
 //!
 //! ```no_run
 //! use sbbk_lab::backend::Backend;
+//! use sbbk_lab::progress::Progress;
 //! use sbbk_lab::replay;
 //! use sbbk_lab::scene::MonkeyPile;
 //!
 //! let pile = MonkeyPile::with_heads(8);
-//! replay::play("page.html".as_ref(), &pile, &[Backend::Stock, Backend::Sbbk], 120)?;
+//! replay::play("page.html".as_ref(), &pile, &[Backend::Stock, Backend::Sbbk], 120, &Progress::hidden())?;
 //! # Ok::<(), sbbk_lab::report::ReportError>(())
 //! ```
 
@@ -20,11 +21,11 @@ mod shapes;
 #[cfg(test)]
 mod tests;
 
-use std::fs;
 use std::path::Path;
 
 use crate::backend::Backend;
-use crate::report::{ReportError, replace_file};
+use crate::progress::Progress;
+use crate::report::{ReportError, write_file};
 use crate::scene::{Scene, SceneWorld};
 
 pub use encode::encode;
@@ -46,6 +47,7 @@ pub fn play(
     scene: &dyn Scene,
     backends: &[Backend],
     steps: usize,
+    progress: &Progress,
 ) -> Result<(), ReportError> {
     let start = |&backend: &Backend| {
         let SceneWorld { mut world, .. } = scene.build();
@@ -53,7 +55,9 @@ pub fn play(
         (Recorder::new(backend, &world), world, installed)
     };
     let mut runs: Vec<_> = backends.iter().map(start).collect();
+    progress.phase("the run of the page", steps);
     for _ in 0..steps {
+        progress.step();
         runs.iter_mut().for_each(|(recorder, world, _)| recorder.step(world));
     }
     let recorders: Vec<Recorder> = runs.into_iter().map(|(recorder, ..)| recorder).collect();
@@ -64,7 +68,7 @@ pub fn play(
 ///
 /// Errors: the file cannot be written.
 pub fn write(path: &Path, title: &str, runs: &[Recorder]) -> Result<(), ReportError> {
-    replace_file(path, |path| fs::write(path, page(title, runs)))
+    write_file(path, page(title, runs))
 }
 
 fn page(title: &str, runs: &[Recorder]) -> String {

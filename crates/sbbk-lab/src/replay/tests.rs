@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use super::{Recorder, encode, page};
 use crate::backend::Backend;
-use crate::scene::{MonkeyPile, Scene, SoftHeads};
+use crate::scene::{MonkeyPile, Scene};
 
 const HEADS: usize = 12;
 const STEPS: usize = 90;
@@ -131,45 +131,6 @@ fn what_is_written_can_be_read() {
     let head_frames = 2 * HEADS * (STEPS / 2);
     let shapes = 30_000;
     assert!(text.len() < shapes + 40 * head_frames, "{} for {head_frames}", text.len());
-}
-
-/// Would catch soft bodies that keep their first shape on the page, or another's, and a recording that
-/// changes the run, as one that holds on to their shapes would.
-#[test]
-fn soft_bodies_deform() {
-    const FRAMES: usize = 20;
-    let build = || SoftHeads { stiffness: 4.0, ..SoftHeads::with_heads(2) }.build().world;
-    let [mut recorded, mut alone] = [build(), build()];
-    let mut run = Recorder::new("soft", &recorded);
-    for _ in 0..2 * (FRAMES - 1) {
-        run.step(&mut recorded);
-        alone.step();
-    }
-    let (header, mut stream) = Stream::open(&encode(std::slice::from_ref(&run)));
-    let quantum = header["quantum"].as_f64().unwrap() as f32;
-    let numbers = |value: &Value| -> Vec<usize> { serde_json::from_value(value.clone()).unwrap() };
-    for level in header["shapes"].as_array().unwrap().iter().flat_map(|s| s.as_array().unwrap()) {
-        stream.take(12 * numbers(level).iter().sum::<usize>());
-    }
-    let soft: Vec<Vec<usize>> =
-        header["runs"][0]["soft"].as_array().unwrap().iter().map(numbers).collect();
-    assert_eq!(soft.len(), 2);
-    let contacts = header["runs"][0]["contacts"].as_u64().unwrap() as usize;
-    stream.take(4 * run.times.len() + 21 * FRAMES * run.objects.len() + 4 * FRAMES + 9 * contacts);
-    let colliders: Vec<_> = alone.colliders.iter().map(|(_, collider)| collider).collect();
-    for &[object, count] in soft.iter().map(|soft| soft.first_chunk::<2>().unwrap()) {
-        let vertices: [Vec<i32>; 3] = stream.planes(FRAMES * count);
-        let place = |vertex: usize, frame: usize| {
-            quantum * Vec3::from(vertices.each_ref().map(|k| k[vertex * FRAMES + frame] as f32))
-        };
-        let last = colliders[object].shape().as_trimesh().unwrap().vertices();
-        assert_eq!(last.len(), count);
-        let off = (0..count).map(|vertex| place(vertex, FRAMES - 1).distance(last[vertex]));
-        assert!(off.fold(0.0, f32::max) < 0.9 * quantum);
-        let moved = (0..count).map(|vertex| place(vertex, 0).distance(last[vertex]));
-        assert!(moved.fold(0.0, f32::max) > 10.0 * quantum);
-    }
-    assert_eq!(stream.at, stream.bytes.len());
 }
 
 /// Would catch a first difference that is none: the runs are the same until bodies meet.

@@ -1,8 +1,6 @@
-//! Results as rows, and what is made of them: tables, files and plots.
+//! Results as rows, and tables and files of these.
 
-mod files;
-mod html;
-mod plot;
+mod output;
 mod row;
 mod table;
 
@@ -10,56 +8,43 @@ use std::fmt;
 
 use serde::Serialize;
 
-pub use files::{ReportError, check_files, replace_file};
-pub use html::{Section, write_html};
-pub use plot::{Look, Panel, Scale};
+pub use output::{ReportError, check_outputs, write_file};
 pub use row::Row;
-pub use table::{Column, Table, TableSpec, errors, faster, number, sides, time};
+pub use table::{Column, Table, TableSpec, errors, faster, number, sides, three_digits, time};
 
 use crate::metrics::Environment;
 
-/// What the columns of times hold.
-pub const TIME_NOTE: &str = "times: min / median over the repeats, all in turn; ratios: of minima, \
-                             geometric means in the lines of means";
-/// What the columns of errors hold.
+/// Content of the columns of times.
+pub const TIME_NOTE: &str =
+    "times: min / median over the repeats, taken in turn; ratios: of minima, geometric means";
+/// Content of the columns of errors.
 pub const ERROR_NOTE: &str = "errors: missed + phantom + wrong depth, of the true triangle pairs \
                               judged, against brute force in f64";
 
-/// What a study found.
+/// Findings of a study.
 #[derive(Clone, Debug, Serialize)]
 pub struct Results {
     /// Machine and build.
     pub environment: Environment,
+    /// The main finding, in one sentence.
+    pub verdict: String,
     /// All numbers.
     pub rows: Vec<Row>,
-    /// Some of them for the terminal.
+    /// Some of the numbers, for the terminal.
     #[serde(skip)]
     pub tables: Vec<Table>,
-    /// The picture, from left to right.
-    #[serde(skip)]
-    pub panels: Vec<Panel>,
 }
 
 impl Results {
-    /// What was found on this machine.
-    pub fn new(rows: Vec<Row>, tables: Vec<Table>, panels: Vec<Panel>) -> Self {
-        Self { environment: Environment::detect(), rows, tables, panels }
-    }
-
-    /// All of them as those of one study; `None` if there are none.
-    pub fn joined(all: impl IntoIterator<Item = Self>) -> Option<Self> {
-        all.into_iter().reduce(|mut joined, other| {
-            joined.rows.extend(other.rows);
-            joined.tables.extend(other.tables);
-            joined.panels.extend(other.panels);
-            joined
-        })
+    /// Findings of this machine.
+    pub fn new(verdict: String, rows: Vec<Row>, tables: Vec<Table>) -> Self {
+        Self { environment: Environment::detect(), verdict, rows, tables }
     }
 }
 
 impl fmt::Display for Results {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.environment)?;
-        self.tables.iter().try_for_each(|table| write!(f, "\n\n{table}"))
+        writeln!(f, "VERDICT: {}\n\n{}", self.verdict, self.environment)?;
+        self.tables.iter().try_for_each(|table| write!(f, "\n{table}"))
     }
 }

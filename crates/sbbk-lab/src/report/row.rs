@@ -3,14 +3,14 @@
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-/// What was measured, who answered, and the numbers.
+/// Numbers of one backend about one question.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// Which part of which study.
+    /// Part of the study.
     pub study: &'static str,
-    /// Who answered: a backend, a hierarchy, a variant.
+    /// Name of the backend.
     pub backend: String,
-    /// What was asked: the mesh, its size, the motion.
+    /// The question: the mesh, its size, the motion.
     #[serde(flatten)]
     pub keys: Map<String, Value>,
     /// Numbers by name, and objects and lists of numbers.
@@ -18,20 +18,8 @@ pub struct Row {
     pub values: Map<String, Value>,
 }
 
-/// One number in a CSV file.
-#[derive(Debug, Serialize)]
-pub(super) struct Measurement<'a> {
-    study: &'a str,
-    scene: String,
-    contact_recycling: Option<bool>,
-    backend: &'a str,
-    quantity: &'a str,
-    statistic: String,
-    value: f64,
-}
-
 impl Row {
-    /// A row without keys and values.
+    /// Makes a row without keys and values.
     pub fn new(study: &'static str, backend: impl ToString) -> Self {
         Self { study, backend: backend.to_string(), keys: Map::new(), values: Map::new() }
     }
@@ -42,7 +30,7 @@ impl Row {
         self
     }
 
-    /// Adds a value. NaN becomes nothing.
+    /// Adds a value. NaN becomes null.
     pub fn with(mut self, name: &str, value: impl Serialize) -> Self {
         self.values.insert(name.to_owned(), serde_json::to_value(value).unwrap_or_default());
         self
@@ -56,7 +44,7 @@ impl Row {
         names.try_fold(found, |value, name| value.get(name))
     }
 
-    /// Whether the backend or a key has this name.
+    /// True if the backend or a key has this name.
     pub fn is(&self, key: &str, name: impl ToString) -> bool {
         let found = match key {
             "backend" => Some(&*self.backend),
@@ -65,53 +53,45 @@ impl Row {
         found == Some(&*name.to_string())
     }
 
-    /// The number at a path; NaN if there is none.
+    /// The number at a path, or NaN.
     pub fn number(&self, path: &str) -> f64 {
         self.get(path).and_then(Value::as_f64).unwrap_or(f64::NAN)
     }
 
-    /// The count at a path; 0 if there is none.
+    /// The count at a path, or 0.
     pub fn count(&self, path: &str) -> u64 {
         self.get(path).and_then(Value::as_u64).unwrap_or(0)
     }
 
-    /// Wrong contacts of all kinds, of the object at `path`.
+    /// Number of wrong contacts in the object at `path`.
     pub fn wrong(&self, path: &str) -> u64 {
         let kinds = ["missed", "phantom", "wrong_depth", "wrong_normal"];
         kinds.map(|kind| self.count(&format!("{path}.{kind}"))).into_iter().sum()
     }
 
-    /// Wrong contacts for each true one, of the object at `path`; `None` if there is no true one.
-    pub fn error_share(&self, path: &str) -> Option<f64> {
-        let true_pairs = self.number(&format!("{path}.true_pairs"));
-        (true_pairs > 0.0).then(|| self.wrong(path) as f64 / true_pairs)
+    /// All keys as text: "mesh ball, size 2".
+    pub(super) fn scene(&self) -> String {
+        let keys = self.keys.iter().filter(|(name, _)| *name != "contact_recycling");
+        let keys = keys.map(|(name, value)| format!("{name} {}", text(value)));
+        keys.collect::<Vec<_>>().join(", ")
     }
 
-    /// All numbers: the row's own, and those in its objects and lists, whose statistic is the path
-    /// to the number.
-    pub(super) fn measurements(&self) -> Vec<Measurement<'_>> {
-        let keys = self.keys.iter().filter(|(name, _)| *name != "contact_recycling");
-        let keys: Vec<String> =
-            keys.map(|(name, value)| format!("{name} {}", text(value))).collect();
+    /// All numbers, each with its quantity and the path below this quantity.
+    pub(super) fn measurements(&self) -> Vec<(&str, String, f64)> {
         let mut measurements = Vec::new();
         for (quantity, value) in &self.values {
             let mut found = Vec::new();
             collect(value, String::new(), &mut found);
-            measurements.extend(found.into_iter().map(|(statistic, value)| Measurement {
-                study: self.study,
-                scene: keys.join(", "),
-                contact_recycling: self.keys.get("contact_recycling").and_then(Value::as_bool),
-                backend: &self.backend,
-                quantity,
-                statistic: if statistic.is_empty() { "value".to_owned() } else { statistic },
-                value,
+            measurements.extend(found.into_iter().map(|(path, number)| {
+                let statistic = if path.is_empty() { "value".to_owned() } else { path };
+                (&**quantity, statistic, number)
             }));
         }
         measurements
     }
 }
 
-/// A value without quotation marks.
+/// Shows a value without quotation marks.
 pub(super) fn text(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
@@ -134,9 +114,9 @@ mod tests {
 
     use super::*;
 
-    /// Would catch numbers lost on the way to the file, or attributed to another scene or quantity.
+    /// Would catch lost numbers, and numbers of another scene or quantity.
     #[test]
-    fn every_number_becomes_a_line() {
+    fn every_number_becomes_a_measurement() {
         let row = Row::new("study", "sbbk")
             .key("mesh", "ball")
             .key("contact_recycling", false)
@@ -144,19 +124,16 @@ mod tests {
             .with("step", json!({ "min": 1.5, "median": 2.0 }))
             .with("counts", [7, 8])
             .with("steady", json!({ "time": { "min": 0.5 } }));
-        let lines = row.measurements();
-        assert!(lines.iter().all(|line| line.scene == "mesh ball" && line.backend == "sbbk"));
-        assert!(lines.iter().all(|line| line.contact_recycling == Some(false)));
-        let found: Vec<_> = lines.iter().map(|m| (m.quantity, &*m.statistic, m.value)).collect();
+        assert_eq!(row.scene(), "mesh ball");
         let expected = [
-            ("counts", "0", 7.0),
-            ("counts", "1", 8.0),
-            ("steady", "time.min", 0.5),
-            ("step", "median", 2.0),
-            ("step", "min", 1.5),
-            ("steps", "value", 3.0),
+            ("counts", "0".to_owned(), 7.0),
+            ("counts", "1".to_owned(), 8.0),
+            ("steady", "time.min".to_owned(), 0.5),
+            ("step", "median".to_owned(), 2.0),
+            ("step", "min".to_owned(), 1.5),
+            ("steps", "value".to_owned(), 3.0),
         ];
-        assert_eq!(found, expected);
+        assert_eq!(row.measurements(), expected);
         assert_eq!(row.number("steady.time.min"), 0.5);
     }
 }

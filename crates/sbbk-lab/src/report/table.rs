@@ -2,29 +2,30 @@
 
 use std::fmt;
 
-use comfy_table::presets::ASCII_MARKDOWN;
-use comfy_table::{CellAlignment, Table as Drawn};
 use serde_json::Value;
 
 use super::row::{Row, text};
 use crate::metrics::{geometric_mean, ratio};
 
+/// Characters of a line at most.
+const WIDTH: usize = 100;
+
 /// A table for the terminal.
 #[derive(Clone, Debug)]
 pub struct Table {
-    /// What it shows.
+    /// Subject of the table.
     pub title: String,
     /// Names of the columns.
     pub header: Vec<String>,
     /// Cells, line by line.
     pub lines: Vec<Vec<String>>,
-    /// What a reader must know.
+    /// Explanations below the table.
     pub notes: Vec<String>,
-    /// Whether a column is text, which is aligned to the left.
-    is_text: Vec<bool>,
+    /// Number of columns that say what a line is about; they are repeated where a table is split.
+    key_count: usize,
 }
 
-/// What to make a table of.
+/// A table to be made of rows.
 pub struct TableSpec<'a> {
     title: String,
     study: &'a str,
@@ -34,7 +35,7 @@ pub struct TableSpec<'a> {
     notes: Vec<String>,
 }
 
-/// One column: its name, and what it shows of the rows of a line.
+/// One column: its name, and a function of the rows of a line.
 #[derive(Clone, Debug)]
 pub struct Column {
     header: String,
@@ -49,29 +50,29 @@ enum Cell {
     Plain,
     MinMedian,
     Errors,
-    /// Base over this one, of the base's name.
+    /// The base of this name over this backend.
     Faster(String),
-    /// This one over base.
+    /// This backend over the base of this name.
     Greater(String),
 }
 
-/// The number or text at `path`: counts are summed over the rows of a line.
+/// A column of the number or text at `path`. Counts are summed over the rows of a line.
 pub fn number(header: &str, path: &'static str) -> Column {
     column(header, path, Cell::Plain)
 }
 
-/// Minimum and median of the summary at `path`.
+/// A column of minimum and median of the summary at `path`.
 pub fn time(header: &str, path: &'static str) -> Column {
     column(header, path, Cell::MinMedian)
 }
 
-/// Wrong contacts by kind, of the true ones: sums over the rows of a line.
+/// A column of wrong contacts by kind, summed over the rows of a line.
 pub fn errors(header: &str, path: &'static str) -> Column {
     column(header, path, Cell::Errors)
 }
 
-/// How many times less the number at `path` is than that of `base` with the same keys: geometric
-/// mean over the rows of a line.
+/// A column of ratios: the number at `path` of `base` with the same keys over that of the backend,
+/// as a geometric mean over the rows of a line.
 pub fn faster(header: &str, path: &'static str, base: impl ToString) -> Column {
     column(header, path, Cell::Faster(base.to_string()))
 }
@@ -80,7 +81,7 @@ fn column(header: &str, path: &'static str, cell: Cell) -> Column {
     Column { header: header.to_owned(), path, backend: None, cell }
 }
 
-/// Times of stock and SBBK, their ratio, and the errors of both.
+/// Columns of the times of stock and SBBK, their ratio, and the errors of both.
 pub fn sides() -> Vec<Column> {
     vec![
         time("stock", "time").of("stock"),
@@ -92,12 +93,12 @@ pub fn sides() -> Vec<Column> {
 }
 
 impl Column {
-    /// Of this backend's rows only.
+    /// Counts only rows of this backend.
     pub fn of(self, backend: impl ToString) -> Self {
         Self { backend: Some(backend.to_string()), ..self }
     }
 
-    /// The other way round: for what is better if it is more.
+    /// Turns a ratio over, for quantities of which more is better.
     pub fn inverse(self) -> Self {
         let Cell::Faster(base) = self.cell else { return self };
         Self { cell: Cell::Greater(base), ..self }
@@ -159,8 +160,8 @@ impl Column {
 }
 
 impl<'a> TableSpec<'a> {
-    /// Of the rows of one part of a study. Each line holds those that agree in the `keys`, of which
-    /// `backend` may be one; the columns come after those of the keys.
+    /// A table of one part of a study, with a line for all rows that agree in the `keys`, of which
+    /// `backend` may be one.
     pub fn new(
         title: impl Into<String>,
         study: &'a str,
@@ -171,23 +172,23 @@ impl<'a> TableSpec<'a> {
         Self { title: title.into(), study, keys, total: None, columns, notes: Vec::new() }
     }
 
-    /// The rows that agree in so many of the first keys get a line of their sums and means.
+    /// Adds a line of sums and means for all rows that agree in so many of the first keys.
     pub fn total(self, key_count: impl Into<Option<usize>>) -> Self {
         Self { total: key_count.into(), ..self }
     }
 
-    /// Adds what a reader must know.
+    /// Adds an explanation.
     pub fn note(self, note: impl Into<String>) -> Self {
         self.notes([note.into()])
     }
 
-    /// The same, several times.
+    /// Adds explanations.
     pub fn notes(mut self, notes: impl IntoIterator<Item = String>) -> Self {
         self.notes.extend(notes);
         self
     }
 
-    /// The table of `rows`.
+    /// Makes the table of `rows`.
     pub fn of(self, rows: &[Row]) -> Table {
         let Self { title, study, keys, total, columns, notes } = self;
         let rows: Vec<&Row> = rows.iter().filter(|row| row.study == study).collect();
@@ -198,10 +199,8 @@ impl<'a> TableSpec<'a> {
             };
             keys[..count].iter().map(value).collect()
         };
-        let is_number = |key: &&str| rows.iter().all(|row| !row.number(key).is_nan());
         let mut lines = Vec::new();
-        let lead = total.unwrap_or(0);
-        for lead in groups(&rows, |row| cells(row, lead)) {
+        for lead in groups(&rows, |row| cells(row, total.unwrap_or(0))) {
             let show = |group: &[&Row]| columns.iter().map(|c| c.show(group, &rows)).collect();
             for group in groups(&lead, |row| cells(row, keys.len())) {
                 lines.push([cells(group[0], keys.len()), show(&group)].concat());
@@ -219,12 +218,12 @@ impl<'a> TableSpec<'a> {
             header: names.chain(columns.iter().map(|column| column.header.clone())).collect(),
             lines,
             notes,
-            is_text: keys.iter().map(|key| !is_number(key)).collect(),
+            key_count: keys.len(),
         }
     }
 }
 
-/// The rows with the same key together, in the order in which the keys first appear.
+/// Groups rows by a key, in the order in which the keys first appear.
 fn groups<'a>(rows: &[&'a Row], key: impl Fn(&Row) -> Vec<String>) -> Vec<Vec<&'a Row>> {
     let mut groups: Vec<(Vec<String>, Vec<&Row>)> = Vec::new();
     for &row in rows {
@@ -237,26 +236,66 @@ fn groups<'a>(rows: &[&'a Row], key: impl Fn(&Row) -> Vec<String>) -> Vec<Vec<&'
     groups.into_iter().map(|group| group.1).collect()
 }
 
-impl Table {
-    /// Whether a column is text, which is aligned to the left.
-    pub(super) fn is_text(&self, column: usize) -> bool {
-        self.is_text.get(column).is_some_and(|is_text| *is_text)
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", wrapped(&self.title, ""))?;
+        let widths: Vec<usize> = (0..self.header.len())
+            .map(|column| {
+                let cells = [&self.header].into_iter().chain(&self.lines);
+                cells.map(|line| line[column].chars().count()).max().unwrap_or(0)
+            })
+            .collect();
+        let keys: Vec<usize> = (0..self.key_count).collect();
+        let mut shown = keys.clone();
+        for column in self.key_count..self.header.len() {
+            let width: usize = shown.iter().map(|&c| widths[c] + 3).sum();
+            if width + widths[column] + 4 > WIDTH && shown.len() > keys.len() {
+                self.draw(f, &shown, &widths)?;
+                writeln!(f)?;
+                shown.clone_from(&keys);
+            }
+            shown.push(column);
+        }
+        self.draw(f, &shown, &widths)?;
+        self.notes.iter().try_for_each(|note| writeln!(f, "{}", wrapped(note, "  ")))
     }
 }
 
-impl fmt::Display for Table {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut table = Drawn::new();
-        table.load_style(ASCII_MARKDOWN).set_header(&self.header);
-        table.add_rows(&self.lines);
-        for (index, column) in table.column_iter_mut().enumerate() {
-            if !self.is_text(index) {
-                column.set_cell_alignment(CellAlignment::Right);
+impl Table {
+    /// Draws some columns: keys to the left, numbers to the right.
+    fn draw(&self, f: &mut fmt::Formatter<'_>, shown: &[usize], widths: &[usize]) -> fmt::Result {
+        let mut draw = |line: &[String]| {
+            for &column in shown {
+                let (cell, width) = (&line[column], widths[column]);
+                match column < self.key_count {
+                    true => write!(f, "| {cell:<width$} ")?,
+                    false => write!(f, "| {cell:>width$} ")?,
+                }
             }
-        }
-        write!(f, "{}\n{table}", self.title)?;
-        self.notes.iter().try_for_each(|note| write!(f, "\n  {note}"))
+            writeln!(f, "|")
+        };
+        draw(&self.header)?;
+        let rule: Vec<String> = widths.iter().map(|&width| "-".repeat(width)).collect();
+        draw(&rule)?;
+        self.lines.iter().try_for_each(|line| draw(line))
     }
+}
+
+/// Breaks a text into indented lines.
+fn wrapped(text: &str, indent: &str) -> String {
+    let mut lines = vec![indent.to_owned()];
+    for word in text.split_whitespace() {
+        let line = lines.last_mut().expect("there is one");
+        if line.chars().count() + word.chars().count() >= WIDTH {
+            lines.push(format!("{indent}  {word}"));
+        } else {
+            if line.len() > indent.len() {
+                line.push(' ');
+            }
+            line.push_str(word);
+        }
+    }
+    lines.join("\n")
 }
 
 /// Minimum and median; one number if only one was measured.
@@ -268,7 +307,7 @@ fn min_median(row: &Row, path: &str) -> Option<String> {
 }
 
 /// Three significant digits, with an exponent only below a thousandth: `0.123`, `12.3`, `1230`.
-fn three_digits(value: f64) -> String {
+pub fn three_digits(value: f64) -> String {
     let decimals = match value.abs() {
         magnitude if magnitude >= 100.0 => 0,
         magnitude if magnitude >= 10.0 => 1,
@@ -287,22 +326,22 @@ mod tests {
 
     /// Would catch columns that pretend to a precision that was not measured, or drop one.
     #[test]
-    fn three_significant_digits() {
+    fn numbers_have_three_significant_digits() {
         let shown = [0.0123, 0.5, 1.234, 12.34, 123.4, 12345.6, 2.0e-7].map(three_digits);
         assert_eq!(shown, ["0.012", "0.500", "1.23", "12.3", "123", "12346", "2.0e-7"]);
     }
 
-    /// Would catch a cell in another line or under another backend, a ratio upside down or to other
-    /// keys' base, totals over other lines' rows, and sums of errors that lose a kind.
+    fn row(mode: &str, mesh: &str, backend: &str, time: f64, missed: usize) -> Row {
+        let time = json!({ "count": 2, "min": time, "median": 2.0 * time });
+        let errors = json!({ "missed": missed, "phantom": 0, "wrong_depth": 1, "true_pairs": 9 });
+        let row = Row::new("race", backend).key("mode", mode).key("mesh", mesh);
+        row.with("time", time).with("errors", errors)
+    }
+
+    /// Would catch a cell in another line or under another backend, a ratio upside down or to the
+    /// base of other keys, totals over rows of other lines, and sums that lose a kind of error.
     #[test]
     fn rows_are_pivoted() {
-        let row = |mode, mesh, backend, time: f64, missed| {
-            let time = json!({ "count": 2, "min": time, "median": 2.0 * time });
-            let errors =
-                json!({ "missed": missed, "phantom": 0, "wrong_depth": 1, "true_pairs": 9 });
-            let row = Row::new("race", backend).key("mode", mode).key("mesh", mesh);
-            row.with("time", time).with("errors", errors)
-        };
         let rows = [
             row("fresh", "a", "stock", 8.0, 3),
             row("fresh", "a", "sbbk", 4.0, 0),
@@ -313,23 +352,26 @@ mod tests {
             Row::new("another", "stock"),
         ];
         let spec = TableSpec::new(String::new(), "race", &["mode", "mesh"], sides()).total(1);
-        let table = spec.of(&rows);
+        let one_side = ["1.00 / 2.00", "2.00 / 4.00", "0.50x", "0+0+1 of 9", "0+0+1 of 9"];
         let expected = [
-            ["fresh", "a", "8.00 / 16.0", "4.00 / 8.00", "2.00x", "3+0+1 of 9", "0+0+1 of 9"],
-            ["fresh", "b", "8.00 / 16.0", "1.00 / 2.00", "8.00x", "4+0+1 of 9", "0+0+1 of 9"],
-            ["fresh", "all, or mean", "", "", "4.00x", "7+0+2 of 18", "0+0+2 of 18"],
-            ["slow", "a", "1.00 / 2.00", "2.00 / 4.00", "0.50x", "0+0+1 of 9", "0+0+1 of 9"],
-            [
-                "slow",
-                "all, or mean",
-                "1.00 / 2.00",
-                "2.00 / 4.00",
-                "0.50x",
-                "0+0+1 of 9",
-                "0+0+1 of 9",
-            ],
+            vec!["fresh", "a", "8.00 / 16.0", "4.00 / 8.00", "2.00x", "3+0+1 of 9", "0+0+1 of 9"],
+            vec!["fresh", "b", "8.00 / 16.0", "1.00 / 2.00", "8.00x", "4+0+1 of 9", "0+0+1 of 9"],
+            vec!["fresh", "all, or mean", "", "", "4.00x", "7+0+2 of 18", "0+0+2 of 18"],
+            [&["slow", "a"][..], &one_side].concat(),
+            [&["slow", "all, or mean"][..], &one_side].concat(),
         ];
-        assert_eq!(table.lines, expected);
-        assert_eq!(table.header.len(), 7);
+        assert_eq!(spec.of(&rows).lines, expected);
+    }
+
+    /// Would catch lines that wrap in a terminal, and columns that a split loses.
+    #[test]
+    fn wide_tables_are_split_at_100_characters() {
+        let rows = [row("fresh", "a", "stock", 8.0, 3)];
+        let columns = (0..20).map(|index| number(&format!("column {index:02}"), "time.min"));
+        let long = "a word ".repeat(40);
+        let table = TableSpec::new(&*long, "race", &["mesh"], columns).note(&*long).of(&rows);
+        let text = table.to_string();
+        assert!(text.lines().all(|line| line.chars().count() <= WIDTH), "{text}");
+        assert!((0..20).all(|index| text.contains(&format!("column {index:02}"))), "{text}");
     }
 }

@@ -1,45 +1,46 @@
-//! Both experiments of the paper on all backends, and what lies behind their times.
+//! Both experiments of the paper on all backends.
 
-use super::Progress;
-use super::helicopter::{self, HelicopterPlan, frames, helicopter};
-use super::meshes::{self, meshes};
-use super::pile::{self, PilePlan, SamePosesPlan, pile, same_poses_table};
+use super::pile::{self, PilePlan, SamePosesPlan, pile, same_poses_table, wrong_of};
+use super::turns::in_turn;
 use crate::backend::Backend;
-use crate::mesh::{self, Mesh};
-use crate::metrics::RunPlan;
-use crate::report::Results;
-use crate::scene::{BallKind, HelicopterBallDrop, MonkeyPile};
+use crate::mesh::Mesh;
+use crate::metrics::{Run, RunPlan, StepTimes, Summary, run};
+use crate::progress::Progress;
+use crate::report::{ERROR_NOTE, Results, Row, Table, TableSpec, errors, faster, number, time};
+use crate::scene::{HelicopterBallDrop, MonkeyPile, Scene};
+
+const FRAMES: &str = "helicopter";
 
 /// What to compare, and how thoroughly.
 #[derive(Clone, Debug)]
 pub struct ComparePlan {
-    /// The first experiment.
-    pub helicopter: HelicopterPlan,
+    /// Timed runs of each backend in the first experiment; the paper has 30.
+    pub drops: usize,
+    /// Steps of each of these: two seconds of fall, bounces and rolling.
+    pub drop_steps: usize,
     /// Sizes of the piles of the second experiment.
     pub heads: Vec<usize>,
-    /// Size of the pile that is run with contact recycling off as well.
+    /// Size of the pile that is also run without contact recycling.
     pub heads_without_recycling: usize,
-    /// How each pile is run. Only piles of up to 200 heads are repeated, and only with recycling.
+    /// Plan of each pile. Only piles of up to 200 heads with recycling are repeated.
     pub pile: PilePlan,
     /// The head, or `None` for the monkey.
     pub head: Option<Mesh>,
-    /// Resolutions of the monkey heads that are measured on their own, see
-    /// [`mesh::monkey_head_with`].
-    pub details: Vec<u32>,
 }
 
-/// Piles of up to this many heads are cheap enough for repeats.
+/// Piles of up to this many heads are repeated. Higher: a longer study; lower: noisier times.
 const CHEAP_HEADS: usize = 200;
 
 impl ComparePlan {
-    /// The paper's sizes; within three minutes on two cores.
+    /// The paper's sizes; about three minutes on two cores.
     pub fn standard() -> Self {
         Self {
-            helicopter: HelicopterPlan { repeats: 30, steps: 120 },
+            drops: 30,
+            drop_steps: 120,
             heads: vec![100, 200, 500, 1000, 2000],
             heads_without_recycling: 200,
             pile: PilePlan {
-                backends: vec![Backend::Stock, Backend::AabbOnly, Backend::Sbbk],
+                backends: Backend::ALL.to_vec(),
                 repeats: 2,
                 run: RunPlan {
                     warm_up: PilePlan::FREE_FALL,
@@ -51,20 +52,17 @@ impl ComparePlan {
                 same_poses: Some(SamePosesPlan { repeats: 3, sample_size: 200 }),
             },
             head: None,
-            // 288, 968, 4232, 17,672 and 69,192 triangles.
-            details: vec![6, 11, 23, 47, 93],
         }
     }
 
-    /// The same experiments on a small scale, within half a minute: for trying, not for quoting.
+    /// The same experiments on a small scale, some ten seconds: for trying, not for quoting.
     pub fn quick() -> Self {
         let standard = Self::standard();
         Self {
-            helicopter: HelicopterPlan { repeats: 5, ..standard.helicopter },
+            drops: 5,
             heads: vec![50, 100],
             heads_without_recycling: 50,
             pile: PilePlan { repeats: 1, ..standard.pile },
-            details: vec![6, 11, 23],
             ..standard
         }
     }
@@ -76,22 +74,12 @@ impl ComparePlan {
             None => MonkeyPile::with_heads(heads),
         }
     }
-
-    /// The head asked for, monkeys in all resolutions, and the helicopter.
-    fn meshes(&self) -> Vec<Mesh> {
-        let head = self.head.iter().map(|_| self.scene(1).mesh);
-        let monkeys = self.details.iter().map(|&detail| mesh::monkey_head_with(detail));
-        head.chain(monkeys).chain([HelicopterBallDrop::default().helicopter]).collect()
-    }
 }
 
-/// Does all experiments.
+/// Runs both experiments.
 pub fn compare(plan: &ComparePlan, progress: &Progress) -> Results {
-    let mut rows = helicopter::papers().to_vec();
-    for ball in [BallKind::Mesh, BallKind::Primitive] {
-        let scene = HelicopterBallDrop { ball, ..HelicopterBallDrop::default() };
-        rows.extend(helicopter(&scene, &Backend::ALL, &plan.helicopter, progress));
-    }
+    let mut rows = papers().to_vec();
+    rows.extend(drops(plan, progress));
     rows.extend(pile::papers());
     let recycled = plan.heads.iter().map(|&heads| (heads, true));
     for (heads, contact_recycling) in recycled.chain([(plan.heads_without_recycling, false)]) {
@@ -102,17 +90,93 @@ pub fn compare(plan: &ComparePlan, progress: &Progress) -> Results {
         let plan = PilePlan { repeats, same_poses, ..plan.pile.clone() };
         rows.extend(pile(&scene, &plan, progress));
     }
-    rows.extend(meshes(&plan.meshes(), progress));
-    progress.finish();
-    let [times, accuracy] = pile::runs(&rows, &plan.pile.run);
-    let tables = vec![
-        frames(&rows, &plan.helicopter),
-        times,
-        same_poses_table(&rows),
-        accuracy,
-        meshes::table(&rows),
-    ];
-    let [detection, ratios] = pile::panels(&rows);
-    let panels = vec![detection, ratios, meshes::panel(&rows)];
-    Results::new(rows, tables, panels)
+    let [times, state] = pile::runs(&rows, &plan.pile.run);
+    let tables = vec![times, state, same_poses_table(&rows), frames(&rows, plan)];
+    Results::new(verdict(plan, &rows), rows, tables)
+}
+
+fn verdict(plan: &ComparePlan, rows: &[Row]) -> String {
+    let heads = plan.heads.iter().copied().max().unwrap_or(0);
+    let median = |backend: Backend, path: &str| {
+        let is_shown = |row: &&Row| {
+            row.study == pile::RUNS
+                && row.is("backend", backend)
+                && row.count("heads") == heads as u64
+                && row.get("contact_recycling") == Some(&true.into())
+        };
+        rows.iter().find(is_shown).map_or(f64::NAN, |row| row.number(path))
+    };
+    let ratio = |path| median(Backend::Stock, path) / median(Backend::Sbbk, path);
+    let [stock, sbbk] = [Backend::Stock, Backend::Sbbk].map(|backend| wrong_of(rows, backend));
+    format!(
+        "in a pile of {heads} heads a whole step is {:.1} times as fast as stock's, collision \
+         detection {:.1} times; wrong contacts: SBBK {} of {}, stock {} of {}",
+        ratio("step.median"),
+        ratio("collision_detection.median"),
+        sbbk[0],
+        sbbk[1],
+        stock[0],
+        stock[1]
+    )
+}
+
+/// Runs the first experiment on all backends in turn. Times are means over the steps of a run, in
+/// milliseconds; errors are those of a run of their own.
+fn drops(plan: &ComparePlan, progress: &Progress) -> Vec<Row> {
+    let scene = HelicopterBallDrop::default();
+    progress.phase(scene.name(), (plan.drops + 1) * Backend::ALL.len());
+    let timed = RunPlan { warm_up: 1, steps: plan.drop_steps, ..RunPlan::default() };
+    // The scene has one mesh pair, so every other step can be judged.
+    let judged = RunPlan { sample_every: 2, sample_size: 1, ..timed };
+    let runs = in_turn(&Backend::ALL, plan.drops, |&backend| {
+        progress.step();
+        run(&scene, backend, timed)
+    });
+    let rows = Backend::ALL.into_iter().zip(&runs).map(|(backend, runs)| {
+        let judged = run(&scene, backend, judged);
+        progress.step();
+        let mean = |time: fn(&StepTimes) -> f64| Summary::of(runs.iter().map(|run| run.mean(time)));
+        Row::new(FRAMES, backend)
+            .key("ball", "mesh")
+            .with("frames_per_second", Summary::of(runs.iter().map(Run::frames_per_second)))
+            .with("collision_detection", mean(StepTimes::collision_detection))
+            .with("fresh", judged.total(|sample| sample.fresh))
+            .with("updated", judged.total(|sample| sample.updated))
+    });
+    rows.collect()
+}
+
+/// The results of the paper: frames a second, drawing included.
+fn papers() -> [Row; 2] {
+    [(Backend::AabbOnly, 162.0), (Backend::Sbbk, 180.0)].map(|(backend, fps)| {
+        let row = Row::new(FRAMES, backend).key("ball", "the paper's");
+        row.with("frames_per_second", Summary::of([fps]))
+    })
+}
+
+/// The paper's Table 1.
+fn frames(rows: &[Row], plan: &ComparePlan) -> Table {
+    let against = |backend: Backend| {
+        faster(&format!("vs {backend}"), "frames_per_second.median", backend).inverse()
+    };
+    TableSpec::new(
+        "Table 1. A ball falls on a rotor: frames a second",
+        FRAMES,
+        &["ball", "backend"],
+        [
+            number("median", "frames_per_second.median"),
+            number("best", "frames_per_second.max"),
+            against(Backend::Stock),
+            against(Backend::AabbOnly),
+            time("broad + narrow, ms", "collision_detection"),
+            errors("wrong, fresh", "fresh"),
+            errors("wrong, in the run", "updated"),
+        ],
+    )
+    .note(format!(
+        "{} runs of {} steps each, in turn; a frame is a step without drawing, unlike the paper's",
+        plan.drops, plan.drop_steps
+    ))
+    .note(ERROR_NOTE)
+    .of(rows)
 }

@@ -26,7 +26,8 @@ use rapier3d::math::Real;
 
 use self::ground::Ground;
 use self::measure::Everyday;
-use super::{Progress, StudyError};
+use super::StudyError;
+use crate::progress::Progress;
 use crate::report::{Results, Row};
 
 const BODIES: &str = "everyday: bodies on terrains";
@@ -183,12 +184,11 @@ pub fn everyday(plan: &EverydayPlan, progress: &Progress) -> Result<Results, Stu
             Group::Pile => worlds.measure("pile", &[scenes::pile(plan.heads, plan.steps)])?,
         });
     }
-    progress.finish();
     if rows.is_empty() {
         return Err(StudyError::NoScene(plan.name.clone()));
     }
-    let (tables, panels) = (report::tables(plan, &rows), report::panels(&rows));
-    Ok(Results::new(rows, tables, panels))
+    let tables = report::tables(plan, &rows);
+    Ok(Results::new(report::verdict(&rows), rows, tables))
 }
 
 impl EverydayPlan {

@@ -4,7 +4,8 @@ use rapier3d::dynamics::IntegrationParameters;
 
 use super::{BODIES, DEFORMABLE, EverydayPlan, PILE, QUERIES, SENSORS, SINGLE};
 use crate::backend::Backend;
-use crate::report::{Column, Look, Panel, Row, Scale, Table, TableSpec, errors, faster, number};
+use crate::metrics::geometric_mean;
+use crate::report::{Column, Row, Table, TableSpec, errors, faster, number};
 
 pub(super) fn tables(plan: &EverydayPlan, rows: &[Row]) -> Vec<Table> {
     let worlds = [
@@ -108,54 +109,25 @@ fn world_notes(plan: &EverydayPlan) -> Vec<String> {
     ]
 }
 
-pub(super) fn panels(rows: &[Row]) -> Vec<Panel> {
-    let groups = [BODIES, SINGLE, DEFORMABLE, SENSORS, PILE];
-    let labels = ["µs a step, stock", "stock : sbbk"];
-    let ratios = Panel::new("Collision detection, medians", labels, Scale::Logarithmic);
-    let labels = ["worst step of stock, µs", "worst step of sbbk, µs"];
-    let worst = Panel::new("Worst steps", labels, Scale::Logarithmic);
-    let [mut ratios, mut worst] = [ratios, worst];
-    for (study, look) in groups.into_iter().zip(Look::ALL) {
-        let pairs = sides(rows, study);
-        let label = study.trim_start_matches("everyday: ");
-        let ratio = |[stock, sbbk]: [&Row; 2]| {
-            let [stock, sbbk] = [stock, sbbk].map(|row| row.number("detection.median"));
-            [stock, stock / sbbk]
-        };
-        ratios = ratios.points(label, look, pairs.iter().copied().map(ratio));
-        let worsts = |sides: [&Row; 2]| sides.map(|row| row.number("detection.max"));
-        worst = worst.points(label, look, pairs.into_iter().map(worsts));
-    }
-    let equal =
-        worst.line("as long", Look::ALL[5], [1e2, 1e3, 1e4].map(|time| [time; 2]).into_iter());
-    vec![ratios, equal, queries(rows, "ball"), queries(rows, "head")]
-}
-
-fn queries(rows: &[Row], body: &str) -> Panel {
-    let title = format!("Queries of a {body}, no workspace");
-    let panel = Panel::new(title, ["ns a query, stock", "stock : sbbk"], Scale::Logarithmic);
-    let pairs = sides(rows, QUERIES);
-    let mut names: Vec<&str> = Vec::new();
-    for [stock, _] in &pairs {
-        let name = stock.get("query").and_then(|name| name.as_str()).unwrap_or_default();
-        if !names.contains(&name) {
-            names.push(name);
-        }
-    }
-    names.into_iter().zip(Look::ALL).fold(panel, |panel, (name, look)| {
-        let pairs = pairs.iter().filter(|[row, _]| row.is("query", name) && row.is("body", body));
-        let point = |pair: &[&Row; 2]| {
-            let [stock, sbbk] = pair.map(|row| row.number("time.median"));
-            [stock, stock / sbbk]
-        };
-        panel.points(name, look, pairs.map(point))
-    })
-}
-
-/// Stock's and SBBK's rows of the same scenes.
-fn sides<'a>(rows: &'a [Row], study: &str) -> Vec<[&'a Row; 2]> {
-    let of = |backend: Backend| {
-        rows.iter().filter(move |row| row.study == study && row.is("backend", backend))
+/// Main finding: ratios of the medians of worlds, and losses.
+pub(super) fn verdict(rows: &[Row]) -> String {
+    let worlds = rows.iter().filter(|row| row.study != QUERIES);
+    let of = |backend: Backend| worlds.clone().filter(move |row| row.is("backend", backend));
+    let ratios = |path: &'static str| {
+        let pairs = of(Backend::Stock).zip(of(Backend::Sbbk));
+        pairs.map(move |(stock, sbbk)| stock.number(path) / sbbk.number(path))
     };
-    of(Backend::Stock).zip(of(Backend::Sbbk)).map(|(stock, sbbk)| [stock, sbbk]).collect()
+    let slower = of(Backend::Sbbk).filter(|row| !row.is("verdict", "ok")).count();
+    let wrong = |backend| of(backend).map(|row| row.wrong("judged")).sum::<u64>();
+    format!(
+        "in {} worlds collision detection is {:.2} times as fast as stock's and whole steps {:.2} \
+         times (geometric means of medians; least {:.2}); {slower} worlds are slower than stock; \
+         wrong contacts where the two differ: SBBK {}, stock {}",
+        of(Backend::Sbbk).count(),
+        geometric_mean(ratios("detection.median")).unwrap_or(f64::NAN),
+        geometric_mean(ratios("step.median")).unwrap_or(f64::NAN),
+        ratios("detection.median").fold(f64::INFINITY, f64::min),
+        wrong(Backend::Sbbk),
+        wrong(Backend::Stock),
+    )
 }

@@ -234,7 +234,7 @@ impl EnginePile {
                 self.parts.len()
             ));
         let tables = vec![table.of(&rows)];
-        Ok(Results::new(rows, tables, Vec::new()))
+        Ok(Results::new(verdict(engines, &rows), rows, tables))
     }
 
     fn read_run(&self, path: &Path) -> io::Result<Run> {
@@ -363,6 +363,17 @@ impl Run {
     fn heads(&self, step: usize) -> impl Iterator<Item = &[f32]> {
         self.step(step)[HEADER..].chunks_exact(STATE)
     }
+}
+
+fn verdict(engines: &[(String, Vec<&Path>)], rows: &[Row]) -> String {
+    let times = engines.iter().map(|(engine, _)| {
+        let is_shown = |row: &&Row| {
+            row.is("backend", engine) && row.is("figure", "step in motion, median, ms")
+        };
+        let time = rows.iter().find(is_shown).map_or(f64::NAN, |row| row.number("value"));
+        format!("{engine} {time:.1}")
+    });
+    format!("median step of the pile in motion, ms: {}", times.collect::<Vec<_>>().join(", "))
 }
 
 fn bytes(numbers: &[f32]) -> Vec<u8> {

@@ -30,9 +30,7 @@ mod tray;
 mod walls;
 
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use std::sync::{Mutex, PoisonError};
-use std::thread;
+use std::sync::PoisonError;
 
 use clap::ValueEnum;
 
@@ -40,8 +38,10 @@ pub use self::kit::Column;
 
 use self::figures::Figures;
 use self::kit::{Film, Kit};
-use super::{Progress, StudyError};
+use super::StudyError;
 use crate::mesh::Mesh;
+use crate::parallel;
+use crate::progress::Progress;
 use crate::replay;
 use crate::report::Results;
 
@@ -206,7 +206,11 @@ pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError>
         let name = group.to_possible_value().map_or_else(String::new, |v| v.get_name().to_owned());
         progress.phase(name, jobs.len());
         let threads = if matches!(group, Group::Pile | Group::Tray) { 1 } else { plan.threads };
-        let found = run_all(&jobs, threads, progress);
+        let found = parallel::map(&jobs, threads, |_, (trial, kit)| {
+            let figures = (trial.run)(kit);
+            progress.step();
+            figures
+        });
         if let Some((trial, path)) = replay {
             let recorders = films
                 .iter()
@@ -219,12 +223,11 @@ pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError>
             rows.extend(report::rows(trial, &runs));
         }
     }
-    progress.finish();
     if rows.is_empty() {
         return Err(StudyError::NoScene(plan.name.clone()));
     }
-    let (tables, panels) = (report::tables(plan, &rows), report::panels(&rows));
-    Ok(Results::new(rows, tables, panels))
+    let tables = report::tables(plan, &rows);
+    Ok(Results::new(report::verdict_of_all(plan, &rows), rows, tables))
 }
 
 /// Lets the first run of the first scene be recorded, on each column.
@@ -239,25 +242,4 @@ fn film(jobs: &mut [(&Trial, Kit)]) -> Vec<Film> {
         }
     }
     films.into_iter().map(|(_, film)| film).collect()
-}
-
-/// Runs some jobs, so many at once.
-fn run_all(jobs: &[(&Trial, Kit)], threads: usize, progress: &Progress) -> Vec<Figures> {
-    let next = AtomicUsize::new(0);
-    let found: Mutex<Vec<_>> = Mutex::new(jobs.iter().map(|_| None).collect());
-    thread::scope(|scope| {
-        for _ in 0..threads.max(1) {
-            scope.spawn(|| {
-                while let index = next.fetch_add(1, Relaxed)
-                    && let Some((trial, kit)) = jobs.get(index)
-                {
-                    let figures = (trial.run)(kit);
-                    found.lock().unwrap_or_else(PoisonError::into_inner)[index] = Some(figures);
-                    progress.step();
-                }
-            });
-        }
-    });
-    let found = found.into_inner().unwrap_or_else(PoisonError::into_inner);
-    found.into_iter().flatten().collect()
 }

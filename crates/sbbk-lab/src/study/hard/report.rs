@@ -1,11 +1,9 @@
 //! Rows, tables and a picture of hard scenes.
 
-use clap::ValueEnum;
-
 use super::figures::{Figure, Figures};
 use super::kit::Kit;
 use super::{Column, HardPlan, Trial};
-use crate::report::{Look, Panel, Row, Scale, Table, TableSpec, faster, number};
+use crate::report::{Row, Table, TableSpec, faster, number, three_digits};
 
 const VERDICTS: &str = "hard scenes";
 const FIGURES: &str = "hard scenes: figures";
@@ -57,15 +55,6 @@ fn verdict(passed: usize, runs: usize, worst: &[Figure]) -> String {
     }
 }
 
-fn three_digits(value: f64) -> String {
-    match value.abs() {
-        magnitude if magnitude < 1e-3 && magnitude > 0.0 => format!("{value:.0e}"),
-        magnitude if magnitude >= 100.0 || value.fract() == 0.0 => format!("{value:.0}"),
-        magnitude if magnitude >= 1.0 => format!("{value:.2}"),
-        _ => format!("{value:.3}"),
-    }
-}
-
 pub(super) fn tables(plan: &HardPlan, rows: &[Row]) -> Vec<Table> {
     let keys = &["scene", "contact_recycling"];
     let columns = |path| plan.columns.iter().map(move |c| number(&c.to_string(), path).of(c));
@@ -104,18 +93,15 @@ pub(super) fn tables(plan: &HardPlan, rows: &[Row]) -> Vec<Table> {
     tables
 }
 
-/// Scenes that end well, by column.
-pub(super) fn panels(rows: &[Row]) -> Vec<Panel> {
-    let labels = ["column", "share of runs that end well"];
-    let panel = Panel::new("Hard scenes", labels, Scale::Linear);
-    let columns = Column::value_variants().iter().zip(Look::ALL).enumerate();
-    let panel = columns.fold(panel, |panel, (index, (column, look))| {
-        let rows = rows.iter().filter(|row| row.study == VERDICTS && row.is("backend", column));
-        let sums = rows.fold([0, 0], |[passed, runs], row| {
-            [passed + row.count("passed"), runs + row.count("runs")]
-        });
-        let share = (sums[1] > 0).then(|| [index as f64, sums[0] as f64 / sums[1] as f64]);
-        panel.points(&column.to_string(), look, share.into_iter())
+pub(super) fn verdict_of_all(plan: &HardPlan, rows: &[Row]) -> String {
+    let counts = plan.columns.iter().map(|column| {
+        let of = rows.iter().filter(|row| row.study == VERDICTS && row.is("backend", column));
+        let (mut failed, mut count) = (0, 0);
+        for row in of {
+            count += 1;
+            failed += usize::from(row.count("passed") < row.count("runs"));
+        }
+        format!("{column} {failed} of {count}")
     });
-    vec![panel]
+    format!("scenes that fail: {}", counts.collect::<Vec<_>>().join(", "))
 }

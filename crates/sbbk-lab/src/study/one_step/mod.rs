@@ -14,9 +14,9 @@ mod led;
 mod report;
 
 use self::led::{Led, Motion, Norm};
-use super::Progress;
 use crate::backend::Backend;
 use crate::metrics::{StepTimes, Summary};
+use crate::progress::Progress;
 use crate::report::{Results, Row};
 use crate::scene::{MonkeyPile, Scene};
 
@@ -91,9 +91,8 @@ struct Seen {
 pub fn one_step(plan: &OneStepPlan, progress: &Progress) -> Results {
     let scene = MonkeyPile::with_heads(plan.heads);
     let rows = steps(&scene, plan, progress);
-    progress.finish();
-    let (tables, panels) = (vec![report::table(plan, &rows)], report::panels(plan, &rows));
-    Results::new(rows, tables, panels)
+    let tables = vec![report::table(plan, &rows)];
+    Results::new(report::verdict(plan, &rows), rows, tables)
 }
 
 fn steps(scene: &dyn Scene, plan: &OneStepPlan, progress: &Progress) -> Vec<Row> {

@@ -2,13 +2,13 @@
 
 use std::error::Error;
 use std::fmt::Write;
-use std::fs::{self, create_dir_all};
+use std::fs::create_dir_all;
 use std::path::Path;
 
 use super::ask::Query;
 use super::{Asked, QueriedMesh, QueriesPlan, SIZE};
 use crate::mesh::Mesh;
-use crate::report::{Results, replace_file};
+use crate::report::{Results, write_file};
 
 /// Writes `DIR/<mesh>.obj` and `DIR/queries.csv`: for each pose of each row the query, the place,
 /// the pose of mesh 2 in the frame of mesh 1, the least times of stock and SBBK over all poses of
@@ -22,7 +22,7 @@ pub fn export(plan: &QueriesPlan, results: &Results, folder: &Path) -> Result<()
     for QueriedMesh { mesh, pose_count } in &plan.meshes {
         let name = format!("{}-{}.obj", mesh.name.replace(' ', "-"), mesh.triangle_count());
         let text = obj(&mesh.clone().centred().scaled_to(SIZE))?;
-        replace_file(&folder.join(&name), |path| fs::write(path, text))?;
+        write_file(&folder.join(&name), text)?;
         let asked = Asked::new(mesh);
         let questions = Query::ALL
             .into_iter()
@@ -51,7 +51,7 @@ pub fn export(plan: &QueriesPlan, results: &Results, folder: &Path) -> Result<()
             }
         }
     }
-    Ok(replace_file(&folder.join("queries.csv"), |path| fs::write(path, table))?)
+    Ok(write_file(&folder.join("queries.csv"), table)?)
 }
 
 fn obj(mesh: &Mesh) -> Result<String, std::fmt::Error> {

@@ -11,18 +11,19 @@ mod judge;
 
 use oorandom::Rand32;
 use rapier3d::geometry::SharedShape;
-use rayon::prelude::*;
 
 use self::ask::{Answered, Distance, Placed, Query, ask};
 pub use self::export::export;
 use self::judge::{Judge, QueryErrors};
 use super::motion::Approach;
 use super::pair::Contest;
+use super::shape;
 use super::turns::{race, timed};
-use super::{Progress, shape};
 use crate::backend::{Backend, SharedDispatcher};
 use crate::mesh::{self, Mesh};
-use crate::report::{Panel, Results, Row, Scale, Table, TableSpec, faster, number, time};
+use crate::parallel;
+use crate::progress::Progress;
+use crate::report::{Results, Row, Table, TableSpec, faster, number, time};
 
 const QUERIES: &str = "queries, µs";
 /// Longest side of the meshes, in units.
@@ -96,13 +97,8 @@ pub fn queries(plan: &QueriesPlan, progress: &Progress) -> Results {
     }
     progress.finish();
     rows.sort_by_key(|row| Query::ALL.into_iter().position(|query| row.is("query", query)));
-    let panels = vec![
-        panel(&rows, Query::Distance, Distance::Near),
-        panel(&rows, Query::Intersection, Distance::HardlyApart),
-        panel(&rows, Query::Cast, Distance::Far),
-    ];
     let tables = tables(&rows);
-    Results::new(rows, tables, panels)
+    Results::new("queries of two meshes".to_owned(), rows, tables)
 }
 
 /// A mesh of size [`SIZE`], and both dispatchers, which have met it.
@@ -148,9 +144,9 @@ impl Asked {
         sides.map(move |((backend, dispatcher), time)| {
             let answers = self.ask(query, dispatcher, places);
             let judged: Vec<_> = places.iter().zip(&answers).take(plan.judged).collect();
-            let errors = judged.par_iter().with_max_len(1);
-            let errors: Vec<QueryErrors> =
-                errors.map(|(placed, answer)| self.judge.judge(query, placed, **answer)).collect();
+            let errors = parallel::map(&judged, parallel::threads(), |_, (placed, answer)| {
+                self.judge.judge(query, placed, **answer)
+            });
             let errors: QueryErrors = errors.into_iter().sum();
             Row::new(QUERIES, backend).with("time", time).with("errors", errors)
         })
@@ -193,12 +189,4 @@ fn tables(rows: &[Row]) -> Vec<Table> {
         ],
     );
     [all, means].map(|spec| spec.of(rows)).into()
-}
-
-fn panel(rows: &[Row], query: Query, distance: Distance) -> Panel {
-    let labels = ["triangles of each mesh", "µs a query"];
-    let panel = Panel::new(format!("{query}, {distance}"), labels, Scale::Logarithmic);
-    let rows = rows.iter().filter(|row| row.is("query", query) && row.is("place", distance));
-    let point = |row: &Row| Some([row.number("triangle_count"), row.number("time.median")]);
-    panel.backends(&Contest::BACKENDS, rows, true, point)
 }

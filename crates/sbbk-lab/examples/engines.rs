@@ -1,0 +1,82 @@
+//! The pile of heads in Rapier and in other engines: `benches/engines` has the others, and runs all.
+//!
+//! ```text
+//! cargo run --release --example engines -- export scene
+//! cargo run --release --example engines -- run sbbk scene sbbk.1
+//! cargo run --release --example engines -- judge scene sbbk.1 sbbk.2 bullet.1
+//! ```
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Parser;
+use sbbk_lab::cli::{exit_code, print};
+use sbbk_lab::mesh_file;
+use sbbk_lab::scene::MonkeyPile;
+use sbbk_lab::study::hard::Column;
+use sbbk_lab::study::hard::engines::EnginePile;
+
+/// Drops monkey heads in several engines.
+#[derive(Parser)]
+enum Arguments {
+    /// Writes the scene
+    Export {
+        /// What all engines read
+        scene: PathBuf,
+        /// Number of heads
+        #[arg(long, default_value = "200")]
+        heads: usize,
+        /// Seed of their orientations
+        #[arg(long, default_value = "1")]
+        seed: u64,
+        /// The head: a closed OBJ or STL file instead of the built-in monkey
+        #[arg(long, value_name = "FILE")]
+        mesh: Option<PathBuf>,
+    },
+    /// Runs the scene in Rapier
+    Run {
+        /// Who answers, and what the heads are made of; `control`: their convex parts
+        column: Column,
+        /// The scene
+        scene: PathBuf,
+        /// What is written: times, memory and the states of all heads
+        run: PathBuf,
+    },
+    /// Compares runs
+    Judge {
+        /// The scene
+        scene: PathBuf,
+        /// Runs of all engines, named by these
+        runs: Vec<PathBuf>,
+    },
+}
+
+fn main() -> ExitCode {
+    exit_code(run(&Arguments::parse()))
+}
+
+fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    match arguments {
+        Arguments::Export { scene, heads, seed, mesh } => {
+            let mut pile = match mesh {
+                Some(path) => MonkeyPile::of(*heads, mesh_file::load(path)?),
+                None => MonkeyPile::with_heads(*heads),
+            };
+            pile.seed = *seed;
+            Ok(EnginePile::new(&pile).write(scene)?)
+        }
+        Arguments::Run { column, scene, run } => Ok(EnginePile::read(scene)?.run(*column, run)?),
+        Arguments::Judge { scene, runs } => {
+            let mut engines: Vec<(String, Vec<&Path>)> = Vec::new();
+            for run in runs {
+                let name = run.file_stem().unwrap_or_default().to_string_lossy();
+                match engines.iter_mut().find(|engine| engine.0 == name) {
+                    Some((_, paths)) => paths.push(run),
+                    None => engines.push((name.into_owned(), vec![run])),
+                }
+            }
+            Ok(print(EnginePile::read(scene)?.judge(&engines)?)?)
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! Meshes, scenes and probes that the tests and measurements of SBBK for Rapier share.
+//!
+//! [`mesh`] makes triangle meshes, [`scene`] builds worlds from them, [`probe`] records and times
+//! the queries of a world, and [`world`] describes a world by numbers.
+
+pub mod mesh;
+pub mod probe;
+pub mod scene;
+pub mod world;

@@ -1,0 +1,161 @@
+//! A dispatcher that times another one.
+
+use std::sync::Arc;
+
+use rapier3d::math::{Pose, Real, Vector};
+use rapier3d::parry::query::details::{NormalConstraints, ShapeCastOptions};
+use rapier3d::parry::query::{
+    ClosestPoints, Contact, ContactManifold, ContactManifoldsWorkspace, NonlinearRigidMotion,
+    PersistentQueryDispatcher, QueryDispatcher, ShapeCastHit, ShapeDistance, ShapeIntersection,
+    Unsupported,
+};
+use rapier3d::parry::shape::Shape;
+
+use super::{Answer, PairKind, Probe, Question};
+
+/// Passes every query on unchanged, and counts and times `contact_manifolds` by [`PairKind`].
+///
+/// Cost: two readings of the clock a timed call (see [`clock_cost`](super::clock_cost) and
+/// [`Probe::time_every`]), one or two additions to shared counters, and one virtual call.
+pub struct Timed<D: ?Sized> {
+    probe: Probe,
+    inner: Arc<D>,
+}
+
+impl<D: ?Sized> Timed<D> {
+    /// A timer around `inner` that adds to `probe`.
+    pub fn new(inner: Arc<D>, probe: Probe) -> Self {
+        Self { probe, inner }
+    }
+}
+
+macro_rules! forward {
+    ($($name:ident($($argument:ident: $type:ty),*) -> $result:ty;)*) => {$(
+        fn $name(&self, $($argument: $type),*) -> Result<$result, Unsupported> {
+            self.inner.$name($($argument),*)
+        }
+    )*};
+}
+
+/// The queries without manifolds, answered by `self.inner`.
+macro_rules! forward_queries {
+    () => {
+        forward! {
+            intersection_test(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> ShapeIntersection;
+            distance(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> ShapeDistance;
+            contact(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, near: Real) -> Option<Contact>;
+            closest_points(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, near: Real) -> ClosestPoints;
+            cast_shapes(
+                pos12: &Pose,
+                local_vel12: Vector,
+                g1: &dyn Shape,
+                g2: &dyn Shape,
+                options: ShapeCastOptions
+            ) -> Option<ShapeCastHit>;
+            cast_shapes_nonlinear(
+                motion1: &NonlinearRigidMotion,
+                g1: &dyn Shape,
+                motion2: &NonlinearRigidMotion,
+                g2: &dyn Shape,
+                start_time: Real,
+                end_time: Real,
+                stop_at_penetration: bool
+            ) -> Option<ShapeCastHit>;
+        }
+    };
+}
+
+/// The same for two convex shapes with a manifold.
+macro_rules! forward_pair {
+    ($manifold:ty, $contact:ty) => {
+        forward! {
+            contact_manifold_convex_convex(
+                pos12: &Pose,
+                g1: &dyn Shape,
+                g2: &dyn Shape,
+                normal_constraints1: Option<&dyn NormalConstraints>,
+                normal_constraints2: Option<&dyn NormalConstraints>,
+                prediction: Real,
+                manifold: &mut rapier3d::parry::query::ContactManifold<$manifold, $contact>
+            ) -> ();
+        }
+    };
+}
+
+impl<D: QueryDispatcher + ?Sized> QueryDispatcher for Timed<D> {
+    forward_queries!();
+}
+
+impl<M, C, D> PersistentQueryDispatcher<M, C> for Timed<D>
+where
+    D: PersistentQueryDispatcher<M, C> + ?Sized,
+{
+    fn contact_manifolds(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: Real,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Result<(), Unsupported> {
+        let kind = PairKind::of(g1, g2);
+        let result = self.probe.measure(kind, || {
+            (self.inner).contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace)
+        });
+        if kind == PairKind::MeshMesh {
+            let question = Question::new(pos12, [g1, g2], prediction);
+            self.probe.record(|| Answer::new(question, manifolds));
+        }
+        result
+    }
+
+    forward_pair!(M, C);
+}
+
+#[cfg(test)]
+mod tests {
+    use rapier3d::parry::query::DefaultQueryDispatcher;
+    use rapier3d::parry::shape::{Ball, Cuboid};
+
+    use super::*;
+    use crate::mesh;
+
+    /// Would catch a wrapper that times the wrong kind of pair, forgets a call or changes the
+    /// answer, and a recorder that keeps recording, loses answers or sees other pairs than meshes.
+    #[test]
+    fn counts_each_kind_and_answers_as_the_inner_dispatcher() {
+        let probe = Probe::default();
+        let timed = Timed::new(Arc::new(DefaultQueryDispatcher), probe.clone());
+        let mesh = mesh::ball(1.0, 4).trimesh(Default::default()).unwrap();
+        let (ball, cuboid) = (Ball::new(1.0), Cuboid::new(Vector::splat(0.5)));
+        let pos12 = Pose::translation(1.2, 0.3, 0.1);
+        let pairs: [([&dyn Shape; 2], PairKind); 4] = [
+            ([&mesh, &mesh], PairKind::MeshMesh),
+            ([&mesh, &cuboid], PairKind::MeshOther),
+            ([&cuboid, &mesh], PairKind::MeshOther),
+            ([&ball, &cuboid], PairKind::Other),
+        ];
+        let ask = |dispatcher: &dyn PersistentQueryDispatcher, [g1, g2]: [&dyn Shape; 2]| {
+            let mut manifolds = Vec::new();
+            dispatcher.contact_manifolds(&pos12, g1, g2, 0.1, &mut manifolds, &mut None).unwrap();
+            Answer::new(Question::new(&pos12, [g1, g2], 0.1), &manifolds)
+        };
+        for (shapes, kind) in pairs {
+            probe.reset();
+            probe.start_recording();
+            let answer = ask(&timed, shapes);
+            assert_eq!(answer, ask(&DefaultQueryDispatcher, shapes));
+            assert!(!answer.reported.is_empty());
+            for other in [PairKind::MeshMesh, PairKind::MeshOther, PairKind::Other] {
+                let tally = probe.tally(other);
+                assert_eq!(tally.calls, u64::from(other == kind));
+                assert_eq!(tally.time.is_zero(), other != kind);
+            }
+            let recorded = if kind == PairKind::MeshMesh { vec![answer] } else { Vec::new() };
+            assert_eq!(probe.take_answers(), recorded);
+            ask(&timed, shapes);
+            assert!(probe.take_answers().is_empty(), "recording goes on");
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! The paper's first experiment (section 4.1, figure 5): a ball falls on a helicopter's rotor.
+
+use glamx::Vec3;
+use rapier3d::dynamics::RigidBodyBuilder;
+use rapier3d::math::Real;
+use rapier3d::pipeline::PhysicsWorld;
+
+use super::{Scene, SceneWorld, Solid};
+use crate::mesh::{self, Mesh};
+
+/// A mesh ball falls, by gravity alone, on the rotor of a fixed helicopter, bounces and rolls off.
+///
+/// The rotor is the top tenth of the helicopter. The ball starts above the blade whose tip is
+/// farthest from the hub, a little way out from the hub.
+#[derive(Clone, Debug)]
+pub struct HelicopterBallDrop {
+    /// The helicopter, `y` up; by default [`mesh::helicopter`].
+    pub helicopter: Mesh,
+    /// Radius of the ball, in units.
+    pub ball_radius: Real,
+    /// Distance between the ball and the top of the helicopter at the start, in units.
+    pub drop_height: Real,
+}
+
+/// Subdivision of the mesh ball: 8 * 12 * 12 = 1152 triangles.
+const BALL_DETAIL: u32 = 12;
+/// Share of the helicopter's height, from the top, that is taken for the rotor.
+const ROTOR_SHARE: f32 = 0.1;
+/// Where over the blade the ball starts, as a share of the way from hub to tip.
+const BLADE_SHARE: f32 = 0.3;
+
+impl Default for HelicopterBallDrop {
+    fn default() -> Self {
+        Self { helicopter: mesh::helicopter(), ball_radius: 0.25, drop_height: 0.5 }
+    }
+}
+
+impl HelicopterBallDrop {
+    /// Centre of the ball at the start.
+    fn start(&self) -> Vec3 {
+        let bounds = self.helicopter.bounds();
+        let floor_of_rotor = bounds.maxs.y - ROTOR_SHARE * bounds.extents().y;
+        let rotor = || (self.helicopter.vertices.iter()).filter(|v| v.y >= floor_of_rotor);
+        let hub = rotor().sum::<Vec3>() / rotor().count().max(1) as f32;
+        let reach = |vertex: &Vec3| (*vertex - hub).with_y(0.0).length_squared();
+        let farthest = rotor().copied().max_by(|v, w| reach(v).total_cmp(&reach(w)));
+        let over = hub.lerp(farthest.unwrap_or(hub), BLADE_SHARE);
+        over.with_y(bounds.maxs.y + self.drop_height + self.ball_radius)
+    }
+
+    fn ball_mesh(&self) -> Mesh {
+        mesh::ball(self.ball_radius, BALL_DETAIL)
+    }
+}
+
+impl Scene for HelicopterBallDrop {
+    fn name(&self) -> String {
+        let [ball, helicopter] = [&self.ball_mesh(), &self.helicopter].map(Mesh::triangle_count);
+        format!("ball of {ball} triangles, helicopter of {helicopter} triangles")
+    }
+
+    fn build(&self) -> SceneWorld {
+        let mut world = PhysicsWorld::new();
+        let helicopter = Solid::new(&self.helicopter);
+        world.insert(RigidBodyBuilder::fixed(), helicopter.collider());
+        let collider = Solid::new(&self.ball_mesh()).collider();
+        let body = RigidBodyBuilder::dynamic().translation(self.start());
+        let (body, _) = world.insert(body, collider.restitution(0.4));
+        SceneWorld { world, watched: vec![body] }
+    }
+}

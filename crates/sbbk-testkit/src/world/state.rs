@@ -1,0 +1,70 @@
+//! What a world looks like between two steps.
+
+use rapier3d::dynamics::{RigidBody, RigidBodyHandle};
+use rapier3d::pipeline::PhysicsWorld;
+
+/// Contacts, heights, energy and penetration after a step.
+///
+/// The contacts are those that the world holds, and so those of the last step's start; with
+/// contact recycling a pair's may be older still (it may have moved by 0.05 units since).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WorldState {
+    /// Collider pairs with at least one contact point.
+    pub touching_pair_count: usize,
+    /// Manifolds with at least one point.
+    pub contact_manifold_count: usize,
+    /// Contact points.
+    pub point_count: usize,
+    /// Mean over the touching pairs of the depth of their deepest point, in units; a pair whose
+    /// points are all apart counts as 0.
+    pub mean_penetration: f64,
+    /// Depth of the deepest point of all, in units.
+    pub max_penetration: f64,
+    /// Mean height of the watched bodies' centres of mass, in units.
+    pub mean_height: f64,
+    /// Kinetic and potential energy of the watched bodies, in joules, the latter from height 0.
+    pub energy: f64,
+}
+
+impl WorldState {
+    /// The state of `world`; heights and energy are those of the bodies `watched`.
+    pub fn of(world: &PhysicsWorld, watched: &[RigidBodyHandle]) -> Self {
+        let mut state = Self::default();
+        state.add_contacts(world);
+        let bodies = || watched.iter().map(|&handle| &world.bodies[handle]);
+        let height = |body: &RigidBody| f64::from(body.center_of_mass().y);
+        state.mean_height = bodies().map(height).sum::<f64>() / watched.len().max(1) as f64;
+        let gravity = f64::from(world.gravity.length());
+        let energy_of = |body: &RigidBody| {
+            f64::from(body.kinetic_energy()) + f64::from(body.mass()) * gravity * height(body)
+        };
+        state.energy = bodies().map(energy_of).sum();
+        state
+    }
+
+    fn add_contacts(&mut self, world: &PhysicsWorld) {
+        for pair in world.narrow_phase.contact_pairs() {
+            let mut deepest: Option<f32> = None;
+            for manifold in pair.manifolds() {
+                self.contact_manifold_count += usize::from(!manifold.points.is_empty());
+                self.point_count += manifold.points.len();
+                for point in &manifold.points {
+                    deepest = Some(deepest.map_or(-point.dist, |depth| depth.max(-point.dist)));
+                }
+            }
+            if let Some(depth) = deepest {
+                let depth = f64::from(depth.max(0.0));
+                self.touching_pair_count += 1;
+                self.mean_penetration += depth;
+                self.max_penetration = self.max_penetration.max(depth);
+            }
+        }
+        self.mean_penetration /= self.touching_pair_count.max(1) as f64;
+    }
+}
+
+/// The contacts that the solver has: clusters where Rapier makes them of several manifolds.
+pub fn solver_points(world: &PhysicsWorld) -> usize {
+    let manifolds = world.contact_pairs().flat_map(|pair| pair.solver_manifolds());
+    manifolds.map(|manifold| manifold.data.solver_contacts.len()).sum()
+}

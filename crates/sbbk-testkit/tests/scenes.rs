@@ -1,0 +1,122 @@
+//! Scenes at their start, and in their first steps.
+
+use std::collections::HashSet;
+
+use rapier3d::geometry::Collider;
+use rapier3d::parry::query;
+use sbbk_testkit::mesh::{self, Mesh};
+use sbbk_testkit::probe::shape_address;
+use sbbk_testkit::scene::{
+    BoxStack, HeadOnSlope, HelicopterBallDrop, MonkeyPile, Scene, SceneWorld, Solid,
+};
+use sbbk_testkit::world::WorldState;
+
+/// Every scene, with the number of its moving bodies.
+fn scenes() -> Vec<(Box<dyn Scene>, usize)> {
+    vec![
+        (Box::new(HelicopterBallDrop::default()), 1),
+        (Box::new(MonkeyPile::with_heads(30)), 30),
+        (Box::new(BoxStack::default()), 10),
+        (Box::new(HeadOnSlope::default()), 1),
+    ]
+}
+
+fn colliders(built: &SceneWorld) -> Vec<&Collider> {
+    built.world.colliders.iter().map(|(_, collider)| collider).collect()
+}
+
+/// Would catch a forgotten, fixed or massless body, and bodies that start in each other, which the
+/// solver would blow apart.
+#[test]
+fn bodies_start_apart_and_touch_within_two_seconds() {
+    for (scene, count) in scenes() {
+        let name = scene.name();
+        let mut built = scene.build();
+        assert_eq!(built.watched.iter().collect::<HashSet<_>>().len(), count, "{name}");
+        assert_eq!(built.world.bodies.len(), count + 1, "one fixed body in {name}");
+        for &handle in &built.watched {
+            let body = &built.world.bodies[handle];
+            assert!(body.is_dynamic() && body.mass() > 0.0 && body.mass().is_finite(), "{name}");
+        }
+        let colliders = colliders(&built);
+        for (index, one) in colliders.iter().enumerate() {
+            for other in &colliders[index + 1..] {
+                let [pose1, pose2] = [one.position(), other.position()];
+                let meets = query::contact(pose1, one.shape(), pose2, other.shape(), 1e-4);
+                assert_eq!(meets, Ok(None), "{name}");
+            }
+        }
+        let touches = (0..120).any(|_| {
+            built.world.step();
+            built.world.contact_pairs().any(|pair| pair.has_any_active_contact())
+        });
+        assert!(touches, "{name}");
+    }
+}
+
+/// Would catch a pile whose memory grows with its heads, and orientations that are not random, or
+/// not seeded.
+#[test]
+fn a_seed_gives_one_pile_of_one_shape() {
+    let pile = MonkeyPile::with_heads(50);
+    let built = pile.build();
+    let meshes = colliders(&built).into_iter().filter(|c| c.shape().as_trimesh().is_some());
+    let addresses: HashSet<usize> = meshes.map(|mesh| shape_address(mesh.shape())).collect();
+    assert_eq!(addresses.len(), 1);
+
+    assert_eq!(pile.poses(), pile.poses());
+    let other = MonkeyPile { seed: 2, ..pile.clone() };
+    assert!(pile.poses().iter().zip(other.poses()).all(|(a, b)| a.rotation != b.rotation));
+}
+
+/// Would catch mass properties taken from an open or inside-out mesh: a body of negative mass
+/// falls upwards.
+#[test]
+fn any_mesh_with_triangles_has_a_positive_mass() {
+    let inverted = mesh::ball(1.0, 4).mapped(|v| -v);
+    for mesh in [mesh::terrain(4.0, 8, 0.2), inverted] {
+        let size = mesh.bounds().volume();
+        let mass = Solid::new(&mesh).collider().build().mass();
+        assert!((mass - size).abs() < 1e-3 * size, "{}: {mass} instead of {size}", mesh.name);
+    }
+    let ball = Solid::new(&mesh::ball(1.0, 16)).collider().build();
+    assert!((ball.mass() - 4.0 / 3.0 * std::f32::consts::PI).abs() < 0.1);
+}
+
+/// Would catch an error without the name of the mesh.
+#[test]
+#[should_panic(expected = "the mesh `nothing`")]
+fn a_mesh_without_triangles_is_named() {
+    MonkeyPile::of(2, Mesh::new("nothing", Vec::new(), Vec::new())).build();
+}
+
+/// Would catch a drop point beside the rotor: the first contact must be in the top tenth of the
+/// helicopter.
+#[test]
+fn the_ball_touches_the_rotor_first() {
+    let scene = HelicopterBallDrop::default();
+    let bounds = scene.helicopter.bounds();
+    let mut built = scene.build();
+    let touches = (0..120).any(|_| {
+        built.world.step();
+        built.world.contact_pairs().any(|pair| pair.has_any_active_contact())
+    });
+    let lowest = built.world.bodies[built.watched[0]].translation().y - scene.ball_radius;
+    assert!(touches && lowest > bounds.maxs.y - 0.1 * bounds.extents().y, "{lowest}");
+}
+
+/// Would catch heights or energies of the wrong bodies: heads that fall freely keep their energy,
+/// and fall by half of g t squared.
+#[test]
+fn a_free_fall_keeps_its_energy() {
+    let mut built = MonkeyPile::with_heads(10).build();
+    built.world.step();
+    let first = WorldState::of(&built.world, &built.watched);
+    (0..14).for_each(|_| built.world.step());
+    let last = WorldState::of(&built.world, &built.watched);
+    let fallen = first.mean_height - last.mean_height;
+    let [early, late] = [1.0, 15.0].map(|steps: f64| 0.5 * 9.81 * (steps / 60.0).powi(2));
+    assert!((fallen - (late - early)).abs() < 0.1 * fallen, "fell {fallen}");
+    assert!((last.energy / first.energy - 1.0).abs() < 0.01);
+    assert_eq!((last.point_count, last.max_penetration), (0, 0.0));
+}
