@@ -6,7 +6,9 @@ use rapier3d::math::{Pose, Real};
 use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh;
 
-use crate::support::{Pair, Query, counting, counting_patches, nudge, shape, shape_with, touching};
+use crate::support::{
+    Pair, Question, counting, counting_patches, nudge, shape, shape_with, touching,
+};
 
 /// Poses of a body that shakes about its place, over and over.
 const POSES: usize = 20;
@@ -25,7 +27,7 @@ fn steady_with(dispatcher: &SbbkDispatcher, meshes: [&TriMesh; 2], stride: Real)
     let poses: Vec<Pose> = (0..POSES).map(|_| nudge(&mut random, 0.5 * stride) * pos12).collect();
     let mut pair = Pair::<ContactManifoldData, ContactData>::default();
     let mut ask = |pose: usize| {
-        let query = Query::new(meshes[0], meshes[1], poses[pose % POSES]);
+        let query = Question::new(meshes[0], meshes[1], poses[pose % POSES]);
         pair.ask(dispatcher, &query).manifolds.len()
     };
     for pose in 0..WARM_UP * POSES {
@@ -52,7 +54,7 @@ fn the_first_query_allocates() {
     let ball = shape(&mesh::ball(1.0, 4));
     let dispatcher = SbbkDispatcher::default();
     let mut pair: Pair = Pair::default();
-    let query = Query::new(&ball, &ball, Pose::translation(1.6, 0.0, 0.0));
+    let query = Question::new(&ball, &ball, Pose::translation(1.6, 0.0, 0.0));
     assert!(measure(|| _ = pair.ask(&dispatcher, &query)).count_total > 10);
 }
 

@@ -15,7 +15,7 @@ use sbbk_testkit::mesh;
 use sbbk_testkit::world::Fingerprint;
 
 use crate::support::{
-    Dispatcher, Manifold, Pair, counting, counting_patches, direction, every, nudge, rotation,
+    Manifold, Pair, Question, counting, counting_patches, direction, every, nudge, rotation,
     shape_with,
 };
 
@@ -46,27 +46,9 @@ fn grounds() -> Vec<(&'static str, SharedShape)> {
     ]
 }
 
-/// A mesh and a ground, as a host asks of them.
-#[derive(Clone, Copy)]
-struct Question<'a> {
-    ground: &'a dyn Shape,
-    mesh: &'a dyn Shape,
-    is_mesh_first: bool,
-    prediction: Real,
-}
-
-impl Question<'_> {
-    /// The mesh at `pose` in the frame of the ground.
-    fn ask<M, C>(&self, dispatcher: &impl Dispatcher<M, C>, pair: &mut Pair<M, C>, pose: Pose) {
-        let Self { ground, mesh, is_mesh_first, prediction } = *self;
-        pair.ask_of(dispatcher, [ground, mesh], pose, is_mesh_first, prediction);
-    }
-
-    fn fresh(&self, pose: Pose) -> Vec<Manifold> {
-        let mut pair = Pair::default();
-        self.ask(&SbbkDispatcher::default(), &mut pair, pose);
-        pair.manifolds
-    }
+/// The answer of a new dispatcher at this pose.
+fn fresh(question: &Question, pose: Pose) -> Vec<Manifold> {
+    question.at(pose).fresh(&SbbkDispatcher::default())
 }
 
 /// Asks `check` of a ball as a mesh with every ground, in both orders, rigid and deformable.
@@ -76,7 +58,7 @@ fn for_each_pair(mut check: impl FnMut(&str, &Question)) {
         for (name, ground) in grounds() {
             for is_mesh_first in [false, true] {
                 let question =
-                    Question { ground: &*ground, mesh: &ball, is_mesh_first, prediction: 0.02 };
+                    Question::new(&*ground, &ball, Pose::IDENTITY).flipped(is_mesh_first);
                 check(&format!("{name}, {flags:?}, mesh first: {is_mesh_first}"), &question);
             }
         }
@@ -114,15 +96,15 @@ fn elsewhere() -> [Pose; 4] {
 fn a_pair_that_comes_back_to_an_equal_pose_touches_as_before() {
     for_each_pair(|name, question| {
         let dispatcher = SbbkDispatcher::default();
-        let expected = seen(&question.fresh(at(-5.0)));
+        let expected = seen(&fresh(question, at(-5.0)));
         assert!(!expected.is_empty(), "{name}: no contacts");
         for between in elsewhere() {
             let mut pair: Pair = Pair::default();
-            let there = seen(&question.fresh(between));
+            let there = seen(&fresh(question, between));
             for _ in 0..3 {
-                question.ask(&dispatcher, &mut pair, at(-5.0));
+                pair.ask(&dispatcher, &question.at(at(-5.0)));
                 assert!(seen(&pair.manifolds) == expected, "{name}: {between:?}");
-                question.ask(&dispatcher, &mut pair, between);
+                pair.ask(&dispatcher, &question.at(between));
                 assert!(seen(&pair.manifolds) == there, "{name}: at {between:?}");
             }
         }
@@ -139,9 +121,9 @@ fn a_host_may_prune_manifolds() {
         let mut pair: Pair = Pair::default();
         for round in 0..24 {
             let pose = nudge(&mut random, 1e-4) * at(-5.0);
-            question.ask(&dispatcher, &mut pair, pose);
+            pair.ask(&dispatcher, &question.at(pose));
             let last = nudge(&mut random, 1e-5) * pose;
-            question.ask(&dispatcher, &mut pair, last);
+            pair.ask(&dispatcher, &question.at(last));
             match round % 5 {
                 0 => _ = pair.manifolds.pop(),
                 1 => drop(pair.manifolds.remove(0)),
@@ -155,8 +137,8 @@ fn a_host_may_prune_manifolds() {
             let again = (round % 5 < 3).then_some(last);
             let next = [0.0, 0.0, 1e-5].map(|step| nudge(&mut random, step) * pose);
             for next in again.into_iter().chain(next) {
-                question.ask(&dispatcher, &mut pair, next);
-                assert!(seen(&pair.manifolds) == seen(&question.fresh(next)), "{name}, {round}");
+                pair.ask(&dispatcher, &question.at(next));
+                assert!(seen(&pair.manifolds) == seen(&fresh(question, next)), "{name}, {round}");
             }
         }
     });
@@ -183,28 +165,28 @@ impl Default for Fragile {
 fn a_query_cut_short_by_a_panic_is_asked_again() {
     for_each_pair(|name, question| {
         let dispatcher = SbbkDispatcher::default();
-        let [before, expected] = [-5.3, -5.0].map(|x| seen(&question.fresh(at(x))));
+        let [before, expected] = [-5.3, -5.0].map(|x| seen(&fresh(question, at(x))));
         for countdown in 0..5 {
             for known in [None, Some(Pose::translation(-5.3, 1.5, 0.0)), Some(at(-5.3))] {
                 let mut pair = Pair::<Fragile, ()>::default();
                 if let Some(last) = known {
-                    question.ask(&dispatcher, &mut pair, at(-5.3));
-                    question.ask(&dispatcher, &mut pair, last);
+                    pair.ask(&dispatcher, &question.at(at(-5.3)));
+                    pair.ask(&dispatcher, &question.at(last));
                 }
                 COUNTDOWN.store(countdown, Ordering::Relaxed);
                 let is_cut_short = catch_unwind(AssertUnwindSafe(|| {
-                    question.ask(&dispatcher, &mut pair, at(-5.0));
+                    pair.ask(&dispatcher, &question.at(at(-5.0)));
                 }));
                 COUNTDOWN.store(usize::MAX, Ordering::Relaxed);
                 let must_be = countdown == 0 && known.is_none();
                 assert!(is_cut_short.is_err() || !must_be, "{name}: nothing was cut short");
                 // Back to where it touched before.
                 if known == Some(at(-5.3)) {
-                    question.ask(&dispatcher, &mut pair, at(-5.3));
+                    pair.ask(&dispatcher, &question.at(at(-5.3)));
                     assert!(seen(&pair.manifolds) == before, "{name}: {countdown}");
                 }
                 for _ in 0..2 {
-                    question.ask(&dispatcher, &mut pair, at(-5.0));
+                    pair.ask(&dispatcher, &question.at(at(-5.0)));
                     assert!(seen(&pair.manifolds) == expected, "{name}: {countdown}");
                 }
             }
@@ -235,12 +217,12 @@ fn first_queries_see_as_far_as_later_ones() {
             for is_mesh_first in [false, true] {
                 let prediction = gap.next_up();
                 let question =
-                    Question { ground: &**ground, mesh: &far, is_mesh_first, prediction };
+                    Question::new(&**ground, &far, pose).within(prediction).flipped(is_mesh_first);
                 let mut pair: Pair = Pair::default();
                 let dispatcher = SbbkDispatcher::default();
-                question.ask(&dispatcher, &mut pair, Pose::translation(-0.1, -0.1, 0.0) * pose);
-                question.ask(&dispatcher, &mut pair, pose);
-                assert!(seen(&pair.manifolds) == seen(&question.fresh(pose)), "{offset}");
+                pair.ask(&dispatcher, &question.at(Pose::translation(-0.1, -0.1, 0.0) * pose));
+                pair.ask(&dispatcher, &question.at(pose));
+                assert!(seen(&pair.manifolds) == seen(&fresh(&question, pose)), "{offset}");
                 *found += pair.manifolds.len();
             }
         }
@@ -285,8 +267,8 @@ fn turned_meshes_far_from_their_origin_are_seen() {
                 // A frame may be longer than the other by the rounding of its quaternion.
                 let prediction = 1.000_01 * gap;
                 let question =
-                    Question { ground: &**ground, mesh: &far, is_mesh_first, prediction };
-                assert!(!question.fresh(pose).is_empty(), "{gap} apart, {is_mesh_first}");
+                    Question::new(&**ground, &far, pose).within(prediction).flipped(is_mesh_first);
+                assert!(!fresh(&question, pose).is_empty(), "{gap} apart, {is_mesh_first}");
                 found += 1;
                 if ground.as_composite_shape().is_none() {
                     let shapes: [&dyn Shape; 2] = [&**ground, &far];
@@ -306,15 +288,15 @@ fn turned_meshes_far_from_their_origin_are_seen() {
 fn no_prediction_distance_is_too_large() {
     for_each_pair(|name, question| {
         let mut near: Pair = Pair::default();
-        question.ask(&every(), &mut near, at(-5.0));
+        near.ask(&every(), &question.at(at(-5.0)));
         let triangles = |manifolds: &[Manifold]| -> Vec<[u32; 2]> {
             manifolds.iter().map(|m| [m.subshape1, m.subshape2]).collect()
         };
         for prediction in [1e3, 1e9, 2e19, 1e30, Real::MAX] {
             let mut pair: Pair = Pair::default();
-            let question = Question { prediction, ..*question };
+            let question = question.within(prediction);
             for _ in 0..2 {
-                question.ask(&every(), &mut pair, at(-5.0));
+                pair.ask(&every(), &question.at(at(-5.0)));
                 let found = triangles(&pair.manifolds);
                 let is_lost = |near: &&[u32; 2]| !found.contains(near);
                 let lost = triangles(&near.manifolds).iter().filter(is_lost).count();

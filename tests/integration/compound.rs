@@ -15,7 +15,7 @@ use rapier3d::parry::utils::Array2;
 use sbbk_testkit::mesh;
 
 use crate::support::{
-    Dispatcher, Manifold, Pair, assert_same, counting, direction, distance, every, nudge,
+    Dispatcher, Manifold, Pair, Question, assert_same, counting, direction, distance, every, nudge,
     per_triangle, rotation, shape_with,
 };
 use crate::worlds::Bodies;
@@ -56,35 +56,11 @@ fn compounds(size: Real) -> Vec<(&'static str, Compound)> {
     ]
 }
 
-/// What is asked: the contacts of a mesh and a compound.
-#[derive(Clone, Copy)]
-struct Question<'a> {
-    mesh: &'a TriMesh,
-    compound: &'a Compound,
-    /// The pose of the compound in the frame of the mesh.
-    pose: Pose,
-    prediction: Real,
-    /// Whether the compound comes first.
-    flipped: bool,
-}
-
-impl Question<'_> {
-    fn ask<'p, M, C>(
-        &self,
-        dispatcher: &impl Dispatcher<M, C>,
-        pair: &'p mut Pair<M, C>,
-    ) -> &'p mut Pair<M, C> {
-        let Self { mesh, compound, pose, prediction, flipped } = *self;
-        pair.ask_of(dispatcher, [mesh, compound], pose, flipped, prediction)
-    }
-
-    /// The answer to one who knows nothing of the pair: what touches.
-    fn fresh(&self, dispatcher: &impl Dispatcher<(), ()>) -> Vec<Manifold> {
-        let mut manifolds =
-            std::mem::take(&mut self.ask(dispatcher, &mut Pair::default()).manifolds);
-        manifolds.retain(|manifold| distance(manifold) <= self.prediction);
-        manifolds
-    }
+/// The answer to a host that keeps nothing: manifolds within the prediction distance.
+fn fresh(question: &Question, dispatcher: &impl Dispatcher<(), ()>) -> Vec<Manifold> {
+    let mut manifolds = question.fresh(dispatcher);
+    manifolds.retain(|manifold| distance(manifold) <= question.prediction);
+    manifolds
 }
 
 /// A pose at which the compound is `gap` away from the mesh, or about as deep in it if negative.
@@ -132,18 +108,19 @@ fn contacts_are_those_of_each_part_by_itself() {
                 let pose = near_pose(&mut random, &head, &compound, depth);
                 let (prediction, flipped) = ([0.02, 0.1, 0.02][i % 3], i % 8 < 4);
                 let question =
-                    Question { mesh: &head, compound: &compound, pose, prediction, flipped };
+                    Question::new(&head, &compound, pose).within(prediction).flipped(flipped);
                 let named = |m: &Manifold, part: Option<u32>| {
                     let (one, two) = (m.subshape1, m.subshape2);
                     let (triangle, other) = if flipped { (two, one) } else { (one, two) };
                     ([triangle, part.unwrap_or(other)], distance(m))
                 };
-                let found = question.fresh(&dispatcher);
+                let found = fresh(&question, &dispatcher);
                 let found: BTreeMap<_, _> = found.iter().map(|m| named(m, None)).collect();
                 let mut expected = BTreeMap::new();
                 for (index, (at, part)) in (0..).zip(compound.shapes()) {
                     let mut pair: Pair = Pair::default();
-                    pair.ask_of(&dispatcher, [&head, &**part], pose * *at, flipped, prediction);
+                    let part = Question::new(&head, &**part, pose * *at).within(prediction);
+                    pair.ask(&dispatcher, &part.flipped(flipped));
                     let near = pair.manifolds.iter().filter(|m| distance(m) <= prediction);
                     expected.extend(near.map(|m| named(m, Some(index))));
                 }
@@ -182,8 +159,7 @@ fn motion_is_no_part_of_the_answer() {
         let mut random = Rand32::new(seed as u64);
         let pose = near_pose(&mut random, &head, &compound, 0.0);
         let flipped = seed % 2 == 1;
-        let mut question =
-            Question { mesh: &head, compound: &compound, pose, prediction: 0.02, flipped };
+        let mut question = Question::new(&head, &compound, pose).flipped(flipped);
         let mut pair: Pair = Pair::default();
         let (mut stride, mut count) = (1e-3, 0);
         for _ in 0..500 {
@@ -196,12 +172,12 @@ fn motion_is_no_part_of_the_answer() {
                 _ => question.pose = nudge(&mut random, stride) * question.pose,
             }
             if question.pose.translation.length() > 8.0 {
-                assert!(question.ask(&dispatcher, &mut pair).manifolds.is_empty());
+                assert!(pair.ask(&dispatcher, &question).manifolds.is_empty());
                 question.pose = near_pose(&mut random, &head, &compound, -0.01);
             }
-            let mut found = question.ask(&dispatcher, &mut pair).manifolds.clone();
+            let mut found = pair.ask(&dispatcher, &question).manifolds.clone();
             found.retain(|manifold| distance(manifold) <= question.prediction);
-            assert_like_stock(&found, &question.fresh(&unaware));
+            assert_like_stock(&found, &fresh(&question, &unaware));
             count += found.len();
         }
         let stats = dispatcher.stats();
@@ -220,27 +196,21 @@ fn steady_contact_allocates_nothing() {
     for (name, compound) in compounds(1.0) {
         let mut random = Rand32::new(5);
         for (flipped, stride) in [(false, 1e-4), (true, 1e-3), (false, 6e-3)] {
-            let question = |pose| Question {
-                mesh: &head,
-                compound: &compound,
-                pose,
-                prediction: 0.02,
-                flipped,
-            };
+            let question = |pose| Question::new(&head, &compound, pose).flipped(flipped);
             // Not overlapping: Parry's EPA allocates.
             let starts = (0..200).map(|_| near_pose(&mut random, &head, &compound, 0.012));
             let is_good = |&pose: &Pose| {
-                let found = question(pose).fresh(&dispatcher);
+                let found = fresh(&question(pose), &dispatcher);
                 found.len() > 1 && found.iter().all(|manifold| distance(manifold) > 0.011)
             };
             let start = { starts }.find(is_good).expect("most ways end near the mesh");
             let poses: Vec<Pose> = (0..20).map(|_| nudge(&mut random, stride) * start).collect();
             let mut pair = Pair::<ContactManifoldData, ContactData>::default();
             for &pose in poses.iter().cycle().take(20 * 25) {
-                question(pose).ask(&dispatcher, &mut pair);
+                pair.ask(&dispatcher, &question(pose));
             }
             for &pose in poses.iter().cycle().take(20 * 4) {
-                let allocated = measure(|| _ = question(pose).ask(&dispatcher, &mut pair));
+                let allocated = measure(|| _ = pair.ask(&dispatcher, &question(pose)));
                 assert_eq!(allocated.count_total, 0, "{name}, {stride}: {allocated:?}");
             }
         }
@@ -257,18 +227,12 @@ fn poses_that_are_none_have_no_contacts() {
         let shift = Pose::from_parts(Vec3::new(0.1, broken, 0.0), Quat::IDENTITY);
         let turn = Pose::from_parts(Vec3::ZERO, Quat::from_xyzw(broken, 0.0, 0.0, 1.0));
         for (pose, flipped) in [(shift, false), (shift, true), (turn, false), (turn, true)] {
-            let at = |pose| Question {
-                mesh: &head,
-                compound: &compound,
-                pose,
-                prediction: 0.02,
-                flipped,
-            };
+            let at = |pose| Question::new(&head, &compound, pose).flipped(flipped);
             let mut pair: Pair = Pair::default();
             let start = Pose::translation(0.9, 0.0, 0.0);
-            assert!(!at(start).ask(&dispatcher, &mut pair).manifolds.is_empty());
-            assert!(at(pose).ask(&dispatcher, &mut pair).manifolds.is_empty());
-            assert!(at(pose).fresh(&dispatcher).is_empty());
+            assert!(!pair.ask(&dispatcher, &at(start)).manifolds.is_empty());
+            assert!(pair.ask(&dispatcher, &at(pose)).manifolds.is_empty());
+            assert!(fresh(&at(pose), &dispatcher).is_empty());
         }
     }
 }
@@ -285,11 +249,10 @@ fn other_parts_leave_the_pair_to_stock() {
     let compound = Compound::new(parts);
     let dispatcher = counting();
     let pose = Pose::IDENTITY;
-    let question =
-        Question { mesh: &head, compound: &compound, pose, prediction: 0.02, flipped: false };
-    let found = question.fresh(&dispatcher);
+    let question = Question::new(&head, &compound, pose);
+    let found = fresh(&question, &dispatcher);
     assert!(!found.is_empty());
-    assert_like_stock(&found, &question.fresh(&DefaultQueryDispatcher));
+    assert_like_stock(&found, &fresh(&question, &DefaultQueryDispatcher));
     assert_eq!(dispatcher.stats().queries, 0);
 }
 
@@ -303,11 +266,11 @@ fn another_compound_with_the_same_workspace_is_noticed() {
     let mut pair: Pair = Pair::default();
     let all: Vec<_> = compounds(1.0).into_iter().chain(compounds(1.1)).collect();
     for (name, compound) in &all {
-        let question = Question { mesh: &head, compound, pose, prediction: 0.02, flipped: false };
+        let question = Question::new(&head, compound, pose);
         for _ in 0..2 {
-            let mut found = question.ask(&dispatcher, &mut pair).manifolds.clone();
+            let mut found = pair.ask(&dispatcher, &question).manifolds.clone();
             found.retain(|manifold| distance(manifold) <= 0.02);
-            let expected = question.fresh(&every());
+            let expected = fresh(&question, &every());
             assert_eq!(found.len(), expected.len(), "{name}");
             assert_like_stock(&found, &expected);
         }
@@ -364,10 +327,9 @@ fn each_of_many_parts_is_where_it_is() {
     };
     let compound = Compound::new((0..130).map(part).collect());
     let pose = Pose::translation(-20.0, 0.45, -15.0);
-    let question =
-        Question { mesh: &floor, compound: &compound, pose, prediction: 0.2, flipped: false };
+    let question = Question::new(&floor, &compound, pose).within(0.2);
     let mut nearest = vec![Real::INFINITY; 130];
-    for manifold in question.fresh(&every()) {
+    for manifold in fresh(&question, &every()) {
         let nearest = &mut nearest[manifold.subshape2 as usize];
         *nearest = nearest.min(distance(&manifold));
     }
@@ -404,9 +366,9 @@ fn what_is_far_out_is_seen_as_the_whole_turns() {
                 } else {
                     Pose::from_parts(Vec3::ZERO, turn) * Pose::from_translation(at)
                 };
-                pair.ask_of(&dispatcher, [mesh, other], pose, false, 0.02);
+                pair.ask(&dispatcher, &Question::new(mesh, other, pose));
                 let mut fresh: Pair = Pair::default();
-                fresh.ask_of(&dispatcher, [mesh, other], pose, false, 0.02);
+                fresh.ask(&dispatcher, &Question::new(mesh, other, pose));
                 let names = |pair: &Pair| {
                     pair.manifolds.iter().map(|m| [m.subshape1, m.subshape2]).collect::<Vec<_>>()
                 };
@@ -428,7 +390,7 @@ fn polylines_that_deform_are_left_to_stock() {
         let line = Polyline::with_flags(corners.clone(), None, flags);
         let dispatcher = counting();
         let mut pair: Pair = Pair::default();
-        pair.ask_of(&dispatcher, [&floor, &line], Pose::IDENTITY, false, 0.02);
+        pair.ask(&dispatcher, &Question::new(&floor, &line, Pose::IDENTITY));
         assert_eq!(dispatcher.stats().queries, queries, "{flags:?}");
     }
 }

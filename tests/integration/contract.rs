@@ -9,8 +9,8 @@ use rapier3d::parry::shape::{PackedFeatureId, TriMesh};
 use sbbk_testkit::mesh;
 
 use crate::support::{
-    Manifold, Pair, Query, TrianglePair, assert_same, by_triangles, every, fresh, nudge,
-    per_triangle, sequence, shape, touching, triangles,
+    Manifold, Pair, Question, TrianglePair, assert_same, by_triangles, every, nudge, per_triangle,
+    sequence, shape, touching, triangles,
 };
 
 /// Marks manifolds and points, to see which of them survive.
@@ -48,14 +48,14 @@ fn nowhere() -> Pose {
 #[test]
 fn there_is_a_workspace_wherever_there_are_or_were_manifolds() {
     let [one, two] = rings();
-    let query = Query::new(&one, &two, touching(&mut Rand32::new(1), [&one, &two], 0.05));
+    let query = Question::new(&one, &two, touching(&mut Rand32::new(1), [&one, &two], 0.05));
     let far = Pose::translation(100.0, 0.0, 0.0);
-    for first in [far, nowhere(), query.pos12] {
+    for first in [far, nowhere(), query.pose] {
         let mut pair: Pair = Pair::default();
-        for pos12 in [first, far, query.pos12, query.pos12, nowhere(), far] {
+        for pos12 in [first, far, query.pose, query.pose, nowhere(), far] {
             let had_some = !pair.manifolds.is_empty();
             pair.ask(&SbbkDispatcher::default(), &query.at(pos12));
-            assert_eq!(pair.manifolds.is_empty(), pos12 != query.pos12);
+            assert_eq!(pair.manifolds.is_empty(), pos12 != query.pose);
             assert!(pair.workspace.is_some() || !had_some && pair.manifolds.is_empty());
             if !pair.manifolds.is_empty() {
                 // As Rapier does where a shape was edited.
@@ -75,11 +75,11 @@ fn manifolds_come_in_the_order_of_subshapes_and_none_is_empty() {
     let dispatcher = per_triangle();
     let mut manifold_count = 0;
     for _ in 0..30 {
-        let query = Query::new(&one, &two, touching(&mut random, [&one, &two], 0.1));
-        for query in [query, query.swapped()] {
+        let query = Question::new(&one, &two, touching(&mut random, [&one, &two], 0.1));
+        for query in [query, query.flipped(true)] {
             let mut pair: Pair = Pair::default();
             for _ in 0..3 {
-                let query = query.at(nudge(&mut random, 0.005) * query.pos12);
+                let query = query.at(nudge(&mut random, 0.005) * query.pose);
                 let found = &pair.ask(&dispatcher, &query).manifolds;
                 assert!(found.iter().all(|manifold| !manifold.points.is_empty()));
                 let touching = by_triangles(found).into_keys();
@@ -96,13 +96,13 @@ fn manifolds_come_in_the_order_of_subshapes_and_none_is_empty() {
 #[test]
 fn without_a_workspace_no_manifold_survives() {
     let [one, two] = rings();
-    let query = Query::new(&one, &two, touching(&mut Rand32::new(4), [&one, &two], 0.1));
+    let query = Question::new(&one, &two, touching(&mut Rand32::new(4), [&one, &two], 0.1));
     let dispatcher = SbbkDispatcher::default();
     let mut pair = MarkedPair::default();
     pair.ask(&dispatcher, &query).mark();
     pair.workspace = None;
     pair.ask(&dispatcher, &query);
-    assert_same(&pair.manifolds, &fresh(&dispatcher, &query), 0.0);
+    assert_same(&pair.manifolds, &query.fresh(&dispatcher), 0.0);
     assert_eq!(marks(&pair), [Marker(0)].repeat(marks(&pair).len()));
 }
 
@@ -116,13 +116,13 @@ fn marks(pair: &MarkedPair) -> Vec<Marker> {
 #[test]
 fn with_a_foreign_workspace_manifolds_keep_their_data() {
     let [one, two] = rings();
-    let query = Query::new(&one, &two, touching(&mut Rand32::new(5), [&one, &two], 0.1));
+    let query = Question::new(&one, &two, touching(&mut Rand32::new(5), [&one, &two], 0.1));
     let mut pair = MarkedPair::default();
     pair.ask(&DefaultQueryDispatcher, &query).mark();
     let before = pair.manifolds.clone();
     let before = by_triangles(&before);
     pair.ask(&every(), &query);
-    assert_same(&pair.manifolds, &fresh(&every(), &query), 0.0);
+    assert_same(&pair.manifolds, &query.fresh(&every()), 0.0);
     let mut kept_points = 0;
     for manifold in &pair.manifolds {
         let old = before[&triangles(manifold)];
@@ -150,7 +150,7 @@ fn points_keep_their_data_by_their_features() {
     let [one, two] = rings();
     let mut random = Rand32::new(6);
     let dispatcher = every();
-    let mut query = Query::new(&one, &two, touching(&mut random, [&one, &two], 0.05));
+    let mut query = Question::new(&one, &two, touching(&mut random, [&one, &two], 0.05));
     let mut pair = MarkedPair::default();
     pair.ask(&dispatcher, &query);
     let [mut kept, mut new] = [0, 0];
@@ -158,7 +158,7 @@ fn points_keep_their_data_by_their_features() {
         pair.mark();
         let before = pair.manifolds.clone();
         let before = by_triangles(&before);
-        query.pos12 = nudge(&mut random, 0.003) * query.pos12;
+        query.pose = nudge(&mut random, 0.003) * query.pose;
         for manifold in &pair.ask(&dispatcher, &query).manifolds {
             let old = before.get(&triangles(manifold));
             assert_eq!(manifold.data, old.map_or(Marker(0), |old| old.data));
@@ -187,9 +187,9 @@ fn the_prediction_distance_may_change_at_every_query() {
     for prediction in [0.02, 0.0, 0.001, 0.3, 0.02, 0.1, 0.1, 0.0005, 1.0, 0.02] {
         for shift in [0.0, 1e-4, 2e-4] {
             let pos12 = Pose::translation(shift, 0.0, 0.0) * pos12;
-            let query = Query::new(&head, &head, pos12).within(prediction);
+            let query = Question::new(&head, &head, pos12).within(prediction);
             pair.ask(&dispatcher, &query);
-            assert_same(&pair.manifolds, &fresh(&dispatcher, &query), 1e-6);
+            assert_same(&pair.manifolds, &query.fresh(&dispatcher), 1e-6);
         }
         sizes.push(pair.manifolds.len());
     }
@@ -203,12 +203,12 @@ fn any_data_will_do() {
     #[derive(Clone, Default)]
     struct Name(String);
     let [one, two] = rings();
-    let query = Query::new(&one, &two, touching(&mut Rand32::new(9), [&one, &two], 0.05));
+    let query = Question::new(&one, &two, touching(&mut Rand32::new(9), [&one, &two], 0.05));
     let dispatcher = SbbkDispatcher::default();
-    let expected: Vec<Manifold> = fresh(&dispatcher, &query);
+    let expected: Vec<Manifold> = query.fresh(&dispatcher);
     let mut named = Pair::<Name, f64>::default();
     named.ask(&dispatcher, &query).manifolds[0].data = Name("first".into());
-    named.ask(&dispatcher, &query.at(Pose::translation(1e-6, 0.0, 0.0) * query.pos12));
+    named.ask(&dispatcher, &query.at(Pose::translation(1e-6, 0.0, 0.0) * query.pose));
     assert_eq!(named.manifolds[0].data.0, "first");
     named.ask(&dispatcher, &query);
     assert_same(&named.manifolds, &expected, 1e-6);
@@ -218,7 +218,7 @@ fn any_data_will_do() {
         Arc::new(dispatcher);
     let (mut manifolds, mut workspace) = (Vec::new(), None);
     shared
-        .contact_manifolds(&query.pos12, &one, &two, 0.02, &mut manifolds, &mut workspace)
+        .contact_manifolds(&query.pose, &one, &two, 0.02, &mut manifolds, &mut workspace)
         .unwrap();
     assert_same(&manifolds, &expected, 0.0);
 }
@@ -233,11 +233,11 @@ fn callers_without_memory_get_fresh_answers() {
     let mut manifolds: Vec<Manifold> = Vec::new();
     let mut seen: Vec<Vec<TrianglePair>> = Vec::new();
     for _ in 0..10 {
-        let query = Query::new(&one, &two, touching(&mut random, [&one, &two], 0.05));
+        let query = Question::new(&one, &two, touching(&mut random, [&one, &two], 0.05));
         dispatcher
-            .contact_manifolds(&query.pos12, &one, &two, 0.02, &mut manifolds, &mut None)
+            .contact_manifolds(&query.pose, &one, &two, 0.02, &mut manifolds, &mut None)
             .unwrap();
-        assert_same(&manifolds, &fresh(&dispatcher, &query), 0.0);
+        assert_same(&manifolds, &query.fresh(&dispatcher), 0.0);
         seen.push(sequence(&manifolds));
     }
     assert!(seen.windows(2).all(|two| two[0] != two[1]));

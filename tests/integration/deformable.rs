@@ -15,8 +15,8 @@ use sbbk_testkit::mesh;
 use sbbk_testkit::probe::{Probe, Timed, shape_address};
 
 use crate::support::{
-    Manifold, Pair, Query, TrianglePair, assert_same, by_triangles, counting, distance, fresh,
-    nudge, rebuilt, sequence, shape, shape_with,
+    Manifold, Pair, Question, TrianglePair, assert_same, by_triangles, counting, distance, nudge,
+    rebuilt, sequence, shape, shape_with,
 };
 use crate::truth::pairs_within;
 
@@ -71,21 +71,21 @@ fn check_frames(flags: TriMeshFlags, other: TriMesh, frames: usize) {
             pose =
                 nudge(&mut random, 0.001) * Pose::from_parts(beside().translation, pose.rotation);
         }
-        let query = Query::new(&soft, &other, pose);
+        let query = Question::new(&soft, &other, pose);
         let anew = rebuilt(&soft);
-        let expected = fresh(&SbbkDispatcher::default(), &Query::new(&anew, &other, pose));
+        let expected = Question::new(&anew, &other, pose).fresh(&SbbkDispatcher::default());
         contacts += expected.len();
         let found = &pair.ask(&dispatcher, &query).manifolds;
-        assert_same(found, &fresh(&SbbkDispatcher::default(), &query), 1e-5);
+        assert_same(found, &query.fresh(&SbbkDispatcher::default()), 1e-5);
         assert_eq!(set(found), set(&expected), "frame {frame}");
         if flags.is_empty() {
             let truth = pairs_within(&query, f64::from(query.prediction) * 0.999);
             let found = set(found);
             assert!(truth.keys().all(|pair| found.contains(pair)), "frame {frame} lost a contact");
         }
-        let query = query.swapped();
+        let query = query.flipped(true);
         let found = &swapped.ask(&dispatcher, &query).manifolds;
-        assert_same(found, &fresh(&SbbkDispatcher::default(), &query), 1e-5);
+        assert_same(found, &query.fresh(&SbbkDispatcher::default()), 1e-5);
     }
     assert!(contacts > 10 * frames, "only {contacts} contacts");
     let stats = dispatcher.stats();
@@ -116,10 +116,10 @@ fn two_soft_meshes_keep_apart() {
     for frame in 0..200 {
         deform(&mut meshes[0], &rest, frame);
         deform(&mut meshes[1], &rest, frame / 2);
-        let query = Query::new(&meshes[0], &meshes[1], Pose::translation(1.3, 1.2, 0.3));
+        let query = Question::new(&meshes[0], &meshes[1], Pose::translation(1.3, 1.2, 0.3));
         let found = &pair.ask(&dispatcher, &query).manifolds;
         contacts += found.len();
-        assert_same(found, &fresh(&SbbkDispatcher::default(), &query), 1e-5);
+        assert_same(found, &query.fresh(&SbbkDispatcher::default()), 1e-5);
     }
     assert!(contacts > 1000);
     let stats = dispatcher.stats();
@@ -145,7 +145,7 @@ fn contacts_keep_their_data_while_a_mesh_deforms() {
             soft = copy;
         }
         soft.update_vertices(|vertices| vertices.iter_mut().for_each(|vertex| *vertex *= 1.00001));
-        pair.ask(&dispatcher, &Query::new(&soft, &other, beside()));
+        pair.ask(&dispatcher, &Question::new(&soft, &other, beside()));
         for point in pair.manifolds.iter_mut().flat_map(|manifold| &mut manifold.points) {
             point.data.0 += 1;
         }
@@ -172,10 +172,10 @@ fn pairs_on_many_threads_agree() {
                 let (dispatcher, soft, other, contacts) = (&dispatcher, &soft, &other, &contacts);
                 scope.spawn(move || {
                     let pose = Pose::translation(0.02 * i as Real, 0.0, 0.0) * beside();
-                    let query = Query::new(soft, other, pose);
+                    let query = Question::new(soft, other, pose);
                     let found = &pair.ask(dispatcher, &query).manifolds;
                     contacts.fetch_add(found.len(), Ordering::Relaxed);
-                    assert_same(found, &fresh(&SbbkDispatcher::default(), &query), 1e-5);
+                    assert_same(found, &query.fresh(&SbbkDispatcher::default()), 1e-5);
                 });
             }
         });
@@ -200,9 +200,9 @@ fn a_mesh_that_is_broken_for_a_while_comes_back() {
         if is_broken {
             soft.update_vertices(|vertices| vertices[far].x = Real::NAN);
         }
-        let query = Query::new(&soft, &other, beside());
+        let query = Question::new(&soft, &other, beside());
         pair.ask(&dispatcher, &query);
-        assert_same(&pair.manifolds, &fresh(&SbbkDispatcher::default(), &query), 1e-5);
+        assert_same(&pair.manifolds, &query.fresh(&SbbkDispatcher::default()), 1e-5);
         assert!(!pair.manifolds.is_empty());
     }
     let stats = dispatcher.stats();
@@ -219,8 +219,8 @@ fn other_triangles_at_the_same_place_are_seen() {
     for _ in 0..4 {
         let mesh = soft.make_mut().as_trimesh_mut().expect("the shape is a mesh");
         mesh.reverse();
-        let query = Query::new(soft.as_trimesh().expect("as above"), &other, beside());
-        let expected = fresh(&SbbkDispatcher::default(), &query);
+        let query = Question::new(soft.as_trimesh().expect("as above"), &other, beside());
+        let expected = query.fresh(&SbbkDispatcher::default());
         assert!(!expected.is_empty());
         assert_same(&pair.ask(&dispatcher, &query).manifolds, &expected, 1e-5);
     }
@@ -334,10 +334,10 @@ fn a_soft_body_of_rapier_keeps_its_contacts() {
                 is_first && collider.shape().as_trimesh().is_some_and(TriMesh::is_deformable)
             });
             let [mesh1, mesh2] = if is_soft_first { [&soft, &rigid] } else { [&rigid, &soft] };
-            let query = Query::new(mesh1, mesh2, question.pos12).within(question.prediction);
+            let query = Question::new(mesh1, mesh2, question.pos12).within(question.prediction);
             let found: BTreeSet<_> =
                 answer.reported.iter().map(|pair| [pair.triangle1, pair.triangle2]).collect();
-            let expected = fresh(&SbbkDispatcher::default(), &query);
+            let expected = query.fresh(&SbbkDispatcher::default());
             assert_eq!(found, set(&expected), "step {step}");
             contacts += found.len();
             queries += 1;

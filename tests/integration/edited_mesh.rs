@@ -7,8 +7,7 @@ use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh;
 
 use crate::support::{
-    Manifold, Pair, Query, assert_same, distance, every, fresh, sequence, shape, shape_with,
-    triangles,
+    Manifold, Pair, Question, assert_same, distance, every, sequence, shape, shape_with, triangles,
 };
 
 fn torus() -> TriMesh {
@@ -42,12 +41,12 @@ fn check_edit(flags: TriMeshFlags, edit: impl Fn(&mut TriMesh)) {
     let mut edited = SharedShape::new(shape_with(&mesh::torus(1.0, 0.4, 24, 12), flags));
     let mut pair: Pair = Pair::default();
     let ask = |pair: &mut Pair, shape: &SharedShape| {
-        let query = Query::new(shape.as_trimesh().unwrap(), &other, beside());
+        let query = Question::new(shape.as_trimesh().unwrap(), &other, beside());
         // Twice at nearly the same place, so that candidates are kept.
         for shift in [0.0, 1e-5, 0.0] {
             pair.ask(&dispatcher, &query.at(Pose::translation(shift, 0.0, 0.0) * beside()));
         }
-        (std::mem::take(&mut pair.manifolds.clone()), fresh(&every(), &query))
+        (std::mem::take(&mut pair.manifolds.clone()), query.fresh(&every()))
     };
     let (before, _) = ask(&mut pair, &edited);
     assert!(!before.is_empty());
@@ -101,7 +100,7 @@ fn a_freed_address_does_not_stand_for_the_freed_mesh() {
         let dispatcher = SbbkDispatcher::default();
         let ring = shape(&lab_mesh);
         let mut pair: Pair = Pair::default();
-        pair.ask(&dispatcher, &Query::new(&ring, &other, beside()));
+        pair.ask(&dispatcher, &Question::new(&ring, &other, beside()));
         let addresses = |mesh: &TriMesh| (mesh.vertices().as_ptr(), mesh.indices().as_ptr());
         let old = addresses(&ring);
         // As many vertices and triangles, another shape.
@@ -109,11 +108,11 @@ fn a_freed_address_does_not_stand_for_the_freed_mesh() {
         drop(ring);
         let ellipse = shape(&stretched);
         reused += usize::from(addresses(&ellipse) == old);
-        let query = Query::new(&ellipse, &other, beside());
-        let expected = fresh(&SbbkDispatcher::default(), &query);
+        let query = Question::new(&ellipse, &other, beside());
+        let expected = query.fresh(&SbbkDispatcher::default());
         assert!(!expected.is_empty());
         assert_same(&pair.ask(&dispatcher, &query).manifolds, &expected, 1e-5);
-        assert_same(&fresh(&dispatcher, &query), &expected, 0.0);
+        assert_same(&query.fresh(&dispatcher), &expected, 0.0);
         if reused == 3 {
             return;
         }
@@ -146,8 +145,8 @@ impl Overlap {
         let is_swapped = pair.collider1 == self.colliders[1];
         let [one, two] = if is_swapped { [two, one] } else { [one, two] };
         let [mesh1, mesh2] = [&one, &two].map(|collider| collider.shape().as_trimesh().unwrap());
-        let query = Query::new(mesh1, mesh2, one.position().inv_mul(two.position()));
-        (pair.manifolds().to_vec(), fresh(&SbbkDispatcher::default(), &query))
+        let query = Question::new(mesh1, mesh2, one.position().inv_mul(two.position()));
+        (pair.manifolds().to_vec(), query.fresh(&SbbkDispatcher::default()))
     }
 
     /// A vertex of a touching triangle of the fixed torus.
@@ -216,11 +215,11 @@ fn another_second_mesh_is_seen() {
     let dispatcher = SbbkDispatcher::default();
     let mut pair: Pair = Pair::default();
     for second in [&two, &other, &two] {
-        let query = Query::new(&one, second, beside());
+        let query = Question::new(&one, second, beside());
         for _ in 0..2 {
             pair.ask(&dispatcher, &query);
         }
-        let expected = fresh(&dispatcher, &query);
+        let expected = query.fresh(&dispatcher);
         assert!(!expected.is_empty());
         assert_same(&pair.manifolds, &expected, 0.0);
     }

@@ -5,7 +5,7 @@ use rapier3d::parry::shape::TriMesh;
 use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::like_stock;
-use crate::support::{Query, SETS, fresh, having, per_triangle, shape, touching};
+use crate::support::{Question, SETS, having, per_triangle, shape, touching};
 use crate::truth::Tally;
 
 /// Meshes whose triangles have edges of about a unit, 20 to 40 units across: stock Parry is right
@@ -31,8 +31,8 @@ fn contacts_are_stocks_where_triangles_are_large() {
     let [mut contacts, mut excused] = [0; 2];
     for (one, two) in meshes.iter().flat_map(|one| meshes.iter().map(move |two| (one, two))) {
         for depth in [-0.015, -0.005, 0.0, 0.01, 0.05, 0.2, 1.0, 4.0] {
-            let query = Query::new(one, two, touching(&mut random, [one, two], depth));
-            let compared = like_stock::check(&query, &fresh(&dispatcher, &query));
+            let query = Question::new(one, two, touching(&mut random, [one, two], depth));
+            let compared = like_stock::check(&query, &query.fresh(&dispatcher));
             contacts += compared.contacts;
             excused += compared.excused;
         }
@@ -56,8 +56,8 @@ fn judge(seed: u64, meshes: [&Mesh; 2], least_contacts: usize) {
         let [one, two] = meshes.map(|mesh| shape(&mesh.clone().scaled_to(size)));
         for (prediction, depth) in PREDICTIONS.into_iter().flat_map(|p| DEPTHS.map(|d| (p, d))) {
             let pos12 = touching(&mut random, [&one, &two], depth * size);
-            let query = Query::new(&one, &two, pos12).within(prediction);
-            tally.add(&query, &fresh(&dispatcher, &query));
+            let query = Question::new(&one, &two, pos12).within(prediction);
+            tally.add(&query, &query.fresh(&dispatcher));
         }
     }
     tally.check_all_right(least_contacts);
@@ -92,10 +92,10 @@ fn aligned_boxes_touch_as_the_truth_says() {
         for gap in [-0.1, -0.0005, 0.0, 0.0005, 0.0009, 0.015] {
             for shift in [[0.0, 0.0], [0.25, 0.0], [0.1, 0.3], [1.0, 0.0]] {
                 let [x, z] = shift.map(|shift| shift * size);
-                let query = Query::new(&cube, &cube, Pose::translation(x, size + gap, z));
+                let query = Question::new(&cube, &cube, Pose::translation(x, size + gap, z));
                 for prediction in PREDICTIONS {
                     let query = query.within(prediction);
-                    tally.add(&query, &fresh(&dispatcher, &query));
+                    tally.add(&query, &query.fresh(&dispatcher));
                 }
             }
         }
@@ -118,10 +118,10 @@ fn distant_meshes_touch_as_the_truth_says() {
         for depth in DEPTHS {
             let pos12 =
                 touching(&mut random, [&near, &near], depth) * Pose::from_translation(-shift);
-            let query = Query::new(&near, &away, pos12);
-            tally.add(&query, &fresh(&dispatcher, &query));
-            let query = query.swapped();
-            tally.add(&query, &fresh(&dispatcher, &query));
+            let query = Question::new(&near, &away, pos12);
+            tally.add(&query, &query.fresh(&dispatcher));
+            let query = query.flipped(true);
+            tally.add(&query, &query.fresh(&dispatcher));
         }
     }
     tally.check_all_right(200);
@@ -134,10 +134,10 @@ fn features_are_those_of_their_shape() {
     let [floor, cube] = [mesh::floor(4.0, 1), mesh::cuboid(Vec3::splat(0.5), 1)].map(|m| shape(&m));
     let turn = Quat::from_rotation_arc(Vec3::splat(-1.0).normalize(), -Vec3::Y);
     let at = Pose::from_parts(Vec3::new(0.7, 0.75_f32.sqrt() + 0.001, 0.3), turn);
-    let query = Query::new(&floor, &cube, at);
+    let query = Question::new(&floor, &cube, at);
     for dispatcher in SETS.map(having) {
-        for (query, is_swapped) in [(query, false), (query.swapped(), true)] {
-            let found = fresh(&dispatcher, &query);
+        for (query, is_swapped) in [(query, false), (query.flipped(true), true)] {
+            let found = query.fresh(&dispatcher);
             let points = found.iter().flat_map(|manifold| &manifold.points);
             let nearest = points.min_by(|a, b| a.dist.total_cmp(&b.dist)).expect("they touch");
             let [floors, cubes] = if is_swapped {

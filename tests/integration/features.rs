@@ -13,7 +13,6 @@ mod convex {
 mod determinism;
 mod heightfield {
     mod motion;
-    mod question;
     mod terrain;
 }
 mod motion;

@@ -10,8 +10,8 @@ use rapier3d::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder};
 use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::support::{
-    Manifold, Pair, Query, assert_same, counting, distance, every, fresh, nudge, per_triangle,
-    shape, shape_with, turned_inside_out,
+    Manifold, Pair, Question, assert_same, counting, distance, every, nudge, per_triangle, shape,
+    shape_with, turned_inside_out,
 };
 
 const HALF: Vec3 = Vec3::new(2.0, 1.0, 2.0);
@@ -20,8 +20,8 @@ fn slab(cells: u32) -> Mesh {
     mesh::cuboid(HALF, cells)
 }
 
-fn ask(query: &Query) -> Vec<Manifold> {
-    fresh(&SbbkDispatcher::default(), query)
+fn ask(query: &Question) -> Vec<Manifold> {
+    query.fresh(&SbbkDispatcher::default())
 }
 
 /// Would catch a body that stays inside or leaves by the far side, turns on its way out as it is not
@@ -45,14 +45,15 @@ fn a_body_in_a_solid_leaves_by_the_nearer_side() {
             ] {
                 let turn = Quat::from_rotation_x(0.7);
                 let pose = Pose::from_parts(Vec3::from_array(place), turn);
-                let query = Query::new(&slab, &body, pose);
-                for (query, sign) in [(query, 1.0), (query.swapped(), -1.0)] {
-                    let found = fresh(&dispatcher, &query);
+                let query = Question::new(&slab, &body, pose);
+                for (query, sign) in [(query, 1.0), (query.flipped(true), -1.0)] {
+                    let found = query.fresh(&dispatcher);
                     let [manifold] = &found[..] else { panic!("{} manifolds", found.len()) };
                     let normal = if sign > 0.0 { manifold.local_n1 } else { manifold.local_n2 };
                     assert!((normal - out).length() < 1e-3, "{normal} at {place:?}");
                     // As deep as any contact may be: at least so deep that Rapier looks again.
-                    let [root1, root2] = query.meshes.map(|mesh| mesh.local_aabb().half_extents());
+                    let [root1, root2] =
+                        query.meshes().map(|mesh| mesh.local_aabb().half_extents());
                     let most =
                         (0.1 * root1.length().min(root2.length())).max(4.0 * query.prediction);
                     assert!((distance(manifold) + most.min(depth)).abs() < 1e-3);
@@ -82,20 +83,20 @@ fn what_is_in_no_solid_is_left_alone() {
         for _ in 0..30 {
             let place = 0.5 * Vec3::new(random.rand_float() - 0.5, 0.0, random.rand_float() - 0.5);
             let place = place + 0.4 * (random.rand_float() - 0.5) * Vec3::Y;
-            let query = Query::new(mesh, &body, Pose::from_parts(place, Quat::IDENTITY));
-            assert!(ask(&query).len() <= fresh(&per_triangle(), &query).len());
+            let query = Question::new(mesh, &body, Pose::from_parts(place, Quat::IDENTITY));
+            assert!(ask(&query).len() <= query.fresh(&per_triangle()).len());
         }
     }
     // In its wall it is pushed out.
     let small = shape(&mesh::cuboid(Vec3::splat(0.1), 1));
-    let in_wall = ask(&Query::new(&hollow, &small, Pose::translation(1.85, 0.0, 0.0)));
+    let in_wall = ask(&Question::new(&hollow, &small, Pose::translation(1.85, 0.0, 0.0)));
     assert!(in_wall.len() == 1 && in_wall[0].local_n1 == Vector::X);
     // A large one is known once it is registered.
     let (registered, dispatcher) = (SharedShape::new(unknown), every());
     let _tree = dispatcher.prepare_shape(&registered).unwrap().unwrap();
     let query =
-        Query::new(registered.as_trimesh().unwrap(), &body, Pose::translation(0.3, 0.5, 0.0));
-    assert_eq!(fresh(&dispatcher, &query).len(), 1);
+        Question::new(registered.as_trimesh().unwrap(), &body, Pose::translation(0.3, 0.5, 0.0));
+    assert_eq!(query.fresh(&dispatcher).len(), 1);
 }
 
 /// A walk in and out of a solid, of bodies that are small beside their steps and beside what a descent
@@ -118,8 +119,8 @@ fn inside_is_never_remembered() {
                 if slab.local_aabb().distance_to_local_point(pose.translation, true) > 0.3 {
                     pose = Pose::translation(0.1, 0.9, 0.2);
                 }
-                let query = Query::new(&slab, &body, pose).within(prediction);
-                let expected = fresh(&unaware, &query);
+                let query = Question::new(&slab, &body, pose).within(prediction);
+                let expected = query.fresh(&unaware);
                 assert_same(&pair.ask(&kept, &query).manifolds, &expected, 0.0);
                 inside += usize::from(expected.len() == 1 && distance(&expected[0]) < 0.0);
                 none += usize::from(expected.is_empty());

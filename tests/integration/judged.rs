@@ -7,7 +7,7 @@ use rapier3d::math::{Pose, Real};
 use sbbk_testkit::mesh;
 
 use crate::support::{
-    Manifold, Query, direction, distance, fresh, having, per_triangle, rotation, shape, triangles,
+    Manifold, Question, direction, distance, having, per_triangle, rotation, shape, triangles,
 };
 
 /// Contacts farther than a tenth of the radius of the smaller mesh are for soft CCD, which needs those
@@ -22,8 +22,8 @@ fn far_contacts_have_every_direction() {
     for i in 0..120 {
         let away = 1.2 + 0.015 * i as Real;
         let at = Pose::from_parts(away * direction(&mut random), rotation(&mut random));
-        let query = Query::new(&head, &torus, at).within(0.7);
-        let [found, all] = [fresh(&surfaces, &query), fresh(&per_triangle(), &query)];
+        let query = Question::new(&head, &torus, at).within(0.7);
+        let [found, all] = [query.fresh(&surfaces), query.fresh(&per_triangle())];
         // The radius of the smaller one is between 0.9 and 1.2, of its ball and of its box.
         if all.iter().all(|manifold| distance(manifold) > 0.13) {
             let pairs =
@@ -54,7 +54,7 @@ fn corners_above_a_face_count_though_others_are_nearer() {
     let turn = Quat::from_rotation_y(0.3) * Quat::from_rotation_x(tilt);
     let height = 0.5 * (tilt.sin() + tilt.cos());
     let at = Pose::from_parts(Vec3::new(0.3, height + 0.001, 0.2), turn);
-    let found = fresh(&having(ContactSet::Surfaces), &Query::new(&floor, &cube, at).within(0.1));
+    let found = Question::new(&floor, &cube, at).within(0.1).fresh(&having(ContactSet::Surfaces));
     let at_corners = |near: Real, far: Real| {
         let distances = found.iter().map(distance);
         distances.filter(|distance| (near..far).contains(distance)).count()
@@ -68,8 +68,8 @@ fn corners_above_a_face_count_though_others_are_nearer() {
 fn far_contacts_of_one_direction_are_one_patch() {
     let floor = shape(&mesh::floor(0.8, 8));
     let plate = shape(&mesh::slab(Vec3::new(0.5, 0.05, 0.5), [2, 1, 2]));
-    let query = Query::new(&floor, &plate, Pose::translation(0.01, 0.45, 0.02)).within(0.402);
-    let found = fresh(&having(ContactSet::Surfaces), &query);
+    let query = Question::new(&floor, &plate, Pose::translation(0.01, 0.45, 0.02)).within(0.402);
+    let found = query.fresh(&having(ContactSet::Surfaces));
     let [patch] = &found[..] else { panic!("{} manifolds", found.len()) };
     assert!(patch.points.len() == 4 && (distance(patch) - 0.4).abs() < 1e-5, "{patch:?}");
 }

@@ -5,7 +5,7 @@ use rapier3d::math::{Real, Vector};
 use rapier3d::parry::query::TrackedContact;
 use rapier3d::parry::shape::{PackedFeatureId, TriMesh, Triangle};
 
-use crate::support::{Manifold, Query, distance, sequence, stock, triangles};
+use crate::support::{Manifold, Question, distance, sequence, triangles};
 
 type Point = TrackedContact<()>;
 
@@ -18,12 +18,12 @@ pub struct Compared {
 }
 
 /// Checks that an answer has stock's triangle pairs, in order, each with stock's contact.
-pub fn check(query: &Query, found: &[Manifold]) -> Compared {
+pub fn check(query: &Question, found: &[Manifold]) -> Compared {
     // Both may hold points that are farther than the prediction distance; the solver ignores them.
     let within = |manifolds: &[Manifold]| -> Vec<Manifold> {
         manifolds.iter().filter(|m| distance(m) <= query.prediction).cloned().collect()
     };
-    let [found, mut stock] = [within(found), within(&stock(query))];
+    let [found, mut stock] = [within(found), within(&query.stock())];
     stock.sort_by_key(triangles);
     assert_eq!(sequence(&found), sequence(&stock));
     let excused = found.iter().zip(&stock).map(|(found, stock)| check_equal(query, found, stock));
@@ -31,12 +31,12 @@ pub fn check(query: &Query, found: &[Manifold]) -> Compared {
 }
 
 /// The longest edge of the larger triangle, in units.
-fn triangle_size(query: &Query, manifold: &Manifold) -> Real {
+fn triangle_size(query: &Question, manifold: &Manifold) -> Real {
     let longest = |(mesh, triangle): (&TriMesh, u32)| {
         let Triangle { a, b, c } = mesh.triangle(triangle);
         [a - b, b - c, c - a].map(Vector::length).into_iter().fold(0.0, Real::max)
     };
-    query.meshes.into_iter().zip(triangles(manifold)).map(longest).fold(0.0, Real::max)
+    query.meshes().into_iter().zip(triangles(manifold)).map(longest).fold(0.0, Real::max)
 }
 
 /// Depth, normal and points may differ from stock's by this share of the triangle size.
@@ -53,7 +53,7 @@ const STOCK_ROUNDING: Real = 6e-6;
 /// One point may be missing: the closest points as stock's GJK finds them. Where edges or faces are
 /// nearly parallel the place of these is not well determined, and ours are at the end of the range.
 /// It must be as close.
-fn check_equal(query: &Query, found: &Manifold, stock: &Manifold) -> usize {
+fn check_equal(query: &Question, found: &Manifold, stock: &Manifold) -> usize {
     let tolerance = TOLERANCE * triangle_size(query, found);
     let context = || format!("{found:?}\n{stock:?}");
     let off = (distance(found) - distance(stock)).abs();

@@ -6,7 +6,7 @@ use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh;
 
 use crate::support::{
-    Pair, Query, assert_same, counting, counting_of, every, fresh, having, nudge, reach, sequence,
+    Pair, Question, assert_same, counting, counting_of, every, having, nudge, reach, sequence,
     shape, shape_with, touching,
 };
 
@@ -18,7 +18,7 @@ const PREDICTIONS: [Real; 5] = [0.0, 0.001, 0.01, 0.02, 0.06];
 /// A pair of meshes that moves at random: mostly in small steps, as bodies do, and sometimes not.
 struct Walk<'a> {
     random: Rand32,
-    query: Query<'a>,
+    query: Question<'a>,
     stride: Real,
 }
 
@@ -33,7 +33,7 @@ impl<'a> Walk<'a> {
     fn new(seed: u64, meshes: [&'a TriMesh; 2]) -> Self {
         let mut random = Rand32::new(seed);
         let pos12 = touching(&mut random, meshes, 0.02);
-        Self { random, query: Query::new(meshes[0], meshes[1], pos12), stride: STRIDES[2] }
+        Self { random, query: Question::new(meshes[0], meshes[1], pos12), stride: STRIDES[2] }
     }
 
     fn pick(&mut self, from: &[Real]) -> Real {
@@ -43,19 +43,19 @@ impl<'a> Walk<'a> {
     fn step(&mut self) -> Event {
         let stride = self.stride;
         match self.random.rand_range(0..200) {
-            0..=3 => self.query.pos12 = touching(&mut self.random, self.query.meshes, 0.03),
+            0..=3 => self.query.pose = touching(&mut self.random, self.query.meshes(), 0.03),
             4..=9 => self.stride = self.pick(&STRIDES),
             10..=15 => self.query.prediction = self.pick(&PREDICTIONS),
-            16 => self.query.pos12.translation *= 3.0,
-            17 => self.query.pos12.translation.x = Real::NAN,
+            16 => self.query.pose.translation *= 3.0,
+            17 => self.query.pose.translation.x = Real::NAN,
             18 => return Event::WorkspaceTaken,
-            _ => self.query.pos12 = nudge(&mut self.random, stride) * self.query.pos12,
+            _ => self.query.pose = nudge(&mut self.random, stride) * self.query.pose,
         }
         // From far away, or nowhere, the next step comes back.
-        let limit = self.query.meshes.map(reach).iter().sum::<Real>();
-        let is_near = self.query.pos12.translation.length() < limit;
+        let limit = self.query.meshes().map(reach).iter().sum::<Real>();
+        let is_near = self.query.pose.translation.length() < limit;
         if !is_near && self.random.rand_float() < 0.5 {
-            self.query.pos12 = touching(&mut self.random, self.query.meshes, 0.01);
+            self.query.pose = touching(&mut self.random, self.query.meshes(), 0.01);
         }
         Event::None
     }
@@ -80,7 +80,7 @@ fn walk(seed: u64, steps: usize, meshes: [&TriMesh; 2]) {
             pair.workspace = None;
         }
         pair.ask(&kept, &walk.query);
-        let expected = fresh(&unaware, &walk.query);
+        let expected = walk.query.fresh(&unaware);
         assert_same(&pair.manifolds, &expected, 0.0);
         manifold_count += expected.len();
     }
@@ -140,17 +140,17 @@ fn nothing_is_done_where_nothing_moved() {
     let head = shape(&mesh::monkey_head_with(6));
     let dispatcher = counting();
     let mut pair: Pair = Pair::default();
-    let query = Query::new(&head, &head, touching(&mut Rand32::new(8), [&head, &head], 0.02));
+    let query = Question::new(&head, &head, touching(&mut Rand32::new(8), [&head, &head], 0.02));
     for _ in 0..10 {
         pair.ask(&dispatcher, &query);
     }
     let stats = dispatcher.stats();
     assert_eq!([stats.queries, stats.unchanged_queries, stats.descended_queries], [10, 9, 1]);
-    assert_same(&pair.manifolds, &fresh(&dispatcher, &query), 0.0);
+    assert_same(&pair.manifolds, &query.fresh(&dispatcher), 0.0);
     // The host may have touched the manifolds.
     pair.manifolds.remove(0);
     pair.ask(&dispatcher, &query);
-    assert_same(&pair.manifolds, &fresh(&dispatcher, &query), 0.0);
+    assert_same(&pair.manifolds, &query.fresh(&dispatcher), 0.0);
 }
 
 /// Would catch slack that is used up and not noticed: a long way in equal steps, each far shorter
@@ -166,9 +166,9 @@ fn many_short_steps_are_a_long_way() {
         let mut sets = Vec::new();
         for step in 0..600 {
             let shift = Pose::from_translation(towards * (2e-4 * step as Real));
-            let query = Query::new(&head, &head, shift * start);
+            let query = Question::new(&head, &head, shift * start);
             pair.ask(&dispatcher, &query);
-            let expected = fresh(&unaware, &query);
+            let expected = query.fresh(&unaware);
             assert_same(&pair.manifolds, &expected, 0.0);
             sets.push(sequence(&expected));
         }
@@ -225,7 +225,7 @@ fn thousands_of_histories_end_alike() {
                 edited = TriMesh::new(vertices, edited.indices().to_vec()).unwrap();
                 pair.workspace = None;
             }
-            let query = Query { meshes: [&ring, &edited], pos12, prediction };
+            let query = Question::new(&ring, &edited, pos12).within(prediction);
             match meddling {
                 Meddling::AsksStock => _ = pair.ask(&DefaultQueryDispatcher, &query),
                 Meddling::AsksAnother => _ = pair.ask(&another, &query),
@@ -233,7 +233,7 @@ fn thousands_of_histories_end_alike() {
                 Meddling::Moves | Meddling::Edits => {}
             }
             pair.ask(&kept, &query);
-            let expected = fresh(&unaware, &query);
+            let expected = query.fresh(&unaware);
             assert_same(&pair.manifolds, &expected, 0.0);
             manifold_count += expected.len();
             match random.rand_range(0..10) {

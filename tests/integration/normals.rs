@@ -8,7 +8,7 @@ use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::like_stock;
 use crate::support::{
-    Manifold, Query, TrianglePair, by_triangles, fresh, per_triangle, shape, shape_with, touching,
+    Manifold, Question, TrianglePair, by_triangles, per_triangle, shape, shape_with, touching,
 };
 
 const FREE: TriMeshFlags = TriMeshFlags::empty();
@@ -47,7 +47,7 @@ fn check_cone(k: usize, flags: TriMeshFlags) {
     let [mut pushed, mut untouched, mut rejected] = [0; 3];
     for depth in [-0.01, 0.0, 0.1, 0.5, 2.0].repeat(4) {
         let pos12 = touching(&mut random, [&free[0], &free[1]], depth);
-        let ask = |[one, two]: &[TriMesh; 2]| fresh(&dispatcher, &Query::new(one, two, pos12));
+        let ask = |[one, two]: &[TriMesh; 2]| Question::new(one, two, pos12).fresh(&dispatcher);
         let (answer, constrained) = (ask(&free), ask(&fixed));
         let constrained = normals(&constrained, k);
         for (pair, normal) in normals(&answer, k) {
@@ -109,9 +109,9 @@ fn constrained_contacts_are_stocks() {
         let [one, two] = [0, 1].map(|i| flagged(&meshes[i], flags[i]));
         let mut random = Rand32::new(seed as u64);
         for depth in [-0.01, 0.0, 0.05, 0.2, 1.0].repeat(3) {
-            let query = Query::new(&one, &two, touching(&mut random, [&one, &two], depth));
-            for query in [query, query.swapped()] {
-                contact_count += like_stock::check(&query, &fresh(&dispatcher, &query)).contacts;
+            let query = Question::new(&one, &two, touching(&mut random, [&one, &two], depth));
+            for query in [query, query.flipped(true)] {
+                contact_count += like_stock::check(&query, &query.fresh(&dispatcher)).contacts;
             }
         }
     }

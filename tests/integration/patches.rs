@@ -13,7 +13,9 @@ use rapier3d::parry::shape::{HeightField, PackedFeatureId, Shape, SharedShape, T
 use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh::{self, Mesh};
 
-use crate::support::{Dispatcher, Pair, direction, distance, nudge, rotation, shape, shape_with};
+use crate::support::{
+    Dispatcher, Pair, Question, direction, distance, nudge, rotation, shape, shape_with,
+};
 
 /// The least cosine of the normals in one patch; where cones turn them, the deepest contact may come
 /// to nothing, and the others are as near to its normal.
@@ -37,7 +39,8 @@ fn ask<M, C>(
     pos12: &Pose,
     prediction: Real,
 ) {
-    pair.ask_of(dispatcher, shapes, *pos12, false, prediction);
+    let [one, two] = shapes;
+    pair.ask(dispatcher, &Question::new(one, two, *pos12).within(prediction));
 }
 
 type Manifold = ContactManifold<u32, u32>;

@@ -7,7 +7,7 @@ use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh;
 
 use crate::support::{
-    Pair, Query, assert_same, fresh, per_triangle, rebuilt, sequence, shape, shape_with, touching,
+    Pair, Question, assert_same, per_triangle, rebuilt, sequence, shape, shape_with, touching,
 };
 
 /// Two of them touch when a bit more than a radius apart.
@@ -23,12 +23,12 @@ fn near() -> Pose {
 /// state of the pair must be kept by the caller.
 fn touch(dispatcher: &SbbkDispatcher, mesh1: &TriMesh, mesh2: &TriMesh) -> Pair {
     let mut pair = Pair::default();
-    ask_twice(&mut pair, dispatcher, &Query::new(mesh1, mesh2, near()));
+    ask_twice(&mut pair, dispatcher, &Question::new(mesh1, mesh2, near()));
     assert!(!pair.manifolds.is_empty());
     pair
 }
 
-fn ask_twice(pair: &mut Pair, dispatcher: &SbbkDispatcher, query: &Query) {
+fn ask_twice(pair: &mut Pair, dispatcher: &SbbkDispatcher, query: &Question) {
     for _ in 0..2 {
         pair.ask(dispatcher, query);
     }
@@ -86,7 +86,7 @@ fn another_scale_is_another_mesh_and_another_flag_is_none() {
     for (other, trees) in [(&larger, 2), (&fixed, 2)] {
         let pair = touch(&dispatcher, &mesh, other);
         assert_eq!(dispatcher.stats().trees, trees);
-        let expected = fresh(&SbbkDispatcher::default(), &Query::new(&mesh, other, near()));
+        let expected = Question::new(&mesh, other, near()).fresh(&SbbkDispatcher::default());
         assert_same(&pair.manifolds, &expected, 0.0);
     }
 }
@@ -106,7 +106,7 @@ fn clones_of_a_dispatcher_share_their_trees() {
 fn meshes_far_apart_need_no_tree() {
     let dispatcher = SbbkDispatcher::default();
     let mesh = ball();
-    let far = Query::new(&mesh, &mesh, Pose::translation(2.1, 0.0, 0.0));
+    let far = Question::new(&mesh, &mesh, Pose::translation(2.1, 0.0, 0.0));
     let mut pair: Pair = Pair::default();
     ask_twice(&mut pair, &dispatcher, &far);
     assert_eq!(counts(&dispatcher), [0, 0, 0, 0]);
@@ -165,9 +165,9 @@ fn releasing_idle_trees_leaves_those_in_use() {
     assert_eq!(counts(&dispatcher)[..2], [2, 1]);
     dispatcher.release_idle_trees();
     assert_eq!(counts(&dispatcher)[..2], [1, 0]);
-    let query = Query::new(&mesh, &mesh, Pose::translation(1.7, 0.2, 0.1));
+    let query = Question::new(&mesh, &mesh, Pose::translation(1.7, 0.2, 0.1));
     pair.ask(&dispatcher, &query);
-    assert_same(&pair.manifolds, &fresh(&SbbkDispatcher::default(), &query), 0.0);
+    assert_same(&pair.manifolds, &query.fresh(&SbbkDispatcher::default()), 0.0);
     drop(pair);
     dispatcher.release_idle_trees();
     assert_eq!(counts(&dispatcher)[..2], [0, 0]);
@@ -186,7 +186,7 @@ fn a_cloned_pair_keeps_its_trees() {
     assert_eq!(counts(&dispatcher)[..2], [1, 0]);
     let clone =
         Pair::<(), ()> { manifolds: pair.manifolds.clone(), workspace: pair.workspace.clone() };
-    let query = Query::new(&mesh, &mesh, Pose::translation(1.7, 0.2, 0.1));
+    let query = Question::new(&mesh, &mesh, Pose::translation(1.7, 0.2, 0.1));
     pair.ask(&dispatcher, &query);
     drop(pair);
     assert_eq!(counts(&dispatcher)[..2], [1, 0]);
@@ -201,8 +201,8 @@ fn threads_build_one_tree_and_agree() {
     const THREADS: usize = 8;
     let head = shape(&mesh::monkey_head());
     let torus = shape(&mesh::torus(1.0, 0.4, 24, 12));
-    let query = Query::new(&head, &torus, Pose::translation(1.2, 0.5, 0.3));
-    let expected = fresh(&SbbkDispatcher::default(), &query);
+    let query = Question::new(&head, &torus, Pose::translation(1.2, 0.5, 0.3));
+    let expected = query.fresh(&SbbkDispatcher::default());
     assert!(!expected.is_empty());
     for _ in 0..10 {
         let dispatcher = SbbkDispatcher::default();
@@ -231,7 +231,7 @@ fn threads_build_one_tree_and_agree() {
 fn threads_come_and_go() {
     let mesh = ball();
     let dispatcher = with_idle_bytes(0);
-    let expected = fresh(&SbbkDispatcher::default(), &Query::new(&mesh, &mesh, near()));
+    let expected = Question::new(&mesh, &mesh, near()).fresh(&SbbkDispatcher::default());
     std::thread::scope(|scope| {
         for _ in 0..8 {
             scope.spawn(|| {
@@ -257,13 +257,13 @@ fn check_shared(meshes: [&TriMesh; 2], other: &TriMesh, depths: &[f32]) -> usize
         let shared = per_triangle();
         let _kept = shared.prepare(first).unwrap();
         for &depth in depths {
-            let query = Query::new(second, other, touching(&mut random, [second, other], depth));
+            let query = Question::new(second, other, touching(&mut random, [second, other], depth));
             let alone = |mesh| {
-                let query = Query { meshes: [mesh, other], ..query };
-                fresh(&per_triangle(), &query)
+                let query = Question { shapes: [mesh, other], ..query };
+                query.fresh(&per_triangle())
             };
             let expected = alone(second);
-            assert_same(&fresh(&shared, &query), &expected, 0.0);
+            assert_same(&query.fresh(&shared), &expected, 0.0);
             let normals = |mesh| alone(mesh).iter().map(|m| m.local_n1).collect::<Vec<_>>();
             let is_like =
                 sequence(&alone(first)) == sequence(&expected) && normals(first) == normals(second);

@@ -3,7 +3,7 @@ use rapier3d::math::Real;
 use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::scene::{HelicopterBallDrop, MonkeyPile, Scene, SceneWorld};
 
-use crate::support::{Query, SETS, assert_same, fresh, having, per_triangle};
+use crate::support::{Question, SETS, assert_same, having, per_triangle};
 use crate::truth::Tally;
 
 /// A pair of meshes as Rapier asks about it at the start of a step.
@@ -14,11 +14,11 @@ struct Asked {
 }
 
 impl Asked {
-    fn query(&self) -> Query<'_> {
+    fn query(&self) -> Question<'_> {
         let [one, two] = &self.colliders;
         let [mesh1, mesh2] = [one, two].map(|c| c.shape().as_trimesh().expect("a mesh"));
         let pos12 = one.position().inv_mul(two.position());
-        Query::new(mesh1, mesh2, pos12).within(self.prediction)
+        Question::new(mesh1, mesh2, pos12).within(self.prediction)
     }
 }
 
@@ -60,7 +60,7 @@ fn check_contacts(contact_recycling: bool) {
             if looks.contains(&step) {
                 for asked in mesh_pairs(&world).iter().step_by(3) {
                     let query = asked.query();
-                    tally.add(&query, &fresh(&dispatcher, &query));
+                    tally.add(&query, &query.fresh(&dispatcher));
                 }
             }
             world.step();
@@ -98,7 +98,7 @@ fn rapier_holds_the_contacts_of_a_fresh_query() {
                 // The broad phase may have dropped the pair in this step.
                 let Some(pair) = world.contact_pair(one, two) else { continue };
                 assert_eq!([pair.collider1, pair.collider2], asked.handles);
-                assert_same(pair.manifolds(), &fresh(&unaware, &asked.query()), 1e-5);
+                assert_same(pair.manifolds(), &asked.query().fresh(&unaware), 1e-5);
                 contact_count += pair.manifolds().len();
             }
         }

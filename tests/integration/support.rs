@@ -24,32 +24,73 @@ pub trait Dispatcher<M, C>: PersistentQueryDispatcher<M, C> {}
 
 impl<M, C, D: PersistentQueryDispatcher<M, C>> Dispatcher<M, C> for D {}
 
-/// What is asked: the contacts of two meshes.
+/// A question of a host: the contacts of two shapes.
 #[derive(Clone, Copy)]
-pub struct Query<'a> {
-    pub meshes: [&'a TriMesh; 2],
-    /// The pose of mesh 2 in the frame of mesh 1.
-    pub pos12: Pose,
+pub struct Question<'a> {
+    pub shapes: [&'a dyn Shape; 2],
+    /// Pose of the second shape in the frame of the first.
+    pub pose: Pose,
     pub prediction: Real,
+    /// True if the host passes the second shape first.
+    pub is_flipped: bool,
 }
 
-impl Query<'_> {
-    pub fn new<'a>(mesh1: &'a TriMesh, mesh2: &'a TriMesh, pos12: Pose) -> Query<'a> {
-        Query { meshes: [mesh1, mesh2], pos12, prediction: 0.02 }
+impl<'a> Question<'a> {
+    pub fn new(shape1: &'a dyn Shape, shape2: &'a dyn Shape, pose: Pose) -> Self {
+        Self { shapes: [shape1, shape2], pose, prediction: 0.02, is_flipped: false }
     }
 
-    pub fn at(self, pos12: Pose) -> Self {
-        Self { pos12, ..self }
+    pub fn at(self, pose: Pose) -> Self {
+        Self { pose, ..self }
     }
 
     pub fn within(self, prediction: Real) -> Self {
         Self { prediction, ..self }
     }
 
-    /// The same question with the meshes in the other order.
-    pub fn swapped(self) -> Self {
-        let [mesh1, mesh2] = self.meshes;
-        Self { meshes: [mesh2, mesh1], pos12: self.pos12.inverse(), ..self }
+    pub fn flipped(self, is_flipped: bool) -> Self {
+        Self { is_flipped, ..self }
+    }
+
+    /// The shapes in the order of the host.
+    pub fn host_shapes(&self) -> [&'a dyn Shape; 2] {
+        self.host_order(self.shapes)
+    }
+
+    /// The pose of the host's second shape in the frame of its first.
+    pub fn pos12(&self) -> Pose {
+        if self.is_flipped { self.pose.inverse() } else { self.pose }
+    }
+
+    /// Both shapes, which must be meshes, in the order of the host.
+    pub fn meshes(&self) -> [&'a TriMesh; 2] {
+        self.host_shapes().map(|shape| shape.as_trimesh().expect("a mesh"))
+    }
+
+    /// The first shape that is a mesh.
+    pub fn mesh(&self) -> &'a TriMesh {
+        self.shapes.iter().find_map(|shape| shape.as_trimesh()).expect("a mesh")
+    }
+
+    /// The subshapes of a manifold in the order of [`Self::shapes`].
+    pub fn subshapes<M, C>(&self, manifold: &ContactManifold<M, C>) -> TrianglePair {
+        self.host_order(triangles(manifold))
+    }
+
+    /// The manifolds for a host that keeps nothing of the pair.
+    pub fn fresh(&self, dispatcher: &impl Dispatcher<(), ()>) -> Vec<Manifold> {
+        std::mem::take(&mut Pair::default().ask(dispatcher, self).manifolds)
+    }
+
+    /// Stock Parry's manifolds with points.
+    pub fn stock(&self) -> Vec<Manifold> {
+        let mut manifolds = self.fresh(&DefaultQueryDispatcher);
+        manifolds.retain(|manifold| !manifold.points.is_empty());
+        manifolds
+    }
+
+    fn host_order<T>(&self, [one, two]: [T; 2]) -> [T; 2] {
+        if self.is_flipped { [two, one] } else { [one, two] }
     }
 }
 
@@ -66,41 +107,15 @@ impl<M, C> Default for Pair<M, C> {
 }
 
 impl<M, C> Pair<M, C> {
-    pub fn ask(&mut self, dispatcher: &impl Dispatcher<M, C>, query: &Query) -> &mut Self {
-        let Query { meshes: [mesh1, mesh2], pos12, prediction } = *query;
-        self.ask_of(dispatcher, [mesh1, mesh2], pos12, false, prediction)
-    }
-
-    /// The contacts of any two shapes, the other one at `pose` in the frame of the one; of the other
-    /// one and the one if they are swapped.
-    pub fn ask_of(
-        &mut self,
-        dispatcher: &impl Dispatcher<M, C>,
-        [one, other]: [&dyn Shape; 2],
-        pose: Pose,
-        are_swapped: bool,
-        prediction: Real,
-    ) -> &mut Self {
-        let (pos12, g1, g2) =
-            if are_swapped { (pose.inverse(), other, one) } else { (pose, one, other) };
+    /// Asks for the contacts, with what the pair has kept.
+    pub fn ask(&mut self, dispatcher: &impl Dispatcher<M, C>, question: &Question) -> &mut Self {
+        let [g1, g2] = question.host_shapes();
         let Self { manifolds, workspace } = self;
         dispatcher
-            .contact_manifolds(&pos12, g1, g2, prediction, manifolds, workspace)
+            .contact_manifolds(&question.pos12(), g1, g2, question.prediction, manifolds, workspace)
             .expect("the pair is supported");
         self
     }
-}
-
-/// The answer to a question of a host that knows nothing of the pair.
-pub fn fresh(dispatcher: &impl Dispatcher<(), ()>, query: &Query) -> Vec<Manifold> {
-    std::mem::take(&mut Pair::default().ask(dispatcher, query).manifolds)
-}
-
-/// Stock Parry's answer; manifolds without points are left out.
-pub fn stock(query: &Query) -> Vec<Manifold> {
-    let mut manifolds = fresh(&DefaultQueryDispatcher, query);
-    manifolds.retain(|manifold| !manifold.points.is_empty());
-    manifolds
 }
 
 /// A mesh whose triangles are wound the other way.

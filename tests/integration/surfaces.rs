@@ -10,12 +10,12 @@ use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::support::{
-    Manifold, Pair, Query, assert_same, distance, every, fresh, nudge, per_triangle, sequence,
-    shape, shape_with, touching, triangles, turned_inside_out,
+    Manifold, Pair, Question, assert_same, distance, every, nudge, per_triangle, sequence, shape,
+    shape_with, touching, triangles, turned_inside_out,
 };
 
-fn ask(query: &Query) -> Vec<Manifold> {
-    fresh(&every(), query)
+fn ask(query: &Question) -> Vec<Manifold> {
+    query.fresh(&every())
 }
 
 /// A cube of edge length 1 about the origin, of 12 triangles.
@@ -45,7 +45,7 @@ fn a_cube_that_has_sunk_a_little_is_pushed_up() {
     for (sunk, [x, z]) in
         [(0.0007, [0.0, 0.0]), (0.0007, [0.2, 0.1]), (1e-6, [0.3, 0.0]), (0.05, [0.1, 0.2])]
     {
-        let found = ask(&Query::new(&cube, &cube, Pose::translation(x, 1.0 - sunk, z)));
+        let found = ask(&Question::new(&cube, &cube, Pose::translation(x, 1.0 - sunk, z)));
         assert_along(&found, Vector::Y, 1e-6);
         for corner in [[x - 0.5, z - 0.5], [x - 0.5, 0.5], [0.5, z - 0.5], [0.5, 0.5]] {
             let [x, z] = corner;
@@ -65,7 +65,7 @@ fn a_cube_sunk_halfway_leaves_by_the_nearer_side() {
     let cube = cube();
     for (height, [x, z]) in [(0.7, [0.1, 0.05]), (0.55, [0.1, 0.05]), (0.6, [0.3, -0.2])] {
         for sign in [1.0, -1.0] {
-            let found = ask(&Query::new(&cube, &cube, Pose::translation(x, sign * height, z)));
+            let found = ask(&Question::new(&cube, &cube, Pose::translation(x, sign * height, z)));
             // A triangle at the rim of the overlap may see less of it sideways.
             let up = |manifold: &Manifold| sign * manifold.local_n1.y;
             let count_up = found.iter().filter(|manifold| up(manifold) > 1.0 - 1e-6).count();
@@ -86,7 +86,7 @@ fn faces_that_have_passed_each_other_part_the_way_they_came() {
     let (floor, small) = (cube(), shape(&mesh::cuboid(Vec3::splat(0.2), 1)));
     for sunk in [1e-5, 0.001, 0.01] {
         // No triangle of the small cube crosses one of the large face but at its sides.
-        let found = ask(&Query::new(&floor, &small, Pose::translation(0.05, 0.7 - sunk, 0.02)));
+        let found = ask(&Question::new(&floor, &small, Pose::translation(0.05, 0.7 - sunk, 0.02)));
         assert_along(&found, Vector::Y, 1e-6);
         assert!(found.iter().all(|manifold| (distance(manifold) + sunk).abs() < 1e-5));
     }
@@ -106,7 +106,7 @@ fn small_bodies_are_not_pushed_out_on_their_far_sides() {
     let mut random = Rand32::new(31);
     for i in 0..90 {
         let (one, other) = (&bodies[i % 3], &bodies[i / 3 % 3]);
-        let query = Query::new(one, other, touching(&mut random, [one, other], depth));
+        let query = Question::new(one, other, touching(&mut random, [one, other], depth));
         let deepest = ask(&query).iter().map(distance).fold(0.0, Real::min);
         assert!(deepest > -depth, "{deepest}");
     }
@@ -130,7 +130,7 @@ fn a_cube_on_a_fine_floor_is_pushed_one_way() {
                     continue;
                 }
                 let pose = Pose::from_parts(Vec3::new(x, height, z), turn);
-                let found = ask(&Query::new(ground, &cube, pose));
+                let found = ask(&Question::new(ground, &cube, pose));
                 // Apart, points of neighbours that are hardly farther count as well.
                 let sine = if height > 0.5 { 0.08 } else { 1e-3 };
                 assert_along(&found, Vector::Y, sine);
@@ -147,7 +147,7 @@ fn a_cube_is_pushed_to_its_own_side_of_a_sheet() {
     for sign in [1.0, -1.0] {
         for height in [0.51, 0.495, 0.45, 0.3] {
             let pose = Pose::translation(0.1, sign * height, 0.17);
-            let found = ask(&Query::new(&floor, &cube, pose));
+            let found = ask(&Question::new(&floor, &cube, pose));
             let lifts = found.iter().map(|m| sign * m.local_n1.y);
             let sideways = lifts.clone().filter(|lift| lift.abs() < 0.9).count();
             assert!(found.iter().all(|m| sign * m.local_n1.y > -1e-6), "{height} {sign}");
@@ -169,9 +169,9 @@ fn contacts_of_triangles_know_no_surfaces() {
     let [outside, inside] = [head.clone(), turned_inside_out(head)].map(|mesh| shape(&mesh));
     let mut random = Rand32::new(2);
     for depth in [-0.01, 0.0, 0.02, 0.3].repeat(5) {
-        let query = Query::new(&outside, &outside, touching(&mut random, [&outside; 2], depth));
-        let expected = fresh(&per_triangle(), &query);
-        let turned = fresh(&per_triangle(), &Query { meshes: [&inside; 2], ..query });
+        let query = Question::new(&outside, &outside, touching(&mut random, [&outside; 2], depth));
+        let expected = query.fresh(&per_triangle());
+        let turned = Question { shapes: [&inside; 2], ..query }.fresh(&per_triangle());
         assert_eq!(sequence(&expected), sequence(&turned));
         for (one, other) in expected.iter().zip(&turned) {
             assert!((distance(one) - distance(other)).abs() < 1e-6);
@@ -187,8 +187,8 @@ fn inside_out_meshes_cross_as_sheets_do() {
     let mut random = Rand32::new(3);
     let mut count = 0;
     for depth in [0.02, 0.1, 0.3].repeat(8) {
-        let query = Query::new(&inside, &inside, touching(&mut random, [&inside; 2], depth));
-        let [found, all] = [ask(&query), fresh(&per_triangle(), &query)];
+        let query = Question::new(&inside, &inside, touching(&mut random, [&inside; 2], depth));
+        let [found, all] = [ask(&query), query.fresh(&per_triangle())];
         let crossing = |manifolds: Vec<Manifold>| -> Vec<Manifold> {
             manifolds.into_iter().filter(|manifold| distance(manifold) < -1e-6).collect()
         };
@@ -231,8 +231,8 @@ fn for_each_pose(seed: u64, mut check: impl FnMut([&TriMesh; 2], Pose, &mut Rand
 fn surfaces_have_some_of_the_contacts_of_triangles() {
     let [mut some, mut all] = [0; 2];
     for_each_pose(4, |[one, two], pose, _| {
-        let query = Query::new(one, two, pose);
-        let (found, expected) = (ask(&query), fresh(&per_triangle(), &query));
+        let query = Question::new(one, two, pose);
+        let (found, expected) = (ask(&query), query.fresh(&per_triangle()));
         for gap in found.iter().filter(|manifold| distance(manifold) > 1e-6) {
             let same = expected.iter().find(|other| triangles(other) == triangles(gap));
             let same = same.map_or(Real::NAN, distance);
@@ -257,13 +257,13 @@ fn edges_may_pass_each_other() {
     let turn = Quat::from_axis_angle(up, 0.5);
     for (gap, prediction) in [(0.004, 0.02), (0.006, 0.02), (0.019, 0.02), (0.019, 0.1)] {
         let at = |radius: Real| Pose::from_parts((2.0 * radius + gap) * up, turn);
-        let query = Query::new(&cube, &cube, at(0.5_f32.sqrt())).within(prediction);
+        let query = Question::new(&cube, &cube, at(0.5_f32.sqrt())).within(prediction);
         let is_near = gap <= 0.25 * prediction;
-        for query in [query, query.swapped()] {
-            assert!(!fresh(&per_triangle(), &query).is_empty());
+        for query in [query, query.flipped(true)] {
+            assert!(!query.fresh(&per_triangle()).is_empty());
             assert_eq!(!ask(&query).is_empty(), is_near, "{gap} within {prediction}");
         }
-        let balls = Query::new(&ball, &ball, at(1.0 - 0.001)).within(prediction);
+        let balls = Question::new(&ball, &ball, at(1.0 - 0.001)).within(prediction);
         assert!(!ask(&balls).is_empty(), "{gap} within {prediction}");
     }
 }
@@ -281,7 +281,7 @@ fn edges_within_a_flat_side_hold_no_edges() {
             let turn = turn * Quat::from_rotation_x(lean) * Quat::from_rotation_z(0.4 * lean);
             let lowest = cube.vertices().iter().map(|&vertex| (turn * vertex).y).reduce(Real::min);
             let place = nudge(&mut random, 0.3).translation.with_y(0.003 - lowest.unwrap());
-            let query = Query::new(&floor, &cube, Pose::from_parts(place, turn));
+            let query = Question::new(&floor, &cube, Pose::from_parts(place, turn));
             for Manifold { local_n1, .. } in ask(&query) {
                 let is_of_face = |normal: Vector| (local_n1 - normal).length() < 1e-5;
                 count += 1;
@@ -300,8 +300,8 @@ fn what_crosses_touches() {
     let mut count = 0;
     for seed in 5..15 {
         for_each_pose(seed, |[one, two], pose, _| {
-            let query = Query::new(one, two, pose);
-            let all = fresh(&per_triangle(), &query);
+            let query = Question::new(one, two, pose);
+            let all = query.fresh(&per_triangle());
             if all.iter().any(|manifold| distance(manifold) < -1e-6) {
                 let parts = |manifold: &Manifold| manifold.local_n1 != Vector::ZERO;
                 assert!(ask(&query).iter().any(parts), "{} pairs at {pose:?}", all.len());
@@ -317,7 +317,7 @@ fn what_crosses_touches() {
 fn normals_have_length_one() {
     let mut wrong = 0;
     for_each_pose(16, |[one, two], pose, _| {
-        for manifold in ask(&Query::new(one, two, pose)) {
+        for manifold in ask(&Question::new(one, two, pose)) {
             let is_unit = |normal: Vector| (normal.length() - 1.0).abs() < 1e-5;
             wrong += usize::from(!is_unit(manifold.local_n1) || !is_unit(manifold.local_n2));
         }
@@ -348,9 +348,9 @@ fn mirrored(manifolds: &[Manifold], is_swapped: bool) -> Vec<([u32; 2], Vector, 
 fn either_mesh_may_come_first() {
     let mut count = 0;
     for_each_pose(17, |[one, two], pose, _| {
-        let query = Query::new(one, two, pose);
+        let query = Question::new(one, two, pose);
         let [found, other] =
-            [mirrored(&ask(&query), false), mirrored(&ask(&query.swapped()), true)];
+            [mirrored(&ask(&query), false), mirrored(&ask(&query.flipped(true)), true)];
         // Roundings of the pose that is turned round decide about few.
         let pairs =
             |all: &[([u32; 2], Vector, Real)]| all.iter().map(|c| c.0).collect::<BTreeSet<_>>();
@@ -371,8 +371,8 @@ fn memory_is_never_part_of_the_answer() {
         let mut pair: Pair = Pair::default();
         for stride in [0.0, 1e-5, 1e-3, 1e-3, 0.03] {
             pose = nudge(random, stride) * pose;
-            let query = Query::new(one, two, pose).within(0.01);
-            let expected = fresh(&unaware, &query);
+            let query = Question::new(one, two, pose).within(0.01);
+            let expected = query.fresh(&unaware);
             assert_same(&pair.ask(&kept, &query).manifolds, &expected, 0.0);
             count += expected.len();
         }
@@ -389,14 +389,14 @@ fn answers_without_trees_are_those_with_trees() {
     // Others that take all that may be spent on trees.
     for i in 0..6 {
         let other = shape(&mesh::ball(1.0 + 0.01 * i as Real, 14));
-        _ = fresh(&spent, &Query::new(&other, &other, Pose::translation(1.5, 0.1, 0.2)));
+        _ = Question::new(&other, &other, Pose::translation(1.5, 0.1, 0.2)).fresh(&spent);
     }
     let mut count = 0;
     for_each_pose(19, |[one, two], pose, _| {
         let walks = spent.stats().walks;
         let trees = [one, two].map(|mesh| prepared.prepare(mesh).unwrap());
-        let query = Query::new(one, two, pose);
-        let [found, expected] = [&spent, &prepared].map(|dispatcher| fresh(dispatcher, &query));
+        let query = Question::new(one, two, pose);
+        let [found, expected] = [&spent, &prepared].map(|dispatcher| query.fresh(dispatcher));
         drop(trees);
         if spent.stats().walks > walks {
             assert_eq!(bits(&found), bits(&expected));
@@ -419,16 +419,16 @@ fn large_meshes_are_solids_if_they_are_registered() {
     let _tree = knowing.prepare_shape(&slab).unwrap().unwrap();
     let query = |height: Real| {
         let turn = Quat::from_rotation_y(0.3);
-        Query::new(ground, &cube, Pose::from_parts(Vec3::new(0.1, 1.0 + height, 0.2), turn))
+        Question::new(ground, &cube, Pose::from_parts(Vec3::new(0.1, 1.0 + height, 0.2), turn))
     };
     // Apart there is no difference.
     let above = query(0.005);
-    assert_eq!(bits(&fresh(&unaware, &above)), bits(&fresh(&knowing, &above)));
-    assert_along(&fresh(&knowing, &above), Vector::Y, 1e-6);
+    assert_eq!(bits(&above.fresh(&unaware)), bits(&above.fresh(&knowing)));
+    assert_along(&above.fresh(&knowing), Vector::Y, 1e-6);
     // Sunk in, faces have passed each other; the cube knows its own outside in both cases.
     let sunk = query(-0.01);
-    assert_along(&fresh(&knowing, &sunk), Vector::Y, 1e-3);
-    let [found, all] = [fresh(&unaware, &sunk), fresh(&per_triangle(), &sunk)];
+    assert_along(&sunk.fresh(&knowing), Vector::Y, 1e-3);
+    let [found, all] = [sunk.fresh(&unaware), sunk.fresh(&per_triangle())];
     assert!(!found.is_empty() && found.len() < all.len());
 }
 
@@ -444,10 +444,10 @@ fn large_meshes_are_solids_to_each_other() {
     for step in 0..12 {
         let turn = Quat::from_rotation_y(0.3 + 0.01 * step as Real);
         let sunk = Vec3::new(0.1, 0.99 - 0.004 * step as Real, 0.2);
-        let query = Query::new(ground, ground, Pose::from_parts(sunk, turn));
-        let expected = fresh(&knowing, &query);
+        let query = Question::new(ground, ground, Pose::from_parts(sunk, turn));
+        let expected = query.fresh(&knowing);
         assert!(!expected.is_empty());
-        assert_eq!(bits(&fresh(&unaware, &query)), bits(&expected), "{step}");
+        assert_eq!(bits(&query.fresh(&unaware)), bits(&expected), "{step}");
         assert_eq!(bits(&pair.ask(&unaware, &query).manifolds), bits(&expected), "{step}");
     }
     assert_eq!((unaware.stats().solids, unaware.stats().trees), (1, 0));
@@ -460,19 +460,19 @@ fn pairs_that_have_met_go_on_as_they_are() {
     let (ground, cube, dispatcher) = (slab.as_trimesh().unwrap(), cube(), every());
     let at = |step: usize| {
         let turn = Quat::from_rotation_y(0.3 + 0.01 * step as f32);
-        Query::new(ground, &cube, Pose::from_parts(Vec3::new(0.1, 0.2, 0.2), turn))
+        Question::new(ground, &cube, Pose::from_parts(Vec3::new(0.1, 0.2, 0.2), turn))
     };
     let (mut known, mut trees) = (Pair::default(), Vec::new());
     for step in 0..30 {
-        let expected = fresh(&every(), &at(step));
+        let expected = at(step).fresh(&every());
         let found = bits(&known.ask(&dispatcher, &at(step)).manifolds);
         assert!(found == bits(&expected), "{step}");
         if step == 3 {
             trees.extend(dispatcher.prepare_shape(&slab).unwrap());
         }
     }
-    let of_a_solid = bits(&fresh(&dispatcher, &at(30)));
-    assert!(of_a_solid != bits(&fresh(&every(), &at(30))), "what is this test worth?");
+    let of_a_solid = bits(&at(30).fresh(&dispatcher));
+    assert!(of_a_solid != bits(&at(30).fresh(&every())), "what is this test worth?");
 }
 
 /// Would catch surfaces that are looked for, which takes a hash of the mesh, before triangles touch.
@@ -480,10 +480,10 @@ fn pairs_that_have_met_go_on_as_they_are() {
 fn meshes_that_touch_nothing_have_no_surface() {
     let (ball, dispatcher) = (shape(&mesh::ball(1.0, 12)), every());
     let corner = Pose::from_translation(1.3 * Vec3::ONE);
-    assert!(fresh(&dispatcher, &Query::new(&ball, &ball, corner)).is_empty());
+    assert!(Question::new(&ball, &ball, corner).fresh(&dispatcher).is_empty());
     assert_eq!(dispatcher.stats().solids, 0);
     let near = Pose::from_translation(1.99 * Vec3::X);
-    assert!(!fresh(&dispatcher, &Query::new(&ball, &ball, near)).is_empty());
+    assert!(!Question::new(&ball, &ball, near).fresh(&dispatcher).is_empty());
     assert_eq!(dispatcher.stats().solids, 1);
 }
 
@@ -494,10 +494,10 @@ fn size_does_not_matter() {
     let mut count = 0;
     for scale in [0.0078125, 0.125, 8.0, 128.0] {
         for_each_pose(20, |[one, two], pose, _| {
-            let expected = ask(&Query::new(one, two, pose));
+            let expected = ask(&Question::new(one, two, pose));
             let [large1, large2] = [one, two].map(|mesh| mesh.clone().scaled(Vector::splat(scale)));
             let far = Pose::from_parts(scale * pose.translation, pose.rotation);
-            let query = Query::new(&large1, &large2, far).within(0.02 * scale);
+            let query = Question::new(&large1, &large2, far).within(0.02 * scale);
             let found = ask(&query);
             assert_eq!(sequence(&found), sequence(&expected), "{scale} {pose:?}");
             for (one, other) in found.iter().zip(&expected) {
@@ -518,10 +518,10 @@ fn deformable_meshes_have_no_surfaces() {
         [TriMeshFlags::empty(), TriMeshFlags::DEFORMABLE].map(|flags| shape_with(&ball, flags));
     let mut random = Rand32::new(21);
     for depth in [0.0, 0.1].repeat(5) {
-        let query = Query::new(&rigid, &rigid, touching(&mut random, [&rigid; 2], depth));
-        let all = fresh(&per_triangle(), &query);
-        assert_same(&ask(&Query { meshes: [&soft, &rigid], ..query }), &all, 0.0);
-        assert!(!fresh(&DefaultQueryDispatcher, &query).is_empty());
+        let query = Question::new(&rigid, &rigid, touching(&mut random, [&rigid; 2], depth));
+        let all = query.fresh(&per_triangle());
+        assert_same(&ask(&Question { shapes: [&soft, &rigid], ..query }), &all, 0.0);
+        assert!(!query.fresh(&DefaultQueryDispatcher).is_empty());
     }
 }
 
@@ -539,9 +539,9 @@ fn regions_do_not_mind_each_other() {
     for sunk in [0.3, 0.45, 0.7] {
         let two = both(-Vec3::Y * sunk);
         let at = Pose::from_parts(Vector::new(0.1, 0.99, 0.05), glamx::Quat::from_rotation_y(0.02));
-        let found = ask(&Query::new(&one, &two, at));
+        let found = ask(&Question::new(&one, &two, at));
         let near = |manifold: &&Manifold| triangles(manifold).iter().all(|t| *t < 12);
-        let expected = ask(&Query::new(&cube(), &cube(), at));
+        let expected = ask(&Question::new(&cube(), &cube(), at));
         let here: Vec<Manifold> = found.iter().filter(near).cloned().collect();
         let sorted = |found: &[Manifold]| {
             let mut all: Vec<_> = found.iter().map(|m| (triangles(m), distance(m))).collect();

@@ -8,7 +8,7 @@ use rapier3d::parry::shape::{SharedShape, TriMesh};
 use rapier3d::prelude::{PhysicsWorld, RigidBodyBuilder};
 use sbbk_testkit::mesh;
 
-use crate::support::{Manifold, Query, distance, every, fresh, shape};
+use crate::support::{Manifold, Question, distance, every, shape};
 
 /// Half the thickness of plates that are a unit wide.
 const HALF: Real = 0.015;
@@ -22,8 +22,8 @@ fn floor() -> TriMesh {
     shape(&mesh::floor(10.0, 20))
 }
 
-fn ask(query: &Query) -> Vec<Manifold> {
-    fresh(&every(), query)
+fn ask(query: &Question) -> Vec<Manifold> {
+    query.fresh(&every())
 }
 
 /// Would catch a plate that is held in the midst of a sheet by contacts that push to both sides, and
@@ -37,11 +37,11 @@ fn a_plate_in_the_midst_of_a_sheet_leaves_to_one_side() {
         for tilt in [0.0, 0.01, 0.02, 0.05] {
             let turn = Quat::from_rotation_y(0.3) * Quat::from_rotation_x(tilt);
             let pose = Pose::from_parts(Vec3::new(0.13, height, 0.21), turn);
-            let query = Query::new(&floor, &plate, pose);
+            let query = Question::new(&floor, &plate, pose);
             let side = if height < -HALF { -1.0 } else { 1.0 };
             // Normals lead to the plate from the floor, or are turned round.
             let up = ask(&query).into_iter().map(|found| (distance(&found), found.local_n1.y));
-            let swapped = ask(&query.swapped()).into_iter();
+            let swapped = ask(&query.flipped(true)).into_iter();
             let swapped = swapped.map(|found| (distance(&found), found.local_n2.y));
             for (_, up) in up.chain(swapped).filter(|&(distance, _)| distance < 0.0) {
                 pushed[usize::from(side * up > 0.0)] += usize::from(up.abs() > 0.5);
@@ -61,7 +61,7 @@ fn far_contacts_are_four_corners() {
     let turn = Quat::from_rotation_y(0.3);
     for gap in [0.1, 0.3, 0.5] {
         let pose = Pose::from_parts(Vec3::new(0.1, gap + HALF, 0.2), turn);
-        let found = ask(&Query::new(&floor, &plate, pose).within(0.6));
+        let found = ask(&Question::new(&floor, &plate, pose).within(0.6));
         for (i, manifold) in found.iter().enumerate() {
             assert!((1..=4).contains(&manifold.points.len()));
             let is_like = |other: &Manifold| other.local_n1.dot(manifold.local_n1) >= 0.996;

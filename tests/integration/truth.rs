@@ -7,20 +7,20 @@ use rapier3d::parry::query::ContactManifold;
 use rapier3d::parry::shape::TriMesh;
 use sbbk_core::truth::{self, TruthPair};
 
-use crate::support::{Query, TrianglePair, by_triangles, distance};
+use crate::support::{Question, TrianglePair, by_triangles, distance};
 
 /// Every pair of triangles at a distance of at most `margin`.
-pub fn pairs_within(query: &Query, margin: f64) -> BTreeMap<TrianglePair, TruthPair> {
+pub fn pairs_within(query: &Question, margin: f64) -> BTreeMap<TrianglePair, TruthPair> {
     let vertices = |mesh: &TriMesh| -> Vec<DVec3> {
         mesh.vertices().iter().map(|vertex| vertex.as_dvec3()).collect()
     };
-    let [mesh1, mesh2] = query.meshes;
+    let [mesh1, mesh2] = query.meshes();
     let pairs = truth::pairs_within(
         &vertices(mesh1),
         mesh1.indices(),
         &vertices(mesh2),
         mesh2.indices(),
-        DPose3::from(query.pos12),
+        DPose3::from(query.pos12()),
         margin,
     );
     pairs.into_iter().map(|pair| ([pair.triangle1, pair.triangle2], pair)).collect()
@@ -38,7 +38,7 @@ pub struct Tally {
 
 impl Tally {
     /// Judges a fresh answer.
-    pub fn add<M, C>(&mut self, query: &Query, found: &[ContactManifold<M, C>]) {
+    pub fn add<M, C>(&mut self, query: &Question, found: &[ContactManifold<M, C>]) {
         let prediction = f64::from(query.prediction);
         let truth = pairs_within(query, 1.01 * prediction);
         let found = by_triangles(found);

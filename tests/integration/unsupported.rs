@@ -8,7 +8,7 @@ use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
 use rapier3d::parry::shape::{Shape, TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh;
 
-use crate::support::{Dispatcher, Manifold, Pair, Query, assert_same, fresh, shape, shape_with};
+use crate::support::{Dispatcher, Manifold, Pair, Question, assert_same, shape, shape_with};
 use crate::who_answers::{Who, kinds};
 
 /// A ball with one vertex that is not a number.
@@ -35,11 +35,11 @@ fn a_mesh_that_is_not_finite_is_answered_by_stock_and_counted() {
     assert!(reason.contains("is not finite") && reason.contains("NaN"), "{reason}");
     assert!(dispatcher.prepare(&whole).is_ok());
     assert_eq!(dispatcher.stats().unsupported_queries, 0);
-    let query = Query::new(&broken, &whole, above(1.9));
-    for (count, query) in [query, query.swapped()].iter().enumerate() {
-        let expected: Vec<Manifold> = fresh(&DefaultQueryDispatcher, query);
+    let query = Question::new(&broken, &whole, above(1.9));
+    for (count, query) in [query, query.flipped(true)].iter().enumerate() {
+        let expected: Vec<Manifold> = query.fresh(&DefaultQueryDispatcher);
         assert!(expected.iter().any(|manifold| !manifold.points.is_empty()));
-        assert_same(&fresh(&dispatcher, query), &expected, 0.0);
+        assert_same(&query.fresh(&dispatcher), &expected, 0.0);
         assert_eq!(dispatcher.stats().unsupported_queries, 1 + count as u64);
     }
     assert_eq!(dispatcher.stats().trees, usize::from(dispatcher.stats().idle_trees > 0));
@@ -58,7 +58,7 @@ fn ages(
     let mut pair = Pair::<(), Impulse>::default();
     let ages = |step: u16| {
         let height = 1.9 - 1e-4 * Real::from(step);
-        pair.ask(dispatcher, &Query::new(meshes[0], meshes[1], above(height)));
+        pair.ask(dispatcher, &Question::new(meshes[0], meshes[1], above(height)));
         let mut ages = BTreeMap::new();
         for point in pair.manifolds.iter_mut().flat_map(|manifold| &mut manifold.points) {
             point.data.0 += 1;
@@ -89,9 +89,9 @@ fn a_pair_changes_hands() {
     // A host that changes a shape and keeps the workspace is right only where SBBK answers before
     // or after: between two meshes that are Parry's, Parry itself would reuse its points.
     for mesh in [&whole, &broken, &whole, &soft, &whole, &broken, &whole, &soft, &whole] {
-        let query = Query::new(mesh, &whole, above(1.9));
+        let query = Question::new(mesh, &whole, above(1.9));
         pair.ask(&dispatcher, &query);
-        assert_same(&pair.manifolds, &fresh(&dispatcher, &query), 1e-5);
+        assert_same(&pair.manifolds, &query.fresh(&dispatcher), 1e-5);
     }
     assert_eq!(dispatcher.stats().unsupported_queries, 4);
 }

@@ -11,8 +11,8 @@ use rapier3d::parry::shape::{Shape, SharedShape, TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh;
 
 use crate::support::{
-    Manifold, Pair, Query, assert_same, counting, every, fresh, nudge, per_triangle, rotation,
-    shape, shape_with, touching,
+    Manifold, Pair, Question, assert_same, counting, every, nudge, per_triangle, rotation, shape,
+    shape_with, touching,
 };
 
 /// 9600 triangles, four units across.
@@ -52,9 +52,9 @@ fn contacts_without_trees_are_those_with_trees() {
                 0 => Pose::translation(2.0 + 0.25 * (i / 3) as Real, 0.0, 0.5),
                 _ => touching(&mut random, [one, two], [0.0, 0.01, 0.2][i / 3 % 3]),
             };
-            let query = Query::new(one, two, pose).within([0.002, 0.02, 0.1][i % 3]);
-            for query in [query, query.swapped()] {
-                let [found, expected] = [&walking, &prepared].map(|d| fresh(d, &query));
+            let query = Question::new(one, two, pose).within([0.002, 0.02, 0.1][i % 3]);
+            for query in [query, query.flipped(true)] {
+                let [found, expected] = [&walking, &prepared].map(|d| query.fresh(d));
                 assert_eq!(bits(&found), bits(&expected), "{i}");
                 count += found.len();
             }
@@ -76,9 +76,9 @@ fn motion_without_trees_is_no_part_of_the_answer() {
         (Pair::default(), touching(&mut random, [as_mesh(&ring), as_mesh(&head)], 0.05));
     for i in 0..300 {
         pose = nudge(&mut random, [1e-4, 1e-3, 2e-2][i / 100]) * pose;
-        let query = Query::new(as_mesh(&ring), as_mesh(&head), pose);
+        let query = Question::new(as_mesh(&ring), as_mesh(&head), pose);
         pair.ask(&dispatcher, &query);
-        assert_eq!(bits(&pair.manifolds), bits(&fresh(&every(), &query)), "{i}");
+        assert_eq!(bits(&pair.manifolds), bits(&query.fresh(&every())), "{i}");
     }
     let stats = dispatcher.stats();
     assert!(stats.walks > 50 && stats.reused_queries > 100, "{stats:?}");
@@ -95,13 +95,13 @@ fn a_flag_alone_changes_nothing() {
     let [mut pair, mut rigid_pair]: [Pair; 2] = Default::default();
     for _ in 0..50 {
         let pose = touching(&mut random, [as_mesh(&rigid); 2], 0.02);
-        let of_rigid = Query::new(as_mesh(&rigid), as_mesh(&rigid), pose);
-        let expected = fresh(&dispatcher, &of_rigid);
+        let of_rigid = Question::new(as_mesh(&rigid), as_mesh(&rigid), pose);
+        let expected = of_rigid.fresh(&dispatcher);
         assert!(!expected.is_empty());
         assert_same(&rigid_pair.ask(&dispatcher, &of_rigid).manifolds, &expected, 0.0);
         for (one, two) in [(&soft, &rigid), (&rigid, &soft), (&soft, &soft)] {
-            let query = Query::new(as_mesh(one), as_mesh(two), pose);
-            assert_same(&fresh(&dispatcher, &query), &expected, 0.0);
+            let query = Question::new(as_mesh(one), as_mesh(two), pose);
+            assert_same(&query.fresh(&dispatcher), &expected, 0.0);
             assert_same(&pair.ask(&dispatcher, &query).manifolds, &expected, 0.0);
         }
     }
@@ -117,10 +117,10 @@ fn a_registered_shape_is_known_until_it_is_let_go() {
     let head = head(TriMeshFlags::empty());
     let pose = touching(&mut Rand32::new(3), [as_mesh(&ring), as_mesh(&head)], 0.05);
     let ask = |ring: &SharedShape| {
-        let query = Query::new(as_mesh(ring), as_mesh(&head), pose);
+        let query = Question::new(as_mesh(ring), as_mesh(&head), pose);
         let before = dispatcher.stats().walks;
-        let found = fresh(&dispatcher, &query);
-        assert_eq!(bits(&found), bits(&fresh(&per_triangle(), &query)));
+        let found = query.fresh(&dispatcher);
+        assert_eq!(bits(&found), bits(&query.fresh(&per_triangle())));
         (found.len(), dispatcher.stats().walks - before)
     };
     let _tree_of_head = dispatcher.prepare_shape(&head).unwrap();
@@ -145,7 +145,7 @@ fn a_registered_shape_is_known_until_it_is_let_go() {
         let before = dispatcher.stats().walks;
         for i in 0..4 {
             let pose = Pose::translation(0.0, 0.2 * (i % 2) as Real, 0.0) * pose;
-            pair.ask(&dispatcher, &Query::new(as_mesh(&clone), as_mesh(&head), pose));
+            pair.ask(&dispatcher, &Question::new(as_mesh(&clone), as_mesh(&head), pose));
         }
         assert_eq!(dispatcher.stats().walks - before, ways);
     };
@@ -171,7 +171,7 @@ fn meshes_that_land_together_are_not_all_built_at_once() {
         // Too fast for what the query before has found.
         let pose = Pose::translation(0.0, 0.03 * (step % 2) as Real, 0.0) * pose;
         for (pair, meshes) in pairs.iter_mut().zip(meshes.windows(2)) {
-            let query = Query::new(&meshes[0], &meshes[1], pose);
+            let query = Question::new(&meshes[0], &meshes[1], pose);
             pair.ask(&dispatcher, &query);
         }
         dispatcher.stats()
@@ -184,8 +184,8 @@ fn meshes_that_land_together_are_not_all_built_at_once() {
     assert!(last.tree_builds > 95, "queries earn what trees take: {last:?}");
     for (pair, meshes) in pairs.iter().zip(meshes.windows(2)) {
         let pose = Pose::translation(0.0, 0.03, 0.0) * pose;
-        let query = Query::new(&meshes[0], &meshes[1], pose);
-        assert_eq!(bits(&pair.manifolds), bits(&fresh(&SbbkDispatcher::default(), &query)));
+        let query = Question::new(&meshes[0], &meshes[1], pose);
+        assert_eq!(bits(&pair.manifolds), bits(&query.fresh(&SbbkDispatcher::default())));
     }
 }
 

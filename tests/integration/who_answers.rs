@@ -12,7 +12,7 @@ use rapier3d::pipeline::{PhysicsWorld, QueryFilter};
 use rapier3d::prelude::{ColliderBuilder, RigidBodyBuilder};
 use sbbk_testkit::mesh;
 
-use crate::support::{Pair, counting, shape, shape_with};
+use crate::support::{Pair, Question, counting, shape, shape_with};
 
 /// Who answers for a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -210,6 +210,6 @@ fn character_controllers_ask_for_no_contacts() {
     assert!(is_grounded && pose.translation.y > 0.69, "{pose:?}");
     assert_eq!(dispatcher.stats().queries, 0);
     let at = Pose::translation(0.1, 0.7, 0.2);
-    Pair::<(), ()>::default().ask_of(&dispatcher, [&*floor, &*capsule], at, false, 0.02);
+    Question::new(&*floor, &*capsule, at).fresh(&dispatcher);
     assert_eq!(dispatcher.stats().queries, 1);
 }

@@ -5,9 +5,9 @@ use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::TriMeshFlags;
 use sbbk_testkit::mesh;
 
-use super::question::{Question, bits};
+use super::question::bits;
 use super::shapes::{pose, shapes};
-use crate::support::{Pair, counting, per_triangle, shape_with};
+use crate::support::{Pair, Question, counting, per_triangle, shape_with};
 
 /// Would catch candidates of a shape that is no longer there, where a host keeps the workspace of a
 /// pair over an edit.
@@ -19,10 +19,9 @@ fn another_shape_with_the_same_workspace_is_noticed() {
     let pose = pose(&mut random, &head, 0.6);
     let mut pair: Pair = Pair::default();
     for (name, shape) in shapes(0.6).into_iter().chain(shapes(0.7)) {
-        let question =
-            Question { mesh: &head, shape: &shape, pose, prediction: 0.02, flipped: false };
+        let question = Question::new(&head, &*shape, pose);
         for _ in 0..2 {
-            let found = question.ask(&dispatcher, &mut pair);
+            let found = pair.ask(&dispatcher, &question);
             let found: Vec<_> = found.manifolds.iter().map(bits).collect();
             let expected: Vec<_> = question.fresh(&dispatcher).iter().map(bits).collect();
             assert_eq!(found, expected, "{name}");
@@ -41,12 +40,11 @@ fn stock_can_hand_over_a_pair() {
     let mut random = Rand32::new(7);
     for (name, shape) in shapes(0.6) {
         let pose = pose(&mut random, &head, 0.5);
-        let question =
-            Question { mesh: &head, shape: &shape, pose, prediction: 0.05, flipped: true };
+        let question = Question::new(&head, &*shape, pose).within(0.05).flipped(true);
         let mut pair: Pair<u32> = Pair::default();
-        question.ask(&DefaultQueryDispatcher, &mut pair);
+        pair.ask(&DefaultQueryDispatcher, &question);
         pair.manifolds.iter_mut().for_each(|manifold| manifold.data = manifold.subshape2 + 1);
-        question.ask(&dispatcher, &mut pair);
+        pair.ask(&dispatcher, &question);
         let expected: Vec<_> = question.fresh(&dispatcher).iter().map(|m| m.subshape2).collect();
         let found: Vec<_> = pair.manifolds.iter().map(|m| m.subshape2).collect();
         assert_eq!(found, expected, "{name}");
@@ -68,7 +66,7 @@ fn points_keep_their_data() {
         let mut before: Vec<u32> = Vec::new();
         for step in 0..5 {
             let pose = Pose::translation(0.3 + 1e-5 * step as Real, 0.3, 0.2);
-            pair.ask_of(&dispatcher, [&floor, &*shape], pose, false, 0.002);
+            pair.ask(&dispatcher, &Question::new(&floor, &*shape, pose).within(0.002));
             let points = || pair.manifolds.iter().flat_map(|manifold| &manifold.points);
             let data: Vec<u32> = points().map(|point| point.data).collect();
             assert!(!data.is_empty() && (step == 0 || data == before), "{name}: {data:?}");

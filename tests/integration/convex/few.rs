@@ -5,8 +5,8 @@ use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh;
 
-use super::question::{Question, bits, touches};
-use crate::support::{Manifold, Pair, counting_of, per_triangle, rotation, shape_with};
+use super::question::{bits, touches, triangle_of};
+use crate::support::{Manifold, Pair, Question, counting_of, per_triangle, rotation, shape_with};
 
 /// Of 192 triangles, two units wide, bent.
 fn ground(flags: TriMeshFlags) -> TriMesh {
@@ -35,9 +35,9 @@ fn balls_on_large_triangles_touch_as_with_stock() {
                 let pose = Pose::from_parts(at, rotation(&mut random));
                 for (pair, flipped) in pairs.iter_mut().zip([false, true]) {
                     let (mesh, shape) = (&ground, &shape);
-                    let question = Question { mesh, shape, pose, prediction: 0.02, flipped };
+                    let question = Question::new(mesh, &**shape, pose).flipped(flipped);
                     let all = |found: &[Manifold]| found.iter().map(bits).collect::<Vec<_>>();
-                    let found = all(&question.ask(&dispatcher, pair).manifolds);
+                    let found = all(&pair.ask(&dispatcher, &question).manifolds);
                     assert_eq!(found, all(&question.fresh(&unaware)), "{radius}, {i}");
                     let mut stock = question.fresh(&DefaultQueryDispatcher);
                     stock.retain(|manifold| touches(manifold, question.prediction));
@@ -67,7 +67,8 @@ fn balls_at_the_prediction_distance_touch_as_with_stock() {
         (0..random.rand_range(0..4)).for_each(|_| height = height.next_down());
         let pose = Pose::from_parts(Vector::new(x, height, z), rotation(&mut random));
         for flipped in [false, true] {
-            let question = Question { mesh: &ground, shape: &shape, pose, prediction, flipped };
+            let question =
+                Question::new(&ground, &*shape, pose).within(prediction).flipped(flipped);
             let mut stock = question.fresh(&DefaultQueryDispatcher);
             stock.retain(|manifold| touches(manifold, prediction));
             assert_eq!(question.fresh(&SbbkDispatcher::default()).len(), stock.len());
@@ -93,10 +94,9 @@ fn contacts_keep_their_data_where_a_ball_rolls() {
         let way = 0.01 * i as Real;
         let height = 0.5 + 0.3 * (0.7 * (way - 2.0)).sin() + 0.2 + 0.75;
         let pose = Pose::translation(way - 2.0, height, 0.1);
-        let question =
-            Question { mesh: &ground, shape: &shape, pose, prediction: 0.02, flipped: false };
+        let question = Question::new(&ground, &*shape, pose);
         let before: Vec<u32> = pair.manifolds.iter().map(|m| m.subshape1).collect();
-        question.ask(&dispatcher, &mut pair);
+        pair.ask(&dispatcher, &question);
         for manifold in &mut pair.manifolds {
             let is_old = before.contains(&manifold.subshape1);
             *(if is_old { &mut kept } else { &mut came }) += 1;
@@ -112,22 +112,16 @@ fn contacts_keep_their_data_where_a_ball_rolls() {
 #[test]
 fn without_a_workspace_no_manifold_survives() {
     let (mesh, shape) = (ground(TriMeshFlags::empty()), SharedShape::ball(0.8));
-    let question = Question {
-        mesh: &mesh,
-        shape: &shape,
-        pose: Pose::translation(0.3, 1.4, 0.1),
-        prediction: 0.2,
-        flipped: false,
-    };
+    let question = Question::new(&mesh, &*shape, Pose::translation(0.3, 1.4, 0.1)).within(0.2);
     let dispatcher = SbbkDispatcher::default();
     let mut pair = Pair::<(), Impulse>::default();
-    question.ask(&dispatcher, &mut pair);
+    pair.ask(&dispatcher, &question);
     assert!(!pair.manifolds.is_empty());
     pair.manifolds.iter_mut().for_each(|m| m.points[0].data = Impulse(7));
-    question.ask(&SbbkDispatcher::default(), &mut pair);
+    pair.ask(&SbbkDispatcher::default(), &question);
     assert!(pair.manifolds.iter().all(|m| m.points[0].data == Impulse(7)));
     pair.workspace = None;
-    question.ask(&dispatcher, &mut pair);
+    pair.ask(&dispatcher, &question);
     assert!(pair.manifolds.iter().all(|m| m.points[0].data == Impulse(0)));
 }
 
@@ -138,9 +132,9 @@ fn whole_triangles_of_a_broken_mesh_are_touched() {
     let mut mesh = ground(TriMeshFlags::DEFORMABLE);
     let (pose, shape) = (Pose::translation(0.3, 1.4, 0.1), SharedShape::ball(0.8));
     let touched = |mesh: &TriMesh| {
-        let question = Question { mesh, shape: &shape, pose, prediction: 0.2, flipped: false };
+        let question = Question::new(mesh, &*shape, pose).within(0.2);
         let found = question.fresh(&SbbkDispatcher::default());
-        let mut touched: Vec<u32> = found.iter().map(|m| question.triangle_of(m)).collect();
+        let mut touched: Vec<u32> = found.iter().map(|m| triangle_of(&question, m)).collect();
         touched.sort_unstable();
         touched
     };

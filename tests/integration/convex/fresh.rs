@@ -7,9 +7,9 @@ use rapier3d::math::Real;
 use rapier3d::parry::shape::{SharedShape, TriMeshFlags};
 use sbbk_testkit::mesh;
 
-use super::question::Question;
+use super::question::{apart, check_against_truth, triangle_of};
 use super::shapes::{PREDICTIONS, body, lattice_pose, pose, shapes};
-use crate::support::{distance, per_triangle, rotation, shape_with};
+use crate::support::{Question, distance, per_triangle, rotation, shape_with};
 
 /// The contacts of SBBK's own routines beside Parry's distances, which are too large by up to 0.013
 /// here (a round triangle at 0.0364 is said to be at 0.0487); that ours are exact is tested in
@@ -28,12 +28,13 @@ fn exact_contacts_are_where_parry_measures_them() {
             for i in 0..40 {
                 let pose = pose(&mut random, &head, size);
                 let (prediction, flipped) = (0.05, i % 2 == 0);
-                let question = Question { mesh: &head, shape: &shape, pose, prediction, flipped };
+                let question =
+                    Question::new(&head, &*shape, pose).within(prediction).flipped(flipped);
                 let found = question.fresh(&dispatcher);
                 let found: BTreeMap<u32, Real> =
-                    found.iter().map(|m| (question.triangle_of(m), distance(m))).collect();
+                    found.iter().map(|m| (triangle_of(&question, m), distance(m))).collect();
                 for triangle in 0..head.indices().len() as u32 {
-                    let apart = question.apart(triangle);
+                    let apart = apart(&question, triangle);
                     let near = found.get(&triangle).copied().filter(|near| *near <= prediction);
                     let is_found = near.is_some() || apart > prediction - TOLERANCE;
                     assert!(is_found, "{name} of {size}: {triangle} is lost, {apart} away");
@@ -67,8 +68,7 @@ fn a_box_that_lies_flat_touches_at_its_corners() {
         let yaw = Quat::from_rotation_y(6.0 * random.rand_float());
         let pose = Pose3::from_parts(turn * place, turn * yaw);
         let shape = SharedShape::cuboid(x, y, z);
-        let question =
-            Question { mesh: &mesh, shape: &shape, pose, prediction: 0.02, flipped: i % 5 == 0 };
+        let question = Question::new(&mesh, &*shape, pose).flipped(i % 5 == 0);
         let found = question.fresh(&dispatcher);
         assert_eq!(found.iter().map(|m| m.points.len()).collect::<Vec<_>>(), [4], "{i}");
     }
@@ -94,9 +94,11 @@ fn exact_contacts_are_the_true_ones() {
                     pose(&mut random, &head, 0.6 * scale)
                 };
                 let (prediction, flipped) = (PREDICTIONS[i % 4] * scale, i % 8 < 4);
-                let question = Question { mesh: &head, shape: &shape, pose, prediction, flipped };
+                let question =
+                    Question::new(&head, &*shape, pose).within(prediction).flipped(flipped);
                 let found = question.fresh(&dispatcher);
-                count += question.check_against_truth(name, &found, &body, 1e-6 * f64::from(scale));
+                count +=
+                    check_against_truth(&question, name, &found, &body, 1e-6 * f64::from(scale));
             }
             assert!(count > 100, "{name} of {scale}: {count}");
         }
@@ -122,9 +124,10 @@ fn a_huge_floor_loses_no_contact() {
             let pose = Pose3::from_parts(at, turn).inverse();
             let prediction = PREDICTIONS[i % 4];
             for flipped in [false, true] {
-                let question = Question { mesh: &head, shape: &shape, pose, prediction, flipped };
+                let question =
+                    Question::new(&head, &*shape, pose).within(prediction).flipped(flipped);
                 let found = question.fresh(&exact);
-                count += question.check_against_truth("floor", &found, &body, 1e-6);
+                count += check_against_truth(&question, "floor", &found, &body, 1e-6);
             }
         }
     }
@@ -143,7 +146,7 @@ fn constrained_normals_make_no_deep_points() {
     let (mut random, mut seen) = (Rand32::new(8), 0);
     for _ in 0..400 {
         let pose = pose(&mut random, &free, 0.3);
-        let ask = |mesh| Question { mesh, shape: &shape, pose, prediction: 0.02, flipped: false };
+        let ask = |mesh| Question::new(mesh, &*shape, pose);
         let depths: BTreeMap<u32, Real> =
             ask(&free).fresh(&dispatcher).iter().map(|m| (m.subshape1, distance(m))).collect();
         for manifold in ask(&fixed).fresh(&dispatcher) {

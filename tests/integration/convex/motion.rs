@@ -4,9 +4,9 @@ use rapier3d::math::Real;
 use rapier3d::parry::shape::{SharedShape, TriMeshFlags};
 use sbbk_testkit::mesh;
 
-use super::question::{Question, bits};
+use super::question::bits;
 use super::shapes::{PREDICTIONS, floor, pose, shapes};
-use crate::support::{Pair, counting, every, nudge, shape_with};
+use crate::support::{Pair, Question, counting, every, nudge, shape_with};
 
 /// A pair in motion: small steps, at times a jump, another prediction distance, or a workspace
 /// taken away. After each step, the answer of a dispatcher that has never heard of the pair, bit
@@ -16,13 +16,8 @@ fn walk(name: &str, shape: &SharedShape, size: Real, flipped: bool, seed: u64) -
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
     let _tree = unaware.prepare(&head).unwrap();
     let mut random = Rand32::new(seed);
-    let mut question = Question {
-        mesh: &head,
-        shape,
-        pose: pose(&mut random, &head, size),
-        prediction: 0.02,
-        flipped,
-    };
+    let mut question =
+        Question::new(&head, &**shape, pose(&mut random, &head, size)).flipped(flipped);
     let mut pair: Pair = Pair::default();
     let (mut stride, mut contact_count) = (1e-3, 0);
     for step in 0..400 {
@@ -33,7 +28,7 @@ fn walk(name: &str, shape: &SharedShape, size: Real, flipped: bool, seed: u64) -
             7 => stride = [0.0, 1e-5, 1e-3, 1e-2][random.rand_range(0..4) as usize],
             _ => question.pose = nudge(&mut random, stride) * question.pose,
         }
-        question.ask(&dispatcher, &mut pair);
+        pair.ask(&dispatcher, &question);
         let found: Vec<_> = pair.manifolds.iter().map(bits).collect();
         let expected: Vec<_> = question.fresh(&unaware).iter().map(bits).collect();
         assert!(found == expected, "{name} in step {step}");
@@ -74,20 +69,14 @@ fn poses_that_are_none_have_no_contacts() {
             let shift = Pose3::from_parts(Vec3::new(0.1, broken, 0.0), Quat::IDENTITY);
             let turn = Pose3::from_parts(Vec3::ZERO, Quat::from_xyzw(broken, 0.0, 0.0, 1.0));
             for (pose, flipped) in [(shift, false), (shift, true), (turn, false), (turn, true)] {
-                let mut question = Question {
-                    mesh: &head,
-                    shape: &shape,
-                    pose: Pose3::IDENTITY,
-                    prediction: 0.02,
-                    flipped,
-                };
+                let mut question = Question::new(&head, &*shape, Pose3::IDENTITY).flipped(flipped);
                 let mut pair: Pair = Pair::default();
                 // With a tree and kept contacts, and as a first query.
-                question.ask(&dispatcher, &mut pair);
+                pair.ask(&dispatcher, &question);
                 question.pose = pose;
                 // A half-space reaches to infinity on one side.
                 let is_in = name == "half-space" && broken.is_infinite();
-                let count = question.ask(&dispatcher, &mut pair).manifolds.len();
+                let count = pair.ask(&dispatcher, &question).manifolds.len();
                 assert!(count == 0 || is_in, "{name}, {pose:?}: {count} contacts");
                 question.fresh(&dispatcher);
             }
@@ -95,7 +84,6 @@ fn poses_that_are_none_have_no_contacts() {
     }
     let (_, ball) = shapes(0.6).remove(0);
     let pose = Pose3::IDENTITY;
-    let question =
-        Question { mesh: &head, shape: &ball, pose, prediction: Real::NAN, flipped: false };
+    let question = Question::new(&head, &*ball, pose).within(Real::NAN);
     assert_eq!(question.fresh(&dispatcher).len(), 0);
 }

@@ -10,9 +10,10 @@ use rapier3d::parry::shape::TriMeshFlags;
 use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh::{self, Mesh};
 
-use super::question::Question;
 use super::shapes::shapes;
-use crate::support::{Manifold, distance, every, having, per_triangle, rotation, shape_with};
+use crate::support::{
+    Manifold, Question, distance, every, having, per_triangle, rotation, shape_with,
+};
 
 /// Bodies 0.01 deep in a flat floor of small triangles. Would catch a contact at an edge between two
 /// of them, a tip right at an edge, points that are not below the body, and a body with no contact left.
@@ -36,15 +37,10 @@ fn a_floor_of_triangles_is_flat() {
             if aabb.mins.y > -0.1 {
                 continue;
             }
-            let question = Question {
-                mesh: &floor,
-                shape: &shape,
-                pose,
-                prediction: 0.02,
-                flipped: i % 2 == 0,
-            };
+            let question = Question::new(&floor, &*shape, pose).flipped(i % 2 == 0);
             let up = |manifold: &Manifold| {
-                let normal = if question.flipped { manifold.local_n2 } else { manifold.local_n1 };
+                let normal =
+                    if question.is_flipped { manifold.local_n2 } else { manifold.local_n1 };
                 normal.y
             };
             let is_up = |manifold: &Manifold| up(manifold) > 0.999_996;
@@ -94,7 +90,7 @@ fn contacts_of_a_surface_are_the_nearest_at_their_points() {
             let low = shape.compute_aabb(&Pose3::from_rotation(turn)).mins.y;
             let height = 0.06 * random.rand_float() - 0.03;
             let pose = Pose3::from_parts(at + Vec3::Y * (height - low), turn);
-            let question = Question { mesh, shape: &shape, pose, prediction: 0.05, flipped: false };
+            let question = Question::new(mesh, &*shape, pose).within(0.05);
             let own = question.fresh(&triangles);
             let found = question.fresh(&surfaces);
             let is_in = |manifolds: &[Manifold]| manifolds.iter().any(|m| distance(m) < 0.0);

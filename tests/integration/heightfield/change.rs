@@ -6,9 +6,8 @@ use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::{HeightFieldCellStatus, HeightFieldFlags};
 use sbbk_testkit::mesh;
 
-use super::question::Question;
 use super::terrain::{Terrain, place, rolling};
-use crate::support::{Manifold, Pair, assert_same, nudge, shape};
+use crate::support::{Manifold, Pair, Question, assert_same, nudge, shape};
 
 /// Would catch answers for a field that is no longer there, where a host keeps the workspace over
 /// an edit.
@@ -21,9 +20,9 @@ fn an_edited_field_is_noticed() {
     let pose = place(&mut random, &terrain, &head, 0.1);
     let mut pair: Pair = Pair::default();
     let check = |terrain: &Terrain, pair: &mut Pair| {
-        let question = Question::new(terrain, &head, pose);
+        let question = Question::new(&terrain.field, &head, pose);
         let expected = question.fresh(&dispatcher);
-        assert_same(&question.ask(&dispatcher, pair).manifolds, &expected, 0.0);
+        assert_same(&pair.ask(&dispatcher, &question).manifolds, &expected, 0.0);
         expected.len()
     };
     assert!(check(&terrain, &mut pair) > 0);
@@ -36,13 +35,13 @@ fn an_edited_field_is_noticed() {
     terrain = Terrain::random(&mut random, [14, 17], Vec3::new(6.0, 1.0, 4.0));
     check(&terrain, &mut pair);
     // A hole where the contacts are, seen at the next motion.
-    for manifold in Question::new(&terrain, &head, pose).fresh(&dispatcher) {
+    for manifold in Question::new(&terrain.field, &head, pose).fresh(&dispatcher) {
         let cell = manifold.subshape1 as usize % (14 * 17);
         terrain.field.set_cell_status(cell % 14, cell / 14, HeightFieldCellStatus::CELL_REMOVED);
     }
-    let moved = Question::new(&terrain, &head, nudge(&mut random, 1e-5) * pose);
+    let moved = Question::new(&terrain.field, &head, nudge(&mut random, 1e-5) * pose);
     let expected = moved.fresh(&dispatcher);
-    assert_same(&moved.ask(&dispatcher, &mut pair).manifolds, &expected, 0.0);
+    assert_same(&pair.ask(&dispatcher, &moved).manifolds, &expected, 0.0);
 }
 
 /// Would catch manifolds of stock's own for this pair, should it have any, that are taken for ours.
@@ -51,13 +50,13 @@ fn an_edited_field_is_noticed() {
 fn stock_has_no_contacts_to_hand_over() {
     let terrain = Terrain::new(rolling(6.0, 20, 0.5));
     let head = shape(&mesh::monkey_head());
-    let question = Question::new(&terrain, &head, Pose::IDENTITY);
+    let question = Question::new(&terrain.field, &head, Pose::IDENTITY);
     let mut pair: Pair = Pair::default();
-    question.ask(&DefaultQueryDispatcher, &mut pair);
+    pair.ask(&DefaultQueryDispatcher, &question);
     let has_points = |manifold: &Manifold| !manifold.points.is_empty();
     assert!(!pair.manifolds.iter().any(has_points));
     let dispatcher = SbbkDispatcher::default();
     let expected = question.fresh(&dispatcher);
     assert!(!expected.is_empty());
-    assert_same(&question.ask(&dispatcher, &mut pair).manifolds, &expected, 0.0);
+    assert_same(&pair.ask(&dispatcher, &question).manifolds, &expected, 0.0);
 }

@@ -5,9 +5,8 @@ use rapier3d::parry::query::details::NormalConstraints;
 use rapier3d::parry::shape::{HeightFieldFlags, TriMeshFlags};
 use sbbk_testkit::mesh;
 
-use super::question::Question;
 use super::terrain::{Terrain, place};
-use crate::support::{Manifold, assert_same, per_triangle, shape_with};
+use crate::support::{Manifold, Question, assert_same, per_triangle, shape_with};
 
 /// Would catch constraints of a neighbour, of the wrong shape or none at all: each manifold is the
 /// one that the generator makes of its two triangles and their cones.
@@ -21,8 +20,8 @@ fn internal_edges_of_the_field_are_fixed() {
     for i in 0..40 {
         let pose = place(&mut random, &terrain, &mesh, 0.05);
         let ask = |terrain: &Terrain| {
-            let question = Question::new(terrain, &mesh, pose);
-            Question { is_mesh_first: i % 2 == 1, ..question }.fresh(&dispatcher)
+            let question = Question::new(&terrain.field, &mesh, pose);
+            question.flipped(i % 2 == 1).fresh(&dispatcher)
         };
         terrain.field.set_flags(HeightFieldFlags::empty());
         let free = ask(&terrain);

@@ -9,8 +9,6 @@ mod cost;
 mod edges;
 /// Motion against fresh queries.
 mod motion;
-/// What is asked.
-mod question;
 /// Heads at rest, and worlds that are saved.
 mod rest;
 /// Fields as meshes, and places on them.

@@ -5,7 +5,7 @@ use rapier3d::parry::shape::{HeightField, HeightFieldCellStatus, TriMesh};
 use rapier3d::parry::utils::Array2;
 use sbbk_testkit::mesh;
 
-use crate::support::touching;
+use crate::support::{Manifold, Question, touching};
 
 /// A field, and the mesh of its triangles in the order of their numbers.
 pub(super) struct Terrain {
@@ -44,6 +44,21 @@ impl Terrain {
         }
         field.set_cell_status(cells[0] / 2, 0, HeightFieldCellStatus::CELL_REMOVED);
         Self::new(field)
+    }
+
+    /// The question with the terrain as a mesh.
+    pub fn as_mesh<'a>(&'a self, question: &Question<'a>) -> Question<'a> {
+        Question { shapes: [&self.mesh, question.shapes[1]], ..*question }
+    }
+
+    /// Numbers the triangles of the field as those of the mesh.
+    pub fn renumbered(&self, question: &Question, manifolds: &[Manifold]) -> Vec<Manifold> {
+        let mut manifolds = manifolds.to_vec();
+        for Manifold { subshape1, subshape2, .. } in &mut manifolds {
+            let id = if question.is_flipped { subshape2 } else { subshape1 };
+            *id = self.ids.binary_search(id).expect("a triangle of the field") as u32;
+        }
+        manifolds
     }
 
     /// Steps, plains and cliffs: heights that are whole multiples of a quarter, cells of a half.

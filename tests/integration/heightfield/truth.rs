@@ -6,9 +6,10 @@ use rapier3d::parry::query::PointQuery;
 use rapier3d::parry::shape::{HeightField, TriMeshFlags, Triangle};
 use sbbk_testkit::mesh;
 
-use super::question::Question;
 use super::terrain::{Terrain, heights, place, terrains};
-use crate::support::{assert_same, distance, every_config, fresh, per_triangle, shape, shape_with};
+use crate::support::{
+    Question, assert_same, distance, every_config, per_triangle, shape, shape_with,
+};
 use crate::truth::Tally;
 
 /// Would catch cells that are cut off too early, triangles that are taken for others, holes that
@@ -26,10 +27,10 @@ fn contacts_are_those_of_brute_force() {
             let mesh = &meshes[i % 3];
             let pose = place(&mut random, terrain, mesh, 0.03);
             let prediction = [0.02, 0.002, 0.1, 0.02][i % 4];
-            let question = Question { prediction, ..Question::new(terrain, mesh, pose) };
-            let question = Question { is_mesh_first: i % 2 == 1, ..question };
-            let found = question.renumbered(&question.fresh(&dispatcher));
-            tally.add(&question.of_meshes(), &found);
+            let question = Question::new(&terrain.field, mesh, pose).within(prediction);
+            let question = question.flipped(i % 2 == 1);
+            let found = terrain.renumbered(&question, &question.fresh(&dispatcher));
+            tally.add(&terrain.as_mesh(&question), &found);
         }
         assert!(!terrain.ids.is_empty(), "{index}");
         tally.check_all_right(300);
@@ -49,10 +50,10 @@ fn lattice_contacts_are_those_of_brute_force() {
             |range: u32| (random.rand_range(0..range) as Real - 0.5 * range as Real) * 0.25;
         let at = Vec3::new(coordinate(30), coordinate(4) + 0.75, coordinate(20));
         let turn = Quat::from_rotation_y(std::f32::consts::FRAC_PI_2 * (i % 4) as Real);
-        let question = Question::new(&terrain, &cuboid, Pose::from_parts(at, turn));
-        let question = Question { is_mesh_first: i % 2 == 1, prediction: 0.021, ..question };
-        let found = question.renumbered(&question.fresh(&dispatcher));
-        tally.add(&question.of_meshes(), &found);
+        let question = Question::new(&terrain.field, &cuboid, Pose::from_parts(at, turn));
+        let question = question.within(0.021).flipped(i % 2 == 1);
+        let found = terrain.renumbered(&question, &question.fresh(&dispatcher));
+        tally.add(&terrain.as_mesh(&question), &found);
     }
     tally.check_all_right(1000);
 }
@@ -68,10 +69,10 @@ fn contacts_equal_those_of_the_terrain_as_a_mesh() {
     for terrain in &terrains() {
         for i in 0..20 {
             let pose = place(&mut random, terrain, &head, 0.05);
-            let question = Question::new(terrain, &head, pose);
-            let question = Question { is_mesh_first: i % 2 == 1, ..question };
-            let mut found = question.renumbered(&question.fresh(&dispatcher));
-            let mut expected = fresh(&dispatcher, &question.of_meshes());
+            let question = Question::new(&terrain.field, &head, pose);
+            let question = question.flipped(i % 2 == 1);
+            let mut found = terrain.renumbered(&question, &question.fresh(&dispatcher));
+            let mut expected = terrain.as_mesh(&question).fresh(&dispatcher);
             for manifolds in [&mut found, &mut expected] {
                 manifolds.sort_by_key(|manifold| [manifold.subshape1, manifold.subshape2]);
             }
@@ -113,10 +114,10 @@ fn surfaces_are_those_of_the_terrain_as_a_mesh() {
             if is_under(terrain, pose * mesh.local_aabb().center()) {
                 continue;
             }
-            let question = Question::new(terrain, mesh, pose);
-            let question = Question { is_mesh_first: i % 2 == 1, ..question };
-            let mut found = question.renumbered(&question.fresh(&dispatcher));
-            let mut expected = fresh(&dispatcher, &question.of_meshes());
+            let question = Question::new(&terrain.field, mesh, pose);
+            let question = question.flipped(i % 2 == 1);
+            let mut found = terrain.renumbered(&question, &question.fresh(&dispatcher));
+            let mut expected = terrain.as_mesh(&question).fresh(&dispatcher);
             fewer += question.fresh(&per_triangle()).len().saturating_sub(found.len());
             for manifolds in [&mut found, &mut expected] {
                 let all = manifolds.len();
@@ -157,10 +158,10 @@ fn heights_that_are_none_make_holes() {
         for i in 0..20 {
             let [x, z] = [(); 2].map(|()| 3.0 * random.rand_float() - 1.5);
             let pose = Pose::translation(x, 0.8, z);
-            let question = Question::new(&terrain, &ball, pose);
-            let question = Question { is_mesh_first: i % 2 == 1, ..question };
-            let found = question.renumbered(&question.fresh(&dispatcher));
-            tally.add(&question.of_meshes(), &found);
+            let question = Question::new(&terrain.field, &ball, pose);
+            let question = question.flipped(i % 2 == 1);
+            let found = terrain.renumbered(&question, &question.fresh(&dispatcher));
+            tally.add(&terrain.as_mesh(&question), &found);
         }
         tally.check_all_right(50);
     }

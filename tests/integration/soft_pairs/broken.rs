@@ -4,9 +4,9 @@ use rapier3d::math::{Pose, Real};
 use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh;
 
-use super::question::{PREDICTION, Question, assert_same_set, furniture, hills};
+use super::question::{PREDICTION, assert_same_set, furniture, hills};
 use crate::support::{
-    Manifold, Pair, by_triangles, counting, distance, per_triangle, rotation, shape_with,
+    Manifold, Pair, Question, by_triangles, counting, distance, per_triangle, rotation, shape_with,
 };
 
 /// How the contacts of a mesh and a shape follow from where they are.
@@ -70,11 +70,12 @@ fn whole_part(mesh: &TriMesh) -> (TriMesh, Vec<u32>) {
 
 /// The contacts that the whole part of the mesh has, by the numbers of the mesh.
 fn expected(question: &Question) -> Vec<Manifold> {
-    let (whole, numbers) = whole_part(question.mesh);
-    let mut manifolds = Question { mesh: &whole, ..*question }.fresh(&per_triangle());
+    let (whole, numbers) = whole_part(question.mesh());
+    let mut manifolds =
+        Question { shapes: [question.shapes[0], &whole], ..*question }.fresh(&per_triangle());
     for manifold in &mut manifolds {
         let Manifold { subshape1, subshape2, .. } = manifold;
-        let number = if question.is_mesh_first { subshape1 } else { subshape2 };
+        let number = if question.is_flipped { subshape1 } else { subshape2 };
         *number = numbers[*number as usize];
     }
     manifolds
@@ -107,12 +108,12 @@ fn whole_triangles_touch_and_broken_ones_do_not() {
                 if is_broken {
                     break_some(&mut soft, random);
                 }
-                let is_mesh_first = seed % 2 == 0;
-                let question = Question { mesh: &soft, other: &*other, pose, is_mesh_first };
+                let flipped = seed % 2 == 0;
+                let question = Question::new(&*other, &soft, pose).flipped(flipped);
                 let expected = expected(&question);
                 println!("{name}, case {seed}, frame {frame}");
                 let fresh = question.fresh(&dispatcher);
-                let found = &question.ask(&dispatcher, &mut pair).manifolds;
+                let found = &pair.ask(&dispatcher, &question).manifolds;
                 check_kept(found, &question);
                 match contacts {
                     Contacts::Exact => assert_same_set(found, &expected),
@@ -149,7 +150,7 @@ fn check_kept(found: &[Manifold], question: &Question) {
     for manifold in found {
         let Manifold { subshape1, subshape2, .. } = *manifold;
         let triangle =
-            question.mesh.triangle(if question.is_mesh_first { subshape1 } else { subshape2 });
+            question.mesh().triangle(if question.is_flipped { subshape1 } else { subshape2 });
         assert!(triangle.vertices().iter().all(|corner| corner.is_finite()));
         assert!(manifold.points.iter().all(|point| point.dist.is_finite()));
     }
@@ -170,8 +171,8 @@ fn a_mesh_all_broken_has_no_contacts() {
                     soft.update_vertices(|vertices| vertices.fill(Vec3::splat(bad)));
                 }
                 let pose = Pose::translation(0.1, 0.5, 0.1);
-                let question = Question { mesh: &soft, other: &*other, pose, is_mesh_first: true };
-                let found = &question.ask(&dispatcher, &mut pair).manifolds;
+                let question = Question::new(&*other, &soft, pose).flipped(true);
+                let found = &pair.ask(&dispatcher, &question).manifolds;
                 let has_points = found.iter().any(|manifold| !manifold.points.is_empty());
                 assert_eq!(has_points, !is_broken, "{name}, {bad}");
             }

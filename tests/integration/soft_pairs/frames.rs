@@ -8,8 +8,8 @@ use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::parry::shape::{HeightField, Shape, SharedShape, TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh;
 
-use super::question::{PREDICTION, Question, assert_same_set, furniture, hills};
-use crate::support::{Manifold, Pair, Query, counting, distance, shape_with};
+use super::question::{PREDICTION, anew, assert_same_set, furniture, hills};
+use crate::support::{Manifold, Pair, Question, counting, distance, shape_with};
 use crate::truth::Tally;
 
 fn soft_ball() -> TriMesh {
@@ -46,9 +46,9 @@ fn run(other: &dyn Shape, height: Real, check: &mut dyn FnMut(&Question, &[Manif
         if !matches!(frame % 12, 4 | 11) {
             pose.translation.x += 1e-3 * (0.1 * frame as Real).sin();
         }
-        for (pair, is_mesh_first) in pairs.iter_mut().zip([false, true]) {
-            let question = Question { mesh: &soft, other, pose, is_mesh_first };
-            check(&question, &question.ask(&dispatcher, pair).manifolds, is_deformed);
+        for (pair, flipped) in pairs.iter_mut().zip([false, true]) {
+            let question = Question::new(other, &soft, pose).flipped(flipped);
+            check(&question, &pair.ask(&dispatcher, &question).manifolds, is_deformed);
         }
     }
     let stats = dispatcher.stats();
@@ -75,16 +75,16 @@ fn a_soft_mesh_keeps_its_contacts_with_a_height_field() {
     let (ground, ids) = as_mesh(&field);
     let mut tally = Tally::default();
     run(&field, 0.75, &mut |question, found, _| {
-        assert_same_set(found, &question.anew(&SbbkDispatcher::default()));
+        assert_same_set(found, &anew(question, &SbbkDispatcher::default()));
         let mut found = found.to_vec();
         for manifold in &mut found {
             let Manifold { subshape1, subshape2, .. } = manifold;
-            let id = if question.is_mesh_first { subshape2 } else { subshape1 };
+            let id = if question.is_flipped { subshape2 } else { subshape1 };
             *id = ids.binary_search(id).expect("a triangle of the field") as u32;
         }
-        let meshes = [&ground, question.mesh];
-        let meshes = if question.is_mesh_first { [meshes[1], meshes[0]] } else { meshes };
-        tally.add(&Query::new(meshes[0], meshes[1], question.pos12()), &found);
+        let meshes = [&ground, question.mesh()];
+        let meshes = if question.is_flipped { [meshes[1], meshes[0]] } else { meshes };
+        tally.add(&Question::new(meshes[0], meshes[1], question.pos12()), &found);
     });
     tally.check_all_right(10_000);
 }
@@ -104,11 +104,11 @@ fn a_soft_mesh_keeps_its_contacts_with_a_compound() {
             .collect();
         for (part_index, (part_pose, part)) in (0..).zip(furniture.shapes()) {
             let part_pose = question.pose.inverse() * *part_pose;
-            for (index, triangle) in (0..).zip(question.mesh.triangles()) {
+            for (index, triangle) in (0..).zip(question.mesh().triangles()) {
                 let apart = DefaultQueryDispatcher.distance(&part_pose, &triangle, &**part);
                 let apart = apart.expect("Parry knows all these distances").distance;
                 let pair = [index, part_index];
-                let pair = if question.is_mesh_first { pair } else { [part_index, index] };
+                let pair = if question.is_flipped { pair } else { [part_index, index] };
                 let is_found = found.contains(&pair);
                 let must = apart < PREDICTION - BAND;
                 assert!(is_found || !must, "{pair:?} is lost, {apart} away");
@@ -136,8 +136,8 @@ fn contacts_keep_their_data_while_a_mesh_deforms() {
         for _ in 0..6 {
             soft.update_vertices(|vertices| vertices.iter_mut().for_each(|v| *v *= 1.00001));
             let pose = Pose::translation(0.05, height, 0.1);
-            let question = Question { mesh: &soft, other, pose, is_mesh_first: true };
-            question.ask(&dispatcher, &mut pair);
+            let question = Question::new(other, &soft, pose).flipped(true);
+            pair.ask(&dispatcher, &question);
             for point in pair.manifolds.iter_mut().flat_map(|manifold| &mut manifold.points) {
                 point.data.0 += 1;
             }

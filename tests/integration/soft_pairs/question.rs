@@ -1,52 +1,18 @@
 use glamx::Vec3;
 use oorandom::Rand32;
 use rapier3d::math::{Pose, Real};
-use rapier3d::parry::shape::{
-    Compound, HeightField, HeightFieldCellStatus, Shape, SharedShape, TriMesh,
-};
+use rapier3d::parry::shape::{Compound, HeightField, HeightFieldCellStatus, SharedShape};
 use rapier3d::parry::utils::Array2;
 
-use crate::support::{Dispatcher, Manifold, Pair, assert_same, rebuilt, triangles};
-
-/// A pair of a mesh and another shape, in either order.
-#[derive(Clone, Copy)]
-pub struct Question<'a> {
-    pub mesh: &'a TriMesh,
-    pub other: &'a dyn Shape,
-    /// The pose of the mesh in the frame of the other shape.
-    pub pose: Pose,
-    pub is_mesh_first: bool,
-}
+use crate::support::{Dispatcher, Manifold, Question, assert_same, rebuilt, triangles};
 
 /// In units.
 pub const PREDICTION: Real = 0.02;
 
-impl Question<'_> {
-    pub fn pos12(&self) -> Pose {
-        if self.is_mesh_first { self.pose.inverse() } else { self.pose }
-    }
-
-    pub fn ask<'p, M, C>(
-        &self,
-        dispatcher: &impl Dispatcher<M, C>,
-        pair: &'p mut Pair<M, C>,
-    ) -> &'p mut Pair<M, C> {
-        let shapes = [self.other, self.mesh];
-        pair.ask_of(dispatcher, shapes, self.pose, self.is_mesh_first, PREDICTION)
-    }
-
-    /// The answer to one who knows nothing of the pair: manifolds with points.
-    pub fn fresh(&self, dispatcher: &impl Dispatcher<(), ()>) -> Vec<Manifold> {
-        let mut manifolds =
-            std::mem::take(&mut self.ask(dispatcher, &mut Pair::default()).manifolds);
-        manifolds.retain(|manifold| !manifold.points.is_empty());
-        manifolds
-    }
-
-    /// The same of the mesh built anew, which has a hierarchy, and so an order, of its own.
-    pub fn anew(&self, dispatcher: &impl Dispatcher<(), ()>) -> Vec<Manifold> {
-        Question { mesh: &rebuilt(self.mesh), ..*self }.fresh(dispatcher)
-    }
+/// The answer for the mesh built anew, which has a BVH of its own.
+pub fn anew(question: &Question, dispatcher: &impl Dispatcher<(), ()>) -> Vec<Manifold> {
+    let mesh = rebuilt(question.mesh());
+    Question { shapes: [question.shapes[0], &mesh], ..*question }.fresh(dispatcher)
 }
 
 /// Panics unless both have the same manifolds, in any order, bit for bit but for the sign of a
