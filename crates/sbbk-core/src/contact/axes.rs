@@ -1,15 +1,13 @@
 //! Separating axes: both face normals and the cross products of two edges.
 //!
-//! Along `n = e1 x e2` (or its opposite) the triangles can be closest, or overlap least, only
-//! if both edges are in front: triangle 1 lies behind `e1` and triangle 2 beyond `e2`. The third
-//! vertex of triangle 1 is at `-n1 . e2` from its edge, that of triangle 2 at `n2 . e1` from its
-//! own, where `n1` and `n2` are the face normals. So the edge pair counts only if `n1 . e2` and
-//! `n2 . e1` have the same sign, which is also the sign of the axis. Of the three products on each
-//! side one differs in sign from the other two: four or five of the nine pairs are left. (In terms
-//! of the Minkowski difference these are the pairs that make a face of it. Where a product is 0,
-//! the axis is that of a face.) The gap is the distance from edge to edge.
-//!
-//! All nine axes, three at a time in SIMD lanes (SSE2), made crossing pairs a third slower.
+//! Along `n = e1 x e2`, or its opposite, the triangles can be closest or overlap least only if both
+//! edges are in front. Then triangle 1 lies behind `e1` and triangle 2 beyond `e2`. With face
+//! normals `n1` and `n2`, the third vertex of triangle 1 is at `-n1 . e2` from its edge. The third
+//! vertex of triangle 2 is at `n2 . e1`. So the edge pair counts only if `n1 . e2` and `n2 . e1`
+//! have the same sign, which is the sign of the axis. On each side one of three products differs in
+//! sign from the other two, which leaves four or five pairs. (These pairs make the faces of the
+//! Minkowski difference. A product of 0 stands for the axis of a face.) The gap is the distance
+//! between the edges.
 //!
 //! S. Gottschalk, M. Lin, D. Manocha, "OBBTree", 1996; D. Gregorius, "The Separating Axis Test
 //! between Convex Polyhedra", 2013.
@@ -25,8 +23,8 @@ pub(super) struct Axis {
     /// Negative when the shadows overlap; minus infinity for no axis at all.
     pub gap: f64,
     pub normal: DVec3,
-    /// As bits, in a whole word: a byte beside padding makes each copy wait for its store, 100 ns
-    /// for a crossing pair.
+    /// [`FeaturePair`] as bits in a whole word. A byte beside padding would make each copy wait for
+    /// its store.
     features: u64,
 }
 
@@ -60,7 +58,7 @@ pub(super) struct FaceAxes {
     pub best: Axis,
     /// The other one.
     pub other: Axis,
-    /// Of both triangles, as long as twice their areas.
+    /// Area vectors of both triangles, twice as long as the areas.
     normals: [DVec3; 2],
 }
 
@@ -69,8 +67,8 @@ impl FaceAxes {
     pub fn new(t1: &Triangle, t2: &Triangle) -> Self {
         let [(normal1, area1), (normal2, area2)] = [t1.normal_and_area(), t2.normal_and_area()];
         let normals = [normal1 * area1, normal2 * area2];
-        let (j, gap1, normal1) = nearest(t2.heights(t1.vertices[0], normal1), normal1);
-        let (i, gap2, normal2) = nearest(t1.heights(t2.vertices[0], normal2), normal2);
+        let (j, gap1, normal1) = nearest_vertex(t2.heights(t1.vertices[0], normal1), normal1);
+        let (i, gap2, normal2) = nearest_vertex(t1.heights(t2.vertices[0], normal2), normal2);
         let features1 = FeaturePair::new(Feature::Face, Feature::Vertex(j));
         let features2 = FeaturePair::new(Feature::Vertex(i), Feature::Face);
         let axis1 = Axis::new(gap1, normal1, features1);
@@ -83,7 +81,7 @@ impl FaceAxes {
 /// The vertex nearest to a plane, how far in front of it all vertices are, and from which side.
 /// A triangle without area is no plane.
 #[inline(always)]
-fn nearest([a, b, c]: [f64; 3], normal: DVec3) -> (u8, f64, DVec3) {
+fn nearest_vertex([a, b, c]: [f64; 3], normal: DVec3) -> (u8, f64, DVec3) {
     let (i, low) = least([a, b, c]);
     let (j, high) = least([-a, -b, -c]);
     if normal == DVec3::ZERO {

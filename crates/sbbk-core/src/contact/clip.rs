@@ -1,19 +1,17 @@
 //! The contact points between two triangles that face each other along a normal.
 //!
-//! Seen along the normal, the overlap of two triangles is a polygon whose corners are vertices
-//! of one triangle inside the other and crossings of two edges. On its corners the distance
-//! along the normal takes its extremes, since it is linear over the polygon. One table of signs,
-//! on which side of each edge of one triangle each vertex of the other lies, gives all corners.
+//! Seen along the normal, the overlap of two triangles is a polygon. Its corners are vertices of
+//! one triangle inside the other, and crossings of two edges. The distance along the normal is
+//! linear over the polygon, so it takes its extremes at the corners. One table of signs gives all
+//! corners: the side of each edge of one triangle on which each vertex of the other lies.
 //!
-//! **Capacity.** Each triangle has three vertices. An edge crosses those edges of the other
-//! triangle whose ends lie on strictly opposite sides of it, and of three signs around a triangle
-//! at most two neighbours differ: that makes six crossings at most, and twelve points, whatever
-//! rounding does to the signs (without rounding six, the corners of the polygon, or as many pairs
-//! of vertices that coincide). The closest points are the thirteenth.
+//! **Capacity.** Each triangle has three vertices. Among three signs around a triangle at most two
+//! neighbours differ, so an edge crosses at most two edges. That makes at most six crossings and
+//! twelve points, for any rounding of the signs. The closest points are the thirteenth.
 
 use super::closest::within_edge;
 use super::feature::{Feature, FeaturePair};
-use super::sides::{Crossing, Sides};
+use super::shadow_signs::{EdgeCrossing, ShadowSigns};
 use super::triangle::{NEAR_PARALLEL, Triangle};
 use super::triangle_contact::TriangleContact;
 use arrayvec::ArrayVec;
@@ -24,7 +22,8 @@ use glamx::DVec3;
 /// lose points, and only their edges are left.
 const EDGE_ON: f64 = 1.0e-5;
 
-/// Closest points within this fraction of the smaller triangle's size are the same point.
+/// Closest points within this fraction of the smaller triangle's size count as one point. Higher:
+/// points are lost. Lower: points come twice.
 const SAME_POINT: f64 = 1.0e-6;
 
 /// Points that a manifold of two triangles can have.
@@ -42,16 +41,16 @@ pub struct ManifoldPoint {
     pub point2: DVec3,
     /// From point 1 to point 2 along the normal; negative when triangle 2 is behind triangle 1.
     pub distance: f64,
-    /// What meets here: a vertex and a face, or two edges. The closest points, pushed by
-    /// [`push_closest`], may have any features. Unique among the points of a manifold and stable
+    /// The features that meet: a vertex and a face, or two edges. The closest points, added by
+    /// [`push_closest`], may have any features. Unique among the points of a manifold, and stable
     /// while the triangles slide.
     pub features: FeaturePair,
 }
 
-/// Fills `out` with the corners of the overlap of both triangles, seen along `normal` (a unit
-/// vector from triangle 1 to triangle 2): vertices of triangle 1, of triangle 2, then edge
-/// crossings. At all distances: the caller drops those beyond its margin. Empty when the
-/// triangles do not overlap in this view.
+/// Fills `out` with the corners of the overlap of both triangles, seen along `normal`, a unit
+/// vector from triangle 1 to triangle 2. The order is: vertices of triangle 1, vertices of triangle
+/// 2, edge crossings. Points at all distances are kept; the caller drops those beyond its margin.
+/// `out` is empty if the triangles do not overlap in this view.
 pub fn clip(t1: &[DVec3; 3], t2: &[DVec3; 3], normal: DVec3, out: &mut ManifoldPoints) {
     clip_triangles(&Triangle::new(t1), &Triangle::new(t2), normal, out);
 }
@@ -92,14 +91,14 @@ pub(super) fn clip_triangles(
     out: &mut ManifoldPoints,
 ) {
     out.clear();
-    let sides = Sides::new(t1, t2, normal);
-    let inside = sides.inside();
+    let signs = ShadowSigns::new(t1, t2, normal);
+    let inside = signs.inside();
     for k in 0..2 {
         push_vertices([t1, t2], k, inside[k], normal, out);
     }
-    let mut crossings = sides.crossings();
+    let mut crossings = signs.crossings();
     while crossings != 0 {
-        let crossing = sides.crossing(crossings.trailing_zeros() as usize);
+        let crossing = signs.crossing(crossings.trailing_zeros() as usize);
         out.push(crossing_point(t1, t2, &crossing, normal));
         crossings &= crossings - 1;
     }
@@ -109,7 +108,7 @@ pub(super) fn clip_triangles(
 fn crossing_point(
     t1: &Triangle,
     t2: &Triangle,
-    crossing: &Crossing,
+    crossing: &EdgeCrossing,
     normal: DVec3,
 ) -> ManifoldPoint {
     let ([i, j], [along1, mut along2]) = (crossing.edges, crossing.along);
@@ -123,16 +122,16 @@ fn crossing_point(
     ManifoldPoint { point1, point2, distance, features }
 }
 
-/// Where an edge comes closest to being in line with a point. Both places of a crossing are
-/// uncertain when the edges are near parallel; this one fits the other.
+/// Place on an edge that is closest to being in line with a point, as a fraction of the edge. Both
+/// places of a crossing are uncertain if the edges are near parallel; this one fits the other.
 #[cold]
 fn along_in_line(point: DVec3, t: &Triangle, j: usize, normal: DVec3) -> f64 {
     let shadow = t.edges[j] - normal * t.edges[j].dot(normal);
     within_edge((point - t.vertices[j]).dot(shadow) / shadow.length_squared())
 }
 
-/// Adds the vertices of triangle `k` (0 or 1) whose bits are set, each with the point in line
-/// with it in the plane of the other triangle.
+/// Adds the vertices of triangle `k` (0 or 1) whose bits are set. Each vertex gets the point in
+/// line with it in the plane of the other triangle.
 #[inline(always)]
 fn push_vertices(
     triangles: [&Triangle; 2],

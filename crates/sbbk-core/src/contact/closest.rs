@@ -1,28 +1,28 @@
 //! The closest points of two given features, and the proof that no others are closer.
 //!
-//! The proof is duality. A direction along which all of triangle 2 lies at least `d` beyond
-//! triangle 1 shows that the distance is not below `d`; two points at distance `d` show that it
-//! is not above. So points of the two features are the closest points of the triangles exactly
-//! when each triangle stays on its own side of the plane through its feature, perpendicular to
-//! the direction between them. This needs four dot products, whatever the features are.
+//! The proof is duality. If all of triangle 2 lies at least `d` beyond triangle 1 along some
+//! direction, the distance is at least `d`. Two points at distance `d` show that it is at most `d`.
+//! So points of two features are the closest points exactly if each triangle stays on its own side
+//! of a plane: the plane through its feature, perpendicular to the direction between the points.
+//! The test takes four dot products for any features.
 
 use super::feature::{Feature, FeaturePair};
 use super::triangle::{NEAR_PARALLEL, Triangle};
 use glamx::DVec3;
 
-/// How far, in triangle sizes, a vertex may lie beyond the plane that should bound it. Covers
-/// rounding. Higher: features that only nearly realise the contact are kept from the last step,
-/// and distances are off by as much. Lower: flat contacts, where many features tie, lose the
-/// short way.
+/// Distance, in triangle sizes, by which a vertex may lie beyond its bounding plane. Covers
+/// rounding. Higher: features that only nearly realise the contact are kept from the last step.
+/// Lower: flat contacts, where many features tie, take a full search.
 pub(super) const TIE: f64 = 1.0e-13;
 
-/// How far, in triangle sizes, other vertices must be behind the closest features for these to be
-/// known without looking at others, see [`proved`]. Higher: more pairs that nearly tie take the
-/// long way. Lower: the answer depends on the features that it was tried with.
+/// Least distance, in triangle sizes, of all other vertices behind the closest features in a proof
+/// ([`proved`]). Higher: more pairs that nearly tie take a full search. Lower: the contact depends
+/// on the features of the last step.
 const CLEAR_WIN: f64 = 1.0e-9;
 
-/// How far from the border of its feature a closest point must be, as a share of the geometric mean
-/// of size and distance; likewise.
+/// Least distance of a closest point from the border of its feature, as a share of the geometric
+/// mean of size and distance. Higher: more pairs that nearly tie take a full search. Lower: the
+/// contact depends on the features of the last step.
 const NEAR: f64 = 1.0e-5;
 
 /// Closest points of two features and the direction from the first to the second.
@@ -87,8 +87,8 @@ fn vertex_face(vertex: DVec3, t: &Triangle) -> Option<Closest> {
     Some(Closest { point1: vertex, point2, normal, distance: height.abs() })
 }
 
-/// Whether the foot of the perpendicular from `point` lies in the triangle, border included.
-/// `normal` is the triangle's, with either sign. Never so for a triangle without area.
+/// True if the foot of the perpendicular from `point` lies in the triangle, border included.
+/// `normal` is the triangle's, with either sign. False for a triangle without area.
 #[inline(always)]
 pub(super) fn is_over(point: DVec3, t: &Triangle, normal: DVec3) -> bool {
     let area_beside = |i: usize| t.edges[i].cross(point - t.vertices[i]).dot(normal);
@@ -97,7 +97,7 @@ pub(super) fn is_over(point: DVec3, t: &Triangle, normal: DVec3) -> bool {
     has_one_sign(areas) && area > 0.0 && (!t.is_thin(area * area) || t.is_beside(point))
 }
 
-/// Whether the values are all positive or zero, or all negative or zero.
+/// True if the values are all positive or zero, or all negative or zero.
 #[inline(always)]
 pub(super) fn has_one_sign([a, b, c]: [f64; 3]) -> bool {
     // No branches: the sign cannot be predicted.
@@ -110,14 +110,14 @@ fn edge_edge(t1: &Triangle, i: usize, t2: &Triangle, j: usize) -> Option<Closest
     let between = t2.vertices[j] - t1.vertices[i];
     let cross = e1.cross(e2);
     let area = cross.length_squared();
-    let [along1, along2] = crossing(between, e1, e2, cross, area);
+    let [along1, along2] = closest_on_lines(between, e1, e2, cross, area);
     if !(within(along1) && within(along2)) {
         return None;
     }
     let point1 = t1.vertices[i] + e1 * along1;
     let point2 = t2.vertices[j] + e2 * along2;
-    // A direction from the cross product is off by 1e-16 over the sine and spoils the distance by
-    // as much of the length; one from the difference is off by 1e-16 over the distance.
+    // A direction from the cross product is off by 1e-16 over the sine; so is the distance, as a
+    // share of the length. A direction from the difference is off by 1e-16 over the distance.
     let lengths = e1.length_squared() * e2.length_squared();
     if area < NEAR_PARALLEL * NEAR_PARALLEL * lengths {
         return Some(Closest::between(point1, point2, between + e2 * along2 - e1 * along1));
@@ -127,11 +127,17 @@ fn edge_edge(t1: &Triangle, i: usize, t2: &Triangle, j: usize) -> Option<Closest
     Some(Closest { point1, point2, normal: cross * scale, distance: apart * scale })
 }
 
-/// Where two lines are closest, as fractions of the edges; NaN or infinite for parallel ones. The
-/// second point is the foot of the first on its line, so that both are off by the same when the
-/// lines are near parallel.
+/// Places where two lines are closest, as fractions of the edges; NaN or infinite for parallel
+/// lines. The second point is the foot of the first on its line, so that near parallel lines move
+/// both by the same error.
 #[inline(always)]
-pub(super) fn crossing(between: DVec3, e1: DVec3, e2: DVec3, cross: DVec3, area: f64) -> [f64; 2] {
+pub(super) fn closest_on_lines(
+    between: DVec3,
+    e1: DVec3,
+    e2: DVec3,
+    cross: DVec3,
+    area: f64,
+) -> [f64; 2] {
     let along1 = between.cross(e2).dot(cross) / area;
     [along1, (along1 * e1.dot(e2) - between.dot(e2)) / e2.length_squared()]
 }
@@ -148,10 +154,10 @@ fn within(along: f64) -> bool {
 }
 
 /// The closest points of two features, if they are clearly the only closest points of the
-/// triangles, so that a search finds no other features, whatever rounding does to it.
+/// triangles. Then a search finds the same features in spite of rounding.
 ///
 /// A search is off by a few times `TIE` of the size in the distance. Points `y` to the side of the
-/// closest ones are farther by `y²/2d`, so the closest ones must be farther than `√(2d·TIE·size)`
+/// closest ones are farther by `y²/2d`. So the closest points must be farther than `√(2d·TIE·size)`
 /// from the border of their features. A vertex that is `w` behind the plane puts the foot of a
 /// perpendicular `d·w/size` outside, which must be more than rounding. The constants are hundreds
 /// of times larger.

@@ -7,17 +7,15 @@
 //! along2 = (along1 e1 - w) . e2 / e2 . e2
 //! ```
 //!
-//! `along1` is clamped to the edge first, then `along2`; if that changed it, or the edges are
-//! parallel, `along1` is the foot of that point (C. Ericson, "Real-Time Collision Detection",
-//! 2005, section 5.1.9). Ericson writes `along1` with scalar products only, which is cheaper but
-//! loses twice as many digits when the edges are near parallel: at 1e-8 rad it is noise.
+//! `along1` is clamped to the edge first, then `along2`. If that changed `along2`, or the edges are
+//! parallel, `along1` is the foot of that point (C. Ericson, "Real-Time Collision Detection", 2005,
+//! section 5.1.9). Ericson computes `along1` from scalar products only, which loses twice as many
+//! digits for near parallel edges.
 //!
-//! The pair that is closest among the nine is found by a walk. It starts at the edges that face
-//! each other and asks, for each triangle, on which side of the plane through the closest point
-//! the third vertex lies. If both lie behind, no other pair is closer (duality, see
-//! `closest.rs`); else the walk goes to the edge between the third vertex and the nearer end.
-//! On average 1.3 pairs are tried, all nine at most. All nine at once in SIMD lanes (SSE2) took
-//! more than twice as many instructions.
+//! A walk finds the closest of the nine pairs. It starts at the edges that face each other and
+//! tests each third vertex against the plane through the closest point. If both lie behind, no
+//! other pair is closer (duality, see `closest.rs`). Otherwise the walk moves to the edge between
+//! the third vertex and the nearer end. On average 1.3 pairs are tried, all nine at most.
 
 use super::closest::{Closest, TIE, closest, within_edge};
 use super::feature::{Feature, FeaturePair};
@@ -29,7 +27,7 @@ use glamx::DVec3;
 /// whole walk. Lower: distances are off by more.
 const CLEAR: f64 = 1.0e-6;
 
-/// Where one edge of each triangle are closest.
+/// The closest points of one edge of each triangle.
 #[derive(Clone, Copy)]
 struct EdgePair {
     edges: [usize; 2],
@@ -117,8 +115,8 @@ impl EdgePair {
         Self { edges: [i, j], along: [s1, s2], difference, distance_squared }
     }
 
-    /// Whether the third vertex of each triangle lies in front of the plane through its closest
-    /// point, so that points off the edge are closer; or whether that is hard to tell.
+    /// True for each triangle whose third vertex lies in front of the plane through its closest
+    /// point, or close to that plane. Then points off the edge may be closer.
     #[inline(always)]
     fn leaves(&self, t1: &Triangle, t2: &Triangle) -> [bool; 2] {
         let ([i, j], [s1, s2]) = (self.edges, self.along);

@@ -73,7 +73,7 @@ impl FeaturePair {
         Self(feature1.to_bits() | feature2.to_bits() << Feature::BITS)
     }
 
-    /// The same features as those of an axis.
+    /// Marks the features as the axis of a crossing contact.
     pub const fn crossing(self) -> Self {
         Self(self.0 | Self::CROSSING)
     }
@@ -88,12 +88,12 @@ impl FeaturePair {
         Feature::from_bits(self.0 >> Feature::BITS)
     }
 
-    /// Whether the features are those of an axis.
+    /// True if the features stand for the axis of a crossing contact.
     pub const fn is_crossing(self) -> bool {
         self.0 & Self::CROSSING != 0
     }
 
-    /// The same contact seen from triangle 2.
+    /// The pair with the triangles in the other order.
     pub const fn swapped(self) -> Self {
         Self(Self::new(self.feature2(), self.feature1()).0 | (self.0 & Self::CROSSING))
     }

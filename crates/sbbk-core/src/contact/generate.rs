@@ -2,7 +2,7 @@
 
 use super::axes::{Axis, FaceAxes, best_axis};
 use super::clip::{ManifoldPoints, clip_triangles, push_closest_points};
-use super::closest::{Closest, TIE, closest, crossing, is_over, proved, within_edge};
+use super::closest::{Closest, TIE, closest, closest_on_lines, is_over, proved, within_edge};
 use super::edges::{closest_edges, proved_edges};
 use super::feature::{Feature, FeaturePair};
 use super::touching::{near_axis, touching};
@@ -10,17 +10,17 @@ use super::triangle::Triangle;
 use super::triangle_contact::TriangleContact;
 use glamx::DVec3;
 
-/// A gap or overlap below this many triangle sizes does not prove that triangles are apart or
-/// that they cross; the choice of the best axis is exact to a tenth of it. Higher: more pairs take
-/// the slow way of [`touching`], with the same result. Lower: rounding decides.
+/// Gap or overlap, in triangle sizes, below which rounding may hide if triangles are apart or
+/// cross. The choice of the best axis is exact to a tenth of it. Higher: more pairs take the slow
+/// path of [`touching`], with the same result. Lower: rounding decides.
 pub(super) const TOUCHING: f64 = 1.0e-9;
 
 /// The contact of two triangles at a distance of at most `margin`; crossing ones have a negative
 /// distance.
 ///
-/// All coordinates are in one frame. Differences of coordinates are all that counts, so a nearby
-/// origin gives the most digits. Triangles may be segments or points. Coordinates between 1e-38
-/// and 1e38 are safe from overflow. None when a coordinate is not finite.
+/// All coordinates are in one frame. Only differences of coordinates count, so a nearby origin
+/// gives the most digits. Triangles may be segments or points. Coordinates between 1e-38 and 1e38
+/// are safe from overflow. Returns `None` if a coordinate is not finite.
 ///
 /// About 70 ns when two vertices or edges are closest, 120 when a vertex and a face are, 150 when
 /// the triangles cross.
@@ -28,9 +28,9 @@ pub fn contact(t1: &[DVec3; 3], t2: &[DVec3; 3], margin: f64) -> Option<Triangle
     find(&Triangle::new(t1), &Triangle::new(t2), margin, None)
 }
 
-/// As [`contact`](fn@contact), given the features that made the contact in the step before: 20 to
-/// 45 ns when they still do, apart; 120 when crossing. Whatever `last` is, the contact is that of
-/// `contact`, bit for bit: `last` is a hint where to look, never a part of the answer.
+/// Returns the same contact as [`contact`](fn@contact), bit for bit, given the features of the
+/// contact in the step before. `last` is a hint where to start. If it still holds, a contact of
+/// triangles apart takes 20 to 45 ns, a crossing one 120.
 pub fn contact_from(
     t1: &[DVec3; 3],
     t2: &[DVec3; 3],
@@ -40,11 +40,11 @@ pub fn contact_from(
     find(&Triangle::new(t1), &Triangle::new(t2), margin, Some(last))
 }
 
-/// [`contact`](fn@contact) or, given `last`, [`contact_from`]; then [`clip`](super::clip) along the
-/// normal and [`push_closest`](super::push_closest), at less cost than one by one.
+/// Computes [`contact`](fn@contact) or, given `last`, [`contact_from`], then the points of
+/// [`clip`](super::clip) and [`push_closest`](super::push_closest). One call costs less than three.
 ///
-/// `out` is left empty without a contact, and by one that is farther than `reach`: of contacts
-/// between `reach` and `margin` only the distance is of interest.
+/// `out` stays empty if there is no contact or if its distance is more than `reach`. Contacts
+/// between `reach` and `margin` have a distance only.
 pub fn manifold(
     t1: &[DVec3; 3],
     t2: &[DVec3; 3],
@@ -171,9 +171,9 @@ fn on_edges(t1: &Triangle, t2: &Triangle) -> TriangleContact {
     TriangleContact::new(features, closest)
 }
 
-/// Triangles that overlap on every axis, least on this one. Its features face each other, as the
-/// foot of the perpendicular from a point inside a convex body to the nearest of its planes lies
-/// on the body; only where axes tie another vertex or edge may do.
+/// Triangles that overlap on every axis, least on this one. Its features face each other: the foot
+/// of the perpendicular from a point inside a convex body to the nearest of its planes lies on the
+/// body. If axes tie, another vertex or edge may be the right one.
 fn overlap(t1: &Triangle, t2: &Triangle, axis: &Axis) -> TriangleContact {
     let (contact, fits) = features_at(t1, t2, axis);
     let contact = if fits { contact } else { near_axis(t1, t2, axis) };
@@ -203,9 +203,9 @@ fn edges_at(t1: &Triangle, i: usize, t2: &Triangle, j: usize, axis: &Axis) -> (D
     let (e1, e2) = (t1.edges[i], t2.edges[j]);
     let between = t2.vertices[j] - t1.vertices[i];
     let cross = e1.cross(e2);
-    let along = crossing(between, e1, e2, cross, cross.length_squared());
+    let along = closest_on_lines(between, e1, e2, cross, cross.length_squared());
     let [s1, s2] = [within_edge(along[0]), within_edge(along[1])];
-    // An axis whose gap is that of an opposite vertex is not the direction of the contact.
+    // The axis is not the direction of the contact if its gap belongs to an opposite vertex.
     let slack = (between.dot(axis.normal) - axis.gap).abs();
     let fits = along == [s1, s2] && slack <= TIE * (t1.size + t2.size);
     (t1.vertices[i] + e1 * s1, t2.vertices[j] + e2 * s2, fits)

@@ -29,8 +29,8 @@
 //! 3. If no face does, the cross products of edges decide (`axes.rs`). The best of all axes
 //!    either separates the triangles and names the closest edges, or it is the least translation
 //!    of triangles that cross.
-//! 4. Where neither is clear, since the triangles touch or lie in one plane, all features and
-//!    axes are tried (`touching.rs`).
+//! 4. If neither is clear, the triangles touch or lie in one plane. Then all features and axes are
+//!    tried (`touching.rs`).
 //!
 //! From step to step the features rarely change. The proof of the first step, made for the
 //! features of the step before (`closest.rs`), then replaces the search.
@@ -48,8 +48,8 @@ pub mod convex;
 mod edges;
 mod feature;
 mod generate;
-mod outward;
-mod sides;
+mod penetration;
+mod shadow_signs;
 mod touching;
 mod triangle;
 mod triangle_contact;
@@ -57,5 +57,5 @@ mod triangle_contact;
 pub use clip::{MANIFOLD_CAPACITY, ManifoldPoint, ManifoldPoints, clip, push_closest};
 pub use feature::{Feature, FeaturePair};
 pub use generate::{contact, contact_from, manifold};
-pub use outward::outward;
+pub use penetration::penetration_out_of_solid;
 pub use triangle_contact::TriangleContact;

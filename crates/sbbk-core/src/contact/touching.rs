@@ -1,10 +1,10 @@
 //! Triangles that no axis clearly separates and no axis clearly lets overlap: they touch, or lie
 //! in one plane or on one line.
 //!
-//! Rare, so the slow and complete way is taken: all fifteen feature distances, and the axes in
-//! the planes of the triangles besides the other eleven. Triangles that cross by a depth `d` touch
-//! once one moves by `d`, so two features were at most `d` apart: triangles whose features are
-//! farther apart than the depth do not cross.
+//! This case is rare, so the complete search is used: all fifteen feature distances, and the axes
+//! in the planes of the triangles besides the other eleven. If triangles cross by a depth `d`, a
+//! move by `d` makes them touch, so two features were at most `d` apart. Triangles whose features
+//! are farther apart than the depth do not cross.
 
 use super::axes::Axis;
 use super::clip::{ManifoldPoint, ManifoldPoints, clip_triangles};
@@ -15,7 +15,7 @@ use super::triangle::Triangle;
 use super::triangle_contact::TriangleContact;
 use glamx::DVec3;
 
-/// What rounding can do to a distance or gap, in triangle sizes. Higher: triangles this close count
+/// Effect of rounding on a distance or gap, in triangle sizes. Higher: triangles this close count
 /// as touching. Lower: the normal of triangles that touch is noise.
 const ROUNDING: f64 = 1.0e-12;
 
@@ -41,8 +41,8 @@ fn in_line(axis: &Axis, features: FeaturePair, nearest: &Closest) -> TriangleCon
     TriangleContact { normal, distance, point1, point2: point1 + normal * distance, features }
 }
 
-/// The contact on an axis of triangles that overlap, of which neither features of the axis nor corners of
-/// the overlap show how deep: one may be a segment with a corner in its midst.
+/// The contact on an axis of overlapping triangles if neither its features nor corners of the
+/// overlap show the depth. A triangle may be a segment with a corner inside it.
 #[cold]
 pub(super) fn near_axis(t1: &Triangle, t2: &Triangle, axis: &Axis) -> TriangleContact {
     at_axis(t1, t2, axis).unwrap_or_else(|| {
@@ -51,8 +51,8 @@ pub(super) fn near_axis(t1: &Triangle, t2: &Triangle, axis: &Axis) -> TriangleCo
     })
 }
 
-/// The contact on an axis where many features tie: the deepest of the points seen along it. None
-/// when no point is as deep as the gap says.
+/// The contact on an axis where many features tie: the deepest of the points seen along it. `None`
+/// if no point is as deep as the gap.
 fn at_axis(t1: &Triangle, t2: &Triangle, axis: &Axis) -> Option<TriangleContact> {
     let mut points = ManifoldPoints::new();
     clip_triangles(t1, t2, axis.normal, &mut points);
@@ -83,8 +83,8 @@ fn nearest_features(t1: &Triangle, t2: &Triangle) -> (FeaturePair, Closest) {
     nearest
 }
 
-/// The normals of the edges in the planes of their triangles. Which features they stand for does
-/// not matter: [`at_axis`] finds those that meet.
+/// The normals of the edges in the planes of their triangles. The features are arbitrary:
+/// [`at_axis`] finds the right ones.
 fn in_plane_axes(t1: &Triangle, t2: &Triangle) -> impl Iterator<Item = Axis> {
     let faces = FeaturePair::new(Feature::Face, Feature::Face);
     let across = |t: &Triangle| t.edges.map(|edge| edge.cross(t.normal()).try_normalize());

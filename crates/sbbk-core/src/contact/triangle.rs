@@ -13,8 +13,8 @@ pub(super) const NEAR_PARALLEL: f64 = 1.0e-3;
 pub(super) struct Triangle<'a> {
     pub vertices: &'a [DVec3; 3],
     pub edges: [DVec3; 3],
-    /// Between one and four times the longest edge: the unit of all tolerances. Not finite if
-    /// any coordinate is not.
+    /// Unit of all tolerances: between one and four times the longest edge. Infinite or NaN if any
+    /// coordinate is.
     pub size: f64,
 }
 
@@ -69,8 +69,8 @@ impl<'a> Triangle<'a> {
         perpendicular(longest, shorter).map_or(DVec3::ZERO, |normal| normal * area)
     }
 
-    /// Whether a feature lies in a plane that faces a direction, up to `slack`, and the rest of the
-    /// triangle behind it by at least `win`.
+    /// True if a feature lies in a plane that faces a direction, up to `slack`, and the rest of the
+    /// triangle is behind it by at least `win`.
     #[inline(always)]
     pub fn is_behind(&self, feature: Feature, direction: DVec3, slack: f64, win: f64) -> bool {
         let i = feature.vertex();
@@ -83,8 +83,8 @@ impl<'a> Triangle<'a> {
         }
     }
 
-    /// Whether a point of a feature is farther than some distance from the feature's border; never
-    /// so in a thin triangle.
+    /// True if a point of a feature is farther than some distance from the border of the feature.
+    /// False for thin triangles.
     #[inline(always)]
     pub fn is_well_inside(&self, feature: Feature, point: DVec3, border_squared: f64) -> bool {
         match feature {
@@ -108,15 +108,15 @@ impl<'a> Triangle<'a> {
         }
     }
 
-    /// Whether a triangle is so thin that rounding moves its ends, by 1e-16 of its length over its
-    /// aspect; given the square of twice its area.
+    /// True if rounding may move the ends of a triangle, by 1e-16 of its length over its aspect.
+    /// Takes the square of twice the area.
     #[inline(always)]
     pub fn is_thin(&self, area_squared: f64) -> bool {
         let thin = NEAR_PARALLEL * self.size * self.size;
         area_squared < thin * thin
     }
 
-    /// Whether a point lies between the ends of the longest edge.
+    /// True if a point lies between the ends of the longest edge.
     #[cold]
     pub fn is_beside(&self, point: DVec3) -> bool {
         let i = self.longest_edge();
@@ -152,8 +152,8 @@ pub(super) const NEXT: [usize; 3] = [1, 2, 0];
 /// The vertex or edge before each one.
 pub(super) const PREVIOUS: [usize; 3] = [2, 0, 1];
 
-/// The unit vector perpendicular to two nearly parallel directions, exactly so to the first.
-/// None when they are parallel to the last digit.
+/// The unit vector perpendicular to two nearly parallel directions, exactly so to the first. `None`
+/// if they are parallel to the last digit.
 #[cold]
 pub(super) fn perpendicular(u: DVec3, v: DVec3) -> Option<DVec3> {
     let (u, v) = (u.try_normalize()?, v.try_normalize()?);

@@ -2,8 +2,8 @@ use super::closest::Closest;
 use super::feature::FeaturePair;
 use glamx::DVec3;
 
-/// How two triangles meet: their closest points when apart, the least translation that separates
-/// them when they cross.
+/// The contact of two triangles: closest points if apart, least translation that separates them if
+/// they cross.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleContact {
     /// Unit vector from triangle 1 to triangle 2.

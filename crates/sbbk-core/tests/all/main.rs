@@ -9,7 +9,7 @@ mod descent;
 mod draw;
 mod field;
 mod front;
-mod outward;
+mod penetration;
 mod placement;
 mod query;
 mod slack;

@@ -15,7 +15,7 @@
 use glamx::DVec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Real, Vector};
-use sbbk_core::contact::{Feature, ManifoldPoints, TriangleContact, outward};
+use sbbk_core::contact::{Feature, ManifoldPoints, TriangleContact, penetration_out_of_solid};
 use sbbk_core::leaf::Beside;
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Facets, OneRing};
@@ -193,7 +193,8 @@ impl<S: Surfaces> Judge<'_, S> {
         let shallow = f64::from(self.pose.prediction).min(self.shapes.near());
         let greatest = SHALLOW * distance.abs().max(shallow);
         if regions.is_first_round() {
-            let contact = outward(t1, t2, is_solid, is_end, Some(greatest), points);
+            let contact =
+                penetration_out_of_solid(t1, t2, is_solid, is_end, Some(greatest), points);
             if contact.is_none()
                 && !is_crossing
                 && distance.abs() < TOUCHING * (size(t1) + size(t2))
@@ -206,7 +207,7 @@ impl<S: Surfaces> Judge<'_, S> {
         if !regions.is_lost(self.pair) {
             return None;
         }
-        let contact = outward(t1, t2, is_solid, is_end, None, points)?;
+        let contact = penetration_out_of_solid(t1, t2, is_solid, is_end, None, points)?;
         let is_overlap = is_crossing || contact.distance <= 0.0;
         let is_shallow = contact.distance >= -greatest;
         let is_meant = is_overlap

@@ -1,7 +1,7 @@
 //! The contact points of a triangle and a face or edge of a convex shape that it meets.
 //!
-//! Seen along the normal, the overlap of both has corners where a vertex of one is inside the
-//! other, and where two edges cross; the distance takes its extremes there.
+//! Seen along the normal, the overlap of both has corners at vertices of one inside the other, and
+//! at crossings of edges. The distance takes its extremes there.
 
 use crate::contact::Feature;
 use crate::contact::closest::has_one_sign;
@@ -30,14 +30,15 @@ pub struct FeaturePoint {
     pub on_shape: DVec3,
     /// From the first to the second along the normal.
     pub distance: f64,
-    /// What meets: a corner of the triangle or of the feature and a face, or two edges, numbered
-    /// from 0 each. Edge `i` is from corner `i` to the next.
+    /// The features that meet: a corner of one and the face of the other, or two edges, numbered
+    /// from 0. Edge `i` runs from corner `i` to the next.
     pub features: [Feature; 2],
 }
 
-/// Fills `out` with the corners of the overlap of a triangle and a convex polygon of up to four
-/// corners in a plane, or an edge of two, seen along `normal`, a unit vector from the triangle to
-/// the other. At all distances. Empty for other numbers of corners.
+/// Fills `out` with the corners of the overlap of a triangle and a feature, seen along `normal`, a
+/// unit vector from the triangle to the feature. The feature is an edge of two corners, or a plane
+/// convex polygon of three or four; `out` stays empty for other counts. Points at all distances are
+/// kept.
 pub fn clip_feature(
     triangle: &[DVec3; 3],
     feature: &[DVec3],
@@ -123,8 +124,8 @@ pub fn clip_feature(
     }
 }
 
-/// The normal of a plane, as long as makes its product with a way to the plane the distance along
-/// `normal`. None for a plane that is seen edge on.
+/// The normal of a plane, scaled so that its product with a vector to the plane is the distance
+/// along `normal`. `None` for a plane that is seen edge-on.
 #[inline(always)]
 fn slope([a, b, c]: [DVec3; 3], normal: DVec3) -> Option<DVec3> {
     let face = (b - a).cross(c - a);

@@ -1,17 +1,16 @@
 //! A triangle and a box around the origin, in closed form.
 //!
-//! The faces of the difference of both are those of the box, the triangle, and one for each edge of
-//! the triangle and axis of the box: along one of these axes the bodies that cross are parted by
-//! the least translation, and bodies that are apart are seen to be so. How far these are apart is
-//! found by their nearest points (`apart.rs`).
+//! The faces of the Minkowski difference belong to the faces of the box, to the triangle, and to
+//! each edge of the triangle with an axis of the box. Bodies that cross are separated by the least
+//! translation along one of these axes. The nearest points of bodies apart come from `solid.rs`.
 
-use super::apart::{Gap, Near, Pair, Solid};
 use super::difference::Vertex;
 use super::search::BOUNDARY;
 use super::simplex;
+use super::solid::{Gap, OffsetPoint, Solid, TriangleAndSolid};
 use super::support::SupportMap;
 use super::{ConvexContact, by_search};
-use crate::contact::closest::{crossing, within_edge};
+use crate::contact::closest::{closest_on_lines, within_edge};
 use glamx::DVec3;
 
 /// A box around the origin, along the axes, given by its half lengths.
@@ -30,18 +29,18 @@ impl SupportMap for CuboidSupport {
     }
 }
 
-/// Least sine between an edge of the triangle and an axis of the box whose product is looked at:
-/// the face that it bounds is narrower than this share of the edge.
+/// Least sine between an edge of the triangle and an axis of the box whose product is tried. The
+/// face between them is narrower than this share of the edge.
 const PARALLEL: f64 = 1.0e-12;
 
-/// How far a point may be off a body, as a share of the size, and count as on it: where features
-/// tie, the deepest corner need not be over the other body.
+/// Distance by which a point may be off a body and count as on it, as a share of the size. If
+/// features tie, the deepest corner may be beside the other body.
 const ON_BODY: f64 = 1.0e-13;
 
-/// What a direction that may part the bodies belongs to.
+/// The origin of an axis.
 #[derive(Clone, Copy)]
-enum Facet {
-    /// Of the box, across this axis.
+enum BoxFacet {
+    /// A face of the box, perpendicular to this axis.
     Box(usize),
     Triangle,
     /// An edge of the triangle, and the edges of the box along this axis.
@@ -56,14 +55,14 @@ impl Solid for CuboidSupport {
 
     /// The slope is linear between the planes of the box's faces.
     #[inline(always)]
-    fn near_edge(&self, start: DVec3, edge: DVec3, _: f64) -> Near {
+    fn near_edge(&self, start: DVec3, edge: DVec3, _: f64) -> OffsetPoint {
         let half = self.0;
-        let at = |t: f64| Near::of(self, start + edge * t);
+        let at = |t: f64| OffsetPoint::of(self, start + edge * t);
         let (mut low, mut high) = (0.0, 1.0);
         let (to_high, to_low) = (half - start, -half - start);
         for i in 0..3 {
             for t in [to_low[i] / edge[i], to_high[i] / edge[i]] {
-                // Not so for NaN.
+                // False for NaN.
                 if t > low && t < high {
                     if at(t).from_shape.dot(edge) < 0.0 {
                         low = t;
@@ -73,7 +72,7 @@ impl Solid for CuboidSupport {
                 }
             }
         }
-        // Beyond these faces the edge is all the way.
+        // Between `low` and `high` the edge is beyond the same faces.
         let middle = at(0.5 * (low + high)).from_shape;
         let (mut down, mut up) = (0.0, 0.0);
         for i in 0..3 {
@@ -93,7 +92,7 @@ fn cuboid_contact(
     cuboid: &CuboidSupport,
     margin: f64,
 ) -> Option<ConvexContact> {
-    let pair = Pair::new(triangle, cuboid, cuboid.0.element_sum());
+    let pair = TriangleAndSolid::new(triangle, cuboid, cuboid.0.element_sum());
     if !pair.size.is_finite() {
         return None;
     }
@@ -104,7 +103,7 @@ fn cuboid_contact(
     }
     let doubtful = pair.doubtful();
     if of_box.width > doubtful
-        && let Facet::Box(axis) = facet
+        && let BoxFacet::Box(axis) = facet
         && let Some(contact) = pair.over_face(axis, of_box.outward[axis])
     {
         return Some(contact);
@@ -116,24 +115,24 @@ fn cuboid_contact(
             return None;
         }
         if gap.width > of_box.width {
-            widest = (gap, Facet::Triangle);
+            widest = (gap, BoxFacet::Triangle);
         }
     }
     if widest.0.width <= doubtful {
         widest = pair.edge_gap(widest);
     }
     let contact = if widest.0.width < -doubtful {
-        pair.crossing(&widest.0, widest.1)
+        pair.penetration(&widest.0, widest.1)
     } else {
         pair.contact(&pair.nearest(of_triangle.as_ref(), beyond)?)
     };
     contact.or_else(|| by_search(triangle, cuboid, f64::INFINITY))
 }
 
-impl Pair<'_, CuboidSupport> {
+impl TriangleAndSolid<'_, CuboidSupport> {
     /// The widest gap across a face of the box.
     #[inline(always)]
-    fn box_gap(&self) -> (Gap, Facet) {
+    fn box_gap(&self) -> (Gap, BoxFacet) {
         let ([a, b, c], half) = (*self.triangle, self.solid.0);
         let (above, below) = (a.min(b).min(c) - half, -half - a.max(b).max(c));
         let (mut axis, mut width, mut sign) = (0, f64::NEG_INFINITY, 1.0);
@@ -143,11 +142,11 @@ impl Pair<'_, CuboidSupport> {
                 (axis, width, sign) = (i, gap, side);
             }
         }
-        (Gap { width, outward: DVec3::AXES[axis] * sign }, Facet::Box(axis))
+        (Gap { width, outward: DVec3::AXES[axis] * sign }, BoxFacet::Box(axis))
     }
 
-    /// The contact of a triangle that is apart over the inside of a face of the box: that of its lowest
-    /// corner, as for most triangles near a floor.
+    /// The contact of a triangle that is apart and over the inside of a face of the box: its lowest
+    /// corner. Most triangles near a floor end here.
     #[inline(always)]
     fn over_face(&self, axis: usize, sign: f64) -> Option<ConvexContact> {
         let [mut lowest, b, c] = *self.triangle;
@@ -169,7 +168,7 @@ impl Pair<'_, CuboidSupport> {
     /// A point's height along the product of axis `i` and an edge is coordinate `i` of the product
     /// of edge and point. Gaps are compared by their squares, which saves eight roots.
     #[inline(always)]
-    fn edge_gap(&self, widest: (Gap, Facet)) -> (Gap, Facet) {
+    fn edge_gap(&self, widest: (Gap, BoxFacet)) -> (Gap, BoxFacet) {
         let (mut best, half) = (widest, self.solid.0);
         // Minus the square of a negative width: it rises with the width.
         let mut most = best.0.width * best.0.width.abs();
@@ -195,7 +194,7 @@ impl Pair<'_, CuboidSupport> {
                     let side = if is_below { -scale } else { scale };
                     let width = gap * scale;
                     let outward = DVec3::AXES[i].cross(edge) * side;
-                    best = (Gap { width, outward }, Facet::Edges(j, i));
+                    best = (Gap { width, outward }, BoxFacet::Edges(j, i));
                     most = width * width.abs();
                 }
             }
@@ -203,23 +202,23 @@ impl Pair<'_, CuboidSupport> {
         best
     }
 
-    /// The contact of bodies that cross, parted best along the gap of a facet. None where no points
-    /// are found.
+    /// The contact of bodies that cross, separated best along the gap of a facet. `None` if no
+    /// points are found.
     #[inline(always)]
-    fn crossing(&self, gap: &Gap, facet: Facet) -> Option<ConvexContact> {
+    fn penetration(&self, gap: &Gap, facet: BoxFacet) -> Option<ConvexContact> {
         let Gap { width, outward } = *gap;
         let guess = match facet {
-            Facet::Box(axis) => self.corner_over_face(axis, outward[axis]),
-            Facet::Triangle => {
+            BoxFacet::Box(axis) => self.corner_over_face(axis, outward[axis]),
+            BoxFacet::Triangle => {
                 let over = self.solid.0.copysign(outward) + outward * width;
                 let [a, b, c] =
                     [0, 1, 2].map(|i| Vertex { point: over - self.triangle[i], corner: i });
                 let near = simplex::face(a, b, c).squared;
                 (near <= (ON_BODY * self.size).powi(2)).then_some(over)
             }
-            Facet::Edges(edge, axis) => self.on_edge(edge, axis, gap),
+            BoxFacet::Edges(edge, axis) => self.on_edge(edge, axis, gap),
         };
-        // Else features lie in one plane.
+        // The fallback serves features in one plane.
         let on_triangle = guess.or_else(|| self.touching_after(gap))?;
         Some(ConvexContact::new(on_triangle, -outward, width))
     }
@@ -239,9 +238,9 @@ impl Pair<'_, CuboidSupport> {
         (is_over(1) && is_over(2)).then_some(deepest)
     }
 
-    /// The point of an edge of the triangle nearest to the edge of the box along an axis that is
-    /// farthest outward, if it is beside that edge and the deepest of the triangle. It need not be:
-    /// a product of edges can be the normal of a face of the box.
+    /// The point of an edge of the triangle nearest to the outermost edge of the box along an axis.
+    /// `None` if the point is beside that edge, or is not the deepest of the triangle: a product of
+    /// edges can be the normal of a face of the box.
     #[inline(always)]
     fn on_edge(&self, j: usize, axis: usize, gap: &Gap) -> Option<DVec3> {
         let Gap { width, outward } = *gap;
@@ -250,7 +249,7 @@ impl Pair<'_, CuboidSupport> {
         corner[axis] = 0.0;
         let along = DVec3::AXES[axis];
         let cross = edge.cross(along);
-        let [s, t] = crossing(corner - start, edge, along, cross, cross.length_squared());
+        let [s, t] = closest_on_lines(corner - start, edge, along, cross, cross.length_squared());
         let is_within = (0.0..=1.0).contains(&s) && t.abs() <= self.solid.0[axis];
         let point = start + edge * s;
         let above = (point - corner).dot(outward) - width;

@@ -6,17 +6,17 @@
 //!
 //! * a flat end and a corner of the triangle, and the triangle and a point of the shape;
 //! * a line of the slope and an edge: the normal is across both;
-//! * the slope and a corner: the normal is that of the slope in the direction of the corner;
+//! * the slope and a corner: the normal of the slope in the direction of the corner;
 //! * a rim and an edge, see [`rim_and_edge`].
 //!
-//! The edge between two parts is never nearest to a point inside. The depth of each candidate is
-//! measured with the support points of both bodies, so that each is a move that parts them, and the
-//! least is the answer.
+//! The edge between two parts is never nearest to a point inside. Support points of both bodies
+//! measure the depth of each candidate, so each is a move that separates them. The least one is the
+//! contact.
 
-use super::apart::{Gap, Near, Pair, Solid};
 use super::difference::Vertex;
 use super::search::BOUNDARY;
 use super::simplex;
+use super::solid::{Gap, OffsetPoint, Solid, TriangleAndSolid};
 use super::support::SupportMap;
 use super::{ConvexContact, by_search};
 use crate::contact::closest::within_edge;
@@ -95,9 +95,9 @@ const STEP: f64 = 1.0e-9;
 /// Least sine between an edge and the axis at which the edge and a rim make a surface.
 const PARALLEL: f64 = 1.0e-9;
 
-/// What a direction that may part the bodies belongs to.
+/// The part of the difference to which a direction belongs.
 #[derive(Clone, Copy)]
-enum Feature {
+enum Part {
     Corner,
     Face,
     /// The slope and an edge.
@@ -107,11 +107,11 @@ enum Feature {
 }
 
 /// The widest gap so far.
-struct Best(Gap, Feature);
+struct Best(Gap, Part);
 
 impl Best {
     #[inline(always)]
-    fn take(&mut self, gap: Gap, feature: Feature) {
+    fn take(&mut self, gap: Gap, feature: Part) {
         if gap.width > self.0.width {
             *self = Self(gap, feature);
         }
@@ -196,7 +196,7 @@ impl Solid for ConeSupport {
             }
             let squared = radius * radius + height * height;
             let along = (across * radius + below_tip * height) / squared;
-            // Without a slope there is only the tip.
+            // A cone without a slope is its tip.
             let along = if squared > 0.0 { along.clamp(0.0, 1.0) } else { 0.0 };
             (across - radius * along, height * along - below_tip)
         };
@@ -225,7 +225,7 @@ impl Turned for ConeSupport {
         [(-self.half_height, -1.0)].into_iter()
     }
 
-    /// Beside the base, normals can point up as far as that of the slope does.
+    /// Beside the base, normals can point up as far as the normal of the slope.
     fn rims(&self) -> [(f64, f64); 2] {
         [(-self.half_height, -1.0), (-self.half_height, 1.0)]
     }
@@ -244,7 +244,7 @@ fn turned_contact<S: Turned>(
     solid: &S,
     margin: f64,
 ) -> Option<ConvexContact> {
-    let pair = Pair::new(triangle, solid, solid.size());
+    let pair = TriangleAndSolid::new(triangle, solid, solid.size());
     if !pair.size.is_finite() {
         return None;
     }
@@ -260,11 +260,11 @@ fn turned_contact<S: Turned>(
     }
     let is_through = |gap: Gap| gap.width < 0.0 && pair.is_pierced(&gap);
     let contact = if of_triangle.is_some_and(is_through) {
-        pair.crossing(of_triangle)
+        pair.penetration(of_triangle)
     } else {
         let near = pair.nearest(of_triangle.as_ref(), beyond)?;
         if near.squared <= pair.doubtful() * pair.doubtful() {
-            pair.crossing(of_triangle)
+            pair.penetration(of_triangle)
         } else {
             pair.contact(&near)
         }
@@ -272,14 +272,15 @@ fn turned_contact<S: Turned>(
     contact.or_else(|| by_search(triangle, solid, f64::INFINITY))
 }
 
-impl<S: Turned> Pair<'_, S> {
+impl<S: Turned> TriangleAndSolid<'_, S> {
     fn heights(&self) -> (f64, f64) {
         let [a, b, c] = self.triangle.map(|corner| corner.y);
         (a.min(b).min(c), a.max(b).max(c))
     }
 
-    /// Whether a chord of the solid, across the plane of the triangle, goes through the triangle.
-    /// The section of the solid that no edge touches is inside the triangle or outside, as a whole.
+    /// True if a chord of the solid, across the plane of the triangle, runs through the triangle.
+    /// If no edge touches the section of the solid, the section is inside the triangle or outside,
+    /// as a whole.
     #[inline(always)]
     fn is_pierced(&self, gap: &Gap) -> bool {
         let normal = gap.outward;
@@ -296,20 +297,20 @@ impl<S: Turned> Pair<'_, S> {
         Gap { width: a.min(b).min(c) - reach, outward }
     }
 
-    /// The contact of bodies that cross. None if they hardly do.
+    /// The contact of bodies that cross. `None` if they hardly cross.
     #[inline(always)]
-    fn crossing(&self, of_triangle: Option<Gap>) -> Option<ConvexContact> {
+    fn penetration(&self, of_triangle: Option<Gap>) -> Option<ConvexContact> {
         let solid = self.solid;
         let nothing = Gap { width: f64::NEG_INFINITY, outward: DVec3::Y };
-        let mut best = Best(nothing, Feature::Corner);
+        let mut best = Best(nothing, Part::Corner);
         if let Some(gap) = of_triangle {
-            best.take(gap, Feature::Face);
-            best.take(self.gap(-gap.outward), Feature::Face);
+            best.take(gap, Part::Face);
+            best.take(self.gap(-gap.outward), Part::Face);
         }
         let (low, high) = self.heights();
         for (height, side) in solid.ends() {
             let width = if side > 0.0 { low - height } else { height - high };
-            best.take(Gap { width, outward: DVec3::Y * side }, Feature::Corner);
+            best.take(Gap { width, outward: DVec3::Y * side }, Part::Corner);
         }
         let rise = solid.slope();
         let run = (1.0 - rise * rise).sqrt();
@@ -325,7 +326,7 @@ impl<S: Turned> Pair<'_, S> {
             // From the axis any direction is as good.
             let [x, z] =
                 if across > 0.0 { [corner.x / across, corner.z / across] } else { [1.0, 0.0] };
-            best.take(self.gap(DVec3::new(x * run, rise, z * run)), Feature::Corner);
+            best.take(self.gap(DVec3::new(x * run, rise, z * run)), Part::Corner);
         }
         for (j, edge) in self.edges.into_iter().enumerate() {
             let [start, end, third] = [0, 1, 2].map(|i| self.triangle[(j + i) % 3]);
@@ -341,7 +342,7 @@ impl<S: Turned> Pair<'_, S> {
             if level_squared <= PARALLEL * PARALLEL * squared {
                 // Along the axis: level, from the axis to the edge.
                 let outward = DVec3::new(start.x, 0.0, start.z).normalize_or(DVec3::X);
-                best.take(self.gap(outward), Feature::Slope(j));
+                best.take(self.gap(outward), Part::Slope(j));
                 continue;
             }
             let beside = start.dot(level);
@@ -351,8 +352,8 @@ impl<S: Turned> Pair<'_, S> {
             let level = level / level_squared.sqrt();
             let up = level.cross(edge) / squared.sqrt();
             let up = if up.y < 0.0 { -up } else { up };
-            // By both coordinates across the edge: where it is, and the way to the third corner,
-            // which is not below the edge that touches.
+            // Both coordinates across the edge, of its position and of the vector to the third
+            // corner. The third corner is not below an edge that touches.
             let [at_level, at_up] = [start.dot(level), start.dot(up)];
             let [to_level, to_up] = [(third - start).dot(level), (third - start).dot(up)];
             let is_lowest = |x: f64, y: f64| x * to_level + y * to_up >= -self.doubtful();
@@ -362,7 +363,7 @@ impl<S: Turned> Pair<'_, S> {
                 for x in [cosine, -cosine] {
                     let bound = at_level * x + at_up * sine - reach;
                     if bound > best.0.width && is_lowest(x, sine) {
-                        best.take(self.gap(level * x + up * sine), Feature::Slope(j));
+                        best.take(self.gap(level * x + up * sine), Part::Slope(j));
                     }
                 }
             }
@@ -376,7 +377,7 @@ impl<S: Turned> Pair<'_, S> {
                 if let Some([x, y]) = rim_and_edge(coordinates, up.y, radius)
                     && is_lowest(x, y * side)
                 {
-                    best.take(self.gap(level * x + up * (y * side)), Feature::Rim(j));
+                    best.take(self.gap(level * x + up * (y * side)), Part::Rim(j));
                 }
             }
         }
@@ -388,28 +389,28 @@ impl<S: Turned> Pair<'_, S> {
         Some(ConvexContact::new(on_triangle, -gap.outward, gap.width))
     }
 
-    /// The point of the triangle that touches the solid after it has moved along the gap of a
-    /// feature, if that is where they touch: other features may be as deep.
+    /// The point of the triangle that touches the solid after a move along the gap of a part.
+    /// `None` if they touch elsewhere, as other parts may be equally deep.
     #[inline(always)]
-    fn touching(&self, gap: &Gap, feature: Feature) -> Option<DVec3> {
+    fn touching(&self, gap: &Gap, feature: Part) -> Option<DVec3> {
         let touching = self.doubtful() * self.doubtful();
         let shift = gap.outward * gap.width;
         match feature {
-            Feature::Corner => {
+            Part::Corner => {
                 let deepest = |x: &DVec3, y: &DVec3| y.dot(gap.outward) < x.dot(gap.outward);
                 let [a, b, c] = *self.triangle;
                 let corner = if deepest(&a, &b) { b } else { a };
                 let corner = if deepest(&corner, &c) { c } else { corner };
-                (Near::of(self.solid, corner - shift).squared <= touching).then_some(corner)
+                (OffsetPoint::of(self.solid, corner - shift).squared <= touching).then_some(corner)
             }
-            Feature::Face => {
+            Part::Face => {
                 let over = self.solid.support(gap.outward) + shift;
                 let [a, b, c] =
                     [0, 1, 2].map(|i| Vertex { point: over - self.triangle[i], corner: i });
                 (simplex::face(a, b, c).squared <= touching).then_some(over)
             }
             // The solid touches in the plane of the axis and the direction.
-            Feature::Slope(j) | Feature::Rim(j) => {
+            Part::Slope(j) | Part::Rim(j) => {
                 let (start, edge) = (self.triangle[j], self.edges[j]);
                 let beside = |v: DVec3| v.x * gap.outward.z - v.z * gap.outward.x;
                 let in_plane = || -beside(start) / beside(edge);
@@ -419,10 +420,11 @@ impl<S: Turned> Pair<'_, S> {
                 };
                 let at = |s: f64| {
                     let point = start + edge * within_edge(s);
-                    (Near::of(self.solid, point - shift).squared <= touching).then_some(point)
+                    (OffsetPoint::of(self.solid, point - shift).squared <= touching)
+                        .then_some(point)
                 };
                 match feature {
-                    Feature::Slope(_) => at(in_plane()).or_else(|| at(rim())),
+                    Part::Slope(_) => at(in_plane()).or_else(|| at(rim())),
                     _ => at(rim()).or_else(|| at(in_plane())),
                 }
             }
@@ -430,12 +432,12 @@ impl<S: Turned> Pair<'_, S> {
     }
 }
 
-/// Where the line of an edge is nearest to an endless slope, as a share of the edge; the slope
-/// comes `lean` nearer to the axis for each unit up.
+/// The place where the line of an edge is nearest to an endless slope, as a share of the edge. The
+/// slope comes `lean` nearer to the axis for each unit up.
 ///
-/// Across the slope the distance is as `√(a² + l² t²) + lean y t`, with `t` from where the edge is
-/// nearest to the axis, by `a`; `l` is its level length and `y` its height. It is least where
-/// `l² t = -lean y √(a² + l² t²)`. Steeper edges have no such place.
+/// Across the slope the distance varies with `√(a² + l² t²) + lean y t`. Here `t` starts where the
+/// edge is nearest to the axis, at distance `a`; `l` is the level length and `y` the height of the
+/// edge. The minimum is at `l² t = -lean y √(a² + l² t²)`. Steeper edges have none.
 #[inline(always)]
 fn near_slope(start: DVec3, edge: DVec3, lean: f64) -> f64 {
     let level_squared = edge.x * edge.x + edge.z * edge.z;
@@ -448,16 +450,16 @@ fn near_slope(start: DVec3, edge: DVec3, lean: f64) -> f64 {
     to_axis + fall * beside.abs() / (level_squared - fall * fall).sqrt()
 }
 
-/// The direction, by its level and upright coordinates, of the least depth of the surface that a
-/// rim and an edge make. The centre of the rim is at `(a, b)` from the edge; `rise` is the height
-/// of the upright unit vector across the edge. None if there is none whose upright part
-/// is positive, or zero.
+/// The direction, by level and upright coordinates, of the least depth of the surface that a rim
+/// and an edge make. The centre of the rim is at `(a, b)` from the edge; `rise` is the height of
+/// the upright unit vector across the edge. `None` if no direction with a positive or zero upright
+/// part has a least depth.
 ///
-/// Along `(cos f, sin f)` the depth is `a cos f + b sin f + r √(1 - rise² sin² f)`. With `t = tan f`
-/// and `a < 0`, so that `f < 90°` holds the least one, its slope has the sign of
-/// `|a| t + b - r rise² t / √(1 + run² t²)`, `run² = 1 - rise²`, which is convex for `t > 0`: the
-/// depth is least at the last root, to which Newton's method falls from above. Where `a > 0` and
-/// `b > 0` the slope over `sin f cos f` falls, so that there is no least depth.
+/// Along `(cos f, sin f)` the depth is `a cos f + b sin f + r √(1 - rise² sin² f)`. With `t = tan
+/// f` and `a < 0`, the minimum has `f < 90°`, and the slope has the sign of `|a| t + b - r rise² t
+/// / √(1 + run² t²)`, `run² = 1 - rise²`. This function is convex for `t > 0`. So the depth is
+/// least at the last root, which Newton's method approaches from above. If `a > 0` and `b > 0`, the
+/// slope over `sin f cos f` falls, and there is no least depth.
 #[inline(always)]
 fn rim_and_edge([a, b]: [f64; 2], rise: f64, radius: f64) -> Option<[f64; 2]> {
     let (steep, sign) = (a.abs(), if a < 0.0 { 1.0 } else { -1.0 });

@@ -1,10 +1,10 @@
 //! The least translation that parts bodies that cross or touch.
 //!
 //! G. van den Bergen, "Proximity queries and penetration depth computation on 3D game objects",
-//! 2001. A polytope inside the difference grows around the origin. The nearest plane of its faces
-//! is never farther than the surface of the difference; a move by the support of the difference
-//! along any direction parts the bodies. Where both meet, the move is the least one. What rounding
-//! makes of a thin face can end the growth early, but never gives a move that does not part them.
+//! 2001. A polytope inside the difference grows around the origin. Its nearest face is never
+//! farther than the surface of the difference. A move to the support plane of the difference along
+//! any direction separates the bodies. If both distances agree, the move is the least one. Rounding
+//! of thin faces can end the growth early, but every move separates the bodies.
 
 use super::difference::{Difference, Vertex};
 use super::polytope::{Face, Polytope};
@@ -27,15 +27,12 @@ const FLAT: f64 = 1.0e-12;
 pub(super) struct Depth {
     /// Unit vector, outward from the difference.
     pub outward: DVec3,
-    /// How far the difference reaches.
+    /// Distance of the support plane of the difference from the origin.
     pub depth: f64,
     pub on_triangle: DVec3,
-    /// Faces looked at.
-    #[cfg_attr(not(test), expect(dead_code, reason = "a test watches it"))]
-    pub rounds: u32,
 }
 
-/// Of bodies whose difference holds the origin inside a tetrahedron.
+/// The depth if the difference holds the origin inside a tetrahedron.
 pub(super) fn depth<S: SupportMap>(
     difference: &Difference<S>,
     tetrahedron: [Vertex; 4],
@@ -46,16 +43,15 @@ pub(super) fn depth<S: SupportMap>(
     let mut polytope = Polytope::empty(slack);
     polytope.begin(tetrahedron);
     let mut best: Option<(f64, Face)> = None;
-    let mut rounds = 0;
     while let Some(i) = polytope.nearest_open() {
-        rounds += 1;
         let face = polytope.get(i);
         let new = difference.farthest(face.normal);
         let reach = new.point.dot(face.normal);
         let open = slack + proved * reach.abs();
         let is_proved = reach - face.distance <= open;
-        // Of two as near the proved one has the origin above it. What rounding has made of a thin
-        // difference may have a face that is proved and far: each move parts, so the least one counts.
+        // The origin may be above one of two faces as near as the proved one. Rounding of a thin
+        // difference may prove a face that is far; each move separates the bodies, so the least one
+        // counts.
         if best.is_none_or(|(depth, _)| reach < depth || is_proved && reach <= depth + open) {
             best = Some((reach, *face));
         }
@@ -68,11 +64,11 @@ pub(super) fn depth<S: SupportMap>(
     }
     let (depth, face) = best?;
     let on_triangle = point_below(&polytope, &face, difference.triangle, 100.0 * slack);
-    Some(Depth { outward: face.normal, depth, on_triangle, rounds })
+    Some(Depth { outward: face.normal, depth, on_triangle })
 }
 
-/// The point of the triangle at the foot of the origin on a face. Where the foot is beside the
-/// face, another one, in nearly the same plane, holds it.
+/// The point of the triangle at the foot of the origin on a face. If the foot is beside the face,
+/// another face in nearly the same plane holds it.
 fn point_below(polytope: &Polytope, face: &Face, corners: &[DVec3; 3], slack: f64) -> DVec3 {
     let foot = face.normal * face.distance;
     let (mut least, mut point) = polytope.nearest_to(foot, face, corners);
@@ -87,7 +83,7 @@ fn point_below(polytope: &Polytope, face: &Face, corners: &[DVec3; 3], slack: f6
     point
 }
 
-/// Of bodies of which a simplex of the difference holds the origin up to rounding.
+/// The depth if a simplex of the difference holds the origin up to rounding.
 #[cold]
 pub(super) fn touching<S: SupportMap>(
     difference: &Difference<S>,
@@ -98,7 +94,7 @@ pub(super) fn touching<S: SupportMap>(
     let flat = |normal: DVec3| {
         let [up, down] = [normal, -normal].map(|u| (difference.farthest(u).point.dot(u), u));
         let (depth, outward) = if down.0 < up.0 { down } else { up };
-        Some(Depth { outward, depth, on_triangle, rounds: 0 })
+        Some(Depth { outward, depth, on_triangle })
     };
     let given = simplex.vertices();
     let a = given[0];
@@ -149,7 +145,7 @@ fn beyond_line<S: SupportMap>(
     farthest_of(difference, a, [across, along.cross(across), DVec3::ZERO], size)
 }
 
-/// The support point farthest from `a` along any of some axes. None where none is off it.
+/// The support point farthest from `a` along any of some axes. `None` if no point is off `a`.
 fn farthest_of<S: SupportMap>(
     difference: &Difference<S>,
     a: Vertex,

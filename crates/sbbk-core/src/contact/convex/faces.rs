@@ -1,14 +1,13 @@
 //! A triangle that crosses the convex hull of some points, by the hull's faces and edges.
 //!
-//! The faces of the difference of both are those of the hull, the triangle on both sides, and one
-//! for each edge of the hull and edge of the triangle whose arcs of normals cross. Along one of
-//! these the bodies are parted by the least translation. The normals of an edge of the hull are an
-//! arc between those of its faces; the normals of an edge of the triangle are half of a great
-//! circle. So arcs cross where one face of the hull rises along the edge of the triangle and the
-//! other one falls.
+//! The faces of the difference belong to the faces of the hull, to both sides of the triangle, and
+//! to pairs of edges whose arcs of normals cross. The least translation that separates the bodies
+//! is along one of these. The normals of an edge of the hull form an arc between those of its
+//! faces; for an edge of the triangle they form half of a great circle. So arcs cross if one face
+//! of the hull rises along the edge of the triangle and the other one falls.
 //!
-//! Few pairs of edges are looked at. A plane of the difference between two faces of the hull is no
-//! nearer than the nearer one of the planes that a corner of the triangle is below: both ends of the
+//! Few pairs of edges are tried. A plane of the difference between two faces of the hull is no
+//! nearer than the nearer one of the planes above a corner of the triangle. So both ends of the
 //! edge must be below one of these planes by less than the least depth so far.
 
 use super::difference::Vertex;
@@ -17,20 +16,20 @@ use super::lanes::{PlaneLanes, PointLanes, splat};
 use super::simplex::{self, thin_normal};
 use super::support::lowest as lowest_corner;
 use super::{ConvexContact, DOUBTFUL};
-use crate::contact::closest::crossing;
+use crate::contact::closest::closest_on_lines;
 use arrayvec::ArrayVec;
 use glamx::DVec3;
 use wide::f64x4;
 
-/// Least sine between an edge of the triangle and one of the hull that are looked at: the face that
-/// they span is narrower than this share of the edge.
+/// Least sine between an edge of the triangle and an edge of the hull that are tried. The face
+/// between them is narrower than this share of the edge.
 const PARALLEL: f64 = 1.0e-12;
 
-/// How far a point may be off a body, as a share of the size, and count as on it.
+/// Distance by which a point may be off a body and count as on it, as a share of the size.
 const ON_BODY: f64 = 1.0e-12;
 
-/// How much less deep a corner may be than the deepest one, as a share of the size, and count as
-/// deep: contact points are off the shape by as much.
+/// Depth by which a corner may be above the deepest one and count as equally deep, as a share of
+/// the size. Contact points are off the shape by as much.
 const TIE: f64 = 1.0e-11;
 
 /// The surface of a convex hull, as triangles.
@@ -44,9 +43,9 @@ pub(super) struct HullFaces {
     edges: Vec<[DVec3; 2]>,
 }
 
-/// What a direction that parts the bodies belongs to.
+/// The origin of a direction that separates the bodies.
 #[derive(Clone, Copy)]
-enum Facet {
+enum HullFacet {
     /// Of the hull.
     Face,
     Triangle,
@@ -56,16 +55,16 @@ enum Facet {
 
 /// A plane of the difference.
 #[derive(Clone, Copy)]
-struct Reach {
+struct Separation {
     /// Unit vector: the direction in which the triangle moves out of the hull.
     outward: DVec3,
     depth: f64,
-    facet: Facet,
+    facet: HullFacet,
 }
 
 impl HullFaces {
-    /// Of the hull of these points, whose faces may be these triangles. None for a hull that is flat
-    /// or has too many points, or where rounding chooses what is a face.
+    /// Builds the hull of some points, given triangles that may be its faces. `None` for a hull
+    /// that is flat or has too many points, or if rounding determines the faces.
     pub fn new(points: &[DVec3], triangles: &[[u32; 3]]) -> Option<Self> {
         if points.len() > POINTS {
             return None;
@@ -86,9 +85,9 @@ impl HullFaces {
         Some(Self { points: lanes, planes, beside, edges })
     }
 
-    /// The contact of a triangle that crosses the hull. None if it does not, or may not, and where
-    /// rounding chooses how. `size` is that of both.
-    pub fn crossing(&self, triangle: &[DVec3; 3], size: f64) -> Option<ConvexContact> {
+    /// The contact of a triangle that crosses the hull, given the size of both. `None` if the
+    /// bodies may not cross, or if rounding determines the contact.
+    pub fn penetration(&self, triangle: &[DVec3; 3], size: f64) -> Option<ConvexContact> {
         let doubtful = DOUBTFUL * size;
         let (normal, squared) = thin_normal(*triangle)?;
         let mut depths = ArrayVec::new();
@@ -100,18 +99,17 @@ impl HullFaces {
             let outward = normal / squared.sqrt();
             let depth = self.points.farthest(outward).0 - lowest(triangle, outward);
             if depth < least.depth {
-                least = Reach { outward, depth, facet: Facet::Triangle };
+                least = Separation { outward, depth, facet: HullFacet::Triangle };
             }
         }
         let of_edges = self.edge_pair(triangle, &depths, least.depth)?;
         if let Some(reach) = of_edges {
-            // A move by what the difference reaches parts the bodies, whatever rounding made of the
-            // arcs.
+            // A move to the support plane separates the bodies in spite of rounding of the arcs.
             let depth = self.points.farthest(reach.outward).0 - lowest(triangle, reach.outward);
             if (depth - reach.depth).abs() > ROUNDING * size + 1.0e-10 * depth {
                 return None;
             }
-            least = Reach { depth, ..reach };
+            least = Separation { depth, ..reach };
         }
         if least.depth <= doubtful {
             return None;
@@ -122,7 +120,7 @@ impl HullFaces {
 
     /// The least depth along the normal of a face; and how deep each corner is below each face.
     #[inline(always)]
-    fn face(&self, triangle: &[DVec3; 3], depths: &mut Depths) -> Reach {
+    fn face(&self, triangle: &[DVec3; 3], depths: &mut Depths) -> Separation {
         let [a, b, c] = triangle.map(splat);
         let (mut least, mut at) = (f64x4::splat(f64::INFINITY), f64x4::ZERO);
         for (i, planes) in self.planes.iter().enumerate() {
@@ -141,20 +139,22 @@ impl HullFaces {
             }
         }
         let outward = self.planes[at[lane] as usize].normal(lane);
-        Reach { outward, depth: least[lane], facet: Facet::Face }
+        Separation { outward, depth: least[lane], facet: HullFacet::Face }
     }
 
-    /// The least depth along a product of edges, if less than `most`. None of bodies apart.
+    /// The least depth along a product of edges, if less than `most`; outer `None` for bodies
+    /// apart.
     #[inline(always)]
     fn edge_pair(
         &self,
         triangle: &[DVec3; 3],
         depths: &Depths,
         most: f64,
-    ) -> Option<Option<Reach>> {
+    ) -> Option<Option<Separation>> {
         let [a, b, c] = *triangle;
         let sides = [b - a, c - b, a - c];
-        // Of each face along which sides it rises, and, three times, whether a corner is hardly below.
+        // For each face: bits of the sides along which it rises, and three copies of the bit for a
+        // corner that is hardly below.
         let mut marks = [0_u8; FACES];
         let bound = f64x4::splat(most);
         for (mark, [a, b, c]) in marks.chunks_exact_mut(4).zip(depths) {
@@ -166,7 +166,7 @@ impl HullFaces {
                 | (SPREAD[near as usize & 15] * (0b111 << 3));
             mark.copy_from_slice(&bits.to_le_bytes());
         }
-        let mut least: Option<Reach> = None;
+        let mut least: Option<Separation> = None;
         // The least depth, and its square.
         let (mut most, mut squared) = (most, most * most);
         for (&[p, q], edge) in self.beside.iter().zip(&self.edges) {
@@ -204,8 +204,8 @@ impl HullFaces {
                     let scale = 1.0 / length_squared.sqrt();
                     most = depth * scale;
                     squared = most * most;
-                    let facet = Facet::Edges(*edge, j);
-                    least = Some(Reach { outward: outward * scale, depth: most, facet });
+                    let facet = HullFacet::Edges(*edge, j);
+                    least = Some(Separation { outward: outward * scale, depth: most, facet });
                 }
             }
         }
@@ -214,22 +214,23 @@ impl HullFaces {
 
     /// The point of the triangle that comes to lie on the hull when it moves out.
     #[inline(always)]
-    fn on_triangle(&self, triangle: &[DVec3; 3], reach: &Reach, size: f64) -> Option<DVec3> {
-        let Reach { outward, depth, facet } = *reach;
+    fn on_triangle(&self, triangle: &[DVec3; 3], reach: &Separation, size: f64) -> Option<DVec3> {
+        let Separation { outward, depth, facet } = *reach;
         let guess = match facet {
-            Facet::Face => {
+            HullFacet::Face => {
                 let corner = triangle[lowest_corner(triangle, outward)];
                 self.holds(corner + outward * depth, ON_BODY * size).then_some(corner)
             }
-            Facet::Triangle => {
+            HullFacet::Triangle => {
                 let (_, vertex) = self.points.farthest(outward);
                 let point = vertex - outward * depth;
                 is_on(triangle, point, ON_BODY * size).then_some(point)
             }
-            Facet::Edges([start, along], j) => {
+            HullFacet::Edges([start, along], j) => {
                 let (corner, side) = (triangle[j], triangle[(j + 1) % 3] - triangle[j]);
                 let cross = side.cross(along);
-                let [s, t] = crossing(start - corner, side, along, cross, cross.length_squared());
+                let [s, t] =
+                    closest_on_lines(start - corner, side, along, cross, cross.length_squared());
                 let is_within = (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t);
                 is_within.then(|| corner + side * s)
             }
@@ -237,7 +238,7 @@ impl HullFaces {
         guess.or_else(|| self.where_flat(triangle, outward, depth, size))
     }
 
-    /// The same where features are parallel, or nearly so.
+    /// The point of the triangle if features are parallel, or nearly so.
     #[inline(never)]
     fn where_flat(
         &self,
@@ -270,7 +271,7 @@ impl HullFaces {
         points.find(|point| is_on(triangle, *point, slack))
     }
 
-    /// Whether a point is in the hull, or off it by at most `slack`.
+    /// True if a point is in the hull, or off it by at most `slack`.
     fn holds(&self, point: DVec3, slack: f64) -> bool {
         let point = splat(point);
         let mut least = f64x4::splat(f64::INFINITY);
@@ -302,7 +303,7 @@ impl HullFaces {
     }
 }
 
-/// How deep each corner of a triangle is below each face.
+/// Depth of each corner of a triangle below each face.
 type Depths = ArrayVec<[f64x4; 3], { FACES / 4 }>;
 
 /// Bit `i` of the index as the lowest bit of byte `i`.
@@ -319,13 +320,13 @@ const SPREAD: [u32; 16] = {
 /// The corner after each.
 const NEXT: [usize; 3] = [1, 2, 0];
 
-/// How far the lowest corner of a triangle is along a direction.
+/// Height of the lowest corner of a triangle along a direction.
 #[inline(always)]
 fn lowest([a, b, c]: &[DVec3; 3], direction: DVec3) -> f64 {
     a.dot(direction).min(b.dot(direction)).min(c.dot(direction))
 }
 
-/// Whether a point is at most `slack` off a triangle.
+/// True if a point is at most `slack` off a triangle.
 #[inline(always)]
 fn is_on(triangle: &[DVec3; 3], point: DVec3, slack: f64) -> bool {
     let [a, b, c] = triangle.map(|corner| Vertex { point: point - corner, corner: 0 });

@@ -3,17 +3,16 @@ use glamx::DVec3;
 use crate::contact::Feature;
 use crate::simd::each;
 
-/// Least squared cosine of the normals of a contact and of a triangle that touches with its face: a
-/// tenth of a degree, three times as much as normals of curved shapes are off.
+/// Least squared cosine between the normals of a contact and of a triangle for a face contact: a
+/// tenth of a degree. Higher: faces on curved shapes count as edges. Lower: edges count as faces.
 const FACE: f64 = 1.0 - 3.1e-6;
 
-/// Greatest weight of a corner that has no part in a point, as a share of all: what rounding, and the
-/// search for points of curved shapes, can do to a zero.
+/// Greatest weight of a corner that counts as zero, as a share of all. Higher: points near a corner
+/// count as the corner. Lower: rounding decides.
 const NONE: f64 = 1.0e-4;
 
-/// The part of a triangle that touches something at a point of its border or its face, along a unit
-/// normal: its face if the normal is that of the triangle, else the edge or the corner that the point is
-/// on.
+/// The feature of a triangle at a contact point, given the unit normal of the contact. This is the
+/// face if the normal is the triangle's, otherwise the edge or corner at the point.
 pub fn feature_at(triangle: &[DVec3; 3], point: DVec3, normal: DVec3) -> Feature {
     let [a, b, c] = *triangle;
     let face = (b - a).cross(c - a);
@@ -22,7 +21,7 @@ pub fn feature_at(triangle: &[DVec3; 3], point: DVec3, normal: DVec3) -> Feature
     if along * along >= FACE * size {
         return Feature::Face;
     }
-    // How much of the point each corner has, times `size`.
+    // Share of each corner in the point, times `size`.
     let weight = |i: usize| {
         let [from, to] = [triangle[(i + 1) % 3], triangle[(i + 2) % 3]];
         (to - from).cross(point - from).dot(face)

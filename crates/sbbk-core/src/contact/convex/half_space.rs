@@ -3,9 +3,8 @@
 use super::ConvexContact;
 use glamx::DVec3;
 
-/// The contact of a triangle with all that is below the plane through the origin with this unit
-/// normal: that of its lowest corner, the first of them. None beyond the margin, or when a number
-/// is not finite.
+/// Returns the contact of a triangle with the half-space below the plane through the origin with
+/// this unit normal, at the lowest corner. `None` beyond the margin, or if a number is not finite.
 pub fn half_space_contact(
     triangle: &[DVec3; 3],
     normal: DVec3,

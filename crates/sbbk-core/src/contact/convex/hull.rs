@@ -1,4 +1,4 @@
-//! The farthest of many points.
+//! The hull of many points.
 
 use super::ConvexContact;
 use super::faces::HullFaces;
@@ -8,47 +8,43 @@ use glamx::{DVec3, Vec3};
 use std::sync::OnceLock;
 use wide::f32x4;
 
-/// Points whose heights are kept from the first look to the second, by four: more are computed
-/// twice.
+/// Lanes of four points whose heights are stored between both passes; those of further points are
+/// computed twice.
 const KEPT: usize = 16;
 
-/// The convex hull of points in f32, for many support points. Without points it is the origin.
+/// The convex hull of points in f32, for many support points. The hull of no points is the origin.
 ///
-/// Heights are compared in f32, over lanes; those that rounding may have put below the greatest are
-/// compared in f64. So the farthest point is that of [`HullSupport`](super::HullSupport): the
-/// first of the farthest.
-///
-/// One is found among 40 points in 23 ns, among 100 in 48, where a look at all in f64 takes 40 and
-/// 104. Hulls of 20 gain nothing: to climb from neighbour to neighbour would have to beat that, and
-/// would need a proof where faces are nearly flat.
+/// Heights are compared in f32, in lanes; points within rounding of the greatest height are
+/// compared in f64. The result is the first of the farthest points, as for
+/// [`HullSupport`](super::HullSupport).
 #[derive(Clone, Debug, Default)]
 pub struct HullPoints {
     points: Vec<Vec3>,
-    /// What the host takes for its faces.
+    /// The faces according to the host.
     triangles: Vec<[u32; 3]>,
     lanes: Vec<[f32x4; 3]>,
     /// The largest absolute coordinate along each axis.
     greatest: DVec3,
-    /// Found when a triangle first crosses the hull; none where that is not clean.
+    /// Computed when a triangle first crosses the hull; `None` if rounding determines the faces.
     faces: OnceLock<Option<HullFaces>>,
 }
 
 impl HullPoints {
-    /// The hull of these points.
+    /// Builds the hull of some points.
     pub fn new(points: impl IntoIterator<Item = Vec3>) -> Self {
         Self::with_faces(points, [])
     }
 
-    /// The same, with the faces that it is likely to have: triangles by their points, counterclockwise
-    /// from outside, which saves nine tenths of the time it takes to find them. They are looked at
-    /// when a triangle first crosses the hull; if they are not its faces, these are found.
+    /// Builds the hull with its probable faces: triangles of point indices, counterclockwise from
+    /// outside. They are checked when a triangle first crosses the hull. Right ones save nine
+    /// tenths of the time to find the faces.
     pub fn with_faces(
         points: impl IntoIterator<Item = Vec3>,
         triangles: impl IntoIterator<Item = [u32; 3]>,
     ) -> Self {
         let points: Vec<Vec3> = points.into_iter().collect();
         let lanes = points.chunks(4).map(|four| {
-            // What is missing is the first one again.
+            // The first point pads the lanes.
             let at = |i: usize| *four.get(i).unwrap_or(&four[0]);
             let axis = |axis: usize| f32x4::new([0, 1, 2, 3].map(|i| at(i)[axis]));
             [axis(0), axis(1), axis(2)]
@@ -64,7 +60,7 @@ impl HullPoints {
 impl SupportMap for HullPoints {
     #[inline(always)]
     fn support(&self, direction: DVec3) -> DVec3 {
-        // Of any length: in f32 it must be about one.
+        // Scaled, since f32 needs a length of about one.
         let scaled = direction * (1.0 / direction.abs().max_element());
         let [x, y, z] = scaled.as_vec3().to_array().map(f32x4::splat);
         let height = |lanes: &[f32x4; 3]| lanes[0] * x + lanes[1] * y + lanes[2] * z;
@@ -94,7 +90,7 @@ impl SupportMap for HullPoints {
             let height = if i < KEPT { kept[i] } else { height(lanes) };
             let mut mask = height.simd_ge(least).to_bitmask();
             while mask != 0 {
-                // What fills the last four is the first one, and no farther.
+                // Padding has no index; it is no farther than the first point.
                 let point = self.points.get(4 * i + mask.trailing_zeros() as usize);
                 let along = point.map_or(f64::NEG_INFINITY, |p| p.as_dvec3().dot(direction));
                 if along > most {
@@ -106,11 +102,11 @@ impl SupportMap for HullPoints {
         farthest.as_dvec3()
     }
 
-    fn crossing(&self, triangle: &[DVec3; 3], size: f64) -> Option<ConvexContact> {
+    fn penetration(&self, triangle: &[DVec3; 3], size: f64) -> Option<ConvexContact> {
         let faces = self.faces.get_or_init(|| {
             let points: Vec<DVec3> = self.points.iter().map(|point| point.as_dvec3()).collect();
             HullFaces::new(&points, &self.triangles)
         });
-        faces.as_ref()?.crossing(triangle, size)
+        faces.as_ref()?.penetration(triangle, size)
     }
 }

@@ -30,11 +30,10 @@ pub(super) struct HullSurface {
 }
 
 impl HullSurface {
-    /// Of triangles that use all of the points. None if they are no closed convex surface, counted
-    /// counterclockwise.
+    /// Builds the surface from triangles that use all points. `None` if they are no closed convex
+    /// surface, counterclockwise from outside.
     ///
-    /// Where no edge is concave and the number of faces is that of a surface without handles, it is
-    /// convex everywhere.
+    /// A surface without concave edges whose face count excludes handles is convex everywhere.
     pub fn of(points: &[DVec3], triangles: &[[u32; 3]]) -> Option<Self> {
         const NONE: u8 = u8::MAX;
         let (count, slack) = (points.len(), ROUNDING * size(points.iter().copied()));
@@ -86,8 +85,8 @@ impl HullSurface {
         Some(surface)
     }
 
-    /// Of the hull of at most [`POINTS`] points, found by growth. None for one that is flat, and where rounding chooses
-    /// what is a face.
+    /// Builds the surface of the hull of at most [`POINTS`] points by growth. `None` for a flat
+    /// hull, or if rounding determines the faces.
     pub fn around(points: &PointLanes) -> Option<Self> {
         let size = size(points.iter());
         let slack = ROUNDING * size;
@@ -108,7 +107,7 @@ impl HullSurface {
         for (i, face) in polytope.faces() {
             let (height, _) = points.farthest(face.normal);
             let corners = polytope.corners(face).map(|corner| corner.point);
-            // Also not of a face without area, whose normal is that of another or none.
+            // False for a face without area, whose normal is borrowed or zero.
             let is_plane = corners.iter().all(|c| height - c.dot(face.normal) <= 4.0 * slack);
             if !is_plane || face.normal == DVec3::ZERO || surface.planes.is_full() {
                 return None;

@@ -3,11 +3,11 @@
 use glamx::DVec3;
 use wide::f64x4;
 
-/// Points; what is missing of the last four is the first one again.
+/// Points in lanes; the first one pads the last lanes.
 #[derive(Clone, Debug)]
 pub(super) struct PointLanes(Vec<[f64x4; 3]>);
 
-/// Four planes `normal·x = height` with unit normals; what is missing is the first one again.
+/// Four planes `normal·x = height` with unit normals; the first one pads missing lanes.
 #[derive(Clone, Debug)]
 pub(super) struct PlaneLanes {
     normals: [f64x4; 3],
@@ -31,7 +31,7 @@ impl PlaneLanes {
         DVec3::from_array(self.normals.map(|axis| axis.to_array()[lane]))
     }
 
-    /// How deep a point is below each.
+    /// Depth of a point below each plane.
     #[inline(always)]
     pub fn depth(&self, [x, y, z]: &[f64x4; 3]) -> f64x4 {
         let [nx, ny, nz] = self.normals;
@@ -53,7 +53,7 @@ impl PointLanes {
         self.0.iter().flat_map(|lanes| [0, 1, 2, 3].map(|lane| point_of(lanes, lane)))
     }
 
-    /// One of the points that are farthest along a direction, and how far that is.
+    /// Finds a point that is farthest along a direction, and its height.
     #[inline(always)]
     pub fn farthest(&self, direction: DVec3) -> (f64, DVec3) {
         let [x, y, z] = splat(direction);
@@ -73,7 +73,7 @@ impl PointLanes {
         (most[lane], point_of(&self.0[at[lane] as usize], lane))
     }
 
-    /// Four of the points that are not in one plane. None if they are thinner than `flat`.
+    /// Four of the points that are not in one plane. `None` if the hull is thinner than `flat`.
     pub fn tetrahedron(&self, flat: f64) -> Option<[DVec3; 4]> {
         let a = self.iter().next()?;
         let across = |direction: DVec3| {

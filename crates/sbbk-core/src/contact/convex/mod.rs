@@ -14,35 +14,38 @@
 //! assert!((contact.distance + 0.2).abs() < 1.0e-15);
 //! ```
 //!
+//! This module is frozen: it works, its tests compare it with brute force, and other code needs only
+//! its interface.
+//!
 //! # How
 //!
-//! Balls, capsules, boxes, cylinders and cones have closed forms: nearest points of features for
-//! bodies apart (`segment.rs`, `apart.rs`), and the least depth of the parts of the surface of the
-//! Minkowski difference for bodies that cross (`segment.rs`, `cuboid.rs`, `curved.rs`). Triangles
-//! have the contact of [two](crate::contact). Hulls of up to 128 points that cross have one by their
-//! faces and edges (`faces.rs`, `hull_surface.rs`). Whatever other shape, and all poses in which rounding
-//! chooses what touches what, is left to a search by support points:
+//! Balls, capsules, boxes, cylinders and cones have closed forms. For bodies apart these are nearest
+//! points of features (`segment.rs`, `solid.rs`). For bodies that cross they are the least depth
+//! among the parts of the surface of the Minkowski difference (`segment.rs`, `cuboid.rs`,
+//! `curved.rs`). Triangles use the contact of [two triangles](crate::contact). Hulls of up to 128
+//! points that cross have a closed form by faces and edges (`faces.rs`, `hull_surface.rs`). Other
+//! shapes, and poses in which rounding determines the features, use a search by support points:
 //!
-//! 1. The nearest point of a simplex of the Minkowski difference goes toward the origin until a
-//!    support plane proves it nearest, or proves that the shape is beyond the margin (`search.rs`).
-//!    The first simplex is the whole triangle, seen from the point of the shape that reaches
-//!    farthest towards it, or farthest along its normal: for flat contacts that is the answer.
+//! 1. A simplex of the Minkowski difference approaches the origin until a support plane proves its
+//!    nearest point, or proves the shape beyond the margin (`search.rs`). The first simplex is the
+//!    whole triangle, which is right for flat contacts.
 //! 2. If a simplex holds the origin, a polytope grows from it to the nearest part of the surface of
 //!    the difference (`depth.rs`).
 //!
-//! The further points of a contact are those of [`clip_feature`].
+//! [`clip_feature`] computes the other points of a contact.
 //!
 //! # Accuracy
 //!
-//! Arithmetic is f64; no tolerance has a unit. Distances of polytopes apart are exact up to
-//! rounding, which is 1e-15 of the size of the pair, or of the coordinates in the shape's frame if
-//! these are larger. Those of curved shapes are exact to 1e-7 of themselves, directions to 0.03
-//! degrees. Depths are exact to 1e-10 of themselves, those of curved shapes to 1e-5. Bodies closer
-//! than 1e-10 of their size may count as touching: their distance is off by less than that; needles a
-//! billionth as wide as long, closer than 5e-10, by up to 1e-8 of their length. A contact is a function
-//! of its arguments, bit for bit: no search starts from an earlier one.
+//! Arithmetic is f64; no tolerance has a unit. Errors of distances and depths:
+//!
+//! * polytopes apart: 1e-15 of the size of the pair, or of the coordinates if these are larger;
+//! * curved shapes apart: 1e-7 of the distance, and 0.03 degrees in the normal;
+//! * depths: 1e-10 of the depth, 1e-5 for curved shapes;
+//! * bodies closer than 1e-10 of their size may count as touching; needles a billionth as wide as
+//!   long are off by up to 1e-8 of their length.
+//!
+//! A contact is a function of its arguments, bit for bit: no search starts from an earlier one.
 
-mod apart;
 mod clip;
 mod cuboid;
 mod curved;
@@ -58,6 +61,7 @@ mod polytope;
 mod search;
 mod segment;
 mod simplex;
+mod solid;
 mod support;
 
 pub use clip::{FEATURE_CORNERS, FeaturePoint, FeaturePoints, clip_feature};
@@ -74,10 +78,10 @@ use difference::{Difference, Vertex};
 use glamx::DVec3;
 use search::{Outcome, search};
 
-/// How a triangle and a convex shape meet, in the shape's frame.
+/// The contact of a triangle and a convex shape, in the frame of the shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConvexContact {
-    /// The distance; when the bodies cross, minus the length of the least translation that parts
+    /// The distance; if the bodies cross, minus the length of the least translation that separates
     /// them.
     pub distance: f64,
     /// Unit vector from the triangle to the shape: the direction in which the shape moves away.
@@ -94,7 +98,7 @@ impl ConvexContact {
         Self { distance, normal, on_triangle, on_shape: on_triangle + normal * distance }
     }
 
-    /// Of bodies apart, from the point of the triangle and the way from there to the shape.
+    /// The contact of bodies apart, by the vector from a point of the triangle to the shape.
     #[inline(always)]
     fn apart(on_triangle: DVec3, difference: DVec3) -> Self {
         let distance = difference.length();
@@ -106,17 +110,16 @@ impl ConvexContact {
     }
 }
 
-/// The contact of a triangle with a convex shape at a distance of at most `margin`; crossing ones
-/// have a negative distance.
+/// Returns the contact of a triangle with a convex shape at a distance of at most `margin`. Crossing
+/// bodies have a negative distance.
 ///
-/// The corners are in the shape's frame, whose origin should be in or near the shape: the search
-/// starts toward it. The triangle may be a segment or a point, and the shape may be flat. None
-/// when a coordinate is not finite. Coordinates and their differences between 1e-38 and 1e38 are
-/// safe from overflow.
+/// The corners are in the shape's frame, whose origin should be in or near the shape, as the search
+/// starts toward it. The triangle may be a segment or a point, and the shape may be flat. Returns
+/// `None` if a coordinate is not finite. Coordinates and their differences between 1e-38 and 1e38
+/// are safe from overflow.
 ///
-/// Within the margin about 100 ns for a ball, capsule, triangle or cuboid, 300 for a cylinder or
-/// cone and 400 for a small hull; when crossing as much, 1 µs for a cylinder or cone, and half of that
-/// or more for a hull. Of other support maps, crossing ones take 2 µs or more.
+/// Takes about 100 ns for a ball, capsule, triangle or cuboid, 300 for a cylinder or cone, 400 for a
+/// small hull. Crossing cylinders and cones take 1 µs, other support maps 2 µs or more.
 pub fn convex_contact<S: SupportMap>(
     triangle: &[DVec3; 3],
     shape: &S,
@@ -125,8 +128,8 @@ pub fn convex_contact<S: SupportMap>(
     find(triangle, shape, margin).filter(|contact| contact.distance <= margin)
 }
 
-/// As [`convex_contact`] for a shape with a rounded border: all that is within `radius` of a core.
-/// A ball has a point as its core, a capsule a segment.
+/// Like [`convex_contact`] for a rounded shape: all points within `radius` of a core. The core of a
+/// ball is a point, the core of a capsule a segment.
 pub fn round_contact<S: SupportMap>(
     triangle: &[DVec3; 3],
     core: &S,
@@ -139,36 +142,36 @@ pub fn round_contact<S: SupportMap>(
     (contact.distance <= margin).then_some(contact)
 }
 
-/// Whether a triangle and a convex shape cross, or are at most `reach` apart, by search: where a
-/// [`convex_contact`] would measure how deep they cross, that is not asked.
+/// Returns true if a triangle and a convex shape cross or are at most `reach` apart. Faster than
+/// [`convex_contact`] for bodies that cross, as it measures no depth.
 pub fn convex_touches<S: SupportMap>(triangle: &[DVec3; 3], shape: &S, reach: f64) -> bool {
     let [a, b, c] = *triangle;
     let is_finite = (a.abs() + b.abs() + c.abs()).element_sum().is_finite();
     let difference = Difference { triangle, shape };
     is_finite
-        && match Start::new(&difference).search(&difference, reach).outcome {
+        && match Start::new(&difference).search(&difference, reach) {
             Outcome::Far => false,
             Outcome::Apart(simplex) => simplex.squared <= reach * reach,
             Outcome::Touching(_) | Outcome::Crossing(_) => true,
         }
 }
 
-/// Closed forms answer for bodies that are apart, or cross, by more than this share of their size.
-/// For others, where rounding chooses what touches what, the search does.
+/// Least distance or depth for closed forms, as a share of the size of the bodies. Below it rounding
+/// determines the features. Higher: more contacts take the search. Lower: closed forms lose digits.
 const DOUBTFUL: f64 = 1.0e-10;
 
-/// The contact; may be none if farther than the margin.
+/// The contact; perhaps `None` if farther than the margin.
 #[inline(always)]
 fn find<S: SupportMap>(triangle: &[DVec3; 3], shape: &S, margin: f64) -> Option<ConvexContact> {
     let [a, b, c] = *triangle;
-    // Finite, unless they are huge, exactly if all coordinates are.
+    // The sum is finite if all coordinates are, unless they are huge.
     if !(a.abs() + b.abs() + c.abs()).element_sum().is_finite() {
         return None;
     }
     shape.contact(triangle, margin).filter(ConvexContact::is_finite)
 }
 
-/// The contact by support points alone; none if farther than the margin by more than rounding.
+/// The contact by support points alone; `None` if clearly farther than the margin.
 #[inline(never)]
 fn by_search<S: SupportMap>(
     triangle: &[DVec3; 3],
@@ -177,31 +180,34 @@ fn by_search<S: SupportMap>(
 ) -> Option<ConvexContact> {
     let difference = Difference { triangle, shape };
     let start = Start::new(&difference);
-    if !start.parts(triangle)
-        && let Some(contact) = shape.crossing(triangle, start.size)
+    if !start.separates(triangle)
+        && let Some(contact) = shape.penetration(triangle, start.size)
     {
         return Some(contact);
     }
     let size = start.size;
-    match start.search(&difference, margin).outcome {
-        Outcome::Far => None,
+    let depth = match start.search(&difference, margin) {
+        Outcome::Far => return None,
         Outcome::Apart(simplex) => {
             let distance = simplex.squared.sqrt();
             let on_triangle = simplex.on_triangle(triangle);
-            Some(ConvexContact::new(on_triangle, simplex.nearest / distance, distance))
+            return Some(ConvexContact::new(on_triangle, simplex.nearest / distance, distance));
         }
-        Outcome::Crossing(tetrahedron) => depth(&difference, tetrahedron, size).map(crossing),
-        Outcome::Touching(simplex) => touching(&difference, &simplex, size).map(crossing),
-    }
+        Outcome::Crossing(tetrahedron) => depth(&difference, tetrahedron, size),
+        Outcome::Touching(simplex) => touching(&difference, &simplex, size),
+    };
+    depth.map(|Depth { outward, depth, on_triangle }| {
+        ConvexContact::new(on_triangle, -outward, -depth)
+    })
 }
 
-/// Where a search starts.
+/// The start of a search.
 struct Start {
-    /// From the triangle to somewhere in or near the shape.
+    /// Leads from the triangle to a point in or near the shape.
     toward: DVec3,
-    /// The point of the shape that reaches farthest back along that.
+    /// The support point of the shape opposite to `toward`.
     point: DVec3,
-    /// Of both.
+    /// Size of both.
     size: f64,
 }
 
@@ -215,23 +221,20 @@ impl Start {
         Self { toward, point, size: extent + point.abs().element_sum() }
     }
 
-    /// Whether a plane across the way parts the bodies.
+    /// True if a plane perpendicular to `toward` separates the bodies.
     #[inline(always)]
-    fn parts(&self, triangle: &[DVec3; 3]) -> bool {
+    fn separates(&self, triangle: &[DVec3; 3]) -> bool {
         triangle.iter().all(|corner| (self.point - corner).dot(self.toward) > 0.0)
     }
 
     #[inline(always)]
-    fn search<S: SupportMap>(&self, difference: &Difference<S>, margin: f64) -> search::Search {
+    fn search<S: SupportMap>(&self, difference: &Difference<S>, margin: f64) -> Outcome {
         search(difference, self.toward, self.point, margin, self.size)
     }
 }
 
-fn crossing(Depth { outward, depth, on_triangle, .. }: Depth) -> ConvexContact {
-    ConvexContact::new(on_triangle, -outward, -depth)
-}
-
-/// From the nearest point of the triangle to the origin, or across a triangle that holds it.
+/// Vector from the nearest point of the triangle to the origin, or the normal of a triangle that
+/// holds the origin.
 #[inline(always)]
 fn toward_origin<S: SupportMap>(difference: &Difference<S>, triangle: &[DVec3; 3]) -> DVec3 {
     let [a, b, c]: [Vertex; 3] = difference.at(DVec3::ZERO);
@@ -241,57 +244,4 @@ fn toward_origin<S: SupportMap>(difference: &Difference<S>, triangle: &[DVec3; 3
     }
     let normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
     if normal != DVec3::ZERO { normal } else { DVec3::Y }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    /// Rounds of the search and of the polytope, where one is needed.
-    fn rounds<S: SupportMap>(triangle: &[DVec3; 3], shape: &S) -> (u32, u32) {
-        let difference = Difference { triangle, shape };
-        let toward = toward_origin(&difference, triangle);
-        let start = shape.support(-toward);
-        let size = start.length() + triangle[1].distance(triangle[0]);
-        let found = search(&difference, toward, start, f64::INFINITY, size);
-        let depth = match found.outcome {
-            Outcome::Far | Outcome::Apart(_) => None,
-            Outcome::Crossing(tetrahedron) => depth(&difference, tetrahedron, size),
-            Outcome::Touching(simplex) => touching(&difference, &simplex, size),
-        };
-        (found.rounds, depth.map_or(0, |depth| depth.rounds))
-    }
-
-    fn point() -> impl Strategy<Value = DVec3> {
-        prop::array::uniform3(-1.0..1.0).prop_map(DVec3::from_array)
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(5000))]
-
-        /// The limits of both loops are there for support maps that lie: no contact is cut short.
-        /// Would catch a search that creeps or goes round in circles.
-        #[test]
-        fn limits_are_never_reached(
-            corners in prop::array::uniform3(point()),
-            at in point(),
-            points in prop::collection::vec(point(), 4..30),
-            half_height in 0.02..1.0,
-            radius in 0.02..1.0,
-            scale in -5.0..3.0_f64,
-        ) {
-            let triangle = corners.map(|c| at + c * scale.exp());
-            let all = [
-                rounds(&triangle, &CuboidSupport(DVec3::new(half_height, radius, 0.5))),
-                rounds(&triangle, &HullSupport(&points)),
-                rounds(&triangle, &CylinderSupport { half_height, radius }),
-                rounds(&triangle, &ConeSupport { half_height, radius }),
-            ];
-            for (search, growth) in all {
-                prop_assert!(search < search::ROUNDS / 2, "{all:?}");
-                prop_assert!((growth as usize) < polytope::VERTICES / 2, "{all:?}");
-            }
-        }
-    }
 }

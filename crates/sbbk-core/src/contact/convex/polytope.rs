@@ -6,7 +6,7 @@ use arrayvec::ArrayVec;
 use glamx::DVec3;
 
 /// Vertices at most.
-pub(super) const VERTICES: usize = 256;
+const VERTICES: usize = 256;
 
 /// Faces of a closed surface of as many vertices.
 const FACES: usize = 2 * VERTICES;
@@ -18,7 +18,7 @@ pub(super) struct Face {
     /// The face across the edge from each vertex to the next.
     pub neighbors: [u16; 3],
     pub normal: DVec3,
-    /// Of its plane from the origin.
+    /// Distance of the plane from the origin.
     pub distance: f64,
     state: State,
 }
@@ -33,7 +33,7 @@ enum State {
     Gone,
 }
 
-/// An edge between what a new vertex sees and what it does not see, with the face behind it.
+/// An edge between the faces visible from a new vertex and the others, with the face behind it.
 #[derive(Clone, Copy)]
 struct HorizonEdge {
     start: u16,
@@ -49,7 +49,7 @@ pub(super) struct Polytope {
     /// through for each new vertex.
     open: ArrayVec<f64, FACES>,
     gone: ArrayVec<u16, FACES>,
-    /// What is above a plane by less counts as in it.
+    /// Points above a plane by less than this count as in it.
     slack: f64,
 }
 
@@ -130,9 +130,9 @@ impl Polytope {
         face.vertices.map(|v| self.vertices[usize::from(v)])
     }
 
-    /// Takes in a vertex that is above a face: what it sees goes, and its edges to the horizon
-    /// bound new faces. False, and nothing is changed, where there is no room or the horizon is no
-    /// simple loop, which rounding can make of it.
+    /// Adds a vertex that is above a face: removes the visible faces and connects the horizon with
+    /// the vertex. Returns false, without changes, if there is no room or if rounding made the
+    /// horizon no simple loop.
     pub fn expand(&mut self, face: usize, new: Vertex) -> bool {
         if self.vertices.is_full() {
             return false;
@@ -242,8 +242,8 @@ impl Polytope {
         Face { vertices, neighbors, normal, distance, state: State::Closed }
     }
 
-    /// How far the nearest point of a face is from a point, squared, with its share of the corners
-    /// of the triangle.
+    /// Squared distance of the nearest point of a face from a point, and that point's share of the
+    /// corners of the triangle.
     pub fn nearest_to(&self, point: DVec3, face: &Face, corners: &[DVec3; 3]) -> (f64, DVec3) {
         let [a, b, c] =
             self.corners(face).map(|v| Vertex { point: v.point - point, corner: v.corner });
@@ -252,8 +252,7 @@ impl Polytope {
     }
 }
 
-/// Whether every vertex of the edges starts one and ends one. They bound what hangs together, so
-/// they are one loop then, or several that share no vertex; these are no loop.
+/// True if the edges form one loop without repeated vertices.
 fn is_loop(edges: &[HorizonEdge]) -> bool {
     let Some(first) = edges.first() else { return false };
     let mut end_of = [NO_FACE; VERTICES];

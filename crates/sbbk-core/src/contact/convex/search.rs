@@ -2,9 +2,9 @@
 //!
 //! E. Gilbert, D. Johnson, S. Keerthi, "A fast procedure for computing the distance between complex
 //! objects in three-dimensional space", 1988. The nearest point `v` of a simplex is never nearer
-//! than that of the difference; the difference is nowhere farther back along `v` than its support
-//! point there. Where both meet, the distance is proved; where the support point is beyond the
-//! margin, so is the shape.
+//! than the nearest point of the difference. No point of the difference is farther back along `v`
+//! than its support point. If both agree, the distance is proved; if the support point is beyond
+//! the margin, so is the shape.
 
 use super::difference::{Difference, Vertex};
 use super::simplex::{self, Simplex, Step};
@@ -12,9 +12,9 @@ use super::support::SupportMap;
 use arrayvec::ArrayVec;
 use glamx::DVec3;
 
-/// Simplices tried at most. No contact of the tests takes half as many;
-/// polytopes take few, cylinders and cones some thirty.
-pub(super) const ROUNDS: u32 = 100;
+/// Limit of simplices tried, for support maps that are not convex. Polytopes take few, cylinders
+/// and cones some thirty. Higher: such shapes take longer. Lower: contacts lose digits.
+const ROUNDS: u32 = 100;
 
 /// Share of the distance that a proof may leave open, for polytopes and for curved shapes.
 /// Directions are off by the root of twice that: of curved shapes by up to 0.03 degrees. With 1e-12
@@ -39,20 +39,19 @@ pub(super) const TOUCHING: f64 = 1.0e-12;
 const NEARLY: f64 = 1.0e-10;
 const DOUBTFUL: f64 = 1.0e-11;
 
-/// Those below this share of it touch if no plane at all parts them: a needle that a segment runs
-/// through, whose nearest points rounding hides. (Found by fuzzing: a normal that was off by 6
-/// degrees.)
+/// Share of the size below which bodies touch if no plane at all separates them. Rounding hides the
+/// nearest points of a needle that a segment runs through.
 const UNPROVED: f64 = 5.0e-10;
 
-/// Whether it is proved that a nearest point is: its squared distance, and how much of that a
-/// support plane leaves open.
+/// True if a nearest point is proved, given its squared distance and the part of it that a support
+/// plane leaves open.
 #[inline(always)]
 pub(super) fn is_proved<S: SupportMap>(squared: f64, open: f64, size: f64) -> bool {
     let rounding = (ROUNDING * size).powi(2);
     open <= PROVED[usize::from(S::IS_CURVED)] * squared || open * open <= rounding * squared
 }
 
-/// How a search ends.
+/// The end of a search.
 pub(super) enum Outcome {
     /// Beyond the margin.
     Far,
@@ -64,15 +63,8 @@ pub(super) enum Outcome {
     Crossing([Vertex; 4]),
 }
 
-/// How a search ends and how many simplices it took.
-pub(super) struct Search {
-    pub outcome: Outcome,
-    #[cfg_attr(not(test), expect(dead_code, reason = "a test watches it"))]
-    pub rounds: u32,
-}
-
-/// `toward` leads from the triangle to somewhere in or near the shape; `start` is the point of the
-/// shape that reaches farthest back along it; `size` is that of the pair.
+/// Searches for the nearest point. `toward` leads from the triangle to a point in or near the
+/// shape; `start` is the support point of the shape opposite to it. `size` is the size of the pair.
 #[inline(always)]
 pub(super) fn search<S: SupportMap>(
     difference: &Difference<S>,
@@ -80,17 +72,16 @@ pub(super) fn search<S: SupportMap>(
     start: DVec3,
     margin: f64,
     size: f64,
-) -> Search {
-    let end = |outcome, rounds| Search { outcome, rounds };
+) -> Outcome {
     let [doubtful, nearly, unproved] =
         [DOUBTFUL, NEARLY, UNPROVED].map(|share| (share * size).powi(2));
     // Rounding can keep a search from the direction of bodies that nearly touch.
-    let stuck = |simplex: Simplex, new: Vertex, rounds| {
+    let stuck = |simplex: Simplex, new: Vertex| {
         let (simplex, open) = least_open(difference, simplex, new, size);
         let Simplex { squared, .. } = simplex;
         let is_open = open * open > doubtful * squared && squared <= nearly;
         let is_doubtful = is_open || open >= squared && squared <= unproved;
-        end(if is_doubtful { Outcome::Touching(simplex) } else { Outcome::Apart(simplex) }, rounds)
+        if is_doubtful { Outcome::Touching(simplex) } else { Outcome::Apart(simplex) }
     };
     // Wider than the margin by more than rounding, so that the distance decides.
     let reach = margin.max(0.0) + BOUNDARY * size;
@@ -101,17 +92,17 @@ pub(super) fn search<S: SupportMap>(
     let [a, b, c] = difference.at(start);
     let bound = a.point.dot(toward).min(b.point.dot(toward)).min(c.point.dot(toward));
     if is_far(bound, toward.length_squared()) {
-        return end(Outcome::Far, 0);
+        return Outcome::Far;
     }
     let mut simplex = simplex::side(a, b, c);
-    // The same along the normal of the triangle: where a shape rests on it, that is the answer,
-    // and its support point is worth two rounds of any other contact.
+    // A second start along the normal of the triangle. If the shape rests on the triangle, this is
+    // the contact; otherwise the support point saves two rounds.
     let [corner1, corner2, corner3] = *difference.triangle;
     let normal = (corner2 - corner1).cross(corner3 - corner1);
     let normal = if normal.dot(toward) < 0.0 { -normal } else { normal };
     let [a, b, c] = difference.at(difference.shape.support(-normal));
     if is_far(a.point.dot(normal), normal.length_squared()) {
-        return end(Outcome::Far, 0);
+        return Outcome::Far;
     }
     let flat = simplex::side(a, b, c);
     if flat.squared < simplex.squared {
@@ -119,46 +110,44 @@ pub(super) fn search<S: SupportMap>(
     }
     let touching = (TOUCHING * size).powi(2);
     let mut stalls = 0;
-    for rounds in 1..=ROUNDS {
+    for _ in 0..ROUNDS {
         let Simplex { nearest, squared, .. } = simplex;
         if squared <= touching {
-            return end(Outcome::Touching(simplex), rounds);
+            return Outcome::Touching(simplex);
         }
         let new = difference.farthest(-nearest);
         let bound = nearest.dot(new.point);
         if is_far(bound, squared) {
-            return end(Outcome::Far, rounds);
+            return Outcome::Far;
         }
         let open = squared - bound;
         let is_known = simplex.vertices().iter().any(|v| v.point == new.point);
         if is_proved::<S>(squared, open, size) {
-            return end(Outcome::Apart(simplex), rounds);
+            return Outcome::Apart(simplex);
         }
         if is_known {
-            return stuck(simplex, new, rounds);
+            return stuck(simplex, new);
         }
         match simplex.add(new) {
-            Step::Around(tetrahedron) => return end(Outcome::Crossing(tetrahedron), rounds),
+            Step::Around(tetrahedron) => return Outcome::Crossing(tetrahedron),
             Step::Beside(next) if next.squared < squared => simplex = next,
-            // As near up to rounding, as where a vertex and a face nearly tie: the direction may
-            // still be another one.
+            // The distance ties up to rounding, as near ties of a vertex and a face do. The
+            // direction may still differ.
             Step::Beside(next) => {
                 stalls += 1;
                 let is_tied = next.squared <= squared * (1.0 + TIE);
                 if stalls > STALLS || !is_tied {
-                    return stuck(simplex, new, rounds);
+                    return stuck(simplex, new);
                 }
                 simplex = next;
             }
         }
     }
-    end(Outcome::Apart(simplex), ROUNDS)
+    Outcome::Apart(simplex)
 }
 
-/// Of the segments and vertices of a simplex and of a further vertex that are as near, up to rounding,
-/// the one of which a support plane leaves least open, and how much: where distances tie, that tells
-/// which direction is right. (The two long edges of a needle, seen from beside its tip; found by
-/// fuzzing.)
+/// Among the segments and vertices that are equally near up to rounding, the one for which a
+/// support plane leaves least open, and how much. If distances tie, this picks the right direction.
 #[cold]
 fn least_open<S: SupportMap>(
     difference: &Difference<S>,

@@ -5,7 +5,7 @@ use super::search::{BOUNDARY, is_proved};
 use super::simplex::{self, Simplex, thin_normal};
 use super::support::SupportMap;
 use super::{ConvexContact, DOUBTFUL, by_search};
-use crate::contact::closest::{crossing, within_edge};
+use crate::contact::closest::{closest_on_lines, within_edge};
 use crate::contact::triangle::NEAR_PARALLEL;
 use glamx::DVec3;
 
@@ -42,21 +42,20 @@ impl SupportMap for SegmentSupport {
     }
 }
 
-/// Least sine between an edge and a segment that cross the closed form's way. A depth beside the
-/// edge is off by 1e-16 of the size over the sine, so by 1e-11; the closed form asks for ten times
-/// that.
+/// Least sine between an edge and a segment that cross for the closed form. A depth beside the edge
+/// is off by 1e-16 of the size over the sine. The closed form requires ten times that.
 const SKEW: f64 = 1.0e-5;
 
 /// A point of the triangle and the way from there to a point of the segment.
 #[derive(Clone, Copy)]
-struct Near {
+struct PointPair {
     on_triangle: DVec3,
     difference: DVec3,
-    /// The squared length of that.
+    /// Squared length of `difference`.
     squared: f64,
 }
 
-impl Near {
+impl PointPair {
     #[inline(always)]
     fn new(on_triangle: DVec3, difference: DVec3) -> Self {
         Self { on_triangle, difference, squared: difference.length_squared() }
@@ -67,8 +66,8 @@ impl Near {
         Self::new(end.on_triangle(triangle), end.nearest)
     }
 
-    /// The contact that it makes of bodies whose size this is. None where rounding may have chosen
-    /// it: they touch, or places that are apart by the root of rounding tie.
+    /// The contact of bodies of a given size. `None` if rounding may have chosen the point: the
+    /// bodies touch, or several places tie.
     #[inline(always)]
     fn contact<S: SupportMap>(
         &self,
@@ -97,7 +96,7 @@ fn point_contact(triangle: &[DVec3; 3], point: DVec3, margin: f64) -> Option<Con
     if nearest.squared > beyond * beyond {
         return None;
     }
-    let near = Near::of(&nearest, triangle);
+    let near = PointPair::of(&nearest, triangle);
     if let Some(contact) = near.contact::<PointSupport>(triangle, &[point; 2], size) {
         return Some(contact);
     }
@@ -110,8 +109,9 @@ fn point_contact(triangle: &[DVec3; 3], point: DVec3, margin: f64) -> Option<Con
     Some(ConvexContact::new(point - normal * height, normal, height))
 }
 
-/// The distance from the triangle is a convex function along the segment: if it rises from an end
-/// on, that end is nearest. Else a point between is, nearest to an edge, or the segment crosses.
+/// The distance from the triangle is a convex function along the segment. If it rises from an end
+/// on, that end is nearest. Otherwise the nearest point is between the ends and near an edge, or
+/// the segment crosses.
 fn segment_contact(triangle: &[DVec3; 3], segment: &[DVec3; 2]) -> Option<ConvexContact> {
     let [p, q] = *segment;
     let along = q - p;
@@ -122,9 +122,9 @@ fn segment_contact(triangle: &[DVec3; 3], segment: &[DVec3; 2]) -> Option<Convex
     let (rises_to_q, rises_to_p) =
         (along.dot(from_p.nearest) >= 0.0, along.dot(from_q.nearest) <= 0.0);
     let nearer = if from_q.squared < from_p.squared { from_q } else { from_p };
-    let mut nearest = Near::of(&nearer, triangle);
+    let mut nearest = PointPair::of(&nearer, triangle);
     if !(rises_to_q || rises_to_p) {
-        match crossed(triangle, segment) {
+        match penetration(triangle, segment) {
             Some(contact) if contact.distance * contact.distance > doubtful => {
                 return Some(contact);
             }
@@ -155,30 +155,29 @@ fn from_end(triangle: &[DVec3; 3], end: DVec3) -> Simplex {
     simplex::face(a, b, c)
 }
 
-/// Closest points of an edge from `v` to `w` and a segment from `p`. Where they are near parallel
-/// the place is uncertain, but the distance is as flat there: it is off by 1e-16 of the size.
+/// Closest points of an edge from `v` to `w` and a segment from `p`. Near parallel lines make the
+/// place uncertain, but the distance hardly varies there: it is off by 1e-16 of the size.
 #[inline(always)]
-fn from_edge(v: DVec3, w: DVec3, p: DVec3, along: DVec3) -> Near {
+fn from_edge(v: DVec3, w: DVec3, p: DVec3, along: DVec3) -> PointPair {
     let (edge, between) = (w - v, p - v);
     let cross = edge.cross(along);
     let area = cross.length_squared();
-    let [s, t] = crossing(between, edge, along, cross, area);
+    let [s, t] = closest_on_lines(between, edge, along, cross, area);
     let is_within = |x: f64| x > 0.0 && x < 1.0;
     let lengths = edge.length_squared() * along.length_squared();
     if is_within(s) && is_within(t) && area > NEAR_PARALLEL * NEAR_PARALLEL * lengths {
-        return Near::new(v + edge * s, cross * (between.dot(cross) / area));
+        return PointPair::new(v + edge * s, cross * (between.dot(cross) / area));
     }
     let s = within_edge(s);
     let t = within_edge((edge * s - between).dot(along) / along.length_squared());
     let s = within_edge((between + along * t).dot(edge) / edge.length_squared());
-    Near::new(v + edge * s, between + along * t - edge * s)
+    PointPair::new(v + edge * s, between + along * t - edge * s)
 }
 
-/// The least translation that parts a triangle and a segment through it. The difference of both is
-/// a prism: its bases are the triangle, its sides are between the segment and an edge. None if they
-/// do not cross, or not clearly.
+/// The least translation that separates a triangle and a segment through it. Their difference is a
+/// prism with the triangle as base and a side for each edge. `None` if they do not clearly cross.
 #[inline(always)]
-fn crossed(triangle: &[DVec3; 3], &[p, q]: &[DVec3; 2]) -> Option<ConvexContact> {
+fn penetration(triangle: &[DVec3; 3], &[p, q]: &[DVec3; 2]) -> Option<ConvexContact> {
     let along = q - p;
     let (normal, squared) = thin_normal(*triangle)?;
     let [below, above] = [p, q].map(|end| (end - triangle[0]).dot(normal));
@@ -209,7 +208,7 @@ fn crossed(triangle: &[DVec3; 3], &[p, q]: &[DVec3; 2]) -> Option<ConvexContact>
         if volume * volume < area * (least.distance * least.distance) {
             let scale = 1.0 / area.sqrt();
             let outward = cross * if volume > 0.0 { -scale } else { scale };
-            let [s, _] = crossing(p - v, edge, along, cross, area);
+            let [s, _] = closest_on_lines(p - v, edge, along, cross, area);
             let on_triangle = v + edge * within_edge(s);
             least = ConvexContact::new(on_triangle, outward, -volume.abs() * scale);
         }

@@ -1,10 +1,9 @@
 //! The point of a simplex that is nearest to the origin.
 //!
-//! On which side of a face or edge the origin lies is read from signed volumes and areas, as in M.
+//! Signed volumes and areas tell on which side of a face or edge the origin lies, as in M.
 //! Montanari, N. Petrinic, E. Barbieri, "Improving the GJK algorithm for faster and more reliable
-//! distance queries between convex objects", 2017. Where rounding may have chosen the sign, all
-//! faces or edges are tried and the nearest one is taken, so that a flat simplex costs more but is
-//! no special case.
+//! distance queries between convex objects", 2017. If rounding may have chosen a sign, all faces or
+//! edges are tried and the nearest one counts, so a flat simplex is no special case.
 
 use super::difference::Vertex;
 use glamx::DVec3;
@@ -25,7 +24,7 @@ const FLAT: f64 = 1.0e-12;
 #[derive(Clone, Copy)]
 pub(super) struct Simplex {
     vertices: [Vertex; 3],
-    /// What each vertex contributes to the nearest point; 0 beyond `len`.
+    /// Weight of each vertex in the nearest point; 0 beyond `len`.
     weights: [f64; 3],
     len: usize,
     /// The nearest point.
@@ -34,7 +33,7 @@ pub(super) struct Simplex {
     pub squared: f64,
 }
 
-/// What a further vertex makes of a simplex.
+/// The result of adding a vertex to a simplex.
 pub(super) enum Step {
     /// A simplex beside the origin.
     Beside(Simplex),
@@ -85,7 +84,7 @@ pub(super) fn segment(a: Vertex, b: Vertex) -> Simplex {
     let edge = b.point - a.point;
     let along = -a.point.dot(edge);
     let length_squared = edge.length_squared();
-    // Not so for a segment without length.
+    // False for a segment without length.
     let is_beyond_a = along > 0.0;
     if !is_beyond_a {
         return vertex(a);
@@ -111,12 +110,12 @@ pub(super) fn face(a: Vertex, b: Vertex, c: Vertex) -> Simplex {
     }
 }
 
-/// The nearest point of a face with a known normal: over the face, or on an edge that the origin
-/// is beyond. Beyond two edges it is nearest to one of them.
+/// The nearest point of a face with a known normal: over the face, or on an edge that the origin is
+/// beyond. If the origin is beyond two edges, one of them is nearest.
 #[inline(always)]
 fn over_or_beside(a: Vertex, b: Vertex, c: Vertex, normal: DVec3, squared: f64) -> Simplex {
     let [p, q, r] = [a.point, b.point, c.point];
-    // Twice the areas beside the edges, times that of the face.
+    // Doubled areas beside the edges, times the doubled area of the face.
     let areas =
         [(q, r - q), (r, p - r), (p, q - p)].map(|(start, edge)| start.cross(edge).dot(normal));
     let [beyond_bc, beyond_ca, beyond_ab] = areas.map(|area| area <= 0.0);
@@ -141,8 +140,8 @@ fn edges(a: Vertex, b: Vertex, c: Vertex) -> Simplex {
     segment(a, b).nearer(segment(a, c)).nearer(segment(b, c))
 }
 
-/// A face that is hardly wider than its longest edge: coordinates along that edge and across it
-/// keep the nearest point where it is, whatever rounding makes of its weights.
+/// The nearest point of a face that is hardly wider than its longest edge. Coordinates along that
+/// edge and across it keep the point in place for any rounding of its weights.
 #[inline(never)]
 fn thin_face(a: Vertex, b: Vertex, c: Vertex) -> Simplex {
     let border = edges(a, b, c);
@@ -181,8 +180,8 @@ fn longest_first([a, b, c]: [Vertex; 3]) -> [Vertex; 3] {
     }
 }
 
-/// The normal of a face by its two shortest edges, and its squared length. None where rounding
-/// would choose it.
+/// The normal of a face by its two shortest edges, and its squared length. `None` if rounding would
+/// determine it.
 #[inline(always)]
 pub(super) fn thin_normal([a, b, c]: [DVec3; 3]) -> Option<(DVec3, f64)> {
     let (ab, bc, ca) = (b - a, c - b, a - c);
@@ -217,7 +216,7 @@ fn tetrahedron(a: Vertex, b: Vertex, c: Vertex, d: Vertex) -> Step {
     if !has_volume {
         return flat_tetrahedron(a, b, c, d);
     }
-    // How far inside each face the origin is, where the opposite vertex counts 1.
+    // Depth of the origin inside each face, where the opposite vertex counts 1.
     let scale = -1.0 / volume;
     let inside = [abc, acd, adb].map(|normal| a.point.dot(normal) * scale);
     let old = 1.0 - (inside[0] + inside[1] + inside[2]);

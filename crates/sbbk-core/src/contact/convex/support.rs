@@ -6,8 +6,8 @@ use glamx::DVec3;
 
 /// A convex shape, in its own frame.
 pub trait SupportMap {
-    /// Whether its surface is curved anywhere. A search for the nearest point then comes nearer and
-    /// nearer without end, and is content earlier, see [the accuracy](super).
+    /// True if its surface is curved anywhere. A search for the nearest point then converges
+    /// without end and stops earlier, see [the accuracy](super).
     const IS_CURVED: bool = false;
 
     /// The farthest point along `direction`, which has any length but zero; any of them where
@@ -24,10 +24,10 @@ pub trait SupportMap {
         by_search(triangle, self, margin)
     }
 
-    /// The contact with a triangle that crosses the shape, if there is a shorter way to it than the
-    /// [search](super). None if the triangle may not cross the shape. `size` is that of both.
+    /// The contact with a triangle that crosses the shape, if there is a faster way than the
+    /// [search](super). `None` if the triangle may not cross the shape. `size` is the size of both.
     #[inline(always)]
-    fn crossing(&self, _triangle: &[DVec3; 3], _size: f64) -> Option<ConvexContact> {
+    fn penetration(&self, _triangle: &[DVec3; 3], _size: f64) -> Option<ConvexContact> {
         None
     }
 }
@@ -49,7 +49,7 @@ impl SupportMap for TriangleSupport {
         self.0[lowest(&self.0, -direction)]
     }
 
-    /// That of [two triangles](crate::contact), if both have an area.
+    /// Uses the contact of [two triangles](crate::contact) if both have an area.
     #[inline(always)]
     fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
         if !(is_wide(triangle) && is_wide(&self.0)) {
@@ -60,8 +60,8 @@ impl SupportMap for TriangleSupport {
     }
 }
 
-/// Least width of a triangle, as a share of its length, at which two triangles are left to their
-/// own contact. Of needles of 1e-8 and segments, that was once off by 4e-9 of the size.
+/// Least width of a triangle, as a share of its length, for the contact of two triangles. Lower:
+/// needles lose digits. Higher: more triangles take the search.
 const WIDE: f64 = 1.0e-6;
 
 #[inline(always)]
@@ -79,8 +79,8 @@ pub(super) fn lowest([a, b, c]: &[DVec3; 3], direction: DVec3) -> usize {
     if c < least { 2 } else { i }
 }
 
-/// The convex hull of points, found by looking at all of them: for hulls of up to some dozens.
-/// Without points it is the origin.
+/// The convex hull of points, by a scan of all points: for hulls of up to some dozens. The hull of
+/// no points is the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HullSupport<'a>(pub &'a [DVec3]);
 

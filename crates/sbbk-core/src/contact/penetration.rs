@@ -1,9 +1,9 @@
-//! Triangles that cross, of solids: out of each other, not through.
+//! Contacts of crossing triangles that lead out of solids.
 //!
-//! The least translation that parts two triangles may push one of them into the body of the other,
-//! or along a surface that goes on beyond the triangle. Of the axes that lead out of the solids
-//! the one of least overlap is taken: the face normals, and the products of edges that point to the
-//! outside of both.
+//! The least translation of two triangles may push one of them into the other body, or along a
+//! surface that continues beyond the triangle. Here only axes that lead out of the solids count:
+//! face normals, and products of edges that point outside of both. The contact is on the axis of
+//! least overlap among these.
 
 use super::clip::{ManifoldPoints, clip_triangles};
 use super::feature::Feature;
@@ -13,31 +13,33 @@ use super::triangle_contact::TriangleContact;
 use arrayvec::ArrayVec;
 use glamx::DVec3;
 
-/// Sine of the angle that an axis may lean into a solid: an edge of a box that stands on another,
-/// not quite upright, still pushes up. Higher: walls push up bodies that they do not carry.
+/// Sine of the angle by which an axis may lean into a solid. Higher: walls push up bodies that they
+/// do not carry. Lower: an edge of a box that stands not quite upright no longer pushes up.
 const LEAN: f64 = 0.05;
 
-/// Sine of the angle to the plane of the other triangle from which on an edge says on which side of it
-/// the axis must be. Lower: a nut jams on its bolt, as the least axis of all need not be outward, and
-/// of the outward ones not that of edges in front. Higher: more axes, a nut runs as well with 1.
+/// Sine of the angle between an edge and the plane of the other triangle above which the edge
+/// determines the sign of the axis. Higher: more axes are tried. Lower: a nut jams on its bolt.
 const STEEP: f64 = 0.55;
 
-/// How much of the overlap the deepest points must show: else the features that end the overlap are
-/// elsewhere, in triangles that show it better.
+/// Share of the overlap that the deepest points must show. Higher: contacts are left to neighbours
+/// that show more. Lower: contacts far from the end of the overlap.
 const SHOWN: f64 = 0.9;
 
-/// Vertices this close to the farthest one along an axis are as far, in triangle sizes.
+/// Vertices within this distance of the farthest one along an axis are equally far, in triangle
+/// sizes. Higher: edges count as level. Lower: rounding picks a vertex.
 const LEVEL: f64 = 1.0e-6;
 
-/// The contact of two triangles that overlap, along the outward axis of least overlap. `solid` says
-/// which triangles are of a solid, whose outside their normals point to; `is_extremal` whether no
-/// triangle around a feature of triangle 1 (0) or 2 (1) is farther in a direction. Extremal axes
-/// go first. The distance is that of the deepest points. `out` gets the points, as
-/// [`clip`](super::clip) has them. None if the triangles face away from each other, or have no points
-/// in line with the axis.
+/// Returns the contact of two overlapping triangles along the outward axis of least overlap.
+/// `solid` is true for triangles of a solid, whose normals point outside. `is_extremal` returns
+/// true if no neighbour of a feature of triangle 1 (0) or 2 (1) is farther in a direction. Extremal
+/// axes come first.
 ///
-/// `most`, if given, asks at less cost: for an extremal contact that is no deeper, or none.
-pub fn outward(
+/// The distance is that of the deepest points; `out` gets the points of [`clip`](super::clip).
+/// Returns `None` if the triangles face away from each other, or if no points are in line with the
+/// axis.
+///
+/// With `most`, returns only an extremal contact of at most this depth, at less cost.
+pub fn penetration_out_of_solid(
     t1: &[DVec3; 3],
     t2: &[DVec3; 3],
     solid: [bool; 2],
@@ -61,8 +63,7 @@ pub fn outward(
 /// The gap along an axis, and the axis.
 type OutwardAxis = (f64, DVec3);
 
-/// The outward axes along which triangles overlap by no more than `most`. Those of least overlap come
-/// first: to look around a feature takes longer than all of this.
+/// The outward axes along which the triangles overlap by at most `most`, least overlap first.
 fn axes([t1, t2]: [&Triangle; 2], solid: [bool; 2], most: f64) -> ArrayVec<OutwardAxis, 22> {
     let areas = [t1.area_vector(), t2.area_vector()];
     let [normal1, normal2] = areas.map(|area| area.normalize_or_zero());
@@ -89,7 +90,7 @@ fn axes([t1, t2]: [&Triangle; 2], solid: [bool; 2], most: f64) -> ArrayVec<Outwa
             consider(-normal);
         }
     }
-    // Which way an edge runs through the plane of the other triangle; 0 if nearly along it.
+    // Sign with which an edge runs through the plane of the other triangle; 0 if nearly parallel.
     let slopes = |t: &Triangle, normal: DVec3| {
         t.edges.map(|edge| {
             let slope = edge.dot(normal);
@@ -102,7 +103,7 @@ fn axes([t1, t2]: [&Triangle; 2], solid: [bool; 2], most: f64) -> ArrayVec<Outwa
     };
     let (slopes1, slopes2) = (slopes(t1, normal2), slopes(t2, normal1));
     for (i, j) in (0..9).map(|pair| (pair / 3, pair % 3)) {
-        // As in `axes.rs`: only if both have one sign, the edges are in front, along that of the axis.
+        // The edges are in front only if both have one sign, that of the axis (see `axes.rs`).
         let (sign1, sign2) = (slopes1[i], slopes2[j]);
         if sign1 * sign2 < 0.0 {
             continue;

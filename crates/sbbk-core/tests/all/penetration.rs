@@ -14,7 +14,9 @@ fn outward(
     ends: impl Fn(usize, Feature, DVec3) -> bool,
 ) -> Option<(TriangleContact, bool)> {
     let mut points = ManifoldPoints::new();
-    let mut ask = |most| sbbk_core::contact::outward(t1, t2, solid, &ends, most, &mut points);
+    let mut ask = |most| {
+        sbbk_core::contact::penetration_out_of_solid(t1, t2, solid, &ends, most, &mut points)
+    };
     let found = ask(None);
     // The short way has the same, if it is extremal and shallow enough.
     let extremal = ask(Some(1e9));

@@ -1,7 +1,7 @@
 //! The nearest points of a triangle and a solid whose distance from a point is a closed form.
 //!
-//! That distance is a convex function. Its least value over the triangle is at a corner, at a point
-//! of the solid over the triangle, or along an edge.
+//! The distance of a point from the solid is a convex function. Its least value over the triangle
+//! is at a corner, at a point of the solid over the triangle, or along an edge.
 
 use super::search::is_proved;
 use super::simplex::thin_normal;
@@ -12,12 +12,12 @@ use glamx::DVec3;
 /// Steps along an edge at most; some ten are taken.
 const STEPS: u32 = 60;
 
-/// The slope of the squared distance at the end of a search along an edge, as a share of the
-/// squared distance: directions are off by about as much.
+/// Slope of the squared distance that ends a search along an edge, as a share of the squared
+/// distance. Directions are off by about as much.
 const LEVEL: f64 = 1.0e-12;
 
-/// The same at most, where rounding moves the slope by more than `LEVEL`: a tenth of what a proof may
-/// leave open. The distance is off by the square of what directions are.
+/// Greatest such slope if rounding moves the slope by more than `LEVEL`: a tenth of the share that
+/// a proof may leave open.
 const NEARLY_LEVEL: f64 = 1.0e-8;
 
 /// Rounding of points, some ten steps, as a share of the distance at which bodies touch.
@@ -31,7 +31,8 @@ pub(super) trait Solid: SupportMap {
     /// The way from the shape to a point; zero inside.
     fn outside(&self, point: DVec3) -> DVec3;
 
-    /// Where along an edge the solid is likely to be nearest, as a share of the edge; any number.
+    /// A guess of the place along an edge where the solid is nearest, as a share of the edge; any
+    /// number.
     #[inline(always)]
     fn likely(&self, _start: DVec3, _edge: DVec3) -> f64 {
         0.5
@@ -40,13 +41,13 @@ pub(super) trait Solid: SupportMap {
     /// The point of an edge that is nearest, or one that is within `touching`. The slope of the
     /// squared distance rises along the edge.
     #[inline(always)]
-    fn near_edge(&self, start: DVec3, edge: DVec3, touching: f64) -> Near {
+    fn near_edge(&self, start: DVec3, edge: DVec3, touching: f64) -> OffsetPoint {
         let rounding = ROUNDING * touching * edge.length();
         let at = |t: f64| {
-            let near = Near::of(self, start + edge * t);
+            let near = OffsetPoint::of(self, start + edge * t);
             (near, near.from_shape.dot(edge))
         };
-        let is_end = |near: &Near, slope: f64| {
+        let is_end = |near: &OffsetPoint, slope: f64| {
             let level = (LEVEL * near.squared).max(rounding.min(NEARLY_LEVEL * near.squared));
             slope.abs() <= level || near.squared <= touching * touching
         };
@@ -100,13 +101,13 @@ pub(super) trait Solid: SupportMap {
 
 /// A point of a triangle and the way to it from the nearest point of a solid.
 #[derive(Clone, Copy)]
-pub(super) struct Near {
+pub(super) struct OffsetPoint {
     pub point: DVec3,
     pub from_shape: DVec3,
     pub squared: f64,
 }
 
-impl Near {
+impl OffsetPoint {
     #[inline(always)]
     pub fn of<S: Solid + ?Sized>(solid: &S, point: DVec3) -> Self {
         let from_shape = solid.outside(point);
@@ -115,7 +116,7 @@ impl Near {
 }
 
 /// A gap of the bodies along a direction from the solid to the triangle; negative if they overlap.
-/// All three corners are measured, so that a move by it parts the bodies, whatever rounding made of
+/// The gap covers all three corners, so a move by it separates the bodies in spite of rounding of
 /// the direction.
 #[derive(Clone, Copy)]
 pub(super) struct Gap {
@@ -125,7 +126,7 @@ pub(super) struct Gap {
 }
 
 /// A triangle in the frame of a solid.
-pub(super) struct Pair<'a, S> {
+pub(super) struct TriangleAndSolid<'a, S> {
     pub triangle: &'a [DVec3; 3],
     pub edges: [DVec3; 3],
     pub solid: &'a S,
@@ -133,7 +134,7 @@ pub(super) struct Pair<'a, S> {
     pub size: f64,
 }
 
-impl<'a, S: Solid> Pair<'a, S> {
+impl<'a, S: Solid> TriangleAndSolid<'a, S> {
     #[inline(always)]
     pub fn new(triangle: &'a [DVec3; 3], solid: &'a S, solid_size: f64) -> Self {
         let [a, b, c] = *triangle;
@@ -148,8 +149,9 @@ impl<'a, S: Solid> Pair<'a, S> {
         DOUBTFUL * self.size
     }
 
-    /// The gap along the normal of the triangle that points away from the origin. If the plane of
-    /// the triangle parts the bodies, that is by how much. None for a triangle without area.
+    /// The gap along the normal of the triangle that points away from the origin, which is the
+    /// distance if the plane of the triangle separates the bodies. `None` for a triangle without
+    /// area.
     #[inline(always)]
     pub fn triangle_gap(&self) -> Option<Gap> {
         let (normal, squared) = thin_normal(*self.triangle)?;
@@ -160,23 +162,23 @@ impl<'a, S: Solid> Pair<'a, S> {
         Some(Gap { width: low - self.solid.support(outward).dot(outward), outward })
     }
 
-    /// The nearest point of bodies that do not cross. None if they are surely farther apart than
+    /// The nearest point of bodies that do not cross. `None` if they are surely farther apart than
     /// `beyond`.
     #[inline(always)]
-    pub fn nearest(&self, of_triangle: Option<&Gap>, beyond: f64) -> Option<Near> {
+    pub fn nearest(&self, of_triangle: Option<&Gap>, beyond: f64) -> Option<OffsetPoint> {
         if let Some(&Gap { width, outward }) = of_triangle
             && width > -self.doubtful()
         {
             let over = self.solid.support(outward) + outward * width;
             if self.is_over(over, outward) {
                 let from_shape = outward * width;
-                return Some(Near { point: over, from_shape, squared: width * width });
+                return Some(OffsetPoint { point: over, from_shape, squared: width * width });
             }
         }
         let [a, b, c] = [
-            Near::of(self.solid, self.triangle[0]),
-            Near::of(self.solid, self.triangle[1]),
-            Near::of(self.solid, self.triangle[2]),
+            OffsetPoint::of(self.solid, self.triangle[0]),
+            OffsetPoint::of(self.solid, self.triangle[1]),
+            OffsetPoint::of(self.solid, self.triangle[2]),
         ];
         let mut nearest = a;
         for other in [b, c] {
@@ -185,8 +187,8 @@ impl<'a, S: Solid> Pair<'a, S> {
             }
         }
         for j in 0..3 {
-            // The plane through this point, across the way to it: if no corner is on the near side, it
-            // is nearest; if no end of an edge is, that edge is no nearer.
+            // A plane through this point, perpendicular to its offset, proves it nearest if no
+            // corner is on the near side. An edge with no end on the near side is no nearer.
             let [a, b, c] = self.nearer(&nearest);
             let open = a.max(b).max(c);
             if open <= 0.0 {
@@ -207,10 +209,11 @@ impl<'a, S: Solid> Pair<'a, S> {
         Some(nearest)
     }
 
-    /// Whether the plane across the way to a point proves that the bodies are farther apart than
-    /// `beyond`. The support point is asked for: of the slope of a cone, the way is no exact normal.
+    /// True if the plane perpendicular to the offset of a point proves that the bodies are farther
+    /// apart than `beyond`. This needs the support point: near the slope of a cone, the offset is
+    /// no exact normal.
     #[inline(always)]
-    fn is_beyond(&self, near: &Near, open: f64, beyond: f64) -> bool {
+    fn is_beyond(&self, near: &OffsetPoint, open: f64, beyond: f64) -> bool {
         let is_farther = |bound: f64| bound > 0.0 && bound * bound > beyond * beyond * near.squared;
         is_farther(near.squared - open) && {
             let [a, b, c] = self.triangle.map(|corner| corner.dot(near.from_shape));
@@ -220,36 +223,36 @@ impl<'a, S: Solid> Pair<'a, S> {
     }
 
     #[inline(always)]
-    pub fn near_edge(&self, j: usize) -> Near {
+    pub fn near_edge(&self, j: usize) -> OffsetPoint {
         self.solid.near_edge(self.triangle[j], self.edges[j], self.doubtful())
     }
 
-    /// Whether a point of the triangle's plane is inside it.
+    /// True if a point of the triangle's plane is inside it.
     #[inline(always)]
     pub fn is_over(&self, point: DVec3, normal: DVec3) -> bool {
         let beside = [0, 1, 2].map(|i| self.edges[i].cross(point - self.triangle[i]).dot(normal));
         beside.iter().all(|x| *x > 0.0) || beside.iter().all(|x| *x < 0.0)
     }
 
-    /// By how much a corner of the triangle is nearer than a point, along the way to that from the
-    /// solid, times the length of that way.
+    /// Greatest value of [`nearer`](Self::nearer).
     #[inline(always)]
-    fn open(&self, near: &Near) -> f64 {
+    fn open(&self, near: &OffsetPoint) -> f64 {
         let [a, b, c] = self.nearer(near);
         a.max(b).max(c)
     }
 
-    /// The same for each corner.
+    /// Height by which each corner is nearer than a point along the offset of the point, times the
+    /// length of the offset.
     #[inline(always)]
-    fn nearer(&self, near: &Near) -> [f64; 3] {
+    fn nearer(&self, near: &OffsetPoint) -> [f64; 3] {
         let [a, b, c] = *self.triangle;
         [a, b, c].map(|corner| (near.point - corner).dot(near.from_shape))
     }
 
-    /// The contact at the nearest point. None if the bodies touch, or where places that are apart
-    /// by the root of rounding tie, and it may be the wrong one.
+    /// The contact at the nearest point. `None` if the bodies touch, or if rounding may have picked
+    /// the wrong one of several places.
     #[inline(always)]
-    pub fn contact(&self, near: &Near) -> Option<ConvexContact> {
+    pub fn contact(&self, near: &OffsetPoint) -> Option<ConvexContact> {
         let is_apart = near.squared > self.doubtful() * self.doubtful()
             && is_proved::<S>(near.squared, self.open(near), self.size);
         is_apart.then(|| ConvexContact::apart(near.point, -near.from_shape))
@@ -265,7 +268,7 @@ impl<'a, S: Solid> Pair<'a, S> {
     #[inline(never)]
     pub fn touching_after(&self, gap: &Gap) -> Option<DVec3> {
         let moved = self.moved(gap);
-        let pair = Pair { triangle: &moved, ..*self };
+        let pair = TriangleAndSolid { triangle: &moved, ..*self };
         let near = pair.nearest(pair.triangle_gap().as_ref(), f64::INFINITY)?;
         let is_touching = near.squared <= self.doubtful() * self.doubtful();
         is_touching.then_some(near.point + gap.outward * gap.width)

@@ -1,16 +1,16 @@
-//! How the shadows of two triangles lie to each other on a plane of view.
+//! Signs of the vertices of each triangle against the edges of the other, on a plane of view.
 //!
-//! Nine signs tell on which side of each edge of one shadow each vertex of the other lies, and
-//! nine the reverse. The two sets take the two SIMD lanes: lane 0 has the vertices of triangle 1
-//! and the edges of triangle 2, lane 1 the reverse. The signs are kept as bits, bit
-//! `6 edge + 2 vertex + lane`, so that all questions are answered by a few operations on words.
+//! Nine signs tell on which side of each edge of one shadow each vertex of the other lies, and nine
+//! more the reverse. The two sets take the two SIMD lanes: lane 0 has the vertices of triangle 1
+//! and the edges of triangle 2, lane 1 the reverse. The signs are bits, bit `6 edge + 2 vertex +
+//! lane`, so that a few operations on words answer each question.
 
 use super::closest::TIE;
 use super::triangle::{NEXT, Triangle};
 use glamx::DVec3;
 use wide::f64x2;
 
-pub(super) struct Sides {
+pub(super) struct ShadowSigns {
     /// By edge and vertex: twice the area between them.
     area: [[f64x2; 3]; 3],
     /// Vertices left of edges; those in neither mask are on the edge, as far as rounding can tell.
@@ -18,7 +18,7 @@ pub(super) struct Sides {
     right: u32,
 }
 
-impl Sides {
+impl ShadowSigns {
     #[inline(always)]
     pub fn new(t1: &Triangle, t2: &Triangle, normal: DVec3) -> Self {
         let (x, y) = normal.any_orthonormal_pair();
@@ -61,25 +61,25 @@ impl Sides {
         split & transposed(split >> 1) & LANE_0
     }
 
-    /// One of the crossings.
+    /// Computes one crossing.
     #[inline(always)]
-    pub fn crossing(&self, bit: usize) -> Crossing {
+    pub fn crossing(&self, bit: usize) -> EdgeCrossing {
         let (i, j) = (bit % 6 / 2, bit / 6);
         let area =
             |edge: usize, vertex: usize, lane: usize| self.area[edge][vertex].as_array()[lane];
         let (start1, end1) = (area(j, i, 0), area(j, NEXT[i], 0));
         let (start2, end2) = (area(i, j, 1), area(i, NEXT[j], 1));
         let along = [start1 / (start1 - end1), start2 / (start2 - end2)];
-        Crossing { edges: [i, j], along, area: (start1 - end1).abs() }
+        EdgeCrossing { edges: [i, j], along, area: (start1 - end1).abs() }
     }
 }
 
-/// Where the shadows of two edges cross.
-pub(super) struct Crossing {
+/// The crossing of the shadows of two edges.
+pub(super) struct EdgeCrossing {
     pub edges: [usize; 2],
     /// From 0 to 1 on each edge.
     pub along: [f64; 2],
-    /// Of the parallelogram of both shadows; small when they are near parallel.
+    /// Area of the parallelogram of both shadows; small if they are near parallel.
     pub area: f64,
 }
 
@@ -89,7 +89,7 @@ const LANE_0: u32 = 0b010101 * 0b1_000001_000001;
 #[inline(always)]
 fn transposed(bits: u32) -> u32 {
     const EQUAL: u32 = 1 | 1 << 8 | 1 << 16;
-    // Above the diagonal the index of the edge is one or two less than that of the vertex.
+    // Above the diagonal the index of the edge is one or two less than the index of the vertex.
     const ABOVE_1: u32 = 1 << 2 | 1 << 10;
     const ABOVE_2: u32 = 1 << 4;
     bits & EQUAL
@@ -127,7 +127,7 @@ mod tests {
         #[test]
         fn any_signs(signs in prop::array::uniform18(-1_i32..=1)) {
             let mask = |sign: i32| (0..18).filter(|&bit| signs[bit] == sign).fold(0, |m, b| m | 1 << b);
-            let sides = Sides { area: Default::default(), left: mask(1), right: mask(-1) };
+            let sides = ShadowSigns { area: Default::default(), left: mask(1), right: mask(-1) };
             let sign = |edge: usize, vertex: usize, lane: usize| signs[6 * edge + 2 * vertex + lane];
             let is_inside = |v: usize, lane: usize| {
                 (0..3).all(|e| sign(e, v, lane) >= 0) != (0..3).all(|e| sign(e, v, lane) <= 0)
