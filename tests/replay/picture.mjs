@@ -1,4 +1,4 @@
-// Takes the pictures of the documentation from replay pages, in headless Chromium.
+// Takes a picture of a replay page, all its backends side by side, in headless Chromium.
 //
 //   npm ci && npm run picture -- PAGE.html PICTURE.png [STEP [X,Y,Z [ZOOM]]]
 //
@@ -20,7 +20,6 @@ try {
   await tab.evaluate(({ step, view, zoom }) => {
     const { data, drawing, frames, seek, play } = window.replay;
     play(false);
-    drawing.runs = drawing.runs.slice(-1);
     drawing.showsContacts = false;
     drawing.resize();
     drawing.look(view?.split(",").map((k) => -Number(k)));
