@@ -1,84 +1,190 @@
-//! For users of bare trees who ask about one pair again and again, and for the SBBK paper's figures
-//! 3 and 4: a descent that starts where the last one of the pair stopped. Rapier's dispatcher does
-//! without it; candidates kept with a [slack](crate::traverse::Slack) serve it better.
+//! The SBBK paper's front (section 3.2, figures 3 and 4): a descent that starts where the last one
+//! of the pair stopped.
+//!
+//! Here to reproduce the paper. Rapier's dispatcher keeps candidates with
+//! [`Slack`](crate::traverse::Slack) instead, which takes less time.
 //!
 //! Bodies move little between steps, so a descent stops at nearly the same pairs of nodes as the
-//! one before. A [`Front`] keeps these pairs, for one pair of trees (section 3.2 of the paper).
-//! Pairs of volumes that come within the margin are replaced by the pairs of their children: the
-//! front is *lowered*. [`FrontOptions::Paper`] stops there; such a front is never higher than the
-//! deepest contact that ever was. [`FrontOptions::Adaptive`], the default, has in addition:
+//! last one. A [`Front`] stores these pairs. Each query tests them, deepest first:
 //!
-//! * **Raising.** A pair whose volumes have parted stands for everything below it again, without a
-//!   look at the children: what is below a separated pair is separated.
-//! * **Motion bound.** A pair that was separated by a gap `g` is not tested while no point has
-//!   moved by `g` less the margin (`clock.rs`), nor a pair that met before it can have parted.
-//! * **Fresh descents.** Two numbers a cell tell, before anything is tested, how many tests a query
-//!   needs (`policy.rs`). If a fresh descent is cheaper, there is one, and no front is kept until
-//!   motion is slow again.
+//! * **Lowering.** Children replace a pair that now comes within the margin.
+//! * **Raising.** A pair replaces its children once these and the pair itself have parted. The
+//!   paper's front is only lowered, and grows with all pairs that ever met.
 //!
-//! # What is found
-//!
-//! The pairs of *triangles* within the margin, by the exact test, are those of a fresh descent. The
-//! pairs of *leaves* may differ, by pairs without triangles within the margin: a pair that met is
-//! visited until motion is at most four times what can part its volumes.
-//!
-//! The margin may differ from query to query: gaps are kept without it. Gaps and motion are bounds
-//! that include all rounding (`clock.rs`, and `gaps.rs` of [`traverse`](crate::traverse)).
-//!
-//! # Memory
-//!
-//! An adaptive front has at most twice the cells with which it was last built from the roots, and
-//! 64 more; 44 bytes each, and 12 for a pair of leaves that meets. The paper's has no bound but all
-//! pairs that ever met.
-//!
-//! # What it is worth
-//!
-//! Two equal meshes of 288 to 12,168 triangles, 2 units across, margin 0.02; times fewer node tests
-//! and times faster traversal than fresh descents, geometric means (`cargo run --release --example
-//! front` prints them mesh by mesh; picture in `docs/front.svg`):
-//!
-//! | tests / traversal | slow | fast | resting, jitter | tumbling |
-//! |---|---|---|---|---|
-//! | the paper's front | 1.36 / 0.82 | 1.10 / 0.68 | 1.38 / 0.82 | 0.24 / 0.22 |
-//! | adaptive | 7.05 / 2.59 | 1.54 / 1.07 | 9.64 / 3.64 | 1.00 / 0.98 |
-//!
-//! Slow is 0.001 units a step, fast 0.01, tumbling 0.08 radians. No pair of triangles differed. A
-//! front that tests everything at each query saves the few pairs above it, a quarter of the tests,
-//! and pays for that with its own keeping: the motion bound is what pays.
+//! Pairs above the front are not tested. So a query visits fewer nodes than a fresh descent, and
+//! may visit pairs of leaves below a pair that has parted. The pairs of *triangles* within the
+//! margin are the same.
 //!
 //! ```
-//! use glamx::{Pose3, Vec3};
+//! use glamx::Pose3;
 //! use sbbk_core::front::Front;
-//! use sbbk_core::traverse::{DescentScratch, LeafPairs, PairFrame};
-//! use sbbk_core::tree::{BuildOptions, Tree};
+//! use sbbk_core::traverse::{DescentCounts, PairFrame, Verdict};
+//! # use sbbk_core::tree::{BuildOptions, Tree};
+//! # use glamx::Vec3;
 //!
-//! let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
-//! let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-//! let options = BuildOptions { leaf_size: 1, ..BuildOptions::default() };
-//! let tree: Tree = Tree::build(&vertices, &triangles, &options)?;
-//!
+//! # let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+//! # let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+//! # let options = BuildOptions { leaf_size: 1, ..BuildOptions::default() };
+//! let tree = Tree::build(&vertices, &triangles, &options)?;
 //! let mut front = Front::default();
-//! let mut scratch = DescentScratch::default();
-//! for step in 0..10 {
+//! let mut tests = Vec::new();
+//! for step in 0..3 {
 //!     let pos12 = Pose3::translation(0.0, 0.0, 0.9 + 1e-4 * step as f32);
 //!     let mut frame = PairFrame::new(&tree, &tree, &pos12, 0.02);
-//!     let mut found = LeafPairs::default();
-//!     front.visit((&tree, &tree), &mut frame, &mut scratch, (), &mut found);
-//!     assert!(!found.0.is_empty());
+//!     let mut counts = DescentCounts::default();
+//!     front.visit((&tree, &tree), &mut frame, &mut counts, |_leaf1, _leaf2| Verdict::Descend);
+//!     tests.push(counts.aabb_tests);
 //! }
-//! assert_eq!(front.stats().reused, 8);
+//! assert!(tests[0] > tests[1] && tests[1] == tests[2]);
 //! # Ok::<(), sbbk_core::tree::BuildError>(())
 //! ```
 
-mod cells;
-mod clock;
 #[cfg(test)]
 mod figure;
-#[allow(clippy::module_inception)]
-mod front;
 mod opening;
-mod options;
-mod policy;
 
-pub use front::{Front, FrontStats};
-pub use options::FrontOptions;
+use crate::traverse::{Counters, PairFrame, Verdict};
+use crate::tree::Tree;
+use opening::{Opening, PairTest, TreePair};
+
+/// Where the last descent of a pair of trees stopped: see [the module](self).
+///
+/// One front serves one pair of trees. [`clear`](Self::clear) it when a tree is exchanged.
+#[derive(Clone, Debug, Default)]
+pub struct Front {
+    /// The pairs above the front; the first is that of the roots. The front is every lane that has
+    /// not met.
+    cells: Vec<Cell>,
+    free: Vec<u32>,
+}
+
+/// A pair of nodes that met, with its up to four pairs of children.
+#[derive(Copy, Clone, Debug)]
+struct Cell {
+    opening: Opening,
+    /// Lanes that came within the margin.
+    met: u32,
+    /// The cell of each lane that met and is not a pair of leaves.
+    below: [u32; 4],
+}
+
+impl Front {
+    /// Forgets the front. The next query starts at the roots.
+    pub fn clear(&mut self) {
+        self.cells.clear();
+        self.free.clear();
+    }
+
+    /// Number of pairs of nodes above the front.
+    pub fn len(&self) -> usize {
+        self.cells.len() - self.free.len()
+    }
+
+    /// True if the next query starts at the roots.
+    pub fn is_empty(&self) -> bool {
+        self.cells.is_empty()
+    }
+
+    /// Calls `visit` with the numbers of each pair of leaves that meets and is reached from the
+    /// front. These include all leaves with triangles within the margin.
+    ///
+    /// Their order depends on earlier queries. [`Verdict::Stop`] ends the query. A pose that is
+    /// not finite finds nothing and clears the front.
+    pub fn visit<C: Counters>(
+        &mut self,
+        trees: (&Tree, &Tree),
+        frame: &mut PairFrame,
+        mut counters: C,
+        mut visit: impl FnMut(u32, u32) -> Verdict,
+    ) {
+        counters.sphere_test();
+        if !frame.placement().is_finite() || !frame.spheres_meet(trees.0, trees.1) {
+            self.clear();
+            return;
+        }
+        let mut pair = TreePair { trees, frame, counters };
+        self.update(&mut pair, &mut visit);
+    }
+
+    fn update(
+        &mut self,
+        pair: &mut impl PairTest,
+        visit: &mut dyn FnMut(u32, u32) -> Verdict,
+    ) -> Verdict {
+        if self.is_empty() {
+            self.add(pair.roots());
+        }
+        self.test(0, pair, visit)
+    }
+
+    /// Tests the front below a cell, then the lanes of the cell that belong to it. Lanes right above
+    /// the front are tested along with these: SIMD does it at no cost.
+    fn test(
+        &mut self,
+        cell: u32,
+        pair: &mut impl PairTest,
+        visit: &mut dyn FnMut(u32, u32) -> Verdict,
+    ) -> Verdict {
+        let Cell { opening, met: before, below } = self.cells[cell as usize];
+        let above = before & !opening.leaves;
+        let mut asked = opening.lanes & !above;
+        for lane in lanes(above) {
+            if self.test(below[lane], pair, visit) == Verdict::Stop {
+                return Verdict::Stop;
+            }
+            let all_parted = self.cells[below[lane] as usize].met == 0;
+            asked |= u32::from(all_parted) << lane;
+        }
+        let meeting = if asked == 0 { 0 } else { pair.meeting(&opening, asked) };
+        for lane in lanes(asked & !meeting & before) {
+            self.cells[cell as usize].met &= !(1 << lane);
+            if above >> lane & 1 != 0 {
+                self.free.push(below[lane]);
+            }
+        }
+        for lane in lanes(meeting & !above) {
+            let verdict = if opening.leaves >> lane & 1 != 0 {
+                self.cells[cell as usize].met |= 1 << lane;
+                let (leaf1, leaf2) = pair.leaves(opening.pair(lane));
+                visit(leaf1, leaf2)
+            } else {
+                self.lower(cell, lane, pair, visit)
+            };
+            if verdict == Verdict::Stop {
+                return Verdict::Stop;
+            }
+        }
+        Verdict::Descend
+    }
+
+    /// Replaces a pair of the front that met by its children.
+    fn lower(
+        &mut self,
+        cell: u32,
+        lane: usize,
+        pair: &mut impl PairTest,
+        visit: &mut dyn FnMut(u32, u32) -> Verdict,
+    ) -> Verdict {
+        let opened = pair.open(self.cells[cell as usize].opening.pair(lane));
+        let below = self.add(opened);
+        let above = &mut self.cells[cell as usize];
+        above.met |= 1 << lane;
+        above.below[lane] = below;
+        self.test(below, pair, visit)
+    }
+
+    fn add(&mut self, opening: Opening) -> u32 {
+        let cell = Cell { opening, met: 0, below: [0; 4] };
+        if let Some(free) = self.free.pop() {
+            self.cells[free as usize] = cell;
+            return free;
+        }
+        self.cells.push(cell);
+        self.cells.len() as u32 - 1
+    }
+}
+
+/// The lanes in a mask.
+fn lanes(mask: u32) -> impl Iterator<Item = usize> {
+    (0..4).filter(move |lane| mask >> lane & 1 != 0)
+}

@@ -75,15 +75,6 @@ pub struct GapCounts {
     pub triangle_pairs: u64,
 }
 
-/// The gaps of pairs of nodes, some of them by their boxes alone.
-#[derive(Copy, Clone, Debug)]
-pub(crate) struct Gaps {
-    /// Lower bounds of the signed distances.
-    pub(crate) gaps: f32x4,
-    /// Lanes that were compared by k-DOPs.
-    pub(crate) kdop_lanes: u32,
-}
-
 /// Bounds along axes, combined.
 #[derive(Copy, Clone)]
 pub(super) struct Bound {
@@ -137,27 +128,6 @@ impl PairFrame {
                 bound.or(Bound::of_slabs(self.correspondence().gaps(&kdops, 3))).signed()
             }
             None => bound.signed(),
-        }
-    }
-
-    /// The same of the pairs in `lanes`, without the k-DOPs where boxes show all of them to be
-    /// beyond the margin, and with all slabs: gaps that are kept for later are worth more.
-    #[inline(always)]
-    pub(crate) fn gaps_beyond_margin(
-        &mut self,
-        side1: &Side<'_, impl Spread>,
-        side2: &Side<'_, impl Spread>,
-        lanes: u32,
-    ) -> Gaps {
-        let bound = self.box_bound(side1, side2);
-        let gaps = bound.signed();
-        let near = lanes & !gaps.simd_gt(f32x4::splat(self.margin())).to_bitmask();
-        match side1.kdops_with(side2) {
-            Some(kdops) if near != 0 => {
-                let slabs = Bound::of_slabs(self.correspondence().gaps(&kdops, 0));
-                Gaps { gaps: bound.or(slabs).signed(), kdop_lanes: near }
-            }
-            _ => Gaps { gaps, kdop_lanes: 0 },
         }
     }
 

@@ -32,7 +32,7 @@ pub(crate) use expand::{Compare, Sides, expand};
 pub(crate) use frame::Along;
 pub use frame::PairFrame;
 pub(crate) use gaps::{Cutoff, GapCounts, SignedGaps};
-pub(crate) use overlap::OrderedOverlap;
+pub(crate) use overlap::{OrderedOverlap, Overlap};
 pub use placement::Placement;
 pub(crate) use side::Side;
 pub use slack::{Slack, SlackLimits, SlackPlan};

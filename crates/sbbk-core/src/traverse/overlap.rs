@@ -28,9 +28,9 @@ impl PairFrame {
 
 /// Keeps the children whose volumes come within the margin: boxes first, then k-DOPs where both
 /// sides have them.
-pub(super) struct Overlap<'a, C> {
-    pub(super) frame: &'a mut PairFrame,
-    pub(super) counters: &'a mut C,
+pub(crate) struct Overlap<'a, C> {
+    pub(crate) frame: &'a mut PairFrame,
+    pub(crate) counters: &'a mut C,
 }
 
 impl<C: Counters> Compare for Overlap<'_, C> {
