@@ -47,6 +47,7 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         mesh_place: MeshPlace,
         cast: &'q NonlinearCast<'q>,
     ) -> Self {
+        search.search_depths();
         let options = cast.options(mesh_place.swap(search.balls()));
         Self { search, mesh_place, cast, options, touching: Vec::new(), steps: 0, ahead: 0.0 }
     }

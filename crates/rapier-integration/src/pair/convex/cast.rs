@@ -5,20 +5,27 @@
 //! directions of curved shapes are not exact: where a step goes too far, the next one is by the rule of
 //! false position.
 
+use std::cell::Cell;
+
 use glamx::DVec3;
 use parry3d::math::Real;
 use parry3d::partitioning::BvhNode;
 use parry3d::query::details::ShapeCastOptions;
+use sbbk_core::contact::convex::ConvexContact;
 
-use super::features::core_contact;
+use super::features::{core_contact, core_support};
 use super::near::time_of;
 use super::nearest::{ConvexSearch, FoundTriangle};
 use crate::mesh::box_of;
 use crate::pair::pose::MeshPlace;
 
-/// Bodies have come as close as the target if they are this much farther, as a share of size and
-/// travel: within this, contacts may count as touching.
-const ARRIVED: f64 = 1.0e-10;
+/// Bodies that are this much farther than the target at the start are within it, as a share of size.
+/// Within this, contacts may count as touching.
+const TOUCHING: f64 = 1.0e-10;
+
+/// Bodies that are this much farther than the target have arrived, as a share of size and travel.
+/// Higher: less exact times; lower: contacts of bodies that touch, which take longer.
+const ARRIVED: f64 = 1.0e-8;
 
 /// Steps at most. Grazing impacts gain a binary digit a step; others take two or three steps.
 const STEP_LIMIT: usize = 100;
@@ -47,6 +54,7 @@ impl ConvexSearch<'_> {
         if !is_possible || !velocity12.is_finite() || !self.placed.placement.is_finite() {
             return None;
         }
+        self.search_depths();
         // Of a triangle in the frame of the shape, and of the shape in the frame of the mesh.
         let placement = &self.placed.placement;
         let (of_triangle, of_shape) = match mesh_place {
@@ -57,16 +65,21 @@ impl ConvexSearch<'_> {
         let time = time_of(&self.placed, self.convex, &self.mesh, around, of_shape, target);
         let latest = f64::from(max_time_of_impact);
         // Parry asks for costs below the limit: with the next number above it those equal count too.
-        let found = self.mesh.mesh.bvh().find_best(
+        let first = Cell::new(None);
+        self.mesh.mesh.bvh().find_best(
             max_time_of_impact.next_up(),
             |node: &BvhNode, _| time(box_of(node)),
             |triangle, best| {
                 let latest = latest.min(best.into());
                 let cast = self.cast_triangle(triangle, of_triangle, options, latest)?;
-                Some((cast.time as Real, cast))
+                let time = cast.time as Real;
+                if time < best {
+                    first.set(Some(cast));
+                }
+                Some(time)
             },
         );
-        found.map(|(_, (_, cast))| cast)
+        first.into_inner()
     }
 
     /// The first impact of a triangle that moves in the frame of the shape.
@@ -78,55 +91,139 @@ impl ConvexSearch<'_> {
         latest: f64,
     ) -> Option<FoundCast> {
         let start = self.placed.place(self.mesh.corners(triangle));
-        let size = self.size(&start);
-        let (radius, target) =
-            (f64::from(self.convex.radius()), f64::from(options.target_distance.max(0.0)));
-        let speed = velocity.length();
-        let mut time = 0.0;
-        // When the bodies were last known to be apart, by how much, and along which direction.
-        let mut before: Option<(f64, f64, DVec3)> = None;
+        let (size, target) = (self.size(&start), f64::from(options.target_distance.max(0.0)));
+        let cast = TriangleCast { search: self, triangle, start, size, velocity, target, latest };
+        let gap = self.plane_gap(&start).filter(|gap| gap.left(target) > TOUCHING * size);
+        let Some(gap) = gap else { return cast.from_start(options.stop_at_penetration) };
+        cast.advance(Apart { time: 0.0, left: gap.left(target), normal: gap.normal })
+    }
+
+    /// Distance between the plane of a triangle and the shape, if the shape is on one side of it.
+    fn plane_gap(&self, [a, b, c]: &[DVec3; 3]) -> Option<Gap> {
+        let normal = (*b - *a).cross(*c - *a).try_normalize()?;
+        let centre = self.placed.extent.ball().centre.as_dvec3();
+        let normal = if normal.dot(centre - *a) < 0.0 { -normal } else { normal };
+        let lowest = core_support(self.convex, &self.hull, -normal)?;
+        let width = normal.dot(lowest - *a) - f64::from(self.convex.radius());
+        Some(Gap { width, normal })
+    }
+}
+
+/// Two planes that separate a triangle and a shape.
+struct Gap {
+    width: f64,
+    /// Unit vector from the triangle to the shape.
+    normal: DVec3,
+}
+
+impl Gap {
+    fn left(&self, target: f64) -> f64 {
+        self.width - target
+    }
+}
+
+/// A time at which a triangle and a shape are farther apart than the target, by `left`.
+#[derive(Copy, Clone)]
+struct Apart {
+    time: f64,
+    left: f64,
+    /// Unit vector from the triangle to the shape.
+    normal: DVec3,
+}
+
+/// A triangle that moves in the frame of a shape.
+struct TriangleCast<'a> {
+    search: &'a ConvexSearch<'a>,
+    triangle: u32,
+    /// Corners at the start.
+    start: [DVec3; 3],
+    /// Sum of coordinates.
+    size: f64,
+    velocity: DVec3,
+    target: f64,
+    latest: f64,
+}
+
+impl TriangleCast<'_> {
+    fn from_start(&self, stop_at_penetration: bool) -> Option<FoundCast> {
+        let contact = self.contact(0.0)?;
+        let left = contact.distance - self.target;
+        if left > TOUCHING * self.size {
+            return self.advance(Apart { time: 0.0, left, normal: contact.normal });
+        }
+        let counts = stop_at_penetration || self.approach(contact.normal) > 0.0;
+        let is_penetrating = contact.distance < self.target;
+        counts.then(|| FoundCast { time: 0.0, found: self.found(contact), is_penetrating })
+    }
+
+    /// Newton's method, from a time at which a plane separates the bodies.
+    fn advance(&self, mut apart: Apart) -> Option<FoundCast> {
+        let mut time = self.next_time(&apart)?;
         for _ in 0..STEP_LIMIT {
-            let travel = velocity * time;
-            let corners = start.map(|corner| corner + travel);
-            let mut contact = core_contact(&corners, self.convex, &self.hull, f64::INFINITY)?;
-            let is_core_apart = contact.distance > ARRIVED * size;
-            contact.distance -= radius;
-            contact.on_shape -= contact.normal * radius;
-            contact.on_triangle -= travel;
-            let left = contact.distance - target;
-            let slack = ARRIVED * (size + travel.abs().element_sum());
-            // The shape moves away along the normal as the triangle does along minus that.
-            let approach = contact.normal.dot(velocity);
-            if left <= slack {
-                let is_touching = contact.distance <= slack;
-                let Some((earlier, share, normal)) = before else {
-                    let counts = options.stop_at_penetration || approach > 0.0;
-                    let found = FoundTriangle { triangle, contact, is_touching };
-                    let is_penetrating = contact.distance < target;
-                    return counts.then_some(FoundCast { time: 0.0, found, is_penetrating });
-                };
-                if left < -slack && (time - earlier) * speed > slack {
-                    time = earlier + (time - earlier) * share / (share - left);
-                    continue;
+            let mut contact = self.contact(time)?;
+            let (left, slack) = (contact.distance - self.target, self.slack(time));
+            if left > slack {
+                apart = Apart { time, left, normal: contact.normal };
+                time = self.next_time(&apart)?;
+            } else if left < -slack && (time - apart.time) * self.velocity.length() > slack {
+                time = apart.time + (time - apart.time) * apart.left / (apart.left - left);
+            } else {
+                let radius = f64::from(self.search.convex.radius());
+                if contact.distance + radius <= TOUCHING * self.size {
+                    // Bodies that touch have no better normal than those just apart.
+                    contact.normal = apart.normal;
                 }
-                if !is_core_apart {
-                    // That of bodies just apart: those that touch have no better one.
-                    contact.normal = normal;
-                }
-                let found = FoundTriangle { triangle, contact, is_touching };
+                let approach = self.approach(contact.normal);
+                let rest = if approach > 0.0 { left.max(0.0) / approach } else { 0.0 };
+                let time = (time + rest).min(self.latest);
+                let found = self.found(contact);
                 return Some(FoundCast { time, found, is_penetrating: false });
-            }
-            if approach <= 0.0 {
-                return None;
-            }
-            before = Some((time, left, contact.normal));
-            time += left / approach;
-            // Not "later than": a NaN is no time.
-            let in_time = time <= latest;
-            if !in_time {
-                return None;
             }
         }
         None
+    }
+
+    /// The time at which the separating plane is half of [`ARRIVED`] from the target; `None` if that
+    /// is too late.
+    fn next_time(&self, apart: &Apart) -> Option<f64> {
+        let clear = apart.left / self.approach(apart.normal);
+        // Negative, infinite or NaN if the bodies do not approach.
+        let is_in_time = clear >= 0.0 && apart.time + clear <= self.latest;
+        let short = 0.5 * self.slack(apart.time + clear);
+        let share = ((apart.left - short) / apart.left).max(0.0);
+        is_in_time.then_some(apart.time + clear * share)
+    }
+
+    fn slack(&self, time: f64) -> f64 {
+        ARRIVED * (self.size + (self.velocity * time).abs().element_sum())
+    }
+
+    /// Speed at which the bodies approach along a normal.
+    fn approach(&self, normal: DVec3) -> f64 {
+        normal.dot(self.velocity)
+    }
+
+    /// Contact at a time, with the point on the triangle where it was at the start; `None` if the
+    /// bodies are too far apart to meet in time.
+    fn contact(&self, time: f64) -> Option<ConvexContact> {
+        let Self { search, velocity, target, latest, .. } = *self;
+        let travel = velocity * time;
+        let corners = self.start.map(|corner| corner + travel);
+        let radius = f64::from(search.convex.radius());
+        let margin = (radius + target + velocity.length() * (latest - time)) * (1.0 + 1.0e-9);
+        let margin = margin + self.slack(time);
+        if search.placed.is_beyond(&corners, margin) {
+            return None;
+        }
+        let mut contact = core_contact(&corners, search.convex, &search.hull, margin)?;
+        contact.distance -= radius;
+        contact.on_shape -= contact.normal * radius;
+        contact.on_triangle -= travel;
+        Some(contact)
+    }
+
+    fn found(&self, contact: ConvexContact) -> FoundTriangle {
+        let is_touching = contact.distance <= ARRIVED * self.size;
+        FoundTriangle { triangle: self.triangle, contact, is_touching }
     }
 }

@@ -5,40 +5,75 @@
 use std::sync::{LazyLock, OnceLock};
 
 use glamx::DVec3;
-use parry3d::math::{Pose, Real, Vector};
+use parry3d::math::{Pose, Vector};
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d::shape::{
-    ConvexPolyhedron, Cuboid, PackedFeatureId, PolygonalFeature, Segment, Shape, Triangle,
-    TypedShape,
+    Cone, ConvexPolyhedron, Cuboid, Cylinder, PackedFeatureId, PolygonalFeature, Segment, Shape,
+    Triangle, TypedShape,
 };
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::{
     ConeSupport, ConvexContact, CuboidSupport, CylinderSupport, FeaturePoint, FeaturePoints,
-    HullPoints, PointSupport, SegmentSupport, TriangleSupport, clip_feature, convex_contact,
-    convex_touches, half_space_contact,
+    HullPoints, PointSupport, SegmentSupport, SupportMap, TriangleSupport, clip_feature,
+    convex_contact, convex_touches, half_space_contact,
 };
 use sbbk_core::volumes::rounding::gamma;
 
 use super::shape::ConvexShape;
 use super::touch::Along;
 
-/// The contact of a triangle with a shape without its radius, in the shape's frame. `hull` has the
-/// points of the shape, if it is the hull of some and has been asked about before.
+/// Contact of a triangle with a shape without its rounding radius, in the frame of the shape. `hull`
+/// keeps the points of a convex polyhedron from call to call.
 pub(crate) fn core_contact(
     triangle: &[DVec3; 3],
     shape: ConvexShape<'_>,
     hull: &OnceLock<HullPoints>,
     margin: f64,
 ) -> Option<ConvexContact> {
-    match shape {
-        ConvexShape::Ball(_) => ball_contact(triangle, margin),
-        ConvexShape::HalfSpace(half_space) => {
-            half_space_contact(triangle, half_space.normal.as_dvec3(), margin)
-        }
-        ConvexShape::Cuboid(cuboid) => {
-            convex_contact(triangle, &CuboidSupport(cuboid.half_extents.as_dvec3()), margin)
-        }
-        ConvexShape::Features { shape, .. } => feature_contact(triangle, shape, hull, margin),
+    if let ConvexShape::HalfSpace(half_space) = shape {
+        return half_space_contact(triangle, half_space.normal.as_dvec3(), margin);
+    }
+    with_core(shape, hull, TriangleContact { triangle, margin })?
+}
+
+/// Support point of a shape without its rounding radius, in f64; `None` for a half-space.
+pub(super) fn core_support(
+    shape: ConvexShape<'_>,
+    hull: &OnceLock<HullPoints>,
+    direction: DVec3,
+) -> Option<DVec3> {
+    with_core(shape, hull, SupportPoint(direction))
+}
+
+/// A computation with the support map of a shape without its rounding radius.
+trait OfCore {
+    type Output;
+
+    fn of<S: SupportMap>(self, core: &S) -> Self::Output;
+}
+
+struct TriangleContact<'a> {
+    triangle: &'a [DVec3; 3],
+    margin: f64,
+}
+
+impl OfCore for TriangleContact<'_> {
+    type Output = Option<ConvexContact>;
+
+    #[inline(always)]
+    fn of<S: SupportMap>(self, core: &S) -> Option<ConvexContact> {
+        convex_contact(self.triangle, core, self.margin)
+    }
+}
+
+struct SupportPoint(DVec3);
+
+impl OfCore for SupportPoint {
+    type Output = DVec3;
+
+    #[inline(always)]
+    fn of<S: SupportMap>(self, core: &S) -> DVec3 {
+        core.support(self.0)
     }
 }
 
@@ -59,7 +94,7 @@ pub(super) fn core_touches(
     if let ConvexShape::Features { shape, .. } = shape
         && let Some(shape) = polyhedron(shape)
     {
-        let points = hull.get_or_init(|| HullPoints::new(shape.points().iter().copied()));
+        let points = hull.get_or_init(|| HullPoints::without_faces(shape.points().iter().copied()));
         return convex_touches(triangle, points, reach);
     }
     core_contact(triangle, shape, hull, reach).is_some()
@@ -70,52 +105,62 @@ fn polyhedron(shape: &dyn Shape) -> Option<&ConvexPolyhedron> {
     shape.as_convex_polyhedron().or_else(round)
 }
 
-fn feature_contact(
-    triangle: &[DVec3; 3],
-    shape: &dyn Shape,
+/// `None` for a half-space.
+#[inline(always)]
+fn with_core<C: OfCore>(
+    shape: ConvexShape<'_>,
     hull: &OnceLock<HullPoints>,
-    margin: f64,
-) -> Option<ConvexContact> {
-    let segment = |segment: &Segment| {
-        let core = SegmentSupport([segment.a, segment.b].map(|end| end.as_dvec3()));
-        convex_contact(triangle, &core, margin)
+    compute: C,
+) -> Option<C::Output> {
+    let shape = match shape {
+        ConvexShape::Ball(_) => return Some(compute.of(&PointSupport(DVec3::ZERO))),
+        ConvexShape::HalfSpace(_) => return None,
+        ConvexShape::Cuboid(cuboid) => return Some(compute.of(&cuboid_support(cuboid))),
+        ConvexShape::Features { shape, .. } => shape,
     };
-    let of_triangle = |other: &Triangle| {
-        let core = TriangleSupport(other.vertices().map(|corner| corner.as_dvec3()));
-        convex_contact(triangle, &core, margin)
-    };
-    let cylinder = |half_height: Real, radius: Real| {
-        let [half_height, radius] = [half_height, radius].map(f64::from);
-        convex_contact(triangle, &CylinderSupport { half_height, radius }, margin)
-    };
-    let cone = |half_height: Real, radius: Real| {
-        let [half_height, radius] = [half_height, radius].map(f64::from);
-        convex_contact(triangle, &ConeSupport { half_height, radius }, margin)
-    };
-    let hull_of = |shape: &ConvexPolyhedron| {
-        convex_contact(triangle, hull.get_or_init(|| hull_points(shape)), margin)
-    };
-    match shape.as_typed_shape() {
-        TypedShape::Segment(shape) => segment(shape),
-        TypedShape::Capsule(shape) => segment(&shape.segment),
-        TypedShape::Triangle(shape) => of_triangle(shape),
-        TypedShape::RoundTriangle(shape) => of_triangle(&shape.inner_shape),
-        TypedShape::Cylinder(shape) => cylinder(shape.half_height, shape.radius),
-        TypedShape::RoundCylinder(shape) => {
-            cylinder(shape.inner_shape.half_height, shape.inner_shape.radius)
-        }
-        TypedShape::Cone(shape) => cone(shape.half_height, shape.radius),
-        TypedShape::RoundCone(shape) => {
-            cone(shape.inner_shape.half_height, shape.inner_shape.radius)
-        }
-        TypedShape::RoundCuboid(shape) => {
-            let half_lengths = shape.inner_shape.half_extents.as_dvec3();
-            convex_contact(triangle, &CuboidSupport(half_lengths), margin)
-        }
-        TypedShape::ConvexPolyhedron(shape) => hull_of(shape),
-        TypedShape::RoundConvexPolyhedron(shape) => hull_of(&shape.inner_shape),
-        _ => None,
-    }
+    let hull_of = |shape: &ConvexPolyhedron| hull.get_or_init(|| hull_points(shape));
+    Some(match shape.as_typed_shape() {
+        TypedShape::Segment(shape) => compute.of(&segment_support(shape)),
+        TypedShape::Capsule(shape) => compute.of(&segment_support(&shape.segment)),
+        TypedShape::Triangle(shape) => compute.of(&triangle_support(shape)),
+        TypedShape::RoundTriangle(shape) => compute.of(&triangle_support(&shape.inner_shape)),
+        TypedShape::Cylinder(shape) => compute.of(&cylinder_support(shape)),
+        TypedShape::RoundCylinder(shape) => compute.of(&cylinder_support(&shape.inner_shape)),
+        TypedShape::Cone(shape) => compute.of(&cone_support(shape)),
+        TypedShape::RoundCone(shape) => compute.of(&cone_support(&shape.inner_shape)),
+        TypedShape::RoundCuboid(shape) => compute.of(&cuboid_support(&shape.inner_shape)),
+        TypedShape::ConvexPolyhedron(shape) => compute.of(hull_of(shape)),
+        TypedShape::RoundConvexPolyhedron(shape) => compute.of(hull_of(&shape.inner_shape)),
+        _ => return None,
+    })
+}
+
+fn segment_support(segment: &Segment) -> SegmentSupport {
+    SegmentSupport([segment.a, segment.b].map(|end| end.as_dvec3()))
+}
+
+fn triangle_support(triangle: &Triangle) -> TriangleSupport {
+    TriangleSupport(triangle.vertices().map(|corner| corner.as_dvec3()))
+}
+
+fn cuboid_support(cuboid: &Cuboid) -> CuboidSupport {
+    CuboidSupport(cuboid.half_extents.as_dvec3())
+}
+
+fn cylinder_support(cylinder: &Cylinder) -> CylinderSupport {
+    let [half_height, radius] = [cylinder.half_height, cylinder.radius].map(f64::from);
+    CylinderSupport { half_height, radius }
+}
+
+fn cone_support(cone: &Cone) -> ConeSupport {
+    let [half_height, radius] = [cone.half_height, cone.radius].map(f64::from);
+    ConeSupport { half_height, radius }
+}
+
+/// Points of a hull whose depth is found by search, where a few triangles cross it.
+pub(super) fn searched_hull(shape: ConvexShape<'_>) -> Option<HullPoints> {
+    let ConvexShape::Features { shape, .. } = shape else { return None };
+    polyhedron(shape).map(|shape| HullPoints::without_faces(shape.points().iter().copied()))
 }
 
 fn hull_points(shape: &ConvexPolyhedron) -> HullPoints {

@@ -112,6 +112,8 @@ pub(super) fn time_of(
     // Poses and boxes are rounded to f32; so is what turns the velocity.
     let speed = velocity.length() * f64::from(1.0 + gamma(8));
     let lost = f64::from(gamma(8)) * speed;
+    let speeds = velocity.abs();
+    let (per_fast, per_slow) = ((speeds + lost).recip(), (speeds - lost).recip());
     move |node| {
         let (centre, extent) = node.centre_extent();
         let apart = f64::from(gap(node)) - f64::from(target);
@@ -121,12 +123,11 @@ pub(super) fn time_of(
             let reach = (extent + around.half_extents()).as_dvec3() + slack;
             for axis in 0..3 {
                 let ahead = offset[axis] * velocity[axis].signum();
-                let (fast, slow) = (velocity[axis].abs() + lost, velocity[axis].abs() - lost);
-                if slow > 0.0 {
-                    start = start.max((ahead - reach[axis]) / fast);
-                    end = end.min((ahead + reach[axis]) / slow);
+                if speeds[axis] > lost {
+                    start = start.max((ahead - reach[axis]) * per_fast[axis]);
+                    end = end.min((ahead + reach[axis]) * per_slow[axis]);
                 } else {
-                    start = start.max((ahead.abs() - reach[axis]) / fast);
+                    start = start.max((ahead.abs() - reach[axis]) * per_fast[axis]);
                 }
             }
         }

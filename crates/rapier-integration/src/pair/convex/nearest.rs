@@ -8,7 +8,7 @@ use parry3d::shape::Shape;
 use sbbk_core::contact::convex::{ConvexContact, HullPoints};
 use sbbk_core::volumes::Sphere;
 
-use super::features::{core_contact, core_touches};
+use super::features::{core_contact, core_touches, searched_hull};
 use super::near::{gap_of, triangles_near};
 use super::pair::ConvexPair;
 use super::parts::{Part, Parts};
@@ -67,6 +67,13 @@ impl<'a> ConvexSearch<'a> {
         let part = Part { pose: None, shape: convex, cone: None };
         let placed = PlacedPart::new(0, &part, pair, Extent::of(convex));
         Some(Self { mesh: pair.mesh, shape, convex, placed, hull: OnceLock::new() })
+    }
+
+    /// Finds depths of hulls by search from now on, as few triangles are deep at a start.
+    pub(crate) fn search_depths(&self) {
+        if let Some(hull) = searched_hull(self.convex) {
+            self.hull.get_or_init(|| hull);
+        }
     }
 
     /// Balls around the mesh and the shape.

@@ -35,6 +35,12 @@ impl HullPoints {
         Self::with_faces(points, [])
     }
 
+    /// Builds a hull whose depths are always found by search. Faces take longer than the search for a
+    /// few triangles.
+    pub fn without_faces(points: impl IntoIterator<Item = Vec3>) -> Self {
+        Self { faces: OnceLock::from(None), ..Self::new(points) }
+    }
+
     /// Builds the hull with its probable faces: triangles of point indices, counterclockwise from
     /// outside. They are checked when a triangle first crosses the hull. Right ones save nine
     /// tenths of the time to find the faces.
@@ -108,5 +114,30 @@ impl SupportMap for HullPoints {
             HullFaces::new(&points, &self.triangles)
         });
         faces.as_ref()?.penetration(triangle, size)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::convex::convex_contact;
+    use crate::support::Random;
+
+    /// Would catch a hull without faces that finds them after all: a single depth then takes as long
+    /// as a hundred.
+    #[test]
+    fn depths_by_search_equal_those_by_faces() {
+        let mut random = Random(3);
+        let points: Vec<Vec3> = (0..66).map(|_| random.vector(1.0).normalize()).collect();
+        let hulls = [HullPoints::new(points.clone()), HullPoints::without_faces(points)];
+        for _ in 0..100 {
+            let triangle = [(); 3].map(|()| random.vector(0.9).as_dvec3());
+            let [by_faces, by_search] =
+                hulls.each_ref().map(|hull| convex_contact(&triangle, hull, 0.0));
+            let depths = [by_faces, by_search].map(|contact| contact.map_or(1.0, |c| c.distance));
+            assert!((depths[0] - depths[1]).abs() < 1.0e-9, "{depths:?}");
+        }
+        assert!(hulls[0].faces.get().is_some_and(Option::is_some));
+        assert!(hulls[1].faces.get().is_some_and(Option::is_none));
     }
 }
