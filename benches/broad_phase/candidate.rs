@@ -2,7 +2,7 @@
 
 use rapier3d::parry::bounding_volume::Aabb;
 use rapier3d::parry::partitioning::{Bvh, BvhWorkspace};
-use sbbk_core::broad_phase::{Bounds, BroadPhase, ObjectHandle};
+use sbbk_core::broad_phase::{Bounds, BroadPhase};
 
 /// Two object indices, the lower one first.
 pub type IndexPair = [u32; 2];
@@ -13,31 +13,18 @@ pub trait Candidate {
     fn step(&mut self, frame: &[Bounds]) -> Vec<IndexPair>;
 }
 
-/// This crate's. It also checks the bounds, sorts the pairs and reports events.
-pub struct Sbbk {
-    broad_phase: BroadPhase,
-    handles: Vec<ObjectHandle>,
-}
+/// This crate's.
+pub struct Sbbk(BroadPhase);
 
 impl Sbbk {
     pub fn new(margin: f32) -> Self {
-        let broad_phase = BroadPhase::new(margin).unwrap();
-        Self { broad_phase, handles: Vec::new() }
+        Self(BroadPhase::new(margin))
     }
 }
 
 impl Candidate for Sbbk {
     fn step(&mut self, frame: &[Bounds]) -> Vec<IndexPair> {
-        for bounds in &frame[self.handles.len()..] {
-            self.handles.push(self.broad_phase.insert(bounds).unwrap());
-        }
-        for (&handle, bounds) in self.handles.iter().zip(frame) {
-            self.broad_phase.update(handle, bounds).unwrap();
-        }
-        let mut event_count = 0;
-        self.broad_phase.step(|_| event_count += 1);
-        std::hint::black_box(event_count);
-        self.broad_phase.pairs().map(|pair| pair.map(|h| h.index() as u32)).collect()
+        self.0.pairs(frame).to_vec()
     }
 }
 

@@ -1,56 +1,172 @@
-//! For users of bare trees, without a physics engine: all pairs of moving objects whose bounding
-//! spheres and bounding boxes come within a margin. Rapier has its own broad phase and takes no
-//! other.
+//! The SBBK paper's sphere stage for a whole world: all pairs of moving objects whose bounding
+//! spheres and bounding boxes come within a margin.
 //!
-//! This is the sphere stage of "A Three-layer Hybrid Bounding Volume Hierarchy for Collision
-//! Detection" for a whole world of objects. A step reports which pairs started and which ended;
-//! the pairs are at every step exactly those of [`Bounds::is_pair_with`].
+//! Here to reproduce the paper, and for users of bare trees. Rapier uses its own broad phase.
 //!
 //! ```
 //! use glamx::Vec3;
-//! use sbbk_core::broad_phase::{Bounds, BroadPhase, PairEvent};
+//! use sbbk_core::broad_phase::{Bounds, BroadPhase};
 //!
 //! let unit_ball = |x: f32| {
 //!     let centre = Vec3::new(x, 0.0, 0.0);
 //!     Bounds { centre, radius: 1.0, min: centre - 1.0, max: centre + 1.0 }
 //! };
-//!
-//! let mut broad_phase = BroadPhase::new(0.02)?;
-//! let still = broad_phase.insert(&unit_ball(0.0))?;
-//! let moving = broad_phase.insert(&unit_ball(5.0))?;
-//! broad_phase.step(|event| panic!("too far apart for {event:?}"));
-//!
-//! broad_phase.update(moving, &unit_ball(2.01))?;
-//! broad_phase.step(|event| assert_eq!(event, PairEvent::Started([still, moving])));
-//! assert!(broad_phase.pairs().eq([[still, moving]]));
-//!
-//! broad_phase.remove(still)?;
-//! broad_phase.step(|event| assert_eq!(event, PairEvent::Ended([still, moving])));
-//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! let mut broad_phase = BroadPhase::new(0.02);
+//! assert!(broad_phase.pairs(&[unit_ball(0.0), unit_ball(5.0)]).is_empty());
+//! assert_eq!(broad_phase.pairs(&[unit_ball(0.0), unit_ball(2.01)]), [[0, 1]]);
 //! ```
 //!
-//! # Choice of the structure
+//! # The test in f32 misses no pair
 //!
-//! A tree of eight children a node that descends into itself (`block_tree.rs`). On piles, rows,
-//! clusters and mixed sizes of 2000 and 20,000 objects, sweep and prune, a hashed grid, a dynamic
-//! tree of fat boxes and a rebuilt binned BVH took 1.4 to 33 times as long, but for the sweep in a
-//! long row and in 2000 clustered objects (0.7 to 0.9). The repository's benchmark `broad_phase`
-//! compares with the tree that Rapier uses, Parry's.
+//! **Boxes.** The gap on an axis is `min₂ − max₁`, so it is at most the margin `m` exactly when
+//! `min₂ ≤ max₁ + m`. Each box therefore gets the margin on its upper sides. Rounding is monotonic
+//! and `min₂` is a float: `min₂ ≤ max₁ + m` implies `min₂ ≤ fl(max₁ + m)`, overflow included.
 //!
-//! Tried within the tree and dropped, as time over what is kept: an order along a Morton curve
-//! instead of cuts across the widest axis, 1.0 in the row and 1.6 to 1.9 elsewhere; objects divided
-//! by size before they are cut by place, 1.1 to 3.6 where sizes differ; four lanes instead of eight
-//! on SSE2, 1.0 to 1.35.
+//! **Spheres.** Let `D` be the distance of the centres, `S = r₁ + r₂ + m`, both in real
+//! arithmetic, and `u = 2⁻²⁴`. Half the margin goes on each radius. Without underflow
+//!
+//! * `fl(D²) ≤ D² (1 + u)⁵`: difference, product and two sums, the difference counted twice;
+//! * `s = fl(fl(r₁ + m/2) + fl(r₂ + m/2)) ≥ S (1 − u)²`, so `fl(s²) ≥ S² (1 − u)⁵`;
+//! * `fl(fl(s² K) + A) ≥ S² K (1 − u)⁷` for any `A ≥ 0`.
+//!
+//! So `D ≤ S` passes `fl(D²) ≤ fl(fl(s² K) + A)` if `K ≥ (1 + u)⁵ / (1 − u)⁷ = 1 + 12 u + O(u²)`;
+//! `K = 1 + 16 u` is the next float with room for the `O(u²)`. Underflow costs at most 2⁻¹⁵⁰ for
+//! each of the three squares of `D²` and for `s²` and `s² K`, together less than 2⁻¹⁴⁷, and half a
+//! subnormal margin at most 2⁻¹⁵⁰ on a radius; `A = 2⁻¹²⁶` covers them. Overflow is monotonic, and
+//! `∞ ≤ ∞` passes. In the other direction a pair that passes has
+//! `D ≤ S (1 + 16 u) + 2⁻⁶²`.
 
-mod block_tree;
-mod bounds;
-mod counting_sort;
-mod handle;
 mod lanes;
-mod order;
-mod pairs;
-mod phase;
+mod tree;
 
-pub use bounds::{Bounds, BoundsError};
-pub use handle::{CapacityExceeded, ObjectHandle, StaleHandle};
-pub use phase::{BroadPhase, InsertError, MarginError, ObjectPair, PairEvent, UpdateError};
+use glamx::Vec3;
+
+use tree::BlockTree;
+
+/// `K` of the module's derivation, a factor on a squared distance. Lower: pairs are missed by
+/// rounding; higher: more false pairs.
+const RELATIVE_SLACK: f32 = 1.0 + 8.0 * f32::EPSILON;
+
+/// `A` of the module's derivation, a squared length. Lower: pairs are missed by underflow; higher:
+/// more false pairs.
+const ABSOLUTE_SLACK: f32 = f32::MIN_POSITIVE;
+
+/// Bounding sphere and axis-aligned bounding box of one object, in the world frame.
+///
+/// Each must contain the object, and a pair must pass both. Round them outward: a broad phase takes
+/// these numbers as exact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Centre of the sphere.
+    pub centre: Vec3,
+    /// Radius of the sphere, at least 0.
+    pub radius: f32,
+    /// Lower corner of the box.
+    pub min: Vec3,
+    /// Upper corner of the box.
+    pub max: Vec3,
+}
+
+impl Bounds {
+    /// Returns true if the gap between the spheres, and the gap between the boxes on each axis, are
+    /// at most `margin`. False where a number is NaN.
+    ///
+    /// [`BroadPhase`] computes exactly this. It misses no pair by rounding, and takes spheres up to
+    /// 2⁻²⁰ of the sum of radii and margin too far apart.
+    pub fn is_pair_with(&self, other: &Self, margin: f32) -> bool {
+        Reach::new(self, margin).overlaps(&Reach::new(other, margin))
+    }
+}
+
+/// An axis-aligned box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Aabb {
+    min: [f32; 3],
+    max: [f32; 3],
+}
+
+impl Aabb {
+    fn overlaps(&self, other: &Self) -> bool {
+        (0..3).all(|axis| self.min[axis] <= other.max[axis] && other.min[axis] <= self.max[axis])
+    }
+}
+
+/// Bounds widened by the margin: a pair is an overlap, touching included.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Reach {
+    aabb: Aabb,
+    centre: [f32; 3],
+    radius: f32,
+}
+
+impl Reach {
+    fn new(bounds: &Bounds, margin: f32) -> Self {
+        let aabb = Aabb {
+            min: bounds.min.to_array(),
+            max: bounds.max.to_array().map(|upper| upper + margin),
+        };
+        let radius = bounds.radius + 0.5 * margin;
+        Self { aabb, centre: bounds.centre.to_array(), radius }
+    }
+
+    /// The expressions of [`lanes`] for one pair.
+    fn overlaps(&self, other: &Self) -> bool {
+        let [x, y, z] = [0, 1, 2].map(|axis| self.centre[axis] - other.centre[axis]);
+        let reach = self.radius + other.radius;
+        let limit = reach * reach * RELATIVE_SLACK + ABSOLUTE_SLACK;
+        self.aabb.overlaps(&other.aabb) && x * x + y * y + z * z <= limit
+    }
+}
+
+/// Finds all pairs among moving objects; see [the module](self) for an example.
+#[derive(Clone, Debug)]
+pub struct BroadPhase {
+    margin: f32,
+    reaches: Vec<Reach>,
+    /// Objects whose bounds differ from those of the last step.
+    changed: Vec<bool>,
+    tree: BlockTree,
+    pairs: Vec<[u32; 2]>,
+}
+
+impl BroadPhase {
+    /// A broad phase without objects. `margin` is the largest gap between two objects of a pair:
+    /// the prediction distance of the narrow phase that follows.
+    pub fn new(margin: f32) -> Self {
+        let (reaches, changed, pairs) = Default::default();
+        Self { margin, reaches, changed, tree: BlockTree::default(), pairs }
+    }
+
+    /// Returns the pairs of objects with these bounds, as indices into `bounds`, the lower first.
+    ///
+    /// Call it once a step with the same objects in the same order: it only tests what moved. The
+    /// order of the pairs depends on earlier steps. Steps of equally many objects and pairs allocate
+    /// nothing.
+    pub fn pairs(&mut self, bounds: &[Bounds]) -> &[[u32; 2]] {
+        let is_new = bounds.len() != self.reaches.len();
+        let reaches = bounds.iter().map(|bounds| Reach::new(bounds, self.margin));
+        if is_new {
+            self.reaches.clear();
+            self.reaches.extend(reaches);
+            self.changed.clear();
+            self.changed.resize(bounds.len(), true);
+            self.pairs.clear();
+        } else {
+            for (object, reach) in reaches.enumerate() {
+                self.changed[object] = reach != self.reaches[object];
+                if self.changed[object] {
+                    self.reaches[object] = reach;
+                    self.tree.update(object, &reach);
+                }
+            }
+            let changed = &self.changed;
+            self.pairs.retain(|pair| !pair.iter().any(|&object| changed[object as usize]));
+        }
+        if is_new || self.tree.refit() {
+            self.tree.pack(&self.reaches, &self.changed);
+        }
+        let pairs = &mut self.pairs;
+        self.tree.take_pairs(|one, other| pairs.push([one.min(other), one.max(other)]));
+        &self.pairs
+    }
+}
