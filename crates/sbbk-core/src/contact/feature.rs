@@ -120,9 +120,8 @@ mod tests {
         vertices.chain((0..3).map(Feature::Edge)).chain([Feature::Face])
     }
 
-    /// Would catch two features with the same code, or a side read from the wrong bits.
     #[test]
-    fn every_pair_survives_packing() {
+    fn feature_pairs_survive_packing() {
         let mut seen = std::collections::HashSet::new();
         for (f1, f2) in features().flat_map(|f1| features().map(move |f2| (f1, f2))) {
             let pair = FeaturePair::new(f1, f2);
@@ -139,7 +138,6 @@ mod tests {
         assert_eq!(seen.len(), 98);
     }
 
-    /// "any value is allowed": a stale or foreign byte must not give an index out of range.
     #[test]
     fn any_byte_reads_as_features() {
         for bits in 0..=u8::MAX {

@@ -122,10 +122,9 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
 
-        /// The capacity must hold for any signs, also those that no triangles have: rounding may
-        /// give them. And the operations on words must say what the definitions say.
+        /// Rounding may give signs that no triangles have.
         #[test]
-        fn any_signs(signs in prop::array::uniform18(-1_i32..=1)) {
+        fn words_of_any_signs_agree_with_definitions_and_fit_a_manifold(signs in prop::array::uniform18(-1_i32..=1)) {
             let mask = |sign: i32| (0..18).filter(|&bit| signs[bit] == sign).fold(0, |m, b| m | 1 << b);
             let sides = ShadowSigns { area: Default::default(), left: mask(1), right: mask(-1) };
             let sign = |edge: usize, vertex: usize, lane: usize| signs[6 * edge + 2 * vertex + lane];

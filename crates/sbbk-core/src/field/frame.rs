@@ -3,10 +3,10 @@
 //! # Rounding
 //!
 //! With `n` cells along an axis, line `c` computed in f32 as `(c·fl(1/n) - 1/2)·scale`, in any
-//! order, is off by less than `γ_4·|scale|`: ranges are taken wider by `γ_8` of the whole. A height
-//! times its scale loses `γ_1` of the product, and [`MIN_POSITIVE`](f32::MIN_POSITIVE) to
-//! underflow: bounds of heights are wider by `γ_4`. Boxes are turned in f64, a dozen roundings of
-//! `2⁻⁵³`: they grow by `1e-14` of their coordinates.
+//! order, is off by less than `γ_4·|scale|`. Ranges are therefore wider by `γ_8` of the whole. A
+//! height times its scale loses `γ_1` of the product, and [`MIN_POSITIVE`](f32::MIN_POSITIVE) to
+//! underflow, so bounds of heights are wider by `γ_4`. Boxes are turned in f64, with a dozen
+//! roundings of `2⁻⁵³`: they grow by `1e-14` of their coordinates.
 
 use std::ops::Range;
 
@@ -16,7 +16,7 @@ use super::grid::HeightGrid;
 use crate::traverse::{Counters, Placement, TestedBox};
 use crate::volumes::rounding::gamma;
 
-/// Cells under a node up to which their heights are read; a node above more is taken apart at once.
+/// CellRange under a node up to which their heights are read; a node above more is taken apart at once.
 /// More: whole parts of a mesh above the ground are ruled out sooner. Fewer: less is read twice
 /// where they are not.
 const READ_LIMIT: usize = 1024;
@@ -32,7 +32,7 @@ pub struct FieldFrame<'a, F> {
 
 /// A range of cells and the heights at which it can touch.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Cells {
+pub(super) struct CellRange {
     pub(super) columns: Range<usize>,
     pub(super) rows: Range<usize>,
     /// Not yet scaled.
@@ -52,7 +52,7 @@ impl<'a, F: HeightGrid> FieldFrame<'a, F> {
         Self { field, placement: *placement, absolute, reach }
     }
 
-    /// Whether anything in a box of the mesh's frame may touch the field. Conservative.
+    /// Returns true if a triangle in a box of the mesh's frame may touch the field. Conservative.
     pub fn meets(&self, tested: TestedBox, mut counters: impl Counters) -> bool {
         let (centre, extent) = tested.centre_extent();
         // Centre and half-lengths are rounded: what they lose is a part of their size.
@@ -69,7 +69,7 @@ impl<'a, F: HeightGrid> FieldFrame<'a, F> {
     }
 
     /// The cells that may come within the margin of a box of the field's frame.
-    pub(super) fn cells_between(&self, low: DVec3, high: DVec3) -> Option<Cells> {
+    pub(super) fn cells_between(&self, low: DVec3, high: DVec3) -> Option<CellRange> {
         let coordinates = low.abs().max(high.abs()).element_sum()
             + self.placement.translation.abs().element_sum();
         let reach = self.reach + 1e-14 * coordinates;
@@ -77,7 +77,7 @@ impl<'a, F: HeightGrid> FieldFrame<'a, F> {
         let scale = self.field.scale().as_dvec3();
         let [columns, rows] = self.field.cell_counts();
         let [bottom, top] = heights(low.y, high.y, scale.y);
-        Some(Cells {
+        Some(CellRange {
             columns: lines(low.x, high.x, scale.x, columns)?,
             rows: lines(low.z, high.z, scale.z, rows)?,
             low: bottom,
@@ -85,8 +85,8 @@ impl<'a, F: HeightGrid> FieldFrame<'a, F> {
         })
     }
 
-    /// Whether the corners of the cells are neither all above nor all below. A NaN is neither.
-    fn are_met(&self, cells: &Cells, counters: &mut impl Counters) -> bool {
+    /// True unless the corners of the cells are all above or all below. A NaN is neither.
+    fn are_met(&self, cells: &CellRange, counters: &mut impl Counters) -> bool {
         let (mut is_one_below, mut is_one_above) = (false, false);
         for column in cells.columns.start..=cells.columns.end {
             counters.cells(cells.rows.len());
@@ -102,12 +102,12 @@ impl<'a, F: HeightGrid> FieldFrame<'a, F> {
     }
 }
 
-impl Cells {
+impl CellRange {
     fn count(&self) -> usize {
         self.columns.len() * self.rows.len()
     }
 
-    /// Whether a cell with these corners can be touched, as of [`FieldFrame::are_met`].
+    /// True if a cell with these corners can be touched, see [`FieldFrame::are_met`].
     pub(super) fn is_met(&self, corners: [f32; 4]) -> bool {
         corners.iter().any(|&height| height <= self.high)
             && corners.iter().any(|&height| height >= self.low)

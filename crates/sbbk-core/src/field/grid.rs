@@ -2,9 +2,9 @@ use glamx::Vec3;
 
 /// Heights over a regular grid, with two triangles a cell.
 ///
-/// Grid line `c` of `n` along x is at `(c/n - 1/2)·scale.x`, and likewise along z; the corner there
-/// is at its height times `scale.y`. The corners of [`triangles`](Self::triangles) may be off that
-/// by a few roundings of f32, see [`FieldFrame`](super::FieldFrame).
+/// Grid line `c` of `n` along x is at `(c/n - 1/2)·scale.x`, and z has lines of the same form. The
+/// corner there is at its height times `scale.y`. The corners of [`triangles`](Self::triangles) may
+/// be off by a few roundings of f32, see [`FieldFrame`](super::FieldFrame).
 pub trait HeightGrid {
     /// Cells along x (columns) and z (rows).
     fn cell_counts(&self) -> [usize; 2];
@@ -25,6 +25,6 @@ pub trait HeightGrid {
 pub struct FieldTriangle {
     /// Column and row of the cell.
     pub cell: [usize; 2],
-    /// Which of the two of [`HeightGrid::triangles`].
+    /// Index in the result of [`HeightGrid::triangles`].
     pub side: usize,
 }

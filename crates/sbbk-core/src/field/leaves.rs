@@ -21,8 +21,8 @@ impl<'a, F: HeightGrid> FieldLeaves<'a, F> {
         Self { frame, test }
     }
 
-    /// Calls `found` with a triangle of the field and the index of one of `batch` for all pairs within
-    /// the margin of the frame, and few others.
+    /// Calls `found` with a triangle of the field and the index of a triangle of `batch`, for all
+    /// pairs within the margin of the frame and few others.
     pub fn visit(
         &self,
         batch: &LeafBatch,

@@ -1,19 +1,13 @@
 //! The triangles of a height field that may touch a mesh.
 //!
-//! A height field is a tree already: the cells under a box of its frame follow from two divisions.
-//! So only a hierarchy of the mesh is walked, any one. The box of each node, turned into the frame
-//! of the field, gives a range of cells; if all their corners are above the box, or all below,
-//! nothing under the node can touch ([`FieldFrame::meets`]). Of the triangles that the walk comes to
-//! ([`FieldLeaves`]) each cell is compared by the same rule, and what is left triangle against
-//! triangle, by separating axes over lanes.
+//! Two divisions give the cells under a box, so the field needs no tree; the caller descends any
+//! hierarchy of the mesh. [`FieldFrame::meets`] turns the box of a node into the frame of the
+//! field. If all corners of the cells under it are above the box, or all below, nothing under the
+//! node can touch. [`FieldLeaves`] compares the cells under a leaf batch by the same rule, then
+//! their triangles by separating axes, in SIMD lanes.
 //!
-//! So the cells looked at lie under the boxes of the mesh, and a field of a million cells costs
-//! what one of a thousand does. Nothing is computed from the field in advance, so nothing can be
-//! out of date when it is edited.
-//!
-//! A pyramid of least and greatest heights over blocks of cells is the usual way to test large
-//! ranges. It is left out: mostly the first line of heights shows that a range cannot be ruled out,
-//! only ranges that can be are read in full, and ranges above a limit are not read at all.
+//! A million cells cost as much as a thousand, as only cells under the mesh are read. No data is
+//! derived from the field, so edits need no update.
 //!
 //! ```
 //! use glamx::{Pose3, Vec3};

@@ -9,8 +9,8 @@ use crate::volumes::rounding::gamma;
 use super::seek::SearchScratch;
 use super::triangles::{FoundPair, LeafTriangle, TrianglePair};
 
-/// Calls `found` for each pair of triangles at a distance of at most `margin`, in units of frame 1,
-/// mesh 2 placed at `placement` in the frame of mesh 1.
+/// Calls `found` for each pair of triangles at a distance of at most `margin`, in units of frame 1.
+/// `placement` places mesh 2 in frame 1.
 ///
 /// Triangles that touch, up to 1e-12 of their size, are always among them. The order depends on the
 /// trees and the pose only. No pair is found if the placement is not finite, or if the margin is
@@ -28,7 +28,7 @@ pub fn contacts(
     if !placement.is_finite() || !(0.0..).contains(&margin) {
         return;
     }
-    // Not below the margin. A wider one would overflow in the tests, and separates nothing.
+    // The margin is rounded up. A wider one would overflow in the tests, and excludes nothing.
     let widened = margin.min(WIDEST_MARGIN) as f32 * (1.0 + gamma(4)) + f32::MIN_POSITIVE;
     let mut frame = PairFrame::at(trees, placement, widened);
     let mut visitor = Contacts { test: LeafTest::new(&frame), placement, margin, found };

@@ -1,4 +1,4 @@
-//! Where to look first: a pair of leaves that is probably near the answer.
+//! A pair of leaves to start with that is probably near the answer.
 //!
 //! A search prunes by the best pair of triangles so far, so a good one at the start is worth more
 //! than any later.

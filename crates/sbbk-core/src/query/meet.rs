@@ -1,4 +1,4 @@
-//! Whether any triangles of two meshes meet.
+//! A test of two meshes for triangles that meet.
 //!
 //! The search for the nearest pair with a limit of zero would tell. Here each axis only has to tell
 //! whether nodes are apart, as in a descent, not how far: a tenth to a fifth less time. The pair of
@@ -12,11 +12,11 @@ use crate::tree::{LeafBatch, Tree};
 use super::seek::{Bounds, FOUND, SearchScratch, seek};
 use super::triangles::{FoundPair, LeafTriangle, TrianglePair};
 
-/// A pair of triangles that touch or cross, mesh 2 placed at `placement` in the frame of mesh 1;
-/// `None` if there is none, or if the placement is not finite.
+/// Returns a pair of triangles that touch or cross, with mesh 2 placed at `placement` in frame 1.
+/// `None` if no pair meets, or if the placement is not finite.
 ///
-/// Triangles touch up to 1e-12 of their size. As [`nearest`](super::nearest()) with a limit of
-/// zero, but for the choice among several pairs, and faster.
+/// Triangles touch up to 1e-12 of their size. Faster than [`nearest`](super::nearest()) with a
+/// limit of zero, which may choose another pair.
 pub fn meeting(
     trees: (&Tree, &Tree),
     placement: Placement,

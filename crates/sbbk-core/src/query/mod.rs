@@ -1,10 +1,10 @@
-//! Questions about two meshes at a pose: all contacts, the nearest or the deepest pair of
-//! triangles, whether any pair meets, when moving meshes first meet.
+//! Queries about two meshes at a pose: all contacts, the nearest or deepest pair of triangles, a
+//! pair that meets, the first impact of moving meshes.
 //!
-//! [`contacts`] is a descent. The questions with one answer are one search (`seek.rs`): both trees
-//! are descended at once, the pair of nodes with the least lower bound first, and what cannot beat
-//! the best pair of triangles so far is left out. The bound is the signed distance of volumes for
-//! [`nearest`], the earliest time at which they come close for [`cast`]; [`meeting`] has none.
+//! [`contacts`] is a descent. The queries with one result share a best-first search (`seek.rs`): it
+//! descends both trees at once, the pair of nodes with the least lower bound first. Pairs that
+//! cannot beat the best pair of triangles so far are pruned. The bound is the signed distance of
+//! volumes for [`nearest`], and the earliest time of approach for [`cast`]; [`meeting`] has none.
 //! Pairs of triangles are compared exactly, in f64 ([`contact`](mod@crate::contact)).
 //!
 //! ```

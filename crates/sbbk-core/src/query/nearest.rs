@@ -11,7 +11,7 @@ use super::guess::near_leaves;
 use super::seek::{Bounds, FOUND, SearchScratch, seek};
 use super::triangles::{FoundPair, LeafTriangle, TrianglePair};
 
-/// Which pair of triangles is sought.
+/// The pair of triangles to find.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub(super) enum Goal {
     /// The nearest one. If several touch or cross, any of them.
@@ -35,7 +35,7 @@ pub fn nearest(
     search(trees, placement, limit, Goal::Nearest, scratch).0
 }
 
-/// As [`nearest`], but if several pairs touch or cross, the deepest.
+/// Like [`nearest`], but returns the deepest pair if several touch or cross.
 pub fn deepest(
     trees: (&Tree, &Tree),
     placement: Placement,
@@ -53,13 +53,13 @@ fn search(
     goal: Goal,
     scratch: &mut SearchScratch,
 ) -> (Option<FoundPair>, GapCounts) {
-    // Not `min`: a limit that is NaN stays, and admits nothing.
+    // Unlike `min`, this keeps a limit that is NaN, which admits nothing.
     let some = some_distance(trees, &placement);
     let best = if some < limit { some } else { limit };
     search_besides(trees, placement, best, goal, &[], scratch)
 }
 
-/// The same of all pairs of triangles but some, which are given in ascending order.
+/// Searches all pairs of triangles except those in `besides`, which is sorted.
 pub(super) fn search_besides(
     trees: (&Tree, &Tree),
     placement: Placement,
@@ -68,7 +68,7 @@ pub(super) fn search_besides(
     besides: &[[u32; 2]],
     scratch: &mut SearchScratch,
 ) -> (Option<FoundPair>, GapCounts) {
-    // Not `best < 0`: a limit that is NaN admits nothing.
+    // Unlike `best < 0`, this rejects a limit that is NaN.
     let admits = best >= 0.0;
     if !admits || !placement.is_finite() {
         return (None, GapCounts::default());
@@ -136,7 +136,7 @@ impl NearestSearch<'_> {
     /// Bounds along the normal of the best pair from now on. Rare, and long: kept out of the way.
     #[inline(never)]
     fn look_along(&mut self, normal: DVec3) {
-        // Where triangles cross, the normal tells nothing about the others.
+        // The normal of crossing triangles tells nothing about other pairs.
         self.gaps.toward = None;
         if self.best > 0.0 {
             self.gaps.toward = Toward::new(self.gaps.frame, normal);
@@ -186,11 +186,9 @@ mod tests {
     use crate::support::{Random, bumpy_ball};
     use crate::tree::BuildOptions;
 
-    /// The counters: of 16 million pairs of triangles a few hundred are compared, wherever the
-    /// meshes are. Would catch a search that does not look along the way between the meshes: at a
-    /// distance of 6 it tests 15,000 pairs of nodes.
+    /// The meshes have 16 million pairs of triangles.
     #[test]
-    fn most_is_pruned() {
+    fn searches_of_large_meshes_test_few_pairs() {
         let ball = bumpy_ball(32, 0.1);
         let tree: Tree =
             Tree::build(&ball.vertices, &ball.triangles, &BuildOptions::default()).unwrap();

@@ -1,8 +1,8 @@
 //! The search: depth first, the nearest pair first, with a bound.
 //!
-//! A pair of nodes is replaced by those pairs of its children whose lower bound does not exceed the
-//! best value so far; of these the least is looked at next. The first leaves that are reached are
-//! near the answer, so the bound is tight from then on.
+//! A pair of nodes is replaced by the pairs of its children whose lower bound is at most the best
+//! value so far. The least of these is next. The first leaves reached are near the answer, so the
+//! bound is tight from then on.
 
 use crate::traverse::{Compare, DescentScratch, Sides, expand};
 use crate::tree::{LeafBatch, Slot, Tree};
@@ -25,13 +25,13 @@ pub(super) trait Bounds {
 /// Memory of a query, kept by the caller: after the first few nothing is allocated.
 #[derive(Clone, Debug, Default)]
 pub struct SearchScratch {
-    stack: Vec<Candidate>,
+    stack: Vec<BoundedPair>,
     pub(super) descent: DescentScratch,
 }
 
 /// A pair of nodes and its bound.
 #[derive(Copy, Clone, Debug)]
-struct Candidate {
+struct BoundedPair {
     key: f32,
     slots: (Slot, Slot),
 }
@@ -47,12 +47,12 @@ pub(super) fn seek<B: Bounds>(
 ) {
     let stack = &mut scratch.stack;
     stack.clear();
-    stack.push(Candidate { key: f32::NEG_INFINITY, slots: (Slot::ROOT, Slot::ROOT) });
-    while let Some(Candidate { key, slots }) = stack.pop() {
+    stack.push(BoundedPair { key: f32::NEG_INFINITY, slots: (Slot::ROOT, Slot::ROOT) });
+    while let Some(BoundedPair { key, slots }) = stack.pop() {
         if bounds.limit() == FOUND {
             return;
         }
-        // Not "at most": a bound that is NaN bounds nothing.
+        // A bound that is NaN prunes nothing.
         if key > bounds.limit() {
             continue;
         }
@@ -63,7 +63,7 @@ pub(super) fn seek<B: Bounds>(
         }
         let first = stack.len();
         expand((tree1, tree2), slots, Sides::of(links), bounds.compare(), |slots, key| {
-            stack.push(Candidate { key, slots });
+            stack.push(BoundedPair { key, slots });
         });
         nearest_last(&mut stack[first..]);
     }
@@ -72,7 +72,7 @@ pub(super) fn seek<B: Bounds>(
 /// Sorts up to four pairs, so that the one with the least bound is popped first; equal ones in the
 /// order they have.
 #[inline(always)]
-fn nearest_last(pairs: &mut [Candidate]) {
+fn nearest_last(pairs: &mut [BoundedPair]) {
     for end in 1..pairs.len() {
         for i in (0..end).rev() {
             if pairs[i].key < pairs[i + 1].key {

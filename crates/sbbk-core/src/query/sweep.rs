@@ -1,15 +1,14 @@
 //! The earliest time at which pairs of moving nodes may come within a distance, over SIMD lanes.
 //!
-//! Two bounds, of which the later counts. Boxes that move along a line against each other overlap
-//! on each axis of frame 1 during an interval, on all three during the intersection of these (the
-//! slabs of a ray against the Minkowski sum). And volumes that are a gap apart need at least the
-//! gap over the speed.
+//! The later of two bounds counts. Boxes that move along a line overlap on each axis of frame 1
+//! during an interval, and on all three during the intersection (the slabs of a ray against the
+//! Minkowski sum). Volumes with a gap need at least the gap over the speed.
 //!
 //! # Rounding
 //!
-//! The offset and the reach are those of [`PairFrame`], conservative by its rounding.
-//! The velocity is exact in frame 1. A quotient loses at most `γ_4`, the target distance added to
-//! the reach `γ_2`; times are made earlier at their start and later at their end by `γ_8`.
+//! The offset and the reach come from [`PairFrame`], conservative by its rounding. The velocity is
+//! exact in frame 1. A quotient loses at most `γ_4`, and the target distance added to the reach
+//! `γ_2`. Intervals start earlier and end later by `γ_8`.
 
 use glamx::Vec3;
 use wide::f32x4;
@@ -21,11 +20,11 @@ use crate::volumes::rounding::gamma;
 /// Lower bounds of times of impact.
 pub(super) struct Sweep<'a> {
     pub(super) frame: &'a mut PairFrame,
-    /// Of mesh 2 against mesh 1, in frame 1.
+    /// Velocity of mesh 2 against mesh 1, in frame 1.
     pub(super) velocity: Vec3,
-    /// One over the length of the velocity, not more; infinite if that is zero.
+    /// Lower bound of one over the length of the velocity; infinite for no velocity.
     pub(super) inverse_speed: f32,
-    /// How close counts as an impact, not less.
+    /// Upper bound of the distance that counts as an impact.
     pub(super) target: f32,
     /// Later impacts do not matter. Finite, or minus infinity.
     pub(super) cutoff: Cutoff,

@@ -14,13 +14,13 @@ const TOUCHING: f64 = 1.0e-12;
 /// Two triangles in frame 1, relative to a corner of the first one, as
 /// [`contact`](mod@crate::contact) needs them.
 ///
-/// Coordinates are widened to f64 before anything is subtracted, so that no digit of how the
-/// triangles lie to each other is lost, wherever the origin is.
+/// Coordinates are widened to f64 before any subtraction, so no digit of the relative position is
+/// lost at any distance from the origin.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct TrianglePair {
     /// A corner of triangle 1, in frame 1.
     pub origin: Vec3,
-    /// Of triangle 1 and of triangle 2, in frame 1, relative to `origin`.
+    /// Corners of triangle 1 and of triangle 2, in frame 1, relative to `origin`.
     pub corners: [[DVec3; 3]; 2],
 }
 
@@ -81,7 +81,7 @@ pub struct FoundPair {
     pub contact: TriangleContact,
     /// A corner of triangle 1, in frame 1.
     pub origin: Vec3,
-    /// Whether the triangles touch or cross, up to 1e-12 of the lengths of their edges.
+    /// True if the triangles touch or cross, up to 1e-12 of the lengths of their edges.
     pub is_touching: bool,
 }
 

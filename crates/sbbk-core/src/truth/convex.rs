@@ -1,6 +1,5 @@
 //! A triangle and a convex body: polytopes by enumeration, cylinders and cones by search.
 
-use super::convex_truth::ConvexTruth;
 use super::curved::Curved;
 use super::polytope::Polytope;
 use glamx::DVec3;
@@ -8,7 +7,18 @@ use glamx::DVec3;
 /// Cores closer than this share of the size of the pair have no normals: rounding moves them.
 const NEAR: f64 = 1.0e-6;
 
-/// A convex body in its own frame: all that is within a radius of its core.
+/// The contact of a triangle and a convex body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConvexTruth {
+    /// The distance, to 1e-9 of the size of the pair; minus the least translation that separates
+    /// them if they cross.
+    pub distance: f64,
+    /// Directions from the triangle to the body: several if moves along several are least, empty if
+    /// the cores touch.
+    pub normals: Vec<DVec3>,
+}
+
+/// A convex body in its own frame: all points within a radius of its core.
 #[derive(Clone, Debug)]
 pub struct ConvexBody {
     core: Core,
@@ -44,12 +54,12 @@ impl ConvexBody {
         Core::HalfSpace { normal }.sharp()
     }
 
-    /// With a border of this radius in place of the one it has.
+    /// Replaces the rounding radius.
     pub fn rounded(self, radius: f64) -> Self {
         Self { radius, ..self }
     }
 
-    /// How a triangle, which may be a segment or a point, meets the body.
+    /// Returns the distance of a triangle, which may be a segment or a point, from the body.
     pub fn contact(&self, triangle: &[DVec3; 3]) -> ConvexTruth {
         let (mut truth, size) = match &self.core {
             Core::Polytope(polytope) => (polytope.contact(triangle), polytope.size()),
@@ -74,7 +84,7 @@ impl ConvexBody {
         self.contact(triangle).distance
     }
 
-    /// How far a point is outside; 0 inside.
+    /// Distance of a point outside; 0 inside.
     pub fn outside(&self, point: DVec3) -> f64 {
         let core = match &self.core {
             Core::Polytope(polytope) => polytope.contact(&[point; 3]).distance,

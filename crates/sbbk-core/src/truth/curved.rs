@@ -3,11 +3,11 @@
 //! Apart: the distance of a point from the body is a convex function, so a golden section search
 //! finds its least value over the triangle.
 //!
-//! Crossing: the direction of the least translation is across the triangle, across one of its
-//! edges, or across the surface of the body beside a corner. Edges leave a circle of directions,
-//! which is sampled and then searched.
+//! Crossing: the least translation is perpendicular to the triangle, to one of its edges, or to the
+//! surface of the body beside a corner. Edges leave a circle of directions, which is sampled and
+//! then searched.
 
-use super::convex_truth::ConvexTruth;
+use super::convex::ConvexTruth;
 use glamx::DVec3;
 use std::f64::consts::TAU;
 
@@ -66,7 +66,7 @@ impl Curved {
         }
     }
 
-    /// How far the body reaches along a unit vector.
+    /// Height of the support point along a unit vector.
     fn reach(&self, u: DVec3) -> f64 {
         let level = u.x.hypot(u.z);
         match *self {
@@ -104,7 +104,7 @@ impl Curved {
 
     fn crossing(&self, triangle: &[DVec3; 3], tie: f64) -> ConvexTruth {
         let [a, b, c] = *triangle;
-        // How far the triangle is in front along a direction from the body.
+        // Gap between body and triangle along a direction from the body.
         let gap = |u: DVec3| {
             triangle.iter().map(|x| x.dot(u)).fold(f64::INFINITY, f64::min) - self.reach(u)
         };
@@ -138,7 +138,7 @@ impl Curved {
     }
 }
 
-/// Where a function with one minimum between two numbers is least, by golden section, and its value.
+/// Minimum of a function with one minimum between two numbers, by golden section: place and value.
 fn least(mut low: f64, mut high: f64, function: impl Fn(f64) -> f64) -> (f64, f64) {
     const RATIO: f64 = 0.618_033_988_749_894_9;
     let ends = [low, high].map(|at| (at, function(at)));

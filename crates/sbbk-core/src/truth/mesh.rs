@@ -28,9 +28,9 @@ struct Boxed {
 /// All triangle pairs of two meshes at a distance of at most `margin`, sorted by both indices.
 /// `pose` takes mesh 2 into the frame of mesh 1.
 ///
-/// Pairs whose boxes are farther apart than the margin are skipped, and so are those that do
-/// not meet along x, found in sorted order: 70,000 by 70,000 small triangles take seconds. A
-/// mesh with one triangle as long as all others together takes the product of both counts.
+/// Skips pairs whose boxes are farther apart than the margin. Sorting by x finds them: 70,000 by
+/// 70,000 small triangles take seconds. A mesh with one triangle as long as all others together
+/// takes the product of both counts.
 pub fn pairs_within(
     vertices1: &[DVec3],
     triangles1: &[[u32; 3]],

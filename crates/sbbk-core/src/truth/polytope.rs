@@ -3,7 +3,7 @@
 //! Apart: the least distance of all pairs of features. Crossing: the least overlap over all
 //! directions that can be a face normal of the Minkowski difference.
 
-use super::convex_truth::ConvexTruth;
+use super::convex::ConvexTruth;
 use glamx::DVec3;
 use std::collections::BTreeSet;
 
@@ -71,7 +71,7 @@ impl Polytope {
         shortest(of_points.chain(of_edges).chain(of_faces))
     }
 
-    /// The widest gap of all axes that can be that of a face of the Minkowski difference, flat ones
+    /// The widest gap among all axes of possible faces of the Minkowski difference, flat ones
     /// included.
     fn separation(&self, triangle: &[DVec3; 3]) -> ConvexTruth {
         let points = &self.points;
@@ -83,7 +83,7 @@ impl Polytope {
         let mut widest = f64::NEG_INFINITY;
         let mut found: Vec<(f64, DVec3)> = Vec::new();
         let mut test = |axis: DVec3, lengths: f64| {
-            // What is nearly no cross product is no axis.
+            // A cross product of nearly zero is no axis.
             if axis.length() <= 1.0e-9 * lengths {
                 return;
             }

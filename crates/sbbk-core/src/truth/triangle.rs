@@ -3,10 +3,10 @@
 //! Apart: the distance of two triangles is the least of nine edge-edge and six vertex-face
 //! distances, each found by least squares (a QR factorisation).
 //!
-//! Crossing: when an edge of one pierces the other, the depth is the least overlap over the
-//! directions that can be a face normal of the Minkowski difference: both face normals and the
-//! nine products of two edges (S. Gottschalk, "Separating axis theorem", 1996). Any other
-//! direction only overestimates the depth, so a badly computed direction never does harm.
+//! Crossing: if an edge of one triangle pierces the other, the depth is the least overlap over all
+//! possible face normals of the Minkowski difference. These are both face normals and the nine
+//! products of two edges (S. Gottschalk, "Separating axis theorem", 1996). Other directions only
+//! overestimate the depth, so a badly computed direction does no harm.
 
 use arrayvec::ArrayVec;
 use glamx::DVec3;
@@ -15,14 +15,13 @@ use nalgebra::{Matrix2, Matrix3, Matrix3x2, Vector2, Vector3};
 type Vector = Vector3<f64>;
 type Triangle = [Vector; 3];
 
-/// Below this fraction of the size of the pair, a distance is too small to give a direction, and
-/// two depths too close to say which is less.
+/// Fraction of the size of the pair below which a distance gives no direction, and two depths tie.
 const UNCLEAR: f64 = 1.0e-8;
 
 /// Triangles this close, as a fraction of the size of the pair, are taken to touch or cross.
 const TOUCHING: f64 = 1.0e-13;
 
-/// How two triangles lie to each other.
+/// Distance or depth of two triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TruthContact {
     /// The distance, or minus the least translation that separates the triangles. Triangles
@@ -30,7 +29,7 @@ pub struct TruthContact {
     pub distance: f64,
     /// The unit direction of the distance, or of the least translation of triangle 2.
     pub normal: DVec3,
-    /// Whether no direction that differs by more than 0.03 degrees is nearly as good.
+    /// True if no direction that differs by more than 0.03 degrees is nearly as good.
     pub normal_is_unique: bool,
     /// The closest points on triangles 1 and 2; none when they cross.
     pub closest_points: Option<[DVec3; 2]>,
@@ -127,7 +126,7 @@ fn closest_in_face(point: Vector, t: &Triangle) -> Vector {
         .map_or(t[0], |w| t[0] + columns[0] * w.x + columns[1] * w.y)
 }
 
-/// Whether an edge of `t1` passes through `t2`.
+/// True if an edge of `t1` passes through `t2`.
 fn pierces(t1: &Triangle, t2: &Triangle) -> bool {
     edges(t1).into_iter().any(|[a, b]| {
         Matrix3::from_columns(&[t2[1] - t2[0], t2[2] - t2[0], a - b])
@@ -158,7 +157,8 @@ fn least_translation(t1: &Triangle, t2: &Triangle, size: f64) -> TruthContact {
         .flat_map(|n| [n, -n])
         .map(|n| (separation(&t1.map(plain), &t2.map(plain), n), n))
         .collect();
-    // Without any axis both lie on one line: the least translation is sideways, by nothing.
+    // Both triangles lie on one line if there is no axis: the least translation is sideways, by
+    // nothing.
     let sideways = d1[0].cross(&Vector::x()) + d1[0].cross(&Vector::y());
     let flat = (0.0, plain(sideways.try_normalize(0.0).unwrap_or(Vector::z())));
     let best = axes.iter().copied().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or(flat);

@@ -4,9 +4,8 @@
 //! each edge of the triangle with an axis of the box. Bodies that cross are separated by the least
 //! translation along one of these axes. The nearest points of bodies apart come from `solid.rs`.
 
-use super::difference::Vertex;
 use super::search::BOUNDARY;
-use super::simplex;
+use super::simplex::squared_distance;
 use super::solid::{Gap, OffsetPoint, Solid, TriangleAndSolid};
 use super::support::SupportMap;
 use super::{ConvexContact, by_search};
@@ -149,18 +148,26 @@ impl TriangleAndSolid<'_, CuboidSupport> {
     /// corner. Most triangles near a floor end here.
     #[inline(always)]
     fn over_face(&self, axis: usize, sign: f64) -> Option<ConvexContact> {
-        let [mut lowest, b, c] = *self.triangle;
-        let inside = self.solid.0 - lowest.abs().max(b.abs()).max(c.abs());
+        let [a, b, c] = *self.triangle;
+        let inside = self.solid.0 - a.abs().max(b.abs()).max(c.abs());
         let is_over = |i: usize| inside[(axis + i) % 3] > 10.0 * self.doubtful();
         if !(is_over(1) && is_over(2)) {
             return None;
         }
+        let lowest = self.lowest(axis, sign);
+        Some(ConvexContact::apart(lowest, -self.solid.outside(lowest)))
+    }
+
+    /// The first of the corners that are lowest along an axis.
+    #[inline(always)]
+    fn lowest(&self, axis: usize, sign: f64) -> DVec3 {
+        let [mut lowest, b, c] = *self.triangle;
         for corner in [b, c] {
             if corner[axis] * sign < lowest[axis] * sign {
                 lowest = corner;
             }
         }
-        Some(ConvexContact::apart(lowest, -self.solid.outside(lowest)))
+        lowest
     }
 
     /// The widest of a gap and those along the products of an edge and an axis of the box.
@@ -211,9 +218,7 @@ impl TriangleAndSolid<'_, CuboidSupport> {
             BoxFacet::Box(axis) => self.corner_over_face(axis, outward[axis]),
             BoxFacet::Triangle => {
                 let over = self.solid.0.copysign(outward) + outward * width;
-                let [a, b, c] =
-                    [0, 1, 2].map(|i| Vertex { point: over - self.triangle[i], corner: i });
-                let near = simplex::face(a, b, c).squared;
+                let near = squared_distance(self.triangle, over);
                 (near <= (ON_BODY * self.size).powi(2)).then_some(over)
             }
             BoxFacet::Edges(edge, axis) => self.on_edge(edge, axis, gap),
@@ -226,12 +231,7 @@ impl TriangleAndSolid<'_, CuboidSupport> {
     /// The deepest corner below a face of the box, if it is below the face.
     #[inline(always)]
     fn corner_over_face(&self, axis: usize, sign: f64) -> Option<DVec3> {
-        let [mut deepest, b, c] = *self.triangle;
-        for corner in [b, c] {
-            if corner[axis] * sign < deepest[axis] * sign {
-                deepest = corner;
-            }
-        }
+        let deepest = self.lowest(axis, sign);
         let outside = deepest.abs() - self.solid.0;
         let slack = ON_BODY * self.size;
         let is_over = |i: usize| outside[(axis + i) % 3] <= slack;

@@ -13,9 +13,8 @@
 //! measure the depth of each candidate, so each is a move that separates them. The least one is the
 //! contact.
 
-use super::difference::Vertex;
 use super::search::BOUNDARY;
-use super::simplex;
+use super::simplex::squared_distance;
 use super::solid::{Gap, OffsetPoint, Solid, TriangleAndSolid};
 use super::support::SupportMap;
 use super::{ConvexContact, by_search};
@@ -120,22 +119,19 @@ impl Best {
 
 /// A solid around the y axis.
 pub(super) trait Turned: Solid {
-    /// A bound of its coordinates.
-    fn size(&self) -> f64;
+    /// Flat ends: the first ones of the rims.
+    const ENDS: usize;
+
+    fn half_height(&self) -> f64;
+
+    fn radius(&self) -> f64;
 
     /// The height of the slope's normal, which has length 1.
     fn slope(&self) -> f64;
 
-    /// The flat ends: the height of each, and the direction out of it.
-    fn ends(&self) -> impl Iterator<Item = (f64, f64)>;
-
-    /// The rims: the height of each, and the directions on which side of it the normals of the
-    /// surfaces with edges are.
+    /// The rims: the height of each, and the upright sign of the normals of its surfaces with edges.
+    /// That sign also leads out of a flat end.
     fn rims(&self) -> [(f64, f64); 2];
-
-    fn radius(&self) -> f64;
-
-    fn half_height(&self) -> f64;
 }
 
 impl Solid for CylinderSupport {
@@ -153,28 +149,22 @@ impl Solid for CylinderSupport {
 }
 
 impl Turned for CylinderSupport {
-    fn size(&self) -> f64 {
-        self.half_height + 2.0 * self.radius
-    }
+    const ENDS: usize = 2;
 
-    fn slope(&self) -> f64 {
-        0.0
-    }
-
-    fn ends(&self) -> impl Iterator<Item = (f64, f64)> {
-        [(self.half_height, 1.0), (-self.half_height, -1.0)].into_iter()
-    }
-
-    fn rims(&self) -> [(f64, f64); 2] {
-        [(self.half_height, 1.0), (-self.half_height, -1.0)]
+    fn half_height(&self) -> f64 {
+        self.half_height
     }
 
     fn radius(&self) -> f64 {
         self.radius
     }
 
-    fn half_height(&self) -> f64 {
-        self.half_height
+    fn slope(&self) -> f64 {
+        0.0
+    }
+
+    fn rims(&self) -> [(f64, f64); 2] {
+        [(self.half_height, 1.0), (-self.half_height, -1.0)]
     }
 }
 
@@ -211,8 +201,14 @@ impl Solid for ConeSupport {
 }
 
 impl Turned for ConeSupport {
-    fn size(&self) -> f64 {
-        self.half_height + 2.0 * self.radius
+    const ENDS: usize = 1;
+
+    fn half_height(&self) -> f64 {
+        self.half_height
+    }
+
+    fn radius(&self) -> f64 {
+        self.radius
     }
 
     fn slope(&self) -> f64 {
@@ -221,21 +217,9 @@ impl Turned for ConeSupport {
         if length > 0.0 { radius / length } else { 0.0 }
     }
 
-    fn ends(&self) -> impl Iterator<Item = (f64, f64)> {
-        [(-self.half_height, -1.0)].into_iter()
-    }
-
     /// Beside the base, normals can point up as far as the normal of the slope.
     fn rims(&self) -> [(f64, f64); 2] {
         [(-self.half_height, -1.0), (-self.half_height, 1.0)]
-    }
-
-    fn radius(&self) -> f64 {
-        self.radius
-    }
-
-    fn half_height(&self) -> f64 {
-        self.half_height
     }
 }
 
@@ -244,7 +228,7 @@ fn turned_contact<S: Turned>(
     solid: &S,
     margin: f64,
 ) -> Option<ConvexContact> {
-    let pair = TriangleAndSolid::new(triangle, solid, solid.size());
+    let pair = TriangleAndSolid::new(triangle, solid, solid.half_height() + 2.0 * solid.radius());
     if !pair.size.is_finite() {
         return None;
     }
@@ -308,7 +292,7 @@ impl<S: Turned> TriangleAndSolid<'_, S> {
             best.take(self.gap(-gap.outward), Part::Face);
         }
         let (low, high) = self.heights();
-        for (height, side) in solid.ends() {
+        for &(height, side) in &solid.rims()[..S::ENDS] {
             let width = if side > 0.0 { low - height } else { height - high };
             best.take(Gap { width, outward: DVec3::Y * side }, Part::Corner);
         }
@@ -405,9 +389,7 @@ impl<S: Turned> TriangleAndSolid<'_, S> {
             }
             Part::Face => {
                 let over = self.solid.support(gap.outward) + shift;
-                let [a, b, c] =
-                    [0, 1, 2].map(|i| Vertex { point: over - self.triangle[i], corner: i });
-                (simplex::face(a, b, c).squared <= touching).then_some(over)
+                (squared_distance(self.triangle, over) <= touching).then_some(over)
             }
             // The solid touches in the plane of the axis and the direction.
             Part::Slope(j) | Part::Rim(j) => {

@@ -10,13 +10,13 @@
 //! nearer than the nearer one of the planes above a corner of the triangle. So both ends of the
 //! edge must be below one of these planes by less than the least depth so far.
 
-use super::difference::Vertex;
 use super::hull_surface::{FACES, HullSurface, POINTS, ROUNDING};
 use super::lanes::{PlaneLanes, PointLanes, splat};
-use super::simplex::{self, thin_normal};
+use super::simplex::{squared_distance, thin_normal};
 use super::support::lowest as lowest_corner;
 use super::{ConvexContact, DOUBTFUL};
 use crate::contact::closest::closest_on_lines;
+use crate::contact::triangle::NEXT;
 use arrayvec::ArrayVec;
 use glamx::DVec3;
 use wide::f64x4;
@@ -224,7 +224,7 @@ impl HullFaces {
             HullFacet::Triangle => {
                 let (_, vertex) = self.points.farthest(outward);
                 let point = vertex - outward * depth;
-                is_on(triangle, point, ON_BODY * size).then_some(point)
+                is_near(triangle, point, ON_BODY * size).then_some(point)
             }
             HullFacet::Edges([start, along], j) => {
                 let (corner, side) = (triangle[j], triangle[(j + 1) % 3] - triangle[j]);
@@ -268,7 +268,7 @@ impl HullFaces {
         let high = self.points.farthest(outward).0 - tie;
         let below = |point: DVec3| point - outward * depth;
         let mut points = self.points.iter().filter(|p| p.dot(outward) >= high).map(below);
-        points.find(|point| is_on(triangle, *point, slack))
+        points.find(|point| is_near(triangle, *point, slack))
     }
 
     /// True if a point is in the hull, or off it by at most `slack`.
@@ -317,9 +317,6 @@ const SPREAD: [u32; 16] = {
     spread
 };
 
-/// The corner after each.
-const NEXT: [usize; 3] = [1, 2, 0];
-
 /// Height of the lowest corner of a triangle along a direction.
 #[inline(always)]
 fn lowest([a, b, c]: &[DVec3; 3], direction: DVec3) -> f64 {
@@ -328,7 +325,6 @@ fn lowest([a, b, c]: &[DVec3; 3], direction: DVec3) -> f64 {
 
 /// True if a point is at most `slack` off a triangle.
 #[inline(always)]
-fn is_on(triangle: &[DVec3; 3], point: DVec3, slack: f64) -> bool {
-    let [a, b, c] = triangle.map(|corner| Vertex { point: point - corner, corner: 0 });
-    simplex::face(a, b, c).squared <= slack * slack
+fn is_near(triangle: &[DVec3; 3], point: DVec3, slack: f64) -> bool {
+    squared_distance(triangle, point) <= slack * slack
 }

@@ -41,9 +41,8 @@ pub fn feature_at(triangle: &[DVec3; 3], point: DVec3, normal: DVec3) -> Feature
 mod tests {
     use super::*;
 
-    /// Would catch parts that are told wrongly, and a triangle without a plane that has any.
     #[test]
-    fn parts_of_a_triangle_are_told_by_points_and_normals() {
+    fn features_follow_from_points_and_normals() {
         let triangle = [DVec3::ZERO, 4.0 * DVec3::X, 4.0 * DVec3::Y];
         let [a, b, c] = triangle;
         let aslant = DVec3::new(0.1, -0.2, 1.0).normalize();

@@ -199,6 +199,13 @@ pub(super) fn thin_normal([a, b, c]: [DVec3; 3]) -> Option<(DVec3, f64)> {
     is_wide.then_some((normal, squared))
 }
 
+/// Squared distance of a point from a triangle.
+#[inline(always)]
+pub(super) fn squared_distance(triangle: &[DVec3; 3], point: DVec3) -> f64 {
+    let [a, b, c] = triangle.map(|corner| Vertex { point: point - corner, corner: 0 });
+    face(a, b, c).squared
+}
+
 /// [`face`], not inlined: a search has thirty of them.
 #[inline(never)]
 pub(super) fn side(a: Vertex, b: Vertex, c: Vertex) -> Simplex {

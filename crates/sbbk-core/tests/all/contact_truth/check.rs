@@ -1,4 +1,4 @@
-//! What a contact must fulfil, whatever the triangles are.
+//! Conditions that every contact must meet.
 
 use glamx::DVec3;
 use sbbk_core::contact::{Feature, TriangleContact, contact};
@@ -27,10 +27,6 @@ pub fn part(t: &Triangle, feature: Feature) -> Triangle {
 }
 
 /// Checks the contact of two triangles against the truth and returns the truth.
-///
-/// Would catch a wrong distance or depth, a wrong decision at the margin, a normal that does not
-/// separate or has the wrong sign, points off the triangles or off the features named, features of
-/// the other triangle, and a difference between the sides.
 pub fn check(t1: &Triangle, t2: &Triangle) -> truth::TruthContact {
     let size = size(t1).max(size(t2));
     let reach = t1.iter().chain(t2).map(|v| v.length()).fold(0.0, f64::max);
@@ -93,8 +89,8 @@ fn check_points(
     if mismatch > tolerance {
         return Err(format!("point2 - point1 is off by {mismatch:e}"));
     }
-    // The end of a sliver is less certain than the distance, and where axes tie at a tiny depth,
-    // rounding may pick the one whose point lies beside.
+    // The end of a sliver is less certain than the distance. If axes tie at a tiny depth, rounding
+    // may pick one whose point lies beside.
     let size = size(t1).max(size(t2));
     let beside = 1.0e-6 * size + (-found.distance).clamp(0.0, 1.0e-6 * size);
     let sides = [

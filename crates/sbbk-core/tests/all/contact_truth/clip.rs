@@ -41,7 +41,7 @@ fn overlap(subject: Vec<DVec2>, clipper: &[DVec2]) -> Vec<DVec2> {
     })
 }
 
-/// Whether no three corners that matter lie so close that rounding could add or drop one.
+/// True unless three corners lie so close that rounding could add or drop one.
 fn is_generic(shadows: [&[DVec2]; 2], clear: f64) -> bool {
     let corner = |k: usize, i: usize| shadows[k][i % 3];
     (0..2).all(|k| {
@@ -75,10 +75,8 @@ fn check_point(
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(20_000))]
 
-    /// Would catch a corner that is missed, found twice or misplaced, a wrong name of a corner,
-    /// and a wrong distance.
     #[test]
-    fn the_corners_of_the_overlap(t1 in triangle(), t2 in triangle(), offset in point(), closeness in 0.0..1.0) {
+    fn manifold_points_are_the_corners_of_the_overlap(t1 in triangle(), t2 in triangle(), offset in point(), closeness in 0.0..1.0) {
         // Both at a distance and into each other.
         let apart = t2.map(|v| v + 2.0 * offset);
         let before = truth::contact(&t1, &apart);
@@ -130,10 +128,8 @@ proptest! {
         prop_assert!(none.is_empty());
     }
 
-    /// Along any direction, not only the normal: the caller may have turned it. Nothing may be
-    /// infinite, and no point may lie off its triangle, when one is seen edge-on.
     #[test]
-    fn edge_on(t1 in triangle(), t2 in triangle(), tilt in -9.0..-1.0, around in point()) {
+    fn points_of_triangles_seen_edge_on_lie_on_both_triangles(t1 in triangle(), t2 in triangle(), tilt in -9.0..-1.0, around in point()) {
         for edge_on in [&t1, &t2] {
             let along = (edge_on[1] - edge_on[0]).normalize();
             let normal = (along + around * 10.0_f64.powf(tilt) * 0.1).normalize();
@@ -146,27 +142,8 @@ proptest! {
     }
 }
 
-/// Two equal triangles: each vertex is on the border of the other, no edges cross.
 #[test]
-fn equal_triangles() {
-    let t = [DVec3::ZERO, DVec3::X, DVec3::Y];
-    let over = t.map(|v| v + DVec3::Z * 0.5);
-    let mut points = ManifoldPoints::new();
-    clip(&t, &over, DVec3::Z, &mut points);
-    assert_eq!(points.len(), 6);
-    assert!(points.iter().all(|p| p.distance == 0.5));
-    for v in t {
-        assert_eq!(
-            points.iter().filter(|p| p.point1 == v && p.point2 == v + DVec3::Z * 0.5).count(),
-            2
-        );
-    }
-}
-
-/// A triangle that stands on the other has the points of its lower edge, which its vertices and
-/// the crossings with its own edges give; its plane, seen edge-on, gives none.
-#[test]
-fn standing_triangle() {
+fn a_standing_triangle_has_the_points_of_its_lower_edge() {
     let floor = [DVec3::ZERO, DVec3::X * 4.0, DVec3::Y * 4.0];
     let wall = [DVec3::new(0.5, 0.5, 0.1), DVec3::new(1.5, 0.5, 0.1), DVec3::new(0.5, 0.5, 3.0)];
     let mut points = ManifoldPoints::new();
@@ -180,9 +157,8 @@ fn standing_triangle() {
     );
 }
 
-/// Small and large together: tolerances of the large one must not reach across the small one.
 #[test]
-fn large_vertex_beside_small_triangle() {
+fn a_large_triangle_beside_a_small_one_has_no_points() {
     let large = [DVec3::ZERO, DVec3::X * 1.0e5, DVec3::Y * 1.0e5];
     for beside in [1.0e-4, 1.0e-3, 1.0, 10.0] {
         let small =
@@ -193,8 +169,6 @@ fn large_vertex_beside_small_triangle() {
     }
 }
 
-/// In one plane, where clipping finds no corner, the closest points are all there is. Would catch
-/// features that are given to the other triangle.
 #[test]
 fn closest_points_keep_the_features_of_their_triangles() {
     let at = |x: f64, y: f64| DVec3::new(x, y, 0.0);

@@ -44,7 +44,7 @@ fn normal(t: &Triangle) -> Vector {
     cross(edge(t, 0), edge(t, 1))
 }
 
-/// Whether `scale` times a point, given as `scaled`, lies inside the prism over a triangle.
+/// True if a point lies inside the prism over a triangle; `scaled` is `scale` times the point.
 fn is_over(scaled: Vector, scale: i64, t: &Triangle) -> bool {
     let n = normal(t);
     (0..3).all(|i| {
@@ -81,7 +81,7 @@ fn edge_edge(t1: &Triangle, i: usize, t2: &Triangle, j: usize) -> Option<Fractio
     meets.then(|| Fraction(dot(w, n) * dot(w, n), area))
 }
 
-/// Whether an edge of `t1` passes through `t2`, from one side to the other.
+/// True if an edge of `t1` passes through `t2`, from one side to the other.
 fn pierces(t1: &Triangle, t2: &Triangle) -> bool {
     let n = normal(t2);
     (0..3).any(|i| {
@@ -125,9 +125,8 @@ fn triangle() -> impl Strategy<Value = Triangle> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(20_000))]
 
-    /// Would catch an error in the reference too, and one that both share.
     #[test]
-    fn whole_coordinates(t1 in triangle(), t2 in triangle()) {
+    fn contacts_of_whole_coordinates_are_exact(t1 in triangle(), t2 in triangle()) {
         let [f1, f2] = [t1, t2].map(|t| t.map(|v| DVec3::from_array(v.map(|x| x as f64))));
         let found = check(&f1, &f2);
         let apart = distance_squared(&t1, &t2);
@@ -136,9 +135,8 @@ proptest! {
     }
 }
 
-/// The grid must give touching, crossing and separate triangles in good numbers.
 #[test]
-fn the_grid_gives_all_kinds() {
+fn lattice_pairs_are_apart_touching_and_crossing() {
     use proptest::{strategy::ValueTree, test_runner::TestRunner};
     let mut runner = TestRunner::deterministic();
     let mut counts = [0; 3];

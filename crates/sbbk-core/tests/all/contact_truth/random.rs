@@ -11,13 +11,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(20_000))]
 
     #[test]
-    fn same_size(t1 in triangle(), t2 in triangle(), offset in point()) {
-        check(&t1, &t2.map(|v| v + 2.0 * offset));
-    }
-
-    /// Would catch a tolerance with a unit, or one that takes the large triangle for the small.
-    #[test]
-    fn any_two_sizes(
+    fn triangles_of_any_two_sizes(
         t1 in triangle(),
         t2 in triangle(),
         offset in point(),
@@ -28,17 +22,14 @@ proptest! {
         check(&t1.map(|v| v * s1), &t2.map(|v| v * s2 + offset * reach));
     }
 
-    /// A small triangle near a large one: most pairs of a moving body and a floor.
     #[test]
-    fn small_near_large(t1 in triangle(), t2 in triangle(), at in prop::array::uniform2(-0.2..1.2), s in decades(-6.0, 0.0)) {
+    fn a_small_triangle_near_a_large_one(t1 in triangle(), t2 in triangle(), at in prop::array::uniform2(-0.2..1.2), s in decades(-6.0, 0.0)) {
         let foot = t1[0] + (t1[1] - t1[0]) * at[0] + (t1[2] - t1[0]) * at[1];
         check(&t1, &t2.map(|v| v * s + foot));
     }
 
-    /// Brings two triangles to a given distance or depth: would catch directions taken from a
-    /// difference that is mere rounding, and gaps in the decision between apart and crossing.
     #[test]
-    fn nearly_touching(t1 in triangle(), t2 in triangle(), offset in point(), gap in decades(-17.0, -1.0)) {
+    fn triangles_at_a_tiny_distance_or_depth(t1 in triangle(), t2 in triangle(), offset in point(), gap in decades(-17.0, -1.0)) {
         let t2 = t2.map(|v| v + 2.0 * offset);
         let before = truth::contact(&t1, &t2);
         let shift = before.normal * (gap * size(&t1) - before.distance);
@@ -46,15 +37,13 @@ proptest! {
     }
 
     #[test]
-    fn far_from_the_origin(t1 in triangle(), t2 in triangle(), offset in point(), far in point()) {
+    fn triangles_far_from_the_origin(t1 in triangle(), t2 in triangle(), offset in point(), far in point()) {
         let far = far * 1.0e5;
         check(&t1.map(|v| v + far), &t2.map(|v| v + 2.0 * offset + far));
     }
 
-    /// Multiplying by a power of two rounds nothing, so it must change nothing but the exponents.
-    /// Would catch any tolerance with a unit.
     #[test]
-    fn scale_is_free(t1 in triangle(), t2 in triangle(), offset in point(), exponent in -100..100) {
+    fn powers_of_two_scale_contacts_exactly(t1 in triangle(), t2 in triangle(), offset in point(), exponent in -110..110) {
         let scale = 2.0_f64.powi(exponent);
         let t2 = t2.map(|v| v + offset);
         let [scaled1, scaled2] = [t1, t2].map(|t| t.map(|v| v * scale));
@@ -67,9 +56,8 @@ proptest! {
     }
 }
 
-/// The generators above must reach both sides of the decision and all kinds of features.
 #[test]
-fn the_random_pairs_are_of_all_kinds() {
+fn random_pairs_have_contacts_of_all_kinds() {
     use proptest::{strategy::ValueTree, test_runner::TestRunner};
     let mut runner = TestRunner::deterministic();
     let mut kinds = std::collections::HashMap::new();

@@ -10,7 +10,7 @@ fn beside(a: DVec3, b: DVec3, p: DVec3) -> f64 {
     (b - a).truncate().perp_dot((p - a).truncate())
 }
 
-/// How far a point is inside a polygon, seen along z; of either turn.
+/// Depth of a point inside a polygon of either orientation, seen along z.
 fn inside(polygon: &[DVec3], p: DVec3) -> f64 {
     let n = polygon.len();
     let side = |i: usize| {
@@ -23,10 +23,8 @@ fn inside(polygon: &[DVec3], p: DVec3) -> f64 {
     least.max(-most)
 }
 
-/// Would catch a corner or crossing that is missed, invented, misnamed, or at another height: each
-/// point is on both features, those that must be there are, and turning everything changes nothing.
 #[test]
-fn points_are_the_corners_of_the_overlap() {
+fn clipped_points_are_the_corners_of_the_overlap() {
     let mut rng = Rng(11);
     let mut total = 0;
     for i in 0..20_000 {
@@ -90,9 +88,8 @@ fn points_are_the_corners_of_the_overlap() {
     assert!(total > 40_000, "{total}");
 }
 
-/// No polygon has no points.
 #[test]
-fn other_numbers_of_corners_have_no_points() {
+fn features_of_other_corner_counts_have_no_points() {
     let floor = [DVec3::ZERO, DVec3::X, DVec3::Y];
     let mut points = FeaturePoints::new();
     for count in [0, 1, 5] {
@@ -101,7 +98,6 @@ fn other_numbers_of_corners_have_no_points() {
     }
 }
 
-/// Would catch an edge that is counted for two: it has two points at most.
 #[test]
 fn an_edge_across_a_triangle_has_two_points() {
     let triangle = [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]].map(|[x, z]| DVec3::new(x, 0.0, z));
@@ -112,9 +108,8 @@ fn an_edge_across_a_triangle_has_two_points() {
     assert!(points.iter().all(|point| (point.distance - 0.5).abs() < 1e-15), "{points:?}");
 }
 
-/// Would catch a point on a face that is seen edge on: how far that is along the normal is rounding.
 #[test]
-fn a_face_edge_on_has_no_points() {
+fn a_face_seen_edge_on_has_no_points() {
     let triangle = [[0.5, 5.0, 0.0], [0.4, 6.0, 3.0], [0.6, 6.0, 3.0]].map(DVec3::from_array);
     let count = |lean: f64| {
         let corners = [[0.0, -1.0, -1.0], [1.0, -1.0, -1.0], [1.0, 1.0, 1.0], [0.0, 1.0, 1.0]];

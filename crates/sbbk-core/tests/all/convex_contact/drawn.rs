@@ -1,5 +1,5 @@
-//! Triangles and shapes drawn from whole numbers, by the fuzzer or at random: corners on a grid,
-//! equal ones among them, moved by next to nothing.
+//! Triangles and shapes from whole numbers, drawn by the fuzzer or at random. Corners are on a
+//! grid, some equal, some moved by very little.
 
 use super::shape::{Core, Shape, rounded};
 use super::truth::{check, size};
@@ -43,7 +43,7 @@ pub fn check_drawn<E>(draw: Draw<E>) -> Result<(), E> {
     };
     let shape = Shape { core, radius };
     let contact = shape.contact(&triangle, 100.0).expect("within the margin");
-    // Coordinates are up to 4, and what is closer than 1e-10 of their sums may count as touching.
+    // Coordinates are up to 4. Bodies closer than 1e-10 of their sums may count as touching.
     let size = size(&triangle, &shape).max(8.0);
     let says = || format!("{contact:?} {shape:?} {triangle:?}");
     if matches!(shape.core, Core::Cylinder(_) | Core::Cone(_)) {
@@ -61,11 +61,12 @@ pub fn check_drawn<E>(draw: Draw<E>) -> Result<(), E> {
     Ok(())
 }
 
-/// How far rounding may move the normal of the thinnest face of the difference, times the size.
+/// Angle by which rounding may move the normal of the thinnest face of the difference, times the
+/// size.
 ///
-/// A corner is off by `1e-16 size`, so the normal of a face whose least height is `h` by as much over
-/// `h`, and the shadow of all by that times the size. Faces whose sine is below 1e-11 have no normal
-/// of their own.
+/// A corner is off by `1e-16 size`, so the normal of a face of least height `h` is off by `1e-16
+/// size / h`. All shadows along it are off by that times the size. Faces whose sine is below 1e-11
+/// have no normal of their own.
 fn open(triangle: &[DVec3; 3], shape: &Shape, size: f64) -> f64 {
     let corners: Vec<DVec3> =
         shape.vertices().iter().flat_map(|s| triangle.map(|t| *s - t)).collect();

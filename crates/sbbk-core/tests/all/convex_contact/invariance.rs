@@ -1,4 +1,4 @@
-//! What must not change a contact.
+//! Changes of the input that leave a contact unchanged.
 
 use super::shape::{Core, Kind, Rng, Shape};
 use super::truth::size;
@@ -18,9 +18,8 @@ fn poses(kind: Kind, count: u32, mut each: impl FnMut(&mut Rng, Shape, [DVec3; 3
     }
 }
 
-/// Would catch a tolerance with a unit.
 #[test]
-fn scale() {
+fn contacts_scale_with_the_bodies() {
     for kind in kinds() {
         poses(kind, 500, |_, shape, triangle| {
             let contact = shape.contact(&triangle, 0.2);
@@ -42,9 +41,8 @@ fn scale() {
     }
 }
 
-/// Would catch a margin that steers the search.
 #[test]
-fn margin() {
+fn margins_filter_contacts_but_do_not_change_them() {
     for kind in kinds() {
         poses(kind, 500, |_, shape, triangle| {
             let wide = shape.contact(&triangle, 1.0e6).expect("within the margin");
@@ -62,10 +60,8 @@ fn margin() {
     }
 }
 
-/// The order of the corners and of a hull's points, and mirrors, change nothing but the last
-/// digits.
 #[test]
-fn order_and_mirrors() {
+fn order_of_corners_and_mirrors_change_only_last_digits() {
     for kind in kinds() {
         poses(kind, 500, |rng, shape, triangle| {
             let contact = shape.contact(&triangle, 0.2);
@@ -92,9 +88,8 @@ fn order_and_mirrors() {
     }
 }
 
-/// Far from the frame's origin only the digits of the coordinates are lost.
 #[test]
-fn far_offsets() {
+fn far_offsets_lose_only_digits_of_coordinates() {
     for offset in [1.0e3, 1.0e6] {
         poses(Kind::Hull, 2000, |rng, shape, triangle| {
             let Core::Hull(points) = &shape.core else { unreachable!() };
@@ -105,25 +100,9 @@ fn far_offsets() {
             };
             let near = shape.contact(&triangle, 0.2);
             let far = moved.contact(&triangle.map(|c| c + shift), 0.2);
-            let distance = |c: Option<sbbk_core::contact::convex::ConvexContact>| {
-                c.map_or(0.2, |c| c.distance)
-            };
-            let error = (distance(near) - distance(far)).abs();
+            let [near, far] = [near, far].map(|c| c.map_or(0.2, |c| c.distance));
+            let error = (near - far).abs();
             assert!(error <= 1.0e-11 * offset, "{error:e} {shape:?} {triangle:?}");
         });
-    }
-}
-
-/// A ball in the middle of a segment and a capsule give what formulas give.
-#[test]
-fn closed_forms() {
-    let mut rng = Rng(5);
-    for _ in 0..2000 {
-        let [a, b] = [rng.point(), rng.point()];
-        let ball = Shape { core: Core::Point(DVec3::ZERO), radius: 0.5 };
-        let contact = ball.contact(&[a, b, a], 10.0).unwrap();
-        let along = (-a.dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
-        let truth = a.lerp(b, along).length() - 0.5;
-        assert!((contact.distance - truth).abs() < 1.0e-13, "{contact:?} {truth}");
     }
 }

@@ -5,7 +5,7 @@ use super::truth::{check, size};
 use glamx::DVec3;
 
 impl Rng {
-    /// Of the lattice of points with whole coordinates from -2 to 2.
+    /// A point with whole coordinates from -2 to 2.
     fn lattice_point(&mut self) -> DVec3 {
         DVec3::from_array([0; 3].map(|_| self.below(5) as f64 - 2.0))
     }
@@ -23,10 +23,8 @@ impl Rng {
     }
 }
 
-/// Would catch a tie that rounding decides wrongly: no volume around the origin, faces of the
-/// difference in one plane, a vertex that is met twice. Shifts by less and less make near ties.
 #[test]
-fn exact_and_nearly_exact_ties() {
+fn exact_and_near_ties_on_a_lattice_agree_with_brute_force() {
     let mut rng = Rng(7);
     for nudge in [0.0, 1.0e-15, 1.0e-13, 1.0e-11, 1.0e-9, 1.0e-6] {
         let (mut apart, mut touching, mut deep) = (0, 0, 0);

@@ -100,7 +100,7 @@ impl Shape {
         }
     }
 
-    /// The same for the reference.
+    /// The shape for brute force.
     pub fn truth(&self) -> ConvexBody {
         let core = match &self.core {
             Core::Cylinder(c) => ConvexBody::cylinder(c.half_height, c.radius),
@@ -231,7 +231,7 @@ impl Rng {
             2 => corners[2] = corners[0].lerp(corners[1], 0.4) + 1.0e-4 * size * self.point(),
             _ => {}
         }
-        // Which of the closest ones, or something between them, meets the shape.
+        // The lowest corner, or a point between the lowest ones, meets the shape.
         let [u, v] = [self.within(0.0, 1.0), self.within(0.0, 1.0)];
         let middle = corners[0]
             + (corners[1] - corners[0]) * u.min(v)

@@ -1,4 +1,4 @@
-//! What any contact must fulfil.
+//! Conditions that every contact must meet.
 
 use super::shape::Shape;
 use glamx::DVec3;
@@ -13,16 +13,15 @@ pub fn size(triangle: &[DVec3; 3], shape: &Shape) -> f64 {
     (b - a).length().max((c - a).length()).max(width + shape.radius)
 }
 
-/// How far apart the shadows are on an axis: what the core leaves free of the triangle.
+/// Gap between the shadows of the core and the triangle on an axis, less the rounding radius.
 pub fn gap(triangle: &[DVec3; 3], shape: &Shape, normal: DVec3) -> f64 {
     let lowest = shape.support(-normal);
     let above = |c: &DVec3| (lowest - *c).dot(normal);
     triangle.iter().map(above).fold(f64::INFINITY, f64::min) - shape.radius
 }
 
-/// What every contact must fulfil whatever the truth is: points on the bodies, both on one line
-/// along a unit normal, and a normal along which the bodies are as far apart as it says. Apart,
-/// that proves the distance; crossing, that the move parts the bodies.
+/// Checks that the points lie on the bodies, on one line along a unit normal, and that the normal
+/// proves the distance. For bodies that cross, this proves that the move separates them.
 pub fn check(triangle: &[DVec3; 3], shape: &Shape, contact: &ConvexContact, tolerance: f64) {
     let ConvexContact { distance, normal, on_triangle, on_shape } = *contact;
     let says = || format!("{triangle:?} {shape:?} {contact:?}");

@@ -1,12 +1,9 @@
-use std::cell::RefCell;
-use std::collections::BTreeSet;
-
-use glamx::Vec3;
-use sbbk_core::field::HeightGrid;
+use glamx::{DVec3, Vec3};
+use sbbk_core::field::{FieldTriangle, HeightGrid};
 
 use crate::support::Random;
 
-/// A height field that notes what is asked of it.
+/// A height field with holes.
 #[derive(Clone, Debug)]
 pub struct Grid {
     /// Along x and z.
@@ -14,23 +11,12 @@ pub struct Grid {
     pub scale: Vec3,
     /// Line by line of x.
     pub heights: Vec<f32>,
-    /// Of each cell, column by column: the triangles that are missing, bits 1 and 2, and the
-    /// diagonal, bit 4.
+    /// For each cell, column by column: bits 1 and 2 for missing triangles, bit 4 for the diagonal.
     pub statuses: Vec<u8>,
-    pub asked: RefCell<Asked>,
-}
-
-/// What was asked.
-#[derive(Clone, Debug, Default)]
-pub struct Asked {
-    /// Lines of heights.
-    pub lines: BTreeSet<usize>,
-    /// Cells whose triangles were compared.
-    pub cells: BTreeSet<[usize; 2]>,
 }
 
 impl Grid {
-    /// Without holes.
+    /// A field without holes.
     pub fn new(
         cells: [usize; 2],
         scale: Vec3,
@@ -39,11 +25,10 @@ impl Grid {
         let [columns, rows] = cells;
         let lines = (0..=columns).flat_map(|column| (0..=rows).map(move |row| (column, row)));
         let heights = lines.map(|(column, row)| height(column, row)).collect();
-        let statuses = vec![0; columns * rows];
-        Self { cells, scale, heights, statuses, asked: RefCell::default() }
+        Self { cells, scale, heights, statuses: vec![0; columns * rows] }
     }
 
-    /// Hills at random, one unit high at most, with holes and cells divided either way.
+    /// Random hills, one unit high at most, with holes and cells divided either way.
     pub fn hills(random: &mut Random, cells: [usize; 2], scale: Vec3) -> Self {
         Self::new(cells, scale, |_, _| random.range(-0.5, 0.5)).with_holes(random)
     }
@@ -70,13 +55,21 @@ impl Grid {
         Vec3::new(x, y, z) * self.scale
     }
 
-    /// The triangles of a cell, without a note.
-    pub fn triangles_at(&self, [column, row]: [usize; 2]) -> [Option<[Vec3; 3]>; 2] {
-        let status = self.statuses[column * self.cells[1] + row];
-        let [a, b] = [self.corner(column, row), self.corner(column, row + 1)];
-        let [c, d] = [self.corner(column + 1, row), self.corner(column + 1, row + 1)];
-        let both = if status & 4 == 0 { [[a, b, c], [b, d, c]] } else { [[a, b, d], [a, d, c]] };
-        [0, 1].map(|side| (status >> side & 1 == 0).then_some(both[side]))
+    /// All triangles without those that have corners that are NaN or infinite.
+    pub fn all_triangles(&self) -> impl Iterator<Item = (FieldTriangle, [DVec3; 3])> {
+        let rows = self.cells[1];
+        let cells = (0..self.cells[0]).flat_map(move |c| (0..rows).map(move |r| [c, r]));
+        let triangles = cells.flat_map(|cell| {
+            let sides = (0..).zip(self.triangles(cell));
+            sides.filter_map(move |(side, corners)| Some((FieldTriangle { cell, side }, corners?)))
+        });
+        let finite = triangles.filter(|(_, corners)| corners.iter().all(|x| x.is_finite()));
+        finite.map(|(triangle, corners)| (triangle, corners.map(Vec3::as_dvec3)))
+    }
+
+    pub fn has(&self, FieldTriangle { cell, side }: FieldTriangle) -> bool {
+        let is_inside = cell[0] < self.cells[0] && cell[1] < self.cells[1];
+        is_inside && self.triangles(cell)[side].is_some()
     }
 }
 
@@ -90,13 +83,15 @@ impl HeightGrid for Grid {
     }
 
     fn heights(&self, column: usize) -> &[f32] {
-        self.asked.borrow_mut().lines.insert(column);
         let line = self.cells[1] + 1;
         &self.heights[column * line..(column + 1) * line]
     }
 
-    fn triangles(&self, cell: [usize; 2]) -> [Option<[Vec3; 3]>; 2] {
-        self.asked.borrow_mut().cells.insert(cell);
-        self.triangles_at(cell)
+    fn triangles(&self, [column, row]: [usize; 2]) -> [Option<[Vec3; 3]>; 2] {
+        let status = self.statuses[column * self.cells[1] + row];
+        let [a, b] = [self.corner(column, row), self.corner(column, row + 1)];
+        let [c, d] = [self.corner(column + 1, row), self.corner(column + 1, row + 1)];
+        let both = if status & 4 == 0 { [[a, b, c], [b, d, c]] } else { [[a, b, d], [a, d, c]] };
+        [0, 1].map(|side| (status >> side & 1 == 0).then_some(both[side]))
     }
 }

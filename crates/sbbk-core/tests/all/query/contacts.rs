@@ -1,44 +1,35 @@
-//! All contacts of two meshes against brute force, as whole sets of pairs.
+//! `contacts` as whole sets of pairs.
 
 use std::collections::BTreeMap;
 
-use glamx::{DPose3, DVec3, Pose3, Vec3};
+use glamx::{DPose3, Pose3, Vec3};
 use sbbk_core::query::{FoundPair, SearchScratch, contacts};
 use sbbk_core::traverse::Placement;
-use sbbk_core::tree::{BuildOptions, Tree};
-use sbbk_core::truth::pairs_within;
 
+use super::{pairs_within, tree, triangle, triangles_of};
 use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
 
-type Distances = BTreeMap<(u32, u32), f64>;
+type Distances = BTreeMap<[u32; 2], f64>;
 
 fn found(meshes: [&Soup; 2], pose: &Pose3, margin: f64) -> Vec<FoundPair> {
-    let [tree1, tree2] = meshes.map(|soup| {
-        Tree::build(&soup.vertices, &soup.triangles, &BuildOptions::default()).unwrap()
-    });
+    let [tree1, tree2] = meshes.map(tree);
     let mut pairs = Vec::new();
     let scratch = &mut SearchScratch::default();
     contacts((&tree1, &tree2), Placement::new(pose), margin, scratch, |pair| pairs.push(pair));
     pairs
 }
 
-fn truth([one, two]: [&Soup; 2], pose: &Pose3, margin: f64) -> Distances {
-    let pose =
-        DPose3 { rotation: pose.rotation.as_dquat(), translation: pose.translation.as_dvec3() };
-    let wide = |soup: &Soup| soup.vertices.iter().map(|v| v.as_dvec3()).collect::<Vec<DVec3>>();
-    pairs_within(&wide(one), &one.triangles, &wide(two), &two.triangles, pose, margin)
-        .into_iter()
-        .map(|pair| ((pair.triangle1, pair.triangle2), pair.distance))
-        .collect()
+fn truth(meshes: [&Soup; 2], pose: &Pose3, margin: f64) -> Distances {
+    let pose = DPose3::from_parts(pose.translation.as_dvec3(), pose.rotation.as_dquat());
+    let pairs = pairs_within(meshes, pose, margin);
+    pairs.iter().map(|pair| (triangles_of(pair), pair.distance)).collect()
 }
 
-/// Returns the number of pairs.
+/// Compares the pairs with brute force and returns their number.
 fn check(meshes: [&Soup; 2], pose: &Pose3, margin: f64, tolerance: f64) -> usize {
     let pairs = found(meshes, pose, margin);
-    let found: Distances = pairs
-        .iter()
-        .map(|pair| ((pair.triangle1, pair.triangle2), pair.contact.distance))
-        .collect();
+    let distances = pairs.iter().map(|p| ([p.triangle1, p.triangle2], p.contact.distance));
+    let found: Distances = distances.collect();
     assert_eq!(found.len(), pairs.len(), "a pair was found twice");
     let possible = truth(meshes, pose, margin + tolerance);
     for (triangles, distance) in &found {
@@ -52,10 +43,8 @@ fn check(meshes: [&Soup; 2], pose: &Pose3, margin: f64, tolerance: f64) -> usize
     found.len()
 }
 
-/// Would catch a pair that is lost, found twice or too far, triangles of the wrong mesh, and a
-/// margin that is rounded down.
 #[test]
-fn whole_sets_of_pairs() {
+fn contacts_are_all_pairs_within_the_margin() {
     let mut random = Random(51);
     let mut total = 0;
     for round in 0..60 {
@@ -72,10 +61,9 @@ fn whole_sets_of_pairs() {
     assert!(total > 10_000, "{total}");
 }
 
-/// A margin just above and just below the distance of a pair, with corners near the origin and far
-/// from it in one triangle. Would catch differences of corners that are rounded to f32.
+/// Triangles have corners near the origin and far from it.
 #[test]
-fn the_margin_is_exact() {
+fn margins_are_exact_to_rounding_of_f64() {
     let mut random = Random(52);
     let mut count = 0;
     for _ in 0..40 {
@@ -92,7 +80,7 @@ fn the_margin_is_exact() {
             count += 1;
             let finds = |margin: f64| {
                 let pairs = found([one, two], &pose, margin);
-                pairs.iter().any(|pair| (pair.triangle1, pair.triangle2) == triangles)
+                pairs.iter().any(|pair| [pair.triangle1, pair.triangle2] == triangles)
             };
             assert!(finds(distance + 1e-12) && !finds(distance - 1e-12), "{triangles:?}");
         }
@@ -100,9 +88,8 @@ fn the_margin_is_exact() {
     assert!(count > 1000, "{count}");
 }
 
-/// Margins at which f32 overflows compare all triangles; others that are no margins find nothing.
 #[test]
-fn all_margins() {
+fn huge_margins_find_all_pairs_and_invalid_margins_none() {
     let ball = bumpy_ball(3, 0.1);
     let pose = Pose3::from_translation(Vec3::new(1e3, 0.0, 0.0));
     let all = ball.triangles.len() * ball.triangles.len();
@@ -112,14 +99,12 @@ fn all_margins() {
     for margin in [f64::NAN, -1e-9, f64::NEG_INFINITY] {
         assert_eq!(found([&ball; 2], &pose, margin), []);
     }
-    let nowhere = Pose3::from_translation(Vec3::NAN);
-    assert_eq!(found([&ball; 2], &nowhere, 1e20), []);
+    assert_eq!(found([&ball; 2], &Pose3::from_translation(Vec3::NAN), 1e20), []);
 }
 
-/// Triangles that share corners exactly touch, at a margin of zero too.
 #[test]
-fn touching_counts() {
-    let one = Soup { vertices: vec![Vec3::ZERO, Vec3::X, Vec3::Y], triangles: vec![[0, 1, 2]] };
+fn triangles_with_a_common_corner_touch() {
+    let one = triangle([[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
     let pairs = found([&one; 2], &Pose3::translation(1.0, 0.0, 0.0), 0.0);
     assert_eq!(pairs.len(), 1);
     assert!(pairs[0].is_touching && pairs[0].contact.distance.abs() < 1e-12, "{pairs:?}");

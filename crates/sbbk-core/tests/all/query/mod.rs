@@ -1,7 +1,50 @@
-//! Queries with one answer, against brute force in f64 over all pairs of triangles.
+//! Queries against brute force in f64 over all pairs of triangles.
 
 mod cast;
 mod contacts;
-mod departure;
+mod motion;
 mod nearest;
-mod truth;
+
+use glamx::{DPose3, DVec3, Pose3, Vec3};
+use sbbk_core::tree::{BuildOptions, Tree};
+use sbbk_core::truth::{self, TruthPair};
+
+use crate::support::Soup;
+
+fn tree(soup: &Soup) -> Tree {
+    Tree::build(&soup.vertices, &soup.triangles, &BuildOptions::default()).expect("valid")
+}
+
+fn triangle(corners: [[f32; 3]; 3]) -> Soup {
+    Soup { vertices: corners.map(Vec3::from_array).to_vec(), triangles: vec![[0, 1, 2]] }
+}
+
+/// A pose in f64 with a unit rotation.
+fn exact(pose: &Pose3) -> DPose3 {
+    DPose3::from_parts(pose.translation.as_dvec3(), pose.rotation.as_dquat().normalize())
+}
+
+/// All pairs of triangles up to a distance, mesh 2 at `pose`.
+fn pairs_within([one, two]: [&Soup; 2], pose: DPose3, distance: f64) -> Vec<TruthPair> {
+    let wide = |soup: &Soup| soup.vertices.iter().map(|v| v.as_dvec3()).collect::<Vec<DVec3>>();
+    truth::pairs_within(&wide(one), &one.triangles, &wide(two), &two.triangles, pose, distance)
+}
+
+/// All pairs of triangles, mesh 2 at `pose` and moved by `shift`.
+fn all_pairs(meshes: [&Soup; 2], pose: &Pose3, shift: DVec3) -> Vec<TruthPair> {
+    let mut pose = exact(pose);
+    pose.translation += shift;
+    pairs_within(meshes, pose, f64::INFINITY)
+}
+
+fn least(pairs: &[TruthPair]) -> f64 {
+    pairs.iter().map(|pair| pair.distance).fold(f64::INFINITY, f64::min)
+}
+
+fn triangles_of(pair: &TruthPair) -> [u32; 2] {
+    [pair.triangle1, pair.triangle2]
+}
+
+fn distance_of(pairs: &[TruthPair], triangles: [u32; 2]) -> f64 {
+    pairs.iter().find(|pair| triangles_of(pair) == triangles).expect("triangles exist").distance
+}
