@@ -1,23 +1,45 @@
-//! Trees and contacts as lines, by Rapier's debug renderer: what any program that draws with it can
-//! do. Here the lines go to a file that 3D programs open.
+//! Draws trees and contacts with Rapier's debug renderer. The lines go to an OBJ file that 3D
+//! programs open.
 //!
 //! ```text
-//! cargo run --release --example draw -- lines.obj
+//! cargo run --release -p rapier-integration --example draw -- lines.obj
 //! ```
 
 use std::error::Error;
 use std::fmt::Write;
+use std::process::ExitCode;
 
 use rapier_integration::{SbbkDispatcher, draw};
 use rapier3d::parry::shape::Ball;
 use rapier3d::pipeline::{DebugColor, DebugRenderBackend, DebugRenderObject, DebugRenderPipeline};
 use rapier3d::prelude::*;
 
-/// Which layer of the trees is drawn.
+/// Layer of the trees that is drawn, from the root.
 const LAYER: u32 = 4;
+const USAGE: &str = "usage: draw FILE.obj";
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let path = std::env::args().nth(1).unwrap_or_else(|| "lines.obj".into());
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match &arguments[..] {
+        [option] if option == "--help" || option == "-h" => {
+            println!("Writes the trees and contacts of a small world as lines.\n{USAGE}");
+            ExitCode::SUCCESS
+        }
+        [path] if !path.starts_with('-') => match write_lines(path) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => {
+                eprintln!("error: {path}: {error}");
+                ExitCode::FAILURE
+            }
+        },
+        _ => {
+            eprintln!("{USAGE}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn write_lines(path: &str) -> Result<(), Box<dyn Error>> {
     let dispatcher = SbbkDispatcher::default();
     let world = world(&dispatcher);
 
@@ -33,13 +55,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     let stock = lines.0.len();
     draw_sbbk(&world, &dispatcher, &mut lines)?;
-    println!("{stock} lines of Rapier's, {} of SBBK's in {path}", lines.0.len() - stock);
     std::fs::write(path, lines.obj()?)?;
+    println!("wrote {path}: {stock} lines of Rapier, {} of SBBK", lines.0.len() - stock);
     Ok(())
 }
 
-/// Draws contacts and candidates, and a layer of the tree of each mesh, on whatever Rapier's debug
-/// renderer draws on.
+/// Draws contacts, candidates, and a layer of the tree of each mesh on a backend of Rapier's debug
+/// renderer.
 fn draw_sbbk(
     world: &PhysicsWorld,
     dispatcher: &SbbkDispatcher,
@@ -98,7 +120,7 @@ impl DebugRenderBackend for Lines {
 }
 
 impl Lines {
-    /// As an OBJ file of line elements, which have no colours.
+    /// Returns an OBJ file of line elements, which have no colours.
     fn obj(&self) -> Result<String, std::fmt::Error> {
         let mut text = String::new();
         for (index, line) in self.0.iter().enumerate() {

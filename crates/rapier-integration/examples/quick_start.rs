@@ -1,74 +1,131 @@
-//! Plain Rapier with SBBK: a ball, a cylinder and a cuboid, all as triangle meshes, fall on a mesh
-//! floor.
+//! Plain Rapier with SBBK, beside stock Rapier and beside the right answer: a mesh box slides over a
+//! mesh floor, and mesh rings fall in a pile.
 //!
 //! ```text
-//! cargo run --release --example quick_start
+//! cargo run --release -p rapier-integration --example quick_start
 //! ```
 
+use std::time::Instant;
+
 use rapier_integration::SbbkDispatcher;
-use rapier3d::parry::shape::{Ball, Cuboid, Cylinder};
+use rapier3d::parry::shape::Cuboid;
 use rapier3d::prelude::*;
 
-/// Three seconds.
-const STEPS: usize = 180;
+/// Speed of the box at the start in m/s, and the coefficient of friction.
+const SPEED: f32 = 6.0;
+const FRICTION: f32 = 0.2;
+/// Steps until the box stands still, and steps of the pile.
+const STEPS: usize = 240;
 
 fn main() {
-    let (mut stock, _) = world();
-    let (mut sbbk, bodies) = world();
-
-    // The one line. Clones share everything; keep one to ask it for numbers later.
+    // The one line is `set_query_dispatcher`. Clones share everything; this one is kept for `stats`.
     let dispatcher = SbbkDispatcher::default();
-    sbbk.narrow_phase.set_query_dispatcher(dispatcher.clone());
+    let sbbk = |mut world: PhysicsWorld| {
+        world.narrow_phase.set_query_dispatcher(dispatcher.clone());
+        world
+    };
 
-    for _ in 0..STEPS {
-        stock.step();
-        sbbk.step();
+    println!("A box slides at {SPEED} m/s with friction {FRICTION}. Its path:");
+    println!("{:>8.3} m  closed form", SPEED * SPEED / (2.0 * FRICTION * 9.81));
+    println!("{:>8.3} m  cuboid on a cuboid floor", path(slide(false)));
+    println!("{:>8.3} m  mesh on a mesh floor, stock Rapier", path(slide(true)));
+    println!("{:>8.3} m  mesh on a mesh floor, SBBK", path(sbbk(slide(true))));
+
+    println!("Thirty rings, meshes of 640 triangles, in a pile:");
+    for (name, world) in [("stock Rapier", pile()), ("SBBK", sbbk(pile()))] {
+        let (milliseconds, sleeping) = settle(world);
+        println!("{milliseconds:>8.3} ms a step, {sleeping:>2} of 30 sleep at the end  {name}");
     }
-
-    println!("where bodies are after {STEPS} steps");
-    for (name, body) in bodies {
-        // Both worlds were built alike, so the handles are the same.
-        let [with_stock, with_sbbk] = [&stock, &sbbk].map(|world| world.bodies[body].translation());
-        println!("{name:>10}: stock {with_stock:6.3}, SBBK {with_sbbk:6.3}");
-    }
-
-    // More is counted with `SbbkConfig::count_queries`.
-    let stats = dispatcher.stats();
-    println!(
-        "{} trees of {} KiB, found {} times",
-        stats.trees,
-        stats.tree_bytes / 1024,
-        stats.tree_hits
-    );
+    println!("{} trees were built by SBBK", dispatcher.stats().tree_builds);
 }
 
-/// A floor and three bodies above it. Nothing in it knows SBBK: colliders are plain `TriMesh`es.
-fn world() -> (PhysicsWorld, Vec<(&'static str, RigidBodyHandle)>) {
+/// A box on a floor. Nothing in this world is special: colliders are plain `TriMesh`es or cuboids.
+fn slide(is_mesh: bool) -> PhysicsWorld {
     let mut world = PhysicsWorld::new();
-
-    let (vertices, indices) = Cuboid::new(Vector::new(10.0, 0.5, 10.0)).to_trimesh();
-    let floor = trimesh(vertices, indices).translation(Vector::new(0.0, -0.5, 0.0));
-    world.insert(RigidBodyBuilder::fixed(), floor);
-
-    let (ball, cylinder, cuboid) =
-        (Ball::new(0.5), Cylinder::new(0.2, 0.5), Cuboid::new(Vector::new(0.6, 0.2, 0.4)));
-    let meshes = [
-        ("ball", ball.to_trimesh(24, 12)),
-        ("cylinder", cylinder.to_trimesh(24)),
-        ("cuboid", cuboid.to_trimesh()),
-    ];
-    let bodies = (0..).zip(meshes).map(|(index, (name, (vertices, indices)))| {
-        let place = Vector::new(2.0 * index as f32 - 2.0, 1.5, 0.0);
-        let tilt = Vector::new(0.1, 0.0, 0.2);
-        let body =
-            RigidBodyBuilder::dynamic().translation(place).rotation(tilt).angular_damping(0.5);
-        (name, world.insert(body, trimesh(vertices, indices)).0)
-    });
-    let bodies = bodies.collect();
-    (world, bodies)
+    let floor = match is_mesh {
+        true => trimesh(grid(40.0, 60)),
+        false => ColliderBuilder::cuboid(20.0, 0.5, 20.0).translation(Vector::Y * -0.5),
+    };
+    world.insert(RigidBodyBuilder::fixed(), floor.friction(FRICTION));
+    let half_extents = Vector::new(0.5, 0.3, 0.4);
+    let collider = match is_mesh {
+        true => trimesh(Cuboid::new(half_extents).to_trimesh()),
+        false => ColliderBuilder::cuboid(half_extents.x, half_extents.y, half_extents.z),
+    };
+    let body = RigidBodyBuilder::dynamic().translation(Vector::new(-9.0, 0.3, 0.17));
+    world.insert(body.linvel(Vector::X * SPEED), collider.friction(FRICTION));
+    world
 }
 
-/// Without a flag. For convex bodies the floor would have `TriMeshFlags::FIX_INTERNAL_EDGES`.
-fn trimesh(vertices: Vec<Vector>, indices: Vec<[u32; 3]>) -> ColliderBuilder {
+/// How far the last body of a world slides.
+fn path(mut world: PhysicsWorld) -> f32 {
+    let place = |world: &PhysicsWorld| {
+        world.bodies.iter().last().map_or(Vector::ZERO, |(_, body)| body.translation())
+    };
+    let start = place(&world);
+    (0..STEPS).for_each(|_| world.step());
+    (place(&world) - start).x
+}
+
+/// Rings above a floor.
+fn pile() -> PhysicsWorld {
+    let mut world = PhysicsWorld::new();
+    world.insert(RigidBodyBuilder::fixed(), trimesh(grid(20.0, 20)));
+    let ring = trimesh(ring(0.5, 0.2, 32, 10));
+    for index in 0..30 {
+        let [x, y, z] = [index % 3, index / 6, index / 3 % 2].map(|k| k as f32);
+        let place = Vector::new(0.7 * x - 0.7, 0.8 + 0.8 * y, 0.7 * z - 0.35);
+        let tilt = Vector::new(0.4 * y, 0.1, 0.3 * x);
+        let body = RigidBodyBuilder::dynamic().translation(place).rotation(tilt);
+        world.insert(body, ring.clone());
+    }
+    world
+}
+
+/// Mean time of a step in milliseconds, and how many bodies sleep at the end.
+fn settle(mut world: PhysicsWorld) -> (f64, usize) {
+    let start = Instant::now();
+    (0..STEPS).for_each(|_| world.step());
+    let milliseconds = 1e3 * start.elapsed().as_secs_f64() / STEPS as f64;
+    let is_asleep = |body: &RigidBody| body.is_dynamic() && body.is_sleeping();
+    (milliseconds, world.bodies.iter().filter(|(_, body)| is_asleep(body)).count())
+}
+
+type Triangles = (Vec<Vector>, Vec<[u32; 3]>);
+
+fn trimesh((vertices, indices): Triangles) -> ColliderBuilder {
     ColliderBuilder::trimesh(vertices, indices).expect("it has triangles")
+}
+
+/// A flat sheet with sides of length `size`, facing up.
+fn grid(size: f32, cells: u32) -> Triangles {
+    let place = |k: u32| size * (k as f32 / cells as f32 - 0.5);
+    quads([cells, cells], |i, j| Vector::new(place(j), 0.0, place(i)))
+}
+
+/// A torus about the `y` axis.
+fn ring(radius: f32, thickness: f32, around: u32, across: u32) -> Triangles {
+    let angle = |k: u32, count: u32| std::f32::consts::TAU * (k % count) as f32 / count as f32;
+    let (vertices, mut indices) = quads([around, across], |i, j| {
+        let (sin, cos) = angle(j, across).sin_cos();
+        let (z, x) = angle(i, around).sin_cos();
+        let distance = radius + thickness * cos;
+        Vector::new(distance * x, -thickness * sin, distance * z)
+    });
+    // The last row and column are the first: a closed mesh is a solid.
+    let wrap = |k: u32| k / (across + 1) % around * (across + 1) + k % (across + 1) % across;
+    indices.iter_mut().flatten().for_each(|index| *index = wrap(*index));
+    (vertices, indices)
+}
+
+/// A grid of quads, two triangles each.
+fn quads([rows, columns]: [u32; 2], point: impl Fn(u32, u32) -> Vector) -> Triangles {
+    let vertices = (0..=rows).flat_map(|i| (0..=columns).map(move |j| (i, j)));
+    let vertices = vertices.map(|(i, j)| point(i, j)).collect();
+    let mut indices = Vec::new();
+    for (i, j) in (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j))) {
+        let [a, b] = [i * (columns + 1) + j, (i + 1) * (columns + 1) + j];
+        indices.extend([[a, b, b + 1], [a, b + 1, a + 1]]);
+    }
+    (vertices, indices)
 }
