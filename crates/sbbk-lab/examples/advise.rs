@@ -1,45 +1,50 @@
-//! Does it pay? Measures your meshes and robots as terrains, as bodies and as sensors, under stock
-//! Rapier and under SBBK, and says what to set.
+//! Measures your meshes and robots as terrains, as bodies and as sensors, under stock Rapier and
+//! under SBBK, and prints settings.
 //!
 //! ```text
 //! cargo run --release --example advise -- bunny.obj terrain.stl robot.urdf
 //! ```
 
 use std::error::Error;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
 use sbbk_lab::cli::{exit_code, print};
 use sbbk_lab::mesh_file;
+use sbbk_lab::progress::Progress;
 use sbbk_lab::study::everyday::{advise, advise_robot};
 
-/// Says for each mesh or robot, in three lines, what SBBK is worth and what to set.
+/// Prints for each mesh or robot the gain as a terrain, as bodies and as sensors, and settings
 #[derive(Parser)]
 struct Arguments {
     /// OBJ, STL or URDF files
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
     /// Steps of each run
-    #[arg(long, default_value_t = 120)]
-    steps: usize,
+    #[arg(long, default_value = "120")]
+    steps: NonZeroUsize,
     /// Runs of each scene
-    #[arg(long, default_value_t = 2)]
-    repeats: usize,
+    #[arg(long, default_value = "2")]
+    repeats: NonZeroUsize,
 }
 
 fn main() -> ExitCode {
-    let Arguments { files, steps, repeats } = Arguments::parse();
-    let run = || -> Result<(), Box<dyn Error>> {
-        for path in &files {
-            let is_robot = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf"));
-            let advice = match is_robot {
-                true => advise_robot(path, steps, repeats)?,
-                false => advise(&mesh_file::load(path)?, steps, repeats),
-            };
-            print(advice)?;
-        }
-        Ok(())
-    };
-    exit_code(run())
+    exit_code(run(&Arguments::parse()))
+}
+
+fn run(Arguments { files, steps, repeats }: &Arguments) -> Result<(), Box<dyn Error>> {
+    let (steps, repeats) = (steps.get(), repeats.get());
+    let progress = Progress::visible();
+    for path in files {
+        let is_robot = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf"));
+        let advice = match is_robot {
+            true => advise_robot(path, steps, repeats, &progress)?,
+            false => advise(&mesh_file::load(path)?, steps, repeats, &progress),
+        };
+        progress.finish();
+        print(advice)?;
+    }
+    Ok(())
 }

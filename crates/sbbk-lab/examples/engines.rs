@@ -1,4 +1,4 @@
-//! The pile of heads in Rapier and in other engines: `benches/engines` has the others, and runs all.
+//! The pile of heads in Rapier, for comparison with other engines: `benches/engines/run` runs all.
 //!
 //! ```text
 //! cargo run --release --example engines -- export scene
@@ -13,16 +13,17 @@ use std::process::ExitCode;
 use clap::Parser;
 use sbbk_lab::cli::{exit_code, print};
 use sbbk_lab::mesh_file;
+use sbbk_lab::report::write_file;
 use sbbk_lab::scene::MonkeyPile;
 use sbbk_lab::study::hard::Column;
 use sbbk_lab::study::hard::engines::EnginePile;
 
-/// Drops monkey heads in several engines.
+/// Drops monkey heads in several engines: writes the scene, runs it in Rapier, compares runs
 #[derive(Parser)]
 enum Arguments {
     /// Writes the scene
     Export {
-        /// What all engines read
+        /// File that all engines read
         scene: PathBuf,
         /// Number of heads
         #[arg(long, default_value = "200")]
@@ -36,11 +37,11 @@ enum Arguments {
     },
     /// Runs the scene in Rapier
     Run {
-        /// Who answers, and what the heads are made of; `control`: their convex parts
+        /// Dispatcher and meshes; `control`: the convex parts of the heads
         column: Column,
         /// The scene
         scene: PathBuf,
-        /// What is written: times, memory and the states of all heads
+        /// File with times, memory and the states of all heads
         run: PathBuf,
     },
     /// Compares runs
@@ -49,6 +50,9 @@ enum Arguments {
         scene: PathBuf,
         /// Runs of all engines, named by these
         runs: Vec<PathBuf>,
+        /// Writes all numbers to a CSV file, one a line
+        #[arg(long, value_name = "FILE")]
+        csv: Option<PathBuf>,
     },
 }
 
@@ -67,7 +71,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             Ok(EnginePile::new(&pile).write(scene)?)
         }
         Arguments::Run { column, scene, run } => Ok(EnginePile::read(scene)?.run(*column, run)?),
-        Arguments::Judge { scene, runs } => {
+        Arguments::Judge { scene, runs, csv } => {
             let mut engines: Vec<(String, Vec<&Path>)> = Vec::new();
             for run in runs {
                 let name = run.file_stem().unwrap_or_default().to_string_lossy();
@@ -76,7 +80,9 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
                     None => engines.push((name.into_owned(), vec![run])),
                 }
             }
-            Ok(print(EnginePile::read(scene)?.judge(&engines)?)?)
+            let results = EnginePile::read(scene)?.judge(&engines)?;
+            print(&results)?;
+            Ok(csv.as_deref().map_or(Ok(()), |path| write_file(path, results.csv()))?)
         }
     }
 }

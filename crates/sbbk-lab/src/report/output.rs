@@ -75,7 +75,7 @@ impl Results {
                     quoted(&row.backend),
                     quoted(quantity),
                     statistic,
-                    value.to_string(),
+                    six_digits(value).to_string(),
                 ];
                 text.push_str(&cells.join(","));
                 text.push('\n');
@@ -83,6 +83,10 @@ impl Results {
         }
         text
     }
+}
+
+fn six_digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(f64::NAN)
 }
 
 fn quoted(cell: &str) -> String {

@@ -1,4 +1,4 @@
-//! What SBBK is worth for a mesh or a robot: as a terrain, as bodies, as sensors.
+//! Measures a mesh or a robot as a terrain, as bodies and as sensors.
 
 use std::fmt;
 use std::path::Path;
@@ -18,6 +18,7 @@ use super::ground::{kinds, put};
 use super::measure::{Driven, Everyday};
 use super::subject::Subject;
 use crate::mesh::Mesh;
+use crate::progress::Progress;
 use crate::report::Row;
 use crate::scene::random;
 use crate::study::StudyError;
@@ -34,12 +35,12 @@ const BODY_TRIANGLES: usize = 100_000;
 const SENSORS: usize = 10;
 /// A mesh with more triangles has a tree only if it is prepared.
 const UNPREPARED: usize = 8192;
-/// Faster or slower by less than this factor is as fast.
+/// Speeds count as equal below this factor.
 const NOISE: f64 = 1.1;
 /// A mesh whose size in units is outside of this wants another `length_unit`.
 const USUAL_SIZES: [f32; 2] = [0.3, 30.0];
 
-/// What was measured of one mesh or robot; displayed as its name and three lines.
+/// Measurements of one mesh or robot, displayed as its name and three lines.
 #[derive(Clone, Debug)]
 pub struct Advice {
     /// Name of the mesh, or of the robot's file.
@@ -48,9 +49,9 @@ pub struct Advice {
     pub triangles: usize,
     /// Its longest side, in units.
     pub size: f32,
-    /// What SBBK takes it for.
+    /// Kind that SBBK detects.
     pub kind: SurfaceKind,
-    /// Under stock Rapier and under SBBK: as a terrain, as bodies, as sensors.
+    /// Rows of stock Rapier and SBBK: as a terrain, as bodies, as sensors.
     pub rows: [[Row; 2]; 3],
     is_robot: bool,
     wants_trees: bool,
@@ -59,26 +60,30 @@ pub struct Advice {
 /// Measures whole worlds with this mesh, each `repeats` times for so many `steps`.
 ///
 /// Lengths are the mesh's own; `length_unit` and gravity are as large as bodies are.
-pub fn advise(mesh: &Mesh, steps: usize, repeats: usize) -> Advice {
-    advise_on(&Subject::mesh(mesh), steps, repeats)
+pub fn advise(mesh: &Mesh, steps: usize, repeats: usize, progress: &Progress) -> Advice {
+    advise_on(&Subject::mesh(mesh), steps, repeats, progress)
 }
 
-/// The same of the robot of a URDF file, by Rapier's loader. Its meshes have no flags.
+/// Measures the robot of a URDF file, loaded by Rapier's loader without flags of meshes.
 ///
 /// Errors: the file cannot be loaded, or its robot has no shapes.
-pub fn advise_robot(file: &Path, steps: usize, repeats: usize) -> Result<Advice, StudyError> {
-    Ok(advise_on(&Subject::robot(file)?, steps, repeats))
+pub fn advise_robot(
+    file: &Path,
+    steps: usize,
+    repeats: usize,
+    progress: &Progress,
+) -> Result<Advice, StudyError> {
+    Ok(advise_on(&Subject::robot(file)?, steps, repeats, progress))
 }
 
-fn advise_on(subject: &Subject, steps: usize, repeats: usize) -> Advice {
+fn advise_on(subject: &Subject, steps: usize, repeats: usize, progress: &Progress) -> Advice {
     let bounds = subject.bounds(&Pose3::IDENTITY);
     let size = bounds.extents().max_element();
     let scenes = Scenes { subject, bounds, size, large: subject.larger_than(UNPREPARED) };
-    let mut measured = [scenes.terrain(steps), scenes.bodies(steps), scenes.sensors(steps)]
-        .into_iter()
-        .map(|scene| scene.measure(repeats));
-    let mut next = || measured.next().expect("there are three");
-    let rows = [next(), next(), next()];
+    let rows = [scenes.terrain(steps), scenes.bodies(steps), scenes.sensors(steps)].map(|scene| {
+        progress.phase(scene.name(), scene.step_count(repeats));
+        scene.measure(repeats, progress)
+    });
     Advice {
         name: subject.name.clone(),
         triangles: subject.triangle_count(),
@@ -204,7 +209,7 @@ fn world(size: Real) -> PhysicsWorld {
 }
 
 impl Advice {
-    /// How many times as fast as stock's SBBK's collision detection is: as a terrain, as bodies, as
+    /// Times of collision detection of stock over those of SBBK: as a terrain, as bodies, as
     /// sensors.
     pub fn speeds(&self) -> [f64; 3] {
         self.rows
@@ -212,82 +217,84 @@ impl Advice {
             .map(|[stock, sbbk]| stock.number("detection.mean") / sbbk.number("detection.mean"))
     }
 
-    /// What to set for each use.
+    /// Settings for a terrain, for bodies, and for sensors.
     fn settings(&self) -> [String; 3] {
-        let mut body: Vec<String> = Vec::new();
+        let mut mesh: Vec<String> = Vec::new();
         if self.is_robot {
-            body.push("load it with `trimesh_flags = TriMeshFlags::empty()`, as here".into());
+            mesh.push("load it with `trimesh_flags = TriMeshFlags::empty()`, as here".into());
         }
         if self.wants_trees {
-            body.push("call `prepare_shape` at load time".into());
+            mesh.push("call `prepare_shape` at load time".into());
         }
         if self.kind == SurfaceKind::InsideOut {
-            body.push("turn its triangles, their normals point inwards".into());
+            mesh.push("turn its triangles, their normals point inwards".into());
         }
-        let mut dynamic = body.clone();
+        let mut dynamic = mesh.clone();
         let [small, large] = USUAL_SIZES;
         if !(small..large).contains(&self.size) {
-            dynamic.push(format!("`length_unit = {:.1e}`", self.size));
+            dynamic.push(format!("`length_unit = {}`", two_digits(self.size)));
         }
-        let list = |settings: Vec<String>| match settings.is_empty() {
+        [&mesh, &dynamic, &mesh].map(|settings| match settings.is_empty() {
             true => "nothing".to_owned(),
             false => settings.join("; "),
-        };
-        [
-            "`FIX_INTERNAL_EDGES` if convex bodies slide or roll on it".to_owned(),
-            list(dynamic),
-            list(body),
-        ]
+        })
     }
+
+    /// The line of one use.
+    fn line(&self, index: usize, settings: &str) -> String {
+        let use_ = ["terrain", "bodies", "sensors"][index];
+        let [stock, sbbk] = &self.rows[index];
+        let speed = self.speeds()[index];
+        let verdict = match speed {
+            _ if speed > NOISE => format!("{speed:.1} times as fast"),
+            _ if speed < 1.0 / NOISE => format!("slower, {speed:.2} of the speed"),
+            _ => "as fast".to_owned(),
+        };
+        let ms = |row: &Row, time: &str| 1e-3 * row.number(time);
+        let [mean, stocks_mean] = [sbbk, stock].map(|row| ms(row, "detection.mean"));
+        let [worst, stocks_worst] = [sbbk, stock].map(|row| ms(row, "detection.max"));
+        let [wrong, stocks_wrong] = [sbbk, stock].map(|row| row.wrong("judged"));
+        let right = match stock.count("judged.true_pairs") {
+            0 => "no contacts to judge".to_owned(),
+            all => format!("{wrong} wrong answers, stock {stocks_wrong}, beside {all} true ones"),
+        };
+        let [own, meshes] = ["plugin_mebibytes", "mesh_mebibytes"].map(|m| sbbk.number(m));
+        format!(
+            "  as {use_}: {verdict} ({mean:.3} ms a step, stock {stocks_mean:.3}; slowest step \
+             {worst:.2}, stock {stocks_worst:.2}); {right}; {own:.1} MiB more than {meshes:.1}; set: \
+             {settings}"
+        )
+    }
+}
+
+/// Two significant digits: `0.16`, `160`.
+fn two_digits(value: f32) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(f64::NAN)
 }
 
 impl fmt::Display for Advice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let kind = match self.kind {
-            SurfaceKind::Solid => "a solid",
-            SurfaceKind::Sheet => "a sheet",
-            SurfaceKind::InsideOut => "inside out",
+            SurfaceKind::Solid => {
+                "a solid: bodies inside it are pushed out; register a room as `SurfaceKind::Sheet`"
+            }
+            SurfaceKind::Sheet => "a sheet: bodies touch it from both sides",
+            SurfaceKind::InsideOut => "inside out: its normals point inwards",
         };
         let Self { name, triangles, size, .. } = self;
         write!(f, "{name}: {triangles} triangles, {size:.3} units, {kind}")?;
-        let speeds = self.speeds();
-        for (index, (use_, settings)) in
-            ["terrain", "bodies", "sensors"].into_iter().zip(self.settings()).enumerate()
-        {
-            let [stock, sbbk] = &self.rows[index];
-            let speed = speeds[index];
-            let verdict = match speed {
-                _ if speed.is_nan() => "nothing to measure".to_owned(),
-                _ if speed > NOISE => format!("{speed:.1} times as fast"),
-                _ if speed < 1.0 / NOISE => format!("slower, {speed:.2} of the speed"),
-                _ => "as fast".to_owned(),
-            };
-            let milliseconds = |row: &Row, time: &str| 1e-3 * row.number(time);
-            write!(
-                f,
-                "\n  as {use_}: {verdict} ({:.3} ms a step, stock {:.3}; worst {:.2}, {:.2}); ",
-                milliseconds(sbbk, "detection.mean"),
-                milliseconds(stock, "detection.mean"),
-                milliseconds(sbbk, "detection.max"),
-                milliseconds(stock, "detection.max"),
-            )?;
-            let [wrong, stocks] = [sbbk, stock].map(|row| row.wrong("judged"));
-            let all = stock.count("judged.true_pairs");
-            if use_ == "sensors" {
-                let (pairs, differ) = (sbbk.count("pairs.mesh_pairs"), sbbk.wrong("pairs"));
-                write!(f, "{differ} of {pairs} answers differ from stock's; ")?;
-                if all > 0 {
-                    write!(f, "wrong {wrong}, stock {stocks}, of {all} judged; ")?;
-                }
-            } else if stock.count("judged.mesh_pairs") == 0 {
-                let pairs = sbbk.count("pairs.mesh_pairs");
-                write!(f, "contacts of {pairs} pairs agree with stock's; ")?;
-            } else {
-                write!(f, "wrong contacts {wrong}, stock {stocks}, of {all} judged; ")?;
-            }
-            let [own, meshes] = ["plugin_mebibytes", "mesh_mebibytes"].map(|m| sbbk.number(m));
-            write!(f, "{own:.1} MiB beside {meshes:.1}; set: {settings}")?;
-        }
-        Ok(())
+        let mut lines = self.settings().into_iter().enumerate();
+        lines.try_for_each(|(index, settings)| write!(f, "\n{}", self.line(index, &settings)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Would catch exponents in the advice.
+    #[test]
+    fn lengths_have_two_digits_and_no_exponent() {
+        assert_eq!([0.1612, 157.3].map(two_digits).map(|d| d.to_string()), ["0.16", "160"]);
     }
 }

@@ -7,40 +7,40 @@ use rapier_integration::{PreparedTree, SbbkDispatcher};
 use rapier3d::geometry::SharedShape;
 use rapier3d::pipeline::PhysicsWorld;
 
-use super::compare::Comparison;
+use super::judged::Comparison;
 use crate::backend::{Backend, shape_address};
 use crate::metrics::Summary;
+use crate::progress::Progress;
 use crate::replay::{self, Recorder};
 use crate::report::{ReportError, Row};
 use crate::study::pair::Contest;
 
-/// A world that can be built again and again, and what moves in it besides.
+/// A world that can be built again and again, and its drive.
 pub(super) struct Everyday<'a> {
     /// Study and keys of the rows.
     pub row: Row,
     pub steps: usize,
     pub build: Box<dyn Fn() -> Driven + 'a>,
-    /// Shapes that SBBK prepares before.
+    /// Shapes that SBBK prepares before the first step.
     pub prepared: Vec<SharedShape>,
 }
 
-/// A world and what is done to it before each step.
+/// A world and its drive.
 pub(super) struct Driven {
     pub world: PhysicsWorld,
     pub drive: Drive,
 }
 
-/// Called with the number of the step, from 0; returns the time of the queries that it asked, which
+/// Called before each step with its number, from 0. Returns the time of its own queries, which
 /// counts as collision detection.
 pub(super) type Drive = Box<dyn FnMut(&mut PhysicsWorld, usize) -> Duration>;
 
 impl Driven {
-    /// Nothing is done to the world.
+    /// A world without a drive.
     pub fn alone(world: PhysicsWorld) -> Self {
         Self::by(world, |_, _| Duration::ZERO)
     }
 
-    /// Something is.
     pub fn by(
         world: PhysicsWorld,
         drive: impl FnMut(&mut PhysicsWorld, usize) -> Duration + 'static,
@@ -51,18 +51,18 @@ impl Driven {
 
 /// Steps between two samples of memory.
 const MEMORY_EVERY: usize = 10;
-/// How often in a run contacts are compared; with so few pairs, after so many steps.
+/// Looks at the contacts of a run; worlds with few pairs are looked at after so many steps.
 const COMPARISONS: usize = 3;
 const FEW_PAIRS: usize = 3;
 const FEW_EVERY: usize = 4;
-/// What is no slower: this factor, or this much more, in microseconds a step.
+/// A median is slower above this factor and this many microseconds.
 const NOISE: f64 = 1.05;
 const IGNORED: f64 = 1.0;
-/// How much worse the worst step may be, in microseconds.
+/// A worst step is worse above this many microseconds.
 const WORST: f64 = 2000.0;
 
-/// What a user would say of SBBK's times beside stock's; `ignored` is what is too little to be
-/// seen, in the same unit.
+/// Compares median and worst step of SBBK with those of stock; `ignored` and `worst` have the unit
+/// of the times.
 pub(super) fn verdict(stock: [f64; 2], sbbk: [f64; 2], ignored: f64, worst: f64) -> &'static str {
     let [is_slower, is_worse] =
         [sbbk[0] > (NOISE * stock[0]).max(stock[0] + ignored), sbbk[1] > stock[1] + worst];
@@ -74,8 +74,8 @@ pub(super) fn verdict(stock: [f64; 2], sbbk: [f64; 2], ignored: f64, worst: f64)
     }
 }
 
-/// What was seen of one backend: of each step the least times over the repeats, in microseconds, as
-/// every run of a backend does the same.
+/// Times of one backend: for each step the least over the repeats, in microseconds, as every run of
+/// a backend does the same.
 #[derive(Default)]
 struct Side {
     detection: Vec<f64>,
@@ -85,17 +85,22 @@ struct Side {
 }
 
 impl<'a> Everyday<'a> {
-    /// With nothing prepared.
+    /// A scene with nothing prepared.
     pub fn new(row: Row, steps: usize, build: impl Fn() -> Driven + 'a) -> Self {
         Self { row, steps, build: Box::new(build), prepared: Vec::new() }
     }
 
-    /// Runs the scene `repeats` times on both backends, step by step in turns.
-    pub fn measure(&self, repeats: usize) -> [Row; 2] {
+    /// Steps of [`Self::measure`].
+    pub fn step_count(&self, repeats: usize) -> usize {
+        self.steps * repeats.max(1)
+    }
+
+    /// Runs the scene `repeats` times on both backends, step by step in turns. Counts the steps.
+    pub fn measure(&self, repeats: usize, progress: &Progress) -> [Row; 2] {
         let mut sides: [Side; 2] = Default::default();
         let mut comparison = Comparison::new();
         for repeat in 0..repeats.max(1) {
-            self.run(&mut sides, (repeat == 0).then_some(&mut comparison));
+            self.run(&mut sides, (repeat == 0).then_some(&mut comparison), progress);
         }
         let summaries = sides.each_ref().map(|side| {
             [&side.detection, &side.step].map(|times| Summary::of(times.iter().copied()))
@@ -116,13 +121,11 @@ impl<'a> Everyday<'a> {
         };
         let sbbk = row(1)
             .with("verdict", verdict(stock, sbbk, IGNORED, WORST))
-            .with("bad_steps", sides[1].detection.iter().filter(is_bad).count())
-            .with("pairs", comparison.pairs)
-            .with("triangles_of_pairs", comparison.triangles);
+            .with("bad_steps", sides[1].detection.iter().filter(is_bad).count());
         [row(0), sbbk]
     }
 
-    /// Runs it once more on either backend, and writes a page that plays both.
+    /// Runs the scene on both backends and writes a page that plays both runs.
     ///
     /// Errors: the page cannot be written.
     pub fn play(&self, path: &Path) -> Result<(), ReportError> {
@@ -140,7 +143,7 @@ impl<'a> Everyday<'a> {
         replay::write(path, &self.name(), &runs)
     }
 
-    /// What tables call it.
+    /// Name in tables, which `--scene` is compared with.
     pub fn name(&self) -> String {
         let keys = self.row.keys.iter();
         let keys = keys.map(|(key, value)| match value.as_str() {
@@ -158,8 +161,13 @@ impl<'a> Everyday<'a> {
         (driven, trees.collect())
     }
 
-    /// Both worlds at once, so that what else the machine does slows both, each first in turn.
-    fn run(&self, sides: &mut [Side; 2], mut comparison: Option<&mut Comparison>) {
+    /// Runs both worlds at once, each first in turn.
+    fn run(
+        &self,
+        sides: &mut [Side; 2],
+        mut comparison: Option<&mut Comparison>,
+        progress: &Progress,
+    ) {
         let dispatcher = SbbkDispatcher::default();
         let (stock, _) = self.start(None);
         let (sbbk, _prepared) = self.start(Some(&dispatcher));
@@ -185,6 +193,7 @@ impl<'a> Everyday<'a> {
                     comparison.look(stock);
                 }
             }
+            progress.step();
         }
     }
 }

@@ -1,21 +1,19 @@
-//! Everyday scenes: bodies on mesh terrains of all sizes, a mesh that comes and goes, sensors,
-//! characters, and queries without a workspace. Is one line ever a loss?
+//! Everyday scenes: bodies on mesh terrains of all sizes, meshes that come and go, robots, sensors,
+//! characters, and queries without a workspace.
 //!
-//! Each scene runs in whole worlds, under stock Rapier and under SBBK as a user gets it: step by step
-//! in turns, trees built when the scene first needs them. All runs of a backend do the same, so the
-//! time of a step is the least over the runs. At poses of stock's runs both are asked afresh for
-//! the contacts of all pairs with a mesh; where they differ, brute force in f64 tells who is right.
+//! Each scene runs in whole worlds, under stock Rapier and under SBBK with its defaults, step by step
+//! in turns. All runs of a backend do the same, so the time of a step is the least over the runs.
+//! Brute force in f64 judges contacts of both at poses of stock's run.
 
 mod advise;
-mod compare;
 mod ground;
+mod judged;
 mod measure;
 mod queries;
 mod report;
 mod robots;
 mod scenes;
 mod subject;
-mod truth;
 
 pub use advise::{Advice, advise, advise_robot};
 use std::path::{Path, PathBuf};
@@ -67,10 +65,10 @@ pub struct GroundPlan {
     pub fixes_edges: bool,
 }
 
-/// What to compare, and how thoroughly.
+/// Extent of the comparison.
 #[derive(Clone, Debug)]
 pub struct EverydayPlan {
-    /// What to measure.
+    /// Parts of the study.
     pub groups: Vec<Group>,
     /// Terrains for bodies of all kinds.
     pub grounds: Vec<GroundPlan>,
@@ -89,15 +87,15 @@ pub struct EverydayPlan {
     pub small_meshes: usize,
     /// Cells along a side of the terrains for meshes with all flags and for robots, of half a unit.
     pub deformable_cells: u32,
-    /// The robot that stands on the last: one of ours, which walks, if there is none.
+    /// URDF file of the robots, or `None` for a walker of this crate.
     pub urdf: Option<PathBuf>,
     /// Heads in the pile.
     pub heads: usize,
     /// Cells along a side of the terrains for single queries, of half a unit.
     pub query_cells: Vec<u32>,
-    /// Only worlds with this in their names.
+    /// Text in the names of the worlds that are measured.
     pub name: String,
-    /// The page on which the first of these worlds is played.
+    /// Page that plays the first of these worlds.
     pub replay: Option<PathBuf>,
 }
 
@@ -158,6 +156,8 @@ pub fn everyday(plan: &EverydayPlan, progress: &Progress) -> Result<Results, Stu
     for group in &plan.groups {
         rows.extend(match group {
             Group::Terrains => on_terrains(&mut worlds)?,
+            // `--scene` chooses worlds.
+            Group::Queries if !plan.name.is_empty() => Vec::new(),
             Group::Queries => queries(plan, progress),
             Group::Single => {
                 let large = plan.large();
@@ -210,12 +210,12 @@ impl Worlds<'_> {
     fn measure(&mut self, phase: &str, scenes: &[Everyday]) -> Result<Vec<Row>, StudyError> {
         let scenes: Vec<&Everyday> =
             scenes.iter().filter(|scene| scene.name().contains(&self.plan.name)).collect();
-        self.progress.phase(phase, scenes.len());
         let mut rows = Vec::new();
-        for scene in scenes {
-            rows.extend(scene.measure(self.plan.repeats));
+        for (index, scene) in scenes.iter().enumerate() {
+            let message = format!("{phase}, world {} of {}", index + 1, scenes.len());
+            self.progress.phase(message, scene.step_count(self.plan.repeats));
+            rows.extend(scene.measure(self.plan.repeats, self.progress));
             self.replay.take().map(|path| scene.play(path)).transpose()?;
-            self.progress.step();
         }
         Ok(rows)
     }

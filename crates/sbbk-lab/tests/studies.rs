@@ -1,0 +1,166 @@
+//! Every study on a small scale: its rows make sense, its tables fit a terminal, its verdict has
+//! numbers, and SBBK is right.
+
+use sbbk_core::surface::SurfaceKind;
+use sbbk_lab::backend::Backend;
+use sbbk_lab::mesh;
+use sbbk_lab::progress::Progress;
+use sbbk_lab::report::{Results, Row};
+use sbbk_lab::study::compare::{ComparePlan, compare};
+use sbbk_lab::study::contacts::{ApproachedMesh, ContactsPlan, contacts};
+use sbbk_lab::study::convex::{ConvexPlan, convex};
+use sbbk_lab::study::everyday::{EverydayPlan, GroundPlan, Group, advise, everyday};
+use sbbk_lab::study::hard::{self, Column, HardPlan};
+use sbbk_lab::study::one_step::{OneStepPlan, one_step};
+
+/// Checks the shown text and the files, and returns the wrong contacts of stock and of SBBK at any
+/// of some paths.
+fn check(results: &Results, errors: &[&str]) -> [u64; 2] {
+    let text = results.to_string();
+    let verdict = text.lines().next().unwrap_or_default();
+    assert!(verdict.starts_with("VERDICT: ") && !verdict.contains("NaN"), "{verdict}");
+    let is_wide = |line: &&str| line.chars().count() > 100 && !line.starts_with("VERDICT");
+    let wide: Vec<&str> = text.lines().skip(3).filter(is_wide).collect();
+    assert!(wide.is_empty(), "{wide:?}");
+    assert!(results.tables.iter().all(|table| !table.lines.is_empty()), "{text}");
+    assert!(results.csv().lines().count() > results.rows.len(), "{}", results.csv());
+    let wrong = |backend: &str| {
+        let rows = results.rows.iter().filter(|row| row.backend == backend);
+        rows.flat_map(|row| errors.iter().map(|path| row.wrong(path))).sum::<u64>()
+    };
+    [wrong("stock"), wrong("sbbk")]
+}
+
+#[test]
+fn compare_measures_both_experiments_of_the_paper() {
+    let plan = ComparePlan { drops: 2, heads: vec![30], ..ComparePlan::quick() };
+    let results = compare(&plan, &Progress::hidden());
+    let [stock, sbbk] = check(&results, &["fresh", "updated", "fresh_error", "steady_error"]);
+    assert!(stock > 0 && sbbk == 0, "{stock} {sbbk}");
+}
+
+#[test]
+fn contacts_are_judged_in_every_case() {
+    let mesh = ApproachedMesh { mesh: mesh::monkey_head_with(6), approach_count: 1 };
+    let plan = ContactsPlan { meshes: vec![mesh], ..ContactsPlan::quick() };
+    let results = contacts(&plan, &Progress::hidden());
+    let [stock, sbbk] = check(&results, &["errors"]);
+    assert!(stock > 500 && sbbk == 0, "{stock} {sbbk}");
+    assert!(results.rows.iter().all(|row| row.count("errors.true_pairs") > 0));
+}
+
+#[test]
+fn convex_shapes_and_compounds_are_judged() {
+    let plan = ConvexPlan { mesh: mesh::monkey_head_with(6), repeats: 1, ..ConvexPlan::quick() };
+    let results = convex(&plan, &Progress::hidden());
+    let [stock, sbbk] = check(&results, &["errors"]);
+    assert!(stock > 500 && sbbk == 0, "{stock} {sbbk}");
+}
+
+#[test]
+fn more_substeps_come_nearer_to_the_converged_step() {
+    let plan = OneStepPlan {
+        heads: 20,
+        backends: vec![Backend::Stock, Backend::Sbbk],
+        substeps: vec![1, 16],
+        moments: vec![60, 90],
+        reference_substeps: 64,
+        ..OneStepPlan::quick()
+    };
+    let results = one_step(&plan, &Progress::hidden());
+    check(&results, &[]);
+    let errors: Vec<f64> = results.rows.iter().map(|row| row.number("error.median")).collect();
+    let [half, clusters, _, sbbk, stock16, sbbk16] = errors[..] else { panic!("{errors:?}") };
+    assert!(half > 0.0 && half < 0.1 && half < clusters, "{errors:?}");
+    assert!(sbbk16 < 0.7 * sbbk && sbbk16 < 0.5 * stock16, "{errors:?}");
+}
+
+fn everyday_plan() -> EverydayPlan {
+    let ground = |cell, fixes_edges| GroundPlan { cells: 16, cell, fixes_edges };
+    EverydayPlan {
+        grounds: vec![ground(1.0, false), ground(0.5, true)],
+        bodies: 20,
+        steps: 40,
+        repeats: 1,
+        cells: 64,
+        world_cells: 64,
+        small_meshes: 300,
+        deformable_cells: 48,
+        heads: 8,
+        query_cells: vec![24],
+        ..EverydayPlan::quick()
+    }
+}
+
+/// Would catch scenes in which nothing touches, robots without meshes, and rows of one side only.
+#[test]
+fn everyday_scenes_touch_and_are_judged() {
+    let results = everyday(&everyday_plan(), &Progress::hidden()).unwrap();
+    let [stock, sbbk] = check(&results, &["judged"]);
+    assert!(stock > 100 * sbbk.max(1), "{stock} {sbbk}");
+    let of = |name: &'static str| results.rows.iter().filter(move |row| row.backend == name);
+    assert!(of("stock").zip(of("sbbk")).all(|(a, b)| (a.study, &a.keys) == (b.study, &b.keys)));
+    let is_robot = |row: &&Row| row.keys.values().any(|key| key.to_string().contains("URDF"));
+    let touches = |row: &Row| row.count("judged.true_pairs") > 10;
+    assert_eq!(of("sbbk").filter(is_robot).filter(|row| touches(row)).count(), 2);
+}
+
+#[test]
+fn an_unknown_everyday_scene_is_an_error() {
+    let groups = vec![Group::Pile, Group::Queries];
+    let plan = EverydayPlan { name: "zzz".to_owned(), groups, ..everyday_plan() };
+    let error = everyday(&plan, &Progress::hidden()).unwrap_err();
+    assert_eq!(error.to_string(), "no scene of these has `zzz` in its name");
+}
+
+/// Would catch scenes that no backend could pass, flags that are not set, and runs under the name of
+/// another column.
+#[test]
+fn the_control_passes_and_sheets_hold_plain_meshes() {
+    let plan = HardPlan {
+        groups: vec![hard::Group::Sunk, hard::Group::Sheets],
+        columns: vec![Column::Stock, Column::StockFlag, Column::Sbbk, Column::Control],
+        ..HardPlan::quick()
+    };
+    let results = hard::hard(&plan, &Progress::hidden()).unwrap();
+    check(&results, &[]);
+    let passed = |column: Column, scene: &str| -> Vec<bool> {
+        let rows = results.rows.iter().filter(|row| row.study == "hard scenes");
+        let rows = rows.filter(|row| row.is("backend", column));
+        let rows = rows.filter(|row| row.keys["scene"].to_string().contains(scene));
+        rows.map(|row| row.count("passed") == row.count("runs")).collect()
+    };
+    assert_eq!(passed(Column::Control, "slab"), [true; 4]);
+    assert_eq!(passed(Column::Sbbk, "sheet"), [true; 4]);
+    assert_eq!(passed(Column::Sbbk, "height field"), [true; 2]);
+    // With the flag a sheet has a front only.
+    assert_eq!(passed(Column::StockFlag, "front"), [true; 2]);
+    assert_eq!(passed(Column::StockFlag, "back"), [false; 2]);
+}
+
+/// Would catch settings that do not fit the mesh, and the flag, which is never of use.
+#[test]
+fn advice_fits_the_mesh() {
+    let mut inside_out = mesh::cuboid(glamx::Vec3::splat(1.0), 2);
+    inside_out.triangles.iter_mut().for_each(|triangle| triangle.swap(0, 1));
+    let cases = [
+        (mesh::torus(0.005, 0.002, 48, 24), SurfaceKind::Solid),
+        (mesh::torus(1.0, 0.35, 120, 50), SurfaceKind::Solid),
+        (mesh::hills(20.0, 40), SurfaceKind::Sheet),
+        (inside_out, SurfaceKind::InsideOut),
+    ];
+    for (mesh, kind) in &cases {
+        let advice = advise(mesh, 60, 1, &Progress::hidden());
+        let text = advice.to_string();
+        assert_eq!((advice.kind, text.lines().count()), (*kind, 4), "{text}");
+        assert!(advice.speeds().iter().all(|speed| *speed > 0.0), "{text}");
+        assert!(!text.contains("FIX_INTERNAL_EDGES") && !text.contains("NaN"), "{text}");
+        assert_eq!(text.contains("prepare_shape"), mesh.triangle_count() > 8192, "{text}");
+        assert_eq!(text.contains("bodies inside it are pushed out"), *kind == SurfaceKind::Solid);
+        assert_eq!(text.contains("inwards"), *kind == SurfaceKind::InsideOut, "{text}");
+        assert_eq!(text.contains("length_unit = 0.014"), mesh.name == "torus" && advice.size < 0.1);
+        for [stock, sbbk] in &advice.rows {
+            assert!(sbbk.wrong("judged") <= stock.wrong("judged"), "{sbbk:?}");
+        }
+    }
+}
