@@ -10,6 +10,7 @@ use rapier3d::parry::shape::TriMeshFlags;
 use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh::{self, Mesh};
 
+use super::question::bits;
 use super::shapes::shapes;
 use crate::support::{
     Manifold, Question, distance, every, having, per_triangle, rotation, shape_with,
@@ -168,4 +169,29 @@ fn a_box_slides_over_fine_triangles() {
     assert!((found / expected - 1.0).abs() < 0.02, "{found} in place of {expected}");
     let of_triangles = slide(fine(), having(ContactSet::Triangles));
     assert!(of_triangles < 0.5 * expected, "{of_triangles}: the test shows nothing");
+}
+
+/// Catches normal cones that bring ghost contacts back: the flag would turn normals at edges.
+#[test]
+fn fix_internal_edges_changes_no_contact() {
+    let bumps = mesh::terrain(4.0, 16, 0.5);
+    let [plain, flagged] = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES]
+        .map(|flags| shape_with(&bumps, flags));
+    let mut random = Rand32::new(3);
+    for dispatcher in [every(), SbbkDispatcher::default()] {
+        for (name, shape) in shapes(1.0) {
+            for i in 0..20 {
+                let at = plain.triangle(random.rand_range(0..512)).center();
+                let turn = rotation(&mut random);
+                let low = shape.compute_aabb(&Pose3::from_rotation(turn)).mins.y.max(-1.0);
+                let pose = Pose3::from_parts(at - Vec3::Y * (low + 0.02), turn);
+                let [expected, found] = [&plain, &flagged].map(|mesh| {
+                    let (shapes, is_flipped) = ([mesh as _, &*shape], i % 2 == 0);
+                    let question = Question { shapes, pose, prediction: 0.05, is_flipped };
+                    question.fresh(&dispatcher).iter().map(bits).collect::<Vec<_>>()
+                });
+                assert_eq!(found, expected, "{name}, {i}");
+            }
+        }
+    }
 }

@@ -72,7 +72,7 @@ impl SbbkDispatcher {
         }
         let is_answered = |parts: &Parts<'_>| match parts {
             Parts::One(_) => kinds.convex_shapes,
-            Parts::Many(_) => kinds.composites,
+            Parts::Many(..) => kinds.composites,
         };
         let parts = Parts::of(other).filter(is_answered);
         let field = other.as_heightfield().filter(|_| kinds.height_fields);

@@ -8,13 +8,12 @@ use parry3d::query::{ContactManifold, TrackedContact};
 use sbbk_core::traverse::{Counters, DescentScratch, Placement, SlackLimits};
 use sbbk_core::volumes::Sphere;
 
-use super::convex::{PlacedPart, Touch};
+use super::convex::{GhostContacts, PartContact, PlacedPart};
 use super::merge::Lookup;
 use super::order::Candidate;
 use super::outline::{Outline, PatchPlan, Patches};
 use super::pool::{Demand, ManifoldPool};
 use super::pose::PairPose;
-use super::seams::Seams;
 use super::triangles::{Found, Regions};
 use crate::mesh::{Change, TreeCache};
 
@@ -202,9 +201,9 @@ pub(crate) struct Scratch {
     /// Where surfaces cross.
     pub(super) regions: Regions,
     pub(super) triangle_contacts: [ContactList<Found>; 2],
-    pub(super) convex_contacts: [ContactList<Touch>; 2],
+    pub(super) convex_contacts: [ContactList<PartContact>; 2],
     pub(super) patches: Patches,
-    pub(super) seams: Seams,
+    pub(super) ghosts: GhostContacts,
     pub(super) lookup: Lookup,
     /// Which manifolds of the query before are dealt with.
     pub(super) is_done: Vec<bool>,
@@ -215,14 +214,14 @@ impl Scratch {
     /// Gives back memory beyond so many contacts. Candidates come and go more than these do: some hundred
     /// kilobytes a thread stay.
     pub(super) fn shrink_to(&mut self, limit: usize) {
-        let Self { near, regions, patches, seams, lookup, is_done, .. } = self;
+        let Self { near, regions, patches, ghosts, lookup, is_done, .. } = self;
         let many = limit.max(1024);
         shrink(&mut self.triangle_contacts, many);
         shrink(&mut self.convex_contacts, many);
         shrink([near], many);
         regions.shrink_to(many);
         patches.shrink_to(limit);
-        seams.shrink_to(limit);
+        ghosts.shrink_to(limit);
         lookup.shrink_to(limit);
         is_done.shrink_to(limit);
     }

@@ -149,7 +149,7 @@ impl FewPair<'_> {
         let touched = |manifold: &ContactManifold<M, C>| {
             let [triangle, _] = mesh_place.swap([manifold.subshape1, manifold.subshape2]);
             let corners = mesh.indices()[triangle as usize];
-            Touched { part: 0, corners: corners.map(|vertex| mesh.vertices()[vertex as usize]) }
+            Touched { corners: corners.map(|vertex| mesh.vertices()[vertex as usize]) }
         };
         let is_at_seam = |all: &[ContactManifold<M, C>], manifold: &ContactManifold<M, C>| {
             let point = &manifold.points[0];

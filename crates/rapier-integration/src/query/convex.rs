@@ -19,7 +19,7 @@ pub(crate) struct ConvexQuery<'a> {
 impl ConvexQuery<'_> {
     /// Whether the surface of the mesh meets the shape, and where.
     pub(crate) fn intersection(&self) -> ShapeIntersection {
-        match self.search.meeting() {
+        match self.search.touching() {
             Some(triangle) => {
                 let [one, two] = self.subshapes(triangle);
                 ShapeIntersection::new(true).with_subshapes(one, two)

@@ -84,7 +84,7 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
     }
 
     fn place(&mut self, placement: &Placement) {
-        self.search.placed = self.search.placed.moved(self.mesh_place, placement);
+        self.search.place(self.mesh_place, placement);
     }
 }
 
@@ -131,7 +131,7 @@ impl Bodies for MovingConvex<'_, '_> {
         self.place(placement);
         let Self { search, mesh_place, .. } = self;
         let counts = |triangle| !has(besides, *mesh_place, triangle);
-        let found = search.nearest_of(reach, counts)?;
+        let found = search.nearest_where(reach, counts)?;
         Some(FoundTouch::new(&found, &search.placed, *mesh_place))
     }
 

@@ -13,9 +13,9 @@ use parry3d::partitioning::BvhNode;
 use parry3d::query::details::ShapeCastOptions;
 use sbbk_core::contact::convex::ConvexContact;
 
-use super::features::{core_contact, core_support};
+use super::contact::{core_contact, core_support};
 use super::near::time_of;
-use super::nearest::{ConvexSearch, FoundTriangle};
+use super::search::{ConvexSearch, FoundTriangle};
 use crate::mesh::box_of;
 use crate::pair::pose::MeshPlace;
 
@@ -61,10 +61,10 @@ impl ConvexSearch<'_> {
             MeshPlace::First => (-(placement.rotation * velocity12), velocity12),
             MeshPlace::Second => (velocity12, -(placement.inverse * velocity12)),
         };
-        let around = self.shape.compute_aabb(self.placed.pose_in_mesh());
+        let around = self.shape.compute_aabb(&self.pose_in_mesh);
         let time = time_of(&self.placed, self.convex, &self.mesh, around, of_shape, target);
         let latest = f64::from(max_time_of_impact);
-        // Parry asks for costs below the limit: with the next number above it those equal count too.
+        // Parry returns costs below the limit only.
         let first = Cell::new(None);
         self.mesh.mesh.bvh().find_best(
             max_time_of_impact.next_up(),
@@ -90,7 +90,7 @@ impl ConvexSearch<'_> {
         options: ShapeCastOptions,
         latest: f64,
     ) -> Option<FoundCast> {
-        let start = self.placed.place(self.mesh.corners(triangle));
+        let start = self.placed.to_part(self.mesh.corners(triangle));
         let (size, target) = (self.size(&start), f64::from(options.target_distance.max(0.0)));
         let cast = TriangleCast { search: self, triangle, start, size, velocity, target, latest };
         let gap = self.plane_gap(&start).filter(|gap| gap.left(target) > TOUCHING * size);

@@ -1,37 +1,30 @@
 //! A mesh and convex shapes: one, or the parts of a compound or a polyline.
 //!
-//! Stock Parry asks its hierarchy of the mesh with the shape's box in the mesh's frame, which for a
-//! large floor is the whole mesh, and runs its contact routine on every triangle found, in every
-//! step. Here the same hierarchy is asked with the box of the shape in the shape's own frame, or
-//! with the plane of a half-space ([`near`]). A candidate is a triangle of the mesh and a part of
-//! the shape ([`parts`]). Its contact gives a lower bound of their distance: it is not looked at
-//! again until the pair has moved so far that they could touch ([`query`]). Contacts at edges
-//! within the surface are turned ([`surface`]).
-//!
-//! Contacts are a function of the pose, as those of two triangles are: exact ones ([`features`],
-//! [`ball`], [`half_space`]), or, if the host wants that, those of Parry's routine asked as if
-//! nothing was known ([`placed`]). Where Parry's GJK has seen that the two are apart, the direction
-//! is the candidate's hint, and shows it at the next query by how far the shape reaches along it
-//! ([`shape`]).
+//! * [`shape`], [`parts`], [`placed`]: Parry's shapes, with bounds and poses.
+//! * [`near`]: descends Parry's BVH of the mesh with the box of a part in the frame of the part.
+//! * [`contact`]: the exact contact of a triangle and a part.
+//! * [`ghosts`]: corrects contacts at internal edges. [`push_out`]: moves parts out of solids.
+//! * [`triangle_part`], [`points`]: write a contact to a manifold.
+//! * [`pair`]: the contact query, which uses all of these.
+//! * [`search`], [`cast`]: queries without manifolds.
 
-mod ball;
 mod cast;
-mod features;
-mod half_space;
-mod inside;
+mod contact;
+mod ghosts;
 mod near;
-mod nearest;
 mod pair;
 mod parts;
 mod placed;
-mod query;
+mod points;
+mod push_out;
+mod search;
 mod shape;
-mod surface;
-mod touch;
+mod triangle_part;
 
 pub(crate) use cast::FoundCast;
-pub(crate) use nearest::{ConvexSearch, FoundTriangle};
+pub(super) use contact::PartContact;
+pub(super) use ghosts::GhostContacts;
 pub(crate) use pair::ConvexPair;
 pub(crate) use parts::Parts;
 pub(crate) use placed::PlacedPart;
-pub(super) use touch::Touch;
+pub(crate) use search::{ConvexSearch, FoundTriangle};

@@ -1,4 +1,4 @@
-//! The triangles of a mesh near a convex shape, from Parry's hierarchy of the mesh.
+//! The triangles of a mesh near a convex shape, by Parry's BVH of the mesh.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -14,8 +14,8 @@ use super::placed::PlacedPart;
 use super::shape::ConvexShape;
 use crate::mesh::Hierarchy;
 
-/// Calls `found` with the triangles whose boxes, and those above them, may be within `margin` of a
-/// part, in stock order, until it has enough.
+/// Calls `found` with all triangles within `margin` of a part, and a few others, in the order of the
+/// BVH, until it returns `Break`.
 pub(super) fn triangles_near(
     placed: &PlacedPart,
     shape: ConvexShape<'_>,
@@ -30,15 +30,14 @@ pub(super) fn triangles_near(
         let (normal, height) = plane(&placed.placement, half_space, magnitude, margin);
         let is_below = |node: TestedBox| {
             count();
-            let (centre, extent) = node.centre_extent();
-            normal.dot(centre.as_dvec3()) - normal.abs().dot(extent.as_dvec3()) <= height
+            lowest(node, normal) <= height
         };
         mesh.near(is_below, found)
     } else if let ConvexShape::Ball(ball) = shape {
         if !placed.placement.is_finite() {
             return;
         }
-        // The centre, boxes, and some ten operations with them, are rounded.
+        // Allows for the rounding of some ten operations with the centre and the boxes.
         let centre = placed.inverse.translation.as_vec3();
         let (reach, size) = (ball.radius + margin, magnitude + centre.abs().max_element());
         let beyond = (reach + gamma(16) * (size + reach)).max(Real::MIN_POSITIVE.sqrt());
@@ -64,8 +63,8 @@ pub(super) fn triangles_near(
     counters.aabb_tests(tested.get());
 }
 
-/// A lower bound of the distance of boxes of a mesh from a part: as Parry has it, by the box around the
-/// part in the frame of the mesh.
+/// Returns a lower bound of the distance between a box of a mesh and a part. `around` is the box around
+/// the part in the frame of the mesh.
 pub(super) fn gap_of(
     placed: &PlacedPart,
     shape: ConvexShape<'_>,
@@ -79,23 +78,25 @@ pub(super) fn gap_of(
         }
         _ => None,
     };
-    let reach = magnitude.max(around.mins.abs().max(around.maxs.abs()).max_element());
-    // Boxes, and that of the shape by some twenty operations, are rounded.
-    let lost = gamma(32) * reach;
+    let lost = rounding(mesh, &around);
     move |node| {
-        let (centre, extent) = node.centre_extent();
         if let Some((normal, height)) = plane {
-            let lowest = normal.dot(centre.as_dvec3()) - normal.abs().dot(extent.as_dvec3());
-            return ((lowest - height) as Real).next_down().max(0.0);
+            return ((lowest(node, normal) - height) as Real).next_down().max(0.0);
         }
+        let (centre, extent) = node.centre_extent();
         let gap = (centre - around.center()).abs() - (extent + around.half_extents());
         (gap.max(Vec3::ZERO).length() * (1.0 - gamma(8)) - lost).max(0.0)
     }
 }
 
-/// At least how long it takes until boxes of a mesh are within `target` of a part that moves by
-/// `velocity` in the frame of the mesh, where `around` is the box around it; `Real::MAX` if they pass
-/// each other.
+/// Returns a bound of the rounding of boxes: some twenty operations.
+fn rounding(mesh: &Hierarchy<'_>, around: &Aabb) -> Real {
+    gamma(32) * mesh.magnitude().max(around.mins.abs().max(around.maxs.abs()).max_element())
+}
+
+/// Returns a lower bound of the time until a box of a mesh is within `target` of a part that moves by
+/// `velocity`; `Real::MAX` if they pass each other. All in the frame of the mesh; `around` is the box around
+/// the part.
 pub(super) fn time_of(
     placed: &PlacedPart,
     shape: ConvexShape<'_>,
@@ -105,11 +106,9 @@ pub(super) fn time_of(
     target: Real,
 ) -> impl Fn(TestedBox) -> Real {
     let gap = gap_of(placed, shape, mesh, around);
-    let magnitude = mesh.magnitude();
-    let reach = magnitude.max(around.mins.abs().max(around.maxs.abs()).max_element());
-    let slack = f64::from(target) + f64::from(gamma(32) * reach);
-    let is_endless = matches!(shape, ConvexShape::HalfSpace(_));
-    // Poses and boxes are rounded to f32; so is what turns the velocity.
+    let slack = f64::from(target) + f64::from(rounding(mesh, &around));
+    let is_infinite = matches!(shape, ConvexShape::HalfSpace(_));
+    // Allows for the rounding of poses and boxes, and so of the velocity's direction.
     let speed = velocity.length() * f64::from(1.0 + gamma(8));
     let lost = f64::from(gamma(8)) * speed;
     let speeds = velocity.abs();
@@ -118,7 +117,7 @@ pub(super) fn time_of(
         let (centre, extent) = node.centre_extent();
         let apart = f64::from(gap(node)) - f64::from(target);
         let (mut start, mut end) = ((apart / speed).max(0.0), f64::INFINITY);
-        if !is_endless {
+        if !is_infinite {
             let offset = (centre - around.center()).as_dvec3();
             let reach = (extent + around.half_extents()).as_dvec3() + slack;
             for axis in 0..3 {
@@ -131,14 +130,20 @@ pub(super) fn time_of(
                 }
             }
         }
-        // Also where nothing moves, and the boxes are apart.
+        // False for NaN, as of a velocity of zero.
         let is_time = start <= end && start < f64::from(Real::MAX);
         if is_time { (start as Real).next_down().max(0.0) } else { Real::MAX }
     }
 }
 
-/// All within `margin` of a half-space, in the frame of a mesh that is at `placement` in its frame:
-/// `normal·x <= height`.
+/// Returns the least coordinate of a box along a direction.
+fn lowest(node: TestedBox, normal: DVec3) -> f64 {
+    let (centre, extent) = node.centre_extent();
+    normal.dot(centre.as_dvec3()) - normal.abs().dot(extent.as_dvec3())
+}
+
+/// Returns normal and height of the plane `normal·x = height` of all points within `margin` of a
+/// half-space, in the frame of a mesh at `placement` in the frame of the half-space.
 fn plane(
     placement: &Placement,
     half_space: &HalfSpace,
@@ -147,7 +152,7 @@ fn plane(
 ) -> (DVec3, f64) {
     let own = half_space.normal.as_dvec3();
     let normal = placement.rotation.transpose() * own;
-    // What boxes lose to rounding in f32 is a few parts of their size; all else is f64.
+    // Boxes are rounded to f32; all else is f64.
     let lost = f64::from(gamma(8) * magnitude) * normal.abs().element_sum();
     let offset = own.dot(placement.translation);
     let reach = f64::from(margin) * own.length() + lost + 1e-14 * offset.abs();

@@ -1,10 +1,12 @@
+//! The parts of a shape, and what stays the same from query to query.
+
 use std::sync::OnceLock;
 
 use glamx::Vec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::NormalConstraints;
-use parry3d::shape::{CompositeShape, Shape};
+use parry3d::shape::{CompositeShape, ConvexPolyhedron, Shape};
 use sbbk_core::contact::convex::HullPoints;
 use sbbk_core::volumes::Sphere;
 
@@ -13,75 +15,65 @@ use super::shape::{ConvexShape, Extent, ball_around};
 /// The convex shapes that a shape is made of.
 #[derive(Copy, Clone)]
 pub(crate) enum Parts<'a> {
-    /// It is convex itself.
     One(ConvexShape<'a>),
     /// A compound or a polyline.
-    Many(Composite<'a>),
-}
-
-/// A shape with parts in a hierarchy of its own.
-#[derive(Copy, Clone)]
-pub(crate) struct Composite<'a> {
-    shape: &'a dyn CompositeShape,
-    token: CompositeToken,
+    Many(&'a dyn CompositeShape, ListToken),
 }
 
 /// One of the parts.
 pub(super) struct Part<'p> {
-    /// Where it is in the frame of the whole, if elsewhere.
+    /// Pose in the frame of the whole; `None` for the identity.
     pub(super) pose: Option<&'p Pose>,
     pub(super) shape: ConvexShape<'p>,
-    /// The cone that contact normals of the part must be in.
+    /// Normal cone of the part.
     pub(super) cone: Option<&'p dyn NormalConstraints>,
 }
 
-/// What a composite was at the last query, in constant time. Parry has no call that edits the parts
-/// of a compound; a host drops the workspace when it puts another shape in its place, or edits a
-/// polyline, and this is for those that do not.
+/// Identifies a list of points or parts in constant time. Hosts drop the workspace when they replace or
+/// edit a shape; the token notices the shapes of hosts that do not.
 #[derive(Copy, Clone, Debug, PartialEq)]
-struct CompositeToken {
+pub(crate) struct ListToken {
     address: usize,
-    part_count: usize,
+    count: usize,
     flags: u32,
-    aabb: Aabb,
+    /// Corners of the box around the parts, or first and last point.
+    ends: [Vec3; 2],
+    radius: Real,
+}
+
+#[derive(Copy, Clone, Debug, PartialEq)]
+enum Token {
+    Small(Extent),
+    List(ListToken),
 }
 
 impl<'a> Parts<'a> {
-    /// `None` if a part is of a kind that only Parry answers for.
+    /// Returns `None` for shapes with a part that only Parry supports.
     pub(crate) fn of(shape: &'a dyn Shape) -> Option<Self> {
         if let Some(compound) = shape.as_compound() {
             let parts = compound.shapes();
-            let token = CompositeToken {
-                address: parts.as_ptr().addr(),
-                part_count: parts.len(),
-                flags: u32::from(compound.flags().bits()),
-                aabb: *compound.local_aabb(),
-            };
-            let is_known = parts.iter().all(|(_, part)| ConvexShape::of(&**part).is_some());
-            return is_known.then_some(Self::Many(Composite { shape: compound, token }));
+            let flags = u32::from(compound.flags().bits());
+            let token = ListToken::of_parts(parts, flags, compound.local_aabb());
+            let is_supported = parts.iter().all(|(_, part)| ConvexShape::of(&**part).is_some());
+            return is_supported.then_some(Self::Many(compound, token));
         }
         if let Some(polyline) = shape.as_polyline() {
-            let token = CompositeToken {
-                address: polyline.vertices().as_ptr().addr(),
-                part_count: polyline.num_segments(),
-                flags: u32::from(polyline.flags().bits()),
-                aabb: polyline.bvh().root_aabb(),
-            };
-            let is_rigid = !polyline.is_deformable();
-            return is_rigid.then_some(Self::Many(Composite { shape: polyline, token }));
+            let flags = u32::from(polyline.flags().bits());
+            let token = ListToken::of_parts(polyline.indices(), flags, &polyline.bvh().root_aabb());
+            return (!polyline.is_deformable()).then_some(Self::Many(polyline, token));
         }
         ConvexShape::of(shape).map(Self::One)
     }
 
-    /// Hands on a part.
+    /// Calls `then` with a part.
     #[inline]
     pub(super) fn with<T>(&self, index: u32, then: impl FnOnce(Part<'_>) -> T) -> Option<T> {
         let composite = match self {
             Self::One(shape) => return Some(then(Part { pose: None, shape: *shape, cone: None })),
-            Self::Many(composite) => composite,
+            Self::Many(composite, _) => composite,
         };
         let (mut then, mut result) = (Some(then), None);
-        composite.shape.map_part_at(index, &mut |pose, shape, cone| {
+        composite.map_part_at(index, &mut |pose, shape, cone| {
             if let (Some(shape), Some(then)) = (ConvexShape::of(shape), then.take()) {
                 result = Some(then(Part { pose, shape, cone }));
             }
@@ -89,104 +81,113 @@ impl<'a> Parts<'a> {
         result
     }
 
-    /// Calls `found` with the parts whose boxes meet a box in the frame of the whole.
-    pub(super) fn meeting(&self, aabb: &Aabb, found: impl FnMut(u32)) {
+    /// Calls `found` with the parts whose boxes intersect a box in the frame of the whole.
+    pub(super) fn intersecting(&self, aabb: &Aabb, found: impl FnMut(u32)) {
         match self {
             Self::One(_) => std::iter::once(0).for_each(found),
-            Self::Many(composite) => composite.shape.bvh().intersect_aabb(aabb).for_each(found),
+            Self::Many(composite, _) => composite.bvh().intersect_aabb(aabb).for_each(found),
         }
     }
 }
 
-/// What is known of the parts from query to query.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct KnownParts {
+impl ListToken {
+    fn of_parts<T>(list: &[T], flags: u32, aabb: &Aabb) -> Self {
+        let (address, count) = (list.as_ptr().addr(), list.len());
+        Self { address, count, flags, ends: [aabb.mins, aabb.maxs], radius: 0.0 }
+    }
+
+    fn of_hull(hull: &ConvexPolyhedron, radius: Real) -> Self {
+        let points = hull.points();
+        let (address, count) = (points.as_ptr().addr(), points.len());
+        let ends = [points.first(), points.last()].map(|end| end.copied().unwrap_or_default());
+        Self { address, count, flags: 0, ends, radius }
+    }
+}
+
+impl Token {
+    fn of(parts: &Parts<'_>) -> Self {
+        match *parts {
+            Parts::Many(_, token) => Self::List(token),
+            Parts::One(shape) => match shape.polyhedron() {
+                Some(hull) => Self::List(ListToken::of_hull(hull, shape.radius())),
+                None => Self::Small(Extent::of(shape)),
+            },
+        }
+    }
+}
+
+/// Data of the parts that stay the same from query to query. Those of a single shape are at index 0.
+#[derive(Clone, Debug)]
+pub(crate) struct PartData {
     token: Option<Token>,
-    /// The points of those parts that are hulls, once they have been needed; of one shape the first.
+    /// Points of polyhedra, computed at first use.
     hulls: Vec<OnceLock<HullPoints>>,
-    /// How far each part extends, once that has been needed; of one shape the first. (All at the
-    /// first query: a fifth of that of 24 parts.)
+    /// Computed at first use: all at once take a fifth of the first query of 24 parts.
     extents: Vec<OnceLock<Extent>>,
-    /// The greatest radius of a part.
-    pub(super) radius: Real,
-    /// At least the greatest size of a part, with its distance from the origin of the whole.
+    /// A ball around the whole.
+    pub(super) ball: Sphere,
+    /// Upper bound of the size of a part plus its distance from the origin of the whole.
     pub(super) magnitude: Real,
-    /// The same exactly, once it has been needed.
+    /// Size of the largest part, with its distance from the origin of the whole.
     size: OnceLock<Real>,
 }
 
-#[derive(Copy, Clone, Debug, PartialEq)]
-enum Token {
-    One(Extent),
-    Many(CompositeToken),
+impl Default for PartData {
+    fn default() -> Self {
+        let ball = Sphere { centre: Vec3::ZERO, radius: Real::INFINITY };
+        let (hulls, extents, size) = (Vec::new(), Vec::new(), OnceLock::new());
+        Self { token: None, hulls, extents, ball, magnitude: 0.0, size }
+    }
 }
 
-impl KnownParts {
-    /// Takes note of the parts as they are now. Whether others were known before.
+impl PartData {
+    /// Updates the data to the current parts. Returns true if they replace others.
     pub(super) fn update(&mut self, parts: &Parts<'_>) -> bool {
-        let token = match parts {
-            Parts::One(shape) => Token::One(Extent::of(*shape)),
-            Parts::Many(composite) => Token::Many(composite.token),
-        };
+        let token = Token::of(parts);
         if self.token == Some(token) {
             return false;
         }
-        let was_known = self.token.is_some();
+        let is_replaced = self.token.is_some();
         *self = Self { token: Some(token), ..Self::default() };
-        match token {
-            Token::One(shape) => {
-                (self.radius, self.magnitude) = (shape.radius, shape.size());
+        match *parts {
+            Parts::One(shape) => {
+                let extent = Extent::of(shape);
+                (self.ball, self.magnitude) = (extent.ball(), extent.size());
                 self.hulls = vec![OnceLock::new()];
-                self.extents = vec![OnceLock::from(shape)];
+                self.extents = vec![OnceLock::from(extent)];
             }
-            Token::Many(CompositeToken { part_count, aabb, .. }) => {
-                self.hulls = vec![OnceLock::new(); part_count];
-                self.extents = vec![OnceLock::new(); part_count];
-                let mut offset: Real = 0.0;
-                for part in 0..part_count as u32 {
-                    parts.with(part, |part| {
-                        self.radius = self.radius.max(part.shape.radius());
-                        offset =
-                            offset.max(part.pose.map_or(0.0, |pose| pose.translation.length()));
-                    });
-                }
-                // From the origin of a part to its points it is no farther than by way of that of all.
-                let Sphere { centre, radius } = ball_around(aabb.mins, aabb.maxs);
-                let magnitude = centre.length() + radius + 2.0 * offset;
-                // Half-spaces are in no box.
-                let is_known = magnitude.is_finite();
-                self.magnitude = if is_known { magnitude } else { self.size(parts) };
+            Parts::Many(_, ListToken { count, ends: [min, max], .. }) => {
+                self.ball = ball_around(min, max);
+                self.hulls = vec![OnceLock::new(); count];
+                self.extents = vec![OnceLock::new(); count];
+                let offsets = (0..count as u32).filter_map(|part| {
+                    parts.with(part, |part| part.pose.map_or(0.0, |pose| pose.translation.length()))
+                });
+                let offset = offsets.fold(0.0, Real::max);
+                // Bounds coordinates in a part's frame by the way over the origin of the whole.
+                let bound = self.ball.centre.length() + self.ball.radius + 2.0 * offset;
+                // Boxes do not contain half-spaces.
+                self.magnitude = if bound.is_finite() { bound } else { self.size(parts) };
             }
         }
-        was_known
+        is_replaced
     }
 
-    /// The points of a part that is a hull.
+    /// Returns the points of a polyhedron.
     pub(super) fn hull(&self, part: u32) -> &OnceLock<HullPoints> {
         &self.hulls[part as usize]
     }
 
-    /// That of a part.
     pub(super) fn extent(&self, index: u32, part: &Part<'_>) -> Extent {
         *self.extents[index as usize].get_or_init(|| Extent::of(part.shape))
     }
 
-    /// A ball around all of them.
-    pub(super) fn ball(&self) -> Sphere {
-        match self.token {
-            Some(Token::One(extent)) => extent.ball(),
-            Some(Token::Many(CompositeToken { aabb, .. })) => ball_around(aabb.mins, aabb.maxs),
-            None => Sphere { centre: Vec3::ZERO, radius: Real::INFINITY },
-        }
-    }
-
-    /// The radius that patches are measured by.
+    /// Returns the radius for contact reduction; infinite for half-spaces.
     pub(super) fn patch_radius(&self, parts: &Parts<'_>) -> Real {
-        let is_endless = matches!(self.token, Some(Token::One(extent)) if extent.is_endless());
-        if is_endless { Real::INFINITY } else { 1.75 * self.size(parts) }
+        if self.ball.radius.is_finite() { 1.75 * self.size(parts) } else { Real::INFINITY }
     }
 
-    /// The greatest size of a part, with its distance from the origin of the whole.
+    /// Returns the size of the largest part, with its distance from the origin of the whole.
     fn size(&self, parts: &Parts<'_>) -> Real {
         *self.size.get_or_init(|| {
             let size = |index: u32| {
@@ -206,10 +207,9 @@ mod tests {
 
     use super::*;
 
-    /// Would catch a ball that parts stick out of, so that a pair counts as having moved less than it
-    /// has, and a bound of coordinates that some are beyond.
+    /// Catches parts that stick out of the ball or the bound of coordinates: slack would be too large.
     #[test]
-    fn what_is_known_of_parts_holds_them() {
+    fn parts_are_within_the_bounds() {
         let [a, b, c] =
             [Vec3::new(3.0, 0.1, 0.0), Vec3::new(2.0, 0.5, 0.3), Vec3::new(2.5, 1.0, -1.0)];
         let shapes = [
@@ -225,10 +225,10 @@ mod tests {
         let compound = SharedShape::compound(posed.collect());
         for whole in shapes.iter().chain([&compound]) {
             let parts = Parts::of(&**whole).unwrap();
-            let mut known = KnownParts::default();
-            known.update(&parts);
-            let ball = known.ball();
-            for index in 0..known.extents.len() as u32 {
+            let mut data = PartData::default();
+            data.update(&parts);
+            let ball = data.ball;
+            for index in 0..data.extents.len() as u32 {
                 parts.with(index, |part| {
                     let ConvexShape::Features { map, radius, .. } = part.shape else { return };
                     for direction in [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, Vec3::NEG_ONE]
@@ -240,22 +240,22 @@ mod tests {
                     }
                 });
             }
-            assert!(known.magnitude >= known.size(&parts));
+            assert!(data.magnitude >= data.size(&parts));
         }
     }
 
-    /// Would catch a half-space in a compound that counts as being in a box.
+    /// Catches a compound whose box leaves out a half-space.
     #[test]
-    fn a_half_space_is_in_no_ball() {
+    fn a_half_space_has_an_infinite_ball() {
         let shapes = [SharedShape::halfspace(Vec3::Y), SharedShape::ball(1.0)];
         let compound =
             SharedShape::compound(shapes.iter().map(|s| (Pose::IDENTITY, s.clone())).collect());
         for whole in [&shapes[0], &compound] {
             let parts = Parts::of(&**whole).unwrap();
-            let mut known = KnownParts::default();
-            known.update(&parts);
-            assert_eq!(known.ball().radius, Real::INFINITY);
-            assert!(known.magnitude.is_finite());
+            let mut data = PartData::default();
+            data.update(&parts);
+            assert_eq!(data.ball.radius, Real::INFINITY);
+            assert!(data.magnitude.is_finite());
         }
     }
 }

@@ -1,34 +1,41 @@
+//! Queries of a mesh and one convex shape: nearest, touching and deepest triangles.
+
 use std::ops::ControlFlow;
 use std::sync::OnceLock;
 
 use glamx::DVec3;
-use parry3d::math::{Real, Vector};
+use parry3d::math::{Pose, Real, Vector};
 use parry3d::partitioning::BvhNode;
 use parry3d::shape::Shape;
 use sbbk_core::contact::convex::{ConvexContact, HullPoints};
+use sbbk_core::traverse::Placement;
 use sbbk_core::volumes::Sphere;
 
-use super::features::{core_contact, core_touches, searched_hull};
+use super::contact::{core_contact, core_touches, searched_hull};
 use super::near::{gap_of, triangles_near};
 use super::pair::ConvexPair;
 use super::parts::{Part, Parts};
 use super::placed::PlacedPart;
 use super::shape::{ConvexShape, Extent};
 use crate::mesh::{Hierarchy, box_of};
+use crate::pair::pose::MeshPlace;
 
-/// Bodies this close touch, as a share of their coordinates in the frame of the shape: what rounding
-/// can do to a distance of zero.
+/// Distance up to which bodies touch, as a share of their coordinates in the frame of the shape: the
+/// rounding of a distance of zero. Higher: bodies touch early; lower: rounding separates bodies.
 const TOUCHING: f64 = 1.0e-12;
 
-/// Distance up to which all triangles are looked at, as a share of the shape: a matter of time alone.
+/// Limit, as a share of the shape's size, above which `deepest` first searches for the nearest triangle.
+/// Changes time alone. Higher: slower far from the mesh; lower: slower near it.
 const WIDE: f64 = 0.1;
 
-/// A mesh and one convex shape, to be searched.
+/// A mesh and one convex shape at a pose.
 pub(crate) struct ConvexSearch<'a> {
     pub(crate) mesh: Hierarchy<'a>,
     pub(super) shape: &'a dyn Shape,
     pub(super) convex: ConvexShape<'a>,
     pub(crate) placed: PlacedPart,
+    /// The shape in the frame of the mesh.
+    pub(super) pose_in_mesh: Pose,
     pub(super) hull: OnceLock<HullPoints>,
 }
 
@@ -46,27 +53,29 @@ impl FoundTriangle {
         self.contact.distance as Real
     }
 
-    /// The points on the mesh and on the shape, each in its frame.
+    /// Returns the points on the mesh and on the shape, each in its frame.
     pub(crate) fn points(&self, placed: &PlacedPart) -> [Vector; 2] {
         let ConvexContact { on_triangle, on_shape, .. } = self.contact;
-        [placed.at_mesh(on_triangle), on_shape.as_vec3()]
+        [placed.to_mesh(on_triangle), on_shape.as_vec3()]
     }
 
-    /// The unit normals of the mesh and of the shape, each in its frame and outward.
+    /// Returns the outward unit normals of the mesh and of the shape, each in its frame.
     pub(crate) fn normals(&self, placed: &PlacedPart) -> [Vector; 2] {
         let normal = self.contact.normal;
-        let at_mesh: DVec3 = placed.placement.inverse * normal;
-        [at_mesh.normalize(), -normal].map(|normal| normal.as_vec3())
+        let in_mesh: DVec3 = placed.placement.inverse * normal;
+        [in_mesh.normalize(), -normal].map(|normal| normal.as_vec3())
     }
 }
 
 impl<'a> ConvexSearch<'a> {
-    /// `None` if the shape, which that of the pair is, has parts.
+    /// Returns `None` if `shape`, the shape of the pair, has parts.
     pub(crate) fn new(pair: &ConvexPair<'a>, shape: &'a dyn Shape) -> Option<Self> {
         let Parts::One(convex) = pair.parts else { return None };
         let part = Part { pose: None, shape: convex, cone: None };
         let placed = PlacedPart::new(0, &part, pair, Extent::of(convex));
-        Some(Self { mesh: pair.mesh, shape, convex, placed, hull: OnceLock::new() })
+        let pose_in_mesh = pair.mesh_place.shape_in_mesh(&pair.pose.pos12);
+        let hull = OnceLock::new();
+        Some(Self { mesh: pair.mesh, shape, convex, placed, pose_in_mesh, hull })
     }
 
     /// Finds depths of hulls by search from now on, as few triangles are deep at a start.
@@ -76,18 +85,24 @@ impl<'a> ConvexSearch<'a> {
         }
     }
 
-    /// Balls around the mesh and the shape.
+    /// Moves shape 2 to a placement in the frame of shape 1.
+    pub(crate) fn place(&mut self, mesh_place: MeshPlace, placement: &Placement) {
+        self.placed = self.placed.moved(mesh_place, placement);
+        self.pose_in_mesh = self.placed.pose_in_mesh();
+    }
+
+    /// Returns balls around the mesh and the shape.
     pub(crate) fn balls(&self) -> [Sphere; 2] {
         [self.mesh.ball(), self.placed.extent.ball()]
     }
 
-    /// How far a triangle and the shape, at another place, are apart along a direction from the shape
-    /// to the triangle: at most their distance.
+    /// Returns the gap between a triangle and the shape at another pose along a direction from the
+    /// shape to the triangle: a lower bound of their distance.
     pub(crate) fn gap(&self, placed: &PlacedPart, triangle: u32, axis: Vector) -> f64 {
         placed.gap(self.convex, &self.mesh.mesh.triangle(triangle), axis)
     }
 
-    /// The same of a triangle and a ball in the frame of the shape.
+    /// Returns the gap between a triangle and a ball in the frame of the shape.
     pub(crate) fn gap_of_ball(
         &self,
         placed: &PlacedPart,
@@ -98,36 +113,35 @@ impl<'a> ConvexSearch<'a> {
         placed.gap_of_ball(ball, &self.mesh.mesh.triangle(triangle), axis)
     }
 
-    /// How far the shape must sink in to come out behind a triangle, as Parry has it.
+    /// Returns the depth at which the shape comes out behind a triangle, by Parry.
     pub(crate) fn thickness(&self) -> Real {
         self.shape.ccd_thickness()
     }
 
-    /// A triangle that touches or crosses the shape; the first one that the walk comes across.
-    pub(crate) fn meeting(&self) -> Option<u32> {
+    /// Returns the first triangle found that touches or crosses the shape.
+    pub(crate) fn touching(&self) -> Option<u32> {
         let radius = f64::from(self.convex.radius());
-        let mut meeting = None;
+        let mut touching = None;
         triangles_near(&self.placed, self.convex, &self.mesh, 0.0, (), |triangle| {
-            let corners = self.placed.place(self.mesh.corners(triangle));
+            let corners = self.placed.to_part(self.mesh.corners(triangle));
             let reach = TOUCHING * self.size(&corners) + radius;
             let touches = !self.placed.is_beyond(&corners, reach)
                 && core_touches(&corners, self.convex, &self.hull, reach);
             if touches {
-                meeting = Some(triangle);
+                touching = Some(triangle);
                 return ControlFlow::Break(());
             }
             ControlFlow::Continue(())
         });
-        meeting
+        touching
     }
 
-    /// Of crossing triangles the deepest, else the nearest within `limit`.
+    /// Returns the deepest triangle or, if none crosses, the nearest within `limit`.
     pub(crate) fn deepest(&self, limit: f64) -> Option<FoundTriangle> {
         if limit.is_nan() {
             return None;
         }
-        // Far from the surface there is too much to look at: the nearest is found first, and if it
-        // touches all that do.
+        // Far from the surface too many triangles are within the limit.
         if limit > WIDE * f64::from(self.placed.extent.size()) {
             let nearest = self.nearest(limit)?;
             return if nearest.is_touching { self.deepest(0.0) } else { Some(nearest) };
@@ -152,13 +166,13 @@ impl<'a> ConvexSearch<'a> {
         });
     }
 
-    /// The nearest triangle within `limit`: one that touches, if any does.
+    /// Returns the nearest triangle within `limit`: one that touches, if any does.
     pub(crate) fn nearest(&self, limit: f64) -> Option<FoundTriangle> {
-        self.nearest_of(limit, |_| true)
+        self.nearest_where(limit, |_| true)
     }
 
-    /// The same of the triangles that count.
-    pub(crate) fn nearest_of(
+    /// Returns the nearest triangle within `limit` for which `counts` is true.
+    pub(crate) fn nearest_where(
         &self,
         limit: f64,
         counts: impl Fn(u32) -> bool,
@@ -170,7 +184,8 @@ impl<'a> ConvexSearch<'a> {
         })
     }
 
-    /// The least time of a triangle up to a limit; none is less than its distance over `speed`.
+    /// Returns the least time of a triangle up to a limit. No time is less than the distance divided
+    /// by `speed`.
     pub(crate) fn soonest(
         &self,
         limit: f64,
@@ -183,7 +198,7 @@ impl<'a> ConvexSearch<'a> {
         })
     }
 
-    /// What has the least cost of all triangles, up to a limit; none is less than the distance times
+    /// Returns the triangle with the least cost up to a limit. No cost is less than the distance times
     /// `unit`.
     fn best<T>(
         &self,
@@ -194,10 +209,10 @@ impl<'a> ConvexSearch<'a> {
         if !self.placed.placement.is_finite() || limit.is_nan() {
             return None;
         }
-        let around = self.shape.compute_aabb(self.placed.pose_in_mesh());
+        let around = self.shape.compute_aabb(&self.pose_in_mesh);
         let gap = gap_of(&self.placed, self.convex, &self.mesh, around);
         let unit = unit as Real;
-        // Parry asks for costs below the limit: with the next number above it those equal count too.
+        // Parry returns costs below the limit only.
         let limit = (limit.min(f64::from(Real::MAX)) as Real).next_up();
         let found = self.mesh.mesh.bvh().find_best(
             limit,
@@ -207,14 +222,14 @@ impl<'a> ConvexSearch<'a> {
         found.map(|(_, (_, found))| found)
     }
 
-    /// The contact of a triangle, if it touches or is at most `margin` away.
+    /// Returns a triangle with its contact, if it touches or is within `margin`.
     pub(crate) fn triangle(
         &self,
         placed: &PlacedPart,
         triangle: u32,
         margin: f64,
     ) -> Option<FoundTriangle> {
-        let corners = placed.place(self.mesh.corners(triangle));
+        let corners = placed.to_part(self.mesh.corners(triangle));
         let touching = TOUCHING * self.size(&corners);
         let radius = f64::from(self.convex.radius());
         let reach = margin.max(touching) + radius;
@@ -227,17 +242,17 @@ impl<'a> ConvexSearch<'a> {
         Some(FoundTriangle { triangle, contact, is_touching: contact.distance <= touching })
     }
 
-    /// The sum of coordinates in the frame of the shape.
+    /// Returns the sum of coordinates in the frame of the shape.
     pub(super) fn size(&self, [a, b, c]: &[DVec3; 3]) -> f64 {
         f64::from(self.placed.extent.size()) + (a.abs() + b.abs() + c.abs()).element_sum()
     }
 
-    /// The points on the mesh and on the shape, each in its frame.
+    /// Returns the points on the mesh and on the shape, each in its frame.
     pub(crate) fn points(&self, found: &FoundTriangle) -> [Vector; 2] {
         found.points(&self.placed)
     }
 
-    /// The unit normals of the mesh and of the shape, each in its frame and outward.
+    /// Returns the outward unit normals of the mesh and of the shape, each in its frame.
     pub(crate) fn normals(&self, found: &FoundTriangle) -> [Vector; 2] {
         found.normals(&self.placed)
     }

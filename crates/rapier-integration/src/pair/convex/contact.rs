@@ -1,0 +1,193 @@
+//! The exact contact of a triangle and a convex shape, by [`sbbk_core::contact::convex`].
+
+use std::sync::OnceLock;
+
+use glamx::DVec3;
+use parry3d::shape::{Cone, ConvexPolyhedron, Cuboid, Cylinder, Segment, Triangle, TypedShape};
+use sbbk_core::contact::Feature;
+use sbbk_core::contact::convex::{
+    ConeSupport, ConvexContact, CuboidSupport, CylinderSupport, HullPoints, PointSupport,
+    SegmentSupport, SupportMap, TriangleSupport, convex_contact, convex_touches, feature_at,
+    half_space_contact,
+};
+
+use super::shape::ConvexShape;
+
+/// The contact of a triangle and a part without its rounding radius, in the frame of the part.
+#[derive(Copy, Clone)]
+pub(crate) struct PartContact {
+    pub(super) contact: ConvexContact,
+    /// The feature of the triangle.
+    pub(super) feature: Feature,
+    pub(super) source: NormalSource,
+}
+
+/// Where the normal of a contact comes from.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub(crate) enum NormalSource {
+    /// The triangle and the shape.
+    Own,
+    /// Another triangle, for a ghost contact. Distance and point on the shape are those of the
+    /// support point of the shape.
+    Neighbour,
+    /// The push-out from a solid: one point, in line with the middle of the shape.
+    PushOut,
+}
+
+impl PartContact {
+    #[inline(always)]
+    pub(super) fn new(contact: ConvexContact, corners: &[DVec3; 3]) -> Self {
+        let feature = feature_at(corners, contact.on_triangle, contact.normal);
+        Self { contact, feature, source: NormalSource::Own }
+    }
+
+    /// Takes the normal of another contact.
+    pub(super) fn take_normal(&mut self, other: &ConvexContact) {
+        self.contact = ConvexContact { on_triangle: self.contact.on_triangle, ..*other };
+        self.source = NormalSource::Neighbour;
+    }
+}
+
+/// Contact of a triangle with a shape without its rounding radius, in the frame of the shape. `hull`
+/// keeps the points of a convex polyhedron from call to call.
+pub(super) fn core_contact(
+    triangle: &[DVec3; 3],
+    shape: ConvexShape<'_>,
+    hull: &OnceLock<HullPoints>,
+    margin: f64,
+) -> Option<ConvexContact> {
+    if let ConvexShape::HalfSpace(half_space) = shape {
+        return half_space_contact(triangle, half_space.normal.as_dvec3(), margin);
+    }
+    with_core(shape, hull, TriangleContact { triangle, margin })?
+}
+
+/// Support point of a shape without its rounding radius, in f64; `None` for a half-space.
+pub(super) fn core_support(
+    shape: ConvexShape<'_>,
+    hull: &OnceLock<HullPoints>,
+    direction: DVec3,
+) -> Option<DVec3> {
+    with_core(shape, hull, SupportPoint(direction))
+}
+
+/// A computation with the support map of a shape without its rounding radius.
+trait OfCore {
+    type Output;
+
+    fn of<S: SupportMap>(self, core: &S) -> Self::Output;
+}
+
+struct TriangleContact<'a> {
+    triangle: &'a [DVec3; 3],
+    margin: f64,
+}
+
+impl OfCore for TriangleContact<'_> {
+    type Output = Option<ConvexContact>;
+
+    #[inline(always)]
+    fn of<S: SupportMap>(self, core: &S) -> Option<ConvexContact> {
+        convex_contact(self.triangle, core, self.margin)
+    }
+}
+
+struct SupportPoint(DVec3);
+
+impl OfCore for SupportPoint {
+    type Output = DVec3;
+
+    #[inline(always)]
+    fn of<S: SupportMap>(self, core: &S) -> DVec3 {
+        core.support(self.0)
+    }
+}
+
+/// Contact of a triangle with the centre of a ball.
+#[inline(always)]
+pub(super) fn ball_contact(triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
+    convex_contact(triangle, &PointSupport(DVec3::ZERO), margin)
+}
+
+/// Returns true if a triangle crosses a shape without its radius or is within `reach` of it.
+pub(super) fn core_touches(
+    triangle: &[DVec3; 3],
+    shape: ConvexShape<'_>,
+    hull: &OnceLock<HullPoints>,
+    reach: f64,
+) -> bool {
+    // Faster than a contact: needs neither depths nor faces.
+    if let Some(shape) = shape.polyhedron() {
+        let points = hull.get_or_init(|| HullPoints::without_faces(shape.points().iter().copied()));
+        return convex_touches(triangle, points, reach);
+    }
+    core_contact(triangle, shape, hull, reach).is_some()
+}
+
+/// Computes with the support map of a shape; `None` for a half-space.
+#[inline(always)]
+fn with_core<C: OfCore>(
+    shape: ConvexShape<'_>,
+    hull: &OnceLock<HullPoints>,
+    compute: C,
+) -> Option<C::Output> {
+    let shape = match shape {
+        ConvexShape::Ball(_) => return Some(compute.of(&PointSupport(DVec3::ZERO))),
+        ConvexShape::HalfSpace(_) => return None,
+        ConvexShape::Cuboid(cuboid) => return Some(compute.of(&cuboid_support(cuboid))),
+        ConvexShape::Features { shape, .. } => shape,
+    };
+    let hull_of = |shape: &ConvexPolyhedron| hull.get_or_init(|| hull_points(shape));
+    Some(match shape.as_typed_shape() {
+        TypedShape::Segment(shape) => compute.of(&segment_support(shape)),
+        TypedShape::Capsule(shape) => compute.of(&segment_support(&shape.segment)),
+        TypedShape::Triangle(shape) => compute.of(&triangle_support(shape)),
+        TypedShape::RoundTriangle(shape) => compute.of(&triangle_support(&shape.inner_shape)),
+        TypedShape::Cylinder(shape) => compute.of(&cylinder_support(shape)),
+        TypedShape::RoundCylinder(shape) => compute.of(&cylinder_support(&shape.inner_shape)),
+        TypedShape::Cone(shape) => compute.of(&cone_support(shape)),
+        TypedShape::RoundCone(shape) => compute.of(&cone_support(&shape.inner_shape)),
+        TypedShape::RoundCuboid(shape) => compute.of(&cuboid_support(&shape.inner_shape)),
+        TypedShape::ConvexPolyhedron(shape) => compute.of(hull_of(shape)),
+        TypedShape::RoundConvexPolyhedron(shape) => compute.of(hull_of(&shape.inner_shape)),
+        _ => return None,
+    })
+}
+
+fn segment_support(segment: &Segment) -> SegmentSupport {
+    SegmentSupport([segment.a, segment.b].map(|end| end.as_dvec3()))
+}
+
+fn triangle_support(triangle: &Triangle) -> TriangleSupport {
+    TriangleSupport(triangle.vertices().map(|corner| corner.as_dvec3()))
+}
+
+fn cuboid_support(cuboid: &Cuboid) -> CuboidSupport {
+    CuboidSupport(cuboid.half_extents.as_dvec3())
+}
+
+fn cylinder_support(cylinder: &Cylinder) -> CylinderSupport {
+    let [half_height, radius] = [cylinder.half_height, cylinder.radius].map(f64::from);
+    CylinderSupport { half_height, radius }
+}
+
+fn cone_support(cone: &Cone) -> ConeSupport {
+    let [half_height, radius] = [cone.half_height, cone.radius].map(f64::from);
+    ConeSupport { half_height, radius }
+}
+
+/// Points of a hull whose depth is found by search, where a few triangles cross it.
+pub(super) fn searched_hull(shape: ConvexShape<'_>) -> Option<HullPoints> {
+    shape.polyhedron().map(|shape| HullPoints::without_faces(shape.points().iter().copied()))
+}
+
+fn hull_points(shape: &ConvexPolyhedron) -> HullPoints {
+    let corners = shape.vertices_adj_to_face();
+    let fans = shape.faces().iter().flat_map(|face| {
+        let start = face.first_vertex_or_edge as usize;
+        let corners = &corners[start..start + face.num_vertices_or_edges as usize];
+        let (first, rest) = corners.split_first().unwrap_or((&0, &[]));
+        rest.windows(2).map(|ends| [*first, ends[0], ends[1]])
+    });
+    HullPoints::with_faces(shape.points().iter().copied(), fans)
+}

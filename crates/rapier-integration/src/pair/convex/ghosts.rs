@@ -1,0 +1,359 @@
+//! Ghost contacts: contacts of a convex shape at internal edges and vertices of a mesh.
+//!
+//! A body that slides over a floor touches the next triangle at its edge first, and would stumble.
+//! Triangles beside the one below pull a rolling ball to the side. Another triangle with the same
+//! edge or vertex that is nearer, or deeper, shows a ghost:
+//!
+//! * Apart: the distance to a convex shape is a convex function on each triangle. A triangle that is
+//!   nearer somewhere is nearer right beside the common point, which is then no local minimum.
+//! * Crossing: the triangle of the ghost ends at the edge along the normal. The deeper triangle
+//!   extends beyond: else the same translation would separate it, too.
+//!
+//! A ghost takes the normal of the nearest triangle at its edge or vertex. That contact may be a
+//! ghost as well; distances fall along the chain, so the chain ends.
+//!
+//! The tip of a crossing shape may be nearer to the outside of both triangles at an edge than to the
+//! outside of the surface. If a triangle at the edge extends beyond the contact along its normal,
+//! the contact takes the normal of a face: of the first triangle nearby where the bodies cross along
+//! that normal. No face may do at the border of a mesh.
+//!
+//! Triangles are neighbours if their corners are equal; meshes need no shared vertices.
+
+use glamx::Vec3;
+use rustc_hash::FxHashMap;
+use sbbk_core::contact::Feature;
+use sbbk_core::contact::convex::ConvexContact;
+
+use super::contact::PartContact;
+use super::pair::ConvexQuery;
+use crate::pair::driver::Scratch;
+
+/// Share of the size by which two distances must differ to count as different. Higher: ghosts stay.
+/// Lower: rounding picks one of two equal contacts at a common edge as the ghost.
+const EQUAL: f64 = 1.0e-12;
+
+/// Length of a contact list up to which equal corners are found by linear search. Higher: slower for
+/// round bodies on fine meshes; lower: slower for balls.
+const FEW: usize = 8;
+
+/// Memory for the search: the contacts by the corners of their triangles.
+#[derive(Default)]
+pub(crate) struct GhostContacts {
+    corners: Vec<Corner>,
+    /// Index of each corner of a long list of contacts.
+    by_key: FxHashMap<CornerKey, u32>,
+    /// Indices of the corners of each contact's triangle.
+    triangles: Vec<[u32; 3]>,
+    /// The contacts of each corner in turn.
+    members: Vec<u32>,
+    /// For each contact the one whose normal it takes.
+    sources: Vec<u32>,
+    /// Contacts that take the normal of a face.
+    on_faces: Vec<u32>,
+    /// Contacts that share a corner with the one at hand.
+    nearby: Vec<u32>,
+}
+
+/// The part and the bits of the coordinates.
+type CornerKey = [u32; 4];
+
+struct Corner {
+    key: CornerKey,
+    /// Range of [`GhostContacts::members`].
+    start: u32,
+    count: u32,
+    /// The contact with the least distance.
+    nearest: u32,
+    /// A contact at this corner, and the result of `is_passed` for it.
+    passed: Option<(u32, bool)>,
+}
+
+/// Returns the key of a corner of a triangle that touches a part.
+pub(super) fn corner_key(part: u32, corner: Vec3) -> CornerKey {
+    // Plus zero: zero has two signs.
+    let [x, y, z] = (corner + 0.0).to_array().map(f32::to_bits);
+    [part, x, y, z]
+}
+
+/// Returns the corners of an edge, or a vertex twice.
+fn ends(feature: Feature) -> [usize; 2] {
+    match feature {
+        Feature::Vertex(i) => [i.into(); 2],
+        Feature::Edge(i) => [i.into(), (usize::from(i) + 1) % 3],
+        Feature::Face => [0, 1],
+    }
+}
+
+impl GhostContacts {
+    /// Finds the contacts that take another normal: [`on_faces`](Self::on_faces) and
+    /// [`sources`](Self::sources).
+    ///
+    /// `keys` returns the corners of a contact's triangle. `extends_beyond(a, b)` is true if the triangle of
+    /// contact `a` extends beyond contact `b` along the normal of `b`.
+    fn find<I>(
+        &mut self,
+        contacts: &[(I, PartContact)],
+        keys: impl Fn(&I) -> [CornerKey; 3],
+        mut extends_beyond: impl FnMut(&I, &ConvexContact) -> bool,
+    ) {
+        self.index(contacts, keys);
+        self.on_faces.clear();
+        self.sources.clear();
+        self.sources.extend(0..contacts.len() as u32);
+        for (contact, (_, PartContact { contact: own, feature, .. })) in (0..).zip(contacts) {
+            if *feature == Feature::Face {
+                continue;
+            }
+            let nearest = self.nearest(contacts, contact, *feature);
+            let size = own.on_triangle.abs().max_element() + own.distance.abs();
+            if contacts[nearest as usize].1.contact.distance < own.distance - EQUAL * size {
+                self.sources[contact as usize] = nearest;
+            } else if own.distance < 0.0
+                && self.is_passed(contacts, contact, *feature, &mut extends_beyond)
+            {
+                self.on_faces.push(contact);
+            }
+        }
+        for contact in 0..contacts.len() {
+            let mut source = self.sources[contact];
+            while self.sources[source as usize] != source {
+                source = self.sources[source as usize];
+            }
+            // Shortens the chains of later contacts.
+            self.sources[contact] = source;
+        }
+    }
+
+    /// Lists the contacts of each corner.
+    fn index<I>(&mut self, contacts: &[(I, PartContact)], keys: impl Fn(&I) -> [CornerKey; 3]) {
+        let Self { corners, by_key, triangles, members, .. } = self;
+        let is_short = contacts.len() <= FEW;
+        let distance = |contact: u32| contacts[contact as usize].1.contact.distance;
+        corners.clear();
+        by_key.clear();
+        triangles.clear();
+        triangles.extend((0..).zip(contacts).map(|(contact, (of, _))| {
+            keys(of).map(|key| {
+                let next = corners.len() as u32;
+                let corner = if is_short {
+                    let same = corners.iter().position(|corner| corner.key == key);
+                    same.map_or(next, |same| same as u32)
+                } else {
+                    *by_key.entry(key).or_insert(next)
+                };
+                if corner == next {
+                    let nearest = contact;
+                    corners.push(Corner { key, start: 0, count: 0, nearest, passed: None });
+                }
+                let Corner { count, nearest, .. } = &mut corners[corner as usize];
+                *count += 1;
+                if distance(contact) < distance(*nearest) {
+                    *nearest = contact;
+                }
+                corner
+            })
+        }));
+        let mut start = 0;
+        for corner in &mut *corners {
+            corner.start = start;
+            start += std::mem::take(&mut corner.count);
+        }
+        members.clear();
+        members.resize(start as usize, 0);
+        for (contact, triangle) in (0..).zip(&*triangles) {
+            for &corner in triangle {
+                let Corner { start, count, .. } = &mut corners[corner as usize];
+                members[(*start + *count) as usize] = contact;
+                *count += 1;
+            }
+        }
+    }
+
+    /// Returns the contacts whose triangles have a corner.
+    fn at_corner(&self, corner: u32) -> &[u32] {
+        let Corner { start, count, .. } = self.corners[corner as usize];
+        &self.members[start as usize..][..count as usize]
+    }
+
+    /// Returns the contacts whose triangles have the feature of a contact, itself included.
+    fn at_feature(&self, contact: u32, feature: Feature) -> impl Iterator<Item = u32> {
+        let [a, b] = ends(feature).map(|end| self.triangles[contact as usize][end]);
+        let [of_a, of_b] = [a, b].map(|corner| self.at_corner(corner));
+        let (shorter, other) = if of_a.len() <= of_b.len() { (of_a, b) } else { (of_b, a) };
+        let has_other = move |contact: &u32| self.triangles[*contact as usize].contains(&other);
+        shorter.iter().copied().filter(has_other)
+    }
+
+    /// Returns the contact with the least distance at the feature of a contact.
+    fn nearest<I>(&self, contacts: &[(I, PartContact)], contact: u32, feature: Feature) -> u32 {
+        let distance = |contact: u32| contacts[contact as usize].1.contact.distance;
+        if let Feature::Vertex(i) = feature {
+            let corner = self.triangles[contact as usize][usize::from(i)];
+            return self.corners[corner as usize].nearest;
+        }
+        let nearer = |a: u32, b: u32| if distance(b) < distance(a) { b } else { a };
+        self.at_feature(contact, feature).fold(contact, nearer)
+    }
+
+    /// Returns true if a triangle at the feature of a contact extends beyond it along its normal.
+    fn is_passed<I>(
+        &mut self,
+        contacts: &[(I, PartContact)],
+        contact: u32,
+        feature: Feature,
+        extends_beyond: &mut impl FnMut(&I, &ConvexContact) -> bool,
+    ) -> bool {
+        let [one, _] = ends(feature).map(|end| self.triangles[contact as usize][end]);
+        let own = &contacts[contact as usize].1.contact;
+        // All triangles at a vertex that is deepest have the same contact.
+        if let (Feature::Vertex(_), Some((other, is_passed))) =
+            (feature, self.corners[one as usize].passed)
+        {
+            let other = &contacts[other as usize].1.contact;
+            if (other.on_triangle, other.normal) == (own.on_triangle, own.normal) {
+                return is_passed;
+            }
+        }
+        let is_passed = self
+            .at_feature(contact, feature)
+            .any(|other| extends_beyond(&contacts[other as usize].0, own));
+        if let Feature::Vertex(_) = feature {
+            self.corners[one as usize].passed = Some((contact, is_passed));
+        }
+        is_passed
+    }
+
+    /// Lists a contact and then all others whose triangles share a corner with its triangle.
+    fn list_nearby(&mut self, contact: u32) {
+        let mut nearby = std::mem::take(&mut self.nearby);
+        nearby.clear();
+        for corner in self.triangles[contact as usize] {
+            nearby.extend_from_slice(self.at_corner(corner));
+        }
+        nearby.sort_unstable_by_key(|&other| (other != contact, other));
+        nearby.dedup();
+        self.nearby = nearby;
+    }
+
+    pub(crate) fn shrink_to(&mut self, limit: usize) {
+        self.corners.shrink_to(limit);
+        self.by_key.shrink_to(limit);
+        self.triangles.shrink_to(limit);
+        self.members.shrink_to(limit);
+        self.sources.shrink_to(limit);
+        self.on_faces.shrink_to(limit);
+        self.nearby.shrink_to(limit);
+    }
+}
+
+impl ConvexQuery<'_> {
+    /// Replaces the normals of ghost contacts. `subshapes` returns the triangle and the part of a
+    /// contact.
+    pub(super) fn correct_ghosts(
+        &self,
+        contacts: &mut [(u32, PartContact)],
+        subshapes: impl Fn(u32) -> [u32; 2],
+        scratch: &mut Scratch,
+    ) {
+        let is_at_border = |(_, contact): &(u32, PartContact)| contact.feature != Feature::Face;
+        if !self.pair.has_surface() || contacts.len() < 2 || !contacts.iter().any(is_at_border) {
+            return;
+        }
+        let mut ghosts = std::mem::take(&mut scratch.ghosts);
+        let keys = |&of: &u32| {
+            let [triangle, part] = subshapes(of);
+            self.pair.mesh.corners(triangle).map(|corner| corner_key(part, corner))
+        };
+        ghosts.find(contacts, keys, |&of, contact| {
+            self.with_pair(subshapes(of), scratch, |pair| Some(pair.extends_beyond(contact)))
+                .unwrap_or(false)
+        });
+        for i in 0..ghosts.on_faces.len() {
+            let contact = ghosts.on_faces[i];
+            ghosts.list_nearby(contact);
+            let face = ghosts.nearby.iter().find_map(|&other| {
+                let (of, _) = contacts[other as usize];
+                self.with_pair(subshapes(of), scratch, |pair| pair.crossing_face_contact())
+            });
+            if let Some(face) = face {
+                contacts[contact as usize].1.take_normal(&face);
+            }
+        }
+        for (contact, &source) in ghosts.sources.iter().enumerate() {
+            let source = contacts[source as usize].1.contact;
+            // Along its own normal a contact keeps its own points.
+            if contacts[contact].1.contact.normal != source.normal {
+                contacts[contact].1.take_normal(&source);
+            }
+        }
+        scratch.ghosts = ghosts;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::hint::black_box;
+    use std::time::Instant;
+
+    use glamx::DVec3;
+
+    use super::super::contact::NormalSource;
+    use super::*;
+
+    fn contact(distance: f64, feature: Feature) -> PartContact {
+        let point = DVec3::new(0.5, 0.0, 0.0);
+        let contact =
+            ConvexContact { distance, normal: DVec3::Y, on_triangle: point, on_shape: point };
+        PartContact { contact, feature, source: NormalSource::Own }
+    }
+
+    /// Returns the corners of triangle `i` of a strip: triangles share edges with the next ones.
+    fn strip(i: u32) -> [CornerKey; 3] {
+        [i, i + 1, i + 2].map(|i| corner_key(0, Vec3::new(i as f32, (i % 2) as f32, 0.0)))
+    }
+
+    /// Catches a search for neighbours that visits all contacts for each contact: 16 times as many
+    /// would take 256 times as long.
+    #[test]
+    fn time_grows_with_the_number_of_contacts() {
+        let mut ghosts = GhostContacts::default();
+        let mut time = |count: u32| {
+            let contacts: Vec<_> =
+                (0..count).map(|i| (i, contact(-0.1, Feature::Edge(1)))).collect();
+            let runs = (0..5).map(|_| {
+                let start = Instant::now();
+                ghosts.find(&contacts, |&i| strip(i), |_, _| false);
+                for i in 0..count {
+                    ghosts.list_nearby(i);
+                }
+                black_box(&ghosts.nearby);
+                start.elapsed()
+            });
+            runs.min().unwrap().as_secs_f64()
+        };
+        let (few, many) = (time(2048), time(16 * 2048));
+        assert!(many < 80.0 * few, "{few} s, then {many} s");
+    }
+
+    /// Catches ghosts that take the normal of a ghost, contacts at faces that count as ghosts, and
+    /// neighbours that differ between short and long lists.
+    #[test]
+    fn chains_of_ghosts_end_at_the_nearest_contact() {
+        for count in [FEW as u32 / 2, 4 * FEW as u32] {
+            let of = |i: u32| (i, contact(0.01 * f64::from(i), Feature::Edge(0)));
+            let mut contacts: Vec<_> = (0..count).map(of).collect();
+            let mut ghosts = GhostContacts::default();
+            ghosts.find(&contacts, |&i| strip(i), |_, _| true);
+            assert_eq!(ghosts.sources, vec![0; count as usize]);
+            assert!(ghosts.on_faces.is_empty(), "nothing crosses");
+            contacts[2].1.feature = Feature::Face;
+            contacts[1].1.contact.distance = -0.3;
+            contacts[2].1.contact.distance = -0.2;
+            ghosts.find(&contacts, |&i| strip(i), |_, _| true);
+            assert_eq!(ghosts.sources[..4], [1, 1, 2, 2]);
+            assert_eq!(ghosts.on_faces, [1]);
+            ghosts.list_nearby(1);
+            assert_eq!(ghosts.nearby, [1, 0, 2, 3]);
+        }
+    }
+}

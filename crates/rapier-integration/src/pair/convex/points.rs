@@ -1,0 +1,170 @@
+//! The contact points of a triangle and a convex shape, with the features that Parry names.
+
+use std::sync::LazyLock;
+
+use glamx::{DVec3, Vec3};
+use parry3d::math::{Real, Vector};
+use parry3d::query::{ContactManifold, TrackedContact};
+use parry3d::shape::{Cuboid, PackedFeatureId, PolygonalFeature, Triangle};
+use sbbk_core::contact::Feature;
+use sbbk_core::contact::convex::{ConvexContact, FeaturePoint, FeaturePoints, clip_feature};
+use sbbk_core::volumes::rounding::gamma;
+
+use super::contact::{NormalSource, PartContact};
+use super::shape::ConvexShape;
+
+/// A contact point in the frame of the shape, without the rounding radius.
+pub(super) struct PointPair {
+    pub(super) on_triangle: DVec3,
+    pub(super) on_shape: DVec3,
+    pub(super) distance: f64,
+    /// Features of the triangle and the shape.
+    pub(super) features: [PackedFeatureId; 2],
+}
+
+/// Calls `found` with the contact points of a triangle and a shape with polygonal features: the
+/// closest points and the corners of the overlap of the triangle and the feature that faces it.
+///
+/// `normal` replaces the normal of the contact where normal cones have turned it.
+pub(super) fn contact_points(
+    corners: &[DVec3; 3],
+    shape: ConvexShape<'_>,
+    contact: &PartContact,
+    normal: Option<DVec3>,
+    mut found: impl FnMut(PointPair),
+) {
+    let ConvexContact { distance, on_triangle, on_shape, .. } = contact.contact;
+    let unnamed = [PackedFeatureId::UNKNOWN; 2];
+    let closest = PointPair { on_triangle, on_shape, distance, features: unnamed };
+    if contact.source == NormalSource::PushOut {
+        return found(closest);
+    }
+    let is_neighbours = contact.source == NormalSource::Neighbour;
+    let is_own = !is_neighbours && normal.is_none();
+    let normal = normal.unwrap_or(contact.contact.normal);
+    let feature = facing_feature(shape, -normal.as_vec3(), on_shape.as_vec3());
+    let polygon = feature.vertices.map(|corner| corner.as_dvec3());
+    let mut points = FeaturePoints::new();
+    clip_feature(corners, &polygon[..feature.num_vertices], normal, &mut points);
+    // Features of curved shapes are rounded to f32, and edges of a hull are nearly faces: points that
+    // are nearer than the closest ones, or beyond the support point, are not on the shape.
+    let size = polygon.iter().fold(0.0, |size: f64, x| size.max(x.abs().max_element()));
+    let slack = f64::from(gamma(64)) * size;
+    let mut has_closest = false;
+    for point in &points {
+        let beyond = normal.dot(on_shape - point.on_shape);
+        if is_own && point.distance < distance - slack || is_neighbours && beyond > slack {
+            continue;
+        }
+        has_closest |= point.distance <= distance + slack;
+        let distance = if is_own { point.distance.max(distance) } else { point.distance };
+        let [of_triangle, of_shape] = point.features;
+        let features = [feature_id(&TRIANGLE, of_triangle), feature_id(&feature, of_shape)];
+        let FeaturePoint { on_triangle, on_shape, .. } = *point;
+        found(PointPair { on_triangle, on_shape, distance, features });
+    }
+    // Shapes other than cuboids may touch beside the corners of their features, which for a disc is a
+    // square: they need the closest points, too.
+    let is_cuboid = matches!(shape, ConvexShape::Cuboid(_));
+    if is_own && (!is_cuboid || !has_closest) {
+        found(closest);
+    } else if is_neighbours
+        && !is_cuboid
+        && let Some(distance) = height(corners, on_shape, normal)
+    {
+        let on_triangle = on_shape - normal * distance;
+        found(PointPair { on_triangle, on_shape, distance, features: unnamed });
+    }
+}
+
+/// Returns the feature of a shape that faces a direction at a point.
+fn facing_feature(shape: ConvexShape<'_>, direction: Vec3, point: Vec3) -> PolygonalFeature {
+    let mut feature = PolygonalFeature::default();
+    match shape {
+        ConvexShape::Cuboid(cuboid) => {
+            feature = CUBE_FACES[face_toward(direction)].clone();
+            feature.vertices = feature.vertices.map(|corner| corner * cuboid.half_extents);
+        }
+        ConvexShape::Features { map, .. } => {
+            map.local_support_feature_toward(direction, point, &mut feature);
+        }
+        ConvexShape::Ball(_) | ConvexShape::HalfSpace(_) => {}
+    }
+    feature
+}
+
+fn feature_id(polygon: &PolygonalFeature, feature: Feature) -> PackedFeatureId {
+    match feature {
+        Feature::Vertex(i) => polygon.vids[usize::from(i)],
+        Feature::Edge(i) => polygon.eids[usize::from(i)],
+        Feature::Face => polygon.fid,
+    }
+}
+
+/// Returns the distance of a point from a triangle along a normal; `None` beside the triangle.
+fn height(&[a, b, c]: &[DVec3; 3], point: DVec3, normal: DVec3) -> Option<f64> {
+    let face = (b - a).cross(c - a);
+    let height = (point - a).dot(face) / normal.dot(face);
+    let foot = point - normal * height;
+    let is_beside = |from: DVec3, to: DVec3| (to - from).cross(foot - from).dot(face) >= 0.0;
+    (is_beside(a, b) && is_beside(b, c) && is_beside(c, a)).then_some(height)
+}
+
+/// Any triangle, for the ids of its features. Stored: Parry's constructor takes longer than the clip.
+static TRIANGLE: LazyLock<PolygonalFeature> =
+    LazyLock::new(|| Triangle::new(Vector::X, Vector::Y, Vector::Z).into());
+
+/// The faces of a cube with half lengths of 1, by [`face_toward`].
+static CUBE_FACES: LazyLock<[PolygonalFeature; 6]> = LazyLock::new(|| {
+    let axes = [Vector::X, Vector::Y, Vector::Z];
+    std::array::from_fn(|i| {
+        let outward = if i < 3 { axes[i] } else { -axes[i - 3] };
+        Cuboid::new(Vector::ONE).support_face(outward)
+    })
+});
+
+/// Returns the index of the cuboid's face that is farthest along a direction.
+fn face_toward(direction: Vector) -> usize {
+    let axis = direction.abs().max_position();
+    if direction[axis] < 0.0 { axis + 3 } else { axis }
+}
+
+/// Angle at the centre of a ball by which a ray may miss a triangle and still count as hitting it:
+/// turned normals are rounded to f32, and a ray at an edge must not miss both triangles.
+const BESIDE: f64 = 1.0e-6;
+
+/// Returns the length of a ray from the origin along a unit vector to a triangle, if it hits.
+///
+/// As in Parry, a ball whose normal a normal cone has turned touches the triangle there.
+pub(super) fn ray_length(&[a, b, c]: &[DVec3; 3], direction: DVec3) -> Option<f64> {
+    let normal = (b - a).cross(c - a);
+    let length = a.dot(normal) / direction.dot(normal);
+    let beside = |v: DVec3, w: DVec3| {
+        let slack = BESIDE * v.length() * w.length();
+        let volume = v.cross(w).dot(direction);
+        [volume >= -slack, volume <= slack]
+    };
+    let sides = [beside(a, b), beside(b, c), beside(c, a)];
+    let is_hit = (0..2).any(|sign| sides.iter().all(|side| side[sign]));
+    // Rounding may put a centre on the triangle behind it.
+    let size = a.length() + b.length() + c.length();
+    (is_hit && length >= -BESIDE * size && length.is_finite()).then_some(length)
+}
+
+/// Stored: Parry's constructor is not inlined.
+static FACE: LazyLock<PackedFeatureId> = LazyLock::new(|| PackedFeatureId::face(0));
+
+/// Makes a point the only one of a manifold. An earlier point keeps its data.
+pub(super) fn set_only_point<M, C: Default + Copy>(
+    [point1, point2]: [Vector; 2],
+    distance: Real,
+    manifold: &mut ContactManifold<M, C>,
+) {
+    if let [one] = &mut *manifold.points {
+        (one.local_p1, one.local_p2, one.dist) = (point1, point2, distance);
+        (one.fid1, one.fid2) = (*FACE, *FACE);
+    } else {
+        manifold.points.clear();
+        manifold.points.push(TrackedContact::new(point1, point2, *FACE, *FACE, distance));
+    }
+}

@@ -1,0 +1,87 @@
+//! Push-outs: contacts that move convex shapes out of solids that contain more than half of them, if
+//! the host wants that ([`SbbkConfig::convex_leave_solids`](crate::SbbkConfig::convex_leave_solids)).
+//!
+//! A contact with a triangle separates by the least translation: outward while more than half of the
+//! shape is out along the normal of the triangle, inward after that. A push-out replaces all contacts
+//! of the part then. It leads out through the face that is nearest to the middle.
+
+use glamx::DVec3;
+use sbbk_core::contact::Feature;
+use sbbk_core::contact::convex::ConvexContact;
+
+use super::contact::{NormalSource, PartContact};
+use super::pair::{ConvexPair, ConvexQuery};
+use crate::mesh::{BEHIND, is_covered, nearest};
+use crate::pair::driver::{ContactList, Scratch};
+use crate::pair::order::{Candidate, push_candidate};
+
+/// Depth of a contact, as a share of the radius of the part, from which half of the part may be inside
+/// though its middle is not: the middle of a cone is at a third of its height. Higher: cones stay in
+/// solids; lower: more searches for the nearest face.
+const DEEP: f64 = 0.1;
+
+impl ConvexQuery<'_> {
+    /// Returns the push-out of a part and its triangle, if more than half of the part is in the solid.
+    /// `deepest` is the least distance of the part's contacts, without its radius.
+    pub(super) fn push_out(
+        &self,
+        part: u32,
+        deepest: f64,
+        scratch: &mut Scratch,
+    ) -> Option<(u32, PartContact)> {
+        let surface = self.surface.as_ref()?;
+        let mesh = self.pair.mesh.mesh;
+        self.pair.parts.with(part, |shape| {
+            let middle = shape.shape.middle()?;
+            let placed = self.placed(part, &shape, scratch);
+            let from = placed.to_mesh(middle);
+            let (radius, border) = (placed.extent.ball().radius, shape.shape.radius());
+            let is_deep = deepest - f64::from(border) < -DEEP * f64::from(radius);
+            if !is_deep && !is_covered(mesh, from) {
+                return None;
+            }
+            let (triangle, _, behind) = nearest(mesh, from)?;
+            if behind.abs() < BEHIND || !surface.around(mesh).is_solid {
+                return None;
+            }
+            let [a, b, c] = placed.to_part(self.pair.mesh.corners(triangle));
+            let normal = (b - a).cross(c - a).try_normalize()?;
+            let reach = |direction: DVec3| placed.extent.reach(shape.shape, direction);
+            let [above, below] = [reach(normal) - normal.dot(a), reach(-normal) + normal.dot(a)];
+            if above >= below {
+                return None;
+            }
+            let distance = f64::from(border) - below;
+            // In line with the middle, so that nothing rotates.
+            let on_shape = middle + (normal.dot(a - middle) + distance) * normal;
+            let on_triangle = on_shape - distance * normal;
+            let contact = ConvexContact { distance, normal, on_triangle, on_shape };
+            let (feature, source) = (Feature::Face, NormalSource::PushOut);
+            Some((triangle, PartContact { contact, feature, source }))
+        })?
+    }
+
+    /// Replaces the contacts of each part that has a push-out.
+    pub(super) fn add_push_outs(
+        &self,
+        candidates: &mut Vec<Candidate<()>>,
+        contacts: &mut ContactList<PartContact>,
+        scratch: &mut Scratch,
+    ) {
+        if self.surface.is_none() {
+            return;
+        }
+        let ConvexPair { parts, mesh_place, .. } = self.pair;
+        parts.intersecting(&self.pair.mesh_box(0.0), |part| {
+            let is_of_part =
+                |of: u32| mesh_place.swap(candidates[of as usize].subshapes)[1] == part;
+            let own = contacts.iter().filter(|(of, _)| is_of_part(*of));
+            let distances = own.map(|(_, contact)| contact.contact.distance);
+            let deepest = distances.fold(f64::INFINITY, f64::min);
+            let Some((triangle, contact)) = self.push_out(part, deepest, scratch) else { return };
+            contacts.retain(|(of, _)| !is_of_part(*of));
+            let of = push_candidate(candidates, mesh_place.swap([triangle, part]));
+            contacts.push((of, contact));
+        });
+    }
+}
