@@ -3,7 +3,7 @@
 use parry3d::math::{Pose, Vector};
 use parry3d::query::ShapeCastHit;
 use parry3d::query::details::ShapeCastOptions;
-use sbbk_core::query::{Cast, CastOptions, FoundPair, Meshes, PartPair, cast};
+use sbbk_core::query::{Cast, CastOptions, FoundPair, MeshBodies, PartPair, cast};
 use sbbk_core::traverse::Placement;
 use sbbk_core::tree::Tree;
 
@@ -55,7 +55,7 @@ impl Trees {
         let trees = self.both();
         let balls = [trees.0, trees.1].map(Tree::bounding_ball);
         let found = self.search(|scratch| {
-            let meshes = &mut Meshes { trees, scratch };
+            let meshes = &mut MeshBodies { trees, scratch };
             cast.first_impact(meshes, cast.options(balls), 0.0, touch)
         })?;
         Some(cast.hit(&found, &touch(&found.pair, &found.placement)))

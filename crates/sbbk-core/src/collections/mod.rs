@@ -1,8 +1,7 @@
-//! What meshes and pairs of meshes are described by: short lists of numbers, and groups of things
-//! that hang together.
+//! A compact list of indices, and a union-find.
 
-mod groups;
-mod numbers;
+mod compact_indices;
+mod union_find;
 
-pub use groups::Groups;
-pub use numbers::Numbers;
+pub use compact_indices::CompactIndices;
+pub use union_find::UnionFind;

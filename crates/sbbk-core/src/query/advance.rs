@@ -1,15 +1,19 @@
-//! When two bodies on any paths first touch: conservative advancement.
+//! The first touch of two bodies on any paths, by conservative advancement.
 //!
 //! If no point of one body moves faster than `s` against the other, bodies that are `d` apart do
 //! not touch before `d/s` has passed. Steps of that length approach the time of impact from below
-//! (Mirtich, *Impulse-based Dynamic Simulation of Rigid Body Systems*, 1996); the search ends
-//! within the tolerance.
+//! (Mirtich, *Impulse-based Dynamic Simulation of Rigid Body Systems*, 1996).
+//!
+//! Bodies may touch at the start ([`advance_from_contact`]). A pair of parts that touches is an
+//! impact if it approaches along the normal of the contact. The search excludes other such pairs for
+//! good and advances to the first touch of the rest. A start deep inside makes each step as
+//! expensive as a query for all contacts.
 
 use crate::traverse::Placement;
 use crate::tree::Tree;
 
 use super::contacts::contacts;
-use super::nearest::{Goal, nearest, search_besides};
+use super::nearest::{Goal, nearest, search_except};
 use super::seek::SearchScratch;
 use super::triangles::FoundPair;
 
@@ -18,37 +22,37 @@ pub trait Bodies {
     /// A pair of parts.
     type Pair: PartPair;
 
-    /// The nearest pair, but for those named in `besides`, in ascending order; if several touch, any
-    /// of them. `None` if all are farther apart than `reach`, if that is NaN or negative, or if the
-    /// placement is not finite.
+    /// Returns the nearest pair, or any of several that touch. `excluded` lists pairs to skip, in
+    /// ascending order. `None` if all are farther apart than `reach`, if that is NaN or negative,
+    /// or if the placement is not finite.
     fn nearest(
         &mut self,
         placement: &Placement,
         reach: f64,
-        besides: &[[u32; 2]],
+        excluded: &[[u32; 2]],
     ) -> Option<Self::Pair>;
 
     /// Calls `found` with all pairs that are at most `reach` apart.
     fn within(&mut self, placement: &Placement, reach: f64, found: impl FnMut(Self::Pair));
 
-    /// A time, counted from `time`, in which no pair but those in `besides` meets. 0 if nothing but
-    /// the distance of the nearest is known.
-    fn clear_time(&mut self, _nearest: &Self::Pair, _time: f64, _besides: &[[u32; 2]]) -> f64 {
+    /// Returns a time, counted from `time`, in which no pair except those in `excluded` meets. 0 if
+    /// only the distance of the nearest pair is known.
+    fn clear_time(&mut self, _nearest: &Self::Pair, _time: f64, _excluded: &[[u32; 2]]) -> f64 {
         0.0
     }
 }
 
 /// A pair of parts of two bodies.
 pub trait PartPair: Copy {
-    /// Their distance, or minus their depth.
+    /// The distance, or minus the depth.
     fn distance(&self) -> f64;
 
-    /// The numbers of both parts.
+    /// Indices of both parts.
     fn name(&self) -> [u32; 2];
 }
 
 /// Two meshes, with the memory to search them.
-pub struct Meshes<'a> {
+pub struct MeshBodies<'a> {
     /// The trees of mesh 1 and mesh 2.
     pub trees: (&'a Tree, &'a Tree),
     /// Memory of the search.
@@ -65,20 +69,20 @@ impl PartPair for FoundPair {
     }
 }
 
-impl Bodies for Meshes<'_> {
+impl Bodies for MeshBodies<'_> {
     type Pair = FoundPair;
 
     fn nearest(
         &mut self,
         placement: &Placement,
         reach: f64,
-        besides: &[[u32; 2]],
+        excluded: &[[u32; 2]],
     ) -> Option<FoundPair> {
         let Self { trees, scratch } = self;
-        if besides.is_empty() {
+        if excluded.is_empty() {
             return nearest(*trees, *placement, reach, scratch);
         }
-        search_besides(*trees, *placement, reach, Goal::Nearest, besides, scratch).0
+        search_except(*trees, *placement, reach, Goal::Nearest, excluded, scratch).0
     }
 
     fn within(&mut self, placement: &Placement, reach: f64, found: impl FnMut(FoundPair)) {
@@ -86,49 +90,82 @@ impl Bodies for Meshes<'_> {
     }
 }
 
-/// The span of time, and when to stop.
+/// Limits of an advancement.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct AdvanceOptions {
     /// The first time of interest.
     pub start: f64,
-    /// The last one.
+    /// The last time of interest.
     pub end: f64,
-    /// No point of one body moves faster than this against the other.
+    /// Bound of the speed of any point of one body against the other.
     pub speed_bound: f64,
-    /// Bodies this close have met. Higher: fewer steps, earlier impacts.
+    /// Distance up to which bodies have met. Higher: fewer steps, earlier impacts.
     pub tolerance: f64,
-    /// Steps at most. Motions along surfaces that never quite touch take many.
+    /// Limit of steps. Motions along surfaces that never quite touch take many.
     pub step_limit: usize,
 }
 
-/// How an advancement ended.
+/// The end of an advancement.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Advance<P> {
     /// The time of impact, or a lower bound of it if the steps were used up.
     pub time: f64,
-    /// The nearest pair then.
+    /// The nearest pair at that time.
     pub pair: P,
-    /// Where body 2 is in frame 1 then.
+    /// Placement of body 2 in frame 1 at that time.
     pub placement: Placement,
-    /// Whether the bodies are within the tolerance of each other then.
+    /// True if the bodies are within the tolerance of each other at that time.
     pub has_converged: bool,
 }
 
-/// The first time at which body 2, at `placement_at(time)` in the frame of body 1, is within the
-/// tolerance of it; `None` if there is no such time until the end, or if a number is not finite.
-/// Bodies that are within the tolerance at the end, and would touch later, may have none.
+/// Returns the first time at which body 2, at `placement_at(time)` in the frame of body 1, is within
+/// the tolerance of body 1.
+///
+/// `None` if there is no such time until the end, or if a number is not finite. Bodies that are
+/// within the tolerance at the end, and would touch later, may have none.
 pub fn advance<B: Bodies>(
     bodies: &mut B,
     placement_at: impl Fn(f64) -> Placement,
     options: AdvanceOptions,
 ) -> Option<Advance<B::Pair>> {
-    advance_besides(bodies, &[], placement_at, options)
+    advance_except(bodies, &[], placement_at, options)
 }
 
-/// The same but for pairs of parts, which are named in ascending order.
-pub(super) fn advance_besides<B: Bodies>(
+/// Returns the first impact of two bodies that may touch at the start.
+///
+/// Pairs within the tolerance of each other at the start are impacts if `approaches` accepts them;
+/// the deepest one is returned. If it accepts none, these pairs are excluded from an [`advance`].
+/// Allocates lists of the pairs.
+pub fn advance_from_contact<B: Bodies>(
     bodies: &mut B,
-    besides: &[[u32; 2]],
+    placement_at: impl Fn(f64) -> Placement,
+    options: AdvanceOptions,
+    approaches: impl Fn(&B::Pair, &Placement) -> bool,
+) -> Option<Advance<B::Pair>> {
+    // Unlike "start > end", this rejects a NaN.
+    let is_possible = options.start <= options.end;
+    if !is_possible {
+        return None;
+    }
+    let placement = placement_at(options.start);
+    let mut touching = Vec::new();
+    bodies.within(&placement, options.tolerance, |pair| touching.push(pair));
+    let depth = |one: &&B::Pair, two: &&B::Pair| {
+        one.distance().total_cmp(&two.distance()).then(one.name().cmp(&two.name()))
+    };
+    let impacts = touching.iter().filter(|pair| approaches(pair, &placement));
+    if let Some(&pair) = impacts.min_by(depth) {
+        return Some(Advance { time: options.start, pair, placement, has_converged: true });
+    }
+    let mut excluded: Vec<[u32; 2]> = touching.iter().map(PartPair::name).collect();
+    excluded.sort_unstable();
+    advance_except(bodies, &excluded, placement_at, options)
+}
+
+/// [`advance`] without some pairs of parts, given in ascending order.
+fn advance_except<B: Bodies>(
+    bodies: &mut B,
+    excluded: &[[u32; 2]],
     placement_at: impl Fn(f64) -> Placement,
     options: AdvanceOptions,
 ) -> Option<Advance<B::Pair>> {
@@ -136,23 +173,23 @@ pub(super) fn advance_besides<B: Bodies>(
     let mut time = start;
     let mut last = None;
     for _ in 0..step_limit.max(1) {
-        // Not "later than": a NaN is no time.
+        // Unlike "time > end", this rejects a NaN.
         let in_time = time <= end;
         if !in_time {
             return None;
         }
-        // Bodies farther apart than they can travel until the end do not meet. No speed times a time
-        // without end is NaN, of which `max` makes 0.
+        // Bodies farther apart than they can travel until the end do not meet. Zero speed times an
+        // infinite time is NaN, which `max` replaces by 0.
         let reach = (speed_bound * (end - time)).max(0.0) + tolerance;
         let placement = placement_at(time);
-        let pair = bodies.nearest(&placement, reach, besides)?;
+        let pair = bodies.nearest(&placement, reach, excluded)?;
         let has_converged = pair.distance() <= tolerance;
         last = Some(Advance { time, pair, placement, has_converged });
         if has_converged {
             break;
         }
         let clear = pair.distance() / speed_bound;
-        time += clear.max(bodies.clear_time(&pair, time, besides));
+        time += clear.max(bodies.clear_time(&pair, time, excluded));
     }
     last
 }

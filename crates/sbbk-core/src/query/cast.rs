@@ -1,6 +1,7 @@
-//! When two meshes, moving along a line against each other, first come within a distance.
+//! The first time at which two meshes, moving along a line against each other, come within a
+//! distance.
 //!
-//! For two triangles the distance is a convex function of time, as triangles are convex: Newton's
+//! The distance of two triangles is a convex function of time, as triangles are convex. Newton's
 //! method from the start,
 //!
 //! ```text
@@ -8,10 +9,10 @@
 //! n: from the closest point of triangle 1 to that of triangle 2
 //! ```
 //!
-//! never passes the first time of impact, and where the distance no longer falls there is none.
-//! While the closest features stay the same and one of them is a face, or both are edges, the
-//! distance is linear in time and one step arrives. Over two meshes the earliest of all pairs is
-//! sought with the bounds of `sweep.rs`.
+//! never passes the first time of impact. There is no impact if the distance no longer falls. While
+//! the closest features stay the same and include a face or are two edges, the distance is linear
+//! in time and one step arrives. Over two meshes, a search with the bounds of `sweep.rs` finds the
+//! earliest of all pairs.
 
 use glamx::{DVec3, Vec3};
 
@@ -20,19 +21,19 @@ use crate::traverse::{Cutoff, PairFrame, Placement};
 use crate::tree::{LeafBatch, Tree};
 use crate::volumes::rounding::gamma;
 
-use super::seek::{Bounds, FOUND, SearchScratch, seek};
+use super::seek::{BestFirst, FOUND, SearchScratch, seek};
 use super::sweep::Sweep;
 use super::triangles::{FoundPair, LeafTriangle, TrianglePair};
 
-/// What counts as an impact.
+/// The definition of an impact.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct CastOptions {
     /// The latest time of interest.
     pub max_time: f32,
-    /// How close counts as an impact; zero or more.
+    /// Distance that counts as an impact; zero or more.
     pub target_distance: f32,
-    /// Whether triangles that are within the target distance at the start count if they do not come
-    /// any closer.
+    /// True if triangles within the target distance at the start count even if they do not
+    /// approach.
     pub stop_at_penetration: bool,
 }
 
@@ -43,7 +44,7 @@ pub struct Cast {
     pub time: f64,
     /// The triangles and their contact then, mesh 2 *moved*.
     pub pair: FoundPair,
-    /// Whether the triangles are closer than the target distance, or cross, at the start.
+    /// True if the triangles are closer than the target distance, or cross, at the start.
     pub is_penetrating: bool,
 }
 
@@ -56,8 +57,8 @@ const ARRIVED: f64 = 1.0e-12;
 /// steps.
 const STEP_LIMIT: usize = 100;
 
-/// The first impact of mesh 2, placed at `placement` in the frame of mesh 1 and moving by
-/// `velocity` there; `None` if there is none until `options.max_time`, or if a number is NaN or
+/// Returns the first impact of mesh 2, placed at `placement` in the frame of mesh 1 and moving by
+/// `velocity` there. `None` if there is none until `options.max_time`, or if a number is NaN or
 /// infinite.
 pub fn cast(
     trees: (&Tree, &Tree),
@@ -126,7 +127,7 @@ impl CastSearch<'_> {
         self.sweep.cutoff.limit = if time > 0.0 { (time as f32).next_up() } else { FOUND };
     }
 
-    /// Whether the boxes of the triangles come within the target distance early enough.
+    /// True if the boxes of the triangles come within the target distance early enough.
     fn boxes_meet(&self, pair: &TrianglePair, target: f64) -> bool {
         // Written out, as `array::map` is not always inlined: a cast took 1.2 times as long.
         let [corners1, corners2] = &pair.corners;
@@ -135,7 +136,7 @@ impl CastSearch<'_> {
         let (near, far) = (min1 - max2 - slack, max1 - min2 + slack);
         let (mut start, mut end) = (0.0, self.latest);
         for axis in 0..3 {
-            // Without speed infinite: of both signs, unless the boxes pass each other.
+            // Zero speed gives infinite times, of both signs unless the boxes pass each other.
             let speed = self.velocity[axis];
             let (a, b) = (near[axis] / speed, far[axis] / speed);
             start = f64::max(start, a.min(b));
@@ -175,7 +176,7 @@ impl TriangleCast<'_> {
                     let counts = stop_at_penetration || approach > 0.0;
                     return counts.then_some((0.0, contact));
                 };
-                // That of triangles just apart: those that touch have no better one.
+                // Triangles that touch have no better normal than the last one before.
                 contact.normal = last.normal;
                 return Some((time, contact));
             }
@@ -183,7 +184,7 @@ impl TriangleCast<'_> {
                 return None;
             }
             time += left / approach;
-            // Not "later than": a NaN is no time.
+            // Unlike "time > latest", this rejects a NaN.
             let in_time = time <= latest;
             if !in_time {
                 return None;
@@ -194,7 +195,7 @@ impl TriangleCast<'_> {
     }
 }
 
-impl<'a> Bounds for CastSearch<'a> {
+impl<'a> BestFirst for CastSearch<'a> {
     type Compare = Sweep<'a>;
 
     #[inline(always)]

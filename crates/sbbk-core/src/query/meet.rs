@@ -9,7 +9,7 @@ use crate::leaf::LeafTest;
 use crate::traverse::{OrderedOverlap, PairFrame, Placement};
 use crate::tree::{LeafBatch, Tree};
 
-use super::seek::{Bounds, FOUND, SearchScratch, seek};
+use super::seek::{BestFirst, FOUND, SearchScratch, seek};
 use super::triangles::{FoundPair, LeafTriangle, TrianglePair};
 
 /// Returns a pair of triangles that touch or cross, with mesh 2 placed at `placement` in frame 1.
@@ -53,7 +53,7 @@ impl MeetingSearch<'_> {
     }
 }
 
-impl<'a> Bounds for MeetingSearch<'a> {
+impl<'a> BestFirst for MeetingSearch<'a> {
     type Compare = OrderedOverlap<'a>;
 
     #[inline(always)]

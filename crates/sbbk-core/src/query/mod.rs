@@ -30,7 +30,6 @@
 mod advance;
 mod cast;
 mod contacts;
-mod departure;
 mod guess;
 mod meet;
 mod nearest;
@@ -38,10 +37,11 @@ mod seek;
 mod sweep;
 mod triangles;
 
-pub use advance::{Advance, AdvanceOptions, Bodies, Meshes, PartPair, advance};
+pub use advance::{
+    Advance, AdvanceOptions, Bodies, MeshBodies, PartPair, advance, advance_from_contact,
+};
 pub use cast::{Cast, CastOptions, cast};
 pub use contacts::contacts;
-pub use departure::advance_from_contact;
 pub use meet::meeting;
 pub use nearest::{deepest, nearest};
 pub use seek::SearchScratch;

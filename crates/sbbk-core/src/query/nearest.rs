@@ -8,7 +8,7 @@ use crate::traverse::{Cutoff, GapCounts, PairFrame, Placement, SignedGaps, Towar
 use crate::tree::{LeafBatch, Tree};
 
 use super::guess::near_leaves;
-use super::seek::{Bounds, FOUND, SearchScratch, seek};
+use super::seek::{BestFirst, FOUND, SearchScratch, seek};
 use super::triangles::{FoundPair, LeafTriangle, TrianglePair};
 
 /// The pair of triangles to find.
@@ -56,16 +56,16 @@ fn search(
     // Unlike `min`, this keeps a limit that is NaN, which admits nothing.
     let some = some_distance(trees, &placement);
     let best = if some < limit { some } else { limit };
-    search_besides(trees, placement, best, goal, &[], scratch)
+    search_except(trees, placement, best, goal, &[], scratch)
 }
 
-/// Searches all pairs of triangles except those in `besides`, which is sorted.
-pub(super) fn search_besides(
+/// Searches all pairs of triangles except those in `excluded`, which is sorted.
+pub(super) fn search_except(
     trees: (&Tree, &Tree),
     placement: Placement,
     best: f64,
     goal: Goal,
-    besides: &[[u32; 2]],
+    excluded: &[[u32; 2]],
     scratch: &mut SearchScratch,
 ) -> (Option<FoundPair>, GapCounts) {
     // Unlike `best < 0`, this rejects a limit that is NaN.
@@ -75,9 +75,9 @@ pub(super) fn search_besides(
     }
     let mut frame = PairFrame::at(trees, placement, 0.0);
     let test = LeafTest::new(&frame);
-    // Bounds are f32 too: no bound of a nearer pair is above the limit, rounded to nearest.
+    // BestFirst are f32 too: no bound of a nearer pair is above the limit, rounded to nearest.
     let gaps = SignedGaps { frame: &mut frame, cutoff: Cutoff::at(best as f32), toward: None };
-    let mut search = NearestSearch { gaps, placement, test, goal, besides, best, found: None };
+    let mut search = NearestSearch { gaps, placement, test, goal, excluded, best, found: None };
     // A limit of zero cannot be lowered: the search ends with the first pair that meets.
     if best > 0.0 {
         let (leaf1, leaf2) = near_leaves(trees, search.gaps.frame);
@@ -100,7 +100,7 @@ struct NearestSearch<'a> {
     test: LeafTest,
     goal: Goal,
     /// Pairs of triangles that do not count, in ascending order.
-    besides: &'a [[u32; 2]],
+    excluded: &'a [[u32; 2]],
     /// The signed distance to beat.
     best: f64,
     found: Option<FoundPair>,
@@ -111,8 +111,8 @@ impl NearestSearch<'_> {
         if self.gaps.cutoff.limit == FOUND {
             return;
         }
-        let besides = self.besides;
-        if !besides.is_empty() && besides.binary_search(&[one.index(), two.index()]).is_ok() {
+        let excluded = self.excluded;
+        if !excluded.is_empty() && excluded.binary_search(&[one.index(), two.index()]).is_ok() {
             return;
         }
         self.gaps.cutoff.counts.triangle_pairs += 1;
@@ -133,7 +133,7 @@ impl NearestSearch<'_> {
         self.look_along(contact.normal);
     }
 
-    /// Bounds along the normal of the best pair from now on. Rare, and long: kept out of the way.
+    /// BestFirst along the normal of the best pair from now on. Rare, and long: kept out of the way.
     #[inline(never)]
     fn look_along(&mut self, normal: DVec3) {
         // The normal of crossing triangles tells nothing about other pairs.
@@ -144,7 +144,7 @@ impl NearestSearch<'_> {
     }
 }
 
-impl<'a> Bounds for NearestSearch<'a> {
+impl<'a> BestFirst for NearestSearch<'a> {
     type Compare = SignedGaps<'a>;
 
     #[inline(always)]

@@ -7,12 +7,12 @@
 use crate::traverse::{Compare, DescentScratch, Sides, expand};
 use crate::tree::{LeafBatch, Slot, Tree};
 
-/// What is sought.
-pub(super) trait Bounds {
-    /// Finds lower bounds for pairs of nodes.
+/// A best-first search with lower bounds.
+pub(super) trait BestFirst {
+    /// Computes lower bounds for pairs of nodes.
     type Compare: Compare<Key = f32>;
 
-    /// What finds them.
+    /// The comparison of nodes.
     fn compare(&mut self) -> &mut Self::Compare;
 
     /// Pairs whose bound is above this cannot matter; [`FOUND`] ends the search.
@@ -40,7 +40,7 @@ struct BoundedPair {
 pub(super) const FOUND: f32 = f32::NEG_INFINITY;
 
 /// Goes through all pairs of leaves that may matter.
-pub(super) fn seek<B: Bounds>(
+pub(super) fn seek<B: BestFirst>(
     (tree1, tree2): (&Tree, &Tree),
     bounds: &mut B,
     scratch: &mut SearchScratch,

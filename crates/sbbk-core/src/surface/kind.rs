@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glamx::{DVec3, Vec3};
 use rustc_hash::FxHashMap;
 
-use crate::collections::Groups;
+use crate::collections::UnionFind;
 
 /// The kind of surface that a mesh forms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -159,11 +159,11 @@ fn without_seams(
 
 /// The connected components of some edges.
 fn loops(edges: &[[u32; 2]]) -> Vec<Vec<[u32; 2]>> {
-    let mut groups = Groups::default();
-    edges.iter().for_each(|&[a, b]| groups.join(a, b));
+    let mut sets = UnionFind::default();
+    edges.iter().for_each(|&[a, b]| sets.join(a, b));
     let mut loops: BTreeMap<u32, Vec<[u32; 2]>> = Default::default();
     for &edge in edges {
-        loops.entry(groups.first(edge[0])).or_default().push(edge);
+        loops.entry(sets.first(edge[0])).or_default().push(edge);
     }
     loops.into_values().collect()
 }

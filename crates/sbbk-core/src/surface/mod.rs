@@ -32,14 +32,14 @@ pub use one_ring::{Facets, HalfEdges, IndexedTriangles, OneRing};
 
 use glamx::Vec3;
 
-use crate::collections::Numbers;
+use crate::collections::CompactIndices;
 
 /// The adjacency of the triangles of a mesh, and the kind of surface.
 ///
 /// Takes 6 bytes a triangle, 12 for a mesh of more than 21,845 triangles.
 #[derive(Clone, Debug)]
 pub struct Surface {
-    twins: Numbers,
+    twins: CompactIndices,
     kind: SurfaceKind,
 }
 

@@ -3,13 +3,13 @@
 use glamx::Vec3;
 use rustc_hash::FxHashMap;
 
-use crate::collections::Numbers;
+use crate::collections::CompactIndices;
 
 const NONE: u32 = u32::MAX;
 
 /// The twin of each half-edge, if there is exactly one, and the unpaired half-edges by their welded
 /// ends: borders, and edges along which triangles disagree about the outside.
-pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Numbers, Vec<[u32; 2]>) {
+pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (CompactIndices, Vec<[u32; 2]>) {
     let (edges, _) = edges(&weld(vertices), triangles);
     let (mut twins, mut unpaired) = (vec![None; 3 * triangles.len()], Vec::new());
     for Edge { ends: [low, high], last: [up, down], counts, .. } in edges {
@@ -24,7 +24,7 @@ pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Numbers, Vec<[
             }
         }
     }
-    (Numbers::new(twins.into_iter()), unpaired)
+    (CompactIndices::new(twins.into_iter()), unpaired)
 }
 
 /// All half-edges between two vertices.

@@ -2,7 +2,7 @@ use std::cmp::Ordering;
 
 use glamx::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
-use sbbk_core::collections::Groups;
+use sbbk_core::collections::UnionFind;
 use sbbk_core::contact::TriangleContact;
 
 /// Where two surfaces cross, what pushes them apart, and where nothing does.
@@ -19,7 +19,7 @@ pub(crate) struct Regions {
     /// Pairs whose contact pushes the wrong way.
     wrong: FxHashSet<[u32; 2]>,
     /// The triangles of a region, by mesh and triangle.
-    regions: Groups<Node>,
+    regions: UnionFind<Node>,
     /// By the first triangle of a region: what holds it.
     held: FxHashMap<Node, Hold>,
 }

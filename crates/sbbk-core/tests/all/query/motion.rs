@@ -2,7 +2,7 @@
 
 use glamx::{DVec3, Pose3, Quat, Vec3};
 use sbbk_core::query::{
-    Advance, AdvanceOptions, FoundPair, Meshes, SearchScratch, advance, advance_from_contact,
+    Advance, AdvanceOptions, FoundPair, MeshBodies, SearchScratch, advance, advance_from_contact,
 };
 use sbbk_core::traverse::Placement;
 use sbbk_core::truth::TruthPair;
@@ -10,7 +10,7 @@ use sbbk_core::truth::TruthPair;
 use super::{all_pairs, exact, least, pairs_within, tree, triangle, triangles_of};
 use crate::support::{Random, Soup, bumpy_ball, soup};
 
-/// Meshes this close touch.
+/// MeshBodies this close touch.
 const TOLERANCE: f64 = 1e-6;
 
 /// Mesh 2 moves and turns in the frame of mesh 1.
@@ -47,14 +47,14 @@ impl Motion {
     fn advance(&self, meshes: [&Soup; 2], end: f64) -> Option<Advance<FoundPair>> {
         let [tree1, tree2] = meshes.map(tree);
         let scratch = &mut SearchScratch::default();
-        let bodies = &mut Meshes { trees: (&tree1, &tree2), scratch };
+        let bodies = &mut MeshBodies { trees: (&tree1, &tree2), scratch };
         advance(bodies, |time| Placement::new(&self.at(time)), self.options(meshes[1], end))
     }
 
     fn advance_from_contact(&self, meshes: [&Soup; 2], end: f64) -> Option<Advance<FoundPair>> {
         let [tree1, tree2] = meshes.map(tree);
         let scratch = &mut SearchScratch::default();
-        let bodies = &mut Meshes { trees: (&tree1, &tree2), scratch };
+        let bodies = &mut MeshBodies { trees: (&tree1, &tree2), scratch };
         let placement_at = |time| Placement::new(&self.at(time));
         let approaches =
             |pair: &FoundPair, _: &Placement| self.approach(pair.contact.normal) > 1e-6;
@@ -95,7 +95,7 @@ fn advancement_uses_the_last_moment_and_the_last_step() {
     let fall = |options| {
         let placement_at = |time| Placement::new(&Pose3::translation(0.5, 0.5, 1.0 - time as f32));
         let scratch = &mut SearchScratch::default();
-        advance(&mut Meshes { trees: (&floor, &floor), scratch }, placement_at, options)
+        advance(&mut MeshBodies { trees: (&floor, &floor), scratch }, placement_at, options)
     };
     let exact =
         AdvanceOptions { start: 0.0, end: 4.0, speed_bound: 1.0, tolerance: 0.0, step_limit: 10 };

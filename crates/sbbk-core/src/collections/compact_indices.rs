@@ -1,17 +1,16 @@
 const NONE: u32 = u32::MAX;
 
-/// A list of numbers that are less than its length, or none: in sixteen bits each where these are
-/// enough.
+/// A list of optional indices that are less than its length, in 16 bits each if these are enough.
 ///
 /// ```
-/// use sbbk_core::collections::Numbers;
+/// use sbbk_core::collections::CompactIndices;
 ///
-/// let numbers = Numbers::new([Some(2), None, Some(0)].into_iter());
+/// let numbers = CompactIndices::new([Some(2), None, Some(0)].into_iter());
 /// assert_eq!([0, 1, 2, 3].map(|place| numbers.get(place)), [Some(2), None, Some(0), None]);
 /// assert_eq!(numbers.bytes(), 6);
 /// ```
 #[derive(Clone, Debug)]
-pub struct Numbers(Width);
+pub struct CompactIndices(Width);
 
 #[derive(Clone, Debug)]
 enum Width {
@@ -19,10 +18,10 @@ enum Width {
     Wide(Box<[u32]>),
 }
 
-impl Numbers {
-    /// The list of these.
+impl CompactIndices {
+    /// Stores some indices.
     pub fn new(numbers: impl ExactSizeIterator<Item = Option<u32>>) -> Self {
-        // Of a list that is not longer than this, all numbers are less than what is cut off `NONE`.
+        // Indices of a list up to this length are less than the low half of `NONE`.
         let is_narrow = numbers.len() <= usize::from(u16::MAX);
         let numbers = numbers.map(|number| number.unwrap_or(NONE));
         Self(if is_narrow {
@@ -32,7 +31,7 @@ impl Numbers {
         })
     }
 
-    /// The number at a place; none where the list has ended.
+    /// Returns the index at a place; `None` beyond the end of the list.
     #[inline(always)]
     pub fn get(&self, place: u32) -> Option<u32> {
         match &self.0 {
@@ -47,7 +46,7 @@ impl Numbers {
         }
     }
 
-    /// Memory, without this value.
+    /// Memory in bytes, without this value.
     pub fn bytes(&self) -> usize {
         match &self.0 {
             Width::Narrow(numbers) => size_of_val(&**numbers),
@@ -65,7 +64,8 @@ mod tests {
     fn narrow_and_wide_lists_hold_the_same() {
         for length in [0, 1, 2, 65_534, 65_535, 65_536, 65_537, 100_000] {
             let number = |place: u32| (place % 5 != 3).then(|| length - 1 - place);
-            let numbers = Numbers::new((0..length as usize).map(|place| number(place as u32)));
+            let numbers =
+                CompactIndices::new((0..length as usize).map(|place| number(place as u32)));
             for place in 0..length {
                 assert_eq!(numbers.get(place), number(place), "{place} of {length}");
             }
