@@ -43,6 +43,8 @@ mod inside;
 mod judged;
 /// Contacts beside those of stock.
 mod like_stock;
+/// Runs of minutes, which `cargo test --workspace` leaves out.
+mod long_runs;
 /// What trees take, and when they go.
 mod memory;
 /// Motion that never loses a contact: random walks against fresh queries.

@@ -4,7 +4,7 @@
 //! zeros up to a multiple of four, and the arrays that it tells of. Numbers are little-endian.
 //! Of each shape, fine and coarse: vertices as `f32`, triangles as `u32`. Of each run: times as
 //! `f32`; [`planes`] of seven numbers for each object and frame; the count of contacts of each frame
-//! as `u32`; [`planes`] of the contacts; of each soft object, [`planes`] of its vertices.
+//! as `u32`; [`planes`] of the contacts.
 
 use std::io::{self, Write};
 
@@ -46,8 +46,6 @@ struct RunHeader<'a> {
     /// Of each object, its shape.
     shapes: Vec<usize>,
     fixed: Vec<bool>,
-    /// The soft objects, and how many vertices each has.
-    soft: Vec<[usize; 2]>,
 }
 
 /// The recordings as text.
@@ -66,13 +64,7 @@ fn packed(runs: &[Recorder]) -> io::Result<Vec<u8>> {
     };
     let places: Vec<Vec<usize>> =
         runs.iter().map(|run| run.shapes.surfaces.iter().map(&mut place).collect()).collect();
-    let mut levels: Vec<[Mesh; 2]> = surfaces.iter().map(|surface| levels(surface)).collect();
-    // Soft ones have the vertices of the run.
-    for (run, places) in runs.iter().zip(&places) {
-        for place in run.soft.keys().map(|&object| places[run.objects[object].shape]) {
-            levels[place][0] = surfaces[place].clone();
-        }
-    }
+    let levels: Vec<[Mesh; 2]> = surfaces.iter().map(|surface| levels(surface)).collect();
     let header = |(run, places): (_, &Vec<usize>)| -> RunHeader<'_> {
         let run: &Recorder = run;
         RunHeader {
@@ -82,7 +74,6 @@ fn packed(runs: &[Recorder]) -> io::Result<Vec<u8>> {
             contacts: run.frames.iter().map(|frame| frame.contacts.len()).sum(),
             shapes: run.objects.iter().map(|object| places[object.shape]).collect(),
             fixed: run.objects.iter().map(|object| object.is_fixed).collect(),
-            soft: run.soft.iter().map(|(&object, frames)| [object, frames[0].len()]).collect(),
         }
     };
     let size = |surface: &Mesh| [surface.vertices.len(), surface.triangles.len()];
@@ -118,9 +109,6 @@ fn packed(runs: &[Recorder]) -> io::Result<Vec<u8>> {
         let points = || run.frames.iter().flat_map(|frame| &frame.contacts);
         let numbers = [0, 1, 2].map(|axis| points().map(|p| steps(p[axis], quantum)).collect());
         out.write_all(&planes(&numbers))?;
-        for frames in run.soft.values() {
-            out.write_all(&planes(&vertices(run, frames, quantum)))?;
-        }
     }
     out.finish()
 }
@@ -161,19 +149,6 @@ fn poses(run: &Recorder, quantum: f32) -> [Vec<i32>; 7] {
         }
     }
     numbers
-}
-
-/// Of each axis, all vertices after each other, and of each vertex all frames; one that is gone
-/// stays as it was.
-fn vertices(run: &Recorder, frames: &[Vec<Vec3>], quantum: f32) -> [Vec<i32>; 3] {
-    let last = frames.len() - 1;
-    [0, 1, 2].map(|axis| {
-        let of = |vertex: usize| {
-            (0..run.frames.len())
-                .map(move |frame| steps(frames[frame.min(last)][vertex][axis], quantum))
-        };
-        (0..frames[0].len()).flat_map(of).collect()
-    })
 }
 
 fn pose(frame: &Frame, object: usize) -> Option<Pose> {

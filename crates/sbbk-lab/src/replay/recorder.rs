@@ -1,6 +1,6 @@
 //! What is kept of a run.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 use std::time::Instant;
 
 use glamx::Vec3;
@@ -25,8 +25,6 @@ pub struct Recorder {
     places: HashMap<ColliderHandle, usize>,
     pub(super) shapes: Shapes,
     pub(super) frames: Vec<Frame>,
-    /// Of each soft object: its vertices in each frame, in its own frame of reference.
-    pub(super) soft: BTreeMap<usize, Vec<Vec<Vec3>>>,
     /// Of each step, in milliseconds.
     pub(super) times: Vec<f32>,
     /// Of each step: the deepest contact of each pair of objects.
@@ -64,7 +62,6 @@ impl Recorder {
             places: HashMap::new(),
             shapes: Shapes::default(),
             frames: Vec::new(),
-            soft: BTreeMap::new(),
             times: Vec::new(),
             deepest: Vec::new(),
         };
@@ -90,15 +87,6 @@ impl Recorder {
             poses.resize(poses.len().max(object + 1), None);
             let is_drawn = collider.is_enabled() && !collider.is_sensor();
             poses[object] = is_drawn.then(|| *collider.position());
-            if let (Some(_), Some(mesh)) =
-                (collider.deformable_mesh_ref(), collider.shape().as_trimesh())
-            {
-                let frames = self.soft.entry(object).or_default();
-                // One that came late, and one that was torn.
-                let like = frames.last().filter(|last| last.len() != mesh.vertices().len());
-                let vertices = like.cloned().unwrap_or_else(|| mesh.vertices().to_vec());
-                frames.resize(self.frames.len() + 1, vertices);
-            }
         }
         let stride = contacts.len().div_ceil(CONTACTS).max(1);
         let contacts = contacts.into_iter().step_by(stride).collect();
@@ -113,11 +101,7 @@ impl Recorder {
     ) -> usize {
         let body = collider.parent().and_then(|body| world.bodies.get(body));
         *self.places.entry(handle).or_insert_with(|| {
-            // The shape of a soft body changes in place: nobody else may hold it.
-            let shape = match collider.deformable_mesh_ref() {
-                Some(_) => self.shapes.add_surface(collider.shape()),
-                None => self.shapes.add(collider.shared_shape()),
-            };
+            let shape = self.shapes.add(collider.shared_shape());
             let is_fixed = body.is_none_or(|body| body.is_fixed());
             self.objects.push(Object { shape, is_fixed });
             self.objects.len() - 1

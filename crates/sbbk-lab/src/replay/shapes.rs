@@ -38,20 +38,15 @@ impl Shapes {
         if let Some(&index) = self.by_address.get(&address) {
             return index;
         }
-        let index = self.add_surface(&**shape);
+        let surface = surface(&**shape);
+        let known = self.surfaces.iter().position(|other| *other == surface);
+        let index = known.unwrap_or_else(|| {
+            self.surfaces.push(surface);
+            self.surfaces.len() - 1
+        });
         self.by_address.insert(address, index);
         self.kept.push(shape.clone());
         index
-    }
-
-    /// The same, without keeping the shape.
-    pub fn add_surface(&mut self, shape: &dyn Shape) -> usize {
-        let surface = surface(shape);
-        let known = self.surfaces.iter().position(|other| *other == surface);
-        known.unwrap_or_else(|| {
-            self.surfaces.push(surface);
-            self.surfaces.len() - 1
-        })
     }
 }
 

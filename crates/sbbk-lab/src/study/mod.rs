@@ -14,7 +14,6 @@ mod motion;
 pub mod one_step;
 mod pair;
 mod pile;
-pub mod queries;
 mod turns;
 
 pub use pile::{PilePlan, SamePosesPlan, pile, runs};

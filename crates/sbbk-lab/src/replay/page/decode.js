@@ -31,8 +31,7 @@ async function decode(text) {
     const contacts = planes(3, run.contacts);
     const firsts = [0];
     counts.forEach((count) => firsts.push(firsts.at(-1) + count));
-    const soft = new Map(run.soft.map(([object, count]) => [object, planes(3, count * run.frames)]));
-    return { ...run, times, poses, contacts, firsts, soft };
+    return { ...run, times, poses, contacts, firsts };
   });
   return { ...header, shapes, runs };
 }
@@ -57,30 +56,4 @@ function pose(data, run, object, time, place, turn) {
   for (let part = 0; part < 4; part++) turn[part] *= is_there ? norm ** -0.5 : 0;
   for (let axis = 0; axis < 3; axis++) place[axis] = data.quantum * mixed(axis);
   return is_there;
-}
-
-// Writes the vertices of a soft object between two frames, and their normals: the mean of the faces
-// around each.
-function deform(data, run, object, time, triangles, position, normal) {
-  const frame = Math.min(Math.floor(time), run.frames - 1);
-  const next = Math.min(frame + 1, run.frames - 1);
-  run.soft.get(object).forEach((numbers, axis) => {
-    for (let vertex = 0; 3 * vertex < position.length; vertex++) {
-      const [one, other] = [frame, next].map((frame) => numbers[vertex * run.frames + frame]);
-      position[3 * vertex + axis] = data.quantum * (one + (time - frame) * (other - one));
-    }
-  });
-  normal.fill(0);
-  for (let at = 0; at < triangles.length; at += 3) {
-    const [a, b, c] = [0, 1, 2].map((k) => 3 * triangles[at + k]);
-    const [u, v] = [b, c].map((p) => [0, 1, 2].map((k) => position[p + k] - position[a + k]));
-    for (let k = 0; k < 3; k++) {
-      const [i, j] = [(k + 1) % 3, (k + 2) % 3];
-      for (const corner of [a, b, c]) normal[corner + k] += u[i] * v[j] - u[j] * v[i];
-    }
-  }
-  for (let at = 0; at < normal.length; at += 3) {
-    const norm = Math.hypot(normal[at], normal[at + 1], normal[at + 2]) || 1;
-    for (let k = 0; k < 3; k++) normal[at + k] /= norm;
-  }
 }

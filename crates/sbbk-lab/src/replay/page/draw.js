@@ -122,23 +122,19 @@ class Drawing {
     const tints = run.shapes.map((_, object) =>
       linear(run.fixed[object] ? FIXED : PALETTE[moving++ % PALETTE.length]));
     const together = this.data.shapes.map((_, shape) =>
-      run.shapes.flatMap((other, object) => (other === shape && !run.soft.has(object) ? [object] : [])));
-    const alone = [...run.soft.keys()].map((object) => [object]);
-    return [...together, ...alone].flatMap((objects) => {
+      run.shapes.flatMap((other, object) => (other === shape ? [object] : [])));
+    return together.flatMap((objects) => {
       if (!objects.length) return [];
       const levels = this.data.shapes[run.shapes[objects[0]]];
-      const isSoft = run.soft.has(objects[0]);
       const instanced = (size, data) => ({ instanced: 1, size, data });
       const place = instanced(3, new Float32Array(3 * objects.length));
       const turn = instanced(4, new Float32Array(4 * objects.length));
       const tint = instanced(3, new Float32Array(objects.flatMap((object) => tints[object])));
       const program = programs[Number(isClosed(levels[0]))];
-      const meshes = (isSoft ? [levels[0], levels[0]] : levels).map((level, at) => {
+      const meshes = levels.map((level, at) => {
         // Many small bodies have all vertices once.
         const isSmooth = at > 0 && level.triangles.length > 3 * 24;
-        const { vertices, triangles } = level;
-        const { position, normal, index } = isSoft
-          ? { position: vertices, normal: vertices, index: triangles } : faceted(level, isSmooth ? -1 : SMOOTH);
+        const { position, normal, index } = faceted(level, isSmooth ? -1 : SMOOTH);
         const geometry = new OGL.Geometry(this.gl, {
           position: { size: 3, data: new Float32Array(position) },
           normal: { size: 3, data: new Float32Array(normal) },
@@ -147,7 +143,7 @@ class Drawing {
         });
         return new OGL.Mesh(this.gl, { geometry, program, frustumCulled: false });
       });
-      return [{ objects, isSoft, place: place.data, turn: turn.data, meshes }];
+      return [{ objects, place: place.data, turn: turn.data, meshes }];
     });
   }
 
@@ -242,17 +238,12 @@ class Drawing {
     this.runs.forEach(({ run, groups, contacts, mark }, index) => {
       const { x, y, width, height } = views[index];
       gl.viewport(x, y, width, height);
-      for (const { objects, isSoft, place, turn, meshes } of groups) {
+      for (const { objects, place, turn, meshes } of groups) {
         objects.forEach((object, at) => pose(data, run, object, time,
           place.subarray(3 * at, 3 * at + 3), turn.subarray(4 * at, 4 * at + 4)));
         const mesh = meshes[this.level];
         const { attributes } = mesh.geometry;
         attributes.place.needsUpdate = attributes.turn.needsUpdate = true;
-        if (isSoft) {
-          const { position, normal, index } = attributes;
-          deform(data, run, objects[0], time, index.data, position.data, normal.data);
-          position.needsUpdate = normal.needsUpdate = true;
-        }
         mesh.draw({ camera });
       }
       if (!this.showsContacts) return;

@@ -34,27 +34,51 @@ if (data.difference) {
 }
 find("part").hidden = !data.difference;
 
-// Time a step; a few slow steps may reach above the graph.
-function graph() {
-  const canvas = find("graph");
+// Places of the moving bodies of a run; null for those that are gone.
+function places(index, frame) {
+  const run = data.runs[index];
+  const moving = run.fixed.flatMap((fixed, object) => (fixed ? [] : [object]));
+  return moving.map((object) => {
+    const place = [];
+    return pose(data, run, object, frame, place, []) ? place : null;
+  });
+}
+
+// Mean height of the moving bodies in each frame.
+const heights = data.runs.map((run, index) => Float32Array.from({ length: run.frames }, (_, frame) => {
+  const there = places(index, frame).filter((place) => place);
+  return there.reduce((sum, place) => sum + place[1], 0) / Math.max(1, there.length);
+}));
+
+function graphs() {
+  const times = data.runs.map((run) => run.times);
+  // A few slow steps may reach above the graph.
+  const all = times.flatMap((run) => [...run]).sort((a, b) => a - b);
+  graph("graph", times, data.stride, 0, 1.15 * all[Math.floor(0.995 * (all.length - 1))], "ms a step");
+  const [least, most] = [Math.min, Math.max].map((f) => f(...heights.map((run) => f(...run))));
+  graph("heights", heights, 1, least, most > least ? most : least + 1, "mean height");
+}
+
+// Curves of all runs, of values between two limits, so many for a frame.
+function graph(name, curves, rate, least, most, label) {
+  const canvas = find(name);
   const scale = window.devicePixelRatio;
   const [width, height] = [canvas.clientWidth * scale, canvas.clientHeight * scale];
   Object.assign(canvas, { width, height });
-  const all = data.runs.flatMap((run) => [...run.times]).sort((a, b) => a - b);
-  const most = 1.15 * all[Math.floor(0.995 * (all.length - 1))];
   const context = canvas.getContext("2d");
   context.lineWidth = scale;
-  data.runs.forEach((run, index) => {
+  curves.forEach((curve, index) => {
     context.strokeStyle = COLOURS[index];
     context.beginPath();
-    run.times.forEach((time, step) => context.lineTo(
-      ((step + 1) / ((frames - 1) * data.stride)) * width, height * (1 - time / most)));
+    curve.forEach((value, at) => context.lineTo((at / ((frames - 1) * rate)) * width,
+      height * (1 - (value - least) / (most - least))));
     context.stroke();
   });
   context.font = `${11 * scale}px system-ui, sans-serif`;
   context.fillStyle = "#59626b";
   context.textAlign = "right";
-  context.fillText(`up to ${most < 10 ? most.toPrecision(2) : Math.round(most)} ms a step`, width - 4 * scale, 11 * scale);
+  const shown = (value) => (Math.abs(value) < 10 ? value.toPrecision(2) : Math.round(value));
+  context.fillText(`${label}, ${shown(least)} to ${shown(most)}`, width - 4 * scale, 11 * scale);
 }
 
 function layout() {
@@ -64,14 +88,16 @@ function layout() {
     labels[index].style.left = `calc(${(100 * view.x) / width}% + 8px)`;
     labels[index].style.top = `calc(${100 - (100 * (view.y + view.height)) / height}% + 8px)`;
   });
-  graph();
+  graphs();
   state.isStale = true;
 }
 
 function show() {
   const step = Math.min(Math.round(state.time * data.stride), (frames - 1) * data.stride);
   find("slider").value = Math.floor(state.time);
-  find("cursor").style.left = `${(100 * state.time) / (frames - 1)}%`;
+  for (const cursor of document.querySelectorAll(".cursor")) {
+    cursor.style.left = `${(100 * state.time) / (frames - 1)}%`;
+  }
   find("step").textContent = `step ${step}, ${(step / RATE).toFixed(2)} s`;
   data.runs.forEach((run, index) => {
     const near = run.times.slice(Math.max(0, step - 8), step);
@@ -129,12 +155,4 @@ layout();
 requestAnimationFrame(tick);
 
 // For tests and pictures.
-window.replay = { data, drawing, state, frames, seek, play,
-  places(index, frame) {
-    const run = data.runs[index];
-    const moving = run.fixed.flatMap((fixed, object) => (fixed ? [] : [object]));
-    return moving.map((object) => {
-      const place = [];
-      return pose(data, run, object, frame, place, []) ? place : null;
-    });
-  } };
+window.replay = { data, drawing, state, frames, seek, play, places };

@@ -1,0 +1,139 @@
+//! Long runs, too slow for each build: `cargo test --workspace -- --ignored`.
+
+use std::collections::VecDeque;
+
+use glamx::Vec3;
+use oorandom::Rand32;
+use rapier_integration::{SbbkConfig, SbbkDispatcher};
+use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
+use rapier3d::math::Vector;
+use rapier3d::pipeline::PhysicsWorld;
+use sbbk_testkit::mesh::{self, Mesh};
+use sbbk_testkit::scene::{BoxStack, HeadOnSlope, HelicopterBallDrop, MonkeyPile, Scene, Solid};
+use sbbk_testkit::world::Fingerprint;
+
+/// Bytes of trees that stay when their meshes are gone: little, so that the bound is soon reached.
+const IDLE_BYTES: usize = 1 << 20;
+/// Bodies at once, and steps between two new ones.
+const BODIES: usize = 40;
+const SPAWN_EVERY: usize = 4;
+
+struct Soak {
+    world: PhysicsWorld,
+    dispatcher: SbbkDispatcher,
+    random: Rand32,
+    /// Oldest first.
+    bodies: VecDeque<RigidBodyHandle>,
+}
+
+impl Soak {
+    /// A mesh floor without bodies.
+    fn new() -> Self {
+        let mut world = PhysicsWorld::new();
+        let floor = Solid::new(&mesh::terrain(24.0, 24, 0.6));
+        world.insert(RigidBodyBuilder::fixed(), floor.collider());
+        let mut config = SbbkConfig::default();
+        config.idle_tree_bytes = IDLE_BYTES;
+        let dispatcher = SbbkDispatcher::new(config);
+        world.narrow_phase.set_query_dispatcher(dispatcher.clone());
+        Self { world, dispatcher, random: Rand32::new(1), bodies: VecDeque::new() }
+    }
+
+    /// Adds a body with a mesh of its own and removes the oldest. Every fourth body exchanges the
+    /// mesh of a living one.
+    fn spawn(&mut self, count: usize) {
+        let collider = Solid::new(&self.new_mesh()).collider().build();
+        if count % 4 == 1
+            && let Some(&body) = self.bodies.back()
+        {
+            let old = self.world.bodies[body].colliders()[0];
+            self.world.colliders[old].set_shape(collider.shared_shape().clone());
+        }
+        let place = Vector::new(self.between(-4.0, 4.0), 6.0, self.between(-4.0, 4.0));
+        let body = RigidBodyBuilder::dynamic().translation(place);
+        self.bodies.push_back(self.world.insert(body, collider).0);
+        if self.bodies.len() > BODIES {
+            self.remove_oldest();
+        }
+    }
+
+    fn remove_oldest(&mut self) {
+        if let Some(body) = self.bodies.pop_front() {
+            self.world.remove_body(body);
+        }
+    }
+
+    fn new_mesh(&mut self) -> Mesh {
+        let size = self.between(0.5, 1.5);
+        let stretch = Vec3::new(self.between(0.7, 1.3), self.between(0.7, 1.3), 1.0);
+        let detail = self.random.rand_range(4..12);
+        let mesh = match self.random.rand_range(0..3) {
+            0 => mesh::ball(0.5 * size, detail),
+            1 => mesh::torus(0.4 * size, 0.15 * size, 2 * detail, detail),
+            _ => mesh::monkey_head_with(detail / 2 + 2).centred().scaled_to(size),
+        };
+        mesh.mapped(|vertex| stretch * vertex)
+    }
+
+    fn between(&mut self, low: f32, high: f32) -> f32 {
+        low + (high - low) * self.random.rand_float()
+    }
+}
+
+/// Would catch trees that stay when their meshes are gone, an idle cache without bound, and bodies
+/// that fall through the floor.
+#[test]
+#[ignore = "takes a minute"]
+fn bodies_that_come_and_go_leave_no_tree_behind() {
+    let mut soak = Soak::new();
+    for step in 1..=4000 {
+        if step % SPAWN_EVERY == 0 {
+            soak.spawn(step / SPAWN_EVERY);
+        }
+        soak.world.step();
+        let is_inside = |body: &RigidBodyHandle| {
+            let place = soak.world.bodies[*body].translation();
+            place.x.abs().max(place.z.abs()) > 11.0 || place.y > -1.5
+        };
+        assert!(soak.bodies.iter().all(is_inside), "a body fell through in step {step}");
+        assert!(soak.dispatcher.stats().trees < 20 * BODIES, "{:?}", soak.dispatcher.stats());
+    }
+    while !soak.bodies.is_empty() {
+        soak.remove_oldest();
+    }
+    // Rapier keeps retired pairs, with their workspaces, until it needs a new one.
+    (0..3).for_each(|_| soak.world.step());
+    drop(soak.world);
+    soak.dispatcher.release_idle_trees();
+    assert_eq!(soak.dispatcher.stats().trees, 0);
+}
+
+/// Would catch worlds that depend on addresses, on the order of hashes, or on memory of earlier
+/// steps: every scene runs twice, and once with a new dispatcher before each step.
+#[test]
+#[ignore = "takes a minute"]
+fn worlds_are_equal_to_the_bit_after_hundreds_of_steps() {
+    let scenes: [Box<dyn Scene>; 5] = [
+        Box::new(MonkeyPile::with_heads(60)),
+        Box::new(MonkeyPile { contact_recycling: false, ..MonkeyPile::with_heads(30) }),
+        Box::new(HelicopterBallDrop::default()),
+        Box::new(BoxStack::default()),
+        Box::new(HeadOnSlope::default()),
+    ];
+    let run = |scene: &dyn Scene, forgets: bool| {
+        let mut world = scene.build().world;
+        world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
+        for _ in 0..300 {
+            if forgets {
+                world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
+            }
+            world.step();
+        }
+        Fingerprint::of(&world)
+    };
+    for scene in &scenes {
+        let first = run(&**scene, false);
+        assert_eq!(first, run(&**scene, false), "{}, again", scene.name());
+        assert_eq!(first, run(&**scene, true), "{}, without memory", scene.name());
+    }
+}
