@@ -1,4 +1,4 @@
-//! The error of a backend's contacts, by comparison with brute force in f64.
+//! Wrong contacts of a backend, by comparison with brute force in f64.
 
 use std::collections::HashMap;
 use std::iter::Sum;
@@ -12,51 +12,49 @@ use serde::Serialize;
 
 use crate::backend::{Question, Reported, shape_address};
 
-/// Pairs whose distance differs from the prediction distance by at most this share of it may be
-/// reported or not. Raised, real misses pass; lowered, f32 rounding of large meshes is blamed.
+/// Share of the prediction distance within which a pair may be reported or not. Higher: real
+/// misses pass; lower: rounding to f32 counts as an error.
 const SET_BAND: f64 = 0.01;
-/// A distance or depth off by more than this share of the prediction distance is wrong.
+/// Tolerated error of a distance or depth, as a share of the prediction distance.
 const DEPTH_BAND: f64 = 0.05;
-/// Degrees between a normal and the true one beyond which it is wrong.
+/// Tolerated angle of a normal, in degrees.
 const NORMAL_BAND: f64 = 0.1;
 
-/// Triangle pairs, right and wrong, summed over the mesh pairs that were judged.
+/// Right and wrong triangle pairs, summed over the mesh pairs that were judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct ErrorCount {
     /// Mesh pairs judged.
     pub mesh_pairs: usize,
-    /// Mesh pairs from which they were sampled.
+    /// Mesh pairs of which the judged ones are a sample.
     pub sampled_from: usize,
-    /// Triangle pairs within the prediction distance, by the truth.
+    /// True triangle pairs within the prediction distance.
     pub true_pairs: usize,
-    /// Those of them that cross or touch.
+    /// True triangle pairs that cross or touch.
     pub crossing: usize,
-    /// Triangle pairs reported with a point within the prediction distance.
+    /// Triangle pairs reported within the prediction distance.
     pub reported: usize,
-    /// True pairs, by more than 1 % of the prediction distance, that were not reported.
+    /// True pairs that were not reported.
     pub missed: usize,
-    /// Reported pairs that are farther than the prediction distance, by more than 1 % of it, or
-    /// that had been reported before.
+    /// Reported pairs that are farther than the prediction distance, or were reported before.
     pub phantom: usize,
-    /// Reported true pairs whose distance or depth is off by more than 5 % of the prediction
-    /// distance.
+    /// Reported true pairs with a wrong distance or depth.
     pub wrong_depth: usize,
 }
 
-/// Right and wrong contacts, their normals included.
+/// Right and wrong contacts, normals included.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct ContactErrors {
-    /// Missed, phantom and wrong depth.
+    /// Missed pairs, phantoms and wrong depths.
     #[serde(flatten)]
     pub pairs: ErrorCount,
-    /// Reported true pairs of right depth whose normals the truth tells.
+    /// Pairs of right depth whose true normal is unique.
     pub judged_normals: usize,
-    /// Those whose normal is off by more than 0.1 degrees.
+    /// Pairs among these with a wrong normal.
     pub wrong_normal: usize,
 }
 
 impl ErrorCount {
-    /// Missed, phantom and wrong pairs.
+    /// Number of missed, phantom and wrong pairs.
     pub fn wrong(&self) -> usize {
         self.missed + self.phantom + self.wrong_depth
     }
@@ -94,10 +92,7 @@ summed!(ErrorCount {
 });
 summed!(ContactErrors { pairs, judged_normals, wrong_normal });
 
-/// Knows the meshes of a world in f64, as they were when it was made, and judges answers about
-/// them.
-///
-/// It knows a mesh by its address, and must not outlive it.
+/// Meshes in f64, by the addresses of their shapes. Must not outlive the shapes.
 pub struct Judge {
     meshes: HashMap<usize, TruthMesh>,
 }
@@ -107,28 +102,27 @@ struct TruthMesh {
     triangles: Vec<[u32; 3]>,
 }
 
-/// Every contact of one question within the prediction distance and its band, by the subshapes: the
-/// triangles of two meshes, or one and a part of a convex shape.
+/// All true contacts of one question, by their subshapes.
 pub struct Truth {
     contacts: HashMap<(u32, u32), TrueContact>,
     prediction: f64,
-    /// What a distance or depth may be off by: the first share of the prediction distance, or the
-    /// second of the depth, whichever is more.
+    /// Tolerated error of a distance: a share of the prediction distance, or a share of the depth,
+    /// whichever is more.
     bands: [f64; 2],
-    /// The shape whose outward normal is judged, in its own frame.
+    /// Index of the shape whose outward normal is judged, in the frame of this shape.
     side: usize,
 }
 
-/// What is true of two subshapes.
+/// A true contact of two subshapes.
 pub struct TrueContact {
     /// The distance, or minus the depth.
     pub distance: f64,
-    /// The normals of which each is right; none where that cannot be said.
+    /// All right normals; none if the normal is not unique.
     pub normals: Vec<DVec3>,
 }
 
 impl Judge {
-    /// A judge of the meshes among `shapes`; each is converted once, however often it is shared.
+    /// Converts the meshes among `shapes`, shared ones once.
     pub fn new<'a>(shapes: impl IntoIterator<Item = &'a SharedShape>) -> Self {
         let mut meshes = HashMap::new();
         for shape in shapes {
@@ -142,12 +136,11 @@ impl Judge {
         Self { meshes }
     }
 
-    /// Answers `question` by brute force: about 10 µs for each pair of triangles whose boxes are
-    /// near.
+    /// Computes the truth by brute force: about 10 µs for each pair of triangles with near boxes.
     ///
     /// # Panics
     ///
-    /// If the question is about a mesh that this judge was not given.
+    /// If the judge was not given a mesh of the question.
     pub fn truth(&self, question: &Question) -> Truth {
         let [mesh1, mesh2] = question.shapes.map(|address| &self.meshes[&address]);
         let pose = DPose3::from(question.pos12);
@@ -168,9 +161,8 @@ impl Judge {
     }
 }
 
-/// The triangles of two meshes, the second one at `pose`, that reach within `margin` of the box
-/// around those of the other mesh, and of the box around what that leaves of it. Bodies in touch
-/// share a small part of their boxes: this saves brute force most of its work.
+/// Triangles of each mesh within `margin` of the box of the other mesh, and then of the box of the
+/// triangles that this leaves. Saves brute force most of its work.
 fn near_triangles(meshes: [&TruthMesh; 2], pose: DPose3, margin: f64) -> [Vec<u32>; 2] {
     let poses = [DPose3::IDENTITY, pose];
     let boxes: [Vec<[DVec3; 2]>; 2] = [0, 1].map(|side| {
@@ -189,7 +181,7 @@ fn near_triangles(meshes: [&TruthMesh; 2], pose: DPose3, margin: f64) -> [Vec<u3
     near
 }
 
-/// The box around boxes, each given by its least and its greatest corner.
+/// Box around boxes, each given by its least and its greatest corner.
 fn union(boxes: impl IntoIterator<Item = [DVec3; 2]>) -> [DVec3; 2] {
     boxes.into_iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[min, max], [low, high]| {
         [min.min(low), max.max(high)]
@@ -197,7 +189,7 @@ fn union(boxes: impl IntoIterator<Item = [DVec3; 2]>) -> [DVec3; 2] {
 }
 
 impl Truth {
-    /// About triangles of two meshes: a depth may be off by 5 % of the prediction distance.
+    /// Contacts of triangles of two meshes.
     pub fn of_triangles(pairs: impl IntoIterator<Item = TruthPair>, prediction: Real) -> Self {
         let contact = |pair: TruthPair| {
             let normals = pair.normal_is_unique.then_some(pair.normal).into_iter().collect();
@@ -207,9 +199,8 @@ impl Truth {
         Self::new(pairs.into_iter().map(contact), prediction, [DEPTH_BAND, 0.0], 0)
     }
 
-    /// About any subshapes. A distance or depth may be off by the first of the `bands` as a share of
-    /// the prediction distance, or the second as a share of the depth, whichever is more; normals are
-    /// those of the shape number `side`, out of it and in its frame.
+    /// Contacts of any subshapes. `bands` are the tolerated errors of a distance, as shares of the
+    /// prediction distance and of the depth. Normals point out of shape number `side`.
     pub fn new(
         contacts: impl IntoIterator<Item = ((u32, u32), TrueContact)>,
         prediction: Real,
@@ -220,29 +211,24 @@ impl Truth {
         Self { contacts, prediction: prediction.into(), bands, side }
     }
 
-    /// The same under other numbers of the subshapes.
+    /// Renames the subshapes.
     pub fn renumbered(mut self, number: impl Fn(u32, u32) -> (u32, u32)) -> Self {
         let contacts = self.contacts.into_iter();
         self.contacts = contacts.map(|((one, two), truth)| (number(one, two), truth)).collect();
         self
     }
 
-    /// The subshapes, in no particular order.
-    pub fn pairs(&self) -> impl Iterator<Item = (u32, u32)> {
-        self.contacts.keys().copied()
-    }
-
-    /// Whether any two cross or touch.
+    /// True if any two subshapes cross or touch.
     pub fn meets(&self) -> bool {
         self.contacts.values().any(|truth| truth.distance <= 0.0)
     }
 
-    /// Counts what is wrong in the manifolds that answer the question that this is the truth of.
+    /// Counts the wrong contacts of manifolds.
     pub fn judge_manifolds(&self, manifolds: &[ContactManifold]) -> ContactErrors {
         self.judge(&Reported::all(manifolds, self.prediction as Real))
     }
 
-    /// The same of what is reported within the prediction distance.
+    /// Counts the wrong contacts among those reported within the prediction distance.
     pub fn judge(&self, reported: &[Reported]) -> ContactErrors {
         let mut seen = HashMap::new();
         let mut errors = ContactErrors::default();
@@ -275,9 +261,9 @@ impl Truth {
         errors
     }
 
-    /// The same for the contacts of surfaces, which are some of those of triangles: where these cross
-    /// or have passed each other they are measured along another way, and none need be there but one
-    /// if the meshes cross. No way is shorter than the distance of triangles that are apart.
+    /// Counts the wrong contacts of surfaces, which are fewer than those of triangles. One contact
+    /// is missed if the meshes cross and none is reported. A distance is wrong if it is shorter than
+    /// that of triangles that are apart.
     pub fn judge_surfaces(&self, reported: &[Reported]) -> ErrorCount {
         let band = DEPTH_BAND * self.prediction;
         let is_wrong = |contact: &&Reported| {
@@ -295,7 +281,7 @@ impl Truth {
 }
 
 impl TrueContact {
-    /// Whether a normal is right. One that is zero is at no angle to anything.
+    /// True if a normal is right. A normal of length zero is at no angle to anything.
     fn has(&self, normal: Vec3) -> bool {
         let angle = |right: &DVec3| normal.as_dvec3().angle_between(*right).to_degrees();
         self.normals.iter().any(|right| angle(right) <= NORMAL_BAND)
@@ -326,10 +312,9 @@ mod tests {
         manifold
     }
 
-    /// Would catch a judge that lets wrong normals pass, blames right ones, or judges where there
-    /// is nothing to judge.
+    /// Would catch wrong normals that pass, right ones that fail, and ambiguous ones that count.
     #[test]
-    fn normals_are_judged_where_the_truth_is_sure() {
+    fn unique_normals_are_judged() {
         let normal = DVec3::new(0.6, 0.0, 0.8);
         let distance = -0.01;
         let truth =
@@ -354,5 +339,40 @@ mod tests {
         assert_eq!(judged(&truth, turned(90.0), 0.03), (0, 0, 1));
         let unsure = TruthPair { normal_is_unique: false, ..truth };
         assert_eq!(judged(&unsure, turned(90.0), -0.01), (0, 0, 0));
+    }
+
+    /// Would catch a fault that is not counted, or is counted twice.
+    #[test]
+    fn each_fault_is_counted_once() {
+        let pair = |triangle1, distance: f64| TruthPair {
+            triangle1,
+            triangle2: 7,
+            distance,
+            normal: DVec3::Y,
+            normal_is_unique: true,
+        };
+        let pairs = [pair(0, -0.01), pair(1, 0.0199), pair(2, 0.005)];
+        let truth = Truth::of_triangles(pairs, PREDICTION);
+        let reported = |triangle1, distance| Reported {
+            triangle1,
+            triangle2: 7,
+            distance,
+            normals: [Vec3::Y; 2],
+        };
+        let errors = |reported: &[Reported]| {
+            let errors = truth.judge(reported).pairs;
+            [errors.missed, errors.phantom, errors.wrong_depth]
+        };
+        let right = [reported(0, -0.01), reported(2, 0.005)];
+        assert_eq!(errors(&right), [0, 0, 0], "the pair in the band may be missing");
+        assert_eq!(errors(&right[..1]), [1, 0, 0]);
+        assert_eq!(errors(&[right[0], right[1], reported(5, 0.01)]), [0, 1, 0]);
+        assert_eq!(errors(&[right[0], right[1], right[1]]), [0, 1, 0]);
+        assert_eq!(errors(&[right[0], reported(2, 0.0062)]), [0, 0, 1]);
+        assert_eq!(errors(&[right[0], reported(2, 0.0058)]), [0, 0, 0]);
+        assert_eq!(
+            [sample_indices(10, 4), sample_indices(3, 9)],
+            [vec![0, 2, 5, 7], vec![0, 1, 2]]
+        );
     }
 }

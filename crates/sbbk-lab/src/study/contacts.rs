@@ -1,17 +1,15 @@
-//! Contacts of mesh pairs at every scale, stock Parry beside SBBK: how many are right, and what
-//! they cost.
+//! Contacts of mesh pairs at every scale, stock Parry beside SBBK: wrong ones, and times.
 //!
-//! A *case* is one mesh at one size, asked for its contacts with itself within one prediction
-//! distance. Its poses come from *approaches*: one copy comes along a random direction, in a random
-//! orientation, and is stopped at five places from nearly apart to deep inside. Every answer is
-//! compared with brute force in f64, and both dispatchers answer in turn.
+//! A *case* is one mesh at one size, paired with itself at one prediction distance. One copy
+//! approaches the other in a random orientation and is stopped at five places, from nearly apart to
+//! deep inside. Brute force in f64 judges every answer.
 
 use oorandom::Rand32;
 use rapier3d::geometry::SharedShape;
 use rapier3d::math::Real;
 use serde_json::Value;
 
-use super::motion::{Approach, Mode, Place, STEP_COUNT, mode_notes};
+use super::motion::{Approach, Mode, Place, STEP_COUNT, mode_note};
 use super::pair::{Contest, DIRECT_NOTE};
 use super::shape;
 use crate::backend::Memory;
@@ -23,21 +21,18 @@ use crate::report::{Results, Row, TIME_NOTE, Table, TableSpec, number, sides};
 
 const EXACTNESS: &str = "contacts: exactness";
 const QUERIES: &str = "contacts: queries, µs";
+const ERROR_NOTE: &str = "errors: missed + phantom + wrong depth + wrong normal, of the true pairs";
 
-/// What the columns of errors hold.
-pub(super) const ERROR_NOTE: &str =
-    "errors: missed + phantom + wrong depth + wrong normal, of the true pairs judged";
-
-/// A mesh and how often it is approached in each case.
+/// A mesh and its approaches.
 #[derive(Clone, Debug)]
 pub struct ApproachedMesh {
-    /// The mesh; sizes are made by scaling it.
+    /// The mesh, which is scaled to each size.
     pub mesh: Mesh,
-    /// Approaches, of five poses each.
+    /// Approaches in each case, of five poses each.
     pub approach_count: usize,
 }
 
-/// What to compare, and how thoroughly.
+/// Extent of the study.
 #[derive(Clone, Debug)]
 pub struct ContactsPlan {
     /// The meshes, in the order of the tables.
@@ -46,38 +41,29 @@ pub struct ContactsPlan {
     pub sizes: Vec<Real>,
     /// Prediction distances, in units.
     pub predictions: Vec<Real>,
-    /// How often the queries of each case are timed; once where there are very many contacts.
-    pub case_repeats: usize,
-    /// How often those of the speed tables are, at least.
-    pub speed_repeats: usize,
+    /// Least number of repeats of times.
+    pub repeats: usize,
 }
 
-/// Repeats of short measurements.
-const SHORT_REPEATS: usize = 25;
-/// Triangles in all repeats of the speed tables together: short queries are repeated more often.
+/// Triangles in all repeats of a speed case together. Higher: slower studies; lower: noisier times
+/// of small meshes.
 const REPEATED_TRIANGLES: usize = 25_000;
-/// True pairs in all repeats of a case together: the few cases with hundreds of thousands of
-/// contacts, for which stock Parry takes seconds a query, are timed once.
-const REPEATED_PAIRS: usize = 500_000;
-/// Size and prediction distance, in units, of the cases whose speed is measured: Rapier's default
-/// distance, and meshes of the size that it is made for.
+const MOST_REPEATS: usize = 25;
+/// Size and prediction distance of the cases whose speed is measured, in units: Rapier's default.
 const SPEED_CASE: [Real; 2] = [2.0, 0.02];
-/// At most this many motions a mesh.
+/// Motions of a mesh at most.
 const MOTION_LIMIT: usize = 20;
-/// Where there would be more contacts than these, the approach ends earlier: two meshes of 70,000
-/// triangles, a tenth of a unit long, have tens of millions within 0.02 units. Higher: minutes and
-/// gigabytes for the same verdict. Lower: meshes touch and cross in fewer cases.
+/// Contacts of a place at most; a place with more is moved back. Higher: gigabytes for fine meshes
+/// of a tenth of a unit; lower: fewer cases that cross.
 const PAIR_LIMIT: usize = 40_000;
-/// The way to a place is halved at most so often to stay below the limit.
+/// The way to a place is halved at most so often to stay below [`PAIR_LIMIT`].
 const HALVINGS: i32 = 7;
 
 impl ContactsPlan {
-    /// Six meshes of 288 to 70,688 triangles, three sizes, three prediction distances, 1125 poses;
-    /// within three minutes on two cores.
+    /// Six meshes of 288 to 70,688 triangles in 1125 poses; about three minutes on two cores.
     pub fn standard() -> Self {
         let approached = |mesh, approach_count| ApproachedMesh { mesh, approach_count };
         Self {
-            // Pieces of a mesh with many triangles are many poses in themselves.
             meshes: vec![
                 approached(mesh::monkey_head_with(6), 8),
                 approached(mesh::monkey_head_with(11), 6),
@@ -88,28 +74,16 @@ impl ContactsPlan {
             ],
             sizes: vec![0.1, 2.0, 40.0],
             predictions: vec![0.001, 0.002, 0.02],
-            case_repeats: 3,
-            speed_repeats: 5,
+            repeats: 5,
         }
     }
 
-    /// The same cases of the four smaller meshes, one approach each, within half a minute: for
-    /// trying, not for quoting.
+    /// The four smaller meshes with one approach each, half a minute: for trying, not for quoting.
     pub fn quick() -> Self {
         let standard = Self::standard();
         let small = standard.meshes.into_iter().take(4);
-        Self {
-            meshes: small.map(|mesh| ApproachedMesh { approach_count: 1, ..mesh }).collect(),
-            case_repeats: 1,
-            speed_repeats: 3,
-            ..standard
-        }
-    }
-
-    /// Number of poses over all cases.
-    pub fn pose_count(&self) -> usize {
-        let approaches: usize = self.meshes.iter().map(|mesh| mesh.approach_count).sum();
-        approaches * advances(0.0, 0.0).len() * self.sizes.len() * self.predictions.len()
+        let meshes = small.map(|mesh| ApproachedMesh { approach_count: 1, ..mesh }).collect();
+        Self { meshes, repeats: 3, ..standard }
     }
 }
 
@@ -121,11 +95,11 @@ struct Case<'a> {
     prediction: Real,
     shape: &'a SharedShape,
     places: Vec<Place>,
-    /// Of first queries at all places, by stock and SBBK.
+    /// Errors of first queries at all places, of stock and SBBK.
     errors: [ContactErrors; 2],
 }
 
-/// Measures all that `plan` asks for.
+/// Judges all cases, and measures those of Rapier's default.
 pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Results {
     let mut shapes = Vec::new();
     for mesh in &plan.meshes {
@@ -134,35 +108,30 @@ pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Results {
         }
     }
     let contest = Contest::new(shapes.iter().map(|(_, _, shape)| shape));
-    let cases: Vec<Case> = shapes
-        .iter()
-        .flat_map(|(mesh, size, shape)| {
-            plan.predictions
-                .iter()
-                .map(move |&prediction| Case::new(mesh, *size, prediction, shape))
-        })
-        .collect();
+    let mut cases = Vec::new();
+    for (mesh, size, shape) in &shapes {
+        cases.extend(plan.predictions.iter().map(|&prediction| Case {
+            mesh,
+            size: *size,
+            prediction,
+            shape,
+            places: Vec::new(),
+            errors: Default::default(),
+        }));
+    }
     progress.phase("poses and brute force", cases.len());
     let cases: Vec<Case> = parallel::map(&cases, parallel::threads(), |index, case| {
-        let case = case.clone().posed(index, &contest).judged(&contest);
+        let case = case.clone().judged(index, &contest);
         progress.step();
         case
     });
-    progress.phase("first queries", cases.len());
-    let mut rows: Vec<Row> = Vec::new();
-    for case in &cases {
-        rows.extend(case.exactness(&contest, plan.case_repeats));
-        progress.step();
-    }
-    let speed_cases = cases.iter().filter(|case| [case.size, case.prediction] == SPEED_CASE);
+    let mut rows: Vec<Row> = cases.iter().flat_map(Case::exactness).collect();
     progress.phase("speed", plan.meshes.len());
-    for case in speed_cases {
-        rows.extend(case.speed(&contest, plan.speed_repeats));
+    for case in cases.iter().filter(|case| [case.size, case.prediction] == SPEED_CASE) {
+        rows.extend(case.speed(&contest, plan.repeats));
         progress.step();
     }
-    progress.finish();
-    let uncrossed = cases.iter().filter(|case| case.true_pairs()[1] == 0).count();
-    let tables = tables(&rows, uncrossed);
+    let tables = tables(&rows);
     Results::new(verdict(&rows), rows, tables)
 }
 
@@ -179,76 +148,43 @@ fn verdict(rows: &[Row]) -> String {
         let ratios = pairs.map(|(a, b)| a.number("time.min") / b.number("time.min"));
         geometric_mean(ratios).unwrap_or(f64::NAN)
     };
+    let [fresh, slow, fast] = Mode::ALL.map(speed);
     format!(
-        "of {all} true contacts SBBK has {} wrong, stock {}; SBBK is {:.1} times as fast in first \
-         queries, {:.1} and {:.1} times in slow and fast motion",
+        "of {all} true contacts SBBK has {} wrong, stock {}; SBBK is {fresh:.1} times as fast in \
+         first queries, {slow:.1} and {fast:.1} times in slow and fast motion",
         wrong("sbbk"),
-        wrong("stock"),
-        speed(Mode::Fresh),
-        speed(Mode::SLOW),
-        speed(Mode::FAST)
+        wrong("stock")
     )
 }
 
-/// How far the second mesh goes beyond the first touch, in units; negative: short of it. The
-/// distance of the meshes is at most the way back to where they touch, so that they are within the
-/// prediction distance at all places.
-fn advances(size: Real, prediction: Real) -> [Real; 5] {
-    [-0.95 * prediction, -0.5 * prediction, 0.0, 0.02 * size, 0.06 * size]
-}
-
-/// The places of one approach of a mesh to itself, from apart to deep inside.
-pub(super) fn places(
-    contest: &Contest,
-    shape: &SharedShape,
-    size: Real,
-    prediction: Real,
-    seed: u64,
-) -> Vec<Place> {
-    let approach = Approach::random(contest.sbbk(), [shape; 2], &mut Rand32::new(seed));
-    let is_small = |place: &Place| {
-        let mut memory = Memory::default();
-        memory.ask(contest.sbbk(), [&**shape; 2], &place.pos12, prediction);
-        memory.manifolds.len() <= PAIR_LIMIT
-    };
-    let advances = advances(size, prediction);
-    let first = advances[0];
-    let place = |advance: Real| {
-        let ways = (0..=HALVINGS).rev().map(|k| first + (advance - first) * 0.5f32.powi(k));
-        let places = ways.map(|way| approach.place(way));
-        places.take_while(is_small).last().unwrap_or(approach.place(first))
-    };
-    advances.map(place).into()
-}
-
-impl<'a> Case<'a> {
-    fn new(mesh: &'a ApproachedMesh, size: Real, prediction: Real, shape: &'a SharedShape) -> Self {
-        Self { mesh, size, prediction, shape, places: Vec::new(), errors: Default::default() }
-    }
-
-    /// With its places. Each approach has a seed of its own, so that the poses do not depend on the
-    /// order in which the cores find them.
-    fn posed(mut self, index: usize, contest: &Contest) -> Self {
+impl Case<'_> {
+    /// Finds the places and judges first queries there. The seeds of a case depend on its index, and
+    /// not on the order in which threads take cases.
+    fn judged(mut self, index: usize, contest: &Contest) -> Self {
         let seeds = (0..self.mesh.approach_count).map(|approach| (index << 16 | approach) as u64);
-        self.places = seeds
-            .flat_map(|seed| places(contest, self.shape, self.size, self.prediction, seed))
-            .collect();
+        self.places = seeds.flat_map(|seed| self.places_of(contest, seed)).collect();
+        self.errors = contest_errors(contest, &self.sequences(Mode::Fresh, usize::MAX), |_| true);
         self
     }
 
-    /// With what is true, and what is wrong with the answers of both.
-    fn judged(mut self, contest: &Contest) -> Self {
-        self.errors = contest.mesh_errors(&self.sequences(Mode::Fresh, usize::MAX), |_| true);
-        self
+    /// Places of one approach, from apart to deep inside.
+    fn places_of(&self, contest: &Contest, seed: u64) -> [Place; 5] {
+        let Self { size, prediction, shape, .. } = *self;
+        let approach = Approach::random(contest.sbbk(), [shape; 2], &mut Rand32::new(seed));
+        let is_small = |place: &Place| {
+            let mut memory = Memory::default();
+            memory.ask(contest.sbbk(), [&**shape; 2], &place.pos12, prediction);
+            memory.manifolds.len() <= PAIR_LIMIT
+        };
+        // Beyond the first touch, in units; all are within the prediction distance.
+        let first = -0.95 * prediction;
+        [first, -0.5 * prediction, 0.0, 0.02 * size, 0.06 * size].map(|advance| {
+            let ways = (0..=HALVINGS).rev().map(|k| first + (advance - first) * 0.5f32.powi(k));
+            let places = ways.map(|way| approach.place(way));
+            places.take_while(is_small).last().unwrap_or(approach.place(first))
+        })
     }
 
-    /// The true contacts, and those of them that cross.
-    fn true_pairs(&self) -> [usize; 2] {
-        let pairs = self.errors[0].pairs;
-        [pairs.true_pairs, pairs.crossing]
-    }
-
-    /// What is asked in a mode.
     fn sequences(&self, mode: Mode, limit: usize) -> Vec<Sequence> {
         let places = self.places.iter().take(limit);
         places.map(|place| mode.sequence([self.shape; 2], place, self.prediction)).collect()
@@ -259,129 +195,90 @@ impl<'a> Case<'a> {
         row.key("triangle_count", self.mesh.mesh.triangle_count())
     }
 
-    fn exactness(&self, contest: &Contest, repeats: usize) -> impl Iterator<Item = Row> {
-        let [true_pairs, crossing] = self.true_pairs();
-        let affordable = REPEATED_PAIRS / true_pairs.max(1);
-        let sequences = self.sequences(Mode::Fresh, usize::MAX);
-        let times = contest.race(affordable.clamp(1, repeats.max(1)), &sequences);
-        let sides = Contest::BACKENDS.into_iter().zip(times).zip(self.errors);
-        sides.map(move |((backend, time), errors)| {
-            self.row(EXACTNESS, backend)
+    fn exactness(&self) -> [Row; 2] {
+        [0, 1].map(|side| {
+            self.row(EXACTNESS, Contest::BACKENDS[side])
                 .key("size", decimal(self.size))
                 .key("prediction", decimal(self.prediction))
                 .with("pose_count", self.places.len())
-                .with("apart", true_pairs - crossing)
-                .with("crossing", crossing)
-                .with("time", time)
-                .with("errors", errors)
+                .with("errors", self.errors[side])
         })
     }
 
-    /// First queries, and queries in motion.
+    /// Times of first queries, and of queries in motion.
     fn speed(&self, contest: &Contest, repeats: usize) -> Vec<Row> {
         let affordable = REPEATED_TRIANGLES / self.mesh.mesh.triangle_count().max(1);
-        let repeats = affordable.min(SHORT_REPEATS).max(repeats);
-        let rows = Mode::ALL.into_iter().flat_map(|mode| {
+        let repeats = affordable.min(MOST_REPEATS).max(repeats);
+        let mut rows = Vec::new();
+        for mode in Mode::ALL {
             let is_fresh = mode == Mode::Fresh;
             let sequences = self.sequences(mode, if is_fresh { usize::MAX } else { MOTION_LIMIT });
             let times = contest.race(repeats, &sequences);
             let errors = match is_fresh {
                 true => self.errors,
-                false => contest
-                    .mesh_errors(&sequences, |step| step == STEP_COUNT / 2 || step == STEP_COUNT),
+                false => contest_errors(contest, &sequences, |step| {
+                    step == STEP_COUNT / 2 || step == STEP_COUNT
+                }),
             };
-            let sides = Contest::BACKENDS.into_iter().zip(times).zip(errors);
-            let rows = sides.map(|((backend, time), errors)| {
+            for ((backend, time), errors) in Contest::BACKENDS.into_iter().zip(times).zip(errors) {
                 let row = self.row(QUERIES, backend).key("mode", mode.to_string());
-                row.with("sequence_count", sequences.len())
-                    .with("time", time)
-                    .with("errors", errors)
-            });
-            rows.collect::<Vec<_>>()
-        });
-        rows.collect()
+                let row = row.with("sequence_count", sequences.len());
+                rows.push(row.with("time", time).with("errors", errors));
+            }
+        }
+        rows
     }
 }
 
-/// As it is written: 0.1 as an f32 is not 0.1 as an f64.
+fn contest_errors(
+    contest: &Contest,
+    sequences: &[Sequence],
+    is_judged: impl Fn(usize) -> bool + Sync,
+) -> [ContactErrors; 2] {
+    contest.errors(sequences, |index, step| is_judged(step).then(|| sequences[index].truth(step)))
+}
+
+/// The number as it is written: 0.1 as an f32 is not 0.1 as an f64.
 fn decimal(value: Real) -> Value {
     value.to_string().parse::<f64>().unwrap_or(f64::NAN).into()
 }
 
-fn tables(rows: &[Row], uncrossed: usize) -> Vec<Table> {
-    let exactness = |title: &str, keys, notes| {
-        let truth = [("poses", "pose_count"), ("true, apart", "apart"), ("crossing", "crossing")];
-        let wrong = [
-            ("missed", "errors.missed"),
-            ("phantom", "errors.phantom"),
-            ("wrong depth", "errors.wrong_depth"),
-            ("wrong normal", "errors.wrong_normal"),
+fn tables(rows: &[Row]) -> Vec<Table> {
+    let exactness = |title: &str, keys| {
+        let mut columns = vec![
+            number("poses", "pose_count").of("sbbk"),
+            number("true", "errors.true_pairs").of("sbbk"),
         ];
-        let truth = truth.map(|(header, path)| number(header, path).of("sbbk"));
-        let wrong = Contest::BACKENDS.into_iter().flat_map(|backend| {
-            wrong.map(|(header, path)| number(&format!("{backend}: {header}"), path).of(backend))
-        });
-        TableSpec::new(title, EXACTNESS, keys, truth.into_iter().chain(wrong))
-            .total(0)
-            .notes(notes)
-            .of(rows)
-    };
-    let speed = |title: String, study, of: Vec<_>, notes: Vec<String>| {
-        let common = [TIME_NOTE, ERROR_NOTE, DIRECT_NOTE].map(str::to_owned);
-        TableSpec::new(
-            title,
-            study,
-            &["mode", "mesh", "triangle_count"],
-            of.into_iter().chain(sides()),
-        )
-        .total(1)
-        .notes([mode_notes(), notes, common.into()].concat())
-        .of(rows)
+        for backend in Contest::BACKENDS {
+            let column = |name: &str, path| number(&format!("{backend}: {name}"), path).of(backend);
+            columns.extend([
+                column("missed", "errors.missed"),
+                column("phantom", "errors.phantom"),
+                column("depth", "errors.wrong_depth"),
+                column("normal", "errors.wrong_normal"),
+            ]);
+        }
+        TableSpec::new(title, EXACTNESS, keys, columns).total(0)
     };
     let [size, prediction] = SPEED_CASE;
+    let title = format!(
+        "Speed of mesh pairs: {size} units across, prediction distance {prediction}; microseconds \
+         a query"
+    );
+    let keys = &["mode", "mesh", "triangle_count"];
+    let mut columns = vec![number("places", "sequence_count").of("sbbk")];
+    columns.extend(sides());
+    let speed = TableSpec::new(title, QUERIES, keys, columns).total(1).note(mode_note());
     vec![
-        exactness("Exactness by size: all meshes", &["size", "prediction"], Vec::new()),
-        exactness(
-            "Exactness by mesh: all sizes and distances",
-            &["mesh", "triangle_count"],
-            vec![
-                "pairs of triangles, against brute force in f64; true: within the prediction \
-                 distance, with a band of 1 % of it for missed and phantom; wrong depth: off by \
-                 more than 5 % of it"
-                    .to_owned(),
-                "wrong normal: off by more than 0.1 degrees, where the depth is right and the true \
-                 normal the only one"
-                    .to_owned(),
-                format!(
-                    "poses: from 0.95 prediction distances apart to 6 % of the size inside; less \
-                     deep where there would be more than {PAIR_LIMIT} contacts, so that nothing \
-                     crosses in {uncrossed} cases"
-                ),
-                DIRECT_NOTE.to_owned(),
-            ],
-        ),
-        speed(
-            format!(
-                "Speed of mesh pairs: {size} units across, prediction distance {prediction}; \
-                 microseconds a query"
-            ),
-            QUERIES,
-            vec![number("poses or motions", "sequence_count").of("sbbk")],
-            vec!["errors of motions: in their middle and at their end".to_owned()],
-        ),
+        exactness("Wrong contacts by size, all meshes", &["size", "prediction"]).of(rows),
+        exactness("Wrong contacts by mesh, all sizes", &["mesh", "triangle_count"])
+            .note(
+                "bands: 1 % of the prediction distance for missed and phantom, 5 % for depths, 0.1 \
+                 degrees for normals that are unique; places: from 0.95 prediction distances apart \
+                 to 6 % of the size inside",
+            )
+            .note(DIRECT_NOTE)
+            .of(rows),
+        speed.notes([TIME_NOTE, ERROR_NOTE, DIRECT_NOTE].map(str::to_owned)).of(rows),
     ]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Would catch a grid with a hole, and a plan that promises more than it asks.
-    #[test]
-    fn the_standard_plan_is_a_full_grid_of_a_thousand_poses() {
-        let plan = ContactsPlan::standard();
-        let counts = plan.meshes.iter().map(|mesh| mesh.mesh.triangle_count());
-        assert_eq!(counts.collect::<Vec<_>>(), [288, 968, 2596, 5040, 20_000, 70_688]);
-        assert_eq!((plan.pose_count(), ContactsPlan::quick().pose_count()), (1125, 180));
-    }
 }

@@ -1,4 +1,4 @@
-//! Where a second shape comes to touch a first one, and how it moves there.
+//! Approaches of a second shape to a first one, and motion about the places of contact.
 
 use std::f32::consts::FRAC_1_SQRT_2;
 use std::fmt;
@@ -13,20 +13,20 @@ use crate::metrics::Sequence;
 use crate::scene::random;
 
 /// Steps of one motion, after its first query.
-pub const STEP_COUNT: usize = 16;
-
-/// Steps of the coarse search for the first touch. Fewer: thin parts pass through each other, and
-/// the first touch found is not the first.
+pub(super) const STEP_COUNT: usize = 16;
+/// Steps of the coarse search for the first touch. Higher: slower studies; lower: thin parts pass
+/// through each other.
 const COARSE_STEPS: usize = 64;
-/// Approaches tried until one touches: nearly all do.
+/// Approaches tried until one touches.
 const TRIES: usize = 100;
 
-/// How a pair is asked, and how far a step moves the surface, in prediction distances.
+/// Kind of a query.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Mode {
-    /// For the first time.
+    /// The first query of a pair.
     Fresh,
-    /// In motion, with what the query before left.
+    /// Queries in motion, with the memory of the query before. A step moves the surface by up to so
+    /// many prediction distances.
     Steady(Real),
 }
 
@@ -35,11 +35,11 @@ impl Mode {
     pub const FAST: Self = Self::Steady(0.5);
     pub const ALL: [Self; 3] = [Self::Fresh, Self::SLOW, Self::FAST];
 
-    /// The queries of two shapes at a place, see [`motion`].
+    /// Queries of two shapes at a place.
     pub fn sequence(self, shapes: [&SharedShape; 2], place: &Place, prediction: Real) -> Sequence {
         let poses = match self {
             Self::Fresh => vec![place.pos12],
-            Self::Steady(share) => motion(shapes[1], place, share * prediction, STEP_COUNT),
+            Self::Steady(share) => motion(shapes[1], place, share * prediction),
         };
         Sequence { shapes: shapes.map(SharedShape::clone), poses, prediction }
     }
@@ -54,42 +54,37 @@ impl fmt::Display for Mode {
     }
 }
 
-/// How the queries of each mode are made, for notes.
-pub(super) fn mode_notes() -> Vec<String> {
-    vec![
-        "fresh: nothing known about the pair, trees built; to free the manifolds is part of it"
-            .into(),
-        format!(
-            "steady: {STEP_COUNT} steps in a straight line while turning, which move the surface by \
-             up to so many prediction distances each, with what the query before left"
-        ),
-    ]
+/// Explains the modes, for notes.
+pub(super) fn mode_note() -> String {
+    format!(
+        "fresh: the first query of a pair with trees; steady: {STEP_COUNT} steps that slide and \
+         turn, and move the surface by up to so many prediction distances each"
+    )
 }
 
 /// A straight way of the second shape to its first touch with the first one.
 pub(super) struct Approach {
-    pub rotation: Quat,
+    rotation: Quat,
     /// Unit vector from the first shape, against the way.
-    pub direction: Vec3,
-    /// Where the way leads, if nothing stops it.
-    pub end: Vec3,
-    /// Distance from the end at which the shapes touch and a bit farther away do not.
+    direction: Vec3,
+    /// End of the way, if nothing stops the shape.
+    end: Vec3,
+    /// Largest distance from the end at which the shapes touch.
     touch: Real,
 }
 
-/// Where the second shape is, in the frame of the first, and from where it came.
+/// A pose of the second shape in the frame of the first.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     pub pos12: Pose3,
-    /// Unit vector from the first shape, against the way that the second one came.
+    /// Unit vector from the first shape, against the way of the second one.
     pub direction: Vec3,
 }
 
 impl Approach {
-    /// A way in a random orientation along a random direction. The shape may pass through a hole,
-    /// as of a torus: then another is tried.
+    /// Makes an approach in a random orientation along a random direction.
     ///
-    /// Panics where none touches, as of shapes without extent.
+    /// Panics if no approach touches, as for shapes without extent.
     pub fn random(
         dispatcher: &SharedDispatcher,
         shapes: [&SharedShape; 2],
@@ -102,30 +97,20 @@ impl Approach {
         (0..TRIES).find_map(|_| way()).expect("shapes with an extent touch on some way")
     }
 
-    /// The way along `direction` to `end`; `None` if the shapes do not touch.
+    /// Makes an approach along `direction` to `end`; `None` if the shapes do not touch.
     pub fn along(
         direction: Vec3,
         rotation: Quat,
         end: Vec3,
         dispatcher: &SharedDispatcher,
-        shapes: [&SharedShape; 2],
+        [shape1, shape2]: [&SharedShape; 2],
     ) -> Option<Self> {
         let mut way = Self { rotation, direction, end, touch: 0.0 };
-        way.touch = way.first_touch(dispatcher, shapes)?;
-        Some(way)
-    }
-
-    fn first_touch(
-        &self,
-        dispatcher: &SharedDispatcher,
-        [shape1, shape2]: [&SharedShape; 2],
-    ) -> Option<Real> {
-        let opposite = self.rotation.inverse() * -self.direction;
-        let farthest =
-            reach(shape1, self.end, self.direction) + reach(shape2, Vec3::ZERO, opposite);
+        let opposite = rotation.inverse() * -direction;
+        let farthest = reach(shape1, end, direction) + reach(shape2, Vec3::ZERO, opposite);
         let step = farthest / COARSE_STEPS as Real;
         let touches = |distance: &Real| {
-            let answer = dispatcher.intersection_test(&self.at(*distance), &**shape1, &**shape2);
+            let answer = dispatcher.intersection_test(&way.at(*distance), &**shape1, &**shape2);
             answer.is_ok_and(|answer| answer.intersecting)
         };
         let mut distances = (0..COARSE_STEPS).map(|i| farthest - step * i as Real);
@@ -134,7 +119,8 @@ impl Approach {
         loop {
             let middle = 0.5 * (inside + outside);
             if middle <= inside || middle >= outside {
-                return Some(inside);
+                way.touch = inside;
+                return Some(way);
             }
             *(if touches(&middle) { &mut inside } else { &mut outside }) = middle;
         }
@@ -144,15 +130,15 @@ impl Approach {
         Pose3::from_parts(self.end + distance * self.direction, self.rotation)
     }
 
-    /// So far beyond the first touch, in units; negative: short of it.
+    /// The place so far beyond the first touch, in units.
     pub fn place(&self, advance: Real) -> Place {
         Place { pos12: self.at(self.touch - advance), direction: self.direction }
     }
 }
 
-/// How far a shape reaches in a direction from a point of its frame.
+/// Largest extent of a shape along a direction, from a point of its frame.
 fn reach(shape: &SharedShape, from: Vec3, direction: Vec3) -> Real {
-    // Shapes of the studies that are no meshes reach less far; floors are approached from above.
+    /// Bound for the shapes of the studies that are no meshes.
     const OTHERS: Real = 2.0;
     let heights = |mesh: &TriMesh| {
         let heights = mesh.vertices().iter().map(|vertex| (*vertex - from).dot(direction));
@@ -161,18 +147,10 @@ fn reach(shape: &SharedShape, from: Vec3, direction: Vec3) -> Real {
     shape.as_trimesh().map_or(OTHERS, heights)
 }
 
-/// Poses from before a place through it to as far behind it, `step_count` equal steps: the mesh
-/// `shape` slides along a straight line and turns about its origin at once. Each of the two moves
-/// the point of the surface that it moves most by half of `step`; together they move no point
-/// farther than `step`, and some nearly so far.
-pub(super) fn motion(
-    shape: &SharedShape,
-    place: &Place,
-    step: Real,
-    step_count: usize,
-) -> Vec<Pose3> {
-    // Along the first shape, and about an axis that is neither that of rolling nor that of
-    // spinning.
+/// Poses from before a place through it to as far behind it, in equal steps. The mesh slides along
+/// a straight line and turns about its origin; each of the two moves the surface by half of `step`.
+fn motion(shape: &SharedShape, place: &Place, step: Real) -> Vec<Pose3> {
+    // The axis is neither that of rolling nor that of spinning.
     let slide = place.direction.any_orthonormal_vector();
     let axis = FRAC_1_SQRT_2 * (place.direction + place.direction.cross(slide));
     let local_axis = place.pos12.rotation.inverse() * axis;
@@ -180,13 +158,13 @@ pub(super) fn motion(
     let radii = vertices.iter().map(|vertex| vertex.cross(local_axis).length());
     let angle = 0.5 * step / radii.fold(Real::MIN_POSITIVE, Real::max);
     let pose = |index: usize| {
-        let steps = index as Real - 0.5 * step_count as Real;
+        let steps = index as Real - 0.5 * STEP_COUNT as Real;
         Pose3::from_parts(
             place.pos12.translation + 0.5 * step * steps * slide,
             Quat::from_axis_angle(axis, angle * steps) * place.pos12.rotation,
         )
     };
-    (0..=step_count).map(pose).collect()
+    (0..=STEP_COUNT).map(pose).collect()
 }
 
 #[cfg(test)]
@@ -194,20 +172,16 @@ mod tests {
     use super::*;
     use crate::mesh;
 
-    /// Would catch steps that are shorter or longer than tables say, a motion without turning or
-    /// sliding, and one that does not lead through the place where the meshes touch.
+    /// Would catch steps that are shorter or longer than tables say, and a motion without sliding.
     #[test]
-    fn steps_move_the_surface_by_the_stated_amount() {
+    fn a_step_moves_the_surface_by_the_stated_amount() {
         let shape = mesh::monkey_head_with(6).shared_shape().unwrap();
         let vertices = shape.as_trimesh().unwrap().vertices();
         let pos12 = Pose3::new(Vec3::new(0.4, 1.3, -0.6), Vec3::new(0.3, -1.2, 0.8));
         let place = Place { pos12, direction: Vec3::new(0.48, 0.6, -0.64) };
         for step in [0.001, 0.01] {
-            let poses = motion(&shape, &place, step, STEP_COUNT);
-            assert_eq!(poses.len(), STEP_COUNT + 1);
-            let middle = poses[STEP_COUNT / 2];
-            assert!((middle.translation - pos12.translation).length() < 1e-6);
-            assert!(middle.rotation.angle_between(pos12.rotation) < 1e-3);
+            let poses = motion(&shape, &place, step);
+            assert!((poses[STEP_COUNT / 2].translation - pos12.translation).length() < 1e-6);
             for pair in poses.windows(2) {
                 let moved = vertices.iter().map(|&v| (pair[1] * v - pair[0] * v).length());
                 let farthest = moved.fold(0.0, Real::max);

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use crate::metrics::Summary;
 
 /// Calls `measure` for each contestant in turn, `repeats` times over, so that a slow spell of the
-/// machine meets all of them; the results by contestant.
+/// machine slows all of them. Returns the results by contestant.
 pub(super) fn in_turn<C, T>(
     contestants: &[C],
     repeats: usize,
@@ -20,7 +20,7 @@ pub(super) fn in_turn<C, T>(
     results
 }
 
-/// Times of the contestants, taken in turn, at least once; seconds times `scale`.
+/// Times the contestants in turn, at least once; in seconds times `scale`.
 pub(super) fn race<C>(
     contestants: &[C],
     repeats: usize,
@@ -32,26 +32,9 @@ pub(super) fn race<C>(
     times.into_iter().filter_map(Summary::of).collect()
 }
 
-/// What some work takes, and its result.
+/// Runs and times some work.
 pub(super) fn timed<T>(work: impl FnOnce() -> T) -> (Duration, T) {
     let start = Instant::now();
     let result = work();
     (start.elapsed(), result)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Would catch repeats in blocks, which a slow spell would turn into a difference.
-    #[test]
-    fn contestants_alternate() {
-        let mut order = Vec::new();
-        let results = in_turn(&["a", "b"], 2, |&name| {
-            order.push(name);
-            order.len()
-        });
-        assert_eq!(order, ["a", "b", "a", "b"]);
-        assert_eq!(results, [[1, 3], [2, 4]]);
-    }
 }

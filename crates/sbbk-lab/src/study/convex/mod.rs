@@ -13,7 +13,7 @@ use rapier3d::math::Real;
 
 use self::kinds::{Kind, kinds};
 use self::pair::Pair;
-use super::motion::{Mode, Place, mode_notes};
+use super::motion::{Mode, Place, mode_note};
 use super::pair::{Contest, DIRECT_NOTE};
 use super::shape;
 use crate::mesh::{self, Mesh};
@@ -134,7 +134,7 @@ fn tables(plan: &ConvexPlan, rows: &[Row]) -> Vec<Table> {
                     query has the mesh first";
         TableSpec::new(title, study, &["mode", "depth", "shape"], columns)
             .total(2)
-            .notes(mode_notes())
+            .note(mode_note())
             .notes([deep, TIME_NOTE, ERRORS_NOTE, DIRECT_NOTE].map(str::to_owned))
             .of(rows)
     };
