@@ -45,7 +45,7 @@ impl ConvexQuery<'_> {
         match self.search.nearest(limit_of(max_distance)) {
             Some(found) if found.is_touching => ClosestPoints::Intersecting,
             Some(found) => {
-                let [one, two] = self.mesh_place.swap(self.search.points(&found));
+                let [one, two] = self.mesh_place.swap(found.points(&self.search.placed));
                 ClosestPoints::WithinMargin(one, two)
             }
             None => ClosestPoints::Disjoint,
@@ -78,8 +78,8 @@ impl ConvexQuery<'_> {
 
     fn touch(&self, found: &FoundTriangle) -> Touch {
         Touch {
-            points: self.mesh_place.swap(self.search.points(found)),
-            normals: self.mesh_place.swap(self.search.normals(found)),
+            points: self.mesh_place.swap(found.points(&self.search.placed)),
+            normals: self.mesh_place.swap(found.normals(&self.search.placed)),
         }
     }
 

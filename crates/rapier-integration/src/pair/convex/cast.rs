@@ -1,9 +1,8 @@
-//! When a convex shape, moving along a line against a mesh, first comes within a distance.
+//! Linear casts of a convex shape against a mesh.
 //!
-//! The distance of two convex bodies is a convex function of time, so Newton's method from the start
-//! comes to the first impact from before, as for two triangles, or shows that there is none. The
-//! directions of curved shapes are not exact: where a step goes too far, the next one is by the rule of
-//! false position.
+//! The distance of two convex bodies is a convex function of time. Newton's method from the start
+//! therefore approaches the first impact from before, or shows that there is none. Normals of curved
+//! shapes are not exact: after a step that goes too far, the next one uses the rule of false position.
 
 use std::cell::Cell;
 
@@ -32,11 +31,11 @@ const STEP_LIMIT: usize = 100;
 
 /// An impact.
 pub(crate) struct FoundCast {
-    /// When, as a multiple of the velocity.
+    /// Time of the impact, as a multiple of the velocity.
     pub(crate) time: f64,
-    /// The contact then: on each body where the point was at the start.
+    /// The contact, with the points of each body where they were at the start.
     pub(crate) found: FoundTriangle,
-    /// Whether they are closer than the target distance, or cross, at the start.
+    /// True if the bodies cross or are closer than the target distance at the start.
     pub(crate) is_penetrating: bool,
 }
 
@@ -55,7 +54,7 @@ impl ConvexSearch<'_> {
             return None;
         }
         self.search_depths();
-        // Of a triangle in the frame of the shape, and of the shape in the frame of the mesh.
+        // Velocities of a triangle in the frame of the shape, and of the shape in the frame of the mesh.
         let placement = &self.placed.placement;
         let (of_triangle, of_shape) = match mesh_place {
             MeshPlace::First => (-(placement.rotation * velocity12), velocity12),

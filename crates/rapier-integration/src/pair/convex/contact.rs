@@ -22,13 +22,13 @@ pub(crate) struct PartContact {
     pub(super) source: NormalSource,
 }
 
-/// Where the normal of a contact comes from.
+/// Origin of the normal of a contact.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub(crate) enum NormalSource {
     /// The triangle and the shape.
     Own,
-    /// Another triangle, for a ghost contact. Distance and point on the shape are those of the
-    /// support point of the shape.
+    /// Another triangle, for a ghost contact. Distance and point on the shape belong to the support point
+    /// of the shape.
     Neighbour,
     /// The push-out from a solid: one point, in line with the middle of the shape.
     PushOut,

@@ -5,7 +5,7 @@
 //! * [`contact`]: the exact contact of a triangle and a part.
 //! * [`ghosts`]: corrects contacts at internal edges. [`push_out`]: moves parts out of solids.
 //! * [`triangle_part`], [`points`]: write a contact to a manifold.
-//! * [`pair`]: the contact query, which uses all of these.
+//! * [`pair`]: the contact query.
 //! * [`search`], [`cast`]: queries without manifolds.
 
 mod cast;

@@ -94,9 +94,9 @@ fn rounding(mesh: &Hierarchy<'_>, around: &Aabb) -> Real {
     gamma(32) * mesh.magnitude().max(around.mins.abs().max(around.maxs.abs()).max_element())
 }
 
-/// Returns a lower bound of the time until a box of a mesh is within `target` of a part that moves by
-/// `velocity`; `Real::MAX` if they pass each other. All in the frame of the mesh; `around` is the box around
-/// the part.
+/// Returns a lower bound of the time until a box of a mesh is within `target` of a moving part;
+/// `Real::MAX` if the two pass each other. `velocity` and `around`, the box around the part, are in the
+/// frame of the mesh.
 pub(super) fn time_of(
     placed: &PlacedPart,
     shape: ConvexShape<'_>,
@@ -142,8 +142,8 @@ fn lowest(node: TestedBox, normal: DVec3) -> f64 {
     normal.dot(centre.as_dvec3()) - normal.abs().dot(extent.as_dvec3())
 }
 
-/// Returns normal and height of the plane `normal·x = height` of all points within `margin` of a
-/// half-space, in the frame of a mesh at `placement` in the frame of the half-space.
+/// Returns the plane `normal·x = height` above all points within `margin` of a half-space, in the frame
+/// of the mesh. `placement` is that frame in the frame of the half-space.
 fn plane(
     placement: &Placement,
     half_space: &HalfSpace,

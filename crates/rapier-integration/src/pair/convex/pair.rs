@@ -31,7 +31,7 @@ pub(crate) struct ConvexPair<'a> {
     pub(crate) mesh: Hierarchy<'a>,
     pub(crate) parts: Parts<'a>,
     pub(crate) mesh_place: MeshPlace,
-    /// True for the contacts of the surface of the mesh, false for those of each triangle.
+    /// True: contacts of the surface. False: contacts of each triangle.
     pub(crate) has_surfaces: bool,
     /// True if parts are pushed out of the mesh where it is a solid.
     pub(crate) leave_solids: bool,
@@ -46,12 +46,12 @@ impl ConvexPair<'_> {
         self.mesh.placed_root(&pose, reach)
     }
 
-    /// Returns true if contacts are those of the surface. A soft body needs those of each triangle.
+    /// Returns true for contacts of the surface. Soft bodies need contacts of each triangle.
     pub(super) fn has_surface(&self) -> bool {
         self.has_surfaces && self.mesh.is_rigid()
     }
 
-    /// Returns true if contacts are reduced to patches. Those of a ball are few and have one point each.
+    /// Returns true if contacts are reduced to patches. A ball has few contacts, with one point each.
     fn has_patches(&self) -> bool {
         let is_ball = matches!(self.parts, Parts::One(ConvexShape::Ball(_)));
         self.has_patches && self.mesh.is_rigid() && !is_ball
@@ -59,7 +59,7 @@ impl ConvexPair<'_> {
 }
 
 impl<'a> Pair for ConvexPair<'a> {
-    /// The mesh, and the parts that the candidates are of.
+    /// Data of the mesh and of the parts that the candidates belong to.
     type Known = (KnownMesh, PartData);
     type Hint = ();
     type Query<'q>
@@ -85,41 +85,22 @@ impl<'a> Pair for ConvexPair<'a> {
     }
 }
 
-/// A mesh and the parts.
+/// A contact query of a mesh and its convex shapes.
 pub(crate) struct ConvexQuery<'q> {
     pub(super) pair: &'q ConvexPair<'q>,
     part_data: &'q PartData,
-    /// That of the mesh, if parts are to be led out of it.
+    /// Surface of the mesh, for push-outs.
     pub(super) surface: Option<MeshSurface<'q>>,
 }
 
 impl ConvexQuery<'_> {
-    /// Calls `found` with the triangles within `margin` of a part, and few others, in stock order.
-    fn descend_part(
-        &self,
-        index: u32,
-        margin: Real,
-        counters: &mut impl Counters,
-        scratch: &mut Scratch,
-        mut found: impl FnMut(u32),
-    ) {
-        let mesh = &self.pair.mesh;
-        self.pair.parts.with(index, |part| {
-            let placed = self.placed(index, &part, scratch);
-            triangles_near(placed, part.shape, mesh, margin, counters, |triangle| {
-                found(triangle);
-                ControlFlow::Continue(())
-            });
-        });
-    }
-
     /// Calls `then` with a triangle and a part.
     #[inline(always)]
     pub(super) fn with_pair<T>(
         &self,
         [triangle, part]: [u32; 2],
         scratch: &mut Scratch,
-        then: impl FnOnce(TrianglePartPair<'_>) -> Option<T>,
+        then: impl FnOnce(TrianglePartPair<'_>) -> T,
     ) -> Option<T> {
         let ConvexPair { mesh, parts, .. } = self.pair;
         let cone = if self.pair.has_surface() {
@@ -132,7 +113,7 @@ impl ConvexQuery<'_> {
         parts.with(part, |shape| {
             let placed = self.placed(part, &shape, scratch);
             then(TrianglePartPair { pair: self.pair, placed, part: &shape, corners, cone })
-        })?
+        })
     }
 
     /// Returns a part at its pose.
@@ -164,10 +145,8 @@ impl PairQuery for ConvexQuery<'_> {
     type Hint = ();
     type Contact = PartContact;
 
-    /// A candidate out of reach costs next to nothing, so it can be more than for two meshes. At three
-    /// prediction distances a step, a greatest slack of 8 in place of 5 took 1.2 times as long on the
-    /// mean over all kinds; at half of one, 4 took 4 % longer. At 0.05 a step, 8 steps took 3 to 10 %
-    /// longer than 16, and 32 no less.
+    /// Larger than for two meshes, as candidates out of reach cost little. Higher: slower in fast motion;
+    /// lower: slower in slow motion.
     const SLACK: SlackLimits = SlackLimits { steps: 16.0, greatest: 5.0 };
 
     fn pose(&self) -> &PairPose {
@@ -177,7 +156,7 @@ impl PairQuery for ConvexQuery<'_> {
     fn moving(&self) -> Moving<'_> {
         let [to_parts, to_mesh] = self.pair.mesh_place.placements(self.pair.pose);
         let (mesh, parts) = (self.pair.mesh.ball(), self.part_data.ball);
-        // The smaller one: it moves less as it turns.
+        // The smaller body moves less when it rotates.
         if mesh.radius <= parts.radius {
             Moving { ball: mesh, placement: to_parts }
         } else {
@@ -185,16 +164,15 @@ impl PairQuery for ConvexQuery<'_> {
         }
     }
 
-    /// The prediction distance, and what rounds in f32 within some sixty operations on coordinates of
-    /// the mesh, the pose and the shape: more than the error of exact contacts with curved shapes, which
-    /// is 1e-7 of the distance.
+    /// Returns the prediction distance plus the rounding of sixty operations on the largest coordinates.
+    /// The rounding exceeds the error of contacts with curved shapes, 1e-7 of the distance.
     fn reach(&self) -> Real {
         let offset = self.pose().pos12.translation.abs().max_element();
         let largest = self.pair.mesh.magnitude() + offset + self.part_data.magnitude;
         (self.pose().prediction.max(0.0) + gamma(64) * largest).min(Real::MAX)
     }
 
-    /// Of a ball: there neither a contact nor the test of a box takes long.
+    /// Serves balls, whose contacts and box tests cost less than to keep candidates.
     fn write_at_once<M, C>(
         &self,
         counters: &mut impl Counters,
@@ -234,7 +212,7 @@ impl PairQuery for ConvexQuery<'_> {
             if contact.source != NormalSource::Neighbour {
                 merge.write(mesh_place.swap([index, 0]), |manifold| {
                     self.with_pair([index, 0], scratch, |pair| {
-                        Some(pair.write_ball(ball.radius, &contact.contact, manifold))
+                        pair.write_ball(ball.radius, &contact.contact, manifold);
                     });
                 });
             }
@@ -252,10 +230,14 @@ impl PairQuery for ConvexQuery<'_> {
         scratch: &mut Scratch,
         candidates: &mut Vec<Candidate<()>>,
     ) {
-        let place = self.pair.mesh_place;
-        self.pair.parts.intersecting(&self.pair.mesh_box(margin), |part| {
-            self.descend_part(part, margin, counters, scratch, |triangle| {
-                candidates.push(Candidate::new(place.swap([triangle, part])));
+        let ConvexPair { ref mesh, parts, mesh_place, .. } = *self.pair;
+        parts.intersecting(&self.pair.mesh_box(margin), |index| {
+            parts.with(index, |part| {
+                let placed = self.placed(index, &part, scratch);
+                triangles_near(placed, part.shape, mesh, margin, &mut *counters, |triangle| {
+                    candidates.push(Candidate::new(mesh_place.swap([triangle, index])));
+                    ControlFlow::Continue(())
+                });
             });
         });
     }
@@ -275,8 +257,7 @@ impl PairQuery for ConvexQuery<'_> {
             let radius = f64::from(shape.radius());
             let corners = placed.to_part(mesh.corners(triangle));
             let reach = limits.margin + radius;
-            let is_beyond = placed.is_beyond(&corners, reach);
-            let contact = if is_beyond {
+            let contact = if placed.is_beyond(&corners, reach) {
                 None
             } else {
                 core_contact(&corners, shape, part_data.hull(part), reach)
@@ -331,7 +312,7 @@ impl PairQuery for ConvexQuery<'_> {
         scratch: &mut Scratch,
     ) -> Option<Outline> {
         let subshapes = self.pair.mesh_place.swap(candidate.subshapes);
-        self.with_pair(subshapes, scratch, |pair| pair.outline(contact))
+        self.with_pair(subshapes, scratch, |pair| pair.outline(contact))?
     }
 
     #[inline(always)]
@@ -349,7 +330,7 @@ impl PairQuery for ConvexQuery<'_> {
     {
         let subshapes = self.pair.mesh_place.swap(candidate.subshapes);
         self.with_pair(subshapes, scratch, |pair| {
-            Some(pair.write(&contact, previous_points, manifold))
+            pair.write(&contact, previous_points, manifold);
         });
     }
 }

@@ -20,7 +20,7 @@ pub(crate) enum Parts<'a> {
     Many(&'a dyn CompositeShape, ListToken),
 }
 
-/// One of the parts.
+/// A part of a shape.
 pub(super) struct Part<'p> {
     /// Pose in the frame of the whole; `None` for the identity.
     pub(super) pose: Option<&'p Pose>,
@@ -116,7 +116,7 @@ impl Token {
     }
 }
 
-/// Data of the parts that stay the same from query to query. Those of a single shape are at index 0.
+/// Data of the parts, kept from query to query. A single shape has index 0.
 #[derive(Clone, Debug)]
 pub(crate) struct PartData {
     token: Option<Token>,

@@ -18,8 +18,8 @@ pub(crate) struct PlacedPart {
     pub(super) placement: Placement,
     /// Pose of the part in the frame of the mesh.
     pub(super) inverse: Placement,
-    /// Centre of a ball in the frame of the mesh, if the part's frame has the axes of the mesh: then no
-    /// triangle needs to be rotated.
+    /// Centre of a ball in the frame of the mesh, if the part's frame has the axes of the mesh. No
+    /// triangle needs a rotation then.
     pub(super) centre_in_mesh: Option<DVec3>,
 }
 
@@ -40,7 +40,7 @@ impl PlacedPart {
         Self { placement, inverse, centre_in_mesh: None, ..*self }
     }
 
-    /// Gives a ball the axes of the mesh. Only what is written to manifolds is rotated then.
+    /// Gives a ball the axes of the mesh.
     pub(super) fn in_mesh_axes(mut self, shape: ConvexShape<'_>) -> Self {
         if matches!(shape, ConvexShape::Ball(_)) {
             let is_finite = self.placement.is_finite();
@@ -94,8 +94,8 @@ impl PlacedPart {
         gap.length_squared() > reach * reach
     }
 
-    /// Returns a lower bound of the distance between a triangle and the part: the gap along `axis`,
-    /// which points from the part to the triangle in the frame of the part.
+    /// Returns the gap between a triangle and the part along `axis`, which points from the part to the
+    /// triangle in the frame of the part. The gap is a lower bound of the distance.
     pub(super) fn gap(&self, shape: ConvexShape<'_>, triangle: &Triangle, axis: Vec3) -> f64 {
         let axis = axis.as_dvec3();
         (self.lowest(triangle, axis) - self.extent.reach(shape, axis)) / axis.length()

@@ -22,8 +22,8 @@ pub(super) struct PointPair {
     pub(super) features: [PackedFeatureId; 2],
 }
 
-/// Calls `found` with the contact points of a triangle and a shape with polygonal features: the
-/// closest points and the corners of the overlap of the triangle and the feature that faces it.
+/// Calls `found` with the contact points of a triangle and a shape with polygonal features: closest
+/// points, and corners of the overlap of the triangle and the facing feature.
 ///
 /// `normal` replaces the normal of the contact where normal cones have turned it.
 pub(super) fn contact_points(
@@ -46,8 +46,8 @@ pub(super) fn contact_points(
     let polygon = feature.vertices.map(|corner| corner.as_dvec3());
     let mut points = FeaturePoints::new();
     clip_feature(corners, &polygon[..feature.num_vertices], normal, &mut points);
-    // Features of curved shapes are rounded to f32, and edges of a hull are nearly faces: points that
-    // are nearer than the closest ones, or beyond the support point, are not on the shape.
+    // Features of curved shapes are rounded to f32, and edges of a hull are nearly faces. Points nearer
+    // than the closest ones, or beyond the support point, are not on the shape.
     let size = polygon.iter().fold(0.0, |size: f64, x| size.max(x.abs().max_element()));
     let slack = f64::from(gamma(64)) * size;
     let mut has_closest = false;
@@ -129,13 +129,13 @@ fn face_toward(direction: Vector) -> usize {
     if direction[axis] < 0.0 { axis + 3 } else { axis }
 }
 
-/// Angle at the centre of a ball by which a ray may miss a triangle and still count as hitting it:
-/// turned normals are rounded to f32, and a ray at an edge must not miss both triangles.
+/// Angle at the centre of a ball by which a ray may miss a triangle and still hit. A ray at an edge must
+/// not miss both triangles because of rounding.
 const BESIDE: f64 = 1.0e-6;
 
 /// Returns the length of a ray from the origin along a unit vector to a triangle, if it hits.
 ///
-/// As in Parry, a ball whose normal a normal cone has turned touches the triangle there.
+/// Parry's balls touch there when a normal cone has turned the normal.
 pub(super) fn ray_length(&[a, b, c]: &[DVec3; 3], direction: DVec3) -> Option<f64> {
     let normal = (b - a).cross(c - a);
     let length = a.dot(normal) / direction.dot(normal);

@@ -1,9 +1,9 @@
-//! Push-outs: contacts that move convex shapes out of solids that contain more than half of them, if
-//! the host wants that ([`SbbkConfig::convex_leave_solids`](crate::SbbkConfig::convex_leave_solids)).
+//! Push-outs: contacts that move convex shapes out of solids
+//! ([`SbbkConfig::convex_leave_solids`](crate::SbbkConfig::convex_leave_solids)).
 //!
-//! A contact with a triangle separates by the least translation: outward while more than half of the
-//! shape is out along the normal of the triangle, inward after that. A push-out replaces all contacts
-//! of the part then. It leads out through the face that is nearest to the middle.
+//! A contact with a triangle separates by the least translation. That translation points inward once
+//! more than half of the shape is inside. A push-out then replaces all contacts of the part. It leads
+//! out through the face that is nearest to the middle of the part.
 
 use glamx::DVec3;
 use sbbk_core::contact::Feature;
@@ -15,9 +15,9 @@ use crate::mesh::{BEHIND, is_covered, nearest};
 use crate::pair::driver::{ContactList, Scratch};
 use crate::pair::order::{Candidate, push_candidate};
 
-/// Depth of a contact, as a share of the radius of the part, from which half of the part may be inside
-/// though its middle is not: the middle of a cone is at a third of its height. Higher: cones stay in
-/// solids; lower: more searches for the nearest face.
+/// Depth of a contact, as a share of the part's radius, from which a part whose middle is outside may
+/// have half of itself inside, as cones do. Higher: cones stay in solids; lower: more searches for the
+/// nearest face.
 const DEEP: f64 = 0.1;
 
 impl ConvexQuery<'_> {

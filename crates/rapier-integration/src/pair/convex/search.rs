@@ -96,8 +96,8 @@ impl<'a> ConvexSearch<'a> {
         [self.mesh.ball(), self.placed.extent.ball()]
     }
 
-    /// Returns the gap between a triangle and the shape at another pose along a direction from the
-    /// shape to the triangle: a lower bound of their distance.
+    /// Returns the gap between a triangle and the shape at another pose, along a direction from the shape
+    /// to the triangle.
     pub(crate) fn gap(&self, placed: &PlacedPart, triangle: u32, axis: Vector) -> f64 {
         placed.gap(self.convex, &self.mesh.mesh.triangle(triangle), axis)
     }
@@ -245,15 +245,5 @@ impl<'a> ConvexSearch<'a> {
     /// Returns the sum of coordinates in the frame of the shape.
     pub(super) fn size(&self, [a, b, c]: &[DVec3; 3]) -> f64 {
         f64::from(self.placed.extent.size()) + (a.abs() + b.abs() + c.abs()).element_sum()
-    }
-
-    /// Returns the points on the mesh and on the shape, each in its frame.
-    pub(crate) fn points(&self, found: &FoundTriangle) -> [Vector; 2] {
-        found.points(&self.placed)
-    }
-
-    /// Returns the outward unit normals of the mesh and of the shape, each in its frame.
-    pub(crate) fn normals(&self, found: &FoundTriangle) -> [Vector; 2] {
-        found.normals(&self.placed)
     }
 }

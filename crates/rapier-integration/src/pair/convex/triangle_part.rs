@@ -62,7 +62,7 @@ impl TrianglePartPair<'_> {
         manifold.match_contacts(previous_points);
     }
 
-    /// Writes the only point of a ball; `contact` is that of its centre.
+    /// Writes the only point of a ball, from the contact of its centre.
     #[inline(always)]
     pub(super) fn write_ball<M, C: Default + Copy>(
         &self,
@@ -134,7 +134,7 @@ impl TrianglePartPair<'_> {
         let corners = &placed.to_part(self.corners);
         contact_points(corners, *shape, contact, turned, |point| {
             let PointPair { on_triangle, on_shape, distance, features } = point;
-            // As in Parry: drops points that another normal puts much deeper than the contact.
+            // Drops points that another normal puts much deeper than the contact, by Parry's limit.
             if is_limited && distance < 5.0 * depth.min(0.0) {
                 return;
             }
