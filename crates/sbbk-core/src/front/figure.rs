@@ -8,7 +8,7 @@
 
 use super::opening::{Opening, PairTest, SlotPair};
 use super::{Front, lanes};
-use crate::traverse::{Sides, Verdict};
+use crate::traverse::Sides;
 use crate::tree::Slot;
 
 /// The tree at one time. T*n* is the slot with the packed number n.
@@ -34,9 +34,7 @@ impl PairTest for Figure<'_> {
         Opening { nodes: (n, 0), sides: Sides::First, same_lane: 0, lanes, leaves }
     }
 
-    fn leaves(&mut self, pair: SlotPair) -> (u32, u32) {
-        (number(pair.0), 0)
-    }
+    fn visit(&mut self, _: SlotPair) {}
 
     fn meeting(&mut self, opening: &Opening, asked: u32) -> u32 {
         let mut meeting = 0;
@@ -52,7 +50,7 @@ impl PairTest for Figure<'_> {
 /// The nodes that `front` visits when the nodes in `meeting` meet.
 fn visited(front: &mut Front, meeting: &[u32]) -> Vec<u32> {
     let mut figure = Figure { meeting, visited: Vec::new() };
-    front.update(&mut figure, &mut |_, _| Verdict::Descend);
+    front.update(&mut figure);
     figure.visited
 }
 

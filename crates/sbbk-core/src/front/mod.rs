@@ -18,7 +18,7 @@
 //! ```
 //! use glamx::Pose3;
 //! use sbbk_core::front::Front;
-//! use sbbk_core::traverse::{DescentCounts, PairFrame, Verdict};
+//! use sbbk_core::traverse::{DescentCounts, PairFrame};
 //! # use sbbk_core::tree::{BuildOptions, Tree};
 //! # use glamx::Vec3;
 //!
@@ -32,7 +32,7 @@
 //!     let pos12 = Pose3::translation(0.0, 0.0, 0.9 + 1e-4 * step as f32);
 //!     let mut frame = PairFrame::new(&tree, &tree, &pos12, 0.02);
 //!     let mut counts = DescentCounts::default();
-//!     front.visit((&tree, &tree), &mut frame, &mut counts, |_leaf1, _leaf2| Verdict::Descend);
+//!     front.visit((&tree, &tree), &mut frame, &mut counts, |_leaf1, _leaf2| {});
 //!     tests.push(counts.aabb_tests);
 //! }
 //! assert!(tests[0] > tests[1] && tests[1] == tests[2]);
@@ -43,8 +43,8 @@
 mod figure;
 mod opening;
 
-use crate::traverse::{Counters, PairFrame, Verdict};
-use crate::tree::Tree;
+use crate::traverse::{Counters, PairFrame};
+use crate::tree::{LeafBatch, Tree};
 use opening::{Opening, PairTest, TreePair};
 
 /// Where the last descent of a pair of trees stopped: see [the module](self).
@@ -85,53 +85,41 @@ impl Front {
         self.cells.is_empty()
     }
 
-    /// Calls `visit` with the numbers of each pair of leaves that meets and is reached from the
-    /// front. These include all leaves with triangles within the margin.
+    /// Calls `visit` with each pair of leaves that meets and is reached from the front. These
+    /// include all leaves with triangles within the margin.
     ///
-    /// Their order depends on earlier queries. [`Verdict::Stop`] ends the query. A pose that is
-    /// not finite finds nothing and clears the front.
-    pub fn visit<C: Counters>(
+    /// Their order depends on earlier queries. A pose that is not finite finds nothing and clears
+    /// the front.
+    pub fn visit(
         &mut self,
         trees: (&Tree, &Tree),
         frame: &mut PairFrame,
-        mut counters: C,
-        mut visit: impl FnMut(u32, u32) -> Verdict,
+        mut counters: impl Counters,
+        visit: impl FnMut(&LeafBatch, &LeafBatch),
     ) {
         counters.sphere_test();
         if !frame.placement().is_finite() || !frame.spheres_meet(trees.0, trees.1) {
             self.clear();
             return;
         }
-        let mut pair = TreePair { trees, frame, counters };
-        self.update(&mut pair, &mut visit);
+        self.update(&mut TreePair { trees, frame, counters, visit });
     }
 
-    fn update(
-        &mut self,
-        pair: &mut impl PairTest,
-        visit: &mut dyn FnMut(u32, u32) -> Verdict,
-    ) -> Verdict {
+    fn update(&mut self, pair: &mut impl PairTest) {
         if self.is_empty() {
             self.add(pair.roots());
         }
-        self.test(0, pair, visit)
+        self.test(0, pair);
     }
 
     /// Tests the front below a cell, then the lanes of the cell that belong to it. Lanes right above
     /// the front are tested along with these: SIMD does it at no cost.
-    fn test(
-        &mut self,
-        cell: u32,
-        pair: &mut impl PairTest,
-        visit: &mut dyn FnMut(u32, u32) -> Verdict,
-    ) -> Verdict {
+    fn test(&mut self, cell: u32, pair: &mut impl PairTest) {
         let Cell { opening, met: before, below } = self.cells[cell as usize];
         let above = before & !opening.leaves;
         let mut asked = opening.lanes & !above;
         for lane in lanes(above) {
-            if self.test(below[lane], pair, visit) == Verdict::Stop {
-                return Verdict::Stop;
-            }
+            self.test(below[lane], pair);
             let all_parted = self.cells[below[lane] as usize].met == 0;
             asked |= u32::from(all_parted) << lane;
         }
@@ -143,34 +131,16 @@ impl Front {
             }
         }
         for lane in lanes(meeting & !above) {
-            let verdict = if opening.leaves >> lane & 1 != 0 {
-                self.cells[cell as usize].met |= 1 << lane;
-                let (leaf1, leaf2) = pair.leaves(opening.pair(lane));
-                visit(leaf1, leaf2)
+            self.cells[cell as usize].met |= 1 << lane;
+            if opening.leaves >> lane & 1 != 0 {
+                pair.visit(opening.pair(lane));
             } else {
-                self.lower(cell, lane, pair, visit)
-            };
-            if verdict == Verdict::Stop {
-                return Verdict::Stop;
+                let opened = pair.open(opening.pair(lane));
+                let added = self.add(opened);
+                self.cells[cell as usize].below[lane] = added;
+                self.test(added, pair);
             }
         }
-        Verdict::Descend
-    }
-
-    /// Replaces a pair of the front that met by its children.
-    fn lower(
-        &mut self,
-        cell: u32,
-        lane: usize,
-        pair: &mut impl PairTest,
-        visit: &mut dyn FnMut(u32, u32) -> Verdict,
-    ) -> Verdict {
-        let opened = pair.open(self.cells[cell as usize].opening.pair(lane));
-        let below = self.add(opened);
-        let above = &mut self.cells[cell as usize];
-        above.met |= 1 << lane;
-        above.below[lane] = below;
-        self.test(below, pair, visit)
     }
 
     fn add(&mut self, opening: Opening) -> u32 {

@@ -2,7 +2,7 @@
 
 use crate::simd::{Inner, Outer, Same, each_bit};
 use crate::traverse::{Compare, Counters, Overlap, PairFrame, Side, Sides};
-use crate::tree::{Link, Slot, Tree};
+use crate::tree::{LeafBatch, Link, Slot, Tree};
 
 /// A pair of nodes.
 pub(super) type SlotPair = (Slot, Slot);
@@ -39,20 +39,21 @@ pub(super) trait PairTest {
     fn roots(&self) -> Opening;
     /// The pairs below a pair that is not a pair of leaves.
     fn open(&self, pair: SlotPair) -> Opening;
-    /// Counts a pair of leaves and returns their numbers.
-    fn leaves(&mut self, pair: SlotPair) -> (u32, u32);
+    /// Counts and visits a pair of leaves.
+    fn visit(&mut self, pair: SlotPair);
     /// The lanes of `lanes` whose pairs come within the margin.
     fn meeting(&mut self, opening: &Opening, lanes: u32) -> u32;
 }
 
 /// Two trees at a pose.
-pub(super) struct TreePair<'a, C> {
+pub(super) struct TreePair<'a, C, V> {
     pub(super) trees: (&'a Tree, &'a Tree),
     pub(super) frame: &'a mut PairFrame,
     pub(super) counters: C,
+    pub(super) visit: V,
 }
 
-impl<C> TreePair<'_, C> {
+impl<C, V> TreePair<'_, C, V> {
     fn opening(&self, nodes: (u32, u32), sides: Sides, same_lane: usize, lanes: u32) -> Opening {
         let mut opening = Opening { nodes, sides, same_lane, lanes, leaves: 0 };
         each_bit(lanes, |lane| {
@@ -67,7 +68,7 @@ impl<C> TreePair<'_, C> {
     }
 }
 
-impl<C: Counters> PairTest for TreePair<'_, C> {
+impl<C: Counters, V: FnMut(&LeafBatch, &LeafBatch)> PairTest for TreePair<'_, C, V> {
     fn roots(&self) -> Opening {
         self.opening((Slot::ROOT.node(), Slot::ROOT.node()), Sides::Both, 0, 0b0001)
     }
@@ -83,10 +84,11 @@ impl<C: Counters> PairTest for TreePair<'_, C> {
         self.opening(sides.nodes(pair, links), sides, same_lane, lanes)
     }
 
-    fn leaves(&mut self, pair: SlotPair) -> (u32, u32) {
+    fn visit(&mut self, pair: SlotPair) {
         self.counters.leaf_pair();
         let links = self.links(pair);
-        (links.0.index(), links.1.index())
+        let (tree1, tree2) = self.trees;
+        (self.visit)(tree1.leaf(links.0.index()), tree2.leaf(links.1.index()));
     }
 
     fn meeting(&mut self, opening: &Opening, lanes: u32) -> u32 {

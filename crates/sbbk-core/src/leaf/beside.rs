@@ -26,7 +26,9 @@
 //! 1.2 times that: what a rigid motion does at `1.1·x` is 1.1 times what it does at `x`, less a tenth of
 //! what it does at the centre. [`TRAVEL`] allows for a quarter.
 
-use crate::simd::{Lane, V3, cross, dot, each, largest, smallest, sub};
+use wide::f32x4;
+
+use crate::simd::{V3, cross, dot, each, largest, smallest, sub};
 
 use super::separation::{Corners, LeafFrame, UNDERFLOW, from_corner};
 
@@ -73,15 +75,10 @@ impl Beside {
 
 /// Which triangles are beside each other, lane by lane.
 #[inline(always)]
-pub(super) fn beside<L: Lane>(
-    beside: &Beside,
-    frame: &LeafFrame,
-    one: &Corners<L>,
-    two: &Corners<L>,
-) -> L::Mask {
-    let no = L::splat(0.0).above(L::splat(0.0));
+pub(super) fn beside(beside: &Beside, frame: &LeafFrame, one: &Corners, two: &Corners) -> f32x4 {
+    let no = f32x4::splat(0.0).simd_gt(f32x4::splat(0.0));
     let extent = largest(sub(one.max, one.min));
-    if L::all(extent.above(L::splat(beside.longest))) {
+    if extent.simd_gt(f32x4::splat(beside.longest)).all() {
         return no;
     }
     let [one, two] = from_corner(one, two);
@@ -93,37 +90,39 @@ pub(super) fn beside<L: Lane>(
 /// Whether the other triangle is beside `own`: so that the nearest point is not in the face of `own`;
 /// and so that it is far, and the direction to it leans.
 #[inline(always)]
-fn beside_one<L: Lane>(
+fn beside_one(
     beside: &Beside,
     rounding: f32,
-    own: &[V3<L>; 3],
-    other: &[V3<L>; 3],
-) -> [L::Mask; 2] {
+    own: &[V3<f32x4>; 3],
+    other: &[V3<f32x4>; 3],
+) -> [f32x4; 2] {
     let edges = each(|i| sub(own[(i + 1) % 3], own[i]));
     let lengths2 = each(|i| dot(edges[i], edges[i]));
     let normal = cross(edges[0], edges[1]);
     let area2 = dot(normal, normal);
     let least_height = LEAST_HEIGHT * rounding;
-    let least_area2 = L::splat(least_height * least_height) * largest(lengths2);
-    let is_sound = area2.above(least_area2.larger(L::splat(TINY)));
-    let scale = area2.inverse_root();
+    let least_area2 = f32x4::splat(least_height * least_height) * largest(lengths2);
+    let is_sound = area2.simd_gt(least_area2.fast_max(f32x4::splat(TINY)));
+    let scale = f32x4::ONE / area2.sqrt();
     let normal = normal.map(|x| x * scale);
     let height = largest(each(|i| {
         let height = dot(normal, sub(other[i], own[0]));
-        height.larger(L::splat(0.0) - height)
+        height.fast_max(f32x4::splat(0.0) - height)
     }));
     let lost = beside.travel + 6.0 * rounding;
-    let rise = (height + L::splat(lost)) * L::splat(1.0 / beside.slope);
-    let least =
-        [L::splat(lost + beside.upright), rise.larger(L::splat(beside.distance)) + L::splat(lost)];
+    let rise = (height + f32x4::splat(lost)) * f32x4::splat(1.0 / beside.slope);
+    let least = [
+        f32x4::splat(lost + beside.upright),
+        rise.fast_max(f32x4::splat(beside.distance)) + f32x4::splat(lost),
+    ];
     // Of the gaps beyond each edge, times the length of the edge.
-    let mut is_beyond = [L::splat(0.0).above(L::splat(0.0)); 2];
+    let mut is_beyond = [f32x4::splat(0.0).simd_gt(f32x4::splat(0.0)); 2];
     for (edge, length2) in edges.into_iter().zip(lengths2) {
         let out = cross(edge, normal);
-        let along = |corners: &[V3<L>; 3]| each(|i| dot(out, corners[i]));
-        let gap = (smallest(along(other)) - largest(along(own))).larger(L::splat(0.0));
+        let along = |corners: &[V3<f32x4>; 3]| each(|i| dot(out, corners[i]));
+        let gap = (smallest(along(other)) - largest(along(own))).fast_max(f32x4::splat(0.0));
         for (is_beyond, least) in is_beyond.iter_mut().zip(least) {
-            let is_so = (gap * gap).above(length2 * least * least + L::splat(UNDERFLOW));
+            let is_so = (gap * gap).simd_gt(length2 * least * least + f32x4::splat(UNDERFLOW));
             *is_beyond = *is_beyond | is_so;
         }
     }

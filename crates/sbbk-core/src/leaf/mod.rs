@@ -58,7 +58,7 @@ impl LeafTest {
         let Some(no_use) = &self.beside else {
             return self.not_apart(batch1, batch2, apart, found);
         };
-        let test = |frame: &LeafFrame, one: &Corners<f32x4>, two: &Corners<f32x4>| {
+        let test = |frame: &LeafFrame, one: &Corners, two: &Corners| {
             let apart = apart(frame, one, two);
             if apart.all() { apart } else { apart | beside(no_use, frame, one, two) }
         };
@@ -74,7 +74,7 @@ impl LeafTest {
         batch2: &LeafBatch,
         found: impl FnMut(usize, usize),
     ) {
-        let test = |frame: &LeafFrame, one: &Corners<f32x4>, two: &Corners<f32x4>| {
+        let test = |frame: &LeafFrame, one: &Corners, two: &Corners| {
             let by_centroids = apart_by_centroids(frame, one, two);
             if by_centroids.all() { by_centroids } else { by_centroids | apart(frame, one, two) }
         };
@@ -87,7 +87,7 @@ impl LeafTest {
         &self,
         batch1: &LeafBatch,
         batch2: &LeafBatch,
-        test: impl Fn(&LeafFrame, &Corners<f32x4>, &Corners<f32x4>) -> f32x4,
+        test: impl Fn(&LeafFrame, &Corners, &Corners) -> f32x4,
         mut found: impl FnMut(usize, usize),
     ) {
         let frame = &self.frame;
@@ -97,29 +97,6 @@ impl LeafTest {
             let one = Corners::new(splat(|corner, axis| batch1.corners[corner][axis][lane1]));
             let near = !test(frame, &one, &two).to_bitmask() & used;
             each_bit(near, |lane2| found(lane1, lane2));
-        }
-    }
-
-    /// [`survivors`](Self::survivors) over one lane: the same answer, slower. Hidden, as only tests
-    /// compare the two.
-    #[doc(hidden)]
-    pub fn survivors_scalar(
-        &self,
-        batch1: &LeafBatch,
-        batch2: &LeafBatch,
-        mut found: impl FnMut(usize, usize),
-    ) {
-        let one_lane = |batch: &LeafBatch, lane| batch.corners(lane).map(|c| c.to_array());
-        for lane1 in 0..batch1.count() {
-            let one = Corners::new(one_lane(batch1, lane1));
-            for lane2 in 0..batch2.count() {
-                let two = Corners::from_frame2(&self.frame, one_lane(batch2, lane2));
-                let is_of_no_use = |no_use| beside(no_use, &self.frame, &one, &two);
-                let no_use = self.beside.as_ref();
-                if !apart(&self.frame, &one, &two) && !no_use.is_some_and(is_of_no_use) {
-                    found(lane1, lane2);
-                }
-            }
         }
     }
 }

@@ -8,7 +8,6 @@
 //! origin away rounds once more: `γ_18` for `γ_16`. `M1` is that of the one triangle.
 
 use glamx::{DVec3, Vec3};
-use wide::f32x4;
 
 use super::separation::{Corners, LeafFrame, apart};
 use super::{splat, used};
@@ -30,7 +29,7 @@ pub(crate) struct PlacedTest {
 /// A leaf, placed.
 pub(crate) struct PlacedBatch<'a> {
     test: &'a PlacedTest,
-    corners: Corners<f32x4>,
+    corners: Corners,
     used: u32,
 }
 

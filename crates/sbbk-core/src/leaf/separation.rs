@@ -45,7 +45,9 @@
 //! Squares of gaps are above [`UNDERFLOW`], and gaps below `6·X1·X2·S`: what is lost to underflow is a
 //! thousandth of the rest while `S` is below `2⁵⁰`. Products of larger coordinates are not asked.
 
-use crate::simd::{Lane, V3, cross, dot, each, largest, smallest, sub};
+use wide::f32x4;
+
+use crate::simd::{V3, cross, dot, each, largest, smallest, sub};
 use crate::traverse::{PairFrame, Placement};
 use crate::volumes::rounding::gamma;
 
@@ -99,15 +101,15 @@ impl LeafFrame {
 
 /// The corners of triangles, in frame 1, and the boxes around them.
 #[derive(Copy, Clone)]
-pub(super) struct Corners<L> {
-    corners: [V3<L>; 3],
-    pub(super) min: V3<L>,
-    pub(super) max: V3<L>,
+pub(super) struct Corners {
+    corners: [V3<f32x4>; 3],
+    pub(super) min: V3<f32x4>,
+    pub(super) max: V3<f32x4>,
 }
 
-impl<L: Lane> Corners<L> {
+impl Corners {
     #[inline(always)]
-    pub(super) fn new(corners: [V3<L>; 3]) -> Self {
+    pub(super) fn new(corners: [V3<f32x4>; 3]) -> Self {
         let along = |axis: usize| each(|corner| corners[corner][axis]);
         Self {
             corners,
@@ -118,21 +120,21 @@ impl<L: Lane> Corners<L> {
 
     /// One corner after the other, from frame 2.
     #[inline(always)]
-    pub(super) fn from_frame2(frame: &LeafFrame, corners: [V3<L>; 3]) -> Self {
+    pub(super) fn from_frame2(frame: &LeafFrame, corners: [V3<f32x4>; 3]) -> Self {
         Self::new(each(|corner| {
             each(|i| {
-                let row = each(|j| L::splat(frame.rotation[i][j]));
-                dot(row, corners[corner]) + L::splat(frame.translation[i])
+                let row = each(|j| f32x4::splat(frame.rotation[i][j]));
+                dot(row, corners[corner]) + f32x4::splat(frame.translation[i])
             })
         }))
     }
 
     /// Which of the boxes are farther apart than the margin.
     #[inline(always)]
-    fn boxes_apart(&self, other: &Self, margin: L) -> L::Mask {
+    fn boxes_apart(&self, other: &Self, margin: f32x4) -> f32x4 {
         let apart = |axis: usize| {
             let above = self.min[axis] - other.max[axis];
-            above.larger(other.min[axis] - self.max[axis]).above(margin)
+            above.fast_max(other.min[axis] - self.max[axis]).simd_gt(margin)
         };
         apart(0) | apart(1) | apart(2)
     }
@@ -141,47 +143,43 @@ impl<L: Lane> Corners<L> {
 /// Which triangles are farther apart than the margin along the line through their centroids, lane
 /// by lane: the axis that tells most about triangles that are far apart for their size.
 #[inline(always)]
-pub(super) fn apart_by_centroids<L: Lane>(
-    frame: &LeafFrame,
-    one: &Corners<L>,
-    two: &Corners<L>,
-) -> L::Mask {
+pub(super) fn apart_by_centroids(frame: &LeafFrame, one: &Corners, two: &Corners) -> f32x4 {
     let corners = from_corner(one, two);
     // Three times as long, which does not matter.
-    let sum = |[a, b, c]: [V3<L>; 3]| each(|axis| a[axis] + b[axis] + c[axis]);
+    let sum = |[a, b, c]: [V3<f32x4>; 3]| each(|axis| a[axis] + b[axis] + c[axis]);
     separates(
         sub(sum(corners[1]), sum(corners[0])),
         &corners,
-        L::splat(frame.margin * frame.margin),
+        f32x4::splat(frame.margin * frame.margin),
     )
 }
 
 /// Which triangles an axis separates by more than the margin, lane by lane.
 #[inline(always)]
-pub(super) fn apart<L: Lane>(frame: &LeafFrame, one: &Corners<L>, two: &Corners<L>) -> L::Mask {
-    let mut apart = one.boxes_apart(two, L::splat(frame.margin));
-    if L::all(apart) {
+pub(super) fn apart(frame: &LeafFrame, one: &Corners, two: &Corners) -> f32x4 {
+    let mut apart = one.boxes_apart(two, f32x4::splat(frame.margin));
+    if apart.all() {
         return apart;
     }
     let corners = from_corner(one, two);
     let edge =
         |triangle: usize, i: usize| sub(corners[triangle][(i + 1) % 3], corners[triangle][i]);
-    let margin_squared = L::splat(frame.margin * frame.margin);
+    let margin_squared = f32x4::splat(frame.margin * frame.margin);
     let normal1 = cross(corners[0][1], corners[0][2]);
     apart = apart | separates(normal1, &corners, margin_squared);
-    if L::all(apart) {
+    if apart.all() {
         return apart;
     }
     let normal2 = cross(edge(1, 0), edge(1, 1));
     apart = apart | separates(normal2, &corners, margin_squared);
-    if L::all(apart) {
+    if apart.all() {
         return apart;
     }
     let lost = lost_by_products(frame, one, two);
     // How far the third corner is behind an edge, not above zero, and ahead of it, not below.
-    let thirds = |normal: V3<L>, edge: V3<L>| {
+    let thirds = |normal: V3<f32x4>, edge: V3<f32x4>| {
         let along = dot(normal, edge);
-        [along.smaller(L::splat(0.0)), along.larger(L::splat(0.0))]
+        [along.fast_min(f32x4::splat(0.0)), along.fast_max(f32x4::splat(0.0))]
     };
     let thirds1 = each(|j| {
         let [behind, ahead] = thirds(normal1, edge(1, j));
@@ -195,18 +193,18 @@ pub(super) fn apart<L: Lane>(frame: &LeafFrame, one: &Corners<L>, two: &Corners<
             let along = dot(axis, sub(corners[1][j], corners[0][i]));
             let [behind1, ahead1] = thirds1[j];
             let above = along + (behind1 + behind2);
-            let below = L::splat(0.0) - (along + (ahead1 + ahead2));
-            is_beyond(above.larger(below), axis, margin_squared)
+            let below = f32x4::splat(0.0) - (along + (ahead1 + ahead2));
+            is_beyond(above.fast_max(below), axis, margin_squared)
         });
         a | b | c
     };
     // Written out: with loops one projection spared a pile 0.03 to 0.4 % of its instructions in place of 2.
     apart = apart | separated_by(0);
-    if L::all(apart) {
+    if apart.all() {
         return apart;
     }
     apart = apart | separated_by(1);
-    if L::all(apart) {
+    if apart.all() {
         return apart;
     }
     apart | separated_by(2)
@@ -214,36 +212,36 @@ pub(super) fn apart<L: Lane>(frame: &LeafFrame, one: &Corners<L>, two: &Corners<
 
 /// What gaps along products of edges are less by, times the length of the product.
 #[inline(always)]
-fn lost_by_products<L: Lane>(frame: &LeafFrame, one: &Corners<L>, two: &Corners<L>) -> L {
-    let size = |corners: &Corners<L>| largest(sub(corners.max, corners.min));
+fn lost_by_products(frame: &LeafFrame, one: &Corners, two: &Corners) -> f32x4 {
+    let size = |corners: &Corners| largest(sub(corners.max, corners.min));
     let (size1, size2) = (size(one), size(two));
-    let span = size1 + size2 + L::splat(frame.margin);
-    L::splat(frame.products) * size1 * size2 * span
+    let span = size1 + size2 + f32x4::splat(frame.margin);
+    f32x4::splat(frame.products) * size1 * size2 * span
 }
 
 /// The corners of both triangles from a corner of triangle 1.
 #[inline(always)]
-pub(super) fn from_corner<L: Lane>(one: &Corners<L>, two: &Corners<L>) -> [[V3<L>; 3]; 2] {
+pub(super) fn from_corner(one: &Corners, two: &Corners) -> [[V3<f32x4>; 3]; 2] {
     let origin = one.corners[0];
-    let from_origin = |triangle: &Corners<L>| each(|i| sub(triangle.corners[i], origin));
+    let from_origin = |triangle: &Corners| each(|i| sub(triangle.corners[i], origin));
     [from_origin(one), from_origin(two)]
 }
 
 /// Which triangles, from a corner of triangle 1, an axis separates by more than the margin.
 #[inline(always)]
-fn separates<L: Lane>(axis: V3<L>, corners: &[[V3<L>; 3]; 2], margin_squared: L) -> L::Mask {
+fn separates(axis: V3<f32x4>, corners: &[[V3<f32x4>; 3]; 2], margin_squared: f32x4) -> f32x4 {
     let [[_, b, c], two] = corners;
-    let along1 = [L::splat(0.0), dot(axis, *b), dot(axis, *c)];
+    let along1 = [f32x4::splat(0.0), dot(axis, *b), dot(axis, *c)];
     let along2 = each(|i| dot(axis, two[i]));
     let above = smallest(along2) - largest(along1);
     let below = smallest(along1) - largest(along2);
-    is_beyond(above.larger(below), axis, margin_squared)
+    is_beyond(above.fast_max(below), axis, margin_squared)
 }
 
 /// Whether a gap along an axis, times its length, is wider than the margin.
 #[inline(always)]
-fn is_beyond<L: Lane>(gap: L, axis: V3<L>, margin_squared: L) -> L::Mask {
-    let gap = gap.larger(L::splat(0.0));
-    let reach = margin_squared * dot(axis, axis) + L::splat(UNDERFLOW);
-    (gap * gap).above(reach)
+fn is_beyond(gap: f32x4, axis: V3<f32x4>, margin_squared: f32x4) -> f32x4 {
+    let gap = gap.fast_max(f32x4::splat(0.0));
+    let reach = margin_squared * dot(axis, axis) + f32x4::splat(UNDERFLOW);
+    (gap * gap).simd_gt(reach)
 }

@@ -2,7 +2,7 @@
 
 use crate::contact::contact;
 use crate::leaf::LeafTest;
-use crate::traverse::{Descent, PairFrame, Placement, Verdict, Visitor, descend};
+use crate::traverse::{PairFrame, Placement, descend};
 use crate::tree::{LeafBatch, Tree};
 use crate::volumes::rounding::gamma;
 
@@ -23,7 +23,7 @@ pub fn contacts(
     placement: Placement,
     margin: f64,
     scratch: &mut SearchScratch,
-    found: impl FnMut(FoundPair),
+    mut found: impl FnMut(FoundPair),
 ) {
     if !placement.is_finite() || !(0.0..).contains(&margin) {
         return;
@@ -31,18 +31,27 @@ pub fn contacts(
     // The margin is rounded up. A wider one would overflow in the tests, and excludes nothing.
     let widened = margin.min(WIDEST_MARGIN) as f32 * (1.0 + gamma(4)) + f32::MIN_POSITIVE;
     let mut frame = PairFrame::at(trees, placement, widened);
-    let mut visitor = Contacts { test: LeafTest::new(&frame), placement, margin, found };
+    let mut exact = |batch1: &LeafBatch, lane1, batch2: &LeafBatch, lane2| {
+        let one = LeafTriangle { batch: batch1, lane: lane1 };
+        let two = LeafTriangle { batch: batch2, lane: lane2 };
+        let pair = TrianglePair::new(&placement, one.corners(), two.corners());
+        let [t1, t2] = &pair.corners;
+        if let Some(contact) = contact(t1, t2, margin.max(pair.touching_distance())) {
+            found(FoundPair::new(one, two, &pair, contact));
+        }
+    };
     if margin <= WIDEST_MARGIN {
-        let scratch = &mut scratch.descent;
-        descend(trees, &mut frame, Descent::Simultaneous, scratch, (), &mut visitor);
+        let test = LeafTest::new(&frame);
+        descend(trees, &mut frame, &mut scratch.descent, (), |batch1, batch2| {
+            test.survivors(batch1, batch2, |lane1, lane2| exact(batch1, lane1, batch2, lane2));
+        });
         return;
     }
     for batch1 in (0..trees.0.leaf_count()).map(|leaf| trees.0.leaf(leaf)) {
         for batch2 in (0..trees.1.leaf_count()).map(|leaf| trees.1.leaf(leaf)) {
             for lane1 in 0..batch1.count() {
                 for lane2 in 0..batch2.count() {
-                    let one = LeafTriangle { batch: batch1, lane: lane1 };
-                    visitor.triangles(one, LeafTriangle { batch: batch2, lane: lane2 });
+                    exact(batch1, lane1, batch2, lane2);
                 }
             }
         }
@@ -51,32 +60,3 @@ pub fn contacts(
 
 /// Squares of wider margins may overflow in the leaf test.
 const WIDEST_MARGIN: f64 = 1.0e15;
-
-struct Contacts<F> {
-    test: LeafTest,
-    placement: Placement,
-    margin: f64,
-    found: F,
-}
-
-impl<F: FnMut(FoundPair)> Contacts<F> {
-    #[inline]
-    fn triangles(&mut self, one: LeafTriangle<'_>, two: LeafTriangle<'_>) {
-        let pair = TrianglePair::new(&self.placement, one.corners(), two.corners());
-        let [t1, t2] = &pair.corners;
-        if let Some(contact) = contact(t1, t2, self.margin.max(pair.touching_distance())) {
-            (self.found)(FoundPair::new(one, two, &pair, contact));
-        }
-    }
-}
-
-impl<F: FnMut(FoundPair)> Visitor for Contacts<F> {
-    fn leaves(&mut self, _: u32, batch1: &LeafBatch, _: u32, batch2: &LeafBatch) -> Verdict {
-        let test = self.test;
-        test.survivors(batch1, batch2, |lane1, lane2| {
-            let one = LeafTriangle { batch: batch1, lane: lane1 };
-            self.triangles(one, LeafTriangle { batch: batch2, lane: lane2 });
-        });
-        Verdict::Descend
-    }
-}

@@ -1,52 +1,39 @@
-//! The descent: both trees at once.
+//! The simultaneous descent of two trees (section 3.2 of the SBBK paper).
 //!
-//! A pair of nodes that meet is replaced by the pairs of their children, all four compared in one
-//! SIMD test (the paper's simultaneous descent, section 3.2). Where one side is a leaf, the other
-//! goes on alone.
+//! The pairs of children replace a pair of nodes that meet; one SIMD test compares all four. Where
+//! one side is a leaf, the other goes on alone.
 //!
-//! For complete trees of n levels in which everything meets, the paper counts `(2^(2(n-1)) - 1)/3`
-//! tests between inner nodes and `2^(2(n-1))` between leaves, against `2^(2n-1) - 1` in all when
-//! one side descends at a time.
+//! For complete trees of n levels in which all nodes meet, the paper counts `(2^(2(n-1)) - 1)/3`
+//! tests between inner nodes and `2^(2(n-1))` between leaves. A descent of one side at a time makes
+//! `2^(2n-1) - 1` tests.
 
 use super::counters::Counters;
 use super::expand::{Sides, expand};
 use super::frame::PairFrame;
 use super::overlap::Overlap;
 use super::side::Side;
-use super::visitor::{NodePair, Verdict, Visitor};
 use crate::simd::Same;
-use crate::tree::{Link, Slot, Tree};
+use crate::tree::{LeafBatch, Slot, Tree};
 
-/// In which order the trees go down.
-#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
-pub enum Descent {
-    /// Both at once.
-    #[default]
-    Simultaneous,
-    /// One at a time, taking turns: what the paper compares with. Visits more pairs.
-    Single,
-}
-
-/// Memory of the descent, kept by the caller: after the first few queries nothing is allocated.
+/// Memory of descents, kept by the caller: after a few queries nothing is allocated.
 ///
-/// The stack holds at most 3 pairs a level of both trees in sum; it grows as needed.
+/// The stack holds at most 3 pairs for each level of both trees.
 #[derive(Clone, Debug, Default)]
 pub struct DescentScratch {
-    stack: Vec<NodePair>,
+    stack: Vec<(Slot, Slot)>,
 }
 
-/// Visits all pairs of leaves whose volumes, and those of all their ancestors, come within the
-/// margin.
+/// Calls `visit` with all pairs of leaves whose volumes, and those of all their ancestors, come
+/// within the margin.
 ///
-/// Finds every pair of triangles within the margin: volumes contain what is below them and tests
-/// are conservative, see [`PairFrame`]. The order of visits depends on the trees only.
-pub fn descend<V: Visitor, C: Counters>(
+/// Finds every pair of triangles within the margin: volumes contain all below them, and tests are
+/// conservative, see [`PairFrame`]. The order of visits depends on the trees only.
+pub fn descend(
     (tree1, tree2): (&Tree, &Tree),
     frame: &mut PairFrame,
-    descent: Descent,
     scratch: &mut DescentScratch,
-    mut counters: C,
-    visitor: &mut V,
+    mut counters: impl Counters,
+    mut visit: impl FnMut(&LeafBatch, &LeafBatch),
 ) {
     if tree1.sphere().is_some() && tree2.sphere().is_some() {
         counters.sphere_test();
@@ -63,44 +50,17 @@ pub fn descend<V: Visitor, C: Counters>(
 
     let stack = &mut scratch.stack;
     stack.clear();
-    stack.push(NodePair { slot1: Slot::ROOT, slot2: Slot::ROOT, depth: 0 });
-    while let Some(pair) = stack.pop() {
-        let links = (tree1.link(pair.slot1), tree2.link(pair.slot2));
-        let verdict = if links.0.is_leaf() && links.1.is_leaf() {
+    stack.push((Slot::ROOT, Slot::ROOT));
+    while let Some(slots) = stack.pop() {
+        let links = (tree1.link(slots.0), tree2.link(slots.1));
+        if links.0.is_leaf() && links.1.is_leaf() {
             counters.leaf_pair();
-            let (leaf1, leaf2) = (links.0.index(), links.1.index());
-            match visitor.leaves(leaf1, tree1.leaf(leaf1), leaf2, tree2.leaf(leaf2)) {
-                Verdict::Stop => Verdict::Stop,
-                _ => Verdict::Prune,
-            }
-        } else {
-            visitor.nodes(pair)
-        };
-        match verdict {
-            Verdict::Stop => return,
-            Verdict::Prune => {}
-            Verdict::Descend => {
-                let mut compare = Overlap { frame, counters: &mut counters };
-                let sides = sides(descent, pair.depth, links);
-                let depth = pair.depth + 1;
-                let slots = (pair.slot1, pair.slot2);
-                expand((tree1, tree2), slots, sides, &mut compare, |(slot1, slot2), ()| {
-                    stack.push(NodePair { slot1, slot2, depth });
-                });
-            }
+            visit(tree1.leaf(links.0.index()), tree2.leaf(links.1.index()));
+            continue;
         }
-    }
-}
-
-fn sides(descent: Descent, depth: u32, links: (Link, Link)) -> Sides {
-    match descent {
-        Descent::Single if !links.0.is_leaf() && !links.1.is_leaf() => {
-            if depth.is_multiple_of(2) {
-                Sides::First
-            } else {
-                Sides::Second
-            }
-        }
-        _ => Sides::of(links),
+        let mut compare = Overlap { frame, counters: &mut counters };
+        expand((tree1, tree2), slots, Sides::of(links), &mut compare, |slots, ()| {
+            stack.push(slots);
+        });
     }
 }

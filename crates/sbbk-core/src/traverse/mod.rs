@@ -23,11 +23,10 @@ mod placement;
 mod side;
 mod slack;
 mod toward;
-mod visitor;
 
 pub use boxes::{BoxTest, NearBox, TestedBox};
 pub use counters::{Counters, DescentCounts};
-pub use descend::{Descent, DescentScratch, descend};
+pub use descend::{DescentScratch, descend};
 pub(crate) use expand::{Compare, Sides, expand};
 pub(crate) use frame::Along;
 pub use frame::PairFrame;
@@ -37,4 +36,3 @@ pub use placement::Placement;
 pub(crate) use side::Side;
 pub use slack::{Slack, SlackLimits, SlackPlan};
 pub(crate) use toward::Toward;
-pub use visitor::{LeafPairs, NodePair, Verdict, Visitor};

@@ -7,10 +7,10 @@ use glamx::{DVec3, Pose3, Vec3};
 use sbbk_core::field::{FieldFrame, HeightGrid};
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::traverse::{
-    BoxTest, Descent, DescentScratch, PairFrame, Placement, Slack, SlackLimits, SlackPlan,
-    TestedBox, Verdict, Visitor, descend,
+    BoxTest, DescentScratch, PairFrame, Placement, Slack, SlackLimits, SlackPlan, TestedBox,
+    descend,
 };
-use sbbk_core::tree::{BuildOptions, LayerPlan, LeafBatch, Tree};
+use sbbk_core::tree::{BuildOptions, LayerPlan, Tree};
 use sbbk_core::truth;
 use sbbk_core::volumes::{SLABS, Sphere, directions};
 
@@ -23,28 +23,17 @@ fn tree(corners: &[Vec3], layers: LayerPlan) -> Tree {
     Tree::build(corners, &triangles, &options).unwrap()
 }
 
-/// Counts the pairs of triangles that a leaf test leaves.
-struct Count {
-    test: LeafTest,
-    leaf_pairs: usize,
-    survivors: usize,
-}
-
-impl Visitor for Count {
-    fn leaves(&mut self, _: u32, batch1: &LeafBatch, _: u32, batch2: &LeafBatch) -> Verdict {
-        self.leaf_pairs += 1;
-        self.test.survivors(batch1, batch2, |_, _| self.survivors += 1);
-        Verdict::Descend
-    }
-}
-
-/// How many pairs of leaves and of triangles are found.
+/// The numbers of pairs of leaves and of triangles that are found.
 fn found(tree1: &Tree, tree2: &Tree, pos12: &Pose3, margin: f32) -> (usize, usize) {
     let mut frame = PairFrame::new(tree1, tree2, pos12, margin);
-    let mut count = Count { test: LeafTest::new(&frame), leaf_pairs: 0, survivors: 0 };
+    let test = LeafTest::new(&frame);
+    let (mut leaf_pairs, mut survivors) = (0, 0);
     let scratch = &mut DescentScratch::default();
-    descend((tree1, tree2), &mut frame, Descent::Simultaneous, scratch, (), &mut count);
-    (count.leaf_pairs, count.survivors)
+    descend((tree1, tree2), &mut frame, scratch, (), |batch1, batch2| {
+        leaf_pairs += 1;
+        test.survivors(batch1, batch2, |_, _| survivors += 1);
+    });
+    (leaf_pairs, survivors)
 }
 
 /// Two triangles in frames of their own, near each other, and how far they are apart in truth.

@@ -8,39 +8,41 @@ use glamx::{Pose3, Quat, Vec3};
 use sbbk_core::contact::contact;
 use sbbk_core::front::Front;
 use sbbk_core::query::TrianglePair;
-use sbbk_core::traverse::{
-    Counters, Descent, DescentCounts, DescentScratch, LeafPairs, PairFrame, Placement, Verdict,
-    descend,
-};
-use sbbk_core::tree::{BuildOptions, LayerPlan, Tree};
+use sbbk_core::traverse::{Counters, DescentCounts, DescentScratch, PairFrame, Placement, descend};
+use sbbk_core::tree::{BuildOptions, LayerPlan, LeafBatch, Tree};
 
 type Pairs = BTreeSet<(u32, u32)>;
 type Trees<'a> = (&'a Tree, &'a Tree);
 
-/// The pairs of triangles of these leaves within the margin, by the exact contact.
-fn within(trees: Trees<'_>, pos12: &Pose3, margin: f32, leaves: &[(u32, u32)]) -> Pairs {
-    let placement = Placement::new(pos12);
-    let mut pairs = Pairs::new();
-    for &(leaf1, leaf2) in leaves {
-        let (one, two) = (trees.0.leaf(leaf1), trees.1.leaf(leaf2));
+/// Collects the pairs of triangles of visited leaves within the margin, by the exact contact.
+struct Within<'a> {
+    placement: Placement,
+    margin: f32,
+    pairs: &'a mut Pairs,
+}
+
+impl Within<'_> {
+    fn add(&mut self, one: &LeafBatch, two: &LeafBatch) {
         for (lane1, &triangle1) in one.triangles().iter().enumerate() {
             for (lane2, &triangle2) in two.triangles().iter().enumerate() {
-                let pair = TrianglePair::new(&placement, one.corners(lane1), two.corners(lane2));
+                let corners = (one.corners(lane1), two.corners(lane2));
+                let pair = TrianglePair::new(&self.placement, corners.0, corners.1);
                 let [t1, t2] = &pair.corners;
-                if contact(t1, t2, margin.into()).is_some() {
-                    assert!(pairs.insert((triangle1, triangle2)), "leaves were visited twice");
+                if contact(t1, t2, self.margin.into()).is_some() {
+                    assert!(self.pairs.insert((triangle1, triangle2)), "visited twice");
                 }
             }
         }
     }
-    pairs
 }
 
 fn fresh(trees: Trees<'_>, pos12: &Pose3, margin: f32, counters: impl Counters) -> Pairs {
     let mut frame = PairFrame::new(trees.0, trees.1, pos12, margin);
-    let (mut scratch, mut found) = (DescentScratch::default(), LeafPairs::default());
-    descend(trees, &mut frame, Descent::Simultaneous, &mut scratch, counters, &mut found);
-    within(trees, pos12, margin, &found.0)
+    let (placement, mut pairs) = (*frame.placement(), Pairs::new());
+    let mut within = Within { placement, margin, pairs: &mut pairs };
+    let scratch = &mut DescentScratch::default();
+    descend(trees, &mut frame, scratch, counters, |one, two| within.add(one, two));
+    pairs
 }
 
 fn from_front(
@@ -51,12 +53,10 @@ fn from_front(
     counters: impl Counters,
 ) -> Pairs {
     let mut frame = PairFrame::new(trees.0, trees.1, pos12, margin);
-    let mut found = Vec::new();
-    front.visit(trees, &mut frame, counters, |leaf1, leaf2| {
-        found.push((leaf1, leaf2));
-        Verdict::Descend
-    });
-    within(trees, pos12, margin, &found)
+    let (placement, mut pairs) = (*frame.placement(), Pairs::new());
+    let mut within = Within { placement, margin, pairs: &mut pairs };
+    front.visit(trees, &mut frame, counters, |one, two| within.add(one, two));
+    pairs
 }
 
 fn tree(soup: &Soup, layers: Option<LayerPlan>) -> Tree {
@@ -171,23 +171,4 @@ fn a_front_stays_bounded_and_tests_fewer_nodes_than_a_fresh_descent() {
     }
     let share = tests.aabb_tests as f64 / fresh_tests.aabb_tests as f64;
     assert!(share < 0.9, "{share} of the tests of fresh descents");
-}
-
-#[test]
-fn a_stopped_query_leaves_the_front_usable() {
-    let ball = tree(&bumpy_ball(10, 0.2), None);
-    let trees = (&ball, &ball);
-    let mut front = Front::default();
-    for x in [1.8, 1.7, 1.9, 1.75] {
-        let pos12 = Pose3::translation(x, 0.3, 0.1);
-        let mut frame = PairFrame::new(trees.0, trees.1, &pos12, 0.05);
-        let mut count = 0;
-        front.visit(trees, &mut frame, (), |_, _| {
-            count += 1;
-            Verdict::Stop
-        });
-        assert_eq!(count, 1);
-        let expected = fresh(trees, &pos12, 0.05, ());
-        assert_eq!(from_front(&mut front, trees, &pos12, 0.05, ()), expected);
-    }
 }

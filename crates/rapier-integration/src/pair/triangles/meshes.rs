@@ -9,8 +9,7 @@ use parry3d::shape::Triangle;
 use sbbk_core::contact::{ManifoldPoints, TriangleContact};
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::surface::{IndexedTriangles, OneRing};
-use sbbk_core::traverse::{Counters, Descent, PairFrame, Verdict, Visitor, descend};
-use sbbk_core::tree::LeafBatch;
+use sbbk_core::traverse::{Counters, PairFrame, descend};
 
 use super::exact::Constraints;
 use super::judge::{Judge, Surfaces, near};
@@ -121,12 +120,11 @@ impl TriangleShapes for Meshes<'_> {
         let trees = (&prepared[0].tree, &prepared[1].tree);
         let mut frame = PairFrame::at(trees, placement12, margin);
         let (test, stack) = (LeafTest::new(&frame).without(beside), &mut scratch.descent);
-        let mut collector = Collector(|batch1: &LeafBatch, batch2: &LeafBatch| {
+        descend(trees, &mut frame, stack, counters, |batch1, batch2| {
             test.survivors(batch1, batch2, |lane1, lane2| {
                 found([batch1.triangles()[lane1], batch2.triangles()[lane2]]);
             });
         });
-        descend(trees, &mut frame, Descent::Simultaneous, stack, counters, &mut collector);
     }
 
     #[inline(always)]
@@ -181,15 +179,5 @@ impl Surfaces for Meshes<'_> {
     fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)> {
         let (_, nearest, behind) = nearest(self.pair.meshes[i].mesh, point)?;
         Some((nearest.point, behind))
-    }
-}
-
-struct Collector<F>(F);
-
-impl<F: FnMut(&LeafBatch, &LeafBatch)> Visitor for Collector<F> {
-    #[inline]
-    fn leaves(&mut self, _: u32, batch1: &LeafBatch, _: u32, batch2: &LeafBatch) -> Verdict {
-        self.0(batch1, batch2);
-        Verdict::Descend
     }
 }
