@@ -1,54 +1,46 @@
-//! Collision detection between triangle meshes with hybrid bounding volume hierarchies: a
-//! **s**phere at the root, AA**BB**s in the inner layers, **k**-DOPs in the lower ones. No physics
-//! engine: see `rapier-integration` for Rapier.
+//! Collision detection between triangle meshes with hybrid bounding volume hierarchies.
 //!
-//! The idea is that of *A Three-layer Hybrid Bounding Volume Hierarchy for Collision Detection*:
-//! cheap volumes where most pairs part, tight ones where they do not, and both trees descended at
-//! once.
+//! A tree has a **s**phere at the root, AA**BB**s in the upper layers and **k**-DOPs (k = 18) in the
+//! lower ones. Queries descend two trees at once, after the paper *A Three-layer Hybrid Bounding
+//! Volume Hierarchy for Collision Detection*. The crate has no physics: `rapier-integration` is its
+//! plugin for Rapier.
 //!
 //! ```
 //! use glamx::{Pose3, Vec3};
-//! use sbbk_core::query::{SearchScratch, contacts};
-//! use sbbk_core::traverse::Placement;
-//! use sbbk_core::tree::{BuildOptions, Tree};
+//! use sbbk_core::{BuildOptions, Placement, SearchScratch, Tree, contacts};
 //!
 //! // Two tetrahedra, the second one a little above the first: the top of the first, in three
 //! // triangles, is near the three around the bottom corner of the second.
 //! let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
 //! let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-//! let tree: Tree = Tree::build(&vertices, &triangles, &BuildOptions::default())?;
+//! let tree = Tree::build(&vertices, &triangles, &BuildOptions::default())?;
 //! let placement = Placement::new(&Pose3::translation(0.0, 0.0, 1.01));
 //! let mut pairs = Vec::new();
 //! let mut scratch = SearchScratch::default();
 //! contacts((&tree, &tree), placement, 0.02, &mut scratch, |pair| pairs.push(pair));
 //! assert_eq!(pairs.len(), 9);
-//! # Ok::<(), sbbk_core::tree::BuildError>(())
+//! # Ok::<(), sbbk_core::BuildError>(())
 //! ```
 //!
-//! * [`tree`]: [`Tree`](tree::Tree), built from a mesh once, and a read-only walk over its nodes.
-//! * [`query`]: all contacts of two meshes, the nearest or deepest triangles, and when moving
-//!   meshes first meet.
-//! * [`contact`]: the exact contact of two triangles, and its manifold; the contact of a triangle
-//!   and a convex shape.
+//! The names at the root are enough for queries of meshes. The modules serve authors of a midphase
+//! or narrow phase:
 //!
-//! Below these, for a midphase or narrow phase of one's own:
+//! | module | content |
+//! |---|---|
+//! | [`volumes`] | sphere, AABB, k-DOP, and the bounds on their rounding |
+//! | [`tree`] | build and layout of a tree, and a walk over its nodes |
+//! | [`traverse`] | descent of two trees, placements, slack |
+//! | [`leaf`] | SIMD test of the triangles of two leaves |
+//! | [`contact`] | exact contact of two triangles, or of a triangle and a convex shape |
+//! | [`query`] | contacts, distance, overlap, casts of two meshes |
+//! | [`surface`] | adjacency of a mesh; solid or sheet |
+//! | [`field`] | triangles of a height field near a mesh |
+//! | [`front`], [`broad_phase`] | the paper's, to reproduce it |
+//! | [`draw`] | lines for a debug renderer |
+//! | `truth` (feature `truth`) | brute force in f64, for tests |
 //!
-//! * [`volumes`]: [`Sphere`](volumes::Sphere), [`Aabb`](volumes::Aabb), [`Kdop`](volumes::Kdop).
-//! * [`traverse`]: [`descend`](traverse::descend) finds the pairs of leaves that may touch at a
-//!   pose; [`BoxTest`](traverse::BoxTest) compares boxes of other hierarchies.
-//! * [`leaf`]: which triangles of two leaves, or of batches gathered elsewhere, may touch, over
-//!   SIMD lanes.
-//! * [`field`]: the triangles of a height field that may touch a mesh.
-//! * [`surface`]: which triangles of a mesh are neighbours, and whether it bounds a solid.
-//! * [`front`]: a descent that starts where the last one stopped.
-//! * [`broad_phase`]: which of many moving objects are near each other.
-//! * [`draw`]: the volumes of a layer, and the candidates of a query, as lines.
-//! * [`collections`]: lists of numbers, and groups.
-//! * `truth` (feature `truth`): brute force in f64, to test against.
-//!
-//! Modules depend one way: `simd` (lanes), [`volumes`], [`tree`], [`traverse`], [`leaf`], then
-//! [`field`], [`front`] and [`query`]. [`contact`], which [`query`] uses, and [`broad_phase`] need
-//! none of them; [`surface`] uses the names of features of [`contact`], and [`collections`].
+//! Each module uses only those above it, except that [`query`] also uses [`contact`], and
+//! [`contact`] and [`broad_phase`] stand alone.
 
 pub mod broad_phase;
 pub mod collections;
@@ -68,6 +60,12 @@ pub mod tree;
 #[cfg(feature = "truth")]
 pub mod truth;
 pub mod volumes;
+
+pub use contact::contact;
+pub use query::{SearchScratch, cast, contacts, deepest, meeting, nearest};
+pub use surface::Surface;
+pub use traverse::Placement;
+pub use tree::{BuildError, BuildOptions, Tree};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -71,7 +71,7 @@ where
     let (moving, reach) = (query.moving(), query.reach());
     let plan = coherence.slack.plan(moving.ball, moving.placement, reach, P::Query::SLACK);
     let (answer, margin) = match plan {
-        SlackPlan::Reuse { margin, .. } => (Answer::Reused, margin),
+        SlackPlan::Reuse { margin } => (Answer::Reused, margin),
         SlackPlan::Descend { margin, travel } => {
             coherence.outside -= travel;
             let mut lookup = std::mem::take(&mut scratch.lookup);

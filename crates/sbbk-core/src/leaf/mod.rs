@@ -1,15 +1,14 @@
-//! Triangles against triangles, a batch at a time: which pairs of two leaves may come within the
-//! margin. A leaf is a [`LeafBatch`], of a tree or gathered from any hierarchy.
+//! Which triangles of two leaves may come within the margin.
 //!
-//! The test looks for a separating axis over SIMD lanes: one triangle of leaf 1 against the batch
-//! of leaf 2. It is conservative and nearly exact; what survives goes to the exact test in f64
-//! ([`contact`](crate::contact)).
+//! The test looks for a separating axis in SIMD lanes: one triangle of leaf 1 against the batch of
+//! leaf 2. It is conservative and nearly exact. Pairs that pass go to the exact
+//! [`contact`](crate::contact) in f64. A [`LeafBatch`] comes from a tree or any other hierarchy.
 
-mod beside;
+mod lateral;
 mod placed;
 mod separation;
 
-pub use beside::Beside;
+pub use lateral::LateralCulling;
 pub(crate) use placed::PlacedTest;
 
 use wide::f32x4;
@@ -17,33 +16,33 @@ use wide::f32x4;
 use crate::simd::{V3, each, each_bit};
 use crate::traverse::PairFrame;
 use crate::tree::LeafBatch;
-use beside::beside;
+use lateral::is_lateral;
 use separation::{Corners, LeafFrame, apart, apart_by_centroids};
 
 /// Tests pairs of leaves at one pose. Made once a query.
 #[derive(Copy, Clone)]
 pub struct LeafTest {
     frame: LeafFrame,
-    beside: Option<Beside>,
+    lateral: Option<LateralCulling>,
 }
 
 impl LeafTest {
-    /// For the pose and margin of `frame`.
+    /// A test at the pose and margin of `frame`.
     pub fn new(frame: &PairFrame) -> Self {
-        Self { frame: LeafFrame::new(frame), beside: None }
+        Self { frame: LeafFrame::new(frame), lateral: None }
     }
 
-    /// The same test with another margin.
+    /// Replaces the margin.
     #[inline]
     #[must_use]
     pub fn within(&self, margin: f32) -> Self {
         Self { frame: self.frame.within(margin), ..*self }
     }
 
-    /// The same test without pairs that are `beside` each other.
+    /// Also rejects pairs by lateral culling.
     #[must_use]
-    pub fn without(self, beside: Option<Beside>) -> Self {
-        Self { beside, ..self }
+    pub fn with_culling(self, lateral: Option<LateralCulling>) -> Self {
+        Self { lateral, ..self }
     }
 
     /// Calls `found(lane1, lane2)` for the pairs of triangles that no axis separates by more than
@@ -55,18 +54,18 @@ impl LeafTest {
         batch2: &LeafBatch,
         found: impl FnMut(usize, usize),
     ) {
-        let Some(no_use) = &self.beside else {
+        let Some(lateral) = &self.lateral else {
             return self.not_apart(batch1, batch2, apart, found);
         };
         let test = |frame: &LeafFrame, one: &Corners, two: &Corners| {
             let apart = apart(frame, one, two);
-            if apart.all() { apart } else { apart | beside(no_use, frame, one, two) }
+            if apart.all() { apart } else { apart | is_lateral(lateral, frame, one, two) }
         };
         self.not_apart(batch1, batch2, test, found);
     }
 
-    /// As [`survivors`](Self::survivors), with one more axis, for triangles that may be far apart
-    /// for their size.
+    /// Like [`survivors`](Self::survivors), with one more axis for triangles that may be far apart for
+    /// their size.
     #[inline]
     pub(crate) fn far_survivors(
         &self,
@@ -107,7 +106,7 @@ fn used(batch: &LeafBatch) -> u32 {
     (1 << batch.count()) - 1
 }
 
-/// One triangle in all lanes, by the coordinate of a corner on an axis.
+/// Fills all lanes with the triangle whose coordinates are `coordinate(corner, axis)`.
 #[inline(always)]
 fn splat(coordinate: impl Fn(usize, usize) -> f32) -> [V3<f32x4>; 3] {
     each(|corner| each(|axis| f32x4::splat(coordinate(corner, axis))))

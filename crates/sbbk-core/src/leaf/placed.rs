@@ -1,11 +1,11 @@
-//! The triangles of a leaf, placed in another frame once, against triangles there that come one at
-//! a time.
+//! The triangles of a leaf, transformed to another frame once, against triangles there that come
+//! one at a time.
 //!
 //! # Rounding
 //!
-//! As in [`separation`](super::separation), but all coordinates are relative to an origin near the
-//! mesh, so that a triangle of a wide terrain is tested as sharply as one at its middle. Taking the
-//! origin away rounds once more: `γ_18` for `γ_16`. `M1` is that of the one triangle.
+//! [`separation`](super::separation) gives the bounds. Coordinates are relative to an origin near
+//! the mesh, so that the test is as sharp far from the middle of a wide terrain. Subtracting the
+//! origin rounds once more: `γ_18` for `γ_16`. `M1` is the size of the one triangle.
 
 use glamx::{DVec3, Vec3};
 

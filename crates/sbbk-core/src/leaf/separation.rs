@@ -1,49 +1,51 @@
 //! The separating axes of two triangles, with a margin.
 //!
 //! Two triangles are farther apart than a margin `m` if their projections on some axis `n` are
-//! farther apart than `m·|n|`. Tried in order of what they cost and how often they succeed: the
-//! three axes of the frame, the two face normals, the nine products of edges. These do not tell
-//! all: a pair can come through with corner against corner a little beyond the margin, or in one
-//! plane. The test is one-sided on purpose.
-//!
-//! Of the pairs whose leaves meet, boxes leave a half on self-contacts of a head of 968 triangles,
-//! normals a half of these, edge products again a half: nearly all that are left are true. The six
-//! normals of edges in the planes were tried and dropped: a third of the time, and not one pair
-//! more rejected.
+//! farther apart than `m·|n|`. The test tries the three axes of the frame, the two face normals,
+//! then the nine products of edges, by cost and success. It is one-sided: a pair passes with corner
+//! against corner a little beyond the margin, or in one plane.
 //!
 //! # Rounding
 //!
-//! Whatever an axis is, it is used as computed, so only the projections' rounding matters. With `W`
-//! and `r = γ_16·W` as in [`rounding`](crate::volumes::rounding), a corner of mesh 2 is off by `r`.
-//! Coordinates are taken relative to a corner of triangle 1: at most `2·W` with one more rounding;
-//! a projection on `n` loses `γ_3·|n|₁` of that, and `|n|₁ <= √3·|n|`: below `1.8·γ_7·2·W`, less
-//! than `2·r`. Both sides and the difference: `4·r`. Projections are at most `2·√3·W·|n|` apart, so
-//! what is lost where the gap is squared and compared with `m²·|n|²`, `γ_6` of `m·|n|`, is below
-//! `1.4·r` for every margin that a gap can exceed. Gaps are compared with `m + 6·r`.
+//! Any axis is valid as computed, so only the rounding of projections matters. With `W` and
+//! `r = γ_16·W` from [`rounding`](crate::volumes::rounding), a corner of mesh 2 is off by `r`.
+//! Coordinates relative to a corner of triangle 1 are at most `2·W`, with one more rounding. A
+//! projection on `n` loses `γ_3·|n|₁` of that, and `|n|₁ <= √3·|n|`. This is below `1.8·γ_7·2·W`,
+//! less than `2·r`. Both sides and the difference lose `4·r`.
 //!
-//! Margins and coordinates of any size will do: where a projection overflows, so does `r²·|n|²`, as
-//! `r` is more than a millionth of `W`; and where squares are infinite or NaN, nothing is taken for
-//! separated.
+//! Projections are at most `2·√3·W·|n|` apart. Squaring the gap and comparing with `m²·|n|²` loses
+//! `γ_6` of `m·|n|`, below `1.4·r` for every margin that a gap can exceed. Gaps are compared with
+//! `m + 6·r`.
+//!
+//! Margins and coordinates may have any size. If a projection overflows, so does `r²·|n|²`, as `r`
+//! exceeds a millionth of `W`. Squares that are infinite or NaN separate nothing.
 //!
 //! # Products of edges
 //!
-//! Along `e1 × e2` both ends of an edge are level, and the third corner of triangle 1 is behind them by
-//! `n1·e2`, that of triangle 2 ahead by `n2·e1`, with `n1` and `n2` the normals as long as twice the
-//! areas. So an axis takes one projection in place of six: of the way from the one edge to the other.
+//! Along `e1 × e2` both ends of an edge are level. The third corner of triangle 1 is behind them by
+//! `n1·e2`, and that of triangle 2 ahead by `n2·e1`. Here `n1` and `n2` are the normals, twice the
+//! areas long. So an axis takes one projection instead of six, of a vector from edge to edge.
 //!
-//! That is so of the exact product. In units of `u·X1·X2·S`, with `X1` and `X2` the longest sides of the
-//! boxes around the triangles and `S` that of the box around both, at most this is lost. A component of
-//! the product, up to `2·X1·X2`, is off by 4. The way's projection: three terms of 2, six roundings each,
-//! 36. Third corners: three terms of 2, five roundings each, 30; edges that do not add up to nothing, by
-//! 3 in each component, 18; and that are not quite the ways between corners, 6; which makes 108 for both
-//! triangles. A gap is less than the way's projection, up to 6, and so is what it is the sum of: three
-//! additions, 18. `|n|` may be 7 too short, and the margin is below `√3·S` if a gap exceeds it: 12. In
-//! all 174. Gaps are less by `γ_200`, of `X1 + X2 + m` for `S`: where that is less, the boxes are apart.
-//! With edges nearly along each other that is much for the length of the axis, and they are not taken for
-//! separated.
+//! This holds for the exact product. Let `X1` and `X2` be the longest sides of the boxes around the
+//! triangles, and `S` that of the box around both. Losses in units of `u·X1·X2·S` are at most:
 //!
-//! Squares of gaps are above [`UNDERFLOW`], and gaps below `6·X1·X2·S`: what is lost to underflow is a
-//! thousandth of the rest while `S` is below `2⁵⁰`. Products of larger coordinates are not asked.
+//! | | |
+//! |---|---:|
+//! | a component of the product, up to `2·X1·X2` | 4 |
+//! | the projection: three terms of 2, six roundings each | 36 |
+//! | third corners: three terms of 2, five roundings each | 30 |
+//! | edges that do not add up to zero, by 3 in each component | 18 |
+//! | edges that differ from the vectors between corners | 6 |
+//! | the last three for both triangles | 108 |
+//! | three additions for a gap, which is below 6 | 18 |
+//! | `\|n\|` too short by 7, times a margin below `√3·S` | 12 |
+//! | sum of 36, 108, 18 and 12 | 174 |
+//!
+//! Gaps shrink by `γ_200`, of `X1 + X2 + m` instead of `S`: if that is less, the boxes are apart.
+//! Edges nearly along each other give a short axis, and separate nothing.
+//!
+//! Squares of gaps are above [`UNDERFLOW`], and gaps below `6·X1·X2·S`. Underflow costs a thousandth
+//! of the rest while `S` is below `2⁵⁰`. Larger coordinates skip the products.
 
 use wide::f32x4;
 
@@ -51,11 +53,10 @@ use crate::simd::{V3, cross, dot, each, largest, smallest, sub};
 use crate::traverse::{PairFrame, Placement};
 use crate::volumes::rounding::gamma;
 
-/// What products of tiny numbers lose to underflow: a few times 2⁻¹⁴⁹ a term, in the squares next
-/// to nothing for larger gaps.
+/// Bound on the error of squared gaps that underflow: a few times 2⁻¹⁴⁹ a term.
 pub(super) const UNDERFLOW: f32 = f32::MIN_POSITIVE;
 
-/// `r` of coordinates whose products are asked: they are below `2⁴⁹`.
+/// Largest `r` with products of edges: coordinates below `2⁴⁹`.
 const LARGEST: f32 = 5.0e8;
 
 /// The pose and margin of a pair of trees, for the leaves.
@@ -65,7 +66,7 @@ pub(super) struct LeafFrame {
     translation: [f32; 3],
     pub(super) rounding: f32,
     margin: f32,
-    /// What products of edges lose, as a share; infinite where they are not asked.
+    /// Relative error of products of edges; infinite if they are skipped.
     products: f32,
 }
 
@@ -85,13 +86,13 @@ impl LeafFrame {
         }
     }
 
-    /// The same pose with another margin.
+    /// Replaces the margin.
     #[inline(always)]
     pub(super) fn within(self, margin: f32) -> Self {
         self.with_margin(margin, self.rounding)
     }
 
-    /// With the margin, zero if it is less, and `r` of the module's documentation.
+    /// Sets the margin, at least zero, and `r` of the module's documentation.
     #[inline(always)]
     pub(super) fn with_margin(self, margin: f32, rounding: f32) -> Self {
         let products = if rounding < LARGEST { gamma(200) } else { f32::INFINITY };
@@ -118,7 +119,7 @@ impl Corners {
         }
     }
 
-    /// One corner after the other, from frame 2.
+    /// Transforms corners from frame 2.
     #[inline(always)]
     pub(super) fn from_frame2(frame: &LeafFrame, corners: [V3<f32x4>; 3]) -> Self {
         Self::new(each(|corner| {
@@ -129,7 +130,7 @@ impl Corners {
         }))
     }
 
-    /// Which of the boxes are farther apart than the margin.
+    /// The lanes whose boxes are farther apart than the margin.
     #[inline(always)]
     fn boxes_apart(&self, other: &Self, margin: f32x4) -> f32x4 {
         let apart = |axis: usize| {
@@ -140,12 +141,12 @@ impl Corners {
     }
 }
 
-/// Which triangles are farther apart than the margin along the line through their centroids, lane
-/// by lane: the axis that tells most about triangles that are far apart for their size.
+/// The lanes whose triangles are farther apart than the margin along the line through their
+/// centroids, the best axis for triangles far apart for their size.
 #[inline(always)]
 pub(super) fn apart_by_centroids(frame: &LeafFrame, one: &Corners, two: &Corners) -> f32x4 {
     let corners = from_corner(one, two);
-    // Three times as long, which does not matter.
+    // Three times the centroid; the length of an axis does not matter.
     let sum = |[a, b, c]: [V3<f32x4>; 3]| each(|axis| a[axis] + b[axis] + c[axis]);
     separates(
         sub(sum(corners[1]), sum(corners[0])),
@@ -154,7 +155,7 @@ pub(super) fn apart_by_centroids(frame: &LeafFrame, one: &Corners, two: &Corners
     )
 }
 
-/// Which triangles an axis separates by more than the margin, lane by lane.
+/// The lanes whose triangles an axis separates by more than the margin.
 #[inline(always)]
 pub(super) fn apart(frame: &LeafFrame, one: &Corners, two: &Corners) -> f32x4 {
     let mut apart = one.boxes_apart(two, f32x4::splat(frame.margin));
@@ -176,7 +177,7 @@ pub(super) fn apart(frame: &LeafFrame, one: &Corners, two: &Corners) -> f32x4 {
         return apart;
     }
     let lost = lost_by_products(frame, one, two);
-    // How far the third corner is behind an edge, not above zero, and ahead of it, not below.
+    // Distance of the third corner behind an edge, at most zero, and ahead of it, at least zero.
     let thirds = |normal: V3<f32x4>, edge: V3<f32x4>| {
         let along = dot(normal, edge);
         [along.fast_min(f32x4::splat(0.0)), along.fast_max(f32x4::splat(0.0))]
@@ -198,7 +199,7 @@ pub(super) fn apart(frame: &LeafFrame, one: &Corners, two: &Corners) -> f32x4 {
         });
         a | b | c
     };
-    // Written out: with loops one projection spared a pile 0.03 to 0.4 % of its instructions in place of 2.
+    // Written out: a loop loses most of the gain.
     apart = apart | separated_by(0);
     if apart.all() {
         return apart;
@@ -210,7 +211,7 @@ pub(super) fn apart(frame: &LeafFrame, one: &Corners, two: &Corners) -> f32x4 {
     apart | separated_by(2)
 }
 
-/// What gaps along products of edges are less by, times the length of the product.
+/// Rounding of gaps along products of edges, times the length of the product.
 #[inline(always)]
 fn lost_by_products(frame: &LeafFrame, one: &Corners, two: &Corners) -> f32x4 {
     let size = |corners: &Corners| largest(sub(corners.max, corners.min));
@@ -227,7 +228,8 @@ pub(super) fn from_corner(one: &Corners, two: &Corners) -> [[V3<f32x4>; 3]; 2] {
     [from_origin(one), from_origin(two)]
 }
 
-/// Which triangles, from a corner of triangle 1, an axis separates by more than the margin.
+/// The lanes whose triangles, relative to a corner of triangle 1, the axis separates by more than
+/// the margin.
 #[inline(always)]
 fn separates(axis: V3<f32x4>, corners: &[[V3<f32x4>; 3]; 2], margin_squared: f32x4) -> f32x4 {
     let [[_, b, c], two] = corners;
@@ -238,7 +240,7 @@ fn separates(axis: V3<f32x4>, corners: &[[V3<f32x4>; 3]; 2], margin_squared: f32
     is_beyond(above.fast_max(below), axis, margin_squared)
 }
 
-/// Whether a gap along an axis, times its length, is wider than the margin.
+/// The lanes whose gap along an axis, times its length, is wider than the margin.
 #[inline(always)]
 fn is_beyond(gap: f32x4, axis: V3<f32x4>, margin_squared: f32x4) -> f32x4 {
     let gap = gap.fast_max(f32x4::splat(0.0));

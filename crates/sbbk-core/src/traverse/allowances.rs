@@ -1,5 +1,5 @@
-//! Each comparison of nodes against the same in f64, at places where f32 rounds most: none claims
-//! more than is true, and what is lost is a fair share of what is allowed.
+//! Comparisons of nodes in f32 against f64, at places where f32 rounds most. No bound exceeds the
+//! exact value, and rounding uses a fair share of each allowance.
 
 use glamx::{DMat3, DVec3, Pose3, Quat, Vec3};
 use wide::f32x4;
@@ -12,7 +12,7 @@ use crate::support::Random;
 use crate::tree::{BuildOptions, Children, Intervals, LayerPlan, Slot, Tree};
 use crate::volumes::{SLABS, directions};
 
-/// What was lost in the direction that matters, as a share of what is allowed.
+/// The largest rounding error towards false separations, as a share of its allowance.
 struct Loss {
     worst: f64,
 }
@@ -22,13 +22,13 @@ impl Loss {
         Self { worst: f64::NEG_INFINITY }
     }
 
-    /// Of a lower bound that was made less by `allowance`.
+    /// Adds a lower bound that was reduced by `allowance`.
     fn add(&mut self, bound: f32, exact: f64, allowance: f32) {
         assert!(f64::from(bound) <= exact, "{bound} is claimed of {exact}, less {allowance}");
         self.worst = self.worst.max((f64::from(bound) - exact) / f64::from(allowance) + 1.0);
     }
 
-    /// Allowances without need are as wrong as those that are too small.
+    /// Fails for allowances that are needlessly large.
     fn is_more_than(&self, share: f64) {
         assert!(self.worst > share, "{} of the allowance is lost at most", self.worst);
     }
@@ -87,8 +87,8 @@ impl Pair {
         ]
     }
 
-    /// The gaps of the boxes in a lane along the axes of frame 1 and frame 2, and of the k-DOPs
-    /// along all slabs of tree 1, in f64.
+    /// The gaps of a lane in f64: boxes along the axes of frame 1 and frame 2, and k-DOPs along all
+    /// slabs of tree 1.
     fn exact(&self, lane: usize) -> ([DVec3; 2], [f64; SLABS]) {
         let placement = self.frame(0.0).placement;
         let [children1, children2] = self.children();
@@ -164,7 +164,7 @@ fn gaps_of_kdops_are_below_those_in_f64() {
         for lane in 0..4 {
             let (_, slabs) = pair.exact(lane);
             let exact = slabs.into_iter().fold(f64::NEG_INFINITY, f64::max);
-            // What is lost in the difference and the length is the next test's.
+            // The next test covers the difference and the length.
             let exact = exact + 1.0e-7 * exact.abs();
             loss.add(gaps[lane], exact, rounding);
         }
@@ -228,9 +228,7 @@ fn nodes_the_margin_apart_meet() {
     assert!(by_boxes > 1000 && by_slabs > 1000, "{by_boxes} and {by_slabs}");
 }
 
-/// Bounds of nodes are no more than the distance of the triangles below them, those along a
-/// direction no more than what the corners are apart along it. Would catch a wrong sign, slab, lane
-/// or frame, a rounding that is not allowed for, and a bound of no use.
+/// Would catch a wrong sign, slab, lane or frame, a rounding without allowance, and a useless bound.
 #[test]
 fn bounds_are_below_those_of_corners_and_not_far_below() {
     let random = &mut Random(5);

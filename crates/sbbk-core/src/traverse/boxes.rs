@@ -1,11 +1,11 @@
-//! Boxes one pair at a time, for hierarchies that are not ours: over the axes in place of pairs.
+//! Boxes of other hierarchies, one pair at a time, in lanes over the axes.
 //!
 //! # Rounding
 //!
-//! As that of the boxes of [`PairFrame`](super::PairFrame), with `c = 1/2·(min + max)` and `e = 1/2·(max - min)` in
-//! place of a stored centre and half-length: a centre is off by `u·M`, and a half-length too short
-//! by as much. In frame 1 that adds `2·u·(M1 + 2·s·M2)` to what a comparison loses, in frame 2
-//! likewise: far below `r`. Twice `r` is allowed.
+//! The bounds are those of [`PairFrame`](super::PairFrame), except that `c = 1/2·(min + max)` and
+//! `e = 1/2·(max - min)` replace a stored centre and half-length. A centre is off by `u·M`, and a
+//! half-length too short by as much. In frame 1 this adds `2·u·(M1 + 2·s·M2)` to the loss of a
+//! comparison, far below `r`, and similarly in frame 2. The allowance is `2·r`.
 
 use glamx::{DMat3, Vec3};
 use wide::f32x4;
@@ -14,7 +14,7 @@ use super::frame::Allowance;
 use super::placement::Placement;
 use crate::volumes::rounding::gamma;
 
-/// Whether boxes of two bodies come within a margin. Made once a query.
+/// Tests boxes of two bodies at one pose. Made once a query.
 #[derive(Copy, Clone, Debug)]
 pub struct BoxTest {
     to_frame1: Columns,
@@ -23,14 +23,14 @@ pub struct BoxTest {
     slack: [f32x4; 2],
 }
 
-/// A matrix, a column in each entry.
+/// A matrix by columns.
 #[derive(Copy, Clone, Debug)]
 struct Columns {
     columns: [f32x4; 3],
     absolute: [f32x4; 3],
 }
 
-/// The middle and the half-lengths of a box along the axes of its frame.
+/// The centre and the half-lengths of a box along the axes of its frame.
 #[derive(Copy, Clone, Debug)]
 pub struct TestedBox {
     centre: Vec3,
@@ -44,15 +44,14 @@ impl TestedBox {
         Self { centre: 0.5 * (min + max), extent: 0.5 * (max - min) }
     }
 
-    /// Its middle and half-lengths, as rounded.
+    /// The rounded centre and half-lengths.
     pub fn centre_extent(&self) -> (Vec3, Vec3) {
         (self.centre, self.extent)
     }
 }
 
 impl BoxTest {
-    /// For two bodies with coordinates up to `magnitudes`, body 2 at `placement` in the frame of body
-    /// 1.
+    /// A test of two bodies with coordinates up to `magnitudes`, body 2 at `placement` in frame 1.
     pub fn new(magnitudes: [f32; 2], placement: &Placement, margin: f32) -> Self {
         let Allowance { rounding, slack } = Allowance::new(magnitudes, placement, margin);
         Self {
@@ -63,7 +62,7 @@ impl BoxTest {
         }
     }
 
-    /// The test of a box of body 2 against boxes of body 1.
+    /// Prepares a box of body 2 for tests against boxes of body 1.
     #[inline(always)]
     pub fn of(&self, two: TestedBox) -> NearBox<'_> {
         NearBox {
@@ -75,7 +74,7 @@ impl BoxTest {
     }
 }
 
-/// A box of body 2, as boxes of body 1 are compared with it.
+/// A box of body 2, prepared for tests against boxes of body 1.
 #[derive(Copy, Clone, Debug)]
 pub struct NearBox<'a> {
     test: &'a BoxTest,
@@ -87,8 +86,8 @@ pub struct NearBox<'a> {
 }
 
 impl NearBox<'_> {
-    /// At least by how much the axes of frame 1 separate the boxes beyond the margin, in units of
-    /// frame 1; zero where they do not.
+    /// A lower bound of the gap beyond the margin along the axes of frame 1, in units of frame 1; zero
+    /// if these do not separate the boxes.
     pub fn gap(&self, one: TestedBox) -> f32 {
         let offset = self.centre - lanes(one.centre);
         let gaps = offset.abs() - (lanes(one.extent) + self.reach);
@@ -97,8 +96,8 @@ impl NearBox<'_> {
         Vec3::new(x, y, z).length() * (1.0 - gamma(8))
     }
 
-    /// Whether no face axis of the two boxes separates them by more than the margin. `false` where
-    /// anything is NaN.
+    /// Returns true if no face axis of the two boxes separates them by more than the margin. False if
+    /// a number is NaN.
     #[inline(always)]
     pub fn meets(&self, one: TestedBox) -> bool {
         let offset = self.centre - lanes(one.centre);
@@ -136,7 +135,7 @@ fn weighted([a, b, c]: &[f32x4; 3], weights: [f32; 3]) -> f32x4 {
     *a * x + *b * y + *c * z
 }
 
-/// The fourth lane is zero: there nothing is separated.
+/// The fourth lane is zero, which separates nothing.
 #[inline(always)]
 fn lanes(Vec3 { x, y, z }: Vec3) -> f32x4 {
     f32x4::new([x, y, z, 0.0])

@@ -5,15 +5,15 @@ use super::side::KdopSides;
 use crate::simd::{Spread, each};
 use crate::volumes::{SLABS, directions};
 
-/// For each slab direction of tree 1, three adjacent slabs of tree 2 that bound it: see
-/// [`DirectionSet::correspondence`].
+/// Bounds each slab direction of tree 1 by three adjacent slabs of tree 2: see
+/// [`directions`].
 ///
-/// In centre and half-length form, with `b` the direction in frame 2 and `o = d·t`: the projection
-/// of a node of tree 2 has the centre `o + Σ cᵢ·centreᵢ` and the half-length `Σ |cᵢ|·extentᵢ`.
+/// Let `b` be the direction in frame 2 and `o = d·t`. The projection of a node of tree 2 has the
+/// centre `o + Σ cᵢ·centreᵢ` and the half-length `Σ |cᵢ|·extentᵢ`.
 #[derive(Copy, Clone, Debug)]
 pub(super) struct Correspondence {
     slabs: [Slab; SLABS],
-    /// What a comparison of slabs may lose.
+    /// Rounding of a comparison of slabs.
     rounding: f32,
 }
 
@@ -24,8 +24,7 @@ const INVERSE_LENGTHS: [f32; SLABS] = {
     inverse
 };
 
-/// Scalars, spread over lanes where they are used: a query sets these up once and may test few
-/// nodes.
+/// Scalars, spread over lanes by each test: a query computes these once and may test few nodes.
 #[derive(Copy, Clone, Debug)]
 struct Slab {
     offset: f32,
@@ -39,12 +38,12 @@ struct Slab {
 struct Along {
     /// From the centre of the one of tree 1 to that of the one of tree 2.
     offset: f32x4,
-    /// How far both reach together.
+    /// Sum of both half-lengths.
     reach: f32x4,
 }
 
 impl Correspondence {
-    /// `rounding` is that of the boxes in frame 1; slabs lose up to six times as much, see
+    /// `rounding` is the bound for boxes in frame 1. Slabs lose up to six times as much, see
     /// [`rounding`](crate::volumes::rounding).
     pub(super) fn new(placement: &Placement, margin: f32, rounding: f32) -> Self {
         let to_frame2 = placement.rotation.transpose();
@@ -70,9 +69,8 @@ impl Correspondence {
     /// Bit k: bit k of `candidates`, and lane k's k-DOPs come within the margin along the slabs of
     /// tree 1.
     ///
-    /// Testing the slabs of tree 2 as well prunes a tenth more nodes and costs more than that
-    /// saves. So do the slabs along x, y and z, which the boxes have been compared along: without
-    /// them a descent takes a seventh fewer instructions.
+    /// The slabs of tree 2 cost more than they save. The slabs along x, y and z repeat the test of the
+    /// boxes.
     #[inline(always)]
     pub(super) fn kdops_meet(
         &self,
@@ -90,8 +88,8 @@ impl Correspondence {
         remaining
     }
 
-    /// The largest gap between k-DOPs along the slabs of tree 1 from `first` on, not more than the
-    /// exact one but for the `γ_8` of `gaps.rs`; negative where they overlap on all.
+    /// A lower bound of the largest gap between k-DOPs along the slabs of tree 1 from `first` on, up to
+    /// the `γ_8` of `gaps.rs`. Negative if they overlap on all.
     #[inline(always)]
     pub(super) fn gaps(
         &self,

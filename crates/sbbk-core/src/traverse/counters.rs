@@ -4,11 +4,11 @@ pub trait Counters {
     fn sphere_test(&mut self) {}
     /// `count` pairs of nodes were compared by their boxes.
     fn aabb_tests(&mut self, _count: u32) {}
-    /// Of these, `count` were then compared by their k-DOPs as well.
+    /// `count` pairs whose boxes met were compared by their k-DOPs.
     fn kdop_tests(&mut self, _count: u32) {}
     /// A pair of leaves was reached.
     fn leaf_pair(&mut self) {}
-    /// `count` cells of a height field were looked at.
+    /// `count` cells of a height field were read.
     fn cells(&mut self, _count: usize) {}
 }
 
@@ -19,13 +19,13 @@ impl Counters for () {}
 pub struct DescentCounts {
     /// Pairs of root spheres compared.
     pub sphere_tests: u64,
-    /// Pairs of nodes compared, all of them first by their boxes.
+    /// Pairs of nodes compared by their boxes.
     pub aabb_tests: u64,
-    /// Pairs of nodes whose boxes met, compared by their k-DOPs too.
+    /// Pairs of nodes whose boxes met, compared by their k-DOPs.
     pub kdop_tests: u64,
     /// Pairs of leaves handed to the visitor.
     pub leaf_pairs: u64,
-    /// Cells of height fields whose heights were read, each as often as that happened.
+    /// Reads of cells of height fields.
     pub cells: u64,
 }
 

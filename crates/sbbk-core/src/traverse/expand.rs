@@ -1,10 +1,10 @@
-//! From a pair of nodes to the pairs of their children, whatever these are compared by.
+//! Replaces a pair of nodes by the pairs of their children that pass a comparison.
 
 use super::side::Side;
 use crate::simd::{Inner, Outer, Same, Spread, each_bit};
 use crate::tree::{Link, Slot, Tree};
 
-/// Which sides of a pair go down.
+/// The sides of a pair whose children replace them.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Sides {
     Both,
@@ -13,7 +13,7 @@ pub(crate) enum Sides {
 }
 
 impl Sides {
-    /// Both at once, or the one that is not a leaf.
+    /// Both sides, or the one that is not a leaf.
     #[inline(always)]
     pub(crate) fn of(links: (Link, Link)) -> Self {
         match (links.0.is_leaf(), links.1.is_leaf()) {
@@ -23,8 +23,7 @@ impl Sides {
         }
     }
 
-    /// The inner node that holds the volumes of each side: the node's own children, or itself in
-    /// its parent.
+    /// The inner node that holds the volumes of each side: the node itself, or its parent if it stays.
     #[inline(always)]
     pub(crate) fn nodes(self, (slot1, slot2): (Slot, Slot), links: (Link, Link)) -> (u32, u32) {
         match self {
@@ -35,12 +34,12 @@ impl Sides {
     }
 }
 
-/// How the children of two nodes are compared, up to four pairs at a time.
+/// A comparison of the children of two nodes, up to four pairs at a time.
 pub(crate) trait Compare {
-    /// What is found about a pair.
+    /// A value computed for each pair.
     type Key: Copy;
 
-    /// The lanes of `lanes` whose pairs matter, as a mask, and what is known about each lane.
+    /// Returns the lanes of `lanes` whose pairs pass, as a mask, and the key of each lane.
     fn compare(
         &mut self,
         side1: &Side<'_, impl Spread>,
@@ -49,7 +48,7 @@ pub(crate) trait Compare {
     ) -> (u32, [Self::Key; 4]);
 }
 
-/// Compares the pairs of children and hands on those that matter.
+/// Compares the pairs of children and calls `push` with those that pass.
 #[inline(always)]
 pub(crate) fn expand<C: Compare>(
     (tree1, tree2): (&Tree, &Tree),

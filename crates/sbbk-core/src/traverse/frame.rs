@@ -8,41 +8,40 @@ use crate::simd::{Spread, V3, dot, each};
 use crate::tree::Tree;
 use crate::volumes::rounding::gamma;
 
-/// Everything about a pair of trees that depends on their relative pose and the margin: computed
-/// once a query, in f64, and spread over lanes.
+/// The relative pose of a pair of trees and the margin, computed once a query in f64, and spread
+/// over lanes.
 ///
-/// Tests are conservative: they allow for [`rounding`](crate::volumes::rounding). At a pose that is
-/// not finite no test passes. Any finite margin will do.
+/// Tests are conservative by the bounds of [`rounding`](crate::volumes::rounding). At a pose that is
+/// not finite no test passes. Any finite margin is valid.
 #[derive(Clone, Debug)]
 pub struct PairFrame {
     pub(crate) placement: Placement,
     margin: f32,
-    /// What a comparison of boxes may lose, in frame 1 and in frame 2.
+    /// Rounding of a comparison of boxes, in frame 1 and in frame 2.
     pub(crate) rounding: [f32; 2],
-    /// The margin plus the rounding, likewise.
+    /// The margin plus the rounding, in frame 1 and in frame 2.
     pub(super) slack: [f32x4; 2],
     translation: V3<f32x4>,
     to_frame1: Rows,
     to_frame2: Rows,
-    /// Computed when a descent first reaches k-DOPs in both trees: thousands of shallow pairs never
-    /// do.
+    /// Computed when a descent first reaches k-DOPs in both trees. Shallow pairs never do.
     correspondence: Option<Correspondence>,
 }
 
-/// What comparisons of boxes allow, in frame 1 and in frame 2.
+/// Allowances of comparisons of boxes, in frame 1 and in frame 2.
 pub(super) struct Allowance {
-    /// What rounding may take.
+    /// Bound on the rounding.
     pub(super) rounding: [f32; 2],
-    /// The margin plus that.
+    /// The margin plus the rounding.
     pub(super) slack: [f32; 2],
 }
 
 impl Allowance {
-    /// For bodies with coordinates up to `magnitudes`.
+    /// Allowances for bodies with coordinates up to `magnitudes`.
     #[inline]
     pub(super) fn new([m1, m2]: [f32; 2], placement: &Placement, margin: f32) -> Self {
         let Placement { rotation, translation, inverse } = placement;
-        // A row of the inverse is 1/s long: distances along it shrink by that.
+        // A row of the inverse is 1/s long, and distances along it shrink by this factor.
         let longest_row = |matrix: &DMat3| {
             let squares = each(|i| matrix.row(i).length_squared());
             squares.into_iter().fold(0.0, f64::max).sqrt()
@@ -71,7 +70,7 @@ struct Rows {
 pub(crate) struct Along {
     /// From the centre of the box of tree 1 to that of the box of tree 2.
     pub(crate) offset: V3<f32x4>,
-    /// How far both boxes reach together. Where an offset is longer, its axis separates them.
+    /// Sum of the half-lengths of both boxes. An axis with a longer offset separates them.
     pub(crate) reach: V3<f32x4>,
 }
 
@@ -86,14 +85,14 @@ impl Rows {
 }
 
 impl Along {
-    /// Where no axis separates the boxes. False where anything is NaN.
+    /// The lanes where no axis separates the boxes. False if a number is NaN.
     #[inline(always)]
     pub(super) fn meet(&self) -> f32x4 {
         let [x, y, z] = each(|axis| self.offset[axis].abs().simd_le(self.reach[axis]));
         x & y & z
     }
 
-    /// By how much each axis separates them; negative where they overlap.
+    /// The gap along each axis; negative if the boxes overlap.
     #[inline(always)]
     pub(super) fn gaps(&self) -> V3<f32x4> {
         each(|axis| self.offset[axis].abs() - self.reach[axis])
@@ -101,18 +100,18 @@ impl Along {
 }
 
 impl PairFrame {
-    /// The frame of `tree2` at the pose `pos12` in the frame of `tree1`, as of [`at`](Self::at).
+    /// The frame of two trees at a pose; see [`at`](Self::at).
     pub fn new(tree1: &Tree, tree2: &Tree, pos12: &Pose3, margin: f32) -> Self {
         Self::at((tree1, tree2), Placement::new(pos12), margin)
     }
 
-    /// The frame of `tree2` at `placement` in the frame of `tree1`. Triangles within `margin` of
-    /// each other will be found.
+    /// The frame of two trees, tree 2 at `placement` in the frame of tree 1. Descents find triangles
+    /// within `margin` of each other.
     pub fn at((tree1, tree2): (&Tree, &Tree), placement: Placement, margin: f32) -> Self {
         Self::within([tree1.magnitude(), tree2.magnitude()], placement, margin)
     }
 
-    /// The frame of any two bodies, whose coordinates are at most so large.
+    /// The frame of any two bodies with coordinates up to `magnitudes`.
     pub fn within(magnitudes: [f32; 2], placement: Placement, margin: f32) -> Self {
         let Placement { rotation, translation, inverse } = placement;
         let translation = translation.as_vec3();
@@ -139,7 +138,7 @@ impl PairFrame {
         &self.placement
     }
 
-    /// Whether the root spheres come within the margin; `true` where a tree has none.
+    /// Returns true if the root spheres come within the margin, or if a tree has none.
     pub(crate) fn spheres_meet(&self, tree1: &Tree, tree2: &Tree) -> bool {
         let (Some(sphere1), Some(sphere2)) = (tree1.sphere(), tree2.sphere()) else {
             return true;
@@ -153,10 +152,9 @@ impl PairFrame {
     }
 }
 
-/// The kernel of all tests of boxes. The nine edge axes are left out: the tests that they save cost
-/// less than they do.
+/// The kernel of all tests of boxes. The nine edge axes would cost more than they save.
 impl PairFrame {
-    /// Along the axes of frame 1, with reaches longer by `slack`.
+    /// Compares boxes along the axes of frame 1, with reaches longer by `slack`.
     #[inline(always)]
     pub(crate) fn along1(
         &self,
@@ -173,7 +171,7 @@ impl PairFrame {
         }
     }
 
-    /// Along the axes of frame 2. `offset` is that of [`along1`](Self::along1).
+    /// Compares boxes along the axes of frame 2. `offset` comes from [`along1`](Self::along1).
     #[inline(always)]
     pub(super) fn along2(
         &self,

@@ -1,21 +1,18 @@
-//! How far apart up to four pairs of nodes are at least, or how deep they overlap at most.
+//! Lower bounds of the signed distance of up to four pairs of nodes.
 //!
-//! The tests are those of overlaps, asked for a number. Two boxes that are apart by `gᵢ` along the
-//! face axes of one of them are `√Σ gᵢ²` apart at least; k-DOPs that are `g` apart along a slab
-//! direction `d`, `g/|d|`. The largest of these bounds holds. If no axis separates the volumes, the
-//! largest (negative) gap bounds how deep triangles below them cross: the least translation that
-//! parts two triangles is no longer than their overlap along any axis, and that no longer than the
-//! overlap of their volumes.
+//! Two boxes with gaps `gᵢ` along the face axes of one of them are at least `√Σ gᵢ²` apart. k-DOPs
+//! with a gap `g` along a slab direction `d` are at least `g/|d|` apart. The largest of these bounds
+//! holds.
 //!
-//! Slabs pay more here than in the overlap test: without them distances took 1.1 to 1.6 times as
-//! long on heads of 288 and 968 triangles, intersection tests up to 1.9 times. Not so those along
-//! x, y and z, which the boxes have been compared along: with them distances take up to a sixth
-//! longer. To stop at the first axis that shows all lanes to be beyond the limit costs 5 in 100:
-//! only the direction of [`Toward`] is worth that.
+//! If no axis separates the volumes, the largest (negative) gap bounds the depth of triangles below
+//! them. The least translation that parts two triangles is no longer than their overlap along any
+//! axis, which is no longer than the overlap of their volumes.
 //!
-//! Gaps along axes are conservative by the rounding of [`PairFrame`]; what follows loses at most
-//! `γ_8` of the result. A norm that overflows is above the square root of `f32::MAX`, one that
-//! underflows is taken as less than it is.
+//! Slabs save more here than in the overlap test. The slabs along x, y and z repeat the boxes.
+//!
+//! Gaps along axes are conservative by the rounding of [`PairFrame`]. Later operations lose at most
+//! `γ_8` of the result. A norm that overflows is above the square root of `f32::MAX`, and one that
+//! underflows is too small, which is safe.
 
 use wide::f32x4;
 
@@ -31,11 +28,11 @@ use crate::volumes::rounding::gamma;
 pub(crate) struct SignedGaps<'a> {
     pub(crate) frame: &'a mut PairFrame,
     pub(crate) cutoff: Cutoff,
-    /// Looked along before all else.
+    /// A direction to try first.
     pub(crate) toward: Option<Toward>,
 }
 
-/// What bounds are compared with. Whatever they bound, pairs of nodes beyond it do not matter.
+/// The limit of a search: pairs of nodes with a bound beyond it are dropped.
 #[derive(Copy, Clone, Debug)]
 pub(crate) struct Cutoff {
     pub(crate) limit: f32,
@@ -43,19 +40,19 @@ pub(crate) struct Cutoff {
 }
 
 impl Cutoff {
-    /// Nothing done yet.
+    /// A limit, with counts of zero.
     pub(crate) fn at(limit: f32) -> Self {
         Self { limit, counts: GapCounts::default() }
     }
 
-    /// Whether all of `lanes` are beyond the limit.
+    /// Returns true if all of `lanes` are beyond the limit.
     #[inline(always)]
     fn is_beyond(&self, bounds: f32x4, lanes: u32) -> bool {
         bounds.simd_gt(f32x4::splat(self.limit)).to_bitmask() & lanes == lanes
     }
 
-    /// The lanes of `lanes` that are within the limit, and the bounds. A bound that overflowed to
-    /// NaN is kept: it bounds nothing.
+    /// The lanes of `lanes` that are within the limit, and the bounds. A bound that overflowed to NaN
+    /// is kept, as it excludes nothing.
     #[inline(always)]
     pub(crate) fn keep(&mut self, bounds: f32x4, lanes: u32) -> (u32, [f32; 4]) {
         self.counts.node_pairs += u64::from(lanes.count_ones());
@@ -75,7 +72,7 @@ pub struct GapCounts {
     pub triangle_pairs: u64,
 }
 
-/// Bounds along axes, combined.
+/// Combined bounds along axes.
 #[derive(Copy, Clone)]
 pub(super) struct Bound {
     /// The largest gap along an axis.
@@ -85,7 +82,7 @@ pub(super) struct Bound {
 }
 
 impl Bound {
-    /// Along the three axes of a box, of which a unit is `scale` long.
+    /// The bound along the three axes of a box, with a unit of length `scale`.
     #[inline(always)]
     pub(super) fn of_axes(gaps: V3<f32x4>, scale: f32x4) -> Self {
         let apart = each(|axis| gaps[axis].fast_max(f32x4::ZERO));
@@ -93,7 +90,7 @@ impl Bound {
         Self { along: largest(gaps) * scale, norm: squares.sqrt() * scale }
     }
 
-    /// Along slabs.
+    /// The bound along slabs.
     #[inline(always)]
     fn of_slabs(along: f32x4) -> Self {
         Self { along, norm: along }
@@ -104,7 +101,7 @@ impl Bound {
         Self { along: self.along.fast_max(other.along), norm: self.norm.fast_max(other.norm) }
     }
 
-    /// Less than the signed distance, in spite of rounding. Lanes that are NaN stay so.
+    /// A lower bound of the signed distance that includes rounding. NaN stays NaN.
     #[inline(always)]
     pub(super) fn signed(self) -> f32x4 {
         let apart = self.along.simd_gt(f32x4::ZERO);
@@ -115,7 +112,7 @@ impl Bound {
 }
 
 impl PairFrame {
-    /// The bounds of all four lanes, whatever the margin is.
+    /// The bounds of all four lanes, for any margin.
     #[inline(always)]
     pub(crate) fn signed_gaps(
         &mut self,
@@ -131,7 +128,7 @@ impl PairFrame {
         }
     }
 
-    /// Along the six face axes of boxes.
+    /// The bound along the six face axes of boxes.
     #[inline(always)]
     fn box_bound(&self, side1: &Side<'_, impl Spread>, side2: &Side<'_, impl Spread>) -> Bound {
         let [rounding1, rounding2] = self.rounding.map(f32x4::splat);
@@ -156,7 +153,6 @@ impl Compare for SignedGaps<'_> {
             (Some(toward), Some(kdops)) => toward.gaps(&kdops),
             _ => f32x4::splat(f32::NEG_INFINITY),
         };
-        // Mostly it is enough.
         if self.cutoff.is_beyond(along, lanes) {
             return self.cutoff.keep(along, lanes);
         }

@@ -1,13 +1,10 @@
-//! Two trees against each other.
+//! Simultaneous traversal of two trees.
 //!
-//! [`PairFrame`] holds what depends on the pair's pose, computed once, and the kernel that compares
-//! boxes; [`descend`] goes down both trees at once and hands pairs of leaves to a [`Visitor`];
-//! [`Counters`] count the tests, or cost nothing.
-//!
-//! [`Slack`] says when a descent can be spared, as the last one looked far enough.
-//!
-//! [`BoxTest`] compares boxes of other hierarchies, or of a hierarchy and a single body, one pair at
-//! a time.
+//! * [`PairFrame`] holds the relative pose, and the kernel that compares boxes.
+//! * [`descend`] traverses both trees and calls a closure with pairs of leaves.
+//! * [`Counters`] count the tests, or cost nothing.
+//! * [`Slack`] plans when the candidates of the last descent serve again.
+//! * [`BoxTest`] compares boxes of other hierarchies, one pair at a time.
 
 #[cfg(test)]
 mod allowances;

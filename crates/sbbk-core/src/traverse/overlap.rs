@@ -1,4 +1,4 @@
-//! Which of up to four pairs of nodes come within the margin.
+//! Tests which of up to four pairs of nodes come within the margin.
 
 use wide::f32x4;
 
@@ -26,8 +26,8 @@ impl PairFrame {
     }
 }
 
-/// Keeps the children whose volumes come within the margin: boxes first, then k-DOPs where both
-/// sides have them.
+/// Keeps the children whose volumes come within the margin. Compares boxes first, then k-DOPs if
+/// both sides have them.
 pub(crate) struct Overlap<'a, C> {
     pub(crate) frame: &'a mut PairFrame,
     pub(crate) counters: &'a mut C,
@@ -57,10 +57,6 @@ impl<C: Counters> Compare for Overlap<'_, C> {
 
 /// Keeps pairs of nodes whose volumes come within the margin. The key is minus the least overlap of
 /// the boxes along their face axes.
-///
-/// Of other keys (along the axes of one box, the sum of overlaps, the distance of the centres, all
-/// slabs as well) none found a pair of crossing triangles in less time on about a thousand poses of
-/// heads, tori and helicopters, nor in much more.
 pub(crate) struct OrderedOverlap<'a>(pub(crate) &'a mut PairFrame);
 
 impl Compare for OrderedOverlap<'_> {

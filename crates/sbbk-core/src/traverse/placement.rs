@@ -1,19 +1,19 @@
 use glamx::{DMat3, DQuat, DVec3, Pose3, Vec3};
 
-/// A pose as the linear map that it is, in f64.
+/// A pose as a linear map in f64.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Placement {
     /// The linear part. Parry rotates a point `v` by a quaternion `q` as `q v q*`, which scales by
-    /// `|q|²`: a quaternion slightly off unit length is taken as it is, not normalised.
+    /// `|q|²`. So does this map: the quaternion is not normalised.
     pub rotation: DMat3,
-    /// Where the origin goes.
+    /// The image of the origin.
     pub translation: DVec3,
     /// The inverse of the linear part; not finite if there is none.
     pub inverse: DMat3,
 }
 
 impl Placement {
-    /// The map of `pose`, exact but for the rounding of f64.
+    /// The map of `pose`, up to rounding of f64.
     ///
     /// With `q = (b, w)`: `q v q* = (w² - b²) v + 2 (b·v) b + 2 w b × v`, which is `|q|²` times a
     /// rotation, so the inverse is the transpose over `|q|⁴`.
@@ -35,8 +35,7 @@ impl Placement {
         }
     }
 
-    /// Whether it is a map that can be undone: no entry, nor one of the inverse, is NaN or
-    /// infinite.
+    /// Returns true if no entry, nor one of the inverse, is NaN or infinite.
     pub fn is_finite(&self) -> bool {
         self.rotation.is_finite() && self.translation.is_finite() && self.inverse.is_finite()
     }
@@ -51,7 +50,7 @@ impl Placement {
         }
     }
 
-    /// The placement of what is at `inner` in frame 2.
+    /// The placement in frame 1 of a frame that is at `inner` in frame 2.
     #[must_use]
     pub fn of(&self, inner: &Self) -> Self {
         Self {
@@ -64,27 +63,26 @@ impl Placement {
     /// `x`, a point of frame 2, in frame 1 and relative to `origin` there.
     #[inline]
     pub fn to_frame1(&self, x: Vec3, origin: Vec3) -> DVec3 {
-        // The translations meet first: they are what cancels when two bodies touch far from the
-        // origin.
+        // Subtract the translations first: they cancel if two bodies touch far from the origin.
         self.rotation * x.as_dvec3() + (self.translation - origin.as_dvec3())
     }
 
-    /// The reverse of [`to_frame1`](Self::to_frame1): a point of frame 1, relative to `origin`
+    /// The inverse of [`to_frame1`](Self::to_frame1): `x`, a point of frame 1 relative to `origin`
     /// there, in frame 2.
     #[inline]
     pub fn to_frame2(&self, x: DVec3, origin: Vec3) -> DVec3 {
         self.inverse * (x - (self.translation - origin.as_dvec3()))
     }
 
-    /// An upper bound of how far any point of a ball has moved from one placement to another.
+    /// An upper bound of the motion of any point of a ball from an earlier placement.
     ///
     /// With `c` the ball's centre and `r` its radius, a point `x` in it moved by `(R' - R)(x - c) +
-    /// (R' c + t') - (R c + t)`: at most `‖R' - R‖·r` plus the motion of the centre.
+    /// (R' c + t') - (R c + t)`. This is at most `‖R' - R‖·r` plus the motion of the centre.
     ///
-    /// The spectral norm is at most the Frobenius norm over √2: with `R = s·Q`, `R' = s'·Q'`, and
-    /// `θ` the angle from `Q` to `Q'`, `R' - R` has the singular values `|s'·exp(iθ) - s|` twice
-    /// and `|s' - s|`, which is not more; so the sum of squares is at least twice the largest. The
-    /// last term covers f64 rounding, a few 1e-16 of the terms.
+    /// The spectral norm is at most the Frobenius norm over √2. With `R = s·Q`, `R' = s'·Q'` and `θ`
+    /// the angle from `Q` to `Q'`, `R' - R` has the singular values `|s'·exp(iθ) - s|` twice and
+    /// `|s' - s|`, which is not larger. So the sum of squares is at least twice the largest. The last
+    /// term covers f64 rounding, a few 1e-16 of the terms.
     pub fn motion_bound(&self, earlier: &Self, centre: Vec3, radius: f32) -> f64 {
         let (centre, radius) = (centre.as_dvec3(), f64::from(radius));
         let turn = self.rotation - earlier.rotation;

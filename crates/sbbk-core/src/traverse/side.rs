@@ -4,7 +4,7 @@ use crate::simd::{Spread, V3, each};
 use crate::tree::{Children, Intervals};
 use crate::volumes::SLABS;
 
-/// One side of up to four pairs of nodes: the nodes, and how they lie over the lanes.
+/// A side of up to four pairs of nodes, spread over the lanes.
 #[derive(Copy, Clone)]
 pub(crate) struct Side<'a, S> {
     pub(crate) children: Children<'a>,
@@ -38,7 +38,7 @@ impl<'a, S: Spread> Side<'a, S> {
         each(|axis| self.spread.spread(&self.children.boxes.extent[axis]))
     }
 
-    /// The k-DOPs of both sides, if both have them.
+    /// Returns the k-DOPs of both sides if both have them.
     #[inline(always)]
     pub(super) fn kdops_with<S2: Spread>(
         &self,

@@ -1,68 +1,63 @@
-//! Descents that look farther than asked, so that what they find serves for several queries.
+//! Descents with a larger margin, so that their candidates serve for several queries.
 //!
-//! Bodies move little from query to query. A descent that looks farther than the prediction
-//! distance `p`, by a *slack* `s`, finds all pairs that are at most `p + s` apart. While no point
-//! of tree 2 has moved by more than `s` since, a pair that it did not find is farther than `p`
-//! apart still: what it found is complete, and neither tree need be touched (Verlet, *Computer
-//! "Experiments" on Classical Fluids*, 1967, does so for particles). How far points have moved is
-//! bounded by [`Placement::motion_bound`] of a ball that holds them.
+//! Bodies move little from query to query. A descent whose margin exceeds the prediction distance
+//! `p` by a *slack* `s` finds all pairs that are at most `p + s` apart. While no point of tree 2 has
+//! moved by more than `s`, all other pairs are still farther than `p` apart. The candidates are
+//! complete, and neither tree need be read (Verlet, *Computer "Experiments" on Classical Fluids*,
+//! 1967, does this for particles). [`Placement::motion_bound`] of a ball around the points bounds
+//! their motion.
 //!
-//! More slack lasts longer and finds more pairs that do not touch. So it is chosen by the present
-//! motion, and none is given where it would be used up at once.
+//! More slack lasts longer and finds more pairs that do not touch. So the present motion determines
+//! it, and fast motion gets none.
 
 use super::Placement;
 use crate::volumes::Sphere;
 
-/// Least slack as a share of the prediction distance, for bodies at rest that jitter. More: as
-/// above; less: jitter that grows uses it up.
+/// Least slack as a share of the prediction distance, for bodies at rest that jitter. Higher: more
+/// candidates; lower: more descents.
 const LEAST_SLACK: f64 = 0.1;
-/// A pair that would use up the greatest slack in fewer steps gets none: to look farther would not
-/// pay (with 2, queries that move by half a prediction distance took up to twice as long; with 6,
-/// those of a ball that rolls over a terrain 1.2 times).
+/// Least number of queries for which the greatest slack must last; else there is none. Higher: more
+/// descents; lower: wide descents for a single query.
 const LEAST_STEPS: f64 = 3.0;
 
-/// How much farther than asked descents may look.
+/// Limits of the slack.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct SlackLimits {
-    /// Slack in steps of the present motion. More: fewer descents, and more candidates that do not
-    /// touch.
+    /// Slack in steps of the present motion. Higher: fewer descents, and more candidates that do not
+    /// touch; lower: more descents.
     pub steps: f64,
-    /// Greatest slack as a share of the prediction distance. More: candidates that do not touch get
-    /// an exact test; less: more descents.
+    /// Greatest slack as a share of the prediction distance. Higher: exact tests of candidates that do
+    /// not touch; lower: more descents.
     pub greatest: f64,
 }
 
 impl SlackLimits {
-    /// Where what is found are pairs of triangles, that get an exact test.
+    /// Limits for candidates that are pairs of triangles.
     pub const TRIANGLES: Self = Self { steps: 8.0, greatest: 1.0 };
 }
 
-/// Plans the queries of one pair: when to descend, and how far to look.
+/// Plans the queries of one pair: when to descend, and with which margin.
 ///
-/// What descents find is the caller's to keep, and to drop where a shape changes (then this is to
-/// be replaced by the default, too).
+/// The caller keeps the candidates. When a shape changes, it drops these and starts with a new
+/// `Slack`.
 #[derive(Clone, Debug, Default)]
 pub struct Slack {
-    /// The query before.
+    /// Placement of the last query.
     last: Option<Placement>,
     /// The last descent and its margin, if it had slack.
     descent: Option<(Placement, f32)>,
     travel: f64,
 }
 
-/// What a query has to do.
+/// The next action of a query.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum SlackPlan {
-    /// Test what the last descent found.
+    /// Test the candidates of the last descent.
     Reuse {
-        /// That of the descent.
+        /// The margin of that descent.
         margin: f32,
-        /// What was farther apart than this at the descent is farther apart than the prediction
-        /// distance now.
-        reach: f64,
     },
-    /// Descend, forget what was found before, and keep what is found now if [`Slack::margin`] is
-    /// there.
+    /// Descend, and keep the candidates instead of those found before.
     Descend {
         /// The prediction distance plus the slack.
         margin: f32,
@@ -72,10 +67,10 @@ pub enum SlackPlan {
 }
 
 impl Slack {
-    /// Plans a query, and remembers it. What moves is in `ball` of its own frame, and that is at
-    /// `placement`. Constant time.
+    /// Plans a query and stores its placement, in constant time. The moving body is inside `ball` of
+    /// its own frame, which is at `placement`.
     ///
-    /// If the placement or the prediction distance is not finite, it is a descent without slack.
+    /// If the placement or the prediction distance is not finite, plans a descent without slack.
     pub fn plan(
         &mut self,
         ball: Sphere,
@@ -90,10 +85,10 @@ impl Slack {
         if let Some((then, margin)) = self.descent {
             let reach = f64::from(prediction) + motion_since(&then);
             if reach <= f64::from(margin) {
-                return SlackPlan::Reuse { margin, reach };
+                return SlackPlan::Reuse { margin };
             }
         }
-        // Of the first query nothing is known, not even whether there will be another one.
+        // The first query gets no slack: its motion is unknown.
         let slack = step.map_or(0.0, |step| slack(step, f64::from(prediction), limits));
         let wide = prediction + slack as f32;
         let margin = if wide.is_finite() { wide } else { prediction };
@@ -101,20 +96,15 @@ impl Slack {
         SlackPlan::Descend { margin, travel: std::mem::take(&mut self.travel) }
     }
 
-    /// The margin of the last descent, if what it found is to be kept.
-    pub fn margin(&self) -> Option<f32> {
-        self.descent.map(|(_, margin)| margin)
-    }
-
-    /// How far points have moved since the last descent, along their path: at most so much has a
-    /// distance shrunk between any two queries since.
+    /// Length of the path of points since the last descent, an upper bound: distances have shrunk by
+    /// at most this much between any two queries since.
     pub fn travel(&self) -> f64 {
         self.travel
     }
 }
 
-/// How much farther than the prediction distance a descent should look, for a pair that moved by
-/// `step` since the query before. Not finite motion gives none.
+/// The slack of a descent for a pair that moved by `step` since the last query. Zero for motion that
+/// is not finite.
 fn slack(step: f64, prediction: f64, limits: SlackLimits) -> f64 {
     let greatest = limits.greatest * prediction;
     if LEAST_STEPS * step <= greatest {

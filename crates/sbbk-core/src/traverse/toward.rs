@@ -1,12 +1,11 @@
-//! How far apart pairs of nodes, or the triangles of two leaves, are at least along one direction
-//! of the search's choice: the normal of the nearest triangles so far.
+//! Lower bounds of the distance of nodes or triangles along one direction: the normal of the nearest
+//! triangles so far.
 //!
-//! Far from each other, two meshes have many pairs of nodes that are nearly as close as the
-//! closest, and a bound along a slab that is at an angle to the way between them is short by the
-//! cosine. That normal is parallel to it. Both k-DOPs are bounded along it by three adjacent slabs
-//! of their own each, see [`DirectionSet::correspondence`]; triangles by their corners. Meshes of
-//! 5000 and 20,000 triangles, a size apart, need a third and a fifth of the tests that they need
-//! without.
+//! Two meshes far apart have many pairs of nodes nearly as close as the closest. A bound along a
+//! slab is short by the cosine of its angle to the vector between them, and this normal is parallel
+//! to it. Three adjacent slabs bound each k-DOP along the normal, see
+//! [`correspondence`](crate::volumes::directions::correspondence). Triangles are bounded by their
+//! corners.
 
 use glamx::DVec3;
 use wide::f32x4;
@@ -20,9 +19,9 @@ use crate::volumes::directions;
 /// A direction from mesh 1 to mesh 2, in the slabs of both trees.
 #[derive(Copy, Clone, Debug)]
 pub(crate) struct Toward {
-    /// Of frame 2 along the direction, less the rounding.
+    /// Offset of frame 2 along the direction, less the rounding.
     nodes_offset: f32,
-    /// The same for triangles.
+    /// The offset for triangles.
     leaves_offset: f32,
     /// The direction in each frame.
     directions: [Direction; 2],
@@ -45,7 +44,7 @@ struct Term {
 const LARGEST_ROUNDING: f32 = 1.0e28;
 
 impl Toward {
-    /// Along the unit vector `normal` of frame 1. `None` if coordinates are so large that a
+    /// Bounds along the unit vector `normal` of frame 1. `None` if coordinates are so large that a
     /// projection may overflow.
     pub(crate) fn new(frame: &PairFrame, normal: DVec3) -> Option<Self> {
         let is_safe = frame.rounding.iter().all(|&rounding| rounding < LARGEST_ROUNDING);
@@ -62,8 +61,7 @@ impl Toward {
         })
     }
 
-    /// Less than the signed distances of the k-DOPs in four lanes: where they overlap along the
-    /// direction, minus the way that parts them.
+    /// Lower bounds of the signed distances of the k-DOPs in four lanes.
     #[inline(always)]
     pub(super) fn gaps(&self, sides: &KdopSides<'_, impl Spread, impl Spread>) -> f32x4 {
         let [direction1, direction2] = &self.directions;
@@ -79,9 +77,7 @@ impl Toward {
         gap
     }
 
-    /// Less than the distance of any triangle of leaf 1 from any of leaf 2.
-    ///
-    /// Asking for each pair of triangles, to spare the leaf test some of them, gains 2 in 100.
+    /// A lower bound of the distance of any triangle of leaf 1 from any of leaf 2.
     #[inline(always)]
     pub(crate) fn gap_of_leaves(&self, batch1: &LeafBatch, batch2: &LeafBatch) -> f32 {
         let [direction1, direction2] = &self.directions;
@@ -102,7 +98,7 @@ impl Direction {
         }
     }
 
-    /// The corners of all triangles of a leaf along the direction.
+    /// Projects the corners of all triangles of a leaf on the direction.
     #[inline(always)]
     fn project(&self, batch: &LeafBatch) -> V3<f32x4> {
         let direction = each(|axis| f32x4::splat(self.components[axis]));

@@ -1,7 +1,6 @@
 //! All tests of the crate's interface, in one binary.
 
 mod allowances;
-mod beside;
 mod broad_phase;
 mod contact_truth;
 mod convex_contact;
@@ -9,6 +8,7 @@ mod descent;
 mod draw;
 mod field;
 mod front;
+mod lateral;
 mod penetration;
 mod placement;
 mod query;

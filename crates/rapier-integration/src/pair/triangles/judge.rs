@@ -16,7 +16,7 @@ use glamx::DVec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Real, Vector};
 use sbbk_core::contact::{Feature, ManifoldPoints, TriangleContact, penetration_out_of_solid};
-use sbbk_core::leaf::Beside;
+use sbbk_core::leaf::LateralCulling;
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Facets, OneRing};
 
@@ -102,12 +102,17 @@ pub(super) struct Judge<'a, S> {
 impl<S: Surfaces> Judge<'_, S> {
     /// Which pairs of triangles, of those that a descent within `margin` finds, only
     /// [pass by](Self::passes_by) while it serves.
-    pub(super) fn beside(shapes: &S, prediction: Real, margin: Real) -> Option<Beside> {
+    pub(super) fn beside(shapes: &S, prediction: Real, margin: Real) -> Option<LateralCulling> {
         // Not by the surfaces themselves: they are looked for where triangles touch.
         let is_near = f64::from(prediction) <= shapes.near();
         (shapes.has_surface() && is_near).then(|| {
             let travel = margin - prediction;
-            Beside::new(DISTANT as Real * prediction, NEAR_NORMAL as Real, prediction, travel)
+            LateralCulling::new(
+                DISTANT as Real * prediction,
+                NEAR_NORMAL as Real,
+                prediction,
+                travel,
+            )
         })
     }
 

@@ -119,7 +119,7 @@ impl TriangleShapes for Meshes<'_> {
         };
         let trees = (&prepared[0].tree, &prepared[1].tree);
         let mut frame = PairFrame::at(trees, placement12, margin);
-        let (test, stack) = (LeafTest::new(&frame).without(beside), &mut scratch.descent);
+        let (test, stack) = (LeafTest::new(&frame).with_culling(beside), &mut scratch.descent);
         descend(trees, &mut frame, stack, counters, |batch1, batch2| {
             test.survivors(batch1, batch2, |lane1, lane2| {
                 found([batch1.triangles()[lane1], batch2.triangles()[lane2]]);

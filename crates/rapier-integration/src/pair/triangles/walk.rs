@@ -12,7 +12,7 @@ use std::cell::Cell;
 use std::ops::ControlFlow;
 
 use arrayvec::ArrayVec;
-use sbbk_core::leaf::{Beside, LeafTest};
+use sbbk_core::leaf::{LateralCulling, LeafTest};
 use sbbk_core::traverse::{BoxTest, Counters, NearBox, PairFrame, Placement, TestedBox};
 use sbbk_core::tree::{BATCH, LeafBatch};
 
@@ -31,7 +31,7 @@ pub(crate) fn walk(
     [mesh1, mesh2]: [&Hierarchy<'_>; 2],
     placement12: Placement,
     margin: f32,
-    beside: Option<Beside>,
+    beside: Option<LateralCulling>,
     mut counters: impl Counters,
     near: &mut Vec<u32>,
     mut found: impl FnMut([u32; 2]) -> ControlFlow<()>,
@@ -51,7 +51,7 @@ fn walk_larger(
     [mesh1, mesh2]: [&Hierarchy<'_>; 2],
     placement12: Placement,
     margin: f32,
-    beside: Option<Beside>,
+    beside: Option<LateralCulling>,
     tested: &Cell<u32>,
     near1: &mut Vec<u32>,
     mut found: impl FnMut([u32; 2]) -> ControlFlow<()>,
@@ -80,7 +80,7 @@ fn walk_larger(
     let margin2 = ((f64::from(margin) / scale) as f32).next_up();
     let in_frame2 = BoxTest::new([m2, m1], &placement12.inverted(), margin2);
     let frame: PairFrame = PairFrame::within([m1, m2], placement12, margin);
-    let test = LeafTest::new(&frame).without(beside);
+    let test = LeafTest::new(&frame).with_culling(beside);
     let is_near = |many: &&[u32]| {
         let group = in_frame2.of(mesh1.tested(many));
         let is_first_enough = |_| ControlFlow::Break(());

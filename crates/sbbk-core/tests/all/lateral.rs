@@ -1,10 +1,9 @@
-//! Triangles beside each other are of no use to a caller, now and after a motion: by the exact
-//! contact, whose features and direction say so.
+//! Lateral culling rejects only pairs whose exact contact is aslant, now and after a motion.
 
 use crate::support::Random;
 use glamx::{Pose3, Vec3};
 use sbbk_core::contact::{Feature, TriangleContact, contact};
-use sbbk_core::leaf::{Beside, LeafTest};
+use sbbk_core::leaf::{LateralCulling, LeafTest};
 use sbbk_core::traverse::{PairFrame, Placement};
 use sbbk_core::tree::LeafBatch;
 
@@ -38,10 +37,10 @@ impl Pair {
         Self { corners: [one, two], pose, far }
     }
 
-    fn is_found(&self, travel: f32, beside: Option<Beside>) -> bool {
+    fn is_found(&self, travel: f32, culling: Option<LateralCulling>) -> bool {
         let placement = Placement::new(&self.pose);
         let frame: PairFrame = PairFrame::within([self.far + 1.0; 2], placement, REACH + travel);
-        let test = LeafTest::new(&frame).without(beside);
+        let test = LeafTest::new(&frame).with_culling(culling);
         let [one, two] = self.corners.map(|corners| LeafBatch::gather(&[0], |_| corners));
         let mut is_found = false;
         test.survivors(&one, &two, |_, _| is_found = true);
@@ -79,7 +78,7 @@ impl Pair {
     }
 }
 
-/// Of how many pairs some were beside each other, and how many of these had a contact nevertheless.
+/// The number of culled pairs, and of their contacts.
 fn check(
     random: &mut Random,
     pairs: usize,
@@ -89,7 +88,7 @@ fn check(
     let mut counts = [0; 2];
     for i in 0..pairs {
         let travel = [0.0, 0.1, 0.5][i % 3] * REACH;
-        let beside = Beside::new(DISTANCE, COSINE, REACH, travel);
+        let beside = LateralCulling::new(DISTANCE, COSINE, REACH, travel);
         let pair = Pair::new(random, far_and_thin, &round);
         let is_found = pair.is_found(travel, Some(beside));
         if is_found || !pair.is_found(travel, None) {
@@ -112,7 +111,7 @@ fn check(
 
 /// Would catch a gap, a height or a slope that rounding, a motion or a sliver makes too great.
 #[test]
-fn triangles_beside_each_other_have_no_contact_of_use() {
+fn culled_triangles_have_aslant_contacts_only() {
     let random = &mut Random(1);
     for (far, least) in [(0.0, 2000), (3.0, 500), (30.0, 0)] {
         let [beside, touching] = check(random, 60_000, [far, 1.0], |corner| corner);
@@ -120,9 +119,9 @@ fn triangles_beside_each_other_have_no_contact_of_use() {
     }
 }
 
-/// Needles: what tells where their planes are is what rounding has left.
+/// The planes of needles are uncertain by rounding.
 #[test]
-fn needles_are_beside_nothing() {
+fn culled_needles_have_aslant_contacts_only() {
     let random = &mut Random(3);
     for thin in [1.0e-1, 1.0e-2, 1.0e-3, 1.0e-4, 1.0e-5, 1.0e-6] {
         for far in [0.0, 3.0, 30.0] {
@@ -133,7 +132,7 @@ fn needles_are_beside_nothing() {
 
 /// Corners in a row, and right angles.
 #[test]
-fn triangles_of_a_lattice_beside_each_other() {
+fn culled_triangles_of_a_lattice_have_aslant_contacts_only() {
     let random = &mut Random(2);
     for cell in [0.25, 1.0 / 3.0, 0.5] {
         let cell = cell * REACH;
