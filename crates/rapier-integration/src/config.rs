@@ -81,7 +81,7 @@ pub struct SbbkConfig {
     /// whose middle is inside goes the shortest way from there to the surface. Not by default, as in stock
     /// Rapier: a room that is modelled by one closed surface, its faces outward, counts as a solid, and what
     /// lives in it would be thrown out. Say of such meshes that they are sheets
-    /// ([`PreparedTree::bounds`](crate::PreparedTree::bounds)), and register those of more than 8192
+    /// ([`PreparedTree::set_surface_kind`](crate::PreparedTree::set_surface_kind)), and register those of more than 8192
     /// triangles ([`SbbkDispatcher::prepare_shape`](crate::SbbkDispatcher::prepare_shape)), which count as
     /// sheets otherwise. Each part of a compound goes its own way. Where an edge is nearest to the middle, as
     /// below a ditch, contacts stay as in stock.

@@ -80,7 +80,7 @@
 //! tree takes. In a mesh of more than 8192 triangles that is not
 //! [registered](SbbkDispatcher::prepare_shape) it is looked for where it meets another such mesh, and
 //! never in one of more than 131,072. Else such a mesh is a sheet, of which the neighbours of triangles
-//! are found where it is touched. [`PreparedTree::bounds`] says what a mesh bounds where
+//! are found where it is touched. [`PreparedTree::set_surface_kind`] says what a mesh bounds where
 //! SBBK would think otherwise; [`SbbkStats`] counts the kinds.
 //!
 //! Of a rigid mesh and a convex shape, contacts at edges within the surface are along the normal of the
@@ -225,7 +225,7 @@ mod query;
 mod stats;
 
 pub use config::{ContactDetail, ContactSet, Kinds, SbbkConfig};
-pub use dispatcher::{PreparedTree, SbbkDispatcher};
+pub use dispatcher::{PrepareError, PreparedTree, SbbkDispatcher};
 pub use pair::TriangleContacts;
 pub use sbbk_core;
 pub use sbbk_core::surface::SurfaceKind;

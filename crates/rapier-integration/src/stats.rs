@@ -2,7 +2,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use sbbk_core::traverse::DescentCounts;
 
-use crate::mesh::CacheCounts;
+use crate::mesh::StoreCounts;
 use crate::pair::Answer;
 
 /// What a dispatcher and its clones did so far.
@@ -85,7 +85,7 @@ impl QueryCounters {
         self.cells.fetch_add(counts.cells, Ordering::Relaxed);
     }
 
-    pub(crate) fn stats(&self, cache: CacheCounts) -> SbbkStats {
+    pub(crate) fn stats(&self, cache: StoreCounts) -> SbbkStats {
         let load = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
         SbbkStats {
             trees: cache.trees,

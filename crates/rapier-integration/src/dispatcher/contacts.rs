@@ -6,7 +6,7 @@ use parry3d::query::{
     ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
     Unsupported,
 };
-use parry3d::shape::{CompositeShape, Shape, TriMesh};
+use parry3d::shape::Shape;
 use sbbk_core::surface::SurfaceKind;
 use sbbk_core::traverse::DescentCounts;
 
@@ -46,12 +46,12 @@ impl SbbkDispatcher {
                 }
                 let meshes = [mesh1, mesh2];
                 if is_new
-                    && self.are_apart(are_near(meshes, pos12, prediction), meshes)
+                    && !are_near(meshes, pos12, prediction)
                     && !(has_surfaces && may_be_inside(meshes, pos12))
                 {
                     return self.counted(Answer::Apart);
                 }
-                let Some(meshes) = self.look_at(meshes) else {
+                let Some(meshes) = self.view(meshes) else {
                     return Answer::Unsupported;
                 };
                 let pose = &PairPose::new(pos12, prediction);
@@ -66,8 +66,7 @@ impl SbbkDispatcher {
             && let Some(ball) =
                 other.as_ball().filter(|ball| !leave_solids && is_few(mesh, ball, prediction))
         {
-            let is_broken = self.is_broken(mesh);
-            let pair = FewPair { mesh, is_broken, ball, mesh_place, has_surfaces };
+            let pair = FewPair { mesh, ball, mesh_place, has_surfaces };
             return self.touch_few(pair, pos12, prediction, manifolds, workspace);
         }
         let is_answered = |parts: &Parts<'_>| match parts {
@@ -81,11 +80,11 @@ impl SbbkDispatcher {
         }
         if is_new && parts.is_some() && !leave_solids {
             let in_mesh = mesh_place.shape_in_mesh(pos12);
-            if self.are_apart(is_near(mesh, other, &in_mesh, prediction), [mesh]) {
+            if !is_near(mesh, other, &in_mesh, prediction) {
                 return self.counted(Answer::Apart);
             }
         }
-        let Some([mesh]) = self.look_at([mesh]) else {
+        let Some([mesh]) = self.view([mesh]) else {
             return Answer::Unsupported;
         };
         let pose = &PairPose::new(pos12, prediction);
@@ -110,17 +109,6 @@ impl SbbkDispatcher {
         }
     }
 
-    /// Whether shapes are apart, if Parry's hierarchies say so: above a vertex that is NaN they mean
-    /// nothing.
-    fn are_apart<const COUNT: usize>(&self, are_near: bool, meshes: [&TriMesh; COUNT]) -> bool {
-        !are_near && !meshes.iter().any(|mesh| self.is_broken(mesh))
-    }
-
-    /// Whether a mesh may deform and has vertices that are NaN or infinite.
-    fn is_broken(&self, mesh: &TriMesh) -> bool {
-        mesh.is_deformable() && self.cache.look_at(mesh).is_some_and(|mesh| mesh.is_broken())
-    }
-
     /// The contacts of a mesh and a ball that touches few triangles, counted.
     fn touch_few<M, C>(
         &self,
@@ -137,7 +125,7 @@ impl SbbkDispatcher {
         let is_first = workspace.is_none();
         pair.answer(pos12, prediction, manifolds, workspace);
         if is_first && workspace.is_some() {
-            self.cache.met();
+            self.cache.count_pair();
         }
         self.counted(if workspace.is_some() { Answer::Descended } else { Answer::Apart })
     }

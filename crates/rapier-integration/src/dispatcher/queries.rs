@@ -51,7 +51,7 @@ impl SbbkDispatcher {
             }
         }
         let parts = Parts::of(other).filter(|parts| matches!(parts, Parts::One(_)))?;
-        let [mesh] = self.look_at([mesh])?;
+        let [mesh] = self.view([mesh])?;
         let pose = &PairPose::new(pos12, 0.0);
         let pair = ConvexPair {
             pose,
@@ -67,8 +67,8 @@ impl SbbkDispatcher {
 
     /// Two rigid meshes, to be asked about; `None` if Parry must answer.
     fn mesh_query<'a>(&'a self, meshes: [&'a TriMesh; 2]) -> Option<MeshQuery<'a>> {
-        let meshes = self.config.kinds.meshes.then(|| self.look_at(meshes))??;
-        Some(MeshQuery { cache: &self.cache, meshes })
+        let meshes = self.config.kinds.meshes.then(|| self.view(meshes))??;
+        Some(MeshQuery { meshes })
     }
 }
 

@@ -1,99 +1,47 @@
-//! What "the same mesh" means.
+//! Two notions of "the same mesh".
 //!
-//! A dispatcher sees a `&TriMesh` and nothing else: no handle, no generation. Its address proves
-//! nothing, since freed memory is used again and `SharedShape::make_mut` edits in place (unless the
-//! shape is held here: [`registry`](super::registry)). So there are two notions:
+//! A dispatcher receives a `&TriMesh` without handle or version. The address proves nothing, unless
+//! the mesh is [registered](super::store::Registered): memory is used again, and
+//! `SharedShape::make_mut` edits in place.
 //!
-//! * [`ContentHash`], 128 bits over all that a [`PreparedMesh`](super::PreparedMesh) is made of:
-//!   vertices, triangles, and whether it deforms. Meshes with equal hashes share one prepared mesh,
-//!   wherever they are: clones, copies restored from a snapshot, the same file loaded twice. The hash reads the whole
-//!   mesh (about 4 µs for 1000 triangles), so it is asked for only where a tree is built, once by each
-//!   pair of two meshes about those that are small, and about a large one where one with as many
-//!   triangles is there.
-//! * [`MeshToken`], constant time, made at every query: addresses and sizes of the buffers, the
-//!   flags, the root box of Parry's own hierarchy, and a few sampled vertices and triangles. If it
-//!   changed, a pair forgets the mesh and its tree; whether vertices are finite is remembered by it
-//!   too ([`soundness`](super::soundness)).
+//! * [`ContentHash`]: 128 bits over vertices, triangles, and the deformable flag. Meshes with equal
+//!   hashes share their data: clones, restored snapshots, the same file loaded twice. A hash takes
+//!   4 µs for 1000 triangles, so each pair computes it once.
+//! * [`MeshToken`]: 64 bits in constant time, computed at every query. If the token has changed, the
+//!   pair forgets the mesh.
 //!
-//! Between two queries of one pair a mesh may change unseen by the token only if its buffers stay
-//! in place, the root box stays equal and no sample moves: an edit of single vertices by
-//! `TriMesh::update_vertices`. Rapier drops the pair's workspace when a shape was edited
-//! (`ColliderChanges::SHAPE`, set by `shape_mut` and `set_shape`), and with it the token; other
-//! hosts must do the same, as Parry asks for its own workspaces too.
-//!
-//! A mesh that is meant to deform (`TriMeshFlags::DEFORMABLE`) may change at any time: a pair keeps
-//! nothing of it. Queries without manifolds have no workspace that a host could drop: they compare
-//! all of a mesh with a [`ContentCopy`].
+//! An edit by `TriMesh::update_vertices` that moves neither the root box nor a sampled vertex leaves
+//! the token as it was. Rapier drops the workspace of a pair when a shape was edited, and other hosts
+//! must do the same: Parry's own workspaces rely on it, too.
 
 use std::hash::Hasher;
 
-use parry3d::math::Vector;
 use parry3d::shape::{TriMesh, TriMeshFlags};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
-/// Names a mesh by its content.
+/// Identifies a mesh by its content.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct ContentHash(u128);
 
 impl ContentHash {
     pub(crate) fn of(mesh: &TriMesh) -> Self {
         let mut hasher = Xxh3::new();
-        add_topology(mesh, &mut hasher);
+        hasher.write_usize(mesh.vertices().len());
+        hasher.write_usize(mesh.indices().len());
+        hasher.write_u16((mesh.flags() & TriMeshFlags::DEFORMABLE).bits());
+        hasher.update(bytemuck::cast_slice(mesh.indices()));
         hasher.update(bytemuck::cast_slice(mesh.vertices()));
         Self(hasher.digest128())
     }
 }
 
-/// Adds the triangles, and whether they deform.
-fn add_topology(mesh: &TriMesh, hasher: &mut Xxh3) {
-    hasher.write_usize(mesh.vertices().len());
-    hasher.write_usize(mesh.indices().len());
-    hasher.write_u16((mesh.flags() & TriMeshFlags::DEFORMABLE).bits());
-    hasher.update(bytemuck::cast_slice(mesh.indices()));
-}
-
-/// Vertices and triangles of a mesh, to be compared with those of another. For 10,000 vertices and
-/// 20,000 triangles that takes less than half as long as a hash of the vertices alone (xxh3, built
-/// for SSE2).
-pub(super) struct ContentCopy {
-    vertices: Box<[Vector]>,
-    triangles: Box<[[u32; 3]]>,
-}
-
-impl ContentCopy {
-    pub(super) fn of(mesh: &TriMesh) -> Self {
-        Self { vertices: mesh.vertices().into(), triangles: mesh.indices().into() }
-    }
-
-    pub(super) fn bytes(&self) -> usize {
-        size_of_val(&*self.vertices) + size_of_val(&*self.triangles)
-    }
-
-    /// Whether both are the same, bit for bit.
-    pub(super) fn is_of(&self, mesh: &TriMesh) -> bool {
-        let bytes = |vertices| -> &[u8] { bytemuck::cast_slice::<Vector, u8>(vertices) };
-        bytes(&self.vertices) == bytes(mesh.vertices()) && *self.triangles == *mesh.indices()
-    }
-
-    /// Whether a triangle has the same corners, bit for bit.
-    pub(super) fn has_triangle_of(&self, mesh: &TriMesh, triangle: u32) -> bool {
-        let corners = |vertices: &[Vector], triangles: &[[u32; 3]]| {
-            let [a, b, c] = *triangles.get(triangle as usize)?;
-            let corner =
-                |index: u32| Some(vertices.get(index as usize)?.to_array().map(f32::to_bits));
-            Some([corner(a)?, corner(b)?, corner(c)?])
-        };
-        let kept = corners(&self.vertices, &self.triangles);
-        kept.is_some() && kept == corners(mesh.vertices(), mesh.indices())
-    }
-}
-
-/// Tells in constant time that a mesh is most likely still the one it was.
+/// Identifies a mesh by its buffers, flags, root box and a few samples, in constant time.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct MeshToken(pub(super) u64);
 
 impl MeshToken {
-    /// Vertices and triangles looked at, evenly spread.
+    /// Number of sampled vertices and triangles, evenly spread. Higher: more edits in place change the
+    /// token; lower: each query is quicker.
     const SAMPLES: usize = 4;
 
     pub(crate) fn of(mesh: &TriMesh) -> Self {
@@ -121,6 +69,8 @@ impl MeshToken {
 
 #[cfg(test)]
 mod tests {
+    use parry3d::math::Vector;
+
     use super::*;
 
     /// Triangles in a row, or with their places in another order.
@@ -133,9 +83,8 @@ mod tests {
         TriMesh::with_flags((0..16).flat_map(corners).collect(), triangles, flags).unwrap()
     }
 
-    /// Would catch a part of what prepared meshes are made of that does not count.
     #[test]
-    fn all_that_is_prepared_is_hashed() {
+    fn flags_triangles_and_vertices_are_hashed_but_not_the_bvh() {
         let mesh = row(|i| i, TriMeshFlags::empty());
         let hash = ContentHash::of(&mesh);
         assert_eq!(ContentHash::of(&mesh.clone()), hash);
@@ -144,9 +93,15 @@ mod tests {
         triangles[7].swap(1, 2);
         let reversed = TriMesh::new(mesh.vertices().to_vec(), triangles).unwrap();
         assert_ne!(ContentHash::of(&reversed), hash, "triangles");
+        // Parry refits the BVH of an edited mesh, and builds that of a new one.
+        let mut edited = row(|i| i * 7 % 16, TriMeshFlags::empty());
+        assert_ne!(ContentHash::of(&edited), hash, "vertices");
+        edited.set_vertices(mesh.vertices());
+        let leaves = |mesh: &TriMesh| mesh.bvh().leaves(|_| true).collect::<Vec<_>>();
+        assert_ne!(leaves(&edited), leaves(&mesh));
+        assert_eq!(ContentHash::of(&edited), hash);
     }
 
-    /// Would catch an edit in place that a pair does not see, and a mesh taken for its clone.
     #[test]
     fn edits_in_place_change_the_token() {
         let mut mesh = row(|i| i, TriMeshFlags::empty());

@@ -1,24 +1,22 @@
-//! Triangle meshes: Parry's own hierarchy of a mesh ([`hierarchy`]), what is the same mesh
-//! ([`identity`], [`registry`]), and where its tree is kept ([`cache`]).
+//! Triangle meshes during a query ([`view`]), from query to query of a pair ([`pair_mesh`]), and what
+//! all colliders of one mesh share ([`store`]).
 
-mod cache;
-mod credit;
-mod hierarchy;
+mod budget;
+mod data;
 mod identity;
-mod known;
-#[cfg(test)]
-mod locks;
 mod neighbours;
-mod prepared;
-mod registry;
-mod soundness;
+mod pair_mesh;
+mod store;
+mod view;
 
-pub(crate) use cache::{CacheCounts, CachedMesh, PreparedRef, TreeCache};
-pub(crate) use hierarchy::{
-    BEHIND, Hierarchy, are_near, box_of, is_covered, is_near, may_be_inside, nearest,
+pub(crate) use data::MeshData;
+pub(crate) use pair_mesh::{Change, MeshSurface};
+pub(crate) use store::{MeshStore, Registered, StoreCounts};
+pub(crate) use view::{
+    BEHIND, MeshView, are_near, box_of, is_covered, is_near, may_be_inside, nearest,
 };
-pub(crate) use identity::MeshToken;
-pub(crate) use known::{Change, KnownMesh, MeshSurface};
-pub(crate) use prepared::PreparedMesh;
-pub(crate) use registry::Registered;
-pub(crate) use soundness::whole_ones;
+
+// Former names, until all callers are renamed.
+pub(crate) use pair_mesh::PairMesh as KnownMesh;
+pub(crate) use store::MeshStore as TreeCache;
+pub(crate) use view::MeshView as Hierarchy;

@@ -46,7 +46,7 @@ where
 {
     let PairState::<P::Known, P::Hint> { shapes, memory } = state_in(workspace, manifolds);
     if P::is_unknown(shapes) {
-        cache.met();
+        cache.count_pair();
     }
     let (change, mut query) = pair.open(cache, shapes);
     memory.follow(change, manifolds);

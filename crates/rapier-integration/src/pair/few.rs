@@ -18,7 +18,6 @@ use sbbk_core::volumes::rounding::gamma;
 use super::pose::MeshPlace;
 use super::seams::Touched;
 use super::state::state_in;
-use crate::mesh::whole_ones;
 
 /// Whether a ball is within a prediction distance of about six triangles of a mesh or fewer, by their mean
 /// size.
@@ -36,8 +35,6 @@ pub(crate) fn is_few(mesh: &TriMesh, ball: &Ball, prediction: Real) -> bool {
 #[derive(Copy, Clone)]
 pub(crate) struct FewPair<'a> {
     pub(crate) mesh: &'a TriMesh,
-    /// Some vertices are NaN or infinite, and the mesh may deform: boxes above them mean nothing.
-    pub(crate) is_broken: bool,
     pub(crate) ball: &'a Ball,
     pub(crate) mesh_place: MeshPlace,
     /// Whether contacts are those of the surface of the mesh.
@@ -78,7 +75,7 @@ impl FewPair<'_> {
         M: Default,
         C: Default + Copy,
     {
-        let Self { mesh, is_broken, ball, mesh_place, .. } = *self;
+        let Self { mesh, ball, mesh_place, .. } = *self;
         let is_second = mesh_place.is_second();
         // Bit for bit as in stock, which inverts the pose two more times.
         let ball_in_mesh = if is_second { pos12.inverse().inverse().inverse() } else { *pos12 };
@@ -127,12 +124,8 @@ impl FewPair<'_> {
                 blank = Some(manifold);
             }
         };
-        if is_broken {
-            whole_ones(mesh).for_each(visit);
-        } else {
-            let near = BvhNode::leaf(aabb.loosened(reach), 0);
-            mesh.bvh().leaves(|node| node.intersects(&near)).for_each(visit);
-        }
+        let near = BvhNode::leaf(aabb.loosened(reach), 0);
+        mesh.bvh().leaves(|node| node.intersects(&near)).for_each(visit);
         manifolds.truncate(count);
         // As `ConvexQuery::turn`.
         let others = TriMeshFlags::FIX_INTERNAL_EDGES | TriMeshFlags::DEFORMABLE;

@@ -9,20 +9,9 @@ use super::casts::touch;
 use super::lookup::{MeshQuery, Trees};
 
 impl MeshQuery<'_> {
-    /// Whether the surfaces of two meshes meet, and where: one of the pairs of triangles that do
-    /// (after an edit it can be another one than a new dispatcher would name).
+    /// Returns true and one pair of crossing triangles, if the surfaces of the meshes cross.
     pub(crate) fn intersection(&self, pos12: &Pose) -> ShapeIntersection {
         let placement = Placement::new(pos12);
-        if let Some(trees) = self.remembered() {
-            let pair = trees.meeting(placement);
-            let holds = match &pair {
-                Some(pair) => trees.have(self.meshes, [pair.triangle1, pair.triangle2]),
-                None => trees.are_of(self.meshes),
-            };
-            if holds {
-                return answer(pair);
-            }
-        }
         answer(match self.trees() {
             Some(trees) => trees.meeting(placement),
             None => self.walk().meeting(placement),

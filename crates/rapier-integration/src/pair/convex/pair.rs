@@ -73,14 +73,14 @@ impl<'a> Pair for ConvexPair<'a> {
 
     fn open<'q>(
         &'q self,
-        cache: &'q Arc<TreeCache>,
+        _: &'q Arc<TreeCache>,
         (known_mesh, part_data): &'q mut Self::Known,
     ) -> (Change, Self::Query<'q>) {
         let mut change = known_mesh.update(&self.mesh);
         if part_data.update(&self.parts) {
             change = Change::Replaced;
         }
-        let surface = self.leave_solids.then(|| known_mesh.look_around(self.mesh.mesh, cache));
+        let surface = self.leave_solids.then(|| known_mesh.acquire_surface(&self.mesh));
         (change, ConvexQuery { pair: self, part_data, surface: surface.flatten() })
     }
 }

@@ -76,7 +76,7 @@ impl<'a> Pair for FieldPair<'a> {
 
     fn open<'q>(
         &'q self,
-        cache: &'q Arc<TreeCache>,
+        _: &'q Arc<TreeCache>,
         (known_mesh, known_field): &'q mut Self::Known,
     ) -> (Change, Self::Query<'q>) {
         let mut change = known_mesh.update(&self.mesh);
@@ -85,7 +85,7 @@ impl<'a> Pair for FieldPair<'a> {
             change = Change::Replaced;
         }
         let radius = self.mesh.ball().radius;
-        let surface = self.has_surfaces.then(|| known_mesh.look_around(self.mesh.mesh, cache));
+        let surface = self.has_surfaces.then(|| known_mesh.acquire_surface(&self.mesh));
         let surface = surface.flatten();
         let shapes = MeshAndField {
             pair: self,

@@ -317,7 +317,7 @@ mod tests {
             SharedShape::new(TriMesh::new(vertices, triangles).unwrap())
         });
         let meshes = shapes.each_ref().map(|shape| shape.as_trimesh().unwrap());
-        let seen = meshes.map(|mesh| cache.look_at(mesh).unwrap());
+        let seen = meshes.map(|mesh| cache.view(mesh).unwrap());
         let mut counts = [0; 2];
         for (i, gap) in [(1, 0.03), (2, 0.0), (3, -0.03), (4, -0.06)] {
             let turn = Vector::new(0.3, 0.1 * i as Real, 0.7);

@@ -10,13 +10,14 @@ use sbbk_core::contact::{ManifoldPoints, TriangleContact};
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::surface::{IndexedTriangles, OneRing};
 use sbbk_core::traverse::{Counters, PairFrame, descend};
+use sbbk_core::tree::Tree;
 
 use super::exact::Constraints;
 use super::judge::{Judge, Surfaces, near};
 use super::query::{Hint, TriangleQuery, TriangleShapes};
 use super::walk::walk;
 use crate::mesh::{
-    Change, Hierarchy, KnownMesh, MeshSurface, PreparedMesh, TreeCache, is_covered, nearest,
+    Change, Hierarchy, KnownMesh, MeshSurface, TreeCache, is_covered, nearest,
 };
 use crate::pair::driver::{Moving, Pair, Scratch};
 use crate::pair::outline::PatchPlan;
@@ -61,13 +62,13 @@ impl<'a> Pair for MeshPair<'a> {
         let are_rigid = mesh1.is_rigid() && mesh2.is_rigid();
         let known = if are_rigid {
             let [count1, count2] = [mesh1, mesh2].map(|mesh| mesh.mesh.indices().len());
-            [known1.look_up(mesh1.mesh, count2, cache), known2.look_up(mesh2.mesh, count1, cache)]
+            [known1.acquire(mesh1, count2), known2.acquire(mesh2, count1)]
         } else {
             [None, None]
         };
-        let [tree1, tree2] = known.each_ref().map(|known| known.as_ref()?.tree);
+        let [tree1, tree2] = known.each_ref().map(|known| known.as_ref()?.0);
         let trees = tree1.zip(tree2).map(<[_; 2]>::from);
-        let surfaces = known.map(|known| Some(known?.surface).filter(|_| self.has_surfaces));
+        let surfaces = known.map(|known| Some(known?.1).filter(|_| self.has_surfaces));
         let [radius1, radius2] = [mesh1, mesh2].map(|mesh| mesh.ball().radius);
         let radius = radius1.min(radius2);
         let has_surface = surfaces.iter().any(Option::is_some);
@@ -86,7 +87,7 @@ impl<'a> Pair for MeshPair<'a> {
 /// Two meshes and, if both have them, their trees.
 pub(crate) struct Meshes<'q> {
     pub(super) pair: &'q MeshPair<'q>,
-    trees: Option<[&'q PreparedMesh; 2]>,
+    trees: Option<[&'q Tree; 2]>,
     /// If contacts are those of surfaces.
     pub(super) surfaces: [Option<MeshSurface<'q>>; 2],
     /// [`Surfaces::near`].
@@ -108,16 +109,16 @@ impl TriangleShapes for Meshes<'_> {
     ) {
         let placement12 = self.pair.pose.placement12;
         let beside = Judge::beside(self, self.pair.pose.prediction, margin);
-        let Some(prepared) = self.trees else {
+        let Some([tree1, tree2]) = self.trees else {
             let meshes = self.pair.meshes.each_ref();
             let near = &mut scratch.near;
             walk(meshes, placement12, margin, beside, counters, near, |pair| {
                 found(pair);
                 ControlFlow::Continue(())
             });
-            return self.cache.did_without();
+            return self.cache.count_walk();
         };
-        let trees = (&prepared[0].tree, &prepared[1].tree);
+        let trees = (tree1, tree2);
         let mut frame = PairFrame::at(trees, placement12, margin);
         let (test, stack) = (LeafTest::new(&frame).with_culling(beside), &mut scratch.descent);
         descend(trees, &mut frame, stack, counters, |batch1, batch2| {

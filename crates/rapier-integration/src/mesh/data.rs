@@ -1,0 +1,85 @@
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, AtomicU8, AtomicUsize, Ordering};
+
+use parry3d::shape::TriMesh;
+use sbbk_core::surface::{Surface, SurfaceKind};
+use sbbk_core::tree::{BuildError, BuildOptions, Tree};
+
+/// What all colliders with equal geometry share. Each part is computed when it is first needed, by
+/// any thread, and never waited for: two threads may compute the same part at once.
+#[derive(Default)]
+pub(crate) struct MeshData {
+    surface: OnceLock<Surface>,
+    tree: OnceLock<Tree>,
+    has_build_begun: AtomicBool,
+    declared_kind: AtomicU8,
+    /// Bytes that the store counts for this mesh, 0 if the mesh is not among the recent ones.
+    pub(super) counted_bytes: AtomicUsize,
+    /// True if the mesh was used again since it became a recent one.
+    pub(super) was_used_again: AtomicBool,
+}
+
+/// [`MeshData::declared_kind`] by the number that stands for it.
+const KINDS: [Option<SurfaceKind>; 4] =
+    [None, Some(SurfaceKind::Solid), Some(SurfaceKind::Sheet), Some(SurfaceKind::InsideOut)];
+
+impl MeshData {
+    pub(crate) fn tree(&self) -> Option<&Tree> {
+        self.tree.get()
+    }
+
+    pub(super) fn has_build_begun(&self) -> bool {
+        self.has_build_begun.load(Ordering::Relaxed)
+    }
+
+    /// Returns false if another call was the first to begin a build.
+    pub(super) fn begin_build(&self) -> bool {
+        !self.has_build_begun.swap(true, Ordering::Relaxed)
+    }
+
+    /// Builds the tree, unless it is there. Returns true if this call built it.
+    pub(super) fn build(&self, mesh: &TriMesh, options: &BuildOptions) -> Result<bool, BuildError> {
+        if self.tree.get().is_some() {
+            return Ok(false);
+        }
+        self.has_build_begun.store(true, Ordering::Relaxed);
+        let tree = Tree::build(mesh.vertices(), mesh.indices(), options)?;
+        Ok(self.tree.set(tree).is_ok())
+    }
+
+    pub(super) fn surface(&self) -> Option<&Surface> {
+        self.surface.get()
+    }
+
+    /// Computes the surface of `mesh`, whose data this must be.
+    pub(super) fn analyse(&self, mesh: &TriMesh) -> &Surface {
+        let surface = Surface::new(mesh.vertices(), mesh.indices());
+        // Another thread may have set the same surface meanwhile.
+        let _ = self.surface.set(surface);
+        self.surface.get().expect("set just now")
+    }
+
+    /// The kind that a user declared, else the computed one, if the mesh has been analysed.
+    pub(crate) fn kind(&self) -> Option<SurfaceKind> {
+        self.declared_kind().or_else(|| Some(self.surface.get()?.kind()))
+    }
+
+    #[inline]
+    pub(super) fn declared_kind(&self) -> Option<SurfaceKind> {
+        KINDS[usize::from(self.declared_kind.load(Ordering::Relaxed))]
+    }
+
+    pub(crate) fn declare_kind(&self, kind: SurfaceKind) {
+        let number = KINDS.iter().position(|&of_number| of_number == Some(kind));
+        self.declared_kind.store(number.expect("all kinds are listed") as u8, Ordering::Relaxed);
+    }
+
+    /// Memory of the mesh in the store, with its entries in maps that may be half empty.
+    pub(super) fn bytes(&self) -> usize {
+        const ENTRIES: usize = 2 * (size_of::<u128>() + 2 * size_of::<usize>());
+        const REFERENCE_COUNTS: usize = 2 * size_of::<usize>();
+        let tree = self.tree().map_or(0, |tree| tree.stats().bytes());
+        let surface = self.surface().map_or(0, |surface| surface.bytes() - size_of::<Surface>());
+        size_of::<Self>() + tree + surface + ENTRIES + REFERENCE_COUNTS
+    }
+}

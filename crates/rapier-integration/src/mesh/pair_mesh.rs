@@ -1,0 +1,295 @@
+use std::sync::{Arc, OnceLock};
+
+use parry3d::shape::{CompositeShape, TriMesh};
+use sbbk_core::surface::{HalfEdges, IndexedTriangles, OneRing, SurfaceKind};
+use sbbk_core::tree::Tree;
+
+use super::data::MeshData;
+use super::identity::MeshToken;
+use super::neighbours::{NearTwins, Neighbours};
+use super::store::{MeshStore, is_small, may_analyse};
+use super::view::MeshView;
+
+/// What a pair of colliders keeps of one of its meshes from query to query.
+#[derive(Clone, Default)]
+pub(crate) enum PairMesh {
+    /// No query has used the mesh.
+    #[default]
+    Unknown,
+    Rigid(RigidMesh),
+    /// The mesh may change between any two queries, so nothing is kept.
+    Deformable,
+}
+
+/// Valid for meshes with the same token, and for the same store.
+#[derive(Clone)]
+pub(crate) struct RigidMesh {
+    token: MeshToken,
+    store_id: u64,
+    /// [`MeshStore::registrations`] when the registered meshes were last searched for this one.
+    searched_at: Option<u64>,
+    is_registered: bool,
+    declared_kind: Option<SurfaceKind>,
+    data: OnceLock<Arc<MeshData>>,
+    neighbours: Neighbours,
+}
+
+/// Change of a mesh since the last query of the pair.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Change {
+    Unchanged,
+    /// First query, another store, or a registration that changes what the mesh is taken for. The
+    /// triangles are the same.
+    Unknown,
+    /// The vertices may have moved.
+    Deformed,
+    /// The mesh is another one. Old manifolds refer to triangles that it does not have.
+    Replaced,
+}
+
+impl PairMesh {
+    pub(crate) fn is_unknown(&self) -> bool {
+        matches!(self, Self::Unknown)
+    }
+
+    /// Compares with the mesh of the last query, and stores the one of this query.
+    pub(crate) fn update(&mut self, view: &MeshView<'_>) -> Change {
+        if view.mesh.is_deformable() {
+            let is_other = matches!(self, Self::Rigid { .. });
+            *self = Self::Deformable;
+            return if is_other { Change::Replaced } else { Change::Deformed };
+        }
+        let change = match self {
+            Self::Rigid(mesh) if mesh.token == view.token && mesh.store_id == view.store.id => {
+                return mesh.refresh(view);
+            }
+            Self::Rigid(mesh) if mesh.token == view.token => Change::Unknown,
+            Self::Unknown => Change::Unknown,
+            Self::Rigid(_) | Self::Deformable => Change::Replaced,
+        };
+        *self = Self::Rigid(RigidMesh::new(view));
+        change
+    }
+
+    /// Returns the tree of a mesh, if there is one, and its surface. `other_count` is the number of
+    /// triangles of the other mesh. Call [`update`](Self::update) first.
+    ///
+    /// The first query does not look for an unregistered mesh: that takes a hash of all content, and
+    /// many pairs never touch.
+    pub(crate) fn acquire<'a>(
+        &'a mut self,
+        view: &MeshView<'a>,
+        other_count: usize,
+    ) -> Option<(Option<&'a Tree>, MeshSurface<'a>)> {
+        let Self::Rigid(known) = self else { return None };
+        let (mesh, store) = (view.mesh, view.store);
+        let is_first = known.search_registered(view);
+        if !is_first && is_small(mesh.indices().len()) {
+            store.build_within_budget(mesh, known.data.get_or_init(|| store.entry(mesh)));
+        }
+        let surface = known.surface(view, other_count);
+        let tree = match &surface {
+            MeshSurface::Full { data, .. } => data.get().and_then(|data| data.tree()),
+            MeshSurface::Local(_) => None,
+        };
+        Some((tree, surface))
+    }
+
+    /// Returns the surface of a mesh that touches no other mesh and needs no tree.
+    pub(crate) fn acquire_surface<'a>(
+        &'a mut self,
+        view: &MeshView<'a>,
+    ) -> Option<MeshSurface<'a>> {
+        let Self::Rigid(known) = self else { return None };
+        known.search_registered(view);
+        Some(known.surface(view, 0))
+    }
+}
+
+impl RigidMesh {
+    fn new(view: &MeshView<'_>) -> Self {
+        Self {
+            token: view.token,
+            store_id: view.store.id,
+            searched_at: None,
+            is_registered: false,
+            declared_kind: None,
+            data: OnceLock::new(),
+            neighbours: Neighbours::default(),
+        }
+    }
+
+    /// Looks for the mesh among the registered ones, and returns true, in the first query that needs
+    /// its surface.
+    fn search_registered(&mut self, view: &MeshView<'_>) -> bool {
+        let is_first = self.searched_at.is_none();
+        if is_first {
+            self.searched_at = Some(view.store.registrations());
+            self.set_registered(view.store.registered(view.mesh));
+        }
+        is_first
+    }
+
+    /// Takes note of registrations and declared kinds since the last query.
+    fn refresh(&mut self, view: &MeshView<'_>) -> Change {
+        let registrations = view.store.registrations();
+        if self.searched_at.is_some_and(|at| at != registrations) {
+            self.searched_at = Some(registrations);
+            let registered = view.store.registered(view.mesh);
+            let known = self.data.get().filter(|_| self.is_registered);
+            if registered.as_ref().map(Arc::as_ptr) != known.map(Arc::as_ptr) {
+                self.set_registered(registered);
+                return Change::Unknown;
+            }
+        }
+        let declared_kind = self.data.get().and_then(|data| data.declared_kind());
+        let is_same = std::mem::replace(&mut self.declared_kind, declared_kind) == declared_kind;
+        if is_same { Change::Unchanged } else { Change::Unknown }
+    }
+
+    fn set_registered(&mut self, data: Option<Arc<MeshData>>) {
+        self.is_registered = data.is_some();
+        self.declared_kind = data.as_ref().and_then(|data| data.declared_kind());
+        self.data = data.map(OnceLock::from).unwrap_or_default();
+    }
+
+    fn surface<'a>(&'a mut self, view: &MeshView<'a>, other_count: usize) -> MeshSurface<'a> {
+        let Self { data, is_registered, neighbours, .. } = self;
+        if *is_registered || may_analyse(view.mesh.indices().len(), other_count) {
+            MeshSurface::Full { data, store: view.store }
+        } else {
+            MeshSurface::Local(NearTwins::new(view.mesh, neighbours))
+        }
+    }
+}
+
+/// Adjacency of the triangles of a mesh.
+pub(crate) enum MeshSurface<'a> {
+    /// Of the whole mesh, computed at the first contact.
+    Full { data: &'a OnceLock<Arc<MeshData>>, store: &'a MeshStore },
+    /// Of the triangles near contacts. The mesh is large, and counts as a sheet.
+    Local(NearTwins<'a>),
+}
+
+impl MeshSurface<'_> {
+    /// Returns the one-rings of `mesh`, whose surface this must be.
+    #[inline]
+    pub(crate) fn around<'a>(&'a self, mesh: &'a TriMesh) -> OneRing<IndexedTriangles<'a>> {
+        let (twins, is_solid): (&dyn HalfEdges, bool) = match self {
+            Self::Full { data, store } => {
+                let (surface, kind) = store.surface(mesh, data.get_or_init(|| store.entry(mesh)));
+                (surface, kind == SurfaceKind::Solid)
+            }
+            Self::Local(twins) => (twins, false),
+        };
+        let facets =
+            IndexedTriangles { twins, vertices: mesh.vertices(), triangles: mesh.indices() };
+        OneRing { facets, is_solid }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use parry3d::shape::{Ball, SharedShape, TriMeshFlags};
+    use sbbk_core::tree::BuildOptions;
+
+    use super::*;
+
+    /// A ball of so many rows of triangles.
+    fn mesh(rows: u32, flags: TriMeshFlags) -> TriMesh {
+        let (vertices, triangles) = Ball::new(1.0).to_trimesh(2 * rows, rows);
+        TriMesh::with_flags(vertices, triangles, flags).unwrap()
+    }
+
+    fn store() -> MeshStore {
+        MeshStore::new(BuildOptions::default(), 1 << 20)
+    }
+
+    #[test]
+    fn each_kind_of_change_is_told() {
+        let [one, other] = [3, 4].map(|rows| mesh(rows, TriMeshFlags::empty()));
+        let soft = mesh(3, TriMeshFlags::DEFORMABLE);
+        let stores = [store(), store()];
+        let mut known = PairMesh::default();
+        for (mesh, owner, change) in [
+            (&one, 0, Change::Unknown),
+            (&one, 0, Change::Unchanged),
+            (&one, 1, Change::Unknown),
+            (&one, 1, Change::Unchanged),
+            (&other, 1, Change::Replaced),
+            (&soft, 1, Change::Replaced),
+            (&soft, 1, Change::Deformed),
+            (&one, 1, Change::Replaced),
+        ] {
+            assert_eq!(known.update(&stores[owner].view(mesh).unwrap()), change);
+        }
+    }
+
+    /// Returns whether the whole surface is used, and whether the mesh is a solid.
+    fn surface(known: &mut PairMesh, store: &MeshStore, mesh: &TriMesh, other: usize) -> [bool; 2] {
+        let view = store.view(mesh).unwrap();
+        known.update(&view);
+        let (_, surface) = known.acquire(&view, other).unwrap();
+        [matches!(surface, MeshSurface::Full { .. }), surface.around(mesh).is_solid]
+    }
+
+    #[test]
+    fn large_meshes_are_analysed_if_registered_or_against_large_ones() {
+        let store = store();
+        let shapes = [100, 260].map(|rows| SharedShape::new(mesh(rows, TriMeshFlags::empty())));
+        let [large, larger] = shapes.each_ref().map(|shape| shape.as_trimesh().unwrap());
+        let ask = |mesh, other| surface(&mut PairMesh::default(), &store, mesh, other);
+        assert_eq!(ask(large, 8192), [false; 2]);
+        assert_eq!(ask(large, 8193), [true; 2]);
+        assert_eq!(ask(larger, larger.indices().len()), [false; 2]);
+        for shape in &shapes {
+            let mesh = shape.as_trimesh().unwrap();
+            let _registered = store.register(shape, mesh).unwrap();
+            assert_eq!(ask(mesh, 0), [true; 2]);
+        }
+    }
+
+    #[test]
+    fn a_pair_follows_registrations_and_declared_kinds() {
+        let store = store();
+        let shape = SharedShape::new(mesh(100, TriMeshFlags::empty()));
+        let mesh = shape.as_trimesh().unwrap();
+        let mut known = PairMesh::default();
+        assert_eq!(surface(&mut known, &store, mesh, 0), [false; 2]);
+        let registered = store.register(&shape, mesh).unwrap();
+        assert_eq!(known.clone().update(&store.view(mesh).unwrap()), Change::Unknown);
+        assert_eq!(surface(&mut known, &store, mesh, 0), [true; 2]);
+        registered.data.declare_kind(SurfaceKind::Sheet);
+        assert_eq!(known.clone().update(&store.view(mesh).unwrap()), Change::Unknown);
+        assert_eq!(surface(&mut known, &store, mesh, 0), [true, false]);
+        assert_eq!(known.update(&store.view(mesh).unwrap()), Change::Unchanged);
+        drop(registered);
+        assert_eq!(surface(&mut known, &store, mesh, 0), [false; 2]);
+    }
+
+    #[test]
+    fn a_small_mesh_gets_its_tree_at_the_second_query() {
+        let (store, mesh) = (store(), mesh(6, TriMeshFlags::empty()));
+        let mut known = PairMesh::default();
+        for has_tree in [false, true] {
+            let view = store.view(&mesh).unwrap();
+            known.update(&view);
+            assert_eq!(known.acquire(&view, 0).unwrap().0.is_some(), has_tree);
+        }
+    }
+
+    /// Fails if a query takes a lock though the pair has its meshes, or drops one under a lock.
+    #[test]
+    fn a_pair_that_has_its_meshes_takes_no_lock() {
+        let (store, mesh) = (store(), mesh(6, TriMeshFlags::empty()));
+        let mut known = PairMesh::default();
+        (0..2).for_each(|_| _ = surface(&mut known, &store, &mesh, 0));
+        let locked = store.lock_all();
+        std::thread::scope(|scope| {
+            let query = || (0..20).all(|_| surface(&mut known, &store, &mesh, 0) == [true; 2]);
+            assert!(scope.spawn(query).join().unwrap());
+        });
+        drop(known);
+        drop(locked);
+    }
+}

@@ -1,0 +1,441 @@
+//! One [`MeshData`] for all colliders with equal geometry.
+//!
+//! A mesh is found by its content, or by its address if it is registered. A pair keeps what it has
+//! found, so only its first queries and those after a new registration take a lock. Trees and
+//! surfaces are computed outside of the locks.
+
+use std::collections::{HashMap, VecDeque};
+use std::hash::Hash;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock, Weak};
+
+use parry3d::shape::{SharedShape, TriMesh};
+use sbbk_core::surface::{Surface, SurfaceKind};
+use sbbk_core::tree::{BuildError, BuildOptions};
+
+use super::budget::BuildBudget;
+use super::data::MeshData;
+use super::identity::ContentHash;
+use super::view::MeshView;
+
+/// The meshes of a dispatcher and its clones.
+pub(crate) struct MeshStore {
+    /// Number of this store among all stores of the process.
+    pub(super) id: u64,
+    options: BuildOptions,
+    /// Bytes that recently used meshes may keep.
+    recent_limit: usize,
+    contents: Mutex<Contents>,
+    /// Registered meshes by address. The shape that each one holds keeps the address in use.
+    registered: RwLock<HashMap<usize, Weak<Registered>>>,
+    /// Number of registrations that have begun or ended.
+    registrations: Arc<AtomicU64>,
+    budget: BuildBudget,
+    builds: AtomicU64,
+    hits: AtomicU64,
+    pairs: AtomicU64,
+    walks: AtomicU64,
+}
+
+/// A registered mesh. Whoever edits the shape meanwhile edits a copy, so the address stands for the
+/// content.
+pub(crate) struct Registered {
+    shape: SharedShape,
+    pub(crate) data: Arc<MeshData>,
+    registrations: Arc<AtomicU64>,
+}
+
+impl Drop for Registered {
+    fn drop(&mut self) {
+        self.registrations.fetch_add(1, Ordering::Release);
+    }
+}
+
+#[derive(Default)]
+struct Contents {
+    meshes: HashMap<ContentHash, Weak<MeshData>>,
+    /// Recently used meshes, the oldest first.
+    recent: VecDeque<Arc<MeshData>>,
+    recent_bytes: usize,
+}
+
+/// Counts of a store.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct StoreCounts {
+    pub(crate) trees: usize,
+    pub(crate) solids: usize,
+    pub(crate) sheets: usize,
+    pub(crate) inside_out: usize,
+    pub(crate) idle_trees: usize,
+    pub(crate) bytes: usize,
+    pub(crate) builds: u64,
+    pub(crate) hits: u64,
+    pub(crate) pairs: u64,
+    pub(crate) walks: u64,
+}
+
+impl MeshStore {
+    pub(crate) fn new(options: BuildOptions, recent_limit: usize) -> Self {
+        static NEXT_ID: AtomicU64 = AtomicU64::new(0);
+        Self {
+            id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
+            options,
+            recent_limit,
+            contents: Mutex::default(),
+            registered: RwLock::default(),
+            registrations: Arc::default(),
+            budget: BuildBudget::default(),
+            builds: AtomicU64::new(0),
+            hits: AtomicU64::new(0),
+            pairs: AtomicU64::new(0),
+            walks: AtomicU64::new(0),
+        }
+    }
+
+    /// Returns the data of a mesh, with its tree and surface.
+    ///
+    /// # Errors
+    /// Says why this mesh cannot have a tree.
+    pub(crate) fn prepare(&self, mesh: &TriMesh) -> Result<Arc<MeshData>, BuildError> {
+        let data = self.entry(mesh);
+        self.build(mesh, &data)?;
+        if data.surface().is_none() {
+            data.analyse(mesh);
+            self.contents().keep_recent(&data, self.recent_limit);
+        }
+        Ok(data)
+    }
+
+    /// Prepares the mesh of `shape`, and finds it by its address while the result lives.
+    ///
+    /// # Errors
+    /// Says why this mesh cannot have a tree.
+    pub(crate) fn register(
+        &self,
+        shape: &SharedShape,
+        mesh: &TriMesh,
+    ) -> Result<Arc<Registered>, BuildError> {
+        let data = self.prepare(mesh)?;
+        let mut meshes = self.registered.write().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = meshes.get(&address(mesh)).and_then(Weak::upgrade) {
+            return Ok(known);
+        }
+        let registrations = Arc::clone(&self.registrations);
+        let registered = Arc::new(Registered { shape: shape.clone(), data, registrations });
+        debug_assert_eq!(registered.shape.as_trimesh().map(address), Some(address(mesh)));
+        make_room(&mut meshes);
+        meshes.insert(address(mesh), Arc::downgrade(&registered));
+        self.registrations.fetch_add(1, Ordering::Release);
+        Ok(registered)
+    }
+
+    /// Returns the data of a mesh, if the mesh is registered.
+    pub(crate) fn registered(&self, mesh: &TriMesh) -> Option<Arc<MeshData>> {
+        let meshes = self.registered.read().unwrap_or_else(PoisonError::into_inner);
+        Some(Arc::clone(&meshes.get(&address(mesh))?.upgrade()?.data))
+    }
+
+    /// Rises when a registration begins or ends.
+    #[inline]
+    pub(super) fn registrations(&self) -> u64 {
+        self.registrations.load(Ordering::Acquire)
+    }
+
+    /// Returns the data of a mesh, found by a hash of all its content.
+    pub(super) fn entry(&self, mesh: &TriMesh) -> Arc<MeshData> {
+        self.budget.charge_hash(mesh.indices().len());
+        let content = ContentHash::of(mesh);
+        let mut contents = self.contents();
+        let known = contents.meshes.get(&content).and_then(Weak::upgrade);
+        let data = known.unwrap_or_else(|| {
+            let data = Arc::default();
+            make_room(&mut contents.meshes);
+            contents.meshes.insert(content, Arc::downgrade(&data));
+            data
+        });
+        self.hits.fetch_add(data.tree().is_some().into(), Ordering::Relaxed);
+        contents.keep_recent(&data, self.recent_limit);
+        data
+    }
+
+    /// Builds the tree of a small mesh, if the budget covers it and no thread has begun to.
+    pub(super) fn build_within_budget(&self, mesh: &TriMesh, data: &Arc<MeshData>) {
+        let count = mesh.indices().len();
+        if is_small(count) && !data.has_build_begun() && self.budget.spend(count) {
+            if data.begin_build() {
+                // A mesh that cannot have a tree does without.
+                let _ = self.build(mesh, data);
+            }
+        }
+    }
+
+    fn build(&self, mesh: &TriMesh, data: &Arc<MeshData>) -> Result<(), BuildError> {
+        if data.build(mesh, &self.options)? {
+            self.builds.fetch_add(1, Ordering::Relaxed);
+            self.contents().keep_recent(data, self.recent_limit);
+        }
+        Ok(())
+    }
+
+    /// Returns the surface and the kind of a mesh. Analyses the mesh if no query has done so.
+    #[inline]
+    pub(super) fn surface<'a>(
+        &self,
+        mesh: &TriMesh,
+        data: &'a Arc<MeshData>,
+    ) -> (&'a Surface, SurfaceKind) {
+        let surface = data.surface().unwrap_or_else(|| self.analyse(mesh, data));
+        (surface, data.declared_kind().unwrap_or(surface.kind()))
+    }
+
+    /// Returns the kind of a rigid mesh against small meshes.
+    pub(crate) fn surface_kind(&self, mesh: &TriMesh) -> SurfaceKind {
+        match self.registered(mesh) {
+            Some(data) => self.surface(mesh, &data).1,
+            None if is_small(mesh.indices().len()) => self.surface(mesh, &self.entry(mesh)).1,
+            None => SurfaceKind::Sheet,
+        }
+    }
+
+    #[cold]
+    fn analyse<'a>(&self, mesh: &TriMesh, data: &'a Arc<MeshData>) -> &'a Surface {
+        self.budget.charge_surface(mesh.indices().len());
+        let surface = data.analyse(mesh);
+        self.contents().keep_recent(data, self.recent_limit);
+        surface
+    }
+
+    /// Counts a descent without trees.
+    pub(crate) fn count_walk(&self) {
+        self.walks.fetch_add(1, Ordering::Relaxed);
+        self.budget.earn();
+    }
+
+    /// Counts a new pair.
+    pub(crate) fn count_pair(&self) {
+        self.pairs.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// Returns a view of a mesh for one query; `None` if the mesh has no finite box, so that only
+    /// Parry can answer.
+    #[inline]
+    pub(crate) fn view<'a>(&'a self, mesh: &'a TriMesh) -> Option<MeshView<'a>> {
+        MeshView::new(mesh, self)
+    }
+
+    /// Drops the data of meshes that no pair uses.
+    pub(crate) fn release_idle(&self) {
+        let Contents { meshes, recent, recent_bytes } = &mut *self.contents();
+        recent.retain(|data| {
+            let is_used = Arc::strong_count(data) > 1;
+            *recent_bytes -= if is_used { 0 } else { data.counted_bytes.load(Ordering::Relaxed) };
+            is_used
+        });
+        meshes.retain(|_, data| data.strong_count() > 0);
+    }
+
+    pub(crate) fn counts(&self) -> StoreCounts {
+        let contents = self.contents();
+        let meshes: Vec<_> = contents.meshes.values().filter_map(Weak::upgrade).collect();
+        let of_kind = |kind| meshes.iter().filter(|data| data.kind() == Some(kind)).count();
+        // Besides the recent list, `meshes` holds each one.
+        let is_idle = |data: &&Arc<MeshData>| data.tree().is_some() && Arc::strong_count(data) == 2;
+        StoreCounts {
+            solids: of_kind(SurfaceKind::Solid),
+            sheets: of_kind(SurfaceKind::Sheet),
+            inside_out: of_kind(SurfaceKind::InsideOut),
+            trees: meshes.iter().filter(|data| data.tree().is_some()).count(),
+            idle_trees: contents.recent.iter().filter(is_idle).count(),
+            bytes: meshes.iter().map(|data| data.bytes()).sum(),
+            builds: self.builds.load(Ordering::Relaxed),
+            hits: self.hits.load(Ordering::Relaxed),
+            pairs: self.pairs.load(Ordering::Relaxed),
+            walks: self.walks.load(Ordering::Relaxed),
+        }
+    }
+
+    /// Takes all locks.
+    #[cfg(test)]
+    pub(super) fn lock_all(&self) -> impl Sized {
+        (self.contents(), self.registered.write().expect("not poisoned"))
+    }
+
+    fn contents(&self) -> MutexGuard<'_, Contents> {
+        // No code that holds the lock can panic between two changes.
+        self.contents.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Contents {
+    /// Keeps a mesh that was used or has grown, and drops the oldest ones beyond `limit` bytes. A
+    /// mesh that was used since it came to the front goes to the end once more.
+    fn keep_recent(&mut self, data: &Arc<MeshData>, limit: usize) {
+        let bytes = data.bytes();
+        let counted = data.counted_bytes.swap(bytes, Ordering::Relaxed);
+        self.recent_bytes = self.recent_bytes + bytes - counted;
+        if counted == 0 {
+            self.recent.push_back(Arc::clone(data));
+        } else {
+            data.was_used_again.store(true, Ordering::Relaxed);
+        }
+        while self.recent_bytes > limit
+            && let Some(oldest) = self.recent.pop_front()
+        {
+            if oldest.was_used_again.swap(false, Ordering::Relaxed) {
+                self.recent.push_back(oldest);
+            } else {
+                self.recent_bytes -= oldest.counted_bytes.swap(0, Ordering::Relaxed);
+            }
+        }
+    }
+}
+
+/// True if a mesh of so many triangles may get a tree in a step.
+pub(super) fn is_small(triangle_count: usize) -> bool {
+    triangle_count <= BuildBudget::LIMIT as usize
+}
+
+/// True if an unregistered mesh is analysed as a whole when it first touches a mesh of `other_count`
+/// triangles: if it is small, or if both are large and it has at most 131,072 triangles. Any other
+/// unregistered mesh is a sheet.
+///
+/// A large mesh is not analysed for small ones, as many of these may land on it together, and each
+/// pair needs a hash of its content.
+pub(super) fn may_analyse(triangle_count: usize, other_count: usize) -> bool {
+    /// Triangles. An analysis of as many takes 5 ms. Higher: longer steps; lower: large meshes lock
+    /// into each other.
+    const LIMIT: usize = 1 << 17;
+    is_small(triangle_count) || !is_small(other_count) && triangle_count <= LIMIT
+}
+
+/// Forgets what has been dropped, if the map is full.
+fn make_room<K: Eq + Hash, V>(map: &mut HashMap<K, Weak<V>>) {
+    if map.len() == map.capacity() {
+        map.retain(|_, value| value.strong_count() > 0);
+        map.reserve(map.len() + 1);
+    }
+}
+
+fn address(mesh: &TriMesh) -> usize {
+    std::ptr::from_ref(mesh).addr()
+}
+
+#[cfg(test)]
+mod tests {
+    use parry3d::math::Vector;
+    use parry3d::shape::Ball;
+
+    use super::*;
+
+    fn ball(radius: f32) -> TriMesh {
+        let (vertices, triangles) = Ball::new(radius).to_trimesh(8, 4);
+        TriMesh::new(vertices, triangles).unwrap()
+    }
+
+    fn store(recent_limit: usize) -> MeshStore {
+        MeshStore::new(BuildOptions::default(), recent_limit)
+    }
+
+    #[test]
+    fn recent_meshes_keep_to_the_limit_in_bytes() {
+        let wide = store(usize::MAX);
+        drop(wide.prepare(&ball(1.0)).unwrap());
+        let bytes = wide.counts().bytes;
+        for (limit, stay) in [(bytes, 1), (bytes - 1, 0)] {
+            let store = store(limit);
+            drop(store.prepare(&ball(1.0)).unwrap());
+            assert_eq!((store.counts().trees, store.counts().idle_trees), (stay, stay), "{limit}");
+        }
+    }
+
+    #[test]
+    fn the_mesh_that_was_not_used_for_longest_goes_first() {
+        let bytes = {
+            let store = store(usize::MAX);
+            let _data = store.entry(&ball(1.0));
+            store.counts().bytes
+        };
+        let store = store(5 * bytes / 2);
+        let is_there = |radius| {
+            let content = ContentHash::of(&ball(radius));
+            store.contents().meshes.get(&content).is_some_and(|data| data.strong_count() > 0)
+        };
+        [1.0, 2.0, 1.0, 3.0].iter().for_each(|&radius| drop(store.entry(&ball(radius))));
+        assert_eq!([1.0, 2.0, 3.0].map(is_there), [true, false, true]);
+    }
+
+    #[test]
+    fn dropped_meshes_leave_the_map() {
+        let store = store(0);
+        (1..1000).for_each(|i| drop(store.entry(&ball(i as f32))));
+        assert!(store.contents().meshes.len() < 20);
+        assert_eq!(store.counts().bytes, 0);
+    }
+
+    #[test]
+    fn a_mesh_is_registered_until_its_last_registration_goes() {
+        let store = store(0);
+        let [shape, other] = [(); 2].map(|()| SharedShape::new(ball(1.0)));
+        let mesh = shape.as_trimesh().unwrap();
+        let first = store.register(&shape, mesh).unwrap();
+        let second = store.register(&shape.clone(), mesh).unwrap();
+        assert!(Arc::ptr_eq(&first, &second));
+        assert!(store.registered(other.as_trimesh().unwrap()).is_none());
+        drop(first);
+        assert!(store.registered(mesh).is_some());
+        let count = store.registrations();
+        drop(second);
+        assert!(store.registered(mesh).is_none() && store.registrations() > count);
+        let _again = store.register(&shape, mesh).unwrap();
+        assert!(store.registered(mesh).is_some());
+    }
+
+    #[test]
+    fn a_declared_kind_replaces_the_computed_one() {
+        let (store, mesh) = (store(usize::MAX), ball(1.0));
+        let data = store.entry(&mesh);
+        assert_eq!(data.kind(), None);
+        assert_eq!(store.surface(&mesh, &data).1, SurfaceKind::Solid);
+        for kind in [SurfaceKind::Sheet, SurfaceKind::InsideOut, SurfaceKind::Solid] {
+            data.declare_kind(kind);
+            assert_eq!((store.surface(&mesh, &data).1, data.kind()), (kind, Some(kind)));
+        }
+    }
+
+    /// A hundred meshes that land in one step are analysed, as contacts depend on that. Fails if
+    /// trees are built in the same step as if the analysis took no time.
+    #[test]
+    fn surfaces_leave_no_budget_for_trees() {
+        let store = store(usize::MAX);
+        let meshes: Vec<TriMesh> = (1..100).map(|i| ball(i as f32)).collect();
+        let count = meshes[0].indices().len();
+        for mesh in meshes.iter().cycle().take(100 * BuildBudget::LIMIT as usize / count) {
+            let data = store.entry(mesh);
+            store.analyse(mesh, &data);
+        }
+        for mesh in &meshes {
+            store.build_within_budget(mesh, &store.entry(mesh));
+        }
+        assert_eq!(store.counts().builds, 0);
+    }
+
+    #[test]
+    fn a_tree_that_another_thread_builds_is_not_waited_for() {
+        let (store, mesh) = (store(usize::MAX), ball(1.0));
+        let data = store.entry(&mesh);
+        assert!(data.begin_build());
+        store.build_within_budget(&mesh, &data);
+        assert!(data.tree().is_none());
+        assert!(store.prepare(&mesh).unwrap().tree().is_some());
+    }
+
+    #[test]
+    fn a_mesh_without_finite_box_or_triangles_has_no_view() {
+        let mesh = |corner| {
+            TriMesh::new(vec![Vector::ZERO, Vector::X, corner], vec![[0, 1, 2]]).unwrap()
+        };
+        let store = store(0);
+        assert!(store.view(&mesh(Vector::Y)).is_some());
+        assert!(store.view(&mesh(Vector::Y * f32::INFINITY)).is_none());
+    }
+}

@@ -1,0 +1,200 @@
+//! A mesh during one query, and searches of its BVH.
+//!
+//! Parry's BVH is there before the first query and always fits the mesh, so a pair without trees
+//! needs nothing else.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use glamx::Vec3;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::math::{Pose, Real};
+use parry3d::partitioning::BvhNode;
+use parry3d::query::PointProjection;
+use parry3d::shape::{CompositeShape, CompositeShapeRef, Shape, TriMesh};
+use sbbk_core::traverse::TestedBox;
+use sbbk_core::volumes::Sphere;
+use sbbk_core::volumes::rounding::gamma;
+
+use super::data::MeshData;
+use super::identity::MeshToken;
+use super::store::MeshStore;
+
+/// Returns false if the BVH of a mesh has no triangle within `margin` of the box around a shape at
+/// `pos12`.
+pub(crate) fn is_near(mesh: &TriMesh, shape: &dyn Shape, pos12: &Pose, margin: Real) -> bool {
+    let is_searched = is_valid(&mesh.bvh().root_aabb());
+    !is_searched || has_near(mesh, &shape.compute_aabb(pos12), pos12, margin)
+}
+
+/// Returns false if the BVH of the larger mesh has no triangle within `margin` of the box around the
+/// other mesh.
+pub(crate) fn are_near([mesh1, mesh2]: [&TriMesh; 2], pos12: &Pose, margin: Real) -> bool {
+    let roots = [mesh1, mesh2].map(|mesh| mesh.bvh().root_aabb());
+    if !roots.iter().all(is_valid) {
+        return true;
+    }
+    let [size1, size2] = roots.map(|root| root.half_extents().length_squared());
+    if size1 < size2 {
+        let pos21 = pos12.inverse();
+        has_near(mesh2, &roots[0].transform_by(&pos21), &pos21, margin)
+    } else {
+        has_near(mesh1, &roots[1].transform_by(pos12), pos12, margin)
+    }
+}
+
+/// True if the first vertex of the smaller mesh is [covered](is_covered) by the larger one.
+pub(crate) fn may_be_inside([mesh1, mesh2]: [&TriMesh; 2], pos12: &Pose) -> bool {
+    let [size1, size2] =
+        [mesh1, mesh2].map(|mesh| mesh.bvh().root_aabb().half_extents().length_squared());
+    let first = |mesh: &TriMesh| mesh.vertices()[mesh.indices()[0][0] as usize];
+    if size1 < size2 {
+        is_covered(mesh2, pos12.inverse() * first(mesh1))
+    } else {
+        is_covered(mesh1, pos12 * first(mesh2))
+    }
+}
+
+/// True if each of the six rays from a point along the axes crosses the box of a triangle. So it is
+/// for each point inside a closed mesh, and for no point above a terrain.
+pub(crate) fn is_covered(mesh: &TriMesh, point: Vec3) -> bool {
+    let root = mesh.bvh().root_aabb();
+    if !root.contains_local_point(point) {
+        return false;
+    }
+    let sides = [root.mins - point, root.maxs - point];
+    let mut rays = sides.map(|side| [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| side * axis));
+    let rays = rays.as_flattened_mut();
+    // Short rays are the cheapest, and the most likely to cross nothing.
+    rays.sort_unstable_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
+    rays.iter().all(|&ray| {
+        // Twice as long, as rounding may leave out a face at the end.
+        let ray = BvhNode::leaf(Aabb::from_points([point, point + 2.0 * ray]), 0);
+        mesh.bvh().leaves(|node| node.intersects(&ray)).next().is_some()
+    })
+}
+
+/// Least cosine that [`nearest`] returns for a point inside a mesh.
+pub(crate) const BEHIND: Real = 0.9;
+
+/// Returns the triangle of a mesh that is nearest to a point, the nearest point on it, and the cosine
+/// between the direction to `point` and the inward normal. The cosine is 0 for a point on the mesh.
+pub(crate) fn nearest(mesh: &TriMesh, point: Vec3) -> Option<(u32, PointProjection, Real)> {
+    let (triangle, nearest) =
+        CompositeShapeRef(mesh).project_local_point(point, Real::MAX, false)?;
+    let away = (point - nearest.point).normalize_or_zero();
+    let behind = mesh.triangle(triangle).normal().map_or(0.0, |normal| -away.dot(normal));
+    Some((triangle, nearest, behind))
+}
+
+/// True if a box is finite and not empty.
+fn is_valid(aabb: &Aabb) -> bool {
+    aabb.mins.is_finite() && aabb.maxs.is_finite() && aabb.mins.cmple(aabb.maxs).all()
+}
+
+/// True if the BVH of a mesh has a triangle within `margin` of a box, or a little farther. `aabb` was
+/// placed at `pos12`.
+fn has_near(mesh: &TriMesh, aabb: &Aabb, pos12: &Pose, margin: Real) -> bool {
+    // Some 30 operations on coordinates up to twice these.
+    let size = aabb.mins.abs().max(aabb.maxs.abs()).max_element();
+    let grown = margin.max(0.0) + gamma(64) * 2.0 * (size + pos12.translation.abs().max_element());
+    let is_finite = grown >= 0.0;
+    if !is_finite {
+        return false;
+    }
+    let aabb = BvhNode::leaf(aabb.loosened(grown), 0);
+    mesh.bvh().leaves(|node| node.intersects(&aabb)).next().is_some()
+}
+
+/// A mesh during one query.
+#[derive(Copy, Clone)]
+pub(crate) struct MeshView<'a> {
+    pub(crate) mesh: &'a TriMesh,
+    pub(super) token: MeshToken,
+    pub(super) store: &'a MeshStore,
+    root: Aabb,
+}
+
+impl<'a> MeshView<'a> {
+    /// Returns `None` if the box around the mesh is not finite or there are no triangles.
+    #[inline]
+    pub(super) fn new(mesh: &'a TriMesh, store: &'a MeshStore) -> Option<Self> {
+        let root = mesh.bvh().root_aabb();
+        is_valid(&root).then(|| Self { mesh, token: MeshToken::of(mesh), store, root })
+    }
+
+    /// Returns the shared data of the mesh, if the mesh is registered.
+    pub(crate) fn registered(&self) -> Option<Arc<MeshData>> {
+        self.store.registered(self.mesh)
+    }
+
+    /// True if the mesh cannot change while its token stays.
+    pub(crate) fn is_rigid(&self) -> bool {
+        !self.mesh.is_deformable()
+    }
+
+    /// The box around the mesh.
+    pub(crate) fn root(&self) -> &Aabb {
+        &self.root
+    }
+
+    /// Square of half the diagonal of the box around the mesh.
+    pub(crate) fn size_squared(&self) -> Real {
+        self.root.half_extents().length_squared()
+    }
+
+    /// Returns the box around the mesh at `pose`, grown by `reach` and by rounding. A pose that is not
+    /// finite gives a box that overlaps nothing.
+    pub(crate) fn placed_root(&self, pose: &Pose, reach: Real) -> Aabb {
+        let size = self.root.half_extents().length() + self.root.center().length();
+        let grown = reach + gamma(64) * (size + pose.translation.length() + reach);
+        let is_finite = grown >= 0.0;
+        if is_finite { self.root.transform_by(pose).loosened(grown) } else { Aabb::new_invalid() }
+    }
+
+    /// The largest absolute coordinate.
+    pub(crate) fn magnitude(&self) -> Real {
+        self.root.mins.abs().max(self.root.maxs.abs()).max_element()
+    }
+
+    /// A ball around the mesh.
+    pub(crate) fn ball(&self) -> Sphere {
+        let (centre, half) = (self.root.center(), self.root.half_extents().length());
+        Sphere { centre, radius: half + gamma(8) * (centre.length() + half) }
+    }
+
+    /// Calls `visit` with the triangles for whose boxes, and the boxes above them, `overlaps` returns
+    /// true, until `visit` breaks.
+    #[inline(always)]
+    pub(crate) fn near(
+        &self,
+        overlaps: impl Fn(TestedBox) -> bool,
+        mut visit: impl FnMut(u32) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        for triangle in self.mesh.bvh().leaves(|node| overlaps(box_of(node))) {
+            visit(triangle)?;
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// The box around some triangles.
+    pub(crate) fn tested(&self, triangles: &[u32]) -> TestedBox {
+        let corners = || triangles.iter().flat_map(|&triangle| self.corners(triangle));
+        let low = corners().fold(Vec3::INFINITY, Vec3::min);
+        TestedBox::new(low, corners().fold(Vec3::NEG_INFINITY, Vec3::max))
+    }
+
+    /// The corners of a triangle.
+    #[inline(always)]
+    pub(crate) fn corners(&self, triangle: u32) -> [Vec3; 3] {
+        // `TriMesh::triangle` is slower here: it writes 12 bytes that are then read as 16.
+        let (vertices, [a, b, c]) = (self.mesh.vertices(), self.mesh.indices()[triangle as usize]);
+        [vertices[a as usize], vertices[b as usize], vertices[c as usize]]
+    }
+}
+
+/// The box of a node of the BVH.
+#[inline(always)]
+pub(crate) fn box_of(node: &BvhNode) -> TestedBox {
+    TestedBox::new(node.mins(), node.maxs())
+}
