@@ -82,7 +82,7 @@ fn rooms_that_are_sheets_keep_what_is_in_them() {
     for (name, shape) in bodies() {
         let dispatcher = leading_out(ContactDetail::Patches);
         let prepared = dispatcher.prepare_shape(&room).unwrap().unwrap();
-        prepared.bounds(SurfaceKind::Sheet);
+        prepared.set_surface_kind(SurfaceKind::Sheet);
         for (dispatcher, is_kept) in [
             (dispatcher, true),
             (SbbkDispatcher::default(), true),

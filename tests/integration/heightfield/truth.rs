@@ -106,7 +106,7 @@ fn surfaces_are_those_of_the_terrain_as_a_mesh() {
         let prepared = dispatcher.prepare(&terrain.mesh).unwrap();
         // A negative scale turns normals down.
         let has_top = terrain.field.scale().x > 0.0;
-        prepared.bounds(if has_top { height_fields } else { SurfaceKind::Sheet });
+        prepared.set_surface_kind(if has_top { height_fields } else { SurfaceKind::Sheet });
         for i in 0..60 {
             let mesh = &meshes[i % 3];
             let depth = [0.05, -0.01, 0.005][i / 3 % 3];

@@ -431,9 +431,8 @@ mod tests {
 
     #[test]
     fn a_mesh_without_finite_box_or_triangles_has_no_view() {
-        let mesh = |corner| {
-            TriMesh::new(vec![Vector::ZERO, Vector::X, corner], vec![[0, 1, 2]]).unwrap()
-        };
+        let mesh =
+            |corner| TriMesh::new(vec![Vector::ZERO, Vector::X, corner], vec![[0, 1, 2]]).unwrap();
         let store = store(0);
         assert!(store.view(&mesh(Vector::Y)).is_some());
         assert!(store.view(&mesh(Vector::Y * f32::INFINITY)).is_none());

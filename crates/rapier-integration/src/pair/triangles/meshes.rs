@@ -16,9 +16,7 @@ use super::exact::Constraints;
 use super::judge::{Judge, Surfaces, near};
 use super::query::{Hint, TriangleQuery, TriangleShapes};
 use super::walk::walk;
-use crate::mesh::{
-    Change, Hierarchy, KnownMesh, MeshSurface, TreeCache, is_covered, nearest,
-};
+use crate::mesh::{Change, Hierarchy, KnownMesh, MeshSurface, TreeCache, is_covered, nearest};
 use crate::pair::driver::{Moving, Pair, Scratch};
 use crate::pair::outline::PatchPlan;
 use crate::pair::pose::PairPose;
