@@ -53,6 +53,8 @@ mod motion;
 mod nonlinear;
 /// Contact normals constrained at internal edges.
 mod normals;
+/// What a pair keeps: candidates, and data of manifolds and points.
+mod pairs;
 /// A few manifolds for all contacts of a pair.
 mod patches;
 /// Queries without manifolds.

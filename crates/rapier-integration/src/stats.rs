@@ -3,7 +3,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use sbbk_core::traverse::DescentCounts;
 
 use crate::mesh::StoreCounts;
-use crate::pair::Answer;
+use crate::pair::QueryOutcome;
 
 /// What a dispatcher and its clones did so far.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
@@ -68,15 +68,15 @@ impl QueryCounters {
         self.unsupported.fetch_add(1, Ordering::Relaxed);
     }
 
-    pub(crate) fn add(&self, answer: Answer, counts: &DescentCounts) {
-        if answer != Answer::Unsupported {
+    pub(crate) fn add(&self, answer: QueryOutcome, counts: &DescentCounts) {
+        if answer != QueryOutcome::Unsupported {
             self.queries.fetch_add(1, Ordering::Relaxed);
         }
         match answer {
-            Answer::Unchanged => self.unchanged.fetch_add(1, Ordering::Relaxed),
-            Answer::Reused => self.reused.fetch_add(1, Ordering::Relaxed),
-            Answer::Descended => self.descended.fetch_add(1, Ordering::Relaxed),
-            Answer::Apart | Answer::Unsupported => return,
+            QueryOutcome::Unchanged => self.unchanged.fetch_add(1, Ordering::Relaxed),
+            QueryOutcome::Reused => self.reused.fetch_add(1, Ordering::Relaxed),
+            QueryOutcome::Descended => self.descended.fetch_add(1, Ordering::Relaxed),
+            QueryOutcome::Apart | QueryOutcome::Unsupported => return,
         };
         self.sphere_tests.fetch_add(counts.sphere_tests, Ordering::Relaxed);
         self.aabb_tests.fetch_add(counts.aabb_tests, Ordering::Relaxed);

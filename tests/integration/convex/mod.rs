@@ -1,14 +1,14 @@
 //! What Parry's routine, or brute force in f64, says of each triangle alone is expected of the whole
 //! mesh.
 
+/// Balls: flags, prediction distances, data.
+mod balls;
 /// Linear casts, against brute force.
 mod casts;
 /// Shapes that change between queries, and pairs taken over from stock.
 mod change;
 /// Memory allocated.
 mod cost;
-/// Balls that touch a few triangles.
-mod few;
 /// First queries: those of Parry's routine bit for bit, SBBK's own against brute force.
 mod fresh;
 /// Motion against fresh queries.

@@ -68,7 +68,3 @@ pub(super) fn bits(manifold: &Manifold) -> Vec<u32> {
     bits.extend(features.collect::<Vec<_>>());
     bits
 }
-
-pub(super) fn touches(manifold: &Manifold, prediction: Real) -> bool {
-    manifold.points.iter().any(|point| point.dist <= prediction)
-}

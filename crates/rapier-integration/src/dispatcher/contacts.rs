@@ -13,8 +13,8 @@ use sbbk_core::traverse::DescentCounts;
 use super::SbbkDispatcher;
 use crate::mesh::{are_near, is_near, may_be_inside};
 use crate::pair::{
-    Answer, ConvexPair, FewPair, FieldPair, MeshPair, MeshPlace, Pair, PairPose, Parts, answer,
-    is_few,
+    ConvexPair, FieldPair, MeshPair, MeshPlace, Pair, PairPose, Parts, QueryOutcome,
+    update_manifolds,
 };
 use crate::{ContactDetail, ContactSet, SbbkConfig, TriangleContacts};
 
@@ -27,7 +27,7 @@ impl SbbkDispatcher {
         prediction: Real,
         manifolds: &mut Vec<ContactManifold<M, C>>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
-    ) -> Answer
+    ) -> QueryOutcome
     where
         M: Default + Clone + Send + Sync + 'static,
         C: Default + Copy + Send + Sync + 'static,
@@ -41,18 +41,19 @@ impl SbbkDispatcher {
         let is_new = workspace.is_none() && manifolds.is_empty();
         let (mesh, other, mesh_place) = match (g1.as_trimesh(), g2.as_trimesh()) {
             (Some(mesh1), Some(mesh2)) => {
-                if !kinds.meshes {
-                    return Answer::Unsupported;
-                }
                 let meshes = [mesh1, mesh2];
+                // Parry may have deleted all triangles of a mesh.
+                if !kinds.meshes || meshes.iter().any(|mesh| mesh.indices().is_empty()) {
+                    return QueryOutcome::Unsupported;
+                }
                 if is_new
                     && !are_near(meshes, pos12, prediction)
                     && !(has_surfaces && may_be_inside(meshes, pos12))
                 {
-                    return self.counted(Answer::Apart);
+                    return self.counted(QueryOutcome::Apart);
                 }
                 let Some(meshes) = self.view(meshes) else {
-                    return Answer::Unsupported;
+                    return QueryOutcome::Unsupported;
                 };
                 let pose = &PairPose::new(pos12, prediction);
                 let pair = MeshPair { pose, meshes, has_surfaces, has_patches };
@@ -60,15 +61,8 @@ impl SbbkDispatcher {
             }
             (Some(mesh), None) => (mesh, g2, MeshPlace::First),
             (None, Some(mesh)) => (mesh, g1, MeshPlace::Second),
-            (None, None) => return Answer::Unsupported,
+            (None, None) => return QueryOutcome::Unsupported,
         };
-        if kinds.convex_shapes
-            && let Some(ball) =
-                other.as_ball().filter(|ball| !leave_solids && is_few(mesh, ball, prediction))
-        {
-            let pair = FewPair { mesh, ball, mesh_place, has_surfaces };
-            return self.touch_few(pair, pos12, prediction, manifolds, workspace);
-        }
         let is_answered = |parts: &Parts<'_>| match parts {
             Parts::One(_) => kinds.convex_shapes,
             Parts::Many(..) => kinds.composites,
@@ -76,16 +70,16 @@ impl SbbkDispatcher {
         let parts = Parts::of(other).filter(is_answered);
         let field = other.as_heightfield().filter(|_| kinds.height_fields);
         if parts.is_none() && field.is_none() {
-            return Answer::Unsupported;
+            return QueryOutcome::Unsupported;
         }
         if is_new && parts.is_some() && !leave_solids {
             let in_mesh = mesh_place.shape_in_mesh(pos12);
             if !is_near(mesh, other, &in_mesh, prediction) {
-                return self.counted(Answer::Apart);
+                return self.counted(QueryOutcome::Apart);
             }
         }
         let Some([mesh]) = self.view([mesh]) else {
-            return Answer::Unsupported;
+            return QueryOutcome::Unsupported;
         };
         let pose = &PairPose::new(pos12, prediction);
         if let Some(parts) = parts {
@@ -105,33 +99,12 @@ impl SbbkDispatcher {
                 FieldPair { pose, mesh, field, mesh_place, has_surfaces, has_ground, has_patches };
             self.ask(&pair, manifolds, workspace)
         } else {
-            Answer::Unsupported
+            QueryOutcome::Unsupported
         }
-    }
-
-    /// The contacts of a mesh and a ball that touches few triangles, counted.
-    fn touch_few<M, C>(
-        &self,
-        pair: FewPair<'_>,
-        pos12: &Pose,
-        prediction: Real,
-        manifolds: &mut Vec<ContactManifold<M, C>>,
-        workspace: &mut Option<ContactManifoldsWorkspace>,
-    ) -> Answer
-    where
-        M: Default + Clone + Send + Sync + 'static,
-        C: Default + Copy + Send + Sync + 'static,
-    {
-        let is_first = workspace.is_none();
-        pair.answer(pos12, prediction, manifolds, workspace);
-        if is_first && workspace.is_some() {
-            self.cache.count_pair();
-        }
-        self.counted(if workspace.is_some() { Answer::Descended } else { Answer::Apart })
     }
 
     /// An answer that took no descent, counted.
-    fn counted(&self, answer: Answer) -> Answer {
+    fn counted(&self, answer: QueryOutcome) -> QueryOutcome {
         if self.config.count_queries {
             self.counters.add(answer, &DescentCounts::default());
         }
@@ -144,16 +117,16 @@ impl SbbkDispatcher {
         pair: &impl Pair,
         manifolds: &mut Vec<ContactManifold<M, C>>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
-    ) -> Answer
+    ) -> QueryOutcome
     where
         M: Default + Clone + Send + Sync + 'static,
         C: Default + Copy + Send + Sync + 'static,
     {
         if !self.config.count_queries {
-            return answer(pair, &self.cache, (), manifolds, workspace);
+            return update_manifolds(pair, &self.cache, (), manifolds, workspace);
         }
         let mut counts = DescentCounts::default();
-        let answer = answer(pair, &self.cache, &mut counts, manifolds, workspace);
+        let answer = update_manifolds(pair, &self.cache, &mut counts, manifolds, workspace);
         self.counters.add(answer, &counts);
         answer
     }
@@ -174,7 +147,7 @@ where
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
         let answer = self.answer(pos12, [g1, g2], prediction, manifolds, workspace);
-        if answer != Answer::Unsupported {
+        if answer != QueryOutcome::Unsupported {
             return Ok(());
         }
         DefaultQueryDispatcher.contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace)

@@ -1,31 +1,35 @@
 //! A pair of shapes: from a pose to contact manifolds.
 //!
-//! [`answer`](mod@answer) is the way of a query, the same for every kind of pair: the state of the pair
-//! ([`state`], [`memory`]), the candidates in stock order ([`order`]), and one manifold for each
-//! that touches, those of the query before among them ([`merge`], [`pool`]), or a few for all
-//! ([`outline`] chooses them, [`patches`] makes them). A kind says what is its own, by the traits of
-//! [`driver`]: [`triangles`] for two meshes, or a mesh and a height field; [`convex`] for a mesh and
-//! convex shapes, one or the parts of a compound or polyline.
+//! | file | holds |
+//! |---|---|
+//! | [`update`] | the pipeline, and the traits of a kind of pair |
+//! | [`state`] | what a host keeps with a pair: candidates, slack |
+//! | [`mesh_mesh`], [`mesh_field`] | the kinds whose shapes are both made of triangles |
+//! | [`triangles`] | contacts of these kinds, in one pass or two |
+//! | [`surface`], [`islands`], [`inside`] | contacts of surfaces from contacts of triangles |
+//! | [`convex`] | a mesh and convex shapes |
+//! | [`reduce`], [`write`](mod@write) | contact reduction, manifolds |
 
-mod answer;
+mod bvh_descent;
 mod convex;
-mod driver;
-mod few;
-mod memory;
-mod merge;
-mod order;
-mod outline;
-mod patches;
-mod pool;
+mod field;
+mod inside;
+mod islands;
+mod mesh_field;
+mod mesh_mesh;
 mod pose;
-mod seams;
+mod reduce;
 mod state;
+mod surface;
+mod triangle_contacts;
 mod triangles;
+mod update;
+mod write;
 
-pub(crate) use answer::answer;
+pub(crate) use bvh_descent::walk;
 pub(crate) use convex::{ConvexPair, ConvexSearch, FoundCast, FoundTriangle, Parts, PlacedPart};
-pub(crate) use driver::{Answer, Pair};
-pub(crate) use few::{FewPair, is_few};
+pub(crate) use mesh_field::FieldPair;
+pub(crate) use mesh_mesh::MeshPair;
 pub(crate) use pose::{MeshPlace, PairPose};
-pub use triangles::TriangleContacts;
-pub(crate) use triangles::{FieldPair, MeshPair, walk};
+pub use triangle_contacts::TriangleContacts;
+pub(crate) use update::{Pair, QueryOutcome, update_manifolds};

@@ -1,34 +1,186 @@
+//! What a host keeps with a pair between queries.
+//!
+//! A descent looks farther than the prediction distance, and its candidates serve several queries:
+//! [`Slack`] decides for how long. Until then no tree is touched, and candidates that cannot have
+//! come within the prediction distance are skipped. All others get the exact test, so the contacts
+//! are those of a descent. Losing the state costs time only.
+
 use std::sync::LazyLock;
 
+use parry3d::math::{Pose, Real};
 use parry3d::query::details::{
     TypedWorkspaceData, VoxelsShapeContactManifoldsWorkspace, WorkspaceData,
 };
 use parry3d::query::{ContactManifold, ContactManifoldsWorkspace};
+use sbbk_core::traverse::Slack;
 
-use super::memory::PairMemory;
+use super::pose::PairPose;
+use crate::mesh::Change;
 
-/// The workspace that the host stores with a pair: what is known of its shapes, `S`, and what the
-/// last queries found.
-///
-/// Everything in it can be lost at any time and costs only time then.
+/// State of a pair: what is known of its shapes, `S`, and candidates with hints `H`.
 #[derive(Clone)]
 pub(super) struct PairState<S, H> {
     pub(super) shapes: S,
-    pub(super) memory: PairMemory<H>,
+    pub(super) memory: CandidateMemory<H>,
 }
 
 impl<S: Default, H> Default for PairState<S, H> {
     fn default() -> Self {
-        Self { shapes: S::default(), memory: PairMemory::default() }
+        Self { shapes: S::default(), memory: CandidateMemory::default() }
     }
 }
 
-/// The state in `workspace`, made anew where there is none.
+/// A pair of subshapes that may be within the prediction distance.
+#[derive(Copy, Clone, Debug)]
+pub(crate) struct Candidate<H> {
+    /// Numbers in shape 1 and shape 2.
+    pub(super) subshapes: [u32; 2],
+    /// Lower bound of the distance when it was last measured, plus the travel of the pair then.
+    /// Less the present travel, it bounds the present distance.
+    pub(super) clear: f64,
+    /// Makes the next contact cheaper. Never changes the contact.
+    pub(super) hint: H,
+}
+
+impl<H: Default> Candidate<H> {
+    /// A candidate at an unknown distance.
+    pub(super) fn new(subshapes: [u32; 2]) -> Self {
+        Self { subshapes, clear: f64::NEG_INFINITY, hint: H::default() }
+    }
+}
+
+/// Candidates of the last descent, and the last query.
+#[derive(Clone)]
+pub(super) struct CandidateMemory<H> {
+    /// `None` during a query, and after one that a panic has ended.
+    last: Option<LastQuery>,
+    /// True if the manifolds of the last query are patches.
+    pub(super) has_patches: Option<bool>,
+    pub(super) slack: Slack,
+    /// In the order of subshapes.
+    pub(super) candidates: Vec<Candidate<H>>,
+    demand: HighWaterMark,
+}
+
+/// A query, and the number of manifolds that it left.
+#[derive(Copy, Clone, Debug, PartialEq)]
+struct LastQuery {
+    pos12: Pose,
+    prediction: Real,
+    manifold_count: usize,
+}
+
+impl LastQuery {
+    fn new(pose: &PairPose, manifold_count: usize) -> Self {
+        Self { pos12: pose.pos12, prediction: pose.prediction, manifold_count }
+    }
+}
+
+impl<H> Default for CandidateMemory<H> {
+    fn default() -> Self {
+        Self {
+            last: None,
+            has_patches: None,
+            slack: Slack::default(),
+            candidates: Vec::new(),
+            demand: HighWaterMark::default(),
+        }
+    }
+}
+
+impl<H> CandidateMemory<H> {
+    /// Forgets the candidates after a change of the shapes, and the manifolds if their triangles are
+    /// others now. Where only vertices moved, manifolds keep their data.
+    pub(super) fn apply_change<M, C>(
+        &mut self,
+        change: Change,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+    ) {
+        match change {
+            Change::Unchanged => return,
+            Change::Unknown | Change::Deformed => {}
+            Change::Replaced => manifolds.clear(),
+        }
+        self.forget();
+    }
+
+    /// Returns true if the last query had the same pose and left as many manifolds.
+    pub(super) fn is_unchanged(&self, pose: &PairPose, manifold_count: usize) -> bool {
+        self.last == Some(LastQuery::new(pose, manifold_count))
+    }
+
+    /// Begins a query. Forgets the candidates if the last query was cut short by a panic.
+    pub(super) fn begin(&mut self) {
+        if self.last.take().is_none() {
+            self.forget();
+        }
+    }
+
+    /// Ends a query.
+    pub(super) fn end(&mut self, pose: &PairPose, manifold_count: usize) {
+        self.last = Some(LastQuery::new(pose, manifold_count));
+        if let Some(limit) = self.demand.update(self.candidates.len()) {
+            self.candidates.shrink_to(limit);
+        }
+    }
+
+    /// Drops the candidates. The next query descends.
+    pub(super) fn forget(&mut self) {
+        (self.last, self.slack) = (None, Slack::default());
+        self.candidates.clear();
+    }
+}
+
+impl<H: Copy + Default> CandidateMemory<H> {
+    /// Replaces the candidates by those that `find` adds, and sorts them. Subshapes that were there
+    /// before keep their hints.
+    pub(super) fn replace(&mut self, find: impl FnOnce(&mut Vec<Candidate<H>>)) {
+        let old_count = self.candidates.len();
+        find(&mut self.candidates);
+        let (old, new) = self.candidates.split_at_mut(old_count);
+        new.sort_unstable_by_key(|candidate| candidate.subshapes);
+        let mut old = old.iter().peekable();
+        for candidate in new {
+            while old.next_if(|old| old.subshapes < candidate.subshapes).is_some() {}
+            if let Some(old) = old.next_if(|old| old.subshapes == candidate.subshapes) {
+                candidate.hint = old.hint;
+            }
+        }
+        self.candidates.drain(..old_count);
+    }
+}
+
+/// How much memory to keep: the most that queries have used lately.
+#[derive(Copy, Clone, Debug, Default)]
+pub(super) struct HighWaterMark {
+    peak: usize,
+    /// Queries since as much was used.
+    age: u8,
+}
+
+impl HighWaterMark {
+    /// Queries until a quarter of the memory is given back. Higher: memory is kept longer; lower:
+    /// allocations where contacts come and go.
+    const PATIENCE: u8 = 64;
+
+    /// Notes what a query has used. Returns a limit if it is time to keep less.
+    pub(super) fn update(&mut self, used: usize) -> Option<usize> {
+        self.age += 1;
+        if used >= self.peak {
+            (self.peak, self.age) = (used, 0);
+        } else if self.age >= Self::PATIENCE {
+            (self.peak, self.age) = (used.max(self.peak - self.peak.div_ceil(4)), 0);
+            return Some(self.peak);
+        }
+        None
+    }
+}
+
+/// Returns the state in `workspace`, made anew if there is none.
 ///
-/// The manifolds of a pair *without* a workspace are dropped: the host has taken it away since a
-/// shape changed, and the numbers of triangles in them may mean others now. With the workspace of
-/// another dispatcher (a restored snapshot, stock before) the manifolds are kept: the shapes are
-/// the same.
+/// Drops the manifolds of a pair *without* a workspace: the host took it away since a shape changed,
+/// and the numbers of triangles may mean others now. Manifolds of another dispatcher (a restored
+/// snapshot, stock before) are kept: the shapes are the same.
 pub(super) fn state_in<'a, M, C, S, H>(
     workspace: &'a mut Option<ContactManifoldsWorkspace>,
     manifolds: &mut Vec<ContactManifold<M, C>>,
@@ -49,15 +201,14 @@ where
     state
 }
 
-/// What a snapshot holds in place of our state.
+/// Stands for our state in a snapshot: an empty workspace of Parry's.
 ///
-/// Parry can store only its own kinds of workspace: a custom one makes the whole snapshot
-/// unreadable. This one is empty. The next query replaces it, whatever dispatcher the restored
-/// world has, and keeps the manifolds.
+/// Parry can store only its own kinds of workspace; a custom one makes the whole snapshot
+/// unreadable. The next query replaces this one, and keeps the manifolds.
 static PLACEHOLDER: LazyLock<VoxelsShapeContactManifoldsWorkspace<2>> =
     LazyLock::new(VoxelsShapeContactManifoldsWorkspace::new);
 
-/// The state of a pair of any kind, as the host keeps it.
+/// State of a pair of any kind, as the host keeps it.
 #[derive(Clone)]
 struct Stored<S>(S);
 
@@ -68,5 +219,64 @@ impl<S: Clone + Send + Sync + 'static> WorkspaceData for Stored<S> {
 
     fn clone_dyn(&self) -> Box<dyn WorkspaceData> {
         Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Would catch the contacts of another pose or prediction distance, of a query that was cut short,
+    /// or of a host that has removed manifolds since.
+    #[test]
+    fn only_a_finished_query_with_equal_input_is_unchanged() {
+        let pose = |x: Real, prediction| PairPose::new(&Pose::translation(x, 0.0, 0.0), prediction);
+        let mut memory = CandidateMemory::<()>::default();
+        assert!(!memory.is_unchanged(&pose(1.0, 0.1), 0));
+        memory.begin();
+        memory.candidates.push(Candidate::new([1, 2]));
+        memory.end(&pose(1.0, 0.1), 3);
+        let is_unchanged = |memory: &CandidateMemory<()>, x, prediction, count| {
+            memory.is_unchanged(&pose(x, prediction), count)
+        };
+        assert!(is_unchanged(&memory, 1.0, 0.1, 3) && !is_unchanged(&memory, 1.0, 0.1, 2));
+        assert!(!is_unchanged(&memory, 1.1, 0.1, 3) && !is_unchanged(&memory, 1.0, 0.2, 3));
+        memory.begin();
+        assert_eq!(memory.candidates.len(), 1);
+        assert!(!is_unchanged(&memory, 1.0, 0.1, 3), "the query has not ended");
+        memory.begin();
+        assert!(memory.candidates.is_empty());
+    }
+
+    /// Would catch hints of other subshapes, and candidates out of order.
+    #[test]
+    fn new_candidates_are_sorted_and_keep_hints() {
+        let mut memory = CandidateMemory::<u32>::default();
+        for (round, numbers) in [(1, &[5, 1, 3][..]), (2, &[4, 3, 9, 1]), (3, &[9, 2])] {
+            memory.replace(|found| {
+                found.extend(numbers.iter().map(|&i| Candidate::new([i, 7])));
+            });
+            for candidate in memory.candidates.iter_mut().filter(|c| c.hint == 0) {
+                candidate.hint = 10 * round + candidate.subshapes[0];
+            }
+        }
+        let found: Vec<_> = memory.candidates.iter().map(|c| (c.subshapes[0], c.hint)).collect();
+        assert_eq!(found, [(2, 32), (9, 29)]);
+    }
+
+    /// Would catch candidates of one great overlap that a pair keeps for ever.
+    #[test]
+    fn memory_of_candidates_is_given_back() {
+        let mut memory = CandidateMemory::<()>::default();
+        let pose = PairPose::new(&Pose::IDENTITY, 0.1);
+        let mut query = |count: u32| {
+            memory.begin();
+            memory.candidates.clear();
+            memory.candidates.extend((0..count).map(|i| Candidate::new([i, 0])));
+            memory.end(&pose, 0);
+            memory.candidates.capacity()
+        };
+        assert!(query(1000) >= 1000 && query(0) >= 1000);
+        assert!((0..3000).map(|_| query(0)).last() < Some(10));
     }
 }

@@ -25,8 +25,8 @@ use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
 
 use super::contact::PartContact;
-use super::pair::ConvexQuery;
-use crate::pair::driver::Scratch;
+use super::pair::{ConvexQuery, ConvexScratch};
+use crate::pair::update::ContactList;
 
 /// Share of the size by which two distances must differ to count as different. Higher: ghosts stay.
 /// Lower: rounding picks one of two equal contacts at a common edge as the ghost.
@@ -235,7 +235,7 @@ impl GhostContacts {
         self.nearby = nearby;
     }
 
-    pub(crate) fn shrink_to(&mut self, limit: usize) {
+    pub(super) fn shrink_to(&mut self, limit: usize) {
         self.corners.shrink_to(limit);
         self.by_key.shrink_to(limit);
         self.triangles.shrink_to(limit);
@@ -247,20 +247,20 @@ impl GhostContacts {
 }
 
 impl ConvexQuery<'_> {
-    /// Replaces the normals of ghost contacts. `subshapes` returns the triangle and the part of a
-    /// contact.
+    /// Replaces the normals of ghost contacts.
     pub(super) fn correct_ghosts(
         &self,
-        contacts: &mut [(u32, PartContact)],
-        subshapes: impl Fn(u32) -> [u32; 2],
-        scratch: &mut Scratch,
+        contacts: &mut ContactList<PartContact>,
+        scratch: &mut ConvexScratch,
     ) {
-        let is_at_border = |(_, contact): &(u32, PartContact)| contact.feature != Feature::Face;
+        let is_at_border =
+            |(_, contact): &([u32; 2], PartContact)| contact.feature != Feature::Face;
         if !self.pair.has_surface() || contacts.len() < 2 || !contacts.iter().any(is_at_border) {
             return;
         }
         let mut ghosts = std::mem::take(&mut scratch.ghosts);
-        let keys = |&of: &u32| {
+        let subshapes = |of: [u32; 2]| self.pair.mesh_place.swap(of);
+        let keys = |&of: &[u32; 2]| {
             let [triangle, part] = subshapes(of);
             self.pair.mesh.corners(triangle).map(|corner| corner_key(part, corner))
         };

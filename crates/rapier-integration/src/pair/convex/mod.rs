@@ -22,8 +22,6 @@ mod shape;
 mod triangle_part;
 
 pub(crate) use cast::FoundCast;
-pub(super) use contact::PartContact;
-pub(super) use ghosts::GhostContacts;
 pub(crate) use pair::ConvexPair;
 pub(crate) use parts::Parts;
 pub(crate) use placed::PlacedPart;

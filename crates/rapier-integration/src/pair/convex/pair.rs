@@ -1,28 +1,30 @@
 //! The contacts of a mesh and one or more convex shapes.
 
+use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use std::thread::LocalKey;
 
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Real;
 use parry3d::query::details::NormalConstraints;
-use parry3d::query::{ContactManifold, TrackedContact};
 use sbbk_core::traverse::{Counters, SlackLimits};
 use sbbk_core::volumes::rounding::gamma;
 
-use super::contact::{NormalSource, PartContact, ball_contact, core_contact};
+use super::contact::{PartContact, ball_contact, core_contact};
+use super::ghosts::GhostContacts;
 use super::near::triangles_near;
 use super::parts::{Part, PartData, Parts};
 use super::placed::PlacedPart;
 use super::shape::ConvexShape;
 use super::triangle_part::TrianglePartPair;
 use crate::mesh::{Change, Hierarchy, KnownMesh, MeshSurface, TreeCache};
-use crate::pair::driver::{ContactList, Limits, Moving, Pair, PairQuery, Scratch, Seen};
-use crate::pair::merge::Merge;
-use crate::pair::order::Candidate;
-use crate::pair::outline::{Outline, PatchPlan};
-use crate::pair::pool::ManifoldPool;
 use crate::pair::pose::{MeshPlace, PairPose};
+use crate::pair::reduce::{ContactSummary, PatchPlan};
+use crate::pair::state::Candidate;
+use crate::pair::update::{
+    ContactList, ContactPoints, Limits, Memory, Moving, Pair, PairQuery, QueryMemory, Scratch,
+};
 
 /// A mesh and one or more convex shapes.
 #[derive(Copy, Clone)]
@@ -59,29 +61,29 @@ impl ConvexPair<'_> {
 }
 
 impl<'a> Pair for ConvexPair<'a> {
-    /// Data of the mesh and of the parts that the candidates belong to.
-    type Known = (KnownMesh, PartData);
+    /// The mesh, and the parts that the candidates are of.
+    type State = (KnownMesh, PartData);
     type Hint = ();
     type Query<'q>
         = ConvexQuery<'q>
     where
         Self: 'q;
 
-    fn is_unknown((mesh, _): &Self::Known) -> bool {
+    fn is_new((mesh, _): &Self::State) -> bool {
         mesh.is_unknown()
     }
 
     fn open<'q>(
         &'q self,
         _: &'q Arc<TreeCache>,
-        (known_mesh, part_data): &'q mut Self::Known,
+        (known_mesh, part_data): &'q mut Self::State,
     ) -> (Change, Self::Query<'q>) {
         let mut change = known_mesh.update(&self.mesh);
         if part_data.update(&self.parts) {
             change = Change::Replaced;
         }
         let surface = self.leave_solids.then(|| known_mesh.acquire_surface(&self.mesh));
-        (change, ConvexQuery { pair: self, part_data, surface: surface.flatten() })
+        (change, ConvexQuery { pair: self, part_data, surface: surface.flatten(), is_begun: false })
     }
 }
 
@@ -91,15 +93,42 @@ pub(crate) struct ConvexQuery<'q> {
     part_data: &'q PartData,
     /// Surface of the mesh, for push-outs.
     pub(super) surface: Option<MeshSurface<'q>>,
+    /// True once the parts of the last query are forgotten.
+    is_begun: bool,
+}
+
+/// Memory for queries.
+#[derive(Default)]
+pub(crate) struct ConvexScratch {
+    /// Parts at the pose of the query.
+    parts: Vec<Option<PlacedPart>>,
+    pub(super) ghosts: GhostContacts,
+}
+
+impl Scratch for ConvexScratch {
+    fn shrink_to(&mut self, limit: usize) {
+        self.ghosts.shrink_to(limit);
+    }
+}
+
+thread_local! {
+    static MEMORY: Cell<Option<Box<QueryMemory<ConvexScratch, PartContact>>>> = Cell::default();
 }
 
 impl ConvexQuery<'_> {
+    /// Forgets the parts of the last query, once.
+    fn begin(&mut self, scratch: &mut ConvexScratch) {
+        if !std::mem::replace(&mut self.is_begun, true) {
+            scratch.parts.clear();
+        }
+    }
+
     /// Calls `then` with a triangle and a part.
     #[inline(always)]
     pub(super) fn with_pair<T>(
         &self,
         [triangle, part]: [u32; 2],
-        scratch: &mut Scratch,
+        scratch: &mut ConvexScratch,
         then: impl FnOnce(TrianglePartPair<'_>) -> T,
     ) -> Option<T> {
         let ConvexPair { mesh, parts, .. } = self.pair;
@@ -122,7 +151,7 @@ impl ConvexQuery<'_> {
         &self,
         index: u32,
         part: &Part<'_>,
-        scratch: &'s mut Scratch,
+        scratch: &'s mut ConvexScratch,
     ) -> &'s PlacedPart {
         /// Parts kept at a time. Higher: more memory; lower: parts of large compounds are placed again.
         const AT_HAND: usize = 64;
@@ -144,10 +173,15 @@ impl ConvexQuery<'_> {
 impl PairQuery for ConvexQuery<'_> {
     type Hint = ();
     type Contact = PartContact;
+    type Scratch = ConvexScratch;
 
     /// Larger than for two meshes, as candidates out of reach cost little. Higher: slower in fast motion;
     /// lower: slower in slow motion.
     const SLACK: SlackLimits = SlackLimits { steps: 16.0, greatest: 5.0 };
+
+    fn memory() -> &'static LocalKey<Memory<Self>> {
+        &MEMORY
+    }
 
     fn pose(&self) -> &PairPose {
         self.pair.pose
@@ -173,21 +207,15 @@ impl PairQuery for ConvexQuery<'_> {
     }
 
     /// Serves balls, whose contacts and box tests cost less than to keep candidates.
-    fn write_at_once<M, C>(
-        &self,
+    fn contacts_without_candidates(
+        &mut self,
         counters: &mut impl Counters,
-        scratch: &mut Scratch,
-        pool: &mut ManifoldPool<M, C>,
-        manifolds: &mut Vec<ContactManifold<M, C>>,
-    ) -> bool
-    where
-        M: Default + 'static,
-        C: Default + Copy + 'static,
-    {
+        scratch: &mut ConvexScratch,
+        contacts: &mut ContactList<PartContact>,
+    ) -> bool {
         let ConvexPair { ref mesh, parts, mesh_place, .. } = *self.pair;
         let Parts::One(shape @ ConvexShape::Ball(ball)) = parts else { return false };
-        let mut contacts = std::mem::take(&mut scratch.convex_contacts[0]);
-        contacts.clear();
+        self.begin(scratch);
         let part = Part { pose: None, shape, cone: None };
         let placed = self.placed(0, &part, scratch);
         let (prediction, margin) = (self.pose().prediction, self.reach());
@@ -197,29 +225,16 @@ impl PairQuery for ConvexQuery<'_> {
             if let Some(contact) = ball_contact(&corners, f64::from(margin) + radius)
                 && contact.distance - radius <= farthest
             {
-                contacts.push((index, PartContact::new(contact, &corners)));
+                contacts.push((mesh_place.swap([index, 0]), PartContact::new(contact, &corners)));
             }
             ControlFlow::Continue(())
         });
+        contacts.sort_unstable_by_key(|(subshapes, _)| *subshapes);
         if let Some((triangle, contact)) = self.push_out(0, f64::INFINITY, scratch) {
             contacts.clear();
-            contacts.push((triangle, contact));
+            contacts.push((mesh_place.swap([triangle, 0]), contact));
         }
-        self.correct_ghosts(&mut contacts, |triangle| [triangle, 0], scratch);
-        let mut lookup = std::mem::take(&mut scratch.lookup);
-        let mut merge = Merge::begin(pool, manifolds, &mut lookup);
-        for &(index, contact) in &contacts {
-            if contact.source != NormalSource::Neighbour {
-                merge.write(mesh_place.swap([index, 0]), |manifold| {
-                    self.with_pair([index, 0], scratch, |pair| {
-                        pair.write_ball(ball.radius, &contact.contact, manifold);
-                    });
-                });
-            }
-        }
-        merge.end();
-        scratch.lookup = lookup;
-        scratch.convex_contacts[0] = contacts;
+        self.correct_ghosts(contacts, scratch);
         true
     }
 
@@ -227,28 +242,80 @@ impl PairQuery for ConvexQuery<'_> {
         &mut self,
         margin: Real,
         counters: &mut impl Counters,
-        scratch: &mut Scratch,
-        candidates: &mut Vec<Candidate<()>>,
+        scratch: &mut ConvexScratch,
+        mut found: impl FnMut([u32; 2]),
     ) {
+        self.begin(scratch);
         let ConvexPair { ref mesh, parts, mesh_place, .. } = *self.pair;
         parts.intersecting(&self.pair.mesh_box(margin), |index| {
             parts.with(index, |part| {
                 let placed = self.placed(index, &part, scratch);
                 triangles_near(placed, part.shape, mesh, margin, &mut *counters, |triangle| {
-                    candidates.push(Candidate::new(mesh_place.swap([triangle, index])));
+                    found(mesh_place.swap([triangle, index]));
                     ControlFlow::Continue(())
                 });
             });
         });
     }
 
+    fn contacts(
+        &mut self,
+        candidates: &mut [Candidate<()>],
+        limits: Limits,
+        scratch: &mut ConvexScratch,
+        contacts: &mut ContactList<PartContact>,
+    ) {
+        self.begin(scratch);
+        for candidate in candidates {
+            if limits.may_touch(candidate)
+                && let Some(contact) = self.contact(candidate, limits, scratch)
+            {
+                contacts.push((candidate.subshapes, contact));
+            }
+        }
+        self.add_push_outs(contacts, scratch);
+        self.correct_ghosts(contacts, scratch);
+    }
+
+    fn reduction(&self, _: &ContactList<PartContact>) -> Option<PatchPlan> {
+        self.pair.has_patches().then(|| {
+            let radius = self.part_data.patch_radius(&self.pair.parts);
+            PatchPlan::new(self.pose().prediction, radius.min(self.pair.mesh.ball().radius))
+        })
+    }
+
+    fn summary(
+        &mut self,
+        (subshapes, contact): &([u32; 2], PartContact),
+        scratch: &mut ConvexScratch,
+        points: &mut ContactPoints,
+    ) -> Option<ContactSummary> {
+        let subshapes = self.pair.mesh_place.swap(*subshapes);
+        self.with_pair(subshapes, scratch, |pair| pair.summary(contact, points))?
+    }
+
+    #[inline(always)]
+    fn points(
+        &mut self,
+        (subshapes, contact): &([u32; 2], PartContact),
+        scratch: &mut ConvexScratch,
+        points: &mut ContactPoints,
+    ) {
+        points.points.clear();
+        let subshapes = self.pair.mesh_place.swap(*subshapes);
+        self.with_pair(subshapes, scratch, |pair| pair.write(contact, points));
+    }
+}
+
+impl ConvexQuery<'_> {
+    /// Returns the contact of a candidate within the prediction distance.
     #[inline(always)]
     fn contact(
-        &mut self,
+        &self,
         candidate: &mut Candidate<()>,
         limits: Limits,
-        scratch: &mut Scratch,
-    ) -> Seen<PartContact> {
+        scratch: &mut ConvexScratch,
+    ) -> Option<PartContact> {
         let [triangle, part] = self.pair.mesh_place.swap(candidate.subshapes);
         let (mesh, part_data) = (&self.pair.mesh, self.part_data);
         let contact = self.pair.parts.with(part, |part_shape| {
@@ -267,70 +334,6 @@ impl PairQuery for ConvexQuery<'_> {
             let is_near = distance <= f64::from(self.pair.pose.prediction);
             contact.filter(|_| is_near).map(|contact| PartContact::new(contact, &corners))
         });
-        contact.flatten().into()
-    }
-
-    fn settle(
-        &mut self,
-        candidates: &mut Vec<Candidate<()>>,
-        contacts: &mut ContactList<PartContact>,
-        _: Limits,
-        _: &mut f64,
-        scratch: &mut Scratch,
-    ) {
-        self.add_push_outs(candidates, contacts, scratch);
-        let subshapes = |of: u32| candidates[of as usize].subshapes;
-        self.correct_ghosts(contacts, |of| self.pair.mesh_place.swap(subshapes(of)), scratch);
-    }
-
-    fn name<M, C>(&self, candidate: &Candidate<()>, manifold: &mut ContactManifold<M, C>) {
-        [manifold.subshape1, manifold.subshape2] = candidate.subshapes;
-        if let Parts::Many(..) = self.pair.parts {
-            let [_, part] = self.pair.mesh_place.swap(candidate.subshapes);
-            self.pair.parts.with(part, |part| match self.pair.mesh_place {
-                MeshPlace::First => manifold.set_subshape_pos2(part.pose.copied()),
-                MeshPlace::Second => manifold.set_subshape_pos1(part.pose.copied()),
-            });
-        }
-    }
-
-    fn contacts(scratch: &mut Scratch) -> &mut [ContactList<PartContact>; 2] {
-        &mut scratch.convex_contacts
-    }
-
-    fn patch_plan(&self, _: &[(u32, PartContact)]) -> Option<PatchPlan> {
-        self.pair.has_patches().then(|| {
-            let radius = self.part_data.patch_radius(&self.pair.parts);
-            PatchPlan::new(self.pose().prediction, radius.min(self.pair.mesh.ball().radius))
-        })
-    }
-
-    fn outline(
-        &self,
-        contact: &PartContact,
-        candidate: &Candidate<()>,
-        scratch: &mut Scratch,
-    ) -> Option<Outline> {
-        let subshapes = self.pair.mesh_place.swap(candidate.subshapes);
-        self.with_pair(subshapes, scratch, |pair| pair.outline(contact))?
-    }
-
-    #[inline(always)]
-    fn write<M, C>(
-        &mut self,
-        contact: PartContact,
-        candidate: &mut Candidate<()>,
-        _: Limits,
-        scratch: &mut Scratch,
-        previous_points: &mut Vec<TrackedContact<C>>,
-        manifold: &mut ContactManifold<M, C>,
-    ) where
-        M: Default + Clone + Send + Sync,
-        C: Default + Copy + Send + Sync,
-    {
-        let subshapes = self.pair.mesh_place.swap(candidate.subshapes);
-        self.with_pair(subshapes, scratch, |pair| {
-            pair.write(&contact, previous_points, manifold);
-        });
+        contact.flatten()
     }
 }

@@ -3,8 +3,7 @@
 use std::sync::LazyLock;
 
 use glamx::{DVec3, Vec3};
-use parry3d::math::{Real, Vector};
-use parry3d::query::{ContactManifold, TrackedContact};
+use parry3d::math::Vector;
 use parry3d::shape::{Cuboid, PackedFeatureId, PolygonalFeature, Triangle};
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::{ConvexContact, FeaturePoint, FeaturePoints, clip_feature};
@@ -152,19 +151,4 @@ pub(super) fn ray_length(&[a, b, c]: &[DVec3; 3], direction: DVec3) -> Option<f6
 }
 
 /// Stored: Parry's constructor is not inlined.
-static FACE: LazyLock<PackedFeatureId> = LazyLock::new(|| PackedFeatureId::face(0));
-
-/// Makes a point the only one of a manifold. An earlier point keeps its data.
-pub(super) fn set_only_point<M, C: Default + Copy>(
-    [point1, point2]: [Vector; 2],
-    distance: Real,
-    manifold: &mut ContactManifold<M, C>,
-) {
-    if let [one] = &mut *manifold.points {
-        (one.local_p1, one.local_p2, one.dist) = (point1, point2, distance);
-        (one.fid1, one.fid2) = (*FACE, *FACE);
-    } else {
-        manifold.points.clear();
-        manifold.points.push(TrackedContact::new(point1, point2, *FACE, *FACE, distance));
-    }
-}
+pub(super) static FACE: LazyLock<PackedFeatureId> = LazyLock::new(|| PackedFeatureId::face(0));

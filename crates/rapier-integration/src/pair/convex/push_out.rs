@@ -10,10 +10,9 @@ use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
 
 use super::contact::{NormalSource, PartContact};
-use super::pair::{ConvexPair, ConvexQuery};
+use super::pair::{ConvexPair, ConvexQuery, ConvexScratch};
 use crate::mesh::{BEHIND, is_covered, nearest};
-use crate::pair::driver::{ContactList, Scratch};
-use crate::pair::order::{Candidate, push_candidate};
+use crate::pair::update::ContactList;
 
 /// Depth of a contact, as a share of the part's radius, from which a part whose middle is outside may
 /// have half of itself inside, as cones do. Higher: cones stay in solids; lower: more searches for the
@@ -27,7 +26,7 @@ impl ConvexQuery<'_> {
         &self,
         part: u32,
         deepest: f64,
-        scratch: &mut Scratch,
+        scratch: &mut ConvexScratch,
     ) -> Option<(u32, PartContact)> {
         let surface = self.surface.as_ref()?;
         let mesh = self.pair.mesh.mesh;
@@ -64,24 +63,22 @@ impl ConvexQuery<'_> {
     /// Replaces the contacts of each part that has a push-out.
     pub(super) fn add_push_outs(
         &self,
-        candidates: &mut Vec<Candidate<()>>,
         contacts: &mut ContactList<PartContact>,
-        scratch: &mut Scratch,
+        scratch: &mut ConvexScratch,
     ) {
         if self.surface.is_none() {
             return;
         }
         let ConvexPair { parts, mesh_place, .. } = self.pair;
         parts.intersecting(&self.pair.mesh_box(0.0), |part| {
-            let is_of_part =
-                |of: u32| mesh_place.swap(candidates[of as usize].subshapes)[1] == part;
+            let is_of_part = |of: [u32; 2]| mesh_place.swap(of)[1] == part;
             let own = contacts.iter().filter(|(of, _)| is_of_part(*of));
             let distances = own.map(|(_, contact)| contact.contact.distance);
             let deepest = distances.fold(f64::INFINITY, f64::min);
             let Some((triangle, contact)) = self.push_out(part, deepest, scratch) else { return };
             contacts.retain(|(of, _)| !is_of_part(*of));
-            let of = push_candidate(candidates, mesh_place.swap([triangle, part]));
-            contacts.push((of, contact));
+            contacts.push((mesh_place.swap([triangle, part]), contact));
         });
+        contacts.sort_unstable_by_key(|(subshapes, _)| *subshapes);
     }
 }

@@ -2,8 +2,8 @@
 
 use glamx::{DVec3, Vec3};
 use parry3d::math::{Pose, Real};
+use parry3d::query::TrackedContact;
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
-use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::{HalfSpace, PackedFeatureId};
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
@@ -12,9 +12,10 @@ use super::contact::{NormalSource, PartContact};
 use super::pair::ConvexPair;
 use super::parts::Part;
 use super::placed::PlacedPart;
-use super::points::{PointPair, contact_points, ray_length, set_only_point};
+use super::points::{FACE, PointPair, contact_points, ray_length};
 use super::shape::ConvexShape;
-use crate::pair::outline::Outline;
+use crate::pair::reduce::ContactSummary;
+use crate::pair::update::ContactPoints;
 
 /// A triangle and a part at the pose of a query.
 pub(super) struct TrianglePartPair<'a> {
@@ -37,41 +38,29 @@ struct Normals {
 }
 
 impl TrianglePartPair<'_> {
-    /// Writes the points of a contact. Earlier points with the same features keep their data.
-    pub(super) fn write<M, C: Default + Copy>(
-        &self,
-        contact: &PartContact,
-        previous_points: &mut Vec<TrackedContact<C>>,
-        manifold: &mut ContactManifold<M, C>,
-    ) {
-        if let ConvexShape::Ball(ball) = self.part.shape {
-            // The nearest triangle has the only point.
-            return match contact.source {
-                NormalSource::Neighbour => manifold.points.clear(),
-                _ => self.write_ball(ball.radius, &contact.contact, manifold),
-            };
+    /// Replaces `out` by the points of a contact.
+    pub(super) fn write(&self, contact: &PartContact, out: &mut ContactPoints) {
+        out.points.clear();
+        out.poses = self.pair.mesh_place.swap([None, self.part.pose.copied()]);
+        match self.part.shape {
+            ConvexShape::Ball(ball) => {
+                // The nearest triangle has the only point.
+                if contact.source != NormalSource::Neighbour {
+                    self.write_ball(ball.radius, &contact.contact, out);
+                }
+            }
+            ConvexShape::HalfSpace(half_space) => {
+                self.write_half_space(half_space, &contact.contact, out);
+            }
+            _ => self.write_features(contact, out),
         }
-        std::mem::swap(&mut manifold.points, previous_points);
-        manifold.points.clear();
-        manifold.local_n1 = Vec3::ZERO;
-        if let ConvexShape::HalfSpace(half_space) = self.part.shape {
-            self.write_half_space(half_space, &contact.contact, manifold);
-        } else {
-            self.write_features(contact, manifold);
-        }
-        manifold.match_contacts(previous_points);
     }
 
     /// Writes the only point of a ball, from the contact of its centre.
     #[inline(always)]
-    pub(super) fn write_ball<M, C: Default + Copy>(
-        &self,
-        radius: Real,
-        contact: &ConvexContact,
-        manifold: &mut ContactManifold<M, C>,
-    ) {
+    fn write_ball(&self, radius: Real, contact: &ConvexContact, out: &mut ContactPoints) {
         let Some(Normals { normals, are_turned, .. }) = self.constrained_normals(contact) else {
-            return manifold.points.clear();
+            return;
         };
         let Self { placed, pair: ConvexPair { mesh_place, .. }, .. } = self;
         let [from_triangle, to_triangle] = mesh_place.swap(normals);
@@ -79,21 +68,23 @@ impl TrianglePartPair<'_> {
         if are_turned {
             let direction = -from_triangle.as_dvec3().normalize();
             let Some(length) = ray_length(&placed.to_part(self.corners), direction) else {
-                return manifold.points.clear();
+                return;
             };
             (on_triangle, distance) = (direction * length, length);
         }
         let points = mesh_place.swap([placed.to_mesh(on_triangle), to_triangle * radius]);
-        set_only_point(points, (distance - f64::from(radius)) as Real, manifold);
-        [manifold.local_n1, manifold.local_n2] = normals;
+        let [point1, point2] = points;
+        let distance = (distance - f64::from(radius)) as Real;
+        out.points.push(TrackedContact::new(point1, point2, *FACE, *FACE, distance));
+        out.normals = normals;
     }
 
     /// Writes the corners of the triangle that are within the prediction distance of a half-space.
-    fn write_half_space<M, C: Default + Copy>(
+    fn write_half_space(
         &self,
         half_space: &HalfSpace,
         contact: &ConvexContact,
-        manifold: &mut ContactManifold<M, C>,
+        out: &mut ContactPoints,
     ) {
         let ConvexPair { mesh_place, pose, .. } = self.pair;
         let normal = half_space.normal.as_dvec3();
@@ -101,7 +92,7 @@ impl TrianglePartPair<'_> {
         for (index, (corner, vertex)) in (0..).zip(corners.iter().zip(self.corners)) {
             let distance = corner.dot(normal);
             if distance <= f64::from(pose.prediction) {
-                manifold.points.push(TrackedContact::flipped(
+                out.points.push(TrackedContact::flipped(
                     (corner - normal * distance).as_vec3(),
                     vertex,
                     PackedFeatureId::face(0),
@@ -111,15 +102,11 @@ impl TrianglePartPair<'_> {
                 ));
             }
         }
-        [manifold.local_n1, manifold.local_n2] = self.normals(contact);
+        out.normals = self.normals(contact);
     }
 
     /// Writes the points of a shape with features; none if normal cones reject the contact.
-    fn write_features<M, C: Default + Copy>(
-        &self,
-        contact: &PartContact,
-        manifold: &mut ContactManifold<M, C>,
-    ) {
+    fn write_features(&self, contact: &PartContact, out: &mut ContactPoints) {
         let Some(Normals { normals, are_turned, has_cones }) =
             self.constrained_normals(&contact.contact)
         else {
@@ -142,26 +129,30 @@ impl TrianglePartPair<'_> {
             let ([point1, point2], [fid1, fid2]) =
                 (mesh_place.swap(points), mesh_place.swap(features));
             let distance = (distance - f64::from(radius)) as Real;
-            manifold.points.push(TrackedContact::new(point1, point2, fid1, fid2, distance));
+            out.points.push(TrackedContact::new(point1, point2, fid1, fid2, distance));
         });
-        [manifold.local_n1, manifold.local_n2] = normals;
+        out.normals = normals;
     }
 
-    /// Returns the summary of a contact for contact reduction, in the frame of the part; `None` if
-    /// normal cones reject the contact.
-    pub(super) fn outline(&self, contact: &PartContact) -> Option<Outline> {
+    /// Returns the summary of a contact for contact reduction, in the frame of the part; `None` if it
+    /// has no points. `points` is memory.
+    pub(super) fn summary(
+        &self,
+        contact: &PartContact,
+        points: &mut ContactPoints,
+    ) -> Option<ContactSummary> {
         let Normals { normals, has_cones, .. } = self.constrained_normals(&contact.contact)?;
         let [of_mesh, of_part] = self.pair.mesh_place.swap(normals);
         let normal = if self.placed.centre_in_mesh.is_some() { -of_mesh } else { of_part };
-        let PartContact { contact: ConvexContact { on_triangle, distance, .. }, source, .. } =
-            contact;
-        Some(Outline {
-            part: if self.part.pose.is_some() { self.placed.index } else { 0 },
-            normal,
-            point: on_triangle.as_vec3(),
-            distance: (distance - f64::from(self.part.shape.radius())) as Real,
-            has_cones: *source == NormalSource::Neighbour || has_cones,
-        })
+        let ConvexContact { on_triangle, distance, .. } = contact.contact;
+        let mut distance = (distance - f64::from(self.part.shape.radius())) as Real;
+        if contact.source == NormalSource::Neighbour || has_cones {
+            // Only the points are as deep as another normal makes them.
+            self.write(contact, points);
+            distance = points.points.iter().map(|point| point.dist).reduce(Real::min)?;
+        }
+        let part = if self.part.pose.is_some() { self.placed.index } else { 0 };
+        Some(ContactSummary { part, normal, point: on_triangle.as_vec3(), distance })
     }
 
     /// Returns unit vectors from each shape to the other, in its frame, in the order of the pair.

@@ -6,20 +6,19 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Real, Vector};
 use parry3d::query::details::NormalConstraints;
 use parry3d::shape::Triangle;
-use sbbk_core::contact::{ManifoldPoints, TriangleContact};
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::surface::{IndexedTriangles, OneRing};
 use sbbk_core::traverse::{Counters, PairFrame, descend};
 use sbbk_core::tree::Tree;
 
-use super::exact::Constraints;
-use super::judge::{Judge, Surfaces, near};
-use super::query::{Hint, TriangleQuery, TriangleShapes};
-use super::walk::walk;
+use super::bvh_descent::walk;
+use super::inside::InsideTest;
+use super::pose::PairPose;
+use super::reduce::PatchPlan;
+use super::surface::{beside, filter_distance};
+use super::triangles::{Cones, Hint, TriangleHit, TriangleQuery, TriangleScratch, TriangleShapes};
+use super::update::{Moving, Pair};
 use crate::mesh::{Change, Hierarchy, KnownMesh, MeshSurface, TreeCache, is_covered, nearest};
-use crate::pair::driver::{Moving, Pair, Scratch};
-use crate::pair::outline::PatchPlan;
-use crate::pair::pose::PairPose;
 
 /// Two meshes.
 #[derive(Copy, Clone)]
@@ -39,24 +38,27 @@ impl MeshPair<'_> {
 }
 
 impl<'a> Pair for MeshPair<'a> {
-    type Known = [KnownMesh; 2];
+    type State = ([KnownMesh; 2], InsideTest);
     type Hint = Hint;
     type Query<'q>
         = TriangleQuery<'q, Meshes<'q>>
     where
         Self: 'q;
 
-    fn is_unknown(known: &Self::Known) -> bool {
+    fn is_new((known, _): &Self::State) -> bool {
         known.iter().any(KnownMesh::is_unknown)
     }
 
     fn open<'q>(
         &'q self,
         cache: &'q Arc<TreeCache>,
-        [known1, known2]: &'q mut [KnownMesh; 2],
+        ([known1, known2], inside): &'q mut Self::State,
     ) -> (Change, Self::Query<'q>) {
         let [mesh1, mesh2] = &self.meshes;
         let change = known1.update(mesh1).max(known2.update(mesh2));
+        if change != Change::Unchanged {
+            *inside = InsideTest::Unknown;
+        }
         let are_rigid = mesh1.is_rigid() && mesh2.is_rigid();
         let known = if are_rigid {
             let [count1, count2] = [mesh1, mesh2].map(|mesh| mesh.mesh.indices().len());
@@ -70,13 +72,13 @@ impl<'a> Pair for MeshPair<'a> {
         let [radius1, radius2] = [mesh1, mesh2].map(|mesh| mesh.ball().radius);
         let radius = radius1.min(radius2);
         let has_surface = surfaces.iter().any(Option::is_some);
-        let near = near(has_surface, radius);
+        let filter_distance = filter_distance(has_surface, radius);
         let query = TriangleQuery {
-            shapes: Meshes { pair: self, trees, surfaces, near, cache },
+            shapes: Meshes { pair: self, trees, surfaces, filter_distance, cache },
             pose: self.pose,
             patches: (self.has_patches && are_rigid)
                 .then(|| PatchPlan::new(self.pose.prediction, radius)),
-            points: ManifoldPoints::new(),
+            inside,
         };
         (change, query)
     }
@@ -88,25 +90,34 @@ pub(crate) struct Meshes<'q> {
     trees: Option<[&'q Tree; 2]>,
     /// If contacts are those of surfaces.
     pub(super) surfaces: [Option<MeshSurface<'q>>; 2],
-    /// [`Surfaces::near`].
-    near: f64,
+    filter_distance: f64,
     cache: &'q TreeCache,
 }
 
 impl TriangleShapes for Meshes<'_> {
+    type Facets<'f>
+        = IndexedTriangles<'f>
+    where
+        Self: 'f;
+
     fn moving(&self) -> Moving<'_> {
-        Moving { ball: self.pair.meshes[1].ball(), placement: &self.pair.pose.placement12 }
+        let PairPose { placement12, placement21, .. } = self.pair.pose;
+        let smaller = 1 - self.pair.larger();
+        Moving {
+            ball: self.pair.meshes[smaller].ball(),
+            placement: [placement21, placement12][smaller],
+        }
     }
 
     fn descend(
         &self,
         margin: Real,
         counters: &mut impl Counters,
-        scratch: &mut Scratch,
+        scratch: &mut TriangleScratch,
         mut found: impl FnMut([u32; 2]),
     ) {
         let placement12 = self.pair.pose.placement12;
-        let beside = Judge::beside(self, self.pair.pose.prediction, margin);
+        let beside = beside(self, self.pair.pose.prediction, margin);
         let Some([tree1, tree2]) = self.trees else {
             let meshes = self.pair.meshes.each_ref();
             let near = &mut scratch.near;
@@ -132,39 +143,27 @@ impl TriangleShapes for Meshes<'_> {
         Some([mesh1.triangle(triangle1), mesh2.triangle(triangle2)])
     }
 
-    fn way_apart(&self) -> Option<DVec3> {
-        self.way_apart()
+    fn separation(&self) -> Option<DVec3> {
+        self.separation_of_smaller()
     }
 
-    fn inside(
-        &self,
-        is_deep: bool,
-        outside: &mut f64,
-        travel: f64,
-    ) -> Option<([u32; 2], TriangleContact)> {
-        self.inside(is_deep, outside, travel)
+    fn push_out(&self, is_deep: bool, test: &mut InsideTest) -> Option<TriangleHit> {
+        self.find_push_out(is_deep, test)
     }
 
-    fn with_cones(&self, triangles: [u32; 2], then: impl FnOnce(Constraints<'_>)) {
+    fn with_cones(&self, triangles: [u32; 2], then: impl FnOnce(Cones<'_>)) {
         let cones =
             [0, 1].map(|i| self.pair.meshes[i].mesh.triangle_normal_constraints(triangles[i]));
         then(cones.each_ref().map(|cone| cone.as_ref().map(|cone| cone as &dyn NormalConstraints)));
     }
-}
-
-impl Surfaces for Meshes<'_> {
-    type Facets<'f>
-        = IndexedTriangles<'f>
-    where
-        Self: 'f;
 
     #[inline]
-    fn around(&self, i: usize) -> Option<OneRing<IndexedTriangles<'_>>> {
+    fn surface(&self, i: usize) -> Option<OneRing<IndexedTriangles<'_>>> {
         Some(self.surfaces[i].as_ref()?.around(self.pair.meshes[i].mesh))
     }
 
-    fn near(&self) -> f64 {
-        self.near
+    fn filter_distance(&self) -> f64 {
+        self.filter_distance
     }
 
     fn bounds(&self, i: usize) -> Aabb {

@@ -24,21 +24,19 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Real, Vector};
 use parry3d::query::details::NormalConstraints;
 use parry3d::shape::{HeightField, Triangle, TrianglePseudoNormals};
-use sbbk_core::contact::ManifoldPoints;
 use sbbk_core::field::{FieldFrame, FieldLeaves};
 use sbbk_core::surface::{Facets, HalfEdges, IndexedTriangles, OneRing};
 use sbbk_core::traverse::{Counters, Placement};
 use sbbk_core::tree::{BATCH, LeafBatch};
 
-use super::exact::Constraints;
 use super::field::{Field, FieldToken};
-use super::inside::way_out;
-use super::judge::{Surfaces, near};
-use super::query::{Hint, TriangleQuery, TriangleShapes};
+use super::inside::{InsideTest, way_out};
+use super::pose::{MeshPlace, PairPose};
+use super::reduce::PatchPlan;
+use super::surface::filter_distance;
+use super::triangles::{Cones, Hint, TriangleQuery, TriangleScratch, TriangleShapes};
+use super::update::{Moving, Pair};
 use crate::mesh::{Change, Hierarchy, KnownMesh, MeshSurface, TreeCache, is_covered, nearest};
-use crate::pair::driver::{Moving, Pair, Scratch};
-use crate::pair::outline::PatchPlan;
-use crate::pair::pose::{MeshPlace, PairPose};
 
 /// A mesh and a height field.
 #[derive(Copy, Clone)]
@@ -63,21 +61,21 @@ impl FieldPair<'_> {
 
 impl<'a> Pair for FieldPair<'a> {
     /// The mesh, and the field that the candidates are for.
-    type Known = (KnownMesh, Option<FieldToken>);
+    type State = (KnownMesh, Option<FieldToken>, InsideTest);
     type Hint = Hint;
     type Query<'q>
         = TriangleQuery<'q, MeshAndField<'q>>
     where
         Self: 'q;
 
-    fn is_unknown((mesh, _): &Self::Known) -> bool {
+    fn is_new((mesh, ..): &Self::State) -> bool {
         mesh.is_unknown()
     }
 
     fn open<'q>(
         &'q self,
         _: &'q Arc<TreeCache>,
-        (known_mesh, known_field): &'q mut Self::Known,
+        (known_mesh, known_field, inside): &'q mut Self::State,
     ) -> (Change, Self::Query<'q>) {
         let mut change = known_mesh.update(&self.mesh);
         let field = FieldToken::of(self.field);
@@ -90,7 +88,7 @@ impl<'a> Pair for FieldPair<'a> {
         let shapes = MeshAndField {
             pair: self,
             field: Field(self.field),
-            near: near(surface.is_some(), radius),
+            filter_distance: filter_distance(surface.is_some(), radius),
             surface,
             cone: RefCell::new((u32::MAX, None)),
         };
@@ -99,7 +97,7 @@ impl<'a> Pair for FieldPair<'a> {
             pose: self.pose,
             patches: (self.has_patches && self.mesh.is_rigid())
                 .then(|| PatchPlan::new(self.pose.prediction, radius)),
-            points: ManifoldPoints::new(),
+            inside,
         };
         (change, query)
     }
@@ -111,8 +109,7 @@ pub(crate) struct MeshAndField<'q> {
     field: Field<'q>,
     /// That of the mesh, if contacts are those of surfaces.
     surface: Option<MeshSurface<'q>>,
-    /// [`Surfaces::near`].
-    near: f64,
+    filter_distance: f64,
     /// The cone of the triangle of the field that was asked for last. Its contacts follow each
     /// other, and Parry makes it from the normals of four triangles.
     cone: RefCell<(u32, Option<TrianglePseudoNormals>)>,
@@ -148,45 +145,12 @@ impl MeshAndField<'_> {
     }
 }
 
-impl Surfaces for MeshAndField<'_> {
+impl TriangleShapes for MeshAndField<'_> {
     type Facets<'f>
         = MeshOrField<'f>
     where
         Self: 'f;
 
-    fn around(&self, i: usize) -> Option<OneRing<MeshOrField<'_>>> {
-        let surface = self.surface.as_ref()?;
-        if self.is_field(i) {
-            let facets = MeshOrField::Field(self.field);
-            let is_solid = self.pair.has_ground && self.field.points_up();
-            return Some(OneRing { facets, is_solid });
-        }
-        let OneRing { facets, is_solid } = surface.around(self.pair.mesh.mesh);
-        Some(OneRing { facets: MeshOrField::Mesh(facets), is_solid })
-    }
-
-    fn near(&self) -> f64 {
-        self.near
-    }
-
-    fn bounds(&self, i: usize) -> Aabb {
-        if self.is_field(i) { *self.pair.field.root_aabb() } else { *self.pair.mesh.root() }
-    }
-
-    fn is_covered(&self, i: usize, point: Vector) -> bool {
-        self.is_field(i) || is_covered(self.pair.mesh.mesh, point)
-    }
-
-    fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)> {
-        if self.is_field(i) {
-            return self.field.nearest(point);
-        }
-        let (_, nearest, behind) = nearest(self.pair.mesh.mesh, point)?;
-        Some((nearest.point, behind))
-    }
-}
-
-impl TriangleShapes for MeshAndField<'_> {
     fn moving(&self) -> Moving<'_> {
         Moving { ball: self.pair.mesh.ball(), placement: self.pair.mesh_placement() }
     }
@@ -195,7 +159,7 @@ impl TriangleShapes for MeshAndField<'_> {
         &self,
         margin: Real,
         counters: &mut impl Counters,
-        scratch: &mut Scratch,
+        scratch: &mut TriangleScratch,
         mut found: impl FnMut([u32; 2]),
     ) {
         let mesh = &self.pair.mesh;
@@ -226,12 +190,12 @@ impl TriangleShapes for MeshAndField<'_> {
         Some(place.swap([self.pair.mesh.mesh.triangle(mesh), self.field.triangle(field)?]))
     }
 
-    fn way_apart(&self) -> Option<DVec3> {
+    fn separation(&self) -> Option<DVec3> {
         let of_mesh = usize::from(self.is_field(0));
         way_out(self, self.pair.pose, of_mesh, self.pair.mesh.ball().centre)?.try_normalize()
     }
 
-    fn with_cones(&self, triangles: [u32; 2], then: impl FnOnce(Constraints<'_>)) {
+    fn with_cones(&self, triangles: [u32; 2], then: impl FnOnce(Cones<'_>)) {
         let place = self.pair.mesh_place;
         let [mesh, field] = place.swap(triangles);
         let of_mesh = self.pair.mesh.mesh.triangle_normal_constraints(mesh);
@@ -241,5 +205,36 @@ impl TriangleShapes for MeshAndField<'_> {
         }
         let cones = [of_mesh.as_ref(), cone.1.as_ref()];
         then(place.swap(cones).map(|cone| cone.map(|cone| cone as &dyn NormalConstraints)));
+    }
+
+    fn surface(&self, i: usize) -> Option<OneRing<MeshOrField<'_>>> {
+        let surface = self.surface.as_ref()?;
+        if self.is_field(i) {
+            let facets = MeshOrField::Field(self.field);
+            let is_solid = self.pair.has_ground && self.field.points_up();
+            return Some(OneRing { facets, is_solid });
+        }
+        let OneRing { facets, is_solid } = surface.around(self.pair.mesh.mesh);
+        Some(OneRing { facets: MeshOrField::Mesh(facets), is_solid })
+    }
+
+    fn filter_distance(&self) -> f64 {
+        self.filter_distance
+    }
+
+    fn bounds(&self, i: usize) -> Aabb {
+        if self.is_field(i) { *self.pair.field.root_aabb() } else { *self.pair.mesh.root() }
+    }
+
+    fn is_covered(&self, i: usize, point: Vector) -> bool {
+        self.is_field(i) || is_covered(self.pair.mesh.mesh, point)
+    }
+
+    fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)> {
+        if self.is_field(i) {
+            return self.field.nearest(point);
+        }
+        let (_, nearest, behind) = nearest(self.pair.mesh.mesh, point)?;
+        Some((nearest.point, behind))
     }
 }

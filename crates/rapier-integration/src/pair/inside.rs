@@ -1,54 +1,82 @@
-//! Which way a mesh leaves a solid that it is deep in, where triangles do not tell: wholly inside, none
-//! need be near each other; on both sides of it, as many push each way.
+//! Push-outs and separation directions: how a mesh leaves a solid that it is deep in, where triangles
+//! do not tell. Wholly inside, none need be near each other; on both sides, as many push each way.
 
 use glamx::DVec3;
 use parry3d::math::Vector;
 use parry3d::query::PointQuery;
 use sbbk_core::contact::{Feature, FeaturePair, TriangleContact};
+use sbbk_core::traverse::Placement;
+use sbbk_core::volumes::Sphere;
 
-use super::judge::Surfaces;
-use super::meshes::Meshes;
+use super::mesh_mesh::Meshes;
+use super::pose::PairPose;
+use super::triangles::{ContactSource, TriangleHit, TriangleShapes, TriangleSurfaceContact};
 use crate::mesh::{BEHIND, is_covered, nearest};
-use crate::pair::pose::PairPose;
 
-/// Of a distance in f32, what surely is left of it.
+/// Share of an f32 distance that is a lower bound of the exact one.
 const SURE: f64 = 0.99;
 
+/// What is known of whether the smaller mesh is inside the larger one.
+#[derive(Clone, Debug, Default)]
+pub(crate) enum InsideTest {
+    #[default]
+    Unknown,
+    /// The larger mesh is no solid.
+    NoSolid,
+    /// A vertex was at least this far outside at this placement of the smaller mesh.
+    Outside(Placement, f64),
+}
+
+impl InsideTest {
+    /// Returns true if a mesh with points in `ball` cannot have come inside.
+    fn is_outside(&self, ball: Sphere, placement: &Placement) -> bool {
+        match self {
+            Self::Unknown => false,
+            Self::NoSolid => true,
+            Self::Outside(before, distance) => {
+                placement.motion_bound(before, ball.centre, ball.radius) < *distance
+            }
+        }
+    }
+}
+
 impl Meshes<'_> {
-    /// If no contact was found: the one that takes the smaller mesh out of the larger one by the way
-    /// that is shortest from its middle, and the triangles that it is written to.
+    /// Returns the contact that moves the smaller mesh out of the larger one, by the shortest way from
+    /// its middle, and its triangles. Call this if no other contact was found.
     ///
-    /// If it is not known to be deep in it, one vertex is asked for, as what pierces a surface has other
-    /// contacts. `outside` is how far the vertex surely was from the solid when it was last looked at,
-    /// plus the travel of the pair then.
-    pub(super) fn inside(
+    /// One vertex is tested unless the mesh is known to be deep: what pierces a surface has other
+    /// contacts.
+    pub(super) fn find_push_out(
         &self,
         is_deep: bool,
-        outside: &mut f64,
-        travel: f64,
-    ) -> Option<([u32; 2], TriangleContact)> {
+        test: &mut InsideTest,
+    ) -> Option<TriangleHit> {
         let outer = self.pair.larger();
         let [held, holder] = [1 - outer, outer].map(|i| &self.pair.meshes[i]);
+        let PairPose { placement12, placement21, .. } = self.pair.pose;
+        let placement = [placement12, placement21][outer];
         let vertex = to_other(self.pair.pose, 1 - outer, held.corners(0)[0]);
         if !is_deep {
-            if *outside > travel || self.surfaces[outer].is_none() {
+            if self.surfaces[outer].is_none() || test.is_outside(held.ball(), placement) {
                 return None;
             }
-            let from_box = f64::from(holder.root().distance_to_local_point(vertex, true));
+            let outside =
+                |distance: f32| InsideTest::Outside(*placement, SURE * f64::from(distance));
+            let from_box = holder.root().distance_to_local_point(vertex, true);
             if from_box > 0.0 {
-                *outside = SURE * from_box + travel;
+                *test = outside(from_box);
                 return None;
             }
             let is_covered = is_covered(holder.mesh, vertex);
             let (_, near, behind) = nearest(holder.mesh, vertex)?;
             if !is_covered || behind < -BEHIND {
-                *outside = SURE * f64::from(near.point.distance(vertex)) + travel;
+                *test = outside(near.point.distance(vertex));
             }
             if !is_covered || behind < BEHIND {
                 return None;
             }
             if !is_solid(self, outer) {
-                *outside = f64::INFINITY;
+                *test = InsideTest::NoSolid;
                 return None;
             }
         }
@@ -71,12 +99,13 @@ impl Meshes<'_> {
         let normal = (point1 - point2).try_normalize()?;
         let distance = (point2 - point1).dot(normal);
         let features = FeaturePair::new(Feature::Face, Feature::Face);
-        Some((subshapes, TriangleContact { normal, distance, point1, point2, features }))
+        let contact = TriangleContact { normal, distance, point1, point2, features };
+        Some((subshapes, TriangleSurfaceContact { contact, source: ContactSource::PushOut }))
     }
 
-    /// If the smaller mesh is deep in the other one, where its middle is in both: the direction in which
-    /// mesh 2 leaves mesh 1 by the way that is shortest from there. Of two alike, by the shorter way.
-    pub(super) fn way_apart(&self) -> Option<DVec3> {
+    /// Returns the direction in which mesh 2 separates from mesh 1 by the shortest way from the middle of
+    /// the smaller mesh, if that is in both. Of two equal meshes, by the shorter way.
+    pub(super) fn separation_of_smaller(&self) -> Option<DVec3> {
         let [one, two] = &self.pair.meshes;
         let [size1, size2] = [one, two].map(|mesh| mesh.size_squared());
         let inner = [(0, one, size1 <= size2), (1, two, size2 <= size1)];
@@ -87,10 +116,10 @@ impl Meshes<'_> {
     }
 }
 
-/// The way in which shape 2 leaves shape 1 that is shortest from a point of one of them, in its frame, if
-/// that is in both and both are solids.
+/// Returns the translation that separates shape 2 from shape 1 by the shortest way from a point of one
+/// of them, in its frame, if that is in both and both are solids.
 pub(super) fn way_out(
-    shapes: &impl Surfaces,
+    shapes: &impl TriangleShapes,
     pose: &PairPose,
     inner: usize,
     middle: Vector,
@@ -109,7 +138,7 @@ pub(super) fn way_out(
     Some(out.as_dvec3())
 }
 
-/// A point of one shape in the frame of the other.
+/// Returns a point of one shape in the frame of the other.
 fn to_other(
     PairPose { placement12, placement21, .. }: &PairPose,
     i: usize,
@@ -118,6 +147,6 @@ fn to_other(
     [placement21, placement12][i].to_frame1(point, Vector::ZERO).as_vec3()
 }
 
-fn is_solid(shapes: &impl Surfaces, i: usize) -> bool {
-    shapes.around(i).is_some_and(|around| around.is_solid)
+fn is_solid(shapes: &impl TriangleShapes, i: usize) -> bool {
+    shapes.surface(i).is_some_and(|surface| surface.is_solid)
 }

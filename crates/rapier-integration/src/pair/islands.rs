@@ -1,0 +1,429 @@
+use std::cmp::Ordering;
+
+use glamx::DVec3;
+use rustc_hash::{FxHashMap, FxHashSet};
+use sbbk_core::collections::UnionFind;
+
+/// Overlap islands: pairs of triangles that cross, connected through the triangles that they share,
+/// and the contacts that push each island apart.
+#[derive(Default)]
+pub(crate) struct OverlapIslands {
+    crossings: Vec<Crossing>,
+    /// Direction in which mesh 2 separates from mesh 1, where contacts do not agree on one.
+    separation: Option<DVec3>,
+    /// Pairs whose contact pushes the wrong way.
+    rejected: FxHashSet<[u32; 2]>,
+    /// Triangles of each island.
+    islands: UnionFind<Node>,
+    /// Support of each island, by its representative triangle.
+    support: FxHashMap<Node, Support>,
+}
+
+/// What holds the bodies of an island apart.
+#[derive(Copy, Clone, Default)]
+struct Support {
+    /// Pairs of triangles.
+    pairs: u32,
+    /// Reliable contacts among them.
+    reliable: u32,
+    /// True if a contact was rejected as that of the far side of a thin body: no others are added.
+    is_thin: bool,
+    /// Sum of the normals of reliable contacts.
+    normals: DVec3,
+    /// Direction off a sheet, to the side on which the middle of a solid is; zero without a sheet.
+    sheet_side: DVec3,
+    /// True if reliable contacts push off the front and the back of the sheet.
+    sides: [bool; 2],
+}
+
+/// Pairs of an island that one reliable contact supports. Higher: bodies deep in each other turn about
+/// their only contact and sink; lower: contacts that are no local minima push aside.
+const SUPPORTED: u32 = 8;
+
+impl Support {
+    fn is_enough(self) -> bool {
+        self.reliable > 0 && (self.is_thin || self.pairs <= SUPPORTED * self.reliable)
+    }
+}
+
+/// A triangle of mesh 1 (0) or 2 (1).
+type Node = (usize, u32);
+
+/// Two triangles that cross or have passed each other.
+#[derive(Copy, Clone)]
+pub(super) struct Crossing {
+    pub(super) pair: [u32; 2],
+    /// False if they have passed each other.
+    pub(super) is_crossing: bool,
+    /// Greatest depth of a contact that needs no closer look.
+    pub(super) greatest: f64,
+    /// True if the first pass found a contact.
+    pub(super) is_reliable: bool,
+    /// Normal of that contact, from mesh 1 to mesh 2.
+    pub(super) normal: DVec3,
+    /// Depth of that contact.
+    pub(super) depth: f64,
+    /// Set if one of the two is of a sheet, and the other of a smaller solid.
+    pub(super) sheet: Option<SheetSide>,
+}
+
+/// Position of a solid relative to a triangle of a sheet.
+#[derive(Copy, Clone)]
+pub(super) struct SheetSide {
+    /// Normal of contacts that push the solid off the front of the triangle.
+    pub(super) away: DVec3,
+    /// Height of the middle of the solid over the front.
+    pub(super) height: f64,
+}
+
+impl Crossing {
+    /// Returns the side of a sheet to which the contact pushes: 1 front, -1 back, 0 neither.
+    fn side(&self) -> f64 {
+        let along = self.sheet.map_or(0.0, |sheet| sheet.away.dot(self.normal));
+        if along.abs() > SAME_SIDE { along.signum() } else { 0.0 }
+    }
+}
+
+/// Cosine above which two normals push to one side. Higher: bodies that pierce a solid are held in it;
+/// lower: contacts that do not push against each other are rejected.
+const SAME_SIDE: f64 = 0.5;
+
+impl OverlapIslands {
+    /// Begins the first pass of a query.
+    pub(super) fn clear(&mut self) {
+        self.crossings.clear();
+        self.rejected.clear();
+        self.separation = None;
+    }
+
+    /// Gives back memory beyond that for `limit` pairs.
+    pub(super) fn shrink_to(&mut self, limit: usize) {
+        if self.crossings.capacity() > limit {
+            *self = Self::default();
+        }
+    }
+
+    /// Adds a pair in the first pass.
+    pub(super) fn add(&mut self, crossing: Crossing) {
+        self.crossings.push(crossing);
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.crossings.len()
+    }
+
+    /// Returns a crossing, by its index, unless its contact is final.
+    pub(super) fn open(&self, index: usize) -> Option<Crossing> {
+        Some(self.crossings[index]).filter(|crossing| !self.is_fine(crossing))
+    }
+
+    pub(super) fn has_separation(&self) -> bool {
+        self.separation.is_some()
+    }
+
+    /// Returns true if reliable contacts push about as much one way as the other: then nothing would
+    /// push out a body that pierces a solid from side to side.
+    pub(super) fn is_undecided(&self) -> bool {
+        let reliable = self.crossings.iter().filter(|crossing| crossing.is_reliable);
+        let (count, sum) =
+            reliable.fold((0, DVec3::ZERO), |(count, sum), one| (count + 1, sum + one.normal));
+        let is_none_better = sum.length() <= SAME_SIDE * f64::from(count);
+        !self.crossings.is_empty() && is_none_better
+    }
+
+    /// Ends the first pass. Returns true if an island has too few reliable contacts, or if some push
+    /// the wrong way. `separation`: direction in which mesh 2 separates, if known.
+    pub(super) fn finish_first_pass(&mut self, separation: Option<DVec3>) -> bool {
+        self.reject_far_sides();
+        self.separation = separation;
+        let is_against = |crossing: &&Crossing| {
+            let is_against = |way: DVec3| crossing.normal.dot(way) < -SAME_SIDE;
+            crossing.is_reliable && separation.is_some_and(is_against)
+        };
+        let against = self.crossings.iter().filter(is_against).map(|crossing| crossing.pair);
+        self.rejected.extend(against);
+        self.crossings.sort_unstable_by_key(|crossing| crossing.pair);
+        let pushes_to = |side: f64| self.crossings.iter().any(|crossing| crossing.side() == side);
+        let has_both_sides = pushes_to(1.0) && pushes_to(-1.0);
+        if !has_both_sides && self.crossings.iter().all(|crossing| self.is_fine(crossing)) {
+            return false;
+        }
+        self.islands.clear();
+        for &Crossing { pair: [triangle1, triangle2], .. } in &self.crossings {
+            self.islands.join((0, triangle1), (1, triangle2));
+        }
+        self.sum_support();
+        let has_sheet = self.crossings.iter().any(|crossing| crossing.sheet.is_some());
+        if has_sheet && self.reject_sides_of_sheets() {
+            self.sum_support();
+        }
+        !self.rejected.is_empty() || self.support.values().any(|support| !support.is_enough())
+    }
+
+    /// Returns true if a second pass does not change the contact of a pair.
+    pub(super) fn is_final(&self, pair: [u32; 2]) -> bool {
+        let index = self.crossings.binary_search_by_key(&pair, |crossing| crossing.pair);
+        index.map_or(true, |index| self.is_fine(&self.crossings[index]))
+    }
+
+    /// Returns true if the contact of a pair is reliable and pushes the right way.
+    fn is_fine(&self, crossing: &Crossing) -> bool {
+        crossing.is_reliable && !self.rejected.contains(&crossing.pair)
+    }
+
+    /// Returns true if the island of a pair has too few reliable contacts.
+    pub(super) fn needs_support(&mut self, pair: [u32; 2]) -> bool {
+        self.support_of(pair).is_some_and(|support| !support.is_enough())
+    }
+
+    /// Returns true if the island of a pair has no reliable contact.
+    pub(super) fn has_no_support(&mut self, pair: [u32; 2]) -> bool {
+        self.support_of(pair).is_some_and(|support| support.reliable == 0)
+    }
+
+    /// Returns true if a contact pushes neither against the reliable ones of its island, nor through a
+    /// sheet.
+    pub(super) fn agrees(&mut self, pair: [u32; 2], normal: DVec3) -> bool {
+        let agrees = |Support { normals, sheet_side, .. }: Support| {
+            normals.dot(normal) >= 0.0 && sheet_side.dot(normal) >= 0.0
+        };
+        self.separation.is_none_or(|way| way.dot(normal) >= -SAME_SIDE)
+            && self.support_of(pair).is_none_or(agrees)
+    }
+
+    /// Rejects contacts of the far sides of thin bodies: of two contacts of a triangle that push against
+    /// each other, the deeper one. (On a sheet the whole island goes to one side instead.)
+    fn reject_far_sides(&mut self) {
+        for side in 0..2 {
+            self.crossings.sort_unstable_by_key(|crossing| (crossing.pair[side], crossing.pair));
+            for of_one in self.crossings.chunk_by(|a, b| a.pair[side] == b.pair[side]) {
+                let of_bodies = |one: &&Crossing| one.is_reliable && one.sheet.is_none();
+                for crossing in of_one.iter().filter(of_bodies) {
+                    let deepest = |sign: f64| {
+                        let like = |other: &&Crossing| {
+                            let cosine = other.normal.dot(crossing.normal);
+                            other.is_reliable && sign * cosine > SAME_SIDE
+                        };
+                        of_one.iter().filter(like).map(|other| other.depth).max_by(f64::total_cmp)
+                    };
+                    let is_nearer = deepest(-1.0).partial_cmp(&deepest(1.0));
+                    if deepest(-1.0).is_some() && is_nearer == Some(Ordering::Less) {
+                        self.rejected.insert(crossing.pair);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Sums the support of each island.
+    fn sum_support(&mut self) {
+        self.support.clear();
+        for crossing in &self.crossings {
+            let is_fine = crossing.is_reliable && !self.rejected.contains(&crossing.pair);
+            let first = self.islands.first((0, crossing.pair[0]));
+            let support = self.support.entry(first).or_default();
+            support.pairs += 1;
+            support.reliable += u32::from(is_fine);
+            support.normals += if is_fine { crossing.normal } else { DVec3::ZERO };
+            // The side of a sheet is known, so others may be added.
+            support.is_thin |= crossing.sheet.is_none() && self.rejected.contains(&crossing.pair);
+            support.sheet_side +=
+                crossing.sheet.map_or(DVec3::ZERO, |sheet| sheet.height * sheet.away);
+            support.sides[0] |= is_fine && crossing.side() > 0.0;
+            support.sides[1] |= is_fine && crossing.side() < 0.0;
+        }
+    }
+
+    /// Rejects contacts that push a solid to the side of a sheet on which its middle is not, where
+    /// contacts push to both sides or are too few. Returns true if there were any.
+    fn reject_sides_of_sheets(&mut self) -> bool {
+        let before = self.rejected.len();
+        for crossing in &self.crossings {
+            let first = self.islands.first((0, crossing.pair[0]));
+            let is_doubtful =
+                |support: &&Support| support.sides == [true; 2] || !support.is_enough();
+            let side = self.support.get(&first).filter(is_doubtful).map(|of| of.sheet_side);
+            let is_against = |side: DVec3| crossing.normal.dot(side) < -SAME_SIDE * side.length();
+            if crossing.is_reliable && side.is_some_and(is_against) {
+                self.rejected.insert(crossing.pair);
+            }
+        }
+        self.rejected.len() > before
+    }
+
+    /// Returns the support of the island of a pair.
+    fn support_of(&mut self, [triangle1, _]: [u32; 2]) -> Option<Support> {
+        let first = self.islands.first((0, triangle1));
+        self.support.get(&first).copied()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    type Contact = (DVec3, f64);
+
+    fn crossing(pair: [u32; 2], contact: Option<&Contact>, sheet: Option<SheetSide>) -> Crossing {
+        let (normal, depth) = contact.copied().unwrap_or_default();
+        let is_reliable = contact.is_some();
+        Crossing { pair, is_crossing: true, greatest: 1.0, is_reliable, normal, depth, sheet }
+    }
+
+    /// Would catch islands that are not joined through the triangles that their pairs share, one that
+    /// is held taken for lost, and pairs that a second round decides anew without need.
+    #[test]
+    fn islands_without_a_reliable_contact_need_support() {
+        let good = (DVec3::Y, 0.1);
+        let mut islands = OverlapIslands::default();
+        for _ in 0..2 {
+            islands.clear();
+            // One island is held by a contact far along it, one is not.
+            for (pair, contact) in [
+                ([1, 1], None),
+                ([1, 2], None),
+                ([3, 2], Some(&good)),
+                ([7, 7], None),
+                ([7, 8], None),
+            ] {
+                islands.add(crossing(pair, contact, None));
+            }
+            assert!(islands.finish_first_pass(None));
+            let held = [[1, 1], [1, 2], [3, 2]].map(|pair| islands.needs_support(pair));
+            assert_eq!(held, [false; 3]);
+            assert!(islands.needs_support([7, 7]) && islands.needs_support([7, 8]));
+            assert!(!islands.needs_support([9, 9]), "it does not cross");
+            let settled = [[3, 2], [9, 9], [1, 1], [7, 8]].map(|pair| islands.is_final(pair));
+            assert_eq!(settled, [true, true, false, false]);
+        }
+        islands.add(crossing([1, 1], Some(&good), None));
+        assert!(!islands.finish_first_pass(None), "all is good");
+        islands.add(crossing([1, 1], None, None));
+        islands.add(crossing([1, 2], Some(&good), None));
+        assert!(!islands.finish_first_pass(None), "the island is held");
+    }
+
+    /// Would catch a thin body that is pushed both ways, whichever of the two meshes it is.
+    #[test]
+    fn of_two_sides_of_a_thin_body_the_nearer_one_counts() {
+        for pair in [|thin, other| [thin, other], |thin, other| [other, thin]] {
+            let mut islands = OverlapIslands::default();
+            islands.add(crossing(pair(5, 1), Some(&(DVec3::Y, 0.1)), None));
+            islands.add(crossing(pair(5, 2), Some(&(-DVec3::Y, 0.3)), None));
+            assert!(islands.finish_first_pass(None));
+            assert!(islands.is_final(pair(5, 1)) && !islands.is_final(pair(5, 2)));
+        }
+    }
+
+    /// Would catch a large island that turns about its only contact beyond doubt, small ones that are
+    /// looked at twice, contacts beyond doubt that a second round decides anew, and others that push
+    /// against them.
+    #[test]
+    fn one_contact_does_not_support_a_large_island() {
+        let good = (DVec3::Y, 0.1);
+        let needs_support = |pairs: u32, contacts: u32| {
+            let mut islands = OverlapIslands::default();
+            for i in 0..pairs {
+                islands.add(crossing([1, i], Some(&good).filter(|_| i < contacts), None));
+            }
+            let needs_more = islands.finish_first_pass(None);
+            assert_eq!(
+                needs_more,
+                islands.support.get(&(0, 1)).is_some_and(|support| !support.is_enough())
+            );
+            assert!(!needs_more || islands.is_final([1, 0]));
+            assert!(islands.agrees([1, 0], DVec3::new(1.0, 0.1, 0.0)));
+            assert!(!islands.agrees([1, 0], -DVec3::Y));
+            needs_more && islands.needs_support([1, pairs - 1])
+        };
+        assert_eq!([8, 9].map(|pairs| needs_support(pairs, 1)), [false, true]);
+        assert_eq!([16, 17].map(|pairs| needs_support(pairs, 2)), [false, true]);
+    }
+
+    /// Would catch a body that goes through a solid and is held there, one whose way out is asked for
+    /// though its contacts agree, and contacts along or across the way that are dropped.
+    #[test]
+    fn of_contacts_both_ways_those_along_the_way_stay() {
+        let islands = |normals: &[DVec3]| {
+            let mut islands = OverlapIslands::default();
+            for (i, &normal) in (1..).zip(normals) {
+                islands.add(crossing([i, i], Some(&(normal, 0.1)), None));
+            }
+            islands
+        };
+        let aslant = DVec3::new(0.9, -0.4, 0.0).normalize();
+        assert!(!islands(&[DVec3::Y, DVec3::Y, aslant]).is_undecided());
+        assert!(!islands(&[]).is_undecided());
+        let mut both = islands(&[DVec3::Y, -DVec3::Y, aslant]);
+        assert!(both.is_undecided() && !both.has_separation());
+        assert!(both.finish_first_pass(Some(DVec3::Y)) && both.has_separation());
+        assert_eq!([1, 2, 3].map(|i| both.is_final([i, i])), [true, false, true]);
+        assert!(both.needs_support([2, 2]) && !both.agrees([2, 2], -DVec3::Y));
+        assert!(both.agrees([2, 2], DVec3::X) && both.agrees([2, 2], aslant));
+        let mut none = OverlapIslands::default();
+        none.add(crossing([1, 1], None, None));
+        assert!(none.is_undecided(), "none is good");
+    }
+
+    /// Would catch a thin body that is pushed both ways, or by its farther side.
+    #[test]
+    fn of_two_sides_that_push_against_each_other_the_nearer_one_stays() {
+        let both = |up: f64, down: f64, lean: f64| {
+            let mut islands = OverlapIslands::default();
+            let leaning = DVec3::new(lean.sin(), -lean.cos(), 0.0);
+            islands.add(crossing([1, 1], Some(&(DVec3::Y, up)), None));
+            islands.add(crossing([1, 2], Some(&(leaning, down)), None));
+            islands
+                .finish_first_pass(None)
+                .then(|| [[1, 1], [1, 2]].map(|pair| islands.is_final(pair)))
+        };
+        assert_eq!(both(0.1, 0.3, 0.0), Some([true, false]));
+        assert_eq!(both(0.3, 0.1, 0.5), Some([false, true]));
+        assert_eq!(both(0.2, 0.2, 0.0), None, "neither is nearer");
+        assert_eq!(both(0.1, 0.3, 1.2), None, "they do not push against each other");
+    }
+
+    /// Would catch a thin body that is held in a sheet, one that goes to the side where less of it is,
+    /// and contacts lost where all push to one side, whichever that is.
+    #[test]
+    fn an_island_pushed_to_both_sides_of_a_sheet_keeps_one() {
+        let pushed = |heights: [f64; 2], normals: [DVec3; 2]| {
+            let mut islands = OverlapIslands::default();
+            for (i, (height, normal)) in (1..).zip(heights.into_iter().zip(normals)) {
+                let sheet = Some(SheetSide { away: DVec3::Y, height });
+                islands.add(crossing([i, 1], Some(&(normal, 0.1)), sheet));
+            }
+            // Far from these, all the same way.
+            let sheet = Some(SheetSide { away: DVec3::Y, height: 1.0 });
+            islands.add(crossing([7, 7], Some(&(-DVec3::Y, 0.1)), sheet));
+            islands.finish_first_pass(None);
+            [[1, 1], [2, 1], [7, 7]].map(|pair| islands.is_final(pair))
+        };
+        let both = [DVec3::Y, -DVec3::Y];
+        assert_eq!(pushed([0.2, -0.1], both), [true, false, true]);
+        assert_eq!(pushed([0.1, -0.2], both), [false, true, true]);
+        assert_eq!(pushed([-0.1; 2], [DVec3::Y; 2]), [true; 3]);
+    }
+
+    /// Would catch a thin solid that the few good contacts of a large island push through a sheet, and
+    /// others that do so.
+    #[test]
+    fn few_contacts_do_not_push_through_a_sheet() {
+        let down = (-DVec3::Y, 0.1);
+        let finish = |height: f64, pairs: u32| {
+            let mut islands = OverlapIslands::default();
+            for i in 0..pairs {
+                let good = Some(&down).filter(|_| i == 0);
+                islands.add(crossing([1, i], good, Some(SheetSide { away: DVec3::Y, height })));
+            }
+            let needs_more = islands.finish_first_pass(None);
+            (needs_more && islands.needs_support([1, 0]), islands.is_final([1, 0]), islands)
+        };
+        let (is_lost, is_final, mut islands) = finish(0.01, SUPPORTED + 1);
+        assert!(is_lost && !is_final);
+        assert!(islands.agrees([1, 0], DVec3::Y) && !islands.agrees([1, 0], -DVec3::Y));
+        let (is_lost, is_final, mut islands) = finish(-0.01, SUPPORTED + 1);
+        assert!(is_lost && is_final && !islands.agrees([1, 0], DVec3::Y));
+        assert!(!finish(0.01, SUPPORTED).0, "it is held");
+    }
+}

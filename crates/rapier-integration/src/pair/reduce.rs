@@ -1,0 +1,383 @@
+//! Contact reduction: which contacts make patches, before their points are made.
+//!
+//! Contacts are grouped by normal. Each group keeps its deepest contact and up to three that span
+//! the contact area, and contacts as deep that are far from these make patches of their own.
+
+use std::cmp::Ordering;
+
+use arrayvec::ArrayVec;
+use glamx::Vec3;
+use parry3d::math::{Pose, Real};
+use parry3d::query::TrackedContact;
+
+/// Points of a patch. Rapier's solver uses no more.
+const MOST_POINTS: usize = 4;
+
+/// Least cosine of normals of one patch. Higher: more points, and nested bowls are less calm; lower:
+/// gears lose speed.
+const SAME_NORMAL: Real = 0.99;
+
+/// Least cosine of normals of one patch of [far](PatchPlan::far) contacts. Higher: more points; lower:
+/// contacts about to touch are left out.
+const SAME_FAR_NORMAL: Real = 0.97;
+
+/// Least cosine of the normals of a contact and of one that it [hovers](PatchPlan::hover_distance)
+/// beside. Higher: more points in piles at rest; lower: contacts about to touch are left out.
+const SAME_NORMAL_OVER: Real = 0.9;
+
+/// [`PatchPlan::hover_distance`] as a share of the prediction distance. Higher: more points, most of
+/// which carry nothing; lower: bodies in motion come deeper into others.
+const HOVER: Real = 0.1;
+
+/// [`PatchPlan::far`] in radii of the smaller shape. Higher: more points; lower: bodies turn before
+/// the contacts of their next side are there.
+const FAR: Real = 0.1;
+
+/// [`PatchPlan::equal_depth`] as a share of the prediction distance, or of [`FAR`] if that is less.
+/// Higher: points that hover replace points that carry, and bodies rock; lower: thin plates turn
+/// through what they hit.
+const EQUAL_DEPTH: Real = 0.02;
+
+/// [`PatchPlan::one_normal`]. Lower: threads of a screw lock.
+const ONE_NORMAL: Real = 0.99999;
+
+/// [`PatchPlan::size`] in radii of the smaller shape. Higher: legs of a table are left out; lower: a
+/// flat side is many patches.
+const PATCH_SIZE: Real = 0.2;
+
+/// [`PatchPlan::same_point`] as a share of the size of a patch. Higher: a nut locks on its bolt; lower:
+/// stacks of cubes creep.
+const SAME_POINT: Real = 0.02;
+
+/// Distances and cosines by which contacts make patches.
+#[derive(Copy, Clone, Debug)]
+pub(crate) struct PatchPlan {
+    /// Distance beyond which a contact is far: it joins patches by [`SAME_FAR_NORMAL`].
+    far: Real,
+    /// Distance beyond which a contact hovers: near one that touches, it joins its patch by
+    /// [`SAME_NORMAL_OVER`]. Infinite for bodies as small as the prediction distance.
+    hover_distance: Real,
+    /// Difference to the deepest contact of a patch up to which another counts as equally deep.
+    equal_depth: Real,
+    /// Contacts closer than this to a chosen one are dropped.
+    size: Real,
+    /// Least cosine of normals of one manifold of a patch.
+    pub(super) one_normal: Real,
+    /// Distance up to which two points are the same point that has moved.
+    pub(super) same_point: Real,
+}
+
+impl PatchPlan {
+    /// Plan where all contacts are far: one patch for each direction. The deepest contact may change
+    /// before they touch, and Rapier's solver leaves one point of two equal manifolds that have more
+    /// than four.
+    pub(super) const FAR: Self = Self {
+        far: Real::INFINITY,
+        hover_distance: Real::INFINITY,
+        equal_depth: Real::INFINITY,
+        size: Real::INFINITY,
+        one_normal: -1.0,
+        same_point: 0.0,
+    };
+
+    /// Plan for two shapes; `radius` is that of the smaller one.
+    pub(super) fn new(prediction: Real, radius: Real) -> Self {
+        let far = FAR * radius;
+        let reach = if prediction > 0.0 { prediction.min(far) } else { far };
+        let hover_distance = if prediction < far { HOVER * prediction } else { Real::INFINITY };
+        let size = PATCH_SIZE * radius;
+        Self {
+            far,
+            hover_distance,
+            equal_depth: EQUAL_DEPTH * reach,
+            size,
+            one_normal: ONE_NORMAL,
+            same_point: SAME_POINT * size,
+        }
+    }
+}
+
+/// A contact as contact reduction sees it: in the frame of shape 1, or of a part.
+#[derive(Copy, Clone)]
+pub(crate) struct ContactSummary {
+    /// Points of parts with poses of their own cannot be in one manifold.
+    pub(super) part: u32,
+    /// Unit vector across the contact.
+    pub(super) normal: Vec3,
+    pub(super) point: Vec3,
+    pub(super) distance: Real,
+}
+
+impl ContactSummary {
+    /// Returns the point and the distance.
+    pub(super) fn place(&self) -> (Vec3, Real) {
+        (self.point, self.distance)
+    }
+}
+
+/// Memory for contact reduction.
+#[derive(Default)]
+pub(crate) struct Reduction {
+    pub(super) members: Vec<Member>,
+    /// First contacts of patches, by direction and then by place.
+    seeds: Vec<ContactSummary>,
+    pub(super) places: Vec<(Vec3, Real)>,
+    /// Points of the chosen contacts of a patch.
+    pub(super) points: Vec<PatchPoint>,
+}
+
+/// A contact and its patch.
+pub(super) struct Member {
+    pub(super) summary: ContactSummary,
+    /// Index among the contacts.
+    pub(super) contact: u32,
+    pub(super) patch: u32,
+}
+
+/// A point of a chosen contact.
+#[derive(Copy, Clone)]
+pub(super) struct PatchPoint {
+    pub(super) point: TrackedContact<()>,
+    /// Index of the contact.
+    pub(super) contact: u32,
+    pub(super) normals: [Vec3; 2],
+    pub(super) poses: [Option<Pose>; 2],
+}
+
+/// Patch number of a contact that is left out.
+const NO_PATCH: u32 = u32::MAX;
+
+/// Orders by depth, and contacts of equal depth by index.
+fn by_depth(a: &Member, b: &Member) -> Ordering {
+    let by_depth = a.summary.distance.total_cmp(&b.summary.distance);
+    by_depth.then(a.contact.cmp(&b.contact))
+}
+
+impl Reduction {
+    pub(super) fn shrink_to(&mut self, limit: usize) {
+        self.members.shrink_to(limit);
+        self.seeds.shrink_to(limit);
+        self.places.shrink_to(limit);
+        self.points.shrink_to(limit);
+    }
+
+    /// Assigns contacts to patches and removes those that no patch needs. The members of a patch
+    /// follow each other, the deepest first.
+    pub(super) fn reduce(&mut self, plan: PatchPlan) {
+        self.group_by_normal(plan);
+        self.split_by_place(plan);
+    }
+
+    fn group_by_normal(&mut self, plan: PatchPlan) {
+        let Self { members, seeds, .. } = self;
+        members.sort_unstable_by(by_depth);
+        seeds.clear();
+        for Member { summary, patch, .. } in &mut *members {
+            let is_far = summary.distance > plan.far;
+            let same_normal = if is_far { SAME_FAR_NORMAL } else { SAME_NORMAL };
+            let hovers = |seed: &ContactSummary| {
+                summary.distance > plan.hover_distance
+                    && seed.distance <= 0.0
+                    && seed.point.distance(summary.point) <= plan.size
+            };
+            let is_like = |seed: &ContactSummary| {
+                let cosine = seed.normal.dot(summary.normal);
+                seed.part == summary.part
+                    && (cosine >= same_normal || cosine >= SAME_NORMAL_OVER && hovers(seed))
+            };
+            *patch = seed_of(seeds, 0, is_like, summary);
+        }
+        members.sort_unstable_by(|a, b| a.patch.cmp(&b.patch).then_with(|| by_depth(a, b)));
+    }
+
+    fn split_by_place(&mut self, plan: PatchPlan) {
+        let Self { members, seeds, places, .. } = self;
+        seeds.clear();
+        let mut count = 0;
+        for members in members.chunk_by_mut(|a, b| a.patch == b.patch) {
+            places.clear();
+            places.extend(members.iter().map(|Member { summary, .. }| summary.place()));
+            let ContactSummary { normal, distance: deepest, .. } = members[0].summary;
+            let chosen = plan.outermost(places, normal);
+            let is_near = |point: Vec3, other: Vec3| point.distance(other) <= plan.size;
+            let first = seeds.len();
+            for (i, Member { summary, patch, .. }) in members.iter_mut().enumerate() {
+                let is_spared = summary.distance - deepest > plan.equal_depth
+                    || chosen.iter().any(|&i| is_near(places[i].0, summary.point));
+                *patch = if chosen.contains(&i) {
+                    count
+                } else if is_spared {
+                    NO_PATCH
+                } else {
+                    let is_there = |seed: &ContactSummary| is_near(seed.point, summary.point);
+                    count + 1 + seed_of(seeds, first, is_there, summary)
+                };
+            }
+            count += 1 + (seeds.len() - first) as u32;
+        }
+        members.retain(|member| member.patch != NO_PATCH);
+        members.sort_unstable_by(|a, b| a.patch.cmp(&b.patch).then_with(|| by_depth(a, b)));
+    }
+}
+
+/// Returns the index, counted from `start`, of the first seed that fits, or of a new one.
+fn seed_of(
+    seeds: &mut Vec<ContactSummary>,
+    start: usize,
+    fits: impl Fn(&ContactSummary) -> bool,
+    new: &ContactSummary,
+) -> u32 {
+    let place = seeds[start..].iter().position(fits).unwrap_or_else(|| {
+        seeds.push(*new);
+        seeds.len() - 1 - start
+    });
+    place as u32
+}
+
+impl PatchPlan {
+    /// Returns up to four of `points`, each with its distance: the first and deepest one, the one
+    /// farthest from it, and those farthest on both sides of the line between these, seen along
+    /// `normal`. Hovering points count as nearer to the first one than they are; lengths count by their
+    /// squares, so that the corners of a slanted flat body still come first.
+    pub(super) fn outermost(
+        self,
+        points: &[(Vec3, Real)],
+        normal: Vec3,
+    ) -> ArrayVec<usize, MOST_POINTS> {
+        if points.len() <= MOST_POINTS {
+            return (0..points.len()).collect();
+        }
+        let (first, deepest) = points[0];
+        let most = |squared: &dyn Fn(Vec3) -> Real| {
+            let weighed = points.iter().map(|&(point, distance)| {
+                squared(point) / (1.0 + (distance - deepest).max(0.0) / self.equal_depth)
+            });
+            let farthest = weighed.enumerate().skip(1);
+            farthest.fold((0, 0.0), |most, next| if next.1 > most.1 { next } else { most }).0
+        };
+        let second = most(&|point| (point - first).length_squared());
+        let across = (points[second].0 - first).cross(normal);
+        let side =
+            |sign: Real| most(&|point| (sign * (point - first).dot(across)).max(0.0).powi(2));
+        let sides = [side(1.0), side(-1.0)];
+        let mut chosen = ArrayVec::new();
+        for point in [0, second].into_iter().chain(sides) {
+            if !chosen.contains(&point) {
+                chosen.push(point);
+            }
+        }
+        chosen
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Contacts divided up: for each by its place the number of its patch, in order.
+    fn patches(summaries: &[ContactSummary], plan: PatchPlan) -> Vec<(u32, u32)> {
+        let mut patches = Reduction::default();
+        patches.members.extend((0..).zip(summaries).map(|(contact, &summary)| Member {
+            summary,
+            contact,
+            patch: 0,
+        }));
+        patches.reduce(plan);
+        patches.members.iter().map(|member| (member.contact, member.patch)).collect()
+    }
+
+    const PLAN: PatchPlan = PatchPlan {
+        far: 1.0,
+        hover_distance: 0.3,
+        equal_depth: 0.01,
+        size: 1.0,
+        one_normal: ONE_NORMAL,
+        same_point: 0.0,
+    };
+
+    fn summary(x: Real, distance: Real) -> ContactSummary {
+        let point = Vec3::new(x, 0.0, 0.0);
+        ContactSummary { part: 0, normal: Vec3::Y, point, distance }
+    }
+
+    /// Would catch patches that mix parts, directions or places, that begin at another contact than
+    /// their deepest, points that hang over in place of those that carry, and an order that sorting
+    /// does not fix.
+    #[test]
+    fn contacts_join_the_patch_of_their_part_direction_and_place() {
+        let row = [0.0, 2.0, 4.0, 4.5, 6.0, 8.0].map(|x| summary(x, -0.1));
+        // The ends of the row, and what is far from both.
+        assert_eq!(patches(&row, PLAN), [(0, 0), (5, 0), (1, 1), (2, 2), (3, 2), (4, 3)]);
+        assert_eq!(patches(&row, PatchPlan { size: 4.0, ..PLAN }), [(0, 0), (5, 0)]);
+        assert_eq!(patches(&row, PatchPlan::FAR), [(0, 0), (5, 0)]);
+        // All but two hang over: in line with these they carry nothing.
+        let mut hanging = row.map(|row| ContactSummary { distance: 0.1, ..row });
+        hanging[1].distance = -0.1;
+        hanging[0].distance = -0.09;
+        assert_eq!(patches(&hanging, PLAN), [(1, 0), (0, 0)]);
+        // The deepest one opens the first.
+        let deep = [summary(0.0, -0.1), summary(0.9, -0.2), summary(1.8, -0.1)];
+        assert_eq!(patches(&deep, PLAN)[0], (1, 0));
+        let other_part = ContactSummary { part: 1, ..summary(0.0, -0.1) };
+        assert_eq!(patches(&[summary(0.0, -0.1), other_part], PLAN), [(0, 0), (1, 1)]);
+        // Those of one depth in their order, however many there are.
+        let many: Vec<ContactSummary> = (0..200).map(|i| summary((i % 100) as Real, 0.0)).collect();
+        let expected = (1..99).flat_map(|i| [(i, i), (100 + i, i)]);
+        let far_enough = PatchPlan { size: 0.5, ..PLAN };
+        let ends = [(0, 0), (99, 0)].into_iter().chain(expected);
+        assert_eq!(patches(&many, far_enough), ends.collect::<Vec<_>>());
+        let turned = |degrees: Real| {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            ContactSummary { normal: Vec3::new(sin, cos, 0.0), ..summary(0.0, -0.1) }
+        };
+        assert_eq!(patches(&[summary(0.0, -0.1), turned(8.0)], PLAN), [(0, 0), (1, 0)]);
+        assert_eq!(patches(&[summary(0.0, -0.1), turned(8.2)], PLAN), [(0, 0), (1, 1)]);
+        // What is over one that touches is of its direction up to 25 degrees off, if it is near.
+        let over = |distance: Real, touching: Real, x: Real| {
+            let over = ContactSummary { point: Vec3::new(x, 0.0, 0.0), distance, ..turned(25.0) };
+            patches(&[summary(0.0, touching), over], PLAN)[1].1 == 0
+        };
+        assert!(over(0.4, 0.0, 0.9));
+        assert!(!over(0.2, 0.0, 0.9) && !over(0.4, 0.1, 0.9) && !over(0.4, 0.0, 1.1));
+        // What is far is of a direction up to 14 degrees off, and spared there.
+        let is_kept = |degrees: Real| {
+            let four = [0.0, 1.0, 2.0, 3.0].map(|x| summary(x, -0.1));
+            let point = Vec3::new(-2.0, 0.0, 0.0);
+            let far = ContactSummary { point, distance: 1.1, ..turned(degrees) };
+            let kept = patches(&[&four[..], &[far]].concat(), PLAN);
+            kept.iter().any(|(contact, _)| *contact == 4)
+        };
+        assert_eq!([13.9, 14.2].map(is_kept), [false, true]);
+    }
+
+    /// Would catch points of one side only, a second one that is not the farthest, points that come
+    /// twice, and those that hang over.
+    #[test]
+    fn the_outermost_points_that_carry_are_chosen_once() {
+        let at = |places: &[[Real; 3]]| -> Vec<(Vec3, Real)> {
+            places.iter().map(|&[x, z, distance]| (Vec3::new(x, 0.0, z), distance)).collect()
+        };
+        let chosen = |points: &[(Vec3, Real)]| {
+            let mut chosen = PLAN.outermost(points, Vec3::Y);
+            chosen.sort_unstable();
+            chosen.to_vec()
+        };
+        let mut points = at(&[
+            [0.0, 0.0, -0.2],
+            [1.0, 0.3, -0.2],
+            [3.0, 0.0, -0.2],
+            [1.0, -0.5, -0.2],
+            [2.0, 0.9, -0.2],
+            [2.0, -0.4, -0.2],
+        ]);
+        assert_eq!(chosen(&points), [0, 2, 3, 4]);
+        points[4].1 = -0.1;
+        assert_eq!(chosen(&points), [0, 1, 2, 3]);
+        let line = [0.0, 1.0, 2.0, 3.0, 2.5].map(|x| [x, 0.0, -0.2]);
+        assert_eq!(chosen(&at(&line)), [0, 3]);
+        // A plate that is aslant still has its corners.
+        let aslant = [0.0, 0.1, 0.2, 0.5, 0.9, 1.0].map(|x| [x, 0.0, 0.3 * x]);
+        assert_eq!(chosen(&at(&aslant)), [0, 5]);
+        assert_eq!(chosen(&points[..4]), [0, 1, 2, 3]);
+    }
+}

@@ -1,0 +1,375 @@
+//! Which contacts of triangles are contacts of the surfaces.
+//!
+//! * Apart: both points are local minima of the distance ([`OneRing::is_local_minimum`]), and the
+//!   normal leads out of solids. Others are contacts of internal edges, or of walls that pass by.
+//!   Distant edges and vertices may pass each other, and count only if they face each other.
+//! * Crossing: the contact leads out of solids, and both surfaces end where the overlap does. Triangles
+//!   of solids that have passed each other count as crossing.
+//!
+//! Crossing surfaces never stay without a contact: an island without one gets the best there is
+//! ([`OverlapIslands`]).
+
+use glamx::DVec3;
+use parry3d::math::Real;
+use sbbk_core::contact::{Feature, ManifoldPoints, TriangleContact, penetration_out_of_solid};
+use sbbk_core::leaf::LateralCulling;
+use sbbk_core::query::TrianglePair;
+use sbbk_core::surface::OneRing;
+
+use super::islands::{Crossing, OverlapIslands, SheetSide};
+use super::pose::PairPose;
+use super::triangles::{ContactSource, TriangleShapes, TriangleSurfaceContact};
+use crate::mesh::BEHIND;
+
+/// [`TriangleShapes::filter_distance`] in radii of the smaller shape. Higher: plates that soft CCD
+/// sees turn through what they meet; lower: small bodies keep contacts at internal edges.
+const FILTERED: f64 = 0.1;
+
+/// Greatest depth of a contact of the first pass, in least translations of its triangles, or in
+/// prediction distances (at most [`TriangleShapes::filter_distance`]) if these are more. Parry's
+/// number for constrained normals. Higher: bodies are pushed out on their far sides; lower: more second
+/// passes.
+const SHALLOW: f64 = 5.0;
+
+/// How far behind a sheet the middle of a solid may be and still be pushed to its front, in half
+/// heights of the solid over the sheet. Higher: what comes from behind is pulled through; lower: what one
+/// step has brought to the midst of a ground falls out below.
+const LEAN: f64 = 0.33;
+
+/// Distance of edges and vertices, in prediction distances, from which their contact counts only if
+/// its normal is near those of both triangles. Higher: gears are braked by edges that pass each other;
+/// lower: edges meet with less warning.
+const DISTANT: f64 = 0.25;
+
+/// Least cosine of such a contact's normal with those of both triangles. Higher: smooth bodies lose
+/// contacts; lower: gears are braked.
+const NEAR_NORMAL: f64 = 0.87;
+
+/// Distance, in sizes of the triangles, below which rounding decides on which side of each other these
+/// are. Higher: contacts are lost; lower: triangles that touch count as crossing.
+const TOUCHING: f64 = 1.0e-9;
+
+/// Returns [`TriangleShapes::filter_distance`]; `radius` is that of the smaller shape.
+pub(super) fn filter_distance(has_surface: bool, radius: Real) -> f64 {
+    if has_surface { FILTERED * f64::from(radius) } else { f64::INFINITY }
+}
+
+/// Returns a test for pairs of triangles that a descent within `margin` finds and that only
+/// [pass by](SurfaceFilter::passes_by) while its candidates serve.
+pub(super) fn beside(
+    shapes: &impl TriangleShapes,
+    prediction: Real,
+    margin: Real,
+) -> Option<LateralCulling> {
+    let is_filtered = f64::from(prediction) <= shapes.filter_distance();
+    (shapes.has_surface() && is_filtered).then(|| {
+        let travel = margin - prediction;
+        LateralCulling::new(DISTANT as Real * prediction, NEAR_NORMAL as Real, prediction, travel)
+    })
+}
+
+/// Result of the first pass for two triangles.
+pub(super) enum Verdict {
+    None,
+    Contact(TriangleSurfaceContact),
+    /// The surfaces cross. A contact may still be rejected by the second pass.
+    Crossing(Crossing, Option<TriangleSurfaceContact>),
+}
+
+/// Turns contacts of two triangles into contacts of the surfaces around them.
+pub(super) struct SurfaceFilter<'a, S> {
+    pub(super) shapes: &'a S,
+    pub(super) pose: &'a PairPose,
+    pub(super) pair: [u32; 2],
+}
+
+/// The surfaces of both shapes, where contacts are those of surfaces.
+type Surfaces<'s, S> = [Option<OneRing<<S as TriangleShapes>::Facets<'s>>>; 2];
+
+impl<S: TriangleShapes> SurfaceFilter<'_, S> {
+    /// First pass. `clipped` is memory.
+    #[inline(always)]
+    pub(super) fn apply(
+        &self,
+        local: &TrianglePair,
+        contact: TriangleContact,
+        clipped: &mut ManifoldPoints,
+    ) -> Verdict {
+        let of_triangles = TriangleSurfaceContact { contact, source: ContactSource::Triangles };
+        let surfaces = [self.shapes.surface(0), self.shapes.surface(1)];
+        if let [None, None] = surfaces {
+            return Verdict::Contact(of_triangles);
+        }
+        let is_solid = solids::<S>(&surfaces);
+        let has_solid = is_solid[0] || is_solid[1];
+        let is_crossing = contact.features.is_crossing();
+        if is_crossing && !has_solid || contact.distance > self.shapes.filter_distance() {
+            return Verdict::Contact(of_triangles);
+        }
+        if !is_crossing {
+            if self.passes_by(local, &contact) {
+                return Verdict::None;
+            }
+            let is_minimum = |i: usize| self.is_minimum(&surfaces, i, &contact);
+            let is_first_minimum = is_minimum(0);
+            if is_first_minimum && is_minimum(1) {
+                return Verdict::Contact(of_triangles);
+            }
+            // A local minimum does not point inside: spares the test.
+            let may_have_passed = has_solid && !(is_solid[0] && is_first_minimum);
+            let points_inside = |i: usize| self.points_inside(&surfaces, i, &contact);
+            if !may_have_passed || !(0..2).all(|i| !is_solid[i] || points_inside(i)) {
+                return Verdict::None;
+            }
+        }
+        self.crossing(&surfaces, local, &contact, clipped)
+    }
+
+    /// Returns the contact of triangles that cross or have passed each other.
+    fn crossing(
+        &self,
+        surfaces: &Surfaces<'_, S>,
+        local: &TrianglePair,
+        contact: &TriangleContact,
+        clipped: &mut ManifoldPoints,
+    ) -> Verdict {
+        let [t1, t2] = &local.corners;
+        let is_solid = solids::<S>(surfaces);
+        let is_crossing = contact.features.is_crossing();
+        let shallow = f64::from(self.pose.prediction).min(self.shapes.filter_distance());
+        let greatest = SHALLOW * contact.distance.abs().max(shallow);
+        let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(surfaces, i, feature, axis);
+        let good = penetration_out_of_solid(t1, t2, is_solid, ends, Some(greatest), clipped);
+        let is_touching = contact.distance.abs() < TOUCHING * (size(t1) + size(t2));
+        if good.is_none() && !is_crossing && is_touching {
+            return Verdict::None;
+        }
+        let (normal, depth) =
+            good.map_or_else(Default::default, |good| (good.normal, -good.distance));
+        let crossing = Crossing {
+            pair: self.pair,
+            is_crossing,
+            greatest,
+            is_reliable: good.is_some(),
+            normal,
+            depth,
+            sheet: self.sheet_side(is_solid, local),
+        };
+        let source = ContactSource::OutwardAxis;
+        Verdict::Crossing(crossing, good.map(|contact| TriangleSurfaceContact { contact, source }))
+    }
+
+    /// Second pass: returns a contact for an island that has too few. It may be deeper than its points:
+    /// a flat side goes on beyond a triangle.
+    pub(super) fn supporting_contact(
+        &self,
+        local: &TrianglePair,
+        crossing: &Crossing,
+        islands: &mut OverlapIslands,
+        clipped: &mut ManifoldPoints,
+    ) -> Option<TriangleSurfaceContact> {
+        if !islands.needs_support(self.pair) {
+            return None;
+        }
+        let surfaces = [self.shapes.surface(0), self.shapes.surface(1)];
+        let [t1, t2] = &local.corners;
+        let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(&surfaces, i, feature, axis);
+        let contact =
+            penetration_out_of_solid(t1, t2, solids::<S>(&surfaces), ends, None, clipped)?;
+        let is_overlap = crossing.is_crossing || contact.distance <= 0.0;
+        let is_shallow = contact.distance >= -crossing.greatest;
+        let is_meant = is_overlap
+            && islands.agrees(self.pair, contact.normal)
+            && (is_shallow || self.is_far_inside(local, &contact));
+        if !is_meant {
+            return None;
+        }
+        // Between two rows of triangles of a flat side neither has an overlap as deep as that side.
+        let most = (contact.distance + crossing.greatest).max(0.0);
+        let side_beyond = |i: usize, direction: DVec3| {
+            let direction = self.in_frame(i, direction);
+            surfaces[i].as_ref().map_or(0.0, |s| s.side_beyond(self.pair[i], direction, most))
+        };
+        let beyond = if islands.has_no_support(self.pair) {
+            side_beyond(0, contact.normal) + side_beyond(1, -contact.normal)
+        } else {
+            0.0
+        };
+        let contact = TriangleContact { distance: contact.distance - beyond.min(most), ..contact };
+        Some(TriangleSurfaceContact { contact, source: ContactSource::OutwardAxis })
+    }
+
+    /// Returns true if edges or vertices are far from each other, and may pass each other.
+    fn passes_by(&self, local: &TrianglePair, contact: &TriangleContact) -> bool {
+        let TriangleContact { normal, distance, features, .. } = *contact;
+        distance > DISTANT * f64::from(self.pose.prediction)
+            && ![features.feature1(), features.feature2()].contains(&Feature::Face)
+            && local.corners.iter().any(|corners| leans(corners, normal))
+    }
+
+    /// Returns a direction of frame 1 in the frame of a shape.
+    fn in_frame(&self, i: usize, direction: DVec3) -> DVec3 {
+        if i == 0 { direction } else { self.pose.placement12.inverse * direction }
+    }
+
+    /// Returns true if the point of a contact on a shape is a local minimum of the distance.
+    #[inline(always)]
+    fn is_minimum(
+        &self,
+        surfaces: &Surfaces<'_, S>,
+        i: usize,
+        TriangleContact { normal, features, .. }: &TriangleContact,
+    ) -> bool {
+        let features = [features.feature1(), features.feature2()];
+        let direction = self.in_frame(i, [*normal, -*normal][i]);
+        let is_minimum = |surface: &OneRing<_>| {
+            surface.is_local_minimum(self.pair[i], features[i], direction, Some(features[1 - i]))
+        };
+        surfaces[i].as_ref().is_none_or(is_minimum)
+    }
+
+    /// Returns true if the normal of a contact points into a shape.
+    fn points_inside(
+        &self,
+        surfaces: &Surfaces<'_, S>,
+        i: usize,
+        TriangleContact { normal, features, .. }: &TriangleContact,
+    ) -> bool {
+        let feature = [features.feature1(), features.feature2()][i];
+        let direction = self.in_frame(i, [*normal, -*normal][i]);
+        let points_inside =
+            |surface: &OneRing<_>| surface.points_inside(self.pair[i], feature, direction);
+        surfaces[i].as_ref().is_some_and(points_inside)
+    }
+
+    /// Returns true if a surface ends at a feature, seen along an axis.
+    #[inline(always)]
+    fn ends(&self, surfaces: &Surfaces<'_, S>, i: usize, feature: Feature, axis: DVec3) -> bool {
+        let axis = self.in_frame(i, axis);
+        let ends =
+            |surface: &OneRing<_>| surface.is_local_minimum(self.pair[i], feature, axis, None);
+        surfaces[i].as_ref().is_none_or(ends)
+    }
+
+    /// Returns on which side of a sheet's triangle the middle of a solid is. That of a solid larger than
+    /// the sheet says nothing.
+    fn sheet_side(&self, is_solid: [bool; 2], local: &TrianglePair) -> Option<SheetSide> {
+        let solid = match is_solid {
+            [true, false] => 0,
+            [false, true] => 1,
+            _ => return None,
+        };
+        let [bounds, others] = [solid, 1 - solid].map(|i| self.shapes.bounds(i));
+        if bounds.half_extents().length() > others.half_extents().length() {
+            return None;
+        }
+        let middle = match solid {
+            0 => bounds.center().as_dvec3() - local.origin.as_dvec3(),
+            _ => self.pose.placement12.to_frame1(bounds.center(), local.origin),
+        };
+        let [a, b, c] = local.corners[1 - solid];
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let (away, own) = match solid {
+            0 => (-normal, normal),
+            _ => (normal, self.pose.placement12.inverse * normal),
+        };
+        let half_height = own.abs().dot(bounds.half_extents().as_dvec3());
+        Some(SheetSide { away, height: normal.dot(middle - a) + LEAN * half_height })
+    }
+
+    /// Returns true if a contact is deep since a point is far inside, not since this triangle is on
+    /// the far side of its body.
+    fn is_far_inside(&self, local: &TrianglePair, contact: &TriangleContact) -> bool {
+        let within = (-contact.distance / SHALLOW) as Real;
+        let point1 = (local.origin.as_dvec3() + contact.point2).as_vec3();
+        let point2 = self.pose.placement12.to_frame2(contact.point1, local.origin).as_vec3();
+        (0..2).zip([point1, point2]).any(|(i, point)| {
+            self.shapes.nearest(i, point).is_some_and(|(nearest, behind)| {
+                behind >= BEHIND && nearest.distance(point) > within
+            })
+        })
+    }
+}
+
+fn solids<S: TriangleShapes>(surfaces: &Surfaces<'_, S>) -> [bool; 2] {
+    [0, 1].map(|i| surfaces[i].as_ref().is_some_and(|surface| surface.is_solid))
+}
+
+/// Returns true if a unit direction is far from the normals of a triangle.
+fn leans([a, b, c]: &[DVec3; 3], direction: DVec3) -> bool {
+    let normal = (*b - *a).cross(*c - *a);
+    normal.dot(direction).abs() < NEAR_NORMAL * normal.length()
+}
+
+/// Returns the longer of two sides.
+fn size([a, b, c]: &[DVec3; 3]) -> f64 {
+    (*b - *a).length().max((*c - *a).length())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use parry3d::math::{Pose, Vector};
+    use parry3d::shape::{Ball, SharedShape, TriMesh};
+    use sbbk_core::contact::contact;
+    use sbbk_core::tree::BuildOptions;
+
+    use super::*;
+    use crate::mesh::TreeCache;
+    use crate::pair::mesh_mesh::MeshPair;
+    use crate::pair::triangle_contacts::local_pair;
+    use crate::pair::triangles::TriangleScratch;
+    use crate::pair::update::Pair;
+
+    /// Rough balls of triangles about as large as the prediction distance, with trees and without,
+    /// apart and crossing. Would catch contacts lost among what [`beside`] leaves out.
+    #[test]
+    fn triangles_beside_each_other_pass_by() {
+        let cache = Arc::new(TreeCache::new(BuildOptions::default(), 1 << 30));
+        let shapes = [20, 30].map(|rows| {
+            let (mut vertices, triangles) = Ball::new(1.0).to_trimesh(2 * rows, rows);
+            for (i, vertex) in (0_u32..).zip(&mut vertices) {
+                *vertex *= 1.0 + 0.002 * (i * i % 31) as Real;
+            }
+            SharedShape::new(TriMesh::new(vertices, triangles).unwrap())
+        });
+        let meshes = shapes.each_ref().map(|shape| shape.as_trimesh().unwrap());
+        let seen = meshes.map(|mesh| cache.view(mesh).unwrap());
+        let mut counts = [0; 2];
+        for (i, gap) in [(1, 0.03), (2, 0.0), (3, -0.03), (4, -0.06)] {
+            let turn = Vector::new(0.3, 0.1 * i as Real, 0.7);
+            let place = turn.normalize() * (2.06 + gap);
+            let pose = PairPose::new(&Pose::new(place, turn), 0.08);
+            let mesh_pair =
+                MeshPair { pose: &pose, meshes: seen, has_surfaces: true, has_patches: false };
+            for has_trees in [false, true] {
+                let registered = has_trees
+                    .then(|| [0, 1].map(|i| cache.register(&shapes[i], meshes[i]).unwrap()));
+                let mut known = Default::default();
+                let shapes = mesh_pair.open(&cache, &mut known).1.shapes;
+                let mut found = Vec::new();
+                let scratch = &mut TriangleScratch::default();
+                shapes.descend(pose.prediction, &mut (), scratch, |pair| found.push(pair));
+                found.sort_unstable();
+                let count = meshes.map(|mesh| mesh.indices().len() as u32);
+                for pair in (0..count[0]).flat_map(|i| (0..count[1]).map(move |j| [i, j])) {
+                    let local = local_pair(&pose.placement12, &shapes.triangles(pair).unwrap());
+                    let [t1, t2] = &local.corners;
+                    if t1[0].distance(t2[0]) > 1.0 {
+                        continue;
+                    }
+                    let contact = contact(t1, t2, f64::from(pose.prediction));
+                    let Some(contact) = contact else { continue };
+                    let filter = SurfaceFilter { shapes: &shapes, pose: &pose, pair };
+                    let passes_by = filter.passes_by(&local, &contact);
+                    let is_found = found.binary_search(&pair).is_ok();
+                    assert!(is_found || passes_by, "{pair:?}, {contact:?}");
+                    counts[usize::from(is_found)] += 1;
+                }
+                drop(registered);
+            }
+        }
+        assert!(counts.into_iter().all(|count| count > 500), "{counts:?}");
+    }
+}

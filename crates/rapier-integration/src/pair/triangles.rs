@@ -1,0 +1,350 @@
+//! Contacts of two shapes that are both made of triangles.
+//!
+//! Each candidate is a pair of triangles with an exact contact ([`sbbk_core::contact`]). The first
+//! pass keeps those that are contacts of the surfaces ([`SurfaceFilter`]). Where triangles cross and
+//! too few contacts hold the bodies apart, a second pass adds others ([`OverlapIslands`]).
+
+use std::cell::Cell;
+use std::thread::LocalKey;
+
+use glamx::DVec3;
+use parry3d::bounding_volume::Aabb;
+use parry3d::math::{Real, Vector};
+use parry3d::query::details::NormalConstraints;
+use parry3d::shape::Triangle;
+use sbbk_core::contact::{
+    ManifoldPoints, TriangleContact, clip, contact, contact_from, push_closest,
+};
+use sbbk_core::query::TrianglePair;
+use sbbk_core::surface::{Facets, OneRing};
+use sbbk_core::traverse::{Counters, DescentScratch, SlackLimits};
+
+use super::inside::InsideTest;
+use super::islands::OverlapIslands;
+use super::pose::PairPose;
+use super::reduce::{ContactSummary, PatchPlan};
+use super::state::Candidate;
+use super::surface::{SurfaceFilter, Verdict};
+use super::triangle_contacts::{constrained_normal, local_pair, write_points};
+use super::update::{ContactList, ContactPoints, Limits, Memory, Moving, PairQuery, Scratch};
+use sbbk_core::contact::FeaturePair;
+
+/// Normal cones of both triangles.
+pub(super) type Cones<'a> = [Option<&'a dyn NormalConstraints>; 2];
+
+/// Features that were closest at the last query, to be tried first.
+pub(super) type Hint = Option<FeaturePair>;
+
+/// Two shapes made of triangles, and their surfaces.
+pub(crate) trait TriangleShapes {
+    /// The triangles of either shape.
+    type Facets<'f>: Facets
+    where
+        Self: 'f;
+
+    fn moving(&self) -> Moving<'_>;
+
+    /// Calls `found` with all pairs of triangles within `margin`, and few others.
+    fn descend(
+        &self,
+        margin: Real,
+        counters: &mut impl Counters,
+        scratch: &mut TriangleScratch,
+        found: impl FnMut([u32; 2]),
+    );
+
+    /// Returns two triangles; `None` if one does not exist.
+    fn triangles(&self, triangles: [u32; 2]) -> Option<[Triangle; 2]>;
+
+    /// Calls `then` with the normal cones of two triangles.
+    fn with_cones(&self, triangles: [u32; 2], then: impl FnOnce(Cones<'_>));
+
+    /// Returns the surface of shape 1 (0) or 2 (1); `None` if contacts are not those of its surface.
+    fn surface(&self, i: usize) -> Option<OneRing<Self::Facets<'_>>>;
+
+    /// Returns the distance up to which contacts must be local minima; infinite if contacts are not
+    /// those of surfaces. Farther ones, of soft CCD, are all kept: bodies may turn before they meet.
+    fn filter_distance(&self) -> f64;
+
+    /// Returns the box around a shape, in its frame.
+    fn bounds(&self, i: usize) -> Aabb;
+
+    /// Returns true if a point in the frame of a shape may be inside it.
+    fn is_covered(&self, i: usize, point: Vector) -> bool;
+
+    /// Returns the point of a surface that is nearest to a point in its frame, and the cosine between
+    /// the direction to the point and the inward normal.
+    fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)>;
+
+    /// Returns the direction in which shape 2 separates from shape 1, if one is deep in the other.
+    fn separation(&self) -> Option<DVec3>;
+
+    /// Returns the push-out if one shape is wholly inside the other. `is_deep`: known to be.
+    fn push_out(&self, _is_deep: bool, _test: &mut InsideTest) -> Option<TriangleHit> {
+        None
+    }
+
+    /// Returns true if contacts are those of surfaces.
+    fn has_surface(&self) -> bool {
+        self.filter_distance() < f64::INFINITY
+    }
+
+    /// Calls `then` with the normal cones that contacts obey: none for contacts of surfaces.
+    #[inline(always)]
+    fn with_constraints(&self, triangles: [u32; 2], then: impl FnOnce(Cones<'_>)) {
+        if self.has_surface() { then([None; 2]) } else { self.with_cones(triangles, then) }
+    }
+}
+
+/// Greatest depth of points in prediction distances, at least. Rapier recycles contacts until bodies
+/// have moved by 2.5. Higher: bodies that are deep leave faster; lower: they fall asleep inside.
+const DEEPEST: f64 = 4.0;
+
+/// A query about two shapes made of triangles.
+pub(crate) struct TriangleQuery<'q, S> {
+    pub(super) shapes: S,
+    pub(super) pose: &'q PairPose,
+    pub(super) patches: Option<PatchPlan>,
+    pub(super) inside: &'q mut InsideTest,
+}
+
+/// A contact and its subshapes.
+pub(super) type TriangleHit = ([u32; 2], TriangleSurfaceContact);
+
+/// A contact of two triangles, or of the surfaces around them.
+#[derive(Copy, Clone)]
+pub(crate) struct TriangleSurfaceContact {
+    pub(super) contact: TriangleContact,
+    pub(super) source: ContactSource,
+}
+
+/// Origin of a contact.
+#[derive(Copy, Clone, PartialEq)]
+pub(super) enum ContactSource {
+    /// Two triangles; their closest points are points of the contact.
+    Triangles,
+    /// Two crossing triangles, along an axis that leads out of solids.
+    OutwardAxis,
+    /// Two shapes, one inside the other.
+    PushOut,
+}
+
+/// Memory for queries.
+#[derive(Default)]
+pub(crate) struct TriangleScratch {
+    pub(super) descent: DescentScratch,
+    /// Triangles that a descent has found.
+    pub(super) near: Vec<u32>,
+    islands: OverlapIslands,
+    clipped: ManifoldPoints,
+}
+
+impl Scratch for TriangleScratch {
+    fn shrink_to(&mut self, limit: usize) {
+        let many = limit.max(1024);
+        self.near.clear();
+        self.near.shrink_to(many);
+        self.islands.shrink_to(many);
+    }
+}
+
+thread_local! {
+    static MEMORY: Cell<Option<Box<super::update::QueryMemory<TriangleScratch, TriangleSurfaceContact>>>> =
+        Cell::default();
+}
+
+impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
+    type Hint = Hint;
+    type Contact = TriangleSurfaceContact;
+    type Scratch = TriangleScratch;
+
+    const SLACK: SlackLimits = SlackLimits::TRIANGLES;
+
+    fn memory() -> &'static LocalKey<Memory<Self>> {
+        &MEMORY
+    }
+
+    fn pose(&self) -> &PairPose {
+        self.pose
+    }
+
+    fn moving(&self) -> Moving<'_> {
+        self.shapes.moving()
+    }
+
+    fn descend(
+        &mut self,
+        margin: Real,
+        counters: &mut impl Counters,
+        scratch: &mut TriangleScratch,
+        found: impl FnMut([u32; 2]),
+    ) {
+        self.shapes.descend(margin, counters, scratch, found);
+    }
+
+    fn contacts(
+        &mut self,
+        candidates: &mut [Candidate<Hint>],
+        limits: Limits,
+        scratch: &mut TriangleScratch,
+        contacts: &mut ContactList<TriangleSurfaceContact>,
+    ) {
+        let TriangleScratch { islands, clipped, .. } = scratch;
+        islands.clear();
+        for candidate in candidates {
+            if !limits.may_touch(candidate) {
+                continue;
+            }
+            let Some((local, contact)) = self.touch(candidate, limits) else { continue };
+            let pair = candidate.subshapes;
+            match self.filter(pair).apply(&local, contact, clipped) {
+                Verdict::None => {}
+                Verdict::Contact(contact) => contacts.push((pair, contact)),
+                Verdict::Crossing(crossing, contact) => {
+                    islands.add(crossing);
+                    contacts.extend(contact.map(|contact| (pair, contact)));
+                }
+            }
+        }
+        let separation = islands.is_undecided().then(|| self.shapes.separation()).flatten();
+        if islands.finish_first_pass(separation) {
+            self.second_pass(islands, clipped, contacts);
+        }
+        if contacts.is_empty() {
+            let is_deep = islands.has_separation();
+            contacts.extend(self.shapes.push_out(is_deep, self.inside));
+        }
+    }
+
+    /// Where all contacts are far, one patch for each direction: Rapier's solver drops far points of
+    /// manifolds of more than four without soft CCD, and a falling plate would turn about one point.
+    fn reduction(&self, contacts: &ContactList<TriangleSurfaceContact>) -> Option<PatchPlan> {
+        let near = self.shapes.filter_distance();
+        let may_be_far = f64::from(self.pose.prediction) > near;
+        let is_far = |(_, hit): &TriangleHit| hit.contact.distance > near;
+        if may_be_far && contacts.iter().all(is_far) {
+            return Some(PatchPlan::FAR);
+        }
+        self.patches
+    }
+
+    fn summary(
+        &mut self,
+        hit: &TriangleHit,
+        scratch: &mut TriangleScratch,
+        points: &mut ContactPoints,
+    ) -> Option<ContactSummary> {
+        let (pair, TriangleSurfaceContact { contact, source }) = hit;
+        let [triangle1, _] = self.shapes.triangles(*pair)?;
+        let (mut normal, mut has_cones) = (None, false);
+        self.shapes.with_constraints(*pair, |cones| {
+            let cones = source.cones(cones);
+            normal = constrained_normal(contact, cones, &self.pose.pos12);
+            has_cones = cones.iter().any(Option::is_some);
+        });
+        let normal = normal?.normal;
+        let point = (triangle1.a.as_dvec3() + contact.point1).as_vec3();
+        let mut distance = contact.distance as Real;
+        if has_cones {
+            // Cones move points.
+            self.points(hit, scratch, points);
+            distance = points.points.iter().map(|point| point.dist).reduce(Real::min)?;
+        }
+        Some(ContactSummary { part: 0, normal, point, distance })
+    }
+
+    #[inline(always)]
+    fn points(
+        &mut self,
+        (pair, TriangleSurfaceContact { contact, source }): &TriangleHit,
+        scratch: &mut TriangleScratch,
+        points: &mut ContactPoints,
+    ) {
+        let Self { shapes, pose, .. } = self;
+        let clipped = &mut scratch.clipped;
+        points.points.clear();
+        let Some(triangles) = shapes.triangles(*pair) else { return };
+        shapes.with_constraints(*pair, |cones| {
+            let local = local_pair(&pose.placement12, &triangles);
+            let [t1, t2] = &local.corners;
+            clipped.clear();
+            if *source != ContactSource::PushOut {
+                clip(t1, t2, contact.normal, clipped);
+            }
+            if *source == ContactSource::OutwardAxis {
+                deepen(clipped, contact);
+            } else {
+                push_closest(t1, t2, contact, clipped);
+            }
+            let deepest = -shapes.filter_distance().max(DEEPEST * f64::from(pose.prediction));
+            clipped.iter_mut().for_each(|point| point.distance = point.distance.max(deepest));
+            write_points(pose, &local, contact, clipped, source.cones(cones), points);
+        });
+    }
+}
+
+impl<S: TriangleShapes> TriangleQuery<'_, S> {
+    fn filter(&self, pair: [u32; 2]) -> SurfaceFilter<'_, S> {
+        SurfaceFilter { shapes: &self.shapes, pose: self.pose, pair }
+    }
+
+    /// Returns two triangles and their contact, if that is in reach.
+    #[inline(always)]
+    fn touch(
+        &self,
+        candidate: &mut Candidate<Hint>,
+        Limits { reach, margin, travel }: Limits,
+    ) -> Option<(TrianglePair, TriangleContact)> {
+        let triangles = self.shapes.triangles(candidate.subshapes)?;
+        let local = local_pair(&self.pose.placement12, &triangles);
+        let [t1, t2] = &local.corners;
+        let contact = match candidate.hint {
+            Some(hint) => contact_from(t1, t2, margin, hint),
+            None => contact(t1, t2, margin),
+        };
+        candidate.clear = contact.map_or(margin, |contact| contact.distance) + travel;
+        let contact = contact?;
+        candidate.hint = Some(contact.features);
+        (contact.distance <= reach).then_some((local, contact))
+    }
+
+    /// Replaces the contacts that push the wrong way, and adds contacts to islands that have too few.
+    #[inline(never)]
+    fn second_pass(
+        &self,
+        islands: &mut OverlapIslands,
+        clipped: &mut ManifoldPoints,
+        contacts: &mut ContactList<TriangleSurfaceContact>,
+    ) {
+        contacts.retain(|(pair, _)| islands.is_final(*pair));
+        for i in 0..islands.len() {
+            let Some(crossing) = islands.open(i) else { continue };
+            let Some(triangles) = self.shapes.triangles(crossing.pair) else { continue };
+            let local = local_pair(&self.pose.placement12, &triangles);
+            let filter = self.filter(crossing.pair);
+            let contact = filter.supporting_contact(&local, &crossing, islands, clipped);
+            contacts.extend(contact.map(|contact| (crossing.pair, contact)));
+        }
+        contacts.sort_unstable_by_key(|(pair, _)| *pair);
+    }
+}
+
+impl ContactSource {
+    /// Returns the normal cones that a contact obeys.
+    fn cones(self, of_triangles: Cones<'_>) -> Cones<'_> {
+        if self == Self::PushOut { [None; 2] } else { of_triangles }
+    }
+}
+
+/// Makes points as deep as a contact that is deeper than all of them.
+fn deepen(points: &mut ManifoldPoints, contact: &TriangleContact) {
+    let distances = points.iter().map(|point| point.distance);
+    let beyond = distances.fold(f64::INFINITY, f64::min) - contact.distance;
+    if beyond > 0.0 {
+        for point in points {
+            point.point1 += 0.5 * beyond * contact.normal;
+            point.point2 -= 0.5 * beyond * contact.normal;
+            point.distance -= beyond;
+        }
+    }
+}

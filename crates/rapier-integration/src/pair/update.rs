@@ -1,0 +1,280 @@
+//! The pipeline of a contact query: from the pose of a pair to its manifolds.
+//!
+//! 1. The state of the pair comes from the host's workspace ([`state`](super::state)).
+//! 2. A change of the shapes since the last query drops what no longer holds.
+//! 3. An equal pose leaves the manifolds as they are.
+//! 4. If the candidates of the last descent no longer serve, a descent finds new ones.
+//! 5. Candidates in reach become contacts ([`PairQuery::contacts`]).
+//! 6. Contacts become manifolds: one each, or a few for all ([`write`](super::write)).
+
+use std::cell::Cell;
+use std::sync::Arc;
+use std::thread::LocalKey;
+
+use parry3d::math::{Pose, Real};
+use parry3d::query::{ContactManifold, ContactManifoldsWorkspace, TrackedContact};
+use sbbk_core::traverse::{Counters, Placement, SlackLimits, SlackPlan};
+use sbbk_core::volumes::Sphere;
+
+use super::pose::PairPose;
+use super::reduce::{ContactSummary, PatchPlan, Reduction};
+use super::state::{Candidate, HighWaterMark, PairState, state_in};
+use super::write::{Writer, write_every, write_patches};
+use crate::mesh::{Change, TreeCache};
+
+/// A kind of pair: a mesh and another shape.
+pub(crate) trait Pair: Copy {
+    /// What is known of the shapes from query to query.
+    type State: Clone + Default + Send + Sync + 'static;
+    /// See [`Candidate::hint`].
+    type Hint: Copy + Default + Send + Sync + 'static;
+    /// The pair during a query.
+    type Query<'q>: PairQuery<Hint = Self::Hint>
+    where
+        Self: 'q;
+
+    /// Returns true if the state is that of a new pair.
+    fn is_new(state: &Self::State) -> bool;
+
+    /// Returns the change since the last query, and begins a query.
+    fn open<'q>(
+        &'q self,
+        cache: &'q Arc<TreeCache>,
+        state: &'q mut Self::State,
+    ) -> (Change, Self::Query<'q>);
+}
+
+/// A query of a pair. Passes over candidates and memory for them are private to the kind.
+pub(crate) trait PairQuery {
+    type Hint: Copy + Default;
+    /// A contact before its points are made.
+    type Contact: Copy + 'static;
+    /// Memory of a thread for queries of this kind.
+    type Scratch: Scratch;
+
+    /// How much farther than [`reach`](Self::reach) descents may look.
+    const SLACK: SlackLimits;
+
+    /// Returns where the thread keeps the memory.
+    fn memory() -> &'static LocalKey<Memory<Self>>;
+
+    fn pose(&self) -> &PairPose;
+
+    /// Returns the body whose motion limits how long candidates serve.
+    fn moving(&self) -> Moving<'_>;
+
+    /// Returns the distance up to which there may be contacts.
+    fn reach(&self) -> Real {
+        self.pose().prediction
+    }
+
+    /// Adds all contacts at once if these cost less than keeping candidates. Returns true if so.
+    fn contacts_without_candidates(
+        &mut self,
+        _counters: &mut impl Counters,
+        _scratch: &mut Self::Scratch,
+        _contacts: &mut ContactList<Self::Contact>,
+    ) -> bool {
+        false
+    }
+
+    /// Calls `found` with all pairs of subshapes within `margin`, and few others, in any order.
+    fn descend(
+        &mut self,
+        margin: Real,
+        counters: &mut impl Counters,
+        scratch: &mut Self::Scratch,
+        found: impl FnMut([u32; 2]),
+    );
+
+    /// Adds the contacts of candidates, in the order of subshapes, at most one for two subshapes.
+    fn contacts(
+        &mut self,
+        candidates: &mut [Candidate<Self::Hint>],
+        limits: Limits,
+        scratch: &mut Self::Scratch,
+        contacts: &mut ContactList<Self::Contact>,
+    );
+
+    /// Returns how contacts are reduced; `None` if each has its manifold.
+    fn reduction(&self, contacts: &ContactList<Self::Contact>) -> Option<PatchPlan>;
+
+    /// Returns the summary of a contact for contact reduction; `None` if it has no points.
+    /// `points` is memory.
+    fn summary(
+        &mut self,
+        contact: &([u32; 2], Self::Contact),
+        scratch: &mut Self::Scratch,
+        points: &mut ContactPoints,
+    ) -> Option<ContactSummary>;
+
+    /// Replaces `points` by those of a contact; by none if it has none.
+    fn points(
+        &mut self,
+        contact: &([u32; 2], Self::Contact),
+        scratch: &mut Self::Scratch,
+        points: &mut ContactPoints,
+    );
+}
+
+/// Contacts with their subshapes.
+pub(crate) type ContactList<C> = Vec<([u32; 2], C)>;
+
+/// A ball around a shape, in its own frame, and the pose of that frame in the frame of the other shape.
+pub(crate) struct Moving<'a> {
+    pub(super) ball: Sphere,
+    pub(super) placement: &'a Placement,
+}
+
+/// Distances of a query.
+#[derive(Copy, Clone, Debug)]
+pub(crate) struct Limits {
+    /// [`PairQuery::reach`].
+    pub(super) reach: f64,
+    /// Margin of the descent that found the candidates.
+    pub(super) margin: f64,
+    /// Bound of the motion of the pair since that descent.
+    pub(super) travel: f64,
+}
+
+impl Limits {
+    /// Returns true if a candidate may be within reach.
+    #[inline(always)]
+    pub(super) fn may_touch<H>(&self, candidate: &Candidate<H>) -> bool {
+        candidate.clear <= self.reach + self.travel
+    }
+}
+
+/// Normals and points of a contact, as a manifold has them.
+#[derive(Default)]
+pub(crate) struct ContactPoints {
+    /// Unit vectors from each shape to the other, in its frame.
+    pub(super) normals: [parry3d::math::Vector; 2],
+    /// Poses of subshapes in whose frames the points are, instead of the frames of the shapes.
+    pub(super) poses: [Option<Pose>; 2],
+    pub(super) points: Vec<TrackedContact<()>>,
+}
+
+/// How a query was answered.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(crate) enum QueryOutcome {
+    /// By Parry's hierarchy and a box.
+    Apart,
+    /// By the manifolds of the last query.
+    Unchanged,
+    /// From the candidates of an earlier descent.
+    Reused,
+    /// By a descent.
+    Descended,
+    /// Not at all: Parry must answer.
+    Unsupported,
+}
+
+/// Memory that queries use again.
+pub(crate) trait Scratch: Default + 'static {
+    /// Gives back memory beyond that for `limit` contacts.
+    fn shrink_to(&mut self, limit: usize);
+}
+
+/// Memory of a thread for one kind of pair. Empty during a query: a query inside another one makes its
+/// own.
+pub(crate) type Memory<Q> =
+    Cell<Option<Box<QueryMemory<<Q as PairQuery>::Scratch, <Q as PairQuery>::Contact>>>>;
+
+pub(crate) struct QueryMemory<S, C> {
+    scratch: S,
+    contacts: ContactList<C>,
+    reduction: Reduction,
+    points: ContactPoints,
+    demand: HighWaterMark,
+}
+
+impl<S: Default, C> Default for QueryMemory<S, C> {
+    fn default() -> Self {
+        Self {
+            scratch: S::default(),
+            contacts: Vec::new(),
+            reduction: Reduction::default(),
+            points: ContactPoints::default(),
+            demand: HighWaterMark::default(),
+        }
+    }
+}
+
+/// A query under way, and its memory.
+pub(super) struct Running<'r, Q: PairQuery> {
+    pub(super) query: &'r mut Q,
+    pub(super) scratch: &'r mut Q::Scratch,
+    pub(super) points: &'r mut ContactPoints,
+}
+
+/// Brings the manifolds of a pair up to date.
+pub(crate) fn update_manifolds<P, M, C>(
+    pair: &P,
+    cache: &Arc<TreeCache>,
+    mut counters: impl Counters,
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) -> QueryOutcome
+where
+    P: Pair,
+    M: Default + 'static,
+    C: Default + Copy + 'static,
+{
+    let PairState::<P::State, P::Hint> { shapes, memory } = state_in(workspace, manifolds);
+    if P::is_new(shapes) {
+        cache.count_pair();
+    }
+    let (change, mut query) = pair.open(cache, shapes);
+    memory.apply_change(change, manifolds);
+    if memory.is_unchanged(query.pose(), manifolds.len()) {
+        return QueryOutcome::Unchanged;
+    }
+    memory.begin();
+    let mut lent = P::Query::memory().take().unwrap_or_default();
+    let QueryMemory { scratch, contacts, reduction, points, demand } = &mut *lent;
+    contacts.clear();
+    let mut outcome = QueryOutcome::Descended;
+    if query.contacts_without_candidates(&mut counters, scratch, contacts) {
+        memory.forget();
+    } else {
+        let (moving, reach) = (query.moving(), query.reach());
+        let slack = &mut memory.slack;
+        let margin = match slack.plan(moving.ball, moving.placement, reach, P::Query::SLACK) {
+            SlackPlan::Reuse { margin, .. } => {
+                outcome = QueryOutcome::Reused;
+                margin
+            }
+            SlackPlan::Descend { margin, .. } => {
+                memory.replace(|candidates| {
+                    query.descend(margin, &mut counters, scratch, |subshapes| {
+                        candidates.push(Candidate::new(subshapes));
+                    });
+                });
+                margin
+            }
+        };
+        let (reach, margin) = (f64::from(reach), f64::from(margin));
+        let limits = Limits { reach, margin, travel: memory.slack.travel() };
+        query.contacts(&mut memory.candidates, limits, scratch, contacts);
+    }
+    let plan = query.reduction(contacts);
+    let had_patches = memory.has_patches.replace(plan.is_some());
+    let mut writer = Writer::begin(manifolds, had_patches);
+    let running = Running { query: &mut query, scratch, points };
+    if let Some(plan) = plan {
+        write_patches(running, contacts, plan, reduction, &mut writer);
+    } else {
+        write_every(running, contacts, &mut writer);
+    }
+    writer.end();
+    if let Some(limit) = demand.update(contacts.len()) {
+        contacts.clear();
+        contacts.shrink_to(limit.max(1024));
+        scratch.shrink_to(limit);
+        reduction.shrink_to(limit);
+    }
+    P::Query::memory().set(Some(lent));
+    memory.end(query.pose(), manifolds.len());
+    outcome
+}

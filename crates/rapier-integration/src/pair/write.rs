@@ -1,0 +1,468 @@
+//! From contacts to the manifolds of the host: one for each contact, or patches.
+//!
+//! Manifolds of subshapes that still touch stay in their place in the host's list and keep their
+//! data. Others are recycled: a new manifold costs ten times as much as a used one.
+
+use std::any::Any;
+use std::cell::Cell;
+use std::cmp::Ordering;
+
+use arrayvec::ArrayVec;
+use parry3d::math::Real;
+use parry3d::query::{ContactManifold, TrackedContact};
+use parry3d::shape::PackedFeatureId;
+
+use super::reduce::{Member, PatchPlan, PatchPoint, Reduction};
+use super::state::HighWaterMark;
+use super::update::{ContactList, ContactPoints, PairQuery, Running};
+
+/// Spare manifolds that a thread keeps, of some 500 bytes each. Higher: more memory; lower: allocations
+/// where pairs lose and gain many contacts at once.
+const MOST_SPARE: usize = 256;
+
+/// Least cosine of the normals of two patches of successive queries that may be one patch. Higher:
+/// patches that turn lose their data; lower: patches take the data of others.
+const LIKE_NORMAL: Real = 0.9;
+
+thread_local! {
+    /// Memory of a thread, for the data types of the last host. Empty during a query: a query inside
+    /// another one makes its own.
+    static POOL: Cell<Option<Box<dyn Any>>> = Cell::default();
+}
+
+/// Spare manifolds and lists of a thread.
+struct Pool<M, C> {
+    next: Vec<ContactManifold<M, C>>,
+    spare: Vec<ContactManifold<M, C>>,
+    previous_points: Vec<TrackedContact<C>>,
+    old_points: Vec<OldPoint<C>>,
+    demand: HighWaterMark,
+}
+
+impl<M, C> Default for Pool<M, C> {
+    fn default() -> Self {
+        let (next, spare, previous_points, old_points) = Default::default();
+        Self { next, spare, previous_points, old_points, demand: HighWaterMark::default() }
+    }
+}
+
+/// A point of the last query, and the part in whose frame it is.
+struct OldPoint<C> {
+    point: TrackedContact<C>,
+    part: u32,
+}
+
+/// Replaces the manifolds of the host by those of a query.
+///
+/// While no manifold comes or goes, all stay in place: moving one takes as long as updating its
+/// distances.
+pub(super) struct Writer<'m, M, C> {
+    manifolds: &'m mut Vec<ContactManifold<M, C>>,
+    pool: Box<Pool<M, C>>,
+    /// Length of the prefix of the host's list that stays in place. Zero once `pool.next` is in use,
+    /// which then holds all manifolds of this query.
+    in_place: usize,
+    /// True if the last query left patches; `None` if not known.
+    had_patches: Option<bool>,
+}
+
+impl<'m, M: Default + 'static, C: Default + Copy + 'static> Writer<'m, M, C> {
+    pub(super) fn begin(
+        manifolds: &'m mut Vec<ContactManifold<M, C>>,
+        had_patches: Option<bool>,
+    ) -> Self {
+        let pool = POOL.take().and_then(|pool| pool.downcast().ok()).unwrap_or_default();
+        Self { manifolds, pool, in_place: 0, had_patches }
+    }
+
+    /// Ends the query: the host's list becomes the manifolds of this query.
+    pub(super) fn end(mut self) {
+        let Self { manifolds, pool, in_place, .. } = &mut self;
+        manifolds.truncate(*in_place);
+        manifolds.append(&mut pool.next);
+        if let Some(limit) = pool.demand.update(manifolds.len()) {
+            pool.next.shrink_to(limit);
+            pool.old_points.shrink_to(limit);
+        }
+        POOL.set(Some(self.pool));
+    }
+
+    /// Adds a new manifold.
+    #[inline(always)]
+    fn keep_new(&mut self, manifold: ContactManifold<M, C>) {
+        self.leave_places();
+        self.pool.next.push(manifold);
+    }
+
+    /// Adds the manifold at an index of the host's list.
+    #[inline(always)]
+    fn keep_old(&mut self, index: usize) {
+        if self.pool.next.is_empty() && index == self.in_place {
+            self.in_place += 1;
+        } else {
+            self.leave_places();
+            self.pool.next.push(std::mem::take(&mut self.manifolds[index]));
+        }
+    }
+
+    /// Moves the manifolds in place to `next`.
+    fn leave_places(&mut self) {
+        let stayed = &mut self.manifolds[..std::mem::take(&mut self.in_place)];
+        self.pool.next.extend(stayed.iter_mut().map(std::mem::take));
+    }
+
+    /// Returns an empty manifold.
+    fn take_spare(&mut self) -> ContactManifold<M, C> {
+        self.pool.spare.pop().unwrap_or_default()
+    }
+
+    /// Recycles the manifold at an index of the host's list.
+    fn retire(&mut self, index: usize) {
+        let mut manifold = std::mem::take(&mut self.manifolds[index]);
+        if self.pool.spare.len() < MOST_SPARE && manifold.points.capacity() > 0 {
+            manifold.points.clear();
+            manifold.data = M::default();
+            self.pool.spare.push(manifold);
+        }
+    }
+
+    /// Lists the points of the host's manifolds.
+    fn list_old_points(&mut self) {
+        let names_are_raw = self.had_patches == Some(false);
+        let old_points = &mut self.pool.old_points;
+        old_points.clear();
+        old_points.extend(self.manifolds.iter().flat_map(|manifold| {
+            let (part, subshapes) = (part_of(manifold), subshapes_of(manifold));
+            manifold.points.iter().map(move |&point| {
+                let point = if names_are_raw { named(point, subshapes) } else { point };
+                OldPoint { point, part }
+            })
+        }));
+    }
+}
+
+fn subshapes_of<M, C>(manifold: &ContactManifold<M, C>) -> [u32; 2] {
+    [manifold.subshape1, manifold.subshape2]
+}
+
+/// Writes a manifold for each contact, in the order of subshapes.
+pub(super) fn write_every<Q, M, C>(
+    Running { query, scratch, points }: Running<'_, Q>,
+    contacts: &ContactList<Q::Contact>,
+    writer: &mut Writer<'_, M, C>,
+) where
+    Q: PairQuery,
+    M: Default + 'static,
+    C: Default + Copy + 'static,
+{
+    let were_patches = writer.had_patches == Some(true);
+    if were_patches {
+        writer.list_old_points();
+    }
+    // Patches and hosts may have another order.
+    if !writer.manifolds.is_sorted_by_key(subshapes_of) {
+        writer.manifolds.sort_by_key(subshapes_of);
+    }
+    let mut old = 0;
+    for contact in contacts {
+        query.points(contact, scratch, points);
+        if points.points.is_empty() {
+            continue;
+        }
+        let order = loop {
+            let next = writer.manifolds.get(old).map(subshapes_of);
+            let order = next.map_or(Ordering::Greater, |next| next.cmp(&contact.0));
+            if order != Ordering::Less {
+                break order;
+            }
+            writer.retire(old);
+            old += 1;
+        };
+        if order == Ordering::Equal {
+            let (manifold, pool) = (&mut writer.manifolds[old], &mut *writer.pool);
+            write_points(points, &mut pool.previous_points, manifold);
+            set_poses(points, manifold);
+            if were_patches {
+                take_data(manifold, &pool.old_points);
+            }
+            writer.keep_old(old);
+            old += 1;
+        } else {
+            let mut manifold = writer.take_spare();
+            [manifold.subshape1, manifold.subshape2] = contact.0;
+            write_points(points, &mut writer.pool.previous_points, &mut manifold);
+            set_poses(points, &mut manifold);
+            if were_patches {
+                take_data(&mut manifold, &writer.pool.old_points);
+            }
+            writer.keep_new(manifold);
+        }
+    }
+    for rest in old..writer.manifolds.len() {
+        writer.retire(rest);
+    }
+}
+
+/// Replaces the points of a manifold. Points with the features of points before keep their data.
+#[inline(always)]
+pub(super) fn write_points<M, C: Default + Copy>(
+    ContactPoints { normals, points, .. }: &ContactPoints,
+    previous: &mut Vec<TrackedContact<C>>,
+    manifold: &mut ContactManifold<M, C>,
+) {
+    let is_same = |(old, new): (&TrackedContact<C>, &TrackedContact<()>)| {
+        (old.fid1, old.fid2) == (new.fid1, new.fid2)
+    };
+    let tracked = &mut manifold.points;
+    if tracked.len() == points.len() && tracked.iter().zip(points).all(is_same) {
+        for (tracked, point) in tracked.iter_mut().zip(points) {
+            (tracked.local_p1, tracked.local_p2, tracked.dist) =
+                (point.local_p1, point.local_p2, point.dist);
+        }
+    } else {
+        std::mem::swap(tracked, previous);
+        tracked.clear();
+        tracked.extend(points.iter().map(|point| {
+            let old = previous.iter().find(|old| is_same((old, point)));
+            with_data(point, old.map_or_else(C::default, |old| old.data))
+        }));
+    }
+    [manifold.local_n1, manifold.local_n2] = *normals;
+}
+
+fn with_data<C: Default + Copy>(point: &TrackedContact<()>, data: C) -> TrackedContact<C> {
+    let TrackedContact { local_p1, local_p2, fid1, fid2, dist, .. } = *point;
+    let point = TrackedContact::new(local_p1, local_p2, fid1, fid2, dist);
+    TrackedContact { data, ..point }
+}
+
+fn set_poses<M, C>(points: &ContactPoints, manifold: &mut ContactManifold<M, C>) {
+    let [pose1, pose2] = points.poses;
+    manifold.set_subshape_pos1(pose1);
+    manifold.set_subshape_pos2(pose2);
+}
+
+/// Gives the points of a manifold the data that they had in patches.
+fn take_data<M, C: Default + Copy>(manifold: &mut ContactManifold<M, C>, old: &[OldPoint<C>]) {
+    let (part, subshapes) = (part_of(manifold), subshapes_of(manifold));
+    for point in &mut manifold.points {
+        let names = named(*point, subshapes);
+        let is_same = |old: &&OldPoint<C>| {
+            old.part == part && (old.point.fid1, old.point.fid2) == (names.fid1, names.fid2)
+        };
+        point.data = old.iter().find(is_same).map_or_else(C::default, |old| old.point.data);
+    }
+}
+
+/// Writes patches: few manifolds of up to four points for all contacts.
+///
+/// Contacts are chosen before their points are made, and then points among those. Patches and points
+/// keep the data of those of the last query that are like them.
+pub(super) fn write_patches<Q, M, C>(
+    mut running: Running<'_, Q>,
+    contacts: &ContactList<Q::Contact>,
+    plan: PatchPlan,
+    reduction: &mut Reduction,
+    writer: &mut Writer<'_, M, C>,
+) where
+    Q: PairQuery,
+    M: Default + 'static,
+    C: Default + Copy + 'static,
+{
+    let Running { query, scratch, points } = &mut running;
+    reduction.members.clear();
+    reduction.members.extend((0..).zip(contacts).filter_map(|(index, contact)| {
+        let summary = query.summary(contact, scratch, points)?;
+        Some(Member { summary, contact: index, patch: 0 })
+    }));
+    reduction.reduce(plan);
+    writer.list_old_points();
+    let Reduction { members, places, points: patch_points, .. } = reduction;
+    for members in members.chunk_by(|a, b| a.patch == b.patch) {
+        places.clear();
+        places.extend(members.iter().map(|member| member.summary.place()));
+        patch_points.clear();
+        for member in plan.outermost(places, members[0].summary.normal) {
+            let contact = members[member].contact;
+            let of = &contacts[contact as usize];
+            query.points(of, scratch, points);
+            let ContactPoints { normals, poses, .. } = **points;
+            patch_points.extend(points.points.iter().map(|&point| PatchPoint {
+                point: named(point, of.0),
+                contact,
+                normals,
+                poses,
+            }));
+        }
+        let distance = |point: &PatchPoint| point.point.dist;
+        let depths = patch_points.iter().map(distance).enumerate();
+        let Some((deepest, _)) = depths.min_by(|(_, a), (_, b)| a.total_cmp(b)) else { continue };
+        patch_points.swap(0, deepest);
+        places.clear();
+        places.extend(patch_points.iter().map(|point| (point.point.local_p1, distance(point))));
+        let mut chosen = plan.outermost(places, patch_points[0].normals[0]);
+        while !chosen.is_empty() {
+            write_patch(plan, patch_points, &mut chosen, writer, |contact| contacts[contact].0);
+        }
+    }
+    for rest in 0..writer.manifolds.len() {
+        writer.retire(rest);
+    }
+}
+
+/// Writes a manifold of the deepest of the chosen points and those that have its normal, and removes
+/// them from the list.
+fn write_patch<M, C, const MOST: usize>(
+    plan: PatchPlan,
+    points: &[PatchPoint],
+    chosen: &mut ArrayVec<usize, MOST>,
+    writer: &mut Writer<'_, M, C>,
+    subshapes: impl Fn(usize) -> [u32; 2],
+) where
+    M: Default + 'static,
+    C: Default + Copy + 'static,
+{
+    let distance = |i: &usize| points[*i].point.dist;
+    let Some(&deepest) = chosen.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))) else {
+        return;
+    };
+    let PatchPoint { contact, normals: [normal1, normal2], poses: [pose1, pose2], .. } =
+        points[deepest];
+    // Manifolds that were taken are empty and have a normal of zero.
+    let likes = writer.manifolds.iter().map(|old| old.local_n1.dot(normal1)).enumerate();
+    let likes = likes.filter(|(_, like)| *like >= LIKE_NORMAL);
+    let mut manifold = match likes.max_by(|(_, a), (_, b)| a.total_cmp(b)) {
+        Some((old, _)) => std::mem::take(&mut writer.manifolds[old]),
+        None => writer.take_spare(),
+    };
+    [manifold.subshape1, manifold.subshape2] = subshapes(contact as usize);
+    manifold.set_subshape_pos1(pose1);
+    manifold.set_subshape_pos2(pose2);
+    (manifold.local_n1, manifold.local_n2) = (normal1, normal2);
+    manifold.points.clear();
+    let part = part_of(&manifold);
+    chosen.retain(|i| {
+        let PatchPoint { point, normals, .. } = &points[*i];
+        // The deepest one also where cones have left no unit vector.
+        let is_of_normal = *i == deepest || normals[0].dot(normal1) >= plan.one_normal;
+        if is_of_normal {
+            let old_points = &mut writer.pool.old_points;
+            let old = find_old(point, part, old_points, plan.same_point);
+            let data = old.map(|old| old_points.swap_remove(old).point.data);
+            manifold.points.push(with_data(point, data.unwrap_or_default()));
+        }
+        !is_of_normal
+    });
+    writer.keep_new(manifold);
+}
+
+/// Returns the part in whose frame the points of a manifold are; 0 if these are in that of the shape.
+fn part_of<M, C>(manifold: &ContactManifold<M, C>) -> u32 {
+    let of1 = manifold.subshape_pos1().map(|_| manifold.subshape1);
+    of1.or(manifold.subshape_pos2().map(|_| manifold.subshape2)).unwrap_or(0)
+}
+
+/// Returns the index of the old point that a point of a part continues: the one of the same features,
+/// else the nearest one within `same_point`. (A corner of two triangles has two names.)
+fn find_old<C>(
+    point: &TrackedContact<()>,
+    part: u32,
+    old_points: &[OldPoint<C>],
+    same_point: Real,
+) -> Option<usize> {
+    let is_same = |old: &OldPoint<C>| {
+        old.part == part && old.point.fid1 == point.fid1 && old.point.fid2 == point.fid2
+    };
+    let nearest = || {
+        let of_part = old_points.iter().enumerate().filter(|(_, old)| old.part == part);
+        let distances =
+            of_part.map(|(index, old)| (index, old.point.local_p1.distance(point.local_p1)));
+        let (index, distance) = distances.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
+        (distance <= same_point).then_some(index)
+    };
+    old_points.iter().position(is_same).or_else(|| nearest().filter(|_| same_point > 0.0))
+}
+
+/// Returns a point whose features have names of their own among all features of both shapes.
+fn named<C>(mut point: TrackedContact<C>, [subshape1, subshape2]: [u32; 2]) -> TrackedContact<C> {
+    point.fid1 = name(point.fid1, subshape1);
+    point.fid2 = name(point.fid2, subshape2);
+    point
+}
+
+/// Returns the name of a feature of a subshape: the kind of feature, and a number that is unique while
+/// subshapes have up to 256 features and the shape up to four million subshapes.
+fn name(feature: PackedFeatureId, subshape: u32) -> PackedFeatureId {
+    const NUMBER: u32 = (1 << 30) - 1;
+    let number = (feature.0 & NUMBER).wrapping_add(subshape.wrapping_shl(8)) & NUMBER;
+    PackedFeatureId(feature.0 & !NUMBER | number)
+}
+
+#[cfg(test)]
+mod tests {
+    use oorandom::Rand32;
+    use parry3d::math::Vector;
+
+    use super::*;
+
+    type Manifold = ContactManifold<u32, ()>;
+
+    fn manifold(name: u32) -> Manifold {
+        let mut manifold = Manifold::with_data(name, 0, name + 1);
+        let (at, id) = (Vector::ZERO, PackedFeatureId::UNKNOWN);
+        manifold.points.push(TrackedContact::new(at, at, id, id, 0.0));
+        manifold
+    }
+
+    /// Would catch manifolds that are lost, doubled or out of order when some stay in place, some
+    /// go and some are new, and data of the pair before in a manifold that is used again.
+    #[test]
+    fn kept_manifolds_are_in_the_order_in_which_they_were_kept() {
+        let mut random = Rand32::new(3);
+        let mut manifolds: Vec<Manifold> = Vec::new();
+        let (mut next_name, mut stayed, mut moved) = (0, 0, 0);
+        for _ in 0..3000 {
+            let is_lively = random.rand_float() < 0.6;
+            let mut chance = |share: f32| is_lively && random.rand_float() < share;
+            let before: Vec<u32> = manifolds.iter().map(|manifold| manifold.subshape1).collect();
+            let mut expected = Vec::new();
+            let mut writer = Writer::begin(&mut manifolds, None);
+            for (index, name) in before.iter().enumerate() {
+                if chance(0.1) || before.len() < 8 && index == 0 {
+                    next_name += 1;
+                    let spare = writer.take_spare();
+                    assert!(spare.points.is_empty() && spare.data == 0);
+                    writer.keep_new(manifold(next_name));
+                    expected.push(next_name);
+                }
+                if chance(0.1) {
+                    writer.retire(index);
+                } else {
+                    writer.keep_old(index);
+                    expected.push(*name);
+                }
+            }
+            if before.is_empty() {
+                next_name += 1;
+                writer.keep_new(manifold(next_name));
+                expected.push(next_name);
+            }
+            writer.end();
+            let names: Vec<u32> = manifolds.iter().map(|manifold| manifold.subshape1).collect();
+            assert_eq!(names, expected);
+            assert!(manifolds.iter().all(|manifold| manifold.data == manifold.subshape1 + 1));
+            *(if names == before { &mut stayed } else { &mut moved }) += 1;
+        }
+        assert!(stayed > 300 && moved > 300, "{stayed} stayed, {moved} moved");
+    }
+
+    /// Would catch spare manifolds without end.
+    #[test]
+    fn spare_manifolds_are_limited() {
+        let count = 2 * MOST_SPARE as u32;
+        let mut manifolds: Vec<Manifold> = (0..count).map(manifold).collect();
+        let mut writer = Writer::begin(&mut manifolds, None);
+        (0..count).for_each(|index| writer.retire(index as usize));
+        assert_eq!(writer.pool.spare.len(), MOST_SPARE);
+    }
+}
