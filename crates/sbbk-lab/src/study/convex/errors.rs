@@ -1,4 +1,4 @@
-//! The contacts of a mesh and a convex shape, or a compound of some, by brute force in f64.
+//! Contacts of a mesh and a convex shape or compound by brute force in f64.
 
 use glamx::{DAffine3, DMat3, DPose3, DVec3, Pose3};
 use rapier3d::geometry::{SharedShape, TypedShape};
@@ -8,10 +8,9 @@ use sbbk_core::truth::ConvexBody;
 
 use crate::metrics::{TrueContact, Truth};
 
-/// Contacts farther than this, in prediction distances, are not looked for.
+/// Largest distance of contacts, in prediction distances.
 const REACH: f64 = 1.01;
-/// A distance off by more than this share of the prediction distance is wrong; of depths, by more
-/// than this share of the depth, where that is more.
+/// Tolerated errors of a distance, as shares of the prediction distance and of the depth.
 const BANDS: [f64; 2] = [0.01, 1.0e-5];
 
 /// A mesh and a shape in f64.
@@ -25,7 +24,7 @@ struct Part {
     /// The shape in the frame of the part.
     pose: DAffine3,
     body: ConvexBody,
-    /// The corners of the box around it.
+    /// Corners of the box around the part.
     bounds: [DVec3; 2],
 }
 
@@ -42,8 +41,8 @@ impl Judge {
         Self { triangles: triangles.map(|t| corners([t.a, t.b, t.c])).collect(), parts }
     }
 
-    /// With the second of the two at a pose in the frame of the first; a shape without parts is
-    /// part 0. Normals are those of the part.
+    /// Computes the truth for a pose of the second shape in the frame of the first. A shape without
+    /// parts is part 0. Normals are those of the part.
     pub fn truth(&self, pos12: &Pose3, is_mesh_first: bool, prediction: Real) -> Truth {
         let reach = f64::from(prediction) * REACH;
         let pose = if is_mesh_first { affine(pos12).inverse() } else { affine(pos12) };
@@ -70,7 +69,7 @@ impl Judge {
     }
 }
 
-/// A pose as the map that it is: with a quaternion that is not quite of unit length it scales.
+/// A pose as a map. A quaternion that is not quite of unit length scales.
 fn affine(pose: &Pose3) -> DAffine3 {
     let DPose3 { rotation, translation } = DPose3::from(*pose);
     let columns = DVec3::AXES.map(|axis| rotation * axis);
@@ -90,14 +89,14 @@ impl Part {
         }
     }
 
-    /// Whether box and box are farther apart than `reach`.
+    /// True if the boxes are farther apart than `reach`.
     fn is_beyond(&self, [a, b, c]: &[DVec3; 3], reach: f64) -> bool {
         let [min, max] = self.bounds;
         (a.min(*b).min(*c) - reach).cmpgt(max).any() || (a.max(*b).max(*c) + reach).cmplt(min).any()
     }
 }
 
-/// A convex shape of Parry's as the reference knows it.
+/// Converts a convex shape of Parry.
 fn body(shape: &dyn Shape) -> ConvexBody {
     let hull = |points: &[Vector]| {
         ConvexBody::hull(points.iter().map(|point| point.as_dvec3()).collect::<Vec<_>>())
@@ -120,6 +119,6 @@ fn body(shape: &dyn Shape) -> ConvexBody {
         TypedShape::RoundConvexPolyhedron(shape) => round(&shape.inner_shape, shape.border_radius),
         TypedShape::RoundCylinder(shape) => round(&shape.inner_shape, shape.border_radius),
         TypedShape::RoundCone(shape) => round(&shape.inner_shape, shape.border_radius),
-        _ => unreachable!("no convex shape of the study"),
+        _ => unreachable!("all convex shapes of the study are listed"),
     }
 }

@@ -1,4 +1,4 @@
-//! The shapes.
+//! Convex shapes and compounds.
 
 use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
@@ -6,29 +6,27 @@ use rapier3d::geometry::SharedShape;
 
 use crate::scene::random;
 
-/// A convex shape, or a compound of some, and how a mesh comes to it.
+/// A convex shape or a compound.
 #[derive(Clone)]
 pub(in crate::study) struct Kind {
-    /// Its name in tables.
+    /// Name in tables.
     pub name: &'static str,
-    /// The shape, at the size of a body beside a head of two units, or a floor.
+    /// The shape, about a unit across, or a floor.
     pub shape: SharedShape,
-    /// Whether the mesh comes from above, to anywhere on it, and upright or turned as it is asked.
+    /// For floors: orientation of the mesh, which comes from above.
     pub floor: Option<Upright>,
 }
 
-/// How a mesh stands on a floor.
+/// Orientation of a mesh on a floor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::study) enum Upright {
     /// Along the axes of the floor.
     Yes,
-    /// In any orientation: so the box around a large floor, in the frame of the mesh, holds all of
-    /// the mesh.
+    /// Any orientation: the box of the floor in the frame of the mesh then contains the mesh.
     No,
 }
 
-/// Every convex kind that Rapier has, `unit` or so across, and a floor of 100 units; then
-/// compounds. There are none of meshes: Parry does not allow them.
+/// Every convex kind of Rapier, about `unit` across, floors of 100 units, and compounds.
 pub(in crate::study) fn kinds(unit: f32) -> Vec<Kind> {
     let mut random = Rand32::new(3);
     let cloud: Vec<Vec3> = (0..40).map(|_| 0.5 * unit * random::direction(&mut random)).collect();
@@ -69,7 +67,7 @@ pub(in crate::study) fn kinds(unit: f32) -> Vec<Kind> {
     bodies.chain(floors).chain(compounds(unit)).collect()
 }
 
-/// A dumbbell; and balls, cuboids, capsules and hulls about a centre, a few and many.
+/// A dumbbell, and clusters of balls, cuboids, capsules and hulls.
 fn compounds(unit: f32) -> [Kind; 3] {
     let cuboid = |x, y, z| SharedShape::cuboid(x * unit, y * unit, z * unit);
     let end = |x: f32| (Pose3::translation(x * unit, 0.0, 0.0), cuboid(0.2, 0.25, 0.25));

@@ -6,22 +6,24 @@
 
 pub(super) mod errors;
 pub(super) mod kinds;
-mod pair;
 
+use glamx::{Quat, Vec3};
 use oorandom::Rand32;
+use rapier3d::geometry::SharedShape;
 use rapier3d::math::Real;
 
-use self::kinds::{Kind, kinds};
-use self::pair::Pair;
-use super::motion::{Mode, Place, mode_note};
+use self::errors::Judge;
+use self::kinds::{Kind, Upright, kinds};
+use super::motion::{Approach, Mode, Place, mode_note};
 use super::pair::{Contest, DIRECT_NOTE};
 use super::shape;
 use crate::mesh::{self, Mesh};
-use crate::metrics::geometric_mean;
+use crate::metrics::{Sequence, geometric_mean};
 use crate::progress::Progress;
 use crate::report::{Results, Row, TIME_NOTE, Table, TableSpec, number, sides};
+use crate::scene::random;
 
-/// What to compare, and how thoroughly.
+/// Extent of the comparison.
 #[derive(Clone, Debug)]
 pub struct ConvexPlan {
     /// The mesh.
@@ -40,6 +42,8 @@ const ADVANCES: [Real; 5] = [-0.95, -0.5, 0.0, 0.5, 2.0];
 const DEEP: [Real; 2] = [0.05, 0.15];
 /// Motion that is faster than prediction distances allow for.
 const FASTEST: Mode = Mode::Steady(3.0);
+/// One query in so many of a motion is judged.
+const JUDGED: usize = 4;
 const MODES: [Mode; 4] = [Mode::Fresh, Mode::SLOW, Mode::FAST, FASTEST];
 
 const SHAPES: &str = "convex: queries, µs";
@@ -80,9 +84,9 @@ fn measure(plan: &ConvexPlan, kind: &Kind, seed: u64) -> Vec<Row> {
     let about = ADVANCES.map(|advance| advance * plan.prediction);
     let deep = DEEP.map(|share| share * length);
     let mut random = Rand32::new(seed);
-    let approach = |_| Pair::approach(&contest, &mesh, kind, &mut random);
-    let approaches: Vec<_> = (0..plan.approach_count).map(approach).collect();
-    let pair = Pair::new(&contest, &mesh, kind, plan.prediction);
+    let approaches: Vec<_> =
+        (0..plan.approach_count).map(|_| approach(&contest, &mesh, kind, &mut random)).collect();
+    let judge = Judge::new(&mesh, &kind.shape);
     let study = if kind.shape.as_compound().is_some() { COMPOUNDS } else { SHAPES };
     let mut rows: Vec<Row> = Vec::new();
     for (depth, advances) in [("touching", &about[..]), ("deep", &deep)] {
@@ -91,17 +95,59 @@ fn measure(plan: &ConvexPlan, kind: &Kind, seed: u64) -> Vec<Row> {
             .flat_map(|&advance| approaches.iter().map(move |way| way.place(advance)))
             .collect();
         for mode in MODES {
-            let sequences = pair.sequences(&places, mode);
+            let sequences = sequences(plan, kind, &mesh, &places, mode);
             let times = contest.race(plan.repeats, &sequences);
-            rows.extend(pair.rows(study, &sequences).into_iter().zip(times).map(|(row, time)| {
-                row.key("mode", mode.to_string())
-                    .key("depth", depth)
-                    .with("place_count", places.len())
-                    .with("time", time)
-            }));
+            let errors = contest.errors(&sequences, |index, step| {
+                let pos12 = &sequences[index].poses[step];
+                let truth = || judge.truth(pos12, is_mesh_first(index), plan.prediction);
+                (step % JUDGED == 0).then(truth)
+            });
+            for ((backend, time), errors) in Contest::BACKENDS.into_iter().zip(times).zip(errors) {
+                let row = Row::new(study, backend).key("shape", kind.name).key("depth", depth);
+                let row = row.key("mode", mode.to_string()).with("place_count", places.len());
+                rows.push(row.with("time", time).with("errors", errors));
+            }
         }
     }
     rows
+}
+
+/// A random way of the mesh to the shape.
+fn approach(contest: &Contest, mesh: &SharedShape, kind: &Kind, random: &mut Rand32) -> Approach {
+    let shapes = [&kind.shape, mesh];
+    let Some(upright) = kind.floor else {
+        return Approach::random(contest.sbbk(), shapes, random);
+    };
+    let rotation = match upright {
+        Upright::Yes => Quat::IDENTITY,
+        Upright::No => random::rotation(random),
+    };
+    let [x, z] = [(); 2].map(|()| 20.0 * random.rand_float() - 10.0);
+    Approach::along(Vec3::Y, rotation, Vec3::new(x, 0.0, z), contest.sbbk(), shapes)
+        .expect("a way from above to a floor touches it")
+}
+
+/// Queries at some places, every other time with the mesh first.
+fn sequences(
+    plan: &ConvexPlan,
+    kind: &Kind,
+    mesh: &SharedShape,
+    places: &[Place],
+    mode: Mode,
+) -> Vec<Sequence> {
+    let sequence = |(index, place): (usize, &Place)| {
+        let mut sequence = mode.sequence([&kind.shape, mesh], place, plan.prediction);
+        if is_mesh_first(index) {
+            sequence.shapes.reverse();
+            sequence.poses.iter_mut().for_each(|pose| *pose = pose.inverse());
+        }
+        sequence
+    };
+    places.iter().enumerate().map(sequence).collect()
+}
+
+fn is_mesh_first(index: usize) -> bool {
+    index.is_multiple_of(2)
 }
 
 fn verdict(rows: &[Row]) -> String {

@@ -24,20 +24,21 @@ use crate::scene::random;
 use crate::study::StudyError;
 
 const STUDY: &str = "advice";
-/// Convex bodies on it, along each side.
+/// Convex bodies on a terrain, along each side.
 const TERRAIN_SIDE: usize = 7;
-/// Their length, as a share of its longest side.
+/// Length of these, as a share of the longest side.
 const TERRAIN_BODY: f32 = 0.07;
-/// Bodies that fall onto each other: fewer of many triangles, as stock takes long.
+/// Least and largest number of bodies that fall onto each other, and their triangles together.
+/// Higher: more certain speeds; lower: sooner done.
 const BODIES: [usize; 2] = [6, 24];
 const BODY_TRIANGLES: usize = 100_000;
-/// Sensors around one of it.
+/// Sensors around a fixed subject.
 const SENSORS: usize = 10;
-/// A mesh with more triangles has a tree only if it is prepared.
+/// Triangles above which a mesh has a tree only if it is prepared.
 const UNPREPARED: usize = 8192;
 /// Speeds count as equal below this factor.
 const NOISE: f64 = 1.1;
-/// A mesh whose size in units is outside of this wants another `length_unit`.
+/// Sizes in units for which Rapier's default `length_unit` is right.
 const USUAL_SIZES: [f32; 2] = [0.3, 30.0];
 
 /// Measurements of one mesh or robot, displayed as its name and three lines.
@@ -45,9 +46,9 @@ const USUAL_SIZES: [f32; 2] = [0.3, 30.0];
 pub struct Advice {
     /// Name of the mesh, or of the robot's file.
     pub name: String,
-    /// Number of its triangles.
+    /// Number of triangles.
     pub triangles: usize,
-    /// Its longest side, in units.
+    /// Longest side, in units.
     pub size: f32,
     /// Kind that SBBK detects.
     pub kind: SurfaceKind,
@@ -59,7 +60,7 @@ pub struct Advice {
 
 /// Measures whole worlds with this mesh, each `repeats` times for so many `steps`.
 ///
-/// Lengths are the mesh's own; `length_unit` and gravity are as large as bodies are.
+/// `length_unit` and gravity have the size of the bodies.
 pub fn advise(mesh: &Mesh, steps: usize, repeats: usize, progress: &Progress) -> Advice {
     advise_on(&Subject::mesh(mesh), steps, repeats, progress)
 }
@@ -99,12 +100,12 @@ struct Scenes<'a> {
     subject: &'a Subject,
     bounds: Aabb,
     size: f32,
-    /// Shapes that have a tree only if they are prepared.
+    /// Shapes with a tree only if prepared.
     large: Vec<SharedShape>,
 }
 
 impl Scenes<'_> {
-    /// Convex bodies of all kinds, each a little above the highest point of the subject below it.
+    /// Convex bodies of all kinds, each a little above the subject.
     fn terrain(&self, steps: usize) -> Everyday<'_> {
         let length = TERRAIN_BODY * self.size;
         let (_, shapes) = kinds(length).pop().expect("the last is the mixture");
@@ -131,7 +132,7 @@ impl Scenes<'_> {
         Everyday::new(self.row("terrain"), steps, build)
     }
 
-    /// Copies that fall onto each other and a floor.
+    /// Copies that fall onto each other and onto a floor.
     fn bodies(&self, steps: usize) -> Everyday<'_> {
         let [least, most] = BODIES;
         let count = (BODY_TRIANGLES / self.subject.triangle_count().max(1)).clamp(least, most);
@@ -147,7 +148,7 @@ impl Scenes<'_> {
                 let column = self.size * Vec3::X * (0.8 * (index % 3) as f32 - 0.8);
                 let place = column + spread.with_y(height - bounds.mins.y);
                 self.subject.insert(&mut world, Pose3::from_parts(place, turn));
-                // Three start side by side, and may touch.
+                // Three start side by side.
                 height += if index % 3 == 2 { self.size } else { 0.0 };
             }
             Driven::alone(world)
@@ -156,7 +157,7 @@ impl Scenes<'_> {
         Everyday { prepared: self.large.clone(), ..scene }
     }
 
-    /// Sensors that drift through one of it that is fixed, and past it.
+    /// Sensors that drift through a fixed subject, and past it.
     fn sensors(&self, steps: usize) -> Everyday<'_> {
         let build = move || {
             let mut world = world(self.size);
@@ -187,7 +188,7 @@ impl Scenes<'_> {
         Everyday { prepared: self.large.clone(), ..scene }
     }
 
-    /// Puts one into a world that cannot move.
+    /// Inserts a fixed subject.
     fn fix(&self, world: &mut PhysicsWorld) {
         let body = world.insert_body(RigidBodyBuilder::fixed());
         for collider in self.subject.colliders() {
@@ -200,7 +201,7 @@ impl Scenes<'_> {
     }
 }
 
-/// An empty world for bodies of this size.
+/// Makes an empty world for bodies of this size.
 fn world(size: Real) -> PhysicsWorld {
     let mut world = PhysicsWorld::new();
     world.integration_parameters.length_unit = size;

@@ -1,4 +1,4 @@
-//! Terrains, and the bodies that are put on them.
+//! Terrains, and bodies on them.
 
 use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
@@ -10,7 +10,7 @@ use rapier3d::pipeline::PhysicsWorld;
 use crate::mesh::{self, Mesh};
 use crate::scene::{random, shape};
 
-/// A terrain of hills, all worlds of a scene sharing one mesh.
+/// A terrain of hills. All worlds of a scene share its mesh.
 #[derive(Clone)]
 pub(super) struct Ground {
     pub shape: SharedShape,
@@ -19,18 +19,18 @@ pub(super) struct Ground {
     pub triangle_count: u32,
 }
 
-/// Units between bodies at the start: they do not touch, whatever their orientation.
+/// Distance between bodies at the start, in units. Lower: bodies of some orientations touch.
 const SPACING: f32 = 1.6;
 
 impl Ground {
-    /// `cells` along a side, each `cell` units long.
+    /// A terrain with so many `cells` of length `cell` along a side.
     pub fn new(cells: u32, cell: f32, flags: TriMeshFlags) -> Self {
         let size = cell * cells as f32;
         let shape = shape(&mesh::hills(size, cells), flags);
         Self { shape, size, triangle_count: 2 * cells * cells }
     }
 
-    /// A world with nothing else.
+    /// A world with the terrain alone.
     pub fn world(&self) -> PhysicsWorld {
         let mut world = PhysicsWorld::new();
         let collider = ColliderBuilder::new(self.shape.clone()).density(0.0);
@@ -38,7 +38,7 @@ impl Ground {
         world
     }
 
-    /// How many bodies stand side by side on it, of `count`.
+    /// Number of bodies that stand side by side on the terrain, at most `count`.
     pub fn room(&self, count: usize) -> usize {
         let side = ((self.size - 3.0) / SPACING).max(1.0) as usize;
         count.min(side * side)
@@ -55,7 +55,7 @@ impl Ground {
         (0..count).map(pose).collect()
     }
 
-    /// Lets bodies of these shapes, one after the other, fall on it, rolling and turning.
+    /// Drops bodies of these shapes, in turn, with random velocities.
     pub fn scatter(&self, world: &mut PhysicsWorld, shapes: &[SharedShape], count: usize) {
         let mut random = Rand32::new(7);
         for (pose, shape) in
@@ -79,14 +79,14 @@ pub(super) fn head() -> Mesh {
     mesh::monkey_head().centred().scaled_to(1.2)
 }
 
-/// Puts a body where it is wanted, at rest.
+/// Moves a body to a place, at rest.
 pub(super) fn put(world: &mut PhysicsWorld, body: RigidBodyHandle, place: Vec3) {
     let body = &mut world.bodies[body];
     body.set_translation(place, true);
     body.set_linvel(Vec3::ZERO, true);
 }
 
-/// The shapes of the terrain tests by name, of this length; the last is all of them in turn.
+/// Convex shapes of this length by name; the last entry has all of them.
 pub(super) fn kinds(length: Real) -> Vec<(&'static str, Vec<SharedShape>)> {
     const NAMES: [&str; 6] = ["ball", "capsule", "cuboid", "cylinder", "cone", "convex polyhedron"];
     let all = crate::study::convex::kinds::kinds(length);

@@ -15,13 +15,13 @@ mod robots;
 mod scenes;
 mod subject;
 
-pub use advise::{Advice, advise, advise_robot};
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use rapier3d::geometry::TriMeshFlags;
 use rapier3d::math::Real;
 
+pub use self::advise::{Advice, advise, advise_robot};
 use self::ground::Ground;
 use self::measure::Everyday;
 use super::StudyError;
@@ -34,7 +34,7 @@ const DEFORMABLE: &str = "everyday: all flags, and robots";
 const SENSORS: &str = "everyday: sensors and characters";
 const PILE: &str = "everyday: pile";
 const QUERIES: &str = "everyday: queries";
-/// Rapier's, in units.
+/// Rapier's prediction distance, in units.
 const PREDICTION: Real = 0.02;
 
 /// A part of the study.
@@ -54,44 +54,43 @@ pub enum Group {
     Queries,
 }
 
-/// A terrain.
+/// A terrain of `2 * cells * cells` triangles.
 #[derive(Clone, Copy, Debug)]
 pub struct GroundPlan {
-    /// Cells along a side: two triangles each.
+    /// Cells along a side.
     pub cells: u32,
-    /// Length of a cell, in units: bodies are about a unit long.
+    /// Length of a cell, in units; bodies are about a unit long.
     pub cell: f32,
-    /// Whether the mesh has `TriMeshFlags::FIX_INTERNAL_EDGES`.
+    /// True for a mesh with `TriMeshFlags::FIX_INTERNAL_EDGES`.
     pub fixes_edges: bool,
 }
 
-/// Extent of the comparison.
+/// Extent of the study.
 #[derive(Clone, Debug)]
 pub struct EverydayPlan {
     /// Parts of the study.
     pub groups: Vec<Group>,
     /// Terrains for bodies of all kinds.
     pub grounds: Vec<GroundPlan>,
-    /// Bodies on each, if there is room.
+    /// Bodies on each terrain, if there is room.
     pub bodies: usize,
-    /// Steps of a run of these.
+    /// Steps of most runs.
     pub steps: usize,
     /// Runs of each scene on each backend.
     pub repeats: usize,
-    /// Cells along a side of the terrain for single bodies and sensors, of half a unit, with fixed
-    /// edges.
+    /// Cells of half a unit along a side of the terrain for single bodies and sensors.
     pub cells: u32,
-    /// Cells along a side of the world that is crossed once, of a unit.
+    /// Cells of a unit along a side of the terrain that is crossed once.
     pub world_cells: u32,
     /// Small meshes that come and go.
     pub small_meshes: usize,
-    /// Cells along a side of the terrains for meshes with all flags and for robots, of half a unit.
+    /// Cells of half a unit along a side of the terrains for all flags and robots.
     pub deformable_cells: u32,
     /// URDF file of the robots, or `None` for a walker of this crate.
     pub urdf: Option<PathBuf>,
     /// Heads in the pile.
     pub heads: usize,
-    /// Cells along a side of the terrains for single queries, of half a unit.
+    /// Cells of half a unit along a side of the terrains for single queries.
     pub query_cells: Vec<u32>,
     /// Text in the names of the worlds that are measured.
     pub name: String,
@@ -100,8 +99,7 @@ pub struct EverydayPlan {
 }
 
 impl EverydayPlan {
-    /// Terrains of 2048 to two million triangles, of a body's length and a quarter of it, with
-    /// and without fixed edges; ten minutes on two cores.
+    /// Terrains of 2048 to two million triangles; ten minutes on two cores.
     pub fn standard() -> Self {
         let grounds = [32, 100, 400, 1000].into_iter().flat_map(|cells| {
             [1.0, 0.25].into_iter().flat_map(move |cell| {
@@ -147,43 +145,15 @@ impl EverydayPlan {
     }
 }
 
-/// Measures all that `plan` asks for.
+/// Measures all parts.
 ///
-/// Errors: there is no such world, the URDF file cannot be loaded, or the page cannot be written.
+/// Errors: no world has the name, the URDF file cannot be loaded, or the page cannot be written.
 pub fn everyday(plan: &EverydayPlan, progress: &Progress) -> Result<Results, StudyError> {
-    let mut worlds = Worlds { plan, progress, replay: plan.replay.as_deref() };
-    let mut rows = Vec::new();
+    let mut worlds = Worlds { plan, progress, replay: plan.replay.as_deref(), rows: Vec::new() };
     for group in &plan.groups {
-        rows.extend(match group {
-            Group::Terrains => on_terrains(&mut worlds)?,
-            // `--scene` chooses worlds.
-            Group::Queries if !plan.name.is_empty() => Vec::new(),
-            Group::Queries => queries(plan, progress),
-            Group::Single => {
-                let large = plan.large();
-                let world = Ground::new(plan.world_cells, 1.0, TriMeshFlags::empty());
-                let small = Ground::new(64, 0.5, TriMeshFlags::empty());
-                let mut scenes = scenes::bouncing(&large, 5 * plan.steps);
-                scenes.extend(scenes::crossing(&world, 2 * plan.steps));
-                scenes.push(scenes::rolling_population(&small, plan.small_meshes));
-                worlds.measure("single bodies, many meshes", &scenes)?
-            }
-            Group::Flags => {
-                let [all, fixed] = [TriMeshFlags::all(), TriMeshFlags::FIX_INTERNAL_EDGES];
-                let all = Ground::new(plan.deformable_cells, 0.5, all);
-                let fixed = Ground::new(plan.deformable_cells, 0.5, fixed);
-                let mut scenes = scenes::all_flags(&all, plan.steps);
-                scenes.extend(robots::robots(&fixed, plan.urdf.as_deref(), plan.steps)?);
-                worlds.measure("all flags, and robots", &scenes)?
-            }
-            Group::Sensors => {
-                let large = plan.large();
-                let scenes = scenes::sensors(&large, plan.steps);
-                worlds.measure("sensors and characters", &scenes)?
-            }
-            Group::Pile => worlds.measure("pile", &[scenes::pile(plan.heads, plan.steps)])?,
-        });
+        worlds.group(*group)?;
     }
+    let rows = worlds.rows;
     if rows.is_empty() {
         return Err(StudyError::NoScene(plan.name.clone()));
     }
@@ -191,60 +161,72 @@ pub fn everyday(plan: &EverydayPlan, progress: &Progress) -> Result<Results, Stu
     Ok(Results::new(report::verdict(&rows), rows, tables))
 }
 
-impl EverydayPlan {
-    /// The terrain for single bodies and sensors.
-    fn large(&self) -> Ground {
-        Ground::new(self.cells, 0.5, TriMeshFlags::FIX_INTERNAL_EDGES)
-    }
-}
-
-/// Measures worlds.
 struct Worlds<'a> {
     plan: &'a EverydayPlan,
     progress: &'a Progress,
     /// The page that is not written yet.
     replay: Option<&'a Path>,
+    rows: Vec<Row>,
 }
 
 impl Worlds<'_> {
-    fn measure(&mut self, phase: &str, scenes: &[Everyday]) -> Result<Vec<Row>, StudyError> {
+    fn group(&mut self, group: Group) -> Result<(), StudyError> {
+        let plan = self.plan;
+        let [none, fixed] = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES];
+        let large = || Ground::new(plan.cells, 0.5, fixed);
+        match group {
+            Group::Terrains => {
+                for &ground_plan in &plan.grounds {
+                    let GroundPlan { cells, cell, fixes_edges } = ground_plan;
+                    let ground = Ground::new(cells, cell, if fixes_edges { fixed } else { none });
+                    let scenes = scenes::bodies(ground_plan, &ground, plan.bodies, plan.steps);
+                    self.measure(&format!("terrain of {} triangles", 2 * cells * cells), &scenes)?;
+                }
+            }
+            Group::Single => {
+                let (large, world) = (large(), Ground::new(plan.world_cells, 1.0, none));
+                let small = Ground::new(64, 0.5, none);
+                let mut scenes = scenes::bouncing(&large, 5 * plan.steps);
+                scenes.extend(scenes::crossing(&world, 2 * plan.steps));
+                scenes.push(scenes::rolling_population(&small, plan.small_meshes));
+                self.measure("single bodies, many meshes", &scenes)?;
+            }
+            Group::Flags => {
+                let all = Ground::new(plan.deformable_cells, 0.5, TriMeshFlags::all());
+                let fixed = Ground::new(plan.deformable_cells, 0.5, fixed);
+                let mut scenes = scenes::all_flags(&all, plan.steps);
+                scenes.extend(robots::robots(&fixed, plan.urdf.as_deref(), plan.steps)?);
+                self.measure("all flags, and robots", &scenes)?;
+            }
+            Group::Sensors => {
+                let large = large();
+                let scenes = scenes::sensors(&large, plan.steps);
+                self.measure("sensors and characters", &scenes)?;
+            }
+            Group::Pile => self.measure("pile", &[scenes::pile(plan.heads, plan.steps)])?,
+            // `--scene` chooses worlds.
+            Group::Queries if !plan.name.is_empty() => {}
+            Group::Queries => {
+                self.progress.phase("queries on terrains", plan.query_cells.len());
+                for &cells in &plan.query_cells {
+                    let ground = Ground::new(cells, 0.5, none);
+                    self.rows.extend(queries::queries(&ground, plan.repeats));
+                    self.progress.step();
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn measure(&mut self, phase: &str, scenes: &[Everyday]) -> Result<(), StudyError> {
         let scenes: Vec<&Everyday> =
             scenes.iter().filter(|scene| scene.name().contains(&self.plan.name)).collect();
-        let mut rows = Vec::new();
         for (index, scene) in scenes.iter().enumerate() {
             let message = format!("{phase}, world {} of {}", index + 1, scenes.len());
             self.progress.phase(message, scene.step_count(self.plan.repeats));
-            rows.extend(scene.measure(self.plan.repeats, self.progress));
+            self.rows.extend(scene.measure(self.plan.repeats, self.progress));
             self.replay.take().map(|path| scene.play(path)).transpose()?;
         }
-        Ok(rows)
+        Ok(())
     }
-}
-
-fn on_terrains(worlds: &mut Worlds) -> Result<Vec<Row>, StudyError> {
-    let plan = worlds.plan;
-    let mut rows = Vec::new();
-    for (index, &ground_plan) in plan.grounds.iter().enumerate() {
-        let GroundPlan { cells, cell, fixes_edges } = ground_plan;
-        let flags = match fixes_edges {
-            true => TriMeshFlags::FIX_INTERNAL_EDGES,
-            false => TriMeshFlags::empty(),
-        };
-        let ground = Ground::new(cells, cell, flags);
-        let scenes = scenes::bodies(ground_plan, &ground, plan.bodies, plan.steps);
-        let phase = format!("bodies on terrain {} of {}", index + 1, plan.grounds.len());
-        rows.extend(worlds.measure(&phase, &scenes)?);
-    }
-    Ok(rows)
-}
-
-fn queries(plan: &EverydayPlan, progress: &Progress) -> Vec<Row> {
-    progress.phase("queries on terrains", plan.query_cells.len());
-    let mut rows = Vec::new();
-    for &cells in &plan.query_cells {
-        let ground = Ground::new(cells, 0.5, TriMeshFlags::empty());
-        rows.extend(queries::queries(&ground, plan.repeats));
-        progress.step();
-    }
-    rows
 }

@@ -22,22 +22,22 @@ use crate::study::StudyError;
 /// A walker of four legs, nine meshes of 320 to 384 triangles, a metre long.
 const WALKER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/walker/walker.urdf");
 const COUNT: usize = 10;
-/// Between the middles of two robots, in their lengths.
+/// Distance of two robots, in their lengths.
 const SPACING: f32 = 2.0;
 /// Height of the lowest point over the terrain at the start, in units.
 const HEIGHT: f32 = 0.1;
-/// Of the motors in the joints, in 1/s² and 1/s, and how often a leg swings, in Hz.
+/// Motors of the joints: stiffness in 1/s², damping in 1/s, strides in Hz.
 const STIFFNESS: Real = 2000.0;
 const DAMPING: Real = 90.0;
 const STRIDES: f32 = 1.2;
 
-/// A URDF file cannot be used.
+/// Error for a URDF file.
 fn unusable(path: &Path, cause: impl Display) -> StudyError {
     StudyError::Robot { path: path.to_owned(), cause: cause.to_string() }
 }
 
-/// Ten robots on a terrain, with the loader's flags for their meshes and with none: walkers, or those
-/// of a file, whose joints nothing moves.
+/// Ten robots on a terrain, with the loader's flags for their meshes and without. Walkers walk; the
+/// robots of a file hang in their joints.
 ///
 /// Errors: the file cannot be loaded, or its robot has no shapes.
 pub(super) fn robots<'a>(
@@ -72,9 +72,9 @@ pub(super) fn robots<'a>(
     Ok(scenes)
 }
 
-/// The box around the shapes of a robot.
+/// Box around the shapes of a robot.
 ///
-/// Errors: it has none.
+/// Errors: the robot has no shapes.
 pub(super) fn bounds(robot: &UrdfRobot, file: &Path) -> Result<Aabb, StudyError> {
     let links = robot.links.iter().map(|link| (link.body.position(), &link.colliders));
     let boxes = links.flat_map(|(body, colliders)| {
@@ -88,7 +88,7 @@ pub(super) fn bounds(robot: &UrdfRobot, file: &Path) -> Result<Aabb, StudyError>
         .ok_or_else(|| unusable(file, "no link has a shape that can collide"))
 }
 
-/// Where a robot starts. In the file z is up.
+/// Start of a robot. In the file z is up.
 fn start(ground: &Ground, bounds: Aabb, index: usize) -> Pose3 {
     let Vec3 { x: length, y: width, .. } = bounds.extents();
     let [x, z] =
@@ -97,7 +97,7 @@ fn start(ground: &Ground, bounds: Aabb, index: usize) -> Pose3 {
     Pose3::from_parts(above(ground.size, [x, z], height), Quat::from_rotation_x(-FRAC_PI_2))
 }
 
-/// Each robot has its own meshes, as if each were loaded by itself.
+/// Loads a robot with meshes of its own.
 pub(super) fn load(
     file: &Path,
     trimesh_flags: TriMeshFlags,
@@ -109,7 +109,7 @@ pub(super) fn load(
     Ok(robot)
 }
 
-/// The joints of a leg, and when in a stride it swings.
+/// Joints of a leg, and its phase in a stride.
 pub(super) struct Leg {
     joints: [ImpulseJointHandle; 2],
     phase: f32,

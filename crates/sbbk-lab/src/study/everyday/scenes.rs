@@ -42,10 +42,9 @@ pub(super) fn bodies<'a>(
     kinds(1.0).into_iter().map(scene).collect()
 }
 
-/// A ball and meshes, one in each world, that bounce on a terrain, higher than its rim: between two
-/// landings their box leaves that of the terrain.
+/// A ball and meshes, one in each world, that bounce on a terrain, higher than its rim.
 pub(super) fn bouncing(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
-    /// Four times as fast as under plain gravity, and not so fast that a step is more than a body.
+    /// Factor of gravity, and speed upwards after a landing, in units a second.
     const GRAVITY: f32 = 4.0;
     const SPEED: f32 = 24.0;
     let scene = |(name, shape): (&str, SharedShape)| {
@@ -67,7 +66,7 @@ pub(super) fn bouncing(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
     wanderers().map(scene).into()
 }
 
-/// The same, carried over the terrain from one side to the other, always touching it.
+/// A ball and meshes that are carried over a terrain from one side to the other, in contact.
 pub(super) fn crossing(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
     let scene = |(name, shape): (&str, SharedShape)| {
         named(SINGLE, &format!("a {name} crosses once"), ground, steps, move || {
@@ -85,7 +84,7 @@ pub(super) fn crossing(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
     wanderers().map(scene).into()
 }
 
-/// Small meshes, no two alike, that fall on a terrain and are taken away again: `count` in all.
+/// Small meshes, no two alike, that fall on a terrain and are removed: `count` in all.
 pub(super) fn rolling_population(ground: &Ground, count: usize) -> Everyday<'_> {
     const AT_ONCE: usize = 150;
     const EACH_STEP: usize = 5;
@@ -114,7 +113,7 @@ pub(super) fn rolling_population(ground: &Ground, count: usize) -> Everyday<'_> 
     })
 }
 
-/// Balls, and mesh bodies, on a terrain; all meshes with all flags, `DEFORMABLE` among them.
+/// Balls and heads on a terrain; all meshes have all flags, `DEFORMABLE` among them.
 pub(super) fn all_flags(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
     let head = shape(&head(), TriMeshFlags::all());
     let scenes = [("50 balls", SharedShape::ball(0.5), 50), ("20 heads", head, 20)];
@@ -160,7 +159,7 @@ pub(super) fn sensors(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
     scenes
 }
 
-/// Capsules moved by Rapier's character controller, which asks for casts and contacts.
+/// Capsules moved by Rapier's character controller, which uses casts and contacts.
 fn characters(ground: &Ground) -> Driven {
     let mut world = ground.world();
     let shape = SharedShape::capsule_y(0.4, 0.3);
@@ -217,7 +216,7 @@ fn named<'a>(
     Everyday::new(row, steps, build)
 }
 
-/// A ball, and meshes of about its size.
+/// A ball and two meshes of about the same size.
 fn wanderers() -> [(&'static str, SharedShape); 3] {
     let mesh = |mesh| shape(&mesh, TriMeshFlags::empty());
     [

@@ -1,4 +1,4 @@
-//! What advice is about: a mesh, or a robot.
+//! A mesh or a robot that advice is about.
 
 use std::f32::consts::FRAC_PI_2;
 use std::path::Path;
@@ -17,11 +17,11 @@ use crate::mesh::Mesh;
 use crate::scene::Solid;
 use crate::study::StudyError;
 
-/// Shapes around the origin, and how a body of them comes into a world.
+/// Shapes around the origin, and a function that inserts a body of them.
 pub(super) struct Subject {
     pub name: String,
     pub is_robot: bool,
-    /// As they rest.
+    /// Poses at rest, and shapes.
     parts: Vec<(Pose3, SharedShape)>,
     insert: Box<Insert>,
 }
@@ -29,7 +29,7 @@ pub(super) struct Subject {
 type Insert = dyn Fn(&mut PhysicsWorld, Pose3);
 
 impl Subject {
-    /// A mesh, moved to the origin.
+    /// Moves a mesh to the origin.
     pub fn mesh(mesh: &Mesh) -> Self {
         let solid = Solid::new(&mesh.clone().centred());
         let parts = vec![(Pose3::IDENTITY, solid.collider().shape)];
@@ -39,7 +39,7 @@ impl Subject {
         Self { name: mesh.name.clone(), is_robot: false, parts, insert: Box::new(insert) }
     }
 
-    /// The robot of a URDF file, its meshes without flags, turned upright; no link is fixed.
+    /// Loads a robot without flags of meshes, upright, with all links free.
     ///
     /// Errors: the file cannot be loaded, or its robot has no shapes.
     pub fn robot(file: &Path) -> Result<Self, StudyError> {
@@ -63,30 +63,30 @@ impl Subject {
         Ok(Self { name, is_robot: true, parts, insert: Box::new(insert) })
     }
 
-    /// Puts one into a world, free to move.
+    /// Inserts a dynamic body.
     pub fn insert(&self, world: &mut PhysicsWorld, pose: Pose3) {
         (self.insert)(world, pose);
     }
 
-    /// Its colliders, as parts of one rigid body.
+    /// Colliders of one rigid body.
     pub fn colliders(&self) -> impl Iterator<Item = ColliderBuilder> {
         self.parts.iter().map(|(pose, shape)| ColliderBuilder::new(shape.clone()).position(*pose))
     }
 
-    /// The shapes of its meshes with more triangles than this.
+    /// Shapes of the meshes with more triangles than this.
     pub fn larger_than(&self, triangles: usize) -> Vec<SharedShape> {
         let shapes = self.parts.iter().map(|(_, shape)| shape);
         let is_large = |mesh: &TriMesh| mesh.indices().len() > triangles;
         shapes.filter(|shape| shape.as_trimesh().is_some_and(is_large)).cloned().collect()
     }
 
-    /// The box around it, turned.
+    /// Box around the subject at a pose.
     pub fn bounds(&self, pose: &Pose3) -> Aabb {
         let boxes = self.parts.iter().map(|(part, shape)| shape.compute_aabb(&(*pose * *part)));
         boxes.reduce(|one, two| one.merged(&two)).unwrap_or(Aabb::new_invalid())
     }
 
-    /// How far a ray goes until it meets it.
+    /// Distance along a ray to the subject.
     pub fn cast(&self, ray: &Ray, most: Real) -> Option<Real> {
         let hits =
             self.parts.iter().filter_map(|(pose, shape)| shape.cast_ray(pose, ray, most, false));
@@ -97,7 +97,7 @@ impl Subject {
         self.meshes().map(|mesh| mesh.indices().len()).sum()
     }
 
-    /// What its meshes are taken for: of several, the one that asks for most.
+    /// Surface kind; of several meshes inside-out, sheet, solid, in this order.
     pub fn kind(&self) -> SurfaceKind {
         let kinds = self.meshes().map(|mesh| Surface::new(mesh.vertices(), mesh.indices()).kind());
         let kinds: Vec<SurfaceKind> = kinds.collect();
