@@ -1,9 +1,9 @@
 //! The studies that print the tables of README and docs/measurements.md, and the replay of worlds in
 //! a browser.
 //!
-//! [`backend`] has the dispatchers that are compared, [`metrics`] measures one run, [`study`]
-//! compares the backends, [`report`] shows the results, and [`replay`] writes pages that play runs.
-//! Meshes and scenes are those of [`sbbk_testkit`].
+//! [`backend`] has the dispatchers, [`metrics`] measures one run, [`study`] compares the backends,
+//! [`report`] shows the results, and [`replay`] writes pages that play runs.
+//! [`sbbk_testkit`] has the meshes and scenes.
 
 #[macro_use]
 mod named;

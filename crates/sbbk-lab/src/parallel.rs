@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-/// Number of threads for work of which the time is not measured.
+/// Number of threads for work that is not timed.
 pub fn threads() -> usize {
     thread::available_parallelism().map_or(1, usize::from)
 }

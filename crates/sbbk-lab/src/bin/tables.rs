@@ -71,8 +71,7 @@ struct Number {
 }
 
 impl Data {
-    /// Reads the lines that [`sbbk_lab::report::Results::csv`] writes, but those of runs without
-    /// contact recycling.
+    /// Reads the lines of [`sbbk_lab::report::Results::csv`] that have contact recycling.
     fn parse(text: &str) -> Self {
         let lines = text.lines().filter(|line| !line.starts_with('#')).skip(1).map(cells);
         Self(
@@ -93,7 +92,7 @@ impl Data {
         Number { scene, backend: cells[3].clone(), path, value }
     }
 
-    /// Numbers of a backend at a path, by their scenes, of which all parts must end a key.
+    /// Numbers of a backend at a path, by scene. All parts of the pattern must end a key.
     fn find(&self, backend: &str, scene: &str, path: &str) -> HashMap<&str, f64> {
         let ends_key = |number: &Number, part: &str| {
             let mut ends = number.scene.match_indices(part).map(|(at, _)| at + part.len());

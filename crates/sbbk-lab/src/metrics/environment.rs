@@ -1,4 +1,4 @@
-//! Where and how a measurement was taken.
+//! Machine and build of a measurement.
 
 use std::fmt;
 use std::fs;

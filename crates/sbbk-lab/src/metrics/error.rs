@@ -25,7 +25,7 @@ const NORMAL_BAND: f64 = 0.1;
 pub struct ErrorCount {
     /// Mesh pairs judged.
     pub mesh_pairs: usize,
-    /// Mesh pairs of which the judged ones are a sample.
+    /// Mesh pairs from which the judged ones were sampled.
     pub sampled_from: usize,
     /// True triangle pairs within the prediction distance.
     pub true_pairs: usize,
@@ -261,9 +261,9 @@ impl Truth {
         errors
     }
 
-    /// Counts the wrong contacts of surfaces, which are fewer than those of triangles. One contact
+    /// Counts the wrong contacts of surfaces. One contact
     /// is missed if the meshes cross and none is reported. A distance is wrong if it is shorter than
-    /// that of triangles that are apart.
+    /// the distance of the triangles.
     pub fn judge_surfaces(&self, reported: &[Reported]) -> ErrorCount {
         let band = DEPTH_BAND * self.prediction;
         let is_wrong = |contact: &&Reported| {
@@ -335,7 +335,7 @@ mod tests {
         }
         // A wrong depth is one error, not two.
         assert_eq!(judged(&truth, turned(90.0), -0.02), (0, 0, 1));
-        // Beyond the prediction distance nothing is reported: the pair is missed.
+        // A contact beyond the prediction distance is missed.
         assert_eq!(judged(&truth, turned(90.0), 0.03), (0, 0, 1));
         let unsure = TruthPair { normal_is_unique: false, ..truth };
         assert_eq!(judged(&unsure, turned(90.0), -0.01), (0, 0, 0));

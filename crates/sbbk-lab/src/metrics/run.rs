@@ -4,7 +4,7 @@ use super::{ErrorCount, Sequence, StepTimes, WorldState, judged_step, sample_ind
 use crate::backend::{Backend, Installed, Primed};
 use crate::scene::{Scene, SceneWorld};
 
-/// How long to run, and what to look at.
+/// Steps and samples of a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RunPlan {
     /// Steps at the start that are neither timed nor sampled.
@@ -15,7 +15,7 @@ pub struct RunPlan {
     pub sample_every: usize,
     /// At most this many mesh pairs are judged in each sampled step and way (fresh, updated).
     pub sample_size: usize,
-    /// Of so many queries one is timed; all if 0. See
+    /// One query in so many is timed; all if 0. See
     /// [`Probe::time_every`](crate::backend::Probe::time_every).
     pub query_stride: u64,
 }
@@ -38,7 +38,7 @@ pub struct Run {
     pub samples: Vec<Sample>,
 }
 
-/// What was seen in a sampled step.
+/// Measurements of a sampled step.
 ///
 /// Both errors are judged at the poses at the start of the step, where Rapier asks.
 #[derive(Debug)]
@@ -66,7 +66,7 @@ impl Run {
         1e3 * self.times.len() as f64 / total
     }
 
-    /// Mean over the timed steps, in milliseconds; NaN when there are none.
+    /// Mean over the timed steps, in milliseconds; NaN without steps.
     pub fn mean(&self, time: impl Fn(&StepTimes) -> f64) -> f64 {
         self.times.iter().map(time).sum::<f64>() / self.times.len() as f64
     }

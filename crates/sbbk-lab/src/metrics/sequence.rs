@@ -1,8 +1,7 @@
 //! Pairs of shapes, asked for their contacts at one pose after the other.
 //!
-//! Two runs of one scene on different backends drift apart: contacts that differ in the last bit
-//! soon lead to other trajectories. Times of whole runs therefore compare different questions.
-//! Here every backend answers the same ones, those of a study or of one run.
+//! Two runs of one scene drift apart, as a different last bit of a contact leads to another
+//! trajectory. Here every backend has the same queries.
 
 use rapier3d::geometry::{ColliderHandle, ContactManifold, SharedShape};
 use rapier3d::math::{Pose, Real};

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-/// Least, middle, mean and greatest of some values. Times are reported by minimum and median: the minimum
-/// is the least disturbed by whatever else the machine does, the median is what a user sees.
+/// Least, middle, mean and greatest of some values. Times are reported by minimum, which other work
+/// of the machine disturbs least, and by median.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Summary {
     /// How many values.
@@ -21,7 +21,7 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Sums up `values`; `None` when there are none. NaN counts as larger than all numbers.
+    /// Sums up `values`, of which NaN is the largest; `None` without values.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let mut sorted: Vec<f64> = values.into_iter().collect();
         sorted.sort_unstable_by(f64::total_cmp);
@@ -45,8 +45,7 @@ pub fn ratio(numerator: f64, denominator: f64) -> Option<f64> {
     is_defined.then(|| numerator / denominator)
 }
 
-/// The geometric mean, which is that of ratios; `None` when there are no values. A value that is
-/// not positive makes it 0 or NaN.
+/// Geometric mean; `None` without values. A value that is not positive makes it 0 or NaN.
 pub fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let logarithms = Summary::of(values.into_iter().map(f64::ln))?;
     Some(logarithms.mean.exp())
@@ -56,8 +55,7 @@ pub fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Would catch a median or a percentile off by one place, a table that shows "inf times faster" where nothing
-    /// was measured, and a mean of ratios that twice and half as fast do not bring back to one.
+    /// Would catch a median or percentile off by one place, and a ratio to nothing.
     #[test]
     fn numbers_are_summed_up() {
         let odd = Summary::of([9.0, 1.0, 4.0]).unwrap();

@@ -1,4 +1,4 @@
-//! One timed step of a world.
+//! Timed and judged steps of a world.
 
 use std::time::Instant;
 
@@ -7,7 +7,7 @@ use rapier3d::pipeline::PhysicsWorld;
 use super::{ErrorCount, Judge, sample_indices};
 use crate::backend::{Answer, PairKind, Probe};
 
-/// Where the time of one step went, in milliseconds.
+/// Times of one step, in milliseconds.
 ///
 /// Broad phase, narrow phase and solver are Rapier's own timers. The narrow phase holds the
 /// contact queries and what Rapier does with their manifolds (solver contacts, clustering), which
@@ -37,7 +37,7 @@ impl StepTimes {
     }
 }
 
-/// Steps `world` once. `probe` must be that of the world's dispatcher; it is reset.
+/// Steps `world` once. Resets `probe`, which must belong to the dispatcher of the world.
 pub fn timed_step(world: &mut PhysicsWorld, probe: &Probe) -> StepTimes {
     probe.reset();
     world.physics_pipeline.counters.enable();
@@ -59,9 +59,8 @@ pub fn timed_step(world: &mut PhysicsWorld, probe: &Probe) -> StepTimes {
     }
 }
 
-/// Steps `world` once, and judges what Rapier was told of at most `limit` pairs of meshes, by their
-/// vertices at the start of the step, where it asks. `probe` must be that of the world's dispatcher;
-/// contacts of surfaces are judged as [such](super::Truth::judge_surfaces).
+/// Steps `world` once and judges the contacts of at most `limit` pairs of meshes, with the vertices
+/// at the start of the step. `probe` must belong to the dispatcher of the world.
 pub fn judged_step(
     world: &mut PhysicsWorld,
     probe: &Probe,

@@ -1,4 +1,4 @@
-//! Where two runs part.
+//! The first difference of two runs.
 
 use glamx::Vec3;
 use serde::Serialize;
@@ -39,7 +39,7 @@ impl Difference {
                     Self { step: step + 1, pair: *pair, point: point.to_array(), distances };
                 ((a - b).abs() > DIFFERS).then_some(((a - b).abs(), difference))
             });
-            // Of equal ones, that of the first pair: the order of a map is not the same each time.
+            // Ties go to the first pair, as the order of a map varies.
             let largest = differences
                 .max_by(|(a, one), (b, other)| a.total_cmp(b).then(other.pair.cmp(&one.pair)));
             largest.map(|(_, difference)| difference)

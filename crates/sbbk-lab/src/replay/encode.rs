@@ -1,10 +1,11 @@
-//! Recordings as text: JSON and arrays, compressed.
+//! Recordings as text: base64 of a gzip stream.
 //!
-//! The text is base64 of a gzip stream of: the length of the header in bytes as `u32`, the header,
-//! zeros up to a multiple of four, and the arrays that it tells of. Numbers are little-endian.
-//! Of each shape, fine and coarse: vertices as `f32`, triangles as `u32`. Of each run: times as
-//! `f32`; [`planes`] of seven numbers for each object and frame; the count of contacts of each frame
-//! as `u32`; [`planes`] of the contacts.
+//! The stream has the length of the header in bytes as `u32`, the header as JSON, zeros up to a
+//! multiple of four, and arrays of little-endian numbers:
+//!
+//! * for each shape, fine and coarse: vertices as `f32`, triangles as `u32`;
+//! * for each run: times as `f32`, [`planes`] of seven numbers for each object and frame, counts of
+//!   contacts as `u32`, and [`planes`] of the contacts.
 
 use std::io::{self, Write};
 
@@ -27,7 +28,7 @@ const TURN: f32 = 32767.0;
 
 #[derive(Serialize)]
 struct Header<'a> {
-    /// Of positions, in units, and of rotations.
+    /// Step of positions in units, and number of steps of rotations.
     quantum: f32,
     turn: f32,
     stride: usize,
@@ -43,12 +44,12 @@ struct RunHeader<'a> {
     steps: usize,
     frames: usize,
     contacts: usize,
-    /// Of each object, its shape.
+    /// Shapes of the objects.
     shapes: Vec<usize>,
     fixed: Vec<bool>,
 }
 
-/// The recordings as text.
+/// Encodes recordings.
 pub fn encode(runs: &[Recorder]) -> String {
     let packed = packed(runs).expect("a stream in memory is always written");
     BASE64_STANDARD.encode(packed)
@@ -113,7 +114,7 @@ fn packed(runs: &[Recorder]) -> io::Result<Vec<u8>> {
     out.finish()
 }
 
-/// A thousandth of the smallest moving body.
+/// Step of positions: a thousandth of the smallest moving body.
 fn quantum(runs: &[Recorder]) -> f32 {
     let moving = |run: &Recorder| -> Vec<f32> {
         let objects = run.objects.iter().filter(|object| !object.is_fixed);
@@ -125,12 +126,12 @@ fn quantum(runs: &[Recorder]) -> f32 {
 }
 
 fn steps(length: f32, quantum: f32) -> i32 {
-    // Three bytes; what has fallen farther than four thousand bodies stays there.
+    // Three bytes: a body stops after four thousand times its size.
     (length / quantum).round().clamp(-4e6, 4e6) as i32
 }
 
-/// Of each of seven numbers, all objects after each other, and of each object all frames. One that
-/// is not there has a rotation of zeros.
+/// Seven lists of numbers, each with all frames of all objects. Absent objects have a rotation of
+/// zeros.
 fn poses(run: &Recorder, quantum: f32) -> [Vec<i32>; 7] {
     let mut numbers = [(); 7].map(|()| Vec::with_capacity(run.objects.len() * run.frames.len()));
     for object in 0..run.objects.len() {
@@ -139,7 +140,7 @@ fn poses(run: &Recorder, quantum: f32) -> [Vec<i32>; 7] {
         for frame in &run.frames {
             let pose = pose(frame, object);
             let rotation = pose.map_or([0.0; 4], |pose| pose.rotation.to_array());
-            // Of the two quaternions of a rotation, the one that is nearer to the last.
+            // A rotation has two quaternions; take the one nearer to the last.
             let dot: f32 = rotation.iter().zip(last).map(|(a, b)| a * b).sum();
             let rotation = rotation.map(|part| if dot < 0.0 { -part } else { part });
             (last, shown) = (rotation, pose.map_or(shown, |pose| pose.translation));
@@ -155,9 +156,8 @@ fn pose(frame: &Frame, object: usize) -> Option<Pose> {
     *frame.poses.get(object)?
 }
 
-/// Of each list of numbers, their differences from the ones before, folded so that small ones of
-/// either sign are small; of these, the lowest bytes, the middle and the highest ones. What stays
-/// where it is becomes long runs of zeros.
+/// Differences of successive numbers, zigzag-coded, first all low bytes, then the middle and the
+/// high ones. Numbers that do not change become long runs of zeros.
 fn planes<const N: usize>(lists: &[Vec<i32>; N]) -> Vec<u8> {
     let mut bytes = Vec::new();
     for list in lists {

@@ -1,4 +1,4 @@
-//! What is kept of a run.
+//! Recording of a run.
 
 use std::collections::HashMap;
 use std::time::Instant;
@@ -16,18 +16,18 @@ pub(super) const STRIDE: usize = 2;
 /// At most this many contacts of a frame are kept, evenly chosen.
 const CONTACTS: usize = 200;
 
-/// A run as it is recorded: poses and contacts, and times of all steps.
+/// Poses, contacts and times of a run.
 #[derive(Clone, Debug)]
 pub struct Recorder {
     pub(super) name: String,
-    /// In the order in which they came into the world.
+    /// Colliders in the order of insertion.
     pub(super) objects: Vec<Object>,
     places: HashMap<ColliderHandle, usize>,
     pub(super) shapes: Shapes,
     pub(super) frames: Vec<Frame>,
-    /// Of each step, in milliseconds.
+    /// Times of all steps, in milliseconds.
     pub(super) times: Vec<f32>,
-    /// Of each step: the deepest contact of each pair of objects.
+    /// Deepest contact of each pair of objects, for all steps.
     pub(super) deepest: Vec<HashMap<[usize; 2], Deepest>>,
 }
 
@@ -38,10 +38,10 @@ pub(super) struct Object {
     pub is_fixed: bool,
 }
 
-/// What is drawn.
+/// Poses and contacts at one time.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Frame {
-    /// Of the objects; `None` once one is gone.
+    /// Poses of the objects; `None` for removed ones.
     pub poses: Vec<Option<Pose>>,
     pub contacts: Vec<Vec3>,
 }
@@ -54,7 +54,7 @@ pub(super) struct Deepest {
 }
 
 impl Recorder {
-    /// Of a world before its first step.
+    /// Starts the recording of a world before its first step.
     pub fn new(name: impl ToString, world: &PhysicsWorld) -> Self {
         let mut recorder = Self {
             name: name.to_string(),
@@ -108,7 +108,7 @@ impl Recorder {
         })
     }
 
-    /// All points of the solver's pairs within the prediction distance; notes the deepest.
+    /// Returns all points within the prediction distance, and stores the deepest of each pair.
     fn contacts(&mut self, world: &PhysicsWorld) -> Vec<Vec3> {
         let prediction = world.integration_parameters.prediction_distance();
         let (mut contacts, mut deepest) = (Vec::new(), HashMap::new());

@@ -10,8 +10,8 @@ use rapier3d::parry::shape::Shape;
 use crate::backend::shape_address;
 use crate::mesh::Mesh;
 
-/// Triangles of the finer and the coarser resolution, about: finer, the page gets large; coarser
-/// ones are for machines that cannot draw the finer ones fast enough.
+/// Triangles of the fine and the coarse resolution, which slow machines draw. Higher: larger pages;
+/// lower: rougher shapes.
 const TRIANGLES: [usize; 2] = [20_000, 160];
 /// Segments of round shapes.
 const SEGMENTS: u32 = 16;
@@ -21,7 +21,7 @@ const SEGMENTS: u32 = 16;
 pub(super) struct Shapes {
     pub surfaces: Vec<Mesh>,
     by_address: HashMap<usize, usize>,
-    /// Keeps addresses from being those of others.
+    /// Keeps the addresses in use.
     kept: Vec<SharedShape>,
 }
 

@@ -81,8 +81,7 @@ impl Stream {
     }
 }
 
-/// Would catch poses, contacts and times that are lost, mixed up, or moved by more than half a step
-/// of their grid; bodies that stay on the page when they are gone; and a page that grows.
+/// Would catch lost or mixed up poses, contacts and times, removed bodies that stay, and large pages.
 #[test]
 fn what_is_written_can_be_read() {
     let runs = [Backend::Stock, Backend::Sbbk].map(recorded);
@@ -127,13 +126,13 @@ fn what_is_written_can_be_read() {
     }
     assert_eq!(stream.at, stream.bytes.len());
 
-    // Of the pile of 200 heads and 600 steps, the page may be 5 MB large.
+    // A page of 200 heads and 600 steps may have 5 MB.
     let head_frames = 2 * HEADS * (STEPS / 2);
     let shapes = 30_000;
     assert!(text.len() < shapes + 40 * head_frames, "{} for {head_frames}", text.len());
 }
 
-/// Would catch a first difference that is none: the runs are the same until bodies meet.
+/// Would catch a difference before bodies meet.
 #[test]
 fn runs_part_at_the_first_contact_that_differs() {
     let [stock, sbbk] = [Backend::Stock, Backend::Sbbk].map(recorded);

@@ -1,4 +1,4 @@
-//! Results as rows, and tables and files of these.
+//! Results: rows, tables and files.
 
 mod output;
 mod row;

@@ -1,4 +1,4 @@
-//! One row of results.
+//! Rows of results.
 
 use serde::Serialize;
 use serde_json::{Map, Value};

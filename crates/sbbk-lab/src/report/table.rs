@@ -35,7 +35,7 @@ pub struct TableSpec<'a> {
     notes: Vec<String>,
 }
 
-/// One column: its name, and a function of the rows of a line.
+/// A column: its name, and a function of the rows of a line.
 #[derive(Clone, Debug)]
 pub struct Column {
     header: String,
@@ -71,8 +71,8 @@ pub fn errors(header: &str, path: &'static str) -> Column {
     column(header, path, Cell::Errors)
 }
 
-/// A column of ratios: the number at `path` of `base` with the same keys over that of the backend,
-/// as a geometric mean over the rows of a line.
+/// A column of ratios, as a geometric mean over the rows of a line: the number at `path` of the row of
+/// `base` with the same keys, divided by the row's own number.
 pub fn faster(header: &str, path: &'static str, base: impl ToString) -> Column {
     column(header, path, Cell::Faster(base.to_string()))
 }
@@ -98,7 +98,7 @@ impl Column {
         Self { backend: Some(backend.to_string()), ..self }
     }
 
-    /// Turns a ratio over, for quantities of which more is better.
+    /// Inverts a ratio, for quantities where more is better.
     pub fn inverse(self) -> Self {
         let Cell::Faster(base) = self.cell else { return self };
         Self { cell: Cell::Greater(base), ..self }

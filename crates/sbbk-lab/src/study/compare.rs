@@ -11,12 +11,12 @@ use crate::scene::{HelicopterBallDrop, MonkeyPile, Scene};
 
 const FRAMES: &str = "helicopter";
 
-/// What to compare, and how thoroughly.
+/// Extent of the comparison.
 #[derive(Clone, Debug)]
 pub struct ComparePlan {
     /// Timed runs of each backend in the first experiment; the paper has 30.
     pub drops: usize,
-    /// Steps of each of these: two seconds of fall, bounces and rolling.
+    /// Steps of a run, for the fall, the bounces and the rolling.
     pub drop_steps: usize,
     /// Sizes of the piles of the second experiment.
     pub heads: Vec<usize>,
@@ -55,7 +55,7 @@ impl ComparePlan {
         }
     }
 
-    /// The same experiments on a small scale, some ten seconds: for trying, not for quoting.
+    /// Both experiments on a small scale, some ten seconds: for trying, not for quoting.
     pub fn quick() -> Self {
         let standard = Self::standard();
         Self {
@@ -121,7 +121,7 @@ fn verdict(plan: &ComparePlan, rows: &[Row]) -> String {
 }
 
 /// Runs the first experiment on all backends in turn. Times are means over the steps of a run, in
-/// milliseconds; errors are those of a run of their own.
+/// milliseconds; another run is judged.
 fn drops(plan: &ComparePlan, progress: &Progress) -> Vec<Row> {
     let scene = HelicopterBallDrop::default();
     progress.phase(scene.name(), (plan.drops + 1) * Backend::ALL.len());

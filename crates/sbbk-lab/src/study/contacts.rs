@@ -87,7 +87,7 @@ impl ContactsPlan {
     }
 }
 
-/// One mesh at one size against itself, with one prediction distance.
+/// A mesh at one size against itself, with one prediction distance.
 #[derive(Clone)]
 struct Case<'a> {
     mesh: &'a ApproachedMesh,
@@ -99,7 +99,7 @@ struct Case<'a> {
     errors: [ContactErrors; 2],
 }
 
-/// Judges all cases, and measures those of Rapier's default.
+/// Judges all cases, and measures the times at Rapier's defaults.
 pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Results {
     let mut shapes = Vec::new();
     for mesh in &plan.meshes {
@@ -176,7 +176,7 @@ impl Case<'_> {
             memory.ask(contest.sbbk(), [&**shape; 2], &place.pos12, prediction);
             memory.manifolds.len() <= PAIR_LIMIT
         };
-        // Beyond the first touch, in units; all are within the prediction distance.
+        // Advances beyond the first touch, all within the prediction distance.
         let first = -0.95 * prediction;
         [first, -0.5 * prediction, 0.0, 0.02 * size, 0.06 * size].map(|advance| {
             let ways = (0..=HALVINGS).rev().map(|k| first + (advance - first) * 0.5f32.powi(k));
@@ -238,7 +238,7 @@ fn contest_errors(
     contest.errors(sequences, |index, step| is_judged(step).then(|| sequences[index].truth(step)))
 }
 
-/// The number as it is written: 0.1 as an f32 is not 0.1 as an f64.
+/// Converts 0.1 to 0.1, as digits and not as bits.
 fn decimal(value: Real) -> Value {
     value.to_string().parse::<f64>().unwrap_or(f64::NAN).into()
 }

@@ -1,8 +1,8 @@
 //! The studies. Each has a plan, standard or quick, and returns a verdict, rows and tables:
 //! [`Results`](crate::report::Results).
 //!
-//! Times are taken in one process, backends in turn. Trees are built before, but for [`everyday`],
-//! where they are part of the steps. Wrong contacts are counted on the queries that are timed, or on
+//! Times are taken in one process, backends in turn. Trees are built before; in [`everyday`] they
+//! are part of the steps. Wrong contacts are counted on the queries that are timed, or on
 //! queries made in the same way.
 
 pub mod compare;

@@ -150,7 +150,7 @@ fn reach(shape: &SharedShape, from: Vec3, direction: Vec3) -> Real {
 /// Poses from before a place through it to as far behind it, in equal steps. The mesh slides along
 /// a straight line and turns about its origin; each of the two moves the surface by half of `step`.
 fn motion(shape: &SharedShape, place: &Place, step: Real) -> Vec<Pose3> {
-    // The axis is neither that of rolling nor that of spinning.
+    // The axis is between those for rolling and for spinning.
     let slide = place.direction.any_orthonormal_vector();
     let axis = FRAC_1_SQRT_2 * (place.direction + place.direction.cross(slide));
     let local_axis = place.pos12.rotation.inverse() * axis;

@@ -14,10 +14,10 @@ use crate::scene::{MonkeyPile, Scene};
 pub const RUNS: &str = "pile, whole runs";
 const SAME_POSES: &str = "pile, same poses";
 
-/// How often and how long to run a pile.
+/// Runs of a pile.
 #[derive(Clone, Debug)]
 pub struct PilePlan {
-    /// Backends that run the whole scene. The same poses are those of the first one.
+    /// Backends that run the whole scene. The first one gives the poses for all.
     pub backends: Vec<Backend>,
     /// Runs of each backend.
     pub repeats: usize,
@@ -37,9 +37,8 @@ pub struct SamePosesPlan {
 }
 
 impl PilePlan {
-    /// One query in so many is timed: large piles have tens of thousands a step, and two readings
-    /// of the clock for each would be a part of the result. Higher: noisier times of queries;
-    /// lower: slower steps.
+    /// Queries for one that is timed, as reading the clock takes time. Higher: noisier times of
+    /// queries; lower: slower steps.
     pub const QUERY_STRIDE: u64 = 8;
     /// Steps until the lowest heads land.
     pub const FREE_FALL: usize = 27;
@@ -90,7 +89,7 @@ fn pile_row(study: &'static str, backend: Backend, scene: &MonkeyPile) -> Row {
     row.key("contact_recycling", scene.contact_recycling)
 }
 
-/// Sums up the runs of one backend, of which there is at least one.
+/// Sums up the runs of one backend; there must be a run.
 fn row(scene: &MonkeyPile, runs: &[Run]) -> Row {
     let first = &runs[0];
     let mean = |time: fn(&StepTimes) -> f64| Summary::of(runs.iter().map(|run| run.mean(time)));

@@ -44,7 +44,7 @@ pub struct Gear {
     pub teeth: u32,
     /// Pitch diameter over teeth, in units.
     pub module: f32,
-    /// What its teeth are thinner than the gaps of its mate, on the pitch circle.
+    /// Difference of a gap of the mate and a tooth, on the pitch circle.
     pub thinned: f32,
     /// Half the length of a tooth along the axis.
     pub half_width: f32,
@@ -61,7 +61,7 @@ impl Gear {
         0.5 * self.module * self.teeth as f32
     }
 
-    /// One tooth about the `x` axis, counter-clockwise: flanks are involutes of a circle.
+    /// Outline of the tooth at the `x` axis, counter-clockwise, with involute flanks.
     pub fn tooth(&self) -> Vec<Vec2> {
         let involute = |angle: f32| angle.tan() - angle;
         let pitch = self.pitch_radius();
@@ -103,7 +103,7 @@ impl Gear {
 /// A rack along the `y` axis that a [`Gear`] runs on.
 #[derive(Clone, Copy, Debug)]
 pub struct Rack {
-    /// That runs on it, with its axis at the origin.
+    /// The gear on the rack, with its axis at the origin.
     pub gear: Gear,
     /// Teeth, half of them to either side of the gap that the first tooth of the gear is in.
     pub teeth: u32,
@@ -153,14 +153,14 @@ impl Rack {
 pub struct Thread {
     /// Least radius of the bolt, in units.
     pub root: f32,
-    /// What the thread stands out, in units.
+    /// Height of the thread, in units.
     pub height: f32,
     /// Rise of one turn, in units.
     pub pitch: f32,
-    /// How far the flanks lean at either side, as a share of the pitch.
+    /// Lean of the flanks at each side, as a share of the pitch.
     pub flank: f32,
-    /// What the thread is thicker at its upper and its lower side than 0.2 of the pitch at its top, as a
-    /// share of the pitch: with the flank, less than 0.4.
+    /// Added thickness of the thread at each side, as a share of the pitch; with the flank, less
+    /// than 0.4.
     pub thicker: f32,
     /// Turns of the part.
     pub turns: u32,
@@ -169,7 +169,7 @@ pub struct Thread {
 }
 
 impl Thread {
-    /// That of a bolt with a lead angle of 1.9 degrees.
+    /// A bolt with a lead angle of 1.9 degrees.
     pub const BOLT: Self = Self {
         root: 0.9,
         height: 0.1,
@@ -212,7 +212,7 @@ impl Thread {
         self.around(angle, self.root + self.height * stands_out, self.pitch * ended)
     }
 
-    /// How much of the height the thread stands out at a share of the pitch.
+    /// Share of the height by which the thread stands out at a share of the pitch.
     fn stands_out(&self, place: f32) -> f32 {
         let corners = self.profile().into_iter().chain([[1.0, 0.0]]);
         let ends = self.profile().into_iter().zip(corners.skip(1));

@@ -17,7 +17,7 @@ use glamx::Vec3;
 use super::Mesh;
 use super::shapes::octasphere;
 
-/// One step of the shaping, in the words of the formula above.
+/// A step of the shaping, see the formula above.
 struct Feature {
     /// A direction, of any length.
     centre: Vec3,
@@ -107,7 +107,7 @@ pub fn monkey_head_with(detail: u32) -> Mesh {
     head.centred().scaled_to(2.0).named("monkey head")
 }
 
-/// Where a direction with `x >= 0` comes to lie after these features, each with its anchor.
+/// Maps a direction with `x >= 0` by these features, each with its anchor.
 fn shaped(direction: Vec3, features: &[(&Feature, Vec3)]) -> Vec3 {
     features.iter().fold(direction * SKULL, |point, (feature, anchor)| {
         let change = feature.pull + feature.stretch * (point - anchor);
@@ -116,7 +116,7 @@ fn shaped(direction: Vec3, features: &[(&Feature, Vec3)]) -> Vec3 {
 }
 
 impl Feature {
-    /// How much of the feature a unit direction feels, in 0..1.
+    /// Weight of the feature in a unit direction, in 0..1.
     fn weight(&self, direction: Vec3) -> f32 {
         let [plateau, rim] = self.profile;
         let t = ((direction - self.centre.normalize()) / self.spread).length_squared();

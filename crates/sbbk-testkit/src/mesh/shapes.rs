@@ -35,7 +35,7 @@ pub fn cuboid(half_extents: Vec3, cells: u32) -> Mesh {
 /// A box about the origin, cut into so many cells along each axis (at least 1).
 pub fn slab(half_extents: Vec3, cells: [u32; 3]) -> Mesh {
     let cells = cells.map(|cells| cells.max(1));
-    // The same but for the sign at both ends, so that the rims of the faces weld.
+    // Both ends differ by the sign only, so that the rims of the faces weld.
     let coordinate = |k: u32, cells: u32| (2.0 * k as f32 - cells as f32) / cells as f32;
     let faces = [0, 1, 2, 3, 4, 5].map(|face| {
         let (axis, sign) = (face / 2, if face % 2 == 0 { 1.0 } else { -1.0 });

@@ -1,10 +1,10 @@
-//! What a dispatcher answered for one pair of meshes, kept for judging it afterwards.
+//! Recorded queries of two meshes.
 
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::ContactManifold;
 use rapier3d::parry::shape::Shape;
 
-/// What a call of `contact_manifolds` asks about two meshes.
+/// Arguments of `contact_manifolds` for two meshes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Question {
     /// [`shape_address`] of both meshes.
@@ -15,7 +15,7 @@ pub struct Question {
     pub prediction: Real,
 }
 
-/// One pair of triangles reported as touching.
+/// A pair of triangles with a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reported {
     /// Triangle of the first mesh.
@@ -28,13 +28,13 @@ pub struct Reported {
     pub normals: [Vector; 2],
 }
 
-/// One call of `contact_manifolds` for two meshes.
+/// A call of `contact_manifolds` for two meshes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
-    /// What was asked.
+    /// The arguments.
     pub question: Question,
-    /// Triangle pairs with a point no farther than the prediction distance. Points beyond it are
-    /// left out: stock Parry keeps those of an earlier pose, and the solver ignores them.
+    /// Triangle pairs with a point no farther than the prediction distance. Points beyond it,
+    /// which stock Parry keeps from earlier poses, are left out.
     pub reported: Vec<Reported>,
 }
 
@@ -46,7 +46,7 @@ impl Question {
 }
 
 impl Reported {
-    /// What manifolds hold within the prediction distance.
+    /// Contacts of manifolds within the prediction distance.
     pub fn all<M, C>(manifolds: &[ContactManifold<M, C>], prediction: Real) -> Vec<Self> {
         let reported = manifolds.iter().filter_map(|manifold| {
             let distances = manifold.points.iter().map(|point| point.dist);
@@ -69,7 +69,7 @@ impl Answer {
     }
 }
 
-/// Where a shape is stored: tells apart the shapes of a world for as long as it owns them.
+/// Address of a shape, unique as long as the shape lives.
 pub fn shape_address(shape: &dyn Shape) -> usize {
     std::ptr::from_ref(shape).cast::<()>().addr()
 }

@@ -8,7 +8,7 @@ use rapier3d::parry::shape::{Shape, TriMesh};
 
 use super::Answer;
 
-/// What the two shapes of a pair are.
+/// Kind of a pair of shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PairKind {
     /// Two triangle meshes.
@@ -66,9 +66,8 @@ impl Probe {
         Tally { calls, time: timed.mul_f64(calls as f64 / timed_calls as f64) }
     }
 
-    /// Times one call in `stride` from the next [`Self::reset`] on; at first all are (0 is 1). Two
-    /// readings of the clock for each of tens of thousands of calls would be a part of what is
-    /// measured: 3 % of a step of the pile of 2000 heads.
+    /// Times one call in `stride` from the next [`Self::reset`] on; at first all are (0 is 1). Reading
+    /// the clock takes time.
     pub fn time_every(&self, stride: u64) {
         self.0.untimed.store(stride.saturating_sub(1), Relaxed);
     }
@@ -117,7 +116,7 @@ impl Probe {
     }
 }
 
-/// What the clock adds to the time of each call: the mean of 10,000 empty measurements.
+/// Time that the clock adds to each call: the mean of 10,000 empty measurements.
 pub fn clock_cost() -> Duration {
     const REPEATS: u32 = 10_000;
     let total: Duration = (0..REPEATS).map(|_| Instant::now().elapsed()).sum();

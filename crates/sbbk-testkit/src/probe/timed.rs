@@ -65,7 +65,7 @@ macro_rules! forward_queries {
     };
 }
 
-/// The same for two convex shapes with a manifold.
+/// The query of two convex shapes with a manifold, passed to `self.inner`.
 macro_rules! forward_pair {
     ($manifold:ty, $contact:ty) => {
         forward! {

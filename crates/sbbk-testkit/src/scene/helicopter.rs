@@ -26,7 +26,7 @@ pub struct HelicopterBallDrop {
 const BALL_DETAIL: u32 = 12;
 /// Share of the helicopter's height, from the top, that is taken for the rotor.
 const ROTOR_SHARE: f32 = 0.1;
-/// Where over the blade the ball starts, as a share of the way from hub to tip.
+/// Start of the ball over the blade, as a share of the way from hub to tip.
 const BLADE_SHARE: f32 = 0.3;
 
 impl Default for HelicopterBallDrop {

@@ -14,9 +14,8 @@ use crate::mesh::{self, Mesh};
 /// Heads released at once from a loose grid above a floor, so that they fall and collide with it
 /// and with each other.
 ///
-/// The grid has five layers, each about square. Its cells are cubes just larger than the head's
-/// sphere about its origin: no two heads touch at the start, whatever their orientation, which is
-/// random. The lowest layer is half a cell above the floor, a fixed cuboid wide enough for the pile
+/// The grid has five layers, each about square. Its cells are just larger than the head's sphere,
+/// so that no two heads touch at the start. Orientations are random. The lowest layer is half a cell above the floor, a fixed cuboid wide enough for the pile
 /// to spread. With the default head the pile is in full contact after about 90 steps (1.5 seconds).
 #[derive(Clone, Debug)]
 pub struct MonkeyPile {
@@ -92,7 +91,7 @@ impl Scene for MonkeyPile {
         let mut world = PhysicsWorld::new();
         world.integration_parameters.contact_recycling = self.contact_recycling;
         let cell = self.cell();
-        // As much room beside the grid as it is wide or high.
+        // Leaves as much room beside the grid as it is wide or high.
         let side = 2.0 * cell * self.columns().max(LAYERS) as f32;
         world.insert(
             RigidBodyBuilder::fixed().translation(Vector::Y * -cell),

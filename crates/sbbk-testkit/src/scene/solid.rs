@@ -17,9 +17,8 @@ const LEAST_SOLIDITY: f64 = 0.01;
 
 /// A shared triangle-mesh shape with its mass properties.
 ///
-/// The shape is what `ColliderBuilder::trimesh` would hold. The mass properties are those of the
-/// enclosed volume, or of the bounding box when the mesh is open or inside out, so that any mesh
-/// file falls.
+/// The mass properties belong to the enclosed volume, or to the bounding box if the mesh is open or
+/// inside out.
 #[derive(Clone)]
 pub struct Solid {
     shape: SharedShape,

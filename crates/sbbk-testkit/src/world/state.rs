@@ -1,12 +1,11 @@
-//! What a world looks like between two steps.
+//! State of a world between two steps.
 
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle};
 use rapier3d::pipeline::PhysicsWorld;
 
 /// Contacts, heights, energy and penetration after a step.
 ///
-/// The contacts are those that the world holds, and so those of the last step's start; with
-/// contact recycling a pair's may be older still (it may have moved by 0.05 units since).
+/// The contacts belong to the start of the last step. Contacts of recycled pairs are older.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WorldState {
     /// Collider pairs with at least one contact point.
@@ -27,7 +26,7 @@ pub struct WorldState {
 }
 
 impl WorldState {
-    /// The state of `world`; heights and energy are those of the bodies `watched`.
+    /// State of `world`, with heights and energy of the bodies `watched`.
     pub fn of(world: &PhysicsWorld, watched: &[RigidBodyHandle]) -> Self {
         let mut state = Self::default();
         state.add_contacts(world);

@@ -42,7 +42,7 @@ impl Judge {
     }
 
     /// Computes the truth for a pose of the second shape in the frame of the first. A shape without
-    /// parts is part 0. Normals are those of the part.
+    /// parts is part 0. Normals belong to the part.
     pub fn truth(&self, pos12: &Pose3, is_mesh_first: bool, prediction: Real) -> Truth {
         let reach = f64::from(prediction) * REACH;
         let pose = if is_mesh_first { affine(pos12).inverse() } else { affine(pos12) };

@@ -42,7 +42,7 @@ const ADVANCES: [Real; 5] = [-0.95, -0.5, 0.0, 0.5, 2.0];
 const DEEP: [Real; 2] = [0.05, 0.15];
 /// Motion that is faster than prediction distances allow for.
 const FASTEST: Mode = Mode::Steady(3.0);
-/// One query in so many of a motion is judged.
+/// Queries of a motion for one that is judged.
 const JUDGED: usize = 4;
 const MODES: [Mode; 4] = [Mode::Fresh, Mode::SLOW, Mode::FAST, FASTEST];
 

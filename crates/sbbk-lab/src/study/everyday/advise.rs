@@ -210,8 +210,7 @@ fn world(size: Real) -> PhysicsWorld {
 }
 
 impl Advice {
-    /// Times of collision detection of stock over those of SBBK: as a terrain, as bodies, as
-    /// sensors.
+    /// Speed of collision detection beside stock: as a terrain, as bodies, as sensors.
     pub fn speeds(&self) -> [f64; 3] {
         self.rows
             .each_ref()

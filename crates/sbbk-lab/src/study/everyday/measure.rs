@@ -1,4 +1,4 @@
-//! One scene, run under stock Rapier and under SBBK in turns.
+//! Runs of a scene under stock Rapier and under SBBK, in turns.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -61,8 +61,8 @@ const IGNORED: f64 = 1.0;
 /// A worst step is worse above this many microseconds.
 const WORST: f64 = 2000.0;
 
-/// Compares median and worst step of SBBK with those of stock; `ignored` and `worst` have the unit
-/// of the times.
+/// Compares median and worst step of SBBK with stock; `ignored` and `worst` have the unit of the
+/// times.
 pub(super) fn verdict(stock: [f64; 2], sbbk: [f64; 2], ignored: f64, worst: f64) -> &'static str {
     let [is_slower, is_worse] =
         [sbbk[0] > (NOISE * stock[0]).max(stock[0] + ignored), sbbk[1] > stock[1] + worst];

@@ -31,7 +31,7 @@ named! {
     }
 }
 
-/// How a body moves in casts, and turns in nonlinear ones, a second.
+/// Velocity of a body in casts, and angular velocity in nonlinear ones, a second.
 const WAY: Vec3 = Vec3::new(0.2, -1.0, 0.1);
 const TURN: Vec3 = Vec3::new(0.3, 0.7, 1.1);
 /// How long.

@@ -21,7 +21,7 @@ const PHASES: usize = 8;
 /// Time of one step, in seconds.
 const STEP: f32 = 1.0 / 60.0;
 
-/// What a plate flies at.
+/// Target of the plates.
 #[derive(Clone, Copy)]
 enum Target {
     Floor,
@@ -79,11 +79,9 @@ impl Target {
 /// Steps in which the middle of a plate may be in the target, before it has passed.
 const STUCK: usize = 4;
 
-/// Plates that fly down, turned and placed in many ways. One has passed if it ends below, or if for
-/// longer than an impact its middle is in the target or a spike or an edge crosses both its faces. (An edge
-/// crosses the faces of 6 of 400 with patches, of 27 with every contact, of 203 in stock Rapier, and of 261
-/// there if plate and edge are convex shapes. Rapier looks ahead by linear velocities alone: a plate that an
-/// edge has stopped and turns at 36 rad/s, 0.6 rad a step, is looked for as far as its middle moves.)
+/// Plates that fly down at several turns and places. A plate has passed if it ends below the target.
+/// It has passed, too, if its middle is in the target, or a tip crosses both its faces, for longer
+/// than an impact.
 fn plates(kit: &Kit, target: Target) -> Figures {
     const SPEED: f32 = 30.0;
     let mesh = target.mesh();

@@ -17,7 +17,7 @@ const TUBE: f32 = 0.2;
 const SEGMENTS: [u32; 2] = [24, 12];
 /// Between the middles of two rings of a chain that is taut.
 const PITCH: f32 = 2.0 * (RADIUS - TUBE);
-/// What they are closer at the start.
+/// Difference from the pitch at the start.
 const SLACK: f32 = 0.02;
 const STEPS: usize = 360;
 
@@ -75,7 +75,7 @@ fn run(kit: &Kit, load: f32) -> Figures {
     let apart: Vec<f32> = ends.windows(2).map(|pair| pair[0].distance(pair[1])).collect();
     let linked = apart.iter().filter(|&&apart| apart < PITCH + TUBE).count();
     let mass: f32 = world.watched[1..].iter().map(|&body| world.bodies[body].mass()).sum();
-    // As a share of what it takes to lift all by one ring.
+    // Unit of the gain: the energy that lifts all rings by one ring.
     let lift = mass * -world.gravity.y * PITCH;
     Figures::default()
         .none("parted", RINGS - linked)

@@ -1,4 +1,4 @@
-//! How deep meshes are in each other: by winding number in f64 and the distance to the surface.
+//! Depth of meshes in each other, by winding number in f64 and distance to the surface.
 
 use std::f64::consts::TAU;
 
@@ -11,7 +11,7 @@ use crate::mesh::Mesh;
 use crate::metrics::sample_indices;
 use crate::study::shape;
 
-/// A mesh that can be asked how deep a point is in it.
+/// A mesh with its winding numbers.
 pub(super) struct Depths {
     vertices: Vec<Vec3>,
     triangles: Vec<[DVec3; 3]>,
@@ -38,7 +38,7 @@ impl Depths {
         (self.shape.project_local_point(point, false).point - point).length()
     }
 
-    /// How deep the deepest vertex of each is in the other; NaN if a pose is.
+    /// Depth of the deepest vertex of each mesh in the other; NaN if a pose is NaN.
     pub fn between(&self, pose: &Pose3, other: &Self, others: &Pose3) -> f32 {
         if !(pose.translation + others.translation).is_finite() {
             return f32::NAN;
@@ -51,7 +51,7 @@ impl Depths {
         one_way(self, other, pos12).max(one_way(other, self, pos12.inverse()))
     }
 
-    /// How often the surface goes round a point (A. van Oosterom, J. Strackee, "The solid angle of
+    /// Winding number of a point (A. van Oosterom, J. Strackee, "The solid angle of
     /// a plane triangle", 1983).
     fn winding(&self, point: DVec3) -> f64 {
         let angles = self.triangles.iter().map(|triangle| {
@@ -71,8 +71,7 @@ pub(super) struct PairDepths {
     pub max: f64,
 }
 
-/// Judges at most `limit` of the touching pairs of dynamic bodies, all of which have this mesh as
-/// their one collider.
+/// Measures at most `limit` touching pairs of dynamic bodies, which all have this mesh.
 pub(super) fn touching_pairs(world: &PhysicsWorld, depths: &Depths, limit: usize) -> PairDepths {
     let mut pairs: Vec<[Pose3; 2]> = Vec::new();
     for pair in world.contact_pairs() {

@@ -1,5 +1,5 @@
-//! The pile of heads in several engines, each a program of its own. All read the same file, so that
-//! they start from the same bits; each writes what it did in every step; one judge reads that.
+//! The pile of heads in several engines, each a program of its own. All read the same file and write
+//! one file of a run; one judge reads these.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -29,20 +29,17 @@ const STUDY: &str = "engines";
 const STEPS: usize = 600;
 const MOVING: Range<usize> = 60..180;
 const RESTING: Range<usize> = 540..600;
-/// Pairs that are deeper, in units, are inside each other: half a percent of a head, and ten times
-/// the depth that Rapier allows.
+/// Depth in units above which a pair counts as inside each other: ten times the depth that Rapier
+/// allows.
 const INSIDE: f64 = 0.01;
-/// Numbers of a step in the file of a run, before those of the heads: milliseconds, points of
-/// contact, and the greatest memory until then in MiB, of the process and above that with an empty
-/// world.
+/// Numbers of a step in the file of a run: milliseconds, solver points, peak memory of the process
+/// in MiB, and peak memory above an empty world.
 const HEADER: usize = 4;
 /// Numbers of a head: place, orientation (x, y, z, w), velocity, angular velocity.
 const STATE: usize = 13;
 
-/// The scene, as every engine gets it.
-///
-/// The frame of the head is that of its principal axes of inertia, with the centre of mass as
-/// origin: engines that ask for it need not round anything.
+/// The scene of all engines. The head is in the frame of its principal axes of inertia, with the
+/// centre of mass as origin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnginePile {
     /// Seconds a step.
@@ -55,11 +52,11 @@ pub struct EnginePile {
     pub floor: Vec3,
     /// Mass of a head.
     pub mass: f32,
-    /// Its moments of inertia about the axes.
+    /// Moments of inertia about the axes.
     pub inertia: Vec3,
     /// The head.
     pub mesh: Mesh,
-    /// Where the heads start, at rest.
+    /// Poses of the heads at the start.
     pub poses: Vec<Pose3>,
     /// Points whose hulls are the convex parts of a head.
     pub parts: Vec<Vec<Vec3>>,
@@ -94,7 +91,7 @@ impl EnginePile {
         Kit { column, recycling: true, seed: 1, film: None }
     }
 
-    /// Writes it as numbers in f32, lists after their lengths.
+    /// Writes the scene as numbers in f32, lists after their lengths.
     ///
     /// Errors: the file cannot be written.
     pub fn write(&self, path: &Path) -> io::Result<()> {
@@ -120,9 +117,9 @@ impl EnginePile {
         fs::write(path, bytes(&numbers))
     }
 
-    /// Reads it again.
+    /// Reads a scene.
     ///
-    /// Errors: the file cannot be read, or is none of these.
+    /// Errors: the file cannot be read, or has another format.
     pub fn read(path: &Path) -> io::Result<Self> {
         Self::from_numbers(&mut read_numbers(path)?.into_iter())
             .ok_or_else(|| invalid(format!("{} breaks off", path.display())))
@@ -159,7 +156,7 @@ impl EnginePile {
         Some(Self { time_step, gravity, friction, floor, mass, inertia, mesh, poses, parts })
     }
 
-    /// Runs it in Rapier and writes the file of the run.
+    /// Runs the scene in Rapier and writes the file of the run.
     ///
     /// Errors: the file cannot be written.
     pub fn run(&self, column: Column, path: &Path) -> io::Result<()> {
@@ -189,7 +186,7 @@ impl EnginePile {
         file.flush()
     }
 
-    /// Reads what engines did, each in several runs that are alike, and makes one table of it.
+    /// Reads runs of engines, of which all runs of one engine must be equal, and makes a table.
     ///
     /// Errors: a file cannot be read or does not have all steps, or runs of an engine differ.
     pub fn judge(&self, engines: &[(String, Vec<&Path>)]) -> io::Result<Results> {
@@ -247,7 +244,7 @@ impl EnginePile {
         Ok(Run { numbers, step_size })
     }
 
-    /// What the table shows of an engine.
+    /// Figures of an engine.
     fn figures(&self, runs: &[Run], depths: &Depths) -> Vec<(&'static str, Value)> {
         let run = &runs[0];
         let times = |steps: Range<usize>| {
@@ -306,7 +303,7 @@ impl EnginePile {
         0.5 * (f64::from(self.mass) * linear.length_squared() + inertia.dot(angular * angular))
     }
 
-    /// How deep heads are in each other, all pairs of them.
+    /// Depths of all pairs of heads.
     fn depths(&self, run: &Run, step: usize, depths: &Depths) -> HeadDepths {
         let pose = |head: &[f32]| {
             let rotation = Quat::from_slice(&head[3..]).normalize();
@@ -337,7 +334,7 @@ impl EnginePile {
     }
 }
 
-/// How deep heads are in each other.
+/// Depths of heads in each other.
 #[derive(Default)]
 struct HeadDepths {
     mean: f64,
@@ -390,7 +387,7 @@ fn invalid(text: String) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, text)
 }
 
-/// Memory of this process in MiB, as Linux tells it; else 0.
+/// Memory of this process in MiB on Linux; else 0.
 fn memory(name: &str) -> f32 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find(|line| line.starts_with(name));

@@ -1,25 +1,25 @@
-//! Figures with limits, and what they say of a run.
+//! Figures with limits.
 
-/// What was measured in a run.
+/// Figures of a run.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Figures(pub Vec<Figure>);
 
-/// One of them.
+/// A measurement with limits.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Figure {
     pub name: &'static str,
     pub value: f64,
-    /// From where to where a user would call it right.
+    /// Range in which the scene looks right to a user.
     pub limits: [f64; 2],
 }
 
 impl Figure {
-    /// NaN is not.
+    /// True within the limits; NaN is not.
     pub fn is_right(&self) -> bool {
         (self.limits[0]..=self.limits[1]).contains(&self.value)
     }
 
-    /// How far outside the limits it is; NaN is farthest.
+    /// Distance from the limits; infinite for NaN.
     pub fn excess(&self) -> f64 {
         let [low, high] = self.limits;
         let excess = (low - self.value).max(self.value - high);
@@ -50,12 +50,12 @@ impl Figures {
         self
     }
 
-    /// Adds a figure that nothing is asked of.
+    /// Adds a figure without limits.
     pub fn note(self, name: &'static str, value: impl Into<f64>) -> Self {
         self.within(name, value, f64::NEG_INFINITY, f64::INFINITY)
     }
 
-    /// Whether all are right.
+    /// True if all figures are within their limits.
     pub fn pass(&self) -> bool {
         self.0.iter().all(Figure::is_right)
     }
@@ -84,7 +84,7 @@ impl Gain {
     }
 }
 
-/// The largest of some numbers; NaN if one is, 0 if there are none.
+/// The largest number; NaN if any is NaN, 0 without numbers.
 pub(super) fn largest(values: impl IntoIterator<Item = f32>) -> f32 {
     values.into_iter().reduce(|a, b| if a.is_nan() || b <= a { a } else { b }).unwrap_or(0.0)
 }

@@ -1,7 +1,7 @@
 //! A gear that drives another one, or a rack, and a worm that drives a gear.
 //!
-//! At 5 rad/s teeth come 8 cm far in a step, four prediction distances. The solver lets them come no nearer
-//! to each other along a contact than they are, so contacts of edges that only pass each other brake.
+//! At 5 rad/s teeth move by four prediction distances in a step, so contacts of edges that only pass
+//! each other would brake.
 
 use std::f32::consts::PI;
 
@@ -18,7 +18,7 @@ use crate::mesh::{Gear, Rack, Thread};
 
 const GEAR: Gear = Gear { teeth: 20, module: 0.1, thinned: 0.01, half_width: 0.2 };
 const RACK: Rack = Rack { gear: GEAR, teeth: 50, depth: 0.3 };
-/// Its flanks are those of the rack. The wheel is thin, as its teeth are straight.
+/// A worm with the flanks of the rack. The wheel is thin, as its teeth are straight.
 const WORM: Thread = Thread {
     root: 0.475,
     height: 0.225,
@@ -29,11 +29,11 @@ const WORM: Thread = Thread {
     segments: 64,
 };
 const WORM_WHEEL: Gear = Gear { half_width: 0.03, ..GEAR };
-/// Friction of all machines: that of greased metal.
+/// Friction coefficient of greased metal.
 const FRICTION: f32 = 0.05;
-/// Damping of what is driven, in 1/s.
+/// Damping of the driven part, in 1/s.
 const LOAD: f32 = 0.5;
-/// Steps, and those of them at the start in which the motor may speed up.
+/// Number of steps, and number of steps in which the motor may speed up.
 const STEPS: usize = 360;
 const SPEED_UP: usize = 60;
 
@@ -67,12 +67,12 @@ fn gear() -> Form {
     Form::parts(GEAR.mesh(), teeth.chain([disc]))
 }
 
-/// What drives, and what it drives: how far each has come, in radians of the wheel.
+/// A driver and a wheel or rack.
 struct Machine {
     world: World,
     /// The speed of the driver.
     speed: f32,
-    /// What the driver turns for one radian of the wheel.
+    /// Radians of the driver for one radian of the wheel.
     ratio: f32,
     steps: usize,
 }
@@ -101,7 +101,7 @@ impl Machine {
         RevoluteJointBuilder::new(axis).motor_velocity(self.speed, 1e4)
     }
 
-    /// Runs it: the driver turns about an axis, and what is driven has come as far as `driven` says.
+    /// Runs the machine. The driver turns about an axis; `driven` returns the way of the wheel.
     fn run(
         mut self,
         (driver, axis): (RigidBodyHandle, Vec3),
@@ -198,7 +198,7 @@ impl Turn {
         Self { body, axis, last: *world.bodies[body].rotation(), angle: 0.0 }
     }
 
-    /// Adds what it has turned since the last call: less than half a turn.
+    /// Adds the turn since the last call, which must be less than half a turn.
     pub fn see(&mut self, world: &PhysicsWorld) {
         let now = *world.bodies[self.body].rotation();
         self.angle += (now * self.last.inverse()).to_scaled_axis().dot(self.axis);

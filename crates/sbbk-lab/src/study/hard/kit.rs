@@ -1,4 +1,4 @@
-//! What a scene is built with: shapes, worlds and random numbers, as a column wants them.
+//! Shapes, worlds and random numbers of a column.
 
 use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -20,7 +20,7 @@ use crate::replay::Recorder;
 use crate::scene::shape;
 
 named! {
-    /// Who answers, and what bodies are made of.
+    /// A dispatcher, and the shapes of the bodies.
     #[derive(ValueEnum)]
     pub enum Column {
         /// Stock Rapier, plain meshes.
@@ -33,12 +33,12 @@ named! {
         Every = "every",
         /// SBBK, all meshes with `TriMeshFlags::FIX_INTERNAL_EDGES`.
         SbbkFlag = "sbbk + flag",
-        /// Stock Rapier, convex shapes instead of the meshes, where there are such.
+        /// Stock Rapier, convex shapes instead of the meshes.
         Control = "control",
     }
 }
 
-/// A mesh, and the convex shapes that stand for it in the control.
+/// A mesh, and the convex shapes that replace it in the control.
 #[derive(Clone)]
 pub(super) struct Form {
     pub mesh: Mesh,
@@ -46,7 +46,7 @@ pub(super) struct Form {
 }
 
 impl Form {
-    /// Nothing stands for the mesh: it is the control's, too.
+    /// A mesh that the control uses, too.
     pub fn mesh(mesh: Mesh) -> Self {
         Self { mesh, control: None }
     }
@@ -71,59 +71,59 @@ impl Form {
     }
 }
 
-/// One run of a scene.
+/// Settings of one run of a scene.
 #[derive(Clone, Debug)]
 pub(super) struct Kit {
     pub column: Column,
     pub recycling: bool,
     pub seed: u64,
-    /// Where the run's first world is recorded, if it is.
+    /// Recording of the first world of the run, if any.
     pub film: Option<Film>,
 }
 
-/// A recording that is under way, or done.
+/// A shared recording.
 pub(super) type Film = Arc<Mutex<Option<Recorder>>>;
 
-/// A world that is recorded, if it is to be.
+/// A world with the bodies of its scene, and a recording if there is a film.
 pub(super) struct World {
     world: PhysicsWorld,
     film: Option<Film>,
     recorder: Option<Recorder>,
     name: String,
-    /// Those that the scene is about, in the order in which they came.
+    /// Bodies of the scene, in the order of insertion.
     pub watched: Vec<RigidBodyHandle>,
 }
 
-/// What was seen in the steps of a world.
+/// Measurements of the steps of a world.
 pub(super) struct Watched {
-    /// The greatest rise of the bodies' energy, as a share of that at the start.
+    /// Greatest rise of the energy, as a share of the energy at the start.
     pub gain: f64,
-    /// Median time of the steps that count, in milliseconds.
+    /// Median time of the measured steps, in milliseconds.
     pub step_time: f64,
-    /// Points that the solver had in these, on the mean.
+    /// Mean number of solver points in these steps.
     pub points: f64,
 }
 
 impl World {
-    /// Adds something that does not move.
+    /// Adds a fixed collider.
     pub fn fix(&mut self, place: Vec3, collider: ColliderBuilder) {
         self.insert(RigidBodyBuilder::fixed().translation(place), collider);
     }
 
-    /// Adds a body that the scene is about.
+    /// Adds a body of the scene.
     pub fn add(&mut self, body: RigidBodyBuilder, collider: &ColliderBuilder) -> RigidBodyHandle {
         let (body, _) = self.insert(body, collider.clone());
         self.watched.push(body);
         body
     }
 
-    /// Steps so often.
+    /// Steps the world.
     pub fn run(&mut self, steps: usize) {
         (0..steps).for_each(|_| self.step());
     }
 
-    /// The same; times and points are those of the steps after `full`. Calls `seen` after each step
-    /// with its number, from one.
+    /// Steps the world and measures the steps after number `full`. Calls `seen` after each step with
+    /// its number, from one.
     pub fn watch(
         &mut self,
         steps: usize,
@@ -147,17 +147,17 @@ impl World {
         Watched { gain: gain.most / start, step_time, points }
     }
 
-    /// The highest speed of a body, now; NaN if one has flown out of all numbers.
+    /// Highest speed of a body; NaN if a speed is NaN.
     pub fn top_speed(&self) -> f32 {
         largest(self.watched.iter().map(|&body| self.bodies[body].linvel().length()))
     }
 
-    /// Where bodies are.
+    /// Places of the bodies.
     pub fn places(&self) -> Vec<Vec3> {
         self.watched.iter().map(|&body| self.bodies[body].translation()).collect()
     }
 
-    /// Kinetic and potential energy of the bodies. Those that sleep have none of motion.
+    /// Kinetic and potential energy of the bodies. Sleeping bodies have no kinetic energy.
     pub fn energy(&self) -> f64 {
         let energies = self.watched.iter().map(|&body| {
             let body = &self.bodies[body];
@@ -217,7 +217,7 @@ impl Kit {
         World { world, film, recorder: None, name, watched: Vec::new() }
     }
 
-    /// A collider, the shape of which clones share.
+    /// Makes a collider. Clones share its shape.
     pub fn collider(&self, form: &Form) -> ColliderBuilder {
         let shape = match (self.column, &form.control) {
             (Column::Control, Some(control)) => control.clone(),
@@ -226,7 +226,7 @@ impl Kit {
         ColliderBuilder::new(shape)
     }
 
-    /// The mesh itself, also in the control.
+    /// Makes a mesh shape, in the control as well.
     pub fn mesh_shape(&self, mesh: &Mesh) -> SharedShape {
         let flags = match self.column {
             Column::StockFlag | Column::SbbkFlag => TriMeshFlags::FIX_INTERNAL_EDGES,

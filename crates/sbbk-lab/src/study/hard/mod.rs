@@ -1,12 +1,11 @@
-//! Hard scenes: whole worlds of meshes that stack, nest, mesh, sink in and fly. Does each end as a
-//! user expects?
+//! Hard scenes: whole worlds of meshes that stack, nest, mesh, sink in and fly.
 //!
-//! A scene is run by stock Rapier and by SBBK, with plain meshes and with
-//! `TriMeshFlags::FIX_INTERNAL_EDGES`, with Rapier's contact recycling and without, and where convex
-//! shapes can stand for the meshes, as a control by these. It is judged by figures with limits that
-//! are the same for all. Where chaos decides, it is run with several seeds.
+//! Stock Rapier and SBBK run each scene, with plain meshes and with
+//! `TriMeshFlags::FIX_INTERNAL_EDGES`, with contact recycling and without. Where convex shapes can
+//! replace the meshes, stock runs these as a control. Figures with limits judge all runs alike.
+//! Chaotic scenes run with several seeds.
 //!
-//! Time steps are 1/60 s, gravity 9.81 units/s² and all parameters Rapier's defaults, unless a scene
+//! Time steps are 1/60 s, gravity 9.81 units/s², and all parameters Rapier's defaults, unless a scene
 //! says otherwise.
 
 mod bowls;
@@ -78,28 +77,28 @@ pub enum Group {
     Tray,
 }
 
-/// What to run.
+/// Extent of the study.
 #[derive(Clone, Debug)]
 pub struct HardPlan {
     /// Kinds of scenes.
     pub groups: Vec<Group>,
-    /// Who answers.
+    /// Columns of the tables.
     pub columns: Vec<Column>,
     /// Rapier's contact recycling: its default is `true`.
     pub recycling: Vec<bool>,
-    /// Runs of a scene where chaos decides.
+    /// Runs of a chaotic scene.
     pub seeds: u64,
     /// Heads in the piles.
     pub heads: Vec<usize>,
-    /// What the piles are of in place of heads.
+    /// Body of the piles, or `None` for heads.
     pub mesh: Option<Mesh>,
-    /// Runs at once, but for scenes of which the time counts.
+    /// Runs at once. Scenes that are timed run alone.
     pub threads: usize,
-    /// Whether to show all figures.
+    /// True to show all figures.
     pub shows_figures: bool,
-    /// Only scenes with this in their names.
+    /// Text in the names of the scenes.
     pub name: String,
-    /// The page on which the first of the scenes is played, on all columns.
+    /// Page that plays the first of the scenes in all columns.
     pub replay: Option<PathBuf>,
 }
 
@@ -120,7 +119,7 @@ impl HardPlan {
         }
     }
 
-    /// Stock and SBBK on plain meshes, with Rapier's defaults, once.
+    /// Stock and SBBK on plain meshes with Rapier's defaults, one run each.
     pub fn quick() -> Self {
         Self {
             columns: vec![Column::Stock, Column::Sbbk],
@@ -132,12 +131,12 @@ impl HardPlan {
     }
 }
 
-/// A scene: what to run, and what to measure of it.
+/// A scene with its figures.
 struct Trial {
     name: String,
-    /// Whether convex shapes can stand for its meshes.
+    /// True if convex shapes can replace the meshes.
     has_control: bool,
-    /// Whether the seed makes a difference.
+    /// True if the seed makes a difference.
     has_seeds: bool,
     run: Box<RunTrial>,
 }
@@ -145,17 +144,17 @@ struct Trial {
 type RunTrial = dyn Fn(&Kit) -> Figures + Send + Sync;
 
 impl Trial {
-    /// A scene that is the same whatever the seed, with a control.
+    /// A scene with a control and without a seed.
     fn new(name: impl Into<String>, run: impl Fn(&Kit) -> Figures + Send + Sync + 'static) -> Self {
         Self { name: name.into(), has_control: true, has_seeds: false, run: Box::new(run) }
     }
 
-    /// It has no control.
+    /// Removes the control.
     fn without_control(self) -> Self {
         Self { has_control: false, ..self }
     }
 
-    /// It is run with several seeds.
+    /// Runs the scene with several seeds.
     fn seeded(self) -> Self {
         Self { has_seeds: true, ..self }
     }
@@ -173,9 +172,9 @@ impl Trial {
     }
 }
 
-/// Runs all that `plan` asks for.
+/// Runs all scenes of the plan.
 ///
-/// Errors: there is no such scene, or the page cannot be written.
+/// Errors: no scene has the name, or the page cannot be written.
 pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError> {
     let mut rows = Vec::new();
     let mut replay = plan.replay.as_deref();
@@ -230,7 +229,7 @@ pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError>
     Ok(Results::new(report::verdict_of_all(plan, &rows), rows, tables))
 }
 
-/// Lets the first run of the first scene be recorded, on each column.
+/// Records the first run of the first scene in each column.
 fn film(jobs: &mut [(&Trial, Kit)]) -> Vec<Film> {
     let mut films: Vec<(Column, Film)> = Vec::new();
     let first = jobs.first().map_or_else(String::new, |(trial, _)| trial.name.clone());

@@ -15,14 +15,14 @@ use crate::scene::MonkeyPile;
 /// Steps until the heads are judged by their depth, and until they are judged by their height.
 const DEEP_AT: usize = 120;
 const HIGH_AT: usize = 180;
-/// Times and contacts are those of the steps after this one.
+/// Step after which times and contacts are measured.
 const FULL_AT: usize = 60;
 /// Pairs whose depth is judged.
 const PAIRS: usize = 150;
 /// Half extents of the floor.
 pub(super) const FLOOR: Vec3 = Vec3::new(100.0, 1.0, 100.0);
 
-/// What is right depends on the mesh.
+/// Limits of a mesh.
 #[derive(Copy, Clone)]
 struct Limits {
     /// The least and the greatest mean height.
@@ -36,7 +36,7 @@ impl Limits {
     const NONE: Self = Self { heights: [0.0, f64::INFINITY], points: f64::INFINITY };
 }
 
-/// Piles of so many heads, or of another mesh in place of the head.
+/// Piles of so many heads, or of another mesh.
 pub(super) fn trials(heads: &[usize], mesh: Option<&Mesh>) -> Vec<Trial> {
     let trial = |&heads: &usize| {
         let (name, pile, limits) = match mesh {

@@ -27,8 +27,7 @@ pub(super) fn trials() -> Vec<Trial> {
     [0.02, 1.0, 50.0].map(trial).into()
 }
 
-/// All lengths are in heads, of which Rapier is told, and so is gravity: a different size is a
-/// different unit.
+/// All lengths, gravity and `length_unit` are in heads.
 fn run(kit: &Kit, size: f32) -> Figures {
     let mut world = kit.world();
     world.integration_parameters.length_unit = size;

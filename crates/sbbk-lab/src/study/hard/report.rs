@@ -7,7 +7,7 @@ use crate::report::{Row, Table, TableSpec, faster, number, three_digits};
 
 const VERDICTS: &str = "hard scenes";
 const FIGURES: &str = "hard scenes: figures";
-/// A figure, of which the table of times is made.
+/// Name of the figure in the table of times.
 pub(super) const STEP_TIME: &str = "ms a step";
 
 /// The rows of one scene. All runs of a column and a setting of recycling stand together; they
@@ -36,13 +36,13 @@ pub(super) fn rows(trial: &Trial, runs: &[(&Kit, &Figures)]) -> Vec<Row> {
     rows
 }
 
-/// The figure of one number in the worst of some runs.
+/// The figure with this index in the worst of some runs.
 fn worst_of(runs: &[(&Kit, &Figures)], index: usize) -> Figure {
     let of_runs = runs.iter().map(|(_, figures)| figures.0[index]);
     of_runs.reduce(|a, b| if b.excess() > a.excess() { b } else { a }).unwrap_or(runs[0].1.0[index])
 }
 
-/// The cell of a table: with the first figure, or the first that is not right.
+/// Cell of a table, with the first wrong figure, or else the first one.
 fn verdict(passed: usize, runs: usize, worst: &[Figure]) -> String {
     let wrong = worst.iter().find(|figure| !figure.is_right());
     let shown = wrong.or(worst.first()).map_or_else(String::new, |figure| {

@@ -1,8 +1,5 @@
-//! Bodies that slide and roll over fine meshes, meshes themselves and convex shapes, beside the same on
-//! a cuboid, which the same answers for: a mesh ball has facets, and what these cost is no matter of the
-//! floor. (With steps an eighth as long it comes 17.1 to 17.2 units far, whoever answers; at a sixtieth
-//! of a second 19.6 in stock Rapier, 16.3 as a convex hull, 16.5 with patches. At each facet it loses some
-//! of its speed, more or less by chance: 3 % in the end. So several are started, each turned another way.)
+//! Bodies that slide and roll over fine meshes, beside the same bodies on a cuboid. A mesh ball loses
+//! speed at its facets by chance, so several are started, each turned another way.
 
 use std::f32::consts::FRAC_PI_2;
 
@@ -21,7 +18,7 @@ use crate::scene::random;
 const LENGTH: f32 = 30.0;
 const WIDTH: f32 = 6.0;
 const HALF_EXTENTS: Vec3 = Vec3::new(0.5 * LENGTH, 0.5, 0.5 * WIDTH);
-/// How high bodies start above it.
+/// Height of bodies above the floor at the start.
 const GAP: f32 = 0.001;
 /// Steps at the start in which the body lands, and those at the end that tell its speed.
 const LANDING: usize = 20;
@@ -35,7 +32,7 @@ enum Floor {
     HeightField,
 }
 
-/// What moves: what slides is a unit high and has little friction, what rolls is a unit in radius.
+/// A moving body: sliders are a unit high with little friction, rollers a unit in radius.
 #[derive(Clone, Copy)]
 enum Rider {
     MeshCube,
@@ -59,7 +56,7 @@ pub(super) fn trials() -> Vec<Trial> {
     for (rider, name) in riders {
         for cell in [0.5, 0.1] {
             for floor in [Floor::Sheet, Floor::Slab, Floor::HeightField] {
-                // Of convex shapes on height fields Parry answers.
+                // Parry handles convex shapes on height fields.
                 if floor == Floor::HeightField && !rider.is_mesh() {
                     continue;
                 }
@@ -99,7 +96,7 @@ impl Floor {
     }
 }
 
-/// How far a body has come, in all and in the last second, and its highest speed upwards.
+/// Path of a body in all and in the last second, and its highest speed upwards.
 struct Ride {
     path: f32,
     speed: f32,
@@ -115,12 +112,12 @@ impl Rider {
         !matches!(self, Self::MeshCube | Self::Cuboid)
     }
 
-    /// How many are started.
+    /// Number of starts.
     fn starts(self) -> usize {
         if matches!(self, Self::MeshBall) { 12 } else { 1 }
     }
 
-    /// Of its middle, in units.
+    /// Height of the middle, in units.
     fn height(self) -> f32 {
         if self.rolls() { 1.0 } else { 0.5 }
     }
@@ -130,7 +127,7 @@ impl Rider {
         if self.rolls() { 3.5 } else { 8.0 }
     }
 
-    /// In which it comes about 20 units far.
+    /// Number of steps for a path of about 20 units.
     fn steps(self) -> usize {
         if self.rolls() { 340 } else { 180 }
     }
@@ -164,7 +161,7 @@ impl Rider {
         if self.rolls() { 0.5 } else { 0.1 }
     }
 
-    /// The mean of all starts, but the highest bump.
+    /// Means over all starts, and the highest bump.
     fn rides(self, kit: &Kit, floor: &ColliderBuilder) -> Ride {
         let (mut random, count) = (kit.random(), self.starts());
         let rides = (0..count).map(|_| self.ride(kit, self.start(&mut random), floor.clone()));

@@ -25,7 +25,7 @@ pub(super) fn trials() -> Vec<Trial> {
     [0.01, 0.05].into_iter().zip(names).map(trial).collect()
 }
 
-/// Without contact clustering, which takes all normals within five degrees for one.
+/// Runs the nut. Contact clustering is off, as it merges normals within five degrees.
 fn run(kit: &Kit, friction: f32) -> Figures {
     let mut world = kit.world();
     world.integration_parameters.contact_clustering = false;

@@ -17,7 +17,7 @@ const HALF: f32 = 0.3;
 /// Side of a sheet, and cells along it.
 const SIZE: f32 = 20.0;
 const CELLS: u32 = 40;
-/// They fall 2 units a second at most, when they land.
+/// Height of the fall, in units: cubes land at 2 units a second or less.
 const DROP: f32 = 0.2;
 const STEPS: usize = 240;
 

@@ -12,10 +12,10 @@ use super::kit::{Form, Kit};
 const DEPTHS: usize = 10;
 const LEAST: f32 = 0.1;
 const MOST: f32 = 1.2;
-/// The same in the ground: what is wholly below it is left alone, as in a cave.
+/// Greatest depth in the ground. Bodies wholly below it are left alone, as in a cave.
 const MOST_IN_GROUND: f32 = 0.9;
 const STEPS: usize = 180;
-/// Where both ways out are about as long, either is right.
+/// Difference of the ways up and down, in units, below which either is right.
 const DOUBT: f32 = 0.25;
 
 pub(super) fn trials() -> Vec<Trial> {

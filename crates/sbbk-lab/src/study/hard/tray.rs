@@ -15,7 +15,7 @@ use crate::scene::random;
 const SIDE: usize = 5;
 const LAYERS: usize = 4;
 const STEPS: usize = 240;
-/// Times and contacts are those of the steps after this one.
+/// Step after which times and contacts are measured.
 const FULL_AT: usize = 60;
 /// Lengths from the least to the greatest.
 const LEAST: f32 = 0.03;

@@ -51,7 +51,7 @@ fn wall() -> Vec<(Vec3, Pose3)> {
 
 /// Upright.
 const CARD: Vec3 = Vec3::new(0.01, 0.5, 0.4);
-/// How far cards lean, in radians.
+/// Lean of the cards, in radians.
 const LEAN: f32 = 0.35;
 
 /// Two pairs that lean against each other, a card across, and a pair on it.

@@ -1,4 +1,4 @@
-//! Worlds whose bodies are put where they were in a run.
+//! Worlds whose bodies are led along a run.
 
 use glamx::{DVec3, Quat};
 use rapier3d::dynamics::{IntegrationParameters, RigidBody, RigidBodyHandle};
@@ -9,7 +9,7 @@ use crate::backend::{Backend, Installed};
 use crate::metrics::{StepTimes, solver_points, timed_step};
 use crate::scene::{Scene, SceneWorld};
 
-/// Where a body is, and how it moves.
+/// Pose and velocities of a body.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
     pose: Pose,
@@ -44,7 +44,7 @@ pub(super) fn run(
 pub(super) struct Led {
     built: SceneWorld,
     installed: Installed,
-    /// Of each step so far.
+    /// Times of all steps so far.
     pub times: Vec<StepTimes>,
 }
 
@@ -55,7 +55,7 @@ impl Led {
         Self { built, installed, times: Vec::new() }
     }
 
-    /// A world in which bodies do not meet.
+    /// A world without contacts.
     pub fn without_contacts(scene: &dyn Scene) -> Self {
         let mut led = Self::new(scene, Backend::Stock);
         for (_, collider) in led.built.world.colliders.iter_mut() {
@@ -68,8 +68,8 @@ impl Led {
         &mut self.built.world.integration_parameters
     }
 
-    /// Steps once from each of some states, one after the other, with the contacts and impulses of
-    /// the step before; what the last step led to.
+    /// Steps once from each state, with the contacts and impulses of the step before. Returns the
+    /// motions after the last step.
     pub fn lead(&mut self, states: &[Vec<Motion>]) -> Vec<Motion> {
         for state in states {
             for (&handle, motion) in self.built.watched.iter().zip(state) {
@@ -92,7 +92,7 @@ impl Led {
     }
 }
 
-/// Of velocities, weighted by the masses of bodies.
+/// Norm of velocities, weighted by mass.
 pub(super) struct Norm(Vec<Inertia>);
 
 struct Inertia {
@@ -103,7 +103,7 @@ struct Inertia {
 }
 
 impl Norm {
-    /// That of a scene's bodies as they stand.
+    /// Norm for the bodies of a scene in a state.
     pub fn of(scene: &dyn Scene, state: &[Motion]) -> Self {
         let built = scene.build();
         let inertia = |(&handle, motion): (&RigidBodyHandle, &Motion)| {
@@ -117,7 +117,7 @@ impl Norm {
         Self(built.watched.iter().zip(state).map(inertia).collect())
     }
 
-    /// Between two motions of all bodies.
+    /// Distance of two motions of all bodies.
     pub fn distance(&self, some: &[Motion], others: &[Motion]) -> f64 {
         let squares = self.0.iter().zip(some).zip(others).map(|((inertia, some), other)| {
             let linear = (some.linear - other.linear).as_dvec3();
@@ -154,7 +154,7 @@ mod tests {
         }
     }
 
-    /// Would catch moments of inertia about the wrong axes, and a norm that is not that of energy.
+    /// Would catch moments of inertia about the wrong axes.
     #[test]
     fn the_norm_is_the_root_of_twice_the_energy() {
         let mut led = Led::new(&Brick, Backend::Stock);

@@ -1,14 +1,13 @@
-//! What one step does to the velocities of a pile, beside what it should do.
+//! Velocities of a pile after one step, beside those of a converged step.
 //!
-//! One backend runs the scene. At some times of this run, every backend makes the same step, with
-//! several numbers of solver iterations (Rapier's substeps), and so does a *reference*: every
-//! contact, none recycled or merged into clusters, and far more solver iterations. Bodies are led
-//! along the run for some steps before, so that each solver starts from impulses of its own.
+//! One backend runs the scene. At some moments of this run every backend makes the same step, with
+//! several numbers of solver iterations (Rapier's substeps). The *reference* makes the step with every
+//! contact, without recycling and clusters, and with far more iterations. Bodies are led along the
+//! run for some steps before, so that each solver starts from its own impulses.
 //!
-//! The error of a step is the norm of the difference of its velocities from those of the reference
-//! over the norm of the reference's contact impulses. The norm of velocities is weighted by mass:
-//! the root of twice the kinetic energy. Impulses are what contacts change velocities by, in the
-//! same norm.
+//! The error is the difference of the velocities from those of the reference, divided by the contact
+//! impulses of the reference. Velocities are weighted by mass: their norm is the root of twice the
+//! kinetic energy.
 
 mod led;
 mod report;
@@ -20,18 +19,18 @@ use crate::progress::Progress;
 use crate::report::{Results, Row};
 use crate::scene::{MonkeyPile, Scene};
 
-/// What to compare, and how thoroughly.
+/// Extent of the comparison.
 #[derive(Clone, Debug)]
 pub struct OneStepPlan {
     /// Heads in the pile.
     pub heads: usize,
-    /// Who answers.
+    /// Backends that are compared.
     pub backends: Vec<Backend>,
     /// Solver iterations.
     pub substeps: Vec<usize>,
-    /// The steps that are made: their numbers in the run.
+    /// Numbers of the steps in the run.
     pub moments: Vec<usize>,
-    /// Who runs the scene, and whose contacts the reference has: one with every contact.
+    /// Backend of the run and of the reference: one with every contact.
     pub reference: Backend,
     /// Solver iterations of the reference.
     pub reference_substeps: usize,
@@ -62,24 +61,24 @@ impl OneStepPlan {
     }
 }
 
-/// Steps before the one that counts, in which bodies are led and impulses grow.
+/// Steps before the measured one, in which bodies are led and impulses grow.
 const LEAD: usize = 6;
-/// What tables call the reference with half the solver iterations, which says how far it has
-/// converged, and with a solver that has the clusters of all others.
+/// Names of two variants of the reference: half the iterations, which shows how far it has
+/// converged, and clusters as all others have.
 const HALF: &str = "reference, half the substeps";
 const CLUSTERS: &str = "reference, clusters";
 
-/// How a step is made.
+/// A way to make a step.
 #[derive(Clone, Debug)]
 struct Way {
     name: String,
     backend: Backend,
     substeps: usize,
-    /// Whether Rapier merges the contacts of a pair into clusters, and recycles them.
+    /// True if Rapier merges the contacts of a pair into clusters, and recycles them.
     is_thinned: bool,
 }
 
-/// What was seen of one way.
+/// Measurements of one way.
 #[derive(Default)]
 struct Seen {
     errors: Vec<f64>,
@@ -128,7 +127,7 @@ fn steps(scene: &dyn Scene, plan: &OneStepPlan, progress: &Progress) -> Vec<Row>
         let free = Led::without_contacts(scene).lead(&run[moment..=moment]);
         let norm = Norm::of(scene, &run[moment]);
         let impulse = norm.distance(&right, &free);
-        // A slow spell of the machine meets all ways.
+        // A slow spell of the machine slows all ways.
         for index in 0..ways.len() {
             let index = (index + moment) % ways.len();
             let (motions, mut led) = step(scene, &ways[index], lead);
