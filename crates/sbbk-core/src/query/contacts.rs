@@ -3,7 +3,7 @@
 use crate::contact::contact;
 use crate::leaf::LeafTest;
 use crate::traverse::{PairFrame, Placement, descend};
-use crate::tree::{LeafBatch, Tree};
+use crate::tree::Tree;
 use crate::volumes::rounding::gamma;
 
 use super::seek::SearchScratch;
@@ -14,7 +14,7 @@ use super::triangles::{FoundPair, LeafTriangle, TrianglePair};
 ///
 /// Triangles that touch, up to 1e-12 of their size, are always among them. The order depends on the
 /// trees and the pose only. No pair is found if the placement is not finite, or if the margin is
-/// negative or NaN.
+/// negative or NaN. Margins above 1e15 count as 1e15.
 ///
 /// For the points of a manifold see [`clip`](crate::contact::clip); for one pair out of all,
 /// [`nearest`](super::nearest()) is much faster.
@@ -28,35 +28,23 @@ pub fn contacts(
     if !placement.is_finite() || !(0.0..).contains(&margin) {
         return;
     }
-    // The margin is rounded up. A wider one would overflow in the tests, and excludes nothing.
-    let widened = margin.min(WIDEST_MARGIN) as f32 * (1.0 + gamma(4)) + f32::MIN_POSITIVE;
+    let margin = margin.min(WIDEST_MARGIN);
+    // Rounded up.
+    let widened = margin as f32 * (1.0 + gamma(4)) + f32::MIN_POSITIVE;
     let mut frame = PairFrame::at(trees, placement, widened);
-    let mut exact = |batch1: &LeafBatch, lane1, batch2: &LeafBatch, lane2| {
-        let one = LeafTriangle { batch: batch1, lane: lane1 };
-        let two = LeafTriangle { batch: batch2, lane: lane2 };
-        let pair = TrianglePair::new(&placement, one.corners(), two.corners());
-        let [t1, t2] = &pair.corners;
-        if let Some(contact) = contact(t1, t2, margin.max(pair.touching_distance())) {
-            found(FoundPair::new(one, two, &pair, contact));
-        }
-    };
-    if margin <= WIDEST_MARGIN {
-        let test = LeafTest::new(&frame);
-        descend(trees, &mut frame, &mut scratch.descent, (), |batch1, batch2| {
-            test.survivors(batch1, batch2, |lane1, lane2| exact(batch1, lane1, batch2, lane2));
-        });
-        return;
-    }
-    for batch1 in (0..trees.0.leaf_count()).map(|leaf| trees.0.leaf(leaf)) {
-        for batch2 in (0..trees.1.leaf_count()).map(|leaf| trees.1.leaf(leaf)) {
-            for lane1 in 0..batch1.count() {
-                for lane2 in 0..batch2.count() {
-                    exact(batch1, lane1, batch2, lane2);
-                }
+    let test = LeafTest::new(&frame);
+    descend(trees, &mut frame, &mut scratch.descent, (), |batch1, batch2| {
+        test.survivors(batch1, batch2, |lane1, lane2| {
+            let one = LeafTriangle { batch: batch1, lane: lane1 };
+            let two = LeafTriangle { batch: batch2, lane: lane2 };
+            let pair = TrianglePair::new(&placement, one.corners(), two.corners());
+            let [t1, t2] = &pair.corners;
+            if let Some(contact) = contact(t1, t2, margin.max(pair.touching_distance())) {
+                found(FoundPair::new(one, two, &pair, contact));
             }
-        }
-    }
+        });
+    });
 }
 
-/// Squares of wider margins may overflow in the leaf test.
+/// Greatest margin: squares of wider ones may overflow in the leaf test.
 const WIDEST_MARGIN: f64 = 1.0e15;

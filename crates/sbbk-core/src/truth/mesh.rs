@@ -98,9 +98,8 @@ mod tests {
         ((0..240).map(place).collect(), (0..80).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect())
     }
 
-    /// Would catch a pair lost in the sweep or by its boxes, a wrong order and a turned pose.
     #[test]
-    fn the_sweep_finds_what_two_loops_find() {
+    fn the_sweep_finds_the_pairs_of_two_loops() {
         let ((vertices1, triangles1), (vertices2, triangles2)) = (strewn(0.1), strewn(0.7));
         let pose = DPose3::from_parts(DVec3::new(0.3, -0.2, 0.5), DQuat::from_rotation_y(0.8));
         for margin in [0.0, 0.1, 1.0] {

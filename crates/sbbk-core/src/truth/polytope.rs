@@ -51,7 +51,7 @@ impl Polytope {
     }
 
     pub fn contact(&self, triangle: &[DVec3; 3]) -> ConvexTruth {
-        let separation = self.separation(triangle);
+        let separation = self.separation(triangle, TIE);
         if separation.distance <= 0.0 {
             return separation;
         }
@@ -61,7 +61,7 @@ impl Polytope {
     }
 
     /// The shortest way from the triangle to the hull.
-    fn apart(&self, triangle: &[DVec3; 3]) -> DVec3 {
+    pub fn apart(&self, triangle: &[DVec3; 3]) -> DVec3 {
         let edges = edges(triangle);
         let of_points = self.points.iter().map(|&p| p - on_triangle(triangle, p));
         let of_edges =
@@ -72,22 +72,18 @@ impl Polytope {
     }
 
     /// The widest gap among all axes of possible faces of the Minkowski difference, flat ones
-    /// included.
-    fn separation(&self, triangle: &[DVec3; 3]) -> ConvexTruth {
+    /// included. A badly computed axis only underestimates it. Normals of gaps
+    /// within a share of the size of the widest follow the widest.
+    pub fn separation(&self, triangle: &[DVec3; 3], tie: f64) -> ConvexTruth {
         let points = &self.points;
         let corner = triangle[0];
         let sides = edges(triangle).map(|[a, b]| b - a);
         let face = sides[0].cross(sides[1]);
         let scale = sides.iter().chain(points).map(|v| v.abs().max_element()).fold(0.0, f64::max);
-        let tie = TIE * scale;
+        let tie = tie * scale;
         let mut widest = f64::NEG_INFINITY;
         let mut found: Vec<(f64, DVec3)> = Vec::new();
-        let mut test = |axis: DVec3, lengths: f64| {
-            // A cross product of nearly zero is no axis.
-            if axis.length() <= 1.0e-9 * lengths {
-                return;
-            }
-            let axis = axis.normalize();
+        let mut test = |axis: DVec3| {
             let shadow = |all: &[DVec3]| {
                 let heights = all.iter().map(|p| (*p - corner).dot(axis));
                 heights.fold([f64::INFINITY, -f64::INFINITY], |[l, h], x| [l.min(x), h.max(x)])
@@ -100,7 +96,7 @@ impl Polytope {
                 }
             }
         };
-        let mut cross = |u: DVec3, v: DVec3| test(u.cross(v), u.length() * v.length());
+        let mut cross = |u: DVec3, v: DVec3| perpendicular(u, v).into_iter().for_each(&mut test);
         cross(sides[0], sides[1]);
         for &[p, q] in &self.edges {
             sides.iter().for_each(|&side| cross(side, q - p));
@@ -113,21 +109,35 @@ impl Polytope {
             sides.iter().chain(&edges).for_each(|&edge| cross(edge, normal));
         }
         sides.iter().for_each(|&side| cross(side, face));
-        // Segments and points: along and across them, and between them.
+        // Segments and points: across them, and between them.
         let between = points[0] - corner;
-        for along in sides.into_iter().chain([points[points.len() - 1] - points[0]]) {
-            cross(along, DVec3::ZERO);
+        let own =
+            self.edges.iter().map(|[p, q]| q - p).chain([points[points.len() - 1] - points[0]]);
+        for along in sides.into_iter().chain(own) {
             let normal = along.cross(between);
             if normal.length() > 1.0e-12 * scale * scale {
                 cross(along, normal);
                 cross(along.cross(normal), normal);
             }
+            cross(along, DVec3::new(0.3, -0.7, 0.2));
+            cross(along, DVec3::new(0.6, 0.1, -0.5));
         }
-        test(between, scale.max(f64::MIN_POSITIVE));
+        between.try_normalize().into_iter().for_each(test);
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
         let is_least = |&(gap, normal): &(f64, DVec3)| (gap >= widest - tie).then_some(normal);
         let normals = found.iter().filter_map(is_least).collect();
         ConvexTruth { distance: if found.is_empty() { 0.0 } else { widest }, normals }
     }
+}
+
+/// The unit vector perpendicular to two directions, exactly so to the first. `None` if parallel.
+fn perpendicular(u: DVec3, v: DVec3) -> Option<DVec3> {
+    let (u, v) = (u.try_normalize()?, v.try_normalize()?);
+    let mut normal = u.cross(v).try_normalize()?;
+    for _ in 0..2 {
+        normal = (normal - u * u.dot(normal)).try_normalize()?;
+    }
+    Some(normal)
 }
 
 fn edges([a, b, c]: &[DVec3; 3]) -> [[DVec3; 2]; 3] {
