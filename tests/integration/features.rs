@@ -3,19 +3,19 @@
 
 #![allow(dead_code, reason = "of what the tests share, these use a part")]
 
-mod allocation;
 mod coming_back;
+mod compound;
 mod convex {
-    mod motion;
     mod question;
-    mod shapes;
+    pub mod shapes;
 }
 mod determinism;
 mod heightfield {
-    mod motion;
-    mod terrain;
+    pub mod terrain;
 }
+mod kinds;
 mod motion;
+mod properties;
 mod same_mesh;
 mod snapshot;
 mod support;

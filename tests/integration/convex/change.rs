@@ -5,9 +5,8 @@ use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::TriMeshFlags;
 use sbbk_testkit::mesh;
 
-use super::question::bits;
 use super::shapes::{pose, shapes};
-use crate::support::{Pair, Question, counting, per_triangle, shape_with};
+use crate::support::{Pair, Question, bits, counting, per_triangle, shape_with};
 
 /// Would catch candidates of a shape that is no longer there, where a host keeps the workspace of a
 /// pair over an edit.

@@ -7,12 +7,8 @@ mod balls;
 mod casts;
 /// Shapes that change between queries, and pairs taken over from stock.
 mod change;
-/// Memory allocated.
-mod cost;
 /// First queries: those of Parry's routine bit for bit, SBBK's own against brute force.
 mod fresh;
-/// Motion against fresh queries.
-mod motion;
 /// Nonlinear casts, against brute force.
 mod nonlinear;
 /// Queries without manifolds, against brute force.
@@ -24,6 +20,6 @@ mod rest;
 /// Contacts at edges within a surface.
 mod seams;
 /// A shape of each kind, and where it meets a mesh.
-mod shapes;
+pub mod shapes;
 /// Shapes that start in solids.
 mod solids;

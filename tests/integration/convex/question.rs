@@ -50,21 +50,3 @@ pub(super) fn check_against_truth(
     }
     found.len()
 }
-
-/// All of a manifold that a user can see. Bits, but a zero has no sign.
-pub(super) fn bits(manifold: &Manifold) -> Vec<u32> {
-    let mut bits = Vec::new();
-    let mut push = |x: f32| bits.push((x + 0.0).to_bits());
-    for normal in [manifold.local_n1, manifold.local_n2] {
-        normal.to_array().into_iter().for_each(&mut push);
-    }
-    for point in &manifold.points {
-        for p in [point.local_p1, point.local_p2] {
-            p.to_array().into_iter().for_each(&mut push);
-        }
-        push(point.dist);
-    }
-    let features = manifold.points.iter().flat_map(|point| [point.fid1.0, point.fid2.0]);
-    bits.extend(features.collect::<Vec<_>>());
-    bits
-}

@@ -10,8 +10,8 @@ use rapier3d::parry::shape::TriMeshFlags;
 use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh::{self, Mesh};
 
-use super::question::bits;
 use super::shapes::shapes;
+use crate::support::bits;
 use crate::support::{
     Manifold, Question, distance, every, having, per_triangle, rotation, shape_with,
 };

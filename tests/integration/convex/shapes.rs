@@ -3,14 +3,13 @@ use std::f32::consts::FRAC_PI_2;
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
 use rapier3d::math::Real;
-use rapier3d::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::parry::shape::{Cone, Cylinder, SharedShape, TriMesh, TypedShape};
 use sbbk_core::truth::ConvexBody;
 
 use crate::support::{direction, rotation};
 
 /// A convex shape of each kind, about `size` across.
-pub(super) fn shapes(size: Real) -> Vec<(&'static str, SharedShape)> {
+pub fn shapes(size: Real) -> Vec<(&'static str, SharedShape)> {
     let half = 0.5 * size;
     let [a, b, c] = [
         Vec3::new(-half, 0.0, 0.1 * size),
@@ -79,7 +78,7 @@ pub(super) fn body(shape: &SharedShape) -> ConvexBody {
 }
 
 /// A large flat floor, whose box holds the whole mesh as soon as it is turned.
-pub(super) fn floor() -> SharedShape {
+pub fn floor() -> SharedShape {
     SharedShape::cuboid(50.0, 0.25, 50.0)
 }
 
@@ -100,23 +99,4 @@ pub(super) fn lattice_pose(random: &mut Rand32) -> Pose3 {
     let turn = quarter(Vec3::X) * quarter(Vec3::Y) * quarter(Vec3::Z);
     let [x, y, z] = [(); 3].map(|()| random.rand_range(0..33) as Real / 16.0 - 1.0);
     Pose3::from_parts(Vec3::new(x, y, z), turn)
-}
-
-/// A pose at which a shape is `gap` away from the mesh, found by going towards it.
-pub(super) fn near_pose(
-    random: &mut Rand32,
-    mesh: &TriMesh,
-    shape: &SharedShape,
-    gap: Real,
-) -> Pose3 {
-    let turn = rotation(random);
-    let away = direction(random);
-    let at = |way: Real| Pose3::from_parts(way * away, turn);
-    let distance =
-        |way| DefaultQueryDispatcher.distance(&at(way), mesh, &*shape.0).unwrap().distance;
-    let mut way = 4.0;
-    for _ in 0..100 {
-        way -= distance(way) - gap;
-    }
-    at(way)
 }

@@ -1,14 +1,11 @@
-use allocation_counter::measure;
 use glamx::{Quat, Vec3};
-use oorandom::Rand32;
-use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::math::{Pose, Real};
-use rapier3d::parry::shape::{HeightField, HeightFieldFlags};
+use rapier3d::parry::shape::HeightField;
 use rapier3d::parry::utils::Array2;
 use sbbk_testkit::mesh;
 
-use super::terrain::{Terrain, rolling};
-use crate::support::{Pair, Question, counting, nudge, shape, touching};
+use super::terrain::Terrain;
+use crate::support::{Question, counting, shape};
 
 /// Would catch a descent that looks at more of a terrain than what lies under the mesh: the same
 /// mesh on a field of the same cells, of a thousand times as many. And loss of digits far from the
@@ -43,29 +40,4 @@ fn a_million_cells_cost_what_is_under_the_mesh() {
     assert!(far < 10 * 400, "{far} cells");
     let (count, none) = visited(1000, 60.0);
     assert_eq!((count, none), (0, 0));
-}
-
-/// Would catch manifolds, lists of candidates and descents that are made anew in each step.
-#[test]
-fn steady_contact_allocates_nothing() {
-    let mut terrain = Terrain::new(rolling(6.0, 20, 0.5));
-    terrain.field.set_flags(HeightFieldFlags::FIX_INTERNAL_EDGES);
-    let head = shape(&mesh::monkey_head());
-    for (stride, flipped) in [(1e-4, false), (1e-3, true), (2.5e-2, false)] {
-        let dispatcher = counting();
-        let mut random = Rand32::new(8);
-        let start = touching(&mut random, [&terrain.mesh, &head], 0.02);
-        let poses: Vec<Pose> = (0..20).map(|_| nudge(&mut random, 0.5 * stride) * start).collect();
-        let mut pair = Pair::<ContactManifoldData, ContactData>::default();
-        let question = |pose| Question::new(&terrain.field, &head, pose).flipped(flipped);
-        for &pose in poses.iter().cycle().take(20 * 20) {
-            pair.ask(&dispatcher, &question(pose));
-        }
-        for &pose in poses.iter().cycle().take(20 * 5) {
-            let allocated = measure(|| _ = pair.ask(&dispatcher, &question(pose)));
-            assert!(!pair.manifolds.is_empty());
-            assert_eq!(allocated.count_total, 0, "{stride}: {allocated:?}");
-        }
-        assert!(dispatcher.stats().reused_queries + dispatcher.stats().descended_queries > 400);
-    }
 }

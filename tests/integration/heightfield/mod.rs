@@ -7,11 +7,9 @@ mod change;
 mod cost;
 /// Contact normals constrained at internal edges of the field.
 mod edges;
-/// Motion against fresh queries.
-mod motion;
 /// Heads at rest, and worlds that are saved.
 mod rest;
 /// Fields as meshes, and places on them.
-mod terrain;
+pub mod terrain;
 /// Brute force over all triangles.
 mod truth;

@@ -92,7 +92,7 @@ pub(super) fn heights(
 }
 
 /// The terrain of the laboratory as a field.
-pub(super) fn rolling(size: Real, cells: u32, height: Real) -> HeightField {
+pub fn rolling(size: Real, cells: u32, height: Real) -> HeightField {
     let mesh = mesh::terrain(size, cells, height);
     let lines = cells as usize + 1;
     let heights = Array2::from_fn(lines, lines, |i, j| mesh.vertices[i * lines + j].y);
