@@ -50,7 +50,7 @@ pub(crate) fn each_bit(mut mask: u32, mut found: impl FnMut(usize)) {
 /// A value for each of the two children of a node.
 pub(crate) type PerChild<T> = [T; 2];
 
-/// How the children of one side lie over the four lanes of a test.
+/// Spreads the two children of one side over the four lanes of a test.
 pub(crate) trait Spread: Copy {
     fn spread(self, values: &PerChild<impl Copy + Into<f32>>) -> f32x4;
 }
@@ -63,7 +63,7 @@ pub(crate) struct Outer;
 #[derive(Copy, Clone)]
 pub(crate) struct Inner;
 
-/// One child in all lanes: a leaf, while the other side goes on.
+/// A single child in all lanes, for the side that stays.
 #[derive(Copy, Clone)]
 pub(crate) struct Same(pub(crate) usize);
 

@@ -7,10 +7,10 @@ use super::{ABSOLUTE_SLACK, Aabb, RELATIVE_SLACK, Reach};
 /// Number of boxes or spheres tested at once.
 pub(super) const LANE_COUNT: usize = 8;
 
-/// One float a lane.
+/// A float for each lane.
 pub(super) type Lanes = f32x8;
 
-/// One bit a lane.
+/// A bit for each lane.
 pub(super) type LaneMask = u8;
 
 /// The lanes whose bit is set, lowest first.

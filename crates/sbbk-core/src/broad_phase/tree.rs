@@ -21,7 +21,7 @@ const WORN_GROWTH: f32 = 1.2;
 /// Packing is due when one group in this many is worn. Lower: more bad boxes; higher: more packing.
 const WORN_SHARE: usize = 4;
 
-/// One level: groups of eight boxes, and which of them hold an object that changed.
+/// A level: groups of eight boxes, and a mask of those with an object that changed.
 #[derive(Clone, Debug, Default)]
 struct Level {
     boxes: Vec<BoxLanes>,
@@ -231,7 +231,7 @@ mod tests {
         [i % 10, i / 10 % 10, i / 100 % 10].map(|x| 2.0 * x as f32)
     }
 
-    /// Whether packing is due once the lattice, with one object of another size, has moved.
+    /// Returns true if packing is due once the lattice, with one object of another size, has moved.
     fn is_due_after(size: f32, moved: &[&dyn Fn(usize) -> [f32; 3]]) -> bool {
         let size = |i: usize| if i == 500 { size } else { 1.0 };
         let reaches: Vec<_> = (0..OBJECT_COUNT).map(|i| cube(place(i), size(i))).collect();

@@ -47,9 +47,9 @@ use crate::traverse::{Counters, PairFrame};
 use crate::tree::{LeafBatch, Tree};
 use opening::{Opening, PairTest, TreePair};
 
-/// Where the last descent of a pair of trees stopped: see [the module](self).
+/// The pairs of nodes where the last descent of two trees stopped: see [the module](self).
 ///
-/// One front serves one pair of trees. [`clear`](Self::clear) it when a tree is exchanged.
+/// A front serves one pair of trees. [`clear`](Self::clear) it when a tree is exchanged.
 #[derive(Clone, Debug, Default)]
 pub struct Front {
     /// The pairs above the front; the first is that of the roots. The front is every lane that has

@@ -1,16 +1,15 @@
-//! From a centroid to a bin, for the binned surface area heuristic.
+//! Bins of centroids for the surface area heuristic.
 
 use glamx::{Vec3, Vec3A};
 
 use crate::volumes::Aabb;
 
-/// Bins an axis at most. More find slightly better splits and cost build time; 16 was within 1 % of
-/// the traversal time of 32.
+/// Greatest number of bins. Higher: slightly better splits; lower: faster builds.
 const MOST_BINS: usize = 16;
-/// Bins for few triangles: sweeping over more than there are triangles finds nothing.
+/// Least number of bins. Higher: slower builds of small nodes; lower: worse splits.
 const LEAST_BINS: usize = 4;
 
-/// A box in SIMD registers, which the build spends its time on merging.
+/// A box in SIMD registers, as the build mostly merges boxes.
 #[derive(Copy, Clone)]
 pub(super) struct Bounds {
     pub(super) min: Vec3A,
@@ -58,8 +57,7 @@ impl Bounds {
 
 /// Maps centroids to bins along one axis.
 ///
-/// The result is in range whatever the input: the multiplication may round up to the number of
-/// bins, so the bin is clamped, and a NaN casts to 0.
+/// The bin is clamped, as the multiplication may round up to the number of bins. NaN casts to 0.
 #[derive(Copy, Clone)]
 pub(super) struct BinMapping {
     axis: usize,
@@ -69,8 +67,8 @@ pub(super) struct BinMapping {
 }
 
 impl BinMapping {
-    /// For `count` triangles, along the longest axis of their centroids. `None` if they cannot be
-    /// told apart there.
+    /// A mapping of `count` triangles along the longest axis of their centroids. `None` if these are
+    /// equal there.
     pub(super) fn new(centroids: &Bounds, count: usize) -> Option<Self> {
         let size = centroids.max - centroids.min;
         let axis = centroids.longest_axis();
@@ -86,7 +84,7 @@ impl BinMapping {
     }
 }
 
-/// What falls into one bin.
+/// The content of one bin.
 #[derive(Copy, Clone)]
 struct Bin {
     bounds: Bounds,
@@ -101,7 +99,7 @@ impl Bin {
         Self { bounds: self.bounds.merge(&other.bounds), count: self.count + other.count }
     }
 
-    /// The cost of testing so many full leaves in a volume of this size; NaN of an empty bin.
+    /// The cost of testing full leaves in a volume of this size; NaN for an empty bin.
     #[inline]
     fn cost(&self, leaf_size: u32) -> f32 {
         self.bounds.half_area() * self.count.div_ceil(leaf_size) as f32
@@ -114,7 +112,7 @@ pub(super) struct Bins {
     bin_count: usize,
 }
 
-/// A place to split: before this bin, with what is on each side.
+/// A split before a bin, with the boxes of both sides.
 pub(super) struct Split {
     pub(super) bin: usize,
     pub(super) bounds: [Bounds; 2],
@@ -132,7 +130,7 @@ impl Bins {
         bin.count += 1;
     }
 
-    /// The cheapest split that has triangles on both sides, into leaves of so many triangles.
+    /// The cheapest split that has triangles on both sides.
     pub(super) fn best_split(&self, leaf_size: usize) -> Option<Split> {
         let bins = &self.bins[..self.bin_count];
         let mut above = [Bin::EMPTY; MOST_BINS + 1];
@@ -145,7 +143,7 @@ impl Bins {
         for i in 1..bins.len() {
             below = below.merge(&bins[i - 1]);
             let cost = below.cost(leaf_size as u32) + above[i].cost(leaf_size as u32);
-            // Not so with nothing on a side, where it is NaN.
+            // False if a side is empty, as the cost is NaN.
             if cost < best_cost {
                 best_cost = cost;
                 best = Some(Split { bin: i, bounds: [below.bounds, above[i].bounds] });
@@ -163,7 +161,7 @@ mod tests {
         BinMapping::new(&Bounds { min, max }, count)
     }
 
-    /// The largest centroid would be in a bin too many without the clamp.
+    /// Would catch a missing clamp, with which the largest centroid is out of range.
     #[test]
     fn ends_are_in_the_first_and_last_bin() {
         for count in [2, 5, 100] {

@@ -1,17 +1,14 @@
 //! Top-down build by the binned surface area heuristic.
 //!
-//! Wald, *On Fast Construction of SAH-based Bounding Volume Hierarchies*, 2007: the triangles'
-//! centroids fall into a fixed number of bins along their longest axis; the split between two bins
+//! Wald, *On Fast Construction of SAH-based Bounding Volume Hierarchies*, 2007. The triangles'
+//! centroids fall into a fixed number of bins along their longest axis. The split between two bins
 //! with the least `area(1)·leaves(1) + area(2)·leaves(2)` wins, where `leaves` is the least number
-//! that the triangles take: by the number of triangles trees had a tenth more leaves and were no
-//! faster. Where no split separates anything (equal centroids) the triangles are halved by number.
-//! Trying all three axes was dropped: 3 % fewer node tests for twice the build time. Two leaves'
-//! worth of triangles are halved at the median: as good, and half of all splits are such.
+//! of leaves for the triangles. If no split separates anything (equal centroids), the triangles are
+//! halved by number. Two leaves' worth of triangles are halved at the median.
 //!
-//! A split by cost may part one triangle from all others, and where sizes shrink by a sixteenth
-//! from triangle to triangle, each one does: thousands of levels. So from [`DEEPEST_BY_COST`] on
-//! triangles are halved at the median, and no tree of `n` triangles is deeper than that and `log2
-//! n` together.
+//! A split by cost may part one triangle from all others, thousands of times if sizes shrink from
+//! triangle to triangle. So below [`DEEPEST_BY_COST`] triangles are halved at the median. No tree of
+//! `n` triangles is deeper than that plus `log2 n`.
 
 use glamx::Vec3;
 
@@ -20,18 +17,17 @@ use super::bins::{BinMapping, Bins, Bounds};
 use super::node::BATCH;
 use crate::volumes::Aabb;
 
-/// Depth of the last nodes that are split by cost. Lower: worse trees of meshes with a few very
-/// deep parts; ordinary ones have 20 to 30 levels. Higher: deeper recursion of a refit.
+/// Depth of the last nodes that are split by cost. Higher: deeper trees; lower: worse trees of meshes
+/// with a few very deep parts. Ordinary trees have 20 to 30 levels.
 const DEEPEST_BY_COST: u32 = 64;
 
-/// How a tree is built.
+/// Options of a build.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct BuildOptions {
-    /// The volume of each layer. `None`: boxes, and k-DOPs below if they pay for this mesh, by the model
-    /// that [`LayerPlan`] tells of.
+    /// The volumes of each layer. `None`: chosen for the mesh by the model of [`LayerPlan`].
     pub layers: Option<LayerPlan>,
-    /// Triangles in a leaf at most, 1 to [`BATCH`]; other values are clamped. Larger leaves make
-    /// smaller trees and more triangle tests.
+    /// Greatest number of triangles in a leaf, clamped to 1 to [`BATCH`]. Higher: smaller trees; lower:
+    /// fewer triangle tests.
     pub leaf_size: usize,
 }
 
@@ -41,7 +37,7 @@ impl Default for BuildOptions {
     }
 }
 
-/// The tree in the form of its construction.
+/// The tree under construction.
 pub(super) struct BuildTree {
     /// Parents before children; the root is first.
     pub(super) nodes: Vec<BuildNode>,
@@ -56,7 +52,7 @@ pub(super) struct BuildNode {
 }
 
 pub(super) enum Content {
-    /// The two children's places in `nodes`.
+    /// Indices of the two children in `nodes`.
     Inner([u32; 2]),
     /// A range of `order`.
     Leaf(std::ops::Range<u32>),
@@ -68,7 +64,7 @@ struct Primitive {
     triangle: u32,
 }
 
-/// A node whose content is still to be decided.
+/// A node without content.
 struct Task {
     node: u32,
     range: std::ops::Range<usize>,
@@ -120,8 +116,8 @@ fn bounds(primitives: &[Primitive]) -> Bounds {
     primitives.iter().fold(Bounds::EMPTY, |all, p| all.merge(&p.bounds))
 }
 
-/// Reorders the primitives so that the two halves of the best split, which will be at `depth`,
-/// follow each other. Returns where the second starts, never at an end, and the boxes of both.
+/// Reorders the primitives by the best split into nodes at `depth`. Returns the start of the second
+/// half, never at an end, and the boxes of both.
 fn split(primitives: &mut [Primitive], leaf_size: usize, depth: u32) -> (usize, [Bounds; 2]) {
     let centroids =
         primitives.iter().fold(Bounds::EMPTY, |all, p| all.with_point(p.bounds.centre()));
@@ -149,7 +145,7 @@ fn halves(primitives: &[Primitive]) -> (usize, [Bounds; 2]) {
     (middle, [bounds(&primitives[..middle]), bounds(&primitives[middle..])])
 }
 
-/// Moves the primitives for which `first` holds to the front; returns how many there are.
+/// Moves the primitives for which `first` holds to the front; returns their number.
 fn partition(primitives: &mut [Primitive], first: impl Fn(&Primitive) -> bool) -> usize {
     let mut front = 0;
     let mut back = primitives.len();

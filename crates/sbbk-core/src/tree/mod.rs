@@ -1,9 +1,8 @@
 //! The bounding volume hierarchy of one mesh: a sphere at the root, AABBs below, then k-DOPs, and
 //! batches of triangles in the leaves.
 //!
-//! A tree is built in a comfortable form (`build.rs`: binned SAH over primitives, one node after
-//! the other) and packed once into the flat arrays that the descent reads (`pack.rs`). It never
-//! changes. [`Tree::root`] starts a walk over its nodes.
+//! `build.rs` makes a tree one node at a time by binned SAH; `pack.rs` copies it into the flat
+//! arrays of the descent. Trees never change. [`Tree::root`] starts a walk over the nodes.
 //!
 //! ```
 //! use glamx::Vec3;
@@ -11,7 +10,7 @@
 //!
 //! let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
 //! let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-//! let tree: Tree = Tree::build(&vertices, &triangles, &BuildOptions::default())?;
+//! let tree = Tree::build(&vertices, &triangles, &BuildOptions::default())?;
 //! assert_eq!(tree.triangle_count(), 4);
 //! assert_eq!(tree.validate(), Ok(()));
 //! # Ok::<(), sbbk_core::tree::BuildError>(())
@@ -28,8 +27,8 @@ mod walk;
 
 pub use build::BuildOptions;
 pub use layers::LayerPlan;
-pub use node::{BATCH, LeafBatch, Slot};
-pub(crate) use node::{Children, Intervals, Link};
+pub use node::{BATCH, LeafBatch};
+pub(crate) use node::{Children, Intervals, Link, Slot};
 pub use stats::BuildStats;
 pub use validate::Violation;
 pub use walk::{Leaf, Node};
@@ -46,22 +45,22 @@ use node::Pair;
 pub struct Tree {
     /// `None` if the plan has no sphere.
     sphere: Option<Sphere>,
-    /// Children of the inner nodes of the upper layers. Entry 0 is the root's own volume in lane 0.
+    /// Children of the inner nodes of the upper layers. Entry 0 has the root's volume in lane 0.
     aabb_pairs: Vec<Pair<3>>,
-    /// Children of the inner nodes of the lower layers; their node numbers follow those above.
+    /// Children of the inner nodes of the lower layers, numbered after the upper ones.
     kdop_pairs: Vec<Pair<SLABS>>,
     leaves: Vec<LeafBatch>,
     triangle_count: u32,
-    /// The largest absolute coordinate: what rounding errors in this frame are relative to.
+    /// The largest absolute coordinate, to which rounding errors are proportional.
     magnitude: f32,
     stats: BuildStats,
 }
 
-/// Why a mesh cannot have a tree.
+/// Reason for which a mesh cannot have a tree.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum BuildError {
-    /// There is nothing to bound.
+    /// The mesh has no triangles.
     #[error("the mesh has no triangles")]
     NoTriangles,
     /// Node and triangle numbers are 30 bits wide.
@@ -77,9 +76,9 @@ pub enum BuildError {
     IndexOutOfRange {
         /// Index of the triangle.
         triangle: usize,
-        /// The vertex index it holds.
+        /// The vertex index.
         vertex: u32,
-        /// How many vertices there are.
+        /// Number of vertices of the mesh.
         vertex_count: usize,
     },
     /// A vertex that a triangle uses is NaN or infinite.
@@ -87,26 +86,24 @@ pub enum BuildError {
     NotFinite {
         /// Index of the vertex.
         vertex: u32,
-        /// Its coordinates.
+        /// Coordinates of the vertex.
         position: Vec3,
     },
-    /// The layers cannot be ordered as asked.
+    /// The layer plan has k-DOPs at the root.
     #[error(
         "the layer plan starts k-DOPs at depth {depth}, but the root's volume is at depth 0 and the first children at depth 1: use 1 or more"
     )]
     KdopAtRoot {
-        /// The depth asked for.
+        /// The depth of the plan.
         depth: u32,
     },
 }
 
 impl Tree {
-    /// Builds the tree of a mesh. Degenerate triangles are kept, like any others, and counted in
-    /// [`BuildStats`].
+    /// Builds the tree of a mesh. Degenerate triangles are kept.
     ///
     /// # Errors
-    /// Everything wrong with the input is found here, in the order counts, indices, coordinates: a
-    /// [`Tree`] that exists is valid.
+    /// The first fault of the input, in the order counts, indices, coordinates.
     pub fn build(
         vertices: &[Vec3],
         triangles: &[[u32; 3]],
@@ -129,8 +126,7 @@ impl Tree {
         self.sphere.as_ref()
     }
 
-    /// A ball around the mesh: the sphere of the root, or one around its box where the plan has
-    /// none.
+    /// A ball around the mesh: the sphere of the root, or else one around its box.
     pub fn bounding_ball(&self) -> Sphere {
         self.sphere.unwrap_or_else(|| {
             let aabb = self.children(0).aabb(0);
@@ -144,7 +140,7 @@ impl Tree {
         self.magnitude
     }
 
-    /// What the build did, and what the tree costs.
+    /// Depth, layers and memory of the tree.
     pub fn stats(&self) -> &BuildStats {
         &self.stats
     }
@@ -159,7 +155,7 @@ impl Tree {
         self.leaves.len() as u32
     }
 
-    /// The two children of an inner node, their volumes lane by lane.
+    /// The volumes of the two children of an inner node, lane by lane.
     pub(crate) fn children(&self, node: u32) -> Children<'_> {
         let node = node as usize;
         match self.aabb_pairs.get(node) {
@@ -168,7 +164,7 @@ impl Tree {
         }
     }
 
-    /// What a slot leads to.
+    /// The inner node or leaf at a slot.
     #[inline]
     pub(crate) fn link(&self, slot: Slot) -> Link {
         self.children(slot.node()).links[slot.lane()]

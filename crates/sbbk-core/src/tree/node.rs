@@ -1,9 +1,8 @@
 //! The runtime layout of a tree.
 //!
-//! An inner node stores the volumes of its *two children* side by side, lane by lane: a
-//! simultaneous descent compares the children of two nodes all at once, so these four volumes are
-//! what it needs next to each other. A node's own volume is therefore in its parent, and [`Slot`]
-//! names it there.
+//! An inner node stores the volumes of its *two children*, lane by lane. A simultaneous descent
+//! compares the children of two nodes at once, and reads these four volumes together. The volume of
+//! a node is therefore in its parent, at a [`Slot`].
 
 use glamx::Vec3;
 use wide::f32x4;
@@ -12,10 +11,10 @@ use crate::simd::{PerChild, V3, each};
 use crate::volumes::rounding::{HalfLength, centre_extent};
 use crate::volumes::{Aabb, Kdop, SLABS, directions};
 
-/// Triangles in a leaf at most, and lanes of the triangle test.
+/// Greatest number of triangles in a leaf, and lanes of the triangle test.
 pub const BATCH: usize = 4;
 
-/// What a slot leads to: an inner node or a leaf. A packed word.
+/// An inner node or a leaf, as a packed word.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Link(u32);
 
@@ -23,7 +22,7 @@ impl Link {
     const LEAF_BIT: u32 = 1 << 31;
     /// The largest node or leaf number. Two bits are spare: a [`Slot`] doubles node numbers.
     pub(crate) const MAX_INDEX: u32 = (1 << 30) - 1;
-    /// Of a lane that holds no child.
+    /// The link of a lane without a child.
     pub(super) const NONE: Self = Self(u32::MAX);
 
     pub(super) fn inner(node: u32) -> Self {
@@ -36,7 +35,7 @@ impl Link {
         Self(leaf | Self::LEAF_BIT)
     }
 
-    /// Whether this is a leaf.
+    /// Returns true for a leaf.
     pub(crate) fn is_leaf(self) -> bool {
         self.0 & Self::LEAF_BIT != 0
     }
@@ -47,13 +46,13 @@ impl Link {
     }
 }
 
-/// A node, named by the place of its volume: the inner node that holds it and the lane there.
+/// The place of a node's volume: an inner node and a lane.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Slot(u32);
+pub(crate) struct Slot(u32);
 
 impl Slot {
     /// The root of any tree.
-    pub const ROOT: Self = Self(0);
+    pub(crate) const ROOT: Self = Self(0);
 
     pub(crate) fn new(node: u32, lane: usize) -> Self {
         Self(node << 1 | lane as u32)
@@ -70,8 +69,8 @@ impl Slot {
     }
 }
 
-/// The children of an inner node: their intervals along the axes of their boxes, or along all slabs
-/// of their k-DOPs, of which the first three are the box.
+/// The children of an inner node: intervals along the axes of boxes, or along all slabs of k-DOPs.
+/// The first three slabs are the box.
 #[derive(Copy, Clone, Debug)]
 pub(super) struct Pair<const COUNT: usize> {
     pub(super) centre: [PerChild<f32>; COUNT], // 8 · COUNT
@@ -87,7 +86,7 @@ impl<const COUNT: usize> Pair<COUNT> {
         links: [Link::NONE; 2],
     };
 
-    /// Sets a child and the ends of its intervals.
+    /// Sets a child from the ends of its intervals.
     #[inline(always)]
     pub(super) fn set(&mut self, lane: usize, link: Link, min: &[f32; COUNT], max: &[f32; COUNT]) {
         self.links[lane] = link;
@@ -98,7 +97,7 @@ impl<const COUNT: usize> Pair<COUNT> {
     }
 }
 
-/// Intervals of two children along the axes of their boxes, or along all slabs of their k-DOPs.
+/// Intervals of two children along the axes of boxes, or along all slabs of k-DOPs.
 #[derive(Copy, Clone, Debug)]
 pub(crate) struct Intervals<'a, const COUNT: usize> {
     pub(crate) centre: &'a [PerChild<f32>; COUNT],
@@ -110,7 +109,7 @@ pub(crate) struct Intervals<'a, const COUNT: usize> {
 #[derive(Copy, Clone, Debug)]
 pub(crate) struct Children<'a> {
     pub(crate) boxes: Intervals<'a, 3>,
-    /// In the k-DOP layers.
+    /// Present in the k-DOP layers.
     pub(crate) kdops: Option<Intervals<'a, SLABS>>,
     pub(crate) links: &'a [Link; 2],
 }
@@ -148,7 +147,7 @@ fn box_of<T>(slabs: &[T; SLABS]) -> &[T; 3] {
 }
 
 impl<const COUNT: usize> Intervals<'_, COUNT> {
-    /// The lower and the upper ends of one child's.
+    /// The lower and the upper ends of one child's intervals.
     fn ends(&self, lane: usize) -> [[f32; COUNT]; 2] {
         let end = |sign: f32| {
             std::array::from_fn(|i| self.centre[i][lane] + sign * f32::from(self.extent[i][lane]))
@@ -157,8 +156,7 @@ impl<const COUNT: usize> Intervals<'_, COUNT> {
     }
 }
 
-/// Up to [`BATCH`] triangles, lane by lane. Unused lanes repeat the last triangle, which tells their
-/// number.
+/// Up to [`BATCH`] triangles, lane by lane. Unused lanes repeat the last triangle.
 #[derive(Copy, Clone, Debug)]
 #[repr(C, align(16))]
 pub struct LeafBatch {
@@ -176,10 +174,10 @@ impl LeafBatch {
         })
     }
 
-    /// One to [`BATCH`] different triangles, by their indices in a mesh and their corners.
+    /// A batch of different triangles, given by indices and corners.
     ///
     /// # Panics
-    /// With fewer or more.
+    /// Panics unless there are 1 to [`BATCH`] triangles.
     #[inline]
     pub fn gather(members: &[u32], corners_of: impl Fn(u32) -> [Vec3; 3]) -> Self {
         assert!((1..=BATCH).contains(&members.len()), "{} triangles in a batch", members.len());
@@ -215,28 +213,18 @@ impl LeafBatch {
         each(|corner| each(|axis| f32x4::new(self.corners[corner][axis])))
     }
 
-    /// The least and the largest of what `project` makes of the corners.
-    #[inline(always)]
-    pub(super) fn ends<const N: usize>(
-        &self,
-        project: impl Fn(V3<f32x4>) -> [f32x4; N],
-    ) -> [[f32; N]; 2] {
-        let (mut low, mut high) =
-            ([f32x4::splat(f32::INFINITY); N], [f32x4::splat(f32::NEG_INFINITY); N]);
-        for corner in self.lanes() {
-            let projections = project(corner);
-            for axis in 0..N {
-                low[axis] = low[axis].fast_min(projections[axis]);
-                high[axis] = high[axis].fast_max(projections[axis]);
-            }
-        }
-        [reduce(&low, f32x4::fast_min), reduce(&high, f32x4::fast_max)]
-    }
-
     /// The k-DOP around all triangles.
     pub(super) fn kdop(&self) -> Kdop {
-        let [min, max] = self.ends(directions::project);
-        Kdop::from_ends(min, max)
+        let (mut low, mut high) =
+            ([f32x4::splat(f32::INFINITY); SLABS], [f32x4::splat(f32::NEG_INFINITY); SLABS]);
+        for corner in self.lanes() {
+            let projections = directions::project(corner);
+            for slab in 0..SLABS {
+                low[slab] = low[slab].fast_min(projections[slab]);
+                high[slab] = high[slab].fast_max(projections[slab]);
+            }
+        }
+        Kdop::from_ends(reduce(&low, f32x4::fast_min), reduce(&high, f32x4::fast_max))
     }
 
     /// The corners of the triangle in `lane`.
@@ -249,18 +237,15 @@ impl LeafBatch {
     }
 }
 
-/// Combines the lanes of each of the values.
+/// Combines the lanes of each value, four values at a time by transposing them.
 #[inline(always)]
-fn reduce<const N: usize>(
-    values: &[f32x4; N],
-    combine: impl Fn(f32x4, f32x4) -> f32x4,
-) -> [f32; N] {
-    let mut reduced = [0.0; N];
-    for first in (0..N).step_by(BATCH) {
-        let lane = |i: usize| values[(first + i).min(N - 1)];
+fn reduce(values: &[f32x4; SLABS], combine: impl Fn(f32x4, f32x4) -> f32x4) -> [f32; SLABS] {
+    let mut reduced = [0.0; SLABS];
+    for first in (0..SLABS).step_by(BATCH) {
+        let lane = |i: usize| values[(first + i).min(SLABS - 1)];
         let [a, b, c, d] = f32x4::transpose([lane(0), lane(1), lane(2), lane(3)]);
         let combined = combine(combine(a, b), combine(c, d)).to_array();
-        let count = BATCH.min(N - first);
+        let count = BATCH.min(SLABS - first);
         reduced[first..first + count].copy_from_slice(&combined[..count]);
     }
     reduced

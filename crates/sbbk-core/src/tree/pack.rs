@@ -1,7 +1,7 @@
-//! From the tree of the build to the arrays of the descent.
+//! Packs the tree of the build into the arrays of the descent.
 //!
-//! Upper nodes are numbered breadth first, so that the ones every descent visits share cache lines;
-//! the k-DOP layers follow in the order of the build (depth first, siblings adjacent).
+//! Upper nodes are numbered breadth first, so that those visited by every descent share cache lines.
+//! The k-DOP layers follow in the order of the build (depth first, siblings adjacent).
 
 use glamx::Vec3;
 
@@ -65,8 +65,7 @@ pub(super) fn pack(
         magnitude: built.nodes[0].aabb.magnitude(),
         stats: BuildStats::default(),
     };
-    tree.stats =
-        BuildStats { layers, kdop_cut, ..BuildStats::of(&tree, &built, vertices, triangles) };
+    tree.stats = BuildStats { layers, kdop_cut, ..BuildStats::of(&tree, &built) };
     tree
 }
 
@@ -113,14 +112,14 @@ fn kdops(
 }
 
 /// Runtime numbers of the inner nodes.
-struct Numbers {
-    /// By place in the built tree; leaves have none.
+struct NodeNumbers {
+    /// Number by place in the built tree; `u32::MAX` for leaves.
     of_place: Vec<u32>,
     aabb_count: usize,
     kdop_count: usize,
 }
 
-fn number_nodes(nodes: &[BuildNode], layers: LayerPlan) -> Numbers {
+fn number_nodes(nodes: &[BuildNode], layers: LayerPlan) -> NodeNumbers {
     let children_are_kdops = |node: &BuildNode| layers.is_kdop(node.depth + 1);
     let is_inner = |node: &BuildNode| matches!(node.content, Content::Inner(_));
 
@@ -140,10 +139,10 @@ fn number_nodes(nodes: &[BuildNode], layers: LayerPlan) -> Numbers {
             next += 1;
         }
     }
-    Numbers { of_place, aabb_count: upper.len(), kdop_count: next as usize - 1 - upper.len() }
+    NodeNumbers { of_place, aabb_count: upper.len(), kdop_count: next as usize - 1 - upper.len() }
 }
 
-/// The sphere of the vertices that triangles use: others must not widen it.
+/// The sphere of the vertices that triangles use.
 fn sphere(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Sphere {
     let mut used = vec![false; vertices.len()];
     for &vertex in triangles.iter().flatten() {

@@ -1,11 +1,9 @@
-use glamx::Vec3;
-
-use super::build::{BuildTree, Content};
+use super::build::{BuildNode, BuildTree, Content};
 use super::node::{LeafBatch, Pair};
 use super::{LayerPlan, Tree};
-use crate::volumes::{SLABS, Sphere};
+use crate::volumes::SLABS;
 
-/// What a build made.
+/// Depth, layers and memory of a tree.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct BuildStats {
@@ -13,21 +11,11 @@ pub struct BuildStats {
     pub depth: u32,
     /// Number of inner nodes.
     pub inner_count: u32,
-    /// Number of leaves.
-    pub leaf_count: u32,
-    /// Triangles whose area is exactly zero in f32. They are kept.
-    pub degenerate_count: u32,
-    /// Expected cost of a random query that hits the root, in node tests: the surface area
-    /// heuristic's `Σ area(inner)·2 + Σ area(leaf)·count`, over the root's area. Zero if that is
-    /// zero.
-    pub sah_cost: f32,
-    /// The volume of each layer, as asked for or chosen.
+    /// The volumes of each layer, as given or chosen.
     pub layers: LayerPlan,
-    /// Why they were chosen: how much of the boxes that a random query meets k-DOPs cut off, or would, from
-    /// depth 4 on or those that were chosen. `None`: the layers were asked for.
+    /// Share of the boxes met by a random query that k-DOPs cut off, in the chosen layers or from
+    /// depth 4 on. `None` if a plan was given.
     pub kdop_cut: Option<f32>,
-    /// Memory of the sphere.
-    pub sphere_bytes: usize,
     /// Memory of the AABB layers.
     pub aabb_bytes: usize,
     /// Memory of the k-DOP layers.
@@ -37,35 +25,12 @@ pub struct BuildStats {
 }
 
 impl BuildStats {
-    /// All but what is known of the layers.
-    pub(super) fn of(
-        tree: &Tree,
-        built: &BuildTree,
-        vertices: &[Vec3],
-        triangles: &[[u32; 3]],
-    ) -> Self {
-        let mut cost = 0.0;
-        let mut depth = 0;
-        for node in &built.nodes {
-            depth = depth.max(node.depth);
-            cost += node.aabb.half_area()
-                * match &node.content {
-                    Content::Inner(_) => 2.0,
-                    Content::Leaf(range) => range.len() as f32,
-                };
-        }
-        let root_area = built.nodes[0].aabb.half_area();
-        let is_degenerate = |t: &&[u32; 3]| {
-            let [a, b, c] = t.map(|v| vertices[v as usize]);
-            (b - a).cross(c - a) == Vec3::ZERO
-        };
+    /// The statistics without the layers.
+    pub(super) fn of(tree: &Tree, built: &BuildTree) -> Self {
+        let is_inner = |node: &&BuildNode| matches!(node.content, Content::Inner(_));
         Self {
-            depth,
-            inner_count: (built.nodes.len() - tree.leaves.len()) as u32,
-            leaf_count: tree.leaves.len() as u32,
-            degenerate_count: triangles.iter().filter(is_degenerate).count() as u32,
-            sah_cost: if root_area > 0.0 { cost / root_area } else { 0.0 },
-            sphere_bytes: tree.sphere.map_or(0, |_| size_of::<Sphere>()),
+            depth: built.nodes.iter().map(|node| node.depth).max().unwrap_or(0),
+            inner_count: built.nodes.iter().filter(is_inner).count() as u32,
             aabb_bytes: tree.aabb_pairs.len() * size_of::<Pair<3>>(),
             kdop_bytes: tree.kdop_pairs.len() * size_of::<Pair<SLABS>>(),
             leaf_bytes: tree.leaves.len() * size_of::<LeafBatch>(),
@@ -75,6 +40,6 @@ impl BuildStats {
 
     /// Memory of the whole tree.
     pub fn bytes(&self) -> usize {
-        self.sphere_bytes + self.aabb_bytes + self.kdop_bytes + self.leaf_bytes
+        self.aabb_bytes + self.kdop_bytes + self.leaf_bytes
     }
 }

@@ -1,116 +1,77 @@
-use super::Tree;
-use super::node::{Link, Slot};
+use glamx::Vec3;
 
-/// The first thing found wrong with a tree.
+use super::Tree;
+use super::node::{LeafBatch, Slot};
+
+/// A fault of a tree.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Violation {
-    /// A slot is reached twice, or leads to a number that does not exist.
-    Topology {
-        /// The slot.
-        slot: Slot,
-    },
+    /// A node or leaf is reached twice or does not exist.
+    Topology,
     /// Some nodes or leaves are not reachable from the root.
-    Unreachable {
-        /// Inner nodes reached, the root's own entry included.
-        nodes: usize,
-        /// Leaves reached.
-        leaves: usize,
-    },
-    /// A triangle is missing or in two leaves.
-    Triangles {
-        /// The triangle's index in the mesh.
-        triangle: u32,
-        /// In how many leaves it is.
-        occurrences: u32,
-    },
-    /// A node's volume does not contain a corner of a triangle below it.
-    NotContained {
-        /// The node.
-        slot: Slot,
-        /// The triangle's index in the mesh.
-        triangle: u32,
-    },
+    Unreachable,
+    /// This triangle is missing, in two leaves, or beyond the mesh.
+    Triangle(u32),
+    /// A volume does not contain a corner of this triangle below it.
+    NotContained(u32),
 }
 
 impl Tree {
     /// Checks topology, completeness and that each volume of each layer contains every corner below
-    /// it. Costs triangles times depth: for tests and for finding out.
+    /// it. For tests: takes the number of triangles times the depth.
     ///
     /// # Errors
-    /// The first violation found. A tree from [`Tree::build`] has none.
+    /// The first violation. A tree from [`Tree::build`] has none.
     pub fn validate(&self) -> Result<(), Violation> {
-        let mut seen_nodes = vec![false; self.node_count()];
-        let mut seen_leaves = vec![false; self.leaves.len()];
-        let mut occurrences = vec![0u32; self.triangle_count as usize];
-        seen_nodes[0] = true;
+        let mut is_seen = [vec![false; self.node_count()], vec![false; self.leaves.len()]];
+        let mut is_found = vec![false; self.triangle_count as usize];
+        is_seen[0][0] = true;
         let mut stack = vec![vec![Slot::ROOT]];
         while let Some(path) = stack.pop() {
-            let slot = *path.last().expect("a path starts at the root");
-            let link = self.link(slot);
-            let seen = if link.is_leaf() { &mut seen_leaves } else { &mut seen_nodes };
-            match seen.get_mut(link.index() as usize) {
-                Some(seen @ false) => *seen = true,
-                _ => return Err(Violation::Topology { slot }),
+            let link = self.link(*path.last().expect("a path starts at the root"));
+            match is_seen[usize::from(link.is_leaf())].get_mut(link.index() as usize) {
+                Some(is_seen @ false) => *is_seen = true,
+                _ => return Err(Violation::Topology),
             }
             if link.is_leaf() {
-                self.validate_leaf(link, &path, &mut occurrences)?;
+                self.validate_leaf(self.leaf(link.index()), &path, &mut is_found)?;
             } else {
-                for lane in 0..2 {
-                    let mut below = path.clone();
-                    below.push(Slot::new(link.index(), lane));
-                    stack.push(below);
-                }
+                let below = |lane| [&path[..], &[Slot::new(link.index(), lane)]].concat();
+                stack.extend([below(0), below(1)]);
             }
         }
-        let count = |seen: &[bool]| seen.iter().filter(|&&seen| seen).count();
-        let (nodes, leaves) = (count(&seen_nodes), count(&seen_leaves));
-        if nodes != seen_nodes.len() || leaves != seen_leaves.len() {
-            return Err(Violation::Unreachable { nodes, leaves });
+        if is_seen.iter().flatten().any(|&is_seen| !is_seen) {
+            return Err(Violation::Unreachable);
         }
-        match occurrences.iter().position(|&n| n != 1) {
-            Some(i) => {
-                Err(Violation::Triangles { triangle: i as u32, occurrences: occurrences[i] })
-            }
-            None => Ok(()),
-        }
+        let lost = is_found.iter().position(|&is_found| !is_found);
+        lost.map_or(Ok(()), |triangle| Err(Violation::Triangle(triangle as u32)))
     }
 
     fn validate_leaf(
         &self,
-        link: Link,
+        batch: &LeafBatch,
         path: &[Slot],
-        occurrences: &mut [u32],
+        is_found: &mut [bool],
     ) -> Result<(), Violation> {
-        let batch = self.leaf(link.index());
         for (lane, &triangle) in batch.triangles().iter().enumerate() {
-            match occurrences.get_mut(triangle as usize) {
-                Some(occurrences) => *occurrences += 1,
-                None => {
-                    return Err(Violation::Triangles { triangle, occurrences: 0 });
-                }
+            match is_found.get_mut(triangle as usize) {
+                Some(is_found @ false) => *is_found = true,
+                _ => return Err(Violation::Triangle(triangle)),
             }
-            for &slot in path {
-                let children = self.children(slot.node());
-                let aabb = children.aabb(slot.lane());
-                let kdop = children.kdop(slot.lane());
-                let inside = |p| aabb.contains(p) && kdop.is_none_or(|kdop| kdop.contains(p));
-                if !batch.corners(lane).into_iter().all(inside) {
-                    return Err(Violation::NotContained { slot, triangle });
-                }
+            let is_inside = |corner: Vec3| {
+                let in_node = |slot: &Slot| {
+                    let children = self.children(slot.node());
+                    let kdop = children.kdop(slot.lane());
+                    children.aabb(slot.lane()).contains(corner)
+                        && kdop.is_none_or(|kdop| kdop.contains(corner))
+                };
+                path.iter().all(in_node) && self.sphere.is_none_or(|ball| ball.contains(corner))
+            };
+            if !batch.corners(lane).into_iter().all(is_inside) {
+                return Err(Violation::NotContained(triangle));
             }
         }
-        match self.sphere {
-            Some(sphere) => match (0..batch.count())
-                .find(|&lane| !batch.corners(lane).into_iter().all(|p| sphere.contains(p)))
-            {
-                Some(lane) => Err(Violation::NotContained {
-                    slot: Slot::ROOT,
-                    triangle: batch.triangles()[lane],
-                }),
-                None => Ok(()),
-            },
-            None => Ok(()),
-        }
+        Ok(())
     }
 }
 
@@ -119,8 +80,9 @@ mod tests {
     use super::*;
     use crate::support::bumpy_ball;
     use crate::tree::BuildOptions;
+    use crate::tree::node::Link;
 
-    /// Would catch a check that passes over what it is there for.
+    /// Would catch a check that finds nothing.
     #[test]
     fn each_kind_of_damage_is_found() {
         let ball = bumpy_ball(8, 0.1);
@@ -132,12 +94,12 @@ mod tests {
             tree.validate().expect_err("it is damaged")
         };
         let lost = found(&|tree| tree.aabb_pairs[0].links[0] = Link::leaf(Link::MAX_INDEX));
-        assert!(matches!(lost, Violation::Topology { .. }), "{lost:?}");
+        assert!(matches!(lost, Violation::Topology), "{lost:?}");
         let left_over = found(&|tree| tree.leaves.push(tree.leaves[0]));
-        assert!(matches!(left_over, Violation::Unreachable { .. }), "{left_over:?}");
+        assert!(matches!(left_over, Violation::Unreachable), "{left_over:?}");
         let renamed = found(&|tree| tree.leaves[0].triangles = tree.leaves[1].triangles);
-        assert!(matches!(renamed, Violation::Triangles { .. }), "{renamed:?}");
-        // The root, a slab of a k-DOP that is none of its box, and the sphere.
+        assert!(matches!(renamed, Violation::Triangle(_)), "{renamed:?}");
+        // The root, a diagonal slab, and the sphere.
         for damage in [
             &|tree: &mut Tree| tree.aabb_pairs[0].centre[0][0] += 1.0,
             &|tree: &mut Tree| tree.kdop_pairs[0].centre[3] = [9.0; 2],
@@ -145,7 +107,7 @@ mod tests {
         ] as [&dyn Fn(&mut Tree); 3]
         {
             let outside = found(damage);
-            assert!(matches!(outside, Violation::NotContained { .. }), "{outside:?}");
+            assert!(matches!(outside, Violation::NotContained(_)), "{outside:?}");
         }
     }
 }

@@ -1,10 +1,10 @@
-//! A tree to be read: drawn, measured, exported.
+//! Read access to the nodes of a tree.
 
 use super::Tree;
 use super::node::{LeafBatch, Link, Slot};
 use crate::volumes::{Aabb, Kdop};
 
-/// A node of a tree, to be read: see [`Tree::root`].
+/// A node of a tree: see [`Tree::root`].
 #[derive(Copy, Clone, Debug)]
 pub struct Node<'a> {
     tree: &'a Tree,
@@ -12,12 +12,12 @@ pub struct Node<'a> {
     depth: u32,
 }
 
-/// A leaf of a tree, to be read.
+/// A leaf of a tree.
 #[derive(Copy, Clone, Debug)]
 pub struct Leaf<'a> {
-    /// Its number: what [`Tree::leaf`] takes and a descent hands to its visitor.
+    /// Index of the leaf in [`Tree::leaf`].
     pub number: u32,
-    /// Its triangles.
+    /// The triangles of the leaf.
     pub batch: &'a LeafBatch,
 }
 
@@ -30,7 +30,7 @@ impl Tree {
     /// # let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
     /// # let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
     /// # let options = BuildOptions { leaf_size: 1, ..BuildOptions::default() };
-    /// let tree: Tree = Tree::build(&vertices, &triangles, &options)?;
+    /// let tree = Tree::build(&vertices, &triangles, &options)?;
     /// let mut stack = vec![tree.root()];
     /// while let Some(node) = stack.pop() {
     ///     println!("{} {:?}", node.depth(), node.aabb());
@@ -44,11 +44,6 @@ impl Tree {
 }
 
 impl<'a> Node<'a> {
-    /// The name by which a [`NodePair`](crate::traverse::NodePair) of a descent knows this node.
-    pub fn slot(&self) -> Slot {
-        self.slot
-    }
-
     /// Steps from the root.
     pub fn depth(&self) -> u32 {
         self.depth

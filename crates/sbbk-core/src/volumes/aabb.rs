@@ -10,7 +10,7 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// The box of no point at all: merging with it changes nothing.
+    /// The empty box, the neutral element of [`merge`](Self::merge).
     pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
     /// The box around `points`.
@@ -24,12 +24,12 @@ impl Aabb {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// Whether `point` is in the box, or on it.
+    /// Returns true if `point` is in the box or on its boundary.
     pub fn contains(&self, point: Vec3) -> bool {
         point.cmpge(self.min).all() && point.cmple(self.max).all()
     }
 
-    /// Half of the surface area: the cost of a node in the surface area heuristic. Zero if empty.
+    /// Half of the surface area, the cost of a node in the surface area heuristic. Zero if empty.
     pub fn half_area(&self) -> f32 {
         let d = (self.max - self.min).max(Vec3::ZERO);
         d.x * d.y + d.y * d.z + d.z * d.x
@@ -41,12 +41,12 @@ impl Aabb {
         Self { min: self.min.min(point), max: self.max.max(point) }
     }
 
-    /// The middle of the box.
+    /// The centre of the box.
     pub fn centre(&self) -> Vec3 {
         0.5 * self.min + 0.5 * self.max
     }
 
-    /// The largest absolute coordinate of the box: what rounding errors are relative to.
+    /// The largest absolute coordinate of the box.
     pub fn magnitude(&self) -> f32 {
         self.min.abs().max(self.max.abs()).max_element()
     }

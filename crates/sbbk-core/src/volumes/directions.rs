@@ -1,4 +1,4 @@
-//! The nine slab directions of an 18-DOP, and other directions written as sums of these.
+//! The nine slab directions of an 18-DOP, and other directions as their sums.
 //!
 //! All directions have components in {-1, 0, 1}, so that a projection is a sum without products.
 //! They are not normalised: a margin `m` between two slabs is `m·|d|` in their coordinates.

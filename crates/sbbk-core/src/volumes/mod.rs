@@ -1,7 +1,7 @@
 //! Bounding volumes: [`Sphere`], [`Aabb`] and [`Kdop`].
 //!
-//! A volume contains what it was fitted to in *exact* arithmetic: where f32 rounds, it grows by a
-//! bound, see [`rounding`]. A NaN coordinate makes a volume useless but never panics. A
+//! A volume contains its points in *exact* arithmetic, as it grows by a bound on the [`rounding`] of
+//! f32. A NaN coordinate makes a volume useless but never panics. A
 //! [`Tree`](crate::tree::Tree) rejects such input. [`traverse`](crate::traverse) compares volumes.
 
 mod aabb;

@@ -1,25 +1,24 @@
-//! What f32 arithmetic can lose, so that every culling test can give it back.
+//! Bounds on the rounding of f32, by which every culling test is widened.
 //!
-//! Notation (Higham, *Accuracy and Stability of Numerical Algorithms*, chapter 3): `u = 2⁻²⁴` is
-//! the unit roundoff; one operation returns the exact result times `1 + δ`, `|δ| <= u`; after `n`
-//! operations in a row the relative error of each term of a sum is at most `γ_n = n·u / (1 - n·u)`,
-//! [`gamma`].
+//! The notation is from Higham, *Accuracy and Stability of Numerical Algorithms*, chapter 3. The unit
+//! roundoff is `u = 2⁻²⁴`: one operation returns the exact result times `1 + δ`, `|δ| <= u`. After
+//! `n` operations in a row the relative error of each term of a sum is at most
+//! `γ_n = n·u / (1 - n·u)`, [`gamma`].
 //!
 //! # Allowances
 //!
-//! `M` is the largest absolute coordinate of a tree, `T` that of a translation, `s` the scale of a
-//! rotation (1 but for the rounding of its quaternion), `m` a margin. `W = M1 + T + 2·s·M2` bounds
-//! all coordinates of two meshes in the frame of the first, as the row sums of `|R|` are at most
-//! `√3·s < 2·s`; `r = γ_16·W`. Directions of slabs have components in {-1, 0, 1}. Most
-//! allowances have a test that fails without them; for some there is none yet, or another allowance
-//! covers the same loss.
+//! `M` is the largest absolute coordinate of a tree, and `T` that of a translation. `s` is the scale
+//! of a rotation, 1 up to the rounding of its quaternion, and `m` a margin. `W = M1 + T + 2·s·M2`
+//! bounds all coordinates of two meshes in the frame of the first, as the row sums of `|R|` are at
+//! most `√3·s < 2·s`. `r = γ_16·W`. Directions of slabs have components in {-1, 0, 1}. Tests fail
+//! without most of these allowances.
 //!
-//! | where | what rounds | loses at most | allowed |
+//! | place | rounded | bound | allowance |
 //! |---|---|---|---|
 //! | `Kdop::fit` | two additions of corners | `γ_2·(X + Y + Z)` of the largest coordinates | `γ_3` of that |
 //! | `Sphere::fit` | a difference, three squares, a root | `γ_5` of the distance | `γ_6` and `UNDERFLOW` |
 //! | `centre_extent` | the half-length | `u` of it | the next number of eight bits, up to `2⁻⁷` more |
-//! | `PairFrame`, boxes | `t + R·c2` (5 roundings), minus `c1` (1), `e1 + \|R\|·e2` (8, `e <= M`) | `γ_5·(T + 2·s·M2) + γ_1·W + γ_8·(M1 + 2·s·M2)` | `r`; in frame 2 likewise |
+//! | `PairFrame`, boxes | `t + R·c2` (5 roundings), minus `c1` (1), `e1 + \|R\|·e2` (8, `e <= M`) | `γ_5·(T + 2·s·M2) + γ_1·W + γ_8·(M1 + 2·s·M2)` | `r`; in frame 2 in the same way |
 //! | `BoxTest` | the same, and `c` and `e` (1 each) | `γ_2·W` more | `2·r` |
 //! | `Correspondence`, slabs | bounds up to `3·M`, coefficients that sum to `2·√3·s` | `γ_9·3·M1 + γ_6·3·T + γ_14·10.4·s·M2` | `6·r` |
 //! | gaps (`Bound`) | the difference of offset and reach, a norm, a length, a scale | `γ_8` of the gap | `γ_8` |
@@ -46,10 +45,10 @@ pub const fn gamma(operations: u32) -> f32 {
 pub(crate) struct HalfLength(u16);
 
 impl HalfLength {
-    /// Of no interval: below all, so that no test passes.
+    /// The half-length of no interval, with which no test passes.
     pub(crate) const NONE: Self = Self((f32::NEG_INFINITY.to_bits() >> 16) as u16);
 
-    /// The next one above a length. Infinite above `2¹²⁸ - 2¹²⁰`; what is infinite or NaN stays so.
+    /// The next half-length above a length. Infinite above `2¹²⁸ - 2¹²⁰`; infinity and NaN stay.
     #[inline(always)]
     fn above(length: f32) -> Self {
         let below = (length.to_bits() >> 16) as u16;

@@ -19,7 +19,7 @@ const REFINEMENTS: usize = 4;
 const UNDERFLOW: f32 = 1e-22;
 
 impl Sphere {
-    /// A near-minimal sphere around `points`; its radius is negative if there are none. Linear in
+    /// A near-minimal sphere around `points`; an empty one if there are no points. Linear in
     /// the number of points.
     ///
     /// Starts from the widest of 7 diameters (Larsson, *Fast and Tight Fitting Bounding Spheres*,

@@ -44,10 +44,10 @@ fn large_tree_is_valid_and_shallow() {
     assert!(ball.triangles.len() > 14_000 && tree.stats().depth < 25, "{:?}", tree.stats());
 }
 
-/// Boxes where surfaces are flat and along the axes, k-DOPs elsewhere. Would catch widths of other
-/// slabs, nodes that are not weighed, and a choice that depends on size or, within rounding, on place.
+/// Would catch widths of other slabs, nodes that are not weighed, and a choice that depends on size
+/// or place.
 #[test]
-fn kdops_are_chosen_where_they_cut_off_something() {
+fn flat_meshes_along_the_axes_get_boxes_and_others_kdops() {
     let floor = |cells: u32| {
         let mut floor = cube(cells);
         floor.triangles.truncate(2 * (cells * cells) as usize);
@@ -78,8 +78,6 @@ fn kdops_are_chosen_where_they_cut_off_something() {
     }
 }
 
-/// The choice is that of the mesh alone, and the tree is that of the plan. Would catch k-DOPs of a tree
-/// without, or none of one with.
 #[test]
 fn a_chosen_tree_is_the_tree_of_its_plan() {
     let mut random = Random(24);
@@ -96,9 +94,9 @@ fn a_chosen_tree_is_the_tree_of_its_plan() {
     }
 }
 
-/// Of a mesh without area all boxes weigh nothing; of one too large for f32 some weigh infinitely.
+/// Boxes have no area here, or an infinite one.
 #[test]
-fn what_cannot_be_weighed_has_boxes() {
+fn meshes_without_finite_area_get_boxes() {
     for size in [0.0, 3e38] {
         let corner = |i: u32| size * Vec3::new(i as f32 / 300.0, 0.0, (i % 2) as f32);
         let vertices = (0..300).map(corner).collect();
@@ -178,19 +176,16 @@ fn the_ball_around_a_box_holds_its_corners() {
     }
 }
 
-/// The walk reaches each node once, with its own volume and depth. Would catch children of another
-/// node, a depth or slot that is wrong, and a volume of the wrong layer.
+/// Would catch children of another node, a wrong depth, and a volume of the wrong layer.
 #[test]
-fn the_walk_reaches_everything() {
+fn a_walk_reaches_each_node_once() {
     let ball = bumpy_ball(12, 0.2);
     let plan = LayerPlan { sphere_root: true, kdop_from_depth: Some(3) };
     let tree = check(&ball, &BuildOptions { layers: Some(plan), leaf_size: 3 });
-    let mut slots = std::collections::HashSet::new();
     let mut seen = vec![0; ball.triangles.len()];
     let (mut inner_count, mut leaf_count, mut deepest) = (0, 0, 0);
     let mut stack = vec![(tree.root(), Vec::<Node>::new())];
     while let Some((node, above)) = stack.pop() {
-        assert!(slots.insert(node.slot()));
         assert_eq!(node.depth() as usize, above.len());
         assert_eq!(node.kdop().is_some(), node.depth() >= 3);
         deepest = deepest.max(node.depth());
@@ -217,11 +212,10 @@ fn the_walk_reaches_everything() {
     }
     assert!(seen.iter().all(|&count| count == 1));
     let stats = tree.stats();
-    assert_eq!((inner_count, leaf_count), (stats.inner_count, stats.leaf_count));
+    assert_eq!((inner_count, leaf_count), (stats.inner_count, tree.leaf_count()));
     assert_eq!(deepest, stats.depth);
 }
 
-/// "Other values are clamped": no leaf size makes an endless build.
 #[test]
 fn leaf_sizes_are_clamped() {
     let ball = bumpy_ball(4, 0.1);
@@ -244,20 +238,12 @@ fn unused_vertices_do_not_count() {
 
 /// Zero area, zero extent, lattice ties, and coordinates of very different size are all kept.
 #[test]
-fn degenerate_triangles_are_kept_and_counted() {
+fn degenerate_triangles_are_kept() {
     let mut random = Random(22);
     let mut soup = lattice_soup(&mut random, 200, 2);
     soup.triangles.push([0, 0, 0]);
     soup.triangles.push([0, 1, 0]);
-    let flat = |t: &&[u32; 3]| {
-        let [a, b, c] = t.map(|v| soup.vertices[v as usize]);
-        (b - a).cross(c - a) == Vec3::ZERO
-    };
-    let expected = soup.triangles.iter().filter(flat).count() as u32;
-    let tree = check(&soup, &BuildOptions::default());
-    assert_eq!(tree.stats().degenerate_count, expected);
-    assert!(expected > 2);
-
+    check(&soup, &BuildOptions::default());
     for vertex in &mut soup.vertices {
         *vertex *= random.range(0.0, 1.0).powi(40) * 1e5;
     }
@@ -287,20 +273,14 @@ fn faults_are_reported_with_their_place() {
     assert_eq!(build(&[[0, 1, 2]], &fine), None);
 }
 
-/// The memory by kind adds up, and plans without a kind have none of it.
 #[test]
-fn statistics_follow_the_plan() {
+fn memory_follows_the_plan() {
     let ball = bumpy_ball(20, 0.1);
-    let sbbk = *check(&ball, &options(Some(4), 4)).stats();
-    let boxes =
-        *check(&ball, &BuildOptions { layers: Some(LayerPlan::AABB_ONLY), leaf_size: 4 }).stats();
-    assert_eq!((boxes.sphere_bytes, boxes.kdop_bytes), (0, 0));
-    assert!(sbbk.sphere_bytes > 0 && sbbk.kdop_bytes > sbbk.aabb_bytes);
-    assert_eq!(sbbk.leaf_bytes, boxes.leaf_bytes);
-    assert_eq!(
-        sbbk.bytes(),
-        sbbk.sphere_bytes + sbbk.aabb_bytes + sbbk.kdop_bytes + sbbk.leaf_bytes
-    );
-    assert_eq!(sbbk.inner_count + 1, sbbk.leaf_count);
-    assert!(sbbk.sah_cost > 1.0 && sbbk.sah_cost == boxes.sah_cost);
+    let tree = check(&ball, &options(Some(4), 4));
+    let boxes = check(&ball, &BuildOptions { layers: Some(LayerPlan::AABB_ONLY), leaf_size: 4 });
+    assert!(boxes.sphere().is_none() && boxes.stats().kdop_bytes == 0);
+    let stats = tree.stats();
+    assert!(tree.sphere().is_some() && stats.kdop_bytes > stats.aabb_bytes);
+    assert_eq!(stats.leaf_bytes, boxes.stats().leaf_bytes);
+    assert_eq!(stats.inner_count + 1, tree.leaf_count());
 }
