@@ -90,7 +90,10 @@ fn check_frames(flags: TriMeshFlags, other: TriMesh, frames: usize) {
     assert!(contacts > 10 * frames, "only {contacts} contacts");
     let stats = dispatcher.stats();
     // Nothing is built for a mesh that may change, and nothing kept.
-    assert_eq!((stats.trees, stats.walks, stats.unsupported_queries), (0, 2 * frames as u64, 0));
+    assert_eq!(
+        (stats.trees, stats.internals.walks, stats.unsupported_queries),
+        (0, 2 * frames as u64, 0)
+    );
     assert!(deformations > frames / 2);
 }
 
@@ -123,7 +126,7 @@ fn two_soft_meshes_keep_apart() {
     }
     assert!(contacts > 1000);
     let stats = dispatcher.stats();
-    assert_eq!((stats.trees, stats.walks), (0, 200));
+    assert_eq!((stats.trees, stats.internals.walks), (0, 200));
 }
 
 /// What a host stores with each contact point.
@@ -182,7 +185,7 @@ fn pairs_on_many_threads_agree() {
     }
     assert!(contacts.into_inner() > 50 * PAIRS);
     let stats = dispatcher.stats();
-    assert_eq!((stats.trees, stats.walks), (0, 50 * PAIRS as u64));
+    assert_eq!((stats.trees, stats.internals.walks), (0, 50 * PAIRS as u64));
 }
 
 /// Would catch a panic, a verdict that outlives the vertices, and a mesh that goes to Parry.
@@ -345,7 +348,7 @@ fn a_soft_body_of_rapier_keeps_its_contacts() {
     }
     let stats = dispatcher.stats();
     assert!(queries > 50 && contacts > 1000, "{queries} queries, {contacts} contacts");
-    assert!(stats.walks as usize >= queries - 2, "{stats:?}");
+    assert!(stats.internals.walks as usize >= queries - 2, "{stats:?}");
     assert_eq!((stats.unsupported_queries, stats.trees), (0, 0));
     let (_, body) = world.soft_bodies().next().expect("the ball");
     let lowest = body.particle_positions().map(|p| p.y).fold(Real::INFINITY, Real::min);
@@ -371,5 +374,5 @@ fn a_restored_soft_body_goes_on_bit_for_bit() {
         world.soft_bodies().flat_map(|(_, body)| body.particle_positions()).collect()
     };
     assert_eq!(particles(&world), particles(&copy));
-    assert!(other.stats().walks > 20, "{:?}", other.stats());
+    assert!(other.stats().internals.walks > 20, "{:?}", other.stats());
 }

@@ -127,7 +127,7 @@ fn inside_is_never_remembered() {
             }
         }
     }
-    let reused = kept.stats().reused_queries;
+    let reused = kept.stats().internals.reused_queries;
     assert!(inside > 300 && none > 100 && reused > 100, "{inside} {none} {reused}");
 }
 

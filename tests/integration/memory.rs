@@ -27,7 +27,7 @@ fn idle_trees_take_what_is_counted() {
         let taken =
             measure(|| meshes.iter().for_each(|mesh| drop(dispatcher.prepare(mesh).unwrap())));
         let stats = dispatcher.stats();
-        assert_eq!(stats.idle_trees, stats.trees);
+        assert_eq!(stats.internals.idle_trees, stats.trees);
         let share = stats.tree_bytes as f64 / taken.bytes_current as f64;
         assert!((0.8..1.2).contains(&share), "{name}: {share} of {taken:?}");
     }
@@ -71,6 +71,6 @@ fn many_idle_trees_cost_no_time() {
     let times: Vec<Duration> = (0..100).map(time_batch).collect();
     let fastest = |times: &[Duration]| *times.iter().min().unwrap();
     let [few, many] = [fastest(&times[..8]), fastest(&times[80..])];
-    assert_eq!(dispatcher.stats().idle_trees, 100 * BATCH);
+    assert_eq!(dispatcher.stats().internals.idle_trees, 100 * BATCH);
     assert!(many < 8 * few, "{few:?} among few, {many:?} among many");
 }

@@ -86,8 +86,8 @@ fn walk(seed: u64, steps: usize, meshes: [&TriMesh; 2]) {
     }
     let stats = kept.stats();
     assert_eq!(stats.queries, steps as u64);
-    assert!(stats.reused_queries > stats.queries / 4, "{stats:?}");
-    assert!(stats.unchanged_queries > stats.queries / 50, "{stats:?}");
+    assert!(stats.internals.reused_queries > stats.queries / 4, "{stats:?}");
+    assert!(stats.internals.unchanged_queries > stats.queries / 50, "{stats:?}");
     assert!(stats.descended_queries > stats.queries / 20, "{stats:?}");
     assert!(manifold_count > 5 * steps, "{manifold_count} contacts in all");
     assert_eq!(unaware.stats().queries, 0, "counted without being asked to");
@@ -145,7 +145,10 @@ fn nothing_is_done_where_nothing_moved() {
         pair.ask(&dispatcher, &query);
     }
     let stats = dispatcher.stats();
-    assert_eq!([stats.queries, stats.unchanged_queries, stats.descended_queries], [10, 9, 1]);
+    assert_eq!(
+        [stats.queries, stats.internals.unchanged_queries, stats.descended_queries],
+        [10, 9, 1]
+    );
     assert_same(&pair.manifolds, &query.fresh(&dispatcher), 0.0);
     // The host may have touched the manifolds.
     pair.manifolds.remove(0);
@@ -175,7 +178,7 @@ fn many_short_steps_are_a_long_way() {
         sets.dedup();
         assert!(sets.len() > least_sets, "{} different {contact_set:?}", sets.len());
         let stats = dispatcher.stats();
-        assert!(stats.reused_queries > 400 && stats.descended_queries > 10, "{stats:?}");
+        assert!(stats.internals.reused_queries > 400 && stats.descended_queries > 10, "{stats:?}");
     }
 }
 
@@ -247,6 +250,9 @@ fn thousands_of_histories_end_alike() {
         }
     }
     let stats = kept.stats();
-    assert!(stats.reused_queries > 3000 && stats.unchanged_queries > 1000, "{stats:?}");
+    assert!(
+        stats.internals.reused_queries > 3000 && stats.internals.unchanged_queries > 1000,
+        "{stats:?}"
+    );
     assert!(manifold_count > 100_000, "{manifold_count} contacts in all");
 }

@@ -23,7 +23,7 @@ fn candidates_are_reused_whichever_mesh_comes_first() {
             let pose = Pose::from_parts(Vector::new(30.0, height + 0.9, 30.0), turn);
             pair.ask(&dispatcher, &Question::new(&ground, &head, pose).flipped(flipped));
         }
-        dispatcher.stats().reused_queries
+        dispatcher.stats().internals.reused_queries
     });
     assert!(reused.iter().all(|&count| count > 150), "{reused:?}");
     assert!(reused[0].abs_diff(reused[1]) < 10, "{reused:?}");

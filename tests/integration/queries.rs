@@ -433,5 +433,17 @@ fn others_are_stocks() {
             .map(|dispatcher| dispatcher.distance(&pos12, g1, g2).unwrap());
         assert_eq!(a, b);
     }
-    assert_eq!(ours.stats().tree_builds, 0);
+    assert_eq!(ours.stats().trees, 0);
+}
+
+#[test]
+fn queries_without_manifolds_are_counted() {
+    let dispatcher = SbbkDispatcher::default();
+    let (head, cuboid) = (shape(&mesh::monkey_head_with(6)), Cuboid::new(Vec3::ONE));
+    let far = Pose3::translation(9.0, 0.0, 0.0);
+    dispatcher.intersection_test(&far, &head, &head).unwrap();
+    dispatcher.distance(&far, &head, &cuboid).unwrap();
+    assert_eq!((dispatcher.stats().searches, dispatcher.stats().pairs), (2, 0));
+    dispatcher.distance(&far, &cuboid, &cuboid).unwrap();
+    assert_eq!(dispatcher.stats().searches, 2);
 }

@@ -42,8 +42,8 @@ fn with_idle_bytes(limit: usize) -> SbbkDispatcher {
 
 /// Trees, those of them that are idle, and how often one was built and found.
 fn counts(dispatcher: &SbbkDispatcher) -> [u64; 4] {
-    let SbbkStats { trees, idle_trees, tree_builds, tree_hits, .. } = dispatcher.stats();
-    [trees as u64, idle_trees as u64, tree_builds, tree_hits]
+    let SbbkStats { trees, internals, .. } = dispatcher.stats();
+    [trees as u64, internals.idle_trees as u64, internals.tree_builds, internals.tree_hits]
 }
 
 /// Would catch a tree for each collider, or an identity that is an address: a clone and a mesh

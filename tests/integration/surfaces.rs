@@ -393,12 +393,12 @@ fn answers_without_trees_are_those_with_trees() {
     }
     let mut count = 0;
     for_each_pose(19, |[one, two], pose, _| {
-        let walks = spent.stats().walks;
+        let walks = spent.stats().internals.walks;
         let trees = [one, two].map(|mesh| prepared.prepare(mesh).unwrap());
         let query = Question::new(one, two, pose);
         let [found, expected] = [&spent, &prepared].map(|dispatcher| query.fresh(dispatcher));
         drop(trees);
-        if spent.stats().walks > walks {
+        if spent.stats().internals.walks > walks {
             assert_eq!(bits(&found), bits(&expected));
             count += found.len();
         }

@@ -60,8 +60,8 @@ fn contacts_without_trees_are_those_with_trees() {
             }
         }
         // Some boxes are apart.
-        assert!(walking.stats().walks >= 36 && prepared.stats().walks == 0);
-        assert_eq!(prepared.stats().tree_builds, 2);
+        assert!(walking.stats().internals.walks >= 36 && prepared.stats().internals.walks == 0);
+        assert_eq!(prepared.stats().internals.tree_builds, 2);
     }
     assert!(count > 2000, "{count} contacts");
 }
@@ -81,7 +81,7 @@ fn motion_without_trees_is_no_part_of_the_answer() {
         assert_eq!(bits(&pair.manifolds), bits(&query.fresh(&every())), "{i}");
     }
     let stats = dispatcher.stats();
-    assert!(stats.walks > 50 && stats.reused_queries > 100, "{stats:?}");
+    assert!(stats.internals.walks > 50 && stats.internals.reused_queries > 100, "{stats:?}");
 }
 
 /// A mesh with all flags, as Rapier's loaders of robots make them, does not deform as a rule. Would
@@ -118,10 +118,10 @@ fn a_registered_shape_is_known_until_it_is_let_go() {
     let pose = touching(&mut Rand32::new(3), [as_mesh(&ring), as_mesh(&head)], 0.05);
     let ask = |ring: &SharedShape| {
         let query = Question::new(as_mesh(ring), as_mesh(&head), pose);
-        let before = dispatcher.stats().walks;
+        let before = dispatcher.stats().internals.walks;
         let found = query.fresh(&dispatcher);
         assert_eq!(bits(&found), bits(&query.fresh(&per_triangle())));
-        (found.len(), dispatcher.stats().walks - before)
+        (found.len(), dispatcher.stats().internals.walks - before)
     };
     let _tree_of_head = dispatcher.prepare_shape(&head).unwrap();
     let tree = dispatcher.prepare_shape(&ring).unwrap().expect("a rigid mesh");
@@ -164,11 +164,17 @@ fn meshes_that_land_together_are_not_all_built_at_once() {
         dispatcher.stats()
     };
     let first = step(0);
-    assert!(first.tree_builds == 0 && first.walks == 99, "none may stay: {first:?}");
+    assert!(
+        first.internals.tree_builds == 0 && first.internals.walks == 99,
+        "none may stay: {first:?}"
+    );
     let second = step(1);
-    assert!((4..=14).contains(&second.tree_builds) && second.walks > 180, "{second:?}");
+    assert!(
+        (4..=14).contains(&second.internals.tree_builds) && second.internals.walks > 180,
+        "{second:?}"
+    );
     let last = (2..160).map(&mut step).last().unwrap();
-    assert!(last.tree_builds > 95, "queries earn what trees take: {last:?}");
+    assert!(last.internals.tree_builds > 95, "queries earn what trees take: {last:?}");
     for (pair, meshes) in pairs.iter().zip(meshes.windows(2)) {
         let pose = Pose::translation(0.0, 0.03, 0.0) * pose;
         let query = Question::new(&meshes[0], &meshes[1], pose);

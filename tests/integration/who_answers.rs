@@ -131,7 +131,7 @@ fn queries_of_each_kind() {
                 let dispatcher = SbbkDispatcher::default();
                 let answer = ask(&dispatcher, mesh, &*other);
                 let is_ours = name == "mesh" && std::ptr::eq(mesh, &rigid);
-                let trees = dispatcher.stats().tree_builds;
+                let trees = dispatcher.stats().internals.tree_builds;
                 assert_eq!(trees, if is_ours { 2 } else { 0 }, "{query} of {name}");
                 let is_convex = match query {
                     "cast_shapes" | "cast_shapes_nonlinear" => other.is_convex(),

@@ -36,7 +36,7 @@ fn main() {
         let (milliseconds, sleeping) = settle(world);
         println!("{milliseconds:>8.3} ms a step, {sleeping:>2} of 30 sleep at the end  {name}");
     }
-    println!("{} trees were built by SBBK", dispatcher.stats().tree_builds);
+    println!("{} trees were built by SBBK", dispatcher.stats().trees);
 }
 
 /// A box on a floor. Nothing in this world is special: colliders are plain `TriMesh`es or cuboids.

@@ -1,128 +1,159 @@
-use sbbk_core::surface::SurfaceKind;
 use sbbk_core::tree::{BuildOptions, LayerPlan};
+#[cfg(feature = "serde-serialize")]
+use serde::{Deserialize, Serialize};
 
-/// Which contacts two meshes have, and a mesh and a height field or convex shapes.
+/// Selects the contacts of rigid meshes with meshes, height fields and convex shapes. Deformable
+/// meshes always have [`Triangles`](Self::Triangles).
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde-serialize", derive(Serialize, Deserialize))]
 pub enum ContactSet {
-    /// Those of their surfaces: what touches is pushed out of a mesh that bounds a solid, not through
-    /// it, and edges within a surface do not count. Against convex shapes only the latter. For rigid
-    /// meshes; see the documentation of this crate.
+    /// Contacts of the surfaces: solids push out what has sunk into them, and internal edges have no
+    /// contacts.
     #[default]
     Surfaces,
-    /// Those of each triangle by itself, as in stock Rapier: for comparison.
+    /// Contacts of each two triangles, as in stock Rapier. For comparison.
     Triangles,
 }
 
-/// How many of the contacts of two shapes a host gets: what the field calls contact or manifold
-/// reduction.
+/// Selects how many of the contacts of [`ContactSet`] a host gets.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde-serialize", derive(Serialize, Deserialize))]
 pub enum ContactDetail {
-    /// Each triangle that touches, or each two, has a manifold of its own, as in stock Rapier. But
-    /// where two surfaces are no nearer than a tenth of the smaller radius, within the prediction
-    /// distance of soft CCD, they have one manifold of at most four points a direction: of more
-    /// Rapier's solver would take one.
+    /// One manifold for each triangle that touches, or each two, as in stock Rapier. Contacts farther
+    /// than a tenth of the smaller radius, which only soft CCD asks for, are reduced all the same.
     Every,
-    /// A few manifolds for two shapes: of each direction up to four points, the outermost ones that
-    /// carry, and others as deep that are far from these; what hangs beside one that touches is of its
-    /// direction if it leans less than 26 degrees from it. They are chosen before they are made; the
-    /// deepest point is always among them. Bodies come to rest sooner than on every contact, of which
-    /// Rapier's solver takes four by their spread alone. For rigid meshes; pairs of
-    /// which one may deform have every contact, and so do balls, and convex shapes on meshes with
-    /// `FIX_INTERNAL_EDGES`. Of a manifold, the subshapes are those of its deepest contact.
+    /// Reduced contacts: a few manifolds of at most four points, which carry like all of them. The
+    /// deepest point is always among them, and the subshapes are those of the deepest contact. Pairs
+    /// with a ball or a deformable mesh have every contact.
     #[default]
     Patches,
 }
 
-/// What SBBK answers for when it meets a mesh. Parry answers for the rest, as without SBBK.
+/// Selects what SBBK handles when it meets a mesh. Parry handles the rest, as without SBBK.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde-serialize", derive(Serialize, Deserialize), serde(default))]
 #[non_exhaustive]
 pub struct Kinds {
-    /// Other meshes, and queries without manifolds of two meshes.
+    /// Other meshes, also in queries without manifolds. Default: true.
     pub meshes: bool,
-    /// Height fields. In stock Rapier a mesh falls through them.
+    /// Height fields. In stock Rapier a mesh falls through them. Default: true.
     pub height_fields: bool,
-    /// Convex shapes of every kind.
+    /// Convex shapes of every kind. Default: true.
     pub convex_shapes: bool,
-    /// Compounds of convex shapes, and polylines.
+    /// Compounds of convex shapes, and polylines. Default: true.
     pub composites: bool,
 }
 
 impl Default for Kinds {
-    /// All.
     fn default() -> Self {
         Self { meshes: true, height_fields: true, convex_shapes: true, composites: true }
     }
 }
 
-/// How an [`SbbkDispatcher`](crate::SbbkDispatcher) builds trees and contacts.
+/// Configures an [`SbbkDispatcher`](crate::SbbkDispatcher). The defaults suit nearly all scenes.
 ///
 /// ```
-/// use rapier_integration::{ContactSet, SbbkConfig, SbbkDispatcher};
+/// use rapier_integration::{ContactDetail, SbbkConfig, SbbkDispatcher};
 ///
-/// let mut config = SbbkConfig::default();
-/// config.contact_set = ContactSet::Triangles; // which contacts: as stock's, but exact
-/// config.kinds.convex_shapes = false; // Parry answers for these
+/// let config = SbbkConfig::default().with_detail(ContactDetail::Every).with_count_queries(true);
 /// let dispatcher = SbbkDispatcher::new(config);
-/// assert!(!dispatcher.config().kinds.convex_shapes);
+/// assert!(dispatcher.config().kinds.convex_shapes);
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde-serialize", derive(Serialize, Deserialize), serde(default))]
 #[non_exhaustive]
 pub struct SbbkConfig {
-    /// The volume of each layer of the trees. `None`: for each mesh what is fastest by a model
-    /// ([`LayerPlan`]).
-    pub layers: Option<LayerPlan>,
-    /// Contacts of surfaces, or of each two triangles.
+    /// Contacts of surfaces or of triangles. Default: surfaces.
     pub contact_set: ContactSet,
-    /// What height fields bound, for meshes with [`ContactSet::Surfaces`]:
-    /// [`Solid`](SurfaceKind::Solid), as all is ground below their upper side, or
-    /// [`Sheet`](SurfaceKind::Sheet), to be met from below as well, as a roof.
-    pub height_fields: SurfaceKind,
-    /// Whether convex shapes, too, leave meshes that bound a solid, with [`ContactSet::Surfaces`]: one
-    /// whose middle is inside goes the shortest way from there to the surface. Not by default, as in stock
-    /// Rapier: a room that is modelled by one closed surface, its faces outward, counts as a solid, and what
-    /// lives in it would be thrown out. Say of such meshes that they are sheets
-    /// ([`PreparedTree::set_surface_kind`](crate::PreparedTree::set_surface_kind)), and register those of more than 8192
-    /// triangles ([`SbbkDispatcher::prepare_shape`](crate::SbbkDispatcher::prepare_shape)), which count as
-    /// sheets otherwise. Each part of a compound goes its own way. Where an edge is nearest to the middle, as
-    /// below a ditch, contacts stay as in stock.
-    pub convex_leave_solids: bool,
-    /// Whether the contacts of a pair are reduced to patches, or all reported.
+    /// Reduced contacts or every one of [`contact_set`](Self::contact_set). Default: reduced.
     pub detail: ContactDetail,
-    /// What is answered.
+    /// Pairs that SBBK handles. Default: all.
     pub kinds: Kinds,
-    /// Memory that trees may keep while no pair of colliders uses them, in bytes. A mesh that
-    /// leaves all contacts and comes back finds its tree here; with 0 the tree is gone by then. The
-    /// trees of the last eight meshes that queries without manifolds asked for stay beyond it, and
-    /// so do those that a [`PreparedTree`](crate::PreparedTree) keeps.
+    /// True if a height field is the top of a solid, for meshes with [`ContactSet::Surfaces`]. False:
+    /// a sheet, such as a roof, that collides from below, too. Default: true.
+    pub solid_height_fields: bool,
+    /// True if solids push out convex shapes whose centre is inside them, with
+    /// [`ContactSet::Surfaces`]. Each part of a compound is pushed for itself.
+    ///
+    /// Default: false, as in stock Rapier: a room that is one closed surface with outward normals
+    /// counts as a solid, and would throw out what it contains. Declare such a mesh a sheet by
+    /// [`PreparedTree::set_surface_kind`](crate::PreparedTree::set_surface_kind).
+    pub convex_leave_solids: bool,
+    /// Volumes of the layers of each tree. Default: `None`, which chooses the fastest ones for each
+    /// mesh by a cost model. Not serialized.
+    #[cfg_attr(feature = "serde-serialize", serde(skip))]
+    pub layers: Option<LayerPlan>,
+    /// Memory, in bytes, that recently used meshes may keep for their trees and surfaces while no pair
+    /// uses them. A mesh that comes back finds its tree. Registered meshes stay in any case. Default:
+    /// 16 MiB.
     pub idle_tree_bytes: usize,
-    /// Whether queries are counted in [`SbbkStats`](crate::SbbkStats). Costs some percent, more
-    /// with many threads.
+    /// True if contact queries are counted in [`SbbkStats`](crate::SbbkStats). Costs some percent of
+    /// time, more with many threads. Default: false.
     pub count_queries: bool,
 }
 
 impl Default for SbbkConfig {
     fn default() -> Self {
         Self {
-            layers: None,
-            contact_set: ContactSet::Surfaces,
-            height_fields: SurfaceKind::Solid,
-            convex_leave_solids: false,
+            contact_set: ContactSet::default(),
             detail: ContactDetail::default(),
             kinds: Kinds::default(),
+            solid_height_fields: true,
+            convex_leave_solids: false,
+            layers: None,
             idle_tree_bytes: 16 << 20,
             count_queries: false,
         }
     }
 }
 
+/// Defines a setter that returns the changed value for each field.
+macro_rules! setters {
+    ($($setter:ident: $field:ident: $type:ty,)*) => {
+        $(
+            #[doc = concat!("Sets [`", stringify!($field), "`](Self::", stringify!($field), ").")]
+            #[must_use]
+            pub fn $setter(self, $field: $type) -> Self {
+                Self { $field, ..self }
+            }
+        )*
+    };
+}
+
 impl SbbkConfig {
-    /// The comparison of the SBBK paper: the same code with AABBs in every layer, no sphere at the
-    /// root and no k-DOPs below.
+    /// The comparison of the SBBK paper: AABBs in every layer of the trees.
     pub fn aabb_only() -> Self {
-        Self { layers: Some(LayerPlan::AABB_ONLY), ..Self::default() }
+        Self::default().with_layers(Some(LayerPlan::AABB_ONLY))
+    }
+
+    setters! {
+        with_contact_set: contact_set: ContactSet,
+        with_detail: detail: ContactDetail,
+        with_kinds: kinds: Kinds,
+        with_solid_height_fields: solid_height_fields: bool,
+        with_convex_leave_solids: convex_leave_solids: bool,
+        with_layers: layers: Option<LayerPlan>,
+        with_idle_tree_bytes: idle_tree_bytes: usize,
+        with_count_queries: count_queries: bool,
     }
 
     pub(crate) fn build_options(&self) -> BuildOptions {
         BuildOptions { layers: self.layers, ..BuildOptions::default() }
+    }
+}
+
+#[cfg(all(test, feature = "serde-serialize"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stored_configuration_comes_back_and_missing_fields_have_their_defaults() {
+        let config = SbbkConfig::default().with_detail(ContactDetail::Every);
+        let text = serde_json::to_string(&config).unwrap();
+        assert_eq!(serde_json::from_str::<SbbkConfig>(&text).unwrap(), config);
+        let text = r#"{ "kinds": { "meshes": false } }"#;
+        let partial: SbbkConfig = serde_json::from_str(text).unwrap();
+        let kinds = Kinds { meshes: false, ..Kinds::default() };
+        assert_eq!(partial, SbbkConfig::default().with_kinds(kinds));
     }
 }

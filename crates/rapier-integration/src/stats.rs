@@ -5,57 +5,66 @@ use sbbk_core::traverse::DescentCounts;
 use crate::mesh::StoreCounts;
 use crate::pair::QueryOutcome;
 
-/// What a dispatcher and its clones did so far.
+/// Counts of a dispatcher and its clones.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct SbbkStats {
-    /// Meshes that have a tree at present.
-    pub trees: usize,
-    /// Meshes that have met another mesh and bound a solid: what meets them is pushed out, see
-    /// [`ContactSet`](crate::ContactSet).
+    /// New pairs of colliders that SBBK handles, without those that boxes keep apart. If this and
+    /// [`searches`](Self::searches) stay 0, the dispatcher is not in use.
+    pub pairs: u64,
+    /// Queries without manifolds that SBBK has handled, such as casts and distances.
+    pub searches: u64,
+    /// Queries that Parry has handled because a mesh is without triangles or its box is not finite.
+    pub unsupported_queries: u64,
+    /// Analysed meshes that count as solids.
     pub solids: usize,
-    /// Meshes that have met another mesh and bound nothing: these are met from both sides.
+    /// Analysed meshes that count as sheets.
     pub sheets: usize,
-    /// The same for closed meshes whose normals point inwards: most likely wound the wrong way. They
-    /// are met from both sides, too.
+    /// Analysed meshes that are closed with inward normals, and count as sheets. They may be wound the
+    /// wrong way.
     pub inside_out: usize,
-    /// Of the trees, how many no pair of colliders uses.
-    pub idle_trees: usize,
-    /// Memory of all of them, with all that is kept beside a tree.
+    /// Meshes that have a tree.
+    pub trees: usize,
+    /// Memory of trees and surfaces, in bytes.
     pub tree_bytes: usize,
+    /// Contact queries that SBBK has handled, 0 without
+    /// [`SbbkConfig::count_queries`](crate::SbbkConfig::count_queries).
+    pub queries: u64,
+    /// Contact queries that searched for candidates, 0 without
+    /// [`SbbkConfig::count_queries`](crate::SbbkConfig::count_queries).
+    pub descended_queries: u64,
+    /// Counts for the authors of this crate.
+    pub internals: SbbkInternals,
+}
+
+/// Counts of what the dispatcher saves, and of the work of its descents.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct SbbkInternals {
+    /// Trees that no pair of colliders uses.
+    pub idle_trees: usize,
     /// Trees built.
     pub tree_builds: u64,
-    /// How often a tree that was needed, or prepared, was found by its content.
+    /// Trees found by their content.
     pub tree_hits: u64,
-    /// Pairs of colliders that SBBK has answered for: queries about pairs of which nothing was
-    /// known, and that were not apart at once. If this stays zero, the dispatcher is not in use.
-    pub pairs: u64,
-    /// Descents of two meshes that did without trees, down Parry's own hierarchies: of deformable
-    /// meshes, of large ones that nobody prepared, and of small ones that have no tree yet.
+    /// Descents of two meshes without trees, through the BVHs.
     pub walks: u64,
-    /// Queries that Parry had to answer, as a rigid mesh has a vertex that is not finite: see
-    /// [`SbbkDispatcher::prepare`](crate::SbbkDispatcher::prepare).
-    pub unsupported_queries: u64,
-    /// Contact queries that SBBK has answered. Counted, like the following, if
-    /// [`SbbkConfig::count_queries`](crate::SbbkConfig::count_queries) is set.
-    pub queries: u64,
-    /// Of these, how many found nothing moved since the last query of the pair.
+    /// Of [`SbbkStats::queries`], those of pairs that have not moved.
     pub unchanged_queries: u64,
-    /// How many tested the candidates of an earlier descent.
+    /// Of [`SbbkStats::queries`], those that used the candidates of an earlier descent.
     pub reused_queries: u64,
-    /// How many descended. The rest was apart by Parry's hierarchy and the box of the other shape.
-    pub descended_queries: u64,
-    /// The work of the descents: those down Parry's hierarchies count as tests of boxes.
+    /// Work of the descents. Those through BVHs count as tests of boxes.
     pub descent: DescentCounts,
 }
 
 #[derive(Default)]
 pub(crate) struct QueryCounters {
+    searches: AtomicU64,
+    unsupported: AtomicU64,
     queries: AtomicU64,
     unchanged: AtomicU64,
     reused: AtomicU64,
     descended: AtomicU64,
-    unsupported: AtomicU64,
     sphere_tests: AtomicU64,
     aabb_tests: AtomicU64,
     kdop_tests: AtomicU64,
@@ -64,6 +73,10 @@ pub(crate) struct QueryCounters {
 }
 
 impl QueryCounters {
+    pub(crate) fn add_search(&self) {
+        self.searches.fetch_add(1, Ordering::Relaxed);
+    }
+
     pub(crate) fn add_unsupported(&self) {
         self.unsupported.fetch_add(1, Ordering::Relaxed);
     }
@@ -85,30 +98,33 @@ impl QueryCounters {
         self.cells.fetch_add(counts.cells, Ordering::Relaxed);
     }
 
-    pub(crate) fn stats(&self, cache: StoreCounts) -> SbbkStats {
+    pub(crate) fn stats(&self, store: StoreCounts) -> SbbkStats {
         let load = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
         SbbkStats {
-            trees: cache.trees,
-            solids: cache.solids,
-            sheets: cache.sheets,
-            inside_out: cache.inside_out,
-            idle_trees: cache.idle_trees,
-            tree_bytes: cache.bytes,
-            tree_builds: cache.builds,
-            tree_hits: cache.hits,
-            pairs: cache.pairs,
-            walks: cache.walks,
+            pairs: store.pairs,
+            searches: load(&self.searches),
             unsupported_queries: load(&self.unsupported),
+            solids: store.solids,
+            sheets: store.sheets,
+            inside_out: store.inside_out,
+            trees: store.trees,
+            tree_bytes: store.bytes,
             queries: load(&self.queries),
-            unchanged_queries: load(&self.unchanged),
-            reused_queries: load(&self.reused),
             descended_queries: load(&self.descended),
-            descent: DescentCounts {
-                sphere_tests: load(&self.sphere_tests),
-                aabb_tests: load(&self.aabb_tests),
-                kdop_tests: load(&self.kdop_tests),
-                leaf_pairs: load(&self.leaf_pairs),
-                cells: load(&self.cells),
+            internals: SbbkInternals {
+                idle_trees: store.idle_trees,
+                tree_builds: store.builds,
+                tree_hits: store.hits,
+                walks: store.walks,
+                unchanged_queries: load(&self.unchanged),
+                reused_queries: load(&self.reused),
+                descent: DescentCounts {
+                    sphere_tests: load(&self.sphere_tests),
+                    aabb_tests: load(&self.aabb_tests),
+                    kdop_tests: load(&self.kdop_tests),
+                    leaf_pairs: load(&self.leaf_pairs),
+                    cells: load(&self.cells),
+                },
             },
         }
     }

@@ -163,7 +163,7 @@ fn meshes_are_prepared_when_colliders_are_added() {
         assert!(app.world().get::<SbbkTree>(primitive).is_none());
         let stats_now = stats(&app);
         // Trees of both, found by all queries, or walks without.
-        assert_eq!(stats_now.walks == 0, is_prepared, "{stats_now:?}");
+        assert_eq!(stats_now.internals.walks == 0, is_prepared, "{stats_now:?}");
         assert_eq!(stats_now.solids, if is_prepared { 2 } else { 1 }, "{stats_now:?}");
         let other = Sbbk(SbbkDispatcher::default());
         app.insert_resource(other.clone());

@@ -27,7 +27,7 @@ fn another_shape_with_the_same_workspace_is_noticed() {
         }
     }
     let stats = dispatcher.stats();
-    assert_eq!(stats.unchanged_queries, 30, "{stats:?}");
+    assert_eq!(stats.internals.unchanged_queries, 30, "{stats:?}");
 }
 
 /// Would catch manifolds of stock's that are taken for ours, or dropped with their data where the

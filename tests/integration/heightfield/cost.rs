@@ -26,7 +26,7 @@ fn a_million_cells_cost_what_is_under_the_mesh() {
         let dispatcher = counting();
         let pose = Pose::from_parts(Vec3::new(x, 0.6, x), Quat::from_rotation_y(0.4));
         let count = Question::new(&terrain.field, &head, pose).fresh(&dispatcher).len();
-        (count, dispatcher.stats().descent.cells)
+        (count, dispatcher.stats().internals.descent.cells)
     };
     let (small_count, small) = visited(32, 0.1);
     let (large_count, large) = visited(1000, 0.1);

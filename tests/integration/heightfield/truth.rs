@@ -101,7 +101,7 @@ fn surfaces_are_those_of_the_terrain_as_a_mesh() {
         terrains.iter().flat_map(|terrain| kinds.map(|kind| (terrain, kind)))
     {
         let mut config = every_config();
-        config.height_fields = height_fields;
+        config.solid_height_fields = height_fields == SurfaceKind::Solid;
         let dispatcher = SbbkDispatcher::new(config);
         let prepared = dispatcher.prepare(&terrain.mesh).unwrap();
         // A negative scale turns normals down.

@@ -7,7 +7,6 @@ use parry3d::query::{
     Unsupported,
 };
 use parry3d::shape::Shape;
-use sbbk_core::surface::SurfaceKind;
 use sbbk_core::traverse::DescentCounts;
 
 use super::SbbkDispatcher;
@@ -32,7 +31,7 @@ impl SbbkDispatcher {
         M: Default + Clone + Send + Sync + 'static,
         C: Default + Copy + Send + Sync + 'static,
     {
-        let SbbkConfig { contact_set, height_fields, detail, kinds, .. } = self.config;
+        let SbbkConfig { contact_set, solid_height_fields, detail, kinds, .. } = self.config;
         let has_surfaces = contact_set == ContactSet::Surfaces;
         let leave_solids = has_surfaces && self.config.convex_leave_solids;
         let has_patches = detail == ContactDetail::Patches;
@@ -94,7 +93,7 @@ impl SbbkDispatcher {
             };
             self.ask(&pair, manifolds, workspace)
         } else if let Some(field) = field {
-            let has_ground = height_fields == SurfaceKind::Solid;
+            let has_ground = solid_height_fields;
             let pair =
                 FieldPair { pose, mesh, field, mesh_place, has_surfaces, has_ground, has_patches };
             self.ask(&pair, manifolds, workspace)

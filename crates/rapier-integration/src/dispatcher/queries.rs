@@ -14,10 +14,27 @@ use crate::pair::{ConvexPair, ConvexSearch, MeshPlace, PairPose, Parts};
 use crate::query::{ConvexQuery, MeshQuery, NonlinearCast};
 
 impl SbbkDispatcher {
+    /// Returns what [`find`](Self::find) does, and counts it.
+    fn search<T>(
+        &self,
+        pos12: &Pose,
+        shapes: [&dyn Shape; 2],
+        balls: Balls,
+        apart: Option<(Real, T)>,
+        of_meshes: impl FnOnce(MeshQuery<'_>) -> T,
+        of_convex: impl FnOnce(ConvexQuery<'_>) -> T,
+    ) -> Option<T> {
+        let found = self.find(pos12, shapes, balls, apart, of_meshes, of_convex);
+        if found.is_some() {
+            self.counters.add_search();
+        }
+        found
+    }
+
     /// What `of_meshes` finds of two rigid meshes, or `of_convex` of one and a convex shape; `None` if
     /// Parry must answer. `apart` is the answer where Parry's hierarchies tell that they are farther
     /// apart than a distance. `balls` says who answers for these.
-    fn search<T>(
+    fn find<T>(
         &self,
         pos12: &Pose,
         [g1, g2]: [&dyn Shape; 2],
