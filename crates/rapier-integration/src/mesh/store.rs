@@ -158,6 +158,13 @@ impl MeshStore {
         data
     }
 
+    /// Returns the data of a small mesh with its tree, which is built if it is not there.
+    pub(super) fn small_with_tree(&self, mesh: &TriMesh) -> Option<Arc<MeshData>> {
+        let data = is_small(mesh.indices().len()).then(|| self.entry(mesh))?;
+        self.build(mesh, &data).ok()?;
+        Some(data)
+    }
+
     /// Builds the tree of a small mesh, if the budget covers it and no thread has begun to.
     pub(super) fn build_within_budget(&self, mesh: &TriMesh, data: &Arc<MeshData>) {
         let count = mesh.indices().len();

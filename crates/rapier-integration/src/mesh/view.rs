@@ -128,6 +128,12 @@ impl<'a> MeshView<'a> {
         self.store.registered(self.mesh)
     }
 
+    /// Returns the shared data of the mesh with its tree, if the mesh is registered or small. Finds
+    /// small ones by a hash of their content, and builds their trees.
+    pub(crate) fn with_tree(&self) -> Option<Arc<MeshData>> {
+        self.registered().or_else(|| self.store.small_with_tree(self.mesh))
+    }
+
     /// True if the mesh cannot change while its token stays.
     pub(crate) fn is_rigid(&self) -> bool {
         !self.mesh.is_deformable()

@@ -1,7 +1,7 @@
 //! Trees of two meshes, for queries without a workspace.
 //!
-//! No query before can prove that an unregistered mesh is still the same, so only registered meshes
-//! have trees here. [`Walk`] searches the BVHs of all others.
+//! Nothing proves that an unregistered mesh is still the one of an earlier query, so each query
+//! computes a hash of its content. That pays for small meshes. [`Walk`] searches the BVHs of others.
 
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -22,8 +22,17 @@ pub(crate) struct MeshQuery<'a> {
 }
 
 impl MeshQuery<'_> {
-    /// Returns the trees of both meshes, if both are registered.
+    /// Returns the trees of both meshes, if both are registered or small.
     pub(super) fn trees(&self) -> Option<Trees> {
+        let [mesh1, mesh2] = &self.meshes;
+        let tree1 = mesh1.with_tree()?;
+        let is_same = std::ptr::eq(mesh1.mesh, mesh2.mesh);
+        let tree2 = if is_same { Arc::clone(&tree1) } else { mesh2.with_tree()? };
+        Some(Trees([tree1, tree2]))
+    }
+
+    /// Returns the trees of both meshes, if both are registered.
+    pub(super) fn registered_trees(&self) -> Option<Trees> {
         let [mesh1, mesh2] = self.meshes.each_ref().map(MeshView::registered);
         Some(Trees([mesh1?, mesh2?]))
     }
@@ -33,14 +42,13 @@ impl MeshQuery<'_> {
     }
 }
 
-/// The trees of two registered meshes.
+/// The trees of two meshes.
 pub(crate) struct Trees([Arc<MeshData>; 2]);
 
 impl Trees {
     /// Both trees.
     pub(super) fn both(&self) -> (&Tree, &Tree) {
-        let [tree1, tree2] =
-            self.0.each_ref().map(|mesh| mesh.tree().expect("registered meshes have trees"));
+        let [tree1, tree2] = self.0.each_ref().map(|mesh| mesh.tree().expect("built before"));
         (tree1, tree2)
     }
 

@@ -12,7 +12,8 @@ impl MeshQuery<'_> {
     /// Returns true and one pair of crossing triangles, if the surfaces of the meshes cross.
     pub(crate) fn intersection(&self, pos12: &Pose) -> ShapeIntersection {
         let placement = Placement::new(pos12);
-        answer(match self.trees() {
+        // Most of these queries find crossing triangles sooner than a hash is computed.
+        answer(match self.registered_trees() {
             Some(trees) => trees.meeting(placement),
             None => self.walk().meeting(placement),
         })
