@@ -59,7 +59,10 @@ fn the_answer_does_not_depend_on_the_motion_before() {
         assert!(contacts > STEPS / 2, "{name}: {contacts} contacts");
         assert!(stats.descended_queries > 10, "{name}: {stats:?}");
         assert!(stats.internals.unchanged_queries > 0, "{name}: {stats:?}");
-        assert!((stats.internals.reused_queries >= 20) == kind.keeps_candidates, "{name}: {stats:?}");
+        assert!(
+            (stats.internals.reused_queries >= 20) == kind.keeps_candidates,
+            "{name}: {stats:?}"
+        );
     }
 }
 
