@@ -20,7 +20,6 @@
 //! Triangles are neighbours if their corners are equal; meshes need no shared vertices.
 
 use glamx::Vec3;
-use rustc_hash::FxHashMap;
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
 
@@ -32,20 +31,14 @@ use crate::pair::update::ContactList;
 /// Lower: rounding picks one of two equal contacts at a common edge as the ghost.
 const EQUAL: f64 = 1.0e-12;
 
-/// Length of a contact list up to which equal corners are found by linear search. Higher: slower for
-/// round bodies on fine meshes; lower: slower for balls.
-const FEW: usize = 8;
-
 /// Memory for the search: the contacts by the corners of their triangles.
 #[derive(Default)]
 pub(crate) struct GhostContacts {
+    /// Key of a corner, contact, and number of the corner in the contact's triangle; sorted.
+    entries: Vec<u128>,
     corners: Vec<Corner>,
-    /// Index of each corner of a long list of contacts.
-    by_key: FxHashMap<CornerKey, u32>,
     /// Indices of the corners of each contact's triangle.
     triangles: Vec<[u32; 3]>,
-    /// The contacts of each corner in turn.
-    members: Vec<u32>,
     /// For each contact the one whose normal it takes.
     sources: Vec<u32>,
     /// Contacts that take the normal of a face.
@@ -54,25 +47,27 @@ pub(crate) struct GhostContacts {
     nearby: Vec<u32>,
 }
 
-/// The part and the bits of the coordinates.
-type CornerKey = [u32; 4];
-
 struct Corner {
-    key: CornerKey,
-    /// Range of [`GhostContacts::members`].
+    /// First of [`GhostContacts::entries`]. The next corner's first one is the end.
     start: u32,
-    count: u32,
     /// The contact with the least distance.
     nearest: u32,
     /// A contact at this corner, and the result of `is_passed` for it.
     passed: Option<(u32, bool)>,
 }
 
-/// Returns the key of a corner of a triangle that touches a part.
-pub(super) fn corner_key(part: u32, corner: Vec3) -> CornerKey {
+/// Returns a hash of a part and a corner. Corners that differ in x or y alone never collide.
+fn corner_key(part: u32, corner: Vec3) -> u64 {
     // Plus zero: zero has two signs.
-    let [x, y, z] = (corner + 0.0).to_array().map(f32::to_bits);
-    [part, x, y, z]
+    let [x, y, z] = (corner + 0.0).to_array().map(|x| u64::from(x.to_bits()));
+    let mix = |x: u64| x ^ x >> 32;
+    let xy = mix((x << 32 | y).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    mix((xy ^ (u64::from(part) << 32 | z)).wrapping_mul(0xc2b2_ae3d_27d4_eb4f))
+}
+
+/// Returns the contact of an entry.
+fn contact_of(entry: u128) -> u32 {
+    (entry >> 8) as u32
 }
 
 /// Returns the corners of an edge, or a vertex twice.
@@ -93,7 +88,7 @@ impl GhostContacts {
     fn find<I>(
         &mut self,
         contacts: &[(I, PartContact)],
-        keys: impl Fn(&I) -> [CornerKey; 3],
+        keys: impl Fn(&I) -> [u64; 3],
         mut extends_beyond: impl FnMut(&I, &ConvexContact) -> bool,
     ) {
         self.index(contacts, keys);
@@ -125,54 +120,37 @@ impl GhostContacts {
     }
 
     /// Lists the contacts of each corner.
-    fn index<I>(&mut self, contacts: &[(I, PartContact)], keys: impl Fn(&I) -> [CornerKey; 3]) {
-        let Self { corners, by_key, triangles, members, .. } = self;
-        let is_short = contacts.len() <= FEW;
-        let distance = |contact: u32| contacts[contact as usize].1.contact.distance;
-        corners.clear();
-        by_key.clear();
-        triangles.clear();
-        triangles.extend((0..).zip(contacts).map(|(contact, (of, _))| {
-            keys(of).map(|key| {
-                let next = corners.len() as u32;
-                let corner = if is_short {
-                    let same = corners.iter().position(|corner| corner.key == key);
-                    same.map_or(next, |same| same as u32)
-                } else {
-                    *by_key.entry(key).or_insert(next)
-                };
-                if corner == next {
-                    let nearest = contact;
-                    corners.push(Corner { key, start: 0, count: 0, nearest, passed: None });
-                }
-                let Corner { count, nearest, .. } = &mut corners[corner as usize];
-                *count += 1;
-                if distance(contact) < distance(*nearest) {
-                    *nearest = contact;
-                }
-                corner
-            })
-        }));
-        let mut start = 0;
-        for corner in &mut *corners {
-            corner.start = start;
-            start += std::mem::take(&mut corner.count);
+    fn index<I>(&mut self, contacts: &[(I, PartContact)], keys: impl Fn(&I) -> [u64; 3]) {
+        let Self { entries, corners, triangles, .. } = self;
+        entries.clear();
+        for (contact, (of, _)) in (0..).zip(contacts) {
+            let corners = (0..).zip(keys(of));
+            entries.extend(corners.map(|(i, key)| u128::from(key) << 64 | contact << 8 | i));
         }
-        members.clear();
-        members.resize(start as usize, 0);
-        for (contact, triangle) in (0..).zip(&*triangles) {
-            for &corner in triangle {
-                let Corner { start, count, .. } = &mut corners[corner as usize];
-                members[(*start + *count) as usize] = contact;
-                *count += 1;
+        entries.sort_unstable();
+        corners.clear();
+        triangles.clear();
+        triangles.resize(contacts.len(), [0; 3]);
+        let distance = |contact: u32| contacts[contact as usize].1.contact.distance;
+        let mut last_key = None;
+        for (start, &entry) in (0..).zip(&*entries) {
+            let nearest = contact_of(entry);
+            if last_key.replace(entry >> 64) != Some(entry >> 64) {
+                corners.push(Corner { start, nearest, passed: None });
+            }
+            let corner = corners.len() - 1;
+            triangles[nearest as usize][usize::from(entry as u8)] = corner as u32;
+            if distance(nearest) < distance(corners[corner].nearest) {
+                corners[corner].nearest = nearest;
             }
         }
     }
 
     /// Returns the contacts whose triangles have a corner.
-    fn at_corner(&self, corner: u32) -> &[u32] {
-        let Corner { start, count, .. } = self.corners[corner as usize];
-        &self.members[start as usize..][..count as usize]
+    fn at_corner(&self, corner: u32) -> impl ExactSizeIterator<Item = u32> {
+        let corners = &self.corners[corner as usize..];
+        let end = corners.get(1).map_or(self.entries.len(), |next| next.start as usize);
+        self.entries[corners[0].start as usize..end].iter().map(|&entry| contact_of(entry))
     }
 
     /// Returns the contacts whose triangles have the feature of a contact, itself included.
@@ -181,7 +159,7 @@ impl GhostContacts {
         let [of_a, of_b] = [a, b].map(|corner| self.at_corner(corner));
         let (shorter, other) = if of_a.len() <= of_b.len() { (of_a, b) } else { (of_b, a) };
         let has_other = move |contact: &u32| self.triangles[*contact as usize].contains(&other);
-        shorter.iter().copied().filter(has_other)
+        shorter.filter(has_other)
     }
 
     /// Returns the contact with the least distance at the feature of a contact.
@@ -228,7 +206,7 @@ impl GhostContacts {
         let mut nearby = std::mem::take(&mut self.nearby);
         nearby.clear();
         for corner in self.triangles[contact as usize] {
-            nearby.extend_from_slice(self.at_corner(corner));
+            nearby.extend(self.at_corner(corner));
         }
         nearby.sort_unstable_by_key(|&other| (other != contact, other));
         nearby.dedup();
@@ -236,10 +214,9 @@ impl GhostContacts {
     }
 
     pub(super) fn shrink_to(&mut self, limit: usize) {
+        self.entries.shrink_to(limit);
         self.corners.shrink_to(limit);
-        self.by_key.shrink_to(limit);
         self.triangles.shrink_to(limit);
-        self.members.shrink_to(limit);
         self.sources.shrink_to(limit);
         self.on_faces.shrink_to(limit);
         self.nearby.shrink_to(limit);
@@ -308,7 +285,7 @@ mod tests {
     }
 
     /// Returns the corners of triangle `i` of a strip: triangles share edges with the next ones.
-    fn strip(i: u32) -> [CornerKey; 3] {
+    fn strip(i: u32) -> [u64; 3] {
         [i, i + 1, i + 2].map(|i| corner_key(0, Vec3::new(i as f32, (i % 2) as f32, 0.0)))
     }
 
@@ -335,11 +312,10 @@ mod tests {
         assert!(many < 80.0 * few, "{few} s, then {many} s");
     }
 
-    /// Catches ghosts that take the normal of a ghost, and contacts at faces that count as ghosts. Short
-    /// and long lists must agree.
+    /// Catches ghosts that take the normal of a ghost, and contacts at faces that count as ghosts.
     #[test]
     fn chains_of_ghosts_end_at_the_nearest_contact() {
-        for count in [FEW as u32 / 2, 4 * FEW as u32] {
+        for count in [4, 40] {
             let of = |i: u32| (i, contact(0.01 * f64::from(i), Feature::Edge(0)));
             let mut contacts: Vec<_> = (0..count).map(of).collect();
             let mut ghosts = GhostContacts::default();
