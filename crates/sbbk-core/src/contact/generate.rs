@@ -5,14 +5,14 @@ use super::clip::{ManifoldPoints, clip_triangles, push_closest_points};
 use super::closest::{Closest, TIE, closest, closest_on_lines, is_over, proved, within_edge};
 use super::edges::{closest_edges, proved_edges};
 use super::feature::{Feature, FeaturePair};
-use super::touching::{near_axis, touching};
+use super::touching::{near_axis, touching_contact};
 use super::triangle::Triangle;
 use super::triangle_contact::TriangleContact;
 use glamx::DVec3;
 
 /// Gap or overlap, in triangle sizes, below which rounding may hide if triangles are apart or
 /// cross. The choice of the best axis is exact to a tenth of it. Higher: more pairs take the slow
-/// path of [`touching`], with the same result. Lower: rounding decides.
+/// path of [`touching_contact`], with the same result. Lower: rounding decides.
 pub(super) const TOUCHING: f64 = 1.0e-9;
 
 /// The contact of two triangles at a distance of at most `margin`; crossing ones have a negative
@@ -86,7 +86,7 @@ fn find(
     {
         return (contact.distance <= margin).then_some(contact);
     }
-    if let Some(contact) = apart(t1, t2) {
+    if let Some(contact) = apart_by_edges(t1, t2) {
         return (contact.distance <= margin).then_some(contact);
     }
     search(t1, t2, margin)
@@ -100,7 +100,7 @@ fn still(t1: &Triangle, t2: &Triangle, last: FeaturePair) -> Option<TriangleCont
 
 /// The contact of triangles whose closest features are edges or vertices that are found at once.
 #[inline(always)]
-fn apart(t1: &Triangle, t2: &Triangle) -> Option<TriangleContact> {
+fn apart_by_edges(t1: &Triangle, t2: &Triangle) -> Option<TriangleContact> {
     let (features, closest) = proved_edges(t1, t2)?;
     clearly_apart(t1, t2, features, closest)
 }
@@ -131,7 +131,7 @@ fn search(t1: &Triangle, t2: &Triangle, margin: f64) -> Option<TriangleContact> 
         } else if best.gap < -TOUCHING * size && best.gap.is_finite() {
             overlap(t1, t2, &best)
         } else {
-            touching(t1, t2, best)
+            touching_contact(t1, t2, best)
         }
     };
     let contact = from_features(t1, t2, contact);

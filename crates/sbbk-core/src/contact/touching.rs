@@ -21,7 +21,7 @@ const ROUNDING: f64 = 1.0e-12;
 
 /// The contact of two triangles whose best axis has a gap of nearly nothing, or does not exist.
 #[cold]
-pub(super) fn touching(t1: &Triangle, t2: &Triangle, best: Axis) -> TriangleContact {
+pub(super) fn touching_contact(t1: &Triangle, t2: &Triangle, best: Axis) -> TriangleContact {
     let (features, nearest) = nearest_features(t1, t2);
     let axis = in_plane_axes(t1, t2).fold(best, |a, b| if b.gap > a.gap { b } else { a });
     let exists = axis.normal != DVec3::ZERO;

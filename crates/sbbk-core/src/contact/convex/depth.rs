@@ -85,7 +85,7 @@ fn point_below(polytope: &Polytope, face: &Face, corners: &[DVec3; 3], slack: f6
 
 /// The depth if a simplex of the difference holds the origin up to rounding.
 #[cold]
-pub(super) fn touching<S: SupportMap>(
+pub(super) fn touching_depth<S: SupportMap>(
     difference: &Difference<S>,
     simplex: &Simplex,
     size: f64,

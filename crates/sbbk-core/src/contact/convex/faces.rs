@@ -70,7 +70,8 @@ impl HullFaces {
             return None;
         }
         let lanes = PointLanes::new(points);
-        let surface = HullSurface::of(points, triangles).or_else(|| HullSurface::around(&lanes))?;
+        let surface = HullSurface::from_triangles(points, triangles)
+            .or_else(|| HullSurface::by_growth(&lanes))?;
         let HullSurface { planes, corners, neighbors } = surface;
         let planes = planes.chunks(4).map(PlaneLanes::new).collect();
         let (mut beside, mut edges) = (Vec::new(), Vec::new());
@@ -97,7 +98,7 @@ impl HullFaces {
         }
         for normal in [normal, -normal] {
             let outward = normal / squared.sqrt();
-            let depth = self.points.farthest(outward).0 - lowest(triangle, outward);
+            let depth = self.points.farthest(outward).0 - lowest_height(triangle, outward);
             if depth < least.depth {
                 least = Separation { outward, depth, facet: HullFacet::Triangle };
             }
@@ -105,7 +106,8 @@ impl HullFaces {
         let of_edges = self.edge_pair(triangle, &depths, least.depth)?;
         if let Some(reach) = of_edges {
             // A move to the support plane separates the bodies in spite of rounding of the arcs.
-            let depth = self.points.farthest(reach.outward).0 - lowest(triangle, reach.outward);
+            let depth =
+                self.points.farthest(reach.outward).0 - lowest_height(triangle, reach.outward);
             if (depth - reach.depth).abs() > ROUNDING * size + 1.0e-10 * depth {
                 return None;
             }
@@ -248,7 +250,7 @@ impl HullFaces {
         size: f64,
     ) -> Option<DVec3> {
         let (tie, slack) = (TIE * size, ON_BODY * size);
-        let low = lowest(triangle, outward) + tie;
+        let low = lowest_height(triangle, outward) + tie;
         let is_low = triangle.map(|corner| corner.dot(outward) <= low);
         let out = outward * depth;
         for i in 0..3 {
@@ -319,7 +321,7 @@ const SPREAD: [u32; 16] = {
 
 /// Height of the lowest corner of a triangle along a direction.
 #[inline(always)]
-fn lowest([a, b, c]: &[DVec3; 3], direction: DVec3) -> f64 {
+fn lowest_height([a, b, c]: &[DVec3; 3], direction: DVec3) -> f64 {
     a.dot(direction).min(b.dot(direction)).min(c.dot(direction))
 }
 

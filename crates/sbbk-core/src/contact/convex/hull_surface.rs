@@ -34,7 +34,7 @@ impl HullSurface {
     /// surface, counterclockwise from outside.
     ///
     /// A surface without concave edges whose face count excludes handles is convex everywhere.
-    pub fn of(points: &[DVec3], triangles: &[[u32; 3]]) -> Option<Self> {
+    pub fn from_triangles(points: &[DVec3], triangles: &[[u32; 3]]) -> Option<Self> {
         const NONE: u8 = u8::MAX;
         let (count, slack) = (points.len(), ROUNDING * size(points.iter().copied()));
         let is_closed = (4..=POINTS).contains(&count) && triangles.len() == 2 * count - 4;
@@ -87,7 +87,7 @@ impl HullSurface {
 
     /// Builds the surface of the hull of at most [`POINTS`] points by growth. `None` for a flat
     /// hull, or if rounding determines the faces.
-    pub fn around(points: &PointLanes) -> Option<Self> {
+    pub fn by_growth(points: &PointLanes) -> Option<Self> {
         let size = size(points.iter());
         let slack = ROUNDING * size;
         let vertex = |point: DVec3| Vertex { point, corner: 0 };

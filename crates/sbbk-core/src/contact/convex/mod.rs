@@ -22,7 +22,7 @@
 //! Balls, capsules, boxes, cylinders and cones have closed forms. For bodies apart these are nearest
 //! points of features (`segment.rs`, `solid.rs`). For bodies that cross they are the least depth
 //! among the parts of the surface of the Minkowski difference (`segment.rs`, `cuboid.rs`,
-//! `curved.rs`). Triangles use the contact of [two triangles](crate::contact). Hulls of up to 128
+//! `curved.rs`). Triangles use the contact of [two triangles](mod@crate::contact). Hulls of up to 128
 //! points that cross have a closed form by faces and edges (`faces.rs`, `hull_surface.rs`). Other
 //! shapes, and poses in which rounding determines the features, use a search by support points:
 //!
@@ -73,7 +73,7 @@ pub use hull::HullPoints;
 pub use segment::{PointSupport, SegmentSupport};
 pub use support::{HullSupport, SupportMap, TriangleSupport};
 
-use depth::{Depth, depth, touching};
+use depth::{Depth, depth, touching_depth};
 use difference::{Difference, Vertex};
 use glamx::DVec3;
 use search::{Outcome, search};
@@ -194,7 +194,7 @@ fn by_search<S: SupportMap>(
             return Some(ConvexContact::new(on_triangle, simplex.nearest / distance, distance));
         }
         Outcome::Crossing(tetrahedron) => depth(&difference, tetrahedron, size),
-        Outcome::Touching(simplex) => touching(&difference, &simplex, size),
+        Outcome::Touching(simplex) => touching_depth(&difference, &simplex, size),
     };
     depth.map(|Depth { outward, depth, on_triangle }| {
         ConvexContact::new(on_triangle, -outward, -depth)

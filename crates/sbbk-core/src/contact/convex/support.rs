@@ -49,7 +49,7 @@ impl SupportMap for TriangleSupport {
         self.0[lowest(&self.0, -direction)]
     }
 
-    /// Uses the contact of [two triangles](crate::contact) if both have an area.
+    /// Uses the contact of [two triangles](mod@crate::contact) if both have an area.
     #[inline(always)]
     fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
         if !(is_wide(triangle) && is_wide(&self.0)) {
