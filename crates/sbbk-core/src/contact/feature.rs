@@ -13,14 +13,13 @@ pub enum Feature {
 
 impl Feature {
     /// Width of [`to_bits`](Self::to_bits).
-    pub const BITS: u32 = 3;
-    /// The bits that one feature takes.
-    pub const MASK: u8 = (1 << Self::BITS) - 1;
+    const BITS: u32 = 3;
+    const MASK: u8 = (1 << Self::BITS) - 1;
     const EDGE: u8 = 0b100;
     const INDEX: u8 = 0b011;
 
     /// `0ii` for vertex i, `1ii` for edge i, `011` for the face.
-    pub const fn to_bits(self) -> u8 {
+    const fn to_bits(self) -> u8 {
         match self {
             Self::Vertex(i) => i,
             Self::Edge(i) => Self::EDGE | i,
@@ -31,7 +30,7 @@ impl Feature {
     /// The reverse of [`to_bits`](Self::to_bits); higher bits do not count. `111`, which is no
     /// feature, reads as the face.
     #[inline(always)]
-    pub const fn from_bits(bits: u8) -> Self {
+    const fn from_bits(bits: u8) -> Self {
         const FEATURES: [Feature; 8] = [
             Feature::Vertex(0),
             Feature::Vertex(1),
@@ -62,10 +61,8 @@ impl Feature {
 pub struct FeaturePair(u8);
 
 impl FeaturePair {
-    /// Width of [`to_bits`](Self::to_bits).
-    pub const BITS: u32 = 2 * Feature::BITS + 1;
-    /// The bits that a pair takes.
-    pub const MASK: u8 = (1 << Self::BITS) - 1;
+    /// The bits of [`to_bits`](Self::to_bits).
+    pub const MASK: u8 = (1 << (2 * Feature::BITS + 1)) - 1;
     const CROSSING: u8 = 1 << (2 * Feature::BITS);
 
     /// `feature1` belongs to triangle 1.
@@ -74,7 +71,7 @@ impl FeaturePair {
     }
 
     /// Marks the features as the axis of a crossing contact.
-    pub const fn crossing(self) -> Self {
+    pub(super) const fn crossing(self) -> Self {
         Self(self.0 | Self::CROSSING)
     }
 

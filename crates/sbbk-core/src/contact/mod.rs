@@ -54,7 +54,7 @@ mod touching;
 mod triangle;
 mod triangle_contact;
 
-pub use clip::{MANIFOLD_CAPACITY, ManifoldPoint, ManifoldPoints, clip, push_closest};
+pub use clip::{ManifoldPoint, ManifoldPoints, clip, push_closest};
 pub use feature::{Feature, FeaturePair};
 pub use generate::{contact, contact_from, manifold};
 pub use penetration::penetration_out_of_solid;

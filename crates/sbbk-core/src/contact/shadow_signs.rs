@@ -116,7 +116,7 @@ fn swapped(lanes: f64x2) -> f64x2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::MANIFOLD_CAPACITY;
+    use crate::contact::clip::MANIFOLD_CAPACITY;
     use proptest::prelude::*;
 
     proptest! {

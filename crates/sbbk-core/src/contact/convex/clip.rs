@@ -13,7 +13,7 @@ use glamx::{DVec2, DVec3};
 const EDGE_ON: f64 = 1.0e-5;
 
 /// Corners of a feature at most.
-pub const FEATURE_CORNERS: usize = 4;
+const FEATURE_CORNERS: usize = 4;
 
 /// Each corner and each crossing of two edges.
 const CAPACITY: usize = 3 + FEATURE_CORNERS + 3 * FEATURE_CORNERS;

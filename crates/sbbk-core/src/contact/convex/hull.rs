@@ -123,8 +123,6 @@ mod tests {
     use crate::contact::convex::convex_contact;
     use crate::support::Random;
 
-    /// Would catch a hull without faces that finds them after all: a single depth then takes as long
-    /// as a hundred.
     #[test]
     fn depths_by_search_equal_those_by_faces() {
         let mut random = Random(3);

@@ -64,7 +64,7 @@ mod simplex;
 mod solid;
 mod support;
 
-pub use clip::{FEATURE_CORNERS, FeaturePoint, FeaturePoints, clip_feature};
+pub use clip::{FeaturePoint, FeaturePoints, clip_feature};
 pub use cuboid::CuboidSupport;
 pub use curved::{ConeSupport, CylinderSupport};
 pub use feature::feature_at;
