@@ -127,7 +127,7 @@ fn one_side(
         let gap = (smallest(along(other)) - largest(along(own))).fast_max(f32x4::splat(0.0));
         for (is_beyond, least) in is_beyond.iter_mut().zip(least) {
             let is_so = (gap * gap).simd_gt(length2 * least * least + f32x4::splat(UNDERFLOW));
-            *is_beyond = *is_beyond | is_so;
+            *is_beyond |= is_so;
         }
     }
     is_beyond.map(|is_beyond| is_beyond & is_sound)

@@ -167,12 +167,12 @@ pub(super) fn apart(frame: &LeafFrame, one: &Corners, two: &Corners) -> f32x4 {
         |triangle: usize, i: usize| sub(corners[triangle][(i + 1) % 3], corners[triangle][i]);
     let margin_squared = f32x4::splat(frame.margin * frame.margin);
     let normal1 = cross(corners[0][1], corners[0][2]);
-    apart = apart | separates(normal1, &corners, margin_squared);
+    apart |= separates(normal1, &corners, margin_squared);
     if apart.all() {
         return apart;
     }
     let normal2 = cross(edge(1, 0), edge(1, 1));
-    apart = apart | separates(normal2, &corners, margin_squared);
+    apart |= separates(normal2, &corners, margin_squared);
     if apart.all() {
         return apart;
     }
@@ -200,11 +200,11 @@ pub(super) fn apart(frame: &LeafFrame, one: &Corners, two: &Corners) -> f32x4 {
         a | b | c
     };
     // Written out: a loop loses most of the gain.
-    apart = apart | separated_by(0);
+    apart |= separated_by(0);
     if apart.all() {
         return apart;
     }
-    apart = apart | separated_by(1);
+    apart |= separated_by(1);
     if apart.all() {
         return apart;
     }

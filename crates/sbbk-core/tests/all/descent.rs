@@ -72,7 +72,7 @@ fn check(soup1: &Soup, soup2: &Soup, pos12: &Pose3, margin: f32) -> usize {
     truth.len()
 }
 
-/// Would catch layers that are taken for alike on both sides: of these two one has k-DOPs.
+/// Would catch a test of k-DOPs where one side has none.
 #[test]
 fn finds_every_pair_where_one_tree_chose_boxes() {
     let mut random = Random(31);
@@ -203,7 +203,7 @@ fn tests_one_side_at_a_time([next, other]: [Node<'_>; 2]) -> u64 {
     1 + below.iter().sum::<u64>()
 }
 
-/// Without a finite pose there is no answer but "no pair", and no panic.
+/// Would catch a panic or an endless descent.
 #[test]
 fn poses_that_are_not_finite_find_nothing() {
     let ball = bumpy_ball(5, 0.2);

@@ -16,7 +16,7 @@ fn kdop_lines(kdop: &Kdop) -> Vec<[Vec3; 2]> {
     lines(|line| draw::kdop(kdop, line))
 }
 
-/// How far a point is outside a k-DOP, in units of its coordinates; negative inside.
+/// Distance of a point outside a k-DOP, in units of its coordinates; negative inside.
 fn outside(kdop: &Kdop, point: Vec3) -> f64 {
     let slabs = directions::DIRECTIONS;
     let ends = slabs.iter().zip(kdop.min.iter().zip(&kdop.max));
@@ -80,11 +80,11 @@ fn kdops_of_clouds_are_drawn_whole() {
 
 /// Bodies whose edges are known, with planes that touch in edges and corners only.
 #[test]
-fn edges_are_counted_right() {
+fn known_polytopes_have_their_number_of_edges() {
     let ends =
         |face: f32, edge: f32| std::array::from_fn(|axis| if axis < 3 { face } else { edge });
     let symmetric = |face: f32, edge: f32| Kdop { min: ends(-face, -edge), max: ends(face, edge) };
-    // Cube, chamfered cube, rhombic dodecahedron. Of the first, planes touch whole edges.
+    // Cube, chamfered cube, rhombic dodecahedron. Planes touch whole edges of the cube.
     for (kdop, count) in [(symmetric(1.0, 2.0), 12), (symmetric(1.0, 1.5), 48)] {
         assert_eq!(kdop_lines(&kdop).len(), count);
     }
@@ -97,7 +97,7 @@ fn edges_are_counted_right() {
 }
 
 #[test]
-fn spheres_are_round() {
+fn lines_of_a_sphere_are_on_it() {
     let ball = Sphere { centre: Vec3::new(1.0, 2.0, 3.0), radius: 0.5 };
     let lines = lines(|line| draw::sphere(&ball, line));
     assert!(lines.len() > 30);
@@ -139,8 +139,7 @@ fn layers_hold_the_mesh() {
     }
 }
 
-/// Would catch candidates that are lost, of the wrong mesh or at the wrong pose: of two balls that
-/// touch, some triangles of each, all near the place between.
+/// Would catch candidates that are lost, of the wrong mesh or at the wrong pose.
 #[test]
 fn candidates_are_near_the_contact() {
     let ball = bumpy_ball(12, 0.0);

@@ -10,7 +10,7 @@ use sbbk_core::tree::LeafBatch;
 const REACH: f32 = 0.02;
 const DISTANCE: f32 = 0.25 * REACH;
 const COSINE: f32 = 0.87;
-/// Of the ball whose motion is bounded.
+/// Radius of the ball whose motion is bounded.
 const RADIUS: f32 = 10.0 * REACH;
 
 /// A triangle of the other mesh near the origin of its frame, and one of mesh 1.

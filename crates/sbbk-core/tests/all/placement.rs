@@ -1,12 +1,11 @@
-//! The motion bound: no point of the ball may move farther.
+//! The motion bound and the map of a placement.
 
 use crate::support::Random;
 use glamx::{DVec3, Pose3};
 use sbbk_core::traverse::Placement;
 
-/// Small and large motions of a ball anywhere: a bound that forgets the lever of the rotation, or
-/// measures the centre's way in the wrong frame, is too small here; one that is uselessly large
-/// fails too.
+/// Would catch a bound without the lever of the rotation, the motion of the centre in the wrong
+/// frame, and a uselessly large bound.
 #[test]
 fn no_point_moves_farther_than_the_bound() {
     let mut random = Random(31);
@@ -33,7 +32,7 @@ fn no_point_moves_farther_than_the_bound() {
     assert!(tightest < 1.5, "the bound is never better than {tightest} times the motion");
 }
 
-/// The map is Parry's, `q v q*`, for quaternions off unit length too; and the inverse undoes it.
+/// The map is Parry's, `q v q*`, also for quaternions off unit length.
 #[test]
 fn the_map_is_that_of_the_quaternion() {
     let mut random = Random(32);

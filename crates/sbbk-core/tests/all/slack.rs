@@ -1,5 +1,4 @@
-//! What a descent with slack found is complete for as long as the plan says, and the slack is what
-//! the motion asks for.
+//! Candidates of a descent with slack are complete while the plan reuses them.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +9,7 @@ use sbbk_core::volumes::Sphere;
 
 const BALL: Sphere = Sphere { centre: Vec3::new(0.3, -0.2, 0.1), radius: 0.7 };
 
-/// Points of both frames, those of frame 2 in [`BALL`].
+/// Points of frame 1, and points of frame 2 in [`BALL`].
 struct Points([Vec<Vec3>; 2]);
 
 impl Points {
@@ -37,9 +36,8 @@ fn nudge(random: &mut Random, size: f32, pose: &Pose3) -> Pose3 {
     Pose3::from_parts(pose.translation + random.vector(size), rotation)
 }
 
-/// Walks with jumps and changes of stride and prediction distance, against brute force at each
-/// step. Would catch candidates used for too long, a reach or a travel that is too small, and a
-/// margin that is not that of the descent.
+/// Walks with jumps and changes of stride and prediction distance, against brute force at each step.
+/// Would catch candidates used for too long, a travel that is too small, and a wrong margin.
 #[test]
 fn candidates_are_complete_while_they_are_reused() {
     let mut random = Random(61);
@@ -80,7 +78,7 @@ fn candidates_are_complete_while_they_are_reused() {
                     }
                     let now = points.within(&placement, f64::INFINITY);
                     for (pair, clear) in &mut candidates {
-                        // As a caller does: what is out of reach is not looked at.
+                        // Skip candidates out of reach, like a caller.
                         if *clear <= limit {
                             *clear = now[pair] + slack.travel();
                         } else {
@@ -115,10 +113,10 @@ fn margin_after(step: f32, prediction: f32) -> (f32, bool) {
     }
 }
 
-/// Would catch slack for a pair at rest that the least jitter uses up, slack that does not grow
-/// with the motion or has no end, and slack for fast motion, where it is a waste.
+/// Would catch slack that jitter uses up, that does not grow with the motion or grows without end,
+/// and slack for fast motion.
 #[test]
-fn slack_follows_the_motion() {
+fn slack_grows_with_the_motion_up_to_a_limit() {
     let prediction = 0.02;
     let near = |found: f32, expected: f32| (found - expected).abs() < 1e-5 * prediction;
     for (step, share) in
@@ -134,7 +132,7 @@ fn slack_follows_the_motion() {
     assert_eq!(margin_after(0.0, 0.0), (0.0, false));
 }
 
-/// Would catch candidates that are kept beyond a pose that is none, and a panic there.
+/// Would catch candidates that are kept after a pose that is not finite, and a panic.
 #[test]
 fn queries_that_are_not_finite_are_descents() {
     let good = Placement::new(&Pose3::IDENTITY);
@@ -148,7 +146,7 @@ fn queries_that_are_not_finite_are_descents() {
             let again = slack.clone().plan(BALL, &good, 0.02, SlackLimits::TRIANGLES);
             assert!(matches!(again, SlackPlan::Reuse { .. }), "{again:?}");
             let plan = slack.plan(BALL, placement, prediction, SlackLimits::TRIANGLES);
-            // Within less than nothing, what is known is more than enough.
+            // No pair is within a distance below zero, so any candidates are complete.
             if prediction == f32::NEG_INFINITY {
                 assert!(matches!(plan, SlackPlan::Reuse { .. }));
                 continue;

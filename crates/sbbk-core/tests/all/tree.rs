@@ -1,5 +1,4 @@
-//! Building: every triangle once, every volume around what is below it, every fault of the input
-//! reported.
+//! Trees hold each triangle once in valid volumes, and builds report faults of the input.
 
 use crate::support::{Random, Soup, bumpy_ball, cube, lattice_soup, soup};
 use glamx::{Quat, Vec3};
@@ -149,8 +148,7 @@ fn trees_are_never_deep() {
     assert!(deepest > 64, "no chain needs the bound: {deepest}");
 }
 
-/// Without a sphere the ball is around the root's box, whose corners are the vertices here: nothing
-/// to spare. Would catch a rounding of length or centre that is not given back, near the origin and
+/// The vertices are the corners of the root's box, with no room to spare. Would catch a rounding of length or centre that is not given back, near the origin and
 /// far from it.
 #[test]
 fn the_ball_around_a_box_holds_its_corners() {

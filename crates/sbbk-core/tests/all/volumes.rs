@@ -60,9 +60,8 @@ proptest! {
         check_volume!(Kdop, &a, &b);
     }
 
-    /// Zachmann's correspondence: non-negative coefficients of three of the set's directions that
-    /// add up to the direction, hence conservative for any points by LP weak duality; and tight
-    /// where the three are adjacent: the direction itself, if it is in the set, gets coefficient 1.
+    /// Would catch coefficients whose sum is another direction, a bound below a point, and a loose one:
+    /// a direction of the set gets coefficient 1.
     #[test]
     fn correspondence_is_conservative(seed in any::<u64>(), cloud in points()) {
         check_correspondence(seed, &cloud)?;
