@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde-serialize", derive(Serialize, Deserialize))]
 pub enum ContactSet {
-    /// Contacts of the surfaces: solids push out what has sunk into them, and internal edges have no
+    /// Contacts of the surfaces: solids push out bodies that have sunk in, and internal edges have no
     /// contacts.
     #[default]
     Surfaces,
@@ -19,7 +19,7 @@ pub enum ContactSet {
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde-serialize", derive(Serialize, Deserialize))]
 pub enum ContactDetail {
-    /// One manifold for each triangle that touches, or each two, as in stock Rapier. Contacts farther
+    /// A manifold for each pair of touching subshapes, as in stock Rapier. Contacts farther
     /// than a tenth of the smaller radius, which only soft CCD asks for, are reduced all the same.
     Every,
     /// Reduced contacts: a few manifolds of at most four points, which carry like all of them. The
@@ -75,8 +75,8 @@ pub struct SbbkConfig {
     /// True if solids push out convex shapes whose centre is inside them, with
     /// [`ContactSet::Surfaces`]. Each part of a compound is pushed for itself.
     ///
-    /// Default: false, as in stock Rapier: a room that is one closed surface with outward normals
-    /// counts as a solid, and would throw out what it contains. Declare such a mesh a sheet by
+    /// Default: false, as in stock Rapier. A room that is one closed surface with outward normals
+    /// counts as a solid, and would push out its furniture. Declare such a mesh a sheet by
     /// [`PreparedTree::set_surface_kind`](crate::PreparedTree::set_surface_kind).
     pub convex_leave_solids: bool,
     /// Volumes of the layers of each tree. Default: `None`, which chooses the fastest ones for each

@@ -1,16 +1,8 @@
-//! Lines for a picture of contacts and [`patches`], and of the trees of prepared meshes ([`layer`])
-//! and what they find ([`candidates`]), handed to a closure `FnMut(a, b, colour)`: any renderer of
-//! lines will do.
+//! Lines that show contacts, patches, candidates and layers of trees, for any renderer of lines.
 //!
-//! Rapier's own debug renderer, and all that is built on it, takes them as they are, as
-//! `examples/draw.rs` does:
-//!
-//! ```ignore
-//! let object = DebugRenderObject::ContactPair(pair, collider1, collider2);
-//! contacts(manifolds, poses, 0.1, |a, b, colour| backend.draw_line(object, a, b, colour));
-//! ```
-//!
-//! Bevy's gizmos want `gizmos.line(a, b, Color::hsla(h, s, l, a))` of `[h, s, l, a] = colour`.
+//! Each function calls a closure with the ends and the colour of a line. The example `draw` hands the
+//! lines to Rapier's debug renderer. Bevy's gizmos take
+//! `gizmos.line(a, b, Color::hsla(h, s, l, a))` of `[h, s, l, a] = colour`.
 
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::ContactManifold;
@@ -19,19 +11,19 @@ pub use sbbk_core::draw::{
     BOX, CANDIDATES, Colour, KDOP, SPHERE, aabb, candidates, kdop, layer, sphere,
 };
 
-/// What [`contacts`] draws points in that are apart, and what those that overlap.
+/// Colour of contact points that are apart.
 pub const APART: Colour = [200.0, 0.9, 0.6, 1.0];
-/// See [`APART`].
+/// Colour of contact points that overlap.
 pub const OVERLAPPING: Colour = [0.0, 1.0, 0.5, 1.0];
-/// What [`contacts`] draws normals in.
+/// Colour of normals.
 pub const NORMAL: Colour = [60.0, 1.0, 0.5, 1.0];
-/// What [`patches`] draws in.
+/// Colour of [`patches`].
 pub const PATCH: Colour = [120.0, 1.0, 0.5, 1.0];
-/// What [`triangles`] draws in, for each of the two shapes.
+/// Colours of the [`triangles`] of the two shapes.
 pub const TRIANGLES: [Colour; 2] = [[300.0, 0.8, 0.6, 1.0], [30.0, 0.9, 0.6, 1.0]];
 
-/// Draws the contact points of manifolds, between shapes at these poses: a line from the point of
-/// one shape to that of the other, and the normal from the first.
+/// Draws the contact points of manifolds between shapes at these poses. Each point has a line between
+/// the shapes, and its normal.
 ///
 /// ```
 /// use parry3d::math::Pose;
@@ -70,8 +62,7 @@ pub fn contacts<M, C>(
     }
 }
 
-/// Draws each manifold as lines between all of its points, on the first shape: what counts as one
-/// direction and place, with [`ContactDetail::Patches`](crate::ContactDetail::Patches) a patch.
+/// Draws lines between all points of each manifold, on the first shape.
 pub fn patches<M, C>(
     manifolds: &[ContactManifold<M, C>],
     poses: [&Pose; 2],
@@ -87,13 +78,13 @@ pub fn patches<M, C>(
     }
 }
 
-/// The poses of the subshapes of a manifold.
+/// Returns the poses of the subshapes of a manifold.
 fn placed<M, C>(manifold: &ContactManifold<M, C>, [pose1, pose2]: [&Pose; 2]) -> [Pose; 2] {
     [(pose1, manifold.subshape_pos1()), (pose2, manifold.subshape_pos2())]
         .map(|(pose, subshape)| subshape.map_or(*pose, |subshape| *pose * *subshape))
 }
 
-/// Draws the triangles that manifolds are about, of shapes at these poses: of meshes only.
+/// Draws the triangles of meshes that manifolds refer to.
 pub fn triangles<M, C>(
     manifolds: &[ContactManifold<M, C>],
     shapes: [&dyn Shape; 2],

@@ -2,8 +2,8 @@
 //!
 //! ## With a dispatcher of your own
 //!
-//! It goes before [`SbbkDispatcher`](crate::SbbkDispatcher), which leaves nothing to those after it
-//! that Parry can answer:
+//! Put your dispatcher before [`SbbkDispatcher`](crate::SbbkDispatcher), which handles every pair that
+//! Parry can:
 //!
 //! ```
 //! use parry3d::math::{Pose, Real, Vector};
@@ -12,7 +12,7 @@
 //! use rapier_integration::SbbkDispatcher;
 //! # use parry3d::query::details::NormalConstraints;
 //!
-//! /// Lets balls pass through balls, and has nothing to say about other pairs.
+//! /// Lets balls pass through balls, and handles no other pairs.
 //! struct Ghosts;
 //!
 //! fn ghosts(g1: &dyn Shape, g2: &dyn Shape) -> Result<(), Unsupported> {

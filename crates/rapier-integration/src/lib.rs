@@ -9,7 +9,7 @@
 //! ```
 //!
 //! Colliders stay plain triangle meshes, and nothing else in a scene changes. Two meshes get the
-//! contacts of their surfaces: stacks stand, gears turn, and solids push out what has sunk into them.
+//! contacts of their surfaces: stacks stand, gears turn, and solids push out bodies that have sunk in.
 //!
 //! * The [`guide`] says how to prepare meshes, what to set where a scene is difficult, and when not to
 //!   use SBBK.

@@ -49,11 +49,11 @@ pub struct SbbkInternals {
     pub tree_hits: u64,
     /// Descents of two meshes without trees, through the BVHs.
     pub walks: u64,
-    /// Of [`SbbkStats::queries`], those of pairs that have not moved.
+    /// Part of [`SbbkStats::queries`]: the pair has not moved.
     pub unchanged_queries: u64,
-    /// Of [`SbbkStats::queries`], those that used the candidates of an earlier descent.
+    /// Part of [`SbbkStats::queries`]: the candidates of an earlier descent served.
     pub reused_queries: u64,
-    /// Work of the descents. Those through BVHs count as tests of boxes.
+    /// Work of the descents. Descents through BVHs count as tests of boxes.
     pub descent: DescentCounts,
 }
 

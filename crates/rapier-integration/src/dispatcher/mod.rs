@@ -20,7 +20,7 @@ use crate::{SbbkConfig, SbbkStats};
 
 /// A query dispatcher for Rapier, and for other hosts of Parry.
 ///
-/// It handles pairs of meshes, and the contacts of a mesh with convex shapes, compounds, polylines and
+/// Handles pairs of meshes, and the contacts of a mesh with convex shapes, compounds, polylines and
 /// height fields. All other pairs go to Parry's
 /// [`DefaultQueryDispatcher`](parry3d::query::DefaultQueryDispatcher). Clones share their trees.
 #[derive(Clone)]
@@ -65,7 +65,7 @@ impl SbbkDispatcher {
     /// ```
     ///
     /// # Errors
-    /// Says what is wrong with the mesh, for example that a vertex is NaN.
+    /// Names the defect of the mesh, for example a vertex that is NaN.
     #[must_use = "the registration ends when the result is dropped"]
     pub fn prepare_shape(&self, shape: &SharedShape) -> Result<Option<PreparedTree>, PrepareError> {
         let Some(mesh) = rigid_mesh(&*shape.0) else {
@@ -95,7 +95,7 @@ impl SbbkDispatcher {
     /// ```
     ///
     /// # Errors
-    /// Says what is wrong with the mesh, for example that a vertex is NaN.
+    /// Names the defect of the mesh, for example a vertex that is NaN.
     #[must_use = "the tree may be dropped when the result is dropped"]
     pub fn prepare(&self, mesh: &TriMesh) -> Result<PreparedTree, PrepareError> {
         Ok(PreparedTree { data: self.cache.prepare(mesh)?, _registered: None })

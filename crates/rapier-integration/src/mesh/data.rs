@@ -5,8 +5,8 @@ use parry3d::shape::TriMesh;
 use sbbk_core::surface::{Surface, SurfaceKind};
 use sbbk_core::tree::{BuildError, BuildOptions, Tree};
 
-/// What all colliders with equal geometry share. Each part is computed when it is first needed, by
-/// any thread, and never waited for: two threads may compute the same part at once.
+/// Tree and surface of a mesh, for all colliders with equal geometry. Any thread computes a part when
+/// it needs that part, and no thread waits: two threads may compute the same part at once.
 #[derive(Default)]
 pub(crate) struct MeshData {
     surface: OnceLock<Surface>,

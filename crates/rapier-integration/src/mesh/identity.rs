@@ -12,7 +12,7 @@
 //!
 //! An edit by `TriMesh::update_vertices` that moves neither the root box nor a sampled vertex leaves
 //! the token as it was. Rapier drops the workspace of a pair when a shape was edited, and other hosts
-//! must do the same: Parry's own workspaces rely on it, too.
+//! must do the same. Parry's own workspaces rely on it, too.
 
 use std::hash::Hasher;
 
@@ -93,7 +93,7 @@ mod tests {
         triangles[7].swap(1, 2);
         let reversed = TriMesh::new(mesh.vertices().to_vec(), triangles).unwrap();
         assert_ne!(ContentHash::of(&reversed), hash, "triangles");
-        // Parry refits the BVH of an edited mesh, and builds that of a new one.
+        // An edit refits the BVH.
         let mut edited = row(|i| i * 7 % 16, TriMeshFlags::empty());
         assert_ne!(ContentHash::of(&edited), hash, "vertices");
         edited.set_vertices(mesh.vertices());

@@ -4,19 +4,19 @@ use parry3d::shape::TriMesh;
 use rustc_hash::FxHashMap;
 use sbbk_core::surface::HalfEdges;
 
-/// The neighbours of the triangles of a mesh that a pair has come across: of a mesh that is too large
-/// to look at as a whole.
+/// Twins of the edges of the triangles that a pair has touched, by triangle.
 pub(crate) type Neighbours = FxHashMap<u32, [Option<u32>; 3]>;
 
-/// Finds them where they are asked for, by Parry's hierarchy: about a microsecond a triangle.
+/// Adjacency of a mesh that is too large to analyse as a whole. Finds the neighbours of a triangle by
+/// the BVH, in about 1 µs.
 pub(crate) struct NearTwins<'a> {
     mesh: &'a TriMesh,
     known: RefCell<&'a mut Neighbours>,
 }
 
 impl<'a> NearTwins<'a> {
-    /// Triangles that a pair may know. More: more memory for a body that crosses a large mesh; fewer:
-    /// bodies in contact with many triangles look for them again and again.
+    /// Triangles whose neighbours a pair keeps. Higher: more memory for a body that crosses a large
+    /// mesh; lower: bodies that touch many triangles search for the same neighbours again.
     const MOST: usize = 4096;
 
     pub(crate) fn new(mesh: &'a TriMesh, known: &'a mut Neighbours) -> Self {
@@ -35,8 +35,8 @@ impl HalfEdges for NearTwins<'_> {
     }
 }
 
-/// The twins of the edges of a triangle. As `sbbk_core::surface::Surface` has them: vertices at one
-/// place are one vertex.
+/// Returns the twins of the edges of a triangle. Vertices at one place are one vertex, as in
+/// [`Surface`](sbbk_core::surface::Surface).
 fn twins_of(mesh: &TriMesh, triangle: u32) -> [Option<u32>; 3] {
     let triangle = mesh.triangle(triangle);
     let own = [triangle.a, triangle.b, triangle.c];
@@ -66,10 +66,10 @@ mod tests {
 
     use super::*;
 
-    /// Would catch neighbours other than those of the whole mesh: in soups of triangles between a
-    /// few places, many of them points, segments, of one edge more than two, or there twice.
+    /// The triangles of these soups are often points, segments, duplicates, or share an edge with two
+    /// others.
     #[test]
-    fn neighbours_are_those_of_the_whole_mesh() {
+    fn local_twins_are_those_of_the_surface() {
         let (mut random, mut found) = (Rand32::new(1), 0);
         for round in 0..400 {
             let mut place = || Vector::from_array([(); 3].map(|()| random.rand_range(0..3) as f32));
@@ -89,9 +89,8 @@ mod tests {
         assert!(found > 1000, "{found} twins");
     }
 
-    /// Would catch a body that crosses a large mesh and remembers all of it.
     #[test]
-    fn what_is_known_has_an_end() {
+    fn neighbours_are_forgotten_beyond_the_limit() {
         let triangle = vec![[0, 1, 2]];
         let mesh = TriMesh::new(vec![Vector::ZERO, Vector::X, Vector::Y], triangle).unwrap();
         let most = NearTwins::MOST as u32;

@@ -10,7 +10,7 @@ use super::neighbours::{NearTwins, Neighbours};
 use super::store::{MeshStore, is_small, may_analyse};
 use super::view::MeshView;
 
-/// What a pair of colliders keeps of one of its meshes from query to query.
+/// State of one mesh of a pair of colliders, kept from query to query.
 #[derive(Clone, Default)]
 pub(crate) enum PairMesh {
     /// No query has used the mesh.
@@ -165,9 +165,9 @@ impl RigidMesh {
 
 /// Adjacency of the triangles of a mesh.
 pub(crate) enum MeshSurface<'a> {
-    /// Of the whole mesh, computed at the first contact.
+    /// Adjacency of all triangles, computed at the first contact.
     Full { data: &'a OnceLock<Arc<MeshData>>, store: &'a MeshStore },
-    /// Of the triangles near contacts. The mesh is large, and counts as a sheet.
+    /// Adjacency of triangles near contacts. The mesh is large, and counts as a sheet.
     Local(NearTwins<'a>),
 }
 

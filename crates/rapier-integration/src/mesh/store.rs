@@ -1,8 +1,8 @@
-//! One [`MeshData`] for all colliders with equal geometry.
+//! Maps meshes with equal geometry to one [`MeshData`].
 //!
-//! A mesh is found by its content, or by its address if it is registered. A pair keeps what it has
-//! found, so only its first queries and those after a new registration take a lock. Trees and
-//! surfaces are computed outside of the locks.
+//! The key of a mesh is its content, or its address if the mesh is registered. Pairs keep their
+//! [`MeshData`]: only first queries and those after a registration take a lock. Trees and surfaces are
+//! computed outside of the locks.
 
 use std::collections::{HashMap, VecDeque};
 use std::hash::Hash;
@@ -37,8 +37,8 @@ pub(crate) struct MeshStore {
     walks: AtomicU64,
 }
 
-/// A registered mesh. Whoever edits the shape meanwhile edits a copy, so the address stands for the
-/// content.
+/// A registered mesh. While `shape` is held here, edits of the shape go to a copy, and the address
+/// identifies the content.
 pub(crate) struct Registered {
     shape: SharedShape,
     pub(crate) data: Arc<MeshData>,
@@ -302,12 +302,11 @@ pub(super) fn is_small(triangle_count: usize) -> bool {
     triangle_count <= BuildBudget::LIMIT as usize
 }
 
-/// True if an unregistered mesh is analysed as a whole when it first touches a mesh of `other_count`
-/// triangles: if it is small, or if both are large and it has at most 131,072 triangles. Any other
-/// unregistered mesh is a sheet.
+/// True if an unregistered mesh is analysed as a whole when it touches a mesh of `other_count`
+/// triangles: if it is small, or up to 131,072 triangles if both are large. Otherwise it is a sheet.
 ///
-/// A large mesh is not analysed for small ones, as many of these may land on it together, and each
-/// pair needs a hash of its content.
+/// An analysis for each small body that lands on a large mesh would be slow: every new pair needs a
+/// hash of the content.
 pub(super) fn may_analyse(triangle_count: usize, other_count: usize) -> bool {
     /// Triangles. An analysis of as many takes 5 ms. Higher: longer steps; lower: large meshes lock
     /// into each other.
@@ -315,7 +314,7 @@ pub(super) fn may_analyse(triangle_count: usize, other_count: usize) -> bool {
     is_small(triangle_count) || !is_small(other_count) && triangle_count <= LIMIT
 }
 
-/// Forgets what has been dropped, if the map is full.
+/// Removes dead entries, if the map is full.
 fn make_room<K: Eq + Hash, V>(map: &mut HashMap<K, Weak<V>>) {
     if map.len() == map.capacity() {
         map.retain(|_, value| value.strong_count() > 0);

@@ -77,8 +77,8 @@ pub(crate) fn is_covered(mesh: &TriMesh, point: Vec3) -> bool {
 /// Least cosine that [`nearest`] returns for a point inside a mesh.
 pub(crate) const BEHIND: Real = 0.9;
 
-/// Returns the triangle of a mesh that is nearest to a point, the nearest point on it, and the cosine
-/// between the direction to `point` and the inward normal. The cosine is 0 for a point on the mesh.
+/// Returns the nearest triangle of a mesh, the nearest point, and the cosine between the direction to
+/// `point` and the inward normal. The cosine is 0 for a point on the mesh.
 pub(crate) fn nearest(mesh: &TriMesh, point: Vec3) -> Option<(u32, PointProjection, Real)> {
     let (triangle, nearest) =
         CompositeShapeRef(mesh).project_local_point(point, Real::MAX, false)?;
