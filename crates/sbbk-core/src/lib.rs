@@ -1,9 +1,9 @@
 //! Collision detection between triangle meshes with hybrid bounding volume hierarchies.
 //!
-//! A tree has a **s**phere at the root, AA**BB**s in the upper layers and **k**-DOPs (k = 18) in the
-//! lower ones. Queries descend two trees at once, after the paper *A Three-layer Hybrid Bounding
-//! Volume Hierarchy for Collision Detection*. The crate has no physics: `rapier-integration` is its
-//! plugin for Rapier.
+//! A tree has a **s**phere at the root, AA**BB**s in the upper layers and **k**-DOPs (k = 18) in
+//! the lower ones. Queries descend two trees at once, after the paper *A Three-layer Hybrid
+//! Bounding Volume Hierarchy for Collision Detection*. The crate has no physics:
+//! `rapier-integration` is its plugin for Rapier.
 //!
 //! ```
 //! use glamx::{Pose3, Vec3};
@@ -31,16 +31,17 @@
 //! | [`tree`] | build and layout of a tree, and a walk over its nodes |
 //! | [`traverse`] | descent of two trees, placements, slack |
 //! | [`leaf`] | SIMD test of the triangles of two leaves |
-//! | [`contact`] | exact contact of two triangles, or of a triangle and a convex shape |
+//! | [`mod@contact`] | exact contact of two triangles, or of a triangle and a convex shape |
 //! | [`query`] | contacts, distance, overlap, casts of two meshes |
 //! | [`surface`] | adjacency of a mesh; solid or sheet |
 //! | [`field`] | triangles of a height field near a mesh |
 //! | [`front`], [`broad_phase`] | the paper's, to reproduce it |
+//! | [`collections`] | compact list of indices, union-find |
 //! | [`draw`] | lines for a debug renderer |
 //! | `truth` (feature `truth`) | brute force in f64, for tests |
 //!
-//! Each module uses only those above it, except that [`query`] also uses [`contact`], and
-//! [`contact`] and [`broad_phase`] stand alone.
+//! Each module uses only those above it, except that [`query`] also uses [`mod@contact`], and
+//! [`mod@contact`] and [`broad_phase`] stand alone.
 
 pub mod broad_phase;
 pub mod collections;

@@ -140,8 +140,8 @@ impl BroadPhase {
     /// Returns the pairs of objects with these bounds, as indices into `bounds`, the lower first.
     ///
     /// Call it once a step with the same objects in the same order: it only tests what moved. The
-    /// order of the pairs depends on earlier steps. Steps of equally many objects and pairs allocate
-    /// nothing.
+    /// order of the pairs depends on earlier steps. Steps of equally many objects and pairs
+    /// allocate nothing.
     pub fn pairs(&mut self, bounds: &[Bounds]) -> &[[u32; 2]] {
         let is_new = bounds.len() != self.reaches.len();
         let reaches = bounds.iter().map(|bounds| Reach::new(bounds, self.margin));

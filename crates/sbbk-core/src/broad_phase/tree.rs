@@ -189,7 +189,8 @@ impl BlockTree {
 
 /// Sorts objects into halves of halves along the axis on which the centres spread most.
 ///
-/// Every cut falls between whole subtrees, so that all nodes except the last on each level are full.
+/// Every cut falls between whole subtrees, so that all nodes except the last on each level are
+/// full.
 fn sort(objects: &mut [u32], reaches: &[Reach]) {
     let group_count = objects.len().div_ceil(LANE_COUNT);
     if group_count <= 1 {

@@ -112,8 +112,8 @@ impl Front {
         self.test(0, pair);
     }
 
-    /// Tests the front below a cell, then the lanes of the cell that belong to it. Lanes right above
-    /// the front are tested along with these: SIMD does it at no cost.
+    /// Tests the front below a cell, then the lanes of the cell that belong to it. Lanes right
+    /// above the front are tested along with these: SIMD does it at no cost.
     fn test(&mut self, cell: u32, pair: &mut impl PairTest) {
         let Cell { opening, met: before, below } = self.cells[cell as usize];
         let above = before & !opening.leaves;

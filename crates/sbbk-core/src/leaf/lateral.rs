@@ -11,8 +11,8 @@
 //!
 //! # Rounding
 //!
-//! Lengths are allowed `6·r` from [`separation`](super::separation). `m` may be any direction in the
-//! plane. `n` is off by `4·r` times the longest edge over twice the area, or over the height.
+//! Lengths are allowed `6·r` from [`separation`](super::separation). `m` may be any direction in
+//! the plane. `n` is off by `4·r` times the longest edge over twice the area, or over the height.
 //! Triangles lower than [`LEAST_HEIGHT`] times `r` are therefore kept. The product of edges loses
 //! less than that, as `r` exceeds a millionth of its length. So `n` is off by less than 0.011 rad,
 //! which [`SLOPE`] and [`UPRIGHT`] allow for.
@@ -22,8 +22,8 @@
 //! Seen from the other triangle, a point in the ball whose motion [`Slack`](crate::traverse::Slack)
 //! bounds has moved by at most `travel`. A point of the other body, no farther from the ball than a
 //! tenth of its radius, has moved by at most 1.2 times that. The reason: a rigid motion at `1.1·x`
-//! is 1.1 times the motion at `x`, less a tenth of the motion at the centre. [`TRAVEL`] allows for a
-//! quarter.
+//! is 1.1 times the motion at `x`, less a tenth of the motion at the centre. [`TRAVEL`] allows for
+//! a quarter.
 
 use wide::f32x4;
 
@@ -91,8 +91,8 @@ pub(super) fn is_lateral(
     (weak1 & strong2) | (strong1 & weak2)
 }
 
-/// The lanes where the nearest point is not in the face of `own`, and the lanes where it also is far
-/// and the direction to it leans.
+/// The lanes where the nearest point is not in the face of `own`, and the lanes where it also is
+/// far and the direction to it leans.
 #[inline(always)]
 fn one_side(
     culling: &LateralCulling,

@@ -2,7 +2,7 @@
 //!
 //! The test looks for a separating axis in SIMD lanes: one triangle of leaf 1 against the batch of
 //! leaf 2. It is conservative and nearly exact. Pairs that pass go to the exact
-//! [`contact`](crate::contact) in f64. A [`LeafBatch`] comes from a tree or any other hierarchy.
+//! [`contact`](mod@crate::contact) in f64. A [`LeafBatch`] comes from a tree or any other hierarchy.
 
 mod lateral;
 mod placed;
@@ -64,8 +64,8 @@ impl LeafTest {
         self.not_apart(batch1, batch2, test, found);
     }
 
-    /// Like [`survivors`](Self::survivors), with one more axis for triangles that may be far apart for
-    /// their size.
+    /// Like [`survivors`](Self::survivors), with one more axis for triangles that may be far apart
+    /// for their size.
     #[inline]
     pub(crate) fn far_survivors(
         &self,

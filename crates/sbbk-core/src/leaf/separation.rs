@@ -44,8 +44,8 @@
 //! Gaps shrink by `γ_200`, of `X1 + X2 + m` instead of `S`: if that is less, the boxes are apart.
 //! Edges nearly along each other give a short axis, and separate nothing.
 //!
-//! Squares of gaps are above [`UNDERFLOW`], and gaps below `6·X1·X2·S`. Underflow costs a thousandth
-//! of the rest while `S` is below `2⁵⁰`. Larger coordinates skip the products.
+//! Squares of gaps are above [`UNDERFLOW`], and gaps below `6·X1·X2·S`. Underflow costs a
+//! thousandth of the rest while `S` is below `2⁵⁰`. Larger coordinates skip the products.
 
 use wide::f32x4;
 

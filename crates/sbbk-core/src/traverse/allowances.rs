@@ -228,7 +228,8 @@ fn nodes_the_margin_apart_meet() {
     assert!(by_boxes > 1000 && by_slabs > 1000, "{by_boxes} and {by_slabs}");
 }
 
-/// Would catch a wrong sign, slab, lane or frame, a rounding without allowance, and a useless bound.
+/// Would catch a wrong sign, slab, lane or frame, a rounding without allowance, and a useless
+/// bound.
 #[test]
 fn bounds_are_below_those_of_corners_and_not_far_below() {
     let random = &mut Random(5);

@@ -86,8 +86,8 @@ pub struct NearBox<'a> {
 }
 
 impl NearBox<'_> {
-    /// A lower bound of the gap beyond the margin along the axes of frame 1, in units of frame 1; zero
-    /// if these do not separate the boxes.
+    /// A lower bound of the gap beyond the margin along the axes of frame 1, in units of frame 1;
+    /// zero if these do not separate the boxes.
     pub fn gap(&self, one: TestedBox) -> f32 {
         let offset = self.centre - lanes(one.centre);
         let gaps = offset.abs() - (lanes(one.extent) + self.reach);
@@ -96,8 +96,8 @@ impl NearBox<'_> {
         Vec3::new(x, y, z).length() * (1.0 - gamma(8))
     }
 
-    /// Returns true if no face axis of the two boxes separates them by more than the margin. False if
-    /// a number is NaN.
+    /// Returns true if no face axis of the two boxes separates them by more than the margin. False
+    /// if a number is NaN.
     #[inline(always)]
     pub fn meets(&self, one: TestedBox) -> bool {
         let offset = self.centre - lanes(one.centre);

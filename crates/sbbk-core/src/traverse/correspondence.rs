@@ -69,8 +69,8 @@ impl Correspondence {
     /// Bit k: bit k of `candidates`, and lane k's k-DOPs come within the margin along the slabs of
     /// tree 1.
     ///
-    /// The slabs of tree 2 cost more than they save. The slabs along x, y and z repeat the test of the
-    /// boxes.
+    /// The slabs of tree 2 cost more than they save. The slabs along x, y and z repeat the test of
+    /// the boxes.
     #[inline(always)]
     pub(super) fn kdops_meet(
         &self,
@@ -88,8 +88,8 @@ impl Correspondence {
         remaining
     }
 
-    /// A lower bound of the largest gap between k-DOPs along the slabs of tree 1 from `first` on, up to
-    /// the `γ_8` of `gaps.rs`. Negative if they overlap on all.
+    /// A lower bound of the largest gap between k-DOPs along the slabs of tree 1 from `first` on,
+    /// up to the `γ_8` of `gaps.rs`. Negative if they overlap on all.
     #[inline(always)]
     pub(super) fn gaps(
         &self,

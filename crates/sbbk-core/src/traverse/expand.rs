@@ -23,7 +23,8 @@ impl Sides {
         }
     }
 
-    /// The inner node that holds the volumes of each side: the node itself, or its parent if it stays.
+    /// The inner node that holds the volumes of each side: the node itself, or its parent if it
+    /// stays.
     #[inline(always)]
     pub(crate) fn nodes(self, (slot1, slot2): (Slot, Slot), links: (Link, Link)) -> (u32, u32) {
         match self {

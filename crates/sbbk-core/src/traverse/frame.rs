@@ -11,8 +11,8 @@ use crate::volumes::rounding::gamma;
 /// The relative pose of a pair of trees and the margin, computed once a query in f64, and spread
 /// over lanes.
 ///
-/// Tests are conservative by the bounds of [`rounding`](crate::volumes::rounding). At a pose that is
-/// not finite no test passes. Any finite margin is valid.
+/// Tests are conservative by the bounds of [`rounding`](crate::volumes::rounding). At a pose that
+/// is not finite no test passes. Any finite margin is valid.
 #[derive(Clone, Debug)]
 pub struct PairFrame {
     pub(crate) placement: Placement,
@@ -105,8 +105,8 @@ impl PairFrame {
         Self::at((tree1, tree2), Placement::new(pos12), margin)
     }
 
-    /// The frame of two trees, tree 2 at `placement` in the frame of tree 1. Descents find triangles
-    /// within `margin` of each other.
+    /// The frame of two trees, tree 2 at `placement` in the frame of tree 1. Descents find
+    /// triangles within `margin` of each other.
     pub fn at((tree1, tree2): (&Tree, &Tree), placement: Placement, margin: f32) -> Self {
         Self::within([tree1.magnitude(), tree2.magnitude()], placement, margin)
     }

@@ -1,8 +1,8 @@
 //! Lower bounds of the signed distance of up to four pairs of nodes.
 //!
 //! Two boxes with gaps `gᵢ` along the face axes of one of them are at least `√Σ gᵢ²` apart. k-DOPs
-//! with a gap `g` along a slab direction `d` are at least `g/|d|` apart. The largest of these bounds
-//! holds.
+//! with a gap `g` along a slab direction `d` are at least `g/|d|` apart. The largest of these
+//! bounds holds.
 //!
 //! If no axis separates the volumes, the largest (negative) gap bounds the depth of triangles below
 //! them. The least translation that parts two triangles is no longer than their overlap along any
@@ -51,8 +51,8 @@ impl Cutoff {
         bounds.simd_gt(f32x4::splat(self.limit)).to_bitmask() & lanes == lanes
     }
 
-    /// The lanes of `lanes` that are within the limit, and the bounds. A bound that overflowed to NaN
-    /// is kept, as it excludes nothing.
+    /// The lanes of `lanes` that are within the limit, and the bounds. A bound that overflowed to
+    /// NaN is kept, as it excludes nothing.
     #[inline(always)]
     pub(crate) fn keep(&mut self, bounds: f32x4, lanes: u32) -> (u32, [f32; 4]) {
         self.counts.node_pairs += u64::from(lanes.count_ones());

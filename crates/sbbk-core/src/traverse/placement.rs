@@ -79,10 +79,10 @@ impl Placement {
     /// With `c` the ball's centre and `r` its radius, a point `x` in it moved by `(R' - R)(x - c) +
     /// (R' c + t') - (R c + t)`. This is at most `‖R' - R‖·r` plus the motion of the centre.
     ///
-    /// The spectral norm is at most the Frobenius norm over √2. With `R = s·Q`, `R' = s'·Q'` and `θ`
-    /// the angle from `Q` to `Q'`, `R' - R` has the singular values `|s'·exp(iθ) - s|` twice and
-    /// `|s' - s|`, which is not larger. So the sum of squares is at least twice the largest. The last
-    /// term covers f64 rounding, a few 1e-16 of the terms.
+    /// The spectral norm is at most the Frobenius norm over √2. With `R = s·Q`, `R' = s'·Q'` and
+    /// `θ` the angle from `Q` to `Q'`, `R' - R` has the singular values `|s'·exp(iθ) - s|` twice
+    /// and `|s' - s|`, which is not larger. So the sum of squares is at least twice the largest.
+    /// The last term covers f64 rounding, a few 1e-16 of the terms.
     pub fn motion_bound(&self, earlier: &Self, centre: Vec3, radius: f32) -> f64 {
         let (centre, radius) = (centre.as_dvec3(), f64::from(radius));
         let turn = self.rotation - earlier.rotation;

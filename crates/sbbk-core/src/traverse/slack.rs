@@ -1,8 +1,8 @@
 //! Descents with a larger margin, so that their candidates serve for several queries.
 //!
 //! Bodies move little from query to query. A descent whose margin exceeds the prediction distance
-//! `p` by a *slack* `s` finds all pairs that are at most `p + s` apart. While no point of tree 2 has
-//! moved by more than `s`, all other pairs are still farther than `p` apart. The candidates are
+//! `p` by a *slack* `s` finds all pairs that are at most `p + s` apart. While no point of tree 2
+//! has moved by more than `s`, all other pairs are still farther than `p` apart. The candidates are
 //! complete, and neither tree need be read (Verlet, *Computer "Experiments" on Classical Fluids*,
 //! 1967, does this for particles). [`Placement::motion_bound`] of a ball around the points bounds
 //! their motion.
@@ -23,11 +23,11 @@ const LEAST_STEPS: f64 = 3.0;
 /// Limits of the slack.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct SlackLimits {
-    /// Slack in steps of the present motion. Higher: fewer descents, and more candidates that do not
-    /// touch; lower: more descents.
-    pub steps: f64,
-    /// Greatest slack as a share of the prediction distance. Higher: exact tests of candidates that do
+    /// Slack in steps of the present motion. Higher: fewer descents, and more candidates that do
     /// not touch; lower: more descents.
+    pub steps: f64,
+    /// Greatest slack as a share of the prediction distance. Higher: exact tests of candidates that
+    /// do not touch; lower: more descents.
     pub greatest: f64,
 }
 
@@ -67,8 +67,8 @@ pub enum SlackPlan {
 }
 
 impl Slack {
-    /// Plans a query and stores its placement, in constant time. The moving body is inside `ball` of
-    /// its own frame, which is at `placement`.
+    /// Plans a query and stores its placement, in constant time. The moving body is inside `ball`
+    /// of its own frame, which is at `placement`.
     ///
     /// If the placement or the prediction distance is not finite, plans a descent without slack.
     pub fn plan(
@@ -96,15 +96,15 @@ impl Slack {
         SlackPlan::Descend { margin, travel: std::mem::take(&mut self.travel) }
     }
 
-    /// Length of the path of points since the last descent, an upper bound: distances have shrunk by
-    /// at most this much between any two queries since.
+    /// Length of the path of points since the last descent, an upper bound: distances have shrunk
+    /// by at most this much between any two queries since.
     pub fn travel(&self) -> f64 {
         self.travel
     }
 }
 
-/// The slack of a descent for a pair that moved by `step` since the last query. Zero for motion that
-/// is not finite.
+/// The slack of a descent for a pair that moved by `step` since the last query. Zero for motion
+/// that is not finite.
 fn slack(step: f64, prediction: f64, limits: SlackLimits) -> f64 {
     let greatest = limits.greatest * prediction;
     if LEAST_STEPS * step <= greatest {

@@ -1,5 +1,5 @@
-//! Lower bounds of the distance of nodes or triangles along one direction: the normal of the nearest
-//! triangles so far.
+//! Lower bounds of the distance of nodes or triangles along one direction: the normal of the
+//! nearest triangles so far.
 //!
 //! Two meshes far apart have many pairs of nodes nearly as close as the closest. A bound along a
 //! slab is short by the cosine of its angle to the vector between them, and this normal is parallel

@@ -67,8 +67,8 @@ pub(super) struct BinMapping {
 }
 
 impl BinMapping {
-    /// A mapping of `count` triangles along the longest axis of their centroids. `None` if these are
-    /// equal there.
+    /// A mapping of `count` triangles along the longest axis of their centroids. `None` if these
+    /// are equal there.
     pub(super) fn new(centroids: &Bounds, count: usize) -> Option<Self> {
         let size = centroids.max - centroids.min;
         let axis = centroids.longest_axis();

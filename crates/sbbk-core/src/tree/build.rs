@@ -7,8 +7,8 @@
 //! halved by number. Two leaves' worth of triangles are halved at the median.
 //!
 //! A split by cost may part one triangle from all others, thousands of times if sizes shrink from
-//! triangle to triangle. So below [`DEEPEST_BY_COST`] triangles are halved at the median. No tree of
-//! `n` triangles is deeper than that plus `log2 n`.
+//! triangle to triangle. So below [`DEEPEST_BY_COST`] triangles are halved at the median. No tree
+//! of `n` triangles is deeper than that plus `log2 n`.
 
 use glamx::Vec3;
 
@@ -17,8 +17,8 @@ use super::bins::{BinMapping, Bins, Bounds};
 use super::node::BATCH;
 use crate::volumes::Aabb;
 
-/// Depth of the last nodes that are split by cost. Higher: deeper trees; lower: worse trees of meshes
-/// with a few very deep parts. Ordinary trees have 20 to 30 levels.
+/// Depth of the last nodes that are split by cost. Higher: deeper trees; lower: worse trees of
+/// meshes with a few very deep parts. Ordinary trees have 20 to 30 levels.
 const DEEPEST_BY_COST: u32 = 64;
 
 /// Options of a build.
@@ -26,8 +26,8 @@ const DEEPEST_BY_COST: u32 = 64;
 pub struct BuildOptions {
     /// The volumes of each layer. `None`: chosen for the mesh by the model of [`LayerPlan`].
     pub layers: Option<LayerPlan>,
-    /// Greatest number of triangles in a leaf, clamped to 1 to [`BATCH`]. Higher: smaller trees; lower:
-    /// fewer triangle tests.
+    /// Greatest number of triangles in a leaf, clamped to 1 to [`BATCH`]. Higher: smaller trees;
+    /// lower: fewer triangle tests.
     pub leaf_size: usize,
 }
 

@@ -7,23 +7,23 @@ use crate::volumes::{Kdop, SLABS, directions};
 /// Least [`BuildStats::kdop_cut`](super::BuildStats::kdop_cut) of a tree with k-DOPs. Higher: boxes
 /// for more meshes; lower: k-DOPs for more meshes.
 const LEAST_CUT: f32 = 0.07;
-/// Least share of the boxes that a layer above depth 4 cuts off to have k-DOPs. Higher: fewer layers
-/// with k-DOPs; lower: more.
+/// Least share of the boxes that a layer above depth 4 cuts off to have k-DOPs. Higher: fewer
+/// layers with k-DOPs; lower: more.
 const LEAST_CUT_OF_LAYER: f32 = 0.05;
 
 /// The kind of volume of each layer of a tree.
 ///
-/// The paper's plan is a sphere at the root, AABBs in the upper layers and k-DOPs in the lower ones.
-/// Upper layers are tested often, and k-DOPs prune little more there than boxes. In lower layers a
-/// tighter volume saves whole subtrees and triangle tests. k-DOPs save nothing on flat surfaces
-/// along the axes.
+/// The paper's plan is a sphere at the root, AABBs in the upper layers and k-DOPs in the lower
+/// ones. Upper layers are tested often, and k-DOPs prune little more there than boxes. In lower
+/// layers a tighter volume saves whole subtrees and triangle tests. k-DOPs save nothing on flat
+/// surfaces along the axes.
 ///
 /// # The choice
 ///
-/// A build without a plan chooses one for the mesh by a cost model, the paper's future work (section
-/// 5). By the surface area heuristic, the number of queries that reach a node is proportional to the
-/// area of its box. The k-DOP rejects as many of them as it is narrower than the box along its
-/// diagonal slabs.
+/// A build without a plan chooses one for the mesh by a cost model, the paper's future work
+/// (section 5). By the surface area heuristic, the number of queries that reach a node is
+/// proportional to the area of its box. The k-DOP rejects as many of them as it is narrower than
+/// the box along its diagonal slabs.
 ///
 /// k-DOPs begin at depth 4, or higher if each layer between cuts off 0.05 of all boxes. The sum of
 /// their cuts is [`BuildStats::kdop_cut`](super::BuildStats::kdop_cut): 0.02 for a cuboid along the
@@ -33,8 +33,8 @@ const LEAST_CUT_OF_LAYER: f32 = 0.05;
 pub struct LayerPlan {
     /// True for a sphere at the root: one distance test a pair of bodies.
     pub sphere_root: bool,
-    /// The depth of the first k-DOP layer; the root is at depth 0. `None`: boxes in all layers. Lower:
-    /// more nodes are tested by k-DOPs, at about twice the cost.
+    /// The depth of the first k-DOP layer; the root is at depth 0. `None`: boxes in all layers.
+    /// Lower: more nodes are tested by k-DOPs, at about twice the cost.
     pub kdop_from_depth: Option<u32>,
 }
 
@@ -60,7 +60,8 @@ impl LayerPlan {
         self.kdop_from_depth.is_some_and(|from| depth >= from)
     }
 
-    /// Chooses a plan for a tree with these `kdops` of the [`Self::CANDIDATE`]. Also returns their cut.
+    /// Chooses a plan for a tree with these `kdops` of the [`Self::CANDIDATE`]. Also returns their
+    /// cut.
     pub(super) fn choose(nodes: &[BuildNode], kdops: &[Kdop]) -> (Self, f32) {
         let diagonals = &directions::DIRECTIONS[3..];
         let per_edge: Vec3 = diagonals.iter().map(|direction| direction.abs()).sum();

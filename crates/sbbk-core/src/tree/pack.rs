@@ -1,7 +1,7 @@
 //! Packs the tree of the build into the arrays of the descent.
 //!
-//! Upper nodes are numbered breadth first, so that those visited by every descent share cache lines.
-//! The k-DOP layers follow in the order of the build (depth first, siblings adjacent).
+//! Upper nodes are numbered breadth first, so that those visited by every descent share cache
+//! lines. The k-DOP layers follow in the order of the build (depth first, siblings adjacent).
 
 use glamx::Vec3;
 

@@ -5,8 +5,8 @@ use super::rounding::gamma;
 
 /// A discrete oriented polytope of nine slabs: an 18-DOP.
 ///
-/// The first three slabs are those of the [`Aabb`](super::Aabb). Klosowski et al., *Efficient Collision
-/// Detection Using Bounding Volume Hierarchies of k-DOPs*, 1998.
+/// The first three slabs are those of the [`Aabb`](super::Aabb). Klosowski et al., *Efficient
+/// Collision Detection Using Bounding Volume Hierarchies of k-DOPs*, 1998.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Kdop {
     /// The smallest projection on each of the [`DIRECTIONS`](super::directions::DIRECTIONS).

@@ -1,17 +1,17 @@
 //! Bounds on the rounding of f32, by which every culling test is widened.
 //!
-//! The notation is from Higham, *Accuracy and Stability of Numerical Algorithms*, chapter 3. The unit
-//! roundoff is `u = 2⁻²⁴`: one operation returns the exact result times `1 + δ`, `|δ| <= u`. After
-//! `n` operations in a row the relative error of each term of a sum is at most
-//! `γ_n = n·u / (1 - n·u)`, [`gamma`].
+//! The notation is from Higham, *Accuracy and Stability of Numerical Algorithms*, chapter 3. The
+//! unit roundoff is `u = 2⁻²⁴`: one operation returns the exact result times `1 + δ`, `|δ| <= u`.
+//! After `n` operations in a row the relative error of each term of a sum is at most `γ_n = n·u /
+//! (1 - n·u)`, [`gamma`].
 //!
 //! # Allowances
 //!
-//! `M` is the largest absolute coordinate of a tree, and `T` that of a translation. `s` is the scale
-//! of a rotation, 1 up to the rounding of its quaternion, and `m` a margin. `W = M1 + T + 2·s·M2`
-//! bounds all coordinates of two meshes in the frame of the first, as the row sums of `|R|` are at
-//! most `√3·s < 2·s`. `r = γ_16·W`. Directions of slabs have components in {-1, 0, 1}. Tests fail
-//! without most of these allowances.
+//! `M` is the largest absolute coordinate of a tree, and `T` that of a translation. `s` is the
+//! scale of a rotation, 1 up to the rounding of its quaternion, and `m` a margin. `W = M1 + T +
+//! 2·s·M2` bounds all coordinates of two meshes in the frame of the first, as the row sums of `|R|`
+//! are at most `√3·s < 2·s`. `r = γ_16·W`. Directions of slabs have components in {-1, 0, 1}. Tests
+//! fail without most of these allowances.
 //!
 //! | place | rounded | bound | allowance |
 //! |---|---|---|---|

@@ -80,8 +80,8 @@ impl Pair {
         Self::of(random, [face, two], far)
     }
 
-    /// Edges across each other, nearly along each other if `across` is small, `n` at a right angle to
-    /// both.
+    /// Edges across each other, nearly along each other if `across` is small, `n` at a right angle
+    /// to both.
     fn edges(random: &mut Random, n: DVec3, gap: f64, far: f32, across: f64) -> Self {
         let u = n.any_orthonormal_vector();
         let v = n.cross(u);

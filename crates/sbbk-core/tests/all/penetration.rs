@@ -46,8 +46,8 @@ fn overlap(t1: &Triangle, t2: &Triangle, axis: DVec3) -> f64 {
     shadow(t1, axis)[1] - shadow(t2, axis)[0]
 }
 
-/// Both normals and the products of two edges, in both directions, with the sine of the angle of the
-/// edges.
+/// Both normals and the products of two edges, in both directions, with the sine of the angle of
+/// the edges.
 fn all_axes(t1: &Triangle, t2: &Triangle) -> Vec<(DVec3, f64)> {
     let edges = |t: &Triangle| [t[1] - t[0], t[2] - t[1], t[0] - t[2]];
     let crosses = edges(t1).into_iter().flat_map(|e1| {

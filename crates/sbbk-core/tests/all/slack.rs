@@ -36,8 +36,8 @@ fn nudge(random: &mut Random, size: f32, pose: &Pose3) -> Pose3 {
     Pose3::from_parts(pose.translation + random.vector(size), rotation)
 }
 
-/// Walks with jumps and changes of stride and prediction distance, against brute force at each step.
-/// Would catch candidates used for too long, a travel that is too small, and a wrong margin.
+/// Walks with jumps and changes of stride and prediction distance, against brute force at each
+/// step. Would catch candidates used for too long, a travel that is too small, and a wrong margin.
 #[test]
 fn candidates_are_complete_while_they_are_reused() {
     let mut random = Random(61);

@@ -148,8 +148,8 @@ fn trees_are_never_deep() {
     assert!(deepest > 64, "no chain needs the bound: {deepest}");
 }
 
-/// The vertices are the corners of the root's box, with no room to spare. Would catch a rounding of length or centre that is not given back, near the origin and
-/// far from it.
+/// The vertices are the corners of the root's box, with no room to spare. Would catch a rounding of
+/// length or centre that is not given back, near the origin and far from it.
 #[test]
 fn the_ball_around_a_box_holds_its_corners() {
     let mut random = Random(23);

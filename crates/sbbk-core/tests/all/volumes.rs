@@ -60,8 +60,8 @@ proptest! {
         check_volume!(Kdop, &a, &b);
     }
 
-    /// Would catch coefficients whose sum is another direction, a bound below a point, and a loose one:
-    /// a direction of the set gets coefficient 1.
+    /// Would catch coefficients whose sum is another direction, a bound below a point, and a loose
+    /// one: a direction of the set gets coefficient 1.
     #[test]
     fn correspondence_is_conservative(seed in any::<u64>(), cloud in points()) {
         check_correspondence(seed, &cloud)?;
