@@ -5,6 +5,8 @@
 mod balls;
 /// Linear casts, against brute force.
 mod casts;
+/// Shapes that slide, roll and fly under continuous collision detection.
+mod ccd;
 /// Shapes that change between queries, and pairs taken over from stock.
 mod change;
 /// First queries: those of Parry's routine bit for bit, SBBK's own against brute force.

@@ -1,44 +1,43 @@
-//! A mesh and a convex shape on their ways.
+//! A mesh and a convex shape in motion: the soonest impact of a triangle.
 //!
-//! Along a floor the distance over the greatest speed is a short time, however often it is taken. But
-//! a triangle and the shape are convex: as long as the plane between them, which does not turn, is
-//! crossed by neither, they do not meet, and along its normal they hardly approach. So each triangle
-//! that may be met within some time is advanced by itself, and the bodies by as much as the soonest:
-//! at once to the impact, if there is one, else by a time that is doubled.
+//! A plane that no point of the triangle or of the shape crosses separates them. So a triangle is
+//! first advanced along one plane after another, and only near an impact by its distance.
 
-use parry3d::math::{Real, Vector};
+use std::cell::Cell;
+
+use glamx::{DVec3, Vec3};
+use parry3d::bounding_volume::Aabb;
+use parry3d::math::Real;
 use sbbk_core::query::{Advance, AdvanceOptions, Bodies, PartPair, advance};
 use sbbk_core::traverse::Placement;
-use sbbk_core::volumes::Sphere;
 
-use super::nonlinear::NonlinearCast;
+use super::nonlinear::{NonlinearCast, place, turned};
 use super::touch::Touch;
 use crate::pair::{ConvexSearch, FoundTriangle, MeshPlace, PlacedPart};
 
-/// Steps by the distance alone, before triangles are advanced by themselves. Most casts need no more and
-/// take a third of the time; with 8 or 24 casts take up to 1.4 times as long as with 16.
-const PLAIN_STEPS: usize = 16;
-
-/// How far ahead triangles are advanced by themselves at first, as a multiple of the time in which the
-/// nearest may be met. A matter of time alone.
+/// Duration of the first window, as a multiple of the time in which the nearest triangle may be met.
+/// Higher: more triangles that are not met are advanced; lower: more windows.
 const AHEAD: f64 = 4.0;
 
-/// Steps of a triangle by itself; then others may be sooner.
-const STEP_LIMIT: usize = 20;
+/// Steps along one plane. Higher: fewer contacts are computed; lower: planes that have turned away
+/// are left sooner.
+const PLANE_STEPS: usize = 24;
 
-/// A mesh and a convex shape.
+/// Distance at the start up to which a shape is in contact, and depth that it may gain in contact,
+/// as a share of its thickness. Higher: shapes that slide into a wall sink deeper before they are
+/// stopped; lower: shapes that roll are stopped at edges that they do not meet.
+const SINK: f64 = 0.1;
+
+/// A mesh and a convex shape in motion.
 pub(super) struct MovingConvex<'a, 'q> {
     search: ConvexSearch<'a>,
     mesh_place: MeshPlace,
     cast: &'q NonlinearCast<'q>,
     options: AdvanceOptions,
-    /// Triangles that the shape touches at the start, if that is asked.
-    touching: Vec<u32>,
-    /// Steps taken.
-    steps: usize,
-    /// For how long triangles were advanced by themselves in the last step. At least doubled each
-    /// step.
-    ahead: f64,
+    /// Depth that the shape must gain to come out behind a triangle, as in Parry.
+    thickness: f64,
+    /// Depth of the contact at the start, if there is one and the cast does not stop there.
+    sunk: Option<f64>,
 }
 
 impl<'a, 'q> MovingConvex<'a, 'q> {
@@ -49,42 +48,166 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
     ) -> Self {
         search.search_depths();
         let options = cast.options(mesh_place.swap(search.balls()));
-        Self { search, mesh_place, cast, options, touching: Vec::new(), steps: 0, ahead: 0.0 }
+        let thickness = f64::from(search.thickness());
+        Self { search, mesh_place, cast, options, thickness, sunk: None }
     }
 
-    /// The first impact. What is left out as it touches at the start and does not approach is looked
-    /// at again: a shape that turns may come down with another end.
+    /// Returns the first impact. A cast that does not stop at contacts of the start only counts
+    /// triangles that the shape may come out behind.
     pub(super) fn first_impact(&mut self) -> Option<Advance<FoundTouch>> {
-        let (cast, options, thickness) = (self.cast, self.options, self.search.thickness());
-        let found = cast.first_impact(self, options, thickness, |found, _| found.touch);
-        if found.is_some_and(|found| found.time == options.start) {
-            return found;
-        }
-        self.touching.iter().fold(found, |found, &triangle| {
-            let end = found.map_or(options.end, |found| found.time);
-            let again = self.meets_again(triangle, thickness, end);
-            again.filter(|again| again.time < end || found.is_none()).or(found)
-        })
-    }
-
-    /// When, until some time, the shape meets a triangle that it touches at the start: from one of some
-    /// times on, as Parry has it, after which it would come out behind it.
-    fn meets_again(&self, triangle: u32, thickness: Real, end: f64) -> Option<Advance<FoundTouch>> {
-        let Self { cast, options, .. } = self;
-        let mut one = MovingTriangle::new(self, triangle);
-        cast.looks(thickness).take_while(|&time| time <= end).find_map(|time| {
-            let placement = cast.placement_at(time);
-            let pair = one.nearest(&placement, f64::INFINITY, &[])?;
-            if !cast.approaches(&pair.touch, time, f64::from(thickness) + pair.distance.max(0.0)) {
+        let AdvanceOptions { start, end, tolerance, .. } = self.options;
+        let (mut from, mut window) = (start, 0.0);
+        loop {
+            self.search.place(self.mesh_place, &self.cast.placement_at(from));
+            if from == start && !self.cast.stop_at_penetration {
+                let contact = self.search.deepest(tolerance.max(SINK * self.thickness));
+                self.sunk = contact.map(|contact| -contact.contact.distance);
+            }
+            window = self.window(from, window)?;
+            let until = (from + window).min(end);
+            if let Some(found) = self.soonest(from, until) {
+                let is_at_start = found.time == start;
+                return if is_at_start { self.deepest_at_start() } else { None }.or(Some(found));
+            }
+            if until >= end {
                 return None;
             }
-            let options = AdvanceOptions { start: time, end, ..*options };
-            advance(&mut one, |time| cast.placement_at(time), options)
-        })
+            from = until;
+        }
     }
 
-    fn place(&mut self, placement: &Placement) {
-        self.search.place(self.mesh_place, placement);
+    /// Duration for which triangles are advanced from their boxes at one time. A mesh that does not
+    /// turn takes one window.
+    fn window(&self, from: f64, previous: f64) -> Option<f64> {
+        let AdvanceOptions { end, speed_bound, tolerance, .. } = self.options;
+        if self.sweep().is_some() {
+            return Some(f64::INFINITY);
+        }
+        let reach = (speed_bound * (end - from)).max(0.0) + tolerance;
+        let distance = self.search.nearest(reach)?.contact.distance.max(1.0e3 * tolerance);
+        Some((AHEAD * distance / speed_bound).max(2.0 * previous))
+    }
+
+    /// A box of the mesh's frame that holds the shape at the start, however it turns, and its velocity.
+    /// `None` if the mesh turns, or a half-space.
+    fn sweep(&self) -> Option<(Aabb, DVec3)> {
+        let Self { search, mesh_place, cast, .. } = self;
+        let [mesh, shape] = mesh_place.swap(cast.motions);
+        let [_, ball] = search.balls();
+        let turns = shape.angvel != Vec3::ZERO;
+        if mesh.angvel != Vec3::ZERO || turns && !ball.radius.is_finite() {
+            return None;
+        }
+        let to_mesh = place(mesh, self.options.start).inverse;
+        let velocity = to_mesh * (shape.linvel.as_dvec3() - mesh.linvel.as_dvec3());
+        if !turns {
+            return Some((search.aabb_in_mesh(), velocity));
+        }
+        let [_, shape_body] = mesh_place.swap([0, 1]);
+        let centre = search.placed.point_in_mesh(shape.local_center);
+        let reach = (cast.reach(shape_body, &ball) * (1.0 + 1.0e-6)) as Real;
+        Some((Aabb::from_half_extents(centre, Vec3::splat(reach)), velocity))
+    }
+
+    fn soonest(&self, from: f64, until: f64) -> Option<Advance<FoundTouch>> {
+        let first = Cell::new(None::<Advance<FoundTouch>>);
+        let time = |triangle, limit: f64| {
+            let found = self.triangle_impact(triangle, from, (from + limit).min(until))?;
+            if first.get().is_none_or(|first| found.time < first.time) {
+                first.set(Some(found));
+            }
+            Some(found.time - from)
+        };
+        match self.sweep() {
+            Some((around, velocity)) => {
+                self.search.soonest_swept(around, velocity, until - from, time)
+            }
+            None => self.search.soonest(until - from, self.options.speed_bound, time),
+        };
+        first.into_inner()
+    }
+
+    /// First impact of a triangle within a span of time.
+    fn triangle_impact(&self, triangle: u32, from: f64, until: f64) -> Option<Advance<FoundTouch>> {
+        let mut one = MovingTriangle::new(self, triangle);
+        let end = self.options.end;
+        let is_slid_over =
+            self.deepest().is_some_and(|deepest| one.clear_of_own_plane(deepest, from, end) > end);
+        if is_slid_over {
+            return None;
+        }
+        let start = from + one.clear_of_own_plane(0.0, from, until);
+        let options = AdvanceOptions { start, end: until, ..self.options };
+        let found = advance(&mut one, |time| self.cast.placement_at(time), options)?;
+        if self.counts(&mut one, &found, from) {
+            return Some(found);
+        }
+        self.meets_again(&mut one, found.time, until)
+    }
+
+    /// Returns whether an impact counts: not of a shape that is in contact at the start, does not
+    /// approach by its thickness until the end, and hardly sinks deeper.
+    fn counts(&self, one: &mut MovingTriangle<'_>, found: &Advance<FoundTouch>, from: f64) -> bool {
+        let Self { cast, options, thickness, .. } = self;
+        if cast.stop_at_penetration {
+            return true;
+        }
+        if found.time <= from {
+            return cast.approaches(&found.pair.touch, from, thickness + options.tolerance);
+        }
+        let Some(deepest) = self.deepest() else { return true };
+        cast.approaches(&found.pair.touch, found.time, *thickness)
+            || [1.0, 2.0, 3.0].into_iter().any(|third| {
+                let time = found.time + (options.end - found.time) * third / 3.0;
+                let pair = one.nearest(&cast.placement_at(time), 0.0, &[]);
+                pair.is_some_and(|pair| -pair.distance > deepest)
+            })
+    }
+
+    /// Depth up to which the shape may sink in, if it is in contact at the start.
+    fn deepest(&self) -> Option<f64> {
+        Some(self.sunk?.max(0.0) + SINK * self.thickness)
+    }
+
+    /// First impact after one that does not count: a shape that turns may come down with another
+    /// end. As in Parry, the shape is looked at now and then.
+    fn meets_again(
+        &self,
+        one: &mut MovingTriangle<'_>,
+        from: f64,
+        until: f64,
+    ) -> Option<Advance<FoundTouch>> {
+        let Self { cast, options, thickness, .. } = self;
+        let mut looks = cast.looks(*thickness as Real);
+        looks.by_ref().take_while(|&time| time <= until).filter(|&time| time > from).find_map(
+            |time| {
+                let placement_at = |time| cast.placement_at(time);
+                let pair = one.nearest(&placement_at(time), f64::INFINITY, &[])?;
+                if !cast.approaches(&pair.touch, time, thickness + pair.distance.max(0.0)) {
+                    return None;
+                }
+                let options = AdvanceOptions { start: time, end: until, ..*options };
+                let found = advance(one, placement_at, options)?;
+                (found.time == time || self.counts(one, &found, time)).then_some(found)
+            },
+        )
+    }
+
+    /// The deepest of the triangles that are impacts at the start.
+    fn deepest_at_start(&self) -> Option<Advance<FoundTouch>> {
+        let AdvanceOptions { start, tolerance, .. } = self.options;
+        let mut deepest = None::<FoundTouch>;
+        self.search.within(tolerance, |found| {
+            let pair = FoundTouch::new(&found, &self.search.placed, self.mesh_place);
+            let length = self.thickness + tolerance;
+            let counts =
+                self.cast.stop_at_penetration || self.cast.approaches(&pair.touch, start, length);
+            if counts && deepest.is_none_or(|deepest| pair.distance < deepest.distance) {
+                deepest = Some(pair);
+            }
+        });
+        let placement = self.cast.placement_at(start);
+        deepest.map(|pair| Advance { time: start, pair, placement, has_converged: true })
     }
 }
 
@@ -119,83 +242,115 @@ impl PartPair for FoundTouch {
     }
 }
 
-impl Bodies for MovingConvex<'_, '_> {
-    type Pair = FoundTouch;
-
-    fn nearest(
-        &mut self,
-        placement: &Placement,
-        reach: f64,
-        besides: &[[u32; 2]],
-    ) -> Option<FoundTouch> {
-        self.place(placement);
-        let Self { search, mesh_place, .. } = self;
-        let counts = |triangle| !has(besides, *mesh_place, triangle);
-        let found = search.nearest_where(reach, counts)?;
-        Some(FoundTouch::new(&found, &search.placed, *mesh_place))
-    }
-
-    fn within(&mut self, placement: &Placement, reach: f64, mut found: impl FnMut(FoundTouch)) {
-        self.place(placement);
-        let Self { search, mesh_place, touching, .. } = self;
-        search.within(reach, |triangle| {
-            touching.push(triangle.triangle);
-            found(FoundTouch::new(&triangle, &search.placed, *mesh_place));
-        });
-    }
-
-    fn clear_time(&mut self, nearest: &FoundTouch, time: f64, besides: &[[u32; 2]]) -> f64 {
-        self.steps += 1;
-        if self.steps <= PLAIN_STEPS {
-            return 0.0;
-        }
-        let AdvanceOptions { end, speed_bound, .. } = self.options;
-        self.ahead = (AHEAD * nearest.distance / speed_bound).max(2.0 * self.ahead);
-        let ahead = self.ahead.min(end - time);
-        let Self { search, mesh_place, cast, options, .. } = &*self;
-        let mesh_place = *mesh_place;
-        let soonest = search.soonest(ahead, speed_bound, |triangle, limit| {
-            if has(besides, mesh_place, triangle) {
-                return None;
-            }
-            let mut one = MovingTriangle::new(self, triangle);
-            let end = time + limit;
-            let options = AdvanceOptions { start: time, end, step_limit: STEP_LIMIT, ..*options };
-            let found = advance(&mut one, |time| cast.placement_at(time), options)?;
-            Some(found.time - time)
-        });
-        if soonest.is_none() && ahead < self.ahead {
-            return f64::INFINITY;
-        }
-        // Compared in f32: another triangle may be sooner by a rounding.
-        soonest.unwrap_or(ahead) * (1.0 - 1.0e-6)
-    }
-}
-
-/// Whether a triangle is among those named, in ascending order.
-fn has(names: &[[u32; 2]], mesh_place: MeshPlace, triangle: u32) -> bool {
-    names.binary_search(&mesh_place.swap([triangle, 0])).is_ok()
-}
-
 /// One triangle of the mesh and the shape.
 struct MovingTriangle<'a> {
     moving: &'a MovingConvex<'a, 'a>,
     triangle: u32,
-    placed: Option<PlacedPart>,
-    /// How far triangle and shape reach from the centres of their motions, in the order of the pair.
+    corners: [DVec3; 3],
+    /// How far the triangle and the shape reach from the centres of their motions.
     reaches: [f64; 2],
+    /// Bound on the acceleration of points against the other body, as they turn.
+    acceleration: f64,
 }
 
 impl<'a> MovingTriangle<'a> {
     fn new(moving: &'a MovingConvex<'a, 'a>, triangle: u32) -> Self {
         let MovingConvex { search, mesh_place, cast, .. } = moving;
-        let [mesh_body, shape_body] = mesh_place.swap([0, 1]);
-        let centre = cast.motions[mesh_body].local_center;
-        let arm = |corner: Vector| (corner - centre).as_dvec3().length();
-        let reach = search.mesh.corners(triangle).map(arm).into_iter().fold(0.0, f64::max);
+        let motions = mesh_place.swap(cast.motions);
+        let corners = search.mesh.corners(triangle).map(Vec3::as_dvec3);
+        let centre = motions[0].local_center.as_dvec3();
+        let reach = corners.map(|corner| corner.distance(centre)).into_iter().fold(0.0, f64::max);
+        let [_, shape_body] = mesh_place.swap([0, 1]);
         let [_, ball] = search.balls();
-        let reaches = mesh_place.swap([reach, cast.reach(shape_body, &ball)]);
-        Self { moving, triangle, placed: None, reaches }
+        let reaches = [reach, cast.reach(shape_body, &ball)];
+        let turns = motions.map(|motion| motion.angvel.as_dvec3());
+        let acceleration = (0..2).map(|i| turns[i].length() * turned(turns[i], reaches[i])).sum();
+        Self { moving, triangle, corners, reaches, acceleration }
+    }
+
+    /// How long a plane `depth` below the triangle separates it from the shape; infinite if until
+    /// `end`.
+    fn clear_of_own_plane(&self, depth: f64, from: f64, end: f64) -> f64 {
+        let MovingConvex { search, mesh_place, cast, .. } = self.moving;
+        let [a, b, c] = self.corners;
+        let mesh = place(mesh_place.swap(cast.motions)[0], from);
+        let Some(normal) = (mesh.rotation * (b - a).cross(c - a)).try_normalize() else {
+            return 0.0;
+        };
+        let inside = search.placed.point_in_mesh(search.balls()[1].centre).as_dvec3();
+        let is_toward = (mesh.rotation * (a - inside)).dot(normal) >= 0.0;
+        self.clear_along(if is_toward { normal } else { -normal }, depth, from, end)
+    }
+
+    /// How long a plane across `axis`, a unit vector of space from the shape to the triangle, separates
+    /// the shape from the triangle moved by `depth` along it; infinite if until `end`.
+    ///
+    /// Each point is as far along the axis as between its places at two times, but for the bend of its
+    /// way, which is at most an eighth of the acceleration times the square of the time between.
+    fn clear_along(&self, axis: DVec3, depth: f64, from: f64, end: f64) -> f64 {
+        let tolerance = self.moving.options.tolerance;
+        let gap_at = |time| depth + self.gap(axis, time);
+        let (mut time, mut gap, mut slope) = (from, gap_at(from), 0.0);
+        for _ in 0..PLANE_STEPS {
+            let is_apart = gap > tolerance;
+            if !is_apart {
+                break;
+            }
+            let by_bend = (4.0 * gap / self.acceleration).sqrt();
+            let by_slope = if slope > 0.0 { 1.2 * gap / slope } else { f64::INFINITY };
+            let step = by_bend.min(by_slope).min(end - time);
+            let bend = 0.125 * self.acceleration * step * step;
+            let next = gap_at(time + step);
+            if next >= bend {
+                (time, gap) = (time + step, next);
+                if time >= end {
+                    return f64::INFINITY;
+                }
+                continue;
+            }
+            // Also a NaN, after a time without end.
+            let is_known = next.is_finite() && gap > bend;
+            if !is_known {
+                break;
+            }
+            slope = (gap - next) / step;
+            time += step * (gap - bend) / (gap - next);
+            gap = gap_at(time);
+        }
+        (time - from).max(self.clear_by_speed(axis, from))
+    }
+
+    /// As [`clear_along`](Self::clear_along), by the greatest speed of all points and, where the shape
+    /// is taken for a ball that does not turn, of the others.
+    fn clear_by_speed(&self, axis: DVec3, from: f64) -> f64 {
+        let MovingConvex { mesh_place, cast, .. } = self.moving;
+        let [mesh, shape] = mesh_place.swap(cast.motions);
+        let clear = |gap: f64, reaches: [f64; 2]| {
+            let speed = cast.approach_bound([shape, mesh], axis, [reaches[1], reaches[0]]);
+            // Of numbers and NaN the numbers: 0 may be divided by 0.
+            (gap.max(0.0) / speed).max(0.0)
+        };
+        let [lowest, _] = self.heights(axis, from);
+        let centre = place(shape, from).to_frame1(shape.local_center, Vec3::ZERO);
+        let of_ball = lowest - axis.dot(centre) - self.reaches[1];
+        let of_shape = clear(self.gap(axis, from), self.reaches);
+        of_shape.max(clear(of_ball, [self.reaches[0], 0.0]))
+    }
+
+    fn gap(&self, axis: DVec3, time: f64) -> f64 {
+        let [lowest, highest] = self.heights(axis, time);
+        lowest - highest
+    }
+
+    /// Least coordinate of the triangle along an axis of space, and greatest of the shape.
+    fn heights(&self, axis: DVec3, time: f64) -> [f64; 2] {
+        let MovingConvex { search, mesh_place, cast, .. } = self.moving;
+        let [mesh, shape] = mesh_place.swap(cast.motions).map(|motion| place(motion, time));
+        let in_mesh: DVec3 = mesh.rotation.transpose() * axis;
+        let [a, b, c] = self.corners.map(|corner| in_mesh.dot(corner));
+        let lowest = a.min(b).min(c) + axis.dot(mesh.translation);
+        let in_shape: DVec3 = shape.rotation.transpose() * axis;
+        [lowest, search.reach(in_shape) + axis.dot(shape.translation)]
     }
 }
 
@@ -204,9 +359,9 @@ impl Bodies for MovingTriangle<'_> {
 
     fn nearest(&mut self, placement: &Placement, reach: f64, _: &[[u32; 2]]) -> Option<FoundTouch> {
         let MovingConvex { search, mesh_place, .. } = self.moving;
-        let placed = self.placed.insert(search.placed.moved(*mesh_place, placement));
-        let found = search.triangle(placed, self.triangle, reach)?;
-        Some(FoundTouch::new(&found, placed, *mesh_place))
+        let placed = search.placed.moved(*mesh_place, placement);
+        let found = search.triangle(&placed, self.triangle, reach)?;
+        Some(FoundTouch::new(&found, &placed, *mesh_place))
     }
 
     fn within(&mut self, placement: &Placement, reach: f64, found: impl FnMut(FoundTouch)) {
@@ -214,20 +369,10 @@ impl Bodies for MovingTriangle<'_> {
     }
 
     fn clear_time(&mut self, nearest: &FoundTouch, time: f64, _: &[[u32; 2]]) -> f64 {
-        let MovingConvex { search, mesh_place, cast, .. } = self.moving;
-        let Some(placed) = &self.placed else { return 0.0 };
+        let MovingConvex { mesh_place, cast, options, .. } = self.moving;
         let [_, shape_body] = mesh_place.swap([0, 1]);
-        let axis = nearest.touch.normals[shape_body];
-        let gap = search.gap(placed, self.triangle, axis).max(0.0);
-        let clear = gap / cast.approach_bound(shape_body, axis, time, self.reaches);
-        // The shape stays in a ball around the centre of its motion, which does not turn.
-        let centre = cast.motions[shape_body].local_center;
-        let radius = (self.reaches[shape_body] * (1.0 + 1.0e-6)) as Real;
-        let around = Sphere { centre, radius };
-        let gap = search.gap_of_ball(placed, self.triangle, axis, &around).max(0.0);
-        let mut reaches = self.reaches;
-        reaches[shape_body] = 0.0;
-        // Of numbers and NaN the numbers: 0 may be divided by 0.
-        clear.max(gap / cast.approach_bound(shape_body, axis, time, reaches))
+        let normal = nearest.touch.normals[shape_body].as_dvec3();
+        let axis: DVec3 = place(cast.motions[shape_body], time).rotation * normal;
+        self.clear_along(axis.normalize(), 0.0, time, options.end)
     }
 }

@@ -116,7 +116,7 @@ impl NonlinearCast<'_> {
         let velocity = motion2.linvel.as_dvec3() - motion1.linvel.as_dvec3();
         let seen = |turn: DVec3, reach: f64| {
             let fastest = [self.start, self.end].map(|time| {
-                let between = from2 - from1 + moved(velocity, time);
+                let between = from2 - from1 + moved(velocity, time.into());
                 let turning = if turn == DVec3::ZERO { DVec3::ZERO } else { turn.cross(between) };
                 (velocity - turning).length()
             });
@@ -136,23 +136,19 @@ impl NonlinearCast<'_> {
         centre.as_dvec3().length() + f64::from(ball.radius)
     }
 
-    /// Points of two bodies do not approach faster than this along a direction of space, from a time
-    /// on; at that time it points from one body to the other, and is given in the frame of the one.
+    /// Bound on the speed at which points of two bodies approach along a unit vector of space that
+    /// points from the first to the second.
     ///
     /// A point at `r` from the centre of its motion has the velocity `w × r` against it, of which
     /// `a·(w × r) = r·(a × w)` is along `a`; `r` turns, but is as long as before.
     pub(super) fn approach_bound(
         &self,
-        body: usize,
-        axis: Vector,
-        time: f64,
+        [one, two]: [&NonlinearRigidMotion; 2],
+        axis: DVec3,
         reaches: [f64; 2],
     ) -> f64 {
-        let rotation = place(self.motions[body], time).rotation;
-        let axis: DVec3 = (rotation * axis.as_dvec3()).normalize();
-        let other = self.motions[1 - body].linvel.as_dvec3();
-        let linear = (self.motions[body].linvel.as_dvec3() - other).dot(axis);
-        let turns = self.motions.map(|motion| axis.cross(motion.angvel.as_dvec3()));
+        let linear = (one.linvel.as_dvec3() - two.linvel.as_dvec3()).dot(axis);
+        let turns = [one, two].map(|motion| axis.cross(motion.angvel.as_dvec3()));
         let least = linear + turned(turns[0], reaches[0]) + turned(turns[1], reaches[1]);
         least.max(0.0) * (1.0 + STRETCH)
     }
@@ -186,13 +182,13 @@ impl NonlinearCast<'_> {
 }
 
 /// How fast what turns moves, even if it has no end.
-fn turned(turn: DVec3, reach: f64) -> f64 {
+pub(super) fn turned(turn: DVec3, reach: f64) -> f64 {
     if turn == DVec3::ZERO { 0.0 } else { turn.length() * reach }
 }
 
 /// How far what moves comes, even in a time without end.
-fn moved(velocity: DVec3, time: Real) -> DVec3 {
-    if velocity == DVec3::ZERO { DVec3::ZERO } else { velocity * f64::from(time) }
+fn moved(velocity: DVec3, time: f64) -> DVec3 {
+    if velocity == DVec3::ZERO { DVec3::ZERO } else { velocity * time }
 }
 
 /// The centre of a motion at its beginning.
@@ -201,7 +197,12 @@ fn centre(motion: &NonlinearRigidMotion) -> DVec3 {
 }
 
 /// Where a motion takes a body, in f64: Parry's `position_at_time` rounds.
-fn place(motion: &NonlinearRigidMotion, time: f64) -> Placement {
+pub(super) fn place(motion: &NonlinearRigidMotion, time: f64) -> Placement {
+    if motion.angvel == Vector::ZERO {
+        let mut place = Placement::new(&motion.start);
+        place.translation += moved(motion.linvel.as_dvec3(), time);
+        return place;
+    }
     let turn = DQuat::from_scaled_axis(motion.angvel.as_dvec3() * time);
     let turn = Placement {
         rotation: DMat3::from_quat(turn),

@@ -1,8 +1,6 @@
 use glamx::{DQuat, DVec3, Vec3};
 use parry3d::math::Pose;
-use parry3d::shape::Triangle;
 use sbbk_core::traverse::Placement;
-use sbbk_core::volumes::Sphere;
 
 use super::pair::ConvexPair;
 use super::parts::Part;
@@ -94,24 +92,8 @@ impl PlacedPart {
         gap.length_squared() > reach * reach
     }
 
-    /// Returns the gap between a triangle and the part along `axis`, which points from the part to the
-    /// triangle in the frame of the part. The gap is a lower bound of the distance.
-    pub(super) fn gap(&self, shape: ConvexShape<'_>, triangle: &Triangle, axis: Vec3) -> f64 {
-        let axis = axis.as_dvec3();
-        (self.lowest(triangle, axis) - self.extent.reach(shape, axis)) / axis.length()
-    }
-
-    /// Returns the gap along `axis` between a triangle and a ball in the frame of the part.
-    pub(super) fn gap_of_ball(&self, ball: &Sphere, triangle: &Triangle, axis: Vec3) -> f64 {
-        let axis = axis.as_dvec3();
-        let centre = axis.dot(ball.centre.as_dvec3());
-        (self.lowest(triangle, axis) - centre) / axis.length() - f64::from(ball.radius)
-    }
-
-    /// Returns the least coordinate of a triangle along `axis`, in the frame of the part.
-    fn lowest(&self, triangle: &Triangle, axis: DVec3) -> f64 {
-        let in_mesh: DVec3 = self.placement.rotation.transpose() * axis;
-        let lowest = triangle.vertices().iter().map(|x| in_mesh.dot(x.as_dvec3()));
-        lowest.fold(f64::INFINITY, f64::min) + axis.dot(self.placement.translation)
+    /// Returns a point of the part, in f32, in the frame of the mesh.
+    pub(crate) fn point_in_mesh(&self, point: Vec3) -> Vec3 {
+        self.to_mesh(point.as_dvec3())
     }
 }

@@ -4,15 +4,16 @@ use std::ops::ControlFlow;
 use std::sync::OnceLock;
 
 use glamx::DVec3;
+use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::partitioning::BvhNode;
 use parry3d::shape::Shape;
 use sbbk_core::contact::convex::{ConvexContact, HullPoints};
-use sbbk_core::traverse::Placement;
+use sbbk_core::traverse::{Placement, TestedBox};
 use sbbk_core::volumes::Sphere;
 
 use super::contact::{core_contact, core_touches, searched_hull};
-use super::near::{gap_of, triangles_near};
+use super::near::{gap_of, time_of, triangles_near};
 use super::pair::ConvexPair;
 use super::parts::{Part, Parts};
 use super::placed::PlacedPart;
@@ -96,21 +97,14 @@ impl<'a> ConvexSearch<'a> {
         [self.mesh.ball(), self.placed.extent.ball()]
     }
 
-    /// Returns the gap between a triangle and the shape at another pose, along a direction from the shape
-    /// to the triangle.
-    pub(crate) fn gap(&self, placed: &PlacedPart, triangle: u32, axis: Vector) -> f64 {
-        placed.gap(self.convex, &self.mesh.mesh.triangle(triangle), axis)
+    /// Returns an upper bound of how far the shape reaches along a direction of any length.
+    pub(crate) fn reach(&self, direction: DVec3) -> f64 {
+        self.placed.extent.reach(self.convex, direction)
     }
 
-    /// Returns the gap between a triangle and a ball in the frame of the shape.
-    pub(crate) fn gap_of_ball(
-        &self,
-        placed: &PlacedPart,
-        triangle: u32,
-        axis: Vector,
-        ball: &Sphere,
-    ) -> f64 {
-        placed.gap_of_ball(ball, &self.mesh.mesh.triangle(triangle), axis)
+    /// Returns the box around the shape in the frame of the mesh.
+    pub(crate) fn aabb_in_mesh(&self) -> Aabb {
+        self.shape.compute_aabb(&self.pose_in_mesh)
     }
 
     /// Returns the depth at which the shape comes out behind a triangle, by Parry.
@@ -198,6 +192,22 @@ impl<'a> ConvexSearch<'a> {
         })
     }
 
+    /// Returns the least time of a triangle up to a limit, for a shape in the box `around`, which moves
+    /// by `velocity` in the frame of the mesh.
+    pub(crate) fn soonest_swept(
+        &self,
+        around: Aabb,
+        velocity: DVec3,
+        limit: f64,
+        time: impl Fn(u32, f64) -> Option<f64>,
+    ) -> Option<f64> {
+        let bound = time_of(&self.placed, self.convex, &self.mesh, around, velocity, 0.0);
+        self.least(limit, bound, |triangle, limit| {
+            let time = time(triangle, limit)?;
+            Some((time as Real, time))
+        })
+    }
+
     /// Returns the triangle with the least cost up to a limit. No cost is less than the distance times
     /// `unit`.
     fn best<T>(
@@ -206,17 +216,27 @@ impl<'a> ConvexSearch<'a> {
         unit: f64,
         cost: impl Fn(u32, f64) -> Option<(Real, T)>,
     ) -> Option<T> {
+        let gap = gap_of(&self.placed, self.convex, &self.mesh, self.aabb_in_mesh());
+        let unit = unit as Real;
+        self.least(limit, |node| gap(node) * unit, cost)
+    }
+
+    /// Returns the triangle with the least cost up to a limit. `bound` is a lower bound of the costs in
+    /// a box.
+    fn least<T>(
+        &self,
+        limit: f64,
+        bound: impl Fn(TestedBox) -> Real,
+        cost: impl Fn(u32, f64) -> Option<(Real, T)>,
+    ) -> Option<T> {
         if !self.placed.placement.is_finite() || limit.is_nan() {
             return None;
         }
-        let around = self.shape.compute_aabb(&self.pose_in_mesh);
-        let gap = gap_of(&self.placed, self.convex, &self.mesh, around);
-        let unit = unit as Real;
         // Parry returns costs below the limit only.
         let limit = (limit.min(f64::from(Real::MAX)) as Real).next_up();
         let found = self.mesh.mesh.bvh().find_best(
             limit,
-            |node: &BvhNode, _| gap(box_of(node)) * unit,
+            |node: &BvhNode, _| bound(box_of(node)),
             |triangle, best| cost(triangle, best.into()),
         );
         found.map(|(_, (_, found))| found)

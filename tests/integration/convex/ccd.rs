@@ -1,0 +1,153 @@
+use std::f32::consts::FRAC_PI_2;
+
+use glamx::{Quat, Vec3};
+use oorandom::Rand32;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::geometry::SharedShape;
+use rapier3d::math::Real;
+use rapier3d::parry::query::{NonlinearRigidMotion, QueryDispatcher};
+use rapier3d::parry::shape::TriMesh;
+use rapier3d::pipeline::PhysicsWorld;
+use rapier3d::prelude::{ColliderBuilder, Pose, RigidBodyBuilder, RigidBodyHandle};
+use sbbk_testkit::mesh;
+
+use crate::support::shape;
+
+/// A shape that lies on a floor, turned by `turn`, with its middle at `height`.
+struct Slider {
+    name: &'static str,
+    shape: SharedShape,
+    turn: Quat,
+    height: Real,
+    spin_of_speed: Vec3,
+    friction: Real,
+}
+
+fn sliders() -> Vec<Slider> {
+    let slider = |name, shape, height| Slider {
+        name,
+        shape,
+        turn: Quat::IDENTITY,
+        height,
+        spin_of_speed: Vec3::ZERO,
+        friction: 0.0,
+    };
+    let wheel = slider("wheel", SharedShape::cylinder(0.15, 0.43), 0.43);
+    let turn = Quat::from_rotation_x(FRAC_PI_2);
+    vec![
+        Slider { turn, spin_of_speed: -Vec3::Z / 0.43, friction: 1.0, ..wheel },
+        slider("puck", SharedShape::cylinder(0.1, 0.5), 0.1),
+        slider("cone", SharedShape::cone(0.3, 0.5), 0.3),
+        slider("round puck", SharedShape::round_cylinder(0.1, 0.4, 0.05), 0.15),
+    ]
+}
+
+impl Slider {
+    fn world(
+        &self,
+        ground: TriMesh,
+        start: Vec3,
+        velocity: Vec3,
+    ) -> (PhysicsWorld, RigidBodyHandle) {
+        let mut world = PhysicsWorld::new();
+        world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
+        let ground = ColliderBuilder::new(SharedShape::new(ground)).friction(self.friction);
+        world.insert(RigidBodyBuilder::fixed(), ground);
+        let body = RigidBodyBuilder::dynamic()
+            .translation(start + self.height * Vec3::Y)
+            .rotation(self.turn.to_scaled_axis())
+            .linvel(velocity)
+            .angvel(velocity.x * self.spin_of_speed)
+            .ccd_enabled(true);
+        let collider = ColliderBuilder::new(self.shape.clone()).friction(self.friction);
+        let (body, _) = world.insert(body, collider);
+        (world, body)
+    }
+}
+
+/// Would catch impacts with the floor that a shape stands on: each ends a step early (a puck made a
+/// tenth of its way, and none on fine triangles).
+#[test]
+fn shapes_that_slide_over_a_mesh_make_all_of_their_way() {
+    for cells in [20, 200] {
+        for slider in sliders() {
+            let ground = shape(&mesh::floor(60.0, cells));
+            let start = Vec3::new(-12.0, 0.0, 0.13);
+            let (mut world, body) = slider.world(ground, start, 20.0 * Vec3::X);
+            (0..60).for_each(|_| world.step());
+            let end = world.bodies[body].translation();
+            let (name, share) = (slider.name, (end.x - start.x) / 20.0);
+            assert!((0.99..1.01).contains(&share), "{name}, {cells} cells: {share}");
+            assert!((end.y - slider.height).abs() < 0.02, "{name}, {cells} cells: {end}");
+        }
+    }
+}
+
+/// A floor with a wall across it, which is a sheet.
+fn walled() -> TriMesh {
+    let floor = mesh::floor(60.0, 60);
+    let (mut vertices, mut triangles) = (floor.vertices, floor.triangles);
+    let first = vertices.len() as u32;
+    let corners = [[8.0, -1.0, -9.0], [8.0, -1.0, 9.0], [8.0, 9.0, 9.0], [8.0, 9.0, -9.0]];
+    vertices.extend(corners.map(Vec3::from));
+    triangles.extend([[0, 1, 2], [0, 2, 3]].map(|triangle| triangle.map(|i| first + i)));
+    TriMesh::new(vertices, triangles).unwrap()
+}
+
+/// Would catch an impact that is lost, as the shape is in contact with the floor at the start.
+#[test]
+fn fast_shapes_on_a_floor_stop_at_a_wall() {
+    for slider in sliders() {
+        for speed in [20.0, 60.0, 200.0, 400.0] {
+            for phase in 0..4 {
+                let start = Vec3::new(-0.7 * phase as Real - 2.0, 0.0, 0.13);
+                let (mut world, body) = slider.world(walled(), start, speed * Vec3::X);
+                let mut farthest = start.x;
+                for _ in 0..40 {
+                    world.step();
+                    farthest = farthest.max(world.bodies[body].translation().x);
+                }
+                assert!(farthest < 8.0, "{} at {speed}, {phase}: {farthest}", slider.name);
+            }
+        }
+    }
+}
+
+/// Casts from contact, sunk or just above the floor: the wall is met when the shape comes to it or, at
+/// the very end, when it would sink into it by a tenth of its thickness. Would catch an impact that is
+/// lost, and one with the floor.
+#[test]
+fn casts_along_a_floor_meet_the_wall() {
+    let (dispatcher, mesh) = (SbbkDispatcher::default(), walled());
+    let random = &mut Rand32::new(7);
+    let still = NonlinearRigidMotion::constant_position(Pose::IDENTITY);
+    let mut hits = 0;
+    for slider in sliders() {
+        for _ in 0..60 {
+            let speed = 5.0 + 200.0 * random.rand_float();
+            let end = 1.0 / 60.0;
+            let height = slider.height + 0.01 * (random.rand_float() - 0.7);
+            let wide = slider.shape.compute_aabb(&Pose::from_rotation(slider.turn)).maxs.x;
+            // Where it is at the end, before or behind the wall.
+            let beyond = 1.5 * speed * end * (random.rand_float() - 0.4);
+            let start = Vec3::new(8.0 - wide + beyond - speed * end, height, 0.13);
+            let velocity = speed * Vec3::X;
+            let start = Pose::from_parts(start, slider.turn);
+            let spin = speed * slider.spin_of_speed;
+            let moving = NonlinearRigidMotion::new(start, Vec3::ZERO, velocity, spin);
+            let found = dispatcher
+                .cast_shapes_nonlinear(&moving, &*slider.shape, &still, &mesh, 0.0, end, false)
+                .unwrap();
+            let says = format!("{} at {speed}, {beyond} beyond: {found:?}", slider.name);
+            let met = end - beyond / speed;
+            if let Some(hit) = found {
+                assert!((hit.time_of_impact - met).abs() < 2.0e-5, "{says}, {met}");
+                hits += 1;
+            } else {
+                // The cone's base is round at its height only.
+                assert!(beyond < 0.02 || beyond > speed * end, "{says}, {met}");
+            }
+        }
+    }
+    assert!(hits > 60, "{hits}");
+}
