@@ -197,9 +197,9 @@ impl QueryDispatcher for SbbkDispatcher {
             Balls::Ours,
             None,
             |meshes| meshes.cast(pos12, local_vel12, options),
-            |pair| Some(pair.cast(local_vel12, options)),
+            |pair| pair.cast(local_vel12, options),
         );
-        match found.flatten() {
+        match found {
             Some(hit) => Ok(hit),
             None => DefaultQueryDispatcher.cast_shapes(pos12, local_vel12, g1, g2, options),
         }
@@ -225,9 +225,9 @@ impl QueryDispatcher for SbbkDispatcher {
             Balls::Ours,
             None,
             |meshes| meshes.cast_nonlinear(cast),
-            |pair| Some(pair.cast_nonlinear(cast)),
+            |pair| pair.cast_nonlinear(cast),
         );
-        match found.flatten() {
+        match found {
             Some(hit) => Ok(hit),
             None => DefaultQueryDispatcher.cast_shapes_nonlinear(
                 motion1,

@@ -3,34 +3,16 @@
 use parry3d::math::{Pose, Vector};
 use parry3d::query::ShapeCastHit;
 use parry3d::query::details::ShapeCastOptions;
-use sbbk_core::query::{Cast, CastOptions, FoundPair, MeshBodies, PartPair, cast};
+use sbbk_core::query::{CastOptions, FoundPair, PartPair};
 use sbbk_core::traverse::Placement;
-use sbbk_core::tree::Tree;
 
-use super::lookup::{MeshQuery, Trees};
 use super::nonlinear::NonlinearCast;
 use super::touch::{Touch, status};
+use super::walk::MeshQuery;
 
 impl MeshQuery<'_> {
-    /// As [`Trees::cast`]; `None` if a mesh has no tree, and Parry must answer.
+    /// Returns the first impact of mesh 2, which moves by `velocity12` in the frame of mesh 1.
     pub(crate) fn cast(
-        &self,
-        pos12: &Pose,
-        velocity12: Vector,
-        options: ShapeCastOptions,
-    ) -> Option<Option<ShapeCastHit>> {
-        Some(self.trees()?.cast(pos12, velocity12, options))
-    }
-
-    /// As [`Trees::cast_nonlinear`]; `None` if a mesh has no tree, and Parry must answer.
-    pub(crate) fn cast_nonlinear(&self, cast: &NonlinearCast<'_>) -> Option<Option<ShapeCastHit>> {
-        Some(self.trees()?.cast_nonlinear(cast))
-    }
-}
-
-impl Trees {
-    /// The first impact of mesh 2, moving by `velocity12` in the frame of mesh 1.
-    fn cast(
         &self,
         pos12: &Pose,
         velocity12: Vector,
@@ -42,22 +24,17 @@ impl Trees {
             target_distance: options.target_distance.max(0.0),
             stop_at_penetration: options.stop_at_penetration,
         };
-        let cast: Cast =
-            self.search(|scratch| cast(self.both(), placement, velocity12, core_options, scratch))?;
+        let cast = self.walk().cast(placement, velocity12, core_options)?;
         // Where the point of mesh 2 was before it moved.
         let mut pair = cast.pair;
         pair.contact.point2 -= velocity12.as_dvec3() * cast.time;
         Some(touch(&pair, &placement).hit(pair.name(), cast.time, status(cast.is_penetrating)))
     }
 
-    /// The first impact of two meshes on their ways.
-    fn cast_nonlinear(&self, cast: &NonlinearCast<'_>) -> Option<ShapeCastHit> {
-        let trees = self.both();
-        let balls = [trees.0, trees.1].map(Tree::bounding_ball);
-        let found = self.search(|scratch| {
-            let meshes = &mut MeshBodies { trees, scratch };
-            cast.first_impact(meshes, cast.options(balls), 0.0, touch)
-        })?;
+    /// Returns the first impact of two meshes in motion.
+    pub(crate) fn cast_nonlinear(&self, cast: &NonlinearCast<'_>) -> Option<ShapeCastHit> {
+        let balls = self.meshes.each_ref().map(|mesh| mesh.ball());
+        let found = cast.first_impact(&mut self.walk(), cast.options(balls), 0.0, touch)?;
         Some(cast.hit(&found, &touch(&found.pair, &found.placement)))
     }
 }

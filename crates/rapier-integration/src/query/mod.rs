@@ -8,13 +8,13 @@
 
 mod casts;
 mod convex;
-mod lookup;
 mod moving;
 mod nonlinear;
+mod pairs;
 mod proximity;
 mod touch;
 mod walk;
 
 pub(crate) use convex::ConvexQuery;
-pub(crate) use lookup::MeshQuery;
 pub(crate) use nonlinear::NonlinearCast;
+pub(crate) use walk::MeshQuery;

@@ -56,6 +56,11 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
     /// triangles that the shape may come out behind.
     pub(super) fn first_impact(&mut self) -> Option<Advance<FoundTouch>> {
         let AdvanceOptions { start, end, tolerance, .. } = self.options;
+        // Not "later than": a NaN is no time.
+        let is_possible = start <= end;
+        if !is_possible {
+            return None;
+        }
         let (mut from, mut window) = (start, 0.0);
         loop {
             self.search.place(self.mesh_place, &self.cast.placement_at(from));
@@ -327,8 +332,8 @@ impl<'a> MovingTriangle<'a> {
         let [mesh, shape] = mesh_place.swap(cast.motions);
         let clear = |gap: f64, reaches: [f64; 2]| {
             let speed = cast.approach_bound([shape, mesh], axis, [reaches[1], reaches[0]]);
-            // Of numbers and NaN the numbers: 0 may be divided by 0.
-            (gap.max(0.0) / speed).max(0.0)
+            // The maximum of a number and a NaN is the number: 0 may be divided by 0.
+            ((gap - self.moving.options.tolerance).max(0.0) / speed).max(0.0)
         };
         let [lowest, _] = self.heights(axis, from);
         let centre = place(shape, from).to_frame1(shape.local_center, Vec3::ZERO);

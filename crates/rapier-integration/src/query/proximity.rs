@@ -2,27 +2,24 @@
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::{ClosestPoints, Contact, ShapeDistance, ShapeIntersection};
-use sbbk_core::query::{FoundPair, PartPair, deepest, meeting, nearest};
+use sbbk_core::query::{FoundPair, PartPair};
 use sbbk_core::traverse::Placement;
 
 use super::casts::touch;
-use super::lookup::{MeshQuery, Trees};
+use super::walk::MeshQuery;
 
 impl MeshQuery<'_> {
-    /// Returns true and one pair of crossing triangles, if the surfaces of the meshes cross.
+    /// Whether the surfaces of two meshes meet, and where: one of the pairs of triangles that do
+    /// (after an edit it can be another one than a new dispatcher would name).
     pub(crate) fn intersection(&self, pos12: &Pose) -> ShapeIntersection {
         let placement = Placement::new(pos12);
-        // Most of these queries find crossing triangles sooner than a hash is computed.
-        answer(match self.registered_trees() {
-            Some(trees) => trees.meeting(placement),
-            None => self.walk().meeting(placement),
-        })
+        answer(self.walk().meeting(placement))
     }
 
     /// The distance; `Real::MAX` at a pose that is not finite, as Parry has it for shapes without
     /// parts.
     pub(crate) fn distance(&self, pos12: &Pose) -> ShapeDistance {
-        match self.nearest(Placement::new(pos12), f64::INFINITY) {
+        match self.walk().nearest(Placement::new(pos12), f64::INFINITY) {
             Some(pair) => {
                 let distance = pair.contact.distance.max(0.0) as Real;
                 ShapeDistance::new(distance).with_subshapes(pair.triangle1, pair.triangle2)
@@ -34,7 +31,7 @@ impl MeshQuery<'_> {
     /// The closest points, each in the frame of its mesh.
     pub(crate) fn closest_points(&self, pos12: &Pose, max_distance: Real) -> ClosestPoints {
         let placement = Placement::new(pos12);
-        match self.nearest(placement, limit_of(max_distance)) {
+        match self.walk().nearest(placement, limit_of(max_distance)) {
             Some(pair) if pair.is_touching => ClosestPoints::Intersecting,
             Some(pair) => ClosestPoints::WithinMargin(pair.point1(), pair.point2(&placement)),
             None => ClosestPoints::Disjoint,
@@ -44,20 +41,9 @@ impl MeshQuery<'_> {
     /// The contact of the deepest pair of triangles or, where none cross, of the nearest.
     pub(crate) fn contact(&self, pos12: &Pose, prediction: Real) -> Option<Contact> {
         let placement = Placement::new(pos12);
-        let limit = limit_of(prediction);
-        let pair = match self.trees() {
-            Some(trees) => trees.deepest(placement, limit),
-            None => self.walk().deepest(placement, limit),
-        }?;
+        let pair = self.walk().deepest(placement, limit_of(prediction))?;
         let distance = pair.contact.distance as Real;
         Some(touch(&pair, &placement).contact(pair.name(), distance))
-    }
-
-    fn nearest(&self, placement: Placement, limit: f64) -> Option<FoundPair> {
-        match self.trees() {
-            Some(trees) => trees.nearest(placement, limit),
-            None => self.walk().nearest(placement, limit),
-        }
     }
 }
 
@@ -72,19 +58,5 @@ fn answer(meeting: Option<FoundPair>) -> ShapeIntersection {
             ShapeIntersection::new(true).with_subshapes(triangle1, triangle2)
         }
         None => ShapeIntersection::new(false),
-    }
-}
-
-impl Trees {
-    fn nearest(&self, placement: Placement, limit: f64) -> Option<FoundPair> {
-        self.search(|scratch| nearest(self.both(), placement, limit, scratch))
-    }
-
-    fn meeting(&self, placement: Placement) -> Option<FoundPair> {
-        self.search(|scratch| meeting(self.both(), placement, scratch))
-    }
-
-    fn deepest(&self, placement: Placement, limit: f64) -> Option<FoundPair> {
-        self.search(|scratch| deepest(self.both(), placement, limit, scratch))
     }
 }

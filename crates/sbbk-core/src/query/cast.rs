@@ -68,8 +68,7 @@ pub fn cast(
     scratch: &mut SearchScratch,
 ) -> Option<Cast> {
     let CastOptions { max_time, target_distance, .. } = options;
-    let is_possible = max_time >= 0.0 && target_distance >= 0.0 && target_distance.is_finite();
-    if !is_possible || !velocity.is_finite() || !placement.is_finite() {
+    if !options.is_possible() || !velocity.is_finite() || !placement.is_finite() {
         return None;
     }
     let mut frame = PairFrame::at(trees, placement, 0.0);
@@ -107,43 +106,84 @@ struct CastSearch<'a> {
 impl CastSearch<'_> {
     fn triangles(&mut self, one: LeafTriangle<'_>, two: LeafTriangle<'_>) {
         let pair = TrianglePair::new(&self.placement, one.corners(), two.corners());
-        let target = f64::from(self.options.target_distance);
-        if !self.boxes_meet(&pair, target) {
-            return;
-        }
-        self.sweep.cutoff.counts.triangle_pairs += 1;
-        let cast = TriangleCast { pair: &pair, velocity: self.velocity, target };
-        let Some((time, contact)) = cast.first(self.options.stop_at_penetration, self.latest)
+        let Some((time, contact)) = first_impact(&pair, self.velocity, &self.options, self.latest)
         else {
             return;
         };
+        self.sweep.cutoff.counts.triangle_pairs += 1;
         if self.found.is_some_and(|found| time >= found.time) {
             return;
         }
-        let is_penetrating = time == 0.0 && contact.distance < target;
-        let pair = FoundPair::new(one, two, &pair, contact);
-        self.found = Some(Cast { time, pair, is_penetrating });
+        let found = FoundPair::new(one, two, &pair, contact);
+        self.found = Some(Cast::new(time, found, &self.options));
         self.latest = time;
         self.sweep.cutoff.limit = if time > 0.0 { (time as f32).next_up() } else { FOUND };
     }
+}
 
-    /// True if the boxes of the triangles come within the target distance early enough.
-    fn boxes_meet(&self, pair: &TrianglePair, target: f64) -> bool {
-        // Written out, as `array::map` is not always inlined: a cast took 1.2 times as long.
-        let [corners1, corners2] = &pair.corners;
-        let ((min1, max1), (min2, max2)) = (bounds(corners1), bounds(corners2));
-        let slack = target + 1.0e-12 * ((max1 - min1) + (max2 - min2)).element_sum();
-        let (near, far) = (min1 - max2 - slack, max1 - min2 + slack);
-        let (mut start, mut end) = (0.0, self.latest);
-        for axis in 0..3 {
-            // Zero speed gives infinite times, of both signs unless the boxes pass each other.
-            let speed = self.velocity[axis];
-            let (a, b) = (near[axis] / speed, far[axis] / speed);
-            start = f64::max(start, a.min(b));
-            end = f64::min(end, a.max(b));
-        }
-        start <= end * (1.0 + 1.0e-12)
+impl CastOptions {
+    /// True if some impact can meet these options.
+    pub fn is_possible(&self) -> bool {
+        let Self { max_time, target_distance, .. } = *self;
+        max_time >= 0.0 && target_distance >= 0.0 && target_distance.is_finite()
     }
+}
+
+impl Cast {
+    /// Returns the first impact of two triangles until `latest`, given their indices and corners as in
+    /// [`FoundPair::of`]. Triangle 2 moves by `velocity` in frame 1.
+    pub fn of_triangles(
+        placement: &Placement,
+        (triangle1, corners1): (u32, [Vec3; 3]),
+        (triangle2, corners2): (u32, [Vec3; 3]),
+        velocity: DVec3,
+        options: &CastOptions,
+        latest: f64,
+    ) -> Option<Self> {
+        let pair = TrianglePair::new(placement, corners1, corners2);
+        let (time, contact) = first_impact(&pair, velocity, options, latest)?;
+        let is_touching = contact.distance <= pair.touching_distance();
+        let origin = pair.origin;
+        let found = FoundPair { triangle1, triangle2, contact, origin, is_touching };
+        Some(Self::new(time, found, options))
+    }
+
+    fn new(time: f64, pair: FoundPair, options: &CastOptions) -> Self {
+        let is_within = pair.contact.distance < f64::from(options.target_distance);
+        Self { time, pair, is_penetrating: time == 0.0 && is_within }
+    }
+}
+
+/// Returns the time of impact of two triangles and the contact then.
+fn first_impact(
+    pair: &TrianglePair,
+    velocity: DVec3,
+    options: &CastOptions,
+    latest: f64,
+) -> Option<(f64, TriangleContact)> {
+    let target = f64::from(options.target_distance);
+    if !boxes_meet(pair, velocity, target, latest) {
+        return None;
+    }
+    TriangleCast { pair, velocity, target }.first(options.stop_at_penetration, latest)
+}
+
+/// True if the boxes of the triangles come within the target distance early enough.
+fn boxes_meet(pair: &TrianglePair, velocity: DVec3, target: f64, latest: f64) -> bool {
+    // Written out, as `array::map` is not always inlined: a cast took 1.2 times as long.
+    let [corners1, corners2] = &pair.corners;
+    let ((min1, max1), (min2, max2)) = (bounds(corners1), bounds(corners2));
+    let slack = target + 1.0e-12 * ((max1 - min1) + (max2 - min2)).element_sum();
+    let (near, far) = (min1 - max2 - slack, max1 - min2 + slack);
+    let (mut start, mut end) = (0.0, latest);
+    for axis in 0..3 {
+        // Zero speed gives infinite times, of both signs unless the boxes pass each other.
+        let speed = velocity[axis];
+        let (a, b) = (near[axis] / speed, far[axis] / speed);
+        start = f64::max(start, a.min(b));
+        end = f64::min(end, a.max(b));
+    }
+    start <= end * (1.0 + 1.0e-12)
 }
 
 /// The lowest and the highest coordinates.

@@ -1,0 +1,212 @@
+//! Best-first search for a pair of triangles, down the BVHs of two meshes at once.
+
+use std::cell::Cell;
+
+use arrayvec::ArrayVec;
+use glamx::{DVec3, Vec3};
+use parry3d::partitioning::{Bvh, BvhNode, BvhNodeIndex, TraversalAction};
+use sbbk_core::query::FoundPair;
+use sbbk_core::traverse::Placement;
+
+use crate::mesh::MeshView;
+
+/// Share of the coordinates by which bounds are lower than computed, for rounding in f64.
+const ROUNDING: f64 = 1.0e-14;
+
+/// Two meshes, mesh 2 at a placement in the frame of mesh 1.
+pub(super) struct MeshPair<'a> {
+    pub(super) meshes: [&'a MeshView<'a>; 2],
+    pub(super) placement: Placement,
+}
+
+/// A box in the frame of mesh 1.
+#[derive(Copy, Clone)]
+pub(super) struct PlacedBox {
+    centre: DVec3,
+    extent: DVec3,
+    /// Half-lengths along the axes of its own mesh.
+    own: DVec3,
+}
+
+/// A node of a BVH. The virtual node above the root has no index and no triangle.
+#[derive(Copy, Clone)]
+struct Node {
+    bounds: PlacedBox,
+    index: Option<BvhNodeIndex>,
+    triangle: Option<u32>,
+}
+
+impl MeshPair<'_> {
+    /// Visits pairs of triangles, the least bound first, while bounds are at most the limit. `visit`
+    /// gets the limit and may return a lower one.
+    pub(super) fn search(
+        &self,
+        mut limit: f64,
+        bound: impl Fn(&PlacedBox, &PlacedBox) -> f64,
+        mut visit: impl FnMut([u32; 2], f64) -> Option<f64>,
+    ) {
+        let roots = [0, 1].map(|i| self.root(i));
+        let mut stack = Vec::with_capacity(64);
+        stack.push((f64::NEG_INFINITY, roots));
+        while let Some((key, [node1, node2])) = stack.pop() {
+            // A bound that is NaN bounds nothing.
+            if key > limit {
+                continue;
+            }
+            if let (Some(triangle1), Some(triangle2)) = (node1.triangle, node2.triangle) {
+                limit =
+                    visit([triangle1, triangle2], limit).map_or(limit, |least| least.min(limit));
+                continue;
+            }
+            let is_first = node1.triangle.is_none()
+                && (node2.triangle.is_some() || node1.bounds.size() >= node2.bounds.size());
+            let mut pairs: ArrayVec<_, 2> = if is_first {
+                self.children(0, &node1).map(|child| [child, node2]).collect()
+            } else {
+                self.children(1, &node2).map(|child| [node1, child]).collect()
+            };
+            let mut keyed: ArrayVec<_, 2> = pairs
+                .drain(..)
+                .map(|pair| (bound(&pair[0].bounds, &pair[1].bounds), pair))
+                .collect();
+            if let [(first, _), (second, _)] = keyed[..]
+                && first < second
+            {
+                keyed.swap(0, 1);
+            }
+            stack.extend(keyed.into_iter().filter(|(key, _)| !(*key > limit)));
+        }
+    }
+
+    /// Returns the pair of triangles with the least signed distance within `limit`, or one that
+    /// touches if any does. Skips pairs that do not count.
+    pub(super) fn nearest(
+        &self,
+        limit: f64,
+        counts: impl Fn([u32; 2]) -> bool,
+    ) -> Option<FoundPair> {
+        let is_possible = self.placement.is_finite() && limit >= 0.0;
+        if !is_possible {
+            return None;
+        }
+        let lost = self.rounding();
+        // From mesh 1 to mesh 2, in both frames, of the nearest pair so far.
+        let normals = Cell::new(None::<[DVec3; 2]>);
+        let mut nearest = None::<FoundPair>;
+        let bound = |one: &PlacedBox, two: &PlacedBox| {
+            let along = normals.get().map_or(0.0, |[normal1, normal2]| {
+                let reach = normal1.abs().dot(one.extent) + normal2.abs().dot(two.own);
+                normal1.dot(two.centre - one.centre) - reach
+            });
+            one.gap(two).max(along) - lost
+        };
+        self.search(limit, bound, |triangles, limit| {
+            if nearest.is_some_and(|nearest| nearest.is_touching) || !counts(triangles) {
+                return None;
+            }
+            if normals.get().is_some_and(|normals| self.gap_along(normals, triangles) > limit) {
+                return None;
+            }
+            let pair = self.pair(triangles, limit)?;
+            let distance = pair.contact.distance;
+            if nearest.is_some_and(|nearest| distance >= nearest.contact.distance) {
+                return None;
+            }
+            nearest = Some(pair);
+            if pair.is_touching {
+                return Some(f64::NEG_INFINITY);
+            }
+            let normal = pair.contact.normal;
+            normals.set(Some([normal, self.placement.rotation.transpose() * normal]));
+            Some(distance)
+        });
+        nearest
+    }
+
+    /// Gap between two triangles along a direction, given in both frames: at most their distance.
+    fn gap_along(&self, [normal1, normal2]: [DVec3; 2], triangles: [u32; 2]) -> f64 {
+        let [one, two] = [0, 1].map(|i| self.meshes[i].corners(triangles[i]).map(Vec3::as_dvec3));
+        let [a, b, c] = one.map(|corner| normal1.dot(corner));
+        let [d, e, f] = two.map(|corner| normal2.dot(corner));
+        let offset = normal1.dot(self.placement.translation);
+        d.min(e).min(f) + offset - a.max(b).max(c) - self.rounding()
+    }
+
+    /// Contact of two triangles that touch or are at most `margin` apart.
+    pub(super) fn pair(&self, triangles: [u32; 2], margin: f64) -> Option<FoundPair> {
+        let [one, two] = [0, 1].map(|i| (triangles[i], self.meshes[i].corners(triangles[i])));
+        FoundPair::of(&self.placement, one, two, margin)
+    }
+
+    /// What rounding may add to a gap of boxes.
+    pub(super) fn rounding(&self) -> f64 {
+        let [size1, size2] = self.meshes.map(|mesh| f64::from(mesh.magnitude()));
+        ROUNDING * (size1 + size2 + self.placement.translation.length())
+    }
+
+    fn root(&self, mesh: usize) -> Node {
+        let root = self.meshes[mesh].root();
+        let bounds = self.placed(mesh, root.mins.as_dvec3(), root.maxs.as_dvec3());
+        Node { bounds, index: None, triangle: None }
+    }
+
+    fn children(&self, mesh: usize, node: &Node) -> impl Iterator<Item = Node> {
+        children(self.meshes[mesh].mesh.bvh(), node.index).into_iter().map(move |(index, child)| {
+            let bounds = self.placed(mesh, child.mins().as_dvec3(), child.maxs().as_dvec3());
+            Node { bounds, index: Some(index), triangle: child.leaf_data() }
+        })
+    }
+
+    fn placed(&self, mesh: usize, min: DVec3, max: DVec3) -> PlacedBox {
+        let (centre, own) = (0.5 * (min + max), 0.5 * (max - min));
+        if mesh == 0 {
+            return PlacedBox { centre, extent: own, own };
+        }
+        let Placement { rotation, translation, .. } = self.placement;
+        let [x, y, z] = [rotation.x_axis, rotation.y_axis, rotation.z_axis].map(DVec3::abs);
+        let extent = x * own.x + y * own.y + z * own.z;
+        PlacedBox { centre: rotation * centre + translation, extent, own }
+    }
+}
+
+impl PlacedBox {
+    fn size(&self) -> f64 {
+        self.own.length_squared()
+    }
+
+    /// Distance along the axes of mesh 1.
+    pub(super) fn gap(&self, other: &Self) -> f64 {
+        let gaps = (self.centre - other.centre).abs() - (self.extent + other.extent);
+        gaps.max(DVec3::ZERO).length()
+    }
+
+    /// Earliest time at which the boxes are within `target` of each other, where the other one moves;
+    /// infinite if they pass each other.
+    pub(super) fn time(&self, other: &Self, velocity: DVec3, target: f64) -> f64 {
+        let offset = other.centre - self.centre;
+        let reach = self.extent + other.extent + target;
+        let mut start = ((self.gap(other) - target) / velocity.length()).max(0.0);
+        let mut end = f64::INFINITY;
+        for axis in 0..3 {
+            // Infinite without speed: of both signs, unless the boxes pass each other.
+            let speed = velocity[axis];
+            let [one, two] = [-reach[axis] - offset[axis], reach[axis] - offset[axis]];
+            start = start.max((one / speed).min(two / speed));
+            end = end.min((one / speed).max(two / speed));
+        }
+        if start <= end * (1.0 + ROUNDING) { start * (1.0 - ROUNDING) } else { f64::INFINITY }
+    }
+}
+
+/// Children of a node, or of the virtual node above the root.
+fn children(bvh: &Bvh, parent: Option<BvhNodeIndex>) -> ArrayVec<(BvhNodeIndex, BvhNode), 2> {
+    let mut children = ArrayVec::new();
+    bvh.traverse_indexed(parent, |node, index| {
+        if parent.is_some_and(|parent| parent.0 == index.0) {
+            return TraversalAction::Continue;
+        }
+        children.push((index, *node));
+        TraversalAction::Prune
+    });
+    children
+}
