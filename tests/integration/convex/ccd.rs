@@ -6,7 +6,7 @@ use rapier_integration::SbbkDispatcher;
 use rapier3d::geometry::SharedShape;
 use rapier3d::math::Real;
 use rapier3d::parry::query::{NonlinearRigidMotion, QueryDispatcher};
-use rapier3d::parry::shape::{Shape, TriMesh};
+use rapier3d::parry::shape::TriMesh;
 use rapier3d::pipeline::PhysicsWorld;
 use rapier3d::prelude::{ColliderBuilder, Pose, RigidBodyBuilder, RigidBodyHandle};
 use sbbk_testkit::mesh;

@@ -24,7 +24,10 @@ impl MeshQuery<'_> {
             target_distance: options.target_distance.max(0.0),
             stop_at_penetration: options.stop_at_penetration,
         };
-        let cast = self.walk().cast(placement, velocity12, core_options)?;
+        let cast = match self.trees() {
+            Some(trees) => trees.cast(placement, velocity12, core_options),
+            None => self.walk().cast(placement, velocity12, core_options),
+        }?;
         // Where the point of mesh 2 was before it moved.
         let mut pair = cast.pair;
         pair.contact.point2 -= velocity12.as_dvec3() * cast.time;
@@ -33,8 +36,13 @@ impl MeshQuery<'_> {
 
     /// Returns the first impact of two meshes in motion.
     pub(crate) fn cast_nonlinear(&self, cast: &NonlinearCast<'_>) -> Option<ShapeCastHit> {
-        let balls = self.meshes.each_ref().map(|mesh| mesh.ball());
-        let found = cast.first_impact(&mut self.walk(), cast.options(balls), 0.0, touch)?;
+        let found = match self.trees() {
+            Some(trees) => trees.cast_nonlinear(cast),
+            None => {
+                let balls = self.meshes.each_ref().map(|mesh| mesh.ball());
+                cast.first_impact(&mut self.walk(), cast.options(balls), 0.0, touch)
+            }
+        }?;
         Some(cast.hit(&found, &touch(&found.pair, &found.placement)))
     }
 }

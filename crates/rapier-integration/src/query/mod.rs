@@ -13,6 +13,7 @@ mod nonlinear;
 mod pairs;
 mod proximity;
 mod touch;
+mod trees;
 mod walk;
 
 pub(crate) use convex::ConvexQuery;

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use arrayvec::ArrayVec;
-use glamx::{DVec3, Vec3};
+use glamx::{DMat3, DVec3, Vec3};
 use parry3d::partitioning::{Bvh, BvhNode, BvhNodeIndex, TraversalAction};
 use sbbk_core::query::FoundPair;
 use sbbk_core::traverse::Placement;
@@ -13,19 +13,21 @@ use crate::mesh::MeshView;
 /// Share of the coordinates by which bounds are lower than computed, for rounding in f64.
 const ROUNDING: f64 = 1.0e-14;
 
+/// Share by which lengths in the frame of mesh 2 may be greater than in that of mesh 1, as quaternions
+/// in f32 are not of unit length.
+const STRETCH: f64 = 1.0e-6;
+
 /// Two meshes, mesh 2 at a placement in the frame of mesh 1.
 pub(super) struct MeshPair<'a> {
     pub(super) meshes: [&'a MeshView<'a>; 2],
     pub(super) placement: Placement,
 }
 
-/// A box in the frame of mesh 1.
+/// The middle and the half-lengths of a box, in the frames of both meshes.
 #[derive(Copy, Clone)]
 pub(super) struct PlacedBox {
-    centre: DVec3,
-    extent: DVec3,
-    /// Half-lengths along the axes of its own mesh.
-    own: DVec3,
+    centres: [DVec3; 2],
+    extents: [DVec3; 2],
 }
 
 /// A node of a BVH. The virtual node above the root has no index and no triangle.
@@ -95,8 +97,8 @@ impl MeshPair<'_> {
         let mut nearest = None::<FoundPair>;
         let bound = |one: &PlacedBox, two: &PlacedBox| {
             let along = normals.get().map_or(0.0, |[normal1, normal2]| {
-                let reach = normal1.abs().dot(one.extent) + normal2.abs().dot(two.own);
-                normal1.dot(two.centre - one.centre) - reach
+                let reach = normal1.abs().dot(one.extents[0]) + normal2.abs().dot(two.extents[1]);
+                normal1.dot(two.centres[0] - one.centres[0]) - reach
             });
             one.gap(two).max(along) - lost
         };
@@ -158,33 +160,41 @@ impl MeshPair<'_> {
     }
 
     fn placed(&self, mesh: usize, min: DVec3, max: DVec3) -> PlacedBox {
-        let (centre, own) = (0.5 * (min + max), 0.5 * (max - min));
+        let (centre, extent) = (0.5 * (min + max), 0.5 * (max - min));
+        let Placement { rotation, translation, inverse } = self.placement;
+        let turned = |matrix: DMat3| {
+            let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(DVec3::abs);
+            x * extent.x + y * extent.y + z * extent.z
+        };
         if mesh == 0 {
-            return PlacedBox { centre, extent: own, own };
+            let centres = [centre, inverse * (centre - translation)];
+            PlacedBox { centres, extents: [extent, turned(inverse)] }
+        } else {
+            let centres = [rotation * centre + translation, centre];
+            PlacedBox { centres, extents: [turned(rotation), extent] }
         }
-        let Placement { rotation, translation, .. } = self.placement;
-        let [x, y, z] = [rotation.x_axis, rotation.y_axis, rotation.z_axis].map(DVec3::abs);
-        let extent = x * own.x + y * own.y + z * own.z;
-        PlacedBox { centre: rotation * centre + translation, extent, own }
     }
 }
 
 impl PlacedBox {
     fn size(&self) -> f64 {
-        self.own.length_squared()
+        self.extents[0].length_squared()
     }
 
-    /// Distance along the axes of mesh 1.
+    /// Distance along the axes of one of the meshes.
     pub(super) fn gap(&self, other: &Self) -> f64 {
-        let gaps = (self.centre - other.centre).abs() - (self.extent + other.extent);
-        gaps.max(DVec3::ZERO).length()
+        let [in_frame1, in_frame2] = [0, 1].map(|i| {
+            let offset = (self.centres[i] - other.centres[i]).abs();
+            (offset - (self.extents[i] + other.extents[i])).max(DVec3::ZERO).length()
+        });
+        in_frame1.max(in_frame2 * (1.0 - STRETCH))
     }
 
     /// Earliest time at which the boxes are within `target` of each other, where the other one moves;
     /// infinite if they pass each other.
     pub(super) fn time(&self, other: &Self, velocity: DVec3, target: f64) -> f64 {
-        let offset = other.centre - self.centre;
-        let reach = self.extent + other.extent + target;
+        let offset = other.centres[0] - self.centres[0];
+        let reach = self.extents[0] + other.extents[0] + target;
         let mut start = ((self.gap(other) - target) / velocity.length()).max(0.0);
         let mut end = f64::INFINITY;
         for axis in 0..3 {

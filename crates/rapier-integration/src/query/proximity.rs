@@ -19,7 +19,7 @@ impl MeshQuery<'_> {
     /// The distance; `Real::MAX` at a pose that is not finite, as Parry has it for shapes without
     /// parts.
     pub(crate) fn distance(&self, pos12: &Pose) -> ShapeDistance {
-        match self.walk().nearest(Placement::new(pos12), f64::INFINITY) {
+        match self.nearest(Placement::new(pos12), f64::INFINITY) {
             Some(pair) => {
                 let distance = pair.contact.distance.max(0.0) as Real;
                 ShapeDistance::new(distance).with_subshapes(pair.triangle1, pair.triangle2)
@@ -31,7 +31,7 @@ impl MeshQuery<'_> {
     /// The closest points, each in the frame of its mesh.
     pub(crate) fn closest_points(&self, pos12: &Pose, max_distance: Real) -> ClosestPoints {
         let placement = Placement::new(pos12);
-        match self.walk().nearest(placement, limit_of(max_distance)) {
+        match self.nearest(placement, limit_of(max_distance)) {
             Some(pair) if pair.is_touching => ClosestPoints::Intersecting,
             Some(pair) => ClosestPoints::WithinMargin(pair.point1(), pair.point2(&placement)),
             None => ClosestPoints::Disjoint,
@@ -41,9 +41,20 @@ impl MeshQuery<'_> {
     /// The contact of the deepest pair of triangles or, where none cross, of the nearest.
     pub(crate) fn contact(&self, pos12: &Pose, prediction: Real) -> Option<Contact> {
         let placement = Placement::new(pos12);
-        let pair = self.walk().deepest(placement, limit_of(prediction))?;
+        let limit = limit_of(prediction);
+        let pair = match self.trees() {
+            Some(trees) => trees.deepest(placement, limit),
+            None => self.walk().deepest(placement, limit),
+        }?;
         let distance = pair.contact.distance as Real;
         Some(touch(&pair, &placement).contact(pair.name(), distance))
+    }
+
+    fn nearest(&self, placement: Placement, limit: f64) -> Option<FoundPair> {
+        match self.trees() {
+            Some(trees) => trees.nearest(placement, limit),
+            None => self.walk().nearest(placement, limit),
+        }
     }
 }
 

@@ -7,6 +7,7 @@ use sbbk_core::query::{Bodies, Cast, CastOptions, FoundPair};
 use sbbk_core::traverse::Placement;
 
 use super::pairs::MeshPair;
+use super::trees::Trees;
 use crate::mesh::MeshView;
 use crate::pair::walk;
 
@@ -16,6 +17,10 @@ pub(crate) struct MeshQuery<'a> {
 }
 
 impl MeshQuery<'_> {
+    pub(super) fn trees(&self) -> Option<Trees> {
+        Trees::of(self.meshes.each_ref())
+    }
+
     pub(super) fn walk(&self) -> Walk<'_> {
         Walk(self.meshes.each_ref())
     }

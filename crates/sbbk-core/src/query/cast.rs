@@ -155,6 +155,7 @@ impl Cast {
 }
 
 /// Returns the time of impact of two triangles and the contact then.
+#[inline(always)]
 fn first_impact(
     pair: &TrianglePair,
     velocity: DVec3,
@@ -169,6 +170,7 @@ fn first_impact(
 }
 
 /// True if the boxes of the triangles come within the target distance early enough.
+#[inline(always)]
 fn boxes_meet(pair: &TrianglePair, velocity: DVec3, target: f64, latest: f64) -> bool {
     // Written out, as `array::map` is not always inlined: a cast took 1.2 times as long.
     let [corners1, corners2] = &pair.corners;

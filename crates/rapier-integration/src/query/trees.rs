@@ -1,0 +1,67 @@
+//! Trees of two meshes, for queries without a workspace.
+
+use std::cell::RefCell;
+use std::sync::Arc;
+
+use parry3d::math::Vector;
+use sbbk_core::query::{
+    Advance, Cast, CastOptions, FoundPair, MeshBodies, SearchScratch, cast, deepest, nearest,
+};
+use sbbk_core::traverse::Placement;
+use sbbk_core::tree::Tree;
+
+use super::casts::touch;
+use super::nonlinear::NonlinearCast;
+use crate::mesh::{MeshData, MeshView};
+
+thread_local! {
+    static SCRATCH: RefCell<SearchScratch> = RefCell::default();
+}
+
+/// The trees of two meshes.
+pub(super) struct Trees([Arc<MeshData>; 2]);
+
+impl Trees {
+    /// Returns the trees of meshes that are registered or small. The content of a small one is hashed,
+    /// as nothing else tells that it is still the same.
+    pub(super) fn of(meshes: [&MeshView<'_>; 2]) -> Option<Self> {
+        let [mesh1, mesh2] = meshes;
+        if !mesh1.may_have_tree() || !mesh2.may_have_tree() {
+            return None;
+        }
+        let tree1 = mesh1.tree_now()?;
+        let is_same = std::ptr::eq(mesh1.mesh, mesh2.mesh);
+        let tree2 = if is_same { Arc::clone(&tree1) } else { mesh2.tree_now()? };
+        Some(Self([tree1, tree2]))
+    }
+
+    fn search<T>(&self, search: impl FnOnce((&Tree, &Tree), &mut SearchScratch) -> T) -> T {
+        let [tree1, tree2] = self.0.each_ref().map(|mesh| mesh.tree().expect("built"));
+        SCRATCH.with_borrow_mut(|scratch| search((tree1, tree2), scratch))
+    }
+
+    pub(super) fn nearest(&self, placement: Placement, limit: f64) -> Option<FoundPair> {
+        self.search(|trees, scratch| nearest(trees, placement, limit, scratch))
+    }
+
+    pub(super) fn deepest(&self, placement: Placement, limit: f64) -> Option<FoundPair> {
+        self.search(|trees, scratch| deepest(trees, placement, limit, scratch))
+    }
+
+    pub(super) fn cast(
+        &self,
+        placement: Placement,
+        velocity: Vector,
+        options: CastOptions,
+    ) -> Option<Cast> {
+        self.search(|trees, scratch| cast(trees, placement, velocity, options, scratch))
+    }
+
+    pub(super) fn cast_nonlinear(&self, cast: &NonlinearCast<'_>) -> Option<Advance<FoundPair>> {
+        self.search(|trees, scratch| {
+            let balls = [trees.0, trees.1].map(Tree::bounding_ball);
+            let bodies = &mut MeshBodies { trees, scratch };
+            cast.first_impact(bodies, cast.options(balls), 0.0, touch)
+        })
+    }
+}
