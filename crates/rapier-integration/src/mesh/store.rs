@@ -144,21 +144,6 @@ impl MeshStore {
     /// Returns the data of a mesh, found by a hash of all its content.
     pub(super) fn entry(&self, mesh: &TriMesh) -> Arc<MeshData> {
         self.budget.charge_hash(mesh.indices().len());
-        self.find(mesh)
-    }
-
-    /// Returns the data of a mesh with its tree, if the mesh is registered or small. For queries
-    /// without a workspace: hashes small meshes, and builds trees outside of the budget of a step.
-    pub(super) fn tree_now(&self, mesh: &TriMesh) -> Option<Arc<MeshData>> {
-        if let Some(data) = self.registered(mesh) {
-            return Some(data);
-        }
-        let data = is_small(mesh.indices().len()).then(|| self.find(mesh))?;
-        self.build(mesh, &data).ok()?;
-        Some(data)
-    }
-
-    fn find(&self, mesh: &TriMesh) -> Arc<MeshData> {
         let content = ContentHash::of(mesh);
         let mut contents = self.contents();
         let known = contents.meshes.get(&content).and_then(Weak::upgrade);

@@ -18,7 +18,7 @@ use sbbk_core::volumes::rounding::gamma;
 
 use super::data::MeshData;
 use super::identity::MeshToken;
-use super::store::{MeshStore, is_small};
+use super::store::MeshStore;
 
 /// Returns false if the BVH of a mesh has no triangle within `margin` of the box around a shape at
 /// `pos12`.
@@ -123,15 +123,9 @@ impl<'a> MeshView<'a> {
         is_valid(&root).then(|| Self { mesh, token: MeshToken::of(mesh), store, root })
     }
 
-    /// True if [`tree_now`](Self::tree_now) may return a tree.
-    pub(crate) fn may_have_tree(&self) -> bool {
-        is_small(self.mesh.indices().len()) || self.store.registered(self.mesh).is_some()
-    }
-
-    /// Returns the shared data of the mesh with its tree, if the mesh is registered or so small that a
-    /// query may build the tree.
-    pub(crate) fn tree_now(&self) -> Option<Arc<MeshData>> {
-        self.store.tree_now(self.mesh)
+    /// Returns the shared data of the mesh, if the mesh is registered.
+    pub(crate) fn registered(&self) -> Option<Arc<MeshData>> {
+        self.store.registered(self.mesh)
     }
 
     /// Returns the shared data of the mesh with its tree, if the mesh is registered or small. Finds

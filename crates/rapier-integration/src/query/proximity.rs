@@ -6,6 +6,7 @@ use sbbk_core::query::{FoundPair, PartPair};
 use sbbk_core::traverse::Placement;
 
 use super::casts::touch;
+use super::trees::Trees;
 use super::walk::MeshQuery;
 
 impl MeshQuery<'_> {
@@ -13,7 +14,11 @@ impl MeshQuery<'_> {
     /// (after an edit it can be another one than a new dispatcher would name).
     pub(crate) fn intersection(&self, pos12: &Pose) -> ShapeIntersection {
         let placement = Placement::new(pos12);
-        answer(self.walk().meeting(placement))
+        // A hash of small meshes takes longer than most of these queries.
+        answer(match Trees::of_registered(self.meshes.each_ref()) {
+            Some(trees) => trees.meeting(placement),
+            None => self.walk().meeting(placement),
+        })
     }
 
     /// The distance; `Real::MAX` at a pose that is not finite, as Parry has it for shapes without

@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use parry3d::math::Vector;
 use sbbk_core::query::{
-    Advance, Cast, CastOptions, FoundPair, MeshBodies, SearchScratch, cast, deepest, nearest,
+    Advance, Cast, CastOptions, FoundPair, MeshBodies, SearchScratch, cast, deepest, meeting,
+    nearest,
 };
 use sbbk_core::traverse::Placement;
 use sbbk_core::tree::Tree;
@@ -22,22 +23,32 @@ thread_local! {
 pub(super) struct Trees([Arc<MeshData>; 2]);
 
 impl Trees {
-    /// Returns the trees of meshes that are registered or small. The content of a small one is hashed,
-    /// as nothing else tells that it is still the same.
-    pub(super) fn of(meshes: [&MeshView<'_>; 2]) -> Option<Self> {
-        let [mesh1, mesh2] = meshes;
-        if !mesh1.may_have_tree() || !mesh2.may_have_tree() {
-            return None;
+    /// Returns the trees of meshes that are registered or small.
+    pub(super) fn of([mesh1, mesh2]: [&MeshView<'_>; 2]) -> Option<Self> {
+        // A large mesh without a tree costs no hash, so the larger one comes first.
+        if mesh1.mesh.indices().len() < mesh2.mesh.indices().len() {
+            let tree2 = mesh2.with_tree()?;
+            return Some(Self([mesh1.with_tree()?, tree2]));
         }
-        let tree1 = mesh1.tree_now()?;
+        let tree1 = mesh1.with_tree()?;
         let is_same = std::ptr::eq(mesh1.mesh, mesh2.mesh);
-        let tree2 = if is_same { Arc::clone(&tree1) } else { mesh2.tree_now()? };
+        let tree2 = if is_same { Arc::clone(&tree1) } else { mesh2.with_tree()? };
         Some(Self([tree1, tree2]))
+    }
+
+    /// Returns the trees of registered meshes.
+    pub(super) fn of_registered(meshes: [&MeshView<'_>; 2]) -> Option<Self> {
+        let [mesh1, mesh2] = meshes.map(MeshView::registered);
+        Some(Self([mesh1?, mesh2?]))
     }
 
     fn search<T>(&self, search: impl FnOnce((&Tree, &Tree), &mut SearchScratch) -> T) -> T {
         let [tree1, tree2] = self.0.each_ref().map(|mesh| mesh.tree().expect("built"));
         SCRATCH.with_borrow_mut(|scratch| search((tree1, tree2), scratch))
+    }
+
+    pub(super) fn meeting(&self, placement: Placement) -> Option<FoundPair> {
+        self.search(|trees, scratch| meeting(trees, placement, scratch))
     }
 
     pub(super) fn nearest(&self, placement: Placement, limit: f64) -> Option<FoundPair> {
