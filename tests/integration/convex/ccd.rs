@@ -124,7 +124,7 @@ fn casts_along_a_floor_meet_the_wall() {
     let mut hits = 0;
     for slider in sliders() {
         for _ in 0..60 {
-            let speed = 5.0 + 400.0 * random.rand_float();
+            let speed = 5.0 + 200.0 * random.rand_float();
             let end = 1.0 / 60.0;
             let height = slider.height + 0.01 * (random.rand_float() - 0.7);
             let wide = slider.shape.compute_aabb(&Pose::from_rotation(slider.turn)).maxs.x;

@@ -21,7 +21,7 @@ const AHEAD: f64 = 4.0;
 
 /// Steps along one plane. Higher: fewer contacts are computed; lower: planes that have turned away
 /// are left sooner.
-const PLANE_STEPS: usize = 24;
+const PLANE_STEPS: usize = 64;
 
 /// Distance at the start up to which a shape is in contact, and depth that it may gain in contact,
 /// as a share of its thickness. Higher: shapes that slide into a wall sink deeper before they are
