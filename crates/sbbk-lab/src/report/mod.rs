@@ -44,7 +44,8 @@ impl Results {
 
 impl fmt::Display for Results {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "VERDICT: {}\n\n{}", self.verdict, self.environment)?;
+        let verdict = table::wrapped(&format!("VERDICT: {}", self.verdict), "");
+        writeln!(f, "{verdict}\n\n{}", self.environment)?;
         self.tables.iter().try_for_each(|table| write!(f, "\n{table}"))
     }
 }

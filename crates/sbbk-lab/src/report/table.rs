@@ -212,7 +212,10 @@ impl<'a> TableSpec<'a> {
                 lines.push([line, show(&lead)].concat());
             }
         }
-        let names = keys.iter().map(|key| key.replace('_', " "));
+        let names = keys.iter().map(|key| match *key {
+            "contact_recycling" => "recycling".to_owned(),
+            key => key.replace('_', " "),
+        });
         Table {
             title,
             header: names.chain(columns.iter().map(|column| column.header.clone())).collect(),
@@ -282,7 +285,7 @@ impl Table {
 }
 
 /// Breaks a text into indented lines.
-fn wrapped(text: &str, indent: &str) -> String {
+pub(super) fn wrapped(text: &str, indent: &str) -> String {
     let mut lines = vec![indent.to_owned()];
     for word in text.split_whitespace() {
         let line = lines.last_mut().expect("there is one");

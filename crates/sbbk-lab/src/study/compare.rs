@@ -78,9 +78,8 @@ impl ComparePlan {
 
 /// Runs both experiments.
 pub fn compare(plan: &ComparePlan, progress: &Progress) -> Results {
-    let mut rows = papers().to_vec();
-    rows.extend(drops(plan, progress));
-    rows.extend(pile::papers());
+    let mut rows = drops(plan, progress);
+    rows.extend(papers());
     let recycled = plan.heads.iter().map(|&heads| (heads, true));
     for (heads, contact_recycling) in recycled.chain([(plan.heads_without_recycling, false)]) {
         let scene = MonkeyPile { contact_recycling, ..plan.scene(heads) };
@@ -90,6 +89,7 @@ pub fn compare(plan: &ComparePlan, progress: &Progress) -> Results {
         let plan = PilePlan { repeats, same_poses, ..plan.pile.clone() };
         rows.extend(pile(&scene, &plan, progress));
     }
+    rows.extend(pile::papers());
     let [times, state] = pile::runs(&rows, &plan.pile.run);
     let tables = vec![times, state, same_poses_table(&rows), frames(&rows, plan)];
     Results::new(verdict(plan, &rows), rows, tables)

@@ -190,7 +190,6 @@ pub fn runs(rows: &[Row], plan: &RunPlan) -> [Table; 2] {
             aabb_only("collision_detection.median"),
             time("head-head queries", "mesh_mesh"),
             time("head-floor queries", "mesh_other"),
-            time("solver", "solver"),
         ],
     )
     .note(format!(
