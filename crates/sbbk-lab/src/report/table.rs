@@ -241,14 +241,22 @@ fn groups<'a>(rows: &[&'a Row], key: impl Fn(&Row) -> Vec<String>) -> Vec<Vec<&'
 
 impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}", wrapped(&self.title, ""))?;
+        // Keys that are the same in all lines are part of the title.
+        let is_constant = |&key: &usize| {
+            self.lines.len() > 1 && self.lines.iter().all(|line| line[key] == self.lines[0][key])
+        };
+        let (constant, keys): (Vec<usize>, Vec<usize>) = (0..self.key_count).partition(is_constant);
+        let constant = constant.iter().map(|&key| {
+            let (name, value) = (&self.header[key], &self.lines[0][key]);
+            format!("; {name}: {value}")
+        });
+        writeln!(f, "{}", wrapped(&(self.title.clone() + &constant.collect::<String>()), ""))?;
         let widths: Vec<usize> = (0..self.header.len())
             .map(|column| {
                 let cells = [&self.header].into_iter().chain(&self.lines);
                 cells.map(|line| line[column].chars().count()).max().unwrap_or(0)
             })
             .collect();
-        let keys: Vec<usize> = (0..self.key_count).collect();
         let mut shown = keys.clone();
         for column in self.key_count..self.header.len() {
             let width: usize = shown.iter().map(|&c| widths[c] + 3).sum();
