@@ -30,7 +30,7 @@ impl HalfEdges for Surface {
 /// The triangles of an indexed mesh with their adjacency.
 #[derive(Clone, Copy)]
 pub struct IndexedTriangles<'a> {
-    /// Adjacency of the triangles.
+    /// Adjacency of the triangles: a [`Surface`], or one that finds neighbours on demand.
     pub twins: &'a dyn HalfEdges,
     /// Vertices of the mesh.
     pub vertices: &'a [Vec3],
