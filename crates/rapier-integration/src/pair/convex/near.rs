@@ -12,14 +12,14 @@ use sbbk_core::volumes::rounding::gamma;
 
 use super::placed::PlacedPart;
 use super::shape::ConvexShape;
-use crate::mesh::Hierarchy;
+use crate::mesh::MeshView;
 
 /// Calls `found` with all triangles within `margin` of a part, and a few others, in the order of the
 /// BVH, until it returns `Break`.
 pub(super) fn triangles_near(
     placed: &PlacedPart,
     shape: ConvexShape<'_>,
-    mesh: &Hierarchy<'_>,
+    mesh: &MeshView<'_>,
     margin: Real,
     mut counters: impl Counters,
     found: impl FnMut(u32) -> ControlFlow<()>,
@@ -68,7 +68,7 @@ pub(super) fn triangles_near(
 pub(super) fn gap_of(
     placed: &PlacedPart,
     shape: ConvexShape<'_>,
-    mesh: &Hierarchy<'_>,
+    mesh: &MeshView<'_>,
     around: Aabb,
 ) -> impl Fn(TestedBox) -> Real {
     let magnitude = mesh.magnitude();
@@ -90,7 +90,7 @@ pub(super) fn gap_of(
 }
 
 /// Returns a bound of the rounding of boxes: some twenty operations.
-fn rounding(mesh: &Hierarchy<'_>, around: &Aabb) -> Real {
+fn rounding(mesh: &MeshView<'_>, around: &Aabb) -> Real {
     gamma(32) * mesh.magnitude().max(around.mins.abs().max(around.maxs.abs()).max_element())
 }
 
@@ -100,7 +100,7 @@ fn rounding(mesh: &Hierarchy<'_>, around: &Aabb) -> Real {
 pub(super) fn time_of(
     placed: &PlacedPart,
     shape: ConvexShape<'_>,
-    mesh: &Hierarchy<'_>,
+    mesh: &MeshView<'_>,
     around: Aabb,
     velocity: DVec3,
     target: Real,

@@ -18,7 +18,7 @@ use super::pair::ConvexPair;
 use super::parts::{Part, Parts};
 use super::placed::PlacedPart;
 use super::shape::{ConvexShape, Extent};
-use crate::mesh::{Hierarchy, box_of};
+use crate::mesh::{MeshView, box_of};
 use crate::pair::pose::MeshPlace;
 
 /// Distance up to which bodies touch, as a share of their coordinates in the frame of the shape: the
@@ -31,7 +31,7 @@ const WIDE: f64 = 0.1;
 
 /// A mesh and one convex shape at a pose.
 pub(crate) struct ConvexSearch<'a> {
-    pub(crate) mesh: Hierarchy<'a>,
+    pub(crate) mesh: MeshView<'a>,
     pub(super) shape: &'a dyn Shape,
     pub(super) convex: ConvexShape<'a>,
     pub(crate) placed: PlacedPart,
