@@ -68,7 +68,8 @@ pub(crate) trait PairQuery {
         self.pose().prediction
     }
 
-    /// Adds all contacts at once if these cost less than keeping candidates. Returns true if so.
+    /// Adds all contacts at once if these cost less than keeping candidates. Returns true if so. Called
+    /// first in each query.
     fn contacts_without_candidates(
         &mut self,
         _counters: &mut impl Counters,

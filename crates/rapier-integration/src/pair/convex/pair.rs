@@ -61,7 +61,7 @@ impl ConvexPair<'_> {
 }
 
 impl<'a> Pair for ConvexPair<'a> {
-    /// The mesh, and the parts that the candidates are of.
+    /// Data of the mesh and of the parts that the candidates belong to.
     type State = (KnownMesh, PartData);
     type Hint = ();
     type Query<'q>
@@ -83,7 +83,7 @@ impl<'a> Pair for ConvexPair<'a> {
             change = Change::Replaced;
         }
         let surface = self.leave_solids.then(|| known_mesh.acquire_surface(&self.mesh));
-        (change, ConvexQuery { pair: self, part_data, surface: surface.flatten(), is_begun: false })
+        (change, ConvexQuery { pair: self, part_data, surface: surface.flatten() })
     }
 }
 
@@ -93,8 +93,6 @@ pub(crate) struct ConvexQuery<'q> {
     part_data: &'q PartData,
     /// Surface of the mesh, for push-outs.
     pub(super) surface: Option<MeshSurface<'q>>,
-    /// True once the parts of the last query are forgotten.
-    is_begun: bool,
 }
 
 /// Memory for queries.
@@ -116,13 +114,6 @@ thread_local! {
 }
 
 impl ConvexQuery<'_> {
-    /// Forgets the parts of the last query, once.
-    fn begin(&mut self, scratch: &mut ConvexScratch) {
-        if !std::mem::replace(&mut self.is_begun, true) {
-            scratch.parts.clear();
-        }
-    }
-
     /// Calls `then` with a triangle and a part.
     #[inline(always)]
     pub(super) fn with_pair<T>(
@@ -213,9 +204,9 @@ impl PairQuery for ConvexQuery<'_> {
         scratch: &mut ConvexScratch,
         contacts: &mut ContactList<PartContact>,
     ) -> bool {
+        scratch.parts.clear();
         let ConvexPair { ref mesh, parts, mesh_place, .. } = *self.pair;
         let Parts::One(shape @ ConvexShape::Ball(ball)) = parts else { return false };
-        self.begin(scratch);
         let part = Part { pose: None, shape, cone: None };
         let placed = self.placed(0, &part, scratch);
         let (prediction, margin) = (self.pose().prediction, self.reach());
@@ -245,7 +236,6 @@ impl PairQuery for ConvexQuery<'_> {
         scratch: &mut ConvexScratch,
         mut found: impl FnMut([u32; 2]),
     ) {
-        self.begin(scratch);
         let ConvexPair { ref mesh, parts, mesh_place, .. } = *self.pair;
         parts.intersecting(&self.pair.mesh_box(margin), |index| {
             parts.with(index, |part| {
@@ -265,7 +255,6 @@ impl PairQuery for ConvexQuery<'_> {
         scratch: &mut ConvexScratch,
         contacts: &mut ContactList<PartContact>,
     ) {
-        self.begin(scratch);
         for candidate in candidates {
             if limits.may_touch(candidate)
                 && let Some(contact) = self.contact(candidate, limits, scratch)
