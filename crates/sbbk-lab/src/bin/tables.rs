@@ -177,7 +177,8 @@ fn table(description: &str, data: &Data) -> Result<String, String> {
     let (header, rows) = rows.split_first().ok_or("the description is empty")?;
     let columns = header.iter().map(|column| column.split_once(" = ").unwrap_or((column, "sbbk")));
     let columns: Vec<(&str, &str)> = columns.collect();
-    let names: Vec<&str> = columns.iter().map(|column| column.0).collect();
+    let names = columns.iter().map(|(name, backend)| filled(name, backend, data));
+    let names = names.collect::<Result<Vec<String>, String>>()?;
     let rule = "---:|".repeat(names.len() - 1);
     let mut text = format!("| {} |\n|---|{rule}\n", names.join(" | "));
     for row in rows {
@@ -197,7 +198,10 @@ fn filled(text: &str, backend: &str, data: &Data) -> Result<String, String> {
     let mut filled = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let (placeholder, rest) = part.split_once('}').ok_or("a `{` without a `}`")?;
-        filled.push_str(&data.evaluate(placeholder, backend)?);
+        filled.push_str(&data.evaluate(placeholder, backend).unwrap_or_else(|error| {
+            eprintln!("missing: {error}");
+            "–".to_owned()
+        }));
         filled.push_str(rest);
     }
     Ok(filled)
@@ -221,7 +225,8 @@ mod tests {
         let expected = "| mesh | stock | SBBK |\n|---|---:|---:|\n| of 1 | 8.00 | 2.00 |\n\
                         | both | 1.00 | 2,000 |\n| first | 4.00x | 4.00x |\n";
         assert_eq!(found, expected);
-        assert!(table("a | b\nc | {size 7 / time.min}", &Data::parse(csv)).is_err());
+        let missing = table("a | b\nc | {size 7 / time.min}", &Data::parse(csv)).unwrap();
+        assert!(missing.ends_with("| c | – |\n"), "{missing}");
         let page = "x\n<!-- table: t -->\nold\n<!-- end -->\ny";
         let filled = replaced(page, "t", "new\n").unwrap();
         assert_eq!(filled, "x\n<!-- table: t -->\nnew\n<!-- end -->\ny");
