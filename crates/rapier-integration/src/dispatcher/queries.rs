@@ -1,4 +1,4 @@
-//! Queries without manifolds: which of the shapes SBBK answers for, and Parry for all else.
+//! Queries without manifolds.
 
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::ShapeCastOptions;
@@ -31,9 +31,9 @@ impl SbbkDispatcher {
         found
     }
 
-    /// What `of_meshes` finds of two rigid meshes, or `of_convex` of one and a convex shape; `None` if
-    /// Parry must answer. `apart` is the answer where Parry's hierarchies tell that they are farther
-    /// apart than a distance. `balls` says who answers for these.
+    /// Calls `of_meshes` for two rigid meshes, or `of_convex` for a mesh and a convex shape. Returns
+    /// `None` if Parry must answer. `apart` holds a distance, and the result for shapes whose boxes are
+    /// farther apart. `balls` selects who handles balls.
     fn find<T>(
         &self,
         pos12: &Pose,
@@ -82,7 +82,7 @@ impl SbbkDispatcher {
         Some(of_convex(ConvexQuery { search: ConvexSearch::new(&pair, other)?, mesh_place }))
     }
 
-    /// Two rigid meshes, to be asked about; `None` if Parry must answer.
+    /// Returns `None` if Parry must answer.
     fn mesh_query<'a>(&'a self, meshes: [&'a TriMesh; 2]) -> Option<MeshQuery<'a>> {
         let meshes = self.config.kinds.meshes.then(|| self.view(meshes))??;
         Some(MeshQuery { meshes })
@@ -98,8 +98,7 @@ enum Balls {
     Parrys,
 }
 
-/// Queries without manifolds: of two rigid meshes from their trees or Parry's hierarchies, of one and
-/// a convex shape from Parry's hierarchy; all others, and casts of meshes without trees, are Parry's.
+/// Queries of two rigid meshes, and of a rigid mesh and a convex shape. All others go to Parry.
 impl QueryDispatcher for SbbkDispatcher {
     fn intersection_test(
         &self,

@@ -28,7 +28,7 @@ impl MeshQuery<'_> {
             Some(trees) => trees.cast(placement, velocity12, core_options),
             None => self.walk().cast(placement, velocity12, core_options),
         }?;
-        // Where the point of mesh 2 was before it moved.
+        // The hit wants the point of mesh 2 before the motion.
         let mut pair = cast.pair;
         pair.contact.point2 -= velocity12.as_dvec3() * cast.time;
         Some(touch(&pair, &placement).hit(pair.name(), cast.time, status(cast.is_penetrating)))

@@ -10,14 +10,14 @@ use super::proximity::limit_of;
 use super::touch::{Touch, status};
 use crate::pair::{ConvexSearch, FoundCast, FoundTriangle, MeshPlace};
 
-/// A mesh and a convex shape of which something is asked.
+/// A mesh and a convex shape of a query.
 pub(crate) struct ConvexQuery<'a> {
     pub(crate) search: ConvexSearch<'a>,
     pub(crate) mesh_place: MeshPlace,
 }
 
 impl ConvexQuery<'_> {
-    /// Whether the surface of the mesh meets the shape, and where.
+    /// Returns true and one triangle, if the surface of the mesh touches the shape.
     pub(crate) fn intersection(&self) -> ShapeIntersection {
         match self.search.touching() {
             Some(triangle) => {

@@ -1,10 +1,8 @@
-//! Queries without manifolds for a pair of meshes, or a mesh and a convex shape: from Parry's question to a search and back.
+//! Queries without manifolds, for a pair of meshes or a mesh and a convex shape.
 //!
-//! Hosts keep nothing for such a query, so each one has to find the trees of its meshes anew
-//! ([`lookup`]). With trees the search is that of [`sbbk_core::query`]. Where a mesh is large and
-//! not registered it goes down Parry's hierarchies and decides by the same exact contacts
-//! ([`walk`]); casts are Parry's then. A mesh and a convex shape ([`convex`]) have no trees.
-//! Casts along curves are one search for both ([`nonlinear`]).
+//! Registered and small meshes are searched by their trees ([`trees`]), all others by Parry's BVHs
+//! ([`walk`], [`pairs`]). A mesh and a convex shape ([`convex`]) use the BVH of the mesh. [`nonlinear`]
+//! and [`moving`] cast along the curves of rigid motions.
 
 mod casts;
 mod convex;

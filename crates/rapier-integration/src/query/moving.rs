@@ -23,9 +23,9 @@ const AHEAD: f64 = 4.0;
 /// are left sooner.
 const PLANE_STEPS: usize = 64;
 
-/// Distance at the start up to which a shape is in contact, and depth that it may gain in contact,
-/// as a share of its thickness. Higher: shapes that slide into a wall sink deeper before they are
-/// stopped; lower: shapes that roll are stopped at edges that they do not meet.
+/// Distance at the start up to which a shape is in contact, as a share of its thickness. In contact it
+/// may sink deeper by the same length. Higher: shapes that slide into a wall sink deeper; lower: rolling
+/// shapes stop at internal edges.
 const SINK: f64 = 0.1;
 
 /// A mesh and a convex shape in motion.
@@ -56,7 +56,7 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
     /// triangles that the shape may come out behind.
     pub(super) fn first_impact(&mut self) -> Option<Advance<FoundTouch>> {
         let AdvanceOptions { start, end, tolerance, .. } = self.options;
-        // Not "later than": a NaN is no time.
+        // False for NaN.
         let is_possible = start <= end;
         if !is_possible {
             return None;
@@ -81,8 +81,7 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         }
     }
 
-    /// Duration for which triangles are advanced from their boxes at one time. A mesh that does not
-    /// turn takes one window.
+    /// Returns the duration of the next window. A mesh that does not turn takes one window.
     fn window(&self, from: f64, previous: f64) -> Option<f64> {
         let AdvanceOptions { end, speed_bound, tolerance, .. } = self.options;
         if self.sweep().is_some() {
@@ -150,8 +149,8 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         self.meets_again(&mut one, found.time, until)
     }
 
-    /// Returns whether an impact counts: not of a shape that is in contact at the start, does not
-    /// approach by its thickness until the end, and hardly sinks deeper.
+    /// True if an impact counts. A shape that is in contact at the start may have impacts that do not:
+    /// it does not approach by its thickness until the end, and hardly sinks deeper.
     fn counts(&self, one: &mut MovingTriangle<'_>, found: &Advance<FoundTouch>, from: f64) -> bool {
         let Self { cast, options, thickness, .. } = self;
         if cast.stop_at_penetration {
@@ -174,8 +173,8 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         Some(self.sunk?.max(0.0) + SINK * self.thickness)
     }
 
-    /// First impact after one that does not count: a shape that turns may come down with another
-    /// end. As in Parry, the shape is looked at now and then.
+    /// First impact after one that does not count. A shape that turns may come down with another end,
+    /// so samples of its motion are tested, like in Parry.
     fn meets_again(
         &self,
         one: &mut MovingTriangle<'_>,
@@ -252,7 +251,7 @@ struct MovingTriangle<'a> {
     moving: &'a MovingConvex<'a, 'a>,
     triangle: u32,
     corners: [DVec3; 3],
-    /// How far the triangle and the shape reach from the centres of their motions.
+    /// Reach of the triangle and of the shape from the centres of their motions.
     reaches: [f64; 2],
     /// Bound on the acceleration of points against the other body, as they turn.
     acceleration: f64,
@@ -273,8 +272,8 @@ impl<'a> MovingTriangle<'a> {
         Self { moving, triangle, corners, reaches, acceleration }
     }
 
-    /// How long a plane `depth` below the triangle separates it from the shape; infinite if until
-    /// `end`.
+    /// Returns the time for which a plane `depth` below the triangle separates it from the shape. It is
+    /// infinite if that holds until `end`.
     fn clear_of_own_plane(&self, depth: f64, from: f64, end: f64) -> f64 {
         let MovingConvex { search, mesh_place, cast, .. } = self.moving;
         let [a, b, c] = self.corners;
@@ -287,11 +286,12 @@ impl<'a> MovingTriangle<'a> {
         self.clear_along(if is_toward { normal } else { -normal }, depth, from, end)
     }
 
-    /// How long a plane across `axis`, a unit vector of space from the shape to the triangle, separates
-    /// the shape from the triangle moved by `depth` along it; infinite if until `end`.
+    /// Returns the time for which a plane across `axis` separates the shape from the triangle. It is
+    /// infinite if that holds until `end`. `axis` is a unit vector of space from the shape to the
+    /// triangle, which is moved by `depth` along it.
     ///
-    /// Each point is as far along the axis as between its places at two times, but for the bend of its
-    /// way, which is at most an eighth of the acceleration times the square of the time between.
+    /// A point leaves the chord between its places at two times by at most `a t² / 8`. Here `a` bounds
+    /// its acceleration, and `t` is the time between. The gap obeys the same bound.
     fn clear_along(&self, axis: DVec3, depth: f64, from: f64, end: f64) -> f64 {
         let tolerance = self.moving.options.tolerance;
         let gap_at = |time| depth + self.gap(axis, time);
@@ -313,7 +313,7 @@ impl<'a> MovingTriangle<'a> {
                 }
                 continue;
             }
-            // Also a NaN, after a time without end.
+            // After an infinite time `next` is NaN.
             let is_known = next.is_finite() && gap > bend;
             if !is_known {
                 break;
@@ -325,8 +325,8 @@ impl<'a> MovingTriangle<'a> {
         (time - from).max(self.clear_by_speed(axis, from))
     }
 
-    /// As [`clear_along`](Self::clear_along), by the greatest speed of all points and, where the shape
-    /// is taken for a ball that does not turn, of the others.
+    /// Returns a lower bound of [`clear_along`](Self::clear_along), from the greatest speed of all points.
+    /// A second bound replaces the shape by a ball that does not turn.
     fn clear_by_speed(&self, axis: DVec3, from: f64) -> f64 {
         let MovingConvex { mesh_place, cast, .. } = self.moving;
         let [mesh, shape] = mesh_place.swap(cast.motions);

@@ -1,4 +1,4 @@
-//! Casts along the curves of rigid motions: of two meshes, or of a mesh and a convex shape.
+//! Casts of two meshes, or of a mesh and a convex shape, along the curves of rigid motions.
 
 use glamx::{DMat3, DQuat, DVec3};
 use parry3d::math::{Real, Vector};
@@ -9,30 +9,28 @@ use sbbk_core::volumes::Sphere;
 
 use super::touch::Touch;
 
-/// Bodies this close have met, as a share of the radius of the ball around the smaller one. Higher:
-/// fewer steps, earlier impacts.
+/// Distance at which bodies have met, as a share of the radius of the smaller body. Higher: fewer steps,
+/// earlier impacts; lower: more steps.
 const TOLERANCE: f64 = 1.0e-6;
 
-/// The same as a share of how far their centres are apart, for a body that is a point: poses are
-/// hardly better.
+/// Distance at which bodies have met, as a share of the distance of their centres: the rounding of
+/// poses. It serves bodies that are points.
 const PRECISION: f64 = 1.0e-12;
 
-/// Steps. Head-on motions take 10 to 30, turning ones up to some hundred.
+/// Steps at most. Higher: exact times of motions that nearly touch; lower: a bound on their cost.
 const STEP_LIMIT: usize = 2000;
 
-/// Into how many parts, at least and at most, the time is divided for looks at what touches at the
-/// start and turns.
+/// Least and greatest number of samples of a rotating body that touches at the start.
 const LOOKS: (f64, f64) = (10.0, 100.0);
 
-/// How far what touches at the start turns from look to look, in radians: a long body that is looked
-/// at after each half turn, or two, always looks the same.
+/// Rotation between two samples, in radians. Higher: a long body may look the same in each sample;
+/// lower: more samples.
 const TURN: f64 = 0.5;
 
-/// What poses lose as their quaternions, rounded to f32, are not of unit length: points are up to this
-/// share faster.
+/// Share by which points may be faster, as quaternions in f32 are not of unit length.
 const STRETCH: f64 = 1.0e-6;
 
-/// Two bodies on their ways: what is asked.
+/// A cast of two bodies in motion.
 #[derive(Copy, Clone)]
 pub(crate) struct NonlinearCast<'a> {
     pub(crate) motions: [&'a NonlinearRigidMotion; 2],
@@ -42,13 +40,13 @@ pub(crate) struct NonlinearCast<'a> {
 }
 
 impl NonlinearCast<'_> {
-    /// Where body 2 is in the frame of body 1.
+    /// Returns the placement of the bodies at a time.
     pub(super) fn placement_at(&self, time: f64) -> Placement {
         let [place1, place2] = self.motions.map(|motion| place(motion, time));
         place1.inverted().of(&place2)
     }
 
-    /// For bodies in balls.
+    /// Returns the options of the search, given balls around the bodies.
     pub(super) fn options(&self, balls: [Sphere; 2]) -> AdvanceOptions {
         let [size1, size2] = balls.map(|ball| f64::from(ball.radius));
         let [from1, from2] = self.motions.map(centre);
@@ -61,14 +59,11 @@ impl NonlinearCast<'_> {
         }
     }
 
-    /// The first impact; `touch` tells of a pair that is found where it touches, `thickness` is how
-    /// far one body must sink into the other to come out behind it, as Parry has it.
+    /// Returns the first impact. `touch` returns the points of a pair, `thickness` is the depth at which
+    /// one body comes out behind the other.
     ///
-    /// If contacts at the start are not to stop the cast, Parry asks of each triangle that touches
-    /// then whether its velocity and that of the other body approach until the end by more than the
-    /// thickness of both, and leaves it out if they do not. (Of a thick body that turns it goes on to
-    /// look at some times between.) Here it is left out; what is convex is looked at again in
-    /// `moving.rs`, meshes are not.
+    /// A cast that does not stop at the start skips the pairs that touch then, except those that
+    /// approach by more than the thickness until the end. Parry does the same.
     pub(super) fn first_impact<B: Bodies>(
         &self,
         bodies: &mut B,
@@ -86,7 +81,7 @@ impl NonlinearCast<'_> {
         })
     }
 
-    /// An impact as Parry has it, with what is where the pair touches.
+    /// Returns the hit of an impact.
     pub(super) fn hit<P: PartPair>(&self, found: &Advance<P>, touch: &Touch) -> ShapeCastHit {
         let Advance { time, ref pair, has_converged, .. } = *found;
         let is_at_start = time == f64::from(self.start);
@@ -100,14 +95,13 @@ impl NonlinearCast<'_> {
         touch.hit(pair.name(), time, status)
     }
 
-    /// No point of one body moves faster than this against the other.
+    /// Returns a bound on the speed of points of one body against the other.
     ///
-    /// With `v` the velocity of centre 2 against centre 1, `w` the turning of a body and `r` how far
-    /// its points are from its centre, that is at most `|v| + |w1| r1 + |w2| r2`. In the frame of body
-    /// 1, all of which turns about centre 1, points of body 2 have `|v - w1 × c| + |w2 - w1| r2`, with
-    /// `c` from centre 1 to centre 2; in that of body 2 likewise. As `c` is linear in time, each is
-    /// greatest at the start or at the end. Each of these takes the reach of one body only: it stays
-    /// finite if the other is a half-space that turns.
+    /// Let `v` be the velocity of centre 2 against centre 1, `w` the angular velocity of a body, and
+    /// `r` its reach. Then `|v| + |w1| r1 + |w2| r2` is a bound. In the frame of body 1 another bound is
+    /// `|v - w1 × c| + |w2 - w1| r2`, with `c` from centre 1 to centre 2. The vector `c` is linear in
+    /// time, so this bound is greatest at the start or at the end. It does not depend on the reach of
+    /// body 1, so it is finite for a half-space that turns. A third bound swaps the bodies.
     fn speed_bound(&self, balls: [Sphere; 2]) -> f64 {
         let [motion1, motion2] = self.motions;
         let [reach1, reach2] = [0, 1].map(|i| self.reach(i, &balls[i]));
@@ -120,17 +114,17 @@ impl NonlinearCast<'_> {
                 let turning = if turn == DVec3::ZERO { DVec3::ZERO } else { turn.cross(between) };
                 (velocity - turning).length()
             });
-            // Not `max`: at a time without end it is NaN, and so is the sum.
+            // `max` would drop the NaN of an infinite time.
             let [start, end] = fastest;
             (if end <= start { start } else { end }) + turned(turn2 - turn1, reach)
         };
-        // Of numbers and NaN the numbers.
+        // `min` drops NaN.
         let in_space = velocity.length() + turned(turn1, reach1) + turned(turn2, reach2);
         let least = in_space.min(seen(turn1, reach2)).min(seen(turn2, reach1));
         least * (1.0 + STRETCH)
     }
 
-    /// How far a ball around a body reaches from the centre of its motion.
+    /// Returns the greatest distance of a ball around a body from the centre of its motion.
     pub(super) fn reach(&self, body: usize, ball: &Sphere) -> f64 {
         let centre = self.motions[body].local_center - ball.centre;
         centre.as_dvec3().length() + f64::from(ball.radius)
@@ -139,8 +133,8 @@ impl NonlinearCast<'_> {
     /// Bound on the speed at which points of two bodies approach along a unit vector of space that
     /// points from the first to the second.
     ///
-    /// A point at `r` from the centre of its motion has the velocity `w × r` against it, of which
-    /// `a·(w × r) = r·(a × w)` is along `a`; `r` turns, but is as long as before.
+    /// A point at `r` from the centre of its motion has the velocity `w × r` against the centre. The
+    /// part along `a` is `a·(w × r) = r·(a × w)`, and `r` keeps its length.
     pub(super) fn approach_bound(
         &self,
         [one, two]: [&NonlinearRigidMotion; 2],
@@ -153,7 +147,7 @@ impl NonlinearCast<'_> {
         least.max(0.0) * (1.0 + STRETCH)
     }
 
-    /// Whether points of two bodies, with the velocities of a time, approach by more than a length
+    /// True if the points of a contact, at their velocities of a time, approach by more than a length
     /// until the end.
     pub(super) fn approaches(&self, touch: &Touch, time: f64, length: f64) -> bool {
         let rotations = self.motions.map(|motion| place(motion, time).rotation);
@@ -166,9 +160,9 @@ impl NonlinearCast<'_> {
         (velocity1 - velocity2).dot(normal) * (f64::from(self.end) - time) > length
     }
 
-    /// Times at which to look at a body again that touches at the start and turns: between two of them
-    /// it travels no more than its thickness and turns no more than [`TURN`], or both by a hundredth of
-    /// the way. None if it does not turn, or has no thickness.
+    /// Returns sample times for a rotating body that touches at the start. Between samples it moves by
+    /// at most its thickness and turns by at most [`TURN`], unless that takes too many samples. A body
+    /// without thickness or rotation has no samples.
     pub(super) fn looks(&self, thickness: Real) -> impl Iterator<Item = f64> {
         let [motion1, motion2] = self.motions;
         let is_needed = thickness > 0.0 && motion1.angvel != motion2.angvel;
@@ -181,12 +175,12 @@ impl NonlinearCast<'_> {
     }
 }
 
-/// How fast what turns moves, even if it has no end.
+/// Returns `|turn| * reach`, which is 0 for no turn even if the reach is infinite.
 pub(super) fn turned(turn: DVec3, reach: f64) -> f64 {
     if turn == DVec3::ZERO { 0.0 } else { turn.length() * reach }
 }
 
-/// How far what moves comes, even in a time without end.
+/// Returns `velocity * time`, which is 0 for no velocity even if the time is infinite.
 fn moved(velocity: DVec3, time: f64) -> DVec3 {
     if velocity == DVec3::ZERO { DVec3::ZERO } else { velocity * time }
 }
@@ -196,7 +190,7 @@ fn centre(motion: &NonlinearRigidMotion) -> DVec3 {
     Placement::new(&motion.start).to_frame1(motion.local_center, Vector::ZERO)
 }
 
-/// Where a motion takes a body, in f64: Parry's `position_at_time` rounds.
+/// Returns the pose of a body at a time, in f64. Parry's `position_at_time` uses f32.
 pub(super) fn place(motion: &NonlinearRigidMotion, time: f64) -> Placement {
     if motion.angvel == Vector::ZERO {
         let mut place = Placement::new(&motion.start);

@@ -13,8 +13,8 @@ use crate::mesh::MeshView;
 /// Share of the coordinates by which bounds are lower than computed, for rounding in f64.
 const ROUNDING: f64 = 1.0e-14;
 
-/// Share by which lengths in the frame of mesh 2 may be greater than in that of mesh 1, as quaternions
-/// in f32 are not of unit length.
+/// Share by which a length may be greater in the frame of mesh 2. Quaternions in f32 are not of unit
+/// length.
 const STRETCH: f64 = 1.0e-6;
 
 /// Two meshes, mesh 2 at a placement in the frame of mesh 1.
@@ -140,7 +140,7 @@ impl MeshPair<'_> {
         FoundPair::of(&self.placement, one, two, margin)
     }
 
-    /// What rounding may add to a gap of boxes.
+    /// Returns a bound on the rounding of a gap of boxes.
     pub(super) fn rounding(&self) -> f64 {
         let [size1, size2] = self.meshes.map(|mesh| f64::from(mesh.magnitude()));
         ROUNDING * (size1 + size2 + self.placement.translation.length())

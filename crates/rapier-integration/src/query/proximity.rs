@@ -10,11 +10,10 @@ use super::trees::Trees;
 use super::walk::MeshQuery;
 
 impl MeshQuery<'_> {
-    /// Whether the surfaces of two meshes meet, and where: one of the pairs of triangles that do
-    /// (after an edit it can be another one than a new dispatcher would name).
+    /// Returns true and one pair of touching triangles, if the surfaces of the meshes touch.
     pub(crate) fn intersection(&self, pos12: &Pose) -> ShapeIntersection {
         let placement = Placement::new(pos12);
-        // A hash of small meshes takes longer than most of these queries.
+        // Hashes of small meshes would take longer than most of these queries.
         answer(match Trees::of_registered(self.meshes.each_ref()) {
             Some(trees) => trees.meeting(placement),
             None => self.walk().meeting(placement),
@@ -63,7 +62,7 @@ impl MeshQuery<'_> {
     }
 }
 
-/// Parry's limit of a distance: its largest number is none.
+/// Returns a limit of Parry's in f64. Parry's largest number stands for no limit.
 pub(super) fn limit_of(distance: Real) -> f64 {
     if distance == Real::MAX { f64::INFINITY } else { f64::from(distance) }
 }

@@ -1,7 +1,7 @@
 use parry3d::math::{Real, Vector};
 use parry3d::query::{Contact, ShapeCastHit, ShapeCastStatus};
 
-/// Where two parts touch: a point of each and its outward unit normal, in its frame.
+/// Points of two parts that touch and their outward unit normals, each in its own frame.
 #[derive(Copy, Clone)]
 pub(crate) struct Touch {
     pub(super) points: [Vector; 2],
