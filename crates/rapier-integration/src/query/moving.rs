@@ -89,7 +89,9 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         }
         let reach = (speed_bound * (end - from)).max(0.0) + tolerance;
         let distance = self.search.nearest(reach)?.contact.distance.max(1.0e3 * tolerance);
-        Some((AHEAD * distance / speed_bound).max(2.0 * previous))
+        let window = (AHEAD * distance / speed_bound).max(2.0 * previous);
+        // An infinite or unknown speed bounds nothing.
+        Some(if window > 0.0 { window } else { f64::INFINITY })
     }
 
     /// A box of the mesh's frame that holds the shape at the start, however it turns, and its velocity.
