@@ -1,4 +1,4 @@
-//! Contacts: which kind of pair two shapes are, and who answers for it.
+//! Contacts: finds the kind of pair that two shapes are.
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::NormalConstraints;
@@ -18,7 +18,7 @@ use crate::pair::{
 use crate::{ContactDetail, ContactSet, SbbkConfig, TriangleContacts};
 
 impl SbbkDispatcher {
-    /// The contacts of a pair of shapes, if SBBK answers for them.
+    /// Updates the manifolds of a pair of shapes, if SBBK answers for it.
     fn answer<M, C>(
         &self,
         pos12: &Pose,
@@ -35,8 +35,8 @@ impl SbbkDispatcher {
         let has_surfaces = contact_set == ContactSet::Surfaces;
         let leave_solids = has_surfaces && self.config.convex_leave_solids;
         let has_patches = detail == ContactDetail::Patches;
-        // Of such a pair nothing needs to be kept while it is apart. One that has manifolds must keep a
-        // workspace: Rapier takes a missing one for a new pair, and keeps pointers to manifolds that are gone.
+        // A new pair that is apart needs no workspace. A pair with manifolds must keep one: Rapier
+        // takes a missing one for a new pair, and keeps pointers to manifolds that are gone.
         let is_new = workspace.is_none() && manifolds.is_empty();
         let (mesh, other, mesh_place) = match (g1.as_trimesh(), g2.as_trimesh()) {
             (Some(mesh1), Some(mesh2)) => {
@@ -102,7 +102,7 @@ impl SbbkDispatcher {
         }
     }
 
-    /// An answer that took no descent, counted.
+    /// Counts an outcome without a descent.
     fn counted(&self, answer: QueryOutcome) -> QueryOutcome {
         if self.config.count_queries {
             self.counters.add(answer, &DescentCounts::default());
@@ -110,7 +110,7 @@ impl SbbkDispatcher {
         answer
     }
 
-    /// The contacts of a pair, counted; `Unsupported` if Parry must answer.
+    /// Updates the manifolds of a pair and counts the query.
     fn ask<M, C>(
         &self,
         pair: &impl Pair,

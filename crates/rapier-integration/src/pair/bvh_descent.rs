@@ -1,12 +1,10 @@
-//! Pairs of triangles of two meshes from Parry's own hierarchies, where one of the meshes has no
-//! tree.
+//! Pairs of triangles of two meshes from Parry's BVHs, if one of the meshes has no tree.
 //!
-//! The triangles of the larger mesh that are near the other as a whole come first: often there are
-//! none. Of these, many together go down the other hierarchy until something is near them, and then each
-//! four of them. (Fours at once: a pile of heads of 70,688 triangles takes 1.1 times as long.)
+//! The descent first finds the triangles of the larger mesh near the box of the other: often there
+//! are none. Groups of these descend the other BVH until something is near, then each four of a
+//! group do.
 //!
-//! Tried: Parry's simultaneous walk (`Bvh::leaf_pairs`). For two heads it takes as long; a head above
-//! a terrain of 320,000 triangles took 28 µs where this takes 1.
+//!
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -18,20 +16,21 @@ use sbbk_core::tree::{BATCH, LeafBatch};
 
 use crate::mesh::Hierarchy;
 
-/// Triangles that follow each other in a hierarchy, and so are near each other, that are looked at together
-/// first.
+/// Length of a group of triangles that follow each other in a BVH. Higher: groups are wide and
+/// something is near more often; lower: more descents.
 const MANY: usize = 64;
 
-/// Fewer of them are not.
+/// Least length of a group that descends as one. Higher: more descents; lower: descents that decide
+/// nothing.
 const FEW: usize = 16;
 
-/// Calls `found` with all pairs of triangles within `margin` but those `beside` each other, and few
-/// others, in any order, until it has enough. `near` is memory.
+/// Calls `found` with all pairs of triangles within `margin` except those that `culling` excludes,
+/// and few others, in any order, until it breaks. `near` is memory.
 pub(crate) fn walk(
     [mesh1, mesh2]: [&Hierarchy<'_>; 2],
     placement12: Placement,
     margin: f32,
-    beside: Option<LateralCulling>,
+    culling: Option<LateralCulling>,
     mut counters: impl Counters,
     near: &mut Vec<u32>,
     mut found: impl FnMut([u32; 2]) -> ControlFlow<()>,
@@ -39,19 +38,19 @@ pub(crate) fn walk(
     let tested = Cell::new(0);
     if mesh1.size_squared() < mesh2.size_squared() {
         let found = |[two, one]: [u32; 2]| found([one, two]);
-        walk_larger([mesh2, mesh1], placement12.inverted(), margin, beside, &tested, near, found);
+        walk_larger([mesh2, mesh1], placement12.inverted(), margin, culling, &tested, near, found);
     } else {
-        walk_larger([mesh1, mesh2], placement12, margin, beside, &tested, near, found);
+        walk_larger([mesh1, mesh2], placement12, margin, culling, &tested, near, found);
     }
     counters.aabb_tests(tested.get());
 }
 
-/// The same where mesh 1 is the larger one. Counts tests in `tested`.
+/// Descends with mesh 1 as the larger one. Counts tests in `tested`.
 fn walk_larger(
     [mesh1, mesh2]: [&Hierarchy<'_>; 2],
     placement12: Placement,
     margin: f32,
-    beside: Option<LateralCulling>,
+    culling: Option<LateralCulling>,
     tested: &Cell<u32>,
     near1: &mut Vec<u32>,
     mut found: impl FnMut([u32; 2]) -> ControlFlow<()>,
@@ -74,13 +73,12 @@ fn walk_larger(
     if near1.is_empty() {
         return;
     }
-    // The margin is a distance in frame 1. The scale matters for quaternions that are far from unit
-    // length: its rounding is far below what the test allows.
+    // The margin is a distance in frame 1; quaternions far from unit length scale it.
     let scale = placement12.rotation.x_axis.length();
     let margin2 = ((f64::from(margin) / scale) as f32).next_up();
     let in_frame2 = BoxTest::new([m2, m1], &placement12.inverted(), margin2);
     let frame: PairFrame = PairFrame::within([m1, m2], placement12, margin);
-    let test = LeafTest::new(&frame).with_culling(beside);
+    let test = LeafTest::new(&frame).with_culling(culling);
     let is_near = |many: &&[u32]| {
         let group = in_frame2.of(mesh1.tested(many));
         let is_first_enough = |_| ControlFlow::Break(());

@@ -7,26 +7,25 @@ use sbbk_core::field::{FieldTriangle, HeightGrid};
 use sbbk_core::surface::{Facets, HalfEdges};
 use xxhash_rust::xxh3::xxh3_64;
 
-/// Parry's height field as the descent sees it. What Parry calls rows lies along z, columns along
-/// x.
+/// Parry's height field as a grid of triangles. Parry's rows lie along z, its columns along x.
 #[derive(Copy, Clone)]
 pub(crate) struct Field<'a>(pub(super) &'a HeightField);
 
 impl Field<'_> {
-    /// Parry's number of a triangle: left ones first, along z, then x.
+    /// Returns Parry's number of a triangle: left ones first, along z, then x.
     pub(super) fn id(self, FieldTriangle { cell: [column, row], side }: FieldTriangle) -> u32 {
         let cell = column * self.0.nrows() + row;
         (cell + side * self.cell_count()) as u32
     }
 
-    /// The reverse of [`id`](Self::id).
+    /// Returns the triangle of a number.
     fn of_id(self, id: u32) -> FieldTriangle {
         let (cell, side) = (id as usize % self.cell_count(), id as usize / self.cell_count());
         FieldTriangle { cell: [cell / self.0.nrows(), cell % self.0.nrows()], side }
     }
 
-    /// The places of the corners of a triangle on the grid: columns and rows. Parry's order of corners,
-    /// by which normals point up.
+    /// Returns the columns and rows of the corners of a triangle, in Parry's order, by which
+    /// normals point up.
     fn places(self, FieldTriangle { cell: [column, row], side }: FieldTriangle) -> [[usize; 2]; 3] {
         let status = self.0.cell_status(row, column);
         let corners = match (status.contains(HeightFieldCellStatus::ZIGZAG_SUBDIVISION), side) {
@@ -38,13 +37,13 @@ impl Field<'_> {
         corners.map(|[right, up]| [column + right, row + up])
     }
 
-    /// Whether the normals of its triangles point up: not if a negative scale has turned them.
+    /// Returns true if normals point up. A negative scale turns them.
     pub(super) fn points_up(self) -> bool {
         self.0.scale().x * self.0.scale().z > 0.0
     }
 
-    /// The point of the surface that is nearest to another, and how far that is seen from below, as
-    /// [`nearest`](crate::mesh::nearest) of a mesh has it.
+    /// Returns the nearest point of the surface, and the cosine between the direction to the point
+    /// and the downward normal.
     pub(super) fn nearest(self, point: Vector) -> Option<(Vector, Real)> {
         let nearest = self.0.project_local_point(point, false).point;
         let away = (point - nearest).normalize_or_zero();
@@ -60,7 +59,7 @@ impl Field<'_> {
         Some((nearest, behind?))
     }
 
-    /// The triangle of a number, if it is there and no corner is NaN or infinite.
+    /// Returns the triangle of a number, if it exists and is finite.
     pub(super) fn triangle(self, id: u32) -> Option<Triangle> {
         let triangle = self.0.triangle_at_id(id)?;
         triangle.vertices().iter().all(|corner| corner.is_finite()).then_some(triangle)
@@ -77,8 +76,8 @@ impl HalfEdges for Field<'_> {
         let own = self.places(triangle);
         let [from, to] = [0, 1].map(|i| own[(half_edge as usize + i) % 3]);
         let [column, row] = triangle.cell;
-        // Along a line of the grid the neighbour is in the other cell beside it; else the edge is the
-        // diagonal of its cell.
+        // An edge on a grid line has its twin in the other cell; else it is the diagonal of its
+        // cell.
         let beyond =
             |line: usize, cell: usize| if line == cell { line.wrapping_sub(1) } else { line };
         let cell = match [0, 1].map(|axis| from[axis] == to[axis]) {
@@ -132,16 +131,16 @@ impl HeightGrid for Field<'_> {
     }
 }
 
-/// What projecting a point onto a triangle may lose, as a share of its coordinates: a few roundings.
+/// Rounding of the projection of a point onto a triangle, as a share of the coordinates.
 const NEARLY: Real = 1.0e-6;
 
-/// Tells in constant time that a field is most likely still the one it was: addresses, sizes,
-/// scale, flags, and some heights. Heights cannot be edited in place.
+/// Hash that tells fields apart in constant time: addresses, sizes, scale, flags, and some heights.
+/// Heights cannot be edited in place.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub(crate) struct FieldToken(u64);
 
 impl FieldToken {
-    /// Heights looked at, evenly spread.
+    /// Number of heights in the hash, evenly spread. Higher: slower; lower: edits are missed.
     const SAMPLES: usize = 8;
 
     pub(super) fn of(field: &HeightField) -> Self {

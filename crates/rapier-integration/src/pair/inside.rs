@@ -1,5 +1,5 @@
-//! Push-outs and separation directions: how a mesh leaves a solid that it is deep in, where triangles
-//! do not tell. Wholly inside, none need be near each other; on both sides, as many push each way.
+//! Push-outs and separation directions: how a mesh leaves a solid. Wholly inside, no triangles need
+//! be near each other; if it sticks out on both sides, as many contacts push each way.
 
 use glamx::DVec3;
 use parry3d::math::Vector;
@@ -16,7 +16,7 @@ use crate::mesh::{BEHIND, is_covered, nearest};
 /// Share of an f32 distance that is a lower bound of the exact one.
 const SURE: f64 = 0.99;
 
-/// What is known of whether the smaller mesh is inside the larger one.
+/// Last result of the test whether the smaller mesh is inside the larger one.
 #[derive(Clone, Debug, Default)]
 pub(crate) enum InsideTest {
     #[default]
@@ -41,10 +41,10 @@ impl InsideTest {
 }
 
 impl Meshes<'_> {
-    /// Returns the contact that moves the smaller mesh out of the larger one, by the shortest way from
-    /// its middle, and its triangles. Call this if no other contact was found.
+    /// Returns the contact that moves the smaller mesh out of the larger one, by the shortest way
+    /// from its middle, and its triangles. Call this if no other contact was found.
     ///
-    /// One vertex is tested unless the mesh is known to be deep: what pierces a surface has other
+    /// Tests one vertex unless the mesh is known to be deep: a mesh that pierces the surface has
     /// contacts.
     pub(super) fn find_push_out(
         &self,
@@ -103,8 +103,8 @@ impl Meshes<'_> {
         Some((subshapes, TriangleSurfaceContact { contact, source: ContactSource::PushOut }))
     }
 
-    /// Returns the direction in which mesh 2 separates from mesh 1 by the shortest way from the middle of
-    /// the smaller mesh, if that is in both. Of two equal meshes, by the shorter way.
+    /// Returns the direction in which mesh 2 separates from mesh 1 by the shortest way from the
+    /// middle of the smaller mesh, if the middle is in both. Two equal meshes are both tried.
     pub(super) fn separation_of_smaller(&self) -> Option<DVec3> {
         let [one, two] = &self.pair.meshes;
         let [size1, size2] = [one, two].map(|mesh| mesh.size_squared());
@@ -116,8 +116,8 @@ impl Meshes<'_> {
     }
 }
 
-/// Returns the translation that separates shape 2 from shape 1 by the shortest way from a point of one
-/// of them, in its frame, if that is in both and both are solids.
+/// Returns the translation that separates shape 2 from shape 1 by the shortest way from a point.
+/// `middle` is in the frame of shape `inner` and must be in both shapes; both must be solids.
 pub(super) fn way_out(
     shapes: &impl TriangleShapes,
     pose: &PairPose,

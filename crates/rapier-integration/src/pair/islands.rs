@@ -4,8 +4,8 @@ use glamx::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 use sbbk_core::collections::UnionFind;
 
-/// Overlap islands: pairs of triangles that cross, connected through the triangles that they share,
-/// and the contacts that push each island apart.
+/// Overlap islands: pairs of crossing triangles, connected through common triangles, and the
+/// contacts that push each island apart.
 #[derive(Default)]
 pub(crate) struct OverlapIslands {
     crossings: Vec<Crossing>,
@@ -19,14 +19,14 @@ pub(crate) struct OverlapIslands {
     support: FxHashMap<Node, Support>,
 }
 
-/// What holds the bodies of an island apart.
+/// Contacts that push the bodies of an island apart.
 #[derive(Copy, Clone, Default)]
 struct Support {
     /// Pairs of triangles.
     pairs: u32,
     /// Reliable contacts among them.
     reliable: u32,
-    /// True if a contact was rejected as that of the far side of a thin body: no others are added.
+    /// True if a contact on the far side of a thin body was rejected. No others are added.
     is_thin: bool,
     /// Sum of the normals of reliable contacts.
     normals: DVec3,
@@ -59,9 +59,9 @@ pub(super) struct Crossing {
     pub(super) greatest: f64,
     /// True if the first pass found a contact.
     pub(super) is_reliable: bool,
-    /// Normal of that contact, from mesh 1 to mesh 2.
+    /// Normal of the contact of the first pass, from mesh 1 to mesh 2.
     pub(super) normal: DVec3,
-    /// Depth of that contact.
+    /// Depth of the contact of the first pass.
     pub(super) depth: f64,
     /// Set if one of the two is of a sheet, and the other of a smaller solid.
     pub(super) sheet: Option<SheetSide>,
@@ -121,8 +121,8 @@ impl OverlapIslands {
         self.separation.is_some()
     }
 
-    /// Returns true if reliable contacts push about as much one way as the other: then nothing would
-    /// push out a body that pierces a solid from side to side.
+    /// Returns true if reliable contacts push about as much one way as the other. They would not
+    /// push out a body that pierces a solid.
     pub(super) fn is_undecided(&self) -> bool {
         let reliable = self.crossings.iter().filter(|crossing| crossing.is_reliable);
         let (count, sum) =
@@ -234,8 +234,9 @@ impl OverlapIslands {
         }
     }
 
-    /// Rejects contacts that push a solid to the side of a sheet on which its middle is not, where
-    /// contacts push to both sides or are too few. Returns true if there were any.
+    /// Rejects contacts that push a solid to the wrong side of a sheet, in islands whose contacts
+    /// push to both sides or are too few. The right side is that of the middle of the solid.
+    /// Returns true if there were any.
     fn reject_sides_of_sheets(&mut self) -> bool {
         let before = self.rejected.len();
         for crossing in &self.crossings {
@@ -270,8 +271,8 @@ mod tests {
         Crossing { pair, is_crossing: true, greatest: 1.0, is_reliable, normal, depth, sheet }
     }
 
-    /// Would catch islands that are not joined through the triangles that their pairs share, one that
-    /// is held taken for lost, and pairs that a second round decides anew without need.
+    /// Would catch islands that are not joined through common triangles, and pairs that a second
+    /// pass changes without need.
     #[test]
     fn islands_without_a_reliable_contact_need_support() {
         let good = (DVec3::Y, 0.1);
@@ -315,9 +316,8 @@ mod tests {
         }
     }
 
-    /// Would catch a large island that turns about its only contact beyond doubt, small ones that are
-    /// looked at twice, contacts beyond doubt that a second round decides anew, and others that push
-    /// against them.
+    /// Would catch a large island that turns about its only contact, and added contacts that push
+    /// against reliable ones.
     #[test]
     fn one_contact_does_not_support_a_large_island() {
         let good = (DVec3::Y, 0.1);
@@ -340,8 +340,8 @@ mod tests {
         assert_eq!([16, 17].map(|pairs| needs_support(pairs, 2)), [false, true]);
     }
 
-    /// Would catch a body that goes through a solid and is held there, one whose way out is asked for
-    /// though its contacts agree, and contacts along or across the way that are dropped.
+    /// Would catch a body that pierces a solid and is held there, and contacts along the separation
+    /// direction that are dropped.
     #[test]
     fn of_contacts_both_ways_those_along_the_way_stay() {
         let islands = |normals: &[DVec3]| {
@@ -383,8 +383,8 @@ mod tests {
         assert_eq!(both(0.1, 0.3, 1.2), None, "they do not push against each other");
     }
 
-    /// Would catch a thin body that is held in a sheet, one that goes to the side where less of it is,
-    /// and contacts lost where all push to one side, whichever that is.
+    /// Would catch a thin body that is held in a sheet or goes to the wrong side, and contacts lost
+    /// though all push to one side.
     #[test]
     fn an_island_pushed_to_both_sides_of_a_sheet_keeps_one() {
         let pushed = |heights: [f64; 2], normals: [DVec3; 2]| {

@@ -1,19 +1,18 @@
 //! A mesh and a height field.
 //!
-//! Stock Parry takes the field for a convex shape here and finds no contacts at all. The descent
-//! goes down Parry's hierarchy of the mesh and reads the cells under it ([`sbbk_core::field`]).
+//! Stock Parry finds no contacts here. The descent visits Parry's BVH of the mesh and reads the
+//! cells under it ([`sbbk_core::field`]).
 //!
 //! Triangles of the field have the numbers that Parry gives them in contacts with convex shapes.
 //!
-//! A rigid mesh has the contacts of its surface and that of the field, whose neighbours and corners are
-//! read from the grid when they are asked for ([`Field`]).
+//! Contacts of a rigid mesh are those of both surfaces. The surface of the field is read from the
+//! grid ([`Field`]).
 //!
 //! # Edits
 //!
-//! Only the candidates of a pair are kept. Rapier drops them when a shape was edited. Should a host
-//! not do so, another field, another scale, another flag and a removed triangle are noticed; that a
-//! triangle was added, or a cell divided along its other diagonal, only where the pair descends
-//! next.
+//! A pair keeps candidates, and Rapier drops them when a shape was edited. For hosts that do not,
+//! another field, scale, flag, or a removed triangle is noticed at once. An added triangle is
+//! noticed at the next descent.
 
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -45,9 +44,9 @@ pub(crate) struct FieldPair<'a> {
     pub(crate) mesh: Hierarchy<'a>,
     pub(crate) field: &'a HeightField,
     pub(crate) mesh_place: MeshPlace,
-    /// Whether contacts are those of surfaces.
+    /// True for contacts of surfaces, false for contacts of each two triangles.
     pub(crate) has_surfaces: bool,
-    /// Whether what is below the field is solid.
+    /// True if the ground below the field is solid.
     pub(crate) has_ground: bool,
     pub(crate) has_patches: bool,
 }
@@ -107,11 +106,11 @@ impl<'a> Pair for FieldPair<'a> {
 pub(crate) struct MeshAndField<'q> {
     pair: &'q FieldPair<'q>,
     field: Field<'q>,
-    /// That of the mesh, if contacts are those of surfaces.
+    /// Surface of the mesh, for contacts of surfaces.
     surface: Option<MeshSurface<'q>>,
     filter_distance: f64,
-    /// The cone of the triangle of the field that was asked for last. Its contacts follow each
-    /// other, and Parry makes it from the normals of four triangles.
+    /// Normal cone of one triangle of the field. Contacts of a triangle follow each other, and
+    /// Parry computes the cone from four triangles.
     cone: RefCell<(u32, Option<TrianglePseudoNormals>)>,
 }
 

@@ -15,7 +15,7 @@ use super::bvh_descent::walk;
 use super::inside::InsideTest;
 use super::pose::PairPose;
 use super::reduce::PatchPlan;
-use super::surface::{beside, filter_distance};
+use super::surface::{filter_distance, lateral_culling};
 use super::triangles::{Cones, Hint, TriangleHit, TriangleQuery, TriangleScratch, TriangleShapes};
 use super::update::{Moving, Pair};
 use crate::mesh::{Change, Hierarchy, KnownMesh, MeshSurface, TreeCache, is_covered, nearest};
@@ -25,13 +25,13 @@ use crate::mesh::{Change, Hierarchy, KnownMesh, MeshSurface, TreeCache, is_cover
 pub(crate) struct MeshPair<'a> {
     pub(crate) pose: &'a PairPose,
     pub(crate) meshes: [Hierarchy<'a>; 2],
-    /// Whether contacts are those of surfaces.
+    /// True for contacts of surfaces, false for contacts of each two triangles.
     pub(crate) has_surfaces: bool,
     pub(crate) has_patches: bool,
 }
 
 impl MeshPair<'_> {
-    /// Which mesh has the larger box: 0, or 1 if that is strictly larger.
+    /// Returns 1 if the box of mesh 2 is larger than that of mesh 1, else 0.
     pub(super) fn larger(&self) -> usize {
         usize::from(self.meshes[0].size_squared() < self.meshes[1].size_squared())
     }
@@ -88,7 +88,7 @@ impl<'a> Pair for MeshPair<'a> {
 pub(crate) struct Meshes<'q> {
     pub(super) pair: &'q MeshPair<'q>,
     trees: Option<[&'q Tree; 2]>,
-    /// If contacts are those of surfaces.
+    /// Surfaces of both meshes, for contacts of surfaces.
     pub(super) surfaces: [Option<MeshSurface<'q>>; 2],
     filter_distance: f64,
     cache: &'q TreeCache,
@@ -117,11 +117,11 @@ impl TriangleShapes for Meshes<'_> {
         mut found: impl FnMut([u32; 2]),
     ) {
         let placement12 = self.pair.pose.placement12;
-        let beside = beside(self, self.pair.pose.prediction, margin);
+        let culling = lateral_culling(self, self.pair.pose.prediction, margin);
         let Some([tree1, tree2]) = self.trees else {
             let meshes = self.pair.meshes.each_ref();
             let near = &mut scratch.near;
-            walk(meshes, placement12, margin, beside, counters, near, |pair| {
+            walk(meshes, placement12, margin, culling, counters, near, |pair| {
                 found(pair);
                 ControlFlow::Continue(())
             });
@@ -129,7 +129,7 @@ impl TriangleShapes for Meshes<'_> {
         };
         let trees = (tree1, tree2);
         let mut frame = PairFrame::at(trees, placement12, margin);
-        let (test, stack) = (LeafTest::new(&frame).with_culling(beside), &mut scratch.descent);
+        let (test, stack) = (LeafTest::new(&frame).with_culling(culling), &mut scratch.descent);
         descend(trees, &mut frame, stack, counters, |batch1, batch2| {
             test.survivors(batch1, batch2, |lane1, lane2| {
                 found([batch1.triangles()[lane1], batch2.triangles()[lane2]]);

@@ -1,14 +1,14 @@
 use parry3d::math::{Pose, Real};
 use sbbk_core::traverse::Placement;
 
-/// Where shape 2 of a pair is, in the frame of shape 1, and how far contacts reach.
+/// Pose of shape 2 in the frame of shape 1, and the prediction distance.
 #[derive(Copy, Clone)]
 pub(crate) struct PairPose {
-    /// As the host gives it.
+    /// Pose as the host passes it.
     pub(super) pos12: Pose,
-    /// The same in f64.
+    /// Pose in f64.
     pub(super) placement12: Placement,
-    /// The reverse: shape 1 in the frame of shape 2.
+    /// Shape 1 in the frame of shape 2.
     pub(super) placement21: Placement,
     /// The prediction distance.
     pub(super) prediction: Real,
@@ -29,7 +29,7 @@ pub(crate) enum MeshPlace {
 }
 
 impl MeshPlace {
-    /// From mesh and other shape to shape 1 and shape 2, or back.
+    /// Swaps mesh and other shape to shape 1 and shape 2, or back.
     #[inline(always)]
     pub(crate) fn swap<T>(self, [one, two]: [T; 2]) -> [T; 2] {
         match self {
@@ -38,7 +38,8 @@ impl MeshPlace {
         }
     }
 
-    /// The mesh in the frame of the other shape, and the reverse.
+    /// Returns the mesh in the frame of the other shape, and the other shape in the frame of the
+    /// mesh.
     pub(super) fn placements(self, pose: &PairPose) -> [&Placement; 2] {
         match self {
             Self::First => [&pose.placement21, &pose.placement12],
@@ -46,7 +47,7 @@ impl MeshPlace {
         }
     }
 
-    /// The other shape in the frame of the mesh.
+    /// Returns the other shape in the frame of the mesh.
     pub(crate) fn shape_in_mesh(self, pos12: &Pose) -> Pose {
         if self.is_second() { pos12.inverse() } else { *pos12 }
     }

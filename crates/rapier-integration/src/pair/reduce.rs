@@ -1,7 +1,7 @@
 //! Contact reduction: which contacts make patches, before their points are made.
 //!
 //! Contacts are grouped by normal. Each group keeps its deepest contact and up to three that span
-//! the contact area, and contacts as deep that are far from these make patches of their own.
+//! the contact area. Contacts as deep but far from these make patches of their own.
 
 use std::cmp::Ordering;
 
@@ -25,8 +25,8 @@ const SAME_FAR_NORMAL: Real = 0.97;
 /// beside. Higher: more points in piles at rest; lower: contacts about to touch are left out.
 const SAME_NORMAL_OVER: Real = 0.9;
 
-/// [`PatchPlan::hover_distance`] as a share of the prediction distance. Higher: more points, most of
-/// which carry nothing; lower: bodies in motion come deeper into others.
+/// [`PatchPlan::hover_distance`] as a share of the prediction distance. Higher: more points; lower:
+/// bodies in motion come deeper into others.
 const HOVER: Real = 0.1;
 
 /// [`PatchPlan::far`] in radii of the smaller shape. Higher: more points; lower: bodies turn before
@@ -80,7 +80,7 @@ impl PatchPlan {
         same_point: 0.0,
     };
 
-    /// Plan for two shapes; `radius` is that of the smaller one.
+    /// Plan for two shapes, from the radius of the smaller one.
     pub(super) fn new(prediction: Real, radius: Real) -> Self {
         let far = FAR * radius;
         let reach = if prediction > 0.0 { prediction.min(far) } else { far };
@@ -235,10 +235,10 @@ fn seed_of(
 }
 
 impl PatchPlan {
-    /// Returns up to four of `points`, each with its distance: the first and deepest one, the one
-    /// farthest from it, and those farthest on both sides of the line between these, seen along
-    /// `normal`. Hovering points count as nearer to the first one than they are; lengths count by their
-    /// squares, so that the corners of a slanted flat body still come first.
+    /// Returns up to four of `points`, which have distances. The first one is deepest; the second
+    /// is farthest from it; two more are farthest on both sides of the line between these, seen
+    /// along `normal`. Points that hover count as nearer to the first. Lengths count by their
+    /// squares: the corners of a slanted flat body still come first.
     pub(super) fn outermost(
         self,
         points: &[(Vec3, Real)],
@@ -300,13 +300,12 @@ mod tests {
         ContactSummary { part: 0, normal: Vec3::Y, point, distance }
     }
 
-    /// Would catch patches that mix parts, directions or places, that begin at another contact than
-    /// their deepest, points that hang over in place of those that carry, and an order that sorting
-    /// does not fix.
+    /// Would catch patches that mix parts, directions or places, or hovering contacts that replace
+    /// those that carry.
     #[test]
     fn contacts_join_the_patch_of_their_part_direction_and_place() {
         let row = [0.0, 2.0, 4.0, 4.5, 6.0, 8.0].map(|x| summary(x, -0.1));
-        // The ends of the row, and what is far from both.
+        // The ends of the row, and contacts far from both.
         assert_eq!(patches(&row, PLAN), [(0, 0), (5, 0), (1, 1), (2, 2), (3, 2), (4, 3)]);
         assert_eq!(patches(&row, PatchPlan { size: 4.0, ..PLAN }), [(0, 0), (5, 0)]);
         assert_eq!(patches(&row, PatchPlan::FAR), [(0, 0), (5, 0)]);
@@ -320,7 +319,7 @@ mod tests {
         assert_eq!(patches(&deep, PLAN)[0], (1, 0));
         let other_part = ContactSummary { part: 1, ..summary(0.0, -0.1) };
         assert_eq!(patches(&[summary(0.0, -0.1), other_part], PLAN), [(0, 0), (1, 1)]);
-        // Those of one depth in their order, however many there are.
+        // Contacts of one depth stay in order.
         let many: Vec<ContactSummary> = (0..200).map(|i| summary((i % 100) as Real, 0.0)).collect();
         let expected = (1..99).flat_map(|i| [(i, i), (100 + i, i)]);
         let far_enough = PatchPlan { size: 0.5, ..PLAN };
@@ -332,14 +331,14 @@ mod tests {
         };
         assert_eq!(patches(&[summary(0.0, -0.1), turned(8.0)], PLAN), [(0, 0), (1, 0)]);
         assert_eq!(patches(&[summary(0.0, -0.1), turned(8.2)], PLAN), [(0, 0), (1, 1)]);
-        // What is over one that touches is of its direction up to 25 degrees off, if it is near.
+        // A contact that hovers beside one that touches joins its patch up to 25 degrees off.
         let over = |distance: Real, touching: Real, x: Real| {
             let over = ContactSummary { point: Vec3::new(x, 0.0, 0.0), distance, ..turned(25.0) };
             patches(&[summary(0.0, touching), over], PLAN)[1].1 == 0
         };
         assert!(over(0.4, 0.0, 0.9));
         assert!(!over(0.2, 0.0, 0.9) && !over(0.4, 0.1, 0.9) && !over(0.4, 0.0, 1.1));
-        // What is far is of a direction up to 14 degrees off, and spared there.
+        // A far contact joins a patch up to 14 degrees off.
         let is_kept = |degrees: Real| {
             let four = [0.0, 1.0, 2.0, 3.0].map(|x| summary(x, -0.1));
             let point = Vec3::new(-2.0, 0.0, 0.0);
@@ -350,8 +349,8 @@ mod tests {
         assert_eq!([13.9, 14.2].map(is_kept), [false, true]);
     }
 
-    /// Would catch points of one side only, a second one that is not the farthest, points that come
-    /// twice, and those that hang over.
+    /// Would catch points of one side only, a second point that is not the farthest, and points
+    /// that come twice.
     #[test]
     fn the_outermost_points_that_carry_are_chosen_once() {
         let at = |places: &[[Real; 3]]| -> Vec<(Vec3, Real)> {

@@ -1,9 +1,9 @@
-//! What a host keeps with a pair between queries.
+//! State that a host keeps with a pair between queries.
 //!
 //! A descent looks farther than the prediction distance, and its candidates serve several queries:
 //! [`Slack`] decides for how long. Until then no tree is touched, and candidates that cannot have
-//! come within the prediction distance are skipped. All others get the exact test, so the contacts
-//! are those of a descent. Losing the state costs time only.
+//! come within the prediction distance are skipped. All others get the exact test, so a query
+//! without a descent finds the same contacts. Losing the state costs time only.
 
 use std::sync::LazyLock;
 
@@ -17,7 +17,7 @@ use sbbk_core::traverse::Slack;
 use super::pose::PairPose;
 use crate::mesh::Change;
 
-/// State of a pair: what is known of its shapes, `S`, and candidates with hints `H`.
+/// State of a pair: data `S` of its shapes, and candidates with hints `H`.
 #[derive(Clone)]
 pub(super) struct PairState<S, H> {
     pub(super) shapes: S,
@@ -89,8 +89,8 @@ impl<H> Default for CandidateMemory<H> {
 }
 
 impl<H> CandidateMemory<H> {
-    /// Forgets the candidates after a change of the shapes, and the manifolds if their triangles are
-    /// others now. Where only vertices moved, manifolds keep their data.
+    /// Forgets the candidates after a change of the shapes. Manifolds keep their data unless a
+    /// shape was replaced.
     pub(super) fn apply_change<M, C>(
         &mut self,
         change: Change,
@@ -150,7 +150,7 @@ impl<H: Copy + Default> CandidateMemory<H> {
     }
 }
 
-/// How much memory to keep: the most that queries have used lately.
+/// Greatest use of memory by the last queries: the memory to keep.
 #[derive(Copy, Clone, Debug, Default)]
 pub(super) struct HighWaterMark {
     peak: usize,
@@ -176,11 +176,11 @@ impl HighWaterMark {
     }
 }
 
-/// Returns the state in `workspace`, made anew if there is none.
+/// Returns the state in `workspace`, or a new one.
 ///
-/// Drops the manifolds of a pair *without* a workspace: the host took it away since a shape changed,
-/// and the numbers of triangles may mean others now. Manifolds of another dispatcher (a restored
-/// snapshot, stock before) are kept: the shapes are the same.
+/// Drops the manifolds of a pair *without* a workspace: a host removes it when a shape changes, and
+/// triangles may have other numbers now. Manifolds of another dispatcher (a restored snapshot,
+/// stock before) are kept: the shapes are the same.
 pub(super) fn state_in<'a, M, C, S, H>(
     workspace: &'a mut Option<ContactManifoldsWorkspace>,
     manifolds: &mut Vec<ContactManifold<M, C>>,
@@ -226,8 +226,8 @@ impl<S: Clone + Send + Sync + 'static> WorkspaceData for Stored<S> {
 mod tests {
     use super::*;
 
-    /// Would catch the contacts of another pose or prediction distance, of a query that was cut short,
-    /// or of a host that has removed manifolds since.
+    /// Would catch contacts of another pose or prediction distance, or of a query that a panic cut
+    /// short.
     #[test]
     fn only_a_finished_query_with_equal_input_is_unchanged() {
         let pose = |x: Real, prediction| PairPose::new(&Pose::translation(x, 0.0, 0.0), prediction);

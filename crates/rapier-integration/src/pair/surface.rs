@@ -1,10 +1,10 @@
-//! Which contacts of triangles are contacts of the surfaces.
+//! The surface filter: keeps the contacts of two triangles that are contacts of the surfaces.
 //!
 //! * Apart: both points are local minima of the distance ([`OneRing::is_local_minimum`]), and the
 //!   normal leads out of solids. Others are contacts of internal edges, or of walls that pass by.
 //!   Distant edges and vertices may pass each other, and count only if they face each other.
-//! * Crossing: the contact leads out of solids, and both surfaces end where the overlap does. Triangles
-//!   of solids that have passed each other count as crossing.
+//! * Crossing: the contact leads out of solids, and both surfaces end where the overlap does.
+//!   Triangles of solids that have passed each other count as crossing.
 //!
 //! Crossing surfaces never stay without a contact: an island without one gets the best there is
 //! ([`OverlapIslands`]).
@@ -25,38 +25,37 @@ use crate::mesh::BEHIND;
 /// sees turn through what they meet; lower: small bodies keep contacts at internal edges.
 const FILTERED: f64 = 0.1;
 
-/// Greatest depth of a contact of the first pass, in least translations of its triangles, or in
-/// prediction distances (at most [`TriangleShapes::filter_distance`]) if these are more. Parry's
-/// number for constrained normals. Higher: bodies are pushed out on their far sides; lower: more second
-/// passes.
+/// Greatest depth of a contact of the first pass, in least translations of its triangles or, if
+/// more, in prediction distances. Parry's number for constrained normals. Higher: bodies are pushed
+/// out on their far sides; lower: more second passes.
 const SHALLOW: f64 = 5.0;
 
-/// How far behind a sheet the middle of a solid may be and still be pushed to its front, in half
-/// heights of the solid over the sheet. Higher: what comes from behind is pulled through; lower: what one
-/// step has brought to the midst of a ground falls out below.
+/// Greatest depth of a solid's middle behind a sheet that still pushes it to the front, in half
+/// heights of the solid. Higher: bodies from behind are pulled through; lower: bodies that hit a
+/// ground fast fall out below.
 const LEAN: f64 = 0.33;
 
-/// Distance of edges and vertices, in prediction distances, from which their contact counts only if
-/// its normal is near those of both triangles. Higher: gears are braked by edges that pass each other;
-/// lower: edges meet with less warning.
+/// Distance in prediction distances beyond which a contact of edges or vertices needs a normal near
+/// both triangle normals. Higher: gears are braked by edges that pass each other; lower: edges meet
+/// with less warning.
 const DISTANT: f64 = 0.25;
 
-/// Least cosine of such a contact's normal with those of both triangles. Higher: smooth bodies lose
-/// contacts; lower: gears are braked.
+/// Least cosine between the normal of a [`DISTANT`] contact and both triangle normals. Higher:
+/// smooth bodies lose contacts; lower: gears are braked.
 const NEAR_NORMAL: f64 = 0.87;
 
 /// Distance, in sizes of the triangles, below which rounding decides on which side of each other these
 /// are. Higher: contacts are lost; lower: triangles that touch count as crossing.
 const TOUCHING: f64 = 1.0e-9;
 
-/// Returns [`TriangleShapes::filter_distance`]; `radius` is that of the smaller shape.
+/// Returns [`TriangleShapes::filter_distance`] from the radius of the smaller shape.
 pub(super) fn filter_distance(has_surface: bool, radius: Real) -> f64 {
     if has_surface { FILTERED * f64::from(radius) } else { f64::INFINITY }
 }
 
 /// Returns a test for pairs of triangles that a descent within `margin` finds and that only
 /// [pass by](SurfaceFilter::passes_by) while its candidates serve.
-pub(super) fn beside(
+pub(super) fn lateral_culling(
     shapes: &impl TriangleShapes,
     prediction: Real,
     margin: Real,
@@ -83,7 +82,7 @@ pub(super) struct SurfaceFilter<'a, S> {
     pub(super) pair: [u32; 2],
 }
 
-/// The surfaces of both shapes, where contacts are those of surfaces.
+/// Surfaces of both shapes, if known.
 type Surfaces<'s, S> = [Option<OneRing<<S as TriangleShapes>::Facets<'s>>>; 2];
 
 impl<S: TriangleShapes> SurfaceFilter<'_, S> {
@@ -251,8 +250,8 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         surfaces[i].as_ref().is_none_or(ends)
     }
 
-    /// Returns on which side of a sheet's triangle the middle of a solid is. That of a solid larger than
-    /// the sheet says nothing.
+    /// Returns the side of a sheet's triangle on which the middle of a solid is. `None` if the
+    /// solid is larger than the sheet.
     fn sheet_side(&self, is_solid: [bool; 2], local: &TrianglePair) -> Option<SheetSide> {
         let solid = match is_solid {
             [true, false] => 0,
@@ -322,8 +321,8 @@ mod tests {
     use crate::pair::triangles::TriangleScratch;
     use crate::pair::update::Pair;
 
-    /// Rough balls of triangles about as large as the prediction distance, with trees and without,
-    /// apart and crossing. Would catch contacts lost among what [`beside`] leaves out.
+    /// Rough balls with triangles as large as the prediction distance, apart and crossing. Would
+    /// catch contacts that [`lateral_culling`] loses.
     #[test]
     fn triangles_beside_each_other_pass_by() {
         let cache = Arc::new(TreeCache::new(BuildOptions::default(), 1 << 30));

@@ -125,8 +125,8 @@ impl<C: Default + Copy> TriangleContacts<C> {
     /// Brings the manifold of two triangles up to date, `triangle2` at `pos12` in the frame of
     /// `triangle1`.
     ///
-    /// The manifold has no points if the triangles are farther apart than `prediction`, if the
-    /// normal constraints reject the contact, or if a number is not finite.
+    /// The manifold has no points if the triangles are farther apart than `prediction`, if normal
+    /// constraints reject the contact, or for numbers that are not finite.
     pub fn update<M>(
         &mut self,
         pos12: &Pose,

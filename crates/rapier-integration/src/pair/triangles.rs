@@ -1,8 +1,8 @@
 //! Contacts of two shapes that are both made of triangles.
 //!
 //! Each candidate is a pair of triangles with an exact contact ([`sbbk_core::contact`]). The first
-//! pass keeps those that are contacts of the surfaces ([`SurfaceFilter`]). Where triangles cross and
-//! too few contacts hold the bodies apart, a second pass adds others ([`OverlapIslands`]).
+//! pass keeps those that are contacts of the surfaces ([`SurfaceFilter`]). A second pass adds
+//! contacts to crossing triangles that too few contacts push apart ([`OverlapIslands`]).
 
 use std::cell::Cell;
 use std::thread::LocalKey;
@@ -59,11 +59,12 @@ pub(crate) trait TriangleShapes {
     /// Calls `then` with the normal cones of two triangles.
     fn with_cones(&self, triangles: [u32; 2], then: impl FnOnce(Cones<'_>));
 
-    /// Returns the surface of shape 1 (0) or 2 (1); `None` if contacts are not those of its surface.
+    /// Returns the surface of shape 1 (0) or 2 (1), for contacts of surfaces.
     fn surface(&self, i: usize) -> Option<OneRing<Self::Facets<'_>>>;
 
-    /// Returns the distance up to which contacts must be local minima; infinite if contacts are not
-    /// those of surfaces. Farther ones, of soft CCD, are all kept: bodies may turn before they meet.
+    /// Returns the distance up to which contacts must be local minima; infinite for contacts of
+    /// each two triangles. Farther contacts, of soft CCD, are all kept: bodies may turn before they
+    /// meet.
     fn filter_distance(&self) -> f64;
 
     /// Returns the box around a shape, in its frame.
@@ -72,8 +73,8 @@ pub(crate) trait TriangleShapes {
     /// Returns true if a point in the frame of a shape may be inside it.
     fn is_covered(&self, i: usize, point: Vector) -> bool;
 
-    /// Returns the point of a surface that is nearest to a point in its frame, and the cosine between
-    /// the direction to the point and the inward normal.
+    /// Returns the nearest point of a surface, and the cosine between the direction to the point
+    /// and the inward normal.
     fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)>;
 
     /// Returns the direction in which shape 2 separates from shape 1, if one is deep in the other.
@@ -84,7 +85,7 @@ pub(crate) trait TriangleShapes {
         None
     }
 
-    /// Returns true if contacts are those of surfaces.
+    /// Returns true for contacts of surfaces.
     fn has_surface(&self) -> bool {
         self.filter_distance() < f64::INFINITY
     }
@@ -216,8 +217,8 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         }
     }
 
-    /// Where all contacts are far, one patch for each direction: Rapier's solver drops far points of
-    /// manifolds of more than four without soft CCD, and a falling plate would turn about one point.
+    /// Makes one patch for each direction if all contacts are far. Rapier's solver drops far points
+    /// of manifolds of more than four, and a falling plate would turn about one point.
     fn reduction(&self, contacts: &ContactList<TriangleSurfaceContact>) -> Option<PatchPlan> {
         let near = self.shapes.filter_distance();
         let may_be_far = f64::from(self.pose.prediction) > near;

@@ -24,7 +24,7 @@ use crate::mesh::{Change, TreeCache};
 
 /// A kind of pair: a mesh and another shape.
 pub(crate) trait Pair: Copy {
-    /// What is known of the shapes from query to query.
+    /// Data of the shapes, kept from query to query.
     type State: Clone + Default + Send + Sync + 'static;
     /// See [`Candidate::hint`].
     type Hint: Copy + Default + Send + Sync + 'static;
@@ -33,7 +33,7 @@ pub(crate) trait Pair: Copy {
     where
         Self: 'q;
 
-    /// Returns true if the state is that of a new pair.
+    /// Returns true for a new pair.
     fn is_new(state: &Self::State) -> bool;
 
     /// Returns the change since the last query, and begins a query.
@@ -52,7 +52,7 @@ pub(crate) trait PairQuery {
     /// Memory of a thread for queries of this kind.
     type Scratch: Scratch;
 
-    /// How much farther than [`reach`](Self::reach) descents may look.
+    /// Slack of descents beyond [`reach`](Self::reach).
     const SLACK: SlackLimits;
 
     /// Returns where the thread keeps the memory.
@@ -109,7 +109,7 @@ pub(crate) trait PairQuery {
         points: &mut ContactPoints,
     ) -> Option<ContactSummary>;
 
-    /// Replaces `points` by those of a contact; by none if it has none.
+    /// Replaces `points` by the points of a contact, which may have none.
     fn points(
         &mut self,
         contact: &([u32; 2], Self::Contact),
@@ -121,7 +121,7 @@ pub(crate) trait PairQuery {
 /// Contacts with their subshapes.
 pub(crate) type ContactList<C> = Vec<([u32; 2], C)>;
 
-/// A ball around a shape, in its own frame, and the pose of that frame in the frame of the other shape.
+/// A shape's bounding ball in its own frame, and that frame in the frame of the other shape.
 pub(crate) struct Moving<'a> {
     pub(super) ball: Sphere,
     pub(super) placement: &'a Placement,
@@ -156,7 +156,7 @@ pub(crate) struct ContactPoints {
     pub(super) points: Vec<TrackedContact<()>>,
 }
 
-/// How a query was answered.
+/// Way in which a query was answered.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub(crate) enum QueryOutcome {
     /// By Parry's hierarchy and a box.
@@ -167,7 +167,7 @@ pub(crate) enum QueryOutcome {
     Reused,
     /// By a descent.
     Descended,
-    /// Not at all: Parry must answer.
+    /// Parry must answer.
     Unsupported,
 }
 

@@ -52,7 +52,7 @@ struct OldPoint<C> {
     part: u32,
 }
 
-/// Replaces the manifolds of the host by those of a query.
+/// Replaces the host's manifolds with the result of a query.
 ///
 /// While no manifold comes or goes, all stay in place: moving one takes as long as updating its
 /// distances.
@@ -256,8 +256,8 @@ fn take_data<M, C: Default + Copy>(manifold: &mut ContactManifold<M, C>, old: &[
 
 /// Writes patches: few manifolds of up to four points for all contacts.
 ///
-/// Contacts are chosen before their points are made, and then points among those. Patches and points
-/// keep the data of those of the last query that are like them.
+/// Contacts are chosen before their points are made, then points are chosen. Patches and points
+/// keep the data of similar ones of the last query.
 pub(super) fn write_patches<Q, M, C>(
     mut running: Running<'_, Q>,
     contacts: &ContactList<Q::Contact>,
@@ -356,14 +356,14 @@ fn write_patch<M, C, const MOST: usize>(
     writer.keep_new(manifold);
 }
 
-/// Returns the part in whose frame the points of a manifold are; 0 if these are in that of the shape.
+/// Returns the part whose frame a manifold's points are in; 0 for the frame of the shape.
 fn part_of<M, C>(manifold: &ContactManifold<M, C>) -> u32 {
     let of1 = manifold.subshape_pos1().map(|_| manifold.subshape1);
     of1.or(manifold.subshape_pos2().map(|_| manifold.subshape2)).unwrap_or(0)
 }
 
-/// Returns the index of the old point that a point of a part continues: the one of the same features,
-/// else the nearest one within `same_point`. (A corner of two triangles has two names.)
+/// Returns the index of the old point with the features of a point, else of the nearest one within
+/// `same_point`. (A corner of two triangles has two names.)
 fn find_old<C>(
     point: &TrackedContact<()>,
     part: u32,
@@ -390,8 +390,8 @@ fn named<C>(mut point: TrackedContact<C>, [subshape1, subshape2]: [u32; 2]) -> T
     point
 }
 
-/// Returns the name of a feature of a subshape: the kind of feature, and a number that is unique while
-/// subshapes have up to 256 features and the shape up to four million subshapes.
+/// Returns the name of a feature of a subshape: its kind and a number. Names are unique for up to
+/// 256 features of a subshape and four million subshapes.
 fn name(feature: PackedFeatureId, subshape: u32) -> PackedFeatureId {
     const NUMBER: u32 = (1 << 30) - 1;
     let number = (feature.0 & NUMBER).wrapping_add(subshape.wrapping_shl(8)) & NUMBER;
@@ -414,8 +414,8 @@ mod tests {
         manifold
     }
 
-    /// Would catch manifolds that are lost, doubled or out of order when some stay in place, some
-    /// go and some are new, and data of the pair before in a manifold that is used again.
+    /// Would catch manifolds that are lost, doubled or out of order, and data of another pair in a
+    /// recycled manifold.
     #[test]
     fn kept_manifolds_are_in_the_order_in_which_they_were_kept() {
         let mut random = Rand32::new(3);
