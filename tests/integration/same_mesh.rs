@@ -130,31 +130,6 @@ fn idle_trees_go_when_there_is_no_room() {
     assert_eq!(none_idle.stats().tree_bytes, 0);
 }
 
-/// Would catch a limit that counts wrongly, and a cache that drops the newest tree first: there is
-/// room for two of three.
-#[test]
-fn the_oldest_idle_tree_goes_first() {
-    let meshes = [1.0, 1.1, 1.2].map(|radius| shape(&mesh::ball(radius, 6)));
-    let one = {
-        let dispatcher = SbbkDispatcher::default();
-        let _pair = touch(&dispatcher, &meshes[0], &meshes[0]);
-        dispatcher.stats().tree_bytes
-    };
-    let dispatcher = with_idle_bytes(5 * one / 2);
-    for mesh in &meshes {
-        drop(touch(&dispatcher, mesh, mesh));
-    }
-    assert_eq!(counts(&dispatcher), [2, 2, 3, 0]);
-    for mesh in meshes[1..].iter().rev() {
-        drop(touch(&dispatcher, mesh, mesh));
-    }
-    assert_eq!(counts(&dispatcher), [2, 2, 3, 4]);
-    drop(touch(&dispatcher, &meshes[0], &meshes[0]));
-    // The one before last is the oldest now: touching a tree makes it young again.
-    drop(touch(&dispatcher, &meshes[1], &meshes[1]));
-    assert_eq!(counts(&dispatcher), [2, 2, 4, 6]);
-}
-
 /// Would catch a release that takes trees from living pairs, or leaves some behind.
 #[test]
 fn releasing_idle_trees_leaves_those_in_use() {

@@ -453,28 +453,6 @@ fn large_meshes_are_solids_to_each_other() {
     assert_eq!((unaware.stats().solids, unaware.stats().trees), (1, 0));
 }
 
-/// Would catch a pair in contact whose mesh turns into a solid as it is registered.
-#[test]
-fn pairs_that_have_met_go_on_as_they_are() {
-    let slab = SharedShape::new(shape(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 40)));
-    let (ground, cube, dispatcher) = (slab.as_trimesh().unwrap(), cube(), every());
-    let at = |step: usize| {
-        let turn = Quat::from_rotation_y(0.3 + 0.01 * step as f32);
-        Question::new(ground, &cube, Pose::from_parts(Vec3::new(0.1, 0.2, 0.2), turn))
-    };
-    let (mut known, mut trees) = (Pair::default(), Vec::new());
-    for step in 0..30 {
-        let expected = at(step).fresh(&every());
-        let found = bits(&known.ask(&dispatcher, &at(step)).manifolds);
-        assert!(found == bits(&expected), "{step}");
-        if step == 3 {
-            trees.extend(dispatcher.prepare_shape(&slab).unwrap());
-        }
-    }
-    let of_a_solid = bits(&at(30).fresh(&dispatcher));
-    assert!(of_a_solid != bits(&at(30).fresh(&every())), "what is this test worth?");
-}
-
 /// Would catch surfaces that are looked for, which takes a hash of the mesh, before triangles touch.
 #[test]
 fn meshes_that_touch_nothing_have_no_surface() {

@@ -70,6 +70,10 @@ fn triangles_with_a_nan_vertex_touch_nothing() {
             let mut pair: Pair = Pair::default();
             for frame in 0..5 {
                 mesh.set_vertices(&rest);
+                if flags.is_empty() {
+                    // As Rapier does when a rigid shape was edited.
+                    pair = Pair::default();
+                }
                 let is_broken = matches!(frame, 1 | 2) || frame == 0 && seed % 4 == 0;
                 if is_broken {
                     break_some(&mut mesh, random);
