@@ -14,7 +14,7 @@ use sbbk_core::tree::Tree;
 
 pub use error::PrepareError;
 
-use crate::mesh::{MeshData, MeshStore, MeshView, Registered};
+use crate::mesh::{MeshStore, MeshView, Registered};
 use crate::stats::QueryCounters;
 use crate::{SbbkConfig, SbbkStats};
 
@@ -71,16 +71,14 @@ impl SbbkDispatcher {
         let Some(mesh) = rigid_mesh(&*shape.0) else {
             return Ok(None);
         };
-        let registered = self.cache.register(shape, mesh)?;
-        let data = Arc::clone(&registered.data);
-        Ok(Some(PreparedTree { data, _registered: Some(registered) }))
+        Ok(Some(PreparedTree(self.cache.register(mesh, Some(shape))?)))
     }
 
-    /// Builds the tree of a mesh of up to 8192 triangles now, instead of in a step.
+    /// Registers a mesh and all its copies, and builds its tree now instead of in a step.
     ///
-    /// The tree stays while the result lives. Each pair of such meshes finds the tree by a hash of the
-    /// content, so the tree serves copies, too. Use [`prepare_shape`](Self::prepare_shape) for larger
-    /// meshes. Meshes that touch no other rigid mesh need no tree.
+    /// Each new pair finds the tree by a hash of the content, which takes about 4 ns a triangle:
+    /// [`prepare_shape`](Self::prepare_shape) is better for large meshes that are one shape and its
+    /// clones. Meshes that touch no other rigid mesh need no tree.
     ///
     /// ```
     /// use parry3d::shape::{Ball, TriMesh};
@@ -96,12 +94,13 @@ impl SbbkDispatcher {
     ///
     /// # Errors
     /// Names the defect of the mesh, for example a vertex that is NaN.
-    #[must_use = "the tree may be dropped when the result is dropped"]
+    #[must_use = "the registration ends when the result is dropped"]
     pub fn prepare(&self, mesh: &TriMesh) -> Result<PreparedTree, PrepareError> {
-        Ok(PreparedTree { data: self.cache.prepare(mesh)?, _registered: None })
+        Ok(PreparedTree(self.cache.register(mesh, None)?))
     }
 
-    /// True if the mesh is one that [`prepare_shape`](Self::prepare_shape) has registered.
+    /// True if the mesh is registered: by [`prepare_shape`](Self::prepare_shape), or as one of more than
+    /// 8192 triangles by [`prepare`](Self::prepare).
     pub fn is_registered(&self, mesh: &TriMesh) -> bool {
         self.cache.registered(mesh).is_some()
     }
@@ -161,30 +160,27 @@ impl fmt::Debug for SbbkDispatcher {
 /// Keeps a mesh prepared, see [`SbbkDispatcher::prepare_shape`] and [`SbbkDispatcher::prepare`].
 #[must_use = "the registration ends when this is dropped"]
 #[derive(Clone)]
-pub struct PreparedTree {
-    data: Arc<MeshData>,
-    _registered: Option<Arc<Registered>>,
-}
+pub struct PreparedTree(Arc<Registered>);
 
 impl PreparedTree {
     /// The tree.
     pub fn tree(&self) -> &Tree {
-        self.data.tree().expect("prepared")
+        self.0.data.tree().expect("prepared")
     }
 
     /// Returns what SBBK takes the mesh for.
     pub fn surface_kind(&self) -> SurfaceKind {
-        self.data.kind().expect("prepared")
+        self.0.data.kind().expect("prepared")
     }
 
     /// Overrides the detected kind: [`Sheet`](SurfaceKind::Sheet) for a room that SBBK takes for a
     /// solid, [`Solid`](SurfaceKind::Solid) for a mask that it takes for a sheet.
     ///
-    /// Holds for all meshes with this content while one of them is in use. A mesh of more than 8192
-    /// triangles must be registered by [`prepare_shape`](SbbkDispatcher::prepare_shape).
+    /// Holds for all meshes with this content while one of them is in use. One of more than 8192
+    /// triangles must be registered.
     /// [`InsideOut`](SurfaceKind::InsideOut) collides like a sheet.
     pub fn set_surface_kind(&self, kind: SurfaceKind) {
-        self.data.declare_kind(kind);
+        self.0.data.declare_kind(kind);
     }
 
     /// Former name of [`set_surface_kind`](Self::set_surface_kind). Returns true.

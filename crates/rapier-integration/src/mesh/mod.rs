@@ -10,13 +10,8 @@ mod store;
 mod view;
 
 pub(crate) use data::MeshData;
-pub(crate) use pair_mesh::{Change, MeshSurface};
+pub(crate) use pair_mesh::{Change, MeshSurface, PairMesh};
 pub(crate) use store::{MeshStore, Registered, StoreCounts};
 pub(crate) use view::{
     BEHIND, MeshView, are_near, box_of, is_covered, is_near, may_be_inside, nearest,
 };
-
-// Former names, until all callers are renamed.
-pub(crate) use pair_mesh::PairMesh as KnownMesh;
-pub(crate) use store::MeshStore as TreeCache;
-pub(crate) use view::MeshView as Hierarchy;

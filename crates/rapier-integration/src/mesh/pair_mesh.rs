@@ -244,7 +244,7 @@ mod tests {
         assert_eq!(ask(larger, larger.indices().len()), [false; 2]);
         for shape in &shapes {
             let mesh = shape.as_trimesh().unwrap();
-            let _registered = store.register(shape, mesh).unwrap();
+            let _registered = store.register(mesh, Some(shape)).unwrap();
             assert_eq!(ask(mesh, 0), [true; 2]);
         }
     }
@@ -256,7 +256,7 @@ mod tests {
         let mesh = shape.as_trimesh().unwrap();
         let mut known = PairMesh::default();
         assert_eq!(surface(&mut known, &store, mesh, 0), [false; 2]);
-        let registered = store.register(&shape, mesh).unwrap();
+        let registered = store.register(mesh, Some(&shape)).unwrap();
         assert_eq!(known.clone().update(&store.view(mesh).unwrap()), Change::Unknown);
         assert_eq!(surface(&mut known, &store, mesh, 0), [true; 2]);
         registered.data.declare_kind(SurfaceKind::Sheet);

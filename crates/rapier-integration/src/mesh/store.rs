@@ -26,8 +26,7 @@ pub(crate) struct MeshStore {
     /// Bytes that recently used meshes may keep.
     recent_limit: usize,
     contents: Mutex<Contents>,
-    /// Registered meshes by address. The shape that each one holds keeps the address in use.
-    registered: RwLock<HashMap<usize, Weak<Registered>>>,
+    registered: RwLock<RegisteredMeshes>,
     /// Number of registrations that have begun or ended.
     registrations: Arc<AtomicU64>,
     budget: BuildBudget,
@@ -37,10 +36,20 @@ pub(crate) struct MeshStore {
     walks: AtomicU64,
 }
 
+#[derive(Default)]
+struct RegisteredMeshes {
+    /// By address. The shape that each one holds keeps the address in use.
+    shapes: HashMap<usize, Weak<Registered>>,
+    /// Large meshes without a shape, by their number of triangles: only a mesh of as many triangles
+    /// is hashed.
+    contents: HashMap<usize, Vec<Weak<Registered>>>,
+}
+
 /// A registered mesh. While `shape` is held here, edits of the shape go to a copy, and the address
 /// identifies the content.
 pub(crate) struct Registered {
-    shape: SharedShape,
+    shape: Option<SharedShape>,
+    content: ContentHash,
     pub(crate) data: Arc<MeshData>,
     registrations: Arc<AtomicU64>,
 }
@@ -92,39 +101,45 @@ impl MeshStore {
         }
     }
 
-    /// Returns the data of a mesh, with its tree and surface.
-    ///
-    /// # Errors
-    /// Says why this mesh cannot have a tree.
-    pub(crate) fn prepare(&self, mesh: &TriMesh) -> Result<Arc<MeshData>, BuildError> {
-        let data = self.entry(mesh);
-        self.build(mesh, &data)?;
-        if data.surface().is_none() {
-            data.analyse(mesh);
-            self.contents().keep_recent(&data, self.recent_limit);
-        }
-        Ok(data)
-    }
-
-    /// Prepares the mesh of `shape`, and finds it by its address while the result lives.
+    /// Registers a mesh, with its tree and surface: `shape` by its address, a large mesh without a
+    /// shape by its content. The registration lasts while the result lives.
     ///
     /// # Errors
     /// Says why this mesh cannot have a tree.
     pub(crate) fn register(
         &self,
-        shape: &SharedShape,
         mesh: &TriMesh,
+        shape: Option<&SharedShape>,
     ) -> Result<Arc<Registered>, BuildError> {
-        let data = self.prepare(mesh)?;
-        let mut meshes = self.registered.write().unwrap_or_else(PoisonError::into_inner);
-        if let Some(known) = meshes.get(&address(mesh)).and_then(Weak::upgrade) {
-            return Ok(known);
+        let content = ContentHash::of(mesh);
+        let data = self.entry_of(content);
+        self.build(mesh, &data)?;
+        if data.surface().is_none() {
+            data.analyse(mesh);
+            self.contents().keep_recent(&data, self.recent_limit);
         }
         let registrations = Arc::clone(&self.registrations);
-        let registered = Arc::new(Registered { shape: shape.clone(), data, registrations });
-        debug_assert_eq!(registered.shape.as_trimesh().map(address), Some(address(mesh)));
-        make_room(&mut meshes);
-        meshes.insert(address(mesh), Arc::downgrade(&registered));
+        let shape = shape.cloned();
+        let registered = Arc::new(Registered { shape, content, data, registrations });
+        let RegisteredMeshes { shapes, contents } =
+            &mut *self.registered.write().unwrap_or_else(PoisonError::into_inner);
+        let count = mesh.indices().len();
+        if registered.shape.is_some() {
+            if let Some(known) = shapes.get(&address(mesh)).and_then(Weak::upgrade) {
+                return Ok(known);
+            }
+            make_room(shapes);
+            shapes.insert(address(mesh), Arc::downgrade(&registered));
+        } else if !is_small(count) {
+            contents.retain(|_, of_count| {
+                of_count.retain(|known| known.strong_count() > 0);
+                !of_count.is_empty()
+            });
+            contents.entry(count).or_default().push(Arc::downgrade(&registered));
+        } else {
+            // Pairs find small meshes without a registration.
+            return Ok(registered);
+        }
         self.registrations.fetch_add(1, Ordering::Release);
         Ok(registered)
     }
@@ -132,7 +147,15 @@ impl MeshStore {
     /// Returns the data of a mesh, if the mesh is registered.
     pub(crate) fn registered(&self, mesh: &TriMesh) -> Option<Arc<MeshData>> {
         let meshes = self.registered.read().unwrap_or_else(PoisonError::into_inner);
-        Some(Arc::clone(&meshes.get(&address(mesh))?.upgrade()?.data))
+        if let Some(known) = meshes.shapes.get(&address(mesh)).and_then(Weak::upgrade) {
+            return Some(Arc::clone(&known.data));
+        }
+        let of_count = meshes.contents.get(&mesh.indices().len())?;
+        let known: Vec<_> = of_count.iter().filter_map(Weak::upgrade).collect();
+        drop(meshes);
+        let content = (!known.is_empty()).then(|| ContentHash::of(mesh))?;
+        let known = known.into_iter().find(|known| known.content == content)?;
+        Some(Arc::clone(&known.data))
     }
 
     /// Rises when a registration begins or ends.
@@ -144,7 +167,10 @@ impl MeshStore {
     /// Returns the data of a mesh, found by a hash of all its content.
     pub(super) fn entry(&self, mesh: &TriMesh) -> Arc<MeshData> {
         self.budget.charge_hash(mesh.indices().len());
-        let content = ContentHash::of(mesh);
+        self.entry_of(ContentHash::of(mesh))
+    }
+
+    fn entry_of(&self, content: ContentHash) -> Arc<MeshData> {
         let mut contents = self.contents();
         let known = contents.meshes.get(&content).and_then(Weak::upgrade);
         let data = known.unwrap_or_else(|| {
@@ -345,11 +371,11 @@ mod tests {
     #[test]
     fn recent_meshes_keep_to_the_limit_in_bytes() {
         let wide = store(usize::MAX);
-        drop(wide.prepare(&ball(1.0)).unwrap());
+        drop(wide.register(&ball(1.0), None).unwrap());
         let bytes = wide.counts().bytes;
         for (limit, stay) in [(bytes, 1), (bytes - 1, 0)] {
             let store = store(limit);
-            drop(store.prepare(&ball(1.0)).unwrap());
+            drop(store.register(&ball(1.0), None).unwrap());
             assert_eq!((store.counts().trees, store.counts().idle_trees), (stay, stay), "{limit}");
         }
     }
@@ -383,8 +409,8 @@ mod tests {
         let store = store(0);
         let [shape, other] = [(); 2].map(|()| SharedShape::new(ball(1.0)));
         let mesh = shape.as_trimesh().unwrap();
-        let first = store.register(&shape, mesh).unwrap();
-        let second = store.register(&shape.clone(), mesh).unwrap();
+        let first = store.register(mesh, Some(&shape)).unwrap();
+        let second = store.register(mesh, Some(&shape.clone())).unwrap();
         assert!(Arc::ptr_eq(&first, &second));
         assert!(store.registered(other.as_trimesh().unwrap()).is_none());
         drop(first);
@@ -392,8 +418,23 @@ mod tests {
         let count = store.registrations();
         drop(second);
         assert!(store.registered(mesh).is_none() && store.registrations() > count);
-        let _again = store.register(&shape, mesh).unwrap();
+        let _again = store.register(mesh, Some(&shape)).unwrap();
         assert!(store.registered(mesh).is_some());
+    }
+
+    #[test]
+    fn copies_of_a_large_mesh_are_registered_by_their_content() {
+        let (vertices, triangles) = Ball::new(1.0).to_trimesh(100, 100);
+        let mesh = TriMesh::new(vertices, triangles).unwrap();
+        let mut other = mesh.clone();
+        other.transform_vertices(&parry3d::math::Pose::translation(0.0, 1.0, 0.0));
+        let store = store(0);
+        let registered = store.register(&mesh, None).unwrap();
+        let found = [&mesh, &mesh.clone(), &other].map(|mesh| store.registered(mesh).is_some());
+        assert_eq!(found, [true, true, false]);
+        let count = store.registrations();
+        drop(registered);
+        assert!(store.registered(&mesh).is_none() && store.registrations() > count);
     }
 
     #[test]
@@ -432,7 +473,7 @@ mod tests {
         assert!(data.begin_build());
         store.build_within_budget(&mesh, &data);
         assert!(data.tree().is_none());
-        assert!(store.prepare(&mesh).unwrap().tree().is_some());
+        assert!(store.register(&mesh, None).unwrap().data.tree().is_some());
     }
 
     #[test]

@@ -14,7 +14,7 @@ use sbbk_core::leaf::{LateralCulling, LeafTest};
 use sbbk_core::traverse::{BoxTest, Counters, NearBox, PairFrame, Placement, TestedBox};
 use sbbk_core::tree::{BATCH, LeafBatch};
 
-use crate::mesh::Hierarchy;
+use crate::mesh::MeshView;
 
 /// Length of a group of triangles that follow each other in a BVH. Higher: groups are wide and
 /// something is near more often; lower: more descents.
@@ -27,7 +27,7 @@ const FEW: usize = 16;
 /// Calls `found` with all pairs of triangles within `margin` except those that `culling` excludes,
 /// and few others, in any order, until it breaks. `near` is memory.
 pub(crate) fn walk(
-    [mesh1, mesh2]: [&Hierarchy<'_>; 2],
+    [mesh1, mesh2]: [&MeshView<'_>; 2],
     placement12: Placement,
     margin: f32,
     culling: Option<LateralCulling>,
@@ -47,7 +47,7 @@ pub(crate) fn walk(
 
 /// Descends with mesh 1 as the larger one. Counts tests in `tested`.
 fn walk_larger(
-    [mesh1, mesh2]: [&Hierarchy<'_>; 2],
+    [mesh1, mesh2]: [&MeshView<'_>; 2],
     placement12: Placement,
     margin: f32,
     culling: Option<LateralCulling>,
@@ -55,7 +55,7 @@ fn walk_larger(
     near1: &mut Vec<u32>,
     mut found: impl FnMut([u32; 2]) -> ControlFlow<()>,
 ) {
-    let [m1, m2] = [mesh1, mesh2].map(Hierarchy::magnitude);
+    let [m1, m2] = [mesh1, mesh2].map(MeshView::magnitude);
     let in_frame1 = BoxTest::new([m1, m2], &placement12, margin);
     let whole = in_frame1.of(TestedBox::new(mesh2.root().mins, mesh2.root().maxs));
     near1.clear();

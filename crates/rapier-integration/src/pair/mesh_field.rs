@@ -35,13 +35,13 @@ use super::reduce::PatchPlan;
 use super::surface::filter_distance;
 use super::triangles::{Cones, Hint, TriangleQuery, TriangleScratch, TriangleShapes};
 use super::update::{Moving, Pair};
-use crate::mesh::{Change, Hierarchy, KnownMesh, MeshSurface, TreeCache, is_covered, nearest};
+use crate::mesh::{Change, MeshStore, MeshSurface, MeshView, PairMesh, is_covered, nearest};
 
 /// A mesh and a height field.
 #[derive(Copy, Clone)]
 pub(crate) struct FieldPair<'a> {
     pub(crate) pose: &'a PairPose,
-    pub(crate) mesh: Hierarchy<'a>,
+    pub(crate) mesh: MeshView<'a>,
     pub(crate) field: &'a HeightField,
     pub(crate) mesh_place: MeshPlace,
     /// True for contacts of surfaces, false for contacts of each two triangles.
@@ -60,7 +60,7 @@ impl FieldPair<'_> {
 
 impl<'a> Pair for FieldPair<'a> {
     /// The mesh, and the field that the candidates are for.
-    type State = (KnownMesh, Option<FieldToken>, InsideTest);
+    type State = (PairMesh, Option<FieldToken>, InsideTest);
     type Hint = Hint;
     type Query<'q>
         = TriangleQuery<'q, MeshAndField<'q>>
@@ -73,7 +73,7 @@ impl<'a> Pair for FieldPair<'a> {
 
     fn open<'q>(
         &'q self,
-        _: &'q Arc<TreeCache>,
+        _: &'q Arc<MeshStore>,
         (known_mesh, known_field, inside): &'q mut Self::State,
     ) -> (Change, Self::Query<'q>) {
         let mut change = known_mesh.update(&self.mesh);

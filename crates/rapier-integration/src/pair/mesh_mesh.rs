@@ -18,13 +18,13 @@ use super::reduce::PatchPlan;
 use super::surface::{filter_distance, lateral_culling};
 use super::triangles::{Cones, Hint, TriangleHit, TriangleQuery, TriangleScratch, TriangleShapes};
 use super::update::{Moving, Pair};
-use crate::mesh::{Change, Hierarchy, KnownMesh, MeshSurface, TreeCache, is_covered, nearest};
+use crate::mesh::{Change, MeshStore, MeshSurface, MeshView, PairMesh, is_covered, nearest};
 
 /// Two meshes.
 #[derive(Copy, Clone)]
 pub(crate) struct MeshPair<'a> {
     pub(crate) pose: &'a PairPose,
-    pub(crate) meshes: [Hierarchy<'a>; 2],
+    pub(crate) meshes: [MeshView<'a>; 2],
     /// True for contacts of surfaces, false for contacts of each two triangles.
     pub(crate) has_surfaces: bool,
     pub(crate) has_patches: bool,
@@ -38,7 +38,7 @@ impl MeshPair<'_> {
 }
 
 impl<'a> Pair for MeshPair<'a> {
-    type State = ([KnownMesh; 2], InsideTest);
+    type State = ([PairMesh; 2], InsideTest);
     type Hint = Hint;
     type Query<'q>
         = TriangleQuery<'q, Meshes<'q>>
@@ -46,12 +46,12 @@ impl<'a> Pair for MeshPair<'a> {
         Self: 'q;
 
     fn is_new((known, _): &Self::State) -> bool {
-        known.iter().any(KnownMesh::is_unknown)
+        known.iter().any(PairMesh::is_unknown)
     }
 
     fn open<'q>(
         &'q self,
-        cache: &'q Arc<TreeCache>,
+        cache: &'q Arc<MeshStore>,
         ([known1, known2], inside): &'q mut Self::State,
     ) -> (Change, Self::Query<'q>) {
         let [mesh1, mesh2] = &self.meshes;
@@ -91,7 +91,7 @@ pub(crate) struct Meshes<'q> {
     /// Surfaces of both meshes, for contacts of surfaces.
     pub(super) surfaces: [Option<MeshSurface<'q>>; 2],
     filter_distance: f64,
-    cache: &'q TreeCache,
+    cache: &'q MeshStore,
 }
 
 impl TriangleShapes for Meshes<'_> {

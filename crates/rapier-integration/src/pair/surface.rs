@@ -315,7 +315,7 @@ mod tests {
     use sbbk_core::tree::BuildOptions;
 
     use super::*;
-    use crate::mesh::TreeCache;
+    use crate::mesh::MeshStore;
     use crate::pair::mesh_mesh::MeshPair;
     use crate::pair::triangle_contacts::local_pair;
     use crate::pair::triangles::TriangleScratch;
@@ -325,7 +325,7 @@ mod tests {
     /// catch contacts that [`lateral_culling`] loses.
     #[test]
     fn triangles_beside_each_other_pass_by() {
-        let cache = Arc::new(TreeCache::new(BuildOptions::default(), 1 << 30));
+        let cache = Arc::new(MeshStore::new(BuildOptions::default(), 1 << 30));
         let shapes = [20, 30].map(|rows| {
             let (mut vertices, triangles) = Ball::new(1.0).to_trimesh(2 * rows, rows);
             for (i, vertex) in (0_u32..).zip(&mut vertices) {
@@ -344,7 +344,7 @@ mod tests {
                 MeshPair { pose: &pose, meshes: seen, has_surfaces: true, has_patches: false };
             for has_trees in [false, true] {
                 let registered = has_trees
-                    .then(|| [0, 1].map(|i| cache.register(&shapes[i], meshes[i]).unwrap()));
+                    .then(|| [0, 1].map(|i| cache.register(meshes[i], Some(&shapes[i])).unwrap()));
                 let mut known = Default::default();
                 let shapes = mesh_pair.open(&cache, &mut known).1.shapes;
                 let mut found = Vec::new();

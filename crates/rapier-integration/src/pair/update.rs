@@ -20,7 +20,7 @@ use super::pose::PairPose;
 use super::reduce::{ContactSummary, PatchPlan, Reduction};
 use super::state::{Candidate, HighWaterMark, PairState, state_in};
 use super::write::{Writer, write_every, write_patches};
-use crate::mesh::{Change, TreeCache};
+use crate::mesh::{Change, MeshStore};
 
 /// A kind of pair: a mesh and another shape.
 pub(crate) trait Pair: Copy {
@@ -39,7 +39,7 @@ pub(crate) trait Pair: Copy {
     /// Returns the change since the last query, and begins a query.
     fn open<'q>(
         &'q self,
-        cache: &'q Arc<TreeCache>,
+        cache: &'q Arc<MeshStore>,
         state: &'q mut Self::State,
     ) -> (Change, Self::Query<'q>);
 }
@@ -212,7 +212,7 @@ pub(super) struct Running<'r, Q: PairQuery> {
 /// Brings the manifolds of a pair up to date.
 pub(crate) fn update_manifolds<P, M, C>(
     pair: &P,
-    cache: &Arc<TreeCache>,
+    cache: &Arc<MeshStore>,
     mut counters: impl Counters,
     manifolds: &mut Vec<ContactManifold<M, C>>,
     workspace: &mut Option<ContactManifoldsWorkspace>,

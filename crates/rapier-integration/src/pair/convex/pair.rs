@@ -18,7 +18,7 @@ use super::parts::{Part, PartData, Parts};
 use super::placed::PlacedPart;
 use super::shape::ConvexShape;
 use super::triangle_part::TrianglePartPair;
-use crate::mesh::{Change, Hierarchy, KnownMesh, MeshSurface, TreeCache};
+use crate::mesh::{Change, MeshStore, MeshSurface, MeshView, PairMesh};
 use crate::pair::pose::{MeshPlace, PairPose};
 use crate::pair::reduce::{ContactSummary, PatchPlan};
 use crate::pair::state::Candidate;
@@ -30,7 +30,7 @@ use crate::pair::update::{
 #[derive(Copy, Clone)]
 pub(crate) struct ConvexPair<'a> {
     pub(crate) pose: &'a PairPose,
-    pub(crate) mesh: Hierarchy<'a>,
+    pub(crate) mesh: MeshView<'a>,
     pub(crate) parts: Parts<'a>,
     pub(crate) mesh_place: MeshPlace,
     /// True: contacts of the surface. False: contacts of each triangle.
@@ -62,7 +62,7 @@ impl ConvexPair<'_> {
 
 impl<'a> Pair for ConvexPair<'a> {
     /// Data of the mesh and of the parts that the candidates belong to.
-    type State = (KnownMesh, PartData);
+    type State = (PairMesh, PartData);
     type Hint = ();
     type Query<'q>
         = ConvexQuery<'q>
@@ -75,7 +75,7 @@ impl<'a> Pair for ConvexPair<'a> {
 
     fn open<'q>(
         &'q self,
-        _: &'q Arc<TreeCache>,
+        _: &'q Arc<MeshStore>,
         (known_mesh, part_data): &'q mut Self::State,
     ) -> (Change, Self::Query<'q>) {
         let mut change = known_mesh.update(&self.mesh);
