@@ -297,8 +297,10 @@ mod tests {
             let settled = [[3, 2], [9, 9], [1, 1], [7, 8]].map(|pair| islands.is_final(pair));
             assert_eq!(settled, [true, true, false, false]);
         }
+        islands.clear();
         islands.add(crossing([1, 1], Some(&good), None));
         assert!(!islands.finish_first_pass(None), "all is good");
+        islands.clear();
         islands.add(crossing([1, 1], None, None));
         islands.add(crossing([1, 2], Some(&good), None));
         assert!(!islands.finish_first_pass(None), "the island is held");
