@@ -20,3 +20,4 @@ mod same_mesh;
 mod snapshot;
 mod support;
 mod truth;
+mod worlds;

@@ -6,33 +6,41 @@ use glamx::Vec3;
 use oorandom::Rand32;
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::shape::{SharedShape, TriMeshFlags};
-use sbbk_testkit::mesh;
+use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::compound::compounds;
 use crate::convex::shapes::{floor, shapes};
 use crate::heightfield::terrain::rolling;
-use crate::support::{Question, direction, per_triangle, rotation, shape_with};
+use crate::support::{
+    Question, direction, per_triangle, rotation, shape, shape_with, turned_inside_out,
+};
 
 /// A mesh, or a height field, and another shape.
 pub struct Kind {
     pub name: String,
     pub shapes: [SharedShape; 2],
-    /// False where every query makes its contacts anew.
+    /// False if every query makes its contacts anew.
     pub keeps_candidates: bool,
+    /// True if a mesh may deform.
+    pub is_soft: bool,
 }
 
 impl Kind {
     fn new(name: &str, shape1: &SharedShape, shape2: SharedShape) -> Self {
-        let keeps_candidates = shape2.as_ball().is_none();
-        Self { name: name.into(), shapes: [shape1.clone(), shape2], keeps_candidates }
+        let shapes = [shape1.clone(), shape2];
+        let is_soft = shapes
+            .iter()
+            .filter_map(|shape| shape.as_trimesh())
+            .any(|mesh| mesh.flags().contains(TriMeshFlags::DEFORMABLE));
+        let keeps_candidates = !is_soft && shapes[1].as_ball().is_none();
+        Self { name: name.into(), shapes, keeps_candidates, is_soft }
     }
 
     pub fn question(&self, pose: Pose) -> Question<'_> {
         Question::new(&*self.shapes[0], &*self.shapes[1], pose)
     }
 
-    /// A random pose at which the shapes have come along a line until they were `gap` apart;
-    /// a negative gap is a depth.
+    /// A random pose at which the shapes are `gap` apart; a negative gap is a depth.
     pub fn pose(&self, random: &mut Rand32, gap: Real) -> Pose {
         const START: Real = 6.0;
         let mut approach = || {
@@ -55,14 +63,47 @@ impl Kind {
     }
 }
 
-/// A pair of each kind: two meshes, a mesh and each convex shape, compounds, and a height field.
+fn head(flags: TriMeshFlags) -> SharedShape {
+    SharedShape::new(shape_with(&mesh::monkey_head_with(6), flags))
+}
+
+fn rigid(mesh: &Mesh) -> SharedShape {
+    SharedShape::new(shape(mesh))
+}
+
+/// Pairs of meshes that differ in size, detail, place of the origin, or surface kind. The last one
+/// is too large for a tree that was not prepared.
+pub fn mesh_pairs() -> Vec<Kind> {
+    let plain = head(TriMeshFlags::empty());
+    let [ring, ball, fine, large] = [
+        mesh::torus(3.0, 0.3, 40, 8),
+        mesh::ball(0.5, 5),
+        mesh::ball(0.3, 16),
+        mesh::torus(1.4, 0.6, 100, 48),
+    ]
+    .map(|mesh| rigid(&mesh));
+    let distant = rigid(&mesh::monkey_head_with(6).mapped(|vertex| vertex + 0.7 * Vec3::X));
+    vec![
+        Kind::new("ring and ball", &ring, ball.clone()),
+        Kind::new("ball and ring", &ball, ring),
+        Kind::new("distant origin", &plain, distant),
+        Kind::new("fine balls", &fine, fine.clone()),
+        Kind::new("terrain", &rigid(&mesh::terrain(3.0, 12, 0.5)), plain.clone()),
+        Kind::new("inside out", &rigid(&turned_inside_out(mesh::ball(0.7, 4))), plain.clone()),
+        Kind::new("large mesh", &large, plain),
+    ]
+}
+
+/// A pair of each kind: two meshes, a mesh and each convex shape, compounds, a height field, and
+/// some of these with a mesh that may deform.
 pub fn kinds() -> &'static [Kind] {
     static KINDS: OnceLock<Vec<Kind>> = OnceLock::new();
     KINDS.get_or_init(|| {
-        let head = |flags| SharedShape::new(shape_with(&mesh::monkey_head_with(6), flags));
-        let [plain, flagged] = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES].map(head);
+        let plain = head(TriMeshFlags::empty());
+        let flagged = head(TriMeshFlags::FIX_INTERNAL_EDGES);
+        let soft = head(TriMeshFlags::DEFORMABLE);
         let field = SharedShape::new(rolling(6.0, 20, 0.5));
-        let ball = SharedShape::new(shape_with(&mesh::ball(0.7, 5), TriMeshFlags::empty()));
+        let ball = rigid(&mesh::ball(0.7, 5));
         let line = (0..9).map(|i| Vec3::new(0.2 * i as Real, 0.1 * (i % 2) as Real, 0.0)).collect();
         let mut kinds = vec![
             Kind::new("two meshes", &plain, plain.clone()),
@@ -71,12 +112,22 @@ pub fn kinds() -> &'static [Kind] {
             Kind::new("height field", &field, plain.clone()),
             Kind::new("polyline", &plain, SharedShape::polyline(line, None)),
             Kind::new("floor", &plain, floor()),
+            Kind::new("soft and mesh", &soft, plain.clone()),
+            Kind::new("soft and height field", &field, soft.clone()),
         ];
+        let soft_name = |name: &str| ["ball", "cuboid", "cylinder", "half-space"].contains(&name);
+        let beside_soft = shapes(0.6).into_iter().filter(|(name, _)| soft_name(name));
+        kinds.extend(
+            beside_soft.map(|(name, shape)| Kind::new(&format!("soft and {name}"), &soft, shape)),
+        );
         kinds.extend(shapes(0.6).into_iter().map(|(name, shape)| Kind::new(name, &plain, shape)));
-        let compounds = compounds(1.0).into_iter();
-        kinds.extend(compounds.map(|(name, compound)| {
-            Kind::new(&format!("compound, {name}"), &plain, SharedShape::new(compound))
-        }));
+        for (name, compound) in compounds(1.0) {
+            let compound = SharedShape::new(compound);
+            kinds.push(Kind::new(&format!("compound, {name}"), &plain, compound.clone()));
+            if name == "mixed" {
+                kinds.push(Kind::new("soft and compound", &soft, compound));
+            }
+        }
         kinds
     })
 }

@@ -41,8 +41,6 @@ mod inside;
 mod judged;
 /// Pairs of every kind.
 mod kinds;
-/// Contacts beside those of stock.
-mod like_stock;
 /// Runs of minutes, which `cargo test --workspace` leaves out.
 mod long_runs;
 /// What trees take, and when they go.
@@ -77,8 +75,6 @@ mod support;
 mod surfaces;
 /// Thin and fast bodies.
 mod thin;
-/// Motion beside that of stock Rapier: as close as chaos allows.
-mod trajectories;
 /// Brute force in f64.
 mod truth;
 /// Rigid meshes with vertices that are not finite.

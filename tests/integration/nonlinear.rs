@@ -1,14 +1,15 @@
-use glamx::{DPose3, DVec3, Pose3, Quat, Vec3};
+use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::parry::query::{
     DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus,
 };
 use rapier3d::parry::shape::TriMesh;
-use sbbk_core::truth::{TruthPair, pairs_within};
+use sbbk_core::truth::TruthPair;
 use sbbk_testkit::mesh;
 
 use crate::support::{direction, reach, rotation, shape};
+use crate::truth::{normalized, of_meshes};
 
 /// Two meshes on their ways, until the time of one unit.
 struct Cast<'a> {
@@ -30,14 +31,7 @@ impl Cast<'_> {
 
     /// All pairs of triangles up to a distance, by brute force in f64.
     fn truth(&self, time: f32, distance: f32) -> Vec<TruthPair> {
-        let [(v1, t1), (v2, t2)] = self.meshes.map(|mesh| {
-            let vertices: Vec<DVec3> = mesh.vertices().iter().map(|v| v.as_dvec3()).collect();
-            (vertices, mesh.indices())
-        });
-        let pos12 = self.pos12(time);
-        let rotation = pos12.rotation.as_dquat().normalize();
-        let pose = DPose3::from_parts(pos12.translation.as_dvec3(), rotation);
-        pairs_within(&v1, t1, &v2, t2, pose, f64::from(distance))
+        of_meshes(self.meshes, normalized(&self.pos12(time)), f64::from(distance))
     }
 
     /// How fast a pair that touches at the start approaches, at the middle of its first triangle,

@@ -6,7 +6,6 @@ use rapier3d::parry::query::details::NormalConstraints;
 use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh::{self, Mesh};
 
-use crate::like_stock;
 use crate::support::{
     Manifold, Question, TrianglePair, by_triangles, per_triangle, shape, shape_with, touching,
 };
@@ -49,6 +48,13 @@ fn check_cone(k: usize, flags: TriMeshFlags) {
         let pos12 = touching(&mut random, [&free[0], &free[1]], depth);
         let ask = |[one, two]: &[TriMesh; 2]| Question::new(one, two, pos12).fresh(&dispatcher);
         let (answer, constrained) = (ask(&free), ask(&fixed));
+        for manifold in &constrained {
+            for point in &manifold.points {
+                let along = (pos12 * point.local_p2 - point.local_p1).dot(manifold.local_n1);
+                let off = (along - point.dist).abs();
+                assert!(off < 1e-4, "{} deep, {along} along the normal", point.dist);
+            }
+        }
         let constrained = normals(&constrained, k);
         for (pair, normal) in normals(&answer, k) {
             let cone = fixed[k].triangle_normal_constraints(pair[k]).unwrap();
@@ -89,31 +95,4 @@ fn normals_lie_in_the_cones_of_mesh_2() {
 fn two_sided_cones_reject_nothing() {
     check_cone(0, TWO_SIDED);
     check_cone(1, TWO_SIDED);
-}
-
-/// Would catch cones applied in another order or frame than stock's, other points kept or dropped,
-/// and depths measured along the free normal.
-#[test]
-fn constrained_contacts_are_stocks() {
-    let meshes = meshes();
-    let dispatcher = per_triangle();
-    let mut contact_count = 0;
-    let all = [
-        [ONE_SIDED, FREE],
-        [FREE, TWO_SIDED],
-        [ONE_SIDED; 2],
-        [TWO_SIDED; 2],
-        [TWO_SIDED, ONE_SIDED],
-    ];
-    for (seed, flags) in all.into_iter().enumerate() {
-        let [one, two] = [0, 1].map(|i| flagged(&meshes[i], flags[i]));
-        let mut random = Rand32::new(seed as u64);
-        for depth in [-0.01, 0.0, 0.05, 0.2, 1.0].repeat(3) {
-            let query = Question::new(&one, &two, touching(&mut random, [&one, &two], depth));
-            for query in [query, query.flipped(true)] {
-                contact_count += like_stock::check(&query, &query.fresh(&dispatcher)).contacts;
-            }
-        }
-    }
-    assert!(contact_count > 1000, "{contact_count} contacts compared");
 }

@@ -1,35 +1,30 @@
 //! Queries without manifolds: the dispatcher beside brute force, and beside stock Parry where stock
 //! is right.
 
-use glamx::{DPose3, DVec3, Pose3, Vec3};
+use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::parry::query::details::ShapeCastOptions;
 use rapier3d::parry::query::{
     ClosestPoints, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastStatus,
 };
-use rapier3d::parry::shape::{Cuboid, TriMesh, TriMeshFlags};
+use rapier3d::parry::shape::{Cuboid, TriMesh};
 use rapier3d::prelude::*;
-use sbbk_core::truth::{TruthPair, pairs_within};
+use sbbk_core::truth::TruthPair;
 use sbbk_testkit::mesh;
 
-use super::support::{direction, reach, rotation, shape, shape_with};
+use crate::support::{direction, reach, rotation, shape};
+use crate::truth::{normalized, of_meshes};
 
 /// In sizes of the meshes.
 const TOLERANCE: f32 = 1e-5;
 
 /// All pairs of triangles up to a distance.
 fn truth(meshes: [&TriMesh; 2], pos12: &Pose3, margin: f32) -> Vec<TruthPair> {
-    let [(v1, t1), (v2, t2)] = meshes.map(|mesh| {
-        let vertices: Vec<DVec3> = mesh.vertices().iter().map(|v| v.as_dvec3()).collect();
-        (vertices, mesh.indices())
-    });
-    let rotation = pos12.rotation.as_dquat().normalize();
-    let pose = DPose3::from_parts(pos12.translation.as_dvec3(), rotation);
-    pairs_within(&v1, t1, &v2, t2, pose, f64::from(margin))
+    of_meshes(meshes, normalized(pos12), f64::from(margin))
 }
 
-/// The least signed distance up to a margin, infinite beyond.
+/// Least signed distance up to a margin, infinite beyond.
 fn least(meshes: [&TriMesh; 2], pos12: &Pose3, margin: f32) -> f32 {
     let pairs = truth(meshes, pos12, margin);
     pairs.iter().map(|pair| pair.distance as f32).fold(f32::INFINITY, f32::min)
@@ -290,23 +285,6 @@ fn sensors_see_what_stock_sees() {
     assert!(met > 20 && met < ours.iter().flatten().count(), "{met} met");
 }
 
-/// Meshes that change in place, between queries that have no workspace to lose: one vertex, inside
-/// the box.
-#[test]
-fn an_edited_mesh_is_seen() {
-    let dispatcher = SbbkDispatcher::default();
-    let mut edited = shape(&mesh::ball(1.0, 16));
-    let probe = shape(&mesh::cuboid(Vec3::splat(0.05), 1));
-    let place = Pose3::translation(0.3, 0.25, 0.2);
-    let before = dispatcher.distance(&place, &edited, &probe).unwrap().distance;
-    let vertex = edited.vertices().len() / 3 + 1;
-    edited.update_vertices(|vertices| vertices[vertex] = place.translation);
-    let after = dispatcher.distance(&place, &edited, &probe).unwrap().distance;
-    assert!(before > 0.3 && after < before - 0.2, "{before} before, {after} after");
-    let truth = least([&edited, &probe], &place, 1.0).max(0.0);
-    assert!((after - truth).abs() < 1e-5);
-}
-
 /// A vertex that moves within the boxes of all its triangles, forth and back: nothing else of the
 /// mesh changes. Would catch a mesh that is known by its boxes or by samples, and an answer from
 /// the tree of the other state.
@@ -398,9 +376,8 @@ fn a_mesh_in_the_place_of_another_is_not_that_one() {
     }
 }
 
-/// Poses and velocities that are no numbers: nothing is found, and nothing panics.
 #[test]
-fn numbers_that_are_none() {
+fn non_finite_input_has_no_result() {
     let head = shape(&mesh::monkey_head_with(6));
     for bad in [f32::NAN, f32::INFINITY] {
         let pos12 = Pose3::translation(bad, 0.0, 0.0);
@@ -418,22 +395,6 @@ fn numbers_that_are_none() {
         let hit = dispatcher.cast_shapes_nonlinear(&still, &head, &motion, &head, 0.0, 1.0, true);
         assert!(hit.unwrap().is_none());
     }
-}
-
-/// Everything else is Parry's: other shapes, and meshes that deform.
-#[test]
-fn others_are_stocks() {
-    let (stock, ours) = (DefaultQueryDispatcher, SbbkDispatcher::default());
-    let head = shape(&mesh::monkey_head_with(6));
-    let soft = shape_with(&mesh::monkey_head_with(6), TriMeshFlags::DEFORMABLE);
-    let cuboid = Cuboid::new(Vec3::ONE);
-    let pos12 = Pose3::translation(2.3, 0.4, 0.1);
-    for (g1, g2) in [(&head as &dyn Shape, &cuboid as &dyn Shape), (&soft, &head), (&head, &soft)] {
-        let [a, b] = [&stock as &dyn QueryDispatcher, &ours]
-            .map(|dispatcher| dispatcher.distance(&pos12, g1, g2).unwrap());
-        assert_eq!(a, b);
-    }
-    assert_eq!(ours.stats().trees, 0);
 }
 
 #[test]

@@ -1,10 +1,15 @@
 use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::RigidBodyHandle;
+use rapier3d::geometry::SharedShape;
 use rapier3d::math::{Pose, Real};
 use rapier3d::pipeline::PhysicsWorld;
+use sbbk_testkit::mesh;
 use sbbk_testkit::scene::{MonkeyPile, Scene, SceneWorld};
+use sbbk_testkit::world::Fingerprint;
 
-use crate::support::per_triangle;
+use crate::heightfield::terrain::rolling;
+use crate::support::{counting_patches, per_triangle};
+use crate::worlds::{bowl, dumbbells, heads_above, particles, soft_ball_above, table};
 
 /// Steps until heads lie on each other.
 const BEFORE: usize = 60;
@@ -60,19 +65,44 @@ fn apart_after(
     })
 }
 
-/// Would catch a workspace that cannot be saved (which makes the whole world unreadable),
-/// manifolds, their order or impulses lost on the way, and a tree for each of the copies that
-/// loading makes of one mesh.
+/// Worlds of bodies of every kind that come to lie on something.
+fn worlds() -> Vec<(&'static str, PhysicsWorld)> {
+    let pile = |contact_recycling| {
+        MonkeyPile { contact_recycling, ..MonkeyPile::with_heads(8) }.build().world
+    };
+    let field = SharedShape::new(rolling(12.0, 24, 0.4));
+    let ring = mesh::torus(1.0, 0.4, 24, 12).shared_shape().expect("a torus is a mesh");
+    vec![
+        ("pile", pile(true)),
+        ("pile without recycling", pile(false)),
+        ("heads on a height field", heads_above(field, None).world),
+        ("compounds on a mesh", dumbbells(None).world),
+        ("soft body on a mesh", soft_ball_above(&ring, None)),
+        ("soft body on a height field", soft_ball_above(&bowl(), None)),
+        ("soft body on a compound", soft_ball_above(&table(), None)),
+    ]
+}
+
+/// Would catch a workspace that cannot be saved, manifolds, their order or impulses lost on the way,
+/// and a tree for each of the copies of a mesh.
 #[test]
 fn a_restored_world_goes_on_bit_for_bit() {
-    for contact_recycling in [true, false] {
-        let dispatcher = SbbkDispatcher::default();
-        let SceneWorld { mut world, watched } = pile(Some(&dispatcher), contact_recycling);
-        let other = SbbkDispatcher::default();
+    for (name, mut world) in worlds() {
+        world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
+        (0..BEFORE).for_each(|_| world.step());
+        let other = counting_patches();
         let mut copy = restored(&world, Some(&other));
-        assert_eq!(apart_after(&mut world, &mut copy, &watched), [0.0; 2]);
-        assert_eq!(poses(&world, &watched), poses(&copy, &watched));
-        assert_eq!(other.stats().trees, 1);
+        for step in 0..AFTER {
+            world.step();
+            copy.step();
+            assert!(Fingerprint::of(&world) == Fingerprint::of(&copy), "{name}, step {step}");
+            assert_eq!(particles(&world), particles(&copy), "{name}, step {step}");
+        }
+        let stats = other.stats();
+        assert!(stats.queries > 20 && stats.trees <= 2, "{name}: {stats:?}");
+        assert!(stats.trees == 1 || !name.starts_with("pile"), "{name}: {stats:?}");
+        let touches = world.contact_pairs().any(|pair| pair.has_any_active_contact());
+        assert!(touches || name.starts_with("soft"), "{name}: nothing touches");
     }
 }
 

@@ -82,13 +82,6 @@ impl<'a> Question<'a> {
         std::mem::take(&mut Pair::default().ask(dispatcher, self).manifolds)
     }
 
-    /// Stock Parry's manifolds with points.
-    pub fn stock(&self) -> Vec<Manifold> {
-        let mut manifolds = self.fresh(&DefaultQueryDispatcher);
-        manifolds.retain(|manifold| !manifold.points.is_empty());
-        manifolds
-    }
-
     fn host_order<T>(&self, [one, two]: [T; 2]) -> [T; 2] {
         if self.is_flipped { [two, one] } else { [one, two] }
     }
@@ -266,21 +259,36 @@ pub fn nudge(random: &mut Rand32, size: f32) -> Pose3 {
     Pose3::from_parts(shift, Quat::from_scaled_axis(turn))
 }
 
-/// A pose at random, at which mesh 2 has come along a straight line towards the origin until it met
-/// mesh 1, and then `depth` farther (units).
+/// A random pose `depth` beyond the first touch of two meshes, along a line towards the origin.
 pub fn touching(random: &mut Rand32, meshes: [&TriMesh; 2], depth: Real) -> Pose {
-    let pose = (0..100).find_map(|_| approach(meshes, rotation(random), direction(random), depth));
-    pose.expect("most lines through the origin make the meshes meet")
+    let farthest = meshes.iter().map(|mesh| reach(mesh)).sum();
+    touching_shapes(random, meshes.map(|mesh| mesh as &dyn Shape), farthest, depth)
 }
 
-/// None when mesh 2 passes through a hole of mesh 1.
-fn approach(meshes: [&TriMesh; 2], rotation: Quat, from: Vec3, depth: Real) -> Option<Pose> {
+/// As [`touching`], for two shapes that are apart at a distance of `farthest`.
+pub fn touching_shapes(
+    random: &mut Rand32,
+    shapes: [&dyn Shape; 2],
+    farthest: Real,
+    depth: Real,
+) -> Pose {
+    let mut approach = || approach(shapes, rotation(random), direction(random), farthest, depth);
+    (0..100).find_map(|_| approach()).expect("most lines through the origin make the shapes meet")
+}
+
+/// Returns `None` if shape 2 passes through a hole of shape 1.
+fn approach(
+    shapes: [&dyn Shape; 2],
+    rotation: Quat,
+    from: Vec3,
+    farthest: Real,
+    depth: Real,
+) -> Option<Pose> {
     let at = |distance: Real| Pose::from_parts(from * distance, rotation);
     let meet = |distance: Real| {
-        let answer = DefaultQueryDispatcher.intersection_test(&at(distance), meshes[0], meshes[1]);
+        let answer = DefaultQueryDispatcher.intersection_test(&at(distance), shapes[0], shapes[1]);
         answer.unwrap().intersecting
     };
-    let farthest: Real = meshes.iter().map(|mesh| reach(mesh)).sum();
     let step = farthest / 64.0;
     let mut inside =
         (0..64).map(|i| farthest - step * i as Real).find(|&distance| meet(distance))?;

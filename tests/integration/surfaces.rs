@@ -362,24 +362,6 @@ fn either_mesh_may_come_first() {
     assert!(count > 500);
 }
 
-/// Would catch neighbours, regions or sides that are remembered from another pose.
-#[test]
-fn memory_is_never_part_of_the_answer() {
-    let [kept, unaware] = [(); 2].map(|()| every());
-    let mut count = 0;
-    for_each_pose(18, |[one, two], mut pose, random| {
-        let mut pair: Pair = Pair::default();
-        for stride in [0.0, 1e-5, 1e-3, 1e-3, 0.03] {
-            pose = nudge(random, stride) * pose;
-            let query = Question::new(one, two, pose).within(0.01);
-            let expected = query.fresh(&unaware);
-            assert_same(&pair.ask(&kept, &query).manifolds, &expected, 0.0);
-            count += expected.len();
-        }
-    });
-    assert!(count > 2000, "{count}");
-}
-
 /// Small meshes without trees: the budget for these is spent. Would catch a surface that is known with
 /// the tree only.
 #[test]

@@ -2,27 +2,30 @@
 
 use std::collections::BTreeMap;
 
-use glamx::{DPose3, DVec3};
+use glamx::{DPose3, DVec3, Pose3};
 use rapier3d::parry::query::ContactManifold;
 use rapier3d::parry::shape::TriMesh;
 use sbbk_core::truth::{self, TruthPair};
 
 use crate::support::{Question, TrianglePair, by_triangles, distance};
 
+/// Pairs of triangles of two meshes at a distance of at most `margin`.
+pub fn of_meshes(meshes: [&TriMesh; 2], pos12: DPose3, margin: f64) -> Vec<TruthPair> {
+    let [(v1, t1), (v2, t2)] = meshes.map(|mesh| {
+        let vertices: Vec<DVec3> = mesh.vertices().iter().map(|v| v.as_dvec3()).collect();
+        (vertices, mesh.indices())
+    });
+    truth::pairs_within(&v1, t1, &v2, t2, pos12, margin)
+}
+
+/// A pose in f64 whose quaternion has length one.
+pub fn normalized(pose: &Pose3) -> DPose3 {
+    DPose3::from_parts(pose.translation.as_dvec3(), pose.rotation.as_dquat().normalize())
+}
+
 /// Every pair of triangles at a distance of at most `margin`.
 pub fn pairs_within(query: &Question, margin: f64) -> BTreeMap<TrianglePair, TruthPair> {
-    let vertices = |mesh: &TriMesh| -> Vec<DVec3> {
-        mesh.vertices().iter().map(|vertex| vertex.as_dvec3()).collect()
-    };
-    let [mesh1, mesh2] = query.meshes();
-    let pairs = truth::pairs_within(
-        &vertices(mesh1),
-        mesh1.indices(),
-        &vertices(mesh2),
-        mesh2.indices(),
-        DPose3::from(query.pos12()),
-        margin,
-    );
+    let pairs = of_meshes(query.meshes(), DPose3::from(query.pos12()), margin);
     pairs.into_iter().map(|pair| ([pair.triangle1, pair.triangle2], pair)).collect()
 }
 

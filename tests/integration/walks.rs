@@ -11,8 +11,8 @@ use rapier3d::parry::shape::{Shape, SharedShape, TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh;
 
 use crate::support::{
-    Manifold, Pair, Question, assert_same, counting, every, nudge, per_triangle, rotation, shape,
-    shape_with, touching,
+    Manifold, Pair, Question, assert_same, every, per_triangle, rotation, shape, shape_with,
+    touching,
 };
 
 /// 9600 triangles, four units across.
@@ -64,24 +64,6 @@ fn contacts_without_trees_are_those_with_trees() {
         assert_eq!(prepared.stats().internals.tree_builds, 2);
     }
     assert!(count > 2000, "{count} contacts");
-}
-
-/// Would catch an order of manifolds that holds for one walk only.
-#[test]
-fn motion_without_trees_is_no_part_of_the_answer() {
-    let (ring, head) = (large(TriMeshFlags::empty()), head(TriMeshFlags::empty()));
-    let dispatcher = counting();
-    let mut random = Rand32::new(5);
-    let (mut pair, mut pose): (Pair, _) =
-        (Pair::default(), touching(&mut random, [as_mesh(&ring), as_mesh(&head)], 0.05));
-    for i in 0..300 {
-        pose = nudge(&mut random, [1e-4, 1e-3, 2e-2][i / 100]) * pose;
-        let query = Question::new(as_mesh(&ring), as_mesh(&head), pose);
-        pair.ask(&dispatcher, &query);
-        assert_eq!(bits(&pair.manifolds), bits(&query.fresh(&every())), "{i}");
-    }
-    let stats = dispatcher.stats();
-    assert!(stats.internals.walks > 50 && stats.internals.reused_queries > 100, "{stats:?}");
 }
 
 /// A mesh with all flags, as Rapier's loaders of robots make them, does not deform as a rule. Would

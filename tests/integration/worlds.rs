@@ -1,13 +1,17 @@
 use glamx::Vec3;
 use rapier_integration::SbbkDispatcher;
+use rapier3d::dynamics::SoftBodyBuilder;
 use rapier3d::geometry::SharedShape;
-use rapier3d::math::{Pose, Real};
+use rapier3d::math::{Pose, Real, Vector};
+use rapier3d::parry::shape::{HeightField, HeightFieldCellStatus};
+use rapier3d::parry::utils::Array2;
 use rapier3d::pipeline::PhysicsWorld;
 use rapier3d::prelude::{ColliderBuilder, RigidBodyBuilder, RigidBodyHandle};
+use sbbk_testkit::mesh;
 
 /// A world of equal bodies above a fixed ground.
 pub struct Bodies {
-    world: PhysicsWorld,
+    pub world: PhysicsWorld,
     handles: Vec<RigidBodyHandle>,
 }
 
@@ -41,16 +45,68 @@ impl Bodies {
     pub fn poses(&self) -> Vec<Pose> {
         self.handles.iter().map(|&body| *self.world.bodies[body].position()).collect()
     }
+}
 
-    pub fn manifold_count(&self) -> usize {
-        self.world.narrow_phase.contact_pairs().map(|pair| pair.manifolds().len()).sum()
-    }
+/// Three dumbbells above a mesh terrain.
+pub fn dumbbells(dispatcher: Option<SbbkDispatcher>) -> Bodies {
+    let ground = mesh::terrain(12.0, 24, 0.4).shared_shape().unwrap();
+    let bar = SharedShape::cuboid(0.6, 0.1, 0.1);
+    let end = SharedShape::cuboid(0.3, 0.3, 0.3);
+    let dumbbell = SharedShape::compound(vec![
+        (Pose::IDENTITY, bar),
+        (Pose::translation(-0.7, 0.0, 0.0), end.clone()),
+        (Pose::translation(0.7, 0.0, 0.0), end),
+    ]);
+    let place = |i| Vec3::new(3.0 * (i as Real - 1.0), 1.2, 0.3 * i as Real);
+    Bodies::above(ground, &dumbbell, (0..3).map(place), 2.0, dispatcher)
+}
 
-    /// The same world, saved and restored with a new dispatcher.
-    pub fn restored(&self) -> Self {
-        let bytes = postcard::to_stdvec(&self.world).expect("a world with SBBK can be saved");
-        let mut world: PhysicsWorld = postcard::from_bytes(&bytes).expect("and loaded");
-        world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
-        Self { world, handles: self.handles.clone() }
+/// Four heads above a terrain.
+pub fn heads_above(terrain: SharedShape, dispatcher: Option<SbbkDispatcher>) -> Bodies {
+    let head = mesh::monkey_head().shared_shape().unwrap();
+    let place = |i: usize| Vec3::new(3.0 * (i % 2) as Real - 1.5, 2.2, 3.0 * (i / 2) as Real - 1.5);
+    Bodies::above(terrain, &head, (0..4).map(place), 3.0, dispatcher)
+}
+
+/// A bowl of twelve units across: bodies stay in it.
+pub fn bowl() -> SharedShape {
+    let lines = 41;
+    let at = |i: usize| 12.0 * (i as Real / (lines - 1) as Real - 0.5);
+    let heights = Array2::from_fn(lines, lines, |i, j| {
+        0.05 * (at(i).powi(2) + at(j).powi(2)) + 0.05 * (3.0 * at(i)).sin() * (3.0 * at(j)).cos()
+    });
+    let mut field = HeightField::new(heights, Vec3::new(12.0, 1.0, 12.0));
+    for status in field.cells_statuses_mut().data_mut() {
+        *status = HeightFieldCellStatus::ZIGZAG_SUBDIVISION;
     }
+    SharedShape::new(field)
+}
+
+/// A table of boxes with a rim.
+pub fn table() -> SharedShape {
+    let mut parts = vec![(Pose::translation(0.0, -0.5, 0.0), SharedShape::cuboid(4.0, 0.5, 4.0))];
+    for (x, z) in [(4.0, 0.0), (-4.0, 0.0), (0.0, 4.0), (0.0, -4.0)] {
+        let half = if x == 0.0 { [4.0, 0.2] } else { [0.2, 4.0] };
+        let rim = SharedShape::cuboid(half[0], 0.6, half[1]);
+        parts.push((Pose::translation(x, 0.6, z), rim));
+    }
+    SharedShape::compound(parts)
+}
+
+/// A soft ball above fixed ground.
+pub fn soft_ball_above(ground: &SharedShape, dispatcher: Option<&SbbkDispatcher>) -> PhysicsWorld {
+    let mut world = PhysicsWorld::new();
+    if let Some(dispatcher) = dispatcher {
+        world.narrow_phase.set_query_dispatcher(dispatcher.clone());
+    }
+    world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(ground.clone()));
+    let ball = mesh::ball(0.6, 5);
+    let vertices = ball.vertices.iter().map(|v| *v + Vec3::new(0.4, 1.5, 0.3)).collect();
+    let soft = SoftBodyBuilder::trimesh(vertices, ball.triangles.clone()).expect("a mesh");
+    world.insert_soft_body(soft);
+    world
+}
+
+pub fn particles(world: &PhysicsWorld) -> Vec<Vector> {
+    world.soft_bodies().flat_map(|(_, body)| body.particle_positions()).collect()
 }

@@ -6,29 +6,7 @@ use rapier3d::parry::shape::TriMeshFlags;
 use sbbk_testkit::mesh;
 
 use super::shapes::{pose, shapes};
-use crate::support::{Pair, Question, bits, counting, per_triangle, shape_with};
-
-/// Would catch candidates of a shape that is no longer there, where a host keeps the workspace of a
-/// pair over an edit.
-#[test]
-fn another_shape_with_the_same_workspace_is_noticed() {
-    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
-    let dispatcher = counting();
-    let mut random = Rand32::new(6);
-    let pose = pose(&mut random, &head, 0.6);
-    let mut pair: Pair = Pair::default();
-    for (name, shape) in shapes(0.6).into_iter().chain(shapes(0.7)) {
-        let question = Question::new(&head, &*shape, pose);
-        for _ in 0..2 {
-            let found = pair.ask(&dispatcher, &question);
-            let found: Vec<_> = found.manifolds.iter().map(bits).collect();
-            let expected: Vec<_> = question.fresh(&dispatcher).iter().map(bits).collect();
-            assert_eq!(found, expected, "{name}");
-        }
-    }
-    let stats = dispatcher.stats();
-    assert_eq!(stats.internals.unchanged_queries, 30, "{stats:?}");
-}
+use crate::support::{Pair, Question, per_triangle, shape_with};
 
 /// Would catch manifolds of stock's that are taken for ours, or dropped with their data where the
 /// shapes are the same.

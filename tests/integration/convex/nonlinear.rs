@@ -501,7 +501,7 @@ fn what_is_in_a_hollow_is_apart() {
 /// Motions and times that are no numbers: nothing is found, nothing panics or goes on for ever. Bodies
 /// that do not move are met where they touch, however long.
 #[test]
-fn numbers_that_are_none() {
+fn non_finite_input_has_no_result() {
     let dispatcher = SbbkDispatcher::default();
     let mesh = shape(&mesh::monkey_head_with(4));
     for (name, other) in shapes(1.0) {

@@ -117,7 +117,7 @@ fn as_brute_force_says_at_every_size() {
 
 /// Would catch an answer for a pose or a limit that is no number, and for a limit without end.
 #[test]
-fn poses_and_limits_that_are_none() {
+fn non_finite_poses_and_limits_have_no_result() {
     let dispatcher = SbbkDispatcher::default();
     let mesh = shape(&mesh::monkey_head_with(6));
     for (name, other) in shapes(1.0).into_iter().filter(|(name, _)| *name != "ball") {

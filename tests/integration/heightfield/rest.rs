@@ -1,18 +1,10 @@
-use glamx::Vec3;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::math::Real;
 use rapier3d::parry::shape::SharedShape;
 use sbbk_testkit::mesh;
 
 use super::terrain::rolling;
-use crate::worlds::Bodies;
-
-/// Four heads above a terrain.
-fn heads_above(terrain: SharedShape, dispatcher: Option<SbbkDispatcher>) -> Bodies {
-    let head = mesh::monkey_head().shared_shape().unwrap();
-    let place = |i: usize| Vec3::new(3.0 * (i % 2) as Real - 1.5, 2.2, 3.0 * (i / 2) as Real - 1.5);
-    Bodies::above(terrain, &head, (0..4).map(place), 3.0, dispatcher)
-}
+use crate::worlds::heads_above;
 
 /// The reason for all this: under stock Rapier heads fall through a height field. Here they come to
 /// rest, about where they do on the same terrain as a mesh.
@@ -45,17 +37,4 @@ fn heads_rest_on_a_height_field() {
     for pose in on_field.iter().chain(&on_mesh) {
         assert!((0.0..1.6).contains(&pose.translation.y), "{pose:?}");
     }
-}
-
-/// Would catch a workspace that cannot be stored, and contacts or their order lost with it.
-#[test]
-fn a_restored_world_goes_on_bit_for_bit() {
-    let field = SharedShape::new(rolling(12.0, 24, 0.4));
-    let mut world = heads_above(field, Some(SbbkDispatcher::default()));
-    world.step(60);
-    let mut copy = world.restored();
-    assert!(world.manifold_count() > 4, "{} manifolds", world.manifold_count());
-    world.step(40);
-    copy.step(40);
-    assert_eq!(world.poses(), copy.poses());
 }

@@ -8,7 +8,7 @@ use sbbk_testkit::mesh;
 use crate::support::{Manifold, Question, touching};
 
 /// A field, and the mesh of its triangles in the order of their numbers.
-pub(super) struct Terrain {
+pub struct Terrain {
     pub field: HeightField,
     pub mesh: TriMesh,
     /// The number in the field of each triangle of the mesh, ascending.

@@ -143,7 +143,7 @@ fn is_under(terrain: &Terrain, point: Vec3) -> bool {
 
 /// A triangle with a height that is NaN or infinite is a hole; its neighbours are not.
 #[test]
-fn heights_that_are_none_make_holes() {
+fn non_finite_heights_make_holes() {
     let dispatcher = per_triangle();
     let mut random = Rand32::new(5);
     let ball = shape(&mesh::ball(0.7, 6));

@@ -90,6 +90,7 @@ fn triangles_with_a_nan_vertex_touch_nothing() {
                 }
             }
         }
+        assert_eq!(dispatcher.stats().unsupported_queries, 0, "{name}");
         assert!(count > 30 && broken > 10, "{name}: {count}, {broken}");
     }
 }
