@@ -159,8 +159,7 @@ fn no_prediction_distance_is_too_large() {
     });
 }
 
-/// Would catch boxes of whole shapes that roundings make too small: a mesh far from its own origin,
-/// at the prediction distance, in the first query of a pair.
+/// Would catch boxes of whole shapes that rounding makes too small in the first query of a pair.
 #[test]
 fn first_queries_see_as_far_as_later_ones() {
     let cube = mesh::cuboid(Vec3::ONE, 1);
@@ -195,8 +194,8 @@ fn first_queries_see_as_far_as_later_ones() {
     assert!(found.iter().all(|&found| found > 100), "{found:?} contacts");
 }
 
-/// The same of a mesh that is turned, by which roundings are different in each frame. It is as near
-/// as the prediction distance, so that a box that is a little too small hides it.
+/// Would catch boxes that the rounding of a turn makes too small. Each mesh is exactly the
+/// prediction distance away.
 #[test]
 fn turned_meshes_far_from_their_origin_are_seen() {
     let cube = mesh::cuboid(Vec3::ONE, 1);
@@ -283,8 +282,8 @@ fn mixed_world(unit: Real, has_soft_ccd: bool) -> PhysicsWorld {
     world
 }
 
-/// Would catch contacts with convex shapes that depend on what is remembered of the steps before:
-/// worlds of several sizes, with and without soft CCD, and a new dispatcher before every step.
+/// Would catch contacts that depend on memory of the steps before. The other world gets a new
+/// dispatcher in each step.
 #[test]
 fn convex_worlds_forget_everything_and_go_on_alike() {
     for unit in [0.01, 0.1, 1.0, 100.0] {

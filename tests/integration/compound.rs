@@ -59,8 +59,7 @@ fn fresh(question: &Question, dispatcher: &impl Dispatcher<(), ()>) -> Vec<Manif
     manifolds
 }
 
-/// Would catch parts that are not looked at, and the poses and numbers of parts mixed up: each part
-/// has the contacts that it has by itself.
+/// Would catch parts that are left out, and poses or numbers of parts mixed up.
 #[test]
 fn contacts_are_those_of_each_part_by_itself() {
     let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());

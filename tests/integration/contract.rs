@@ -42,9 +42,8 @@ fn nowhere() -> Pose {
     Pose::translation(Real::NAN, 0.0, 0.0)
 }
 
-/// Would catch a query that leaves the host without a workspace: Rapier takes this for a pair whose
-/// manifolds never change places, and keeps pointers to those that are gone. A pair that has none and
-/// had none needs none.
+/// Would catch a pair with manifolds and no workspace: Rapier would keep pointers to manifolds that
+/// are gone.
 #[test]
 fn there_is_a_workspace_wherever_there_are_or_were_manifolds() {
     let [one, two] = rings();
@@ -58,7 +57,7 @@ fn there_is_a_workspace_wherever_there_are_or_were_manifolds() {
             assert_eq!(pair.manifolds.is_empty(), pos12 != query.pose);
             assert!(pair.workspace.is_some() || !had_some && pair.manifolds.is_empty());
             if !pair.manifolds.is_empty() {
-                // As Rapier does where a shape was edited.
+                // Rapier does this if a shape was edited.
                 pair.workspace = None;
                 pair.ask(&SbbkDispatcher::default(), &query.at(far));
                 assert!(pair.workspace.is_some() && pair.manifolds.is_empty());
@@ -111,8 +110,7 @@ fn marks(pair: &MarkedPair) -> Vec<Marker> {
     pair.manifolds.iter().map(|manifold| manifold.data).chain(of_points).collect()
 }
 
-/// Would catch impulses lost when a dispatcher takes over a running world: the manifolds of stock,
-/// or of a restored snapshot, stay those of their triangles.
+/// Would catch impulses lost when a dispatcher takes over a running world or a restored snapshot.
 #[test]
 fn with_a_foreign_workspace_manifolds_keep_their_data() {
     let [one, two] = rings();
@@ -143,8 +141,7 @@ fn fids<C>(point: &rapier3d::parry::query::TrackedContact<C>) -> FeatureIds {
     [point.fid1, point.fid2]
 }
 
-/// Would catch impulses that go to another point, or are lost, as bodies move: points with equal
-/// triangles and features are the same point, all others are new.
+/// Would catch impulses lost or given to another point while bodies move.
 #[test]
 fn points_keep_their_data_by_their_features() {
     let [one, two] = rings();
@@ -213,7 +210,7 @@ fn any_data_will_do() {
     named.ask(&dispatcher, &query);
     assert_same(&named.manifolds, &expected, 1e-6);
 
-    // As Rapier holds it.
+    // Rapier holds its dispatcher like this.
     let shared: Arc<dyn PersistentQueryDispatcher<ContactManifoldData, ContactData>> =
         Arc::new(dispatcher);
     let (mut manifolds, mut workspace) = (Vec::new(), None);
@@ -223,8 +220,7 @@ fn any_data_will_do() {
     assert_same(&manifolds, &expected, 0.0);
 }
 
-/// Would catch manifolds left over for callers that keep nothing: they pass an empty workspace, and
-/// the manifolds of whatever they asked before.
+/// Would catch manifolds left over for callers that pass no workspace.
 #[test]
 fn callers_without_memory_get_fresh_answers() {
     let [one, two] = rings();

@@ -45,7 +45,7 @@ fn set<M, C>(
     sequence(manifolds).into_iter().collect()
 }
 
-/// Would catch anything of one mesh taken for that of the other.
+/// Would catch one mesh taken for the other.
 #[test]
 fn two_soft_meshes_keep_apart() {
     let dispatcher = counting();
@@ -96,7 +96,7 @@ fn pairs_on_many_threads_agree() {
     assert_eq!((stats.trees, stats.internals.walks), (0, 50 * PAIRS as u64));
 }
 
-/// Triangles that change where the mesh is: the contacts are those of the new ones.
+/// Would catch contacts of the triangles before the edit.
 #[test]
 fn other_triangles_at_the_same_place_are_seen() {
     let dispatcher = SbbkDispatcher::default();
@@ -135,9 +135,7 @@ fn meshes_of(world: &PhysicsWorld) -> (TriMesh, TriMesh) {
     (found.0.clone(), found.1.clone())
 }
 
-/// In each step of a real soft body Rapier's narrow phase gets the contacts that a dispatcher finds
-/// which knows nothing, on a mesh built of the vertices as they are in that step; and the body,
-/// which falls, is caught by them.
+/// Would catch contacts of the vertices of an earlier step, and a soft body that falls through.
 #[test]
 fn a_soft_body_of_rapier_keeps_its_contacts() {
     let (dispatcher, probe) = (counting(), Probe::default());

@@ -33,8 +33,8 @@ fn scenes() -> Vec<Box<dyn Scene>> {
     ]
 }
 
-/// Would catch memory that was not initialised, an order that depends on addresses or hashes, and
-/// anything left in a dispatcher that the next world should not see.
+/// Would catch uninitialised memory, an order by addresses or hashes, and state left for the next
+/// world.
 #[test]
 fn a_scene_runs_the_same_again() {
     for scene in scenes() {
@@ -48,8 +48,7 @@ fn a_scene_runs_the_same_again() {
     );
 }
 
-/// Would catch contacts, or their order, that depend on what is remembered of the steps before: on
-/// candidates, features, or the trees' age. A new dispatcher takes all of that away.
+/// Would catch contacts, or an order, that depend on memory of the steps before.
 #[test]
 fn memory_is_never_part_of_the_answer() {
     for scene in scenes() {

@@ -30,8 +30,8 @@ fn is_same(left: &[Manifold], right: &[Manifold]) -> bool {
             .all(|(l, r)| l.local_n1 == r.local_n1 && distance(l) == distance(r))
 }
 
-/// A pair that knew a mesh must answer for the edited one, though mesh and buffers stay where they
-/// are and the host kept the workspace.
+/// Panics unless a pair has the contacts of an edited mesh, which stays at its address. Would catch
+/// a tree, candidates, points or normal constraints of the mesh before the edit.
 ///
 /// Would catch a tree, candidates, contact points or normal constraints of the mesh before the
 /// edit.
@@ -69,12 +69,10 @@ fn edits_in_place_are_seen() {
     check_edit(TriMeshFlags::FIX_INTERNAL_EDGES, TriMesh::reverse);
 }
 
-/// Would catch a mesh known by its address: another mesh of the same size is put where a freed one
-/// was, and the host keeps what it knew of the pair.
+/// Would catch a mesh known by its address, which a new mesh of the same size may get.
 #[test]
 fn a_freed_address_does_not_stand_for_the_freed_mesh() {
-    // Of so few triangles that allocators keep what was freed for the next of its size: of larger ones
-    // pieces are joined, and one run in some found none of a hundred again.
+    // Allocators reuse the place of small blocks more often.
     let lab_mesh = mesh::torus(1.0, 0.4, 8, 5);
     let other = shape(&lab_mesh);
     let mut reused = 0;
@@ -85,7 +83,7 @@ fn a_freed_address_does_not_stand_for_the_freed_mesh() {
         pair.ask(&dispatcher, &Question::new(&ring, &other, beside()));
         let addresses = |mesh: &TriMesh| (mesh.vertices().as_ptr(), mesh.indices().as_ptr());
         let old = addresses(&ring);
-        // As many vertices and triangles, another shape.
+        // Another shape with equal counts of vertices and triangles.
         let stretched = lab_mesh.clone().mapped(|v| v * Vector::new(1.0, 1.2, 1.0));
         drop(ring);
         let ellipse = shape(&stretched);
@@ -119,7 +117,7 @@ impl Overlap {
         Self { world, colliders: [one, two] }
     }
 
-    /// What Rapier finds in the next step, and what a dispatcher finds that knows nothing.
+    /// Manifolds of Rapier's next step, and of a new dispatcher.
     fn step(&mut self) -> (Vec<ContactManifold>, Vec<Manifold>) {
         let [one, two] = self.colliders.map(|handle| self.world.colliders[handle].clone());
         self.world.step();
@@ -143,8 +141,7 @@ impl Overlap {
 
 /// Lets Rapier meet the pair, edits one vertex, and checks the next step.
 ///
-/// Would catch a tree or contacts kept where one vertex has moved: too small a change to be seen
-/// without reading the whole mesh, which is why Rapier says when a shape was edited.
+/// Would catch a tree or contacts kept after one vertex has moved.
 fn check_edit_in_world(edit: impl Fn(&mut PhysicsWorld, ColliderHandle, usize)) {
     let mut overlap = Overlap::new();
     let (found, expected) = overlap.step();

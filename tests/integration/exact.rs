@@ -59,8 +59,7 @@ fn aligned_boxes_touch_as_the_truth_says() {
     tally.check_all_right(10_000);
 }
 
-/// Would catch f32 coordinates that lose the contact where bodies, or the vertices of their meshes,
-/// are far from an origin: contacts are about differences, which the poses know well.
+/// Would catch f32 coordinates that lose contacts of bodies or vertices far from an origin.
 #[test]
 fn distant_meshes_touch_as_the_truth_says() {
     let dispatcher = per_triangle();

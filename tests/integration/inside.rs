@@ -24,8 +24,8 @@ fn ask(query: &Question) -> Vec<Manifold> {
     query.fresh(&SbbkDispatcher::default())
 }
 
-/// Would catch a body that stays inside or leaves by the far side, turns on its way out as it is not
-/// pushed at its middle, or depends on its order in the pair or on the number of triangles.
+/// Would catch a body that stays inside, leaves by the far side, turns on its way, or depends on
+/// the order or on the number of triangles.
 #[test]
 fn a_body_in_a_solid_leaves_by_the_nearer_side() {
     let bodies =
@@ -51,7 +51,7 @@ fn a_body_in_a_solid_leaves_by_the_nearer_side() {
                     let [manifold] = &found[..] else { panic!("{} manifolds", found.len()) };
                     let normal = if sign > 0.0 { manifold.local_n1 } else { manifold.local_n2 };
                     assert!((normal - out).length() < 1e-3, "{normal} at {place:?}");
-                    // As deep as any contact may be: at least so deep that Rapier looks again.
+                    // Contacts have a greatest depth.
                     let [root1, root2] =
                         query.meshes().map(|mesh| mesh.local_aabb().half_extents());
                     let most =
@@ -66,8 +66,7 @@ fn a_body_in_a_solid_leaves_by_the_nearer_side() {
     }
 }
 
-/// Would catch bodies in a hollow, in the half space behind a sheet, in a mesh of which nobody knows
-/// what it bounds, or of soft ones, pushed out of what is no inside.
+/// Would catch bodies pushed out of a hollow, a sheet, a soft mesh, or a mesh of unknown kind.
 #[test]
 fn what_is_in_no_solid_is_left_alone() {
     let body = shape(&mesh::cuboid(Vec3::splat(0.2), 1));
@@ -131,8 +130,8 @@ fn inside_is_never_remembered() {
     assert!(inside > 300 && none > 100 && reused > 100, "{inside} {none} {reused}");
 }
 
-/// Would catch a body that is let fall through the solid it starts in, is thrown out of it, or stops
-/// where its triangles meet those of the surface.
+/// Would catch a body that falls through the solid it starts in, is thrown out, or stops at its
+/// surface.
 #[test]
 fn a_body_that_starts_in_a_solid_comes_out_slowly() {
     for cells in [1, 6] {

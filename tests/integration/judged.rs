@@ -10,9 +10,8 @@ use crate::support::{
     Manifold, Question, direction, distance, having, per_triangle, rotation, shape, triangles,
 };
 
-/// Contacts farther than a tenth of the radius of the smaller mesh are for soft CCD, which needs those
-/// of every direction. Would catch a direction that is left out since a neighbour is nearer, the
-/// nearest one lost, and near contacts that are not left out.
+/// Would catch a direction left out because a neighbour is nearer, and near contacts that are kept.
+/// Soft CCD needs contacts of every direction beyond a tenth of the radius.
 #[test]
 fn far_contacts_have_every_direction() {
     let [head, torus] =
@@ -62,8 +61,8 @@ fn corners_above_a_face_count_though_others_are_nearer() {
     assert!(at_corners(0.0, 0.002) > 0 && at_corners(0.069, 0.073) > 0, "{found:?}");
 }
 
-/// A plate that falls flat, far above a floor, has one manifold: of more, each with points beyond the
-/// prediction distance, Rapier's solver would leave out what keeps the plate from turning.
+/// Would catch several manifolds with points beyond the prediction distance, of which Rapier's
+/// solver drops some.
 #[test]
 fn far_contacts_of_one_direction_are_one_patch() {
     let floor = shape(&mesh::floor(0.8, 8));

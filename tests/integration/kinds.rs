@@ -94,8 +94,7 @@ pub fn mesh_pairs() -> Vec<Kind> {
     ]
 }
 
-/// A pair of each kind: two meshes, a mesh and each convex shape, compounds, a height field, and
-/// some of these with a mesh that may deform.
+/// A pair of each kind, some with a mesh that may deform.
 pub fn kinds() -> &'static [Kind] {
     static KINDS: OnceLock<Vec<Kind>> = OnceLock::new();
     KINDS.get_or_init(|| {

@@ -108,8 +108,7 @@ fn bodies_that_come_and_go_leave_no_tree_behind() {
     assert_eq!(soak.dispatcher.stats().trees, 0);
 }
 
-/// Would catch worlds that depend on addresses, on the order of hashes, or on memory of earlier
-/// steps: every scene runs twice, and once with a new dispatcher before each step.
+/// Would catch worlds that depend on addresses, on hash order, or on memory of earlier steps.
 #[test]
 #[ignore = "takes a minute"]
 fn worlds_are_equal_to_the_bit_after_hundreds_of_steps() {

@@ -1,5 +1,5 @@
-//! The dispatcher inside Rapier and Parry, judged from outside: by stock Parry, by brute force in
-//! f64, and by itself asked afresh.
+//! Tests of the dispatcher inside Rapier and Parry, by stock Parry, by brute force in f64, and by
+//! new dispatchers.
 //!
 //! `properties` holds for a pair of every kind: no memory in the answer, no allocation, no contact
 //! at poses that are not finite. `who_answers` asks about every kind of pair and query.
@@ -21,7 +21,7 @@
 mod coming_back;
 /// Meshes against compounds of convex shapes.
 mod compound;
-/// What a host may expect of calls that follow each other.
+/// Promises about successive calls of a host.
 mod contract;
 /// Meshes against convex shapes.
 mod convex;
@@ -37,13 +37,13 @@ mod exact;
 mod heightfield;
 /// Bodies wholly inside a solid.
 mod inside;
-/// Which contacts of triangles are contacts of surfaces, near and far.
+/// Selection of contacts of surfaces, near and far.
 mod judged;
 /// Pairs of every kind.
 mod kinds;
 /// Runs of minutes, which `cargo test --workspace` leaves out.
 mod long_runs;
-/// What trees take, and when they go.
+/// Memory of trees.
 mod memory;
 /// Motion that never loses a contact: random walks against fresh queries.
 mod motion;
@@ -51,7 +51,7 @@ mod motion;
 mod nonlinear;
 /// Contact normals constrained at internal edges.
 mod normals;
-/// What a pair keeps: candidates, and data of manifolds and points.
+/// Candidates, and data of manifolds and points.
 mod pairs;
 /// A few manifolds for all contacts of a pair.
 mod patches;
@@ -61,7 +61,7 @@ mod properties;
 mod queries;
 /// Bodies at rest, and sliding, beside stock Rapier.
 mod rest;
-/// Which meshes share a tree, and what happens when they change.
+/// Meshes that share a tree, and edits of them.
 mod same_mesh;
 /// The paper's scenes beside stock Rapier.
 mod scenes;
@@ -71,7 +71,7 @@ mod snapshot;
 mod soft_pairs;
 /// Asking, comparing, meshes and poses.
 mod support;
-/// The contacts of surfaces, beside those of each two triangles.
+/// Contacts of surfaces beside contacts of triangles.
 mod surfaces;
 /// Thin and fast bodies.
 mod thin;
@@ -79,7 +79,7 @@ mod thin;
 mod truth;
 /// Rigid meshes with vertices that are not finite.
 mod unsupported;
-/// Meshes without trees: large ones that nobody prepared, deformable ones, many at once.
+/// Meshes without trees: large, deformable, or many at once.
 mod walks;
 /// Who answers for which pair and query.
 mod who_answers;

@@ -49,8 +49,7 @@ fn idle_trees_stay_below_their_limit() {
     assert_eq!(dispatcher.stats().tree_bytes, 0);
 }
 
-/// Would catch a list of idle trees that is searched from end to end, under the lock of all
-/// threads: the time of a mesh that comes and goes must not grow with the number of idle ones.
+/// Would catch a linear search of the idle trees under a lock.
 #[test]
 fn many_idle_trees_cost_no_time() {
     const BATCH: usize = 500;

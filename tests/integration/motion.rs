@@ -10,8 +10,7 @@ use crate::support::{
     touching,
 };
 
-/// How far a step may go, in units and radians: far below any slack, about as much, and farther
-/// than any.
+/// Lengths of a step in units and radians, from far below any slack to beyond it.
 const STRIDES: [Real; 6] = [0.0, 1e-6, 1e-4, 1e-3, 5e-3, 3e-2];
 const PREDICTIONS: [Real; 5] = [0.0, 0.001, 0.01, 0.02, 0.06];
 
@@ -64,10 +63,10 @@ fn many_short_steps_are_a_long_way() {
     }
 }
 
-/// What a host does between two queries of a pair.
+/// Action of a host between two queries of a pair.
 #[derive(Clone, Copy)]
 enum Meddling {
-    /// It moves the pair, by far or by little, or asks with another prediction distance.
+    /// Moves the pair, or changes the prediction distance.
     Moves,
     /// For one query another dispatcher is installed: stock, or an SBBK that knows no tree.
     AsksStock,
@@ -81,8 +80,7 @@ enum Meddling {
 const MEDDLING: [Meddling; 4] =
     [Meddling::AsksStock, Meddling::AsksAnother, Meddling::Edits, Meddling::TakesWorkspace];
 
-/// Thousands of short sequences, each of another kind: after whatever happened, the answer is that
-/// of a dispatcher which knows nothing, bit for bit.
+/// Would catch anything that outlives the event that should have ended it.
 ///
 /// Would catch anything that outlives the event that should have ended it.
 #[test]

@@ -34,8 +34,8 @@ impl Cast<'_> {
         of_meshes(self.meshes, normalized(&self.pos12(time)), f64::from(distance))
     }
 
-    /// How fast a pair that touches at the start approaches, at the middle of its first triangle,
-    /// and by how much that may be off anywhere on both.
+    /// Speed at which a touching pair approaches, at the middle of its first triangle, and the
+    /// error of that.
     fn approach(&self, pair: &TruthPair) -> (f32, f32) {
         let [motion1, motion2] = &self.motions;
         let [triangle1, triangle2] =
@@ -53,8 +53,8 @@ impl Cast<'_> {
         (speed, spin * (sizes[0] + sizes[1]) + 1e-3)
     }
 
-    /// Whether a pair approaches at the start, and the pairs that touch then; `None` where the
-    /// truth is not clear.
+    /// True if a pair approaches at the start, with the pairs that touch then. `None` if rounding
+    /// decides.
     fn start(&self, slack: f32) -> Option<(bool, Vec<[u32; 2]>)> {
         let near = self.truth(0.0, 10.0 * slack);
         let is_touching = |pair: &TruthPair| pair.distance < f64::from(0.01 * slack);
@@ -87,10 +87,8 @@ fn motion(random: &mut Rand32, start: Pose3, spin: f32) -> NonlinearRigidMotion 
     NonlinearRigidMotion::new(start, centre, velocity, spin)
 }
 
-/// Casts that start in contact and are not to stop there, from 1 cm to 100 units: against brute
-/// force in f64, at the start where a pair of triangles that touches approaches, else at the first
-/// touch of a pair that did not touch, within 1e-5 of the size. Would catch velocities of the wrong
-/// point, in the wrong frame or of the other sign, and pairs forgotten.
+/// Would catch velocities of the wrong point, frame or sign, and forgotten pairs. Pairs that touch
+/// at the start stop a cast only if they approach.
 #[test]
 fn casts_from_contact_are_true() {
     let dispatcher = SbbkDispatcher::default();
@@ -175,8 +173,8 @@ fn casts_from_contact_are_like_stock() {
     assert!(count > 100 && both > 50 && 10 * same >= 9 * count, "{same} of {count}, {both} hit");
 }
 
-/// What it is for: a box that stands on a floor and slides is stopped by the wall, not by the
-/// floor; pressed into the floor it is stopped at once, lifted off it is not.
+/// A wall stops a box that slides along a floor. A floor stops a box that is pressed into it, and
+/// not a box that is lifted.
 #[test]
 fn a_box_slides_along_a_floor_to_a_wall() {
     let corner = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
@@ -202,8 +200,7 @@ fn a_box_slides_along_a_floor_to_a_wall() {
         let slid = cast(Vec3::new(2.0, 0.0, 0.0)).expect("meets the wall");
         assert!((slid.time_of_impact - 0.75).abs() < 1e-4, "{slid:?}");
         assert_eq!(slid.subshape1, 1);
-        // Where it is sunk in, its bottom comes through the floor from below: what counts are pairs
-        // of triangles.
+        // A sunk box meets the floor from below when it is lifted.
         let lifted = cast(Vec3::new(-2.0, 0.5, 0.0)).map(|hit| hit.time_of_impact);
         assert_eq!(lifted.is_some(), height < 0.5, "{lifted:?}");
         assert!(lifted.is_none_or(|time| (time - 0.02).abs() < 1e-4), "{lifted:?}");

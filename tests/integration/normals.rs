@@ -19,24 +19,23 @@ fn meshes() -> [Mesh; 2] {
     [mesh::monkey_head_with(7).scaled_to(20.0), mesh::torus(8.0, 3.0, 24, 12)]
 }
 
-/// The same mesh with other flags. Panics if the flags renumber it.
+/// Panics if the flags renumber the mesh.
 fn flagged(mesh: &Mesh, flags: TriMeshFlags) -> TriMesh {
     let (free, flagged) = (shape(mesh), shape_with(mesh, flags));
     assert_eq!((free.vertices(), free.indices()), (flagged.vertices(), flagged.indices()));
     flagged
 }
 
-/// Where each pair of triangles has its normal, in the frame of mesh `k` (0 or 1), away from that
-/// mesh.
+/// Normals of pairs of triangles in the frame of mesh `k` (0 or 1), pointing away from it.
 fn normals(manifolds: &[Manifold], k: usize) -> BTreeMap<TrianglePair, Vector> {
     let manifolds = by_triangles(manifolds).into_iter();
     manifolds.map(|(pair, m)| (pair, [m.local_n1, m.local_n2][k])).collect()
 }
 
-/// Checks the answers about meshes of which mesh `k` alone has constraints.
+/// Checks contacts of two meshes, of which mesh `k` alone has constraints.
 ///
-/// Would catch a normal outside of the cone of its triangle, one that is pushed though it was
-/// inside, a contact kept that the cone rejects, and one dropped that it does not reject.
+/// Would catch a normal outside of its cone, a change of one inside, wrong rejections, and depths
+/// along the free normal.
 fn check_cone(k: usize, flags: TriMeshFlags) {
     let meshes = meshes();
     let free = [0, 1].map(|i| flagged(&meshes[i], FREE));

@@ -74,8 +74,8 @@ fn points_keep_their_own_data_where_far_and_near_steps_alternate() {
     assert!(kept.len() == 2 && kept.values().all(|&count| count >= 12), "{kept:?}");
 }
 
-/// A body wholly inside another one, whose host copies manifolds. Would catch data that is lost where
-/// the push-out is written to triangles that are near each other as well.
+/// Would catch data lost because the push-out is written to triangles that are near each other as
+/// well.
 #[test]
 fn the_push_out_keeps_its_data_where_a_host_changes_the_list() {
     let outer = shape(&mesh::cuboid(Vec3::splat(0.5), 1));

@@ -17,12 +17,13 @@ use crate::support::{
     Dispatcher, Pair, Question, direction, distance, nudge, rotation, shape, shape_with,
 };
 
-/// The least cosine of the normals in one patch; where cones turn them, the deepest contact may come
-/// to nothing, and the others are as near to its normal.
+/// Least cosine of the normals in one patch. A cone may remove the deepest contact; the others are
+/// near to its normal.
 const SAME_NORMAL: Real = 0.99;
 const NEAR_ONE_NORMAL: Real = 2.0 * SAME_NORMAL * SAME_NORMAL - 1.0;
 
-/// The same of a contact over one that touches, and how far it is, in prediction distances.
+/// Least cosine to a contact that touches, and distance beyond which it counts, in prediction
+/// distances.
 const SAME_NORMAL_OVER: Real = 0.9;
 const OVER: Real = 0.1;
 
@@ -56,7 +57,7 @@ fn fresh(
     pair.manifolds
 }
 
-/// Where a point is in frame 1, on both shapes, and its distance.
+/// Points on both shapes in frame 1.
 fn place<C>(
     pos12: &Pose,
     manifold: &ContactManifold<u32, C>,
@@ -127,7 +128,7 @@ fn assert_stand_for(
     [patches.len(), every.len()]
 }
 
-/// What a host sees of manifolds.
+/// All that a host sees of manifolds.
 fn bare(manifolds: &[Manifold]) -> String {
     let points = |m: &Manifold| {
         let all = m.points.iter().map(|p| (p.local_p1, p.local_p2, p.dist, p.fid1, p.fid2));
@@ -167,9 +168,8 @@ fn partners() -> Vec<(&'static str, SharedShape)> {
     ]
 }
 
-/// Would catch a contact that no patch stands for, a point that is none, more than four of them, a
-/// patch deeper or shallower than its contacts, names of other subshapes, and memory that is part of
-/// the answer.
+/// Would catch contacts without a patch, invented points, more than four points, wrong depths,
+/// names of other subshapes, and memory in the result.
 #[test]
 fn patches_stand_for_every_contact() {
     let head = shape(&mesh::monkey_head());
@@ -241,9 +241,7 @@ fn a_patch_for_each_leg() {
     }
 }
 
-/// Heads that are let go above a floor lie still after ten seconds: nine of ten, as their convex hulls
-/// do; with the outermost points of all within the prediction distance, which is what Rapier chooses of
-/// every contact, three. Would catch points that hang over the floor in place of those that carry.
+/// Would catch points that hover over the floor instead of points that carry.
 #[test]
 fn heads_come_to_rest() {
     let head = SharedShape::new(shape(&mesh::monkey_head().centred().scaled_to(2.0)));
@@ -266,8 +264,8 @@ fn heads_come_to_rest() {
     assert!(asleep >= 8, "{asleep} of 10 heads lie still");
 }
 
-/// What the host keeps with manifolds and points stays with them while bodies slide. Would catch
-/// impulses that are lost or handed to other points, and manifolds without their data.
+/// Would catch impulses lost or handed to other points while bodies slide, and manifolds without
+/// data.
 #[test]
 fn patches_and_points_keep_their_data() {
     let [floor, cube] = [mesh::floor(4.0, 2), mesh::cuboid(Vec3::splat(0.5), 1)].map(|m| shape(&m));

@@ -16,8 +16,8 @@ const PREDICTIONS: [Real; 4] = [0.0, 0.002, 0.02, 0.2];
 /// Lengths of a step in units and radians, from far below any slack to beyond it.
 const STRIDES: [Real; 5] = [0.0, 1e-5, 1e-3, 1e-2, 3e-2];
 
-/// Moves a pair at random, with jumps, other prediction distances, lost workspaces, and poses far
-/// away or NaN in between. Each answer must be that of a dispatcher without memory, bit for bit.
+/// Moves a pair at random, with jumps, lost workspaces, and poses far away or NaN. Each result must
+/// equal that of a dispatcher without memory, bit for bit.
 fn walk(kind: &Kind, seed: u64, steps: usize) -> (SbbkStats, usize) {
     let (dispatcher, unaware) = (counting(), every());
     let mut random = Rand32::new(seed);
@@ -47,8 +47,8 @@ fn walk(kind: &Kind, seed: u64, steps: usize) -> (SbbkStats, usize) {
     (dispatcher.stats(), contacts)
 }
 
-/// Would catch candidates that are kept too long, bounds of distance that are too high, manifolds
-/// given to another subshape, and anything else that depends on where the pair was before.
+/// Would catch candidates kept too long, bounds of distance that are too high, and manifolds of
+/// another subshape.
 #[test]
 fn the_answer_does_not_depend_on_the_motion_before() {
     let pairs = mesh_pairs();
@@ -125,8 +125,8 @@ fn allocations(dispatcher: &SbbkDispatcher, question: &Question, stride: Real) -
     steady.map(|&pose| measure(|| _ = pair.ask(dispatcher, &question.at(pose))).count_total).sum()
 }
 
-/// Would catch manifolds, points, candidates or lists that are made anew in each step: at rest,
-/// where candidates are reused, and in motion, where most queries descend.
+/// Would catch manifolds, points, candidates or lists that are allocated in each step, at rest or
+/// in motion.
 #[test]
 fn steady_contact_allocates_nothing() {
     for (seed, kind) in (0..).zip(kinds()) {

@@ -147,8 +147,8 @@ fn inside_is_not_intersecting() {
     }
 }
 
-/// Linear casts against a march with brute force, and against stock; witnesses where Parry
-/// documents them: on each mesh in its own frame, meeting when mesh 2 has moved.
+/// Would catch impacts that are late or early, and witnesses in the wrong frame, by brute force and
+/// stock.
 #[test]
 fn casts_stop_at_the_first_impact() {
     let (stock, ours) = (DefaultQueryDispatcher, SbbkDispatcher::default());
@@ -315,15 +315,14 @@ fn edits_forth_and_back_are_seen() {
     assert!((seen[0] - seen[1]).abs() > 0.01, "{seen:?}");
 }
 
-/// Would catch an answer that is proved by triangles that have moved, or denied by a tree of other
-/// vertices: bumps that come and go on a ball, all over it, and a probe that meets some of them.
+/// Would catch a result from triangles that have moved, or from a tree of other vertices.
 #[test]
 fn bumps_come_and_go_under_a_sensor() {
     let dispatcher = SbbkDispatcher::default();
     let mut random = Rand32::new(5);
     let mut smooth = shape(&mesh::ball(1.0, 8));
     let ball_vertices = smooth.vertices().len() as u32;
-    // So far out that no bump changes the box around all.
+    // Two triangles far out keep the box of the mesh constant.
     for far in [-3.0, 3.0] {
         let corners = [Vec3::ZERO, Vec3::X, Vec3::Y].map(|corner| Vec3::splat(far) + 0.1 * corner);
         smooth.append(&TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap());
@@ -354,8 +353,7 @@ fn bumps_come_and_go_under_a_sensor() {
     assert!(met > 20 && missed > 20, "{met} met, {missed} missed");
 }
 
-/// Would catch a mesh that is taken for one that is gone, whose memory it got: the same vertices,
-/// and a triangle, not the same each time, that lies elsewhere.
+/// Would catch a mesh taken for another one that had its address and its vertices.
 #[test]
 fn a_mesh_in_the_place_of_another_is_not_that_one() {
     let dispatcher = SbbkDispatcher::default();

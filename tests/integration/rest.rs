@@ -11,7 +11,7 @@ use sbbk_testkit::scene::{BoxStack, HeadOnSlope, Scene, SceneWorld};
 
 use crate::support::{SETS, per_triangle, shape_with};
 
-/// The same world twice: under stock Rapier, and under SBBK.
+/// One world under stock Rapier, and again under SBBK.
 struct Both {
     stock: SceneWorld,
     sbbk: SceneWorld,
@@ -56,13 +56,9 @@ fn speed(body: &RigidBody) -> Real {
 }
 /// Ten unit boxes for a minute, kept awake, so that a slow drift would show.
 ///
-/// Would catch contacts that jitter, sink, lose their impulses, or push sideways. The boxes creep
-/// by less than a fifth of a millimetre in the last fifty seconds, and stand within half of one of
-/// where they stand under stock.
+/// Would catch contacts that jitter, sink, lose their impulses, or push sideways.
 ///
-/// With contact recycling, Rapier's default: without it stock's stacks of meshes collapse within
-/// twenty steps, as faces that have sunk into each other by a hair have no contact that holds them
-/// apart.
+/// Recycling is on, Rapier's default. Without it stacks of meshes collapse under stock.
 #[test]
 fn a_stack_of_ten_boxes_stands_for_a_minute() {
     let mut both = Both::new(Surfaces, || {
@@ -87,9 +83,8 @@ fn a_stack_of_ten_boxes_stands_for_a_minute() {
     }
 }
 
-/// The head stands on two points of its chin, with its centre of mass behind both: what holds it under
-/// stock are contacts of its inner edges. Would catch contacts of surfaces that hold it as well,
-/// and contacts that let it sink, or roll on, where it has come to lie on its back.
+/// Contacts of inner edges hold the head under stock. Would catch such contacts, and contacts that
+/// let it sink or roll on its back.
 #[test]
 fn a_head_that_nothing_holds_tips_over_and_rests() {
     let mut both = Both::new(Surfaces, || HeadOnSlope { angle: 0.0 }.build());
@@ -104,8 +99,7 @@ fn a_head_that_nothing_holds_tips_over_and_rests() {
     assert!(lowest.abs() < 0.01, "its lowest point is at {lowest}");
 }
 
-/// Would catch contacts of surfaces that go stale while Rapier recycles them: a head that has rolled
-/// rocks from one point of support to the next.
+/// Would catch contacts of surfaces that go stale while Rapier recycles them.
 #[test]
 fn a_head_rests_on_a_slope_by_its_surface() {
     for degrees in [10.0, 14.0] {
@@ -119,7 +113,7 @@ fn a_head_rests_on_a_slope_by_its_surface() {
 /// Friction coefficient of floor and box; Rapier takes the mean.
 const FRICTION: Real = 0.1;
 
-/// Where the box starts: on the floor.
+/// Start of the box, on the floor.
 const START: Vector = Vector::new(-10.0, 0.5, 0.3);
 
 /// A box, narrower below, that slides over a floor of 800 triangles with `velocity`, in a direction
@@ -141,13 +135,13 @@ fn sliding(floor_flags: TriMeshFlags, velocity: Vector) -> SceneWorld {
     SceneWorld { world, watched: vec![body] }
 }
 
-/// How far the bodies of both runs have gone from the start.
+/// Distances of the bodies of both runs from the start.
 fn travelled(both: &Both) -> [Real; 2] {
     let bodies = both.bodies().next().expect("one body slides");
     bodies.map(|body| (body.translation() - START).length())
 }
 
-/// How far friction alone lets a body slide.
+/// Distance after which friction alone stops a body.
 fn ideal(velocity: Vector) -> Real {
     velocity.length_squared() / (2.0 * FRICTION * 9.81)
 }
@@ -167,9 +161,7 @@ fn check_slide(both: &Both, velocity: Vector) {
     assert!((share - 1.0).abs() < 0.01, "{velocity} takes it {share} of the way");
 }
 
-/// Would catch normals that leave the cones at internal edges, so that the box stumbles: it slides
-/// as far as friction alone lets it, and stops within a tenth of a millimetre of where it stops
-/// under stock.
+/// Would catch normals that leave the cones at internal edges, over which the box would stumble.
 #[test]
 fn a_box_slides_over_fixed_internal_edges() {
     for (velocity, contact_set) in velocities().flat_map(|velocity| SETS.map(|set| (velocity, set)))
@@ -182,8 +174,8 @@ fn a_box_slides_over_fixed_internal_edges() {
     }
 }
 
-/// The same for two-sided cones. These keep contacts from behind, which brake the box a little, by
-/// which of them it meets: within 10 % of stock's way. Contacts of surfaces have none from behind.
+/// Would catch two-sided cones that brake the box more than under stock. Contacts of surfaces have
+/// none from behind.
 #[test]
 fn a_box_slides_over_internal_edges_fixed_on_both_sides() {
     for velocity in velocities() {
@@ -200,8 +192,7 @@ fn a_box_slides_over_internal_edges_fixed_on_both_sides() {
     }
 }
 
-/// Would catch contacts of edges within a surface: with those of surfaces the box slides over them as
-/// if the floor was one face, with no flag that asks for it.
+/// Would catch contacts of edges within a surface, over which the box would stumble.
 #[test]
 fn a_box_slides_over_internal_edges_of_a_surface() {
     for velocity in velocities() {

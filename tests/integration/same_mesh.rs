@@ -40,7 +40,7 @@ fn with_idle_bytes(limit: usize) -> SbbkDispatcher {
     SbbkDispatcher::new(config)
 }
 
-/// Trees, those of them that are idle, and how often one was built and found.
+/// Counts of trees, idle trees, builds and hits.
 fn counts(dispatcher: &SbbkDispatcher) -> [u64; 4] {
     let SbbkStats { trees, internals, .. } = dispatcher.stats();
     [trees as u64, internals.idle_trees as u64, internals.tree_builds, internals.tree_hits]
@@ -169,8 +169,7 @@ fn a_cloned_pair_keeps_its_trees() {
     assert_eq!(counts(&dispatcher), [0, 0, 1, 0]);
 }
 
-/// Would catch a tree built by several threads, one seen half built, or a deadlock: eight threads
-/// meet the same meshes for the first time at once.
+/// Would catch a tree built by several threads, one used half built, or a deadlock.
 #[test]
 fn threads_build_one_tree_and_agree() {
     const THREADS: usize = 8;
@@ -253,8 +252,8 @@ fn leaves(mesh: &TriMesh) -> Vec<u32> {
     mesh.bvh().leaves(|_| true).collect()
 }
 
-/// Would catch cones of a mesh used for another one with equal triangles: scaling turns the
-/// pseudo-normals of edges in another way than a build with the scaled vertices.
+/// Would catch cones of one mesh used for another with equal triangles: scaling turns pseudo-
+/// normals differently than a rebuild.
 #[test]
 fn scaled_meshes_keep_their_own_normals() {
     let other = shape(&mesh::ball(0.5, 4));

@@ -71,8 +71,7 @@ fn contacts_in_stocks_scenes_are_the_truths() {
     }
 }
 
-/// Would catch contacts that Rapier gets from an earlier pose, or that its own bookkeeping mixes
-/// up: where it asks in each step (no recycling), what it then holds is what a fresh query gives.
+/// Would catch contacts of an earlier pose, or mixed up by Rapier's bookkeeping.
 #[test]
 fn rapier_holds_the_contacts_of_a_fresh_query() {
     let least_counts = SETS.into_iter().zip([50, 500]);

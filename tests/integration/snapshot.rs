@@ -29,7 +29,7 @@ fn pile(dispatcher: Option<&SbbkDispatcher>, contact_recycling: bool) -> SceneWo
     pile
 }
 
-/// What a user does who saves a world and loads it again. A snapshot holds no dispatcher.
+/// Saves and loads a world. A snapshot holds no dispatcher.
 fn restored(world: &PhysicsWorld, dispatcher: Option<&SbbkDispatcher>) -> PhysicsWorld {
     let bytes = postcard::to_stdvec(world).expect("a world with SBBK can be saved");
     let mut restored: PhysicsWorld = postcard::from_bytes(&bytes).expect("and loaded");
@@ -49,7 +49,7 @@ fn difference(left: &PhysicsWorld, right: &PhysicsWorld, watched: &[RigidBodyHan
     poses.map(|(l, r)| (l.translation - r.translation).length()).fold(0.0, Real::max)
 }
 
-/// How far a world and its copy are apart after a few steps and after all.
+/// Distances between a world and its copy after a few steps and after all.
 fn apart_after(
     left: &mut PhysicsWorld,
     right: &mut PhysicsWorld,
@@ -83,8 +83,8 @@ fn worlds() -> Vec<(&'static str, PhysicsWorld)> {
     ]
 }
 
-/// Would catch a workspace that cannot be saved, manifolds, their order or impulses lost on the way,
-/// and a tree for each of the copies of a mesh.
+/// Would catch a workspace that cannot be saved, lost manifolds, order or impulses, and a tree for
+/// each copy of a mesh.
 #[test]
 fn a_restored_world_goes_on_bit_for_bit() {
     for (name, mut world) in worlds() {
@@ -106,9 +106,8 @@ fn a_restored_world_goes_on_bit_for_bit() {
     }
 }
 
-/// Would catch a snapshot that only a world with SBBK can load, or contacts that are lost when the
-/// dispatcher changes: both find the same contacts and solve them in another order; chaos then takes
-/// the worlds a few hundredths of a unit apart.
+/// Would catch a snapshot that only a world with SBBK can load, or contacts lost when the
+/// dispatcher changes. Another order in the solver takes the worlds a little apart.
 #[test]
 fn a_world_goes_on_without_sbbk_or_begins_with_it() {
     for was_sbbk in [true, false] {

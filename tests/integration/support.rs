@@ -1,4 +1,4 @@
-//! What the tests share: asking a dispatcher, comparing answers, meshes and poses.
+//! Questions to a dispatcher, comparisons, meshes and poses.
 
 use std::collections::BTreeMap;
 
@@ -87,7 +87,7 @@ impl<'a> Question<'a> {
     }
 }
 
-/// What a host keeps of a pair of shapes from query to query.
+/// Memory of a host about a pair of shapes.
 pub struct Pair<M = (), C = ()> {
     pub manifolds: Vec<ContactManifold<M, C>>,
     pub workspace: Option<ContactManifoldsWorkspace>,
@@ -125,7 +125,7 @@ pub fn every() -> SbbkDispatcher {
     having(ContactSet::default())
 }
 
-/// The same, which counts its queries.
+/// A dispatcher like [`every`] that counts its queries.
 pub fn counting() -> SbbkDispatcher {
     counting_of(ContactSet::default())
 }
@@ -159,8 +159,7 @@ pub fn every_config() -> SbbkConfig {
     config
 }
 
-/// A dispatcher whose contacts are those of each two triangles by themselves: what stock, brute
-/// force over all triangles, and meshes that deform can be compared with.
+/// A dispatcher with contacts of each two triangles alone, as stock and brute force have them.
 pub fn per_triangle() -> SbbkDispatcher {
     having(ContactSet::Triangles)
 }
@@ -188,8 +187,8 @@ pub fn distance<M, C>(manifold: &ContactManifold<M, C>) -> Real {
     manifold.points.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min)
 }
 
-/// Panics unless both answers have the same triangle pairs in the same order, equal normals, and
-/// as many points at equal distances and places, up to `tolerance` units (for normals, radians).
+/// Panics unless both have the same triangle pairs in order, and equal normals and points up to
+/// `tolerance` (units, radians).
 pub fn assert_same<M1, C1, M2, C2>(
     left: &[ContactManifold<M1, C1>],
     right: &[ContactManifold<M2, C2>],
@@ -247,7 +246,7 @@ pub fn shape_with(mesh: &Mesh, flags: TriMeshFlags) -> TriMesh {
     mesh.trimesh(flags).expect("the meshes of these tests are valid")
 }
 
-/// The same mesh built again: equal content, other memory.
+/// A mesh with equal content in other memory.
 pub fn rebuilt(mesh: &TriMesh) -> TriMesh {
     TriMesh::with_flags(mesh.vertices().to_vec(), mesh.indices().to_vec(), mesh.flags()).unwrap()
 }
@@ -265,7 +264,7 @@ pub fn touching(random: &mut Rand32, meshes: [&TriMesh; 2], depth: Real) -> Pose
     touching_shapes(random, meshes.map(|mesh| mesh as &dyn Shape), farthest, depth)
 }
 
-/// As [`touching`], for two shapes that are apart at a distance of `farthest`.
+/// Like [`touching`], for shapes that are apart at a distance of `farthest`.
 pub fn touching_shapes(
     random: &mut Rand32,
     shapes: [&dyn Shape; 2],

@@ -23,7 +23,7 @@ fn cube() -> TriMesh {
     shape(&mesh::cuboid(Vec3::splat(0.5), 1))
 }
 
-/// Where the points of manifolds are, in the frame of mesh 1.
+/// Places of the points of manifolds in frame 1.
 fn points(manifolds: &[Manifold]) -> impl Iterator<Item = Vector> {
     manifolds.iter().flat_map(|manifold| manifold.points.iter().map(|point| point.local_p1))
 }
@@ -37,8 +37,7 @@ fn assert_along(manifolds: &[Manifold], direction: Vector, sine: Real) {
     }
 }
 
-/// Faces that have sunk into each other by a hair. Would catch contacts that push sideways or down,
-/// too few to carry the cube at its corners, and depths that are not those of the faces.
+/// Would catch contacts that push sideways or down, corners without a point, and wrong depths.
 #[test]
 fn a_cube_that_has_sunk_a_little_is_pushed_up() {
     let cube = cube();
@@ -71,7 +70,7 @@ fn a_cube_sunk_halfway_leaves_by_the_nearer_side() {
             let count_up = found.iter().filter(|manifold| up(manifold) > 1.0 - 1e-6).count();
             assert!(found.iter().all(|manifold| up(manifold) > -1e-6));
             assert!(count_up >= 3 && found.len() <= count_up + 1, "{count_up} of {}", found.len());
-            // Not deeper than a tenth of the radius.
+            // Depths end at a tenth of the radius.
             let expected = (1.0 - height).min(0.1 * 0.75_f32.sqrt());
             let depth = -found.iter().map(distance).fold(0.0, Real::min);
             assert!((depth - expected).abs() < 1e-5, "{depth} at {height}");
@@ -92,8 +91,7 @@ fn faces_that_have_passed_each_other_part_the_way_they_came() {
     }
 }
 
-/// Would catch bodies as small as the prediction distance that are pushed out of each other by their
-/// far sides, which no depth then tells from the near ones.
+/// Would catch bodies as small as the prediction distance pushed out on their far sides.
 #[test]
 fn small_bodies_are_not_pushed_out_on_their_far_sides() {
     let bodies = [
@@ -124,7 +122,7 @@ fn a_cube_on_a_fine_floor_is_pushed_one_way() {
         let turn = Quat::from_rotation_y(random.rand_float());
         for ground in [&floor, &slab] {
             for height in [0.5 + 0.01, 0.5, 0.5 - 0.0007] {
-                // Of a sheet that is crossed all contacts of triangles are kept.
+                // A crossed sheet keeps all contacts of triangles.
                 let is_crossing = height < 0.5;
                 if is_crossing && std::ptr::eq(ground, &floor) {
                     continue;
@@ -161,8 +159,7 @@ fn bits(manifolds: &[Manifold]) -> String {
     format!("{manifolds:?}")
 }
 
-/// Contacts of triangles by themselves do not depend on what these are part of. Would catch a set
-/// that is asked for and not given.
+/// Would catch contacts of surfaces where those of triangles were requested.
 #[test]
 fn contacts_of_triangles_know_no_surfaces() {
     let head = mesh::monkey_head_with(7);
@@ -199,7 +196,7 @@ fn inside_out_meshes_cross_as_sheets_do() {
     assert!(count > 200, "{count}");
 }
 
-/// Meshes of which pairs are made, solids and sheets, of few and of many triangles.
+/// Solids and sheets, of few and of many triangles.
 fn meshes() -> Vec<Mesh> {
     vec![
         mesh::monkey_head_with(7),
@@ -225,8 +222,7 @@ fn for_each_pose(seed: u64, mut check: impl FnMut([&TriMesh; 2], Pose, &mut Rand
     }
 }
 
-/// Would catch contacts of pairs of triangles that have none by themselves, another order, and gaps
-/// that are not those of the triangles.
+/// Would catch contacts that triangles alone do not have, another order, and wrong gaps.
 #[test]
 fn surfaces_have_some_of_the_contacts_of_triangles() {
     let [mut some, mut all] = [0; 2];
@@ -244,12 +240,12 @@ fn surfaces_have_some_of_the_contacts_of_triangles() {
         some += found.len();
         all += expected.len();
     });
-    // Of a third of the poses, which are deep, most contacts are needed.
+    // A third of the poses are deep, and need most contacts.
     assert!(some > 500 && 3 * some < 2 * all, "{some} of {all}");
 }
 
-/// Two cubes edge to edge, and two balls. Would catch edges that are walls to each other before they are
-/// about to touch, in either order and at any prediction distance, and round bodies that lose contacts.
+/// Would catch edges that hold each other before they are about to touch, and round bodies that
+/// lose contacts.
 #[test]
 fn edges_may_pass_each_other() {
     let (cube, ball) = (cube(), shape(&mesh::ball(1.0, 12)));
@@ -312,7 +308,6 @@ fn what_crosses_touches() {
     assert!(count > 500, "{count} pairs cross");
 }
 
-/// Would catch normals that are none.
 #[test]
 fn normals_have_length_one() {
     let mut wrong = 0;
@@ -388,9 +383,8 @@ fn answers_without_trees_are_those_with_trees() {
     assert!(count > 100, "{count} contacts without trees");
 }
 
-/// Meshes of more than 8192 triangles, registered and not, and a small one. Would catch a large mesh that is
-/// looked at as a whole in the midst of a step, one that is registered and not known as a solid, and edges
-/// within a large surface that count.
+/// Would catch a large mesh that is searched as a whole in a step, and one that is registered and
+/// no solid.
 #[test]
 fn large_meshes_are_solids_if_they_are_registered() {
     let slab = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 40);
@@ -414,8 +408,7 @@ fn large_meshes_are_solids_if_they_are_registered() {
     assert!(!found.is_empty() && found.len() < all.len());
 }
 
-/// Would catch two large meshes that lock into each other as nobody has registered them, and memory of the
-/// pair that has a part in it.
+/// Would catch unregistered large meshes that lock into each other, and memory in the result.
 #[test]
 fn large_meshes_are_solids_to_each_other() {
     let slab = SharedShape::new(shape(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 40)));
@@ -485,9 +478,7 @@ fn deformable_meshes_have_no_surfaces() {
     }
 }
 
-/// Two pairs of cubes far from each other, of which one is barely sunk and one halfway: as one pair
-/// of meshes they have the contacts that they have as two. Would catch contacts of a region that go
-/// as another region needs more.
+/// Would catch contacts of one overlap island that another one removes.
 #[test]
 fn regions_do_not_mind_each_other() {
     let both = |shift: Vec3| {

@@ -26,9 +26,8 @@ fn ask(query: &Question) -> Vec<Manifold> {
     query.fresh(&every())
 }
 
-/// Would catch a plate that is held in the midst of a sheet by contacts that push to both sides, and
-/// one that is pushed to the side where less of it is, in either order of the two. Of a plate of many
-/// triangles a few cross the sheet by themselves, and go their own way.
+/// Would catch a plate held in a sheet by contacts to both sides, or pushed to the side with less
+/// of it. A few triangles of a fine plate may cross the sheet alone.
 #[test]
 fn a_plate_in_the_midst_of_a_sheet_leaves_to_one_side() {
     let floor = floor();
@@ -53,8 +52,8 @@ fn a_plate_in_the_midst_of_a_sheet_leaves_to_one_side() {
     }
 }
 
-/// Would catch more points of one direction than Rapier's solver takes at the distances of soft CCD,
-/// and such as are not near the plate's corners.
+/// Would catch more points of one direction than Rapier's solver takes, and points away from the
+/// corners.
 #[test]
 fn far_contacts_are_four_corners() {
     let (floor, plate) = (floor(), plate(4));

@@ -1,4 +1,4 @@
-//! Brute force in f64, asked in the words of these tests.
+//! Brute force in f64.
 
 use std::collections::BTreeMap;
 
@@ -29,7 +29,7 @@ pub fn pairs_within(query: &Question, margin: f64) -> BTreeMap<TrianglePair, Tru
     pairs.into_iter().map(|pair| ([pair.triangle1, pair.triangle2], pair)).collect()
 }
 
-/// What was judged, and what was wrong.
+/// Counts of contacts and of errors.
 #[derive(Debug, Default, PartialEq)]
 pub struct Tally {
     contacts: usize,

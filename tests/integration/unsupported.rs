@@ -41,7 +41,7 @@ fn a_nan_vertex_is_an_error_of_prepare_and_leaves_the_other_triangles() {
     assert_eq!(dispatcher.stats().unsupported_queries, 0);
 }
 
-/// Meshes of which no coordinate along some axes is finite: all NaN, all infinite, from −∞ to +∞.
+/// Meshes without a finite coordinate along some axes.
 fn endless_meshes() -> Vec<TriMesh> {
     let ball = shape(&mesh::ball(1.0, 4));
     let (nan, inf) = (Real::NAN, Real::INFINITY);
@@ -62,8 +62,8 @@ fn endless_meshes() -> Vec<TriMesh> {
         .collect()
 }
 
-/// Would catch a panic over the box of such a mesh, and an answer that is not stock's or not
-/// counted, on a first query and where the pair knew a whole mesh.
+/// Would catch a panic over the box of such a mesh, and results that are not stock's or not
+/// counted.
 #[test]
 fn a_mesh_without_a_finite_box_is_answered_by_stock_and_counted() {
     let whole = shape(&mesh::ball(1.0, 4));
@@ -89,7 +89,7 @@ fn a_mesh_without_a_finite_box_is_answered_by_stock_and_counted() {
                 .is_ok();
                 answered += usize::from(is_answered);
                 if !is_answered {
-                    // What Parry is asked for it answers, or panics, as without SBBK.
+                    // Parry answers or panics as without SBBK.
                     continue;
                 }
                 for repeat in 1..3 {

@@ -1,5 +1,4 @@
-//! Meshes that are too large for a tree nobody has asked for, and those that may deform: answered
-//! from Parry's own hierarchy, with the same contacts.
+//! Meshes without trees, which are searched by Parry's BVH and have the same contacts.
 
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
@@ -33,9 +32,7 @@ fn bits(manifolds: &[Manifold]) -> String {
     format!("{manifolds:?}")
 }
 
-/// Would catch a pair that the walk loses or finds in another order than a descent, a normal cone
-/// that is another, and meshes taken for each other. Both ways are proved by counters. Of triangles by
-/// themselves: a large mesh without a tree is a sheet.
+/// Would catch pairs lost or in another order, another normal cone, and meshes mixed up.
 #[test]
 fn contacts_without_trees_are_those_with_trees() {
     let flags = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES];
@@ -66,8 +63,8 @@ fn contacts_without_trees_are_those_with_trees() {
     assert!(count > 2000, "{count} contacts");
 }
 
-/// A mesh with all flags, as Rapier's loaders of robots make them, does not deform as a rule. Would
-/// catch a tree built for it, and contacts of triangles by themselves that the flag changes.
+/// Loaders of robots set all flags of meshes that never deform. Would catch a tree, or contacts,
+/// that the flag changes.
 #[test]
 fn a_flag_alone_changes_nothing() {
     let all = TriMeshFlags::all() - TriMeshFlags::DEFORMABLE;
@@ -90,8 +87,8 @@ fn a_flag_alone_changes_nothing() {
     assert_eq!(dispatcher.stats().trees, 1);
 }
 
-/// Would catch a registered mesh whose edit is not seen, one that stays registered when nobody
-/// keeps it, and another shape of the same content taken for it.
+/// Would catch a registered mesh whose edit is not seen, one that stays registered, and another
+/// shape of equal content.
 #[test]
 fn a_registered_shape_is_known_until_it_is_let_go() {
     let dispatcher = per_triangle();

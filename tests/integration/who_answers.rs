@@ -26,7 +26,7 @@ fn field() -> SharedShape {
     SharedShape::new(HeightField::new(heights, Vec3::new(4.0, 1.0, 4.0)))
 }
 
-/// What a mesh can meet, and who answers for its contacts.
+/// Shapes that a mesh can meet, and who computes their contacts.
 pub fn kinds() -> Vec<(&'static str, SharedShape, Who)> {
     use Who::{Parry, Sbbk};
     let [a, b, c] = [Vec3::X, Vec3::Y, Vec3::Z];
@@ -61,9 +61,8 @@ pub fn kinds() -> Vec<(&'static str, SharedShape, Who)> {
     ]
 }
 
-/// The contacts of each kind, in both orders, with a rigid and with a deformable mesh: counted as
-/// answered by SBBK, or equal to Parry's and not counted. Would catch a kind that another one
-/// answers for than the crate's documentation says, and an order that is forgotten.
+/// Would catch a kind that is computed otherwise than the documentation says, and a forgotten
+/// order.
 #[test]
 fn contacts_of_each_kind() {
     let pos12 = Pose::translation(0.15, 0.6, 0.1);
@@ -96,10 +95,7 @@ fn contacts_of_each_kind() {
     }
 }
 
-/// Each query without manifolds: of two small rigid meshes from trees, which it needs; queries about
-/// what is neither rigid nor one convex shape, and all but casts of balls are Parry's to the last bit.
-/// (What SBBK says of the others is in `convex/queries.rs`, `convex/casts.rs` and
-/// `convex/nonlinear.rs`.)
+/// Would catch queries that should be Parry's to the last bit, and trees that are not needed.
 #[test]
 fn queries_of_each_kind() {
     let pos12 = Pose::translation(2.5, 0.2, 0.1);
@@ -109,7 +105,7 @@ fn queries_of_each_kind() {
     type Ask<'a> = &'a dyn Fn(&dyn QueryDispatcher, &dyn Shape, &dyn Shape) -> String;
     let options = ShapeCastOptions::with_max_time_of_impact(2.0);
     let queries: [(&str, Ask); 6] = [
-        // Where the boxes are apart it takes no tree.
+        // Boxes that are apart need no tree.
         ("intersection_test", &|d, g1, g2| format!("{:?}", d.intersection_test(&near, g1, g2))),
         ("distance", &|d, g1, g2| format!("{:?}", d.distance(&pos12, g1, g2))),
         ("closest_points", &|d, g1, g2| format!("{:?}", d.closest_points(&pos12, g1, g2, 9.0))),
@@ -151,7 +147,7 @@ fn queries_of_each_kind() {
     }
 }
 
-/// What is not asked of SBBK is Parry's to the last bit.
+/// Would catch a disabled kind that SBBK computes.
 #[test]
 fn kinds_are_a_choice() {
     let ground = shape(&mesh::cuboid(Vec3::new(8.0, 0.5, 8.0), 4));

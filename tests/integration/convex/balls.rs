@@ -6,13 +6,13 @@ use sbbk_testkit::mesh;
 use super::question::triangle_of;
 use crate::support::{Pair, Question, assert_same, counting_of, per_triangle, shape_with};
 
-/// Of 192 triangles, two units wide, bent.
+/// A bent slab of 192 triangles that are two units wide.
 fn ground(flags: TriMeshFlags) -> TriMesh {
     let bent = |v: Vector| v + Vector::Y * (0.3 * (0.7 * v.x).sin() + 0.2 * v.z.cos());
     shape_with(&mesh::cuboid(Vector::new(8.0, 0.5, 8.0), 4).mapped(bent), flags)
 }
 
-/// What a host stores with each contact point.
+/// Data of a host for each contact point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Impulse(u32);
 
@@ -104,8 +104,7 @@ fn without_a_workspace_no_manifold_survives() {
     assert!(pair.manifolds.iter().all(|m| m.points[0].data == Impulse(0)));
 }
 
-/// Would catch whole triangles that are lost since others of the mesh are not finite, and contacts of
-/// those.
+/// Would catch finite triangles lost because others are not finite, and contacts of the latter.
 #[test]
 fn whole_triangles_of_a_broken_mesh_are_touched() {
     let mut mesh = ground(TriMeshFlags::DEFORMABLE);

@@ -16,8 +16,8 @@ use crate::support::{direction, rotation, shape};
 /// Times before an impact at which brute force looks whether there was an earlier one.
 const LOOKS: usize = 6;
 
-/// Would catch a velocity in the wrong frame, a triangle that a bound leaves out, an impact that is
-/// not the first one or none, and points that are not where the bodies meet.
+/// Would catch a velocity in the wrong frame, triangles left out by a bound, and an impact that is
+/// not the first.
 #[test]
 fn first_impacts_are_those_of_brute_force() {
     let dispatcher = SbbkDispatcher::default();
@@ -128,8 +128,7 @@ fn bodies_that_cross_at_the_start() {
     }
 }
 
-/// Would catch an impact lost to the rounding of its bounds: each is there until its very time, and
-/// each nearest triangle up to its very distance.
+/// Would catch an impact, or a nearest triangle, lost to the rounding of its bound.
 #[test]
 fn impacts_and_distances_count_up_to_the_last_digit() {
     let dispatcher = SbbkDispatcher::default();
@@ -157,7 +156,7 @@ fn impacts_and_distances_count_up_to_the_last_digit() {
                 hits += 1;
             }
             let distance = dispatcher.distance(&pos12, &mesh, &*other).unwrap().distance;
-            // Those of balls are Parry's.
+            // Parry answers for balls.
             if distance > 0.0 && name != "ball" {
                 let limit = distance.next_up();
                 let found = dispatcher.closest_points(&pos12, &mesh, &*other, limit).unwrap();

@@ -65,8 +65,7 @@ impl Slider {
     }
 }
 
-/// Would catch impacts with the floor that a shape stands on: each ends a step early (a puck made a
-/// tenth of its way, and none on fine triangles).
+/// Would catch impacts with the floor that a shape stands on, which end steps early.
 #[test]
 fn shapes_that_slide_over_a_mesh_make_all_of_their_way() {
     for cells in [20, 200] {
@@ -113,9 +112,8 @@ fn fast_shapes_on_a_floor_stop_at_a_wall() {
     }
 }
 
-/// Casts from contact, sunk or just above the floor: the wall is met when the shape comes to it or, at
-/// the very end, when it would sink into it by a tenth of its thickness. Would catch an impact that is
-/// lost, and one with the floor.
+/// Would catch a lost impact with the wall, and an impact with the floor. At the end of a step a
+/// shape may sink in by a tenth of its thickness.
 #[test]
 fn casts_along_a_floor_meet_the_wall() {
     let (dispatcher, mesh) = (SbbkDispatcher::default(), walled());
@@ -128,7 +126,7 @@ fn casts_along_a_floor_meet_the_wall() {
             let end = 1.0 / 60.0;
             let height = slider.height + 0.01 * (random.rand_float() - 0.7);
             let wide = slider.shape.compute_aabb(&Pose::from_rotation(slider.turn)).maxs.x;
-            // Where it is at the end, before or behind the wall.
+            // Its place at the end, before or behind the wall.
             let beyond = 1.5 * speed * end * (random.rand_float() - 0.4);
             let start = Vec3::new(8.0 - wide + beyond - speed * end, height, 0.13);
             let velocity = speed * Vec3::X;

@@ -11,10 +11,8 @@ use super::question::{apart, check_against_truth, triangle_of};
 use super::shapes::{PREDICTIONS, body, lattice_pose, pose, shapes};
 use crate::support::{Question, distance, per_triangle, rotation, shape_with};
 
-/// The contacts of SBBK's own routines beside Parry's distances, which are too large by up to 0.013
-/// here (a round triangle at 0.0364 is said to be at 0.0487); that ours are exact is tested in
-/// `sbbk-core`. Would catch a shape that is taken for another, a pose the wrong way round, a radius
-/// left out, and a triangle that is lost or invented.
+/// Would catch one shape taken for another, an inverted pose, a missing radius, and triangles lost
+/// or invented. Parry's distances are too large by up to 0.013 here.
 #[test]
 fn exact_contacts_are_where_parry_measures_them() {
     const TOLERANCE: Real = 2e-3;
@@ -52,8 +50,7 @@ fn exact_contacts_are_where_parry_measures_them() {
     }
 }
 
-/// A box that lies flat touches at its four corners, whatever rounding makes of their depths. Would
-/// catch the closest point as a fifth one, and corners that are left out.
+/// Would catch the closest point as a fifth one, and corners that are left out.
 #[test]
 fn a_box_that_lies_flat_touches_at_its_corners() {
     let dispatcher = SbbkDispatcher::default();

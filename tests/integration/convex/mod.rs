@@ -1,5 +1,4 @@
-//! What Parry's routine, or brute force in f64, says of each triangle alone is expected of the whole
-//! mesh.
+//! Meshes against convex shapes, by brute force in f64 or by Parry, triangle by triangle.
 
 /// Balls: flags, prediction distances, data.
 mod balls;
@@ -9,13 +8,13 @@ mod casts;
 mod ccd;
 /// Shapes that change between queries, and pairs taken over from stock.
 mod change;
-/// First queries: those of Parry's routine bit for bit, SBBK's own against brute force.
+/// First queries, by brute force and by Parry's distances.
 mod fresh;
 /// Nonlinear casts, against brute force.
 mod nonlinear;
 /// Queries without manifolds, against brute force.
 mod queries;
-/// What is asked, and Parry's answer triangle by triangle.
+/// Parry's distance of each triangle, and checks against brute force.
 mod question;
 /// A head at rest on a floor.
 mod rest;

@@ -19,7 +19,7 @@ use crate::support::{direction, reach, rotation, shape};
 struct Cast<'a> {
     mesh: &'a TriMesh,
     shape: &'a SharedShape,
-    /// Of the mesh and of the shape.
+    /// First the mesh, then the shape.
     motions: [NonlinearRigidMotion; 2],
     is_mesh_first: bool,
 }
@@ -37,7 +37,7 @@ impl Cast<'_> {
             .expect("supported")
     }
 
-    /// Where mesh and shape are, in f64.
+    /// Places of mesh and shape in f64.
     fn places(&self, time: f64) -> [DAffine3; 2] {
         self.motions.map(|motion| {
             let affine = |pose: Pose3| {
@@ -130,9 +130,8 @@ fn lattice_motion(random: &mut Rand32, start: Pose3, size: Real) -> NonlinearRig
     NonlinearRigidMotion::new(start, 0.5 * size * centre, 2.0 * size * velocity, FRAC_PI_2 * spin)
 }
 
-/// Would catch a bound of the speed that is too low or of the wrong body, a placement in the wrong
-/// order, a triangle that a bound leaves out, an impact that is not the first one or none, and points
-/// and normals that are not where the bodies meet.
+/// Would catch a bound of the speed that is too low, a wrong order of transforms, triangles left
+/// out, and an impact that is not the first.
 #[test]
 fn first_impacts_are_those_of_brute_force() {
     let dispatcher = SbbkDispatcher::default();
@@ -214,7 +213,7 @@ fn first_impacts_are_those_of_brute_force() {
     assert!(stocks_wrong > 20, "{stocks_wrong}");
 }
 
-/// How far a shape of these tests reaches.
+/// Radius about the origin that holds a shape.
 fn reach_of(shape: &SharedShape) -> Real {
     let around = shape.compute_local_aabb();
     if shape.as_halfspace().is_some() {
@@ -238,11 +237,9 @@ fn still() -> NonlinearRigidMotion {
     NonlinearRigidMotion::identity()
 }
 
-/// What touches at the start, at every size and in both orders, known exactly and as in stock: a body
-/// that crosses a floor stops a cast that may stop there; else it is stopped by the floor if it would
-/// come out behind it, and not if it leaves it or hardly sinks; what slides along it is stopped by the
-/// wall. Would catch an option that is not obeyed, a thickness that is forgotten or of another unit,
-/// velocities of the wrong points, and an order that is forgotten.
+/// Would catch a disobeyed option, a wrong thickness, velocities of the wrong points, and a
+/// forgotten order. A body that crosses a floor stops if it would come out behind it. A body that
+/// slides stops at the wall.
 #[test]
 fn casts_from_contact() {
     let ours = SbbkDispatcher::default();
@@ -301,9 +298,8 @@ fn casts_from_contact() {
     }
 }
 
-/// A pole stands askew on a floor of two triangles and falls about its middle, faster than it sinks: the
-/// end that touches leaves, and the other one comes down. Would catch a floor that does not count as it
-/// was touched at the start: the pole came out below.
+/// A falling pole leaves the floor with one end and comes down with the other. Would catch a floor
+/// ignored because it was touched at the start.
 #[test]
 fn what_turns_comes_down_with_its_other_end() {
     let mesh = room(1);
@@ -339,8 +335,8 @@ fn what_turns_comes_down_with_its_other_end() {
     }
 }
 
-/// A pole as above, on one triangle, turns by half a turn, or by some, in a tenth of the time: it looks
-/// the same after each tenth, and comes down between. Would catch looks that do not count what turns.
+/// The pole looks alike after each tenth of the time. Would catch sample times that ignore the
+/// spin.
 #[test]
 fn what_turns_fast_comes_down_with_its_other_end() {
     let corners = [[-50.0, 0.0, 50.0], [50.0, 0.0, 50.0], [0.0, 0.0, -50.0]].map(Vec3::from);
@@ -358,9 +354,8 @@ fn what_turns_fast_comes_down_with_its_other_end() {
     }
 }
 
-/// A box that turns in place or glides, and that no turn takes as low as the floor, for as long as there
-/// is and as fast as can be. Would catch a turning that counts as an approach of the whole body: the
-/// cast took a minute and ended with an impact that is none.
+/// Would catch a spin that counts as an approach of the whole body, which took a minute and
+/// invented an impact.
 #[test]
 fn what_turns_above_a_floor_does_not_meet_it() {
     let dispatcher = SbbkDispatcher::default();
@@ -382,10 +377,8 @@ fn what_turns_above_a_floor_does_not_meet_it() {
     }
 }
 
-/// Bodies that glide along a floor, just above it and turning, are stopped by the wall and by nothing
-/// before: at once where the bound of the speed alone takes a step for each height above the floor.
-/// Would catch a cast that runs out of steps, a plane that a body crosses, and a time of a triangle
-/// that is not the soonest.
+/// Would catch a cast that runs out of steps, a plane that a body crosses, and a triangle that is
+/// not met first.
 #[test]
 fn what_glides_along_a_floor_meets_the_wall() {
     let dispatcher = SbbkDispatcher::default();
@@ -415,8 +408,7 @@ fn what_glides_along_a_floor_meets_the_wall() {
     }
 }
 
-/// Would catch a half-space whose turning counts as that of a body about its centre, or not at all:
-/// it comes up from below, and meets the far corner of a box first.
+/// Would catch a half-space that turns about its centre like a body, or not at all.
 #[test]
 fn half_spaces_turn() {
     let dispatcher = SbbkDispatcher::default();
@@ -434,7 +426,7 @@ fn half_spaces_turn() {
         assert!((0.5 * hit.time_of_impact - (1.0_f32 / 3.5).atan()).abs() < 1e-5, "{hit:?}");
         assert_eq!(hit.status, ShapeCastStatus::Converged);
         assert!(cast(0.25).is_none());
-        // The same with no end of the time, as nothing moves along a line.
+        // Endless time has the same impact, as nothing moves along a line.
         let there = NonlinearRigidMotion::constant_position(Pose3::translation(3.0, 1.5, 0.0));
         let turning =
             NonlinearRigidMotion::new(Pose3::IDENTITY, Vec3::ZERO, Vec3::ZERO, 0.5 * Vec3::Z);

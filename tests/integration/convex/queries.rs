@@ -23,12 +23,12 @@ pub(super) fn truth(
     truth_at(mesh, body, if is_mesh_first { pose.inverse() } else { pose })
 }
 
-/// The same with the mesh at a place in the frame of the body.
+/// Signed distances with the mesh at a place in the frame of the body.
 pub(super) fn truth_at(mesh: &TriMesh, body: &ConvexBody, pose: DAffine3) -> Vec<f64> {
     mesh.triangles().map(|triangle| truth_of(&triangle, body, pose)).collect()
 }
 
-/// That of a triangle.
+/// Signed distance of one triangle.
 pub(super) fn truth_of(triangle: &Triangle, body: &ConvexBody, pose: DAffine3) -> f64 {
     let place = |corner: &Vec3| pose.transform_point3(corner.as_dvec3());
     body.distance(&triangle.vertices().each_ref().map(place))
@@ -38,9 +38,8 @@ pub(super) fn least(distances: &[f64]) -> f64 {
     distances.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-/// Would catch a pair in the wrong order or frame, a triangle that a bound leaves out, a radius that
-/// is forgotten, and an answer that depends on the size, as those of Parry's GJK do: at the two
-/// smaller sizes they are wrong in dozens of cases.
+/// Would catch a wrong order or frame, triangles left out by a bound, a missing radius, and errors
+/// that grow with the size.
 #[test]
 fn as_brute_force_says_at_every_size() {
     let dispatcher = SbbkDispatcher::default();
@@ -134,8 +133,8 @@ fn non_finite_poses_and_limits_have_no_result() {
     }
 }
 
-/// A corner on the plane of a half-space, in a box whose middle is rounded away from it: the sum of
-/// the ends is no number of f32. Would catch a plane that allows for no rounding of boxes.
+/// Would catch a plane that allows for no rounding of boxes. The middle of this box is rounded away
+/// from the plane.
 #[test]
 fn a_corner_on_a_plane() {
     let step = f32::EPSILON;
@@ -153,7 +152,7 @@ fn a_corner_on_a_plane() {
     assert!(!dispatcher.intersection_test(&above, &*plane, &mesh).unwrap().intersecting);
 }
 
-/// Would catch the nearest triangle left out as it is just at the limit, and an answer to no limit.
+/// Would catch a nearest triangle lost just at the limit, and a result without a limit.
 #[test]
 fn a_limit_that_is_the_distance_is_enough() {
     let dispatcher = SbbkDispatcher::default();

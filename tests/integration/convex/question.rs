@@ -22,9 +22,7 @@ pub(super) fn apart(question: &Question, triangle: u32) -> Real {
     distance.expect("Parry knows the distance of all these shapes to triangles").distance
 }
 
-/// Panics unless the answer is that of brute force in f64, up to `tolerance`: triangles within
-/// the prediction distance, each at its distance, without normal constraints. The number of
-/// contacts.
+/// Panics unless contacts are those of brute force in f64, up to `tolerance`. Returns their number.
 pub(super) fn check_against_truth(
     question: &Question,
     name: &str,

@@ -16,8 +16,8 @@ use crate::support::{
     Manifold, Question, distance, every, having, per_triangle, rotation, shape_with,
 };
 
-/// Bodies 0.01 deep in a flat floor of small triangles. Would catch a contact at an edge between two
-/// of them, a tip right at an edge, points that are not below the body, and a body with no contact left.
+/// Would catch contacts at edges between triangles, points beside the body, and a body without
+/// contacts.
 #[test]
 fn a_floor_of_triangles_is_flat() {
     const DEPTH: f32 = 0.01;
@@ -25,7 +25,7 @@ fn a_floor_of_triangles_is_flat() {
     let mut random = Rand32::new(1);
     let floor = shape_with(&mesh::floor(6.0, 40), TriMeshFlags::empty());
     let mut slanted = 0;
-    // What is flat may be below a triangle that it crosses.
+    // A flat shape may be below a triangle that it crosses.
     let is_thick = |name: &str| !["half-space", "segment", "triangle"].contains(&name);
     for (name, shape) in shapes(1.0).into_iter().filter(|(name, _)| is_thick(name)) {
         let mut cases = 0;
@@ -58,16 +58,14 @@ fn a_floor_of_triangles_is_flat() {
     assert!(slanted > 1000, "{slanted} of triangles by themselves");
 }
 
-/// Where two shapes are nearest.
+/// Point at which two shapes are nearest.
 fn nearest(manifold: &Manifold) -> Option<&TrackedContact<()>> {
     manifold.points.iter().min_by(|a, b| a.dist.total_cmp(&b.dist))
 }
 
-/// Contacts of each triangle by itself, and by brute force those of them that no other triangle at the
-/// point is nearer than: these are those of the surface, and others are along the normal of one of
-/// these or of a face. Would catch neighbours that are missed, as their vertices are not shared; a
-/// contact that is left out although it is a minimum; a nearest one that is; and bodies that cross with no
-/// contact that is deep.
+/// Would catch neighbours missed because they share no vertices, minima left out, and crossing
+/// bodies without a deep contact. A contact belongs to the surface if no other triangle is nearer
+/// at its point.
 #[test]
 fn contacts_of_a_surface_are_the_nearest_at_their_points() {
     const CLOSE: f32 = 1e-5;
@@ -122,7 +120,7 @@ fn contacts_of_a_surface_are_the_nearest_at_their_points() {
                     assert!(now.is_some_and(same), "{name}, {i}: {manifold:?}, {now:?}");
                     kept += 1;
                 } else if gap >= 0.0 && nearest.dist > CLOSE {
-                    // One of those that are nearest at the same point.
+                    // Another triangle at the same point may hold the contact.
                     let mut now = level.iter().filter_map(|triangle| found.get(triangle));
                     assert!(now.any(|now| same(now)), "{name}, {i}: {manifold:?}, {level:?}");
                     kept += 1;

@@ -77,7 +77,7 @@ pub(super) fn body(shape: &SharedShape) -> ConvexBody {
     core.rounded(radius.into())
 }
 
-/// A large flat floor, whose box holds the whole mesh as soon as it is turned.
+/// A large flat floor. Its box holds the whole mesh if it is turned.
 pub fn floor() -> SharedShape {
     SharedShape::cuboid(50.0, 0.25, 50.0)
 }

@@ -27,8 +27,8 @@ fn bodies() -> Vec<(&'static str, SharedShape)> {
     bodies
 }
 
-/// A world of a mesh and a shape that starts at `height`; where that is after three seconds, and its
-/// greatest speed above -3.
+/// Drops a shape from `height` for three seconds. Returns its last height and its greatest speed
+/// above -3.
 fn fall(
     dispatcher: SbbkDispatcher,
     mesh: &SharedShape,
@@ -96,8 +96,8 @@ fn rooms_that_are_sheets_keep_what_is_in_them() {
 
 type Manifolds = Vec<ContactManifold<(), ()>>;
 
-/// Would catch a way out that is not the shortest one, is lost in one order of the shapes or where no
-/// triangle is near, or has company.
+/// Would catch a way out that is not the shortest, that one order of the shapes loses, or that has
+/// company.
 #[test]
 fn the_way_out_is_the_only_contact() {
     let block = mesh::cuboid(Vec3::splat(9.0), 6).shared_shape().unwrap();
@@ -128,8 +128,7 @@ fn the_way_out_is_the_only_contact() {
     }
 }
 
-/// A compound that rises out of a block, each part by its own face. Would catch an answer that depends on
-/// what queries before have found: which triangles, and in which order.
+/// Would catch results that depend on the triangles which earlier queries found.
 #[test]
 fn ways_out_are_a_function_of_the_pose() {
     let block = mesh::cuboid(Vec3::splat(9.0), 6).shared_shape().unwrap();

@@ -7,15 +7,14 @@ use sbbk_testkit::mesh;
 use super::terrain::Terrain;
 use crate::support::{Question, counting, shape};
 
-/// Would catch a descent that looks at more of a terrain than what lies under the mesh: the same
-/// mesh on a field of the same cells, of a thousand times as many. And loss of digits far from the
-/// middle of it.
+/// Would catch a descent that visits more cells than lie under the mesh, and lost digits far from
+/// the middle.
 #[test]
 fn a_million_cells_cost_what_is_under_the_mesh() {
     let head = shape(&mesh::monkey_head());
     let visited = |cells: u32, x: Real| {
         let size = 0.1 * cells as Real;
-        // The same hills, wherever the field ends.
+        // Hills do not depend on the size of the field.
         let lines = cells as usize + 1;
         let wave = |k: usize| (k as f32 - 0.5 * cells as f32) * 0.1;
         let heights = Array2::from_fn(lines, lines, |i, j| {

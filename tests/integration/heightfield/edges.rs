@@ -8,8 +8,7 @@ use sbbk_testkit::mesh;
 use super::terrain::{Terrain, place};
 use crate::support::{Manifold, Question, assert_same, per_triangle, shape_with};
 
-/// Would catch constraints of a neighbour, of the wrong shape or none at all: each manifold is the
-/// one that the generator makes of its two triangles and their cones.
+/// Would catch constraints of a neighbour, of the wrong shape, or none at all.
 #[test]
 fn internal_edges_of_the_field_are_fixed() {
     let dispatcher = per_triangle();

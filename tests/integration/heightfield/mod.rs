@@ -1,5 +1,4 @@
-//! The same terrain is always at hand as a mesh: what brute force and the pair of meshes say of it
-//! is expected of the field.
+//! Meshes against height fields, by brute force and by the same terrain as a mesh.
 
 /// Fields and manifolds that change between queries.
 mod change;

@@ -51,7 +51,7 @@ impl Terrain {
         Question { shapes: [&self.mesh, question.shapes[1]], ..*question }
     }
 
-    /// Numbers the triangles of the field as those of the mesh.
+    /// Renumbers triangles of the field as triangles of the mesh.
     pub fn renumbered(&self, question: &Question, manifolds: &[Manifold]) -> Vec<Manifold> {
         let mut manifolds = manifolds.to_vec();
         for Manifold { subshape1, subshape2, .. } in &mut manifolds {
@@ -103,7 +103,7 @@ pub fn rolling(size: Real, cells: u32, height: Real) -> HeightField {
     field
 }
 
-/// Where the mesh touches the terrain, somewhere on it.
+/// A pose at which the mesh touches the terrain.
 pub(super) fn place(random: &mut Rand32, terrain: &Terrain, mesh: &TriMesh, depth: Real) -> Pose {
     let pose = touching(random, [&terrain.mesh, mesh], depth);
     if random.rand_range(0..3) == 0 {

@@ -12,9 +12,8 @@ use crate::support::{
 };
 use crate::truth::Tally;
 
-/// Would catch cells that are cut off too early, triangles that are taken for others, holes that
-/// are filled, contacts in the frame of the other shape, and rounding that is not allowed for.
-/// Against brute force over all triangles in f64.
+/// Would catch cells cut off too early, triangles mixed up, filled holes, the wrong frame, and
+/// rounding.
 #[test]
 fn contacts_are_those_of_brute_force() {
     let dispatcher = per_triangle();
@@ -58,8 +57,7 @@ fn lattice_contacts_are_those_of_brute_force() {
     tally.check_all_right(1000);
 }
 
-/// Would catch any difference between a terrain and the same terrain: the contacts are those of two
-/// meshes, bit for bit, but for the order.
+/// Would catch any difference, up to the order, between a terrain as a field and as a mesh.
 #[test]
 fn contacts_equal_those_of_the_terrain_as_a_mesh() {
     let dispatcher = per_triangle();
@@ -83,12 +81,11 @@ fn contacts_equal_those_of_the_terrain_as_a_mesh() {
     assert!(count > 5000, "{count} contacts");
 }
 
-/// The same of surfaces, where a terrain is the top of a solid or a sheet. Would catch neighbours other
-/// than those of the mesh, holes taken for ground, a top that is below, and corners in another order.
+/// Would catch neighbours other than those of the mesh, holes taken for ground, and a top that is
+/// below.
 ///
-/// Of meshes whose middle is above the ground: to an open mesh, nothing is wholly inside. And without
-/// contacts deeper than five prediction distances, that hang on which one of several nearest triangles
-/// is looked at.
+/// The middle of each mesh is above the ground. Contacts deeper than five prediction distances are
+/// left out, as several nearest triangles are equally right.
 #[test]
 fn surfaces_are_those_of_the_terrain_as_a_mesh() {
     let mut random = Rand32::new(6);
@@ -133,7 +130,7 @@ fn surfaces_are_those_of_the_terrain_as_a_mesh() {
     assert!(fewer > count, "{fewer} fewer than of triangles");
 }
 
-/// Whether a point is behind the triangle of a terrain that is nearest to it.
+/// True if a point is behind the nearest triangle of a terrain.
 fn is_under(terrain: &Terrain, point: Vec3) -> bool {
     let distance = |triangle: &Triangle| triangle.distance_to_local_point(point, false);
     let triangles = terrain.mesh.triangles();

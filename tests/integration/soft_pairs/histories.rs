@@ -13,7 +13,7 @@ use sbbk_testkit::mesh;
 use super::question::{anew, assert_same_set, furniture, hills, steps};
 use crate::support::{Manifold, Pair, Question, assert_same, rotation, shape_with};
 
-/// What happens to a pair between two queries.
+/// Event of a pair between two queries.
 #[derive(Clone, Copy, Debug)]
 enum Event {
     /// Nothing.
@@ -130,7 +130,7 @@ impl Walk {
     }
 }
 
-/// What all cases together came to.
+/// Sums over all cases.
 #[derive(Default)]
 struct Sums {
     contacts: AtomicU64,
@@ -177,9 +177,7 @@ fn runner(cases: u32) -> TestRunner {
     TestRunner::new(config)
 }
 
-/// Would catch candidates, features or cones of vertices that are no more, and anything
-/// else that depends on the past: the manifolds are those of the mesh built anew, bit for bit, and
-/// in the order of a dispatcher that knows nothing.
+/// Would catch candidates, features or cones of earlier vertices.
 #[test]
 fn contacts_with_a_height_field_are_those_of_a_mesh_built_anew() {
     let sums = Sums::default();
@@ -196,7 +194,6 @@ fn contacts_with_a_height_field_are_those_of_a_mesh_built_anew() {
     sums.check(20_000);
 }
 
-/// The same against boxes and balls.
 #[test]
 fn contacts_with_a_compound_are_those_of_a_mesh_built_anew() {
     let sums = Sums::default();

@@ -1,5 +1,4 @@
-//! Meshes that move their vertices, against height fields and compounds, and broken ones against
-//! all kinds: at every frame the contacts are those of a mesh built anew of the same vertices.
+//! Meshes that may deform. At every frame the contacts are those of a mesh built anew.
 
 /// Vertices that are no numbers.
 mod broken;
@@ -7,7 +6,7 @@ mod broken;
 mod frames;
 /// Random deformations, motions, and hosts that lose or share state.
 mod histories;
-/// What is asked and compared, and the shapes.
+/// Comparisons and shapes.
 mod question;
 /// Rapier's soft bodies.
 mod worlds;

@@ -15,8 +15,7 @@ pub fn anew(question: &Question, dispatcher: &impl Dispatcher<(), ()>) -> Vec<Ma
     Question { shapes: [question.shapes[0], &mesh], ..*question }.fresh(dispatcher)
 }
 
-/// Panics unless both have the same manifolds, in any order, bit for bit but for the sign of a
-/// zero.
+/// Panics unless both have the same manifolds, in any order, bit for bit up to the sign of a zero.
 pub fn assert_same_set(found: &[Manifold], expected: &[Manifold]) {
     assert_same(&sorted(found), &sorted(expected), 0.0);
 }

@@ -15,8 +15,7 @@ fn step(world: &mut PhysicsWorld, count: usize) {
     (0..count).for_each(|_| world.step());
 }
 
-/// The reason for all this: under stock Rapier a soft body falls through a height field. Here it is
-/// caught, in each step by contacts of the mesh as it is then, and comes to rest.
+/// Under stock Rapier the soft body falls through.
 #[test]
 fn a_soft_body_rests_on_a_height_field() {
     let ground = bowl();

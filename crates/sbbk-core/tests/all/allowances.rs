@@ -44,8 +44,8 @@ struct Pair {
 }
 
 impl Pair {
-    /// From corners in one frame, told apart by `apart`, seen in two frames far from it. Rounding
-    /// the corners moves them a little; the truth is what is left.
+    /// From corners in one frame, `apart` from each other, seen in two frames far from it. Rounding
+    /// moves the corners a little, and the truth is computed from the rounded ones.
     fn of(random: &mut Random, corners: [[DVec3; 3]; 2], far: f32) -> Self {
         let turn = random.rotation();
         let pos12 = Pose3::from_parts(random.vector(far), turn);
@@ -317,8 +317,7 @@ fn the_least_motion_is_bounded() {
         let [then, now] = [pose, next].map(|pose| Placement::new(&pose));
         let moved = now.translation.x - then.translation.x;
         assert!(now.motion_bound(&then, ball.centre, ball.radius) >= moved);
-        // The same, at a quaternion a little longer than one: the centre moves by what is written
-        // out here.
+        // A quaternion a little longer than one moves the centre as well.
         let mut longer = pose;
         longer.rotation *= 1.0 + f32::EPSILON;
         let longer = Placement::new(&longer);

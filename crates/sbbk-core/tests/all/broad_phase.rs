@@ -27,8 +27,7 @@ fn sorted(pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
     pairs
 }
 
-/// Would catch strict comparisons, a margin on one of the two volumes only, and a skipped stage:
-/// boxes alone touch across edges and corners, spheres of radius 2 across several cells.
+/// Would catch strict comparisons, a margin on one of the two volumes only, and a skipped stage.
 #[test]
 fn lattices_that_touch_have_the_pairs_of_faces() {
     let lattice = |spacing: f32, radius: f32| -> Vec<Bounds> {
@@ -43,9 +42,8 @@ fn lattices_that_touch_have_the_pairs_of_faces() {
     assert!(BroadPhase::new(0.499).pairs(&lattice(1.5, 0.5)).is_empty());
 }
 
-/// Would catch children numbered wrongly, boxes not refitted up to the top, a pair of an object at
-/// rest that is dropped or found twice, a number of objects that changes, and places far from the
-/// origin or all in one.
+/// Would catch children numbered wrongly, boxes not refitted, a pair dropped or found twice, and
+/// places far from the origin or all in one.
 #[test]
 fn worlds_in_motion_have_the_pairs_of_brute_force() {
     let mut random = Random(1);
@@ -190,8 +188,7 @@ proptest! {
     }
 }
 
-/// Would catch pairs missed by underflow of the squares, a visible slack for it, and overflow that
-/// turns into NaN or into a pair of everything.
+/// Would catch underflow of the squares that loses pairs, and overflow that pairs everything.
 #[test]
 fn tiny_and_huge_spheres_and_boxes_that_touch_are_pairs() {
     let tiny = f32::from_bits(1);

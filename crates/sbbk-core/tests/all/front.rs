@@ -149,8 +149,7 @@ fn coarse_coordinates_have_the_pairs_of_a_fresh_descent() {
     }
 }
 
-/// 3000 slow steps through each other and apart. Would catch a front that is never raised, which
-/// grows to several times the size, and one that saves no test.
+/// Would catch a front that is never raised, and one that saves no test.
 #[test]
 fn a_front_stays_bounded_and_tests_fewer_nodes_than_a_fresh_descent() {
     let ball = tree(&bumpy_ball(10, 0.2), None);

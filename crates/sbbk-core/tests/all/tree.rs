@@ -113,8 +113,7 @@ fn equal_triangles_make_a_balanced_tree() {
     assert_eq!(check(&soup, &options(Some(4), 1)).stats().depth, 12);
 }
 
-/// Would catch splits by cost that take one triangle from the rest, level after level: sizes and
-/// places that shrink by a constant factor, on one axis, on all in turn, with and without area.
+/// Would catch splits by cost that take one triangle from the rest, level after level.
 #[test]
 fn trees_are_never_deep() {
     let chain = |count: u32, factor: f64, axes: u32, width: f64| {
