@@ -9,8 +9,8 @@ use rapier3d::parry::shape::{PackedFeatureId, TriMesh};
 use sbbk_testkit::mesh;
 
 use crate::support::{
-    Manifold, Pair, Question, TrianglePair, assert_same, by_triangles, every, nudge, per_triangle,
-    sequence, shape, touching, triangles,
+    Manifold, Pair, Question, assert_same, by_triangles, every, nudge, per_triangle, sequence,
+    shape, touching, triangles,
 };
 
 /// Marks manifolds and points, to see which of them survive.
@@ -172,28 +172,6 @@ fn points_keep_their_data_by_their_features() {
     assert!(kept > 20 * new && new > 10, "{kept} points kept, {new} new");
 }
 
-/// Would catch a prediction distance that is remembered: soft CCD and contact skins change it from
-/// step to step.
-#[test]
-fn the_prediction_distance_may_change_at_every_query() {
-    let head = shape(&mesh::monkey_head());
-    let dispatcher = SbbkDispatcher::default();
-    let pos12 = touching(&mut Rand32::new(7), [&head, &head], 0.005);
-    let mut pair: Pair = Pair::default();
-    let mut sizes = Vec::new();
-    for prediction in [0.02, 0.0, 0.001, 0.3, 0.02, 0.1, 0.1, 0.0005, 1.0, 0.02] {
-        for shift in [0.0, 1e-4, 2e-4] {
-            let pos12 = Pose::translation(shift, 0.0, 0.0) * pos12;
-            let query = Question::new(&head, &head, pos12).within(prediction);
-            pair.ask(&dispatcher, &query);
-            assert_same(&pair.manifolds, &query.fresh(&dispatcher), 1e-6);
-        }
-        sizes.push(pair.manifolds.len());
-    }
-    assert!(sizes[1] < sizes[0] && sizes[0] < sizes[5] && sizes[5] < sizes[3], "{sizes:?}");
-    assert_eq!([sizes[4], sizes[9]], [sizes[0]; 2]);
-}
-
 /// Would catch a dispatcher that serves Rapier's types only.
 #[test]
 fn any_data_will_do() {
@@ -218,23 +196,4 @@ fn any_data_will_do() {
         .contact_manifolds(&query.pose, &one, &two, 0.02, &mut manifolds, &mut workspace)
         .unwrap();
     assert_same(&manifolds, &expected, 0.0);
-}
-
-/// Would catch manifolds left over for callers that pass no workspace.
-#[test]
-fn callers_without_memory_get_fresh_answers() {
-    let [one, two] = rings();
-    let mut random = Rand32::new(10);
-    let dispatcher = SbbkDispatcher::default();
-    let mut manifolds: Vec<Manifold> = Vec::new();
-    let mut seen: Vec<Vec<TrianglePair>> = Vec::new();
-    for _ in 0..10 {
-        let query = Question::new(&one, &two, touching(&mut random, [&one, &two], 0.05));
-        dispatcher
-            .contact_manifolds(&query.pose, &one, &two, 0.02, &mut manifolds, &mut None)
-            .unwrap();
-        assert_same(&manifolds, &query.fresh(&dispatcher), 0.0);
-        seen.push(sequence(&manifolds));
-    }
-    assert!(seen.windows(2).all(|two| two[0] != two[1]));
 }

@@ -13,11 +13,12 @@ use sbbk_testkit::mesh;
 use sbbk_testkit::probe::{Probe, Timed, shape_address};
 
 use crate::support::{
-    Pair, Question, TrianglePair, assert_same, counting, rebuilt, sequence, shape, shape_with,
+    Pair, Question, TrianglePair, assert_same, counting, deform, rebuilt, sequence, shape,
+    shape_with,
 };
 
-fn soft_ball(flags: TriMeshFlags) -> TriMesh {
-    shape_with(&mesh::ball(1.0, 5), TriMeshFlags::DEFORMABLE | flags)
+fn soft_ball() -> TriMesh {
+    shape_with(&mesh::ball(1.0, 5), TriMeshFlags::DEFORMABLE)
 }
 
 fn torus() -> TriMesh {
@@ -26,17 +27,6 @@ fn torus() -> TriMesh {
 
 fn beside() -> Pose {
     Pose::from_parts(Vector::new(1.5, 0.4, 0.2), glamx::Quat::from_rotation_x(1.0))
-}
-
-/// Dents that wander over a mesh, from where its vertices are at rest.
-fn deform(mesh: &mut TriMesh, rest: &[Vec3], frame: usize) {
-    let phase = 0.07 * frame as Real;
-    mesh.update_vertices(|vertices| {
-        for (vertex, &rest) in vertices.iter_mut().zip(rest) {
-            let dent = (3.0 * rest.x + phase).sin() * (2.0 * rest.y - 2.0 * phase).cos();
-            *vertex = rest * (1.0 + 0.15 * dent) + Vec3::Z * (0.1 * (rest.x + phase).sin());
-        }
-    });
 }
 
 fn set<M, C>(
@@ -49,7 +39,7 @@ fn set<M, C>(
 #[test]
 fn two_soft_meshes_keep_apart() {
     let dispatcher = counting();
-    let mut meshes = [(); 2].map(|()| soft_ball(TriMeshFlags::empty()));
+    let mut meshes = [(); 2].map(|()| soft_ball());
     let rest = meshes[0].vertices().to_vec();
     let mut pair: Pair = Pair::default();
     let mut contacts = 0;
@@ -71,7 +61,7 @@ fn two_soft_meshes_keep_apart() {
 fn pairs_on_many_threads_agree() {
     const PAIRS: usize = 8;
     let dispatcher = SbbkDispatcher::default();
-    let mut soft = soft_ball(TriMeshFlags::empty());
+    let mut soft = soft_ball();
     let rest = soft.vertices().to_vec();
     let other = torus();
     let mut pairs: [Pair; PAIRS] = Default::default();
@@ -100,7 +90,7 @@ fn pairs_on_many_threads_agree() {
 #[test]
 fn other_triangles_at_the_same_place_are_seen() {
     let dispatcher = SbbkDispatcher::default();
-    let mut soft = SharedShape::new(soft_ball(TriMeshFlags::empty()));
+    let mut soft = SharedShape::new(soft_ball());
     let other = torus();
     let mut pair: Pair = Pair::default();
     for _ in 0..4 {

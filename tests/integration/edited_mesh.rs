@@ -30,8 +30,7 @@ fn is_same(left: &[Manifold], right: &[Manifold]) -> bool {
             .all(|(l, r)| l.local_n1 == r.local_n1 && distance(l) == distance(r))
 }
 
-/// Panics unless a pair has the contacts of an edited mesh, which stays at its address. Would catch
-/// a tree, candidates, points or normal constraints of the mesh before the edit.
+/// Panics unless a pair has the contacts of an edited mesh, which stays at its address.
 ///
 /// Would catch a tree, candidates, contact points or normal constraints of the mesh before the
 /// edit.

@@ -13,9 +13,7 @@ use rapier3d::parry::shape::{HeightField, PackedFeatureId, Shape, SharedShape, T
 use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh::{self, Mesh};
 
-use crate::support::{
-    Dispatcher, Pair, Question, direction, distance, nudge, rotation, shape, shape_with,
-};
+use crate::support::{Pair, Question, direction, distance, nudge, rotation, shape, shape_with};
 
 /// Least cosine of the normals in one patch. A cone may remove the deepest contact; the others are
 /// near to its normal.
@@ -33,28 +31,11 @@ fn detailed(detail: ContactDetail) -> SbbkDispatcher {
     SbbkDispatcher::new(config)
 }
 
-fn ask<M, C>(
-    pair: &mut Pair<M, C>,
-    dispatcher: &impl Dispatcher<M, C>,
-    shapes: [&dyn Shape; 2],
-    pos12: &Pose,
-    prediction: Real,
-) {
-    let [one, two] = shapes;
-    pair.ask(dispatcher, &Question::new(one, two, *pos12).within(prediction));
-}
-
 type Manifold = ContactManifold<u32, u32>;
 
-fn fresh(
-    dispatcher: &SbbkDispatcher,
-    shapes: [&dyn Shape; 2],
-    pos12: &Pose,
-    prediction: Real,
-) -> Vec<Manifold> {
-    let mut pair = Pair::default();
-    ask(&mut pair, dispatcher, shapes, pos12, prediction);
-    pair.manifolds
+/// The manifolds for a host that keeps nothing of the pair.
+fn fresh(dispatcher: &SbbkDispatcher, question: &Question) -> Vec<Manifold> {
+    std::mem::take(&mut Pair::default().ask(dispatcher, question).manifolds)
 }
 
 /// Points on both shapes in frame 1.
@@ -189,17 +170,14 @@ fn patches_stand_for_every_contact() {
                         }
                         _ => nudge(&mut random, 0.01) * at,
                     };
-                    let (shapes, pos12): ([&dyn Shape; 2], Pose) = if is_swapped {
-                        ([&*partner.0, &head], at.inverse())
-                    } else {
-                        ([&head, &*partner.0], at)
-                    };
+                    let question = Question::new(&head, &*partner, at).within(prediction);
+                    let question = question.flipped(is_swapped);
                     let what = format!("{name}, {prediction}, {is_swapped}, {i}");
-                    let expected = fresh(&every, shapes, &pos12, prediction);
-                    let found = fresh(&patches, shapes, &pos12, prediction);
-                    let count = assert_stand_for(&found, &expected, &pos12, prediction, &what);
+                    let [expected, found] = [&every, &patches].map(|d| fresh(d, &question));
+                    let count =
+                        assert_stand_for(&found, &expected, &question.pos12(), prediction, &what);
                     counts = [counts[0] + count[0], counts[1] + count[1]];
-                    ask(&mut pair, &patches, shapes, &pos12, prediction);
+                    pair.ask(&patches, &question);
                     assert_eq!(bare(&pair.manifolds), bare(&found), "{what}: memory");
                 }
             }
@@ -229,7 +207,7 @@ fn a_patch_for_each_leg() {
     for (other, height) in [(&floor as &dyn Shape, 0.0), (&*slab.0, 0.5)] {
         for turn in [0.0, 0.3] {
             let at = Pose3::from_parts(Vec3::Y * (height + 0.999), Quat::from_rotation_y(turn));
-            let found = fresh(&dispatcher, [other, &table], &at, 0.002);
+            let found = fresh(&dispatcher, &Question::new(other, &table, at).within(0.002));
             let mut legs: Vec<_> = (found.iter().flat_map(|m| &m.points))
                 .map(|point| [point.local_p2.x, point.local_p2.z].map(|x| (2.0 * x).round() as i32))
                 .collect();
@@ -271,8 +249,9 @@ fn patches_and_points_keep_their_data() {
     let [floor, cube] = [mesh::floor(4.0, 2), mesh::cuboid(Vec3::splat(0.5), 1)].map(|m| shape(&m));
     let dispatcher = detailed(ContactDetail::Patches);
     let mut pair = Pair::default();
-    let at = |x: Real| Pose::translation(0.3 + x, 0.4995, 0.2);
-    ask(&mut pair, &dispatcher, [&floor, &cube], &at(0.0), 0.002);
+    let on = |pose| Question::new(&floor, &cube, pose).within(0.002);
+    let at = |x: Real| on(Pose::translation(0.3 + x, 0.4995, 0.2));
+    pair.ask(&dispatcher, &at(0.0));
     let mut mark = 0..;
     for manifold in &mut pair.manifolds {
         manifold.data = 7;
@@ -296,15 +275,15 @@ fn patches_and_points_keep_their_data() {
     };
     assert!(before.iter().all(is_known), "{before:?}");
     for step in 1..20 {
-        ask(&mut pair, &dispatcher, [&floor, &cube], &at(1e-4 * step as Real), 0.002);
+        pair.ask(&dispatcher, &at(1e-4 * step as Real));
         assert_eq!(named(&pair), before);
         assert!(pair.manifolds.iter().all(|manifold| manifold.data == 7));
     }
     // On the other side of the floor there are others.
-    ask(&mut pair, &dispatcher, [&floor, &cube], &Pose::translation(0.3, -0.4995, 0.2), 0.002);
+    pair.ask(&dispatcher, &on(Pose::translation(0.3, -0.4995, 0.2)));
     assert!(!pair.manifolds.is_empty());
     assert!(pair.manifolds.iter().all(|manifold| manifold.data == 0));
-    let other = fresh(&dispatcher, [&floor, &cube], &at(0.0), 0.002);
+    let other = fresh(&dispatcher, &at(0.0));
     assert!(other.iter().flat_map(|m| &m.points).all(|point| point.data == 0), "another pair's");
 }
 
@@ -316,7 +295,7 @@ fn meshes_that_deform_have_every_contact() {
     let at = Pose::translation(0.4, 0.5, 0.2);
     for other in [&torus as &dyn Shape, &*SharedShape::cuboid(0.5, 0.5, 0.5).0, &*field().0] {
         let [every, patches] = [ContactDetail::Every, ContactDetail::Patches]
-            .map(|detail| fresh(&detailed(detail), [&soft, other], &at, 0.02));
+            .map(|detail| fresh(&detailed(detail), &Question::new(&soft, other, at)));
         assert!(every.len() > 10, "{}", every.len());
         assert_eq!(bare(&patches), bare(&every));
     }
@@ -330,9 +309,11 @@ fn each_patch_keeps_the_data_of_the_one_most_like_it() {
     let groove = shape(&mesh::floor(4.0, 2).mapped(bent));
     let keel = shape(&mesh::cuboid(Vec3::splat(0.5), 2).mapped(bent));
     let dispatcher = detailed(ContactDetail::Patches);
-    let at = |z: Real| Pose::translation(0.0, 0.4995, 0.1 + z);
+    let at = |z: Real| {
+        Question::new(&groove, &keel, Pose::translation(0.0, 0.4995, 0.1 + z)).within(0.002)
+    };
     let mut pair = Pair::default();
-    ask(&mut pair, &dispatcher, [&groove, &keel], &at(0.0), 0.002);
+    pair.ask(&dispatcher, &at(0.0));
     let side = |manifold: &Manifold| if manifold.local_n1.x > 0.0 { 7 } else { 8 };
     assert_eq!(pair.manifolds.iter().map(side).collect::<BTreeSet<_>>().len(), 2);
     for step in 1..20 {
@@ -341,7 +322,7 @@ fn each_patch_keeps_the_data_of_the_one_most_like_it() {
         }
         // A host may move them.
         pair.manifolds.rotate_left(step % 2);
-        ask(&mut pair, &dispatcher, [&groove, &keel], &at(1e-5 * step as Real), 0.002);
+        pair.ask(&dispatcher, &at(1e-5 * step as Real));
         for manifold in &pair.manifolds {
             assert_eq!(manifold.data, side(manifold), "{step}");
         }
@@ -357,9 +338,11 @@ fn each_part_of_a_compound_keeps_its_data() {
     let feet = feet.map(|[x, z]| (Pose::translation(x, 0.0, z), leg.clone()));
     let (table, floor) = (SharedShape::compound(feet.into()), shape(&mesh::floor(16.0, 16)));
     let dispatcher = detailed(ContactDetail::Patches);
-    let at = |x: Real| Pose::translation(-0.3 - x, -0.4995, 0.35);
+    let at = |x: Real| {
+        Question::new(&*table, &floor, Pose::translation(-0.3 - x, -0.4995, 0.35)).within(0.002)
+    };
     let mut pair = Pair::<u32, u32>::default();
-    ask(&mut pair, &dispatcher, [&*table.0, &floor], &at(0.0), 0.002);
+    pair.ask(&dispatcher, &at(0.0));
     assert_eq!(pair.manifolds.len(), 4);
     let mut handed_on = 0;
     for step in 1..300 {
@@ -367,7 +350,7 @@ fn each_part_of_a_compound_keeps_its_data() {
             let leg = manifold.subshape1 + 1;
             manifold.points.iter_mut().for_each(|point| point.data = leg);
         }
-        ask(&mut pair, &dispatcher, [&*table.0, &floor], &at(0.004 * step as Real), 0.002);
+        pair.ask(&dispatcher, &at(0.004 * step as Real));
         for manifold in &pair.manifolds {
             let leg = manifold.subshape1 + 1;
             for point in &manifold.points {
@@ -391,7 +374,8 @@ fn normals_of_any_length_make_patches() {
     let dispatcher = SbbkDispatcher::new(config);
     let turn = Quat::from_xyzw(0.6, 0.0, 0.0, 0.79999);
     for x in [0.5, 0.9, 1.1] {
-        let found = fresh(&dispatcher, [&bare, &cones], &Pose::from_parts(x * Vec3::X, turn), 0.02);
+        let pose = Pose::from_parts(x * Vec3::X, turn);
+        let found = fresh(&dispatcher, &Question::new(&bare, &cones, pose));
         assert!(!found.is_empty() && found.iter().all(|manifold| !manifold.points.is_empty()));
     }
 }

@@ -6,6 +6,7 @@ use oorandom::Rand32;
 use rapier_integration::{SbbkDispatcher, SbbkStats};
 use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::math::{Pose, Real};
+use rapier3d::parry::query::DefaultQueryDispatcher;
 
 use crate::kinds::{Kind, kinds, mesh_pairs};
 use crate::support::{
@@ -16,10 +17,10 @@ const PREDICTIONS: [Real; 4] = [0.0, 0.002, 0.02, 0.2];
 /// Lengths of a step in units and radians, from far below any slack to beyond it.
 const STRIDES: [Real; 5] = [0.0, 1e-5, 1e-3, 1e-2, 3e-2];
 
-/// Moves a pair at random, with jumps, lost workspaces, and poses far away or NaN. Each result must
+/// Moves a pair at random, with jumps, lost workspaces, other dispatchers, and poses far away or NaN. Each result must
 /// equal that of a dispatcher without memory, bit for bit.
 fn walk(kind: &Kind, seed: u64, steps: usize) -> (SbbkStats, usize) {
-    let (dispatcher, unaware) = (counting(), every());
+    let (dispatcher, unaware, another) = (counting(), every(), every());
     let mut random = Rand32::new(seed);
     let mut question = kind.question(kind.pose(&mut random, 0.0)).flipped(seed % 2 == 1);
     let mut pair: Pair = Pair::default();
@@ -33,6 +34,8 @@ fn walk(kind: &Kind, seed: u64, steps: usize) -> (SbbkStats, usize) {
             7..=9 => stride = STRIDES[pick],
             10 => question.pose.translation.y += 50.0,
             11 => question.pose.translation.z = Real::NAN,
+            12 => _ = pair.ask(&another, &question),
+            13 => _ = pair.ask(&DefaultQueryDispatcher, &question),
             _ => question.pose = nudge(&mut random, stride) * question.pose,
         }
         pair.ask(&dispatcher, &question);
@@ -47,7 +50,7 @@ fn walk(kind: &Kind, seed: u64, steps: usize) -> (SbbkStats, usize) {
     (dispatcher.stats(), contacts)
 }
 
-/// Would catch candidates kept too long, bounds of distance that are too high, and manifolds of
+/// Would catch candidates kept too long, anything that outlives its reason, bounds of distance that are too high, and manifolds of
 /// another subshape.
 #[test]
 fn the_answer_does_not_depend_on_the_motion_before() {

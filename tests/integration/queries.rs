@@ -107,32 +107,6 @@ fn check_proximity(
     assert!((along - truth).abs() < slack, "points {along} apart along the normal, not {truth}");
 }
 
-/// Beside stock where stock is right: meshes of a unit. Would catch an answer with a meaning of its
-/// own: another sign, a limit understood otherwise, `Intersecting` for a mesh inside another.
-#[test]
-fn proximity_is_like_stock() {
-    let (stock, ours) = (DefaultQueryDispatcher, SbbkDispatcher::default());
-    let ([head, ring], poses) = cases().nth(1).expect("the size of one unit");
-    for pos12 in &poses {
-        let pair = (pos12, &head, &ring);
-        let [a, b] = [&stock as &dyn QueryDispatcher, &ours].map(|dispatcher| {
-            let (pos12, head, ring) = pair;
-            let distance = dispatcher.distance(pos12, head, ring).unwrap().distance;
-            let meet = dispatcher.intersection_test(pos12, head, ring).unwrap().intersecting;
-            let points = dispatcher.closest_points(pos12, head, ring, 0.5).unwrap();
-            let contact = dispatcher.contact(pos12, head, ring, 0.1).unwrap();
-            (distance, meet, points, contact)
-        });
-        assert!((a.0 - b.0).abs() < 1e-4);
-        assert_eq!(a.1, b.1);
-        assert_eq!(std::mem::discriminant(&a.2), std::mem::discriminant(&b.2));
-        assert_eq!(a.3.is_some(), b.3.is_some());
-        if let (Some(a), Some(b)) = (a.3, b.3) {
-            assert!((a.dist - b.dist).abs() < 1e-3, "{a:?} {b:?}");
-        }
-    }
-}
-
 /// "Surfaces are what counts", as for stock: a small mesh inside a large one does not meet it.
 #[test]
 fn inside_is_not_intersecting() {

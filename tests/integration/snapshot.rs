@@ -71,13 +71,13 @@ fn worlds() -> Vec<(&'static str, PhysicsWorld)> {
         MonkeyPile { contact_recycling, ..MonkeyPile::with_heads(8) }.build().world
     };
     let field = SharedShape::new(rolling(12.0, 24, 0.4));
-    let ring = mesh::torus(1.0, 0.4, 24, 12).shared_shape().expect("a torus is a mesh");
+    let ground = mesh::terrain(12.0, 24, 0.4).shared_shape().expect("a terrain is a mesh");
     vec![
         ("pile", pile(true)),
         ("pile without recycling", pile(false)),
         ("heads on a height field", heads_above(field, None).world),
         ("compounds on a mesh", dumbbells(None).world),
-        ("soft body on a mesh", soft_ball_above(&ring, None)),
+        ("soft body on a mesh", soft_ball_above(&ground, None)),
         ("soft body on a height field", soft_ball_above(&bowl(), None)),
         ("soft body on a compound", soft_ball_above(&table(), None)),
     ]

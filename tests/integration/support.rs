@@ -251,6 +251,17 @@ pub fn rebuilt(mesh: &TriMesh) -> TriMesh {
     TriMesh::with_flags(mesh.vertices().to_vec(), mesh.indices().to_vec(), mesh.flags()).unwrap()
 }
 
+/// Dents that wander over a mesh, from where its vertices are at rest.
+pub fn deform(mesh: &mut TriMesh, rest: &[Vec3], frame: usize) {
+    let phase = 0.07 * frame as Real;
+    mesh.update_vertices(|vertices| {
+        for (vertex, &rest) in vertices.iter_mut().zip(rest) {
+            let dent = (4.0 * rest.x + phase).sin() * (3.0 * rest.z - 2.0 * phase).cos();
+            *vertex = rest * (1.0 + 0.15 * dent);
+        }
+    });
+}
+
 /// A small motion: a shift and a turn, both of at most `size` (units, radians).
 pub fn nudge(random: &mut Rand32, size: f32) -> Pose3 {
     let shift = direction(random) * size * random.rand_float();

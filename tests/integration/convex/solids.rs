@@ -2,13 +2,13 @@ use glamx::{Quat, Vec3};
 use rapier_integration::{ContactDetail, SbbkConfig, SbbkDispatcher};
 use rapier3d::geometry::ColliderBuilder;
 use rapier3d::math::{Pose, Real};
-use rapier3d::parry::query::{ContactManifold, PersistentQueryDispatcher};
 use rapier3d::parry::shape::SharedShape;
 use rapier3d::prelude::{PhysicsWorld, RigidBodyBuilder};
 use sbbk_core::surface::SurfaceKind;
 use sbbk_testkit::mesh;
 
 use super::shapes::shapes;
+use crate::support::{Pair, Question, assert_bits};
 
 fn leading_out(detail: ContactDetail) -> SbbkDispatcher {
     let mut config = SbbkConfig::default();
@@ -94,8 +94,6 @@ fn rooms_that_are_sheets_keep_what_is_in_them() {
     }
 }
 
-type Manifolds = Vec<ContactManifold<(), ()>>;
-
 /// Would catch a way out that is not the shortest, that one order of the shapes loses, or that has
 /// company.
 #[test]
@@ -104,18 +102,13 @@ fn the_way_out_is_the_only_contact() {
     for (name, shape) in bodies().iter().filter(|(name, _)| *name != "compound") {
         for detail in [ContactDetail::Patches, ContactDetail::Every] {
             let dispatcher = leading_out(detail);
-            let (mut manifolds, mut swapped) = (Manifolds::new(), Manifolds::new());
-            let (mut workspace, mut workspace2) = (None, None);
+            let [mut pair, mut swapped]: [Pair; 2] = Default::default();
             for depth in [0.3, 1.0, 4.0] {
                 let pose =
                     Pose::from_parts(Vec3::new(9.0 - depth, 0.3, 0.2), Quat::from_rotation_y(0.7));
-                let (a, b, back) = (&*block.0, &*shape.0, pose.inverse());
-                dispatcher
-                    .contact_manifolds(&pose, a, b, 0.02, &mut manifolds, &mut workspace)
-                    .unwrap();
-                dispatcher
-                    .contact_manifolds(&back, b, a, 0.02, &mut swapped, &mut workspace2)
-                    .unwrap();
+                let question = Question::new(&*block, &**shape, pose);
+                let manifolds = &pair.ask(&dispatcher, &question).manifolds;
+                let swapped = &swapped.ask(&dispatcher, &question.flipped(true)).manifolds;
                 let [one] = &manifolds[..] else { panic!("{name}: {}", manifolds.len()) };
                 let [two] = &swapped[..] else { panic!("{name}: {}", swapped.len()) };
                 for (normal, points) in [(one.local_n1, &one.points), (two.local_n2, &two.points)] {
@@ -137,21 +130,13 @@ fn ways_out_are_a_function_of_the_pose() {
     let mut ways = 0;
     for detail in [ContactDetail::Patches, ContactDetail::Every] {
         let dispatcher = leading_out(detail);
-        let (mut kept, mut workspace) = (Manifolds::new(), None);
+        let mut pair: Pair = Pair::default();
         for step in 0..240 {
             let turn = Quat::from_rotation_z(0.3 + 0.001 * step as Real);
             let pose = Pose::from_parts(Vec3::new(0.4, 7.9 + 0.008 * step as Real, 0.2), turn);
-            let (a, b) = (&*block.0, &*table.0);
-            dispatcher.contact_manifolds(&pose, a, b, 0.1, &mut kept, &mut workspace).unwrap();
-            let mut fresh = Manifolds::new();
-            leading_out(detail).contact_manifolds(&pose, a, b, 0.1, &mut fresh, &mut None).unwrap();
-            let told = |manifolds: &Manifolds| {
-                let of = |m: &ContactManifold<(), ()>| {
-                    (m.subshape1, m.subshape2, m.local_n1, m.points.clone())
-                };
-                format!("{:?}", manifolds.iter().map(of).collect::<Vec<_>>())
-            };
-            assert!(told(&kept) == told(&fresh), "{detail:?} {step}");
+            let question = Question::new(&*block, &*table, pose).within(0.1);
+            let kept = &pair.ask(&dispatcher, &question).manifolds;
+            assert_bits(kept, &question.fresh(&leading_out(detail)), &format!("{detail:?} {step}"));
             ways += usize::from(kept.iter().any(|manifold| manifold.points.len() == 1));
         }
     }

@@ -1,13 +1,11 @@
 use glamx::Vec3;
 use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
-use rapier3d::math::Pose;
-use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::{HeightFieldCellStatus, HeightFieldFlags};
 use sbbk_testkit::mesh;
 
-use super::terrain::{Terrain, place, rolling};
-use crate::support::{Manifold, Pair, Question, assert_same, nudge, shape};
+use super::terrain::{Terrain, place};
+use crate::support::{Pair, Question, assert_same, nudge, shape};
 
 /// Would catch answers for a field that is no longer there, where a host keeps the workspace over
 /// an edit.
@@ -42,21 +40,4 @@ fn an_edited_field_is_noticed() {
     let moved = Question::new(&terrain.field, &head, nudge(&mut random, 1e-5) * pose);
     let expected = moved.fresh(&dispatcher);
     assert_same(&pair.ask(&dispatcher, &moved).manifolds, &expected, 0.0);
-}
-
-/// Would catch manifolds of stock's own for this pair, should it have any, that are taken for ours.
-/// Stock has none.
-#[test]
-fn stock_has_no_contacts_to_hand_over() {
-    let terrain = Terrain::new(rolling(6.0, 20, 0.5));
-    let head = shape(&mesh::monkey_head());
-    let question = Question::new(&terrain.field, &head, Pose::IDENTITY);
-    let mut pair: Pair = Pair::default();
-    pair.ask(&DefaultQueryDispatcher, &question);
-    let has_points = |manifold: &Manifold| !manifold.points.is_empty();
-    assert!(!pair.manifolds.iter().any(has_points));
-    let dispatcher = SbbkDispatcher::default();
-    let expected = question.fresh(&dispatcher);
-    assert!(!expected.is_empty());
-    assert_same(&pair.ask(&dispatcher, &question).manifolds, &expected, 0.0);
 }

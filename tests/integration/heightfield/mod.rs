@@ -2,8 +2,6 @@
 
 /// Fields and manifolds that change between queries.
 mod change;
-/// Cells visited and memory allocated.
-mod cost;
 /// Contact normals constrained at internal edges of the field.
 mod edges;
 /// Heads at rest, and worlds that are saved.

@@ -11,23 +11,12 @@ use sbbk_testkit::mesh;
 use super::question::{PREDICTION, anew, assert_same_set, furniture, hills};
 use crate::heightfield::terrain::Terrain;
 use crate::support::{
-    Manifold, Pair, Question, assert_same, counting, distance, shape, shape_with,
+    Manifold, Pair, Question, assert_same, counting, deform, distance, shape, shape_with,
 };
 use crate::truth::Tally;
 
 fn soft_ball(flags: TriMeshFlags) -> TriMesh {
     shape_with(&mesh::ball(0.7, 5), TriMeshFlags::DEFORMABLE | flags)
-}
-
-/// Dents that wander over a mesh, from where its vertices are at rest.
-fn deform(mesh: &mut TriMesh, rest: &[Vec3], frame: usize) {
-    let phase = 0.07 * frame as Real;
-    mesh.update_vertices(|vertices| {
-        for (vertex, &rest) in vertices.iter_mut().zip(rest) {
-            let dent = (4.0 * rest.x + phase).sin() * (3.0 * rest.z - 2.0 * phase).cos();
-            *vertex = rest * (1.0 + 0.15 * dent);
-        }
-    });
 }
 
 /// Moves a soft ball and another shape through hundreds of frames, in both orders. In some frames

@@ -2,9 +2,10 @@
 //! leaf tests and height fields. Each test fails if what the arithmetic loses there is not
 //! allowed for; the numbers are in `sbbk_core::volumes::rounding`.
 
+use crate::field::grid::Grid;
 use crate::support::Random;
 use glamx::{DVec3, Pose3, Vec3};
-use sbbk_core::field::{FieldFrame, HeightGrid};
+use sbbk_core::field::FieldFrame;
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::traverse::{
     BoxTest, DescentScratch, PairFrame, Placement, Slack, SlackLimits, SlackPlan, TestedBox,
@@ -228,39 +229,6 @@ fn boxes_the_margin_apart_are_found() {
     }
 }
 
-/// Hills of a few cells, scaled.
-struct Hills {
-    scale: Vec3,
-    lines: Vec<Vec<f32>>,
-}
-
-impl Hills {
-    fn corner(&self, column: usize, row: usize) -> Vec3 {
-        let [columns, rows] = self.cell_counts().map(|count| 1.0 / count as f32);
-        let (x, z) = (column as f32 * columns - 0.5, row as f32 * rows - 0.5);
-        Vec3::new(x, self.lines[column][row], z) * self.scale
-    }
-}
-
-impl HeightGrid for Hills {
-    fn cell_counts(&self) -> [usize; 2] {
-        [self.lines.len() - 1, self.lines[0].len() - 1]
-    }
-
-    fn scale(&self) -> Vec3 {
-        self.scale
-    }
-
-    fn heights(&self, column: usize) -> &[f32] {
-        &self.lines[column]
-    }
-
-    fn triangles(&self, [column, row]: [usize; 2]) -> [Option<[Vec3; 3]>; 2] {
-        let at = |i, j| self.corner(column + i, row + j);
-        [Some([at(0, 0), at(0, 1), at(1, 0)]), Some([at(0, 1), at(1, 1), at(1, 0)])]
-    }
-}
-
 /// A corner of a triangle above or below a flat field, and beside it.
 #[test]
 fn fields_the_margin_apart_are_found() {
@@ -271,7 +239,7 @@ fn fields_the_margin_apart_are_found() {
             Vec3::new(random.range(0.5, 1.0), random.range(0.1, 2.0), random.range(0.5, 1.0))
                 * size;
         let height = random.range(-1.0, 1.0);
-        let field = Hills { scale, lines: vec![vec![height; 8]; 12] };
+        let field = Grid::new([11, 7], scale, |_, _| height);
         let (low, high) = (field.corner(0, 0), field.corner(11, 7));
         let gap = random.range(0.001, 0.1) * size;
         let inside =
@@ -293,9 +261,7 @@ fn fields_the_margin_apart_are_found() {
         let corners = corners.map(|x| placement.to_frame2(x, Vec3::ZERO).as_vec3());
         let tree = tree(&corners, KDOPS);
         let placed = corners.map(|x| placement.to_frame1(x, Vec3::ZERO));
-        let cells = (0..11).flat_map(|column| (0..7).map(move |row| [column, row]));
-        let triangles = cells.flat_map(|cell| field.triangles(cell)).flatten();
-        let distances = triangles.map(|t| truth::contact(&t.map(Vec3::as_dvec3), &placed).distance);
+        let distances = field.all_triangles().map(|(_, t)| truth::contact(&t, &placed).distance);
         let distance = distances.fold(f64::INFINITY, f64::min);
         let margin = (distance / placement.rotation.x_axis.length()) as f32;
         let frame = FieldFrame::new(&field, &placement, margin.next_up());
@@ -361,7 +327,7 @@ fn check_boxes(tree: &Tree, placement: &Placement, margin: f32) {
 }
 
 fn check_field(tree: &Tree, placement: &Placement, margin: f32, count: usize) {
-    let field = Hills { scale: Vec3::ONE, lines: vec![vec![0.1; 3]; 4] };
+    let field = Grid::new([3, 2], Vec3::ONE, |_, _| 0.1);
     let frame = FieldFrame::new(&field, placement, margin);
     let mut found = 0;
     crate::support::descend_field(tree, &frame, |_, _| found += 1);

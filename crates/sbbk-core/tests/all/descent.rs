@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
+use crate::query::pairs_within;
 use crate::support::{Random, Soup, bumpy_ball, cube, lattice_soup, soup};
 use glamx::{Pose3, Quat, Vec3};
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::traverse::{DescentCounts, DescentScratch, PairFrame, descend};
 use sbbk_core::tree::{BuildOptions, LayerPlan, Node, Tree};
-use sbbk_core::truth::pairs_within;
 
 /// The pairs of triangles that descent and leaf test leave.
 fn survivors(
@@ -40,18 +40,8 @@ fn truth(soup1: &Soup, soup2: &Soup, pos12: &Pose3, margin: f32) -> BTreeSet<(u3
         rotation: pos12.rotation.as_dquat(),
         translation: pos12.translation.as_dvec3(),
     };
-    let wide = |soup: &Soup| soup.vertices.iter().map(|v| v.as_dvec3()).collect::<Vec<_>>();
-    pairs_within(
-        &wide(soup1),
-        &soup1.triangles,
-        &wide(soup2),
-        &soup2.triangles,
-        pose,
-        f64::from(margin),
-    )
-    .into_iter()
-    .map(|pair| (pair.triangle1, pair.triangle2))
-    .collect()
+    let pairs = pairs_within([soup1, soup2], pose, f64::from(margin)).into_iter();
+    pairs.map(|pair| (pair.triangle1, pair.triangle2)).collect()
 }
 
 /// All plans find a superset of the truth. Returns the number of true pairs.

@@ -107,23 +107,15 @@ fn check_sequences(seed: u64, spread: f32, soups: impl Fn(&mut Random) -> [Soup;
 }
 
 #[test]
-fn bumpy_balls_in_any_motion_have_the_pairs_of_a_fresh_descent() {
+fn meshes_in_any_motion_have_the_pairs_of_a_fresh_descent() {
     check_sequences(100, 1.2, |random| {
         let rings = 3 + random.bits() % 4;
         [bumpy_ball(rings as u32, 0.2), bumpy_ball(4, 0.3)]
     });
-}
-
-/// Volumes overlap everywhere, as triangles have no order.
-#[test]
-fn triangle_soups_in_any_motion_have_the_pairs_of_a_fresh_descent() {
+    // Volumes overlap everywhere, as triangles have no order.
     check_sequences(1000, 1.0, |random| [soup(random, 40, 0.3), soup(random, 30, 0.4)]);
     check_sequences(2000, 2.0, |random| [0, 1].map(|_| lattice_soup(random, 30, 3)));
-}
-
-/// A tree that is one leaf stays at each pair.
-#[test]
-fn one_triangle_and_many_in_any_motion_have_the_pairs_of_a_fresh_descent() {
+    // A tree that is one leaf stays at each pair.
     check_sequences(3000, 0.5, |random| {
         let (many, one) = (bumpy_ball(6, 0.2), soup(random, 1, 1.5));
         if random.bits().is_multiple_of(2) { [one, many] } else { [many, one] }

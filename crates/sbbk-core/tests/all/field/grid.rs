@@ -48,7 +48,7 @@ impl Grid {
     }
 
     /// The corner on these lines, in f32 as a host computes it.
-    fn corner(&self, column: usize, row: usize) -> Vec3 {
+    pub fn corner(&self, column: usize, row: usize) -> Vec3 {
         let [x, z] = [(column, self.cells[0]), (row, self.cells[1])]
             .map(|(line, count)| line as f32 * (1.0 / count as f32) - 0.5);
         let y = self.heights[column * (self.cells[1] + 1) + row];

@@ -1,6 +1,6 @@
 //! Height fields against brute force over the triangles of all cells.
 
-mod grid;
+pub mod grid;
 mod pairs;
 
 use std::collections::{BTreeMap, BTreeSet};

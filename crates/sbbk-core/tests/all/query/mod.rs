@@ -25,7 +25,7 @@ fn exact(pose: &Pose3) -> DPose3 {
 }
 
 /// All pairs of triangles up to a distance, mesh 2 at `pose`.
-fn pairs_within([one, two]: [&Soup; 2], pose: DPose3, distance: f64) -> Vec<TruthPair> {
+pub fn pairs_within([one, two]: [&Soup; 2], pose: DPose3, distance: f64) -> Vec<TruthPair> {
     let wide = |soup: &Soup| soup.vertices.iter().map(|v| v.as_dvec3()).collect::<Vec<DVec3>>();
     truth::pairs_within(&wide(one), &one.triangles, &wide(two), &two.triangles, pose, distance)
 }
