@@ -111,22 +111,21 @@ pub fn kinds() -> &'static [Kind] {
             Kind::new("height field", &field, plain.clone()),
             Kind::new("polyline", &plain, SharedShape::polyline(line, None)),
             Kind::new("floor", &plain, floor()),
-            Kind::new("soft and mesh", &soft, plain.clone()),
-            Kind::new("soft and height field", &field, soft.clone()),
         ];
-        let soft_name = |name: &str| ["ball", "cuboid", "cylinder", "half-space"].contains(&name);
-        let beside_soft = shapes(0.6).into_iter().filter(|(name, _)| soft_name(name));
-        kinds.extend(
-            beside_soft.map(|(name, shape)| Kind::new(&format!("soft and {name}"), &soft, shape)),
-        );
         kinds.extend(shapes(0.6).into_iter().map(|(name, shape)| Kind::new(name, &plain, shape)));
-        for (name, compound) in compounds(1.0) {
-            let compound = SharedShape::new(compound);
-            kinds.push(Kind::new(&format!("compound, {name}"), &plain, compound.clone()));
-            if name == "mixed" {
-                kinds.push(Kind::new("soft and compound", &soft, compound));
+        let compounds = compounds(1.0).into_iter().map(|(name, compound)| {
+            Kind::new(&format!("compound, {name}"), &plain, SharedShape::new(compound))
+        });
+        kinds.extend(compounds);
+        for index in 0..kinds.len() {
+            let Kind { name, shapes: [_, other], .. } = &kinds[index];
+            let names =
+                ["two meshes", "ball", "cuboid", "cylinder", "half-space", "compound, mixed"];
+            if names.contains(&&**name) {
+                kinds.push(Kind::new(&format!("soft, {name}"), &soft, other.clone()));
             }
         }
+        kinds.push(Kind::new("soft, height field", &field, soft));
         kinds
     })
 }
