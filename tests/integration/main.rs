@@ -1,18 +1,17 @@
 //! Tests of the dispatcher inside Rapier and Parry, by stock Parry, by brute force in f64, and by
 //! new dispatchers.
 //!
-//! `properties` holds for a pair of every kind: no memory in the answer, no allocation, no contact
-//! at poses that are not finite. `who_answers` asks about every kind of pair and query.
+//! `properties` and `coming_back` hold for every kind of pair: no memory in the result, no allocation,
+//! no contact at poses that are not finite. `who_answers` tests who computes which query.
 //!
 //! | a mesh and | contacts are right | after any history | in worlds |
 //! |---|---|---|---|
 //! | a mesh | `exact`, `normals`, `surfaces`, `judged` | `motion`, `edited_mesh` | `rest`, `scenes` |
-//! | a mesh without a tree | `walks` | `walks` | `deformable` |
-//! | convex shapes | `convex::fresh` | `convex::change` | `convex::rest` |
-//! | compounds | `compound` | `compound` | `compound` |
+//! | a mesh without a tree | `walks` | `properties` | `deformable` |
+//! | convex shapes | `convex::fresh` | `properties` | `convex::rest` |
+//! | compounds | `compound` | `properties` | `compound` |
 //! | a height field | `heightfield::truth` | `heightfield::change` | `heightfield::rest` |
-//! | soft: a mesh, convex shapes | `deformable` | `deformable` | `deformable` |
-//! | soft: the others | `soft_pairs::histories` | `soft_pairs::histories` | `soft_pairs::worlds` |
+//! | a soft mesh and any shape | `soft_pairs::frames` | `soft_pairs::histories` | `soft_pairs::worlds` |
 //!
 //! Queries without manifolds are in `queries`, `nonlinear` and, of meshes without trees, `walks`.
 //! `features.rs` has the tests that are run again with Rapier's features.
