@@ -177,7 +177,7 @@ fn each_of_many_parts_is_where_it_is() {
 /// A compound whose parts are far out, and a long mesh on a half-space, turn a little at a time. Would
 /// catch contacts lost as the ball that is to hold what moves is too small.
 #[test]
-fn what_is_far_out_is_seen_as_the_whole_turns() {
+fn far_parts_keep_their_contacts_while_a_body_turns() {
     let floor = shape_with(&mesh::floor(40.0, 160), TriMeshFlags::empty());
     let bar = shape_with(&mesh::slab(Vec3::new(10.0, 0.3, 0.3), [20, 1, 1]), TriMeshFlags::empty());
     let part = |sign: Real| {

@@ -174,7 +174,7 @@ fn points_keep_their_data_by_their_features() {
 
 /// Would catch a dispatcher that serves Rapier's types only.
 #[test]
-fn any_data_will_do() {
+fn manifolds_may_have_any_data() {
     #[derive(Clone, Default)]
     struct Name(String);
     let [one, two] = rings();

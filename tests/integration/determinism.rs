@@ -66,7 +66,7 @@ fn memory_is_never_part_of_the_answer() {
 
 /// The reverse: would catch hashes that are equal because they see nothing.
 #[test]
-fn another_start_ends_elsewhere() {
+fn other_seeds_have_other_hashes() {
     let [one, other] = [1, 2].map(|seed| MonkeyPile { seed, ..MonkeyPile::with_heads(8) });
     let [one, other] = [one, other].map(|scene| run(&scene, |_, _| ()));
     assert!(one.iter().zip(&other).all(|(one, other)| one != other));

@@ -68,7 +68,7 @@ fn a_body_in_a_solid_leaves_by_the_nearer_side() {
 
 /// Would catch bodies pushed out of a hollow, a sheet, a soft mesh, or a mesh of unknown kind.
 #[test]
-fn what_is_in_no_solid_is_left_alone() {
+fn bodies_in_no_solid_are_not_pushed_out() {
     let body = shape(&mesh::cuboid(Vec3::splat(0.2), 1));
     let hollow = [slab(3), turned_inside_out(mesh::cuboid(0.8 * HALF, 3))];
     let hollow = shape(&Mesh::merged("hollow", &hollow));
@@ -101,7 +101,7 @@ fn what_is_in_no_solid_is_left_alone() {
 /// A walk in and out of a solid, of bodies that are small beside their steps and beside what a descent
 /// looks ahead. Would catch a body remembered as inside or outside.
 #[test]
-fn inside_is_never_remembered() {
+fn push_out_does_not_depend_on_earlier_poses() {
     let slab = shape(&slab(4));
     let kept = counting();
     let unaware = every();

@@ -168,7 +168,7 @@ fn casts_stop_at_the_first_impact() {
 
 /// Starts that cross: stock's statuses, and the way out.
 #[test]
-fn casts_that_start_inside() {
+fn casts_that_start_inside_have_stocks_status() {
     let head = shape(&mesh::monkey_head_with(6));
     let pos12 = Pose3::translation(0.3, 0.2, 0.1);
     let options = ShapeCastOptions::with_max_time_of_impact(1.0);

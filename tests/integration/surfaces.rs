@@ -161,7 +161,7 @@ fn bits(manifolds: &[Manifold]) -> String {
 
 /// Would catch contacts of surfaces where those of triangles were requested.
 #[test]
-fn contacts_of_triangles_know_no_surfaces() {
+fn contacts_of_triangles_do_not_depend_on_winding() {
     let head = mesh::monkey_head_with(7);
     let [outside, inside] = [head.clone(), turned_inside_out(head)].map(|mesh| shape(&mesh));
     let mut random = Rand32::new(2);
@@ -249,7 +249,7 @@ fn surfaces_have_some_of_the_contacts_of_triangles_and_normals_of_length_one() {
 /// Would catch edges that hold each other before they are about to touch, and round bodies that
 /// lose contacts.
 #[test]
-fn edges_may_pass_each_other() {
+fn edges_pass_each_other_until_they_are_about_to_touch() {
     let (cube, ball) = (cube(), shape(&mesh::ball(1.0, 12)));
     let up = Vec3::new(0.0, 1.0, 1.0).normalize();
     let turn = Quat::from_axis_angle(up, 0.5);
@@ -294,7 +294,7 @@ fn edges_within_a_flat_side_hold_no_edges() {
 /// Meshes that cross have a contact. Would catch bodies that fall through each other where no contact
 /// leads out.
 #[test]
-fn what_crosses_touches() {
+fn crossing_meshes_have_a_contact() {
     let mut count = 0;
     for seed in 5..15 {
         for_each_pose(seed, |[one, two], pose, _| {
@@ -433,7 +433,7 @@ fn meshes_that_touch_nothing_have_no_surface() {
 /// Would catch numbers that have a unit: everything times a power of two, the prediction distance as
 /// well, has the contacts of the same triangles.
 #[test]
-fn size_does_not_matter() {
+fn contacts_do_not_depend_on_the_unit_of_length() {
     let mut count = 0;
     for scale in [0.0078125, 0.125, 8.0, 128.0] {
         for_each_pose(20, |[one, two], pose, _| {
@@ -470,7 +470,7 @@ fn deformable_meshes_have_no_surfaces() {
 
 /// Would catch contacts of one overlap island that another one removes.
 #[test]
-fn regions_do_not_mind_each_other() {
+fn overlap_islands_do_not_change_each_other() {
     let both = |shift: Vec3| {
         let cube = mesh::cuboid(Vec3::splat(0.5), 1);
         let other = cube.clone().mapped(|v| v + 10.0 * Vec3::X + shift);

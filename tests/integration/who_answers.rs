@@ -62,7 +62,7 @@ pub fn kinds() -> Vec<(&'static str, SharedShape, Who)> {
 /// Would catch a kind that is computed otherwise than the documentation says, and a forgotten
 /// order.
 #[test]
-fn contacts_of_each_kind() {
+fn contacts_of_each_kind_are_computed_as_documented() {
     let pos12 = Pose::translation(0.15, 0.6, 0.1);
     for flags in [TriMeshFlags::empty(), TriMeshFlags::DEFORMABLE] {
         let mesh = shape_with(&mesh::ball(0.8, 4), flags);
@@ -86,7 +86,7 @@ fn contacts_of_each_kind() {
 
 /// Would catch queries that should be Parry's to the last bit, and trees that are not needed.
 #[test]
-fn queries_of_each_kind() {
+fn queries_of_each_kind_are_computed_as_documented() {
     let pos12 = Pose::translation(2.5, 0.2, 0.1);
     let near = Pose::translation(1.5, 0.2, 0.1);
     let still = NonlinearRigidMotion::identity();
@@ -138,7 +138,7 @@ fn queries_of_each_kind() {
 
 /// Would catch a disabled kind that SBBK computes.
 #[test]
-fn kinds_are_a_choice() {
+fn disabled_kinds_are_left_to_stock() {
     let ground = shape(&mesh::cuboid(Vec3::new(8.0, 0.5, 8.0), 4));
     let with = |change: &dyn Fn(&mut Kinds)| {
         let mut config = SbbkConfig::default();

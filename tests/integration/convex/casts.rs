@@ -95,7 +95,7 @@ fn first_impacts_are_those_of_brute_force() {
 
 /// Would catch an option that is not obeyed.
 #[test]
-fn bodies_that_cross_at_the_start() {
+fn casts_that_start_crossing_obey_their_options() {
     let dispatcher = SbbkDispatcher::default();
     let corners = [[-1.0, 0.0, -1.0], [0.0, 0.0, 1.0], [1.0, 0.0, -1.0]].map(Vec3::from);
     let floor = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();

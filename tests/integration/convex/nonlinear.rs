@@ -241,7 +241,7 @@ fn still() -> NonlinearRigidMotion {
 /// forgotten order. A body that crosses a floor stops if it would come out behind it. A body that
 /// slides stops at the wall.
 #[test]
-fn casts_from_contact() {
+fn casts_from_contact_stop_as_their_options_say() {
     let ours = SbbkDispatcher::default();
     for (size, is_mesh_first) in [0.01, 1.0, 40.0].into_iter().flat_map(|s| [(s, true), (s, false)])
     {
@@ -301,7 +301,7 @@ fn casts_from_contact() {
 /// A falling pole leaves the floor with one end and comes down with the other. Would catch a floor
 /// ignored because it was touched at the start.
 #[test]
-fn what_turns_comes_down_with_its_other_end() {
+fn a_falling_pole_meets_the_floor_with_its_other_end() {
     let mesh = room(1);
     for (name, other) in [
         ("cylinder", SharedShape::cylinder(1.0, 0.1)),
@@ -338,7 +338,7 @@ fn what_turns_comes_down_with_its_other_end() {
 /// The pole looks alike after each tenth of the time. Would catch sample times that ignore the
 /// spin.
 #[test]
-fn what_turns_fast_comes_down_with_its_other_end() {
+fn a_fast_pole_meets_the_floor_with_its_other_end() {
     let corners = [[-50.0, 0.0, 50.0], [50.0, 0.0, 50.0], [0.0, 0.0, -50.0]].map(Vec3::from);
     let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
     let pole = SharedShape::cuboid(0.1, 1.0, 0.1);
@@ -357,7 +357,7 @@ fn what_turns_fast_comes_down_with_its_other_end() {
 /// Would catch a spin that counts as an approach of the whole body, which took a minute and
 /// invented an impact.
 #[test]
-fn what_turns_above_a_floor_does_not_meet_it() {
+fn a_box_that_turns_above_a_floor_does_not_meet_it() {
     let dispatcher = SbbkDispatcher::default();
     let mesh = shape(&mesh::floor(20.0, 20));
     let cube = SharedShape::cuboid(0.5, 0.5, 0.5);
@@ -380,7 +380,7 @@ fn what_turns_above_a_floor_does_not_meet_it() {
 /// Would catch a cast that runs out of steps, a plane that a body crosses, and a triangle that is
 /// not met first.
 #[test]
-fn what_glides_along_a_floor_meets_the_wall() {
+fn bodies_that_glide_along_a_floor_meet_the_wall() {
     let dispatcher = SbbkDispatcher::default();
     for (cells, height) in [(1, 1e-2), (1, 1e-4), (20, 1e-2), (20, 1e-4)] {
         let mesh = room(cells);
@@ -410,7 +410,7 @@ fn what_glides_along_a_floor_meets_the_wall() {
 
 /// Would catch a half-space that turns about its centre like a body, or not at all.
 #[test]
-fn half_spaces_turn() {
+fn turning_half_spaces_meet_the_far_corner() {
     let dispatcher = SbbkDispatcher::default();
     let cube = shape(&mesh::cuboid(Vec3::splat(0.5), 1));
     let ground = SharedShape::halfspace(Vec3::Y);
@@ -470,7 +470,7 @@ fn a_point_that_falls_is_met() {
 
 /// Meshes are surfaces: a body in the hollow of one is apart from it, and meets it from inside.
 #[test]
-fn what_is_in_a_hollow_is_apart() {
+fn a_body_in_a_hollow_is_apart() {
     let dispatcher = SbbkDispatcher::default();
     let hollow = shape(&mesh::ball(3.0, 6));
     for (name, other) in shapes(1.0).into_iter().filter(|(name, _)| *name != "half-space") {

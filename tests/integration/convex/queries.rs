@@ -136,7 +136,7 @@ fn non_finite_poses_and_limits_have_no_result() {
 /// Would catch a plane that allows for no rounding of boxes. The middle of this box is rounded away
 /// from the plane.
 #[test]
-fn a_corner_on_a_plane() {
+fn a_corner_on_a_plane_touches_it() {
     let step = f32::EPSILON;
     let (low, high) = (1.0 + step, 2.0 + 2.0 * step);
     let corners =
