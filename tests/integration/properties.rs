@@ -134,10 +134,13 @@ fn allocations(dispatcher: &SbbkDispatcher, question: &Question, stride: Real) -
 fn steady_contact_allocates_nothing() {
     for (seed, kind) in (0..).zip(kinds()).filter(|(_, kind)| !kind.is_soft) {
         let mut random = Rand32::new(seed);
-        let pose = kind.pose(&mut random, 0.012);
+        let pose = kind.pose(&mut random, -0.03);
         for (detail, dispatcher) in [("every", counting()), ("patches", counting_patches())] {
-            for (flipped, stride) in [(false, 1e-4), (true, 1e-3), (false, 2.5e-2)] {
-                let question = kind.question(pose).flipped(flipped);
+            // The last case has less slack than its steps are long.
+            for (flipped, stride, prediction) in
+                [(false, 1e-4, 0.02), (true, 1e-3, 0.02), (false, 2.5e-2, 0.002)]
+            {
+                let question = kind.question(pose).within(prediction).flipped(flipped);
                 let count = allocations(&dispatcher, &question, stride);
                 assert_eq!(count, 0, "{}, {detail}, steps of {stride}", kind.name);
             }
