@@ -16,7 +16,7 @@ const [page, picture, step, view, zoom = "1"] = process.argv.slice(2);
 assert(page && picture, "the page or the picture is missing");
 const { browser, tab, wrong } = await open(resolve(page), { viewport: SIZE, deviceScaleFactor: 2 });
 try {
-  await tab.addStyleTag({ content: "header, footer, #labels { display: none !important; }" });
+  await tab.addStyleTag({ content: "header, footer { display: none !important; }" });
   await tab.evaluate(({ step, view, zoom }) => {
     const { data, drawing, frames, seek, play } = window.replay;
     play(false);
