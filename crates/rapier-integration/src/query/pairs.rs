@@ -1,6 +1,7 @@
 //! Best-first search for a pair of triangles, down the BVHs of two meshes at once.
 
 use std::cell::Cell;
+use std::cmp::Ordering;
 
 use arrayvec::ArrayVec;
 use glamx::{DMat3, DVec3, Vec3};
@@ -76,7 +77,8 @@ impl MeshPair<'_> {
             {
                 keyed.swap(0, 1);
             }
-            stack.extend(keyed.into_iter().filter(|(key, _)| !(*key > limit)));
+            let is_beyond = |key: f64| key.partial_cmp(&limit) == Some(Ordering::Greater);
+            stack.extend(keyed.into_iter().filter(|(key, _)| !is_beyond(*key)));
         }
     }
 

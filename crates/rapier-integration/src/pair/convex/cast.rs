@@ -89,11 +89,11 @@ impl ConvexSearch<'_> {
         options: ShapeCastOptions,
         latest: f64,
     ) -> Option<FoundCast> {
-        let start = self.placed.to_part(self.mesh.corners(triangle));
+        let start = self.placed.in_part(self.mesh.corners(triangle));
         let (size, target) = (self.size(&start), f64::from(options.target_distance.max(0.0)));
         let cast = TriangleCast { search: self, triangle, start, size, velocity, target, latest };
         let gap = self.plane_gap(&start).filter(|gap| gap.left(target) > TOUCHING * size);
-        let Some(gap) = gap else { return cast.from_start(options.stop_at_penetration) };
+        let Some(gap) = gap else { return cast.at_start(options.stop_at_penetration) };
         cast.advance(Apart { time: 0.0, left: gap.left(target), normal: gap.normal })
     }
 
@@ -144,7 +144,7 @@ struct TriangleCast<'a> {
 }
 
 impl TriangleCast<'_> {
-    fn from_start(&self, stop_at_penetration: bool) -> Option<FoundCast> {
+    fn at_start(&self, stop_at_penetration: bool) -> Option<FoundCast> {
         let contact = self.contact(0.0)?;
         let left = contact.distance - self.target;
         if left > TOUCHING * self.size {

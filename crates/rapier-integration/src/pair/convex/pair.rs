@@ -212,7 +212,7 @@ impl PairQuery for ConvexQuery<'_> {
         let (prediction, margin) = (self.pose().prediction, self.reach());
         let (radius, farthest) = (f64::from(ball.radius), f64::from(prediction));
         triangles_near(placed, shape, mesh, margin, counters, |index| {
-            let corners = placed.to_part(mesh.corners(index));
+            let corners = placed.in_part(mesh.corners(index));
             if let Some(contact) = ball_contact(&corners, f64::from(margin) + radius)
                 && contact.distance - radius <= farthest
             {
@@ -311,7 +311,7 @@ impl ConvexQuery<'_> {
             let shape = part_shape.shape;
             let placed = self.placed(part, &part_shape, scratch);
             let radius = f64::from(shape.radius());
-            let corners = placed.to_part(mesh.corners(triangle));
+            let corners = placed.in_part(mesh.corners(triangle));
             let reach = limits.margin + radius;
             let contact = if placed.is_beyond(&corners, reach) {
                 None

@@ -56,7 +56,7 @@ impl PlacedPart {
 
     /// Returns points of the mesh in the frame of the part.
     #[inline(always)]
-    pub(super) fn to_part(&self, [a, b, c]: [Vec3; 3]) -> [DVec3; 3] {
+    pub(super) fn in_part(&self, [a, b, c]: [Vec3; 3]) -> [DVec3; 3] {
         if let Some(centre) = self.centre_in_mesh {
             return [a, b, c].map(|point| point.as_dvec3() - centre);
         }
@@ -66,7 +66,7 @@ impl PlacedPart {
 
     /// Returns a point of the part in the frame of the mesh.
     #[inline(always)]
-    pub(super) fn to_mesh(&self, point: DVec3) -> Vec3 {
+    pub(super) fn in_mesh(&self, point: DVec3) -> Vec3 {
         if let Some(centre) = self.centre_in_mesh {
             return (centre + point).as_vec3();
         }
@@ -94,6 +94,6 @@ impl PlacedPart {
 
     /// Returns a point of the part, in f32, in the frame of the mesh.
     pub(crate) fn point_in_mesh(&self, point: Vec3) -> Vec3 {
-        self.to_mesh(point.as_dvec3())
+        self.in_mesh(point.as_dvec3())
     }
 }

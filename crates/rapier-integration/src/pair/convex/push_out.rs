@@ -33,7 +33,7 @@ impl ConvexQuery<'_> {
         self.pair.parts.with(part, |shape| {
             let middle = shape.shape.middle()?;
             let placed = self.placed(part, &shape, scratch);
-            let from = placed.to_mesh(middle);
+            let from = placed.in_mesh(middle);
             let (radius, border) = (placed.extent.ball().radius, shape.shape.radius());
             let is_deep = deepest - f64::from(border) < -DEEP * f64::from(radius);
             if !is_deep && !is_covered(mesh, from) {
@@ -43,7 +43,7 @@ impl ConvexQuery<'_> {
             if behind.abs() < BEHIND || !surface.around(mesh).is_solid {
                 return None;
             }
-            let [a, b, c] = placed.to_part(self.pair.mesh.corners(triangle));
+            let [a, b, c] = placed.in_part(self.pair.mesh.corners(triangle));
             let normal = (b - a).cross(c - a).try_normalize()?;
             let reach = |direction: DVec3| placed.extent.reach(shape.shape, direction);
             let [above, below] = [reach(normal) - normal.dot(a), reach(-normal) + normal.dot(a)];

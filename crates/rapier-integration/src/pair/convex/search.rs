@@ -57,7 +57,7 @@ impl FoundTriangle {
     /// Returns the points on the mesh and on the shape, each in its frame.
     pub(crate) fn points(&self, placed: &PlacedPart) -> [Vector; 2] {
         let ConvexContact { on_triangle, on_shape, .. } = self.contact;
-        [placed.to_mesh(on_triangle), on_shape.as_vec3()]
+        [placed.in_mesh(on_triangle), on_shape.as_vec3()]
     }
 
     /// Returns the outward unit normals of the mesh and of the shape, each in its frame.
@@ -117,7 +117,7 @@ impl<'a> ConvexSearch<'a> {
         let radius = f64::from(self.convex.radius());
         let mut touching = None;
         triangles_near(&self.placed, self.convex, &self.mesh, 0.0, (), |triangle| {
-            let corners = self.placed.to_part(self.mesh.corners(triangle));
+            let corners = self.placed.in_part(self.mesh.corners(triangle));
             let reach = TOUCHING * self.size(&corners) + radius;
             let touches = !self.placed.is_beyond(&corners, reach)
                 && core_touches(&corners, self.convex, &self.hull, reach);
@@ -249,7 +249,7 @@ impl<'a> ConvexSearch<'a> {
         triangle: u32,
         margin: f64,
     ) -> Option<FoundTriangle> {
-        let corners = placed.to_part(self.mesh.corners(triangle));
+        let corners = placed.in_part(self.mesh.corners(triangle));
         let touching = TOUCHING * self.size(&corners);
         let radius = f64::from(self.convex.radius());
         let reach = margin.max(touching) + radius;

@@ -67,12 +67,12 @@ impl TrianglePartPair<'_> {
         let (mut on_triangle, mut distance) = (contact.on_triangle, contact.distance);
         if are_turned {
             let direction = -from_triangle.as_dvec3().normalize();
-            let Some(length) = ray_length(&placed.to_part(self.corners), direction) else {
+            let Some(length) = ray_length(&placed.in_part(self.corners), direction) else {
                 return;
             };
             (on_triangle, distance) = (direction * length, length);
         }
-        let points = mesh_place.swap([placed.to_mesh(on_triangle), to_triangle * radius]);
+        let points = mesh_place.swap([placed.in_mesh(on_triangle), to_triangle * radius]);
         let [point1, point2] = points;
         let distance = (distance - f64::from(radius)) as Real;
         out.points.push(TrackedContact::new(point1, point2, *FACE, *FACE, distance));
@@ -88,7 +88,7 @@ impl TrianglePartPair<'_> {
     ) {
         let ConvexPair { mesh_place, pose, .. } = self.pair;
         let normal = half_space.normal.as_dvec3();
-        let corners = self.placed.to_part(self.corners);
+        let corners = self.placed.in_part(self.corners);
         for (index, (corner, vertex)) in (0..).zip(corners.iter().zip(self.corners)) {
             let distance = corner.dot(normal);
             if distance <= f64::from(pose.prediction) {
@@ -118,14 +118,14 @@ impl TrianglePartPair<'_> {
         let turned = are_turned.then(|| -to_triangle.as_dvec3().normalize());
         let (radius, depth) = (shape.radius(), contact.contact.distance);
         let is_limited = contact.source == NormalSource::Neighbour || has_cones && depth < 0.0;
-        let corners = &placed.to_part(self.corners);
+        let corners = &placed.in_part(self.corners);
         contact_points(corners, *shape, contact, turned, |point| {
             let PointPair { on_triangle, on_shape, distance, features } = point;
             // Drops points that another normal puts much deeper than the contact, by Parry's limit.
             if is_limited && distance < 5.0 * depth.min(0.0) {
                 return;
             }
-            let points = [placed.to_mesh(on_triangle), on_shape.as_vec3() + to_triangle * radius];
+            let points = [placed.in_mesh(on_triangle), on_shape.as_vec3() + to_triangle * radius];
             let ([point1, point2], [fid1, fid2]) =
                 (mesh_place.swap(points), mesh_place.swap(features));
             let distance = (distance - f64::from(radius)) as Real;
@@ -197,13 +197,13 @@ impl TrianglePartPair<'_> {
         /// lower: rounding of the normals of curved shapes counts.
         const LEVEL: f64 = 2.0e-3;
         let ConvexContact { on_triangle, normal, .. } = *contact;
-        let corners = self.placed.to_part(self.corners).map(|corner| corner - on_triangle);
+        let corners = self.placed.in_part(self.corners).map(|corner| corner - on_triangle);
         corners.iter().any(|corner| normal.dot(*corner) > LEVEL * corner.length())
     }
 
     /// Returns the contact along the normal of the triangle, if the bodies cross along it somewhere.
     pub(super) fn crossing_face_contact(&self) -> Option<ConvexContact> {
-        let corners = &self.placed.to_part(self.corners);
+        let corners = &self.placed.in_part(self.corners);
         let (contact, feature) = (self.face_contact(corners)?, Feature::Face);
         let contact = PartContact { contact, feature, source: NormalSource::Neighbour };
         let mut is_crossing = false;
