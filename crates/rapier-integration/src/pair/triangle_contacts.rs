@@ -107,7 +107,7 @@ static NAMES: LazyLock<Names> = LazyLock::new(|| {
 /// The contacts of two triangles from step to step, without meshes: for hosts with a midphase of
 /// their own.
 ///
-/// Exact at every scale, see [`sbbk_core::contact`].
+/// Exact at every scale, see [`sbbk_core::contact`](mod@sbbk_core::contact).
 #[derive(Clone, Debug)]
 pub struct TriangleContacts<C> {
     features: Option<FeaturePair>,
