@@ -80,8 +80,7 @@ impl Soak {
     }
 }
 
-/// Would catch trees that stay when their meshes are gone, an idle cache without bound, and bodies
-/// that fall through the floor.
+/// Would catch trees that stay when their meshes are gone, and an idle cache without bound.
 #[test]
 #[ignore = "takes a minute"]
 fn bodies_that_come_and_go_leave_no_tree_behind() {
@@ -91,11 +90,6 @@ fn bodies_that_come_and_go_leave_no_tree_behind() {
             soak.spawn(step / SPAWN_EVERY);
         }
         soak.world.step();
-        let is_inside = |body: &RigidBodyHandle| {
-            let place = soak.world.bodies[*body].translation();
-            place.x.abs().max(place.z.abs()) > 11.0 || place.y > -1.5
-        };
-        assert!(soak.bodies.iter().all(is_inside), "a body fell through in step {step}");
         assert!(soak.dispatcher.stats().trees < 20 * BODIES, "{:?}", soak.dispatcher.stats());
     }
     while !soak.bodies.is_empty() {
