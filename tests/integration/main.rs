@@ -28,6 +28,8 @@ mod convex;
 mod deformable;
 /// Same inputs, same bits.
 mod determinism;
+/// Meshes with the defects of meshes that people have, in worlds.
+mod dirty;
 /// A mesh that changes while pairs know it.
 mod edited_mesh;
 /// SBBK's own contacts against the truth, and against stock where stock is right.

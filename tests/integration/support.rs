@@ -12,6 +12,7 @@ use rapier3d::parry::query::{
 };
 use rapier3d::parry::shape::{Shape, TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh::Mesh;
+pub use sbbk_testkit::mesh::turned_inside_out;
 pub use sbbk_testkit::scene::random::{direction, rotation};
 
 /// Manifolds without data, as hosts other than Rapier may have them.
@@ -109,12 +110,6 @@ impl<M, C> Pair<M, C> {
             .expect("the pair is supported");
         self
     }
-}
-
-/// A mesh whose triangles are wound the other way.
-pub fn turned_inside_out(mut mesh: Mesh) -> Mesh {
-    mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
-    mesh
 }
 
 /// Both sets of contacts, the default one first.

@@ -11,12 +11,17 @@
 //! ```
 
 mod container;
+mod dirty;
 mod helicopter;
 mod machine;
 mod monkey;
 mod shapes;
 
 pub use container::Mesh;
+pub use dirty::{
+    cube_ball, doubled, random_winding, skirted, strips, tiles, tube, turned_inside_out, two_sided,
+    uneven_box, unwelded, vessel, walled_box,
+};
 pub use helicopter::helicopter;
 pub use machine::{Gear, Rack, Thread, prism, revolved};
 pub use monkey::{monkey_head, monkey_head_with};

@@ -34,17 +34,23 @@ pub fn cuboid(half_extents: Vec3, cells: u32) -> Mesh {
 
 /// A box about the origin, cut into so many cells along each axis (at least 1).
 pub fn slab(half_extents: Vec3, cells: [u32; 3]) -> Mesh {
-    let cells = cells.map(|cells| cells.max(1));
+    box_faces(half_extents, |face| [1, 2].map(|next| cells[(face / 2 + next) % 3]))
+}
+
+/// A box about the origin whose faces +x, -x, +y, -y, +z, -z have so many cells along the next axis
+/// and the one after it (at least 1).
+pub(super) fn box_faces(half_extents: Vec3, cells_of: impl Fn(usize) -> [u32; 2]) -> Mesh {
     // Both ends differ by the sign only, so that the rims of the faces weld.
     let coordinate = |k: u32, cells: u32| (2.0 * k as f32 - cells as f32) / cells as f32;
     let faces = [0, 1, 2, 3, 4, 5].map(|face| {
         let (axis, sign) = (face / 2, if face % 2 == 0 { 1.0 } else { -1.0 });
         let [second, third] = [1, 2].map(|next| (axis + next) % 3);
-        quad_grid([cells[second], cells[third]], |i, j| {
+        let cells = cells_of(face).map(|cells| cells.max(1));
+        quad_grid(cells, |i, j| {
             let mut point = Vec3::ZERO;
             point[axis] = sign;
-            point[second] = sign * coordinate(i, cells[second]);
-            point[third] = coordinate(j, cells[third]);
+            point[second] = sign * coordinate(i, cells[0]);
+            point[third] = coordinate(j, cells[1]);
             point * half_extents
         })
     });

@@ -1,0 +1,195 @@
+//! Meshes with the defects of meshes that people have.
+
+use std::collections::BTreeSet;
+use std::f32::consts::TAU;
+
+use glamx::{Vec2, Vec3};
+use oorandom::Rand32;
+
+use super::Mesh;
+use super::shapes::{box_faces, quad_grid};
+use crate::scene::random::direction;
+
+/// A floor about the origin in strips of other subdivision, with T-junctions between them.
+pub fn strips(size: f32, count: u32, seed: u64) -> Mesh {
+    let mut random = Rand32::new(seed);
+    let edge = |index: u32| size * (index as f32 / count as f32 - 0.5);
+    let strips = (0..count).map(|index| {
+        let cells = [random.rand_range(3..40), random.rand_range(1..4)];
+        let [low, high] = [index, index + 1].map(edge);
+        rectangle(cells, [Vec2::new(low, edge(0)), Vec2::new(high, edge(count))])
+    });
+    Mesh::merged("strips", &strips.collect::<Vec<Mesh>>()).welded()
+}
+
+/// A flat grid at height 0 of so many cells along `z` and `x`, from one corner to the other.
+fn rectangle([rows, columns]: [u32; 2], [low, high]: [Vec2; 2]) -> Mesh {
+    // Exact at both ends, so that the rims of neighbours agree.
+    let between = |low: f32, high: f32, k: u32, count: u32| {
+        let share = k as f32 / count as f32;
+        low * (1.0 - share) + high * share
+    };
+    quad_grid([rows, columns], |i, j| {
+        let [x, z] = [(low.x, high.x, j, columns), (low.y, high.y, i, rows)]
+            .map(|(low, high, k, count)| between(low, high, k, count));
+        Vec3::new(x, 0.0, z)
+    })
+}
+
+/// The mesh with corners of its own for each triangle, each moved by up to `most`.
+pub fn unwelded(mesh: &Mesh, most: f32, seed: u64) -> Mesh {
+    let mut random = Rand32::new(seed);
+    let corners = (0..mesh.triangle_count()).flat_map(|index| mesh.corners(index));
+    let vertices: Vec<Vec3> = corners
+        .map(|corner| corner + direction(&mut random) * most * random.rand_float())
+        .collect();
+    let triangles = (0..mesh.triangle_count() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]);
+    Mesh::new(mesh.name.clone(), vertices, triangles.collect())
+}
+
+/// The mesh with each `nth` triangle twice.
+pub fn doubled(mesh: &Mesh, nth: usize) -> Mesh {
+    let times = |index: usize| if index.is_multiple_of(nth) { 2 } else { 1 };
+    let triangles = mesh.triangles.iter().enumerate();
+    let triangles = triangles.flat_map(|(index, &triangle)| vec![triangle; times(index)]);
+    Mesh::new(mesh.name.clone(), mesh.vertices.clone(), triangles.collect())
+}
+
+/// The mesh with each triangle again, wound the other way.
+pub fn two_sided(mesh: &Mesh) -> Mesh {
+    let mut both = mesh.clone();
+    both.triangles.extend(mesh.triangles.iter().map(|&[a, b, c]| [a, c, b]));
+    both
+}
+
+/// The mesh with triangles wound by chance.
+pub fn random_winding(mesh: &Mesh, seed: u64) -> Mesh {
+    let mut random = Rand32::new(seed);
+    let mut wound = mesh.clone();
+    for triangle in &mut wound.triangles {
+        if random.rand_range(0..2) == 1 {
+            triangle.swap(1, 2);
+        }
+    }
+    wound
+}
+
+/// A mesh whose triangles are wound the other way.
+pub fn turned_inside_out(mut mesh: Mesh) -> Mesh {
+    mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    mesh
+}
+
+/// Closed boxes of 12 triangles side by side, `count` a side, with tops at height 0; not welded.
+pub fn tiles(size: f32, count: u32, depth: f32) -> Mesh {
+    let edge = |index: u32| size * (index as f32 / count as f32 - 0.5);
+    let tile = |index: u32| {
+        let [column, row] = [index % count, index / count];
+        super::cuboid(Vec3::ONE, 1).mapped(|v| {
+            let [x, z] = [(column, v.x), (row, v.z)].map(|(k, at)| edge(k + u32::from(at > 0.0)));
+            Vec3::new(x, if v.y > 0.0 { 0.0 } else { -depth }, z)
+        })
+    };
+    Mesh::merged("tiles", &(0..count * count).map(tile).collect::<Vec<Mesh>>())
+}
+
+/// A box about the origin whose faces have so many cells a side: +x, -x, +y, -y, +z, -z.
+pub fn uneven_box(half_extents: Vec3, cells: [u32; 6]) -> Mesh {
+    box_faces(half_extents, |face| [cells[face]; 2]).named("uneven box")
+}
+
+/// A ball of six faces with so many cells a side: +x, -x, +y, -y, +z, -z.
+pub fn cube_ball(radius: f32, cells: [u32; 6]) -> Mesh {
+    uneven_box(Vec3::ONE, cells).mapped(|v| v.normalize() * radius).named("cube ball")
+}
+
+/// The sheet, seen from above a rectangle, with walls down and a bottom of two triangles.
+pub fn skirted(sheet: &Mesh, bottom: f32) -> Mesh {
+    let edges_of = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
+    let edges: BTreeSet<[u32; 2]> = sheet.triangles.iter().flat_map(edges_of).collect();
+    let mut solid = sheet.clone();
+    for &[a, b] in edges.iter().filter(|&&[a, b]| !edges.contains(&[b, a])) {
+        let first = solid.vertices.len() as u32;
+        solid.vertices.extend([a, b].map(|k| sheet.vertices[k as usize].with_y(bottom)));
+        solid.triangles.extend([[b, a, first], [b, first, first + 1]]);
+    }
+    let bounds = sheet.bounds();
+    let [low, high] = [bounds.mins, bounds.maxs];
+    let first = solid.vertices.len() as u32;
+    let corners = [(low.x, low.z), (high.x, low.z), (high.x, high.z), (low.x, high.z)];
+    solid.vertices.extend(corners.map(|(x, z)| Vec3::new(x, bottom, z)));
+    solid.triangles.extend([[0, 1, 2], [0, 2, 3]].map(|t: [u32; 3]| t.map(|k| first + k)));
+    solid.welded().named("skirted")
+}
+
+/// A box with `2 * cells` cells a side, and a wall across its middle.
+pub fn walled_box(half_extents: Vec3, cells: u32) -> Mesh {
+    let solid = super::cuboid(half_extents, 2 * cells);
+    let across = box_faces(half_extents, |_| [2 * cells; 2]);
+    // The first face, moved to the middle.
+    let count = 2 * (2 * cells as usize).pow(2);
+    let mut wall = across.mapped(|v| v.with_x(0.0));
+    wall.triangles.truncate(count);
+    Mesh::merged("walled box", &[solid, wall]).welded()
+}
+
+/// A tube about the `z` axis without ends, of `2 * segments` triangles.
+pub fn tube(radius: f32, half_width: f32, segments: u32) -> Mesh {
+    let tube = quad_grid([segments, 1], |i, j| {
+        let (sin, cos) = (TAU * (i % segments) as f32 / segments as f32).sin_cos();
+        Vec3::new(radius * cos, radius * sin, if j == 0 { -half_width } else { half_width })
+    });
+    tube.welded().named("tube")
+}
+
+/// A ball without what is above `top`, a share of its radius: a bowl, or a vase.
+pub fn vessel(radius: f32, cells: u32, top: f32) -> Mesh {
+    let mut vessel = cube_ball(radius, [cells; 6]);
+    let vertices = &vessel.vertices;
+    let is_below = |triangle: &[u32; 3]| {
+        triangle.iter().all(|&vertex| vertices[vertex as usize].y < top * radius)
+    };
+    vessel.triangles.retain(is_below);
+    vessel.welded().named("vessel")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Borders of a mesh: half-edges without one that runs the other way.
+    fn border_count(mesh: &Mesh) -> usize {
+        let edges_of = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
+        let edges: BTreeSet<[u32; 2]> = mesh.triangles.iter().flat_map(edges_of).collect();
+        edges.iter().filter(|&&[a, b]| !edges.contains(&[b, a])).count()
+    }
+
+    /// Would catch gaps, and faces that look inward.
+    #[test]
+    fn solids_hold_their_volume() {
+        let even = uneven_box(Vec3::ONE, [4; 6]);
+        assert_eq!(border_count(&even), 0);
+        let sheet = super::super::terrain(2.0, 6, 0.1);
+        for (mesh, volume) in [
+            (even, 8.0),
+            (uneven_box(Vec3::ONE, [5, 4, 4, 1, 2, 3]), 8.0),
+            (tiles(4.0, 4, 0.5), 8.0),
+            (walled_box(Vec3::ONE, 2), 8.0),
+            (skirted(&super::super::floor(2.0, 6), -1.0), 4.0),
+        ] {
+            assert!((mesh.volume() - volume).abs() < 1e-4, "{}: {}", mesh.name, mesh.volume());
+        }
+        assert!(border_count(&skirted(&sheet, -1.0)) == 4 * 6 + 4);
+    }
+
+    /// Would catch strips that overlap, have gaps, or have no T-junctions.
+    #[test]
+    fn strips_cover_the_floor() {
+        let strips = strips(8.0, 8, 1);
+        let area: f32 = (0..strips.triangle_count())
+            .map(|index| strips.corners(index))
+            .map(|[a, b, c]| 0.5 * (b - a).cross(c - a).y)
+            .sum();
+        assert!((area - 64.0).abs() < 1e-3 && border_count(&strips) > 100);
+    }
+}

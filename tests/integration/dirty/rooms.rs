@@ -1,0 +1,70 @@
+use glamx::Vec3;
+use rapier_integration::SbbkDispatcher;
+use rapier3d::dynamics::RigidBodyBuilder;
+use rapier3d::geometry::{ColliderBuilder, SharedShape};
+use rapier3d::parry::shape::TriMeshFlags;
+use sbbk_testkit::mesh;
+
+use super::table::{Case, judge};
+use super::{FLAGS, row, shape, world};
+
+/// Half the side of a room, and of a body in it.
+const ROOM: f32 = 3.0;
+const BODY: f32 = 0.4;
+
+fn bodies(flags: TriMeshFlags) -> [(&'static str, SharedShape); 4] {
+    [
+        ("mesh cube", shape(&mesh::cuboid(Vec3::splat(BODY), 2), flags)),
+        ("mesh ball", shape(&mesh::ball(BODY, 6), flags)),
+        ("cuboid", SharedShape::cuboid(BODY, BODY, BODY)),
+        ("ball", SharedShape::ball(BODY)),
+    ]
+}
+
+/// Would catch rooms whose walls push bodies out through them. A room is a closed box that faces
+/// outward.
+#[test]
+fn bodies_stay_in_rooms() {
+    let mut cases = Vec::new();
+    let settings = [1, 5, 30, 40]
+        .into_iter()
+        .flat_map(|cells| [false, true].map(|is_prepared| (cells, is_prepared)));
+    for ((cells, is_prepared), flags) in
+        settings.flat_map(|setting| FLAGS.map(|flags| (setting, flags)))
+    {
+        let room = shape(&mesh::cuboid(Vec3::splat(ROOM), cells), flags);
+        let dispatcher = SbbkDispatcher::default();
+        let prepared =
+            is_prepared.then(|| dispatcher.prepare_shape(&room).expect("no defect")).flatten();
+        let mut world = world();
+        world.narrow_phase.set_query_dispatcher(dispatcher);
+        world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(room));
+        let bodies = bodies(flags).map(|(name, shape)| (name, ColliderBuilder::new(shape)));
+        let mut at = Vec3::new(-1.8, 0.1, 0.17);
+        let bodies = bodies.map(|(name, collider)| {
+            at.x += 0.9;
+            (name, world.insert(RigidBodyBuilder::dynamic().translation(at), collider).0)
+        });
+        (0..240).for_each(|_| world.step());
+        let how = if is_prepared { ", prepared" } else { "" };
+        let name = row(&format!("{} triangles{how}", 12 * cells * cells), flags);
+        for (column, body) in bodies {
+            let height = world.bodies[body].translation().y;
+            let is_right = (height - BODY + ROOM).abs() < 0.05;
+            let shown = format!("{height:.2}");
+            cases.push(Case { row: name.clone(), column, shown, is_right });
+        }
+        drop(prepared);
+    }
+    judge("height of a body in a room with its floor at -3, after 4 s", &cases, KNOWN);
+}
+
+/// Rooms and bodies that fail today.
+const KNOWN: &[(&str, &str)] = &[
+    ("12 triangles", "mesh ball, mesh cube"),
+    ("12 triangles, prepared", "mesh ball, mesh cube"),
+    ("300 triangles", "mesh ball, mesh cube"),
+    ("300 triangles, prepared", "mesh ball, mesh cube"),
+    ("10800 triangles, prepared", "mesh ball, mesh cube"),
+    ("19200 triangles, prepared", "mesh ball, mesh cube"),
+];

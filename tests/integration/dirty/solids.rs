@@ -1,0 +1,134 @@
+use glamx::{Quat, Vec3};
+use rapier3d::dynamics::RigidBodyBuilder;
+use rapier3d::geometry::ColliderBuilder;
+use sbbk_testkit::mesh::{self, Mesh, uneven_box};
+
+use super::table::{Case, judge};
+use super::{FLAGS, row, shape, world};
+
+/// Half the size of a box; its top is at height 1.
+const HALF: Vec3 = Vec3::new(2.0, 1.0, 2.0);
+
+/// Closed meshes, and the heights between which the lowest point of a body on them is right.
+fn solids() -> Vec<(&'static str, Mesh, [f32; 2])> {
+    let flat = [0.97, 1.02];
+    let even = mesh::cuboid(HALF, 4);
+    let aside = Vec3::X * 8.0;
+    let larger = mesh::turned_inside_out(mesh::cuboid(1.5 * HALF, 4)).mapped(|v| v + aside);
+    let overlapping = [-1.0, 1.0]
+        .map(|x| mesh::cuboid(Vec3::new(1.3, 1.0, 2.0), 3).mapped(|v| v + Vec3::X * 0.7 * x));
+    let terrain = mesh::terrain(4.0, 16, 0.05).mapped(|v| v + Vec3::Y);
+    let uneven = uneven_box(HALF, [4, 4, 5, 4, 4, 4]);
+    vec![
+        ("even box", even.clone(), flat),
+        ("top of 5 cells, others 4", uneven.clone(), flat),
+        ("one side of 1 cell", uneven_box(HALF, [1, 4, 4, 4, 4, 4]), flat),
+        ("six unlike sides", uneven_box(HALF, [5, 2, 7, 1, 3, 4]), flat),
+        ("uneven, turned", uneven.posed(&glamx::Pose3::rotation(Vec3::Y * 0.5)), flat),
+        ("terrain with a skirt", mesh::skirted(&terrain, -1.0), [0.9, 1.1]),
+        ("box with a wall", mesh::walled_box(HALF, 2), flat),
+        ("beside a larger, turned one", Mesh::merged("boxes", &[even.clone(), larger]), flat),
+        ("two that overlap", Mesh::merged("overlapping", &overlapping), flat),
+        ("soup, 0.1 mm apart", mesh::unwelded(&even, 0.5e-4, 1), flat),
+        ("each third twice", mesh::doubled(&even, 3), flat),
+    ]
+}
+
+/// Meshes, and heights of their middles at the start.
+fn bodies() -> [(&'static str, Mesh, f32); 4] {
+    let ring = mesh::torus(0.5, 0.1, 24, 12);
+    let cube = mesh::cuboid(Vec3::splat(0.25), 2);
+    [
+        ("ring 2/3 sunk", ring, 1.1 - 0.2 * 2.0 / 3.0),
+        ("cube 2/3 sunk", cube.clone(), 1.25 - 0.5 * 2.0 / 3.0),
+        ("cube inside", cube.clone(), 0.4),
+        ("cube dropped", cube, 1.5),
+    ]
+}
+
+/// Would catch closed meshes that are taken for sheets, which hold what has sunk in.
+#[test]
+fn closed_meshes_push_out_what_has_sunk_in() {
+    let mut cases = Vec::new();
+    for (flags, (name, solid, [low, high])) in
+        FLAGS.into_iter().flat_map(|flags| solids().into_iter().map(move |solid| (flags, solid)))
+    {
+        let solid = ColliderBuilder::new(shape(&solid, flags));
+        for (column, body, height) in bodies() {
+            let mut world = world();
+            world.insert(RigidBodyBuilder::fixed(), solid.clone());
+            let place = Vec3::new(0.23, height, 0.11);
+            let turn = Quat::from_rotation_y(0.4).to_scaled_axis();
+            let start = RigidBodyBuilder::dynamic().translation(place).rotation(turn);
+            let (handle, _) = world.insert(start, ColliderBuilder::new(shape(&body, flags)));
+            (0..240).for_each(|_| world.step());
+            let pose = world.bodies[handle].position();
+            let heights = body.vertices.iter().map(|&vertex| pose.transform_point(vertex).y);
+            let lowest = heights.fold(f32::INFINITY, f32::min);
+            let is_right = (low..high).contains(&lowest);
+            let shown = format!("{lowest:.2}");
+            cases.push(Case { row: row(name, flags), column, shown, is_right });
+        }
+    }
+    judge("lowest point of a body in a solid with its top at 1, after 4 s", &cases, KNOWN);
+}
+
+/// Solids and bodies that fail today.
+const KNOWN: &[(&str, &str)] = &[
+    ("top of 5 cells, others 4", "ring 2/3 sunk, cube 2/3 sunk, cube inside"),
+    ("one side of 1 cell", "ring 2/3 sunk, cube 2/3 sunk, cube inside"),
+    ("six unlike sides", "ring 2/3 sunk, cube 2/3 sunk, cube inside"),
+    ("uneven, turned", "ring 2/3 sunk, cube 2/3 sunk, cube inside"),
+    ("terrain with a skirt", "ring 2/3 sunk, cube 2/3 sunk, cube inside"),
+    ("box with a wall", "cube 2/3 sunk, cube inside"),
+    ("beside a larger, turned one", "ring 2/3 sunk, cube 2/3 sunk, cube inside"),
+    ("two that overlap", "cube inside"),
+    ("soup, 0.1 mm apart", "ring 2/3 sunk, cube 2/3 sunk, cube inside"),
+    ("each third twice", "ring 2/3 sunk, cube 2/3 sunk, cube inside"),
+];
+
+/// Vessels of radius 1, open above.
+fn vessels() -> Vec<(&'static str, Mesh)> {
+    let mut open_box = uneven_box(Vec3::ONE, [4; 6]);
+    open_box.triangles.retain(|t| t.iter().any(|&k| open_box.vertices[k as usize].y < 0.99));
+    let tube = mesh::tube(1.0, 2.0, 32);
+    let wall = mesh::vessel(1.0, 12, 0.0);
+    let inner = mesh::turned_inside_out(wall.clone().scaled(0.9));
+    vec![
+        ("bowl of 60 degrees", mesh::vessel(1.0, 12, -0.5)),
+        ("bowl of 90 degrees", wall.clone()),
+        ("bowl of 120 degrees", mesh::vessel(1.0, 12, 0.5)),
+        ("two-sided bowl", mesh::two_sided(&wall)),
+        ("bowl of two walls", Mesh::merged("walls", &[wall, inner])),
+        ("box without a top", open_box),
+        ("open tube", tube),
+    ]
+}
+
+/// Would catch vessels that are taken for solids, and lose or push out what lies in them.
+#[test]
+fn vessels_hold_what_lies_in_them() {
+    let mut cases = Vec::new();
+    for (flags, (name, vessel)) in
+        FLAGS.into_iter().flat_map(|flags| vessels().into_iter().map(move |it| (flags, it)))
+    {
+        let ground = ColliderBuilder::new(shape(&vessel, flags));
+        for (column, body) in
+            [("mesh ball", mesh::ball(0.2, 6)), ("mesh cube", mesh::cuboid(Vec3::splat(0.15), 2))]
+        {
+            let mut world = world();
+            world.insert(RigidBodyBuilder::fixed(), ground.clone());
+            let start = RigidBodyBuilder::dynamic().translation(Vec3::new(0.05, -0.6, 0.02));
+            let (handle, _) = world.insert(start, ColliderBuilder::new(shape(&body, flags)));
+            (0..180).for_each(|_| world.step());
+            let height = world.bodies[handle].translation().y;
+            let is_right = (-0.9..-0.6).contains(&height);
+            let shown = format!("{height:.2}");
+            cases.push(Case { row: row(name, flags), column, shown, is_right });
+        }
+    }
+    judge("height of a body in a vessel of radius 1, after 3 s", &cases, KNOWN_VESSELS);
+}
+
+/// Vessels and bodies that fail today.
+const KNOWN_VESSELS: &[(&str, &str)] = &[];

@@ -1,0 +1,81 @@
+use std::collections::BTreeSet;
+use std::fmt::Write;
+
+/// End of the name of a row with flags.
+pub(super) const FLAG: &str = " + flag";
+
+/// What was measured in one scene.
+pub(super) struct Case {
+    pub row: String,
+    pub column: &'static str,
+    pub shown: String,
+    pub is_right: bool,
+}
+
+/// Prints a table. Panics unless exactly the cases `known` are wrong: rows, and columns with commas
+/// between them. Cases with flags that are as without flags are left out.
+pub(super) fn judge(title: &str, cases: &[Case], known: &[(&str, &str)]) {
+    let is_repeat = |case: &Case| {
+        let base = case.row.strip_suffix(FLAG);
+        cases.iter().any(|other| {
+            (Some(other.row.as_str()), other.column) == (base, case.column)
+                && (&other.shown, other.is_right) == (&case.shown, case.is_right)
+        })
+    };
+    let cases: Vec<&Case> = cases.iter().filter(|case| !is_repeat(case)).collect();
+    println!("{}", table(title, &cases));
+    let wrong: BTreeSet<(&str, &str)> = (cases.iter().filter(|case| !case.is_right))
+        .map(|case| (case.row.as_str(), case.column))
+        .collect();
+    let known: BTreeSet<(&str, &str)> = known
+        .iter()
+        .flat_map(|&(row, columns)| columns.split(", ").map(move |column| (row, column)))
+        .collect();
+    let fresh = list(wrong.difference(&known));
+    let mended = list(known.difference(&wrong));
+    assert!(fresh.is_empty(), "{title}: these fail:\n{fresh}and these are mended:\n{mended}");
+    assert!(mended.is_empty(), "{title}: mended, take them from the list:\n{mended}");
+}
+
+/// Rows as they are in the lists.
+fn list<'a>(cases: impl Iterator<Item = &'a (&'a str, &'a str)>) -> String {
+    let mut rows: Vec<(&str, Vec<&str>)> = Vec::new();
+    for &(row, column) in cases {
+        match rows.last_mut() {
+            Some((last, columns)) if *last == row => columns.push(column),
+            _ => rows.push((row, vec![column])),
+        }
+    }
+    let line =
+        |(row, columns): (&str, Vec<&str>)| format!("    ({row:?}, {:?}),\n", columns.join(", "));
+    rows.into_iter().map(line).collect()
+}
+
+fn table(title: &str, cases: &[&Case]) -> String {
+    let (mut rows, mut columns): (Vec<&str>, Vec<&str>) = (Vec::new(), Vec::new());
+    for case in cases {
+        for (names, name) in [(&mut rows, case.row.as_str()), (&mut columns, case.column)] {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+    }
+    let [first, width] = [
+        rows.iter().map(|row| row.len()).max(),
+        cases.iter().flat_map(|case| [case.shown.len() + 1, case.column.len()]).max(),
+    ]
+    .map(|most| most.unwrap_or(0));
+    let mut text = format!("\n{title}; ! is wrong\n{:first$}", "");
+    columns.iter().for_each(|column| write!(text, " {column:>width$}").unwrap());
+    for row in rows {
+        write!(text, "\n{row:first$}").unwrap();
+        for column in &columns {
+            let case = cases.iter().find(|case| case.row == row && case.column == *column);
+            let shown = case.map_or(String::new(), |case| {
+                format!("{}{}", case.shown, if case.is_right { ' ' } else { '!' })
+            });
+            write!(text, " {shown:>width$}").unwrap();
+        }
+    }
+    text
+}
