@@ -2,7 +2,6 @@
 
 use std::fmt;
 use std::path::Path;
-use std::time::Duration;
 
 use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
@@ -14,16 +13,15 @@ use rapier3d::parry::query::Ray;
 use rapier3d::pipeline::{ActiveEvents, PhysicsWorld};
 use sbbk_core::surface::SurfaceKind;
 
-use super::ground::{kinds, put};
 use super::measure::{Driven, Everyday};
-use super::subject::Subject;
+use super::robots::Subject;
+use super::scenes::{kinds, put};
 use crate::mesh::Mesh;
 use crate::progress::Progress;
 use crate::report::Row;
 use crate::scene::random;
 use crate::study::StudyError;
 
-const STUDY: &str = "advice";
 /// Convex bodies on a terrain, along each side.
 const TERRAIN_SIDE: usize = 7;
 /// Length of these, as a share of the longest side.
@@ -81,10 +79,8 @@ fn advise_on(subject: &Subject, steps: usize, repeats: usize, progress: &Progres
     let bounds = subject.bounds(&Pose3::IDENTITY);
     let size = bounds.extents().max_element();
     let scenes = Scenes { subject, bounds, size, large: subject.larger_than(UNPREPARED) };
-    let rows = [scenes.terrain(steps), scenes.bodies(steps), scenes.sensors(steps)].map(|scene| {
-        progress.phase(scene.name(), scene.step_count(repeats));
-        scene.measure(repeats, progress)
-    });
+    let rows = [scenes.terrain(steps), scenes.bodies(steps), scenes.sensors(steps)]
+        .map(|scene| scene.measure(scene.name(), repeats, progress));
     Advice {
         name: subject.name.clone(),
         triangles: subject.triangle_count(),
@@ -129,7 +125,7 @@ impl Scenes<'_> {
             }
             Driven::alone(world)
         };
-        Everyday::new(self.row("terrain"), steps, build)
+        Everyday { prepared: Vec::new(), ..self.scene("terrain", steps, build) }
     }
 
     /// Copies that fall onto each other and onto a floor.
@@ -147,14 +143,13 @@ impl Scenes<'_> {
                 let spread = 0.5 * bounds.extents() * random::direction(&mut random);
                 let column = self.size * Vec3::X * (0.8 * (index % 3) as f32 - 0.8);
                 let place = column + spread.with_y(height - bounds.mins.y);
-                self.subject.insert(&mut world, Pose3::from_parts(place, turn));
+                (self.subject.insert)(&mut world, Pose3::from_parts(place, turn));
                 // Three start side by side.
                 height += if index % 3 == 2 { self.size } else { 0.0 };
             }
             Driven::alone(world)
         };
-        let scene = Everyday::new(self.row("bodies"), steps, build);
-        Everyday { prepared: self.large.clone(), ..scene }
+        self.scene("bodies", steps, build)
     }
 
     /// Sensors that drift through a fixed subject, and past it.
@@ -181,11 +176,9 @@ impl Scenes<'_> {
                 for &(body, start) in &starts {
                     put(world, body, start + speed * step as f32 * Vec3::X);
                 }
-                Duration::ZERO
             })
         };
-        let scene = Everyday::new(self.row("sensors"), steps, build);
-        Everyday { prepared: self.large.clone(), ..scene }
+        self.scene("sensors", steps, build)
     }
 
     /// Inserts a fixed subject.
@@ -196,8 +189,9 @@ impl Scenes<'_> {
         }
     }
 
-    fn row(&self, part: &str) -> Row {
-        Row::new(STUDY, "").key("mesh", &*self.subject.name).key("as", part)
+    fn scene<'b>(&self, part: &str, steps: usize, build: impl Fn() -> Driven + 'b) -> Everyday<'b> {
+        let row = Row::new("advice", "").key("mesh", &*self.subject.name).key("as", part);
+        Everyday { prepared: self.large.clone(), ..Everyday::new(row, steps, build) }
     }
 }
 
@@ -285,16 +279,5 @@ impl fmt::Display for Advice {
         write!(f, "{name}: {triangles} triangles, {size:.3} units, {kind}")?;
         let mut lines = self.settings().into_iter().enumerate();
         lines.try_for_each(|(index, settings)| write!(f, "\n{}", self.line(index, &settings)))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Would catch exponents in the advice.
-    #[test]
-    fn lengths_have_two_digits_and_no_exponent() {
-        assert_eq!([0.1612, 157.3].map(two_digits).map(|d| d.to_string()), ["0.16", "160"]);
     }
 }

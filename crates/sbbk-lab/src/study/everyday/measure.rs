@@ -25,26 +25,30 @@ pub(super) struct Everyday<'a> {
     pub prepared: Vec<SharedShape>,
 }
 
-/// A world and its drive.
-pub(super) struct Driven {
-    pub world: PhysicsWorld,
-    pub drive: Drive,
-}
-
 /// Called before each step with its number, from 0. Returns the time of its own queries, which
 /// counts as collision detection.
-pub(super) type Drive = Box<dyn FnMut(&mut PhysicsWorld, usize) -> Duration>;
+pub(super) type Drive = dyn FnMut(&mut PhysicsWorld, usize) -> Duration;
+
+pub(super) struct Driven {
+    pub world: PhysicsWorld,
+    pub drive: Box<Drive>,
+}
 
 impl Driven {
     /// A world without a drive.
     pub fn alone(world: PhysicsWorld) -> Self {
-        Self::by(world, |_, _| Duration::ZERO)
+        Self::by(world, |_, _| ())
     }
 
+    /// A world with a drive that asks nothing.
     pub fn by(
         world: PhysicsWorld,
-        drive: impl FnMut(&mut PhysicsWorld, usize) -> Duration + 'static,
+        mut drive: impl FnMut(&mut PhysicsWorld, usize) + 'static,
     ) -> Self {
+        let drive = move |world: &mut PhysicsWorld, step| {
+            drive(world, step);
+            Duration::ZERO
+        };
         Self { world, drive: Box::new(drive) }
     }
 }
@@ -64,9 +68,8 @@ const WORST: f64 = 2000.0;
 /// Compares median and worst step of SBBK with stock; `ignored` and `worst` have the unit of the
 /// times.
 pub(super) fn verdict(stock: [f64; 2], sbbk: [f64; 2], ignored: f64, worst: f64) -> &'static str {
-    let [is_slower, is_worse] =
-        [sbbk[0] > (NOISE * stock[0]).max(stock[0] + ignored), sbbk[1] > stock[1] + worst];
-    match (is_slower, is_worse) {
+    let is_slower = sbbk[0] > (NOISE * stock[0]).max(stock[0] + ignored);
+    match (is_slower, sbbk[1] > stock[1] + worst) {
         (false, false) => "ok",
         (true, false) => "slower",
         (false, true) => "worst step",
@@ -90,39 +93,33 @@ impl<'a> Everyday<'a> {
         Self { row, steps, build: Box::new(build), prepared: Vec::new() }
     }
 
-    /// Steps of [`Self::measure`].
-    pub fn step_count(&self, repeats: usize) -> usize {
-        self.steps * repeats.max(1)
-    }
-
-    /// Runs the scene `repeats` times on both backends, step by step in turns. Counts the steps.
-    pub fn measure(&self, repeats: usize, progress: &Progress) -> [Row; 2] {
+    /// Runs the scene `repeats` times on both backends, step by step in turns.
+    pub fn measure(&self, phase: String, repeats: usize, progress: &Progress) -> [Row; 2] {
+        let repeats = repeats.max(1);
+        progress.phase(phase, self.steps * repeats);
         let mut sides: [Side; 2] = Default::default();
         let mut comparison = Comparison::new();
-        for repeat in 0..repeats.max(1) {
+        for repeat in 0..repeats {
             self.run(&mut sides, (repeat == 0).then_some(&mut comparison), progress);
         }
-        let summaries = sides.each_ref().map(|side| {
-            [&side.detection, &side.step].map(|times| Summary::of(times.iter().copied()))
-        });
-        let [stock, sbbk] =
-            summaries.map(|[detection, _]| detection.map_or([0.0; 2], |d| [d.median, d.max]));
-        let is_bad = |time: &&f64| **time > stock[1] + WORST;
-        let row = |side: usize| {
-            let backend = Contest::BACKENDS[side].to_string();
+        let rows = [0, 1].map(|index| {
+            let (backend, side) = (Contest::BACKENDS[index].to_string(), &sides[index]);
             let mebibytes = |bytes: usize| bytes as f64 / (1 << 20) as f64;
             Row { backend, ..self.row.clone() }
                 .with("steps", self.steps)
-                .with("detection", summaries[side][0])
-                .with("step", summaries[side][1])
-                .with("mesh_mebibytes", mebibytes(sides[side].mesh_bytes))
-                .with("plugin_mebibytes", mebibytes(sides[side].plugin_bytes))
-                .with("judged", comparison.judged[side])
-        };
-        let sbbk = row(1)
-            .with("verdict", verdict(stock, sbbk, IGNORED, WORST))
-            .with("bad_steps", sides[1].detection.iter().filter(is_bad).count());
-        [row(0), sbbk]
+                .with("detection", Summary::of(side.detection.iter().copied()))
+                .with("step", Summary::of(side.step.iter().copied()))
+                .with("mesh_mebibytes", mebibytes(side.mesh_bytes))
+                .with("plugin_mebibytes", mebibytes(side.plugin_bytes))
+                .with("judged", comparison.judged[index])
+        });
+        let times = |row: &Row| ["detection.median", "detection.max"].map(|path| row.number(path));
+        let [times_of_stock, times_of_sbbk] = rows.each_ref().map(times);
+        let verdict = verdict(times_of_stock, times_of_sbbk, IGNORED, WORST);
+        let is_bad = |time: &&f64| **time > times_of_stock[1] + WORST;
+        let bad_steps = sides[1].detection.iter().filter(is_bad).count();
+        let [stock, sbbk] = rows;
+        [stock, sbbk.with("verdict", verdict).with("bad_steps", bad_steps)]
     }
 
     /// Runs the scene on both backends and writes a page that plays both runs.
@@ -130,16 +127,15 @@ impl<'a> Everyday<'a> {
     /// Errors: the page cannot be written.
     pub fn play(&self, path: &Path) -> Result<(), ReportError> {
         let sbbk = SbbkDispatcher::default();
-        let mut runs = Vec::new();
-        for (backend, dispatcher) in [(Backend::Stock, None), (Backend::Sbbk, Some(&sbbk))] {
-            let (Driven { mut world, mut drive }, _prepared) = self.start(dispatcher);
+        let runs = [(Backend::Stock, None), (Backend::Sbbk, Some(&sbbk))].map(|(backend, sbbk)| {
+            let (Driven { mut world, mut drive }, _prepared) = self.start(sbbk);
             let mut recorder = Recorder::new(backend, &world);
             for step in 0..self.steps {
                 drive(&mut world, step);
                 recorder.step(&mut world);
             }
-            runs.push(recorder);
-        }
+            recorder
+        });
         replay::write(path, &self.name(), &runs)
     }
 
@@ -169,12 +165,9 @@ impl<'a> Everyday<'a> {
         progress: &Progress,
     ) {
         let dispatcher = SbbkDispatcher::default();
-        let (stock, _) = self.start(None);
-        let (sbbk, _prepared) = self.start(Some(&dispatcher));
+        let ((stock, _), (sbbk, _prepared)) = (self.start(None), self.start(Some(&dispatcher)));
         let mut worlds = [stock, sbbk];
-        for Driven { world, .. } in &mut worlds {
-            world.physics_pipeline.counters.enable();
-        }
+        worlds.iter_mut().for_each(|driven| driven.world.physics_pipeline.counters.enable());
         for step in 0..self.steps {
             for i in [step % 2, 1 - step % 2] {
                 sides[i].step(&mut worlds[i], step);
@@ -205,16 +198,13 @@ impl Side {
         world.step();
         let whole = start.elapsed() + asked;
         let detection = asked + world.physics_pipeline.counters.cd.narrow_phase_time.time();
-        keep_least(&mut self.detection, step, detection);
-        keep_least(&mut self.step, step, whole);
-    }
-}
-
-fn keep_least(times: &mut Vec<f64>, step: usize, time: Duration) {
-    let time = 1e6 * time.as_secs_f64();
-    match times.get_mut(step) {
-        Some(least) => *least = least.min(time),
-        None => times.push(time),
+        for (times, time) in [(&mut self.detection, detection), (&mut self.step, whole)] {
+            let time = 1e6 * time.as_secs_f64();
+            match times.get_mut(step) {
+                Some(least) => *least = least.min(time),
+                None => times.push(time),
+            }
+        }
     }
 }
 
@@ -222,9 +212,7 @@ fn keep_least(times: &mut Vec<f64>, step: usize, time: Duration) {
 fn mesh_bytes(world: &PhysicsWorld) -> usize {
     let shapes = world.colliders.iter().map(|(_, collider)| collider.shape());
     let meshes = shapes.filter_map(|shape| Some((shape_address(shape), shape.as_trimesh()?)));
-    let mut meshes: Vec<_> =
+    let meshes: std::collections::BTreeMap<usize, usize> =
         meshes.map(|(address, mesh)| (address, mesh.total_memory_size())).collect();
-    meshes.sort_unstable();
-    meshes.dedup();
-    meshes.into_iter().map(|(_, bytes)| bytes).sum()
+    meshes.into_values().sum()
 }

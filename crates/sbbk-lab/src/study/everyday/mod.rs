@@ -6,14 +6,12 @@
 //! Brute force in f64 judges contacts of both at poses of stock's run.
 
 mod advise;
-mod ground;
 mod judged;
 mod measure;
 mod queries;
 mod report;
 mod robots;
 mod scenes;
-mod subject;
 
 use std::path::{Path, PathBuf};
 
@@ -22,8 +20,8 @@ use rapier3d::geometry::TriMeshFlags;
 use rapier3d::math::Real;
 
 pub use self::advise::{Advice, advise, advise_robot};
-use self::ground::Ground;
 use self::measure::Everyday;
+use self::scenes::Ground;
 use super::StudyError;
 use crate::progress::Progress;
 use crate::report::{Results, Row};
@@ -223,8 +221,7 @@ impl Worlds<'_> {
             scenes.iter().filter(|scene| scene.name().contains(&self.plan.name)).collect();
         for (index, scene) in scenes.iter().enumerate() {
             let message = format!("{phase}, world {} of {}", index + 1, scenes.len());
-            self.progress.phase(message, scene.step_count(self.plan.repeats));
-            self.rows.extend(scene.measure(self.plan.repeats, self.progress));
+            self.rows.extend(scene.measure(message, self.plan.repeats, self.progress));
             self.replay.take().map(|path| scene.play(path)).transpose()?;
         }
         Ok(())

@@ -10,8 +10,8 @@ use rapier3d::math::Real;
 use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d::parry::query::details::ShapeCastOptions;
 
-use super::ground::{Ground, above, head};
 use super::measure::verdict;
+use super::scenes::{Ground, above, head};
 use super::{PREDICTION, QUERIES};
 use crate::backend::{Backend, Dispatcher, Memory, SharedDispatcher};
 use crate::metrics::{ErrorCount, Summary};

@@ -1,35 +1,38 @@
-//! Robots from a URDF file, loaded by Rapier's own loader.
+//! Robots from a URDF file, loaded by Rapier's own loader, and what advice is about: a mesh or a robot.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 use std::fmt::Display;
 use std::path::Path;
-use std::time::Duration;
 
 use glamx::{Pose3, Quat, Vec3};
-use rapier3d::dynamics::{ImpulseJointHandle, JointAxis};
-use rapier3d::geometry::TriMeshFlags;
+use rapier3d::dynamics::{ImpulseJointHandle, JointAxis, RigidBodyBuilder, RigidBodyType};
+use rapier3d::geometry::{ColliderBuilder, SharedShape, TriMesh, TriMeshFlags};
 use rapier3d::math::Real;
 use rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
+use rapier3d::parry::query::Ray;
 use rapier3d::pipeline::PhysicsWorld;
 use rapier3d_urdf::{UrdfLoaderOptions, UrdfRobot};
+use sbbk_core::surface::{Surface, SurfaceKind};
 
 use super::DEFORMABLE;
-use super::ground::{Ground, above};
 use super::measure::{Driven, Everyday};
-use crate::report::Row;
+use super::scenes::{Ground, above, named};
+use crate::mesh::Mesh;
+use crate::scene::Solid;
 use crate::study::StudyError;
 
 /// A walker of four legs, nine meshes of 320 to 384 triangles, a metre long.
 const WALKER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/walker/walker.urdf");
 const COUNT: usize = 10;
-/// Distance of two robots, in their lengths.
-const SPACING: f32 = 2.0;
-/// Height of the lowest point over the terrain at the start, in units.
-const HEIGHT: f32 = 0.1;
 /// Motors of the joints: stiffness in 1/s², damping in 1/s, strides in Hz.
 const STIFFNESS: Real = 2000.0;
 const DAMPING: Real = 90.0;
 const STRIDES: f32 = 1.2;
+
+/// Turns z of the file upwards.
+fn upright() -> Quat {
+    Quat::from_rotation_x(-FRAC_PI_2)
+}
 
 /// Error for a URDF file.
 fn unusable(path: &Path, cause: impl Display) -> StudyError {
@@ -48,15 +51,13 @@ pub(super) fn robots<'a>(
     let walks = file.is_none();
     let file = file.unwrap_or(Path::new(WALKER));
     let defaults = UrdfLoaderOptions::default().trimesh_flags;
-    let mut scenes = Vec::new();
-    for (name, flags) in [("the loader's flags", defaults), ("no flags", TriMeshFlags::empty())] {
-        let bounds = bounds(&load(file, flags, Pose3::IDENTITY)?, file)?;
+    let flags = [("the loader's flags", defaults), ("no flags", TriMeshFlags::empty())];
+    let scene = |(name, flags): (&str, TriMeshFlags)| {
+        let bounds = bounds(&parts(&load(file, flags, Pose3::IDENTITY)?), file)?;
         let load = |index| load(file, flags, start(ground, bounds, index));
         let robots = (0..COUNT).map(load).collect::<Result<Vec<UrdfRobot>, _>>()?;
-        let row = Row::new(DEFORMABLE, "")
-            .key("scene", format!("{COUNT} robots from URDF, {name}"))
-            .key("triangles", ground.triangle_count);
-        let build = move || {
+        let name = format!("{COUNT} robots from URDF, {name}");
+        Ok(named(DEFORMABLE, &name, ground, steps, move || {
             let mut world = ground.world();
             let legs = robots.iter().flat_map(|robot| insert(&mut world, robot.clone()));
             let legs: Vec<Leg> = legs.collect();
@@ -64,65 +65,56 @@ pub(super) fn robots<'a>(
                 if walks {
                     legs.iter().for_each(|leg| leg.swing(world, step));
                 }
-                Duration::ZERO
             })
-        };
-        scenes.push(Everyday::new(row, steps, build));
-    }
-    Ok(scenes)
+        }))
+    };
+    flags.into_iter().map(scene).collect()
 }
 
-/// Box around the shapes of a robot.
-///
-/// Errors: the robot has no shapes.
-pub(super) fn bounds(robot: &UrdfRobot, file: &Path) -> Result<Aabb, StudyError> {
+/// Poses and shapes of a robot at rest.
+fn parts(robot: &UrdfRobot) -> Vec<(Pose3, SharedShape)> {
     let links = robot.links.iter().map(|link| (link.body.position(), &link.colliders));
-    let boxes = links.flat_map(|(body, colliders)| {
-        colliders.iter().map(move |part| {
-            let part = &part.collider;
-            part.shape().compute_aabb(&(body * part.position()))
-        })
+    let parts = links.flat_map(|(body, colliders)| {
+        let parts = colliders.iter().map(|part| &part.collider);
+        parts.map(move |part| (body * part.position(), part.shared_shape().clone()))
     });
-    boxes
-        .reduce(|one, two| one.merged(&two))
+    parts.collect()
+}
+
+/// Box around shapes at a pose.
+fn around(parts: &[(Pose3, SharedShape)], pose: &Pose3) -> Option<Aabb> {
+    let boxes = parts.iter().map(|(part, shape)| shape.compute_aabb(&(*pose * *part)));
+    boxes.reduce(|one, two| one.merged(&two))
+}
+
+fn bounds(parts: &[(Pose3, SharedShape)], file: &Path) -> Result<Aabb, StudyError> {
+    around(parts, &Pose3::IDENTITY)
         .ok_or_else(|| unusable(file, "no link has a shape that can collide"))
 }
 
-/// Start of a robot. In the file z is up.
+/// Start of a robot, two lengths from the next one, and its lowest point 0.1 over the terrain.
 fn start(ground: &Ground, bounds: Aabb, index: usize) -> Pose3 {
     let Vec3 { x: length, y: width, .. } = bounds.extents();
-    let [x, z] =
-        [index % 5, index / 5].map(|place| SPACING * length.max(width) * (place as f32 - 2.0));
-    let height = HEIGHT - bounds.mins.z;
-    Pose3::from_parts(above(ground.size, [x, z], height), Quat::from_rotation_x(-FRAC_PI_2))
+    let [x, z] = [index % 5, index / 5].map(|place| 2.0 * length.max(width) * (place as f32 - 2.0));
+    Pose3::from_parts(above(ground.size, [x, z], 0.1 - bounds.mins.z), upright())
 }
 
 /// Loads a robot with meshes of its own.
-pub(super) fn load(
-    file: &Path,
-    trimesh_flags: TriMeshFlags,
-    shift: Pose3,
-) -> Result<UrdfRobot, StudyError> {
+fn load(file: &Path, trimesh_flags: TriMeshFlags, shift: Pose3) -> Result<UrdfRobot, StudyError> {
     let options = UrdfLoaderOptions { trimesh_flags, shift, ..UrdfLoaderOptions::default() };
-    let (robot, _) =
-        UrdfRobot::from_file(file, options, None).map_err(|cause| unusable(file, cause))?;
-    Ok(robot)
+    let loaded = UrdfRobot::from_file(file, options, None);
+    loaded.map(|(robot, _)| robot).map_err(|cause| unusable(file, cause))
 }
 
 /// Joints of a leg, and its phase in a stride.
-pub(super) struct Leg {
+struct Leg {
     joints: [ImpulseJointHandle; 2],
     phase: f32,
 }
 
-pub(super) fn insert(world: &mut PhysicsWorld, robot: UrdfRobot) -> Vec<Leg> {
-    let joints = robot
-        .insert_using_impulse_joints(
-            &mut world.bodies,
-            &mut world.colliders,
-            &mut world.impulse_joints,
-        )
-        .joints;
+fn insert(world: &mut PhysicsWorld, robot: UrdfRobot) -> Vec<Leg> {
+    let PhysicsWorld { bodies, colliders, impulse_joints, .. } = world;
+    let joints = robot.insert_using_impulse_joints(bodies, colliders, impulse_joints).joints;
     // In the file: hip and knee of the left and of the right leg, in front and then behind.
     let legs = joints.chunks_exact(2).zip([0.0, 0.5, 0.5, 0.0]);
     legs.map(|(leg, phase)| Leg { joints: [leg[0].joint, leg[1].joint], phase }).collect()
@@ -138,5 +130,88 @@ impl Leg {
                 joint.data.set_motor_position(JointAxis::AngX, target, STIFFNESS, DAMPING);
             }
         }
+    }
+}
+
+type Insert = dyn Fn(&mut PhysicsWorld, Pose3);
+
+/// Shapes around the origin, and a function that inserts a body of them.
+pub(super) struct Subject {
+    pub name: String,
+    pub is_robot: bool,
+    /// Poses at rest, and shapes.
+    parts: Vec<(Pose3, SharedShape)>,
+    /// Inserts a dynamic body.
+    pub insert: Box<Insert>,
+}
+
+impl Subject {
+    /// Moves a mesh to the origin.
+    pub fn mesh(mesh: &Mesh) -> Self {
+        let solid = Solid::new(&mesh.clone().centred());
+        let parts = vec![(Pose3::IDENTITY, solid.collider().shape)];
+        let insert = move |world: &mut PhysicsWorld, pose| {
+            world.insert(RigidBodyBuilder::dynamic().pose(pose), solid.collider());
+        };
+        Self { name: mesh.name.clone(), is_robot: false, parts, insert: Box::new(insert) }
+    }
+
+    /// Loads a robot without flags of meshes, upright, with all links free.
+    ///
+    /// Errors: the file cannot be loaded, or its robot has no shapes.
+    pub fn robot(file: &Path) -> Result<Self, StudyError> {
+        let mut robot = load(file, TriMeshFlags::empty(), Pose3::from_rotation(upright()))?;
+        let centre = bounds(&parts(&robot), file)?.center();
+        robot.append_transform(&Pose3::from_translation(-centre));
+        for link in &mut robot.links {
+            link.body.set_body_type(RigidBodyType::Dynamic, false);
+        }
+        let parts = parts(&robot);
+        let insert = move |world: &mut PhysicsWorld, pose| {
+            let mut robot = robot.clone();
+            robot.append_transform(&pose);
+            insert(world, robot);
+        };
+        let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(Self { name, is_robot: true, parts, insert: Box::new(insert) })
+    }
+
+    /// Colliders of one rigid body.
+    pub fn colliders(&self) -> impl Iterator<Item = ColliderBuilder> {
+        self.parts.iter().map(|(pose, shape)| ColliderBuilder::new(shape.clone()).position(*pose))
+    }
+
+    /// Shapes of the meshes with more triangles than this.
+    pub fn larger_than(&self, triangles: usize) -> Vec<SharedShape> {
+        let shapes = self.parts.iter().map(|(_, shape)| shape);
+        let is_large = |mesh: &TriMesh| mesh.indices().len() > triangles;
+        shapes.filter(|shape| shape.as_trimesh().is_some_and(is_large)).cloned().collect()
+    }
+
+    /// Box around the subject at a pose.
+    pub fn bounds(&self, pose: &Pose3) -> Aabb {
+        around(&self.parts, pose).unwrap_or(Aabb::new_invalid())
+    }
+
+    /// Distance along a ray to the subject.
+    pub fn cast(&self, ray: &Ray, most: Real) -> Option<Real> {
+        let hit = |(pose, shape): &(Pose3, SharedShape)| shape.cast_ray(pose, ray, most, false);
+        self.parts.iter().filter_map(hit).reduce(Real::min)
+    }
+
+    pub fn triangle_count(&self) -> usize {
+        self.meshes().map(|mesh| mesh.indices().len()).sum()
+    }
+
+    /// Surface kind; of several meshes inside-out, sheet, solid, in this order.
+    pub fn kind(&self) -> SurfaceKind {
+        let kinds = self.meshes().map(|mesh| Surface::new(mesh.vertices(), mesh.indices()).kind());
+        let kinds: Vec<SurfaceKind> = kinds.collect();
+        let found = [SurfaceKind::InsideOut, SurfaceKind::Sheet];
+        found.into_iter().find(|kind| kinds.contains(kind)).unwrap_or(SurfaceKind::Solid)
+    }
+
+    fn meshes(&self) -> impl Iterator<Item = &TriMesh> {
+        self.parts.iter().filter_map(|(_, shape)| shape.as_trimesh())
     }
 }

@@ -1,45 +1,132 @@
-//! The worlds.
+//! Terrains, and the worlds on them.
 
 use std::collections::VecDeque;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
 use rapier3d::control::KinematicCharacterController;
 use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::geometry::{ColliderBuilder, SharedShape, TriMeshFlags};
-use rapier3d::pipeline::{ActiveEvents, QueryFilter};
+use rapier3d::math::Real;
+use rapier3d::pipeline::{ActiveEvents, PhysicsWorld, QueryFilter};
 
-use super::ground::{Ground, above, head, kinds, put};
 use super::measure::{Driven, Everyday};
 use super::{BODIES, DEFORMABLE, GroundPlan, PILE, SENSORS, SINGLE};
-use crate::mesh;
+use crate::mesh::{self, Mesh};
 use crate::report::Row;
 use crate::scene::{MonkeyPile, Scene, Solid, random, shape};
+use crate::study::shape as plain;
 
-/// Bodies of each kind on one terrain.
+/// A terrain of hills. All worlds of a scene share its mesh.
+#[derive(Clone)]
+pub(super) struct Ground {
+    pub shape: SharedShape,
+    /// Length of a side, in units.
+    pub size: f32,
+    pub triangle_count: u32,
+}
+
+/// Distance between bodies at the start, in units. Lower: bodies of some orientations touch.
+const SPACING: f32 = 1.6;
+
+impl Ground {
+    /// A terrain with so many `cells` of length `cell` along a side.
+    pub fn new(cells: u32, cell: f32, flags: TriMeshFlags) -> Self {
+        let size = cell * cells as f32;
+        let shape = shape(&mesh::hills(size, cells), flags);
+        Self { shape, size, triangle_count: 2 * cells * cells }
+    }
+
+    /// A world with the terrain alone.
+    pub fn world(&self) -> PhysicsWorld {
+        let mut world = PhysicsWorld::new();
+        let collider = ColliderBuilder::new(self.shape.clone()).density(0.0);
+        world.insert(RigidBodyBuilder::fixed(), collider);
+        world
+    }
+
+    /// Poses of bodies in a square grid, turned at random, `height` units above the terrain.
+    fn poses(&self, count: usize, height: f32, random: &mut Rand32) -> Vec<Pose3> {
+        let side = (count as f64).sqrt().ceil() as usize;
+        let place = |index: usize| SPACING * (index as f32 - 0.5 * (side as f32 - 1.0));
+        let pose = |index: usize| {
+            let [x, z] = [index % side, index / side].map(place);
+            Pose3::from_parts(above(self.size, [x, z], height), random::rotation(random))
+        };
+        (0..count).map(pose).collect()
+    }
+
+    /// A world with bodies of these shapes, in turn, that fall with random velocities.
+    fn scattered(&self, shapes: &[SharedShape], count: usize) -> Driven {
+        let (mut world, mut random) = (self.world(), Rand32::new(7));
+        let poses = self.poses(count, 1.0, &mut random);
+        for (pose, shape) in poses.into_iter().zip(shapes.iter().cycle()) {
+            let (way, turn) = (random::direction(&mut random), random::direction(&mut random));
+            let body = RigidBodyBuilder::dynamic().pose(pose);
+            let body = body.linvel(3.0 * way.with_y(0.0)).angvel(5.0 * turn);
+            world.insert(body, ColliderBuilder::new(shape.clone()));
+        }
+        Driven::alone(world)
+    }
+}
+
+/// A point above a terrain of this size.
+pub(super) fn above(size: f32, [x, z]: [f32; 2], height: f32) -> Vec3 {
+    Vec3::new(x, mesh::hill_height(size, x, z) + height, z)
+}
+
+/// The head of 968 triangles, 1.2 units across.
+pub(super) fn head() -> Mesh {
+    mesh::monkey_head().centred().scaled_to(1.2)
+}
+
+/// Moves a body to a place, at rest.
+pub(super) fn put(world: &mut PhysicsWorld, body: RigidBodyHandle, place: Vec3) {
+    let body = &mut world.bodies[body];
+    body.set_translation(place, true);
+    body.set_linvel(Vec3::ZERO, true);
+}
+
+/// Convex shapes of this length by name; the last entry has all of them.
+pub(super) fn kinds(length: Real) -> Vec<(&'static str, Vec<SharedShape>)> {
+    const NAMES: [&str; 6] = ["ball", "capsule", "cuboid", "cylinder", "cone", "convex polyhedron"];
+    let all = crate::study::convex::kinds::kinds(length);
+    let of = |name: &'static str| {
+        let shapes = all.iter().filter(|kind| kind.name == name);
+        (name, shapes.map(|kind| kind.shape.clone()).collect())
+    };
+    let mut kinds: Vec<(_, Vec<SharedShape>)> = NAMES.map(of).into();
+    let mixture = kinds.iter().flat_map(|kind| kind.1.clone()).collect();
+    kinds.push(("mixture", mixture));
+    kinds
+}
+
+/// Bodies of each kind side by side on one terrain, at most `count`.
 pub(super) fn bodies<'a>(
     plan: GroundPlan,
     ground: &'a Ground,
     count: usize,
     steps: usize,
 ) -> Vec<Everyday<'a>> {
+    let side = ((ground.size - 3.0) / SPACING).max(1.0) as usize;
+    let count = count.min(side * side);
     let scene = |(name, shapes): (&str, Vec<SharedShape>)| {
-        let count = ground.room(count);
         let row = Row::new(BODIES, "")
             .key("triangles", ground.triangle_count)
             .key("side", plan.cell.to_string())
             .key("edges", if plan.fixes_edges { "fixed" } else { "plain" })
             .key("shape", name)
             .with("bodies", count);
-        let build = move || {
-            let mut world = ground.world();
-            ground.scatter(&mut world, &shapes, count);
-            Driven::alone(world)
-        };
-        Everyday::new(row, steps, build)
+        Everyday::new(row, steps, move || ground.scattered(&shapes, count))
     };
     kinds(1.0).into_iter().map(scene).collect()
+}
+
+/// A ball and two meshes of about the same size.
+fn wanderers() -> [(&'static str, SharedShape); 3] {
+    let mesh_ball = plain(&mesh::ball(0.5, 8));
+    [("ball", SharedShape::ball(0.5)), ("mesh ball", mesh_ball), ("head", plain(&head()))]
 }
 
 /// A ball and meshes, one in each world, that bounce on a terrain, higher than its rim.
@@ -59,7 +146,6 @@ pub(super) fn bouncing(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
                 let up = body.linvel().y;
                 let is_landing = up > 0.0 && body.translation().y < start.y - 5.0;
                 body.set_linvel(Vec3::Y * if is_landing { SPEED } else { up }, true);
-                Duration::ZERO
             })
         })
     };
@@ -77,7 +163,6 @@ pub(super) fn crossing(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
             Driven::by(world, move |world, step| {
                 let x = (size - 8.0) * (step as f32 / steps as f32 - 0.5);
                 put(world, body, above(size, [x, 0.3 * x], 0.45));
-                Duration::ZERO
             })
         })
     };
@@ -88,9 +173,8 @@ pub(super) fn crossing(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
 pub(super) fn rolling_population(ground: &Ground, count: usize) -> Everyday<'_> {
     const AT_ONCE: usize = 150;
     const EACH_STEP: usize = 5;
-    let steps = count / EACH_STEP;
     let name = format!("{count} small meshes come and go, {AT_ONCE} at once");
-    named(SINGLE, &name, ground, steps, move || {
+    named(SINGLE, &name, ground, count / EACH_STEP, move || {
         let mut random = Rand32::new(5);
         let mut bodies: VecDeque<RigidBodyHandle> = VecDeque::new();
         let (size, mut made) = (ground.size, 0);
@@ -101,14 +185,12 @@ pub(super) fn rolling_population(ground: &Ground, count: usize) -> Everyday<'_> 
                 let stretch = Vec3::from_array([(); 3].map(|()| between(0.3, 0.6)));
                 let start = above(size, [(); 2].map(|()| between(-8.0, 8.0)), 1.5);
                 let small = mesh::ball(1.0, made as u32 % 5 + 2).mapped(|vertex| stretch * vertex);
-                let solid = Solid::new(&small);
                 let body = RigidBodyBuilder::dynamic().translation(start);
-                bodies.push_back(world.insert(body, solid.collider()).0);
+                bodies.push_back(world.insert(body, Solid::new(&small).collider()).0);
                 if bodies.len() > AT_ONCE {
                     bodies.pop_front().map(|oldest| world.remove_body(oldest));
                 }
             }
-            Duration::ZERO
         })
     })
 }
@@ -118,28 +200,21 @@ pub(super) fn all_flags(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
     let head = shape(&head(), TriMeshFlags::all());
     let scenes = [("50 balls", SharedShape::ball(0.5), 50), ("20 heads", head, 20)];
     let scene = |(name, shape, count)| {
-        named(DEFORMABLE, name, ground, steps, move || {
-            let mut world = ground.world();
-            ground.scatter(&mut world, std::slice::from_ref(&shape), count);
-            Driven::alone(world)
-        })
+        let build = move || ground.scattered(std::slice::from_ref(&shape), count);
+        named(DEFORMABLE, name, ground, steps, build)
     };
     scenes.map(scene).into()
 }
 
 /// Twenty heads as sensors in slow flight at several heights, and ten characters that walk.
 pub(super) fn sensors(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
-    const SPEED: f32 = 0.02;
-    let head = shape(&head(), TriMeshFlags::empty());
-    let places = [("in", 0.3), ("near", 0.8), ("above", 2.0)];
-    let mut scenes: Vec<Everyday<'_>> = Vec::new();
-    for (place, height) in places {
-        let head = head.clone();
-        scenes.push(named(SENSORS, &format!("20 sensors {place} it"), ground, steps, move || {
+    let head = plain(&head());
+    let sensors = |(place, height): (&str, f32)| {
+        let sensor = ColliderBuilder::new(head.clone()).sensor(true);
+        let sensor = sensor.active_events(ActiveEvents::COLLISION_EVENTS);
+        named(SENSORS, &format!("20 sensors {place} it"), ground, steps, move || {
             let mut world = ground.world();
             let poses = ground.poses(20, height, &mut Rand32::new(3));
-            let sensor = ColliderBuilder::new(head.clone()).sensor(true);
-            let sensor = sensor.active_events(ActiveEvents::COLLISION_EVENTS);
             let bodies = poses.iter().map(|&pose| {
                 let body = RigidBodyBuilder::dynamic().pose(pose).gravity_scale(0.0);
                 world.insert(body.additional_mass(1.0), sensor.clone()).0
@@ -149,35 +224,31 @@ pub(super) fn sensors(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
             Driven::by(world, move |world, step| {
                 for (&body, start) in bodies.iter().zip(&poses) {
                     let Vec3 { x, z, .. } = start.translation;
-                    put(world, body, above(size, [x + SPEED * step as f32, z], height));
+                    put(world, body, above(size, [x + 0.02 * step as f32, z], height));
                 }
-                Duration::ZERO
             })
-        }));
-    }
-    scenes.push(named(SENSORS, "10 characters walk", ground, steps, || characters(ground)));
-    scenes
+        })
+    };
+    let walk = named(SENSORS, "10 characters walk", ground, steps, || characters(ground));
+    let places = [("in", 0.3), ("near", 0.8), ("above", 2.0)];
+    places.map(sensors).into_iter().chain([walk]).collect()
 }
 
 /// Capsules moved by Rapier's character controller, which uses casts and contacts.
 fn characters(ground: &Ground) -> Driven {
     let mut world = ground.world();
     let shape = SharedShape::capsule_y(0.4, 0.3);
-    let mut poses = ground.poses(10, 0.9, &mut Rand32::new(4));
-    let walkers: Vec<_> = poses
-        .iter_mut()
-        .map(|pose| {
-            *pose = Pose3::from_translation(pose.translation);
-            let body = RigidBodyBuilder::kinematic_position_based().pose(*pose);
-            world.insert(body, ColliderBuilder::new(shape.clone())).0
-        })
-        .collect();
+    let poses = ground.poses(10, 0.9, &mut Rand32::new(4)).into_iter();
+    let walkers = poses.map(|pose| {
+        let body = RigidBodyBuilder::kinematic_position_based().translation(pose.translation);
+        world.insert(body, ColliderBuilder::new(shape.clone())).0
+    });
+    let walkers: Vec<_> = walkers.collect();
     let controller = KinematicCharacterController::default();
-    let ways: Vec<Vec3> = {
-        let mut random = Rand32::new(6);
-        walkers.iter().map(|_| 3.0 * random::direction(&mut random).with_y(-0.3)).collect()
-    };
-    Driven::by(world, move |world, _| {
+    let mut random = Rand32::new(6);
+    let ways = walkers.iter().map(|_| 3.0 * random::direction(&mut random).with_y(-0.3));
+    let ways: Vec<Vec3> = ways.collect();
+    let drive = move |world: &mut PhysicsWorld, _| {
         let time_step = world.integration_parameters.dt;
         let start = Instant::now();
         let moves = walkers.iter().zip(&ways).map(|(&walker, &way)| {
@@ -194,18 +265,18 @@ fn characters(ground: &Ground) -> Driven {
             walker.set_next_kinematic_translation(walker.translation() + translation);
         }
         asked
-    })
+    };
+    Driven { world, drive: Box::new(drive) }
 }
 
 /// The paper's second scene.
 pub(super) fn pile(heads: usize, steps: usize) -> Everyday<'static> {
     let pile = MonkeyPile::with_heads(heads);
     let row = Row::new(PILE, "").key("scene", pile.name());
-    let build = move || Driven::alone(pile.build().world);
-    Everyday::new(row, steps, build)
+    Everyday::new(row, steps, move || Driven::alone(pile.build().world))
 }
 
-fn named<'a>(
+pub(super) fn named<'a>(
     study: &'static str,
     name: &str,
     ground: &Ground,
@@ -214,14 +285,4 @@ fn named<'a>(
 ) -> Everyday<'a> {
     let row = Row::new(study, "").key("scene", name).key("triangles", ground.triangle_count);
     Everyday::new(row, steps, build)
-}
-
-/// A ball and two meshes of about the same size.
-fn wanderers() -> [(&'static str, SharedShape); 3] {
-    let mesh = |mesh| shape(&mesh, TriMeshFlags::empty());
-    [
-        ("ball", SharedShape::ball(0.5)),
-        ("mesh ball", mesh(mesh::ball(0.5, 8))),
-        ("head", mesh(head())),
-    ]
 }

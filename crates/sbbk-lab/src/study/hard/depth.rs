@@ -64,33 +64,24 @@ impl Depths {
     }
 }
 
-/// Mean and greatest depth of some pairs.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct PairDepths {
-    pub mean: f64,
-    pub max: f64,
-}
-
-/// Measures at most `limit` touching pairs of dynamic bodies, which all have this mesh.
-pub(super) fn touching_pairs(world: &PhysicsWorld, depths: &Depths, limit: usize) -> PairDepths {
-    let mut pairs: Vec<[Pose3; 2]> = Vec::new();
-    for pair in world.contact_pairs() {
+/// Mean and greatest depth of at most `limit` touching pairs of dynamic bodies, which all have this
+/// mesh.
+pub(super) fn touching_pairs(world: &PhysicsWorld, depths: &Depths, limit: usize) -> [f64; 2] {
+    let pairs = world.contact_pairs().filter_map(|pair| {
         let colliders = [pair.collider1, pair.collider2].map(|handle| &world.colliders[handle]);
-        let moves = colliders.map(|collider| {
+        let moves = colliders.iter().all(|collider| {
             collider.parent().is_some_and(|parent| world.bodies[parent].is_dynamic())
         });
-        if moves == [true; 2] && pair.manifolds().iter().any(|manifold| !manifold.points.is_empty())
-        {
-            pairs.push(colliders.map(|collider| *collider.position()));
-        }
-    }
+        let touches = pair.manifolds().iter().any(|manifold| !manifold.points.is_empty());
+        (moves && touches).then(|| colliders.map(|collider| *collider.position()))
+    });
+    let pairs: Vec<[Pose3; 2]> = pairs.collect();
     let sampled = sample_indices(pairs.len(), limit);
-    let mut found = PairDepths::default();
-    for &index in &sampled {
-        let [one, two] = &pairs[index];
+    let (mut mean, mut max) = (0.0, 0.0_f64);
+    for [one, two] in sampled.iter().map(|&index| &pairs[index]) {
         let depth = f64::from(depths.between(one, depths, two));
-        found.mean += depth / sampled.len() as f64;
-        found.max = found.max.max(depth);
+        mean += depth / sampled.len() as f64;
+        max = max.max(depth);
     }
-    found
+    [mean, max]
 }

@@ -16,8 +16,8 @@ use serde_json::Value;
 use super::Column;
 use super::depth::Depths;
 use super::figures::Gain;
+use super::heaps::{FLOOR, above_floor};
 use super::kit::{Form, Kit};
-use super::pile::{FLOOR, build};
 use crate::mesh::Mesh;
 use crate::metrics::{Summary, solver_points};
 use crate::report::{Results, Row, TableSpec, number};
@@ -88,7 +88,7 @@ impl EnginePile {
     }
 
     fn kit(column: Column) -> Kit {
-        Kit { column, recycling: true, seed: 1, film: None }
+        Kit::new(column, true, 1)
     }
 
     /// Writes the scene as numbers in f32, lists after their lengths.
@@ -167,7 +167,7 @@ impl EnginePile {
         let form = Form::parts(self.mesh.clone(), self.parts.iter().cloned());
         let properties = MassProperties::new(Vec3::ZERO, self.mass, self.inertia);
         let collider = kit.collider(&form).friction(self.friction).mass_properties(properties);
-        let mut world = build(&kit, self.floor, self.poses.iter().copied(), &collider);
+        let mut world = above_floor(&kit, self.floor, self.poses.iter().copied(), &collider);
         world.integration_parameters.dt = self.time_step;
         world.gravity = -self.gravity * Vec3::Y;
         for _ in 0..STEPS {

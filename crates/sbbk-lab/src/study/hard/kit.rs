@@ -1,22 +1,27 @@
-//! Shapes, worlds and random numbers of a column.
+//! Worlds, bodies and figures of the hard scenes.
 
+pub(super) use std::f32::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, PI, TAU};
 use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use clap::ValueEnum;
-use glamx::{Pose3, Vec3};
-use oorandom::Rand32;
-use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
-use rapier3d::geometry::{ColliderBuilder, HeightFieldFlags, SharedShape, TriMeshFlags};
+pub(super) use glamx::{Pose3, Quat, Vec2, Vec3};
+pub(super) use oorandom::Rand32;
+pub(super) use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
+pub(super) use rapier3d::geometry::{ColliderBuilder, SharedShape};
+use rapier3d::geometry::{HeightFieldFlags, TriMeshFlags};
 use rapier3d::parry::utils::Array2;
-use rapier3d::pipeline::PhysicsWorld;
+pub(super) use rapier3d::pipeline::PhysicsWorld;
 
-use super::figures::{Gain, largest};
+pub(super) use super::Trial;
+pub(super) use super::depth::{Depths, touching_pairs};
+pub(super) use super::figures::{Figures, Gain, largest};
 use crate::backend::Backend;
-use crate::mesh::{self, Mesh};
+pub(super) use crate::mesh::{self, Mesh};
 use crate::metrics::{Summary, solver_points};
 use crate::replay::Recorder;
+pub(super) use crate::scene::random;
 use crate::scene::shape;
 
 named! {
@@ -58,11 +63,6 @@ impl Form {
         Self { mesh: mesh::cuboid(half_extents, cells), control }
     }
 
-    /// A ball of `8 * detail * detail` triangles.
-    pub fn ball(radius: f32, detail: u32) -> Self {
-        Self { mesh: mesh::ball(radius, detail), control: Some(SharedShape::ball(radius)) }
-    }
-
     /// A mesh that consists of convex parts, each the hull of some points.
     pub fn parts(mesh: Mesh, parts: impl IntoIterator<Item = Vec<Vec3>>) -> Self {
         let hulls = parts.into_iter().filter_map(|points| SharedShape::convex_hull(&points));
@@ -71,25 +71,78 @@ impl Form {
     }
 }
 
+/// A shared recording.
+pub(super) type Film = Arc<Mutex<Option<Recorder>>>;
+
 /// Settings of one run of a scene.
-#[derive(Clone, Debug)]
 pub(super) struct Kit {
     pub column: Column,
     pub recycling: bool,
     pub seed: u64,
-    /// Recording of the first world of the run, if any.
-    pub film: Option<Film>,
+    /// Taken by the first world, which is recorded.
+    pub film: Mutex<Option<Film>>,
 }
 
-/// A shared recording.
-pub(super) type Film = Arc<Mutex<Option<Recorder>>>;
+impl Kit {
+    pub fn new(column: Column, recycling: bool, seed: u64) -> Self {
+        Self { column, recycling, seed, film: Mutex::default() }
+    }
+
+    /// An empty world with the column's dispatcher.
+    pub fn world(&self) -> World {
+        let mut world = PhysicsWorld::new();
+        world.integration_parameters.contact_recycling = self.recycling;
+        let backend = match self.column {
+            Column::Stock | Column::StockFlag | Column::Control => Backend::Stock,
+            Column::Sbbk | Column::SbbkFlag => Backend::Sbbk,
+            Column::Every => Backend::Every,
+        };
+        if let Some(sbbk) = backend.dispatcher().sbbk {
+            world.narrow_phase.set_query_dispatcher(sbbk);
+        }
+        let film = self.film.lock().unwrap_or_else(PoisonError::into_inner).take();
+        World { world, film, column: self.column, watched: Vec::new() }
+    }
+
+    fn is_flagged(&self) -> bool {
+        matches!(self.column, Column::StockFlag | Column::SbbkFlag)
+    }
+
+    /// Makes a collider. Clones share its shape.
+    pub fn collider(&self, form: &Form) -> ColliderBuilder {
+        match (self.column, &form.control) {
+            (Column::Control, Some(control)) => ColliderBuilder::new(control.clone()),
+            _ => self.mesh(&form.mesh),
+        }
+    }
+
+    /// Makes a collider of a mesh, in the control as well.
+    pub fn mesh(&self, mesh: &Mesh) -> ColliderBuilder {
+        let flag = TriMeshFlags::FIX_INTERNAL_EDGES;
+        let flags = if self.is_flagged() { flag } else { TriMeshFlags::empty() };
+        ColliderBuilder::new(shape(mesh, flags))
+    }
+
+    /// A flat height field at height 0, of so many cells along z and x.
+    pub fn flat_field(&self, cells: [u32; 2], size: Vec3) -> ColliderBuilder {
+        let flag = HeightFieldFlags::FIX_INTERNAL_EDGES;
+        let flags = if self.is_flagged() { flag } else { HeightFieldFlags::empty() };
+        let [rows, columns] = cells.map(|cells| cells as usize + 1);
+        let heights = Array2::repeat(rows, columns, 0.0);
+        ColliderBuilder::new(SharedShape::heightfield_with_flags(heights, size, flags))
+    }
+
+    /// Numbers that depend on the seed alone.
+    pub fn random(&self) -> Rand32 {
+        Rand32::new(self.seed)
+    }
+}
 
 /// A world with the bodies of its scene, and a recording if there is a film.
 pub(super) struct World {
     world: PhysicsWorld,
     film: Option<Film>,
-    recorder: Option<Recorder>,
-    name: String,
+    column: Column,
     /// Bodies of the scene, in the order of insertion.
     pub watched: Vec<RigidBodyHandle>,
 }
@@ -117,7 +170,11 @@ impl World {
         body
     }
 
-    /// Steps the world.
+    /// Adds a body at rest.
+    pub fn put(&mut self, pose: Pose3, collider: &ColliderBuilder) -> RigidBodyHandle {
+        self.add(RigidBodyBuilder::dynamic().pose(pose), collider)
+    }
+
     pub fn run(&mut self, steps: usize) {
         (0..steps).for_each(|_| self.step());
     }
@@ -152,7 +209,6 @@ impl World {
         largest(self.watched.iter().map(|&body| self.bodies[body].linvel().length()))
     }
 
-    /// Places of the bodies.
     pub fn places(&self) -> Vec<Vec3> {
         self.watched.iter().map(|&body| self.bodies[body].translation()).collect()
     }
@@ -167,22 +223,10 @@ impl World {
         energies.sum()
     }
 
-    /// Steps once.
     pub fn step(&mut self) {
-        let Self { world, film, recorder, name, .. } = self;
-        match film {
-            Some(_) => recorder.get_or_insert_with(|| Recorder::new(name, world)).step(world),
-            None => world.step(),
-        }
-    }
-}
-
-impl Drop for World {
-    fn drop(&mut self) {
-        if let Some(film) = &self.film {
-            let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);
-            *film = film.take().or(self.recorder.take());
-        }
+        let Some(film) = &self.film else { return self.world.step() };
+        let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);
+        film.get_or_insert_with(|| Recorder::new(self.column, &self.world)).step(&mut self.world);
     }
 }
 
@@ -197,57 +241,5 @@ impl Deref for World {
 impl DerefMut for World {
     fn deref_mut(&mut self) -> &mut PhysicsWorld {
         &mut self.world
-    }
-}
-
-impl Kit {
-    /// An empty world with the column's dispatcher.
-    pub fn world(&self) -> World {
-        let mut world = PhysicsWorld::new();
-        world.integration_parameters.contact_recycling = self.recycling;
-        let backend = match self.column {
-            Column::Stock | Column::StockFlag | Column::Control => Backend::Stock,
-            Column::Sbbk | Column::SbbkFlag => Backend::Sbbk,
-            Column::Every => Backend::Every,
-        };
-        if let Some(sbbk) = backend.dispatcher().sbbk {
-            world.narrow_phase.set_query_dispatcher(sbbk);
-        }
-        let (film, name) = (self.film.clone(), self.column.to_string());
-        World { world, film, recorder: None, name, watched: Vec::new() }
-    }
-
-    /// Makes a collider. Clones share its shape.
-    pub fn collider(&self, form: &Form) -> ColliderBuilder {
-        let shape = match (self.column, &form.control) {
-            (Column::Control, Some(control)) => control.clone(),
-            _ => self.mesh_shape(&form.mesh),
-        };
-        ColliderBuilder::new(shape)
-    }
-
-    /// Makes a mesh shape, in the control as well.
-    pub fn mesh_shape(&self, mesh: &Mesh) -> SharedShape {
-        let flags = match self.column {
-            Column::StockFlag | Column::SbbkFlag => TriMeshFlags::FIX_INTERNAL_EDGES,
-            _ => TriMeshFlags::empty(),
-        };
-        shape(mesh, flags)
-    }
-
-    /// A flat height field at height 0, of so many cells along z and x.
-    pub fn flat_field(&self, cells: [u32; 2], size: Vec3) -> SharedShape {
-        let flags = match self.column {
-            Column::StockFlag | Column::SbbkFlag => HeightFieldFlags::FIX_INTERNAL_EDGES,
-            _ => HeightFieldFlags::empty(),
-        };
-        let [rows, columns] = cells.map(|cells| cells as usize + 1);
-        let heights = Array2::repeat(rows, columns, 0.0);
-        SharedShape::heightfield_with_flags(heights, size, flags)
-    }
-
-    /// Numbers that depend on the seed alone.
-    pub fn random(&self) -> Rand32 {
-        Rand32::new(self.seed)
     }
 }

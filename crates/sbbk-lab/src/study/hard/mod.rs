@@ -8,25 +8,17 @@
 //! Time steps are 1/60 s, gravity 9.81 units/s², and all parameters Rapier's defaults, unless a scene
 //! says otherwise.
 
-mod bowls;
 mod ccd;
-mod chain;
 mod depth;
 pub mod engines;
 mod figures;
-mod gears;
+mod heaps;
+mod inside;
 mod kit;
-mod overlap;
-mod pile;
-mod pit;
+mod machines;
 mod report;
+mod resting;
 mod road;
-mod screw;
-mod sheets;
-mod stacks;
-mod sunk;
-mod tray;
-mod walls;
 
 use std::path::PathBuf;
 use std::sync::PoisonError;
@@ -165,11 +157,32 @@ impl Trial {
             let columns = plan.columns.iter().copied();
             for column in columns.filter(|&column| self.has_control || column != Column::Control) {
                 let seeds = 1..=if self.has_seeds { plan.seeds } else { 1 };
-                kits.extend(seeds.map(|seed| Kit { column, recycling, seed, film: None }));
+                kits.extend(seeds.map(|seed| Kit::new(column, recycling, seed)));
             }
         }
         kits
     }
+}
+
+fn trials(group: Group, plan: &HardPlan) -> Vec<Trial> {
+    let mut trials = match group {
+        Group::Pile => heaps::piles(&plan.heads, plan.mesh.as_ref()),
+        Group::Stacks => resting::stacks(),
+        Group::Bowls => resting::bowls(),
+        Group::Walls => resting::walls(),
+        Group::Chain => resting::chains(),
+        Group::Screw => machines::screws(),
+        Group::Gears => machines::gears(),
+        Group::Overlap => inside::overlaps(),
+        Group::Sunk => inside::sunk(),
+        Group::Road => road::trials(),
+        Group::Ccd => ccd::trials(),
+        Group::Pit => heaps::pits(),
+        Group::Sheets => inside::sheets(),
+        Group::Tray => heaps::trays(),
+    };
+    trials.retain(|trial| trial.name.contains(&plan.name));
+    trials
 }
 
 /// Runs all scenes of the plan.
@@ -179,29 +192,13 @@ pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError>
     let mut rows = Vec::new();
     let mut replay = plan.replay.as_deref();
     for group in &plan.groups {
-        let mut trials = match group {
-            Group::Pile => pile::trials(&plan.heads, plan.mesh.as_ref()),
-            Group::Stacks => stacks::trials(),
-            Group::Bowls => bowls::trials(),
-            Group::Walls => walls::trials(),
-            Group::Chain => chain::trials(),
-            Group::Screw => screw::trials(),
-            Group::Ccd => ccd::trials(),
-            Group::Pit => pit::trials(),
-            Group::Gears => gears::trials(),
-            Group::Overlap => overlap::trials(),
-            Group::Sunk => sunk::trials(),
-            Group::Road => road::trials(),
-            Group::Sheets => sheets::trials(),
-            Group::Tray => tray::trials(),
-        };
-        trials.retain(|trial| trial.name.contains(&plan.name));
-        let mut jobs: Vec<(&Trial, Kit)> = trials
+        let trials = trials(*group, plan);
+        let jobs: Vec<(&Trial, Kit)> = trials
             .iter()
             .flat_map(|trial| trial.kits(plan).into_iter().map(move |kit| (trial, kit)))
             .collect();
         let replay = trials.first().and_then(|trial| Some((trial, replay.take()?)));
-        let films = if replay.is_some() { film(&mut jobs) } else { Vec::new() };
+        let films = replay.map_or_else(Vec::new, |(trial, _)| film(trial, &jobs));
         let name = group.to_possible_value().map_or_else(String::new, |v| v.get_name().to_owned());
         progress.phase(name, jobs.len());
         let threads = if matches!(group, Group::Pile | Group::Tray) { 1 } else { plan.threads };
@@ -229,15 +226,14 @@ pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError>
     Ok(Results::new(report::verdict_of_all(plan, &rows), rows, tables))
 }
 
-/// Records the first run of the first scene in each column.
-fn film(jobs: &mut [(&Trial, Kit)]) -> Vec<Film> {
+/// Records the first run of a scene in each column.
+fn film(first: &Trial, jobs: &[(&Trial, Kit)]) -> Vec<Film> {
     let mut films: Vec<(Column, Film)> = Vec::new();
-    let first = jobs.first().map_or_else(String::new, |(trial, _)| trial.name.clone());
-    for (_, kit) in jobs.iter_mut().filter(|(trial, _)| trial.name == first) {
+    for (_, kit) in jobs.iter().filter(|(trial, _)| trial.name == first.name) {
         if films.iter().all(|(column, _)| *column != kit.column) {
             let film = Film::default();
             films.push((kit.column, film.clone()));
-            kit.film = Some(film);
+            *kit.film.lock().unwrap_or_else(PoisonError::into_inner) = Some(film);
         }
     }
     films.into_iter().map(|(_, film)| film).collect()
