@@ -5,6 +5,8 @@
 //! [`report`] shows the results, and [`replay`] writes pages that play runs.
 //! [`sbbk_testkit`] has the meshes and scenes.
 
+#![allow(missing_docs, reason = "not published; names that tell all need no sentence")]
+
 #[macro_use]
 mod named;
 

@@ -3,6 +3,8 @@
 //! [`mesh`] makes triangle meshes, [`scene`] builds worlds from them, [`probe`] records and times
 //! the queries of a world, and [`world`] describes a world by numbers.
 
+#![allow(missing_docs, reason = "not published; names that tell all need no sentence")]
+
 pub mod mesh;
 pub mod probe;
 pub mod scene;

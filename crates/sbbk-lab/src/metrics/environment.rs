@@ -2,12 +2,12 @@
 
 use std::fmt;
 use std::fs;
-use std::process::Command;
 use std::thread::available_parallelism;
 
 use serde::Serialize;
 
 use crate::backend::clock_cost;
+use crate::report::said_by;
 
 /// Machine and build of a measurement.
 #[derive(Clone, Debug, Serialize)]
@@ -18,7 +18,7 @@ pub struct Environment {
     pub cores: usize,
     /// Threads that Rapier uses.
     pub rapier: &'static str,
-    /// Version of the compiler.
+    /// Version of the compiler in the path, which built this program if nothing was changed since.
     pub rustc: String,
     /// `release`, or with debug assertions.
     pub profile: &'static str,
@@ -31,11 +31,14 @@ pub struct Environment {
 impl Environment {
     /// The machine and build of this process.
     pub fn detect() -> Self {
+        let info = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+        let model = info.lines().find(|line| line.starts_with("model name"));
+        let model = model.and_then(|line| Some(line.split_once(':')?.1.trim()));
         Self {
-            cpu: cpu_model().unwrap_or_else(|| std::env::consts::ARCH.to_owned()),
+            cpu: model.unwrap_or(std::env::consts::ARCH).to_owned(),
             cores: available_parallelism().map_or(1, usize::from),
             rapier: "on one thread",
-            rustc: rustc(),
+            rustc: said_by("rustc", &["--version"]),
             profile: if cfg!(debug_assertions) { "debug assertions" } else { "release" },
             simd: match () {
                 () if cfg!(target_feature = "avx512f") => "avx512f",
@@ -52,23 +55,7 @@ impl Environment {
 impl fmt::Display for Environment {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { cpu, cores, rapier, rustc, profile, simd, clock_ns } = self;
-        write!(
-            f,
-            "{cpu}, {cores} cores; Rapier {rapier}; {rustc}; {profile}, {simd}; clock {clock_ns} ns a query"
-        )
+        write!(f, "{cpu}, {cores} cores; Rapier {rapier}; {rustc}; {profile}, {simd}; ")?;
+        write!(f, "clock {clock_ns} ns a query")
     }
-}
-
-/// The first model name in Linux's list of processors.
-fn cpu_model() -> Option<String> {
-    let info = fs::read_to_string("/proc/cpuinfo").ok()?;
-    let line = info.lines().find(|line| line.starts_with("model name"))?;
-    Some(line.split_once(':')?.1.trim().to_owned())
-}
-
-/// Version of the compiler in the path, which built this program if nothing was changed since.
-fn rustc() -> String {
-    let output = Command::new("rustc").arg("--version").output();
-    let text = output.ok().and_then(|output| String::from_utf8(output.stdout).ok());
-    text.map_or_else(|| "rustc of unknown version".to_owned(), |text| text.trim().to_owned())
 }

@@ -8,9 +8,12 @@ use std::fmt;
 
 use serde::Serialize;
 
+pub(crate) use output::said_by;
 pub use output::{ReportError, check_outputs, write_file};
 pub use row::Row;
-pub use table::{Column, Table, TableSpec, errors, faster, number, sides, three_digits, time};
+pub use table::{
+    Column, Table, TableSpec, errors, faster, greater, number, sides, three_digits, time,
+};
 
 use crate::metrics::Environment;
 

@@ -78,16 +78,15 @@ impl Row {
 
     /// All numbers, each with its quantity and the path below this quantity.
     pub(super) fn measurements(&self) -> Vec<(&str, String, f64)> {
-        let mut measurements = Vec::new();
-        for (quantity, value) in &self.values {
+        let measurements = self.values.iter().flat_map(|(quantity, value)| {
             let mut found = Vec::new();
             collect(value, String::new(), &mut found);
-            measurements.extend(found.into_iter().map(|(path, number)| {
+            found.into_iter().map(|(path, number)| {
                 let statistic = if path.is_empty() { "value".to_owned() } else { path };
                 (&**quantity, statistic, number)
-            }));
-        }
-        measurements
+            })
+        });
+        measurements.collect()
     }
 }
 
@@ -106,34 +105,4 @@ fn collect(value: &Value, path: String, found: &mut Vec<(String, f64)>) {
         collect(value, below(&index.to_string()), found);
     }
     found.extend(value.as_f64().map(|number| (path, number)));
-}
-
-#[cfg(test)]
-mod tests {
-    use serde_json::json;
-
-    use super::*;
-
-    /// Would catch lost numbers, and numbers of another scene or quantity.
-    #[test]
-    fn every_number_becomes_a_measurement() {
-        let row = Row::new("study", "sbbk")
-            .key("mesh", "ball")
-            .key("contact_recycling", false)
-            .with("steps", 3)
-            .with("step", json!({ "min": 1.5, "median": 2.0 }))
-            .with("counts", [7, 8])
-            .with("steady", json!({ "time": { "min": 0.5 } }));
-        assert_eq!(row.scene(), "mesh ball");
-        let expected = [
-            ("counts", "0".to_owned(), 7.0),
-            ("counts", "1".to_owned(), 8.0),
-            ("steady", "time.min".to_owned(), 0.5),
-            ("step", "median".to_owned(), 2.0),
-            ("step", "min".to_owned(), 1.5),
-            ("steps", "value".to_owned(), 3.0),
-        ];
-        assert_eq!(row.measurements(), expected);
-        assert_eq!(row.number("steady.time.min"), 0.5);
-    }
 }

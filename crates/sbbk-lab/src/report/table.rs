@@ -13,7 +13,6 @@ const WIDTH: usize = 100;
 /// A table for the terminal.
 #[derive(Clone, Debug)]
 pub struct Table {
-    /// Subject of the table.
     pub title: String,
     /// Names of the columns.
     pub header: Vec<String>,
@@ -35,50 +34,87 @@ pub struct TableSpec<'a> {
     notes: Vec<String>,
 }
 
-/// A column: its name, and a function of the rows of a line.
-#[derive(Clone, Debug)]
+/// A column: its name, and a function of the rows of a line and of all rows.
 pub struct Column {
     header: String,
-    path: &'static str,
     /// Only rows of this backend count.
     backend: Option<String>,
-    cell: Cell,
+    cell: Box<Cell>,
 }
 
-#[derive(Clone, Debug)]
-enum Cell {
-    Plain,
-    MinMedian,
-    Errors,
-    /// The base of this name over this backend.
-    Faster(String),
-    /// This backend over the base of this name.
-    Greater(String),
+type Cell = dyn Fn(&[&Row], &[&Row]) -> Option<String>;
+
+fn column(header: &str, cell: impl Fn(&[&Row], &[&Row]) -> Option<String> + 'static) -> Column {
+    Column { header: header.to_owned(), backend: None, cell: Box::new(cell) }
 }
 
 /// A column of the number or text at `path`. Counts are summed over the rows of a line.
 pub fn number(header: &str, path: &'static str) -> Column {
-    column(header, path, Cell::Plain)
+    column(header, move |rows, _| {
+        let values = rows.iter().map(|row| row.get(path)).collect::<Option<Vec<&Value>>>()?;
+        match values[..] {
+            [] | [Value::Null] => None,
+            [value] if value.is_f64() => value.as_f64().map(three_digits),
+            [value] => Some(text(value)),
+            ref values => {
+                let sum: Option<u64> = values.iter().map(|value| value.as_u64()).sum();
+                Some(sum.map_or_else(String::new, |sum| sum.to_string()))
+            }
+        }
+    })
 }
 
-/// A column of minimum and median of the summary at `path`.
+/// A column of minimum and median of the summary at `path`; of one number if only one was measured.
 pub fn time(header: &str, path: &'static str) -> Column {
-    column(header, path, Cell::MinMedian)
+    column(header, move |rows, _| {
+        let [row] = rows else { return Some(String::new()) };
+        let number = |name: &str| row.get(path)?.get(name)?.as_f64();
+        let median = three_digits(number("median")?);
+        let is_single = number("count")? == 1.0;
+        Some(if is_single { median } else { three_digits(number("min")?) + " / " + &median })
+    })
 }
 
 /// A column of wrong contacts by kind, summed over the rows of a line.
 pub fn errors(header: &str, path: &'static str) -> Column {
-    column(header, path, Cell::Errors)
+    column(header, move |rows, _| {
+        let sum = |kind: &str| -> Option<u64> {
+            let path = format!("{path}.{kind}");
+            rows.iter().filter_map(|row| row.get(&path)?.as_u64()).reduce(|a, b| a + b)
+        };
+        let kinds = ["missed", "phantom", "wrong_depth", "wrong_normal"].map(sum);
+        let kinds: Vec<String> = kinds.into_iter().flatten().map(|n| n.to_string()).collect();
+        let true_pairs = sum("true_pairs")?;
+        let is_judged = true_pairs > 0 || sum("mesh_pairs")? > 0;
+        is_judged.then(|| format!("{} of {true_pairs}", kinds.join("+")))
+    })
 }
 
 /// A column of ratios, as a geometric mean over the rows of a line: the number at `path` of the row of
 /// `base` with the same keys, divided by the row's own number.
 pub fn faster(header: &str, path: &'static str, base: impl ToString) -> Column {
-    column(header, path, Cell::Faster(base.to_string()))
+    ratios(header, path, base, ratio)
 }
 
-fn column(header: &str, path: &'static str, cell: Cell) -> Column {
-    Column { header: header.to_owned(), path, backend: None, cell }
+/// A column of the inverse ratios, for quantities where more is better.
+pub fn greater(header: &str, path: &'static str, base: impl ToString) -> Column {
+    ratios(header, path, base, |base, own| ratio(own, base))
+}
+
+fn ratios(
+    header: &str,
+    path: &'static str,
+    base: impl ToString,
+    ratio: fn(f64, f64) -> Option<f64>,
+) -> Column {
+    let base = base.to_string();
+    column(header, move |rows, all| {
+        let ratios = rows.iter().filter_map(|row| {
+            let is_base = |other: &&&Row| other.backend == base && other.keys == row.keys;
+            ratio(all.iter().find(is_base)?.number(path), row.number(path))
+        });
+        geometric_mean(ratios).map(|ratio| format!("{ratio:.2}x"))
+    })
 }
 
 /// Columns of the times of stock and SBBK, their ratio, and the errors of both.
@@ -98,64 +134,10 @@ impl Column {
         Self { backend: Some(backend.to_string()), ..self }
     }
 
-    /// Inverts a ratio, for quantities where more is better.
-    pub fn inverse(self) -> Self {
-        let Cell::Faster(base) = self.cell else { return self };
-        Self { cell: Cell::Greater(base), ..self }
-    }
-
     fn show(&self, line: &[&Row], all: &[&Row]) -> String {
         let counts = |row: &&&Row| self.backend.as_ref().is_none_or(|name| row.backend == *name);
         let rows: Vec<&Row> = line.iter().filter(counts).copied().collect();
-        let shown = match &self.cell {
-            Cell::Plain => self.plain(&rows),
-            Cell::MinMedian => match rows[..] {
-                [row] => min_median(row, self.path),
-                _ => Some(String::new()),
-            },
-            Cell::Errors => self.errors(&rows),
-            Cell::Faster(base) | Cell::Greater(base) => {
-                let ratios = rows.iter().filter_map(|row| {
-                    let is_base = |other: &&&Row| other.backend == *base && other.keys == row.keys;
-                    let base = all.iter().find(is_base)?.number(self.path);
-                    let own = row.number(self.path);
-                    match self.cell {
-                        Cell::Greater(_) => ratio(own, base),
-                        _ => ratio(base, own),
-                    }
-                });
-                geometric_mean(ratios).map(|ratio| format!("{ratio:.2}x"))
-            }
-        };
-        shown.unwrap_or_else(|| "-".to_owned())
-    }
-
-    fn plain(&self, rows: &[&Row]) -> Option<String> {
-        let values = rows.iter().map(|row| row.get(self.path));
-        match values.collect::<Option<Vec<&Value>>>()?[..] {
-            [] => None,
-            [value] => match value.as_f64() {
-                Some(number) if !value.is_u64() => Some(three_digits(number)),
-                _ => (!value.is_null()).then(|| text(value)),
-            },
-            ref values => Some(match values.iter().map(|value| value.as_u64()).sum() {
-                Option::<u64>::None => String::new(),
-                Some(sum) => sum.to_string(),
-            }),
-        }
-    }
-
-    fn errors(&self, rows: &[&Row]) -> Option<String> {
-        let sum = |kind: &str| -> Option<u64> {
-            let path = format!("{}.{kind}", self.path);
-            let counts = rows.iter().filter_map(|row| row.get(&path)?.as_u64());
-            counts.reduce(|a, b| a + b)
-        };
-        let kinds = ["missed", "phantom", "wrong_depth", "wrong_normal"].map(sum);
-        let kinds: Vec<String> = kinds.into_iter().flatten().map(|n| n.to_string()).collect();
-        let true_pairs = sum("true_pairs")?;
-        let is_judged = true_pairs > 0 || sum("mesh_pairs")? > 0;
-        is_judged.then(|| format!("{} of {true_pairs}", kinds.join("+")))
+        (self.cell)(&rows, all).unwrap_or_else(|| "-".to_owned())
     }
 }
 
@@ -178,13 +160,8 @@ impl<'a> TableSpec<'a> {
     }
 
     /// Adds an explanation.
-    pub fn note(self, note: impl Into<String>) -> Self {
-        self.notes([note.into()])
-    }
-
-    /// Adds explanations.
-    pub fn notes(mut self, notes: impl IntoIterator<Item = String>) -> Self {
-        self.notes.extend(notes);
+    pub fn note(mut self, note: impl Into<String>) -> Self {
+        self.notes.push(note.into());
         self
     }
 
@@ -216,13 +193,8 @@ impl<'a> TableSpec<'a> {
             "contact_recycling" => "recycling".to_owned(),
             key => key.replace('_', " "),
         });
-        Table {
-            title,
-            header: names.chain(columns.iter().map(|column| column.header.clone())).collect(),
-            lines,
-            notes,
-            key_count: keys.len(),
-        }
+        let header = names.chain(columns.iter().map(|column| column.header.clone())).collect();
+        Table { title, header, lines, notes, key_count: keys.len() }
     }
 }
 
@@ -246,17 +218,14 @@ impl fmt::Display for Table {
             self.lines.len() > 1 && self.lines.iter().all(|line| line[key] == self.lines[0][key])
         };
         let (constant, keys): (Vec<usize>, Vec<usize>) = (0..self.key_count).partition(is_constant);
-        let constant = constant.iter().map(|&key| {
-            let (name, value) = (&self.header[key], &self.lines[0][key]);
-            format!("; {name}: {value}")
-        });
-        writeln!(f, "{}", wrapped(&(self.title.clone() + &constant.collect::<String>()), ""))?;
-        let widths: Vec<usize> = (0..self.header.len())
-            .map(|column| {
-                let cells = [&self.header].into_iter().chain(&self.lines);
-                cells.map(|line| line[column].chars().count()).max().unwrap_or(0)
-            })
-            .collect();
+        let constant = constant.iter().map(|&key| (&self.header[key], &self.lines[0][key]));
+        let constant: String = constant.map(|(name, value)| format!("; {name}: {value}")).collect();
+        writeln!(f, "{}", wrapped(&(self.title.clone() + &constant), ""))?;
+        let width = |column: usize| {
+            let cells = [&self.header].into_iter().chain(&self.lines);
+            cells.map(|line| line[column].chars().count()).max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..self.header.len()).map(width).collect();
         let mut shown = keys.clone();
         for column in self.key_count..self.header.len() {
             let width: usize = shown.iter().map(|&c| widths[c] + 3).sum();
@@ -275,7 +244,8 @@ impl fmt::Display for Table {
 impl Table {
     /// Draws some columns: keys to the left, numbers to the right.
     fn draw(&self, f: &mut fmt::Formatter<'_>, shown: &[usize], widths: &[usize]) -> fmt::Result {
-        let mut draw = |line: &[String]| {
+        let rule: Vec<String> = widths.iter().map(|&width| "-".repeat(width)).collect();
+        [&self.header, &rule].into_iter().chain(&self.lines).try_for_each(|line| {
             for &column in shown {
                 let (cell, width) = (&line[column], widths[column]);
                 match column < self.key_count {
@@ -284,11 +254,7 @@ impl Table {
                 }
             }
             writeln!(f, "|")
-        };
-        draw(&self.header)?;
-        let rule: Vec<String> = widths.iter().map(|&width| "-".repeat(width)).collect();
-        draw(&rule)?;
-        self.lines.iter().try_for_each(|line| draw(line))
+        })
     }
 }
 
@@ -300,21 +266,11 @@ pub(super) fn wrapped(text: &str, indent: &str) -> String {
         if line.chars().count() + word.chars().count() >= WIDTH {
             lines.push(format!("{indent}  {word}"));
         } else {
-            if line.len() > indent.len() {
-                line.push(' ');
-            }
+            line.push_str(if line.len() > indent.len() { " " } else { "" });
             line.push_str(word);
         }
     }
     lines.join("\n")
-}
-
-/// Minimum and median; one number if only one was measured.
-fn min_median(row: &Row, path: &str) -> Option<String> {
-    let number = |name: &str| row.get(path)?.get(name)?.as_f64();
-    let median = three_digits(number("median")?);
-    let is_single = number("count")? == 1.0;
-    Some(if is_single { median } else { format!("{} / {median}", three_digits(number("min")?)) })
 }
 
 /// Three significant digits, with an exponent only below a thousandth: `0.123`, `12.3`, `1230`.
@@ -329,60 +285,36 @@ pub fn three_digits(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-#[cfg(test)]
-mod tests {
+/// Would catch a cell in another line or under another backend, a ratio upside down or to the base of
+/// other keys, totals over rows of other lines, and sums that lose a kind of error.
+#[test]
+fn rows_are_pivoted() {
     use serde_json::json;
 
-    use super::*;
-
-    /// Would catch columns that pretend to a precision that was not measured, or drop one.
-    #[test]
-    fn numbers_have_three_significant_digits() {
-        let shown = [0.0123, 0.5, 1.234, 12.34, 123.4, 12345.6, 2.0e-7].map(three_digits);
-        assert_eq!(shown, ["0.012", "0.500", "1.23", "12.3", "123", "12346", "2.0e-7"]);
-    }
-
-    fn row(mode: &str, mesh: &str, backend: &str, time: f64, missed: usize) -> Row {
-        let time = json!({ "count": 2, "min": time, "median": 2.0 * time });
+    let row = |mode: &str, backend: &str, time: f64, missed: usize| {
         let errors = json!({ "missed": missed, "phantom": 0, "wrong_depth": 1, "true_pairs": 9 });
-        let row = Row::new("race", backend).key("mode", mode).key("mesh", mesh);
+        let time = json!({ "count": 2, "min": time, "median": 2.0 * time });
+        let row = Row::new("race", backend).key("mode", mode).key("mesh", mode.len());
         row.with("time", time).with("errors", errors)
-    }
-
-    /// Would catch a cell in another line or under another backend, a ratio upside down or to the
-    /// base of other keys, totals over rows of other lines, and sums that lose a kind of error.
-    #[test]
-    fn rows_are_pivoted() {
-        let rows = [
-            row("fresh", "a", "stock", 8.0, 3),
-            row("fresh", "a", "sbbk", 4.0, 0),
-            row("slow", "a", "stock", 1.0, 0),
-            row("slow", "a", "sbbk", 2.0, 0),
-            row("fresh", "b", "stock", 8.0, 4),
-            row("fresh", "b", "sbbk", 1.0, 0),
-            Row::new("another", "stock"),
-        ];
-        let spec = TableSpec::new(String::new(), "race", &["mode", "mesh"], sides()).total(1);
-        let one_side = ["1.00 / 2.00", "2.00 / 4.00", "0.50x", "0+0+1 of 9", "0+0+1 of 9"];
-        let expected = [
-            vec!["fresh", "a", "8.00 / 16.0", "4.00 / 8.00", "2.00x", "3+0+1 of 9", "0+0+1 of 9"],
-            vec!["fresh", "b", "8.00 / 16.0", "1.00 / 2.00", "8.00x", "4+0+1 of 9", "0+0+1 of 9"],
-            vec!["fresh", "all, or mean", "", "", "4.00x", "7+0+2 of 18", "0+0+2 of 18"],
-            [&["slow", "a"][..], &one_side].concat(),
-            [&["slow", "all, or mean"][..], &one_side].concat(),
-        ];
-        assert_eq!(spec.of(&rows).lines, expected);
-    }
-
-    /// Would catch lines that wrap in a terminal, and columns that a split loses.
-    #[test]
-    fn wide_tables_are_split_at_100_characters() {
-        let rows = [row("fresh", "a", "stock", 8.0, 3)];
-        let columns = (0..20).map(|index| number(&format!("column {index:02}"), "time.min"));
-        let long = "a word ".repeat(40);
-        let table = TableSpec::new(&*long, "race", &["mesh"], columns).note(&*long).of(&rows);
-        let text = table.to_string();
-        assert!(text.lines().all(|line| line.chars().count() <= WIDTH), "{text}");
-        assert!((0..20).all(|index| text.contains(&format!("column {index:02}"))), "{text}");
-    }
+    };
+    let rows = [
+        row("fresh", "stock", 8.0, 3),
+        row("fresh", "sbbk", 4.0, 0),
+        row("slow", "stock", 8.0, 4),
+        row("slow", "sbbk", 1.0, 0),
+        Row::new("another", "stock"),
+    ];
+    let columns = || sides().into_iter().chain(sides());
+    let table = TableSpec::new("a word ".repeat(40), "race", &["mode"], columns()).total(0);
+    let table = table.of(&rows);
+    let expected = [
+        ["fresh", "8.00 / 16.0", "4.00 / 8.00", "2.00x", "3+0+1 of 9", "0+0+1 of 9"],
+        ["slow", "8.00 / 16.0", "1.00 / 2.00", "8.00x", "4+0+1 of 9", "0+0+1 of 9"],
+        ["all, or mean", "", "", "4.00x", "7+0+2 of 18", "0+0+2 of 18"],
+    ];
+    assert_eq!(table.lines.iter().map(|line| &line[..6]).collect::<Vec<_>>(), expected);
+    // Wide tables are split.
+    let text = table.to_string();
+    assert!(text.lines().all(|line| line.chars().count() <= WIDTH), "{text}");
+    assert_eq!(text.matches("errors, sbbk").count(), 2, "{text}");
 }

@@ -6,7 +6,7 @@ use crate::backend::Backend;
 use crate::mesh::Mesh;
 use crate::metrics::{Run, RunPlan, StepTimes, Summary, run};
 use crate::progress::Progress;
-use crate::report::{ERROR_NOTE, Results, Row, Table, TableSpec, errors, faster, number, time};
+use crate::report::{ERROR_NOTE, Results, Row, Table, TableSpec, errors, greater, number, time};
 use crate::scene::{HelicopterBallDrop, MonkeyPile, Scene};
 
 const FRAMES: &str = "helicopter";
@@ -156,9 +156,8 @@ fn papers() -> [Row; 2] {
 
 /// The paper's Table 1.
 fn frames(rows: &[Row], plan: &ComparePlan) -> Table {
-    let against = |backend: Backend| {
-        faster(&format!("vs {backend}"), "frames_per_second.median", backend).inverse()
-    };
+    let against =
+        |backend: Backend| greater(&format!("vs {backend}"), "frames_per_second.median", backend);
     TableSpec::new(
         "Table 1. A ball falls on a rotor: frames a second",
         FRAMES,

@@ -10,11 +10,11 @@ use rapier3d::math::Real;
 use serde_json::Value;
 
 use super::motion::{Approach, Mode, Place, STEP_COUNT, mode_note};
-use super::pair::{Contest, DIRECT_NOTE};
+use super::pair::{Contest, DIRECT_NOTE, Sides};
 use super::shape;
 use crate::backend::Memory;
 use crate::mesh::{self, Mesh};
-use crate::metrics::{ContactErrors, Sequence, geometric_mean};
+use crate::metrics::{ContactErrors, Sequence};
 use crate::parallel;
 use crate::progress::Progress;
 use crate::report::{Results, Row, TIME_NOTE, Table, TableSpec, number, sides};
@@ -93,7 +93,7 @@ struct Case<'a> {
     mesh: &'a ApproachedMesh,
     size: Real,
     prediction: Real,
-    shape: &'a SharedShape,
+    shape: SharedShape,
     places: Vec<Place>,
     /// Errors of first queries at all places, of stock and SBBK.
     errors: [ContactErrors; 2],
@@ -101,24 +101,21 @@ struct Case<'a> {
 
 /// Judges all cases, and measures the times at Rapier's defaults.
 pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Results {
-    let mut shapes = Vec::new();
+    let mut cases = Vec::new();
     for mesh in &plan.meshes {
         for &size in &plan.sizes {
-            shapes.push((mesh, size, shape(&mesh.mesh.clone().centred().scaled_to(size))));
+            let shape = shape(&mesh.mesh.clone().centred().scaled_to(size));
+            cases.extend(plan.predictions.iter().map(|&prediction| Case {
+                mesh,
+                size,
+                prediction,
+                shape: shape.clone(),
+                places: Vec::new(),
+                errors: Default::default(),
+            }));
         }
     }
-    let contest = Contest::new(shapes.iter().map(|(_, _, shape)| shape));
-    let mut cases = Vec::new();
-    for (mesh, size, shape) in &shapes {
-        cases.extend(plan.predictions.iter().map(|&prediction| Case {
-            mesh,
-            size: *size,
-            prediction,
-            shape,
-            places: Vec::new(),
-            errors: Default::default(),
-        }));
-    }
+    let contest = Contest::new(cases.iter().map(|case| &case.shape));
     progress.phase("poses and brute force", cases.len());
     let cases: Vec<Case> = parallel::map(&cases, parallel::threads(), |index, case| {
         let case = case.clone().judged(index, &contest);
@@ -136,24 +133,15 @@ pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Results {
 }
 
 fn verdict(rows: &[Row]) -> String {
-    let of = |backend: &str, study: &str| -> Vec<&Row> {
-        rows.iter().filter(|row| row.study == study && row.is("backend", backend)).collect()
-    };
-    let wrong =
-        |backend| -> u64 { of(backend, EXACTNESS).iter().map(|row| row.wrong("errors")).sum() };
-    let all: u64 = of("sbbk", EXACTNESS).iter().map(|row| row.count("errors.true_pairs")).sum();
-    let speed = |mode: Mode| {
-        let pairs = of("stock", QUERIES).into_iter().zip(of("sbbk", QUERIES));
-        let pairs = pairs.filter(|(row, _)| row.is("mode", mode));
-        let ratios = pairs.map(|(a, b)| a.number("time.min") / b.number("time.min"));
-        geometric_mean(ratios).unwrap_or(f64::NAN)
-    };
-    let [fresh, slow, fast] = Mode::ALL.map(speed);
+    let exact = Sides::of(rows, |row| row.study == EXACTNESS);
+    let [stock, sbbk] = exact.wrong("errors");
+    let all: u64 = exact.sbbk().iter().map(|row| row.count("errors.true_pairs")).sum();
+    let [fresh, slow, fast] = Mode::ALL.map(|mode| {
+        Sides::of(rows, |row| row.study == QUERIES && row.is("mode", mode)).ratio("time.min")
+    });
     format!(
-        "of {all} true contacts SBBK has {} wrong, stock {}; SBBK is {fresh:.1} times as fast in \
-         first queries, {slow:.1} and {fast:.1} times in slow and fast motion",
-        wrong("sbbk"),
-        wrong("stock")
+        "of {all} true contacts SBBK has {sbbk} wrong, stock {stock}; SBBK is {fresh:.1} times as \
+         fast in first queries, {slow:.1} and {fast:.1} times in slow and fast motion"
     )
 }
 
@@ -169,7 +157,8 @@ impl Case<'_> {
 
     /// Places of one approach, from apart to deep inside.
     fn places_of(&self, contest: &Contest, seed: u64) -> [Place; 5] {
-        let Self { size, prediction, shape, .. } = *self;
+        let Self { size, prediction, shape, .. } = self;
+        let (size, prediction) = (*size, *prediction);
         let approach = Approach::random(contest.sbbk(), [shape; 2], &mut Rand32::new(seed));
         let is_small = |place: &Place| {
             let mut memory = Memory::default();
@@ -187,7 +176,7 @@ impl Case<'_> {
 
     fn sequences(&self, mode: Mode, limit: usize) -> Vec<Sequence> {
         let places = self.places.iter().take(limit);
-        places.map(|place| mode.sequence([self.shape; 2], place, self.prediction)).collect()
+        places.map(|place| mode.sequence([&self.shape; 2], place, self.prediction)).collect()
     }
 
     fn row(&self, study: &'static str, backend: impl ToString) -> Row {
@@ -213,18 +202,15 @@ impl Case<'_> {
         for mode in Mode::ALL {
             let is_fresh = mode == Mode::Fresh;
             let sequences = self.sequences(mode, if is_fresh { usize::MAX } else { MOTION_LIMIT });
-            let times = contest.race(repeats, &sequences);
             let errors = match is_fresh {
                 true => self.errors,
                 false => contest_errors(contest, &sequences, |step| {
                     step == STEP_COUNT / 2 || step == STEP_COUNT
                 }),
             };
-            for ((backend, time), errors) in Contest::BACKENDS.into_iter().zip(times).zip(errors) {
-                let row = self.row(QUERIES, backend).key("mode", mode.to_string());
-                let row = row.with("sequence_count", sequences.len());
-                rows.push(row.with("time", time).with("errors", errors));
-            }
+            let row = self.row(QUERIES, "").key("mode", mode.to_string());
+            let row = row.with("sequence_count", sequences.len());
+            rows.extend(contest.rows(&row, repeats, &sequences, errors));
         }
         rows
     }
@@ -279,6 +265,6 @@ fn tables(rows: &[Row]) -> Vec<Table> {
             )
             .note(DIRECT_NOTE)
             .of(rows),
-        speed.notes([TIME_NOTE, ERROR_NOTE, DIRECT_NOTE].map(str::to_owned)).of(rows),
+        speed.note(TIME_NOTE).note(ERROR_NOTE).note(DIRECT_NOTE).of(rows),
     ]
 }

@@ -8,7 +8,8 @@ use rapier3d::geometry::SharedShape;
 
 use super::turns::{race, timed};
 use crate::backend::{Backend, Dispatcher, Memory, Primed, SharedDispatcher};
-use crate::metrics::{ContactErrors, Sequence, Summary, Truth};
+use crate::metrics::{ContactErrors, Sequence, Summary, Truth, geometric_mean};
+use crate::report::Row;
 
 /// How dispatchers are called, for notes.
 pub(super) const DIRECT_NOTE: &str =
@@ -33,8 +34,23 @@ impl Contest {
         &self.dispatchers[1]
     }
 
-    /// Microseconds a query of both.
-    pub fn race(&self, repeats: usize, sequences: &[Sequence]) -> Vec<Summary> {
+    /// Rows of both, with microseconds a query and errors.
+    pub fn rows(
+        &self,
+        row: &Row,
+        repeats: usize,
+        sequences: &[Sequence],
+        errors: [ContactErrors; 2],
+    ) -> Vec<Row> {
+        let rows = Self::BACKENDS.into_iter().zip(self.race(repeats, sequences)).zip(errors);
+        let rows = rows.map(|((backend, time), errors)| {
+            let row = Row { backend: backend.to_string(), ..row.clone() };
+            row.with("time", time).with("errors", errors)
+        });
+        rows.collect()
+    }
+
+    fn race(&self, repeats: usize, sequences: &[Sequence]) -> Vec<Summary> {
         let queries = |sequence: &Sequence| (sequence.poses.len() - 1).max(1);
         let count = sequences.iter().map(queries).sum::<usize>() as f64;
         race(&self.dispatchers, repeats, 1e6 / count, |dispatcher| sweep(dispatcher, sequences))
@@ -65,4 +81,36 @@ fn sweep(dispatcher: &SharedDispatcher, sequences: &[Sequence]) -> Duration {
         timed(|| steps.for_each(|step| sequence.ask(&mut memory, dispatcher, step))).0
     };
     sequences.iter().map(time).sum()
+}
+
+/// Rows of stock and of SBBK, in the same order.
+pub(super) struct Sides<'a>([Vec<&'a Row>; 2]);
+
+impl<'a> Sides<'a> {
+    pub fn of(rows: &'a [Row], counts: impl Fn(&Row) -> bool) -> Self {
+        Self(Contest::BACKENDS.map(|backend| {
+            rows.iter().filter(|row| row.is("backend", backend) && counts(row)).collect()
+        }))
+    }
+
+    /// Numbers of stock over those of SBBK at a path.
+    pub fn ratios(&self, path: &str) -> impl Iterator<Item = f64> {
+        let [stock, sbbk] = &self.0;
+        stock.iter().zip(sbbk).map(move |(a, b)| a.number(path) / b.number(path))
+    }
+
+    /// The geometric mean of the ratios.
+    pub fn ratio(&self, path: &str) -> f64 {
+        geometric_mean(self.ratios(path)).unwrap_or(f64::NAN)
+    }
+
+    /// Wrong contacts of both.
+    pub fn wrong(&self, path: &str) -> [u64; 2] {
+        self.0.each_ref().map(|rows| rows.iter().map(|row| row.wrong(path)).sum())
+    }
+
+    /// Rows of SBBK.
+    pub fn sbbk(&self) -> &[&'a Row] {
+        &self.0[1]
+    }
 }

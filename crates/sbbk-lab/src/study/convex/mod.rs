@@ -15,10 +15,10 @@ use rapier3d::math::Real;
 use self::errors::Judge;
 use self::kinds::{Kind, Upright, kinds};
 use super::motion::{Approach, Mode, Place, mode_note};
-use super::pair::{Contest, DIRECT_NOTE};
+use super::pair::{Contest, DIRECT_NOTE, Sides};
 use super::shape;
 use crate::mesh::{self, Mesh};
-use crate::metrics::{Sequence, geometric_mean};
+use crate::metrics::Sequence;
 use crate::progress::Progress;
 use crate::report::{Results, Row, TIME_NOTE, Table, TableSpec, number, sides};
 use crate::scene::random;
@@ -96,17 +96,14 @@ fn measure(plan: &ConvexPlan, kind: &Kind, seed: u64) -> Vec<Row> {
             .collect();
         for mode in MODES {
             let sequences = sequences(plan, kind, &mesh, &places, mode);
-            let times = contest.race(plan.repeats, &sequences);
             let errors = contest.errors(&sequences, |index, step| {
                 let pos12 = &sequences[index].poses[step];
                 let truth = || judge.truth(pos12, is_mesh_first(index), plan.prediction);
                 (step % JUDGED == 0).then(truth)
             });
-            for ((backend, time), errors) in Contest::BACKENDS.into_iter().zip(times).zip(errors) {
-                let row = Row::new(study, backend).key("shape", kind.name).key("depth", depth);
-                let row = row.key("mode", mode.to_string()).with("place_count", places.len());
-                rows.push(row.with("time", time).with("errors", errors));
-            }
+            let row = Row::new(study, "").key("shape", kind.name).key("depth", depth);
+            let row = row.key("mode", mode.to_string()).with("place_count", places.len());
+            rows.extend(contest.rows(&row, plan.repeats, &sequences, errors));
         }
     }
     rows
@@ -151,17 +148,13 @@ fn is_mesh_first(index: usize) -> bool {
 }
 
 fn verdict(rows: &[Row]) -> String {
-    let of = |backend| rows.iter().filter(move |row| row.is("backend", backend));
-    let wrong = |backend| of(backend).map(|row| row.wrong("errors")).sum::<u64>();
-    let all: u64 = of("sbbk").map(|row| row.count("errors.true_pairs")).sum();
-    let ratios = of("stock").zip(of("sbbk"));
-    let ratios = ratios.map(|(a, b)| a.number("time.min") / b.number("time.min"));
+    let sides = Sides::of(rows, |_| true);
+    let all: u64 = sides.sbbk().iter().map(|row| row.count("errors.true_pairs")).sum();
+    let [stock, sbbk] = sides.wrong("errors");
     format!(
         "SBBK is {:.1} times as fast as stock on the mean over shapes and motions; wrong contacts: \
-         SBBK {}, stock {}, of {all}",
-        geometric_mean(ratios).unwrap_or(f64::NAN),
-        wrong("sbbk"),
-        wrong("stock")
+         SBBK {sbbk}, stock {stock}, of {all}",
+        sides.ratio("time.min")
     )
 }
 
@@ -181,7 +174,10 @@ fn tables(plan: &ConvexPlan, rows: &[Row]) -> Vec<Table> {
         TableSpec::new(title, study, &["mode", "depth", "shape"], columns)
             .total(2)
             .note(mode_note())
-            .notes([deep, TIME_NOTE, ERRORS_NOTE, DIRECT_NOTE].map(str::to_owned))
+            .note(deep)
+            .note(TIME_NOTE)
+            .note(ERRORS_NOTE)
+            .note(DIRECT_NOTE)
             .of(rows)
     };
     vec![spec("convex shapes", SHAPES), spec("compounds", COMPOUNDS)]

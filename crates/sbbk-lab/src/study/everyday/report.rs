@@ -1,9 +1,8 @@
 //! Tables of everyday scenes.
 
 use super::{BODIES, DEFORMABLE, EverydayPlan, PILE, QUERIES, SENSORS, SINGLE};
-use crate::backend::Backend;
-use crate::metrics::geometric_mean;
 use crate::report::{Row, Table, TableSpec, errors, faster, number};
+use crate::study::pair::Sides;
 
 pub(super) fn tables(plan: &EverydayPlan, rows: &[Row]) -> Vec<Table> {
     let scene = &["scene", "triangles"][..];
@@ -18,8 +17,8 @@ pub(super) fn tables(plan: &EverydayPlan, rows: &[Row]) -> Vec<Table> {
         let columns = [
             number("stock, µs", "detection.median").of("stock"),
             number("sbbk", "detection.median").of("sbbk"),
-            faster("ratio", "detection.median", Backend::Stock).of("sbbk"),
-            faster("whole step", "step.median", Backend::Stock).of("sbbk"),
+            faster("ratio", "detection.median", "stock").of("sbbk"),
+            faster("whole step", "step.median", "stock").of("sbbk"),
             number("worst, stock", "detection.max").of("stock"),
             number("sbbk", "detection.max").of("sbbk"),
             number("verdict", "verdict").of("sbbk"),
@@ -29,7 +28,20 @@ pub(super) fn tables(plan: &EverydayPlan, rows: &[Row]) -> Vec<Table> {
             errors("sbbk", "judged").of("sbbk"),
         ];
         let title = format!("{title}: collision detection (narrow phase) of whole worlds");
-        TableSpec::new(title, study, keys, columns).total(total).notes(world_notes(plan))
+        TableSpec::new(title, study, keys, columns)
+            .total(total)
+            .note(format!(
+                "Rapier's defaults; microseconds a step: of each step the least over {} runs, both \
+                 step by step in turn; ratio, whole step: stock : sbbk, of medians",
+                plan.repeats
+            ))
+            .note(
+                "wrong: missed + phantom + wrong depth, of the true contacts of up to 20 pairs, by \
+                 brute force in f64; not with fixed edges",
+            )
+            .note(
+                "ok: the median is no slower by 5 % or 1 µs, and the worst step by no more than 2 ms",
+            )
     });
     let queries = TableSpec::new(
         "Single queries without a workspace on terrains; nanoseconds a query",
@@ -38,7 +50,7 @@ pub(super) fn tables(plan: &EverydayPlan, rows: &[Row]) -> Vec<Table> {
         [
             number("stock", "time.median").of("stock"),
             number("sbbk", "time.median").of("sbbk"),
-            faster("ratio", "time.median", Backend::Stock).of("sbbk"),
+            faster("ratio", "time.median", "stock").of("sbbk"),
             errors("lost + added + other", "answers").of("sbbk"),
             number("verdict", "verdict").of("sbbk"),
         ],
@@ -53,40 +65,18 @@ pub(super) fn tables(plan: &EverydayPlan, rows: &[Row]) -> Vec<Table> {
     tables.filter(|table| !table.lines.is_empty()).collect()
 }
 
-fn world_notes(plan: &EverydayPlan) -> Vec<String> {
-    vec![
-        format!(
-            "Rapier's defaults; microseconds a step: of each step the least over {} runs, both step \
-             by step in turn; ratio, whole step: stock : sbbk, of medians",
-            plan.repeats
-        ),
-        "wrong: missed + phantom + wrong depth, of the true contacts of up to 20 pairs, by brute \
-         force in f64; not with fixed edges"
-            .to_owned(),
-        "ok: the median is no slower by 5 % or 1 µs, and the worst step by no more than 2 ms"
-            .to_owned(),
-    ]
-}
-
 /// Main finding: ratios of the medians of worlds, and losses.
 pub(super) fn verdict(rows: &[Row]) -> String {
-    let worlds = rows.iter().filter(|row| row.study != QUERIES);
-    let of = |backend: Backend| worlds.clone().filter(move |row| row.is("backend", backend));
-    let ratios = |path: &'static str| {
-        let pairs = of(Backend::Stock).zip(of(Backend::Sbbk));
-        pairs.map(move |(stock, sbbk)| stock.number(path) / sbbk.number(path))
-    };
-    let slower = of(Backend::Sbbk).filter(|row| !row.is("verdict", "ok")).count();
-    let wrong = |backend| of(backend).map(|row| row.wrong("judged")).sum::<u64>();
+    let worlds = Sides::of(rows, |row| row.study != QUERIES);
+    let slower = worlds.sbbk().iter().filter(|row| !row.is("verdict", "ok")).count();
+    let [stock, sbbk] = worlds.wrong("judged");
     format!(
         "in {} worlds collision detection is {:.2} times as fast as stock's and whole steps {:.2} \
          times (geometric means of medians; least {:.2}); {slower} worlds are slower than stock; \
-         wrong contacts of those judged: SBBK {}, stock {}",
-        of(Backend::Sbbk).count(),
-        geometric_mean(ratios("detection.median")).unwrap_or(f64::NAN),
-        geometric_mean(ratios("step.median")).unwrap_or(f64::NAN),
-        ratios("detection.median").fold(f64::INFINITY, f64::min),
-        wrong(Backend::Sbbk),
-        wrong(Backend::Stock),
+         wrong contacts of those judged: SBBK {sbbk}, stock {stock}",
+        worlds.sbbk().len(),
+        worlds.ratio("detection.median"),
+        worlds.ratio("step.median"),
+        worlds.ratios("detection.median").fold(f64::INFINITY, f64::min),
     )
 }
