@@ -5,13 +5,11 @@
 //! cargo run --release --example advise -- bunny.obj terrain.stl robot.urdf
 //! ```
 
-use std::error::Error;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::Parser;
-use sbbk_lab::cli::{exit_code, print};
+use sbbk_lab::cli::{Outcome, print};
 use sbbk_lab::mesh_file;
 use sbbk_lab::progress::Progress;
 use sbbk_lab::study::everyday::{advise, advise_robot};
@@ -30,14 +28,11 @@ struct Arguments {
     repeats: NonZeroUsize,
 }
 
-fn main() -> ExitCode {
-    exit_code(run(&Arguments::parse()))
-}
-
-fn run(Arguments { files, steps, repeats }: &Arguments) -> Result<(), Box<dyn Error>> {
+fn main() -> Outcome {
+    let Arguments { files, steps, repeats } = Arguments::parse();
     let (steps, repeats) = (steps.get(), repeats.get());
     let progress = Progress::visible();
-    for path in files {
+    for path in &files {
         let is_robot = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf"));
         let advice = match is_robot {
             true => advise_robot(path, steps, repeats, &progress)?,

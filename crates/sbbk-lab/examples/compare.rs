@@ -5,14 +5,12 @@
 //! cargo run --release --example compare -- --quick --csv compare.csv
 //! ```
 
-use std::error::Error;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::Parser;
 use sbbk_lab::backend::Backend;
-use sbbk_lab::cli::{ReplayArguments, StudyArguments, exit_code};
+use sbbk_lab::cli::{Outcome, ReplayArguments, StudyArguments};
 use sbbk_lab::mesh_file;
 use sbbk_lab::study::compare::{ComparePlan, compare};
 
@@ -35,11 +33,8 @@ struct Arguments {
 /// Steps of the page.
 const STEPS: usize = 600;
 
-fn main() -> ExitCode {
-    exit_code(run(&Arguments::parse()))
-}
-
-fn run(Arguments { heads, mesh, replay, study }: &Arguments) -> Result<(), Box<dyn Error>> {
+fn main() -> Outcome {
+    let Arguments { heads, mesh, replay, study } = Arguments::parse();
     let mut plan = study.plan(ComparePlan::standard, ComparePlan::quick);
     plan.head = mesh.as_deref().map(mesh_file::load).transpose()?;
     if !heads.is_empty() {

@@ -5,10 +5,8 @@
 //! cargo run --release --example contacts -- --quick --csv contacts.csv
 //! ```
 
-use std::process::ExitCode;
-
 use clap::Parser;
-use sbbk_lab::cli::{StudyArguments, exit_code};
+use sbbk_lab::cli::{Outcome, StudyArguments};
 use sbbk_lab::study::contacts::{ContactsPlan, contacts};
 
 /// Compares the contacts of stock Parry and SBBK with brute force, and their times
@@ -18,8 +16,8 @@ struct Arguments {
     study: StudyArguments,
 }
 
-fn main() -> ExitCode {
+fn main() -> Outcome {
     let Arguments { study } = Arguments::parse();
     let plan = study.plan(ContactsPlan::standard, ContactsPlan::quick);
-    exit_code(study.run(None, None, |progress| Ok(contacts(&plan, progress))))
+    study.run(None, None, |progress| Ok(contacts(&plan, progress)))
 }

@@ -5,10 +5,8 @@
 //! cargo run --release --example convex -- --quick --csv convex.csv
 //! ```
 
-use std::process::ExitCode;
-
 use clap::Parser;
-use sbbk_lab::cli::{StudyArguments, exit_code};
+use sbbk_lab::cli::{Outcome, StudyArguments};
 use sbbk_lab::study::convex::{ConvexPlan, convex};
 
 /// Compares the contacts of a mesh and convex shapes or compounds, and their times
@@ -18,8 +16,8 @@ struct Arguments {
     study: StudyArguments,
 }
 
-fn main() -> ExitCode {
+fn main() -> Outcome {
     let Arguments { study } = Arguments::parse();
     let plan = study.plan(ConvexPlan::standard, ConvexPlan::quick);
-    exit_code(study.run(None, None, |progress| Ok(convex(&plan, progress))))
+    study.run(None, None, |progress| Ok(convex(&plan, progress)))
 }

@@ -6,12 +6,10 @@
 //! cargo run --release --example engines -- judge scene sbbk.1 sbbk.2 bullet.1
 //! ```
 
-use std::error::Error;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use clap::Parser;
-use sbbk_lab::cli::{exit_code, print};
+use sbbk_lab::cli::{Outcome, print};
 use sbbk_lab::mesh_file;
 use sbbk_lab::report::write_file;
 use sbbk_lab::scene::MonkeyPile;
@@ -56,31 +54,27 @@ enum Arguments {
     },
 }
 
-fn main() -> ExitCode {
-    exit_code(run(&Arguments::parse()))
-}
-
-fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    match arguments {
+fn main() -> Outcome {
+    match Arguments::parse() {
         Arguments::Export { scene, heads, seed, mesh } => {
             let mut pile = match mesh {
-                Some(path) => MonkeyPile::of(*heads, mesh_file::load(path)?),
-                None => MonkeyPile::with_heads(*heads),
+                Some(path) => MonkeyPile::of(heads, mesh_file::load(&path)?),
+                None => MonkeyPile::with_heads(heads),
             };
-            pile.seed = *seed;
-            Ok(EnginePile::new(&pile).write(scene)?)
+            pile.seed = seed;
+            Ok(EnginePile::new(&pile).write(&scene)?)
         }
-        Arguments::Run { column, scene, run } => Ok(EnginePile::read(scene)?.run(*column, run)?),
+        Arguments::Run { column, scene, run } => Ok(EnginePile::read(&scene)?.run(column, &run)?),
         Arguments::Judge { scene, runs, csv } => {
             let mut engines: Vec<(String, Vec<&Path>)> = Vec::new();
-            for run in runs {
+            for run in &runs {
                 let name = run.file_stem().unwrap_or_default().to_string_lossy();
                 match engines.iter_mut().find(|engine| engine.0 == name) {
                     Some((_, paths)) => paths.push(run),
                     None => engines.push((name.into_owned(), vec![run])),
                 }
             }
-            let results = EnginePile::read(scene)?.judge(&engines)?;
+            let results = EnginePile::read(&scene)?.judge(&engines)?;
             print(&results)?;
             Ok(csv.as_deref().map_or(Ok(()), |path| write_file(path, results.csv()))?)
         }

@@ -9,12 +9,10 @@
 //! cargo run --release --example everyday -- --quick --only sensors --scene walk --replay walk.html
 //! ```
 
-use std::error::Error;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::Parser;
-use sbbk_lab::cli::{ReplayArguments, StudyArguments, exit_code};
+use sbbk_lab::cli::{Outcome, ReplayArguments, StudyArguments};
 use sbbk_lab::study::everyday::{EverydayPlan, Group, everyday};
 
 /// Compares times, memory and contacts in everyday scenes
@@ -35,11 +33,8 @@ struct Arguments {
     urdf: Option<PathBuf>,
 }
 
-fn main() -> ExitCode {
-    exit_code(run(Arguments::parse()))
-}
-
-fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
+fn main() -> Outcome {
+    let arguments = Arguments::parse();
     let Arguments { study, only, scene, replay, urdf } = arguments;
     let mut plan = study.plan(EverydayPlan::standard, EverydayPlan::quick);
     if !only.is_empty() {

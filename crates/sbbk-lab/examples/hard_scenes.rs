@@ -9,12 +9,10 @@
 //! cargo run --release --example hard_scenes -- --quick --only pile --mesh bunny.obj
 //! ```
 
-use std::error::Error;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::Parser;
-use sbbk_lab::cli::{ReplayArguments, StudyArguments, exit_code};
+use sbbk_lab::cli::{Outcome, ReplayArguments, StudyArguments};
 use sbbk_lab::mesh_file;
 use sbbk_lab::study::hard::{Column, Group, HardPlan, hard};
 
@@ -45,11 +43,8 @@ struct Arguments {
     threads: usize,
 }
 
-fn main() -> ExitCode {
-    exit_code(run(Arguments::parse()))
-}
-
-fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
+fn main() -> Outcome {
+    let arguments = Arguments::parse();
     let Arguments { study, only, backends, scene, mesh, replay, verbose, threads } = arguments;
     let mut plan = study.plan(HardPlan::standard, HardPlan::quick);
     if !only.is_empty() {

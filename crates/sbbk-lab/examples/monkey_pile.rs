@@ -5,14 +5,12 @@
 //! cargo run --release --example monkey_pile -- 200 --steps 573 --backend stock,sbbk --replay pile.html
 //! ```
 
-use std::error::Error;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::Parser;
 use sbbk_lab::backend::Backend;
-use sbbk_lab::cli::{ReplayArguments, exit_code, print};
+use sbbk_lab::cli::{Outcome, ReplayArguments, print};
 use sbbk_lab::mesh_file;
 use sbbk_lab::metrics::{Environment, RunPlan};
 use sbbk_lab::progress::Progress;
@@ -42,11 +40,8 @@ struct Arguments {
     replay: ReplayArguments,
 }
 
-fn main() -> ExitCode {
-    exit_code(run(&Arguments::parse()))
-}
-
-fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+fn main() -> Outcome {
+    let arguments = Arguments::parse();
     let mut scene = MonkeyPile::with_heads(arguments.heads.get());
     if let Some(path) = &arguments.mesh {
         scene = MonkeyPile::of(arguments.heads.get(), mesh_file::load(path)?);

@@ -6,11 +6,9 @@
 //! cargo run --release --example one_step -- --quick --backends stock,sbbk --csv step.csv
 //! ```
 
-use std::process::ExitCode;
-
 use clap::Parser;
 use sbbk_lab::backend::Backend;
-use sbbk_lab::cli::{StudyArguments, exit_code};
+use sbbk_lab::cli::{Outcome, StudyArguments};
 use sbbk_lab::study::one_step::{OneStepPlan, one_step};
 
 /// Compares single steps with a converged one
@@ -23,11 +21,11 @@ struct Arguments {
     study: StudyArguments,
 }
 
-fn main() -> ExitCode {
+fn main() -> Outcome {
     let Arguments { backends, study } = Arguments::parse();
     let mut plan = study.plan(OneStepPlan::standard, OneStepPlan::quick);
     if !backends.is_empty() {
         plan.backends = backends;
     }
-    exit_code(study.run(None, None, |progress| Ok(one_step(&plan, progress))))
+    study.run(None, None, |progress| Ok(one_step(&plan, progress)))
 }

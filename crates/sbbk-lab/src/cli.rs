@@ -1,10 +1,9 @@
 //! Arguments, output and errors of the examples.
 
 use std::error::Error;
-use std::fmt::Display;
+use std::fmt::{self, Debug, Display};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use clap::Args;
 
@@ -44,7 +43,7 @@ impl StudyArguments {
         read: Option<&Path>,
         page: Option<&Path>,
         study: impl FnOnce(&Progress) -> Result<Results, StudyError>,
-    ) -> Result<Results, Box<dyn Error>> {
+    ) -> Outcome {
         let [json, csv] = [&self.json, &self.csv].map(Option::as_deref);
         let outputs: Vec<&Path> = [json, csv, page].into_iter().flatten().collect();
         check_outputs(read.as_slice(), &outputs)?;
@@ -52,15 +51,14 @@ impl StudyArguments {
         let results = study(&progress)?;
         progress.finish();
         print(&results)?;
-        if let Some(path) = json {
-            write_file(path, results.json())?;
-            print_path(path)?;
+        let texts: [fn(&Results) -> String; 2] = [Results::json, Results::csv];
+        for (path, text) in [json, csv].into_iter().zip(texts) {
+            if let Some(path) = path {
+                write_file(path, text(&results))?;
+                print_path(path)?;
+            }
         }
-        if let Some(path) = csv {
-            write_file(path, results.csv())?;
-            print_path(path)?;
-        }
-        Ok(results)
+        Ok(())
     }
 }
 
@@ -76,12 +74,7 @@ impl ReplayArguments {
     /// Runs a scene on some backends and writes their page, if `--replay` was given.
     ///
     /// Errors: the file cannot be written.
-    pub fn play(
-        &self,
-        scene: &dyn Scene,
-        backends: &[Backend],
-        steps: usize,
-    ) -> Result<(), Box<dyn Error>> {
+    pub fn play(&self, scene: &dyn Scene, backends: &[Backend], steps: usize) -> Outcome {
         let Some(path) = &self.replay else { return Ok(()) };
         let progress = Progress::visible();
         replay::play(path, scene, backends, steps, &progress)?;
@@ -92,7 +85,7 @@ impl ReplayArguments {
     /// Prints the path of the page, if `--replay` was given.
     ///
     /// Errors: the standard output cannot be written.
-    pub fn print(&self) -> Result<(), Box<dyn Error>> {
+    pub fn print(&self) -> Outcome {
         Ok(self.replay.as_deref().map_or(Ok(()), print_path)?)
     }
 }
@@ -113,13 +106,26 @@ pub fn print(text: impl Display) -> io::Result<()> {
     }
 }
 
-/// Prints the error, if there is one, and returns the exit code of the program.
-pub fn exit_code<T>(result: Result<T, Box<dyn Error>>) -> ExitCode {
-    match result {
-        Ok(_) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::FAILURE
-        }
+/// What `main` returns.
+pub type Outcome = Result<(), Failure>;
+
+/// An error, of which the message is shown.
+pub struct Failure(Box<dyn Error>);
+
+impl<E: Error + 'static> From<E> for Failure {
+    fn from(error: E) -> Self {
+        Self(Box::new(error))
+    }
+}
+
+impl Failure {
+    pub fn new(message: impl Into<String>) -> Self {
+        Self(message.into().into())
+    }
+}
+
+impl Debug for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        Display::fmt(&self.0, f)
     }
 }

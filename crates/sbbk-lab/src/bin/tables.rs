@@ -14,12 +14,10 @@
 //! * PATH: quantity and statistic, such as `step.median`.
 
 use std::collections::HashMap;
-use std::error::Error;
 use std::path::Path;
-use std::process::ExitCode;
 use std::{env, fs};
 
-use sbbk_lab::cli::exit_code;
+use sbbk_lab::cli::{Failure, Outcome};
 use sbbk_lab::metrics::geometric_mean;
 use sbbk_lab::report::three_digits;
 
@@ -27,26 +25,26 @@ const PAGE: &str = "docs/measurements.md";
 const SPECS: &str = "docs/data/tables.txt";
 const FUNCTIONS: [&str; 7] = ["sum", "max", "ms", "wrong", "ratio", "boxes", "least"];
 
-fn main() -> ExitCode {
-    exit_code(fill(Path::new(&env::args().nth(1).unwrap_or_else(|| ".".to_owned()))))
-}
-
 /// Fills the tables of a checkout for which there are data.
-fn fill(root: &Path) -> Result<(), Box<dyn Error>> {
+fn main() -> Outcome {
+    let root = env::args().nth(1).unwrap_or_else(|| ".".to_owned());
+    let root = Path::new(&root);
     let specs = fs::read_to_string(root.join(SPECS))?;
     let mut page = fs::read_to_string(root.join(PAGE))?;
     for spec in specs.split("\n\n").filter(|spec| spec.starts_with("table ")) {
         let (head, body) = spec.split_once('\n').unwrap_or((spec, ""));
         let [_, name, file] = head.split_whitespace().collect::<Vec<_>>()[..] else {
-            return Err(format!("{SPECS}: `{head}` is not `table NAME FILE`").into());
+            return Err(Failure::new(format!("{SPECS}: `{head}` is not `table NAME FILE`")));
         };
         let path = root.join("docs/data").join(file);
         let Ok(text) = fs::read_to_string(&path) else {
             println!("{name}: {} is missing", path.display());
             continue;
         };
-        let table = table(body, &Data::parse(&text)).map_err(|e| format!("{name}: {e}"))?;
-        page = replaced(&page, name, &table).ok_or_else(|| format!("{PAGE} has no {name}"))?;
+        let table = table(body, &Data::parse(&text));
+        let table = table.map_err(|error| Failure::new(format!("{name}: {error}")))?;
+        let missing = || Failure::new(format!("{PAGE} has no {name}"));
+        page = replaced(&page, name, &table).ok_or_else(missing)?;
         println!("{name}: from {}", text.lines().next().unwrap_or_default());
     }
     Ok(fs::write(root.join(PAGE), page)?)
@@ -73,23 +71,18 @@ struct Number {
 impl Data {
     /// Reads the lines of [`sbbk_lab::report::Results::csv`] that have contact recycling.
     fn parse(text: &str) -> Self {
-        let lines = text.lines().filter(|line| !line.starts_with('#')).skip(1).map(cells);
-        Self(
-            lines
-                .filter(|cells| cells.len() == 7 && cells[2] != "false")
-                .map(Self::number)
-                .collect(),
-        )
-    }
-
-    fn number(cells: Vec<String>) -> Number {
-        let path = match &*cells[5] {
-            "value" => cells[4].clone(),
-            statistic => format!("{}.{statistic}", cells[4]),
-        };
-        let value = cells[6].parse().unwrap_or(f64::NAN);
-        let scene = format!("{}, {}", cells[0], cells[1]);
-        Number { scene, backend: cells[3].clone(), path, value }
+        let lines = text.lines().filter(|line| !line.starts_with('#')).skip(1);
+        let numbers = lines.filter_map(|line| {
+            let [study, scene, recycling, backend, quantity, statistic, value] =
+                cells(line).try_into().ok()?;
+            let path = match &*statistic {
+                "value" => quantity,
+                statistic => format!("{quantity}.{statistic}"),
+            };
+            let (scene, value) = (format!("{study}, {scene}"), value.parse().unwrap_or(f64::NAN));
+            (recycling != "false").then_some(Number { scene, backend, path, value })
+        });
+        Self(numbers.collect())
     }
 
     /// Numbers of a backend at a path, by scene. All parts of the pattern must end a key.
@@ -146,7 +139,6 @@ impl Data {
     }
 }
 
-/// A count as `2,137,932`.
 fn thousands(count: f64) -> String {
     let digits = format!("{count:.0}");
     let parts: Vec<&[u8]> = digits.as_bytes().rchunks(3).rev().collect();

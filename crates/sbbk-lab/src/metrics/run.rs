@@ -30,11 +30,9 @@ impl RunPlan {
 /// What [`run`] measured.
 #[derive(Debug)]
 pub struct Run {
-    /// The backend.
     pub backend: Backend,
     /// Times of the steps that were not sampled, in order.
     pub times: Vec<StepTimes>,
-    /// The sampled steps, in order.
     pub samples: Vec<Sample>,
 }
 
@@ -43,8 +41,6 @@ pub struct Run {
 /// Both errors are judged at the poses at the start of the step, where Rapier asks.
 #[derive(Debug)]
 pub struct Sample {
-    /// Number of the step.
-    pub step: usize,
     /// The world after the step.
     pub state: WorldState,
     /// Error of fresh answers: pairs sampled from all those of the broad phase, asked with
@@ -101,20 +97,35 @@ impl Runner {
         self.step += 1;
         // Steps are counted from one, and only zero is a multiple of zero.
         let is_sampled = self.step.is_multiple_of(self.plan.sample_every);
+        let SceneWorld { world, .. } = &mut self.built;
         if self.step <= self.plan.warm_up {
-            self.built.world.step();
+            world.step();
         } else if is_sampled {
-            let limit = self.plan.sample_size;
-            let run = &self.run;
-            let sample =
-                sampled_step(&mut self.built, &self.installed, run.backend, self.step, limit);
+            let sample = self.sampled_step();
             self.run.samples.push(sample);
         } else {
-            self.run.times.push(timed_step(&mut self.built.world, &self.installed.probe));
+            self.run.times.push(timed_step(world, &self.installed.probe));
         }
     }
 
-    /// The measurements.
+    fn sampled_step(&mut self) -> Sample {
+        let SceneWorld { world, watched } = &mut self.built;
+        let (backend, limit) = (self.run.backend, self.plan.sample_size);
+        let mut updated = ErrorCount::default();
+        let pairs = Sequence::captured(world, |world| {
+            updated = judged_step(world, &self.installed.probe, limit, backend.has_surfaces());
+        });
+        let sampled = sample_indices(pairs.len(), limit).into_iter();
+        let sampled: Vec<Sequence> = sampled.map(|index| pairs[index].clone()).collect();
+        let dispatcher = backend.per_triangle();
+        let _primed = Primed::new(&dispatcher, sampled.iter().flat_map(|pair| &pair.shapes));
+        let [fresh] = Sequence::errors(&sampled, [&dispatcher.shared], |index, step| {
+            (step == 0).then(|| sampled[index].truth(step))
+        });
+        let fresh = ErrorCount { sampled_from: pairs.len(), ..fresh.pairs };
+        Sample { state: WorldState::of(world, watched), fresh, updated, pairs }
+    }
+
     pub fn finish(self) -> Run {
         self.run
     }
@@ -124,32 +135,5 @@ impl Runner {
 pub fn run(scene: &dyn Scene, backend: Backend, plan: RunPlan) -> Run {
     let mut runner = Runner::new(scene, backend, plan);
     (0..plan.step_count()).for_each(|_| runner.step());
-    runner.finish()
-}
-
-fn sampled_step(
-    SceneWorld { world, watched }: &mut SceneWorld,
-    installed: &Installed,
-    backend: Backend,
-    step: usize,
-    limit: usize,
-) -> Sample {
-    let mut updated = ErrorCount::default();
-    let pairs = Sequence::captured(world, |world| {
-        updated = judged_step(world, &installed.probe, limit, backend.has_surfaces());
-    });
-    let sampled = sample_indices(pairs.len(), limit).into_iter().map(|index| pairs[index].clone());
-    let sampled: Vec<Sequence> = sampled.collect();
-    let dispatcher = backend.per_triangle();
-    let _primed = Primed::new(&dispatcher, sampled.iter().flat_map(|pair| &pair.shapes));
-    let [fresh] = Sequence::errors(&sampled, [&dispatcher.shared], |index, step| {
-        (step == 0).then(|| sampled[index].truth(step))
-    });
-    Sample {
-        step,
-        state: WorldState::of(world, watched),
-        fresh: ErrorCount { sampled_from: pairs.len(), ..fresh.pairs },
-        updated,
-        pairs,
-    }
+    runner.run
 }

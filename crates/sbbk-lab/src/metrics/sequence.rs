@@ -15,7 +15,6 @@ use crate::parallel;
 /// before left.
 #[derive(Clone, Debug)]
 pub struct Sequence {
-    /// The shapes.
     pub shapes: [SharedShape; 2],
     /// Poses of the second one in the frame of the first.
     pub poses: Vec<Pose>,

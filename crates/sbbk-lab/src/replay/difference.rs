@@ -14,7 +14,6 @@ const PREDICTION: f32 = 0.02;
 /// The first contact that is not the same in two runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct Difference {
-    /// Number of the step, from one.
     pub step: usize,
     /// The objects.
     pub pair: [usize; 2],

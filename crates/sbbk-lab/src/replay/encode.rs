@@ -19,7 +19,7 @@ use serde::Serialize;
 
 use super::Recorder;
 use super::difference::Difference;
-use super::recorder::{Frame, STRIDE};
+use super::recorder::STRIDE;
 use super::shapes::levels;
 use crate::mesh::Mesh;
 
@@ -66,17 +66,14 @@ fn packed(runs: &[Recorder]) -> io::Result<Vec<u8>> {
     let places: Vec<Vec<usize>> =
         runs.iter().map(|run| run.shapes.surfaces.iter().map(&mut place).collect()).collect();
     let levels: Vec<[Mesh; 2]> = surfaces.iter().map(|surface| levels(surface)).collect();
-    let header = |(run, places): (_, &Vec<usize>)| -> RunHeader<'_> {
-        let run: &Recorder = run;
-        RunHeader {
-            name: &run.name,
-            steps: run.times.len(),
-            frames: run.frames.len(),
-            contacts: run.frames.iter().map(|frame| frame.contacts.len()).sum(),
-            shapes: run.objects.iter().map(|object| places[object.shape]).collect(),
-            fixed: run.objects.iter().map(|object| object.is_fixed).collect(),
-        }
-    };
+    let headers = runs.iter().zip(&places).map(|(run, places)| RunHeader {
+        name: &run.name,
+        steps: run.times.len(),
+        frames: run.frames.len(),
+        contacts: run.frames.iter().map(|frame| frame.contacts.len()).sum(),
+        shapes: run.objects.iter().map(|object| places[object.shape]).collect(),
+        fixed: run.objects.iter().map(|object| object.is_fixed).collect(),
+    });
     let size = |surface: &Mesh| [surface.vertices.len(), surface.triangles.len()];
     let quantum = quantum(runs);
     let header = Header {
@@ -84,11 +81,8 @@ fn packed(runs: &[Recorder]) -> io::Result<Vec<u8>> {
         turn: TURN,
         stride: STRIDE,
         shapes: levels.iter().map(|levels| levels.each_ref().map(size)).collect(),
-        runs: runs.iter().zip(&places).map(header).collect(),
-        difference: match runs {
-            [one, other, ..] => Difference::first(one, other),
-            _ => None,
-        },
+        runs: headers.collect(),
+        difference: runs.get(1).and_then(|other| Difference::first(&runs[0], other)),
     };
 
     let header = serde_json::to_vec(&header)?;
@@ -98,15 +92,13 @@ fn packed(runs: &[Recorder]) -> io::Result<Vec<u8>> {
     out.write_all(&[0; 3][..header.len().next_multiple_of(4) - header.len()])?;
     for surface in levels.iter().flatten() {
         let numbers = surface.vertices.iter().flat_map(|vertex| vertex.to_array());
-        out.write_all(&numbers.flat_map(f32::to_le_bytes).collect::<Vec<u8>>())?;
-        let numbers = surface.triangles.iter().flatten();
-        out.write_all(&numbers.flat_map(|n| n.to_le_bytes()).collect::<Vec<u8>>())?;
+        out.write_all(&bytes(numbers.map(f32::to_bits)))?;
+        out.write_all(&bytes(surface.triangles.iter().flatten().copied()))?;
     }
     for run in runs {
-        out.write_all(&run.times.iter().flat_map(|time| time.to_le_bytes()).collect::<Vec<u8>>())?;
+        out.write_all(&bytes(run.times.iter().map(|time| time.to_bits())))?;
         out.write_all(&planes(&poses(run, quantum)))?;
-        let counts = run.frames.iter().map(|frame| frame.contacts.len() as u32);
-        out.write_all(&counts.flat_map(u32::to_le_bytes).collect::<Vec<u8>>())?;
+        out.write_all(&bytes(run.frames.iter().map(|frame| frame.contacts.len() as u32)))?;
         let points = || run.frames.iter().flat_map(|frame| &frame.contacts);
         let numbers = [0, 1, 2].map(|axis| points().map(|p| steps(p[axis], quantum)).collect());
         out.write_all(&planes(&numbers))?;
@@ -114,14 +106,17 @@ fn packed(runs: &[Recorder]) -> io::Result<Vec<u8>> {
     out.finish()
 }
 
+fn bytes(numbers: impl Iterator<Item = u32>) -> Vec<u8> {
+    numbers.flat_map(u32::to_le_bytes).collect()
+}
+
 /// Step of positions: a thousandth of the smallest moving body.
 fn quantum(runs: &[Recorder]) -> f32 {
-    let moving = |run: &Recorder| -> Vec<f32> {
-        let objects = run.objects.iter().filter(|object| !object.is_fixed);
-        let boxes = objects.map(|object| run.shapes.surfaces[object.shape].bounds());
-        boxes.map(|bounds| bounds.half_extents().length()).collect()
-    };
-    let least = runs.iter().flat_map(moving).filter(|r| *r > 0.0).fold(f32::INFINITY, f32::min);
+    let radii = runs.iter().flat_map(|run| {
+        let moving = run.objects.iter().filter(|object| !object.is_fixed);
+        moving.map(|object| run.shapes.surfaces[object.shape].bounds().half_extents().length())
+    });
+    let least = radii.filter(|radius| *radius > 0.0).fold(f32::INFINITY, f32::min);
     1e-3 * if least.is_finite() { least } else { 1.0 }
 }
 
@@ -138,7 +133,7 @@ fn poses(run: &Recorder, quantum: f32) -> [Vec<i32>; 7] {
         let mut last = [0.0; 4];
         let mut shown = Vec3::ZERO;
         for frame in &run.frames {
-            let pose = pose(frame, object);
+            let pose: Option<Pose> = frame.poses.get(object).copied().flatten();
             let rotation = pose.map_or([0.0; 4], |pose| pose.rotation.to_array());
             // A rotation has two quaternions; take the one nearer to the last.
             let dot: f32 = rotation.iter().zip(last).map(|(a, b)| a * b).sum();
@@ -150,10 +145,6 @@ fn poses(run: &Recorder, quantum: f32) -> [Vec<i32>; 7] {
         }
     }
     numbers
-}
-
-fn pose(frame: &Frame, object: usize) -> Option<Pose> {
-    *frame.poses.get(object)?
 }
 
 /// Differences of successive numbers, zigzag-coded, first all low bytes, then the middle and the

@@ -31,14 +31,6 @@ use crate::scene::{Scene, SceneWorld};
 pub use encode::encode;
 pub use recorder::Recorder;
 
-const TEMPLATE: &str = include_str!("page/page.html");
-const STYLE: &str = include_str!("page/style.css");
-/// [OGL](https://github.com/oframe/ogl), which is in the public domain; its licence is in the page.
-const LIBRARY: &str = include_str!("page/ogl.min.js");
-const DECODE: &str = include_str!("page/decode.js");
-const DRAW: &str = include_str!("page/draw.js");
-const PLAY: &str = include_str!("page/play.js");
-
 /// Runs a scene on some backends, all at the same time, and writes their page.
 ///
 /// Errors: the file cannot be written.
@@ -72,16 +64,16 @@ pub fn write(path: &Path, title: &str, runs: &[Recorder]) -> Result<(), ReportEr
 }
 
 fn page(title: &str, runs: &[Recorder]) -> String {
-    let title = title.replace('&', "&amp;").replace('<', "&lt;");
     let parts = [
-        ("@title@", title),
-        ("@style@", STYLE.to_owned()),
-        ("@library@", LIBRARY.to_owned()),
-        ("@decode@", DECODE.to_owned()),
-        ("@draw@", DRAW.to_owned()),
-        ("@play@", PLAY.to_owned()),
-        ("@data@", encode(runs)),
+        ("@title@", &*title.replace('&', "&amp;").replace('<', "&lt;")),
+        ("@style@", include_str!("page/style.css")),
+        // [OGL](https://github.com/oframe/ogl) is in the public domain; its licence is in the page.
+        ("@library@", include_str!("page/ogl.min.js")),
+        ("@decode@", include_str!("page/decode.js")),
+        ("@draw@", include_str!("page/draw.js")),
+        ("@play@", include_str!("page/play.js")),
+        ("@data@", &encode(runs)),
     ];
-    let page = TEMPLATE.to_owned();
+    let page = include_str!("page/page.html").to_owned();
     parts.iter().fold(page, |page, (name, part)| page.replace(name, part))
 }

@@ -17,7 +17,7 @@ pub(super) const STRIDE: usize = 2;
 const CONTACTS: usize = 200;
 
 /// Poses, contacts and times of a run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Recorder {
     pub(super) name: String,
     /// Colliders in the order of insertion.
@@ -56,15 +56,7 @@ pub(super) struct Deepest {
 impl Recorder {
     /// Starts the recording of a world before its first step.
     pub fn new(name: impl ToString, world: &PhysicsWorld) -> Self {
-        let mut recorder = Self {
-            name: name.to_string(),
-            objects: Vec::new(),
-            places: HashMap::new(),
-            shapes: Shapes::default(),
-            frames: Vec::new(),
-            times: Vec::new(),
-            deepest: Vec::new(),
-        };
+        let mut recorder = Self { name: name.to_string(), ..Self::default() };
         recorder.frame(world, Vec::new());
         recorder
     }
@@ -93,17 +85,11 @@ impl Recorder {
         self.frames.push(Frame { poses, contacts });
     }
 
-    fn object(
-        &mut self,
-        world: &PhysicsWorld,
-        handle: ColliderHandle,
-        collider: &Collider,
-    ) -> usize {
-        let body = collider.parent().and_then(|body| world.bodies.get(body));
+    fn object(&mut self, world: &PhysicsWorld, handle: ColliderHandle, it: &Collider) -> usize {
         *self.places.entry(handle).or_insert_with(|| {
-            let shape = self.shapes.add(collider.shared_shape());
+            let body = it.parent().and_then(|body| world.bodies.get(body));
             let is_fixed = body.is_none_or(|body| body.is_fixed());
-            self.objects.push(Object { shape, is_fixed });
+            self.objects.push(Object { shape: self.shapes.add(it.shared_shape()), is_fixed });
             self.objects.len() - 1
         })
     }

@@ -58,7 +58,6 @@ impl Row {
         self.get(path).and_then(Value::as_f64).unwrap_or(f64::NAN)
     }
 
-    /// The count at a path, or 0.
     pub fn count(&self, path: &str) -> u64 {
         self.get(path).and_then(Value::as_u64).unwrap_or(0)
     }

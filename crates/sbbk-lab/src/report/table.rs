@@ -165,7 +165,6 @@ impl<'a> TableSpec<'a> {
         self
     }
 
-    /// Makes the table of `rows`.
     pub fn of(self, rows: &[Row]) -> Table {
         let Self { title, study, keys, total, columns, notes } = self;
         let rows: Vec<&Row> = rows.iter().filter(|row| row.study == study).collect();

@@ -67,7 +67,6 @@ impl ComparePlan {
         }
     }
 
-    /// The pile of so many heads.
     pub fn scene(&self, heads: usize) -> MonkeyPile {
         match &self.head {
             Some(head) => MonkeyPile::of(heads, head.clone()),

@@ -109,7 +109,6 @@ impl<'a> Sides<'a> {
         self.0.each_ref().map(|rows| rows.iter().map(|row| row.wrong(path)).sum())
     }
 
-    /// Rows of SBBK.
     pub fn sbbk(&self) -> &[&'a Row] {
         &self.0[1]
     }

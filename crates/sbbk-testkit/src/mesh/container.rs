@@ -20,7 +20,6 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Makes a mesh of its parts, unchecked.
     pub fn new(name: impl Into<String>, vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
         Self { name: name.into(), vertices, triangles }
     }
@@ -36,7 +35,6 @@ impl Mesh {
         whole
     }
 
-    /// Renames the mesh.
     pub fn named(mut self, name: impl Into<String>) -> Self {
         self.name = name.into();
         self
@@ -84,7 +82,6 @@ impl Mesh {
         self
     }
 
-    /// Moves the mesh rigidly.
     pub fn posed(self, pose: &Pose3) -> Self {
         self.mapped(|v| pose.transform_point(v))
     }

@@ -89,7 +89,6 @@ impl Gear {
         (0..teeth).map(move |tooth| TAU * tooth as f32 / teeth as f32)
     }
 
-    /// The whole gear.
     pub fn mesh(&self) -> Mesh {
         let tooth = self.tooth();
         let outline = self.angles().flat_map(|angle| {
@@ -128,14 +127,13 @@ impl Rack {
         [at(-1.0, foot), at(-1.0, head), at(1.0, head), at(1.0, foot)]
     }
 
-    /// The whole rack.
     pub fn mesh(&self) -> Mesh {
         let line: Vec<Vec2> = (0..self.teeth).flat_map(|tooth| self.tooth(tooth)).collect();
         let back = self.gear.pitch_radius() + self.depth;
         let rows = line.len() as u32;
+        let half_width = self.gear.half_width;
         let solid = quad_grid([4, rows + 1], |i, j| {
             let point = line[(j.max(1) - 1).min(rows - 1) as usize];
-            let half_width = self.gear.half_width;
             match i % 4 {
                 _ if j == 0 || j > rows => Vec3::new(back, point.y, 0.0),
                 0 => Vec3::new(back, point.y, -half_width),
@@ -162,7 +160,6 @@ pub struct Thread {
     /// Added thickness of the thread at each side, as a share of the pitch; with the flank, less
     /// than 0.4.
     pub thicker: f32,
-    /// Turns of the part.
     pub turns: u32,
     /// Vertices of a turn.
     pub segments: u32,
@@ -230,22 +227,24 @@ impl Thread {
     /// A bolt without a head.
     pub fn bolt(&self) -> Mesh {
         let rows = self.row_count();
-        let bolt = quad_grid([self.segments, rows + 1], |i, j| match j {
+        self.solid("bolt", rows + 1, |i, j| match j {
             0 => Vec3::ZERO,
             j if j > rows => Vec3::Y * self.pitch * self.turns as f32,
             j => self.point(i, j - 1),
-        });
-        without_needles(&bolt).named("bolt")
+        })
     }
 
     /// A round nut of this radius that this thread is cut into.
     pub fn nut(&self, radius: f32) -> Mesh {
         let rows = self.row_count();
-        let nut = quad_grid([self.segments, rows + 2], |i, j| match j {
+        self.solid("nut", rows + 2, |i, j| match j {
             j if j == 0 || j == rows + 2 => self.around(i, radius, 0.0),
             1 => self.around(i, radius, self.pitch * self.turns as f32),
             j => self.point(i, rows + 1 - j),
-        });
-        without_needles(&nut).named("nut")
+        })
+    }
+
+    fn solid(&self, name: &str, rows: u32, point: impl Fn(u32, u32) -> Vec3) -> Mesh {
+        without_needles(&quad_grid([self.segments, rows], point)).named(name)
     }
 }

@@ -116,7 +116,6 @@ fn shaped(direction: Vec3, features: &[(&Feature, Vec3)]) -> Vec3 {
 }
 
 impl Feature {
-    /// Weight of the feature in a unit direction, in 0..1.
     fn weight(&self, direction: Vec3) -> f32 {
         let [plateau, rim] = self.profile;
         let t = ((direction - self.centre.normalize()) / self.spread).length_squared();

@@ -18,9 +18,7 @@ pub struct Question {
 /// A pair of triangles with a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reported {
-    /// Triangle of the first mesh.
     pub triangle1: u32,
-    /// Triangle of the second mesh.
     pub triangle2: u32,
     /// Smallest signed distance among the points of the pair: negative when it penetrates.
     pub distance: Real,
@@ -31,7 +29,6 @@ pub struct Reported {
 /// A call of `contact_manifolds` for two meshes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
-    /// The arguments.
     pub question: Question,
     /// Triangle pairs with a point no farther than the prediction distance. Points beyond it,
     /// which stock Parry keeps from earlier poses, are left out.

@@ -11,18 +11,12 @@ use super::Answer;
 /// Kind of a pair of shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PairKind {
-    /// Two triangle meshes.
     MeshMesh,
-    /// A triangle mesh and anything else.
     MeshOther,
-    /// No triangle mesh.
     Other,
 }
 
 impl PairKind {
-    const COUNT: usize = 3;
-
-    /// The kind of a pair of shapes.
     pub fn of(shape1: &dyn Shape, shape2: &dyn Shape) -> Self {
         match [shape1, shape2].map(|shape| shape.as_shape::<TriMesh>().is_some()) {
             [true, true] => Self::MeshMesh,
@@ -35,7 +29,6 @@ impl PairKind {
 /// Calls of one kind, and the time they took together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
-    /// Number of calls.
     pub calls: u64,
     /// Summed wall time, one [`clock_cost`] a call included; if only some calls are timed
     /// ([`Probe::time_every`]), as if the others took as long. With Rapier's `parallel` feature
@@ -51,8 +44,8 @@ pub struct Probe(Arc<Shared>);
 struct Shared {
     /// Calls of a kind between two that are timed.
     untimed: AtomicU64,
-    calls: [AtomicU64; PairKind::COUNT],
-    nanoseconds: [AtomicU64; PairKind::COUNT],
+    calls: [AtomicU64; 3],
+    nanoseconds: [AtomicU64; 3],
     is_recording: AtomicBool,
     answers: Mutex<Vec<Answer>>,
 }

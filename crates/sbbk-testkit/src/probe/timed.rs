@@ -37,53 +37,29 @@ macro_rules! forward {
     )*};
 }
 
-/// The queries without manifolds, answered by `self.inner`.
-macro_rules! forward_queries {
-    () => {
-        forward! {
-            intersection_test(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> ShapeIntersection;
-            distance(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> ShapeDistance;
-            contact(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, near: Real) -> Option<Contact>;
-            closest_points(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, near: Real) -> ClosestPoints;
-            cast_shapes(
-                pos12: &Pose,
-                local_vel12: Vector,
-                g1: &dyn Shape,
-                g2: &dyn Shape,
-                options: ShapeCastOptions
-            ) -> Option<ShapeCastHit>;
-            cast_shapes_nonlinear(
-                motion1: &NonlinearRigidMotion,
-                g1: &dyn Shape,
-                motion2: &NonlinearRigidMotion,
-                g2: &dyn Shape,
-                start_time: Real,
-                end_time: Real,
-                stop_at_penetration: bool
-            ) -> Option<ShapeCastHit>;
-        }
-    };
-}
-
-/// The query of two convex shapes with a manifold, passed to `self.inner`.
-macro_rules! forward_pair {
-    ($manifold:ty, $contact:ty) => {
-        forward! {
-            contact_manifold_convex_convex(
-                pos12: &Pose,
-                g1: &dyn Shape,
-                g2: &dyn Shape,
-                normal_constraints1: Option<&dyn NormalConstraints>,
-                normal_constraints2: Option<&dyn NormalConstraints>,
-                prediction: Real,
-                manifold: &mut rapier3d::parry::query::ContactManifold<$manifold, $contact>
-            ) -> ();
-        }
-    };
-}
-
 impl<D: QueryDispatcher + ?Sized> QueryDispatcher for Timed<D> {
-    forward_queries!();
+    forward! {
+        intersection_test(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> ShapeIntersection;
+        distance(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> ShapeDistance;
+        contact(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, near: Real) -> Option<Contact>;
+        closest_points(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, near: Real) -> ClosestPoints;
+        cast_shapes(
+            pos12: &Pose,
+            local_vel12: Vector,
+            g1: &dyn Shape,
+            g2: &dyn Shape,
+            options: ShapeCastOptions
+        ) -> Option<ShapeCastHit>;
+        cast_shapes_nonlinear(
+            motion1: &NonlinearRigidMotion,
+            g1: &dyn Shape,
+            motion2: &NonlinearRigidMotion,
+            g2: &dyn Shape,
+            start_time: Real,
+            end_time: Real,
+            stop_at_penetration: bool
+        ) -> Option<ShapeCastHit>;
+    }
 }
 
 impl<M, C, D> PersistentQueryDispatcher<M, C> for Timed<D>
@@ -110,5 +86,15 @@ where
         result
     }
 
-    forward_pair!(M, C);
+    forward! {
+        contact_manifold_convex_convex(
+            pos12: &Pose,
+            g1: &dyn Shape,
+            g2: &dyn Shape,
+            constraints1: Option<&dyn NormalConstraints>,
+            constraints2: Option<&dyn NormalConstraints>,
+            prediction: Real,
+            manifold: &mut ContactManifold<M, C>
+        ) -> ();
+    }
 }

@@ -47,15 +47,12 @@ impl HelicopterBallDrop {
         let over = hub.lerp(farthest.unwrap_or(hub), BLADE_SHARE);
         over.with_y(bounds.maxs.y + self.drop_height + self.ball_radius)
     }
-
-    fn ball_mesh(&self) -> Mesh {
-        mesh::ball(self.ball_radius, BALL_DETAIL)
-    }
 }
 
 impl Scene for HelicopterBallDrop {
     fn name(&self) -> String {
-        let [ball, helicopter] = [&self.ball_mesh(), &self.helicopter].map(Mesh::triangle_count);
+        let ball = 8 * BALL_DETAIL * BALL_DETAIL;
+        let helicopter = self.helicopter.triangle_count();
         format!("ball of {ball} triangles, helicopter of {helicopter} triangles")
     }
 
@@ -63,7 +60,7 @@ impl Scene for HelicopterBallDrop {
         let mut world = PhysicsWorld::new();
         let helicopter = Solid::new(&self.helicopter);
         world.insert(RigidBodyBuilder::fixed(), helicopter.collider());
-        let collider = Solid::new(&self.ball_mesh()).collider();
+        let collider = Solid::new(&mesh::ball(self.ball_radius, BALL_DETAIL)).collider();
         let body = RigidBodyBuilder::dynamic().translation(self.start());
         let (body, _) = world.insert(body, collider.restitution(0.4));
         SceneWorld { world, watched: vec![body] }

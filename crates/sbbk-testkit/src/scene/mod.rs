@@ -49,7 +49,6 @@ pub fn shape(mesh: &Mesh, flags: TriMeshFlags) -> SharedShape {
 
 /// A world and its moving bodies.
 pub struct SceneWorld {
-    /// The world.
     pub world: PhysicsWorld,
     /// The moving bodies, in the order in which the scene lists them.
     pub watched: Vec<RigidBodyHandle>,

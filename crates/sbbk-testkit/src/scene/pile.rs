@@ -38,7 +38,6 @@ const SPACING: f32 = 1.02;
 const LAYERS: usize = 5;
 
 impl MonkeyPile {
-    /// `heads` monkey heads.
     pub fn with_heads(heads: usize) -> Self {
         Self::of(heads, mesh::monkey_head())
     }

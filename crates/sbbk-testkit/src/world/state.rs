@@ -8,11 +8,8 @@ use rapier3d::pipeline::PhysicsWorld;
 /// The contacts belong to the start of the last step. Contacts of recycled pairs are older.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WorldState {
-    /// Collider pairs with at least one contact point.
-    pub touching_pair_count: usize,
     /// Manifolds with at least one point.
     pub contact_manifold_count: usize,
-    /// Contact points.
     pub point_count: usize,
     /// Mean over the touching pairs of the depth of their deepest point, in units; a pair whose
     /// points are all apart counts as 0.
@@ -42,23 +39,20 @@ impl WorldState {
     }
 
     fn add_contacts(&mut self, world: &PhysicsWorld) {
+        let mut touching_pair_count = 0_usize;
         for pair in world.narrow_phase.contact_pairs() {
-            let mut deepest: Option<f32> = None;
-            for manifold in pair.manifolds() {
-                self.contact_manifold_count += usize::from(!manifold.points.is_empty());
-                self.point_count += manifold.points.len();
-                for point in &manifold.points {
-                    deepest = Some(deepest.map_or(-point.dist, |depth| depth.max(-point.dist)));
-                }
-            }
-            if let Some(depth) = deepest {
+            let manifolds = pair.manifolds().iter().filter(|manifold| !manifold.points.is_empty());
+            self.contact_manifold_count += manifolds.clone().count();
+            let depths = manifolds.flat_map(|manifold| &manifold.points).map(|point| -point.dist);
+            self.point_count += depths.clone().count();
+            if let Some(depth) = depths.reduce(f32::max) {
                 let depth = f64::from(depth.max(0.0));
-                self.touching_pair_count += 1;
+                touching_pair_count += 1;
                 self.mean_penetration += depth;
                 self.max_penetration = self.max_penetration.max(depth);
             }
         }
-        self.mean_penetration /= self.touching_pair_count.max(1) as f64;
+        self.mean_penetration /= touching_pair_count.max(1) as f64;
     }
 }
 

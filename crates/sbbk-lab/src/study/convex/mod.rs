@@ -26,7 +26,6 @@ use crate::scene::random;
 /// Extent of the comparison.
 #[derive(Clone, Debug)]
 pub struct ConvexPlan {
-    /// The mesh.
     pub mesh: Mesh,
     /// The prediction distance, in units.
     pub prediction: Real,
@@ -109,7 +108,6 @@ fn measure(plan: &ConvexPlan, kind: &Kind, seed: u64) -> Vec<Row> {
     rows
 }
 
-/// A random way of the mesh to the shape.
 fn approach(contest: &Contest, mesh: &SharedShape, kind: &Kind, random: &mut Rand32) -> Approach {
     let shapes = [&kind.shape, mesh];
     let Some(upright) = kind.floor else {

@@ -44,7 +44,6 @@ const USUAL_SIZES: [f32; 2] = [0.3, 30.0];
 pub struct Advice {
     /// Name of the mesh, or of the robot's file.
     pub name: String,
-    /// Number of triangles.
     pub triangles: usize,
     /// Longest side, in units.
     pub size: f32,

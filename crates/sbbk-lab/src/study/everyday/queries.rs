@@ -20,7 +20,6 @@ use crate::scene::{random, shape};
 use crate::study::turns::in_turn;
 
 named! {
-    /// A query.
     enum Query {
         Intersection = "intersection",
         Distance = "distance",

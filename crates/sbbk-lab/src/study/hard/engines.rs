@@ -73,7 +73,7 @@ impl EnginePile {
         let parts = convex.as_compound().into_iter().flat_map(|compound| compound.shapes());
         let parts = parts.filter_map(|(_, part)| Some(part.as_convex_polyhedron()?.points()));
         let parts = parts.map(<[Vec3]>::to_vec).collect();
-        let world = Self::kit(Column::Stock).world();
+        let world = Kit::new(Column::Stock, true, 1).world();
         Self {
             time_step: world.integration_parameters.dt,
             gravity: -world.gravity.y,
@@ -85,10 +85,6 @@ impl EnginePile {
             mesh,
             parts,
         }
-    }
-
-    fn kit(column: Column) -> Kit {
-        Kit::new(column, true, 1)
     }
 
     /// Writes the scene as numbers in f32, lists after their lengths.
@@ -127,11 +123,7 @@ impl EnginePile {
 
     fn from_numbers(numbers: &mut impl Iterator<Item = f32>) -> Option<Self> {
         fn take<const N: usize>(numbers: &mut impl Iterator<Item = f32>) -> Option<[f32; N]> {
-            let mut taken = [0.0; N];
-            for number in &mut taken {
-                *number = numbers.next()?;
-            }
-            Some(taken)
+            numbers.by_ref().take(N).collect::<Vec<f32>>().try_into().ok()
         }
         fn list<const N: usize, T>(
             numbers: &mut impl Iterator<Item = f32>,
@@ -161,7 +153,7 @@ impl EnginePile {
     /// Errors: the file cannot be written.
     pub fn run(&self, column: Column, path: &Path) -> io::Result<()> {
         let mut file = BufWriter::new(File::create(path)?);
-        let kit = Self::kit(column);
+        let kit = Kit::new(column, true, 1);
         kit.world().step();
         let empty = memory("VmRSS");
         let form = Form::parts(self.mesh.clone(), self.parts.iter().cloned());
@@ -220,12 +212,11 @@ impl EnginePile {
                 RESTING.start + 1,
                 RESTING.end
             ))
-            .note(format!(
+            .note(
                 "depth: of the deepest vertex, by winding number and distance to the surface; of \
-                     a head: the greatest of its pairs; inside each other: deeper than {} mm; \
-                     units are metres",
-                1e3 * INSIDE
-            ))
+                 a head: the greatest of its pairs; inside each other: deeper than 10 mm; units are \
+                 metres",
+            )
             .note(format!(
                 "control: stock with the {} parts of Parry's decomposition",
                 self.parts.len()
@@ -237,11 +228,13 @@ impl EnginePile {
     fn read_run(&self, path: &Path) -> io::Result<Run> {
         let numbers = read_numbers(path)?;
         let step_size = HEADER + STATE * self.poses.len();
-        if numbers.len() != STEPS * step_size {
-            let text = format!("{}: not {} steps of {step_size} numbers", path.display(), STEPS);
-            return Err(invalid(text));
+        match numbers.len() == STEPS * step_size {
+            true => Ok(Run { numbers, step_size }),
+            false => Err(invalid(format!(
+                "{}: not {STEPS} steps of {step_size} numbers",
+                path.display()
+            ))),
         }
-        Ok(Run { numbers, step_size })
     }
 
     /// Figures of an engine.
@@ -363,13 +356,9 @@ impl Run {
 }
 
 fn verdict(engines: &[(String, Vec<&Path>)], rows: &[Row]) -> String {
-    let times = engines.iter().map(|(engine, _)| {
-        let is_shown = |row: &&Row| {
-            row.is("backend", engine) && row.is("figure", "step in motion, median, ms")
-        };
-        let time = rows.iter().find(is_shown).map_or(f64::NAN, |row| row.number("value"));
-        format!("{engine} {time:.1}")
-    });
+    let is_shown = |row: &&Row| row.is("figure", "step in motion, median, ms");
+    let times = engines.iter().zip(rows.iter().filter(is_shown));
+    let times = times.map(|((engine, _), row)| format!("{engine} {:.1}", row.number("value")));
     format!("median step of the pile in motion, ms: {}", times.collect::<Vec<_>>().join(", "))
 }
 

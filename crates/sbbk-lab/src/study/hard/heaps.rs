@@ -11,7 +11,6 @@ const FULL_AT: usize = 60;
 /// Pairs whose depth is judged.
 const PAIRS: usize = 150;
 
-/// Piles of so many heads, or of another mesh.
 pub(super) fn piles(heads: &[usize], mesh: Option<&Mesh>) -> Vec<Trial> {
     let trial = |&heads: &usize| {
         let (name, pile) = match mesh {

@@ -37,7 +37,6 @@ pub(super) fn rows(trial: &Trial, runs: &[(&Kit, &Figures)]) -> Vec<Row> {
     rows
 }
 
-/// The figure with this index in the worst of some runs.
 fn worst_of(runs: &[(&Kit, &Figures)], index: usize) -> Figure {
     let of_runs = runs.iter().map(|(_, figures)| figures.0[index]);
     of_runs.reduce(|a, b| if b.excess() > a.excess() { b } else { a }).unwrap_or(runs[0].1.0[index])

@@ -19,7 +19,6 @@ struct Rider {
     name: &'static str,
     is_mesh: bool,
     rolls: bool,
-    /// Number of starts.
     starts: usize,
     collider: fn(&Kit) -> ColliderBuilder,
     turn: fn(&mut Rand32) -> Quat,

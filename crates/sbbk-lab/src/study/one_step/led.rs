@@ -103,7 +103,6 @@ struct Inertia {
 }
 
 impl Norm {
-    /// Norm for the bodies of a scene in a state.
     pub fn of(scene: &dyn Scene, state: &[Motion]) -> Self {
         let built = scene.build();
         let inertia = |(&handle, motion): (&RigidBodyHandle, &Motion)| {
@@ -129,13 +128,11 @@ impl Norm {
     }
 }
 
-#[cfg(test)]
-mod tests {
+/// Would catch moments of inertia about the wrong axes.
+#[test]
+fn the_norm_is_the_root_of_twice_the_energy() {
     use rapier3d::dynamics::RigidBodyBuilder;
     use rapier3d::geometry::ColliderBuilder;
-    use rapier3d::pipeline::PhysicsWorld;
-
-    use super::*;
 
     /// A turned brick, alone.
     struct Brick;
@@ -146,7 +143,8 @@ mod tests {
         }
 
         fn build(&self) -> SceneWorld {
-            let mut world = PhysicsWorld::new();
+            let mut world = rapier3d::pipeline::PhysicsWorld::new();
+            world.gravity = Vector::ZERO;
             let body = RigidBodyBuilder::dynamic().rotation(Vector::new(0.4, 1.1, -0.3));
             let body = body.linvel(Vector::new(1.0, -2.0, 0.5)).angvel(Vector::new(3.0, 1.0, -2.0));
             let (body, _) = world.insert(body, ColliderBuilder::cuboid(0.2, 0.5, 1.1));
@@ -154,19 +152,11 @@ mod tests {
         }
     }
 
-    /// Would catch moments of inertia about the wrong axes.
-    #[test]
-    fn the_norm_is_the_root_of_twice_the_energy() {
-        let mut led = Led::new(&Brick, Backend::Stock);
-        led.built.world.gravity = Vector::ZERO;
-        // Rapier knows a body's inertia in the world after a step.
-        let moving = led.motions();
-        led.lead(std::slice::from_ref(&moving));
-        let energy = f64::from(led.built.world.bodies[led.built.watched[0]].kinetic_energy());
-        let motions = led.motions();
-        let norm = Norm::of(&Brick, &motions);
-        let still = [Motion { linear: Vector::ZERO, angular: Vector::ZERO, ..motions[0] }];
-        let distance = norm.distance(&motions, &still);
-        assert!((distance * distance / (2.0 * energy) - 1.0).abs() < 1e-4, "{distance} {energy}");
-    }
+    let mut led = Led::new(&Brick, Backend::Stock);
+    // Rapier knows a body's inertia in the world after a step.
+    let motions = led.lead(&[led.motions()]);
+    let energy = f64::from(led.built.world.bodies[led.built.watched[0]].kinetic_energy());
+    let still = [Motion { linear: Vector::ZERO, angular: Vector::ZERO, ..motions[0] }];
+    let distance = Norm::of(&Brick, &motions).distance(&motions, &still);
+    assert!((distance * distance / (2.0 * energy) - 1.0).abs() < 1e-4, "{distance} {energy}");
 }
