@@ -1,5 +1,6 @@
 //! Work on several threads.
 
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
@@ -16,7 +17,7 @@ pub fn map<T: Sync, R: Send>(
     work: impl Fn(usize, &T) -> R + Sync,
 ) -> Vec<R> {
     let next = AtomicUsize::new(0);
-    let results: Mutex<Vec<_>> = Mutex::new(items.iter().map(|_| None).collect());
+    let results = Mutex::new(BTreeMap::new());
     thread::scope(|scope| {
         for _ in 0..threads.clamp(1, items.len().max(1)) {
             scope.spawn(|| {
@@ -24,10 +25,10 @@ pub fn map<T: Sync, R: Send>(
                     && let Some(item) = items.get(index)
                 {
                     let result = work(index, item);
-                    results.lock().unwrap_or_else(PoisonError::into_inner)[index] = Some(result);
+                    results.lock().unwrap_or_else(PoisonError::into_inner).insert(index, result);
                 }
             });
         }
     });
-    results.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().flatten().collect()
+    results.into_inner().unwrap_or_else(PoisonError::into_inner).into_values().collect()
 }

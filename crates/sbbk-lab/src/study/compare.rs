@@ -1,5 +1,6 @@
 //! Both experiments of the paper on all backends.
 
+use super::pair::Sides;
 use super::pile::{self, PilePlan, SamePosesPlan, pile, same_poses_table, wrong_of};
 use super::turns::in_turn;
 use crate::backend::Backend;
@@ -96,26 +97,19 @@ pub fn compare(plan: &ComparePlan, progress: &Progress) -> Results {
 
 fn verdict(plan: &ComparePlan, rows: &[Row]) -> String {
     let heads = plan.heads.iter().copied().max().unwrap_or(0);
-    let median = |backend: Backend, path: &str| {
-        let is_shown = |row: &&Row| {
-            row.study == pile::RUNS
-                && row.is("backend", backend)
-                && row.count("heads") == heads as u64
-                && row.get("contact_recycling") == Some(&true.into())
-        };
-        rows.iter().find(is_shown).map_or(f64::NAN, |row| row.number(path))
-    };
-    let ratio = |path| median(Backend::Stock, path) / median(Backend::Sbbk, path);
-    let [stock, sbbk] = [Backend::Stock, Backend::Sbbk].map(|backend| wrong_of(rows, backend));
+    let largest = Sides::of(rows, |row| {
+        row.study == pile::RUNS
+            && row.count("heads") == heads as u64
+            && row.get("contact_recycling") == Some(&true.into())
+    });
+    let ([wrong, all], [stocks_wrong, stocks_all]) =
+        (wrong_of(rows, Backend::Sbbk), wrong_of(rows, Backend::Stock));
     format!(
         "in a pile of {heads} heads a whole step is {:.1} times as fast as stock's, collision \
-         detection {:.1} times; wrong contacts: SBBK {} of {}, stock {} of {}",
-        ratio("step.median"),
-        ratio("collision_detection.median"),
-        sbbk[0],
-        sbbk[1],
-        stock[0],
-        stock[1]
+         detection {:.1} times; wrong contacts: SBBK {wrong} of {all}, stock {stocks_wrong} of \
+         {stocks_all}",
+        largest.ratio("step.median"),
+        largest.ratio("collision_detection.median"),
     )
 }
 

@@ -58,10 +58,8 @@ impl Judge {
                 if found.distance <= reach {
                     let normals = found.normals.into_iter().map(|normal| -normal).collect();
                     let truth = TrueContact { distance: found.distance, normals };
-                    contacts.push(match is_mesh_first {
-                        true => ((triangle_index, part_index), truth),
-                        false => ((part_index, triangle_index), truth),
-                    });
+                    let [one, two] = [triangle_index, part_index];
+                    contacts.push((if is_mesh_first { (one, two) } else { (two, one) }, truth));
                 }
             }
         }
@@ -72,11 +70,8 @@ impl Judge {
 /// A pose as a map. A quaternion that is not quite of unit length scales.
 fn affine(pose: &Pose3) -> DAffine3 {
     let DPose3 { rotation, translation } = DPose3::from(*pose);
-    let columns = DVec3::AXES.map(|axis| rotation * axis);
-    DAffine3::from_mat3_translation(
-        DMat3::from_cols(columns[0], columns[1], columns[2]),
-        translation,
-    )
+    let [x, y, z] = DVec3::AXES.map(|axis| rotation * axis);
+    DAffine3::from_mat3_translation(DMat3::from_cols(x, y, z), translation)
 }
 
 impl Part {

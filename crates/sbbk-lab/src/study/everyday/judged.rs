@@ -41,11 +41,10 @@ impl Comparison {
         let sensors: Vec<Pair> = sensors.filter_map(pair).collect();
         let shapes = contacts.iter().chain(&sensors).flat_map(|pair| &pair.shapes);
         self.primed.push(Primed::new(&self.dispatchers[1], shapes));
-        let touching = contacts.iter().filter_map(|pair| {
-            let answers = self.dispatchers.each_ref().map(|d| pair.contacts(d));
-            answers.iter().any(|manifolds| !manifolds.is_empty()).then_some((pair, answers))
-        });
-        let touching: Vec<_> = touching.collect();
+        let answers = |pair| (pair, self.dispatchers.each_ref().map(|d| Pair::contacts(pair, d)));
+        let touching = contacts.iter().map(answers);
+        let touching: Vec<_> =
+            touching.filter(|(_, answers)| answers.iter().any(|found| !found.is_empty())).collect();
         for index in sample_indices(touching.len(), limit) {
             let (pair, answers) = &touching[index];
             if let Some(truth) = pair.truth() {
@@ -131,11 +130,11 @@ impl Pair {
 
     /// For each mesh the triangles near the other shape, if there are any.
     fn near(&self) -> [Option<Option<Near>>; 2] {
-        let Self { shapes: [shape1, shape2], pos12, prediction } = self;
-        let near = |of: &SharedShape, other: &SharedShape, pose: &Pose| {
-            Some(Near::new(of.as_trimesh()?, other, pose, *prediction))
-        };
-        [near(shape1, shape2, pos12), near(shape2, shape1, &pos12.inverse())]
+        let poses = [self.pos12, self.pos12.inverse()];
+        [0, 1].map(|side| {
+            let mesh = self.shapes[side].as_trimesh()?;
+            Some(Near::new(mesh, &self.shapes[1 - side], &poses[side], self.prediction))
+        })
     }
 
     fn truth_near(&self, near: [&Near; 2]) -> Truth {

@@ -66,7 +66,6 @@ pub struct GroundPlan {
 /// Extent of the study.
 #[derive(Clone, Debug)]
 pub struct EverydayPlan {
-    /// Parts of the study.
     pub groups: Vec<Group>,
     /// Terrains for bodies of all kinds.
     pub grounds: Vec<GroundPlan>,
@@ -86,7 +85,6 @@ pub struct EverydayPlan {
     pub deformable_cells: u32,
     /// URDF file of the robots, or `None` for a walker of this crate.
     pub urdf: Option<PathBuf>,
-    /// Heads in the pile.
     pub heads: usize,
     /// Cells of half a unit along a side of the terrains for single queries.
     pub query_cells: Vec<u32>,

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
-use rapier3d::geometry::{SharedShape, TriMeshFlags};
+use rapier3d::geometry::SharedShape;
 use rapier3d::math::Real;
 use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d::parry::query::details::ShapeCastOptions;
@@ -16,7 +16,9 @@ use super::{PREDICTION, QUERIES};
 use crate::backend::{Backend, Dispatcher, Memory, SharedDispatcher};
 use crate::metrics::{ErrorCount, Summary};
 use crate::report::Row;
-use crate::scene::{random, shape};
+use crate::scene::random;
+use crate::study::pair::Contest;
+use crate::study::shape;
 use crate::study::turns::in_turn;
 
 named! {
@@ -38,14 +40,8 @@ const SECONDS: Real = 10.0;
 
 impl Query {
     /// Returns the answer as a number: 0 or 1, a distance or a time.
-    fn ask(
-        self,
-        dispatcher: &SharedDispatcher,
-        ground: &SharedShape,
-        body: &SharedShape,
-        pos12: &Pose3,
-    ) -> Option<Real> {
-        let (ground, body) = (&**ground, &**body);
+    fn ask(self, dispatcher: &SharedDispatcher, asked: &Asked, pos12: &Pose3) -> Option<Real> {
+        let (ground, body) = (&*asked.ground.shape, &**asked.body);
         match self {
             Self::Intersection => {
                 let meets = dispatcher.intersection_test(pos12, ground, body).ok()?;
@@ -62,16 +58,15 @@ impl Query {
             }
             Self::Cast => {
                 let options = ShapeCastOptions::with_max_time_of_impact(SECONDS);
-                let hit = dispatcher.cast_shapes(pos12, WAY, ground, body, options).ok()??;
-                Some(hit.time_of_impact)
+                let hit = dispatcher.cast_shapes(pos12, WAY, ground, body, options);
+                Some(hit.ok()??.time_of_impact)
             }
             Self::NonlinearCast => {
                 let still = NonlinearRigidMotion::identity();
                 let motion = NonlinearRigidMotion::new(*pos12, Vec3::ZERO, WAY, TURN);
                 let hit = dispatcher
-                    .cast_shapes_nonlinear(&still, ground, &motion, body, 0.0, SECONDS, true)
-                    .ok()??;
-                Some(hit.time_of_impact)
+                    .cast_shapes_nonlinear(&still, ground, &motion, body, 0.0, SECONDS, true);
+                Some(hit.ok()??.time_of_impact)
             }
         }
     }
@@ -95,21 +90,20 @@ pub(super) fn queries(ground: &Ground, repeats: usize) -> Vec<Row> {
         ("ball", SharedShape::ball(0.5)),
         ("capsule", SharedShape::capsule_y(0.3, 0.2)),
         ("hull", hull),
-        ("head", shape(&head(), TriMeshFlags::empty())),
+        ("head", shape(&head())),
     ];
     let mut rows = Vec::new();
     for (name, body) in &bodies {
         for (place, height) in PLACES {
-            let poses: Vec<Pose3> = places(ground, height);
-            let is_slow =
-                |&query: &Query| query == Query::NonlinearCast && body.as_trimesh().is_some();
-            for query in Query::ALL.into_iter().filter(|query| !is_slow(query)) {
+            let poses = places(ground, height);
+            let asked = Asked { ground, body, poses: &poses };
+            let is_slow = |query| query == Query::NonlinearCast && body.as_trimesh().is_some();
+            for query in Query::ALL.into_iter().filter(|&query| !is_slow(query)) {
                 let key = |row: Row| {
                     let row = row.key("query", query.to_string()).key("body", *name);
                     row.key("place", place).key("triangles", ground.triangle_count)
                 };
-                let asked = Asked { ground, body, poses: &poses, query };
-                rows.extend(asked.measure(repeats).map(key));
+                rows.extend(asked.measure(query, repeats).map(key));
             }
         }
     }
@@ -132,36 +126,32 @@ struct Asked<'a> {
     ground: &'a Ground,
     body: &'a SharedShape,
     poses: &'a [Pose3],
-    query: Query,
 }
 
 impl Asked<'_> {
-    fn ask(&self, dispatcher: &SharedDispatcher, pose: &Pose3) -> Option<Real> {
-        self.query.ask(dispatcher, &self.ground.shape, self.body, pose)
-    }
-
-    fn measure(&self, repeats: usize) -> [Row; 2] {
-        let backends = [Backend::Stock, Backend::Sbbk];
-        let dispatchers = backends.map(Backend::per_triangle);
+    fn measure(&self, query: Query, repeats: usize) -> [Row; 2] {
+        let dispatchers = Contest::BACKENDS.map(Backend::per_triangle);
         // Fills the caches of the processor.
-        self.sweep(&Backend::Stock.dispatcher());
-        let times = in_turn(&dispatchers, 2 * repeats + 1, |dispatcher| self.sweep(dispatcher));
-        let times = times.into_iter().map(Summary::of);
-        let answers = self.compare(&dispatchers);
-        let rows = backends.into_iter().zip(times);
-        let rows = rows.map(|(backend, time)| Row::new(QUERIES, backend).with("time", time));
-        let [stock, sbbk]: [Row; 2] = rows.collect::<Vec<_>>().try_into().expect("two backends");
+        self.sweep(query, &Backend::Stock.dispatcher());
+        let sweep = |dispatcher: &Dispatcher| self.sweep(query, dispatcher);
+        let times = in_turn(&dispatchers, 2 * repeats + 1, sweep);
+        let row = |side: usize| {
+            let time = Summary::of(times[side].iter().copied());
+            Row::new(QUERIES, Contest::BACKENDS[side]).with("time", time)
+        };
+        let (stock, sbbk) = (row(0), row(1));
         let of = |row: &Row| [row.number("time.median"), 0.0];
         let verdict = verdict(of(&stock), of(&sbbk), IGNORED, 0.0);
+        let answers = self.compare(query, &dispatchers);
         [stock, sbbk.with("answers", answers).with("verdict", verdict)]
     }
 
     /// Nanoseconds a query.
-    fn sweep(&self, dispatcher: &SharedDispatcher) -> f64 {
+    fn sweep(&self, query: Query, dispatcher: &SharedDispatcher) -> f64 {
         let start = Instant::now();
         let mut count = 0;
         for pose in self.poses {
-            black_box(self.ask(dispatcher, pose));
+            black_box(query.ask(dispatcher, self, pose));
             count += 1;
             if start.elapsed() > BUDGET {
                 break;
@@ -171,20 +161,18 @@ impl Asked<'_> {
     }
 
     /// Counts answers of one side only, and answers that differ.
-    fn compare(&self, [stock, sbbk]: &[Dispatcher; 2]) -> ErrorCount {
+    fn compare(&self, query: Query, dispatchers: &[Dispatcher; 2]) -> ErrorCount {
         let start = Instant::now();
         let mut counts = ErrorCount::default();
         for pose in self.poses.iter().take_while(|_| start.elapsed() < 10 * BUDGET) {
             counts.mesh_pairs += 1;
-            match [stock, sbbk].map(|dispatcher| self.ask(dispatcher, pose)) {
+            counts.true_pairs += 1;
+            match dispatchers.each_ref().map(|dispatcher| query.ask(dispatcher, self, pose)) {
                 [Some(_), None] => counts.missed += 1,
                 [None, Some(_)] => counts.phantom += 1,
-                [Some(stock), Some(sbbk)] => {
-                    counts.wrong_depth += usize::from((stock - sbbk).abs() > BAND);
-                }
-                [None, None] => {}
+                [Some(one), Some(two)] if (one - two).abs() > BAND => counts.wrong_depth += 1,
+                _ => {}
             }
-            counts.true_pairs += 1;
         }
         counts
     }
