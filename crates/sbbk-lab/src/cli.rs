@@ -1,18 +1,13 @@
 //! Arguments, output and errors of the examples.
 
+use crate::prelude::*;
 use std::error::Error;
 use std::fmt::{self, Debug, Display};
 use std::io::{self, ErrorKind, Write};
-use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::backend::Backend;
-use crate::progress::Progress;
-use crate::replay;
-use crate::report::{Results, check_outputs, write_file};
-use crate::scene::Scene;
-use crate::study::StudyError;
+use crate::report::{check_outputs, write_file};
 
 /// Arguments of every study.
 #[derive(Args, Clone, Debug, Default)]

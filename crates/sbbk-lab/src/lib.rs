@@ -15,6 +15,7 @@ pub mod cli;
 pub mod mesh_file;
 pub mod metrics;
 pub mod parallel;
+mod prelude;
 pub mod progress;
 pub mod replay;
 pub mod report;

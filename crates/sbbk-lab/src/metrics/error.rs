@@ -1,16 +1,11 @@
 //! Wrong contacts of a backend, by comparison with brute force in f64.
 
-use std::collections::HashMap;
+use crate::prelude::*;
 use std::iter::Sum;
 use std::ops::AddAssign;
 
-use glamx::{DPose3, DVec3, Vec3};
-use rapier3d::geometry::{ContactManifold, SharedShape};
-use rapier3d::math::Real;
+use glamx::DPose3;
 use sbbk_core::truth::{TruthPair, pairs_within};
-use serde::Serialize;
-
-use crate::backend::{Question, Reported, shape_address};
 
 /// Share of the prediction distance within which a pair may be reported or not. Higher: real
 /// misses pass; lower: rounding to f32 counts as an error.

@@ -1,8 +1,7 @@
 //! Whole runs of a scene on one backend.
 
-use super::{ErrorCount, Sequence, StepTimes, WorldState, judged_step, sample_indices, timed_step};
-use crate::backend::{Backend, Installed, Primed};
-use crate::scene::{Scene, SceneWorld};
+use super::{WorldState, judged_step, timed_step};
+use crate::prelude::*;
 
 /// Steps and samples of a run.
 #[derive(Clone, Copy, Debug, Default)]

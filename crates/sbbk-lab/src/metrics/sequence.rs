@@ -3,13 +3,8 @@
 //! Two runs of one scene drift apart, as a different last bit of a contact leads to another
 //! trajectory. Here every backend has the same queries.
 
-use rapier3d::geometry::{ColliderHandle, ContactManifold, SharedShape};
-use rapier3d::math::{Pose, Real};
-use rapier3d::pipeline::PhysicsWorld;
-
-use super::{ContactErrors, Judge, Truth};
-use crate::backend::{Memory, Question, SharedDispatcher};
-use crate::parallel;
+use super::Judge;
+use crate::prelude::*;
 
 /// Two shapes, asked for their contacts at one pose after the other, each with what the query
 /// before left.

@@ -1,11 +1,8 @@
 //! Timed and judged steps of a world.
 
-use std::time::Instant;
-
-use rapier3d::pipeline::PhysicsWorld;
-
-use super::{ErrorCount, Judge, sample_indices};
+use super::Judge;
 use crate::backend::{Answer, PairKind, Probe};
+use crate::prelude::*;
 
 /// Times of one step, in milliseconds.
 ///

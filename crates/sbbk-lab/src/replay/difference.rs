@@ -1,10 +1,6 @@
 //! The first difference of two runs.
 
-use glamx::Vec3;
-use serde::Serialize;
-
-use super::Recorder;
-
+use crate::prelude::*;
 /// Depths of a pair of bodies that differ by more than this, in units, are not the same contact.
 /// It is a fifth of Rapier's prediction distance, which is taken for the distance of pairs without
 /// a contact.

@@ -7,21 +7,17 @@
 //! * for each run: times as `f32`, [`planes`] of seven numbers for each object and frame, counts of
 //!   contacts as `u32`, and [`planes`] of the contacts.
 
+use crate::prelude::*;
 use std::io::{self, Write};
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use glamx::Vec3;
-use rapier3d::math::Pose;
-use serde::Serialize;
 
-use super::Recorder;
 use super::difference::Difference;
 use super::recorder::STRIDE;
 use super::shapes::levels;
-use crate::mesh::Mesh;
 
 /// Steps of a quaternion's parts.
 const TURN: f32 = 32767.0;

@@ -14,6 +14,7 @@
 //! # Ok::<(), sbbk_lab::report::ReportError>(())
 //! ```
 
+use crate::prelude::*;
 mod difference;
 mod encode;
 mod recorder;
@@ -21,12 +22,7 @@ mod shapes;
 #[cfg(test)]
 mod tests;
 
-use std::path::Path;
-
-use crate::backend::Backend;
-use crate::progress::Progress;
-use crate::report::{ReportError, write_file};
-use crate::scene::{Scene, SceneWorld};
+use crate::report::write_file;
 
 pub use encode::encode;
 pub use recorder::Recorder;

@@ -1,12 +1,7 @@
 //! Recording of a run.
 
-use std::collections::HashMap;
-use std::time::Instant;
-
-use glamx::Vec3;
-use rapier3d::geometry::{Collider, ColliderHandle};
-use rapier3d::math::Pose;
-use rapier3d::pipeline::PhysicsWorld;
+use crate::prelude::*;
+use rapier3d::geometry::Collider;
 
 use super::shapes::Shapes;
 

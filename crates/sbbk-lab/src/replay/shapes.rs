@@ -1,14 +1,10 @@
 //! Surfaces of shapes, in two resolutions.
 
-use std::collections::HashMap;
+use crate::prelude::*;
 use std::fmt;
 
-use glamx::Vec3;
-use rapier3d::geometry::{SharedShape, TypedShape};
+use rapier3d::geometry::TypedShape;
 use rapier3d::parry::shape::Shape;
-
-use crate::backend::shape_address;
-use crate::mesh::Mesh;
 
 /// Triangles of the fine and the coarse resolution, which slow machines draw. Higher: larger pages;
 /// lower: rougher shapes.

@@ -1,17 +1,15 @@
 //! Recordings, written and read again.
 
+use crate::prelude::*;
 use std::io::Read;
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use flate2::read::GzDecoder;
-use glamx::{Quat, Vec3};
 use serde_json::Value;
 
 use super::difference::Difference;
-use super::{Recorder, encode, page};
-use crate::backend::Backend;
-use crate::scene::{MonkeyPile, Scene};
+use super::{encode, page};
 
 const HEADS: usize = 12;
 const STEPS: usize = 90;

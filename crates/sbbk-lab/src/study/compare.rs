@@ -3,12 +3,10 @@
 use super::pair::Sides;
 use super::pile::{self, PilePlan, SamePosesPlan, pile, same_poses_table, wrong_of};
 use super::turns::in_turn;
-use crate::backend::Backend;
-use crate::mesh::Mesh;
-use crate::metrics::{Run, RunPlan, StepTimes, Summary, run};
-use crate::progress::Progress;
-use crate::report::{ERROR_NOTE, Results, Row, Table, TableSpec, errors, greater, number, time};
-use crate::scene::{HelicopterBallDrop, MonkeyPile, Scene};
+use crate::metrics::{Run, RunPlan, run};
+use crate::prelude::*;
+use crate::report::{ERROR_NOTE, greater};
+use crate::scene::HelicopterBallDrop;
 
 const FRAMES: &str = "helicopter";
 

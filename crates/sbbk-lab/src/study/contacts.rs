@@ -4,20 +4,12 @@
 //! approaches the other in a random orientation and is stopped at five places, from nearly apart to
 //! deep inside. Brute force in f64 judges every answer.
 
-use oorandom::Rand32;
-use rapier3d::geometry::SharedShape;
-use rapier3d::math::Real;
+use crate::prelude::*;
 use serde_json::Value;
 
 use super::motion::{Approach, Mode, Place, STEP_COUNT, mode_note};
 use super::pair::{Contest, DIRECT_NOTE, Sides};
 use super::shape;
-use crate::backend::Memory;
-use crate::mesh::{self, Mesh};
-use crate::metrics::{ContactErrors, Sequence};
-use crate::parallel;
-use crate::progress::Progress;
-use crate::report::{Results, Row, TIME_NOTE, Table, TableSpec, number, sides};
 
 const EXACTNESS: &str = "contacts: exactness";
 const QUERIES: &str = "contacts: queries, µs";

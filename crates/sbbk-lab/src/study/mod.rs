@@ -5,6 +5,7 @@
 //! are part of the steps. Wrong contacts are counted on the queries that are timed, or on
 //! queries made in the same way.
 
+use crate::prelude::*;
 pub mod compare;
 pub mod contacts;
 pub mod convex;
@@ -18,13 +19,8 @@ mod turns;
 
 pub use pile::{PilePlan, SamePosesPlan, pile, runs};
 
-use std::path::PathBuf;
-
-use rapier3d::geometry::{SharedShape, TriMeshFlags};
 use thiserror::Error;
 
-use crate::mesh::Mesh;
-use crate::report::ReportError;
 use crate::scene;
 
 /// A study cannot be run.

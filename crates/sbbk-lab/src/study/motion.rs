@@ -1,16 +1,10 @@
 //! Approaches of a second shape to a first one, and motion about the places of contact.
 
+use crate::prelude::*;
 use std::f32::consts::FRAC_1_SQRT_2;
 use std::fmt;
 
-use glamx::{Pose3, Quat, Vec3};
-use oorandom::Rand32;
-use rapier3d::geometry::{SharedShape, TriMesh};
-use rapier3d::math::Real;
-
-use crate::backend::SharedDispatcher;
-use crate::metrics::Sequence;
-use crate::scene::random;
+use rapier3d::geometry::TriMesh;
 
 /// Steps of one motion, after its first query.
 pub(super) const STEP_COUNT: usize = 16;

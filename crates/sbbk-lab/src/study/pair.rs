@@ -2,14 +2,8 @@
 //!
 //! Dispatchers are called directly, as the narrow phase calls them.
 
-use std::time::Duration;
-
-use rapier3d::geometry::SharedShape;
-
 use super::turns::{race, timed};
-use crate::backend::{Backend, Dispatcher, Memory, Primed, SharedDispatcher};
-use crate::metrics::{ContactErrors, Sequence, Summary, Truth, geometric_mean};
-use crate::report::Row;
+use crate::prelude::*;
 
 /// How dispatchers are called, for notes.
 pub(super) const DIRECT_NOTE: &str =

@@ -4,11 +4,9 @@
 //! So the same pairs at the same poses are timed as well.
 
 use super::turns::{in_turn, timed};
-use crate::backend::{Backend, Memory, Primed, SharedDispatcher};
-use crate::metrics::{Run, RunPlan, Runner, Sequence, StepTimes, Summary, sample_indices};
-use crate::progress::Progress;
-use crate::report::{ERROR_NOTE, Row, TIME_NOTE, Table, TableSpec, errors, faster, number, time};
-use crate::scene::{MonkeyPile, Scene};
+use crate::metrics::{Run, RunPlan, Runner};
+use crate::prelude::*;
+use crate::report::ERROR_NOTE;
 
 /// Study of the rows of whole runs.
 pub const RUNS: &str = "pile, whole runs";
@@ -92,17 +90,21 @@ fn pile_row(study: &'static str, backend: Backend, scene: &MonkeyPile) -> Row {
 /// Sums up the runs of one backend; there must be a run.
 fn row(scene: &MonkeyPile, runs: &[Run]) -> Row {
     let first = &runs[0];
-    let mean = |time: fn(&StepTimes) -> f64| Summary::of(runs.iter().map(|run| run.mean(time)));
+    let times: [(&str, fn(&StepTimes) -> f64); 7] = [
+        ("step", |times| times.step),
+        ("broad_phase", |times| times.broad_phase),
+        ("narrow_phase", |times| times.narrow_phase),
+        ("collision_detection", StepTimes::collision_detection),
+        ("solver", |times| times.solver),
+        ("mesh_mesh", |times| times.mesh_mesh),
+        ("mesh_other", |times| times.mesh_other),
+    ];
+    let row = pile_row(RUNS, first.backend, scene);
+    let row = times.into_iter().fold(row, |row, (name, time)| {
+        row.with(name, Summary::of(runs.iter().map(|run| run.mean(time))))
+    });
     let state = first.samples.last().map(|sample| sample.state).unwrap_or_default();
-    pile_row(RUNS, first.backend, scene)
-        .with("steps", first.times.len() + first.samples.len())
-        .with("step", mean(|times| times.step))
-        .with("broad_phase", mean(|times| times.broad_phase))
-        .with("narrow_phase", mean(|times| times.narrow_phase))
-        .with("collision_detection", mean(StepTimes::collision_detection))
-        .with("solver", mean(|times| times.solver))
-        .with("mesh_mesh", mean(|times| times.mesh_mesh))
-        .with("mesh_other", mean(|times| times.mesh_other))
+    row.with("steps", first.times.len() + first.samples.len())
         .with("manifolds", state.contact_manifold_count)
         .with("points", state.point_count)
         .with("mean_height", state.mean_height)
@@ -159,16 +161,13 @@ fn sweep(dispatcher: &SharedDispatcher, pairs: &[Sequence]) -> [f64; 2] {
     })
 }
 
-/// Name, number of heads, and "whole time of CD process" of the paper in milliseconds. The paper
-/// does not say that this is the time of one frame.
 const PAPERS: &str = "the paper's";
-const PAPERS_HEADS: usize = 2000;
-const PAPERS_TIMES: [(Backend, f64); 2] = [(Backend::AabbOnly, 71.8), (Backend::Sbbk, 34.5)];
 
-/// The results of the paper.
+/// The results of the paper: "whole time of CD process" in milliseconds. The paper does not say that
+/// this is the time of one frame.
 pub(super) fn papers() -> [Row; 2] {
-    PAPERS_TIMES.map(|(backend, milliseconds)| {
-        let row = Row::new(RUNS, backend).key("heads", PAPERS_HEADS).key("scene", PAPERS);
+    [(Backend::AabbOnly, 71.8), (Backend::Sbbk, 34.5)].map(|(backend, milliseconds)| {
+        let row = Row::new(RUNS, backend).key("heads", 2000).key("scene", PAPERS);
         row.with("collision_detection", Summary::of([milliseconds]))
     })
 }

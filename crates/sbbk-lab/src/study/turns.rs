@@ -1,9 +1,6 @@
 //! Fair repeats.
 
-use std::time::{Duration, Instant};
-
-use crate::metrics::Summary;
-
+use crate::prelude::*;
 /// Calls `measure` for each contestant in turn, `repeats` times over, so that a slow spell of the
 /// machine slows all of them. Returns the results by contestant.
 pub(super) fn in_turn<C, T>(

@@ -1,12 +1,12 @@
 //! Contacts of a mesh and a convex shape or compound by brute force in f64.
 
-use glamx::{DAffine3, DMat3, DPose3, DVec3, Pose3};
-use rapier3d::geometry::{SharedShape, TypedShape};
-use rapier3d::math::{Real, Vector};
+use crate::prelude::*;
+use glamx::{DAffine3, DMat3, DPose3};
+use rapier3d::geometry::TypedShape;
 use rapier3d::parry::shape::Shape;
 use sbbk_core::truth::ConvexBody;
 
-use crate::metrics::{TrueContact, Truth};
+use crate::metrics::TrueContact;
 
 /// Largest distance of contacts, in prediction distances.
 const REACH: f64 = 1.01;

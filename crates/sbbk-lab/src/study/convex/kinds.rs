@@ -1,11 +1,6 @@
 //! Convex shapes and compounds.
 
-use glamx::{Pose3, Vec3};
-use oorandom::Rand32;
-use rapier3d::geometry::SharedShape;
-
-use crate::scene::random;
-
+use crate::prelude::*;
 /// A convex shape or a compound.
 #[derive(Clone)]
 pub(in crate::study) struct Kind {

@@ -4,24 +4,15 @@
 //! The mesh approaches a shape of each kind along random directions and is stopped about the first
 //! touch and deep in the shape. Queries there are first ones, or in slow and fast motion.
 
+use crate::prelude::*;
 pub(super) mod errors;
 pub(super) mod kinds;
-
-use glamx::{Quat, Vec3};
-use oorandom::Rand32;
-use rapier3d::geometry::SharedShape;
-use rapier3d::math::Real;
 
 use self::errors::Judge;
 use self::kinds::{Kind, Upright, kinds};
 use super::motion::{Approach, Mode, Place, mode_note};
 use super::pair::{Contest, DIRECT_NOTE, Sides};
 use super::shape;
-use crate::mesh::{self, Mesh};
-use crate::metrics::Sequence;
-use crate::progress::Progress;
-use crate::report::{Results, Row, TIME_NOTE, Table, TableSpec, number, sides};
-use crate::scene::random;
 
 /// Extent of the comparison.
 #[derive(Clone, Debug)]

@@ -1,26 +1,16 @@
 //! Measures a mesh or a robot as a terrain, as bodies and as sensors.
 
+use crate::prelude::*;
 use std::fmt;
-use std::path::Path;
 
-use glamx::{Pose3, Vec3};
-use oorandom::Rand32;
-use rapier3d::dynamics::RigidBodyBuilder;
-use rapier3d::geometry::{ColliderBuilder, SharedShape};
-use rapier3d::math::Real;
 use rapier3d::parry::bounding_volume::Aabb;
 use rapier3d::parry::query::Ray;
-use rapier3d::pipeline::{ActiveEvents, PhysicsWorld};
+use rapier3d::pipeline::ActiveEvents;
 use sbbk_core::surface::SurfaceKind;
 
 use super::measure::{Driven, Everyday};
 use super::robots::Subject;
 use super::scenes::{kinds, put};
-use crate::mesh::Mesh;
-use crate::progress::Progress;
-use crate::report::Row;
-use crate::scene::random;
-use crate::study::StudyError;
 
 /// Convex bodies on a terrain, along each side.
 const TERRAIN_SIDE: usize = 7;

@@ -1,12 +1,10 @@
 //! Contacts of both backends at poses of a world, judged by brute force in f64.
 
-use rapier3d::geometry::{ColliderHandle, ContactManifold, SharedShape, TriMesh, TriMeshFlags};
-use rapier3d::math::{Pose, Real, Vector};
+use crate::prelude::*;
+use rapier3d::geometry::TriMesh;
 use rapier3d::parry::bounding_volume::BoundingVolume;
-use rapier3d::pipeline::PhysicsWorld;
 
-use crate::backend::{Backend, Dispatcher, Memory, Primed, Question};
-use crate::metrics::{ErrorCount, Judge, Truth, sample_indices};
+use crate::metrics::Judge;
 use crate::study::convex::errors::Judge as ConvexJudge;
 
 /// Pairs that are judged at most: in all, and of one step. Higher: slower studies; lower: less

@@ -1,18 +1,9 @@
 //! Runs of a scene under stock Rapier and under SBBK, in turns.
 
-use std::path::Path;
-use std::time::{Duration, Instant};
-
+use crate::prelude::*;
 use rapier_integration::{PreparedTree, SbbkDispatcher};
-use rapier3d::geometry::SharedShape;
-use rapier3d::pipeline::PhysicsWorld;
 
 use super::judged::Comparison;
-use crate::backend::{Backend, shape_address};
-use crate::metrics::Summary;
-use crate::progress::Progress;
-use crate::replay::{self, Recorder};
-use crate::report::{ReportError, Row};
 use crate::study::pair::Contest;
 
 /// A world that can be built again and again, and its drive.

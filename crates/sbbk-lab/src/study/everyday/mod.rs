@@ -5,6 +5,7 @@
 //! in turns. All runs of a backend do the same, so the time of a step is the least over the runs.
 //! Brute force in f64 judges contacts of both at poses of stock's run.
 
+use crate::prelude::*;
 mod advise;
 mod judged;
 mod measure;
@@ -13,18 +14,9 @@ mod report;
 mod robots;
 mod scenes;
 
-use std::path::{Path, PathBuf};
-
-use clap::ValueEnum;
-use rapier3d::geometry::TriMeshFlags;
-use rapier3d::math::Real;
-
 pub use self::advise::{Advice, advise, advise_robot};
 use self::measure::Everyday;
 use self::scenes::Ground;
-use super::StudyError;
-use crate::progress::Progress;
-use crate::report::{Results, Row};
 
 const BODIES: &str = "everyday: bodies on terrains";
 const SINGLE: &str = "everyday: single bodies, and many meshes";

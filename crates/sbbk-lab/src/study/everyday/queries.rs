@@ -1,22 +1,14 @@
 //! Single queries of a body and a terrain without a workspace, as character controllers make them.
 
+use crate::prelude::*;
 use std::hint::black_box;
-use std::time::{Duration, Instant};
 
-use glamx::{Pose3, Vec3};
-use oorandom::Rand32;
-use rapier3d::geometry::SharedShape;
-use rapier3d::math::Real;
 use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d::parry::query::details::ShapeCastOptions;
 
 use super::measure::verdict;
 use super::scenes::{Ground, above, head};
 use super::{PREDICTION, QUERIES};
-use crate::backend::{Backend, Dispatcher, Memory, SharedDispatcher};
-use crate::metrics::{ErrorCount, Summary};
-use crate::report::Row;
-use crate::scene::random;
 use crate::study::pair::Contest;
 use crate::study::shape;
 use crate::study::turns::in_turn;

@@ -1,7 +1,7 @@
 //! Tables of everyday scenes.
 
 use super::{BODIES, DEFORMABLE, EverydayPlan, PILE, QUERIES, SENSORS, SINGLE};
-use crate::report::{Row, Table, TableSpec, errors, faster, number};
+use crate::prelude::*;
 use crate::study::pair::Sides;
 
 pub(super) fn tables(plan: &EverydayPlan, rows: &[Row]) -> Vec<Table> {

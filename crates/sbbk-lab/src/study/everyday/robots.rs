@@ -1,25 +1,19 @@
 //! Robots from a URDF file, loaded by Rapier's own loader, and what advice is about: a mesh or a robot.
 
+use crate::prelude::*;
 use std::f32::consts::{FRAC_PI_2, TAU};
 use std::fmt::Display;
-use std::path::Path;
 
-use glamx::{Pose3, Quat, Vec3};
-use rapier3d::dynamics::{ImpulseJointHandle, JointAxis, RigidBodyBuilder, RigidBodyType};
-use rapier3d::geometry::{ColliderBuilder, SharedShape, TriMesh, TriMeshFlags};
-use rapier3d::math::Real;
+use rapier3d::dynamics::{ImpulseJointHandle, JointAxis, RigidBodyType};
+use rapier3d::geometry::TriMesh;
 use rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::parry::query::Ray;
-use rapier3d::pipeline::PhysicsWorld;
 use rapier3d_urdf::{UrdfLoaderOptions, UrdfRobot};
 use sbbk_core::surface::{Surface, SurfaceKind};
 
 use super::DEFORMABLE;
 use super::measure::{Driven, Everyday};
 use super::scenes::{Ground, above, named};
-use crate::mesh::Mesh;
-use crate::scene::Solid;
-use crate::study::StudyError;
 
 /// A walker of four legs, nine meshes of 320 to 384 triangles, a metre long.
 const WALKER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/walker/walker.urdf");

@@ -1,21 +1,14 @@
 //! Terrains, and the worlds on them.
 
+use crate::prelude::*;
 use std::collections::VecDeque;
-use std::time::Instant;
 
-use glamx::{Pose3, Vec3};
-use oorandom::Rand32;
 use rapier3d::control::KinematicCharacterController;
-use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
-use rapier3d::geometry::{ColliderBuilder, SharedShape, TriMeshFlags};
-use rapier3d::math::Real;
-use rapier3d::pipeline::{ActiveEvents, PhysicsWorld, QueryFilter};
+use rapier3d::pipeline::{ActiveEvents, QueryFilter};
 
 use super::measure::{Driven, Everyday};
 use super::{BODIES, DEFORMABLE, GroundPlan, PILE, SENSORS, SINGLE};
-use crate::mesh::{self, Mesh};
-use crate::report::Row;
-use crate::scene::{MonkeyPile, Scene, Solid, random, shape};
+use crate::scene::shape;
 use crate::study::shape as plain;
 
 /// A terrain of hills. All worlds of a scene share its mesh.

@@ -1,14 +1,10 @@
 //! Depth of meshes in each other, by winding number in f64 and distance to the surface.
 
+use crate::prelude::*;
 use std::f64::consts::TAU;
 
-use glamx::{DVec3, Pose3, Vec3};
-use rapier3d::geometry::SharedShape;
 use rapier3d::parry::bounding_volume::Aabb;
-use rapier3d::pipeline::PhysicsWorld;
 
-use crate::mesh::Mesh;
-use crate::metrics::sample_indices;
 use crate::study::shape;
 
 /// A mesh with its winding numbers.

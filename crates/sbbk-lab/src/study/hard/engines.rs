@@ -1,15 +1,13 @@
 //! The pile of heads in several engines, each a program of its own. All read the same file and write
 //! one file of a run; one judge reads these.
 
+use crate::prelude::*;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::iter;
 use std::ops::Range;
-use std::path::Path;
-use std::time::Instant;
 
-use glamx::{DQuat, DVec3, Pose3, Quat, Vec3};
-use rapier3d::geometry::{ColliderBuilder, SharedShape};
+use glamx::DQuat;
 use rapier3d::parry::mass_properties::MassProperties;
 use serde_json::Value;
 
@@ -18,10 +16,6 @@ use super::depth::Depths;
 use super::figures::Gain;
 use super::heaps::{FLOOR, above_floor};
 use super::kit::{Form, Kit};
-use crate::mesh::Mesh;
-use crate::metrics::{Summary, solver_points};
-use crate::report::{Results, Row, TableSpec, number};
-use crate::scene::MonkeyPile;
 use crate::study::shape;
 
 const STUDY: &str = "engines";

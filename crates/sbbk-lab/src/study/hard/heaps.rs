@@ -2,7 +2,6 @@
 
 use super::kit::*;
 use super::report::STEP_TIME;
-use crate::scene::MonkeyPile;
 
 /// Half extents of the floor of piles.
 pub(super) const FLOOR: Vec3 = Vec3::new(100.0, 1.0, 100.0);

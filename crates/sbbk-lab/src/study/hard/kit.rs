@@ -3,25 +3,15 @@
 pub(super) use std::f32::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, PI, TAU};
 use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Instant;
 
-use clap::ValueEnum;
-pub(super) use glamx::{Pose3, Quat, Vec2, Vec3};
-pub(super) use oorandom::Rand32;
-pub(super) use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
-pub(super) use rapier3d::geometry::{ColliderBuilder, SharedShape};
-use rapier3d::geometry::{HeightFieldFlags, TriMeshFlags};
+pub(super) use glamx::Vec2;
+use rapier3d::geometry::HeightFieldFlags;
 use rapier3d::parry::utils::Array2;
-pub(super) use rapier3d::pipeline::PhysicsWorld;
 
 pub(super) use super::Trial;
 pub(super) use super::depth::{Depths, touching_pairs};
 pub(super) use super::figures::{Figures, Gain, largest};
-use crate::backend::Backend;
-pub(super) use crate::mesh::{self, Mesh};
-use crate::metrics::{Summary, solver_points};
-use crate::replay::Recorder;
-pub(super) use crate::scene::random;
+pub(super) use crate::prelude::*;
 use crate::scene::shape;
 
 named! {

@@ -8,6 +8,7 @@
 //! Time steps are 1/60 s, gravity 9.81 units/s², and all parameters Rapier's defaults, unless a scene
 //! says otherwise.
 
+use crate::prelude::*;
 mod ccd;
 mod depth;
 pub mod engines;
@@ -20,21 +21,12 @@ mod report;
 mod resting;
 mod road;
 
-use std::path::PathBuf;
 use std::sync::PoisonError;
-
-use clap::ValueEnum;
 
 pub use self::kit::Column;
 
 use self::figures::Figures;
 use self::kit::{Film, Kit};
-use super::StudyError;
-use crate::mesh::Mesh;
-use crate::parallel;
-use crate::progress::Progress;
-use crate::replay;
-use crate::report::Results;
 
 /// A kind of scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -3,7 +3,8 @@
 use super::figures::{Figure, Figures};
 use super::kit::Kit;
 use super::{Column, HardPlan, Trial};
-use crate::report::{Row, Table, TableSpec, faster, number, three_digits};
+use crate::prelude::*;
+use crate::report::three_digits;
 
 const VERDICTS: &str = "hard scenes";
 const FIGURES: &str = "hard scenes: figures";

@@ -1,13 +1,10 @@
 //! Worlds whose bodies are led along a run.
 
-use glamx::{DVec3, Quat};
-use rapier3d::dynamics::{IntegrationParameters, RigidBody, RigidBodyHandle};
+use crate::prelude::*;
+use rapier3d::dynamics::{IntegrationParameters, RigidBody};
 use rapier3d::geometry::InteractionGroups;
-use rapier3d::math::{Pose, Vector};
 
-use crate::backend::{Backend, Installed};
-use crate::metrics::{StepTimes, solver_points, timed_step};
-use crate::scene::{Scene, SceneWorld};
+use crate::metrics::timed_step;
 
 /// Pose and velocities of a body.
 #[derive(Clone, Copy, Debug)]

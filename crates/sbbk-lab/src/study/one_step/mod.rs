@@ -9,14 +9,10 @@
 //! impulses of the reference. Velocities are weighted by mass: their norm is the root of twice the
 //! kinetic energy.
 
+use crate::prelude::*;
 mod led;
 
 use self::led::{Led, Motion, Norm};
-use crate::backend::Backend;
-use crate::metrics::{StepTimes, Summary};
-use crate::progress::Progress;
-use crate::report::{Results, Row, Table, TableSpec, number, time};
-use crate::scene::{MonkeyPile, Scene};
 
 /// Extent of the comparison.
 #[derive(Clone, Debug)]
