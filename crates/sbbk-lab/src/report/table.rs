@@ -90,8 +90,8 @@ pub fn errors(header: &str, path: &'static str) -> Column {
     })
 }
 
-/// A column of ratios, as a geometric mean over the rows of a line: the number at `path` of the row of
-/// `base` with the same keys, divided by the row's own number.
+/// A column of ratios, as a geometric mean over the rows of a line. Each divides the number at `path`
+/// of `base` for the same keys by the row's own number.
 pub fn faster(header: &str, path: &'static str, base: impl ToString) -> Column {
     ratios(header, path, base, ratio)
 }
@@ -284,8 +284,8 @@ pub fn three_digits(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-/// Would catch a cell in another line or under another backend, a ratio upside down or to the base of
-/// other keys, totals over rows of other lines, and sums that lose a kind of error.
+/// Would catch cells in another place, and ratios upside down or to the base of other keys. Would
+/// catch totals over rows of other lines, too, and sums that lose a kind of error.
 #[test]
 fn rows_are_pivoted() {
     use serde_json::json;

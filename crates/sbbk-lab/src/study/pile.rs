@@ -90,7 +90,8 @@ fn pile_row(study: &'static str, backend: Backend, scene: &MonkeyPile) -> Row {
 /// Sums up the runs of one backend; there must be a run.
 fn row(scene: &MonkeyPile, runs: &[Run]) -> Row {
     let first = &runs[0];
-    let times: [(&str, fn(&StepTimes) -> f64); 7] = [
+    type Time = fn(&StepTimes) -> f64;
+    let times: [(&str, Time); 7] = [
         ("step", |times| times.step),
         ("broad_phase", |times| times.broad_phase),
         ("narrow_phase", |times| times.narrow_phase),

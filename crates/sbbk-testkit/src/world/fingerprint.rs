@@ -57,8 +57,8 @@ impl fmt::Display for Fingerprint {
     }
 }
 
-/// Would catch a hash without a body, or without the contacts: after a step with two heads in the
-/// floor one world is put back to the start.
+/// Would catch a hash without a body, or without the contacts. After a step with heads in the floor
+/// all bodies are put back to the start.
 #[test]
 fn a_moved_body_or_a_new_contact_changes_the_hash() {
     use crate::scene::{MonkeyPile, Scene};

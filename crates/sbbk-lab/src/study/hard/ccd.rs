@@ -69,8 +69,8 @@ fn thrown(phase: f32) -> RigidBodyBuilder {
     body.linvel(-PLATE_SPEED * Vec3::Y).soft_ccd_prediction(0.6)
 }
 
-/// True if a plate ends below the target, if its middle is in the target for longer than an impact,
-/// or if a tip, which is given, crosses both its faces for as long.
+/// True if a plate ends below the target, or if its middle stays in the target for longer than an
+/// impact. A tip, if there is one, must not cross both its faces for as long.
 fn plate_passes(
     world: &mut World,
     body: RigidBodyHandle,

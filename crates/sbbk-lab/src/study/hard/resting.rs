@@ -1,4 +1,4 @@
-//! Stacks, walls, bowls in each other, and a chain: what should stay as it is.
+//! Stacks, walls, bowls and a chain, which should stay as they are.
 
 use super::kit::*;
 
