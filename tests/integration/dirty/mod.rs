@@ -1,7 +1,7 @@
 //! Meshes as people have them, in worlds, beside the same bodies on Rapier's cuboid.
 //!
-//! Each test prints a table of what it measures and has a list of the cases that fail today. It fails
-//! when another case fails, and when one of the list does not any more. To see the tables:
+//! Each test prints a table and lists the cases that fail today. It fails when another case fails, and
+//! when a listed case passes. To see the tables:
 //! `cargo test -p sbbk --test integration dirty -- --nocapture`.
 
 use rapier_integration::SbbkDispatcher;
@@ -11,15 +11,23 @@ use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh::Mesh;
 use sbbk_testkit::scene;
 
+/// Boxes that are driven over beams with chamfers.
+mod beams;
 /// Bodies that slide and roll over floors.
 mod floors;
+/// Bodies that ride, and where.
+mod rides;
+/// Bodies that ride over meshes side by side.
+mod roads;
 /// Rooms with bodies inside.
 mod rooms;
+/// A nut on a bolt, by its closed form.
+mod screw;
 /// Meshes that roll, and fall, on two triangles.
 mod slopes;
-/// Closed meshes that push out what has sunk in, and vessels that do not.
+/// Closed meshes with bodies sunk in, and vessels.
 mod solids;
-/// What the tests print and what they know to fail.
+/// Tables of the tests, and lists of known failures.
 mod table;
 /// Sheets that stand upright along the edges of a floor.
 mod upright;

@@ -23,7 +23,7 @@ struct Roller {
     sound: Mesh,
     mesh: Mesh,
     mass: MassProperties,
-    /// Path of a smooth one: a share of that of a body that slides without friction.
+    /// Path of a smooth body, as a share of the path without friction.
     ideal: f32,
 }
 

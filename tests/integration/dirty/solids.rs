@@ -46,7 +46,7 @@ fn bodies() -> [(&'static str, Mesh, f32); 4] {
     ]
 }
 
-/// Would catch closed meshes that are taken for sheets, which hold what has sunk in.
+/// Would catch closed meshes taken for sheets: they hold bodies that have sunk in.
 #[test]
 fn closed_meshes_push_out_what_has_sunk_in() {
     let mut cases = Vec::new();

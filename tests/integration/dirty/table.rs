@@ -4,7 +4,7 @@ use std::fmt::Write;
 /// End of the name of a row with flags.
 pub(super) const FLAG: &str = " + flag";
 
-/// What was measured in one scene.
+/// Measurement of one scene.
 pub(super) struct Case {
     pub row: String,
     pub column: &'static str,

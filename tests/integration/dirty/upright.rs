@@ -14,8 +14,10 @@ use super::{FLAGS, row};
 use crate::support::{Question, shape_with};
 
 const POSES: usize = 200;
+/// Draws a pose.
+type Draw = fn(&mut Rand32) -> Pose;
 
-/// One triangle of 3 by 2 in the plane `z = 0`, about the origin.
+/// A triangle of 3 by 2 in the plane `z = 0`, about the origin.
 fn triangle() -> Mesh {
     let corners = [(-1.0, -1.0), (2.0, -1.0), (-1.0, 1.0)].map(|(x, y)| Vec3::new(x, y, 0.0));
     Mesh::new("triangle", corners.to_vec(), vec![[0, 1, 2]])
@@ -76,7 +78,7 @@ fn sheets_that_cross_along_grid_lines_have_contacts() {
         ("soup", mesh::unwelded(&plain, 0.0, 1)),
         ("each third twice", mesh::doubled(&plain, 3)),
     ];
-    let poses: [(&str, fn(&mut Rand32) -> Pose); 4] = [
+    let poses: [(&str, Draw); 4] = [
         ("on corners", |random| along_lines(random, true)),
         ("along lines", |random| along_lines(random, false)),
         ("upright", upright),

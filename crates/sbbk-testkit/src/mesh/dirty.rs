@@ -142,7 +142,16 @@ pub fn tube(radius: f32, half_width: f32, segments: u32) -> Mesh {
     tube.welded().named("tube")
 }
 
-/// A ball without what is above `top`, a share of its radius: a bowl, or a vase.
+/// A sheet along `z` over a profile of `(x, height)`, which runs to the right if it faces up.
+pub fn furrows(profile: &[Vec2], half_width: f32, cells: u32) -> Mesh {
+    let sheet = quad_grid([cells, profile.len() as u32 - 1], |i, j| {
+        let share = i as f32 / cells as f32;
+        profile[j as usize].extend(half_width * (2.0 * share - 1.0))
+    });
+    sheet.named("furrows")
+}
+
+/// A ball cut off at the height `top`, a share of its radius: a bowl, or a vase.
 pub fn vessel(radius: f32, cells: u32, top: f32) -> Mesh {
     let mut vessel = cube_ball(radius, [cells; 6]);
     let vertices = &vessel.vertices;

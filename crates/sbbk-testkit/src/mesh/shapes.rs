@@ -37,8 +37,8 @@ pub fn slab(half_extents: Vec3, cells: [u32; 3]) -> Mesh {
     box_faces(half_extents, |face| [1, 2].map(|next| cells[(face / 2 + next) % 3]))
 }
 
-/// A box about the origin whose faces +x, -x, +y, -y, +z, -z have so many cells along the next axis
-/// and the one after it (at least 1).
+/// A box about the origin whose faces +x, -x, +y, -y, +z, -z are cut into cells (at least 1). The
+/// two numbers are those along the next axis and the one after it.
 pub(super) fn box_faces(half_extents: Vec3, cells_of: impl Fn(usize) -> [u32; 2]) -> Mesh {
     // Both ends differ by the sign only, so that the rims of the faces weld.
     let coordinate = |k: u32, cells: u32| (2.0 * k as f32 - cells as f32) / cells as f32;

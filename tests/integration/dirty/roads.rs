@@ -1,0 +1,65 @@
+use glamx::Vec3;
+use rapier3d::geometry::ColliderBuilder;
+use sbbk_testkit::mesh::{self, Mesh};
+
+use super::rides::{Course, case, cuboid, riders};
+use super::table::judge;
+use super::{FLAGS, row, shape};
+
+/// Side of all chunks, or beams, of a road together.
+const SIZE: f32 = 16.0;
+
+/// Square chunks, `count` a side, each through `chunk` with its side and number.
+fn chunks(count: u32, chunk: impl Fn(f32, u64) -> Mesh) -> Vec<Mesh> {
+    let side = SIZE / count as f32;
+    let at = |index: u32| side * (index as f32 + 0.5) - 0.5 * SIZE;
+    let chunk = |index: u32| {
+        let middle = Vec3::new(at(index % count), 0.0, at(index / count));
+        chunk(side, u64::from(index)).mapped(|v| v + middle)
+    };
+    (0..count * count).map(chunk).collect()
+}
+
+/// Roads of several meshes, flat for a body on them.
+fn roads() -> Vec<(&'static str, Vec<Mesh>)> {
+    let slab = |side: f32, _| {
+        mesh::slab(Vec3::new(0.5 * side, 0.5, 0.5 * side), [4, 1, 4]).mapped(|v| v - 0.5 * Vec3::Y)
+    };
+    vec![
+        ("4 floors", chunks(2, |side, _| mesh::floor(side, 16))),
+        ("64 floors", chunks(8, |side, _| mesh::floor(side, 4))),
+        ("64 unlike floors", chunks(8, |side, seed| mesh::floor(side, 1 + seed as u32 % 5))),
+        ("4 with T-junctions", chunks(2, |side, seed| mesh::strips(side, 4, seed))),
+        ("16 slabs", chunks(4, slab)),
+    ]
+}
+
+/// Would catch contacts at borders of meshes that are side by side.
+#[test]
+fn bodies_ride_over_chunks_as_on_a_cuboid() {
+    const COURSE: Course = Course { speed: 10.0, steps: 72 };
+    let mut cases = Vec::new();
+    let roads = roads();
+    for flags in FLAGS {
+        let riders = riders(flags);
+        let controls = riders.each_ref().map(|rider| COURSE.rides(&[cuboid()], rider));
+        for (name, road) in &roads {
+            let colliders = road.iter().map(|mesh| ColliderBuilder::new(shape(mesh, flags)));
+            let road: Vec<ColliderBuilder> = colliders.collect();
+            for (rider, controls) in riders.iter().zip(&controls) {
+                let rides = COURSE.rides(&road, rider);
+                cases.push(case(row(name, flags), rider, &rides, controls));
+            }
+        }
+    }
+    judge("chunks at 10 m/s: share of the path, added speed upwards", &cases, KNOWN);
+}
+
+/// Chunks and bodies that fail today.
+const KNOWN: &[(&str, &str)] = &[
+    ("4 floors", "mesh ball, cuboid, ball, capsule, cylinder, hull"),
+    ("64 floors", "mesh cube, mesh ball, cuboid, ball, capsule, cylinder, hull"),
+    ("64 unlike floors", "mesh cube, mesh ball, cuboid, ball, capsule, cylinder, hull"),
+    ("4 with T-junctions", "mesh cube, mesh ball, cuboid, ball, capsule, cylinder, hull"),
+    ("16 slabs", "mesh cube, mesh ball, cuboid, ball, capsule, cylinder, hull"),
+];
