@@ -10,6 +10,7 @@ mod store;
 mod view;
 
 pub(crate) use data::MeshData;
+pub(crate) use neighbours::MeshFacets;
 pub(crate) use pair_mesh::{Change, MeshSurface, PairMesh};
 pub(crate) use store::{MeshStore, Registered, StoreCounts};
 pub(crate) use view::{

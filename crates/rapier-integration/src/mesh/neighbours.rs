@@ -1,11 +1,125 @@
 use std::cell::RefCell;
+use std::sync::atomic::{AtomicU16, Ordering};
 
+use parry3d::bounding_volume::Aabb;
 use parry3d::shape::TriMesh;
 use rustc_hash::FxHashMap;
-use sbbk_core::surface::HalfEdges;
+use sbbk_core::contact::Feature;
+use sbbk_core::surface::strays::find;
+use sbbk_core::surface::{HalfEdges, IndexedTriangles, OneRing, Surface};
 
-/// Twins of the edges of the triangles that a pair has touched, by triangle.
-pub(crate) type Neighbours = FxHashMap<u32, [Option<u32>; 3]>;
+/// Adjacency of the triangles of a mesh, with [strays](sbbk_core::surface::strays).
+#[derive(Copy, Clone)]
+pub(crate) enum MeshAdjacency<'a, 'm> {
+    Full { mesh: &'a TriMesh, surface: &'a Surface, strays: &'a [StrayFlags] },
+    Local(&'a NearTwins<'m>),
+}
+
+/// The triangles of a mesh with their adjacency.
+pub(crate) type MeshFacets<'a, 'm> = IndexedTriangles<'a, MeshAdjacency<'a, 'm>>;
+
+impl<'a, 'm> MeshAdjacency<'a, 'm> {
+    pub(crate) fn facets(self) -> MeshFacets<'a, 'm> {
+        let mesh = self.mesh();
+        let (vertices, triangles) = (mesh.vertices(), mesh.indices());
+        IndexedTriangles { adjacency: self, vertices, triangles }
+    }
+
+    fn mesh(self) -> &'a TriMesh {
+        match self {
+            Self::Full { mesh, .. } => mesh,
+            Self::Local(twins) => twins.mesh,
+        }
+    }
+
+    /// Reads or changes the flags of a triangle.
+    fn with_flags<T>(self, triangle: u32, then: impl FnOnce(&StrayFlags) -> T) -> T {
+        match self {
+            Self::Full { strays, .. } => then(&strays[triangle as usize]),
+            Self::Local(twins) => then(&twins.known(triangle).strays),
+        }
+    }
+
+    /// Finds strays by the BVH, in about 1 µs, and keeps in the flags if there are any.
+    #[cold]
+    fn find_strays(self, triangle: u32, feature: Feature) -> Vec<u32> {
+        let (mesh, surface) = (self.mesh(), OneRing { facets: self.facets(), is_solid: false });
+        let strays = find(&surface, triangle, feature, |low, high, visit| {
+            let [low, high] = [low.as_vec3(), high.as_vec3()];
+            // To f32 by one more rounding.
+            let near = Aabb::new(low - f32::EPSILON * low.abs(), high + f32::EPSILON * high.abs());
+            mesh.bvh().intersect_aabb(&near).for_each(visit);
+        });
+        if let Feature::Vertex(_) = feature {
+            for half_edge in surface.ring(triangle, feature) {
+                let vertex = Feature::Vertex((half_edge % 3) as u8);
+                self.with_flags(half_edge / 3, |flags| flags.set(vertex, !strays.is_empty()));
+            }
+        } else {
+            self.with_flags(triangle, |flags| flags.set(feature, !strays.is_empty()));
+        }
+        strays
+    }
+}
+
+impl HalfEdges for MeshAdjacency<'_, '_> {
+    #[inline]
+    fn twin(&self, half_edge: u32) -> Option<u32> {
+        match self {
+            Self::Full { surface, .. } => surface.twin(half_edge),
+            Self::Local(twins) => twins.known(half_edge / 3).twins[half_edge as usize % 3],
+        }
+    }
+
+    #[inline]
+    fn strays(&self, triangle: u32, feature: Feature, visit: &mut dyn FnMut(u32)) {
+        if self.with_flags(triangle, |flags| flags.may_have(feature)) {
+            self.find_strays(triangle, feature).into_iter().for_each(visit);
+        }
+    }
+}
+
+/// Which edges and vertices of a triangle have strays, as far as they were searched.
+#[derive(Debug, Default)]
+pub(crate) struct StrayFlags(AtomicU16);
+
+impl StrayFlags {
+    fn bits(feature: Feature) -> [u16; 2] {
+        let place = match feature {
+            Feature::Edge(i) => i,
+            Feature::Vertex(i) => 3 + i,
+            Feature::Face => return [0; 2],
+        };
+        [1 << place, 1 << (8 + place)]
+    }
+
+    /// Returns false if a search has found no strays of an edge or a vertex.
+    fn may_have(&self, feature: Feature) -> bool {
+        let [is_searched, has_strays] = Self::bits(feature);
+        self.0.load(Ordering::Relaxed) & (is_searched | has_strays) != is_searched
+    }
+
+    fn set(&self, feature: Feature, found: bool) {
+        let [is_searched, has_strays] = Self::bits(feature);
+        self.0.fetch_or(is_searched | if found { has_strays } else { 0 }, Ordering::Relaxed);
+    }
+}
+
+impl Clone for StrayFlags {
+    fn clone(&self) -> Self {
+        Self(AtomicU16::new(self.0.load(Ordering::Relaxed)))
+    }
+}
+
+/// Neighbours of the triangles that a pair has touched.
+pub(crate) type Neighbours = FxHashMap<u32, Neighbour>;
+
+/// The twins of the edges of a triangle, and its strays.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Neighbour {
+    twins: [Option<u32>; 3],
+    strays: StrayFlags,
+}
 
 /// Adjacency of a mesh that is too large to analyse as a whole. Finds the neighbours of a triangle by
 /// the BVH, in about 1 µs.
@@ -25,13 +139,15 @@ impl<'a> NearTwins<'a> {
         }
         Self { mesh, known: RefCell::new(known) }
     }
-}
 
-impl HalfEdges for NearTwins<'_> {
-    fn twin(&self, half_edge: u32) -> Option<u32> {
-        let (triangle, edge) = (half_edge / 3, half_edge as usize % 3);
-        let mut known = self.known.borrow_mut();
-        known.entry(triangle).or_insert_with(|| twins_of(self.mesh, triangle))[edge]
+    /// Returns the neighbours of a triangle.
+    fn known(&self, triangle: u32) -> std::cell::RefMut<'_, Neighbour> {
+        std::cell::RefMut::map(self.known.borrow_mut(), |known| {
+            known.entry(triangle).or_insert_with(|| Neighbour {
+                twins: twins_of(self.mesh, triangle),
+                strays: StrayFlags::default(),
+            })
+        })
     }
 }
 
@@ -82,7 +198,12 @@ mod tests {
             let near = NearTwins::new(&mesh, &mut known);
             for half_edge in 0..3 * mesh.indices().len() as u32 {
                 let twin = whole.twin(half_edge);
-                assert_eq!(near.twin(half_edge), twin, "{half_edge} of {:?}", mesh.indices());
+                assert_eq!(
+                    MeshAdjacency::Local(&near).twin(half_edge),
+                    twin,
+                    "{half_edge} of {:?}",
+                    mesh.indices()
+                );
                 found += u32::from(twin.is_some());
             }
         }
@@ -94,10 +215,10 @@ mod tests {
         let triangle = vec![[0, 1, 2]];
         let mesh = TriMesh::new(vec![Vector::ZERO, Vector::X, Vector::Y], triangle).unwrap();
         let most = NearTwins::MOST as u32;
-        let mut known: Neighbours = (0..most).map(|index| (index, [None; 3])).collect();
+        let mut known: Neighbours = (0..most).map(|index| (index, Neighbour::default())).collect();
         NearTwins::new(&mesh, &mut known);
         assert_eq!(known.len(), most as usize);
-        known.insert(most, [None; 3]);
+        known.insert(most, Neighbour::default());
         NearTwins::new(&mesh, &mut known);
         assert!(known.is_empty());
     }

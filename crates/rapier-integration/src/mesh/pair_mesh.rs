@@ -1,12 +1,12 @@
 use std::sync::{Arc, OnceLock};
 
 use parry3d::shape::{CompositeShape, TriMesh};
-use sbbk_core::surface::{HalfEdges, IndexedTriangles, OneRing, SurfaceKind};
+use sbbk_core::surface::{OneRing, SurfaceKind};
 use sbbk_core::tree::Tree;
 
 use super::data::MeshData;
 use super::identity::MeshToken;
-use super::neighbours::{NearTwins, Neighbours};
+use super::neighbours::{MeshAdjacency, MeshFacets, NearTwins, Neighbours};
 use super::store::{MeshStore, is_small, may_analyse};
 use super::view::MeshView;
 
@@ -171,20 +171,20 @@ pub(crate) enum MeshSurface<'a> {
     Local(NearTwins<'a>),
 }
 
-impl MeshSurface<'_> {
+impl<'m> MeshSurface<'m> {
     /// Returns the one-rings of `mesh`, whose surface this must be.
     #[inline]
-    pub(crate) fn around<'a>(&'a self, mesh: &'a TriMesh) -> OneRing<IndexedTriangles<'a>> {
-        let (twins, is_solid): (&dyn HalfEdges, bool) = match self {
+    pub(crate) fn around<'a>(&'a self, mesh: &'a TriMesh) -> OneRing<MeshFacets<'a, 'm>> {
+        let (adjacency, is_solid) = match self {
             Self::Full { data, store } => {
-                let (surface, kind) = store.surface(mesh, data.get_or_init(|| store.entry(mesh)));
-                (surface, kind == SurfaceKind::Solid)
+                let data = data.get_or_init(|| store.entry(mesh));
+                let (surface, kind) = store.surface(mesh, data);
+                let adjacency = MeshAdjacency::Full { mesh, surface, strays: data.strays() };
+                (adjacency, kind == SurfaceKind::Solid)
             }
-            Self::Local(twins) => (twins, false),
+            Self::Local(twins) => (MeshAdjacency::Local(twins), false),
         };
-        let facets =
-            IndexedTriangles { twins, vertices: mesh.vertices(), triangles: mesh.indices() };
-        OneRing { facets, is_solid }
+        OneRing { facets: adjacency.facets(), is_solid }
     }
 }
 

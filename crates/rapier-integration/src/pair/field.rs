@@ -3,6 +3,7 @@ use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Real, Vector};
 use parry3d::query::PointQuery;
 use parry3d::shape::{HeightField, HeightFieldCellStatus, Triangle};
+use sbbk_core::contact::Feature;
 use sbbk_core::field::{FieldTriangle, HeightGrid};
 use sbbk_core::surface::{Facets, HalfEdges};
 use xxhash_rust::xxh3::xxh3_64;
@@ -97,6 +98,9 @@ impl HalfEdges for Field<'_> {
             self.triangle(id).map(|_| 3 * id + edge as u32)
         })
     }
+
+    /// A grid has none.
+    fn strays(&self, _: u32, _: Feature, _: &mut dyn FnMut(u32)) {}
 }
 
 impl Facets for Field<'_> {

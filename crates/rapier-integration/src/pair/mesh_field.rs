@@ -23,8 +23,9 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Real, Vector};
 use parry3d::query::details::NormalConstraints;
 use parry3d::shape::{HeightField, Triangle, TrianglePseudoNormals};
+use sbbk_core::contact::Feature;
 use sbbk_core::field::{FieldFrame, FieldLeaves};
-use sbbk_core::surface::{Facets, HalfEdges, IndexedTriangles, OneRing};
+use sbbk_core::surface::{Facets, HalfEdges, OneRing};
 use sbbk_core::traverse::{Counters, Placement};
 use sbbk_core::tree::{BATCH, LeafBatch};
 
@@ -35,7 +36,9 @@ use super::reduce::PatchPlan;
 use super::surface::filter_distance;
 use super::triangles::{Cones, Hint, TriangleQuery, TriangleScratch, TriangleShapes};
 use super::update::{Moving, Pair};
-use crate::mesh::{Change, MeshStore, MeshSurface, MeshView, PairMesh, is_covered, nearest};
+use crate::mesh::{
+    Change, MeshFacets, MeshStore, MeshSurface, MeshView, PairMesh, is_covered, nearest,
+};
 
 /// A mesh and a height field.
 #[derive(Copy, Clone)]
@@ -115,21 +118,27 @@ pub(crate) struct MeshAndField<'q> {
 }
 
 /// The triangles of either.
-pub(crate) enum MeshOrField<'a> {
-    Mesh(IndexedTriangles<'a>),
+pub(crate) enum MeshOrField<'a, 'm> {
+    Mesh(MeshFacets<'a, 'm>),
     Field(Field<'a>),
 }
 
-impl HalfEdges for MeshOrField<'_> {
+impl HalfEdges for MeshOrField<'_, '_> {
     fn twin(&self, half_edge: u32) -> Option<u32> {
         match self {
             Self::Mesh(mesh) => mesh.twin(half_edge),
             Self::Field(field) => field.twin(half_edge),
         }
     }
+
+    fn strays(&self, triangle: u32, feature: Feature, visit: &mut dyn FnMut(u32)) {
+        if let Self::Mesh(mesh) = self {
+            mesh.strays(triangle, feature, visit);
+        }
+    }
 }
 
-impl Facets for MeshOrField<'_> {
+impl Facets for MeshOrField<'_, '_> {
     fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
         match self {
             Self::Mesh(mesh) => mesh.corner(half_edge, i),
@@ -144,9 +153,9 @@ impl MeshAndField<'_> {
     }
 }
 
-impl TriangleShapes for MeshAndField<'_> {
+impl<'q> TriangleShapes for MeshAndField<'q> {
     type Facets<'f>
-        = MeshOrField<'f>
+        = MeshOrField<'f, 'q>
     where
         Self: 'f;
 
@@ -206,7 +215,7 @@ impl TriangleShapes for MeshAndField<'_> {
         then(place.swap(cones).map(|cone| cone.map(|cone| cone as &dyn NormalConstraints)));
     }
 
-    fn surface(&self, i: usize) -> Option<OneRing<MeshOrField<'_>>> {
+    fn surface(&self, i: usize) -> Option<OneRing<MeshOrField<'_, 'q>>> {
         let surface = self.surface.as_ref()?;
         if self.is_field(i) {
             let facets = MeshOrField::Field(self.field);

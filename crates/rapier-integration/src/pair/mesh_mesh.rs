@@ -7,7 +7,7 @@ use parry3d::math::{Real, Vector};
 use parry3d::query::details::NormalConstraints;
 use parry3d::shape::Triangle;
 use sbbk_core::leaf::LeafTest;
-use sbbk_core::surface::{IndexedTriangles, OneRing};
+use sbbk_core::surface::OneRing;
 use sbbk_core::traverse::{Counters, PairFrame, descend};
 use sbbk_core::tree::Tree;
 
@@ -18,7 +18,9 @@ use super::reduce::PatchPlan;
 use super::surface::{filter_distance, lateral_culling};
 use super::triangles::{Cones, Hint, TriangleHit, TriangleQuery, TriangleScratch, TriangleShapes};
 use super::update::{Moving, Pair};
-use crate::mesh::{Change, MeshStore, MeshSurface, MeshView, PairMesh, is_covered, nearest};
+use crate::mesh::{
+    Change, MeshFacets, MeshStore, MeshSurface, MeshView, PairMesh, is_covered, nearest,
+};
 
 /// Two meshes.
 #[derive(Copy, Clone)]
@@ -94,9 +96,9 @@ pub(crate) struct Meshes<'q> {
     cache: &'q MeshStore,
 }
 
-impl TriangleShapes for Meshes<'_> {
+impl<'q> TriangleShapes for Meshes<'q> {
     type Facets<'f>
-        = IndexedTriangles<'f>
+        = MeshFacets<'f, 'q>
     where
         Self: 'f;
 
@@ -158,7 +160,7 @@ impl TriangleShapes for Meshes<'_> {
     }
 
     #[inline]
-    fn surface(&self, i: usize) -> Option<OneRing<IndexedTriangles<'_>>> {
+    fn surface(&self, i: usize) -> Option<OneRing<MeshFacets<'_, 'q>>> {
         Some(self.surfaces[i].as_ref()?.around(self.pair.meshes[i].mesh))
     }
 

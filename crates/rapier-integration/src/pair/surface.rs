@@ -109,7 +109,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             if self.passes_by(local, &contact) {
                 return Verdict::None;
             }
-            let is_minimum = |i: usize| self.is_minimum(&surfaces, i, &contact);
+            let is_minimum = |i: usize| self.is_minimum(&surfaces, i, local, &contact);
             let is_first_minimum = is_minimum(0);
             if is_first_minimum && is_minimum(1) {
                 return Verdict::Contact(of_triangles);
@@ -217,12 +217,19 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         &self,
         surfaces: &Surfaces<'_, S>,
         i: usize,
-        TriangleContact { normal, features, .. }: &TriangleContact,
+        local: &TrianglePair,
+        contact: &TriangleContact,
     ) -> bool {
+        let TriangleContact { normal, features, .. } = *contact;
         let features = [features.feature1(), features.feature2()];
-        let direction = self.in_frame(i, [*normal, -*normal][i]);
+        let direction = self.in_frame(i, [normal, -normal][i]);
+        let place = match i {
+            0 => local.origin.as_dvec3() + contact.point1,
+            _ => self.pose.placement12.to_frame2(contact.point2, local.origin),
+        };
+        let to = Some((place, features[1 - i]));
         let is_minimum = |surface: &OneRing<_>| {
-            surface.is_local_minimum(self.pair[i], features[i], direction, Some(features[1 - i]))
+            surface.is_local_minimum(self.pair[i], features[i], direction, to)
         };
         surfaces[i].as_ref().is_none_or(is_minimum)
     }

@@ -25,6 +25,7 @@
 
 mod kind;
 mod one_ring;
+pub mod strays;
 mod twins;
 
 pub use kind::SurfaceKind;
@@ -54,6 +55,12 @@ impl Surface {
         Self { twins, kind }
     }
 
+    /// The half-edge that runs back in the neighbour, if there is exactly one.
+    #[inline]
+    pub fn twin(&self, half_edge: u32) -> Option<u32> {
+        self.twins.get(half_edge)
+    }
+
     /// The kind of surface.
     pub fn kind(&self) -> SurfaceKind {
         self.kind
@@ -64,8 +71,8 @@ impl Surface {
         &'a self,
         vertices: &'a [Vec3],
         triangles: &'a [[u32; 3]],
-    ) -> OneRing<IndexedTriangles<'a>> {
-        let facets = IndexedTriangles { twins: self, vertices, triangles };
+    ) -> OneRing<IndexedTriangles<'a, &'a Self>> {
+        let facets = IndexedTriangles { adjacency: self, vertices, triangles };
         OneRing { facets, is_solid: self.kind == SurfaceKind::Solid }
     }
 

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use glamx::{DVec3, Vec3};
 
 use super::Surface;
+use super::strays::{Tangents, seam};
 use crate::contact::Feature;
 use crate::simd::each;
 
@@ -12,6 +13,9 @@ use crate::simd::each;
 pub trait HalfEdges {
     /// The half-edge that runs back in the neighbour, if there is exactly one.
     fn twin(&self, half_edge: u32) -> Option<u32>;
+
+    /// Calls `visit` with the [strays](super::strays) of an edge or a vertex.
+    fn strays(&self, triangle: u32, feature: Feature, visit: &mut dyn FnMut(u32));
 }
 
 /// Triangles with their adjacency and positions.
@@ -20,32 +24,40 @@ pub trait Facets: HalfEdges {
     fn corner(&self, half_edge: u32, i: usize) -> DVec3;
 }
 
-impl HalfEdges for Surface {
+/// A surface without strays.
+impl HalfEdges for &Surface {
     #[inline]
     fn twin(&self, half_edge: u32) -> Option<u32> {
-        self.twins.get(half_edge)
+        Surface::twin(self, half_edge)
     }
+
+    fn strays(&self, _: u32, _: Feature, _: &mut dyn FnMut(u32)) {}
 }
 
 /// The triangles of an indexed mesh with their adjacency.
 #[derive(Clone, Copy)]
-pub struct IndexedTriangles<'a> {
-    /// Adjacency of the triangles: a [`Surface`], or one that finds neighbours on demand.
-    pub twins: &'a dyn HalfEdges,
+pub struct IndexedTriangles<'a, A> {
+    /// Adjacency of the triangles.
+    pub adjacency: A,
     /// Vertices of the mesh.
     pub vertices: &'a [Vec3],
     /// Triangles of the mesh.
     pub triangles: &'a [[u32; 3]],
 }
 
-impl HalfEdges for IndexedTriangles<'_> {
+impl<A: HalfEdges> HalfEdges for IndexedTriangles<'_, A> {
     #[inline(always)]
     fn twin(&self, half_edge: u32) -> Option<u32> {
-        self.twins.twin(half_edge)
+        self.adjacency.twin(half_edge)
+    }
+
+    #[inline(always)]
+    fn strays(&self, triangle: u32, feature: Feature, visit: &mut dyn FnMut(u32)) {
+        self.adjacency.strays(triangle, feature, visit);
     }
 }
 
-impl Facets for IndexedTriangles<'_> {
+impl<A: HalfEdges> Facets for IndexedTriangles<'_, A> {
     #[inline(always)]
     fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
         let triangle = self.triangles[half_edge as usize / 3];
@@ -85,24 +97,29 @@ impl<F: Facets> OneRing<F> {
     /// direction, and the direction does not lead into the solid.
     ///
     /// The direction leads from a point of the feature to the nearest point of the other body: along
-    /// the normal of a face, or within the Voronoi region of an edge or a vertex. `to` is the
-    /// feature there, if known. A neighbour may come slightly nearer to a face; within a flat side,
-    /// an edge is a local minimum for no other edge.
+    /// the normal of a face, or within the Voronoi region of an edge or a vertex. `contact` has that
+    /// point and the feature of the other body, if known. A neighbour may come slightly nearer to a
+    /// face; within a flat side, an edge is a local minimum for no other edge.
     pub fn is_local_minimum(
         &self,
         triangle: u32,
         feature: Feature,
         direction: DVec3,
-        to: Option<Feature>,
+        contact: Option<(DVec3, Feature)>,
     ) -> bool {
         if feature == Feature::Face {
             let (height, is_upright) = self.over_face(triangle, direction);
             let leads_in = self.is_solid && height < 0.0;
             return is_upright && !leads_in;
         }
-        let rise = match (feature, to) {
-            (_, Some(Feature::Face)) => RISE_TO_FACE,
-            (Feature::Edge(_), Some(Feature::Edge(_))) if self.is_flat(triangle, feature) => FLAT,
+        let place = contact.map(|(place, _)| place);
+        let rise = match (feature, contact) {
+            (_, Some((_, Feature::Face))) => RISE_TO_FACE,
+            (Feature::Edge(_), Some((place, Feature::Edge(_))))
+                if self.is_flat(triangle, feature, place) =>
+            {
+                FLAT
+            }
             _ => RISE,
         };
         let rises = |edge: DVec3| {
@@ -120,16 +137,33 @@ impl<F: Facets> OneRing<F> {
             }
             ControlFlow::Continue(())
         });
+        if has_risen {
+            return false;
+        }
+        self.strays(triangle, feature, place, |stray| {
+            has_risen |= stray.rise(direction) > rise;
+            if self.is_solid {
+                height += stray.normal.dot(direction);
+            }
+        });
         let leads_in = height < 0.0;
         !has_risen && !leads_in
     }
 
-    /// True if the triangles at an edge lie in one plane.
-    fn is_flat(&self, triangle: u32, edge: Feature) -> bool {
-        let Some(twin) = self.facets.twin(half_edge(triangle, edge)) else { return false };
-        let across = self.corner(twin, 2) - self.corner(twin, 0);
-        let normal = self.normal(triangle);
-        across.dot(normal).abs() <= FLAT * across.length() * normal.length()
+    /// True if the triangles at a point of an edge lie in one plane.
+    fn is_flat(&self, triangle: u32, edge: Feature, place: DVec3) -> bool {
+        let normal = self.normal(triangle).normalize_or_zero();
+        if let Some(twin) = self.facets.twin(half_edge(triangle, edge)) {
+            let across = self.corner(twin, 2) - self.corner(twin, 0);
+            return across.dot(normal).abs() <= FLAT * across.length();
+        }
+        let own = self.tangents(triangle, place, self.seam(triangle));
+        let mut is_flat = false;
+        self.strays(triangle, edge, Some(place), |stray| {
+            let is_parallel = stray.normal.cross(normal).length() <= FLAT * stray.normal.length();
+            is_flat |= is_parallel && own.as_ref().is_some_and(|own| stray.is_across(own));
+        });
+        is_flat
     }
 
     /// True if a unit direction from a feature leads into the solid; false for sheets.
@@ -146,7 +180,39 @@ impl<F: Facets> OneRing<F> {
             height += u.cross(v).dot(direction);
             ControlFlow::Continue(())
         });
+        self.strays(triangle, feature, None, |stray| height += stray.normal.dot(direction));
         height < 0.0
+    }
+
+    /// Calls `visit` with what strays have at a point of a feature. Without a point, this is the
+    /// vertex, or the middle of the edge.
+    #[inline(always)]
+    fn strays(
+        &self,
+        triangle: u32,
+        feature: Feature,
+        place: Option<DVec3>,
+        mut visit: impl FnMut(Tangents),
+    ) {
+        self.facets.strays(triangle, feature, &mut |stray| {
+            let first = half_edge(triangle, feature);
+            let place = place.unwrap_or_else(|| match feature {
+                Feature::Vertex(_) => self.corner(first, 0),
+                _ => self.corner(first, 0).midpoint(self.corner(first, 1)),
+            });
+            self.tangents(stray, place, self.seam(triangle)).map(&mut visit);
+        });
+    }
+
+    /// The directions in which a triangle extends from a point on it; `None` if the point is farther
+    /// than `seam`.
+    fn tangents(&self, triangle: u32, place: DVec3, seam: f64) -> Option<Tangents> {
+        Tangents::new(&each(|i| self.corner(3 * triangle, i) - place), seam)
+    }
+
+    /// Greatest distance of a triangle from its strays.
+    fn seam(&self, triangle: u32) -> f64 {
+        seam(&each(|i| self.corner(3 * triangle, i)))
     }
 
     /// Length by which the flat side of a triangle continues beyond it in a unit direction, from
@@ -193,6 +259,16 @@ impl<F: Facets> OneRing<F> {
     fn normal(&self, triangle: u32) -> DVec3 {
         let [a, b, c] = each(|i| self.corner(3 * triangle, i));
         (b - a).cross(c - a)
+    }
+
+    /// The triangles of the one-ring of a vertex or an edge, by the half-edges that start there.
+    pub fn ring(&self, triangle: u32, feature: Feature) -> Vec<u32> {
+        let mut ring = Vec::new();
+        self.visit(triangle, feature, |Wedge { half_edge, .. }| {
+            ring.push(half_edge);
+            ControlFlow::Continue(())
+        });
+        ring
     }
 
     /// Visits the one-ring of an edge or a vertex, starting with `triangle`, until `visit` breaks.

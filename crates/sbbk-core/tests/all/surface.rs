@@ -240,7 +240,7 @@ fn a_leaning_corner_is_a_minimum_for_faces_first() {
     ] {
         let down = DVec3::new(f64::sin(lean), -f64::cos(lean), 0.0);
         let is_front = |to| around.is_local_minimum(triangle, feature, down, to);
-        assert_eq!([is_front(None), is_front(Some(Feature::Face))], [free, to_face], "{lean}");
+        assert_eq!([is_front(None), is_front(Some((DVec3::ZERO, Feature::Face)))], [free, to_face], "{lean}");
     }
 }
 
@@ -537,7 +537,7 @@ fn flat_sides_continue_to_their_end() {
 
 /// A triangulated surface that counts visited triangles.
 struct Counted<'a> {
-    facets: IndexedTriangles<'a>,
+    facets: IndexedTriangles<'a, &'a Surface>,
     visits: Cell<usize>,
 }
 
@@ -546,6 +546,8 @@ impl HalfEdges for Counted<'_> {
         self.visits.set(self.visits.get() + 1);
         self.facets.twin(half_edge)
     }
+
+    fn strays(&self, _: u32, _: Feature, _: &mut dyn FnMut(u32)) {}
 }
 
 impl Facets for Counted<'_> {

@@ -17,7 +17,11 @@
 //! normal. The contact then takes the normal of a face nearby along which the bodies cross, if there is
 //! one.
 //!
-//! Triangles are neighbours if their corners are equal; meshes need no shared vertices.
+//! Triangles are neighbours if their corners are equal; meshes need no shared vertices. A contact that
+//! no such neighbour explains is compared with all triangles at its point
+//! ([`strays`](sbbk_core::surface::strays)).
+
+use std::cell::RefCell;
 
 use glamx::Vec3;
 use sbbk_core::contact::Feature;
@@ -45,6 +49,8 @@ pub(crate) struct GhostContacts {
     on_faces: Vec<u32>,
     /// Contacts that share a corner with the one at hand.
     nearby: Vec<u32>,
+    /// Contacts of other triangles at the point of the one at hand.
+    strays: Vec<u32>,
 }
 
 struct Corner {
@@ -84,24 +90,35 @@ impl GhostContacts {
     /// [`sources`](Self::sources).
     ///
     /// `keys` returns the corners of a contact's triangle. `extends_beyond(a, b)` is true if the triangle of
-    /// contact `a` extends beyond contact `b` along the normal of `b`.
+    /// contact `a` extends beyond contact `b` along the normal of `b`. `find_strays` adds the
+    /// contacts of triangles at the point of a contact.
     fn find<I>(
         &mut self,
         contacts: &[(I, PartContact)],
         keys: impl Fn(&I) -> [u64; 3],
         mut extends_beyond: impl FnMut(&I, &ConvexContact) -> bool,
+        mut find_strays: impl FnMut(&(I, PartContact), &mut Vec<u32>),
     ) {
         self.index(contacts, keys);
         self.on_faces.clear();
         self.sources.clear();
         self.sources.extend(0..contacts.len() as u32);
-        for (contact, (_, PartContact { contact: own, feature, .. })) in (0..).zip(contacts) {
+        for (contact, hit @ (_, PartContact { contact: own, feature, .. })) in (0..).zip(contacts) {
             if *feature == Feature::Face {
                 continue;
             }
-            let nearest = self.nearest(contacts, contact, *feature);
+            let distance = |contact: u32| contacts[contact as usize].1.contact.distance;
             let size = own.on_triangle.abs().max_element() + own.distance.abs();
-            if contacts[nearest as usize].1.contact.distance < own.distance - EQUAL * size {
+            let is_nearer = |other: u32| distance(other) < own.distance - EQUAL * size;
+            let mut nearest = self.nearest(contacts, contact, *feature);
+            self.strays.clear();
+            if !is_nearer(nearest) {
+                find_strays(hit, &mut self.strays);
+                let strays = self.strays.iter().copied();
+                nearest =
+                    strays.fold(nearest, |a, b| if distance(b) < distance(a) { b } else { a });
+            }
+            if is_nearer(nearest) {
                 self.sources[contact as usize] = nearest;
             } else if own.distance < 0.0
                 && self.is_passed(contacts, contact, *feature, &mut extends_beyond)
@@ -194,6 +211,7 @@ impl GhostContacts {
         }
         let is_passed = self
             .at_feature(contact, feature)
+            .chain(self.strays.iter().copied())
             .any(|other| extends_beyond(&contacts[other as usize].0, own));
         if let Feature::Vertex(_) = feature {
             self.corners[one as usize].passed = Some((contact, is_passed));
@@ -220,6 +238,7 @@ impl GhostContacts {
         self.sources.shrink_to(limit);
         self.on_faces.shrink_to(limit);
         self.nearby.shrink_to(limit);
+        self.strays.shrink_to(limit);
     }
 }
 
@@ -241,10 +260,24 @@ impl ConvexQuery<'_> {
             let [triangle, part] = subshapes(of);
             self.pair.mesh.corners(triangle).map(|corner| corner_key(part, corner))
         };
-        ghosts.find(contacts, keys, |&of, contact| {
+        let scratch_of = RefCell::new(&mut *scratch);
+        let extends_beyond = |&of: &[u32; 2], contact: &ConvexContact| {
+            let scratch = &mut scratch_of.borrow_mut();
             self.with_pair(subshapes(of), scratch, |pair| pair.extends_beyond(contact))
                 .unwrap_or(false)
-        });
+        };
+        let find_strays = |(of, hit): &([u32; 2], PartContact), strays: &mut Vec<u32>| {
+            let [triangle, part] = subshapes(*of);
+            let scratch = &mut scratch_of.borrow_mut();
+            self.with_pair([triangle, part], scratch, |pair| {
+                pair.triangles_at(triangle, hit, |other| {
+                    let other = self.pair.mesh_place.swap([other, part]);
+                    let found = contacts.binary_search_by_key(&other, |(of, _)| *of);
+                    strays.extend(found.ok().map(|found| found as u32));
+                });
+            });
+        };
+        ghosts.find(contacts, keys, extends_beyond, find_strays);
         for i in 0..ghosts.on_faces.len() {
             let contact = ghosts.on_faces[i];
             ghosts.list_nearby(contact);
@@ -298,7 +331,7 @@ mod tests {
             calls.set(calls.get() + 1);
             false
         };
-        ghosts.find(&contacts, |&i| strip(i), extends_beyond);
+        ghosts.find(&contacts, |&i| strip(i), extends_beyond, |_, _| {});
         assert!(calls.get() <= 6 * COUNT, "{} calls", calls.get());
         for i in 0..COUNT {
             ghosts.list_nearby(i);
@@ -313,13 +346,13 @@ mod tests {
             let of = |i: u32| (i, contact(0.01 * f64::from(i), Feature::Edge(0)));
             let mut contacts: Vec<_> = (0..count).map(of).collect();
             let mut ghosts = GhostContacts::default();
-            ghosts.find(&contacts, |&i| strip(i), |_, _| true);
+            ghosts.find(&contacts, |&i| strip(i), |_, _| true, |_, _| {});
             assert_eq!(ghosts.sources, vec![0; count as usize]);
             assert!(ghosts.on_faces.is_empty(), "nothing crosses");
             contacts[2].1.feature = Feature::Face;
             contacts[1].1.contact.distance = -0.3;
             contacts[2].1.contact.distance = -0.2;
-            ghosts.find(&contacts, |&i| strip(i), |_, _| true);
+            ghosts.find(&contacts, |&i| strip(i), |_, _| true, |_, _| {});
             assert_eq!(ghosts.sources[..4], [0, 1, 2, 2]);
             assert_eq!(ghosts.on_faces, [1]);
             ghosts.list_nearby(1);
