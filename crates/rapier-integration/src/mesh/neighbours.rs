@@ -1,11 +1,12 @@
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicU16, Ordering};
 
+use glamx::DVec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::shape::TriMesh;
 use rustc_hash::FxHashMap;
 use sbbk_core::contact::Feature;
-use sbbk_core::surface::strays::find;
+use sbbk_core::surface::strays::has_strays;
 use sbbk_core::surface::{HalfEdges, IndexedTriangles, OneRing, Surface};
 
 /// Adjacency of the triangles of a mesh, with [strays](sbbk_core::surface::strays).
@@ -40,25 +41,20 @@ impl<'a, 'm> MeshAdjacency<'a, 'm> {
         }
     }
 
-    /// Finds strays by the BVH, in about 1 µs, and keeps in the flags if there are any.
+    /// Searches the strays of a feature, in about 1 µs, and keeps in the flags if there are any.
     #[cold]
-    fn find_strays(self, triangle: u32, feature: Feature) -> Vec<u32> {
-        let (mesh, surface) = (self.mesh(), OneRing { facets: self.facets(), is_solid: false });
-        let strays = find(&surface, triangle, feature, |low, high, visit| {
-            let [low, high] = [low.as_vec3(), high.as_vec3()];
-            // To f32 by one more rounding.
-            let near = Aabb::new(low - f32::EPSILON * low.abs(), high + f32::EPSILON * high.abs());
-            mesh.bvh().intersect_aabb(&near).for_each(visit);
-        });
+    fn find_strays(self, triangle: u32, feature: Feature) {
+        let surface = OneRing { facets: self.facets(), is_solid: false };
+        let found = has_strays(&surface, triangle, feature, |near, visit| self.near(near, visit));
         if let Feature::Vertex(_) = feature {
+            // Once for all triangles of a fan.
             for half_edge in surface.ring(triangle, feature) {
                 let vertex = Feature::Vertex((half_edge % 3) as u8);
-                self.with_flags(half_edge / 3, |flags| flags.set(vertex, !strays.is_empty()));
+                self.with_flags(half_edge / 3, |flags| flags.set(vertex, found));
             }
         } else {
-            self.with_flags(triangle, |flags| flags.set(feature, !strays.is_empty()));
+            self.with_flags(triangle, |flags| flags.set(feature, found));
         }
-        strays
     }
 }
 
@@ -72,10 +68,18 @@ impl HalfEdges for MeshAdjacency<'_, '_> {
     }
 
     #[inline]
-    fn strays(&self, triangle: u32, feature: Feature, visit: &mut dyn FnMut(u32)) {
-        if self.with_flags(triangle, |flags| flags.may_have(feature)) {
-            self.find_strays(triangle, feature).into_iter().for_each(visit);
-        }
+    fn is_whole(&self, triangle: u32, feature: Feature) -> bool {
+        self.with_flags(triangle, |flags| flags.is_whole(feature)).unwrap_or_else(|| {
+            self.find_strays(triangle, feature);
+            self.with_flags(triangle, |flags| flags.is_whole(feature)) != Some(false)
+        })
+    }
+
+    fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32)) {
+        let [low, high] = corners.map(|corner| corner.as_vec3());
+        // To f32 by one more rounding.
+        let near = Aabb::new(low - f32::EPSILON * low.abs(), high + f32::EPSILON * high.abs());
+        self.mesh().bvh().intersect_aabb(&near).for_each(visit);
     }
 }
 
@@ -93,10 +97,11 @@ impl StrayFlags {
         [1 << place, 1 << (8 + place)]
     }
 
-    /// Returns false if a search has found no strays of an edge or a vertex.
-    fn may_have(&self, feature: Feature) -> bool {
+    /// Returns true if an edge or a vertex has no strays; `None` before a search.
+    fn is_whole(&self, feature: Feature) -> Option<bool> {
         let [is_searched, has_strays] = Self::bits(feature);
-        self.0.load(Ordering::Relaxed) & (is_searched | has_strays) != is_searched
+        let flags = self.0.load(Ordering::Relaxed);
+        (flags & is_searched != 0).then_some(flags & has_strays == 0)
     }
 
     fn set(&self, feature: Feature, found: bool) {

@@ -99,8 +99,24 @@ impl HalfEdges for Field<'_> {
         })
     }
 
-    /// A grid has none.
-    fn strays(&self, _: u32, _: Feature, _: &mut dyn FnMut(u32)) {}
+    /// Two parts of the surface may meet in a vertex if triangles between them were removed.
+    fn is_whole(&self, triangle: u32, feature: Feature) -> bool {
+        let i = match feature {
+            Feature::Vertex(i) => i,
+            Feature::Edge(i) => return self.twin(3 * triangle + u32::from(i)).is_some(),
+            Feature::Face => return true,
+        };
+        let [column, row] = self.places(self.of_id(triangle))[usize::from(i)];
+        let [columns, rows] = self.cell_counts();
+        let cells = |line: usize, count: usize| line.saturating_sub(1)..(line + 1).min(count);
+        let has_all = |cell| self.triangles(cell).iter().all(Option::is_some);
+        cells(column, columns).all(|column| cells(row, rows).all(|row| has_all([column, row])))
+    }
+
+    fn near(&self, [low, high]: [DVec3; 2], visit: &mut dyn FnMut(u32)) {
+        let near = Aabb::new(low.as_vec3(), high.as_vec3());
+        self.0.map_elements_in_local_aabb(&near, &mut |id, _| visit(id));
+    }
 }
 
 impl Facets for Field<'_> {

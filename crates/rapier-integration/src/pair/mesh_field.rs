@@ -131,9 +131,17 @@ impl HalfEdges for MeshOrField<'_, '_> {
         }
     }
 
-    fn strays(&self, triangle: u32, feature: Feature, visit: &mut dyn FnMut(u32)) {
-        if let Self::Mesh(mesh) = self {
-            mesh.strays(triangle, feature, visit);
+    fn is_whole(&self, triangle: u32, feature: Feature) -> bool {
+        match self {
+            Self::Mesh(mesh) => mesh.is_whole(triangle, feature),
+            Self::Field(field) => field.is_whole(triangle, feature),
+        }
+    }
+
+    fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32)) {
+        match self {
+            Self::Mesh(mesh) => mesh.near(corners, visit),
+            Self::Field(field) => field.near(corners, visit),
         }
     }
 }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use glamx::{DVec3, Vec3};
 
 use super::Surface;
-use super::strays::{Tangents, seam};
+use super::strays::{seam, touches};
 use crate::contact::Feature;
 use crate::simd::each;
 
@@ -14,8 +14,12 @@ pub trait HalfEdges {
     /// The half-edge that runs back in the neighbour, if there is exactly one.
     fn twin(&self, half_edge: u32) -> Option<u32>;
 
-    /// Calls `visit` with the [strays](super::strays) of an edge or a vertex.
-    fn strays(&self, triangle: u32, feature: Feature, visit: &mut dyn FnMut(u32));
+    /// True if the one-ring of an edge or a vertex is all of the surface there: there are no
+    /// [strays](super::strays).
+    fn is_whole(&self, triangle: u32, feature: Feature) -> bool;
+
+    /// Calls `visit` with all triangles near the box between two corners.
+    fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32));
 }
 
 /// Triangles with their adjacency and positions.
@@ -31,7 +35,11 @@ impl HalfEdges for &Surface {
         Surface::twin(self, half_edge)
     }
 
-    fn strays(&self, _: u32, _: Feature, _: &mut dyn FnMut(u32)) {}
+    fn is_whole(&self, _: u32, _: Feature) -> bool {
+        true
+    }
+
+    fn near(&self, _: [DVec3; 2], _: &mut dyn FnMut(u32)) {}
 }
 
 /// The triangles of an indexed mesh with their adjacency.
@@ -52,8 +60,12 @@ impl<A: HalfEdges> HalfEdges for IndexedTriangles<'_, A> {
     }
 
     #[inline(always)]
-    fn strays(&self, triangle: u32, feature: Feature, visit: &mut dyn FnMut(u32)) {
-        self.adjacency.strays(triangle, feature, visit);
+    fn is_whole(&self, triangle: u32, feature: Feature) -> bool {
+        self.adjacency.is_whole(triangle, feature)
+    }
+
+    fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32)) {
+        self.adjacency.near(corners, visit);
     }
 }
 
@@ -140,12 +152,17 @@ impl<F: Facets> OneRing<F> {
         if has_risen {
             return false;
         }
-        self.strays(triangle, feature, place, |stray| {
-            has_risen |= stray.rise(direction) > rise;
-            if self.is_solid {
-                height += stray.normal.dot(direction);
-            }
-        });
+        if !self.facets.is_whole(triangle, feature) {
+            let mut heights = Heights::default();
+            self.visit_at(triangle, feature, place, |corners, seam| {
+                let is_far = |corner: &&DVec3| corner.length_squared() > seam * seam;
+                has_risen |= corners.iter().filter(is_far).any(|&corner| rises(corner));
+                if self.is_solid {
+                    heights.add(corners, direction);
+                }
+            });
+            height = heights.sum();
+        }
         let leads_in = height < 0.0;
         !has_risen && !leads_in
     }
@@ -157,11 +174,17 @@ impl<F: Facets> OneRing<F> {
             let across = self.corner(twin, 2) - self.corner(twin, 0);
             return across.dot(normal).abs() <= FLAT * across.length();
         }
-        let own = self.tangents(triangle, place, self.seam(triangle));
+        if self.facets.is_whole(triangle, edge) {
+            return false;
+        }
+        let first = half_edge(triangle, edge);
+        let inwards =
+            normal.cross((self.corner(first, 1) - self.corner(first, 0)).normalize_or_zero());
         let mut is_flat = false;
-        self.strays(triangle, edge, Some(place), |stray| {
-            let is_parallel = stray.normal.cross(normal).length() <= FLAT * stray.normal.length();
-            is_flat |= is_parallel && own.as_ref().is_some_and(|own| stray.is_across(own));
+        self.visit_at(triangle, edge, Some(place), |corners, seam| {
+            let area = area_vector(corners);
+            is_flat |= area.cross(normal).length() <= FLAT * area.length()
+                && corners.iter().any(|corner| corner.dot(inwards) < -seam);
         });
         is_flat
     }
@@ -180,39 +203,36 @@ impl<F: Facets> OneRing<F> {
             height += u.cross(v).dot(direction);
             ControlFlow::Continue(())
         });
-        self.strays(triangle, feature, None, |stray| height += stray.normal.dot(direction));
+        if !self.facets.is_whole(triangle, feature) {
+            let mut heights = Heights::default();
+            self.visit_at(triangle, feature, None, |corners, _| heights.add(corners, direction));
+            height = heights.sum();
+        }
         height < 0.0
     }
 
-    /// Calls `visit` with what strays have at a point of a feature. Without a point, this is the
-    /// vertex, or the middle of the edge.
-    #[inline(always)]
-    fn strays(
+    /// Calls `visit` with all triangles at a point of a feature, as seen from that point, and with
+    /// the distance up to which they touch it. Without a point, it is the vertex, or the middle of
+    /// the edge.
+    fn visit_at(
         &self,
         triangle: u32,
         feature: Feature,
         place: Option<DVec3>,
-        mut visit: impl FnMut(Tangents),
+        mut visit: impl FnMut(&[DVec3; 3], f64),
     ) {
-        self.facets.strays(triangle, feature, &mut |stray| {
-            let first = half_edge(triangle, feature);
-            let place = place.unwrap_or_else(|| match feature {
-                Feature::Vertex(_) => self.corner(first, 0),
-                _ => self.corner(first, 0).midpoint(self.corner(first, 1)),
-            });
-            self.tangents(stray, place, self.seam(triangle)).map(&mut visit);
+        let first = half_edge(triangle, feature);
+        let place = place.unwrap_or_else(|| match feature {
+            Feature::Vertex(_) => self.corner(first, 0),
+            _ => self.corner(first, 0).midpoint(self.corner(first, 1)),
         });
-    }
-
-    /// The directions in which a triangle extends from a point on it; `None` if the point is farther
-    /// than `seam`.
-    fn tangents(&self, triangle: u32, place: DVec3, seam: f64) -> Option<Tangents> {
-        Tangents::new(&each(|i| self.corner(3 * triangle, i) - place), seam)
-    }
-
-    /// Greatest distance of a triangle from its strays.
-    fn seam(&self, triangle: u32) -> f64 {
-        seam(&each(|i| self.corner(3 * triangle, i)))
+        let seam = seam(&each(|i| self.corner(first, i)));
+        self.facets.near([place - seam, place + seam], &mut |other| {
+            let corners = each(|i| self.corner(3 * other, i) - place);
+            if touches(&corners, [DVec3::ZERO; 2], seam) {
+                visit(&corners, seam);
+            }
+        });
     }
 
     /// Length by which the flat side of a triangle continues beyond it in a unit direction, from
@@ -257,8 +277,7 @@ impl<F: Facets> OneRing<F> {
 
     /// Normal of a triangle; its length is twice the area.
     fn normal(&self, triangle: u32) -> DVec3 {
-        let [a, b, c] = each(|i| self.corner(3 * triangle, i));
-        (b - a).cross(c - a)
+        area_vector(&each(|i| self.corner(3 * triangle, i)))
     }
 
     /// The triangles of the one-ring of a vertex or an edge, by the half-edges that start there.
@@ -339,6 +358,33 @@ struct Wedge {
     edges: [DVec3; 2],
     /// True for edges that no earlier triangle of the ring has.
     are_new: [bool; 2],
+}
+
+/// Heights of a direction along the area vectors of triangles in any order.
+#[derive(Default)]
+struct Heights {
+    sum: f64,
+    size: f64,
+}
+
+impl Heights {
+    /// Share of the terms below which a sum is zero: rounding depends on the order.
+    const ROUNDING: f64 = 1.0e-12;
+
+    fn add(&mut self, corners: &[DVec3; 3], direction: DVec3) {
+        let area = area_vector(corners);
+        self.sum += area.dot(direction);
+        self.size += area.length();
+    }
+
+    fn sum(&self) -> f64 {
+        if self.sum.abs() <= Self::ROUNDING * self.size { 0.0 } else { self.sum }
+    }
+}
+
+/// Normal of a triangle, as long as twice its area.
+fn area_vector([a, b, c]: &[DVec3; 3]) -> DVec3 {
+    (*b - *a).cross(*c - *a)
 }
 
 fn half_edge(triangle: u32, feature: Feature) -> u32 {

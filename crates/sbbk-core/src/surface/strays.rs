@@ -20,91 +20,50 @@ pub fn seam([a, b, c]: &[DVec3; 3]) -> f64 {
     SEAM * a.distance(*b).max(b.distance(*c)).max(c.distance(*a))
 }
 
-/// The directions in which a triangle extends from a point on it.
-pub(super) struct Tangents {
-    /// Area vector of the triangle, doubled.
-    pub(super) normal: DVec3,
-    /// Unit vectors along the sides that the point lies on, and inwards from these.
-    sides: arrayvec::ArrayVec<[DVec3; 2], 3>,
-}
-
-impl Tangents {
-    /// Returns `None` if the origin is farther than `seam` from the triangle, or the triangle has no area.
-    pub(super) fn new(corners: &[DVec3; 3], seam: f64) -> Option<Self> {
-        let [a, b, c] = *corners;
-        let normal = (b - a).cross(c - a);
-        let up = normal.try_normalize()?;
-        let mut sides = arrayvec::ArrayVec::new();
-        let is_near = up.dot(a).abs() <= seam
-            && (0..3).all(|i| {
-                let along = (corners[(i + 1) % 3] - corners[i]).normalize_or_zero();
-                let inwards = up.cross(along);
-                let beyond = inwards.dot(corners[i]);
-                if beyond >= -seam {
-                    sides.push([along, inwards]);
-                }
-                beyond <= seam
-            });
-        is_near.then_some(Self { normal, sides })
-    }
-
-    /// The greatest height along a unit direction of a point of the triangle at distance 1; at most 0
-    /// if there is none above.
-    pub(super) fn rise(&self, direction: DVec3) -> f64 {
-        let flat = direction - direction.project_onto(self.normal);
-        if self.sides.iter().all(|[_, inwards]| inwards.dot(flat) >= 0.0) {
-            return flat.length();
-        }
-        let ways = self.sides.iter().flat_map(|[along, _]| [*along, -*along]);
-        let ways = ways.filter(|&way| self.sides.iter().all(|side| side[1].dot(way) >= -SEAM));
-        ways.map(|way| way.dot(direction)).fold(0.0, f64::max)
-    }
-
-    /// True if both lie on opposite sides of a common line.
-    pub(super) fn is_across(&self, other: &Self) -> bool {
-        let into =
-            |tangents: &Self| tangents.sides.iter().map(|[_, inwards]| *inwards).sum::<DVec3>();
-        into(self).dot(into(other)) < 0.0
-    }
-}
-
-/// The strays of an edge or a vertex of a triangle, among the triangles that `near` returns for the
-/// box from `low` to `high`.
-pub fn find<F: Facets>(
+/// True if an edge or a vertex of a triangle has strays among the triangles that `near` returns for
+/// the box between two corners. So has each edge without a twin: what goes on there is not known.
+pub fn has_strays<F: Facets>(
     surface: &OneRing<F>,
     triangle: u32,
     feature: Feature,
-    near: impl FnOnce(DVec3, DVec3, &mut dyn FnMut(u32)),
-) -> Vec<u32> {
+    near: impl FnOnce([DVec3; 2], &mut dyn FnMut(u32)),
+) -> bool {
     let corners = each(|i| surface.facets.corner(3 * triangle, i));
+    let mut ring = surface.ring(triangle, feature);
     let [start, end] = match feature {
         Feature::Vertex(i) => [corners[usize::from(i)]; 2],
-        Feature::Edge(i) => [corners[usize::from(i)], corners[(usize::from(i) + 1) % 3]],
-        Feature::Face => return Vec::new(),
+        Feature::Edge(_) if ring.len() == 1 => return true,
+        Feature::Edge(i) => [i, (i + 1) % 3].map(|end| corners[usize::from(end)]),
+        Feature::Face => return false,
     };
     let seam = seam(&corners);
-    let mut ring: Vec<u32> = surface.ring(triangle, feature).into_iter().map(|of| of / 3).collect();
+    ring.iter_mut().for_each(|half_edge| *half_edge /= 3);
     ring.sort_unstable();
-    let mut strays = Vec::new();
-    near(start.min(end) - seam, start.max(end) + seam, &mut |other| {
-        let corners = each(|i| surface.facets.corner(3 * other, i));
-        if ring.binary_search(&other).is_err() && touches(&corners, [start, end], seam) {
-            strays.push(other);
+    let mut found = false;
+    let is_edge = start != end;
+    near([start.min(end) - seam, start.max(end) + seam], &mut |other| {
+        if found || ring.binary_search(&other).is_ok() {
+            return;
         }
+        let corners = each(|i| surface.facets.corner(3 * other, i));
+        // Triangles at an end of an edge touch it there.
+        let is_at_end = is_edge && corners.iter().any(|corner| [start, end].contains(corner));
+        found = !is_at_end && touches(&corners, [start, end], seam);
     });
-    strays
+    found
 }
 
-/// True if a triangle comes within `seam` of a segment, or a little farther at its corners.
+/// True if a triangle with an area comes within `seam` of a segment, or a little farther at its
+/// corners.
 pub fn touches(corners: &[DVec3; 3], [start, end]: [DVec3; 2], seam: f64) -> bool {
     let [a, b, c] = *corners;
     let Some(up) = (b - a).cross(c - a).try_normalize() else { return false };
-    // The part of the segment within the slab of the triangle, and within its three sides.
     let sides = each(|i| {
         let along = (corners[(i + 1) % 3] - corners[i]).normalize_or_zero();
         (up.cross(along), corners[i])
     });
     let planes = [(up, a), (-up, a)].into_iter().chain(sides);
+    // The part of the segment on the inner side of all planes.
     let (mut first, mut last) = (0.0_f64, 1.0_f64);
     for (inwards, on) in planes {
         let [from, to] = [start, end].map(|place| inwards.dot(place - on) + seam);

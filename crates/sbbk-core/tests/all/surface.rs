@@ -240,7 +240,11 @@ fn a_leaning_corner_is_a_minimum_for_faces_first() {
     ] {
         let down = DVec3::new(f64::sin(lean), -f64::cos(lean), 0.0);
         let is_front = |to| around.is_local_minimum(triangle, feature, down, to);
-        assert_eq!([is_front(None), is_front(Some((DVec3::ZERO, Feature::Face)))], [free, to_face], "{lean}");
+        assert_eq!(
+            [is_front(None), is_front(Some((DVec3::ZERO, Feature::Face)))],
+            [free, to_face],
+            "{lean}"
+        );
     }
 }
 
@@ -547,7 +551,11 @@ impl HalfEdges for Counted<'_> {
         self.facets.twin(half_edge)
     }
 
-    fn strays(&self, _: u32, _: Feature, _: &mut dyn FnMut(u32)) {}
+    fn is_whole(&self, _: u32, _: Feature) -> bool {
+        true
+    }
+
+    fn near(&self, _: [DVec3; 2], _: &mut dyn FnMut(u32)) {}
 }
 
 impl Facets for Counted<'_> {
