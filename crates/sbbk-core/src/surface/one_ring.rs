@@ -139,29 +139,32 @@ impl<F: Facets> OneRing<F> {
             height > 0.0 && height * height > rise * rise * edge.length_squared()
         };
         let (mut height, mut has_risen) = (0.0, false);
-        self.visit(triangle, feature, |Wedge { edges: [u, v], are_new, .. }| {
-            has_risen = are_new[0] && rises(u) || are_new[1] && rises(v);
-            if has_risen {
-                return ControlFlow::Break(());
-            }
-            if self.is_solid {
-                height += u.cross(v).dot(direction);
-            }
-            ControlFlow::Continue(())
-        });
+        let is_closed =
+            self.visit(triangle, feature, |Wedge { edges: [u, v], are_new, .. }| {
+                has_risen = are_new[0] && rises(u) || are_new[1] && rises(v);
+                if has_risen {
+                    return ControlFlow::Break(());
+                }
+                if self.is_solid {
+                    height += u.cross(v).dot(direction);
+                }
+                ControlFlow::Continue(())
+            });
         if has_risen {
             return false;
         }
         if !self.facets.is_whole(triangle, feature) {
             let mut heights = Heights::default();
+            let is_open = self.is_solid && !is_closed;
             self.visit_at(triangle, feature, place, |corners, seam| {
                 let is_far = |corner: &&DVec3| corner.length_squared() > seam * seam;
-                has_risen |= corners.iter().filter(is_far).any(|&corner| rises(corner));
-                if self.is_solid {
+                let is_higher = corners.iter().filter(is_far).any(|&corner| rises(corner));
+                if (is_higher || is_open) && touches(corners, [DVec3::ZERO; 2], seam) {
+                    has_risen |= is_higher;
                     heights.add(corners, direction);
                 }
             });
-            height = heights.sum();
+            height = if is_open { heights.sum() } else { height };
         }
         let leads_in = height < 0.0;
         !has_risen && !leads_in
@@ -184,7 +187,8 @@ impl<F: Facets> OneRing<F> {
         self.visit_at(triangle, edge, Some(place), |corners, seam| {
             let area = area_vector(corners);
             is_flat |= area.cross(normal).length() <= FLAT * area.length()
-                && corners.iter().any(|corner| corner.dot(inwards) < -seam);
+                && corners.iter().any(|corner| corner.dot(inwards) < -seam)
+                && touches(corners, [DVec3::ZERO; 2], seam);
         });
         is_flat
     }
@@ -199,19 +203,23 @@ impl<F: Facets> OneRing<F> {
             return is_upright && height < 0.0;
         }
         let mut height = 0.0;
-        self.visit(triangle, feature, |Wedge { edges: [u, v], .. }| {
+        let is_closed = self.visit(triangle, feature, |Wedge { edges: [u, v], .. }| {
             height += u.cross(v).dot(direction);
             ControlFlow::Continue(())
         });
-        if !self.facets.is_whole(triangle, feature) {
+        if !is_closed && !self.facets.is_whole(triangle, feature) {
             let mut heights = Heights::default();
-            self.visit_at(triangle, feature, None, |corners, _| heights.add(corners, direction));
+            self.visit_at(triangle, feature, None, |corners, seam| {
+                if touches(corners, [DVec3::ZERO; 2], seam) {
+                    heights.add(corners, direction);
+                }
+            });
             height = heights.sum();
         }
         height < 0.0
     }
 
-    /// Calls `visit` with all triangles at a point of a feature, as seen from that point, and with
+    /// Calls `visit` with the triangles near a point of a feature, as seen from that point, and with
     /// the distance up to which they touch it. Without a point, it is the vertex, or the middle of
     /// the edge.
     fn visit_at(
@@ -229,9 +237,7 @@ impl<F: Facets> OneRing<F> {
         let seam = seam(&each(|i| self.corner(first, i)));
         self.facets.near([place - seam, place + seam], &mut |other| {
             let corners = each(|i| self.corner(3 * other, i) - place);
-            if touches(&corners, [DVec3::ZERO; 2], seam) {
-                visit(&corners, seam);
-            }
+            visit(&corners, seam);
         });
     }
 
@@ -291,57 +297,57 @@ impl<F: Facets> OneRing<F> {
     }
 
     /// Visits the one-ring of an edge or a vertex, starting with `triangle`, until `visit` breaks.
+    /// Returns true if the ring closes.
     #[inline(always)]
     fn visit(
         &self,
         triangle: u32,
         feature: Feature,
         mut visit: impl FnMut(Wedge) -> ControlFlow<()>,
-    ) {
+    ) -> bool {
         let first = half_edge(triangle, feature);
         let start = self.corner(first, 0);
         let edge = |half_edge: u32, i: usize| self.corner(half_edge, i) - start;
         let [first_u, first_v] = [edge(first, 1), edge(first, 2)];
         let own = Wedge { half_edge: first, edges: [first_u, first_v], are_new: [true; 2] };
         if visit(own).is_break() {
-            return;
+            return false;
         }
         if !matches!(feature, Feature::Vertex(_)) {
-            if let Some(half_edge) = self.facets.twin(first) {
-                let start = self.corner(half_edge, 0);
-                let edge = |i: usize| self.corner(half_edge, i) - start;
-                let [u, v] = [edge(1), edge(2)];
-                let _ = visit(Wedge { half_edge, edges: [u, v], are_new: [true; 2] });
-            }
-            return;
+            let Some(half_edge) = self.facets.twin(first) else { return false };
+            let start = self.corner(half_edge, 0);
+            let edge = |i: usize| self.corner(half_edge, i) - start;
+            let [u, v] = [edge(1), edge(2)];
+            return visit(Wedge { half_edge, edges: [u, v], are_new: [true; 2] }).is_continue();
         }
         let (mut at, mut u) = (first, first_v);
         for _ in 0..RING_LIMIT {
             let Some(twin) = self.facets.twin(previous(at)) else { break };
             if twin == first {
-                return;
+                return true;
             }
             at = twin;
             let v = edge(at, 2);
             if visit(Wedge { half_edge: at, edges: [u, v], are_new: [false, true] }).is_break() {
-                return;
+                return false;
             }
             u = v;
         }
         // At a border, or past the limit: the other direction.
         let (last, mut at, mut v) = (at, first, first_u);
         for _ in 0..RING_LIMIT {
-            let Some(twin) = self.facets.twin(at) else { return };
+            let Some(twin) = self.facets.twin(at) else { return false };
             at = next(twin);
             if at == last {
-                return;
+                return true;
             }
             let u = edge(at, 1);
             if visit(Wedge { half_edge: at, edges: [u, v], are_new: [true, false] }).is_break() {
-                return;
+                return false;
             }
             v = u;
         }
+        false
     }
 
     #[inline(always)]
