@@ -176,24 +176,22 @@ fn contacts_of_triangles_do_not_depend_on_winding() {
     }
 }
 
-/// A mesh whose normals point inwards has no outside that can be trusted. Would catch bodies pushed
-/// into it: of two of them, all contacts of triangles that cross stay.
+/// Would catch a mesh whose normals point inwards and that pulls bodies in: two of them part along the
+/// line of their middles.
 #[test]
-fn inside_out_meshes_cross_as_sheets_do() {
+fn inside_out_meshes_push_each_other_apart() {
     let inside = shape(&turned_inside_out(mesh::ball(0.8, 6)));
     let mut random = Rand32::new(3);
     let mut count = 0;
-    for depth in [0.02, 0.1, 0.3].repeat(8) {
-        let query = Question::new(&inside, &inside, touching(&mut random, [&inside; 2], depth));
-        let [found, all] = [ask(&query), query.fresh(&per_triangle())];
-        let crossing = |manifolds: Vec<Manifold>| -> Vec<Manifold> {
-            manifolds.into_iter().filter(|manifold| distance(manifold) < -1e-6).collect()
-        };
-        let [found, all] = [found, all].map(crossing);
-        assert_eq!(bits(&found), bits(&all));
-        count += found.len();
+    for depth in [0.02, 0.1].repeat(8) {
+        let pose = touching(&mut random, [&inside; 2], depth);
+        for manifold in ask(&Question::new(&inside, &inside, pose)) {
+            let along = manifold.local_n1.dot(pose.translation.normalize());
+            assert!(along > 0.0, "{along} at {pose:?}");
+            count += 1;
+        }
     }
-    assert!(count > 200, "{count}");
+    assert!(count > 50, "{count}");
 }
 
 /// Solids and sheets, of few and of many triangles.

@@ -9,6 +9,8 @@ use sbbk_core::collections::UnionFind;
 #[derive(Default)]
 pub(crate) struct OverlapIslands {
     crossings: Vec<Crossing>,
+    /// Pairs of triangles that touch without a contact.
+    touching: Vec<[u32; 2]>,
     /// Direction in which mesh 2 separates from mesh 1, where contacts do not agree on one.
     separation: Option<DVec3>,
     /// Pairs whose contact pushes the wrong way.
@@ -86,19 +88,20 @@ impl Crossing {
 
 /// Cosine above which two normals push to one side. Higher: bodies that pierce a solid are held in it;
 /// lower: contacts that do not push against each other are rejected.
-const SAME_SIDE: f64 = 0.5;
+pub(super) const SAME_SIDE: f64 = 0.5;
 
 impl OverlapIslands {
     /// Begins the first pass of a query.
     pub(super) fn clear(&mut self) {
         self.crossings.clear();
+        self.touching.clear();
         self.rejected.clear();
         self.separation = None;
     }
 
     /// Gives back memory beyond that for `limit` pairs.
     pub(super) fn shrink_to(&mut self, limit: usize) {
-        if self.crossings.capacity() > limit {
+        if self.crossings.capacity().max(self.touching.capacity()) > limit {
             *self = Self::default();
         }
     }
@@ -108,8 +111,30 @@ impl OverlapIslands {
         self.crossings.push(crossing);
     }
 
+    /// Adds a pair that touches without a contact.
+    pub(super) fn add_touching(&mut self, pair: [u32; 2]) {
+        self.touching.push(pair);
+    }
+
+    /// Returns the triangles of shape `i` with final contacts, and the normals of these.
+    pub(super) fn final_normals(&self, i: usize) -> impl Iterator<Item = (u32, DVec3)> {
+        let fine = self.crossings.iter().filter(|crossing| self.is_fine(crossing));
+        fine.map(move |crossing| (crossing.pair[i], crossing.normal))
+    }
+
+    /// Returns the pairs that cross, or touch if none do.
+    pub(super) fn overlaps(&self) -> impl Iterator<Item = [u32; 2]> {
+        let crossing = self.crossings.iter().map(|crossing| crossing.pair);
+        let touching = self.touching.iter().filter(|_| self.crossings.is_empty());
+        crossing.chain(touching.copied())
+    }
+
     pub(super) fn len(&self) -> usize {
         self.crossings.len()
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.crossings.is_empty()
     }
 
     /// Returns a crossing, by its index, unless its contact is final.

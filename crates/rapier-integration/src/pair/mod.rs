@@ -17,6 +17,7 @@ mod inside;
 mod islands;
 mod mesh_field;
 mod mesh_mesh;
+mod passed;
 mod pose;
 mod reduce;
 mod state;

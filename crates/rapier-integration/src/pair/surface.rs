@@ -102,7 +102,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         let is_solid = solids::<S>(&surfaces);
         let has_solid = is_solid[0] || is_solid[1];
         let is_crossing = contact.features.is_crossing();
-        if is_crossing && !has_solid || contact.distance > self.shapes.filter_distance() {
+        if contact.distance > self.shapes.filter_distance() {
             return Verdict::Contact(of_triangles);
         }
         if !is_crossing {
@@ -139,8 +139,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         let greatest = SHALLOW * contact.distance.abs().max(shallow);
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(surfaces, i, feature, axis);
         let good = penetration_out_of_solid(t1, t2, is_solid, ends, Some(greatest), clipped);
-        let is_touching = contact.distance.abs() < TOUCHING * (size(t1) + size(t2));
-        if good.is_none() && !is_crossing && is_touching {
+        if good.is_none() && !is_crossing && is_touching(local, contact, TOUCHING) {
             return Verdict::None;
         }
         let (normal, depth) =
@@ -260,15 +259,19 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
     /// Returns the side of a sheet's triangle on which the middle of a solid is. `None` if the
     /// solid is larger than the sheet.
     fn sheet_side(&self, is_solid: [bool; 2], local: &TrianglePair) -> Option<SheetSide> {
+        let sizes = [0, 1].map(|i| self.shapes.bounds(i).half_extents().length());
         let solid = match is_solid {
+            [true, true] => return None,
             [true, false] => 0,
             [false, true] => 1,
-            _ => return None,
+            // Of two sheets of one size, either order would give another side.
+            [false, false] if sizes[0] == sizes[1] => return None,
+            [false, false] => usize::from(sizes[1] < sizes[0]),
         };
-        let [bounds, others] = [solid, 1 - solid].map(|i| self.shapes.bounds(i));
-        if bounds.half_extents().length() > others.half_extents().length() {
+        if sizes[solid] > sizes[1 - solid] {
             return None;
         }
+        let bounds = self.shapes.bounds(solid);
         let middle = match solid {
             0 => bounds.center().as_dvec3() - local.origin.as_dvec3(),
             _ => self.pose.placement12.to_frame1(bounds.center(), local.origin),
@@ -305,6 +308,16 @@ fn solids<S: TriangleShapes>(surfaces: &Surfaces<'_, S>) -> [bool; 2] {
 fn leans([a, b, c]: &[DVec3; 3], direction: DVec3) -> bool {
     let normal = (*b - *a).cross(*c - *a);
     normal.dot(direction).abs() < NEAR_NORMAL * normal.length()
+}
+
+/// Distance, in sizes of the triangles, that rounding of poses to f32 may open between triangles that
+/// touch.
+pub(super) const NEARLY_TOUCHING: f64 = 1.0e-6;
+
+/// Returns true if triangles are within a distance, in their sizes.
+pub(super) fn is_touching(local: &TrianglePair, contact: &TriangleContact, distance: f64) -> bool {
+    let [t1, t2] = &local.corners;
+    contact.distance.abs() < distance * (size(t1) + size(t2))
 }
 
 /// Returns the longer of two sides.

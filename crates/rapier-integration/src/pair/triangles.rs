@@ -21,10 +21,11 @@ use sbbk_core::traverse::{Counters, DescentScratch, SlackLimits};
 
 use super::inside::InsideTest;
 use super::islands::OverlapIslands;
+use super::passed::reject_passed;
 use super::pose::PairPose;
 use super::reduce::{ContactSummary, PatchPlan};
 use super::state::Candidate;
-use super::surface::{SurfaceFilter, Verdict};
+use super::surface::{NEARLY_TOUCHING, SurfaceFilter, Verdict, is_touching};
 use super::triangle_contacts::{constrained_normal, local_pair, write_points};
 use super::update::{ContactList, ContactPoints, Limits, Memory, Moving, PairQuery, Scratch};
 use sbbk_core::contact::FeaturePair;
@@ -199,6 +200,9 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
             let Some((local, contact)) = self.touch(candidate, limits) else { continue };
             let pair = candidate.subshapes;
             match self.filter(pair).apply(&local, contact, clipped) {
+                Verdict::None if is_touching(&local, &contact, NEARLY_TOUCHING) => {
+                    islands.add_touching(pair);
+                }
                 Verdict::None => {}
                 Verdict::Contact(contact) => contacts.push((pair, contact)),
                 Verdict::Crossing(crossing, contact) => {
@@ -211,9 +215,13 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         if islands.finish_first_pass(separation) {
             self.second_pass(islands, clipped, contacts);
         }
+        self.reject_passed(islands, contacts);
         if contacts.is_empty() {
             let is_deep = islands.has_separation();
             contacts.extend(self.shapes.push_out(is_deep, self.inside));
+        }
+        if contacts.is_empty() {
+            contacts.extend(islands.overlaps().filter_map(|pair| self.contact_of_triangles(pair)));
         }
     }
 
@@ -307,6 +315,34 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         let contact = contact?;
         candidate.hint = Some(contact.features);
         (contact.distance <= reach).then_some((local, contact))
+    }
+
+    /// Removes the contacts of sheets that have passed sheets.
+    fn reject_passed(
+        &self,
+        islands: &OverlapIslands,
+        contacts: &mut ContactList<TriangleSurfaceContact>,
+    ) {
+        if islands.is_empty() {
+            return;
+        }
+        let surfaces = [self.shapes.surface(0), self.shapes.surface(1)];
+        if surfaces.iter().flatten().any(|surface| surface.is_solid) {
+            return;
+        }
+        for (i, surface) in surfaces.iter().enumerate() {
+            if let Some(surface) = surface {
+                reject_passed(i, &surface.facets, islands.final_normals(i), contacts);
+            }
+        }
+    }
+
+    /// Returns the contact of two triangles for surfaces that meet without a contact of their own.
+    fn contact_of_triangles(&self, pair: [u32; 2]) -> Option<TriangleHit> {
+        let local = local_pair(&self.pose.placement12, &self.shapes.triangles(pair)?);
+        let [t1, t2] = &local.corners;
+        let contact = contact(t1, t2, f64::from(self.pose.prediction))?;
+        Some((pair, TriangleSurfaceContact { contact, source: ContactSource::Triangles }))
     }
 
     /// Replaces the contacts that push the wrong way, and adds contacts to islands that have too few.
