@@ -100,9 +100,4 @@ fn sheets_that_cross_along_grid_lines_have_contacts() {
 }
 
 /// Floors and poses that fail today.
-const KNOWN: &[(&str, &str)] = &[
-    ("plain", "on corners, along lines"),
-    ("turned", "on corners, along lines"),
-    ("random winding", "along lines"),
-    ("soup", "on corners, along lines"),
-];
+const KNOWN: &[(&str, &str)] = &[];
