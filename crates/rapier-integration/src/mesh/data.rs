@@ -5,7 +5,7 @@ use parry3d::shape::TriMesh;
 use sbbk_core::surface::{Surface, SurfaceKind};
 use sbbk_core::tree::{BuildError, BuildOptions, Tree};
 
-use super::neighbours::StrayFlags;
+use super::neighbours::{MeshRays, StrayFlags};
 
 /// Tree and surface of a mesh, for all colliders with equal geometry. Any thread computes a part when
 /// it needs that part, and no thread waits: two threads may compute the same part at once.
@@ -63,7 +63,7 @@ impl MeshData {
 
     /// Computes the surface of `mesh`, whose data this must be.
     pub(super) fn analyse(&self, mesh: &TriMesh) -> &Surface {
-        let surface = Surface::new(mesh.vertices(), mesh.indices());
+        let surface = Surface::new(mesh.vertices(), mesh.indices(), &MeshRays(mesh));
         self.strays.get_or_init(|| mesh.indices().iter().map(|_| StrayFlags::default()).collect());
         // Another thread may have set the same surface meanwhile.
         let _ = self.surface.set(surface);

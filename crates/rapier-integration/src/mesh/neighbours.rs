@@ -3,11 +3,12 @@ use std::sync::atomic::{AtomicU16, Ordering};
 
 use glamx::DVec3;
 use parry3d::bounding_volume::Aabb;
+use parry3d::partitioning::BvhNode;
 use parry3d::shape::TriMesh;
 use rustc_hash::FxHashMap;
 use sbbk_core::contact::Feature;
 use sbbk_core::surface::strays::has_strays;
-use sbbk_core::surface::{HalfEdges, IndexedTriangles, OneRing, Surface};
+use sbbk_core::surface::{HalfEdges, IndexedTriangles, OneRing, RayTriangles, Side, Surface, side};
 
 /// Adjacency of the triangles of a mesh, with [strays](sbbk_core::surface::strays).
 #[derive(Copy, Clone)]
@@ -41,10 +42,20 @@ impl<'a, 'm> MeshAdjacency<'a, 'm> {
         }
     }
 
+    /// Returns what is on either side of a triangle of a closed mesh. Takes two rays the first time.
+    pub(crate) fn side(self, triangle: u32) -> Side {
+        let Self::Full { mesh, .. } = self else { return Side::Sheet };
+        self.with_flags(triangle, StrayFlags::side).unwrap_or_else(|| {
+            let side = side(&MeshRays(mesh), triangle);
+            self.with_flags(triangle, |flags| flags.set_side(side));
+            side
+        })
+    }
+
     /// Searches the strays of a feature, in about 1 µs, and keeps in the flags if there are any.
     #[cold]
     fn find_strays(self, triangle: u32, feature: Feature) {
-        let surface = OneRing { facets: self.facets(), is_solid: false };
+        let surface = OneRing { facets: self.facets(), side: Side::Sheet };
         let found = has_strays(&surface, triangle, feature, |near, visit| self.near(near, visit));
         if let Feature::Vertex(_) = feature {
             // Once for all triangles of a fan.
@@ -83,11 +94,16 @@ impl HalfEdges for MeshAdjacency<'_, '_> {
     }
 }
 
-/// Which edges and vertices of a triangle have strays, as far as they were searched.
+/// Which edges and vertices of a triangle have strays, and what is on its sides, as far as known.
 #[derive(Debug, Default)]
 pub(crate) struct StrayFlags(AtomicU16);
 
+/// [`Side`] by the number in the flags.
+const SIDES: [Side; 4] = [Side::Face, Side::Turned, Side::Inner, Side::Sheet];
+
 impl StrayFlags {
+    const HAS_SIDE: u16 = 1 << 7;
+
     fn bits(feature: Feature) -> [u16; 2] {
         let place = match feature {
             Feature::Edge(i) => i,
@@ -104,6 +120,15 @@ impl StrayFlags {
         (flags & is_searched != 0).then_some(flags & has_strays == 0)
     }
 
+    fn side(&self) -> Option<Side> {
+        let flags = self.0.load(Ordering::Relaxed);
+        (flags & Self::HAS_SIDE != 0).then(|| SIDES[usize::from(flags >> 14)])
+    }
+
+    fn set_side(&self, side: Side) {
+        self.0.fetch_or(Self::HAS_SIDE | (side as u16) << 14, Ordering::Relaxed);
+    }
+
     fn set(&self, feature: Feature, found: bool) {
         let [is_searched, has_strays] = Self::bits(feature);
         self.0.fetch_or(is_searched | if found { has_strays } else { 0 }, Ordering::Relaxed);
@@ -115,6 +140,34 @@ impl Clone for StrayFlags {
         Self(AtomicU16::new(self.0.load(Ordering::Relaxed)))
     }
 }
+
+/// Rays through the BVH of a mesh.
+pub(super) struct MeshRays<'a>(pub(super) &'a TriMesh);
+
+impl RayTriangles for MeshRays<'_> {
+    fn count(&self) -> u32 {
+        self.0.indices().len() as u32
+    }
+
+    fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        let corners = self.0.indices()[triangle as usize];
+        corners.map(|corner| self.0.vertices()[corner as usize].as_dvec3())
+    }
+
+    fn along(&self, start: DVec3, direction: DVec3, visit: &mut dyn FnMut(u32)) {
+        let inverse = direction.recip();
+        let is_met = |node: &BvhNode| {
+            let [low, high] =
+                [node.mins(), node.maxs()].map(|corner| (corner.as_dvec3() - start) * inverse);
+            let (first, last) = (low.min(high).max_element(), low.max(high).min_element());
+            last >= 0.0 && first <= last + ROUNDING * last
+        };
+        self.0.bvh().leaves(is_met).for_each(visit);
+    }
+}
+
+/// Rounding of the lengths at which rays meet boxes.
+const ROUNDING: f64 = 1.0e-12;
 
 /// Neighbours of the triangles that a pair has touched.
 pub(crate) type Neighbours = FxHashMap<u32, Neighbour>;
@@ -198,7 +251,7 @@ mod tests {
             let mut corner = || random.rand_range(0..12);
             let triangles = (0..1 + round % 20).map(|_| [corner(), corner(), corner()]).collect();
             let mesh = TriMesh::new(vertices, triangles).expect("there are triangles");
-            let whole = Surface::new(mesh.vertices(), mesh.indices());
+            let whole = Surface::new(mesh.vertices(), mesh.indices(), &MeshRays(&mesh));
             let mut known = Neighbours::default();
             let near = NearTwins::new(&mesh, &mut known);
             for half_edge in 0..3 * mesh.indices().len() as u32 {

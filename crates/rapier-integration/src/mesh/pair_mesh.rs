@@ -1,7 +1,7 @@
 use std::sync::{Arc, OnceLock};
 
 use parry3d::shape::{CompositeShape, TriMesh};
-use sbbk_core::surface::{OneRing, SurfaceKind};
+use sbbk_core::surface::{OneRing, Side, SurfaceKind};
 use sbbk_core::tree::Tree;
 
 use super::data::MeshData;
@@ -172,19 +172,41 @@ pub(crate) enum MeshSurface<'a> {
 }
 
 impl<'m> MeshSurface<'m> {
-    /// Returns the one-rings of `mesh`, whose surface this must be.
+    /// Returns the adjacency of `mesh`, whose surface this must be, its kind, and true if a user
+    /// declared the kind.
     #[inline]
-    pub(crate) fn around<'a>(&'a self, mesh: &'a TriMesh) -> OneRing<MeshFacets<'a, 'm>> {
-        let (adjacency, is_solid) = match self {
+    fn adjacency<'a>(&'a self, mesh: &'a TriMesh) -> (MeshAdjacency<'a, 'm>, SurfaceKind, bool) {
+        match self {
             Self::Full { data, store } => {
                 let data = data.get_or_init(|| store.entry(mesh));
                 let (surface, kind) = store.surface(mesh, data);
                 let adjacency = MeshAdjacency::Full { mesh, surface, strays: data.strays() };
-                (adjacency, kind == SurfaceKind::Solid)
+                (adjacency, kind, data.declared_kind().is_some())
             }
-            Self::Local(twins) => (MeshAdjacency::Local(twins), false),
+            Self::Local(twins) => (MeshAdjacency::Local(twins), SurfaceKind::Sheet, false),
+        }
+    }
+
+    /// Returns the one-rings around a triangle of `mesh`.
+    #[inline]
+    pub(crate) fn around<'a>(
+        &'a self,
+        mesh: &'a TriMesh,
+        triangle: u32,
+    ) -> OneRing<MeshFacets<'a, 'm>> {
+        let (adjacency, kind, is_declared) = self.adjacency(mesh);
+        let side = match kind {
+            SurfaceKind::Solid if is_declared => Side::Face,
+            SurfaceKind::Sheet => Side::Sheet,
+            _ if is_declared => Side::Sheet,
+            _ => adjacency.side(triangle),
         };
-        OneRing { facets: adjacency.facets(), is_solid }
+        OneRing { facets: adjacency.facets(), side }
+    }
+
+    /// Returns the kind of `mesh`, whose surface this must be.
+    pub(crate) fn kind(&self, mesh: &TriMesh) -> SurfaceKind {
+        self.adjacency(mesh).1
     }
 }
 
@@ -230,7 +252,7 @@ mod tests {
         let view = store.view(mesh).unwrap();
         known.update(&view);
         let (_, surface) = known.acquire(&view, other).unwrap();
-        [matches!(surface, MeshSurface::Full { .. }), surface.around(mesh).is_solid]
+        [matches!(surface, MeshSurface::Full { .. }), surface.kind(mesh) == SurfaceKind::Solid]
     }
 
     #[test]

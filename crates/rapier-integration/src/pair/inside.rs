@@ -148,5 +148,5 @@ fn to_other(
 }
 
 fn is_solid(shapes: &impl TriangleShapes, i: usize) -> bool {
-    shapes.surface(i).is_some_and(|surface| surface.is_solid)
+    shapes.is_solid(i)
 }

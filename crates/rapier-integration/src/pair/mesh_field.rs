@@ -25,7 +25,7 @@ use parry3d::query::details::NormalConstraints;
 use parry3d::shape::{HeightField, Triangle, TrianglePseudoNormals};
 use sbbk_core::contact::Feature;
 use sbbk_core::field::{FieldFrame, FieldLeaves};
-use sbbk_core::surface::{Facets, HalfEdges, OneRing};
+use sbbk_core::surface::{Facets, HalfEdges, OneRing, Side, SurfaceKind};
 use sbbk_core::traverse::{Counters, Placement};
 use sbbk_core::tree::{BATCH, LeafBatch};
 
@@ -223,15 +223,22 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
         then(place.swap(cones).map(|cone| cone.map(|cone| cone as &dyn NormalConstraints)));
     }
 
-    fn surface(&self, i: usize) -> Option<OneRing<MeshOrField<'_, 'q>>> {
+    fn surface(&self, i: usize, triangle: u32) -> Option<OneRing<MeshOrField<'_, 'q>>> {
         let surface = self.surface.as_ref()?;
         if self.is_field(i) {
-            let facets = MeshOrField::Field(self.field);
-            let is_solid = self.pair.has_ground && self.field.points_up();
-            return Some(OneRing { facets, is_solid });
+            let side = if self.is_solid(i) { Side::Face } else { Side::Sheet };
+            return Some(OneRing { facets: MeshOrField::Field(self.field), side });
         }
-        let OneRing { facets, is_solid } = surface.around(self.pair.mesh.mesh);
-        Some(OneRing { facets: MeshOrField::Mesh(facets), is_solid })
+        let OneRing { facets, side } = surface.around(self.pair.mesh.mesh, triangle);
+        Some(OneRing { facets: MeshOrField::Mesh(facets), side })
+    }
+
+    fn is_solid(&self, i: usize) -> bool {
+        if self.is_field(i) {
+            return self.pair.has_ground && self.field.points_up();
+        }
+        let kind = self.surface.as_ref().map(|surface| surface.kind(self.pair.mesh.mesh));
+        kind == Some(SurfaceKind::Solid)
     }
 
     fn filter_distance(&self) -> f64 {

@@ -7,7 +7,7 @@ use parry3d::math::{Real, Vector};
 use parry3d::query::details::NormalConstraints;
 use parry3d::shape::Triangle;
 use sbbk_core::leaf::LeafTest;
-use sbbk_core::surface::OneRing;
+use sbbk_core::surface::{OneRing, SurfaceKind};
 use sbbk_core::traverse::{Counters, PairFrame, descend};
 use sbbk_core::tree::Tree;
 
@@ -160,8 +160,13 @@ impl<'q> TriangleShapes for Meshes<'q> {
     }
 
     #[inline]
-    fn surface(&self, i: usize) -> Option<OneRing<MeshFacets<'_, 'q>>> {
-        Some(self.surfaces[i].as_ref()?.around(self.pair.meshes[i].mesh))
+    fn surface(&self, i: usize, triangle: u32) -> Option<OneRing<MeshFacets<'_, 'q>>> {
+        Some(self.surfaces[i].as_ref()?.around(self.pair.meshes[i].mesh, triangle))
+    }
+
+    fn is_solid(&self, i: usize) -> bool {
+        let kind = self.surfaces[i].as_ref().map(|surface| surface.kind(self.pair.meshes[i].mesh));
+        kind == Some(SurfaceKind::Solid)
     }
 
     fn filter_distance(&self) -> f64 {

@@ -14,7 +14,7 @@ use parry3d::math::Real;
 use sbbk_core::contact::{Feature, ManifoldPoints, TriangleContact, penetration_out_of_solid};
 use sbbk_core::leaf::LateralCulling;
 use sbbk_core::query::TrianglePair;
-use sbbk_core::surface::OneRing;
+use sbbk_core::surface::{OneRing, Side};
 
 use super::islands::{Crossing, OverlapIslands, SheetSide};
 use super::pose::PairPose;
@@ -95,9 +95,12 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         clipped: &mut ManifoldPoints,
     ) -> Verdict {
         let of_triangles = TriangleSurfaceContact { contact, source: ContactSource::Triangles };
-        let surfaces = [self.shapes.surface(0), self.shapes.surface(1)];
+        let surfaces = [0, 1].map(|i| self.shapes.surface(i, self.pair[i]));
         if let [None, None] = surfaces {
             return Verdict::Contact(of_triangles);
+        }
+        if surfaces.iter().flatten().any(|surface| surface.side == Side::Inner) {
+            return Verdict::None;
         }
         let is_solid = solids::<S>(&surfaces);
         let has_solid = is_solid[0] || is_solid[1];
@@ -169,7 +172,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         if !islands.needs_support(self.pair) {
             return None;
         }
-        let surfaces = [self.shapes.surface(0), self.shapes.surface(1)];
+        let surfaces = [0, 1].map(|i| self.shapes.surface(i, self.pair[i]));
         let [t1, t2] = &local.corners;
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(&surfaces, i, feature, axis);
         let contact =
@@ -301,7 +304,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
 }
 
 fn solids<S: TriangleShapes>(surfaces: &Surfaces<'_, S>) -> [bool; 2] {
-    [0, 1].map(|i| surfaces[i].as_ref().is_some_and(|surface| surface.is_solid))
+    [0, 1].map(|i| surfaces[i].as_ref().is_some_and(OneRing::is_solid))
 }
 
 /// Returns true if a unit direction is far from the normals of a triangle.

@@ -60,8 +60,11 @@ pub(crate) trait TriangleShapes {
     /// Calls `then` with the normal cones of two triangles.
     fn with_cones(&self, triangles: [u32; 2], then: impl FnOnce(Cones<'_>));
 
-    /// Returns the surface of shape 1 (0) or 2 (1), for contacts of surfaces.
-    fn surface(&self, i: usize) -> Option<OneRing<Self::Facets<'_>>>;
+    /// Returns the surface around a triangle of shape 1 (0) or 2 (1), for contacts of surfaces.
+    fn surface(&self, i: usize, triangle: u32) -> Option<OneRing<Self::Facets<'_>>>;
+
+    /// Returns true if a shape has an inside.
+    fn is_solid(&self, i: usize) -> bool;
 
     /// Returns the distance up to which contacts must be local minima; infinite for contacts of
     /// each two triangles. Farther contacts, of soft CCD, are all kept: bodies may turn before they
@@ -326,12 +329,11 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         if islands.is_empty() {
             return;
         }
-        let surfaces = [self.shapes.surface(0), self.shapes.surface(1)];
-        if surfaces.iter().flatten().any(|surface| surface.is_solid) {
+        if self.shapes.is_solid(0) || self.shapes.is_solid(1) {
             return;
         }
-        for (i, surface) in surfaces.iter().enumerate() {
-            if let Some(surface) = surface {
+        for i in 0..2 {
+            if let Some(surface) = self.shapes.surface(i, 0) {
                 reject_passed(i, &surface.facets, islands.final_normals(i), contacts);
             }
         }

@@ -7,11 +7,12 @@
 //! ```
 //! use glamx::{DVec3, Vec3};
 //! use sbbk_core::contact::Feature;
-//! use sbbk_core::surface::{Surface, SurfaceKind};
+//! use sbbk_core::surface::{AllTriangles, Surface, SurfaceKind};
 //!
 //! let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
 //! let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-//! let surface = Surface::new(&vertices, &triangles);
+//! let rays = AllTriangles { vertices: &vertices, triangles: &triangles };
+//! let surface = Surface::new(&vertices, &triangles, &rays);
 //! assert_eq!(surface.kind(), SurfaceKind::Solid);
 //!
 //! let ring = surface.one_ring(&vertices, &triangles);
@@ -23,13 +24,13 @@
 //! assert!(ring.points_inside(0, Feature::Vertex(0), DVec3::ONE));
 //! ```
 
-mod kind;
 mod one_ring;
+mod sides;
 pub mod strays;
 mod twins;
 
-pub use kind::SurfaceKind;
 pub use one_ring::{Facets, HalfEdges, IndexedTriangles, OneRing};
+pub use sides::{AllTriangles, RayTriangles, Side, SurfaceKind, side};
 
 use glamx::Vec3;
 
@@ -45,14 +46,15 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Analyses a mesh. Vertices at one place count as one vertex. Takes about 35 ns a triangle.
+    /// Analyses a mesh, whose triangles `rays` finds along rays. Vertices at one place count as one
+    /// vertex. Takes about 35 ns a triangle, and 32 rays; a mesh with unpaired edges takes 512 to
+    /// 4096 rays.
     ///
     /// # Panics
     /// If a triangle has an index beyond the vertices.
-    pub fn new(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Self {
-        let (twins, unpaired) = twins::find(vertices, triangles);
-        let kind = kind::classify(vertices, triangles, &unpaired);
-        Self { twins, kind }
+    pub fn new(vertices: &[Vec3], triangles: &[[u32; 3]], rays: &impl RayTriangles) -> Self {
+        let (twins, is_closed) = twins::find(vertices, triangles);
+        Self { twins, kind: sides::kind(rays, is_closed) }
     }
 
     /// The half-edge that runs back in the neighbour, if there is exactly one.
@@ -73,7 +75,10 @@ impl Surface {
         triangles: &'a [[u32; 3]],
     ) -> OneRing<IndexedTriangles<'a, &'a Self>> {
         let facets = IndexedTriangles { adjacency: self, vertices, triangles };
-        OneRing { facets, is_solid: self.kind == SurfaceKind::Solid }
+        OneRing {
+            facets,
+            side: if self.kind == SurfaceKind::Solid { Side::Face } else { Side::Sheet },
+        }
     }
 
     /// Memory of this value in bytes, without the mesh.

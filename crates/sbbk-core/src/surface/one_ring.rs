@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use glamx::{DVec3, Vec3};
 
 use super::Surface;
+use super::sides::Side;
 use super::strays::{seam, touches};
 use crate::contact::Feature;
 use crate::simd::each;
@@ -82,8 +83,8 @@ impl<A: HalfEdges> Facets for IndexedTriangles<'_, A> {
 pub struct OneRing<F> {
     /// The triangles of the surface.
     pub facets: F,
-    /// True if the surface bounds a solid.
-    pub is_solid: bool,
+    /// What is on either side of the triangle in question.
+    pub side: Side,
 }
 
 /// Sine of the angle by which a neighbour may rise towards a direction and still count as no nearer.
@@ -121,7 +122,7 @@ impl<F: Facets> OneRing<F> {
     ) -> bool {
         if feature == Feature::Face {
             let (height, is_upright) = self.over_face(triangle, direction);
-            let leads_in = self.is_solid && height < 0.0;
+            let leads_in = self.is_solid() && height < 0.0;
             return is_upright && !leads_in;
         }
         let place = contact.map(|(place, _)| place);
@@ -145,7 +146,7 @@ impl<F: Facets> OneRing<F> {
                 if has_risen {
                     return ControlFlow::Break(());
                 }
-                if self.is_solid {
+                if self.is_solid() {
                     height += u.cross(v).dot(direction);
                 }
                 ControlFlow::Continue(())
@@ -155,7 +156,7 @@ impl<F: Facets> OneRing<F> {
         }
         if !self.facets.is_whole(triangle, feature) {
             let mut heights = Heights::default();
-            let is_open = self.is_solid && !is_closed;
+            let is_open = self.is_solid() && !is_closed;
             self.visit_at(triangle, feature, place, |corners, seam| {
                 let is_far = |corner: &&DVec3| corner.length_squared() > seam * seam;
                 let is_higher = corners.iter().filter(is_far).any(|&corner| rises(corner));
@@ -168,6 +169,11 @@ impl<F: Facets> OneRing<F> {
         }
         let leads_in = height < 0.0;
         !has_risen && !leads_in
+    }
+
+    /// True if the body is behind the triangle, and nothing in front.
+    pub fn is_solid(&self) -> bool {
+        self.side == Side::Face
     }
 
     /// True if the triangles at a point of an edge lie in one plane.
@@ -195,7 +201,7 @@ impl<F: Facets> OneRing<F> {
 
     /// True if a unit direction from a feature leads into the solid; false for sheets.
     pub fn points_inside(&self, triangle: u32, feature: Feature, direction: DVec3) -> bool {
-        if !self.is_solid {
+        if !self.is_solid() {
             return false;
         }
         if feature == Feature::Face {
@@ -389,7 +395,7 @@ impl Heights {
 }
 
 /// Normal of a triangle, as long as twice its area.
-fn area_vector([a, b, c]: &[DVec3; 3]) -> DVec3 {
+pub(super) fn area_vector([a, b, c]: &[DVec3; 3]) -> DVec3 {
     (*b - *a).cross(*c - *a)
 }
 

@@ -7,24 +7,20 @@ use crate::collections::CompactIndices;
 
 const NONE: u32 = u32::MAX;
 
-/// The twin of each half-edge, if there is exactly one, and the unpaired half-edges by their welded
-/// ends: borders, and edges along which triangles disagree about the outside.
-pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (CompactIndices, Vec<[u32; 2]>) {
+/// The twin of each half-edge, if there is exactly one, and true if each has one.
+pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (CompactIndices, bool) {
     let (edges, _) = edges(&weld(vertices), triangles);
-    let (mut twins, mut unpaired) = (vec![None; 3 * triangles.len()], Vec::new());
-    for Edge { ends: [low, high], last: [up, down], counts, .. } in edges {
-        match counts {
-            [1, 1] => {
-                twins[up as usize] = Some(down);
-                twins[down as usize] = Some(up);
-            }
-            [ups, downs] => {
-                let ends = if ups > downs { [low, high] } else { [high, low] };
-                unpaired.extend(std::iter::repeat_n(ends, ups.abs_diff(downs) as usize));
-            }
+    let mut twins = vec![None; 3 * triangles.len()];
+    let mut is_closed = true;
+    for Edge { last: [up, down], counts, .. } in edges {
+        if counts == [1, 1] {
+            twins[up as usize] = Some(down);
+            twins[down as usize] = Some(up);
+        } else {
+            is_closed &= counts[0] == counts[1];
         }
     }
-    (CompactIndices::new(twins.into_iter()), unpaired)
+    (CompactIndices::new(twins.into_iter()), is_closed)
 }
 
 /// All half-edges between two vertices.

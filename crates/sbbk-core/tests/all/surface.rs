@@ -6,7 +6,9 @@ use std::f32::consts::{FRAC_PI_2, PI, TAU};
 use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
 use glamx::{DVec3, Quat, Vec3};
 use sbbk_core::contact::Feature;
-use sbbk_core::surface::{Facets, HalfEdges, IndexedTriangles, OneRing, Surface, SurfaceKind};
+use sbbk_core::surface::{
+    AllTriangles, Facets, HalfEdges, IndexedTriangles, OneRing, Side, Surface, SurfaceKind,
+};
 
 use SurfaceKind::{InsideOut, Sheet, Solid};
 
@@ -41,7 +43,7 @@ fn brute_twins(mesh: &Soup) -> Vec<Option<u32>> {
 
 /// Panics unless all twins are right; how many half-edges have one.
 fn check_twins(mesh: &Soup) -> usize {
-    let surface = Surface::new(&mesh.vertices, &mesh.triangles);
+    let surface = analysed(&mesh);
     let expected = brute_twins(mesh);
     let found: Vec<Option<u32>> =
         (0..expected.len()).map(|half_edge| surface.twin(half_edge as u32)).collect();
@@ -120,19 +122,24 @@ fn triangles_around(
 
 /// The side of a feature to which a direction leads.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Side {
+enum Seen {
     Front,
     Behind,
     Beside,
 }
 
-fn side(around: &OneRing<impl Facets>, triangle: u32, feature: Feature, direction: DVec3) -> Side {
+/// The surface of a mesh, whose rays test all triangles.
+fn analysed(Soup { vertices, triangles }: &Soup) -> Surface {
+    Surface::new(vertices, triangles, &AllTriangles { vertices, triangles })
+}
+
+fn side(around: &OneRing<impl Facets>, triangle: u32, feature: Feature, direction: DVec3) -> Seen {
     let is_behind = around.points_inside(triangle, feature, direction);
     match around.is_local_minimum(triangle, feature, direction, None) {
         true if is_behind => panic!("in front and behind"),
-        true => Side::Front,
-        false if is_behind => Side::Behind,
-        false => Side::Beside,
+        true => Seen::Front,
+        false if is_behind => Seen::Behind,
+        false => Seen::Beside,
     }
 }
 
@@ -143,7 +150,7 @@ fn brute_side(
     around: &[usize],
     feature: Feature,
     direction: DVec3,
-) -> Option<Side> {
+) -> Option<Seen> {
     let at = |half_edge: usize| corners(mesh, half_edge).map(|corner| corner.as_dvec3());
     let normal: DVec3 = around.iter().map(|&h| at(h)).map(|[a, b, c]| (b - a).cross(c - a)).sum();
     let cosine = normal.normalize_or_zero().dot(direction);
@@ -154,23 +161,23 @@ fn brute_side(
     }
     if feature == Feature::Face {
         return match cosine.abs() {
-            x if x < 1.0 - RISES[1] => Some(Side::Beside),
+            x if x < 1.0 - RISES[1] => Some(Seen::Beside),
             x if x < 1.0 - RISES[0] => None,
-            _ if is_solid && cosine < 0.0 => Some(Side::Behind),
-            _ => Some(Side::Front),
+            _ if is_solid && cosine < 0.0 => Some(Seen::Behind),
+            _ => Some(Seen::Front),
         };
     }
     if is_solid && cosine < 0.0 {
-        return Some(Side::Behind);
+        return Some(Seen::Behind);
     }
     let rises = around.iter().flat_map(|&half_edge| {
         let [a, b, c] = at(half_edge);
         [b - a, c - a].map(|edge| edge.normalize_or_zero().dot(direction))
     });
     match rises.fold(0.0, f64::max) {
-        x if x < RISES[0] => Some(Side::Front),
+        x if x < RISES[0] => Some(Seen::Front),
         x if x < RISES[1] => None,
-        _ => Some(Side::Beside),
+        _ => Some(Seen::Beside),
     }
 }
 
@@ -192,11 +199,14 @@ fn directions_agree_with_all_triangles_of_the_one_ring() {
             // Fans with borders.
             mesh.triangles.retain(|_| !random.bits().is_multiple_of(6));
         }
-        let surface = Surface::new(&mesh.vertices, &mesh.triangles);
+        let surface = analysed(&mesh);
         let twins = brute_twins(&mesh);
         for case in 0..800 {
             let is_solid = case % 2 == 0;
-            let around = OneRing { is_solid, ..surface.one_ring(&mesh.vertices, &mesh.triangles) };
+            let around = OneRing {
+                side: if is_solid { Side::Face } else { Side::Sheet },
+                ..surface.one_ring(&mesh.vertices, &mesh.triangles)
+            };
             let triangle = (random.bits() % mesh.triangles.len() as u64) as u32;
             for feature in features() {
                 let own = triangles_around(&mesh, &twins, triangle, feature);
@@ -222,7 +232,7 @@ fn directions_agree_with_all_triangles_of_the_one_ring() {
 #[test]
 fn a_leaning_corner_is_a_minimum_for_faces_first() {
     let cube = cube();
-    let surface = Surface::new(&cube.vertices, &cube.triangles);
+    let surface = analysed(&cube);
     let around = surface.one_ring(&cube.vertices, &cube.triangles);
     let half_edges = 0..3 * cube.triangles.len();
     let corner = half_edges.into_iter().find(|&half_edge| {
@@ -484,10 +494,10 @@ fn kinds_are_independent_of_size_place_and_order() {
             for triangle in &mut moved.triangles {
                 triangle.rotate_left((random.bits() % 3) as usize);
             }
-            let found = Surface::new(&moved.vertices, &moved.triangles).kind();
+            let found = analysed(&moved).kind();
             assert_eq!(found, kind, "{name}, {size} times as large");
             let mirrored = mapped(moved, |v| v * Vec3::new(-1.0, 1.0, 1.0));
-            let found = Surface::new(&mirrored.vertices, &mirrored.triangles).kind();
+            let found = analysed(&mirrored).kind();
             let mirror = match kind {
                 Solid => InsideOut,
                 InsideOut => Solid,
@@ -508,7 +518,7 @@ fn a_solid_with_a_hole_is_solid_far_from_the_origin() {
     };
     for away in Vec3::AXES.into_iter().flat_map(|axis| [100.0 * axis, -100.0 * axis]) {
         let moved = mapped(open.clone(), |v| v + away);
-        assert_eq!(Surface::new(&moved.vertices, &moved.triangles).kind(), Solid, "at {away}");
+        assert_eq!(analysed(&moved).kind(), Solid, "at {away}");
     }
 }
 
@@ -525,9 +535,9 @@ fn flat_sides_continue_to_their_end() {
         let [a, b] = [i, i + 1].map(|row| row * (CELLS + 1) + j);
         mesh.triangles.extend([[a, a + 1, b + 1], [a, b + 1, b]]);
     }
-    let surface = Surface::new(&mesh.vertices, &mesh.triangles);
+    let surface = analysed(&mesh);
     let around = surface.one_ring(&mesh.vertices, &mesh.triangles);
-    let around = OneRing { is_solid: false, ..around };
+    let around = OneRing { side: Side::Sheet, ..around };
     for triangle in 0..2 * CELLS * (CELLS - 1) {
         let top = 1 + triangle / (2 * CELLS);
         let beyond = |direction, most| around.side_beyond(triangle, direction, most);
@@ -573,9 +583,9 @@ fn work_at_the_tip_of_a_cone_grows_with_its_triangles() {
         };
         let vertices: Vec<_> = [Vec3::ZERO].into_iter().chain((0..count).map(rim)).collect();
         let triangles: Vec<_> = (0..count).map(|i| [0, 1 + i, 1 + (i + 1) % count]).collect();
-        let surface = Surface::new(&vertices, &triangles);
+        let surface = analysed(&Soup { vertices: vertices.clone(), triangles: triangles.clone() });
         let facets = surface.one_ring(&vertices, &triangles).facets;
-        let ring = OneRing { facets: Counted { facets, visits: Cell::new(0) }, is_solid: true };
+        let ring = OneRing { facets: Counted { facets, visits: Cell::new(0) }, side: Side::Face };
         for triangle in 0..count {
             assert!(ring.is_local_minimum(triangle, Feature::Vertex(0), DVec3::Z, None));
             assert!(ring.points_inside(triangle, Feature::Vertex(0), -DVec3::Z));

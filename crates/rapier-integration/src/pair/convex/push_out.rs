@@ -40,7 +40,8 @@ impl ConvexQuery<'_> {
                 return None;
             }
             let (triangle, _, behind) = nearest(mesh, from)?;
-            if behind.abs() < BEHIND || !surface.around(mesh).is_solid {
+            if behind.abs() < BEHIND || surface.kind(mesh) != sbbk_core::surface::SurfaceKind::Solid
+            {
                 return None;
             }
             let [a, b, c] = placed.in_part(self.pair.mesh.corners(triangle));

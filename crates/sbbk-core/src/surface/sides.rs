@@ -1,0 +1,210 @@
+//! What is in front of a triangle and behind it: by the winding number, counted along rays.
+//!
+//! A ray from a point inside a closed surface leaves the surface once more than it enters. This holds
+//! for triangle soups, T-junctions, doubled triangles and parts that overlap, and needs no adjacency.
+//! Rays of one point disagree only as far as the surface is open.
+//!
+//! Source: Jacobson, Kavan, Sorkine-Hornung, *Robust Inside-Outside Segmentation using Generalized
+//! Winding Numbers*, 2013. Their number is the mean over all rays.
+
+use glamx::{DVec3, Vec3};
+
+use super::one_ring::area_vector;
+
+/// Triangles that rays can meet.
+pub trait RayTriangles {
+    /// Number of triangles.
+    fn count(&self) -> u32;
+
+    /// The corners of a triangle.
+    fn corners(&self, triangle: u32) -> [DVec3; 3];
+
+    /// Calls `visit` with all triangles that the ray from `start` may meet.
+    fn along(&self, start: DVec3, direction: DVec3, visit: &mut dyn FnMut(u32));
+}
+
+/// The triangles of an indexed mesh. Each ray tests all of them.
+#[derive(Clone, Copy, Debug)]
+pub struct AllTriangles<'a> {
+    /// Vertices of the mesh.
+    pub vertices: &'a [Vec3],
+    /// Triangles of the mesh.
+    pub triangles: &'a [[u32; 3]],
+}
+
+impl RayTriangles for AllTriangles<'_> {
+    fn count(&self) -> u32 {
+        self.triangles.len() as u32
+    }
+
+    fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        let corners = self.triangles[triangle as usize];
+        corners.map(|corner| self.vertices[corner as usize].as_dvec3())
+    }
+
+    fn along(&self, _: DVec3, _: DVec3, visit: &mut dyn FnMut(u32)) {
+        (0..self.count()).for_each(visit);
+    }
+}
+
+/// The kind of surface that a mesh forms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SurfaceKind {
+    /// A body with outward normals, closed or nearly so. It may consist of several components, with
+    /// hollows.
+    Solid,
+    /// A body with inward normals.
+    InsideOut,
+    /// An open surface, a triangle soup, or triangles that disagree about the outside. It collides on
+    /// both sides.
+    Sheet,
+}
+
+/// What is on either side of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// Nothing in front, the body behind.
+    Face,
+    /// The body in front, nothing behind.
+    Turned,
+    /// The body on both sides: a wall within, or a part of another component.
+    Inner,
+    /// Nothing on either side.
+    Sheet,
+}
+
+/// Distance from a triangle at which rays start, as a share of its longest side. Higher: thin plates
+/// are sheets. Lower: rounding decides about walls that touch.
+const OFFSET: f64 = 1.0e-4;
+
+/// Greatest share of rays that leave a solid through holes. Higher: bodies in a vase are pushed out
+/// of it. Lower: a head with a hole is a sheet.
+const HOLES: f64 = 0.06;
+
+/// Numbers of triangles that are tested for [`HOLES`]: the second one if the first leaves doubt.
+/// Higher: slower. Lower: chance decides about more meshes.
+const SAMPLES: [u32; 2] = [256, 2048];
+
+/// Standard deviations from [`HOLES`] that leave no doubt.
+const SURE: f64 = 3.0;
+
+/// Number of triangles that decide which way the normals of a closed surface point.
+const VOTES: u32 = 16;
+
+/// Share of a length below which two places of a ray are one.
+const TIE: f64 = 1.0e-9;
+
+/// Finds what is on either side of a triangle of a closed surface. Takes two rays if these agree with
+/// each other, else six.
+pub fn side(triangles: &impl RayTriangles, triangle: u32) -> Side {
+    let first = sample(triangles, triangle, 0, 0.5);
+    if first == Side::Face {
+        return first;
+    }
+    let others = [1, 2].map(|i| sample(triangles, triangle, i, 0.5));
+    if others[0] == others[1] { others[0] } else { first }
+}
+
+/// Classifies a mesh. `is_closed`: each edge has one twin, so there are no holes.
+pub(super) fn kind(triangles: &impl RayTriangles, is_closed: bool) -> SurfaceKind {
+    let areas = (0..triangles.count()).scan(0.0, |sum, triangle| {
+        let area = area_vector(&triangles.corners(triangle)).length();
+        *sum += if area.is_finite() { area } else { 0.0 };
+        Some(*sum)
+    });
+    let areas: Vec<f64> = areas.collect();
+    let whole = areas.last().copied().unwrap_or_default();
+    if whole <= 0.0 {
+        return SurfaceKind::Sheet;
+    }
+    let mut counts = [0; 4];
+    let mut tested = 0;
+    for samples in if is_closed { [VOTES; 2] } else { SAMPLES } {
+        for i in tested..samples {
+            let place = whole * sequence(f64::from(i), 0);
+            let triangle = areas.partition_point(|&sum| sum < place);
+            counts[sample(triangles, triangle as u32, i, 0.02) as usize] += 1;
+        }
+        tested = samples;
+        let open = f64::from(counts[Side::Sheet as usize]) / f64::from(samples);
+        let doubt = SURE * (HOLES * (1.0 - HOLES) / f64::from(samples)).sqrt();
+        if is_closed || (open - HOLES).abs() > doubt {
+            break;
+        }
+    }
+    let [faces, turned, _, open] = counts;
+    if !is_closed && f64::from(open) > HOLES * f64::from(tested) || faces.max(turned) == 0 {
+        SurfaceKind::Sheet
+    } else if faces >= turned {
+        SurfaceKind::Solid
+    } else {
+        SurfaceKind::InsideOut
+    }
+}
+
+/// Number `i` of a sequence of low discrepancy in one of three dimensions.
+fn sequence(i: f64, dimension: usize) -> f64 {
+    // Powers of the root of x⁴ = x + 1.
+    const STEPS: [f64; 3] =
+        [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_9];
+    (0.5 + i * STEPS[dimension]).fract()
+}
+
+/// What one ray to the front and one to the back find at a triangle. `steep` is the least sine of
+/// their angles to the triangle.
+fn sample(triangles: &impl RayTriangles, triangle: u32, i: u32, steep: f64) -> Side {
+    let corners = triangles.corners(triangle);
+    let [a, b, c] = corners;
+    let Some(up) = area_vector(&corners).try_normalize() else { return Side::Sheet };
+    let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    let key = f64::from(i) + 17.0 * f64::from(triangle % 1009);
+    let [u, v] = [1, 2].map(|dimension| sequence(key, dimension));
+    let height = steep + (1.0 - steep) * v;
+    let (across, along) = up.any_orthonormal_pair();
+    let (sin, cos) = (std::f64::consts::TAU * u).sin_cos();
+    let flat = (1.0 - height * height).max(0.0).sqrt();
+    let direction = height * up + flat * (cos * across + sin * along);
+    let middle = (a + b + c) / 3.0;
+    let skipped = OFFSET * size / height;
+    let [front, back] = [direction, -direction].map(|way| winding(triangles, middle, way, skipped));
+    match (front >= 1, back >= 1) {
+        (false, true) => Side::Face,
+        (true, true) => Side::Inner,
+        (true, false) => Side::Inner,
+        (false, false) if front < 0 => Side::Turned,
+        (false, false) => Side::Sheet,
+    }
+}
+
+/// Times that a ray leaves the surface less times that it enters, beyond `skipped`. Triangles at one
+/// place count once: doubles, and the two at an edge.
+fn winding(triangles: &impl RayTriangles, start: DVec3, direction: DVec3, skipped: f64) -> i32 {
+    let mut hits: Vec<(f64, i32)> = Vec::new();
+    triangles.along(start, direction, &mut |triangle| {
+        let corners = triangles.corners(triangle).map(|corner| corner - start);
+        hits.extend(hit(&corners, direction).filter(|(length, _)| *length > skipped));
+    });
+    hits.sort_unstable_by(|(a, _), (b, _)| a.total_cmp(b));
+    let mut sum = 0;
+    let mut last = [f64::NEG_INFINITY; 2];
+    for (length, sign) in hits {
+        let last = &mut last[usize::from(sign > 0)];
+        if length - *last > TIE * length {
+            sum += sign;
+        }
+        *last = length;
+    }
+    sum
+}
+
+/// Length at which a ray from the origin meets a triangle, and 1 if it leaves through the front.
+fn hit([a, b, c]: &[DVec3; 3], direction: DVec3) -> Option<(f64, i32)> {
+    let normal = (*b - *a).cross(*c - *a);
+    let along = normal.dot(direction);
+    let length = normal.dot(*a) / along;
+    // Six times the volumes between the ray and the sides.
+    let volumes =
+        [(a, b), (b, c), (c, a)].map(|(p, q)| p.cross(*q).dot(direction) * along.signum());
+    let is_met = volumes.iter().all(|&volume| volume >= -TIE * along.abs());
+    (along != 0.0 && length > 0.0 && is_met).then_some((length, along.signum() as i32))
+}
