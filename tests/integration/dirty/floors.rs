@@ -61,8 +61,8 @@ fn bodies_ride_on_dirty_floors_as_on_a_cuboid() {
 const KNOWN: &[(&str, &str)] = &[
     ("T-junctions", "mesh ball"),
     ("T-junctions, turned", "mesh ball"),
-    ("box tiles", "cuboid, mesh ball, mesh cube"),
-    ("box tiles, welded", "cuboid, mesh ball, mesh cube"),
+    ("box tiles", "cuboid, mesh ball"),
+    ("box tiles, welded", "cuboid, mesh ball"),
     ("box with a wall", "cuboid, mesh ball"),
     ("each third twice", "mesh ball"),
     ("plain", "mesh ball"),

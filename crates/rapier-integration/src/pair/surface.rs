@@ -9,7 +9,7 @@
 //! Crossing surfaces never stay without a contact: an island without one gets the best there is
 //! ([`OverlapIslands`]).
 
-use glamx::DVec3;
+use glamx::{DVec3, Vec3};
 use parry3d::math::Real;
 use sbbk_core::contact::{Feature, ManifoldPoints, TriangleContact, penetration_out_of_solid};
 use sbbk_core::leaf::LateralCulling;
@@ -268,7 +268,13 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             [true, false] => 0,
             [false, true] => 1,
             // Of two sheets of one size, either order would give another side.
-            [false, false] if sizes[0] == sizes[1] => return None,
+            [false, false] if sizes[0] == sizes[1] => {
+                let [middle1, middle2] = [0, 1].map(|i| self.shapes.bounds(i).center());
+                let middle2 = self.pose.placement12.to_frame1(middle2, Vec3::ZERO);
+                let between = middle2 - middle1.as_dvec3();
+                let height = between.length();
+                return Some(SheetSide { away: between.try_normalize()?, height });
+            }
             [false, false] => usize::from(sizes[1] < sizes[0]),
         };
         if sizes[solid] > sizes[1 - solid] {

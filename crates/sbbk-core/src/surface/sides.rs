@@ -7,6 +7,8 @@
 //! Source: Jacobson, Kavan, Sorkine-Hornung, *Robust Inside-Outside Segmentation using Generalized
 //! Winding Numbers*, 2013. Their number is the mean over all rays.
 
+use std::f64::consts::TAU;
+
 use glamx::{DVec3, Vec3};
 
 use super::one_ring::area_vector;
@@ -153,48 +155,80 @@ fn sequence(i: f64, dimension: usize) -> f64 {
 /// What one ray to the front and one to the back find at a triangle. `steep` is the least sine of
 /// their angles to the triangle.
 fn sample(triangles: &impl RayTriangles, triangle: u32, i: u32, steep: f64) -> Side {
-    let corners = triangles.corners(triangle);
-    let [a, b, c] = corners;
-    let Some(up) = area_vector(&corners).try_normalize() else { return Side::Sheet };
-    let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
-    let key = f64::from(i) + 17.0 * f64::from(triangle % 1009);
-    let [u, v] = [1, 2].map(|dimension| sequence(key, dimension));
-    let height = steep + (1.0 - steep) * v;
-    let (across, along) = up.any_orthonormal_pair();
-    let (sin, cos) = (std::f64::consts::TAU * u).sin_cos();
-    let flat = (1.0 - height * height).max(0.0).sqrt();
-    let direction = height * up + flat * (cos * across + sin * along);
-    let middle = (a + b + c) / 3.0;
-    let skipped = OFFSET * size / height;
-    let [front, back] = [direction, -direction].map(|way| winding(triangles, middle, way, skipped));
-    match (front >= 1, back >= 1) {
-        (false, true) => Side::Face,
-        (true, true) => Side::Inner,
-        (true, false) => Side::Inner,
-        (false, false) if front < 0 => Side::Turned,
-        (false, false) => Side::Sheet,
+    let Some(rays) = Rays::new(triangles, triangle, i, steep) else { return Side::Sheet };
+    let found = rays.side(triangles, |_| true);
+    if found == Side::Face {
+        return found;
     }
+    // Walls within the body count as nothing.
+    rays.side(triangles, |other| {
+        Rays::new(triangles, other, i, 0.5)
+            .is_none_or(|rays| rays.side(triangles, |_| true) != Side::Inner)
+    })
 }
 
-/// Times that a ray leaves the surface less times that it enters, beyond `skipped`. Triangles at one
-/// place count once: doubles, and the two at an edge.
-fn winding(triangles: &impl RayTriangles, start: DVec3, direction: DVec3, skipped: f64) -> i32 {
-    let mut hits: Vec<(f64, i32)> = Vec::new();
-    triangles.along(start, direction, &mut |triangle| {
-        let corners = triangles.corners(triangle).map(|corner| corner - start);
-        hits.extend(hit(&corners, direction).filter(|(length, _)| *length > skipped));
-    });
-    hits.sort_unstable_by(|(a, _), (b, _)| a.total_cmp(b));
-    let mut sum = 0;
-    let mut last = [f64::NEG_INFINITY; 2];
-    for (length, sign) in hits {
-        let last = &mut last[usize::from(sign > 0)];
-        if length - *last > TIE * length {
-            sum += sign;
-        }
-        *last = length;
+/// A ray to the front of a triangle and one to the back.
+struct Rays {
+    start: DVec3,
+    to_front: DVec3,
+    /// Length at which they begin.
+    skipped: f64,
+}
+
+impl Rays {
+    /// Rays number `i` of a triangle; `None` for one without an area.
+    fn new(triangles: &impl RayTriangles, triangle: u32, i: u32, steep: f64) -> Option<Self> {
+        let corners @ [a, b, c] = triangles.corners(triangle);
+        let up = area_vector(&corners).try_normalize()?;
+        let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        let key = f64::from(i) + 17.0 * f64::from(triangle % 1009);
+        let [u, v] = [1, 2].map(|dimension| sequence(key, dimension));
+        let height = steep + (1.0 - steep) * v;
+        let (across, along) = up.any_orthonormal_pair();
+        let (sin, cos) = (TAU * u).sin_cos();
+        let flat = (1.0 - height * height).max(0.0).sqrt();
+        let to_front = height * up + flat * (cos * across + sin * along);
+        Some(Self { start: (a + b + c) / 3.0, to_front, skipped: OFFSET * size / height })
     }
-    sum
+
+    /// What the rays find if only triangles count for which `counts` is true.
+    fn side(&self, triangles: &impl RayTriangles, counts: impl Fn(u32) -> bool) -> Side {
+        let ways = [self.to_front, -self.to_front];
+        let [front, back] = ways.map(|way| self.winding(triangles, way, &counts));
+        match (front >= 1, back >= 1) {
+            (true, _) => Side::Inner,
+            (false, true) => Side::Face,
+            (false, false) if front < 0 => Side::Turned,
+            (false, false) => Side::Sheet,
+        }
+    }
+
+    /// Times that a ray leaves the surface less times that it enters. Triangles at one place count
+    /// once: doubles, and the two at an edge.
+    fn winding(
+        &self,
+        triangles: &impl RayTriangles,
+        direction: DVec3,
+        counts: impl Fn(u32) -> bool,
+    ) -> i32 {
+        let mut hits: Vec<(f64, i32)> = Vec::new();
+        triangles.along(self.start, direction, &mut |triangle| {
+            let corners = triangles.corners(triangle).map(|corner| corner - self.start);
+            let hit = hit(&corners, direction).filter(|(length, _)| *length > self.skipped);
+            hits.extend(hit.filter(|_| counts(triangle)));
+        });
+        hits.sort_unstable_by(|(a, _), (b, _)| a.total_cmp(b));
+        let mut sum = 0;
+        let mut last = [f64::NEG_INFINITY; 2];
+        for (length, sign) in hits {
+            let last = &mut last[usize::from(sign > 0)];
+            if length - *last > TIE * length {
+                sum += sign;
+            }
+            *last = length;
+        }
+        sum
+    }
 }
 
 /// Length at which a ray from the origin meets a triangle, and 1 if it leaves through the front.
