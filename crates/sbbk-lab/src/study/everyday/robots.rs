@@ -4,12 +4,12 @@ use crate::prelude::*;
 use std::f32::consts::{FRAC_PI_2, TAU};
 use std::fmt::Display;
 
+use rapier_integration::{SbbkDispatcher, SurfaceKind};
 use rapier3d::dynamics::{ImpulseJointHandle, JointAxis, RigidBodyType};
 use rapier3d::geometry::TriMesh;
 use rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::parry::query::Ray;
 use rapier3d_urdf::{UrdfLoaderOptions, UrdfRobot};
-use sbbk_core::surface::{Surface, SurfaceKind};
 
 use super::DEFORMABLE;
 use super::measure::{Driven, Everyday};
@@ -199,7 +199,10 @@ impl Subject {
 
     /// Surface kind; of several meshes inside-out, sheet, solid, in this order.
     pub fn kind(&self) -> SurfaceKind {
-        let kinds = self.meshes().map(|mesh| Surface::new(mesh.vertices(), mesh.indices()).kind());
+        let dispatcher = SbbkDispatcher::default();
+        let kind =
+            |mesh| dispatcher.prepare(mesh).map_or(SurfaceKind::Sheet, |it| it.surface_kind());
+        let kinds = self.meshes().map(kind);
         let kinds: Vec<SurfaceKind> = kinds.collect();
         let found = [SurfaceKind::InsideOut, SurfaceKind::Sheet];
         found.into_iter().find(|kind| kinds.contains(kind)).unwrap_or(SurfaceKind::Solid)
