@@ -1,11 +1,12 @@
-//! Bodies wholly inside a solid, where no triangles are near each other.
+//! Bodies wholly inside a solid, where no triangles are near each other. They stay, unless a user
+//! declares the solid.
 
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
-use rapier_integration::{ContactDetail, SbbkConfig, SbbkDispatcher};
+use rapier_integration::{ContactDetail, PreparedTree, SbbkConfig, SbbkDispatcher, SurfaceKind};
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::PointQuery;
-use rapier3d::parry::shape::{SharedShape, TriMeshFlags};
+use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshFlags};
 use rapier3d::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder};
 use sbbk_testkit::mesh::{self, Mesh};
 
@@ -18,6 +19,13 @@ const HALF: Vec3 = Vec3::new(2.0, 1.0, 2.0);
 
 fn slab(cells: u32) -> Mesh {
     mesh::cuboid(HALF, cells)
+}
+
+/// Declares that a mesh is a solid, as long as the result lives.
+fn declare_solid(dispatcher: &SbbkDispatcher, mesh: &TriMesh) -> PreparedTree {
+    let prepared = dispatcher.prepare(mesh).unwrap();
+    prepared.set_surface_kind(SurfaceKind::Solid);
+    prepared
 }
 
 fn ask(query: &Question) -> Vec<Manifold> {
@@ -37,6 +45,7 @@ fn a_body_in_a_solid_leaves_by_the_nearer_side() {
             let mut config = SbbkConfig::default();
             config.detail = detail;
             let dispatcher = SbbkDispatcher::new(config);
+            let _solid = declare_solid(&dispatcher, &slab);
             for (place, out, depth) in [
                 ([0.2, 0.3, 0.1], Vector::Y, 0.7),
                 ([0.2, -0.3, 0.1], -Vector::Y, 0.7),
@@ -88,13 +97,14 @@ fn bodies_in_no_solid_are_not_pushed_out() {
     }
     // In its wall it is pushed out.
     let small = shape(&mesh::cuboid(Vec3::splat(0.1), 1));
-    let in_wall = ask(&Question::new(&hollow, &small, Pose::translation(1.85, 0.0, 0.0)));
+    let in_wall = Question::new(&hollow, &small, Pose::translation(1.85, 0.0, 0.0));
+    assert!(ask(&in_wall).is_empty(), "a room as far as is known");
+    let dispatcher = every();
+    let _solid = declare_solid(&dispatcher, &hollow);
+    let in_wall = in_wall.fresh(&dispatcher);
     assert!(in_wall.len() == 1 && in_wall[0].local_n1 == Vector::X);
-    // A large one is known once it is registered.
-    let (registered, dispatcher) = (SharedShape::new(unknown), every());
-    let _tree = dispatcher.prepare_shape(&registered).unwrap().unwrap();
-    let query =
-        Question::new(registered.as_trimesh().unwrap(), &body, Pose::translation(0.3, 0.5, 0.0));
+    let _solid = declare_solid(&dispatcher, &unknown);
+    let query = Question::new(&unknown, &body, Pose::translation(0.3, 0.5, 0.0));
     assert_eq!(query.fresh(&dispatcher).len(), 1);
 }
 
@@ -105,6 +115,7 @@ fn push_out_does_not_depend_on_earlier_poses() {
     let slab = shape(&slab(4));
     let kept = counting();
     let unaware = every();
+    let _solids = [&kept, &unaware].map(|dispatcher| declare_solid(dispatcher, &slab));
     let [mut inside, mut none] = [0; 2];
     for size in [0.005, 0.05, 0.5] {
         let body = shape(&mesh::ball(size, 2));
@@ -136,7 +147,9 @@ fn push_out_does_not_depend_on_earlier_poses() {
 fn a_body_that_starts_in_a_solid_comes_out_slowly() {
     for cells in [1, 6] {
         let mut world = PhysicsWorld::new();
-        world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
+        let dispatcher = SbbkDispatcher::default();
+        let _solid = declare_solid(&dispatcher, &shape(&slab(cells)));
+        world.narrow_phase.set_query_dispatcher(dispatcher);
         let collider = |mesh: &Mesh| ColliderBuilder::new(SharedShape::new(shape(mesh)));
         world.insert(RigidBodyBuilder::fixed(), collider(&slab(cells)));
         let at = RigidBodyBuilder::dynamic().translation(Vec3::new(0.2, 0.3, 0.1));

@@ -1,6 +1,7 @@
 use std::collections::BTreeMap;
 
 use glamx::{Quat, Vec3};
+use rapier_integration::SurfaceKind;
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::TrackedContact;
 use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
@@ -82,6 +83,8 @@ fn the_push_out_keeps_its_data_where_a_host_changes_the_list() {
     let inner = shape(&mesh::cuboid(Vec3::splat(0.1), 1));
     for axis in [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y, Vec3::Z, -Vec3::Z] {
         let dispatcher = every();
+        let declared = dispatcher.prepare(&outer).unwrap();
+        declared.set_surface_kind(SurfaceKind::Solid);
         let mut pair = Pair::<u32, ()>::default();
         let question = |depth: Real| {
             let pose = Pose::from_translation((0.4 - depth) * axis);

@@ -173,8 +173,9 @@ impl PreparedTree {
         self.0.data.kind().expect("prepared")
     }
 
-    /// Overrides the detected kind: [`Sheet`](SurfaceKind::Sheet) for a room that SBBK takes for a
-    /// solid, [`Solid`](SurfaceKind::Solid) for a mask that it takes for a sheet.
+    /// Overrides the detected kind. A mesh that is declared [`Solid`](SurfaceKind::Solid) is no room: it
+    /// also pushes out mesh bodies that are wholly inside. A declared [`Sheet`](SurfaceKind::Sheet)
+    /// has no inside.
     ///
     /// Holds for all meshes with this content while one of them is in use. One of more than 8192
     /// triangles must be registered.

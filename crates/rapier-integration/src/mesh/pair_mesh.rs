@@ -204,6 +204,12 @@ impl<'m> MeshSurface<'m> {
         OneRing { facets: adjacency.facets(), side }
     }
 
+    /// Returns true if a user declared that the mesh is a solid.
+    pub(crate) fn is_declared_solid(&self, mesh: &TriMesh) -> bool {
+        let (_, kind, is_declared) = self.adjacency(mesh);
+        is_declared && kind == SurfaceKind::Solid
+    }
+
     /// Returns the kind of `mesh`, whose surface this must be.
     pub(crate) fn kind(&self, mesh: &TriMesh) -> SurfaceKind {
         self.adjacency(mesh).1

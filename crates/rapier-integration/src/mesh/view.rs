@@ -158,6 +158,25 @@ impl<'a> MeshView<'a> {
         if is_finite { self.root.transform_by(pose).loosened(grown) } else { Aabb::new_invalid() }
     }
 
+    /// Half the sides of the box around the mesh, the least first.
+    pub(crate) fn sorted_extents(&self) -> Vec3 {
+        let mut sides = self.root.half_extents().to_array();
+        sides.sort_unstable_by(f32::total_cmp);
+        sides.into()
+    }
+
+    /// Height of the mesh over the middle of its box along a unit direction, or of the box if that is
+    /// less than `enough`.
+    pub(crate) fn height(&self, direction: Vec3, enough: Real) -> Real {
+        let of_box = direction.abs().dot(self.root.half_extents());
+        if of_box <= enough {
+            return of_box;
+        }
+        let middle = self.root.center();
+        let heights = self.mesh.vertices().iter().map(|&vertex| (vertex - middle).dot(direction));
+        heights.fold(0.0, Real::max)
+    }
+
     /// The largest absolute coordinate.
     pub(crate) fn magnitude(&self) -> Real {
         self.root.mins.abs().max(self.root.maxs.abs()).max_element()

@@ -2,13 +2,13 @@
 //! be near each other; if it sticks out on both sides, as many contacts push each way.
 
 use glamx::DVec3;
-use parry3d::math::Vector;
+use parry3d::math::{Real, Vector};
 use parry3d::query::PointQuery;
 use sbbk_core::contact::{Feature, FeaturePair, TriangleContact};
 use sbbk_core::traverse::Placement;
 use sbbk_core::volumes::Sphere;
 
-use super::mesh_mesh::Meshes;
+use super::mesh_mesh::{MeshPair, Meshes};
 use super::pose::PairPose;
 use super::triangles::{ContactSource, TriangleHit, TriangleShapes, TriangleSurfaceContact};
 use crate::mesh::{BEHIND, is_covered, nearest};
@@ -40,6 +40,43 @@ impl InsideTest {
     }
 }
 
+/// Part of a body that may stick out of a room that holds it, in half heights of the body. Higher:
+/// bodies deep in a solid stay there. Lower: fast bodies fall through the floors of rooms.
+const STICKS_OUT: Real = 0.5;
+
+impl MeshPair<'_> {
+    /// Returns true if the larger mesh is a room for the smaller one: the smaller one is in it, or
+    /// hardly sticks out.
+    pub(super) fn is_room(&self, test: &mut InsideTest) -> bool {
+        let outer = self.larger();
+        let [held, holder] = [1 - outer, outer].map(|i| &self.meshes[i]);
+        let fits = held.sorted_extents().cmplt(holder.sorted_extents()).all();
+        let PairPose { placement12, placement21, .. } = self.pose;
+        let placement = [placement12, placement21][outer];
+        if !fits || test.is_outside(held.ball(), placement) {
+            return false;
+        }
+        let middle = to_other(self.pose, 1 - outer, held.ball().centre);
+        let outside = |distance: f32| InsideTest::Outside(*placement, SURE * f64::from(distance));
+        let from_box = holder.root().distance_to_local_point(middle, true);
+        if from_box > 0.0 {
+            *test = outside(from_box);
+            return false;
+        }
+        let Some((_, exit, behind)) = nearest(holder.mesh, middle) else { return false };
+        let depth = exit.point.distance(middle);
+        if behind < BEHIND || !is_covered(holder.mesh, middle) {
+            if behind < -BEHIND {
+                *test = outside(depth);
+            }
+            return false;
+        }
+        let way = to_other(self.pose, outer, exit.point) - held.ball().centre;
+        let height = held.height(way.normalize_or_zero(), depth / (1.0 - STICKS_OUT));
+        depth >= (1.0 - STICKS_OUT) * height
+    }
+}
+
 impl Meshes<'_> {
     /// Returns the contact that moves the smaller mesh out of the larger one, by the shortest way
     /// from its middle, and its triangles. Call this if no other contact was found.
@@ -57,7 +94,8 @@ impl Meshes<'_> {
         let placement = [placement12, placement21][outer];
         let vertex = to_other(self.pair.pose, 1 - outer, held.corners(0)[0]);
         if !is_deep {
-            if self.surfaces[outer].is_none() || test.is_outside(held.ball(), placement) {
+            let is_possible = self.surfaces[outer].is_some() && self.room.is_none();
+            if !is_possible || test.is_outside(held.ball(), placement) {
                 return None;
             }
             let outside =

@@ -7,7 +7,7 @@ use parry3d::math::{Real, Vector};
 use parry3d::query::details::NormalConstraints;
 use parry3d::shape::Triangle;
 use sbbk_core::leaf::LeafTest;
-use sbbk_core::surface::{OneRing, SurfaceKind};
+use sbbk_core::surface::{OneRing, Side, SurfaceKind};
 use sbbk_core::traverse::{Counters, PairFrame, descend};
 use sbbk_core::tree::Tree;
 
@@ -40,7 +40,8 @@ impl MeshPair<'_> {
 }
 
 impl<'a> Pair for MeshPair<'a> {
-    type State = ([PairMesh; 2], InsideTest);
+    /// The meshes, whether one is a room for the other, and whether one is inside the other.
+    type State = ([PairMesh; 2], [InsideTest; 2]);
     type Hint = Hint;
     type Query<'q>
         = TriangleQuery<'q, Meshes<'q>>
@@ -54,12 +55,12 @@ impl<'a> Pair for MeshPair<'a> {
     fn open<'q>(
         &'q self,
         cache: &'q Arc<MeshStore>,
-        ([known1, known2], inside): &'q mut Self::State,
+        ([known1, known2], [in_room, inside]): &'q mut Self::State,
     ) -> (Change, Self::Query<'q>) {
         let [mesh1, mesh2] = &self.meshes;
         let change = known1.update(mesh1).max(known2.update(mesh2));
         if change != Change::Unchanged {
-            *inside = InsideTest::Unknown;
+            (*in_room, *inside) = Default::default();
         }
         let are_rigid = mesh1.is_rigid() && mesh2.is_rigid();
         let known = if are_rigid {
@@ -75,8 +76,13 @@ impl<'a> Pair for MeshPair<'a> {
         let radius = radius1.min(radius2);
         let has_surface = surfaces.iter().any(Option::is_some);
         let filter_distance = filter_distance(has_surface, radius);
+        let room = surfaces[self.larger()]
+            .as_ref()
+            .filter(|_| self.is_room(in_room))
+            .filter(|surface| !surface.is_declared_solid(self.meshes[self.larger()].mesh))
+            .map(|_| self.larger());
         let query = TriangleQuery {
-            shapes: Meshes { pair: self, trees, surfaces, filter_distance, cache },
+            shapes: Meshes { pair: self, trees, surfaces, room, filter_distance, cache },
             pose: self.pose,
             patches: (self.has_patches && are_rigid)
                 .then(|| PatchPlan::new(self.pose.prediction, radius)),
@@ -92,6 +98,8 @@ pub(crate) struct Meshes<'q> {
     trees: Option<[&'q Tree; 2]>,
     /// Surfaces of both meshes, for contacts of surfaces.
     pub(super) surfaces: [Option<MeshSurface<'q>>; 2],
+    /// The mesh that is a room for the other one, and has no inside.
+    pub(super) room: Option<usize>,
     filter_distance: f64,
     cache: &'q MeshStore,
 }
@@ -161,12 +169,13 @@ impl<'q> TriangleShapes for Meshes<'q> {
 
     #[inline]
     fn surface(&self, i: usize, triangle: u32) -> Option<OneRing<MeshFacets<'_, 'q>>> {
-        Some(self.surfaces[i].as_ref()?.around(self.pair.meshes[i].mesh, triangle))
+        let surface = self.surfaces[i].as_ref()?.around(self.pair.meshes[i].mesh, triangle);
+        Some(if self.room == Some(i) { OneRing { side: Side::Sheet, ..surface } } else { surface })
     }
 
     fn is_solid(&self, i: usize) -> bool {
         let kind = self.surfaces[i].as_ref().map(|surface| surface.kind(self.pair.meshes[i].mesh));
-        kind == Some(SurfaceKind::Solid)
+        self.room != Some(i) && kind == Some(SurfaceKind::Solid)
     }
 
     fn filter_distance(&self) -> f64 {

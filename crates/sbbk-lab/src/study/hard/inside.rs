@@ -73,7 +73,7 @@ fn sink(kit: &Kit, ground: ColliderBuilder, thickness: f32, cells: u32) -> Figur
     let (mut inside, mut wrong_side, mut fastest) = (0, 0, 0.0_f32);
     for index in 0..10 {
         let depth = 0.1 + (most - 0.1) * index as f32 / 9.0;
-        let mut world = kit.world();
+        let mut world = kit.world_with(Some(&ground));
         world.fix(Vec3::ZERO, ground.clone());
         let body = world.put(Pose3::from_translation(Vec3::Y * (0.5 - depth)), &cube);
         // One that has left below may fall as fast as it likes.

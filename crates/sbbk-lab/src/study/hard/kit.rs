@@ -5,6 +5,7 @@ use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, Mutex, PoisonError};
 
 pub(super) use glamx::Vec2;
+use rapier_integration::{PreparedTree, SurfaceKind};
 use rapier3d::geometry::HeightFieldFlags;
 use rapier3d::parry::utils::Array2;
 
@@ -80,6 +81,11 @@ impl Kit {
 
     /// An empty world with the column's dispatcher.
     pub fn world(&self) -> World {
+        self.world_with(None)
+    }
+
+    /// An empty world with the column's dispatcher, which is told that a mesh is a solid.
+    pub fn world_with(&self, solid: Option<&ColliderBuilder>) -> World {
         let mut world = PhysicsWorld::new();
         world.integration_parameters.contact_recycling = self.recycling;
         let backend = match self.column {
@@ -87,11 +93,15 @@ impl Kit {
             Column::Sbbk | Column::SbbkFlag => Backend::Sbbk,
             Column::Every => Backend::Every,
         };
+        let mut declared = None;
         if let Some(sbbk) = backend.dispatcher().sbbk {
+            let mesh = solid.and_then(|solid| solid.shape.as_trimesh());
+            declared = mesh.and_then(|mesh| sbbk.prepare(mesh).ok());
+            declared.iter().for_each(|solid| solid.set_surface_kind(SurfaceKind::Solid));
             world.narrow_phase.set_query_dispatcher(sbbk);
         }
         let film = self.film.lock().unwrap_or_else(PoisonError::into_inner).take();
-        World { world, film, column: self.column, watched: Vec::new() }
+        World { world, film, column: self.column, watched: Vec::new(), _declared: declared }
     }
 
     fn is_flagged(&self) -> bool {
@@ -130,6 +140,7 @@ impl Kit {
 
 /// A world with the bodies of its scene, and a recording if there is a film.
 pub(super) struct World {
+    _declared: Option<PreparedTree>,
     world: PhysicsWorld,
     film: Option<Film>,
     column: Column,
