@@ -43,7 +43,7 @@ fn brute_twins(mesh: &Soup) -> Vec<Option<u32>> {
 
 /// Panics unless all twins are right; how many half-edges have one.
 fn check_twins(mesh: &Soup) -> usize {
-    let surface = analysed(&mesh);
+    let surface = analysed(mesh);
     let expected = brute_twins(mesh);
     let found: Vec<Option<u32>> =
         (0..expected.len()).map(|half_edge| surface.twin(half_edge as u32)).collect();
