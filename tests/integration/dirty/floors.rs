@@ -61,9 +61,9 @@ fn bodies_ride_on_dirty_floors_as_on_a_cuboid() {
 const KNOWN: &[(&str, &str)] = &[
     ("T-junctions", "mesh ball"),
     ("T-junctions, turned", "mesh ball"),
-    ("box tiles", "cuboid, mesh ball"),
-    ("box tiles, welded", "cuboid, mesh ball"),
-    ("box with a wall", "cuboid, mesh ball"),
+    ("box tiles", "mesh ball"),
+    ("box tiles, welded", "mesh ball"),
+    ("box with a wall", "mesh ball"),
     ("each third twice", "mesh ball"),
     ("plain", "mesh ball"),
     ("random winding", "mesh ball"),

@@ -57,7 +57,15 @@ pub fn has_strays<F: Facets>(
 /// corners.
 pub fn touches(corners: &[DVec3; 3], [start, end]: [DVec3; 2], seam: f64) -> bool {
     let [a, b, c] = *corners;
-    let Some(up) = (b - a).cross(c - a).try_normalize() else { return false };
+    let area = (b - a).cross(c - a);
+    // Most triangles end here, without a root.
+    let heights = [start, end].map(|place| area.dot(place - a));
+    let most = seam * seam * area.length_squared();
+    let is_beyond = heights.iter().all(|height| height * height > most);
+    if is_beyond && heights[0] * heights[1] > 0.0 {
+        return false;
+    }
+    let Some(up) = area.try_normalize() else { return false };
     let sides = each(|i| {
         let along = (corners[(i + 1) % 3] - corners[i]).normalize_or_zero();
         (up.cross(along), corners[i])

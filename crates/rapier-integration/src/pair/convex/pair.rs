@@ -8,6 +8,7 @@ use std::thread::LocalKey;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Real;
 use parry3d::query::details::NormalConstraints;
+use sbbk_core::surface::{Side, SurfaceKind};
 use sbbk_core::traverse::{Counters, SlackLimits};
 use sbbk_core::volumes::rounding::gamma;
 
@@ -82,8 +83,8 @@ impl<'a> Pair for ConvexPair<'a> {
         if part_data.update(&self.parts) {
             change = Change::Replaced;
         }
-        let surface = self.leave_solids.then(|| known_mesh.acquire_surface(&self.mesh));
-        (change, ConvexQuery { pair: self, part_data, surface: surface.flatten() })
+        let surface = self.has_surface().then(|| known_mesh.acquire_surface(&self.mesh)).flatten();
+        (change, ConvexQuery { pair: self, part_data, surface })
     }
 }
 
@@ -91,9 +92,13 @@ impl<'a> Pair for ConvexPair<'a> {
 pub(crate) struct ConvexQuery<'q> {
     pub(super) pair: &'q ConvexPair<'q>,
     part_data: &'q PartData,
-    /// Surface of the mesh, for push-outs.
+    /// Surface of the mesh, for push-outs and walls within the mesh.
     pub(super) surface: Option<MeshSurface<'q>>,
 }
+
+/// Cosine above which contacts push the same way. Higher: more meshes are analysed. Lower: bodies
+/// stumble over walls within a mesh.
+const SAME_WAY: f64 = 0.7;
 
 /// Memory for queries.
 #[derive(Default)]
@@ -262,6 +267,7 @@ impl PairQuery for ConvexQuery<'_> {
                 contacts.push((candidate.subshapes, contact));
             }
         }
+        self.drop_inner_walls(contacts);
         self.add_push_outs(contacts, scratch);
         self.correct_ghosts(contacts, scratch);
     }
@@ -297,6 +303,21 @@ impl PairQuery for ConvexQuery<'_> {
 }
 
 impl ConvexQuery<'_> {
+    /// Removes the contacts of triangles that have the body on both sides. Asks for sides only where
+    /// contacts push in different directions.
+    fn drop_inner_walls(&self, contacts: &mut ContactList<PartContact>) {
+        let Some(surface) = &self.surface else { return };
+        let normal = |(_, contact): &([u32; 2], PartContact)| contact.contact.normal;
+        let first = contacts.first().map(normal);
+        let differs = |hit: &_| first.is_some_and(|first| first.dot(normal(hit)) < SAME_WAY);
+        if contacts.iter().any(differs) && surface.kind(self.pair.mesh.mesh) != SurfaceKind::Sheet {
+            contacts.retain(|(of, _)| {
+                let [triangle, _] = self.pair.mesh_place.swap(*of);
+                surface.around(self.pair.mesh.mesh, triangle).side != Side::Inner
+            });
+        }
+    }
+
     /// Returns the contact of a candidate within the prediction distance.
     #[inline(always)]
     fn contact(

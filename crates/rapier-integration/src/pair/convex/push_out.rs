@@ -28,7 +28,7 @@ impl ConvexQuery<'_> {
         deepest: f64,
         scratch: &mut ConvexScratch,
     ) -> Option<(u32, PartContact)> {
-        let surface = self.surface.as_ref()?;
+        let surface = self.surface.as_ref().filter(|_| self.pair.leave_solids)?;
         let mesh = self.pair.mesh.mesh;
         self.pair.parts.with(part, |shape| {
             let middle = shape.shape.middle()?;
@@ -67,7 +67,7 @@ impl ConvexQuery<'_> {
         contacts: &mut ContactList<PartContact>,
         scratch: &mut ConvexScratch,
     ) {
-        if self.surface.is_none() {
+        if self.surface.is_none() || !self.pair.leave_solids {
             return;
         }
         let ConvexPair { parts, mesh_place, .. } = self.pair;
