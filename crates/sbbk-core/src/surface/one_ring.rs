@@ -87,13 +87,13 @@ pub struct OneRing<F> {
     pub side: Side,
 }
 
-/// Sine of the angle by which a neighbour may rise towards a direction and still count as no nearer.
-/// Higher: bodies catch on edges between facets. Lower: faces that lie on each other, not quite
-/// flat, lose contacts.
+/// Sine of the angle by which a neighbour may rise towards a direction and still count as no nearer,
+/// where the surface bends as much. Higher: bodies catch on edges between facets. Lower: faces that
+/// lie on each other, not quite flat, lose contacts.
 const RISE: f64 = 0.05;
 
-/// [`RISE`] if the other feature is a face. Higher: edges within a floor stop bodies that slide over
-/// it. Lower: a body that rocks from point to point gets the next point too late.
+/// [`RISE`] if the other feature is a face. Higher: blunt edges stop bodies that slide over
+/// them. Lower: a body that rocks from point to point gets the next point too late.
 const RISE_TO_FACE: f64 = 0.3;
 
 /// Sine of the angle up to which triangles count as one plane, and directions as parallel to it.
@@ -111,8 +111,8 @@ impl<F: Facets> OneRing<F> {
     ///
     /// The direction leads from a point of the feature to the nearest point of the other body: along
     /// the normal of a face, or within the Voronoi region of an edge or a vertex. `contact` has that
-    /// point and the feature of the other body, if known. A neighbour may come slightly nearer to a
-    /// face; within a flat side, an edge is a local minimum for no other edge.
+    /// point and the feature of the other body, if known. A neighbour may come slightly nearer where
+    /// the surface bends; within a flat side, edges and vertices are no local minima.
     pub fn is_local_minimum(
         &self,
         triangle: u32,
@@ -125,78 +125,54 @@ impl<F: Facets> OneRing<F> {
             let leads_in = self.is_solid() && height < 0.0;
             return is_upright && !leads_in;
         }
-        let place = contact.map(|(place, _)| place);
-        let rise = match (feature, contact) {
-            (_, Some((_, Feature::Face))) => RISE_TO_FACE,
-            (Feature::Edge(_), Some((place, Feature::Edge(_))))
-                if self.is_flat(triangle, feature, place) =>
-            {
-                FLAT
-            }
+        let most = match contact {
+            Some((_, Feature::Face)) => RISE_TO_FACE,
             _ => RISE,
         };
-        let rises = |edge: DVec3| {
-            let height = edge.dot(direction);
-            height > 0.0 && height * height > rise * rise * edge.length_squared()
-        };
-        let (mut height, mut has_risen) = (0.0, false);
+        let normal = self.normal(triangle);
+        // A triangle without an area has no plane.
+        let bend = if normal == DVec3::ZERO { f64::INFINITY } else { 0.0 };
+        let mut slopes = Slopes { direction, normal, rise: 0.0, bend };
+        let mut height = 0.0;
         let is_closed =
             self.visit(triangle, feature, |Wedge { edges: [u, v], are_new, .. }| {
-                has_risen = are_new[0] && rises(u) || are_new[1] && rises(v);
-                if has_risen {
-                    return ControlFlow::Break(());
+                for (edge, is_new) in [(u, are_new[0]), (v, are_new[1])] {
+                    if is_new {
+                        slopes.add(edge);
+                    }
                 }
                 if self.is_solid() {
                     height += u.cross(v).dot(direction);
                 }
-                ControlFlow::Continue(())
+                let is_over = slopes.rise > most * most;
+                if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             });
-        if has_risen {
+        if slopes.exceed(most) {
             return false;
         }
         if !self.facets.is_whole(triangle, feature) {
-            let mut heights = Heights::default();
             let is_open = self.is_solid() && !is_closed;
+            let mut heights = Heights::default();
+            let place = contact.map(|(place, _)| place);
             self.visit_at(triangle, feature, place, |corners, seam| {
+                let mut all = slopes;
                 let is_far = |corner: &&DVec3| corner.length_squared() > seam * seam;
-                let is_higher = corners.iter().filter(is_far).any(|&corner| rises(corner));
-                if (is_higher || is_open) && touches(corners, [DVec3::ZERO; 2], seam) {
-                    has_risen |= is_higher;
+                corners.iter().filter(is_far).for_each(|&corner| all.add(corner));
+                let is_new = all.rise > slopes.rise || all.bend > slopes.bend;
+                if (is_new || is_open) && touches(corners, [DVec3::ZERO; 2], seam) {
+                    slopes = all;
                     heights.add(corners, direction);
                 }
             });
             height = if is_open { heights.sum() } else { height };
         }
         let leads_in = height < 0.0;
-        !has_risen && !leads_in
+        !slopes.exceed(most) && !leads_in
     }
 
     /// True if the body is behind the triangle, and nothing in front.
     pub fn is_solid(&self) -> bool {
         self.side == Side::Face
-    }
-
-    /// True if the triangles at a point of an edge lie in one plane.
-    fn is_flat(&self, triangle: u32, edge: Feature, place: DVec3) -> bool {
-        let normal = self.normal(triangle).normalize_or_zero();
-        if let Some(twin) = self.facets.twin(half_edge(triangle, edge)) {
-            let across = self.corner(twin, 2) - self.corner(twin, 0);
-            return across.dot(normal).abs() <= FLAT * across.length();
-        }
-        if self.facets.is_whole(triangle, edge) {
-            return false;
-        }
-        let first = half_edge(triangle, edge);
-        let inwards =
-            normal.cross((self.corner(first, 1) - self.corner(first, 0)).normalize_or_zero());
-        let mut is_flat = false;
-        self.visit_at(triangle, edge, Some(place), |corners, seam| {
-            let area = area_vector(corners);
-            is_flat |= area.cross(normal).length() <= FLAT * area.length()
-                && corners.iter().any(|corner| corner.dot(inwards) < -seam)
-                && touches(corners, [DVec3::ZERO; 2], seam);
-        });
-        is_flat
     }
 
     /// True if a unit direction from a feature leads into the solid; false for sheets.
@@ -370,6 +346,37 @@ struct Wedge {
     edges: [DVec3; 2],
     /// True for edges that no earlier triangle of the ring has.
     are_new: [bool; 2],
+}
+
+/// Greatest slopes of a surface around a point, as squares of sines.
+#[derive(Clone, Copy)]
+struct Slopes {
+    direction: DVec3,
+    /// Normal of a triangle at the point.
+    normal: DVec3,
+    /// Towards the direction.
+    rise: f64,
+    /// Out of the plane of the triangle.
+    bend: f64,
+}
+
+impl Slopes {
+    /// Takes note of the way to a corner.
+    #[inline(always)]
+    fn add(&mut self, edge: DVec3) {
+        let (length_squared, height) = (edge.length_squared(), edge.dot(self.direction));
+        let off = edge.dot(self.normal);
+        if height > 0.0 {
+            self.rise = self.rise.max(height * height / length_squared);
+        }
+        let bend = off * off / (length_squared * self.normal.length_squared());
+        self.bend = self.bend.max(bend);
+    }
+
+    /// True if the surface rises more than it bends, at most by `most`. A flat place is no feature.
+    fn exceed(&self, most: f64) -> bool {
+        self.rise > self.bend.clamp(FLAT * FLAT, most * most)
+    }
 }
 
 /// Heights of a direction along the area vectors of triangles in any order.
