@@ -96,6 +96,10 @@ const RISE: f64 = 0.05;
 /// them. Lower: a body that rocks from point to point gets the next point too late.
 const RISE_TO_FACE: f64 = 0.3;
 
+/// Rise of a neighbour in bends of the surface, as it bends on both sides of a triangle. Higher: blunt
+/// edges stop bodies. Lower: a polyhedron that rolls meets the next vertex late and is braked.
+const BENDS: f64 = 2.0;
+
 /// Sine of the angle up to which triangles count as one plane, and directions as parallel to it.
 /// Higher: a nut locks on its bolt. Lower: flat sides end at rounding.
 const FLAT: f64 = 1.0e-3;
@@ -375,7 +379,7 @@ impl Slopes {
 
     /// True if the surface rises more than it bends, at most by `most`. A flat place is no feature.
     fn exceed(&self, most: f64) -> bool {
-        self.rise > self.bend.clamp(FLAT * FLAT, most * most)
+        self.rise > (BENDS * BENDS * self.bend).clamp(FLAT * FLAT, most * most)
     }
 }
 

@@ -174,14 +174,14 @@ fn brute_side(
         let [a, b, c] = at(half_edge);
         [b - a, c - a].map(|edge| edge.normalize_or_zero().dot(direction))
     });
-    // The surface may rise as much as it bends.
+    // The surface may rise twice as much as it bends.
     let [a, b, c] = at(around[0]);
     let own = (b - a).cross(c - a).normalize_or_zero();
     let bends = around.iter().flat_map(|&half_edge| {
         let [a, b, c] = at(half_edge);
         [b - a, c - a].map(|edge| edge.normalize_or_zero().dot(own).abs())
     });
-    let bend = if own == DVec3::ZERO { 1.0 } else { bends.fold(1e-3, f64::max) };
+    let bend = if own == DVec3::ZERO { 1.0 } else { (2.0 * bends.fold(0.0, f64::max)).max(1e-3) };
     match rises.fold(0.0, f64::max) {
         x if x < 0.99 * bend.min(RISES[0]) => Some(Seen::Front),
         x if x < 1.01 * bend.min(RISES[1]) => None,
