@@ -24,16 +24,23 @@
 use std::cell::RefCell;
 
 use glamx::Vec3;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::math::Real;
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
+use sbbk_core::surface::strays::touches;
 
 use super::contact::PartContact;
 use super::pair::{ConvexQuery, ConvexScratch};
+use crate::mesh::MeshView;
 use crate::pair::update::ContactList;
 
 /// Share of the size by which two distances must differ to count as different. Higher: ghosts stay.
 /// Lower: rounding picks one of two equal contacts at a common edge as the ghost.
 const EQUAL: f64 = 1.0e-12;
+
+/// Lists of contacts up to this length are searched linearly.
+const FEW: usize = 64;
 
 /// Memory for the search: the contacts by the corners of their triangles.
 #[derive(Default)]
@@ -243,6 +250,39 @@ impl GhostContacts {
 }
 
 impl ConvexQuery<'_> {
+    /// Calls `found` with the contacts of other triangles within `seam` of a place on the mesh.
+    fn strays_at(
+        &self,
+        contacts: &[([u32; 2], PartContact)],
+        of: [u32; 2],
+        place: Vec3,
+        seam: f64,
+        mut found: impl FnMut(u32),
+    ) {
+        let MeshView { mesh, .. } = self.pair.mesh;
+        let [triangle, part] = self.pair.mesh_place.swap(of);
+        let touches = |other: u32| {
+            let corners = self.pair.mesh.corners(other).map(|corner| corner.as_dvec3());
+            other != triangle && touches(&corners, [place.as_dvec3(); 2], seam)
+        };
+        if contacts.len() <= FEW {
+            for (index, (other, _)) in (0..).zip(contacts) {
+                let [other, of_part] = self.pair.mesh_place.swap(*other);
+                if of_part == part && touches(other) {
+                    found(index);
+                }
+            }
+            return;
+        }
+        let near = Aabb::new(place, place).loosened(seam as Real);
+        for other in mesh.bvh().intersect_aabb(&near).filter(|&other| touches(other)) {
+            let other = self.pair.mesh_place.swap([other, part]);
+            if let Ok(index) = contacts.binary_search_by_key(&other, |(of, _)| *of) {
+                found(index as u32);
+            }
+        }
+    }
+
     /// Replaces the normals of ghost contacts.
     pub(super) fn correct_ghosts(
         &self,
@@ -267,15 +307,12 @@ impl ConvexQuery<'_> {
                 .unwrap_or(false)
         };
         let find_strays = |(of, hit): &([u32; 2], PartContact), strays: &mut Vec<u32>| {
-            let [triangle, part] = subshapes(*of);
             let scratch = &mut scratch_of.borrow_mut();
-            self.with_pair([triangle, part], scratch, |pair| {
-                pair.triangles_at(triangle, hit, |other| {
-                    let other = self.pair.mesh_place.swap([other, part]);
-                    let found = contacts.binary_search_by_key(&other, |(of, _)| *of);
-                    strays.extend(found.ok().map(|found| found as u32));
-                });
-            });
+            let place =
+                self.with_pair(subshapes(*of), scratch, |pair| pair.touched_place(&hit.contact));
+            if let Some((place, seam)) = place.flatten() {
+                self.strays_at(contacts, *of, place, seam, |stray| strays.push(stray));
+            }
         };
         ghosts.find(contacts, keys, extends_beyond, find_strays);
         for i in 0..ghosts.on_faces.len() {

@@ -1,14 +1,13 @@
 //! A triangle and a part: what their contact says, and how it becomes points of a manifold.
 
 use glamx::{DVec3, Vec3};
-use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
 use parry3d::query::TrackedContact;
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d::shape::{HalfSpace, PackedFeatureId};
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
-use sbbk_core::surface::strays::{seam, touches};
+use sbbk_core::surface::strays::seam;
 
 use super::contact::{NormalSource, PartContact};
 use super::pair::ConvexPair;
@@ -44,29 +43,15 @@ struct Normals {
 const UPRIGHT: f64 = 1.0e-3;
 
 impl TrianglePartPair<'_> {
-    /// Calls `visit` with all other triangles at the point of a contact, unless the contact has the
-    /// normal of its triangle.
-    pub(super) fn triangles_at(
-        &self,
-        triangle: u32,
-        PartContact { contact, .. }: &PartContact,
-        mut visit: impl FnMut(u32),
-    ) {
-        let corners = self.corners.map(|corner| corner.as_dvec3());
+    /// Returns the point of a contact in the frame of the mesh, and the distance up to which triangles
+    /// touch it; `None` for a contact with the normal of its triangle, which is no ghost.
+    pub(super) fn touched_place(&self, contact: &ConvexContact) -> Option<(Vec3, f64)> {
+        let corners @ [a, b, c] = self.corners.map(|corner| corner.as_dvec3());
         let [normal, _] = self.placed.directions(contact.normal);
-        let up = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-        if up.cross(normal).length_squared() <= UPRIGHT * UPRIGHT * up.length_squared() {
-            return;
-        }
-        let (place, seam) = (self.placed.in_mesh(contact.on_triangle), seam(&corners));
-        let mesh = &self.pair.mesh;
-        let near = Aabb::new(place, place).loosened(seam as Real);
-        for other in mesh.mesh.bvh().intersect_aabb(&near) {
-            let corners = mesh.corners(other).map(|corner| corner.as_dvec3());
-            if other != triangle && touches(&corners, [place.as_dvec3(); 2], seam) {
-                visit(other);
-            }
-        }
+        let up = (b - a).cross(c - a);
+        let is_upright =
+            up.cross(normal).length_squared() <= UPRIGHT * UPRIGHT * up.length_squared();
+        (!is_upright).then(|| (self.placed.in_mesh(contact.on_triangle), seam(&corners)))
     }
 
     /// Replaces `out` by the points of a contact.
