@@ -1,5 +1,5 @@
 //! The studies. Each has a plan, standard or quick, and returns a verdict, rows and tables:
-//! [`Results`](crate::report::Results).
+//! [`Results`].
 //!
 //! Times are taken in one process, backends in turn. Trees are built before; in [`everyday`] they
 //! are part of the steps. Wrong contacts are counted on the queries that are timed, or on
