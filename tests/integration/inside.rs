@@ -58,6 +58,7 @@ fn a_body_in_a_solid_leaves_by_the_nearer_side() {
                 for (query, sign) in [(query, 1.0), (query.flipped(true), -1.0)] {
                     let found = query.fresh(&dispatcher);
                     let [manifold] = &found[..] else { panic!("{} manifolds", found.len()) };
+                    assert!(dispatcher.stats().push_outs > 0);
                     let normal = if sign > 0.0 { manifold.local_n1 } else { manifold.local_n2 };
                     assert!((normal - out).length() < 1e-3, "{normal} at {place:?}");
                     // Contacts have a greatest depth.

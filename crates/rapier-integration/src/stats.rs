@@ -23,6 +23,9 @@ pub struct SbbkStats {
     /// Analysed meshes that are closed with inward normals, and count as sheets. They may be wound the
     /// wrong way.
     pub inside_out: usize,
+    /// Contact queries of two meshes in which a declared solid has pushed out a mesh that is wholly
+    /// inside.
+    pub push_outs: u64,
     /// Meshes that have a tree.
     pub trees: usize,
     /// Memory of trees and surfaces, in bytes.
@@ -107,6 +110,7 @@ impl QueryCounters {
             solids: store.solids,
             sheets: store.sheets,
             inside_out: store.inside_out,
+            push_outs: store.push_outs,
             trees: store.trees,
             tree_bytes: store.bytes,
             queries: load(&self.queries),

@@ -34,6 +34,7 @@ pub(crate) struct MeshStore {
     hits: AtomicU64,
     pairs: AtomicU64,
     walks: AtomicU64,
+    push_outs: AtomicU64,
 }
 
 #[derive(Default)]
@@ -81,6 +82,7 @@ pub(crate) struct StoreCounts {
     pub(crate) hits: u64,
     pub(crate) pairs: u64,
     pub(crate) walks: u64,
+    pub(crate) push_outs: u64,
 }
 
 impl MeshStore {
@@ -98,6 +100,7 @@ impl MeshStore {
             hits: AtomicU64::new(0),
             pairs: AtomicU64::new(0),
             walks: AtomicU64::new(0),
+            push_outs: AtomicU64::new(0),
         }
     }
 
@@ -246,6 +249,11 @@ impl MeshStore {
         self.budget.earn();
     }
 
+    /// Counts a query with a push-out.
+    pub(crate) fn count_push_out(&self) {
+        self.push_outs.fetch_add(1, Ordering::Relaxed);
+    }
+
     /// Counts a new pair.
     pub(crate) fn count_pair(&self) {
         self.pairs.fetch_add(1, Ordering::Relaxed);
@@ -286,6 +294,7 @@ impl MeshStore {
             hits: self.hits.load(Ordering::Relaxed),
             pairs: self.pairs.load(Ordering::Relaxed),
             walks: self.walks.load(Ordering::Relaxed),
+            push_outs: self.push_outs.load(Ordering::Relaxed),
         }
     }
 

@@ -158,7 +158,7 @@ impl<'q> TriangleShapes for Meshes<'q> {
     }
 
     fn push_out(&self, is_deep: bool, test: &mut InsideTest) -> Option<TriangleHit> {
-        self.find_push_out(is_deep, test)
+        self.find_push_out(is_deep, test).inspect(|_| self.cache.count_push_out())
     }
 
     fn with_cones(&self, triangles: [u32; 2], then: impl FnOnce(Cones<'_>)) {
