@@ -56,8 +56,11 @@ impl ConvexPair<'_> {
 
     /// Returns true if contacts are reduced to patches. A ball has few contacts, with one point each.
     fn has_patches(&self) -> bool {
-        let is_ball = matches!(self.parts, Parts::One(ConvexShape::Ball(_)));
-        self.has_patches && self.mesh.is_rigid() && !is_ball
+        self.has_patches && self.mesh.is_rigid() && !self.is_ball()
+    }
+
+    fn is_ball(&self) -> bool {
+        matches!(self.parts, Parts::One(ConvexShape::Ball(_)))
     }
 }
 
@@ -83,7 +86,9 @@ impl<'a> Pair for ConvexPair<'a> {
         if part_data.update(&self.parts) {
             change = Change::Replaced;
         }
-        let surface = self.has_surface().then(|| known_mesh.acquire_surface(&self.mesh)).flatten();
+        // A ball has one point, and rolls over walls within a mesh.
+        let needs_surface = self.leave_solids || self.has_surface() && !self.is_ball();
+        let surface = needs_surface.then(|| known_mesh.acquire_surface(&self.mesh)).flatten();
         (change, ConvexQuery { pair: self, part_data, surface })
     }
 }
