@@ -5,15 +5,15 @@ use parry3d::shape::TriMesh;
 use sbbk_core::surface::{Surface, SurfaceKind};
 use sbbk_core::tree::{BuildError, BuildOptions, Tree};
 
-use super::neighbours::{MeshRays, StrayFlags};
+use super::neighbours::{MeshRays, TriangleFlags};
 
 /// Tree and surface of a mesh, for all colliders with equal geometry. Any thread computes a part when
 /// it needs that part, and no thread waits: two threads may compute the same part at once.
 #[derive(Default)]
 pub(crate) struct MeshData {
     surface: OnceLock<Surface>,
-    /// For each triangle of the surface.
-    strays: OnceLock<Box<[StrayFlags]>>,
+    /// Flags of each triangle of the surface.
+    flags: OnceLock<Box<[TriangleFlags]>>,
     tree: OnceLock<Tree>,
     has_build_begun: AtomicBool,
     declared_kind: AtomicU8,
@@ -55,16 +55,17 @@ impl MeshData {
         self.surface.get()
     }
 
-    /// The strays that were found, for each triangle of an analysed mesh.
+    /// The flags of the triangles of an analysed mesh.
     #[inline]
-    pub(super) fn strays(&self) -> &[StrayFlags] {
-        self.strays.get().map_or(&[], |strays| strays)
+    pub(super) fn flags(&self) -> &[TriangleFlags] {
+        self.flags.get().map_or(&[], |flags| flags)
     }
 
     /// Computes the surface of `mesh`, whose data this must be.
     pub(super) fn analyse(&self, mesh: &TriMesh) -> &Surface {
         let surface = Surface::new(mesh.vertices(), mesh.indices(), &MeshRays(mesh));
-        self.strays.get_or_init(|| mesh.indices().iter().map(|_| StrayFlags::default()).collect());
+        self.flags
+            .get_or_init(|| mesh.indices().iter().map(|_| TriangleFlags::default()).collect());
         // Another thread may have set the same surface meanwhile.
         let _ = self.surface.set(surface);
         self.surface.get().expect("set just now")
@@ -91,7 +92,7 @@ impl MeshData {
         const REFERENCE_COUNTS: usize = 2 * size_of::<usize>();
         let tree = self.tree().map_or(0, |tree| tree.stats().bytes());
         let surface = self.surface().map_or(0, |surface| surface.bytes() - size_of::<Surface>());
-        let strays = size_of_val(self.strays());
-        size_of::<Self>() + tree + surface + strays + ENTRIES + REFERENCE_COUNTS
+        let flags = size_of_val(self.flags());
+        size_of::<Self>() + tree + surface + flags + ENTRIES + REFERENCE_COUNTS
     }
 }

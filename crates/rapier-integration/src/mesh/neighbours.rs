@@ -1,8 +1,7 @@
-use std::cell::RefCell;
+use std::cell::{RefCell, RefMut};
 use std::sync::atomic::{AtomicU16, Ordering};
 
 use glamx::DVec3;
-use parry3d::bounding_volume::Aabb;
 use parry3d::partitioning::BvhNode;
 use parry3d::shape::TriMesh;
 use rustc_hash::FxHashMap;
@@ -10,10 +9,12 @@ use sbbk_core::contact::Feature;
 use sbbk_core::surface::strays::has_strays;
 use sbbk_core::surface::{HalfEdges, IndexedTriangles, OneRing, RayTriangles, Side, Surface, side};
 
+use super::view::box_between;
+
 /// Adjacency of the triangles of a mesh, with [strays](sbbk_core::surface::strays).
 #[derive(Copy, Clone)]
 pub(crate) enum MeshAdjacency<'a, 'm> {
-    Full { mesh: &'a TriMesh, surface: &'a Surface, strays: &'a [StrayFlags] },
+    Full { mesh: &'a TriMesh, surface: &'a Surface, flags: &'a [TriangleFlags] },
     Local(&'a NearTwins<'m>),
 }
 
@@ -35,17 +36,17 @@ impl<'a, 'm> MeshAdjacency<'a, 'm> {
     }
 
     /// Reads or changes the flags of a triangle.
-    fn with_flags<T>(self, triangle: u32, then: impl FnOnce(&StrayFlags) -> T) -> T {
+    fn with_flags<T>(self, triangle: u32, then: impl FnOnce(&TriangleFlags) -> T) -> T {
         match self {
-            Self::Full { strays, .. } => then(&strays[triangle as usize]),
-            Self::Local(twins) => then(&twins.known(triangle).strays),
+            Self::Full { flags, .. } => then(&flags[triangle as usize]),
+            Self::Local(twins) => then(&twins.known(triangle).flags),
         }
     }
 
     /// Returns what is on either side of a triangle of a closed mesh. Takes two rays the first time.
     pub(crate) fn side(self, triangle: u32) -> Side {
         let Self::Full { mesh, .. } = self else { return Side::Sheet };
-        self.with_flags(triangle, StrayFlags::side).unwrap_or_else(|| {
+        self.with_flags(triangle, TriangleFlags::side).unwrap_or_else(|| {
             let side = side(&MeshRays(mesh), triangle);
             self.with_flags(triangle, |flags| flags.set_side(side));
             side
@@ -87,21 +88,18 @@ impl HalfEdges for MeshAdjacency<'_, '_> {
     }
 
     fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32)) {
-        let [low, high] = corners.map(|corner| corner.as_vec3());
-        // To f32 by one more rounding.
-        let near = Aabb::new(low - f32::EPSILON * low.abs(), high + f32::EPSILON * high.abs());
-        self.mesh().bvh().intersect_aabb(&near).for_each(visit);
+        self.mesh().bvh().intersect_aabb(&box_between(corners)).for_each(visit);
     }
 }
 
-/// Which edges and vertices of a triangle have strays, and what is on its sides, as far as known.
+/// Memory of searches around a triangle: strays of its edges and vertices, and its [`Side`].
 #[derive(Debug, Default)]
-pub(crate) struct StrayFlags(AtomicU16);
+pub(crate) struct TriangleFlags(AtomicU16);
 
 /// [`Side`] by the number in the flags.
 const SIDES: [Side; 4] = [Side::Face, Side::Turned, Side::Inner, Side::Sheet];
 
-impl StrayFlags {
+impl TriangleFlags {
     const HAS_SIDE: u16 = 1 << 7;
 
     fn bits(feature: Feature) -> [u16; 2] {
@@ -135,7 +133,7 @@ impl StrayFlags {
     }
 }
 
-impl Clone for StrayFlags {
+impl Clone for TriangleFlags {
     fn clone(&self) -> Self {
         Self(AtomicU16::new(self.0.load(Ordering::Relaxed)))
     }
@@ -172,11 +170,11 @@ const ROUNDING: f64 = 1.0e-12;
 /// Neighbours of the triangles that a pair has touched.
 pub(crate) type Neighbours = FxHashMap<u32, Neighbour>;
 
-/// The twins of the edges of a triangle, and its strays.
+/// The twins of the edges of a triangle, and its flags.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Neighbour {
     twins: [Option<u32>; 3],
-    strays: StrayFlags,
+    flags: TriangleFlags,
 }
 
 /// Adjacency of a mesh that is too large to analyse as a whole. Finds the neighbours of a triangle by
@@ -199,11 +197,11 @@ impl<'a> NearTwins<'a> {
     }
 
     /// Returns the neighbours of a triangle.
-    fn known(&self, triangle: u32) -> std::cell::RefMut<'_, Neighbour> {
-        std::cell::RefMut::map(self.known.borrow_mut(), |known| {
+    fn known(&self, triangle: u32) -> RefMut<'_, Neighbour> {
+        RefMut::map(self.known.borrow_mut(), |known| {
             known.entry(triangle).or_insert_with(|| Neighbour {
                 twins: twins_of(self.mesh, triangle),
-                strays: StrayFlags::default(),
+                flags: TriangleFlags::default(),
             })
         })
     }

@@ -180,7 +180,7 @@ impl<'m> MeshSurface<'m> {
             Self::Full { data, store } => {
                 let data = data.get_or_init(|| store.entry(mesh));
                 let (surface, kind) = store.surface(mesh, data);
-                let adjacency = MeshAdjacency::Full { mesh, surface, strays: data.strays() };
+                let adjacency = MeshAdjacency::Full { mesh, surface, flags: data.flags() };
                 (adjacency, kind, data.declared_kind().is_some())
             }
             Self::Local(twins) => (MeshAdjacency::Local(twins), SurfaceKind::Sheet, false),
@@ -202,6 +202,11 @@ impl<'m> MeshSurface<'m> {
             _ => adjacency.side(triangle),
         };
         OneRing { facets: adjacency.facets(), side }
+    }
+
+    /// Returns true if a mesh around another one may be a solid. A large unregistered one is not.
+    pub(crate) fn may_be_solid(&self) -> bool {
+        matches!(self, Self::Full { .. })
     }
 
     /// Returns true if a user declared that the mesh is a solid.

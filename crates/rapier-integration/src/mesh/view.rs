@@ -6,7 +6,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use glamx::Vec3;
+use glamx::{DVec3, Vec3};
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
 use parry3d::partitioning::BvhNode;
@@ -104,6 +104,12 @@ fn has_near(mesh: &TriMesh, aabb: &Aabb, pos12: &Pose, margin: Real) -> bool {
     }
     let aabb = BvhNode::leaf(aabb.loosened(grown), 0);
     mesh.bvh().leaves(|node| node.intersects(&aabb)).next().is_some()
+}
+
+/// Returns the box between two corners in f32, grown by the rounding.
+pub(crate) fn box_between(corners: [DVec3; 2]) -> Aabb {
+    let [low, high] = corners.map(|corner| corner.as_vec3());
+    Aabb::new(low - f32::EPSILON * low.abs(), high + f32::EPSILON * high.abs())
 }
 
 /// A mesh during one query.

@@ -8,6 +8,8 @@ use sbbk_core::field::{FieldTriangle, HeightGrid};
 use sbbk_core::surface::{Facets, HalfEdges};
 use xxhash_rust::xxh3::xxh3_64;
 
+use crate::mesh::box_between;
+
 /// Parry's height field as a grid of triangles. Parry's rows lie along z, its columns along x.
 #[derive(Copy, Clone)]
 pub(crate) struct Field<'a>(pub(super) &'a HeightField);
@@ -113,8 +115,8 @@ impl HalfEdges for Field<'_> {
         cells(column, columns).all(|column| cells(row, rows).all(|row| has_all([column, row])))
     }
 
-    fn near(&self, [low, high]: [DVec3; 2], visit: &mut dyn FnMut(u32)) {
-        let near = Aabb::new(low.as_vec3(), high.as_vec3());
+    fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32)) {
+        let near = box_between(corners);
         self.0.map_elements_in_local_aabb(&near, &mut |id, _| visit(id));
     }
 }

@@ -50,30 +50,39 @@ impl MeshPair<'_> {
     pub(super) fn is_room(&self, test: &mut InsideTest) -> bool {
         let outer = self.larger();
         let [held, holder] = [1 - outer, outer].map(|i| &self.meshes[i]);
-        let fits = held.sorted_extents().cmplt(holder.sorted_extents()).all();
-        let PairPose { placement12, placement21, .. } = self.pose;
-        let placement = [placement12, placement21][outer];
-        if !fits || test.is_outside(held.ball(), placement) {
+        if !held.sorted_extents().cmplt(holder.sorted_extents()).all() {
             return false;
         }
         let middle = to_other(self.pose, 1 - outer, held.ball().centre);
-        let outside = |distance: f32| InsideTest::Outside(*placement, SURE * f64::from(distance));
-        let from_box = holder.root().distance_to_local_point(middle, true);
-        if from_box > 0.0 {
-            *test = outside(from_box);
-            return false;
-        }
-        let Some((_, exit, behind)) = nearest(holder.mesh, middle) else { return false };
-        let depth = exit.point.distance(middle);
-        if behind < BEHIND || !is_covered(holder.mesh, middle) {
-            if behind < -BEHIND {
-                *test = outside(depth);
-            }
-            return false;
-        }
-        let way = to_other(self.pose, outer, exit.point) - held.ball().centre;
+        let Some(exit) = self.exit(middle, test) else { return false };
+        let depth = exit.distance(middle);
+        let way = to_other(self.pose, outer, exit) - held.ball().centre;
         let height = held.height(way.normalize_or_zero(), depth / (1.0 - STICKS_OUT));
         depth >= (1.0 - STICKS_OUT) * height
+    }
+
+    /// Returns the nearest point of the larger mesh, if a point of the smaller one is inside. `point` is
+    /// in the frame of the larger mesh.
+    fn exit(&self, point: Vector, test: &mut InsideTest) -> Option<Vector> {
+        let outer = self.larger();
+        let [held, holder] = [1 - outer, outer].map(|i| &self.meshes[i]);
+        let PairPose { placement12, placement21, .. } = self.pose;
+        let placement = [placement12, placement21][outer];
+        if test.is_outside(held.ball(), placement) {
+            return None;
+        }
+        let outside = |distance: f32| InsideTest::Outside(*placement, SURE * f64::from(distance));
+        let from_box = holder.root().distance_to_local_point(point, true);
+        if from_box > 0.0 {
+            *test = outside(from_box);
+            return None;
+        }
+        let is_covered = is_covered(holder.mesh, point);
+        let (_, near, behind) = nearest(holder.mesh, point)?;
+        if !is_covered || behind < -BEHIND {
+            *test = outside(near.point.distance(point));
+        }
+        (is_covered && behind >= BEHIND).then_some(near.point)
     }
 }
 
@@ -90,30 +99,13 @@ impl Meshes<'_> {
     ) -> Option<TriangleHit> {
         let outer = self.pair.larger();
         let [held, holder] = [1 - outer, outer].map(|i| &self.pair.meshes[i]);
-        let PairPose { placement12, placement21, .. } = self.pair.pose;
-        let placement = [placement12, placement21][outer];
         let vertex = to_other(self.pair.pose, 1 - outer, held.corners(0)[0]);
         if !is_deep {
-            let is_possible = self.surfaces[outer].is_some() && self.room.is_none();
-            if !is_possible || test.is_outside(held.ball(), placement) {
+            if self.surfaces[outer].is_none() || self.room.is_some() {
                 return None;
             }
-            let outside =
-                |distance: f32| InsideTest::Outside(*placement, SURE * f64::from(distance));
-            let from_box = holder.root().distance_to_local_point(vertex, true);
-            if from_box > 0.0 {
-                *test = outside(from_box);
-                return None;
-            }
-            let is_covered = is_covered(holder.mesh, vertex);
-            let (_, near, behind) = nearest(holder.mesh, vertex)?;
-            if !is_covered || behind < -BEHIND {
-                *test = outside(near.point.distance(vertex));
-            }
-            if !is_covered || behind < BEHIND {
-                return None;
-            }
-            if !is_solid(self, outer) {
+            self.pair.exit(vertex, test)?;
+            if !self.is_solid(outer) {
                 *test = InsideTest::NoSolid;
                 return None;
             }
@@ -162,7 +154,7 @@ pub(super) fn way_out(
     inner: usize,
     middle: Vector,
 ) -> Option<DVec3> {
-    if !(0..2).all(|i| is_solid(shapes, i)) {
+    if !(0..2).all(|i| shapes.is_solid(i)) {
         return None;
     }
     let placed = to_other(pose, inner, middle);
@@ -183,8 +175,4 @@ fn to_other(
     point: Vector,
 ) -> Vector {
     [placement21, placement12][i].to_frame1(point, Vector::ZERO).as_vec3()
-}
-
-fn is_solid(shapes: &impl TriangleShapes, i: usize) -> bool {
-    shapes.is_solid(i)
 }

@@ -133,8 +133,9 @@ impl OverlapIslands {
         self.crossings.len()
     }
 
-    pub(super) fn is_empty(&self) -> bool {
-        self.crossings.is_empty()
+    /// Returns a pair that crosses.
+    pub(super) fn first(&self) -> Option<[u32; 2]> {
+        self.crossings.first().map(|crossing| crossing.pair)
     }
 
     /// Returns a crossing, by its index, unless its contact is final.

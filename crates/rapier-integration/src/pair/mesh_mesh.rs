@@ -78,7 +78,7 @@ impl<'a> Pair for MeshPair<'a> {
         let filter_distance = filter_distance(has_surface, radius);
         let room = surfaces[self.larger()]
             .as_ref()
-            .filter(|_| self.is_room(in_room))
+            .filter(|surface| surface.may_be_solid() && self.is_room(in_room))
             .filter(|surface| !surface.is_declared_solid(self.meshes[self.larger()].mesh))
             .map(|_| self.larger());
         let query = TriangleQuery {

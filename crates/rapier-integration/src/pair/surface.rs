@@ -259,23 +259,25 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         surfaces[i].as_ref().is_none_or(ends)
     }
 
-    /// Returns the side of a sheet's triangle on which the middle of a solid is. `None` if the
-    /// solid is larger than the sheet.
+    /// Returns the side of a sheet's triangle on which the middle of a solid, or of a smaller sheet,
+    /// is. `None` for two solids, and if the solid is larger than the sheet.
     fn sheet_side(&self, is_solid: [bool; 2], local: &TrianglePair) -> Option<SheetSide> {
+        if is_solid == [true; 2] {
+            return None;
+        }
         let sizes = [0, 1].map(|i| self.shapes.bounds(i).half_extents().length());
         let solid = match is_solid {
-            [true, true] => return None,
-            [true, false] => 0,
-            [false, true] => 1,
+            [true, _] => 0,
+            [_, true] => 1,
             // Of two sheets of one size, either order would give another side.
-            [false, false] if sizes[0] == sizes[1] => {
+            _ if sizes[0] == sizes[1] => {
                 let [middle1, middle2] = [0, 1].map(|i| self.shapes.bounds(i).center());
                 let middle2 = self.pose.placement12.to_frame1(middle2, Vec3::ZERO);
                 let between = middle2 - middle1.as_dvec3();
                 let height = between.length();
                 return Some(SheetSide { away: between.try_normalize()?, height });
             }
-            [false, false] => usize::from(sizes[1] < sizes[0]),
+            _ => usize::from(sizes[1] < sizes[0]),
         };
         if sizes[solid] > sizes[1 - solid] {
             return None;

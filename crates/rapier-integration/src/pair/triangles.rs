@@ -21,7 +21,7 @@ use sbbk_core::traverse::{Counters, DescentScratch, SlackLimits};
 
 use super::inside::InsideTest;
 use super::islands::OverlapIslands;
-use super::passed::reject_passed;
+use super::passed::PassedTriangles;
 use super::pose::PairPose;
 use super::reduce::{ContactSummary, PatchPlan};
 use super::state::Candidate;
@@ -141,6 +141,7 @@ pub(crate) struct TriangleScratch {
     /// Triangles that a descent has found.
     pub(super) near: Vec<u32>,
     islands: OverlapIslands,
+    passed: PassedTriangles,
     clipped: ManifoldPoints,
 }
 
@@ -150,6 +151,7 @@ impl Scratch for TriangleScratch {
         self.near.clear();
         self.near.shrink_to(many);
         self.islands.shrink_to(many);
+        self.passed.shrink_to(many);
     }
 }
 
@@ -194,7 +196,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         scratch: &mut TriangleScratch,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
-        let TriangleScratch { islands, clipped, .. } = scratch;
+        let TriangleScratch { islands, passed, clipped, .. } = scratch;
         islands.clear();
         for candidate in candidates {
             if !limits.may_touch(candidate) {
@@ -218,7 +220,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         if islands.finish_first_pass(separation) {
             self.second_pass(islands, clipped, contacts);
         }
-        self.reject_passed(islands, contacts);
+        self.reject_passed(islands, passed, contacts);
         if contacts.is_empty() {
             let is_deep = islands.has_separation();
             contacts.extend(self.shapes.push_out(is_deep, self.inside));
@@ -324,17 +326,17 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
     fn reject_passed(
         &self,
         islands: &OverlapIslands,
+        passed: &mut PassedTriangles,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
-        if islands.is_empty() {
-            return;
-        }
+        // Surfaces are asked for only where something crosses.
+        let Some(pair) = islands.first() else { return };
         if self.shapes.is_solid(0) || self.shapes.is_solid(1) {
             return;
         }
         for i in 0..2 {
-            if let Some(surface) = self.shapes.surface(i, 0) {
-                reject_passed(i, &surface.facets, islands.final_normals(i), contacts);
+            if let Some(surface) = self.shapes.surface(i, pair[i]) {
+                passed.reject(i, &surface.facets, islands.final_normals(i), contacts);
             }
         }
     }

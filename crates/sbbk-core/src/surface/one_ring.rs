@@ -83,7 +83,7 @@ impl<A: HalfEdges> Facets for IndexedTriangles<'_, A> {
 pub struct OneRing<F> {
     /// The triangles of the surface.
     pub facets: F,
-    /// What is on either side of the triangle in question.
+    /// The side that the triangle in question has.
     pub side: Side,
 }
 
@@ -113,8 +113,8 @@ impl<F: Facets> OneRing<F> {
     /// True if no triangle of the one-ring of a feature comes nearer to the other body in a unit
     /// direction, and the direction does not lead into the solid.
     ///
-    /// The direction leads from a point of the feature to the nearest point of the other body: along
-    /// the normal of a face, or within the Voronoi region of an edge or a vertex. `contact` has that
+    /// The direction leads from a point of the feature to the nearest point of the other body. From a
+    /// face it is the normal; from an edge or a vertex it is within the Voronoi region. `contact` has that
     /// point and the feature of the other body, if known. A neighbour may come slightly nearer where
     /// the surface bends; within a flat side, edges and vertices are no local minima.
     pub fn is_local_minimum(
@@ -133,10 +133,7 @@ impl<F: Facets> OneRing<F> {
             Some((_, Feature::Face)) => RISE_TO_FACE,
             _ => RISE,
         };
-        let normal = self.normal(triangle);
-        // A triangle without an area has no plane.
-        let bend = if normal == DVec3::ZERO { f64::INFINITY } else { 0.0 };
-        let mut slopes = Slopes { direction, normal, rise: 0.0, bend };
+        let mut slopes = Slopes::new(direction, self.normal(triangle));
         let mut height = 0.0;
         let is_closed =
             self.visit(triangle, feature, |Wedge { edges: [u, v], are_new, .. }| {
@@ -156,19 +153,9 @@ impl<F: Facets> OneRing<F> {
         }
         if !self.facets.is_whole(triangle, feature) {
             let is_open = self.is_solid() && !is_closed;
-            let mut heights = Heights::default();
             let place = contact.map(|(place, _)| place);
-            self.visit_at(triangle, feature, place, |corners, seam| {
-                let mut all = slopes;
-                let is_far = |corner: &&DVec3| corner.length_squared() > seam * seam;
-                corners.iter().filter(is_far).for_each(|&corner| all.add(corner));
-                let is_new = all.rise > slopes.rise || all.bend > slopes.bend;
-                if (is_new || is_open) && touches(corners, [DVec3::ZERO; 2], seam) {
-                    slopes = all;
-                    heights.add(corners, direction);
-                }
-            });
-            height = if is_open { heights.sum() } else { height };
+            let sum = self.add_all_at(triangle, feature, place, is_open, &mut slopes);
+            height = if is_open { sum } else { height };
         }
         let leads_in = height < 0.0;
         !slopes.exceed(most) && !leads_in
@@ -194,37 +181,41 @@ impl<F: Facets> OneRing<F> {
             ControlFlow::Continue(())
         });
         if !is_closed && !self.facets.is_whole(triangle, feature) {
-            let mut heights = Heights::default();
-            self.visit_at(triangle, feature, None, |corners, seam| {
-                if touches(corners, [DVec3::ZERO; 2], seam) {
-                    heights.add(corners, direction);
-                }
-            });
-            height = heights.sum();
+            let mut slopes = Slopes::new(direction, self.normal(triangle));
+            height = self.add_all_at(triangle, feature, None, true, &mut slopes);
         }
         height < 0.0
     }
 
-    /// Calls `visit` with the triangles near a point of a feature, as seen from that point, and with
-    /// the distance up to which they touch it. Without a point, it is the vertex, or the middle of
-    /// the edge.
-    fn visit_at(
+    /// Adds the slopes of all triangles that touch a point of a feature. Returns the sum of their
+    /// heights if `with_heights`. Without a `place`, the point is the vertex, or the middle of the edge.
+    fn add_all_at(
         &self,
         triangle: u32,
         feature: Feature,
         place: Option<DVec3>,
-        mut visit: impl FnMut(&[DVec3; 3], f64),
-    ) {
+        with_heights: bool,
+        slopes: &mut Slopes,
+    ) -> f64 {
         let first = half_edge(triangle, feature);
         let place = place.unwrap_or_else(|| match feature {
             Feature::Vertex(_) => self.corner(first, 0),
             _ => self.corner(first, 0).midpoint(self.corner(first, 1)),
         });
         let seam = seam(&each(|i| self.corner(first, i)));
+        let mut heights = Heights::default();
         self.facets.near([place - seam, place + seam], &mut |other| {
             let corners = each(|i| self.corner(3 * other, i) - place);
-            visit(&corners, seam);
+            let mut all = *slopes;
+            let is_far = |corner: &&DVec3| corner.length_squared() > seam * seam;
+            corners.iter().filter(is_far).for_each(|&corner| all.add(corner));
+            let is_new = all.rise > slopes.rise || all.bend > slopes.bend;
+            if (is_new || with_heights) && touches(&corners, [DVec3::ZERO; 2], seam) {
+                *slopes = all;
+                heights.add(&corners, slopes.direction);
+            }
         });
+        heights.sum()
     }
 
     /// Length by which the flat side of a triangle continues beyond it in a unit direction, from
@@ -365,6 +356,12 @@ struct Slopes {
 }
 
 impl Slopes {
+    /// The slopes before any triangle. A triangle without an area has no plane to bend from.
+    fn new(direction: DVec3, normal: DVec3) -> Self {
+        let bend = if normal == DVec3::ZERO { f64::INFINITY } else { 0.0 };
+        Self { direction, normal, rise: 0.0, bend }
+    }
+
     /// Takes note of the way to a corner.
     #[inline(always)]
     fn add(&mut self, edge: DVec3) {

@@ -1,4 +1,4 @@
-//! What is in front of a triangle and behind it: by the winding number, counted along rays.
+//! Sides of triangles: the body or nothing, by winding numbers that rays count.
 //!
 //! A ray from a point inside a closed surface leaves the surface once more than it enters. This holds
 //! for triangle soups, T-junctions, doubled triangles and parts that overlap, and needs no adjacency.
@@ -62,7 +62,7 @@ pub enum SurfaceKind {
     Sheet,
 }
 
-/// What is on either side of a triangle.
+/// The body or nothing, in front of a triangle and behind it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Side {
     /// Nothing in front, the body behind.
@@ -96,8 +96,7 @@ const VOTES: u32 = 16;
 /// Share of a length below which two places of a ray are one.
 const TIE: f64 = 1.0e-9;
 
-/// Finds what is on either side of a triangle of a closed surface. Takes two rays if these agree with
-/// each other, else six.
+/// Finds the side of a triangle of a closed surface. Takes two rays if these find a face, else more.
 pub fn side(triangles: &impl RayTriangles, triangle: u32) -> Side {
     let first = sample(triangles, triangle, 0, 0.5);
     if first == Side::Face {

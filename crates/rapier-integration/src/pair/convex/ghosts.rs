@@ -24,15 +24,13 @@
 use std::cell::RefCell;
 
 use glamx::Vec3;
-use parry3d::bounding_volume::{Aabb, BoundingVolume};
-use parry3d::math::Real;
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::surface::strays::touches;
 
 use super::contact::PartContact;
 use super::pair::{ConvexQuery, ConvexScratch};
-use crate::mesh::MeshView;
+use crate::mesh::box_between;
 use crate::pair::update::ContactList;
 
 /// Share of the size by which two distances must differ to count as different. Higher: ghosts stay.
@@ -259,7 +257,6 @@ impl ConvexQuery<'_> {
         seam: f64,
         mut found: impl FnMut(u32),
     ) {
-        let MeshView { mesh, .. } = self.pair.mesh;
         let [triangle, part] = self.pair.mesh_place.swap(of);
         let touches = |other: u32| {
             let corners = self.pair.mesh.corners(other).map(|corner| corner.as_dvec3());
@@ -274,8 +271,9 @@ impl ConvexQuery<'_> {
             }
             return;
         }
-        let near = Aabb::new(place, place).loosened(seam as Real);
-        for other in mesh.bvh().intersect_aabb(&near).filter(|&other| touches(other)) {
+        let near = box_between([place.as_dvec3() - seam, place.as_dvec3() + seam]);
+        let bvh = self.pair.mesh.mesh.bvh();
+        for other in bvh.intersect_aabb(&near).filter(|&other| touches(other)) {
             let other = self.pair.mesh_place.swap([other, part]);
             if let Ok(index) = contacts.binary_search_by_key(&other, |(of, _)| *of) {
                 found(index as u32);
@@ -295,12 +293,30 @@ impl ConvexQuery<'_> {
             return;
         }
         let mut ghosts = std::mem::take(&mut scratch.ghosts);
+        self.find_ghosts(&mut ghosts, contacts, scratch);
+        self.turn_to_faces(&mut ghosts, contacts, scratch);
+        for (contact, &source) in ghosts.sources.iter().enumerate() {
+            let source = contacts[source as usize].1.contact;
+            // Along its own normal a contact keeps its own points.
+            if contacts[contact].1.contact.normal != source.normal {
+                contacts[contact].1.take_normal(&source);
+            }
+        }
+        scratch.ghosts = ghosts;
+    }
+
+    fn find_ghosts(
+        &self,
+        ghosts: &mut GhostContacts,
+        contacts: &[([u32; 2], PartContact)],
+        scratch: &mut ConvexScratch,
+    ) {
         let subshapes = |of: [u32; 2]| self.pair.mesh_place.swap(of);
         let keys = |&of: &[u32; 2]| {
             let [triangle, part] = subshapes(of);
             self.pair.mesh.corners(triangle).map(|corner| corner_key(part, corner))
         };
-        let scratch_of = RefCell::new(&mut *scratch);
+        let scratch_of = RefCell::new(scratch);
         let extends_beyond = |&of: &[u32; 2], contact: &ConvexContact| {
             let scratch = &mut scratch_of.borrow_mut();
             self.with_pair(subshapes(of), scratch, |pair| pair.extends_beyond(contact))
@@ -315,25 +331,26 @@ impl ConvexQuery<'_> {
             }
         };
         ghosts.find(contacts, keys, extends_beyond, find_strays);
+    }
+
+    /// Gives the normals of faces nearby to the contacts that need one.
+    fn turn_to_faces(
+        &self,
+        ghosts: &mut GhostContacts,
+        contacts: &mut ContactList<PartContact>,
+        scratch: &mut ConvexScratch,
+    ) {
         for i in 0..ghosts.on_faces.len() {
             let contact = ghosts.on_faces[i];
             ghosts.list_nearby(contact);
             let face = ghosts.nearby.iter().find_map(|&other| {
-                let (of, _) = contacts[other as usize];
-                self.with_pair(subshapes(of), scratch, |pair| pair.crossing_face_contact())?
+                let subshapes = self.pair.mesh_place.swap(contacts[other as usize].0);
+                self.with_pair(subshapes, scratch, |pair| pair.crossing_face_contact())?
             });
             if let Some(face) = face {
                 contacts[contact as usize].1.take_normal(&face);
             }
         }
-        for (contact, &source) in ghosts.sources.iter().enumerate() {
-            let source = contacts[source as usize].1.contact;
-            // Along its own normal a contact keeps its own points.
-            if contacts[contact].1.contact.normal != source.normal {
-                contacts[contact].1.take_normal(&source);
-            }
-        }
-        scratch.ghosts = ghosts;
     }
 }
 

@@ -8,10 +8,11 @@
 use glamx::DVec3;
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
+use sbbk_core::surface::SurfaceKind;
 
 use super::contact::{NormalSource, PartContact};
 use super::pair::{ConvexPair, ConvexQuery, ConvexScratch};
-use crate::mesh::{BEHIND, is_covered, nearest};
+use crate::mesh::{BEHIND, MeshSurface, is_covered, nearest};
 use crate::pair::update::ContactList;
 
 /// Depth of a contact, as a share of the part's radius, from which a part whose middle is outside may
@@ -19,7 +20,7 @@ use crate::pair::update::ContactList;
 /// nearest face.
 const DEEP: f64 = 0.1;
 
-impl ConvexQuery<'_> {
+impl<'q> ConvexQuery<'q> {
     /// Returns the push-out of a part and its triangle, if more than half of the part is in the solid.
     /// `deepest` is the least distance of the part's contacts, without its radius.
     pub(super) fn push_out(
@@ -28,7 +29,7 @@ impl ConvexQuery<'_> {
         deepest: f64,
         scratch: &mut ConvexScratch,
     ) -> Option<(u32, PartContact)> {
-        let surface = self.surface.as_ref().filter(|_| self.pair.leave_solids)?;
+        let surface = self.left_surface()?;
         let mesh = self.pair.mesh.mesh;
         self.pair.parts.with(part, |shape| {
             let middle = shape.shape.middle()?;
@@ -40,8 +41,7 @@ impl ConvexQuery<'_> {
                 return None;
             }
             let (triangle, _, behind) = nearest(mesh, from)?;
-            if behind.abs() < BEHIND || surface.kind(mesh) != sbbk_core::surface::SurfaceKind::Solid
-            {
+            if behind.abs() < BEHIND || surface.kind(mesh) != SurfaceKind::Solid {
                 return None;
             }
             let [a, b, c] = placed.in_part(self.pair.mesh.corners(triangle));
@@ -61,13 +61,18 @@ impl ConvexQuery<'_> {
         })?
     }
 
+    /// Returns the surface of the mesh if parts are to leave solids.
+    fn left_surface(&self) -> Option<&MeshSurface<'q>> {
+        self.surface.as_ref().filter(|_| self.pair.leave_solids)
+    }
+
     /// Replaces the contacts of each part that has a push-out.
     pub(super) fn add_push_outs(
         &self,
         contacts: &mut ContactList<PartContact>,
         scratch: &mut ConvexScratch,
     ) {
-        if self.surface.is_none() || !self.pair.leave_solids {
+        if self.left_surface().is_none() {
             return;
         }
         let ConvexPair { parts, mesh_place, .. } = self.pair;

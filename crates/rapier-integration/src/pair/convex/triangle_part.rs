@@ -44,7 +44,7 @@ const UPRIGHT: f64 = 1.0e-3;
 
 impl TrianglePartPair<'_> {
     /// Returns the point of a contact in the frame of the mesh, and the distance up to which triangles
-    /// touch it; `None` for a contact with the normal of its triangle, which is no ghost.
+    /// touch that point. A contact with the normal of its triangle is no ghost and has `None`.
     pub(super) fn touched_place(&self, contact: &ConvexContact) -> Option<(Vec3, f64)> {
         let corners @ [a, b, c] = self.corners.map(|corner| corner.as_dvec3());
         let [normal, _] = self.placed.directions(contact.normal);
