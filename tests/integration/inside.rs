@@ -3,29 +3,22 @@
 
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
-use rapier_integration::{ContactDetail, PreparedTree, SbbkConfig, SbbkDispatcher, SurfaceKind};
+use rapier_integration::{ContactDetail, SbbkConfig, SbbkDispatcher};
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::PointQuery;
-use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshFlags};
+use rapier3d::parry::shape::{SharedShape, TriMeshFlags};
 use rapier3d::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder};
 use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::support::{
-    Manifold, Pair, Question, assert_same, counting, distance, every, nudge, per_triangle, shape,
-    shape_with, turned_inside_out,
+    Manifold, Pair, Question, assert_same, counting, declare_solid, distance, every, nudge,
+    per_triangle, shape, shape_with, turned_inside_out,
 };
 
 const HALF: Vec3 = Vec3::new(2.0, 1.0, 2.0);
 
 fn slab(cells: u32) -> Mesh {
     mesh::cuboid(HALF, cells)
-}
-
-/// Declares that a mesh is a solid, as long as the result lives.
-fn declare_solid(dispatcher: &SbbkDispatcher, mesh: &TriMesh) -> PreparedTree {
-    let prepared = dispatcher.prepare(mesh).unwrap();
-    prepared.set_surface_kind(SurfaceKind::Solid);
-    prepared
 }
 
 fn ask(query: &Question) -> Vec<Manifold> {

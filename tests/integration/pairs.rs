@@ -1,13 +1,12 @@
 use std::collections::BTreeMap;
 
 use glamx::{Quat, Vec3};
-use rapier_integration::SurfaceKind;
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::TrackedContact;
 use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh;
 
-use crate::support::{Pair, Question, counting, every, shape};
+use crate::support::{Pair, Question, counting, declare_solid, every, shape};
 
 /// Would catch a bound of the motion by the ball of the large mesh, which a rocking body exceeds in
 /// each step.
@@ -83,8 +82,7 @@ fn the_push_out_keeps_its_data_where_a_host_changes_the_list() {
     let inner = shape(&mesh::cuboid(Vec3::splat(0.1), 1));
     for axis in [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y, Vec3::Z, -Vec3::Z] {
         let dispatcher = every();
-        let declared = dispatcher.prepare(&outer).unwrap();
-        declared.set_surface_kind(SurfaceKind::Solid);
+        let _solid = declare_solid(&dispatcher, &outer);
         let mut pair = Pair::<u32, ()>::default();
         let question = |depth: Real| {
             let pose = Pose::from_translation((0.4 - depth) * axis);

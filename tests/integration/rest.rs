@@ -1,5 +1,5 @@
 use glamx::Vec3;
-use rapier_integration::{SbbkDispatcher, SurfaceKind};
+use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::{RigidBody, RigidBodyBuilder};
 use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use rapier3d::math::{Real, Vector};
@@ -8,7 +8,7 @@ use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh;
 use sbbk_testkit::scene::{BoxStack, HeadOnSlope, Scene, SceneWorld};
 
-use crate::support::shape_with;
+use crate::support::{declare_solid, shape_with};
 
 /// One world under stock Rapier, and again under SBBK.
 struct Both {
@@ -180,8 +180,7 @@ fn boxes_of_many_triangles_come_up_out_of_a_slab() {
     for depth in [0.22, 0.83, 0.95] {
         let mut world = PhysicsWorld::new();
         let (dispatcher, slab) = (SbbkDispatcher::default(), solid(Vec3::new(5.0, 1.0, 5.0)));
-        let declared = dispatcher.prepare(slab.shape.as_trimesh().unwrap()).unwrap();
-        declared.set_surface_kind(SurfaceKind::Solid);
+        let _solid = declare_solid(&dispatcher, slab.shape.as_trimesh().unwrap());
         world.narrow_phase.set_query_dispatcher(dispatcher);
         world.insert(RigidBodyBuilder::fixed().translation(-Vec3::Y), slab);
         let body = RigidBodyBuilder::dynamic().translation((0.5 - depth) * Vec3::Y);

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
-use rapier_integration::{ContactDetail, ContactSet, SbbkConfig, SbbkDispatcher};
+use rapier_integration::{
+    ContactDetail, ContactSet, PreparedTree, SbbkConfig, SbbkDispatcher, SurfaceKind,
+};
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::{
     ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
@@ -118,6 +120,13 @@ pub const SETS: [ContactSet; 2] = [ContactSet::Surfaces, ContactSet::Triangles];
 /// A dispatcher with a manifold for every contact: what can be compared triangle by triangle.
 pub fn every() -> SbbkDispatcher {
     having(ContactSet::default())
+}
+
+/// Declares that a mesh is a solid, as long as the result lives.
+pub fn declare_solid(dispatcher: &SbbkDispatcher, mesh: &TriMesh) -> PreparedTree {
+    let prepared = dispatcher.prepare(mesh).unwrap();
+    prepared.set_surface_kind(SurfaceKind::Solid);
+    prepared
 }
 
 /// A dispatcher like [`every`] that counts its queries.

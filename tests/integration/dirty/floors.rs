@@ -1,23 +1,20 @@
 use glamx::{Pose3, Quat, Vec3};
-use rapier3d::geometry::ColliderBuilder;
 use sbbk_testkit::mesh::{self, Mesh};
 
-use super::rides::{Course, case, cuboid, riders};
-use super::table::judge;
-use super::{FLAGS, row, shape};
+use super::rides::Course;
 
 /// Side of a floor, in units; all paths are shorter than 12.
 const SIZE: f32 = 16.0;
 
 /// Floors at height 0 that are flat for a body on them.
-fn floors() -> Vec<(&'static str, Mesh)> {
+fn floors() -> Vec<(&'static str, Vec<Mesh>)> {
     let plain = mesh::floor(SIZE, 32);
     let strips = mesh::strips(SIZE, 8, 1);
     let turned = strips.clone().posed(&Pose3::from_rotation(Quat::from_rotation_y(0.3)));
     let half_extents = Vec3::new(0.5 * SIZE, 1.0, 0.5 * SIZE);
     let below = |mesh: Mesh| mesh.mapped(|v| v - Vec3::Y);
     let tiles = mesh::tiles(SIZE, 16, 1.0);
-    vec![
+    let floors = vec![
         ("unregistered, 12,800", mesh::floor(2.5 * SIZE, 80)),
         ("two triangles", mesh::floor(SIZE, 1)),
         ("plain", plain.clone()),
@@ -34,27 +31,15 @@ fn floors() -> Vec<(&'static str, Mesh)> {
         ("uneven box", below(mesh::uneven_box(half_extents, [7, 4, 16, 1, 5, 3]))),
         ("box with a wall", below(mesh::walled_box(half_extents, 8))),
         ("skirted", mesh::skirted(&plain, -1.0)),
-    ]
+    ];
+    floors.into_iter().map(|(name, floor)| (name, vec![floor])).collect()
 }
 
 /// Would catch contacts at edges that a floor does not have for a body on it.
 #[test]
 fn bodies_ride_on_dirty_floors_as_on_a_cuboid() {
     const COURSE: Course = Course { speed: 5.0, steps: 180 };
-    let mut cases = Vec::new();
-    let floors = floors();
-    for flags in FLAGS {
-        let riders = riders(flags);
-        let controls = riders.each_ref().map(|rider| COURSE.rides(&[cuboid()], rider));
-        for (name, floor) in &floors {
-            let floor = ColliderBuilder::new(shape(floor, flags));
-            for (rider, controls) in riders.iter().zip(&controls) {
-                let rides = COURSE.rides(std::slice::from_ref(&floor), rider);
-                cases.push(case(row(name, flags), rider, &rides, controls));
-            }
-        }
-    }
-    judge("share of the path on a cuboid, and added speed upwards", &cases, KNOWN);
+    COURSE.judge("share of the path on a cuboid, and added speed upwards", &floors(), KNOWN);
 }
 
 /// Floors and bodies that fail today.

@@ -4,7 +4,7 @@
 //! when a listed case passes. To see the tables:
 //! `cargo test -p sbbk --test integration dirty -- --nocapture`.
 
-use rapier_integration::SbbkDispatcher;
+use rapier_integration::{PreparedTree, SbbkDispatcher};
 use rapier3d::geometry::SharedShape;
 use rapier3d::parry::shape::TriMeshFlags;
 use rapier3d::pipeline::PhysicsWorld;
@@ -37,9 +37,18 @@ const FLAGS: [TriMeshFlags; 2] = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTER
 
 /// An empty world with the dispatcher of a user.
 fn world() -> PhysicsWorld {
+    prepared_world(&[], false).0
+}
+
+/// An empty world with the dispatcher of a user, and its registrations of shapes.
+fn prepared_world(shapes: &[&SharedShape], is_prepared: bool) -> (PhysicsWorld, Vec<PreparedTree>) {
+    let dispatcher = SbbkDispatcher::default();
+    let prepared = shapes.iter().filter(|_| is_prepared);
+    let prepared = prepared.filter_map(|shape| dispatcher.prepare_shape(shape).expect("no defect"));
+    let prepared = prepared.collect();
     let mut world = PhysicsWorld::new();
-    world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
-    world
+    world.narrow_phase.set_query_dispatcher(dispatcher);
+    (world, prepared)
 }
 
 fn shape(mesh: &Mesh, flags: TriMeshFlags) -> SharedShape {

@@ -5,11 +5,11 @@ use oorandom::Rand32;
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use rapier3d::parry::shape::TriMeshFlags;
-use sbbk_testkit::mesh;
+use sbbk_testkit::mesh::{self, Mesh};
 use sbbk_testkit::scene::random::rotation;
 
-use super::table::Case;
-use super::{shape, world};
+use super::table::{Case, judge};
+use super::{FLAGS, row, shape, world};
 
 const FRICTION: f32 = 0.1;
 /// Steps in which a body lands.
@@ -54,11 +54,11 @@ pub(super) struct Ride {
 }
 
 /// Ground without edges, its top at height 0.
-pub(super) fn cuboid() -> ColliderBuilder {
+fn cuboid() -> ColliderBuilder {
     ColliderBuilder::cuboid(20.0, 1.0, 20.0).translation(-Vec3::Y)
 }
 
-pub(super) fn riders(flags: TriMeshFlags) -> [Rider; 7] {
+fn riders(flags: TriMeshFlags) -> [Rider; 7] {
     let rider = |name, shape, start| Rider { name, shape, start };
     let tapered = [-HALF, HALF].into_iter().flat_map(|y| {
         let wide = if y < 0.0 { 0.7 * HALF } else { HALF };
@@ -78,8 +78,26 @@ pub(super) fn riders(flags: TriMeshFlags) -> [Rider; 7] {
 }
 
 impl Course {
+    /// Judges rides over roads, each of one mesh or more, by those on a cuboid.
+    pub(super) fn judge(&self, title: &str, roads: &[(&str, Vec<Mesh>)], known: &[(&str, &str)]) {
+        let mut cases = Vec::new();
+        for flags in FLAGS {
+            let riders = riders(flags);
+            let controls = riders.each_ref().map(|rider| self.rides(&[cuboid()], rider));
+            for (name, road) in roads {
+                let colliders = road.iter().map(|mesh| ColliderBuilder::new(shape(mesh, flags)));
+                let road: Vec<ColliderBuilder> = colliders.collect();
+                for (rider, controls) in riders.iter().zip(&controls) {
+                    let rides = self.rides(&road, rider);
+                    cases.push(case(row(name, flags), rider, &rides, controls));
+                }
+            }
+        }
+        judge(title, &cases, known);
+    }
+
     /// Rides of a body from several starts.
-    pub(super) fn rides(&self, ground: &[ColliderBuilder], rider: &Rider) -> Vec<Ride> {
+    fn rides(&self, ground: &[ColliderBuilder], rider: &Rider) -> Vec<Ride> {
         (0..STARTS).map(|seed| self.ride(ground, rider, seed)).collect()
     }
 
@@ -115,7 +133,7 @@ impl Course {
 }
 
 /// Compares with the same body on a cuboid: the worst of all starts.
-pub(super) fn case(row: String, rider: &Rider, rides: &[Ride], controls: &[Ride]) -> Case {
+fn case(row: String, rider: &Rider, rides: &[Ride], controls: &[Ride]) -> Case {
     // A mesh ball rocks, and loses speed at its facets by chance.
     let [most, most_rise] = if rider.name == "mesh ball" { [0.04, 0.15] } else { [0.015, 0.05] };
     let pairs = || rides.iter().zip(controls);

@@ -1,10 +1,7 @@
 use glamx::Vec3;
-use rapier3d::geometry::ColliderBuilder;
 use sbbk_testkit::mesh::{self, Mesh};
 
-use super::rides::{Course, case, cuboid, riders};
-use super::table::judge;
-use super::{FLAGS, row, shape};
+use super::rides::Course;
 
 /// Side of all chunks, or beams, of a road together.
 const SIZE: f32 = 16.0;
@@ -38,21 +35,7 @@ fn roads() -> Vec<(&'static str, Vec<Mesh>)> {
 #[test]
 fn bodies_ride_over_chunks_as_on_a_cuboid() {
     const COURSE: Course = Course { speed: 10.0, steps: 72 };
-    let mut cases = Vec::new();
-    let roads = roads();
-    for flags in FLAGS {
-        let riders = riders(flags);
-        let controls = riders.each_ref().map(|rider| COURSE.rides(&[cuboid()], rider));
-        for (name, road) in &roads {
-            let colliders = road.iter().map(|mesh| ColliderBuilder::new(shape(mesh, flags)));
-            let road: Vec<ColliderBuilder> = colliders.collect();
-            for (rider, controls) in riders.iter().zip(&controls) {
-                let rides = COURSE.rides(&road, rider);
-                cases.push(case(row(name, flags), rider, &rides, controls));
-            }
-        }
-    }
-    judge("chunks at 10 m/s: share of the path, added speed upwards", &cases, KNOWN);
+    COURSE.judge("chunks at 10 m/s: share of the path, added speed upwards", &roads(), KNOWN);
 }
 
 /// Chunks and bodies that fail today.

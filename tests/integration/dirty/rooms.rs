@@ -1,12 +1,11 @@
 use glamx::Vec3;
-use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use rapier3d::parry::shape::TriMeshFlags;
 use sbbk_testkit::mesh;
 
 use super::table::{Case, judge};
-use super::{FLAGS, row, shape, world};
+use super::{FLAGS, prepared_world, row, shape};
 
 /// Half the side of a room, and of a body in it.
 const ROOM: f32 = 3.0;
@@ -33,11 +32,7 @@ fn bodies_stay_in_rooms() {
         settings.flat_map(|setting| FLAGS.map(|flags| (setting, flags)))
     {
         let room = shape(&mesh::cuboid(Vec3::splat(ROOM), cells), flags);
-        let dispatcher = SbbkDispatcher::default();
-        let prepared =
-            is_prepared.then(|| dispatcher.prepare_shape(&room).expect("no defect")).flatten();
-        let mut world = world();
-        world.narrow_phase.set_query_dispatcher(dispatcher);
+        let (mut world, prepared) = prepared_world(&[&room], is_prepared);
         world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(room));
         let bodies = bodies(flags).map(|(name, shape)| (name, ColliderBuilder::new(shape)));
         let mut at = Vec3::new(-1.8, 0.1, 0.17);

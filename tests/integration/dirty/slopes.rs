@@ -2,7 +2,6 @@ use std::f32::consts::FRAC_PI_2;
 
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
-use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::{MassProperties, RigidBodyBuilder};
 use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use rapier3d::parry::shape::TriMeshFlags;
@@ -10,7 +9,7 @@ use sbbk_testkit::mesh::{self, Mesh};
 use sbbk_testkit::scene::random::rotation;
 
 use super::table::{Case, judge};
-use super::{FLAGS, shape, world};
+use super::{FLAGS, prepared_world, shape};
 
 const ANGLE: f32 = 20.0;
 const FRICTION: f32 = 0.8;
@@ -58,12 +57,7 @@ fn rollers() -> Vec<Roller> {
 /// The path down a slope in 3 s.
 fn roll(roller: &Roller, ground: &SharedShape, body: &SharedShape, is_prepared: bool) -> f32 {
     let tilt = Quat::from_rotation_z(-ANGLE.to_radians());
-    let mut world = world();
-    let dispatcher = SbbkDispatcher::default();
-    let prepared = [ground, body].map(|shape| {
-        is_prepared.then(|| dispatcher.prepare_shape(shape).expect("no defect")).flatten()
-    });
-    world.narrow_phase.set_query_dispatcher(dispatcher);
+    let (mut world, prepared) = prepared_world(&[ground, body], is_prepared);
     let below = if ground.as_cuboid().is_some() { tilt * -Vec3::Y } else { Vec3::ZERO };
     let slope = RigidBodyBuilder::fixed().translation(below).rotation(tilt.to_scaled_axis());
     world.insert(slope, ColliderBuilder::new(ground.clone()).friction(FRICTION));
@@ -125,11 +119,7 @@ fn ring() -> Mesh {
 fn drop_depth(ring: &Mesh, height: f32, seed: u64, is_prepared: bool) -> f32 {
     let [floor, body] =
         [&mesh::floor(20.0, 1), ring].map(|mesh| shape(mesh, TriMeshFlags::empty()));
-    let dispatcher = SbbkDispatcher::default();
-    let prepared =
-        is_prepared.then(|| dispatcher.prepare_shape(&body).expect("no defect")).flatten();
-    let mut world = world();
-    world.narrow_phase.set_query_dispatcher(dispatcher);
+    let (mut world, prepared) = prepared_world(&[&body], is_prepared);
     world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(floor));
     let turn = rotation(&mut Rand32::new(seed)) * Quat::from_rotation_x(FRAC_PI_2);
     let start = RigidBodyBuilder::dynamic().translation(Vec3::new(0.7, height + 0.5, 0.4));

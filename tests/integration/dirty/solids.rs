@@ -1,11 +1,12 @@
 use glamx::{Quat, Vec3};
-use rapier_integration::{SbbkDispatcher, SurfaceKind};
+use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::ColliderBuilder;
 use sbbk_testkit::mesh::{self, Mesh, uneven_box};
 
 use super::table::{Case, judge};
 use super::{FLAGS, row, shape, world};
+use crate::support::declare_solid;
 
 /// Half the size of a box; its top is at height 1.
 const HALF: Vec3 = Vec3::new(2.0, 1.0, 2.0);
@@ -59,9 +60,7 @@ fn closed_meshes_push_out_what_has_sunk_in() {
             let mut world = world();
             let dispatcher = SbbkDispatcher::default();
             let mesh = solid.shape.as_trimesh().expect("a mesh");
-            let declared =
-                column.starts_with("declared").then(|| dispatcher.prepare(mesh).unwrap());
-            declared.iter().for_each(|mesh| mesh.set_surface_kind(SurfaceKind::Solid));
+            let declared = column.starts_with("declared").then(|| declare_solid(&dispatcher, mesh));
             world.narrow_phase.set_query_dispatcher(dispatcher);
             world.insert(RigidBodyBuilder::fixed(), solid.clone());
             let place = Vec3::new(0.23, height, 0.11);
