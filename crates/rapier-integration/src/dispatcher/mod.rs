@@ -105,8 +105,8 @@ impl SbbkDispatcher {
         self.cache.registered(mesh).is_some()
     }
 
-    /// Returns what small meshes take this mesh for. A deformable mesh is a sheet, and so is an
-    /// unregistered one of more than 8192 triangles.
+    /// Returns what this mesh is taken for. A deformable mesh is a sheet. Analyses the mesh if no
+    /// query has done so, in up to 10 ms.
     pub fn surface_kind(&self, mesh: &TriMesh) -> SurfaceKind {
         let is_analysed = !mesh.is_deformable() && self.cache.view(mesh).is_some();
         if is_analysed { self.cache.surface_kind(mesh) } else { SurfaceKind::Sheet }

@@ -2,7 +2,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicUsize, Ordering};
 
 use parry3d::shape::TriMesh;
-use sbbk_core::surface::{Surface, SurfaceKind};
+use sbbk_core::surface::{Surface, SurfaceKind, kind};
 use sbbk_core::tree::{BuildError, BuildOptions, Tree};
 
 use super::neighbours::{MeshRays, TriangleFlags};
@@ -12,6 +12,8 @@ use super::neighbours::{MeshRays, TriangleFlags};
 #[derive(Default)]
 pub(crate) struct MeshData {
     surface: OnceLock<Surface>,
+    /// Kind of a mesh whose surface is not computed.
+    kind: OnceLock<SurfaceKind>,
     /// Flags of each triangle of the surface.
     flags: OnceLock<Box<[TriangleFlags]>>,
     tree: OnceLock<Tree>,
@@ -71,9 +73,17 @@ impl MeshData {
         self.surface.get().expect("set just now")
     }
 
-    /// The kind that a user declared, else the computed one, if the mesh has been analysed.
+    /// The kind that a user declared, else the computed one, if it has been computed.
     pub(crate) fn kind(&self) -> Option<SurfaceKind> {
-        self.declared_kind().or_else(|| Some(self.surface.get()?.kind()))
+        let computed = || self.surface.get().map(Surface::kind).or(self.kind.get().copied());
+        self.declared_kind().or_else(computed)
+    }
+
+    /// Returns the kind of `mesh`, whose data this must be. Takes some thousand rays the first time,
+    /// unless the surface is computed.
+    #[inline]
+    pub(super) fn kind_of(&self, mesh: &TriMesh) -> SurfaceKind {
+        self.kind().unwrap_or_else(|| *self.kind.get_or_init(|| kind(&MeshRays(mesh))))
     }
 
     #[inline]

@@ -45,9 +45,8 @@ impl<'a, 'm> MeshAdjacency<'a, 'm> {
 
     /// Returns what is on either side of a triangle of a closed mesh. Takes two rays the first time.
     pub(crate) fn side(self, triangle: u32) -> Side {
-        let Self::Full { mesh, .. } = self else { return Side::Sheet };
         self.with_flags(triangle, TriangleFlags::side).unwrap_or_else(|| {
-            let side = side(&MeshRays(mesh), triangle);
+            let side = side(&MeshRays(self.mesh()), triangle);
             self.with_flags(triangle, |flags| flags.set_side(side));
             side
         })

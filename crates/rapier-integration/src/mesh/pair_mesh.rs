@@ -7,7 +7,7 @@ use sbbk_core::tree::Tree;
 use super::data::MeshData;
 use super::identity::MeshToken;
 use super::neighbours::{MeshAdjacency, MeshFacets, NearTwins, Neighbours};
-use super::store::{MeshStore, is_small, may_analyse};
+use super::store::{MeshStore, is_analysed, is_small};
 use super::view::MeshView;
 
 /// State of one mesh of a pair of colliders, kept from query to query.
@@ -71,15 +71,14 @@ impl PairMesh {
         change
     }
 
-    /// Returns the tree of a mesh, if there is one, and its surface. `other_count` is the number of
-    /// triangles of the other mesh. Call [`update`](Self::update) first.
+    /// Returns the tree of a mesh, if there is one, and its surface. Call [`update`](Self::update)
+    /// first.
     ///
     /// The first query does not look for an unregistered mesh: that takes a hash of all content, and
     /// many pairs never touch.
     pub(crate) fn acquire<'a>(
         &'a mut self,
         view: &MeshView<'a>,
-        other_count: usize,
     ) -> Option<(Option<&'a Tree>, MeshSurface<'a>)> {
         let Self::Rigid(known) = self else { return None };
         let (mesh, store) = (view.mesh, view.store);
@@ -87,12 +86,8 @@ impl PairMesh {
         if !is_first && is_small(mesh.indices().len()) {
             store.build_within_budget(mesh, known.data.get_or_init(|| store.entry(mesh)));
         }
-        let surface = known.surface(view, other_count);
-        let tree = match &surface {
-            MeshSurface::Full { data, .. } => data.get().and_then(|data| data.tree()),
-            MeshSurface::Local(_) => None,
-        };
-        Some((tree, surface))
+        let surface = known.surface(view);
+        Some((surface.data.get().and_then(|data| data.tree()), surface))
     }
 
     /// Returns the surface of a mesh that touches no other mesh and needs no tree.
@@ -102,7 +97,7 @@ impl PairMesh {
     ) -> Option<MeshSurface<'a>> {
         let Self::Rigid(known) = self else { return None };
         known.search_registered(view);
-        Some(known.surface(view, 0))
+        Some(known.surface(view))
     }
 }
 
@@ -153,38 +148,41 @@ impl RigidMesh {
         self.data = data.map(OnceLock::from).unwrap_or_default();
     }
 
-    fn surface<'a>(&'a mut self, view: &MeshView<'a>, other_count: usize) -> MeshSurface<'a> {
+    fn surface<'a>(&'a mut self, view: &MeshView<'a>) -> MeshSurface<'a> {
         let Self { data, is_registered, neighbours, .. } = self;
-        if *is_registered || may_analyse(view.mesh.indices().len(), other_count) {
-            MeshSurface::Full { data, store: view.store }
-        } else {
-            MeshSurface::Local(NearTwins::new(view.mesh, neighbours))
-        }
+        let is_whole = *is_registered || is_analysed(view.mesh.indices().len());
+        let near = (!is_whole).then(|| NearTwins::new(view.mesh, neighbours));
+        MeshSurface { data, store: view.store, near }
     }
 }
 
-/// Adjacency of the triangles of a mesh.
-pub(crate) enum MeshSurface<'a> {
-    /// Adjacency of all triangles, computed at the first contact.
-    Full { data: &'a OnceLock<Arc<MeshData>>, store: &'a MeshStore },
-    /// Adjacency of triangles near contacts. The mesh is large, and counts as a sheet.
-    Local(NearTwins<'a>),
+/// Adjacency of the triangles of a mesh, and its kind. Both are computed at the first contact.
+pub(crate) struct MeshSurface<'a> {
+    data: &'a OnceLock<Arc<MeshData>>,
+    store: &'a MeshStore,
+    /// Adjacency near contacts, if the mesh is too large to analyse as a whole.
+    near: Option<NearTwins<'a>>,
 }
 
 impl<'m> MeshSurface<'m> {
+    #[inline]
+    fn data(&self, mesh: &TriMesh) -> &Arc<MeshData> {
+        self.data.get_or_init(|| self.store.entry(mesh))
+    }
+
     /// Returns the adjacency of `mesh`, whose surface this must be, its kind, and true if a user
     /// declared the kind.
     #[inline]
     fn adjacency<'a>(&'a self, mesh: &'a TriMesh) -> (MeshAdjacency<'a, 'm>, SurfaceKind, bool) {
-        match self {
-            Self::Full { data, store } => {
-                let data = data.get_or_init(|| store.entry(mesh));
-                let (surface, kind) = store.surface(mesh, data);
-                let adjacency = MeshAdjacency::Full { mesh, surface, flags: data.flags() };
-                (adjacency, kind, data.declared_kind().is_some())
+        let data = self.data(mesh);
+        let adjacency = match &self.near {
+            Some(twins) => MeshAdjacency::Local(twins),
+            None => {
+                let surface = self.store.surface(mesh, data);
+                MeshAdjacency::Full { mesh, surface, flags: data.flags() }
             }
-            Self::Local(twins) => (MeshAdjacency::Local(twins), SurfaceKind::Sheet, false),
-        }
+        };
+        (adjacency, data.kind_of(mesh), data.declared_kind().is_some())
     }
 
     /// Returns the one-rings around a triangle of `mesh`.
@@ -202,11 +200,6 @@ impl<'m> MeshSurface<'m> {
             _ => adjacency.side(triangle),
         };
         OneRing { facets: adjacency.facets(), side }
-    }
-
-    /// Returns true if a mesh around another one may be a solid. A large unregistered one is not.
-    pub(crate) fn may_be_solid(&self) -> bool {
-        matches!(self, Self::Full { .. })
     }
 
     /// Returns true if a user declared that the mesh is a solid.
@@ -259,45 +252,44 @@ mod tests {
     }
 
     /// Returns whether the whole surface is used, and whether the mesh is a solid.
-    fn surface(known: &mut PairMesh, store: &MeshStore, mesh: &TriMesh, other: usize) -> [bool; 2] {
+    fn surface(known: &mut PairMesh, store: &MeshStore, mesh: &TriMesh) -> [bool; 2] {
         let view = store.view(mesh).unwrap();
         known.update(&view);
-        let (_, surface) = known.acquire(&view, other).unwrap();
-        [matches!(surface, MeshSurface::Full { .. }), surface.kind(mesh) == SurfaceKind::Solid]
+        let (_, surface) = known.acquire(&view).unwrap();
+        [surface.near.is_none(), surface.kind(mesh) == SurfaceKind::Solid]
     }
 
     #[test]
-    fn large_meshes_are_analysed_if_registered_or_against_large_ones() {
+    fn large_meshes_are_solids_whether_or_not_they_are_registered() {
         let store = store();
         let shapes = [100, 260].map(|rows| SharedShape::new(mesh(rows, TriMeshFlags::empty())));
         let [large, larger] = shapes.each_ref().map(|shape| shape.as_trimesh().unwrap());
-        let ask = |mesh, other| surface(&mut PairMesh::default(), &store, mesh, other);
-        assert_eq!(ask(large, 8192), [false; 2]);
-        assert_eq!(ask(large, 8193), [true; 2]);
-        assert_eq!(ask(larger, larger.indices().len()), [false; 2]);
+        let ask = |mesh| surface(&mut PairMesh::default(), &store, mesh);
+        assert_eq!(ask(large), [true, true]);
+        assert_eq!(ask(larger), [false, true]);
         for shape in &shapes {
             let mesh = shape.as_trimesh().unwrap();
             let _registered = store.register(mesh, Some(shape)).unwrap();
-            assert_eq!(ask(mesh, 0), [true; 2]);
+            assert_eq!(ask(mesh), [true; 2]);
         }
     }
 
     #[test]
     fn a_pair_follows_registrations_and_declared_kinds() {
         let store = store();
-        let shape = SharedShape::new(mesh(100, TriMeshFlags::empty()));
+        let shape = SharedShape::new(mesh(260, TriMeshFlags::empty()));
         let mesh = shape.as_trimesh().unwrap();
         let mut known = PairMesh::default();
-        assert_eq!(surface(&mut known, &store, mesh, 0), [false; 2]);
+        assert_eq!(surface(&mut known, &store, mesh), [false, true]);
         let registered = store.register(mesh, Some(&shape)).unwrap();
         assert_eq!(known.clone().update(&store.view(mesh).unwrap()), Change::Unknown);
-        assert_eq!(surface(&mut known, &store, mesh, 0), [true; 2]);
+        assert_eq!(surface(&mut known, &store, mesh), [true; 2]);
         registered.data.declare_kind(SurfaceKind::Sheet);
         assert_eq!(known.clone().update(&store.view(mesh).unwrap()), Change::Unknown);
-        assert_eq!(surface(&mut known, &store, mesh, 0), [true, false]);
+        assert_eq!(surface(&mut known, &store, mesh), [true, false]);
         assert_eq!(known.update(&store.view(mesh).unwrap()), Change::Unchanged);
         drop(registered);
-        assert_eq!(surface(&mut known, &store, mesh, 0), [false; 2]);
+        assert_eq!(surface(&mut known, &store, mesh), [false, true]);
     }
 
     #[test]
@@ -307,7 +299,7 @@ mod tests {
         for has_tree in [false, true] {
             let view = store.view(&mesh).unwrap();
             known.update(&view);
-            assert_eq!(known.acquire(&view, 0).unwrap().0.is_some(), has_tree);
+            assert_eq!(known.acquire(&view).unwrap().0.is_some(), has_tree);
         }
     }
 
@@ -316,10 +308,10 @@ mod tests {
     fn a_pair_that_has_its_meshes_takes_no_lock() {
         let (store, mesh) = (store(), mesh(6, TriMeshFlags::empty()));
         let mut known = PairMesh::default();
-        (0..2).for_each(|_| _ = surface(&mut known, &store, &mesh, 0));
+        (0..2).for_each(|_| _ = surface(&mut known, &store, &mesh));
         let locked = store.lock_all();
         std::thread::scope(|scope| {
-            let query = || (0..20).all(|_| surface(&mut known, &store, &mesh, 0) == [true; 2]);
+            let query = || (0..20).all(|_| surface(&mut known, &store, &mesh) == [true; 2]);
             assert!(scope.spawn(query).join().unwrap());
         });
         drop(known);

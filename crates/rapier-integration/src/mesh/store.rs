@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock, Weak};
 
 use parry3d::shape::{SharedShape, TriMesh};
-use sbbk_core::surface::{Surface, SurfaceKind};
+use sbbk_core::surface::{PAIRED, Surface, SurfaceKind};
 use sbbk_core::tree::{BuildError, BuildOptions};
 
 use super::budget::BuildBudget;
@@ -167,9 +167,14 @@ impl MeshStore {
         self.registrations.load(Ordering::Acquire)
     }
 
-    /// Returns the data of a mesh, found by a hash of all its content.
+    /// Returns the data of a mesh: of a small one by a hash of all its content, of a large one by a
+    /// hash of samples.
     pub(super) fn entry(&self, mesh: &TriMesh) -> Arc<MeshData> {
-        self.budget.charge_hash(mesh.indices().len());
+        let count = mesh.indices().len();
+        if !is_small(count) {
+            return self.entry_of(ContentHash::of_samples(mesh));
+        }
+        self.budget.charge_hash(count);
         self.entry_of(ContentHash::of(mesh))
     }
 
@@ -215,24 +220,22 @@ impl MeshStore {
         Ok(())
     }
 
-    /// Returns the surface and the kind of a mesh. Analyses the mesh if no query has done so.
+    /// Returns the surface of a mesh. Analyses the mesh if no query has done so.
     #[inline]
-    pub(super) fn surface<'a>(
-        &self,
-        mesh: &TriMesh,
-        data: &'a Arc<MeshData>,
-    ) -> (&'a Surface, SurfaceKind) {
-        let surface = data.surface().unwrap_or_else(|| self.analyse(mesh, data));
-        (surface, data.declared_kind().unwrap_or(surface.kind()))
+    pub(super) fn surface<'a>(&self, mesh: &TriMesh, data: &'a Arc<MeshData>) -> &'a Surface {
+        data.surface().unwrap_or_else(|| self.analyse(mesh, data))
     }
 
-    /// Returns the kind of a rigid mesh against small meshes.
+    /// Returns the kind of a rigid mesh.
     pub(crate) fn surface_kind(&self, mesh: &TriMesh) -> SurfaceKind {
-        match self.registered(mesh) {
-            Some(data) => self.surface(mesh, &data).1,
-            None if is_small(mesh.indices().len()) => self.surface(mesh, &self.entry(mesh)).1,
-            None => SurfaceKind::Sheet,
+        let registered = self.registered(mesh);
+        let count = mesh.indices().len();
+        let is_whole = registered.is_some() || is_analysed(count);
+        let data = registered.unwrap_or_else(|| self.entry(mesh));
+        if is_whole {
+            self.surface(mesh, &data);
         }
+        data.kind_of(mesh)
     }
 
     #[cold]
@@ -339,16 +342,10 @@ pub(super) fn is_small(triangle_count: usize) -> bool {
     triangle_count <= BuildBudget::LIMIT as usize
 }
 
-/// True if an unregistered mesh is analysed as a whole when it touches a mesh of `other_count`
-/// triangles: if it is small, or up to 131,072 triangles if both are large. Otherwise it is a sheet.
-///
-/// An analysis for each small body that lands on a large mesh would be slow: every new pair needs a
-/// hash of the content.
-pub(super) fn may_analyse(triangle_count: usize, other_count: usize) -> bool {
-    /// Triangles. An analysis of as many takes 5 ms. Higher: longer steps; lower: large meshes lock
-    /// into each other.
-    const LIMIT: usize = 1 << 17;
-    is_small(triangle_count) || !is_small(other_count) && triangle_count <= LIMIT
+/// True if an unregistered mesh is analysed as a whole, in up to 10 ms. The triangles of a larger one
+/// are analysed where something touches.
+pub(super) fn is_analysed(triangle_count: usize) -> bool {
+    triangle_count <= PAIRED
 }
 
 /// Removes dead entries, if the map is full.

@@ -63,12 +63,8 @@ impl<'a> Pair for MeshPair<'a> {
             (*in_room, *inside) = Default::default();
         }
         let are_rigid = mesh1.is_rigid() && mesh2.is_rigid();
-        let known = if are_rigid {
-            let [count1, count2] = [mesh1, mesh2].map(|mesh| mesh.mesh.indices().len());
-            [known1.acquire(mesh1, count2), known2.acquire(mesh2, count1)]
-        } else {
-            [None, None]
-        };
+        let known =
+            if are_rigid { [known1.acquire(mesh1), known2.acquire(mesh2)] } else { [None, None] };
         let [tree1, tree2] = known.each_ref().map(|known| known.as_ref()?.0);
         let trees = tree1.zip(tree2).map(<[_; 2]>::from);
         let surfaces = known.map(|known| Some(known?.1).filter(|_| self.has_surfaces));
@@ -78,7 +74,7 @@ impl<'a> Pair for MeshPair<'a> {
         let filter_distance = filter_distance(has_surface, radius);
         let room = surfaces[self.larger()]
             .as_ref()
-            .filter(|surface| surface.may_be_solid() && self.is_room(in_room))
+            .filter(|_| self.is_room(in_room))
             .filter(|surface| !surface.is_declared_solid(self.meshes[self.larger()].mesh))
             .map(|_| self.larger());
         let query = TriangleQuery {

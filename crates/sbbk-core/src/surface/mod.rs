@@ -30,11 +30,15 @@ pub mod strays;
 mod twins;
 
 pub use one_ring::{Facets, HalfEdges, IndexedTriangles, OneRing};
-pub use sides::{AllTriangles, RayTriangles, Side, SurfaceKind, side};
+pub use sides::{AllTriangles, RayTriangles, Side, SurfaceKind, kind, side};
 
 use glamx::Vec3;
 
 use crate::collections::CompactIndices;
+
+/// Greatest number of triangles of a mesh whose kind follows from its edges if these are all paired.
+/// Larger ones take rays: they have one kind also where nobody has paired their edges.
+pub const PAIRED: usize = 1 << 17;
 
 /// The adjacency of the triangles of a mesh, and the kind of surface.
 ///
@@ -54,7 +58,8 @@ impl Surface {
     /// If a triangle has an index beyond the vertices.
     pub fn new(vertices: &[Vec3], triangles: &[[u32; 3]], rays: &impl RayTriangles) -> Self {
         let (twins, is_closed) = twins::find(vertices, triangles);
-        Self { twins, kind: sides::kind(rays, is_closed) }
+        let is_closed = is_closed && triangles.len() <= PAIRED;
+        Self { twins, kind: sides::of_samples(rays, is_closed) }
     }
 
     /// The half-edge that runs back in the neighbour, if there is exactly one.
