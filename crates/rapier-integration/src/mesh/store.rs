@@ -450,10 +450,10 @@ mod tests {
         let (store, mesh) = (store(usize::MAX), ball(1.0));
         let data = store.entry(&mesh);
         assert_eq!(data.kind(), None);
-        assert_eq!(store.surface(&mesh, &data).1, SurfaceKind::Solid);
+        assert_eq!(store.surface_kind(&mesh), SurfaceKind::Solid);
         for kind in [SurfaceKind::Sheet, SurfaceKind::InsideOut, SurfaceKind::Solid] {
             data.declare_kind(kind);
-            assert_eq!((store.surface(&mesh, &data).1, data.kind()), (kind, Some(kind)));
+            assert_eq!((store.surface_kind(&mesh), data.kind()), (kind, Some(kind)));
         }
     }
 
