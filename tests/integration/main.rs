@@ -35,6 +35,7 @@ mod edited_mesh;
 /// SBBK's own contacts against the truth, and against stock where stock is right.
 mod exact;
 /// Meshes against height fields.
+mod growth;
 mod heightfield;
 /// Bodies wholly inside a solid.
 mod inside;

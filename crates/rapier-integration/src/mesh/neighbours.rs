@@ -7,15 +7,22 @@ use parry3d::shape::TriMesh;
 use rustc_hash::FxHashMap;
 use sbbk_core::contact::Feature;
 use sbbk_core::surface::strays::has_strays;
-use sbbk_core::surface::{HalfEdges, IndexedTriangles, OneRing, RayTriangles, Side, Surface, side};
+use sbbk_core::surface::{
+    HalfEdges, IndexedTriangles, OneRing, PlaceMemo, RayTriangles, Side, Surface, side,
+};
 
 use super::view::box_between;
 
 /// Adjacency of the triangles of a mesh, with [strays](sbbk_core::surface::strays).
 #[derive(Copy, Clone)]
 pub(crate) enum MeshAdjacency<'a, 'm> {
-    Full { mesh: &'a TriMesh, surface: &'a Surface, flags: &'a [TriangleFlags] },
-    Local(&'a NearTwins<'m>),
+    Full {
+        mesh: &'a TriMesh,
+        surface: &'a Surface,
+        flags: &'a [TriangleFlags],
+        memo: &'a PlaceMemo,
+    },
+    Local(&'a NearTwins<'m>, &'a PlaceMemo),
 }
 
 /// The triangles of a mesh with their adjacency.
@@ -31,7 +38,7 @@ impl<'a, 'm> MeshAdjacency<'a, 'm> {
     fn mesh(self) -> &'a TriMesh {
         match self {
             Self::Full { mesh, .. } => mesh,
-            Self::Local(twins) => twins.mesh,
+            Self::Local(twins, _) => twins.mesh,
         }
     }
 
@@ -39,24 +46,46 @@ impl<'a, 'm> MeshAdjacency<'a, 'm> {
     fn with_flags<T>(self, triangle: u32, then: impl FnOnce(&TriangleFlags) -> T) -> T {
         match self {
             Self::Full { flags, .. } => then(&flags[triangle as usize]),
-            Self::Local(twins) => then(&twins.known(triangle).flags),
+            Self::Local(twins, _) => then(&twins.known(triangle).flags),
         }
     }
 
     /// Returns what is on either side of a triangle of a closed mesh. Takes two rays the first time.
     pub(crate) fn side(self, triangle: u32) -> Side {
         self.with_flags(triangle, TriangleFlags::side).unwrap_or_else(|| {
-            let side = side(&MeshRays(self.mesh()), triangle);
+            let first = self.crowd(triangle).filter(|&first| first != triangle);
+            let is_face = first.is_some_and(|first| self.side(first) == Side::Face);
+            let side = if is_face { Side::Face } else { side(&MeshRays(self.mesh()), triangle) };
             self.with_flags(triangle, |flags| flags.set_side(side));
             side
         })
+    }
+
+    fn crowd(self, triangle: u32) -> Option<u32> {
+        let Self::Full { surface, .. } = self else { return None };
+        surface.crowd(triangle)
+    }
+
+    /// Returns true for an edge between two triangles of a crowd. A search for its strays would find
+    /// most of the crowd.
+    fn is_in_crowd(self, triangle: u32, feature: Feature) -> bool {
+        let Feature::Edge(i) = feature else { return false };
+        let is_of = |crowd: u32| {
+            let twin = self.twin(3 * triangle + u32::from(i));
+            twin.is_some_and(|twin| self.crowd(twin / 3) == Some(crowd))
+        };
+        self.crowd(triangle).is_some_and(is_of)
     }
 
     /// Searches the strays of a feature, in about 1 µs, and keeps in the flags if there are any.
     #[cold]
     fn find_strays(self, triangle: u32, feature: Feature) {
         let surface = OneRing { facets: self.facets(), side: Side::Sheet };
-        let found = has_strays(&surface, triangle, feature, |near, visit| self.near(near, visit));
+        let found = !self.is_in_crowd(triangle, feature)
+            && has_strays(&surface, triangle, feature, |corners| {
+                let near = BvhNode::leaf(box_between(corners), 0);
+                self.mesh().bvh().leaves(move |node| node.intersects(&near))
+            });
         if let Feature::Vertex(_) = feature {
             // Once for all triangles of a fan.
             for half_edge in surface.ring(triangle, feature) {
@@ -74,7 +103,7 @@ impl HalfEdges for MeshAdjacency<'_, '_> {
     fn twin(&self, half_edge: u32) -> Option<u32> {
         match self {
             Self::Full { surface, .. } => surface.twin(half_edge),
-            Self::Local(twins) => twins.known(half_edge / 3).twins[half_edge as usize % 3],
+            Self::Local(twins, _) => twins.known(half_edge / 3).twins[half_edge as usize % 3],
         }
     }
 
@@ -88,6 +117,11 @@ impl HalfEdges for MeshAdjacency<'_, '_> {
 
     fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32)) {
         self.mesh().bvh().intersect_aabb(&box_between(corners)).for_each(visit);
+    }
+
+    fn memo(&self) -> Option<&PlaceMemo> {
+        let (Self::Full { memo, .. } | Self::Local(_, memo)) = self;
+        Some(memo)
     }
 }
 
@@ -254,7 +288,7 @@ mod tests {
             for half_edge in 0..3 * mesh.indices().len() as u32 {
                 let twin = whole.twin(half_edge);
                 assert_eq!(
-                    MeshAdjacency::Local(&near).twin(half_edge),
+                    MeshAdjacency::Local(&near, &PlaceMemo::default()).twin(half_edge),
                     twin,
                     "{half_edge} of {:?}",
                     mesh.indices()

@@ -1,7 +1,7 @@
 use std::sync::{Arc, OnceLock};
 
 use parry3d::shape::{CompositeShape, TriMesh};
-use sbbk_core::surface::{OneRing, Side, SurfaceKind};
+use sbbk_core::surface::{OneRing, PlaceMemo, Side, SurfaceKind};
 use sbbk_core::tree::Tree;
 
 use super::data::MeshData;
@@ -152,7 +152,7 @@ impl RigidMesh {
         let Self { data, is_registered, neighbours, .. } = self;
         let is_whole = *is_registered || is_analysed(view.mesh.indices().len());
         let near = (!is_whole).then(|| NearTwins::new(view.mesh, neighbours));
-        MeshSurface { data, store: view.store, near }
+        MeshSurface { data, store: view.store, near, memo: PlaceMemo::default() }
     }
 }
 
@@ -162,6 +162,7 @@ pub(crate) struct MeshSurface<'a> {
     store: &'a MeshStore,
     /// Adjacency near contacts, if the mesh is too large to analyse as a whole.
     near: Option<NearTwins<'a>>,
+    memo: PlaceMemo,
 }
 
 impl<'m> MeshSurface<'m> {
@@ -176,10 +177,10 @@ impl<'m> MeshSurface<'m> {
     fn adjacency<'a>(&'a self, mesh: &'a TriMesh) -> (MeshAdjacency<'a, 'm>, SurfaceKind, bool) {
         let data = self.data(mesh);
         let adjacency = match &self.near {
-            Some(twins) => MeshAdjacency::Local(twins),
+            Some(twins) => MeshAdjacency::Local(twins, &self.memo),
             None => {
                 let surface = self.store.surface(mesh, data);
-                MeshAdjacency::Full { mesh, surface, flags: data.flags() }
+                MeshAdjacency::Full { mesh, surface, flags: data.flags(), memo: &self.memo }
             }
         };
         (adjacency, data.kind_of(mesh), data.declared_kind().is_some())

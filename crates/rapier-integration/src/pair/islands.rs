@@ -1,5 +1,3 @@
-use std::cmp::Ordering;
-
 use glamx::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 use sbbk_core::collections::UnionFind;
@@ -15,6 +13,8 @@ pub(crate) struct OverlapIslands {
     separation: Option<DVec3>,
     /// Pairs whose contact pushes the wrong way.
     rejected: FxHashSet<[u32; 2]>,
+    /// Normals of a triangle's contacts, one for each direction, and the depths, the deepest first.
+    deepest: Vec<(DVec3, f64)>,
     /// Triangles of each island.
     islands: UnionFind<Node>,
     /// Support of each island, by its representative triangle.
@@ -89,6 +89,10 @@ impl Crossing {
 /// Cosine above which two normals push to one side. Higher: bodies that pierce a solid are held in it;
 /// lower: contacts that do not push against each other are rejected.
 pub(super) const SAME_SIDE: f64 = 0.5;
+
+/// Cosine above which two normals of a triangle's contacts are one direction. Higher: a triangle that
+/// many others cross takes longer; lower: directions that push against each other are confused.
+const SAME_DIRECTION: f64 = 0.99;
 
 impl OverlapIslands {
     /// Begins the first pass of a query.
@@ -220,21 +224,28 @@ impl OverlapIslands {
     /// Rejects contacts of the far sides of thin bodies: of two contacts of a triangle that push against
     /// each other, the deeper one. (On a sheet the whole island goes to one side instead.)
     fn reject_far_sides(&mut self) {
+        let Self { crossings, rejected, deepest, .. } = self;
         for side in 0..2 {
-            self.crossings.sort_unstable_by_key(|crossing| (crossing.pair[side], crossing.pair));
-            for of_one in self.crossings.chunk_by(|a, b| a.pair[side] == b.pair[side]) {
+            let by_depth = |a: &Crossing, b: &Crossing| {
+                let by_depth = b.depth.total_cmp(&a.depth);
+                a.pair[side].cmp(&b.pair[side]).then(by_depth).then(a.pair.cmp(&b.pair))
+            };
+            crossings.sort_unstable_by(by_depth);
+            for of_one in crossings.chunk_by(|a, b| a.pair[side] == b.pair[side]) {
+                deepest.clear();
+                for Crossing { normal, depth, .. } in of_one.iter().filter(|one| one.is_reliable) {
+                    if deepest.iter().all(|(known, _)| known.dot(*normal) < SAME_DIRECTION) {
+                        deepest.push((*normal, *depth));
+                    }
+                }
                 let of_bodies = |one: &&Crossing| one.is_reliable && one.sheet.is_none();
                 for crossing in of_one.iter().filter(of_bodies) {
-                    let deepest = |sign: f64| {
-                        let like = |other: &&Crossing| {
-                            let cosine = other.normal.dot(crossing.normal);
-                            other.is_reliable && sign * cosine > SAME_SIDE
-                        };
-                        of_one.iter().filter(like).map(|other| other.depth).max_by(f64::total_cmp)
+                    let depth = |sign: f64| {
+                        let like = |way: DVec3| sign * way.dot(crossing.normal) > SAME_SIDE;
+                        deepest.iter().find(|(normal, _)| like(*normal)).map(|(_, depth)| *depth)
                     };
-                    let is_nearer = deepest(-1.0).partial_cmp(&deepest(1.0));
-                    if deepest(-1.0).is_some() && is_nearer == Some(Ordering::Less) {
-                        self.rejected.insert(crossing.pair);
+                    if depth(-1.0).is_some_and(|against| Some(against) < depth(1.0)) {
+                        rejected.insert(crossing.pair);
                     }
                 }
             }

@@ -25,7 +25,7 @@ use parry3d::query::details::NormalConstraints;
 use parry3d::shape::{HeightField, Triangle, TrianglePseudoNormals};
 use sbbk_core::contact::Feature;
 use sbbk_core::field::{FieldFrame, FieldLeaves};
-use sbbk_core::surface::{Facets, HalfEdges, OneRing, Side, SurfaceKind};
+use sbbk_core::surface::{Facets, HalfEdges, OneRing, PlaceMemo, Side, SurfaceKind};
 use sbbk_core::traverse::{Counters, Placement};
 use sbbk_core::tree::{BATCH, LeafBatch};
 
@@ -142,6 +142,13 @@ impl HalfEdges for MeshOrField<'_, '_> {
         match self {
             Self::Mesh(mesh) => mesh.near(corners, visit),
             Self::Field(field) => field.near(corners, visit),
+        }
+    }
+
+    fn memo(&self) -> Option<&PlaceMemo> {
+        match self {
+            Self::Mesh(mesh) => mesh.memo(),
+            Self::Field(_) => None,
         }
     }
 }

@@ -26,13 +26,16 @@
 
 mod one_ring;
 mod sides;
+mod slopes;
 pub mod strays;
 mod twins;
 
 pub use one_ring::{Facets, HalfEdges, IndexedTriangles, OneRing};
 pub use sides::{AllTriangles, RayTriangles, Side, SurfaceKind, kind, side};
+pub use slopes::PlaceMemo;
 
 use glamx::Vec3;
+use rustc_hash::FxHashMap;
 
 use crate::collections::CompactIndices;
 
@@ -46,6 +49,7 @@ pub const PAIRED: usize = 1 << 17;
 #[derive(Clone, Debug)]
 pub struct Surface {
     twins: CompactIndices,
+    crowds: FxHashMap<u32, u32>,
     kind: SurfaceKind,
 }
 
@@ -57,15 +61,21 @@ impl Surface {
     /// # Panics
     /// If a triangle has an index beyond the vertices.
     pub fn new(vertices: &[Vec3], triangles: &[[u32; 3]], rays: &impl RayTriangles) -> Self {
-        let (twins, is_closed) = twins::find(vertices, triangles);
+        let twins::Adjacency { twins, is_closed, crowds } = twins::find(vertices, triangles);
         let is_closed = is_closed && triangles.len() <= PAIRED;
-        Self { twins, kind: sides::of_samples(rays, is_closed) }
+        Self { twins, crowds, kind: sides::of_samples(rays, is_closed) }
     }
 
     /// The half-edge that runs back in the neighbour, if there is exactly one.
     #[inline]
     pub fn twin(&self, half_edge: u32) -> Option<u32> {
         self.twins.get(half_edge)
+    }
+
+    /// The first triangle of a crowd: more than a thousand that meet at a vertex of a triangle. Boxes in
+    /// a crowd overlap, so rays and searches from each triangle would take quadratic time.
+    pub fn crowd(&self, triangle: u32) -> Option<u32> {
+        self.crowds.get(&triangle).copied()
     }
 
     /// The kind of surface.
@@ -88,6 +98,7 @@ impl Surface {
 
     /// Memory of this value in bytes, without the mesh.
     pub fn bytes(&self) -> usize {
-        size_of::<Self>() + self.twins.bytes()
+        let crowds = 2 * size_of::<u32>() * self.crowds.capacity();
+        size_of::<Self>() + self.twins.bytes() + crowds
     }
 }

@@ -6,6 +6,7 @@ use glamx::{DVec3, Vec3};
 
 use super::Surface;
 use super::sides::Side;
+use super::slopes::{Bend, FLAT, Heights, PlaceMemo, Slopes};
 use super::strays::{seam, touches};
 use crate::contact::Feature;
 use crate::simd::each;
@@ -21,6 +22,11 @@ pub trait HalfEdges {
 
     /// Calls `visit` with all triangles near the box between two corners.
     fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32));
+
+    /// Memory for places where many triangles meet.
+    fn memo(&self) -> Option<&PlaceMemo> {
+        None
+    }
 }
 
 /// Triangles with their adjacency and positions.
@@ -68,6 +74,10 @@ impl<A: HalfEdges> HalfEdges for IndexedTriangles<'_, A> {
     fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32)) {
         self.adjacency.near(corners, visit);
     }
+
+    fn memo(&self) -> Option<&PlaceMemo> {
+        self.adjacency.memo()
+    }
 }
 
 impl<A: HalfEdges> Facets for IndexedTriangles<'_, A> {
@@ -96,18 +106,9 @@ const RISE: f64 = 0.05;
 /// them. Lower: a body that rocks from point to point gets the next point too late.
 const RISE_TO_FACE: f64 = 0.3;
 
-/// Rise of a neighbour in bends of the surface, as it bends on both sides of a triangle. Higher: blunt
-/// edges stop bodies. Lower: a polyhedron that rolls meets the next vertex late and is braked.
-const BENDS: f64 = 2.0;
-
-/// Sine of the angle up to which triangles count as one plane, and directions as parallel to it.
-/// Higher: a nut locks on its bolt. Lower: flat sides end at rounding.
-const FLAT: f64 = 1.0e-3;
-
-/// Triangles that a walk around a vertex visits at most in either direction. Higher: a touch at a
-/// vertex of many triangles takes time by the square of their number. Lower: such vertices are
-/// judged by a part of their one-ring.
-const RING_LIMIT: u32 = 512;
+/// Triangles of a one-ring beyond which its [`Slopes`] are looked up by place and direction. Higher: fans
+/// take longer. Lower: ordinary vertices do.
+const LONG: usize = 32;
 
 impl<F: Facets> OneRing<F> {
     /// True if no triangle of the one-ring of a feature comes nearer to the other body in a unit
@@ -133,32 +134,34 @@ impl<F: Facets> OneRing<F> {
             Some((_, Feature::Face)) => RISE_TO_FACE,
             _ => RISE,
         };
-        let mut slopes = Slopes::new(direction, self.normal(triangle));
-        let mut height = 0.0;
-        let is_closed =
-            self.visit(triangle, feature, |Wedge { edges: [u, v], are_new, .. }| {
-                for (edge, is_new) in [(u, are_new[0]), (v, are_new[1])] {
-                    if is_new {
-                        slopes.add(edge);
-                    }
+        let mut slopes = Slopes::default();
+        let mut bend = Bend::from(self.normal(triangle));
+        let (mut count, mut height) = (0, 0.0);
+        self.visit(triangle, feature, |Wedge { edges: [u, v], are_new, .. }| {
+            for (edge, is_new) in [(u, are_new[0]), (v, are_new[1])] {
+                if is_new {
+                    slopes.add(edge, direction);
+                    bend.add(edge);
                 }
-                if self.is_solid() {
-                    height += u.cross(v).dot(direction);
-                }
-                let is_over = slopes.rise > most * most;
-                if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-            });
-        if slopes.exceed(most) {
+            }
+            if self.is_solid() {
+                height += u.cross(v).dot(direction);
+            }
+            count += 1;
+            let is_over = slopes.rise > most * most || count > LONG;
+            if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        if count <= LONG && self.facets.is_whole(triangle, feature) {
+            return !bend.is_exceeded(slopes.rise, most) && height >= 0.0;
+        }
+        if slopes.rise > most * most {
             return false;
         }
-        if !self.facets.is_whole(triangle, feature) {
-            let is_open = self.is_solid() && !is_closed;
-            let place = contact.map(|(place, _)| place);
-            let sum = self.add_all_at(triangle, feature, place, is_open, &mut slopes);
-            height = if is_open { sum } else { height };
-        }
-        let leads_in = height < 0.0;
-        !slopes.exceed(most) && !leads_in
+        let place = contact.map(|(place, _)| place);
+        let slopes = self.all_slopes(triangle, feature, direction, place);
+        slopes.height >= 0.0
+            && (slopes.rise <= FLAT * FLAT
+                || !self.is_exceeded(triangle, feature, slopes, most, place))
     }
 
     /// True if the body is behind the triangle, and nothing in front.
@@ -175,47 +178,121 @@ impl<F: Facets> OneRing<F> {
             let (height, is_upright) = self.over_face(triangle, direction);
             return is_upright && height < 0.0;
         }
-        let mut height = 0.0;
+        let (mut count, mut height) = (0, 0.0);
         let is_closed = self.visit(triangle, feature, |Wedge { edges: [u, v], .. }| {
             height += u.cross(v).dot(direction);
-            ControlFlow::Continue(())
+            count += 1;
+            if count > LONG { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
-        if !is_closed && !self.facets.is_whole(triangle, feature) {
-            let mut slopes = Slopes::new(direction, self.normal(triangle));
-            height = self.add_all_at(triangle, feature, None, true, &mut slopes);
+        if count > LONG || !is_closed && !self.facets.is_whole(triangle, feature) {
+            height = self.all_slopes(triangle, feature, direction, None).height;
         }
         height < 0.0
     }
 
-    /// Adds the slopes of all triangles that touch a point of a feature. Returns the sum of their
-    /// heights if `with_heights`. Without a `place`, the point is the vertex, or the middle of the edge.
-    fn add_all_at(
+    /// Returns the slopes of all triangles that touch a point of a feature, which many may share.
+    /// Without a `place`, the point is the middle of an edge.
+    fn all_slopes(
         &self,
         triangle: u32,
         feature: Feature,
+        direction: DVec3,
         place: Option<DVec3>,
-        with_heights: bool,
-        slopes: &mut Slopes,
-    ) -> f64 {
-        let first = half_edge(triangle, feature);
-        let place = place.unwrap_or_else(|| match feature {
-            Feature::Vertex(_) => self.corner(first, 0),
-            _ => self.corner(first, 0).midpoint(self.corner(first, 1)),
+    ) -> Slopes {
+        let place = self.place(triangle, feature, place);
+        PlaceMemo::slopes(self.facets.memo(), place, direction, |direction| {
+            self.find_slopes(triangle, feature, direction, place)
+        })
+    }
+
+    fn find_slopes(
+        &self,
+        triangle: u32,
+        feature: Feature,
+        direction: DVec3,
+        place: DVec3,
+    ) -> Slopes {
+        let (mut slopes, mut heights) = (Slopes::default(), Heights::default());
+        let (mut count, mut area) = (0, DVec3::ZERO);
+        let is_closed = self.visit(triangle, feature, |Wedge { edges: [u, v], .. }| {
+            slopes.add(u, direction);
+            slopes.add(v, direction);
+            heights.add(u.cross(v), direction);
+            area += u.cross(v);
+            count += 1;
+            ControlFlow::Continue(())
         });
-        let seam = seam(&each(|i| self.corner(first, i)));
-        let mut heights = Heights::default();
+        if count > LONG {
+            let mut bend = Bend::from(area);
+            self.visit(triangle, feature, |Wedge { edges, .. }| {
+                edges.into_iter().for_each(|edge| bend.add(edge));
+                ControlFlow::Continue(())
+            });
+            slopes.bend = Some(bend.doubled());
+        }
+        if !self.facets.is_whole(triangle, feature) {
+            let mut all = Heights::default();
+            self.visit_touching(triangle, place, |corners, ends| {
+                ends.for_each(|end| slopes.add(end, direction));
+                all.add(area_vector(corners), direction);
+            });
+            heights = if is_closed { heights } else { all };
+        }
+        let height = if self.is_solid() { heights.sum() } else { 0.0 };
+        Slopes { height, ..slopes }
+    }
+
+    /// Returns true if the surface at a point rises more than it bends there.
+    fn is_exceeded(
+        &self,
+        triangle: u32,
+        feature: Feature,
+        Slopes { rise, bend, .. }: Slopes,
+        most: f64,
+        place: Option<DVec3>,
+    ) -> bool {
+        if let Some(bend) = bend {
+            return bend.is_exceeded(rise, most);
+        }
+        let mut bend = Bend::from(self.normal(triangle));
+        self.visit(triangle, feature, |Wedge { edges, .. }| {
+            edges.into_iter().for_each(|edge| bend.add(edge));
+            let is_exceeded = bend.is_exceeded(rise, most);
+            if is_exceeded { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        });
+        if bend.is_exceeded(rise, most) && !self.facets.is_whole(triangle, feature) {
+            let place = self.place(triangle, feature, place);
+            self.visit_touching(triangle, place, |_, ends| ends.for_each(|end| bend.add(end)));
+        }
+        bend.is_exceeded(rise, most)
+    }
+
+    /// Returns a vertex, or a point of an edge.
+    fn place(&self, triangle: u32, feature: Feature, place: Option<DVec3>) -> DVec3 {
+        let first = half_edge(triangle, feature);
+        match (feature, place) {
+            (Feature::Vertex(_), _) => self.corner(first, 0),
+            (_, Some(place)) => place,
+            _ => self.corner(first, 0).midpoint(self.corner(first, 1)),
+        }
+    }
+
+    /// Calls `visit` with the triangles that touch a place: their corners from there, and those of
+    /// these that are not at the place.
+    fn visit_touching(
+        &self,
+        triangle: u32,
+        place: DVec3,
+        mut visit: impl FnMut(&[DVec3; 3], &mut dyn Iterator<Item = DVec3>),
+    ) {
+        let seam = seam(&each(|i| self.corner(3 * triangle, i)));
         self.facets.near([place - seam, place + seam], &mut |other| {
             let corners = each(|i| self.corner(3 * other, i) - place);
-            let mut all = *slopes;
-            let is_far = |corner: &&DVec3| corner.length_squared() > seam * seam;
-            corners.iter().filter(is_far).for_each(|&corner| all.add(corner));
-            let is_new = all.rise > slopes.rise || all.bend > slopes.bend;
-            if (is_new || with_heights) && touches(&corners, [DVec3::ZERO; 2], seam) {
-                *slopes = all;
-                heights.add(&corners, slopes.direction);
+            if touches(&corners, [DVec3::ZERO; 2], seam) {
+                let is_far = |corner: &DVec3| corner.length_squared() > seam * seam;
+                visit(&corners, &mut corners.into_iter().filter(is_far));
             }
         });
-        heights.sum()
     }
 
     /// Length by which the flat side of a triangle continues beyond it in a unit direction, from
@@ -298,8 +375,7 @@ impl<F: Facets> OneRing<F> {
             return visit(Wedge { half_edge, edges: [u, v], are_new: [true; 2] }).is_continue();
         }
         let (mut at, mut u) = (first, first_v);
-        for _ in 0..RING_LIMIT {
-            let Some(twin) = self.facets.twin(previous(at)) else { break };
+        while let Some(twin) = self.facets.twin(previous(at)) {
             if twin == first {
                 return true;
             }
@@ -310,17 +386,13 @@ impl<F: Facets> OneRing<F> {
             }
             u = v;
         }
-        // At a border, or past the limit: the other direction.
-        let (last, mut at, mut v) = (at, first, first_u);
-        for _ in 0..RING_LIMIT {
-            let Some(twin) = self.facets.twin(at) else { return false };
+        // At a border: the other direction.
+        let (mut at, mut v) = (first, first_u);
+        while let Some(twin) = self.facets.twin(at) {
             at = next(twin);
-            if at == last {
-                return true;
-            }
             let u = edge(at, 1);
             if visit(Wedge { half_edge: at, edges: [u, v], are_new: [true, false] }).is_break() {
-                return false;
+                break;
             }
             v = u;
         }
@@ -341,65 +413,6 @@ struct Wedge {
     edges: [DVec3; 2],
     /// True for edges that no earlier triangle of the ring has.
     are_new: [bool; 2],
-}
-
-/// Greatest slopes of a surface around a point, as squares of sines.
-#[derive(Clone, Copy)]
-struct Slopes {
-    direction: DVec3,
-    /// Normal of a triangle at the point.
-    normal: DVec3,
-    /// Towards the direction.
-    rise: f64,
-    /// Out of the plane of the triangle.
-    bend: f64,
-}
-
-impl Slopes {
-    /// The slopes before any triangle. A triangle without an area has no plane to bend from.
-    fn new(direction: DVec3, normal: DVec3) -> Self {
-        let bend = if normal == DVec3::ZERO { f64::INFINITY } else { 0.0 };
-        Self { direction, normal, rise: 0.0, bend }
-    }
-
-    /// Takes note of the way to a corner.
-    #[inline(always)]
-    fn add(&mut self, edge: DVec3) {
-        let (length_squared, height) = (edge.length_squared(), edge.dot(self.direction));
-        let off = edge.dot(self.normal);
-        if height > 0.0 {
-            self.rise = self.rise.max(height * height / length_squared);
-        }
-        let bend = off * off / (length_squared * self.normal.length_squared());
-        self.bend = self.bend.max(bend);
-    }
-
-    /// True if the surface rises more than it bends, at most by `most`. A flat place is no feature.
-    fn exceed(&self, most: f64) -> bool {
-        self.rise > (BENDS * BENDS * self.bend).clamp(FLAT * FLAT, most * most)
-    }
-}
-
-/// Heights of a direction along the area vectors of triangles in any order.
-#[derive(Default)]
-struct Heights {
-    sum: f64,
-    size: f64,
-}
-
-impl Heights {
-    /// Share of the terms below which a sum is zero: rounding depends on the order.
-    const ROUNDING: f64 = 1.0e-12;
-
-    fn add(&mut self, corners: &[DVec3; 3], direction: DVec3) {
-        let area = area_vector(corners);
-        self.sum += area.dot(direction);
-        self.size += area.length();
-    }
-
-    fn sum(&self) -> f64 {
-        if self.sum.abs() <= Self::ROUNDING * self.size { 0.0 } else { self.sum }
-    }
 }
 
 /// Normal of a triangle, as long as twice its area.

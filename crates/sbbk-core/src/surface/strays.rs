@@ -22,11 +22,11 @@ pub fn seam([a, b, c]: &[DVec3; 3]) -> f64 {
 
 /// True if an edge or a vertex of a triangle has strays among the triangles that `near` returns for
 /// the box between two corners. So has each edge without a twin: what goes on there is not known.
-pub fn has_strays<F: Facets>(
+pub fn has_strays<F: Facets, I: Iterator<Item = u32>>(
     surface: &OneRing<F>,
     triangle: u32,
     feature: Feature,
-    near: impl FnOnce([DVec3; 2], &mut dyn FnMut(u32)),
+    near: impl FnOnce([DVec3; 2]) -> I,
 ) -> bool {
     let corners = each(|i| surface.facets.corner(3 * triangle, i));
     let mut ring = surface.ring(triangle, feature);
@@ -39,18 +39,16 @@ pub fn has_strays<F: Facets>(
     let seam = seam(&corners);
     ring.iter_mut().for_each(|half_edge| *half_edge /= 3);
     ring.sort_unstable();
-    let mut found = false;
     let is_edge = start != end;
-    near([start.min(end) - seam, start.max(end) + seam], &mut |other| {
-        if found || ring.binary_search(&other).is_ok() {
-            return;
+    near([start.min(end) - seam, start.max(end) + seam]).any(|other| {
+        if ring.binary_search(&other).is_ok() {
+            return false;
         }
         let corners = each(|i| surface.facets.corner(3 * other, i));
         // Triangles at an end of an edge touch it there.
         let is_at_end = is_edge && corners.iter().any(|corner| [start, end].contains(corner));
-        found = !is_at_end && touches(&corners, [start, end], seam);
-    });
-    found
+        !is_at_end && touches(&corners, [start, end], seam)
+    })
 }
 
 /// True if a triangle with an area comes within `seam` of a segment, or a little farther at its

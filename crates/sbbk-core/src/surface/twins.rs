@@ -7,9 +7,24 @@ use crate::collections::CompactIndices;
 
 const NONE: u32 = u32::MAX;
 
-/// The twin of each half-edge, if there is exactly one, and true if each has one.
-pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (CompactIndices, bool) {
-    let (edges, _) = edges(&weld(vertices), triangles);
+/// Triangles at a vertex beyond which these are a crowd: they are all faces if the first one is, and edges
+/// between them have no strays. Higher: fans take longer. Lower: parts within others have contacts.
+const CROWD: u32 = 1024;
+
+/// Adjacency of a mesh.
+pub(super) struct Adjacency {
+    /// The twin of each half-edge, if there is exactly one.
+    pub(super) twins: CompactIndices,
+    /// True if each half-edge has a twin.
+    pub(super) is_closed: bool,
+    /// The first triangle of a crowd, for each triangle in it.
+    pub(super) crowds: FxHashMap<u32, u32>,
+}
+
+pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Adjacency {
+    let welded = weld(vertices);
+    let valence = valence(&welded, triangles);
+    let (edges, _) = edges(&welded, &valence, triangles);
     let mut twins = vec![None; 3 * triangles.len()];
     let mut is_closed = true;
     for Edge { last: [up, down], counts, .. } in edges {
@@ -20,7 +35,32 @@ pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (CompactIndices
             is_closed &= counts[0] == counts[1];
         }
     }
-    (CompactIndices::new(twins.into_iter()), is_closed)
+    let crowds = crowds(&welded, &valence, triangles);
+    Adjacency { twins: CompactIndices::new(twins.into_iter()), is_closed, crowds }
+}
+
+/// Number of triangles at each vertex.
+fn valence(welded: &[u32], triangles: &[[u32; 3]]) -> Vec<u32> {
+    let mut valence = vec![0; welded.len()];
+    for &corner in triangles.as_flattened() {
+        valence[welded[corner as usize] as usize] += 1;
+    }
+    valence
+}
+
+fn crowds(welded: &[u32], valence: &[u32], triangles: &[[u32; 3]]) -> FxHashMap<u32, u32> {
+    let (mut first, mut crowds) = (FxHashMap::default(), FxHashMap::default());
+    if valence.iter().all(|&count| count <= CROWD) {
+        return crowds;
+    }
+    for (triangle, corners) in (0..).zip(triangles) {
+        let vertices = corners.map(|corner| welded[corner as usize]);
+        let most = vertices.into_iter().max_by_key(|&vertex| valence[vertex as usize]);
+        if let Some(vertex) = most.filter(|&vertex| valence[vertex as usize] > CROWD) {
+            crowds.insert(triangle, *first.entry(vertex).or_insert(triangle));
+        }
+    }
+    crowds
 }
 
 /// All half-edges between two vertices.
@@ -38,11 +78,7 @@ struct Edge {
 ///
 /// Each edge is listed at that end which fewer triangles share. The lists of planar graphs then take
 /// a constant number of steps an edge, whatever the valence of single vertices.
-fn edges(welded: &[u32], triangles: &[[u32; 3]]) -> (Vec<Edge>, usize) {
-    let mut valence = vec![0_u32; welded.len()];
-    for &corner in triangles.as_flattened() {
-        valence[welded[corner as usize] as usize] += 1;
-    }
+fn edges(welded: &[u32], valence: &[u32], triangles: &[[u32; 3]]) -> (Vec<Edge>, usize) {
     let mut first = vec![NONE; welded.len()];
     // A closed mesh has one and a half edges a triangle.
     let mut edges = Vec::<Edge>::with_capacity(triangles.len() * 3 / 2 + 16);
@@ -91,7 +127,7 @@ mod tests {
         let rim = |i: u32| i + u32::from(hub_is_first);
         let triangles: Vec<_> = (0..count).map(|i| [hub, rim(i), rim(i + 1)]).collect();
         let welded: Vec<u32> = (0..count + 2).collect();
-        edges(&welded, &triangles).1
+        edges(&welded, &valence(&welded, &triangles), &triangles).1
     }
 
     #[test]

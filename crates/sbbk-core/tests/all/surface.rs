@@ -7,7 +7,8 @@ use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
 use glamx::{DVec3, Quat, Vec3};
 use sbbk_core::contact::Feature;
 use sbbk_core::surface::{
-    AllTriangles, Facets, HalfEdges, IndexedTriangles, OneRing, Side, Surface, SurfaceKind,
+    AllTriangles, Facets, HalfEdges, IndexedTriangles, OneRing, PlaceMemo, Side, Surface,
+    SurfaceKind,
 };
 
 use SurfaceKind::{InsideOut, Sheet, Solid};
@@ -562,6 +563,7 @@ fn flat_sides_continue_to_their_end() {
 struct Counted<'a> {
     facets: IndexedTriangles<'a, &'a Surface>,
     visits: Cell<usize>,
+    memo: PlaceMemo,
 }
 
 impl HalfEdges for Counted<'_> {
@@ -575,6 +577,10 @@ impl HalfEdges for Counted<'_> {
     }
 
     fn near(&self, _: [DVec3; 2], _: &mut dyn FnMut(u32)) {}
+
+    fn memo(&self) -> Option<&PlaceMemo> {
+        Some(&self.memo)
+    }
 }
 
 impl Facets for Counted<'_> {
@@ -594,7 +600,8 @@ fn work_at_the_tip_of_a_cone_grows_with_its_triangles() {
         let triangles: Vec<_> = (0..count).map(|i| [0, 1 + i, 1 + (i + 1) % count]).collect();
         let surface = analysed(&Soup { vertices: vertices.clone(), triangles: triangles.clone() });
         let facets = surface.one_ring(&vertices, &triangles).facets;
-        let ring = OneRing { facets: Counted { facets, visits: Cell::new(0) }, side: Side::Face };
+        let (visits, memo) = (Cell::new(0), PlaceMemo::default());
+        let ring = OneRing { facets: Counted { facets, visits, memo }, side: Side::Face };
         for triangle in 0..count {
             assert!(ring.is_local_minimum(triangle, Feature::Vertex(0), DVec3::Z, None));
             assert!(ring.points_inside(triangle, Feature::Vertex(0), -DVec3::Z));

@@ -65,6 +65,8 @@ struct Corner {
     nearest: u32,
     /// A contact at this corner, and the result of `is_passed` for it.
     passed: Option<(u32, bool)>,
+    /// The stray with the least distance, or the contact that asked first.
+    stray: Option<u32>,
 }
 
 /// Returns a hash of a part and a corner. Corners that differ in x or y alone never collide.
@@ -108,7 +110,7 @@ impl GhostContacts {
         self.on_faces.clear();
         self.sources.clear();
         self.sources.extend(0..contacts.len() as u32);
-        for (contact, hit @ (_, PartContact { contact: own, feature, .. })) in (0..).zip(contacts) {
+        for (contact, (_, PartContact { contact: own, feature, .. })) in (0..).zip(contacts) {
             if *feature == Feature::Face {
                 continue;
             }
@@ -116,12 +118,9 @@ impl GhostContacts {
             let size = own.on_triangle.abs().max_element() + own.distance.abs();
             let is_nearer = |other: u32| distance(other) < own.distance - EQUAL * size;
             let mut nearest = self.nearest(contacts, contact, *feature);
-            self.strays.clear();
             if !is_nearer(nearest) {
-                find_strays(hit, &mut self.strays);
-                let strays = self.strays.iter().copied();
-                nearest =
-                    strays.fold(nearest, |a, b| if distance(b) < distance(a) { b } else { a });
+                let stray = self.stray(contacts, contact, &mut find_strays);
+                nearest = if distance(stray) < distance(nearest) { stray } else { nearest };
             }
             if is_nearer(nearest) {
                 self.sources[contact as usize] = nearest;
@@ -158,7 +157,7 @@ impl GhostContacts {
         for (start, &entry) in (0..).zip(&*entries) {
             let nearest = contact_of(entry);
             if last_key.replace(entry >> 64) != Some(entry >> 64) {
-                corners.push(Corner { start, nearest, passed: None });
+                corners.push(Corner { start, nearest, passed: None, stray: None });
             }
             let corner = corners.len() - 1;
             triangles[nearest as usize][usize::from(entry as u8)] = corner as u32;
@@ -193,6 +192,33 @@ impl GhostContacts {
         }
         let nearer = |a: u32, b: u32| if distance(b) < distance(a) { b } else { a };
         self.at_feature(contact, feature).fold(contact, nearer)
+    }
+
+    /// Lists the strays of a contact, and returns the one with the least distance, or the contact. All
+    /// contacts at a vertex have the same strays.
+    fn stray<I>(
+        &mut self,
+        contacts: &[(I, PartContact)],
+        contact: u32,
+        find_strays: &mut impl FnMut(&(I, PartContact), &mut Vec<u32>),
+    ) -> u32 {
+        let hit = &contacts[contact as usize];
+        let at = match hit.1.feature {
+            Feature::Vertex(i) => Some(self.triangles[contact as usize][usize::from(i)]),
+            _ => None,
+        };
+        if let Some(stray) = at.and_then(|corner| self.corners[corner as usize].stray) {
+            return stray;
+        }
+        self.strays.clear();
+        find_strays(hit, &mut self.strays);
+        let distance = |contact: u32| contacts[contact as usize].1.contact.distance;
+        let nearer = |a: u32, b: u32| if distance(b) < distance(a) { b } else { a };
+        let stray = self.strays.iter().copied().fold(contact, nearer);
+        if let Some(corner) = at {
+            self.corners[corner as usize].stray = Some(stray);
+        }
+        stray
     }
 
     /// Returns true if a triangle at the feature of a contact extends beyond it along its normal.

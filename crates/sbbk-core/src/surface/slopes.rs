@@ -1,0 +1,125 @@
+//! Slopes of a surface around a point: how far it rises towards a direction, and bends.
+
+use std::cell::RefCell;
+
+use glamx::DVec3;
+use rustc_hash::FxHashMap;
+
+/// Rise of a neighbour in bends of the surface, as it bends on both sides of a triangle. Higher: blunt
+/// edges stop bodies. Lower: a polyhedron that rolls meets the next vertex late and is braked.
+const BENDS: f64 = 2.0;
+
+/// Sine of the angle up to which triangles count as one plane, and directions as parallel to it.
+/// Higher: a nut locks on its bolt. Lower: flat sides end at rounding.
+pub(super) const FLAT: f64 = 1.0e-3;
+
+/// The surface around a point, seen along a direction.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Slopes {
+    /// Greatest slope towards the direction, as the square of a sine.
+    pub(super) rise: f64,
+    /// Height of the direction along the area vectors of a solid's triangles.
+    pub(super) height: f64,
+    /// The bend of a long one-ring: twice that from its mean plane.
+    pub(super) bend: Option<Bend>,
+}
+
+impl Slopes {
+    /// Takes note of the way to a corner.
+    #[inline(always)]
+    pub(super) fn add(&mut self, edge: DVec3, direction: DVec3) {
+        let height = edge.dot(direction);
+        if height > 0.0 {
+            self.rise = self.rise.max(height * height / edge.length_squared());
+        }
+    }
+}
+
+/// Greatest slope out of the plane of a triangle, as the square of a sine.
+#[derive(Clone, Copy)]
+pub(super) struct Bend {
+    normal: DVec3,
+    square: f64,
+}
+
+impl From<DVec3> for Bend {
+    /// A triangle without an area has no plane to bend from.
+    fn from(normal: DVec3) -> Self {
+        Self { normal, square: if normal == DVec3::ZERO { f64::INFINITY } else { 0.0 } }
+    }
+}
+
+impl Bend {
+    /// Takes note of the way to a corner.
+    #[inline(always)]
+    pub(super) fn add(&mut self, edge: DVec3) {
+        let off = edge.dot(self.normal);
+        let square = off * off / (edge.length_squared() * self.normal.length_squared());
+        self.square = self.square.max(square);
+    }
+
+    /// Returns twice the bend.
+    pub(super) fn doubled(self) -> Self {
+        Self { square: 4.0 * self.square, ..self }
+    }
+
+    /// True if a surface rises more than it bends, at most by `most`. A flat place is no feature.
+    pub(super) fn is_exceeded(&self, rise: f64, most: f64) -> bool {
+        rise > (BENDS * BENDS * self.square).clamp(FLAT * FLAT, most * most)
+    }
+}
+
+/// Slopes at places where many triangles meet, or touch without a common edge, by place and direction.
+/// All contacts there ask for the same. For one query.
+#[derive(Default)]
+pub struct PlaceMemo(RefCell<FxHashMap<[i64; 6], Slopes>>);
+
+impl PlaceMemo {
+    /// Steps of a direction. Rounding makes the directions of contacts at one place differ by less.
+    const STEPS: f64 = (1_u64 << 30) as f64;
+
+    /// Returns the slopes at a place along a direction, which is rounded. Computes them the first time.
+    pub(super) fn slopes(
+        memo: Option<&Self>,
+        place: DVec3,
+        direction: DVec3,
+        find: impl FnOnce(DVec3) -> Slopes,
+    ) -> Slopes {
+        let (key, direction) = Self::key(place, direction);
+        let known = memo.and_then(|memo| memo.0.borrow().get(&key).copied());
+        known.unwrap_or_else(|| {
+            let slopes = find(direction);
+            memo.map(|memo| memo.0.borrow_mut().insert(key, slopes));
+            slopes
+        })
+    }
+
+    /// Returns the key of a place and a direction, and the rounded direction.
+    fn key(place: DVec3, direction: DVec3) -> ([i64; 6], DVec3) {
+        let rounded = (direction * Self::STEPS).round();
+        let [x, y, z] = (place + 0.0).to_array().map(|x| x.to_bits() as i64);
+        let [u, v, w] = rounded.to_array().map(|x| x as i64);
+        ([x, y, z, u, v, w], rounded / Self::STEPS)
+    }
+}
+
+/// Heights of a direction along the area vectors of triangles in any order.
+#[derive(Default)]
+pub(super) struct Heights {
+    sum: f64,
+    size: f64,
+}
+
+impl Heights {
+    /// Share of the terms below which a sum is zero: directions are rounded.
+    const ROUNDING: f64 = 1.0e-8;
+
+    pub(super) fn add(&mut self, area: DVec3, direction: DVec3) {
+        self.sum += area.dot(direction);
+        self.size += area.length();
+    }
+
+    pub(super) fn sum(&self) -> f64 {
+        if self.sum.abs() <= Self::ROUNDING * self.size { 0.0 } else { self.sum }
+    }
+}

@@ -1,0 +1,144 @@
+//! Time of queries whose triangles all meet one place, one triangle or each other.
+//!
+//! `cargo test --release --test integration growth -- --ignored --nocapture` prints the table.
+
+use std::f32::consts::TAU;
+use std::time::Instant;
+
+use glamx::{Quat, Vec3};
+use rapier_integration::SbbkDispatcher;
+use rapier3d::math::Pose;
+use rapier3d::parry::query::DefaultQueryDispatcher;
+use rapier3d::parry::shape::{Ball, Cuboid, Shape};
+use sbbk_testkit::mesh::{self, Mesh};
+
+use crate::support::{Pair, Question, shape};
+
+/// A circle of triangles around a hub at the origin, whose rim is at a height.
+fn fan(count: u32, height: f32) -> Mesh {
+    let rim = |i: u32| {
+        let (sin, cos) = (TAU * i as f32 / count as f32).sin_cos();
+        Vec3::new(cos, height, sin)
+    };
+    let vertices = [Vec3::ZERO].into_iter().chain((0..count).map(rim)).collect();
+    let triangles = (0..count).map(|i| [0, 1 + (i + 1) % count, 1 + i]).collect();
+    Mesh::new("fan", vertices, triangles)
+}
+
+/// A cone with its tip at the origin, pointing down.
+fn cone(count: u32) -> Mesh {
+    let mesh::Mesh { vertices, mut triangles, .. } = fan(count, 2.0);
+    triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    triangles.extend((1..count - 1).map(|i| [1, 1 + i, 2 + i]).map(|[a, b, c]| [a, c, b]));
+    Mesh::new("cone", vertices, triangles)
+}
+
+/// A mesh so many times at one place.
+fn layers(of: &Mesh, count: u32) -> Mesh {
+    Mesh::merged("layers", &vec![of.clone(); count as usize])
+}
+
+/// Two shapes and the pose of the second in the frame of the first.
+type Case = (Box<dyn Shape>, Box<dyn Shape>, Pose);
+
+fn case(mesh1: &Mesh, shape2: impl Shape, place: Vec3) -> Case {
+    (Box::new(shape(mesh1)), Box::new(shape2), Pose::from_parts(place, Quat::IDENTITY))
+}
+
+/// Makes a case of about so many triangles.
+type Family = (&'static str, fn(u32) -> Case);
+
+const FAMILIES: &[Family] = &[
+    ("scan 5 mm deep in a slab of 12", |count| {
+        let cells = (count as f32 / 12.0).sqrt() as u32;
+        let scan = mesh::cuboid(Vec3::splat(0.5), cells);
+        case(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1), shape(&scan), Vec3::new(0.1, 0.995, 0.2))
+    }),
+    ("terrain that crosses a slab of 12", |count| {
+        let terrain = mesh::terrain(3.0, (count as f32 / 2.0).sqrt() as u32, 0.05);
+        case(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1), shape(&terrain), Vec3::new(0.0, 0.5, 0.0))
+    }),
+    ("tip of a cone on a slab", |count| {
+        let slab = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1);
+        case(&slab, shape(&cone(count / 2)), Vec3::new(0.1, 0.501, 0.2))
+    }),
+    ("tip of a cone in a slab", |count| {
+        let slab = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1);
+        case(&slab, shape(&cone(count / 2)), Vec3::new(0.1, 0.49, 0.2))
+    }),
+    ("flat fan and a mesh cube", |count| {
+        case(&fan(count, 0.0), shape(&mesh::cuboid(Vec3::splat(0.3), 1)), 0.301 * Vec3::Y)
+    }),
+    ("flat fan and a ball", |count| case(&fan(count, 0.0), Ball::new(0.3), 0.301 * Vec3::Y)),
+    ("flat fan and a cuboid", |count| {
+        case(&fan(count, 0.0), Cuboid::new(Vec3::splat(0.3)), 0.299 * Vec3::Y)
+    }),
+    ("cone in a ball", |count| case(&cone(count / 2), Ball::new(0.3), -0.29 * Vec3::Y)),
+    ("cone in a cuboid", |count| {
+        case(&cone(count / 2), Cuboid::new(Vec3::splat(0.3)), -0.29 * Vec3::Y)
+    }),
+    ("cone and a ball", |count| case(&cone(count / 2), Ball::new(0.3), -0.301 * Vec3::Y)),
+    ("layers on a slab", |count| {
+        let cube = layers(&mesh::cuboid(Vec3::splat(0.5), 1), count / 12);
+        case(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1), shape(&cube), Vec3::new(0.1, 1.001, 0.2))
+    }),
+    ("layers in a slab", |count| {
+        let cube = layers(&mesh::cuboid(Vec3::splat(0.5), 1), count / 12);
+        case(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1), shape(&cube), Vec3::new(0.1, 0.98, 0.2))
+    }),
+    ("layers and a cuboid", |count| {
+        let slab = layers(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1), count / 12);
+        case(&slab, Cuboid::new(Vec3::splat(0.5)), Vec3::new(0.1, 0.99, 0.2))
+    }),
+];
+
+/// Seconds of a first query, and of one after it.
+fn seconds(
+    dispatcher: &impl crate::support::Dispatcher<(), ()>,
+    (shape1, shape2, pose): &Case,
+    is_flipped: bool,
+) -> [f64; 2] {
+    let question = Question::new(&**shape1, &**shape2, *pose).flipped(is_flipped);
+    let moved = question.at(Pose::from_translation(1e-4 * Vec3::ONE) * *pose);
+    let mut pair = Pair::default();
+    [question, moved].map(|question| {
+        let start = Instant::now();
+        pair.ask(dispatcher, &question);
+        start.elapsed().as_secs_f64()
+    })
+}
+
+/// Prints milliseconds of stock and SBBK. Would catch a path that is quadratic in triangles.
+#[test]
+#[ignore = "takes half a minute in release, and minutes in debug"]
+fn time_grows_with_the_triangles() {
+    const COUNTS: [u32; 3] = [4000, 16_000, 64_000];
+    println!(
+        "{:34} {:>9} {:>22} {:>22}  growth",
+        "ms, first and next query", "triangles", "stock", "SBBK"
+    );
+    let mut slow = Vec::new();
+    for (name, make) in FAMILIES {
+        for is_flipped in [false, true] {
+            let times = COUNTS.map(|count| {
+                let case = make(count);
+                let stock = seconds(&DefaultQueryDispatcher, &case, is_flipped);
+                let ours = seconds(&SbbkDispatcher::default(), &case, is_flipped);
+                (count, stock, ours)
+            });
+            for (count, stock, ours) in times {
+                let shown =
+                    [stock, ours].map(|of| format!("{:9.2} {:9.2}", 1e3 * of[0], 1e3 * of[1]));
+                println!("{name:34} {count:9} {:>22} {:>22}", shown[0], shown[1]);
+            }
+            let [few, _, many] = times.map(|(.., ours)| ours);
+            // Sixteen times the triangles; n log n makes 22.
+            for (few, many) in few.into_iter().zip(many) {
+                if many > 0.01 && many > 40.0 * few.max(1e-4) {
+                    slow.push(format!("{name}, flipped {is_flipped}: {few:.4} s, {many:.4} s"));
+                }
+            }
+        }
+    }
+    assert!(slow.is_empty(), "{slow:#?}");
+}
