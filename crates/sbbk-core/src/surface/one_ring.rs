@@ -151,11 +151,12 @@ impl<F: Facets> OneRing<F> {
             let is_over = slopes.rise > most * most || count > LONG;
             if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
-        if count <= LONG && self.facets.is_whole(triangle, feature) {
-            return !bend.is_exceeded(slopes.rise, most) && height >= 0.0;
-        }
-        if slopes.rise > most * most {
+        let is_long = count > LONG;
+        if slopes.rise > most * most || !is_long && bend.is_exceeded(slopes.rise, most) {
             return false;
+        }
+        if !is_long && self.facets.is_whole(triangle, feature) {
+            return height >= 0.0;
         }
         let place = contact.map(|(place, _)| place);
         let slopes = self.all_slopes(triangle, feature, direction, place);
