@@ -7,13 +7,16 @@
 //! cargo run --release --example hard_scenes -- --only gears,sunk --backends stock,sbbk --verbose
 //! cargo run --release --example hard_scenes -- --quick --only gears --replay gears.html
 //! cargo run --release --example hard_scenes -- --quick --only pile --mesh bunny.obj
+//! cargo run --release --example hard_scenes -- --random 200 --seed 2
+//! cargo run --release --example hard_scenes -- --family floors --number 17 --seed 2 --verbose
 //! ```
 
 use std::path::PathBuf;
 
-use clap::Parser;
+use clap::{Args, Parser};
 use sbbk_lab::cli::{Outcome, ReplayArguments, StudyArguments};
 use sbbk_lab::mesh_file;
+use sbbk_lab::study::hard::random::{Family, RandomPlan, random as run_random};
 use sbbk_lab::study::hard::{Column, Group, HardPlan, hard};
 
 /// Runs difficult scenes of meshes to their end, and judges them
@@ -38,14 +41,60 @@ struct Arguments {
     /// Shows all figures of all scenes
     #[arg(long)]
     verbose: bool,
+    #[command(flatten)]
+    random: RandomArguments,
     /// Runs so many worlds at once
     #[arg(long, default_value = "2")]
     threads: usize,
 }
 
+/// Arguments of the random scenes.
+#[derive(Args)]
+struct RandomArguments {
+    /// Runs so many random scenes of each family instead, or 200; a few if quick
+    #[arg(long, value_name = "SCENES")]
+    random: Option<Option<u32>>,
+    /// Runs random scenes of these families
+    #[arg(long, value_name = "FAMILIES", value_delimiter = ',')]
+    family: Vec<Family>,
+    /// Runs the random scene with this number
+    #[arg(long)]
+    number: Option<u32>,
+    /// Seed of the random scenes
+    #[arg(long, default_value = "1")]
+    seed: u64,
+}
+
+impl RandomArguments {
+    /// The scenes, if random ones are asked for.
+    fn plan(&self, study: &StudyArguments) -> Option<RandomPlan> {
+        if self.random.is_none() && self.number.is_none() && self.family.is_empty() {
+            return None;
+        }
+        let count = self.random.flatten().unwrap_or_else(|| study.plan(|| 200, || 2));
+        let numbers = self.number.map_or(0..count, |number| number..number + 1);
+        let mut plan = RandomPlan::new(numbers, self.seed);
+        if !self.family.is_empty() {
+            plan.families.clone_from(&self.family);
+        }
+        Some(plan)
+    }
+}
+
 fn main() -> Outcome {
     let arguments = Arguments::parse();
-    let Arguments { study, only, backends, scene, mesh, replay, verbose, threads } = arguments;
+    let Arguments { study, only, backends, scene, mesh, random, replay, verbose, threads } =
+        arguments;
+    let page = replay.replay.as_deref();
+    if let Some(mut plan) = random.plan(&study) {
+        if !backends.is_empty() {
+            plan.columns = backends;
+        }
+        (plan.shows_figures, plan.threads) = (verbose, threads);
+        plan.replay = replay.replay.clone();
+        study.run(None, page, |progress| run_random(&plan, progress))?;
+        return replay.print();
+    }
     let mut plan = study.plan(HardPlan::standard, HardPlan::quick);
     if !only.is_empty() {
         plan.groups = only;
@@ -56,7 +105,6 @@ fn main() -> Outcome {
     (plan.shows_figures, plan.threads, plan.name) = (verbose, threads, scene);
     plan.replay = replay.replay.clone();
     plan.mesh = mesh.as_deref().map(mesh_file::load).transpose()?;
-    let page = replay.replay.as_deref();
     study.run(mesh.as_deref(), page, |progress| hard(&plan, progress))?;
     replay.print()
 }

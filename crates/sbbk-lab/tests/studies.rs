@@ -10,6 +10,7 @@ use sbbk_lab::study::compare::{ComparePlan, compare};
 use sbbk_lab::study::contacts::{ApproachedMesh, ContactsPlan, contacts};
 use sbbk_lab::study::convex::{ConvexPlan, convex};
 use sbbk_lab::study::everyday::{EverydayPlan, GroundPlan, Group, advise, everyday};
+use sbbk_lab::study::hard::random::{RandomPlan, random};
 use sbbk_lab::study::hard::{self, Column, HardPlan};
 use sbbk_lab::study::one_step::{OneStepPlan, one_step};
 
@@ -139,6 +140,21 @@ fn the_control_passes_and_sheets_hold_plain_meshes() {
     // With the flag a sheet has a front only.
     assert_eq!(passed(Column::StockFlag, "front"), [true; 2]);
     assert_eq!(passed(Column::StockFlag, "back"), [false; 2]);
+}
+
+/// Would catch scenes that Rapier's own shapes could not pass, and scenes that differ by column.
+#[test]
+fn random_scenes_hold_with_rapiers_own_shapes() {
+    let columns = vec![Column::Stock, Column::Sbbk, Column::Control];
+    let plan = RandomPlan { columns, ..RandomPlan::new(0..2, 1) };
+    let results = random(&plan, &Progress::hidden()).unwrap();
+    check(&results, &[]);
+    let all = |column: Column, count: &str| {
+        let rows = results.rows.iter().filter(|row| row.study == "random scenes");
+        rows.filter(|row| row.is("backend", column)).map(|row| row.count(count)).sum::<u64>()
+    };
+    assert_eq!(all(Column::Control, "held"), all(Column::Control, "scenes"), "{results}");
+    assert!(all(Column::Stock, "held") < all(Column::Sbbk, "held"), "{results}");
 }
 
 /// Would catch settings that do not fit the mesh, and the flag, which is never of use.

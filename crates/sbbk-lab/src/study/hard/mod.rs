@@ -17,6 +17,7 @@ mod heaps;
 mod inside;
 mod kit;
 mod machines;
+pub mod random;
 mod report;
 mod resting;
 mod road;

@@ -1,0 +1,40 @@
+//! Bodies that are released sunk in each other, without gravity.
+
+use super::prelude::*;
+
+/// Greatest depth at the end, in sizes: twice Rapier's allowed error, for length units of a size.
+const DEPTH: f64 = 0.01;
+
+pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
+    draw.gravity = 0.0;
+    let count = draw.count(2, 5);
+    let ratio = draw.log(1.0, 100.0);
+    let mut middle = Vec3::ZERO;
+    let mut bodies = Vec::new();
+    for _ in 0..count {
+        let part = draw.solid();
+        let pose = Pose3::from_parts(middle, draw.turn());
+        bodies.push(Body::moving(part, pose).density(draw.log(1.0, ratio)));
+        // Nearer ones would be wholly in each other.
+        let is_free = |at: Vec3, bodies: &[Body]| {
+            bodies.iter().all(|body: &Body| body.pose.translation.distance(at) > 0.5)
+        };
+        let last = middle;
+        while !is_free(middle, &bodies) {
+            middle = last + draw.turn() * Vec3::X * draw.within(0.5, 0.9);
+        }
+    }
+    let depths = bodies.iter().map(|body| draw.depths(&body.part));
+    let depths: Vec<Depths> = depths.collect();
+    let mut stage = Stage::new(draw, kit, &bodies);
+    let mut fastest = 0.0;
+    for _ in 0..draw.steps(3.0) {
+        stage.step();
+        fastest = largest([fastest, stage.top_speed()]);
+    }
+    let pairs = (1..bodies.len()).flat_map(|j| (0..j).map(move |i| [i, j]));
+    let found = pairs.map(|[i, j]| depths[i].between(stage.pose(i), &depths[j], stage.pose(j)));
+    let deepest = largest(found) / draw.size;
+    // Rapier parts bodies at three sizes/s.
+    Figures::default().at_most("deepest", deepest, DEPTH).at_most("speed", fastest, 9.0)
+}

@@ -1,0 +1,108 @@
+//! Bodies that slide or roll along a way.
+
+use super::prelude::*;
+
+/// A body that rides along `x` over a flat ground, with its top at height 0 in the ground's frame.
+pub(super) struct Rider {
+    pub part: Part,
+    pub turn: Quat,
+    /// Height of its middle.
+    pub height: f32,
+    /// Moment of inertia of a roller over mass and radius²; `None` for a slider.
+    pub gyration: Option<f32>,
+    /// True for balls with facets.
+    pub is_rough: bool,
+}
+
+impl Rider {
+    /// A brick that is too flat to topple at a friction coefficient of 0.8.
+    pub fn slider(draw: &mut Draw) -> Self {
+        let [x, z] = [(); 2].map(|()| draw.within(0.3, 0.7));
+        let height = draw.within(0.3, 0.9) * x.min(z);
+        let part = draw.brick(Vec3::new(x, height, z));
+        // Friction turns a brick that does not lie along its way.
+        let turn = Quat::from_rotation_y(FRAC_PI_2 * draw.pick(&[0.0, 1.0]));
+        Self { part, turn, height, gyration: None, is_rough: false }
+    }
+
+    pub fn roller(draw: &mut Draw) -> Self {
+        let lying = Quat::from_rotation_x(FRAC_PI_2);
+        let long = draw.within(0.3, 0.6);
+        let rider = |part: Part, gyration| Self {
+            turn: lying,
+            height: 0.5,
+            gyration: Some(gyration),
+            is_rough: false,
+            part,
+        };
+        match draw.pick(&["capsule", "cylinder", "ball", "ball"]) {
+            "capsule" => {
+                let part = draw.primitive("capsule", SharedShape::capsule_y(long, 0.5));
+                let gyration = part.mass.principal_inertia().y / part.mass.mass() / 0.25;
+                rider(part, gyration)
+            }
+            "cylinder" => rider(draw.primitive("cylinder", SharedShape::cylinder(long, 0.5)), 0.5),
+            _ => {
+                let part = draw.ball();
+                let is_rough = !part.is_primitive;
+                Self { turn: draw.turn(), is_rough, ..rider(part, 0.4) }
+            }
+        }
+    }
+
+    /// The rider on the ground's frame `ground`, at a place of it and a speed along its `x` axis.
+    pub fn body(&self, ground: Pose3, [x, z]: [f32; 2], speed: f32) -> Body {
+        let place = Vec3::new(x, self.height + 0.001, z);
+        let pose = ground * Pose3::from_parts(place, self.turn);
+        let spin = if self.gyration.is_some() { speed / self.height } else { 0.0 };
+        let [speed, spin] = [speed * Vec3::X, -spin * Vec3::Z].map(|v| ground.rotation * v);
+        Body::moving(self.part.clone(), pose).thrown(speed, spin)
+    }
+}
+
+/// Way of a ride in the ground's frame, and how far its middle went up and down.
+pub(super) struct Ride {
+    pub way: Vec3,
+    pub rise: f32,
+    pub sunk: f32,
+}
+
+/// Runs a ride of the second of two bodies over the first.
+pub(super) fn ride(draw: &Draw, kit: &Kit, frame: Pose3, bodies: &[Body], steps: usize) -> Ride {
+    let mut stage = Stage::new(draw, kit, bodies);
+    let place = |stage: &Stage| frame.inverse_transform_point(stage.place(1));
+    let start = place(&stage);
+    let (mut rise, mut sunk) = (0.0, 0.0);
+    for _ in 0..steps {
+        stage.step();
+        let up = place(&stage).y - start.y;
+        (rise, sunk) = (largest([rise, up]), largest([sunk, -up]));
+    }
+    Ride { way: place(&stage) - start, rise, sunk }
+}
+
+/// Figures of a ride that should be so long, or as long as that of the control if the body is rough.
+pub(super) fn judged(
+    draw: &Draw,
+    kit: &Kit,
+    frame: Pose3,
+    bodies: &[Body],
+    [seconds, ideal]: [f32; 2],
+    rider: &Rider,
+) -> Figures {
+    let steps = draw.steps(seconds);
+    let end = ride(draw, kit, frame, bodies, steps);
+    // A mesh ball hops, and loses speed, at its facets by chance. Its hull does the same on a cuboid.
+    let hull = || ride(draw, &Kit::new(Column::Control, true, 0), frame, bodies, steps);
+    let (expected, hop, share) = match rider.is_rough.then(hull) {
+        Some(hull) => (hull.way.x, hull.rise, 0.1),
+        None => (ideal, 0.0, 0.03),
+    };
+    let speed = bodies[1].builder.linvel.length() + draw.gravity * seconds;
+    let limit = f64::from(share * expected.max(0.5) + (speed * draw.dt).min(0.2));
+    Figures::default()
+        .at_most("rise", end.rise, f64::from(0.03 + 2.0 * hop))
+        .at_most("sunk", end.sunk, 0.03)
+        .within("way", end.way.x, [f64::from(expected) - limit, f64::from(expected) + limit])
+        .at_most("aside", end.way.z.abs(), limit)
+}
