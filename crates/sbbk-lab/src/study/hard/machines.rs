@@ -87,22 +87,23 @@ pub(super) fn gears() -> Vec<Trial> {
 }
 
 /// Both ends of points of an outline.
-fn pulled(points: &[Vec2]) -> Vec<Vec3> {
-    let ends = |point: &Vec2| [-1.0, 1.0].map(|side| point.extend(side * GEAR.half_width));
+fn pulled(points: &[Vec2], half_width: f32) -> Vec<Vec3> {
+    let ends = |point: &Vec2| [-1.0, 1.0].map(|side| point.extend(side * half_width));
     points.iter().flat_map(ends).collect()
 }
 
 /// The teeth, and the disc that they stand on.
-fn gear() -> Form {
-    let tooth = GEAR.tooth();
+pub(super) fn gear(gear: Gear) -> Form {
+    let tooth = gear.tooth();
     let turned = |angle: f32, points: &[Vec2]| {
         let turn = Vec2::from_angle(angle);
-        pulled(&points.iter().map(|&point| turn.rotate(point)).collect::<Vec<_>>())
+        let points: Vec<Vec2> = points.iter().map(|&point| turn.rotate(point)).collect();
+        pulled(&points, gear.half_width)
     };
     let feet = [tooth[0], tooth[tooth.len() - 1]];
-    let disc = GEAR.angles().flat_map(|angle| turned(angle, &feet)).collect();
-    let teeth = GEAR.angles().map(|angle| turned(angle, &tooth));
-    Form::parts(GEAR.mesh(), teeth.chain([disc]))
+    let disc = gear.angles().flat_map(|angle| turned(angle, &feet)).collect();
+    let teeth = gear.angles().map(|angle| turned(angle, &tooth));
+    Form::parts(gear.mesh(), teeth.chain([disc]))
 }
 
 /// A driver, which turns about an axis, and a wheel or rack.
@@ -170,12 +171,12 @@ impl<'a> Machine<'a> {
 
 fn two_gears(kit: &Kit, speed: f32) -> Figures {
     let mut machine = Machine::new(kit, speed);
-    let driver = machine.driver(&gear(), RigidBodyBuilder::dynamic(), Vec3::Z);
+    let driver = machine.driver(&gear(GEAR), RigidBodyBuilder::dynamic(), Vec3::Z);
     // A gap of the second is where a tooth of the first is.
     let wheel = RigidBodyBuilder::dynamic()
         .translation(2.0 * GEAR.pitch_radius() * Vec3::X)
         .rotation(Vec3::Z * PI / GEAR.teeth as f32);
-    let mut wheel = machine.wheel(&gear(), wheel);
+    let mut wheel = machine.wheel(&gear(GEAR), wheel);
     machine.run(driver, |world| wheel.see(world))
 }
 
@@ -184,12 +185,13 @@ fn rack(kit: &Kit, speed: f32) -> Figures {
     const RACK: Rack = Rack { gear: GEAR, teeth: 50, depth: 0.3 };
     let mut machine = Machine::new(kit, speed);
     machine.steps = machine.steps.min((10.0 / speed * 60.0) as usize);
-    let driver = machine.driver(&gear(), RigidBodyBuilder::dynamic(), Vec3::Z);
+    let driver = machine.driver(&gear(GEAR), RigidBodyBuilder::dynamic(), Vec3::Z);
     let teeth = (0..RACK.teeth).map(|tooth| RACK.tooth(tooth));
     let feet = [RACK.tooth(0)[0], RACK.tooth(RACK.teeth - 1)[3]];
     let back = feet.map(|foot| foot + RACK.depth * Vec2::X);
-    let bar = pulled(&[feet, back].concat());
-    let form = Form::parts(RACK.mesh(), teeth.map(|tooth| pulled(&tooth)).chain([bar]));
+    let bar = pulled(&[feet, back].concat(), GEAR.half_width);
+    let form =
+        Form::parts(RACK.mesh(), teeth.map(|tooth| pulled(&tooth, GEAR.half_width)).chain([bar]));
     // Whole teeth below the middle.
     let start = -16.0 * PI * GEAR.module;
     let body = RigidBodyBuilder::dynamic().translation(start * Vec3::Y).linear_damping(LOAD);
@@ -213,21 +215,21 @@ fn worm(kit: &Kit, speed: f32) -> Figures {
 }
 
 /// Counts the turns of a body about an axis.
-struct Turn {
+pub(super) struct Turn {
     body: RigidBodyHandle,
     axis: Vec3,
     last: Quat,
     /// Since the start, in radians.
-    angle: f32,
+    pub angle: f32,
 }
 
 impl Turn {
-    fn new(world: &World, body: RigidBodyHandle, axis: Vec3) -> Self {
+    pub fn new(world: &World, body: RigidBodyHandle, axis: Vec3) -> Self {
         Self { body, axis, last: *world.bodies[body].rotation(), angle: 0.0 }
     }
 
     /// Adds the turn since the last call, which must be less than half a turn. Returns all turns.
-    fn see(&mut self, world: &World) -> f32 {
+    pub fn see(&mut self, world: &World) -> f32 {
         let now = *world.bodies[self.body].rotation();
         self.angle += (now * self.last.inverse()).to_scaled_axis().dot(self.axis);
         self.last = now;

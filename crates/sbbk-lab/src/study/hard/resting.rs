@@ -118,7 +118,7 @@ const RADIUS: f32 = 0.5;
 const INNER: f32 = RADIUS - 0.03;
 
 /// Half a hollow ball, its middle at the origin.
-fn bowl() -> Form {
+pub(super) fn bowl() -> Form {
     /// Parts round its axis, and from its lowest point to its rim.
     const SEGMENTS: u32 = 24;
     const RINGS: u32 = 8;
@@ -179,20 +179,20 @@ pub(super) fn chains() -> Vec<Trial> {
 const RING: f32 = 1.0;
 const TUBE: f32 = 0.2;
 
-fn ring() -> Form {
-    const SEGMENTS: [u32; 2] = [24, 12];
+/// A torus, with segments of ring and tube. Its control is a hull for each segment of the ring.
+pub(super) fn ring(radius: f32, tube: f32, [segments, around]: [u32; 2]) -> Form {
     let part = |part: u32| {
-        let ends = [part, part + 1].map(|k| TAU * k as f32 / SEGMENTS[0] as f32);
+        let ends = [part, part + 1].map(|k| TAU * k as f32 / segments as f32);
         let points = ends.into_iter().flat_map(|angle| {
-            (0..SEGMENTS[1]).map(move |k| {
-                let tube = TAU * k as f32 / SEGMENTS[1] as f32;
-                let distance = RING + TUBE * tube.cos();
-                Vec3::new(distance * angle.cos(), -TUBE * tube.sin(), distance * angle.sin())
+            (0..around).map(move |k| {
+                let turn = TAU * k as f32 / around as f32;
+                let distance = radius + tube * turn.cos();
+                Vec3::new(distance * angle.cos(), -tube * turn.sin(), distance * angle.sin())
             })
         });
         points.collect()
     };
-    Form::parts(mesh::torus(RING, TUBE, SEGMENTS[0], SEGMENTS[1]), (0..SEGMENTS[0]).map(part))
+    Form::parts(mesh::torus(radius, tube, segments, around), (0..segments).map(part))
 }
 
 fn chain(kit: &Kit, load: f32) -> Figures {
@@ -205,7 +205,7 @@ fn chain(kit: &Kit, load: f32) -> Figures {
     // With Rapier's defaults a chain of hulls parts as well.
     world.integration_parameters.length_unit = RING / 4.0;
     world.integration_parameters.num_solver_iterations = 16;
-    let collider = kit.collider(&ring());
+    let collider = kit.collider(&ring(RING, TUBE, [24, 12]));
     for index in 0..=RINGS {
         // Every second ring is turned by a right angle, all of them upright.
         let upright = Quat::from_rotation_x(FRAC_PI_2);

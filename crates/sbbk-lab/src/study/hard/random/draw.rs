@@ -4,6 +4,7 @@ use rapier3d::parry::mass_properties::MassProperties;
 
 use super::Family;
 use crate::study::hard::kit::*;
+use crate::study::hard::resting::ring;
 
 /// Numbers of one scene. Every column draws the same.
 pub(super) struct Draw {
@@ -16,6 +17,8 @@ pub(super) struct Draw {
     pub dt: f32,
     /// True if the bodies are inserted last to first.
     pub is_reversed: bool,
+    /// True if bodies start sunk in each other.
+    pub is_sunk: bool,
     /// False if a part has no convex shape for the control.
     pub has_control: bool,
     /// Names of the parts, for the lists.
@@ -53,11 +56,12 @@ impl Draw {
         let mut random = Rand32::new(mixed ^ ((family as u64) << 56));
         let mut log = |low: f32, high: f32| low * (high / low).powf(random.rand_float());
         let (size, gravity) = (log(0.01, 100.0), log(2.0, 30.0));
-        // Coarser steps than a tenth of the time of a fall resolve no fall.
-        let dt = log(1.0 / 240.0, (0.1 / gravity.sqrt()).min(1.0 / 30.0));
+        // Coarser steps resolve no fall from a size high; finer ones only take time.
+        let [fine, coarse] = [0.015, 0.07].map(|share| share / gravity.sqrt());
+        let dt = log(fine.max(1.0 / 240.0), coarse.min(1.0 / 30.0));
         let is_reversed = random.rand_range(0..2) == 1;
         let about = vec![format!("size {size:.2}, {gravity:.1}/s², {:.0} Hz", 1.0 / dt)];
-        Self { random, size, gravity, dt, is_reversed, has_control: true, about }
+        Self { random, size, gravity, dt, is_reversed, is_sunk: false, has_control: true, about }
     }
 
     pub fn within(&mut self, low: f32, high: f32) -> f32 {
@@ -84,6 +88,11 @@ impl Draw {
 
     pub fn turn(&mut self) -> Quat {
         random::rotation(&mut self.random)
+    }
+
+    /// A turn about the `y` axis.
+    pub fn yaw(&mut self) -> Quat {
+        Quat::from_rotation_y(self.within(0.0, TAU))
     }
 
     fn seed(&mut self) -> u64 {
@@ -147,10 +156,14 @@ impl Draw {
         let cells = self.count(1, 8);
         let even = mesh::cuboid(halves, cells);
         let part = Part::new(Form::cuboid(halves, cells));
-        let name = self.pick(&["cuboid", "brick", "brick", "uneven brick", "flawed brick"]);
+        let names = ["cuboid", "brick", "uneven brick", "flawed brick", "two-sided brick", "hole"];
+        // An open surface has no inside to be pushed out of.
+        let name = self.pick(&names[..if self.is_sunk { 4 } else { 6 }]);
         let mesh = match name {
             "uneven brick" => self.uneven_box(halves, 8),
             "flawed brick" => self.flawed(&even),
+            "two-sided brick" => mesh::two_sided(&even),
+            "hole" => without_one(mesh::cuboid(halves, cells.max(3))),
             _ => even,
         };
         self.part(name, mesh, part)
@@ -186,19 +199,24 @@ impl Draw {
             "ring" => {
                 let segments = [self.count(12, 24), self.count(6, 12)];
                 let tube = self.within(0.12, 0.2);
-                let ring = mesh::torus(0.55 - tube, tube, segments[0], segments[1]);
-                let mesh = if self.chance(0.3) { self.flawed(&ring) } else { ring.clone() };
-                self.part("ring", mesh, Part::clean(ring, None))
+                let ring = Part::new(ring(0.55 - tube, tube, segments));
+                self.sometimes_flawed("ring", ring)
             }
             _ => {
                 let head = mesh::monkey_head_with(self.count(5, 10)).centred().scaled_to(1.1);
-                let mesh = if self.chance(0.3) { self.flawed(&head) } else { head.clone() };
-                self.part("head", mesh, Part::clean(head, None))
+                self.sometimes_flawed("head", Part::clean(head, None))
             }
         }
     }
 
-    fn part(&mut self, name: &str, mesh: Mesh, part: Part) -> Part {
+    /// The part, or the same with a flawed mesh.
+    pub fn sometimes_flawed(&mut self, name: &str, part: Part) -> Part {
+        let mesh = part.sound.clone();
+        let mesh = if self.chance(0.3) { self.flawed(&mesh) } else { mesh };
+        self.part(name, mesh, part)
+    }
+
+    pub fn part(&mut self, name: &str, mesh: Mesh, part: Part) -> Part {
         let is_primitive = matches!(name, "cuboid" | "ball");
         self.has_control &= part.form.control.is_some();
         self.tell(name, if is_primitive { 0 } else { mesh.triangle_count() });
@@ -210,6 +228,22 @@ impl Draw {
         let (seed, nth) = (self.seed(), self.count(1, 5) as usize);
         if self.chance(0.5) { mesh::unwelded(mesh, SOUP, seed) } else { mesh::doubled(mesh, nth) }
     }
+}
+
+/// The box of at least three cells a side without a triangle that touches no edge of the box.
+fn without_one(mut brick: Mesh) -> Mesh {
+    let half = brick.bounds().half_extents();
+    let is_inner = |triangle: &[u32; 3]| {
+        let on_rim = |&vertex: &u32| {
+            let share = (brick.vertices[vertex as usize] / half).abs();
+            share.to_array().iter().filter(|&&share| share > 0.999).count() > 1
+        };
+        !triangle.iter().any(on_rim)
+    };
+    if let Some(inner) = brick.triangles.iter().position(is_inner) {
+        brick.triangles.remove(inner);
+    }
+    brick
 }
 
 /// How far corners of a soup are moved, in sizes: two of one corner are 0.1 mm apart at a metre. More

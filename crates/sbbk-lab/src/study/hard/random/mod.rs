@@ -3,13 +3,23 @@
 //! Closed forms, conservation of energy, and the same scene with Rapier's shapes judge all columns
 //! alike. Limits have no unit: they are in sizes of the scene, or shares.
 
+mod bowls;
+mod chains;
 mod draw;
 mod floors;
+mod gears;
 mod overlaps;
+mod piles;
+mod plates;
 mod report;
 mod riders;
+mod rooms;
+mod screws;
 mod slopes;
+mod stacks;
 mod stage;
+mod tables;
+mod vessels;
 
 use std::ops::Range;
 use std::sync::PoisonError;
@@ -32,10 +42,28 @@ named! {
     pub enum Family {
         /// Bodies that slide and roll over a flat ground.
         Floors = "floors",
+        /// Towers of boxes.
+        Stacks = "stacks",
+        /// Bodies that fall into a tray.
+        Piles = "piles",
+        /// Rings that hang in each other.
+        Chains = "chains",
+        /// Bodies that fall into a bowl.
+        Bowls = "bowls",
         /// Bodies that slide, roll or stay on a slope.
         Slopes = "slopes",
+        /// A gear that drives another one.
+        Gears = "gears",
+        /// A nut on a bolt.
+        Screws = "screws",
+        /// Thin plates that fly onto a ground.
+        Plates = "plates",
         /// Bodies that are released in each other.
         Overlaps = "overlaps",
+        /// Bodies that fly about in a closed box.
+        Rooms = "rooms",
+        /// Tables with things on them.
+        Tables = "tables",
     }
 }
 
@@ -43,8 +71,17 @@ impl Family {
     fn run(self, draw: &mut Draw, kit: &Kit) -> Figures {
         match self {
             Self::Floors => floors::run(draw, kit),
+            Self::Stacks => stacks::run(draw, kit),
+            Self::Piles => piles::run(draw, kit),
+            Self::Chains => chains::run(draw, kit),
+            Self::Bowls => bowls::run(draw, kit),
             Self::Slopes => slopes::run(draw, kit),
+            Self::Gears => gears::run(draw, kit),
+            Self::Screws => screws::run(draw, kit),
+            Self::Plates => plates::run(draw, kit),
             Self::Overlaps => overlaps::run(draw, kit),
+            Self::Rooms => rooms::run(draw, kit),
+            Self::Tables => tables::run(draw, kit),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::prelude::*;
 const DEPTH: f64 = 0.01;
 
 pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
-    draw.gravity = 0.0;
+    (draw.gravity, draw.is_sunk) = (0.0, true);
     let count = draw.count(2, 5);
     let ratio = draw.log(1.0, 100.0);
     let mut middle = Vec3::ZERO;
