@@ -42,7 +42,7 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
     let mut stage = Stage::new(draw, kit, &bodies);
     // Threads are small beside the bolt.
     stage.world.integration_parameters.length_unit *= 5.0 * pitch;
-    // Lead angles are below five degrees: contact clustering takes such normals for one.
+    // Lead angles are of a few degrees: contact clustering takes such normals for one.
     stage.world.integration_parameters.contact_clustering = false;
     let mut turn = Turn::new(&stage.world, stage.body(1), Vec3::Y);
     // It first falls by the play.
@@ -65,9 +65,6 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
         return figures.within("pitches down, locked", down, [-0.05, 0.05]);
     }
     let off = f64::from((angle / TAU - down).abs());
-    figures.within("turn", angle, [0.45 * ideal - 0.2, 1.1 * ideal + 0.2]).at_most(
-        "off its thread",
-        off,
-        0.15,
-    )
+    let figures = figures.within("turn", angle, [0.45 * ideal, 1.1 * ideal + 0.2]);
+    figures.at_most("off its thread", off, 0.15)
 }
