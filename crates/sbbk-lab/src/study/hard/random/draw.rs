@@ -104,11 +104,6 @@ impl Draw {
         (seconds / self.dt) as usize
     }
 
-    /// Depths of the part in metres, by its mesh without flaws.
-    pub fn depths(&self, part: &Part) -> Depths {
-        Depths::new(&part.sound.clone().scaled(self.size))
-    }
-
     fn tell(&mut self, name: &str, triangles: usize) {
         self.about.push(format!("{name} {triangles}"));
     }
@@ -163,7 +158,12 @@ impl Draw {
             "uneven brick" => self.uneven_box(halves, 8),
             "flawed brick" => self.flawed(&even),
             "two-sided brick" => mesh::two_sided(&even),
-            "hole" => without_one(mesh::cuboid(halves, cells.max(3))),
+            "hole" => {
+                let mut brick = mesh::cuboid(halves, cells.max(3));
+                // The first triangle that touches no edge of the box.
+                brick.triangles.remove(2 * (cells.max(3) as usize + 1));
+                brick
+            }
             _ => even,
         };
         self.part(name, mesh, part)
@@ -228,22 +228,6 @@ impl Draw {
         let (seed, nth) = (self.seed(), self.count(1, 5) as usize);
         if self.chance(0.5) { mesh::unwelded(mesh, SOUP, seed) } else { mesh::doubled(mesh, nth) }
     }
-}
-
-/// The box of at least three cells a side without a triangle that touches no edge of the box.
-fn without_one(mut brick: Mesh) -> Mesh {
-    let half = brick.bounds().half_extents();
-    let is_inner = |triangle: &[u32; 3]| {
-        let on_rim = |&vertex: &u32| {
-            let share = (brick.vertices[vertex as usize] / half).abs();
-            share.to_array().iter().filter(|&&share| share > 0.999).count() > 1
-        };
-        !triangle.iter().any(on_rim)
-    };
-    if let Some(inner) = brick.triangles.iter().position(is_inner) {
-        brick.triangles.remove(inner);
-    }
-    brick
 }
 
 /// How far corners of a soup are moved, in sizes: two of one corner are 0.1 mm apart at a metre. More

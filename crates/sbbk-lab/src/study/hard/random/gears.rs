@@ -37,11 +37,11 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
     stage.hang(0, joint.motor_velocity(speed, 1e4));
     stage.hang(1, joint);
     let axes = [(0, Vec3::Z), (1, -Vec3::Z)];
-    let mut turns = axes.map(|(body, axis)| Turn::new(&stage.world, stage.body(body), axis));
+    let mut turns = axes.map(|(body, axis)| Turn::new(&stage.world, stage.handles[body], axis));
     let (mut away, mut before) = (0.0_f32, 0.0);
     let [speed_up, steps] = [SPEED_UP, 2.5].map(|seconds| draw.steps(seconds));
     for step in 0..steps {
-        stage.step();
+        stage.world.step();
         let [one, other] = [0, 1].map(|k| turns[k].see(&stage.world));
         let driven = other * teeth[1] as f32 / teeth[0] as f32;
         away = largest([away, (one - driven).abs() - 0.01 * one.abs()]);

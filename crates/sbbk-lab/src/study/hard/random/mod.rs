@@ -40,51 +40,36 @@ named! {
     /// A kind of scene.
     #[derive(ValueEnum)]
     pub enum Family {
-        /// Bodies that slide and roll over a flat ground.
         Floors = "floors",
-        /// Towers of boxes.
         Stacks = "stacks",
-        /// Bodies that fall into a tray.
         Piles = "piles",
-        /// Rings that hang in each other.
         Chains = "chains",
-        /// Bodies that fall into a bowl.
         Bowls = "bowls",
-        /// Bodies that slide, roll or stay on a slope.
         Slopes = "slopes",
-        /// A gear that drives another one.
         Gears = "gears",
-        /// A nut on a bolt.
         Screws = "screws",
-        /// Thin plates that fly onto a ground.
         Plates = "plates",
-        /// Bodies that are released in each other.
         Overlaps = "overlaps",
-        /// Bodies that fly about in a closed box.
         Rooms = "rooms",
-        /// Tables with things on them.
         Tables = "tables",
     }
 }
 
-impl Family {
-    fn run(self, draw: &mut Draw, kit: &Kit) -> Figures {
-        match self {
-            Self::Floors => floors::run(draw, kit),
-            Self::Stacks => stacks::run(draw, kit),
-            Self::Piles => piles::run(draw, kit),
-            Self::Chains => chains::run(draw, kit),
-            Self::Bowls => bowls::run(draw, kit),
-            Self::Slopes => slopes::run(draw, kit),
-            Self::Gears => gears::run(draw, kit),
-            Self::Screws => screws::run(draw, kit),
-            Self::Plates => plates::run(draw, kit),
-            Self::Overlaps => overlaps::run(draw, kit),
-            Self::Rooms => rooms::run(draw, kit),
-            Self::Tables => tables::run(draw, kit),
-        }
-    }
-}
+/// Runs a scene of each family, in the order of [`Family`].
+const RUN: [fn(&mut Draw, &Kit) -> Figures; Family::ALL.len()] = [
+    floors::run,
+    stacks::run,
+    piles::run,
+    chains::run,
+    bowls::run,
+    slopes::run,
+    gears::run,
+    screws::run,
+    plates::run,
+    overlaps::run,
+    rooms::run,
+    tables::run,
+];
 
 /// Extent of the study.
 #[derive(Clone, Debug)]
@@ -151,7 +136,7 @@ pub fn random(plan: &RandomPlan, progress: &Progress) -> Result<Results, StudyEr
             let mut draw = Draw::new(family, plan.seed, number);
             let kit = Kit::new(column, true, 0);
             *kit.film.lock().unwrap_or_else(PoisonError::into_inner) = film.cloned();
-            let mut figures = family.run(&mut draw, &kit);
+            let mut figures = RUN[family as usize](&mut draw, &kit);
             if column == Column::Control && !draw.has_control {
                 figures = Figures::default();
             }
@@ -159,11 +144,9 @@ pub fn random(plan: &RandomPlan, progress: &Progress) -> Result<Results, StudyEr
             Run { family, number, column, figures, about: draw.about.join(", ") }
         }));
         if let Some(path) = page {
-            let taken = films.iter();
-            let taken =
-                taken.filter_map(|f| f.lock().unwrap_or_else(PoisonError::into_inner).take());
-            let title = format!("{family} {}", plan.numbers.start);
-            replay::write(path, &title, &taken.collect::<Vec<_>>())?;
+            let take = |film: &Film| film.lock().unwrap_or_else(PoisonError::into_inner).take();
+            let taken: Vec<Recorder> = films.iter().filter_map(take).collect();
+            replay::write(path, &format!("{family} {}", plan.numbers.start), &taken)?;
         }
     }
     Ok(report::results(plan, &runs))

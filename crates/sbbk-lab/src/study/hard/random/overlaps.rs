@@ -24,17 +24,14 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
             middle = last + draw.turn() * Vec3::X * draw.within(0.5, 0.9);
         }
     }
-    let depths = bodies.iter().map(|body| draw.depths(&body.part));
-    let depths: Vec<Depths> = depths.collect();
     let mut stage = Stage::new(draw, kit, &bodies);
     let mut fastest = 0.0;
     for _ in 0..draw.steps(3.0) {
-        stage.step();
+        stage.world.step();
         fastest = largest([fastest, stage.top_speed()]);
     }
-    let pairs = (1..bodies.len()).flat_map(|j| (0..j).map(move |i| [i, j]));
-    let found = pairs.map(|[i, j]| depths[i].between(stage.pose(i), &depths[j], stage.pose(j)));
-    let deepest = largest(found) / draw.size;
     // Rapier parts bodies at three sizes/s.
-    Figures::default().at_most("deepest", deepest, DEPTH).at_most("speed", fastest, 9.0)
+    Figures::default()
+        .at_most("deepest", stage.deepest(&bodies, 0), DEPTH)
+        .at_most("speed", fastest, 9.0)
 }

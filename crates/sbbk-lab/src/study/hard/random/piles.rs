@@ -30,5 +30,5 @@ pub(super) fn settled(
     let mut stage = Stage::new(draw, kit, bodies);
     let figures = stage.settle(draw);
     let lost = (1..bodies.len()).filter(|&body| !is_kept(stage.place(body)));
-    figures.none("lost", lost.count()).at_most("deepest", stage.deepest(draw, bodies), 0.03)
+    figures.none("lost", lost.count()).at_most("deepest", stage.deepest(bodies, 1), 0.03)
 }

@@ -23,7 +23,7 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
     let mut stage = Stage::new(draw, kit, &bodies);
     let mut lowest = 0.0;
     for _ in 0..draw.steps(2.0) {
-        stage.step();
+        stage.world.step();
         // A plate on the ground is above it, however it lies.
         let heights = (1..=count).map(|body| {
             let place = stage.place(body);

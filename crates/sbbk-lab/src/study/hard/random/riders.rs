@@ -28,24 +28,17 @@ impl Rider {
     pub fn roller(draw: &mut Draw) -> Self {
         let lying = Quat::from_rotation_x(FRAC_PI_2);
         let long = draw.within(0.3, 0.6);
-        let rider = |part: Part, gyration| Self {
-            turn: lying,
-            height: 0.5,
-            gyration: Some(gyration),
-            is_rough: false,
-            part,
+        let rider = |part: Part| {
+            let gyration = part.mass.principal_inertia().y / (0.25 * part.mass.mass());
+            Self { turn: lying, height: 0.5, gyration: Some(gyration), is_rough: false, part }
         };
         match draw.pick(&["capsule", "cylinder", "ball", "ball"]) {
-            "capsule" => {
-                let part = draw.primitive("capsule", SharedShape::capsule_y(long, 0.5));
-                let gyration = part.mass.principal_inertia().y / part.mass.mass() / 0.25;
-                rider(part, gyration)
-            }
-            "cylinder" => rider(draw.primitive("cylinder", SharedShape::cylinder(long, 0.5)), 0.5),
+            "capsule" => rider(draw.primitive("capsule", SharedShape::capsule_y(long, 0.5))),
+            "cylinder" => rider(draw.primitive("cylinder", SharedShape::cylinder(long, 0.5))),
             _ => {
                 let part = draw.ball();
                 let is_rough = !part.is_primitive;
-                Self { turn: draw.turn(), is_rough, ..rider(part, 0.4) }
+                Self { turn: draw.turn(), is_rough, ..rider(part) }
             }
         }
     }
@@ -74,7 +67,7 @@ pub(super) fn ride(draw: &Draw, kit: &Kit, frame: Pose3, bodies: &[Body], steps:
     let start = place(&stage);
     let (mut rise, mut sunk) = (0.0, 0.0);
     for _ in 0..steps {
-        stage.step();
+        stage.world.step();
         let up = place(&stage).y - start.y;
         (rise, sunk) = (largest([rise, up]), largest([sunk, -up]));
     }

@@ -25,7 +25,7 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
     let beyond = beyond.reduce(|a, b| largest([a, b])).unwrap_or(f32::NAN);
     figures.at_most("beyond a wall", beyond, 0.0).at_most(
         "deepest",
-        stage.deepest(draw, &bodies),
+        stage.deepest(&bodies, 1),
         0.03,
     )
 }

@@ -44,13 +44,13 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
     stage.world.integration_parameters.length_unit *= 5.0 * pitch;
     // Lead angles are of a few degrees: contact clustering takes such normals for one.
     stage.world.integration_parameters.contact_clustering = false;
-    let mut turn = Turn::new(&stage.world, stage.body(1), Vec3::Y);
+    let mut turn = Turn::new(&stage.world, stage.handles[1], Vec3::Y);
     // It first falls by the play.
     let settled = draw.steps(3.0 * (0.2 * pitch / draw.gravity).sqrt()) + 1;
     let steps = draw.steps(seconds).max(settled);
     let mut before = [0.0; 2];
     for step in 1..=steps {
-        stage.step();
+        stage.world.step();
         turn.see(&stage.world);
         if step == settled {
             before = [turn.angle, stage.place(1).y];

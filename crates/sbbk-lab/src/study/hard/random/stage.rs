@@ -38,8 +38,8 @@ impl Body {
 
     /// Damps all motion, so that balls come to rest as well: to a thousandth in 14 falls.
     pub fn damped(mut self, draw: &Draw) -> Self {
-        (self.builder.linear_damping, self.builder.angular_damping) =
-            (0.5 * draw.gravity.sqrt(), 0.5 * draw.gravity.sqrt());
+        let damping = 0.5 * draw.gravity.sqrt();
+        self.builder = self.builder.linear_damping(damping).angular_damping(damping);
         self
     }
 
@@ -54,7 +54,7 @@ impl Body {
 pub(super) struct Stage {
     pub world: World,
     size: f32,
-    handles: Vec<RigidBodyHandle>,
+    pub handles: Vec<RigidBodyHandle>,
 }
 
 impl Stage {
@@ -64,19 +64,15 @@ impl Stage {
         world.gravity = -size * draw.gravity * Vec3::Y;
         world.integration_parameters.length_unit = size;
         world.integration_parameters.dt = draw.dt;
-        let mut order: Vec<usize> = (0..bodies.len()).collect();
+        let mut insert = |body: &Body| insert(&mut world, kit, body, size);
+        let mut handles: Vec<_> = match draw.is_reversed {
+            false => bodies.iter().map(insert).collect(),
+            true => bodies.iter().rev().map(&mut insert).collect(),
+        };
         if draw.is_reversed {
-            order.reverse();
-        }
-        let mut handles = vec![RigidBodyHandle::invalid(); bodies.len()];
-        for index in order {
-            handles[index] = insert(&mut world, kit, &bodies[index], size);
+            handles.reverse();
         }
         Self { world, size, handles }
-    }
-
-    pub fn step(&mut self) {
-        self.world.step();
     }
 
     pub fn place(&self, body: usize) -> Vec3 {
@@ -86,10 +82,6 @@ impl Stage {
     /// The pose in metres.
     pub fn pose(&self, body: usize) -> &Pose3 {
         self.world.bodies[self.handles[body]].position()
-    }
-
-    pub fn body(&self, body: usize) -> RigidBodyHandle {
-        self.handles[body]
     }
 
     /// Lets a body turn about a joint at its middle.
@@ -102,18 +94,16 @@ impl Stage {
     /// Runs for some seconds. Returns the greatest rise of the energy, over that of the motion at the
     /// start and that which lifts all bodies by a size.
     pub fn gain(&mut self, draw: &Draw, seconds: f32) -> f64 {
-        let masses = self.world.watched.iter().map(|&body| self.world.bodies[body].mass());
-        let lift = masses.sum::<f32>() * draw.gravity * self.size * self.size;
-        let moving =
-            self.world.watched.iter().map(|&body| self.world.bodies[body].kinetic_energy());
-        let unit = f64::from(lift + moving.sum::<f32>());
+        let lift = draw.gravity * self.size * self.size;
+        let bodies = self.world.watched.iter().map(|&body| &self.world.bodies[body]);
+        let unit: f32 = bodies.map(|body| body.mass() * lift + body.kinetic_energy()).sum();
         let mut gain = Gain::default();
         gain.see(self.world.energy());
         for _ in 0..draw.steps(seconds) {
-            self.step();
+            self.world.step();
             gain.see(self.world.energy());
         }
-        gain.most / unit
+        gain.most / f64::from(unit)
     }
 
     /// Runs for the time of 20 falls from half a size. Energy must not grow, and all bodies must come
@@ -124,13 +114,14 @@ impl Stage {
         Figures::default().at_most("energy gained", gain, GAIN).at_most("speed", speed, 0.05)
     }
 
-    /// Depth of the moving bodies in each other, of which the first body is none.
-    pub fn deepest(&self, draw: &Draw, bodies: &[Body]) -> f32 {
-        let depths: Vec<Depths> = bodies[1..].iter().map(|body| draw.depths(&body.part)).collect();
-        let pairs = (1..depths.len()).flat_map(|j| (0..j).map(move |i| [i, j]));
-        let pose = |index: usize| self.pose(index + 1);
-        let found = pairs.map(|[i, j]| depths[i].between(pose(i), &depths[j], pose(j)));
-        largest(found) / self.size
+    /// Greatest depth in each other of the bodies from number `first` on.
+    pub fn deepest(&self, bodies: &[Body], first: usize) -> f32 {
+        let meshes = bodies.iter().map(|body| body.part.sound.clone().scaled(self.size));
+        let depths: Vec<Depths> = meshes.map(|mesh| Depths::new(&mesh)).collect();
+        let pairs = (first..depths.len()).flat_map(|j| (first..j).map(move |i| [i, j]));
+        let between =
+            |[i, j]: [usize; 2]| depths[i].between(self.pose(i), &depths[j], self.pose(j));
+        largest(pairs.map(between)) / self.size
     }
 
     /// Highest speed, in sizes/s.
@@ -152,19 +143,18 @@ fn insert(world: &mut World, kit: &Kit, body: &Body, size: f32) -> RigidBodyHand
         _ => kit.collider(&form),
     };
     // The mass of a sound part, in all columns.
-    let mass = &part.mass;
-    let inertia = body.density * mass.principal_inertia() * size.powi(5);
+    let (mass, density) = (&part.mass, body.density);
     let mass = MassProperties::with_principal_inertia_frame(
         mass.local_com * size,
-        body.density * mass.mass() * size.powi(3),
-        inertia,
+        density * mass.mass() * size.powi(3),
+        density * mass.principal_inertia() * size.powi(5),
         mass.principal_inertia_local_frame,
     );
     let collider = collider.mass_properties(mass).friction(body.friction);
-    let mut builder = builder.clone();
+    let pose = Pose3::from_parts(size * pose.translation, pose.rotation);
+    let mut builder = builder.clone().pose(pose);
     builder.linvel *= size;
     builder.soft_ccd_prediction *= size;
-    builder = builder.pose(Pose3::from_parts(size * pose.translation, pose.rotation));
     if builder.body_type.is_dynamic() {
         return world.add(builder, &collider);
     }
