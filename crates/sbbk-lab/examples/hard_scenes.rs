@@ -54,10 +54,10 @@ struct RandomArguments {
     /// Runs so many random scenes of each family instead, or 200; a few if quick
     #[arg(long, value_name = "SCENES")]
     random: Option<Option<u32>>,
-    /// Runs random scenes of these families
+    /// Runs random scenes, of these families only
     #[arg(long, value_name = "FAMILIES", value_delimiter = ',')]
     family: Vec<Family>,
-    /// Runs the random scene with this number
+    /// Runs one random scene, the one with this number
     #[arg(long)]
     number: Option<u32>,
     /// Seed of the random scenes

@@ -6,6 +6,10 @@ use super::Family;
 use crate::study::hard::kit::*;
 use crate::study::hard::resting::ring;
 
+/// Greatest way by which corners of a soup are moved, in sizes: 0.05 mm at a metre. More opens gaps;
+/// less is a mesh whose corners are not joined.
+const SOUP: f32 = 0.5e-4;
+
 /// Numbers of one scene. Every column draws the same.
 pub(super) struct Draw {
     random: Rand32,
@@ -44,7 +48,7 @@ impl Part {
         Self { sound: form.mesh.clone(), form, is_primitive: false, mass }
     }
 
-    /// A mesh without flaws that stays as it is.
+    /// A mesh without flaws.
     pub fn clean(mesh: Mesh, control: Option<SharedShape>) -> Self {
         Self::new(Form { mesh, control })
     }
@@ -229,7 +233,3 @@ impl Draw {
         if self.chance(0.5) { mesh::unwelded(mesh, SOUP, seed) } else { mesh::doubled(mesh, nth) }
     }
 }
-
-/// How far corners of a soup are moved, in sizes: two of one corner are 0.1 mm apart at a metre. More
-/// opens gaps; less is a mesh whose corners are not joined.
-const SOUP: f32 = 0.5e-4;

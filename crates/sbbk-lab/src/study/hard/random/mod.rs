@@ -1,4 +1,4 @@
-//! Scenes that nobody tuned on: all of a scene is drawn from family, seed and number.
+//! Scenes by chance, on which no code was tuned. Family, seed and number give all of a scene.
 //!
 //! Closed forms, conservation of energy, and the same scene with Rapier's shapes judge all columns
 //! alike. Limits have no unit: they are in sizes of the scene, or shares.

@@ -1,4 +1,4 @@
-//! Thin plates with soft CCD that fly onto a ground and onto a box on it.
+//! Thin plates with soft CCD that fly onto a ground.
 
 use super::prelude::*;
 

@@ -74,7 +74,7 @@ pub(super) fn ride(draw: &Draw, kit: &Kit, frame: Pose3, bodies: &[Body], steps:
     Ride { way: place(&stage) - start, rise, sunk }
 }
 
-/// Figures of a ride that should be so long, or as long as that of the control if the body is rough.
+/// Compares a ride with the closed form. A rough body should ride as far as the control does.
 pub(super) fn judged(
     draw: &Draw,
     kit: &Kit,

@@ -23,9 +23,6 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
         largest(inside.to_array().map(|beyond| beyond.max(-halves.x)))
     });
     let beyond = beyond.reduce(|a, b| largest([a, b])).unwrap_or(f32::NAN);
-    figures.at_most("beyond a wall", beyond, 0.0).at_most(
-        "deepest",
-        stage.deepest(&bodies, 1),
-        0.03,
-    )
+    let figures = figures.at_most("beyond a wall", beyond, 0.0);
+    figures.at_most("deepest", stage.deepest(&bodies, 1), 0.03)
 }

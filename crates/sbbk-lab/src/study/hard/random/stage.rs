@@ -6,6 +6,10 @@ use rapier3d::parry::mass_properties::MassProperties;
 use super::draw::{Draw, Part};
 use crate::study::hard::kit::*;
 
+/// Energy that a scene may gain, as a share: bodies may be lifted by Rapier's prediction distance and
+/// allowed error, in sizes. More lets bodies hop; less is what pushing out of an impact gains.
+const GAIN: f64 = 0.025;
+
 /// A body before the first step.
 #[derive(Clone)]
 pub(super) struct Body {
@@ -91,8 +95,8 @@ impl Stage {
         self.world.insert_impulse_joint(axle, self.handles[body], joint);
     }
 
-    /// Runs for some seconds. Returns the greatest rise of the energy, over that of the motion at the
-    /// start and that which lifts all bodies by a size.
+    /// Runs for some seconds. Returns the greatest rise of the energy as a share. The whole is the
+    /// energy of the motion at the start, and of lifting all bodies by a size.
     pub fn gain(&mut self, draw: &Draw, seconds: f32) -> f64 {
         let lift = draw.gravity * self.size * self.size;
         let bodies = self.world.watched.iter().map(|&body| &self.world.bodies[body]);
@@ -160,7 +164,3 @@ fn insert(world: &mut World, kit: &Kit, body: &Body, size: f32) -> RigidBodyHand
     }
     world.insert(builder, collider).0
 }
-
-/// Energy that a scene may gain, as a share: bodies may be lifted by Rapier's prediction distance and
-/// allowed error, in sizes. More lets bodies hop; less is what pushing out of an impact gains.
-const GAIN: f64 = 0.025;

@@ -65,7 +65,7 @@ impl Draw {
         let corners = [[1.0, 1.0], [1.0, -1.0], [-1.0, -1.0], [-1.0, 1.0]];
         let legs = corners.map(|[x, z]| [Vec3::new(x * at.x, leg.y, z * at.z), leg]);
         let boxes = [&legs[..], &[[(2.0 * leg.y + top.y) * Vec3::Y, top]]].concat();
-        // Where a leg meets the top are faces within.
+        // Faces of legs and top lie within the table.
         let meshes = boxes
             .iter()
             .map(|&[at, half]| mesh::cuboid(half, self.count(1, 4)).mapped(|vertex| vertex + at));
