@@ -119,7 +119,7 @@ impl ContactSummary {
 #[derive(Default)]
 pub(crate) struct Reduction {
     pub(super) members: Vec<Member>,
-    /// First contacts of patches, by direction and then by place.
+    /// First contacts of patches, by part, by direction and then by place.
     seeds: Vec<ContactSummary>,
     pub(super) places: Vec<(Vec3, Real)>,
     /// Points of the chosen contacts of a patch.
@@ -170,22 +170,25 @@ impl Reduction {
 
     fn group_by_normal(&mut self, plan: PatchPlan) {
         let Self { members, seeds, .. } = self;
-        members.sort_unstable_by(by_depth);
+        let part = |member: &Member| member.summary.part;
+        members.sort_unstable_by(|a, b| part(a).cmp(&part(b)).then_with(|| by_depth(a, b)));
         seeds.clear();
-        for Member { summary, patch, .. } in &mut *members {
-            let is_far = summary.distance > plan.far;
-            let same_normal = if is_far { SAME_FAR_NORMAL } else { SAME_NORMAL };
-            let hovers = |seed: &ContactSummary| {
-                summary.distance > plan.hover_distance
-                    && seed.distance <= 0.0
-                    && seed.point.distance(summary.point) <= plan.size
-            };
-            let is_like = |seed: &ContactSummary| {
-                let cosine = seed.normal.dot(summary.normal);
-                seed.part == summary.part
-                    && (cosine >= same_normal || cosine >= SAME_NORMAL_OVER && hovers(seed))
-            };
-            *patch = seed_of(seeds, 0, is_like, summary);
+        for members in members.chunk_by_mut(|a, b| part(a) == part(b)) {
+            let first = seeds.len();
+            for Member { summary, patch, .. } in members {
+                let is_far = summary.distance > plan.far;
+                let same_normal = if is_far { SAME_FAR_NORMAL } else { SAME_NORMAL };
+                let hovers = |seed: &ContactSummary| {
+                    summary.distance > plan.hover_distance
+                        && seed.distance <= 0.0
+                        && seed.point.distance(summary.point) <= plan.size
+                };
+                let is_like = |seed: &ContactSummary| {
+                    let cosine = seed.normal.dot(summary.normal);
+                    cosine >= same_normal || cosine >= SAME_NORMAL_OVER && hovers(seed)
+                };
+                *patch = first as u32 + seed_of(seeds, first, is_like, summary);
+            }
         }
         members.sort_unstable_by(|a, b| a.patch.cmp(&b.patch).then_with(|| by_depth(a, b)));
     }
@@ -319,6 +322,8 @@ mod tests {
         assert_eq!(patches(&deep, PLAN)[0], (1, 0));
         let other_part = ContactSummary { part: 1, ..summary(0.0, -0.1) };
         assert_eq!(patches(&[summary(0.0, -0.1), other_part], PLAN), [(0, 0), (1, 1)]);
+        let mixed = [summary(0.0, -0.1), other_part, summary(0.1, -0.2), other_part];
+        assert_eq!(patches(&mixed, PLAN), [(2, 0), (0, 0), (1, 1), (3, 1)]);
         // Contacts of one depth stay in order.
         let many: Vec<ContactSummary> = (0..200).map(|i| summary((i % 100) as Real, 0.0)).collect();
         let expected = (1..99).flat_map(|i| [(i, i), (100 + i, i)]);

@@ -6,6 +6,7 @@
 use std::any::Any;
 use std::cell::Cell;
 use std::cmp::Ordering;
+use std::ops::Range;
 
 use arrayvec::ArrayVec;
 use parry3d::math::Real;
@@ -35,14 +36,18 @@ struct Pool<M, C> {
     next: Vec<ContactManifold<M, C>>,
     spare: Vec<ContactManifold<M, C>>,
     previous_points: Vec<TrackedContact<C>>,
+    /// In the order of parts.
     old_points: Vec<OldPoint<C>>,
+    /// Parts of the host's manifolds and the indices of these, sorted.
+    old_parts: Vec<(u32, u32)>,
     demand: HighWaterMark,
 }
 
 impl<M, C> Default for Pool<M, C> {
     fn default() -> Self {
-        let (next, spare, previous_points, old_points) = Default::default();
-        Self { next, spare, previous_points, old_points, demand: HighWaterMark::default() }
+        let (next, spare, previous_points, old_points, old_parts) = Default::default();
+        let demand = HighWaterMark::default();
+        Self { next, spare, previous_points, old_points, old_parts, demand }
     }
 }
 
@@ -50,6 +55,10 @@ impl<M, C> Default for Pool<M, C> {
 struct OldPoint<C> {
     point: TrackedContact<C>,
     part: u32,
+    /// Place in the host's list.
+    place: u32,
+    /// True if a new point has its data.
+    is_taken: bool,
 }
 
 /// Replaces the host's manifolds with the result of a query.
@@ -83,6 +92,7 @@ impl<'m, M: Default + 'static, C: Default + Copy + 'static> Writer<'m, M, C> {
         if let Some(limit) = pool.demand.update(manifolds.len()) {
             pool.next.shrink_to(limit);
             pool.old_points.shrink_to(limit);
+            pool.old_parts.shrink_to(limit);
         }
         POOL.set(Some(self.pool));
     }
@@ -126,18 +136,23 @@ impl<'m, M: Default + 'static, C: Default + Copy + 'static> Writer<'m, M, C> {
         }
     }
 
-    /// Lists the points of the host's manifolds.
+    /// Lists the points and the parts of the host's manifolds.
     fn list_old_points(&mut self) {
         let names_are_raw = self.had_patches == Some(false);
-        let old_points = &mut self.pool.old_points;
+        let Pool { old_points, old_parts, .. } = &mut *self.pool;
+        old_parts.clear();
+        old_parts.extend(self.manifolds.iter().map(part_of).zip(0..));
+        old_parts.sort_unstable();
         old_points.clear();
         old_points.extend(self.manifolds.iter().flat_map(|manifold| {
             let (part, subshapes) = (part_of(manifold), subshapes_of(manifold));
             manifold.points.iter().map(move |&point| {
                 let point = if names_are_raw { named(point, subshapes) } else { point };
-                OldPoint { point, part }
+                OldPoint { point, part, place: 0, is_taken: false }
             })
         }));
+        (0..).zip(&mut *old_points).for_each(|(place, old)| old.place = place);
+        old_points.sort_unstable_by_key(|old| (old.part, old.place));
     }
 }
 
@@ -245,11 +260,11 @@ fn set_poses<M, C>(points: &ContactPoints, manifold: &mut ContactManifold<M, C>)
 /// Gives the points of a manifold the data that they had in patches.
 fn take_data<M, C: Default + Copy>(manifold: &mut ContactManifold<M, C>, old: &[OldPoint<C>]) {
     let (part, subshapes) = (part_of(manifold), subshapes_of(manifold));
+    let old = &old[of_part(old, part, |old| old.part)];
     for point in &mut manifold.points {
         let names = named(*point, subshapes);
-        let is_same = |old: &&OldPoint<C>| {
-            old.part == part && (old.point.fid1, old.point.fid2) == (names.fid1, names.fid2)
-        };
+        let is_same =
+            |old: &&OldPoint<C>| (old.point.fid1, old.point.fid2) == (names.fid1, names.fid2);
         point.data = old.iter().find(is_same).map_or_else(C::default, |old| old.point.data);
     }
 }
@@ -328,19 +343,22 @@ fn write_patch<M, C, const MOST: usize>(
     };
     let PatchPoint { contact, normals: [normal1, normal2], poses: [pose1, pose2], .. } =
         points[deepest];
+    let subshapes = subshapes(contact as usize);
+    let part = part_at([&pose1, &pose2].map(Option::is_some), subshapes);
     // Manifolds that were taken are empty and have a normal of zero.
-    let likes = writer.manifolds.iter().map(|old| old.local_n1.dot(normal1)).enumerate();
+    let olds = of_part(&writer.pool.old_parts, part, |(part, _)| *part);
+    let likes = olds.map(|i| writer.pool.old_parts[i].1 as usize);
+    let likes = likes.map(|old| (old, writer.manifolds[old].local_n1.dot(normal1)));
     let likes = likes.filter(|(_, like)| *like >= LIKE_NORMAL);
     let mut manifold = match likes.max_by(|(_, a), (_, b)| a.total_cmp(b)) {
         Some((old, _)) => std::mem::take(&mut writer.manifolds[old]),
         None => writer.take_spare(),
     };
-    [manifold.subshape1, manifold.subshape2] = subshapes(contact as usize);
+    [manifold.subshape1, manifold.subshape2] = subshapes;
     manifold.set_subshape_pos1(pose1);
     manifold.set_subshape_pos2(pose2);
     (manifold.local_n1, manifold.local_n2) = (normal1, normal2);
     manifold.points.clear();
-    let part = part_of(&manifold);
     chosen.retain(|i| {
         let PatchPoint { point, normals, .. } = &points[*i];
         // The deepest one also where cones have left no unit vector.
@@ -348,8 +366,11 @@ fn write_patch<M, C, const MOST: usize>(
         if is_of_normal {
             let old_points = &mut writer.pool.old_points;
             let old = find_old(point, part, old_points, plan.same_point);
-            let data = old.map(|old| old_points.swap_remove(old).point.data);
-            manifold.points.push(with_data(point, data.unwrap_or_default()));
+            let data = old.map_or_else(C::default, |old| {
+                old_points[old].is_taken = true;
+                old_points[old].point.data
+            });
+            manifold.points.push(with_data(point, data));
         }
         !is_of_normal
     });
@@ -358,29 +379,47 @@ fn write_patch<M, C, const MOST: usize>(
 
 /// Returns the part whose frame a manifold's points are in; 0 for the frame of the shape.
 fn part_of<M, C>(manifold: &ContactManifold<M, C>) -> u32 {
-    let of1 = manifold.subshape_pos1().map(|_| manifold.subshape1);
-    of1.or(manifold.subshape_pos2().map(|_| manifold.subshape2)).unwrap_or(0)
+    let poses = [manifold.subshape_pos1(), manifold.subshape_pos2()];
+    part_at(poses.map(|pose| pose.is_some()), subshapes_of(manifold))
+}
+
+/// Like [`part_of`]. `has_pose`: which subshapes have poses of their own.
+fn part_at(has_pose: [bool; 2], [subshape1, subshape2]: [u32; 2]) -> u32 {
+    match has_pose {
+        [true, _] => subshape1,
+        [_, true] => subshape2,
+        _ => 0,
+    }
+}
+
+/// Returns the range of a part in a list in the order of parts.
+fn of_part<T>(list: &[T], part: u32, part_of: impl Fn(&T) -> u32) -> Range<usize> {
+    let first = list.partition_point(|one| part_of(one) < part);
+    first..first + list[first..].partition_point(|one| part_of(one) == part)
 }
 
 /// Returns the index of the old point with the features of a point, else of the nearest one within
-/// `same_point`. (A corner of two triangles has two names.)
+/// `same_point`, unless its data is taken. (A corner of two triangles has two names.)
 fn find_old<C>(
     point: &TrackedContact<()>,
     part: u32,
     old_points: &[OldPoint<C>],
     same_point: Real,
 ) -> Option<usize> {
-    let is_same = |old: &OldPoint<C>| {
-        old.part == part && old.point.fid1 == point.fid1 && old.point.fid2 == point.fid2
+    let of_part = of_part(old_points, part, |old| old.part);
+    let free = of_part.filter(|&index| !old_points[index].is_taken);
+    let is_same = |index: &usize| {
+        let old = &old_points[*index].point;
+        old.fid1 == point.fid1 && old.fid2 == point.fid2
     };
     let nearest = || {
-        let of_part = old_points.iter().enumerate().filter(|(_, old)| old.part == part);
-        let distances =
-            of_part.map(|(index, old)| (index, old.point.local_p1.distance(point.local_p1)));
+        let distances = free
+            .clone()
+            .map(|index| (index, old_points[index].point.local_p1.distance(point.local_p1)));
         let (index, distance) = distances.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
         (distance <= same_point).then_some(index)
     };
-    old_points.iter().position(is_same).or_else(|| nearest().filter(|_| same_point > 0.0))
+    free.clone().find(is_same).or_else(|| nearest().filter(|_| same_point > 0.0))
 }
 
 /// Returns a point whose features have names of their own among all features of both shapes.
