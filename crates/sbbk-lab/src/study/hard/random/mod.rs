@@ -131,18 +131,19 @@ pub fn random(plan: &RandomPlan, progress: &Progress) -> Result<Results, StudyEr
         progress.phase(family.to_string(), jobs.len());
         let page = replay.take();
         let films: Vec<Film> = plan.columns.iter().map(|_| Film::default()).collect();
-        runs.extend(parallel::map(&jobs, plan.threads, |index, &(number, column)| {
+        let found = parallel::map(&jobs, plan.threads, |index, &(number, column)| {
             let film = films.get(index).filter(|_| page.is_some());
             let mut draw = Draw::new(family, plan.seed, number);
             let kit = Kit::new(column, true, 0);
             *kit.film.lock().unwrap_or_else(PoisonError::into_inner) = film.cloned();
-            let mut figures = RUN[family as usize](&mut draw, &kit);
-            if column == Column::Control && !draw.has_control {
-                figures = Figures::default();
-            }
+            let figures = RUN[family as usize](&mut draw, &kit);
             progress.step();
-            Run { family, number, column, figures, about: draw.about.join(", ") }
-        }));
+            // Some parts have no convex shape.
+            let is_run = column != Column::Control || draw.has_control;
+            let about = draw.about.join(", ");
+            is_run.then_some(Run { family, number, column, figures, about })
+        });
+        runs.extend(found.into_iter().flatten());
         if let Some(path) = page {
             let take = |film: &Film| film.lock().unwrap_or_else(PoisonError::into_inner).take();
             let taken: Vec<Recorder> = films.iter().filter_map(take).collect();
