@@ -3,6 +3,7 @@
 //! Parry's BVH is there before the first query and always fits the mesh, so a pair without trees
 //! needs nothing else.
 
+use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -171,6 +172,18 @@ impl<'a> MeshView<'a> {
         sides.into()
     }
 
+    /// Least coordinate of the mesh along a direction.
+    pub(crate) fn lowest(&self, direction: Vec3) -> Real {
+        let least = Cell::new(Real::INFINITY);
+        let bound =
+            |node: &BvhNode| (direction * node.mins()).min(direction * node.maxs()).element_sum();
+        for triangle in self.mesh.bvh().leaves(|node| bound(node) < least.get()) {
+            let heights = self.corners(triangle).map(|corner| corner.dot(direction));
+            least.set(heights.into_iter().fold(least.get(), Real::min));
+        }
+        least.get()
+    }
+
     /// Height of the mesh over the middle of its box along a unit direction, or of the box if that is
     /// less than `enough`.
     pub(crate) fn height(&self, direction: Vec3, enough: Real) -> Real {
@@ -178,9 +191,7 @@ impl<'a> MeshView<'a> {
         if of_box <= enough {
             return of_box;
         }
-        let middle = self.root.center();
-        let heights = self.mesh.vertices().iter().map(|&vertex| (vertex - middle).dot(direction));
-        heights.fold(0.0, Real::max)
+        -self.lowest(-direction) - self.root.center().dot(direction)
     }
 
     /// The largest absolute coordinate.

@@ -256,6 +256,10 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
         if self.is_field(i) { *self.pair.field.root_aabb() } else { *self.pair.mesh.root() }
     }
 
+    fn lowest(&self, i: usize, direction: Vector) -> Option<Real> {
+        (!self.is_field(i)).then(|| self.pair.mesh.lowest(direction))
+    }
+
     fn is_covered(&self, i: usize, point: Vector) -> bool {
         self.is_field(i) || is_covered(self.pair.mesh.mesh, point)
     }

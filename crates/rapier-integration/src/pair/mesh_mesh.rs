@@ -182,6 +182,10 @@ impl<'q> TriangleShapes for Meshes<'q> {
         *self.pair.meshes[i].root()
     }
 
+    fn lowest(&self, i: usize, direction: Vector) -> Option<Real> {
+        Some(self.pair.meshes[i].lowest(direction))
+    }
+
     fn is_covered(&self, i: usize, point: Vector) -> bool {
         is_covered(self.pair.meshes[i].mesh, point)
     }

@@ -44,6 +44,13 @@ const DISTANT: f64 = 0.25;
 /// smooth bodies lose contacts; lower: gears are braked.
 const NEAR_NORMAL: f64 = 0.87;
 
+/// Cosine between a normal and that of the face above which the contact is upright.
+const UPRIGHT: f64 = 0.999_999;
+
+/// Depth below the plane of a border triangle up to which a shape is on one side of it, in prediction
+/// distances or, if less, in [`filter_distance`]s. Higher: bodies hang over the rim of a table. Lower: bodies stumble where meshes meet.
+pub(super) const LIP: f64 = 0.25;
+
 /// Distance, in sizes of the triangles, below which rounding decides on which side of each other these
 /// are. Higher: contacts are lost; lower: triangles that touch count as crossing.
 const TOUCHING: f64 = 1.0e-9;
@@ -115,7 +122,9 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             let is_minimum = |i: usize| self.is_minimum(&surfaces, i, local, &contact);
             let is_first_minimum = is_minimum(0);
             if is_first_minimum && is_minimum(1) {
-                return Verdict::Contact(of_triangles);
+                let turned = (0..2).find_map(|i| self.at_border(&surfaces, i, local, &contact));
+                let contact = turned.unwrap_or(contact);
+                return Verdict::Contact(TriangleSurfaceContact { contact, ..of_triangles });
             }
             // A local minimum does not point inside: spares the test.
             let may_have_passed = has_solid && !(is_solid[0] && is_first_minimum);
@@ -208,6 +217,56 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             && local.corners.iter().any(|corners| leans(corners, normal))
     }
 
+    /// Returns a contact at the border of a surface with the normal of its face, if the other shape is all
+    /// on one side of the face: else bodies would run into meshes that continue the one below.
+    fn at_border(
+        &self,
+        surfaces: &Surfaces<'_, S>,
+        i: usize,
+        local: &TrianglePair,
+        contact: &TriangleContact,
+    ) -> Option<TriangleContact> {
+        let TriangleContact { normal, features, point1, point2, .. } = *contact;
+        let feature = [features.feature1(), features.feature2()][i];
+        if feature == Feature::Face {
+            return None;
+        }
+        let [a, b, c] = local.corners[i];
+        let up = (b - a).cross(c - a).try_normalize()?;
+        let own = [normal, -normal][i];
+        let middle = self.in_local(1 - i, self.shapes.bounds(1 - i).center(), local);
+        let up = if up.dot(middle - a) < 0.0 { -up } else { up };
+        let cosine = up.dot(own);
+        let place = match i {
+            0 => local.origin.as_dvec3() + point1,
+            _ => self.pose.placement12.to_frame2(point2, local.origin),
+        };
+        if cosine > UPRIGHT || !surfaces[i].as_ref()?.is_border(self.pair[i], feature, place) {
+            return None;
+        }
+        let lowest = self.shapes.lowest(1 - i, self.in_frame(1 - i, up).as_vec3())?;
+        let lowest = f64::from(lowest) + up.dot(self.in_local(1 - i, Vec3::ZERO, local) - a);
+        let near = f64::from(self.pose.prediction).min(self.shapes.filter_distance());
+        if lowest < -LIP * near {
+            return None;
+        }
+        let distance = contact.distance * cosine.max(0.0);
+        let normal = [up, -up][i];
+        let (point1, point2) = match i {
+            0 => (point1, point1 + distance * normal),
+            _ => (point2 - distance * normal, point2),
+        };
+        Some(TriangleContact { normal, distance, point1, point2, ..*contact })
+    }
+
+    /// Returns a point of a shape in frame 1, from the origin of two triangles.
+    fn in_local(&self, i: usize, point: Vec3, local: &TrianglePair) -> DVec3 {
+        match i {
+            0 => point.as_dvec3() - local.origin.as_dvec3(),
+            _ => self.pose.placement12.to_frame1(point, local.origin),
+        }
+    }
+
     /// Returns a direction of frame 1 in the frame of a shape.
     fn in_frame(&self, i: usize, direction: DVec3) -> DVec3 {
         if i == 0 { direction } else { self.pose.placement12.inverse * direction }
@@ -283,10 +342,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             return None;
         }
         let bounds = self.shapes.bounds(solid);
-        let middle = match solid {
-            0 => bounds.center().as_dvec3() - local.origin.as_dvec3(),
-            _ => self.pose.placement12.to_frame1(bounds.center(), local.origin),
-        };
+        let middle = self.in_local(solid, bounds.center(), local);
         let [a, b, c] = local.corners[1 - solid];
         let normal = (b - a).cross(c - a).normalize_or_zero();
         let (away, own) = match solid {

@@ -74,6 +74,9 @@ pub(crate) trait TriangleShapes {
     /// Returns the box around a shape, in its frame.
     fn bounds(&self, i: usize) -> Aabb;
 
+    /// Returns the least coordinate of a shape along a direction, in its frame; `None` if not known.
+    fn lowest(&self, i: usize, direction: Vector) -> Option<Real>;
+
     /// Returns true if a point in the frame of a shape may be inside it.
     fn is_covered(&self, i: usize, point: Vector) -> bool;
 

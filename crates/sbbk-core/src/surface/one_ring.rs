@@ -110,6 +110,9 @@ const RISE_TO_FACE: f64 = 0.3;
 /// take longer. Lower: ordinary vertices do.
 const LONG: usize = 32;
 
+/// Rounding of a corner that was moved to a place and back, as a share of the coordinates.
+const ROUNDING: f64 = 1.0e-14;
+
 impl<F: Facets> OneRing<F> {
     /// True if no triangle of the one-ring of a feature comes nearer to the other body in a unit
     /// direction, and the direction does not lead into the solid.
@@ -163,6 +166,33 @@ impl<F: Facets> OneRing<F> {
         slopes.height >= 0.0
             && (slopes.rise <= FLAT * FLAT
                 || !self.is_exceeded(triangle, feature, slopes, most, place))
+    }
+
+    /// True if a surface ends at an edge or a vertex: a triangle there has an edge without a twin, and no
+    /// triangle apart from these touches `place`.
+    pub fn is_border(&self, triangle: u32, feature: Feature, place: DVec3) -> bool {
+        let is_open = match feature {
+            Feature::Edge(i) => self.facets.twin(3 * triangle + u32::from(i)).is_none(),
+            Feature::Vertex(_) => !self.visit(triangle, feature, |_| ControlFlow::Continue(())),
+            Feature::Face => false,
+        };
+        if !is_open {
+            return false;
+        }
+        let first = half_edge(triangle, feature);
+        let is_vertex = matches!(feature, Feature::Vertex(_));
+        let ends = [0, usize::from(!is_vertex)].map(|i| self.corner(first, i));
+        let place = self.place(triangle, feature, Some(place));
+        let mut has_strays = false;
+        self.visit_touching(triangle, place, |corners, _| {
+            let is_at = |corner: &DVec3, end: &DVec3| {
+                let off = *corner + place - *end;
+                off.length_squared() <= ROUNDING * ROUNDING * place.length_squared()
+            };
+            let has_end = |end: &DVec3| corners.iter().any(|corner| is_at(corner, end));
+            has_strays |= !ends.iter().any(has_end);
+        });
+        !has_strays
     }
 
     /// True if the body is behind the triangle, and nothing in front.

@@ -17,6 +17,9 @@
 //! normal. The contact then takes the normal of a face nearby along which the bodies cross, if there is
 //! one.
 //!
+//! A border of the mesh is met as its face is, by a body that is all on one side of the face. Else a
+//! body would run into the borders of meshes that continue the one below.
+//!
 //! Triangles are neighbours if their corners are equal; meshes need no shared vertices. A contact that
 //! no such neighbour explains is compared with all triangles at its point
 //! ([`strays`](sbbk_core::surface::strays)).
@@ -52,6 +55,8 @@ pub(crate) struct GhostContacts {
     sources: Vec<u32>,
     /// Contacts that take the normal of a face.
     on_faces: Vec<u32>,
+    /// Contacts at borders of the mesh that keep their normals.
+    borders: Vec<u32>,
     /// Contacts that share a corner with the one at hand.
     nearby: Vec<u32>,
     /// Contacts of other triangles at the point of the one at hand.
@@ -65,8 +70,10 @@ struct Corner {
     nearest: u32,
     /// A contact at this corner, and the result of `is_passed` for it.
     passed: Option<(u32, bool)>,
-    /// The stray with the least distance, or the contact that asked first.
-    stray: Option<u32>,
+    /// The stray with the least distance, or the contact that asked first, and true if one shares no corner.
+    stray: Option<(u32, bool)>,
+    /// True if a triangle has an edge here that no other contact has.
+    is_border: Option<bool>,
 }
 
 /// Returns a hash of a part and a corner. Corners that differ in x or y alone never collide.
@@ -108,6 +115,7 @@ impl GhostContacts {
     ) {
         self.index(contacts, keys);
         self.on_faces.clear();
+        self.borders.clear();
         self.sources.clear();
         self.sources.extend(0..contacts.len() as u32);
         for (contact, (_, PartContact { contact: own, feature, .. })) in (0..).zip(contacts) {
@@ -119,8 +127,11 @@ impl GhostContacts {
             let is_nearer = |other: u32| distance(other) < own.distance - EQUAL * size;
             let mut nearest = self.nearest(contacts, contact, *feature);
             if !is_nearer(nearest) {
-                let stray = self.stray(contacts, contact, &mut find_strays);
+                let (stray, has_strays) = self.stray(contacts, contact, &mut find_strays);
                 nearest = if distance(stray) < distance(nearest) { stray } else { nearest };
+                if !has_strays && self.is_border(contact, *feature) {
+                    self.borders.push(contact);
+                }
             }
             if is_nearer(nearest) {
                 self.sources[contact as usize] = nearest;
@@ -157,7 +168,7 @@ impl GhostContacts {
         for (start, &entry) in (0..).zip(&*entries) {
             let nearest = contact_of(entry);
             if last_key.replace(entry >> 64) != Some(entry >> 64) {
-                corners.push(Corner { start, nearest, passed: None, stray: None });
+                corners.push(Corner { start, nearest, passed: None, stray: None, is_border: None });
             }
             let corner = corners.len() - 1;
             triangles[nearest as usize][usize::from(entry as u8)] = corner as u32;
@@ -194,14 +205,14 @@ impl GhostContacts {
         self.at_feature(contact, feature).fold(contact, nearer)
     }
 
-    /// Lists the strays of a contact, and returns the one with the least distance, or the contact. All
-    /// contacts at a vertex have the same strays.
+    /// Lists the strays of a contact. Returns the one with the least distance, or the contact, and true
+    /// if one shares no corner with it. All contacts at a vertex have the same strays.
     fn stray<I>(
         &mut self,
         contacts: &[(I, PartContact)],
         contact: u32,
         find_strays: &mut impl FnMut(&(I, PartContact), &mut Vec<u32>),
-    ) -> u32 {
+    ) -> (u32, bool) {
         let hit = &contacts[contact as usize];
         let at = match hit.1.feature {
             Feature::Vertex(i) => Some(self.triangles[contact as usize][usize::from(i)]),
@@ -214,11 +225,36 @@ impl GhostContacts {
         find_strays(hit, &mut self.strays);
         let distance = |contact: u32| contacts[contact as usize].1.contact.distance;
         let nearer = |a: u32, b: u32| if distance(b) < distance(a) { b } else { a };
-        let stray = self.strays.iter().copied().fold(contact, nearer);
+        let nearest = self.strays.iter().copied().fold(contact, nearer);
+        let ends = ends(hit.1.feature).map(|end| self.triangles[contact as usize][end]);
+        let is_apart =
+            |&other: &u32| !ends.iter().any(|end| self.triangles[other as usize].contains(end));
+        let stray = (nearest, self.strays.iter().any(is_apart));
         if let Some(corner) = at {
             self.corners[corner as usize].stray = Some(stray);
         }
         stray
+    }
+
+    /// Returns true if an edge is of one triangle only, or a vertex at the end of such an edge.
+    fn is_border(&mut self, contact: u32, feature: Feature) -> bool {
+        let Feature::Vertex(i) = feature else {
+            return self.at_feature(contact, feature).nth(1).is_none();
+        };
+        let corner = self.triangles[contact as usize][usize::from(i)];
+        if let Some(is_border) = self.corners[corner as usize].is_border {
+            return is_border;
+        }
+        let has_border = |of: u32| {
+            let corners = self.triangles[of as usize];
+            let edges = (0..3_u8).filter(|&i| {
+                [i, (i + 1) % 3].iter().any(|&end| corners[usize::from(end)] == corner)
+            });
+            edges.into_iter().any(|i| self.at_feature(of, Feature::Edge(i)).nth(1).is_none())
+        };
+        let is_border = self.at_corner(corner).any(has_border);
+        self.corners[corner as usize].is_border = Some(is_border);
+        is_border
     }
 
     /// Returns true if a triangle at the feature of a contact extends beyond it along its normal.
@@ -268,6 +304,7 @@ impl GhostContacts {
         self.triangles.shrink_to(limit);
         self.sources.shrink_to(limit);
         self.on_faces.shrink_to(limit);
+        self.borders.shrink_to(limit);
         self.nearby.shrink_to(limit);
         self.strays.shrink_to(limit);
     }
@@ -315,12 +352,13 @@ impl ConvexQuery<'_> {
     ) {
         let is_at_border =
             |(_, contact): &([u32; 2], PartContact)| contact.feature != Feature::Face;
-        if !self.pair.has_surface() || contacts.len() < 2 || !contacts.iter().any(is_at_border) {
+        if !self.pair.has_surface() || !contacts.iter().any(is_at_border) {
             return;
         }
         let mut ghosts = std::mem::take(&mut scratch.ghosts);
         self.find_ghosts(&mut ghosts, contacts, scratch);
         self.turn_to_faces(&mut ghosts, contacts, scratch);
+        self.turn_at_borders(&ghosts, contacts, scratch);
         for (contact, &source) in ghosts.sources.iter().enumerate() {
             let source = contacts[source as usize].1.contact;
             // Along its own normal a contact keeps its own points.
@@ -357,6 +395,21 @@ impl ConvexQuery<'_> {
             }
         };
         ghosts.find(contacts, keys, extends_beyond, find_strays);
+    }
+
+    /// Gives contacts at borders the normals of their faces if the shape is all on one side of these.
+    fn turn_at_borders(
+        &self,
+        ghosts: &GhostContacts,
+        contacts: &mut ContactList<PartContact>,
+        scratch: &mut ConvexScratch,
+    ) {
+        for &border in ghosts.borders.iter().filter(|&&i| ghosts.sources[i as usize] == i) {
+            let (of, hit) = &mut contacts[border as usize];
+            let subshapes = self.pair.mesh_place.swap(*of);
+            let turned = self.with_pair(subshapes, scratch, |pair| pair.at_border(&hit.contact));
+            hit.contact = turned.flatten().unwrap_or(hit.contact);
+        }
     }
 
     /// Gives the normals of faces nearby to the contacts that need one.

@@ -16,6 +16,7 @@ use super::placed::PlacedPart;
 use super::points::{FACE, PointPair, contact_points, ray_length};
 use super::shape::ConvexShape;
 use crate::pair::reduce::ContactSummary;
+use crate::pair::surface::{LIP, filter_distance};
 use crate::pair::update::ContactPoints;
 
 /// A triangle and a part at the pose of a query.
@@ -227,6 +228,28 @@ impl TrianglePartPair<'_> {
             is_crossing |= point.distance < 0.0;
         });
         is_crossing.then_some(contact.contact)
+    }
+
+    /// Returns a contact at a border with the normal of the face, if the part is on one side of the
+    /// plane of the triangle.
+    pub(super) fn at_border(&self, contact: &ConvexContact) -> Option<ConvexContact> {
+        let ConvexContact { distance, normal: own, on_triangle, .. } = *contact;
+        let face = self.face_contact(&self.placed.in_part(self.corners))?;
+        let radius = f64::from(self.part.shape.radius());
+        let near = filter_distance(true, self.placed.extent.ball().radius);
+        let near = near.min(f64::from(self.pair.pose.prediction));
+        if radius - face.distance > LIP * near {
+            return None;
+        }
+        let normal = face.normal;
+        // The nearest point of the part is as far from the plane as it is along the normal.
+        let distance = radius + (distance - radius) * normal.dot(own).max(0.0);
+        Some(ConvexContact {
+            distance,
+            normal,
+            on_triangle,
+            on_shape: on_triangle + distance * normal,
+        })
     }
 
     /// Returns the contact of the part with the plane of the triangle, on the side of the part's middle.
