@@ -9,7 +9,7 @@ use glamx::{Quat, Vec3};
 use rapier_integration::SbbkDispatcher;
 use rapier3d::math::Pose;
 use rapier3d::parry::query::DefaultQueryDispatcher;
-use rapier3d::parry::shape::{Ball, Cuboid, Shape};
+use rapier3d::parry::shape::{Ball, Compound, Cuboid, Shape, SharedShape};
 use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::support::{Pair, Question, shape};
@@ -78,6 +78,14 @@ const FAMILIES: &[Family] = &[
         case(&cone(count / 2), Cuboid::new(Vec3::splat(0.3)), -0.29 * Vec3::Y)
     }),
     ("cone and a ball", |count| case(&cone(count / 2), Ball::new(0.3), -0.301 * Vec3::Y)),
+    ("plates of a compound on a floor", |count| {
+        let (rows, step) = ((count as f32 / 4.0).sqrt() as u32, 4.0 / (count as f32).sqrt());
+        let place =
+            |i: u32| Vec3::new((i % rows) as f32, 0.0, (i / rows) as f32) * step - Vec3::ONE;
+        let plate = SharedShape::cuboid(0.3 * step, 0.01, 0.3 * step);
+        let parts = (0..rows * rows).map(|i| (Pose::from_translation(place(i)), plate.clone()));
+        case(&mesh::floor(4.0, 4), Compound::new(parts.collect()), 1.0105 * Vec3::Y)
+    }),
     ("layers on a slab", |count| {
         let cube = layers(&mesh::cuboid(Vec3::splat(0.5), 1), count / 12);
         case(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1), shape(&cube), Vec3::new(0.1, 1.001, 0.2))
