@@ -58,7 +58,7 @@ fn cuboid() -> ColliderBuilder {
     ColliderBuilder::cuboid(20.0, 1.0, 20.0).translation(-Vec3::Y)
 }
 
-fn riders(flags: TriMeshFlags) -> [Rider; 7] {
+pub(super) fn riders(flags: TriMeshFlags) -> [Rider; 7] {
     let rider = |name, shape, start| Rider { name, shape, start };
     let tapered = [-HALF, HALF].into_iter().flat_map(|y| {
         let wide = if y < 0.0 { 0.7 * HALF } else { HALF };
@@ -75,6 +75,27 @@ fn riders(flags: TriMeshFlags) -> [Rider; 7] {
         rider("cylinder", SharedShape::cylinder(HALF, HALF), Start::Lying),
         rider("hull", hull, Start::Upright),
     ]
+}
+
+impl Rider {
+    /// Pose some time after leaving a ground that ends at x = 2.
+    pub(super) fn fall(&self, ground: ColliderBuilder, speed: f32) -> Pose3 {
+        let mut world = world();
+        world.insert(RigidBodyBuilder::fixed(), ground.friction(FRICTION));
+        let turn = match self.start {
+            Start::Lying => Quat::from_rotation_x(FRAC_PI_2),
+            Start::Upright | Start::Any => Quat::IDENTITY,
+        };
+        let place = Vec3::new(1.4, HALF + GAP, 0.3);
+        let body = RigidBodyBuilder::dynamic().pose(Pose3::from_parts(place, turn));
+        let body = body
+            .linvel(speed * Vec3::X)
+            .angvel(-speed / HALF * Vec3::Z * f32::from(self.start != Start::Upright));
+        let collider = ColliderBuilder::new(self.shape.clone()).friction(FRICTION);
+        let (body, _) = world.insert(body.can_sleep(false), collider);
+        (0..(60.0 * (1.0 / speed + 0.8)) as usize).for_each(|_| world.step());
+        *world.bodies[body].position()
+    }
 }
 
 impl Course {

@@ -1,7 +1,12 @@
 use glamx::Vec3;
 use sbbk_testkit::mesh::{self, Mesh};
 
-use super::rides::Course;
+use rapier3d::geometry::ColliderBuilder;
+use rapier3d::parry::shape::TriMeshFlags;
+
+use super::rides::{Course, riders};
+use super::shape;
+use super::table::{Case, judge};
 
 /// Side of all chunks, or beams, of a road together.
 const SIZE: f32 = 16.0;
@@ -44,3 +49,31 @@ const KNOWN: &[(&str, &str)] = &[
     ("64 unlike floors", "mesh cube"),
     ("16 slabs", "mesh cube, mesh ball, cuboid, ball, capsule, cylinder, hull"),
 ];
+
+/// Would catch bodies that the rim of a sheet holds up beyond its end. After a fall of seven metres, a
+/// metre is a difference of 0.08 s.
+#[test]
+fn bodies_leave_the_rim_of_a_sheet_as_that_of_a_cuboid() {
+    let mut cases = Vec::new();
+    for speed in [0.5, 2.0, 8.0] {
+        for rider in riders(TriMeshFlags::empty()) {
+            let [sheet, block] = [true, false].map(|is_sheet| {
+                let ground = if is_sheet {
+                    ColliderBuilder::new(shape(&mesh::floor(4.0, 4), TriMeshFlags::empty()))
+                } else {
+                    ColliderBuilder::cuboid(2.0, 1.0, 2.0).translation(-Vec3::Y)
+                };
+                rider.fall(ground, speed)
+            });
+            let apart = (sheet.translation - block.translation).length();
+            let shown = format!("{:.2} {:.2} {apart:.2}", sheet.translation.x, sheet.translation.y);
+            cases.push(Case {
+                row: format!("{speed} m/s"),
+                column: rider.name,
+                shown,
+                is_right: apart < 1.0,
+            });
+        }
+    }
+    judge("place 1 s after the rim, and distance from that of a cuboid", &cases, &[]);
+}
