@@ -171,18 +171,24 @@ impl<F: Facets> OneRing<F> {
     /// True if a surface ends at an edge or a vertex: a triangle there has an edge without a twin, and no
     /// triangle apart from these touches `place`.
     pub fn is_border(&self, triangle: u32, feature: Feature, place: DVec3) -> bool {
-        let is_open = match feature {
-            Feature::Edge(i) => self.facets.twin(3 * triangle + u32::from(i)).is_none(),
-            Feature::Vertex(_) => !self.visit(triangle, feature, |_| ControlFlow::Continue(())),
-            Feature::Face => false,
-        };
-        if !is_open {
+        match feature {
+            Feature::Edge(i) if self.facets.twin(3 * triangle + u32::from(i)).is_none() => {}
+            Feature::Vertex(_) => {}
+            _ => return false,
+        }
+        let place = self.place(triangle, feature, Some(place));
+        PlaceMemo::is_border(self.facets.memo(), place, || self.ends_at(triangle, feature, place))
+    }
+
+    /// Returns true if the one-ring of a feature does not close, and all triangles at a place share a
+    /// corner of the feature.
+    fn ends_at(&self, triangle: u32, feature: Feature, place: DVec3) -> bool {
+        let is_vertex = matches!(feature, Feature::Vertex(_));
+        if is_vertex && self.visit(triangle, feature, |_| ControlFlow::Continue(())) {
             return false;
         }
         let first = half_edge(triangle, feature);
-        let is_vertex = matches!(feature, Feature::Vertex(_));
         let ends = [0, usize::from(!is_vertex)].map(|i| self.corner(first, i));
-        let place = self.place(triangle, feature, Some(place));
         let mut has_strays = false;
         self.visit_touching(triangle, place, |corners, _| {
             let is_at = |corner: &DVec3, end: &DVec3| {

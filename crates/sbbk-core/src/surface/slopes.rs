@@ -69,10 +69,13 @@ impl Bend {
     }
 }
 
-/// Slopes at places where many triangles meet, or touch without a common edge, by place and direction.
-/// All contacts there ask for the same. For one query.
+/// Slopes at places where many triangles meet, or touch without a common edge, by place and direction,
+/// and borders by place. All contacts there ask for the same. For one query.
 #[derive(Default)]
-pub struct PlaceMemo(RefCell<FxHashMap<[i64; 6], Slopes>>);
+pub struct PlaceMemo {
+    slopes: RefCell<FxHashMap<[i64; 6], Slopes>>,
+    borders: RefCell<FxHashMap<[u64; 3], bool>>,
+}
 
 impl PlaceMemo {
     /// Steps of a direction. Rounding makes the directions of contacts at one place differ by less.
@@ -86,11 +89,26 @@ impl PlaceMemo {
         find: impl FnOnce(DVec3) -> Slopes,
     ) -> Slopes {
         let (key, direction) = Self::key(place, direction);
-        let known = memo.and_then(|memo| memo.0.borrow().get(&key).copied());
+        let known = memo.and_then(|memo| memo.slopes.borrow().get(&key).copied());
         known.unwrap_or_else(|| {
             let slopes = find(direction);
-            memo.map(|memo| memo.0.borrow_mut().insert(key, slopes));
+            memo.map(|memo| memo.slopes.borrow_mut().insert(key, slopes));
             slopes
+        })
+    }
+
+    /// Returns true if a surface ends at a place. Computes it the first time.
+    pub(super) fn is_border(
+        memo: Option<&Self>,
+        place: DVec3,
+        find: impl FnOnce() -> bool,
+    ) -> bool {
+        let key = (place + 0.0).to_array().map(f64::to_bits);
+        let known = memo.and_then(|memo| memo.borders.borrow().get(&key).copied());
+        known.unwrap_or_else(|| {
+            let is_border = find();
+            memo.map(|memo| memo.borders.borrow_mut().insert(key, is_border));
+            is_border
         })
     }
 
