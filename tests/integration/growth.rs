@@ -144,7 +144,7 @@ fn time_grows_with_the_triangles() {
             let [few, _, many] = times.map(|(.., ours)| ours);
             // Sixteen times the triangles; n log n makes 22.
             for (few, many) in few.into_iter().zip(many) {
-                if many > 0.01 && many > 40.0 * few.max(1e-4) {
+                if many > 0.1 && many > 40.0 * few.max(1e-4) {
                     slow.push(format!("{name}, flipped {is_flipped}: {few:.4} s, {many:.4} s"));
                 }
             }

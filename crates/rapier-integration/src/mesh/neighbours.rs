@@ -1,4 +1,5 @@
 use std::cell::{RefCell, RefMut};
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU16, Ordering};
 
 use glamx::DVec3;
@@ -185,7 +186,7 @@ impl RayTriangles for MeshRays<'_> {
         corners.map(|corner| self.0.vertices()[corner as usize].as_dvec3())
     }
 
-    fn along(&self, start: DVec3, direction: DVec3, visit: &mut dyn FnMut(u32)) {
+    fn along(&self, start: DVec3, direction: DVec3, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
         let inverse = direction.recip();
         let is_met = |node: &BvhNode| {
             let [low, high] =
@@ -193,7 +194,7 @@ impl RayTriangles for MeshRays<'_> {
             let (first, last) = (low.min(high).max_element(), low.max(high).min_element());
             last >= 0.0 && first <= last + ROUNDING * last
         };
-        self.0.bvh().leaves(is_met).for_each(visit);
+        let _ = self.0.bvh().leaves(is_met).try_for_each(visit);
     }
 }
 

@@ -6,7 +6,7 @@ use glamx::{DVec3, Vec3};
 
 use super::Surface;
 use super::sides::Side;
-use super::slopes::{Bend, FLAT, Heights, PlaceMemo, Slopes};
+use super::slopes::{Bend, FLAT, Heights, LONG, PlaceMemo, Slopes};
 use super::strays::{seam, touches};
 use crate::contact::Feature;
 use crate::simd::each;
@@ -106,10 +106,6 @@ const RISE: f64 = 0.05;
 /// them. Lower: a body that rocks from point to point gets the next point too late.
 const RISE_TO_FACE: f64 = 0.3;
 
-/// Triangles of a one-ring beyond which its [`Slopes`] are looked up by place and direction. Higher: fans
-/// take longer. Lower: ordinary vertices do.
-const LONG: usize = 32;
-
 /// Rounding of a corner that was moved to a place and back, as a share of the coordinates.
 const ROUNDING: f64 = 1.0e-14;
 
@@ -181,11 +177,16 @@ impl<F: Facets> OneRing<F> {
     }
 
     /// Returns true if the one-ring of a feature does not close, and all triangles at a place share a
-    /// corner of the feature.
-    fn ends_at(&self, triangle: u32, feature: Feature, place: DVec3) -> bool {
+    /// corner of the feature; and the number of triangles there.
+    fn ends_at(&self, triangle: u32, feature: Feature, place: DVec3) -> (bool, usize) {
         let is_vertex = matches!(feature, Feature::Vertex(_));
-        if is_vertex && self.visit(triangle, feature, |_| ControlFlow::Continue(())) {
-            return false;
+        let mut count = 0;
+        let is_closed = self.visit(triangle, feature, |_| {
+            count += 1;
+            ControlFlow::Continue(())
+        });
+        if is_vertex && is_closed {
+            return (false, count);
         }
         let first = half_edge(triangle, feature);
         let ends = [0, usize::from(!is_vertex)].map(|i| self.corner(first, i));
@@ -197,8 +198,9 @@ impl<F: Facets> OneRing<F> {
             };
             let has_end = |end: &DVec3| corners.iter().any(|corner| is_at(corner, end));
             has_strays |= !ends.iter().any(has_end);
+            count += 1;
         });
-        !has_strays
+        (!has_strays, count)
     }
 
     /// True if the body is behind the triangle, and nothing in front.
@@ -248,7 +250,7 @@ impl<F: Facets> OneRing<F> {
         feature: Feature,
         direction: DVec3,
         place: DVec3,
-    ) -> Slopes {
+    ) -> (Slopes, usize) {
         let (mut slopes, mut heights) = (Slopes::default(), Heights::default());
         let (mut count, mut area) = (0, DVec3::ZERO);
         let is_closed = self.visit(triangle, feature, |Wedge { edges: [u, v], .. }| {
@@ -272,11 +274,12 @@ impl<F: Facets> OneRing<F> {
             self.visit_touching(triangle, place, |corners, ends| {
                 ends.for_each(|end| slopes.add(end, direction));
                 all.add(area_vector(corners), direction);
+                count += 1;
             });
             heights = if is_closed { heights } else { all };
         }
         let height = if self.is_solid() { heights.sum() } else { 0.0 };
-        Slopes { height, ..slopes }
+        (Slopes { height, ..slopes }, count)
     }
 
     /// Returns true if the surface at a point rises more than it bends there.

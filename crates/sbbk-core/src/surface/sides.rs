@@ -8,6 +8,7 @@
 //! Winding Numbers*, 2013. Their number is the mean over all rays.
 
 use std::f64::consts::TAU;
+use std::ops::ControlFlow;
 
 use glamx::{DVec3, Vec3};
 
@@ -21,8 +22,8 @@ pub trait RayTriangles {
     /// The corners of a triangle.
     fn corners(&self, triangle: u32) -> [DVec3; 3];
 
-    /// Calls `visit` with all triangles that the ray from `start` may meet.
-    fn along(&self, start: DVec3, direction: DVec3, visit: &mut dyn FnMut(u32));
+    /// Calls `visit` with all triangles that the ray from `start` may meet, until it breaks.
+    fn along(&self, start: DVec3, direction: DVec3, visit: &mut dyn FnMut(u32) -> ControlFlow<()>);
 }
 
 /// The triangles of an indexed mesh. Each ray tests all of them.
@@ -44,8 +45,8 @@ impl RayTriangles for AllTriangles<'_> {
         corners.map(|corner| self.vertices[corner as usize].as_dvec3())
     }
 
-    fn along(&self, _: DVec3, _: DVec3, visit: &mut dyn FnMut(u32)) {
-        (0..self.count()).for_each(visit);
+    fn along(&self, _: DVec3, _: DVec3, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
+        let _ = (0..self.count()).try_for_each(visit);
     }
 }
 
@@ -92,6 +93,10 @@ const SURE: f64 = 3.0;
 
 /// Number of triangles that decide which way the normals of a closed surface point.
 const VOTES: u32 = 16;
+
+/// Triangles that a ray meets at most. A triangle whose rays meet more counts as a face. Higher: meshes
+/// of many layers take longer. Lower: walls within such meshes have contacts.
+const MOST_HITS: usize = 100;
 
 /// Share of a length below which two places of a ray are one.
 const TIE: f64 = 1.0e-9;
@@ -203,7 +208,10 @@ impl Rays {
     /// What the rays find if only triangles count for which `counts` is true.
     fn side(&self, triangles: &impl RayTriangles, counts: impl Fn(u32) -> bool) -> Side {
         let ways = [self.to_front, -self.to_front];
-        let [front, back] = ways.map(|way| self.winding(triangles, way, &counts));
+        let [Some(front), Some(back)] = ways.map(|way| self.winding(triangles, way, &counts))
+        else {
+            return Side::Face;
+        };
         match (front >= 1, back >= 1) {
             (true, _) => Side::Inner,
             (false, true) => Side::Face,
@@ -213,19 +221,23 @@ impl Rays {
     }
 
     /// Times that a ray leaves the surface less times that it enters. Triangles at one place count
-    /// once: doubles, and the two at an edge.
+    /// once: doubles, and the two at an edge. `None` for a ray through [too many](MOST_HITS).
     fn winding(
         &self,
         triangles: &impl RayTriangles,
         direction: DVec3,
         counts: impl Fn(u32) -> bool,
-    ) -> i32 {
+    ) -> Option<i32> {
         let mut hits: Vec<(f64, i32)> = Vec::new();
         triangles.along(self.start, direction, &mut |triangle| {
             let corners = triangles.corners(triangle).map(|corner| corner - self.start);
             let hit = hit(&corners, direction).filter(|(length, _)| *length > self.skipped);
             hits.extend(hit.filter(|_| counts(triangle)));
+            if hits.len() > MOST_HITS { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
+        if hits.len() > MOST_HITS {
+            return None;
+        }
         hits.sort_unstable_by(|(a, _), (b, _)| a.total_cmp(b));
         let mut sum = 0;
         let mut last = [f64::NEG_INFINITY; 2];
@@ -236,7 +248,7 @@ impl Rays {
             }
             *last = length;
         }
-        sum
+        Some(sum)
     }
 }
 

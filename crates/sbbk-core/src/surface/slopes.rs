@@ -13,6 +13,10 @@ const BENDS: f64 = 2.0;
 /// Higher: a nut locks on its bolt. Lower: flat sides end at rounding.
 pub(super) const FLAT: f64 = 1.0e-3;
 
+/// Triangles of a one-ring beyond which its [`Slopes`] are looked up by place and direction. Higher: fans
+/// take longer. Lower: ordinary vertices do.
+pub(super) const LONG: usize = 32;
+
 /// The surface around a point, seen along a direction.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Slopes {
@@ -81,32 +85,36 @@ impl PlaceMemo {
     /// Steps of a direction. Rounding makes the directions of contacts at one place differ by less.
     const STEPS: f64 = (1_u64 << 30) as f64;
 
-    /// Returns the slopes at a place along a direction, which is rounded. Computes them the first time.
+    /// Returns the slopes at a place along a direction, which is rounded. Keeps those for which `find` has
+    /// looked at many triangles.
     pub(super) fn slopes(
         memo: Option<&Self>,
         place: DVec3,
         direction: DVec3,
-        find: impl FnOnce(DVec3) -> Slopes,
+        find: impl FnOnce(DVec3) -> (Slopes, usize),
     ) -> Slopes {
         let (key, direction) = Self::key(place, direction);
         let known = memo.and_then(|memo| memo.slopes.borrow().get(&key).copied());
         known.unwrap_or_else(|| {
-            let slopes = find(direction);
+            let (slopes, count) = find(direction);
+            let memo = memo.filter(|_| count > LONG);
             memo.map(|memo| memo.slopes.borrow_mut().insert(key, slopes));
             slopes
         })
     }
 
-    /// Returns true if a surface ends at a place. Computes it the first time.
+    /// Returns true if a surface ends at a place. Keeps results for which `find` has looked at many
+    /// triangles.
     pub(super) fn is_border(
         memo: Option<&Self>,
         place: DVec3,
-        find: impl FnOnce() -> bool,
+        find: impl FnOnce() -> (bool, usize),
     ) -> bool {
         let key = (place + 0.0).to_array().map(f64::to_bits);
         let known = memo.and_then(|memo| memo.borders.borrow().get(&key).copied());
         known.unwrap_or_else(|| {
-            let is_border = find();
+            let (is_border, count) = find();
+            let memo = memo.filter(|_| count > LONG);
             memo.map(|memo| memo.borders.borrow_mut().insert(key, is_border));
             is_border
         })
