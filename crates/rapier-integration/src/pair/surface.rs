@@ -44,11 +44,13 @@ const DISTANT: f64 = 0.25;
 /// smooth bodies lose contacts; lower: gears are braked.
 const NEAR_NORMAL: f64 = 0.87;
 
-/// Cosine between a normal and that of the face above which the contact is upright.
+/// Cosine between a normal and that of the face above which the contact is upright. Higher: contacts
+/// are turned in vain; lower: slanted contacts keep their normals.
 const UPRIGHT: f64 = 0.999_999;
 
-/// Depth below the plane of a border triangle up to which a shape is on one side of it, in prediction
-/// distances or, if less, in [`filter_distance`]s. Higher: bodies hang over the rim of a table. Lower: bodies stumble where meshes meet.
+/// Depth up to which a shape counts as above the plane of a border triangle. In prediction distances,
+/// or in [`filter_distance`]s if these are less. Higher: bodies hang over the rim of a table. Lower:
+/// bodies stumble where meshes meet.
 pub(super) const LIP: f64 = 0.25;
 
 /// Distance, in sizes of the triangles, below which rounding decides on which side of each other these
@@ -217,8 +219,8 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             && local.corners.iter().any(|corners| leans(corners, normal))
     }
 
-    /// Returns a contact at the border of a surface with the normal of its face, if the other shape is all
-    /// on one side of the face: else bodies would run into meshes that continue the one below.
+    /// Returns a contact at a border with the normal of the face, if the other shape is all on one side
+    /// of the face. Bodies would else run into meshes that continue the one below.
     fn at_border(
         &self,
         surfaces: &Surfaces<'_, S>,

@@ -164,8 +164,8 @@ impl<F: Facets> OneRing<F> {
                 || !self.is_exceeded(triangle, feature, slopes, most, place))
     }
 
-    /// True if a surface ends at an edge or a vertex: a triangle there has an edge without a twin, and no
-    /// triangle apart from these touches `place`.
+    /// True if a surface ends at an edge or a vertex. A triangle there has an edge without a twin, and
+    /// no stray touches `place`.
     pub fn is_border(&self, triangle: u32, feature: Feature, place: DVec3) -> bool {
         match feature {
             Feature::Edge(i) if self.facets.twin(3 * triangle + u32::from(i)).is_none() => {}
@@ -176,8 +176,8 @@ impl<F: Facets> OneRing<F> {
         PlaceMemo::is_border(self.facets.memo(), place, || self.ends_at(triangle, feature, place))
     }
 
-    /// Returns true if the one-ring of a feature does not close, and all triangles at a place share a
-    /// corner of the feature; and the number of triangles there.
+    /// Returns true if a one-ring is open and all triangles at a place share a corner of the feature.
+    /// Also returns the number of triangles there.
     fn ends_at(&self, triangle: u32, feature: Feature, place: DVec3) -> (bool, usize) {
         let is_vertex = matches!(feature, Feature::Vertex(_));
         let mut count = 0;

@@ -7,8 +7,8 @@ use crate::collections::CompactIndices;
 
 const NONE: u32 = u32::MAX;
 
-/// Triangles at a vertex beyond which these are a crowd: they are all faces if the first one is, and edges
-/// between them have no strays. Higher: fans take longer. Lower: parts within others have contacts.
+/// Triangles at a vertex beyond which these are a crowd. If the first is a face, all count as faces.
+/// Edges between them have no strays. Higher: fans take longer. Lower: parts within others have contacts.
 const CROWD: u32 = 1024;
 
 /// Adjacency of a mesh.
