@@ -159,7 +159,8 @@ impl<F: Facets> OneRing<F> {
         }
         let place = contact.map(|(place, _)| place);
         let slopes = self.all_slopes(triangle, feature, direction, place);
-        slopes.height >= 0.0
+        // The memory is for triangles of all sides.
+        (!self.is_solid() || slopes.height >= 0.0)
             && (slopes.rise <= FLAT * FLAT
                 || !self.is_exceeded(triangle, feature, slopes, most, place))
     }
@@ -278,8 +279,7 @@ impl<F: Facets> OneRing<F> {
             });
             heights = if is_closed { heights } else { all };
         }
-        let height = if self.is_solid() { heights.sum() } else { 0.0 };
-        (Slopes { height, ..slopes }, count)
+        (Slopes { height: heights.sum(), ..slopes }, count)
     }
 
     /// Returns true if the surface at a point rises more than it bends there.
