@@ -4,7 +4,7 @@ use parry3d::shape::{CompositeShape, TriMesh};
 use sbbk_core::surface::{OneRing, PlaceMemo, Side, SurfaceKind};
 use sbbk_core::tree::Tree;
 
-use super::data::MeshData;
+use super::data::{MeshData, Tips};
 use super::identity::MeshToken;
 use super::neighbours::{MeshAdjacency, MeshFacets, NearTwins, Neighbours};
 use super::store::{MeshStore, is_analysed, is_small};
@@ -207,6 +207,11 @@ impl<'m> MeshSurface<'m> {
     pub(crate) fn is_declared_solid(&self, mesh: &TriMesh) -> bool {
         let (_, kind, is_declared) = self.adjacency(mesh);
         is_declared && kind == SurfaceKind::Solid
+    }
+
+    /// Returns the tips of `view`, whose surface this must be.
+    pub(crate) fn tips(&self, view: &MeshView<'_>) -> &Tips {
+        self.data(view.mesh).tips(view)
     }
 
     /// Returns the kind of `mesh`, whose surface this must be.

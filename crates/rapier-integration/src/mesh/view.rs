@@ -174,12 +174,21 @@ impl<'a> MeshView<'a> {
 
     /// Least coordinate of the mesh along a direction.
     pub(crate) fn lowest(&self, direction: Vec3) -> Real {
-        let least = Cell::new(Real::INFINITY);
+        self.lowest_corner(direction).0
+    }
+
+    /// Returns the least coordinate of the mesh along a direction, and the half-edge that begins there.
+    pub(super) fn lowest_corner(&self, direction: Vec3) -> (Real, u32) {
+        let least = Cell::new((Real::INFINITY, 0));
         let bound =
             |node: &BvhNode| (direction * node.mins()).min(direction * node.maxs()).element_sum();
-        for triangle in self.mesh.bvh().leaves(|node| bound(node) < least.get()) {
-            let heights = self.corners(triangle).map(|corner| corner.dot(direction));
-            least.set(heights.into_iter().fold(least.get(), Real::min));
+        for triangle in self.mesh.bvh().leaves(|node| bound(node) < least.get().0) {
+            for (half_edge, corner) in (3 * triangle..).zip(self.corners(triangle)) {
+                let height = corner.dot(direction);
+                if height < least.get().0 {
+                    least.set((height, half_edge));
+                }
+            }
         }
         least.get()
     }
@@ -224,6 +233,11 @@ impl<'a> MeshView<'a> {
         let corners = || triangles.iter().flat_map(|&triangle| self.corners(triangle));
         let low = corners().fold(Vec3::INFINITY, Vec3::min);
         TestedBox::new(low, corners().fold(Vec3::NEG_INFINITY, Vec3::max))
+    }
+
+    /// The vertex at which a half-edge begins.
+    pub(crate) fn corner(&self, half_edge: u32) -> Vec3 {
+        self.corners(half_edge / 3)[half_edge as usize % 3]
     }
 
     /// The corners of a triangle.

@@ -97,6 +97,7 @@ impl<'a> Pair for FieldPair<'a> {
         let query = TriangleQuery {
             shapes,
             pose: self.pose,
+            reach: self.pose.prediction,
             patches: (self.has_patches && self.mesh.is_rigid())
                 .then(|| PatchPlan::new(self.pose.prediction, radius)),
             inside,

@@ -6,12 +6,15 @@
 //! | [`state`] | what a host keeps with a pair: candidates, slack |
 //! | [`mesh_mesh`], [`mesh_field`] | the kinds whose shapes are both made of triangles |
 //! | [`triangles`] | contacts of these kinds, in one pass or two |
+//! | [`far`] | contacts far beyond those that touch |
 //! | [`surface`], [`islands`], [`inside`] | contacts of surfaces from contacts of triangles |
 //! | [`convex`] | a mesh and convex shapes |
 //! | [`reduce`], [`write`](mod@write) | contact reduction, manifolds |
 
 mod bvh_descent;
+mod bvh_search;
 mod convex;
+mod far;
 mod field;
 mod inside;
 mod islands;
@@ -28,6 +31,7 @@ mod update;
 mod write;
 
 pub(crate) use bvh_descent::walk;
+pub(crate) use bvh_search::BvhSearch;
 pub(crate) use convex::{ConvexPair, ConvexSearch, FoundCast, FoundTriangle, Parts, PlacedPart};
 pub(crate) use mesh_field::FieldPair;
 pub(crate) use mesh_mesh::MeshPair;

@@ -25,6 +25,11 @@ use crate::mesh::BEHIND;
 /// sees turn through what they meet; lower: small bodies keep contacts at internal edges.
 const FILTERED: f64 = 0.1;
 
+/// Greatest [`reach`] in [`TriangleShapes::filter_distance`]s: 0.04 radii. A body of one length unit has a
+/// radius of half a unit, and Rapier predicts 0.02 units by default. Higher: fine meshes cost more;
+/// lower: bodies come deeper into others before they meet.
+const REACH: f64 = 0.4;
+
 /// Greatest depth of a contact of the first pass, in least translations of its triangles or, if
 /// more, in prediction distances. Parry's number for constrained normals. Higher: bodies are pushed
 /// out on their far sides; lower: more second passes.
@@ -62,17 +67,29 @@ pub(super) fn filter_distance(has_surface: bool, radius: Real) -> f64 {
     if has_surface { FILTERED * f64::from(radius) } else { f64::INFINITY }
 }
 
+/// Returns the distance up to which all contacts of two meshes are found.
+pub(super) fn reach(prediction: Real, filter_distance: f64) -> Real {
+    let most = (REACH * filter_distance) as Real;
+    // A prediction distance that is NaN finds nothing.
+    if most < prediction { most } else { prediction }
+}
+
+/// Returns the unit of the filter: the prediction distance, or less for small shapes.
+fn near(shapes: &impl TriangleShapes, pose: &PairPose) -> f64 {
+    f64::from(pose.prediction).min(shapes.filter_distance())
+}
+
 /// Returns a test for pairs of triangles that a descent within `margin` finds and that only
 /// [pass by](SurfaceFilter::passes_by) while its candidates serve.
 pub(super) fn lateral_culling(
     shapes: &impl TriangleShapes,
-    prediction: Real,
+    pose: &PairPose,
+    reach: Real,
     margin: Real,
 ) -> Option<LateralCulling> {
-    let is_filtered = f64::from(prediction) <= shapes.filter_distance();
-    (shapes.has_surface() && is_filtered).then(|| {
-        let travel = margin - prediction;
-        LateralCulling::new(DISTANT as Real * prediction, NEAR_NORMAL as Real, prediction, travel)
+    shapes.has_surface().then(|| {
+        let (distance, travel) = ((DISTANT * near(shapes, pose)) as Real, margin - reach);
+        LateralCulling::new(distance, NEAR_NORMAL as Real, reach, travel)
     })
 }
 
@@ -149,7 +166,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         let [t1, t2] = &local.corners;
         let is_solid = solids::<S>(surfaces);
         let is_crossing = contact.features.is_crossing();
-        let shallow = f64::from(self.pose.prediction).min(self.shapes.filter_distance());
+        let shallow = near(self.shapes, self.pose);
         let greatest = SHALLOW * contact.distance.abs().max(shallow);
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(surfaces, i, feature, axis);
         let good = penetration_out_of_solid(t1, t2, is_solid, ends, Some(greatest), clipped);
@@ -214,7 +231,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
     /// Returns true if edges or vertices are far from each other, and may pass each other.
     fn passes_by(&self, local: &TrianglePair, contact: &TriangleContact) -> bool {
         let TriangleContact { normal, distance, features, .. } = *contact;
-        distance > DISTANT * f64::from(self.pose.prediction)
+        distance > DISTANT * near(self.shapes, self.pose)
             && ![features.feature1(), features.feature2()].contains(&Feature::Face)
             && local.corners.iter().any(|corners| leans(corners, normal))
     }
@@ -248,8 +265,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         }
         let lowest = self.shapes.lowest(1 - i, self.in_frame(1 - i, up).as_vec3())?;
         let lowest = f64::from(lowest) + up.dot(self.in_local(1 - i, Vec3::ZERO, local) - a);
-        let near = f64::from(self.pose.prediction).min(self.shapes.filter_distance());
-        if lowest < -LIP * near {
+        if lowest < -LIP * near(self.shapes, self.pose) {
             return None;
         }
         let distance = contact.distance * cosine.max(0.0);

@@ -19,6 +19,7 @@ use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Facets, OneRing};
 use sbbk_core::traverse::{Counters, DescentScratch, SlackLimits};
 
+use super::far::FarScratch;
 use super::inside::InsideTest;
 use super::islands::OverlapIslands;
 use super::passed::PassedTriangles;
@@ -53,6 +54,15 @@ pub(crate) trait TriangleShapes {
         scratch: &mut TriangleScratch,
         found: impl FnMut([u32; 2]),
     );
+
+    /// Calls `found` with [far](super::far) contacts. `is_apart`: no triangles are in reach.
+    fn far_contacts(
+        &self,
+        _is_apart: bool,
+        _scratch: &mut FarScratch,
+        _found: impl FnMut(TriangleHit),
+    ) {
+    }
 
     /// Returns two triangles; `None` if one does not exist.
     fn triangles(&self, triangles: [u32; 2]) -> Option<[Triangle; 2]>;
@@ -112,6 +122,9 @@ const DEEPEST: f64 = 4.0;
 pub(crate) struct TriangleQuery<'q, S> {
     pub(super) shapes: S,
     pub(super) pose: &'q PairPose,
+    /// Distance up to which all pairs of triangles are candidates. Farther contacts are
+    /// [far](super::far).
+    pub(super) reach: Real,
     pub(super) patches: Option<PatchPlan>,
     pub(super) inside: &'q mut InsideTest,
 }
@@ -146,6 +159,7 @@ pub(crate) struct TriangleScratch {
     islands: OverlapIslands,
     passed: PassedTriangles,
     clipped: ManifoldPoints,
+    far: FarScratch,
 }
 
 impl Scratch for TriangleScratch {
@@ -182,6 +196,10 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         self.shapes.moving()
     }
 
+    fn reach(&self) -> Real {
+        self.reach
+    }
+
     fn descend(
         &mut self,
         margin: Real,
@@ -199,13 +217,15 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         scratch: &mut TriangleScratch,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
-        let TriangleScratch { islands, passed, clipped, .. } = scratch;
+        let TriangleScratch { islands, passed, clipped, far, .. } = scratch;
         islands.clear();
+        let mut is_apart = true;
         for candidate in candidates {
             if !limits.may_touch(candidate) {
                 continue;
             }
             let Some((local, contact)) = self.touch(candidate, limits) else { continue };
+            is_apart = false;
             let pair = candidate.subshapes;
             match self.filter(pair).apply(&local, contact, clipped) {
                 Verdict::None if is_touching(&local, &contact, NEARLY_TOUCHING) => {
@@ -222,6 +242,9 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         let separation = islands.is_undecided().then(|| self.shapes.separation()).flatten();
         if islands.finish_first_pass(separation) {
             self.second_pass(islands, clipped, contacts);
+        }
+        if self.reach < self.pose.prediction {
+            self.add_far(is_apart, far, clipped, contacts);
         }
         self.reject_passed(islands, passed, contacts);
         if contacts.is_empty() {
@@ -323,6 +346,40 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         let contact = contact?;
         candidate.hint = Some(contact.features);
         (contact.distance <= reach).then_some((local, contact))
+    }
+
+    /// Adds far contacts. Of two contacts of a pair of triangles the nearer one stays. `far` and `clipped`
+    /// are memory.
+    fn add_far(
+        &self,
+        is_apart: bool,
+        far: &mut FarScratch,
+        clipped: &mut ManifoldPoints,
+        contacts: &mut ContactList<TriangleSurfaceContact>,
+    ) {
+        let old_count = contacts.len();
+        self.shapes.far_contacts(
+            is_apart,
+            far,
+            |(pair, TriangleSurfaceContact { contact, .. })| {
+                let Some(triangles) = self.shapes.triangles(pair) else { return };
+                let local = local_pair(&self.pose.placement12, &triangles);
+                if contact.distance <= f64::from(self.reach) {
+                    return;
+                }
+                if let Verdict::Contact(contact) = self.filter(pair).apply(&local, contact, clipped)
+                {
+                    contacts.push((pair, contact));
+                }
+            },
+        );
+        if contacts.len() > old_count {
+            contacts.sort_by(|(pair1, hit1), (pair2, hit2)| {
+                let by_distance = hit1.contact.distance.total_cmp(&hit2.contact.distance);
+                pair1.cmp(pair2).then(by_distance)
+            });
+            contacts.dedup_by_key(|(pair, _)| *pair);
+        }
     }
 
     /// Removes the contacts of sheets that have passed sheets.

@@ -1,14 +1,13 @@
 //! Queries without manifolds, for a pair of meshes or a mesh and a convex shape.
 //!
 //! Registered and small meshes are searched by their trees ([`trees`]), all others by Parry's BVHs
-//! ([`walk`], [`pairs`]). A mesh and a convex shape ([`convex`]) use the BVH of the mesh. [`nonlinear`]
+//! ([`walk`]). A mesh and a convex shape ([`convex`]) use the BVH of the mesh. [`nonlinear`]
 //! and [`moving`] cast along the curves of rigid motions.
 
 mod casts;
 mod convex;
 mod moving;
 mod nonlinear;
-mod pairs;
 mod proximity;
 mod touch;
 mod trees;

@@ -6,10 +6,9 @@ use parry3d::math::{Real, Vector};
 use sbbk_core::query::{Bodies, Cast, CastOptions, FoundPair};
 use sbbk_core::traverse::Placement;
 
-use super::pairs::MeshPair;
 use super::trees::Trees;
 use crate::mesh::MeshView;
-use crate::pair::walk;
+use crate::pair::{BvhSearch, walk};
 
 /// Two rigid meshes of a query.
 pub(crate) struct MeshQuery<'a> {
@@ -106,8 +105,8 @@ impl<'a> Walk<'a> {
         });
     }
 
-    fn at(&self, placement: Placement) -> MeshPair<'a> {
-        MeshPair { meshes: self.0, placement }
+    fn at(&self, placement: Placement) -> BvhSearch<'a> {
+        BvhSearch { meshes: self.0, placement }
     }
 }
 

@@ -19,14 +19,15 @@ const ROUNDING: f64 = 1.0e-14;
 const STRETCH: f64 = 1.0e-6;
 
 /// Two meshes, mesh 2 at a placement in the frame of mesh 1.
-pub(super) struct MeshPair<'a> {
-    pub(super) meshes: [&'a MeshView<'a>; 2],
-    pub(super) placement: Placement,
+#[derive(Copy, Clone)]
+pub(crate) struct BvhSearch<'a> {
+    pub(crate) meshes: [&'a MeshView<'a>; 2],
+    pub(crate) placement: Placement,
 }
 
 /// The middle and the half-lengths of a box, in the frames of both meshes.
 #[derive(Copy, Clone)]
-pub(super) struct PlacedBox {
+pub(crate) struct PlacedBox {
     centres: [DVec3; 2],
     extents: [DVec3; 2],
 }
@@ -39,10 +40,10 @@ struct Node {
     triangle: Option<u32>,
 }
 
-impl MeshPair<'_> {
+impl BvhSearch<'_> {
     /// Visits pairs of triangles, the least bound first, while bounds are at most the limit. `visit`
     /// gets the limit and may return a lower one.
-    pub(super) fn search(
+    pub(crate) fn search(
         &self,
         mut limit: f64,
         bound: impl Fn(&PlacedBox, &PlacedBox) -> f64,
@@ -84,7 +85,7 @@ impl MeshPair<'_> {
 
     /// Returns the pair of triangles with the least signed distance within `limit`, or one that
     /// touches if any does. Skips pairs that do not count.
-    pub(super) fn nearest(
+    pub(crate) fn nearest(
         &self,
         limit: f64,
         counts: impl Fn([u32; 2]) -> bool,
@@ -137,13 +138,13 @@ impl MeshPair<'_> {
     }
 
     /// Contact of two triangles that touch or are at most `margin` apart.
-    pub(super) fn pair(&self, triangles: [u32; 2], margin: f64) -> Option<FoundPair> {
+    pub(crate) fn pair(&self, triangles: [u32; 2], margin: f64) -> Option<FoundPair> {
         let [one, two] = [0, 1].map(|i| (triangles[i], self.meshes[i].corners(triangles[i])));
         FoundPair::of(&self.placement, one, two, margin)
     }
 
     /// Returns a bound on the rounding of a gap of boxes.
-    pub(super) fn rounding(&self) -> f64 {
+    pub(crate) fn rounding(&self) -> f64 {
         let [size1, size2] = self.meshes.map(|mesh| f64::from(mesh.magnitude()));
         ROUNDING * (size1 + size2 + self.placement.translation.length())
     }
@@ -184,7 +185,7 @@ impl PlacedBox {
     }
 
     /// Distance along the axes of one of the meshes.
-    pub(super) fn gap(&self, other: &Self) -> f64 {
+    pub(crate) fn gap(&self, other: &Self) -> f64 {
         let [in_frame1, in_frame2] = [0, 1].map(|i| {
             let offset = (self.centres[i] - other.centres[i]).abs();
             (offset - (self.extents[i] + other.extents[i])).max(DVec3::ZERO).length()
@@ -194,7 +195,7 @@ impl PlacedBox {
 
     /// Earliest time at which the boxes are within `target` of each other, where the other one moves;
     /// infinite if they pass each other.
-    pub(super) fn time(&self, other: &Self, velocity: DVec3, target: f64) -> f64 {
+    pub(crate) fn time(&self, other: &Self, velocity: DVec3, target: f64) -> f64 {
         let offset = other.centres[0] - self.centres[0];
         let reach = self.extents[0] + other.extents[0] + target;
         let mut start = ((self.gap(other) - target) / velocity.length()).max(0.0);

@@ -1,0 +1,175 @@
+//! Far contacts of two meshes: what may be hit in the next step, but is not near.
+//!
+//! A host asks for them where a body is small beside the prediction distance, or fast and has soft CCD.
+//! Few triangles within that distance have all their contacts. Many have those of the tips of both meshes with
+//! the nearest points of the other mesh. Walks find where the meshes are nearest to each other: from a point
+//! of one mesh to the nearest one of the other, and back. A walk may end at a place that is not the nearest.
+
+use std::ops::ControlFlow;
+
+use glamx::Vec3;
+use parry3d::math::{Pose, Real};
+use parry3d::partitioning::BvhNode;
+use parry3d::shape::CompositeShapeRef;
+use sbbk_core::contact::{Feature, FeaturePair, TriangleContact, contact};
+
+use super::bvh_descent::walk;
+use super::bvh_search::BvhSearch;
+use super::triangle_contacts::local_pair;
+use super::triangles::{ContactSource, TriangleHit, TriangleSurfaceContact};
+use crate::mesh::MeshSurface;
+
+/// Greatest product of the numbers of triangles near the other mesh with which all pairs have contacts.
+/// Higher: small bodies cost more. Lower: thin plates with soft CCD turn through sheets.
+const FEW: usize = 1 << 14;
+
+/// Greatest number of steps from a tip to the nearest point. Higher: more time for surfaces that are nearly
+/// parallel; lower: the contact is farther than the nearest one.
+const STEPS: usize = 8;
+
+/// Share of the distance that a step must gain.
+const GAIN: f64 = 0.01;
+
+/// Memory for far contacts.
+#[derive(Default)]
+pub(crate) struct FarScratch {
+    pairs: Vec<[u32; 2]>,
+    near: Vec<u32>,
+}
+
+/// Two meshes whose far contacts are wanted.
+pub(super) struct FarSearch<'a, 'm> {
+    pub(super) search: BvhSearch<'a>,
+    pub(super) surfaces: [&'a MeshSurface<'m>; 2],
+    pub(super) pose: &'a Pose,
+    /// Greatest distance of a contact.
+    pub(super) within: Real,
+}
+
+impl FarSearch<'_, '_> {
+    /// Calls `found` with far contacts, and perhaps with near ones. `is_apart`: there are no near ones.
+    pub(super) fn contacts(
+        &self,
+        is_apart: bool,
+        FarScratch { pairs, near }: &mut FarScratch,
+        mut found: impl FnMut(TriangleHit),
+    ) {
+        let BvhSearch { meshes, placement } = self.search;
+        if !placement.is_finite() {
+            return;
+        }
+        if !self.are_few() {
+            return self.of_tips(is_apart, found);
+        }
+        pairs.clear();
+        walk(meshes, placement, self.within, None, (), near, |pair| {
+            pairs.push(pair);
+            ControlFlow::Continue(())
+        });
+        for &pair in &*pairs {
+            let of_pair = self.search.pair(pair, f64::from(self.within));
+            of_pair.into_iter().for_each(|of_pair| found(hit(pair, of_pair.contact)));
+        }
+    }
+
+    /// Returns true if few triangles are within the distance of the box around the other mesh.
+    fn are_few(&self) -> bool {
+        let (pose, inverse) = (self.pose, self.pose.inverse());
+        let count = |i: usize, most: usize| {
+            let BvhSearch { meshes, .. } = &self.search;
+            let around = meshes[1 - i].placed_root([pose, &inverse][i], self.within);
+            let around = BvhNode::leaf(around, 0);
+            meshes[i].mesh.bvh().leaves(|node| node.intersects(&around)).take(most + 1).count()
+        };
+        let least = FEW.isqrt();
+        match [0, 1].map(|i| count(i, least)) {
+            [one, _] if one <= least => one * count(1, FEW / one.max(1)) <= FEW,
+            [_, two] if two <= least => two * count(0, FEW / two.max(1)) <= FEW,
+            _ => false,
+        }
+    }
+
+    /// Calls `found` with the contacts of tips and, for meshes that are apart, with those where walks from the
+    /// nearest tips and from the middles end.
+    fn of_tips(&self, is_apart: bool, mut found: impl FnMut(TriangleHit)) {
+        for i in 0..2 {
+            let mesh = self.search.meshes[i];
+            let of_tip = |&tip: &u32| self.of_point(i, tip, mesh.corner(tip), self.within);
+            let tips = self.surfaces[i].tips(mesh).iter().filter_map(of_tip);
+            let nearest = tips
+                .inspect(|hit| found(*hit))
+                .min_by(|one, two| distance(one).total_cmp(&distance(two)));
+            if is_apart {
+                let of_middle = self.of_point(i, 0, mesh.root().center(), Real::MAX);
+                let from_middle = of_middle.and_then(|hit| self.step(1 - i, &hit, f64::INFINITY));
+                let starts = [nearest.map(|hit| (1 - i, hit)), from_middle.map(|hit| (i, hit))];
+                let ends = starts.into_iter().flatten().map(|(next, hit)| self.walked(next, hit));
+                ends.filter(|end| distance(end) <= f64::from(self.within)).for_each(&mut found);
+            }
+        }
+    }
+
+    /// Walks from a contact at a point of mesh `i` to the nearest point of the other mesh, from there to that of
+    /// mesh `i`, and so on.
+    fn walked(&self, mut i: usize, mut hit: TriangleHit) -> TriangleHit {
+        for _ in 0..STEPS {
+            let limit = (1.0 - GAIN) * distance(&hit);
+            let Some(next) = self.step(i, &hit, limit) else { break };
+            (i, hit) = (1 - i, next);
+        }
+        hit
+    }
+
+    /// Returns the contact of a triangle of mesh `i`, which has a contact, and of the triangle of the other mesh
+    /// that is nearest to the point of that contact. `None` beyond a limit.
+    fn step(&self, i: usize, (pair, known): &TriangleHit, limit: f64) -> Option<TriangleHit> {
+        let BvhSearch { meshes, placement } = &self.search;
+        let [origin, ..] = meshes[0].corners(pair[0]);
+        let point = match i {
+            0 => placement.to_frame2(known.contact.point1, origin),
+            _ => known.contact.point2 + origin.as_dvec3(),
+        };
+        let mut pair = *pair;
+        pair[1 - i] = self.nearest(1 - i, point.as_vec3(), limit as Real)?;
+        Some(hit(pair, self.search.pair(pair, limit)?.contact))
+    }
+
+    /// Returns the contact of a point of mesh `i`, the start of a half-edge or not on the mesh, and of the nearest
+    /// triangle of the other mesh.
+    fn of_point(&self, i: usize, half_edge: u32, point: Vec3, within: Real) -> Option<TriangleHit> {
+        let BvhSearch { meshes, placement } = &self.search;
+        let in_other = match i {
+            0 => placement.to_frame2(point.as_dvec3(), Vec3::ZERO),
+            _ => placement.to_frame1(point, Vec3::ZERO),
+        };
+        let mut pair = [self.nearest(1 - i, in_other.as_vec3(), within)?; 2];
+        pair[i] = half_edge / 3;
+        let triangles = [0, 1].map(|i| meshes[i].mesh.triangle(pair[i]));
+        let mut local = local_pair(placement, &triangles);
+        local.corners[i] = [match i {
+            0 => point.as_dvec3() - local.origin.as_dvec3(),
+            _ => placement.to_frame1(point, local.origin),
+        }; 3];
+        let [t1, t2] = &local.corners;
+        let contact = contact(t1, t2, f64::from(within))?;
+        let mut features = [contact.features.feature1(), contact.features.feature2()];
+        features[i] = Feature::Vertex((half_edge % 3) as u8);
+        let features = FeaturePair::new(features[0], features[1]);
+        Some(hit(pair, TriangleContact { features, ..contact }))
+    }
+
+    /// Returns the triangle of mesh `i` that is nearest to a point in its frame.
+    fn nearest(&self, i: usize, point: Vec3, within: Real) -> Option<u32> {
+        let mesh = CompositeShapeRef(self.search.meshes[i].mesh);
+        let (nearest, _) = mesh.project_local_point(point, within, false)?;
+        Some(nearest)
+    }
+}
+
+fn distance((_, hit): &TriangleHit) -> f64 {
+    hit.contact.distance
+}
+
+fn hit(pair: [u32; 2], contact: TriangleContact) -> TriangleHit {
+    (pair, TriangleSurfaceContact { contact, source: ContactSource::Triangles })
+}
