@@ -16,14 +16,17 @@ use super::view::box_between;
 
 /// Adjacency of the triangles of a mesh, with [strays](sbbk_core::surface::strays).
 #[derive(Copy, Clone)]
-pub(crate) enum MeshAdjacency<'a, 'm> {
-    Full {
-        mesh: &'a TriMesh,
-        surface: &'a Surface,
-        flags: &'a [TriangleFlags],
-        memo: &'a PlaceMemo,
-    },
-    Local(&'a NearTwins<'m>, &'a PlaceMemo),
+pub(crate) struct MeshAdjacency<'a, 'm> {
+    pub(super) mesh: &'a TriMesh,
+    pub(super) twins: Twins<'a, 'm>,
+    pub(super) memo: &'a PlaceMemo,
+}
+
+/// Twins and flags of the triangles of a mesh.
+#[derive(Copy, Clone)]
+pub(super) enum Twins<'a, 'm> {
+    All(&'a Surface, &'a [TriangleFlags]),
+    Near(&'a NearTwins<'m>),
 }
 
 /// The triangles of a mesh with their adjacency.
@@ -31,23 +34,15 @@ pub(crate) type MeshFacets<'a, 'm> = IndexedTriangles<'a, MeshAdjacency<'a, 'm>>
 
 impl<'a, 'm> MeshAdjacency<'a, 'm> {
     pub(crate) fn facets(self) -> MeshFacets<'a, 'm> {
-        let mesh = self.mesh();
-        let (vertices, triangles) = (mesh.vertices(), mesh.indices());
+        let (vertices, triangles) = (self.mesh.vertices(), self.mesh.indices());
         IndexedTriangles { adjacency: self, vertices, triangles }
-    }
-
-    fn mesh(self) -> &'a TriMesh {
-        match self {
-            Self::Full { mesh, .. } => mesh,
-            Self::Local(twins, _) => twins.mesh,
-        }
     }
 
     /// Reads or changes the flags of a triangle.
     fn with_flags<T>(self, triangle: u32, then: impl FnOnce(&TriangleFlags) -> T) -> T {
-        match self {
-            Self::Full { flags, .. } => then(&flags[triangle as usize]),
-            Self::Local(twins, _) => then(&twins.known(triangle).flags),
+        match self.twins {
+            Twins::All(_, flags) => then(&flags[triangle as usize]),
+            Twins::Near(twins) => then(&twins.known(triangle).flags),
         }
     }
 
@@ -56,14 +51,15 @@ impl<'a, 'm> MeshAdjacency<'a, 'm> {
         self.with_flags(triangle, TriangleFlags::side).unwrap_or_else(|| {
             let first = self.crowd(triangle).filter(|&first| first != triangle);
             let is_face = first.is_some_and(|first| self.side(first) == Side::Face);
-            let side = if is_face { Side::Face } else { side(&MeshRays(self.mesh()), triangle) };
+            let side = || side(&MeshRays(self.mesh), triangle);
+            let side = if is_face { Side::Face } else { side() };
             self.with_flags(triangle, |flags| flags.set_side(side));
             side
         })
     }
 
     fn crowd(self, triangle: u32) -> Option<u32> {
-        let Self::Full { surface, .. } = self else { return None };
+        let Twins::All(surface, _) = self.twins else { return None };
         surface.crowd(triangle)
     }
 
@@ -82,11 +78,7 @@ impl<'a, 'm> MeshAdjacency<'a, 'm> {
     #[cold]
     fn find_strays(self, triangle: u32, feature: Feature) {
         let surface = OneRing { facets: self.facets(), side: Side::Sheet };
-        let found = !self.is_in_crowd(triangle, feature)
-            && has_strays(&surface, triangle, feature, |corners| {
-                let near = BvhNode::leaf(box_between(corners), 0);
-                self.mesh().bvh().leaves(move |node| node.intersects(&near))
-            });
+        let found = !self.is_in_crowd(triangle, feature) && has_strays(&surface, triangle, feature);
         if let Feature::Vertex(_) = feature {
             // Once for all triangles of a fan.
             for half_edge in surface.ring(triangle, feature) {
@@ -102,9 +94,9 @@ impl<'a, 'm> MeshAdjacency<'a, 'm> {
 impl HalfEdges for MeshAdjacency<'_, '_> {
     #[inline]
     fn twin(&self, half_edge: u32) -> Option<u32> {
-        match self {
-            Self::Full { surface, .. } => surface.twin(half_edge),
-            Self::Local(twins, _) => twins.known(half_edge / 3).twins[half_edge as usize % 3],
+        match self.twins {
+            Twins::All(surface, _) => surface.twin(half_edge),
+            Twins::Near(twins) => twins.known(half_edge / 3).twins[half_edge as usize % 3],
         }
     }
 
@@ -116,13 +108,13 @@ impl HalfEdges for MeshAdjacency<'_, '_> {
         })
     }
 
-    fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32)) {
-        self.mesh().bvh().intersect_aabb(&box_between(corners)).for_each(visit);
+    fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
+        let near = BvhNode::leaf(box_between(corners), 0);
+        let _ = self.mesh.bvh().leaves(|node| node.intersects(&near)).try_for_each(visit);
     }
 
     fn memo(&self) -> Option<&PlaceMemo> {
-        let (Self::Full { memo, .. } | Self::Local(_, memo)) = self;
-        Some(memo)
+        Some(self.memo)
     }
 }
 
@@ -286,14 +278,11 @@ mod tests {
             let whole = Surface::new(mesh.vertices(), mesh.indices(), &MeshRays(&mesh));
             let mut known = Neighbours::default();
             let near = NearTwins::new(&mesh, &mut known);
+            let (twins, memo) = (Twins::Near(&near), &PlaceMemo::default());
             for half_edge in 0..3 * mesh.indices().len() as u32 {
                 let twin = whole.twin(half_edge);
-                assert_eq!(
-                    MeshAdjacency::Local(&near, &PlaceMemo::default()).twin(half_edge),
-                    twin,
-                    "{half_edge} of {:?}",
-                    mesh.indices()
-                );
+                let adjacency = MeshAdjacency { mesh: &mesh, twins, memo };
+                assert_eq!(adjacency.twin(half_edge), twin, "{half_edge} of {:?}", mesh.indices());
                 found += u32::from(twin.is_some());
             }
         }

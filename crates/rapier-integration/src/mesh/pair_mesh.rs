@@ -6,7 +6,7 @@ use sbbk_core::tree::Tree;
 
 use super::data::{MeshData, Tips};
 use super::identity::MeshToken;
-use super::neighbours::{MeshAdjacency, MeshFacets, NearTwins, Neighbours};
+use super::neighbours::{MeshAdjacency, MeshFacets, NearTwins, Neighbours, Twins};
 use super::store::{MeshStore, is_analysed, is_small};
 use super::view::MeshView;
 
@@ -176,13 +176,12 @@ impl<'m> MeshSurface<'m> {
     #[inline]
     fn adjacency<'a>(&'a self, mesh: &'a TriMesh) -> (MeshAdjacency<'a, 'm>, SurfaceKind, bool) {
         let data = self.data(mesh);
-        let adjacency = match &self.near {
-            Some(twins) => MeshAdjacency::Local(twins, &self.memo),
-            None => {
-                let surface = self.store.surface(mesh, data);
-                MeshAdjacency::Full { mesh, surface, flags: data.flags(), memo: &self.memo }
-            }
+        let twins = match &self.near {
+            Some(twins) => Twins::Near(twins),
+            // Computes the flags as well.
+            None => Twins::All(self.store.surface(mesh, data), data.flags()),
         };
+        let adjacency = MeshAdjacency { mesh, twins, memo: &self.memo };
         (adjacency, data.kind_of(mesh), data.declared_kind().is_some())
     }
 

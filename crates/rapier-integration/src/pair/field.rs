@@ -1,3 +1,5 @@
+use std::ops::ControlFlow;
+
 use glamx::{DVec3, Vec3};
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Real, Vector};
@@ -115,9 +117,9 @@ impl HalfEdges for Field<'_> {
         cells(column, columns).all(|column| cells(row, rows).all(|row| has_all([column, row])))
     }
 
-    fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32)) {
+    fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
         let near = box_between(corners);
-        self.0.map_elements_in_local_aabb(&near, &mut |id, _| visit(id));
+        self.0.map_elements_in_local_aabb(&near, &mut |id, _| _ = visit(id));
     }
 }
 

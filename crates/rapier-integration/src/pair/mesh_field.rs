@@ -139,7 +139,7 @@ impl HalfEdges for MeshOrField<'_, '_> {
         }
     }
 
-    fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32)) {
+    fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
         match self {
             Self::Mesh(mesh) => mesh.near(corners, visit),
             Self::Field(field) => field.near(corners, visit),

@@ -20,8 +20,8 @@ pub trait HalfEdges {
     /// [strays](super::strays).
     fn is_whole(&self, triangle: u32, feature: Feature) -> bool;
 
-    /// Calls `visit` with all triangles near the box between two corners.
-    fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32));
+    /// Calls `visit` with all triangles near the box between two corners. May end when it breaks.
+    fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32) -> ControlFlow<()>);
 
     /// Memory for places where many triangles meet.
     fn memo(&self) -> Option<&PlaceMemo> {
@@ -46,7 +46,7 @@ impl HalfEdges for &Surface {
         true
     }
 
-    fn near(&self, _: [DVec3; 2], _: &mut dyn FnMut(u32)) {}
+    fn near(&self, _: [DVec3; 2], _: &mut dyn FnMut(u32) -> ControlFlow<()>) {}
 }
 
 /// The triangles of an indexed mesh with their adjacency.
@@ -71,7 +71,7 @@ impl<A: HalfEdges> HalfEdges for IndexedTriangles<'_, A> {
         self.adjacency.is_whole(triangle, feature)
     }
 
-    fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32)) {
+    fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
         self.adjacency.near(corners, visit);
     }
 
@@ -332,6 +332,7 @@ impl<F: Facets> OneRing<F> {
                 let is_far = |corner: &DVec3| corner.length_squared() > seam * seam;
                 visit(&corners, &mut corners.into_iter().filter(is_far));
             }
+            ControlFlow::Continue(())
         });
     }
 

@@ -5,29 +5,30 @@
 //! Strays are found by distance, and a contact at an internal edge is a ghost whichever way the mesh
 //! continues.
 
+use std::ops::ControlFlow;
+
 use glamx::DVec3;
 
-use super::one_ring::{Facets, OneRing};
+use super::one_ring::{Facets, OneRing, area_vector};
 use crate::contact::Feature;
 use crate::simd::each;
 
-/// Greatest distance of a stray, as a share of the longest side of the triangle. Higher: walls that
-/// stand close to each other count as one surface. Lower: gaps of a modeller count as holes.
-pub const SEAM: f64 = 1.0e-3;
+/// Greatest distance of a stray, as a share of the longest side of the triangle: that of a needle, and
+/// that of other triangles. Higher: walls that stand close to each other count as one surface. Lower:
+/// gaps of a modeller count as holes.
+const SEAM: [f64; 2] = [1.0e-5, 1.0e-3];
 
-/// Greatest distance of the strays of a triangle.
-pub fn seam([a, b, c]: &[DVec3; 3]) -> f64 {
-    SEAM * a.distance(*b).max(b.distance(*c)).max(c.distance(*a))
+/// Greatest distance of the strays of a triangle. At most half the least height, as slivers would have
+/// many others as strays.
+pub fn seam(corners @ [a, b, c]: &[DVec3; 3]) -> f64 {
+    let longest = a.distance(*b).max(b.distance(*c)).max(c.distance(*a));
+    let height = area_vector(corners).length() / longest;
+    (0.5 * height).max(SEAM[0] * longest).min(SEAM[1] * longest)
 }
 
-/// True if an edge or a vertex of a triangle has strays among the triangles that `near` returns for
-/// the box between two corners. So has each edge without a twin: what goes on there is not known.
-pub fn has_strays<F: Facets, I: Iterator<Item = u32>>(
-    surface: &OneRing<F>,
-    triangle: u32,
-    feature: Feature,
-    near: impl FnOnce([DVec3; 2]) -> I,
-) -> bool {
+/// True if an edge or a vertex of a triangle has strays. So has each edge without a twin: what goes on
+/// there is not known.
+pub fn has_strays<F: Facets>(surface: &OneRing<F>, triangle: u32, feature: Feature) -> bool {
     let corners = each(|i| surface.facets.corner(3 * triangle, i));
     let mut ring = surface.ring(triangle, feature);
     let [start, end] = match feature {
@@ -40,7 +41,7 @@ pub fn has_strays<F: Facets, I: Iterator<Item = u32>>(
     ring.iter_mut().for_each(|half_edge| *half_edge /= 3);
     ring.sort_unstable();
     let is_edge = start != end;
-    near([start.min(end) - seam, start.max(end) + seam]).any(|other| {
+    let is_stray = |other: u32| {
         if ring.binary_search(&other).is_ok() {
             return false;
         }
@@ -48,14 +49,20 @@ pub fn has_strays<F: Facets, I: Iterator<Item = u32>>(
         // Triangles at an end of an edge touch it there.
         let is_at_end = is_edge && corners.iter().any(|corner| [start, end].contains(corner));
         !is_at_end && touches(&corners, [start, end], seam)
-    })
+    };
+    let mut found = false;
+    surface.facets.near([start.min(end) - seam, start.max(end) + seam], &mut |other| {
+        found = is_stray(other);
+        if found { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    found
 }
 
 /// True if a triangle with an area comes within `seam` of a segment, or a little farther at its
 /// corners.
 pub fn touches(corners: &[DVec3; 3], [start, end]: [DVec3; 2], seam: f64) -> bool {
-    let [a, b, c] = *corners;
-    let area = (b - a).cross(c - a);
+    let [a, ..] = *corners;
+    let area = area_vector(corners);
     // Most triangles end here, without a root.
     let heights = [start, end].map(|place| area.dot(place - a));
     let most = seam * seam * area.length_squared();

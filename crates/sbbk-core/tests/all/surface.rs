@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
+use std::ops::ControlFlow;
 
 use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
 use glamx::{DVec3, Quat, Vec3};
@@ -576,7 +577,7 @@ impl HalfEdges for Counted<'_> {
         true
     }
 
-    fn near(&self, _: [DVec3; 2], _: &mut dyn FnMut(u32)) {}
+    fn near(&self, _: [DVec3; 2], _: &mut dyn FnMut(u32) -> ControlFlow<()>) {}
 
     fn memo(&self) -> Option<&PlaceMemo> {
         Some(&self.memo)
