@@ -51,7 +51,7 @@ impl<'a, 'm> MeshAdjacency<'a, 'm> {
         self.with_flags(triangle, TriangleFlags::side).unwrap_or_else(|| {
             let first = self.crowd(triangle).filter(|&first| first != triangle);
             let is_face = first.is_some_and(|first| self.side(first) == Side::Face);
-            let side = || side(&MeshRays(self.mesh), triangle);
+            let side = || side(&MeshRays(self.mesh), triangle, self.memo);
             let side = if is_face { Side::Face } else { side() };
             self.with_flags(triangle, |flags| flags.set_side(side));
             side

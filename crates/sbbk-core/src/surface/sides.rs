@@ -13,6 +13,7 @@ use std::ops::ControlFlow;
 use glamx::{DVec3, Vec3};
 
 use super::one_ring::area_vector;
+use super::slopes::PlaceMemo;
 
 /// Triangles that rays can meet.
 pub trait RayTriangles {
@@ -98,17 +99,21 @@ const VOTES: u32 = 16;
 /// of many layers take longer. Lower: walls within such meshes have contacts.
 const MOST_HITS: usize = 100;
 
+/// Least sine of the angle of a triangle's rays. Higher: rays differ less. Lower: these graze walls.
+const STEEP: f64 = 0.5;
+
 /// Share of a length below which two places of a ray are one.
 const TIE: f64 = 1.0e-9;
 
 /// Finds the side of a triangle of a closed surface. Takes two rays if these find a face, else more.
-pub fn side(triangles: &impl RayTriangles, triangle: u32) -> Side {
-    let first = sample(triangles, triangle, 0, 0.5);
+pub fn side(triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> Side {
+    let first = sample(triangles, triangle, 0, STEEP, memo);
     if first == Side::Face {
         return first;
     }
-    let others = [1, 2].map(|i| sample(triangles, triangle, i, 0.5));
-    if others[0] == others[1] { others[0] } else { first }
+    let second = sample(triangles, triangle, 1, STEEP, memo);
+    let is_doubted = second != first && second == sample(triangles, triangle, 2, STEEP, memo);
+    if is_doubted { second } else { first }
 }
 
 /// Triangles that are considered for samples, evenly spread over the mesh. Higher: a large mesh takes
@@ -133,13 +138,14 @@ pub(super) fn of_samples(triangles: &impl RayTriangles, is_closed: bool) -> Surf
     if whole <= 0.0 {
         return SurfaceKind::Sheet;
     }
+    let memo = PlaceMemo::default();
     let mut counts = [0; 4];
     let mut tested = 0;
     for samples in if is_closed { [VOTES; 2] } else { SAMPLES } {
         for i in tested..samples {
             let place = whole * sequence(f64::from(i), 0);
             let triangle = step * areas.partition_point(|&sum| sum < place) as u32;
-            counts[sample(triangles, triangle, i, 0.02) as usize] += 1;
+            counts[sample(triangles, triangle, i, 0.02, &memo) as usize] += 1;
         }
         tested = samples;
         let open = f64::from(counts[Side::Sheet as usize]) / f64::from(samples);
@@ -168,17 +174,63 @@ fn sequence(i: f64, dimension: usize) -> f64 {
 
 /// What one ray to the front and one to the back find at a triangle. `steep` is the least sine of
 /// their angles to the triangle.
-fn sample(triangles: &impl RayTriangles, triangle: u32, i: u32, steep: f64) -> Side {
+fn sample(
+    triangles: &impl RayTriangles,
+    triangle: u32,
+    i: u32,
+    steep: f64,
+    memo: &PlaceMemo,
+) -> Side {
     let Some(rays) = Rays::new(triangles, triangle, i, steep) else { return Side::Sheet };
-    let found = rays.side(triangles, |_| true);
+    let Some(mut hits) = rays.hits(triangles) else { return Side::Face };
+    let found = side_of(&hits);
     if found == Side::Face {
         return found;
     }
     // Walls within the body count as nothing.
-    rays.side(triangles, |other| {
-        Rays::new(triangles, other, i, 0.5)
-            .is_none_or(|rays| rays.side(triangles, |_| true) != Side::Inner)
-    })
+    let is_wall = |hit: &Hit| {
+        memo.is_wall(hit.triangle, || {
+            let rays = Rays::new(triangles, hit.triangle, 0, STEEP);
+            let hits = rays.and_then(|rays| rays.hits(triangles));
+            hits.is_some_and(|hits| side_of(&hits) == Side::Inner)
+        })
+    };
+    hits.iter_mut().for_each(|hits| hits.retain(|hit| !is_wall(hit)));
+    side_of(&hits)
+}
+
+/// A triangle that a ray meets.
+struct Hit {
+    length: f64,
+    /// 1 if the ray leaves through the front, -1 if it enters.
+    sign: i32,
+    triangle: u32,
+}
+
+/// What rays find that meet triangles in front and behind.
+fn side_of(hits: &[Vec<Hit>; 2]) -> Side {
+    let [front, back] = hits.each_ref().map(|hits| winding(hits));
+    match (front >= 1, back >= 1) {
+        (true, _) => Side::Inner,
+        (false, true) => Side::Face,
+        (false, false) if front < 0 => Side::Turned,
+        (false, false) => Side::Sheet,
+    }
+}
+
+/// Times that a ray leaves the surface less times that it enters. Triangles at one place count once:
+/// doubles, and the two at an edge.
+fn winding(hits: &[Hit]) -> i32 {
+    let mut sum = 0;
+    let mut last = [f64::NEG_INFINITY; 2];
+    for Hit { length, sign, .. } in hits {
+        let last = &mut last[usize::from(*sign > 0)];
+        if length - *last > TIE * length {
+            sum += sign;
+        }
+        *last = *length;
+    }
+    sum
 }
 
 /// A ray to the front of a triangle and one to the back.
@@ -205,50 +257,22 @@ impl Rays {
         Some(Self { start: (a + b + c) / 3.0, to_front, skipped: OFFSET * size / height })
     }
 
-    /// What the rays find if only triangles count for which `counts` is true.
-    fn side(&self, triangles: &impl RayTriangles, counts: impl Fn(u32) -> bool) -> Side {
-        let ways = [self.to_front, -self.to_front];
-        let [Some(front), Some(back)] = ways.map(|way| self.winding(triangles, way, &counts))
-        else {
-            return Side::Face;
-        };
-        match (front >= 1, back >= 1) {
-            (true, _) => Side::Inner,
-            (false, true) => Side::Face,
-            (false, false) if front < 0 => Side::Turned,
-            (false, false) => Side::Sheet,
-        }
+    /// The triangles in front and behind, the nearest first; `None` for [too many](MOST_HITS).
+    fn hits(&self, triangles: &impl RayTriangles) -> Option<[Vec<Hit>; 2]> {
+        let front = self.along(triangles, self.to_front)?;
+        Some([front, self.along(triangles, -self.to_front)?])
     }
 
-    /// Times that a ray leaves the surface less times that it enters. Triangles at one place count
-    /// once: doubles, and the two at an edge. `None` for a ray through [too many](MOST_HITS).
-    fn winding(
-        &self,
-        triangles: &impl RayTriangles,
-        direction: DVec3,
-        counts: impl Fn(u32) -> bool,
-    ) -> Option<i32> {
-        let mut hits: Vec<(f64, i32)> = Vec::new();
+    fn along(&self, triangles: &impl RayTriangles, direction: DVec3) -> Option<Vec<Hit>> {
+        let mut hits = Vec::new();
         triangles.along(self.start, direction, &mut |triangle| {
             let corners = triangles.corners(triangle).map(|corner| corner - self.start);
             let hit = hit(&corners, direction).filter(|(length, _)| *length > self.skipped);
-            hits.extend(hit.filter(|_| counts(triangle)));
+            hits.extend(hit.map(|(length, sign)| Hit { length, sign, triangle }));
             if hits.len() > MOST_HITS { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
-        if hits.len() > MOST_HITS {
-            return None;
-        }
-        hits.sort_unstable_by(|(a, _), (b, _)| a.total_cmp(b));
-        let mut sum = 0;
-        let mut last = [f64::NEG_INFINITY; 2];
-        for (length, sign) in hits {
-            let last = &mut last[usize::from(sign > 0)];
-            if length - *last > TIE * length {
-                sum += sign;
-            }
-            *last = length;
-        }
-        Some(sum)
+        hits.sort_unstable_by(|a, b| a.length.total_cmp(&b.length));
+        (hits.len() <= MOST_HITS).then_some(hits)
     }
 }
 
@@ -257,9 +281,9 @@ fn hit([a, b, c]: &[DVec3; 3], direction: DVec3) -> Option<(f64, i32)> {
     let normal = (*b - *a).cross(*c - *a);
     let along = normal.dot(direction);
     let length = normal.dot(*a) / along;
-    // Six times the volumes between the ray and the sides.
-    let volumes =
-        [(a, b), (b, c), (c, a)].map(|(p, q)| p.cross(*q).dot(direction) * along.signum());
-    let is_met = volumes.iter().all(|&volume| volume >= -TIE * along.abs());
-    (along != 0.0 && length > 0.0 && is_met).then_some((length, along.signum() as i32))
+    // Six times the volume between the ray and a side.
+    let volume = |(p, q): (&DVec3, &DVec3)| p.cross(*q).dot(direction) * along.signum();
+    let is_inside = |side| volume(side) >= -TIE * along.abs();
+    let is_met = length > 0.0 && [(a, b), (b, c), (c, a)].into_iter().all(is_inside);
+    (is_met && along != 0.0).then_some((length, along.signum() as i32))
 }

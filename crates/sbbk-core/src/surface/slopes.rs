@@ -74,11 +74,13 @@ impl Bend {
 }
 
 /// Slopes at places where many triangles meet, or touch without a common edge, by place and direction,
-/// and borders by place. All contacts there ask for the same. For one query.
+/// and borders by place. All contacts there ask for the same. Also walls within bodies, by triangle:
+/// many rays meet the same walls. For one query.
 #[derive(Default)]
 pub struct PlaceMemo {
     slopes: RefCell<FxHashMap<[i64; 6], Slopes>>,
     borders: RefCell<FxHashMap<[u64; 3], bool>>,
+    walls: RefCell<FxHashMap<u32, bool>>,
 }
 
 impl PlaceMemo {
@@ -117,6 +119,16 @@ impl PlaceMemo {
             let memo = memo.filter(|_| count > LONG);
             memo.map(|memo| memo.borders.borrow_mut().insert(key, is_border));
             is_border
+        })
+    }
+
+    /// Returns true if a triangle is a wall within a body.
+    pub(super) fn is_wall(&self, triangle: u32, find: impl FnOnce() -> bool) -> bool {
+        let known = self.walls.borrow().get(&triangle).copied();
+        known.unwrap_or_else(|| {
+            let is_wall = find();
+            self.walls.borrow_mut().insert(triangle, is_wall);
+            is_wall
         })
     }
 
