@@ -3,13 +3,15 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU16, Ordering};
 
 use glamx::DVec3;
+use parry3d::bounding_volume::BoundingVolume;
+use parry3d::math::Real;
 use parry3d::partitioning::BvhNode;
 use parry3d::shape::TriMesh;
 use rustc_hash::FxHashMap;
 use sbbk_core::contact::Feature;
 use sbbk_core::surface::strays::has_strays;
 use sbbk_core::surface::{
-    HalfEdges, IndexedTriangles, OneRing, PlaceMemo, RayTriangles, Side, Surface, side,
+    HalfEdges, IndexedTriangles, OneRing, PlaceMemo, RayTriangles, SMALL_PART, Side, Surface, side,
 };
 
 use super::view::box_between;
@@ -32,6 +34,10 @@ pub(super) enum Twins<'a, 'm> {
 /// The triangles of a mesh with their adjacency.
 pub(crate) type MeshFacets<'a, 'm> = IndexedTriangles<'a, MeshAdjacency<'a, 'm>>;
 
+/// Distance to other parts, in radii of a part, that leaves it alone. Higher: parts near each other take
+/// more rays. Lower: walls between parts have contacts, though rays pass these.
+const ALONE: Real = 2.0e-4;
+
 impl<'a, 'm> MeshAdjacency<'a, 'm> {
     pub(crate) fn facets(self) -> MeshFacets<'a, 'm> {
         let (vertices, triangles) = (self.mesh.vertices(), self.mesh.indices());
@@ -49,7 +55,7 @@ impl<'a, 'm> MeshAdjacency<'a, 'm> {
     /// Returns what is on either side of a triangle of a closed mesh. Takes two rays the first time.
     pub(crate) fn side(self, triangle: u32) -> Side {
         self.with_flags(triangle, TriangleFlags::side).unwrap_or_else(|| {
-            let first = self.crowd(triangle).filter(|&first| first != triangle);
+            let first = self.first_of_crowd(triangle).filter(|&first| first != triangle);
             let is_face = first.is_some_and(|first| self.side(first) == Side::Face);
             let side = || side(&MeshRays(self.mesh), triangle, self.memo);
             let side = if is_face { Side::Face } else { side() };
@@ -58,30 +64,46 @@ impl<'a, 'm> MeshAdjacency<'a, 'm> {
         })
     }
 
-    fn crowd(self, triangle: u32) -> Option<u32> {
+    /// Returns the first triangle of a crowd or a small part. If that triangle is a face, so are all.
+    fn first_of_crowd(self, triangle: u32) -> Option<u32> {
         let Twins::All(surface, _) = self.twins else { return None };
-        surface.crowd(triangle)
+        let corners = self.mesh.indices()[triangle as usize];
+        let corners = corners.map(|corner| self.mesh.vertices()[corner as usize]);
+        let of_hub = surface.crowd(corners);
+        of_hub.or_else(|| surface.has_small_parts().then(|| self.first_of_part(triangle))?)
     }
 
-    /// Returns true for an edge between two triangles of a crowd. A search for its strays would find
-    /// most of the crowd.
-    fn is_in_crowd(self, triangle: u32, feature: Feature) -> bool {
-        let Feature::Edge(i) = feature else { return false };
-        let is_of = |crowd: u32| {
-            let twin = self.twin(3 * triangle + u32::from(i));
-            twin.is_some_and(|twin| self.crowd(twin / 3) == Some(crowd))
-        };
-        self.crowd(triangle).is_some_and(is_of)
+    /// Returns the first triangle of a small closed part that is alone in its box.
+    fn first_of_part(self, triangle: u32) -> Option<u32> {
+        let (mut part, mut at) = (vec![triangle], 0);
+        let mut bounds = self.mesh.triangle(triangle).local_aabb();
+        while let Some(&of) = part.get(at) {
+            for twin in (3 * of..3 * of + 3).map(|half_edge| self.twin(half_edge)) {
+                let other = twin? / 3;
+                if !part.contains(&other) {
+                    bounds.merge(&self.mesh.triangle(other).local_aabb());
+                    part.push(other);
+                }
+            }
+            at += 1;
+            if part.len() > SMALL_PART {
+                return None;
+            }
+        }
+        // Not negative, and 0 where a vertex is NaN.
+        let bounds = bounds.loosened((ALONE * bounds.half_extents().length()).max(0.0));
+        let is_alone = self.mesh.bvh().intersect_aabb(&bounds).all(|other| part.contains(&other));
+        part.into_iter().min().filter(|_| is_alone)
     }
 
     /// Searches the strays of a feature, in about 1 µs, and keeps in the flags if there are any.
     #[cold]
     fn find_strays(self, triangle: u32, feature: Feature) {
         let surface = OneRing { facets: self.facets(), side: Side::Sheet };
-        let found = !self.is_in_crowd(triangle, feature) && has_strays(&surface, triangle, feature);
+        let found = has_strays(&surface, triangle, feature);
         if let Feature::Vertex(_) = feature {
             // Once for all triangles of a fan.
-            for half_edge in surface.ring(triangle, feature) {
+            for half_edge in surface.ring(triangle, feature).0 {
                 let vertex = Feature::Vertex((half_edge % 3) as u8);
                 self.with_flags(half_edge / 3, |flags| flags.set(vertex, found));
             }
@@ -258,8 +280,11 @@ fn twins_of(mesh: &TriMesh, triangle: u32) -> [Option<u32>; 3] {
 
 #[cfg(test)]
 mod tests {
+    use std::ops::Range;
+
     use oorandom::Rand32;
     use parry3d::math::Vector;
+    use parry3d::shape::Cuboid;
     use sbbk_core::surface::Surface;
 
     use super::*;
@@ -287,6 +312,38 @@ mod tests {
             }
         }
         assert!(found > 1000, "{found} twins");
+    }
+
+    /// Boxes are alone, touch, cross, or are within others. Would catch parts that share a wrong side.
+    #[test]
+    fn sides_of_small_parts_are_those_that_rays_find() {
+        let (mut random, mut counts) = (Rand32::new(2), [0; 4]);
+        for size in [3, 5, 9] {
+            let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+            for _ in 0..30 {
+                let mut steps = |range: Range<u32>| {
+                    let mut step = || random.rand_range(range.clone()) as f32;
+                    Vector::from_array([(); 3].map(|()| step()))
+                };
+                let (half, place) = (0.25 * steps(1..4), steps(0..size));
+                let (own, of) = Cuboid::new(half).to_trimesh();
+                let first = vertices.len() as u32;
+                triangles.extend(of.into_iter().map(|corners| corners.map(|i| first + i)));
+                vertices.extend(own.into_iter().map(|vertex| vertex + place));
+            }
+            let mesh = TriMesh::new(vertices, triangles).expect("there are boxes");
+            let surface = Surface::new(mesh.vertices(), mesh.indices(), &MeshRays(&mesh));
+            assert!(surface.has_small_parts());
+            let flags: Vec<_> = mesh.indices().iter().map(|_| TriangleFlags::default()).collect();
+            let (twins, memo) = (Twins::All(&surface, &flags), &PlaceMemo::default());
+            let adjacency = MeshAdjacency { mesh: &mesh, twins, memo };
+            for triangle in 0..flags.len() as u32 {
+                let found = adjacency.side(triangle);
+                assert_eq!(found, side(&MeshRays(&mesh), triangle, memo), "{triangle} of {size}");
+                counts[found as usize] += 1;
+            }
+        }
+        assert!(counts[0] > 100 && counts[2] > 100, "{counts:?}");
     }
 
     #[test]

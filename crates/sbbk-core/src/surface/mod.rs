@@ -43,13 +43,18 @@ use crate::collections::CompactIndices;
 /// Larger ones take rays: they have one kind also where nobody has paired their edges.
 pub const PAIRED: usize = 1 << 17;
 
+/// Greatest number of triangles of a small closed part. Higher: searches for parts take longer. Lower:
+/// each triangle of a larger part takes two rays.
+pub const SMALL_PART: usize = 32;
+
 /// The adjacency of the triangles of a mesh, and the kind of surface.
 ///
 /// Takes 6 bytes a triangle, 12 for a mesh of more than 21,845 triangles.
 #[derive(Clone, Debug)]
 pub struct Surface {
     twins: CompactIndices,
-    crowds: FxHashMap<u32, u32>,
+    hubs: FxHashMap<twins::Place, (u32, u32)>,
+    has_small_parts: bool,
     kind: SurfaceKind,
 }
 
@@ -61,9 +66,10 @@ impl Surface {
     /// # Panics
     /// If a triangle has an index beyond the vertices.
     pub fn new(vertices: &[Vec3], triangles: &[[u32; 3]], rays: &impl RayTriangles) -> Self {
-        let twins::Adjacency { twins, is_closed, crowds } = twins::find(vertices, triangles);
+        let twins::Adjacency { twins, is_closed, hubs, has_small_parts } =
+            twins::find(vertices, triangles);
         let is_closed = is_closed && triangles.len() <= PAIRED;
-        Self { twins, crowds, kind: sides::of_samples(rays, is_closed) }
+        Self { twins, hubs, has_small_parts, kind: sides::of_samples(rays, is_closed) }
     }
 
     /// The half-edge that runs back in the neighbour, if there is exactly one.
@@ -72,10 +78,19 @@ impl Surface {
         self.twins.get(half_edge)
     }
 
-    /// The first triangle of a crowd: more than a thousand that meet at a vertex of a triangle. Boxes in
-    /// a crowd overlap, so rays and searches from each triangle would take quadratic time.
-    pub fn crowd(&self, triangle: u32) -> Option<u32> {
-        self.crowds.get(&triangle).copied()
+    /// The first triangle of a crowd: more than a thousand that meet at a vertex. Takes the corners of one
+    /// of these. Boxes in a crowd overlap, so rays from each triangle would take quadratic time.
+    pub fn crowd(&self, corners: [Vec3; 3]) -> Option<u32> {
+        if self.hubs.is_empty() {
+            return None;
+        }
+        let hubs = corners.into_iter().filter_map(|corner| self.hubs.get(&twins::place(corner)));
+        hubs.max_by_key(|(count, _)| count).map(|(_, first)| *first)
+    }
+
+    /// True if the closed parts of the mesh are [small](SMALL_PART) on average.
+    pub fn has_small_parts(&self) -> bool {
+        self.has_small_parts
     }
 
     /// The kind of surface.
@@ -98,7 +113,7 @@ impl Surface {
 
     /// Memory of this value in bytes, without the mesh.
     pub fn bytes(&self) -> usize {
-        let crowds = 2 * size_of::<u32>() * self.crowds.capacity();
-        size_of::<Self>() + self.twins.bytes() + crowds
+        let hubs = size_of::<(twins::Place, (u32, u32))>() * self.hubs.capacity();
+        size_of::<Self>() + self.twins.bytes() + hubs
     }
 }

@@ -381,14 +381,15 @@ impl<F: Facets> OneRing<F> {
         area_vector(&each(|i| self.corner(3 * triangle, i)))
     }
 
-    /// The triangles of the one-ring of a vertex or an edge, by the half-edges that start there.
-    pub fn ring(&self, triangle: u32, feature: Feature) -> Vec<u32> {
+    /// The triangles of the one-ring of a vertex or an edge, by the half-edges that start there, and true
+    /// if the ring closes.
+    pub fn ring(&self, triangle: u32, feature: Feature) -> (Vec<u32>, bool) {
         let mut ring = Vec::new();
-        self.visit(triangle, feature, |Wedge { half_edge, .. }| {
+        let is_closed = self.visit(triangle, feature, |Wedge { half_edge, .. }| {
             ring.push(half_edge);
             ControlFlow::Continue(())
         });
-        ring
+        (ring, is_closed)
     }
 
     /// Visits the one-ring of an edge or a vertex, starting with `triangle`, until `visit` breaks.

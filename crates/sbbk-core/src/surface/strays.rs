@@ -13,9 +13,9 @@ use super::one_ring::{Facets, OneRing, area_vector};
 use crate::contact::Feature;
 use crate::simd::each;
 
-/// Greatest distance of a stray, as a share of the longest side of the triangle: that of a needle, and
-/// that of other triangles. Higher: walls that stand close to each other count as one surface. Lower:
-/// gaps of a modeller count as holes.
+/// Greatest distances of the strays of a needle and of a large triangle, as shares of the longest side.
+/// Higher: walls that stand close to each other count as one surface. Lower: gaps of a modeller count
+/// as holes.
 const SEAM: [f64; 2] = [1.0e-5, 1.0e-3];
 
 /// Greatest distance of the strays of a triangle. At most half the least height, as slivers would have
@@ -26,14 +26,18 @@ pub fn seam(corners @ [a, b, c]: &[DVec3; 3]) -> f64 {
     (0.5 * height).max(SEAM[0] * longest).min(SEAM[1] * longest)
 }
 
+/// Other triangles near a closed one-ring beyond which they do not matter. Higher: dense meshes take
+/// longer. Lower: bodies stumble where many parts touch.
+const MANY: usize = 64;
+
 /// True if an edge or a vertex of a triangle has strays. So has each edge without a twin: what goes on
-/// there is not known.
+/// there is not known. In a crowd a closed one-ring counts as whole.
 pub fn has_strays<F: Facets>(surface: &OneRing<F>, triangle: u32, feature: Feature) -> bool {
     let corners = each(|i| surface.facets.corner(3 * triangle, i));
-    let mut ring = surface.ring(triangle, feature);
+    let (mut ring, is_closed) = surface.ring(triangle, feature);
     let [start, end] = match feature {
         Feature::Vertex(i) => [corners[usize::from(i)]; 2],
-        Feature::Edge(_) if ring.len() == 1 => return true,
+        Feature::Edge(_) if !is_closed => return true,
         Feature::Edge(i) => [i, (i + 1) % 3].map(|end| corners[usize::from(end)]),
         Feature::Face => return false,
     };
@@ -42,20 +46,21 @@ pub fn has_strays<F: Facets>(surface: &OneRing<F>, triangle: u32, feature: Featu
     ring.sort_unstable();
     let is_edge = start != end;
     let is_stray = |other: u32| {
-        if ring.binary_search(&other).is_ok() {
-            return false;
-        }
         let corners = each(|i| surface.facets.corner(3 * other, i));
         // Triangles at an end of an edge touch it there.
         let is_at_end = is_edge && corners.iter().any(|corner| [start, end].contains(corner));
         !is_at_end && touches(&corners, [start, end], seam)
     };
-    let mut found = false;
+    let (mut found, mut count) = (false, 0);
     surface.facets.near([start.min(end) - seam, start.max(end) + seam], &mut |other| {
-        found = is_stray(other);
-        if found { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if ring.binary_search(&other).is_err() {
+            found = found || is_stray(other);
+            count += 1;
+        }
+        let is_known = if is_closed { count > MANY } else { found };
+        if is_known { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
-    found
+    found && !(is_closed && count > MANY)
 }
 
 /// True if a triangle with an area comes within `seam` of a segment, or a little farther at its

@@ -3,12 +3,13 @@
 use glamx::Vec3;
 use rustc_hash::FxHashMap;
 
+use super::SMALL_PART;
 use crate::collections::CompactIndices;
 
 const NONE: u32 = u32::MAX;
 
 /// Triangles at a vertex beyond which these are a crowd. If the first is a face, all count as faces.
-/// Edges between them have no strays. Higher: fans take longer. Lower: parts within others have contacts.
+/// Higher: fans take longer. Lower: parts within others have contacts.
 const CROWD: u32 = 1024;
 
 /// Adjacency of a mesh.
@@ -17,14 +18,28 @@ pub(super) struct Adjacency {
     pub(super) twins: CompactIndices,
     /// True if each half-edge has a twin.
     pub(super) is_closed: bool,
-    /// The first triangle of a crowd, for each triangle in it.
-    pub(super) crowds: FxHashMap<u32, u32>,
+    /// Size and first triangle of each crowd, by the vertex where the crowd meets.
+    pub(super) hubs: FxHashMap<Place, (u32, u32)>,
+    /// True if closed parts have few triangles on average.
+    pub(super) has_small_parts: bool,
+}
+
+/// A place where vertices are one.
+pub(super) type Place = [u32; 3];
+
+pub(super) fn place(vertex: Vec3) -> Place {
+    // Minus zero is zero.
+    (vertex + Vec3::ZERO).to_array().map(f32::to_bits)
 }
 
 pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Adjacency {
     let welded = weld(vertices);
     let valence = valence(&welded, triangles);
     let (edges, _) = edges(&welded, &valence, triangles);
+    // A closed part without handles has two more vertices and triangles than edges.
+    let vertex_count = valence.iter().filter(|&&count| count > 0).count();
+    let parts = (vertex_count + triangles.len()).saturating_sub(edges.len()) / 2;
+    let has_small_parts = parts > 1 && parts * SMALL_PART >= triangles.len();
     let mut twins = vec![None; 3 * triangles.len()];
     let mut is_closed = true;
     for Edge { last: [up, down], counts, .. } in edges {
@@ -35,8 +50,9 @@ pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Adjacency {
             is_closed &= counts[0] == counts[1];
         }
     }
-    let crowds = crowds(&welded, &valence, triangles);
-    Adjacency { twins: CompactIndices::new(twins.into_iter()), is_closed, crowds }
+    let hubs = hubs(vertices, &welded, &valence, triangles);
+    let twins = CompactIndices::new(twins.into_iter());
+    Adjacency { twins, is_closed, hubs, has_small_parts }
 }
 
 /// Number of triangles at each vertex.
@@ -48,19 +64,24 @@ fn valence(welded: &[u32], triangles: &[[u32; 3]]) -> Vec<u32> {
     valence
 }
 
-fn crowds(welded: &[u32], valence: &[u32], triangles: &[[u32; 3]]) -> FxHashMap<u32, u32> {
-    let (mut first, mut crowds) = (FxHashMap::default(), FxHashMap::default());
+fn hubs(
+    vertices: &[Vec3],
+    welded: &[u32],
+    valence: &[u32],
+    triangles: &[[u32; 3]],
+) -> FxHashMap<Place, (u32, u32)> {
+    let mut hubs = FxHashMap::default();
     if valence.iter().all(|&count| count <= CROWD) {
-        return crowds;
+        return hubs;
     }
     for (triangle, corners) in (0..).zip(triangles) {
-        let vertices = corners.map(|corner| welded[corner as usize]);
-        let most = vertices.into_iter().max_by_key(|&vertex| valence[vertex as usize]);
-        if let Some(vertex) = most.filter(|&vertex| valence[vertex as usize] > CROWD) {
-            crowds.insert(triangle, *first.entry(vertex).or_insert(triangle));
+        for vertex in corners.map(|corner| welded[corner as usize] as usize) {
+            if valence[vertex] > CROWD {
+                hubs.entry(place(vertices[vertex])).or_insert((valence[vertex], triangle));
+            }
         }
     }
-    crowds
+    hubs
 }
 
 /// All half-edges between two vertices.
@@ -112,9 +133,7 @@ fn edges(welded: &[u32], valence: &[u32], triangles: &[[u32; 3]]) -> (Vec<Edge>,
 fn weld(vertices: &[Vec3]) -> Vec<u32> {
     let mut places = FxHashMap::default();
     places.reserve(vertices.len());
-    // Minus zero is zero.
-    let place = |vertex: &Vec3| (*vertex + Vec3::ZERO).to_array().map(f32::to_bits);
-    (0..).zip(vertices).map(|(i, vertex)| *places.entry(place(vertex)).or_insert(i)).collect()
+    (0..).zip(vertices).map(|(i, &vertex)| *places.entry(place(vertex)).or_insert(i)).collect()
 }
 
 #[cfg(test)]
