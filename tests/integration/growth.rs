@@ -38,6 +38,32 @@ fn layers(of: &Mesh, count: u32) -> Mesh {
     Mesh::merged("layers", &vec![of.clone(); count as usize])
 }
 
+/// Boxes of middles and half extents.
+fn boxes(parts: impl Iterator<Item = (Vec3, Vec3)>) -> Mesh {
+    let part = |(middle, half_extents)| mesh::cuboid(half_extents, 1).mapped(|v| v + middle);
+    Mesh::merged("boxes", &parts.map(part).collect::<Vec<Mesh>>())
+}
+
+/// A square of upright boxes, whose width is a share of their distance.
+fn grid(count: u32, share: f32) -> Mesh {
+    let rows = (count as f32 / 12.0).sqrt() as u32;
+    let step = 2.0 / rows as f32;
+    let width = 0.5 * share * step;
+    let place = |i: u32| i as f32 * step - 1.0;
+    boxes((0..rows * rows).map(|i| {
+        let middle = Vec3::new(place(i % rows), 0.0, place(i / rows));
+        (middle, Vec3::new(width, 0.5, width))
+    }))
+}
+
+/// A flat strip of slivers that reach across.
+fn strip(count: u32) -> Mesh {
+    let vertex = |i: u32| Vec3::new(i as f32 / count as f32 - 0.5, 0.0, (i % 2) as f32 - 0.5);
+    let triangle = |i: u32| if i.is_multiple_of(2) { [i, i + 1, i + 2] } else { [i + 1, i, i + 2] };
+    let vertices = (0..count + 2).map(vertex).collect();
+    Mesh::new("strip", vertices, (0..count).map(triangle).collect())
+}
+
 /// Two shapes and the pose of the second in the frame of the first.
 type Case = (Box<dyn Shape>, Box<dyn Shape>, Pose);
 
@@ -93,6 +119,29 @@ const FAMILIES: &[Family] = &[
     ("layers in a slab", |count| {
         let cube = layers(&mesh::cuboid(Vec3::splat(0.5), 1), count / 12);
         case(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1), shape(&cube), Vec3::new(0.1, 0.98, 0.2))
+    }),
+    ("strip of slivers on a slab", |count| {
+        let slab = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1);
+        case(&slab, shape(&strip(count)), Vec3::new(0.1, 0.501, 0.2))
+    }),
+    ("row of thin boxes in a slab", |count| {
+        let step = 24.0 / count as f32;
+        let at = |i: u32| Vec3::X * (step * i as f32 - 1.0);
+        let row = boxes((0..count / 12).map(|i| (at(i), Vec3::new(0.1 * step, 0.5, 0.5))));
+        case(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1), shape(&row), Vec3::new(0.1, 0.98, 0.2))
+    }),
+    ("grid of thin boxes in a slab", |count| {
+        let slab = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1);
+        case(&slab, shape(&grid(count, 0.2)), Vec3::new(0.1, 0.98, 0.2))
+    }),
+    ("thin pins in a slab", |count| {
+        let slab = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1);
+        case(&slab, shape(&grid(count, 0.01)), Vec3::new(0.1, 0.98, 0.2))
+    }),
+    ("boxes within boxes in a slab", |count| {
+        let half = |i: u32| Vec3::splat(6.0 * (i + 1) as f32 / count as f32);
+        let nest = boxes((0..count / 12).map(|i| (Vec3::ZERO, half(i))));
+        case(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1), shape(&nest), Vec3::new(0.1, 0.501, 0.2))
     }),
     ("layers and a cuboid", |count| {
         let slab = layers(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1), count / 12);
