@@ -7,6 +7,7 @@
 //! Source: Jacobson, Kavan, Sorkine-Hornung, *Robust Inside-Outside Segmentation using Generalized
 //! Winding Numbers*, 2013. Their number is the mean over all rays.
 
+use std::cell::OnceCell;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
@@ -182,21 +183,17 @@ fn sample(
     memo: &PlaceMemo,
 ) -> Side {
     let Some(rays) = Rays::new(triangles, triangle, i, steep) else { return Side::Sheet };
-    let Some(mut hits) = rays.hits(triangles) else { return Side::Face };
-    let found = side_of(&hits);
+    let found = rays.side(|_| true);
     if found == Side::Face {
         return found;
     }
     // Walls within the body count as nothing.
-    let is_wall = |hit: &Hit| {
-        memo.is_wall(hit.triangle, || {
-            let rays = Rays::new(triangles, hit.triangle, 0, STEEP);
-            let hits = rays.and_then(|rays| rays.hits(triangles));
-            hits.is_some_and(|hits| side_of(&hits) == Side::Inner)
+    rays.side(|other| {
+        !memo.is_wall(other, || {
+            Rays::new(triangles, other, 0, STEEP)
+                .is_some_and(|rays| rays.side(|_| true) == Side::Inner)
         })
-    };
-    hits.iter_mut().for_each(|hits| hits.retain(|hit| !is_wall(hit)));
-    side_of(&hits)
+    })
 }
 
 /// A triangle that a ray meets.
@@ -207,43 +204,20 @@ struct Hit {
     triangle: u32,
 }
 
-/// What rays find that meet triangles in front and behind.
-fn side_of(hits: &[Vec<Hit>; 2]) -> Side {
-    let [front, back] = hits.each_ref().map(|hits| winding(hits));
-    match (front >= 1, back >= 1) {
-        (true, _) => Side::Inner,
-        (false, true) => Side::Face,
-        (false, false) if front < 0 => Side::Turned,
-        (false, false) => Side::Sheet,
-    }
-}
-
-/// Times that a ray leaves the surface less times that it enters. Triangles at one place count once:
-/// doubles, and the two at an edge.
-fn winding(hits: &[Hit]) -> i32 {
-    let mut sum = 0;
-    let mut last = [f64::NEG_INFINITY; 2];
-    for Hit { length, sign, .. } in hits {
-        let last = &mut last[usize::from(*sign > 0)];
-        if length - *last > TIE * length {
-            sum += sign;
-        }
-        *last = *length;
-    }
-    sum
-}
-
 /// A ray to the front of a triangle and one to the back.
-struct Rays {
+struct Rays<'a, T> {
+    triangles: &'a T,
     start: DVec3,
     to_front: DVec3,
     /// Length at which they begin.
     skipped: f64,
+    /// What they meet, the nearest first; `None` for [too many](MOST_HITS).
+    hits: [OnceCell<Option<Vec<Hit>>>; 2],
 }
 
-impl Rays {
+impl<'a, T: RayTriangles> Rays<'a, T> {
     /// Rays number `i` of a triangle; `None` for one without an area.
-    fn new(triangles: &impl RayTriangles, triangle: u32, i: u32, steep: f64) -> Option<Self> {
+    fn new(triangles: &'a T, triangle: u32, i: u32, steep: f64) -> Option<Self> {
         let corners @ [a, b, c] = triangles.corners(triangle);
         let up = area_vector(&corners).try_normalize()?;
         let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
@@ -254,19 +228,31 @@ impl Rays {
         let (sin, cos) = (TAU * u).sin_cos();
         let flat = (1.0 - height * height).max(0.0).sqrt();
         let to_front = height * up + flat * (cos * across + sin * along);
-        Some(Self { start: (a + b + c) / 3.0, to_front, skipped: OFFSET * size / height })
+        let (start, skipped) = ((a + b + c) / 3.0, OFFSET * size / height);
+        Some(Self { triangles, start, to_front, skipped, hits: Default::default() })
     }
 
-    /// The triangles in front and behind, the nearest first; `None` for [too many](MOST_HITS).
-    fn hits(&self, triangles: &impl RayTriangles) -> Option<[Vec<Hit>; 2]> {
-        let front = self.along(triangles, self.to_front)?;
-        Some([front, self.along(triangles, -self.to_front)?])
+    /// What the rays find if only triangles count for which `counts` is true.
+    fn side(&self, counts: impl Fn(u32) -> bool) -> Side {
+        let winding = |i: usize| {
+            let hits = self.hits[i].get_or_init(|| self.hits([self.to_front, -self.to_front][i]));
+            Some(winding(hits.as_ref()?.iter().filter(|hit| counts(hit.triangle))))
+        };
+        let Some(front) = winding(0) else { return Side::Face };
+        if front >= 1 {
+            return Side::Inner;
+        }
+        match winding(1) {
+            None | Some(1..) => Side::Face,
+            _ if front < 0 => Side::Turned,
+            _ => Side::Sheet,
+        }
     }
 
-    fn along(&self, triangles: &impl RayTriangles, direction: DVec3) -> Option<Vec<Hit>> {
+    fn hits(&self, direction: DVec3) -> Option<Vec<Hit>> {
         let mut hits = Vec::new();
-        triangles.along(self.start, direction, &mut |triangle| {
-            let corners = triangles.corners(triangle).map(|corner| corner - self.start);
+        self.triangles.along(self.start, direction, &mut |triangle| {
+            let corners = self.triangles.corners(triangle).map(|corner| corner - self.start);
             let hit = hit(&corners, direction).filter(|(length, _)| *length > self.skipped);
             hits.extend(hit.map(|(length, sign)| Hit { length, sign, triangle }));
             if hits.len() > MOST_HITS { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -274,6 +260,21 @@ impl Rays {
         hits.sort_unstable_by(|a, b| a.length.total_cmp(&b.length));
         (hits.len() <= MOST_HITS).then_some(hits)
     }
+}
+
+/// Times that a ray leaves the surface less times that it enters. Triangles at one place count once:
+/// doubles, and the two at an edge.
+fn winding<'a>(hits: impl Iterator<Item = &'a Hit>) -> i32 {
+    let mut sum = 0;
+    let mut last = [f64::NEG_INFINITY; 2];
+    for Hit { length, sign, .. } in hits {
+        let last = &mut last[usize::from(*sign > 0)];
+        if length - *last > TIE * length {
+            sum += sign;
+        }
+        *last = *length;
+    }
+    sum
 }
 
 /// Length at which a ray from the origin meets a triangle, and 1 if it leaves through the front.
