@@ -10,7 +10,7 @@ use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::shape::{CompositeShape, SharedShape, TriMesh, TriMeshFlags};
 use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh;
-use sbbk_testkit::probe::{Probe, Timed, shape_address};
+use sbbk_testkit::probe::{Probe, Recording, shape_address};
 
 use crate::support::{
     Pair, Question, TrianglePair, assert_same, counting, deform, rebuilt, sequence, shape,
@@ -106,8 +106,8 @@ fn other_triangles_at_the_same_place_are_seen() {
 /// A soft ball above a fixed torus, under gravity.
 fn soft_world(dispatcher: &SbbkDispatcher, probe: &Probe) -> PhysicsWorld {
     let mut world = PhysicsWorld::new();
-    let timed = Timed::new(std::sync::Arc::new(dispatcher.clone()), probe.clone());
-    world.narrow_phase.set_query_dispatcher(timed);
+    let recording = Recording::new(std::sync::Arc::new(dispatcher.clone()), probe.clone());
+    world.narrow_phase.set_query_dispatcher(recording);
     let ring = mesh::torus(1.0, 0.4, 24, 12);
     world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(SharedShape::new(shape(&ring))));
     let ball = mesh::ball(0.9, 5);

@@ -5,19 +5,14 @@
 //! cargo run --release --example contacts -- --quick --csv contacts.csv
 //! ```
 
-use clap::Parser;
-use sbbk_lab::cli::{Outcome, StudyArguments};
+use sbbk_lab::cli::{Outcome, run_study};
 use sbbk_lab::study::contacts::{ContactsPlan, contacts};
 
-/// Compares the contacts of stock Parry and SBBK with brute force, and their times
-#[derive(Parser)]
-struct Arguments {
-    #[command(flatten)]
-    study: StudyArguments,
-}
-
 fn main() -> Outcome {
-    let Arguments { study } = Arguments::parse();
-    let plan = study.plan(ContactsPlan::standard, ContactsPlan::quick);
-    study.run(None, None, |progress| Ok(contacts(&plan, progress)))
+    run_study(
+        "Compares the contacts of stock Parry and SBBK with brute force, and their times",
+        ContactsPlan::standard,
+        ContactsPlan::quick,
+        contacts,
+    )
 }

@@ -5,19 +5,14 @@
 //! cargo run --release --example convex -- --quick --csv convex.csv
 //! ```
 
-use clap::Parser;
-use sbbk_lab::cli::{Outcome, StudyArguments};
+use sbbk_lab::cli::{Outcome, run_study};
 use sbbk_lab::study::convex::{ConvexPlan, convex};
 
-/// Compares the contacts of a mesh and convex shapes or compounds, and their times
-#[derive(Parser)]
-struct Arguments {
-    #[command(flatten)]
-    study: StudyArguments,
-}
-
 fn main() -> Outcome {
-    let Arguments { study } = Arguments::parse();
-    let plan = study.plan(ConvexPlan::standard, ConvexPlan::quick);
-    study.run(None, None, |progress| Ok(convex(&plan, progress)))
+    run_study(
+        "Compares the contacts of a mesh and convex shapes or compounds, and their times",
+        ConvexPlan::standard,
+        ConvexPlan::quick,
+        convex,
+    )
 }

@@ -17,7 +17,7 @@ use clap::{Args, Parser};
 use sbbk_lab::cli::{Outcome, ReplayArguments, StudyArguments};
 use sbbk_lab::mesh_file;
 use sbbk_lab::study::hard::random::{Family, RandomPlan, random as run_random};
-use sbbk_lab::study::hard::{Column, Group, HardPlan, hard};
+use sbbk_lab::study::hard::{Column, Group, HardPlan, Settings, hard};
 
 /// Runs difficult scenes of meshes to their end, and judges them
 #[derive(Parser)]
@@ -86,12 +86,14 @@ fn main() -> Outcome {
     let Arguments { study, only, backends, scene, mesh, random, replay, verbose, threads } =
         arguments;
     let page = replay.replay.as_deref();
+    let settings = |settings: Settings| Settings {
+        columns: if backends.is_empty() { settings.columns } else { backends.clone() },
+        threads,
+        shows_figures: verbose,
+        replay: replay.replay.clone(),
+    };
     if let Some(mut plan) = random.plan(&study) {
-        if !backends.is_empty() {
-            plan.columns = backends;
-        }
-        (plan.shows_figures, plan.threads) = (verbose, threads);
-        plan.replay = replay.replay.clone();
+        plan.settings = settings(plan.settings);
         study.run(None, page, |progress| run_random(&plan, progress))?;
         return replay.print();
     }
@@ -99,11 +101,7 @@ fn main() -> Outcome {
     if !only.is_empty() {
         plan.groups = only;
     }
-    if !backends.is_empty() {
-        plan.columns = backends;
-    }
-    (plan.shows_figures, plan.threads, plan.name) = (verbose, threads, scene);
-    plan.replay = replay.replay.clone();
+    (plan.settings, plan.name) = (settings(plan.settings), scene);
     plan.mesh = mesh.as_deref().map(mesh_file::load).transpose()?;
     study.run(mesh.as_deref(), page, |progress| hard(&plan, progress))?;
     replay.print()

@@ -5,19 +5,16 @@ use std::error::Error;
 use std::fmt::{self, Debug, Display};
 use std::io::{self, ErrorKind, Write};
 
-use clap::Args;
+use clap::{Args, CommandFactory, FromArgMatches, Parser};
 
 use crate::report::{check_outputs, write_file};
 
 /// Arguments of every study.
-#[derive(Args, Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Parser)]
 pub struct StudyArguments {
     /// Measures less, within a minute: for trying, not for quoting
     #[arg(long)]
     quick: bool,
-    /// Writes all numbers to a JSON file
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
     /// Writes all numbers to a CSV file, one a line
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -29,8 +26,8 @@ impl StudyArguments {
         if self.quick { quick() } else { standard() }
     }
 
-    /// Runs a study, prints the verdict and the tables, writes the files and prints their paths.
-    /// `read` and `page` are other files of the run.
+    /// Runs a study, prints the verdict and the tables, and writes the file. `read` and
+    /// `page` are other files of the run.
     ///
     /// Errors: those of the study; a file that cannot be written, which is found before the study.
     pub fn run(
@@ -39,19 +36,16 @@ impl StudyArguments {
         page: Option<&Path>,
         study: impl FnOnce(&Progress) -> Result<Results, StudyError>,
     ) -> Outcome {
-        let [json, csv] = [&self.json, &self.csv].map(Option::as_deref);
-        let outputs: Vec<&Path> = [json, csv, page].into_iter().flatten().collect();
+        let csv = self.csv.as_deref();
+        let outputs: Vec<&Path> = csv.into_iter().chain(page).collect();
         check_outputs(read.as_slice(), &outputs)?;
         let progress = Progress::visible();
         let results = study(&progress)?;
         progress.finish();
         print(&results)?;
-        let texts: [fn(&Results) -> String; 2] = [Results::json, Results::csv];
-        for (path, text) in [json, csv].into_iter().zip(texts) {
-            if let Some(path) = path {
-                write_file(path, text(&results))?;
-                print_path(path)?;
-            }
+        if let Some(path) = csv {
+            write_file(path, results.csv())?;
+            print_path(path)?;
         }
         Ok(())
     }
@@ -83,6 +77,21 @@ impl ReplayArguments {
     pub fn print(&self) -> Outcome {
         Ok(self.replay.as_deref().map_or(Ok(()), print_path)?)
     }
+}
+
+/// Is the `main` of a study without arguments of its own.
+///
+/// Errors: those of [`StudyArguments::run`].
+pub fn run_study<P>(
+    about: &'static str,
+    standard: fn() -> P,
+    quick: fn() -> P,
+    study: fn(&P, &Progress) -> Results,
+) -> Outcome {
+    let matches = StudyArguments::command().about(about).get_matches();
+    let arguments = StudyArguments::from_arg_matches(&matches)?;
+    let plan = arguments.plan(standard, quick);
+    arguments.run(None, None, |progress| Ok(study(&plan, progress)))
 }
 
 fn print_path(path: &Path) -> io::Result<()> {

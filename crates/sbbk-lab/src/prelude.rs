@@ -14,9 +14,7 @@ pub(crate) use crate::parallel;
 pub(crate) use crate::progress::Progress;
 pub(crate) use crate::replay;
 pub(crate) use crate::replay::Recorder;
-pub(crate) use crate::report::{
-    ReportError, Results, Row, TIME_NOTE, Table, TableSpec, errors, faster, number, sides, time,
-};
+pub(crate) use crate::report::{ReportError, Results, Row};
 pub(crate) use crate::scene::{MonkeyPile, Scene, SceneWorld, Solid, random};
 pub(crate) use crate::study::StudyError;
 pub(crate) use clap::ValueEnum;

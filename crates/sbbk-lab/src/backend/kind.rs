@@ -11,7 +11,7 @@ use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
 use rapier3d::pipeline::PhysicsWorld;
 use serde::Serialize;
 
-use super::{Probe, Timed};
+use super::{Probe, Recording};
 
 /// A dispatcher as Rapier takes it.
 pub type SharedDispatcher = Arc<dyn PersistentQueryDispatcher<ContactManifoldData, ContactData>>;
@@ -84,12 +84,12 @@ impl Backend {
         Dispatcher { shared: Arc::new(sbbk.clone()), sbbk: Some(sbbk) }
     }
 
-    /// Installs a fresh, timed dispatcher in a world, with the trees of all its meshes.
+    /// Installs a fresh dispatcher in a world, with the trees of all its meshes.
     pub fn install(self, world: &mut PhysicsWorld) -> Installed {
         let (dispatcher, probe) = (self.dispatcher(), Probe::default());
         let shapes = world.colliders.iter().map(|(_, collider)| collider.shared_shape());
         let primed = Primed::new(&dispatcher, shapes);
-        world.narrow_phase.set_query_dispatcher(Timed::new(dispatcher.shared, probe.clone()));
+        world.narrow_phase.set_query_dispatcher(Recording::new(dispatcher.shared, probe.clone()));
         Installed { probe, primed }
     }
 }
@@ -102,7 +102,7 @@ impl fmt::Display for Backend {
 
 /// Result of [`Backend::install`].
 pub struct Installed {
-    /// Times and answers of the queries of the world.
+    /// Answers to the queries of the world.
     pub probe: Probe,
     /// Trees of the meshes of the world.
     pub primed: Primed,

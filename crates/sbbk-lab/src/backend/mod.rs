@@ -5,6 +5,4 @@ mod memory;
 
 pub use kind::{Backend, Dispatcher, Installed, Primed, SharedDispatcher};
 pub use memory::Memory;
-pub use sbbk_testkit::probe::{
-    Answer, PairKind, Probe, Question, Reported, Tally, Timed, clock_cost, shape_address,
-};
+pub use sbbk_testkit::probe::{Answer, Probe, Question, Recording, Reported, shape_address};

@@ -4,13 +4,10 @@ use std::fmt;
 use std::fs;
 use std::thread::available_parallelism;
 
-use serde::Serialize;
-
-use crate::backend::clock_cost;
 use crate::report::said_by;
 
 /// Machine and build of a measurement.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Environment {
     /// Model of the processor, or its architecture where the system does not tell.
     pub cpu: String,
@@ -24,8 +21,6 @@ pub struct Environment {
     pub profile: &'static str,
     /// Vector instructions that the compiler was allowed to use.
     pub simd: &'static str,
-    /// Time that the clock adds to each timed query, in nanoseconds.
-    pub clock_ns: u64,
 }
 
 impl Environment {
@@ -47,15 +42,13 @@ impl Environment {
                 () if cfg!(target_feature = "neon") => "neon",
                 () => "no simd",
             },
-            clock_ns: clock_cost().as_nanos() as u64,
         }
     }
 }
 
 impl fmt::Display for Environment {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { cpu, cores, rapier, rustc, profile, simd, clock_ns } = self;
-        write!(f, "{cpu}, {cores} cores; Rapier {rapier}; {rustc}; {profile}, {simd}; ")?;
-        write!(f, "clock {clock_ns} ns a query")
+        let Self { cpu, cores, rapier, rustc, profile, simd } = self;
+        write!(f, "{cpu}, {cores} cores; Rapier {rapier}; {rustc}; {profile}, {simd}")
     }
 }

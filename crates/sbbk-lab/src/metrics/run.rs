@@ -14,9 +14,6 @@ pub struct RunPlan {
     pub sample_every: usize,
     /// At most this many mesh pairs are judged in each sampled step and way (fresh, updated).
     pub sample_size: usize,
-    /// One query in so many is timed; all if 0. See
-    /// [`Probe::time_every`](crate::backend::Probe::time_every).
-    pub query_stride: u64,
 }
 
 impl RunPlan {
@@ -86,7 +83,6 @@ impl Runner {
     pub fn new(scene: &dyn Scene, backend: Backend, plan: RunPlan) -> Self {
         let mut built = scene.build();
         let installed = backend.install(&mut built.world);
-        installed.probe.time_every(plan.query_stride);
         let run = Run { backend, times: Vec::with_capacity(plan.steps), samples: Vec::new() };
         Self { built, installed, plan, step: 0, run }
     }
@@ -103,7 +99,7 @@ impl Runner {
             let sample = self.sampled_step();
             self.run.samples.push(sample);
         } else {
-            self.run.times.push(timed_step(world, &self.installed.probe));
+            self.run.times.push(timed_step(world));
         }
     }
 

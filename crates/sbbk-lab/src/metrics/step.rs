@@ -1,14 +1,13 @@
 //! Timed and judged steps of a world.
 
 use super::Judge;
-use crate::backend::{Answer, PairKind, Probe};
+use crate::backend::{Answer, Probe};
 use crate::prelude::*;
 
 /// Times of one step, in milliseconds.
 ///
 /// Broad phase, narrow phase and solver are Rapier's own timers. The narrow phase holds the
-/// contact queries and what Rapier does with their manifolds (solver contacts, clustering), which
-/// is why the queries are timed apart.
+/// contact queries and what Rapier does with their manifolds (solver contacts, clustering).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepTimes {
     /// The whole step, from outside.
@@ -19,12 +18,6 @@ pub struct StepTimes {
     pub narrow_phase: f64,
     /// Constraint solver.
     pub solver: f64,
-    /// Contact queries between two meshes, summed over threads.
-    pub mesh_mesh: f64,
-    /// Contact queries between a mesh and another shape, summed over threads.
-    pub mesh_other: f64,
-    /// Number of mesh-mesh queries: pairs recycled by Rapier are not asked.
-    pub mesh_mesh_calls: u64,
 }
 
 impl StepTimes {
@@ -34,25 +27,19 @@ impl StepTimes {
     }
 }
 
-/// Steps `world` once. Resets `probe`, which must belong to the dispatcher of the world.
-pub fn timed_step(world: &mut PhysicsWorld, probe: &Probe) -> StepTimes {
-    probe.reset();
+/// Steps `world` once.
+pub fn timed_step(world: &mut PhysicsWorld) -> StepTimes {
     world.physics_pipeline.counters.enable();
     let start = Instant::now();
     world.step();
     let step = 1e3 * start.elapsed().as_secs_f64();
     let counters = &world.physics_pipeline.counters;
-    let mesh_mesh = probe.tally(PairKind::MeshMesh);
-    let mesh_other = probe.tally(PairKind::MeshOther);
     StepTimes {
         step,
         broad_phase: counters.cd.broad_phase_time.time_ms()
             + counters.cd.final_broad_phase_time.time_ms(),
         narrow_phase: counters.cd.narrow_phase_time.time_ms(),
         solver: counters.stages.solver_time.time_ms(),
-        mesh_mesh: 1e3 * mesh_mesh.time.as_secs_f64(),
-        mesh_other: 1e3 * mesh_other.time.as_secs_f64(),
-        mesh_mesh_calls: mesh_mesh.calls,
     }
 }
 

@@ -2,53 +2,46 @@
 
 mod output;
 mod row;
-mod table;
+mod tables;
 
 use std::fmt;
-
-use serde::Serialize;
 
 pub(crate) use output::said_by;
 pub use output::{ReportError, check_outputs, write_file};
 pub use row::Row;
-pub use table::{
-    Column, Table, TableSpec, errors, faster, greater, number, sides, three_digits, time,
-};
+pub use tables::{Table, tables, three_digits};
 
 use crate::metrics::Environment;
 
-/// Content of the columns of times.
-pub const TIME_NOTE: &str =
-    "times: min / median over the repeats, taken in turn; ratios: of minima, geometric means";
-/// Content of the columns of errors.
-pub const ERROR_NOTE: &str = "errors: missed + phantom + wrong depth, of the true triangle pairs \
-                              judged, against brute force in f64";
-
 /// Findings of a study.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Results {
+    /// Name of the data of the study, by which the documentation asks for them.
+    pub study: &'static str,
     /// Machine and build.
     pub environment: Environment,
     /// The main finding, in one sentence.
     pub verdict: String,
     /// All numbers.
     pub rows: Vec<Row>,
-    /// Some of the numbers, for the terminal.
-    #[serde(skip)]
-    pub tables: Vec<Table>,
+    /// What tables do not show.
+    pub notes: Vec<String>,
 }
 
 impl Results {
     /// Findings of this machine.
-    pub fn new(verdict: String, rows: Vec<Row>, tables: Vec<Table>) -> Self {
-        Self { environment: Environment::detect(), verdict, rows, tables }
+    pub fn new(study: &'static str, verdict: String, rows: Vec<Row>) -> Self {
+        let environment = Environment::detect();
+        Self { study, environment, verdict, rows, notes: Vec::new() }
     }
 }
 
 impl fmt::Display for Results {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let verdict = table::wrapped(&format!("VERDICT: {}", self.verdict), "");
-        writeln!(f, "{verdict}\n\n{}", self.environment)?;
-        self.tables.iter().try_for_each(|table| write!(f, "\n{table}"))
+        writeln!(f, "VERDICT: {}\n\n{}", self.verdict, self.environment)?;
+        let tables = tables(self.study, &self.csv());
+        tables.iter().try_for_each(|table| write!(f, "\n{table}"))?;
+        let mut notes = self.notes.iter();
+        notes.try_for_each(|note| write!(f, "\n{note}"))
     }
 }

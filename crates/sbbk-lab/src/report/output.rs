@@ -44,27 +44,23 @@ pub fn write_file(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), ReportE
 }
 
 impl Results {
-    /// All results as one JSON object.
-    pub fn json(&self) -> String {
-        serde_json::to_string_pretty(self).expect("all keys of the results are text")
-    }
-
     /// All numbers as CSV, one a line, below comments with date, commit, machine and verdict.
     pub fn csv(&self) -> String {
         let commit = said_by("git", &["describe", "--always", "--dirty"]);
         let date = said_by("date", &["-u", "+%F"]);
         let mut text = format!(
             "# {date}, commit {commit}\n# {}\n# {}\n\
-             study,scene,contact_recycling,backend,quantity,statistic,value\n",
+             study,scene,backend,quantity,statistic,value\n",
             self.environment, self.verdict
         );
         for row in &self.rows {
-            let recycling = row.keys.get("contact_recycling").map(ToString::to_string);
             let [study, scene, backend] = [row.study, &row.scene(), &row.backend].map(quoted);
-            let scene = format!("{study},{scene},{},{backend}", recycling.unwrap_or_default());
             for (quantity, statistic, value) in row.measurements() {
                 let value: f64 = format!("{value:.5e}").parse().unwrap_or(f64::NAN);
-                text.push_str(&format!("{scene},{},{statistic},{value}\n", quoted(quantity)));
+                text.push_str(&format!(
+                    "{study},{scene},{backend},{},{statistic},{value}\n",
+                    quoted(quantity)
+                ));
             }
         }
         text

@@ -4,17 +4,15 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 /// Numbers of one backend about one question.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Row {
     /// Part of the study.
     pub study: &'static str,
     /// Name of the backend.
     pub backend: String,
     /// The question: the mesh, its size, the motion.
-    #[serde(flatten)]
     pub keys: Map<String, Value>,
     /// Numbers by name, and objects and lists of numbers.
-    #[serde(flatten)]
     pub values: Map<String, Value>,
 }
 
@@ -70,8 +68,7 @@ impl Row {
 
     /// All keys as text: "mesh ball, size 2".
     pub(super) fn scene(&self) -> String {
-        let keys = self.keys.iter().filter(|(name, _)| *name != "contact_recycling");
-        let keys = keys.map(|(name, value)| format!("{name} {}", text(value)));
+        let keys = self.keys.iter().map(|(name, value)| format!("{name} {}", text(value)));
         keys.collect::<Vec<_>>().join(", ")
     }
 
@@ -90,7 +87,7 @@ impl Row {
 }
 
 /// Shows a value without quotation marks.
-pub(super) fn text(value: &Value) -> String {
+fn text(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 

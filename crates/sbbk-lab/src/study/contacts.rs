@@ -7,13 +7,12 @@
 use crate::prelude::*;
 use serde_json::Value;
 
-use super::motion::{Approach, Mode, Place, STEP_COUNT, mode_note};
-use super::pair::{Contest, DIRECT_NOTE, Sides};
+use super::motion::{Approach, Mode, Place, STEP_COUNT};
+use super::pair::{Contest, Sides};
 use super::shape;
 
 const EXACTNESS: &str = "contacts: exactness";
 const QUERIES: &str = "contacts: queries, µs";
-const ERROR_NOTE: &str = "errors: missed + phantom + wrong depth + wrong normal, of the true pairs";
 
 /// A mesh and its approaches.
 #[derive(Clone, Debug)]
@@ -120,8 +119,7 @@ pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Results {
         rows.extend(case.speed(&contest, plan.repeats));
         progress.step();
     }
-    let tables = tables(&rows);
-    Results::new(verdict(&rows), rows, tables)
+    Results::new("contacts", verdict(&rows), rows)
 }
 
 fn verdict(rows: &[Row]) -> String {
@@ -219,44 +217,4 @@ fn contest_errors(
 /// Converts 0.1 to 0.1, as digits and not as bits.
 fn decimal(value: Real) -> Value {
     value.to_string().parse::<f64>().unwrap_or(f64::NAN).into()
-}
-
-fn tables(rows: &[Row]) -> Vec<Table> {
-    let exactness = |title: &str, keys| {
-        let mut columns = vec![
-            number("poses", "pose_count").of("sbbk"),
-            number("true", "errors.true_pairs").of("sbbk"),
-        ];
-        for backend in Contest::BACKENDS {
-            let column = |name: &str, path| number(&format!("{backend}: {name}"), path).of(backend);
-            columns.extend([
-                column("missed", "errors.missed"),
-                column("phantom", "errors.phantom"),
-                column("depth", "errors.wrong_depth"),
-                column("normal", "errors.wrong_normal"),
-            ]);
-        }
-        TableSpec::new(title, EXACTNESS, keys, columns).total(0)
-    };
-    let [size, prediction] = SPEED_CASE;
-    let title = format!(
-        "Speed of mesh pairs: {size} units across, prediction distance {prediction}; microseconds \
-         a query"
-    );
-    let keys = &["mode", "mesh", "triangle_count"];
-    let mut columns = vec![number("places", "sequence_count").of("sbbk")];
-    columns.extend(sides());
-    let speed = TableSpec::new(title, QUERIES, keys, columns).total(1).note(mode_note());
-    vec![
-        exactness("Wrong contacts by size, all meshes", &["size", "prediction"]).of(rows),
-        exactness("Wrong contacts by mesh, all sizes", &["mesh", "triangle_count"])
-            .note(
-                "bands: 1 % of the prediction distance for missed and phantom, 5 % for depths, 0.1 \
-                 degrees for normals that are unique; places: from 0.95 prediction distances apart \
-                 to 6 % of the size inside",
-            )
-            .note(DIRECT_NOTE)
-            .of(rows),
-        speed.note(TIME_NOTE).note(ERROR_NOTE).note(DIRECT_NOTE).of(rows),
-    ]
 }

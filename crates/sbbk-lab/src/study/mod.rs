@@ -14,10 +14,8 @@ pub mod hard;
 mod motion;
 pub mod one_step;
 mod pair;
-mod pile;
+pub mod pile;
 mod turns;
-
-pub use pile::{PilePlan, SamePosesPlan, pile, runs};
 
 use thiserror::Error;
 

@@ -6,7 +6,7 @@ use std::fmt;
 
 use rapier3d::geometry::TriMesh;
 
-/// Steps of one motion, after its first query.
+/// Steps of one motion, after its first query: they slide and turn.
 pub(super) const STEP_COUNT: usize = 16;
 /// Steps of the coarse search for the first touch. Higher: slower studies; lower: thin parts pass
 /// through each other.
@@ -46,14 +46,6 @@ impl fmt::Display for Mode {
             Self::Steady(share) => write!(f, "steady, {share} a step"),
         }
     }
-}
-
-/// Explains the modes, for notes.
-pub(super) fn mode_note() -> String {
-    format!(
-        "fresh: the first query of a pair with trees; steady: {STEP_COUNT} steps that slide and \
-         turn, and move the surface by up to so many prediction distances each"
-    )
 }
 
 /// A straight way of the second shape to its first touch with the first one.

@@ -1,13 +1,9 @@
 //! Stock Parry and SBBK on the same pairs of shapes, in turn.
 //!
-//! Dispatchers are called directly, as the narrow phase calls them.
+//! Dispatchers are called directly, as the narrow phase calls them, for all contacts of triangles.
 
 use super::turns::{race, timed};
 use crate::prelude::*;
-
-/// How dispatchers are called, for notes.
-pub(super) const DIRECT_NOTE: &str =
-    "dispatchers called directly, without contact recycling; all contacts of triangles";
 
 /// Stock and SBBK, with the trees of all meshes.
 pub(super) struct Contest {
@@ -78,7 +74,7 @@ fn sweep(dispatcher: &SharedDispatcher, sequences: &[Sequence]) -> Duration {
 }
 
 /// Rows of stock and of SBBK, in the same order.
-pub(super) struct Sides<'a>([Vec<&'a Row>; 2]);
+pub(super) struct Sides<'a>(pub [Vec<&'a Row>; 2]);
 
 impl<'a> Sides<'a> {
     pub fn of(rows: &'a [Row], counts: impl Fn(&Row) -> bool) -> Self {

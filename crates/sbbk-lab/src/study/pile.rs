@@ -6,7 +6,6 @@
 use super::turns::{in_turn, timed};
 use crate::metrics::{Run, RunPlan, Runner};
 use crate::prelude::*;
-use crate::report::ERROR_NOTE;
 
 /// Study of the rows of whole runs.
 pub const RUNS: &str = "pile, whole runs";
@@ -21,23 +20,14 @@ pub struct PilePlan {
     pub repeats: usize,
     /// Steps, samples and their size. Only the first run of each backend is sampled.
     pub run: RunPlan,
-    /// Queries of all backends at the same poses, if any.
-    pub same_poses: Option<SamePosesPlan>,
+    /// Sweeps of each backend over all pairs at the same poses, if any.
+    pub same_poses: usize,
 }
 
-/// Queries of all backends at the same poses.
-#[derive(Clone, Copy, Debug)]
-pub struct SamePosesPlan {
-    /// Sweeps over all pairs of each backend.
-    pub repeats: usize,
-    /// Pairs that are judged at most.
-    pub sample_size: usize,
-}
+/// Pairs at the same poses that are judged at most.
+const JUDGED: usize = 200;
 
 impl PilePlan {
-    /// Queries for one that is timed, as reading the clock takes time. Higher: noisier times of
-    /// queries; lower: slower steps.
-    pub const QUERY_STRIDE: u64 = 8;
     /// Steps until the lowest heads land.
     pub const FREE_FALL: usize = 27;
 }
@@ -55,12 +45,20 @@ pub fn pile(scene: &MonkeyPile, plan: &PilePlan, progress: &Progress) -> Vec<Row
     }
     let mut rows: Vec<Row> = runs.iter().map(|runs| row(scene, runs)).collect();
     let sample = runs.first().and_then(|runs| runs.first()?.samples.last());
-    if let Some((sample, plan)) = sample.zip(plan.same_poses) {
+    if let Some(sample) = sample.filter(|_| plan.same_poses > 0) {
         let phase = format!("{}, same poses", scene.name());
-        progress.phase(phase, plan.repeats * Backend::ALL.len());
-        rows.extend(same_poses(scene, &sample.pairs, plan, progress));
+        progress.phase(phase, plan.same_poses * Backend::ALL.len());
+        rows.extend(same_poses(scene, &sample.pairs, plan.same_poses, progress));
     }
     rows
+}
+
+/// Runs one pile as a study of its own.
+pub fn one_pile(scene: &MonkeyPile, plan: &PilePlan, progress: &Progress) -> Results {
+    let rows = pile(scene, plan, progress);
+    let steps = rows.iter().map(|row| format!("{} {:.2}", row.backend, row.number("step.median")));
+    let steps = steps.collect::<Vec<_>>().join(", ");
+    Results::new("pile", format!("{}, ms a whole step: {steps}", scene.name()), rows)
 }
 
 /// Runs all backends step by step in turns, so that a slow spell of the machine slows all of them.
@@ -83,22 +81,19 @@ fn side_by_side(
 }
 
 fn pile_row(study: &'static str, backend: Backend, scene: &MonkeyPile) -> Row {
-    let row = Row::new(study, backend).key("heads", scene.heads).key("scene", scene.name());
-    row.key("contact_recycling", scene.contact_recycling)
+    Row::new(study, backend).key("heads", scene.heads).key("scene", scene.name())
 }
 
 /// Sums up the runs of one backend; there must be a run.
 fn row(scene: &MonkeyPile, runs: &[Run]) -> Row {
     let first = &runs[0];
     type Time = fn(&StepTimes) -> f64;
-    let times: [(&str, Time); 7] = [
+    let times: [(&str, Time); 5] = [
         ("step", |times| times.step),
         ("broad_phase", |times| times.broad_phase),
         ("narrow_phase", |times| times.narrow_phase),
         ("collision_detection", StepTimes::collision_detection),
         ("solver", |times| times.solver),
-        ("mesh_mesh", |times| times.mesh_mesh),
-        ("mesh_other", |times| times.mesh_other),
     ];
     let row = pile_row(RUNS, first.backend, scene);
     let row = times.into_iter().fold(row, |row, (name, time)| {
@@ -119,13 +114,13 @@ fn row(scene: &MonkeyPile, runs: &[Run]) -> Row {
 fn same_poses(
     scene: &MonkeyPile,
     pairs: &[Sequence],
-    plan: SamePosesPlan,
+    repeats: usize,
     progress: &Progress,
 ) -> Vec<Row> {
     let dispatchers = Backend::ALL.map(Backend::per_triangle);
     let shapes = pairs.iter().flat_map(|pair| &pair.shapes);
     let _primed = dispatchers.each_ref().map(|d| Primed::new(d, shapes.clone()));
-    let sampled = sample_indices(pairs.len(), plan.sample_size).into_iter();
+    let sampled = sample_indices(pairs.len(), JUDGED).into_iter();
     let sampled: Vec<Sequence> = sampled.map(|index| pairs[index].clone()).collect();
     let shared = dispatchers.each_ref().map(|dispatcher| &dispatcher.shared);
     let [fresh_errors, steady_errors] = [0, 1].map(|judged| {
@@ -133,7 +128,7 @@ fn same_poses(
             (step == judged).then(|| sampled[index].truth(step))
         })
     });
-    let sweeps = in_turn(&dispatchers, plan.repeats, |dispatcher| {
+    let sweeps = in_turn(&dispatchers, repeats, |dispatcher| {
         progress.step();
         sweep(dispatcher, pairs)
     });
@@ -160,94 +155,6 @@ fn sweep(dispatcher: &SharedDispatcher, pairs: &[Sequence]) -> [f64; 2] {
             timed(|| asked.for_each(|(pair, memory)| pair.ask(memory, dispatcher, pose)));
         1e3 * time.as_secs_f64()
     })
-}
-
-const PAPERS: &str = "the paper's";
-
-/// The results of the paper: "whole time of CD process" in milliseconds. The paper does not say that
-/// this is the time of one frame.
-pub(super) fn papers() -> [Row; 2] {
-    [(Backend::AabbOnly, 71.8), (Backend::Sbbk, 34.5)].map(|(backend, milliseconds)| {
-        let row = Row::new(RUNS, backend).key("heads", 2000).key("scene", PAPERS);
-        row.with("collision_detection", Summary::of([milliseconds]))
-    })
-}
-
-/// The paper's Table 2, and the state of the piles with the errors.
-pub fn runs(rows: &[Row], plan: &RunPlan) -> [Table; 2] {
-    let keys = &["heads", "contact_recycling", "backend"];
-    let stock = |path| faster("vs stock", path, Backend::Stock);
-    let aabb_only = |path| faster("vs aabb-only", path, Backend::AabbOnly);
-    let times = TableSpec::new(
-        "Table 2. Heads in a pile: milliseconds a step",
-        RUNS,
-        keys,
-        [
-            time("step", "step"),
-            stock("step.median"),
-            time("broad + narrow", "collision_detection"),
-            stock("collision_detection.median"),
-            aabb_only("collision_detection.median"),
-            time("head-head queries", "mesh_mesh"),
-            time("head-floor queries", "mesh_other"),
-        ],
-    )
-    .note(format!(
-        "mean of the {} steps after the first heads land; one query in {} is timed; backends side \
-         by side, each on its own trajectory; ratios of medians; rows without a step are the \
-         paper's",
-        plan.steps, plan.query_stride
-    ));
-    let state = TableSpec::new(
-        "The piles after the last sampled step, and wrong contacts",
-        RUNS,
-        keys,
-        [
-            number("manifolds", "manifolds"),
-            number("points", "points"),
-            number("mean height", "mean_height"),
-            number("mean depth", "mean_depth"),
-            number("max depth", "max_depth"),
-            errors("wrong, fresh", "fresh"),
-            errors("wrong, in the run", "updated"),
-        ],
-    )
-    .note(
-        "depth: in units, of the deepest point of each touching pair; the deepest of all is that \
-         of one head in fall, and differs from seed to seed",
-    )
-    .note(
-        "fresh: pairs of the broad phase without memory, all contacts of triangles; in the run: \
-         pairs that Rapier updated; contacts of surfaces must cover what crosses, and be true",
-    )
-    .note(ERROR_NOTE);
-    let ours: Vec<Row> = rows.iter().filter(|row| !row.is("scene", PAPERS)).cloned().collect();
-    [times.of(rows), state.of(&ours)]
-}
-
-/// All backends at the same poses.
-pub(super) fn same_poses_table(rows: &[Row]) -> Table {
-    TableSpec::new(
-        "The same head-head pairs at the same poses, milliseconds for all",
-        SAME_POSES,
-        &["heads", "backend"],
-        [
-            time("fresh", "fresh"),
-            faster("vs stock", "fresh.median", Backend::Stock),
-            time("steady", "steady"),
-            faster("vs stock", "steady.median", Backend::Stock),
-            faster("vs aabb-only", "steady.median", Backend::AabbOnly),
-            errors("wrong, fresh", "fresh_error"),
-            errors("wrong, steady", "steady_error"),
-        ],
-    )
-    .note(
-        "all contacts of triangles at poses of the stock run; fresh: pairs without memory; steady: \
-         a step later, with the memory of the first query, and without contact recycling",
-    )
-    .note(TIME_NOTE)
-    .note(ERROR_NOTE)
-    .of(rows)
 }
 
 /// Adds up the wrong contacts of a backend, and those that were judged.

@@ -10,8 +10,8 @@ pub(super) mod kinds;
 
 use self::errors::Judge;
 use self::kinds::{Kind, Upright, kinds};
-use super::motion::{Approach, Mode, Place, mode_note};
-use super::pair::{Contest, DIRECT_NOTE, Sides};
+use super::motion::{Approach, Mode, Place};
+use super::pair::{Contest, Sides};
 use super::shape;
 
 /// Extent of the comparison.
@@ -38,9 +38,6 @@ const MODES: [Mode; 4] = [Mode::Fresh, Mode::SLOW, Mode::FAST, FASTEST];
 
 const SHAPES: &str = "convex: queries, µs";
 const COMPOUNDS: &str = "compounds: queries, µs";
-const ERRORS_NOTE: &str = "errors: missed + beyond + wrong distance + wrong normal, of the true \
-                           contacts; in motion one query in four is judged; bands: 1 % of the \
-                           prediction distance, 1e-5 of the depth, 0.1 degrees";
 
 impl ConvexPlan {
     /// The head of 968 triangles, two units across, at Rapier's prediction distance; two minutes.
@@ -63,8 +60,7 @@ pub fn convex(plan: &ConvexPlan, progress: &Progress) -> Results {
         rows.extend(measure(plan, kind, seed));
         progress.step();
     }
-    let tables = tables(plan, &rows);
-    Results::new(verdict(&rows), rows, tables)
+    Results::new("convex", verdict(&rows), rows)
 }
 
 fn measure(plan: &ConvexPlan, kind: &Kind, seed: u64) -> Vec<Row> {
@@ -145,29 +141,4 @@ fn verdict(rows: &[Row]) -> String {
          SBBK {sbbk}, stock {stock}, of {all}",
         sides.ratio("time.min")
     )
-}
-
-fn tables(plan: &ConvexPlan, rows: &[Row]) -> Vec<Table> {
-    let ConvexPlan { mesh, prediction, .. } = plan;
-    let spec = |kinds: &str, study| {
-        let title = format!(
-            "A {} of {} triangles against {kinds}, prediction distance {prediction}; microseconds \
-             a query",
-            mesh.name,
-            mesh.triangle_count()
-        );
-        let mut columns = vec![number("places", "place_count").of("sbbk")];
-        columns.extend(sides());
-        let deep = "deep: 5 and 15 % of the length of the mesh beyond the first touch; every other \
-                    query has the mesh first";
-        TableSpec::new(title, study, &["mode", "depth", "shape"], columns)
-            .total(2)
-            .note(mode_note())
-            .note(deep)
-            .note(TIME_NOTE)
-            .note(ERRORS_NOTE)
-            .note(DIRECT_NOTE)
-            .of(rows)
-    };
-    vec![spec("convex shapes", SHAPES), spec("compounds", COMPOUNDS)]
 }

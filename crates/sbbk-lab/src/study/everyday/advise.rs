@@ -69,7 +69,7 @@ fn advise_on(subject: &Subject, steps: usize, repeats: usize, progress: &Progres
     let size = bounds.extents().max_element();
     let scenes = Scenes { subject, bounds, size, large: subject.larger_than(UNPREPARED) };
     let rows = [scenes.terrain(steps), scenes.bodies(steps), scenes.sensors(steps)]
-        .map(|scene| scene.measure(scene.name(), repeats, progress));
+        .map(|scene| scene.measure(subject.name.clone(), repeats, progress));
     Advice {
         name: subject.name.clone(),
         triangles: subject.triangle_count(),

@@ -50,24 +50,6 @@ const MEMORY_EVERY: usize = 10;
 const COMPARISONS: usize = 3;
 const FEW_PAIRS: usize = 3;
 const FEW_EVERY: usize = 4;
-/// A median is slower above this factor and this many microseconds.
-const NOISE: f64 = 1.05;
-const IGNORED: f64 = 1.0;
-/// A worst step is worse above this many microseconds.
-const WORST: f64 = 2000.0;
-
-/// Compares median and worst step of SBBK with stock; `ignored` and `worst` have the unit of the
-/// times.
-pub(super) fn verdict(stock: [f64; 2], sbbk: [f64; 2], ignored: f64, worst: f64) -> &'static str {
-    let is_slower = sbbk[0] > (NOISE * stock[0]).max(stock[0] + ignored);
-    match (is_slower, sbbk[1] > stock[1] + worst) {
-        (false, false) => "ok",
-        (true, false) => "slower",
-        (false, true) => "worst step",
-        (true, true) => "slower, worst step",
-    }
-}
-
 /// Times of one backend: for each step the least over the repeats, in microseconds, as every run of
 /// a backend does the same.
 #[derive(Default)]
@@ -93,7 +75,7 @@ impl<'a> Everyday<'a> {
         for repeat in 0..repeats {
             self.run(&mut sides, (repeat == 0).then_some(&mut comparison), progress);
         }
-        let rows = [0, 1].map(|index| {
+        [0, 1].map(|index| {
             let (backend, side) = (Contest::BACKENDS[index].to_string(), &sides[index]);
             let mebibytes = |bytes: usize| bytes as f64 / (1 << 20) as f64;
             Row { backend, ..self.row.clone() }
@@ -103,41 +85,7 @@ impl<'a> Everyday<'a> {
                 .with("mesh_mebibytes", mebibytes(side.mesh_bytes))
                 .with("plugin_mebibytes", mebibytes(side.plugin_bytes))
                 .with("judged", comparison.judged[index])
-        });
-        let times = |row: &Row| ["detection.median", "detection.max"].map(|path| row.number(path));
-        let [times_of_stock, times_of_sbbk] = rows.each_ref().map(times);
-        let verdict = verdict(times_of_stock, times_of_sbbk, IGNORED, WORST);
-        let is_bad = |time: &&f64| **time > times_of_stock[1] + WORST;
-        let bad_steps = sides[1].detection.iter().filter(is_bad).count();
-        let [stock, sbbk] = rows;
-        [stock, sbbk.with("verdict", verdict).with("bad_steps", bad_steps)]
-    }
-
-    /// Runs the scene on both backends and writes a page that plays both runs.
-    ///
-    /// Errors: the page cannot be written.
-    pub fn play(&self, path: &Path) -> Result<(), ReportError> {
-        let sbbk = SbbkDispatcher::default();
-        let runs = [(Backend::Stock, None), (Backend::Sbbk, Some(&sbbk))].map(|(backend, sbbk)| {
-            let (Driven { mut world, mut drive }, _prepared) = self.start(sbbk);
-            let mut recorder = Recorder::new(backend, &world);
-            for step in 0..self.steps {
-                drive(&mut world, step);
-                recorder.step(&mut world);
-            }
-            recorder
-        });
-        replay::write(path, &self.name(), &runs)
-    }
-
-    /// Name in tables, which `--scene` is compared with.
-    pub fn name(&self) -> String {
-        let keys = self.row.keys.iter();
-        let keys = keys.map(|(key, value)| match value.as_str() {
-            Some(text) => text.to_owned(),
-            None => format!("{value} {key}"),
-        });
-        keys.collect::<Vec<_>>().join(", ")
+        })
     }
 
     fn start(&self, dispatcher: Option<&SbbkDispatcher>) -> (Driven, Vec<Option<PreparedTree>>) {

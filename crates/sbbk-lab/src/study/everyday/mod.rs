@@ -10,13 +10,13 @@ mod advise;
 mod judged;
 mod measure;
 mod queries;
-mod report;
 mod robots;
 mod scenes;
 
 pub use self::advise::{Advice, advise, advise_robot};
 use self::measure::Everyday;
 use self::scenes::Ground;
+use super::pair::Sides;
 
 const BODIES: &str = "everyday: bodies on terrains";
 const SINGLE: &str = "everyday: single bodies, and many meshes";
@@ -75,15 +75,9 @@ pub struct EverydayPlan {
     pub small_meshes: usize,
     /// Cells of half a unit along a side of the terrains for all flags and robots.
     pub deformable_cells: u32,
-    /// URDF file of the robots, or `None` for a walker of this crate.
-    pub urdf: Option<PathBuf>,
     pub heads: usize,
     /// Cells of half a unit along a side of the terrains for single queries.
     pub query_cells: Vec<u32>,
-    /// Text in the names of the worlds that are measured.
-    pub name: String,
-    /// Page that plays the first of these worlds.
-    pub replay: Option<PathBuf>,
 }
 
 impl EverydayPlan {
@@ -104,11 +98,8 @@ impl EverydayPlan {
             world_cells: 1000,
             small_meshes: 10_000,
             deformable_cells: 256,
-            urdf: None,
             heads: 300,
             query_cells: vec![23, 100, 400, 1000],
-            name: String::new(),
-            replay: None,
         }
     }
 
@@ -135,25 +126,40 @@ impl EverydayPlan {
 
 /// Measures all parts.
 ///
-/// Errors: no world has the name, the URDF file cannot be loaded, or the page cannot be written.
+/// Errors: the robot of this crate cannot be loaded.
 pub fn everyday(plan: &EverydayPlan, progress: &Progress) -> Result<Results, StudyError> {
-    let mut worlds = Worlds { plan, progress, replay: plan.replay.as_deref(), rows: Vec::new() };
+    let mut worlds = Worlds { plan, progress, rows: Vec::new() };
     for group in &plan.groups {
         worlds.group(*group)?;
     }
-    let rows = worlds.rows;
-    if rows.is_empty() {
-        return Err(StudyError::NoScene(plan.name.clone()));
-    }
-    let tables = report::tables(plan, &rows);
-    Ok(Results::new(report::verdict(&rows), rows, tables))
+    Ok(Results::new("everyday", verdict(&worlds.rows), worlds.rows))
+}
+
+/// A median of SBBK is slower above this factor and this many microseconds.
+const NOISE: f64 = 1.05;
+const IGNORED: f64 = 1.0;
+
+/// Main finding: ratios of the medians of worlds, and losses.
+fn verdict(rows: &[Row]) -> String {
+    let worlds = Sides::of(rows, |row| row.study != QUERIES);
+    let medians = worlds.0.each_ref().map(|rows| rows.iter().map(|r| r.number("detection.median")));
+    let [stock, sbbk] = medians;
+    let slower = stock.zip(sbbk).filter(|(a, b)| *b > (NOISE * a).max(a + IGNORED)).count();
+    let [stock, sbbk] = worlds.wrong("judged");
+    format!(
+        "in {} worlds collision detection is {:.2} times as fast as stock's and whole steps {:.2} \
+         times (geometric means of medians; least {:.2}); {slower} worlds are slower than stock; \
+         wrong contacts of those judged: SBBK {sbbk}, stock {stock}",
+        worlds.sbbk().len(),
+        worlds.ratio("detection.median"),
+        worlds.ratio("step.median"),
+        worlds.ratios("detection.median").fold(f64::INFINITY, f64::min),
+    )
 }
 
 struct Worlds<'a> {
     plan: &'a EverydayPlan,
     progress: &'a Progress,
-    /// The page that is not written yet.
-    replay: Option<&'a Path>,
     rows: Vec<Row>,
 }
 
@@ -168,7 +174,7 @@ impl Worlds<'_> {
                     let GroundPlan { cells, cell, fixes_edges } = ground_plan;
                     let ground = Ground::new(cells, cell, if fixes_edges { fixed } else { none });
                     let scenes = scenes::bodies(ground_plan, &ground, plan.bodies, plan.steps);
-                    self.measure(&format!("terrain of {} triangles", 2 * cells * cells), &scenes)?;
+                    self.measure(&format!("terrain of {} triangles", 2 * cells * cells), &scenes);
                 }
             }
             Group::Single => {
@@ -177,23 +183,21 @@ impl Worlds<'_> {
                 let mut scenes = scenes::bouncing(&large, 5 * plan.steps);
                 scenes.extend(scenes::crossing(&world, 2 * plan.steps));
                 scenes.push(scenes::rolling_population(&small, plan.small_meshes));
-                self.measure("single bodies, many meshes", &scenes)?;
+                self.measure("single bodies, many meshes", &scenes);
             }
             Group::Flags => {
                 let all = Ground::new(plan.deformable_cells, 0.5, TriMeshFlags::all());
                 let fixed = Ground::new(plan.deformable_cells, 0.5, fixed);
                 let mut scenes = scenes::all_flags(&all, plan.steps);
-                scenes.extend(robots::robots(&fixed, plan.urdf.as_deref(), plan.steps)?);
-                self.measure("all flags, and robots", &scenes)?;
+                scenes.extend(robots::robots(&fixed, plan.steps)?);
+                self.measure("all flags, and robots", &scenes);
             }
             Group::Sensors => {
                 let large = large();
                 let scenes = scenes::sensors(&large, plan.steps);
-                self.measure("sensors and characters", &scenes)?;
+                self.measure("sensors and characters", &scenes);
             }
-            Group::Pile => self.measure("pile", &[scenes::pile(plan.heads, plan.steps)])?,
-            // `--scene` chooses worlds.
-            Group::Queries if !plan.name.is_empty() => {}
+            Group::Pile => self.measure("pile", &[scenes::pile(plan.heads, plan.steps)]),
             Group::Queries => {
                 self.progress.phase("queries on terrains", plan.query_cells.len());
                 for &cells in &plan.query_cells {
@@ -206,14 +210,10 @@ impl Worlds<'_> {
         Ok(())
     }
 
-    fn measure(&mut self, phase: &str, scenes: &[Everyday]) -> Result<(), StudyError> {
-        let scenes: Vec<&Everyday> =
-            scenes.iter().filter(|scene| scene.name().contains(&self.plan.name)).collect();
+    fn measure(&mut self, phase: &str, scenes: &[Everyday]) {
         for (index, scene) in scenes.iter().enumerate() {
             let message = format!("{phase}, world {} of {}", index + 1, scenes.len());
             self.rows.extend(scene.measure(message, self.plan.repeats, self.progress));
-            self.replay.take().map(|path| scene.play(path)).transpose()?;
         }
-        Ok(())
     }
 }

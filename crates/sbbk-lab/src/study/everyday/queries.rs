@@ -6,7 +6,6 @@ use std::hint::black_box;
 use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d::parry::query::details::ShapeCastOptions;
 
-use super::measure::verdict;
 use super::scenes::{Ground, above, head};
 use super::{PREDICTION, QUERIES};
 use crate::study::pair::Contest;
@@ -69,11 +68,6 @@ const PLACES: [(&str, f32); 3] = [("in", 0.35), ("near", 0.75), ("above", 1.8)];
 /// Poses at each height; a repeat ends with the pose at which it has taken this long.
 const POSES: usize = 20;
 const BUDGET: Duration = Duration::from_millis(20);
-/// Differences of up to so many nanoseconds are ignored.
-const IGNORED: f64 = 50.0;
-/// Tolerated difference of answers, in units.
-const BAND: Real = 0.05 * PREDICTION;
-
 /// Measures all queries of bodies on a terrain, without nonlinear casts of the head, which take
 /// stock seconds.
 pub(super) fn queries(ground: &Ground, repeats: usize) -> Vec<Row> {
@@ -131,11 +125,7 @@ impl Asked<'_> {
             let time = Summary::of(times[side].iter().copied());
             Row::new(QUERIES, Contest::BACKENDS[side]).with("time", time)
         };
-        let (stock, sbbk) = (row(0), row(1));
-        let of = |row: &Row| [row.number("time.median"), 0.0];
-        let verdict = verdict(of(&stock), of(&sbbk), IGNORED, 0.0);
-        let answers = self.compare(query, &dispatchers);
-        [stock, sbbk.with("answers", answers).with("verdict", verdict)]
+        [row(0), row(1)]
     }
 
     /// Nanoseconds a query.
@@ -150,22 +140,5 @@ impl Asked<'_> {
             }
         }
         1e9 * start.elapsed().as_secs_f64() / f64::from(count)
-    }
-
-    /// Counts answers of one side only, and answers that differ.
-    fn compare(&self, query: Query, dispatchers: &[Dispatcher; 2]) -> ErrorCount {
-        let start = Instant::now();
-        let mut counts = ErrorCount::default();
-        for pose in self.poses.iter().take_while(|_| start.elapsed() < 10 * BUDGET) {
-            counts.mesh_pairs += 1;
-            counts.true_pairs += 1;
-            match dispatchers.each_ref().map(|dispatcher| query.ask(dispatcher, self, pose)) {
-                [Some(_), None] => counts.missed += 1,
-                [None, Some(_)] => counts.phantom += 1,
-                [Some(one), Some(two)] if (one - two).abs() > BAND => counts.wrong_depth += 1,
-                _ => {}
-            }
-        }
-        counts
     }
 }

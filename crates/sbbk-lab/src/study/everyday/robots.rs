@@ -33,17 +33,11 @@ fn unusable(path: &Path, cause: impl Display) -> StudyError {
     StudyError::Robot { path: path.to_owned(), cause: cause.to_string() }
 }
 
-/// Ten robots on a terrain, with the loader's flags for their meshes and without. Walkers walk; the
-/// robots of a file hang in their joints.
+/// Ten robots that walk on a terrain, with the loader's flags for their meshes and without.
 ///
-/// Errors: the file cannot be loaded, or its robot has no shapes.
-pub(super) fn robots<'a>(
-    ground: &'a Ground,
-    file: Option<&Path>,
-    steps: usize,
-) -> Result<Vec<Everyday<'a>>, StudyError> {
-    let walks = file.is_none();
-    let file = file.unwrap_or(Path::new(WALKER));
+/// Errors: the file cannot be loaded.
+pub(super) fn robots(ground: &Ground, steps: usize) -> Result<Vec<Everyday<'_>>, StudyError> {
+    let file = Path::new(WALKER);
     let defaults = UrdfLoaderOptions::default().trimesh_flags;
     let flags = [("the loader's flags", defaults), ("no flags", TriMeshFlags::empty())];
     let scene = |(name, flags): (&str, TriMeshFlags)| {
@@ -56,9 +50,7 @@ pub(super) fn robots<'a>(
             let legs = robots.iter().flat_map(|robot| insert(&mut world, robot.clone()));
             let legs: Vec<Leg> = legs.collect();
             Driven::by(world, move |world, step| {
-                if walks {
-                    legs.iter().for_each(|leg| leg.swing(world, step));
-                }
+                legs.iter().for_each(|leg| leg.swing(world, step));
             })
         }))
     };

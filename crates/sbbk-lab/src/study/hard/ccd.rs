@@ -126,7 +126,7 @@ fn slabs(kit: &Kit, cell: f32) -> Figures {
     const SIZE: f32 = 10.0;
     let floor = kit.mesh(&mesh::floor(SIZE, (SIZE / cell) as u32));
     let slab = kit.collider(&Form::cuboid(PLATE, 1));
-    let mut random = kit.random();
+    let mut random = seeded();
     let passes = |_: &usize| {
         let mut world = kit.world();
         world.fix(Vec3::ZERO, floor.clone());

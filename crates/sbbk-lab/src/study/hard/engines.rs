@@ -67,7 +67,7 @@ impl EnginePile {
         let parts = convex.as_compound().into_iter().flat_map(|compound| compound.shapes());
         let parts = parts.filter_map(|(_, part)| Some(part.as_convex_polyhedron()?.points()));
         let parts = parts.map(<[Vec3]>::to_vec).collect();
-        let world = Kit::new(Column::Stock, true, 1).world();
+        let world = Kit::new(Column::Stock, None).world();
         Self {
             time_step: world.integration_parameters.dt,
             gravity: -world.gravity.y,
@@ -147,7 +147,7 @@ impl EnginePile {
     /// Errors: the file cannot be written.
     pub fn run(&self, column: Column, path: &Path) -> io::Result<()> {
         let mut file = BufWriter::new(File::create(path)?);
-        let kit = Kit::new(column, true, 1);
+        let kit = Kit::new(column, None);
         kit.world().step();
         let empty = memory("VmRSS");
         let form = Form::parts(self.mesh.clone(), self.parts.iter().cloned());
@@ -191,32 +191,7 @@ impl EnginePile {
                 Row::new(STUDY, engine).key("figure", figure).with("value", value)
             }));
         }
-        let title = format!(
-            "The pile of {} heads of {} triangles in several engines",
-            self.poses.len(),
-            self.mesh.triangle_count()
-        );
-        let columns = engines.iter().map(|(name, _)| number(name, "value").of(name));
-        let table = TableSpec::new(title, STUDY, &["figure"], columns)
-            .note(format!(
-                "in motion: steps {} to {}, at rest: {} to {}; of each step the least time of \
-                     the runs, all of which do the same",
-                MOVING.start + 1,
-                MOVING.end,
-                RESTING.start + 1,
-                RESTING.end
-            ))
-            .note(
-                "depth: of the deepest vertex, by winding number and distance to the surface; of \
-                 a head: the greatest of its pairs; inside each other: deeper than 10 mm; units are \
-                 metres",
-            )
-            .note(format!(
-                "control: stock with the {} parts of Parry's decomposition",
-                self.parts.len()
-            ));
-        let tables = vec![table.of(&rows)];
-        Ok(Results::new(verdict(engines, &rows), rows, tables))
+        Ok(Results::new("engines", verdict(engines, &rows), rows))
     }
 
     fn read_run(&self, path: &Path) -> io::Result<Run> {

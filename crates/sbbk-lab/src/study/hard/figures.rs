@@ -2,7 +2,11 @@
 
 /// Figures of a run.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Figures(pub Vec<Figure>);
+pub(super) struct Figures {
+    pub all: Vec<Figure>,
+    /// What the scene has in it, for notes.
+    pub about: String,
+}
 
 /// A measurement, and the range in which the scene looks right to a user.
 #[derive(Clone, Copy, Debug)]
@@ -16,12 +20,6 @@ impl Figure {
     /// True within the limits; NaN is not.
     pub fn is_right(&self) -> bool {
         (self.limits[0]..=self.limits[1]).contains(&self.value)
-    }
-
-    /// Distance from the limits; infinite for NaN.
-    pub fn excess(&self) -> f64 {
-        let excess = (self.limits[0] - self.value).max(self.value - self.limits[1]);
-        if self.value.is_nan() { f64::INFINITY } else { excess }
     }
 }
 
@@ -38,7 +36,7 @@ impl Figures {
 
     /// Adds a figure with limits on both sides.
     pub fn within(mut self, name: &'static str, value: impl Into<f64>, limits: [f64; 2]) -> Self {
-        self.0.push(Figure { name, value: value.into(), limits });
+        self.all.push(Figure { name, value: value.into(), limits });
         self
     }
 

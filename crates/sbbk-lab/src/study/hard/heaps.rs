@@ -1,26 +1,24 @@
 //! Heads that fall on a floor or in a pit, and small things on a tray.
 
 use super::kit::*;
-use super::report::STEP_TIME;
 
 /// Half extents of the floor of piles.
 pub(super) const FLOOR: Vec3 = Vec3::new(100.0, 1.0, 100.0);
 /// Step after which times and contacts are measured.
 const FULL_AT: usize = 60;
+const HEADS: usize = 200;
 /// Pairs whose depth is judged.
 const PAIRS: usize = 150;
 
-pub(super) fn piles(heads: &[usize], mesh: Option<&Mesh>) -> Vec<Trial> {
-    let trial = |&heads: &usize| {
-        let (name, pile) = match mesh {
-            Some(mesh) => (&*mesh.name, MonkeyPile::of(heads, mesh.clone())),
-            None => ("heads", MonkeyPile::with_heads(heads)),
-        };
-        let has_limits = mesh.is_none();
-        let run = move |kit: &Kit| heap(kit, &pile, has_limits);
-        Trial::new(format!("pile of {heads} {name}"), run).without_control().seeded()
+pub(super) fn piles(mesh: Option<&Mesh>) -> Vec<Trial> {
+    let pile = match mesh {
+        Some(mesh) => MonkeyPile::of(HEADS, mesh.clone()),
+        None => MonkeyPile::with_heads(HEADS),
     };
-    heads.iter().map(trial).collect()
+    let name = format!("pile of {HEADS} {}", mesh.map_or("heads", |mesh| &mesh.name));
+    let has_limits = mesh.is_none();
+    let run = move |kit: &Kit| heap(kit, &pile, has_limits);
+    vec![Trial::new(name, run).without_control()]
 }
 
 /// A floor, whose top is at height 0, and above it bodies that do not sleep.
@@ -43,7 +41,7 @@ pub(super) fn above_floor(
 fn heap(kit: &Kit, pile: &MonkeyPile, has_limits: bool) -> Figures {
     let (heights, points) =
         if has_limits { ([0.9, 1.4], 20.0) } else { ([0.0, f64::INFINITY], f64::INFINITY) };
-    let (pile, heads) = (MonkeyPile { seed: kit.seed, ..pile.clone() }, pile.heads);
+    let heads = pile.heads;
     let mut world = above_floor(kit, FLOOR, pile.poses(), &kit.mesh(&pile.mesh));
     let (depths, mut deep) = (Depths::new(&pile.mesh), Default::default());
     let watched = world.watch(180, FULL_AT, |world, step| {
@@ -61,14 +59,14 @@ fn heap(kit: &Kit, pile: &MonkeyPile, has_limits: bool) -> Figures {
         .at_most("mean depth", mean_depth, 0.001)
         .at_most("energy gained", watched.gain, 0.001)
         .at_most("points a step", watched.points, points * heads as f64)
-        .note(STEP_TIME, watched.step_time)
+        .note("ms a step", watched.step_time)
 }
 
 /// Heads that come to rest in a pit, of several sizes.
 pub(super) fn pits() -> Vec<Trial> {
     let trial = |size: f32| {
         let name = format!("64 heads of {size} in a pit");
-        Trial::new(name, move |kit| pit(kit, size)).without_control().seeded()
+        Trial::new(name, move |kit| pit(kit, size)).without_control()
     };
     [0.02, 1.0, 50.0].map(trial).into()
 }
@@ -77,7 +75,7 @@ pub(super) fn pits() -> Vec<Trial> {
 fn pit(kit: &Kit, size: f32) -> Figures {
     /// Heads along each side of the cube in which they start.
     const SIDE: usize = 4;
-    let (mut world, mut random) = (kit.world(), kit.random());
+    let (mut world, mut random) = (kit.world(), seeded());
     world.integration_parameters.length_unit = size;
     world.gravity *= size;
     world.fix(Vec3::ZERO, kit.mesh(&open_box(3.6, 3.0, 0.5).scaled(size)));
@@ -116,7 +114,7 @@ fn open_box(half: f32, rim: f32, wall: f32) -> Mesh {
 
 /// Small things on a tray, with Rapier's prediction distance, which is as large as they are.
 pub(super) fn trays() -> Vec<Trial> {
-    vec![Trial::new("100 things of 3 to 8 cm on a tray", tray).without_control().seeded()]
+    vec![Trial::new("100 things of 3 to 8 cm on a tray", tray).without_control()]
 }
 
 fn tray(kit: &Kit) -> Figures {
@@ -124,7 +122,7 @@ fn tray(kit: &Kit) -> Figures {
     const SIDE: usize = 5;
     const LAYERS: usize = 4;
     const WALL: f32 = 0.02;
-    let (mut world, mut random) = (kit.world(), kit.random());
+    let (mut world, mut random) = (kit.world(), seeded());
     world.fix(Vec3::ZERO, kit.mesh(&open_box(0.45, 0.25, WALL)));
     let kinds = [
         mesh::ball(0.5, 8),
@@ -148,5 +146,5 @@ fn tray(kit: &Kit) -> Figures {
         .at_most("speed", world.top_speed(), 0.5)
         .at_most("energy gained", watched.gain, 0.001)
         .note("points a step", watched.points)
-        .note(STEP_TIME, watched.step_time)
+        .note("ms a step", watched.step_time)
 }

@@ -8,7 +8,7 @@ pub(super) fn overlaps() -> Vec<Trial> {
     let head = Form::mesh(mesh::monkey_head().centred().scaled_to(1.0));
     let balls = Trial::new("eight balls in each other", move |kit| overlap(kit, &ball));
     let heads = Trial::new("eight heads in each other", move |kit| overlap(kit, &head));
-    vec![balls.seeded(), heads.without_control().seeded()]
+    vec![balls, heads.without_control()]
 }
 
 /// Bodies of a unit, their centres in a cube of a unit.
@@ -16,7 +16,7 @@ fn overlap(kit: &Kit, form: &Form) -> Figures {
     const BODIES: usize = 8;
     /// Pairs that are no deeper in each other only touch.
     const APART: f32 = 0.01;
-    let (mut world, mut random) = (kit.world(), kit.random());
+    let (mut world, mut random) = (kit.world(), seeded());
     world.gravity = Vec3::ZERO;
     let collider = kit.collider(form);
     for _ in 0..BODIES {
@@ -106,7 +106,7 @@ pub(super) fn sheets() -> Vec<Trial> {
         [(false, "front"), (true, "back")].map(|(from_behind, side)| {
             let name = format!("64 cubes on the {side} of a {bent} sheet");
             let run = move |kit: &Kit| cubes_on_sheet(kit, is_bent, from_behind);
-            Trial::new(name, run).without_control().seeded()
+            Trial::new(name, run).without_control()
         })
     });
     trials.collect()
@@ -127,7 +127,7 @@ fn cubes_on_sheet(kit: &Kit, is_bent: bool, from_behind: bool) -> Figures {
     if from_behind {
         sheet.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
     }
-    let (mut world, mut random) = (kit.world(), kit.random());
+    let (mut world, mut random) = (kit.world(), seeded());
     world.fix(Vec3::ZERO, kit.mesh(&sheet));
     let cube = kit.collider(&Form::cuboid(Vec3::splat(HALF), 2));
     for index in 0..ROW * ROW {

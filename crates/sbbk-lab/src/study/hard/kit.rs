@@ -62,21 +62,24 @@ impl Form {
     }
 }
 
+/// Numbers of a scene, the same in all columns.
+pub(super) fn seeded() -> Rand32 {
+    Rand32::new(1)
+}
+
 /// A shared recording.
 pub(super) type Film = Arc<Mutex<Option<Recorder>>>;
 
 /// Settings of one run of a scene.
 pub(super) struct Kit {
     pub column: Column,
-    pub recycling: bool,
-    pub seed: u64,
     /// Taken by the first world, which is recorded.
     pub film: Mutex<Option<Film>>,
 }
 
 impl Kit {
-    pub fn new(column: Column, recycling: bool, seed: u64) -> Self {
-        Self { column, recycling, seed, film: Mutex::default() }
+    pub fn new(column: Column, film: Option<Film>) -> Self {
+        Self { column, film: Mutex::new(film) }
     }
 
     /// An empty world with the column's dispatcher.
@@ -87,7 +90,6 @@ impl Kit {
     /// An empty world with the column's dispatcher, which is told that a mesh is a solid.
     pub fn world_with(&self, solid: Option<&ColliderBuilder>) -> World {
         let mut world = PhysicsWorld::new();
-        world.integration_parameters.contact_recycling = self.recycling;
         let backend = match self.column {
             Column::Stock | Column::StockFlag | Column::Control => Backend::Stock,
             Column::Sbbk | Column::SbbkFlag => Backend::Sbbk,
@@ -130,11 +132,6 @@ impl Kit {
         let [rows, columns] = cells.map(|cells| cells as usize + 1);
         let heights = Array2::repeat(rows, columns, 0.0);
         ColliderBuilder::new(SharedShape::heightfield_with_flags(heights, size, flags))
-    }
-
-    /// Numbers that depend on the seed alone.
-    pub fn random(&self) -> Rand32 {
-        Rand32::new(self.seed)
     }
 }
 

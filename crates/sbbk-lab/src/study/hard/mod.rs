@@ -1,9 +1,8 @@
 //! Hard scenes: whole worlds of meshes that stack, nest, mesh, sink in and fly.
 //!
 //! Stock Rapier and SBBK run each scene, with plain meshes and with
-//! `TriMeshFlags::FIX_INTERNAL_EDGES`, with contact recycling and without. Where convex shapes can
-//! replace the meshes, stock runs these as a control. Figures with limits judge all runs alike.
-//! Chaotic scenes run with several seeds.
+//! `TriMeshFlags::FIX_INTERNAL_EDGES`. Where convex shapes can replace the meshes, stock runs these as
+//! a control. Figures with limits judge all runs alike.
 //!
 //! Time steps are 1/60 s, gravity 9.81 units/s², and all parameters Rapier's defaults, unless a scene
 //! says otherwise.
@@ -28,6 +27,7 @@ pub use self::kit::Column;
 
 use self::figures::Figures;
 use self::kit::{Film, Kit};
+use self::report::Run;
 
 /// A kind of scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -62,56 +62,53 @@ pub enum Group {
     Tray,
 }
 
+/// How scenes run.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Columns of the tables.
+    pub columns: Vec<Column>,
+    /// Runs at once. Scenes that are timed run alone.
+    pub threads: usize,
+    /// True to show all figures.
+    pub shows_figures: bool,
+    /// Page that plays the first of the scenes in all columns.
+    pub replay: Option<PathBuf>,
+}
+
+impl Default for Settings {
+    /// Stock and SBBK on plain meshes, and stock on meshes with the flag.
+    fn default() -> Self {
+        let columns = vec![Column::Stock, Column::StockFlag, Column::Sbbk];
+        Self { columns, threads: 2, shows_figures: false, replay: None }
+    }
+}
+
 /// Extent of the study.
 #[derive(Clone, Debug)]
 pub struct HardPlan {
     /// Kinds of scenes.
     pub groups: Vec<Group>,
-    /// Columns of the tables.
-    pub columns: Vec<Column>,
-    /// Rapier's contact recycling: its default is `true`.
-    pub recycling: Vec<bool>,
-    /// Runs of a chaotic scene.
-    pub seeds: u64,
-    /// Heads in the piles.
-    pub heads: Vec<usize>,
+    pub settings: Settings,
     /// Body of the piles, or `None` for heads.
     pub mesh: Option<Mesh>,
-    /// Runs at once. Scenes that are timed run alone.
-    pub threads: usize,
-    /// True to show all figures.
-    pub shows_figures: bool,
     /// Text in the names of the scenes.
     pub name: String,
-    /// Page that plays the first of the scenes in all columns.
-    pub replay: Option<PathBuf>,
 }
 
 impl HardPlan {
-    /// Everything.
+    /// All scenes in all columns.
     pub fn standard() -> Self {
-        Self {
-            groups: Group::value_variants().to_vec(),
-            columns: Column::value_variants().to_vec(),
-            recycling: vec![true, false],
-            seeds: 3,
-            heads: vec![200, 500],
-            mesh: None,
-            threads: 2,
-            shows_figures: false,
-            name: String::new(),
-            replay: None,
-        }
+        let columns = Column::value_variants().to_vec();
+        Self { settings: Settings { columns, ..Settings::default() }, ..Self::quick() }
     }
 
-    /// Stock and SBBK on plain meshes with Rapier's defaults, one run each.
+    /// All scenes.
     pub fn quick() -> Self {
         Self {
-            columns: vec![Column::Stock, Column::Sbbk],
-            recycling: vec![true],
-            seeds: 1,
-            heads: vec![200],
-            ..Self::standard()
+            groups: Group::value_variants().to_vec(),
+            settings: Settings::default(),
+            mesh: None,
+            name: String::new(),
         }
     }
 }
@@ -119,47 +116,29 @@ impl HardPlan {
 /// A scene with its figures.
 struct Trial {
     name: String,
-    /// True if convex shapes can replace the meshes.
-    has_control: bool,
-    /// True if the seed makes a difference.
-    has_seeds: bool,
     run: Box<RunTrial>,
 }
 
-type RunTrial = dyn Fn(&Kit) -> Figures + Send + Sync;
+/// Returns nothing if the scene has no convex shapes for the control.
+type RunTrial = dyn Fn(&Kit) -> Option<Figures> + Send + Sync;
 
 impl Trial {
-    /// A scene with a control and without a seed.
+    /// A scene with a control.
     fn new(name: impl Into<String>, run: impl Fn(&Kit) -> Figures + Send + Sync + 'static) -> Self {
-        Self { name: name.into(), has_control: true, has_seeds: false, run: Box::new(run) }
+        Self { name: name.into(), run: Box::new(move |kit| Some(run(kit))) }
     }
 
     /// Removes the control.
     fn without_control(self) -> Self {
-        Self { has_control: false, ..self }
-    }
-
-    /// Runs the scene with several seeds.
-    fn seeded(self) -> Self {
-        Self { has_seeds: true, ..self }
-    }
-
-    fn kits(&self, plan: &HardPlan) -> Vec<Kit> {
-        let mut kits = Vec::new();
-        for &recycling in &plan.recycling {
-            let columns = plan.columns.iter().copied();
-            for column in columns.filter(|&column| self.has_control || column != Column::Control) {
-                let seeds = 1..=if self.has_seeds { plan.seeds } else { 1 };
-                kits.extend(seeds.map(|seed| Kit::new(column, recycling, seed)));
-            }
-        }
-        kits
+        let Self { name, run } = self;
+        let run = move |kit: &Kit| if kit.column == Column::Control { None } else { run(kit) };
+        Self { name, run: Box::new(run) }
     }
 }
 
 fn trials(group: Group, plan: &HardPlan) -> Vec<Trial> {
     let mut trials = match group {
-        Group::Pile => heaps::piles(&plan.heads, plan.mesh.as_ref()),
+        Group::Pile => heaps::piles(plan.mesh.as_ref()),
         Group::Stacks => resting::stacks(),
         Group::Bowls => resting::bowls(),
         Group::Walls => resting::walls(),
@@ -182,52 +161,65 @@ fn trials(group: Group, plan: &HardPlan) -> Vec<Trial> {
 ///
 /// Errors: no scene has the name, or the page cannot be written.
 pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError> {
-    let mut rows = Vec::new();
-    let mut replay = plan.replay.as_deref();
+    let mut stage = Stage::new(&plan.settings, progress);
     for group in &plan.groups {
-        let trials = trials(*group, plan);
-        let jobs: Vec<(&Trial, Kit)> = trials
-            .iter()
-            .flat_map(|trial| trial.kits(plan).into_iter().map(move |kit| (trial, kit)))
-            .collect();
-        let replay = trials.first().and_then(|trial| Some((trial, replay.take()?)));
-        let films = replay.map_or_else(Vec::new, |(trial, _)| film(trial, &jobs));
         let name = group.to_possible_value().map_or_else(String::new, |v| v.get_name().to_owned());
-        progress.phase(name, jobs.len());
-        let threads = if matches!(group, Group::Pile | Group::Tray) { 1 } else { plan.threads };
-        let found = parallel::map(&jobs, threads, |_, (trial, kit)| {
-            let figures = (trial.run)(kit);
-            progress.step();
-            figures
-        });
-        if let Some((trial, path)) = replay {
-            let recorders = films
-                .iter()
-                .filter_map(|film| film.lock().unwrap_or_else(PoisonError::into_inner).take());
-            replay::write(path, &trial.name, &recorders.collect::<Vec<_>>())?;
-        }
-        for trial in &trials {
-            let runs = jobs.iter().zip(&found).filter(|((other, _), _)| other.name == trial.name);
-            let runs: Vec<(&Kit, &Figures)> = runs.map(|((_, kit), found)| (kit, found)).collect();
-            rows.extend(report::rows(trial, &runs));
-        }
+        let is_timed = matches!(group, Group::Pile | Group::Tray);
+        let threads = if is_timed { 1 } else { plan.settings.threads };
+        stage.run(&name, &trials(*group, plan), threads)?;
     }
-    if rows.is_empty() {
+    let runs = stage.runs;
+    if runs.is_empty() {
         return Err(StudyError::NoScene(plan.name.clone()));
     }
-    let tables = report::tables(plan, &rows);
-    Ok(Results::new(report::verdict_of_all(plan, &rows), rows, tables))
+    let rows = runs.iter().flat_map(|run| {
+        let row = Row::new("hard scenes", run.column).key("scene", &*run.scene);
+        let row = row.with("passed", usize::from(run.wrong().is_none()));
+        [row].into_iter().chain(run.rows("hard scenes: figures"))
+    });
+    let failed = plan.settings.columns.iter().map(|&column| {
+        let of = runs.iter().filter(|run| run.column == column);
+        let failed = of.clone().filter(|run| run.wrong().is_some());
+        format!("{column} {} of {}", failed.count(), of.count())
+    });
+    let verdict = format!("scenes that fail: {}", failed.collect::<Vec<_>>().join(", "));
+    let results = Results::new("hard_scenes", verdict, rows.collect());
+    Ok(Results { notes: report::notes(&plan.settings, &runs), ..results })
 }
 
-/// Records the first run of a scene in each column.
-fn film(first: &Trial, jobs: &[(&Trial, Kit)]) -> Vec<Film> {
-    let mut films: Vec<(Column, Film)> = Vec::new();
-    for (_, kit) in jobs.iter().filter(|(trial, _)| trial.name == first.name) {
-        if films.iter().all(|(column, _)| *column != kit.column) {
-            let film = Film::default();
-            films.push((kit.column, film.clone()));
-            *kit.film.lock().unwrap_or_else(PoisonError::into_inner) = Some(film);
-        }
+/// Runs scenes in all columns.
+struct Stage<'a> {
+    settings: &'a Settings,
+    progress: &'a Progress,
+    runs: Vec<Run>,
+}
+
+impl<'a> Stage<'a> {
+    fn new(settings: &'a Settings, progress: &'a Progress) -> Self {
+        Self { settings, progress, runs: Vec::new() }
     }
-    films.into_iter().map(|(_, film)| film).collect()
+
+    /// Runs scenes of one kind. The first scene of all is recorded, if there is to be a page.
+    ///
+    /// Errors: the page cannot be written.
+    fn run(&mut self, group: &str, trials: &[Trial], threads: usize) -> Result<(), ReportError> {
+        let Settings { columns, replay, .. } = self.settings;
+        let page = replay.as_deref().filter(|_| self.runs.is_empty()).zip(trials.first());
+        let films: Vec<Film> = columns.iter().map(|_| Film::default()).collect();
+        let of = |trial| columns.iter().map(move |&column| (trial, column));
+        let jobs: Vec<(&Trial, Column)> = trials.iter().flat_map(of).collect();
+        self.progress.phase(group, jobs.len());
+        let found = parallel::map(&jobs, threads, |index, (trial, column)| {
+            let film = films.get(index).filter(|_| page.is_some());
+            let figures = (trial.run)(&Kit::new(*column, film.cloned()))?;
+            self.progress.step();
+            let (group, scene) = (group.to_owned(), trial.name.clone());
+            Some(Run { group, scene, column: *column, figures })
+        });
+        self.runs.extend(found.into_iter().flatten());
+        let Some((path, trial)) = page else { return Ok(()) };
+        let take = |film: &Film| film.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let taken: Vec<Recorder> = films.iter().filter_map(take).collect();
+        replay::write(path, &trial.name, &taken)
+    }
 }

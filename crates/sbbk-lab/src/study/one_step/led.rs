@@ -40,7 +40,7 @@ pub(super) fn run(
 /// A world of a scene whose bodies are led.
 pub(super) struct Led {
     built: SceneWorld,
-    installed: Installed,
+    _installed: Installed,
     /// Times of all steps so far.
     pub times: Vec<StepTimes>,
 }
@@ -48,8 +48,8 @@ pub(super) struct Led {
 impl Led {
     pub fn new(scene: &dyn Scene, backend: Backend) -> Self {
         let mut built = scene.build();
-        let installed = backend.install(&mut built.world);
-        Self { built, installed, times: Vec::new() }
+        let _installed = backend.install(&mut built.world);
+        Self { built, _installed, times: Vec::new() }
     }
 
     /// A world without contacts.
@@ -75,7 +75,7 @@ impl Led {
                 body.set_linvel(motion.linear, true);
                 body.set_angvel(motion.angular, true);
             }
-            self.times.push(timed_step(&mut self.built.world, &self.installed.probe));
+            self.times.push(timed_step(&mut self.built.world));
         }
         self.motions()
     }

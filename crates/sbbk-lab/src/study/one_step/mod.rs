@@ -25,8 +25,6 @@ pub struct OneStepPlan {
     pub substeps: Vec<usize>,
     /// Numbers of the steps in the run.
     pub moments: Vec<usize>,
-    /// Backend of the run and of the reference: one with every contact.
-    pub reference: Backend,
     /// Solver iterations of the reference.
     pub reference_substeps: usize,
 }
@@ -39,7 +37,6 @@ impl OneStepPlan {
             backends: vec![Backend::Stock, Backend::Sbbk, Backend::Every],
             substeps: vec![1, 2, 4, 8, 16, 32],
             moments: (45..=300).step_by(15).collect(),
-            reference: Backend::Every,
             reference_substeps: 256,
         }
     }
@@ -57,17 +54,14 @@ impl OneStepPlan {
 }
 
 const STUDY: &str = "one step";
+/// Backend of the run and of the reference: one with every contact.
+const REFERENCE: Backend = Backend::Every;
 /// Steps before the measured one, in which bodies are led and impulses grow.
 const LEAD: usize = 6;
-/// Names of two variants of the reference: half the iterations, which shows how far it has
-/// converged, and clusters as all others have.
-const HALF: &str = "reference, half the substeps";
-const CLUSTERS: &str = "reference, clusters";
 
 /// A way to make a step.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 struct Way {
-    name: String,
     backend: Backend,
     substeps: usize,
     /// True if Rapier merges the contacts of a pair into clusters, and recycles them.
@@ -85,35 +79,21 @@ struct Seen {
 pub fn one_step(plan: &OneStepPlan, progress: &Progress) -> Results {
     let scene = MonkeyPile::with_heads(plan.heads);
     let rows = steps(&scene, plan, progress);
-    let tables = vec![table(plan, &rows)];
-    Results::new(verdict(plan, &rows), rows, tables)
+    Results::new("one_step", verdict(plan, &rows), rows)
 }
 
 fn steps(scene: &dyn Scene, plan: &OneStepPlan, progress: &Progress) -> Vec<Row> {
-    let exact = |name: &str, substeps| Way {
-        name: name.to_owned(),
-        backend: plan.reference,
-        substeps,
-        is_thinned: false,
-    };
-    let reference = exact("reference", plan.reference_substeps);
-    let mut ways = vec![
-        exact(HALF, plan.reference_substeps / 2),
-        Way { name: CLUSTERS.to_owned(), is_thinned: true, ..reference.clone() },
-    ];
+    let reference =
+        Way { backend: REFERENCE, substeps: plan.reference_substeps, is_thinned: false };
+    let mut ways = Vec::new();
     for &substeps in &plan.substeps {
-        let way = |backend: &Backend| Way {
-            name: backend.to_string(),
-            backend: *backend,
-            substeps,
-            is_thinned: true,
-        };
+        let way = |&backend: &Backend| Way { backend, substeps, is_thinned: true };
         ways.extend(plan.backends.iter().map(way));
     }
 
     let last = plan.moments.iter().copied().max().unwrap_or(0);
     progress.phase(format!("{}, the run", scene.name()), last);
-    let run = led::run(scene, plan.reference, last, || progress.step());
+    let run = led::run(scene, REFERENCE, last, || progress.step());
     progress.phase(format!("{}, its steps", scene.name()), plan.moments.len() * ways.len());
     let mut seen: Vec<Seen> = ways.iter().map(|_| Seen::default()).collect();
     for &moment in &plan.moments {
@@ -150,7 +130,7 @@ fn step(scene: &dyn Scene, way: &Way, lead: &[Vec<Motion>]) -> (Vec<Motion>, Led
 
 fn row(scene: &dyn Scene, way: &Way, seen: Seen) -> Row {
     let summary = |time: fn(&StepTimes) -> f64| Summary::of(seen.times.iter().map(time));
-    Row::new(STUDY, &way.name)
+    Row::new(STUDY, way.backend)
         .key("scene", scene.name())
         .key("substeps", way.substeps)
         .with("error", Summary::of(seen.errors.iter().copied()))
@@ -159,37 +139,6 @@ fn row(scene: &dyn Scene, way: &Way, seen: Seen) -> Row {
         .with("step", summary(|times| times.step))
         .with("solver", summary(|times| times.solver))
         .with("collision_detection", summary(StepTimes::collision_detection))
-}
-
-fn table(plan: &OneStepPlan, rows: &[Row]) -> Table {
-    TableSpec::new(
-        "One step: velocities beside those of a converged step with every contact",
-        STUDY,
-        &["scene", "substeps", "backend"],
-        [
-            number("error, median", "error.median"),
-            number("largest", "error.max"),
-            number("points of the solver", "points.median"),
-            time("solver, ms", "solver"),
-            time("broad + narrow, ms", "collision_detection"),
-            time("step, ms", "step"),
-        ],
-    )
-    .note(format!(
-        "error: the difference from the reference over its contact impulse, in the norm of \
-                 kinetic energy, at the steps {:?} of a run on {}",
-        plan.moments, plan.reference
-    ))
-    .note(format!(
-        "reference: contacts of {}, none recycled or clustered, {} substeps; what its own \
-                 variants differ by is in the first lines",
-        plan.reference, plan.reference_substeps
-    ))
-    .note(format!(
-        "times: min / median over the steps and the {LEAD} before each, in which bodies are \
-                 put where they were in the run"
-    ))
-    .of(rows)
 }
 
 fn verdict(plan: &OneStepPlan, rows: &[Row]) -> String {

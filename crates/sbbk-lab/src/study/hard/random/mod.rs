@@ -11,7 +11,6 @@ mod gears;
 mod overlaps;
 mod piles;
 mod plates;
-mod report;
 mod riders;
 mod rooms;
 mod screws;
@@ -22,11 +21,12 @@ mod tables;
 mod vessels;
 
 use std::ops::Range;
-use std::sync::PoisonError;
 
-use super::kit::{Column, Film, Kit};
+use super::kit::{Column, Kit};
+use super::report::{self, Run};
+use super::{Settings, Stage, Trial};
 use crate::prelude::*;
-use crate::study::hard::figures::{Figure, Figures};
+use crate::study::hard::figures::Figures;
 use draw::Draw;
 
 /// Names that most families use.
@@ -75,47 +75,29 @@ const RUN: [fn(&mut Draw, &Kit) -> Figures; Family::ALL.len()] = [
 #[derive(Clone, Debug)]
 pub struct RandomPlan {
     pub families: Vec<Family>,
-    /// Columns of the tables.
-    pub columns: Vec<Column>,
     /// Numbers of the scenes of each family.
     pub numbers: Range<u32>,
     pub seed: u64,
-    /// Scenes that run at once.
-    pub threads: usize,
-    /// True to show all figures.
-    pub shows_figures: bool,
-    /// Page that plays the first scene in all columns.
-    pub replay: Option<PathBuf>,
+    pub settings: Settings,
 }
 
 impl RandomPlan {
     /// Scenes of all families.
     pub fn new(numbers: Range<u32>, seed: u64) -> Self {
-        Self {
-            families: Family::ALL.into(),
-            columns: vec![Column::Stock, Column::StockFlag, Column::Sbbk],
-            numbers,
-            seed,
-            threads: 2,
-            shows_figures: false,
-            replay: None,
-        }
+        Self { families: Family::ALL.into(), numbers, seed, settings: Settings::default() }
     }
-}
 
-/// A scene in one column, with its figures.
-struct Run {
-    family: Family,
-    number: u32,
-    column: Column,
-    figures: Figures,
-    about: String,
-}
-
-impl Run {
-    /// The first figure beyond its limits.
-    fn wrong(&self) -> Option<&Figure> {
-        self.figures.0.iter().find(|figure| !figure.is_right())
+    fn trial(&self, family: Family, number: u32) -> Trial {
+        let seed = self.seed;
+        let run = move |kit: &Kit| {
+            let mut draw = Draw::new(family, seed, number);
+            let figures = RUN[family as usize](&mut draw, kit);
+            // Some parts have no convex shape.
+            let is_run = kit.column != Column::Control || draw.has_control;
+            let about = format!("; {}", draw.about.join(", "));
+            is_run.then_some(Figures { about, ..figures })
+        };
+        Trial { name: format!("{family} {number}"), run: Box::new(run) }
     }
 }
 
@@ -123,32 +105,52 @@ impl Run {
 ///
 /// Errors: the page cannot be written.
 pub fn random(plan: &RandomPlan, progress: &Progress) -> Result<Results, StudyError> {
-    let mut runs = Vec::new();
-    let mut replay = plan.replay.as_deref();
+    let mut stage = Stage::new(&plan.settings, progress);
     for &family in &plan.families {
-        let of = |number| plan.columns.iter().map(move |&column| (number, column));
-        let jobs: Vec<(u32, Column)> = plan.numbers.clone().flat_map(of).collect();
-        progress.phase(family.to_string(), jobs.len());
-        let page = replay.take();
-        let films: Vec<Film> = plan.columns.iter().map(|_| Film::default()).collect();
-        let found = parallel::map(&jobs, plan.threads, |index, &(number, column)| {
-            let film = films.get(index).filter(|_| page.is_some());
-            let mut draw = Draw::new(family, plan.seed, number);
-            let kit = Kit::new(column, true, 0);
-            *kit.film.lock().unwrap_or_else(PoisonError::into_inner) = film.cloned();
-            let figures = RUN[family as usize](&mut draw, &kit);
-            progress.step();
-            // Some parts have no convex shape.
-            let is_run = column != Column::Control || draw.has_control;
-            let about = draw.about.join(", ");
-            is_run.then_some(Run { family, number, column, figures, about })
-        });
-        runs.extend(found.into_iter().flatten());
-        if let Some(path) = page {
-            let take = |film: &Film| film.lock().unwrap_or_else(PoisonError::into_inner).take();
-            let taken: Vec<Recorder> = films.iter().filter_map(take).collect();
-            replay::write(path, &format!("{family} {}", plan.numbers.start), &taken)?;
-        }
+        let trials = plan.numbers.clone().map(|number| plan.trial(family, number));
+        let trials: Vec<Trial> = trials.collect();
+        stage.run(&family.to_string(), &trials, plan.settings.threads)?;
     }
-    Ok(report::results(plan, &runs))
+    let runs = stage.runs;
+    let rows = plan.families.iter().flat_map(|family| {
+        let counts = |&column: &Column| counted(&family.to_string(), column, &runs);
+        plan.settings.columns.iter().map(counts).collect::<Vec<Row>>()
+    });
+    let broken = runs.iter().filter(|run| run.column == Column::Sbbk && run.wrong().is_some());
+    let broken = broken.flat_map(|run| run.rows("random scenes: broken"));
+    let rows: Vec<Row> = rows.chain(broken).collect();
+    let results = Results::new("random_scenes", verdict(plan, &rows), rows);
+    let mut notes = report::notes(&plan.settings, &runs);
+    if !notes.is_empty() {
+        let seed = plan.seed;
+        notes.push(format!("again: --family FAMILY --number NUMBER --seed {seed} --verbose"));
+    }
+    Ok(Results { notes, ..results })
+}
+
+/// Scenes of a family that hold in a column, and those that SBBK breaks although stock holds them, with
+/// the flag or without.
+fn counted(family: &str, column: Column, runs: &[Run]) -> Row {
+    let of = runs.iter().filter(|run| run.group == family && run.column == column);
+    let held = of.clone().filter(|run| run.wrong().is_none()).count();
+    let is_stock = |column: &Column| matches!(column, Column::Stock | Column::StockFlag);
+    let is_lost = |run: &&Run| {
+        let is_broken = column == Column::Sbbk && run.wrong().is_some();
+        is_broken && run.held_by(runs).iter().any(is_stock)
+    };
+    let lost = of.clone().filter(is_lost).count();
+    let row = Row::new("random scenes", column).key("family", family);
+    row.with("scenes", of.count()).with("held", held).with("lost", lost)
+}
+
+fn verdict(plan: &RandomPlan, rows: &[Row]) -> String {
+    let sum = |column: &Column, path: &str| -> u64 {
+        rows.iter().filter(|row| row.is("backend", column)).map(|row| row.count(path)).sum()
+    };
+    let columns = plan.settings.columns.iter();
+    let held = columns.map(|column| format!("{column} {}", sum(column, "held")));
+    let held = held.collect::<Vec<_>>().join(", ");
+    let scenes = plan.numbers.len() * plan.families.len();
+    let lost = sum(&Column::Sbbk, "lost");
+    format!("of {scenes} random scenes hold: {held}; stock or flag hold {lost} that sbbk breaks")
 }

@@ -1,6 +1,6 @@
-//! A dispatcher that times another one.
+//! A dispatcher that records the answers of another one.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::details::{NormalConstraints, ShapeCastOptions};
@@ -11,19 +11,33 @@ use rapier3d::parry::query::{
 };
 use rapier3d::parry::shape::Shape;
 
-use super::{Answer, PairKind, Probe, Question};
+use super::{Answer, Question};
 
-/// Passes every query on unchanged, and counts and times `contact_manifolds` by [`PairKind`].
-///
-/// Cost: two readings of the clock a timed call (see [`clock_cost`](super::clock_cost) and
-/// [`Probe::time_every`]), one or two additions to shared counters, and one virtual call.
-pub struct Timed<D: ?Sized> {
+/// Answers of one [`Recording`] dispatcher, while they are recorded; clones share them.
+#[derive(Clone, Debug, Default)]
+pub struct Probe(Arc<Mutex<Option<Vec<Answer>>>>);
+
+impl Probe {
+    /// Keeps the answer of each query of two meshes from now on, until [`Self::take_answers`]. Off at
+    /// first: recording allocates, so steps that record are not steps to time.
+    pub fn start_recording(&self) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(Vec::new());
+    }
+
+    /// Stops recording; the answers since [`Self::start_recording`], in the order of the calls.
+    pub fn take_answers(&self) -> Vec<Answer> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or_default()
+    }
+}
+
+/// Passes every query on unchanged, and records answers about two meshes.
+pub struct Recording<D: ?Sized> {
     probe: Probe,
     inner: Arc<D>,
 }
 
-impl<D: ?Sized> Timed<D> {
-    /// A timer around `inner` that adds to `probe`.
+impl<D: ?Sized> Recording<D> {
+    /// A dispatcher around `inner` that records into `probe`.
     pub fn new(inner: Arc<D>, probe: Probe) -> Self {
         Self { probe, inner }
     }
@@ -37,7 +51,7 @@ macro_rules! forward {
     )*};
 }
 
-impl<D: QueryDispatcher + ?Sized> QueryDispatcher for Timed<D> {
+impl<D: QueryDispatcher + ?Sized> QueryDispatcher for Recording<D> {
     forward! {
         intersection_test(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> ShapeIntersection;
         distance(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> ShapeDistance;
@@ -62,7 +76,7 @@ impl<D: QueryDispatcher + ?Sized> QueryDispatcher for Timed<D> {
     }
 }
 
-impl<M, C, D> PersistentQueryDispatcher<M, C> for Timed<D>
+impl<M, C, D> PersistentQueryDispatcher<M, C> for Recording<D>
 where
     D: PersistentQueryDispatcher<M, C> + ?Sized,
 {
@@ -75,13 +89,13 @@ where
         manifolds: &mut Vec<ContactManifold<M, C>>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
-        let kind = PairKind::of(g1, g2);
-        let result = self.probe.measure(kind, || {
-            (self.inner).contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace)
-        });
-        if kind == PairKind::MeshMesh {
-            let question = Question::new(pos12, [g1, g2], prediction);
-            self.probe.record(|| Answer::new(question, manifolds));
+        let result =
+            (self.inner).contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
+        let mut answers = self.probe.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(answers) = &mut *answers
+            && [g1, g2].iter().all(|shape| shape.as_trimesh().is_some())
+        {
+            answers.push(Answer::new(Question::new(pos12, [g1, g2], prediction), manifolds));
         }
         result
     }

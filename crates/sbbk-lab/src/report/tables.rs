@@ -1,0 +1,225 @@
+//! The tables of the documentation, filled with the numbers of a study.
+//!
+//! `docs/data/tables.txt` describes the tables. A placeholder is `{FUNCTION BACKEND: SCENE / PATH}`:
+//!
+//! * FUNCTION, if any, of all rows: `sum`, `max`, or `ms`, the largest of numbers in microseconds;
+//!   `wrong`, the wrong contacts of errors; `ratio`, the geometric mean of stock's numbers over those
+//!   of the backend; `least`, the least of these; `boxes`, the same as `ratio` for `aabb-only`.
+//! * BACKEND: without it, the one that the header gives to the column.
+//! * SCENE: parts, joined by ` & `, of `STUDY, KEY VALUE, KEY VALUE`; each must end before a comma.
+//! * PATH: quantity and statistic, such as `step.median`.
+
+use std::collections::HashMap;
+use std::fmt;
+
+use crate::metrics::geometric_mean;
+
+const SPECS: &str = include_str!("../../../../docs/data/tables.txt");
+const FUNCTIONS: [&str; 7] = ["sum", "max", "wrong", "ratio", "boxes", "least", "ms"];
+/// What stands for a number that was not measured.
+const MISSING: &str = "–";
+
+/// A table of the documentation.
+#[derive(Debug)]
+pub struct Table {
+    pub name: &'static str,
+    /// The header, and the lines that have a number.
+    lines: Vec<Vec<String>>,
+}
+
+/// Makes the tables of a study, of which `csv` has the numbers.
+pub fn tables(study: &str, csv: &str) -> Vec<Table> {
+    let data = Data::parse(csv);
+    let specs = SPECS.split("\n\n").filter_map(|spec| {
+        let (head, body) = spec.split_once('\n')?;
+        let (name, of) = head.strip_prefix("table ")?.split_once(' ')?;
+        (of == study).then(|| Table { name, lines: lines(body, &data) })
+    });
+    specs.filter(|table| table.lines.len() > 1).collect()
+}
+
+impl Table {
+    /// The table as Markdown.
+    pub fn markdown(&self) -> String {
+        let line = |cells: &Vec<String>| format!("| {} |\n", cells.join(" | "));
+        let mut lines = self.lines.iter().map(line);
+        let rule = format!("|---|{}\n", "---:|".repeat(self.lines[0].len() - 1));
+        lines.next().into_iter().chain([rule]).chain(lines).collect()
+    }
+}
+
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let width = |column: usize| {
+            let cells = self.lines.iter().map(|line| line[column].chars().count());
+            cells.max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..self.lines[0].len()).map(width).collect();
+        self.lines.iter().try_for_each(|line| {
+            write!(f, "{:1$}", line[0], widths[0])?;
+            let mut numbers = line.iter().zip(&widths).skip(1);
+            numbers.try_for_each(|(cell, width)| write!(f, "   {cell:>width$}"))?;
+            writeln!(f)
+        })
+    }
+}
+
+/// Lines of a table. The first line of a description is the header, in which `name = backend` gives
+/// a column a backend. A row with one cell has it in all columns.
+fn lines(description: &str, data: &Data) -> Vec<Vec<String>> {
+    let rows = description.lines().filter(|line| !line.is_empty());
+    let mut rows = rows.map(|line| line.split('|').map(str::trim).collect::<Vec<&str>>());
+    let header = rows.next().unwrap_or_default();
+    let columns = header.iter().map(|column| column.split_once(" = ").unwrap_or((column, "sbbk")));
+    let columns: Vec<(&str, &str)> = columns.collect();
+    let names = columns.iter().map(|(name, backend)| data.fill(name, backend)).collect();
+    let line = |row: Vec<&str>| -> Vec<String> {
+        let cell = |index: usize| row.get(index).or(row.get(1).filter(|_| row.len() == 2));
+        let cells = columns.iter().enumerate();
+        let filled = |(index, (_, backend)): (usize, &(&str, &str))| {
+            cell(index).map_or_else(String::new, |cell| data.fill(cell, backend))
+        };
+        cells.map(filled).collect()
+    };
+    let has_number = |line: &Vec<String>| {
+        line[1..].iter().any(|cell| cell.contains(|c: char| c.is_ascii_digit()))
+    };
+    [names].into_iter().chain(rows.map(line).filter(has_number)).collect()
+}
+
+/// Numbers of a CSV file.
+struct Data(Vec<Number>);
+
+struct Number {
+    scene: String,
+    backend: String,
+    path: String,
+    value: f64,
+}
+
+impl Data {
+    /// Reads the lines of [`super::Results::csv`].
+    fn parse(text: &str) -> Self {
+        let lines = text.lines().filter(|line| !line.starts_with('#')).skip(1);
+        let numbers = lines.filter_map(|line| {
+            let [study, scene, backend, quantity, statistic, value] =
+                cells(line).try_into().ok()?;
+            let path = match &*statistic {
+                "value" => quantity,
+                statistic => format!("{quantity}.{statistic}"),
+            };
+            let (scene, value) = (format!("{study}, {scene}"), value.parse().unwrap_or(f64::NAN));
+            Some(Number { scene, backend, path, value })
+        });
+        Self(numbers.collect())
+    }
+
+    /// Numbers of a backend at a path, by scene. All parts of the pattern must end a key.
+    fn find(&self, backend: &str, scene: &str, path: &str) -> HashMap<&str, f64> {
+        let ends_key = |number: &Number, part: &str| {
+            let mut ends = number.scene.match_indices(part).map(|(at, _)| at + part.len());
+            ends.any(|end| number.scene[end..].is_empty() || number.scene[end..].starts_with(','))
+        };
+        let is_found = |number: &&Number| {
+            number.backend == backend
+                && number.path == path
+                && scene.split(" & ").all(|part| part == "all" || ends_key(number, part))
+        };
+        self.0.iter().filter(is_found).map(|n| (&*n.scene, n.value)).collect()
+    }
+
+    /// Fills the placeholders of a text.
+    fn fill(&self, text: &str, backend: &str) -> String {
+        let mut parts = text.split('{');
+        let mut filled = parts.next().unwrap_or_default().to_owned();
+        for part in parts {
+            let (placeholder, rest) = part.split_once('}').expect("each `{` has a `}`");
+            filled += self.evaluate(placeholder, backend).as_deref().unwrap_or(MISSING);
+            filled += rest;
+        }
+        filled
+    }
+
+    /// Value of a placeholder; `None` without a number.
+    fn evaluate(&self, placeholder: &str, backend: &str) -> Option<String> {
+        let (scene, path) = placeholder.rsplit_once(" / ")?;
+        let (function, scene) = match scene.split_once(' ') {
+            Some((word, rest)) if FUNCTIONS.contains(&word) => (word, rest),
+            _ => ("", scene),
+        };
+        let (backend, scene) = scene.split_once(": ").unwrap_or((backend, scene));
+        let sum = |path: &str| self.find(backend, scene, path).into_values().sum::<f64>();
+        if function == "wrong" {
+            let kinds = ["missed", "phantom", "wrong_depth", "wrong_normal"];
+            let wrong = kinds.map(|kind| sum(&format!("{path}.{kind}"))).into_iter().sum();
+            let all = sum(&format!("{path}.true_pairs"));
+            return (all > 0.0).then(|| format!("{} of {}", thousands(wrong), thousands(all)));
+        }
+        let found = self.find(backend, scene, path);
+        let values = || found.values().copied();
+        let ratios = |base| {
+            let base = self.find(base, scene, path);
+            let ratio = |(scene, value): (&&str, &f64)| Some(base.get(scene)? / value);
+            found.iter().filter_map(ratio).collect::<Vec<f64>>()
+        };
+        let number = match function {
+            "sum" if !found.is_empty() => return Some(thousands(sum(path))),
+            "max" => values().reduce(f64::max),
+            "ms" => values().reduce(f64::max).map(|number| 1e-3 * number),
+            "ratio" => geometric_mean(ratios("stock")),
+            "boxes" => geometric_mean(ratios("aabb-only")),
+            "least" => ratios("stock").into_iter().reduce(f64::min),
+            _ => values().next().filter(|_| found.len() == 1),
+        }?;
+        Some(if number.abs() >= 1000.0 { thousands(number) } else { three_digits(number) })
+    }
+}
+
+fn thousands(count: f64) -> String {
+    let digits = format!("{count:.0}");
+    let parts: Vec<&[u8]> = digits.as_bytes().rchunks(3).rev().collect();
+    parts.iter().map(|part| String::from_utf8_lossy(part)).collect::<Vec<_>>().join(",")
+}
+
+/// Three significant digits, with an exponent only below a thousandth: `0.123`, `12.3`, `1230`.
+pub fn three_digits(value: f64) -> String {
+    let decimals = match value.abs() {
+        magnitude if magnitude >= 100.0 => 0,
+        magnitude if magnitude >= 10.0 => 1,
+        magnitude if magnitude >= 1.0 => 2,
+        magnitude if magnitude >= 1.0e-3 || magnitude == 0.0 => 3,
+        _ => return format!("{value:.1e}"),
+    };
+    format!("{value:.decimals$}")
+}
+
+/// Cells of a line of CSV.
+fn cells(line: &str) -> Vec<String> {
+    let (mut cells, mut is_quoted) = (vec![String::new()], false);
+    for char in line.chars() {
+        match char {
+            '"' => is_quoted = !is_quoted,
+            ',' if !is_quoted => cells.push(String::new()),
+            _ => cells.last_mut().expect("there is one").push(char),
+        }
+    }
+    cells
+}
+
+/// Would catch a number of another scene, backend or statistic, and cells in another column.
+#[test]
+fn placeholders_become_numbers() {
+    let csv = "# date\nstudy,scene,backend,quantity,statistic,value\n\
+               s,\"mesh a, size 1\",stock,time,min,8\ns,\"mesh a, size 1\",sbbk,time,min,2\n\
+               s,\"mesh a, size 16\",stock,time,min,4\ns,\"mesh a, size 16\",sbbk,time,min,4\n\
+               s,mesh b,sbbk,wrong,value,2000\n";
+    let description = "mesh | stock = stock | SBBK = sbbk\nof 1 | {size 1 / time.min}\n\
+                       both | {ratio all / time.min} | {sum mesh b / wrong}\n\
+                       none | {size 7 / time.min}\n\
+                       first | {least sbbk: mesh a & size 1 / time.min}x";
+    let table = Table { name: "t", lines: lines(description, &Data::parse(csv)) };
+    let expected = "| mesh | stock | SBBK |\n|---|---:|---:|\n| of 1 | 8.00 | 2.00 |\n\
+                    | both | 1.00 | 2,000 |\n| first | 4.00x | 4.00x |\n";
+    assert_eq!(table.markdown(), expected);
+    assert_eq!(table.to_string().lines().nth(1), Some("of 1     8.00    2.00"));
+}
