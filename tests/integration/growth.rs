@@ -201,3 +201,31 @@ fn time_grows_with_the_triangles() {
     }
     assert!(slow.is_empty(), "{slow:#?}");
 }
+
+/// Prints milliseconds for two balls of 2 cm, which are within Rapier's default prediction distance with all
+/// their triangles. Stock gets only the smallest ones, as its time is quadratic.
+#[test]
+#[ignore = "takes seconds in release, and half a minute in debug"]
+fn parts_of_centimetres_do_not_cost_the_square_of_their_triangles() {
+    let [few, many] = if cfg!(debug_assertions) { [8, 32] } else { [16, 64] };
+    for gap in [-0.0001, 0.0001, 0.005] {
+        let [few, many] = [few, many].map(|detail| {
+            let ball = mesh::ball(0.01, detail);
+            let place = (0.02 + gap) * Vec3::new(0.6, 0.48, 0.64);
+            let case = case(&ball, shape(&ball), place);
+            let ours = seconds(&SbbkDispatcher::default(), &case, false);
+            if detail == few {
+                let stock = seconds(&DefaultQueryDispatcher, &case, false);
+                println!("stock, gap {gap}, {} triangles: {stock:.4?} s", ball.triangle_count());
+            }
+            println!("SBBK, gap {gap}, {} triangles: {ours:.4?} s", ball.triangle_count());
+            ours
+        });
+        for (few, many) in few.into_iter().zip(many) {
+            assert!(
+                many < 0.1 || many < 40.0 * few.max(1e-4),
+                "gap {gap}: {few:.4} s, {many:.4} s"
+            );
+        }
+    }
+}

@@ -21,7 +21,7 @@ use crate::mesh::MeshSurface;
 
 /// Greatest product of the numbers of triangles near the other mesh with which all pairs have contacts.
 /// Higher: small bodies cost more. Lower: thin plates with soft CCD turn through sheets.
-const FEW: usize = 1 << 14;
+const FEW: usize = 1 << 16;
 
 /// Greatest number of steps from a tip to the nearest point. Higher: more time for surfaces that are nearly
 /// parallel; lower: the contact is farther than the nearest one.
