@@ -89,7 +89,7 @@ impl FarSearch<'_, '_> {
         }
     }
 
-    /// Calls `found` with the contacts of tips and, for meshes that are apart, with those where walks from the
+    /// Calls `found` with the contacts of tips, with those one step of a walk farther and, for meshes that are apart, with those where walks from the
     /// nearest tips and from the middles end.
     fn of_tips(&self, is_apart: bool, mut found: impl FnMut(TriangleHit)) {
         for i in 0..2 {
@@ -97,7 +97,10 @@ impl FarSearch<'_, '_> {
             let of_tip = |&tip: &u32| self.of_point(i, tip, mesh.corner(tip), self.within);
             let tips = self.surfaces[i].tips(mesh).iter().filter_map(of_tip);
             let nearest = tips
-                .inspect(|hit| found(*hit))
+                .inspect(|hit| {
+                    found(*hit);
+                    self.step(1 - i, hit, distance(hit)).into_iter().for_each(&mut found);
+                })
                 .min_by(|one, two| distance(one).total_cmp(&distance(two)));
             if is_apart {
                 let of_middle = self.of_point(i, 0, mesh.root().center(), Real::MAX);
