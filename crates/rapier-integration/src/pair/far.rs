@@ -89,8 +89,8 @@ impl FarSearch<'_, '_> {
         }
     }
 
-    /// Calls `found` with the contacts of tips, with those one step of a walk farther and, for meshes that are apart, with those where walks from the
-    /// nearest tips and from the middles end.
+    /// Calls `found` with the contacts of tips, and with those one step of a walk farther. Meshes that are
+    /// apart also get the contacts where walks from the nearest tips and from the middles end.
     fn of_tips(&self, is_apart: bool, mut found: impl FnMut(TriangleHit)) {
         for i in 0..2 {
             let mesh = self.search.meshes[i];
