@@ -2,13 +2,11 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicUsize, Ordering};
 
 use arrayvec::ArrayVec;
-use glamx::Vec3;
 use parry3d::shape::TriMesh;
 use sbbk_core::surface::{Surface, SurfaceKind, kind};
 use sbbk_core::tree::{BuildError, BuildOptions, Tree};
 
 use super::neighbours::{MeshRays, TriangleFlags};
-use super::view::MeshView;
 
 /// Tree and surface of a mesh, for all colliders with equal geometry. Any thread computes a part when
 /// it needs that part, and no thread waits: two threads may compute the same part at once.
@@ -22,7 +20,8 @@ pub(crate) struct MeshData {
     tree: OnceLock<Tree>,
     has_build_begun: AtomicBool,
     declared_kind: AtomicU8,
-    tips: OnceLock<Tips>,
+    /// Tips of the mesh, once a query needed them.
+    pub(super) tips: OnceLock<Tips>,
     /// Bytes that the store counts for this mesh, 0 if the mesh is not among the recent ones.
     pub(super) counted_bytes: AtomicUsize,
     /// True if the mesh was used again since it became a recent one.
@@ -36,31 +35,7 @@ const KINDS: [Option<SurfaceKind>; 4] =
 /// Half-edges that begin at the vertices of a mesh that are farthest along 14 directions.
 pub(crate) type Tips = ArrayVec<u32, 14>;
 
-/// Directions of the corners and faces of a cube.
-fn tip_directions() -> impl Iterator<Item = Vec3> {
-    let signs = [-1.0, 1.0];
-    let corners = signs
-        .into_iter()
-        .flat_map(move |x| signs.into_iter().flat_map(move |y| signs.map(|z| Vec3::new(x, y, z))));
-    corners.chain(Vec3::AXES).chain(Vec3::AXES.map(|axis| -axis))
-}
-
 impl MeshData {
-    /// Returns the tips of `view`, whose data this must be.
-    pub(super) fn tips(&self, view: &MeshView<'_>) -> &Tips {
-        self.tips.get_or_init(|| {
-            let mut tips = Tips::new();
-            for direction in tip_directions() {
-                let (_, tip) = view.lowest_corner(direction);
-                let vertex = |half_edge: u32| view.corner(half_edge);
-                if tips.iter().all(|&other| vertex(other) != vertex(tip)) {
-                    tips.push(tip);
-                }
-            }
-            tips
-        })
-    }
-
     pub(crate) fn tree(&self) -> Option<&Tree> {
         self.tree.get()
     }

@@ -210,7 +210,7 @@ impl<'m> MeshSurface<'m> {
 
     /// Returns the tips of `view`, whose surface this must be.
     pub(crate) fn tips(&self, view: &MeshView<'_>) -> &Tips {
-        self.data(view.mesh).tips(view)
+        self.data(view.mesh).tips.get_or_init(|| view.tips())
     }
 
     /// Returns the kind of `mesh`, whose surface this must be.

@@ -17,7 +17,7 @@ use sbbk_core::traverse::TestedBox;
 use sbbk_core::volumes::Sphere;
 use sbbk_core::volumes::rounding::gamma;
 
-use super::data::MeshData;
+use super::data::{MeshData, Tips};
 use super::identity::MeshToken;
 use super::store::MeshStore;
 
@@ -177,8 +177,20 @@ impl<'a> MeshView<'a> {
         self.lowest_corner(direction).0
     }
 
+    /// Returns the tips of the mesh, each vertex once.
+    pub(super) fn tips(&self) -> Tips {
+        let mut tips = Tips::new();
+        for direction in tip_directions() {
+            let (_, tip) = self.lowest_corner(direction);
+            if tips.iter().all(|&other| self.corner(other) != self.corner(tip)) {
+                tips.push(tip);
+            }
+        }
+        tips
+    }
+
     /// Returns the least coordinate of the mesh along a direction, and the half-edge that begins there.
-    pub(super) fn lowest_corner(&self, direction: Vec3) -> (Real, u32) {
+    fn lowest_corner(&self, direction: Vec3) -> (Real, u32) {
         let least = Cell::new((Real::INFINITY, 0));
         let bound =
             |node: &BvhNode| (direction * node.mins()).min(direction * node.maxs()).element_sum();
@@ -247,6 +259,15 @@ impl<'a> MeshView<'a> {
         let (vertices, [a, b, c]) = (self.mesh.vertices(), self.mesh.indices()[triangle as usize]);
         [vertices[a as usize], vertices[b as usize], vertices[c as usize]]
     }
+}
+
+/// Directions of the corners and faces of a cube.
+fn tip_directions() -> impl Iterator<Item = Vec3> {
+    let signs = [-1.0, 1.0];
+    let corners = signs
+        .into_iter()
+        .flat_map(move |x| signs.into_iter().flat_map(move |y| signs.map(|z| Vec3::new(x, y, z))));
+    corners.chain(Vec3::AXES).chain(Vec3::AXES.map(|axis| -axis))
 }
 
 /// The box of a node of the BVH.

@@ -2,13 +2,16 @@
 
 use std::cell::Cell;
 use std::cmp::Ordering;
+use std::ops::ControlFlow;
 
 use arrayvec::ArrayVec;
 use glamx::{DMat3, DVec3, Vec3};
+use parry3d::math::Real;
 use parry3d::partitioning::{Bvh, BvhNode, BvhNodeIndex, TraversalAction};
 use sbbk_core::query::FoundPair;
 use sbbk_core::traverse::Placement;
 
+use super::bvh_descent::walk;
 use crate::mesh::MeshView;
 
 /// Share of the coordinates by which bounds are lower than computed, for rounding in f64.
@@ -126,6 +129,19 @@ impl BvhSearch<'_> {
             Some(distance)
         });
         nearest
+    }
+
+    /// Calls `found` with all pairs of triangles within `limit`, until it breaks. `near` is memory.
+    pub(crate) fn all(
+        &self,
+        limit: f64,
+        near: &mut Vec<u32>,
+        mut found: impl FnMut(FoundPair) -> ControlFlow<()>,
+    ) {
+        let margin = (limit.max(0.0) as Real).next_up();
+        walk(self.meshes, self.placement, margin, None, (), near, |triangles| {
+            self.pair(triangles, limit).map_or(ControlFlow::Continue(()), &mut found)
+        });
     }
 
     /// Gap between two triangles along a direction, given in both frames: at most their distance.

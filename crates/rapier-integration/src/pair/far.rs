@@ -1,21 +1,21 @@
 //! Far contacts of two meshes: what may be hit in the next step, but is not near.
 //!
 //! A host asks for them where a body is small beside the prediction distance, or fast and has soft CCD.
-//! Few triangles within that distance have all their contacts. Many have those of the tips of both meshes with
-//! the nearest points of the other mesh. Walks find where the meshes are nearest to each other: from a point
-//! of one mesh to the nearest one of the other, and back. A walk may end at a place that is not the nearest.
+//! Few triangles keep all contacts within that distance. Of many triangles only tips keep contacts, each with
+//! the nearest point of the other mesh. Walks add the places where meshes are nearest to each other. A walk goes
+//! from a point of one mesh to the nearest point of the other, and back. It may end at another place.
 
 use std::ops::ControlFlow;
 
 use glamx::Vec3;
-use parry3d::math::{Pose, Real};
+use parry3d::math::Real;
 use parry3d::partitioning::BvhNode;
 use parry3d::shape::CompositeShapeRef;
 use sbbk_core::contact::{Feature, FeaturePair, TriangleContact, contact};
 
-use super::bvh_descent::walk;
 use super::bvh_search::BvhSearch;
-use super::triangle_contacts::local_pair;
+use super::pose::PairPose;
+use super::triangle_contacts::{in_local, local_pair};
 use super::triangles::{ContactSource, TriangleHit, TriangleSurfaceContact};
 use crate::mesh::MeshSurface;
 
@@ -30,55 +30,41 @@ const STEPS: usize = 8;
 /// Share of the distance that a step must gain.
 const GAIN: f64 = 0.01;
 
-/// Memory for far contacts.
-#[derive(Default)]
-pub(crate) struct FarScratch {
-    pairs: Vec<[u32; 2]>,
-    near: Vec<u32>,
-}
-
 /// Two meshes whose far contacts are wanted.
 pub(super) struct FarSearch<'a, 'm> {
     pub(super) search: BvhSearch<'a>,
     pub(super) surfaces: [&'a MeshSurface<'m>; 2],
-    pub(super) pose: &'a Pose,
-    /// Greatest distance of a contact.
-    pub(super) within: Real,
+    pub(super) pose: &'a PairPose,
 }
 
 impl FarSearch<'_, '_> {
-    /// Calls `found` with far contacts, and perhaps with near ones. `is_apart`: there are no near ones.
+    /// Calls `found` with far contacts, and perhaps with near ones. `is_apart`: there are no near ones. `near`
+    /// is memory.
     pub(super) fn contacts(
         &self,
         is_apart: bool,
-        FarScratch { pairs, near }: &mut FarScratch,
+        near: &mut Vec<u32>,
         mut found: impl FnMut(TriangleHit),
     ) {
-        let BvhSearch { meshes, placement } = self.search;
-        if !placement.is_finite() {
+        if !self.search.placement.is_finite() {
             return;
         }
         if !self.are_few() {
             return self.of_tips(is_apart, found);
         }
-        pairs.clear();
-        walk(meshes, placement, self.within, None, (), near, |pair| {
-            pairs.push(pair);
+        self.search.all(f64::from(self.pose.prediction), near, |pair| {
+            found(hit([pair.triangle1, pair.triangle2], pair.contact));
             ControlFlow::Continue(())
         });
-        for &pair in &*pairs {
-            let of_pair = self.search.pair(pair, f64::from(self.within));
-            of_pair.into_iter().for_each(|of_pair| found(hit(pair, of_pair.contact)));
-        }
     }
 
     /// Returns true if few triangles are within the distance of the box around the other mesh.
     fn are_few(&self) -> bool {
-        let (pose, inverse) = (self.pose, self.pose.inverse());
+        let PairPose { pos12, prediction, .. } = *self.pose;
+        let poses = [pos12, pos12.inverse()];
+        let meshes = self.search.meshes;
         let count = |i: usize, most: usize| {
-            let BvhSearch { meshes, .. } = &self.search;
-            let around = meshes[1 - i].placed_root([pose, &inverse][i], self.within);
-            let around = BvhNode::leaf(around, 0);
+            let around = BvhNode::leaf(meshes[1 - i].placed_root(&poses[i], prediction), 0);
             meshes[i].mesh.bvh().leaves(|node| node.intersects(&around)).take(most + 1).count()
         };
         let least = FEW.isqrt();
@@ -92,9 +78,10 @@ impl FarSearch<'_, '_> {
     /// Calls `found` with the contacts of tips, and with those one step of a walk farther. Meshes that are
     /// apart also get the contacts where walks from the nearest tips and from the middles end.
     fn of_tips(&self, is_apart: bool, mut found: impl FnMut(TriangleHit)) {
+        let within = self.pose.prediction;
         for i in 0..2 {
             let mesh = self.search.meshes[i];
-            let of_tip = |&tip: &u32| self.of_point(i, tip, mesh.corner(tip), self.within);
+            let of_tip = |&tip: &u32| self.of_point(i, tip, mesh.corner(tip), within);
             let tips = self.surfaces[i].tips(mesh).iter().filter_map(of_tip);
             let nearest = tips
                 .inspect(|hit| {
@@ -107,13 +94,12 @@ impl FarSearch<'_, '_> {
                 let from_middle = of_middle.and_then(|hit| self.step(1 - i, &hit, f64::INFINITY));
                 let starts = [nearest.map(|hit| (1 - i, hit)), from_middle.map(|hit| (i, hit))];
                 let ends = starts.into_iter().flatten().map(|(next, hit)| self.walked(next, hit));
-                ends.filter(|end| distance(end) <= f64::from(self.within)).for_each(&mut found);
+                ends.filter(|end| distance(end) <= f64::from(within)).for_each(&mut found);
             }
         }
     }
 
-    /// Walks from a contact at a point of mesh `i` to the nearest point of the other mesh, from there to that of
-    /// mesh `i`, and so on.
+    /// Walks on from a contact. The first step starts at the point of mesh `i`.
     fn walked(&self, mut i: usize, mut hit: TriangleHit) -> TriangleHit {
         for _ in 0..STEPS {
             let limit = (1.0 - GAIN) * distance(&hit);
@@ -123,8 +109,8 @@ impl FarSearch<'_, '_> {
         hit
     }
 
-    /// Returns the contact of a triangle of mesh `i`, which has a contact, and of the triangle of the other mesh
-    /// that is nearest to the point of that contact. `None` beyond a limit.
+    /// Returns the contact after a step from the point of mesh `i`: the triangle of the other mesh becomes the
+    /// nearest one. `None` beyond a limit.
     fn step(&self, i: usize, (pair, known): &TriangleHit, limit: f64) -> Option<TriangleHit> {
         let BvhSearch { meshes, placement } = &self.search;
         let [origin, ..] = meshes[0].corners(pair[0]);
@@ -137,8 +123,8 @@ impl FarSearch<'_, '_> {
         Some(hit(pair, self.search.pair(pair, limit)?.contact))
     }
 
-    /// Returns the contact of a point of mesh `i`, the start of a half-edge or not on the mesh, and of the nearest
-    /// triangle of the other mesh.
+    /// Returns the contact of a point and the nearest triangle of the other mesh. The point is in the frame of
+    /// mesh `i`, and stands for the start of a half-edge.
     fn of_point(&self, i: usize, half_edge: u32, point: Vec3, within: Real) -> Option<TriangleHit> {
         let BvhSearch { meshes, placement } = &self.search;
         let in_other = match i {
@@ -149,10 +135,7 @@ impl FarSearch<'_, '_> {
         pair[i] = half_edge / 3;
         let triangles = [0, 1].map(|i| meshes[i].mesh.triangle(pair[i]));
         let mut local = local_pair(placement, &triangles);
-        local.corners[i] = [match i {
-            0 => point.as_dvec3() - local.origin.as_dvec3(),
-            _ => placement.to_frame1(point, local.origin),
-        }; 3];
+        local.corners[i] = [in_local(placement, i, point, &local); 3];
         let [t1, t2] = &local.corners;
         let contact = contact(t1, t2, f64::from(within))?;
         let mut features = [contact.features.feature1(), contact.features.feature2()];

@@ -97,7 +97,6 @@ impl<'a> Pair for FieldPair<'a> {
         let query = TriangleQuery {
             shapes,
             pose: self.pose,
-            reach: self.pose.prediction,
             patches: (self.has_patches && self.mesh.is_rigid())
                 .then(|| PatchPlan::new(self.pose.prediction, radius)),
             inside,
@@ -251,6 +250,10 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
 
     fn filter_distance(&self) -> f64 {
         self.filter_distance
+    }
+
+    fn reach(&self) -> Real {
+        self.pair.pose.prediction
     }
 
     fn bounds(&self, i: usize) -> Aabb {

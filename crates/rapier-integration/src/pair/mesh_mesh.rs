@@ -13,7 +13,7 @@ use sbbk_core::tree::Tree;
 
 use super::bvh_descent::walk;
 use super::bvh_search::BvhSearch;
-use super::far::{FarScratch, FarSearch};
+use super::far::FarSearch;
 use super::inside::InsideTest;
 use super::pose::PairPose;
 use super::reduce::PatchPlan;
@@ -74,16 +74,14 @@ impl<'a> Pair for MeshPair<'a> {
         let radius = radius1.min(radius2);
         let has_surface = surfaces.iter().any(Option::is_some);
         let filter_distance = filter_distance(has_surface, radius);
-        let reach = reach(self.pose.prediction, filter_distance);
         let room = surfaces[self.larger()]
             .as_ref()
             .filter(|_| self.is_room(in_room))
             .filter(|surface| !surface.is_declared_solid(self.meshes[self.larger()].mesh))
             .map(|_| self.larger());
         let query = TriangleQuery {
-            shapes: Meshes { pair: self, trees, surfaces, room, filter_distance, reach, cache },
+            shapes: Meshes { pair: self, trees, surfaces, room, filter_distance, cache },
             pose: self.pose,
-            reach,
             patches: (self.has_patches && are_rigid)
                 .then(|| PatchPlan::new(self.pose.prediction, radius)),
             inside,
@@ -101,7 +99,6 @@ pub(crate) struct Meshes<'q> {
     /// The mesh that is a room for the other one, and has no inside.
     pub(super) room: Option<usize>,
     filter_distance: f64,
-    reach: Real,
     cache: &'q MeshStore,
 }
 
@@ -120,22 +117,12 @@ impl<'q> TriangleShapes for Meshes<'q> {
         }
     }
 
-    fn far_contacts(
-        &self,
-        is_apart: bool,
-        scratch: &mut FarScratch,
-        found: impl FnMut(TriangleHit),
-    ) {
+    fn far_contacts(&self, is_apart: bool, near: &mut Vec<u32>, found: impl FnMut(TriangleHit)) {
         let [Some(surface1), Some(surface2)] = &self.surfaces else { return };
-        let PairPose { placement12: placement, prediction: within, .. } = *self.pair.pose;
-        let search = BvhSearch { meshes: self.pair.meshes.each_ref(), placement };
-        let far = FarSearch {
-            search,
-            surfaces: [surface1, surface2],
-            pose: &self.pair.pose.pos12,
-            within,
-        };
-        far.contacts(is_apart, scratch, found);
+        let MeshPair { pose, meshes, .. } = self.pair;
+        let search = BvhSearch { meshes: meshes.each_ref(), placement: pose.placement12 };
+        let far = FarSearch { search, surfaces: [surface1, surface2], pose };
+        far.contacts(is_apart, near, found);
     }
 
     fn descend(
@@ -146,7 +133,7 @@ impl<'q> TriangleShapes for Meshes<'q> {
         mut found: impl FnMut([u32; 2]),
     ) {
         let placement12 = self.pair.pose.placement12;
-        let culling = lateral_culling(self, self.pair.pose, self.reach, margin);
+        let culling = lateral_culling(self, self.pair.pose, margin);
         let Some([tree1, tree2]) = self.trees else {
             let meshes = self.pair.meshes.each_ref();
             let near = &mut scratch.near;
@@ -199,6 +186,10 @@ impl<'q> TriangleShapes for Meshes<'q> {
 
     fn filter_distance(&self) -> f64 {
         self.filter_distance
+    }
+
+    fn reach(&self) -> Real {
+        reach(self.pair.pose.prediction, self.filter_distance)
     }
 
     fn bounds(&self, i: usize) -> Aabb {

@@ -30,7 +30,6 @@ mod triangles;
 mod update;
 mod write;
 
-pub(crate) use bvh_descent::walk;
 pub(crate) use bvh_search::BvhSearch;
 pub(crate) use convex::{ConvexPair, ConvexSearch, FoundCast, FoundTriangle, Parts, PlacedPart};
 pub(crate) use mesh_field::FieldPair;

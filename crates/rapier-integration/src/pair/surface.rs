@@ -18,6 +18,7 @@ use sbbk_core::surface::{OneRing, Side};
 
 use super::islands::{Crossing, OverlapIslands, SheetSide};
 use super::pose::PairPose;
+use super::triangle_contacts::in_local;
 use super::triangles::{ContactSource, TriangleShapes, TriangleSurfaceContact};
 use crate::mesh::BEHIND;
 
@@ -84,10 +85,10 @@ fn near(shapes: &impl TriangleShapes, pose: &PairPose) -> f64 {
 pub(super) fn lateral_culling(
     shapes: &impl TriangleShapes,
     pose: &PairPose,
-    reach: Real,
     margin: Real,
 ) -> Option<LateralCulling> {
     shapes.has_surface().then(|| {
+        let reach = shapes.reach();
         let (distance, travel) = ((DISTANT * near(shapes, pose)) as Real, margin - reach);
         LateralCulling::new(distance, NEAR_NORMAL as Real, reach, travel)
     })
@@ -279,10 +280,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
 
     /// Returns a point of a shape in frame 1, from the origin of two triangles.
     fn in_local(&self, i: usize, point: Vec3, local: &TrianglePair) -> DVec3 {
-        match i {
-            0 => point.as_dvec3() - local.origin.as_dvec3(),
-            _ => self.pose.placement12.to_frame1(point, local.origin),
-        }
+        in_local(&self.pose.placement12, i, point, local)
     }
 
     /// Returns a direction of frame 1 in the frame of a shape.

@@ -2,6 +2,7 @@
 
 use std::sync::LazyLock;
 
+use glamx::DVec3;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d::query::{ContactManifold, TrackedContact};
@@ -26,6 +27,19 @@ pub(super) fn local_pair(
 ) -> TrianglePair {
     let corners = |triangle: &Triangle| [triangle.a, triangle.b, triangle.c];
     TrianglePair::new(placement, corners(triangle1), corners(triangle2))
+}
+
+/// Returns a point of a shape in frame 1, from the origin of two triangles.
+pub(super) fn in_local(
+    placement: &Placement,
+    i: usize,
+    point: Vector,
+    local: &TrianglePair,
+) -> DVec3 {
+    match i {
+        0 => point.as_dvec3() - local.origin.as_dvec3(),
+        _ => placement.to_frame1(point, local.origin),
+    }
 }
 
 /// Replaces `points` by the clipped points of a contact. The normal is projected into the normal

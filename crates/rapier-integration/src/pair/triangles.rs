@@ -19,7 +19,6 @@ use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Facets, OneRing};
 use sbbk_core::traverse::{Counters, DescentScratch, SlackLimits};
 
-use super::far::FarScratch;
 use super::inside::InsideTest;
 use super::islands::OverlapIslands;
 use super::passed::PassedTriangles;
@@ -55,13 +54,9 @@ pub(crate) trait TriangleShapes {
         found: impl FnMut([u32; 2]),
     );
 
-    /// Calls `found` with [far](super::far) contacts. `is_apart`: no triangles are in reach.
-    fn far_contacts(
-        &self,
-        _is_apart: bool,
-        _scratch: &mut FarScratch,
-        _found: impl FnMut(TriangleHit),
-    ) {
+    /// Calls `found` with [far](super::far) contacts. `is_apart`: no triangles are in reach. `near` is
+    /// memory.
+    fn far_contacts(&self, _is_apart: bool, _near: &mut Vec<u32>, _found: impl FnMut(TriangleHit)) {
     }
 
     /// Returns two triangles; `None` if one does not exist.
@@ -80,6 +75,10 @@ pub(crate) trait TriangleShapes {
     /// each two triangles. Farther contacts, of soft CCD, are all kept: bodies may turn before they
     /// meet.
     fn filter_distance(&self) -> f64;
+
+    /// Returns the distance up to which all pairs of triangles are candidates. Farther contacts are
+    /// [far](super::far).
+    fn reach(&self) -> Real;
 
     /// Returns the box around a shape, in its frame.
     fn bounds(&self, i: usize) -> Aabb;
@@ -122,9 +121,6 @@ const DEEPEST: f64 = 4.0;
 pub(crate) struct TriangleQuery<'q, S> {
     pub(super) shapes: S,
     pub(super) pose: &'q PairPose,
-    /// Distance up to which all pairs of triangles are candidates. Farther contacts are
-    /// [far](super::far).
-    pub(super) reach: Real,
     pub(super) patches: Option<PatchPlan>,
     pub(super) inside: &'q mut InsideTest,
 }
@@ -159,7 +155,6 @@ pub(crate) struct TriangleScratch {
     islands: OverlapIslands,
     passed: PassedTriangles,
     clipped: ManifoldPoints,
-    far: FarScratch,
 }
 
 impl Scratch for TriangleScratch {
@@ -197,7 +192,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
     }
 
     fn reach(&self) -> Real {
-        self.reach
+        self.shapes.reach()
     }
 
     fn descend(
@@ -217,7 +212,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         scratch: &mut TriangleScratch,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
-        let TriangleScratch { islands, passed, clipped, far, .. } = scratch;
+        let TriangleScratch { islands, passed, clipped, near, .. } = scratch;
         islands.clear();
         let mut is_apart = true;
         for candidate in candidates {
@@ -243,8 +238,8 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         if islands.finish_first_pass(separation) {
             self.second_pass(islands, clipped, contacts);
         }
-        if self.reach < self.pose.prediction {
-            self.add_far(is_apart, far, clipped, contacts);
+        if limits.reach < f64::from(self.pose.prediction) {
+            self.add_far(is_apart, near, clipped, contacts);
         }
         self.reject_passed(islands, passed, contacts);
         if contacts.is_empty() {
@@ -348,25 +343,25 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         (contact.distance <= reach).then_some((local, contact))
     }
 
-    /// Adds far contacts. Of two contacts of a pair of triangles the nearer one stays. `far` and `clipped`
+    /// Adds far contacts. Of two contacts of a pair of triangles the nearer one stays. `near` and `clipped`
     /// are memory.
     fn add_far(
         &self,
         is_apart: bool,
-        far: &mut FarScratch,
+        near: &mut Vec<u32>,
         clipped: &mut ManifoldPoints,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
-        let old_count = contacts.len();
+        let (old_count, reach) = (contacts.len(), f64::from(self.shapes.reach()));
         self.shapes.far_contacts(
             is_apart,
-            far,
+            near,
             |(pair, TriangleSurfaceContact { contact, .. })| {
-                let Some(triangles) = self.shapes.triangles(pair) else { return };
-                let local = local_pair(&self.pose.placement12, &triangles);
-                if contact.distance <= f64::from(self.reach) {
+                if contact.distance <= reach {
                     return;
                 }
+                let Some(triangles) = self.shapes.triangles(pair) else { return };
+                let local = local_pair(&self.pose.placement12, &triangles);
                 if let Verdict::Contact(contact) = self.filter(pair).apply(&local, contact, clipped)
                 {
                     contacts.push((pair, contact));

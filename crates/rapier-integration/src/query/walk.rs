@@ -2,13 +2,13 @@
 
 use std::ops::ControlFlow;
 
-use parry3d::math::{Real, Vector};
+use parry3d::math::Vector;
 use sbbk_core::query::{Bodies, Cast, CastOptions, FoundPair};
 use sbbk_core::traverse::Placement;
 
 use super::trees::Trees;
 use crate::mesh::MeshView;
-use crate::pair::{BvhSearch, walk};
+use crate::pair::BvhSearch;
 
 /// Two rigid meshes of a query.
 pub(crate) struct MeshQuery<'a> {
@@ -96,13 +96,9 @@ impl<'a> Walk<'a> {
         &self,
         placement: Placement,
         limit: f64,
-        mut found: impl FnMut(FoundPair) -> ControlFlow<()>,
+        found: impl FnMut(FoundPair) -> ControlFlow<()>,
     ) {
-        let margin = (limit.max(0.0) as Real).next_up();
-        let pair = self.at(placement);
-        walk(self.0, placement, margin, None, (), &mut Vec::new(), |triangles| {
-            pair.pair(triangles, limit).map_or(ControlFlow::Continue(()), &mut found)
-        });
+        self.at(placement).all(limit, &mut Vec::new(), found);
     }
 
     fn at(&self, placement: Placement) -> BvhSearch<'a> {
