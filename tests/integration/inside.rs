@@ -116,7 +116,7 @@ fn push_out_does_not_depend_on_earlier_poses() {
         for prediction in [0.002, 0.2] {
             let mut pair: Pair = Pair::default();
             let mut pose = Pose::translation(0.1, 0.9, 0.2);
-            for step in 0..400 {
+            for step in 0..1200 {
                 let stride = [0.0, 0.001, 0.01, 0.1][step % 4];
                 pose = nudge(&mut random, stride) * pose;
                 if slab.local_aabb().distance_to_local_point(pose.translation, true) > 0.3 {
@@ -131,7 +131,7 @@ fn push_out_does_not_depend_on_earlier_poses() {
         }
     }
     let reused = kept.stats().internals.reused_queries;
-    assert!(inside > 300 && none > 100 && reused > 40, "{inside} {none} {reused}");
+    assert!(inside > 300 && none > 100 && reused > 100, "{inside} {none} {reused}");
 }
 
 /// Would catch a body that falls through the solid it starts in, is thrown out, or stops at its

@@ -15,7 +15,8 @@ use crate::support::{
 /// Soft CCD needs contacts of every direction beyond a tenth of the radius.
 #[test]
 fn far_contacts_have_every_direction() {
-    let [head, torus] = [mesh::monkey_head_with(3), mesh::torus(0.7, 0.3, 8, 6)].map(|m| shape(&m));
+    let [head, torus] =
+        [mesh::monkey_head_with(6), mesh::torus(0.7, 0.3, 12, 8)].map(|m| shape(&m));
     let surfaces = having(ContactSet::Surfaces);
     let (mut random, mut far, mut near) = (Rand32::new(1), 0, [0; 2]);
     for i in 0..120 {
@@ -44,8 +45,8 @@ fn far_contacts_have_every_direction() {
     assert!(far > 50 && near[0] < near[1], "{far} far, {near:?} near");
 }
 
-/// Meshes of 3200 and 1536 triangles, as far from each other as they are large. Would catch far contacts that
-/// are left out, that triangles do not have, or that cost as much as all.
+/// Meshes of 3200 and 1536 triangles, as far from each other as they are large. Would catch lost far contacts,
+/// contacts nearer than the meshes, and too many points.
 #[test]
 fn fine_meshes_have_a_few_far_contacts() {
     let [ball, torus] = [mesh::ball(0.8, 20), mesh::torus(0.7, 0.3, 48, 16)].map(|m| shape(&m));
