@@ -7,8 +7,8 @@
 //! * [`ContentHash`]: 128 bits over vertices, triangles, and the deformable flag. Meshes with equal
 //!   hashes share their data: clones, restored snapshots, the same file loaded twice. A hash takes
 //!   4 µs for 1000 triangles, so each pair computes it once. The hash of a large unregistered
-//!   mesh covers addresses and samples. An edit of few vertices in place may go unnoticed; neighbours
-//!   and sides are then those of before.
+//!   mesh covers addresses and samples. An edit of few vertices in place may go unnoticed: the
+//!   mesh then keeps its old neighbours and sides.
 //! * [`MeshToken`]: 64 bits in constant time, computed at every query. If the token has changed, the
 //!   pair forgets the mesh.
 //!

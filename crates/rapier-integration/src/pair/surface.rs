@@ -50,8 +50,8 @@ const DISTANT: f64 = 0.25;
 /// smooth bodies lose contacts; lower: gears are braked.
 const NEAR_NORMAL: f64 = 0.87;
 
-/// Cosine between a normal and that of the face above which the contact is upright. Higher: contacts
-/// are turned in vain; lower: slanted contacts keep their normals.
+/// Least cosine between the normals of an upright contact and of its face. Higher: contacts are turned
+/// in vain; lower: slanted contacts keep their normals.
 const UPRIGHT: f64 = 0.999_999;
 
 /// Depth up to which a shape counts as above the plane of a border triangle. In prediction distances,

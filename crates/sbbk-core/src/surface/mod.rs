@@ -40,7 +40,7 @@ use rustc_hash::FxHashMap;
 use crate::collections::CompactIndices;
 
 /// Greatest number of triangles of a mesh whose kind follows from its edges if these are all paired.
-/// Larger ones take rays: they have one kind also where nobody has paired their edges.
+/// Larger meshes take rays, which need no paired edges.
 pub const PAIRED: usize = 1 << 17;
 
 /// Greatest number of triangles of a small closed part. Higher: searches for parts take longer. Lower:

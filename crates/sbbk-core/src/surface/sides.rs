@@ -173,8 +173,8 @@ fn sequence(i: f64, dimension: usize) -> f64 {
     (0.5 + i * STEPS[dimension]).fract()
 }
 
-/// What one ray to the front and one to the back find at a triangle. `steep` is the least sine of
-/// their angles to the triangle.
+/// Sends a ray to the front of a triangle and another to the back, and tells the side between them.
+/// `steep` is the least sine of an angle between a ray and the triangle.
 fn sample(
     triangles: &impl RayTriangles,
     triangle: u32,

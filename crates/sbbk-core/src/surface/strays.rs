@@ -1,7 +1,7 @@
 //! Strays: triangles that touch an edge or a vertex, though no common edge leads to them.
 //!
-//! Meshes that people make have T-junctions, doubled triangles, parts that only touch, and vertices
-//! that should be one. There a one-ring by common edges is not the whole surface around a point.
+//! Real meshes have T-junctions, doubled triangles, touching parts, and several vertices at one
+//! place. There a one-ring by common edges is not the whole surface around a point.
 //! Strays are found by distance, and a contact at an internal edge is a ghost whichever way the mesh
 //! continues.
 
