@@ -122,7 +122,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         clipped: &mut ManifoldPoints,
     ) -> Verdict {
         let of_triangles = TriangleSurfaceContact { contact, source: ContactSource::Triangles };
-        let surfaces = [0, 1].map(|i| self.shapes.surface(i, self.pair[i]));
+        let surfaces = self.surfaces();
         if let [None, None] = surfaces {
             return Verdict::Contact(of_triangles);
         }
@@ -154,6 +154,12 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             }
         }
         self.crossing(&surfaces, local, &contact, clipped)
+    }
+
+    /// Returns the surfaces around both triangles. `array::map` would copy them twice.
+    #[inline(always)]
+    fn surfaces(&self) -> Surfaces<'_, S> {
+        [self.shapes.surface(0, self.pair[0]), self.shapes.surface(1, self.pair[1])]
     }
 
     /// Returns the contact of triangles that cross or have passed each other.
@@ -201,7 +207,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         if !islands.needs_support(self.pair) {
             return None;
         }
-        let surfaces = [0, 1].map(|i| self.shapes.surface(i, self.pair[i]));
+        let surfaces = self.surfaces();
         let [t1, t2] = &local.corners;
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(&surfaces, i, feature, axis);
         let contact =

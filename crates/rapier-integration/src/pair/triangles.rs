@@ -219,9 +219,11 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
             if !limits.may_touch(candidate) {
                 continue;
             }
-            let Some((local, contact)) = self.touch(candidate, limits) else { continue };
-            is_apart = false;
             let pair = candidate.subshapes;
+            let Some(triangles) = self.shapes.triangles(pair) else { continue };
+            let local = local_pair(&self.pose.placement12, &triangles);
+            let Some(contact) = touch(&local, candidate, limits) else { continue };
+            is_apart = false;
             match self.filter(pair).apply(&local, contact, clipped) {
                 Verdict::None if is_touching(&local, &contact, NEARLY_TOUCHING) => {
                     islands.add_touching(pair);
@@ -323,26 +325,6 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         SurfaceFilter { shapes: &self.shapes, pose: self.pose, pair }
     }
 
-    /// Returns two triangles and their contact, if that is in reach.
-    #[inline(always)]
-    fn touch(
-        &self,
-        candidate: &mut Candidate<Hint>,
-        Limits { reach, margin, travel }: Limits,
-    ) -> Option<(TrianglePair, TriangleContact)> {
-        let triangles = self.shapes.triangles(candidate.subshapes)?;
-        let local = local_pair(&self.pose.placement12, &triangles);
-        let [t1, t2] = &local.corners;
-        let contact = match candidate.hint {
-            Some(hint) => contact_from(t1, t2, margin, hint),
-            None => contact(t1, t2, margin),
-        };
-        candidate.clear = contact.map_or(margin, |contact| contact.distance) + travel;
-        let contact = contact?;
-        candidate.hint = Some(contact.features);
-        (contact.distance <= reach).then_some((local, contact))
-    }
-
     /// Adds far contacts. Of two contacts of a pair of triangles the nearer one stays. `near` and `clipped`
     /// are memory.
     fn add_far(
@@ -423,6 +405,24 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         }
         contacts.sort_unstable_by_key(|(pair, _)| *pair);
     }
+}
+
+/// Returns the contact of the triangles of a candidate, if that is in reach.
+#[inline(always)]
+fn touch(
+    local: &TrianglePair,
+    candidate: &mut Candidate<Hint>,
+    Limits { reach, margin, travel }: Limits,
+) -> Option<TriangleContact> {
+    let [t1, t2] = &local.corners;
+    let contact = match candidate.hint {
+        Some(hint) => contact_from(t1, t2, margin, hint),
+        None => contact(t1, t2, margin),
+    };
+    candidate.clear = contact.map_or(margin, |contact| contact.distance) + travel;
+    let contact = contact?;
+    candidate.hint = Some(contact.features);
+    (contact.distance <= reach).then_some(contact)
 }
 
 impl ContactSource {
