@@ -23,6 +23,7 @@ const SINGLE: &str = "everyday: single bodies, and many meshes";
 const DEFORMABLE: &str = "everyday: all flags, and robots";
 const SENSORS: &str = "everyday: sensors and characters";
 const PILE: &str = "everyday: pile";
+const FINE: &str = "everyday: fine meshes";
 const QUERIES: &str = "everyday: queries";
 /// Rapier's prediction distance, in units.
 const PREDICTION: Real = 0.02;
@@ -40,6 +41,8 @@ pub enum Group {
     Sensors,
     /// Heads in a pile.
     Pile,
+    /// One shape with few and with many triangles, and parts of centimetres.
+    Fine,
     /// Single queries without a workspace.
     Queries,
 }
@@ -76,6 +79,8 @@ pub struct EverydayPlan {
     /// Cells of half a unit along a side of the terrains for all flags and robots.
     pub deformable_cells: u32,
     pub heads: usize,
+    /// Segments around the tubes of tori, each time for a pile of its own.
+    pub tubes: Vec<u32>,
     /// Cells of half a unit along a side of the terrains for single queries.
     pub query_cells: Vec<u32>,
 }
@@ -99,6 +104,7 @@ impl EverydayPlan {
             small_meshes: 10_000,
             deformable_cells: 256,
             heads: 300,
+            tubes: vec![13, 26, 52, 104],
             query_cells: vec![23, 100, 400, 1000],
         }
     }
@@ -118,6 +124,7 @@ impl EverydayPlan {
             world_cells: 512,
             small_meshes: 1000,
             heads: 100,
+            tubes: vec![13, 26],
             query_cells: vec![100, 400],
             ..Self::standard()
         }
@@ -198,6 +205,11 @@ impl Worlds<'_> {
                 self.measure("sensors and characters", &scenes);
             }
             Group::Pile => self.measure("pile", &[scenes::pile(plan.heads, plan.steps)]),
+            Group::Fine => {
+                let tori = plan.tubes.iter().map(|&tube| scenes::tori(tube, plan.steps));
+                let scenes: Vec<_> = tori.chain([scenes::parts(plan.steps)]).collect();
+                self.measure("fine meshes", &scenes);
+            }
             Group::Queries => {
                 self.progress.phase("queries on terrains", plan.query_cells.len());
                 for &cells in &plan.query_cells {

@@ -7,7 +7,7 @@ use rapier3d::control::KinematicCharacterController;
 use rapier3d::pipeline::{ActiveEvents, QueryFilter};
 
 use super::measure::{Driven, Everyday};
-use super::{BODIES, DEFORMABLE, GroundPlan, PILE, SENSORS, SINGLE};
+use super::{BODIES, DEFORMABLE, FINE, GroundPlan, PILE, SENSORS, SINGLE};
 use crate::scene::shape;
 use crate::study::shape as plain;
 
@@ -267,6 +267,38 @@ pub(super) fn pile(heads: usize, steps: usize) -> Everyday<'static> {
     let pile = MonkeyPile::with_heads(heads);
     let row = Row::new(PILE, "").key("scene", pile.name());
     Everyday::new(row, steps, move || Driven::alone(pile.build().world))
+}
+
+/// Thirty tori in a pile, with so many segments around the tube and three times as many along it.
+pub(super) fn tori(tube: u32, steps: usize) -> Everyday<'static> {
+    let torus = mesh::torus(1.0, 0.4, 3 * tube, tube);
+    let row = Row::new(FINE, "").key("scene", "30 tori in a pile");
+    let row = row.key("triangles", torus.triangle_count());
+    let pile = MonkeyPile::of(30, torus);
+    Everyday::new(row, steps, move || Driven::alone(pile.build().world))
+}
+
+/// Heads of 2 to 5 cm that fall into a bowl at Rapier's default length unit.
+pub(super) fn parts(steps: usize) -> Everyday<'static> {
+    const COUNT: u32 = 12;
+    let bowl = plain(&mesh::vessel(0.15, 24, 0.3));
+    let head = mesh::monkey_head_with(6).centred();
+    let row = Row::new(FINE, "").key("scene", format!("{COUNT} heads of 2 to 5 cm in a bowl"));
+    let row = row.key("triangles", head.triangle_count());
+    let parts =
+        (0..COUNT).map(|i| Solid::new(&head.clone().scaled_to(0.02 + 0.01 * (i % 4) as f32)));
+    let parts: Vec<Solid> = parts.collect();
+    Everyday::new(row, steps, move || {
+        let (mut world, mut random) = (PhysicsWorld::new(), Rand32::new(5));
+        world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(bowl.clone()));
+        for (i, part) in (0..COUNT).zip(&parts) {
+            let [x, y, z] = [i % 2, i / 4, i / 2 % 2].map(|place| 0.06 * place as f32);
+            let pose =
+                Pose3::from_parts(Vec3::new(x - 0.03, y, z - 0.03), random::rotation(&mut random));
+            world.insert(RigidBodyBuilder::dynamic().pose(pose), part.collider());
+        }
+        Driven::alone(world)
+    })
 }
 
 pub(super) fn named<'a>(
