@@ -138,7 +138,11 @@ impl<H: Copy + Default> CandidateMemory<H> {
         let old_count = self.candidates.len();
         find(&mut self.candidates);
         let (old, new) = self.candidates.split_at_mut(old_count);
-        new.sort_unstable_by_key(|candidate| candidate.subshapes);
+        // One number compares faster than two.
+        new.sort_unstable_by_key(|candidate| {
+            let [one, two] = candidate.subshapes.map(u64::from);
+            one << 32 | two
+        });
         let mut old = old.iter().peekable();
         for candidate in new {
             while old.next_if(|old| old.subshapes < candidate.subshapes).is_some() {}
