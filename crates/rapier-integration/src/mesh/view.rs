@@ -3,6 +3,7 @@
 //! Parry's BVH is there before the first query and always fits the mesh, so a pair without trees
 //! needs nothing else.
 
+use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -190,17 +191,18 @@ impl<'a> MeshView<'a> {
 
     /// Returns the least coordinate of the mesh along a direction, and the half-edge that begins there.
     fn lowest_corner(&self, direction: Vec3) -> (Real, u32) {
+        let least = Cell::new((Real::INFINITY, 0));
         let bound =
             |node: &BvhNode| (direction * node.mins()).min(direction * node.maxs()).element_sum();
-        let lowest = |triangle: u32| {
-            let corners = (3 * triangle..).zip(self.corners(triangle));
-            let heights = corners.map(|(half_edge, corner)| (corner.dot(direction), half_edge));
-            // Skips corners that are NaN.
-            heights.reduce(|one, two| if two.0 < one.0 || one.0.is_nan() { two } else { one })
-        };
-        let bvh = self.mesh.bvh();
-        let found = bvh.find_best(Real::INFINITY, |node, _| bound(node), |leaf, _| lowest(leaf));
-        found.map_or((Real::INFINITY, 0), |(_, lowest)| lowest)
+        for triangle in self.mesh.bvh().leaves(|node| bound(node) < least.get().0) {
+            for (half_edge, corner) in (3 * triangle..).zip(self.corners(triangle)) {
+                let height = corner.dot(direction);
+                if height < least.get().0 {
+                    least.set((height, half_edge));
+                }
+            }
+        }
+        least.get()
     }
 
     /// Height of the mesh over the middle of its box along a unit direction, or of the box if that is
