@@ -41,7 +41,7 @@ pub enum Group {
     Sensors,
     /// Heads in a pile.
     Pile,
-    /// One shape with few and with many triangles, and parts of centimetres.
+    /// Piles of tori with few and with many triangles, and parts of centimetres.
     Fine,
     /// Single queries without a workspace.
     Queries,
