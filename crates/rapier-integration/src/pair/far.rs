@@ -5,8 +5,6 @@
 //! the nearest point of the other mesh. Walks add the places where meshes are nearest to each other. A walk goes
 //! from a point of one mesh to the nearest point of the other, and back. It may end at another place.
 
-use std::ops::ControlFlow;
-
 use glamx::Vec3;
 use parry3d::math::Real;
 use parry3d::partitioning::BvhNode;
@@ -17,10 +15,10 @@ use super::bvh_search::BvhSearch;
 use super::pose::PairPose;
 use super::triangle_contacts::{in_local, local_pair};
 use super::triangles::{ContactSource, TriangleHit, TriangleSurfaceContact};
-use crate::mesh::MeshSurface;
+use crate::mesh::{MeshSurface, MeshView};
 
-/// Greatest product of the numbers of triangles near the other mesh with which all pairs have contacts.
-/// Higher: small bodies cost more. Lower: thin plates with soft CCD turn through sheets.
+/// Greatest product of the numbers of triangles near the other mesh with which all pairs are candidates.
+/// Higher: small bodies cost more time and memory. Lower: thin plates with soft CCD turn through sheets.
 const FEW: usize = 1 << 16;
 
 /// Greatest number of steps from a tip to the nearest point. Higher: more time for surfaces that are nearly
@@ -37,47 +35,30 @@ pub(super) struct FarSearch<'a, 'm> {
     pub(super) pose: &'a PairPose,
 }
 
+/// Returns true if few triangles of two meshes are within the prediction distance of the box around the
+/// other mesh.
+pub(super) fn are_few(meshes: [&MeshView<'_>; 2], pose: &PairPose) -> bool {
+    let PairPose { pos12, prediction, .. } = *pose;
+    let poses = [pos12, pos12.inverse()];
+    let count = |i: usize, most: usize| {
+        let around = BvhNode::leaf(meshes[1 - i].placed_root(&poses[i], prediction), 0);
+        meshes[i].mesh.bvh().leaves(|node| node.intersects(&around)).take(most + 1).count()
+    };
+    let least = FEW.isqrt();
+    match [0, 1].map(|i| count(i, least)) {
+        [one, _] if one <= least => one * count(1, FEW / one.max(1)) <= FEW,
+        [_, two] if two <= least => two * count(0, FEW / two.max(1)) <= FEW,
+        _ => false,
+    }
+}
+
 impl FarSearch<'_, '_> {
-    /// Calls `found` with far contacts, and perhaps with near ones. `is_apart`: there are no near ones. `near`
-    /// is memory.
-    pub(super) fn contacts(
-        &self,
-        is_apart: bool,
-        near: &mut Vec<u32>,
-        mut found: impl FnMut(TriangleHit),
-    ) {
+    /// Calls `found` with the contacts of tips, and with those one step of a walk farther, which may be near.
+    /// Meshes that are apart also get the contacts where walks from the nearest tips and from the middles end.
+    pub(super) fn contacts(&self, is_apart: bool, mut found: impl FnMut(TriangleHit)) {
         if !self.search.placement.is_finite() {
             return;
         }
-        if !self.are_few() {
-            return self.of_tips(is_apart, found);
-        }
-        self.search.all(f64::from(self.pose.prediction), near, |pair| {
-            found(hit([pair.triangle1, pair.triangle2], pair.contact));
-            ControlFlow::Continue(())
-        });
-    }
-
-    /// Returns true if few triangles are within the distance of the box around the other mesh.
-    fn are_few(&self) -> bool {
-        let PairPose { pos12, prediction, .. } = *self.pose;
-        let poses = [pos12, pos12.inverse()];
-        let meshes = self.search.meshes;
-        let count = |i: usize, most: usize| {
-            let around = BvhNode::leaf(meshes[1 - i].placed_root(&poses[i], prediction), 0);
-            meshes[i].mesh.bvh().leaves(|node| node.intersects(&around)).take(most + 1).count()
-        };
-        let least = FEW.isqrt();
-        match [0, 1].map(|i| count(i, least)) {
-            [one, _] if one <= least => one * count(1, FEW / one.max(1)) <= FEW,
-            [_, two] if two <= least => two * count(0, FEW / two.max(1)) <= FEW,
-            _ => false,
-        }
-    }
-
-    /// Calls `found` with the contacts of tips, and with those one step of a walk farther. Meshes that are
-    /// apart also get the contacts where walks from the nearest tips and from the middles end.
-    fn of_tips(&self, is_apart: bool, mut found: impl FnMut(TriangleHit)) {
         let within = self.pose.prediction;
         for i in 0..2 {
             let mesh = self.search.meshes[i];

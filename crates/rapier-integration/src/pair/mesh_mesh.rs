@@ -1,3 +1,4 @@
+use std::cell::OnceCell;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -13,7 +14,7 @@ use sbbk_core::tree::Tree;
 
 use super::bvh_descent::walk;
 use super::bvh_search::BvhSearch;
-use super::far::FarSearch;
+use super::far::{FarSearch, are_few};
 use super::inside::InsideTest;
 use super::pose::PairPose;
 use super::reduce::PatchPlan;
@@ -80,7 +81,15 @@ impl<'a> Pair for MeshPair<'a> {
             .filter(|surface| !surface.is_declared_solid(self.meshes[self.larger()].mesh))
             .map(|_| self.larger());
         let query = TriangleQuery {
-            shapes: Meshes { pair: self, trees, surfaces, room, filter_distance, cache },
+            shapes: Meshes {
+                pair: self,
+                trees,
+                surfaces,
+                room,
+                filter_distance,
+                reach: OnceCell::new(),
+                cache,
+            },
             pose: self.pose,
             patches: (self.has_patches && are_rigid)
                 .then(|| PatchPlan::new(self.pose.prediction, radius)),
@@ -99,6 +108,7 @@ pub(crate) struct Meshes<'q> {
     /// The mesh that is a room for the other one, and has no inside.
     pub(super) room: Option<usize>,
     filter_distance: f64,
+    reach: OnceCell<Real>,
     cache: &'q MeshStore,
 }
 
@@ -117,12 +127,12 @@ impl<'q> TriangleShapes for Meshes<'q> {
         }
     }
 
-    fn far_contacts(&self, is_apart: bool, near: &mut Vec<u32>, found: impl FnMut(TriangleHit)) {
+    fn far_contacts(&self, is_apart: bool, found: impl FnMut(TriangleHit)) {
         let [Some(surface1), Some(surface2)] = &self.surfaces else { return };
         let MeshPair { pose, meshes, .. } = self.pair;
         let search = BvhSearch { meshes: meshes.each_ref(), placement: pose.placement12 };
         let far = FarSearch { search, surfaces: [surface1, surface2], pose };
-        far.contacts(is_apart, near, found);
+        far.contacts(is_apart, found);
     }
 
     fn descend(
@@ -189,7 +199,9 @@ impl<'q> TriangleShapes for Meshes<'q> {
     }
 
     fn reach(&self) -> Real {
-        reach(self.pair.pose.prediction, self.filter_distance)
+        let MeshPair { pose, meshes, .. } = self.pair;
+        let few = || are_few(meshes.each_ref(), pose);
+        *self.reach.get_or_init(|| reach(pose.prediction, self.filter_distance, few))
     }
 
     fn bounds(&self, i: usize) -> Aabb {

@@ -26,7 +26,7 @@ use crate::mesh::BEHIND;
 /// sees turn through what they meet; lower: small bodies keep contacts at internal edges.
 const FILTERED: f64 = 0.1;
 
-/// Greatest [`reach`] in [`TriangleShapes::filter_distance`]s: 0.04 radii. A body of one length unit has a
+/// Greatest [`reach`] of fine meshes in [`TriangleShapes::filter_distance`]s: 0.04 radii. A body of one length unit has a
 /// radius of half a unit, and Rapier predicts 0.02 units by default. Higher: fine meshes cost more;
 /// lower: bodies come deeper into others before they meet.
 const REACH: f64 = 0.4;
@@ -69,10 +69,14 @@ pub(super) fn filter_distance(has_surface: bool, radius: Real) -> f64 {
 }
 
 /// Returns the distance up to which all contacts of two meshes are found.
-pub(super) fn reach(prediction: Real, filter_distance: f64) -> Real {
+pub(super) fn reach(
+    prediction: Real,
+    filter_distance: f64,
+    are_few: impl FnOnce() -> bool,
+) -> Real {
     let most = (REACH * filter_distance) as Real;
     // A prediction distance that is NaN finds nothing.
-    if most < prediction { most } else { prediction }
+    if most < prediction && !are_few() { most } else { prediction }
 }
 
 /// Returns the unit of the filter: the prediction distance, or less for small shapes.
@@ -87,8 +91,9 @@ pub(super) fn lateral_culling(
     pose: &PairPose,
     margin: Real,
 ) -> Option<LateralCulling> {
-    shapes.has_surface().then(|| {
-        let reach = shapes.reach();
+    let reach = shapes.reach();
+    let is_filtered = f64::from(reach) <= shapes.filter_distance();
+    (shapes.has_surface() && is_filtered).then(|| {
         let (distance, travel) = ((DISTANT * near(shapes, pose)) as Real, margin - reach);
         LateralCulling::new(distance, NEAR_NORMAL as Real, reach, travel)
     })

@@ -54,10 +54,8 @@ pub(crate) trait TriangleShapes {
         found: impl FnMut([u32; 2]),
     );
 
-    /// Calls `found` with [far](super::far) contacts. `is_apart`: no triangles are in reach. `near` is
-    /// memory.
-    fn far_contacts(&self, _is_apart: bool, _near: &mut Vec<u32>, _found: impl FnMut(TriangleHit)) {
-    }
+    /// Calls `found` with [far](super::far) contacts. `is_apart`: no triangles are in reach.
+    fn far_contacts(&self, _is_apart: bool, _found: impl FnMut(TriangleHit)) {}
 
     /// Returns two triangles; `None` if one does not exist.
     fn triangles(&self, triangles: [u32; 2]) -> Option<[Triangle; 2]>;
@@ -212,7 +210,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         scratch: &mut TriangleScratch,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
-        let TriangleScratch { islands, passed, clipped, near, .. } = scratch;
+        let TriangleScratch { islands, passed, clipped, .. } = scratch;
         islands.clear();
         let mut is_apart = true;
         for candidate in candidates {
@@ -241,7 +239,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
             self.second_pass(islands, clipped, contacts);
         }
         if limits.reach < f64::from(self.pose.prediction) {
-            self.add_far(is_apart, near, clipped, contacts);
+            self.add_far(is_apart, clipped, contacts);
         }
         self.reject_passed(islands, passed, contacts);
         if contacts.is_empty() {
@@ -325,31 +323,24 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         SurfaceFilter { shapes: &self.shapes, pose: self.pose, pair }
     }
 
-    /// Adds far contacts. Of two contacts of a pair of triangles the nearer one stays. `near` and `clipped`
-    /// are memory.
+    /// Adds far contacts. Of two contacts of a pair of triangles the nearer one stays. `clipped` is memory.
     fn add_far(
         &self,
         is_apart: bool,
-        near: &mut Vec<u32>,
         clipped: &mut ManifoldPoints,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
         let (old_count, reach) = (contacts.len(), f64::from(self.shapes.reach()));
-        self.shapes.far_contacts(
-            is_apart,
-            near,
-            |(pair, TriangleSurfaceContact { contact, .. })| {
-                if contact.distance <= reach {
-                    return;
-                }
-                let Some(triangles) = self.shapes.triangles(pair) else { return };
-                let local = local_pair(&self.pose.placement12, &triangles);
-                if let Verdict::Contact(contact) = self.filter(pair).apply(&local, contact, clipped)
-                {
-                    contacts.push((pair, contact));
-                }
-            },
-        );
+        self.shapes.far_contacts(is_apart, |(pair, TriangleSurfaceContact { contact, .. })| {
+            if contact.distance <= reach {
+                return;
+            }
+            let Some(triangles) = self.shapes.triangles(pair) else { return };
+            let local = local_pair(&self.pose.placement12, &triangles);
+            if let Verdict::Contact(contact) = self.filter(pair).apply(&local, contact, clipped) {
+                contacts.push((pair, contact));
+            }
+        });
         if contacts.len() > old_count {
             contacts.sort_by(|(pair1, hit1), (pair2, hit2)| {
                 let by_distance = hit1.contact.distance.total_cmp(&hit2.contact.distance);
