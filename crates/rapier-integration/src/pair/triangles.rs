@@ -251,8 +251,8 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         }
     }
 
-    /// Makes one patch for each direction if all contacts are far. Rapier's solver drops far points
-    /// of manifolds of more than four, and a falling plate would turn about one point.
+    /// Makes one patch for each direction if all contacts are beyond the filter distance. Rapier's solver
+    /// drops such points of manifolds of more than four, and a falling plate would turn about one point.
     fn reduction(&self, contacts: &ContactList<TriangleSurfaceContact>) -> Option<PatchPlan> {
         let near = self.shapes.filter_distance();
         let may_be_far = f64::from(self.pose.prediction) > near;
