@@ -34,8 +34,9 @@ mod dirty;
 mod edited_mesh;
 /// SBBK's own contacts against the truth, and against stock where stock is right.
 mod exact;
-/// Meshes against height fields.
+/// Time that grows with the triangles.
 mod growth;
+/// Meshes against height fields.
 mod heightfield;
 /// Bodies wholly inside a solid.
 mod inside;

@@ -3,8 +3,6 @@
 //! The descent first finds the triangles of the larger mesh near the box of the other: often there
 //! are none. Groups of these descend the other BVH until something is near, then each four of a
 //! group do.
-//!
-//!
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
