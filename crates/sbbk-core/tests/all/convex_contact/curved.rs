@@ -43,16 +43,8 @@ fn contacts_of_cylinders_and_cones_agree_with_searches() {
         let mut rng = Rng(100 + seed as u64);
         let (mut clear, mut deep, mut far) = (0, 0, 0);
         for i in 0..20_000 {
-            let shape = rng.shape(kind);
+            let (shape, triangle, margin) = rng.case(kind, i);
             let body = shape.truth();
-            let margin = rng.scale(1.0e-4, 0.1);
-            let gap = match i % 4 {
-                0 => rng.within(0.0, 2.0 * margin),
-                1 => rng.within(-margin, margin),
-                2 => 0.0,
-                _ => rng.within(-1.0, 0.0),
-            };
-            let triangle = rng.triangle_beside(&shape, gap);
             let size = size(&triangle, &shape);
             let contact = shape.contact(&triangle, margin);
             if let Some(contact) = &contact {

@@ -11,15 +11,7 @@ fn contacts_of_polytopes_agree_with_brute_force() {
         let mut rng = Rng(seed as u64);
         let (mut apart, mut deep, mut far) = (0, 0, 0);
         for i in 0..20_000 {
-            let shape = rng.shape(kind);
-            let margin = rng.scale(1.0e-4, 0.1);
-            let gap = match i % 4 {
-                0 => rng.within(0.0, 2.0 * margin),
-                1 => rng.within(-margin, margin),
-                2 => 0.0,
-                _ => rng.within(-1.0, 0.0),
-            };
-            let triangle = rng.triangle_beside(&shape, gap);
+            let (shape, triangle, margin) = rng.case(kind, i);
             let truth = shape.truth().distance(&triangle);
             let size = size(&triangle, &shape);
             let Some(contact) = shape.contact(&triangle, margin) else {

@@ -212,6 +212,20 @@ impl Rng {
         }
     }
 
+    /// A shape, a triangle beside it and a margin: near, within the margin, touching or deep.
+    pub fn case(&mut self, kind: Kind, i: u32) -> (Shape, [DVec3; 3], f64) {
+        let shape = self.shape(kind);
+        let margin = self.scale(1.0e-4, 0.1);
+        let gap = match i % 4 {
+            0 => self.within(0.0, 2.0 * margin),
+            1 => self.within(-margin, margin),
+            2 => 0.0,
+            _ => self.within(-1.0, 0.0),
+        };
+        let triangle = self.triangle_beside(&shape, gap);
+        (shape, triangle, margin)
+    }
+
     /// A triangle of any proportions beside a shape: `gap` is how far it is along some direction,
     /// and more than the least translation if negative.
     pub fn triangle_beside(&mut self, shape: &Shape, gap: f64) -> [DVec3; 3] {
