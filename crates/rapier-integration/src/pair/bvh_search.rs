@@ -131,14 +131,9 @@ impl BvhSearch<'_> {
         nearest
     }
 
-    /// Calls `found` with all pairs of triangles within `limit`, until it breaks. `near` is memory.
-    pub(crate) fn all(
-        &self,
-        limit: f64,
-        near: &mut Vec<u32>,
-        mut found: impl FnMut(FoundPair) -> ControlFlow<()>,
-    ) {
-        let margin = (limit.max(0.0) as Real).next_up();
+    /// Calls `found` with all pairs of triangles within `limit`, until it breaks.
+    pub(crate) fn all(&self, limit: f64, mut found: impl FnMut(FoundPair) -> ControlFlow<()>) {
+        let (margin, near) = ((limit.max(0.0) as Real).next_up(), &mut Vec::new());
         walk(self.meshes, self.placement, margin, None, (), near, |triangles| {
             self.pair(triangles, limit).map_or(ControlFlow::Continue(()), &mut found)
         });

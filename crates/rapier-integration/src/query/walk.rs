@@ -32,7 +32,7 @@ impl<'a> Walk<'a> {
     /// Returns the first pair of touching triangles that the descent finds.
     pub(super) fn meeting(&self, placement: Placement) -> Option<FoundPair> {
         let mut meeting = None;
-        self.all(placement, 0.0, |pair| {
+        self.at(placement).all(0.0, |pair| {
             meeting = Some(pair).filter(|pair| pair.is_touching);
             if meeting.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
@@ -45,7 +45,7 @@ impl<'a> Walk<'a> {
             return self.at(placement).nearest(limit, |_| true);
         }
         let mut deepest = None::<FoundPair>;
-        self.all(placement, 0.0, |pair| {
+        self.at(placement).all(0.0, |pair| {
             if deepest.is_none_or(|deepest| pair.contact.distance < deepest.contact.distance) {
                 deepest = Some(pair);
             }
@@ -91,16 +91,6 @@ impl<'a> Walk<'a> {
         first
     }
 
-    /// Calls `found` with all pairs within `limit`, until it breaks.
-    fn all(
-        &self,
-        placement: Placement,
-        limit: f64,
-        found: impl FnMut(FoundPair) -> ControlFlow<()>,
-    ) {
-        self.at(placement).all(limit, &mut Vec::new(), found);
-    }
-
     fn at(&self, placement: Placement) -> BvhSearch<'a> {
         BvhSearch { meshes: self.0, placement }
     }
@@ -119,7 +109,7 @@ impl Bodies for Walk<'_> {
     }
 
     fn within(&mut self, placement: &Placement, reach: f64, mut found: impl FnMut(FoundPair)) {
-        self.all(*placement, reach, |pair| {
+        self.at(*placement).all(reach, |pair| {
             found(pair);
             ControlFlow::Continue(())
         });
