@@ -1,8 +1,8 @@
 //! Far contacts of two meshes: what may be hit in the next step, but is not near.
 //!
 //! A host asks for them where a body is small beside the prediction distance, or fast and has soft CCD.
-//! Meshes of few triangles keep all contacts within that distance. Fine meshes keep those of their tips, each with
-//! the nearest point of the other mesh. Walks add the places where meshes are nearest to each other. A walk goes
+//! Meshes of few triangles keep all contacts within that distance. Fine meshes only have contacts from their tips to
+//! the nearest points of the other mesh. Walks add the places where meshes are nearest to each other. A walk goes
 //! from a point of one mesh to the nearest point of the other, and back. It may end at another place.
 
 use glamx::Vec3;

@@ -323,7 +323,7 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         SurfaceFilter { shapes: &self.shapes, pose: self.pose, pair }
     }
 
-    /// Adds far contacts. Of two contacts of a pair of triangles the nearer one stays. `clipped` is memory.
+    /// Adds far contacts, and keeps the nearest one of each pair of triangles. `clipped` is memory.
     fn add_far(
         &self,
         is_apart: bool,

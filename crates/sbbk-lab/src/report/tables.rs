@@ -4,8 +4,8 @@
 //!
 //! * FUNCTION, which may be left out, joins the numbers of all rows. `sum` and `max` speak for
 //!   themselves. `ms` is the largest of numbers in microseconds. `wrong` counts wrong contacts.
-//!   `ratio` is the geometric mean of stock's numbers over those of the backend. `least` is the
-//!   least of these ratios. `boxes` is `ratio` for the backend `aabb-only`.
+//!   `ratio` divides stock's numbers by the backend's and takes the geometric mean. `least` takes
+//!   the smallest ratio. `boxes` is `ratio` for the backend `aabb-only`.
 //! * BACKEND: without it, the one that the header gives to the column.
 //! * SCENE: parts, joined by ` & `, of `STUDY, KEY VALUE, KEY VALUE`; each must end before a comma.
 //! * PATH: quantity and statistic, such as `step.median`.
