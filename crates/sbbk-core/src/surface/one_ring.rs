@@ -180,6 +180,7 @@ impl<F: Facets> OneRing<F> {
     /// Returns true if a one-ring is open and all triangles at a place share a corner of the feature.
     /// Also returns the number of triangles there.
     fn ends_at(&self, triangle: u32, feature: Feature, place: DVec3) -> (bool, usize) {
+        let (triangle, feature) = self.first_of_ring(triangle, feature);
         let is_vertex = matches!(feature, Feature::Vertex(_));
         let mut count = 0;
         let is_closed = self.visit(triangle, feature, |_| {
@@ -230,6 +231,20 @@ impl<F: Facets> OneRing<F> {
         height < 0.0
     }
 
+    /// Returns the first triangle of a vertex's one-ring. Sums in the order of a ring that starts there have
+    /// the same bits for all triangles of the ring.
+    fn first_of_ring(&self, triangle: u32, feature: Feature) -> (u32, Feature) {
+        let mut first = half_edge(triangle, feature);
+        if let Feature::Vertex(_) = feature {
+            self.visit(triangle, feature, |wedge| {
+                first = first.min(wedge.half_edge);
+                ControlFlow::Continue(())
+            });
+            return (first / 3, Feature::Vertex((first % 3) as u8));
+        }
+        (triangle, feature)
+    }
+
     /// Returns the slopes of all triangles that touch a point of a feature, which many may share.
     /// Without a `place`, the point is the middle of an edge.
     fn all_slopes(
@@ -252,6 +267,7 @@ impl<F: Facets> OneRing<F> {
         direction: DVec3,
         place: DVec3,
     ) -> (Slopes, usize) {
+        let (triangle, feature) = self.first_of_ring(triangle, feature);
         let (mut slopes, mut heights) = (Slopes::default(), Heights::default());
         let (mut count, mut area) = (0, DVec3::ZERO);
         let is_closed = self.visit(triangle, feature, |Wedge { edges: [u, v], .. }| {
@@ -476,4 +492,39 @@ fn next(half_edge: u32) -> u32 {
 
 fn previous(half_edge: u32) -> u32 {
     if half_edge.is_multiple_of(3) { half_edge + 2 } else { half_edge - 1 }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f32::consts::TAU;
+
+    use glamx::Vec3;
+
+    use super::*;
+    use crate::surface::{AllTriangles, Surface};
+
+    /// Would catch sums in the order of the triangle that asks first, which threads change.
+    #[test]
+    fn all_triangles_of_a_tip_have_slopes_of_the_same_bits() {
+        const COUNT: u32 = 2 * LONG as u32;
+        let rim = (0..COUNT).map(|i| {
+            let (sin, cos) = (TAU * i as f32 / COUNT as f32).sin_cos();
+            (1.0 + 0.01 * (i * i % 7) as f32) * Vec3::new(cos, sin, -0.3)
+        });
+        let vertices: Vec<Vec3> = [Vec3::ZERO].into_iter().chain(rim).collect();
+        for sides in [COUNT, COUNT - 1] {
+            let triangles: Vec<_> = (0..sides).map(|i| [0, 1 + i, 1 + (i + 1) % COUNT]).collect();
+            let rays = AllTriangles { vertices: &vertices, triangles: &triangles };
+            let surface = Surface::new(&vertices, &triangles, &rays);
+            let ring = surface.one_ring(&vertices, &triangles);
+            let slopes = |triangle| {
+                let vertex = Feature::Vertex(0);
+                let direction = DVec3::new(0.1, 0.2, 0.9);
+                let (slopes, count) = ring.find_slopes(triangle, vertex, direction, DVec3::ZERO);
+                let Slopes { rise, height, bend } = slopes;
+                (rise, height, bend, count)
+            };
+            assert!((0..sides).all(|triangle| slopes(triangle) == slopes(0)), "{sides} sides");
+        }
+    }
 }

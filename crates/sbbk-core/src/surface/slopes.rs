@@ -1,6 +1,7 @@
 //! Slopes of a surface around a point: how far it rises towards a direction, and bends.
 
-use std::cell::RefCell;
+use std::hash::Hash;
+use std::sync::{Mutex, PoisonError};
 
 use glamx::DVec3;
 use rustc_hash::FxHashMap;
@@ -40,7 +41,7 @@ impl Slopes {
 }
 
 /// Greatest slope out of the plane of a triangle, as the square of a sine.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bend {
     normal: DVec3,
     square: f64,
@@ -73,14 +74,34 @@ impl Bend {
     }
 }
 
+/// Answers by key, which threads share. Equal keys have equal answers, so it does not matter which thread
+/// asks first.
+struct Memo<K, V>(Mutex<FxHashMap<K, V>>);
+
+impl<K, V> Default for Memo<K, V> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
+
+impl<K: Eq + Hash, V: Copy> Memo<K, V> {
+    fn get(&self, key: &K) -> Option<V> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).get(key).copied()
+    }
+
+    fn insert(&self, key: K, value: V) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(key, value);
+    }
+}
+
 /// Slopes at places where many triangles meet, or touch without a common edge, by place and direction,
 /// and borders by place. All contacts there ask for the same. Also walls within bodies, by triangle:
 /// many rays meet the same walls. For one query.
 #[derive(Default)]
 pub struct PlaceMemo {
-    slopes: RefCell<FxHashMap<[i64; 6], Slopes>>,
-    borders: RefCell<FxHashMap<[u64; 3], bool>>,
-    walls: RefCell<FxHashMap<u32, bool>>,
+    slopes: Memo<[i64; 6], Slopes>,
+    borders: Memo<[u64; 3], bool>,
+    walls: Memo<u32, bool>,
 }
 
 impl PlaceMemo {
@@ -96,11 +117,11 @@ impl PlaceMemo {
         find: impl FnOnce(DVec3) -> (Slopes, usize),
     ) -> Slopes {
         let (key, direction) = Self::key(place, direction);
-        let known = memo.and_then(|memo| memo.slopes.borrow().get(&key).copied());
+        let known = memo.and_then(|memo| memo.slopes.get(&key));
         known.unwrap_or_else(|| {
             let (slopes, count) = find(direction);
             let memo = memo.filter(|_| count > LONG);
-            memo.map(|memo| memo.slopes.borrow_mut().insert(key, slopes));
+            memo.inspect(|memo| memo.slopes.insert(key, slopes));
             slopes
         })
     }
@@ -113,21 +134,21 @@ impl PlaceMemo {
         find: impl FnOnce() -> (bool, usize),
     ) -> bool {
         let key = (place + 0.0).to_array().map(f64::to_bits);
-        let known = memo.and_then(|memo| memo.borders.borrow().get(&key).copied());
+        let known = memo.and_then(|memo| memo.borders.get(&key));
         known.unwrap_or_else(|| {
             let (is_border, count) = find();
             let memo = memo.filter(|_| count > LONG);
-            memo.map(|memo| memo.borders.borrow_mut().insert(key, is_border));
+            memo.inspect(|memo| memo.borders.insert(key, is_border));
             is_border
         })
     }
 
     /// Returns true if a triangle is a wall within a body.
     pub(super) fn is_wall(&self, triangle: u32, find: impl FnOnce() -> bool) -> bool {
-        let known = self.walls.borrow().get(&triangle).copied();
+        let known = self.walls.get(&triangle);
         known.unwrap_or_else(|| {
             let is_wall = find();
-            self.walls.borrow_mut().insert(triangle, is_wall);
+            self.walls.insert(triangle, is_wall);
             is_wall
         })
     }

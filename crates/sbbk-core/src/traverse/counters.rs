@@ -10,6 +10,8 @@ pub trait Counters {
     fn leaf_pair(&mut self) {}
     /// `count` cells of a height field were read.
     fn cells(&mut self, _count: usize) {}
+    /// A part of the work was counted elsewhere.
+    fn part(&mut self, _counts: &DescentCounts) {}
 }
 
 impl Counters for () {}
@@ -49,6 +51,15 @@ impl Counters for DescentCounts {
     fn cells(&mut self, count: usize) {
         self.cells += count as u64;
     }
+
+    fn part(&mut self, counts: &DescentCounts) {
+        let Self { sphere_tests, aabb_tests, kdop_tests, leaf_pairs, cells } = self;
+        *sphere_tests += counts.sphere_tests;
+        *aabb_tests += counts.aabb_tests;
+        *kdop_tests += counts.kdop_tests;
+        *leaf_pairs += counts.leaf_pairs;
+        *cells += counts.cells;
+    }
 }
 
 impl<C: Counters> Counters for &mut C {
@@ -70,5 +81,9 @@ impl<C: Counters> Counters for &mut C {
 
     fn cells(&mut self, count: usize) {
         (**self).cells(count);
+    }
+
+    fn part(&mut self, counts: &DescentCounts) {
+        (**self).part(counts);
     }
 }

@@ -17,11 +17,15 @@ use crate::tree::{LeafBatch, Slot, Tree};
 
 /// Memory of descents, kept by the caller: after a few queries nothing is allocated.
 ///
-/// The stack holds at most 3 pairs for each level of both trees.
+/// The stack holds at most 3 pairs for each level of both trees, besides those at which a descent starts.
 #[derive(Clone, Debug, Default)]
 pub struct DescentScratch {
-    stack: Vec<(Slot, Slot)>,
+    stack: Vec<NodePair>,
 }
+
+/// Two nodes whose volumes come within the margin.
+#[derive(Copy, Clone, Debug)]
+pub struct NodePair(Slot, Slot);
 
 /// Calls `visit` with all pairs of leaves whose volumes, and those of all their ancestors, come
 /// within the margin.
@@ -29,38 +33,103 @@ pub struct DescentScratch {
 /// Finds every pair of triangles within the margin: volumes contain all below them, and tests are
 /// conservative, see [`PairFrame`]. The order of visits depends on the trees only.
 pub fn descend(
+    trees: (&Tree, &Tree),
+    frame: &mut PairFrame,
+    scratch: &mut DescentScratch,
+    mut counters: impl Counters,
+    visit: impl FnMut(&LeafBatch, &LeafBatch),
+) {
+    let start = roots(trees, frame, &mut counters);
+    descend_from(start.as_slice(), trees, frame, scratch, counters, visit);
+}
+
+/// Replaces `pairs` by up to `count` pairs of nodes or a few more, or by all pairs of leaves if these are fewer.
+/// Calls of [`descend_from`] for all of them make a whole descent, in parts that may run on several threads.
+pub fn begin_descent(
+    trees: (&Tree, &Tree),
+    frame: &mut PairFrame,
+    count: usize,
+    pairs: &mut Vec<NodePair>,
+    mut counters: impl Counters,
+) {
+    pairs.clear();
+    pairs.extend(roots(trees, frame, &mut counters));
+    // A queue. Pairs of leaves go back to its end, until nothing else is left.
+    let (mut first, mut leaves) = (0, 0);
+    while let waiting = pairs.len() - first
+        && waiting < count
+        && leaves < waiting
+    {
+        let pair = pairs[first];
+        first += 1;
+        if are_both_leaves(trees, pair) {
+            leaves += 1;
+            pairs.push(pair);
+        } else {
+            leaves = 0;
+            replace(trees, pair, frame, &mut counters, |pair| pairs.push(pair));
+        }
+    }
+    pairs.drain(..first);
+}
+
+/// Continues a descent below pairs of nodes; see [`descend`].
+pub fn descend_from(
+    pairs: &[NodePair],
     (tree1, tree2): (&Tree, &Tree),
     frame: &mut PairFrame,
     scratch: &mut DescentScratch,
     mut counters: impl Counters,
     mut visit: impl FnMut(&LeafBatch, &LeafBatch),
 ) {
-    if tree1.sphere().is_some() && tree2.sphere().is_some() {
-        counters.sphere_test();
-        if !frame.spheres_meet(tree1, tree2) {
-            return;
-        }
-    }
-    counters.aabb_tests(1);
-    let [root1, root2] =
-        [tree1, tree2].map(|tree| Side { children: tree.children(0), spread: Same(0) });
-    if frame.boxes_meet(&root1, &root2) == 0 {
-        return;
-    }
-
     let stack = &mut scratch.stack;
     stack.clear();
-    stack.push((Slot::ROOT, Slot::ROOT));
-    while let Some(slots) = stack.pop() {
-        let links = (tree1.link(slots.0), tree2.link(slots.1));
+    stack.extend_from_slice(pairs);
+    while let Some(pair @ NodePair(slot1, slot2)) = stack.pop() {
+        let links = (tree1.link(slot1), tree2.link(slot2));
         if links.0.is_leaf() && links.1.is_leaf() {
             counters.leaf_pair();
             visit(tree1.leaf(links.0.index()), tree2.leaf(links.1.index()));
             continue;
         }
-        let mut compare = Overlap { frame, counters: &mut counters };
-        expand((tree1, tree2), slots, Sides::of(links), &mut compare, |slots, ()| {
-            stack.push(slots);
-        });
+        replace((tree1, tree2), pair, frame, &mut counters, |pair| stack.push(pair));
     }
+}
+
+/// Returns the roots if these come within the margin.
+fn roots(
+    (tree1, tree2): (&Tree, &Tree),
+    frame: &mut PairFrame,
+    counters: &mut impl Counters,
+) -> Option<NodePair> {
+    if tree1.sphere().is_some() && tree2.sphere().is_some() {
+        counters.sphere_test();
+        if !frame.spheres_meet(tree1, tree2) {
+            return None;
+        }
+    }
+    counters.aabb_tests(1);
+    let [root1, root2] =
+        [tree1, tree2].map(|tree| Side { children: tree.children(0), spread: Same(0) });
+    (frame.boxes_meet(&root1, &root2) != 0).then_some(NodePair(Slot::ROOT, Slot::ROOT))
+}
+
+fn are_both_leaves((tree1, tree2): (&Tree, &Tree), NodePair(slot1, slot2): NodePair) -> bool {
+    tree1.link(slot1).is_leaf() && tree2.link(slot2).is_leaf()
+}
+
+/// Calls `push` with the pairs of children of a pair that come within the margin.
+#[inline(always)]
+fn replace(
+    (tree1, tree2): (&Tree, &Tree),
+    NodePair(slot1, slot2): NodePair,
+    frame: &mut PairFrame,
+    counters: &mut impl Counters,
+    mut push: impl FnMut(NodePair),
+) {
+    let sides = Sides::of((tree1.link(slot1), tree2.link(slot2)));
+    let mut compare = Overlap { frame, counters };
+    expand((tree1, tree2), (slot1, slot2), sides, &mut compare, |(slot1, slot2), ()| {
+        push(NodePair(slot1, slot2));
+    });
 }

@@ -23,7 +23,7 @@ mod toward;
 
 pub use boxes::{BoxTest, NearBox, TestedBox};
 pub use counters::{Counters, DescentCounts};
-pub use descend::{DescentScratch, descend};
+pub use descend::{DescentScratch, NodePair, begin_descent, descend, descend_from};
 pub(crate) use expand::{Compare, Sides, expand};
 pub(crate) use frame::Along;
 pub use frame::PairFrame;
