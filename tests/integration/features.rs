@@ -19,5 +19,6 @@ mod properties;
 mod same_mesh;
 mod snapshot;
 mod support;
+mod threads;
 mod truth;
 mod worlds;

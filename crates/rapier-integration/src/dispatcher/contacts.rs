@@ -121,12 +121,11 @@ impl SbbkDispatcher {
         M: Default + Clone + Send + Sync + 'static,
         C: Default + Copy + Send + Sync + 'static,
     {
-        if !self.config.count_queries {
-            return update_manifolds(pair, &self.cache, (), manifolds, workspace);
-        }
         let mut counts = DescentCounts::default();
         let answer = update_manifolds(pair, &self.cache, &mut counts, manifolds, workspace);
-        self.counters.add(answer, &counts);
+        if self.config.count_queries {
+            self.counters.add(answer, &counts);
+        }
         answer
     }
 }

@@ -1,6 +1,6 @@
-use std::cell::{RefCell, RefMut};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU16, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use glamx::DVec3;
 use parry3d::bounding_volume::BoundingVolume;
@@ -48,7 +48,7 @@ impl<'a, 'm> MeshAdjacency<'a, 'm> {
     fn with_flags<T>(self, triangle: u32, then: impl FnOnce(&TriangleFlags) -> T) -> T {
         match self.twins {
             Twins::All(_, flags) => then(&flags[triangle as usize]),
-            Twins::Near(twins) => then(&twins.known(triangle).flags),
+            Twins::Near(twins) => twins.with_known(triangle, |known| then(&known.flags)),
         }
     }
 
@@ -118,7 +118,9 @@ impl HalfEdges for MeshAdjacency<'_, '_> {
     fn twin(&self, half_edge: u32) -> Option<u32> {
         match self.twins {
             Twins::All(surface, _) => surface.twin(half_edge),
-            Twins::Near(twins) => twins.known(half_edge / 3).twins[half_edge as usize % 3],
+            Twins::Near(twins) => {
+                twins.with_known(half_edge / 3, |known| known.twins[half_edge as usize % 3])
+            }
         }
     }
 
@@ -229,7 +231,7 @@ pub(crate) struct Neighbour {
 /// the BVH, in about 1 µs.
 pub(crate) struct NearTwins<'a> {
     mesh: &'a TriMesh,
-    known: RefCell<&'a mut Neighbours>,
+    known: Mutex<&'a mut Neighbours>,
 }
 
 impl<'a> NearTwins<'a> {
@@ -241,17 +243,16 @@ impl<'a> NearTwins<'a> {
         if known.len() > Self::MOST {
             known.clear();
         }
-        Self { mesh, known: RefCell::new(known) }
+        Self { mesh, known: Mutex::new(known) }
     }
 
-    /// Returns the neighbours of a triangle.
-    fn known(&self, triangle: u32) -> RefMut<'_, Neighbour> {
-        RefMut::map(self.known.borrow_mut(), |known| {
-            known.entry(triangle).or_insert_with(|| Neighbour {
-                twins: twins_of(self.mesh, triangle),
-                flags: TriangleFlags::default(),
-            })
-        })
+    /// Calls `then` with the neighbours of a triangle.
+    fn with_known<T>(&self, triangle: u32, then: impl FnOnce(&Neighbour) -> T) -> T {
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        then(known.entry(triangle).or_insert_with(|| Neighbour {
+            twins: twins_of(self.mesh, triangle),
+            flags: TriangleFlags::default(),
+        }))
     }
 }
 

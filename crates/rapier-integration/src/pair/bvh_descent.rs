@@ -22,93 +22,128 @@ const MANY: usize = 64;
 /// nothing.
 const FEW: usize = 16;
 
-/// Calls `found` with all pairs of triangles within `margin` except those that `culling` excludes,
-/// and few others, in any order, until it breaks. `near` is memory.
-pub(crate) fn walk(
-    [mesh1, mesh2]: [&MeshView<'_>; 2],
-    placement12: Placement,
-    margin: f32,
-    culling: Option<LateralCulling>,
-    mut counters: impl Counters,
-    near: &mut Vec<u32>,
-    mut found: impl FnMut([u32; 2]) -> ControlFlow<()>,
-) {
-    let tested = Cell::new(0);
-    if mesh1.size_squared() < mesh2.size_squared() {
-        let found = |[two, one]: [u32; 2]| found([one, two]);
-        walk_larger([mesh2, mesh1], placement12.inverted(), margin, culling, &tested, near, found);
-    } else {
-        walk_larger([mesh1, mesh2], placement12, margin, culling, &tested, near, found);
-    }
-    counters.aabb_tests(tested.get());
+/// A descent of the BVHs of two meshes.
+pub(crate) struct BvhDescent<'a> {
+    /// The larger mesh, and the other one.
+    meshes: [&'a MeshView<'a>; 2],
+    /// True if the larger mesh is mesh 2.
+    is_swapped: bool,
+    in_frame1: BoxTest,
+    in_frame2: BoxTest,
+    test: LeafTest,
 }
 
-/// Descends with mesh 1 as the larger one. Counts tests in `tested`.
-fn walk_larger(
-    [mesh1, mesh2]: [&MeshView<'_>; 2],
-    placement12: Placement,
-    margin: f32,
-    culling: Option<LateralCulling>,
-    tested: &Cell<u32>,
-    near1: &mut Vec<u32>,
-    mut found: impl FnMut([u32; 2]) -> ControlFlow<()>,
-) {
-    let [m1, m2] = [mesh1, mesh2].map(MeshView::magnitude);
-    let in_frame1 = BoxTest::new([m1, m2], &placement12, margin);
-    let whole = in_frame1.of(TestedBox::new(mesh2.root().mins, mesh2.root().maxs));
-    near1.clear();
-    let meets = |near: &NearBox<'_>, node| {
-        tested.set(tested.get() + 1);
-        near.meets(node)
-    };
-    let _ = mesh1.near(
-        |node| meets(&whole, node),
-        |triangle| {
-            near1.push(triangle);
-            ControlFlow::Continue(())
-        },
-    );
-    if near1.is_empty() {
-        return;
+impl<'a> BvhDescent<'a> {
+    /// A descent to all pairs of triangles within `margin` except those that `culling` excludes.
+    pub(crate) fn new(
+        meshes: [&'a MeshView<'a>; 2],
+        placement12: Placement,
+        margin: f32,
+        culling: Option<LateralCulling>,
+    ) -> Self {
+        let [mesh1, mesh2] = meshes;
+        if mesh1.size_squared() < mesh2.size_squared() {
+            Self::of_larger([mesh2, mesh1], true, placement12.inverted(), margin, culling)
+        } else {
+            Self::of_larger(meshes, false, placement12, margin, culling)
+        }
     }
-    // The margin is a distance in frame 1; quaternions far from unit length scale it.
-    let scale = placement12.rotation.x_axis.length();
-    let margin2 = ((f64::from(margin) / scale) as f32).next_up();
-    let in_frame2 = BoxTest::new([m2, m1], &placement12.inverted(), margin2);
-    let frame: PairFrame = PairFrame::within([m1, m2], placement12, margin);
-    let test = LeafTest::new(&frame).with_culling(culling);
-    let is_near = |many: &&[u32]| {
-        let group = in_frame2.of(mesh1.tested(many));
-        let is_first_enough = |_| ControlFlow::Break(());
-        many.len() < FEW || mesh2.near(|node| meets(&group, node), is_first_enough).is_break()
-    };
-    let mut fours = near1.chunks(MANY).filter(is_near).flat_map(|many| many.chunks(BATCH));
-    let _ = fours.try_for_each(|triangles| {
+
+    fn of_larger(
+        meshes: [&'a MeshView<'a>; 2],
+        is_swapped: bool,
+        placement12: Placement,
+        margin: f32,
+        culling: Option<LateralCulling>,
+    ) -> Self {
+        let [m1, m2] = meshes.map(MeshView::magnitude);
+        // The margin is a distance in frame 1; quaternions far from unit length scale it.
+        let scale = placement12.rotation.x_axis.length();
+        let margin2 = ((f64::from(margin) / scale) as f32).next_up();
+        let frame: PairFrame = PairFrame::within([m1, m2], placement12, margin);
+        Self {
+            meshes,
+            is_swapped,
+            in_frame1: BoxTest::new([m1, m2], &placement12, margin),
+            in_frame2: BoxTest::new([m2, m1], &placement12.inverted(), margin2),
+            test: LeafTest::new(&frame).with_culling(culling),
+        }
+    }
+
+    /// Replaces `near` by the triangles of the larger mesh that are near the box of the other one.
+    pub(crate) fn list_near(&self, near: &mut Vec<u32>, mut counters: impl Counters) {
+        let [mesh1, mesh2] = self.meshes;
+        let whole = self.in_frame1.of(TestedBox::new(mesh2.root().mins, mesh2.root().maxs));
+        near.clear();
+        let tested = Cell::new(0);
+        let meets = |node: TestedBox| {
+            tested.set(tested.get() + 1);
+            whole.meets(node)
+        };
+        let _ = mesh1.near(meets, |triangle| {
+            near.push(triangle);
+            ControlFlow::Continue(())
+        });
+        counters.aabb_tests(tested.get());
+    }
+
+    /// Calls `found` with the pairs of some of these triangles, and few others, in any order, until it breaks.
+    pub(crate) fn pairs(
+        &self,
+        near: &[u32],
+        mut counters: impl Counters,
+        mut found: impl FnMut([u32; 2]) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let [mesh1, mesh2] = self.meshes;
+        let tested = Cell::new(0);
+        let meets = |near: &NearBox<'_>, node: TestedBox| {
+            tested.set(tested.get() + 1);
+            near.meets(node)
+        };
+        let is_near = |many: &&[u32]| {
+            let group = self.in_frame2.of(mesh1.tested(many));
+            let is_first_enough = |_| ControlFlow::Break(());
+            many.len() < FEW || mesh2.near(|node| meets(&group, node), is_first_enough).is_break()
+        };
+        let mut fours = near.chunks(MANY).filter(is_near).flat_map(|many| many.chunks(BATCH));
+        let flow = fours.try_for_each(|triangles| {
+            let group = self.in_frame2.of(mesh1.tested(triangles));
+            self.pairs_of_four(triangles, |node| meets(&group, node), &mut found)
+        });
+        counters.aabb_tests(tested.get());
+        flow
+    }
+
+    /// Calls `found` with the pairs of up to four triangles of the larger mesh.
+    fn pairs_of_four(
+        &self,
+        triangles: &[u32],
+        meets: impl Fn(TestedBox) -> bool,
+        found: &mut impl FnMut([u32; 2]) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let [mesh1, mesh2] = self.meshes;
         let batch1 = LeafBatch::gather(triangles, |triangle| mesh1.corners(triangle));
-        let group = in_frame2.of(mesh1.tested(triangles));
         let mut decide = |near2: &[u32]| {
             let batch2 = LeafBatch::gather(near2, |triangle| mesh2.corners(triangle));
             let mut flow = ControlFlow::Continue(());
-            test.survivors(&batch1, &batch2, |lane1, lane2| {
+            self.test.survivors(&batch1, &batch2, |lane1, lane2| {
                 if flow.is_continue() {
-                    flow = found([triangles[lane1], near2[lane2]]);
+                    let [one, two] = [triangles[lane1], near2[lane2]];
+                    flow = found(if self.is_swapped { [two, one] } else { [one, two] });
                 }
             });
             flow
         };
         let mut waiting = ArrayVec::<u32, BATCH>::new();
-        mesh2.near(
-            |node| meets(&group, node),
-            |triangle2| {
-                waiting.push(triangle2);
-                if !waiting.is_full() {
-                    return ControlFlow::Continue(());
-                }
-                decide(&waiting)?;
-                waiting.clear();
-                ControlFlow::Continue(())
-            },
-        )?;
+        mesh2.near(meets, |triangle2| {
+            waiting.push(triangle2);
+            if !waiting.is_full() {
+                return ControlFlow::Continue(());
+            }
+            decide(&waiting)?;
+            waiting.clear();
+            ControlFlow::Continue(())
+        })?;
         if waiting.is_empty() { ControlFlow::Continue(()) } else { decide(&waiting) }
-    });
+    }
 }

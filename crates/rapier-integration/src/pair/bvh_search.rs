@@ -11,7 +11,7 @@ use parry3d::partitioning::{Bvh, BvhNode, BvhNodeIndex, TraversalAction};
 use sbbk_core::query::FoundPair;
 use sbbk_core::traverse::Placement;
 
-use super::bvh_descent::walk;
+use super::bvh_descent::BvhDescent;
 use crate::mesh::MeshView;
 
 /// Share of the coordinates by which bounds are lower than computed, for rounding in f64.
@@ -134,7 +134,9 @@ impl BvhSearch<'_> {
     /// Calls `found` with all pairs of triangles within `limit`, until it breaks.
     pub(crate) fn all(&self, limit: f64, mut found: impl FnMut(FoundPair) -> ControlFlow<()>) {
         let (margin, near) = ((limit.max(0.0) as Real).next_up(), &mut Vec::new());
-        walk(self.meshes, self.placement, margin, None, (), near, |triangles| {
+        let descent = BvhDescent::new(self.meshes, self.placement, margin, None);
+        descent.list_near(near, ());
+        let _ = descent.pairs(near, (), |triangles| {
             self.pair(triangles, limit).map_or(ControlFlow::Continue(()), &mut found)
         });
     }

@@ -103,6 +103,12 @@ impl OverlapIslands {
         self.separation = None;
     }
 
+    /// Adds the pairs of the next part of the first pass.
+    pub(super) fn append(&mut self, next: Self) {
+        self.crossings.extend(next.crossings);
+        self.touching.extend(next.touching);
+    }
+
     /// Gives back memory beyond that for `limit` pairs.
     pub(super) fn shrink_to(&mut self, limit: usize) {
         if self.crossings.capacity().max(self.touching.capacity()) > limit {

@@ -14,9 +14,8 @@
 //! another field, scale, flag, or a removed triangle is noticed at once. An added triangle is
 //! noticed at the next descent.
 
-use std::cell::RefCell;
 use std::ops::ControlFlow;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use glamx::DVec3;
 use parry3d::bounding_volume::Aabb;
@@ -26,13 +25,14 @@ use parry3d::shape::{HeightField, Triangle, TrianglePseudoNormals};
 use sbbk_core::contact::Feature;
 use sbbk_core::field::{FieldFrame, FieldLeaves};
 use sbbk_core::surface::{Facets, HalfEdges, OneRing, PlaceMemo, Side, SurfaceKind};
-use sbbk_core::traverse::{Counters, Placement};
+use sbbk_core::traverse::{DescentCounts, Placement};
 use sbbk_core::tree::{BATCH, LeafBatch};
 
 use super::field::{Field, FieldToken};
 use super::inside::{InsideTest, way_out};
 use super::pose::{MeshPlace, PairPose};
 use super::reduce::PatchPlan;
+use super::state::Candidate;
 use super::surface::filter_distance;
 use super::triangles::{Cones, Hint, TriangleQuery, TriangleScratch, TriangleShapes};
 use super::update::{Moving, Pair};
@@ -92,7 +92,7 @@ impl<'a> Pair for FieldPair<'a> {
             field: Field(self.field),
             filter_distance: filter_distance(surface.is_some(), radius),
             surface,
-            cone: RefCell::new((u32::MAX, None)),
+            cone: Mutex::new((u32::MAX, None)),
         };
         let query = TriangleQuery {
             shapes,
@@ -114,7 +114,7 @@ pub(crate) struct MeshAndField<'q> {
     filter_distance: f64,
     /// Normal cone of one triangle of the field. Contacts of a triangle follow each other, and
     /// Parry computes the cone from four triangles.
-    cone: RefCell<(u32, Option<TrianglePseudoNormals>)>,
+    cone: Mutex<(u32, Option<TrianglePseudoNormals>)>,
 }
 
 /// The triangles of either.
@@ -181,9 +181,9 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
     fn descend(
         &self,
         margin: Real,
-        counters: &mut impl Counters,
+        counts: &mut DescentCounts,
         scratch: &mut TriangleScratch,
-        mut found: impl FnMut([u32; 2]),
+        found: &mut Vec<Candidate<Hint>>,
     ) {
         let mesh = &self.pair.mesh;
         let frame = FieldFrame::new(&self.field, self.pair.mesh_placement(), margin);
@@ -199,9 +199,9 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
         );
         for triangles in near.chunks(BATCH) {
             let batch = LeafBatch::gather(triangles, |triangle| mesh.corners(triangle));
-            leaves.visit(&batch, &mut *counters, |triangle, of_mesh| {
+            leaves.visit(&batch, &mut *counts, |triangle, of_mesh| {
                 let pair = [of_mesh, self.field.id(triangle)];
-                found(self.pair.mesh_place.swap(pair));
+                found.push(Candidate::new(self.pair.mesh_place.swap(pair)));
             });
         }
     }
@@ -222,7 +222,7 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
         let place = self.pair.mesh_place;
         let [mesh, field] = place.swap(triangles);
         let of_mesh = self.pair.mesh.mesh.triangle_normal_constraints(mesh);
-        let cone = &mut *self.cone.borrow_mut();
+        let cone = &mut *self.cone.lock().unwrap_or_else(PoisonError::into_inner);
         if cone.0 != field {
             *cone = (field, self.field.0.triangle_normal_constraints(field));
         }

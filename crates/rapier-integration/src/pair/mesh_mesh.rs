@@ -1,6 +1,5 @@
-use std::cell::OnceCell;
 use std::ops::ControlFlow;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glamx::DVec3;
 use parry3d::bounding_volume::Aabb;
@@ -9,17 +8,23 @@ use parry3d::query::details::NormalConstraints;
 use parry3d::shape::Triangle;
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::surface::{OneRing, Side, SurfaceKind};
-use sbbk_core::traverse::{Counters, PairFrame, descend};
+use sbbk_core::traverse::{
+    Counters, DescentCounts, NodePair, PairFrame, begin_descent, descend_from,
+};
 use sbbk_core::tree::Tree;
 
-use super::bvh_descent::walk;
+use super::bvh_descent::BvhDescent;
 use super::bvh_search::BvhSearch;
 use super::far::{FarSearch, are_few};
 use super::inside::InsideTest;
+use super::parts::{has_threads, in_parts};
 use super::pose::PairPose;
 use super::reduce::PatchPlan;
+use super::state::Candidate;
 use super::surface::{filter_distance, lateral_culling, reach};
-use super::triangles::{Cones, Hint, TriangleHit, TriangleQuery, TriangleScratch, TriangleShapes};
+use super::triangles::{
+    Cones, DescentPart, Hint, TriangleHit, TriangleQuery, TriangleScratch, TriangleShapes,
+};
 use super::update::{Moving, Pair};
 use crate::mesh::{
     Change, MeshFacets, MeshStore, MeshSurface, MeshView, PairMesh, is_covered, nearest,
@@ -87,7 +92,7 @@ impl<'a> Pair for MeshPair<'a> {
                 surfaces,
                 room,
                 filter_distance,
-                reach: OnceCell::new(),
+                reach: OnceLock::new(),
                 cache,
             },
             pose: self.pose,
@@ -108,8 +113,61 @@ pub(crate) struct Meshes<'q> {
     /// The mesh that is a room for the other one, and has no inside.
     pub(super) room: Option<usize>,
     filter_distance: f64,
-    reach: OnceCell<Real>,
+    reach: OnceLock<Real>,
     cache: &'q MeshStore,
+}
+
+/// Pairs of nodes or a few more at which the parts of a descent start. Higher: fewer descents are split; lower: one
+/// part may have all that is near.
+const STARTS: usize = 1024;
+
+/// Least number of these for a part. Higher: one part may have all that is near; lower: parts of microseconds.
+const LEAST_STARTS: usize = 32;
+
+/// Least number of triangles of the larger mesh for a part of a descent of BVHs, likewise.
+const LEAST_NEAR: usize = 64;
+
+impl Meshes<'_> {
+    fn descend_trees(
+        &self,
+        trees: (&Tree, &Tree),
+        margin: Real,
+        start: &mut Vec<NodePair>,
+        descent: &mut DescentPart,
+    ) {
+        let MeshPair { pose, .. } = self.pair;
+        let mut frame = PairFrame::at(trees, pose.placement12, margin);
+        let culling = lateral_culling(self, pose, margin);
+        let test = LeafTest::new(&frame).with_culling(culling);
+        let count = if has_threads() { STARTS } else { 1 };
+        begin_descent(trees, &mut frame, count, start, &mut descent.counts);
+        let least = if start.len() < STARTS { STARTS } else { LEAST_STARTS };
+        in_parts(start, least, descent, &|start: &mut [_], part: &mut DescentPart| {
+            let DescentPart { found, counts, stack } = part;
+            let frame = &mut frame.clone();
+            descend_from(start, trees, frame, stack, counts, |batch1, batch2| {
+                test.survivors(batch1, batch2, |lane1, lane2| {
+                    let pair = [batch1.triangles()[lane1], batch2.triangles()[lane2]];
+                    found.push(Candidate::new(pair));
+                });
+            });
+        });
+    }
+
+    fn descend_bvhs(&self, margin: Real, near: &mut Vec<u32>, descent: &mut DescentPart) {
+        let MeshPair { pose, meshes, .. } = self.pair;
+        let culling = lateral_culling(self, pose, margin);
+        let search = BvhDescent::new(meshes.each_ref(), pose.placement12, margin, culling);
+        search.list_near(near, &mut descent.counts);
+        in_parts(near, LEAST_NEAR, descent, &|near: &mut [u32], part: &mut DescentPart| {
+            let DescentPart { found, counts, .. } = part;
+            let _ = search.pairs(near, counts, |pair| {
+                found.push(Candidate::new(pair));
+                ControlFlow::Continue(())
+            });
+        });
+        self.cache.count_walk();
+    }
 }
 
 impl<'q> TriangleShapes for Meshes<'q> {
@@ -138,29 +196,17 @@ impl<'q> TriangleShapes for Meshes<'q> {
     fn descend(
         &self,
         margin: Real,
-        counters: &mut impl Counters,
-        scratch: &mut TriangleScratch,
-        mut found: impl FnMut([u32; 2]),
+        counts: &mut DescentCounts,
+        TriangleScratch { near, start, descent, .. }: &mut TriangleScratch,
+        found: &mut Vec<Candidate<Hint>>,
     ) {
-        let placement12 = self.pair.pose.placement12;
-        let culling = lateral_culling(self, self.pair.pose, margin);
-        let Some([tree1, tree2]) = self.trees else {
-            let meshes = self.pair.meshes.each_ref();
-            let near = &mut scratch.near;
-            walk(meshes, placement12, margin, culling, counters, near, |pair| {
-                found(pair);
-                ControlFlow::Continue(())
-            });
-            return self.cache.count_walk();
-        };
-        let trees = (tree1, tree2);
-        let mut frame = PairFrame::at(trees, placement12, margin);
-        let (test, stack) = (LeafTest::new(&frame).with_culling(culling), &mut scratch.descent);
-        descend(trees, &mut frame, stack, counters, |batch1, batch2| {
-            test.survivors(batch1, batch2, |lane1, lane2| {
-                found([batch1.triangles()[lane1], batch2.triangles()[lane2]]);
-            });
-        });
+        std::mem::swap(found, &mut descent.found);
+        match self.trees {
+            Some(trees) => self.descend_trees(trees.into(), margin, start, descent),
+            None => self.descend_bvhs(margin, near, descent),
+        }
+        counts.part(&std::mem::take(&mut descent.counts));
+        std::mem::swap(found, &mut descent.found);
     }
 
     #[inline(always)]

@@ -6,6 +6,7 @@
 //! | [`state`] | what a host keeps with a pair: candidates, slack |
 //! | [`mesh_mesh`], [`mesh_field`] | the kinds whose shapes are both made of triangles |
 //! | [`triangles`] | contacts of these kinds, in one pass or two |
+//! | [`parts`] | parts of a heavy pair, on several threads |
 //! | [`far`] | contacts far beyond those that touch |
 //! | [`surface`], [`islands`], [`inside`] | contacts of surfaces from contacts of triangles |
 //! | [`convex`] | a mesh and convex shapes |
@@ -20,6 +21,7 @@ mod inside;
 mod islands;
 mod mesh_field;
 mod mesh_mesh;
+mod parts;
 mod passed;
 mod pose;
 mod reduce;

@@ -426,6 +426,7 @@ mod tests {
     use parry3d::math::{Pose, Vector};
     use parry3d::shape::{Ball, SharedShape, TriMesh};
     use sbbk_core::contact::contact;
+    use sbbk_core::traverse::DescentCounts;
     use sbbk_core::tree::BuildOptions;
 
     use super::*;
@@ -463,7 +464,9 @@ mod tests {
                 let shapes = mesh_pair.open(&cache, &mut known).1.shapes;
                 let mut found = Vec::new();
                 let scratch = &mut TriangleScratch::default();
-                shapes.descend(pose.prediction, &mut (), scratch, |pair| found.push(pair));
+                let tests = &mut DescentCounts::default();
+                shapes.descend(pose.prediction, tests, scratch, &mut found);
+                let mut found: Vec<_> = found.iter().map(|of| of.subshapes).collect();
                 found.sort_unstable();
                 let count = meshes.map(|mesh| mesh.indices().len() as u32);
                 for pair in (0..count[0]).flat_map(|i| (0..count[1]).map(move |j| [i, j])) {

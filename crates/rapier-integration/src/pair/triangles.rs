@@ -17,10 +17,11 @@ use sbbk_core::contact::{
 };
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Facets, OneRing};
-use sbbk_core::traverse::{Counters, DescentScratch, SlackLimits};
+use sbbk_core::traverse::{Counters, DescentCounts, DescentScratch, NodePair, SlackLimits};
 
 use super::inside::InsideTest;
 use super::islands::OverlapIslands;
+use super::parts::{PartResult, in_parts};
 use super::passed::PassedTriangles;
 use super::pose::PairPose;
 use super::reduce::{ContactSummary, PatchPlan};
@@ -37,7 +38,7 @@ pub(super) type Cones<'a> = [Option<&'a dyn NormalConstraints>; 2];
 pub(super) type Hint = Option<FeaturePair>;
 
 /// Two shapes made of triangles, and their surfaces.
-pub(crate) trait TriangleShapes {
+pub(crate) trait TriangleShapes: Sync {
     /// The triangles of either shape.
     type Facets<'f>: Facets
     where
@@ -45,13 +46,13 @@ pub(crate) trait TriangleShapes {
 
     fn moving(&self) -> Moving<'_>;
 
-    /// Calls `found` with all pairs of triangles within `margin`, and few others.
+    /// Adds all pairs of triangles within `margin`, and few others.
     fn descend(
         &self,
         margin: Real,
-        counters: &mut impl Counters,
+        counts: &mut DescentCounts,
         scratch: &mut TriangleScratch,
-        found: impl FnMut([u32; 2]),
+        found: &mut Vec<Candidate<Hint>>,
     );
 
     /// Calls `found` with [far](super::far) contacts. `is_apart`: no triangles are in reach.
@@ -115,6 +116,10 @@ pub(crate) trait TriangleShapes {
 /// have moved by 2.5. Higher: bodies that are deep leave faster; lower: they fall asleep inside.
 const DEEPEST: f64 = 4.0;
 
+/// Least number of candidates of a [part](super::parts). Higher: parts wait for each other; lower: threads
+/// take turns for parts of a few microseconds.
+const LEAST_CANDIDATES: usize = 256;
+
 /// A query about two shapes made of triangles.
 pub(crate) struct TriangleQuery<'q, S> {
     pub(super) shapes: S,
@@ -147,12 +152,53 @@ pub(super) enum ContactSource {
 /// Memory for queries.
 #[derive(Default)]
 pub(crate) struct TriangleScratch {
-    pub(super) descent: DescentScratch,
-    /// Triangles that a descent has found.
+    /// Triangles at which a descent starts.
     pub(super) near: Vec<u32>,
-    islands: OverlapIslands,
+    /// Nodes at which a descent starts.
+    pub(super) start: Vec<NodePair>,
+    pub(super) descent: DescentPart,
+    first: FirstPass,
     passed: PassedTriangles,
+}
+
+/// Result of a part of a descent, and memory for it.
+#[derive(Default)]
+pub(super) struct DescentPart {
+    pub(super) found: Vec<Candidate<Hint>>,
+    pub(super) counts: DescentCounts,
+    pub(super) stack: DescentScratch,
+}
+
+impl PartResult for DescentPart {
+    fn append(&mut self, next: Self) {
+        self.found.extend(next.found);
+        self.counts.part(&next.counts);
+    }
+}
+
+/// Result of the first pass over candidates, and memory for it.
+#[derive(Default)]
+struct FirstPass {
+    contacts: ContactList<TriangleSurfaceContact>,
+    islands: OverlapIslands,
+    /// True if triangles are in reach.
+    is_near: bool,
     clipped: ManifoldPoints,
+}
+
+impl FirstPass {
+    fn clear(&mut self) {
+        self.islands.clear();
+        self.is_near = false;
+    }
+}
+
+impl PartResult for FirstPass {
+    fn append(&mut self, next: Self) {
+        self.contacts.extend(next.contacts);
+        self.islands.append(next.islands);
+        self.is_near |= next.is_near;
+    }
 }
 
 impl Scratch for TriangleScratch {
@@ -160,7 +206,7 @@ impl Scratch for TriangleScratch {
         let many = limit.max(1024);
         self.near.clear();
         self.near.shrink_to(many);
-        self.islands.shrink_to(many);
+        self.first.islands.shrink_to(many);
         self.passed.shrink_to(many);
     }
 }
@@ -196,11 +242,11 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
     fn descend(
         &mut self,
         margin: Real,
-        counters: &mut impl Counters,
+        counts: &mut DescentCounts,
         scratch: &mut TriangleScratch,
-        found: impl FnMut([u32; 2]),
+        found: &mut Vec<Candidate<Hint>>,
     ) {
-        self.shapes.descend(margin, counters, scratch, found);
+        self.shapes.descend(margin, counts, scratch, found);
     }
 
     fn contacts(
@@ -210,36 +256,20 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         scratch: &mut TriangleScratch,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
-        let TriangleScratch { islands, passed, clipped, .. } = scratch;
-        islands.clear();
-        let mut is_apart = true;
-        for candidate in candidates {
-            if !limits.may_touch(candidate) {
-                continue;
-            }
-            let pair = candidate.subshapes;
-            let Some(triangles) = self.shapes.triangles(pair) else { continue };
-            let local = local_pair(&self.pose.placement12, &triangles);
-            let Some(contact) = touch(&local, candidate, limits) else { continue };
-            is_apart = false;
-            match self.filter(pair).apply(&local, contact, clipped) {
-                Verdict::None if is_touching(&local, &contact, NEARLY_TOUCHING) => {
-                    islands.add_touching(pair);
-                }
-                Verdict::None => {}
-                Verdict::Contact(contact) => contacts.push((pair, contact)),
-                Verdict::Crossing(crossing, contact) => {
-                    islands.add(crossing);
-                    contacts.extend(contact.map(|contact| (pair, contact)));
-                }
-            }
-        }
+        let TriangleScratch { first, passed, .. } = scratch;
+        first.clear();
+        std::mem::swap(&mut first.contacts, contacts);
+        in_parts(candidates, LEAST_CANDIDATES, first, &|part: &mut [_], first: &mut FirstPass| {
+            part.iter_mut().for_each(|candidate| self.first_pass(candidate, limits, first));
+        });
+        std::mem::swap(&mut first.contacts, contacts);
+        let FirstPass { islands, clipped, is_near, .. } = first;
         let separation = islands.is_undecided().then(|| self.shapes.separation()).flatten();
         if islands.finish_first_pass(separation) {
             self.second_pass(islands, clipped, contacts);
         }
         if limits.reach < f64::from(self.pose.prediction) {
-            self.add_far(is_apart, clipped, contacts);
+            self.add_far(!*is_near, clipped, contacts);
         }
         self.reject_passed(islands, passed, contacts);
         if contacts.is_empty() {
@@ -296,7 +326,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         points: &mut ContactPoints,
     ) {
         let Self { shapes, pose, .. } = self;
-        let clipped = &mut scratch.clipped;
+        let clipped = &mut scratch.first.clipped;
         points.points.clear();
         let Some(triangles) = shapes.triangles(*pair) else { return };
         shapes.with_constraints(*pair, |cones| {
@@ -319,6 +349,30 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
 }
 
 impl<S: TriangleShapes> TriangleQuery<'_, S> {
+    /// Adds the contact of a candidate, unless the surfaces have none there.
+    #[inline(always)]
+    fn first_pass(&self, candidate: &mut Candidate<Hint>, limits: Limits, first: &mut FirstPass) {
+        if !limits.may_touch(candidate) {
+            return;
+        }
+        let pair = candidate.subshapes;
+        let Some(triangles) = self.shapes.triangles(pair) else { return };
+        let local = local_pair(&self.pose.placement12, &triangles);
+        let Some(contact) = touch(&local, candidate, limits) else { return };
+        first.is_near = true;
+        match self.filter(pair).apply(&local, contact, &mut first.clipped) {
+            Verdict::None if is_touching(&local, &contact, NEARLY_TOUCHING) => {
+                first.islands.add_touching(pair);
+            }
+            Verdict::None => {}
+            Verdict::Contact(contact) => first.contacts.push((pair, contact)),
+            Verdict::Crossing(crossing, contact) => {
+                first.islands.add(crossing);
+                first.contacts.extend(contact.map(|contact| (pair, contact)));
+            }
+        }
+    }
+
     fn filter(&self, pair: [u32; 2]) -> SurfaceFilter<'_, S> {
         SurfaceFilter { shapes: &self.shapes, pose: self.pose, pair }
     }

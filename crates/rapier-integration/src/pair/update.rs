@@ -13,7 +13,7 @@ use std::thread::LocalKey;
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::{ContactManifold, ContactManifoldsWorkspace, TrackedContact};
-use sbbk_core::traverse::{Counters, Placement, SlackLimits, SlackPlan};
+use sbbk_core::traverse::{DescentCounts, Placement, SlackLimits, SlackPlan};
 use sbbk_core::volumes::Sphere;
 
 use super::pose::PairPose;
@@ -72,20 +72,20 @@ pub(crate) trait PairQuery {
     /// first in each query.
     fn contacts_without_candidates(
         &mut self,
-        _counters: &mut impl Counters,
+        _counts: &mut DescentCounts,
         _scratch: &mut Self::Scratch,
         _contacts: &mut ContactList<Self::Contact>,
     ) -> bool {
         false
     }
 
-    /// Calls `found` with all pairs of subshapes within `margin`, and few others, in any order.
+    /// Adds all pairs of subshapes within `margin`, and few others, in any order.
     fn descend(
         &mut self,
         margin: Real,
-        counters: &mut impl Counters,
+        counts: &mut DescentCounts,
         scratch: &mut Self::Scratch,
-        found: impl FnMut([u32; 2]),
+        found: &mut Vec<Candidate<Self::Hint>>,
     );
 
     /// Adds the contacts of candidates, in the order of subshapes, at most one for two subshapes.
@@ -213,7 +213,7 @@ pub(super) struct Running<'r, Q: PairQuery> {
 pub(crate) fn update_manifolds<P, M, C>(
     pair: &P,
     cache: &Arc<MeshStore>,
-    mut counters: impl Counters,
+    counts: &mut DescentCounts,
     manifolds: &mut Vec<ContactManifold<M, C>>,
     workspace: &mut Option<ContactManifoldsWorkspace>,
 ) -> QueryOutcome
@@ -236,7 +236,7 @@ where
     let QueryMemory { scratch, contacts, reduction, points, demand } = &mut *lent;
     contacts.clear();
     let mut outcome = QueryOutcome::Descended;
-    if query.contacts_without_candidates(&mut counters, scratch, contacts) {
+    if query.contacts_without_candidates(counts, scratch, contacts) {
         memory.forget();
     } else {
         let (moving, reach) = (query.moving(), query.reach());
@@ -247,11 +247,7 @@ where
                 margin
             }
             SlackPlan::Descend { margin, .. } => {
-                memory.replace(|candidates| {
-                    query.descend(margin, &mut counters, scratch, |subshapes| {
-                        candidates.push(Candidate::new(subshapes));
-                    });
-                });
+                memory.replace(|found| query.descend(margin, counts, scratch, found));
                 margin
             }
         };

@@ -9,7 +9,7 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::math::Real;
 use parry3d::query::details::NormalConstraints;
 use sbbk_core::surface::{Side, SurfaceKind};
-use sbbk_core::traverse::{Counters, SlackLimits};
+use sbbk_core::traverse::{DescentCounts, SlackLimits};
 use sbbk_core::volumes::rounding::gamma;
 
 use super::contact::{PartContact, ball_contact, core_contact};
@@ -210,7 +210,7 @@ impl PairQuery for ConvexQuery<'_> {
     /// Serves balls, whose contacts and box tests cost less than to keep candidates.
     fn contacts_without_candidates(
         &mut self,
-        counters: &mut impl Counters,
+        counts: &mut DescentCounts,
         scratch: &mut ConvexScratch,
         contacts: &mut ContactList<PartContact>,
     ) -> bool {
@@ -221,7 +221,7 @@ impl PairQuery for ConvexQuery<'_> {
         let placed = self.placed(0, &part, scratch);
         let (prediction, margin) = (self.pose().prediction, self.reach());
         let (radius, farthest) = (f64::from(ball.radius), f64::from(prediction));
-        triangles_near(placed, shape, mesh, margin, counters, |index| {
+        triangles_near(placed, shape, mesh, margin, counts, |index| {
             let corners = placed.in_part(mesh.corners(index));
             if let Some(contact) = ball_contact(&corners, f64::from(margin) + radius)
                 && contact.distance - radius <= farthest
@@ -242,16 +242,16 @@ impl PairQuery for ConvexQuery<'_> {
     fn descend(
         &mut self,
         margin: Real,
-        counters: &mut impl Counters,
+        counts: &mut DescentCounts,
         scratch: &mut ConvexScratch,
-        mut found: impl FnMut([u32; 2]),
+        found: &mut Vec<Candidate<()>>,
     ) {
         let ConvexPair { ref mesh, parts, mesh_place, .. } = *self.pair;
         parts.intersecting(&self.pair.mesh_box(margin), |index| {
             parts.with(index, |part| {
                 let placed = self.placed(index, &part, scratch);
-                triangles_near(placed, part.shape, mesh, margin, &mut *counters, |triangle| {
-                    found(mesh_place.swap([triangle, index]));
+                triangles_near(placed, part.shape, mesh, margin, &mut *counts, |triangle| {
+                    found.push(Candidate::new(mesh_place.swap([triangle, index])));
                     ControlFlow::Continue(())
                 });
             });
