@@ -32,7 +32,7 @@ impl Environment {
         Self {
             cpu: model.unwrap_or(std::env::consts::ARCH).to_owned(),
             cores: available_parallelism().map_or(1, usize::from),
-            rapier: "on one thread",
+            rapier: if cfg!(feature = "parallel") { "on its threads" } else { "on one thread" },
             rustc: said_by("rustc", &["--version"]),
             profile: if cfg!(debug_assertions) { "debug assertions" } else { "release" },
             simd: match () {

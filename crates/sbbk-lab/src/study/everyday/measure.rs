@@ -66,6 +66,20 @@ impl<'a> Everyday<'a> {
         Self { row, steps, build: Box::new(build), prepared: Vec::new() }
     }
 
+    /// The same scene on so many threads.
+    #[cfg(feature = "parallel")]
+    pub fn on_threads(self, study: &'static str, threads: usize) -> Self {
+        let Self { row, steps, build, prepared } = self;
+        let build = move || {
+            let mut driven = build();
+            let pool = driven.world.configure_thread_pool(threads);
+            pool.expect("the machine has memory for threads");
+            driven
+        };
+        let row = Row { study, ..row }.key("threads", threads);
+        Self { row, steps, build: Box::new(build), prepared }
+    }
+
     /// Runs the scene `repeats` times on both backends, step by step in turns.
     pub fn measure(&self, phase: String, repeats: usize, progress: &Progress) -> [Row; 2] {
         let repeats = repeats.max(1);

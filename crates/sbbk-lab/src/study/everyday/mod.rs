@@ -6,6 +6,9 @@
 //! Brute force in f64 judges contacts of both at poses of stock's run.
 
 use crate::prelude::*;
+#[cfg(feature = "parallel")]
+use std::collections::BTreeSet;
+
 mod advise;
 mod judged;
 mod measure;
@@ -25,6 +28,8 @@ const SENSORS: &str = "everyday: sensors and characters";
 const PILE: &str = "everyday: pile";
 const FINE: &str = "everyday: fine meshes";
 const QUERIES: &str = "everyday: queries";
+#[cfg(feature = "parallel")]
+const THREADS: &str = "everyday: threads";
 /// Rapier's prediction distance, in units.
 const PREDICTION: Real = 0.02;
 
@@ -43,6 +48,9 @@ pub enum Group {
     Pile,
     /// Piles of tori with few and with many triangles, and parts of centimetres.
     Fine,
+    /// One heavy pair, some heavy and many light ones on one thread, two and all.
+    #[cfg(feature = "parallel")]
+    Threads,
     /// Single queries without a workspace.
     Queries,
 }
@@ -209,6 +217,18 @@ impl Worlds<'_> {
                 let tori = plan.tubes.iter().map(|&tube| scenes::tori(tube, plan.steps));
                 let scenes: Vec<_> = tori.chain([scenes::parts(plan.steps)]).collect();
                 self.measure("fine meshes", &scenes);
+            }
+            #[cfg(feature = "parallel")]
+            Group::Threads => {
+                let all = std::thread::available_parallelism().map_or(1, usize::from);
+                let counts = BTreeSet::from([1, 2, all]);
+                let scenes = counts.into_iter().flat_map(|threads| {
+                    let [heavy, light] =
+                        [scenes::tori(52, plan.steps), scenes::pile(plan.heads, plan.steps)];
+                    let scenes = [scenes::two_tori(108, plan.steps / 4), heavy, light];
+                    scenes.map(|scene| scene.on_threads(THREADS, threads))
+                });
+                self.measure("threads", &scenes.collect::<Vec<_>>());
             }
             Group::Queries => {
                 self.progress.phase("queries on terrains", plan.query_cells.len());

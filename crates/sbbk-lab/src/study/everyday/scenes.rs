@@ -278,6 +278,26 @@ pub(super) fn tori(tube: u32, steps: usize) -> Everyday<'static> {
     Everyday::new(row, steps, move || Driven::alone(pile.build().world))
 }
 
+/// A torus that slides along another one, both with so many segments around the tube.
+#[cfg(feature = "parallel")]
+pub(super) fn two_tori(tube: u32, steps: usize) -> Everyday<'static> {
+    let torus = mesh::torus(1.0, 0.4, 3 * tube, tube);
+    let row = Row::new(FINE, "").key("scene", "a torus that slides along another");
+    let row = row.key("triangles", torus.triangle_count());
+    let torus = plain(&torus);
+    Everyday::new(row, steps, move || {
+        let mut world = PhysicsWorld::new();
+        // The body moves less than what Rapier takes for rest.
+        world.integration_parameters.contact_recycling = false;
+        world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(torus.clone()));
+        let place = |step: usize| Vec3::new(0.002 * step as f32, 0.79, 0.1);
+        let turned = Pose3::from_parts(place(0), Quat::from_rotation_y(0.2));
+        let body = RigidBodyBuilder::dynamic().pose(turned).lock_rotations();
+        let (body, _) = world.insert(body, ColliderBuilder::new(torus.clone()));
+        Driven::by(world, move |world, step| put(world, body, place(step)))
+    })
+}
+
 /// Heads of 2 to 5 cm that fall into a bowl at Rapier's default length unit.
 pub(super) fn parts(steps: usize) -> Everyday<'static> {
     const COUNT: u32 = 12;
