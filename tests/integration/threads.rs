@@ -50,8 +50,7 @@ fn cone(sides: u32) -> Mesh {
     Mesh::new("cone", vertices, triangles.collect())
 }
 
-/// Would catch parts in another order, candidates or contacts that a part loses, and sums that depend on the thread
-/// that asks first.
+/// Would catch parts in another order, lost candidates, and sums that depend on the first thread to ask.
 #[test]
 fn heavy_pairs_have_the_same_bits_on_any_number_of_threads() {
     let on_top = Pose::from_parts(Vec3::new(0.01, 0.79, 0.02), Quat::from_rotation_y(0.2));

@@ -87,7 +87,7 @@ impl<'a> BvhDescent<'a> {
         counters.aabb_tests(tested.get());
     }
 
-    /// Calls `found` with the pairs of some of these triangles, and few others, in any order, until it breaks.
+    /// Calls `found` with the pairs of triangles in `near`, in any order, until it breaks.
     pub(crate) fn pairs(
         &self,
         near: &[u32],

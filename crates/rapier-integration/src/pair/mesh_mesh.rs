@@ -121,10 +121,10 @@ pub(crate) struct Meshes<'q> {
 /// part may have all that is near.
 const STARTS: usize = 1024;
 
-/// Least number of these for a part. Higher: one part may have all that is near; lower: parts of microseconds.
+/// Least number of node pairs in a part. Higher: one part may have all that is near; lower: parts of microseconds.
 const LEAST_STARTS: usize = 32;
 
-/// Least number of triangles of the larger mesh for a part of a descent of BVHs, likewise.
+/// Least number of triangles of the larger mesh in a part of a BVH descent. Higher, lower: see [`LEAST_STARTS`].
 const LEAST_NEAR: usize = 64;
 
 impl Meshes<'_> {

@@ -28,8 +28,7 @@ fn join(first: impl FnOnce() + Send, second: impl FnOnce() + Send) {
     }
 }
 
-/// Calls `work` with all items, and collects what it adds to `result`. If there are threads, parts have `least` items to
-/// twice as many.
+/// Calls `work` with all items: at once, or in parts of at least `least` items on several threads.
 pub(super) fn in_parts<T: Send, R: PartResult>(
     items: &mut [T],
     least: usize,

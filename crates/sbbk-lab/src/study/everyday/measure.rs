@@ -66,7 +66,7 @@ impl<'a> Everyday<'a> {
         Self { row, steps, build: Box::new(build), prepared: Vec::new() }
     }
 
-    /// The same scene on so many threads.
+    /// Makes the scene run on `threads` threads.
     #[cfg(feature = "parallel")]
     pub fn on_threads(self, study: &'static str, threads: usize) -> Self {
         let Self { row, steps, build, prepared } = self;

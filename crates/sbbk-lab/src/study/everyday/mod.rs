@@ -48,7 +48,7 @@ pub enum Group {
     Pile,
     /// Piles of tori with few and with many triangles, and parts of centimetres.
     Fine,
-    /// One heavy pair, some heavy and many light ones on one thread, two and all.
+    /// Heavy and light pairs on one thread, on two, and on all.
     #[cfg(feature = "parallel")]
     Threads,
     /// Single queries without a workspace.
