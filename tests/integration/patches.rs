@@ -1,6 +1,7 @@
 //! A few manifolds for all contacts of two shapes, beside every contact at the same pose.
 
 use std::collections::BTreeSet;
+use std::f32::consts::TAU;
 
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
@@ -187,17 +188,18 @@ fn patches_stand_for_every_contact() {
     }
 }
 
-/// A box with six legs, three by two.
+/// A box with six legs at the corners of a hexagon.
 fn table() -> Mesh {
     let legs = (0..6).map(|i: u8| {
-        let at = Vec3::new(0.8 * f32::from(i % 3) - 0.8, -0.7, 1.0 * f32::from(i / 3) - 0.5);
+        let (sin, cos) = (TAU * f32::from(i) / 6.0).sin_cos();
+        let at = Vec3::new(0.9 * cos, -0.7, 0.9 * sin);
         mesh::cuboid(Vec3::new(0.05, 0.3, 0.05), 2).posed(&Pose3::from_translation(at))
     });
-    let top = mesh::cuboid(Vec3::new(1.0, 0.4, 0.7), 4);
+    let top = mesh::cuboid(Vec3::new(1.0, 0.4, 1.0), 4);
     Mesh::merged("table", &legs.chain([top]).collect::<Vec<_>>())
 }
 
-/// Would catch supports that are lost, as four points under a table with six legs would be.
+/// Would catch supports that are lost, as two of six legs at the corners of a hexagon would be.
 #[test]
 fn a_patch_for_each_leg() {
     let table = shape(&table());
@@ -209,7 +211,8 @@ fn a_patch_for_each_leg() {
             let at = Pose3::from_parts(Vec3::Y * (height + 0.999), Quat::from_rotation_y(turn));
             let found = fresh(&dispatcher, &Question::new(other, &table, at).within(0.002));
             let mut legs: Vec<_> = (found.iter().flat_map(|m| &m.points))
-                .map(|point| [point.local_p2.x, point.local_p2.z].map(|x| (2.0 * x).round() as i32))
+                .map(|point| (point.local_p2.z.atan2(point.local_p2.x) / TAU * 6.0).round() as i32)
+                .map(|sixth| sixth.rem_euclid(6))
                 .collect();
             legs.sort_unstable();
             legs.dedup();

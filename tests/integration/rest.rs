@@ -163,7 +163,8 @@ fn a_box_slides_over_internal_edges_whatever_the_flags() {
         assert!((share - 1.0).abs() < 0.01, "{velocity} takes it {share} of the way, {flags:?}");
         // One-sided cones let it slide under stock as well.
         if flags == TriMeshFlags::FIX_INTERNAL_EDGES {
-            assert_at_same_place([stock, sbbk], 1e-4, 1e-4);
+            // Stock has points in every triangle, and friction acts at other places.
+            assert_at_same_place([stock, sbbk], 2e-4, 1e-4);
         }
     }
 }

@@ -297,7 +297,7 @@ pub(super) fn write_patches<Q, M, C>(
         places.clear();
         places.extend(members.iter().map(|member| member.summary.place()));
         patch_points.clear();
-        for member in plan.outermost(places, members[0].summary.normal) {
+        for member in plan.outermost(places, members[0].summary.normal).chosen {
             let contact = members[member].contact;
             let of = &contacts[contact as usize];
             query.points(of, scratch, points);
@@ -315,7 +315,7 @@ pub(super) fn write_patches<Q, M, C>(
         patch_points.swap(0, deepest);
         places.clear();
         places.extend(patch_points.iter().map(|point| (point.point.local_p1, distance(point))));
-        let mut chosen = plan.outermost(places, patch_points[0].normals[0]);
+        let mut chosen = plan.outermost(places, patch_points[0].normals[0]).chosen;
         while !chosen.is_empty() {
             write_patch(plan, patch_points, &mut chosen, writer, |contact| contacts[contact].0);
         }
