@@ -163,8 +163,9 @@ fn a_box_slides_over_internal_edges_whatever_the_flags() {
         assert!((share - 1.0).abs() < 0.01, "{velocity} takes it {share} of the way, {flags:?}");
         // One-sided cones let it slide under stock as well.
         if flags == TriMeshFlags::FIX_INTERNAL_EDGES {
-            // Stock has points in every triangle, and friction acts at other places.
-            assert_at_same_place([stock, sbbk], 2e-4, 1e-4);
+            // Stock has points in every triangle, so friction acts at other places.
+            let most = 1e-4 * ideal(velocity).max(1.0);
+            assert_at_same_place([stock, sbbk], most, 1e-4);
         }
     }
 }
