@@ -2,7 +2,6 @@
 //!
 //! `cargo test --release --test integration growth -- --ignored --nocapture` prints the table.
 
-use std::f32::consts::TAU;
 use std::time::Instant;
 
 use glamx::{Quat, Vec3};
@@ -12,26 +11,7 @@ use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::{Ball, Compound, Cuboid, Shape, SharedShape};
 use sbbk_testkit::mesh::{self, Mesh};
 
-use crate::support::{Pair, Question, shape};
-
-/// A circle of triangles around a hub at the origin, whose rim is at a height.
-fn fan(count: u32, height: f32) -> Mesh {
-    let rim = |i: u32| {
-        let (sin, cos) = (TAU * i as f32 / count as f32).sin_cos();
-        Vec3::new(cos, height, sin)
-    };
-    let vertices = [Vec3::ZERO].into_iter().chain((0..count).map(rim)).collect();
-    let triangles = (0..count).map(|i| [0, 1 + (i + 1) % count, 1 + i]).collect();
-    Mesh::new("fan", vertices, triangles)
-}
-
-/// A cone with its tip at the origin, pointing down.
-fn cone(count: u32) -> Mesh {
-    let mesh::Mesh { vertices, mut triangles, .. } = fan(count, 2.0);
-    triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
-    triangles.extend((1..count - 1).map(|i| [1, 1 + i, 2 + i]).map(|[a, b, c]| [a, c, b]));
-    Mesh::new("cone", vertices, triangles)
-}
+use crate::support::{Pair, Question, cone, fan, shape};
 
 /// A mesh so many times at one place.
 fn layers(of: &Mesh, count: u32) -> Mesh {

@@ -1,6 +1,7 @@
 //! Questions to a dispatcher, comparisons, meshes and poses.
 
 use std::collections::BTreeMap;
+use std::f32::consts::TAU;
 
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
@@ -239,6 +240,25 @@ pub fn assert_bits<M, C>(
 ) {
     let all = |manifolds: &[ContactManifold<M, C>]| manifolds.iter().map(bits).collect::<Vec<_>>();
     assert!(all(found) == all(expected), "{context}");
+}
+
+/// A circle of triangles around a hub at the origin, whose rim is at a height.
+pub fn fan(count: u32, height: f32) -> Mesh {
+    let rim = |i: u32| {
+        let (sin, cos) = (TAU * i as f32 / count as f32).sin_cos();
+        Vec3::new(cos, height, sin)
+    };
+    let vertices = [Vec3::ZERO].into_iter().chain((0..count).map(rim)).collect();
+    let triangles = (0..count).map(|i| [0, 1 + (i + 1) % count, 1 + i]).collect();
+    Mesh::new("fan", vertices, triangles)
+}
+
+/// A cone with its tip at the origin, pointing down.
+pub fn cone(count: u32) -> Mesh {
+    let Mesh { vertices, mut triangles, .. } = fan(count, 2.0);
+    triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    triangles.extend((1..count - 1).map(|i| [1, 1 + i, 2 + i]).map(|[a, b, c]| [a, c, b]));
+    Mesh::new("cone", vertices, triangles)
 }
 
 /// Parry's mesh of a mesh of the laboratory.

@@ -1,7 +1,5 @@
 //! Pairs that are heavy enough for several threads.
 
-use std::f32::consts::TAU;
-
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
@@ -10,7 +8,7 @@ use rapier3d::parry::shape::SharedShape;
 use rayon::ThreadPoolBuilder;
 use sbbk_testkit::mesh::{self, Mesh};
 
-use crate::support::{Manifold, Pair, Question, assert_bits, every, nudge, shape};
+use crate::support::{Manifold, Pair, Question, assert_bits, cone, every, nudge, shape};
 
 /// Answers of a pair in motion on so many threads: the first one, and those after.
 fn answers(
@@ -36,18 +34,6 @@ fn answers(
 /// A torus with so many segments around the tube.
 fn torus(tube: u32) -> Mesh {
     mesh::torus(1.0, 0.4, 3 * tube, tube)
-}
-
-/// A cone of so many sides, the tip down at the origin.
-fn cone(sides: u32) -> Mesh {
-    let rim = (0..sides).map(|i| {
-        let (sin, cos) = (TAU * i as f32 / sides as f32).sin_cos();
-        Vec3::new(cos, 1.0, sin)
-    });
-    let vertices = [Vec3::ZERO, Vec3::Y].into_iter().chain(rim).collect();
-    let side = |i: u32| [2 + i, 2 + (i + 1) % sides];
-    let triangles = (0..sides).map(side).flat_map(|[a, b]| [[0, a, b], [1, b, a]]);
-    Mesh::new("cone", vertices, triangles.collect())
 }
 
 /// Would catch parts in another order, lost candidates, and sums that depend on the first thread to ask.

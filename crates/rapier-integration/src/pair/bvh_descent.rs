@@ -28,9 +28,10 @@ pub(crate) struct BvhDescent<'a> {
     meshes: [&'a MeshView<'a>; 2],
     /// True if the larger mesh is mesh 2.
     is_swapped: bool,
-    in_frame1: BoxTest,
-    in_frame2: BoxTest,
-    test: LeafTest,
+    /// The other mesh in the frame of the larger one.
+    placement12: Placement,
+    margin: f32,
+    culling: Option<LateralCulling>,
 }
 
 impl<'a> BvhDescent<'a> {
@@ -43,37 +44,19 @@ impl<'a> BvhDescent<'a> {
     ) -> Self {
         let [mesh1, mesh2] = meshes;
         if mesh1.size_squared() < mesh2.size_squared() {
-            Self::of_larger([mesh2, mesh1], true, placement12.inverted(), margin, culling)
+            let (meshes, placement12) = ([mesh2, mesh1], placement12.inverted());
+            Self { meshes, is_swapped: true, placement12, margin, culling }
         } else {
-            Self::of_larger(meshes, false, placement12, margin, culling)
-        }
-    }
-
-    fn of_larger(
-        meshes: [&'a MeshView<'a>; 2],
-        is_swapped: bool,
-        placement12: Placement,
-        margin: f32,
-        culling: Option<LateralCulling>,
-    ) -> Self {
-        let [m1, m2] = meshes.map(MeshView::magnitude);
-        // The margin is a distance in frame 1; quaternions far from unit length scale it.
-        let scale = placement12.rotation.x_axis.length();
-        let margin2 = ((f64::from(margin) / scale) as f32).next_up();
-        let frame: PairFrame = PairFrame::within([m1, m2], placement12, margin);
-        Self {
-            meshes,
-            is_swapped,
-            in_frame1: BoxTest::new([m1, m2], &placement12, margin),
-            in_frame2: BoxTest::new([m2, m1], &placement12.inverted(), margin2),
-            test: LeafTest::new(&frame).with_culling(culling),
+            Self { meshes, is_swapped: false, placement12, margin, culling }
         }
     }
 
     /// Replaces `near` by the triangles of the larger mesh that are near the box of the other one.
     pub(crate) fn list_near(&self, near: &mut Vec<u32>, mut counters: impl Counters) {
         let [mesh1, mesh2] = self.meshes;
-        let whole = self.in_frame1.of(TestedBox::new(mesh2.root().mins, mesh2.root().maxs));
+        let magnitudes = self.meshes.map(MeshView::magnitude);
+        let in_frame1 = BoxTest::new(magnitudes, &self.placement12, self.margin);
+        let whole = in_frame1.of(TestedBox::new(mesh2.root().mins, mesh2.root().maxs));
         near.clear();
         let tested = Cell::new(0);
         let meets = |node: TestedBox| {
@@ -94,21 +77,31 @@ impl<'a> BvhDescent<'a> {
         mut counters: impl Counters,
         mut found: impl FnMut([u32; 2]) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let [mesh1, mesh2] = self.meshes;
+        if near.is_empty() {
+            return ControlFlow::Continue(());
+        }
+        let Self { meshes: [mesh1, mesh2], placement12, margin, culling, .. } = *self;
+        let [m1, m2] = [mesh1, mesh2].map(MeshView::magnitude);
+        // The margin is a distance in frame 1; quaternions far from unit length scale it.
+        let scale = placement12.rotation.x_axis.length();
+        let margin2 = ((f64::from(margin) / scale) as f32).next_up();
+        let in_frame2 = BoxTest::new([m2, m1], &placement12.inverted(), margin2);
+        let frame: PairFrame = PairFrame::within([m1, m2], placement12, margin);
+        let test = LeafTest::new(&frame).with_culling(culling);
         let tested = Cell::new(0);
         let meets = |near: &NearBox<'_>, node: TestedBox| {
             tested.set(tested.get() + 1);
             near.meets(node)
         };
         let is_near = |many: &&[u32]| {
-            let group = self.in_frame2.of(mesh1.tested(many));
+            let group = in_frame2.of(mesh1.tested(many));
             let is_first_enough = |_| ControlFlow::Break(());
             many.len() < FEW || mesh2.near(|node| meets(&group, node), is_first_enough).is_break()
         };
         let mut fours = near.chunks(MANY).filter(is_near).flat_map(|many| many.chunks(BATCH));
         let flow = fours.try_for_each(|triangles| {
-            let group = self.in_frame2.of(mesh1.tested(triangles));
-            self.pairs_of_four(triangles, |node| meets(&group, node), &mut found)
+            let group = in_frame2.of(mesh1.tested(triangles));
+            self.pairs_of_four(triangles, &test, |node| meets(&group, node), &mut found)
         });
         counters.aabb_tests(tested.get());
         flow
@@ -118,6 +111,7 @@ impl<'a> BvhDescent<'a> {
     fn pairs_of_four(
         &self,
         triangles: &[u32],
+        test: &LeafTest,
         meets: impl Fn(TestedBox) -> bool,
         found: &mut impl FnMut([u32; 2]) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
@@ -126,7 +120,7 @@ impl<'a> BvhDescent<'a> {
         let mut decide = |near2: &[u32]| {
             let batch2 = LeafBatch::gather(near2, |triangle| mesh2.corners(triangle));
             let mut flow = ControlFlow::Continue(());
-            self.test.survivors(&batch1, &batch2, |lane1, lane2| {
+            test.survivors(&batch1, &batch2, |lane1, lane2| {
                 if flow.is_continue() {
                     let [one, two] = [triangles[lane1], near2[lane2]];
                     flow = found(if self.is_swapped { [two, one] } else { [one, two] });

@@ -8,9 +8,7 @@ use parry3d::query::details::NormalConstraints;
 use parry3d::shape::Triangle;
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::surface::{OneRing, Side, SurfaceKind};
-use sbbk_core::traverse::{
-    Counters, DescentCounts, NodePair, PairFrame, begin_descent, descend_from,
-};
+use sbbk_core::traverse::{DescentCounts, NodePair, PairFrame, begin_descent, descend_from};
 use sbbk_core::tree::Tree;
 
 use super::bvh_descent::BvhDescent;
@@ -205,7 +203,7 @@ impl<'q> TriangleShapes for Meshes<'q> {
             Some(trees) => self.descend_trees(trees.into(), margin, start, descent),
             None => self.descend_bvhs(margin, near, descent),
         }
-        counts.part(&std::mem::take(&mut descent.counts));
+        *counts += std::mem::take(&mut descent.counts);
         std::mem::swap(found, &mut descent.found);
     }
 

@@ -293,13 +293,13 @@ fn to_segment(a: Vec3, b: Vec3, point: Vec3) -> Real {
     (way - along * share.clamp(0.0, 1.0)).length_squared()
 }
 
-/// Least distance of a chosen point from the hull of those before, as a share of that of the second from the
-/// first. Higher: narrow sides lose corners; lower: rounding adds points to a line.
+/// Least distance of a chosen point from the hull, in distances between the first two points. Higher: narrow
+/// sides lose corners; lower: rounding adds points to a line.
 const LINE: Real = 1.0e-3;
 
 impl PatchPlan {
-    /// Returns up to four of `points`, which have distances. The first one is deepest. Each next one is farthest
-    /// from the convex hull of those before, seen along `normal`. Points that hover count as nearer. Lengths count
+    /// Returns up to four of `points`, which have distances. The first one is deepest. The others
+    /// extend the convex hull, seen along `normal`, as far as possible. Points that hover count as nearer. Lengths count
     /// by their squares: the corners of a slanted flat body still come first.
     pub(super) fn outermost(self, points: &[(Vec3, Real)], normal: Vec3) -> Outermost {
         let mut outermost = Outermost::new(normal);
@@ -375,7 +375,7 @@ mod tests {
     #[test]
     fn contacts_join_the_patch_of_their_part_direction_and_place() {
         let row = [0.0, 2.0, 4.0, 4.5, 6.0, 8.0].map(|x| summary(x, -0.1));
-        // The ends of the row carry what is between them.
+        // Contacts between the ends of a row have no patch.
         assert_eq!(patches(&row, PLAN), [(0, 0), (5, 0)]);
         assert_eq!(patches(&row, PatchPlan::FAR), [(0, 0), (5, 0)]);
         // Four corners of an octagon make a patch. Each other one is far from these, and stays in order.
@@ -389,7 +389,7 @@ mod tests {
         let all: Vec<_> = square.into_iter().chain(others).collect();
         assert_eq!(patches(&corners, PLAN), all);
         assert_eq!(patches(&corners, PatchPlan { size: 1.5, ..PLAN }), square);
-        // All but two hang over. Those that carry come first.
+        // Touching contacts are chosen before contacts that hover.
         let mut hanging = row.map(|row| ContactSummary { distance: 0.1, ..row });
         hanging[1].distance = -0.1;
         hanging[0].distance = -0.09;

@@ -17,7 +17,7 @@ use sbbk_core::contact::{
 };
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Facets, OneRing};
-use sbbk_core::traverse::{Counters, DescentCounts, DescentScratch, NodePair, SlackLimits};
+use sbbk_core::traverse::{DescentCounts, DescentScratch, NodePair, SlackLimits};
 
 use super::inside::InsideTest;
 use super::islands::OverlapIslands;
@@ -172,7 +172,7 @@ pub(super) struct DescentPart {
 impl PartResult for DescentPart {
     fn append(&mut self, next: Self) {
         self.found.extend(next.found);
-        self.counts.part(&next.counts);
+        self.counts += next.counts;
     }
 }
 

@@ -1,3 +1,5 @@
+use std::ops::AddAssign;
+
 /// Counts the work of a descent. `()` counts nothing and compiles to nothing.
 pub trait Counters {
     /// The root spheres were compared.
@@ -10,8 +12,6 @@ pub trait Counters {
     fn leaf_pair(&mut self) {}
     /// `count` cells of a height field were read.
     fn cells(&mut self, _count: usize) {}
-    /// A part of the work was counted elsewhere.
-    fn part(&mut self, _counts: &DescentCounts) {}
 }
 
 impl Counters for () {}
@@ -51,14 +51,16 @@ impl Counters for DescentCounts {
     fn cells(&mut self, count: usize) {
         self.cells += count as u64;
     }
+}
 
-    fn part(&mut self, counts: &DescentCounts) {
-        let Self { sphere_tests, aabb_tests, kdop_tests, leaf_pairs, cells } = self;
-        *sphere_tests += counts.sphere_tests;
-        *aabb_tests += counts.aabb_tests;
-        *kdop_tests += counts.kdop_tests;
-        *leaf_pairs += counts.leaf_pairs;
-        *cells += counts.cells;
+impl AddAssign for DescentCounts {
+    fn add_assign(&mut self, other: Self) {
+        let Self { sphere_tests, aabb_tests, kdop_tests, leaf_pairs, cells } = other;
+        self.sphere_tests += sphere_tests;
+        self.aabb_tests += aabb_tests;
+        self.kdop_tests += kdop_tests;
+        self.leaf_pairs += leaf_pairs;
+        self.cells += cells;
     }
 }
 
@@ -81,9 +83,5 @@ impl<C: Counters> Counters for &mut C {
 
     fn cells(&mut self, count: usize) {
         (**self).cells(count);
-    }
-
-    fn part(&mut self, counts: &DescentCounts) {
-        (**self).part(counts);
     }
 }
