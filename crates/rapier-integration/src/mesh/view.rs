@@ -88,6 +88,11 @@ pub(crate) fn nearest(mesh: &TriMesh, point: Vec3) -> Option<(u32, PointProjecti
     Some((triangle, nearest, behind))
 }
 
+/// Returns the nearest triangle of a mesh to a point, if that is within a distance.
+pub(crate) fn nearest_triangle(mesh: &TriMesh, point: Vec3, within: Real) -> Option<u32> {
+    Some(CompositeShapeRef(mesh).project_local_point(point, within, false)?.0)
+}
+
 /// True if a box is finite and not empty.
 fn is_valid(aabb: &Aabb) -> bool {
     aabb.mins.is_finite() && aabb.maxs.is_finite() && aabb.mins.cmple(aabb.maxs).all()

@@ -64,6 +64,46 @@ impl Field<'_> {
         Some((nearest, behind?))
     }
 
+    /// Returns a triangle within a distance of a point. Walks from the cell under the point to nearer triangles of
+    /// the cells around, so the triangle is the nearest one there. Another hill may be nearer.
+    pub(super) fn nearest_triangle(self, point: Vector, within: Real) -> Option<u32> {
+        let (mut least, mut nearest, mut at) = (Real::INFINITY, None, point);
+        for _ in 0..STEPS {
+            let around = self.nearest_around(at, point);
+            let nearer = around.filter(|(_, foot)| foot.distance(point) < least);
+            let Some((triangle, foot)) = nearer else { break };
+            (least, nearest, at) = (foot.distance(point), Some(self.id(triangle)), foot);
+        }
+        nearest.filter(|_| least <= within)
+    }
+
+    /// Returns the triangle that is nearest to a point, and its nearest point. Only the cell under `at` and the
+    /// cells around it count.
+    fn nearest_around(self, at: Vector, point: Vector) -> Option<(FieldTriangle, Vector)> {
+        let (row, column) = self.0.closest_cell_at_point(at);
+        let [columns, rows] = self.cell_counts();
+        let around = |line: usize, count: usize| line.saturating_sub(1)..(line + 2).min(count);
+        let cells = around(column, columns)
+            .flat_map(|column| around(row, rows).map(move |row| [column, row]));
+        let triangles = cells.flat_map(|cell| {
+            let of_side = move |(side, corners)| Some((FieldTriangle { cell, side }, corners?));
+            (0..2).zip(self.triangles(cell)).filter_map(of_side)
+        });
+        let feet = triangles.map(|(triangle, corners)| {
+            (triangle, Triangle::from(corners).project_local_point(point, false).point)
+        });
+        let distance = |(_, foot): &(_, Vector)| foot.distance_squared(point);
+        feet.min_by(|one, two| distance(one).total_cmp(&distance(two)))
+    }
+
+    /// Returns about the number of triangles under a box.
+    pub(super) fn count_under(self, around: &Aabb) -> f64 {
+        let Some(near) = around.intersection(self.0.root_aabb()) else { return 0.0 };
+        let cells = |extent: Real, width: Real| 1.0 + f64::from(extent / width.abs());
+        let Vector { x, z, .. } = near.extents();
+        2.0 * cells(x, self.0.cell_width()) * cells(z, self.0.cell_height())
+    }
+
     /// Returns the triangle of a number, if it exists and is finite.
     pub(super) fn triangle(self, id: u32) -> Option<Triangle> {
         let triangle = self.0.triangle_at_id(id)?;
@@ -154,6 +194,10 @@ impl HeightGrid for Field<'_> {
         [left, right].map(|triangle| triangle.map(|Triangle { a, b, c }| [a, b, c]))
     }
 }
+
+/// Greatest number of cells on the way to the nearest triangle. Higher: more time where cells are small; lower:
+/// triangles that are farther.
+const STEPS: usize = 32;
 
 /// Rounding of the projection of a point onto a triangle, as a share of the coordinates.
 const NEARLY: Real = 1.0e-6;

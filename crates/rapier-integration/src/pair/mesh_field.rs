@@ -28,16 +28,18 @@ use sbbk_core::surface::{Facets, HalfEdges, OneRing, PlaceMemo, Side, SurfaceKin
 use sbbk_core::traverse::{DescentCounts, Placement};
 use sbbk_core::tree::{BATCH, LeafBatch};
 
+use super::far::FEW;
 use super::field::{Field, FieldToken};
 use super::inside::{InsideTest, way_out};
 use super::pose::{MeshPlace, PairPose};
 use super::reduce::PatchPlan;
 use super::state::Candidate;
-use super::surface::filter_distance;
+use super::surface::{filter_distance, reach};
 use super::triangles::{Cones, Hint, TriangleQuery, TriangleScratch, TriangleShapes};
 use super::update::{Moving, Pair};
 use crate::mesh::{
     Change, MeshFacets, MeshStore, MeshSurface, MeshView, PairMesh, is_covered, nearest,
+    nearest_triangle,
 };
 
 /// A mesh and a height field.
@@ -58,6 +60,15 @@ impl FieldPair<'_> {
     /// The mesh in the frame of the field.
     fn mesh_placement(&self) -> &Placement {
         self.mesh_place.placements(self.pose)[0]
+    }
+
+    /// Returns true if few pairs of triangles may be within the prediction distance.
+    fn are_few(&self) -> bool {
+        let pos12 = self.pose.pos12;
+        let to_field = if self.mesh_place.is_second() { pos12 } else { pos12.inverse() };
+        let around = self.mesh.placed_root(&to_field, self.pose.prediction);
+        let of_mesh = self.mesh.mesh.indices().len() as f64;
+        of_mesh * Field(self.field).count_under(&around) <= FEW as f64
     }
 }
 
@@ -85,12 +96,15 @@ impl<'a> Pair for FieldPair<'a> {
             change = Change::Replaced;
         }
         let radius = self.mesh.ball().radius;
+        let prediction = self.pose.prediction;
         let surface = self.has_surfaces.then(|| known_mesh.acquire_surface(&self.mesh));
         let surface = surface.flatten();
+        let filter_distance = filter_distance(surface.is_some(), radius);
         let shapes = MeshAndField {
             pair: self,
             field: Field(self.field),
-            filter_distance: filter_distance(surface.is_some(), radius),
+            filter_distance,
+            reach: reach(prediction, filter_distance, || self.are_few()),
             surface,
             cone: Mutex::new((u32::MAX, None)),
         };
@@ -98,7 +112,7 @@ impl<'a> Pair for FieldPair<'a> {
             shapes,
             pose: self.pose,
             patches: (self.has_patches && self.mesh.is_rigid())
-                .then(|| PatchPlan::new(self.pose.prediction, radius)),
+                .then(|| PatchPlan::new(prediction, radius)),
             inside,
         };
         (change, query)
@@ -112,6 +126,7 @@ pub(crate) struct MeshAndField<'q> {
     /// Surface of the mesh, for contacts of surfaces.
     surface: Option<MeshSurface<'q>>,
     filter_distance: f64,
+    reach: Real,
     /// Normal cone of one triangle of the field. Contacts of a triangle follow each other, and
     /// Parry computes the cone from four triangles.
     cone: Mutex<(u32, Option<TrianglePseudoNormals>)>,
@@ -253,7 +268,7 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
     }
 
     fn reach(&self) -> Real {
-        self.pair.pose.prediction
+        self.reach
     }
 
     fn bounds(&self, i: usize) -> Aabb {
@@ -274,5 +289,17 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
         }
         let (_, nearest, behind) = nearest(self.pair.mesh.mesh, point)?;
         Some((nearest.point, behind))
+    }
+
+    fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32> {
+        if self.is_field(i) {
+            return self.field.nearest_triangle(point, within);
+        }
+        nearest_triangle(self.pair.mesh.mesh, point, within)
+    }
+
+    fn tips(&self, i: usize) -> &[u32] {
+        let of_mesh = self.surface.as_ref().filter(|_| !self.is_field(i));
+        of_mesh.map_or(&[], |surface| surface.tips(&self.pair.mesh))
     }
 }

@@ -12,8 +12,7 @@ use sbbk_core::traverse::{DescentCounts, NodePair, PairFrame, begin_descent, des
 use sbbk_core::tree::Tree;
 
 use super::bvh_descent::BvhDescent;
-use super::bvh_search::BvhSearch;
-use super::far::{FarSearch, are_few};
+use super::far::are_few;
 use super::inside::InsideTest;
 use super::parts::{has_threads, in_parts};
 use super::pose::PairPose;
@@ -26,6 +25,7 @@ use super::triangles::{
 use super::update::{Moving, Pair};
 use crate::mesh::{
     Change, MeshFacets, MeshStore, MeshSurface, MeshView, PairMesh, is_covered, nearest,
+    nearest_triangle,
 };
 
 /// Two meshes.
@@ -183,14 +183,6 @@ impl<'q> TriangleShapes for Meshes<'q> {
         }
     }
 
-    fn far_contacts(&self, is_apart: bool, found: impl FnMut(TriangleHit)) {
-        let [Some(surface1), Some(surface2)] = &self.surfaces else { return };
-        let MeshPair { pose, meshes, .. } = self.pair;
-        let search = BvhSearch { meshes: meshes.each_ref(), placement: pose.placement12 };
-        let far = FarSearch { search, surfaces: [surface1, surface2], pose };
-        far.contacts(is_apart, found);
-    }
-
     fn descend(
         &self,
         margin: Real,
@@ -263,5 +255,13 @@ impl<'q> TriangleShapes for Meshes<'q> {
     fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)> {
         let (_, nearest, behind) = nearest(self.pair.meshes[i].mesh, point)?;
         Some((nearest.point, behind))
+    }
+
+    fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32> {
+        nearest_triangle(self.pair.meshes[i].mesh, point, within)
+    }
+
+    fn tips(&self, i: usize) -> &[u32] {
+        self.surfaces[i].as_ref().map_or(&[], |surface| surface.tips(&self.pair.meshes[i]))
     }
 }

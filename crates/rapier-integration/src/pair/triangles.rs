@@ -19,6 +19,7 @@ use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Facets, OneRing};
 use sbbk_core::traverse::{DescentCounts, DescentScratch, NodePair, SlackLimits};
 
+use super::far::FarSearch;
 use super::inside::InsideTest;
 use super::islands::OverlapIslands;
 use super::parts::{PartResult, in_parts};
@@ -55,9 +56,6 @@ pub(crate) trait TriangleShapes: Sync {
         found: &mut Vec<Candidate<Hint>>,
     );
 
-    /// Calls `found` with [far](super::far) contacts. `is_apart`: no triangles are in reach.
-    fn far_contacts(&self, _is_apart: bool, _found: impl FnMut(TriangleHit)) {}
-
     /// Returns two triangles; `None` if one does not exist.
     fn triangles(&self, triangles: [u32; 2]) -> Option<[Triangle; 2]>;
 
@@ -91,6 +89,13 @@ pub(crate) trait TriangleShapes: Sync {
     /// Returns the nearest point of a surface, and the cosine between the direction to the point
     /// and the inward normal.
     fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)>;
+
+    /// Returns the nearest triangle of a shape to a point in its frame, if that is within a distance. The triangle
+    /// of a height field may be another that is near.
+    fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32>;
+
+    /// Returns half-edges that start at the tips of a shape, for [far](super::far) contacts.
+    fn tips(&self, i: usize) -> &[u32];
 
     /// Returns the direction in which shape 2 separates from shape 1, if one is deep in the other.
     fn separation(&self) -> Option<DVec3>;
@@ -385,7 +390,8 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
         let (old_count, reach) = (contacts.len(), f64::from(self.shapes.reach()));
-        self.shapes.far_contacts(is_apart, |(pair, TriangleSurfaceContact { contact, .. })| {
+        let far = FarSearch { shapes: &self.shapes, pose: self.pose };
+        far.contacts(is_apart, |(pair, TriangleSurfaceContact { contact, .. })| {
             if contact.distance <= reach {
                 return;
             }

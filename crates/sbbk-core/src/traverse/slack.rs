@@ -13,20 +13,23 @@
 use super::Placement;
 use crate::volumes::Sphere;
 
-/// Least slack as a share of the prediction distance, for bodies at rest that jitter. Higher: more
+/// Least slack in units of [`SlackLimits`], for bodies at rest that jitter. Higher: more
 /// candidates; lower: more descents.
 const LEAST_SLACK: f64 = 0.1;
+/// Share of the moving body's radius that a unit of [`SlackLimits`] is at most. Higher: all of a small body
+/// becomes a candidate; lower: more descents.
+const SMALL: f64 = 0.1;
 /// Least number of queries for which the greatest slack must last; else there is none. Higher: more
 /// descents; lower: wide descents for a single query.
 const LEAST_STEPS: f64 = 3.0;
 
-/// Limits of the slack.
+/// Limits of the slack. Their unit is the prediction distance, or less for small bodies.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct SlackLimits {
     /// Slack in steps of the present motion. Higher: fewer descents, and more candidates that do
     /// not touch; lower: more descents.
     pub steps: f64,
-    /// Greatest slack as a share of the prediction distance. Higher: exact tests of candidates that
+    /// Greatest slack in units. Higher: exact tests of candidates that
     /// do not touch; lower: more descents.
     pub greatest: f64,
 }
@@ -89,7 +92,8 @@ impl Slack {
             }
         }
         // The first query gets no slack: its motion is unknown.
-        let slack = step.map_or(0.0, |step| slack(step, f64::from(prediction), limits));
+        let unit = f64::from(prediction).min(SMALL * f64::from(ball.radius));
+        let slack = step.map_or(0.0, |step| slack(step, unit, limits));
         let wide = prediction + slack as f32;
         let margin = if wide.is_finite() { wide } else { prediction };
         self.descent = (margin > prediction).then_some((*placement, margin));
@@ -105,10 +109,10 @@ impl Slack {
 
 /// The slack of a descent for a pair that moved by `step` since the last query. Zero for motion
 /// that is not finite.
-fn slack(step: f64, prediction: f64, limits: SlackLimits) -> f64 {
-    let greatest = limits.greatest * prediction;
+fn slack(step: f64, unit: f64, limits: SlackLimits) -> f64 {
+    let greatest = limits.greatest * unit;
     if LEAST_STEPS * step <= greatest {
-        (limits.steps * step).max(LEAST_SLACK * prediction).min(greatest)
+        (limits.steps * step).max(LEAST_SLACK * unit).min(greatest)
     } else {
         0.0
     }

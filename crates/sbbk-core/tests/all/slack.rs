@@ -132,6 +132,18 @@ fn slack_grows_with_the_motion_up_to_a_limit() {
     assert_eq!(margin_after(0.0, 0.0), (0.0, false));
 }
 
+/// Would catch a small body all of whose pairs are candidates.
+#[test]
+fn slack_of_a_small_body_is_a_share_of_its_radius() {
+    for prediction in [0.2, 1.0, 100.0] {
+        for step in [0.0, 1e-3, 0.01, 0.02, 0.1, 10.0] {
+            let (margin, _) = margin_after(step, prediction);
+            assert!(margin <= prediction + 0.1 * BALL.radius, "{margin} at {step}, {prediction}");
+        }
+        assert!(margin_after(0.02, prediction).1, "no slack for slow motion at {prediction}");
+    }
+}
+
 /// Would catch candidates that are kept after a pose that is not finite, and a panic.
 #[test]
 fn queries_that_are_not_finite_are_descents() {
