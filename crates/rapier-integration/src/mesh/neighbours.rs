@@ -3,6 +3,7 @@ use std::sync::atomic::{AtomicU16, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use glamx::DVec3;
+use parry3d::bounding_volume::Aabb;
 use parry3d::bounding_volume::BoundingVolume;
 use parry3d::math::Real;
 use parry3d::partitioning::BvhNode;
@@ -13,8 +14,6 @@ use sbbk_core::surface::strays::has_strays;
 use sbbk_core::surface::{
     HalfEdges, IndexedTriangles, OneRing, PlaceMemo, RayTriangles, SMALL_PART, Side, Surface, side,
 };
-
-use super::view::box_between;
 
 /// Adjacency of the triangles of a mesh, with [strays](sbbk_core::surface::strays).
 #[derive(Copy, Clone)]
@@ -277,6 +276,12 @@ fn twins_of(mesh: &TriMesh, triangle: u32) -> [Option<u32>; 3] {
         }
     }
     std::array::from_fn(|i| twins[i].filter(|_| forward[i] == 1 && backward[i] == 1))
+}
+
+/// Returns the box between two corners in f32, grown by the rounding.
+pub(crate) fn box_between(corners: [DVec3; 2]) -> Aabb {
+    let [low, high] = corners.map(|corner| corner.as_vec3());
+    Aabb::new(low - f32::EPSILON * low.abs(), high + f32::EPSILON * high.abs())
 }
 
 #[cfg(test)]

@@ -16,7 +16,6 @@ use sbbk_core::tree::{BuildError, BuildOptions};
 use super::budget::BuildBudget;
 use super::data::MeshData;
 use super::identity::ContentHash;
-use super::view::MeshView;
 
 /// The meshes of a dispatcher and its clones.
 pub(crate) struct MeshStore {
@@ -260,13 +259,6 @@ impl MeshStore {
     /// Counts a new pair.
     pub(crate) fn count_pair(&self) {
         self.pairs.fetch_add(1, Ordering::Relaxed);
-    }
-
-    /// Returns a view of a mesh for one query; `None` if the mesh has no finite box, so that only
-    /// Parry can answer.
-    #[inline]
-    pub(crate) fn view<'a>(&'a self, mesh: &'a TriMesh) -> Option<MeshView<'a>> {
-        MeshView::new(mesh, self)
     }
 
     /// Drops the data of meshes that no pair uses.

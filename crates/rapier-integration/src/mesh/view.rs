@@ -7,7 +7,7 @@ use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use glamx::{DVec3, Vec3};
+use glamx::Vec3;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
 use parry3d::partitioning::BvhNode;
@@ -112,12 +112,6 @@ fn has_near(mesh: &TriMesh, aabb: &Aabb, pos12: &Pose, margin: Real) -> bool {
     mesh.bvh().leaves(|node| node.intersects(&aabb)).next().is_some()
 }
 
-/// Returns the box between two corners in f32, grown by the rounding.
-pub(crate) fn box_between(corners: [DVec3; 2]) -> Aabb {
-    let [low, high] = corners.map(|corner| corner.as_vec3());
-    Aabb::new(low - f32::EPSILON * low.abs(), high + f32::EPSILON * high.abs())
-}
-
 /// A mesh during one query.
 #[derive(Copy, Clone)]
 pub(crate) struct MeshView<'a> {
@@ -127,14 +121,18 @@ pub(crate) struct MeshView<'a> {
     root: Aabb,
 }
 
-impl<'a> MeshView<'a> {
-    /// Returns `None` if the box around the mesh is not finite or there are no triangles.
+impl MeshStore {
+    /// Returns a view of a mesh for one query; `None` if the box around the mesh is not finite or there are no
+    /// triangles, so that only Parry can answer.
     #[inline]
-    pub(super) fn new(mesh: &'a TriMesh, store: &'a MeshStore) -> Option<Self> {
+    pub(crate) fn view<'a>(&'a self, mesh: &'a TriMesh) -> Option<MeshView<'a>> {
         let root = mesh.bvh().root_aabb();
-        is_valid(&root).then(|| Self { mesh, token: MeshToken::of(mesh), store, root })
+        let view = || MeshView { mesh, token: MeshToken::of(mesh), store: self, root };
+        is_valid(&root).then(view)
     }
+}
 
+impl<'a> MeshView<'a> {
     /// Returns the shared data of the mesh, if the mesh is registered.
     pub(crate) fn registered(&self) -> Option<Arc<MeshData>> {
         self.store.registered(self.mesh)

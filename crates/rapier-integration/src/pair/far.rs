@@ -13,7 +13,7 @@ use sbbk_core::surface::Facets;
 
 use super::pose::PairPose;
 use super::triangle_contacts::{in_local, local_pair};
-use super::triangles::{ContactSource, TriangleHit, TriangleShapes, TriangleSurfaceContact};
+use super::triangle_shapes::{ContactSource, TriangleHit, TriangleShapes, TriangleSurfaceContact};
 use crate::mesh::MeshView;
 
 /// Greatest product of the numbers of triangles near the other mesh with which all pairs are candidates.

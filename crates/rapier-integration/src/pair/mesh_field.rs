@@ -30,13 +30,14 @@ use sbbk_core::tree::{BATCH, LeafBatch};
 
 use super::far::FEW;
 use super::field::{Field, FieldToken};
-use super::inside::{InsideTest, way_out};
+use super::inside::InsideTest;
 use super::pose::{MeshPlace, PairPose};
+use super::query::{Moving, Pair};
 use super::reduce::PatchPlan;
 use super::state::Candidate;
 use super::surface::{filter_distance, reach};
-use super::triangles::{Cones, Hint, TriangleQuery, TriangleScratch, TriangleShapes};
-use super::update::{Moving, Pair};
+use super::triangle_shapes::{Cones, DescentMemory, Hint, TriangleShapes};
+use super::triangles::TriangleQuery;
 use crate::mesh::{
     Change, MeshFacets, MeshStore, MeshSurface, MeshView, PairMesh, is_covered, nearest,
     nearest_triangle,
@@ -197,13 +198,13 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
         &self,
         margin: Real,
         counts: &mut DescentCounts,
-        scratch: &mut TriangleScratch,
+        memory: &mut DescentMemory,
         found: &mut Vec<Candidate<Hint>>,
     ) {
         let mesh = &self.pair.mesh;
         let frame = FieldFrame::new(&self.field, self.pair.mesh_placement(), margin);
         let leaves = FieldLeaves::new(&frame, mesh.ball().centre, mesh.magnitude());
-        let near = &mut scratch.near;
+        let near = &mut memory.near;
         near.clear();
         let _ = mesh.near(
             |node| frame.meets(node, ()),
@@ -230,7 +231,7 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
 
     fn separation(&self) -> Option<DVec3> {
         let of_mesh = usize::from(self.is_field(0));
-        way_out(self, self.pair.pose, of_mesh, self.pair.mesh.ball().centre)?.try_normalize()
+        self.way_out(self.pair.pose, of_mesh, self.pair.mesh.ball().centre)?.try_normalize()
     }
 
     fn with_cones(&self, triangles: [u32; 2], then: impl FnOnce(Cones<'_>)) {

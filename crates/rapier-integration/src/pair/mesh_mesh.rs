@@ -4,8 +4,10 @@ use std::sync::{Arc, OnceLock};
 use glamx::DVec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Real, Vector};
+use parry3d::query::PointQuery;
 use parry3d::query::details::NormalConstraints;
 use parry3d::shape::Triangle;
+use sbbk_core::contact::{Feature, FeaturePair, TriangleContact};
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::surface::{OneRing, Side, SurfaceKind};
 use sbbk_core::traverse::{DescentCounts, NodePair, PairFrame, begin_descent, descend_from};
@@ -16,15 +18,17 @@ use super::far::are_few;
 use super::inside::InsideTest;
 use super::parts::{has_threads, in_parts};
 use super::pose::PairPose;
+use super::query::{Moving, Pair};
 use super::reduce::PatchPlan;
 use super::state::Candidate;
 use super::surface::{filter_distance, lateral_culling, reach};
-use super::triangles::{
-    Cones, DescentPart, Hint, TriangleHit, TriangleQuery, TriangleScratch, TriangleShapes,
+use super::triangle_shapes::{
+    Cones, ContactSource, DescentMemory, DescentPart, Hint, TriangleHit, TriangleShapes,
+    TriangleSurfaceContact,
 };
-use super::update::{Moving, Pair};
+use super::triangles::TriangleQuery;
 use crate::mesh::{
-    Change, MeshFacets, MeshStore, MeshSurface, MeshView, PairMesh, is_covered, nearest,
+    BEHIND, Change, MeshFacets, MeshStore, MeshSurface, MeshView, PairMesh, is_covered, nearest,
     nearest_triangle,
 };
 
@@ -42,6 +46,51 @@ impl MeshPair<'_> {
     /// Returns 1 if the box of mesh 2 is larger than that of mesh 1, else 0.
     pub(super) fn larger(&self) -> usize {
         usize::from(self.meshes[0].size_squared() < self.meshes[1].size_squared())
+    }
+}
+
+/// Part of a body that may stick out of a room that holds it, in half heights of the body. Higher:
+/// bodies deep in a solid stay there. Lower: fast bodies fall through the floors of rooms.
+const STICKS_OUT: Real = 0.5;
+
+impl MeshPair<'_> {
+    /// Returns true if the larger mesh is a room for the smaller one: the smaller one is in it, or
+    /// hardly sticks out.
+    pub(super) fn is_room(&self, test: &mut InsideTest) -> bool {
+        let outer = self.larger();
+        let [held, holder] = [1 - outer, outer].map(|i| &self.meshes[i]);
+        if !held.sorted_extents().cmplt(holder.sorted_extents()).all() {
+            return false;
+        }
+        let middle = self.pose.in_other(1 - outer, held.ball().centre);
+        let Some(exit) = self.exit(middle, test) else { return false };
+        let depth = exit.distance(middle);
+        let way = self.pose.in_other(outer, exit) - held.ball().centre;
+        let height = held.height(way.normalize_or_zero(), depth / (1.0 - STICKS_OUT));
+        depth >= (1.0 - STICKS_OUT) * height
+    }
+
+    /// Returns the nearest point of the larger mesh, if a point of the smaller one is inside. `point` is
+    /// in the frame of the larger mesh.
+    fn exit(&self, point: Vector, test: &mut InsideTest) -> Option<Vector> {
+        let outer = self.larger();
+        let [held, holder] = [1 - outer, outer].map(|i| &self.meshes[i]);
+        let PairPose { placement12, placement21, .. } = self.pose;
+        let placement = [placement12, placement21][outer];
+        if test.is_outside(held.ball(), placement) {
+            return None;
+        }
+        let from_box = holder.root().distance_to_local_point(point, true);
+        if from_box > 0.0 {
+            *test = InsideTest::outside(placement, from_box);
+            return None;
+        }
+        let is_covered = is_covered(holder.mesh, point);
+        let (_, near, behind) = nearest(holder.mesh, point)?;
+        if !is_covered || behind < -BEHIND {
+            *test = InsideTest::outside(placement, near.point.distance(point));
+        }
+        (is_covered && behind >= BEHIND).then_some(near.point)
     }
 }
 
@@ -168,6 +217,66 @@ impl Meshes<'_> {
     }
 }
 
+impl Meshes<'_> {
+    /// Returns the contact that moves the smaller mesh out of the larger one, by the shortest way
+    /// from its middle, and its triangles. Call this if no other contact was found.
+    ///
+    /// Tests one vertex unless the mesh is known to be deep: a mesh that pierces the surface has
+    /// contacts.
+    pub(super) fn find_push_out(
+        &self,
+        is_deep: bool,
+        test: &mut InsideTest,
+    ) -> Option<TriangleHit> {
+        let outer = self.pair.larger();
+        let [held, holder] = [1 - outer, outer].map(|i| &self.pair.meshes[i]);
+        let vertex = self.pair.pose.in_other(1 - outer, held.corners(0)[0]);
+        if !is_deep {
+            if self.surfaces[outer].is_none() || self.room.is_some() {
+                return None;
+            }
+            self.pair.exit(vertex, test)?;
+            if !self.is_solid(outer) {
+                *test = InsideTest::NoSolid;
+                return None;
+            }
+        }
+        let middle = self.pair.pose.in_other(1 - outer, held.ball().centre);
+        let (triangle, exit, from) = [middle, vertex].into_iter().find_map(|from| {
+            let (triangle, exit, behind) = nearest(holder.mesh, from)?;
+            (behind >= BEHIND).then_some((triangle, exit.point, from))
+        })?;
+        let mut subshapes = [0; 2];
+        subshapes[outer] = triangle;
+        let origin = self.pair.meshes[0].corners(subshapes[0])[0];
+        let mut points = [exit, from].map(|point| match outer {
+            0 => point.as_dvec3() - origin.as_dvec3(),
+            _ => self.pair.pose.placement12.to_frame1(point, origin),
+        });
+        if outer == 1 {
+            points.reverse();
+        }
+        let [point1, point2] = points;
+        let normal = (point1 - point2).try_normalize()?;
+        let distance = (point2 - point1).dot(normal);
+        let features = FeaturePair::new(Feature::Face, Feature::Face);
+        let contact = TriangleContact { normal, distance, point1, point2, features };
+        Some((subshapes, TriangleSurfaceContact { contact, source: ContactSource::PushOut }))
+    }
+
+    /// Returns the direction in which mesh 2 separates from mesh 1 by the shortest way from the
+    /// middle of the smaller mesh, if the middle is in both. Two equal meshes are both tried.
+    pub(super) fn separation_of_smaller(&self) -> Option<DVec3> {
+        let [one, two] = &self.pair.meshes;
+        let [size1, size2] = [one, two].map(|mesh| mesh.size_squared());
+        let inner = [(0, one, size1 <= size2), (1, two, size2 <= size1)];
+        let ways = inner.into_iter().filter(|(.., is_inner)| *is_inner);
+        let ways =
+            ways.filter_map(|(i, mesh, _)| self.way_out(self.pair.pose, i, mesh.ball().centre));
+        ways.min_by(|a, b| a.length().total_cmp(&b.length()))?.try_normalize()
+    }
+}
+
 impl<'q> TriangleShapes for Meshes<'q> {
     type Facets<'f>
         = MeshFacets<'f, 'q>
@@ -187,7 +296,7 @@ impl<'q> TriangleShapes for Meshes<'q> {
         &self,
         margin: Real,
         counts: &mut DescentCounts,
-        TriangleScratch { near, start, descent, .. }: &mut TriangleScratch,
+        DescentMemory { near, start, descent }: &mut DescentMemory,
         found: &mut Vec<Candidate<Hint>>,
     ) {
         std::mem::swap(found, &mut descent.found);

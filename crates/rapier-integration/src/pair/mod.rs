@@ -2,10 +2,10 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | [`update`] | the pipeline, and the traits of a kind of pair |
+//! | [`update`], [`query`] | the pipeline, and the traits of a kind of pair |
 //! | [`state`] | what a host keeps with a pair: candidates, slack |
 //! | [`mesh_mesh`], [`mesh_field`] | the kinds whose shapes are both made of triangles |
-//! | [`triangles`] | contacts of these kinds, in one pass or two |
+//! | [`triangles`], [`triangle_shapes`] | contacts of these kinds, in one pass or two |
 //! | [`parts`] | parts of a heavy pair, on several threads |
 //! | [`far`] | contacts far beyond those that touch |
 //! | [`surface`], [`islands`], [`inside`] | contacts of surfaces from contacts of triangles |
@@ -24,10 +24,12 @@ mod mesh_mesh;
 mod parts;
 mod passed;
 mod pose;
+mod query;
 mod reduce;
 mod state;
 mod surface;
 mod triangle_contacts;
+mod triangle_shapes;
 mod triangles;
 mod update;
 mod write;
@@ -37,5 +39,6 @@ pub(crate) use convex::{ConvexPair, ConvexSearch, FoundCast, FoundTriangle, Part
 pub(crate) use mesh_field::FieldPair;
 pub(crate) use mesh_mesh::MeshPair;
 pub(crate) use pose::{MeshPlace, PairPose};
+pub(crate) use query::Pair;
 pub use triangle_contacts::TriangleContacts;
-pub(crate) use update::{Pair, QueryOutcome, update_manifolds};
+pub(crate) use update::{QueryOutcome, update_manifolds};

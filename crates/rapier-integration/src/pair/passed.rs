@@ -11,8 +11,8 @@ use rustc_hash::FxHashMap;
 use sbbk_core::surface::HalfEdges;
 
 use super::islands::SAME_SIDE;
-use super::triangles::{ContactSource, TriangleSurfaceContact};
-use super::update::ContactList;
+use super::query::ContactList;
+use super::triangle_shapes::{ContactSource, TriangleSurfaceContact};
 
 /// Search for triangles that have passed another sheet. Keeps its memory.
 #[derive(Default)]

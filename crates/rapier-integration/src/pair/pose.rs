@@ -1,4 +1,4 @@
-use parry3d::math::{Pose, Real};
+use parry3d::math::{Pose, Real, Vector};
 use sbbk_core::traverse::Placement;
 
 /// Pose of shape 2 in the frame of shape 1, and the prediction distance.
@@ -18,6 +18,11 @@ impl PairPose {
     pub(crate) fn new(pos12: &Pose, prediction: Real) -> Self {
         let placement12 = Placement::new(pos12);
         Self { pos12: *pos12, placement12, placement21: placement12.inverted(), prediction }
+    }
+
+    /// Returns a point of shape 1 (0) or 2 (1) in the frame of the other shape.
+    pub(super) fn in_other(&self, i: usize, point: Vector) -> Vector {
+        [&self.placement21, &self.placement12][i].to_frame1(point, Vector::ZERO).as_vec3()
     }
 }
 

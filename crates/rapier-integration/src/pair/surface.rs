@@ -19,7 +19,7 @@ use sbbk_core::surface::{OneRing, Side};
 use super::islands::{Crossing, OverlapIslands, SheetSide};
 use super::pose::PairPose;
 use super::triangle_contacts::in_local;
-use super::triangles::{ContactSource, TriangleShapes, TriangleSurfaceContact};
+use super::triangle_shapes::{ContactSource, TriangleShapes, TriangleSurfaceContact};
 use crate::mesh::BEHIND;
 
 /// [`TriangleShapes::filter_distance`] in radii of the smaller shape. Higher: plates that soft CCD
@@ -432,9 +432,9 @@ mod tests {
     use super::*;
     use crate::mesh::MeshStore;
     use crate::pair::mesh_mesh::MeshPair;
+    use crate::pair::query::Pair;
     use crate::pair::triangle_contacts::local_pair;
-    use crate::pair::triangles::TriangleScratch;
-    use crate::pair::update::Pair;
+    use crate::pair::triangle_shapes::DescentMemory;
 
     /// Rough balls with triangles as large as the prediction distance, apart and crossing. Would
     /// catch contacts that [`lateral_culling`] loses.
@@ -463,7 +463,7 @@ mod tests {
                 let mut known = Default::default();
                 let shapes = mesh_pair.open(&cache, &mut known).1.shapes;
                 let mut found = Vec::new();
-                let scratch = &mut TriangleScratch::default();
+                let scratch = &mut DescentMemory::default();
                 let tests = &mut DescentCounts::default();
                 shapes.descend(pose.prediction, tests, scratch, &mut found);
                 let mut found: Vec<_> = found.iter().map(|of| of.subshapes).collect();

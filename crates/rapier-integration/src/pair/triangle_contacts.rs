@@ -15,8 +15,8 @@ use sbbk_core::query::TrianglePair;
 use sbbk_core::traverse::Placement;
 
 use super::pose::PairPose;
-use super::triangles::Cones;
-use super::update::ContactPoints;
+use super::query::ContactPoints;
+use super::triangle_shapes::Cones;
 use super::write::write_points as write_to_manifold;
 
 /// Returns two of Parry's triangles in frame 1, relative to a corner: with all digits.

@@ -7,17 +7,12 @@
 use std::cell::Cell;
 use std::thread::LocalKey;
 
-use glamx::DVec3;
-use parry3d::bounding_volume::Aabb;
-use parry3d::math::{Real, Vector};
-use parry3d::query::details::NormalConstraints;
-use parry3d::shape::Triangle;
+use parry3d::math::Real;
 use sbbk_core::contact::{
     ManifoldPoints, TriangleContact, clip, contact, contact_from, push_closest,
 };
 use sbbk_core::query::TrianglePair;
-use sbbk_core::surface::{Facets, OneRing};
-use sbbk_core::traverse::{DescentCounts, DescentScratch, NodePair, SlackLimits};
+use sbbk_core::traverse::{DescentCounts, SlackLimits};
 
 use super::far::FarSearch;
 use super::inside::InsideTest;
@@ -25,97 +20,14 @@ use super::islands::OverlapIslands;
 use super::parts::{PartResult, in_parts};
 use super::passed::PassedTriangles;
 use super::pose::PairPose;
+use super::query::{ContactList, ContactPoints, Limits, Memory, Moving, PairQuery, Scratch};
 use super::reduce::{ContactSummary, PatchPlan};
 use super::state::Candidate;
 use super::surface::{NEARLY_TOUCHING, SurfaceFilter, Verdict, is_touching};
 use super::triangle_contacts::{constrained_normal, local_pair, write_points};
-use super::update::{ContactList, ContactPoints, Limits, Memory, Moving, PairQuery, Scratch};
-use sbbk_core::contact::FeaturePair;
-
-/// Normal cones of both triangles.
-pub(super) type Cones<'a> = [Option<&'a dyn NormalConstraints>; 2];
-
-/// Features that were closest at the last query, to be tried first.
-pub(super) type Hint = Option<FeaturePair>;
-
-/// Two shapes made of triangles, and their surfaces.
-pub(crate) trait TriangleShapes: Sync {
-    /// The triangles of either shape.
-    type Facets<'f>: Facets
-    where
-        Self: 'f;
-
-    fn moving(&self) -> Moving<'_>;
-
-    /// Adds all pairs of triangles within `margin`, and few others.
-    fn descend(
-        &self,
-        margin: Real,
-        counts: &mut DescentCounts,
-        scratch: &mut TriangleScratch,
-        found: &mut Vec<Candidate<Hint>>,
-    );
-
-    /// Returns two triangles; `None` if one does not exist.
-    fn triangles(&self, triangles: [u32; 2]) -> Option<[Triangle; 2]>;
-
-    /// Calls `then` with the normal cones of two triangles.
-    fn with_cones(&self, triangles: [u32; 2], then: impl FnOnce(Cones<'_>));
-
-    /// Returns the surface around a triangle of shape 1 (0) or 2 (1), for contacts of surfaces.
-    fn surface(&self, i: usize, triangle: u32) -> Option<OneRing<Self::Facets<'_>>>;
-
-    /// Returns true if a shape has an inside.
-    fn is_solid(&self, i: usize) -> bool;
-
-    /// Returns the distance up to which contacts must be local minima; infinite for contacts of
-    /// each two triangles. Farther contacts, of soft CCD, are all kept: bodies may turn before they
-    /// meet.
-    fn filter_distance(&self) -> f64;
-
-    /// Returns the distance up to which all pairs of triangles are candidates. Farther contacts are
-    /// [far](super::far).
-    fn reach(&self) -> Real;
-
-    /// Returns the box around a shape, in its frame.
-    fn bounds(&self, i: usize) -> Aabb;
-
-    /// Returns the least coordinate of a shape along a direction, in its frame; `None` if not known.
-    fn lowest(&self, i: usize, direction: Vector) -> Option<Real>;
-
-    /// Returns true if a point in the frame of a shape may be inside it.
-    fn is_covered(&self, i: usize, point: Vector) -> bool;
-
-    /// Returns the nearest point of a surface, and the cosine between the direction to the point
-    /// and the inward normal.
-    fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)>;
-
-    /// Returns the nearest triangle of a shape to a point in its frame, if that is within a distance. The triangle
-    /// of a height field may be another that is near.
-    fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32>;
-
-    /// Returns half-edges that start at the tips of a shape, for [far](super::far) contacts.
-    fn tips(&self, i: usize) -> &[u32];
-
-    /// Returns the direction in which shape 2 separates from shape 1, if one is deep in the other.
-    fn separation(&self) -> Option<DVec3>;
-
-    /// Returns the push-out if one shape is wholly inside the other. `is_deep`: known to be.
-    fn push_out(&self, _is_deep: bool, _test: &mut InsideTest) -> Option<TriangleHit> {
-        None
-    }
-
-    /// Returns true for contacts of surfaces.
-    fn has_surface(&self) -> bool {
-        self.filter_distance() < f64::INFINITY
-    }
-
-    /// Calls `then` with the normal cones that contacts obey: none for contacts of surfaces.
-    #[inline(always)]
-    fn with_constraints(&self, triangles: [u32; 2], then: impl FnOnce(Cones<'_>)) {
-        if self.has_surface() { then([None; 2]) } else { self.with_cones(triangles, then) }
-    }
-}
+use super::triangle_shapes::{
+    ContactSource, DescentMemory, Hint, TriangleHit, TriangleShapes, TriangleSurfaceContact,
+};
 
 /// Greatest depth of points in prediction distances, at least. Rapier recycles contacts until bodies
 /// have moved by 2.5. Higher: bodies that are deep leave faster; lower: they fall asleep inside.
@@ -133,52 +45,12 @@ pub(crate) struct TriangleQuery<'q, S> {
     pub(super) inside: &'q mut InsideTest,
 }
 
-/// A contact and its subshapes.
-pub(super) type TriangleHit = ([u32; 2], TriangleSurfaceContact);
-
-/// A contact of two triangles, or of the surfaces around them.
-#[derive(Copy, Clone)]
-pub(crate) struct TriangleSurfaceContact {
-    pub(super) contact: TriangleContact,
-    pub(super) source: ContactSource,
-}
-
-/// Origin of a contact.
-#[derive(Copy, Clone, PartialEq)]
-pub(super) enum ContactSource {
-    /// Two triangles; their closest points are points of the contact.
-    Triangles,
-    /// Two crossing triangles, along an axis that leads out of solids.
-    OutwardAxis,
-    /// Two shapes, one inside the other.
-    PushOut,
-}
-
 /// Memory for queries.
 #[derive(Default)]
 pub(crate) struct TriangleScratch {
-    /// Triangles at which a descent starts.
-    pub(super) near: Vec<u32>,
-    /// Nodes at which a descent starts.
-    pub(super) start: Vec<NodePair>,
-    pub(super) descent: DescentPart,
+    descent: DescentMemory,
     first: FirstPass,
     passed: PassedTriangles,
-}
-
-/// Result of a part of a descent, and memory for it.
-#[derive(Default)]
-pub(super) struct DescentPart {
-    pub(super) found: Vec<Candidate<Hint>>,
-    pub(super) counts: DescentCounts,
-    pub(super) stack: DescentScratch,
-}
-
-impl PartResult for DescentPart {
-    fn append(&mut self, next: Self) {
-        self.found.extend(next.found);
-        self.counts += next.counts;
-    }
 }
 
 /// Result of the first pass over candidates, and memory for it.
@@ -209,15 +81,14 @@ impl PartResult for FirstPass {
 impl Scratch for TriangleScratch {
     fn shrink_to(&mut self, limit: usize) {
         let many = limit.max(1024);
-        self.near.clear();
-        self.near.shrink_to(many);
+        self.descent.shrink_to(many);
         self.first.islands.shrink_to(many);
         self.passed.shrink_to(many);
     }
 }
 
 thread_local! {
-    static MEMORY: Cell<Option<Box<super::update::QueryMemory<TriangleScratch, TriangleSurfaceContact>>>> =
+    static MEMORY: Cell<Option<Box<super::query::QueryMemory<TriangleScratch, TriangleSurfaceContact>>>> =
         Cell::default();
 }
 
@@ -251,7 +122,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         scratch: &mut TriangleScratch,
         found: &mut Vec<Candidate<Hint>>,
     ) {
-        self.shapes.descend(margin, counts, scratch, found);
+        self.shapes.descend(margin, counts, &mut scratch.descent, found);
     }
 
     fn contacts(
@@ -474,13 +345,6 @@ fn touch(
     let contact = contact?;
     candidate.hint = Some(contact.features);
     (contact.distance <= reach).then_some(contact)
-}
-
-impl ContactSource {
-    /// Returns the normal cones that a contact obeys.
-    fn cones(self, of_triangles: Cones<'_>) -> Cones<'_> {
-        if self == Self::PushOut { [None; 2] } else { of_triangles }
-    }
 }
 
 /// Makes points as deep as a contact that is deeper than all of them.

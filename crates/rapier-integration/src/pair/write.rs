@@ -13,9 +13,9 @@ use parry3d::math::Real;
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::PackedFeatureId;
 
+use super::query::{ContactList, ContactPoints, PairQuery, Running};
 use super::reduce::{Member, PatchPlan, PatchPoint, Reduction};
 use super::state::HighWaterMark;
-use super::update::{ContactList, ContactPoints, PairQuery, Running};
 
 /// Spare manifolds that a thread keeps, of some 500 bytes each. Higher: more memory; lower: allocations
 /// where pairs lose and gain many contacts at once.

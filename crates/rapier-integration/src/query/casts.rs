@@ -3,7 +3,7 @@
 use parry3d::math::{Pose, Vector};
 use parry3d::query::ShapeCastHit;
 use parry3d::query::details::ShapeCastOptions;
-use sbbk_core::query::{CastOptions, FoundPair, PartPair};
+use sbbk_core::query::{CastOptions, PartPair};
 use sbbk_core::traverse::Placement;
 
 use super::nonlinear::NonlinearCast;
@@ -31,7 +31,7 @@ impl MeshQuery<'_> {
         // The hit wants the point of mesh 2 before the motion.
         let mut pair = cast.pair;
         pair.contact.point2 -= velocity12.as_dvec3() * cast.time;
-        Some(touch(&pair, &placement).hit(pair.name(), cast.time, status(cast.is_penetrating)))
+        Some(Touch::of(&pair, &placement).hit(pair.name(), cast.time, status(cast.is_penetrating)))
     }
 
     /// Returns the first impact of two meshes in motion.
@@ -40,17 +40,9 @@ impl MeshQuery<'_> {
             Some(trees) => trees.cast_nonlinear(cast),
             None => {
                 let balls = self.meshes.each_ref().map(|mesh| mesh.ball());
-                cast.first_impact(&mut self.walk(), cast.options(balls), 0.0, touch)
+                cast.first_impact(&mut self.walk(), cast.options(balls), 0.0, Touch::of)
             }
         }?;
-        Some(cast.hit(&found, &touch(&found.pair, &found.placement)))
-    }
-}
-
-/// Where two triangles touch.
-pub(super) fn touch(pair: &FoundPair, placement: &Placement) -> Touch {
-    Touch {
-        points: [pair.point1(), pair.point2(placement)],
-        normals: [pair.normal1(), pair.normal2(placement)],
+        Some(cast.hit(&found, &Touch::of(&found.pair, &found.placement)))
     }
 }

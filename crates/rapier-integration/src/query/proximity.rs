@@ -5,7 +5,7 @@ use parry3d::query::{ClosestPoints, Contact, ShapeDistance, ShapeIntersection};
 use sbbk_core::query::{FoundPair, PartPair};
 use sbbk_core::traverse::Placement;
 
-use super::casts::touch;
+use super::touch::Touch;
 use super::trees::Trees;
 use super::walk::MeshQuery;
 
@@ -51,7 +51,7 @@ impl MeshQuery<'_> {
             None => self.walk().deepest(placement, limit),
         }?;
         let distance = pair.contact.distance as Real;
-        Some(touch(&pair, &placement).contact(pair.name(), distance))
+        Some(Touch::of(&pair, &placement).contact(pair.name(), distance))
     }
 
     fn nearest(&self, placement: Placement, limit: f64) -> Option<FoundPair> {

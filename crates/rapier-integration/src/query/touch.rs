@@ -1,5 +1,7 @@
 use parry3d::math::{Real, Vector};
 use parry3d::query::{Contact, ShapeCastHit, ShapeCastStatus};
+use sbbk_core::query::FoundPair;
+use sbbk_core::traverse::Placement;
 
 /// Points of two parts that touch and their outward unit normals, each in its own frame.
 #[derive(Copy, Clone)]
@@ -9,6 +11,14 @@ pub(crate) struct Touch {
 }
 
 impl Touch {
+    /// Where two triangles touch.
+    pub(super) fn of(pair: &FoundPair, placement: &Placement) -> Self {
+        Self {
+            points: [pair.point1(), pair.point2(placement)],
+            normals: [pair.normal1(), pair.normal2(placement)],
+        }
+    }
+
     /// The contact of two subshapes.
     pub(super) fn contact(&self, [subshape1, subshape2]: [u32; 2], distance: Real) -> Contact {
         let Self { points: [point1, point2], normals: [normal1, normal2] } = *self;

@@ -11,8 +11,8 @@ use sbbk_core::query::{
 use sbbk_core::traverse::Placement;
 use sbbk_core::tree::Tree;
 
-use super::casts::touch;
 use super::nonlinear::NonlinearCast;
+use super::touch::Touch;
 use crate::mesh::{MeshData, MeshView};
 
 thread_local! {
@@ -72,7 +72,7 @@ impl Trees {
         self.search(|trees, scratch| {
             let balls = [trees.0, trees.1].map(Tree::bounding_ball);
             let bodies = &mut MeshBodies { trees, scratch };
-            cast.first_impact(bodies, cast.options(balls), 0.0, touch)
+            cast.first_impact(bodies, cast.options(balls), 0.0, Touch::of)
         })
     }
 }

@@ -24,24 +24,15 @@
 //! no such neighbour explains is compared with all triangles at its point
 //! ([`strays`](sbbk_core::surface::strays)).
 
-use std::cell::RefCell;
-
 use glamx::Vec3;
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::ConvexContact;
-use sbbk_core::surface::strays::touches;
 
 use super::contact::PartContact;
-use super::pair::{ConvexQuery, ConvexScratch};
-use crate::mesh::box_between;
-use crate::pair::update::ContactList;
 
 /// Share of the size by which two distances must differ to count as different. Higher: ghosts stay.
 /// Lower: rounding picks one of two equal contacts at a common edge as the ghost.
 const EQUAL: f64 = 1.0e-12;
-
-/// Lists of contacts up to this length are searched linearly.
-const FEW: usize = 64;
 
 /// Memory for the search: the contacts by the corners of their triangles.
 #[derive(Default)]
@@ -52,15 +43,15 @@ pub(crate) struct GhostContacts {
     /// Indices of the corners of each contact's triangle.
     triangles: Vec<[u32; 3]>,
     /// For each contact the one whose normal it takes.
-    sources: Vec<u32>,
+    pub(super) sources: Vec<u32>,
     /// Contacts that take the normal of a face.
-    on_faces: Vec<u32>,
+    pub(super) on_faces: Vec<u32>,
     /// Contacts at borders of the mesh that keep their normals.
-    borders: Vec<u32>,
+    pub(super) borders: Vec<u32>,
     /// Contacts that share a corner with the one at hand.
-    nearby: Vec<u32>,
+    pub(super) nearby: Vec<u32>,
     /// Contacts of other triangles at the point of the one at hand.
-    strays: Vec<u32>,
+    pub(super) strays: Vec<u32>,
 }
 
 struct Corner {
@@ -77,7 +68,7 @@ struct Corner {
 }
 
 /// Returns a hash of a part and a corner. Corners that differ in x or y alone never collide.
-fn corner_key(part: u32, corner: Vec3) -> u64 {
+pub(super) fn corner_key(part: u32, corner: Vec3) -> u64 {
     // Plus zero: zero has two signs.
     let [x, y, z] = (corner + 0.0).to_array().map(|x| u64::from(x.to_bits()));
     let mix = |x: u64| x ^ x >> 32;
@@ -106,7 +97,7 @@ impl GhostContacts {
     /// `keys` returns the corners of a contact's triangle. `extends_beyond(a, b)` is true if the triangle of
     /// contact `a` extends beyond contact `b` along the normal of `b`. `find_strays` adds the
     /// contacts of triangles at the point of a contact.
-    fn find<I>(
+    pub(super) fn find<I>(
         &mut self,
         contacts: &[(I, PartContact)],
         keys: impl Fn(&I) -> [u64; 3],
@@ -287,7 +278,7 @@ impl GhostContacts {
     }
 
     /// Lists a contact and then all others whose triangles share a corner with its triangle.
-    fn list_nearby(&mut self, contact: u32) {
+    pub(super) fn list_nearby(&mut self, contact: u32) {
         let mut nearby = std::mem::take(&mut self.nearby);
         nearby.clear();
         for corner in self.triangles[contact as usize] {
@@ -307,129 +298,6 @@ impl GhostContacts {
         self.borders.shrink_to(limit);
         self.nearby.shrink_to(limit);
         self.strays.shrink_to(limit);
-    }
-}
-
-impl ConvexQuery<'_> {
-    /// Calls `found` with the contacts of other triangles within `seam` of a place on the mesh.
-    fn strays_at(
-        &self,
-        contacts: &[([u32; 2], PartContact)],
-        of: [u32; 2],
-        place: Vec3,
-        seam: f64,
-        mut found: impl FnMut(u32),
-    ) {
-        let [triangle, part] = self.pair.mesh_place.swap(of);
-        let touches = |other: u32| {
-            let corners = self.pair.mesh.corners(other).map(|corner| corner.as_dvec3());
-            other != triangle && touches(&corners, [place.as_dvec3(); 2], seam)
-        };
-        if contacts.len() <= FEW {
-            for (index, (other, _)) in (0..).zip(contacts) {
-                let [other, of_part] = self.pair.mesh_place.swap(*other);
-                if of_part == part && touches(other) {
-                    found(index);
-                }
-            }
-            return;
-        }
-        let near = box_between([place.as_dvec3() - seam, place.as_dvec3() + seam]);
-        let bvh = self.pair.mesh.mesh.bvh();
-        for other in bvh.intersect_aabb(&near).filter(|&other| touches(other)) {
-            let other = self.pair.mesh_place.swap([other, part]);
-            if let Ok(index) = contacts.binary_search_by_key(&other, |(of, _)| *of) {
-                found(index as u32);
-            }
-        }
-    }
-
-    /// Replaces the normals of ghost contacts.
-    pub(super) fn correct_ghosts(
-        &self,
-        contacts: &mut ContactList<PartContact>,
-        scratch: &mut ConvexScratch,
-    ) {
-        let is_at_border =
-            |(_, contact): &([u32; 2], PartContact)| contact.feature != Feature::Face;
-        if !self.pair.has_surface() || !contacts.iter().any(is_at_border) {
-            return;
-        }
-        let mut ghosts = std::mem::take(&mut scratch.ghosts);
-        self.find_ghosts(&mut ghosts, contacts, scratch);
-        self.turn_to_faces(&mut ghosts, contacts, scratch);
-        self.turn_at_borders(&ghosts, contacts, scratch);
-        for (contact, &source) in ghosts.sources.iter().enumerate() {
-            let source = contacts[source as usize].1.contact;
-            // Along its own normal a contact keeps its own points.
-            if contacts[contact].1.contact.normal != source.normal {
-                contacts[contact].1.take_normal(&source);
-            }
-        }
-        scratch.ghosts = ghosts;
-    }
-
-    fn find_ghosts(
-        &self,
-        ghosts: &mut GhostContacts,
-        contacts: &[([u32; 2], PartContact)],
-        scratch: &mut ConvexScratch,
-    ) {
-        let subshapes = |of: [u32; 2]| self.pair.mesh_place.swap(of);
-        let keys = |&of: &[u32; 2]| {
-            let [triangle, part] = subshapes(of);
-            self.pair.mesh.corners(triangle).map(|corner| corner_key(part, corner))
-        };
-        let scratch_of = RefCell::new(scratch);
-        let extends_beyond = |&of: &[u32; 2], contact: &ConvexContact| {
-            let scratch = &mut scratch_of.borrow_mut();
-            self.with_pair(subshapes(of), scratch, |pair| pair.extends_beyond(contact))
-                .unwrap_or(false)
-        };
-        let find_strays = |(of, hit): &([u32; 2], PartContact), strays: &mut Vec<u32>| {
-            let scratch = &mut scratch_of.borrow_mut();
-            let place =
-                self.with_pair(subshapes(*of), scratch, |pair| pair.touched_place(&hit.contact));
-            if let Some((place, seam)) = place.flatten() {
-                self.strays_at(contacts, *of, place, seam, |stray| strays.push(stray));
-            }
-        };
-        ghosts.find(contacts, keys, extends_beyond, find_strays);
-    }
-
-    /// Gives contacts at borders the normals of their faces if the shape is all on one side of these.
-    fn turn_at_borders(
-        &self,
-        ghosts: &GhostContacts,
-        contacts: &mut ContactList<PartContact>,
-        scratch: &mut ConvexScratch,
-    ) {
-        for &border in ghosts.borders.iter().filter(|&&i| ghosts.sources[i as usize] == i) {
-            let (of, hit) = &mut contacts[border as usize];
-            let subshapes = self.pair.mesh_place.swap(*of);
-            let turned = self.with_pair(subshapes, scratch, |pair| pair.at_border(&hit.contact));
-            hit.contact = turned.flatten().unwrap_or(hit.contact);
-        }
-    }
-
-    /// Gives the normals of faces nearby to the contacts that need one.
-    fn turn_to_faces(
-        &self,
-        ghosts: &mut GhostContacts,
-        contacts: &mut ContactList<PartContact>,
-        scratch: &mut ConvexScratch,
-    ) {
-        for i in 0..ghosts.on_faces.len() {
-            let contact = ghosts.on_faces[i];
-            ghosts.list_nearby(contact);
-            let face = ghosts.nearby.iter().find_map(|&other| {
-                let subshapes = self.pair.mesh_place.swap(contacts[other as usize].0);
-                self.with_pair(subshapes, scratch, |pair| pair.crossing_face_contact())?
-            });
-            if let Some(face) = face {
-                contacts[contact as usize].1.take_normal(&face);
-            }
-        }
     }
 }
 

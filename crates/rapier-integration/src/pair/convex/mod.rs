@@ -3,20 +3,22 @@
 //! * [`shape`], [`parts`], [`placed`]: Parry's shapes, with bounds and poses.
 //! * [`near`]: descends Parry's BVH of the mesh with the box of a part in the frame of the part.
 //! * [`contact`]: the exact contact of a triangle and a part.
-//! * [`ghosts`]: corrects contacts at internal edges. [`push_out`]: moves parts out of solids.
 //! * [`triangle_part`], [`points`]: write a contact to a manifold.
-//! * [`pair`]: the contact query.
+//! * [`pair`]: a mesh and its parts. [`query`]: the contact query.
+//! * [`ghosts`], [`internal_edges`]: correct contacts at internal edges. [`push_out`]: moves parts out of solids.
 //! * [`search`], [`cast`]: queries without manifolds.
 
 mod cast;
 mod contact;
 mod ghosts;
+mod internal_edges;
 mod near;
 mod pair;
 mod parts;
 mod placed;
 mod points;
 mod push_out;
+mod query;
 mod search;
 mod shape;
 mod triangle_part;

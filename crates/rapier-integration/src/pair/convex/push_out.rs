@@ -11,9 +11,10 @@ use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::surface::SurfaceKind;
 
 use super::contact::{NormalSource, PartContact};
-use super::pair::{ConvexPair, ConvexQuery, ConvexScratch};
+use super::pair::ConvexPair;
+use super::query::{ConvexQuery, ConvexScratch};
 use crate::mesh::{BEHIND, MeshSurface, is_covered, nearest};
-use crate::pair::update::ContactList;
+use crate::pair::query::ContactList;
 
 /// Depth of a contact, as a share of the part's radius, from which a part whose middle is outside may
 /// have half of itself inside, as cones do. Higher: cones stay in solids; lower: more searches for the

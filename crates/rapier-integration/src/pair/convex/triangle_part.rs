@@ -15,9 +15,9 @@ use super::parts::Part;
 use super::placed::PlacedPart;
 use super::points::{FACE, PointPair, contact_points, ray_length};
 use super::shape::ConvexShape;
+use crate::pair::query::ContactPoints;
 use crate::pair::reduce::ContactSummary;
 use crate::pair::surface::{LIP, filter_distance};
-use crate::pair::update::ContactPoints;
 
 /// A triangle and a part at the pose of a query.
 pub(super) struct TrianglePartPair<'a> {

@@ -1,0 +1,317 @@
+//! The contact query of a mesh and one or more convex shapes.
+
+use std::cell::Cell;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::thread::LocalKey;
+
+use parry3d::math::Real;
+use parry3d::query::details::NormalConstraints;
+use sbbk_core::surface::{Side, SurfaceKind};
+use sbbk_core::traverse::{DescentCounts, SlackLimits};
+use sbbk_core::volumes::rounding::gamma;
+
+use super::contact::{PartContact, ball_contact, core_contact};
+use super::ghosts::GhostContacts;
+use super::near::triangles_near;
+use super::pair::ConvexPair;
+use super::parts::{Part, PartData, Parts};
+use super::placed::PlacedPart;
+use super::shape::ConvexShape;
+use super::triangle_part::TrianglePartPair;
+use crate::mesh::{Change, MeshStore, MeshSurface, PairMesh};
+use crate::pair::pose::PairPose;
+use crate::pair::query::{
+    ContactList, ContactPoints, Limits, Memory, Moving, Pair, PairQuery, QueryMemory, Scratch,
+};
+use crate::pair::reduce::{ContactSummary, PatchPlan};
+use crate::pair::state::Candidate;
+
+impl<'a> Pair for ConvexPair<'a> {
+    /// Data of the mesh and of the parts that the candidates belong to.
+    type State = (PairMesh, PartData);
+    type Hint = ();
+    type Query<'q>
+        = ConvexQuery<'q>
+    where
+        Self: 'q;
+
+    fn is_new((mesh, _): &Self::State) -> bool {
+        mesh.is_unknown()
+    }
+
+    fn open<'q>(
+        &'q self,
+        _: &'q Arc<MeshStore>,
+        (known_mesh, part_data): &'q mut Self::State,
+    ) -> (Change, Self::Query<'q>) {
+        let mut change = known_mesh.update(&self.mesh);
+        if part_data.update(&self.parts) {
+            change = Change::Replaced;
+        }
+        // A ball has one point, and rolls over walls within a mesh.
+        let needs_surface = self.leave_solids || self.has_surface() && !self.is_ball();
+        let surface = needs_surface.then(|| known_mesh.acquire_surface(&self.mesh)).flatten();
+        (change, ConvexQuery { pair: self, part_data, surface })
+    }
+}
+
+/// A contact query of a mesh and its convex shapes.
+pub(crate) struct ConvexQuery<'q> {
+    pub(super) pair: &'q ConvexPair<'q>,
+    part_data: &'q PartData,
+    /// Surface of the mesh, for push-outs and walls within the mesh.
+    pub(super) surface: Option<MeshSurface<'q>>,
+}
+
+/// Cosine above which contacts push the same way. Higher: more meshes are analysed. Lower: bodies
+/// stumble over walls within a mesh.
+const SAME_WAY: f64 = 0.7;
+
+/// Memory for queries.
+#[derive(Default)]
+pub(crate) struct ConvexScratch {
+    /// Parts at the pose of the query.
+    parts: Vec<Option<PlacedPart>>,
+    pub(super) ghosts: GhostContacts,
+}
+
+impl Scratch for ConvexScratch {
+    fn shrink_to(&mut self, limit: usize) {
+        self.ghosts.shrink_to(limit);
+    }
+}
+
+thread_local! {
+    static MEMORY: Cell<Option<Box<QueryMemory<ConvexScratch, PartContact>>>> = Cell::default();
+}
+
+impl ConvexQuery<'_> {
+    /// Calls `then` with a triangle and a part.
+    #[inline(always)]
+    pub(super) fn with_pair<T>(
+        &self,
+        [triangle, part]: [u32; 2],
+        scratch: &mut ConvexScratch,
+        then: impl FnOnce(TrianglePartPair<'_>) -> T,
+    ) -> Option<T> {
+        let ConvexPair { mesh, parts, .. } = self.pair;
+        let cone = if self.pair.has_surface() {
+            None
+        } else {
+            mesh.mesh.triangle_normal_constraints(triangle)
+        };
+        let cone = cone.as_ref().map(|cone| cone as &dyn NormalConstraints);
+        let corners = mesh.corners(triangle);
+        parts.with(part, |shape| {
+            let placed = self.placed(part, &shape, scratch);
+            then(TrianglePartPair { pair: self.pair, placed, part: &shape, corners, cone })
+        })
+    }
+
+    /// Returns a part at its pose.
+    #[inline]
+    pub(super) fn placed<'s>(
+        &self,
+        index: u32,
+        part: &Part<'_>,
+        scratch: &'s mut ConvexScratch,
+    ) -> &'s PlacedPart {
+        /// Parts kept at a time. Higher: more memory; lower: parts of large compounds are placed again.
+        const AT_HAND: usize = 64;
+        let parts = &mut scratch.parts;
+        let slot = index as usize % AT_HAND;
+        if parts.len() <= slot {
+            parts.resize_with(slot + 1, || None);
+        }
+        if parts[slot].as_ref().is_some_and(|placed| placed.index != index) {
+            parts[slot] = None;
+        }
+        parts[slot].get_or_insert_with(|| {
+            PlacedPart::new(index, part, self.pair, self.part_data.extent(index, part))
+                .in_mesh_axes(part.shape)
+        })
+    }
+}
+
+impl PairQuery for ConvexQuery<'_> {
+    type Hint = ();
+    type Contact = PartContact;
+    type Scratch = ConvexScratch;
+
+    /// Larger than for two meshes, as candidates out of reach cost little. Higher: slower in fast motion;
+    /// lower: slower in slow motion.
+    const SLACK: SlackLimits = SlackLimits { steps: 16.0, greatest: 5.0 };
+
+    fn memory() -> &'static LocalKey<Memory<Self>> {
+        &MEMORY
+    }
+
+    fn pose(&self) -> &PairPose {
+        self.pair.pose
+    }
+
+    fn moving(&self) -> Moving<'_> {
+        let [to_parts, to_mesh] = self.pair.mesh_place.placements(self.pair.pose);
+        let (mesh, parts) = (self.pair.mesh.ball(), self.part_data.ball);
+        // The smaller body moves less when it rotates.
+        if mesh.radius <= parts.radius {
+            Moving { ball: mesh, placement: to_parts }
+        } else {
+            Moving { ball: parts, placement: to_mesh }
+        }
+    }
+
+    /// Returns the prediction distance plus the rounding of sixty operations on the largest coordinates.
+    /// The rounding exceeds the error of contacts with curved shapes, 1e-7 of the distance.
+    fn reach(&self) -> Real {
+        let offset = self.pose().pos12.translation.abs().max_element();
+        let largest = self.pair.mesh.magnitude() + offset + self.part_data.magnitude;
+        (self.pose().prediction.max(0.0) + gamma(64) * largest).min(Real::MAX)
+    }
+
+    /// Serves balls, whose contacts and box tests cost less than to keep candidates.
+    fn contacts_without_candidates(
+        &mut self,
+        counts: &mut DescentCounts,
+        scratch: &mut ConvexScratch,
+        contacts: &mut ContactList<PartContact>,
+    ) -> bool {
+        scratch.parts.clear();
+        let ConvexPair { ref mesh, parts, mesh_place, .. } = *self.pair;
+        let Parts::One(shape @ ConvexShape::Ball(ball)) = parts else { return false };
+        let part = Part { pose: None, shape, cone: None };
+        let placed = self.placed(0, &part, scratch);
+        let (prediction, margin) = (self.pose().prediction, self.reach());
+        let (radius, farthest) = (f64::from(ball.radius), f64::from(prediction));
+        triangles_near(placed, shape, mesh, margin, counts, |index| {
+            let corners = placed.in_part(mesh.corners(index));
+            if let Some(contact) = ball_contact(&corners, f64::from(margin) + radius)
+                && contact.distance - radius <= farthest
+            {
+                contacts.push((mesh_place.swap([index, 0]), PartContact::new(contact, &corners)));
+            }
+            ControlFlow::Continue(())
+        });
+        contacts.sort_unstable_by_key(|(subshapes, _)| *subshapes);
+        if let Some((triangle, contact)) = self.push_out(0, f64::INFINITY, scratch) {
+            contacts.clear();
+            contacts.push((mesh_place.swap([triangle, 0]), contact));
+        }
+        self.correct_ghosts(contacts, scratch);
+        true
+    }
+
+    fn descend(
+        &mut self,
+        margin: Real,
+        counts: &mut DescentCounts,
+        scratch: &mut ConvexScratch,
+        found: &mut Vec<Candidate<()>>,
+    ) {
+        let ConvexPair { ref mesh, parts, mesh_place, .. } = *self.pair;
+        parts.intersecting(&self.pair.mesh_box(margin), |index| {
+            parts.with(index, |part| {
+                let placed = self.placed(index, &part, scratch);
+                triangles_near(placed, part.shape, mesh, margin, &mut *counts, |triangle| {
+                    found.push(Candidate::new(mesh_place.swap([triangle, index])));
+                    ControlFlow::Continue(())
+                });
+            });
+        });
+    }
+
+    fn contacts(
+        &mut self,
+        candidates: &mut [Candidate<()>],
+        limits: Limits,
+        scratch: &mut ConvexScratch,
+        contacts: &mut ContactList<PartContact>,
+    ) {
+        for candidate in candidates {
+            if limits.may_touch(candidate)
+                && let Some(contact) = self.contact(candidate, limits, scratch)
+            {
+                contacts.push((candidate.subshapes, contact));
+            }
+        }
+        self.drop_inner_walls(contacts);
+        self.add_push_outs(contacts, scratch);
+        self.correct_ghosts(contacts, scratch);
+    }
+
+    fn reduction(&self, _: &ContactList<PartContact>) -> Option<PatchPlan> {
+        self.pair.has_patches().then(|| {
+            let radius = self.part_data.patch_radius(&self.pair.parts);
+            PatchPlan::new(self.pose().prediction, radius.min(self.pair.mesh.ball().radius))
+        })
+    }
+
+    fn summary(
+        &mut self,
+        (subshapes, contact): &([u32; 2], PartContact),
+        scratch: &mut ConvexScratch,
+        points: &mut ContactPoints,
+    ) -> Option<ContactSummary> {
+        let subshapes = self.pair.mesh_place.swap(*subshapes);
+        self.with_pair(subshapes, scratch, |pair| pair.summary(contact, points))?
+    }
+
+    #[inline(always)]
+    fn points(
+        &mut self,
+        (subshapes, contact): &([u32; 2], PartContact),
+        scratch: &mut ConvexScratch,
+        points: &mut ContactPoints,
+    ) {
+        points.points.clear();
+        let subshapes = self.pair.mesh_place.swap(*subshapes);
+        self.with_pair(subshapes, scratch, |pair| pair.write(contact, points));
+    }
+}
+
+impl ConvexQuery<'_> {
+    /// Removes the contacts of triangles that have the body on both sides. Asks for sides only where
+    /// contacts push in different directions.
+    fn drop_inner_walls(&self, contacts: &mut ContactList<PartContact>) {
+        let Some(surface) = &self.surface else { return };
+        let normal = |(_, contact): &([u32; 2], PartContact)| contact.contact.normal;
+        let first = contacts.first().map(normal);
+        let differs = |hit: &_| first.is_some_and(|first| first.dot(normal(hit)) < SAME_WAY);
+        if contacts.iter().any(differs) && surface.kind(self.pair.mesh.mesh) != SurfaceKind::Sheet {
+            contacts.retain(|(of, _)| {
+                let [triangle, _] = self.pair.mesh_place.swap(*of);
+                surface.around(self.pair.mesh.mesh, triangle).side != Side::Inner
+            });
+        }
+    }
+
+    /// Returns the contact of a candidate within the prediction distance.
+    #[inline(always)]
+    fn contact(
+        &self,
+        candidate: &mut Candidate<()>,
+        limits: Limits,
+        scratch: &mut ConvexScratch,
+    ) -> Option<PartContact> {
+        let [triangle, part] = self.pair.mesh_place.swap(candidate.subshapes);
+        let (mesh, part_data) = (&self.pair.mesh, self.part_data);
+        let contact = self.pair.parts.with(part, |part_shape| {
+            let shape = part_shape.shape;
+            let placed = self.placed(part, &part_shape, scratch);
+            let radius = f64::from(shape.radius());
+            let corners = placed.in_part(mesh.corners(triangle));
+            let reach = limits.margin + radius;
+            let contact = if placed.is_beyond(&corners, reach) {
+                None
+            } else {
+                core_contact(&corners, shape, part_data.hull(part), reach)
+            };
+            let distance = contact.map_or(limits.margin, |contact| contact.distance - radius);
+            candidate.clear = distance + limits.travel;
+            let is_near = distance <= f64::from(self.pair.pose.prediction);
+            contact.filter(|_| is_near).map(|contact| PartContact::new(contact, &corners))
+        });
+        contact.flatten()
+    }
+}
