@@ -93,6 +93,7 @@ impl Field<'_> {
             (triangle, Triangle::from(corners).project_local_point(point, false).point)
         });
         let distance = |(_, foot): &(_, Vector)| foot.distance_squared(point);
+        let feet = feet.filter(|(_, foot)| foot.is_finite());
         feet.min_by(|one, two| distance(one).total_cmp(&distance(two)))
     }
 
