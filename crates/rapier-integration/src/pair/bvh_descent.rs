@@ -16,11 +16,11 @@ use crate::mesh::MeshView;
 
 /// Length of a group of triangles that follow each other in a BVH. Higher: groups are wide and
 /// something is near more often; lower: more descents.
-const MANY: usize = 64;
+const GROUP: usize = 64;
 
 /// Least length of a group that descends as one. Higher: more descents; lower: descents that decide
 /// nothing.
-const FEW: usize = 16;
+const LEAST_GROUP: usize = 16;
 
 /// A descent of the BVHs of two meshes.
 pub(crate) struct BvhDescent<'a> {
@@ -96,9 +96,10 @@ impl<'a> BvhDescent<'a> {
         let is_near = |many: &&[u32]| {
             let group = in_frame2.of(mesh1.tested(many));
             let is_first_enough = |_| ControlFlow::Break(());
-            many.len() < FEW || mesh2.near(|node| meets(&group, node), is_first_enough).is_break()
+            many.len() < LEAST_GROUP
+                || mesh2.near(|node| meets(&group, node), is_first_enough).is_break()
         };
-        let mut fours = near.chunks(MANY).filter(is_near).flat_map(|many| many.chunks(BATCH));
+        let mut fours = near.chunks(GROUP).filter(is_near).flat_map(|many| many.chunks(BATCH));
         let flow = fours.try_for_each(|triangles| {
             let group = in_frame2.of(mesh1.tested(triangles));
             self.pairs_of_four(triangles, &test, |node| meets(&group, node), &mut found)

@@ -18,7 +18,7 @@ use crate::mesh::MeshView;
 
 /// Greatest product of the numbers of triangles near the other mesh with which all pairs are candidates.
 /// Higher: small bodies cost more time and memory. Lower: thin plates with soft CCD turn through sheets.
-pub(super) const FEW: usize = 1 << 16;
+pub(super) const MOST_PAIRS: usize = 1 << 16;
 
 /// Greatest number of steps from a tip to the nearest point. Higher: more time for surfaces that are nearly
 /// parallel; lower: the contact is farther than the nearest one.
@@ -39,10 +39,10 @@ pub(super) fn are_few(meshes: [&MeshView<'_>; 2], pose: &PairPose) -> bool {
         let around = BvhNode::leaf(meshes[1 - i].placed_root(&poses[i], prediction), 0);
         meshes[i].mesh.bvh().leaves(|node| node.intersects(&around)).take(most + 1).count()
     };
-    let least = FEW.isqrt();
+    let least = MOST_PAIRS.isqrt();
     match [0, 1].map(|i| count(i, least)) {
-        [one, _] if one <= least => one * count(1, FEW / one.max(1)) <= FEW,
-        [_, two] if two <= least => two * count(0, FEW / two.max(1)) <= FEW,
+        [one, _] if one <= least => one * count(1, MOST_PAIRS / one.max(1)) <= MOST_PAIRS,
+        [_, two] if two <= least => two * count(0, MOST_PAIRS / two.max(1)) <= MOST_PAIRS,
         _ => false,
     }
 }

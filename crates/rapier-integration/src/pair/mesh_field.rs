@@ -28,7 +28,7 @@ use sbbk_core::surface::{Facets, HalfEdges, OneRing, PlaceMemo, Side, SurfaceKin
 use sbbk_core::traverse::{DescentCounts, Placement};
 use sbbk_core::tree::{BATCH, LeafBatch};
 
-use super::far::FEW;
+use super::far::MOST_PAIRS;
 use super::field::{Field, FieldToken};
 use super::inside::InsideTest;
 use super::pose::{MeshPlace, PairPose};
@@ -69,7 +69,7 @@ impl FieldPair<'_> {
         let to_field = if self.mesh_place.is_second() { pos12 } else { pos12.inverse() };
         let around = self.mesh.placed_root(&to_field, self.pose.prediction);
         let of_mesh = self.mesh.mesh.indices().len() as f64;
-        of_mesh * Field(self.field).count_under(&around) <= FEW as f64
+        of_mesh * Field(self.field).count_under(&around) <= MOST_PAIRS as f64
     }
 }
 

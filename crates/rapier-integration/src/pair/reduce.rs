@@ -32,9 +32,9 @@ const HOVER: Real = 0.1;
 
 /// [`PatchPlan::far`] in radii of the smaller shape. Higher: more points; lower: bodies turn before
 /// the contacts of their next side are there.
-const FAR: Real = 0.1;
+const FAR_RADII: Real = 0.1;
 
-/// [`PatchPlan::equal_depth`] as a share of the prediction distance, or of [`FAR`] if that is less.
+/// [`PatchPlan::equal_depth`] as a share of the prediction distance, or of [`FAR_RADII`] if that is less.
 /// Higher: points that hover replace points that carry, and bodies rock; lower: thin plates turn
 /// through what they hit.
 const EQUAL_DEPTH: Real = 0.02;
@@ -72,7 +72,7 @@ impl PatchPlan {
     /// Plan where all contacts are far: one patch for each direction. The deepest contact may change
     /// before they touch, and Rapier's solver leaves one point of two equal manifolds that have more
     /// than four.
-    pub(super) const FAR: Self = Self {
+    pub(super) const ALL_FAR: Self = Self {
         far: Real::INFINITY,
         hover_distance: Real::INFINITY,
         equal_depth: Real::INFINITY,
@@ -83,7 +83,7 @@ impl PatchPlan {
 
     /// Plan for two shapes, from the radius of the smaller one.
     pub(super) fn new(prediction: Real, radius: Real) -> Self {
-        let far = FAR * radius;
+        let far = FAR_RADII * radius;
         let reach = if prediction > 0.0 { prediction.min(far) } else { far };
         let hover_distance = if prediction < far { HOVER * prediction } else { Real::INFINITY };
         let size = PATCH_SIZE * radius;
@@ -377,7 +377,7 @@ mod tests {
         let row = [0.0, 2.0, 4.0, 4.5, 6.0, 8.0].map(|x| summary(x, -0.1));
         // Contacts between the ends of a row have no patch.
         assert_eq!(patches(&row, PLAN), [(0, 0), (5, 0)]);
-        assert_eq!(patches(&row, PatchPlan::FAR), [(0, 0), (5, 0)]);
+        assert_eq!(patches(&row, PatchPlan::ALL_FAR), [(0, 0), (5, 0)]);
         // Four corners of an octagon make a patch. Each other one is far from these, and stays in order.
         let corners = (0..16).map(|i| {
             let (sin, cos) = (TAU * i as Real / 8.0).sin_cos();

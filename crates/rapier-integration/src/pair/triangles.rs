@@ -164,7 +164,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         let may_be_far = f64::from(self.pose.prediction) > near;
         let is_far = |(_, hit): &TriangleHit| hit.contact.distance > near;
         if may_be_far && contacts.iter().all(is_far) {
-            return Some(PatchPlan::FAR);
+            return Some(PatchPlan::ALL_FAR);
         }
         self.patches
     }

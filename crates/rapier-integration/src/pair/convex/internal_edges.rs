@@ -15,7 +15,7 @@ use crate::mesh::box_between;
 use crate::pair::query::ContactList;
 
 /// Lists of contacts up to this length are searched linearly.
-const FEW: usize = 64;
+const LINEAR_SEARCH: usize = 64;
 
 impl ConvexQuery<'_> {
     /// Calls `found` with the contacts of other triangles within `seam` of a place on the mesh.
@@ -32,7 +32,7 @@ impl ConvexQuery<'_> {
             let corners = self.pair.mesh.corners(other).map(|corner| corner.as_dvec3());
             other != triangle && touches(&corners, [place.as_dvec3(); 2], seam)
         };
-        if contacts.len() <= FEW {
+        if contacts.len() <= LINEAR_SEARCH {
             for (index, (other, _)) in (0..).zip(contacts) {
                 let [other, of_part] = self.pair.mesh_place.swap(*other);
                 if of_part == part && touches(other) {
