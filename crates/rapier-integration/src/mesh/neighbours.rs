@@ -3,8 +3,7 @@ use std::sync::atomic::{AtomicU16, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use glamx::DVec3;
-use parry3d::bounding_volume::Aabb;
-use parry3d::bounding_volume::BoundingVolume;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::Real;
 use parry3d::partitioning::BvhNode;
 use parry3d::shape::TriMesh;

@@ -1,5 +1,6 @@
 use std::sync::{Arc, OnceLock};
 
+use glamx::Vec3;
 use parry3d::shape::{CompositeShape, TriMesh};
 use sbbk_core::surface::{OneRing, PlaceMemo, Side, SurfaceKind};
 use sbbk_core::tree::Tree;
@@ -208,9 +209,10 @@ impl<'m> MeshSurface<'m> {
         is_declared && kind == SurfaceKind::Solid
     }
 
-    /// Returns the tips of `view`, whose surface this must be.
-    pub(crate) fn tips(&self, view: &MeshView<'_>) -> &Tips {
-        self.data(view.mesh).tips.get_or_init(|| view.tips())
+    /// Returns the tips of `view`, whose surface this must be, and the half-edges that start there.
+    pub(crate) fn tips<'a>(&'a self, view: &'a MeshView<'_>) -> impl Iterator<Item = (u32, Vec3)> {
+        let tips: &Tips = self.data(view.mesh).tips.get_or_init(|| view.tips());
+        tips.iter().map(|&tip| (tip, view.corner(tip)))
     }
 
     /// Returns the kind of `mesh`, whose surface this must be.

@@ -122,8 +122,8 @@ pub(crate) struct MeshView<'a> {
 }
 
 impl MeshStore {
-    /// Returns a view of a mesh for one query; `None` if the box around the mesh is not finite or there are no
-    /// triangles, so that only Parry can answer.
+    /// Returns a view of a mesh for one query. `None` if the box around the mesh is not finite, or if there are no
+    /// triangles. Only Parry can answer then.
     #[inline]
     pub(crate) fn view<'a>(&'a self, mesh: &'a TriMesh) -> Option<MeshView<'a>> {
         let root = mesh.bvh().root_aabb();

@@ -9,7 +9,6 @@ use glamx::Vec3;
 use parry3d::math::Real;
 use parry3d::partitioning::BvhNode;
 use sbbk_core::contact::{Feature, FeaturePair, TriangleContact, contact};
-use sbbk_core::surface::Facets;
 
 use super::pose::PairPose;
 use super::triangle_contacts::{in_local, local_pair};
@@ -56,7 +55,8 @@ impl<S: TriangleShapes> FarSearch<'_, S> {
         }
         let within = self.pose.prediction;
         for i in 0..2 {
-            let tips = self.shapes.tips(i).iter().filter_map(|&tip| self.of_tip(i, tip));
+            let of_tip = |(half_edge, tip)| self.of_point(i, half_edge, tip, within);
+            let tips = self.shapes.tips(i).filter_map(of_tip);
             let nearest = tips
                 .inspect(|hit| {
                     found(*hit);
@@ -72,12 +72,6 @@ impl<S: TriangleShapes> FarSearch<'_, S> {
                 ends.filter(|end| distance(end) <= f64::from(within)).for_each(&mut found);
             }
         }
-    }
-
-    /// Returns the contact of a tip of shape `i`.
-    fn of_tip(&self, i: usize, tip: u32) -> Option<TriangleHit> {
-        let at = self.shapes.surface(i, tip / 3)?.facets.corner(tip, 0).as_vec3();
-        self.of_point(i, tip, at, self.pose.prediction)
     }
 
     /// Walks on from a contact. The first step starts at the point of shape `i`.

@@ -1,4 +1,4 @@
-//! Whether a mesh can be inside another one, without a test at each query.
+//! Remembers how far a mesh was outside another one, which spares most queries a test.
 
 use sbbk_core::traverse::Placement;
 use sbbk_core::volumes::Sphere;

@@ -65,9 +65,8 @@ impl FieldPair<'_> {
 
     /// Returns true if few pairs of triangles may be within the prediction distance.
     fn are_few(&self) -> bool {
-        let pos12 = self.pose.pos12;
-        let to_field = if self.mesh_place.is_second() { pos12 } else { pos12.inverse() };
-        let around = self.mesh.placed_root(&to_field, self.pose.prediction);
+        let PairPose { pos12, prediction, .. } = self.pose;
+        let around = self.mesh.placed_root(&self.mesh_place.mesh_in_shape(pos12), *prediction);
         let of_mesh = self.mesh.mesh.indices().len() as f64;
         of_mesh * Field(self.field).count_under(&around) <= MOST_PAIRS as f64
     }
@@ -299,8 +298,8 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
         nearest_triangle(self.pair.mesh.mesh, point, within)
     }
 
-    fn tips(&self, i: usize) -> &[u32] {
-        let of_mesh = self.surface.as_ref().filter(|_| !self.is_field(i));
-        of_mesh.map_or(&[], |surface| surface.tips(&self.pair.mesh))
+    fn tips(&self, i: usize) -> impl Iterator<Item = (u32, Vector)> {
+        let of_mesh = self.surface.iter().filter(move |_| !self.is_field(i));
+        of_mesh.flat_map(|surface| surface.tips(&self.pair.mesh))
     }
 }

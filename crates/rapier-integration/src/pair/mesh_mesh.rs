@@ -42,18 +42,16 @@ pub(crate) struct MeshPair<'a> {
     pub(crate) has_patches: bool,
 }
 
-impl MeshPair<'_> {
-    /// Returns 1 if the box of mesh 2 is larger than that of mesh 1, else 0.
-    pub(super) fn larger(&self) -> usize {
-        usize::from(self.meshes[0].size_squared() < self.meshes[1].size_squared())
-    }
-}
-
 /// Part of a body that may stick out of a room that holds it, in half heights of the body. Higher:
 /// bodies deep in a solid stay there. Lower: fast bodies fall through the floors of rooms.
 const STICKS_OUT: Real = 0.5;
 
 impl MeshPair<'_> {
+    /// Returns 1 if the box of mesh 2 is larger than that of mesh 1, else 0.
+    pub(super) fn larger(&self) -> usize {
+        usize::from(self.meshes[0].size_squared() < self.meshes[1].size_squared())
+    }
+
     /// Returns true if the larger mesh is a room for the smaller one: the smaller one is in it, or
     /// hardly sticks out.
     pub(super) fn is_room(&self, test: &mut InsideTest) -> bool {
@@ -215,9 +213,7 @@ impl Meshes<'_> {
         });
         self.cache.count_walk();
     }
-}
 
-impl Meshes<'_> {
     /// Returns the contact that moves the smaller mesh out of the larger one, by the shortest way
     /// from its middle, and its triangles. Call this if no other contact was found.
     ///
@@ -264,8 +260,8 @@ impl Meshes<'_> {
         Some((subshapes, TriangleSurfaceContact { contact, source: ContactSource::PushOut }))
     }
 
-    /// Returns the direction in which mesh 2 separates from mesh 1 by the shortest way from the
-    /// middle of the smaller mesh, if the middle is in both. Two equal meshes are both tried.
+    /// Returns the direction in which mesh 2 separates from mesh 1 by the shortest way. The way starts at the middle
+    /// of the smaller mesh, which must be in both. Two equal meshes are both tried.
     pub(super) fn separation_of_smaller(&self) -> Option<DVec3> {
         let [one, two] = &self.pair.meshes;
         let [size1, size2] = [one, two].map(|mesh| mesh.size_squared());
@@ -370,7 +366,7 @@ impl<'q> TriangleShapes for Meshes<'q> {
         nearest_triangle(self.pair.meshes[i].mesh, point, within)
     }
 
-    fn tips(&self, i: usize) -> &[u32] {
-        self.surfaces[i].as_ref().map_or(&[], |surface| surface.tips(&self.pair.meshes[i]))
+    fn tips(&self, i: usize) -> impl Iterator<Item = (u32, Vector)> {
+        self.surfaces[i].iter().flat_map(move |surface| surface.tips(&self.pair.meshes[i]))
     }
 }

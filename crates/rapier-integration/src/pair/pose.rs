@@ -52,6 +52,11 @@ impl MeshPlace {
         }
     }
 
+    /// Returns the mesh in the frame of the other shape.
+    pub(super) fn mesh_in_shape(self, pos12: &Pose) -> Pose {
+        if self.is_second() { *pos12 } else { pos12.inverse() }
+    }
+
     /// Returns the other shape in the frame of the mesh.
     pub(crate) fn shape_in_mesh(self, pos12: &Pose) -> Pose {
         if self.is_second() { pos12.inverse() } else { *pos12 }

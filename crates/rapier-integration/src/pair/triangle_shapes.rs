@@ -78,8 +78,8 @@ pub(crate) trait TriangleShapes: Sync {
     /// of a height field may be another that is near.
     fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32>;
 
-    /// Returns half-edges that start at the tips of a shape, for [far](super::far) contacts.
-    fn tips(&self, i: usize) -> &[u32];
+    /// Returns the tips of a shape and half-edges that start there, for [far](super::far) contacts.
+    fn tips(&self, i: usize) -> impl Iterator<Item = (u32, Vector)>;
 
     /// Returns the direction in which shape 2 separates from shape 1, if one is deep in the other.
     fn separation(&self) -> Option<DVec3>;

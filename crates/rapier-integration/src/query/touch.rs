@@ -11,7 +11,7 @@ pub(crate) struct Touch {
 }
 
 impl Touch {
-    /// Where two triangles touch.
+    /// Returns the points at which two triangles touch.
     pub(super) fn of(pair: &FoundPair, placement: &Placement) -> Self {
         Self {
             points: [pair.point1(), pair.point2(placement)],

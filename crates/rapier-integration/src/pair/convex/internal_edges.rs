@@ -1,5 +1,5 @@
-//! Corrects the contacts of a query at internal edges and at borders: ghosts take the normals of other
-//! contacts, and contacts at borders those of their faces ([`ghosts`](super::ghosts)).
+//! Corrects the contacts of a query at internal edges and at borders. [Ghosts](super::ghosts) take the normals of
+//! other contacts. Contacts at borders take the normals of their faces.
 
 use std::cell::RefCell;
 
@@ -104,7 +104,7 @@ impl ConvexQuery<'_> {
         ghosts.find(contacts, keys, extends_beyond, find_strays);
     }
 
-    /// Gives contacts at borders the normals of their faces if the shape is all on one side of these.
+    /// Turns the normals of contacts at borders to those of their faces. The shape must be all on one side.
     fn turn_at_borders(
         &self,
         ghosts: &GhostContacts,

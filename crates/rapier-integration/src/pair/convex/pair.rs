@@ -25,9 +25,7 @@ pub(crate) struct ConvexPair<'a> {
 impl ConvexPair<'_> {
     /// Returns the box around the mesh in the frame of the parts, grown by `reach`.
     pub(super) fn mesh_box(&self, reach: Real) -> Aabb {
-        let pos12 = self.pose.pos12;
-        let pose = if self.mesh_place.is_second() { pos12 } else { pos12.inverse() };
-        self.mesh.placed_root(&pose, reach)
+        self.mesh.placed_root(&self.mesh_place.mesh_in_shape(&self.pose.pos12), reach)
     }
 
     /// Returns true for contacts of the surface. Soft bodies need contacts of each triangle.
