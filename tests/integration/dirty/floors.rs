@@ -1,7 +1,10 @@
 use glamx::{Pose3, Quat, Vec3};
+use rapier3d::dynamics::RigidBodyBuilder;
+use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use sbbk_testkit::mesh::{self, Mesh};
 
 use super::rides::Course;
+use super::world;
 
 /// Side of a floor, in units; all paths are shorter than 12.
 const SIZE: f32 = 16.0;
@@ -44,3 +47,32 @@ fn bodies_ride_on_dirty_floors_as_on_a_cuboid() {
 
 /// Floors and bodies that fail today.
 const KNOWN: &[(&str, &str)] = &[("soup, 0.1 mm apart", "mesh ball")];
+
+/// Cubes of 5 cm on triangles as long as they are, at Rapier's default length unit. Would catch contacts with
+/// triangles ahead, within the prediction distance.
+#[test]
+fn small_cubes_slide_at_the_default_unit_as_on_a_cuboid() {
+    const HALF: f32 = 0.025;
+    let cuboid = ColliderBuilder::cuboid(1.0, 0.1, 1.0).translation(-0.1 * Vec3::Y);
+    let floor = mesh::floor(2.0, 40).shared_shape().expect("a floor");
+    let cube = mesh::cuboid(Vec3::splat(HALF), 2).shared_shape().expect("a cube");
+    let path = |ground: &ColliderBuilder, shape: &SharedShape, angle: f32| {
+        let mut world = world();
+        world.insert(RigidBodyBuilder::fixed(), ground.clone().friction(0.1));
+        let heading = Quat::from_rotation_y(angle);
+        let start = heading * Vec3::new(-0.5, 0.0, 0.0) + (HALF + 1e-4) * Vec3::Y;
+        let turn = Quat::from_rotation_y(3.0 * angle);
+        let body = RigidBodyBuilder::dynamic().pose(Pose3::from_parts(start, turn));
+        let body = body.linvel(heading * Vec3::X).can_sleep(false);
+        let collider = ColliderBuilder::new(shape.clone()).friction(0.1).density(1000.0);
+        let (body, _) = world.insert(body, collider);
+        (0..90).for_each(|_| world.step());
+        (world.bodies[body].translation() - start).dot(heading * Vec3::X)
+    };
+    for i in 0..8 {
+        let angle = 0.7 * i as f32;
+        let right = path(&cuboid, &SharedShape::cuboid(HALF, HALF, HALF), angle);
+        let share = path(&ColliderBuilder::new(floor.clone()), &cube, angle) / right;
+        assert!((share - 1.0).abs() < 0.03, "{share} of {right}, at {angle}");
+    }
+}

@@ -1,11 +1,12 @@
 //! Far contacts of two shapes made of triangles: what may be hit in the next step, but is not near.
 //!
 //! A host asks for them where a body is small beside the prediction distance, or fast and has soft CCD.
-//! Shapes of few triangles keep all contacts within that distance. Fine meshes only have contacts from their tips to
-//! the nearest points of the other shape. Walks add the places where shapes are nearest to each other. A walk goes
-//! from a point of one shape to the nearest point of the other, and back. It may end at another place.
+//! Fine meshes only have contacts from their tips to the nearest points of the other shape. Walks add the places
+//! where shapes are nearest to each other. A walk goes from a point of one shape to the nearest point of the other,
+//! and back. It may end at another place. Shapes of few triangles keep all contacts in the [`Directions`] of local
+//! minima.
 
-use glamx::Vec3;
+use glamx::{DVec3, Vec3};
 use parry3d::math::Real;
 use parry3d::partitioning::BvhNode;
 use sbbk_core::contact::{Feature, FeaturePair, TriangleContact, contact};
@@ -22,6 +23,39 @@ pub(super) const MOST_PAIRS: usize = 1 << 16;
 /// Greatest number of steps from a tip to the nearest point. Higher: more time for surfaces that are nearly
 /// parallel; lower: the contact is farther than the nearest one.
 const STEPS: usize = 8;
+
+/// Least cosine of a contact's normal and of a direction in which a far contact counts. Higher: thin plates with
+/// soft CCD turn through sheets; lower: small bodies are stopped by triangles ahead.
+const SAME_DIRECTION: f64 = 0.97;
+
+/// Least cosine of directions that are one. Higher: more time.
+const ONE_DIRECTION: f64 = 0.99;
+
+/// Normals of contacts.
+#[derive(Default)]
+pub(super) struct Directions(Vec<DVec3>);
+
+impl Directions {
+    pub(super) fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    /// Adds a normal that is wanted, unless there is one like it. There is room for some hundreds.
+    pub(super) fn add_if(&mut self, normal: DVec3, is_wanted: impl FnOnce() -> bool) {
+        if !self.has_within(normal, ONE_DIRECTION) && is_wanted() {
+            self.0.push(normal);
+        }
+    }
+
+    /// Returns true if a far contact with this normal counts.
+    pub(super) fn has(&self, normal: DVec3) -> bool {
+        self.has_within(normal, SAME_DIRECTION)
+    }
+
+    fn has_within(&self, normal: DVec3, cosine: f64) -> bool {
+        self.0.iter().any(|direction| direction.dot(normal) >= cosine)
+    }
+}
 
 /// Two shapes whose far contacts are wanted.
 pub(super) struct FarSearch<'a, S> {

@@ -53,8 +53,9 @@ const SAME_POINT: Real = 0.02;
 /// Distances and cosines by which contacts make patches.
 #[derive(Copy, Clone, Debug)]
 pub(crate) struct PatchPlan {
-    /// Distance beyond which a contact is far: it joins patches by [`SAME_FAR_NORMAL`].
-    far: Real,
+    /// Distance beyond which a contact is far: it joins patches by [`SAME_FAR_NORMAL`]. A patch of far contacts is one
+    /// manifold.
+    pub(super) far: Real,
     /// Distance beyond which a contact hovers: near one that touches, it joins its patch by
     /// [`SAME_NORMAL_OVER`]. Infinite for bodies as small as the prediction distance.
     hover_distance: Real,

@@ -18,7 +18,7 @@ use sbbk_core::surface::{OneRing, Side};
 
 use super::islands::{Crossing, OverlapIslands, SheetSide};
 use super::pose::PairPose;
-use super::triangle_contacts::in_local;
+use super::triangle_contacts::{in_local, local_pair};
 use super::triangle_shapes::{ContactSource, TriangleShapes, TriangleSurfaceContact};
 use crate::mesh::BEHIND;
 
@@ -159,6 +159,14 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             }
         }
         self.crossing(&surfaces, local, &contact, clipped)
+    }
+
+    /// Returns true if both points of a contact are local minima of the distance.
+    pub(super) fn is_local_minimum(&self, contact: &TriangleContact) -> bool {
+        let Some(triangles) = self.shapes.triangles(self.pair) else { return false };
+        let local = local_pair(&self.pose.placement12, &triangles);
+        let surfaces = self.surfaces();
+        (0..2).all(|i| self.is_minimum(&surfaces, i, &local, contact))
     }
 
     /// Returns the surfaces around both triangles. `array::map` would copy them twice.
@@ -433,7 +441,6 @@ mod tests {
     use crate::mesh::MeshStore;
     use crate::pair::mesh_mesh::MeshPair;
     use crate::pair::query::Pair;
-    use crate::pair::triangle_contacts::local_pair;
     use crate::pair::triangle_shapes::DescentMemory;
 
     /// Rough balls with triangles as large as the prediction distance, apart and crossing. Would

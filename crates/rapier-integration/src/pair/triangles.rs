@@ -14,7 +14,7 @@ use sbbk_core::contact::{
 use sbbk_core::query::TrianglePair;
 use sbbk_core::traverse::{DescentCounts, SlackLimits};
 
-use super::far::FarSearch;
+use super::far::{Directions, FarSearch};
 use super::inside::InsideTest;
 use super::islands::OverlapIslands;
 use super::parts::{PartResult, in_parts};
@@ -50,6 +50,7 @@ pub(crate) struct TriangleQuery<'q, S> {
 pub(crate) struct TriangleScratch {
     descent: DescentMemory,
     first: FirstPass,
+    directions: Directions,
     passed: PassedTriangles,
 }
 
@@ -132,7 +133,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         scratch: &mut TriangleScratch,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
-        let TriangleScratch { first, passed, .. } = scratch;
+        let TriangleScratch { first, directions, passed, .. } = scratch;
         first.clear();
         std::mem::swap(&mut first.contacts, contacts);
         in_parts(candidates, LEAST_CANDIDATES, first, &|part: &mut [_], first: &mut FirstPass| {
@@ -146,6 +147,8 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         }
         if limits.reach < f64::from(self.pose.prediction) {
             self.add_far(!*is_near, clipped, contacts);
+        } else if limits.reach > self.shapes.filter_distance() {
+            self.reject_aside(directions, contacts);
         }
         self.reject_passed(islands, passed, contacts);
         if contacts.is_empty() {
@@ -279,6 +282,25 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
             });
             contacts.dedup_by_key(|(pair, _)| *pair);
         }
+    }
+
+    /// Removes contacts beyond the filter distance, except those in the direction of a near one or of a local minimum
+    /// of the distance.
+    fn reject_aside(
+        &self,
+        directions: &mut Directions,
+        contacts: &mut ContactList<TriangleSurfaceContact>,
+    ) {
+        let limit = self.shapes.filter_distance();
+        directions.clear();
+        for (pair, TriangleSurfaceContact { contact, .. }) in &*contacts {
+            directions.add_if(contact.normal, || {
+                contact.distance <= limit || self.filter(*pair).is_local_minimum(contact)
+            });
+        }
+        contacts.retain(|(_, TriangleSurfaceContact { contact, .. })| {
+            contact.distance <= limit || directions.has(contact.normal)
+        });
     }
 
     /// Removes the contacts of sheets that have passed sheets.

@@ -359,10 +359,11 @@ fn write_patch<M, C, const MOST: usize>(
     manifold.set_subshape_pos2(pose2);
     (manifold.local_n1, manifold.local_n2) = (normal1, normal2);
     manifold.points.clear();
+    let one_normal = if distance(&deepest) > plan.far { -1.0 } else { plan.one_normal };
     chosen.retain(|i| {
         let PatchPoint { point, normals, .. } = &points[*i];
         // The deepest one also where cones have left no unit vector.
-        let is_of_normal = *i == deepest || normals[0].dot(normal1) >= plan.one_normal;
+        let is_of_normal = *i == deepest || normals[0].dot(normal1) >= one_normal;
         if is_of_normal {
             let old_points = &mut writer.pool.old_points;
             let old = find_old(point, part, old_points, plan.same_point);
