@@ -13,42 +13,38 @@ use crate::support::{
     Manifold, Question, direction, distance, having, per_triangle, rotation, shape, triangles,
 };
 
-/// Would catch a contact left out in the direction of the nearest one, contacts of all directions, and near contacts
-/// that are kept. Soft CCD needs points beside the nearest one, as bodies turn where they hit.
+/// Would catch a direction left out because a neighbour is nearer, and near contacts that are kept.
+/// Soft CCD needs contacts of every direction beyond a tenth of the radius.
 #[test]
-fn far_contacts_have_the_directions_of_local_minima() {
+fn far_contacts_have_every_direction() {
     let [head, torus] =
         [mesh::monkey_head_with(6), mesh::torus(0.7, 0.3, 12, 8)].map(|m| shape(&m));
     let surfaces = having(ContactSet::Surfaces);
-    let (mut random, mut far, mut near) = (Rand32::new(1), [0; 2], [0; 2]);
+    let (mut random, mut far, mut near) = (Rand32::new(1), 0, [0; 2]);
     for i in 0..120 {
         let away = 1.2 + 0.015 * i as Real;
         let at = Pose::from_parts(away * direction(&mut random), rotation(&mut random));
         let query = Question::new(&head, &torus, at).within(0.7);
         let [found, all] = [query.fresh(&surfaces), query.fresh(&per_triangle())];
-        // The radius of the smaller one is between 0.9 and 1.2, of its ball and of its box.
-        if all.iter().all(|manifold| distance(manifold) > 0.13) {
+        // The ball around the box of the torus has a radius of 1.45.
+        if all.iter().all(|manifold| distance(manifold) > 0.15) {
             let pairs =
                 |manifolds: &[Manifold]| manifolds.iter().map(triangles).collect::<BTreeSet<_>>();
             assert!(pairs(&found).is_subset(&pairs(&all)), "{at:?}");
             let nearest = |manifolds: &[Manifold]| {
-                let distances = manifolds.iter().map(|of| (distance(of), of.local_n1));
-                distances.min_by(|a, b| a.0.total_cmp(&b.0))
+                manifolds.iter().map(distance).fold(Real::INFINITY, Real::min)
             };
             assert_eq!(nearest(&found), nearest(&all), "{at:?}");
-            if let Some((_, normal)) = nearest(&all) {
-                let mut beside = all.iter().filter(|of| of.local_n1.dot(normal) >= 0.98);
-                let is_like = |of: &Manifold| {
-                    found.iter().any(|found| found.local_n1.dot(of.local_n1) >= 0.99)
-                };
-                assert!(beside.all(is_like), "{at:?}");
+            for manifold in &all {
+                let is_like = |found: &Manifold| found.local_n1.dot(manifold.local_n1) >= 0.99;
+                assert!(found.iter().any(is_like), "{at:?} lost {}", manifold.local_n1);
             }
-            far = [far[0] + found.len(), far[1] + all.len()];
+            far += found.len();
         } else {
             near = [near[0] + found.len(), near[1] + all.len()];
         }
     }
-    assert!(far[0] > 50 && 8 * far[0] < far[1] && near[0] < near[1], "{far:?} {near:?}");
+    assert!(far > 50 && near[0] < near[1], "{far} far, {near:?} near");
 }
 
 /// Meshes of 3200 and 1536 triangles, as far from each other as they are large.

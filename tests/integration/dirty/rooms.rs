@@ -54,5 +54,24 @@ fn bodies_stay_in_rooms() {
     judge("height of a body in a room with its floor at -3, after 4 s", &cases, KNOWN);
 }
 
+/// Balls in tubes whose open ends are far apart. Would catch tubes that push balls out, as if these had sunk in.
+#[test]
+fn bodies_stay_in_long_tubes() {
+    const RADIUS: f32 = 1.0;
+    for half_width in [2.0, 5.0, 20.0] {
+        let tube = mesh::tube(RADIUS, half_width, 48);
+        for tube in [mesh::turned_inside_out(tube.clone()), tube] {
+            let (mut world, _) = prepared_world(&[], false);
+            let tube = shape(&tube, TriMeshFlags::empty());
+            world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(tube));
+            let ball = shape(&mesh::ball(BODY, 12), TriMeshFlags::empty());
+            let (ball, _) = world.insert(RigidBodyBuilder::dynamic(), ColliderBuilder::new(ball));
+            (0..240).for_each(|_| world.step());
+            let height = world.bodies[ball].translation().y;
+            assert!((height - BODY + RADIUS).abs() < 0.05, "{height} in a tube of {half_width}");
+        }
+    }
+}
+
 /// Rooms and bodies that fail today.
 const KNOWN: &[(&str, &str)] = &[];

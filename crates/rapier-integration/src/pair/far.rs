@@ -3,8 +3,8 @@
 //! A host asks for them where a body is small beside the prediction distance, or fast and has soft CCD.
 //! Fine meshes only have contacts from their tips to the nearest points of the other shape. Walks add the places
 //! where shapes are nearest to each other. A walk goes from a point of one shape to the nearest point of the other,
-//! and back. It may end at another place. Shapes of few triangles keep all contacts in the [`Directions`] of local
-//! minima.
+//! and back. It may end at another place. Shapes of few triangles that nearly touch keep all contacts in the
+//! [`Directions`] of local minima, and other shapes of few triangles keep all.
 
 use glamx::{DVec3, Vec3};
 use parry3d::math::Real;
@@ -25,7 +25,7 @@ pub(super) const MOST_PAIRS: usize = 1 << 16;
 const STEPS: usize = 8;
 
 /// Least cosine of a contact's normal and of a direction in which a far contact counts. Higher: thin plates with
-/// soft CCD turn through sheets; lower: small bodies are stopped by triangles ahead.
+/// soft CCD turn through sheets. Lower: small bodies are stopped by triangles ahead.
 const SAME_DIRECTION: f64 = 0.97;
 
 /// Least cosine of directions that are one. Higher: more time.

@@ -53,15 +53,15 @@ impl MeshPair<'_> {
     }
 
     /// Returns true if the larger mesh is a room for the smaller one: the smaller one is in it, or
-    /// hardly sticks out.
-    pub(super) fn is_room(&self, test: &mut InsideTest) -> bool {
+    /// hardly sticks out. A long tube is one although its ends are open.
+    fn is_room(&self, outer_is_solid: impl Fn() -> bool, test: &mut InsideTest) -> bool {
         let outer = self.larger();
         let [held, holder] = [1 - outer, outer].map(|i| &self.meshes[i]);
         if !held.sorted_extents().cmplt(holder.sorted_extents()).all() {
             return false;
         }
         let middle = self.pose.in_other(1 - outer, held.ball().centre);
-        let Some(exit) = self.exit(middle, test) else { return false };
+        let Some(exit) = self.exit(middle, outer_is_solid, test) else { return false };
         let depth = exit.distance(middle);
         let way = self.pose.in_other(outer, exit) - held.ball().centre;
         let height = held.height(way.normalize_or_zero(), depth / (1.0 - STICKS_OUT));
@@ -70,7 +70,12 @@ impl MeshPair<'_> {
 
     /// Returns the nearest point of the larger mesh, if a point of the smaller one is inside. `point` is
     /// in the frame of the larger mesh.
-    fn exit(&self, point: Vector, test: &mut InsideTest) -> Option<Vector> {
+    fn exit(
+        &self,
+        point: Vector,
+        outer_is_solid: impl Fn() -> bool,
+        test: &mut InsideTest,
+    ) -> Option<Vector> {
         let outer = self.larger();
         let [held, holder] = [1 - outer, outer].map(|i| &self.meshes[i]);
         let PairPose { placement12, placement21, .. } = self.pose;
@@ -85,10 +90,11 @@ impl MeshPair<'_> {
         }
         let is_covered = is_covered(holder.mesh, point);
         let (_, near, behind) = nearest(holder.mesh, point)?;
-        if !is_covered || behind < -BEHIND {
+        let is_inside = behind >= BEHIND && (is_covered || outer_is_solid());
+        if behind < -BEHIND || !is_covered && !is_inside {
             *test = InsideTest::outside(placement, near.point.distance(point));
         }
-        (is_covered && behind >= BEHIND).then_some(near.point)
+        is_inside.then_some(near.point)
     }
 }
 
@@ -125,11 +131,13 @@ impl<'a> Pair for MeshPair<'a> {
         let radius = radius1.min(radius2);
         let has_surface = surfaces.iter().any(Option::is_some);
         let filter_distance = filter_distance(has_surface, radius);
-        let room = surfaces[self.larger()]
-            .as_ref()
-            .filter(|_| self.is_room(in_room))
-            .filter(|surface| !surface.is_declared_solid(self.meshes[self.larger()].mesh))
-            .map(|_| self.larger());
+        let outer = self.larger();
+        let holder = self.meshes[outer].mesh;
+        let is_room = |surface: &MeshSurface<'_>| {
+            self.is_room(|| surface.kind(holder) == SurfaceKind::Solid, in_room)
+                && !surface.is_declared_solid(holder)
+        };
+        let room = surfaces[outer].as_ref().is_some_and(is_room).then_some(outer);
         let query = TriangleQuery {
             shapes: Meshes {
                 pair: self,
@@ -231,7 +239,7 @@ impl Meshes<'_> {
             if self.surfaces[outer].is_none() || self.room.is_some() {
                 return None;
             }
-            self.pair.exit(vertex, test)?;
+            self.pair.exit(vertex, || self.is_solid(outer), test)?;
             if !self.is_solid(outer) {
                 *test = InsideTest::NoSolid;
                 return None;

@@ -284,22 +284,25 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         }
     }
 
-    /// Removes contacts beyond the filter distance, except those in the direction of a near one or of a local minimum
-    /// of the distance.
+    /// Removes contacts beyond the filter distance, except those in the direction of a near contact or of a local
+    /// minimum of the distance. Removes none if no contact is near, as bodies turn when they meet.
     fn reject_aside(
         &self,
         directions: &mut Directions,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
         let limit = self.shapes.filter_distance();
+        let is_near = |contact: &TriangleContact| contact.distance <= limit;
+        if !contacts.iter().any(|(_, hit)| is_near(&hit.contact)) {
+            return;
+        }
         directions.clear();
         for (pair, TriangleSurfaceContact { contact, .. }) in &*contacts {
-            directions.add_if(contact.normal, || {
-                contact.distance <= limit || self.filter(*pair).is_local_minimum(contact)
-            });
+            let counts = || is_near(contact) || self.filter(*pair).is_local_minimum(contact);
+            directions.add_if(contact.normal, counts);
         }
         contacts.retain(|(_, TriangleSurfaceContact { contact, .. })| {
-            contact.distance <= limit || directions.has(contact.normal)
+            is_near(contact) || directions.has(contact.normal)
         });
     }
 
