@@ -32,16 +32,15 @@
 //! | [`traverse`] | descent of two trees, placements, slack |
 //! | [`leaf`] | SIMD test of the triangles of two leaves |
 //! | [`mod@contact`] | exact contact of two triangles, or of a triangle and a convex shape |
-//! | [`query`] | contacts, distance, overlap, casts of two meshes |
-//! | [`surface`] | adjacency of a mesh; solid or sheet |
-//! | [`field`] | triangles of a height field near a mesh |
-//! | [`front`], [`broad_phase`] | the paper's, to reproduce it |
 //! | [`collections`] | compact list of indices, union-find |
+//! | [`surface`] | adjacency of a mesh; solid or sheet |
+//! | [`query`] | contacts, distance, overlap, casts of two meshes |
+//! | [`field`] | triangles of a height field near a mesh |
 //! | [`draw`] | lines for a debug renderer |
+//! | [`front`], [`broad_phase`] | the paper's, to reproduce it |
 //! | `truth` (feature `truth`) | brute force in f64, for tests |
 //!
-//! Each module uses only those above it, except that [`query`] also uses [`mod@contact`], and
-//! [`mod@contact`] and [`broad_phase`] stand alone.
+//! Each module uses only those above it.
 
 pub mod broad_phase;
 pub mod collections;

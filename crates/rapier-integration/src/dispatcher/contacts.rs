@@ -41,8 +41,7 @@ impl SbbkDispatcher {
         let (mesh, other, mesh_place) = match (g1.as_trimesh(), g2.as_trimesh()) {
             (Some(mesh1), Some(mesh2)) => {
                 let meshes = [mesh1, mesh2];
-                // Parry may have deleted all triangles of a mesh.
-                if !kinds.meshes || meshes.iter().any(|mesh| mesh.indices().is_empty()) {
+                if !kinds.meshes {
                     return QueryOutcome::Unsupported;
                 }
                 if is_new
@@ -122,7 +121,7 @@ impl SbbkDispatcher {
         C: Default + Copy + Send + Sync + 'static,
     {
         let mut counts = DescentCounts::default();
-        let answer = update_manifolds(pair, &self.cache, &mut counts, manifolds, workspace);
+        let answer = update_manifolds(pair, &self.store, &mut counts, manifolds, workspace);
         if self.config.count_queries {
             self.counters.add(answer, &counts);
         }

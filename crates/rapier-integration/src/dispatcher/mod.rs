@@ -26,15 +26,15 @@ use crate::{SbbkConfig, SbbkStats};
 #[derive(Clone)]
 pub struct SbbkDispatcher {
     config: SbbkConfig,
-    cache: Arc<MeshStore>,
+    store: Arc<MeshStore>,
     counters: Arc<QueryCounters>,
 }
 
 impl SbbkDispatcher {
     /// Returns a dispatcher without trees.
     pub fn new(config: SbbkConfig) -> Self {
-        let cache = MeshStore::new(config.build_options(), config.idle_tree_bytes);
-        Self { config, cache: Arc::new(cache), counters: Arc::default() }
+        let store = MeshStore::new(config.build_options(), config.idle_tree_bytes);
+        Self { config, store: Arc::new(store), counters: Arc::default() }
     }
 
     /// The configuration of this dispatcher.
@@ -71,7 +71,7 @@ impl SbbkDispatcher {
         let Some(mesh) = rigid_mesh(&*shape.0) else {
             return Ok(None);
         };
-        Ok(Some(PreparedTree(self.cache.register(mesh, Some(shape))?)))
+        Ok(Some(PreparedTree(self.store.register(mesh, Some(shape))?)))
     }
 
     /// Registers a mesh and all its copies, and builds its tree now instead of in a step.
@@ -96,30 +96,30 @@ impl SbbkDispatcher {
     /// Names the defect of the mesh, for example a vertex that is NaN.
     #[must_use = "the registration ends when the result is dropped"]
     pub fn prepare(&self, mesh: &TriMesh) -> Result<PreparedTree, PrepareError> {
-        Ok(PreparedTree(self.cache.register(mesh, None)?))
+        Ok(PreparedTree(self.store.register(mesh, None)?))
     }
 
     /// True if the mesh is registered: by [`prepare_shape`](Self::prepare_shape), or as one of more than
     /// 8192 triangles by [`prepare`](Self::prepare).
     pub fn is_registered(&self, mesh: &TriMesh) -> bool {
-        self.cache.registered(mesh).is_some()
+        self.store.registered(mesh).is_some()
     }
 
     /// Returns what this mesh is taken for. A deformable mesh is a sheet. Analyses the mesh if no
     /// query has done so, in up to 10 ms.
     pub fn surface_kind(&self, mesh: &TriMesh) -> SurfaceKind {
-        let is_analysed = !mesh.is_deformable() && self.cache.view(mesh).is_some();
-        if is_analysed { self.cache.surface_kind(mesh) } else { SurfaceKind::Sheet }
+        let is_analysed = !mesh.is_deformable() && self.store.view(mesh).is_some();
+        if is_analysed { self.store.surface_kind(mesh) } else { SurfaceKind::Sheet }
     }
 
     /// Counts of meshes and queries so far. Takes time in proportion to the number of meshes.
     pub fn stats(&self) -> SbbkStats {
-        self.counters.stats(self.cache.counts())
+        self.counters.stats(self.store.counts())
     }
 
     /// Drops the trees that no pair of colliders uses, see [`SbbkConfig::idle_tree_bytes`].
     pub fn release_idle_trees(&self) {
-        self.cache.release_idle();
+        self.store.release_idle();
     }
 
     /// Returns views of meshes; `None`, and counts the query, if only Parry can answer.
@@ -127,7 +127,7 @@ impl SbbkDispatcher {
         &'a self,
         meshes: [&'a TriMesh; COUNT],
     ) -> Option<[MeshView<'a>; COUNT]> {
-        let views = meshes.map(|mesh| self.cache.view(mesh));
+        let views = meshes.map(|mesh| self.store.view(mesh));
         if views.iter().any(Option::is_none) {
             self.counters.add_unsupported();
             return None;

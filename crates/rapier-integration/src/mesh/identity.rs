@@ -1,9 +1,9 @@
-//! Two notions of "the same mesh".
+//! Three notions of "the same mesh".
 //!
-//! A dispatcher receives a `&TriMesh` without handle or version. The address proves nothing, unless
-//! the mesh is [registered](super::store::Registered): memory is used again, and
-//! `SharedShape::make_mut` edits in place.
+//! A dispatcher receives a `&TriMesh` without handle or version.
 //!
+//! * The address, for a [registered](super::store::Registered) mesh alone: memory is used again, and
+//!   `SharedShape::make_mut` edits in place.
 //! * [`ContentHash`]: 128 bits over vertices, triangles, and the deformable flag. Meshes with equal
 //!   hashes share their data: clones, restored snapshots, the same file loaded twice. A hash takes
 //!   4 µs for 1000 triangles, so each pair computes it once. The hash of a large unregistered

@@ -11,7 +11,8 @@ use rustc_hash::FxHashMap;
 use sbbk_core::contact::Feature;
 use sbbk_core::surface::strays::has_strays;
 use sbbk_core::surface::{
-    HalfEdges, IndexedTriangles, OneRing, PlaceMemo, RayTriangles, SMALL_PART, Side, Surface, side,
+    HalfEdges, IndexedTriangles, OneRing, PlaceMemo, RayTriangles, SMALL_COMPONENT, Side, Surface,
+    side,
 };
 
 /// Adjacency of the triangles of a mesh, with [strays](sbbk_core::surface::strays).
@@ -62,17 +63,19 @@ impl<'a, 'm> MeshAdjacency<'a, 'm> {
         })
     }
 
-    /// Returns the first triangle of a crowd or a small part. If that triangle is a face, so are all.
+    /// Returns the first triangle of a crowd or a small component. If that triangle is a face, so are all.
     fn first_of_crowd(self, triangle: u32) -> Option<u32> {
         let Twins::All(surface, _) = self.twins else { return None };
         let corners = self.mesh.indices()[triangle as usize];
         let corners = corners.map(|corner| self.mesh.vertices()[corner as usize]);
         let of_hub = surface.crowd(corners);
-        of_hub.or_else(|| surface.has_small_parts().then(|| self.first_of_part(triangle))?)
+        of_hub.or_else(|| {
+            surface.has_small_components().then(|| self.first_of_component(triangle))?
+        })
     }
 
-    /// Returns the first triangle of a small closed part that is alone in its box.
-    fn first_of_part(self, triangle: u32) -> Option<u32> {
+    /// Returns the first triangle of a small closed component that is alone in its box.
+    fn first_of_component(self, triangle: u32) -> Option<u32> {
         let (mut part, mut at) = (vec![triangle], 0);
         let mut bounds = self.mesh.triangle(triangle).local_aabb();
         while let Some(&of) = part.get(at) {
@@ -84,7 +87,7 @@ impl<'a, 'm> MeshAdjacency<'a, 'm> {
                 }
             }
             at += 1;
-            if part.len() > SMALL_PART {
+            if part.len() > SMALL_COMPONENT {
                 return None;
             }
         }
@@ -338,7 +341,7 @@ mod tests {
             }
             let mesh = TriMesh::new(vertices, triangles).expect("there are boxes");
             let surface = Surface::new(mesh.vertices(), mesh.indices(), &MeshRays(&mesh));
-            assert!(surface.has_small_parts());
+            assert!(surface.has_small_components());
             let flags: Vec<_> = mesh.indices().iter().map(|_| TriangleFlags::default()).collect();
             let (twins, memo) = (Twins::All(&surface, &flags), &PlaceMemo::default());
             let adjacency = MeshAdjacency { mesh: &mesh, twins, memo };

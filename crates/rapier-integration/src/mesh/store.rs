@@ -201,11 +201,7 @@ impl MeshStore {
     /// Builds the tree of a small mesh, if the budget covers it and no thread has begun to.
     pub(super) fn build_within_budget(&self, mesh: &TriMesh, data: &Arc<MeshData>) {
         let count = mesh.indices().len();
-        if is_small(count)
-            && !data.has_build_begun()
-            && self.budget.spend(count)
-            && data.begin_build()
-        {
+        if !data.has_build_begun() && self.budget.spend(count) && data.begin_build() {
             // A mesh that cannot have a tree does without.
             let _ = self.build(mesh, data);
         }

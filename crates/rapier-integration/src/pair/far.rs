@@ -89,14 +89,13 @@ impl<S: TriangleShapes> FarSearch<'_, S> {
         }
         let within = self.pose.prediction;
         for i in 0..2 {
-            let of_tip = |(half_edge, tip)| self.of_point(i, half_edge, tip, within);
-            let tips = self.shapes.tips(i).filter_map(of_tip);
-            let nearest = tips
-                .inspect(|hit| {
-                    found(*hit);
-                    self.step(1 - i, hit, distance(hit)).into_iter().for_each(&mut found);
-                })
-                .min_by(|one, two| distance(one).total_cmp(&distance(two)));
+            let mut nearest: Option<TriangleHit> = None;
+            for (half_edge, tip) in self.shapes.tips(i) {
+                let Some(hit) = self.of_point(i, half_edge, tip, within) else { continue };
+                found(hit);
+                self.step(1 - i, &hit, distance(&hit)).into_iter().for_each(&mut found);
+                nearest = Some(hit).filter(|hit| is_nearer(hit, nearest)).or(nearest);
+            }
             if is_apart {
                 let middle = self.shapes.bounds(i).center();
                 let of_middle = self.of_point(i, 0, middle, Real::MAX);
@@ -139,14 +138,11 @@ impl<S: TriangleShapes> FarSearch<'_, S> {
     /// shape `i`, and stands for the start of a half-edge.
     fn of_point(&self, i: usize, half_edge: u32, point: Vec3, within: Real) -> Option<TriangleHit> {
         let placement = &self.pose.placement12;
-        let in_other = match i {
-            0 => placement.to_frame2(point.as_dvec3(), Vec3::ZERO),
-            _ => placement.to_frame1(point, Vec3::ZERO),
-        };
-        let mut pair = [self.shapes.nearest_triangle(1 - i, in_other.as_vec3(), within)?; 2];
+        let in_other = self.pose.in_other(i, point);
+        let mut pair = [self.shapes.nearest_triangle(1 - i, in_other, within)?; 2];
         pair[i] = half_edge / 3;
         let mut local = local_pair(placement, &self.shapes.triangles(pair)?);
-        local.corners[i] = [in_local(placement, i, point, &local); 3];
+        local.corners[i] = [in_local(placement, i, point, local.origin); 3];
         let [t1, t2] = &local.corners;
         let contact = contact(t1, t2, f64::from(within))?;
         let mut features = [contact.features.feature1(), contact.features.feature2()];
@@ -158,6 +154,10 @@ impl<S: TriangleShapes> FarSearch<'_, S> {
 
 fn distance((_, hit): &TriangleHit) -> f64 {
     hit.contact.distance
+}
+
+fn is_nearer(hit: &TriangleHit, than: Option<TriangleHit>) -> bool {
+    than.is_none_or(|than| distance(hit) < distance(&than))
 }
 
 fn hit(pair: [u32; 2], contact: TriangleContact) -> TriangleHit {

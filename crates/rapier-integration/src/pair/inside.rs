@@ -13,12 +13,12 @@ pub(crate) enum InsideTest {
     Unknown,
     /// The larger mesh is no solid.
     NoSolid,
-    /// A vertex was at least this far outside at this placement of the smaller mesh.
+    /// A point of the smaller mesh was at least this far outside at this placement of the smaller mesh.
     Outside(Placement, f64),
 }
 
 impl InsideTest {
-    /// A vertex is `distance` outside at a placement of the smaller mesh.
+    /// A point is `distance` outside at a placement of the smaller mesh.
     pub(super) fn outside(placement: &Placement, distance: f32) -> Self {
         Self::Outside(*placement, SURE * f64::from(distance))
     }

@@ -65,7 +65,7 @@ pub(super) struct Crossing {
     pub(super) normal: DVec3,
     /// Depth of the contact of the first pass.
     pub(super) depth: f64,
-    /// Set if one of the two is of a sheet, and the other of a smaller solid.
+    /// Set unless both shapes are solids, or the solid is larger than the sheet.
     pub(super) sheet: Option<SheetSide>,
 }
 
@@ -262,7 +262,7 @@ impl OverlapIslands {
     fn sum_support(&mut self) {
         self.support.clear();
         for crossing in &self.crossings {
-            let is_fine = crossing.is_reliable && !self.rejected.contains(&crossing.pair);
+            let is_fine = self.is_fine(crossing);
             let first = self.islands.first((0, crossing.pair[0]));
             let support = self.support.entry(first).or_default();
             support.pairs += 1;

@@ -14,16 +14,17 @@ use sbbk_core::traverse::{DescentCounts, NodePair, PairFrame, begin_descent, des
 use sbbk_core::tree::Tree;
 
 use super::bvh_descent::BvhDescent;
+use super::chunks::{has_threads, in_chunks};
 use super::far::are_few;
 use super::inside::InsideTest;
-use super::parts::{has_threads, in_parts};
 use super::pose::PairPose;
 use super::query::{Moving, Pair};
 use super::reduce::PatchPlan;
 use super::state::Candidate;
 use super::surface::{filter_distance, lateral_culling, reach};
+use super::triangle_contacts::in_local;
 use super::triangle_shapes::{
-    Cones, ContactSource, DescentMemory, DescentPart, Hint, TriangleHit, TriangleShapes,
+    Cones, ContactSource, DescentChunk, DescentMemory, Hint, TriangleHit, TriangleShapes,
     TriangleSurfaceContact,
 };
 use super::triangles::TriangleQuery;
@@ -113,7 +114,7 @@ impl<'a> Pair for MeshPair<'a> {
 
     fn open<'q>(
         &'q self,
-        cache: &'q Arc<MeshStore>,
+        store: &'q Arc<MeshStore>,
         ([known1, known2], [in_room, inside]): &'q mut Self::State,
     ) -> (Change, Self::Query<'q>) {
         let [mesh1, mesh2] = &self.meshes;
@@ -146,7 +147,7 @@ impl<'a> Pair for MeshPair<'a> {
                 room,
                 filter_distance,
                 reach: OnceLock::new(),
-                cache,
+                store,
             },
             pose: self.pose,
             patches: (self.has_patches && are_rigid)
@@ -167,17 +168,17 @@ pub(crate) struct Meshes<'q> {
     pub(super) room: Option<usize>,
     filter_distance: f64,
     reach: OnceLock<Real>,
-    cache: &'q MeshStore,
+    store: &'q MeshStore,
 }
 
-/// Pairs of nodes or a few more at which the parts of a descent start. Higher: fewer descents are split; lower: one
-/// part may have all that is near.
+/// Pairs of nodes or a few more at which the chunks of a descent start. Higher: fewer descents are split; lower: one
+/// chunk may have all that is near.
 const STARTS: usize = 1024;
 
-/// Least number of node pairs in a part. Higher: one part may have all that is near; lower: parts of microseconds.
+/// Least number of node pairs in a chunk. Higher: one chunk may have all that is near; lower: chunks of microseconds.
 const LEAST_STARTS: usize = 32;
 
-/// Least number of triangles of the larger mesh in a part of a BVH descent. Higher, lower: see [`LEAST_STARTS`].
+/// Least number of triangles of the larger mesh in a chunk of a BVH descent. Higher, lower: see [`LEAST_STARTS`].
 const LEAST_NEAR: usize = 64;
 
 impl Meshes<'_> {
@@ -186,7 +187,7 @@ impl Meshes<'_> {
         trees: (&Tree, &Tree),
         margin: Real,
         start: &mut Vec<NodePair>,
-        descent: &mut DescentPart,
+        descent: &mut DescentChunk,
     ) {
         let MeshPair { pose, .. } = self.pair;
         let mut frame = PairFrame::at(trees, pose.placement12, margin);
@@ -195,8 +196,8 @@ impl Meshes<'_> {
         let count = if has_threads() { STARTS } else { 1 };
         begin_descent(trees, &mut frame, count, start, &mut descent.counts);
         let least = if start.len() < STARTS { STARTS } else { LEAST_STARTS };
-        in_parts(start, least, descent, &|start: &mut [_], part: &mut DescentPart| {
-            let DescentPart { found, counts, stack } = part;
+        in_chunks(start, least, descent, &|start: &mut [_], chunk: &mut DescentChunk| {
+            let DescentChunk { found, counts, stack } = chunk;
             let frame = &mut frame.clone();
             descend_from(start, trees, frame, stack, counts, |batch1, batch2| {
                 test.survivors(batch1, batch2, |lane1, lane2| {
@@ -207,35 +208,35 @@ impl Meshes<'_> {
         });
     }
 
-    fn descend_bvhs(&self, margin: Real, near: &mut Vec<u32>, descent: &mut DescentPart) {
+    fn descend_bvhs(&self, margin: Real, near: &mut Vec<u32>, descent: &mut DescentChunk) {
         let MeshPair { pose, meshes, .. } = self.pair;
         let culling = lateral_culling(self, pose, margin);
         let search = BvhDescent::new(meshes.each_ref(), pose.placement12, margin, culling);
         search.list_near(near, &mut descent.counts);
-        in_parts(near, LEAST_NEAR, descent, &|near: &mut [u32], part: &mut DescentPart| {
-            let DescentPart { found, counts, .. } = part;
+        in_chunks(near, LEAST_NEAR, descent, &|near: &mut [u32], chunk: &mut DescentChunk| {
+            let DescentChunk { found, counts, .. } = chunk;
             let _ = search.pairs(near, counts, |pair| {
                 found.push(Candidate::new(pair));
                 ControlFlow::Continue(())
             });
         });
-        self.cache.count_walk();
+        self.store.count_walk();
     }
 
     /// Returns the contact that moves the smaller mesh out of the larger one, by the shortest way
     /// from its middle, and its triangles. Call this if no other contact was found.
     ///
-    /// Tests one vertex unless the mesh is known to be deep: a mesh that pierces the surface has
-    /// contacts.
+    /// Tests one vertex, unless the middle of the smaller mesh is known to be in both: a mesh that pierces the surface
+    /// has contacts.
     pub(super) fn find_push_out(
         &self,
-        is_deep: bool,
+        is_in_both: bool,
         test: &mut InsideTest,
     ) -> Option<TriangleHit> {
         let outer = self.pair.larger();
         let [held, holder] = [1 - outer, outer].map(|i| &self.pair.meshes[i]);
         let vertex = self.pair.pose.in_other(1 - outer, held.corners(0)[0]);
-        if !is_deep {
+        if !is_in_both {
             if self.surfaces[outer].is_none() || self.room.is_some() {
                 return None;
             }
@@ -253,10 +254,8 @@ impl Meshes<'_> {
         let mut subshapes = [0; 2];
         subshapes[outer] = triangle;
         let origin = self.pair.meshes[0].corners(subshapes[0])[0];
-        let mut points = [exit, from].map(|point| match outer {
-            0 => point.as_dvec3() - origin.as_dvec3(),
-            _ => self.pair.pose.placement12.to_frame1(point, origin),
-        });
+        let placement = &self.pair.pose.placement12;
+        let mut points = [exit, from].map(|point| in_local(placement, outer, point, origin));
         if outer == 1 {
             points.reverse();
         }
@@ -322,8 +321,8 @@ impl<'q> TriangleShapes for Meshes<'q> {
         self.separation_of_smaller()
     }
 
-    fn push_out(&self, is_deep: bool, test: &mut InsideTest) -> Option<TriangleHit> {
-        self.find_push_out(is_deep, test).inspect(|_| self.cache.count_push_out())
+    fn push_out(&self, is_in_both: bool, test: &mut InsideTest) -> Option<TriangleHit> {
+        self.find_push_out(is_in_both, test).inspect(|_| self.store.count_push_out())
     }
 
     fn with_cones(&self, triangles: [u32; 2], then: impl FnOnce(Cones<'_>)) {

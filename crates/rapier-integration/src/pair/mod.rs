@@ -6,14 +6,16 @@
 //! | [`state`] | what a host keeps with a pair: candidates, slack |
 //! | [`mesh_mesh`], [`mesh_field`] | the kinds whose shapes are both made of triangles |
 //! | [`triangles`], [`triangle_shapes`] | contacts of these kinds, in one pass or two |
-//! | [`parts`] | parts of a heavy pair, on several threads |
-//! | [`far`] | contacts far beyond those that touch |
-//! | [`surface`], [`islands`], [`inside`] | contacts of surfaces from contacts of triangles |
+//! | [`chunks`] | chunks of a heavy pair, on several threads |
+//! | [`bvh_descent`] | candidates from Parry's BVHs |
+//! | [`far`] | contacts beyond the reach |
+//! | [`surface`], [`islands`], [`passed`], [`inside`] | contacts of surfaces from contacts of triangles |
+//! | [`field`], [`pose`], [`triangle_contacts`] | height fields, poses, points of two triangles |
 //! | [`convex`] | a mesh and convex shapes |
 //! | [`reduce`], [`write`](mod@write) | contact reduction, manifolds |
 
 mod bvh_descent;
-mod bvh_search;
+mod chunks;
 mod convex;
 mod far;
 mod field;
@@ -21,7 +23,6 @@ mod inside;
 mod islands;
 mod mesh_field;
 mod mesh_mesh;
-mod parts;
 mod passed;
 mod pose;
 mod query;
@@ -34,7 +35,7 @@ mod triangles;
 mod update;
 mod write;
 
-pub(crate) use bvh_search::BvhSearch;
+pub(crate) use bvh_descent::BvhDescent;
 pub(crate) use convex::{ConvexPair, ConvexSearch, FoundCast, FoundTriangle, Parts, PlacedPart};
 pub(crate) use mesh_field::FieldPair;
 pub(crate) use mesh_mesh::MeshPair;

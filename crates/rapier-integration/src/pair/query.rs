@@ -31,7 +31,7 @@ pub(crate) trait Pair: Copy {
     /// Returns the change since the last query, and begins a query.
     fn open<'q>(
         &'q self,
-        cache: &'q Arc<MeshStore>,
+        store: &'q Arc<MeshStore>,
         state: &'q mut Self::State,
     ) -> (Change, Self::Query<'q>);
 }
@@ -55,7 +55,7 @@ pub(crate) trait PairQuery {
     /// Returns the body whose motion limits how long candidates serve.
     fn moving(&self) -> Moving<'_>;
 
-    /// Returns the distance up to which there may be contacts.
+    /// Returns the distance up to which all contacts are found.
     fn reach(&self) -> Real {
         self.pose().prediction
     }

@@ -12,7 +12,7 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::TrackedContact;
 
 /// Points of a patch. Rapier's solver uses no more.
-const MOST_POINTS: usize = 4;
+pub(super) const MOST_POINTS: usize = 4;
 
 /// Least cosine of normals of one patch. Higher: more points, and nested bowls are less calm; lower:
 /// gears lose speed.
@@ -30,11 +30,11 @@ const SAME_NORMAL_OVER: Real = 0.9;
 /// bodies in motion come deeper into others.
 const HOVER: Real = 0.1;
 
-/// [`PatchPlan::far`] in radii of the smaller shape. Higher: more points; lower: bodies turn before
-/// the contacts of their next side are there.
-const FAR_RADII: Real = 0.1;
+/// Filter distance in radii of the smaller shape. Higher: plates that soft CCD
+/// sees turn through what they meet; lower: small bodies keep contacts at internal edges.
+pub(super) const FILTERED: Real = 0.1;
 
-/// [`PatchPlan::equal_depth`] as a share of the prediction distance, or of [`FAR_RADII`] if that is less.
+/// [`PatchPlan::equal_depth`] as a share of the prediction distance, or of [`PatchPlan::far`] if that is less.
 /// Higher: points that hover replace points that carry, and bodies rock; lower: thin plates turn
 /// through what they hit.
 const EQUAL_DEPTH: Real = 0.02;
@@ -53,11 +53,11 @@ const SAME_POINT: Real = 0.02;
 /// Distances and cosines by which contacts make patches.
 #[derive(Copy, Clone, Debug)]
 pub(crate) struct PatchPlan {
-    /// Distance beyond which a contact is far: it joins patches by [`SAME_FAR_NORMAL`]. A patch of far contacts is one
+    /// Filter distance of surfaces. A contact beyond it joins patches by [`SAME_FAR_NORMAL`]. A patch of far contacts is one
     /// manifold.
     pub(super) far: Real,
     /// Distance beyond which a contact hovers: near one that touches, it joins its patch by
-    /// [`SAME_NORMAL_OVER`]. Infinite for bodies as small as the prediction distance.
+    /// [`SAME_NORMAL_OVER`]. Infinite if the prediction distance is a tenth of the radius or more.
     hover_distance: Real,
     /// Difference to the deepest contact of a patch up to which another counts as equally deep.
     equal_depth: Real,
@@ -84,14 +84,14 @@ impl PatchPlan {
 
     /// Plan for two shapes, from the radius of the smaller one.
     pub(super) fn new(prediction: Real, radius: Real) -> Self {
-        let far = FAR_RADII * radius;
-        let reach = if prediction > 0.0 { prediction.min(far) } else { far };
+        let far = FILTERED * radius;
+        let unit = if prediction > 0.0 { prediction.min(far) } else { far };
         let hover_distance = if prediction < far { HOVER * prediction } else { Real::INFINITY };
         let size = PATCH_SIZE * radius;
         Self {
             far,
             hover_distance,
-            equal_depth: EQUAL_DEPTH * reach,
+            equal_depth: EQUAL_DEPTH * unit,
             size,
             one_normal: ONE_NORMAL,
             same_point: SAME_POINT * size,
@@ -206,11 +206,11 @@ impl Reduction {
             let outermost = plan.outermost(places, normal);
             let first = seeds.len();
             for (i, Member { summary, patch, .. }) in members.iter_mut().enumerate() {
-                let is_spared = summary.distance - deepest > plan.equal_depth
+                let is_needless = summary.distance - deepest > plan.equal_depth
                     || outermost.beyond(summary.point) <= plan.size * plan.size;
                 *patch = if outermost.chosen.contains(&i) {
                     count
-                } else if is_spared {
+                } else if is_needless {
                     NO_PATCH
                 } else {
                     let is_there =

@@ -1,8 +1,8 @@
 //! State that a host keeps with a pair between queries.
 //!
-//! A descent looks farther than the prediction distance, and its candidates serve several queries:
+//! A descent looks farther than the reach, and its candidates serve several queries:
 //! [`Slack`] decides for how long. Until then no tree is touched, and candidates that cannot have
-//! come within the prediction distance are skipped. All others get the exact test, so a query
+//! come within the reach are skipped. All others get the exact test, so a query
 //! without a descent finds the same contacts. Losing the state costs time only.
 
 use std::sync::LazyLock;
@@ -30,7 +30,7 @@ impl<S: Default, H> Default for PairState<S, H> {
     }
 }
 
-/// A pair of subshapes that may be within the prediction distance.
+/// A pair of subshapes that may be within the margin.
 #[derive(Copy, Clone, Debug)]
 pub(crate) struct Candidate<H> {
     /// Numbers in shape 1 and shape 2.

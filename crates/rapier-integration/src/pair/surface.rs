@@ -18,13 +18,10 @@ use sbbk_core::surface::{OneRing, Side};
 
 use super::islands::{Crossing, OverlapIslands, SheetSide};
 use super::pose::PairPose;
+use super::reduce::FILTERED;
 use super::triangle_contacts::{in_local, local_pair};
 use super::triangle_shapes::{ContactSource, TriangleShapes, TriangleSurfaceContact};
 use crate::mesh::BEHIND;
-
-/// [`TriangleShapes::filter_distance`] in radii of the smaller shape. Higher: plates that soft CCD
-/// sees turn through what they meet; lower: small bodies keep contacts at internal edges.
-const FILTERED: f64 = 0.1;
 
 /// Greatest [`reach`] of fine meshes in [`TriangleShapes::filter_distance`]s: 0.04 radii. A body of one length unit has a
 /// radius of half a unit, and Rapier predicts 0.02 units by default. Higher: fine meshes cost more;
@@ -65,7 +62,7 @@ const TOUCHING: f64 = 1.0e-9;
 
 /// Returns [`TriangleShapes::filter_distance`] from the radius of the smaller shape.
 pub(super) fn filter_distance(has_surface: bool, radius: Real) -> f64 {
-    if has_surface { FILTERED * f64::from(radius) } else { f64::INFINITY }
+    if has_surface { f64::from(FILTERED * radius) } else { f64::INFINITY }
 }
 
 /// Returns the distance up to which all contacts of two meshes are found.
@@ -152,9 +149,11 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
                 return Verdict::Contact(TriangleSurfaceContact { contact, ..of_triangles });
             }
             // A local minimum does not point inside: spares the test.
-            let may_have_passed = has_solid && !(is_solid[0] && is_first_minimum);
             let points_inside = |i: usize| self.points_inside(&surfaces, i, &contact);
-            if !may_have_passed || !(0..2).all(|i| !is_solid[i] || points_inside(i)) {
+            let has_passed = has_solid
+                && !(is_solid[0] && is_first_minimum)
+                && (0..2).all(|i| !is_solid[i] || points_inside(i));
+            if !has_passed {
                 return Verdict::None;
             }
         }
@@ -299,7 +298,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
 
     /// Returns a point of a shape in frame 1, from the origin of two triangles.
     fn in_local(&self, i: usize, point: Vec3, local: &TrianglePair) -> DVec3 {
-        in_local(&self.pose.placement12, i, point, local)
+        in_local(&self.pose.placement12, i, point, local.origin)
     }
 
     /// Returns a direction of frame 1 in the frame of a shape.
@@ -447,7 +446,7 @@ mod tests {
     /// catch contacts that [`lateral_culling`] loses.
     #[test]
     fn triangles_beside_each_other_pass_by() {
-        let cache = Arc::new(MeshStore::new(BuildOptions::default(), 1 << 30));
+        let store = Arc::new(MeshStore::new(BuildOptions::default(), 1 << 30));
         let shapes = [20, 30].map(|rows| {
             let (mut vertices, triangles) = Ball::new(1.0).to_trimesh(2 * rows, rows);
             for (i, vertex) in (0_u32..).zip(&mut vertices) {
@@ -456,7 +455,7 @@ mod tests {
             SharedShape::new(TriMesh::new(vertices, triangles).unwrap())
         });
         let meshes = shapes.each_ref().map(|shape| shape.as_trimesh().unwrap());
-        let seen = meshes.map(|mesh| cache.view(mesh).unwrap());
+        let seen = meshes.map(|mesh| store.view(mesh).unwrap());
         let mut counts = [0; 2];
         for (i, gap) in [(1, 0.03), (2, 0.0), (3, -0.03), (4, -0.06), (5, 0.0)] {
             let turn = Vector::new(0.3, 0.1 * i as Real, 0.7);
@@ -466,9 +465,9 @@ mod tests {
                 MeshPair { pose: &pose, meshes: seen, has_surfaces: true, has_patches: false };
             for has_trees in [false, true] {
                 let registered = has_trees
-                    .then(|| [0, 1].map(|i| cache.register(meshes[i], Some(&shapes[i])).unwrap()));
+                    .then(|| [0, 1].map(|i| store.register(meshes[i], Some(&shapes[i])).unwrap()));
                 let mut known = Default::default();
-                let shapes = mesh_pair.open(&cache, &mut known).1.shapes;
+                let shapes = mesh_pair.open(&store, &mut known).1.shapes;
                 let mut found = Vec::new();
                 let scratch = &mut DescentMemory::default();
                 let tests = &mut DescentCounts::default();

@@ -29,16 +29,11 @@ pub(super) fn local_pair(
     TrianglePair::new(placement, corners(triangle1), corners(triangle2))
 }
 
-/// Returns a point of a shape in frame 1, from the origin of two triangles.
-pub(super) fn in_local(
-    placement: &Placement,
-    i: usize,
-    point: Vector,
-    local: &TrianglePair,
-) -> DVec3 {
+/// Returns a point of a shape in frame 1, from an origin there.
+pub(super) fn in_local(placement: &Placement, i: usize, point: Vector, origin: Vector) -> DVec3 {
     match i {
-        0 => point.as_dvec3() - local.origin.as_dvec3(),
-        _ => placement.to_frame1(point, local.origin),
+        0 => point.as_dvec3() - origin.as_dvec3(),
+        _ => placement.to_frame1(point, origin),
     }
 }
 

@@ -9,8 +9,8 @@ use sbbk_core::contact::{FeaturePair, TriangleContact};
 use sbbk_core::surface::{Facets, OneRing};
 use sbbk_core::traverse::{DescentCounts, DescentScratch, NodePair};
 
+use super::chunks::ChunkResult;
 use super::inside::InsideTest;
-use super::parts::PartResult;
 use super::pose::PairPose;
 use super::query::Moving;
 use super::state::Candidate;
@@ -84,8 +84,9 @@ pub(crate) trait TriangleShapes: Sync {
     /// Returns the direction in which shape 2 separates from shape 1, if one is deep in the other.
     fn separation(&self) -> Option<DVec3>;
 
-    /// Returns the push-out if one shape is wholly inside the other. `is_deep`: known to be.
-    fn push_out(&self, _is_deep: bool, _test: &mut InsideTest) -> Option<TriangleHit> {
+    /// Returns the push-out if one shape is wholly inside the other. `is_in_both`: the shapes cross, and the middle of
+    /// the smaller one is known to be in both.
+    fn push_out(&self, _is_in_both: bool, _test: &mut InsideTest) -> Option<TriangleHit> {
         None
     }
 
@@ -153,7 +154,7 @@ pub(crate) struct DescentMemory {
     pub(super) near: Vec<u32>,
     /// Nodes at which a descent starts.
     pub(super) start: Vec<NodePair>,
-    pub(super) descent: DescentPart,
+    pub(super) descent: DescentChunk,
 }
 
 impl DescentMemory {
@@ -164,15 +165,15 @@ impl DescentMemory {
     }
 }
 
-/// Result of a part of a descent, and memory for it.
+/// Result of a chunk of a descent, and memory for it.
 #[derive(Default)]
-pub(super) struct DescentPart {
+pub(super) struct DescentChunk {
     pub(super) found: Vec<Candidate<Hint>>,
     pub(super) counts: DescentCounts,
     pub(super) stack: DescentScratch,
 }
 
-impl PartResult for DescentPart {
+impl ChunkResult for DescentChunk {
     fn append(&mut self, next: Self) {
         self.found.extend(next.found);
         self.counts += next.counts;

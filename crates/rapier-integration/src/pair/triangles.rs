@@ -14,10 +14,10 @@ use sbbk_core::contact::{
 use sbbk_core::query::TrianglePair;
 use sbbk_core::traverse::{DescentCounts, SlackLimits};
 
+use super::chunks::{ChunkResult, in_chunks};
 use super::far::{Directions, FarSearch};
 use super::inside::InsideTest;
 use super::islands::OverlapIslands;
-use super::parts::{PartResult, in_parts};
 use super::passed::PassedTriangles;
 use super::pose::PairPose;
 use super::query::{ContactList, ContactPoints, Limits, Memory, Moving, PairQuery, Scratch};
@@ -33,8 +33,8 @@ use super::triangle_shapes::{
 /// have moved by 2.5. Higher: bodies that are deep leave faster; lower: they fall asleep inside.
 const DEEPEST: f64 = 4.0;
 
-/// Least number of candidates of a [part](super::parts). Higher: parts wait for each other; lower: threads
-/// take turns for parts of a few microseconds.
+/// Least number of candidates of a [chunk](super::chunks). Higher: threads wait for each other; lower: threads
+/// take turns for chunks of a few microseconds.
 const LEAST_CANDIDATES: usize = 256;
 
 /// A query about two shapes made of triangles.
@@ -71,7 +71,7 @@ impl FirstPass {
     }
 }
 
-impl PartResult for FirstPass {
+impl ChunkResult for FirstPass {
     fn append(&mut self, next: Self) {
         self.contacts.extend(next.contacts);
         self.islands.append(next.islands);
@@ -136,9 +136,14 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         let TriangleScratch { first, directions, passed, .. } = scratch;
         first.clear();
         std::mem::swap(&mut first.contacts, contacts);
-        in_parts(candidates, LEAST_CANDIDATES, first, &|part: &mut [_], first: &mut FirstPass| {
-            part.iter_mut().for_each(|candidate| self.first_pass(candidate, limits, first));
-        });
+        in_chunks(
+            candidates,
+            LEAST_CANDIDATES,
+            first,
+            &|chunk: &mut [_], first: &mut FirstPass| {
+                chunk.iter_mut().for_each(|candidate| self.first_pass(candidate, limits, first));
+            },
+        );
         std::mem::swap(&mut first.contacts, contacts);
         let FirstPass { islands, clipped, is_near, .. } = first;
         let separation = islands.is_undecided().then(|| self.shapes.separation()).flatten();
@@ -152,8 +157,8 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         }
         self.reject_passed(islands, passed, contacts);
         if contacts.is_empty() {
-            let is_deep = islands.has_separation();
-            contacts.extend(self.shapes.push_out(is_deep, self.inside));
+            let is_in_both = islands.has_separation();
+            contacts.extend(self.shapes.push_out(is_in_both, self.inside));
         }
         if contacts.is_empty() {
             contacts.extend(islands.overlaps().filter_map(|pair| self.contact_of_triangles(pair)));

@@ -35,7 +35,7 @@ pub(crate) enum QueryOutcome {
 /// Brings the manifolds of a pair up to date.
 pub(crate) fn update_manifolds<P, M, C>(
     pair: &P,
-    cache: &Arc<MeshStore>,
+    store: &Arc<MeshStore>,
     counts: &mut DescentCounts,
     manifolds: &mut Vec<ContactManifold<M, C>>,
     workspace: &mut Option<ContactManifoldsWorkspace>,
@@ -47,9 +47,9 @@ where
 {
     let PairState::<P::State, P::Hint> { shapes, memory } = state_in(workspace, manifolds);
     if P::is_new(shapes) {
-        cache.count_pair();
+        store.count_pair();
     }
-    let (change, mut query) = pair.open(cache, shapes);
+    let (change, mut query) = pair.open(store, shapes);
     memory.apply_change(change, manifolds);
     if memory.is_unchanged(query.pose(), manifolds.len()) {
         return QueryOutcome::Unchanged;

@@ -14,7 +14,7 @@ use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::PackedFeatureId;
 
 use super::query::{ContactList, ContactPoints, PairQuery, Running};
-use super::reduce::{Member, PatchPlan, PatchPoint, Reduction};
+use super::reduce::{MOST_POINTS, Member, PatchPlan, PatchPoint, Reduction};
 use super::state::HighWaterMark;
 
 /// Spare manifolds that a thread keeps, of some 500 bytes each. Higher: more memory; lower: allocations
@@ -327,10 +327,10 @@ pub(super) fn write_patches<Q, M, C>(
 
 /// Writes a manifold of the deepest of the chosen points and those that have its normal, and removes
 /// them from the list.
-fn write_patch<M, C, const MOST: usize>(
+fn write_patch<M, C>(
     plan: PatchPlan,
     points: &[PatchPoint],
-    chosen: &mut ArrayVec<usize, MOST>,
+    chosen: &mut ArrayVec<usize, MOST_POINTS>,
     writer: &mut Writer<'_, M, C>,
     subshapes: impl Fn(usize) -> [u32; 2],
 ) where
@@ -420,7 +420,7 @@ fn find_old<C>(
         let (index, distance) = distances.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
         (distance <= same_point).then_some(index)
     };
-    free.clone().find(is_same).or_else(|| nearest().filter(|_| same_point > 0.0))
+    free.clone().find(is_same).or_else(|| (same_point > 0.0).then(nearest).flatten())
 }
 
 /// Returns a point whose features have names of their own among all features of both shapes.

@@ -4,6 +4,7 @@
 //! ([`walk`]). A mesh and a convex shape ([`convex`]) use the BVH of the mesh. [`nonlinear`]
 //! and [`moving`] cast along the curves of rigid motions.
 
+mod bvh_search;
 mod casts;
 mod convex;
 mod moving;

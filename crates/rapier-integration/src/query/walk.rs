@@ -6,9 +6,9 @@ use parry3d::math::Vector;
 use sbbk_core::query::{Bodies, Cast, CastOptions, FoundPair};
 use sbbk_core::traverse::Placement;
 
+use super::bvh_search::BvhSearch;
 use super::trees::Trees;
 use crate::mesh::MeshView;
-use crate::pair::BvhSearch;
 
 /// Two rigid meshes of a query.
 pub(crate) struct MeshQuery<'a> {

@@ -2,7 +2,7 @@
 //!
 //! A triangle alone cannot tell on which side the body is, nor if a point on its border is a corner
 //! of the body or lies within a flat face. A [`Surface`] stores the neighbours across each edge, of
-//! welded vertices, and derives from all triangles if they bound a solid.
+//! welded vertices, and derives from rays if the triangles bound a solid.
 //!
 //! ```
 //! use glamx::{DVec3, Vec3};
@@ -43,9 +43,9 @@ use crate::collections::CompactIndices;
 /// Larger meshes take rays, which need no paired edges.
 pub const PAIRED: usize = 1 << 17;
 
-/// Greatest number of triangles of a small closed part. Higher: searches for parts take longer. Lower:
-/// each triangle of a larger part takes two rays.
-pub const SMALL_PART: usize = 32;
+/// Greatest number of triangles of a small component. Higher: searches for components take longer. Lower:
+/// each triangle of a larger component takes two rays.
+pub const SMALL_COMPONENT: usize = 32;
 
 /// The adjacency of the triangles of a mesh, and the kind of surface.
 ///
@@ -54,22 +54,22 @@ pub const SMALL_PART: usize = 32;
 pub struct Surface {
     twins: CompactIndices,
     hubs: FxHashMap<twins::Place, (u32, u32)>,
-    has_small_parts: bool,
+    has_small_components: bool,
     kind: SurfaceKind,
 }
 
 impl Surface {
     /// Analyses a mesh, whose triangles `rays` finds along rays. Vertices at one place count as one
-    /// vertex. Takes about 35 ns a triangle, and 32 rays; a mesh with unpaired edges takes 512 to
-    /// 4096 rays.
+    /// vertex. Takes about 35 ns a triangle, and 32 rays; a mesh with unpaired edges takes 32 to
+    /// 4096 rays, and more at walls.
     ///
     /// # Panics
     /// If a triangle has an index beyond the vertices.
     pub fn new(vertices: &[Vec3], triangles: &[[u32; 3]], rays: &impl RayTriangles) -> Self {
-        let twins::Adjacency { twins, is_closed, hubs, has_small_parts } =
+        let twins::Adjacency { twins, is_closed, hubs, has_small_components } =
             twins::find(vertices, triangles);
         let is_closed = is_closed && triangles.len() <= PAIRED;
-        Self { twins, hubs, has_small_parts, kind: sides::of_samples(rays, is_closed) }
+        Self { twins, hubs, has_small_components, kind: sides::of_samples(rays, is_closed) }
     }
 
     /// The half-edge that runs back in the neighbour, if there is exactly one.
@@ -88,9 +88,9 @@ impl Surface {
         hubs.max_by_key(|(count, _)| count).map(|(_, first)| *first)
     }
 
-    /// True if the closed parts of the mesh are [small](SMALL_PART) on average.
-    pub fn has_small_parts(&self) -> bool {
-        self.has_small_parts
+    /// True if the components of the mesh are [small](SMALL_COMPONENT) on average.
+    pub fn has_small_components(&self) -> bool {
+        self.has_small_components
     }
 
     /// The kind of surface.

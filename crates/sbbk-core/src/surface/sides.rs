@@ -126,7 +126,7 @@ pub fn kind(triangles: &impl RayTriangles) -> SurfaceKind {
     of_samples(triangles, false)
 }
 
-/// Classifies a mesh. `is_closed`: each edge has one twin, so there are no holes.
+/// Classifies a mesh. `is_closed`: each edge has as many half-edges one way as back, so there are no holes.
 pub(super) fn of_samples(triangles: &impl RayTriangles, is_closed: bool) -> SurfaceKind {
     let step = triangles.count().div_ceil(CONSIDERED).max(1);
     let areas = (0..triangles.count() / step).scan(0.0, |sum, i| {

@@ -18,20 +18,20 @@ use crate::simd::each;
 /// as holes.
 const SEAM: [f64; 2] = [1.0e-5, 1.0e-3];
 
-/// Greatest distance of the strays of a triangle. At most half the least height, as slivers would have
-/// many others as strays.
+/// Greatest distance of the strays of a triangle: half the least height, as slivers would have many others as
+/// strays, but between 0.00001 and 0.001 of the longest side.
 pub fn seam(corners @ [a, b, c]: &[DVec3; 3]) -> f64 {
     let longest = a.distance(*b).max(b.distance(*c)).max(c.distance(*a));
     let height = area_vector(corners).length() / longest;
     (0.5 * height).max(SEAM[0] * longest).min(SEAM[1] * longest)
 }
 
-/// Other triangles near a closed one-ring beyond which they do not matter. Higher: dense meshes take
+/// Number of other triangles near a closed one-ring beyond which they do not matter. Higher: dense meshes take
 /// longer. Lower: bodies stumble where many parts touch.
 const MANY: usize = 64;
 
 /// True if an edge or a vertex of a triangle has strays. So has each edge without a twin: what goes on
-/// there is not known. In a crowd a closed one-ring counts as whole.
+/// there is not known. With more than 64 others near, a closed one-ring counts as whole.
 pub fn has_strays<F: Facets>(surface: &OneRing<F>, triangle: u32, feature: Feature) -> bool {
     let corners = each(|i| surface.facets.corner(3 * triangle, i));
     let (mut ring, is_closed) = surface.ring(triangle, feature);

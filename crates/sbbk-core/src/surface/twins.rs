@@ -3,7 +3,7 @@
 use glamx::Vec3;
 use rustc_hash::FxHashMap;
 
-use super::SMALL_PART;
+use super::SMALL_COMPONENT;
 use crate::collections::CompactIndices;
 
 const NONE: u32 = u32::MAX;
@@ -16,12 +16,12 @@ const CROWD: u32 = 1024;
 pub(super) struct Adjacency {
     /// The twin of each half-edge, if there is exactly one.
     pub(super) twins: CompactIndices,
-    /// True if each half-edge has a twin.
+    /// True if each edge has as many half-edges one way as back.
     pub(super) is_closed: bool,
     /// Size and first triangle of each crowd, by the vertex where the crowd meets.
     pub(super) hubs: FxHashMap<Place, (u32, u32)>,
-    /// True if closed parts have few triangles on average.
-    pub(super) has_small_parts: bool,
+    /// True if closed components have few triangles on average.
+    pub(super) has_small_components: bool,
 }
 
 /// A place where vertices are one.
@@ -36,10 +36,10 @@ pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Adjacency {
     let welded = weld(vertices);
     let valence = valence(&welded, triangles);
     let (edges, _) = edges(&welded, &valence, triangles);
-    // A closed part without handles has two more vertices and triangles than edges.
+    // A closed component without handles has two more vertices and triangles than edges.
     let vertex_count = valence.iter().filter(|&&count| count > 0).count();
     let parts = (vertex_count + triangles.len()).saturating_sub(edges.len()) / 2;
-    let has_small_parts = parts > 1 && parts * SMALL_PART >= triangles.len();
+    let has_small_components = parts > 1 && parts * SMALL_COMPONENT >= triangles.len();
     let mut twins = vec![None; 3 * triangles.len()];
     let mut is_closed = true;
     for Edge { last: [up, down], counts, .. } in edges {
@@ -52,7 +52,7 @@ pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Adjacency {
     }
     let hubs = hubs(vertices, &welded, &valence, triangles);
     let twins = CompactIndices::new(twins.into_iter());
-    Adjacency { twins, is_closed, hubs, has_small_parts }
+    Adjacency { twins, is_closed, hubs, has_small_components }
 }
 
 /// Number of triangles at each vertex.

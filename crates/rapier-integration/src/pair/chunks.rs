@@ -1,11 +1,11 @@
-//! Parts of a heavy pair on the threads of the host's pool.
+//! Chunks of a heavy pair on the threads of the host's pool.
 //!
 //! Rapier hands out pairs in blocks of 64, so few heavy pairs would run on one thread. With the feature `parallel`, a
-//! heavy pair is split. Results are joined in the order of parts, so they have the same bits on any number of threads.
+//! heavy pair is split. Results are joined in the order of chunks, so they have the same bits on any number of threads.
 
-/// The result of a part.
-pub(super) trait PartResult: Default + Send {
-    /// Adds the result of the next part.
+/// The result of a chunk.
+pub(super) trait ChunkResult: Default + Send {
+    /// Adds the result of the next chunk.
     fn append(&mut self, next: Self);
 }
 
@@ -28,8 +28,8 @@ fn join(first: impl FnOnce() + Send, second: impl FnOnce() + Send) {
     }
 }
 
-/// Calls `work` with all items: at once, or in parts of at least `least` items on several threads.
-pub(super) fn in_parts<T: Send, R: PartResult>(
+/// Calls `work` with all items: at once, or in chunks of at least `least` items on several threads.
+pub(super) fn in_chunks<T: Send, R: ChunkResult>(
     items: &mut [T],
     least: usize,
     result: &mut R,
@@ -40,6 +40,6 @@ pub(super) fn in_parts<T: Send, R: PartResult>(
     }
     let (first, second) = items.split_at_mut(items.len() / 2);
     let mut next = R::default();
-    join(|| in_parts(first, least, result, work), || in_parts(second, least, &mut next, work));
+    join(|| in_chunks(first, least, result, work), || in_chunks(second, least, &mut next, work));
     result.append(next);
 }

@@ -11,8 +11,8 @@ use parry3d::partitioning::{Bvh, BvhNode, BvhNodeIndex, TraversalAction};
 use sbbk_core::query::FoundPair;
 use sbbk_core::traverse::Placement;
 
-use super::bvh_descent::BvhDescent;
 use crate::mesh::MeshView;
+use crate::pair::BvhDescent;
 
 /// Share of the coordinates by which bounds are lower than computed, for rounding in f64.
 const ROUNDING: f64 = 1.0e-14;
