@@ -12,7 +12,7 @@ use parry3d::partitioning::BvhNode;
 use sbbk_core::contact::{Feature, FeaturePair, TriangleContact, contact};
 
 use super::pose::PairPose;
-use super::triangle_contacts::{in_local, local_pair};
+use super::triangle_contacts::in_local;
 use super::triangle_shapes::{ContactSource, TriangleHit, TriangleShapes, TriangleSurfaceContact};
 use crate::mesh::MeshView;
 
@@ -122,14 +122,14 @@ impl<S: TriangleShapes> FarSearch<'_, S> {
     /// the nearest one. `None` beyond a limit.
     fn step(&self, i: usize, (pair, known): &TriangleHit, limit: f64) -> Option<TriangleHit> {
         let placement = &self.pose.placement12;
-        let origin = self.shapes.triangles(*pair)?[0].a;
+        let [[origin, ..], _] = self.shapes.corners(*pair)?;
         let point = match i {
             0 => placement.to_frame2(known.contact.point1, origin),
             _ => known.contact.point2 + origin.as_dvec3(),
         };
         let mut pair = *pair;
         pair[1 - i] = self.shapes.nearest_triangle(1 - i, point.as_vec3(), limit as Real)?;
-        let local = local_pair(placement, &self.shapes.triangles(pair)?);
+        let local = self.shapes.local(self.pose, pair)?;
         let [t1, t2] = &local.corners;
         Some(hit(pair, contact(t1, t2, limit)?))
     }
@@ -141,7 +141,7 @@ impl<S: TriangleShapes> FarSearch<'_, S> {
         let in_other = self.pose.in_other(i, point);
         let mut pair = [self.shapes.nearest_triangle(1 - i, in_other, within)?; 2];
         pair[i] = half_edge / 3;
-        let mut local = local_pair(placement, &self.shapes.triangles(pair)?);
+        let mut local = self.shapes.local(self.pose, pair)?;
         local.corners[i] = [in_local(placement, i, point, local.origin); 3];
         let [t1, t2] = &local.corners;
         let contact = contact(t1, t2, f64::from(within))?;

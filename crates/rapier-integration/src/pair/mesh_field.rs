@@ -222,10 +222,11 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
     }
 
     #[inline(always)]
-    fn triangles(&self, triangles: [u32; 2]) -> Option<[Triangle; 2]> {
+    fn corners(&self, triangles: [u32; 2]) -> Option<[[Vector; 3]; 2]> {
         let place = self.pair.mesh_place;
         let [mesh, field] = place.swap(triangles);
-        Some(place.swap([self.pair.mesh.mesh.triangle(mesh), self.field.triangle(field)?]))
+        let Triangle { a, b, c } = self.field.triangle(field)?;
+        Some(place.swap([self.pair.mesh.corners(mesh), [a, b, c]]))
     }
 
     fn separation(&self) -> Option<DVec3> {

@@ -6,7 +6,6 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Real, Vector};
 use parry3d::query::PointQuery;
 use parry3d::query::details::NormalConstraints;
-use parry3d::shape::Triangle;
 use sbbk_core::contact::{Feature, FeaturePair, TriangleContact};
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::surface::{OneRing, Side, SurfaceKind};
@@ -312,9 +311,9 @@ impl<'q> TriangleShapes for Meshes<'q> {
     }
 
     #[inline(always)]
-    fn triangles(&self, [triangle1, triangle2]: [u32; 2]) -> Option<[Triangle; 2]> {
-        let [mesh1, mesh2] = self.pair.meshes.map(|seen| seen.mesh);
-        Some([mesh1.triangle(triangle1), mesh2.triangle(triangle2)])
+    fn corners(&self, [triangle1, triangle2]: [u32; 2]) -> Option<[[Vector; 3]; 2]> {
+        let [mesh1, mesh2] = &self.pair.meshes;
+        Some([mesh1.corners(triangle1), mesh2.corners(triangle2)])
     }
 
     fn separation(&self) -> Option<DVec3> {

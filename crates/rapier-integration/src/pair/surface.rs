@@ -19,7 +19,7 @@ use sbbk_core::surface::{OneRing, Side};
 use super::islands::{Crossing, OverlapIslands, SheetSide};
 use super::pose::PairPose;
 use super::reduce::FILTERED;
-use super::triangle_contacts::{in_local, local_pair};
+use super::triangle_contacts::in_local;
 use super::triangle_shapes::{ContactSource, TriangleShapes, TriangleSurfaceContact};
 use crate::mesh::BEHIND;
 
@@ -162,8 +162,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
 
     /// Returns true if both points of a contact are local minima of the distance.
     pub(super) fn is_local_minimum(&self, contact: &TriangleContact) -> bool {
-        let Some(triangles) = self.shapes.triangles(self.pair) else { return false };
-        let local = local_pair(&self.pose.placement12, &triangles);
+        let Some(local) = self.shapes.local(self.pose, self.pair) else { return false };
         let surfaces = self.surfaces();
         (0..2).all(|i| self.is_minimum(&surfaces, i, &local, contact))
     }
@@ -476,7 +475,7 @@ mod tests {
                 found.sort_unstable();
                 let count = meshes.map(|mesh| mesh.indices().len() as u32);
                 for pair in (0..count[0]).flat_map(|i| (0..count[1]).map(move |j| [i, j])) {
-                    let local = local_pair(&pose.placement12, &shapes.triangles(pair).unwrap());
+                    let local = shapes.local(&pose, pair).unwrap();
                     let [t1, t2] = &local.corners;
                     if t1[0].distance(t2[0]) > 1.0 {
                         continue;

@@ -19,16 +19,6 @@ use super::query::ContactPoints;
 use super::triangle_shapes::Cones;
 use super::write::write_points as write_to_manifold;
 
-/// Returns two of Parry's triangles in frame 1, relative to a corner: with all digits.
-#[inline(always)]
-pub(super) fn local_pair(
-    placement: &Placement,
-    [triangle1, triangle2]: &[Triangle; 2],
-) -> TrianglePair {
-    let corners = |triangle: &Triangle| [triangle.a, triangle.b, triangle.c];
-    TrianglePair::new(placement, corners(triangle1), corners(triangle2))
-}
-
 /// Returns a point of a shape in frame 1, from an origin there.
 pub(super) fn in_local(placement: &Placement, i: usize, point: Vector, origin: Vector) -> DVec3 {
     match i {
@@ -145,7 +135,8 @@ impl<C: Default + Copy> TriangleContacts<C> {
         manifold: &mut ContactManifold<M, C>,
     ) {
         let pose = PairPose::new(pos12, prediction);
-        let triangles = local_pair(&pose.placement12, &triangles.map(|triangle| *triangle));
+        let [corners1, corners2] = triangles.map(|Triangle { a, b, c }| [*a, *b, *c]);
+        let triangles = TrianglePair::new(&pose.placement12, corners1, corners2);
         let mut clipped = ManifoldPoints::new();
         let [t1, t2] = &triangles.corners;
         let within = f64::from(prediction);

@@ -4,8 +4,8 @@ use glamx::DVec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Real, Vector};
 use parry3d::query::details::NormalConstraints;
-use parry3d::shape::Triangle;
 use sbbk_core::contact::{FeaturePair, TriangleContact};
+use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Facets, OneRing};
 use sbbk_core::traverse::{DescentCounts, DescentScratch, NodePair};
 
@@ -40,8 +40,15 @@ pub(crate) trait TriangleShapes: Sync {
         found: &mut Vec<Candidate<Hint>>,
     );
 
-    /// Returns two triangles; `None` if one does not exist.
-    fn triangles(&self, triangles: [u32; 2]) -> Option<[Triangle; 2]>;
+    /// Returns the corners of two triangles; `None` if one does not exist.
+    fn corners(&self, triangles: [u32; 2]) -> Option<[[Vector; 3]; 2]>;
+
+    /// Returns two triangles in frame 1, relative to a corner: with all digits.
+    #[inline(always)]
+    fn local(&self, pose: &PairPose, triangles: [u32; 2]) -> Option<TrianglePair> {
+        let [triangle1, triangle2] = self.corners(triangles)?;
+        Some(TrianglePair::new(&pose.placement12, triangle1, triangle2))
+    }
 
     /// Calls `then` with the normal cones of two triangles.
     fn with_cones(&self, triangles: [u32; 2], then: impl FnOnce(Cones<'_>));

@@ -24,7 +24,7 @@ use super::query::{ContactList, ContactPoints, Limits, Memory, Moving, PairQuery
 use super::reduce::{ContactSummary, PatchPlan};
 use super::state::Candidate;
 use super::surface::{NEARLY_TOUCHING, SurfaceFilter, Verdict, is_touching};
-use super::triangle_contacts::{constrained_normal, local_pair, write_points};
+use super::triangle_contacts::{constrained_normal, write_points};
 use super::triangle_shapes::{
     ContactSource, DescentMemory, Hint, TriangleHit, TriangleShapes, TriangleSurfaceContact,
 };
@@ -184,7 +184,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         points: &mut ContactPoints,
     ) -> Option<ContactSummary> {
         let (pair, TriangleSurfaceContact { contact, source }) = hit;
-        let [triangle1, _] = self.shapes.triangles(*pair)?;
+        let [[origin, ..], _] = self.shapes.corners(*pair)?;
         let (mut normal, mut has_cones) = (None, false);
         self.shapes.with_constraints(*pair, |cones| {
             let cones = source.cones(cones);
@@ -192,7 +192,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
             has_cones = cones.iter().any(Option::is_some);
         });
         let normal = normal?.normal;
-        let point = (triangle1.a.as_dvec3() + contact.point1).as_vec3();
+        let point = (origin.as_dvec3() + contact.point1).as_vec3();
         let mut distance = contact.distance as Real;
         if has_cones {
             // Cones move points.
@@ -212,9 +212,8 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         let Self { shapes, pose, .. } = self;
         let clipped = &mut scratch.first.clipped;
         points.points.clear();
-        let Some(triangles) = shapes.triangles(*pair) else { return };
+        let Some(local) = shapes.local(pose, *pair) else { return };
         shapes.with_constraints(*pair, |cones| {
-            let local = local_pair(&pose.placement12, &triangles);
             let [t1, t2] = &local.corners;
             clipped.clear();
             if *source != ContactSource::PushOut {
@@ -240,8 +239,7 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
             return;
         }
         let pair = candidate.subshapes;
-        let Some(triangles) = self.shapes.triangles(pair) else { return };
-        let local = local_pair(&self.pose.placement12, &triangles);
+        let Some(local) = self.shapes.local(self.pose, pair) else { return };
         let Some(contact) = touch(&local, candidate, limits) else { return };
         first.is_near = true;
         match self.filter(pair).apply(&local, contact, &mut first.clipped) {
@@ -274,8 +272,7 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
             if contact.distance <= reach {
                 return;
             }
-            let Some(triangles) = self.shapes.triangles(pair) else { return };
-            let local = local_pair(&self.pose.placement12, &triangles);
+            let Some(local) = self.shapes.local(self.pose, pair) else { return };
             if let Verdict::Contact(contact) = self.filter(pair).apply(&local, contact, clipped) {
                 contacts.push((pair, contact));
             }
@@ -332,7 +329,7 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
 
     /// Returns the contact of two triangles for surfaces that meet without a contact of their own.
     fn contact_of_triangles(&self, pair: [u32; 2]) -> Option<TriangleHit> {
-        let local = local_pair(&self.pose.placement12, &self.shapes.triangles(pair)?);
+        let local = self.shapes.local(self.pose, pair)?;
         let [t1, t2] = &local.corners;
         let contact = contact(t1, t2, f64::from(self.pose.prediction))?;
         Some((pair, TriangleSurfaceContact { contact, source: ContactSource::Triangles }))
@@ -349,8 +346,7 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         contacts.retain(|(pair, _)| islands.is_final(*pair));
         for i in 0..islands.len() {
             let Some(crossing) = islands.open(i) else { continue };
-            let Some(triangles) = self.shapes.triangles(crossing.pair) else { continue };
-            let local = local_pair(&self.pose.placement12, &triangles);
+            let Some(local) = self.shapes.local(self.pose, crossing.pair) else { continue };
             let filter = self.filter(crossing.pair);
             let contact = filter.supporting_contact(&local, &crossing, islands, clipped);
             contacts.extend(contact.map(|contact| (crossing.pair, contact)));
