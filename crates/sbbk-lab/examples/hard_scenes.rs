@@ -63,6 +63,9 @@ struct RandomArguments {
     /// Seed of the random scenes
     #[arg(long, default_value = "1")]
     seed: u64,
+    /// Rapier's length unit in random scenes; the size of the bodies if not given
+    #[arg(long)]
+    unit: Option<f32>,
 }
 
 impl RandomArguments {
@@ -73,7 +76,7 @@ impl RandomArguments {
         }
         let count = self.random.flatten().unwrap_or_else(|| study.plan(|| 200, || 2));
         let numbers = self.number.map_or(0..count, |number| number..number + 1);
-        let mut plan = RandomPlan::new(numbers, self.seed);
+        let mut plan = RandomPlan { unit: self.unit, ..RandomPlan::new(numbers, self.seed) };
         if !self.family.is_empty() {
             plan.families.clone_from(&self.family);
         }

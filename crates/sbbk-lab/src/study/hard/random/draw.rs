@@ -15,6 +15,8 @@ pub(super) struct Draw {
     random: Rand32,
     /// Length of a body, in metres.
     pub size: f32,
+    /// Rapier's length unit, in metres.
+    pub unit: f32,
     /// Gravity, in sizes/s².
     pub gravity: f32,
     /// Time step, in seconds.
@@ -65,7 +67,8 @@ impl Draw {
         let dt = log(fine.max(1.0 / 240.0), coarse.min(1.0 / 30.0));
         let is_reversed = random.rand_range(0..2) == 1;
         let about = vec![format!("size {size:.2}, {gravity:.1}/s², {:.0} Hz", 1.0 / dt)];
-        Self { random, size, gravity, dt, is_reversed, is_sunk: false, has_control: true, about }
+        let (unit, is_sunk, has_control) = (size, false, true);
+        Self { random, size, unit, gravity, dt, is_reversed, is_sunk, has_control, about }
     }
 
     pub fn within(&mut self, low: f32, high: f32) -> f32 {

@@ -78,19 +78,23 @@ pub struct RandomPlan {
     /// Numbers of the scenes of each family.
     pub numbers: Range<u32>,
     pub seed: u64,
+    /// Rapier's length unit; `None` for the size of the bodies.
+    pub unit: Option<f32>,
     pub settings: Settings,
 }
 
 impl RandomPlan {
     /// Scenes of all families.
     pub fn new(numbers: Range<u32>, seed: u64) -> Self {
-        Self { families: Family::ALL.into(), numbers, seed, settings: Settings::default() }
+        let settings = Settings::default();
+        Self { families: Family::ALL.into(), numbers, seed, unit: None, settings }
     }
 
     fn trial(&self, family: Family, number: u32) -> Trial {
-        let seed = self.seed;
+        let (seed, unit) = (self.seed, self.unit);
         let run = move |kit: &Kit| {
             let mut draw = Draw::new(family, seed, number);
+            draw.unit = unit.unwrap_or(draw.size);
             let figures = RUN[family as usize](&mut draw, kit);
             // Some parts have no convex shape.
             let is_run = kit.column != Column::Control || draw.has_control;
@@ -123,7 +127,8 @@ pub fn random(plan: &RandomPlan, progress: &Progress) -> Result<Results, StudyEr
     let mut notes = report::notes(&plan.settings, &runs);
     if !notes.is_empty() {
         let seed = plan.seed;
-        notes.push(format!("again: --family FAMILY --number NUMBER --seed {seed} --verbose"));
+        let unit = plan.unit.map(|unit| format!(" --unit {unit}")).unwrap_or_default();
+        notes.push(format!("again: --family FAMILY --number NUMBER --seed {seed}{unit} --verbose"));
     }
     Ok(Results { notes, ..results })
 }

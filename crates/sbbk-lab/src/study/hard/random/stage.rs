@@ -66,7 +66,7 @@ impl Stage {
         let size = draw.size;
         let mut world = kit.world();
         world.gravity = -size * draw.gravity * Vec3::Y;
-        world.integration_parameters.length_unit = size;
+        world.integration_parameters.length_unit = draw.unit;
         world.integration_parameters.dt = draw.dt;
         let mut insert = |body: &Body| insert(&mut world, kit, body, size);
         let mut handles: Vec<_> = match draw.is_reversed {
