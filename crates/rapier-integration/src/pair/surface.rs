@@ -144,7 +144,8 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             let is_minimum = |i: usize| self.is_minimum(&surfaces, i, local, &contact);
             let is_first_minimum = is_minimum(0);
             if is_first_minimum && is_minimum(1) {
-                let turned = (0..2).find_map(|i| self.at_border(&surfaces, i, local, &contact));
+                let turned =
+                    (0..2).find_map(|i| self.upright_at_border(&surfaces, i, local, &contact));
                 let contact = turned.unwrap_or(contact);
                 return Verdict::Contact(TriangleSurfaceContact { contact, ..of_triangles });
             }
@@ -256,7 +257,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
 
     /// Returns a contact at a border with the normal of the face, if the other shape is all on one side
     /// of the face. Bodies would else run into meshes that continue the one below.
-    fn at_border(
+    fn upright_at_border(
         &self,
         surfaces: &Surfaces<'_, S>,
         i: usize,

@@ -169,6 +169,8 @@ impl DescentMemory {
     pub(super) fn shrink_to(&mut self, limit: usize) {
         self.near.clear();
         self.near.shrink_to(limit);
+        self.start.clear();
+        self.start.shrink_to(limit);
     }
 }
 

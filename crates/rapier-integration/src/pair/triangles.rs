@@ -81,10 +81,9 @@ impl ChunkResult for FirstPass {
 
 impl Scratch for TriangleScratch {
     fn shrink_to(&mut self, limit: usize) {
-        let many = limit.max(1024);
-        self.descent.shrink_to(many);
-        self.first.islands.shrink_to(many);
-        self.passed.shrink_to(many);
+        self.descent.shrink_to(limit);
+        self.first.islands.shrink_to(limit);
+        self.passed.shrink_to(limit);
     }
 }
 

@@ -32,6 +32,9 @@ pub(crate) enum QueryOutcome {
     Unsupported,
 }
 
+/// Number of contacts for which a thread always keeps memory. Higher: more memory; lower: more allocations.
+const LEAST_KEPT: usize = 1024;
+
 /// Brings the manifolds of a pair up to date.
 pub(crate) fn update_manifolds<P, M, C>(
     pair: &P,
@@ -89,8 +92,9 @@ where
     }
     writer.end();
     if let Some(limit) = demand.update(contacts.len()) {
+        let limit = limit.max(LEAST_KEPT);
         contacts.clear();
-        contacts.shrink_to(limit.max(1024));
+        contacts.shrink_to(limit);
         scratch.shrink_to(limit);
         reduction.shrink_to(limit);
     }

@@ -174,13 +174,14 @@ impl<F: Facets> OneRing<F> {
             _ => return false,
         }
         let place = self.place(triangle, feature, Some(place));
-        PlaceMemo::is_border(self.facets.memo(), place, || self.ends_at(triangle, feature, place))
+        let (triangle, feature, ring) = self.first_of_ring(triangle, feature);
+        let find = || self.ends_at(triangle, feature, place);
+        PlaceMemo::is_border(self.facets.memo(), ring, place, find)
     }
 
     /// Returns true if a one-ring is open and all triangles at a place share a corner of the feature.
     /// Also returns the number of triangles there.
     fn ends_at(&self, triangle: u32, feature: Feature, place: DVec3) -> (bool, usize) {
-        let (triangle, feature) = self.first_of_ring(triangle, feature);
         let is_vertex = matches!(feature, Feature::Vertex(_));
         let mut count = 0;
         let is_closed = self.visit(triangle, feature, |_| {
@@ -231,18 +232,29 @@ impl<F: Facets> OneRing<F> {
         height < 0.0
     }
 
-    /// Returns the first triangle of a vertex's one-ring. Sums in the order of a ring that starts there have
-    /// the same bits for all triangles of the ring.
-    fn first_of_ring(&self, triangle: u32, feature: Feature) -> (u32, Feature) {
-        let mut first = half_edge(triangle, feature);
-        if let Feature::Vertex(_) = feature {
+    /// Returns the first triangle of a vertex's one-ring, and a number of the ring. Sums in the order of a ring that
+    /// starts there have the same bits for all triangles of the ring.
+    fn first_of_ring(&self, triangle: u32, feature: Feature) -> (u32, Feature, u32) {
+        if !matches!(feature, Feature::Vertex(_)) {
+            return (triangle, feature, PlaceMemo::SHORT);
+        }
+        let (mut first, mut ring) = (half_edge(triangle, feature), PlaceMemo::SHORT);
+        let memo = self.facets.memo();
+        if let Some(known) = memo.and_then(|memo| memo.first_of_ring(first)) {
+            (first, ring) = (known, known);
+        } else {
+            let mut count = 0;
             self.visit(triangle, feature, |wedge| {
                 first = first.min(wedge.half_edge);
+                count += 1;
                 ControlFlow::Continue(())
             });
-            return (first / 3, Feature::Vertex((first % 3) as u8));
+            if count > LONG {
+                ring = first;
+                memo.inspect(|memo| memo.keep_ring(self.ring(triangle, feature).0, first));
+            }
         }
-        (triangle, feature)
+        (first / 3, Feature::Vertex((first % 3) as u8), ring)
     }
 
     /// Returns the slopes of all triangles that touch a point of a feature, which many may share.
@@ -255,7 +267,8 @@ impl<F: Facets> OneRing<F> {
         place: Option<DVec3>,
     ) -> Slopes {
         let place = self.place(triangle, feature, place);
-        PlaceMemo::slopes(self.facets.memo(), place, direction, |direction| {
+        let (triangle, feature, ring) = self.first_of_ring(triangle, feature);
+        PlaceMemo::slopes(self.facets.memo(), ring, place, direction, |direction| {
             self.find_slopes(triangle, feature, direction, place)
         })
     }
@@ -267,7 +280,6 @@ impl<F: Facets> OneRing<F> {
         direction: DVec3,
         place: DVec3,
     ) -> (Slopes, usize) {
-        let (triangle, feature) = self.first_of_ring(triangle, feature);
         let (mut slopes, mut heights) = (Slopes::default(), Heights::default());
         let (mut count, mut area) = (0, DVec3::ZERO);
         let is_closed = self.visit(triangle, feature, |Wedge { edges: [u, v], .. }| {

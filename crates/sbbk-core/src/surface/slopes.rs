@@ -74,8 +74,7 @@ impl Bend {
     }
 }
 
-/// Answers by key, which threads share. Equal keys have equal answers, so it does not matter which thread
-/// asks first.
+/// Answers by key, which threads share.
 struct Memo<K, V>(Mutex<FxHashMap<K, V>>);
 
 impl<K, V> Default for Memo<K, V> {
@@ -94,29 +93,46 @@ impl<K: Eq + Hash, V: Copy> Memo<K, V> {
     }
 }
 
-/// Slopes at places where many triangles meet, or touch without a common edge, by place and direction,
-/// and borders by place. All contacts there ask for the same. Also walls within bodies, by triangle:
+/// Slopes at places where many triangles meet, or touch without a common edge, by one-ring, place and direction,
+/// and borders by one-ring and place. All contacts there ask for the same. Also walls within bodies, by triangle:
 /// many rays meet the same walls. For one query.
 #[derive(Default)]
 pub struct PlaceMemo {
-    slopes: Memo<[i64; 6], Slopes>,
-    borders: Memo<[u64; 3], bool>,
+    /// The least half-edge of a long one-ring, by half-edge.
+    rings: Memo<u32, u32>,
+    slopes: Memo<(u32, [i64; 6]), Slopes>,
+    borders: Memo<(u32, [u64; 3]), bool>,
     walls: Memo<u32, bool>,
 }
 
 impl PlaceMemo {
+    /// Number of all short one-rings. Very many may be at one place, and share their answers.
+    pub(super) const SHORT: u32 = u32::MAX;
+
     /// Steps of a direction. Rounding makes the directions of contacts at one place differ by less.
     const STEPS: f64 = (1_u64 << 30) as f64;
 
+    /// Returns the least half-edge of a long one-ring, if known.
+    pub(super) fn first_of_ring(&self, half_edge: u32) -> Option<u32> {
+        self.rings.get(&half_edge)
+    }
+
+    /// Keeps the least half-edge of a long one-ring.
+    pub(super) fn keep_ring(&self, ring: Vec<u32>, first: u32) {
+        ring.into_iter().for_each(|half_edge| self.rings.insert(half_edge, first));
+    }
+
     /// Returns the slopes at a place along a direction, which is rounded. Keeps those for which `find` has
-    /// looked at many triangles.
+    /// looked at many triangles. `ring` is a number of the one-ring.
     pub(super) fn slopes(
         memo: Option<&Self>,
+        ring: u32,
         place: DVec3,
         direction: DVec3,
         find: impl FnOnce(DVec3) -> (Slopes, usize),
     ) -> Slopes {
         let (key, direction) = Self::key(place, direction);
+        let key = (ring, key);
         let known = memo.and_then(|memo| memo.slopes.get(&key));
         known.unwrap_or_else(|| {
             let (slopes, count) = find(direction);
@@ -127,13 +143,14 @@ impl PlaceMemo {
     }
 
     /// Returns true if a surface ends at a place. Keeps results for which `find` has looked at many
-    /// triangles.
+    /// triangles. `ring` is a number of the one-ring.
     pub(super) fn is_border(
         memo: Option<&Self>,
+        ring: u32,
         place: DVec3,
         find: impl FnOnce() -> (bool, usize),
     ) -> bool {
-        let key = (place + 0.0).to_array().map(f64::to_bits);
+        let key = (ring, (place + 0.0).to_array().map(f64::to_bits));
         let known = memo.and_then(|memo| memo.borders.get(&key));
         known.unwrap_or_else(|| {
             let (is_border, count) = find();

@@ -590,6 +590,40 @@ impl Facets for Counted<'_> {
     }
 }
 
+/// Would catch answers of one cone that are taken for those of another one whose tip is at the same place.
+#[test]
+fn cones_tip_to_tip_do_not_depend_on_which_is_asked_first() {
+    const COUNT: u32 = 400;
+    let cone = |wide: f32, side: f32| {
+        let rim = (0..COUNT).map(move |i| {
+            let (sin, cos) = (side * TAU * i as f32 / COUNT as f32).sin_cos();
+            Vec3::new(side, wide * cos, wide * sin)
+        });
+        [Vec3::ZERO].into_iter().chain(rim)
+    };
+    let vertices: Vec<_> = cone(0.02, 1.0).chain(cone(2.0, -1.0)).collect();
+    let triangles: Vec<_> = [0, COUNT + 1]
+        .into_iter()
+        .flat_map(|tip| (0..COUNT).map(move |i| [tip, tip + 1 + (i + 1) % COUNT, tip + 1 + i]))
+        .collect();
+    let surface = analysed(&Soup { vertices: vertices.clone(), triangles: triangles.clone() });
+    let answers = |order: [u32; 2]| {
+        let facets = surface.one_ring(&vertices, &triangles).facets;
+        let (visits, memo) = (Cell::new(0), PlaceMemo::default());
+        let ring = OneRing { facets: Counted { facets, visits, memo }, side: Side::Sheet };
+        let is_minimum = |tip: u32| {
+            // This triangle is far from those that rise.
+            let lowest = tip * COUNT + COUNT / 2;
+            ring.is_local_minimum(lowest, Feature::Vertex(0), DVec3::Y, None)
+        };
+        let mut found = order.map(|tip| (tip, is_minimum(tip)));
+        found.sort_unstable();
+        found.map(|(_, is_minimum)| is_minimum)
+    };
+    assert_eq!(answers([0, 1]), [true, false]);
+    assert_eq!(answers([1, 0]), [true, false]);
+}
+
 #[test]
 fn work_at_the_tip_of_a_cone_grows_with_its_triangles() {
     let visits = [500, 8000].map(|count: u32| {

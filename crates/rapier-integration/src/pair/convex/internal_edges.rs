@@ -114,7 +114,8 @@ impl ConvexQuery<'_> {
         for &border in ghosts.borders.iter().filter(|&&i| ghosts.sources[i as usize] == i) {
             let (of, hit) = &mut contacts[border as usize];
             let subshapes = self.pair.mesh_place.swap(*of);
-            let turned = self.with_pair(subshapes, scratch, |pair| pair.at_border(&hit.contact));
+            let turned =
+                self.with_pair(subshapes, scratch, |pair| pair.upright_at_border(&hit.contact));
             hit.contact = turned.flatten().unwrap_or(hit.contact);
         }
     }

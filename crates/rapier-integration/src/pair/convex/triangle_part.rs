@@ -232,7 +232,7 @@ impl TrianglePartPair<'_> {
 
     /// Returns a contact at a border with the normal of the face, if the part is on one side of the
     /// plane of the triangle.
-    pub(super) fn at_border(&self, contact: &ConvexContact) -> Option<ConvexContact> {
+    pub(super) fn upright_at_border(&self, contact: &ConvexContact) -> Option<ConvexContact> {
         let ConvexContact { distance, normal: own, on_triangle, .. } = *contact;
         let face = self.face_contact(&self.placed.in_part(self.corners))?;
         let radius = f64::from(self.part.shape.radius());
