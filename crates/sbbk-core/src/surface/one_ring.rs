@@ -532,9 +532,9 @@ mod tests {
             let slopes = |triangle| {
                 let vertex = Feature::Vertex(0);
                 let direction = DVec3::new(0.1, 0.2, 0.9);
-                let (slopes, count) = ring.find_slopes(triangle, vertex, direction, DVec3::ZERO);
-                let Slopes { rise, height, bend } = slopes;
-                (rise, height, bend, count)
+                let Slopes { rise, height, bend } =
+                    ring.all_slopes(triangle, vertex, direction, None);
+                (rise, height, bend)
             };
             assert!((0..sides).all(|triangle| slopes(triangle) == slopes(0)), "{sides} sides");
         }

@@ -18,8 +18,8 @@ use crate::simd::each;
 /// as holes.
 const SEAM: [f64; 2] = [1.0e-5, 1.0e-3];
 
-/// Greatest distance of the strays of a triangle: half the least height, as slivers would have many others as
-/// strays, but between 0.00001 and 0.001 of the longest side.
+/// Returns the greatest distance of the strays of a triangle. This is half the least height, because slivers would
+/// have many strays, but between 0.00001 and 0.001 of the longest side.
 pub fn seam(corners @ [a, b, c]: &[DVec3; 3]) -> f64 {
     let longest = a.distance(*b).max(b.distance(*c)).max(c.distance(*a));
     let height = area_vector(corners).length() / longest;

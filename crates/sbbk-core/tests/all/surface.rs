@@ -590,7 +590,7 @@ impl Facets for Counted<'_> {
     }
 }
 
-/// Would catch answers of one cone that are taken for those of another one whose tip is at the same place.
+/// Would catch a cone that gets the answers of another cone. Both tips are at one place.
 #[test]
 fn cones_tip_to_tip_do_not_depend_on_which_is_asked_first() {
     const COUNT: u32 = 400;
