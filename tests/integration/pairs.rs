@@ -35,13 +35,15 @@ fn meshes_without_triangles_touch_nothing() {
     let flags = TriMeshFlags::DELETE_DEGENERATE_TRIANGLES | TriMeshFlags::MERGE_DUPLICATE_VERTICES;
     let empty = TriMesh::with_flags(vec![Vector::ZERO; 3], vec![[0, 1, 2]], flags).unwrap();
     assert!(empty.indices().is_empty());
+    let dispatcher = counting();
     for [one, two] in [[&empty, &empty], [&empty, &head], [&head, &empty]] {
         let mut pair: Pair = Pair::default();
         for x in [0.0, 0.1] {
-            pair.ask(&counting(), &Question::new(one, two, Pose::translation(x, 0.0, 0.0)));
+            pair.ask(&dispatcher, &Question::new(one, two, Pose::translation(x, 0.0, 0.0)));
             assert!(pair.manifolds.is_empty());
         }
     }
+    assert_eq!(dispatcher.stats().unsupported_queries, 6);
 }
 
 /// A mark of the place of a point on the ground.
