@@ -44,7 +44,8 @@ pub(crate) fn are_near([mesh1, mesh2]: [&TriMesh; 2], pos12: &Pose, margin: Real
     }
 }
 
-/// True if the first vertex of the smaller mesh is [covered](is_covered) by the larger one.
+/// True if the first vertex of the smaller mesh is [covered](is_covered) by the larger one. Both must have
+/// triangles.
 pub(crate) fn may_be_inside([mesh1, mesh2]: [&TriMesh; 2], pos12: &Pose) -> bool {
     let [size1, size2] =
         [mesh1, mesh2].map(|mesh| mesh.bvh().root_aabb().half_extents().length_squared());

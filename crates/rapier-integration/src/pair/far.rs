@@ -94,7 +94,9 @@ impl<S: TriangleShapes> FarSearch<'_, S> {
                 let Some(hit) = self.of_point(i, half_edge, tip, within) else { continue };
                 found(hit);
                 self.step(1 - i, &hit, distance(&hit)).into_iter().for_each(&mut found);
-                nearest = Some(hit).filter(|hit| is_nearer(hit, nearest)).or(nearest);
+                if nearest.is_none_or(|known| distance(&hit) < distance(&known)) {
+                    nearest = Some(hit);
+                }
             }
             if is_apart {
                 let middle = self.shapes.bounds(i).center();
@@ -154,10 +156,6 @@ impl<S: TriangleShapes> FarSearch<'_, S> {
 
 fn distance((_, hit): &TriangleHit) -> f64 {
     hit.contact.distance
-}
-
-fn is_nearer(hit: &TriangleHit, than: Option<TriangleHit>) -> bool {
-    than.is_none_or(|than| distance(hit) < distance(&than))
 }
 
 fn hit(pair: [u32; 2], contact: TriangleContact) -> TriangleHit {

@@ -162,9 +162,9 @@ pub(crate) struct Meshes<'q> {
     pub(super) pair: &'q MeshPair<'q>,
     trees: Option<[&'q Tree; 2]>,
     /// Surfaces of both meshes, for contacts of surfaces.
-    pub(super) surfaces: [Option<MeshSurface<'q>>; 2],
+    surfaces: [Option<MeshSurface<'q>>; 2],
     /// The mesh that is a room for the other one, and has no inside.
-    pub(super) room: Option<usize>,
+    room: Option<usize>,
     filter_distance: f64,
     reach: OnceLock<Real>,
     store: &'q MeshStore,
@@ -227,11 +227,7 @@ impl Meshes<'_> {
     ///
     /// Tests one vertex, unless the middle of the smaller mesh is known to be in both: a mesh that pierces the surface
     /// has contacts.
-    pub(super) fn find_push_out(
-        &self,
-        is_in_both: bool,
-        test: &mut InsideTest,
-    ) -> Option<TriangleHit> {
+    fn find_push_out(&self, is_in_both: bool, test: &mut InsideTest) -> Option<TriangleHit> {
         let outer = self.pair.larger();
         let [held, holder] = [1 - outer, outer].map(|i| &self.pair.meshes[i]);
         let vertex = self.pair.pose.in_other(1 - outer, held.corners(0)[0]);
@@ -264,18 +260,6 @@ impl Meshes<'_> {
         let features = FeaturePair::new(Feature::Face, Feature::Face);
         let contact = TriangleContact { normal, distance, point1, point2, features };
         Some((subshapes, TriangleSurfaceContact { contact, source: ContactSource::PushOut }))
-    }
-
-    /// Returns the direction in which mesh 2 separates from mesh 1 by the shortest way. The way starts at the middle
-    /// of the smaller mesh, which must be in both. Two equal meshes are both tried.
-    pub(super) fn separation_of_smaller(&self) -> Option<DVec3> {
-        let [one, two] = &self.pair.meshes;
-        let [size1, size2] = [one, two].map(|mesh| mesh.size_squared());
-        let inner = [(0, one, size1 <= size2), (1, two, size2 <= size1)];
-        let ways = inner.into_iter().filter(|(.., is_inner)| *is_inner);
-        let ways =
-            ways.filter_map(|(i, mesh, _)| self.way_out(self.pair.pose, i, mesh.ball().centre));
-        ways.min_by(|a, b| a.length().total_cmp(&b.length()))?.try_normalize()
     }
 }
 
@@ -317,7 +301,14 @@ impl<'q> TriangleShapes for Meshes<'q> {
     }
 
     fn separation(&self) -> Option<DVec3> {
-        self.separation_of_smaller()
+        // The way starts at the middle of the smaller mesh, which must be in both. Two equal meshes are both tried.
+        let [one, two] = &self.pair.meshes;
+        let [size1, size2] = [one, two].map(|mesh| mesh.size_squared());
+        let inner = [(0, one, size1 <= size2), (1, two, size2 <= size1)];
+        let ways = inner.into_iter().filter(|(.., is_inner)| *is_inner);
+        let ways =
+            ways.filter_map(|(i, mesh, _)| self.way_out(self.pair.pose, i, mesh.ball().centre));
+        ways.min_by(|a, b| a.length().total_cmp(&b.length()))?.try_normalize()
     }
 
     fn push_out(&self, is_in_both: bool, test: &mut InsideTest) -> Option<TriangleHit> {

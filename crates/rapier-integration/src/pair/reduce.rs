@@ -30,8 +30,8 @@ const SAME_NORMAL_OVER: Real = 0.9;
 /// bodies in motion come deeper into others.
 const HOVER: Real = 0.1;
 
-/// Filter distance in radii of the smaller shape. Higher: plates that soft CCD
-/// sees turn through what they meet; lower: small bodies keep contacts at internal edges.
+/// Filter distance in radii of the smaller shape. Higher: plates that soft CCD sees turn through what
+/// they meet; lower: small bodies keep contacts at internal edges.
 pub(super) const FILTERED: Real = 0.1;
 
 /// [`PatchPlan::equal_depth`] as a share of the prediction distance, or of [`PatchPlan::far`] if that is less.
@@ -53,8 +53,8 @@ const SAME_POINT: Real = 0.02;
 /// Distances and cosines by which contacts make patches.
 #[derive(Copy, Clone, Debug)]
 pub(crate) struct PatchPlan {
-    /// Filter distance of surfaces. A contact beyond it joins patches by [`SAME_FAR_NORMAL`]. A patch of far contacts is one
-    /// manifold.
+    /// Filter distance of surfaces. A contact beyond it joins patches by [`SAME_FAR_NORMAL`]. A patch of
+    /// such contacts is one manifold.
     pub(super) far: Real,
     /// Distance beyond which a contact hovers: near one that touches, it joins its patch by
     /// [`SAME_NORMAL_OVER`]. Infinite if the prediction distance is a tenth of the radius or more.

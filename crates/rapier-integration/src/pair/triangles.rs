@@ -135,14 +135,10 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         let TriangleScratch { first, directions, passed, .. } = scratch;
         first.clear();
         std::mem::swap(&mut first.contacts, contacts);
-        in_chunks(
-            candidates,
-            LEAST_CANDIDATES,
-            first,
-            &|chunk: &mut [_], first: &mut FirstPass| {
-                chunk.iter_mut().for_each(|candidate| self.first_pass(candidate, limits, first));
-            },
-        );
+        let pass = |chunk: &mut [_], first: &mut FirstPass| {
+            chunk.iter_mut().for_each(|candidate| self.first_pass(candidate, limits, first));
+        };
+        in_chunks(candidates, LEAST_CANDIDATES, first, &pass);
         std::mem::swap(&mut first.contacts, contacts);
         let FirstPass { islands, clipped, is_near, .. } = first;
         let separation = islands.is_undecided().then(|| self.shapes.separation()).flatten();

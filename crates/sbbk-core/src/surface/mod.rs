@@ -1,7 +1,7 @@
 //! Adjacency of the triangles of a mesh, and the kind of surface that they form.
 //!
-//! A triangle alone cannot tell on which side the body is, nor if a point on its border is a corner
-//! of the body or lies within a flat face. A [`Surface`] stores the neighbours across each edge, of
+//! A triangle alone cannot tell on which side the body is. It cannot tell either if a point on its border is a
+//! corner of the body, or lies within a flat face. A [`Surface`] stores the neighbours across each edge, of
 //! welded vertices, and derives from rays if the triangles bound a solid.
 //!
 //! ```
@@ -28,6 +28,7 @@ mod one_ring;
 mod sides;
 mod slopes;
 pub mod strays;
+mod triangle;
 mod twins;
 
 pub use one_ring::{Facets, HalfEdges, IndexedTriangles, OneRing};

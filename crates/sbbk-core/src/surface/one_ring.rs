@@ -7,7 +7,7 @@ use glamx::{DVec3, Vec3};
 use super::Surface;
 use super::sides::Side;
 use super::slopes::{Bend, FLAT, Heights, LONG, PlaceMemo, Slopes};
-use super::strays::{seam, touches};
+use super::triangle::{area_vector, seam, touches};
 use crate::contact::Feature;
 use crate::simd::each;
 
@@ -16,8 +16,7 @@ pub trait HalfEdges {
     /// The half-edge that runs back in the neighbour, if there is exactly one.
     fn twin(&self, half_edge: u32) -> Option<u32>;
 
-    /// True if the one-ring of an edge or a vertex is all of the surface there: there are no
-    /// [strays](super::strays).
+    /// True if the one-ring of an edge or a vertex is all of the surface there, as there are no strays.
     fn is_whole(&self, triangle: u32, feature: Feature) -> bool;
 
     /// Calls `visit` with all triangles near the box between two corners. May end when it breaks.
@@ -485,11 +484,6 @@ struct Wedge {
     are_new: [bool; 2],
 }
 
-/// Normal of a triangle, as long as twice its area.
-pub(super) fn area_vector([a, b, c]: &[DVec3; 3]) -> DVec3 {
-    (*b - *a).cross(*c - *a)
-}
-
 fn half_edge(triangle: u32, feature: Feature) -> u32 {
     3 * triangle
         + match feature {
@@ -532,9 +526,10 @@ mod tests {
             let slopes = |triangle| {
                 let vertex = Feature::Vertex(0);
                 let direction = DVec3::new(0.1, 0.2, 0.9);
-                let Slopes { rise, height, bend } =
-                    ring.all_slopes(triangle, vertex, direction, None);
-                (rise, height, bend)
+                let (first, vertex, _) = ring.first_of_ring(triangle, vertex);
+                let (slopes, count) = ring.find_slopes(first, vertex, direction, DVec3::ZERO);
+                let Slopes { rise, height, bend } = slopes;
+                (rise, height, bend, count)
             };
             assert!((0..sides).all(|triangle| slopes(triangle) == slopes(0)), "{sides} sides");
         }

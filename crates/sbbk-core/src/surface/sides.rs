@@ -13,8 +13,8 @@ use std::ops::ControlFlow;
 
 use glamx::{DVec3, Vec3};
 
-use super::one_ring::area_vector;
 use super::slopes::PlaceMemo;
+use super::triangle::area_vector;
 
 /// Triangles that rays can meet.
 pub trait RayTriangles {

@@ -1,22 +1,11 @@
 //! A triangle and a convex body: polytopes by enumeration, cylinders and cones by search.
 
 use super::curved::Curved;
-use super::polytope::Polytope;
+use super::polytope::{ConvexTruth, Polytope};
 use glamx::DVec3;
 
 /// Cores closer than this share of the size of the pair have no normals: rounding moves them.
 const NEAR: f64 = 1.0e-6;
-
-/// The contact of a triangle and a convex body.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ConvexTruth {
-    /// The distance, to 1e-9 of the size of the pair; minus the least translation that separates
-    /// them if they cross.
-    pub distance: f64,
-    /// Directions from the triangle to the body: several if moves along several are least, empty if
-    /// the cores touch.
-    pub normals: Vec<DVec3>,
-}
 
 /// A convex body in its own frame: all points within a radius of its core.
 #[derive(Clone, Debug)]

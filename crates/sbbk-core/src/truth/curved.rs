@@ -7,7 +7,7 @@
 //! surface of the body beside a corner. Edges leave a circle of directions, which is sampled and
 //! then searched.
 
-use super::convex::ConvexTruth;
+use super::polytope::ConvexTruth;
 use glamx::DVec3;
 use std::f64::consts::TAU;
 

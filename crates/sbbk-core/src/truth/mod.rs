@@ -9,6 +9,7 @@ mod mesh;
 mod polytope;
 mod triangle;
 
-pub use convex::{ConvexBody, ConvexTruth};
+pub use convex::ConvexBody;
 pub use mesh::{TruthPair, pairs_within};
+pub use polytope::ConvexTruth;
 pub use triangle::{TruthContact, contact, separation};

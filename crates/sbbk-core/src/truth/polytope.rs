@@ -3,12 +3,22 @@
 //! Apart: the least distance of all pairs of features. Crossing: the least overlap over all
 //! directions that can be a face normal of the Minkowski difference.
 
-use super::convex::ConvexTruth;
 use glamx::DVec3;
 use std::collections::BTreeSet;
 
 /// Depths that differ by less than this share of the size are equal.
 const TIE: f64 = 1.0e-9;
+
+/// The contact of a triangle and a convex body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConvexTruth {
+    /// The distance, to 1e-9 of the size of the pair; minus the least translation that separates
+    /// them if they cross.
+    pub distance: f64,
+    /// Directions from the triangle to the body: several if moves along several are least, empty if
+    /// the cores touch.
+    pub normals: Vec<DVec3>,
+}
 
 /// The hull of points, its edges and faces, and some that are in its faces or have no extent.
 #[derive(Clone, Debug)]

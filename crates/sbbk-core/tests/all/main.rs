@@ -9,6 +9,7 @@ mod draw;
 mod field;
 mod front;
 mod lateral;
+mod long_rings;
 mod penetration;
 mod placement;
 mod query;

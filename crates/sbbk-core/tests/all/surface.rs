@@ -1,16 +1,11 @@
 //! Neighbours, sides and kinds of surfaces, by definitions that look at everything.
 
-use std::cell::Cell;
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
-use std::ops::ControlFlow;
 
 use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
 use glamx::{DVec3, Quat, Vec3};
 use sbbk_core::contact::Feature;
-use sbbk_core::surface::{
-    AllTriangles, Facets, HalfEdges, IndexedTriangles, OneRing, PlaceMemo, Side, Surface,
-    SurfaceKind,
-};
+use sbbk_core::surface::{AllTriangles, Facets, OneRing, Side, Surface, SurfaceKind};
 
 use SurfaceKind::{InsideOut, Sheet, Solid};
 
@@ -131,7 +126,7 @@ enum Seen {
 }
 
 /// The surface of a mesh, whose rays test all triangles.
-fn analysed(Soup { vertices, triangles }: &Soup) -> Surface {
+pub fn analysed(Soup { vertices, triangles }: &Soup) -> Surface {
     Surface::new(vertices, triangles, &AllTriangles { vertices, triangles })
 }
 
@@ -558,90 +553,4 @@ fn flat_sides_continue_to_their_end() {
         assert_eq!(beyond(-DVec3::Y, 100.0), f64::from(top - 1));
         assert_eq!(beyond(DVec3::new(0.0, 1.0, 0.01).normalize(), 100.0), 0.0);
     }
-}
-
-/// A triangulated surface that counts visited triangles.
-struct Counted<'a> {
-    facets: IndexedTriangles<'a, &'a Surface>,
-    visits: Cell<usize>,
-    memo: PlaceMemo,
-}
-
-impl HalfEdges for Counted<'_> {
-    fn twin(&self, half_edge: u32) -> Option<u32> {
-        self.visits.set(self.visits.get() + 1);
-        self.facets.twin(half_edge)
-    }
-
-    fn is_whole(&self, _: u32, _: Feature) -> bool {
-        true
-    }
-
-    fn near(&self, _: [DVec3; 2], _: &mut dyn FnMut(u32) -> ControlFlow<()>) {}
-
-    fn memo(&self) -> Option<&PlaceMemo> {
-        Some(&self.memo)
-    }
-}
-
-impl Facets for Counted<'_> {
-    fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
-        self.facets.corner(half_edge, i)
-    }
-}
-
-/// Would catch a cone that gets the answers of another cone. Both tips are at one place.
-#[test]
-fn cones_tip_to_tip_do_not_depend_on_which_is_asked_first() {
-    const COUNT: u32 = 400;
-    let cone = |wide: f32, side: f32| {
-        let rim = (0..COUNT).map(move |i| {
-            let (sin, cos) = (side * TAU * i as f32 / COUNT as f32).sin_cos();
-            Vec3::new(side, wide * cos, wide * sin)
-        });
-        [Vec3::ZERO].into_iter().chain(rim)
-    };
-    let vertices: Vec<_> = cone(0.02, 1.0).chain(cone(2.0, -1.0)).collect();
-    let triangles: Vec<_> = [0, COUNT + 1]
-        .into_iter()
-        .flat_map(|tip| (0..COUNT).map(move |i| [tip, tip + 1 + (i + 1) % COUNT, tip + 1 + i]))
-        .collect();
-    let surface = analysed(&Soup { vertices: vertices.clone(), triangles: triangles.clone() });
-    let answers = |order: [u32; 2]| {
-        let facets = surface.one_ring(&vertices, &triangles).facets;
-        let (visits, memo) = (Cell::new(0), PlaceMemo::default());
-        let ring = OneRing { facets: Counted { facets, visits, memo }, side: Side::Sheet };
-        let is_minimum = |tip: u32| {
-            // This triangle is far from those that rise.
-            let lowest = tip * COUNT + COUNT / 2;
-            ring.is_local_minimum(lowest, Feature::Vertex(0), DVec3::Y, None)
-        };
-        let mut found = order.map(|tip| (tip, is_minimum(tip)));
-        found.sort_unstable();
-        found.map(|(_, is_minimum)| is_minimum)
-    };
-    assert_eq!(answers([0, 1]), [true, false]);
-    assert_eq!(answers([1, 0]), [true, false]);
-}
-
-#[test]
-fn work_at_the_tip_of_a_cone_grows_with_its_triangles() {
-    let visits = [500, 8000].map(|count: u32| {
-        let rim = |i: u32| {
-            let (sin, cos) = (TAU * i as f32 / count as f32).sin_cos();
-            Vec3::new(cos, sin, -1.0)
-        };
-        let vertices: Vec<_> = [Vec3::ZERO].into_iter().chain((0..count).map(rim)).collect();
-        let triangles: Vec<_> = (0..count).map(|i| [0, 1 + i, 1 + (i + 1) % count]).collect();
-        let surface = analysed(&Soup { vertices: vertices.clone(), triangles: triangles.clone() });
-        let facets = surface.one_ring(&vertices, &triangles).facets;
-        let (visits, memo) = (Cell::new(0), PlaceMemo::default());
-        let ring = OneRing { facets: Counted { facets, visits, memo }, side: Side::Face };
-        for triangle in 0..count {
-            assert!(ring.is_local_minimum(triangle, Feature::Vertex(0), DVec3::Z, None));
-            assert!(ring.points_inside(triangle, Feature::Vertex(0), -DVec3::Z));
-        }
-        ring.facets.visits.get()
-    });
-    assert!(visits[1] <= 40 * visits[0], "{visits:?}");
 }

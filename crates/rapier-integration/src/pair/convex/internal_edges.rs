@@ -104,7 +104,7 @@ impl ConvexQuery<'_> {
         ghosts.find(contacts, keys, extends_beyond, find_strays);
     }
 
-    /// Turns the normals of contacts at borders to those of their faces. The shape must be all on one side.
+    /// Gives contacts at borders the normals of their faces. The shape must be all on one side.
     fn turn_at_borders(
         &self,
         ghosts: &GhostContacts,
