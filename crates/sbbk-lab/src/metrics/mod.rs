@@ -1,13 +1,11 @@
 //! Times, the state of a world, and errors against the truth in f64.
 
-mod environment;
 mod error;
 mod run;
 mod sequence;
 mod statistics;
 mod step;
 
-pub use environment::Environment;
 pub use error::{ContactErrors, ErrorCount, Judge, TrueContact, Truth, sample_indices};
 pub use run::{Run, RunPlan, Runner, Sample, run};
 pub use sbbk_testkit::world::{WorldState, solver_points};

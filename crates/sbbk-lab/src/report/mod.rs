@@ -1,17 +1,17 @@
 //! Results: rows, tables and files.
 
+mod environment;
 mod output;
 mod row;
 mod tables;
 
 use std::fmt;
 
-pub(crate) use output::said_by;
+use self::environment::environment;
+
 pub use output::{ReportError, check_outputs, write_file};
 pub use row::Row;
 pub use tables::{Table, tables, three_digits};
-
-use crate::metrics::Environment;
 
 /// Findings of a study.
 #[derive(Clone, Debug)]
@@ -19,7 +19,7 @@ pub struct Results {
     /// Name of the data of the study, by which the documentation asks for them.
     pub study: &'static str,
     /// Machine and build.
-    pub environment: Environment,
+    pub environment: String,
     /// The main finding, in one sentence.
     pub verdict: String,
     /// All numbers.
@@ -31,8 +31,7 @@ pub struct Results {
 impl Results {
     /// Findings of this machine.
     pub fn new(study: &'static str, verdict: String, rows: Vec<Row>) -> Self {
-        let environment = Environment::detect();
-        Self { study, environment, verdict, rows, notes: Vec::new() }
+        Self { study, environment: environment(), verdict, rows, notes: Vec::new() }
     }
 }
 

@@ -2,11 +2,11 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use thiserror::Error;
 
 use super::Results;
+use super::environment::said_by;
 
 /// A file cannot be written.
 #[derive(Debug, Error)]
@@ -72,11 +72,4 @@ fn quoted(cell: &str) -> String {
         true => format!("\"{}\"", cell.replace('"', "\"\"")),
         false => cell.to_owned(),
     }
-}
-
-/// What a program prints; nothing if there is no such program.
-pub(crate) fn said_by(program: &str, arguments: &[&str]) -> String {
-    let output = Command::new(program).args(arguments).output();
-    let text = output.ok().and_then(|output| String::from_utf8(output.stdout).ok());
-    text.map_or_else(String::new, |text| text.trim().to_owned())
 }
