@@ -1,17 +1,18 @@
-//! The backends, and how they come into a world.
+//! The dispatchers that are compared.
 
+use crate::prelude::*;
 use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
 
-use clap::ValueEnum;
 use rapier_integration::{ContactDetail, ContactSet, PreparedTree, SbbkConfig, SbbkDispatcher};
-use rapier3d::geometry::{ContactData, ContactManifoldData, SharedShape};
-use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
-use rapier3d::pipeline::PhysicsWorld;
-use serde::Serialize;
+use rapier3d::geometry::{ContactData, ContactManifoldData};
+use rapier3d::parry::query::{
+    ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
+};
+use rapier3d::parry::shape::Shape;
 
-use super::{Probe, Recording};
+pub use sbbk_testkit::probe::{Answer, Probe, Question, Recording, Reported, shape_address};
 
 /// A dispatcher as Rapier takes it.
 pub type SharedDispatcher = Arc<dyn PersistentQueryDispatcher<ContactManifoldData, ContactData>>;
@@ -119,5 +120,33 @@ impl Primed {
     ) -> Self {
         let prepare = |shape| dispatcher.sbbk.as_ref()?.prepare_shape(shape).ok()?;
         Self(shapes.into_iter().filter_map(prepare).collect())
+    }
+}
+
+/// Data that a host keeps of a pair of shapes from query to query.
+#[derive(Default)]
+pub struct Memory {
+    /// Result of the last query.
+    pub manifolds: Vec<ContactManifold>,
+    workspace: Option<ContactManifoldsWorkspace>,
+}
+
+impl Memory {
+    /// Brings the manifolds up to date.
+    ///
+    /// # Panics
+    ///
+    /// If the dispatcher does not support the shapes.
+    pub fn ask(
+        &mut self,
+        dispatcher: &SharedDispatcher,
+        [shape1, shape2]: [&dyn Shape; 2],
+        pos12: &Pose,
+        prediction: Real,
+    ) {
+        let Self { manifolds, workspace } = self;
+        dispatcher
+            .contact_manifolds(pos12, shape1, shape2, prediction, manifolds, workspace)
+            .expect("every backend supports a mesh and the shapes of the studies");
     }
 }
