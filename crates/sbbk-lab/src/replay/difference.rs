@@ -1,6 +1,7 @@
 //! The first difference of two runs.
 
 use crate::prelude::*;
+
 /// Depths of a pair of bodies that differ by more than this, in units, are not the same contact.
 /// It is a fifth of Rapier's prediction distance, which is taken for the distance of pairs without
 /// a contact.

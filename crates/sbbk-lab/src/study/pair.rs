@@ -2,7 +2,7 @@
 //!
 //! Dispatchers are called directly, as the narrow phase calls them, for all contacts of triangles.
 
-use super::turns::{race, timed};
+use super::turns::{in_turn, timed};
 use crate::prelude::*;
 
 /// Stock and SBBK, with the trees of all meshes.
@@ -32,7 +32,7 @@ impl Contest {
         sequences: &[Sequence],
         errors: [ContactErrors; 2],
     ) -> Vec<Row> {
-        let rows = Self::BACKENDS.into_iter().zip(self.race(repeats, sequences)).zip(errors);
+        let rows = Self::BACKENDS.into_iter().zip(self.times(repeats, sequences)).zip(errors);
         let rows = rows.map(|((backend, time), errors)| {
             let row = Row { backend: backend.to_string(), ..row.clone() };
             row.with("time", time).with("errors", errors)
@@ -40,10 +40,14 @@ impl Contest {
         rows.collect()
     }
 
-    fn race(&self, repeats: usize, sequences: &[Sequence]) -> Vec<Summary> {
+    /// Microseconds a query.
+    fn times(&self, repeats: usize, sequences: &[Sequence]) -> Vec<Option<Summary>> {
         let queries = |sequence: &Sequence| (sequence.poses.len() - 1).max(1);
         let count = sequences.iter().map(queries).sum::<usize>() as f64;
-        race(&self.dispatchers, repeats, 1e6 / count, |dispatcher| sweep(dispatcher, sequences))
+        let times = in_turn(&self.dispatchers, repeats.max(1), |dispatcher| {
+            1e6 / count * sweep(dispatcher, sequences).as_secs_f64()
+        });
+        times.into_iter().map(Summary::of).collect()
     }
 
     /// Errors of both. `truth` returns the truth of a step of a sequence, or `None` if this step is

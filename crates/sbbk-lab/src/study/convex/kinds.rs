@@ -1,6 +1,7 @@
 //! Convex shapes and compounds.
 
 use crate::prelude::*;
+
 /// A convex shape or a compound.
 #[derive(Clone)]
 pub(in crate::study) struct Kind {
