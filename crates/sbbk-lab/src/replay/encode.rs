@@ -62,24 +62,8 @@ fn packed(runs: &[Recorder]) -> io::Result<Vec<u8>> {
     let places: Vec<Vec<usize>> =
         runs.iter().map(|run| run.shapes.surfaces.iter().map(&mut place).collect()).collect();
     let levels: Vec<[Mesh; 2]> = surfaces.iter().map(|surface| levels(surface)).collect();
-    let headers = runs.iter().zip(&places).map(|(run, places)| RunHeader {
-        name: &run.name,
-        steps: run.times.len(),
-        frames: run.frames.len(),
-        contacts: run.frames.iter().map(|frame| frame.contacts.len()).sum(),
-        shapes: run.objects.iter().map(|object| places[object.shape]).collect(),
-        fixed: run.objects.iter().map(|object| object.is_fixed).collect(),
-    });
-    let size = |surface: &Mesh| [surface.vertices.len(), surface.triangles.len()];
-    let quantum = quantum(runs);
-    let header = Header {
-        quantum,
-        turn: TURN,
-        stride: STRIDE,
-        shapes: levels.iter().map(|levels| levels.each_ref().map(size)).collect(),
-        runs: headers.collect(),
-        difference: runs.get(1).and_then(|other| Difference::first(&runs[0], other)),
-    };
+    let header = header(runs, &places, &levels);
+    let quantum = header.quantum;
 
     let header = serde_json::to_vec(&header)?;
     let mut out = GzEncoder::new(Vec::new(), Compression::best());
@@ -100,6 +84,27 @@ fn packed(runs: &[Recorder]) -> io::Result<Vec<u8>> {
         out.write_all(&planes(&numbers))?;
     }
     out.finish()
+}
+
+/// The header of runs with these surfaces. `places` are the surfaces of the shapes of each run.
+fn header<'a>(runs: &'a [Recorder], places: &[Vec<usize>], levels: &[[Mesh; 2]]) -> Header<'a> {
+    let headers = runs.iter().zip(places).map(|(run, places)| RunHeader {
+        name: &run.name,
+        steps: run.times.len(),
+        frames: run.frames.len(),
+        contacts: run.frames.iter().map(|frame| frame.contacts.len()).sum(),
+        shapes: run.objects.iter().map(|object| places[object.shape]).collect(),
+        fixed: run.objects.iter().map(|object| object.is_fixed).collect(),
+    });
+    let size = |surface: &Mesh| [surface.vertices.len(), surface.triangles.len()];
+    Header {
+        quantum: quantum(runs),
+        turn: TURN,
+        stride: STRIDE,
+        shapes: levels.iter().map(|levels| levels.each_ref().map(size)).collect(),
+        runs: headers.collect(),
+        difference: runs.get(1).and_then(|other| Difference::first(&runs[0], other)),
+    }
 }
 
 fn bytes(numbers: impl Iterator<Item = u32>) -> Vec<u8> {

@@ -184,14 +184,7 @@ impl Worlds<'_> {
         let [none, fixed] = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES];
         let large = || Ground::new(plan.cells, 0.5, fixed);
         match group {
-            Group::Terrains => {
-                for &ground_plan in &plan.grounds {
-                    let GroundPlan { cells, cell, fixes_edges } = ground_plan;
-                    let ground = Ground::new(cells, cell, if fixes_edges { fixed } else { none });
-                    let scenes = scenes::bodies(ground_plan, &ground, plan.bodies, plan.steps);
-                    self.measure(&format!("terrain of {} triangles", 2 * cells * cells), &scenes);
-                }
-            }
+            Group::Terrains => self.terrains(),
             Group::Single => {
                 let (large, world) = (large(), Ground::new(plan.world_cells, 1.0, none));
                 let small = Ground::new(64, 0.5, none);
@@ -219,17 +212,7 @@ impl Worlds<'_> {
                 self.measure("fine meshes", &scenes);
             }
             #[cfg(feature = "parallel")]
-            Group::Threads => {
-                let all = std::thread::available_parallelism().map_or(1, usize::from);
-                let counts = BTreeSet::from([1, 2, all]);
-                let scenes = counts.into_iter().flat_map(|threads| {
-                    let [heavy, light] =
-                        [scenes::tori(52, plan.steps), scenes::pile(plan.heads, plan.steps)];
-                    let scenes = [scenes::two_tori(108, plan.steps / 4), heavy, light];
-                    scenes.map(|scene| scene.on_threads(THREADS, threads))
-                });
-                self.measure("threads", &scenes.collect::<Vec<_>>());
-            }
+            Group::Threads => self.threads(),
             Group::Queries => {
                 self.progress.phase("queries on terrains", plan.query_cells.len());
                 for &cells in &plan.query_cells {
@@ -240,6 +223,31 @@ impl Worlds<'_> {
             }
         }
         Ok(())
+    }
+
+    fn terrains(&mut self) {
+        let plan = self.plan;
+        for &ground_plan in &plan.grounds {
+            let GroundPlan { cells, cell, fixes_edges } = ground_plan;
+            let flag = TriMeshFlags::FIX_INTERNAL_EDGES;
+            let flags = if fixes_edges { flag } else { TriMeshFlags::empty() };
+            let ground = Ground::new(cells, cell, flags);
+            let scenes = scenes::bodies(ground_plan, &ground, plan.bodies, plan.steps);
+            self.measure(&format!("terrain of {} triangles", 2 * cells * cells), &scenes);
+        }
+    }
+
+    #[cfg(feature = "parallel")]
+    fn threads(&mut self) {
+        let plan = self.plan;
+        let counts = BTreeSet::from([1, 2, parallel::threads()]);
+        let scenes = counts.into_iter().flat_map(|threads| {
+            let [heavy, light] =
+                [scenes::tori(52, plan.steps), scenes::pile(plan.heads, plan.steps)];
+            let scenes = [scenes::two_tori(108, plan.steps / 4), heavy, light];
+            scenes.map(|scene| scene.on_threads(THREADS, threads))
+        });
+        self.measure("threads", &scenes.collect::<Vec<_>>());
     }
 
     fn measure(&mut self, phase: &str, scenes: &[Everyday]) {
