@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use glamx::{DPose3, DVec3, Pose3, Vec3};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher, QueryDispatcher};
-use parry3d::shape::{Ball, Shape, TriMesh};
+use parry3d::shape::{Ball, TriMesh};
 use rapier_integration::{ContactDetail, ContactSet, SbbkConfig, SbbkDispatcher};
 use sbbk_core::truth::{TruthPair, pairs_within};
 
@@ -37,16 +37,8 @@ fn contacts_of_two_meshes_are_true() {
         let turn = 0.02 * step as f32;
         let mut pos12 = Pose3::rotation(Vec3::new(turn, 0.3, -turn));
         pos12.translation = Vec3::new(1.75 - 0.005 * step as f32, 0.1, 0.05);
-        let shapes: [&dyn Shape; 2] = [&one, &two];
         dispatcher
-            .contact_manifolds(
-                &pos12,
-                shapes[0],
-                shapes[1],
-                PREDICTION,
-                &mut manifolds,
-                &mut workspace,
-            )
+            .contact_manifolds(&pos12, &one, &two, PREDICTION, &mut manifolds, &mut workspace)
             .unwrap();
         let found: BTreeSet<[u32; 2]> =
             manifolds.iter().map(|manifold| [manifold.subshape1, manifold.subshape2]).collect();

@@ -3,7 +3,7 @@
 //! allowed for; the numbers are in `sbbk_core::volumes::rounding`.
 
 use crate::field::grid::Grid;
-use crate::support::Random;
+use crate::support::{Random, Soup, bumpy_ball, descend_field};
 use glamx::{DVec3, Pose3, Vec3};
 use sbbk_core::field::FieldFrame;
 use sbbk_core::leaf::LeafTest;
@@ -18,10 +18,9 @@ use sbbk_core::volumes::{SLABS, Sphere, directions};
 const KDOPS: LayerPlan = LayerPlan { sphere_root: true, kdop_from_depth: Some(1) };
 
 fn tree(corners: &[Vec3], layers: LayerPlan) -> Tree {
-    let triangles: Vec<_> =
-        (0..corners.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let Soup { vertices, triangles } = Soup::apart(corners.iter().copied());
     let options = BuildOptions { layers: Some(layers), leaf_size: 1 };
-    Tree::build(corners, &triangles, &options).unwrap()
+    Tree::build(&vertices, &triangles, &options).unwrap()
 }
 
 /// The numbers of pairs of leaves and of triangles that are found.
@@ -266,7 +265,7 @@ fn fields_the_margin_apart_are_found() {
         let margin = (distance / placement.rotation.x_axis.length()) as f32;
         let frame = FieldFrame::new(&field, &placement, margin.next_up());
         let mut count = 0;
-        crate::support::descend_field(&tree, &frame, |_, _| count += 1);
+        descend_field(&tree, &frame, |_, _| count += 1);
         assert!(count > 0, "{i}: {distance} from the field");
     }
 }
@@ -297,12 +296,11 @@ fn the_least_motion_is_bounded() {
 /// overflow.
 #[test]
 fn any_finite_margin_finds_everything() {
-    let ball = crate::support::bumpy_ball(4, 0.2);
-    let flat = crate::support::Soup { vertices: vec![Vec3::ZERO; 3], triangles: vec![[0, 1, 2]] };
+    let ball = bumpy_ball(4, 0.2);
+    let flat = Soup { vertices: vec![Vec3::ZERO; 3], triangles: vec![[0, 1, 2]] };
     for soup in [&ball, &flat] {
         for layers in [KDOPS, LayerPlan::SBBK, LayerPlan::AABB_ONLY] {
-            let options = BuildOptions { layers: Some(layers), ..BuildOptions::default() };
-            let tree: Tree = Tree::build(&soup.vertices, &soup.triangles, &options).unwrap();
+            let tree = soup.tree(layers);
             let count = soup.triangles.len();
             for margin in [1.0e4, 1.0e15, 2.0e19, 1.0e30, f32::MAX] {
                 for distance in [0.0, 1.0e3, 1.0e-3 * margin, 0.2 * margin] {
@@ -330,7 +328,7 @@ fn check_field(tree: &Tree, placement: &Placement, margin: f32, count: usize) {
     let field = Grid::new([3, 2], Vec3::ONE, |_, _| 0.1);
     let frame = FieldFrame::new(&field, placement, margin);
     let mut found = 0;
-    crate::support::descend_field(tree, &frame, |_, _| found += 1);
+    descend_field(tree, &frame, |_, _| found += 1);
     assert_eq!(found, 2 * 3 * 2 * count, "{margin} at {:?}", placement.translation);
 }
 

@@ -29,8 +29,7 @@ fn survivors(
 }
 
 fn tree(soup: &Soup, layers: impl Into<Option<LayerPlan>>) -> Tree {
-    let options = BuildOptions { layers: layers.into(), ..BuildOptions::default() };
-    let tree = Tree::build(&soup.vertices, &soup.triangles, &options).unwrap();
+    let tree = soup.tree(layers);
     assert_eq!(tree.validate(), Ok(()));
     tree
 }

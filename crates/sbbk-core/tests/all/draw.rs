@@ -3,7 +3,7 @@
 use crate::support::{Random, bumpy_ball};
 use glamx::{Pose3, Vec3};
 use sbbk_core::draw::{self, BOX, KDOP, SPHERE};
-use sbbk_core::tree::{BuildOptions, LayerPlan, Tree};
+use sbbk_core::tree::LayerPlan;
 use sbbk_core::volumes::{Aabb, Kdop, SLABS, Sphere, directions};
 
 fn lines(draw: impl FnOnce(&mut dyn FnMut(Vec3, Vec3))) -> Vec<[Vec3; 2]> {
@@ -111,11 +111,7 @@ fn lines_of_a_sphere_are_on_it() {
 #[test]
 fn layers_hold_the_mesh() {
     let ball = bumpy_ball(12, 0.2);
-    let options = BuildOptions {
-        layers: Some(LayerPlan { sphere_root: true, kdop_from_depth: Some(3) }),
-        ..BuildOptions::default()
-    };
-    let tree: Tree = Tree::build(&ball.vertices, &ball.triangles, &options).unwrap();
+    let tree = ball.tree(LayerPlan { sphere_root: true, kdop_from_depth: Some(3) });
     let mut random = Random(9);
     for depth in 0..=tree.stats().depth {
         let pose: Pose3 = random.pose(3.0);
@@ -143,8 +139,7 @@ fn layers_hold_the_mesh() {
 #[test]
 fn candidates_are_near_the_contact() {
     let ball = bumpy_ball(12, 0.0);
-    let tree: Tree =
-        Tree::build(&ball.vertices, &ball.triangles, &BuildOptions::default()).unwrap();
+    let tree = ball.tree(None);
     let mut random = Random(10);
     for _ in 0..20 {
         let pose1: Pose3 = random.pose(3.0);

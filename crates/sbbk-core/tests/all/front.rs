@@ -9,7 +9,7 @@ use sbbk_core::contact::contact;
 use sbbk_core::front::Front;
 use sbbk_core::query::TrianglePair;
 use sbbk_core::traverse::{Counters, DescentCounts, DescentScratch, PairFrame, Placement, descend};
-use sbbk_core::tree::{BuildOptions, LayerPlan, LeafBatch, Tree};
+use sbbk_core::tree::{LayerPlan, LeafBatch, Tree};
 
 type Pairs = BTreeSet<(u32, u32)>;
 type Trees<'a> = (&'a Tree, &'a Tree);
@@ -59,11 +59,6 @@ fn from_front(
     pairs
 }
 
-fn tree(soup: &Soup, layers: Option<LayerPlan>) -> Tree {
-    let options = BuildOptions { layers, ..BuildOptions::default() };
-    Tree::build(&soup.vertices, &soup.triangles, &options).unwrap()
-}
-
 /// A pose that goes on step by step: slow, jittering, fast, far away, not finite, at rest.
 fn next_pose(random: &mut Random, pose: &mut Pose3, spread: f32) -> Pose3 {
     let mut moved = |pose: &Pose3, size: f32| {
@@ -91,7 +86,7 @@ fn check_sequences(seed: u64, spread: f32, soups: impl Fn(&mut Random) -> [Soup;
     let mut total = 0;
     for round in 0..60 {
         let plan = [None, Some(LayerPlan::SBBK), Some(LayerPlan::AABB_ONLY)][round % 3];
-        let trees = soups(&mut random).map(|soup| tree(&soup, plan));
+        let trees = soups(&mut random).map(|soup| soup.tree(plan));
         let trees = (&trees[0], &trees[1]);
         let (mut front, mut pose) = (Front::default(), random.pose(spread));
         for _ in 0..30 {
@@ -129,7 +124,7 @@ fn coarse_coordinates_have_the_pairs_of_a_fresh_descent() {
     let offset = Vec3::new(3e4, -1e4, 2e4);
     let mut ball = bumpy_ball(6, 0.2);
     ball.vertices.iter_mut().for_each(|v| *v += offset);
-    let tree = tree(&ball, None);
+    let tree = ball.tree(None);
     let (mut front, mut rotation) = (Front::default(), random.rotation());
     for _ in 0..20 {
         rotation = (Quat::from_scaled_axis(random.vector(1e-6)) * rotation).normalize();
@@ -144,7 +139,7 @@ fn coarse_coordinates_have_the_pairs_of_a_fresh_descent() {
 /// Would catch a front that is never raised, and one that saves no test.
 #[test]
 fn a_front_stays_bounded_and_tests_fewer_nodes_than_a_fresh_descent() {
-    let ball = tree(&bumpy_ball(10, 0.2), None);
+    let ball = bumpy_ball(10, 0.2).tree(None);
     let trees = (&ball, &ball);
     let mut front = Front::default();
     let mut largest_fresh = 0;

@@ -98,9 +98,7 @@ fn a_chosen_tree_is_the_tree_of_its_plan() {
 fn meshes_without_finite_area_get_boxes() {
     for size in [0.0, 3e38] {
         let corner = |i: u32| size * Vec3::new(i as f32 / 300.0, 0.0, (i % 2) as f32);
-        let vertices = (0..300).map(corner).collect();
-        let triangles = (0..100).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        let tree = check(&Soup { vertices, triangles }, &BuildOptions::default());
+        let tree = check(&Soup::apart((0..300).map(corner)), &BuildOptions::default());
         assert_eq!(tree.stats().layers.kdop_from_depth, None, "{:?}", tree.stats().kdop_cut);
     }
 }
@@ -125,9 +123,7 @@ fn trees_are_never_deep() {
             corner[((i + k) % 3) as usize] += (width * f64::from(k) * size) as f32;
             corner
         };
-        let vertices = (0..count).flat_map(|i| [0, 1, 2].map(|k| corner(i, k))).collect();
-        let triangles = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        Soup { vertices, triangles }
+        Soup::apart((0..count).flat_map(|i| [0, 1, 2].map(|k| corner(i, k))))
     };
     let mut deepest = 0;
     for (factor, axes, width) in [

@@ -4,13 +4,28 @@
 use glamx::{Pose3, Quat, Vec3};
 use sbbk_core::field::{FieldFrame, FieldLeaves, FieldTriangle, HeightGrid};
 use sbbk_core::traverse::{Counters, DescentCounts, TestedBox};
-use sbbk_core::tree::Tree;
+use sbbk_core::tree::{BuildOptions, LayerPlan, Tree};
 
 /// A mesh as the tree takes it.
 #[derive(Clone, Debug)]
 pub struct Soup {
     pub vertices: Vec<Vec3>,
     pub triangles: Vec<[u32; 3]>,
+}
+
+impl Soup {
+    /// Triangles without common vertices, one of each three corners.
+    pub fn apart(corners: impl IntoIterator<Item = Vec3>) -> Self {
+        let vertices: Vec<Vec3> = corners.into_iter().collect();
+        let triangles = (0..vertices.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
+        Self { triangles: triangles.collect(), vertices }
+    }
+
+    /// The tree of a plan, or of the plan that is chosen for the mesh.
+    pub fn tree(&self, layers: impl Into<Option<LayerPlan>>) -> Tree {
+        let options = BuildOptions { layers: layers.into(), ..BuildOptions::default() };
+        Tree::build(&self.vertices, &self.triangles, &options).expect("the mesh is valid")
+    }
 }
 
 /// SplitMix64: enough for test inputs, the same on every machine.
@@ -114,16 +129,13 @@ pub fn soup(random: &mut Random, count: u32, size: f32) -> Soup {
             vertices.push(centre + random.vector(size));
         }
     }
-    let triangles = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    Soup { vertices, triangles }
+    Soup::apart(vertices)
 }
 
 /// Triangles with corners on the integer lattice `0..=side`; some are degenerate.
 pub fn lattice_soup(random: &mut Random, count: u32, side: u64) -> Soup {
     let mut corner = || Vec3::from_array([0; 3].map(|_| (random.bits() % (side + 1)) as f32));
-    let vertices = (0..3 * count).map(|_| corner()).collect();
-    let triangles = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    Soup { vertices, triangles }
+    Soup::apart((0..3 * count).map(|_| corner()))
 }
 
 /// Walks a tree by the tests of a field. Calls `found` with the triangles of the field and of the

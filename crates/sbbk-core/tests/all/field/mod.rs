@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use glamx::{DVec3, Pose3, Vec3};
 use sbbk_core::field::{FieldFrame, FieldTriangle};
 use sbbk_core::traverse::{DescentCounts, Placement, TestedBox};
-use sbbk_core::tree::{BuildOptions, Tree};
+use sbbk_core::tree::Tree;
 use sbbk_core::truth::contact;
 
 use crate::support::{Soup, descend_field};
@@ -18,7 +18,7 @@ use grid::Grid;
 type Pair = (FieldTriangle, u32);
 
 fn tree(soup: &Soup) -> Tree {
-    Tree::build(&soup.vertices, &soup.triangles, &BuildOptions::default()).expect("valid")
+    soup.tree(None)
 }
 
 /// Runs [`FieldFrame::meets`] for a box.

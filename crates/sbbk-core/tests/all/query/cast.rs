@@ -163,14 +163,11 @@ fn grazing_corners_are_met_among_other_triangles() {
             let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
             let part =
                 |i| corners.map(|v| at + 0.002 * v.lerp(middle, if i > 0 { 0.5 } else { 0.0 }));
-            let vertices = (0..12).flat_map(part).collect();
-            Soup { vertices, triangles: (0..12).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect() }
+            Soup::apart((0..12).flat_map(part))
         };
         let meshes =
             [with_others(wall, top), with_others([Vec3::ZERO, lowest.with_x(0.0), lowest], far)];
-        let alone = meshes
-            .each_ref()
-            .map(|soup| Soup { vertices: soup.vertices[..3].to_vec(), triangles: vec![[0, 1, 2]] });
+        let alone = meshes.each_ref().map(|soup| Soup::apart(soup.vertices[..3].to_vec()));
         let corner = turn * alone[1].vertices[2];
         let pose = Pose3::from_parts(top + 0.01 * Vec3::X - corner, turn);
         let time = |[one, two]: &[Soup; 2]| {

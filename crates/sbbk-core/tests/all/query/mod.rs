@@ -6,17 +6,17 @@ mod motion;
 mod nearest;
 
 use glamx::{DPose3, DVec3, Pose3, Vec3};
-use sbbk_core::tree::{BuildOptions, Tree};
+use sbbk_core::tree::Tree;
 use sbbk_core::truth::{self, TruthPair};
 
 use crate::support::Soup;
 
 fn tree(soup: &Soup) -> Tree {
-    Tree::build(&soup.vertices, &soup.triangles, &BuildOptions::default()).expect("valid")
+    soup.tree(None)
 }
 
 fn triangle(corners: [[f32; 3]; 3]) -> Soup {
-    Soup { vertices: corners.map(Vec3::from_array).to_vec(), triangles: vec![[0, 1, 2]] }
+    Soup::apart(corners.map(Vec3::from_array))
 }
 
 /// A pose in f64 with a unit rotation.

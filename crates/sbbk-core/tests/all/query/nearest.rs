@@ -4,7 +4,7 @@ use glamx::{DVec3, Pose3, Quat, Vec3};
 use proptest::prelude::*;
 use sbbk_core::query::{CastOptions, FoundPair, SearchScratch, cast, deepest, meeting, nearest};
 use sbbk_core::traverse::Placement;
-use sbbk_core::tree::{BuildOptions, LayerPlan, Tree};
+use sbbk_core::tree::{LayerPlan, Tree};
 
 use super::{all_pairs, distance_of, least, tree, triangle};
 use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
@@ -126,9 +126,7 @@ proptest! {
         let plans = [LayerPlan::AABB_ONLY, LayerPlan::SBBK,
             LayerPlan { sphere_root: false, kdop_from_depth: Some(1) }];
         for plan in plans {
-            let options = BuildOptions { layers: Some(plan), ..BuildOptions::default() };
-            let [tree1, tree2] = [&one, &two]
-                .map(|soup| Tree::build(&soup.vertices, &soup.triangles, &options).unwrap());
+            let [tree1, tree2] = [&one, &two].map(|soup| soup.tree(plan));
             let (placement, mut scratch) = (Placement::new(&pose), SearchScratch::default());
             let found = deepest((&tree1, &tree2), placement, f64::INFINITY, &mut scratch).unwrap();
             prop_assert!((found.contact.distance - truth).abs() < 1e-5, "{found:?} {truth}");
