@@ -6,17 +6,17 @@ use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::{ClosestPoints, ContactManifold, QueryDispatcher};
-use rapier3d::parry::shape::{Shape, SharedShape, TriMeshFlags};
+use rapier3d::parry::shape::SharedShape;
 use rapier3d::pipeline::PhysicsWorld;
 use rapier3d::prelude::{ColliderBuilder, RigidBodyBuilder};
 use sbbk_core::traverse::Placement;
 use sbbk_testkit::mesh;
-use sbbk_testkit::world::Fingerprint;
+use sbbk_testkit::world::fingerprint;
 
 use crate::kinds::kinds;
 use crate::support::{
     Manifold, Pair, Question, assert_bits, bits, counting_patches, direction, every, nudge,
-    rotation, sequence, shape_with,
+    rotation, sequence, shape,
 };
 
 /// Calls `check` with a pair of each kind in contact, in both orders, and another pose in contact.
@@ -165,7 +165,7 @@ fn first_queries_see_as_far_as_later_ones() {
     let cube = mesh::cuboid(Vec3::ONE, 1);
     let plate = (Pose::IDENTITY, SharedShape::cuboid(1.0, 1.0, 1.0));
     let grounds = [
-        cube.shared_shape().expect("a box is a mesh"),
+        cube.shape(),
         SharedShape::cuboid(1.0, 1.0, 1.0),
         SharedShape::cylinder(1.0, 1.0),
         SharedShape::compound(vec![plate]),
@@ -173,7 +173,7 @@ fn first_queries_see_as_far_as_later_ones() {
     let (mut random, mut found) = (Rand32::new(1), [0; 4]);
     for _ in 0..200 {
         let offset = 1e4 * (1.0 + random.rand_float());
-        let far = shape_with(&cube.clone().mapped(|x| x + offset * Vec3::Y), TriMeshFlags::empty());
+        let far = shape(&cube.clone().mapped(|x| x + offset * Vec3::Y));
         let pose = Pose::translation(0.1, 2.02 - offset, 0.2);
         let lowest = far.vertices().iter().map(|x| x.y).fold(Real::INFINITY, Real::min);
         let gap = (f64::from(lowest) + f64::from(pose.translation.y) - 1.0) as Real;
@@ -202,7 +202,7 @@ fn turned_meshes_far_from_their_origin_are_seen() {
     let slab = Vec3::new(5.0, 1.0, 5.0);
     let cuboid = SharedShape::cuboid(slab.x, slab.y, slab.z);
     let grounds = [
-        mesh::cuboid(slab, 1).shared_shape().expect("a box is a mesh"),
+        mesh::cuboid(slab, 1).shape(),
         cuboid.clone(),
         SharedShape::cylinder(1.0, 5.0),
         SharedShape::compound(vec![(Pose::IDENTITY, cuboid)]),
@@ -211,7 +211,7 @@ fn turned_meshes_far_from_their_origin_are_seen() {
     let (mut random, mut found) = (Rand32::new(1), 0);
     for _ in 0..400 {
         let offset = 1e4 * (1.0 + random.rand_float()) * direction(&mut random);
-        let far = shape_with(&cube.clone().mapped(|x| x + offset), TriMeshFlags::empty());
+        let far = shape(&cube.clone().mapped(|x| x + offset));
         let turn = rotation(&mut random);
         let reach =
             [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| (turn * axis).y.abs()).iter().sum::<Real>();
@@ -235,9 +235,7 @@ fn turned_meshes_far_from_their_origin_are_seen() {
                 assert!(!fresh(&question, pose).is_empty(), "{gap} apart, {is_mesh_first}");
                 found += 1;
                 if ground.as_composite_shape().is_none() {
-                    let shapes: [&dyn Shape; 2] = [&**ground, &far];
-                    let [g1, g2] = if is_mesh_first { [shapes[1], shapes[0]] } else { shapes };
-                    let pos12 = if is_mesh_first { pose.inverse() } else { pose };
+                    let ([g1, g2], pos12) = (question.host_shapes(), question.pos12());
                     let nearest = dispatcher.closest_points(&pos12, g1, g2, prediction).unwrap();
                     assert!(nearest != ClosestPoints::Disjoint, "{gap} apart, {is_mesh_first}");
                 }
@@ -253,14 +251,14 @@ fn mixed_world(unit: Real, has_soft_ccd: bool) -> PhysicsWorld {
     world.integration_parameters.contact_recycling = false;
     world.integration_parameters.length_unit = unit;
     world.gravity *= unit;
-    let ground = mesh::terrain(8.0 * unit, 16, 0.3 * unit).shared_shape().expect("a terrain");
+    let ground = mesh::terrain(8.0 * unit, 16, 0.3 * unit).shape();
     world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(ground));
     let head = mesh::monkey_head_with(6).mapped(|vertex| 0.3 * unit * vertex);
     let cloud: Vec<Vec3> = head.vertices.iter().step_by(7).copied().collect();
     let [half, thin] = [0.25 * unit, 0.1 * unit];
     let dumbbell = [-half, half].map(|x| (Pose::translation(x, 0.0, 0.0), SharedShape::ball(half)));
     let shapes = [
-        head.shared_shape().expect("a head is a mesh"),
+        head.shape(),
         SharedShape::ball(half),
         SharedShape::cuboid(half, thin, half),
         SharedShape::capsule_y(half, thin),
@@ -296,7 +294,7 @@ fn convex_worlds_forget_everything_and_go_on_alike() {
                 forgetting.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
                 remembering.step();
                 forgetting.step();
-                let [one, two] = [&remembering, &forgetting].map(Fingerprint::of);
+                let [one, two] = [&remembering, &forgetting].map(fingerprint);
                 assert!(one == two, "units of {unit}, soft CCD {has_soft_ccd}, step {step}");
             }
             let touching = remembering.contact_pairs().filter(|p| p.has_any_active_contact());

@@ -5,14 +5,14 @@ use oorandom::Rand32;
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::{
-    Compound, CompoundFlags, HeightField, Polyline, PolylineFlags, Shape, SharedShape, TriMeshFlags,
+    Compound, CompoundFlags, HeightField, Polyline, PolylineFlags, Shape, SharedShape,
 };
 use rapier3d::parry::utils::Array2;
 use sbbk_testkit::mesh;
 
 use crate::support::{
     Dispatcher, Manifold, Pair, Question, assert_bits, counting, direction, distance, every,
-    per_triangle, rotation, shape_with, touching_shapes,
+    per_triangle, rotation, shape, touching_shapes,
 };
 use crate::worlds::dumbbells;
 
@@ -62,7 +62,7 @@ fn fresh(question: &Question, dispatcher: &impl Dispatcher<(), ()>) -> Vec<Manif
 /// Would catch parts that are left out, and poses or numbers of parts mixed up.
 #[test]
 fn contacts_are_those_of_each_part_by_itself() {
-    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
+    let head = shape(&mesh::monkey_head());
     for size in [0.6, 3.0] {
         for (name, compound) in compounds(size).into_iter().filter(|(name, _)| !name.contains(' '))
         {
@@ -115,7 +115,7 @@ fn contacts_are_those_of_each_part_by_itself() {
 /// A part of a kind that SBBK does not answer for: the whole pair is stock's, not half of it.
 #[test]
 fn other_parts_leave_the_pair_to_stock() {
-    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
+    let head = shape(&mesh::monkey_head());
     let field = HeightField::new(Array2::repeat(4, 4, 0.0), Vec3::splat(2.0));
     let parts = vec![
         (Pose::translation(0.0, -0.9, 0.0), SharedShape::new(field)),
@@ -156,7 +156,7 @@ fn compounds_rest_on_a_mesh_as_with_stock() {
 /// Would catch a part that stands for another one of the same compound, which has many.
 #[test]
 fn each_of_many_parts_is_where_it_is() {
-    let floor = shape_with(&mesh::floor(200.0, 40), TriMeshFlags::empty());
+    let floor = shape(&mesh::floor(200.0, 40));
     let part = |i: i32| {
         let at = Vec3::new((i % 13) as Real * 3.0, 0.001 * i as Real, (i / 13) as Real * 3.0);
         (Pose::from_translation(at), SharedShape::cuboid(0.5, 0.5, 0.5))
@@ -178,8 +178,8 @@ fn each_of_many_parts_is_where_it_is() {
 /// catch contacts lost as the ball that is to hold what moves is too small.
 #[test]
 fn far_parts_keep_their_contacts_while_a_body_turns() {
-    let floor = shape_with(&mesh::floor(40.0, 160), TriMeshFlags::empty());
-    let bar = shape_with(&mesh::slab(Vec3::new(10.0, 0.3, 0.3), [20, 1, 1]), TriMeshFlags::empty());
+    let floor = shape(&mesh::floor(40.0, 160));
+    let bar = shape(&mesh::slab(Vec3::new(10.0, 0.3, 0.3), [20, 1, 1]));
     let part = |sign: Real| {
         let at = sign * Vec3::new(8.0, 0.0, 8.0);
         (Pose::from_translation(at), SharedShape::cuboid(0.3, 0.3, 0.3))
@@ -220,7 +220,7 @@ fn far_parts_keep_their_contacts_while_a_body_turns() {
 /// time.
 #[test]
 fn polylines_that_deform_are_left_to_stock() {
-    let floor = shape_with(&mesh::floor(8.0, 8), TriMeshFlags::empty());
+    let floor = shape(&mesh::floor(8.0, 8));
     let corners = vec![Vec3::new(-1.0, 0.01, 0.1), Vec3::new(1.0, 0.01, 0.2)];
     for (flags, queries) in [(PolylineFlags::empty(), 1), (PolylineFlags::DEFORMABLE, 0)] {
         let line = Polyline::with_flags(corners.clone(), None, flags);

@@ -109,7 +109,7 @@ fn soft_world(dispatcher: &SbbkDispatcher, probe: &Probe) -> PhysicsWorld {
     let recording = Recording::new(std::sync::Arc::new(dispatcher.clone()), probe.clone());
     world.narrow_phase.set_query_dispatcher(recording);
     let ring = mesh::torus(1.0, 0.4, 24, 12);
-    world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(SharedShape::new(shape(&ring))));
+    world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(ring.shape()));
     let ball = mesh::ball(0.9, 5);
     let vertices = ball.vertices.iter().map(|v| *v + Vec3::new(0.2, 1.2, 0.1)).collect();
     let soft = SoftBodyBuilder::trimesh(vertices, ball.triangles.clone()).expect("a mesh");

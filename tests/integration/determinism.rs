@@ -1,13 +1,10 @@
 use rapier_integration::SbbkDispatcher;
 use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::scene::{BoxStack, HelicopterBallDrop, MonkeyPile, Scene};
-use sbbk_testkit::world::Fingerprint;
+use sbbk_testkit::world::fingerprint;
 
 /// Runs a scene; `before_step` may meddle with the world. Its state at some steps.
-fn run(
-    scene: &dyn Scene,
-    mut before_step: impl FnMut(usize, &mut PhysicsWorld),
-) -> Vec<Fingerprint> {
+fn run(scene: &dyn Scene, mut before_step: impl FnMut(usize, &mut PhysicsWorld)) -> Vec<u64> {
     let mut world = scene.build().world;
     world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
     let (mut states, mut touching_steps) = (Vec::new(), 0);
@@ -17,7 +14,7 @@ fn run(
         let is_touching = world.contact_pairs().any(|pair| pair.has_any_active_contact());
         touching_steps += usize::from(is_touching);
         if step % 20 == 19 {
-            states.push(Fingerprint::of(&world));
+            states.push(fingerprint(&world));
         }
     }
     // Less than that has the ball which rolls off the rotor, bounces off the fuselage, and is gone.
@@ -29,7 +26,7 @@ fn scenes() -> Vec<Box<dyn Scene>> {
     vec![
         Box::new(MonkeyPile { contact_recycling: false, ..MonkeyPile::with_heads(8) }),
         Box::new(MonkeyPile::with_heads(12)),
-        Box::new(BoxStack::default()),
+        Box::new(BoxStack),
     ]
 }
 
@@ -40,7 +37,7 @@ fn a_scene_runs_the_same_again() {
     for scene in scenes() {
         assert_eq!(run(&*scene, |_, _| ()), run(&*scene, |_, _| ()), "{}", scene.name());
     }
-    let drop = HelicopterBallDrop::default();
+    let drop = HelicopterBallDrop;
     let states = run(&drop, |_, world| world.integration_parameters.contact_recycling = false);
     assert_eq!(
         states,

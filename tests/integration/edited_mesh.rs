@@ -7,7 +7,7 @@ use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh;
 
 use crate::support::{
-    Manifold, Pair, Question, assert_same, distance, every, sequence, shape, shape_with, triangles,
+    Manifold, Pair, Question, assert_same, distance, every, sequence, shape, triangles,
 };
 
 fn torus() -> TriMesh {
@@ -37,7 +37,7 @@ fn is_same(left: &[Manifold], right: &[Manifold]) -> bool {
 fn check_edit(flags: TriMeshFlags, edit: impl Fn(&mut TriMesh)) {
     let other = torus();
     let dispatcher = every();
-    let mut edited = SharedShape::new(shape_with(&mesh::torus(1.0, 0.4, 24, 12), flags));
+    let mut edited = mesh::torus(1.0, 0.4, 24, 12).shape_with(flags);
     let mut pair: Pair = Pair::default();
     let ask = |pair: &mut Pair, shape: &SharedShape| {
         let query = Question::new(shape.as_trimesh().unwrap(), &other, beside());

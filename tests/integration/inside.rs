@@ -3,17 +3,18 @@
 
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
-use rapier_integration::{ContactDetail, SbbkConfig, SbbkDispatcher};
+use rapier_integration::{ContactDetail, SbbkDispatcher};
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::PointQuery;
-use rapier3d::parry::shape::{SharedShape, TriMeshFlags};
-use rapier3d::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder};
+use rapier3d::parry::shape::TriMeshFlags;
+use rapier3d::prelude::{ColliderBuilder, RigidBodyBuilder};
 use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::support::{
     Manifold, Pair, Question, assert_same, counting, declare_solid, distance, every, nudge,
-    per_triangle, shape, shape_with, turned_inside_out,
+    per_triangle, shape, shape_with, turned_inside_out, with,
 };
+use crate::worlds::on_ground;
 
 const HALF: Vec3 = Vec3::new(2.0, 1.0, 2.0);
 
@@ -35,9 +36,7 @@ fn a_body_in_a_solid_leaves_by_the_nearer_side() {
     {
         let (slab, body) = (shape(&slab(cells)), shape(body));
         for detail in [ContactDetail::Every, ContactDetail::Patches] {
-            let mut config = SbbkConfig::default();
-            config.detail = detail;
-            let dispatcher = SbbkDispatcher::new(config);
+            let dispatcher = with(|config| config.detail = detail);
             let _solid = declare_solid(&dispatcher, &slab);
             for (place, out, depth) in [
                 ([0.2, 0.3, 0.1], Vector::Y, 0.7),
@@ -139,12 +138,10 @@ fn push_out_does_not_depend_on_earlier_poses() {
 #[test]
 fn a_body_that_starts_in_a_solid_comes_out_slowly() {
     for cells in [1, 6] {
-        let mut world = PhysicsWorld::new();
         let dispatcher = SbbkDispatcher::default();
         let _solid = declare_solid(&dispatcher, &shape(&slab(cells)));
-        world.narrow_phase.set_query_dispatcher(dispatcher);
-        let collider = |mesh: &Mesh| ColliderBuilder::new(SharedShape::new(shape(mesh)));
-        world.insert(RigidBodyBuilder::fixed(), collider(&slab(cells)));
+        let collider = |mesh: &Mesh| ColliderBuilder::new(mesh.shape());
+        let mut world = on_ground(collider(&slab(cells)), dispatcher);
         let at = RigidBodyBuilder::dynamic().translation(Vec3::new(0.2, 0.3, 0.1));
         let (body, _) = world.insert(at, collider(&mesh::cuboid(Vec3::splat(0.25), cells)));
         let mut fastest: Real = 0.0;

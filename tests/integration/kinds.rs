@@ -6,14 +6,12 @@ use glamx::Vec3;
 use oorandom::Rand32;
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::shape::{SharedShape, TriMeshFlags};
-use sbbk_testkit::mesh::{self, Mesh};
+use sbbk_testkit::mesh;
 
 use crate::compound::compounds;
 use crate::convex::shapes::{floor, shapes};
 use crate::heightfield::terrain::rolling;
-use crate::support::{
-    Question, direction, per_triangle, rotation, shape, shape_with, turned_inside_out,
-};
+use crate::support::{Question, direction, per_triangle, rotation, turned_inside_out};
 
 /// A mesh, or a height field, and another shape.
 pub struct Kind {
@@ -64,11 +62,7 @@ impl Kind {
 }
 
 fn head(flags: TriMeshFlags) -> SharedShape {
-    SharedShape::new(shape_with(&mesh::monkey_head_with(6), flags))
-}
-
-fn rigid(mesh: &Mesh) -> SharedShape {
-    SharedShape::new(shape(mesh))
+    mesh::monkey_head_with(6).shape_with(flags)
 }
 
 /// Pairs of meshes that differ in size, detail, place of the origin, or surface kind. The last one
@@ -81,15 +75,15 @@ pub fn mesh_pairs() -> Vec<Kind> {
         mesh::ball(0.3, 16),
         mesh::torus(1.4, 0.6, 100, 48),
     ]
-    .map(|mesh| rigid(&mesh));
-    let distant = rigid(&mesh::monkey_head_with(6).mapped(|vertex| vertex + 0.7 * Vec3::X));
+    .map(|mesh| mesh.shape());
+    let distant = mesh::monkey_head_with(6).mapped(|vertex| vertex + 0.7 * Vec3::X).shape();
     vec![
         Kind::new("ring and ball", &ring, ball.clone()),
         Kind::new("ball and ring", &ball, ring),
         Kind::new("distant origin", &plain, distant),
         Kind::new("fine balls", &fine, fine.clone()),
-        Kind::new("terrain", &rigid(&mesh::terrain(3.0, 12, 0.5)), plain.clone()),
-        Kind::new("inside out", &rigid(&turned_inside_out(mesh::ball(0.7, 4))), plain.clone()),
+        Kind::new("terrain", &mesh::terrain(3.0, 12, 0.5).shape(), plain.clone()),
+        Kind::new("inside out", &turned_inside_out(mesh::ball(0.7, 4)).shape(), plain.clone()),
         Kind::new("large mesh", &large, plain),
     ]
 }
@@ -102,7 +96,7 @@ pub fn kinds() -> &'static [Kind] {
         let flagged = head(TriMeshFlags::FIX_INTERNAL_EDGES);
         let soft = head(TriMeshFlags::DEFORMABLE);
         let field = SharedShape::new(rolling(6.0, 20, 0.5));
-        let ball = rigid(&mesh::ball(0.7, 5));
+        let ball = mesh::ball(0.7, 5).shape();
         let line = (0..9).map(|i| Vec3::new(0.2 * i as Real, 0.1 * (i % 2) as Real, 0.0)).collect();
         let mut kinds = vec![
             Kind::new("two meshes", &plain, plain.clone()),

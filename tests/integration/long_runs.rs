@@ -4,13 +4,15 @@ use std::collections::VecDeque;
 
 use glamx::Vec3;
 use oorandom::Rand32;
-use rapier_integration::{SbbkConfig, SbbkDispatcher};
+use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::math::Vector;
 use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh::{self, Mesh};
 use sbbk_testkit::scene::{BoxStack, HeadOnSlope, HelicopterBallDrop, MonkeyPile, Scene, Solid};
-use sbbk_testkit::world::Fingerprint;
+use sbbk_testkit::world::fingerprint;
+
+use crate::support::with;
 
 /// Bytes of trees that stay when their meshes are gone: little, so that the bound is soon reached.
 const IDLE_BYTES: usize = 1 << 20;
@@ -32,9 +34,7 @@ impl Soak {
         let mut world = PhysicsWorld::new();
         let floor = Solid::new(&mesh::terrain(24.0, 24, 0.6));
         world.insert(RigidBodyBuilder::fixed(), floor.collider());
-        let mut config = SbbkConfig::default();
-        config.idle_tree_bytes = IDLE_BYTES;
-        let dispatcher = SbbkDispatcher::new(config);
+        let dispatcher = with(|config| config.idle_tree_bytes = IDLE_BYTES);
         world.narrow_phase.set_query_dispatcher(dispatcher.clone());
         Self { world, dispatcher, random: Rand32::new(1), bodies: VecDeque::new() }
     }
@@ -109,8 +109,8 @@ fn worlds_are_equal_to_the_bit_after_hundreds_of_steps() {
     let scenes: [Box<dyn Scene>; 5] = [
         Box::new(MonkeyPile::with_heads(60)),
         Box::new(MonkeyPile { contact_recycling: false, ..MonkeyPile::with_heads(30) }),
-        Box::new(HelicopterBallDrop::default()),
-        Box::new(BoxStack::default()),
+        Box::new(HelicopterBallDrop),
+        Box::new(BoxStack),
         Box::new(HeadOnSlope::default()),
     ];
     let run = |scene: &dyn Scene, forgets: bool| {
@@ -122,7 +122,7 @@ fn worlds_are_equal_to_the_bit_after_hundreds_of_steps() {
             }
             world.step();
         }
-        Fingerprint::of(&world)
+        fingerprint(&world)
     };
     for scene in &scenes {
         let first = run(&**scene, false);

@@ -2,11 +2,11 @@ use std::time::{Duration, Instant};
 
 use allocation_counter::measure;
 use glamx::Vec3;
-use rapier_integration::{SbbkConfig, SbbkDispatcher};
+use rapier_integration::SbbkDispatcher;
 use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh;
 
-use crate::support::{shape, shape_with};
+use crate::support::{shape, shape_with, with};
 
 /// The smallest mesh there is; another one for each number.
 fn one_triangle(number: usize) -> TriMesh {
@@ -36,9 +36,7 @@ fn idle_trees_take_what_is_counted() {
 /// Would catch a limit that is not kept.
 #[test]
 fn idle_trees_stay_below_their_limit() {
-    let mut config = SbbkConfig::default();
-    config.idle_tree_bytes = 100_000;
-    let dispatcher = SbbkDispatcher::new(config);
+    let dispatcher = with(|config| config.idle_tree_bytes = 100_000);
     for number in 0..1000 {
         drop(dispatcher.prepare(&one_triangle(number)).unwrap());
         assert!(dispatcher.stats().tree_bytes <= 100_000);
@@ -53,11 +51,7 @@ fn idle_trees_stay_below_their_limit() {
 #[test]
 fn many_idle_trees_cost_no_time() {
     const BATCH: usize = 500;
-    let dispatcher = {
-        let mut config = SbbkConfig::default();
-        config.idle_tree_bytes = usize::MAX;
-        SbbkDispatcher::new(config)
-    };
+    let dispatcher = with(|config| config.idle_tree_bytes = usize::MAX);
     let time_batch = |batch: usize| -> Duration {
         let meshes: Vec<TriMesh> = (batch * BATCH..(batch + 1) * BATCH).map(one_triangle).collect();
         let start = Instant::now();

@@ -5,16 +5,18 @@ use std::f32::consts::TAU;
 
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
-use rapier_integration::{ContactDetail, ContactSet, SbbkConfig, SbbkDispatcher};
+use rapier_integration::{ContactDetail, ContactSet, SbbkDispatcher};
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::ColliderBuilder;
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::{ContactManifold, QueryDispatcher, TrackedContact};
 use rapier3d::parry::shape::{HeightField, PackedFeatureId, Shape, SharedShape, TriMeshFlags};
-use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh::{self, Mesh};
 
-use crate::support::{Pair, Question, direction, distance, nudge, rotation, shape, shape_with};
+use crate::support::{
+    Pair, Question, direction, distance, nudge, rotation, shape, shape_with, with,
+};
+use crate::worlds::on_ground;
 
 /// Least cosine of the normals in one patch. A cone may remove the deepest contact; the others are
 /// near to its normal.
@@ -27,9 +29,7 @@ const SAME_NORMAL_OVER: Real = 0.9;
 const OVER: Real = 0.1;
 
 fn detailed(detail: ContactDetail) -> SbbkDispatcher {
-    let mut config = SbbkConfig::default();
-    config.detail = detail;
-    SbbkDispatcher::new(config)
+    with(|config| config.detail = detail)
 }
 
 type Manifold = ContactManifold<u32, u32>;
@@ -137,9 +137,9 @@ fn partners() -> Vec<(&'static str, SharedShape)> {
     let balls = [-0.3, 0.3].map(|x| (Pose::translation(x, 0.0, 0.0), SharedShape::ball(0.7)));
     let torus = mesh::torus(0.7, 0.3, 24, 12);
     vec![
-        ("torus", SharedShape::new(shape(&torus))),
-        ("fixed torus", SharedShape::new(shape_with(&torus, TriMeshFlags::FIX_INTERNAL_EDGES))),
-        ("coarse box", SharedShape::new(shape(&mesh::cuboid(Vec3::splat(0.7), 1)))),
+        ("torus", torus.shape()),
+        ("fixed torus", torus.shape_with(TriMeshFlags::FIX_INTERNAL_EDGES)),
+        ("coarse box", mesh::cuboid(Vec3::splat(0.7), 1).shape()),
         ("balls", SharedShape::compound(balls.to_vec())),
         ("cuboid", SharedShape::cuboid(0.8, 0.5, 0.6)),
         ("capsule", SharedShape::capsule_y(0.5, 0.4)),
@@ -257,11 +257,9 @@ fn a_patch_for_each_leg() {
 /// Would catch points that hover over the floor instead of points that carry.
 #[test]
 fn heads_come_to_rest() {
-    let head = SharedShape::new(shape(&mesh::monkey_head().centred().scaled_to(2.0)));
-    let mut world = PhysicsWorld::new();
-    world.narrow_phase.set_query_dispatcher(detailed(ContactDetail::Patches));
+    let head = mesh::monkey_head().centred().scaled_to(2.0).shape();
     let floor = ColliderBuilder::cuboid(40.0, 1.0, 40.0).translation(-Vec3::Y);
-    world.insert(RigidBodyBuilder::fixed(), floor);
+    let mut world = on_ground(floor, detailed(ContactDetail::Patches));
     let heads: Vec<_> = (0..10)
         .map(|i| {
             let turn = Quat::from_rotation_x(i as Real) * Quat::from_rotation_y(2.3 * i as Real);
@@ -404,9 +402,7 @@ fn normals_of_any_length_make_patches() {
     let head = mesh::monkey_head();
     let [bare, cones] = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES]
         .map(|flags| shape_with(&head, flags));
-    let mut config = SbbkConfig::default();
-    config.contact_set = ContactSet::Triangles;
-    let dispatcher = SbbkDispatcher::new(config);
+    let dispatcher = with(|config| config.contact_set = ContactSet::Triangles);
     let turn = Quat::from_xyzw(0.6, 0.0, 0.0, 0.79999);
     for x in [0.5, 0.9, 1.1] {
         let pose = Pose::from_parts(x * Vec3::X, turn);

@@ -228,8 +228,8 @@ fn sensors_see_what_stock_sees() {
         if is_ours {
             world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
         }
-        let head = SharedShape::new(shape(&mesh::monkey_head_with(6)));
-        let ring = SharedShape::new(shape(&mesh::torus(0.7, 0.3, 12, 7)));
+        let head = mesh::monkey_head_with(6).shape();
+        let ring = mesh::torus(0.7, 0.3, 12, 7).shape();
         world.insert_collider(ColliderBuilder::new(ring).sensor(true), None);
         let mut heads = Vec::new();
         for i in 0..6 {

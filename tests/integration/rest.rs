@@ -1,14 +1,14 @@
 use glamx::Vec3;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::{RigidBody, RigidBodyBuilder};
-use rapier3d::geometry::{ColliderBuilder, SharedShape};
+use rapier3d::geometry::ColliderBuilder;
 use rapier3d::math::{Real, Vector};
 use rapier3d::parry::shape::TriMeshFlags;
 use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh;
 use sbbk_testkit::scene::{BoxStack, HeadOnSlope, Scene, SceneWorld};
 
-use crate::support::{declare_solid, shape_with};
+use crate::support::declare_solid;
 
 /// One world under stock Rapier, and again under SBBK.
 struct Both {
@@ -57,7 +57,7 @@ fn speed(body: &RigidBody) -> Real {
 #[test]
 fn a_stack_of_ten_boxes_stands_for_a_minute() {
     let mut both = Both::new(|| {
-        let mut scene = BoxStack::default().build();
+        let mut scene = BoxStack.build();
         for &body in &scene.watched {
             scene.world.bodies[body].activation_mut().normalized_linear_threshold = -1.0;
         }
@@ -119,9 +119,7 @@ fn sliding(floor_flags: TriMeshFlags, velocity: Vector) -> SceneWorld {
         v * Vec3::new(share, 1.0, share)
     });
     let [floor, tapered] = [(mesh::floor(40.0, 20), floor_flags), (tapered, TriMeshFlags::empty())]
-        .map(|(mesh, flags)| {
-            ColliderBuilder::new(SharedShape::new(shape_with(&mesh, flags))).friction(FRICTION)
-        });
+        .map(|(mesh, flags)| ColliderBuilder::new(mesh.shape_with(flags)).friction(FRICTION));
     let mut world = PhysicsWorld::new();
     world.insert(RigidBodyBuilder::fixed(), floor);
     let start =
@@ -173,12 +171,7 @@ fn a_box_slides_over_internal_edges_whatever_the_flags() {
 /// Would catch boxes that stay in a declared solid, with the sides of their triangles at its surface.
 #[test]
 fn boxes_of_many_triangles_come_up_out_of_a_slab() {
-    let solid = |half_extents: Vec3| {
-        ColliderBuilder::new(SharedShape::new(shape_with(
-            &mesh::cuboid(half_extents, 8),
-            TriMeshFlags::empty(),
-        )))
-    };
+    let solid = |half_extents: Vec3| ColliderBuilder::new(mesh::cuboid(half_extents, 8).shape());
     for depth in [0.22, 0.83, 0.95] {
         let mut world = PhysicsWorld::new();
         let (dispatcher, slab) = (SbbkDispatcher::default(), solid(Vec3::new(5.0, 1.0, 5.0)));

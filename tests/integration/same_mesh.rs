@@ -1,13 +1,13 @@
 use std::sync::Barrier;
 
 use oorandom::Rand32;
-use rapier_integration::{SbbkConfig, SbbkDispatcher, SbbkStats};
+use rapier_integration::{SbbkDispatcher, SbbkStats};
 use rapier3d::math::{Pose, Vector};
 use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh;
 
 use crate::support::{
-    Pair, Question, assert_same, per_triangle, rebuilt, sequence, shape, shape_with, touching,
+    Pair, Question, assert_same, per_triangle, rebuilt, sequence, shape, shape_with, touching, with,
 };
 
 /// Two of them touch when a bit more than a radius apart.
@@ -35,9 +35,7 @@ fn ask_twice(pair: &mut Pair, dispatcher: &SbbkDispatcher, query: &Question) {
 }
 
 fn with_idle_bytes(limit: usize) -> SbbkDispatcher {
-    let mut config = SbbkConfig::default();
-    config.idle_tree_bytes = limit;
-    SbbkDispatcher::new(config)
+    with(|config| config.idle_tree_bytes = limit)
 }
 
 /// Counts of trees, idle trees, builds and hits.

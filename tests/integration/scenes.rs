@@ -37,10 +37,7 @@ fn mesh_pairs(world: &PhysicsWorld) -> Vec<Asked> {
 fn scenes(contact_recycling: bool) -> [(Box<dyn Scene>, [usize; 4]); 2] {
     let pile = MonkeyPile { contact_recycling, ..MonkeyPile::with_heads(40) };
     // Steps at which to look: the ball on the rotor, and the pile from its first contacts on.
-    [
-        (Box::new(HelicopterBallDrop::default()), [21, 24, 35, 50]),
-        (Box::new(pile), [41, 55, 75, 100]),
-    ]
+    [(Box::new(HelicopterBallDrop), [21, 24, 35, 50]), (Box::new(pile), [41, 55, 75, 100])]
 }
 
 fn build(scene: &dyn Scene, contact_recycling: bool) -> SceneWorld {

@@ -5,7 +5,7 @@ use rapier3d::math::{Pose, Real};
 use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh;
 use sbbk_testkit::scene::{MonkeyPile, Scene, SceneWorld};
-use sbbk_testkit::world::Fingerprint;
+use sbbk_testkit::world::fingerprint;
 
 use crate::heightfield::terrain::rolling;
 use crate::support::{counting_patches, per_triangle};
@@ -71,7 +71,7 @@ fn worlds() -> Vec<(&'static str, PhysicsWorld)> {
         MonkeyPile { contact_recycling, ..MonkeyPile::with_heads(8) }.build().world
     };
     let field = SharedShape::new(rolling(12.0, 24, 0.4));
-    let ground = mesh::terrain(12.0, 24, 0.4).shared_shape().expect("a terrain is a mesh");
+    let ground = mesh::terrain(12.0, 24, 0.4).shape();
     vec![
         ("pile", pile(true)),
         ("pile without recycling", pile(false)),
@@ -95,7 +95,7 @@ fn a_restored_world_goes_on_bit_for_bit() {
         for step in 0..AFTER {
             world.step();
             copy.step();
-            assert!(Fingerprint::of(&world) == Fingerprint::of(&copy), "{name}, step {step}");
+            assert!(fingerprint(&world) == fingerprint(&copy), "{name}, step {step}");
             assert_eq!(particles(&world), particles(&copy), "{name}, step {step}");
         }
         let stats = other.stats();

@@ -118,16 +118,21 @@ impl<M, C> Pair<M, C> {
 /// Both sets of contacts, the default one first.
 pub const SETS: [ContactSet; 2] = [ContactSet::Surfaces, ContactSet::Triangles];
 
+/// A dispatcher as a user gets it, but for a change of the configuration.
+pub fn with(change: impl FnOnce(&mut SbbkConfig)) -> SbbkDispatcher {
+    let mut config = SbbkConfig::default();
+    change(&mut config);
+    SbbkDispatcher::new(config)
+}
+
 /// A dispatcher with a manifold for every contact: what can be compared triangle by triangle.
 pub fn every() -> SbbkDispatcher {
     having(ContactSet::default())
 }
 
-/// Declares that a mesh is a solid, as long as the result lives.
-pub fn declare_solid(dispatcher: &SbbkDispatcher, mesh: &TriMesh) -> PreparedTree {
-    let prepared = dispatcher.prepare(mesh).unwrap();
-    prepared.set_surface_kind(SurfaceKind::Solid);
-    prepared
+/// A dispatcher with every contact of this set.
+pub fn having(contact_set: ContactSet) -> SbbkDispatcher {
+    with(|config| (config.contact_set, config.detail) = (contact_set, ContactDetail::Every))
 }
 
 /// A dispatcher like [`every`] that counts its queries.
@@ -135,33 +140,24 @@ pub fn counting() -> SbbkDispatcher {
     counting_of(ContactSet::default())
 }
 
-/// A dispatcher as a user gets it, which counts its queries.
-pub fn counting_patches() -> SbbkDispatcher {
-    let mut config = SbbkConfig::default();
-    config.count_queries = true;
-    SbbkDispatcher::new(config)
-}
-
 /// A dispatcher with every contact of this set, which counts its queries.
 pub fn counting_of(contact_set: ContactSet) -> SbbkDispatcher {
-    let mut config = every_config();
-    config.contact_set = contact_set;
-    config.count_queries = true;
-    SbbkDispatcher::new(config)
+    with(|config| {
+        (config.contact_set, config.detail) = (contact_set, ContactDetail::Every);
+        config.count_queries = true;
+    })
 }
 
-/// A dispatcher with every contact of this set.
-pub fn having(contact_set: ContactSet) -> SbbkDispatcher {
-    let mut config = every_config();
-    config.contact_set = contact_set;
-    SbbkDispatcher::new(config)
+/// A dispatcher as a user gets it, which counts its queries.
+pub fn counting_patches() -> SbbkDispatcher {
+    with(|config| config.count_queries = true)
 }
 
-/// The configuration of [`every`].
-pub fn every_config() -> SbbkConfig {
-    let mut config = SbbkConfig::default();
-    config.detail = ContactDetail::Every;
-    config
+/// Declares that a mesh is a solid, as long as the result lives.
+pub fn declare_solid(dispatcher: &SbbkDispatcher, mesh: &TriMesh) -> PreparedTree {
+    let prepared = dispatcher.prepare(mesh).unwrap();
+    prepared.set_surface_kind(SurfaceKind::Solid);
+    prepared
 }
 
 /// A dispatcher with contacts of each two triangles alone, as stock and brute force have them.

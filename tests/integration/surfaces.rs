@@ -6,7 +6,7 @@ use glamx::{Quat, Vec3};
 use oorandom::Rand32;
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::DefaultQueryDispatcher;
-use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshFlags};
+use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::support::{
@@ -378,7 +378,7 @@ fn large_meshes_have_the_contacts_of_registered_ones() {
     for cells in [40, 110] {
         let mut slab = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), cells);
         slab.triangles.swap_remove(0);
-        let slab = SharedShape::new(shape(&slab));
+        let slab = slab.shape();
         let ground = slab.as_trimesh().unwrap();
         let is_large = [8192, 1 << 17].map(|limit| ground.num_triangles() > limit);
         assert_eq!(is_large, [true, cells > 100]);
@@ -402,7 +402,7 @@ fn large_meshes_have_the_contacts_of_registered_ones() {
 /// Would catch unregistered large meshes that lock into each other, and memory in the result.
 #[test]
 fn large_meshes_are_solids_to_each_other() {
-    let slab = SharedShape::new(shape(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 40)));
+    let slab = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 40).shape();
     let ground = slab.as_trimesh().unwrap();
     let (unaware, knowing) = (every(), every());
     let _tree = knowing.prepare_shape(&slab).unwrap().unwrap();

@@ -5,10 +5,11 @@ use rapier_integration::SbbkDispatcher;
 use rapier3d::geometry::ColliderBuilder;
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::shape::{SharedShape, TriMesh};
-use rapier3d::prelude::{PhysicsWorld, RigidBodyBuilder};
+use rapier3d::prelude::RigidBodyBuilder;
 use sbbk_testkit::mesh;
 
 use crate::support::{Manifold, Question, distance, every, shape};
+use crate::worlds::on_ground;
 
 /// Half the thickness of plates that are a unit wide.
 const HALF: Real = 0.015;
@@ -83,9 +84,8 @@ fn fast_plates_do_not_pass_a_floor() {
     let [floor, plate] = [floor(), plate(4)].map(SharedShape::new);
     for index in 0..16 {
         let phase = index as Real / 16.0;
-        let mut world = PhysicsWorld::new();
-        world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
-        world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(floor.clone()));
+        let ground = ColliderBuilder::new(floor.clone());
+        let mut world = on_ground(ground, SbbkDispatcher::default());
         let turn = Quat::from_rotation_y(6.0 * phase) * Quat::from_rotation_x(0.6 * phase);
         let place = Vec3::new(0.1, 2.0 + phase * SPEED / 60.0, 0.05);
         let body = RigidBodyBuilder::dynamic().pose(Pose3::from_parts(place, turn));

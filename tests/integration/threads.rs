@@ -48,7 +48,7 @@ fn heavy_pairs_have_the_same_bits_on_any_number_of_threads() {
         ("too large to analyse", [torus(150), torus(60)], on_top, false),
         ("a tip", [slab, cone(2000)], tip, true),
     ] {
-        let shapes = meshes.each_ref().map(|mesh| SharedShape::new(shape(mesh)));
+        let shapes = meshes.each_ref().map(|mesh| mesh.shape());
         let of = |threads| {
             let dispatcher = every();
             let prepared = shapes.iter().filter(|_| is_prepared);

@@ -12,7 +12,7 @@ use crate::who_answers::{Who, kinds};
 /// A ball with one vertex that is not a number.
 fn broken_ball() -> TriMesh {
     let mut ball = mesh::ball(1.0, 4);
-    let lowest = (0..ball.vertex_count())
+    let lowest = (0..ball.vertices.len())
         .min_by(|&i, &j| ball.vertices[i].y.total_cmp(&ball.vertices[j].y))
         .unwrap();
     ball.vertices[lowest].x = Real::NAN;

@@ -10,17 +10,16 @@ use rapier3d::parry::shape::{Shape, SharedShape, TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh;
 
 use crate::support::{
-    Manifold, Pair, Question, assert_same, every, per_triangle, rotation, shape, shape_with,
-    touching,
+    Manifold, Pair, Question, assert_same, every, per_triangle, rotation, shape, touching,
 };
 
 /// 9600 triangles, four units across.
 fn large(flags: TriMeshFlags) -> SharedShape {
-    SharedShape::new(shape_with(&mesh::torus(1.4, 0.6, 100, 48), flags))
+    mesh::torus(1.4, 0.6, 100, 48).shape_with(flags)
 }
 
 fn head(flags: TriMeshFlags) -> SharedShape {
-    SharedShape::new(shape_with(&mesh::monkey_head(), flags))
+    mesh::monkey_head().shape_with(flags)
 }
 
 fn as_mesh(shape: &SharedShape) -> &TriMesh {

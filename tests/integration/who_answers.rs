@@ -1,16 +1,17 @@
 use glamx::Vec3;
-use rapier_integration::{Kinds, SbbkConfig, SbbkDispatcher};
+use rapier_integration::{SbbkConfig, SbbkDispatcher};
 use rapier3d::control::KinematicCharacterController;
 use rapier3d::math::Pose;
 use rapier3d::parry::query::details::ShapeCastOptions;
 use rapier3d::parry::query::{DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher};
 use rapier3d::parry::shape::{HeightField, Shape, SharedShape, TriMesh, TriMeshFlags};
 use rapier3d::parry::utils::Array2;
-use rapier3d::pipeline::{PhysicsWorld, QueryFilter};
-use rapier3d::prelude::{ColliderBuilder, RigidBodyBuilder};
+use rapier3d::pipeline::QueryFilter;
+use rapier3d::prelude::ColliderBuilder;
 use sbbk_testkit::mesh;
 
-use crate::support::{Question, assert_bits, counting, shape, shape_with};
+use crate::support::{Question, assert_bits, counting, counting_patches, shape, shape_with, with};
+use crate::worlds::on_ground;
 
 /// Who answers for a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +36,7 @@ pub fn kinds() -> Vec<(&'static str, SharedShape, Who)> {
     let soft = shape_with(&ball, TriMeshFlags::DEFORMABLE);
     let line = vec![-a, a, b];
     vec![
-        ("mesh", SharedShape::new(shape(&ball)), Sbbk),
+        ("mesh", ball.shape(), Sbbk),
         ("deformable mesh", SharedShape::new(soft), Sbbk),
         ("ball", SharedShape::ball(0.5), Sbbk),
         ("cuboid", SharedShape::cuboid(0.5, 0.4, 0.6), Sbbk),
@@ -140,12 +141,6 @@ fn queries_of_each_kind_are_computed_as_documented() {
 #[test]
 fn disabled_kinds_are_left_to_stock() {
     let ground = shape(&mesh::cuboid(Vec3::new(8.0, 0.5, 8.0), 4));
-    let with = |change: &dyn Fn(&mut Kinds)| {
-        let mut config = SbbkConfig::default();
-        config.count_queries = true;
-        change(&mut config.kinds);
-        SbbkDispatcher::new(config)
-    };
     let is_ours = |dispatcher: &SbbkDispatcher, ground: &TriMesh, other: &dyn Shape| {
         let pos12 = Pose::translation(0.3, 0.95, 0.2);
         let before = dispatcher.stats().queries;
@@ -157,8 +152,9 @@ fn disabled_kinds_are_left_to_stock() {
         }
         is_ours
     };
-    let all = with(&|_| ());
-    let none = with(&|kinds| {
+    let all = counting_patches();
+    let none = with(|SbbkConfig { kinds, count_queries, .. }| {
+        *count_queries = true;
         (kinds.meshes, kinds.height_fields) = (false, false);
         (kinds.convex_shapes, kinds.composites) = (false, false);
     });
@@ -173,10 +169,8 @@ fn disabled_kinds_are_left_to_stock() {
 #[test]
 fn character_controllers_ask_for_no_contacts() {
     let dispatcher = counting();
-    let mut world = PhysicsWorld::new();
-    world.narrow_phase.set_query_dispatcher(dispatcher.clone());
-    let floor = mesh::floor(4.0, 4).shared_shape().expect("a floor is a mesh");
-    world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(floor.clone()));
+    let floor = mesh::floor(4.0, 4).shape();
+    let mut world = on_ground(ColliderBuilder::new(floor.clone()), dispatcher.clone());
     world.step();
     let (capsule, controller) =
         (SharedShape::capsule_y(0.4, 0.3), KinematicCharacterController::default());

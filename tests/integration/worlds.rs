@@ -9,6 +9,19 @@ use rapier3d::pipeline::PhysicsWorld;
 use rapier3d::prelude::{ColliderBuilder, RigidBodyBuilder, RigidBodyHandle};
 use sbbk_testkit::mesh;
 
+/// A world with a fixed ground. Stock answers if there is no dispatcher.
+pub fn on_ground(
+    ground: ColliderBuilder,
+    dispatcher: impl Into<Option<SbbkDispatcher>>,
+) -> PhysicsWorld {
+    let mut world = PhysicsWorld::new();
+    if let Some(dispatcher) = dispatcher.into() {
+        world.narrow_phase.set_query_dispatcher(dispatcher);
+    }
+    world.insert(RigidBodyBuilder::fixed(), ground);
+    world
+}
+
 /// A world of equal bodies above a fixed ground.
 pub struct Bodies {
     pub world: PhysicsWorld,
@@ -24,11 +37,7 @@ impl Bodies {
         angular_damping: Real,
         dispatcher: Option<SbbkDispatcher>,
     ) -> Self {
-        let mut world = PhysicsWorld::new();
-        if let Some(dispatcher) = dispatcher {
-            world.narrow_phase.set_query_dispatcher(dispatcher);
-        }
-        world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(ground));
+        let mut world = on_ground(ColliderBuilder::new(ground), dispatcher);
         let insert = |place| {
             let body = RigidBodyBuilder::dynamic().translation(place);
             let collider = ColliderBuilder::new(shape.clone()).density(1.0);
@@ -49,7 +58,7 @@ impl Bodies {
 
 /// Three dumbbells above a mesh terrain.
 pub fn dumbbells(dispatcher: Option<SbbkDispatcher>) -> Bodies {
-    let ground = mesh::terrain(12.0, 24, 0.4).shared_shape().unwrap();
+    let ground = mesh::terrain(12.0, 24, 0.4).shape();
     let bar = SharedShape::cuboid(0.6, 0.1, 0.1);
     let end = SharedShape::cuboid(0.3, 0.3, 0.3);
     let dumbbell = SharedShape::compound(vec![
@@ -63,7 +72,7 @@ pub fn dumbbells(dispatcher: Option<SbbkDispatcher>) -> Bodies {
 
 /// Four heads above a terrain.
 pub fn heads_above(terrain: SharedShape, dispatcher: Option<SbbkDispatcher>) -> Bodies {
-    let head = mesh::monkey_head().shared_shape().unwrap();
+    let head = mesh::monkey_head().shape();
     let place = |i: usize| Vec3::new(3.0 * (i % 2) as Real - 1.5, 2.2, 3.0 * (i / 2) as Real - 1.5);
     Bodies::above(terrain, &head, (0..4).map(place), 3.0, dispatcher)
 }
@@ -95,11 +104,7 @@ pub fn table() -> SharedShape {
 
 /// A soft ball above fixed ground.
 pub fn soft_ball_above(ground: &SharedShape, dispatcher: Option<&SbbkDispatcher>) -> PhysicsWorld {
-    let mut world = PhysicsWorld::new();
-    if let Some(dispatcher) = dispatcher {
-        world.narrow_phase.set_query_dispatcher(dispatcher.clone());
-    }
-    world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(ground.clone()));
+    let mut world = on_ground(ColliderBuilder::new(ground.clone()), dispatcher.cloned());
     let ball = mesh::ball(0.6, 5);
     let vertices = ball.vertices.iter().map(|v| *v + Vec3::new(0.4, 1.5, 0.3)).collect();
     let soft = SoftBodyBuilder::trimesh(vertices, ball.triangles.clone()).expect("a mesh");

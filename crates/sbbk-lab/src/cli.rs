@@ -122,12 +122,6 @@ impl<E: Error + 'static> From<E> for Failure {
     }
 }
 
-impl Failure {
-    pub fn new(message: impl Into<String>) -> Self {
-        Self(message.into().into())
-    }
-}
-
 impl Debug for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         Display::fmt(&self.0, f)

@@ -159,8 +159,7 @@ fn random_scenes_hold_with_rapiers_own_shapes() {
 /// Would catch settings that do not fit the mesh, and the flag, which is never of use.
 #[test]
 fn advice_fits_the_mesh() {
-    let mut inside_out = mesh::cuboid(glamx::Vec3::splat(1.0), 2);
-    inside_out.triangles.iter_mut().for_each(|triangle| triangle.swap(0, 1));
+    let inside_out = mesh::turned_inside_out(mesh::cuboid(glamx::Vec3::ONE, 2));
     let cases = [
         (mesh::torus(0.005, 0.002, 48, 24), SurfaceKind::Solid),
         (mesh::torus(1.0, 0.35, 120, 50), SurfaceKind::Solid),

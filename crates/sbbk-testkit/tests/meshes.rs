@@ -69,7 +69,7 @@ fn sheets_face_up_and_have_their_size() {
 fn monkey_head_is_symmetric_concave_and_the_same_to_the_bit() {
     let head = mesh::monkey_head();
     let volume = solid_volume(&head, 968);
-    assert_eq!(head.vertex_count(), 486);
+    assert_eq!(head.vertices.len(), 486);
     assert!((head.bounds().extents().max_element() - 2.0).abs() < 1.0e-5);
     let (hull, faces) = convex_hull(&head.vertices);
     let hull_volume = Mesh::new("hull", hull, faces).volume();
@@ -140,7 +140,7 @@ fn meshes_are_scaled_centred_posed_and_made_shapes() {
     assert_eq!(fitted.bounds().maxs, Vec3::new(0.25, 1.0, 0.5));
     let moved = fitted.posed(&Pose3::from_translation(Vec3::X));
     assert_eq!(moved.bounds().center(), Vec3::X);
-    let shape = moved.shared_shape().unwrap();
+    let shape = moved.shape();
     let trimesh = shape.as_trimesh().unwrap();
     assert_eq!((trimesh.vertices(), trimesh.indices()), (&*moved.vertices, &*moved.triangles));
     assert_eq!(trimesh.flags(), TriMeshFlags::empty());
@@ -149,7 +149,7 @@ fn meshes_are_scaled_centred_posed_and_made_shapes() {
     assert_eq!(point.clone().scaled_to(2.0), point);
     let empty = Mesh::new("empty", Vec::new(), Vec::new());
     assert_eq!(empty.clone().centred().scaled_to(2.0), empty);
-    assert!(empty.shared_shape().is_err());
+    assert!(empty.trimesh(TriMeshFlags::empty()).is_err());
 }
 
 /// Would catch parts of machines with holes, inside out, or of the wrong size.

@@ -6,12 +6,13 @@ use rapier3d::parry::query::details::ShapeCastOptions;
 use rapier3d::parry::query::{
     ClosestPoints, DefaultQueryDispatcher, QueryDispatcher, ShapeCastStatus,
 };
-use rapier3d::parry::shape::{Shape, SharedShape, TriMesh};
+use rapier3d::parry::shape::{SharedShape, TriMesh};
 use sbbk_testkit::mesh;
+use sbbk_testkit::truth::convex_body;
 
 use super::queries::{least, truth};
-use super::shapes::{body, pose, shapes};
-use crate::support::{direction, rotation, shape};
+use super::shapes::{pose, shapes};
+use crate::support::{Question, direction, rotation, shape};
 
 /// Times before an impact at which brute force looks whether there was an earlier one.
 const LOOKS: usize = 6;
@@ -26,7 +27,7 @@ fn first_impacts_are_those_of_brute_force() {
         let mesh = shape(&mesh::monkey_head_with(6).centred().scaled_to(size));
         let tolerance = 4.0e-6 * f64::from(size);
         for (seed, (name, other)) in (0..).zip(shapes(0.3 * size)) {
-            let body = body(&other);
+            let body = convex_body(&other);
             let mut random = Rand32::new(seed);
             for i in 0..4 {
                 let is_mesh_first = i % 2 == 0;
@@ -35,12 +36,11 @@ fn first_impacts_are_those_of_brute_force() {
                 // The last one passes by, more often than not.
                 let aside = [0.5, 0.5, 0.5, 2.5][i];
                 in_mesh.translation = (1.5 * way + aside * direction(&mut random)) * size;
-                let pos12 = if is_mesh_first { in_mesh } else { in_mesh.inverse() };
+                let question = Question::new(&mesh, &*other, in_mesh).flipped(!is_mesh_first);
+                let ([g1, g2], pos12) = (question.host_shapes(), question.pos12());
                 let velocity = -2.0 * size * way;
                 let velocity12 =
                     if is_mesh_first { velocity } else { -(in_mesh.rotation.inverse() * velocity) };
-                let shapes: [&dyn Shape; 2] =
-                    if is_mesh_first { [&mesh, &*other] } else { [&*other, &mesh] };
                 let options = ShapeCastOptions {
                     max_time_of_impact: 1.5,
                     target_distance: [0.0, 0.02][i / 2] * size,
@@ -58,7 +58,6 @@ fn first_impacts_are_those_of_brute_force() {
                 if left(0.0) <= 0.0 {
                     continue;
                 }
-                let [g1, g2] = shapes;
                 let says = format!("{name}, {size}, {i}");
                 let found = dispatcher.cast_shapes(&pos12, velocity12, g1, g2, options).unwrap();
                 let until = found.map_or(options.max_time_of_impact, |hit| hit.time_of_impact);

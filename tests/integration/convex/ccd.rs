@@ -12,6 +12,7 @@ use rapier3d::prelude::{ColliderBuilder, Pose, RigidBodyBuilder, RigidBodyHandle
 use sbbk_testkit::mesh;
 
 use crate::support::shape;
+use crate::worlds::on_ground;
 
 /// A shape that lies on a floor, turned by `turn`, with its middle at `height`.
 struct Slider {
@@ -49,10 +50,8 @@ impl Slider {
         start: Vec3,
         velocity: Vec3,
     ) -> (PhysicsWorld, RigidBodyHandle) {
-        let mut world = PhysicsWorld::new();
-        world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
         let ground = ColliderBuilder::new(SharedShape::new(ground)).friction(self.friction);
-        world.insert(RigidBodyBuilder::fixed(), ground);
+        let mut world = on_ground(ground, SbbkDispatcher::default());
         let body = RigidBodyBuilder::dynamic()
             .translation(start + self.height * Vec3::Y)
             .rotation(self.turn.to_scaled_axis())

@@ -2,17 +2,16 @@ use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::DefaultQueryDispatcher;
-use rapier3d::parry::shape::TriMeshFlags;
 use sbbk_testkit::mesh;
 
 use super::shapes::{pose, shapes};
-use crate::support::{Pair, Question, per_triangle, shape_with};
+use crate::support::{Pair, Question, per_triangle, shape};
 
 /// Would catch manifolds of stock's that are taken for ours, or dropped with their data where the
 /// shapes are the same.
 #[test]
 fn stock_can_hand_over_a_pair() {
-    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
+    let head = shape(&mesh::monkey_head());
     let dispatcher = per_triangle();
     let mut random = Rand32::new(7);
     for (name, shape) in shapes(0.6) {
@@ -33,7 +32,7 @@ fn stock_can_hand_over_a_pair() {
 /// Would catch impulses that are lost as a shape slides, or that another triangle gets.
 #[test]
 fn points_keep_their_data() {
-    let floor = shape_with(&mesh::floor(4.0, 2), TriMeshFlags::empty());
+    let floor = shape(&mesh::floor(4.0, 2));
     let dispatcher = SbbkDispatcher::default();
     for (name, shape) in shapes(1.0) {
         if !["cuboid", "round cuboid"].contains(&name) {

@@ -6,10 +6,11 @@ use rapier_integration::SbbkDispatcher;
 use rapier3d::math::Real;
 use rapier3d::parry::shape::{SharedShape, TriMeshFlags};
 use sbbk_testkit::mesh;
+use sbbk_testkit::truth::convex_body;
 
 use super::question::{apart, check_against_truth, triangle_of};
-use super::shapes::{PREDICTIONS, body, lattice_pose, pose, shapes};
-use crate::support::{Question, distance, per_triangle, rotation, shape_with};
+use super::shapes::{PREDICTIONS, lattice_pose, pose, shapes};
+use crate::support::{Question, distance, per_triangle, rotation, shape, shape_with};
 
 /// Would catch one shape taken for another, an inverted pose, a missing radius, and triangles lost
 /// or invented. Parry's distances are too large by up to 0.013 here.
@@ -19,7 +20,7 @@ fn exact_contacts_are_where_parry_measures_them() {
     const PARRYS_ERROR: Real = 2e-2;
     let dispatcher = per_triangle();
     let mut random = Rand32::new(3);
-    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
+    let head = shape(&mesh::monkey_head());
     for size in [0.6, 3.0] {
         for (name, shape) in shapes(size) {
             let (mut count, mut apart_count) = (0, 0);
@@ -58,7 +59,7 @@ fn a_box_that_lies_flat_touches_at_its_corners() {
     for i in 0..300 {
         let floor = mesh::floor(400.0, 1);
         let turn = if i % 2 == 0 { Quat::IDENTITY } else { rotation(&mut random) };
-        let mesh = shape_with(&floor.mapped(|v| turn * v), TriMeshFlags::empty());
+        let mesh = shape(&floor.mapped(|v| turn * v));
         let [x, y, z] = [(); 3].map(|()| 0.2 + random.rand_float());
         let gap = [-0.01, 0.0, 0.005][i % 3];
         let place = Vec3::new(40.0 + x, y + gap, -20.0 - z);
@@ -79,10 +80,10 @@ fn exact_contacts_are_the_true_ones() {
     let dispatcher = per_triangle();
     let mut random = Rand32::new(4);
     for scale in [0.01, 1.0, 100.0] {
-        let head = shape_with(&mesh::monkey_head().scaled(scale), TriMeshFlags::empty());
+        let head = shape(&mesh::monkey_head().scaled(scale));
         let quick = |name: &str| ["ball", "cuboid", "half-space"].contains(&name);
         for (name, shape) in shapes(0.6 * scale).into_iter().filter(|(name, _)| quick(name)) {
-            let body = body(&shape);
+            let body = convex_body(&shape);
             let mut count = 0;
             for i in 0..40 {
                 let pose = if i % 4 == 0 && scale == 1.0 {
@@ -108,11 +109,11 @@ fn exact_contacts_are_the_true_ones() {
 fn a_huge_floor_loses_no_contact() {
     let exact = per_triangle();
     let mut random = Rand32::new(2);
-    let head = shape_with(&mesh::monkey_head(), TriMeshFlags::empty());
+    let head = shape(&mesh::monkey_head());
     let mut count = 0;
     for half in [50.0, 2000.0] {
         let shape = SharedShape::cuboid(half, 0.25, half);
-        let body = body(&shape);
+        let body = convex_body(&shape);
         for i in 0..60 {
             let turn = if i % 4 == 0 { Quat::IDENTITY } else { rotation(&mut random) };
             let [x, z] = [(); 2].map(|()| 1.8 * half * (random.rand_float() - 0.5));

@@ -10,9 +10,10 @@ use rapier3d::parry::query::{
 use rapier3d::parry::shape::{Shape, SharedShape, TriMesh};
 use sbbk_core::truth::ConvexBody;
 use sbbk_testkit::mesh;
+use sbbk_testkit::truth::convex_body;
 
 use super::queries::{least, truth_at, truth_of};
-use super::shapes::{body, lattice_pose, pose, shapes};
+use super::shapes::{lattice_pose, pose, shapes};
 use crate::support::{direction, reach, rotation, shape};
 
 /// A mesh and a shape on their ways until the time of one unit.
@@ -140,7 +141,7 @@ fn first_impacts_are_those_of_brute_force() {
         let mesh = shape(&mesh::monkey_head_with(4).centred().scaled_to(size));
         let tolerance = 3.0e-6 * f64::from(size);
         for (seed, (name, other)) in (0..).zip(shapes(0.3 * size)) {
-            let body = body(&other);
+            let body = convex_body(&other);
             for i in 0..4_u64 {
                 let random = &mut Rand32::new(100 * seed + i);
                 let mut in_mesh = pose(random, &mesh, 0.3 * size);
@@ -396,7 +397,9 @@ fn bodies_that_glide_along_a_floor_meet_the_wall() {
                     is_mesh_first: true,
                 };
                 let found = cast.ask(&dispatcher, true);
-                found.map(|hit| (hit, cast.distance(&body(&other), f64::from(hit.time_of_impact))))
+                found.map(|hit| {
+                    (hit, cast.distance(&convex_body(&other), f64::from(hit.time_of_impact)))
+                })
             };
             let (hit, left) = cast(9.0 * Vec3::X).expect("meets the wall");
             let says = format!("{name}, {cells}, {height}: {hit:?}");

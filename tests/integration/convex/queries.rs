@@ -1,4 +1,4 @@
-use glamx::{DAffine3, DMat3, DPose3, DVec3, Pose3, Vec3};
+use glamx::{DAffine3, Pose3, Vec3};
 use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::math::Real;
@@ -6,9 +6,10 @@ use rapier3d::parry::query::{ClosestPoints, DefaultQueryDispatcher, QueryDispatc
 use rapier3d::parry::shape::{Shape, SharedShape, TriMesh, Triangle};
 use sbbk_core::truth::ConvexBody;
 use sbbk_testkit::mesh;
+use sbbk_testkit::truth::{affine, convex_body};
 
-use super::shapes::{body, pose, shapes};
-use crate::support::shape;
+use super::shapes::{pose, shapes};
+use crate::support::{Question, shape};
 
 /// The signed distances of all triangles.
 pub(super) fn truth(
@@ -17,9 +18,7 @@ pub(super) fn truth(
     pos12: &Pose3,
     is_mesh_first: bool,
 ) -> Vec<f64> {
-    let DPose3 { rotation, translation } = DPose3::from(*pos12);
-    let [x, y, z] = DVec3::AXES.map(|axis| rotation * axis);
-    let pose = DAffine3::from_mat3_translation(DMat3::from_cols(x, y, z), translation);
+    let pose = affine(pos12);
     truth_at(mesh, body, if is_mesh_first { pose.inverse() } else { pose })
 }
 
@@ -48,19 +47,17 @@ fn as_brute_force_says_at_every_size() {
         let mesh = shape(&mesh::monkey_head_with(6).centred().scaled_to(size));
         let tolerance = 2.0e-6 * f64::from(size);
         for (seed, (name, other)) in (0..).zip(shapes(0.5 * size)) {
-            let body = body(&other);
+            let body = convex_body(&other);
             let mut random = Rand32::new(seed);
             for i in 0..6 {
                 let mut in_mesh = pose(&mut random, &mesh, 0.5 * size);
                 in_mesh.translation *= [1.0, 1.1, 1.5][i % 3];
                 let is_mesh_first = i % 2 == 0;
-                let pos12 = if is_mesh_first { in_mesh } else { in_mesh.inverse() };
-                let shapes: [&dyn Shape; 2] =
-                    if is_mesh_first { [&mesh, &*other] } else { [&*other, &mesh] };
+                let question = Question::new(&mesh, &*other, in_mesh).flipped(!is_mesh_first);
+                let ([g1, g2], pos12) = (question.host_shapes(), question.pos12());
                 let distances = truth(&mesh, &body, &pos12, is_mesh_first);
                 let least = least(&distances);
                 let says = format!("{name}, {size}, {i}: {least}");
-                let [g1, g2] = shapes;
                 let is_near =
                     |distance: Real, truth: f64| (f64::from(distance) - truth).abs() <= tolerance;
                 let of_mesh = |one: u32, two: u32| {

@@ -9,7 +9,7 @@ use crate::worlds::Bodies;
 
 /// A head that falls on a floor and comes to rest: where it is, step by step.
 fn fall(floor: SharedShape, dispatcher: Option<SbbkDispatcher>) -> Vec<Pose> {
-    let head = mesh::monkey_head().shared_shape().unwrap();
+    let head = mesh::monkey_head().shape();
     let mut world = Bodies::above(floor, &head, [Vec3::new(0.3, 1.6, -0.2)], 2.0, dispatcher);
     let step = |_| {
         world.step(1);

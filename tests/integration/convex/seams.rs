@@ -6,15 +6,14 @@ use rapier_integration::{ContactSet, SbbkDispatcher};
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use rapier3d::parry::query::{PointQuery, TrackedContact};
-use rapier3d::parry::shape::TriMeshFlags;
-use rapier3d::pipeline::PhysicsWorld;
-use sbbk_testkit::mesh::{self, Mesh};
+use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
+use sbbk_testkit::mesh;
 
 use super::shapes::shapes;
-use crate::support::bits;
 use crate::support::{
-    Manifold, Question, distance, every, having, per_triangle, rotation, shape_with,
+    Manifold, Question, bits, distance, every, having, per_triangle, rotation, shape, shape_with,
 };
+use crate::worlds::on_ground;
 
 /// Would catch contacts at edges between triangles, points beside the body, and a body without
 /// contacts.
@@ -23,7 +22,7 @@ fn a_floor_of_triangles_is_flat() {
     const DEPTH: f32 = 0.01;
     let [surfaces, triangles] = [every(), per_triangle()];
     let mut random = Rand32::new(1);
-    let floor = shape_with(&mesh::floor(6.0, 40), TriMeshFlags::empty());
+    let floor = shape(&mesh::floor(6.0, 40));
     let mut slanted = 0;
     // A flat shape may be below a triangle that it crosses.
     let is_thick = |name: &str| !["half-space", "segment", "triangle"].contains(&name);
@@ -72,14 +71,8 @@ fn contacts_of_a_surface_are_the_nearest_at_their_points() {
     let [surfaces, triangles] = [every(), per_triangle()];
     let mut random = Rand32::new(5);
     let bumps = mesh::terrain(4.0, 16, 0.5);
-    let split = Mesh {
-        name: bumps.name.clone(),
-        vertices: bumps.triangles.iter().flatten().map(|&i| bumps.vertices[i as usize]).collect(),
-        triangles: (0..bumps.triangles.len() as u32)
-            .map(|i| [0, 1, 2].map(|k| 3 * i + k))
-            .collect(),
-    };
-    let meshes = [bumps, split].map(|mesh| shape_with(&mesh, TriMeshFlags::empty()));
+    let split = mesh::unwelded(&bumps, 0.0, 0);
+    let meshes = [bumps, split].map(|mesh| shape(&mesh));
     let (mut kept, mut turned, mut left_out) = (0, 0, 0);
     for (name, shape) in shapes(1.0).into_iter().filter(|(name, _)| *name != "half-space") {
         for i in 0..60 {
@@ -155,10 +148,7 @@ fn contacts_of_a_surface_are_the_nearest_at_their_points() {
 #[test]
 fn a_box_slides_over_fine_triangles() {
     let slide = |floor: ColliderBuilder, dispatcher: SbbkDispatcher| {
-        let mut world = PhysicsWorld::new();
-        world.narrow_phase.set_query_dispatcher(dispatcher);
-        let fixed = RigidBodyBuilder::fixed();
-        world.insert(fixed, floor.friction(0.1));
+        let mut world = on_ground(floor.friction(0.1), dispatcher);
         let body = RigidBodyBuilder::dynamic().translation(Vec3::new(-2.5, 0.501, 0.1));
         let body = body.linvel(4.0 * Vec3::X).rotation(0.3 * Vec3::Y);
         let collider = ColliderBuilder::cuboid(0.5, 0.5, 0.5).friction(0.1);
@@ -166,7 +156,7 @@ fn a_box_slides_over_fine_triangles() {
         (0..60).for_each(|_| world.step());
         world.bodies[body].translation().x + 2.5
     };
-    let floor = shape_with(&mesh::floor(8.0, 80), TriMeshFlags::empty());
+    let floor = shape(&mesh::floor(8.0, 80));
     let fine = || ColliderBuilder::new(SharedShape::new(floor.clone()));
     let smooth = ColliderBuilder::cuboid(4.0, 0.5, 4.0).translation(-0.5 * Vec3::Y);
     let expected = slide(smooth, SbbkDispatcher::default());
@@ -176,26 +166,38 @@ fn a_box_slides_over_fine_triangles() {
     assert!(of_triangles < 0.5 * expected, "{of_triangles}: the test shows nothing");
 }
 
-/// Catches normal cones that bring ghost contacts back: the flag would turn normals at edges.
+/// Would catch normal cones that bring ghost contacts back, and edges that a body feels where a flag
+/// changes how the mesh is answered.
 #[test]
-fn fix_internal_edges_changes_no_contact() {
-    let bumps = mesh::terrain(4.0, 16, 0.5);
-    let [plain, flagged] = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES]
-        .map(|flags| shape_with(&bumps, flags));
+fn flags_of_a_rigid_mesh_change_no_contact() {
+    let flags = [
+        TriMeshFlags::MERGE_DUPLICATE_VERTICES,
+        TriMeshFlags::FIX_INTERNAL_EDGES,
+        TriMeshFlags::ORIENTED,
+    ];
+    // 512 triangles each.
+    let grounds = [mesh::terrain(4.0, 16, 0.5), mesh::ball(2.0, 8)].map(|ground| {
+        let flagged = flags.map(|flags| (flags, shape_with(&ground, flags)));
+        (shape(&ground), flagged)
+    });
     let mut random = Rand32::new(3);
     for dispatcher in [every(), SbbkDispatcher::default()] {
         for (name, shape) in shapes(1.0) {
-            for i in 0..20 {
+            for i in 0..40 {
+                let (plain, flagged) = &grounds[i / 2 % 2];
                 let at = plain.triangle(random.rand_range(0..512)).center();
                 let turn = rotation(&mut random);
                 let low = shape.compute_aabb(&Pose3::from_rotation(turn)).mins.y.max(-1.0);
                 let pose = Pose3::from_parts(at - Vec3::Y * (low + 0.02), turn);
-                let [expected, found] = [&plain, &flagged].map(|mesh| {
-                    let (shapes, is_flipped) = ([mesh as _, &*shape], i % 2 == 0);
-                    let question = Question { shapes, pose, prediction: 0.05, is_flipped };
-                    question.fresh(&dispatcher).iter().map(bits).collect::<Vec<_>>()
-                });
-                assert_eq!(found, expected, "{name}, {i}");
+                let found = |mesh: &TriMesh| {
+                    let question = Question::new(mesh, &*shape, pose).within(0.05);
+                    let found = question.flipped(i % 2 == 0).fresh(&dispatcher);
+                    found.iter().map(bits).collect::<Vec<_>>()
+                };
+                let expected = found(plain);
+                for (flags, mesh) in flagged {
+                    assert_eq!(found(mesh), expected, "{name}, {i}, {flags:?}");
+                }
             }
         }
     }

@@ -3,8 +3,7 @@ use std::f32::consts::FRAC_PI_2;
 use glamx::{Pose3, Quat, Vec3};
 use oorandom::Rand32;
 use rapier3d::math::Real;
-use rapier3d::parry::shape::{Cone, Cylinder, SharedShape, TriMesh, TypedShape};
-use sbbk_core::truth::ConvexBody;
+use rapier3d::parry::shape::{SharedShape, TriMesh};
 
 use crate::support::{direction, rotation};
 
@@ -37,44 +36,6 @@ pub fn shapes(size: Real) -> Vec<(&'static str, SharedShape)> {
         ("round hull", round_hull),
         ("half-space", SharedShape::halfspace(Vec3::new(0.36, 0.8, -0.48))),
     ]
-}
-
-/// A shape as the reference knows it.
-pub(super) fn body(shape: &SharedShape) -> ConvexBody {
-    let hull = |points: &[Vec3]| {
-        ConvexBody::hull(points.iter().map(|point| point.as_dvec3()).collect::<Vec<_>>())
-    };
-    let cuboid = |half: Vec3| {
-        let sign = |i: u32, axis: u32| if i >> axis & 1 == 0 { -1.0 } else { 1.0 };
-        let corner = |i| half * Vec3::new(sign(i, 0), sign(i, 1), sign(i, 2));
-        hull(&(0..8).map(corner).collect::<Vec<_>>())
-    };
-    let cylinder = |c: &Cylinder| ConvexBody::cylinder(c.half_height.into(), c.radius.into());
-    let cone = |c: &Cone| ConvexBody::cone(c.half_height.into(), c.radius.into());
-    let (core, radius) = match shape.as_typed_shape() {
-        TypedShape::Ball(ball) => (hull(&[Vec3::ZERO]), ball.radius),
-        TypedShape::Cuboid(shape) => (cuboid(shape.half_extents), 0.0),
-        TypedShape::Capsule(shape) => (hull(&[shape.segment.a, shape.segment.b]), shape.radius),
-        TypedShape::Segment(shape) => (hull(&[shape.a, shape.b]), 0.0),
-        TypedShape::Triangle(shape) => (hull(shape.vertices()), 0.0),
-        TypedShape::Cylinder(shape) => (cylinder(shape), 0.0),
-        TypedShape::Cone(shape) => (cone(shape), 0.0),
-        TypedShape::ConvexPolyhedron(shape) => (hull(shape.points()), 0.0),
-        TypedShape::RoundCuboid(shape) => {
-            (cuboid(shape.inner_shape.half_extents), shape.border_radius)
-        }
-        TypedShape::RoundTriangle(shape) => {
-            (hull(shape.inner_shape.vertices()), shape.border_radius)
-        }
-        TypedShape::RoundCylinder(shape) => (cylinder(&shape.inner_shape), shape.border_radius),
-        TypedShape::RoundCone(shape) => (cone(&shape.inner_shape), shape.border_radius),
-        TypedShape::RoundConvexPolyhedron(shape) => {
-            (hull(shape.inner_shape.points()), shape.border_radius)
-        }
-        TypedShape::HalfSpace(shape) => (ConvexBody::half_space(shape.normal.as_dvec3()), 0.0),
-        _ => unreachable!("no shape of these tests"),
-    };
-    core.rounded(radius.into())
 }
 
 /// A large flat floor. Its box holds the whole mesh if it is turned.

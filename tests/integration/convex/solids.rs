@@ -1,19 +1,18 @@
 use glamx::{Quat, Vec3};
-use rapier_integration::{ContactDetail, SbbkConfig, SbbkDispatcher};
+use rapier_integration::{ContactDetail, SbbkDispatcher};
 use rapier3d::geometry::ColliderBuilder;
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::shape::SharedShape;
-use rapier3d::prelude::{PhysicsWorld, RigidBodyBuilder};
+use rapier3d::prelude::RigidBodyBuilder;
 use sbbk_core::surface::SurfaceKind;
 use sbbk_testkit::mesh;
 
 use super::shapes::shapes;
-use crate::support::{Pair, Question, assert_bits};
+use crate::support::{Pair, Question, assert_bits, with};
+use crate::worlds::on_ground;
 
 fn leading_out(detail: ContactDetail) -> SbbkDispatcher {
-    let mut config = SbbkConfig::default();
-    (config.convex_leave_solids, config.detail) = (true, detail);
-    SbbkDispatcher::new(config)
+    with(|config| (config.convex_leave_solids, config.detail) = (true, detail))
 }
 
 /// Shapes with a mass, about a unit across, and a compound of some.
@@ -35,9 +34,7 @@ fn fall(
     shape: &SharedShape,
     height: Real,
 ) -> [Real; 2] {
-    let mut world = PhysicsWorld::new();
-    world.narrow_phase.set_query_dispatcher(dispatcher);
-    world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(mesh.clone()));
+    let mut world = on_ground(ColliderBuilder::new(mesh.clone()), dispatcher);
     let body = RigidBodyBuilder::dynamic().translation(Vec3::new(0.37, height, 0.21));
     let (body, _) = world.insert(body, ColliderBuilder::new(shape.clone()));
     let mut fastest: Real = 0.0;
@@ -58,7 +55,7 @@ fn convex_shapes_leave_solids_by_the_shorter_way() {
     let mut stay = 0;
     for cells in [1, 8] {
         let slab = mesh::cuboid(Vec3::new(5.0, 1.0, 5.0), cells);
-        let slab = slab.mapped(|vertex| vertex - Vec3::Y).shared_shape().unwrap();
+        let slab = slab.mapped(|vertex| vertex - Vec3::Y).shape();
         for (name, shape) in bodies() {
             for height in [-0.1, -0.5, -0.8, -1.3, -1.8] {
                 let [end, fastest] =
@@ -78,7 +75,7 @@ fn convex_shapes_leave_solids_by_the_shorter_way() {
 /// or though it is said to be a sheet.
 #[test]
 fn rooms_that_are_sheets_keep_what_is_in_them() {
-    let room = mesh::cuboid(Vec3::splat(4.0), 4).shared_shape().unwrap();
+    let room = mesh::cuboid(Vec3::splat(4.0), 4).shape();
     for (name, shape) in bodies() {
         let dispatcher = leading_out(ContactDetail::Patches);
         let prepared = dispatcher.prepare_shape(&room).unwrap().unwrap();
@@ -98,7 +95,7 @@ fn rooms_that_are_sheets_keep_what_is_in_them() {
 /// company.
 #[test]
 fn the_way_out_is_the_only_contact() {
-    let block = mesh::cuboid(Vec3::splat(9.0), 6).shared_shape().unwrap();
+    let block = mesh::cuboid(Vec3::splat(9.0), 6).shape();
     for (name, shape) in bodies().iter().filter(|(name, _)| *name != "compound") {
         for detail in [ContactDetail::Patches, ContactDetail::Every] {
             let dispatcher = leading_out(detail);
@@ -124,7 +121,7 @@ fn the_way_out_is_the_only_contact() {
 /// Would catch results that depend on the triangles which earlier queries found.
 #[test]
 fn ways_out_are_a_function_of_the_pose() {
-    let block = mesh::cuboid(Vec3::splat(9.0), 6).shared_shape().unwrap();
+    let block = mesh::cuboid(Vec3::splat(9.0), 6).shape();
     let at = |x: Real| (Pose::translation(x, 0.2 * x, 0.0), SharedShape::cuboid(0.2, 0.3, 0.4));
     let table = SharedShape::compound(vec![at(-0.5), at(0.5), at(1.5)]);
     let mut ways = 0;

@@ -4,7 +4,7 @@ use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use sbbk_testkit::mesh::{self, Mesh};
 
 use super::table::{Case, judge};
-use super::{FLAGS, row, shape, world};
+use super::{FLAGS, row, world};
 
 /// Distance of beams, half the width of a top, width and depth of a chamfer, and depth of a beam.
 const PITCH: f32 = 0.56;
@@ -104,8 +104,8 @@ fn boxes_are_not_launched_by_chamfers_below_them() {
     let mut cases = Vec::new();
     let cuboid = SharedShape::cuboid(HALF.x, HALF.y, HALF.z);
     for flags in FLAGS {
-        let [beams, pits] = [beams(), pits()].map(|mesh| shape(&mesh, flags));
-        let cube = shape(&mesh::cuboid(HALF, 2), flags);
+        let [beams, pits] = [beams(), pits()].map(|mesh| mesh.shape_with(flags));
+        let cube = mesh::cuboid(HALF, 2).shape_with(flags);
         let columns = [
             ("cuboid on hulls", hulls(), &cuboid),
             ("cuboid on beams", beams.clone(), &cuboid),

@@ -54,8 +54,8 @@ const KNOWN: &[(&str, &str)] = &[("soup, 0.1 mm apart", "mesh ball")];
 fn small_cubes_slide_at_the_default_unit_as_on_a_cuboid() {
     const HALF: f32 = 0.025;
     let cuboid = ColliderBuilder::cuboid(1.0, 0.1, 1.0).translation(-0.1 * Vec3::Y);
-    let floor = mesh::floor(2.0, 40).shared_shape().expect("a floor");
-    let cube = mesh::cuboid(Vec3::splat(HALF), 2).shared_shape().expect("a cube");
+    let floor = mesh::floor(2.0, 40).shape();
+    let cube = mesh::cuboid(Vec3::splat(HALF), 2).shape();
     let path = |ground: &ColliderBuilder, shape: &SharedShape, angle: f32| {
         let mut world = world();
         world.insert(RigidBodyBuilder::fixed(), ground.clone().friction(0.1));

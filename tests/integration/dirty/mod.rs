@@ -8,8 +8,6 @@ use rapier_integration::{PreparedTree, SbbkDispatcher};
 use rapier3d::geometry::SharedShape;
 use rapier3d::parry::shape::TriMeshFlags;
 use rapier3d::pipeline::PhysicsWorld;
-use sbbk_testkit::mesh::Mesh;
-use sbbk_testkit::scene;
 
 /// Boxes that are driven over beams with chamfers.
 mod beams;
@@ -49,10 +47,6 @@ fn prepared_world(shapes: &[&SharedShape], is_prepared: bool) -> (PhysicsWorld, 
     let mut world = PhysicsWorld::new();
     world.narrow_phase.set_query_dispatcher(dispatcher);
     (world, prepared)
-}
-
-fn shape(mesh: &Mesh, flags: TriMeshFlags) -> SharedShape {
-    scene::shape(mesh, flags)
 }
 
 /// The name of a row, marked if meshes have flags.

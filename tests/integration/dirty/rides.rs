@@ -9,7 +9,7 @@ use sbbk_testkit::mesh::{self, Mesh};
 use sbbk_testkit::scene::random::rotation;
 
 use super::table::{Case, judge};
-use super::{FLAGS, row, shape, world};
+use super::{FLAGS, row, world};
 
 const FRICTION: f32 = 0.1;
 /// Steps in which a body lands.
@@ -67,8 +67,8 @@ pub(super) fn riders(flags: TriMeshFlags) -> [Rider; 7] {
     });
     let hull = SharedShape::convex_hull(&tapered.collect::<Vec<Vec3>>()).expect("a hull");
     [
-        rider("mesh cube", shape(&mesh::cuboid(Vec3::splat(HALF), 2), flags), Start::Upright),
-        rider("mesh ball", shape(&mesh::ball(HALF, 16), flags), Start::Any),
+        rider("mesh cube", mesh::cuboid(Vec3::splat(HALF), 2).shape_with(flags), Start::Upright),
+        rider("mesh ball", mesh::ball(HALF, 16).shape_with(flags), Start::Any),
         rider("cuboid", SharedShape::cuboid(HALF, HALF, HALF), Start::Upright),
         rider("ball", SharedShape::ball(HALF), Start::Any),
         rider("capsule", SharedShape::capsule_y(HALF, HALF), Start::Lying),
@@ -106,7 +106,8 @@ impl Course {
             let riders = riders(flags);
             let controls = riders.each_ref().map(|rider| self.rides(&[cuboid()], rider));
             for (name, road) in roads {
-                let colliders = road.iter().map(|mesh| ColliderBuilder::new(shape(mesh, flags)));
+                let colliders =
+                    road.iter().map(|mesh| ColliderBuilder::new(mesh.shape_with(flags)));
                 let road: Vec<ColliderBuilder> = colliders.collect();
                 for (rider, controls) in riders.iter().zip(&controls) {
                     let rides = self.rides(&road, rider);

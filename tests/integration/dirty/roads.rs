@@ -5,7 +5,6 @@ use rapier3d::geometry::ColliderBuilder;
 use rapier3d::parry::shape::TriMeshFlags;
 
 use super::rides::{Course, riders};
-use super::shape;
 use super::table::{Case, judge};
 
 /// Side of all chunks, or beams, of a road together.
@@ -54,14 +53,9 @@ fn bodies_leave_the_rim_of_a_sheet_as_that_of_a_cuboid() {
     let mut cases = Vec::new();
     for speed in [0.5, 2.0, 8.0] {
         for rider in riders(TriMeshFlags::empty()) {
-            let [sheet, block] = [true, false].map(|is_sheet| {
-                let ground = if is_sheet {
-                    ColliderBuilder::new(shape(&mesh::floor(4.0, 4), TriMeshFlags::empty()))
-                } else {
-                    ColliderBuilder::cuboid(2.0, 1.0, 2.0).translation(-Vec3::Y)
-                };
-                rider.fall(ground, speed)
-            });
+            let sheet = ColliderBuilder::new(mesh::floor(4.0, 4).shape());
+            let block = ColliderBuilder::cuboid(2.0, 1.0, 2.0).translation(-Vec3::Y);
+            let [sheet, block] = [sheet, block].map(|ground| rider.fall(ground, speed));
             let apart = (sheet.translation - block.translation).length();
             let shown = format!("{:.2} {:.2} {apart:.2}", sheet.translation.x, sheet.translation.y);
             cases.push(Case {

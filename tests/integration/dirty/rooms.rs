@@ -5,7 +5,7 @@ use rapier3d::parry::shape::TriMeshFlags;
 use sbbk_testkit::mesh;
 
 use super::table::{Case, judge};
-use super::{FLAGS, prepared_world, row, shape};
+use super::{FLAGS, prepared_world, row};
 
 /// Half the side of a room, and of a body in it.
 const ROOM: f32 = 3.0;
@@ -13,8 +13,8 @@ const BODY: f32 = 0.4;
 
 fn bodies(flags: TriMeshFlags) -> [(&'static str, SharedShape); 4] {
     [
-        ("mesh cube", shape(&mesh::cuboid(Vec3::splat(BODY), 2), flags)),
-        ("mesh ball", shape(&mesh::ball(BODY, 6), flags)),
+        ("mesh cube", mesh::cuboid(Vec3::splat(BODY), 2).shape_with(flags)),
+        ("mesh ball", mesh::ball(BODY, 6).shape_with(flags)),
         ("cuboid", SharedShape::cuboid(BODY, BODY, BODY)),
         ("ball", SharedShape::ball(BODY)),
     ]
@@ -31,7 +31,7 @@ fn bodies_stay_in_rooms() {
     for ((cells, is_prepared), flags) in
         settings.flat_map(|setting| FLAGS.map(|flags| (setting, flags)))
     {
-        let room = shape(&mesh::cuboid(Vec3::splat(ROOM), cells), flags);
+        let room = mesh::cuboid(Vec3::splat(ROOM), cells).shape_with(flags);
         let (mut world, prepared) = prepared_world(&[&room], is_prepared);
         world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(room));
         let bodies = bodies(flags).map(|(name, shape)| (name, ColliderBuilder::new(shape)));
@@ -62,9 +62,9 @@ fn bodies_stay_in_long_tubes() {
         let tube = mesh::tube(RADIUS, half_width, 48);
         for tube in [mesh::turned_inside_out(tube.clone()), tube] {
             let (mut world, _) = prepared_world(&[], false);
-            let tube = shape(&tube, TriMeshFlags::empty());
+            let tube = tube.shape();
             world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(tube));
-            let ball = shape(&mesh::ball(BODY, 12), TriMeshFlags::empty());
+            let ball = mesh::ball(BODY, 12).shape();
             let (ball, _) = world.insert(RigidBodyBuilder::dynamic(), ColliderBuilder::new(ball));
             (0..240).for_each(|_| world.step());
             let height = world.bodies[ball].translation().y;

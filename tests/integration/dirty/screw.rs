@@ -1,12 +1,11 @@
 use glamx::{Quat, Vec3};
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::ColliderBuilder;
-use rapier3d::parry::shape::TriMeshFlags;
 use sbbk_testkit::mesh::Thread;
 use std::f32::consts::TAU;
 
 use super::table::{Case, judge};
-use super::{shape, world};
+use super::world;
 
 const BOLT: Thread = Thread::BOLT;
 /// With a tenth of a pitch of play, and so much less deep.
@@ -45,7 +44,7 @@ fn run(bolt: Thread, nut: Thread, friction: f32, rate: f32) -> Run {
     world.integration_parameters.contact_clustering = false;
     world.integration_parameters.dt = 1.0 / rate;
     let [bolt, nut] = [bolt.bolt(), nut.nut(NUT_RADIUS)]
-        .map(|mesh| ColliderBuilder::new(shape(&mesh, TriMeshFlags::empty())).friction(friction));
+        .map(|mesh| ColliderBuilder::new(mesh.shape()).friction(friction));
     world.insert(RigidBodyBuilder::fixed(), bolt);
     let start = BOLT.pitch * (BOLT.turns - NUT.turns) as f32;
     let body = RigidBodyBuilder::dynamic().translation(Vec3::Y * start).can_sleep(false);

@@ -4,12 +4,11 @@ use glamx::{Quat, Vec3};
 use oorandom::Rand32;
 use rapier3d::dynamics::{MassProperties, RigidBodyBuilder};
 use rapier3d::geometry::{ColliderBuilder, SharedShape};
-use rapier3d::parry::shape::TriMeshFlags;
 use sbbk_testkit::mesh::{self, Mesh};
 use sbbk_testkit::scene::random::rotation;
 
 use super::table::{Case, judge};
-use super::{FLAGS, prepared_world, shape};
+use super::{FLAGS, prepared_world};
 
 const ANGLE: f32 = 20.0;
 const FRICTION: f32 = 0.8;
@@ -83,7 +82,7 @@ fn meshes_roll_down_two_triangles_as_down_a_cuboid() {
     let sliding = 0.5 * 9.81 * ANGLE.to_radians().sin() * time * time;
     let mut cases = Vec::new();
     for roller in rollers() {
-        let sound = shape(&roller.sound, TriMeshFlags::empty());
+        let sound = roller.sound.shape();
         let control = roll(&roller, &cuboid, &sound, true);
         let mut add = |column, path: f32, is_right| {
             let shown = format!("{:.3}", path / (roller.ideal * sliding));
@@ -91,7 +90,7 @@ fn meshes_roll_down_two_triangles_as_down_a_cuboid() {
         };
         add("on a cuboid", control, true);
         for flags in FLAGS {
-            let [ground, body] = [&two_triangles, &roller.mesh].map(|mesh| shape(mesh, flags));
+            let [ground, body] = [&two_triangles, &roller.mesh].map(|mesh| mesh.shape_with(flags));
             for is_prepared in [false, true] {
                 let path = roll(&roller, &ground, &body, is_prepared);
                 let column = match (flags.is_empty(), is_prepared) {
@@ -117,8 +116,7 @@ fn ring() -> Mesh {
 
 /// Depth of the lowest vertex after 4 s, of a ring dropped on two triangles.
 fn drop_depth(ring: &Mesh, height: f32, seed: u64, is_prepared: bool) -> f32 {
-    let [floor, body] =
-        [&mesh::floor(20.0, 1), ring].map(|mesh| shape(mesh, TriMeshFlags::empty()));
+    let [floor, body] = [&mesh::floor(20.0, 1), ring].map(|mesh| mesh.shape());
     let (mut world, prepared) = prepared_world(&[&body], is_prepared);
     world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(floor));
     let turn = rotation(&mut Rand32::new(seed)) * Quat::from_rotation_x(FRAC_PI_2);

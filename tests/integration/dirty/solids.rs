@@ -5,7 +5,7 @@ use rapier3d::geometry::ColliderBuilder;
 use sbbk_testkit::mesh::{self, Mesh, uneven_box};
 
 use super::table::{Case, judge};
-use super::{FLAGS, row, shape, world};
+use super::{FLAGS, row, world};
 use crate::support::declare_solid;
 
 /// Half the size of a box; its top is at height 1.
@@ -55,7 +55,7 @@ fn closed_meshes_push_out_what_has_sunk_in() {
     for (flags, (name, solid, [low, high])) in
         FLAGS.into_iter().flat_map(|flags| solids().into_iter().map(move |solid| (flags, solid)))
     {
-        let solid = ColliderBuilder::new(shape(&solid, flags));
+        let solid = ColliderBuilder::new(solid.shape_with(flags));
         for (column, body, height) in bodies() {
             let mut world = world();
             let dispatcher = SbbkDispatcher::default();
@@ -66,7 +66,7 @@ fn closed_meshes_push_out_what_has_sunk_in() {
             let place = Vec3::new(0.23, height, 0.11);
             let turn = Quat::from_rotation_y(0.4).to_scaled_axis();
             let start = RigidBodyBuilder::dynamic().translation(place).rotation(turn);
-            let (handle, _) = world.insert(start, ColliderBuilder::new(shape(&body, flags)));
+            let (handle, _) = world.insert(start, ColliderBuilder::new(body.shape_with(flags)));
             (0..240).for_each(|_| world.step());
             drop(declared);
             let pose = world.bodies[handle].position();
@@ -109,14 +109,14 @@ fn vessels_hold_what_lies_in_them() {
     for (flags, (name, vessel)) in
         FLAGS.into_iter().flat_map(|flags| vessels().into_iter().map(move |it| (flags, it)))
     {
-        let ground = ColliderBuilder::new(shape(&vessel, flags));
+        let ground = ColliderBuilder::new(vessel.shape_with(flags));
         for (column, body) in
             [("mesh ball", mesh::ball(0.2, 6)), ("mesh cube", mesh::cuboid(Vec3::splat(0.15), 2))]
         {
             let mut world = world();
             world.insert(RigidBodyBuilder::fixed(), ground.clone());
             let start = RigidBodyBuilder::dynamic().translation(Vec3::new(0.05, -0.6, 0.02));
-            let (handle, _) = world.insert(start, ColliderBuilder::new(shape(&body, flags)));
+            let (handle, _) = world.insert(start, ColliderBuilder::new(body.shape_with(flags)));
             (0..180).for_each(|_| world.step());
             let height = world.bodies[handle].translation().y;
             let is_right = (-0.9..-0.6).contains(&height);

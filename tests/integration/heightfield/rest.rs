@@ -11,7 +11,7 @@ use crate::worlds::heads_above;
 #[test]
 fn heads_rest_on_a_height_field() {
     let field = rolling(12.0, 24, 0.4);
-    let as_mesh = mesh::terrain(12.0, 24, 0.4).shared_shape().unwrap();
+    let as_mesh = mesh::terrain(12.0, 24, 0.4).shape();
     let field = SharedShape::new(field);
     let run = |terrain: &SharedShape, dispatcher: Option<SbbkDispatcher>| {
         let mut world = heads_above(terrain.clone(), dispatcher);

@@ -1,6 +1,6 @@
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
-use rapier_integration::{SbbkDispatcher, SurfaceKind};
+use rapier_integration::{ContactDetail, SurfaceKind};
 use rapier3d::math::{Pose, Real};
 use rapier3d::parry::query::PointQuery;
 use rapier3d::parry::shape::{HeightField, TriMeshFlags, Triangle};
@@ -8,7 +8,7 @@ use sbbk_testkit::mesh;
 
 use super::terrain::{Terrain, heights, place, terrains};
 use crate::support::{
-    Question, assert_same, bits, distance, every_config, per_triangle, shape, shape_with,
+    Question, assert_same, bits, distance, per_triangle, shape, shape_with, with,
 };
 use crate::truth::Tally;
 
@@ -98,9 +98,10 @@ fn surfaces_are_those_of_the_terrain_as_a_mesh() {
     for (terrain, height_fields) in
         terrains.iter().flat_map(|terrain| kinds.map(|kind| (terrain, kind)))
     {
-        let mut config = every_config();
-        config.solid_height_fields = height_fields == SurfaceKind::Solid;
-        let dispatcher = SbbkDispatcher::new(config);
+        let dispatcher = with(|config| {
+            config.detail = ContactDetail::Every;
+            config.solid_height_fields = height_fields == SurfaceKind::Solid;
+        });
         let prepared = dispatcher.prepare(&terrain.mesh).unwrap();
         // A negative scale turns normals down.
         let has_top = terrain.field.scale().x > 0.0;

@@ -11,7 +11,7 @@ use crate::support::{Manifold, Pair, Question, assert_same, every, rotation, sha
 fn others() -> Vec<(&'static str, SharedShape)> {
     let ball = mesh::ball(0.7, 3);
     let hull = SharedShape::convex_hull(&ball.vertices).expect("a ball has a hull");
-    let of_mesh = |flags| SharedShape::new(shape_with(&ball, flags));
+    let of_mesh = |flags| ball.shape_with(flags);
     vec![
         ("mesh", of_mesh(TriMeshFlags::empty())),
         ("deformable mesh", of_mesh(TriMeshFlags::DEFORMABLE)),

@@ -81,7 +81,7 @@ fn verdict(plan: &ComparePlan, rows: &[Row]) -> String {
 /// Runs the first experiment on all backends in turn. Times are means over the steps of a run, in
 /// milliseconds; another run is judged.
 fn drops(plan: &ComparePlan, progress: &Progress) -> Vec<Row> {
-    let scene = HelicopterBallDrop::default();
+    let scene = HelicopterBallDrop;
     progress.phase(scene.name(), (plan.drops + 1) * Backend::ALL.len());
     let timed = RunPlan { warm_up: 1, steps: DROP_STEPS, ..RunPlan::default() };
     // The scene has one mesh pair, so every other step can be judged.

@@ -9,7 +9,6 @@ use serde_json::Value;
 
 use super::motion::{Approach, Mode, Place, STEP_COUNT};
 use super::pair::{Contest, Sides};
-use super::shape;
 
 const EXACTNESS: &str = "contacts: exactness";
 const QUERIES: &str = "contacts: queries, µs";
@@ -95,7 +94,7 @@ pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Results {
     let mut cases = Vec::new();
     for mesh in &plan.meshes {
         for &size in &plan.sizes {
-            let shape = shape(&mesh.mesh.clone().centred().scaled_to(size));
+            let shape = mesh.mesh.clone().centred().scaled_to(size).shape();
             cases.extend(plan.predictions.iter().map(|&prediction| Case {
                 mesh,
                 size,

@@ -19,8 +19,6 @@ mod turns;
 
 use thiserror::Error;
 
-use crate::scene;
-
 /// A study cannot be run.
 #[derive(Debug, Error)]
 pub enum StudyError {
@@ -38,9 +36,4 @@ pub enum StudyError {
     /// A page could not be written.
     #[error(transparent)]
     Report(#[from] ReportError),
-}
-
-/// Builds Parry's shape of a mesh without flags.
-fn shape(mesh: &Mesh) -> SharedShape {
-    scene::shape(mesh, TriMeshFlags::empty())
 }

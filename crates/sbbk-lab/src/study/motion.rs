@@ -161,7 +161,7 @@ mod tests {
     /// Would catch steps that are shorter or longer than tables say, and a motion without sliding.
     #[test]
     fn a_step_moves_the_surface_by_the_stated_amount() {
-        let shape = mesh::monkey_head_with(6).shared_shape().unwrap();
+        let shape = mesh::monkey_head_with(6).shape();
         let vertices = shape.as_trimesh().unwrap().vertices();
         let pos12 = Pose3::new(Vec3::new(0.4, 1.3, -0.6), Vec3::new(0.3, -1.2, 0.8));
         let place = Place { pos12, direction: Vec3::new(0.48, 0.6, -0.64) };

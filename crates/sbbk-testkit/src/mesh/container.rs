@@ -45,11 +45,6 @@ impl Mesh {
         self.triangles.len()
     }
 
-    /// Number of positions, unused ones included.
-    pub fn vertex_count(&self) -> usize {
-        self.vertices.len()
-    }
-
     /// Corners of one triangle.
     ///
     /// # Panics
@@ -131,8 +126,16 @@ impl Mesh {
 
     /// Builds the shape that a plain `ColliderBuilder::trimesh` holds.
     ///
-    /// Errors: the mesh has no triangles.
-    pub fn shared_shape(&self) -> Result<SharedShape, TriMeshBuilderError> {
-        Ok(SharedShape::new(self.trimesh(TriMeshFlags::empty())?))
+    /// # Panics
+    ///
+    /// If the mesh has no triangles.
+    pub fn shape(&self) -> SharedShape {
+        self.shape_with(TriMeshFlags::empty())
+    }
+
+    /// Like [`Self::shape`], with flags.
+    pub fn shape_with(&self, flags: TriMeshFlags) -> SharedShape {
+        let mesh = self.trimesh(flags);
+        SharedShape::new(mesh.unwrap_or_else(|cause| panic!("the mesh `{}`: {cause}", self.name)))
     }
 }

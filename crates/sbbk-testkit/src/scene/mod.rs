@@ -18,10 +18,7 @@ mod resting;
 mod solid;
 
 use rapier3d::dynamics::RigidBodyHandle;
-use rapier3d::geometry::{SharedShape, TriMeshFlags};
 use rapier3d::pipeline::PhysicsWorld;
-
-use crate::mesh::Mesh;
 
 pub use helicopter::HelicopterBallDrop;
 pub use pile::MonkeyPile;
@@ -35,16 +32,6 @@ pub trait Scene {
 
     /// Builds the world before its first step.
     fn build(&self) -> SceneWorld;
-}
-
-/// Builds Parry's shape of a mesh.
-///
-/// # Panics
-///
-/// If the mesh has no triangles.
-pub fn shape(mesh: &Mesh, flags: TriMeshFlags) -> SharedShape {
-    let shape = mesh.trimesh(flags);
-    SharedShape::new(shape.unwrap_or_else(|cause| panic!("the mesh `{}`: {cause}", mesh.name)))
 }
 
 /// A world and its moving bodies.

@@ -8,24 +8,17 @@ use rapier3d::pipeline::PhysicsWorld;
 use super::{Scene, SceneWorld, Solid};
 use crate::mesh;
 
-/// A tower of unit cubes, each a mesh of 12 triangles, a millimetre apart at the start, on a fixed
+/// A tower of ten unit cubes, each a mesh of 12 triangles, a millimetre apart at the start, on a fixed
 /// mesh of the same kind, 10 units wide. The tower should stand.
-#[derive(Clone, Debug)]
-pub struct BoxStack {
-    /// Number of cubes.
-    pub boxes: usize,
-}
+#[derive(Clone, Copy, Debug)]
+pub struct BoxStack;
 
-impl Default for BoxStack {
-    /// Ten cubes.
-    fn default() -> Self {
-        Self { boxes: 10 }
-    }
-}
+/// Number of cubes.
+const BOXES: usize = 10;
 
 impl Scene for BoxStack {
     fn name(&self) -> String {
-        format!("stack of {} box meshes", self.boxes)
+        format!("stack of {BOXES} box meshes")
     }
 
     fn build(&self) -> SceneWorld {
@@ -34,7 +27,7 @@ impl Scene for BoxStack {
         let floor = Solid::new(&mesh::cuboid(Vec3::new(5.0, 0.5, 5.0), 1));
         let cube = Solid::new(&mesh::cuboid(Vec3::splat(0.5), 1));
         world.insert(RigidBodyBuilder::fixed().translation(Vector::Y * -0.5), floor.collider());
-        let watched = (0..self.boxes).map(|index| {
+        let watched = (0..BOXES).map(|index| {
             let height = 0.5 + GAP + index as Real * (1.0 + GAP);
             let body = RigidBodyBuilder::dynamic().translation(Vector::Y * height);
             world.insert(body, cube.collider()).0

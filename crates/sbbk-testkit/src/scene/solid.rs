@@ -1,10 +1,9 @@
 //! A mesh prepared for many bodies: one shape and one set of mass properties for all of them.
 
 use rapier3d::dynamics::MassProperties;
-use rapier3d::geometry::{ColliderBuilder, SharedShape, TriMeshFlags};
+use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use rapier3d::math::Real;
 
-use super::shape;
 use crate::mesh::Mesh;
 
 /// Mass of a cubic unit of every body. The value is without effect on motion, since all bodies
@@ -28,7 +27,7 @@ pub struct Solid {
 impl Solid {
     /// Prepares `mesh`.
     pub fn new(mesh: &Mesh) -> Self {
-        let shape = shape(mesh, TriMeshFlags::empty());
+        let shape = mesh.shape();
         let bounds = mesh.bounds();
         let is_solid = mesh.volume() > LEAST_SOLIDITY * f64::from(bounds.volume());
         let mass_properties = if is_solid {

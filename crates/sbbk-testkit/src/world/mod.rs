@@ -1,7 +1,7 @@
-//! Worlds described by numbers: contacts, heights and energy, and a hash of all bits.
+//! Worlds described by numbers: contacts and heights, and a hash of all bits.
 
 mod fingerprint;
 mod state;
 
-pub use fingerprint::Fingerprint;
+pub use fingerprint::fingerprint;
 pub use state::{WorldState, solver_points};

@@ -1,9 +1,9 @@
 //! State of a world between two steps.
 
-use rapier3d::dynamics::{RigidBody, RigidBodyHandle};
+use rapier3d::dynamics::RigidBodyHandle;
 use rapier3d::pipeline::PhysicsWorld;
 
-/// Contacts, heights, energy and penetration after a step.
+/// Contacts, heights and penetration after a step.
 ///
 /// The contacts belong to the start of the last step. Contacts of recycled pairs are older.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -18,23 +18,15 @@ pub struct WorldState {
     pub max_penetration: f64,
     /// Mean height of the watched bodies' centres of mass, in units.
     pub mean_height: f64,
-    /// Kinetic and potential energy of the watched bodies, in joules, the latter from height 0.
-    pub energy: f64,
 }
 
 impl WorldState {
-    /// State of `world`, with heights and energy of the bodies `watched`.
+    /// State of `world`, with heights of the bodies `watched`.
     pub fn of(world: &PhysicsWorld, watched: &[RigidBodyHandle]) -> Self {
         let mut state = Self::default();
         state.add_contacts(world);
-        let bodies = || watched.iter().map(|&handle| &world.bodies[handle]);
-        let height = |body: &RigidBody| f64::from(body.center_of_mass().y);
-        state.mean_height = bodies().map(height).sum::<f64>() / watched.len().max(1) as f64;
-        let gravity = f64::from(world.gravity.length());
-        let energy_of = |body: &RigidBody| {
-            f64::from(body.kinetic_energy()) + f64::from(body.mass()) * gravity * height(body)
-        };
-        state.energy = bodies().map(energy_of).sum();
+        let height = |&body: &RigidBodyHandle| f64::from(world.bodies[body].center_of_mass().y);
+        state.mean_height = watched.iter().map(height).sum::<f64>() / watched.len().max(1) as f64;
         state
     }
 

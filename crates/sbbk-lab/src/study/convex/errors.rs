@@ -1,10 +1,9 @@
 //! Contacts of a mesh and a convex shape or compound by brute force in f64.
 
 use crate::prelude::*;
-use glamx::{DAffine3, DMat3, DPose3};
-use rapier3d::geometry::TypedShape;
-use rapier3d::parry::shape::Shape;
+use glamx::DAffine3;
 use sbbk_core::truth::ConvexBody;
+use sbbk_testkit::truth::{affine, convex_body};
 
 use crate::metrics::TrueContact;
 
@@ -34,9 +33,9 @@ impl Judge {
         let corners = |corner: [_; 3]| corner.map(|corner: Vector| corner.as_dvec3());
         let parts = match shape.as_compound() {
             Some(compound) => {
-                compound.shapes().iter().map(|(pose, part)| Part::new(pose, &**part)).collect()
+                compound.shapes().iter().map(|(pose, part)| Part::new(pose, part)).collect()
             }
-            None => vec![Part::new(&Pose3::IDENTITY, &**shape)],
+            None => vec![Part::new(&Pose3::IDENTITY, shape)],
         };
         Self { triangles: triangles.map(|t| corners([t.a, t.b, t.c])).collect(), parts }
     }
@@ -67,19 +66,12 @@ impl Judge {
     }
 }
 
-/// A pose as a map. A quaternion that is not quite of unit length scales.
-fn affine(pose: &Pose3) -> DAffine3 {
-    let DPose3 { rotation, translation } = DPose3::from(*pose);
-    let [x, y, z] = DVec3::AXES.map(|axis| rotation * axis);
-    DAffine3::from_mat3_translation(DMat3::from_cols(x, y, z), translation)
-}
-
 impl Part {
-    fn new(pose: &Pose3, shape: &dyn Shape) -> Self {
+    fn new(pose: &Pose3, shape: &SharedShape) -> Self {
         let bounds = shape.compute_local_aabb();
         Self {
             pose: affine(pose).inverse(),
-            body: body(shape),
+            body: convex_body(shape),
             bounds: [bounds.mins, bounds.maxs].map(|corner| corner.as_dvec3()),
         }
     }
@@ -88,32 +80,5 @@ impl Part {
     fn is_beyond(&self, [a, b, c]: &[DVec3; 3], reach: f64) -> bool {
         let [min, max] = self.bounds;
         (a.min(*b).min(*c) - reach).cmpgt(max).any() || (a.max(*b).max(*c) + reach).cmplt(min).any()
-    }
-}
-
-/// Converts a convex shape of Parry.
-fn body(shape: &dyn Shape) -> ConvexBody {
-    let hull = |points: &[Vector]| {
-        ConvexBody::hull(points.iter().map(|point| point.as_dvec3()).collect::<Vec<_>>())
-    };
-    let round = |inner: &dyn Shape, radius: Real| body(inner).rounded(radius.into());
-    match shape.as_typed_shape() {
-        TypedShape::Ball(ball) => ConvexBody::hull([DVec3::ZERO]).rounded(ball.radius.into()),
-        TypedShape::Segment(segment) => hull(&[segment.a, segment.b]),
-        TypedShape::Capsule(capsule) => round(&capsule.segment, capsule.radius),
-        TypedShape::Triangle(triangle) => hull(triangle.vertices()),
-        TypedShape::Cuboid(shape) => hull(&shape.to_trimesh().0),
-        TypedShape::ConvexPolyhedron(shape) => hull(shape.points()),
-        TypedShape::Cylinder(shape) => {
-            ConvexBody::cylinder(shape.half_height.into(), shape.radius.into())
-        }
-        TypedShape::Cone(shape) => ConvexBody::cone(shape.half_height.into(), shape.radius.into()),
-        TypedShape::HalfSpace(shape) => ConvexBody::half_space(shape.normal.as_dvec3()),
-        TypedShape::RoundTriangle(shape) => round(&shape.inner_shape, shape.border_radius),
-        TypedShape::RoundCuboid(shape) => round(&shape.inner_shape, shape.border_radius),
-        TypedShape::RoundConvexPolyhedron(shape) => round(&shape.inner_shape, shape.border_radius),
-        TypedShape::RoundCylinder(shape) => round(&shape.inner_shape, shape.border_radius),
-        TypedShape::RoundCone(shape) => round(&shape.inner_shape, shape.border_radius),
-        _ => unreachable!("all convex shapes of the study are listed"),
     }
 }

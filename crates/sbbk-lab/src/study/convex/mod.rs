@@ -12,7 +12,6 @@ use self::errors::Judge;
 use self::kinds::{Kind, Upright, kinds};
 use super::motion::{Approach, Mode, Place};
 use super::pair::{Contest, Sides};
-use super::shape;
 
 /// Extent of the comparison.
 #[derive(Clone, Debug)]
@@ -64,7 +63,7 @@ pub fn convex(plan: &ConvexPlan, progress: &Progress) -> Results {
 }
 
 fn measure(plan: &ConvexPlan, kind: &Kind, seed: u64) -> Vec<Row> {
-    let mesh = shape(&plan.mesh);
+    let mesh = plan.mesh.shape();
     let contest = Contest::new([&mesh]);
     let length = plan.mesh.bounds().extents().max_element();
     let about = ADVANCES.map(|advance| advance * plan.prediction);

@@ -9,7 +9,6 @@ use rapier3d::parry::query::details::ShapeCastOptions;
 use super::scenes::{Ground, above, head};
 use super::{PREDICTION, QUERIES};
 use crate::study::pair::Contest;
-use crate::study::shape;
 use crate::study::turns::in_turn;
 
 named! {
@@ -76,7 +75,7 @@ pub(super) fn queries(ground: &Ground, repeats: usize) -> Vec<Row> {
         ("ball", SharedShape::ball(0.5)),
         ("capsule", SharedShape::capsule_y(0.3, 0.2)),
         ("hull", hull),
-        ("head", shape(&head())),
+        ("head", head().shape()),
     ];
     let mut rows = Vec::new();
     for (name, body) in &bodies {

@@ -8,8 +8,6 @@ use rapier3d::pipeline::{ActiveEvents, QueryFilter};
 
 use super::measure::{Driven, Everyday};
 use super::{BODIES, DEFORMABLE, FINE, GroundPlan, PILE, SENSORS, SINGLE};
-use crate::scene::shape;
-use crate::study::shape as plain;
 
 /// A terrain of hills. All worlds of a scene share its mesh.
 #[derive(Clone)]
@@ -27,7 +25,7 @@ impl Ground {
     /// A terrain with so many `cells` of length `cell` along a side.
     pub fn new(cells: u32, cell: f32, flags: TriMeshFlags) -> Self {
         let size = cell * cells as f32;
-        let shape = shape(&mesh::hills(size, cells), flags);
+        let shape = mesh::hills(size, cells).shape_with(flags);
         Self { shape, size, triangle_count: 2 * cells * cells }
     }
 
@@ -118,8 +116,8 @@ pub(super) fn bodies<'a>(
 
 /// A ball and two meshes of about the same size.
 fn wanderers() -> [(&'static str, SharedShape); 3] {
-    let mesh_ball = plain(&mesh::ball(0.5, 8));
-    [("ball", SharedShape::ball(0.5)), ("mesh ball", mesh_ball), ("head", plain(&head()))]
+    let mesh_ball = mesh::ball(0.5, 8).shape();
+    [("ball", SharedShape::ball(0.5)), ("mesh ball", mesh_ball), ("head", head().shape())]
 }
 
 /// A ball and meshes, one in each world, that bounce on a terrain, higher than its rim.
@@ -190,7 +188,7 @@ pub(super) fn rolling_population(ground: &Ground, count: usize) -> Everyday<'_> 
 
 /// Balls and heads on a terrain; all meshes have all flags, `DEFORMABLE` among them.
 pub(super) fn all_flags(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
-    let head = shape(&head(), TriMeshFlags::all());
+    let head = head().shape_with(TriMeshFlags::all());
     let scenes = [("50 balls", SharedShape::ball(0.5), 50), ("20 heads", head, 20)];
     let scene = |(name, shape, count)| {
         let build = move || ground.scattered(std::slice::from_ref(&shape), count);
@@ -201,7 +199,7 @@ pub(super) fn all_flags(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
 
 /// Twenty heads as sensors in slow flight at several heights, and ten characters that walk.
 pub(super) fn sensors(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
-    let head = plain(&head());
+    let head = head().shape();
     let sensors = |(place, height): (&str, f32)| {
         let sensor = ColliderBuilder::new(head.clone()).sensor(true);
         let sensor = sensor.active_events(ActiveEvents::COLLISION_EVENTS);
@@ -284,7 +282,7 @@ pub(super) fn two_tori(tube: u32, steps: usize) -> Everyday<'static> {
     let torus = mesh::torus(1.0, 0.4, 3 * tube, tube);
     let row = Row::new(FINE, "").key("scene", "a torus that slides along another");
     let row = row.key("triangles", torus.triangle_count());
-    let torus = plain(&torus);
+    let torus = torus.shape();
     Everyday::new(row, steps, move || {
         let mut world = PhysicsWorld::new();
         // The body moves less than what Rapier takes for rest.
@@ -301,7 +299,7 @@ pub(super) fn two_tori(tube: u32, steps: usize) -> Everyday<'static> {
 /// Heads of 2 to 5 cm that fall into a bowl at Rapier's default length unit.
 pub(super) fn parts(steps: usize) -> Everyday<'static> {
     const COUNT: u32 = 12;
-    let bowl = plain(&mesh::vessel(0.15, 24, 0.3));
+    let bowl = mesh::vessel(0.15, 24, 0.3).shape();
     let head = mesh::monkey_head_with(6).centred();
     let row = Row::new(FINE, "").key("scene", format!("{COUNT} heads of 2 to 5 cm in a bowl"));
     let row = row.key("triangles", head.triangle_count());

@@ -3,7 +3,6 @@
 use rapier3d::parry::query::intersection_test;
 
 use super::kit::*;
-use crate::study::shape;
 
 /// Thickness of plates that are a unit wide.
 const THICKNESS: f32 = 0.03;
@@ -48,7 +47,7 @@ fn target(name: &str) -> Mesh {
 fn plates(kit: &Kit, name: &str) -> Figures {
     let mesh = target(name);
     let (fixed, plate) = (kit.mesh(&mesh), kit.collider(&Form::cuboid(PLATE, 4)));
-    let (surface, inside) = (shape(&mesh), Depths::new(&mesh));
+    let (surface, inside) = (mesh.shape(), Depths::new(&mesh));
     let is_pointed = matches!(name, "a spike" | "an edge");
     let passes = |&index: &usize| {
         let phase = index as f32 / PHASES as f32;

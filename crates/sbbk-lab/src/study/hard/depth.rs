@@ -5,8 +5,6 @@ use std::f64::consts::TAU;
 
 use rapier3d::parry::bounding_volume::Aabb;
 
-use crate::study::shape;
-
 /// A mesh with its winding numbers.
 pub(super) struct Depths {
     vertices: Vec<Vec3>,
@@ -22,7 +20,7 @@ impl Depths {
             vertices: mesh.vertices.clone(),
             triangles: corners.map(|corners| corners.map(Vec3::as_dvec3)).collect(),
             bounds: mesh.bounds(),
-            shape: shape(mesh),
+            shape: mesh.shape(),
         }
     }
 

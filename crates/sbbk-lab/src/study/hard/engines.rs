@@ -9,14 +9,12 @@ use std::ops::Range;
 
 use glamx::DQuat;
 use rapier3d::parry::mass_properties::MassProperties;
-use serde_json::Value;
 
 use super::Column;
 use super::depth::Depths;
 use super::figures::Gain;
 use super::heaps::{FLOOR, above_floor};
 use super::kit::{Form, Kit};
-use crate::study::shape;
 
 const STUDY: &str = "engines";
 /// Ten seconds, and the steps of them that are timed: in motion, and at rest.
@@ -59,7 +57,7 @@ pub struct EnginePile {
 impl EnginePile {
     /// A pile of closed heads, with Parry's decomposition of them.
     pub fn new(pile: &MonkeyPile) -> Self {
-        let properties = shape(&pile.mesh).mass_properties(1.0);
+        let properties = pile.mesh.shape().mass_properties(1.0);
         let axes =
             Pose3::from_parts(properties.local_com, properties.principal_inertia_local_frame);
         let mesh = pile.mesh.clone().posed(&axes.inverse()).named("head");
@@ -207,7 +205,7 @@ impl EnginePile {
     }
 
     /// Figures of an engine.
-    fn figures(&self, runs: &[Run], depths: &Depths) -> Vec<(&'static str, Value)> {
+    fn figures(&self, runs: &[Run], depths: &Depths) -> Vec<(&'static str, f64)> {
         let run = &runs[0];
         let times = |steps: Range<usize>| {
             let least = |step| runs.iter().map(|run| run.header(step)[0]).fold(f64::NAN, f64::min);
@@ -217,42 +215,47 @@ impl EnginePile {
         let mean = |steps: Range<usize>, of: &dyn Fn(usize) -> f64| {
             steps.clone().map(of).sum::<f64>() / steps.len() as f64
         };
-        let of_heads = |step, of: &dyn Fn(&[f32]) -> f64| {
-            run.heads(step).map(of).sum::<f64>() / self.poses.len() as f64
-        };
-        let height = |step| of_heads(step, &|head| f64::from(head[1]));
-        let kinetic = |step| of_heads(step, &|head| self.kinetic(head));
+        let height = |step| run.mean(step, |head| f64::from(head[1]));
+        let kinetic = |step| run.mean(step, |head| self.kinetic(head));
+        let [moving, resting] = [MOVING, RESTING].map(times);
+        let [after_2, after_10] = [119, STEPS - 1].map(|step| self.depths(run, step, depths));
+        let [.., process, above] = run.header(STEPS - 1);
+        vec![
+            ("step in motion, median, ms", moving[0]),
+            ("step in motion, mean, ms", moving[1]),
+            ("step at rest, median, ms", resting[0]),
+            ("step at rest, mean, ms", resting[1]),
+            ("points in motion", mean(MOVING, &|step| run.header(step)[1])),
+            ("points at rest", mean(RESTING, &|step| run.header(step)[1])),
+            ("mean height after 2 s", height(119)),
+            ("mean height after 3 s", height(179)),
+            ("mean height after 10 s", height(STEPS - 1)),
+            ("kinetic energy in motion, J a head", mean(MOVING, &kinetic)),
+            ("kinetic energy at rest, mJ a head", 1e3 * mean(RESTING, &kinetic)),
+            ("energy gained, of that at the start", self.energy_gained(run)),
+            ("mean depth of a head after 2 s, mm", 1e3 * after_2.mean),
+            ("deepest pair after 2 s, mm", 1e3 * after_2.deepest),
+            ("pairs inside each other after 2 s", after_2.inside as f64),
+            ("mean depth of a head after 10 s, mm", 1e3 * after_10.mean),
+            ("deepest pair after 10 s, mm", 1e3 * after_10.deepest),
+            ("pairs inside each other after 10 s", after_10.inside as f64),
+            ("peak memory above an empty world, MiB", above),
+            ("peak memory of the process, MiB", process),
+        ]
+    }
+
+    /// Greatest rise of the energy, as a share of that at the start.
+    fn energy_gained(&self, run: &Run) -> f64 {
         let weight = f64::from(self.mass) * f64::from(self.gravity);
         let heights = self.poses.iter().map(|pose| f64::from(pose.translation.y));
         let start = weight * heights.sum::<f64>() / self.poses.len() as f64;
         let mut gain = Gain::default();
         gain.see(start);
-        (0..STEPS).for_each(|step| gain.see(kinetic(step) + weight * height(step)));
-        let [moving, resting] = [MOVING, RESTING].map(times);
-        let [after_2, after_10] = [119, STEPS - 1].map(|step| self.depths(run, step, depths));
-        let [.., process, above] = run.header(STEPS - 1);
-        vec![
-            ("step in motion, median, ms", moving[0].into()),
-            ("step in motion, mean, ms", moving[1].into()),
-            ("step at rest, median, ms", resting[0].into()),
-            ("step at rest, mean, ms", resting[1].into()),
-            ("points in motion", mean(MOVING, &|step| run.header(step)[1]).into()),
-            ("points at rest", mean(RESTING, &|step| run.header(step)[1]).into()),
-            ("mean height after 2 s", height(119).into()),
-            ("mean height after 3 s", height(179).into()),
-            ("mean height after 10 s", height(STEPS - 1).into()),
-            ("kinetic energy in motion, J a head", mean(MOVING, &kinetic).into()),
-            ("kinetic energy at rest, mJ a head", (1e3 * mean(RESTING, &kinetic)).into()),
-            ("energy gained, of that at the start", (gain.most / start).into()),
-            ("mean depth of a head after 2 s, mm", (1e3 * after_2.mean).into()),
-            ("deepest pair after 2 s, mm", (1e3 * after_2.deepest).into()),
-            ("pairs inside each other after 2 s", after_2.inside.into()),
-            ("mean depth of a head after 10 s, mm", (1e3 * after_10.mean).into()),
-            ("deepest pair after 10 s, mm", (1e3 * after_10.deepest).into()),
-            ("pairs inside each other after 10 s", after_10.inside.into()),
-            ("peak memory above an empty world, MiB", above.into()),
-            ("peak memory of the process, MiB", process.into()),
-        ]
+        for step in 0..STEPS {
+            let height = run.mean(step, |head| f64::from(head[1]));
+            gain.see(run.mean(step, |head| self.kinetic(head)) + weight * height);
+        }
+        gain.most / start
     }
 
     /// Kinetic energy of a head.
@@ -319,8 +322,15 @@ impl Run {
         std::array::from_fn(|index| f64::from(self.step(step)[index]))
     }
 
-    fn heads(&self, step: usize) -> impl Iterator<Item = &[f32]> {
+    fn heads(&self, step: usize) -> impl ExactSizeIterator<Item = &[f32]> {
         self.step(step)[HEADER..].chunks_exact(STATE)
+    }
+
+    /// Mean of a number over the heads.
+    fn mean(&self, step: usize, of: impl Fn(&[f32]) -> f64) -> f64 {
+        let heads = self.heads(step);
+        let count = heads.len() as f64;
+        heads.map(of).sum::<f64>() / count
     }
 }
 

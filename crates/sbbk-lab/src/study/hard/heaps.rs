@@ -78,7 +78,7 @@ fn pit(kit: &Kit, size: f32) -> Figures {
     let (mut world, mut random) = (kit.world(), seeded());
     world.integration_parameters.length_unit = size;
     world.gravity *= size;
-    world.fix(Vec3::ZERO, kit.mesh(&open_box(3.6, 3.0, 0.5).scaled(size)));
+    world.fix(Vec3::ZERO, kit.mesh(&open_box([3.6, 4.1], 3.0, 0.5).scaled(size)));
     let head = mesh::monkey_head().centred().scaled_to(size);
     let collider = kit.mesh(&head);
     for index in 0..SIDE * SIDE * SIDE {
@@ -103,12 +103,11 @@ fn pit(kit: &Kit, size: f32) -> Figures {
         .note("highest", f64::from(largest(ends.iter().map(|end| end.y))) / size)
 }
 
-/// A square tray with walls all round; half its diagonal inside, the height of its rim over the
-/// bottom, and its thickness.
-fn open_box(half: f32, rim: f32, wall: f32) -> Mesh {
-    let outside = half + wall;
+/// A square tray with walls all round; half its diagonals inside and outside, the height of its rim
+/// over the bottom, and the thickness of the bottom.
+pub(super) fn open_box([half, outside]: [f32; 2], rim: f32, bottom: f32) -> Mesh {
     let profile =
-        [[0.0, -wall], [outside, -wall], [outside, rim], [half, rim], [half, 0.0], [0.0; 2]];
+        [[0.0, -bottom], [outside, -bottom], [outside, rim], [half, rim], [half, 0.0], [0.0; 2]];
     mesh::revolved(&profile.map(Vec2::from_array), 4).named("tray")
 }
 
@@ -123,7 +122,7 @@ fn tray(kit: &Kit) -> Figures {
     const LAYERS: usize = 4;
     const WALL: f32 = 0.02;
     let (mut world, mut random) = (kit.world(), seeded());
-    world.fix(Vec3::ZERO, kit.mesh(&open_box(0.45, 0.25, WALL)));
+    world.fix(Vec3::ZERO, kit.mesh(&open_box([0.45, 0.45 + WALL], 0.25, WALL)));
     let kinds = [
         mesh::ball(0.5, 8),
         mesh::torus(0.35, 0.15, 24, 12),

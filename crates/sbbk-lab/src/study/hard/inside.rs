@@ -23,11 +23,7 @@ fn overlap(kit: &Kit, form: &Form) -> Figures {
         let place = Vec3::from_array([(); 3].map(|()| random.rand_float() - 0.5));
         world.put(Pose3::from_parts(place, random::rotation(&mut random)), &collider);
     }
-    let mut fastest = 0.0_f32;
-    for _ in 0..120 {
-        world.step();
-        fastest = largest([fastest, world.top_speed()]);
-    }
+    let fastest = world.fastest(120);
     let depths = Depths::new(&form.mesh);
     let pose = |body: usize| world.bodies[world.watched[body]].position();
     let pairs = (1..BODIES).flat_map(|j| (0..j).map(move |i| [i, j]));
@@ -123,10 +119,8 @@ fn cubes_on_sheet(kit: &Kit, is_bent: bool, from_behind: bool) -> Figures {
         let height = mesh::hill_height(SIZE, place.x, place.z);
         if is_bent { height } else { 0.0 }
     };
-    let mut sheet = if is_bent { mesh::hills(SIZE, CELLS) } else { mesh::floor(SIZE, CELLS) };
-    if from_behind {
-        sheet.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
-    }
+    let sheet = if is_bent { mesh::hills(SIZE, CELLS) } else { mesh::floor(SIZE, CELLS) };
+    let sheet = if from_behind { mesh::turned_inside_out(sheet) } else { sheet };
     let (mut world, mut random) = (kit.world(), seeded());
     world.fix(Vec3::ZERO, kit.mesh(&sheet));
     let cube = kit.collider(&Form::cuboid(Vec3::splat(HALF), 2));

@@ -1,8 +1,9 @@
 //! Worlds, bodies and figures of the hard scenes.
 
+use std::cell::{Cell, RefCell};
 pub(super) use std::f32::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, PI, TAU};
 use std::ops::{Deref, DerefMut};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::rc::Rc;
 
 pub(super) use glamx::Vec2;
 use rapier_integration::{PreparedTree, SurfaceKind};
@@ -13,7 +14,6 @@ pub(super) use super::Trial;
 pub(super) use super::depth::{Depths, touching_pairs};
 pub(super) use super::figures::{Figures, Gain, largest};
 pub(super) use crate::prelude::*;
-use crate::scene::shape;
 
 named! {
     /// A dispatcher, and the shapes of the bodies.
@@ -68,18 +68,18 @@ pub(super) fn seeded() -> Rand32 {
 }
 
 /// A shared recording.
-pub(super) type Film = Arc<Mutex<Option<Recorder>>>;
+pub(super) type Film = Rc<RefCell<Option<Recorder>>>;
 
 /// Settings of one run of a scene.
 pub(super) struct Kit {
     pub column: Column,
     /// Taken by the first world, which is recorded.
-    pub film: Mutex<Option<Film>>,
+    film: Cell<Option<Film>>,
 }
 
 impl Kit {
     pub fn new(column: Column, film: Option<Film>) -> Self {
-        Self { column, film: Mutex::new(film) }
+        Self { column, film: Cell::new(film) }
     }
 
     /// An empty world with the column's dispatcher.
@@ -102,8 +102,8 @@ impl Kit {
             declared.iter().for_each(|solid| solid.set_surface_kind(SurfaceKind::Solid));
             world.narrow_phase.set_query_dispatcher(sbbk);
         }
-        let film = self.film.lock().unwrap_or_else(PoisonError::into_inner).take();
-        World { world, film, column: self.column, watched: Vec::new(), _declared: declared }
+        let (film, column) = (self.film.take(), self.column);
+        World { world, film, column, watched: Vec::new(), _declared: declared }
     }
 
     fn is_flagged(&self) -> bool {
@@ -122,7 +122,7 @@ impl Kit {
     pub fn mesh(&self, mesh: &Mesh) -> ColliderBuilder {
         let flag = TriMeshFlags::FIX_INTERNAL_EDGES;
         let flags = if self.is_flagged() { flag } else { TriMeshFlags::empty() };
-        ColliderBuilder::new(shape(mesh, flags))
+        ColliderBuilder::new(mesh.shape_with(flags))
     }
 
     /// A flat height field at height 0, of so many cells along z and x.
@@ -202,6 +202,15 @@ impl World {
         Watched { gain: gain.most / start, step_time, points }
     }
 
+    /// Runs for some steps. Returns the highest speed of a body after any of them.
+    pub fn fastest(&mut self, steps: usize) -> f32 {
+        let speeds = (0..steps).map(|_| {
+            self.step();
+            self.top_speed()
+        });
+        largest(speeds)
+    }
+
     /// Highest speed of a body; NaN if a speed is NaN.
     pub fn top_speed(&self) -> f32 {
         largest(self.watched.iter().map(|&body| self.bodies[body].linvel().length()))
@@ -223,7 +232,7 @@ impl World {
 
     pub fn step(&mut self) {
         let Some(film) = &self.film else { return self.world.step() };
-        let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut film = film.borrow_mut();
         film.get_or_insert_with(|| Recorder::new(self.column, &self.world)).step(&mut self.world);
     }
 }

@@ -21,8 +21,6 @@ mod report;
 mod resting;
 mod road;
 
-use std::sync::PoisonError;
-
 pub use self::kit::Column;
 
 use self::figures::Figures;
@@ -205,21 +203,20 @@ impl<'a> Stage<'a> {
     fn run(&mut self, group: &str, trials: &[Trial], threads: usize) -> Result<(), ReportError> {
         let Settings { columns, replay, .. } = self.settings;
         let page = replay.as_deref().filter(|_| self.runs.is_empty()).zip(trials.first());
-        let films: Vec<Film> = columns.iter().map(|_| Film::default()).collect();
         let of = |trial| columns.iter().map(move |&column| (trial, column));
         let jobs: Vec<(&Trial, Column)> = trials.iter().flat_map(of).collect();
         self.progress.phase(group, jobs.len());
         let found = parallel::map(&jobs, threads, |index, (trial, column)| {
-            let film = films.get(index).filter(|_| page.is_some());
-            let figures = (trial.run)(&Kit::new(*column, film.cloned()))?;
+            let film = (page.is_some() && index < columns.len()).then(Film::default);
+            let figures = (trial.run)(&Kit::new(*column, film.clone()))?;
             self.progress.step();
             let (group, scene) = (group.to_owned(), trial.name.clone());
-            Some(Run { group, scene, column: *column, figures })
+            let run = Run { group, scene, column: *column, figures };
+            Some((run, film.and_then(|film| film.take())))
         });
-        self.runs.extend(found.into_iter().flatten());
+        let (runs, films): (Vec<Run>, Vec<Option<Recorder>>) = found.into_iter().flatten().unzip();
+        self.runs.extend(runs);
         let Some((path, trial)) = page else { return Ok(()) };
-        let take = |film: &Film| film.lock().unwrap_or_else(PoisonError::into_inner).take();
-        let taken: Vec<Recorder> = films.iter().filter_map(take).collect();
-        replay::write(path, &trial.name, &taken)
+        replay::write(path, &trial.name, &films.into_iter().flatten().collect::<Vec<_>>())
     }
 }

@@ -45,7 +45,7 @@ pub(super) struct Part {
 
 impl Part {
     pub fn new(form: Form) -> Self {
-        let weighed = form.control.clone().unwrap_or_else(|| crate::study::shape(&form.mesh));
+        let weighed = form.control.clone().unwrap_or_else(|| form.mesh.shape());
         let mass = weighed.mass_properties(1.0);
         Self { sound: form.mesh.clone(), form, is_primitive: false, mass }
     }

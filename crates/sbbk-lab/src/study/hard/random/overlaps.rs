@@ -26,11 +26,7 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
     }
     let mut stage = Stage::new(draw, kit, &bodies);
     let start = stage.deepest(&bodies, 0);
-    let mut fastest = 0.0;
-    for _ in 0..draw.steps(3.0) {
-        stage.world.step();
-        fastest = largest([fastest, stage.top_speed()]);
-    }
+    let fastest = stage.world.fastest(draw.steps(3.0)) / draw.size;
     let figures = Figures::default().at_most("deepest", stage.deepest(&bodies, 0), DEPTH);
     // Rapier parts bodies at three sizes/s.
     figures.at_most("speed", fastest, 9.0).note("deepest at the start", start)

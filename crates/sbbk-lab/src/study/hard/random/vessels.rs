@@ -1,6 +1,7 @@
 //! Trays, rooms and tables, as meshes with flaws or without, and as cuboids for the control.
 
 use super::prelude::*;
+use crate::study::hard::heaps::open_box;
 
 /// Thickness of the walls of trays, and of rooms in the control.
 const WALL: f32 = 0.5;
@@ -30,18 +31,9 @@ impl Draw {
     /// A square tray, its bottom at height 0.
     pub fn tray(&mut self) -> Part {
         let [half, rim] = [(2.2, 3.0), (1.5, 4.0)].map(|(low, high)| self.within(low, high));
-        // Corners of the profile are on the diagonals.
-        let [inside, outside] = [half, half + WALL].map(|half| half * 2.0_f32.sqrt());
-        let profile = [
-            [0.0, -WALL],
-            [outside, -WALL],
-            [outside, rim],
-            [inside, rim],
-            [inside, 0.0],
-            [0.0; 2],
-        ];
+        let diagonals = [half, half + WALL].map(|half| half * 2.0_f32.sqrt());
         let turn = Pose3::from_rotation(Quat::from_rotation_y(FRAC_PI_4));
-        let tray = mesh::revolved(&profile.map(Vec2::from_array), 4).posed(&turn);
+        let tray = open_box(diagonals, rim, WALL).posed(&turn);
         let up = 0.5 * rim * Vec3::Y;
         let boxes = walls(Vec3::new(half, 0.5 * rim, half), false);
         let boxes = boxes.into_iter().map(|[at, sides]| [at + up, sides]).collect();
