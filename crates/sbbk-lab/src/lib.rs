@@ -12,6 +12,7 @@ mod named;
 
 pub mod backend;
 pub mod cli;
+mod error;
 pub mod mesh_file;
 pub mod metrics;
 pub mod parallel;
@@ -21,4 +22,5 @@ pub mod replay;
 pub mod report;
 pub mod study;
 
+pub use error::StudyError;
 pub use sbbk_testkit::{mesh, scene};

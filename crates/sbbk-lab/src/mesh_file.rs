@@ -1,29 +1,21 @@
 //! Meshes from OBJ and STL files.
 
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glamx::Vec3;
 use mesh_loader::Loader;
-use thiserror::Error;
 
+use crate::error::StudyError;
 use crate::mesh::Mesh;
-
-/// A mesh file could not be loaded. The message names the file and the fault.
-#[derive(Debug, Error)]
-#[error("cannot load the mesh {}: {cause}", path.display())]
-pub struct MeshError {
-    path: PathBuf,
-    cause: String,
-}
 
 /// Loads an `.obj` or `.stl` file as one welded mesh in the file's own units, named after the file.
 /// Faces with more than three corners are cut into triangles.
 ///
 /// Errors: the file cannot be read, its extension or contents make no sense, an index is out of
 /// range, a coordinate is not finite, or there are no triangles.
-pub fn load(path: &Path) -> Result<Mesh, MeshError> {
-    read(path).map_err(|cause| MeshError { path: path.to_owned(), cause })
+pub fn load(path: &Path) -> Result<Mesh, StudyError> {
+    read(path).map_err(|cause| StudyError::file("load the mesh", path, cause))
 }
 
 fn read(path: &Path) -> Result<Mesh, String> {

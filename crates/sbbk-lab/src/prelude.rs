@@ -4,6 +4,7 @@ pub(crate) use crate::backend::{
     Backend, Dispatcher, Installed, Memory, Primed, Question, Reported, SharedDispatcher,
     shape_address,
 };
+pub(crate) use crate::error::StudyError;
 pub(crate) use crate::mesh;
 pub(crate) use crate::mesh::Mesh;
 pub(crate) use crate::metrics::{
@@ -14,9 +15,8 @@ pub(crate) use crate::parallel;
 pub(crate) use crate::progress::Progress;
 pub(crate) use crate::replay;
 pub(crate) use crate::replay::Recorder;
-pub(crate) use crate::report::{ReportError, Results, Row};
+pub(crate) use crate::report::{Results, Row};
 pub(crate) use crate::scene::{MonkeyPile, Scene, SceneWorld, Solid, random};
-pub(crate) use crate::study::StudyError;
 pub(crate) use clap::ValueEnum;
 pub(crate) use glamx::{DVec3, Pose3, Quat, Vec3};
 pub(crate) use oorandom::Rand32;

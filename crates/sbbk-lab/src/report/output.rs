@@ -1,25 +1,16 @@
 //! Result files.
 
 use std::fs;
-use std::path::{Path, PathBuf};
-
-use thiserror::Error;
+use std::path::Path;
 
 use super::Results;
 use super::environment::said_by;
-
-/// A file cannot be written.
-#[derive(Debug, Error)]
-#[error("cannot write `{}`: {cause}", path.display())]
-pub struct ReportError {
-    path: PathBuf,
-    cause: String,
-}
+use crate::error::StudyError;
 
 /// Checks before a measurement that the outputs can be written after it.
 ///
 /// Errors: a folder is missing, an output is a folder, an input, or another output.
-pub fn check_outputs(inputs: &[&Path], outputs: &[&Path]) -> Result<(), ReportError> {
+pub fn check_outputs(inputs: &[&Path], outputs: &[&Path]) -> Result<(), StudyError> {
     for (index, output) in outputs.iter().enumerate() {
         let folder = output.parent().filter(|folder| !folder.as_os_str().is_empty());
         let cause = match () {
@@ -30,7 +21,7 @@ pub fn check_outputs(inputs: &[&Path], outputs: &[&Path]) -> Result<(), ReportEr
             }
             () => continue,
         };
-        return Err(ReportError { path: output.to_path_buf(), cause: cause.to_owned() });
+        return Err(StudyError::file("write", output, cause));
     }
     Ok(())
 }
@@ -38,9 +29,8 @@ pub fn check_outputs(inputs: &[&Path], outputs: &[&Path]) -> Result<(), ReportEr
 /// Writes a file.
 ///
 /// Errors: the file cannot be written; the message names it.
-pub fn write_file(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), ReportError> {
-    let error = |cause: std::io::Error| ReportError { path: path.into(), cause: cause.to_string() };
-    fs::write(path, contents).map_err(error)
+pub fn write_file(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), StudyError> {
+    fs::write(path, contents).map_err(|cause| StudyError::file("write", path, cause))
 }
 
 impl Results {

@@ -2,7 +2,6 @@
 
 use crate::prelude::*;
 use std::f32::consts::{FRAC_PI_2, TAU};
-use std::fmt::Display;
 
 use rapier_integration::{SbbkDispatcher, SurfaceKind};
 use rapier3d::dynamics::{ImpulseJointHandle, JointAxis, RigidBodyType};
@@ -29,8 +28,8 @@ fn upright() -> Quat {
 }
 
 /// Error for a URDF file.
-fn unusable(path: &Path, cause: impl Display) -> StudyError {
-    StudyError::Robot { path: path.to_owned(), cause: cause.to_string() }
+fn unusable(path: &Path, cause: impl ToString) -> StudyError {
+    StudyError::file("load the robot", path, cause)
 }
 
 /// Ten robots that walk on a terrain, with the loader's flags for their meshes and without.

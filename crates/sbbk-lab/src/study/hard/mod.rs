@@ -200,7 +200,7 @@ impl<'a> Stage<'a> {
     /// Runs scenes of one kind. The first scene of all is recorded, if there is to be a page.
     ///
     /// Errors: the page cannot be written.
-    fn run(&mut self, group: &str, trials: &[Trial], threads: usize) -> Result<(), ReportError> {
+    fn run(&mut self, group: &str, trials: &[Trial], threads: usize) -> Result<(), StudyError> {
         let Settings { columns, replay, .. } = self.settings;
         let page = replay.as_deref().filter(|_| self.runs.is_empty()).zip(trials.first());
         let of = |trial| columns.iter().map(move |&column| (trial, column));
