@@ -17,8 +17,7 @@ use crate::support::{
 /// Soft CCD needs contacts of every direction beyond a tenth of the radius.
 #[test]
 fn far_contacts_have_every_direction() {
-    let [head, torus] =
-        [mesh::monkey_head_with(6), mesh::torus(0.7, 0.3, 12, 8)].map(|m| shape(&m));
+    let [head, torus] = [mesh::monkey_head_with(3), mesh::torus(0.7, 0.3, 8, 5)].map(|m| shape(&m));
     let surfaces = having(ContactSet::Surfaces);
     let (mut random, mut far, mut near) = (Rand32::new(1), 0, [0; 2]);
     for i in 0..120 {

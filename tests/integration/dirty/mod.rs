@@ -15,6 +15,8 @@ mod beams;
 mod floors;
 /// Bodies that ride, and where.
 mod rides;
+/// Lids on the rims of open vessels.
+mod rims;
 /// Bodies that ride over meshes side by side.
 mod roads;
 /// Rooms with bodies inside.
@@ -27,6 +29,8 @@ mod slopes;
 mod solids;
 /// Tables of the tests, and lists of known failures.
 mod table;
+/// Thin bodies that rest on the ground.
+mod thin;
 /// Sheets that stand upright along the edges of a floor.
 mod upright;
 

@@ -18,7 +18,7 @@ use crate::mesh::MeshView;
 
 /// Greatest product of the numbers of triangles near the other mesh with which all pairs are candidates.
 /// Higher: small bodies cost more time and memory. Lower: thin plates with soft CCD turn through sheets.
-pub(super) const MOST_PAIRS: usize = 1 << 16;
+pub(super) const MOST_PAIRS: usize = 1 << 14;
 
 /// Greatest number of steps from a tip to the nearest point. Higher: more time for surfaces that are nearly
 /// parallel; lower: the contact is farther than the nearest one.

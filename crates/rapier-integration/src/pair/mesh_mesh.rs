@@ -18,7 +18,7 @@ use super::far::are_few;
 use super::inside::InsideTest;
 use super::pose::PairPose;
 use super::query::{Moving, Pair};
-use super::reduce::PatchPlan;
+use super::reduce::{FILTERED, PatchPlan};
 use super::state::Candidate;
 use super::surface::{filter_distance, lateral_culling, reach};
 use super::triangle_contacts::in_local;
@@ -46,6 +46,10 @@ pub(crate) struct MeshPair<'a> {
 /// bodies deep in a solid stay there. Lower: fast bodies fall through the floors of rooms.
 const STICKS_OUT: Real = 0.5;
 
+/// Least depth of the lowest point of a body in a room, in prediction distances or, if less, in tenths of its
+/// radius. Higher: thin bodies fall out of rooms. Lower: thin bodies sink into solids.
+const SUNK: Real = 0.5;
+
 impl MeshPair<'_> {
     /// Returns 1 if the box of mesh 2 is larger than that of mesh 1, else 0.
     pub(super) fn larger(&self) -> usize {
@@ -53,7 +57,8 @@ impl MeshPair<'_> {
     }
 
     /// Returns true if the larger mesh is a room for the smaller one: the smaller one is in it, or
-    /// hardly sticks out. A long tube is one although its ends are open.
+    /// hardly sticks out. A long tube is one although its ends are open. A solid is none for thin bodies that
+    /// have just sunk in.
     fn is_room(&self, outer_is_solid: impl Fn() -> bool, test: &mut InsideTest) -> bool {
         let outer = self.larger();
         let [held, holder] = [1 - outer, outer].map(|i| &self.meshes[i]);
@@ -65,7 +70,8 @@ impl MeshPair<'_> {
         let depth = exit.distance(middle);
         let way = self.pose.in_other(outer, exit) - held.ball().centre;
         let height = held.height(way.normalize_or_zero(), depth / (1.0 - STICKS_OUT));
-        depth >= (1.0 - STICKS_OUT) * height
+        let sunk = SUNK * self.pose.prediction.min(FILTERED * held.ball().radius);
+        depth >= (1.0 - STICKS_OUT) * height && depth + height >= sunk
     }
 
     /// Returns the nearest point of the larger mesh, if a point of the smaller one is inside. `point` is

@@ -9,11 +9,12 @@
 //! | [`chunks`] | chunks of a heavy pair, on several threads |
 //! | [`bvh_descent`] | candidates from Parry's BVHs |
 //! | [`far`] | contacts beyond the reach |
-//! | [`surface`], [`islands`], [`passed`], [`inside`] | contacts of surfaces from contacts of triangles |
+//! | [`surface`], [`borders`], [`islands`], [`passed`], [`inside`] | contacts of surfaces from contacts of triangles |
 //! | [`field`], [`pose`], [`triangle_contacts`] | height fields, poses, points of two triangles |
 //! | [`convex`] | a mesh and convex shapes |
 //! | [`reduce`], [`write`](mod@write) | contact reduction, manifolds |
 
+mod borders;
 mod bvh_descent;
 mod chunks;
 mod convex;

@@ -6,6 +6,8 @@
 //! * Crossing: the contact leads out of solids, and both surfaces end where the overlap does.
 //!   Triangles of solids that have passed each other count as crossing.
 //!
+//! A sheet is a solid for a [thin](THIN) body in front of it.
+//!
 //! Crossing surfaces never stay without a contact: an island without one gets the best there is
 //! ([`OverlapIslands`]).
 
@@ -52,9 +54,13 @@ const NEAR_NORMAL: f64 = 0.87;
 const UPRIGHT: f64 = 0.999_999;
 
 /// Depth up to which a shape counts as above the plane of a border triangle. In prediction distances,
-/// or in [`filter_distance`]s if these are less. Higher: bodies hang over the rim of a table. Lower:
-/// bodies stumble where meshes meet.
-pub(super) const LIP: f64 = 0.25;
+/// or in [`filter_distance`]s if these are less. Higher: rims do not carry what overhangs them.
+/// Lower: bodies stumble where meshes meet.
+pub(super) const LIP: f64 = 0.1;
+
+/// Greatest half thickness of a thin body, in the units of [`LIP`]. Higher: bodies fall through sheets
+/// that face away from them. Lower: rods and plates sink through sheets.
+const THIN: f64 = 0.03;
 
 /// Distance, in sizes of the triangles, below which rounding decides on which side of each other these
 /// are. Higher: contacts are lost; lower: triangles that touch count as crossing.
@@ -99,7 +105,8 @@ pub(super) fn lateral_culling(
 /// Result of the first pass for two triangles.
 pub(super) enum Verdict {
     None,
-    Contact(TriangleSurfaceContact),
+    /// A contact and, at a [border](super::borders), the one along the normal of the face.
+    Contact(TriangleSurfaceContact, Option<TriangleContact>),
     /// The surfaces cross. A contact may still be rejected by the second pass.
     Crossing(Crossing, Option<TriangleSurfaceContact>),
 }
@@ -124,9 +131,9 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         clipped: &mut ManifoldPoints,
     ) -> Verdict {
         let of_triangles = TriangleSurfaceContact { contact, source: ContactSource::Triangles };
-        let surfaces = self.surfaces();
+        let surfaces = self.surfaces(local);
         if let [None, None] = surfaces {
-            return Verdict::Contact(of_triangles);
+            return Verdict::Contact(of_triangles, None);
         }
         if surfaces.iter().flatten().any(|surface| surface.side == Side::Inner) {
             return Verdict::None;
@@ -135,7 +142,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         let has_solid = is_solid[0] || is_solid[1];
         let is_crossing = contact.features.is_crossing();
         if contact.distance > self.shapes.filter_distance() {
-            return Verdict::Contact(of_triangles);
+            return Verdict::Contact(of_triangles, None);
         }
         if !is_crossing {
             if self.passes_by(local, &contact) {
@@ -144,10 +151,9 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             let is_minimum = |i: usize| self.is_minimum(&surfaces, i, local, &contact);
             let is_first_minimum = is_minimum(0);
             if is_first_minimum && is_minimum(1) {
-                let turned =
+                let upright =
                     (0..2).find_map(|i| self.upright_at_border(&surfaces, i, local, &contact));
-                let contact = turned.unwrap_or(contact);
-                return Verdict::Contact(TriangleSurfaceContact { contact, ..of_triangles });
+                return Verdict::Contact(of_triangles, upright);
             }
             // A local minimum does not point inside: spares the test.
             let points_inside = |i: usize| self.points_inside(&surfaces, i, &contact);
@@ -164,14 +170,50 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
     /// Returns true if both points of a contact are local minima of the distance.
     pub(super) fn is_local_minimum(&self, contact: &TriangleContact) -> bool {
         let Some(local) = self.shapes.local(self.pose, self.pair) else { return false };
-        let surfaces = self.surfaces();
+        let surfaces = self.surfaces(&local);
         (0..2).all(|i| self.is_minimum(&surfaces, i, &local, contact))
     }
 
     /// Returns the surfaces around both triangles. `array::map` would copy them twice.
     #[inline(always)]
-    fn surfaces(&self) -> Surfaces<'_, S> {
-        [self.shapes.surface(0, self.pair[0]), self.shapes.surface(1, self.pair[1])]
+    fn surfaces(&self, local: &TrianglePair) -> Surfaces<'_, S> {
+        let mut surfaces =
+            [self.shapes.surface(0, self.pair[0]), self.shapes.surface(1, self.pair[1])];
+        for (i, surface) in surfaces.iter_mut().enumerate() {
+            let is_sheet = |surface: &&mut OneRing<_>| surface.side == Side::Sheet;
+            let Some(sheet) = surface.as_mut().filter(is_sheet) else { continue };
+            let other = 1 - i;
+            if self.smaller() == Some(other) && self.is_thin(other) && self.is_in_front(i, local) {
+                sheet.side = Side::Face;
+            }
+        }
+        surfaces
+    }
+
+    /// Returns the smaller shape.
+    fn smaller(&self) -> Option<usize> {
+        let [size1, size2] = [0, 1].map(|i| self.shapes.bounds(i).half_extents().length());
+        (size1 != size2).then_some(usize::from(size2 < size1))
+    }
+
+    /// Returns true if a shape is as thin as what a resting body may sink in.
+    fn is_thin(&self, i: usize) -> bool {
+        let half_thickness = f64::from(self.shapes.bounds(i).half_extents().min_element());
+        half_thickness <= THIN * near(self.shapes, self.pose)
+    }
+
+    /// Returns true if the middle of the other shape is in front of a triangle, or not far behind.
+    fn is_in_front(&self, i: usize, local: &TrianglePair) -> bool {
+        let (normal, height) = self.middle_over(i, local);
+        normal != DVec3::ZERO && height >= -near(self.shapes, self.pose)
+    }
+
+    /// Returns the normal of a triangle, and the height of the middle of the other shape over it.
+    fn middle_over(&self, i: usize, local: &TrianglePair) -> (DVec3, f64) {
+        let [a, b, c] = local.corners[i];
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let middle = self.in_local(1 - i, self.shapes.bounds(1 - i).center(), local);
+        (normal, normal.dot(middle - a))
     }
 
     /// Returns the contact of triangles that cross or have passed each other.
@@ -219,7 +261,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         if !islands.needs_support(self.pair) {
             return None;
         }
-        let surfaces = self.surfaces();
+        let surfaces = self.surfaces(local);
         let [t1, t2] = &local.corners;
         let ends = |i: usize, feature: Feature, axis: DVec3| self.ends(&surfaces, i, feature, axis);
         let contact =
@@ -256,7 +298,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
     }
 
     /// Returns a contact at a border with the normal of the face, if the other shape is all on one side
-    /// of the face. Bodies would else run into meshes that continue the one below.
+    /// of the face.
     fn upright_at_border(
         &self,
         surfaces: &Surfaces<'_, S>,
@@ -358,33 +400,32 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         if is_solid == [true; 2] {
             return None;
         }
-        let sizes = [0, 1].map(|i| self.shapes.bounds(i).half_extents().length());
+        let smaller = self.smaller();
         let solid = match is_solid {
             [true, _] => 0,
             [_, true] => 1,
-            // Of two sheets of one size, either order would give another side.
-            _ if sizes[0] == sizes[1] => {
-                let [middle1, middle2] = [0, 1].map(|i| self.shapes.bounds(i).center());
-                let middle2 = self.pose.placement12.to_frame1(middle2, Vec3::ZERO);
-                let between = middle2 - middle1.as_dvec3();
-                let height = between.length();
-                return Some(SheetSide { away: between.try_normalize()?, height });
-            }
-            _ => usize::from(sizes[1] < sizes[0]),
+            _ => match smaller {
+                Some(smaller) => smaller,
+                // Of two sheets of one size, either order would give another side.
+                None => {
+                    let [middle1, middle2] = [0, 1].map(|i| self.shapes.bounds(i).center());
+                    let middle2 = self.pose.placement12.to_frame1(middle2, Vec3::ZERO);
+                    let between = middle2 - middle1.as_dvec3();
+                    let height = between.length();
+                    return Some(SheetSide { away: between.try_normalize()?, height });
+                }
+            },
         };
-        if sizes[solid] > sizes[1 - solid] {
+        if smaller == Some(1 - solid) {
             return None;
         }
-        let bounds = self.shapes.bounds(solid);
-        let middle = self.in_local(solid, bounds.center(), local);
-        let [a, b, c] = local.corners[1 - solid];
-        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let (normal, height) = self.middle_over(1 - solid, local);
         let (away, own) = match solid {
             0 => (-normal, normal),
             _ => (normal, self.pose.placement12.inverse * normal),
         };
-        let half_height = own.abs().dot(bounds.half_extents().as_dvec3());
-        Some(SheetSide { away, height: normal.dot(middle - a) + LEAN * half_height })
+        let half_height = own.abs().dot(self.shapes.bounds(solid).half_extents().as_dvec3());
+        Some(SheetSide { away, height: height + LEAN * half_height })
     }
 
     /// Returns true if a contact is deep since a point is far inside, not since this triangle is on

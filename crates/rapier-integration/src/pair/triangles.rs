@@ -14,6 +14,7 @@ use sbbk_core::contact::{
 use sbbk_core::query::TrianglePair;
 use sbbk_core::traverse::{DescentCounts, SlackLimits};
 
+use super::borders::lead_one_way;
 use super::chunks::{ChunkResult, in_chunks};
 use super::far::{Directions, FarSearch};
 use super::inside::InsideTest;
@@ -58,6 +59,8 @@ pub(crate) struct TriangleScratch {
 #[derive(Default)]
 struct FirstPass {
     contacts: ContactList<TriangleSurfaceContact>,
+    /// Contacts at borders, along the normals of the faces.
+    upright: ContactList<TriangleContact>,
     islands: OverlapIslands,
     /// True if triangles are in reach.
     is_near: bool,
@@ -66,6 +69,7 @@ struct FirstPass {
 
 impl FirstPass {
     fn clear(&mut self) {
+        self.upright.clear();
         self.islands.clear();
         self.is_near = false;
     }
@@ -74,6 +78,7 @@ impl FirstPass {
 impl ChunkResult for FirstPass {
     fn append(&mut self, next: Self) {
         self.contacts.extend(next.contacts);
+        self.upright.extend(next.upright);
         self.islands.append(next.islands);
         self.is_near |= next.is_near;
     }
@@ -140,7 +145,8 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         };
         in_chunks(candidates, LEAST_CANDIDATES, first, &pass);
         std::mem::swap(&mut first.contacts, contacts);
-        let FirstPass { islands, clipped, is_near, .. } = first;
+        let FirstPass { islands, clipped, is_near, upright, .. } = first;
+        meet_borders(upright, contacts);
         let separation = islands.is_undecided().then(|| self.shapes.separation()).flatten();
         if islands.finish_first_pass(separation) {
             self.second_pass(islands, clipped, contacts);
@@ -242,7 +248,10 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
                 first.islands.add_touching(pair);
             }
             Verdict::None => {}
-            Verdict::Contact(contact) => first.contacts.push((pair, contact)),
+            Verdict::Contact(contact, upright) => {
+                first.contacts.push((pair, contact));
+                first.upright.extend(upright.map(|upright| (pair, upright)));
+            }
             Verdict::Crossing(crossing, contact) => {
                 first.islands.add(crossing);
                 first.contacts.extend(contact.map(|contact| (pair, contact)));
@@ -268,7 +277,8 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
                 return;
             }
             let Some(local) = self.shapes.local(self.pose, pair) else { return };
-            if let Verdict::Contact(contact) = self.filter(pair).apply(&local, contact, clipped) {
+            if let Verdict::Contact(contact, _) = self.filter(pair).apply(&local, contact, clipped)
+            {
                 contacts.push((pair, contact));
             }
         });
@@ -347,6 +357,23 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
             contacts.extend(contact.map(|contact| (crossing.pair, contact)));
         }
         contacts.sort_unstable_by_key(|(pair, _)| *pair);
+    }
+}
+
+/// Replaces contacts at borders by those along the normals of the faces, if these lead one way. Both lists have
+/// one order.
+fn meet_borders(
+    upright: &ContactList<TriangleContact>,
+    contacts: &mut ContactList<TriangleSurfaceContact>,
+) {
+    if !lead_one_way(upright.iter().map(|(_, contact)| contact.normal)) {
+        return;
+    }
+    let mut next = upright.iter().peekable();
+    for (pair, hit) in contacts {
+        if let Some((_, upright)) = next.next_if(|(of, _)| of == pair) {
+            hit.contact = *upright;
+        }
     }
 }
 

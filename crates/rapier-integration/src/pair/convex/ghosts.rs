@@ -17,8 +17,7 @@
 //! normal. The contact then takes the normal of a face nearby along which the bodies cross, if there is
 //! one.
 //!
-//! A border of the mesh is met as its face is, by a body that is all on one side of the face. Else a
-//! body would run into the borders of meshes that continue the one below.
+//! [Borders](crate::pair::borders) of the mesh are met as their faces are.
 //!
 //! Triangles are neighbours if their corners are equal; meshes need no shared vertices. A contact that
 //! no such neighbour explains is compared with all triangles at its point
@@ -48,6 +47,8 @@ pub(crate) struct GhostContacts {
     pub(super) on_faces: Vec<u32>,
     /// Contacts at borders of the mesh that keep their normals.
     pub(super) borders: Vec<u32>,
+    /// Contacts at borders, along the normals of the faces.
+    pub(super) upright: Vec<(u32, ConvexContact)>,
     /// Contacts that share a corner with the one at hand.
     pub(super) nearby: Vec<u32>,
     /// Contacts of other triangles at the point of the one at hand.
@@ -296,6 +297,7 @@ impl GhostContacts {
         self.sources.shrink_to(limit);
         self.on_faces.shrink_to(limit);
         self.borders.shrink_to(limit);
+        self.upright.shrink_to(limit);
         self.nearby.shrink_to(limit);
         self.strays.shrink_to(limit);
     }

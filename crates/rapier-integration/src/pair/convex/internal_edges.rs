@@ -12,6 +12,7 @@ use super::contact::PartContact;
 use super::ghosts::{GhostContacts, corner_key};
 use super::query::{ConvexQuery, ConvexScratch};
 use crate::mesh::box_between;
+use crate::pair::borders::lead_one_way;
 use crate::pair::query::ContactList;
 
 /// Lists of contacts up to this length are searched linearly.
@@ -65,7 +66,7 @@ impl ConvexQuery<'_> {
         let mut ghosts = std::mem::take(&mut scratch.ghosts);
         self.find_ghosts(&mut ghosts, contacts, scratch);
         self.turn_to_faces(&mut ghosts, contacts, scratch);
-        self.turn_at_borders(&ghosts, contacts, scratch);
+        self.turn_at_borders(&mut ghosts, contacts, scratch);
         for (contact, &source) in ghosts.sources.iter().enumerate() {
             let source = contacts[source as usize].1.contact;
             // Along its own normal a contact keeps its own points.
@@ -104,19 +105,28 @@ impl ConvexQuery<'_> {
         ghosts.find(contacts, keys, extends_beyond, find_strays);
     }
 
-    /// Gives contacts at borders the normals of their faces. The shape must be all on one side.
+    /// Gives contacts at [borders](crate::pair::borders) the normals of their faces.
     fn turn_at_borders(
         &self,
-        ghosts: &GhostContacts,
+        ghosts: &mut GhostContacts,
         contacts: &mut ContactList<PartContact>,
         scratch: &mut ConvexScratch,
     ) {
-        for &border in ghosts.borders.iter().filter(|&&i| ghosts.sources[i as usize] == i) {
-            let (of, hit) = &mut contacts[border as usize];
-            let subshapes = self.pair.mesh_place.swap(*of);
-            let turned =
-                self.with_pair(subshapes, scratch, |pair| pair.upright_at_border(&hit.contact));
-            hit.contact = turned.flatten().unwrap_or(hit.contact);
+        let GhostContacts { borders, sources, upright, .. } = ghosts;
+        upright.clear();
+        upright.extend(borders.iter().filter(|&&i| sources[i as usize] == i).filter_map(
+            |&border| {
+                let (of, hit) = &contacts[border as usize];
+                let subshapes = self.pair.mesh_place.swap(*of);
+                let upright =
+                    self.with_pair(subshapes, scratch, |pair| pair.upright_at_border(&hit.contact));
+                Some((border, upright.flatten()?))
+            },
+        ));
+        if lead_one_way(upright.iter().map(|(_, contact)| contact.normal)) {
+            for &(border, contact) in &*upright {
+                contacts[border as usize].1.contact = contact;
+            }
         }
     }
 
