@@ -8,7 +8,7 @@ use rapier3d::parry::shape::SharedShape;
 use rayon::ThreadPoolBuilder;
 use sbbk_testkit::mesh::{self, Mesh};
 
-use crate::support::{Manifold, Pair, Question, assert_bits, cone, every, nudge, shape};
+use crate::support::{Manifold, Pair, Question, assert_bits, cone, every, nudge};
 
 /// Answers of a pair in motion on so many threads: the first one, and those after.
 fn answers(
