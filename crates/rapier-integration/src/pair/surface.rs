@@ -183,7 +183,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             let is_sheet = |surface: &&mut OneRing<_>| surface.side == Side::Sheet;
             let Some(sheet) = surface.as_mut().filter(is_sheet) else { continue };
             let other = 1 - i;
-            if self.smaller() == Some(other) && self.is_thin(other) && self.is_in_front(i, local) {
+            if self.is_thin(other) && self.smaller() == Some(other) && self.is_in_front(i, local) {
                 sheet.side = Side::Face;
             }
         }

@@ -87,6 +87,7 @@ impl ChunkResult for FirstPass {
 impl Scratch for TriangleScratch {
     fn shrink_to(&mut self, limit: usize) {
         self.descent.shrink_to(limit);
+        self.first.upright.shrink_to(limit);
         self.first.islands.shrink_to(limit);
         self.passed.shrink_to(limit);
     }
