@@ -1,7 +1,9 @@
 //! Pairs of half-edges that run back along each other.
 
+use std::hash::BuildHasher;
+
 use glamx::Vec3;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use super::SMALL_COMPONENT;
 use crate::collections::CompactIndices;
@@ -130,10 +132,26 @@ fn edges(welded: &[u32], valence: &[u32], triangles: &[[u32; 3]]) -> (Vec<Edge>,
 }
 
 /// For each vertex the first one at its place.
+///
+/// Sorts the vertices by a hash of their places. A map from places would miss the cache at each vertex.
 fn weld(vertices: &[Vec3]) -> Vec<u32> {
-    let mut places = FxHashMap::default();
-    places.reserve(vertices.len());
-    (0..).zip(vertices).map(|(i, &vertex)| *places.entry(place(vertex)).or_insert(i)).collect()
+    let hash = |vertex: Vec3| FxBuildHasher.hash_one(place(vertex)) & !u64::from(u32::MAX);
+    let mut by_hash: Vec<u64> = (0..).zip(vertices).map(|(i, &v)| hash(v) | i).collect();
+    by_hash.sort_unstable();
+    let mut welded = vec![0; vertices.len()];
+    let mut firsts = Vec::new();
+    for of_one_hash in by_hash.chunk_by(|a, b| a >> 32 == b >> 32) {
+        firsts.clear();
+        for vertex in of_one_hash.iter().map(|&key| key as u32) {
+            let here = place(vertices[vertex as usize]);
+            let known = firsts.iter().find(|(place, _)| *place == here);
+            welded[vertex as usize] = known.map_or(vertex, |&(_, first)| first);
+            if known.is_none() {
+                firsts.push((here, vertex));
+            }
+        }
+    }
+    welded
 }
 
 #[cfg(test)]
@@ -147,6 +165,17 @@ mod tests {
         let triangles: Vec<_> = (0..count).map(|i| [hub, rim(i), rim(i + 1)]).collect();
         let welded: Vec<u32> = (0..count + 2).collect();
         edges(&welded, &valence(&welded, &triangles), &triangles).1
+    }
+
+    /// Would catch vertices that are joined though they differ, or that are not joined to the first one.
+    #[test]
+    fn vertices_at_one_place_are_the_first_of_them() {
+        let at = |i: u32| Vec3::new((i * 7 % 50) as f32 - 25.0, (i % 3) as f32, -0.0);
+        let mut vertices: Vec<Vec3> = (0..1000).map(at).collect();
+        vertices.extend([Vec3::new(-25.0, 0.0, 0.0), Vec3::NAN, Vec3::NAN]);
+        let first = |here: &Vec3| vertices.iter().position(|v| place(*v) == place(*here)).unwrap();
+        let expected: Vec<u32> = vertices.iter().map(|v| first(v) as u32).collect();
+        assert_eq!(weld(&vertices), expected);
     }
 
     #[test]
