@@ -118,7 +118,7 @@ impl<M, C> Pair<M, C> {
 /// Both sets of contacts, the default one first.
 pub const SETS: [ContactSet; 2] = [ContactSet::Surfaces, ContactSet::Triangles];
 
-/// A dispatcher as a user gets it, but for a change of the configuration.
+/// Returns a dispatcher whose configuration differs from the default by a change.
 pub fn with(change: impl FnOnce(&mut SbbkConfig)) -> SbbkDispatcher {
     let mut config = SbbkConfig::default();
     change(&mut config);

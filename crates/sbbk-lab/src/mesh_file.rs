@@ -12,7 +12,7 @@ use crate::mesh::Mesh;
 /// Loads an `.obj` or `.stl` file as one welded mesh in the file's own units, named after the file.
 /// Faces with more than three corners are cut into triangles.
 ///
-/// Errors: the file cannot be read, its extension or contents make no sense, an index is out of
+/// Errors: the file cannot be read, or its extension or contents make no sense. An index is out of
 /// range, a coordinate is not finite, or there are no triangles.
 pub fn load(path: &Path) -> Result<Mesh, StudyError> {
     read(path).map_err(|cause| StudyError::file("load the mesh", path, cause))

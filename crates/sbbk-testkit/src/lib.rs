@@ -1,7 +1,7 @@
 //! Meshes, scenes and probes that the tests and measurements of SBBK for Rapier share.
 //!
-//! [`mesh`] makes triangle meshes, [`scene`] builds worlds from them, [`probe`] records the queries
-//! of a world, [`truth`] converts shapes for brute force, and [`world`] describes a world by numbers.
+//! [`mesh`] makes triangle meshes, and [`scene`] builds worlds from them. [`probe`] records the queries
+//! of a world, and [`world`] describes a world by numbers. [`truth`] converts shapes for brute force.
 
 #![allow(missing_docs, reason = "not published; names that tell all need no sentence")]
 

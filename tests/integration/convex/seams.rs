@@ -166,8 +166,7 @@ fn a_box_slides_over_fine_triangles() {
     assert!(of_triangles < 0.5 * expected, "{of_triangles}: the test shows nothing");
 }
 
-/// Would catch normal cones that bring ghost contacts back, and edges that a body feels where a flag
-/// changes how the mesh is answered.
+/// Would catch normal cones that bring ghost contacts back, and flags with which a body feels internal edges.
 #[test]
 fn flags_of_a_rigid_mesh_change_no_contact() {
     let flags = [

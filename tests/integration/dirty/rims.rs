@@ -1,11 +1,13 @@
 use glamx::{Vec2, Vec3};
+use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::{MassProperties, RigidBodyBuilder};
 use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use rapier3d::parry::shape::TriMeshFlags;
 use sbbk_testkit::mesh::{self, Mesh};
 
 use super::table::{Case, judge};
-use super::{FLAGS, row, world};
+use super::{FLAGS, row};
+use crate::worlds::on_ground;
 
 /// Half the side of a vessel of single walls.
 const HALF: f32 = 0.4;
@@ -19,9 +21,9 @@ fn open(mesh: Mesh) -> Mesh {
 }
 
 fn vessels() -> [(&'static str, Mesh); 2] {
-    let profile = [[0.0, -HALF], [HALF, -HALF], [HALF, HALF], [0.0, HALF]];
+    let profile = [[0.0, -HALF], [HALF, -HALF], [HALF, HALF]];
     let cup = mesh::revolved(&profile.map(Vec2::from_array), 24);
-    [("box", open(mesh::cuboid(Vec3::splat(HALF), 3))), ("cup", open(cup))]
+    [("box", open(mesh::cuboid(Vec3::splat(HALF), 3))), ("cup", cup)]
 }
 
 /// Lids of half a side, with the heights of their lower sides.
@@ -37,8 +39,8 @@ fn lids(half: f32, flags: TriMeshFlags) -> [(&'static str, SharedShape, f32); 4]
 
 /// Lays a lid on a vessel. Returns the height of the lid over the rim after two seconds.
 fn height(vessel: &Mesh, flags: TriMeshFlags, lid: SharedShape, bottom: f32) -> f32 {
-    let mut world = world();
-    world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(vessel.shape_with(flags)));
+    let vessel = ColliderBuilder::new(vessel.shape_with(flags));
+    let mut world = on_ground(vessel, SbbkDispatcher::default());
     let at = Vec3::new(0.0, HALF + 0.01 - bottom, 0.0);
     let mass = MassProperties::from_cuboid(100.0, Vec3::new(HALF, 0.1, HALF));
     let lid = ColliderBuilder::new(lid).mass_properties(mass);

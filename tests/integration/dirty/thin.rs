@@ -1,11 +1,13 @@
 use glamx::Vec3;
+use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::{MassProperties, RigidBodyBuilder};
 use rapier3d::geometry::ColliderBuilder;
 use rapier3d::parry::shape::TriMeshFlags;
 use sbbk_testkit::mesh::{self, Mesh};
 
 use super::table::{Case, judge};
-use super::{FLAGS, row, world};
+use super::{FLAGS, row};
+use crate::worlds::on_ground;
 
 fn grounds() -> [(&'static str, Mesh); 2] {
     let block = mesh::cuboid(Vec3::new(10.0, 0.5, 10.0), 10).mapped(|at| at - 0.5 * Vec3::Y);
@@ -28,8 +30,8 @@ fn bodies() -> [(&'static str, Mesh, Vec3); 4] {
 
 /// Drops nine bodies at several angles. Returns how many are below the ground after two seconds.
 fn lost(ground: &Mesh, body: &Mesh, half: Vec3, tilt: f32, flags: TriMeshFlags) -> usize {
-    let mut world = world();
-    world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(ground.shape_with(flags)));
+    let ground = ColliderBuilder::new(ground.shape_with(flags));
+    let mut world = on_ground(ground, SbbkDispatcher::default());
     let mass = MassProperties::from_cuboid(100.0, half.max(Vec3::splat(0.005)));
     let bodies = [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|i: u8| {
         let [row, column] = [i / 3, i % 3].map(f32::from);

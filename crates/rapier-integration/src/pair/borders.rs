@@ -9,9 +9,9 @@
 use glamx::DVec3;
 
 /// Returns true if all normals of faces at borders lead to one side.
-pub(super) fn lead_one_way(normals: impl Iterator<Item = DVec3> + Clone) -> bool {
+pub(super) fn lead_one_way(mut normals: impl Iterator<Item = DVec3> + Clone) -> bool {
     let sum: DVec3 = normals.clone().sum();
-    normals.into_iter().all(|normal| normal.dot(sum) > 0.0)
+    normals.all(|normal| normal.dot(sum) > 0.0)
 }
 
 #[cfg(test)]

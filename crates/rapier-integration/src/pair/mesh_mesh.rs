@@ -18,9 +18,9 @@ use super::far::are_few;
 use super::inside::InsideTest;
 use super::pose::PairPose;
 use super::query::{Moving, Pair};
-use super::reduce::{FILTERED, PatchPlan};
+use super::reduce::PatchPlan;
 use super::state::Candidate;
-use super::surface::{filter_distance, lateral_culling, reach};
+use super::surface::{filter_distance, filter_unit, lateral_culling, reach};
 use super::triangle_contacts::in_local;
 use super::triangle_shapes::{
     Cones, ContactSource, DescentChunk, DescentMemory, Hint, TriangleHit, TriangleShapes,
@@ -48,7 +48,7 @@ const STICKS_OUT: Real = 0.5;
 
 /// Least depth of the lowest point of a body in a room, in prediction distances or, if less, in tenths of its
 /// radius. Higher: thin bodies fall out of rooms. Lower: thin bodies sink into solids.
-const SUNK: Real = 0.5;
+const SUNK: f64 = 0.5;
 
 impl MeshPair<'_> {
     /// Returns 1 if the box of mesh 2 is larger than that of mesh 1, else 0.
@@ -70,8 +70,8 @@ impl MeshPair<'_> {
         let depth = exit.distance(middle);
         let way = self.pose.in_other(outer, exit) - held.ball().centre;
         let height = held.height(way.normalize_or_zero(), depth / (1.0 - STICKS_OUT));
-        let sunk = SUNK * self.pose.prediction.min(FILTERED * held.ball().radius);
-        depth >= (1.0 - STICKS_OUT) * height && depth + height >= sunk
+        let unit = filter_unit(self.pose, filter_distance(true, held.ball().radius));
+        depth >= (1.0 - STICKS_OUT) * height && f64::from(depth + height) >= SUNK * unit
     }
 
     /// Returns the nearest point of the larger mesh, if a point of the smaller one is inside. `point` is

@@ -83,8 +83,13 @@ pub(super) fn reach(
 }
 
 /// Returns the unit of the filter: the prediction distance, or less for small shapes.
+pub(super) fn filter_unit(pose: &PairPose, filter_distance: f64) -> f64 {
+    f64::from(pose.prediction).min(filter_distance)
+}
+
+/// Returns the [`filter_unit`] of two shapes.
 fn near(shapes: &impl TriangleShapes, pose: &PairPose) -> f64 {
-    f64::from(pose.prediction).min(shapes.filter_distance())
+    filter_unit(pose, shapes.filter_distance())
 }
 
 /// Returns a test for pairs of triangles that a descent within `margin` finds and that only

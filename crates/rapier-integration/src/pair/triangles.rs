@@ -147,13 +147,13 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         in_chunks(candidates, LEAST_CANDIDATES, first, &pass);
         std::mem::swap(&mut first.contacts, contacts);
         let FirstPass { islands, clipped, is_near, upright, .. } = first;
-        meet_borders(upright, contacts);
+        let lead_one_way = meet_borders(upright, contacts);
         let separation = islands.is_undecided().then(|| self.shapes.separation()).flatten();
         if islands.finish_first_pass(separation) {
             self.second_pass(islands, clipped, contacts);
         }
         if limits.reach < f64::from(self.pose.prediction) {
-            self.add_far(!*is_near, clipped, contacts);
+            self.add_far(!*is_near, lead_one_way, clipped, contacts);
         } else if limits.reach > self.shapes.filter_distance() {
             self.reject_aside(directions, contacts);
         }
@@ -264,10 +264,12 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         SurfaceFilter { shapes: &self.shapes, pose: self.pose, pair }
     }
 
-    /// Adds far contacts, and keeps the nearest one of each pair of triangles. `clipped` is memory.
+    /// Adds far contacts, and keeps the nearest one of each pair of triangles. `lead_one_way` is the result of
+    /// [`meet_borders`], and `clipped` is memory.
     fn add_far(
         &self,
         is_apart: bool,
+        lead_one_way: bool,
         clipped: &mut ManifoldPoints,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
@@ -278,9 +280,10 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
                 return;
             }
             let Some(local) = self.shapes.local(self.pose, pair) else { return };
-            if let Verdict::Contact(contact, _) = self.filter(pair).apply(&local, contact, clipped)
-            {
-                contacts.push((pair, contact));
+            let verdict = self.filter(pair).apply(&local, contact, clipped);
+            if let Verdict::Contact(mut hit, upright) = verdict {
+                hit.contact = upright.filter(|_| lead_one_way).unwrap_or(hit.contact);
+                contacts.push((pair, hit));
             }
         });
         if contacts.len() > old_count {
@@ -361,14 +364,14 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
     }
 }
 
-/// Replaces contacts at borders by those along the normals of the faces, if these lead one way. Both lists have
-/// one order.
+/// Replaces contacts at borders by those along the normals of the faces, if these lead one way, and returns true
+/// then. Both lists have one order.
 fn meet_borders(
     upright: &ContactList<TriangleContact>,
     contacts: &mut ContactList<TriangleSurfaceContact>,
-) {
+) -> bool {
     if !lead_one_way(upright.iter().map(|(_, contact)| contact.normal)) {
-        return;
+        return false;
     }
     let mut next = upright.iter().peekable();
     for (pair, hit) in contacts {
@@ -376,6 +379,7 @@ fn meet_borders(
             hit.contact = *upright;
         }
     }
+    true
 }
 
 /// Returns the contact of the triangles of a candidate, if that is in reach.

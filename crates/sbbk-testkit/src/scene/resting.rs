@@ -8,8 +8,8 @@ use rapier3d::pipeline::PhysicsWorld;
 use super::{Scene, SceneWorld, Solid};
 use crate::mesh;
 
-/// A tower of ten unit cubes, each a mesh of 12 triangles, a millimetre apart at the start, on a fixed
-/// mesh of the same kind, 10 units wide. The tower should stand.
+/// A tower of ten unit cubes on a fixed box 10 units wide. Each is a mesh of 12 triangles. The cubes are a
+/// millimetre apart at the start, and the tower should stand.
 #[derive(Clone, Copy, Debug)]
 pub struct BoxStack;
 

@@ -17,7 +17,7 @@ use super::points::{FACE, PointPair, contact_points, ray_length};
 use super::shape::ConvexShape;
 use crate::pair::query::ContactPoints;
 use crate::pair::reduce::ContactSummary;
-use crate::pair::surface::{LIP, filter_distance};
+use crate::pair::surface::{LIP, filter_distance, filter_unit};
 
 /// A triangle and a part at the pose of a query.
 pub(super) struct TrianglePartPair<'a> {
@@ -236,9 +236,8 @@ impl TrianglePartPair<'_> {
         let ConvexContact { distance, normal: own, on_triangle, .. } = *contact;
         let face = self.face_contact(&self.placed.in_part(self.corners))?;
         let radius = f64::from(self.part.shape.radius());
-        let near = filter_distance(true, self.placed.extent.ball().radius);
-        let near = near.min(f64::from(self.pair.pose.prediction));
-        if radius - face.distance > LIP * near {
+        let of_part = filter_distance(true, self.placed.extent.ball().radius);
+        if radius - face.distance > LIP * filter_unit(self.pair.pose, of_part) {
             return None;
         }
         let normal = face.normal;

@@ -70,8 +70,8 @@ impl Comparison {
     }
 }
 
-/// A pair at its pose in a world. `None` without a mesh, and with `FIX_INTERNAL_EDGES`, where contacts
-/// are not those of the triangles alone.
+/// Returns a pair at its pose in a world. `None` without a mesh, and with `FIX_INTERNAL_EDGES`: that flag changes
+/// the contacts of triangles.
 fn plain_pair(world: &PhysicsWorld, pair: [ColliderHandle; 2]) -> Option<Sequence> {
     let [one, two] = pair.map(|handle| &world.colliders[handle]);
     let shapes = [one, two].map(|collider| collider.shared_shape().clone());

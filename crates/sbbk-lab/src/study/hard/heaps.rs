@@ -103,8 +103,8 @@ fn pit(kit: &Kit, size: f32) -> Figures {
         .note("highest", f64::from(largest(ends.iter().map(|end| end.y))) / size)
 }
 
-/// A square tray with walls all round; half its diagonals inside and outside, the height of its rim
-/// over the bottom, and the thickness of the bottom.
+/// Returns a square tray with walls all round, from half its diagonals inside and outside. `rim` is the height of
+/// the walls over the bottom, and `bottom` its thickness.
 pub(super) fn open_box([half, outside]: [f32; 2], rim: f32, bottom: f32) -> Mesh {
     let profile =
         [[0.0, -bottom], [outside, -bottom], [outside, rim], [half, rim], [half, 0.0], [0.0; 2]];
