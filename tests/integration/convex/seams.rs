@@ -179,7 +179,7 @@ fn flags_of_a_rigid_mesh_change_no_contact() {
         let flagged = flags.map(|flags| (flags, shape_with(&ground, flags)));
         (shape(&ground), flagged)
     });
-    let mut random = Rand32::new(3);
+    let (mut random, mut count) = (Rand32::new(3), 0);
     for dispatcher in [every(), SbbkDispatcher::default()] {
         for (name, shape) in shapes(1.0) {
             for i in 0..40 {
@@ -194,10 +194,12 @@ fn flags_of_a_rigid_mesh_change_no_contact() {
                     found.iter().map(bits).collect::<Vec<_>>()
                 };
                 let expected = found(plain);
+                count += expected.len();
                 for (flags, mesh) in flagged {
                     assert_eq!(found(mesh), expected, "{name}, {i}, {flags:?}");
                 }
             }
         }
     }
+    assert!(count > 300, "{count} contacts");
 }
