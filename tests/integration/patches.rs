@@ -232,6 +232,33 @@ fn small_bodies_have_few_points_beyond_what_touches() {
     assert!(mean < 16.0, "{mean} points a pair");
 }
 
+/// Cubes of 5 cm deep in each other, at Rapier's default prediction distance. Would catch contacts from
+/// within, which hold bodies in each other.
+#[test]
+fn far_contacts_are_outside_of_solids() {
+    const HALF: Real = 0.025;
+    let cube = shape(&mesh::cuboid(Vec3::splat(HALF), 3));
+    let dispatcher = detailed(ContactDetail::Every);
+    let mut random = Rand32::new(5);
+    let is_within = |at: Vector| at.abs().max_element() < HALF - 1e-5;
+    let mut count = 0;
+    for _ in 0..100 {
+        let pos12 = Pose::from_parts(0.02 * direction(&mut random), rotation(&mut random));
+        let found = fresh(&dispatcher, &Question::new(&cube, &cube, pos12).within(0.02));
+        assert!(found.iter().map(distance).any(|distance| distance <= 0.0));
+        for manifold in found.iter().filter(|manifold| distance(manifold) > 0.2 * HALF) {
+            // Other points of a manifold may be beside the contact.
+            let is_contact = |point: &&TrackedContact<u32>| point.dist == distance(manifold);
+            let contact = manifold.points.iter().find(is_contact).expect("a manifold has points");
+            let [one, two] = place(&pos12, manifold, contact);
+            let middle = 0.5 * (one + two);
+            count += 1;
+            assert!(!is_within(middle) && !is_within(pos12.inverse() * middle), "{contact:?}");
+        }
+    }
+    assert!(count > 100, "{count} far contacts");
+}
+
 #[test]
 fn a_patch_for_each_leg() {
     let table = shape(&table());

@@ -32,7 +32,7 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
     let bodies = [Body::fixed(fixed, Pose3::IDENTITY), Body::moving(moving, start)];
     let mut stage = Stage::new(draw, kit, &bodies.map(|body| body.friction(friction)));
     // Threads are small beside the bolt.
-    stage.world.integration_parameters.length_unit *= 5.0 * bolt.pitch;
+    stage.world.integration_parameters.length_unit *= bolt.pitch;
     // Lead angles are of a few degrees: contact clustering takes such normals for one.
     stage.world.integration_parameters.contact_clustering = false;
     watched(draw, &mut stage, bolt.pitch, pull)
