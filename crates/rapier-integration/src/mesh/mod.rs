@@ -14,6 +14,6 @@ pub(crate) use neighbours::{MeshFacets, box_between};
 pub(crate) use pair_mesh::{Change, MeshSurface, PairMesh};
 pub(crate) use store::{MeshStore, Registered, StoreCounts};
 pub(crate) use view::{
-    BEHIND, MeshView, are_near, box_of, is_covered, is_near, may_be_inside, nearest,
+    BEHIND, MeshView, are_near, box_of, exit, is_covered, is_near, may_be_inside, nearest,
     nearest_triangle,
 };

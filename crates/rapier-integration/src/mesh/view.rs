@@ -11,8 +11,8 @@ use glamx::Vec3;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
 use parry3d::partitioning::BvhNode;
-use parry3d::query::PointProjection;
-use parry3d::shape::{CompositeShape, CompositeShapeRef, Shape, TriMesh};
+use parry3d::query::{PointProjection, Ray, RayCast};
+use parry3d::shape::{CompositeShape, CompositeShapeRef, FeatureId, Shape, TriMesh};
 use sbbk_core::traverse::TestedBox;
 use sbbk_core::volumes::Sphere;
 use sbbk_core::volumes::rounding::gamma;
@@ -92,6 +92,24 @@ pub(crate) fn nearest(mesh: &TriMesh, point: Vec3) -> Option<(u32, PointProjecti
 /// Returns the nearest triangle of a mesh to a point, if that is within a distance.
 pub(crate) fn nearest_triangle(mesh: &TriMesh, point: Vec3, within: Real) -> Option<u32> {
     Some(CompositeShapeRef(mesh).project_local_point(point, within, false)?.0)
+}
+
+/// Greatest number of parts of a mesh that [`exit`] leaves one after another.
+const MOST_PARTS: usize = 8;
+
+/// Returns the distance in which a ray from a point inside a shape of triangles leaves it, and the outward normal there.
+/// `None` if the ray first meets the front of a triangle, or nothing. Parts of a mesh may overlap.
+pub(crate) fn exit(shape: &impl RayCast, point: Vec3, direction: Vec3) -> Option<(Real, Vec3)> {
+    const BACK: FeatureId = FeatureId::Face(1);
+    let next = |from: Real| {
+        let ray = Ray::new(point + from * direction, direction);
+        let hit = shape.cast_local_ray_and_get_normal(&ray, Real::MAX, false)?;
+        // Parry turns normals against the ray.
+        (hit.feature == BACK).then_some((from + hit.time_of_impact, -hit.normal))
+    };
+    let beyond = |from: Real| from + 64.0 * Real::EPSILON * (from + point.abs().max_element());
+    let exits = std::iter::successors(next(0.0), |(length, _)| next(beyond(*length)));
+    exits.take(MOST_PARTS).last()
 }
 
 /// True if a box is finite and not empty.

@@ -30,6 +30,8 @@ struct Support {
     reliable: u32,
     /// True if a contact on the far side of a thin body was rejected. No others are added.
     is_thin: bool,
+    /// True if contacts along the area vector of the contour were added.
+    has_contour: bool,
     /// Sum of the normals of reliable contacts.
     normals: DVec3,
     /// Direction off a sheet, to the side on which the middle of a solid is; zero without a sheet.
@@ -44,12 +46,21 @@ const SUPPORTED: u32 = 8;
 
 impl Support {
     fn is_enough(self) -> bool {
-        self.reliable > 0 && (self.is_thin || self.pairs <= SUPPORTED * self.reliable)
+        self.has_contour
+            || self.reliable > 0 && (self.is_thin || self.pairs <= SUPPORTED * self.reliable)
     }
 }
 
 /// A triangle of mesh 1 (0) or 2 (1).
 type Node = (usize, u32);
+
+/// A crossing of an island that has too few contacts.
+pub(super) struct Unsupported {
+    pub(super) island: Node,
+    pub(super) pair: [u32; 2],
+    /// True if the pair has a final contact.
+    pub(super) has_contact: bool,
+}
 
 /// Two triangles that cross or have passed each other.
 #[derive(Copy, Clone)]
@@ -65,6 +76,8 @@ pub(super) struct Crossing {
     pub(super) normal: DVec3,
     /// Depth of the contact of the first pass.
     pub(super) depth: f64,
+    /// True if both triangles are those of solids.
+    pub(super) is_of_solids: bool,
     /// Set unless both shapes are solids, or the solid is larger than the sheet.
     pub(super) sheet: Option<SheetSide>,
 }
@@ -217,14 +230,38 @@ impl OverlapIslands {
         self.support_of(pair).is_some_and(|support| support.reliable == 0)
     }
 
+    /// Replaces `list` by the crossings of solids in islands that have too few contacts, one island after another.
+    pub(super) fn list_unsupported(&mut self, list: &mut Vec<Unsupported>) {
+        list.clear();
+        for index in 0..self.crossings.len() {
+            let crossing = self.crossings[index];
+            let Crossing { pair, is_crossing, is_of_solids, .. } = crossing;
+            if is_crossing && is_of_solids && self.needs_support(pair) {
+                let island = self.islands.first((0, pair[0]));
+                list.push(Unsupported { island, pair, has_contact: self.is_fine(&crossing) });
+            }
+        }
+        list.sort_unstable_by_key(|crossing| (crossing.island, crossing.pair));
+    }
+
+    /// Ends the search for contacts of an island, since contacts of its contour were added.
+    pub(super) fn add_contour(&mut self, pair: [u32; 2]) {
+        let first = self.islands.first((0, pair[0]));
+        self.support.entry(first).or_default().has_contour = true;
+    }
+
+    /// Returns true if a contact does not push against the direction in which the bodies separate.
+    pub(super) fn leads_apart(&self, normal: DVec3) -> bool {
+        self.separation.is_none_or(|way| way.dot(normal) >= -SAME_SIDE)
+    }
+
     /// Returns true if a contact pushes neither against the reliable ones of its island, nor through a
     /// sheet.
     pub(super) fn agrees(&mut self, pair: [u32; 2], normal: DVec3) -> bool {
         let agrees = |Support { normals, sheet_side, .. }: Support| {
             normals.dot(normal) >= 0.0 && sheet_side.dot(normal) >= 0.0
         };
-        self.separation.is_none_or(|way| way.dot(normal) >= -SAME_SIDE)
-            && self.support_of(pair).is_none_or(agrees)
+        self.leads_apart(normal) && self.support_of(pair).is_none_or(agrees)
     }
 
     /// Rejects contacts of the far sides of thin bodies: of two contacts of a triangle that push against
@@ -311,7 +348,16 @@ mod tests {
     fn crossing(pair: [u32; 2], contact: Option<&Contact>, sheet: Option<SheetSide>) -> Crossing {
         let (normal, depth) = contact.copied().unwrap_or_default();
         let is_reliable = contact.is_some();
-        Crossing { pair, is_crossing: true, greatest: 1.0, is_reliable, normal, depth, sheet }
+        Crossing {
+            pair,
+            is_crossing: true,
+            greatest: 1.0,
+            is_reliable,
+            normal,
+            depth,
+            is_of_solids: sheet.is_none(),
+            sheet,
+        }
     }
 
     /// Would catch islands that are not joined through common triangles, and pairs that a second

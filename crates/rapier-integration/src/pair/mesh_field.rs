@@ -39,7 +39,7 @@ use super::surface::{filter_distance, reach};
 use super::triangle_shapes::{Cones, DescentMemory, Hint, TriangleShapes};
 use super::triangles::TriangleQuery;
 use crate::mesh::{
-    Change, MeshFacets, MeshStore, MeshSurface, MeshView, PairMesh, is_covered, nearest,
+    Change, MeshFacets, MeshStore, MeshSurface, MeshView, PairMesh, exit, is_covered, nearest,
     nearest_triangle,
 };
 
@@ -290,6 +290,13 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
         }
         let (_, nearest, behind) = nearest(self.pair.mesh.mesh, point)?;
         Some((nearest.point, behind))
+    }
+
+    fn exit(&self, i: usize, point: Vector, direction: Vector) -> Option<(Real, Vector)> {
+        if self.is_field(i) {
+            return exit(self.field.0, point, direction);
+        }
+        exit(self.pair.mesh.mesh, point, direction)
     }
 
     fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32> {

@@ -28,8 +28,8 @@ use super::triangle_shapes::{
 };
 use super::triangles::TriangleQuery;
 use crate::mesh::{
-    BEHIND, Change, MeshFacets, MeshStore, MeshSurface, MeshView, PairMesh, is_covered, nearest,
-    nearest_triangle,
+    BEHIND, Change, MeshFacets, MeshStore, MeshSurface, MeshView, PairMesh, exit, is_covered,
+    nearest, nearest_triangle,
 };
 
 /// Two meshes.
@@ -363,6 +363,10 @@ impl<'q> TriangleShapes for Meshes<'q> {
     fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)> {
         let (_, nearest, behind) = nearest(self.pair.meshes[i].mesh, point)?;
         Some((nearest.point, behind))
+    }
+
+    fn exit(&self, i: usize, point: Vector, direction: Vector) -> Option<(Real, Vector)> {
+        exit(self.pair.meshes[i].mesh, point, direction)
     }
 
     fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32> {

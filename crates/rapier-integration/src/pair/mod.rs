@@ -10,6 +10,7 @@
 //! | [`bvh_descent`] | candidates from Parry's BVHs |
 //! | [`far`] | contacts beyond the reach |
 //! | [`surface`], [`borders`], [`islands`], [`passed`], [`inside`] | contacts of surfaces from contacts of triangles |
+//! | [`deep`], [`contour`] | contacts of solids deep in each other |
 //! | [`field`], [`pose`], [`triangle_contacts`] | height fields, poses, points of two triangles |
 //! | [`convex`] | a mesh and convex shapes |
 //! | [`reduce`], [`write`](mod@write) | contact reduction, manifolds |
@@ -17,7 +18,9 @@
 mod borders;
 mod bvh_descent;
 mod chunks;
+mod contour;
 mod convex;
+mod deep;
 mod far;
 mod field;
 mod inside;

@@ -251,6 +251,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             is_reliable: good.is_some(),
             normal,
             depth,
+            is_of_solids: is_solid == [true; 2],
             sheet: self.sheet_side(is_solid, local),
         };
         let source = ContactSource::OutwardAxis;

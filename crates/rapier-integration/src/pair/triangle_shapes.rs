@@ -81,6 +81,10 @@ pub(crate) trait TriangleShapes: Sync {
     /// and the inward normal.
     fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)>;
 
+    /// Returns the distance in which a ray from a point inside a shape leaves it, and the outward normal there. `None`
+    /// if the ray first meets the front of a triangle, or nothing.
+    fn exit(&self, i: usize, point: Vector, direction: Vector) -> Option<(Real, Vector)>;
+
     /// Returns the nearest triangle of a shape to a point in its frame, if that is within a distance. The triangle
     /// of a height field may be another that is near.
     fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32>;

@@ -16,6 +16,7 @@ use sbbk_core::traverse::{DescentCounts, SlackLimits};
 
 use super::borders::lead_one_way;
 use super::chunks::{ChunkResult, in_chunks};
+use super::deep::{ContourMemory, DeepSearch};
 use super::far::{Directions, FarSearch};
 use super::inside::InsideTest;
 use super::islands::OverlapIslands;
@@ -51,6 +52,7 @@ pub(crate) struct TriangleQuery<'q, S> {
 pub(crate) struct TriangleScratch {
     descent: DescentMemory,
     first: FirstPass,
+    contours: ContourMemory,
     directions: Directions,
     passed: PassedTriangles,
 }
@@ -89,6 +91,7 @@ impl Scratch for TriangleScratch {
         self.descent.shrink_to(limit);
         self.first.upright.shrink_to(limit);
         self.first.islands.shrink_to(limit);
+        self.contours.shrink_to(limit);
         self.passed.shrink_to(limit);
     }
 }
@@ -138,7 +141,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         scratch: &mut TriangleScratch,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
-        let TriangleScratch { first, directions, passed, .. } = scratch;
+        let TriangleScratch { first, contours, directions, passed, .. } = scratch;
         first.clear();
         std::mem::swap(&mut first.contacts, contacts);
         let pass = |chunk: &mut [_], first: &mut FirstPass| {
@@ -150,6 +153,9 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         let lead_one_way = meet_borders(upright, contacts);
         let separation = islands.is_undecided().then(|| self.shapes.separation()).flatten();
         if islands.finish_first_pass(separation) {
+            contacts.retain(|(pair, _)| islands.is_final(*pair));
+            let deep = DeepSearch { shapes: &self.shapes, pose: self.pose };
+            deep.add_contacts(islands, contours, contacts);
             self.second_pass(islands, clipped, contacts);
         }
         if limits.reach < f64::from(self.pose.prediction) {
@@ -352,7 +358,6 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         clipped: &mut ManifoldPoints,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
-        contacts.retain(|(pair, _)| islands.is_final(*pair));
         for i in 0..islands.len() {
             let Some(crossing) = islands.open(i) else { continue };
             let Some(local) = self.shapes.local(self.pose, crossing.pair) else { continue };
