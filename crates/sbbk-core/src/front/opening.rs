@@ -1,7 +1,7 @@
 //! The pairs of nodes below a pair, and how two trees test them.
 
 use crate::simd::{Inner, Outer, Same, each_bit};
-use crate::traverse::{Compare, Counters, Overlap, PairFrame, Side, Sides};
+use crate::traverse::{Compare, Counters, NodeLanes, Overlap, PairFrame, Sides};
 use crate::tree::{LeafBatch, Link, Slot, Tree};
 
 /// A pair of nodes.
@@ -95,13 +95,11 @@ impl<C: Counters, V: FnMut(&LeafBatch, &LeafBatch)> PairTest for TreePair<'_, C,
         let (one, two) =
             (self.trees.0.children(opening.nodes.0), self.trees.1.children(opening.nodes.1));
         let same = Same(opening.same_lane);
-        let (outer, inner) =
-            (Side { children: one, spread: Outer }, Side { children: two, spread: Inner });
         let mut overlap = Overlap { frame: &mut *self.frame, counters: &mut self.counters };
         let (meeting, _) = match opening.sides {
-            Sides::Both => overlap.compare(&outer, &inner, lanes),
-            Sides::First => overlap.compare(&outer, &Side { children: two, spread: same }, lanes),
-            Sides::Second => overlap.compare(&Side { children: one, spread: same }, &inner, lanes),
+            Sides::Both => overlap.compare(&NodeLanes::new((one, Outer), (two, Inner), lanes)),
+            Sides::First => overlap.compare(&NodeLanes::new((one, Outer), (two, same), lanes)),
+            Sides::Second => overlap.compare(&NodeLanes::new((one, same), (two, Inner), lanes)),
         };
         meeting
     }

@@ -6,7 +6,7 @@
 use wide::f32x4;
 
 use crate::simd::{Spread, dot};
-use crate::traverse::{Compare, PairFrame, Side, Sides, expand};
+use crate::traverse::{Compare, NodeLanes, PairFrame, Sides, expand};
 use crate::tree::{LeafBatch, Slot, Tree};
 
 /// Down both trees from the roots, always to the children whose centres are nearest to each other.
@@ -38,13 +38,8 @@ impl Compare for Centres<'_> {
     type Key = f32;
 
     #[inline(always)]
-    fn compare(
-        &mut self,
-        side1: &Side<'_, impl Spread>,
-        side2: &Side<'_, impl Spread>,
-        lanes: u32,
-    ) -> (u32, [f32; 4]) {
-        let offset = self.0.along1(side1, side2, f32x4::ZERO).offset;
-        (lanes, dot(offset, offset).to_array())
+    fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [f32; 4]) {
+        let offset = self.0.along1(nodes, f32x4::ZERO).offset;
+        (nodes.lanes, dot(offset, offset).to_array())
     }
 }

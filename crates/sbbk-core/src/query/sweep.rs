@@ -14,7 +14,7 @@ use glamx::Vec3;
 use wide::f32x4;
 
 use crate::simd::Spread;
-use crate::traverse::{Along, Compare, Cutoff, PairFrame, Side};
+use crate::traverse::{Along, Compare, Cutoff, NodeLanes, PairFrame};
 use crate::volumes::rounding::gamma;
 
 /// Lower bounds of times of impact.
@@ -33,13 +33,13 @@ pub(super) struct Sweep<'a> {
 impl Sweep<'_> {
     /// The earliest times, infinite where the nodes pass each other.
     #[inline(always)]
-    fn times(&mut self, side1: &Side<'_, impl Spread>, side2: &Side<'_, impl Spread>) -> f32x4 {
+    fn times(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> f32x4 {
         let target = f32x4::splat(self.target);
-        let apart = self.frame.signed_gaps(side1, side2) - target;
+        let apart = self.frame.signed_gaps(nodes) - target;
         let mut start = (apart * f32x4::splat(self.inverse_speed)).fast_max(f32x4::ZERO);
         let mut end = f32x4::splat(f32::INFINITY);
         let rounding = f32x4::splat(self.frame.rounding[0]);
-        let Along { offset, reach } = self.frame.along1(side1, side2, rounding);
+        let Along { offset, reach } = self.frame.along1(nodes, rounding);
         for axis in 0..3 {
             let speed = self.velocity[axis];
             let inverse = f32x4::splat(1.0 / speed.abs());
@@ -58,13 +58,8 @@ impl Compare for Sweep<'_> {
     type Key = f32;
 
     #[inline(always)]
-    fn compare(
-        &mut self,
-        side1: &Side<'_, impl Spread>,
-        side2: &Side<'_, impl Spread>,
-        lanes: u32,
-    ) -> (u32, [f32; 4]) {
-        let times = self.times(side1, side2);
-        self.cutoff.keep(times, lanes)
+    fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [f32; 4]) {
+        let times = self.times(nodes);
+        self.cutoff.keep(times, nodes.lanes)
     }
 }

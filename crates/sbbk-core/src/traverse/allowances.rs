@@ -6,7 +6,7 @@ use wide::f32x4;
 
 use super::expand::Compare;
 use super::gaps::Bound;
-use super::{OrderedOverlap, PairFrame, Side, Toward};
+use super::{NodeLanes, OrderedOverlap, PairFrame, Toward};
 use crate::simd::{Inner, Outer, each};
 use crate::support::Random;
 use crate::tree::{BuildOptions, Children, Intervals, LayerPlan, Slot, Tree};
@@ -68,10 +68,10 @@ impl Pair {
         [one, two].map(|tree| tree.children(tree.link(Slot::ROOT).index()))
     }
 
-    /// The children of both sides as a descent compares them.
-    fn sides(&self) -> (Side<'_, Outer>, Side<'_, Inner>) {
+    /// The children of both trees as a descent compares them.
+    fn nodes(&self) -> NodeLanes<'_, Outer, Inner> {
         let [one, two] = self.children();
-        (Side { children: one, spread: Outer }, Side { children: two, spread: Inner })
+        NodeLanes::new((one, Outer), (two, Inner), 0b1111)
     }
 
     /// The corners of the triangles in a lane, in frame 1.
@@ -135,10 +135,10 @@ fn gaps_of_boxes_are_below_those_in_f64() {
     let random = &mut Random(1);
     for i in 0..PAIRS {
         let pair = Pair::random(random, i);
-        let (frame, (side1, side2)) = (pair.frame(0.7), pair.sides());
+        let (frame, nodes) = (pair.frame(0.7), pair.nodes());
         let rounding = frame.rounding.map(f32x4::splat);
-        let in_frame1 = frame.along1(&side1, &side2, rounding[0]);
-        let in_frame2 = frame.along2(&side1, &side2, in_frame1.offset, rounding[1]);
+        let in_frame1 = frame.along1(&nodes, rounding[0]);
+        let in_frame2 = frame.along2(&nodes, in_frame1.offset, rounding[1]);
         for lane in 0..4 {
             let (exact, _) = pair.exact(lane);
             for (k, along) in [in_frame1, in_frame2].into_iter().enumerate() {
@@ -158,9 +158,9 @@ fn gaps_of_kdops_are_below_those_in_f64() {
     let random = &mut Random(2);
     for i in 0..PAIRS {
         let pair = Pair::random(random, i);
-        let (mut frame, (side1, side2)) = (pair.frame(0.7), pair.sides());
+        let (mut frame, nodes) = (pair.frame(0.7), pair.nodes());
         let rounding = 6.0 * frame.rounding[0];
-        let gaps = frame.correspondence().gaps(&side1.kdops_with(&side2).unwrap(), 0).to_array();
+        let gaps = frame.correspondence().gaps(&nodes.kdops().unwrap(), 0).to_array();
         for lane in 0..4 {
             let (_, slabs) = pair.exact(lane);
             let exact = slabs.into_iter().fold(f64::NEG_INFINITY, f64::max);
@@ -204,7 +204,7 @@ fn nodes_the_margin_apart_meet() {
     let (mut by_boxes, mut by_slabs) = (0, 0);
     for i in 0..PAIRS {
         let pair = Pair::random(random, i);
-        let (side1, side2) = pair.sides();
+        let nodes = pair.nodes();
         let unit2 = pair.frame(0.0).placement.rotation.x_axis.length();
         for lane in 0..4 {
             let (boxes, slabs) = pair.exact(lane);
@@ -217,11 +217,11 @@ fn nodes_the_margin_apart_meet() {
             let count = if box_gap > slab_gap { &mut by_boxes } else { &mut by_slabs };
             *count += 1;
             let mut frame = pair.frame((gap as f32).next_up());
-            assert!(frame.boxes_meet(&side1, &side2) >> lane & 1 != 0, "{gap}");
-            let kdops = side1.kdops_with(&side2).unwrap();
+            assert!(frame.boxes_meet(&nodes) >> lane & 1 != 0, "{gap}");
+            let kdops = nodes.kdops().unwrap();
             let meeting = frame.correspondence().kdops_meet(&kdops, 0b1111);
             assert!(meeting >> lane & 1 != 0, "{gap}");
-            let (meeting, _) = OrderedOverlap(&mut frame).compare(&side1, &side2, 0b1111);
+            let (meeting, _) = OrderedOverlap(&mut frame).compare(&nodes);
             assert!(meeting >> lane & 1 != 0, "{gap}");
         }
     }
@@ -237,12 +237,12 @@ fn bounds_are_below_those_of_corners_and_not_far_below() {
     let mut tightest = [f64::INFINITY; 3];
     for i in 0..PAIRS {
         let pair = Pair::random(random, i);
-        let (mut frame, (side1, side2)) = (pair.frame(0.7), pair.sides());
+        let (mut frame, nodes) = (pair.frame(0.7), pair.nodes());
         let normal = random.vector(1.0).as_dvec3().normalize();
         let toward = Toward::new(&frame, normal).unwrap();
-        let kdops = side1.kdops_with(&side2).unwrap();
+        let kdops = nodes.kdops().unwrap();
         let along = toward.gaps(&kdops).to_array();
-        let signed = frame.signed_gaps(&side1, &side2).to_array();
+        let signed = frame.signed_gaps(&nodes).to_array();
         for lane in 0..4 {
             let [one, two] = pair.corners(lane);
             let ends = |corners: [DVec3; 3], end: fn(f64, f64) -> f64| {

@@ -1,7 +1,7 @@
 use wide::f32x4;
 
 use super::placement::Placement;
-use super::side::KdopSides;
+use super::side::KdopLanes;
 use crate::simd::{Spread, each};
 use crate::volumes::{SLABS, directions};
 
@@ -74,12 +74,12 @@ impl Correspondence {
     #[inline(always)]
     pub(super) fn kdops_meet(
         &self,
-        sides: &KdopSides<'_, impl Spread, impl Spread>,
+        kdops: &KdopLanes<'_, impl Spread, impl Spread>,
         candidates: u32,
     ) -> u32 {
         let mut remaining = candidates;
         for (axis, slab) in self.slabs.iter().enumerate().skip(3) {
-            let Along { offset, reach } = slab.along(axis, slab.slack, sides);
+            let Along { offset, reach } = slab.along(axis, slab.slack, kdops);
             remaining &= offset.abs().simd_le(reach).to_bitmask();
             if remaining == 0 {
                 break;
@@ -93,12 +93,12 @@ impl Correspondence {
     #[inline(always)]
     pub(super) fn gaps(
         &self,
-        sides: &KdopSides<'_, impl Spread, impl Spread>,
+        kdops: &KdopLanes<'_, impl Spread, impl Spread>,
         first: usize,
     ) -> f32x4 {
         let mut largest = f32x4::splat(f32::NEG_INFINITY);
         for (axis, slab) in self.slabs.iter().enumerate().skip(first) {
-            let Along { offset, reach } = slab.along(axis, self.rounding, sides);
+            let Along { offset, reach } = slab.along(axis, self.rounding, kdops);
             let gap = (offset.abs() - reach) * f32x4::splat(INVERSE_LENGTHS[axis]);
             largest = largest.fast_max(gap);
         }
@@ -113,15 +113,15 @@ impl Slab {
         &self,
         axis: usize,
         slack: f32,
-        sides: &KdopSides<'_, impl Spread, impl Spread>,
+        kdops: &KdopLanes<'_, impl Spread, impl Spread>,
     ) -> Along {
-        let mut offset = f32x4::splat(self.offset) - sides.one.centre(axis);
-        let mut reach = f32x4::splat(slack) + sides.one.extent(axis);
+        let mut offset = f32x4::splat(self.offset) - kdops.one.centre(axis);
+        let mut reach = f32x4::splat(slack) + kdops.one.extent(axis);
         for term in 0..3 {
             let index = usize::from(self.indices[term]);
             let coefficient = f32x4::splat(self.coefficients[term]);
-            offset += coefficient * sides.two.centre(index);
-            reach += coefficient.abs() * sides.two.extent(index);
+            offset += coefficient * kdops.two.centre(index);
+            reach += coefficient.abs() * kdops.two.extent(index);
         }
         Along { offset, reach }
     }

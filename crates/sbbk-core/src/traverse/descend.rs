@@ -11,7 +11,7 @@ use super::counters::Counters;
 use super::expand::{Sides, expand};
 use super::frame::PairFrame;
 use super::overlap::Overlap;
-use super::side::Side;
+use super::side::NodeLanes;
 use crate::simd::Same;
 use crate::tree::{LeafBatch, Slot, Tree};
 
@@ -109,9 +109,9 @@ fn roots(
         }
     }
     counters.aabb_tests(1);
-    let [root1, root2] =
-        [tree1, tree2].map(|tree| Side { children: tree.children(0), spread: Same(0) });
-    (frame.boxes_meet(&root1, &root2) != 0).then_some(NodePair(Slot::ROOT, Slot::ROOT))
+    let [root1, root2] = [tree1, tree2].map(|tree| (tree.children(0), Same(0)));
+    (frame.boxes_meet(&NodeLanes::new(root1, root2, 1)) != 0)
+        .then_some(NodePair(Slot::ROOT, Slot::ROOT))
 }
 
 fn are_both_leaves((tree1, tree2): (&Tree, &Tree), NodePair(slot1, slot2): NodePair) -> bool {

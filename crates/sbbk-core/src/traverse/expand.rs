@@ -1,6 +1,6 @@
 //! Replaces a pair of nodes by the pairs of their children that pass a comparison.
 
-use super::side::Side;
+use super::side::NodeLanes;
 use crate::simd::{Inner, Outer, Same, Spread, each_bit};
 use crate::tree::{Link, Slot, Tree};
 
@@ -40,13 +40,9 @@ pub(crate) trait Compare {
     /// A value computed for each pair.
     type Key: Copy;
 
-    /// Returns the lanes of `lanes` whose pairs pass, as a mask, and the key of each lane.
-    fn compare(
-        &mut self,
-        side1: &Side<'_, impl Spread>,
-        side2: &Side<'_, impl Spread>,
-        lanes: u32,
-    ) -> (u32, [Self::Key; 4]);
+    /// Returns a mask of the lanes whose pairs pass, and the key of each lane.
+    fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>)
+    -> (u32, [Self::Key; 4]);
 }
 
 /// Compares the pairs of children and calls `push` with those that pass.
@@ -60,24 +56,22 @@ pub(crate) fn expand<C: Compare>(
 ) {
     let links = (tree1.link(slot1), tree2.link(slot2));
     let (node1, node2) = sides.nodes((slot1, slot2), links);
-    let (children1, children2) = (tree1.children(node1), tree2.children(node2));
-    let (outer, inner) =
-        (Side { children: children1, spread: Outer }, Side { children: children2, spread: Inner });
+    let (one, two) = (tree1.children(node1), tree2.children(node2));
     match sides {
         Sides::Both => {
-            let (mask, keys) = compare.compare(&outer, &inner, 0b1111);
+            let (mask, keys) = compare.compare(&NodeLanes::new((one, Outer), (two, Inner), 0b1111));
             each_bit(mask, |lane| {
                 push((Slot::new(node1, lane >> 1), Slot::new(node2, lane & 1)), keys[lane]);
             });
         }
         Sides::First => {
-            let same = Side { children: children2, spread: Same(slot2.lane()) };
-            let (mask, keys) = compare.compare(&outer, &same, 0b0101);
+            let same = Same(slot2.lane());
+            let (mask, keys) = compare.compare(&NodeLanes::new((one, Outer), (two, same), 0b0101));
             each_bit(mask, |lane| push((Slot::new(node1, lane >> 1), slot2), keys[lane]));
         }
         Sides::Second => {
-            let same = Side { children: children1, spread: Same(slot1.lane()) };
-            let (mask, keys) = compare.compare(&same, &inner, 0b0011);
+            let same = Same(slot1.lane());
+            let (mask, keys) = compare.compare(&NodeLanes::new((one, same), (two, Inner), 0b0011));
             each_bit(mask, |lane| push((slot1, Slot::new(node2, lane)), keys[lane]));
         }
     }

@@ -3,7 +3,7 @@ use wide::f32x4;
 
 use super::correspondence::Correspondence;
 use super::placement::Placement;
-use super::side::Side;
+use super::side::NodeLanes;
 use crate::simd::{Spread, V3, dot, each};
 use crate::tree::Tree;
 use crate::volumes::rounding::gamma;
@@ -158,13 +158,13 @@ impl PairFrame {
     #[inline(always)]
     pub(crate) fn along1(
         &self,
-        side1: &Side<'_, impl Spread>,
-        side2: &Side<'_, impl Spread>,
+        nodes: &NodeLanes<'_, impl Spread, impl Spread>,
         slack: f32x4,
     ) -> Along {
         let Rows { rows, absolute } = &self.to_frame1;
-        let (centre1, extent1) = (side1.centre(), side1.extent());
-        let (centre2, extent2) = (side2.centre(), side2.extent());
+        let NodeLanes { one, two, .. } = nodes;
+        let (centre1, extent1) = (one.centre(), one.extent());
+        let (centre2, extent2) = (two.centre(), two.extent());
         Along {
             offset: each(|i| self.translation[i] + dot(rows[i], centre2) - centre1[i]),
             reach: each(|i| extent1[i] + dot(absolute[i], extent2) + slack),
@@ -175,13 +175,12 @@ impl PairFrame {
     #[inline(always)]
     pub(super) fn along2(
         &self,
-        side1: &Side<'_, impl Spread>,
-        side2: &Side<'_, impl Spread>,
+        nodes: &NodeLanes<'_, impl Spread, impl Spread>,
         offset: V3<f32x4>,
         slack: f32x4,
     ) -> Along {
         let Rows { rows, absolute } = &self.to_frame2;
-        let (extent1, extent2) = (side1.extent(), side2.extent());
+        let (extent1, extent2) = (nodes.one.extent(), nodes.two.extent());
         Along {
             offset: each(|i| dot(rows[i], offset)),
             reach: each(|i| extent2[i] + dot(absolute[i], extent1) + slack),

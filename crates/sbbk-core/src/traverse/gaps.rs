@@ -18,7 +18,7 @@ use wide::f32x4;
 
 use super::expand::Compare;
 use super::frame::PairFrame;
-use super::side::Side;
+use super::side::NodeLanes;
 use super::toward::Toward;
 use crate::simd::{Spread, V3, dot, each, largest};
 use crate::volumes::rounding::gamma;
@@ -114,13 +114,9 @@ impl Bound {
 impl PairFrame {
     /// The bounds of all four lanes, for any margin.
     #[inline(always)]
-    pub(crate) fn signed_gaps(
-        &mut self,
-        side1: &Side<'_, impl Spread>,
-        side2: &Side<'_, impl Spread>,
-    ) -> f32x4 {
-        let bound = self.box_bound(side1, side2);
-        match side1.kdops_with(side2) {
+    pub(crate) fn signed_gaps(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> f32x4 {
+        let bound = self.box_bound(nodes);
+        match nodes.kdops() {
             Some(kdops) => {
                 bound.or(Bound::of_slabs(self.correspondence().gaps(&kdops, 3))).signed()
             }
@@ -130,10 +126,10 @@ impl PairFrame {
 
     /// The bound along the six face axes of boxes.
     #[inline(always)]
-    fn box_bound(&self, side1: &Side<'_, impl Spread>, side2: &Side<'_, impl Spread>) -> Bound {
+    fn box_bound(&self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> Bound {
         let [rounding1, rounding2] = self.rounding.map(f32x4::splat);
-        let in_frame1 = self.along1(side1, side2, rounding1);
-        let in_frame2 = self.along2(side1, side2, in_frame1.offset, rounding2);
+        let in_frame1 = self.along1(nodes, rounding1);
+        let in_frame2 = self.along2(nodes, in_frame1.offset, rounding2);
         let unit2 = f32x4::splat(self.placement.rotation.x_axis.length() as f32);
         Bound::of_axes(in_frame1.gaps(), f32x4::ONE).or(Bound::of_axes(in_frame2.gaps(), unit2))
     }
@@ -143,20 +139,15 @@ impl Compare for SignedGaps<'_> {
     type Key = f32;
 
     #[inline(always)]
-    fn compare(
-        &mut self,
-        side1: &Side<'_, impl Spread>,
-        side2: &Side<'_, impl Spread>,
-        lanes: u32,
-    ) -> (u32, [f32; 4]) {
-        let along = match (&self.toward, side1.kdops_with(side2)) {
+    fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [f32; 4]) {
+        let along = match (&self.toward, nodes.kdops()) {
             (Some(toward), Some(kdops)) => toward.gaps(&kdops),
             _ => f32x4::splat(f32::NEG_INFINITY),
         };
-        if self.cutoff.is_beyond(along, lanes) {
-            return self.cutoff.keep(along, lanes);
+        if self.cutoff.is_beyond(along, nodes.lanes) {
+            return self.cutoff.keep(along, nodes.lanes);
         }
-        let gaps = self.frame.signed_gaps(side1, side2).fast_max(along);
-        self.cutoff.keep(gaps, lanes)
+        let gaps = self.frame.signed_gaps(nodes).fast_max(along);
+        self.cutoff.keep(gaps, nodes.lanes)
     }
 }

@@ -30,6 +30,6 @@ pub use frame::PairFrame;
 pub(crate) use gaps::{Cutoff, GapCounts, SignedGaps};
 pub(crate) use overlap::{OrderedOverlap, Overlap};
 pub use placement::Placement;
-pub(crate) use side::Side;
+pub(crate) use side::NodeLanes;
 pub use slack::{Slack, SlackLimits, SlackPlan};
 pub(crate) use toward::Toward;

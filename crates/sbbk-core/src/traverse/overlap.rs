@@ -5,23 +5,19 @@ use wide::f32x4;
 use super::counters::Counters;
 use super::expand::Compare;
 use super::frame::PairFrame;
-use super::side::Side;
+use super::side::NodeLanes;
 use crate::simd::{Spread, largest};
 
 impl PairFrame {
     /// Bit k: lane k's boxes come within the margin on the six face axes of both.
     #[inline(always)]
-    pub(super) fn boxes_meet(
-        &self,
-        side1: &Side<'_, impl Spread>,
-        side2: &Side<'_, impl Spread>,
-    ) -> u32 {
-        let in_frame1 = self.along1(side1, side2, self.slack[0]);
+    pub(super) fn boxes_meet(&self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> u32 {
+        let in_frame1 = self.along1(nodes, self.slack[0]);
         let meets = in_frame1.meet();
         if meets.to_bitmask() == 0 {
             return 0;
         }
-        let in_frame2 = self.along2(side1, side2, in_frame1.offset, self.slack[1]);
+        let in_frame2 = self.along2(nodes, in_frame1.offset, self.slack[1]);
         (meets & in_frame2.meet()).to_bitmask()
     }
 }
@@ -37,15 +33,10 @@ impl<C: Counters> Compare for Overlap<'_, C> {
     type Key = ();
 
     #[inline(always)]
-    fn compare(
-        &mut self,
-        side1: &Side<'_, impl Spread>,
-        side2: &Side<'_, impl Spread>,
-        lanes: u32,
-    ) -> (u32, [(); 4]) {
-        self.counters.aabb_tests(lanes.count_ones());
-        let meeting = self.frame.boxes_meet(side1, side2) & lanes;
-        match side1.kdops_with(side2) {
+    fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [(); 4]) {
+        self.counters.aabb_tests(nodes.lanes.count_ones());
+        let meeting = self.frame.boxes_meet(nodes) & nodes.lanes;
+        match nodes.kdops() {
             Some(kdops) if meeting != 0 => {
                 self.counters.kdop_tests(meeting.count_ones());
                 (self.frame.correspondence().kdops_meet(&kdops, meeting), [(); 4])
@@ -63,24 +54,19 @@ impl Compare for OrderedOverlap<'_> {
     type Key = f32;
 
     #[inline(always)]
-    fn compare(
-        &mut self,
-        side1: &Side<'_, impl Spread>,
-        side2: &Side<'_, impl Spread>,
-        lanes: u32,
-    ) -> (u32, [f32; 4]) {
+    fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [f32; 4]) {
         let frame = &mut *self.0;
         // A gap that overflowed to NaN is kept.
-        let meeting = |gap: f32x4| lanes & !gap.simd_gt(f32x4::ZERO).to_bitmask();
-        let in_frame1 = frame.along1(side1, side2, frame.slack[0]);
+        let meeting = |gap: f32x4| nodes.lanes & !gap.simd_gt(f32x4::ZERO).to_bitmask();
+        let in_frame1 = frame.along1(nodes, frame.slack[0]);
         let gap1 = largest(in_frame1.gaps());
         if meeting(gap1) == 0 {
             return (0, [0.0; 4]);
         }
-        let in_frame2 = frame.along2(side1, side2, in_frame1.offset, frame.slack[1]);
+        let in_frame2 = frame.along2(nodes, in_frame1.offset, frame.slack[1]);
         let gap = gap1.fast_max(largest(in_frame2.gaps()));
         let meeting = meeting(gap);
-        match side1.kdops_with(side2) {
+        match nodes.kdops() {
             Some(kdops) if meeting != 0 => {
                 (frame.correspondence().kdops_meet(&kdops, meeting), gap.to_array())
             }

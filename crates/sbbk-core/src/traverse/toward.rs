@@ -11,7 +11,7 @@ use glamx::DVec3;
 use wide::f32x4;
 
 use super::frame::PairFrame;
-use super::side::KdopSides;
+use super::side::KdopLanes;
 use crate::simd::{Spread, V3, dot, each, largest, smallest};
 use crate::tree::LeafBatch;
 use crate::volumes::directions;
@@ -63,16 +63,16 @@ impl Toward {
 
     /// Lower bounds of the signed distances of the k-DOPs in four lanes.
     #[inline(always)]
-    pub(super) fn gaps(&self, sides: &KdopSides<'_, impl Spread, impl Spread>) -> f32x4 {
+    pub(super) fn gaps(&self, kdops: &KdopLanes<'_, impl Spread, impl Spread>) -> f32x4 {
         let [direction1, direction2] = &self.directions;
         let mut gap = f32x4::splat(self.nodes_offset);
         for &Term { slab, coefficient } in &direction2.terms {
-            gap += coefficient * sides.two.centre(slab);
-            gap -= coefficient.abs() * sides.two.extent(slab);
+            gap += coefficient * kdops.two.centre(slab);
+            gap -= coefficient.abs() * kdops.two.extent(slab);
         }
         for &Term { slab, coefficient } in &direction1.terms {
-            gap -= coefficient * sides.one.centre(slab);
-            gap -= coefficient.abs() * sides.one.extent(slab);
+            gap -= coefficient * kdops.one.centre(slab);
+            gap -= coefficient.abs() * kdops.one.extent(slab);
         }
         gap
     }
