@@ -17,13 +17,13 @@
 use glamx::{DVec3, Vec3};
 
 use crate::contact::{TriangleContact, contact};
-use crate::traverse::{Cutoff, PairFrame, Placement};
+use crate::traverse::{PairFrame, Placement};
 use crate::tree::{LeafBatch, Tree};
 use crate::volumes::rounding::gamma;
 
 use super::seek::{BestFirst, FOUND, SearchScratch, seek};
 use super::sweep::Sweep;
-use super::triangles::{FoundPair, LeafTriangle, TrianglePair};
+use super::triangles::{FoundPair, TrianglePair};
 
 /// The definition of an impact.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -78,7 +78,7 @@ pub fn cast(
         velocity,
         inverse_speed: ((1.0 / speed) as f32) * (1.0 - gamma(4)),
         target: target_distance * (1.0 + gamma(4)),
-        cutoff: Cutoff::at(max_time.min(f32::MAX)),
+        limit: max_time.min(f32::MAX),
     };
     let latest = f64::from(max_time);
     let mut search = CastSearch {
@@ -104,20 +104,18 @@ struct CastSearch<'a> {
 }
 
 impl CastSearch<'_> {
-    fn triangles(&mut self, one: LeafTriangle<'_>, two: LeafTriangle<'_>) {
-        let pair = TrianglePair::new(&self.placement, one.corners(), two.corners());
-        let Some((time, contact)) = first_impact(&pair, self.velocity, &self.options, self.latest)
+    fn triangles(&mut self, one: (u32, [Vec3; 3]), two: (u32, [Vec3; 3])) {
+        let Self { placement, velocity, options, latest, .. } = self;
+        let Some(cast) = Cast::of_triangles(placement, one, two, *velocity, options, *latest)
         else {
             return;
         };
-        self.sweep.cutoff.counts.triangle_pairs += 1;
-        if self.found.is_some_and(|found| time >= found.time) {
+        if self.found.is_some_and(|found| cast.time >= found.time) {
             return;
         }
-        let found = FoundPair::new(one, two, &pair, contact);
-        self.found = Some(Cast::new(time, found, &self.options));
-        self.latest = time;
-        self.sweep.cutoff.limit = if time > 0.0 { (time as f32).next_up() } else { FOUND };
+        self.found = Some(cast);
+        self.latest = cast.time;
+        self.sweep.limit = if cast.time > 0.0 { (cast.time as f32).next_up() } else { FOUND };
     }
 }
 
@@ -132,6 +130,7 @@ impl CastOptions {
 impl Cast {
     /// Returns the first impact of two triangles until `latest`, given their indices and corners as in
     /// [`FoundPair::of`]. Triangle 2 moves by `velocity` in frame 1.
+    #[inline]
     pub fn of_triangles(
         placement: &Placement,
         (triangle1, corners1): (u32, [Vec3; 3]),
@@ -141,32 +140,15 @@ impl Cast {
         latest: f64,
     ) -> Option<Self> {
         let pair = TrianglePair::new(placement, corners1, corners2);
+        let target = f64::from(options.target_distance);
+        if !boxes_meet(&pair, velocity, target, latest) {
+            return None;
+        }
         let (time, contact) = first_impact(&pair, velocity, options, latest)?;
-        let is_touching = contact.distance <= pair.touching_distance();
-        let origin = pair.origin;
-        let found = FoundPair { triangle1, triangle2, contact, origin, is_touching };
-        Some(Self::new(time, found, options))
+        let is_penetrating = time == 0.0 && contact.distance < target;
+        let pair = FoundPair::new([triangle1, triangle2], &pair, contact);
+        Some(Self { time, pair, is_penetrating })
     }
-
-    fn new(time: f64, pair: FoundPair, options: &CastOptions) -> Self {
-        let is_within = pair.contact.distance < f64::from(options.target_distance);
-        Self { time, pair, is_penetrating: time == 0.0 && is_within }
-    }
-}
-
-/// Returns the time of impact of two triangles and the contact then.
-#[inline(always)]
-fn first_impact(
-    pair: &TrianglePair,
-    velocity: DVec3,
-    options: &CastOptions,
-    latest: f64,
-) -> Option<(f64, TriangleContact)> {
-    let target = f64::from(options.target_distance);
-    if !boxes_meet(pair, velocity, target, latest) {
-        return None;
-    }
-    TriangleCast { pair, velocity, target }.first(options.stop_at_penetration, latest)
 }
 
 /// True if the boxes of the triangles come within the target distance early enough.
@@ -194,47 +176,43 @@ fn bounds(&[a, b, c]: &[DVec3; 3]) -> (DVec3, DVec3) {
     (a.min(b).min(c), a.max(b).max(c))
 }
 
-/// Two triangles, the second one moving.
-struct TriangleCast<'a> {
-    pair: &'a TrianglePair,
+/// Returns the time of impact of two triangles and the contact then.
+fn first_impact(
+    pair: &TrianglePair,
     velocity: DVec3,
-    target: f64,
-}
-
-impl TriangleCast<'_> {
-    /// The time of impact and the contact then.
-    fn first(&self, stop_at_penetration: bool, latest: f64) -> Option<(f64, TriangleContact)> {
-        let [t1, t2] = &self.pair.corners;
-        let edges = self.pair.touching_distance() / ARRIVED;
-        let mut time = 0.0;
-        let mut last: Option<TriangleContact> = None;
-        for _ in 0..STEP_LIMIT {
-            let travel = self.velocity * time;
-            let mut contact = contact(t1, &t2.map(|v| v + travel), f64::INFINITY)?;
-            let approach = -contact.normal.dot(self.velocity);
-            let left = contact.distance - self.target;
-            if left <= ARRIVED * (edges + travel.abs().element_sum()) {
-                let Some(last) = last else {
-                    let counts = stop_at_penetration || approach > 0.0;
-                    return counts.then_some((0.0, contact));
-                };
-                // Triangles that touch have no better normal than the last one before.
-                contact.normal = last.normal;
-                return Some((time, contact));
-            }
-            if approach <= 0.0 {
-                return None;
-            }
-            time += left / approach;
-            // Unlike "time > latest", this rejects a NaN.
-            let in_time = time <= latest;
-            if !in_time {
-                return None;
-            }
-            last = Some(contact);
+    options: &CastOptions,
+    latest: f64,
+) -> Option<(f64, TriangleContact)> {
+    let [t1, t2] = &pair.corners;
+    let edges = pair.touching_distance() / ARRIVED;
+    let mut time = 0.0;
+    let mut last: Option<TriangleContact> = None;
+    for _ in 0..STEP_LIMIT {
+        let travel = velocity * time;
+        let mut contact = contact(t1, &t2.map(|v| v + travel), f64::INFINITY)?;
+        let approach = -contact.normal.dot(velocity);
+        let left = contact.distance - f64::from(options.target_distance);
+        if left <= ARRIVED * (edges + travel.abs().element_sum()) {
+            let Some(last) = last else {
+                let counts = options.stop_at_penetration || approach > 0.0;
+                return counts.then_some((0.0, contact));
+            };
+            // Triangles that touch have no better normal than the last one before.
+            contact.normal = last.normal;
+            return Some((time, contact));
         }
-        last.map(|contact| (time, contact))
+        if approach <= 0.0 {
+            return None;
+        }
+        time += left / approach;
+        // Unlike "time > latest", this rejects a NaN.
+        let in_time = time <= latest;
+        if !in_time {
+            return None;
+        }
+        last = Some(contact);
     }
+    last.map(|contact| (time, contact))
 }
 
 impl<'a> BestFirst for CastSearch<'a> {
@@ -247,16 +225,14 @@ impl<'a> BestFirst for CastSearch<'a> {
 
     #[inline(always)]
     fn limit(&self) -> f32 {
-        self.sweep.cutoff.limit
+        self.sweep.limit
     }
 
     fn leaves(&mut self, batch1: &LeafBatch, batch2: &LeafBatch) {
-        self.sweep.cutoff.counts.leaf_pairs += 1;
         for lane1 in 0..batch1.count() {
             for lane2 in 0..batch2.count() {
-                if self.sweep.cutoff.limit != FOUND {
-                    let one = LeafTriangle { batch: batch1, lane: lane1 };
-                    self.triangles(one, LeafTriangle { batch: batch2, lane: lane2 });
+                if self.sweep.limit != FOUND {
+                    self.triangles(batch1.triangle(lane1), batch2.triangle(lane2));
                 }
             }
         }

@@ -1,13 +1,12 @@
 //! All contacts of two meshes.
 
-use crate::contact::contact;
 use crate::leaf::LeafTest;
 use crate::traverse::{PairFrame, Placement, descend};
 use crate::tree::Tree;
 use crate::volumes::rounding::gamma;
 
 use super::seek::SearchScratch;
-use super::triangles::{FoundPair, LeafTriangle, TrianglePair};
+use super::triangles::FoundPair;
 
 /// Calls `found` for each pair of triangles at a distance of at most `margin`, in units of frame 1.
 /// `placement` places mesh 2 in frame 1.
@@ -35,12 +34,9 @@ pub fn contacts(
     let test = LeafTest::new(&frame);
     descend(trees, &mut frame, &mut scratch.descent, (), |batch1, batch2| {
         test.survivors(batch1, batch2, |lane1, lane2| {
-            let one = LeafTriangle { batch: batch1, lane: lane1 };
-            let two = LeafTriangle { batch: batch2, lane: lane2 };
-            let pair = TrianglePair::new(&placement, one.corners(), two.corners());
-            let [t1, t2] = &pair.corners;
-            if let Some(contact) = contact(t1, t2, margin.max(pair.touching_distance())) {
-                found(FoundPair::new(one, two, &pair, contact));
+            let (one, two) = (batch1.triangle(lane1), batch2.triangle(lane2));
+            if let Some(pair) = FoundPair::of(&placement, one, two, margin) {
+                found(pair);
             }
         });
     });

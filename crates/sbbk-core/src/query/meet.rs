@@ -4,13 +4,12 @@
 //! whether nodes are apart, as in a descent, not how far: a tenth to a fifth less time. The pair of
 //! nodes that overlaps most is looked at first.
 
-use crate::contact::contact;
 use crate::leaf::LeafTest;
 use crate::traverse::{OrderedOverlap, PairFrame, Placement};
 use crate::tree::{LeafBatch, Tree};
 
 use super::seek::{BestFirst, FOUND, SearchScratch, seek};
-use super::triangles::{FoundPair, LeafTriangle, TrianglePair};
+use super::triangles::FoundPair;
 
 /// Returns a pair of triangles that touch or cross, with mesh 2 placed at `placement` in frame 1.
 /// `None` if no pair meets, or if the placement is not finite.
@@ -40,19 +39,6 @@ struct MeetingSearch<'a> {
     found: Option<FoundPair>,
 }
 
-impl MeetingSearch<'_> {
-    fn triangles(&mut self, one: LeafTriangle<'_>, two: LeafTriangle<'_>) {
-        if self.found.is_some() {
-            return;
-        }
-        let pair = TrianglePair::new(&self.placement, one.corners(), two.corners());
-        let [t1, t2] = &pair.corners;
-        if let Some(contact) = contact(t1, t2, pair.touching_distance()) {
-            self.found = Some(FoundPair::new(one, two, &pair, contact));
-        }
-    }
-}
-
 impl<'a> BestFirst for MeetingSearch<'a> {
     type Compare = OrderedOverlap<'a>;
 
@@ -69,8 +55,10 @@ impl<'a> BestFirst for MeetingSearch<'a> {
     fn leaves(&mut self, batch1: &LeafBatch, batch2: &LeafBatch) {
         let test = self.test;
         test.survivors(batch1, batch2, |lane1, lane2| {
-            let one = LeafTriangle { batch: batch1, lane: lane1 };
-            self.triangles(one, LeafTriangle { batch: batch2, lane: lane2 });
+            if self.found.is_none() {
+                let (one, two) = (batch1.triangle(lane1), batch2.triangle(lane2));
+                self.found = FoundPair::of(&self.placement, one, two, 0.0);
+            }
         });
     }
 }

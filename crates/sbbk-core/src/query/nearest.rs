@@ -1,15 +1,15 @@
 //! The nearest or the deepest pair of triangles.
 
-use glamx::DVec3;
+use glamx::{DVec3, Vec3};
 
 use crate::contact::contact;
 use crate::leaf::LeafTest;
-use crate::traverse::{Cutoff, GapCounts, PairFrame, Placement, SignedGaps, Toward};
+use crate::traverse::{PairFrame, Placement, SignedGaps, Toward};
 use crate::tree::{LeafBatch, Tree};
 
 use super::guess::near_leaves;
 use super::seek::{BestFirst, FOUND, SearchScratch, seek};
-use super::triangles::{FoundPair, LeafTriangle, TrianglePair};
+use super::triangles::{FoundPair, TrianglePair};
 
 /// The pair of triangles to find.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -45,14 +45,14 @@ pub fn deepest(
     search(trees, placement, limit, Goal::Deepest, scratch).0
 }
 
-/// The pair, and the work that it took.
+/// Returns the pair, and how many pairs of nodes and of triangles were compared.
 fn search(
     trees: (&Tree, &Tree),
     placement: Placement,
     limit: f64,
     goal: Goal,
     scratch: &mut SearchScratch,
-) -> (Option<FoundPair>, GapCounts) {
+) -> (Option<FoundPair>, [u32; 2]) {
     // Unlike `min`, this keeps a limit that is NaN, which admits nothing.
     let some = some_distance(trees, &placement);
     let best = if some < limit { some } else { limit };
@@ -67,24 +67,25 @@ pub(super) fn search_except(
     goal: Goal,
     excluded: &[[u32; 2]],
     scratch: &mut SearchScratch,
-) -> (Option<FoundPair>, GapCounts) {
+) -> (Option<FoundPair>, [u32; 2]) {
     // Unlike `best < 0`, this rejects a limit that is NaN.
     let admits = best >= 0.0;
     if !admits || !placement.is_finite() {
-        return (None, GapCounts::default());
+        return (None, [0; 2]);
     }
     let mut frame = PairFrame::at(trees, placement, 0.0);
     let test = LeafTest::new(&frame);
-    // BestFirst are f32 too: no bound of a nearer pair is above the limit, rounded to nearest.
-    let gaps = SignedGaps { frame: &mut frame, cutoff: Cutoff::at(best as f32), toward: None };
-    let mut search = NearestSearch { gaps, placement, test, goal, excluded, best, found: None };
+    // Bounds are f32 too: no bound of a nearer pair is above the limit, rounded to nearest.
+    let gaps = SignedGaps { frame: &mut frame, limit: best as f32, toward: None, count: 0 };
+    let (found, count) = (None, 0);
+    let mut search = NearestSearch { gaps, placement, test, goal, excluded, best, found, count };
     // A limit of zero cannot be lowered: the search ends with the first pair that meets.
     if best > 0.0 {
         let (leaf1, leaf2) = near_leaves(trees, search.gaps.frame);
         search.leaves(leaf1, leaf2);
     }
     seek(trees, &mut search, scratch);
-    (search.found, search.gaps.cutoff.counts)
+    (search.found, [search.gaps.count, search.count])
 }
 
 /// The distance of two vertices: the least is not above it.
@@ -104,19 +105,21 @@ struct NearestSearch<'a> {
     /// The signed distance to beat.
     best: f64,
     found: Option<FoundPair>,
+    /// Number of pairs of triangles whose contact was computed.
+    count: u32,
 }
 
 impl NearestSearch<'_> {
-    fn triangles(&mut self, one: LeafTriangle<'_>, two: LeafTriangle<'_>) {
-        if self.gaps.cutoff.limit == FOUND {
+    fn triangles(&mut self, one: (u32, [Vec3; 3]), two: (u32, [Vec3; 3])) {
+        if self.gaps.limit == FOUND {
             return;
         }
-        let excluded = self.excluded;
-        if !excluded.is_empty() && excluded.binary_search(&[one.index(), two.index()]).is_ok() {
+        let indices = [one.0, two.0];
+        if !self.excluded.is_empty() && self.excluded.binary_search(&indices).is_ok() {
             return;
         }
-        self.gaps.cutoff.counts.triangle_pairs += 1;
-        let pair = TrianglePair::new(&self.placement, one.corners(), two.corners());
+        self.count += 1;
+        let pair = TrianglePair::new(&self.placement, one.1, two.1);
         let touching = pair.touching_distance();
         let margin = if self.best >= 0.0 { self.best.max(touching) } else { self.best };
         let [t1, t2] = &pair.corners;
@@ -126,14 +129,14 @@ impl NearestSearch<'_> {
         if self.found.is_some() && contact.distance >= self.best {
             return;
         }
-        self.found = Some(FoundPair::new(one, two, &pair, contact));
+        self.found = Some(FoundPair::new(indices, &pair, contact));
         self.best = contact.distance;
         let is_last = self.goal == Goal::Nearest && contact.distance <= touching;
-        self.gaps.cutoff.limit = if is_last { FOUND } else { contact.distance as f32 };
+        self.gaps.limit = if is_last { FOUND } else { contact.distance as f32 };
         self.look_along(contact.normal);
     }
 
-    /// BestFirst along the normal of the best pair from now on. Rare, and long: kept out of the way.
+    /// Looks along the normal of the best pair from now on. Rare, and long: kept out of the way.
     #[inline(never)]
     fn look_along(&mut self, normal: DVec3) {
         // The normal of crossing triangles tells nothing about other pairs.
@@ -154,21 +157,19 @@ impl<'a> BestFirst for NearestSearch<'a> {
 
     #[inline(always)]
     fn limit(&self) -> f32 {
-        self.gaps.cutoff.limit
+        self.gaps.limit
     }
 
     fn leaves(&mut self, batch1: &LeafBatch, batch2: &LeafBatch) {
-        self.gaps.cutoff.counts.leaf_pairs += 1;
         let toward = self.gaps.toward.as_ref();
-        if toward.is_some_and(|t| t.gap_of_leaves(batch1, batch2) > self.gaps.cutoff.limit) {
+        if toward.is_some_and(|t| t.gap_of_leaves(batch1, batch2) > self.gaps.limit) {
             return;
         }
-        let test = self.test.within(self.gaps.cutoff.limit);
+        let test = self.test.within(self.gaps.limit);
         // The axis of far triangles tells nothing about those that touch.
         let is_far = self.best > 0.0;
         let found = |lane1, lane2| {
-            let one = LeafTriangle { batch: batch1, lane: lane1 };
-            self.triangles(one, LeafTriangle { batch: batch2, lane: lane2 });
+            self.triangles(batch1.triangle(lane1), batch2.triangle(lane2));
         };
         if is_far {
             test.far_survivors(batch1, batch2, found);
@@ -206,8 +207,7 @@ mod tests {
                 let pose = Pose3::from_parts(distance * direction, random.rotation());
                 let placement = Placement::new(&pose);
                 let (_, counts) = search((&tree, &tree), placement, limit, goal, &mut scratch);
-                assert!(counts.node_pairs < 8000, "{counts:?} at {distance}");
-                assert!(counts.triangle_pairs < 600, "{counts:?} at {distance}");
+                assert!(counts[0] < 8000 && counts[1] < 600, "{counts:?} at {distance}");
             }
         }
     }

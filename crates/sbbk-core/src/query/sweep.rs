@@ -14,7 +14,7 @@ use glamx::Vec3;
 use wide::f32x4;
 
 use crate::simd::Spread;
-use crate::traverse::{Along, Compare, Cutoff, NodeLanes, PairFrame};
+use crate::traverse::{Along, Compare, NodeLanes, PairFrame, within};
 use crate::volumes::rounding::gamma;
 
 /// Lower bounds of times of impact.
@@ -27,7 +27,7 @@ pub(super) struct Sweep<'a> {
     /// Upper bound of the distance that counts as an impact.
     pub(super) target: f32,
     /// Later impacts do not matter. Finite, or minus infinity.
-    pub(super) cutoff: Cutoff,
+    pub(super) limit: f32,
 }
 
 impl Sweep<'_> {
@@ -60,6 +60,6 @@ impl Compare for Sweep<'_> {
     #[inline(always)]
     fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [f32; 4]) {
         let times = self.times(nodes);
-        self.cutoff.keep(times, nodes.lanes)
+        within(self.limit, times, nodes.lanes)
     }
 }

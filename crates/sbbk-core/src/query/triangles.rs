@@ -4,7 +4,6 @@ use glamx::{DVec3, Vec3};
 
 use crate::contact::{TriangleContact, contact};
 use crate::traverse::Placement;
-use crate::tree::LeafBatch;
 
 /// Triangles this close touch, as a share of the lengths of their edges: what rounding can do to a
 /// distance of zero. Higher: triangles that are apart count as touching. Lower: those that touch
@@ -50,26 +49,6 @@ fn edge_lengths([a, b, c]: &[DVec3; 3]) -> f64 {
     ((*b - *a).abs() + (*c - *a).abs()).element_sum()
 }
 
-/// A triangle of a tree.
-#[derive(Copy, Clone)]
-pub(super) struct LeafTriangle<'a> {
-    pub(super) batch: &'a LeafBatch,
-    pub(super) lane: usize,
-}
-
-impl LeafTriangle<'_> {
-    /// Its index in the mesh.
-    #[inline(always)]
-    pub(super) fn index(self) -> u32 {
-        self.batch.triangles()[self.lane]
-    }
-
-    #[inline(always)]
-    pub(super) fn corners(self) -> [Vec3; 3] {
-        self.batch.corners(self.lane)
-    }
-}
-
 /// A pair of triangles of two meshes and its contact.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct FoundPair {
@@ -88,6 +67,7 @@ pub struct FoundPair {
 impl FoundPair {
     /// Two triangles by their indices and corners, mesh 2 placed at `placement` in the frame of mesh
     /// 1, if they touch or are at most `margin` apart.
+    #[inline]
     pub fn of(
         placement: &Placement,
         (triangle1, corners1): (u32, [Vec3; 3]),
@@ -95,26 +75,19 @@ impl FoundPair {
         margin: f64,
     ) -> Option<Self> {
         let pair = TrianglePair::new(placement, corners1, corners2);
-        let touching = pair.touching_distance();
-        let contact = contact(&pair.corners[0], &pair.corners[1], margin.max(touching))?;
-        let is_touching = contact.distance <= touching;
-        Some(Self { triangle1, triangle2, contact, origin: pair.origin, is_touching })
+        let [t1, t2] = &pair.corners;
+        let contact = contact(t1, t2, margin.max(pair.touching_distance()))?;
+        Some(Self::new([triangle1, triangle2], &pair, contact))
     }
 
     #[inline(always)]
     pub(super) fn new(
-        one: LeafTriangle<'_>,
-        two: LeafTriangle<'_>,
+        [triangle1, triangle2]: [u32; 2],
         pair: &TrianglePair,
         contact: TriangleContact,
     ) -> Self {
-        Self {
-            triangle1: one.index(),
-            triangle2: two.index(),
-            contact,
-            origin: pair.origin,
-            is_touching: contact.distance <= pair.touching_distance(),
-        }
+        let is_touching = contact.distance <= pair.touching_distance();
+        Self { triangle1, triangle2, contact, origin: pair.origin, is_touching }
     }
 
     /// The point on mesh 1, in frame 1.

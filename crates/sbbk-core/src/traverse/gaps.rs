@@ -27,49 +27,19 @@ use crate::volumes::rounding::gamma;
 /// distance, negative where their volumes overlap.
 pub(crate) struct SignedGaps<'a> {
     pub(crate) frame: &'a mut PairFrame,
-    pub(crate) cutoff: Cutoff,
+    pub(crate) limit: f32,
     /// A direction to try first.
     pub(crate) toward: Option<Toward>,
+    /// Number of pairs compared.
+    pub(crate) count: u32,
 }
 
-/// The limit of a search: pairs of nodes with a bound beyond it are dropped.
-#[derive(Copy, Clone, Debug)]
-pub(crate) struct Cutoff {
-    pub(crate) limit: f32,
-    pub(crate) counts: GapCounts,
-}
-
-impl Cutoff {
-    /// A limit, with counts of zero.
-    pub(crate) fn at(limit: f32) -> Self {
-        Self { limit, counts: GapCounts::default() }
-    }
-
-    /// Returns true if all of `lanes` are beyond the limit.
-    #[inline(always)]
-    fn is_beyond(&self, bounds: f32x4, lanes: u32) -> bool {
-        bounds.simd_gt(f32x4::splat(self.limit)).to_bitmask() & lanes == lanes
-    }
-
-    /// The lanes of `lanes` that are within the limit, and the bounds. A bound that overflowed to
-    /// NaN is kept, as it excludes nothing.
-    #[inline(always)]
-    pub(crate) fn keep(&mut self, bounds: f32x4, lanes: u32) -> (u32, [f32; 4]) {
-        self.counts.node_pairs += u64::from(lanes.count_ones());
-        let beyond = bounds.simd_gt(f32x4::splat(self.limit)).to_bitmask();
-        (lanes & !beyond, bounds.to_array())
-    }
-}
-
-/// The work of a search.
-#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
-pub struct GapCounts {
-    /// Pairs of nodes whose distance was bounded.
-    pub node_pairs: u64,
-    /// Pairs of leaves whose triangles were compared.
-    pub leaf_pairs: u64,
-    /// Pairs of triangles whose contact was computed.
-    pub triangle_pairs: u64,
+/// Returns the lanes whose bounds are within a limit, and the bounds. A bound that overflowed to NaN
+/// is kept, as it excludes nothing.
+#[inline(always)]
+pub(crate) fn within(limit: f32, bounds: f32x4, lanes: u32) -> (u32, [f32; 4]) {
+    let beyond = bounds.simd_gt(f32x4::splat(limit)).to_bitmask();
+    (lanes & !beyond, bounds.to_array())
 }
 
 /// Combined bounds along axes.
@@ -144,10 +114,12 @@ impl Compare for SignedGaps<'_> {
             (Some(toward), Some(kdops)) => toward.gaps(&kdops),
             _ => f32x4::splat(f32::NEG_INFINITY),
         };
-        if self.cutoff.is_beyond(along, nodes.lanes) {
-            return self.cutoff.keep(along, nodes.lanes);
+        self.count += nodes.lanes.count_ones();
+        let near = within(self.limit, along, nodes.lanes);
+        if near.0 == 0 {
+            return near;
         }
         let gaps = self.frame.signed_gaps(nodes).fast_max(along);
-        self.cutoff.keep(gaps, nodes.lanes)
+        within(self.limit, gaps, nodes.lanes)
     }
 }

@@ -27,7 +27,7 @@ pub use descend::{DescentScratch, NodePair, begin_descent, descend, descend_from
 pub(crate) use expand::{Compare, Sides, expand};
 pub(crate) use frame::Along;
 pub use frame::PairFrame;
-pub(crate) use gaps::{Cutoff, GapCounts, SignedGaps};
+pub(crate) use gaps::{SignedGaps, within};
 pub(crate) use overlap::{OrderedOverlap, Overlap};
 pub use placement::Placement;
 pub(crate) use side::NodeLanes;

@@ -227,6 +227,12 @@ impl LeafBatch {
         Kdop::from_ends(reduce(&low, f32x4::fast_min), reduce(&high, f32x4::fast_max))
     }
 
+    /// Index and corners of the triangle in a lane.
+    #[inline(always)]
+    pub(crate) fn triangle(&self, lane: usize) -> (u32, [Vec3; 3]) {
+        (self.triangles[lane], self.corners(lane))
+    }
+
     /// The corners of the triangle in `lane`.
     #[inline]
     pub fn corners(&self, lane: usize) -> [Vec3; 3] {
