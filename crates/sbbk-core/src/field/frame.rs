@@ -89,7 +89,7 @@ impl<'a, F: HeightGrid> FieldFrame<'a, F> {
     fn are_met(&self, cells: &CellRange, counters: &mut impl Counters) -> bool {
         let (mut is_one_below, mut is_one_above) = (false, false);
         for column in cells.columns.start..=cells.columns.end {
-            counters.cells(cells.rows.len());
+            counters.count(|counts| counts.cells += cells.rows.len() as u64);
             for &height in &self.field.heights(column)[cells.rows.start..=cells.rows.end] {
                 is_one_below |= height <= cells.high;
                 is_one_above |= height >= cells.low;

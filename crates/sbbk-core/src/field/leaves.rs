@@ -41,7 +41,7 @@ impl<'a, F: HeightGrid> FieldLeaves<'a, F> {
         };
         let placed = test.place(batch);
         for column in cells.columns.clone() {
-            counters.cells(cells.rows.len());
+            counters.count(|counts| counts.cells += cells.rows.len() as u64);
             let lines = [column, column + 1].map(|line| frame.field.heights(line));
             for row in cells.rows.clone() {
                 let [a, b] = lines.map(|line| [line[row], line[row + 1]]);

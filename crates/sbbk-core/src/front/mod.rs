@@ -97,7 +97,7 @@ impl Front {
         mut counters: impl Counters,
         visit: impl FnMut(&LeafBatch, &LeafBatch),
     ) {
-        counters.sphere_test();
+        counters.count(|counts| counts.sphere_tests += 1);
         if !frame.placement().is_finite() || !frame.spheres_meet(trees.0, trees.1) {
             self.clear();
             return;

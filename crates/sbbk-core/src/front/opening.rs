@@ -85,7 +85,7 @@ impl<C: Counters, V: FnMut(&LeafBatch, &LeafBatch)> PairTest for TreePair<'_, C,
     }
 
     fn visit(&mut self, pair: SlotPair) {
-        self.counters.leaf_pair();
+        self.counters.count(|counts| counts.leaf_pairs += 1);
         let links = self.links(pair);
         let (tree1, tree2) = self.trees;
         (self.visit)(tree1.leaf(links.0.index()), tree2.leaf(links.1.index()));

@@ -2,19 +2,24 @@ use std::ops::AddAssign;
 
 /// Counts the work of a descent. `()` counts nothing and compiles to nothing.
 pub trait Counters {
-    /// The root spheres were compared.
-    fn sphere_test(&mut self) {}
+    /// Changes the counts.
+    fn count(&mut self, change: impl FnOnce(&mut DescentCounts));
+
     /// `count` pairs of nodes were compared by their boxes.
-    fn aabb_tests(&mut self, _count: u32) {}
-    /// `count` pairs whose boxes met were compared by their k-DOPs.
-    fn kdop_tests(&mut self, _count: u32) {}
-    /// A pair of leaves was reached.
-    fn leaf_pair(&mut self) {}
-    /// `count` cells of a height field were read.
-    fn cells(&mut self, _count: usize) {}
+    fn aabb_tests(&mut self, count: u32) {
+        self.count(|counts| counts.aabb_tests += u64::from(count));
+    }
 }
 
-impl Counters for () {}
+impl Counters for () {
+    fn count(&mut self, _: impl FnOnce(&mut DescentCounts)) {}
+}
+
+impl<C: Counters> Counters for &mut C {
+    fn count(&mut self, change: impl FnOnce(&mut DescentCounts)) {
+        (**self).count(change);
+    }
+}
 
 /// The work of one or more descents.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
@@ -32,24 +37,8 @@ pub struct DescentCounts {
 }
 
 impl Counters for DescentCounts {
-    fn sphere_test(&mut self) {
-        self.sphere_tests += 1;
-    }
-
-    fn aabb_tests(&mut self, count: u32) {
-        self.aabb_tests += u64::from(count);
-    }
-
-    fn kdop_tests(&mut self, count: u32) {
-        self.kdop_tests += u64::from(count);
-    }
-
-    fn leaf_pair(&mut self) {
-        self.leaf_pairs += 1;
-    }
-
-    fn cells(&mut self, count: usize) {
-        self.cells += count as u64;
+    fn count(&mut self, change: impl FnOnce(&mut Self)) {
+        change(self);
     }
 }
 
@@ -61,27 +50,5 @@ impl AddAssign for DescentCounts {
         self.kdop_tests += kdop_tests;
         self.leaf_pairs += leaf_pairs;
         self.cells += cells;
-    }
-}
-
-impl<C: Counters> Counters for &mut C {
-    fn sphere_test(&mut self) {
-        (**self).sphere_test();
-    }
-
-    fn aabb_tests(&mut self, count: u32) {
-        (**self).aabb_tests(count);
-    }
-
-    fn kdop_tests(&mut self, count: u32) {
-        (**self).kdop_tests(count);
-    }
-
-    fn leaf_pair(&mut self) {
-        (**self).leaf_pair();
-    }
-
-    fn cells(&mut self, count: usize) {
-        (**self).cells(count);
     }
 }

@@ -88,7 +88,7 @@ pub fn descend_from(
     while let Some(pair @ NodePair(slot1, slot2)) = stack.pop() {
         let links = (tree1.link(slot1), tree2.link(slot2));
         if links.0.is_leaf() && links.1.is_leaf() {
-            counters.leaf_pair();
+            counters.count(|counts| counts.leaf_pairs += 1);
             visit(tree1.leaf(links.0.index()), tree2.leaf(links.1.index()));
             continue;
         }
@@ -103,7 +103,7 @@ fn roots(
     counters: &mut impl Counters,
 ) -> Option<NodePair> {
     if tree1.sphere().is_some() && tree2.sphere().is_some() {
-        counters.sphere_test();
+        counters.count(|counts| counts.sphere_tests += 1);
         if !frame.spheres_meet(tree1, tree2) {
             return None;
         }

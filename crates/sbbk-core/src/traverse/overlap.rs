@@ -38,7 +38,8 @@ impl<C: Counters> Compare for Overlap<'_, C> {
         let meeting = self.frame.boxes_meet(nodes) & nodes.lanes;
         match nodes.kdops() {
             Some(kdops) if meeting != 0 => {
-                self.counters.kdop_tests(meeting.count_ones());
+                let tests = u64::from(meeting.count_ones());
+                self.counters.count(|counts| counts.kdop_tests += tests);
                 (self.frame.correspondence().kdops_meet(&kdops, meeting), [(); 4])
             }
             _ => (meeting, [(); 4]),
