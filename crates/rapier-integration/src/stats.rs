@@ -1,8 +1,8 @@
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use sbbk_core::traverse::DescentCounts;
 
-use crate::mesh::StoreCounts;
 use crate::pair::QueryOutcome;
 
 /// Counts of a dispatcher and its clones.
@@ -60,19 +60,13 @@ pub struct SbbkInternals {
     pub descent: DescentCounts,
 }
 
+/// Counts of queries.
 #[derive(Default)]
 pub(crate) struct QueryCounters {
     searches: AtomicU64,
     unsupported: AtomicU64,
-    queries: AtomicU64,
-    unchanged: AtomicU64,
-    reused: AtomicU64,
-    descended: AtomicU64,
-    sphere_tests: AtomicU64,
-    aabb_tests: AtomicU64,
-    kdop_tests: AtomicU64,
-    leaf_pairs: AtomicU64,
-    cells: AtomicU64,
+    /// Counts of contact queries alone.
+    contacts: Mutex<SbbkStats>,
 }
 
 impl QueryCounters {
@@ -85,51 +79,30 @@ impl QueryCounters {
     }
 
     pub(crate) fn add(&self, answer: QueryOutcome, counts: &DescentCounts) {
-        if answer != QueryOutcome::Unsupported {
-            self.queries.fetch_add(1, Ordering::Relaxed);
+        if answer == QueryOutcome::Unsupported {
+            return;
         }
+        let stats = &mut *self.contacts();
+        stats.queries += 1;
         match answer {
-            QueryOutcome::Unchanged => self.unchanged.fetch_add(1, Ordering::Relaxed),
-            QueryOutcome::Reused => self.reused.fetch_add(1, Ordering::Relaxed),
-            QueryOutcome::Descended => self.descended.fetch_add(1, Ordering::Relaxed),
+            QueryOutcome::Unchanged => stats.internals.unchanged_queries += 1,
+            QueryOutcome::Reused => stats.internals.reused_queries += 1,
+            QueryOutcome::Descended => stats.descended_queries += 1,
             QueryOutcome::Apart | QueryOutcome::Unsupported => return,
-        };
-        self.sphere_tests.fetch_add(counts.sphere_tests, Ordering::Relaxed);
-        self.aabb_tests.fetch_add(counts.aabb_tests, Ordering::Relaxed);
-        self.kdop_tests.fetch_add(counts.kdop_tests, Ordering::Relaxed);
-        self.leaf_pairs.fetch_add(counts.leaf_pairs, Ordering::Relaxed);
-        self.cells.fetch_add(counts.cells, Ordering::Relaxed);
+        }
+        stats.internals.descent += *counts;
     }
 
-    pub(crate) fn stats(&self, store: StoreCounts) -> SbbkStats {
-        let load = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
+    /// The counts, 0 for those of meshes.
+    pub(crate) fn stats(&self) -> SbbkStats {
         SbbkStats {
-            pairs: store.pairs,
-            searches: load(&self.searches),
-            unsupported_queries: load(&self.unsupported),
-            solids: store.solids,
-            sheets: store.sheets,
-            inside_out: store.inside_out,
-            push_outs: store.push_outs,
-            trees: store.trees,
-            tree_bytes: store.bytes,
-            queries: load(&self.queries),
-            descended_queries: load(&self.descended),
-            internals: SbbkInternals {
-                idle_trees: store.idle_trees,
-                tree_builds: store.builds,
-                tree_hits: store.hits,
-                walks: store.walks,
-                unchanged_queries: load(&self.unchanged),
-                reused_queries: load(&self.reused),
-                descent: DescentCounts {
-                    sphere_tests: load(&self.sphere_tests),
-                    aabb_tests: load(&self.aabb_tests),
-                    kdop_tests: load(&self.kdop_tests),
-                    leaf_pairs: load(&self.leaf_pairs),
-                    cells: load(&self.cells),
-                },
-            },
+            searches: self.searches.load(Ordering::Relaxed),
+            unsupported_queries: self.unsupported.load(Ordering::Relaxed),
+            ..*self.contacts()
         }
+    }
+
+    fn contacts(&self) -> MutexGuard<'_, SbbkStats> {
+        self.contacts.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

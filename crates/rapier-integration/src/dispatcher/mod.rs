@@ -114,7 +114,7 @@ impl SbbkDispatcher {
 
     /// Counts of meshes and queries so far. Takes time in proportion to the number of meshes.
     pub fn stats(&self) -> SbbkStats {
-        self.counters.stats(self.store.counts())
+        self.store.stats(self.counters.stats())
     }
 
     /// Drops the trees that no pair of colliders uses, see [`SbbkConfig::idle_tree_bytes`].

@@ -12,7 +12,7 @@ mod view;
 pub(crate) use data::MeshData;
 pub(crate) use neighbours::{MeshFacets, box_between};
 pub(crate) use pair_mesh::{Change, MeshSurface, PairMesh};
-pub(crate) use store::{MeshStore, Registered, StoreCounts};
+pub(crate) use store::{MeshStore, Registered};
 pub(crate) use view::{
     BEHIND, MeshView, are_near, box_of, exit, is_covered, is_near, may_be_inside, nearest,
     nearest_triangle,

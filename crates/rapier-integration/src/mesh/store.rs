@@ -16,6 +16,7 @@ use sbbk_core::tree::{BuildError, BuildOptions};
 use super::budget::BuildBudget;
 use super::data::MeshData;
 use super::identity::ContentHash;
+use crate::{SbbkInternals, SbbkStats};
 
 /// The meshes of a dispatcher and its clones.
 pub(crate) struct MeshStore {
@@ -66,22 +67,6 @@ struct Contents {
     /// Recently used meshes, the oldest first.
     recent: VecDeque<Arc<MeshData>>,
     recent_bytes: usize,
-}
-
-/// Counts of a store.
-#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
-pub(crate) struct StoreCounts {
-    pub(crate) trees: usize,
-    pub(crate) solids: usize,
-    pub(crate) sheets: usize,
-    pub(crate) inside_out: usize,
-    pub(crate) idle_trees: usize,
-    pub(crate) bytes: usize,
-    pub(crate) builds: u64,
-    pub(crate) hits: u64,
-    pub(crate) pairs: u64,
-    pub(crate) walks: u64,
-    pub(crate) push_outs: u64,
 }
 
 impl MeshStore {
@@ -268,24 +253,30 @@ impl MeshStore {
         meshes.retain(|_, data| data.strong_count() > 0);
     }
 
-    pub(crate) fn counts(&self) -> StoreCounts {
+    /// Adds counts of meshes.
+    pub(crate) fn stats(&self, queries: SbbkStats) -> SbbkStats {
         let contents = self.contents();
         let meshes: Vec<_> = contents.meshes.values().filter_map(Weak::upgrade).collect();
         let of_kind = |kind| meshes.iter().filter(|data| data.kind() == Some(kind)).count();
         // Besides the recent list, `meshes` holds each one.
         let is_idle = |data: &&Arc<MeshData>| data.tree().is_some() && Arc::strong_count(data) == 2;
-        StoreCounts {
+        let load = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
+        SbbkStats {
+            pairs: load(&self.pairs),
             solids: of_kind(SurfaceKind::Solid),
             sheets: of_kind(SurfaceKind::Sheet),
             inside_out: of_kind(SurfaceKind::InsideOut),
+            push_outs: load(&self.push_outs),
             trees: meshes.iter().filter(|data| data.tree().is_some()).count(),
-            idle_trees: contents.recent.iter().filter(is_idle).count(),
-            bytes: meshes.iter().map(|data| data.bytes()).sum(),
-            builds: self.builds.load(Ordering::Relaxed),
-            hits: self.hits.load(Ordering::Relaxed),
-            pairs: self.pairs.load(Ordering::Relaxed),
-            walks: self.walks.load(Ordering::Relaxed),
-            push_outs: self.push_outs.load(Ordering::Relaxed),
+            tree_bytes: meshes.iter().map(|data| data.bytes()).sum(),
+            internals: SbbkInternals {
+                idle_trees: contents.recent.iter().filter(is_idle).count(),
+                tree_builds: load(&self.builds),
+                tree_hits: load(&self.hits),
+                walks: load(&self.walks),
+                ..queries.internals
+            },
+            ..queries
         }
     }
 
@@ -364,15 +355,20 @@ mod tests {
         MeshStore::new(BuildOptions::default(), recent_limit)
     }
 
+    fn stats(store: &MeshStore) -> SbbkStats {
+        store.stats(SbbkStats::default())
+    }
+
     #[test]
     fn recent_meshes_keep_to_the_limit_in_bytes() {
         let wide = store(usize::MAX);
         drop(wide.register(&ball(1.0), None).unwrap());
-        let bytes = wide.counts().bytes;
+        let bytes = stats(&wide).tree_bytes;
         for (limit, stay) in [(bytes, 1), (bytes - 1, 0)] {
             let store = store(limit);
             drop(store.register(&ball(1.0), None).unwrap());
-            assert_eq!((store.counts().trees, store.counts().idle_trees), (stay, stay), "{limit}");
+            let SbbkStats { trees, internals, .. } = stats(&store);
+            assert_eq!((trees, internals.idle_trees), (stay, stay), "{limit}");
         }
     }
 
@@ -381,7 +377,7 @@ mod tests {
         let bytes = {
             let store = store(usize::MAX);
             let _data = store.entry(&ball(1.0));
-            store.counts().bytes
+            stats(&store).tree_bytes
         };
         let store = store(5 * bytes / 2);
         let is_there = |radius| {
@@ -397,7 +393,7 @@ mod tests {
         let store = store(0);
         (1..1000).for_each(|i| drop(store.entry(&ball(i as f32))));
         assert!(store.contents().meshes.len() < 20);
-        assert_eq!(store.counts().bytes, 0);
+        assert_eq!(stats(&store).tree_bytes, 0);
     }
 
     #[test]
@@ -459,7 +455,7 @@ mod tests {
         for mesh in &meshes {
             store.build_within_budget(mesh, &store.entry(mesh));
         }
-        assert_eq!(store.counts().builds, 0);
+        assert_eq!(stats(&store).internals.tree_builds, 0);
     }
 
     #[test]
