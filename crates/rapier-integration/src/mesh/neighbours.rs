@@ -11,13 +11,12 @@ use rustc_hash::FxHashMap;
 use sbbk_core::contact::Feature;
 use sbbk_core::surface::strays::has_strays;
 use sbbk_core::surface::{
-    HalfEdges, IndexedTriangles, OneRing, PlaceMemo, RayTriangles, SMALL_COMPONENT, Side, Surface,
-    side,
+    Facets, OneRing, PlaceMemo, RayTriangles, SMALL_COMPONENT, Side, Surface, side,
 };
 
-/// Adjacency of the triangles of a mesh, with [strays](sbbk_core::surface::strays).
+/// The triangles of a mesh with their adjacency and [strays](sbbk_core::surface::strays).
 #[derive(Copy, Clone)]
-pub(crate) struct MeshAdjacency<'a, 'm> {
+pub(crate) struct MeshFacets<'a, 'm> {
     pub(super) mesh: &'a TriMesh,
     pub(super) twins: Twins<'a, 'm>,
     pub(super) memo: &'a PlaceMemo,
@@ -30,19 +29,11 @@ pub(super) enum Twins<'a, 'm> {
     Near(&'a NearTwins<'m>),
 }
 
-/// The triangles of a mesh with their adjacency.
-pub(crate) type MeshFacets<'a, 'm> = IndexedTriangles<'a, MeshAdjacency<'a, 'm>>;
-
 /// Distance to other parts, in radii of a part, that leaves it alone. Higher: parts near each other take
 /// more rays. Lower: walls between parts have contacts, though rays pass these.
 const ALONE: Real = 2.0e-4;
 
-impl<'a, 'm> MeshAdjacency<'a, 'm> {
-    pub(crate) fn facets(self) -> MeshFacets<'a, 'm> {
-        let (vertices, triangles) = (self.mesh.vertices(), self.mesh.indices());
-        IndexedTriangles { adjacency: self, vertices, triangles }
-    }
-
+impl MeshFacets<'_, '_> {
     /// Reads or changes the flags of a triangle.
     fn with_flags<T>(self, triangle: u32, then: impl FnOnce(&TriangleFlags) -> T) -> T {
         match self.twins {
@@ -55,9 +46,9 @@ impl<'a, 'm> MeshAdjacency<'a, 'm> {
     pub(crate) fn side(self, triangle: u32) -> Side {
         self.with_flags(triangle, TriangleFlags::side).unwrap_or_else(|| {
             let first = self.first_of_crowd(triangle).filter(|&first| first != triangle);
-            let is_face = first.is_some_and(|first| self.side(first) == Side::Face);
+            let is_face = first.is_some_and(|first| self.side(first) == Side::Outer);
             let side = || side(&MeshRays(self.mesh), triangle, self.memo);
-            let side = if is_face { Side::Face } else { side() };
+            let side = if is_face { Side::Outer } else { side() };
             self.with_flags(triangle, |flags| flags.set_side(side));
             side
         })
@@ -100,7 +91,7 @@ impl<'a, 'm> MeshAdjacency<'a, 'm> {
     /// Searches the strays of a feature, in about 1 µs, and keeps in the flags if there are any.
     #[cold]
     fn find_strays(self, triangle: u32, feature: Feature) {
-        let surface = OneRing { facets: self.facets(), side: Side::Sheet };
+        let surface = OneRing { facets: self, side: Side::Sheet };
         let found = has_strays(&surface, triangle, feature);
         if let Feature::Vertex(_) = feature {
             // Once for all triangles of a fan.
@@ -114,7 +105,7 @@ impl<'a, 'm> MeshAdjacency<'a, 'm> {
     }
 }
 
-impl HalfEdges for MeshAdjacency<'_, '_> {
+impl Facets for MeshFacets<'_, '_> {
     #[inline]
     fn twin(&self, half_edge: u32) -> Option<u32> {
         match self.twins {
@@ -123,6 +114,12 @@ impl HalfEdges for MeshAdjacency<'_, '_> {
                 twins.with_known(half_edge / 3, |known| known.twins[half_edge as usize % 3])
             }
         }
+    }
+
+    #[inline(always)]
+    fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
+        let triangle = self.mesh.indices()[half_edge as usize / 3];
+        self.mesh.vertices()[triangle[(half_edge as usize + i) % 3] as usize].as_dvec3()
     }
 
     #[inline]
@@ -148,7 +145,7 @@ impl HalfEdges for MeshAdjacency<'_, '_> {
 pub(crate) struct TriangleFlags(AtomicU16);
 
 /// [`Side`] by the number in the flags.
-const SIDES: [Side; 4] = [Side::Face, Side::Turned, Side::Inner, Side::Sheet];
+const SIDES: [Side; 4] = [Side::Outer, Side::Turned, Side::Inner, Side::Sheet];
 
 impl TriangleFlags {
     const HAS_SIDE: u16 = 1 << 7;
@@ -314,8 +311,8 @@ mod tests {
             let (twins, memo) = (Twins::Near(&near), &PlaceMemo::default());
             for half_edge in 0..3 * mesh.indices().len() as u32 {
                 let twin = whole.twin(half_edge);
-                let adjacency = MeshAdjacency { mesh: &mesh, twins, memo };
-                assert_eq!(adjacency.twin(half_edge), twin, "{half_edge} of {:?}", mesh.indices());
+                let facets = MeshFacets { mesh: &mesh, twins, memo };
+                assert_eq!(facets.twin(half_edge), twin, "{half_edge} of {:?}", mesh.indices());
                 found += u32::from(twin.is_some());
             }
         }
@@ -344,9 +341,9 @@ mod tests {
             assert!(surface.has_small_components());
             let flags: Vec<_> = mesh.indices().iter().map(|_| TriangleFlags::default()).collect();
             let (twins, memo) = (Twins::All(&surface, &flags), &PlaceMemo::default());
-            let adjacency = MeshAdjacency { mesh: &mesh, twins, memo };
+            let facets = MeshFacets { mesh: &mesh, twins, memo };
             for triangle in 0..flags.len() as u32 {
-                let found = adjacency.side(triangle);
+                let found = facets.side(triangle);
                 assert_eq!(found, side(&MeshRays(&mesh), triangle, memo), "{triangle} of {size}");
                 counts[found as usize] += 1;
             }

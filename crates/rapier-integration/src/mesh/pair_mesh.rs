@@ -7,7 +7,7 @@ use sbbk_core::tree::Tree;
 
 use super::data::{MeshData, Tips};
 use super::identity::MeshToken;
-use super::neighbours::{MeshAdjacency, MeshFacets, NearTwins, Neighbours, Twins};
+use super::neighbours::{MeshFacets, NearTwins, Neighbours, Twins};
 use super::store::{MeshStore, is_analysed, is_small};
 use super::view::MeshView;
 
@@ -172,18 +172,18 @@ impl<'m> MeshSurface<'m> {
         self.data.get_or_init(|| self.store.entry(mesh))
     }
 
-    /// Returns the adjacency of `mesh`, whose surface this must be, its kind, and true if a user
-    /// declared the kind.
+    /// Returns the triangles of `mesh`, whose surface this must be, its kind, and true if a user declared
+    /// the kind.
     #[inline]
-    fn adjacency<'a>(&'a self, mesh: &'a TriMesh) -> (MeshAdjacency<'a, 'm>, SurfaceKind, bool) {
+    fn facets<'a>(&'a self, mesh: &'a TriMesh) -> (MeshFacets<'a, 'm>, SurfaceKind, bool) {
         let data = self.data(mesh);
         let twins = match &self.near {
             Some(twins) => Twins::Near(twins),
             // Computes the flags as well.
             None => Twins::All(self.store.surface(mesh, data), data.flags()),
         };
-        let adjacency = MeshAdjacency { mesh, twins, memo: &self.memo };
-        (adjacency, data.kind_of(mesh), data.declared_kind().is_some())
+        let facets = MeshFacets { mesh, twins, memo: &self.memo };
+        (facets, data.kind_of(mesh), data.declared_kind().is_some())
     }
 
     /// Returns the one-rings around a triangle of `mesh`.
@@ -193,19 +193,19 @@ impl<'m> MeshSurface<'m> {
         mesh: &'a TriMesh,
         triangle: u32,
     ) -> OneRing<MeshFacets<'a, 'm>> {
-        let (adjacency, kind, is_declared) = self.adjacency(mesh);
+        let (facets, kind, is_declared) = self.facets(mesh);
         let side = match kind {
-            SurfaceKind::Solid if is_declared => Side::Face,
+            SurfaceKind::Solid if is_declared => Side::Outer,
             SurfaceKind::Sheet => Side::Sheet,
             _ if is_declared => Side::Sheet,
-            _ => adjacency.side(triangle),
+            _ => facets.side(triangle),
         };
-        OneRing { facets: adjacency.facets(), side }
+        OneRing { facets, side }
     }
 
     /// Returns true if a user declared that the mesh is a solid.
     pub(crate) fn is_declared_solid(&self, mesh: &TriMesh) -> bool {
-        let (_, kind, is_declared) = self.adjacency(mesh);
+        let (_, kind, is_declared) = self.facets(mesh);
         is_declared && kind == SurfaceKind::Solid
     }
 
@@ -217,7 +217,7 @@ impl<'m> MeshSurface<'m> {
 
     /// Returns the kind of `mesh`, whose surface this must be.
     pub(crate) fn kind(&self, mesh: &TriMesh) -> SurfaceKind {
-        self.adjacency(mesh).1
+        self.facets(mesh).1
     }
 }
 

@@ -7,7 +7,7 @@ use parry3d::query::PointQuery;
 use parry3d::shape::{HeightField, HeightFieldCellStatus, Triangle};
 use sbbk_core::contact::Feature;
 use sbbk_core::field::{FieldTriangle, HeightGrid};
-use sbbk_core::surface::{Facets, HalfEdges};
+use sbbk_core::surface::Facets;
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::mesh::box_between;
@@ -116,7 +116,7 @@ impl Field<'_> {
     }
 }
 
-impl HalfEdges for Field<'_> {
+impl Facets for Field<'_> {
     fn twin(&self, half_edge: u32) -> Option<u32> {
         let triangle = self.of_id(half_edge / 3);
         let own = self.places(triangle);
@@ -162,9 +162,7 @@ impl HalfEdges for Field<'_> {
         let near = box_between(corners);
         self.0.map_elements_in_local_aabb(&near, &mut |id, _| _ = visit(id));
     }
-}
 
-impl Facets for Field<'_> {
     fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
         let triangle = self.triangle(half_edge / 3);
         triangle.map_or(DVec3::NAN, |triangle| {

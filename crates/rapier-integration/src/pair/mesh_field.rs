@@ -24,7 +24,7 @@ use parry3d::query::details::NormalConstraints;
 use parry3d::shape::{HeightField, Triangle, TrianglePseudoNormals};
 use sbbk_core::contact::Feature;
 use sbbk_core::field::{FieldFrame, FieldLeaves};
-use sbbk_core::surface::{Facets, HalfEdges, OneRing, PlaceMemo, Side, SurfaceKind};
+use sbbk_core::surface::{Facets, OneRing, PlaceMemo, Side, SurfaceKind};
 use sbbk_core::traverse::{DescentCounts, Placement};
 use sbbk_core::tree::{BATCH, LeafBatch};
 
@@ -138,7 +138,7 @@ pub(crate) enum MeshOrField<'a, 'm> {
     Field(Field<'a>),
 }
 
-impl HalfEdges for MeshOrField<'_, '_> {
+impl Facets for MeshOrField<'_, '_> {
     fn twin(&self, half_edge: u32) -> Option<u32> {
         match self {
             Self::Mesh(mesh) => mesh.twin(half_edge),
@@ -166,9 +166,7 @@ impl HalfEdges for MeshOrField<'_, '_> {
             Self::Field(_) => None,
         }
     }
-}
 
-impl Facets for MeshOrField<'_, '_> {
     fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
         match self {
             Self::Mesh(mesh) => mesh.corner(half_edge, i),
@@ -249,7 +247,7 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
     fn surface(&self, i: usize, triangle: u32) -> Option<OneRing<MeshOrField<'_, 'q>>> {
         let surface = self.surface.as_ref()?;
         if self.is_field(i) {
-            let side = if self.is_solid(i) { Side::Face } else { Side::Sheet };
+            let side = if self.is_solid(i) { Side::Outer } else { Side::Sheet };
             return Some(OneRing { facets: MeshOrField::Field(self.field), side });
         }
         let OneRing { facets, side } = surface.around(self.pair.mesh.mesh, triangle);

@@ -8,7 +8,7 @@ use std::collections::hash_map::Entry;
 
 use glamx::DVec3;
 use rustc_hash::FxHashMap;
-use sbbk_core::surface::HalfEdges;
+use sbbk_core::surface::Facets;
 
 use super::islands::SAME_SIDE;
 use super::query::ContactList;
@@ -32,7 +32,7 @@ impl PassedTriangles {
     pub(super) fn reject(
         &mut self,
         i: usize,
-        surface: &impl HalfEdges,
+        surface: &impl Facets,
         crossing: impl Iterator<Item = (u32, DVec3)>,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
@@ -62,7 +62,7 @@ impl PassedTriangles {
     }
 
     /// Adds the neighbours of all triangles that were found, if these have passed.
-    fn spread(&mut self, surface: &impl HalfEdges) {
+    fn spread(&mut self, surface: &impl Facets) {
         let mut next = 0;
         while let Some(&(triangle, away)) = self.found.get(next) {
             next += 1;

@@ -192,7 +192,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             let Some(sheet) = surface.as_mut().filter(is_sheet) else { continue };
             let other = 1 - i;
             if self.is_thin(other) && self.smaller() == Some(other) && self.is_in_front(i, local) {
-                sheet.side = Side::Face;
+                sheet.side = Side::Outer;
             }
         }
         surfaces

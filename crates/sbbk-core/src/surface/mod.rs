@@ -31,7 +31,7 @@ pub mod strays;
 mod triangle;
 mod twins;
 
-pub use one_ring::{Facets, HalfEdges, IndexedTriangles, OneRing};
+pub use one_ring::{Facets, OneRing, PlainFacets};
 pub use sides::{AllTriangles, RayTriangles, Side, SurfaceKind, kind, side};
 pub use slopes::PlaceMemo;
 
@@ -104,12 +104,9 @@ impl Surface {
         &'a self,
         vertices: &'a [Vec3],
         triangles: &'a [[u32; 3]],
-    ) -> OneRing<IndexedTriangles<'a, &'a Self>> {
-        let facets = IndexedTriangles { adjacency: self, vertices, triangles };
-        OneRing {
-            facets,
-            side: if self.kind == SurfaceKind::Solid { Side::Face } else { Side::Sheet },
-        }
+    ) -> OneRing<PlainFacets<'a>> {
+        let side = if self.kind == SurfaceKind::Solid { Side::Outer } else { Side::Sheet };
+        OneRing { facets: PlainFacets { surface: self, vertices, triangles }, side }
     }
 
     /// Memory of this value in bytes, without the mesh.

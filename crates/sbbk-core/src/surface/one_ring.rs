@@ -11,16 +11,21 @@ use super::triangle::{area_vector, seam, touches};
 use crate::contact::Feature;
 use crate::simd::each;
 
-/// Adjacency of triangles. Half-edge `3 t + i` runs from vertex `i` of triangle `t` to the next one.
-pub trait HalfEdges {
+/// Triangles with their adjacency. Half-edge `3 t + i` runs from vertex `i` of triangle `t` to the next one.
+pub trait Facets {
     /// The half-edge that runs back in the neighbour, if there is exactly one.
     fn twin(&self, half_edge: u32) -> Option<u32>;
 
-    /// True if the one-ring of an edge or a vertex is all of the surface there, as there are no strays.
-    fn is_whole(&self, triangle: u32, feature: Feature) -> bool;
+    /// A corner of the triangle of a half-edge, counted from the start of the half-edge.
+    fn corner(&self, half_edge: u32, i: usize) -> DVec3;
 
-    /// Calls `visit` with all triangles near the box between two corners. May end when it breaks.
-    fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32) -> ControlFlow<()>);
+    /// True if the one-ring of an edge or a vertex is all of the surface there, as there are no strays.
+    fn is_whole(&self, _triangle: u32, _feature: Feature) -> bool {
+        true
+    }
+
+    /// Calls `visit` with all triangles near the box between two corners, to find strays. May end when it breaks.
+    fn near(&self, _corners: [DVec3; 2], _visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {}
 
     /// Memory for places where many triangles meet.
     fn memo(&self) -> Option<&PlaceMemo> {
@@ -28,58 +33,20 @@ pub trait HalfEdges {
     }
 }
 
-/// Triangles with their adjacency and positions.
-pub trait Facets: HalfEdges {
-    /// A corner of the triangle of a half-edge, counted from the start of the half-edge.
-    fn corner(&self, half_edge: u32, i: usize) -> DVec3;
-}
-
-/// A surface without strays.
-impl HalfEdges for &Surface {
-    #[inline]
-    fn twin(&self, half_edge: u32) -> Option<u32> {
-        Surface::twin(self, half_edge)
-    }
-
-    fn is_whole(&self, _: u32, _: Feature) -> bool {
-        true
-    }
-
-    fn near(&self, _: [DVec3; 2], _: &mut dyn FnMut(u32) -> ControlFlow<()>) {}
-}
-
-/// The triangles of an indexed mesh with their adjacency.
+/// The triangles of a mesh whose surface has no strays.
 #[derive(Clone, Copy)]
-pub struct IndexedTriangles<'a, A> {
-    /// Adjacency of the triangles.
-    pub adjacency: A,
-    /// Vertices of the mesh.
-    pub vertices: &'a [Vec3],
-    /// Triangles of the mesh.
-    pub triangles: &'a [[u32; 3]],
+pub struct PlainFacets<'a> {
+    pub(super) surface: &'a Surface,
+    pub(super) vertices: &'a [Vec3],
+    pub(super) triangles: &'a [[u32; 3]],
 }
 
-impl<A: HalfEdges> HalfEdges for IndexedTriangles<'_, A> {
+impl Facets for PlainFacets<'_> {
     #[inline(always)]
     fn twin(&self, half_edge: u32) -> Option<u32> {
-        self.adjacency.twin(half_edge)
+        self.surface.twin(half_edge)
     }
 
-    #[inline(always)]
-    fn is_whole(&self, triangle: u32, feature: Feature) -> bool {
-        self.adjacency.is_whole(triangle, feature)
-    }
-
-    fn near(&self, corners: [DVec3; 2], visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
-        self.adjacency.near(corners, visit);
-    }
-
-    fn memo(&self) -> Option<&PlaceMemo> {
-        self.adjacency.memo()
-    }
-}
-
-impl<A: HalfEdges> Facets for IndexedTriangles<'_, A> {
     #[inline(always)]
     fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
         let triangle = self.triangles[half_edge as usize / 3];
@@ -207,7 +174,7 @@ impl<F: Facets> OneRing<F> {
 
     /// True if the body is behind the triangle, and nothing in front.
     pub fn is_solid(&self) -> bool {
-        self.side == Side::Face
+        self.side == Side::Outer
     }
 
     /// True if a unit direction from a feature leads into the solid; false for sheets.

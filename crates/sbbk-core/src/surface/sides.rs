@@ -14,7 +14,7 @@ use std::ops::ControlFlow;
 use glamx::{DVec3, Vec3};
 
 use super::slopes::PlaceMemo;
-use super::triangle::area_vector;
+use super::triangle::{area_vector, longest_side};
 
 /// Triangles that rays can meet.
 pub trait RayTriangles {
@@ -69,7 +69,7 @@ pub enum SurfaceKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Side {
     /// Nothing in front, the body behind.
-    Face,
+    Outer,
     /// The body in front, nothing behind.
     Turned,
     /// The body on both sides: a wall within, or a part of another component.
@@ -103,13 +103,24 @@ const MOST_HITS: usize = 100;
 /// Least sine of the angle of a triangle's rays. Higher: rays differ less. Lower: these graze walls.
 const STEEP: f64 = 0.5;
 
+/// [`STEEP`] of samples of a mesh. Higher: fewer rays leave through holes near the triangle. Lower: rounding decides
+/// where rays start.
+const ANY: f64 = 0.02;
+
+/// Rays from triangle to triangle in the sequence of directions, so that neighbours have different ones. Fewer: rays of
+/// neighbours meet the same walls and holes.
+const SHIFT: u32 = 17;
+
+/// Triangles with different rays; a prime, so that regular meshes do not repeat them in step.
+const SHIFTS: u32 = 1009;
+
 /// Share of a length below which two places of a ray are one.
 const TIE: f64 = 1.0e-9;
 
 /// Finds the side of a triangle of a closed surface. Takes two rays if these find a face, else more.
 pub fn side(triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> Side {
     let first = sample(triangles, triangle, 0, STEEP, memo);
-    if first == Side::Face {
+    if first == Side::Outer {
         return first;
     }
     let second = sample(triangles, triangle, 1, STEEP, memo);
@@ -146,7 +157,7 @@ pub(super) fn of_samples(triangles: &impl RayTriangles, is_closed: bool) -> Surf
         for i in tested..samples {
             let place = whole * sequence(f64::from(i), 0);
             let triangle = step * areas.partition_point(|&sum| sum < place) as u32;
-            counts[sample(triangles, triangle, i, 0.02, &memo) as usize] += 1;
+            counts[sample(triangles, triangle, i, ANY, &memo) as usize] += 1;
         }
         tested = samples;
         let open = f64::from(counts[Side::Sheet as usize]) / f64::from(samples);
@@ -184,7 +195,7 @@ fn sample(
 ) -> Side {
     let Some(rays) = Rays::new(triangles, triangle, i, steep) else { return Side::Sheet };
     let found = rays.side(|_| true);
-    if found == Side::Face {
+    if found == Side::Outer {
         return found;
     }
     // Walls within the body count as nothing.
@@ -220,15 +231,14 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
     fn new(triangles: &'a T, triangle: u32, i: u32, steep: f64) -> Option<Self> {
         let corners @ [a, b, c] = triangles.corners(triangle);
         let up = area_vector(&corners).try_normalize()?;
-        let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
-        let key = f64::from(i) + 17.0 * f64::from(triangle % 1009);
+        let key = f64::from(i) + f64::from(SHIFT * (triangle % SHIFTS));
         let [u, v] = [1, 2].map(|dimension| sequence(key, dimension));
         let height = steep + (1.0 - steep) * v;
         let (across, along) = up.any_orthonormal_pair();
         let (sin, cos) = (TAU * u).sin_cos();
         let flat = (1.0 - height * height).max(0.0).sqrt();
         let to_front = height * up + flat * (cos * across + sin * along);
-        let (start, skipped) = ((a + b + c) / 3.0, OFFSET * size / height);
+        let (start, skipped) = ((a + b + c) / 3.0, OFFSET * longest_side(&corners) / height);
         Some(Self { triangles, start, to_front, skipped, hits: Default::default() })
     }
 
@@ -238,12 +248,12 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
             let hits = self.hits[i].get_or_init(|| self.hits([self.to_front, -self.to_front][i]));
             Some(winding(hits.as_ref()?.iter().filter(|hit| counts(hit.triangle))))
         };
-        let Some(front) = winding(0) else { return Side::Face };
+        let Some(front) = winding(0) else { return Side::Outer };
         if front >= 1 {
             return Side::Inner;
         }
         match winding(1) {
-            None | Some(1..) => Side::Face,
+            None | Some(1..) => Side::Outer,
             _ if front < 0 => Side::Turned,
             _ => Side::Sheet,
         }
@@ -278,8 +288,8 @@ fn winding<'a>(hits: impl Iterator<Item = &'a Hit>) -> i32 {
 }
 
 /// Length at which a ray from the origin meets a triangle, and 1 if it leaves through the front.
-fn hit([a, b, c]: &[DVec3; 3], direction: DVec3) -> Option<(f64, i32)> {
-    let normal = (*b - *a).cross(*c - *a);
+fn hit(corners @ [a, b, c]: &[DVec3; 3], direction: DVec3) -> Option<(f64, i32)> {
+    let normal = area_vector(corners);
     let along = normal.dot(direction);
     let length = normal.dot(*a) / along;
     // Six times the volume between the ray and a side.

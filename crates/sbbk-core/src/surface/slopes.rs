@@ -84,6 +84,17 @@ impl<K, V> Default for Memo<K, V> {
 }
 
 impl<K: Eq + Hash, V: Copy> Memo<K, V> {
+    /// Returns the answer of a key: the known one, else that of `find`, which is kept if it took more than
+    /// [`LONG`] triangles.
+    fn answer(memo: Option<&Self>, key: K, find: impl FnOnce() -> (V, usize)) -> V {
+        let known = memo.and_then(|memo| memo.get(&key));
+        known.unwrap_or_else(|| {
+            let (value, count) = find();
+            memo.filter(|_| count > LONG).inspect(|memo| memo.insert(key, value));
+            value
+        })
+    }
+
     fn get(&self, key: &K) -> Option<V> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).get(key).copied()
     }
@@ -132,14 +143,7 @@ impl PlaceMemo {
         find: impl FnOnce(DVec3) -> (Slopes, usize),
     ) -> Slopes {
         let (key, direction) = Self::key(place, direction);
-        let key = (ring, key);
-        let known = memo.and_then(|memo| memo.slopes.get(&key));
-        known.unwrap_or_else(|| {
-            let (slopes, count) = find(direction);
-            let memo = memo.filter(|_| count > LONG);
-            memo.inspect(|memo| memo.slopes.insert(key, slopes));
-            slopes
-        })
+        Memo::answer(memo.map(|memo| &memo.slopes), (ring, key), || find(direction))
     }
 
     /// Returns true if a surface ends at a place. Keeps results for which `find` has looked at many
@@ -151,23 +155,12 @@ impl PlaceMemo {
         find: impl FnOnce() -> (bool, usize),
     ) -> bool {
         let key = (ring, (place + 0.0).to_array().map(f64::to_bits));
-        let known = memo.and_then(|memo| memo.borders.get(&key));
-        known.unwrap_or_else(|| {
-            let (is_border, count) = find();
-            let memo = memo.filter(|_| count > LONG);
-            memo.inspect(|memo| memo.borders.insert(key, is_border));
-            is_border
-        })
+        Memo::answer(memo.map(|memo| &memo.borders), key, find)
     }
 
     /// Returns true if a triangle is a wall within a body.
     pub(super) fn is_wall(&self, triangle: u32, find: impl FnOnce() -> bool) -> bool {
-        let known = self.walls.get(&triangle);
-        known.unwrap_or_else(|| {
-            let is_wall = find();
-            self.walls.insert(triangle, is_wall);
-            is_wall
-        })
+        Memo::answer(Some(&self.walls), triangle, || (find(), usize::MAX))
     }
 
     /// Returns the key of a place and a direction, and the rounded direction.

@@ -4,9 +4,14 @@ use glamx::DVec3;
 
 use crate::simd::each;
 
-/// Normal of a triangle, as long as twice its area.
+/// Returns the normal of a triangle, as long as twice its area.
 pub(super) fn area_vector([a, b, c]: &[DVec3; 3]) -> DVec3 {
     (*b - *a).cross(*c - *a)
+}
+
+/// Returns the length of the longest side of a triangle.
+pub(super) fn longest_side([a, b, c]: &[DVec3; 3]) -> f64 {
+    a.distance(*b).max(b.distance(*c)).max(c.distance(*a))
 }
 
 /// Greatest distances of the strays of a needle and of a large triangle, as shares of the longest side.
@@ -16,8 +21,8 @@ const SEAM: [f64; 2] = [1.0e-5, 1.0e-3];
 
 /// Returns the greatest distance of the strays of a triangle. This is half the least height, because slivers would
 /// have many strays, but between 0.00001 and 0.001 of the longest side.
-pub fn seam(corners @ [a, b, c]: &[DVec3; 3]) -> f64 {
-    let longest = a.distance(*b).max(b.distance(*c)).max(c.distance(*a));
+pub fn seam(corners: &[DVec3; 3]) -> f64 {
+    let longest = longest_side(corners);
     let height = area_vector(corners).length() / longest;
     (0.5 * height).max(SEAM[0] * longest).min(SEAM[1] * longest)
 }

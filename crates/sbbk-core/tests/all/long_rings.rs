@@ -2,42 +2,33 @@
 
 use std::cell::Cell;
 use std::f32::consts::TAU;
-use std::ops::ControlFlow;
 
 use glamx::{DVec3, Vec3};
 use sbbk_core::contact::Feature;
-use sbbk_core::surface::{Facets, HalfEdges, IndexedTriangles, OneRing, PlaceMemo, Side, Surface};
+use sbbk_core::surface::{Facets, OneRing, PlaceMemo, PlainFacets, Side};
 
 use crate::support::Soup;
 use crate::surface::analysed;
 
 /// A triangulated surface that counts visited triangles.
 struct Counted<'a> {
-    facets: IndexedTriangles<'a, &'a Surface>,
+    facets: PlainFacets<'a>,
     visits: Cell<usize>,
     memo: PlaceMemo,
 }
 
-impl HalfEdges for Counted<'_> {
+impl Facets for Counted<'_> {
     fn twin(&self, half_edge: u32) -> Option<u32> {
         self.visits.set(self.visits.get() + 1);
         self.facets.twin(half_edge)
     }
 
-    fn is_whole(&self, _: u32, _: Feature) -> bool {
-        true
+    fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
+        self.facets.corner(half_edge, i)
     }
-
-    fn near(&self, _: [DVec3; 2], _: &mut dyn FnMut(u32) -> ControlFlow<()>) {}
 
     fn memo(&self) -> Option<&PlaceMemo> {
         Some(&self.memo)
-    }
-}
-
-impl Facets for Counted<'_> {
-    fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
-        self.facets.corner(half_edge, i)
     }
 }
 
@@ -87,7 +78,7 @@ fn work_at_the_tip_of_a_cone_grows_with_its_triangles() {
         let surface = analysed(&Soup { vertices: vertices.clone(), triangles: triangles.clone() });
         let facets = surface.one_ring(&vertices, &triangles).facets;
         let (visits, memo) = (Cell::new(0), PlaceMemo::default());
-        let ring = OneRing { facets: Counted { facets, visits, memo }, side: Side::Face };
+        let ring = OneRing { facets: Counted { facets, visits, memo }, side: Side::Outer };
         for triangle in 0..count {
             assert!(ring.is_local_minimum(triangle, Feature::Vertex(0), DVec3::Z, None));
             assert!(ring.points_inside(triangle, Feature::Vertex(0), -DVec3::Z));

@@ -209,7 +209,7 @@ fn directions_agree_with_all_triangles_of_the_one_ring() {
         for case in 0..800 {
             let is_solid = case % 2 == 0;
             let around = OneRing {
-                side: if is_solid { Side::Face } else { Side::Sheet },
+                side: if is_solid { Side::Outer } else { Side::Sheet },
                 ..surface.one_ring(&mesh.vertices, &mesh.triangles)
             };
             let triangle = (random.bits() % mesh.triangles.len() as u64) as u32;
