@@ -6,12 +6,12 @@ use parry3d::query::{
     ClosestPoints, Contact, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher,
     ShapeCastHit, ShapeDistance, ShapeIntersection, Unsupported,
 };
-use parry3d::shape::{Shape, TriMesh};
+use parry3d::shape::Shape;
 
 use super::{SbbkDispatcher, rigid_mesh};
 use crate::mesh::{are_near, is_near};
 use crate::pair::{ConvexPair, ConvexSearch, MeshPlace, PairPose, Parts};
-use crate::query::{ConvexQuery, MeshQuery, NonlinearCast};
+use crate::query::{ConvexQuery, MeshQuery, NonlinearCast, Query};
 
 impl SbbkDispatcher {
     /// Returns what [`find`](Self::find) does, and counts it.
@@ -21,36 +21,36 @@ impl SbbkDispatcher {
         shapes: [&dyn Shape; 2],
         balls: Balls,
         apart: Option<(Real, T)>,
-        of_meshes: impl FnOnce(MeshQuery<'_>) -> T,
-        of_convex: impl FnOnce(ConvexQuery<'_>) -> T,
+        then: impl FnOnce(Query<'_>) -> T,
     ) -> Option<T> {
-        let found = self.find(pos12, shapes, balls, apart, of_meshes, of_convex);
+        let found = self.find(pos12, shapes, balls, apart, then);
         if found.is_some() {
             self.counters.add_search();
         }
         found
     }
 
-    /// Calls `of_meshes` for two rigid meshes, or `of_convex` for a mesh and a convex shape. Returns
-    /// `None` if Parry must answer. `apart` holds a distance, and the result for shapes whose boxes are
-    /// farther apart. `balls` selects who handles balls.
+    /// Calls `then` for two rigid meshes, or a mesh and a convex shape. Returns `None` if Parry must
+    /// answer. `apart` holds a distance, and the result for shapes whose boxes are farther apart.
+    /// `balls` selects who handles balls.
     fn find<T>(
         &self,
         pos12: &Pose,
         [g1, g2]: [&dyn Shape; 2],
         balls: Balls,
         apart: Option<(Real, T)>,
-        of_meshes: impl FnOnce(MeshQuery<'_>) -> T,
-        of_convex: impl FnOnce(ConvexQuery<'_>) -> T,
+        then: impl FnOnce(Query<'_>) -> T,
     ) -> Option<T> {
         let (mesh, other, mesh_place) = match [g1, g2].map(rigid_mesh) {
             [Some(mesh1), Some(mesh2)] => {
                 let meshes = [mesh1, mesh2];
-                let is_answered = self.config.kinds.meshes;
+                if !self.config.kinds.meshes {
+                    return None;
+                }
                 // Before all else: most pairs that a host asks about are apart.
-                return match apart.filter(|_| is_answered) {
+                return match apart {
                     Some((distance, apart)) if !are_near(meshes, pos12, distance) => Some(apart),
-                    _ => self.mesh_query(meshes).map(of_meshes),
+                    _ => Some(then(Query::Meshes(MeshQuery::new(self.view(meshes)?, pos12)))),
                 };
             }
             [Some(mesh), None] => (mesh, g2, MeshPlace::First),
@@ -79,13 +79,8 @@ impl SbbkDispatcher {
             leave_solids: false,
             has_patches: false,
         };
-        Some(of_convex(ConvexQuery { search: ConvexSearch::new(&pair, other)?, mesh_place }))
-    }
-
-    /// Returns `None` if Parry must answer.
-    fn mesh_query<'a>(&'a self, meshes: [&'a TriMesh; 2]) -> Option<MeshQuery<'a>> {
-        let meshes = self.config.kinds.meshes.then(|| self.view(meshes))??;
-        Some(MeshQuery { meshes })
+        let search = ConvexSearch::new(&pair, other)?;
+        Some(then(Query::Convex(ConvexQuery { search, mesh_place })))
     }
 }
 
@@ -106,18 +101,10 @@ impl QueryDispatcher for SbbkDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
-        let found = self.search(
-            pos12,
-            [g1, g2],
-            Balls::Parrys,
-            Some((0.0, ShapeIntersection::new(false))),
-            |meshes| meshes.intersection(pos12),
-            |pair| pair.intersection(),
-        );
-        match found {
-            Some(found) => Ok(found),
-            None => DefaultQueryDispatcher.intersection_test(pos12, g1, g2),
-        }
+        let apart = Some((0.0, ShapeIntersection::new(false)));
+        let found =
+            self.search(pos12, [g1, g2], Balls::Parrys, apart, |query| query.intersection());
+        found.map_or_else(|| DefaultQueryDispatcher.intersection_test(pos12, g1, g2), Ok)
     }
 
     fn distance(
@@ -126,18 +113,8 @@ impl QueryDispatcher for SbbkDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeDistance, Unsupported> {
-        let found = self.search(
-            pos12,
-            [g1, g2],
-            Balls::Parrys,
-            None,
-            |meshes| meshes.distance(pos12),
-            |pair| pair.distance(),
-        );
-        match found {
-            Some(found) => Ok(found),
-            None => DefaultQueryDispatcher.distance(pos12, g1, g2),
-        }
+        let found = self.search(pos12, [g1, g2], Balls::Parrys, None, |query| query.distance());
+        found.map_or_else(|| DefaultQueryDispatcher.distance(pos12, g1, g2), Ok)
     }
 
     fn contact(
@@ -147,18 +124,10 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
         prediction: Real,
     ) -> Result<Option<Contact>, Unsupported> {
-        let found = self.search(
-            pos12,
-            [g1, g2],
-            Balls::Parrys,
-            Some((prediction, None)),
-            |meshes| meshes.contact(pos12, prediction),
-            |pair| pair.contact(prediction),
-        );
-        match found {
-            Some(found) => Ok(found),
-            None => DefaultQueryDispatcher.contact(pos12, g1, g2, prediction),
-        }
+        let (shapes, apart) = ([g1, g2], Some((prediction, None)));
+        let ask = |query: Query<'_>| query.contact(prediction);
+        let found = self.search(pos12, shapes, Balls::Parrys, apart, ask);
+        found.map_or_else(|| DefaultQueryDispatcher.contact(pos12, g1, g2, prediction), Ok)
     }
 
     fn closest_points(
@@ -168,18 +137,10 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
         max_dist: Real,
     ) -> Result<ClosestPoints, Unsupported> {
-        let found = self.search(
-            pos12,
-            [g1, g2],
-            Balls::Parrys,
-            Some((max_dist, ClosestPoints::Disjoint)),
-            |meshes| meshes.closest_points(pos12, max_dist),
-            |pair| pair.closest_points(max_dist),
-        );
-        match found {
-            Some(found) => Ok(found),
-            None => DefaultQueryDispatcher.closest_points(pos12, g1, g2, max_dist),
-        }
+        let (shapes, apart) = ([g1, g2], Some((max_dist, ClosestPoints::Disjoint)));
+        let ask = |query: Query<'_>| query.closest_points(max_dist);
+        let found = self.search(pos12, shapes, Balls::Parrys, apart, ask);
+        found.map_or_else(|| DefaultQueryDispatcher.closest_points(pos12, g1, g2, max_dist), Ok)
     }
 
     fn cast_shapes(
@@ -190,18 +151,12 @@ impl QueryDispatcher for SbbkDispatcher {
         g2: &dyn Shape,
         options: ShapeCastOptions,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        let found = self.search(
-            pos12,
-            [g1, g2],
-            Balls::Ours,
-            None,
-            |meshes| meshes.cast(pos12, local_vel12, options),
-            |pair| pair.cast(local_vel12, options),
-        );
-        match found {
-            Some(hit) => Ok(hit),
-            None => DefaultQueryDispatcher.cast_shapes(pos12, local_vel12, g1, g2, options),
-        }
+        let found = self
+            .search(pos12, [g1, g2], Balls::Ours, None, |query| query.cast(local_vel12, options));
+        found.map_or_else(
+            || DefaultQueryDispatcher.cast_shapes(pos12, local_vel12, g1, g2, options),
+            Ok,
+        )
     }
 
     fn cast_shapes_nonlinear(
@@ -218,25 +173,22 @@ impl QueryDispatcher for SbbkDispatcher {
         let cast =
             &NonlinearCast { motions, start: start_time, end: end_time, stop_at_penetration };
         let [pos1, pos2] = motions.map(|motion| motion.position_at_time(start_time));
-        let found = self.search(
-            &pos1.inv_mul(&pos2),
-            [g1, g2],
-            Balls::Ours,
-            None,
-            |meshes| meshes.cast_nonlinear(cast),
-            |pair| pair.cast_nonlinear(cast),
-        );
-        match found {
-            Some(hit) => Ok(hit),
-            None => DefaultQueryDispatcher.cast_shapes_nonlinear(
-                motion1,
-                g1,
-                motion2,
-                g2,
-                start_time,
-                end_time,
-                stop_at_penetration,
-            ),
-        }
+        let found = self.search(&pos1.inv_mul(&pos2), [g1, g2], Balls::Ours, None, |query| {
+            query.cast_nonlinear(cast)
+        });
+        found.map_or_else(
+            || {
+                DefaultQueryDispatcher.cast_shapes_nonlinear(
+                    motion1,
+                    g1,
+                    motion2,
+                    g2,
+                    start_time,
+                    end_time,
+                    stop_at_penetration,
+                )
+            },
+            Ok,
+        )
     }
 }

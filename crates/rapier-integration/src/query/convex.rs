@@ -1,13 +1,12 @@
-//! A mesh and a convex shape: distance, closest points, intersection, the deepest contact and casts.
+//! A mesh and a convex shape.
 
 use parry3d::math::{Real, Vector};
+use parry3d::query::ShapeCastHit;
 use parry3d::query::details::ShapeCastOptions;
-use parry3d::query::{ClosestPoints, Contact, ShapeCastHit, ShapeDistance, ShapeIntersection};
 
 use super::moving::MovingConvex;
 use super::nonlinear::NonlinearCast;
-use super::proximity::limit_of;
-use super::touch::{Touch, status};
+use super::touch::{Found, Touch, status};
 use crate::pair::{ConvexSearch, FoundCast, FoundTriangle, MeshPlace};
 
 /// A mesh and a convex shape of a query.
@@ -17,49 +16,24 @@ pub(crate) struct ConvexQuery<'a> {
 }
 
 impl ConvexQuery<'_> {
-    /// Returns true and one triangle, if the surface of the mesh touches the shape.
-    pub(crate) fn intersection(&self) -> ShapeIntersection {
-        match self.search.touching() {
-            Some(triangle) => {
-                let [one, two] = self.subshapes(triangle);
-                ShapeIntersection::new(true).with_subshapes(one, two)
-            }
-            None => ShapeIntersection::new(false),
-        }
+    /// Returns subshapes that touch, if any do.
+    pub(super) fn touching(&self) -> Option<[u32; 2]> {
+        Some(self.subshapes(self.search.touching()?))
     }
 
-    /// The distance; `Real::MAX` at a pose that is not finite, as Parry has it.
-    pub(crate) fn distance(&self) -> ShapeDistance {
-        match self.search.nearest(f64::INFINITY) {
-            Some(found) => {
-                let distance = if found.is_touching { 0.0 } else { found.distance() };
-                let [one, two] = self.subshapes(found.triangle);
-                ShapeDistance::new(distance).with_subshapes(one, two)
-            }
-            None => ShapeDistance::new(Real::MAX),
-        }
+    /// Returns the nearest triangle. Its distance is not negative.
+    pub(super) fn nearest(&self, limit: f64) -> Option<Found> {
+        let found = self.search.nearest(limit)?;
+        Some(self.found(&found, if found.is_touching { 0.0 } else { found.distance() }))
     }
 
-    /// The closest points, each in the frame of its shape.
-    pub(crate) fn closest_points(&self, max_distance: Real) -> ClosestPoints {
-        match self.search.nearest(limit_of(max_distance)) {
-            Some(found) if found.is_touching => ClosestPoints::Intersecting,
-            Some(found) => {
-                let [one, two] = self.mesh_place.swap(found.points(&self.search.placed));
-                ClosestPoints::WithinMargin(one, two)
-            }
-            None => ClosestPoints::Disjoint,
-        }
+    /// Returns the deepest triangle or, where none crosses, the nearest.
+    pub(super) fn deepest(&self, limit: f64) -> Option<Found> {
+        let found = self.search.deepest(limit)?;
+        Some(self.found(&found, found.distance()))
     }
 
-    /// The contact of the deepest triangle or, where none crosses, of the nearest.
-    pub(crate) fn contact(&self, prediction: Real) -> Option<Contact> {
-        let found = self.search.deepest(limit_of(prediction))?;
-        Some(self.touch(&found).contact(self.subshapes(found.triangle), found.distance()))
-    }
-
-    /// The first impact of shape 2, moving by `velocity12` in the frame of shape 1.
-    pub(crate) fn cast(
+    pub(super) fn cast(
         &self,
         velocity12: Vector,
         options: ShapeCastOptions,
@@ -70,17 +44,18 @@ impl ConvexQuery<'_> {
         Some(self.touch(&found).hit(subshapes, time, status(is_penetrating)))
     }
 
-    /// The first impact of both on their ways.
-    pub(crate) fn cast_nonlinear(self, cast: &NonlinearCast<'_>) -> Option<ShapeCastHit> {
+    pub(super) fn cast_nonlinear(self, cast: &NonlinearCast<'_>) -> Option<ShapeCastHit> {
         let found = MovingConvex::new(self.search, self.mesh_place, cast).first_impact()?;
         Some(cast.hit(&found, &found.pair.touch))
     }
 
+    fn found(&self, found: &FoundTriangle, distance: Real) -> Found {
+        let (subshapes, is_touching) = (self.subshapes(found.triangle), found.is_touching);
+        Found { subshapes, distance, is_touching, touch: self.touch(found) }
+    }
+
     fn touch(&self, found: &FoundTriangle) -> Touch {
-        Touch {
-            points: self.mesh_place.swap(found.points(&self.search.placed)),
-            normals: self.mesh_place.swap(found.normals(&self.search.placed)),
-        }
+        Touch::of_triangle(found, &self.search.placed, self.mesh_place)
     }
 
     fn subshapes(&self, triangle: u32) -> [u32; 2] {

@@ -5,15 +5,102 @@
 //! and [`moving`] cast along the curves of rigid motions.
 
 mod bvh_search;
-mod casts;
 mod convex;
+mod meshes;
 mod moving;
 mod nonlinear;
-mod proximity;
 mod touch;
 mod trees;
 mod walk;
 
 pub(crate) use convex::ConvexQuery;
+pub(crate) use meshes::MeshQuery;
 pub(crate) use nonlinear::NonlinearCast;
-pub(crate) use walk::MeshQuery;
+
+use parry3d::math::{Real, Vector};
+use parry3d::query::details::ShapeCastOptions;
+use parry3d::query::{ClosestPoints, Contact, ShapeCastHit, ShapeDistance, ShapeIntersection};
+use touch::Found;
+
+/// Two shapes at a pose.
+#[allow(clippy::large_enum_variant, reason = "there is one at a time, on the stack")]
+pub(crate) enum Query<'a> {
+    Meshes(MeshQuery<'a>),
+    Convex(ConvexQuery<'a>),
+}
+
+impl Query<'_> {
+    /// Returns true and two subshapes, if the surfaces touch.
+    pub(crate) fn intersection(self) -> ShapeIntersection {
+        let touching = match self {
+            Self::Meshes(query) => query.touching(),
+            Self::Convex(query) => query.touching(),
+        };
+        let none = ShapeIntersection::new(false);
+        touching.map_or(none, |[one, two]| ShapeIntersection::new(true).with_subshapes(one, two))
+    }
+
+    /// The distance; `Real::MAX` at a pose that is not finite, as Parry has it for shapes without
+    /// parts.
+    pub(crate) fn distance(self) -> ShapeDistance {
+        let none = ShapeDistance::new(Real::MAX);
+        self.nearest(f64::INFINITY).map_or(none, |Found { distance, subshapes, .. }| {
+            ShapeDistance::new(distance).with_subshapes(subshapes[0], subshapes[1])
+        })
+    }
+
+    /// The closest points, each in the frame of its shape.
+    pub(crate) fn closest_points(self, max_distance: Real) -> ClosestPoints {
+        match self.nearest(limit_of(max_distance)) {
+            Some(found) if found.is_touching => ClosestPoints::Intersecting,
+            Some(Found { touch, .. }) => {
+                ClosestPoints::WithinMargin(touch.points[0], touch.points[1])
+            }
+            None => ClosestPoints::Disjoint,
+        }
+    }
+
+    /// The contact of the deepest subshapes or, where none cross, of the nearest.
+    pub(crate) fn contact(self, prediction: Real) -> Option<Contact> {
+        let limit = limit_of(prediction);
+        let Found { touch, distance, subshapes: [subshape1, subshape2], .. } = match self {
+            Self::Meshes(query) => query.deepest(limit),
+            Self::Convex(query) => query.deepest(limit),
+        }?;
+        let ([point1, point2], [normal1, normal2]) = (touch.points, touch.normals);
+        let contact = Contact::new(point1, point2, normal1, normal2, distance);
+        Some(Contact { subshape1, subshape2, ..contact })
+    }
+
+    /// The first impact of shape 2, which moves by `velocity12` in the frame of shape 1.
+    pub(crate) fn cast(
+        self,
+        velocity12: Vector,
+        options: ShapeCastOptions,
+    ) -> Option<ShapeCastHit> {
+        match self {
+            Self::Meshes(query) => query.cast(velocity12, options),
+            Self::Convex(query) => query.cast(velocity12, options),
+        }
+    }
+
+    /// The first impact of both on their ways.
+    pub(crate) fn cast_nonlinear(self, cast: &NonlinearCast<'_>) -> Option<ShapeCastHit> {
+        match self {
+            Self::Meshes(query) => query.cast_nonlinear(cast),
+            Self::Convex(query) => query.cast_nonlinear(cast),
+        }
+    }
+
+    fn nearest(&self, limit: f64) -> Option<Found> {
+        match self {
+            Self::Meshes(query) => query.nearest(limit),
+            Self::Convex(query) => query.nearest(limit),
+        }
+    }
+}
+
+/// Returns a limit of Parry's in f64. Parry's largest number stands for no limit.
+fn limit_of(distance: Real) -> f64 {
+    if distance == Real::MAX { f64::INFINITY } else { f64::from(distance) }
+}

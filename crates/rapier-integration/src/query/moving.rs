@@ -230,10 +230,7 @@ impl FoundTouch {
         Self {
             name: mesh_place.swap([found.triangle, 0]),
             distance: found.contact.distance,
-            touch: Touch {
-                points: mesh_place.swap(found.points(placed)),
-                normals: mesh_place.swap(found.normals(placed)),
-            },
+            touch: Touch::of_triangle(found, placed, mesh_place),
         }
     }
 }

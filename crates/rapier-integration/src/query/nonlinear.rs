@@ -3,7 +3,9 @@
 use glamx::{DMat3, DQuat, DVec3};
 use parry3d::math::{Real, Vector};
 use parry3d::query::{NonlinearRigidMotion, ShapeCastHit, ShapeCastStatus};
-use sbbk_core::query::{Advance, AdvanceOptions, Bodies, PartPair, advance, advance_from_contact};
+use sbbk_core::query::{
+    Advance, AdvanceOptions, Bodies, FoundPair, PartPair, advance, advance_from_contact,
+};
 use sbbk_core::traverse::Placement;
 use sbbk_core::volumes::Sphere;
 
@@ -59,25 +61,22 @@ impl NonlinearCast<'_> {
         }
     }
 
-    /// Returns the first impact. `touch` returns the points of a pair, `thickness` is the depth at which
-    /// one body comes out behind the other.
+    /// Returns the first impact of two meshes, given balls around them.
     ///
     /// A cast that does not stop at the start skips the pairs that touch then, except those that
-    /// approach by more than the thickness until the end. Parry does the same.
-    pub(super) fn first_impact<B: Bodies>(
+    /// approach. Parry does the same.
+    pub(super) fn first_impact(
         &self,
-        bodies: &mut B,
-        options: AdvanceOptions,
-        thickness: Real,
-        touch: impl Fn(&B::Pair, &Placement) -> Touch,
-    ) -> Option<Advance<B::Pair>> {
+        bodies: &mut impl Bodies<Pair = FoundPair>,
+        balls: [Sphere; 2],
+    ) -> Option<Advance<FoundPair>> {
+        let options = self.options(balls);
         let placement_at = |time| self.placement_at(time);
         if self.stop_at_penetration {
             return advance(bodies, placement_at, options);
         }
         advance_from_contact(bodies, placement_at, options, |pair, placement| {
-            let length = options.tolerance + f64::from(thickness);
-            self.approaches(&touch(pair, placement), options.start, length)
+            self.approaches(&Touch::of(pair, placement), options.start, options.tolerance)
         })
     }
 

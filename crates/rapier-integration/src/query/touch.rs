@@ -1,13 +1,23 @@
 use parry3d::math::{Real, Vector};
-use parry3d::query::{Contact, ShapeCastHit, ShapeCastStatus};
+use parry3d::query::{ShapeCastHit, ShapeCastStatus};
 use sbbk_core::query::FoundPair;
 use sbbk_core::traverse::Placement;
+
+use crate::pair::{FoundTriangle, MeshPlace, PlacedPart};
 
 /// Points of two parts that touch and their outward unit normals, each in its own frame.
 #[derive(Copy, Clone)]
 pub(crate) struct Touch {
     pub(super) points: [Vector; 2],
     pub(super) normals: [Vector; 2],
+}
+
+/// Two subshapes that a query found.
+pub(super) struct Found {
+    pub(super) subshapes: [u32; 2],
+    pub(super) distance: Real,
+    pub(super) is_touching: bool,
+    pub(super) touch: Touch,
 }
 
 impl Touch {
@@ -19,11 +29,16 @@ impl Touch {
         }
     }
 
-    /// The contact of two subshapes.
-    pub(super) fn contact(&self, [subshape1, subshape2]: [u32; 2], distance: Real) -> Contact {
-        let Self { points: [point1, point2], normals: [normal1, normal2] } = *self;
-        let contact = Contact::new(point1, point2, normal1, normal2, distance);
-        Contact { subshape1, subshape2, ..contact }
+    /// Returns the points at which a triangle and a convex shape touch.
+    pub(super) fn of_triangle(
+        found: &FoundTriangle,
+        placed: &PlacedPart,
+        mesh_place: MeshPlace,
+    ) -> Self {
+        Self {
+            points: mesh_place.swap(found.points(placed)),
+            normals: mesh_place.swap(found.normals(placed)),
+        }
     }
 
     /// The impact of two subshapes.

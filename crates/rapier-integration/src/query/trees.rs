@@ -3,16 +3,9 @@
 use std::cell::RefCell;
 use std::sync::Arc;
 
-use parry3d::math::Vector;
-use sbbk_core::query::{
-    Advance, Cast, CastOptions, FoundPair, MeshBodies, SearchScratch, cast, deepest, meeting,
-    nearest,
-};
-use sbbk_core::traverse::Placement;
+use sbbk_core::query::SearchScratch;
 use sbbk_core::tree::Tree;
 
-use super::nonlinear::NonlinearCast;
-use super::touch::Touch;
 use crate::mesh::{MeshData, MeshView};
 
 thread_local! {
@@ -42,37 +35,11 @@ impl Trees {
         Some(Self([mesh1?, mesh2?]))
     }
 
-    fn search<T>(&self, search: impl FnOnce((&Tree, &Tree), &mut SearchScratch) -> T) -> T {
+    pub(super) fn search<T>(
+        &self,
+        search: impl FnOnce((&Tree, &Tree), &mut SearchScratch) -> T,
+    ) -> T {
         let [tree1, tree2] = self.0.each_ref().map(|mesh| mesh.tree().expect("built"));
         SCRATCH.with_borrow_mut(|scratch| search((tree1, tree2), scratch))
-    }
-
-    pub(super) fn meeting(&self, placement: Placement) -> Option<FoundPair> {
-        self.search(|trees, scratch| meeting(trees, placement, scratch))
-    }
-
-    pub(super) fn nearest(&self, placement: Placement, limit: f64) -> Option<FoundPair> {
-        self.search(|trees, scratch| nearest(trees, placement, limit, scratch))
-    }
-
-    pub(super) fn deepest(&self, placement: Placement, limit: f64) -> Option<FoundPair> {
-        self.search(|trees, scratch| deepest(trees, placement, limit, scratch))
-    }
-
-    pub(super) fn cast(
-        &self,
-        placement: Placement,
-        velocity: Vector,
-        options: CastOptions,
-    ) -> Option<Cast> {
-        self.search(|trees, scratch| cast(trees, placement, velocity, options, scratch))
-    }
-
-    pub(super) fn cast_nonlinear(&self, cast: &NonlinearCast<'_>) -> Option<Advance<FoundPair>> {
-        self.search(|trees, scratch| {
-            let balls = [trees.0, trees.1].map(Tree::bounding_ball);
-            let bodies = &mut MeshBodies { trees, scratch };
-            cast.first_impact(bodies, cast.options(balls), 0.0, Touch::of)
-        })
     }
 }

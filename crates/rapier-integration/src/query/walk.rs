@@ -7,23 +7,7 @@ use sbbk_core::query::{Bodies, Cast, CastOptions, FoundPair};
 use sbbk_core::traverse::Placement;
 
 use super::bvh_search::BvhSearch;
-use super::trees::Trees;
 use crate::mesh::MeshView;
-
-/// Two rigid meshes of a query.
-pub(crate) struct MeshQuery<'a> {
-    pub(crate) meshes: [MeshView<'a>; 2],
-}
-
-impl MeshQuery<'_> {
-    pub(super) fn trees(&self) -> Option<Trees> {
-        Trees::of(self.meshes.each_ref())
-    }
-
-    pub(super) fn walk(&self) -> Walk<'_> {
-        Walk(self.meshes.each_ref())
-    }
-}
 
 /// Two meshes, searched by their BVHs.
 pub(super) struct Walk<'a>(pub(super) [&'a MeshView<'a>; 2]);
