@@ -16,7 +16,7 @@ use super::grid::HeightGrid;
 use crate::traverse::{Counters, Placement, TestedBox};
 use crate::volumes::rounding::gamma;
 
-/// CellRange under a node up to which their heights are read; a node above more is taken apart at once.
+/// Cells under a node up to which their heights are read; a node above more is taken apart at once.
 /// More: whole parts of a mesh above the ground are ruled out sooner. Fewer: less is read twice
 /// where they are not.
 const READ_LIMIT: usize = 1024;
@@ -47,8 +47,7 @@ impl<'a, F: HeightGrid> FieldFrame<'a, F> {
         let rotation = placement.rotation;
         let absolute =
             DMat3::from_cols(rotation.x_axis.abs(), rotation.y_axis.abs(), rotation.z_axis.abs());
-        let scale = [0, 1, 2].map(|i| rotation.row(i).length()).into_iter().fold(1.0, f64::max);
-        let reach = f64::from(margin) * scale * (1.0 + 1e-12);
+        let reach = f64::from(margin) * placement.scale().max(1.0) * (1.0 + 1e-12);
         Self { field, placement: *placement, absolute, reach }
     }
 
@@ -65,7 +64,7 @@ impl<'a, F: HeightGrid> FieldFrame<'a, F> {
 
     /// A point of the mesh in the frame of the field.
     pub(super) fn placed(&self, x: Vec3) -> DVec3 {
-        self.placement.rotation * x.as_dvec3() + self.placement.translation
+        self.placement.to_frame1(x, Vec3::ZERO)
     }
 
     /// The cells that may come within the margin of a box of the field's frame.

@@ -40,8 +40,7 @@ impl PlacedTest {
         let origin = placement.to_frame1(centre, Vec3::ZERO).as_vec3();
         let translation: DVec3 = placement.translation - origin.as_dvec3();
         let local = Placement { translation, ..*placement };
-        let scale = each(|i| local.rotation.row(i).length()).into_iter().fold(0.0, f64::max);
-        let size2 = translation.abs().max_element() as f32 + 2.0 * scale as f32 * magnitude;
+        let size2 = translation.abs().max_element() as f32 + 2.0 * local.scale() as f32 * magnitude;
         Self { frame: LeafFrame::at(&local), origin, margin, size2 }
     }
 

@@ -2,7 +2,7 @@ use glamx::{DMat3, Pose3};
 use wide::f32x4;
 
 use super::correspondence::Correspondence;
-use super::placement::Placement;
+use super::placement::{Placement, longest_row};
 use super::side::NodeLanes;
 use crate::simd::{Spread, V3, dot, each};
 use crate::tree::Tree;
@@ -40,14 +40,9 @@ impl Allowance {
     /// Allowances for bodies with coordinates up to `magnitudes`.
     #[inline]
     pub(super) fn new([m1, m2]: [f32; 2], placement: &Placement, margin: f32) -> Self {
-        let Placement { rotation, translation, inverse } = placement;
         // A row of the inverse is 1/s long, and distances along it shrink by this factor.
-        let longest_row = |matrix: &DMat3| {
-            let squares = each(|i| matrix.row(i).length_squared());
-            squares.into_iter().fold(0.0, f64::max).sqrt()
-        };
-        let (scale, inverse_scale) = (longest_row(rotation), longest_row(inverse));
-        let t = translation.as_vec3().abs().max_element();
+        let (scale, inverse_scale) = (placement.scale(), longest_row(&placement.inverse));
+        let t = placement.translation.as_vec3().abs().max_element();
         let rounding = [
             gamma(16) * (m1 + t + 2.0 * scale as f32 * m2),
             gamma(16) * (m2 + 2.0 * inverse_scale as f32 * (m1 + t)),

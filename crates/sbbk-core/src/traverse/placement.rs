@@ -1,5 +1,7 @@
 use glamx::{DMat3, DQuat, DVec3, Pose3, Vec3};
 
+use crate::simd::each;
+
 /// A pose as a linear map in f64.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Placement {
@@ -74,6 +76,11 @@ impl Placement {
         self.inverse * (x - (self.translation - origin.as_dvec3()))
     }
 
+    /// Returns how much longer a vector of frame 2 may be in frame 1, along one of its axes.
+    pub(crate) fn scale(&self) -> f64 {
+        longest_row(&self.rotation)
+    }
+
     /// An upper bound of the motion of any point of a ball from an earlier placement.
     ///
     /// With `c` the ball's centre and `r` its radius, a point `x` in it moved by `(R' - R)(x - c) +
@@ -94,4 +101,9 @@ impl Placement {
         let magnitude = centre.length() + radius + self.translation.length();
         spectral * radius + shift.length() + 1e-14 * magnitude
     }
+}
+
+/// Length of the longest row of a matrix.
+pub(super) fn longest_row(matrix: &DMat3) -> f64 {
+    each(|i| matrix.row(i).length_squared()).into_iter().fold(0.0, f64::max).sqrt()
 }
