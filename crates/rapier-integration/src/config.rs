@@ -121,11 +121,6 @@ macro_rules! setters {
 }
 
 impl SbbkConfig {
-    /// The comparison of the SBBK paper: AABBs in every layer of the trees.
-    pub fn aabb_only() -> Self {
-        Self::default().with_layers(Some(LayerPlan::AABB_ONLY))
-    }
-
     setters! {
         with_contact_set: contact_set: ContactSet,
         with_detail: detail: ContactDetail,

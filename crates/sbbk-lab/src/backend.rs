@@ -11,6 +11,7 @@ use rapier3d::parry::query::{
     ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
 };
 use rapier3d::parry::shape::Shape;
+use sbbk_core::tree::LayerPlan;
 
 pub use sbbk_testkit::probe::{Answer, Probe, Question, Recording, Reported, shape_address};
 
@@ -77,7 +78,7 @@ impl Backend {
             Self::Stock => {
                 return Dispatcher { shared: Arc::new(DefaultQueryDispatcher), sbbk: None };
             }
-            Self::AabbOnly => SbbkConfig::aabb_only(),
+            Self::AabbOnly => SbbkConfig::default().with_layers(Some(LayerPlan::AABB_ONLY)),
             Self::Sbbk | Self::Every => SbbkConfig::default(),
         };
         (config.contact_set, config.detail) = (contact_set, detail);
