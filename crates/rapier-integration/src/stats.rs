@@ -78,7 +78,7 @@ impl QueryCounters {
         self.unsupported.fetch_add(1, Ordering::Relaxed);
     }
 
-    pub(crate) fn add(&self, answer: QueryOutcome, counts: &DescentCounts) {
+    pub(crate) fn add(&self, answer: QueryOutcome, counts: DescentCounts) {
         if answer == QueryOutcome::Unsupported {
             return;
         }
@@ -90,7 +90,7 @@ impl QueryCounters {
             QueryOutcome::Descended => stats.descended_queries += 1,
             QueryOutcome::Apart | QueryOutcome::Unsupported => return,
         }
-        stats.internals.descent += *counts;
+        stats.internals.descent += counts;
     }
 
     /// The counts, 0 for those of meshes.

@@ -48,7 +48,7 @@ impl SbbkDispatcher {
                     && !are_near(meshes, pos12, prediction)
                     && !(has_surfaces && may_be_inside(meshes, pos12))
                 {
-                    return self.counted(QueryOutcome::Apart);
+                    return self.counted(QueryOutcome::Apart, DescentCounts::default());
                 }
                 let Some(meshes) = self.view(meshes) else {
                     return QueryOutcome::Unsupported;
@@ -73,7 +73,7 @@ impl SbbkDispatcher {
         if is_new && parts.is_some() && !leave_solids {
             let in_mesh = mesh_place.shape_in_mesh(pos12);
             if !is_near(mesh, other, &in_mesh, prediction) {
-                return self.counted(QueryOutcome::Apart);
+                return self.counted(QueryOutcome::Apart, DescentCounts::default());
             }
         }
         let Some([mesh]) = self.view([mesh]) else {
@@ -101,10 +101,10 @@ impl SbbkDispatcher {
         }
     }
 
-    /// Counts an outcome without a descent.
-    fn counted(&self, answer: QueryOutcome) -> QueryOutcome {
+    /// Counts an outcome, and the work that it took.
+    fn counted(&self, answer: QueryOutcome, counts: DescentCounts) -> QueryOutcome {
         if self.config.count_queries {
-            self.counters.add(answer, &DescentCounts::default());
+            self.counters.add(answer, counts);
         }
         answer
     }
@@ -122,10 +122,7 @@ impl SbbkDispatcher {
     {
         let mut counts = DescentCounts::default();
         let answer = update_manifolds(pair, &self.store, &mut counts, manifolds, workspace);
-        if self.config.count_queries {
-            self.counters.add(answer, &counts);
-        }
-        answer
+        self.counted(answer, counts)
     }
 }
 

@@ -35,26 +35,25 @@ pub(crate) fn are_near([mesh1, mesh2]: [&TriMesh; 2], pos12: &Pose, margin: Real
     if !roots.iter().all(is_valid) {
         return true;
     }
-    let [size1, size2] = roots.map(|root| root.half_extents().length_squared());
-    if size1 < size2 {
-        let pos21 = pos12.inverse();
-        has_near(mesh2, &roots[0].transform_by(&pos21), &pos21, margin)
+    let ([larger, other], pose) = larger_first([mesh1, mesh2], pos12);
+    has_near(larger, &other.bvh().root_aabb().transform_by(&pose), &pose, margin)
+}
+
+/// Returns the larger mesh, the other one, and the pose of the other one in the frame of the larger.
+fn larger_first<'a>([mesh1, mesh2]: [&'a TriMesh; 2], pos12: &Pose) -> ([&'a TriMesh; 2], Pose) {
+    let size = |mesh: &TriMesh| mesh.bvh().root_aabb().half_extents().length_squared();
+    if size(mesh1) < size(mesh2) {
+        ([mesh2, mesh1], pos12.inverse())
     } else {
-        has_near(mesh1, &roots[1].transform_by(pos12), pos12, margin)
+        ([mesh1, mesh2], *pos12)
     }
 }
 
 /// True if the first vertex of the smaller mesh is [covered](is_covered) by the larger one. Both must have
 /// triangles.
-pub(crate) fn may_be_inside([mesh1, mesh2]: [&TriMesh; 2], pos12: &Pose) -> bool {
-    let [size1, size2] =
-        [mesh1, mesh2].map(|mesh| mesh.bvh().root_aabb().half_extents().length_squared());
-    let first = |mesh: &TriMesh| mesh.vertices()[mesh.indices()[0][0] as usize];
-    if size1 < size2 {
-        is_covered(mesh2, pos12.inverse() * first(mesh1))
-    } else {
-        is_covered(mesh1, pos12 * first(mesh2))
-    }
+pub(crate) fn may_be_inside(meshes: [&TriMesh; 2], pos12: &Pose) -> bool {
+    let ([larger, other], pose) = larger_first(meshes, pos12);
+    is_covered(larger, pose * other.vertices()[other.indices()[0][0] as usize])
 }
 
 /// True if each of the six rays from a point along the axes crosses the box of a triangle. So it is
