@@ -199,7 +199,6 @@ fn table() -> Mesh {
     Mesh::merged("table", &legs.chain([top]).collect::<Vec<_>>())
 }
 
-/// Would catch supports that are lost, as two of six legs at the corners of a hexagon would be.
 /// Cubes of 5 cm that touch, at Rapier's default prediction distance. Would catch a point for each triangle
 /// within it.
 #[test]
@@ -259,6 +258,7 @@ fn far_contacts_are_outside_of_solids() {
     assert!(count > 100, "{count} far contacts");
 }
 
+/// Would catch supports that are lost, as two of six legs at the corners of a hexagon would be.
 #[test]
 fn a_patch_for_each_leg() {
     let table = shape(&table());

@@ -44,32 +44,22 @@ fn counts(dispatcher: &SbbkDispatcher) -> [u64; 4] {
     [trees as u64, internals.idle_trees as u64, internals.tree_builds, internals.tree_hits]
 }
 
-/// Would catch a tree for each collider, or an identity that is an address: a clone and a mesh
-/// built again lie elsewhere in memory.
-#[test]
-fn clones_and_equal_meshes_share_one_tree() {
-    let dispatcher = SbbkDispatcher::default();
-    let mesh = ball();
-    let (clone, equal) = (mesh.clone(), rebuilt(&mesh));
-    let _pairs = [touch(&dispatcher, &mesh, &clone), touch(&dispatcher, &equal, &mesh)];
-    assert_eq!(counts(&dispatcher), [1, 0, 1, 2]);
-    assert!(dispatcher.stats().tree_bytes > 0);
-}
-
 /// Would catch 2000 trees, or 2000 builds, for a pile restored from a snapshot, where each collider
-/// has its own copy of the mesh.
+/// has its own copy of the mesh. An identity that is an address has them, as has a clone of the
+/// dispatcher that builds its own trees: Rapier and the user may each hold one.
 #[test]
 fn two_thousand_copies_share_one_tree() {
     let dispatcher = SbbkDispatcher::default();
     let mesh = ball();
-    let copies: Vec<TriMesh> = (0..2000).map(|_| mesh.clone()).collect();
+    let copy = |i| if i % 2 == 0 { mesh.clone() } else { rebuilt(&mesh) };
+    let copies: Vec<TriMesh> = (0..2000).map(copy).collect();
     let pairs: Vec<Pair> =
-        copies.windows(2).map(|two| touch(&dispatcher, &two[0], &two[1])).collect();
+        copies.windows(2).map(|two| touch(&dispatcher.clone(), &two[0], &two[1])).collect();
     assert_eq!(counts(&dispatcher), [1, 0, 1, 2 * 1998]);
     let bytes = dispatcher.stats().tree_bytes;
     drop(pairs);
     assert_eq!(counts(&dispatcher), [1, 1, 1, 2 * 1998]);
-    assert_eq!(dispatcher.stats().tree_bytes, bytes);
+    assert!(bytes > 0 && dispatcher.stats().tree_bytes == bytes);
 }
 
 /// Would catch a tree used for another size of the same mesh, and a second one of a mesh whose contact
@@ -87,16 +77,6 @@ fn another_scale_is_another_mesh_and_another_flag_is_none() {
         let expected = Question::new(&mesh, other, near()).fresh(&SbbkDispatcher::default());
         assert_same(&pair.manifolds, &expected, 0.0);
     }
-}
-
-/// Would catch clones that build their own trees: Rapier and the user may each hold one.
-#[test]
-fn clones_of_a_dispatcher_share_their_trees() {
-    let dispatcher = SbbkDispatcher::default();
-    let mesh = ball();
-    let _pair = touch(&dispatcher.clone(), &mesh, &mesh);
-    let _other = touch(&dispatcher, &mesh, &mesh);
-    assert_eq!(counts(&dispatcher), [1, 0, 1, 2]);
 }
 
 /// Would catch trees built for pairs that never come close: a world is full of them.

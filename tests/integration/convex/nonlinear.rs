@@ -25,7 +25,12 @@ struct Cast<'a> {
     is_mesh_first: bool,
 }
 
-impl Cast<'_> {
+impl<'a> Cast<'a> {
+    /// A shape that moves past a mesh, which stays.
+    fn past(mesh: &'a TriMesh, shape: &'a SharedShape, moving: NonlinearRigidMotion) -> Self {
+        Self { mesh, shape, motions: [still(), moving], is_mesh_first: true }
+    }
+
     fn swap<T>(&self, [one, two]: [T; 2]) -> [T; 2] {
         if self.is_mesh_first { [one, two] } else { [two, one] }
     }
@@ -262,9 +267,8 @@ fn casts_from_contact_stop_as_their_options_say() {
                     let start = Pose3::translation(0.0, height * size, 0.0);
                     let moving =
                         NonlinearRigidMotion::new(start, Vec3::ZERO, velocity * size, Vec3::ZERO);
-                    let motions = [still(), moving];
-                    Cast { mesh: &mesh, shape: &other, motions, is_mesh_first }
-                        .ask(dispatcher, stop)
+                    let cast = Cast { is_mesh_first, ..Cast::past(&mesh, &other, moving) };
+                    cast.ask(dispatcher, stop)
                 };
             let says = format!("{name}, {size}, {is_mesh_first}");
             let crossing = cast(&ours, 0.4, Vec3::Y, true).expect("crosses");
@@ -316,8 +320,8 @@ fn a_falling_pole_meets_the_floor_with_its_other_end() {
             let ask = |dispatcher: &dyn QueryDispatcher, spin: Real, sinking: Real| {
                 let (velocity, spin) = (-sinking * Vec3::Y, spin * Vec3::Z);
                 let moving = NonlinearRigidMotion::new(start, Vec3::ZERO, velocity, spin);
-                Cast { mesh: &mesh, shape: &other, motions: [still(), moving], is_mesh_first }
-                    .ask(dispatcher, false)
+                let cast = Cast { is_mesh_first, ..Cast::past(&mesh, &other, moving) };
+                cast.ask(dispatcher, false)
             };
             for (spin, sinking, is_met) in
                 [(6.0, 0.3, true), (-0.5, -0.5, false), (0.0, 0.0, false)]
@@ -348,9 +352,9 @@ fn a_fast_pole_meets_the_floor_with_its_other_end() {
     let start = Pose3::from_parts(-low * Vec3::Y, turn);
     for (spin, met) in [(31.4, 0.0666), (60.0, 0.0352), (200.0, 0.0107)] {
         let moving = NonlinearRigidMotion::new(start, Vec3::ZERO, -0.3 * Vec3::Y, spin * Vec3::Z);
-        let cast =
-            Cast { mesh: &mesh, shape: &pole, motions: [still(), moving], is_mesh_first: true };
-        let hit = cast.ask(&SbbkDispatcher::default(), false).expect("comes down");
+        let hit = Cast::past(&mesh, &pole, moving)
+            .ask(&SbbkDispatcher::default(), false)
+            .expect("comes down");
         assert!((hit.time_of_impact - met).abs() < 1e-4, "{spin}: {hit:?}");
     }
 }
@@ -390,12 +394,7 @@ fn bodies_that_glide_along_a_floor_meet_the_wall() {
             let start = Pose3::translation(-3.0, height - low, 0.0);
             let cast = |velocity: Vec3| {
                 let moving = NonlinearRigidMotion::new(start, Vec3::ZERO, velocity, Vec3::Y);
-                let cast = Cast {
-                    mesh: &mesh,
-                    shape: &other,
-                    motions: [still(), moving],
-                    is_mesh_first: true,
-                };
+                let cast = Cast::past(&mesh, &other, moving);
                 let found = cast.ask(&dispatcher, true);
                 found.map(|hit| {
                     (hit, cast.distance(&convex_body(&other), f64::from(hit.time_of_impact)))
@@ -480,12 +479,7 @@ fn a_body_in_a_hollow_is_apart() {
         for (velocity, is_met) in [(Vec3::ZERO, false), (4.0 * Vec3::X, true)] {
             let moving =
                 NonlinearRigidMotion::new(Pose3::IDENTITY, Vec3::ZERO, velocity, 3.0 * Vec3::ONE);
-            let cast = Cast {
-                mesh: &hollow,
-                shape: &other,
-                motions: [still(), moving],
-                is_mesh_first: true,
-            };
+            let cast = Cast::past(&hollow, &other, moving);
             for stop in [true, false] {
                 assert_eq!(cast.ask(&dispatcher, stop).is_some(), is_met, "{name}");
             }
