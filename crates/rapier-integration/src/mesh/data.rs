@@ -106,7 +106,7 @@ impl MeshData {
     pub(super) fn bytes(&self) -> usize {
         const ENTRIES: usize = 2 * (size_of::<u128>() + 2 * size_of::<usize>());
         const REFERENCE_COUNTS: usize = 2 * size_of::<usize>();
-        let tree = self.tree().map_or(0, |tree| tree.stats().bytes());
+        let tree = self.tree().map_or(0, |tree| tree.stats().bytes);
         let surface = self.surface().map_or(0, |surface| surface.bytes() - size_of::<Surface>());
         let flags = size_of_val(self.flags());
         size_of::<Self>() + tree + surface + flags + ENTRIES + REFERENCE_COUNTS

@@ -48,7 +48,7 @@
 //!     if frame.meets(TestedBox::new(aabb.min, aabb.max), ()) {
 //!         nodes.extend(node.children().into_iter().flatten());
 //!         if let Some(leaf) = node.leaf() {
-//!             leaves.visit(leaf.batch, (), |cell, index| near.push((cell, index)));
+//!             leaves.visit(leaf, (), |cell, index| near.push((cell, index)));
 //!         }
 //!     }
 //! }

@@ -21,7 +21,6 @@ mod build;
 mod layers;
 mod node;
 mod pack;
-mod stats;
 mod validate;
 mod walk;
 
@@ -29,9 +28,8 @@ pub use build::BuildOptions;
 pub use layers::LayerPlan;
 pub use node::{BATCH, LeafBatch};
 pub(crate) use node::{Children, Intervals, Link, Slot};
-pub use stats::BuildStats;
 pub use validate::Violation;
-pub use walk::{Leaf, Node};
+pub use walk::Node;
 
 use glamx::Vec3;
 use thiserror::Error;
@@ -54,6 +52,21 @@ pub struct Tree {
     /// The largest absolute coordinate, to which rounding errors are proportional.
     magnitude: f32,
     stats: BuildStats,
+}
+
+/// Depth, layers and memory of a tree.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct BuildStats {
+    /// Depth of the deepest leaf; the root is at 0.
+    pub depth: u32,
+    /// The volumes of each layer, as given or chosen.
+    pub layers: LayerPlan,
+    /// Share of the boxes met by a random query that k-DOPs cut off, in the chosen layers or from
+    /// depth 4 on. `None` if a plan was given.
+    pub kdop_cut: Option<f32>,
+    /// Memory of the tree.
+    pub bytes: usize,
 }
 
 /// Reason for which a mesh cannot have a tree.

@@ -7,8 +7,7 @@ use glamx::Vec3;
 
 use super::build::{BuildNode, BuildOptions, BuildTree, Content};
 use super::node::{LeafBatch, Link, Pair};
-use super::stats::BuildStats;
-use super::{LayerPlan, Tree};
+use super::{BuildStats, LayerPlan, Tree};
 use crate::volumes::{Kdop, Sphere};
 
 pub(super) fn pack(
@@ -56,17 +55,17 @@ pub(super) fn pack(
         }
     }
 
-    let mut tree = Tree {
+    let depth = built.nodes.iter().map(|node| node.depth).max().unwrap_or(0);
+    let bytes = size_of_val(&*aabb_pairs) + size_of_val(&*kdop_pairs) + size_of_val(&*leaves);
+    Tree {
         sphere: layers.sphere_root.then(|| sphere(vertices, triangles)),
         aabb_pairs,
         kdop_pairs,
         leaves,
         triangle_count: triangles.len() as u32,
         magnitude: built.nodes[0].aabb.magnitude(),
-        stats: BuildStats::default(),
-    };
-    tree.stats = BuildStats { layers, kdop_cut, ..BuildStats::of(&tree, &built) };
-    tree
+        stats: BuildStats { depth, layers, kdop_cut, bytes },
+    }
 }
 
 /// The batches of triangles, and for each place of the built tree the link to its batch.

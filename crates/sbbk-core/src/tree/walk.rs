@@ -12,15 +12,6 @@ pub struct Node<'a> {
     depth: u32,
 }
 
-/// A leaf of a tree.
-#[derive(Copy, Clone, Debug)]
-pub struct Leaf<'a> {
-    /// Index of the leaf in [`Tree::leaf`].
-    pub number: u32,
-    /// The triangles of the leaf.
-    pub batch: &'a LeafBatch,
-}
-
 impl Tree {
     /// The root, from which all nodes can be reached.
     ///
@@ -71,10 +62,9 @@ impl<'a> Node<'a> {
     }
 
     /// The triangles of a leaf; `None` for an inner node.
-    pub fn leaf(&self) -> Option<Leaf<'a>> {
+    pub fn leaf(&self) -> Option<&'a LeafBatch> {
         let link = self.link();
-        let number = link.index();
-        link.is_leaf().then(|| Leaf { number, batch: self.tree.leaf(number) })
+        link.is_leaf().then(|| self.tree.leaf(link.index()))
     }
 
     fn link(&self) -> Link {

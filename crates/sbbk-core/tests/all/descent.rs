@@ -66,7 +66,7 @@ fn check(soup1: &Soup, soup2: &Soup, pos12: &Pose3, margin: f32) -> usize {
 fn finds_every_pair_where_one_tree_chose_boxes() {
     let mut random = Random(31);
     let (cube, ball) = (cube(6), bumpy_ball(10, 0.2));
-    let has_kdops = |soup: &Soup| tree(soup, None).stats().kdop_bytes > 0;
+    let has_kdops = |soup: &Soup| tree(soup, None).stats().layers.kdop_from_depth.is_some();
     assert_eq!([&cube, &ball].map(has_kdops), [false, true]);
     let mut total = 0;
     for i in 0..40 {

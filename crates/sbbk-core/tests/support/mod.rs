@@ -154,7 +154,7 @@ pub fn descend_field<F: HeightGrid>(
         if frame.meets(TestedBox::new(aabb.min, aabb.max), &mut counts) {
             nodes.extend(node.children().into_iter().flatten());
             if let Some(leaf) = node.leaf() {
-                leaves.visit(leaf.batch, &mut counts, &mut found);
+                leaves.visit(leaf, &mut counts, &mut found);
             }
         }
     }
