@@ -6,9 +6,9 @@
 //! child. No descent of real trees has such a pair, so this test uses the figure's tree and states
 //! which nodes meet. The front is the real one.
 
-use super::opening::{Opening, PairTest, SlotPair};
+use super::pair_test::PairTest;
 use super::{Front, lanes};
-use crate::traverse::Sides;
+use crate::traverse::{Opening, Sides, SlotPair};
 use crate::tree::Slot;
 
 /// The tree at one time. T*n* is the slot with the packed number n.
@@ -22,16 +22,16 @@ fn number(slot: Slot) -> u32 {
 }
 
 impl PairTest for Figure<'_> {
-    fn roots(&self) -> Opening {
+    fn roots(&self) -> (Opening, u32) {
         // T1 is lane 1 of node 0, and that is lane 2 of four.
-        Opening { nodes: (0, 0), sides: Sides::First, same_lane: 0, lanes: 0b0100, leaves: 0 }
+        (Opening { nodes: (0, 0), sides: Sides::First, same_lane: 0, lanes: 0b0100 }, 0)
     }
 
-    fn open(&self, pair: SlotPair) -> Opening {
+    fn open(&self, pair: SlotPair) -> (Opening, u32) {
         let n = number(pair.0);
         let lanes = if n == 6 { 0b0001 } else { 0b0101 };
         let leaves = if n >= 8 { lanes } else { 0 };
-        Opening { nodes: (n, 0), sides: Sides::First, same_lane: 0, lanes, leaves }
+        (Opening { nodes: (n, 0), sides: Sides::First, same_lane: 0, lanes }, leaves)
     }
 
     fn visit(&mut self, _: SlotPair) {}

@@ -41,11 +41,11 @@
 
 #[cfg(test)]
 mod figure;
-mod opening;
+mod pair_test;
 
-use crate::traverse::{Counters, PairFrame};
+use crate::traverse::{Counters, Opening, PairFrame};
 use crate::tree::{LeafBatch, Tree};
-use opening::{Opening, PairTest, TreePair};
+use pair_test::{PairTest, TreePair};
 
 /// The pairs of nodes where the last descent of two trees stopped: see [the module](self).
 ///
@@ -62,6 +62,8 @@ pub struct Front {
 #[derive(Copy, Clone, Debug)]
 struct Cell {
     opening: Opening,
+    /// Lanes that hold a pair of leaves.
+    leaves: u32,
     /// Lanes that came within the margin.
     met: u32,
     /// The cell of each lane that met and is not a pair of leaves.
@@ -115,8 +117,8 @@ impl Front {
     /// Tests the front below a cell, then the lanes of the cell that belong to it. Lanes right
     /// above the front are tested along with these: SIMD does it at no cost.
     fn test(&mut self, cell: u32, pair: &mut impl PairTest) {
-        let Cell { opening, met: before, below } = self.cells[cell as usize];
-        let above = before & !opening.leaves;
+        let Cell { opening, leaves, met: before, below } = self.cells[cell as usize];
+        let above = before & !leaves;
         let mut asked = opening.lanes & !above;
         for lane in lanes(above) {
             self.test(below[lane], pair);
@@ -132,7 +134,7 @@ impl Front {
         }
         for lane in lanes(meeting & !above) {
             self.cells[cell as usize].met |= 1 << lane;
-            if opening.leaves >> lane & 1 != 0 {
+            if leaves >> lane & 1 != 0 {
                 pair.visit(opening.pair(lane));
             } else {
                 let opened = pair.open(opening.pair(lane));
@@ -143,8 +145,8 @@ impl Front {
         }
     }
 
-    fn add(&mut self, opening: Opening) -> u32 {
-        let cell = Cell { opening, met: 0, below: [0; 4] };
+    fn add(&mut self, (opening, leaves): (Opening, u32)) -> u32 {
+        let cell = Cell { opening, leaves, met: 0, below: [0; 4] };
         if let Some(free) = self.free.pop() {
             self.cells[free as usize] = cell;
             return free;

@@ -6,7 +6,7 @@
 use wide::f32x4;
 
 use crate::simd::{Spread, dot};
-use crate::traverse::{Compare, NodeLanes, PairFrame, Sides, expand};
+use crate::traverse::{Compare, NodeLanes, PairFrame, expand};
 use crate::tree::{LeafBatch, Slot, Tree};
 
 /// Down both trees from the roots, always to the children whose centres are nearest to each other.
@@ -22,7 +22,7 @@ pub(super) fn near_leaves<'a>(
         }
         let mut nearest = f32::INFINITY;
         let pair = slots;
-        expand((tree1, tree2), pair, Sides::of(links), &mut Centres(frame), |children, squared| {
+        expand((tree1, tree2), pair, &mut Centres(frame), |children, squared| {
             // The first one even if all are NaN.
             if slots == pair || squared < nearest {
                 (slots, nearest) = (children, squared);

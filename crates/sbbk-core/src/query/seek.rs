@@ -4,7 +4,7 @@
 //! value so far. The least of these is next. The first leaves reached are near the answer, so the
 //! bound is tight from then on.
 
-use crate::traverse::{Compare, DescentScratch, Sides, expand};
+use crate::traverse::{Compare, DescentScratch, expand};
 use crate::tree::{LeafBatch, Slot, Tree};
 
 /// A best-first search with lower bounds.
@@ -62,7 +62,7 @@ pub(super) fn seek<B: BestFirst>(
             continue;
         }
         let first = stack.len();
-        expand((tree1, tree2), slots, Sides::of(links), bounds.compare(), |slots, key| {
+        expand((tree1, tree2), slots, bounds.compare(), |slots, key| {
             stack.push(BoundedPair { key, slots });
         });
         nearest_last(&mut stack[first..]);

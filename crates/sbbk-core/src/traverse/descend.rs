@@ -8,7 +8,7 @@
 //! `2^(2n-1) - 1` tests.
 
 use super::counters::Counters;
-use super::expand::{Sides, expand};
+use super::expand::expand;
 use super::frame::PairFrame;
 use super::overlap::Overlap;
 use super::side::NodeLanes;
@@ -121,15 +121,14 @@ fn are_both_leaves((tree1, tree2): (&Tree, &Tree), NodePair(slot1, slot2): NodeP
 /// Calls `push` with the pairs of children of a pair that come within the margin.
 #[inline(always)]
 fn replace(
-    (tree1, tree2): (&Tree, &Tree),
+    trees: (&Tree, &Tree),
     NodePair(slot1, slot2): NodePair,
     frame: &mut PairFrame,
     counters: &mut impl Counters,
     mut push: impl FnMut(NodePair),
 ) {
-    let sides = Sides::of((tree1.link(slot1), tree2.link(slot2)));
     let mut compare = Overlap { frame, counters };
-    expand((tree1, tree2), (slot1, slot2), sides, &mut compare, |(slot1, slot2), ()| {
+    expand(trees, (slot1, slot2), &mut compare, |(slot1, slot2), ()| {
         push(NodePair(slot1, slot2));
     });
 }

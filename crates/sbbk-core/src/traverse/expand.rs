@@ -2,7 +2,10 @@
 
 use super::side::NodeLanes;
 use crate::simd::{Inner, Outer, Same, Spread, each_bit};
-use crate::tree::{Link, Slot, Tree};
+use crate::tree::{Slot, Tree};
+
+/// A pair of nodes.
+pub(crate) type SlotPair = (Slot, Slot);
 
 /// The sides of a pair whose children replace them.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -12,25 +15,56 @@ pub(crate) enum Sides {
     Second,
 }
 
-impl Sides {
-    /// Both sides, or the one that is not a leaf.
+/// The pairs below a pair of nodes, lane by lane.
+#[derive(Copy, Clone, Debug)]
+pub(crate) struct Opening {
+    /// The inner nodes that hold the volumes.
+    pub(crate) nodes: (u32, u32),
+    pub(crate) sides: Sides,
+    /// The lane of the side that stays.
+    pub(crate) same_lane: usize,
+    /// Mask of the lanes that hold a pair.
+    pub(crate) lanes: u32,
+}
+
+impl Opening {
+    /// The pairs below a pair that is not a pair of leaves. A leaf stays.
     #[inline(always)]
-    pub(crate) fn of(links: (Link, Link)) -> Self {
-        match (links.0.is_leaf(), links.1.is_leaf()) {
-            (true, _) => Self::Second,
-            (_, true) => Self::First,
-            _ => Self::Both,
-        }
+    pub(crate) fn of((tree1, tree2): (&Tree, &Tree), (slot1, slot2): SlotPair) -> Self {
+        let (link1, link2) = (tree1.link(slot1), tree2.link(slot2));
+        let (nodes, sides, same_lane, lanes) = match (link1.is_leaf(), link2.is_leaf()) {
+            (true, _) => ((slot1.node(), link2.index()), Sides::Second, slot1.lane(), 0b0011),
+            (_, true) => ((link1.index(), slot2.node()), Sides::First, slot2.lane(), 0b0101),
+            _ => ((link1.index(), link2.index()), Sides::Both, 0, 0b1111),
+        };
+        Self { nodes, sides, same_lane, lanes }
     }
 
-    /// The inner node that holds the volumes of each side: the node itself, or its parent if it
-    /// stays.
+    /// The pair in a lane.
     #[inline(always)]
-    pub(crate) fn nodes(self, (slot1, slot2): (Slot, Slot), links: (Link, Link)) -> (u32, u32) {
-        match self {
-            Self::Both => (links.0.index(), links.1.index()),
-            Self::First => (links.0.index(), slot2.node()),
-            Self::Second => (slot1.node(), links.1.index()),
+    pub(crate) fn pair(&self, lane: usize) -> SlotPair {
+        let (lane1, lane2) = match self.sides {
+            Sides::Both => (lane >> 1, lane & 1),
+            Sides::First => (lane >> 1, self.same_lane),
+            Sides::Second => (self.same_lane, lane & 1),
+        };
+        (Slot::new(self.nodes.0, lane1), Slot::new(self.nodes.1, lane2))
+    }
+
+    /// Compares the pairs in some of the lanes.
+    #[inline(always)]
+    pub(crate) fn compare<C: Compare>(
+        &self,
+        (tree1, tree2): (&Tree, &Tree),
+        lanes: u32,
+        compare: &mut C,
+    ) -> (u32, [C::Key; 4]) {
+        let (one, two) = (tree1.children(self.nodes.0), tree2.children(self.nodes.1));
+        let same = Same(self.same_lane);
+        match self.sides {
+            Sides::Both => compare.compare(&NodeLanes::new((one, Outer), (two, Inner), lanes)),
+            Sides::First => compare.compare(&NodeLanes::new((one, Outer), (two, same), lanes)),
+            Sides::Second => compare.compare(&NodeLanes::new((one, same), (two, Inner), lanes)),
         }
     }
 }
@@ -48,31 +82,12 @@ pub(crate) trait Compare {
 /// Compares the pairs of children and calls `push` with those that pass.
 #[inline(always)]
 pub(crate) fn expand<C: Compare>(
-    (tree1, tree2): (&Tree, &Tree),
-    (slot1, slot2): (Slot, Slot),
-    sides: Sides,
+    trees: (&Tree, &Tree),
+    slots: SlotPair,
     compare: &mut C,
-    mut push: impl FnMut((Slot, Slot), C::Key),
+    mut push: impl FnMut(SlotPair, C::Key),
 ) {
-    let links = (tree1.link(slot1), tree2.link(slot2));
-    let (node1, node2) = sides.nodes((slot1, slot2), links);
-    let (one, two) = (tree1.children(node1), tree2.children(node2));
-    match sides {
-        Sides::Both => {
-            let (mask, keys) = compare.compare(&NodeLanes::new((one, Outer), (two, Inner), 0b1111));
-            each_bit(mask, |lane| {
-                push((Slot::new(node1, lane >> 1), Slot::new(node2, lane & 1)), keys[lane]);
-            });
-        }
-        Sides::First => {
-            let same = Same(slot2.lane());
-            let (mask, keys) = compare.compare(&NodeLanes::new((one, Outer), (two, same), 0b0101));
-            each_bit(mask, |lane| push((Slot::new(node1, lane >> 1), slot2), keys[lane]));
-        }
-        Sides::Second => {
-            let same = Same(slot1.lane());
-            let (mask, keys) = compare.compare(&NodeLanes::new((one, same), (two, Inner), 0b0011));
-            each_bit(mask, |lane| push((slot1, Slot::new(node2, lane)), keys[lane]));
-        }
-    }
+    let opening = Opening::of(trees, slots);
+    let (mask, keys) = opening.compare(trees, opening.lanes, compare);
+    each_bit(mask, |lane| push(opening.pair(lane), keys[lane]));
 }
