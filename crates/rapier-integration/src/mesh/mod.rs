@@ -11,7 +11,7 @@ mod view;
 
 pub(crate) use data::MeshData;
 pub(crate) use neighbours::{MeshFacets, box_between};
-pub(crate) use pair_mesh::{Change, MeshSurface, PairMesh};
+pub(crate) use pair_mesh::{Change, LazySurface, PairMesh};
 pub(crate) use store::{MeshStore, Registered};
 pub(crate) use view::{
     BEHIND, MeshView, are_near, box_of, exit, is_covered, is_near, may_be_inside, nearest,

@@ -11,7 +11,7 @@ use rustc_hash::FxHashMap;
 use sbbk_core::contact::Feature;
 use sbbk_core::surface::strays::has_strays;
 use sbbk_core::surface::{
-    Facets, OneRing, PlaceMemo, RayTriangles, SMALL_COMPONENT, Side, Surface, side,
+    Around, Facets, PlaceMemo, RayTriangles, SMALL_COMPONENT, Side, Surface, side,
 };
 
 /// The triangles of a mesh with their adjacency and [strays](sbbk_core::surface::strays).
@@ -91,7 +91,7 @@ impl MeshFacets<'_, '_> {
     /// Searches the strays of a feature, in about 1 µs, and keeps in the flags if there are any.
     #[cold]
     fn find_strays(self, triangle: u32, feature: Feature) {
-        let surface = OneRing { facets: self, side: Side::Sheet };
+        let surface = Around { facets: self, side: Side::Sheet };
         let found = has_strays(&surface, triangle, feature);
         if let Feature::Vertex(_) = feature {
             // Once for all triangles of a fan.

@@ -2,7 +2,7 @@ use std::sync::{Arc, OnceLock};
 
 use glamx::Vec3;
 use parry3d::shape::{CompositeShape, TriMesh};
-use sbbk_core::surface::{OneRing, PlaceMemo, Side, SurfaceKind};
+use sbbk_core::surface::{Around, PlaceMemo, Side, SurfaceKind};
 use sbbk_core::tree::Tree;
 
 use super::data::{MeshData, Tips};
@@ -80,7 +80,7 @@ impl PairMesh {
     pub(crate) fn acquire<'a>(
         &'a mut self,
         view: &MeshView<'a>,
-    ) -> Option<(Option<&'a Tree>, MeshSurface<'a>)> {
+    ) -> Option<(Option<&'a Tree>, LazySurface<'a>)> {
         let Self::Rigid(known) = self else { return None };
         let (mesh, store) = (view.mesh, view.store);
         let is_first = known.search_registered(view);
@@ -95,7 +95,7 @@ impl PairMesh {
     pub(crate) fn acquire_surface<'a>(
         &'a mut self,
         view: &MeshView<'a>,
-    ) -> Option<MeshSurface<'a>> {
+    ) -> Option<LazySurface<'a>> {
         let Self::Rigid(known) = self else { return None };
         known.search_registered(view);
         Some(known.surface(view))
@@ -149,16 +149,16 @@ impl RigidMesh {
         self.data = data.map(OnceLock::from).unwrap_or_default();
     }
 
-    fn surface<'a>(&'a mut self, view: &MeshView<'a>) -> MeshSurface<'a> {
+    fn surface<'a>(&'a mut self, view: &MeshView<'a>) -> LazySurface<'a> {
         let Self { data, is_registered, neighbours, .. } = self;
         let is_whole = *is_registered || is_analysed(view.mesh.indices().len());
         let near = (!is_whole).then(|| NearTwins::new(view.mesh, neighbours));
-        MeshSurface { data, store: view.store, near, memo: PlaceMemo::default() }
+        LazySurface { data, store: view.store, near, memo: PlaceMemo::default() }
     }
 }
 
-/// Adjacency of the triangles of a mesh, and its kind. Both are computed at the first contact.
-pub(crate) struct MeshSurface<'a> {
+/// The surface of a mesh, whose adjacency and kind are computed at the first contact.
+pub(crate) struct LazySurface<'a> {
     data: &'a OnceLock<Arc<MeshData>>,
     store: &'a MeshStore,
     /// Adjacency near contacts, if the mesh is too large to analyse as a whole.
@@ -166,7 +166,7 @@ pub(crate) struct MeshSurface<'a> {
     memo: PlaceMemo,
 }
 
-impl<'m> MeshSurface<'m> {
+impl<'m> LazySurface<'m> {
     #[inline]
     fn data(&self, mesh: &TriMesh) -> &Arc<MeshData> {
         self.data.get_or_init(|| self.store.entry(mesh))
@@ -186,13 +186,13 @@ impl<'m> MeshSurface<'m> {
         (facets, data.kind_of(mesh), data.declared_kind().is_some())
     }
 
-    /// Returns the one-rings around a triangle of `mesh`.
+    /// Returns the surface around a triangle of `mesh`.
     #[inline]
     pub(crate) fn around<'a>(
         &'a self,
         mesh: &'a TriMesh,
         triangle: u32,
-    ) -> OneRing<MeshFacets<'a, 'm>> {
+    ) -> Around<MeshFacets<'a, 'm>> {
         let (facets, kind, is_declared) = self.facets(mesh);
         let side = match kind {
             SurfaceKind::Solid if is_declared => Side::Outer,
@@ -200,7 +200,7 @@ impl<'m> MeshSurface<'m> {
             _ if is_declared => Side::Sheet,
             _ => facets.side(triangle),
         };
-        OneRing { facets, side }
+        Around { facets, side }
     }
 
     /// Returns true if a user declared that the mesh is a solid.

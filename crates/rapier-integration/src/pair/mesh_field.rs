@@ -24,7 +24,7 @@ use parry3d::query::details::NormalConstraints;
 use parry3d::shape::{HeightField, Triangle, TrianglePseudoNormals};
 use sbbk_core::contact::Feature;
 use sbbk_core::field::{FieldFrame, FieldLeaves};
-use sbbk_core::surface::{Facets, OneRing, PlaceMemo, Side, SurfaceKind};
+use sbbk_core::surface::{Around, Facets, PlaceMemo, Side, SurfaceKind};
 use sbbk_core::traverse::{DescentCounts, Placement};
 use sbbk_core::tree::{BATCH, LeafBatch};
 
@@ -39,7 +39,7 @@ use super::surface::{filter_distance, reach};
 use super::triangle_shapes::{Cones, DescentMemory, Hint, TriangleShapes};
 use super::triangles::TriangleQuery;
 use crate::mesh::{
-    Change, MeshFacets, MeshStore, MeshSurface, MeshView, PairMesh, exit, is_covered, nearest,
+    Change, LazySurface, MeshFacets, MeshStore, MeshView, PairMesh, exit, is_covered, nearest,
     nearest_triangle,
 };
 
@@ -124,7 +124,7 @@ pub(crate) struct MeshAndField<'q> {
     pair: &'q FieldPair<'q>,
     field: Field<'q>,
     /// Surface of the mesh, for contacts of surfaces.
-    surface: Option<MeshSurface<'q>>,
+    surface: Option<LazySurface<'q>>,
     filter_distance: f64,
     reach: Real,
     /// Normal cone of one triangle of the field. Contacts of a triangle follow each other, and
@@ -244,14 +244,14 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
         then(place.swap(cones).map(|cone| cone.map(|cone| cone as &dyn NormalConstraints)));
     }
 
-    fn surface(&self, i: usize, triangle: u32) -> Option<OneRing<MeshOrField<'_, 'q>>> {
+    fn surface(&self, i: usize, triangle: u32) -> Option<Around<MeshOrField<'_, 'q>>> {
         let surface = self.surface.as_ref()?;
         if self.is_field(i) {
             let side = if self.is_solid(i) { Side::Outer } else { Side::Sheet };
-            return Some(OneRing { facets: MeshOrField::Field(self.field), side });
+            return Some(Around { facets: MeshOrField::Field(self.field), side });
         }
-        let OneRing { facets, side } = surface.around(self.pair.mesh.mesh, triangle);
-        Some(OneRing { facets: MeshOrField::Mesh(facets), side })
+        let Around { facets, side } = surface.around(self.pair.mesh.mesh, triangle);
+        Some(Around { facets: MeshOrField::Mesh(facets), side })
     }
 
     fn is_solid(&self, i: usize) -> bool {

@@ -8,7 +8,7 @@ use parry3d::query::PointQuery;
 use parry3d::query::details::NormalConstraints;
 use sbbk_core::contact::{Feature, FeaturePair, TriangleContact};
 use sbbk_core::leaf::LeafTest;
-use sbbk_core::surface::{OneRing, Side, SurfaceKind};
+use sbbk_core::surface::{Around, Side, SurfaceKind};
 use sbbk_core::traverse::{DescentCounts, NodePair, PairFrame, begin_descent, descend_from};
 use sbbk_core::tree::Tree;
 
@@ -28,7 +28,7 @@ use super::triangle_shapes::{
 };
 use super::triangles::TriangleQuery;
 use crate::mesh::{
-    BEHIND, Change, MeshFacets, MeshStore, MeshSurface, MeshView, PairMesh, exit, is_covered,
+    BEHIND, Change, LazySurface, MeshFacets, MeshStore, MeshView, PairMesh, exit, is_covered,
     nearest, nearest_triangle,
 };
 
@@ -139,7 +139,7 @@ impl<'a> Pair for MeshPair<'a> {
         let filter_distance = filter_distance(has_surface, radius);
         let outer = self.larger();
         let holder = self.meshes[outer].mesh;
-        let is_room = |surface: &MeshSurface<'_>| {
+        let is_room = |surface: &LazySurface<'_>| {
             self.is_room(|| surface.kind(holder) == SurfaceKind::Solid, in_room)
                 && !surface.is_declared_solid(holder)
         };
@@ -168,7 +168,7 @@ pub(crate) struct Meshes<'q> {
     pub(super) pair: &'q MeshPair<'q>,
     trees: Option<[&'q Tree; 2]>,
     /// Surfaces of both meshes, for contacts of surfaces.
-    surfaces: [Option<MeshSurface<'q>>; 2],
+    surfaces: [Option<LazySurface<'q>>; 2],
     /// The mesh that is a room for the other one, and has no inside.
     room: Option<usize>,
     filter_distance: f64,
@@ -328,9 +328,9 @@ impl<'q> TriangleShapes for Meshes<'q> {
     }
 
     #[inline]
-    fn surface(&self, i: usize, triangle: u32) -> Option<OneRing<MeshFacets<'_, 'q>>> {
+    fn surface(&self, i: usize, triangle: u32) -> Option<Around<MeshFacets<'_, 'q>>> {
         let surface = self.surfaces[i].as_ref()?.around(self.pair.meshes[i].mesh, triangle);
-        Some(if self.room == Some(i) { OneRing { side: Side::Sheet, ..surface } } else { surface })
+        Some(if self.room == Some(i) { Around { side: Side::Sheet, ..surface } } else { surface })
     }
 
     fn is_solid(&self, i: usize) -> bool {

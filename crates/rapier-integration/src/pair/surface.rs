@@ -1,6 +1,6 @@
 //! The surface filter: keeps the contacts of two triangles that are contacts of the surfaces.
 //!
-//! * Apart: both points are local minima of the distance ([`OneRing::is_local_minimum`]), and the
+//! * Apart: both points are local minima of the distance ([`Around::is_local_minimum`]), and the
 //!   normal leads out of solids. Others are contacts of internal edges, or of walls that pass by.
 //!   Distant edges and vertices may pass each other, and count only if they face each other.
 //!   Far contacts only need to lead out of solids.
@@ -17,7 +17,7 @@ use parry3d::math::Real;
 use sbbk_core::contact::{Feature, ManifoldPoints, TriangleContact, penetration_out_of_solid};
 use sbbk_core::leaf::LateralCulling;
 use sbbk_core::query::TrianglePair;
-use sbbk_core::surface::{OneRing, Side};
+use sbbk_core::surface::{Around, Side};
 
 use super::islands::{Crossing, OverlapIslands, SheetSide};
 use super::pose::PairPose;
@@ -125,7 +125,7 @@ pub(super) struct SurfaceFilter<'a, S> {
 }
 
 /// Surfaces of both shapes, if known.
-type Surfaces<'s, S> = [Option<OneRing<<S as TriangleShapes>::Facets<'s>>>; 2];
+type Surfaces<'s, S> = [Option<Around<<S as TriangleShapes>::Facets<'s>>>; 2];
 
 impl<S: TriangleShapes> SurfaceFilter<'_, S> {
     /// First pass. `clipped` is memory.
@@ -188,7 +188,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         let mut surfaces =
             [self.shapes.surface(0, self.pair[0]), self.shapes.surface(1, self.pair[1])];
         for (i, surface) in surfaces.iter_mut().enumerate() {
-            let is_sheet = |surface: &&mut OneRing<_>| surface.side == Side::Sheet;
+            let is_sheet = |surface: &&mut Around<_>| surface.side == Side::Sheet;
             let Some(sheet) = surface.as_mut().filter(is_sheet) else { continue };
             let other = 1 - i;
             if self.is_thin(other) && self.smaller() == Some(other) && self.is_in_front(i, local) {
@@ -374,7 +374,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             _ => self.pose.placement12.to_frame2(contact.point2, local.origin),
         };
         let to = Some((place, features[1 - i]));
-        let is_minimum = |surface: &OneRing<_>| {
+        let is_minimum = |surface: &Around<_>| {
             surface.is_local_minimum(self.pair[i], features[i], direction, to)
         };
         surfaces[i].as_ref().is_none_or(is_minimum)
@@ -390,7 +390,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         let feature = [features.feature1(), features.feature2()][i];
         let direction = self.in_frame(i, [*normal, -*normal][i]);
         let points_inside =
-            |surface: &OneRing<_>| surface.points_inside(self.pair[i], feature, direction);
+            |surface: &Around<_>| surface.points_inside(self.pair[i], feature, direction);
         surfaces[i].as_ref().is_some_and(points_inside)
     }
 
@@ -399,7 +399,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
     fn ends(&self, surfaces: &Surfaces<'_, S>, i: usize, feature: Feature, axis: DVec3) -> bool {
         let axis = self.in_frame(i, axis);
         let ends =
-            |surface: &OneRing<_>| surface.is_local_minimum(self.pair[i], feature, axis, None);
+            |surface: &Around<_>| surface.is_local_minimum(self.pair[i], feature, axis, None);
         surfaces[i].as_ref().is_none_or(ends)
     }
 
@@ -452,7 +452,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
 }
 
 fn solids<S: TriangleShapes>(surfaces: &Surfaces<'_, S>) -> [bool; 2] {
-    [0, 1].map(|i| surfaces[i].as_ref().is_some_and(OneRing::is_solid))
+    [0, 1].map(|i| surfaces[i].as_ref().is_some_and(Around::is_solid))
 }
 
 /// Returns true if a unit direction is far from the normals of a triangle.

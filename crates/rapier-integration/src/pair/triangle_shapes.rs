@@ -6,7 +6,7 @@ use parry3d::math::{Real, Vector};
 use parry3d::query::details::NormalConstraints;
 use sbbk_core::contact::{FeaturePair, TriangleContact};
 use sbbk_core::query::TrianglePair;
-use sbbk_core::surface::{Facets, OneRing};
+use sbbk_core::surface::{Around, Facets};
 use sbbk_core::traverse::{DescentCounts, DescentScratch, NodePair};
 
 use super::chunks::ChunkResult;
@@ -54,7 +54,7 @@ pub(crate) trait TriangleShapes: Sync {
     fn with_cones(&self, triangles: [u32; 2], then: impl FnOnce(Cones<'_>));
 
     /// Returns the surface around a triangle of shape 1 (0) or 2 (1), for contacts of surfaces.
-    fn surface(&self, i: usize, triangle: u32) -> Option<OneRing<Self::Facets<'_>>>;
+    fn surface(&self, i: usize, triangle: u32) -> Option<Around<Self::Facets<'_>>>;
 
     /// Returns true if a shape has an inside.
     fn is_solid(&self, i: usize) -> bool;

@@ -15,13 +15,13 @@
 //! let surface = Surface::new(&vertices, &triangles, &rays);
 //! assert_eq!(surface.kind(), SurfaceKind::Solid);
 //!
-//! let ring = surface.one_ring(&vertices, &triangles);
+//! let around = surface.around(&vertices, &triangles);
 //! // Down from the origin no other part of the solid is nearer.
-//! assert!(ring.is_local_minimum(0, Feature::Vertex(0), -DVec3::ONE, None));
+//! assert!(around.is_local_minimum(0, Feature::Vertex(0), -DVec3::ONE, None));
 //! // Along this direction the next vertex on the x axis is nearer.
 //! let along_x = DVec3::new(1.0, -1.0, -1.0);
-//! assert!(!ring.is_local_minimum(0, Feature::Vertex(0), along_x, None));
-//! assert!(ring.points_inside(0, Feature::Vertex(0), DVec3::ONE));
+//! assert!(!around.is_local_minimum(0, Feature::Vertex(0), along_x, None));
+//! assert!(around.points_inside(0, Feature::Vertex(0), DVec3::ONE));
 //! ```
 
 mod one_ring;
@@ -31,7 +31,7 @@ pub mod strays;
 mod triangle;
 mod twins;
 
-pub use one_ring::{Facets, OneRing, PlainFacets};
+pub use one_ring::{Around, Facets, PlainFacets};
 pub use sides::{AllTriangles, RayTriangles, Side, SurfaceKind, kind, side};
 pub use slopes::PlaceMemo;
 
@@ -99,14 +99,14 @@ impl Surface {
         self.kind
     }
 
-    /// Tests of directions, given the mesh that this surface was made from.
-    pub fn one_ring<'a>(
+    /// The surface around any triangle, given the mesh that this surface was made from.
+    pub fn around<'a>(
         &'a self,
         vertices: &'a [Vec3],
         triangles: &'a [[u32; 3]],
-    ) -> OneRing<PlainFacets<'a>> {
+    ) -> Around<PlainFacets<'a>> {
         let side = if self.kind == SurfaceKind::Solid { Side::Outer } else { Side::Sheet };
-        OneRing { facets: PlainFacets { surface: self, vertices, triangles }, side }
+        Around { facets: PlainFacets { surface: self, vertices, triangles }, side }
     }
 
     /// Memory of this value in bytes, without the mesh.

@@ -54,9 +54,10 @@ impl Facets for PlainFacets<'_> {
     }
 }
 
-/// Tests of directions against the one-ring of a vertex or an edge, or against a face.
+/// The surface around a triangle, which tests directions against the one-ring of a vertex or an edge, or
+/// against a face.
 #[derive(Clone, Copy)]
-pub struct OneRing<F> {
+pub struct Around<F> {
     /// The triangles of the surface.
     pub facets: F,
     /// The side that the triangle in question has.
@@ -75,7 +76,7 @@ const RISE_TO_FACE: f64 = 0.3;
 /// Rounding of a corner that was moved to a place and back, as a share of the coordinates.
 const ROUNDING: f64 = 1.0e-14;
 
-impl<F: Facets> OneRing<F> {
+impl<F: Facets> Around<F> {
     /// True if no triangle of the one-ring of a feature comes nearer to the other body in a unit
     /// direction, and the direction does not lead into the solid.
     ///
@@ -489,7 +490,7 @@ mod tests {
             let triangles: Vec<_> = (0..sides).map(|i| [0, 1 + i, 1 + (i + 1) % COUNT]).collect();
             let rays = AllTriangles { vertices: &vertices, triangles: &triangles };
             let surface = Surface::new(&vertices, &triangles, &rays);
-            let ring = surface.one_ring(&vertices, &triangles);
+            let ring = surface.around(&vertices, &triangles);
             let slopes = |triangle| {
                 let vertex = Feature::Vertex(0);
                 let direction = DVec3::new(0.1, 0.2, 0.9);

@@ -7,7 +7,7 @@
 
 use std::ops::ControlFlow;
 
-use super::one_ring::{Facets, OneRing};
+use super::one_ring::{Around, Facets};
 pub use super::triangle::{seam, touches};
 use crate::contact::Feature;
 use crate::simd::each;
@@ -18,7 +18,7 @@ const MANY: usize = 64;
 
 /// True if an edge or a vertex of a triangle has strays. So has each edge without a twin: what goes on
 /// there is not known. With more than 64 others near, a closed one-ring counts as whole.
-pub fn has_strays<F: Facets>(surface: &OneRing<F>, triangle: u32, feature: Feature) -> bool {
+pub fn has_strays<F: Facets>(surface: &Around<F>, triangle: u32, feature: Feature) -> bool {
     let corners = each(|i| surface.facets.corner(3 * triangle, i));
     let (mut ring, is_closed) = surface.ring(triangle, feature);
     let [start, end] = match feature {

@@ -5,7 +5,7 @@ use std::f32::consts::TAU;
 
 use glamx::{DVec3, Vec3};
 use sbbk_core::contact::Feature;
-use sbbk_core::surface::{Facets, OneRing, PlaceMemo, PlainFacets, Side};
+use sbbk_core::surface::{Around, Facets, PlaceMemo, PlainFacets, Side};
 
 use crate::support::Soup;
 use crate::surface::analysed;
@@ -50,9 +50,9 @@ fn cones_tip_to_tip_do_not_depend_on_which_is_asked_first() {
         .collect();
     let surface = analysed(&Soup { vertices: vertices.clone(), triangles: triangles.clone() });
     let answers = |order: [u32; 2]| {
-        let facets = surface.one_ring(&vertices, &triangles).facets;
+        let facets = surface.around(&vertices, &triangles).facets;
         let (visits, memo) = (Cell::new(0), PlaceMemo::default());
-        let ring = OneRing { facets: Counted { facets, visits, memo }, side: Side::Sheet };
+        let ring = Around { facets: Counted { facets, visits, memo }, side: Side::Sheet };
         let is_minimum = |tip: u32| {
             // This triangle is far from those that rise.
             let lowest = tip * COUNT + COUNT / 2;
@@ -76,9 +76,9 @@ fn work_at_the_tip_of_a_cone_grows_with_its_triangles() {
         let vertices: Vec<_> = [Vec3::ZERO].into_iter().chain((0..count).map(rim)).collect();
         let triangles: Vec<_> = (0..count).map(|i| [0, 1 + i, 1 + (i + 1) % count]).collect();
         let surface = analysed(&Soup { vertices: vertices.clone(), triangles: triangles.clone() });
-        let facets = surface.one_ring(&vertices, &triangles).facets;
+        let facets = surface.around(&vertices, &triangles).facets;
         let (visits, memo) = (Cell::new(0), PlaceMemo::default());
-        let ring = OneRing { facets: Counted { facets, visits, memo }, side: Side::Outer };
+        let ring = Around { facets: Counted { facets, visits, memo }, side: Side::Outer };
         for triangle in 0..count {
             assert!(ring.is_local_minimum(triangle, Feature::Vertex(0), DVec3::Z, None));
             assert!(ring.points_inside(triangle, Feature::Vertex(0), -DVec3::Z));

@@ -5,7 +5,7 @@ use std::f32::consts::{FRAC_PI_2, PI, TAU};
 use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
 use glamx::{DVec3, Quat, Vec3};
 use sbbk_core::contact::Feature;
-use sbbk_core::surface::{AllTriangles, Facets, OneRing, Side, Surface, SurfaceKind};
+use sbbk_core::surface::{AllTriangles, Around, Facets, Side, Surface, SurfaceKind};
 
 use SurfaceKind::{InsideOut, Sheet, Solid};
 
@@ -130,7 +130,7 @@ pub fn analysed(Soup { vertices, triangles }: &Soup) -> Surface {
     Surface::new(vertices, triangles, &AllTriangles { vertices, triangles })
 }
 
-fn side(around: &OneRing<impl Facets>, triangle: u32, feature: Feature, direction: DVec3) -> Seen {
+fn side(around: &Around<impl Facets>, triangle: u32, feature: Feature, direction: DVec3) -> Seen {
     let is_behind = around.points_inside(triangle, feature, direction);
     match around.is_local_minimum(triangle, feature, direction, None) {
         true if is_behind => panic!("in front and behind"),
@@ -208,9 +208,9 @@ fn directions_agree_with_all_triangles_of_the_one_ring() {
         let twins = brute_twins(&mesh);
         for case in 0..800 {
             let is_solid = case % 2 == 0;
-            let around = OneRing {
+            let around = Around {
                 side: if is_solid { Side::Outer } else { Side::Sheet },
-                ..surface.one_ring(&mesh.vertices, &mesh.triangles)
+                ..surface.around(&mesh.vertices, &mesh.triangles)
             };
             let triangle = (random.bits() % mesh.triangles.len() as u64) as u32;
             for feature in features() {
@@ -239,7 +239,7 @@ fn directions_agree_with_all_triangles_of_the_one_ring() {
 fn a_leaning_corner_is_a_minimum_for_faces_first() {
     let cube = cube();
     let surface = analysed(&cube);
-    let around = surface.one_ring(&cube.vertices, &cube.triangles);
+    let around = surface.around(&cube.vertices, &cube.triangles);
     let half_edges = 0..3 * cube.triangles.len();
     let corner = half_edges.into_iter().find(|&half_edge| {
         let [corner, _, _] = corners(&cube, half_edge);
@@ -542,8 +542,8 @@ fn flat_sides_continue_to_their_end() {
         mesh.triangles.extend([[a, a + 1, b + 1], [a, b + 1, b]]);
     }
     let surface = analysed(&mesh);
-    let around = surface.one_ring(&mesh.vertices, &mesh.triangles);
-    let around = OneRing { side: Side::Sheet, ..around };
+    let around = surface.around(&mesh.vertices, &mesh.triangles);
+    let around = Around { side: Side::Sheet, ..around };
     for triangle in 0..2 * CELLS * (CELLS - 1) {
         let top = 1 + triangle / (2 * CELLS);
         let beyond = |direction, most| around.side_beyond(triangle, direction, most);

@@ -13,7 +13,7 @@ use sbbk_core::surface::SurfaceKind;
 use super::contact::{NormalSource, PartContact};
 use super::pair::ConvexPair;
 use super::query::{ConvexQuery, ConvexScratch};
-use crate::mesh::{BEHIND, MeshSurface, is_covered, nearest};
+use crate::mesh::{BEHIND, LazySurface, is_covered, nearest};
 use crate::pair::query::ContactList;
 
 /// Depth of a contact, as a share of the part's radius, from which a part whose middle is outside may
@@ -63,7 +63,7 @@ impl<'q> ConvexQuery<'q> {
     }
 
     /// Returns the surface of the mesh if parts are to leave solids.
-    fn left_surface(&self) -> Option<&MeshSurface<'q>> {
+    fn left_surface(&self) -> Option<&LazySurface<'q>> {
         self.surface.as_ref().filter(|_| self.pair.leave_solids)
     }
 

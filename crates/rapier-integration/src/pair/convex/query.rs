@@ -19,7 +19,7 @@ use super::parts::{Part, PartData, Parts};
 use super::placed::PlacedPart;
 use super::shape::ConvexShape;
 use super::triangle_part::TrianglePartPair;
-use crate::mesh::{Change, MeshStore, MeshSurface, PairMesh};
+use crate::mesh::{Change, LazySurface, MeshStore, PairMesh};
 use crate::pair::pose::PairPose;
 use crate::pair::query::{
     ContactList, ContactPoints, Limits, Memory, Moving, Pair, PairQuery, QueryMemory, Scratch,
@@ -61,7 +61,7 @@ pub(crate) struct ConvexQuery<'q> {
     pub(super) pair: &'q ConvexPair<'q>,
     part_data: &'q PartData,
     /// Surface of the mesh, for push-outs and walls within the mesh.
-    pub(super) surface: Option<MeshSurface<'q>>,
+    pub(super) surface: Option<LazySurface<'q>>,
 }
 
 /// Cosine above which contacts push the same way. Higher: more meshes are analysed. Lower: bodies
