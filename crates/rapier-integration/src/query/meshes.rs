@@ -1,16 +1,16 @@
 //! Two meshes.
 
-use parry3d::math::{Pose, Real, Vector};
+use parry3d::math::{Pose, Vector};
 use parry3d::query::ShapeCastHit;
 use parry3d::query::details::ShapeCastOptions;
 use sbbk_core::query::{
-    CastOptions, FoundPair, MeshBodies, PartPair, SearchScratch, cast, deepest, meeting, nearest,
+    CastOptions, MeshBodies, PartPair, SearchScratch, cast, deepest, meeting, nearest,
 };
 use sbbk_core::traverse::Placement;
 use sbbk_core::tree::Tree;
 
+use super::found::{Found, status};
 use super::nonlinear::NonlinearCast;
-use super::touch::{Found, Touch, status};
 use super::trees::Trees;
 use super::walk::Walk;
 use crate::mesh::MeshView;
@@ -54,7 +54,8 @@ impl<'a> MeshQuery<'a> {
             |trees, scratch| nearest(trees, placement, limit, scratch),
             |walk| walk.nearest(placement, limit),
         )?;
-        Some(self.found(&pair, pair.contact.distance.max(0.0)))
+        let found = Found::of_pair(&pair, &placement);
+        Some(Found { distance: found.distance.max(0.0), ..found })
     }
 
     /// Returns the deepest pair of triangles or, where none cross, the nearest.
@@ -64,7 +65,7 @@ impl<'a> MeshQuery<'a> {
             |trees, scratch| deepest(trees, placement, limit, scratch),
             |walk| walk.deepest(placement, limit),
         )?;
-        Some(self.found(&pair, pair.contact.distance))
+        Some(Found::of_pair(&pair, &placement))
     }
 
     pub(super) fn cast(
@@ -85,7 +86,7 @@ impl<'a> MeshQuery<'a> {
         // The hit wants the point of mesh 2 before the motion.
         let mut pair = cast.pair;
         pair.contact.point2 -= velocity12.as_dvec3() * cast.time;
-        Some(Touch::of(&pair, &placement).hit(pair.name(), cast.time, status(cast.is_penetrating)))
+        Some(Found::of_pair(&pair, &placement).hit(cast.time, status(cast.is_penetrating)))
     }
 
     pub(super) fn cast_nonlinear(&self, cast: &NonlinearCast<'_>) -> Option<ShapeCastHit> {
@@ -99,12 +100,7 @@ impl<'a> MeshQuery<'a> {
                 cast.first_impact(&mut walk, balls)
             },
         )?;
-        Some(cast.hit(&found, &Touch::of(&found.pair, &found.placement)))
-    }
-
-    fn found(&self, pair: &FoundPair, distance: f64) -> Found {
-        let (distance, is_touching) = (distance as Real, pair.is_touching);
-        let touch = Touch::of(pair, &self.placement);
-        Found { subshapes: pair.name(), distance, is_touching, touch }
+        let pair = Found::of_pair(&found.pair, &found.placement);
+        Some(cast.hit(found.time, &pair, found.has_converged))
     }
 }

@@ -6,10 +6,11 @@
 
 mod bvh_search;
 mod convex;
+mod found;
 mod meshes;
 mod moving;
 mod nonlinear;
-mod touch;
+
 mod trees;
 mod walk;
 
@@ -17,10 +18,10 @@ pub(crate) use convex::ConvexQuery;
 pub(crate) use meshes::MeshQuery;
 pub(crate) use nonlinear::NonlinearCast;
 
+use found::Found;
 use parry3d::math::{Real, Vector};
 use parry3d::query::details::ShapeCastOptions;
 use parry3d::query::{ClosestPoints, Contact, ShapeCastHit, ShapeDistance, ShapeIntersection};
-use touch::Found;
 
 /// Two shapes at a pose.
 #[allow(clippy::large_enum_variant, reason = "there is one at a time, on the stack")]
@@ -45,7 +46,7 @@ impl Query<'_> {
     pub(crate) fn distance(self) -> ShapeDistance {
         let none = ShapeDistance::new(Real::MAX);
         self.nearest(f64::INFINITY).map_or(none, |Found { distance, subshapes, .. }| {
-            ShapeDistance::new(distance).with_subshapes(subshapes[0], subshapes[1])
+            ShapeDistance::new(distance as Real).with_subshapes(subshapes[0], subshapes[1])
         })
     }
 
@@ -53,9 +54,7 @@ impl Query<'_> {
     pub(crate) fn closest_points(self, max_distance: Real) -> ClosestPoints {
         match self.nearest(limit_of(max_distance)) {
             Some(found) if found.is_touching => ClosestPoints::Intersecting,
-            Some(Found { touch, .. }) => {
-                ClosestPoints::WithinMargin(touch.points[0], touch.points[1])
-            }
+            Some(Found { points, .. }) => ClosestPoints::WithinMargin(points[0], points[1]),
             None => ClosestPoints::Disjoint,
         }
     }
@@ -63,13 +62,13 @@ impl Query<'_> {
     /// The contact of the deepest subshapes or, where none cross, of the nearest.
     pub(crate) fn contact(self, prediction: Real) -> Option<Contact> {
         let limit = limit_of(prediction);
-        let Found { touch, distance, subshapes: [subshape1, subshape2], .. } = match self {
+        let Found { subshapes, distance, points, normals, .. } = match self {
             Self::Meshes(query) => query.deepest(limit),
             Self::Convex(query) => query.deepest(limit),
         }?;
-        let ([point1, point2], [normal1, normal2]) = (touch.points, touch.normals);
-        let contact = Contact::new(point1, point2, normal1, normal2, distance);
-        Some(Contact { subshape1, subshape2, ..contact })
+        let dist = distance as Real;
+        let contact = Contact::new(points[0], points[1], normals[0], normals[1], dist);
+        Some(Contact { subshape1: subshapes[0], subshape2: subshapes[1], ..contact })
     }
 
     /// The first impact of shape 2, which moves by `velocity12` in the frame of shape 1.

@@ -8,12 +8,12 @@ use std::cell::Cell;
 use glamx::{DVec3, Vec3};
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Real;
-use sbbk_core::query::{Advance, AdvanceOptions, Bodies, PartPair, advance};
+use sbbk_core::query::{Advance, AdvanceOptions, Bodies, advance};
 use sbbk_core::traverse::Placement;
 
+use super::found::Found;
 use super::nonlinear::{NonlinearCast, place, turned};
-use super::touch::Touch;
-use crate::pair::{ConvexSearch, FoundTriangle, MeshPlace, PlacedPart};
+use crate::pair::{ConvexSearch, MeshPlace};
 
 /// Duration of the first window, as a multiple of the time in which the nearest triangle may be met.
 /// Higher: more triangles that are not met are advanced; lower: more windows.
@@ -54,7 +54,7 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
 
     /// Returns the first impact. A cast that does not stop at contacts of the start only counts
     /// triangles that the shape may come out behind.
-    pub(super) fn first_impact(&mut self) -> Option<Advance<FoundTouch>> {
+    pub(super) fn first_impact(&mut self) -> Option<Advance<Found>> {
         let AdvanceOptions { start, end, tolerance, .. } = self.options;
         // False for NaN.
         let is_possible = start <= end;
@@ -115,8 +115,8 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         Some((Aabb::from_half_extents(centre, Vec3::splat(reach)), velocity))
     }
 
-    fn soonest(&self, from: f64, until: f64) -> Option<Advance<FoundTouch>> {
-        let first = Cell::new(None::<Advance<FoundTouch>>);
+    fn soonest(&self, from: f64, until: f64) -> Option<Advance<Found>> {
+        let first = Cell::new(None::<Advance<Found>>);
         let time = |triangle, limit: f64| {
             let found = self.triangle_impact(triangle, from, (from + limit).min(until))?;
             if first.get().is_none_or(|first| found.time < first.time) {
@@ -134,7 +134,7 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
     }
 
     /// First impact of a triangle within a span of time.
-    fn triangle_impact(&self, triangle: u32, from: f64, until: f64) -> Option<Advance<FoundTouch>> {
+    fn triangle_impact(&self, triangle: u32, from: f64, until: f64) -> Option<Advance<Found>> {
         let mut one = MovingTriangle::new(self, triangle);
         let end = self.options.end;
         let is_slid_over =
@@ -153,16 +153,16 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
 
     /// True if an impact counts. A shape that is in contact at the start may have impacts that do not:
     /// it does not approach by its thickness until the end, and hardly sinks deeper.
-    fn counts(&self, one: &mut MovingTriangle<'_>, found: &Advance<FoundTouch>, from: f64) -> bool {
+    fn counts(&self, one: &mut MovingTriangle<'_>, found: &Advance<Found>, from: f64) -> bool {
         let Self { cast, options, thickness, .. } = self;
         if cast.stop_at_penetration {
             return true;
         }
         if found.time <= from {
-            return cast.approaches(&found.pair.touch, from, thickness + options.tolerance);
+            return cast.approaches(&found.pair, from, thickness + options.tolerance);
         }
         let Some(deepest) = self.deepest() else { return true };
-        cast.approaches(&found.pair.touch, found.time, *thickness)
+        cast.approaches(&found.pair, found.time, *thickness)
             || [1.0, 2.0, 3.0].into_iter().any(|third| {
                 let time = found.time + (options.end - found.time) * third / 3.0;
                 let pair = one.nearest(&cast.placement_at(time), 0.0, &[]);
@@ -182,14 +182,14 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         one: &mut MovingTriangle<'_>,
         from: f64,
         until: f64,
-    ) -> Option<Advance<FoundTouch>> {
+    ) -> Option<Advance<Found>> {
         let Self { cast, options, thickness, .. } = self;
         let mut looks = cast.looks(*thickness as Real);
         looks.by_ref().take_while(|&time| time <= until).filter(|&time| time > from).find_map(
             |time| {
                 let placement_at = |time| cast.placement_at(time);
                 let pair = one.nearest(&placement_at(time), f64::INFINITY, &[])?;
-                if !cast.approaches(&pair.touch, time, thickness + pair.distance.max(0.0)) {
+                if !cast.approaches(&pair, time, thickness + pair.distance.max(0.0)) {
                     return None;
                 }
                 let options = AdvanceOptions { start: time, end: until, ..*options };
@@ -200,48 +200,20 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
     }
 
     /// The deepest of the triangles that are impacts at the start.
-    fn deepest_at_start(&self) -> Option<Advance<FoundTouch>> {
+    fn deepest_at_start(&self) -> Option<Advance<Found>> {
         let AdvanceOptions { start, tolerance, .. } = self.options;
-        let mut deepest = None::<FoundTouch>;
+        let mut deepest = None::<Found>;
         self.search.within(tolerance, |found| {
-            let pair = FoundTouch::new(&found, &self.search.placed, self.mesh_place);
+            let pair = Found::of_triangle(&found, &self.search.placed, self.mesh_place);
             let length = self.thickness + tolerance;
             let counts =
-                self.cast.stop_at_penetration || self.cast.approaches(&pair.touch, start, length);
+                self.cast.stop_at_penetration || self.cast.approaches(&pair, start, length);
             if counts && deepest.is_none_or(|deepest| pair.distance < deepest.distance) {
                 deepest = Some(pair);
             }
         });
         let placement = self.cast.placement_at(start);
         deepest.map(|pair| Advance { time: start, pair, placement, has_converged: true })
-    }
-}
-
-/// A triangle and the shape, where they are nearest.
-#[derive(Copy, Clone)]
-pub(super) struct FoundTouch {
-    name: [u32; 2],
-    distance: f64,
-    pub(super) touch: Touch,
-}
-
-impl FoundTouch {
-    fn new(found: &FoundTriangle, placed: &PlacedPart, mesh_place: MeshPlace) -> Self {
-        Self {
-            name: mesh_place.swap([found.triangle, 0]),
-            distance: found.contact.distance,
-            touch: Touch::of_triangle(found, placed, mesh_place),
-        }
-    }
-}
-
-impl PartPair for FoundTouch {
-    fn distance(&self) -> f64 {
-        self.distance
-    }
-
-    fn name(&self) -> [u32; 2] {
-        self.name
     }
 }
 
@@ -359,23 +331,23 @@ impl<'a> MovingTriangle<'a> {
 }
 
 impl Bodies for MovingTriangle<'_> {
-    type Pair = FoundTouch;
+    type Pair = Found;
 
-    fn nearest(&mut self, placement: &Placement, reach: f64, _: &[[u32; 2]]) -> Option<FoundTouch> {
+    fn nearest(&mut self, placement: &Placement, reach: f64, _: &[[u32; 2]]) -> Option<Found> {
         let MovingConvex { search, mesh_place, .. } = self.moving;
         let placed = search.placed.moved(*mesh_place, placement);
         let found = search.triangle(&placed, self.triangle, reach)?;
-        Some(FoundTouch::new(&found, &placed, *mesh_place))
+        Some(Found::of_triangle(&found, &placed, *mesh_place))
     }
 
-    fn within(&mut self, placement: &Placement, reach: f64, found: impl FnMut(FoundTouch)) {
+    fn within(&mut self, placement: &Placement, reach: f64, found: impl FnMut(Found)) {
         self.nearest(placement, reach, &[]).into_iter().for_each(found);
     }
 
-    fn clear_time(&mut self, nearest: &FoundTouch, time: f64, _: &[[u32; 2]]) -> f64 {
+    fn clear_time(&mut self, nearest: &Found, time: f64, _: &[[u32; 2]]) -> f64 {
         let MovingConvex { mesh_place, cast, options, .. } = self.moving;
         let [_, shape_body] = mesh_place.swap([0, 1]);
-        let normal = nearest.touch.normals[shape_body].as_dvec3();
+        let normal = nearest.normals[shape_body].as_dvec3();
         let axis: DVec3 = place(cast.motions[shape_body], time).rotation * normal;
         self.clear_along(axis.normalize(), 0.0, time, options.end)
     }

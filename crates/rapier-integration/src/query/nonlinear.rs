@@ -3,13 +3,11 @@
 use glamx::{DMat3, DQuat, DVec3};
 use parry3d::math::{Real, Vector};
 use parry3d::query::{NonlinearRigidMotion, ShapeCastHit, ShapeCastStatus};
-use sbbk_core::query::{
-    Advance, AdvanceOptions, Bodies, FoundPair, PartPair, advance, advance_from_contact,
-};
+use sbbk_core::query::{Advance, AdvanceOptions, Bodies, FoundPair, advance, advance_from_contact};
 use sbbk_core::traverse::Placement;
 use sbbk_core::volumes::Sphere;
 
-use super::touch::Touch;
+use super::found::Found;
 
 /// Distance at which bodies have met, as a share of the radius of the smaller body. Higher: fewer steps,
 /// earlier impacts; lower: more steps.
@@ -76,13 +74,12 @@ impl NonlinearCast<'_> {
             return advance(bodies, placement_at, options);
         }
         advance_from_contact(bodies, placement_at, options, |pair, placement| {
-            self.approaches(&Touch::of(pair, placement), options.start, options.tolerance)
+            self.approaches(&Found::of_pair(pair, placement), options.start, options.tolerance)
         })
     }
 
     /// Returns the hit of an impact.
-    pub(super) fn hit<P: PartPair>(&self, found: &Advance<P>, touch: &Touch) -> ShapeCastHit {
-        let Advance { time, ref pair, has_converged, .. } = *found;
+    pub(super) fn hit(&self, time: f64, found: &Found, has_converged: bool) -> ShapeCastHit {
         let is_at_start = time == f64::from(self.start);
         let status = if !has_converged {
             ShapeCastStatus::OutOfIterations
@@ -91,7 +88,7 @@ impl NonlinearCast<'_> {
         } else {
             ShapeCastStatus::Converged
         };
-        touch.hit(pair.name(), time, status)
+        found.hit(time, status)
     }
 
     /// Returns a bound on the speed of points of one body against the other.
@@ -148,14 +145,14 @@ impl NonlinearCast<'_> {
 
     /// True if the points of a contact, at their velocities of a time, approach by more than a length
     /// until the end.
-    pub(super) fn approaches(&self, touch: &Touch, time: f64, length: f64) -> bool {
+    pub(super) fn approaches(&self, found: &Found, time: f64, length: f64) -> bool {
         let rotations = self.motions.map(|motion| place(motion, time).rotation);
         let [velocity1, velocity2] = [0, 1].map(|i| {
             let motion = self.motions[i];
-            let arm = rotations[i] * (touch.points[i] - motion.local_center).as_dvec3();
+            let arm = rotations[i] * (found.points[i] - motion.local_center).as_dvec3();
             motion.linvel.as_dvec3() + motion.angvel.as_dvec3().cross(arm)
         });
-        let normal: DVec3 = rotations[0] * touch.normals[0].as_dvec3();
+        let normal: DVec3 = rotations[0] * found.normals[0].as_dvec3();
         (velocity1 - velocity2).dot(normal) * (f64::from(self.end) - time) > length
     }
 
