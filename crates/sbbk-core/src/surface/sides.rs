@@ -107,11 +107,12 @@ const STEEP: f64 = 0.5;
 /// where rays start.
 const ANY: f64 = 0.02;
 
-/// Rays from triangle to triangle in the sequence of directions, so that neighbours have different ones. Fewer: rays of
-/// neighbours meet the same walls and holes.
+/// Steps in the sequence of directions from the rays of one triangle to those of the next. Fewer: rays of
+/// neighbours are alike.
 const SHIFT: u32 = 17;
 
-/// Triangles with different rays; a prime, so that regular meshes do not repeat them in step.
+/// Number of triangles after which rays repeat. It is prime, so that no row of a regular mesh has the same
+/// rays as the next.
 const SHIFTS: u32 = 1009;
 
 /// Share of a length below which two places of a ray are one.
