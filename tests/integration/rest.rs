@@ -9,6 +9,7 @@ use sbbk_testkit::mesh;
 use sbbk_testkit::scene::{BoxStack, HeadOnSlope, Scene, SceneWorld};
 
 use crate::support::declare_solid;
+use crate::worlds::lowest;
 
 /// One world under stock Rapier, and again under SBBK.
 struct Both {
@@ -88,9 +89,7 @@ fn a_head_that_nothing_holds_tips_over_and_rests() {
     let turned = |body: &RigidBody| 2.0 * body.rotation().xyz().length().asin();
     assert!(turned(stock) < 0.02 && turned(sbbk) > 1.0);
     assert_eq!(speed(sbbk), 0.0, "at rest");
-    let lowest = (mesh::monkey_head().centred().scaled_to(2.0).vertices.iter())
-        .map(|&vertex| sbbk.position().transform_point(vertex).y)
-        .fold(Real::INFINITY, Real::min);
+    let lowest = lowest(&mesh::monkey_head().centred().scaled_to(2.0), sbbk.position());
     assert!(lowest.abs() < 0.01, "its lowest point is at {lowest}");
 }
 

@@ -7,7 +7,7 @@ use rapier3d::parry::shape::{HeightField, HeightFieldCellStatus};
 use rapier3d::parry::utils::Array2;
 use rapier3d::pipeline::PhysicsWorld;
 use rapier3d::prelude::{ColliderBuilder, RigidBodyBuilder, RigidBodyHandle};
-use sbbk_testkit::mesh;
+use sbbk_testkit::mesh::{self, Mesh};
 
 /// A world with a fixed ground. Stock answers if there is no dispatcher.
 pub fn on_ground(
@@ -20,6 +20,12 @@ pub fn on_ground(
     }
     world.insert(RigidBodyBuilder::fixed(), ground);
     world
+}
+
+/// Height of the lowest vertex of a mesh.
+pub fn lowest(mesh: &Mesh, pose: &Pose) -> Real {
+    let heights = mesh.vertices.iter().map(|&vertex| pose.transform_point(vertex).y);
+    heights.fold(Real::INFINITY, Real::min)
 }
 
 /// A world of equal bodies above a fixed ground.

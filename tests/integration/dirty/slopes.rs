@@ -9,6 +9,7 @@ use sbbk_testkit::scene::random::rotation;
 
 use super::table::{Case, judge};
 use super::{FLAGS, prepared_world};
+use crate::worlds::lowest;
 
 const ANGLE: f32 = 20.0;
 const FRICTION: f32 = 0.8;
@@ -103,11 +104,8 @@ fn meshes_roll_down_two_triangles_as_down_a_cuboid() {
             }
         }
     }
-    judge("path down 20 degrees to that of a smooth body", &cases, KNOWN);
+    judge("path down 20 degrees to that of a smooth body", &cases, &[]);
 }
-
-/// Rolling bodies that fail today.
-const KNOWN: &[(&str, &str)] = &[];
 
 /// A ring of so many triangles that it is a sheet unless it is prepared.
 fn ring() -> Mesh {
@@ -125,9 +123,7 @@ fn drop_depth(ring: &Mesh, height: f32, seed: u64, is_prepared: bool) -> f32 {
         world.insert(start.rotation(turn.to_scaled_axis()), ColliderBuilder::new(body));
     (0..240).for_each(|_| world.step());
     drop(prepared);
-    let pose = world.bodies[handle].position();
-    let heights = ring.vertices.iter().map(|&vertex| pose.transform_point(vertex).y);
-    -heights.fold(f32::INFINITY, f32::min)
+    -lowest(ring, world.bodies[handle].position())
 }
 
 /// Would catch large meshes that get stuck in a floor, with contacts that push up and down.
@@ -144,8 +140,5 @@ fn large_parts_do_not_sink_into_two_triangles() {
             cases.push(Case { row: row.into(), column, shown, is_right: deepest < 0.02 });
         }
     }
-    judge("a ring of 12,960 triangles on a floor of two: depth", &cases, KNOWN_DROPS);
+    judge("a ring of 12,960 triangles on a floor of two: depth", &cases, &[]);
 }
-
-/// Drops that fail today.
-const KNOWN_DROPS: &[(&str, &str)] = &[];
