@@ -32,7 +32,7 @@
 //! | [`traverse`] | descent of two trees, placements, slack |
 //! | [`leaf`] | SIMD test of the triangles of two leaves |
 //! | [`mod@contact`] | exact contact of two triangles, or of a triangle and a convex shape |
-//! | [`collections`] | compact list of indices, union-find |
+//! | [`collections`] | union-find |
 //! | [`surface`] | adjacency of a mesh; solid or sheet |
 //! | [`query`] | contacts, distance, overlap, casts of two meshes |
 //! | [`field`] | triangles of a height field near a mesh |

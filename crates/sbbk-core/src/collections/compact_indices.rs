@@ -1,16 +1,8 @@
 const NONE: u32 = u32::MAX;
 
 /// A list of optional indices that are less than its length, in 16 bits each if these are enough.
-///
-/// ```
-/// use sbbk_core::collections::CompactIndices;
-///
-/// let numbers = CompactIndices::new([Some(2), None, Some(0)].into_iter());
-/// assert_eq!([0, 1, 2, 3].map(|place| numbers.get(place)), [Some(2), None, Some(0), None]);
-/// assert_eq!(numbers.bytes(), 6);
-/// ```
 #[derive(Clone, Debug)]
-pub struct CompactIndices(Width);
+pub(crate) struct CompactIndices(Width);
 
 #[derive(Clone, Debug)]
 enum Width {
@@ -20,7 +12,7 @@ enum Width {
 
 impl CompactIndices {
     /// Stores some indices.
-    pub fn new(numbers: impl ExactSizeIterator<Item = Option<u32>>) -> Self {
+    pub(crate) fn new(numbers: impl ExactSizeIterator<Item = Option<u32>>) -> Self {
         // Indices of a list up to this length are less than the low half of `NONE`.
         let is_narrow = numbers.len() <= usize::from(u16::MAX);
         let numbers = numbers.map(|number| number.unwrap_or(NONE));
@@ -33,7 +25,7 @@ impl CompactIndices {
 
     /// Returns the index at a place; `None` beyond the end of the list.
     #[inline(always)]
-    pub fn get(&self, place: u32) -> Option<u32> {
+    pub(crate) fn get(&self, place: u32) -> Option<u32> {
         match &self.0 {
             Width::Narrow(numbers) => {
                 let number = *numbers.get(place as usize)?;
@@ -47,7 +39,7 @@ impl CompactIndices {
     }
 
     /// Memory in bytes, without this value.
-    pub fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         match &self.0 {
             Width::Narrow(numbers) => size_of_val(&**numbers),
             Width::Wide(numbers) => size_of_val(&**numbers),

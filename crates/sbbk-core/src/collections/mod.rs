@@ -1,7 +1,7 @@
-//! A compact list of indices, and a union-find.
+//! A union-find.
 
 mod compact_indices;
 mod union_find;
 
-pub use compact_indices::CompactIndices;
+pub(crate) use compact_indices::CompactIndices;
 pub use union_find::UnionFind;
