@@ -10,18 +10,13 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// The empty box, the neutral element of [`merge`](Self::merge).
+    /// The empty box.
     pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
     /// The box around `points`.
     pub fn fit(points: &[Vec3]) -> Self {
-        points.iter().fold(Self::EMPTY, |aabb, &p| aabb.with_point(p))
-    }
-
-    /// The box around two boxes.
-    #[must_use]
-    pub fn merge(&self, other: &Self) -> Self {
-        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+        let grown = |Self { min, max }, &point| Self { min: min.min(point), max: max.max(point) };
+        points.iter().fold(Self::EMPTY, grown)
     }
 
     /// Returns true if `point` is in the box or on its boundary.
@@ -33,12 +28,6 @@ impl Aabb {
     pub fn half_area(&self) -> f32 {
         let d = (self.max - self.min).max(Vec3::ZERO);
         d.x * d.y + d.y * d.z + d.z * d.x
-    }
-
-    /// The box grown to contain `point`.
-    #[must_use]
-    pub fn with_point(&self, point: Vec3) -> Self {
-        Self { min: self.min.min(point), max: self.max.max(point) }
     }
 
     /// The centre of the box.

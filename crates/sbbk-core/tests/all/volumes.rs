@@ -24,40 +24,23 @@ fn points() -> impl Strategy<Value = Vec<Vec3>> {
     prop::collection::vec(point(), 1..20)
 }
 
-/// A volume contains what it was fitted to, and a merged one what both sides were; exactly, as
-/// `contains` computes in f64.
-macro_rules! check_volume {
-    ($volume:ty, $points1:expr, $points2:expr) => {{
-        let (one, two) = (<$volume>::fit($points1), <$volume>::fit($points2));
-        let merged = one.merge(&two);
-        for &p in $points1 {
-            prop_assert!(one.contains(p), "fit: {one:?} lacks {p:?}");
+proptest! {
+    /// A volume contains what it was fitted to, and a merged one what both sides were; exactly, as
+    /// `contains` computes in f64.
+    #[test]
+    fn volumes_contain_their_points(a in points(), b in points()) {
+        let (sphere, aabb, kdop) = (Sphere::fit(&a), Aabb::fit(&a), Kdop::fit(&a));
+        for &p in &a {
+            prop_assert!(sphere.contains(p), "{sphere:?} lacks {p:?}");
+            prop_assert!(aabb.contains(p), "{aabb:?} lacks {p:?}");
+            prop_assert!(kdop.contains(p), "{kdop:?} lacks {p:?}");
         }
-        for &p in $points1.iter().chain($points2) {
+        let merged = kdop.merge(&Kdop::fit(&b));
+        for &p in a.iter().chain(&b) {
             prop_assert!(merged.contains(p), "merge: {merged:?} lacks {p:?}");
         }
-        prop_assert_eq!(<$volume>::EMPTY.merge(&one), one);
-        prop_assert!(!<$volume>::EMPTY.contains($points1[0]));
-    }};
-}
-
-proptest! {
-    #[test]
-    fn spheres(points in points()) {
-        let sphere = Sphere::fit(&points);
-        for p in points {
-            prop_assert!(sphere.contains(p), "{sphere:?} lacks {p:?}");
-        }
-    }
-
-    #[test]
-    fn aabbs(a in points(), b in points()) {
-        check_volume!(Aabb, &a, &b);
-    }
-
-    #[test]
-    fn kdops(a in points(), b in points()) {
-        check_volume!(Kdop, &a, &b);
+        prop_assert_eq!(Kdop::EMPTY.merge(&kdop), kdop);
+        prop_assert!(!Kdop::EMPTY.contains(a[0]) && !Aabb::EMPTY.contains(a[0]));
     }
 
     /// Would catch coefficients whose sum is another direction, a bound below a point, and a loose
