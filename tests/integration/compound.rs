@@ -12,7 +12,7 @@ use sbbk_testkit::mesh;
 
 use crate::support::{
     Dispatcher, Manifold, Pair, Question, assert_bits, counting, direction, distance, every,
-    per_triangle, rotation, shape, touching_shapes,
+    per_triangle, rotation, sequence, shape, touching_shapes,
 };
 use crate::worlds::dumbbells;
 
@@ -84,11 +84,9 @@ fn contacts_are_those_of_each_part_by_itself() {
                 let found: BTreeMap<_, _> = found.iter().map(|m| named(m, None)).collect();
                 let mut expected = BTreeMap::new();
                 for (index, (at, part)) in (0..).zip(compound.shapes()) {
-                    let mut pair: Pair = Pair::default();
                     let part = Question::new(&head, &**part, pose * *at).within(prediction);
-                    pair.ask(&dispatcher, &part.flipped(flipped));
-                    let near = pair.manifolds.iter().filter(|m| distance(m) <= prediction);
-                    expected.extend(near.map(|m| named(m, Some(index))));
+                    let near = fresh(&part.flipped(flipped), &dispatcher);
+                    expected.extend(near.iter().map(|m| named(m, Some(index))));
                 }
                 // The pose of a part is rounded.
                 let tolerance = 2e-6 * size.max(1.0) * 10.0;
@@ -202,13 +200,10 @@ fn far_parts_keep_their_contacts_while_a_body_turns() {
                 } else {
                     Pose::from_parts(Vec3::ZERO, turn) * Pose::from_translation(at)
                 };
-                pair.ask(&dispatcher, &Question::new(mesh, other, pose));
-                let mut fresh: Pair = Pair::default();
-                fresh.ask(&dispatcher, &Question::new(mesh, other, pose));
-                let names = |pair: &Pair| {
-                    pair.manifolds.iter().map(|m| [m.subshape1, m.subshape2]).collect::<Vec<_>>()
-                };
-                assert_eq!(names(&pair), names(&fresh), "step {step}");
+                let question = Question::new(mesh, other, pose);
+                pair.ask(&dispatcher, &question);
+                let expected = sequence(&question.fresh(&dispatcher));
+                assert_eq!(sequence(&pair.manifolds), expected, "step {step}");
                 touched += pair.manifolds.len();
             }
         }
@@ -225,8 +220,7 @@ fn polylines_that_deform_are_left_to_stock() {
     for (flags, queries) in [(PolylineFlags::empty(), 1), (PolylineFlags::DEFORMABLE, 0)] {
         let line = Polyline::with_flags(corners.clone(), None, flags);
         let dispatcher = counting();
-        let mut pair: Pair = Pair::default();
-        pair.ask(&dispatcher, &Question::new(&floor, &line, Pose::IDENTITY));
+        Question::new(&floor, &line, Pose::IDENTITY).fresh(&dispatcher);
         assert_eq!(dispatcher.stats().queries, queries, "{flags:?}");
     }
 }

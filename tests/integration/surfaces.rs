@@ -192,7 +192,7 @@ fn a_cube_is_pushed_to_its_own_side_of_a_sheet() {
 }
 
 /// Every bit of manifolds, and their order.
-fn bits(manifolds: &[Manifold]) -> String {
+pub fn bits(manifolds: &[Manifold]) -> String {
     format!("{manifolds:?}")
 }
 

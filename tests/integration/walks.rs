@@ -9,9 +9,8 @@ use rapier3d::parry::query::{ClosestPoints, QueryDispatcher};
 use rapier3d::parry::shape::{Shape, SharedShape, TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh;
 
-use crate::support::{
-    Manifold, Pair, Question, assert_same, every, per_triangle, rotation, shape, touching,
-};
+use crate::support::{Pair, Question, assert_same, every, per_triangle, rotation, shape, touching};
+use crate::surfaces::bits;
 
 /// 9600 triangles, four units across.
 fn large(flags: TriMeshFlags) -> SharedShape {
@@ -24,11 +23,6 @@ fn head(flags: TriMeshFlags) -> SharedShape {
 
 fn as_mesh(shape: &SharedShape) -> &TriMesh {
     shape.as_trimesh().expect("the shape is a mesh")
-}
-
-/// Every bit of manifolds, and their order.
-fn bits(manifolds: &[Manifold]) -> String {
-    format!("{manifolds:?}")
 }
 
 /// Would catch pairs lost or in another order, another normal cone, and meshes mixed up.
