@@ -63,7 +63,7 @@ impl<S: TriangleShapes> DeepSearch<'_, S> {
                 Some((segment.pair, self.contact_across(segment.pair, *point, normal)?))
             }));
             if contacts.len() > old_count {
-                islands.add_contour(segments[0].pair);
+                islands.set_way(segments[0].pair, normal);
             }
         }
     }

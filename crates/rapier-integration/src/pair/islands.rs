@@ -30,8 +30,8 @@ struct Support {
     reliable: u32,
     /// True if a contact on the far side of a thin body was rejected. No others are added.
     is_thin: bool,
-    /// True if contacts along the area vector of the contour were added.
-    has_contour: bool,
+    /// Direction out of the overlap, if the contour has one; else zero.
+    way: DVec3,
     /// Sum of the normals of reliable contacts.
     normals: DVec3,
     /// Direction off a sheet, to the side on which the middle of a solid is; zero without a sheet.
@@ -46,8 +46,7 @@ const SUPPORTED: u32 = 8;
 
 impl Support {
     fn is_enough(self) -> bool {
-        self.has_contour
-            || self.reliable > 0 && (self.is_thin || self.pairs <= SUPPORTED * self.reliable)
+        self.reliable > 0 && (self.is_thin || self.pairs <= SUPPORTED * self.reliable)
     }
 }
 
@@ -98,6 +97,10 @@ impl Crossing {
         if along.abs() > SAME_SIDE { along.signum() } else { 0.0 }
     }
 }
+
+/// Least cosine between the way out of an overlap and contacts of triangles there. Higher: heavy loads press
+/// bodies deeper. Lower: grippers spin what they hold.
+const ONE_WAY: f64 = 0.97;
 
 /// Cosine above which two normals push to one side. Higher: bodies that pierce a solid are held in it;
 /// lower: contacts that do not push against each other are rejected.
@@ -244,10 +247,10 @@ impl OverlapIslands {
         list.sort_unstable_by_key(|crossing| (crossing.island, crossing.pair));
     }
 
-    /// Ends the search for contacts of an island, since contacts of its contour were added.
-    pub(super) fn add_contour(&mut self, pair: [u32; 2]) {
+    /// Sets the direction out of the overlap of an island.
+    pub(super) fn set_way(&mut self, pair: [u32; 2], way: DVec3) {
         let first = self.islands.first((0, pair[0]));
-        self.support.entry(first).or_default().has_contour = true;
+        self.support.entry(first).or_default().way = way;
     }
 
     /// Returns true if a contact does not push against the direction in which the bodies separate.
@@ -258,8 +261,10 @@ impl OverlapIslands {
     /// Returns true if a contact pushes neither against the reliable ones of its island, nor through a
     /// sheet.
     pub(super) fn agrees(&mut self, pair: [u32; 2], normal: DVec3) -> bool {
-        let agrees = |Support { normals, sheet_side, .. }: Support| {
-            normals.dot(normal) >= 0.0 && sheet_side.dot(normal) >= 0.0
+        let agrees = |Support { normals, sheet_side, way, .. }: Support| {
+            normals.dot(normal) >= 0.0
+                && sheet_side.dot(normal) >= 0.0
+                && way.dot(normal) >= ONE_WAY * way.length_squared()
         };
         self.leads_apart(normal) && self.support_of(pair).is_none_or(agrees)
     }

@@ -3,7 +3,6 @@
 //! * Apart: both points are local minima of the distance ([`Around::is_local_minimum`]), and the
 //!   normal leads out of solids. Others are contacts of internal edges, or of walls that pass by.
 //!   Distant edges and vertices may pass each other, and count only if they face each other.
-//!   Far contacts only need to lead out of solids.
 //! * Crossing: the contact leads out of solids, and both surfaces end where the overlap does.
 //!   Triangles of solids that have passed each other count as crossing.
 //!
@@ -148,9 +147,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         let has_solid = is_solid[0] || is_solid[1];
         let is_crossing = contact.features.is_crossing();
         if contact.distance > self.shapes.filter_distance() {
-            let leads_into = |i: usize| is_solid[i] && self.points_inside(&surfaces, i, &contact);
-            let is_within = (0..2).any(leads_into);
-            return if is_within { Verdict::None } else { Verdict::Contact(of_triangles, None) };
+            return Verdict::Contact(of_triangles, None);
         }
         if !is_crossing {
             if self.passes_by(local, &contact) {
@@ -180,6 +177,13 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         let Some(local) = self.shapes.local(self.pose, self.pair) else { return false };
         let surfaces = self.surfaces(&local);
         (0..2).all(|i| self.is_minimum(&surfaces, i, &local, contact))
+    }
+
+    /// Returns true if a contact leads into a solid.
+    pub(super) fn leads_inside(&self, contact: &TriangleContact) -> bool {
+        let Some(local) = self.shapes.local(self.pose, self.pair) else { return false };
+        let surfaces = self.surfaces(&local);
+        (0..2).any(|i| self.points_inside(&surfaces, i, contact))
     }
 
     /// Returns the surfaces around both triangles. `array::map` would copy them twice.

@@ -161,7 +161,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         if limits.reach < f64::from(self.pose.prediction) {
             self.add_far(!*is_near, lead_one_way, clipped, contacts);
         } else if limits.reach > self.shapes.filter_distance() {
-            self.reject_aside(directions, contacts);
+            self.reject_aside(directions, islands, contacts);
         }
         self.reject_passed(islands, passed, contacts);
         if contacts.is_empty() {
@@ -302,10 +302,12 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
     }
 
     /// Removes contacts beyond the filter distance, except those in the direction of a near contact or of a local
-    /// minimum of the distance. Removes none if no contact is near, as bodies turn when they meet.
+    /// minimum of the distance. Removes none if no contact is near, as bodies turn when they meet. Shapes that cross also
+    /// lose contacts that lead into solids: those would hold them in each other.
     fn reject_aside(
         &self,
         directions: &mut Directions,
+        islands: &OverlapIslands,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
         let limit = self.shapes.filter_distance();
@@ -318,8 +320,11 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
             let counts = || is_near(contact) || self.filter(*pair).is_local_minimum(contact);
             directions.add_if(contact.normal, counts);
         }
-        contacts.retain(|(_, TriangleSurfaceContact { contact, .. })| {
-            is_near(contact) || directions.has(contact.normal)
+        let is_overlap = islands.len() > 0;
+        contacts.retain(|(pair, TriangleSurfaceContact { contact, .. })| {
+            is_near(contact)
+                || directions.has(contact.normal)
+                    && !(is_overlap && self.filter(*pair).leads_inside(contact))
         });
     }
 
@@ -365,7 +370,9 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
             let contact = filter.supporting_contact(&local, &crossing, islands, clipped);
             contacts.extend(contact.map(|contact| (crossing.pair, contact)));
         }
-        contacts.sort_unstable_by_key(|(pair, _)| *pair);
+        // Contacts of contours come first.
+        contacts.sort_unstable_by_key(|(pair, hit)| (*pair, hit.source != ContactSource::PushOut));
+        contacts.dedup_by_key(|(pair, _)| *pair);
     }
 }
 
