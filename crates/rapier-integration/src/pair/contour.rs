@@ -1,7 +1,7 @@
 //! Contours, along which the surfaces of two solids cross.
 //!
-//! An overlap shrinks fastest along the area vector of its contour. Bodies that are deeper in each other than a row
-//! of triangles get contacts along this vector, at points of the contour and in its middle.
+//! An overlap shrinks fastest along the area vector of its contour. Contacts of [deep](super::deep) overlaps are at
+//! points of the contour and in its middle.
 
 use arrayvec::ArrayVec;
 use glamx::DVec3;

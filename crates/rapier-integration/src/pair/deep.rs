@@ -83,7 +83,7 @@ impl<S: TriangleShapes> DeepSearch<'_, S> {
         lengths.min_by(|(a, _), (b, _)| a.total_cmp(b))
     }
 
-    /// Returns the directions from a point in both solids to the nearest point of shape 1, and away from that of shape 2.
+    /// Returns directions in which the nearest points of both surfaces lead shape 2 out. `point` is in both solids.
     fn nearest_ways(&self, point: DVec3) -> impl Iterator<Item = DVec3> {
         let (point, pos12) = (point.as_vec3(), self.pose.pos12);
         let to_nearest = |i: usize, point| Some(self.shapes.nearest(i, point)?.0 - point);
@@ -92,8 +92,8 @@ impl<S: TriangleShapes> DeepSearch<'_, S> {
         ways.into_iter().flatten().map(|way| way.as_dvec3().normalize_or_zero())
     }
 
-    /// Returns where rays from a point in both solids leave shape 1 along a direction, and shape 2 against it: the
-    /// distances, and the outward normals in frame 1.
+    /// Returns where shape 1 ends along a direction, and shape 2 against it, seen from a point in both solids: distances,
+    /// and outward normals in frame 1.
     fn exits(&self, point: DVec3, direction: DVec3) -> Option<[(f64, DVec3); 2]> {
         let PairPose { pos12, .. } = self.pose;
         let (point, direction) = (point.as_vec3(), direction.as_vec3());

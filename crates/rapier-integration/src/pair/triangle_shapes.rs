@@ -147,7 +147,7 @@ pub(super) enum ContactSource {
     Triangles,
     /// Two crossing triangles, along an axis that leads out of solids.
     OutwardAxis,
-    /// Two shapes, one inside the other.
+    /// Two shapes, one inside the other, or deep in each other.
     PushOut,
 }
 
