@@ -15,7 +15,7 @@ const GAP: f64 = 1.0e-6;
 
 /// Least area vector of a contour, as a share of the area that its segments sweep around the middle. Higher:
 /// bodies that hook into each other keep the contacts of their triangles. Lower: contours push nowhere.
-const ONE_WAY: f64 = 0.5;
+const COHERENT: f64 = 0.5;
 
 /// Distance from a contour to its points, as a share of its length. Higher: overlaps beside sharp
 /// edges are left out. Lower: rays meet the surface where they start.
@@ -23,10 +23,10 @@ const INSET: f64 = 1.0e-3;
 
 /// Greatest depth behind a contour, as a share of its length. Higher: pins are pushed back all their way. Lower: bodies deep
 /// in others turn and sink.
-const DEEPEST: f64 = 0.5;
+const DEPTH_PER_LENGTH: f64 = 0.5;
 
 /// Greatest number of points of a contour. Higher: more time; lower: bodies turn about the chosen ones.
-const MOST_POINTS: usize = 6;
+pub(super) const MOST_POINTS: usize = 6;
 
 /// A part of a contour, where two triangles cross.
 #[derive(Copy, Clone)]
@@ -116,10 +116,10 @@ impl<'s> Contour<'s> {
         let (area, swept) =
             areas.fold((DVec3::ZERO, 0.0), |(area, swept), one| (area + one, swept + one.length()));
         let is_closed = gap.length() <= GAP * length;
-        (is_closed && area.length() > ONE_WAY * swept).then(|| Self {
+        (is_closed && area.length() > COHERENT * swept).then(|| Self {
             segments,
             inset,
-            most: DEEPEST * length,
+            most: DEPTH_PER_LENGTH * length,
             middle: middle - inset / length * outward,
             normal: area.normalize(),
         })

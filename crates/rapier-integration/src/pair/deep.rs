@@ -3,18 +3,18 @@
 //! Faces that have passed each other by more than a row of triangles no longer cross. Contacts lead the shortest way
 //! out of the overlap behind a [contour](super::contour).
 
+use arrayvec::ArrayVec;
 use glamx::DVec3;
-use sbbk_core::contact::{Feature, FeaturePair, TriangleContact};
 
-use super::contour::{Contour, Points, Segment};
+use super::contour::{Contour, MOST_POINTS, Points, Segment};
 use super::islands::{OverlapIslands, Unsupported};
 use super::pose::PairPose;
 use super::query::ContactList;
-use super::triangle_shapes::{ContactSource, TriangleShapes, TriangleSurfaceContact};
+use super::triangle_shapes::{TriangleShapes, TriangleSurfaceContact};
 
 /// Least cosine between the area vector of a contour and a shorter way out. Higher: boxes leave boxes at a slant. Lower:
 /// contacts of several contours push against each other.
-const ONE_WAY: f64 = 0.7;
+const NEAR_AREA_VECTOR: f64 = 0.7;
 
 /// Memory for contours: crossings by island, and the segments of an island.
 #[derive(Default)]
@@ -30,6 +30,16 @@ impl ContourMemory {
             *self = Self::default();
         }
     }
+}
+
+/// A way by which shape 2 leaves an overlap.
+struct Way {
+    /// Direction, in frame 1.
+    normal: DVec3,
+    /// Greatest depth along the way.
+    length: f64,
+    /// Distances from each point to where shape 1 ends along the way, and shape 2 against it.
+    exits: ArrayVec<Option<[f64; 2]>, MOST_POINTS>,
 }
 
 /// Two shapes that may be deep in each other.
@@ -54,33 +64,37 @@ impl<S: TriangleShapes> DeepSearch<'_, S> {
             }));
             let Some(contour) = Contour::of(segments) else { continue };
             let points = contour.points();
-            let Some((depth, normal)) = self.way_across(&contour, &points) else { continue };
-            if depth > contour.most || !islands.leads_apart(normal) {
+            let Some(way) = self.way_across(&contour, &points) else { continue };
+            if way.length > contour.most || !islands.leads_apart(way.normal) {
                 continue;
             }
-            let old_count = contacts.len();
-            contacts.extend(points.iter().filter_map(|(segment, point)| {
-                Some((segment.pair, self.contact_across(segment.pair, *point, normal)?))
+            let across = points.iter().zip(way.exits);
+            contacts.extend(across.filter_map(|((segment, point), exits)| {
+                Some((segment.pair, self.contact_across(segment.pair, *point, way.normal, exits?)?))
             }));
-            if contacts.len() > old_count {
-                islands.set_way(segments[0].pair, normal);
-            }
+            islands.set_way(segments[0].pair, way.normal);
         }
     }
 
-    /// Returns the shortest way by which shape 2 leaves an overlap: length and direction. Tries the area vector of the
-    /// contour and, from its middle, the normals where that leads out, and the nearest points of both surfaces.
-    fn way_across(&self, contour: &Contour, points: &Points) -> Option<(f64, DVec3)> {
+    /// Returns the shortest way by which shape 2 leaves an overlap. Tries the area vector of the contour and, from its
+    /// middle, the normals where that leads out, and the nearest points of both surfaces.
+    fn way_across(&self, contour: &Contour, points: &Points) -> Option<Way> {
         let Contour { middle, normal, .. } = *contour;
-        let length = |way: DVec3| {
-            let exits = points.iter().filter_map(|(_, point)| self.exits(*point, way));
-            exits.map(|[(length1, _), (length2, _)]| length1 + length2).reduce(f64::max)
-        };
         let normals = self.exits(middle, normal).map(|[(_, one), (_, two)]| [one, -two]);
         let ways = normals.into_iter().flatten().chain(self.nearest_ways(middle));
-        let ways = ways.filter(|way| way.dot(normal) > ONE_WAY).chain([normal]);
-        let lengths = ways.filter_map(|way| Some((length(way)?, way)));
-        lengths.min_by(|(a, _), (b, _)| a.total_cmp(b))
+        let ways = ways.filter(|way| way.dot(normal) > NEAR_AREA_VECTOR).chain([normal]);
+        let ways = ways.filter_map(|way| self.way_along(way, points));
+        ways.min_by(|a, b| a.length.total_cmp(&b.length))
+    }
+
+    /// Returns the way along a direction; `None` if it leads out from no point.
+    fn way_along(&self, normal: DVec3, points: &Points) -> Option<Way> {
+        let exits = points.iter().map(|(_, point)| {
+            self.exits(*point, normal).map(|exits| exits.map(|(length, _)| length))
+        });
+        let exits: ArrayVec<_, MOST_POINTS> = exits.collect();
+        let lengths = exits.iter().flatten().map(|[length1, length2]| length1 + length2);
+        Some(Way { normal, length: lengths.reduce(f64::max)?, exits })
     }
 
     /// Returns directions in which the nearest points of both surfaces lead shape 2 out. `point` is in both solids.
@@ -105,23 +119,18 @@ impl<S: TriangleShapes> DeepSearch<'_, S> {
         Some(exits.map(|(length, normal)| (f64::from(length), normal.as_dvec3())))
     }
 
-    /// Returns the contact across an overlap at a point in both solids. `normal` is in frame 1.
+    /// Returns the contact across an overlap at a point in both solids. `normal` is in frame 1, and `exits` are the
+    /// distances from the point to where shape 1 ends along the normal, and shape 2 against it.
     fn contact_across(
         &self,
         pair: [u32; 2],
         point: DVec3,
         normal: DVec3,
+        [exit1, exit2]: [f64; 2],
     ) -> Option<TriangleSurfaceContact> {
-        let [(depth1, _), (depth2, _)] = self.exits(point, normal)?;
         let [[origin, ..], _] = self.shapes.corners(pair)?;
         let point = point - origin.as_dvec3();
-        let contact = TriangleContact {
-            normal,
-            distance: -depth1 - depth2,
-            point1: point + depth1 * normal,
-            point2: point - depth2 * normal,
-            features: FeaturePair::new(Feature::Face, Feature::Face),
-        };
-        Some(TriangleSurfaceContact { contact, source: ContactSource::PushOut })
+        let points = [point + exit1 * normal, point - exit2 * normal];
+        Some(TriangleSurfaceContact::push_out(normal, -exit1 - exit2, points))
     }
 }

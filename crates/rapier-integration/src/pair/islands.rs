@@ -100,7 +100,7 @@ impl Crossing {
 
 /// Least cosine between the way out of an overlap and contacts of triangles there. Higher: heavy loads press
 /// bodies deeper. Lower: grippers spin what they hold.
-const ONE_WAY: f64 = 0.97;
+const ALONG_WAY: f64 = 0.97;
 
 /// Cosine above which two normals push to one side. Higher: bodies that pierce a solid are held in it;
 /// lower: contacts that do not push against each other are rejected.
@@ -264,7 +264,7 @@ impl OverlapIslands {
         let agrees = |Support { normals, sheet_side, way, .. }: Support| {
             normals.dot(normal) >= 0.0
                 && sheet_side.dot(normal) >= 0.0
-                && way.dot(normal) >= ONE_WAY * way.length_squared()
+                && way.dot(normal) >= ALONG_WAY * way.length_squared()
         };
         self.leads_apart(normal) && self.support_of(pair).is_none_or(agrees)
     }

@@ -6,7 +6,6 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Real, Vector};
 use parry3d::query::PointQuery;
 use parry3d::query::details::NormalConstraints;
-use sbbk_core::contact::{Feature, FeaturePair, TriangleContact};
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::surface::{Around, Side, SurfaceKind};
 use sbbk_core::traverse::{DescentCounts, NodePair, PairFrame, begin_descent, descend_from};
@@ -23,8 +22,7 @@ use super::state::Candidate;
 use super::surface::{filter_distance, filter_unit, lateral_culling, reach};
 use super::triangle_contacts::in_local;
 use super::triangle_shapes::{
-    Cones, ContactSource, DescentChunk, DescentMemory, Hint, TriangleHit, TriangleShapes,
-    TriangleSurfaceContact,
+    Cones, DescentChunk, DescentMemory, Hint, TriangleHit, TriangleShapes, TriangleSurfaceContact,
 };
 use super::triangles::TriangleQuery;
 use crate::mesh::{
@@ -263,9 +261,7 @@ impl Meshes<'_> {
         let [point1, point2] = points;
         let normal = (point1 - point2).try_normalize()?;
         let distance = (point2 - point1).dot(normal);
-        let features = FeaturePair::new(Feature::Face, Feature::Face);
-        let contact = TriangleContact { normal, distance, point1, point2, features };
-        Some((subshapes, TriangleSurfaceContact { contact, source: ContactSource::PushOut }))
+        Some((subshapes, TriangleSurfaceContact::push_out(normal, distance, points)))
     }
 }
 

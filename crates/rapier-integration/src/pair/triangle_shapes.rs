@@ -4,7 +4,7 @@ use glamx::DVec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Real, Vector};
 use parry3d::query::details::NormalConstraints;
-use sbbk_core::contact::{FeaturePair, TriangleContact};
+use sbbk_core::contact::{Feature, FeaturePair, TriangleContact};
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Facets};
 use sbbk_core::traverse::{DescentCounts, DescentScratch, NodePair};
@@ -138,6 +138,15 @@ pub(super) type TriangleHit = ([u32; 2], TriangleSurfaceContact);
 pub(crate) struct TriangleSurfaceContact {
     pub(super) contact: TriangleContact,
     pub(super) source: ContactSource,
+}
+
+impl TriangleSurfaceContact {
+    /// Returns a contact that pushes shapes apart along a normal, at points that belong to no feature.
+    pub(super) fn push_out(normal: DVec3, distance: f64, [point1, point2]: [DVec3; 2]) -> Self {
+        let features = FeaturePair::new(Feature::Face, Feature::Face);
+        let contact = TriangleContact { normal, distance, point1, point2, features };
+        Self { contact, source: ContactSource::PushOut }
+    }
 }
 
 /// Origin of a contact.

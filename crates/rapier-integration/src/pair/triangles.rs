@@ -153,10 +153,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         let lead_one_way = meet_borders(upright, contacts);
         let separation = islands.is_undecided().then(|| self.shapes.separation()).flatten();
         if islands.finish_first_pass(separation) {
-            contacts.retain(|(pair, _)| islands.is_final(*pair));
-            let deep = DeepSearch { shapes: &self.shapes, pose: self.pose };
-            deep.add_contacts(islands, contours, contacts);
-            self.second_pass(islands, clipped, contacts);
+            self.second_pass(islands, contours, clipped, contacts);
         }
         if limits.reach < f64::from(self.pose.prediction) {
             self.add_far(!*is_near, lead_one_way, clipped, contacts);
@@ -360,9 +357,13 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
     fn second_pass(
         &self,
         islands: &mut OverlapIslands,
+        contours: &mut ContourMemory,
         clipped: &mut ManifoldPoints,
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
+        contacts.retain(|(pair, _)| islands.is_final(*pair));
+        let deep = DeepSearch { shapes: &self.shapes, pose: self.pose };
+        deep.add_contacts(islands, contours, contacts);
         for i in 0..islands.len() {
             let Some(crossing) = islands.open(i) else { continue };
             let Some(local) = self.shapes.local(self.pose, crossing.pair) else { continue };
