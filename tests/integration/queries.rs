@@ -259,9 +259,9 @@ fn sensors_see_what_stock_sees() {
     assert!(met > 20 && met < ours.iter().flatten().count(), "{met} met");
 }
 
-/// A vertex that moves within the boxes of all its triangles, forth and back: nothing else of the
-/// mesh changes. Would catch a mesh that is known by its boxes or by samples, an answer from
-/// the tree of the other state, and a sensor that meets triangles which have moved.
+/// A vertex moves within the boxes of all its triangles, forth and back. Nothing else of the mesh
+/// changes. Would catch meshes that are known by boxes or by samples. Would catch answers from the tree of the
+/// other state, and sensors that meet old triangles.
 #[test]
 fn edits_forth_and_back_are_seen() {
     let dispatcher = SbbkDispatcher::default();

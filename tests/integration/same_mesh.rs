@@ -45,8 +45,8 @@ fn counts(dispatcher: &SbbkDispatcher) -> [u64; 4] {
 }
 
 /// Would catch 2000 trees, or 2000 builds, for a pile restored from a snapshot, where each collider
-/// has its own copy of the mesh. An identity that is an address has them, as has a clone of the
-/// dispatcher that builds its own trees: Rapier and the user may each hold one.
+/// has its own copy of the mesh. Identities by address would cause them. Clones of a dispatcher would, too, if each
+/// built trees of its own.
 #[test]
 fn two_thousand_copies_share_one_tree() {
     let dispatcher = SbbkDispatcher::default();

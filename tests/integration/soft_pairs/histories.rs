@@ -130,8 +130,8 @@ impl Walk {
     }
 }
 
-/// Runs a history and returns the number of contacts. Panics unless each result is that of a mesh built
-/// anew, bit for bit, in the order of a new dispatcher.
+/// Runs a history and returns the number of contacts. Panics unless a mesh built anew and a new dispatcher give
+/// the same bits in the same order.
 fn run(history: &History, other: &dyn Shape) -> usize {
     let (dispatcher, mut contacts) = (SbbkDispatcher::default(), 0);
     let mut walk = Walk::new(history);

@@ -151,8 +151,8 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         self.meets_again(&mut one, found.time, until)
     }
 
-    /// True if an impact counts. A shape that is in contact at the start may have impacts that do not:
-    /// it does not approach by its thickness until the end, and hardly sinks deeper.
+    /// True if an impact counts. A shape may be in contact at the start. Its impact counts if the shape approaches by
+    /// its thickness until the end, or sinks deeper.
     fn counts(&self, one: &mut MovingTriangle<'_>, found: &Advance<Found>, from: f64) -> bool {
         let Self { cast, options, thickness, .. } = self;
         if cast.stop_at_penetration {

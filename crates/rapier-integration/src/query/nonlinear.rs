@@ -61,8 +61,8 @@ impl NonlinearCast<'_> {
 
     /// Returns the first impact of two meshes, given balls around them.
     ///
-    /// A cast that does not stop at the start skips the pairs that touch then, except those that
-    /// approach. Parry does the same.
+    /// Casts that do not stop at penetration skip pairs that touch at the start and part. Parry does the
+    /// same.
     pub(super) fn first_impact(
         &self,
         bodies: &mut impl Bodies<Pair = FoundPair>,

@@ -1,7 +1,7 @@
 //! Figures 3 and 4 of the SBBK paper.
 //!
-//! The figures show one tree, T1 to T31, the children of T*n* being T*2n* and T*2n+1*: a tree of
-//! pairs of nodes, with two children each, as below a leaf and an inner node. The paper lists the
+//! The figures show one tree of pairs of nodes, T1 to T31. The children of T*n* are T*2n* and
+//! T*2n+1*. A leaf and an inner node have such pairs below them. The paper lists the
 //! nodes visited at time t2. T13 is not among them though its parent T6 is opened: T6 has one
 //! child. No descent of real trees has such a pair, so this test uses the figure's tree and states
 //! which nodes meet. The front is the real one.

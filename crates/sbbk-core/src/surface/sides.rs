@@ -107,8 +107,8 @@ const STEEP: f64 = 0.5;
 /// where rays start.
 const ANY: f64 = 0.02;
 
-/// Steps in the sequence of directions from the rays of one triangle to those of the next. Fewer: rays of
-/// neighbours are alike.
+/// Offset in the sequence of ray directions between successive triangles. Fewer: rays of neighbours are
+/// alike.
 const SHIFT: u32 = 17;
 
 /// Number of triangles after which rays repeat. It is prime, so that no row of a regular mesh has the same

@@ -84,8 +84,8 @@ impl<K, V> Default for Memo<K, V> {
 }
 
 impl<K: Eq + Hash, V: Copy> Memo<K, V> {
-    /// Returns the answer of a key: the known one, else that of `find`, which is kept if it took more than
-    /// [`LONG`] triangles.
+    /// Returns the known answer of a key, or that of `find`. Keeps answers that took more than [`LONG`]
+    /// triangles.
     fn answer(memo: Option<&Self>, key: K, find: impl FnOnce() -> (V, usize)) -> V {
         let known = memo.and_then(|memo| memo.get(&key));
         known.unwrap_or_else(|| {

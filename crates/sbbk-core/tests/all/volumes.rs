@@ -25,8 +25,8 @@ fn points() -> impl Strategy<Value = Vec<Vec3>> {
 }
 
 proptest! {
-    /// A volume contains what it was fitted to, and a merged one what both sides were; exactly, as
-    /// `contains` computes in f64.
+    /// A volume contains what it was fitted to. A merged one contains the points of both sides.
+    /// `contains` computes in f64, so this holds exactly.
     #[test]
     fn volumes_contain_their_points(a in points(), b in points()) {
         let (sphere, aabb, kdop) = (Sphere::fit(&a), Aabb::fit(&a), Kdop::fit(&a));
