@@ -12,11 +12,10 @@ use clap::Parser;
 use sbbk_lab::backend::Backend;
 use sbbk_lab::cli::{Outcome, ReplayArguments, print};
 use sbbk_lab::mesh_file;
-use sbbk_lab::metrics::RunPlan;
 use sbbk_lab::progress::Progress;
 use sbbk_lab::report::check_outputs;
 use sbbk_lab::scene::MonkeyPile;
-use sbbk_lab::study::pile::{PilePlan, one_pile};
+use sbbk_lab::study::runs::{RunPlan, one_pile};
 
 /// Drops monkey heads in a pile, and shows where the time goes
 #[derive(Parser)]
@@ -45,16 +44,18 @@ fn main() -> Outcome {
         None => MonkeyPile::with_heads(heads.get()),
     };
     let steps = steps.get();
-    let run = RunPlan {
-        warm_up: PilePlan::FREE_FALL,
+    let plan = RunPlan {
+        backends: backend,
+        repeats: 1,
+        warm_up: RunPlan::FREE_FALL,
         steps,
-        sample_every: steps.div_ceil(3),
-        sample_size: 30,
+        judge_every: steps.div_ceil(3),
+        judged_pairs: 30,
+        same_poses: 0,
     };
-    let plan = PilePlan { backends: backend, repeats: 1, run, same_poses: 0 };
     let progress = Progress::visible();
     let results = one_pile(&scene, &plan, &progress);
     progress.finish();
     print(results)?;
-    replay.play(&scene, &plan.backends, run.step_count())
+    replay.play(&scene, &plan.backends, plan.step_count())
 }

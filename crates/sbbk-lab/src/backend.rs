@@ -6,25 +6,28 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use rapier_integration::{ContactDetail, ContactSet, PreparedTree, SbbkConfig, SbbkDispatcher};
-use rapier3d::geometry::{ContactData, ContactManifoldData};
-use rapier3d::parry::query::{
-    ContactManifoldsWorkspace, DefaultQueryDispatcher, PersistentQueryDispatcher,
-};
+use rapier3d::parry::query::{ContactManifoldsWorkspace, DefaultQueryDispatcher};
 use rapier3d::parry::shape::Shape;
 use sbbk_core::tree::LayerPlan;
-
-pub use sbbk_testkit::probe::{Answer, Probe, Question, Recording, Reported, shape_address};
-
-/// A dispatcher as Rapier takes it.
-pub type SharedDispatcher = Arc<dyn PersistentQueryDispatcher<ContactManifoldData, ContactData>>;
+use sbbk_testkit::probe::{Probe, Recording, SharedDispatcher};
 
 /// The dispatcher of a backend.
-#[derive(Clone)]
 pub struct Dispatcher {
     /// The dispatcher as Rapier takes it.
     pub shared: SharedDispatcher,
     /// SBBK's dispatcher, unless the backend is stock.
     pub sbbk: Option<SbbkDispatcher>,
+    /// Trees that were built before the first query, so that times do not contain builds.
+    trees: Vec<PreparedTree>,
+}
+
+impl Dispatcher {
+    /// Prepares the meshes among some shapes.
+    pub fn prepare<'a>(&mut self, shapes: impl IntoIterator<Item = &'a SharedShape>) {
+        let Some(sbbk) = &self.sbbk else { return };
+        let prepare = |shape| sbbk.prepare_shape(shape).ok()?;
+        self.trees.extend(shapes.into_iter().filter_map(prepare));
+    }
 }
 
 impl Deref for Dispatcher {
@@ -62,10 +65,12 @@ impl Backend {
         self.configured(ContactSet::Surfaces, detail)
     }
 
-    /// Makes a fresh dispatcher for the contacts of each two triangles of meshes. These are the
-    /// contacts of stock, and those that brute force over all triangles can judge.
-    pub fn per_triangle(self) -> Dispatcher {
-        self.configured(ContactSet::Triangles, ContactDetail::Every)
+    /// Makes a fresh dispatcher for the contacts of each two triangles of meshes, with the trees of
+    /// some. These are the contacts of stock, and those that brute force can judge.
+    pub fn per_triangle<'a>(self, shapes: impl IntoIterator<Item = &'a SharedShape>) -> Dispatcher {
+        let mut dispatcher = self.configured(ContactSet::Triangles, ContactDetail::Every);
+        dispatcher.prepare(shapes);
+        dispatcher
     }
 
     /// True if two rigid meshes have the contacts of their surfaces.
@@ -74,53 +79,31 @@ impl Backend {
     }
 
     fn configured(self, contact_set: ContactSet, detail: ContactDetail) -> Dispatcher {
-        let mut config = match self {
-            Self::Stock => {
-                return Dispatcher { shared: Arc::new(DefaultQueryDispatcher), sbbk: None };
-            }
-            Self::AabbOnly => SbbkConfig::default().with_layers(Some(LayerPlan::AABB_ONLY)),
-            Self::Sbbk | Self::Every => SbbkConfig::default(),
-        };
+        let layers = (self == Self::AabbOnly).then_some(LayerPlan::AABB_ONLY);
+        let mut config = SbbkConfig::default().with_layers(layers);
         (config.contact_set, config.detail) = (contact_set, detail);
-        let sbbk = SbbkDispatcher::new(config);
-        Dispatcher { shared: Arc::new(sbbk.clone()), sbbk: Some(sbbk) }
+        let sbbk = (self != Self::Stock).then(|| SbbkDispatcher::new(config));
+        let shared: SharedDispatcher = match &sbbk {
+            Some(sbbk) => Arc::new(sbbk.clone()),
+            None => Arc::new(DefaultQueryDispatcher),
+        };
+        Dispatcher { shared, sbbk, trees: Vec::new() }
     }
 
-    /// Installs a fresh dispatcher in a world, with the trees of all its meshes.
-    pub fn install(self, world: &mut PhysicsWorld) -> Installed {
-        let (dispatcher, probe) = (self.dispatcher(), Probe::default());
-        let shapes = world.colliders.iter().map(|(_, collider)| collider.shared_shape());
-        let primed = Primed::new(&dispatcher, shapes);
-        world.narrow_phase.set_query_dispatcher(Recording::new(dispatcher.shared, probe.clone()));
-        Installed { probe, primed }
+    /// Installs a fresh dispatcher in a world, with the trees of all its meshes. Returns it with a
+    /// probe of its answers.
+    pub fn install(self, world: &mut PhysicsWorld) -> (Dispatcher, Probe) {
+        let (mut dispatcher, probe) = (self.dispatcher(), Probe::default());
+        dispatcher.prepare(world.colliders.iter().map(|(_, collider)| collider.shared_shape()));
+        let recording = Recording::new(dispatcher.shared.clone(), probe.clone());
+        world.narrow_phase.set_query_dispatcher(recording);
+        (dispatcher, probe)
     }
 }
 
 impl fmt::Display for Backend {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.to_possible_value().expect("none is hidden").get_name())
-    }
-}
-
-/// Result of [`Backend::install`].
-pub struct Installed {
-    /// Answers to the queries of the world.
-    pub probe: Probe,
-    /// Trees of the meshes of the world.
-    pub primed: Primed,
-}
-
-/// Trees that were built before the first query, so that times do not contain builds.
-pub struct Primed(#[expect(dead_code, reason = "kept alive")] Vec<PreparedTree>);
-
-impl Primed {
-    /// Prepares the meshes among `shapes`.
-    pub fn new<'a>(
-        dispatcher: &Dispatcher,
-        shapes: impl IntoIterator<Item = &'a SharedShape>,
-    ) -> Self {
-        let prepare = |shape| dispatcher.sbbk.as_ref()?.prepare_shape(shape).ok()?;
-        Self(shapes.into_iter().filter_map(prepare).collect())
     }
 }
 

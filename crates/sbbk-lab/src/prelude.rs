@@ -1,15 +1,11 @@
 //! Names that most modules use.
 
-pub(crate) use crate::backend::{
-    Backend, Dispatcher, Installed, Memory, Primed, Question, Reported, SharedDispatcher,
-    shape_address,
-};
+pub(crate) use crate::backend::{Backend, Dispatcher, Memory};
 pub(crate) use crate::error::StudyError;
 pub(crate) use crate::mesh;
 pub(crate) use crate::mesh::Mesh;
 pub(crate) use crate::metrics::{
-    ContactErrors, ErrorCount, Sequence, StepTimes, Summary, Truth, geometric_mean, sample_indices,
-    solver_points,
+    Errors, Sequence, StepTimes, Summary, Truth, geometric_mean, sample_indices, solver_points,
 };
 pub(crate) use crate::parallel;
 pub(crate) use crate::progress::Progress;
@@ -24,8 +20,9 @@ pub(crate) use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
 pub(crate) use rapier3d::geometry::{
     ColliderBuilder, ColliderHandle, ContactManifold, SharedShape, TriMeshFlags,
 };
-pub(crate) use rapier3d::math::{Pose, Real, Vector};
+pub(crate) use rapier3d::math::{Pose, Real};
 pub(crate) use rapier3d::pipeline::PhysicsWorld;
+pub(crate) use sbbk_testkit::probe::{SharedDispatcher, shape_address};
 pub(crate) use serde::Serialize;
 pub(crate) use std::collections::HashMap;
 pub(crate) use std::path::{Path, PathBuf};

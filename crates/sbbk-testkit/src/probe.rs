@@ -2,75 +2,30 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use rapier3d::geometry::{ContactData, ContactManifold, ContactManifoldData};
 use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::query::details::{NormalConstraints, ShapeCastOptions};
 use rapier3d::parry::query::{
-    ClosestPoints, Contact, ContactManifold, ContactManifoldsWorkspace, NonlinearRigidMotion,
+    ClosestPoints, Contact, ContactManifoldsWorkspace, NonlinearRigidMotion,
     PersistentQueryDispatcher, QueryDispatcher, ShapeCastHit, ShapeDistance, ShapeIntersection,
     Unsupported,
 };
 use rapier3d::parry::shape::Shape;
 
-/// Arguments of `contact_manifolds` for two meshes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Question {
+/// The dispatchers that Rapier takes.
+pub type SharedDispatcher = Arc<dyn PersistentQueryDispatcher<ContactManifoldData, ContactData>>;
+
+/// A call of `contact_manifolds` for two meshes.
+#[derive(Clone, Debug)]
+pub struct Answer {
     /// [`shape_address`] of both meshes.
     pub shapes: [usize; 2],
     /// Pose of the second mesh in the first one's frame.
     pub pos12: Pose,
     /// The prediction distance of the call.
     pub prediction: Real,
-}
-
-/// A pair of triangles with a contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reported {
-    pub triangle1: u32,
-    pub triangle2: u32,
-    /// Smallest signed distance among the points of the pair: negative when it penetrates.
-    pub distance: Real,
-    /// The normals, each in its mesh's frame and out of it.
-    pub normals: [Vector; 2],
-}
-
-/// A call of `contact_manifolds` for two meshes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Answer {
-    pub question: Question,
-    /// Triangle pairs with a point no farther than the prediction distance. Points beyond it,
-    /// which stock Parry keeps from earlier poses, are left out.
-    pub reported: Vec<Reported>,
-}
-
-impl Question {
-    /// The question about two shapes.
-    pub fn new(pos12: &Pose, shapes: [&dyn Shape; 2], prediction: Real) -> Self {
-        Self { shapes: shapes.map(shape_address), pos12: *pos12, prediction }
-    }
-}
-
-impl Reported {
-    /// Contacts of manifolds within the prediction distance.
-    pub fn all<M, C>(manifolds: &[ContactManifold<M, C>], prediction: Real) -> Vec<Self> {
-        let reported = manifolds.iter().filter_map(|manifold| {
-            let distances = manifold.points.iter().map(|point| point.dist);
-            let distance = distances.reduce(Real::min).filter(|d| *d <= prediction)?;
-            Some(Self {
-                triangle1: manifold.subshape1,
-                triangle2: manifold.subshape2,
-                distance,
-                normals: [manifold.local_n1, manifold.local_n2],
-            })
-        });
-        reported.collect()
-    }
-}
-
-impl Answer {
-    /// The answer held by `manifolds` after the call.
-    pub fn new<M, C>(question: Question, manifolds: &[ContactManifold<M, C>]) -> Self {
-        Self { reported: Reported::all(manifolds, question.prediction), question }
-    }
+    /// The manifolds after the call.
+    pub manifolds: Vec<ContactManifold>,
 }
 
 /// Address of a shape, unique as long as the shape lives.
@@ -96,14 +51,14 @@ impl Probe {
 }
 
 /// Passes every query on unchanged, and records answers about two meshes.
-pub struct Recording<D: ?Sized> {
+pub struct Recording {
     probe: Probe,
-    inner: Arc<D>,
+    inner: SharedDispatcher,
 }
 
-impl<D: ?Sized> Recording<D> {
+impl Recording {
     /// A dispatcher around `inner` that records into `probe`.
-    pub fn new(inner: Arc<D>, probe: Probe) -> Self {
+    pub fn new(inner: SharedDispatcher, probe: Probe) -> Self {
         Self { probe, inner }
     }
 }
@@ -116,7 +71,7 @@ macro_rules! forward {
     )*};
 }
 
-impl<D: QueryDispatcher + ?Sized> QueryDispatcher for Recording<D> {
+impl QueryDispatcher for Recording {
     forward! {
         intersection_test(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> ShapeIntersection;
         distance(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> ShapeDistance;
@@ -141,17 +96,14 @@ impl<D: QueryDispatcher + ?Sized> QueryDispatcher for Recording<D> {
     }
 }
 
-impl<M, C, D> PersistentQueryDispatcher<M, C> for Recording<D>
-where
-    D: PersistentQueryDispatcher<M, C> + ?Sized,
-{
+impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for Recording {
     fn contact_manifolds(
         &self,
         pos12: &Pose,
         g1: &dyn Shape,
         g2: &dyn Shape,
         prediction: Real,
-        manifolds: &mut Vec<ContactManifold<M, C>>,
+        manifolds: &mut Vec<ContactManifold>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
         let result =
@@ -160,7 +112,8 @@ where
         if let Some(answers) = &mut *answers
             && [g1, g2].iter().all(|shape| shape.as_trimesh().is_some())
         {
-            answers.push(Answer::new(Question::new(pos12, [g1, g2], prediction), manifolds));
+            let (shapes, manifolds) = ([g1, g2].map(shape_address), manifolds.clone());
+            answers.push(Answer { shapes, pos12: *pos12, prediction, manifolds });
         }
         result
     }
@@ -173,7 +126,7 @@ where
             constraints1: Option<&dyn NormalConstraints>,
             constraints2: Option<&dyn NormalConstraints>,
             prediction: Real,
-            manifold: &mut ContactManifold<M, C>
+            manifold: &mut ContactManifold
         ) -> ();
     }
 }

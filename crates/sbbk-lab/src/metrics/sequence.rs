@@ -3,7 +3,6 @@
 //! Two runs of one scene drift apart, as a different last bit of a contact leads to another
 //! trajectory. Here every backend has the same queries.
 
-use super::Judge;
 use crate::prelude::*;
 
 /// Two shapes, asked for their contacts at one pose after the other, each with what the query
@@ -18,30 +17,22 @@ pub struct Sequence {
 }
 
 impl Sequence {
-    /// The mesh-mesh pairs proposed by the broad phase of `world`, at their poses now, and at those
-    /// after `step` has stepped it once. A pair is asked whether or not Rapier would have recycled
-    /// its contacts.
-    pub fn captured(world: &mut PhysicsWorld, step: impl FnOnce(&mut PhysicsWorld)) -> Vec<Self> {
-        let pos12 = |world: &PhysicsWorld, handles: [ColliderHandle; 2]| {
-            let [pos1, pos2] = handles.map(|handle| world.colliders[handle].position());
-            pos1.inv_mul(pos2)
-        };
-        let prediction = world.integration_parameters.prediction_distance();
-        let mut handles = Vec::new();
-        let mut sequences = Vec::new();
-        for pair in world.narrow_phase.contact_pairs() {
-            let pair = [pair.collider1, pair.collider2];
-            let shapes = pair.map(|handle| world.colliders[handle].shared_shape().clone());
-            if shapes.iter().all(|shape| shape.as_trimesh().is_some()) {
-                handles.push(pair);
-                sequences.push(Self { shapes, poses: vec![pos12(world, pair)], prediction });
-            }
+    /// The mesh-mesh pairs proposed by the broad phase of a world, at their poses now. Rapier may
+    /// recycle the contacts of some.
+    pub fn captured(world: &PhysicsWorld) -> Vec<Self> {
+        let pairs = world.contact_pairs().map(|pair| [pair.collider1, pair.collider2]);
+        let pairs = pairs.map(|pair| Self::of(world, pair));
+        pairs.filter(|pair| pair.shapes.iter().all(|s| s.as_trimesh().is_some())).collect()
+    }
+
+    /// Two colliders at their poses now.
+    pub fn of(world: &PhysicsWorld, pair: [ColliderHandle; 2]) -> Self {
+        let [one, two] = pair.map(|handle| &world.colliders[handle]);
+        Self {
+            shapes: [one, two].map(|collider| collider.shared_shape().clone()),
+            poses: vec![one.position().inv_mul(two.position())],
+            prediction: world.integration_parameters.prediction_distance(),
         }
-        step(world);
-        for (sequence, pair) in sequences.iter_mut().zip(handles) {
-            sequence.poses.push(pos12(world, pair));
-        }
-        sequences
     }
 
     /// Asks `dispatcher` at one pose. Panics when `step` is out of range.
@@ -50,44 +41,30 @@ impl Sequence {
         memory.ask(dispatcher, shapes, &self.poses[step], self.prediction);
     }
 
-    /// Asks everything, and shows the manifolds after each query, by its number.
-    pub fn walk(
-        &self,
-        dispatcher: &SharedDispatcher,
-        mut seen: impl FnMut(usize, &[ContactManifold]),
-    ) {
-        let mut memory = Memory::default();
-        for step in 0..self.poses.len() {
-            self.ask(&mut memory, dispatcher, step);
-            seen(step, &memory.manifolds);
-        }
-    }
-
-    /// The truth about one pose of two meshes. Panics when `step` is out of range.
+    /// The truth about one pose. Panics when `step` is out of range.
     pub fn truth(&self, step: usize) -> Truth {
-        let shapes = self.shapes.each_ref().map(|shape| &**shape);
-        let question = Question::new(&self.poses[step], shapes, self.prediction);
-        Judge::new(&self.shapes).truth(&question)
+        Truth::of(self.shapes.each_ref(), &self.poses[step], self.prediction)
     }
 
-    /// Errors of each dispatcher, all sequences together, where `truth` tells it of the step of a
-    /// sequence, both by their numbers.
-    pub fn errors<const N: usize>(
+    /// Errors of each dispatcher in the judged steps of all sequences together.
+    pub fn errors(
         sequences: &[Self],
-        dispatchers: [&SharedDispatcher; N],
-        truth: impl Fn(usize, usize) -> Option<Truth> + Sync,
-    ) -> [ContactErrors; N] {
-        let errors = parallel::map(sequences, parallel::threads(), |index, sequence| {
-            let truths: Vec<Option<Truth>> =
-                (0..sequence.poses.len()).map(|step| truth(index, step)).collect();
-            dispatchers.map(|dispatcher| {
-                let mut errors = ContactErrors::default();
-                sequence.walk(dispatcher, |step, manifolds| {
-                    errors += (truths[step].iter()).map(|t| t.judge_manifolds(manifolds)).sum();
-                });
-                errors
-            })
+        dispatchers: &[Dispatcher],
+        is_judged: impl Fn(usize) -> bool + Sync,
+    ) -> Vec<Errors> {
+        let errors = parallel::map(sequences, parallel::threads(), |_, sequence| {
+            let mut errors = vec![Errors::default(); dispatchers.len()];
+            let mut memories = dispatchers.iter().map(|_| Memory::default()).collect::<Vec<_>>();
+            for step in 0..sequence.poses.len() {
+                let truth = is_judged(step).then(|| sequence.truth(step));
+                for (index, memory) in memories.iter_mut().enumerate() {
+                    sequence.ask(memory, &dispatchers[index], step);
+                    errors[index] += truth.iter().map(|t| t.judge(&memory.manifolds)).sum();
+                }
+            }
+            errors
         });
-        std::array::from_fn(|side| errors.iter().map(|sides| sides[side]).sum())
+        let sum = |index: usize| errors.iter().map(|errors| errors[index]).sum();
+        (0..dispatchers.len()).map(sum).collect()
     }
 }

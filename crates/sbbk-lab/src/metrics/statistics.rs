@@ -34,20 +34,13 @@ impl Summary {
     }
 }
 
-/// `numerator / denominator`; `None` unless both are finite and the denominator is positive, so
-/// that no table shows a ratio to nothing.
-pub fn ratio(numerator: f64, denominator: f64) -> Option<f64> {
-    let is_defined = numerator.is_finite() && denominator.is_finite() && denominator > 0.0;
-    is_defined.then(|| numerator / denominator)
-}
-
 /// Geometric mean; `None` without values. A value that is not positive makes it 0 or NaN.
 pub fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let logarithms = Summary::of(values.into_iter().map(f64::ln))?;
     Some(logarithms.mean.exp())
 }
 
-/// Would catch a median or percentile off by one place, and a ratio to nothing.
+/// Would catch a median or percentile off by one place.
 #[test]
 fn numbers_are_summed_up() {
     let odd = Summary::of([9.0, 1.0, 4.0]).unwrap();
@@ -55,6 +48,5 @@ fn numbers_are_summed_up() {
     let even = Summary::of([9.0, 1.0, 4.0, 2.0]).unwrap();
     assert_eq!((even.count, even.median, even.mean), (4, 3.0, 4.0));
     assert_eq!(Summary::of((1..=200).map(f64::from)).unwrap().p99, 198.0);
-    assert_eq!([ratio(71.8, 35.9), ratio(1.0, 0.0), ratio(f64::NAN, 1.0)], [Some(2.0), None, None]);
     assert!((geometric_mean([2.0, 0.5]).unwrap() - 1.0).abs() < 1e-12);
 }

@@ -1,7 +1,5 @@
-//! Timed and judged steps of a world.
+//! Timed steps of a world.
 
-use super::Judge;
-use crate::backend::{Answer, Probe};
 use crate::prelude::*;
 
 /// Times of one step, in milliseconds.
@@ -41,24 +39,4 @@ pub fn timed_step(world: &mut PhysicsWorld) -> StepTimes {
         narrow_phase: counters.cd.narrow_phase_time.time_ms(),
         solver: counters.stages.solver_time.time_ms(),
     }
-}
-
-/// Steps `world` once and judges the contacts of at most `limit` pairs of meshes, with the vertices
-/// at the start of the step. `probe` must belong to the dispatcher of the world.
-pub fn judged_step(
-    world: &mut PhysicsWorld,
-    probe: &Probe,
-    limit: usize,
-    has_surfaces: bool,
-) -> ErrorCount {
-    let judge = Judge::new(world.colliders.iter().map(|(_, collider)| collider.shared_shape()));
-    probe.start_recording();
-    world.step();
-    let answers = probe.take_answers();
-    let judged = sample_indices(answers.len(), limit).into_iter().map(|index| {
-        let Answer { question, reported } = &answers[index];
-        let truth = judge.truth(question);
-        if has_surfaces { truth.judge_surfaces(reported) } else { truth.judge(reported).pairs }
-    });
-    ErrorCount { sampled_from: answers.len(), ..judged.sum() }
 }

@@ -39,8 +39,8 @@ pub fn play(
 ) -> Result<(), StudyError> {
     let start = |&backend: &Backend| {
         let SceneWorld { mut world, .. } = scene.build();
-        let installed = backend.install(&mut world);
-        (Recorder::new(backend, &world), world, installed)
+        let (dispatcher, _) = backend.install(&mut world);
+        (Recorder::new(backend, &world), world, dispatcher)
     };
     let mut runs: Vec<_> = backends.iter().map(start).collect();
     progress.phase("the run of the page", steps);

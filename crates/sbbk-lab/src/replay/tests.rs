@@ -18,7 +18,7 @@ const GONE: usize = 70;
 
 fn recorded(backend: Backend) -> Recorder {
     let mut built = MonkeyPile::with_heads(HEADS).build();
-    let installed = backend.install(&mut built.world);
+    let _installed = backend.install(&mut built.world);
     let mut recorder = Recorder::new(backend, &built.world);
     for step in 0..STEPS {
         if step == GONE {
@@ -26,7 +26,6 @@ fn recorded(backend: Backend) -> Recorder {
         }
         recorder.step(&mut built.world);
     }
-    drop(installed);
     recorder
 }
 

@@ -1,25 +1,19 @@
 //! Both experiments of the paper on all backends.
 
 use super::pair::Sides;
-use super::pile::{self, PilePlan, pile, wrong_of};
-use super::turns::in_turn;
-use crate::metrics::{Run, RunPlan, run};
+use super::runs::{self, RunPlan, pile};
 use crate::prelude::*;
 use crate::scene::HelicopterBallDrop;
-
-const FRAMES: &str = "helicopter";
-/// Steps of a run of the first experiment, for the fall, the bounces and the rolling.
-const DROP_STEPS: usize = 120;
 
 /// Extent of the comparison.
 #[derive(Clone, Debug)]
 pub struct ComparePlan {
-    /// Timed runs of each backend in the first experiment; the paper has 30.
+    /// Runs of each backend in the first experiment; the paper has 30.
     pub drops: usize,
     /// Sizes of the piles of the second experiment.
     pub heads: Vec<usize>,
     /// Plan of each pile. Only piles of up to 200 heads are repeated.
-    pub pile: PilePlan,
+    pub pile: RunPlan,
 }
 
 /// Piles of up to this many heads are repeated. Higher: a longer study; lower: noisier times.
@@ -31,15 +25,13 @@ impl ComparePlan {
         Self {
             drops: 30,
             heads: vec![200, 2000],
-            pile: PilePlan {
+            pile: RunPlan {
                 backends: Backend::ALL.to_vec(),
                 repeats: 2,
-                run: RunPlan {
-                    warm_up: PilePlan::FREE_FALL,
-                    steps: 43,
-                    sample_every: 21,
-                    sample_size: 100,
-                },
+                warm_up: RunPlan::FREE_FALL,
+                steps: 43,
+                judge_every: 21,
+                judged_pairs: 100,
                 same_poses: 3,
             },
         }
@@ -48,7 +40,7 @@ impl ComparePlan {
     /// Both experiments on a small scale, some ten seconds: for trying, not for quoting.
     pub fn quick() -> Self {
         let standard = Self::standard();
-        Self { drops: 5, heads: vec![200], pile: PilePlan { repeats: 1, ..standard.pile } }
+        Self { drops: 5, heads: vec![200], pile: RunPlan { repeats: 1, ..standard.pile } }
     }
 }
 
@@ -57,7 +49,7 @@ pub fn compare(plan: &ComparePlan, progress: &Progress) -> Results {
     let mut rows = drops(plan, progress);
     for &heads in &plan.heads {
         let repeats = if heads <= CHEAP_HEADS { plan.pile.repeats } else { 1 };
-        let plan = PilePlan { repeats, ..plan.pile.clone() };
+        let plan = RunPlan { repeats, ..plan.pile.clone() };
         rows.extend(pile(&MonkeyPile::with_heads(heads), &plan, progress));
     }
     Results::new("compare", verdict(plan, &rows), rows)
@@ -66,7 +58,7 @@ pub fn compare(plan: &ComparePlan, progress: &Progress) -> Results {
 fn verdict(plan: &ComparePlan, rows: &[Row]) -> String {
     let heads = plan.heads.iter().copied().max().unwrap_or(0);
     let largest =
-        Sides::of(rows, |row| row.study == pile::RUNS && row.count("heads") == heads as u64);
+        Sides::of(rows, |row| row.study == runs::RUNS && row.count("heads") == heads as u64);
     let ([wrong, all], [stocks_wrong, stocks_all]) =
         (wrong_of(rows, Backend::Sbbk), wrong_of(rows, Backend::Stock));
     format!(
@@ -78,28 +70,28 @@ fn verdict(plan: &ComparePlan, rows: &[Row]) -> String {
     )
 }
 
-/// Runs the first experiment on all backends in turn. Times are means over the steps of a run, in
-/// milliseconds; another run is judged.
+/// Runs the first experiment: the fall, the bounces and the rolling.
 fn drops(plan: &ComparePlan, progress: &Progress) -> Vec<Row> {
-    let scene = HelicopterBallDrop;
-    progress.phase(scene.name(), (plan.drops + 1) * Backend::ALL.len());
-    let timed = RunPlan { warm_up: 1, steps: DROP_STEPS, ..RunPlan::default() };
-    // The scene has one mesh pair, so every other step can be judged.
-    let judged = RunPlan { sample_every: 2, sample_size: 1, ..timed };
-    let runs = in_turn(&Backend::ALL, plan.drops, |&backend| {
-        progress.step();
-        run(&scene, backend, timed)
-    });
-    let rows = Backend::ALL.into_iter().zip(&runs).map(|(backend, runs)| {
-        let judged = run(&scene, backend, judged);
-        progress.step();
-        let mean = |time: fn(&StepTimes) -> f64| Summary::of(runs.iter().map(|run| run.mean(time)));
-        Row::new(FRAMES, backend)
-            .key("ball", "mesh")
-            .with("frames_per_second", Summary::of(runs.iter().map(Run::frames_per_second)))
-            .with("collision_detection", mean(StepTimes::collision_detection))
-            .with("fresh", judged.total(|sample| sample.fresh))
-            .with("updated", judged.total(|sample| sample.updated))
-    });
-    rows.collect()
+    // The scene has one mesh pair, so every other step of the first run can be judged.
+    let plan = RunPlan {
+        repeats: plan.drops,
+        warm_up: 1,
+        steps: 120,
+        judge_every: 2,
+        judged_pairs: 1,
+        ..plan.pile.clone()
+    };
+    let row = Row::new("helicopter", "").key("ball", "mesh");
+    let runs = runs::run(&HelicopterBallDrop, &plan, progress);
+    runs.iter().map(|runs| runs::summed_up(&row, runs)).collect()
+}
+
+/// Adds up the wrong contacts of a backend, and those that were judged.
+fn wrong_of(rows: &[Row], backend: Backend) -> [u64; 2] {
+    let rows = rows.iter().filter(|row| row.is("backend", backend));
+    let paths = ["fresh", "updated", "fresh_error"];
+    rows.flat_map(|row| {
+        paths.map(|path| [row.wrong(path), row.count(&format!("{path}.true_pairs"))])
+    })
+    .fold([0, 0], |[wrong, all], [w, a]| [wrong + w, all + a])
 }

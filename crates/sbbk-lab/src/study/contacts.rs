@@ -8,7 +8,7 @@ use crate::prelude::*;
 use serde_json::Value;
 
 use super::motion::{Approach, Mode, Place, STEP_COUNT};
-use super::pair::{Contest, Sides};
+use super::pair::{Contest, SIDES, Sides};
 
 const EXACTNESS: &str = "contacts: exactness";
 const QUERIES: &str = "contacts: queries, µs";
@@ -86,7 +86,7 @@ struct Case<'a> {
     shape: SharedShape,
     places: Vec<Place>,
     /// Errors of first queries at all places, of stock and SBBK.
-    errors: [ContactErrors; 2],
+    errors: Vec<Errors>,
 }
 
 /// Judges all cases, and measures the times at Rapier's defaults.
@@ -101,11 +101,11 @@ pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Results {
                 prediction,
                 shape: shape.clone(),
                 places: Vec::new(),
-                errors: Default::default(),
+                errors: Vec::new(),
             }));
         }
     }
-    let contest = Contest::new(cases.iter().map(|case| &case.shape));
+    let contest = Contest::new(&SIDES, cases.iter().map(|case| &case.shape));
     progress.phase("poses and brute force", cases.len());
     let cases: Vec<Case> = parallel::map(&cases, parallel::threads(), |index, case| {
         let case = case.clone().judged(index, &contest);
@@ -140,7 +140,7 @@ impl Case<'_> {
     fn judged(mut self, index: usize, contest: &Contest) -> Self {
         let seeds = (0..self.mesh.approach_count).map(|approach| (index << 16 | approach) as u64);
         self.places = seeds.flat_map(|seed| self.places_of(contest, seed)).collect();
-        self.errors = contest_errors(contest, &self.sequences(Mode::Fresh, usize::MAX), |_| true);
+        self.errors = contest.errors(&self.sequences(Mode::Fresh, usize::MAX), |_| true);
         self
     }
 
@@ -148,10 +148,10 @@ impl Case<'_> {
     fn places_of(&self, contest: &Contest, seed: u64) -> [Place; 5] {
         let Self { size, prediction, shape, .. } = self;
         let (size, prediction) = (*size, *prediction);
-        let approach = Approach::random(contest.sbbk(), [shape; 2], &mut Rand32::new(seed));
+        let approach = Approach::random(contest.last(), [shape; 2], &mut Rand32::new(seed));
         let is_small = |place: &Place| {
             let mut memory = Memory::default();
-            memory.ask(contest.sbbk(), [&**shape; 2], &place.pos12, prediction);
+            memory.ask(contest.last(), [&**shape; 2], &place.pos12, prediction);
             memory.manifolds.len() <= PAIR_LIMIT
         };
         // Advances beyond the first touch, all within the prediction distance.
@@ -173,14 +173,15 @@ impl Case<'_> {
         row.key("triangle_count", self.mesh.mesh.triangle_count())
     }
 
-    fn exactness(&self) -> [Row; 2] {
-        [0, 1].map(|side| {
-            self.row(EXACTNESS, Contest::BACKENDS[side])
+    fn exactness(&self) -> Vec<Row> {
+        let rows = SIDES.into_iter().zip(&self.errors).map(|(backend, errors)| {
+            self.row(EXACTNESS, backend)
                 .key("size", decimal(self.size))
                 .key("prediction", decimal(self.prediction))
                 .with("pose_count", self.places.len())
-                .with("errors", self.errors[side])
-        })
+                .with("errors", errors)
+        });
+        rows.collect()
     }
 
     /// Times of first queries, and of queries in motion.
@@ -192,25 +193,16 @@ impl Case<'_> {
             let is_fresh = mode == Mode::Fresh;
             let sequences = self.sequences(mode, if is_fresh { usize::MAX } else { MOTION_LIMIT });
             let errors = match is_fresh {
-                true => self.errors,
-                false => contest_errors(contest, &sequences, |step| {
-                    step == STEP_COUNT / 2 || step == STEP_COUNT
-                }),
+                true => self.errors.clone(),
+                false => {
+                    contest.errors(&sequences, |step| step == STEP_COUNT / 2 || step == STEP_COUNT)
+                }
             };
             let row = self.row(QUERIES, "").key("mode", mode.to_string());
-            let row = row.with("sequence_count", sequences.len());
-            rows.extend(contest.rows(&row, repeats, &sequences, errors));
+            rows.extend(contest.rows(&row, repeats, &sequences, &errors));
         }
         rows
     }
-}
-
-fn contest_errors(
-    contest: &Contest,
-    sequences: &[Sequence],
-    is_judged: impl Fn(usize) -> bool + Sync,
-) -> [ContactErrors; 2] {
-    contest.errors(sequences, |index, step| is_judged(step).then(|| sequences[index].truth(step)))
 }
 
 /// Converts 0.1 to 0.1, as digits and not as bits.

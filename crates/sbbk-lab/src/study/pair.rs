@@ -1,64 +1,64 @@
-//! Stock Parry and SBBK on the same pairs of shapes, in turn.
+//! Backends on the same pairs of shapes, in turn.
 //!
 //! Dispatchers are called directly, as the narrow phase calls them, for all contacts of triangles.
 
 use super::turns::{in_turn, timed};
 use crate::prelude::*;
 
-/// Stock and SBBK, with the trees of all meshes.
+/// Stock and SBBK, which most studies compare.
+pub(super) const SIDES: [Backend; 2] = [Backend::Stock, Backend::Sbbk];
+
+/// Dispatchers of some backends, with the trees of all meshes.
 pub(super) struct Contest {
-    pub dispatchers: [Dispatcher; 2],
-    _primed: [Primed; 2],
+    backends: &'static [Backend],
+    dispatchers: Vec<Dispatcher>,
 }
 
 impl Contest {
-    pub const BACKENDS: [Backend; 2] = [Backend::Stock, Backend::Sbbk];
-
-    pub fn new<'a>(shapes: impl IntoIterator<Item = &'a SharedShape> + Clone) -> Self {
-        let dispatchers = Self::BACKENDS.map(Backend::per_triangle);
-        let primed = dispatchers.each_ref().map(|d| Primed::new(d, shapes.clone()));
-        Self { dispatchers, _primed: primed }
+    pub fn new<'a>(
+        backends: &'static [Backend],
+        shapes: impl IntoIterator<Item = &'a SharedShape> + Clone,
+    ) -> Self {
+        let dispatchers = backends.iter().map(|backend| backend.per_triangle(shapes.clone()));
+        Self { backends, dispatchers: dispatchers.collect() }
     }
 
-    pub fn sbbk(&self) -> &SharedDispatcher {
-        &self.dispatchers[1]
+    /// The dispatcher of the last backend.
+    pub fn last(&self) -> &SharedDispatcher {
+        &self.dispatchers[self.backends.len() - 1]
     }
 
-    /// Rows of both, with microseconds a query and errors.
+    /// Rows of all backends, with microseconds a query and errors.
     pub fn rows(
         &self,
         row: &Row,
         repeats: usize,
         sequences: &[Sequence],
-        errors: [ContactErrors; 2],
+        errors: &[Errors],
     ) -> Vec<Row> {
-        let rows = Self::BACKENDS.into_iter().zip(self.times(repeats, sequences)).zip(errors);
-        let rows = rows.map(|((backend, time), errors)| {
+        let queries = |sequence: &Sequence| (sequence.poses.len() - 1).max(1);
+        let count = sequences.iter().map(queries).sum::<usize>() as f64;
+        let times = self.times(repeats, sequences);
+        let rows = self.backends.iter().zip(times).zip(errors).map(|((backend, times), errors)| {
+            let times = times.iter().map(|time| 1e6 / count * time.as_secs_f64());
             let row = Row { backend: backend.to_string(), ..row.clone() };
-            row.with("time", time).with("errors", errors)
+            row.with("time", Summary::of(times)).with("errors", errors)
         });
         rows.collect()
     }
 
-    /// Microseconds a query.
-    fn times(&self, repeats: usize, sequences: &[Sequence]) -> Vec<Option<Summary>> {
-        let queries = |sequence: &Sequence| (sequence.poses.len() - 1).max(1);
-        let count = sequences.iter().map(queries).sum::<usize>() as f64;
-        let times = in_turn(&self.dispatchers, repeats.max(1), |dispatcher| {
-            1e6 / count * sweep(dispatcher, sequences).as_secs_f64()
-        });
-        times.into_iter().map(Summary::of).collect()
+    /// Times of all queries, but for the first of each motion, by backend.
+    pub fn times(&self, repeats: usize, sequences: &[Sequence]) -> Vec<Vec<Duration>> {
+        in_turn(&self.dispatchers, repeats, |dispatcher| sweep(dispatcher, sequences))
     }
 
-    /// Errors of both. `truth` returns the truth of a step of a sequence, or `None` if this step is
-    /// not judged.
+    /// Errors in the judged steps of sequences, by backend.
     pub fn errors(
         &self,
         sequences: &[Sequence],
-        truth: impl Fn(usize, usize) -> Option<Truth> + Sync,
-    ) -> [ContactErrors; 2] {
-        let dispatchers = self.dispatchers.each_ref().map(|dispatcher| &dispatcher.shared);
-        Sequence::errors(sequences, dispatchers, truth)
+        is_judged: impl Fn(usize) -> bool + Sync,
+    ) -> Vec<Errors> {
+        Sequence::errors(sequences, &self.dispatchers, is_judged)
     }
 }
 
@@ -82,7 +82,7 @@ pub(super) struct Sides<'a>(pub [Vec<&'a Row>; 2]);
 
 impl<'a> Sides<'a> {
     pub fn of(rows: &'a [Row], counts: impl Fn(&Row) -> bool) -> Self {
-        Self(Contest::BACKENDS.map(|backend| {
+        Self(SIDES.map(|backend| {
             rows.iter().filter(|row| row.is("backend", backend) && counts(row)).collect()
         }))
     }

@@ -4,7 +4,7 @@ use crate::prelude::*;
 use rapier_integration::{PreparedTree, SbbkDispatcher};
 
 use super::judged::Comparison;
-use crate::study::pair::Contest;
+use crate::study::pair::SIDES;
 
 /// A world that can be built again and again, and its drive.
 pub(super) struct Everyday<'a> {
@@ -90,7 +90,7 @@ impl<'a> Everyday<'a> {
             self.run(&mut sides, (repeat == 0).then_some(&mut comparison), progress);
         }
         [0, 1].map(|index| {
-            let (backend, side) = (Contest::BACKENDS[index].to_string(), &sides[index]);
+            let (backend, side) = (SIDES[index].to_string(), &sides[index]);
             let mebibytes = |bytes: usize| bytes as f64 / (1 << 20) as f64;
             Row { backend, ..self.row.clone() }
                 .with("steps", self.steps)

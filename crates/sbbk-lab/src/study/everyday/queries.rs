@@ -8,7 +8,7 @@ use rapier3d::parry::query::details::ShapeCastOptions;
 
 use super::scenes::{Ground, above, head};
 use super::{PREDICTION, QUERIES};
-use crate::study::pair::Contest;
+use crate::study::pair::SIDES;
 use crate::study::turns::in_turn;
 
 named! {
@@ -115,14 +115,14 @@ struct Asked<'a> {
 
 impl Asked<'_> {
     fn measure(&self, query: Query, repeats: usize) -> [Row; 2] {
-        let dispatchers = Contest::BACKENDS.map(Backend::per_triangle);
+        let dispatchers = SIDES.map(|backend| backend.per_triangle([]));
         // Fills the caches of the processor.
         self.sweep(query, &Backend::Stock.dispatcher());
         let sweep = |dispatcher: &Dispatcher| self.sweep(query, dispatcher);
         let times = in_turn(&dispatchers, 2 * repeats + 1, sweep);
         let row = |side: usize| {
             let time = Summary::of(times[side].iter().copied());
-            Row::new(QUERIES, Contest::BACKENDS[side]).with("time", time)
+            Row::new(QUERIES, SIDES[side]).with("time", time)
         };
         [row(0), row(1)]
     }

@@ -82,7 +82,7 @@ pub(super) fn put(world: &mut PhysicsWorld, body: RigidBodyHandle, place: Vec3) 
 /// Convex shapes of this length by name; the last entry has all of them.
 pub(super) fn kinds(length: Real) -> Vec<(&'static str, Vec<SharedShape>)> {
     const NAMES: [&str; 6] = ["ball", "capsule", "cuboid", "cylinder", "cone", "convex polyhedron"];
-    let all = crate::study::convex::kinds::kinds(length);
+    let all = crate::study::kinds::kinds(length);
     let of = |name: &'static str| {
         let shapes = all.iter().filter(|kind| kind.name == name);
         (name, shapes.map(|kind| kind.shape.clone()).collect())

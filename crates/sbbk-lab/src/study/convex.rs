@@ -5,13 +5,10 @@
 //! touch and deep in the shape. Queries there are first ones, or in slow and fast motion.
 
 use crate::prelude::*;
-pub(super) mod errors;
-pub(super) mod kinds;
 
-use self::errors::Judge;
-use self::kinds::{Kind, Upright, kinds};
+use super::kinds::{Kind, Upright, kinds};
 use super::motion::{Approach, Mode, Place};
-use super::pair::{Contest, Sides};
+use super::pair::{Contest, SIDES, Sides};
 
 /// Extent of the comparison.
 #[derive(Clone, Debug)]
@@ -64,14 +61,13 @@ pub fn convex(plan: &ConvexPlan, progress: &Progress) -> Results {
 
 fn measure(plan: &ConvexPlan, kind: &Kind, seed: u64) -> Vec<Row> {
     let mesh = plan.mesh.shape();
-    let contest = Contest::new([&mesh]);
+    let contest = Contest::new(&SIDES, [&mesh]);
     let length = plan.mesh.bounds().extents().max_element();
     let about = ADVANCES.map(|advance| advance * plan.prediction);
     let deep = DEEP.map(|share| share * length);
     let mut random = Rand32::new(seed);
     let approaches: Vec<_> =
         (0..plan.approach_count).map(|_| approach(&contest, &mesh, kind, &mut random)).collect();
-    let judge = Judge::new(&mesh, &kind.shape);
     let study = if kind.shape.as_compound().is_some() { COMPOUNDS } else { SHAPES };
     let mut rows: Vec<Row> = Vec::new();
     for (depth, advances) in [("touching", &about[..]), ("deep", &deep)] {
@@ -81,14 +77,10 @@ fn measure(plan: &ConvexPlan, kind: &Kind, seed: u64) -> Vec<Row> {
             .collect();
         for mode in MODES {
             let sequences = sequences(plan, kind, &mesh, &places, mode);
-            let errors = contest.errors(&sequences, |index, step| {
-                let pos12 = &sequences[index].poses[step];
-                let truth = || judge.truth(pos12, is_mesh_first(index), plan.prediction);
-                (step % JUDGED == 0).then(truth)
-            });
+            let errors = contest.errors(&sequences, |step| step.is_multiple_of(JUDGED));
             let row = Row::new(study, "").key("shape", kind.name).key("depth", depth);
-            let row = row.key("mode", mode.to_string()).with("place_count", places.len());
-            rows.extend(contest.rows(&row, plan.repeats, &sequences, errors));
+            let row = row.key("mode", mode.to_string());
+            rows.extend(contest.rows(&row, plan.repeats, &sequences, &errors));
         }
     }
     rows
@@ -97,14 +89,14 @@ fn measure(plan: &ConvexPlan, kind: &Kind, seed: u64) -> Vec<Row> {
 fn approach(contest: &Contest, mesh: &SharedShape, kind: &Kind, random: &mut Rand32) -> Approach {
     let shapes = [&kind.shape, mesh];
     let Some(upright) = kind.floor else {
-        return Approach::random(contest.sbbk(), shapes, random);
+        return Approach::random(contest.last(), shapes, random);
     };
     let rotation = match upright {
         Upright::Yes => Quat::IDENTITY,
         Upright::No => random::rotation(random),
     };
     let [x, z] = [(); 2].map(|()| 20.0 * random.rand_float() - 10.0);
-    Approach::along(Vec3::Y, rotation, Vec3::new(x, 0.0, z), contest.sbbk(), shapes)
+    Approach::along(Vec3::Y, rotation, Vec3::new(x, 0.0, z), contest.last(), shapes)
         .expect("a way from above to a floor touches it")
 }
 
@@ -118,17 +110,13 @@ fn sequences(
 ) -> Vec<Sequence> {
     let sequence = |(index, place): (usize, &Place)| {
         let mut sequence = mode.sequence([&kind.shape, mesh], place, plan.prediction);
-        if is_mesh_first(index) {
+        if index.is_multiple_of(2) {
             sequence.shapes.reverse();
             sequence.poses.iter_mut().for_each(|pose| *pose = pose.inverse());
         }
         sequence
     };
     places.iter().enumerate().map(sequence).collect()
-}
-
-fn is_mesh_first(index: usize) -> bool {
-    index.is_multiple_of(2)
 }
 
 fn verdict(rows: &[Row]) -> String {

@@ -4,7 +4,7 @@ use crate::prelude::*;
 
 /// A convex shape or a compound.
 #[derive(Clone)]
-pub(in crate::study) struct Kind {
+pub(super) struct Kind {
     /// Name in tables.
     pub name: &'static str,
     /// The shape, about a unit across, or a floor.
@@ -15,7 +15,7 @@ pub(in crate::study) struct Kind {
 
 /// Orientation of a mesh on a floor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::study) enum Upright {
+pub(super) enum Upright {
     /// Along the axes of the floor.
     Yes,
     /// Any orientation: the box of the floor in the frame of the mesh then contains the mesh.
@@ -24,7 +24,7 @@ pub(in crate::study) enum Upright {
 
 /// Every convex kind of Rapier, about `unit` across, floors of 100 units, and compounds: a dumbbell,
 /// and clusters of balls, cuboids, capsules and hulls.
-pub(in crate::study) fn kinds(unit: f32) -> Vec<Kind> {
+pub(super) fn kinds(unit: f32) -> Vec<Kind> {
     let mut random = Rand32::new(3);
     let cloud: Vec<Vec3> = (0..40).map(|_| 0.5 * unit * random::direction(&mut random)).collect();
     let border = 0.1 * unit;
