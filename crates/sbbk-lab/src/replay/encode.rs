@@ -1,14 +1,9 @@
-//! Recordings as text: base64 of a gzip stream.
+//! Recordings as text: base64 of gzipped JSON.
 //!
-//! The stream has the length of the header in bytes as `u32`, the header as JSON, zeros up to a
-//! multiple of four, and arrays of little-endian numbers:
-//!
-//! * for each shape, fine and coarse: vertices as `f32`, triangles as `u32`;
-//! * for each run: times as `f32`, [`planes`] of seven numbers for each object and frame, counts of
-//!   contacts as `u32`, and [`planes`] of the contacts.
+//! Lists of places, rotations and contacts are whole numbers, each but the first as the difference
+//! from the one before. So most are small, and those of bodies at rest are zeros.
 
 use crate::prelude::*;
-use std::io::{self, Write};
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
@@ -23,35 +18,39 @@ use super::shapes::levels;
 const TURN: f32 = 32767.0;
 
 #[derive(Serialize)]
-struct Header<'a> {
+struct Replay<'a> {
     /// Step of positions in units, and number of steps of rotations.
     quantum: f32,
     turn: f32,
     stride: usize,
-    /// Vertices and triangles of each shape, fine and coarse.
-    shapes: Vec<[[usize; 2]; 2]>,
-    runs: Vec<RunHeader<'a>>,
+    /// Each shape, fine and coarse.
+    shapes: Vec<[Surface; 2]>,
+    runs: Vec<Run<'a>>,
     difference: Option<Difference>,
 }
 
 #[derive(Serialize)]
-struct RunHeader<'a> {
+struct Surface {
+    vertices: Vec<f32>,
+    triangles: Vec<u32>,
+}
+
+#[derive(Serialize)]
+struct Run<'a> {
     name: &'a str,
-    steps: usize,
-    frames: usize,
-    contacts: usize,
+    times: &'a [f32],
     /// Shapes of the objects.
     shapes: Vec<usize>,
     fixed: Vec<bool>,
+    /// Places and rotations: seven lists, each with all frames of all objects.
+    poses: [Vec<i32>; 7],
+    /// Number of contacts in each frame, and their coordinates.
+    counts: Vec<usize>,
+    contacts: [Vec<i32>; 3],
 }
 
 /// Encodes recordings.
 pub fn encode(runs: &[Recorder]) -> String {
-    let packed = packed(runs).expect("a stream in memory is always written");
-    BASE64_STANDARD.encode(packed)
-}
-
-fn packed(runs: &[Recorder]) -> io::Result<Vec<u8>> {
     let mut surfaces: Vec<&Mesh> = Vec::new();
     let mut place = |surface| {
         surfaces.iter().position(|other| *other == surface).unwrap_or_else(|| {
@@ -59,56 +58,47 @@ fn packed(runs: &[Recorder]) -> io::Result<Vec<u8>> {
             surfaces.len() - 1
         })
     };
-    let places: Vec<Vec<usize>> =
-        runs.iter().map(|run| run.shapes.surfaces.iter().map(&mut place).collect()).collect();
-    let levels: Vec<[Mesh; 2]> = surfaces.iter().map(|surface| levels(surface)).collect();
-    let header = header(runs, &places, &levels);
-    let quantum = header.quantum;
-
-    let header = serde_json::to_vec(&header)?;
-    let mut out = GzEncoder::new(Vec::new(), Compression::best());
-    out.write_all(&(header.len() as u32).to_le_bytes())?;
-    out.write_all(&header)?;
-    out.write_all(&[0; 3][..header.len().next_multiple_of(4) - header.len()])?;
-    for surface in levels.iter().flatten() {
-        let numbers = surface.vertices.iter().flat_map(|vertex| vertex.to_array());
-        out.write_all(&bytes(numbers.map(f32::to_bits)))?;
-        out.write_all(&bytes(surface.triangles.iter().flatten().copied()))?;
-    }
-    for run in runs {
-        out.write_all(&bytes(run.times.iter().map(|time| time.to_bits())))?;
-        out.write_all(&planes(&poses(run, quantum)))?;
-        out.write_all(&bytes(run.frames.iter().map(|frame| frame.contacts.len() as u32)))?;
-        let points = || run.frames.iter().flat_map(|frame| &frame.contacts);
-        let numbers = [0, 1, 2].map(|axis| points().map(|p| steps(p[axis], quantum)).collect());
-        out.write_all(&planes(&numbers))?;
-    }
-    out.finish()
-}
-
-/// The header of runs with these surfaces. `places` are the surfaces of the shapes of each run.
-fn header<'a>(runs: &'a [Recorder], places: &[Vec<usize>], levels: &[[Mesh; 2]]) -> Header<'a> {
-    let headers = runs.iter().zip(places).map(|(run, places)| RunHeader {
-        name: &run.name,
-        steps: run.times.len(),
-        frames: run.frames.len(),
-        contacts: run.frames.iter().map(|frame| frame.contacts.len()).sum(),
-        shapes: run.objects.iter().map(|object| places[object.shape]).collect(),
-        fixed: run.objects.iter().map(|object| object.is_fixed).collect(),
+    let quantum = quantum(runs);
+    let encoded = runs.iter().map(|run| {
+        let places: Vec<usize> = run.shapes.surfaces.iter().map(&mut place).collect();
+        Run::new(run, &places, quantum)
     });
-    let size = |surface: &Mesh| [surface.vertices.len(), surface.triangles.len()];
-    Header {
-        quantum: quantum(runs),
+    let replay = Replay {
+        quantum,
         turn: TURN,
         stride: STRIDE,
-        shapes: levels.iter().map(|levels| levels.each_ref().map(size)).collect(),
-        runs: headers.collect(),
+        runs: encoded.collect(),
+        shapes: surfaces.iter().map(|surface| levels(surface).map(Surface::new)).collect(),
         difference: runs.get(1).and_then(|other| Difference::first(&runs[0], other)),
+    };
+    let mut out = GzEncoder::new(Vec::new(), Compression::best());
+    let written = serde_json::to_writer(&mut out, &replay).map_err(Into::into);
+    let packed = written.and_then(|()| out.finish());
+    BASE64_STANDARD.encode(packed.expect("a stream in memory is always written"))
+}
+
+impl Surface {
+    fn new(mesh: Mesh) -> Self {
+        let vertices = mesh.vertices.iter().flat_map(|vertex| vertex.to_array()).collect();
+        Self { vertices, triangles: mesh.triangles.concat() }
     }
 }
 
-fn bytes(numbers: impl Iterator<Item = u32>) -> Vec<u8> {
-    numbers.flat_map(u32::to_le_bytes).collect()
+impl<'a> Run<'a> {
+    /// `places` are the surfaces of the shapes of a run.
+    fn new(run: &'a Recorder, places: &[usize], quantum: f32) -> Self {
+        let points = || run.frames.iter().flat_map(|frame| &frame.contacts);
+        let contacts = [0, 1, 2].map(|axis| points().map(|p| steps(p[axis], quantum)).collect());
+        Self {
+            name: &run.name,
+            times: &run.times,
+            shapes: run.objects.iter().map(|object| places[object.shape]).collect(),
+            fixed: run.objects.iter().map(|object| object.is_fixed).collect(),
+            poses: poses(run, quantum).map(differences),
+            counts: run.frames.iter().map(|frame| frame.contacts.len()).collect(),
+            contacts: contacts.map(differences),
+        }
+    }
 }
 
 /// Step of positions: a thousandth of the smallest moving body.
@@ -122,14 +112,13 @@ fn quantum(runs: &[Recorder]) -> f32 {
 }
 
 fn steps(length: f32, quantum: f32) -> i32 {
-    // Three bytes: a body stops after four thousand times its size.
+    // A body that flies away stops after four thousand times its size.
     (length / quantum).round().clamp(-4e6, 4e6) as i32
 }
 
-/// Seven lists of numbers, each with all frames of all objects. Absent objects have a rotation of
-/// zeros.
+/// Absent objects have a rotation of zeros.
 fn poses(run: &Recorder, quantum: f32) -> [Vec<i32>; 7] {
-    let mut numbers = [(); 7].map(|()| Vec::with_capacity(run.objects.len() * run.frames.len()));
+    let mut numbers: [Vec<i32>; 7] = Default::default();
     for object in 0..run.objects.len() {
         let mut last = [0.0; 4];
         let mut shown = Vec3::ZERO;
@@ -148,18 +137,7 @@ fn poses(run: &Recorder, quantum: f32) -> [Vec<i32>; 7] {
     numbers
 }
 
-/// Differences of successive numbers, zigzag-coded, first all low bytes, then the middle and the
-/// high ones. Numbers that do not change become long runs of zeros.
-fn planes<const N: usize>(lists: &[Vec<i32>; N]) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    for list in lists {
-        let mut last = 0;
-        let folded = list.iter().map(|&number| {
-            let difference = number - std::mem::replace(&mut last, number);
-            ((difference << 1) ^ (difference >> 31)) as u32
-        });
-        let folded: Vec<u32> = folded.collect();
-        bytes.extend([0, 8, 16].iter().flat_map(|s| folded.iter().map(move |k| (k >> s) as u8)));
-    }
-    bytes
+fn differences(list: Vec<i32>) -> Vec<i32> {
+    let mut last = 0;
+    list.into_iter().map(|number| number - std::mem::replace(&mut last, number)).collect()
 }

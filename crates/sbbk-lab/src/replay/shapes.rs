@@ -34,12 +34,8 @@ impl Shapes {
         if let Some(&index) = self.by_address.get(&address) {
             return index;
         }
-        let surface = surface(&**shape);
-        let known = self.surfaces.iter().position(|other| *other == surface);
-        let index = known.unwrap_or_else(|| {
-            self.surfaces.push(surface);
-            self.surfaces.len() - 1
-        });
+        let index = self.surfaces.len();
+        self.surfaces.push(surface(&**shape));
         self.by_address.insert(address, index);
         self.kept.push(shape.clone());
         index

@@ -3,37 +3,24 @@
 async function decode(text) {
   const packed = Uint8Array.from(atob(text.trim()), (char) => char.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
-  const buffer = await new Response(stream).arrayBuffer();
-  const length = new DataView(buffer).getUint32(0, true);
-  const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
-  let at = 4 + Math.ceil(length / 4) * 4;
-  const take = (bytes) => buffer.slice(at, (at += bytes));
-
-  // Differences, folded, by bytes: lowest, middle, highest.
-  const planes = (lists, count) => Array.from({ length: lists }, () => {
-    const bytes = new Uint8Array(take(3 * count));
-    const numbers = new Int32Array(count);
-    for (let index = 0, last = 0; index < count; index++) {
-      const folded = bytes[index] | (bytes[count + index] << 8) | (bytes[2 * count + index] << 16);
-      numbers[index] = last += (folded >>> 1) ^ -(folded & 1);
-    }
-    return numbers;
-  });
-
-  const shapes = header.shapes.map((levels) => levels.map(([vertices, triangles]) => ({
-    vertices: new Float32Array(take(12 * vertices)),
-    triangles: new Uint32Array(take(12 * triangles)),
-  })));
-  const runs = header.runs.map((run) => {
-    const times = new Float32Array(take(4 * run.steps));
-    const poses = planes(7, run.shapes.length * run.frames);
-    const counts = new Uint32Array(take(4 * run.frames));
-    const contacts = planes(3, run.contacts);
-    const firsts = [0];
-    counts.forEach((count) => firsts.push(firsts.at(-1) + count));
-    return { ...run, times, poses, contacts, firsts };
-  });
-  return { ...header, shapes, runs };
+  const data = await new Response(stream).json();
+  const summed = (differences) => {
+    let last = 0;
+    return Int32Array.from(differences, (difference) => (last += difference));
+  };
+  for (const level of data.shapes.flat()) {
+    level.vertices = new Float32Array(level.vertices);
+    level.triangles = new Uint32Array(level.triangles);
+  }
+  for (const run of data.runs) {
+    run.times = new Float32Array(run.times);
+    run.poses = run.poses.map(summed);
+    run.contacts = run.contacts.map(summed);
+    run.frames = run.counts.length;
+    run.firsts = [0];
+    run.counts.forEach((count) => run.firsts.push(run.firsts.at(-1) + count));
+  }
+  return data;
 }
 
 // Writes place and rotation of an object between two frames; whether it is there.
