@@ -5,7 +5,6 @@
 //! cargo run --release --example advise -- bunny.obj terrain.stl robot.urdf
 //! ```
 
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::Parser;
@@ -20,23 +19,16 @@ struct Arguments {
     /// OBJ, STL or URDF files
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Steps of each run
-    #[arg(long, default_value = "120")]
-    steps: NonZeroUsize,
-    /// Runs of each scene
-    #[arg(long, default_value = "2")]
-    repeats: NonZeroUsize,
 }
 
 fn main() -> Outcome {
-    let Arguments { files, steps, repeats } = Arguments::parse();
-    let (steps, repeats) = (steps.get(), repeats.get());
+    let Arguments { files } = Arguments::parse();
     let progress = Progress::visible();
     for path in &files {
         let is_robot = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf"));
         let advice = match is_robot {
-            true => advise_robot(path, steps, repeats, &progress)?,
-            false => advise(&mesh_file::load(path)?, steps, repeats, &progress),
+            true => advise_robot(path, &progress)?,
+            false => advise(&mesh_file::load(path)?, &progress),
         };
         progress.finish();
         print(advice)?;

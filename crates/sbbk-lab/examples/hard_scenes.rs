@@ -14,8 +14,9 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser};
-use sbbk_lab::cli::{Outcome, ReplayArguments, StudyArguments};
+use sbbk_lab::cli::{Outcome, StudyArguments, print_page};
 use sbbk_lab::mesh_file;
+use sbbk_lab::report::check_output;
 use sbbk_lab::study::hard::random::{Family, RandomPlan, random as run_random};
 use sbbk_lab::study::hard::{Column, Group, HardPlan, Settings, hard};
 
@@ -30,22 +31,17 @@ struct Arguments {
     /// Runs only these columns
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',')]
     backends: Vec<Column>,
-    /// Runs only scenes with this in their names
-    #[arg(long, value_name = "TEXT", default_value = "")]
-    scene: String,
     /// Body of the piles: an OBJ or STL file instead of the built-in monkey
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
-    #[command(flatten)]
-    replay: ReplayArguments,
+    /// Writes a page that plays the first scene, all columns side by side
+    #[arg(long, value_name = "FILE")]
+    replay: Option<PathBuf>,
     /// Shows all figures of all scenes
     #[arg(long)]
     verbose: bool,
     #[command(flatten)]
     random: RandomArguments,
-    /// Runs so many worlds at once
-    #[arg(long, default_value = "2")]
-    threads: usize,
 }
 
 /// Arguments of the random scenes.
@@ -85,27 +81,24 @@ impl RandomArguments {
 }
 
 fn main() -> Outcome {
-    let arguments = Arguments::parse();
-    let Arguments { study, only, backends, scene, mesh, random, replay, verbose, threads } =
-        arguments;
-    let page = replay.replay.as_deref();
+    let Arguments { study, only, backends, mesh, replay, verbose, random } = Arguments::parse();
+    replay.as_deref().map_or(Ok(()), check_output)?;
     let settings = |settings: Settings| Settings {
         columns: if backends.is_empty() { settings.columns } else { backends.clone() },
-        threads,
         shows_figures: verbose,
-        replay: replay.replay.clone(),
+        replay: replay.clone(),
     };
     if let Some(mut plan) = random.plan(&study) {
         plan.settings = settings(plan.settings);
-        study.run(None, page, |progress| run_random(&plan, progress))?;
-        return replay.print();
+        study.run(|progress| run_random(&plan, progress))?;
+    } else {
+        let mut plan = study.plan(HardPlan::standard, HardPlan::quick);
+        if !only.is_empty() {
+            plan.groups = only;
+        }
+        plan.settings = settings(plan.settings);
+        plan.mesh = mesh.as_deref().map(mesh_file::load).transpose()?;
+        study.run(|progress| hard(&plan, progress))?;
     }
-    let mut plan = study.plan(HardPlan::standard, HardPlan::quick);
-    if !only.is_empty() {
-        plan.groups = only;
-    }
-    (plan.settings, plan.name) = (settings(plan.settings), scene);
-    plan.mesh = mesh.as_deref().map(mesh_file::load).transpose()?;
-    study.run(mesh.as_deref(), page, |progress| hard(&plan, progress))?;
-    replay.print()
+    Ok(replay.as_deref().map_or(Ok(()), print_page)?)
 }

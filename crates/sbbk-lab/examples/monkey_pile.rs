@@ -10,10 +10,11 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use sbbk_lab::backend::Backend;
-use sbbk_lab::cli::{Outcome, ReplayArguments, print};
+use sbbk_lab::cli::{Outcome, print, print_page};
 use sbbk_lab::mesh_file;
 use sbbk_lab::progress::Progress;
-use sbbk_lab::report::check_outputs;
+use sbbk_lab::replay;
+use sbbk_lab::report::check_output;
 use sbbk_lab::scene::MonkeyPile;
 use sbbk_lab::study::runs::{RunPlan, one_pile};
 
@@ -32,13 +33,14 @@ struct Arguments {
     /// The head: an OBJ or STL file instead of the built-in monkey
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
-    #[command(flatten)]
-    replay: ReplayArguments,
+    /// Writes a page that plays the pile, all dispatchers side by side
+    #[arg(long, value_name = "FILE")]
+    replay: Option<PathBuf>,
 }
 
 fn main() -> Outcome {
-    let Arguments { heads, steps, backend, mesh, replay } = Arguments::parse();
-    check_outputs(mesh.as_deref().as_slice(), replay.replay.as_deref().as_slice())?;
+    let Arguments { heads, steps, backend, mesh, replay: page } = Arguments::parse();
+    page.as_deref().map_or(Ok(()), check_output)?;
     let scene = match &mesh {
         Some(path) => MonkeyPile::of(heads.get(), mesh_file::load(path)?),
         None => MonkeyPile::with_heads(heads.get()),
@@ -57,5 +59,8 @@ fn main() -> Outcome {
     let results = one_pile(&scene, &plan, &progress);
     progress.finish();
     print(results)?;
-    replay.play(&scene, &plan.backends, plan.step_count())
+    let Some(page) = &page else { return Ok(()) };
+    replay::play(page, &scene, &plan.backends, plan.step_count(), &progress)?;
+    progress.finish();
+    Ok(print_page(page)?)
 }

@@ -1,7 +1,6 @@
 //! The dispatchers that are compared.
 
 use crate::prelude::*;
-use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
 
@@ -39,8 +38,7 @@ impl Deref for Dispatcher {
 }
 
 /// A way to find the contacts of a world.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Backend {
     /// Parry's own dispatcher, Rapier's default.
     Stock,
@@ -98,12 +96,6 @@ impl Backend {
         let recording = Recording::new(dispatcher.shared.clone(), probe.clone());
         world.narrow_phase.set_query_dispatcher(recording);
         (dispatcher, probe)
-    }
-}
-
-impl fmt::Display for Backend {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.to_possible_value().expect("none is hidden").get_name())
     }
 }
 

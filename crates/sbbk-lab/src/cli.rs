@@ -5,9 +5,9 @@ use std::error::Error;
 use std::fmt::{self, Debug, Display};
 use std::io::{self, ErrorKind, Write};
 
-use clap::{Args, CommandFactory, FromArgMatches, Parser};
+use clap::{CommandFactory, FromArgMatches, Parser};
 
-use crate::report::{check_outputs, write_file};
+use crate::report::{check_output, write_file};
 
 /// Arguments of every study.
 #[derive(Clone, Debug, Default, Parser)]
@@ -26,56 +26,21 @@ impl StudyArguments {
         if self.quick { quick() } else { standard() }
     }
 
-    /// Runs a study, prints the verdict and the tables, and writes the file. `read` and
-    /// `page` are other files of the run.
+    /// Runs a study, prints the verdict and the tables, and writes the file.
     ///
     /// Errors: those of the study; a file that cannot be written, which is found before the study.
-    pub fn run(
-        &self,
-        read: Option<&Path>,
-        page: Option<&Path>,
-        study: impl FnOnce(&Progress) -> Result<Results, StudyError>,
-    ) -> Outcome {
+    pub fn run(&self, study: impl FnOnce(&Progress) -> Result<Results, FileError>) -> Outcome {
         let csv = self.csv.as_deref();
-        let outputs: Vec<&Path> = csv.into_iter().chain(page).collect();
-        check_outputs(read.as_slice(), &outputs)?;
+        csv.map_or(Ok(()), check_output)?;
         let progress = Progress::visible();
         let results = study(&progress)?;
         progress.finish();
         print(&results)?;
         if let Some(path) = csv {
             write_file(path, results.csv())?;
-            print_path(path)?;
+            print(format_args!("wrote {}", path.display()))?;
         }
         Ok(())
-    }
-}
-
-/// Arguments of every run of a scene.
-#[derive(Args, Clone, Debug, Default)]
-pub struct ReplayArguments {
-    /// Writes a page that plays a scene, the first of several, on backends side by side
-    #[arg(long, value_name = "FILE")]
-    pub replay: Option<PathBuf>,
-}
-
-impl ReplayArguments {
-    /// Runs a scene on some backends and writes their page, if `--replay` was given.
-    ///
-    /// Errors: the file cannot be written.
-    pub fn play(&self, scene: &dyn Scene, backends: &[Backend], steps: usize) -> Outcome {
-        let Some(path) = &self.replay else { return Ok(()) };
-        let progress = Progress::visible();
-        replay::play(path, scene, backends, steps, &progress)?;
-        progress.finish();
-        self.print()
-    }
-
-    /// Prints the path of the page, if `--replay` was given.
-    ///
-    /// Errors: the standard output cannot be written.
-    pub fn print(&self) -> Outcome {
-        Ok(self.replay.as_deref().map_or(Ok(()), print_path)?)
     }
 }
 
@@ -91,13 +56,14 @@ pub fn run_study<P>(
     let matches = StudyArguments::command().about(about).get_matches();
     let arguments = StudyArguments::from_arg_matches(&matches)?;
     let plan = arguments.plan(standard, quick);
-    arguments.run(None, None, |progress| Ok(study(&plan, progress)))
+    arguments.run(|progress| Ok(study(&plan, progress)))
 }
 
-fn print_path(path: &Path) -> io::Result<()> {
-    let hint =
-        if path.extension().is_some_and(|e| e == "html") { ": open it in a browser" } else { "" };
-    print(format_args!("wrote {}{hint}", path.display()))
+/// Tells where the page of a replay is.
+///
+/// Errors: the standard output cannot be written.
+pub fn print_page(page: &Path) -> io::Result<()> {
+    print(format_args!("wrote {}: open it in a browser", page.display()))
 }
 
 /// Prints a line. A closed pipe, as in `compare | head`, is no error.

@@ -1,22 +1,20 @@
-//! Errors of studies and of their files.
+//! The error of studies.
 
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-/// A study cannot be run.
+/// A file could not be read or written. The message names the file and the fault.
 #[derive(Debug, Error)]
-pub enum StudyError {
-    /// A file could not be read or written. The message names the file and the fault.
-    #[error("cannot {task} {}: {cause}", path.display())]
-    File { task: &'static str, path: PathBuf, cause: String },
-    /// No scene has the name that `--scene` asks for.
-    #[error("no scene of these has `{0}` in its name")]
-    NoScene(String),
+#[error("cannot {task} {}: {cause}", path.display())]
+pub struct FileError {
+    task: &'static str,
+    path: PathBuf,
+    cause: String,
 }
 
-impl StudyError {
-    pub(crate) fn file(task: &'static str, path: &Path, cause: impl ToString) -> Self {
-        Self::File { task, path: path.to_owned(), cause: cause.to_string() }
+impl FileError {
+    pub(crate) fn new(task: &'static str, path: &Path, cause: impl ToString) -> Self {
+        Self { task, path: path.to_owned(), cause: cause.to_string() }
     }
 }

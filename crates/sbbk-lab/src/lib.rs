@@ -7,14 +7,12 @@
 
 #![allow(missing_docs, reason = "not published; names that tell all need no sentence")]
 
-#[macro_use]
-mod named;
-
 pub mod backend;
 pub mod cli;
 mod error;
 pub mod mesh_file;
 pub mod metrics;
+mod named;
 pub mod parallel;
 mod prelude;
 pub mod progress;
@@ -22,5 +20,5 @@ pub mod replay;
 pub mod report;
 pub mod study;
 
-pub use error::StudyError;
+pub use error::FileError;
 pub use sbbk_testkit::{mesh, scene};

@@ -6,16 +6,16 @@ use std::path::Path;
 use glamx::Vec3;
 use mesh_loader::Loader;
 
-use crate::error::StudyError;
+use crate::error::FileError;
 use crate::mesh::Mesh;
 
 /// Loads an `.obj` or `.stl` file as one welded mesh in the file's own units, named after the file.
 /// Faces with more than three corners are cut into triangles.
 ///
-/// Errors: the file cannot be read, or its extension or contents make no sense. An index is out of
-/// range, a coordinate is not finite, or there are no triangles.
-pub fn load(path: &Path) -> Result<Mesh, StudyError> {
-    read(path).map_err(|cause| StudyError::file("load the mesh", path, cause))
+/// Errors: the file cannot be read, or its extension or contents make no sense. A coordinate is not
+/// finite, or there are no triangles.
+pub fn load(path: &Path) -> Result<Mesh, FileError> {
+    read(path).map_err(|cause| FileError::new("load the mesh", path, cause))
 }
 
 fn read(path: &Path) -> Result<Mesh, String> {
@@ -34,28 +34,14 @@ fn read(path: &Path) -> Result<Mesh, String> {
         let vertices = mesh.vertices.into_iter().map(Vec3::from_array).collect();
         Mesh::new(mesh.name, vertices, mesh.faces)
     });
-    let parts: Vec<Mesh> = parts.collect();
-    parts.iter().try_for_each(check)?;
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    let mesh = Mesh::merged(name, &parts).welded();
-    match mesh.triangles.is_empty() {
-        true => Err("the file has no triangles".to_owned()),
-        false => Ok(mesh),
+    let mesh = Mesh::merged(name, &parts.collect::<Vec<Mesh>>()).welded();
+    if mesh.triangles.is_empty() {
+        return Err("the file has no triangles".to_owned());
     }
-}
-
-fn check(part: &Mesh) -> Result<(), String> {
-    let count = part.vertices.len();
-    for (triangle, corners) in part.triangles.iter().enumerate() {
-        if let Some(vertex) = corners.iter().find(|&&index| index as usize >= count) {
-            return Err(format!(
-                "triangle {triangle} uses vertex {vertex}, but there are {count} vertices"
-            ));
-        }
-    }
-    let mut vertices = part.vertices.iter().enumerate();
-    match vertices.find(|(_, position)| !position.is_finite()) {
-        Some((vertex, position)) => Err(format!("vertex {vertex} is not finite: {position}")),
-        None => Ok(()),
+    let is_bad = |vertex: &&Vec3| !vertex.is_finite();
+    match mesh.vertices.iter().find(is_bad) {
+        Some(vertex) => Err(format!("a vertex is not finite: {vertex}")),
+        None => Ok(mesh),
     }
 }

@@ -1,28 +1,21 @@
-//! Enums whose variants have names for tables.
+//! Choices that are shown by their names in arguments.
 
-/// An enum with `Display`, which shows the names, and `ALL`.
-macro_rules! named {
-    ($(#[$about:meta])* $visibility:vis enum $name:ident {
-        $($(#[$about_variant:meta])* $variant:ident = $shown:literal,)*
-    }) => {
-        $(#[$about])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        $visibility enum $name {
-            $($(#[$about_variant])* $variant,)*
-        }
-
-        impl $name {
-            /// All of them.
-            #[allow(dead_code, reason = "not all are gone through")]
-            pub const ALL: [Self; [$($shown),*].len()] = [$(Self::$variant),*];
-        }
-
-        impl std::fmt::Display for $name {
+/// Implements `Display` for types with `ValueEnum`.
+macro_rules! shown_by_name {
+    ($($choice:ty),*) => {$(
+        impl std::fmt::Display for $choice {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.pad(match self {
-                    $(Self::$variant => $shown,)*
-                })
+                let name = clap::ValueEnum::to_possible_value(self).expect("none is hidden");
+                f.pad(name.get_name())
             }
         }
-    };
+    )*};
 }
+
+shown_by_name!(
+    crate::backend::Backend,
+    crate::study::hard::Column,
+    crate::study::hard::Group,
+    crate::study::hard::random::Family,
+    crate::study::everyday::Query
+);

@@ -1,11 +1,11 @@
 //! Names that most modules use.
 
 pub(crate) use crate::backend::{Backend, Dispatcher, Memory};
-pub(crate) use crate::error::StudyError;
+pub(crate) use crate::error::FileError;
 pub(crate) use crate::mesh;
 pub(crate) use crate::mesh::Mesh;
 pub(crate) use crate::metrics::{
-    Errors, Sequence, StepTimes, Summary, Truth, geometric_mean, sample_indices, solver_points,
+    Errors, Sequence, Summary, Truth, geometric_mean, sample_indices, solver_points,
 };
 pub(crate) use crate::parallel;
 pub(crate) use crate::progress::Progress;

@@ -4,12 +4,11 @@ use std::io::{self, IsTerminal, Write};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Time between two lines of a pipe or file, and between two updates on a terminal.
-const PIPED: Duration = Duration::from_secs(5);
-const ON_TERMINAL: Duration = Duration::from_millis(300);
+/// Time between two messages.
+const INTERVAL: Duration = Duration::from_secs(2);
 
-/// Shows one phase after the other: a line that is written again on a terminal, a line every few
-/// seconds elsewhere.
+/// Shows one phase after the other: in one line that is written again on a terminal, in lines
+/// elsewhere.
 pub struct Progress(Option<Mutex<Phase>>);
 
 struct Phase {
@@ -56,16 +55,15 @@ impl Progress {
         let Some(phase) = &self.0 else { return };
         let mut phase = phase.lock().unwrap_or_else(PoisonError::into_inner);
         change(&mut phase);
-        let is_terminal = io::stderr().is_terminal();
-        if phase.shown.elapsed() < if is_terminal { ON_TERMINAL } else { PIPED } {
+        if phase.shown.elapsed() < INTERVAL {
             return;
         }
         phase.shown = Instant::now();
         let Phase { message, done, length, start, .. } = &*phase;
-        let (before, after) = if is_terminal { ("\r\x1b[K", "") } else { ("", "\n") };
+        let (before, after) =
+            if io::stderr().is_terminal() { ("\r\x1b[K", "") } else { ("", "\n") };
         let seconds = start.elapsed().as_secs();
-        let line = format!("{before}{seconds} s: {message:.60}, {done} of {length}{after}");
         // A closed error stream is no reason to stop.
-        let _ = io::stderr().write_all(line.as_bytes());
+        let _ = write!(io::stderr(), "{before}{seconds} s: {message}, {done} of {length}{after}");
     }
 }

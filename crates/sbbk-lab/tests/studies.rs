@@ -1,5 +1,6 @@
 //! Every study on a small scale: its rows fill its tables, its verdict has numbers, and SBBK is right.
 
+use rapier3d::geometry::TriMeshFlags;
 use sbbk_core::surface::SurfaceKind;
 use sbbk_lab::backend::Backend;
 use sbbk_lab::mesh;
@@ -8,7 +9,7 @@ use sbbk_lab::report::{Results, Row, tables};
 use sbbk_lab::study::compare::{ComparePlan, compare};
 use sbbk_lab::study::contacts::{ApproachedMesh, ContactsPlan, contacts};
 use sbbk_lab::study::convex::{ConvexPlan, convex};
-use sbbk_lab::study::everyday::{EverydayPlan, GroundPlan, advise, everyday};
+use sbbk_lab::study::everyday::{EverydayPlan, advise, everyday};
 use sbbk_lab::study::hard::random::{Family, RandomPlan, random};
 use sbbk_lab::study::hard::{self, Column, HardPlan, Settings};
 use sbbk_lab::study::one_step::{OneStepPlan, one_step};
@@ -72,9 +73,11 @@ fn more_substeps_come_nearer_to_the_converged_step() {
 }
 
 fn everyday_plan() -> EverydayPlan {
-    let ground = |cell, fixes_edges| GroundPlan { cells: 16, cell, fixes_edges };
     EverydayPlan {
-        grounds: vec![ground(1.0, false), ground(0.5, true)],
+        grounds: vec![
+            (16, 1.0, TriMeshFlags::empty()),
+            (16, 0.5, TriMeshFlags::FIX_INTERNAL_EDGES),
+        ],
         bodies: 20,
         steps: 40,
         repeats: 1,
@@ -100,13 +103,6 @@ fn everyday_scenes_touch_and_are_judged() {
     let touches = |row: &Row| row.count("judged.true_pairs") > 10;
     // Contacts of meshes with the loader's flags are not judged.
     assert_eq!(of("sbbk").filter(is_robot).map(touches).collect::<Vec<_>>(), [false, true]);
-}
-
-#[test]
-fn an_unknown_hard_scene_is_an_error() {
-    let plan = HardPlan { name: "zzz".to_owned(), ..HardPlan::quick() };
-    let error = hard::hard(&plan, &Progress::hidden()).unwrap_err();
-    assert_eq!(error.to_string(), "no scene of these has `zzz` in its name");
 }
 
 fn with_control() -> Settings {
@@ -167,7 +163,7 @@ fn advice_fits_the_mesh() {
         (inside_out, SurfaceKind::InsideOut),
     ];
     for (mesh, kind) in &cases {
-        let advice = advise(mesh, 60, 1, &Progress::hidden());
+        let advice = advise(mesh, &Progress::hidden());
         let text = advice.to_string();
         assert_eq!((advice.kind, text.lines().count()), (*kind, 4), "{text}");
         assert!(advice.speeds().iter().all(|speed| *speed > 0.0), "{text}");

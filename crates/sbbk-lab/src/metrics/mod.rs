@@ -2,11 +2,9 @@
 
 mod sequence;
 mod statistics;
-mod step;
 mod truth;
 
 pub use sbbk_testkit::world::solver_points;
 pub use sequence::Sequence;
 pub use statistics::{Summary, geometric_mean};
-pub use step::{StepTimes, timed_step};
 pub use truth::{Errors, Truth, sample_indices};

@@ -9,7 +9,7 @@ use std::fmt;
 
 use self::environment::environment;
 
-pub use output::{check_outputs, write_file};
+pub use output::{check_output, write_file};
 pub use row::Row;
 pub use tables::{Table, tables, three_digits};
 

@@ -1,36 +1,25 @@
 //! Result files.
 
-use std::fs;
+use std::fs::{self, OpenOptions};
 use std::path::Path;
 
 use super::Results;
 use super::environment::said_by;
-use crate::error::StudyError;
+use crate::error::FileError;
 
-/// Checks before a measurement that the outputs can be written after it.
+/// Checks before a measurement that its output can be written after it.
 ///
-/// Errors: a folder is missing, an output is a folder, an input, or another output.
-pub fn check_outputs(inputs: &[&Path], outputs: &[&Path]) -> Result<(), StudyError> {
-    for (index, output) in outputs.iter().enumerate() {
-        let folder = output.parent().filter(|folder| !folder.as_os_str().is_empty());
-        let cause = match () {
-            () if !folder.unwrap_or(Path::new(".")).is_dir() => "the folder does not exist",
-            () if output.is_dir() => "it is a folder",
-            () if inputs.contains(output) || outputs[..index].contains(output) => {
-                "another file of this run has this name"
-            }
-            () => continue,
-        };
-        return Err(StudyError::file("write", output, cause));
-    }
-    Ok(())
+/// Errors: the file cannot be written; the message names it.
+pub fn check_output(path: &Path) -> Result<(), FileError> {
+    let file = OpenOptions::new().create(true).append(true).open(path);
+    file.map(drop).map_err(|cause| FileError::new("write", path, cause))
 }
 
 /// Writes a file.
 ///
 /// Errors: the file cannot be written; the message names it.
-pub fn write_file(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), StudyError> {
-    fs::write(path, contents).map_err(|cause| StudyError::file("write", path, cause))
+pub fn write_file(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), FileError> {
+    fs::write(path, contents).map_err(|cause| FileError::new("write", path, cause))
 }
 
 impl Results {

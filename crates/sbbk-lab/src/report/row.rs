@@ -67,7 +67,7 @@ impl Row {
     }
 
     /// All keys as text: "mesh ball, size 2".
-    pub(super) fn scene(&self) -> String {
+    pub fn scene(&self) -> String {
         let keys = self.keys.iter().map(|(name, value)| format!("{name} {}", text(value)));
         keys.collect::<Vec<_>>().join(", ")
     }

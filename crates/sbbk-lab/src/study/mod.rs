@@ -15,4 +15,3 @@ mod motion;
 pub mod one_step;
 mod pair;
 pub mod runs;
-mod turns;

@@ -2,7 +2,6 @@
 //!
 //! Dispatchers are called directly, as the narrow phase calls them, for all contacts of triangles.
 
-use super::turns::{in_turn, timed};
 use crate::prelude::*;
 
 /// Stock and SBBK, which most studies compare.
@@ -67,12 +66,15 @@ impl Contest {
 fn sweep(dispatcher: &SharedDispatcher, sequences: &[Sequence]) -> Duration {
     let time = |sequence: &Sequence| {
         let mut memory = Memory::default();
-        if sequence.poses.len() == 1 {
-            return timed(|| sequence.ask(&mut Memory::default(), dispatcher, 0)).0;
-        }
+        let mut start = Instant::now();
         sequence.ask(&mut memory, dispatcher, 0);
-        let steps = 1..sequence.poses.len();
-        timed(|| steps.for_each(|step| sequence.ask(&mut memory, dispatcher, step))).0
+        if sequence.poses.len() == 1 {
+            drop(memory);
+            return start.elapsed();
+        }
+        start = Instant::now();
+        (1..sequence.poses.len()).for_each(|step| sequence.ask(&mut memory, dispatcher, step));
+        start.elapsed()
     };
     sequences.iter().map(time).sum()
 }
@@ -106,4 +108,20 @@ impl<'a> Sides<'a> {
     pub fn sbbk(&self) -> &[&'a Row] {
         &self.0[1]
     }
+}
+
+/// Calls `measure` for each contestant in turn, `repeats` times over, so that a slow spell of the
+/// machine slows all of them. Returns the results by contestant.
+pub(super) fn in_turn<C, T>(
+    contestants: &[C],
+    repeats: usize,
+    mut measure: impl FnMut(&C) -> T,
+) -> Vec<Vec<T>> {
+    let mut results: Vec<Vec<T>> = contestants.iter().map(|_| Vec::new()).collect();
+    for _ in 0..repeats {
+        for (contestant, results) in contestants.iter().zip(&mut results) {
+            results.push(measure(contestant));
+        }
+    }
+    results
 }

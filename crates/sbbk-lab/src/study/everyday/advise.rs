@@ -12,6 +12,9 @@ use super::measure::{Driven, Everyday};
 use super::robots::Subject;
 use super::scenes::{kinds, put};
 
+/// Steps of each run, and runs of each scene.
+const STEPS: usize = 120;
+const REPEATS: usize = 2;
 /// Convex bodies on a terrain, along each side.
 const TERRAIN_SIDE: usize = 7;
 /// Length of these, as a share of the longest side.
@@ -45,31 +48,24 @@ pub struct Advice {
     wants_trees: bool,
 }
 
-/// Measures whole worlds with this mesh, each `repeats` times for so many `steps`.
-///
-/// `length_unit` and gravity have the size of the bodies.
-pub fn advise(mesh: &Mesh, steps: usize, repeats: usize, progress: &Progress) -> Advice {
-    advise_on(&Subject::mesh(mesh), steps, repeats, progress)
+/// Measures whole worlds with this mesh. `length_unit` and gravity have the size of the bodies.
+pub fn advise(mesh: &Mesh, progress: &Progress) -> Advice {
+    advise_on(&Subject::mesh(mesh), progress)
 }
 
 /// Measures the robot of a URDF file, loaded by Rapier's loader without flags of meshes.
 ///
 /// Errors: the file cannot be loaded, or its robot has no shapes.
-pub fn advise_robot(
-    file: &Path,
-    steps: usize,
-    repeats: usize,
-    progress: &Progress,
-) -> Result<Advice, StudyError> {
-    Ok(advise_on(&Subject::robot(file)?, steps, repeats, progress))
+pub fn advise_robot(file: &Path, progress: &Progress) -> Result<Advice, FileError> {
+    Ok(advise_on(&Subject::robot(file)?, progress))
 }
 
-fn advise_on(subject: &Subject, steps: usize, repeats: usize, progress: &Progress) -> Advice {
+fn advise_on(subject: &Subject, progress: &Progress) -> Advice {
     let bounds = subject.bounds(&Pose3::IDENTITY);
     let size = bounds.extents().max_element();
     let scenes = Scenes { subject, bounds, size, large: subject.larger_than(UNPREPARED) };
-    let rows = [scenes.terrain(steps), scenes.bodies(steps), scenes.sensors(steps)]
-        .map(|scene| scene.measure(subject.name.clone(), repeats, progress));
+    let rows = [scenes.terrain(), scenes.bodies(), scenes.sensors()]
+        .map(|scene| scene.measure(REPEATS, progress));
     Advice {
         name: subject.name.clone(),
         triangles: subject.triangle_count(),
@@ -91,7 +87,7 @@ struct Scenes<'a> {
 
 impl Scenes<'_> {
     /// Convex bodies of all kinds, each a little above the subject.
-    fn terrain(&self, steps: usize) -> Everyday<'_> {
+    fn terrain(&self) -> Everyday<'_> {
         let length = TERRAIN_BODY * self.size;
         let (_, shapes) = kinds(length).pop().expect("the last is the mixture");
         let build = move || {
@@ -114,11 +110,11 @@ impl Scenes<'_> {
             }
             Driven::alone(world)
         };
-        Everyday { prepared: Vec::new(), ..self.scene("terrain", steps, build) }
+        Everyday { prepared: Vec::new(), ..self.scene("terrain", build) }
     }
 
     /// Copies that fall onto each other and onto a floor.
-    fn bodies(&self, steps: usize) -> Everyday<'_> {
+    fn bodies(&self) -> Everyday<'_> {
         let [least, most] = BODIES;
         let count = (BODY_TRIANGLES / self.subject.triangle_count().max(1)).clamp(least, most);
         let build = move || {
@@ -138,11 +134,11 @@ impl Scenes<'_> {
             }
             Driven::alone(world)
         };
-        self.scene("bodies", steps, build)
+        self.scene("bodies", build)
     }
 
     /// Sensors that drift through a fixed subject, and past it.
-    fn sensors(&self, steps: usize) -> Everyday<'_> {
+    fn sensors(&self) -> Everyday<'_> {
         let build = move || {
             let mut world = world(self.size);
             self.fix(&mut world);
@@ -167,7 +163,7 @@ impl Scenes<'_> {
                 }
             })
         };
-        self.scene("sensors", steps, build)
+        self.scene("sensors", build)
     }
 
     /// Inserts a fixed subject.
@@ -178,9 +174,9 @@ impl Scenes<'_> {
         }
     }
 
-    fn scene<'b>(&self, part: &str, steps: usize, build: impl Fn() -> Driven + 'b) -> Everyday<'b> {
+    fn scene<'b>(&self, part: &str, build: impl Fn() -> Driven + 'b) -> Everyday<'b> {
         let row = Row::new("advice", "").key("mesh", &*self.subject.name).key("as", part);
-        Everyday { prepared: self.large.clone(), ..Everyday::new(row, steps, build) }
+        Everyday { prepared: self.large.clone(), ..Everyday::new(row, STEPS, build) }
     }
 }
 

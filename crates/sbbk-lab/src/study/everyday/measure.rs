@@ -81,9 +81,9 @@ impl<'a> Everyday<'a> {
     }
 
     /// Runs the scene `repeats` times on both backends, step by step in turns.
-    pub fn measure(&self, phase: String, repeats: usize, progress: &Progress) -> [Row; 2] {
+    pub fn measure(&self, repeats: usize, progress: &Progress) -> [Row; 2] {
         let repeats = repeats.max(1);
-        progress.phase(phase, self.steps * repeats);
+        progress.phase(self.row.scene(), self.steps * repeats);
         let mut sides: [Side; 2] = Default::default();
         let mut comparison = Comparison::new();
         for repeat in 0..repeats {

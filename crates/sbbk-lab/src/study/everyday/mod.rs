@@ -6,8 +6,6 @@
 //! Brute force in f64 judges contacts of both at poses of stock's run.
 
 use crate::prelude::*;
-#[cfg(feature = "parallel")]
-use std::collections::BTreeSet;
 
 mod advise;
 mod judged;
@@ -18,6 +16,7 @@ mod scenes;
 
 pub use self::advise::{Advice, advise, advise_robot};
 use self::measure::Everyday;
+pub(crate) use self::queries::Query;
 use self::scenes::Ground;
 use super::pair::Sides;
 
@@ -32,6 +31,9 @@ const QUERIES: &str = "everyday: queries";
 const THREADS: &str = "everyday: threads";
 /// Rapier's prediction distance, in units.
 const PREDICTION: Real = 0.02;
+/// Flags of terrains.
+const PLAIN: TriMeshFlags = TriMeshFlags::empty();
+const FIXED: TriMeshFlags = TriMeshFlags::FIX_INTERNAL_EDGES;
 
 /// A part of the study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -55,23 +57,12 @@ pub enum Group {
     Queries,
 }
 
-/// A terrain of `2 * cells * cells` triangles.
-#[derive(Clone, Copy, Debug)]
-pub struct GroundPlan {
-    /// Cells along a side.
-    pub cells: u32,
-    /// Length of a cell, in units; bodies are about a unit long.
-    pub cell: f32,
-    /// True for a mesh with `TriMeshFlags::FIX_INTERNAL_EDGES`.
-    pub fixes_edges: bool,
-}
-
 /// Extent of the study.
 #[derive(Clone, Debug)]
 pub struct EverydayPlan {
     pub groups: Vec<Group>,
-    /// Terrains for bodies of all kinds.
-    pub grounds: Vec<GroundPlan>,
+    /// Terrains for bodies of all kinds: cells along a side, their length, and flags of the mesh.
+    pub grounds: Vec<(u32, f32, TriMeshFlags)>,
     /// Bodies on each terrain, if there is room.
     pub bodies: usize,
     /// Steps of most runs.
@@ -97,9 +88,8 @@ impl EverydayPlan {
     /// Terrains of 2048 to two million triangles; ten minutes on two cores.
     pub fn standard() -> Self {
         let grounds = [32, 100, 400, 1000].into_iter().flat_map(|cells| {
-            [1.0, 0.25].into_iter().flat_map(move |cell| {
-                [false, true].map(|fixes_edges| GroundPlan { cells, cell, fixes_edges })
-            })
+            let of = move |cell| [(cells, cell, PLAIN), (cells, cell, FIXED)];
+            [1.0, 0.25].into_iter().flat_map(of)
         });
         Self {
             groups: Group::value_variants().to_vec(),
@@ -119,13 +109,12 @@ impl EverydayPlan {
 
     /// For trying, not for quoting: about a minute.
     pub fn quick() -> Self {
-        let ground = |cells, cell, fixes_edges| GroundPlan { cells, cell, fixes_edges };
         Self {
             grounds: vec![
-                ground(32, 1.0, false),
-                ground(100, 1.0, false),
-                ground(100, 1.0, true),
-                ground(400, 0.25, false),
+                (32, 1.0, PLAIN),
+                (100, 1.0, PLAIN),
+                (100, 1.0, FIXED),
+                (400, 0.25, PLAIN),
             ],
             steps: 100,
             repeats: 3,
@@ -142,7 +131,7 @@ impl EverydayPlan {
 /// Measures all parts.
 ///
 /// Errors: the robot of this crate cannot be loaded.
-pub fn everyday(plan: &EverydayPlan, progress: &Progress) -> Result<Results, StudyError> {
+pub fn everyday(plan: &EverydayPlan, progress: &Progress) -> Result<Results, FileError> {
     let mut worlds = Worlds { plan, progress, rows: Vec::new() };
     for group in &plan.groups {
         worlds.group(*group)?;
@@ -179,44 +168,41 @@ struct Worlds<'a> {
 }
 
 impl Worlds<'_> {
-    fn group(&mut self, group: Group) -> Result<(), StudyError> {
+    fn group(&mut self, group: Group) -> Result<(), FileError> {
         let plan = self.plan;
-        let [none, fixed] = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES];
-        let large = || Ground::new(plan.cells, 0.5, fixed);
+        let large = || Ground::new(plan.cells, 0.5, FIXED);
         match group {
-            Group::Terrains => self.terrains(),
+            Group::Terrains => {
+                for &(cells, cell, flags) in &plan.grounds {
+                    let ground = Ground::new(cells, cell, flags);
+                    self.measure(&scenes::bodies(&ground, plan.bodies, plan.steps));
+                }
+            }
             Group::Single => {
-                let (large, world) = (large(), Ground::new(plan.world_cells, 1.0, none));
-                let small = Ground::new(64, 0.5, none);
-                let mut scenes = scenes::bouncing(&large, 5 * plan.steps);
-                scenes.extend(scenes::crossing(&world, 2 * plan.steps));
-                scenes.push(scenes::rolling_population(&small, plan.small_meshes));
-                self.measure("single bodies, many meshes", &scenes);
+                let (large, world) = (large(), Ground::new(plan.world_cells, 1.0, PLAIN));
+                let small = Ground::new(64, 0.5, PLAIN);
+                self.measure(&scenes::bouncing(&large, 5 * plan.steps));
+                self.measure(&scenes::crossing(&world, 2 * plan.steps));
+                self.measure(&[scenes::rolling_population(&small, plan.small_meshes)]);
             }
             Group::Flags => {
                 let all = Ground::new(plan.deformable_cells, 0.5, TriMeshFlags::all());
-                let fixed = Ground::new(plan.deformable_cells, 0.5, fixed);
-                let mut scenes = scenes::all_flags(&all, plan.steps);
-                scenes.extend(robots::robots(&fixed, plan.steps)?);
-                self.measure("all flags, and robots", &scenes);
+                let fixed = Ground::new(plan.deformable_cells, 0.5, FIXED);
+                self.measure(&scenes::all_flags(&all, plan.steps));
+                self.measure(&robots::robots(&fixed, plan.steps)?);
             }
-            Group::Sensors => {
-                let large = large();
-                let scenes = scenes::sensors(&large, plan.steps);
-                self.measure("sensors and characters", &scenes);
-            }
-            Group::Pile => self.measure("pile", &[scenes::pile(plan.heads, plan.steps)]),
+            Group::Sensors => self.measure(&scenes::sensors(&large(), plan.steps)),
+            Group::Pile => self.measure(&[scenes::pile(plan.heads, plan.steps)]),
             Group::Fine => {
                 let tori = plan.tubes.iter().map(|&tube| scenes::tori(tube, plan.steps));
-                let scenes: Vec<_> = tori.chain([scenes::parts(plan.steps)]).collect();
-                self.measure("fine meshes", &scenes);
+                self.measure(&tori.chain([scenes::parts(plan.steps)]).collect::<Vec<_>>());
             }
             #[cfg(feature = "parallel")]
             Group::Threads => self.threads(),
             Group::Queries => {
                 self.progress.phase("queries on terrains", plan.query_cells.len());
                 for &cells in &plan.query_cells {
-                    let ground = Ground::new(cells, 0.5, none);
+                    let ground = Ground::new(cells, 0.5, PLAIN);
                     self.rows.extend(queries::queries(&ground, plan.repeats));
                     self.progress.step();
                 }
@@ -225,35 +211,20 @@ impl Worlds<'_> {
         Ok(())
     }
 
-    fn terrains(&mut self) {
-        let plan = self.plan;
-        for &ground_plan in &plan.grounds {
-            let GroundPlan { cells, cell, fixes_edges } = ground_plan;
-            let flag = TriMeshFlags::FIX_INTERNAL_EDGES;
-            let flags = if fixes_edges { flag } else { TriMeshFlags::empty() };
-            let ground = Ground::new(cells, cell, flags);
-            let scenes = scenes::bodies(ground_plan, &ground, plan.bodies, plan.steps);
-            self.measure(&format!("terrain of {} triangles", 2 * cells * cells), &scenes);
-        }
-    }
-
     #[cfg(feature = "parallel")]
     fn threads(&mut self) {
         let plan = self.plan;
-        let counts = BTreeSet::from([1, 2, parallel::threads()]);
-        let scenes = counts.into_iter().flat_map(|threads| {
+        for threads in std::collections::BTreeSet::from([1, 2, parallel::threads()]) {
             let [heavy, light] =
                 [scenes::tori(52, plan.steps), scenes::pile(plan.heads, plan.steps)];
             let scenes = [scenes::two_tori(108, plan.steps / 4), heavy, light];
-            scenes.map(|scene| scene.on_threads(THREADS, threads))
-        });
-        self.measure("threads", &scenes.collect::<Vec<_>>());
+            self.measure(&scenes.map(|scene| scene.on_threads(THREADS, threads)));
+        }
     }
 
-    fn measure(&mut self, phase: &str, scenes: &[Everyday]) {
-        for (index, scene) in scenes.iter().enumerate() {
-            let message = format!("{phase}, world {} of {}", index + 1, scenes.len());
-            self.rows.extend(scene.measure(message, self.plan.repeats, self.progress));
+    fn measure(&mut self, scenes: &[Everyday]) {
+        for scene in scenes {
+            self.rows.extend(scene.measure(self.plan.repeats, self.progress));
         }
     }
 }

@@ -8,18 +8,19 @@ use rapier3d::parry::query::details::ShapeCastOptions;
 
 use super::scenes::{Ground, above, head};
 use super::{PREDICTION, QUERIES};
-use crate::study::pair::SIDES;
-use crate::study::turns::in_turn;
+use crate::study::pair::{SIDES, in_turn};
 
-named! {
-    enum Query {
-        Intersection = "intersection",
-        Distance = "distance",
-        Contact = "contact",
-        Manifolds = "manifolds, no workspace",
-        Cast = "cast",
-        NonlinearCast = "nonlinear cast",
-    }
+/// A query of two shapes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Query {
+    Intersection,
+    Distance,
+    Contact,
+    #[value(name = "manifolds, no workspace")]
+    Manifolds,
+    Cast,
+    #[value(name = "nonlinear cast")]
+    NonlinearCast,
 }
 
 /// Velocity of a body in casts, and angular velocity in nonlinear ones, a second.
@@ -83,12 +84,12 @@ pub(super) fn queries(ground: &Ground, repeats: usize) -> Vec<Row> {
             let poses = places(ground, height);
             let asked = Asked { ground, body, poses: &poses };
             let is_slow = |query| query == Query::NonlinearCast && body.as_trimesh().is_some();
-            for query in Query::ALL.into_iter().filter(|&query| !is_slow(query)) {
+            for query in Query::value_variants().iter().filter(|&&query| !is_slow(query)) {
                 let key = |row: Row| {
                     let row = row.key("query", query.to_string()).key("body", *name);
                     row.key("place", place).key("triangles", ground.triangle_count)
                 };
-                rows.extend(asked.measure(query, repeats).map(key));
+                rows.extend(asked.measure(*query, repeats).map(key));
             }
         }
     }

@@ -28,14 +28,14 @@ fn upright() -> Quat {
 }
 
 /// Error for a URDF file.
-fn unusable(path: &Path, cause: impl ToString) -> StudyError {
-    StudyError::file("load the robot", path, cause)
+fn unusable(path: &Path, cause: impl ToString) -> FileError {
+    FileError::new("load the robot", path, cause)
 }
 
 /// Ten robots that walk on a terrain, with the loader's flags for their meshes and without.
 ///
 /// Errors: the file cannot be loaded.
-pub(super) fn robots(ground: &Ground, steps: usize) -> Result<Vec<Everyday<'_>>, StudyError> {
+pub(super) fn robots(ground: &Ground, steps: usize) -> Result<Vec<Everyday<'_>>, FileError> {
     let file = Path::new(WALKER);
     let defaults = UrdfLoaderOptions::default().trimesh_flags;
     let flags = [("the loader's flags", defaults), ("no flags", TriMeshFlags::empty())];
@@ -72,7 +72,7 @@ fn around(parts: &[(Pose3, SharedShape)], pose: &Pose3) -> Option<Aabb> {
     boxes.reduce(|one, two| one.merged(&two))
 }
 
-fn bounds(parts: &[(Pose3, SharedShape)], file: &Path) -> Result<Aabb, StudyError> {
+fn bounds(parts: &[(Pose3, SharedShape)], file: &Path) -> Result<Aabb, FileError> {
     around(parts, &Pose3::IDENTITY)
         .ok_or_else(|| unusable(file, "no link has a shape that can collide"))
 }
@@ -85,7 +85,7 @@ fn start(ground: &Ground, bounds: Aabb, index: usize) -> Pose3 {
 }
 
 /// Loads a robot with meshes of its own.
-fn load(file: &Path, trimesh_flags: TriMeshFlags, shift: Pose3) -> Result<UrdfRobot, StudyError> {
+fn load(file: &Path, trimesh_flags: TriMeshFlags, shift: Pose3) -> Result<UrdfRobot, FileError> {
     let options = UrdfLoaderOptions { trimesh_flags, shift, ..UrdfLoaderOptions::default() };
     let loaded = UrdfRobot::from_file(file, options, None);
     loaded.map(|(robot, _)| robot).map_err(|cause| unusable(file, cause))
@@ -144,7 +144,7 @@ impl Subject {
     /// Loads a robot without flags of meshes, upright, with all links free.
     ///
     /// Errors: the file cannot be loaded, or its robot has no shapes.
-    pub fn robot(file: &Path) -> Result<Self, StudyError> {
+    pub fn robot(file: &Path) -> Result<Self, FileError> {
         let mut robot = load(file, TriMeshFlags::empty(), Pose3::from_rotation(upright()))?;
         let centre = bounds(&parts(&robot), file)?.center();
         robot.append_transform(&Pose3::from_translation(-centre));

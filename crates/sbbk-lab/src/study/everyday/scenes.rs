@@ -7,13 +7,15 @@ use rapier3d::control::KinematicCharacterController;
 use rapier3d::pipeline::{ActiveEvents, QueryFilter};
 
 use super::measure::{Driven, Everyday};
-use super::{BODIES, DEFORMABLE, FINE, GroundPlan, PILE, SENSORS, SINGLE};
+use super::{BODIES, DEFORMABLE, FINE, FIXED, PILE, SENSORS, SINGLE};
 
 /// A terrain of hills. All worlds of a scene share its mesh.
 #[derive(Clone)]
 pub(super) struct Ground {
     pub shape: SharedShape,
-    /// Length of a side, in units.
+    flags: TriMeshFlags,
+    /// Length of a cell and of a side, in units.
+    cell: f32,
     pub size: f32,
     pub triangle_count: u32,
 }
@@ -26,7 +28,7 @@ impl Ground {
     pub fn new(cells: u32, cell: f32, flags: TriMeshFlags) -> Self {
         let size = cell * cells as f32;
         let shape = mesh::hills(size, cells).shape_with(flags);
-        Self { shape, size, triangle_count: 2 * cells * cells }
+        Self { shape, flags, cell, size, triangle_count: 2 * cells * cells }
     }
 
     /// A world with the terrain alone.
@@ -94,19 +96,14 @@ pub(super) fn kinds(length: Real) -> Vec<(&'static str, Vec<SharedShape>)> {
 }
 
 /// Bodies of each kind side by side on one terrain, at most `count`.
-pub(super) fn bodies<'a>(
-    plan: GroundPlan,
-    ground: &'a Ground,
-    count: usize,
-    steps: usize,
-) -> Vec<Everyday<'a>> {
+pub(super) fn bodies(ground: &Ground, count: usize, steps: usize) -> Vec<Everyday<'_>> {
     let side = ((ground.size - 3.0) / SPACING).max(1.0) as usize;
     let count = count.min(side * side);
     let scene = |(name, shapes): (&str, Vec<SharedShape>)| {
         let row = Row::new(BODIES, "")
             .key("triangles", ground.triangle_count)
-            .key("side", plan.cell.to_string())
-            .key("edges", if plan.fixes_edges { "fixed" } else { "plain" })
+            .key("side", ground.cell.to_string())
+            .key("edges", if ground.flags == FIXED { "fixed" } else { "plain" })
             .key("shape", name)
             .with("bodies", count);
         Everyday::new(row, steps, move || ground.scattered(&shapes, count))

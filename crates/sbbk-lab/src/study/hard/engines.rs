@@ -4,7 +4,6 @@
 use crate::prelude::*;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
-use std::iter;
 use std::ops::Range;
 
 use glamx::DQuat;
@@ -21,6 +20,10 @@ const STUDY: &str = "engines";
 const STEPS: usize = 600;
 const MOVING: Range<usize> = 60..180;
 const RESTING: Range<usize> = 540..600;
+/// Rapier's defaults: seconds a step, gravity in units/s², and the friction of each contact.
+const TIME_STEP: f32 = 1.0 / 60.0;
+const GRAVITY: f32 = 9.81;
+const FRICTION: f32 = 0.5;
 /// Depth in units above which a pair counts as inside each other: ten times the depth that Rapier
 /// allows.
 const INSIDE: f64 = 0.01;
@@ -31,17 +34,9 @@ const HEADER: usize = 4;
 const STATE: usize = 13;
 
 /// The scene of all engines. The head is in the frame of its principal axes of inertia, with the
-/// centre of mass as origin.
+/// centre of mass as origin. Contacts have no restitution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnginePile {
-    /// Seconds a step.
-    pub time_step: f32,
-    /// Along negative `y`.
-    pub gravity: f32,
-    /// Coefficient of each contact. There is no restitution.
-    pub friction: f32,
-    /// Half extents of a fixed box, whose top is at height 0.
-    pub floor: Vec3,
     /// Mass of a head.
     pub mass: f32,
     /// Moments of inertia about the axes.
@@ -64,37 +59,30 @@ impl EnginePile {
         let convex = SharedShape::convex_decomposition(&mesh.vertices, &mesh.triangles);
         let parts = convex.as_compound().into_iter().flat_map(|compound| compound.shapes());
         let parts = parts.filter_map(|(_, part)| Some(part.as_convex_polyhedron()?.points()));
-        let parts = parts.map(<[Vec3]>::to_vec).collect();
-        let world = Kit::new(Column::Stock, None).world();
         Self {
-            time_step: world.integration_parameters.dt,
-            gravity: -world.gravity.y,
-            friction: ColliderBuilder::default_friction(),
-            floor: FLOOR,
             mass: properties.mass(),
             inertia: properties.principal_inertia(),
             poses: MonkeyPile { mesh: mesh.clone(), ..pile.clone() }.poses(),
+            parts: parts.map(<[Vec3]>::to_vec).collect(),
             mesh,
-            parts,
         }
     }
 
-    /// Writes the scene as numbers in f32, lists after their lengths.
+    /// Writes the scene as numbers in f32, lists after their lengths: time step, gravity, friction,
+    /// half extents of the floor, steps, and then this pile.
     ///
     /// Errors: the file cannot be written.
     pub fn write(&self, path: &Path) -> io::Result<()> {
         fn list<const N: usize>(items: impl ExactSizeIterator<Item = [f32; N]>) -> Vec<f32> {
-            iter::once(items.len() as f32).chain(items.flatten()).collect()
+            std::iter::once(items.len() as f32).chain(items.flatten()).collect()
         }
         let poses = self
             .poses
             .iter()
             .map(|Pose3 { translation: t, rotation: r, .. }| [t.x, t.y, t.z, r.x, r.y, r.z, r.w]);
         let mut numbers = [
-            vec![self.time_step, self.gravity, self.friction],
-            self.floor.to_array().to_vec(),
-            vec![STEPS as f32, self.mass],
-            self.inertia.to_array().to_vec(),
+            vec![TIME_STEP, GRAVITY, FRICTION, FLOOR.x, FLOOR.y, FLOOR.z, STEPS as f32],
+            vec![self.mass, self.inertia.x, self.inertia.y, self.inertia.z],
             list(self.mesh.vertices.iter().map(Vec3::to_array)),
             list(self.mesh.triangles.iter().map(|indices| indices.map(|index| index as f32))),
             list(poses),
@@ -109,35 +97,22 @@ impl EnginePile {
     ///
     /// Errors: the file cannot be read, or has another format.
     pub fn read(path: &Path) -> io::Result<Self> {
-        Self::from_numbers(&mut read_numbers(path)?.into_iter())
+        Self::from_numbers(Numbers(read_numbers(path)?.into_iter()))
             .ok_or_else(|| invalid(format!("{} breaks off", path.display())))
     }
 
-    fn from_numbers(numbers: &mut impl Iterator<Item = f32>) -> Option<Self> {
-        fn take<const N: usize>(numbers: &mut impl Iterator<Item = f32>) -> Option<[f32; N]> {
-            numbers.by_ref().take(N).collect::<Vec<f32>>().try_into().ok()
-        }
-        fn list<const N: usize, T>(
-            numbers: &mut impl Iterator<Item = f32>,
-            make: impl Fn([f32; N]) -> T,
-        ) -> Option<Vec<T>> {
-            let [count] = take(numbers)?;
-            (0..count as usize).map(|_| take(numbers).map(&make)).collect()
-        }
-        let [time_step, gravity, friction] = take(numbers)?;
-        let floor = Vec3::from_array(take(numbers)?);
-        let [_steps, mass] = take(numbers)?;
-        let inertia = Vec3::from_array(take(numbers)?);
-        let vertices = list(numbers, Vec3::from_array)?;
-        let triangles = list(numbers, |indices: [f32; 3]| indices.map(|index| index as u32))?;
-        let poses = list(numbers, |[x, y, z, i, j, k, w]| {
+    fn from_numbers(mut numbers: Numbers) -> Option<Self> {
+        let [_constants @ .., mass, x, y, z] = numbers.take::<11>()?;
+        let vertices = numbers.list(Vec3::from_array)?;
+        let triangles = numbers.list(|indices: [f32; 3]| indices.map(|index| index as u32))?;
+        let poses = numbers.list(|[x, y, z, i, j, k, w]| {
             Pose3::from_parts(Vec3::new(x, y, z), Quat::from_xyzw(i, j, k, w))
         })?;
-        let [count] = take(numbers)?;
-        let parts = (0..count as usize).map(|_| list(numbers, Vec3::from_array));
-        let parts = parts.collect::<Option<_>>()?;
+        let [count] = numbers.take()?;
+        let parts: Option<_> =
+            (0..count as usize).map(|_| numbers.list(Vec3::from_array)).collect();
         let mesh = Mesh::new("head", vertices, triangles);
-        Some(Self { time_step, gravity, friction, floor, mass, inertia, mesh, poses, parts })
+        Some(Self { mass, inertia: Vec3::new(x, y, z), mesh, poses, parts: parts? })
     }
 
     /// Runs the scene in Rapier and writes the file of the run.
@@ -150,10 +125,8 @@ impl EnginePile {
         let empty = memory("VmRSS");
         let form = Form::parts(self.mesh.clone(), self.parts.iter().cloned());
         let properties = MassProperties::new(Vec3::ZERO, self.mass, self.inertia);
-        let collider = kit.collider(&form).friction(self.friction).mass_properties(properties);
-        let mut world = above_floor(&kit, self.floor, self.poses.iter().copied(), &collider);
-        world.integration_parameters.dt = self.time_step;
-        world.gravity = -self.gravity * Vec3::Y;
+        let collider = kit.collider(&form).mass_properties(properties);
+        let mut world = above_floor(&kit, FLOOR, self.poses.iter().copied(), &collider);
         for _ in 0..STEPS {
             let clock = Instant::now();
             world.step();
@@ -246,7 +219,7 @@ impl EnginePile {
 
     /// Greatest rise of the energy, as a share of that at the start.
     fn energy_gained(&self, run: &Run) -> f64 {
-        let weight = f64::from(self.mass) * f64::from(self.gravity);
+        let weight = f64::from(self.mass) * f64::from(GRAVITY);
         let heights = self.poses.iter().map(|pose| f64::from(pose.translation.y));
         let start = weight * heights.sum::<f64>() / self.poses.len() as f64;
         let mut gain = Gain::default();
@@ -349,6 +322,20 @@ fn read_numbers(path: &Path) -> io::Result<Vec<f32>> {
     let bytes = fs::read(path)?;
     let (numbers, _) = bytes.as_chunks();
     Ok(numbers.iter().map(|&bytes| f32::from_le_bytes(bytes)).collect())
+}
+
+/// Numbers of a scene that are yet to be read.
+struct Numbers(std::vec::IntoIter<f32>);
+
+impl Numbers {
+    fn take<const N: usize>(&mut self) -> Option<[f32; N]> {
+        self.0.by_ref().take(N).collect::<Vec<f32>>().try_into().ok()
+    }
+
+    fn list<const N: usize, T>(&mut self, make: impl Fn([f32; N]) -> T) -> Option<Vec<T>> {
+        let [count] = self.take()?;
+        (0..count as usize).map(|_| self.take().map(&make)).collect()
+    }
 }
 
 fn invalid(text: String) -> io::Error {

@@ -15,23 +15,21 @@ pub(super) use super::depth::{Depths, touching_pairs};
 pub(super) use super::figures::{Figures, Gain, largest};
 pub(super) use crate::prelude::*;
 
-named! {
-    /// A dispatcher, and the shapes of the bodies.
-    #[derive(ValueEnum)]
-    pub enum Column {
-        /// Stock Rapier, plain meshes.
-        Stock = "stock",
-        /// Stock Rapier, all meshes with `TriMeshFlags::FIX_INTERNAL_EDGES`.
-        StockFlag = "stock + flag",
-        /// SBBK, plain meshes.
-        Sbbk = "sbbk",
-        /// SBBK with every contact, plain meshes.
-        Every = "every",
-        /// SBBK, all meshes with `TriMeshFlags::FIX_INTERNAL_EDGES`.
-        SbbkFlag = "sbbk + flag",
-        /// Stock Rapier, convex shapes instead of the meshes.
-        Control = "control",
-    }
+/// A dispatcher, and the shapes of the bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Column {
+    /// Stock Rapier, plain meshes.
+    Stock,
+    /// Stock Rapier, all meshes with `TriMeshFlags::FIX_INTERNAL_EDGES`.
+    StockFlag,
+    /// SBBK, plain meshes.
+    Sbbk,
+    /// SBBK with every contact, plain meshes.
+    Every,
+    /// SBBK, all meshes with `TriMeshFlags::FIX_INTERNAL_EDGES`.
+    SbbkFlag,
+    /// Stock Rapier, convex shapes instead of the meshes.
+    Control,
 }
 
 /// A mesh, and the convex shapes that replace it in the control.

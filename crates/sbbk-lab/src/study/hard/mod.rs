@@ -65,8 +65,6 @@ pub enum Group {
 pub struct Settings {
     /// Columns of the tables.
     pub columns: Vec<Column>,
-    /// Runs at once. Scenes that are timed run alone.
-    pub threads: usize,
     /// True to show all figures.
     pub shows_figures: bool,
     /// Page that plays the first of the scenes in all columns.
@@ -77,7 +75,7 @@ impl Default for Settings {
     /// Stock and SBBK on plain meshes, and stock on meshes with the flag.
     fn default() -> Self {
         let columns = vec![Column::Stock, Column::StockFlag, Column::Sbbk];
-        Self { columns, threads: 2, shows_figures: false, replay: None }
+        Self { columns, shows_figures: false, replay: None }
     }
 }
 
@@ -89,8 +87,6 @@ pub struct HardPlan {
     pub settings: Settings,
     /// Body of the piles, or `None` for heads.
     pub mesh: Option<Mesh>,
-    /// Text in the names of the scenes.
-    pub name: String,
 }
 
 impl HardPlan {
@@ -102,12 +98,8 @@ impl HardPlan {
 
     /// All scenes.
     pub fn quick() -> Self {
-        Self {
-            groups: Group::value_variants().to_vec(),
-            settings: Settings::default(),
-            mesh: None,
-            name: String::new(),
-        }
+        let groups = Group::value_variants().to_vec();
+        Self { groups, settings: Settings::default(), mesh: None }
     }
 }
 
@@ -134,9 +126,9 @@ impl Trial {
     }
 }
 
-fn trials(group: Group, plan: &HardPlan) -> Vec<Trial> {
-    let mut trials = match group {
-        Group::Pile => heaps::piles(plan.mesh.as_ref()),
+fn trials(group: Group, mesh: Option<&Mesh>) -> Vec<Trial> {
+    match group {
+        Group::Pile => heaps::piles(mesh),
         Group::Stacks => resting::stacks(),
         Group::Bowls => resting::bowls(),
         Group::Walls => resting::walls(),
@@ -150,25 +142,19 @@ fn trials(group: Group, plan: &HardPlan) -> Vec<Trial> {
         Group::Pit => heaps::pits(),
         Group::Sheets => inside::sheets(),
         Group::Tray => heaps::trays(),
-    };
-    trials.retain(|trial| trial.name.contains(&plan.name));
-    trials
+    }
 }
 
 /// Runs all scenes of the plan.
 ///
-/// Errors: no scene has the name, or the page cannot be written.
-pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError> {
-    let mut stage = Stage::new(&plan.settings, progress);
+/// Errors: the page cannot be written.
+pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, FileError> {
+    let mut runs = Vec::new();
     for group in &plan.groups {
-        let name = group.to_possible_value().map_or_else(String::new, |v| v.get_name().to_owned());
         let is_timed = matches!(group, Group::Pile | Group::Tray);
-        let threads = if is_timed { 1 } else { plan.settings.threads };
-        stage.run(&name, &trials(*group, plan), threads)?;
-    }
-    let runs = stage.runs;
-    if runs.is_empty() {
-        return Err(StudyError::NoScene(plan.name.clone()));
+        let threads = if is_timed { 1 } else { parallel::threads() };
+        let trials = trials(*group, plan.mesh.as_ref());
+        run_all(&mut runs, &group.to_string(), &trials, &plan.settings, threads, progress)?;
     }
     let rows = runs.iter().flat_map(|run| {
         let row = Row::new("hard scenes", run.column).key("scene", &*run.scene);
@@ -185,38 +171,33 @@ pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, StudyError>
     Ok(Results { notes: report::notes(&plan.settings, &runs), ..results })
 }
 
-/// Runs scenes in all columns.
-struct Stage<'a> {
-    settings: &'a Settings,
-    progress: &'a Progress,
-    runs: Vec<Run>,
-}
-
-impl<'a> Stage<'a> {
-    fn new(settings: &'a Settings, progress: &'a Progress) -> Self {
-        Self { settings, progress, runs: Vec::new() }
-    }
-
-    /// Runs scenes of one kind. The first scene of all is recorded, if there is to be a page.
-    ///
-    /// Errors: the page cannot be written.
-    fn run(&mut self, group: &str, trials: &[Trial], threads: usize) -> Result<(), StudyError> {
-        let Settings { columns, replay, .. } = self.settings;
-        let page = replay.as_deref().filter(|_| self.runs.is_empty()).zip(trials.first());
-        let of = |trial| columns.iter().map(move |&column| (trial, column));
-        let jobs: Vec<(&Trial, Column)> = trials.iter().flat_map(of).collect();
-        self.progress.phase(group, jobs.len());
-        let found = parallel::map(&jobs, threads, |index, (trial, column)| {
-            let film = (page.is_some() && index < columns.len()).then(Film::default);
-            let figures = (trial.run)(&Kit::new(*column, film.clone()))?;
-            self.progress.step();
-            let (group, scene) = (group.to_owned(), trial.name.clone());
-            let run = Run { group, scene, column: *column, figures };
-            Some((run, film.and_then(|film| film.take())))
-        });
-        let (runs, films): (Vec<Run>, Vec<Option<Recorder>>) = found.into_iter().flatten().unzip();
-        self.runs.extend(runs);
-        let Some((path, trial)) = page else { return Ok(()) };
-        replay::write(path, &trial.name, &films.into_iter().flatten().collect::<Vec<_>>())
-    }
+/// Runs scenes of one kind in all columns. The first scene of all is recorded, if there is to be a
+/// page.
+///
+/// Errors: the page cannot be written.
+fn run_all(
+    runs: &mut Vec<Run>,
+    group: &str,
+    trials: &[Trial],
+    settings: &Settings,
+    threads: usize,
+    progress: &Progress,
+) -> Result<(), FileError> {
+    let Settings { columns, replay, .. } = settings;
+    let page = replay.as_deref().filter(|_| runs.is_empty()).zip(trials.first());
+    let of = |trial| columns.iter().map(move |&column| (trial, column));
+    let jobs: Vec<(&Trial, Column)> = trials.iter().flat_map(of).collect();
+    progress.phase(group, jobs.len());
+    let found = parallel::map(&jobs, threads, |index, (trial, column)| {
+        let film = (page.is_some() && index < columns.len()).then(Film::default);
+        let figures = (trial.run)(&Kit::new(*column, film.clone()))?;
+        progress.step();
+        let (group, scene) = (group.to_owned(), trial.name.clone());
+        let run = Run { group, scene, column: *column, figures };
+        Some((run, film.and_then(|film| film.take())))
+    });
+    let (found, films): (Vec<Run>, Vec<Option<Recorder>>) = found.into_iter().flatten().unzip();
+    runs.extend(found);
+    let Some((path, trial)) = page else { return Ok(()) };
+    replay::write(path, &trial.name, &films.into_iter().flatten().collect::<Vec<_>>())
 }

@@ -72,7 +72,7 @@ struct Way {
 #[derive(Default)]
 struct Seen {
     errors: Vec<f64>,
-    times: Vec<StepTimes>,
+    times: Vec<f64>,
     points: Vec<f64>,
 }
 
@@ -129,16 +129,12 @@ fn step(scene: &dyn Scene, way: &Way, lead: &[Vec<Motion>]) -> (Vec<Motion>, Led
 }
 
 fn row(scene: &dyn Scene, way: &Way, seen: Seen) -> Row {
-    let summary = |time: fn(&StepTimes) -> f64| Summary::of(seen.times.iter().map(time));
     Row::new(STUDY, way.backend)
         .key("scene", scene.name())
         .key("substeps", way.substeps)
-        .with("error", Summary::of(seen.errors.iter().copied()))
-        .with("errors", &seen.errors)
+        .with("error", Summary::of(seen.errors))
         .with("points", Summary::of(seen.points))
-        .with("step", summary(|times| times.step))
-        .with("solver", summary(|times| times.solver))
-        .with("collision_detection", summary(StepTimes::collision_detection))
+        .with("step", Summary::of(seen.times))
 }
 
 fn verdict(plan: &OneStepPlan, rows: &[Row]) -> String {

@@ -24,7 +24,7 @@ use std::ops::Range;
 
 use super::kit::{Column, Kit};
 use super::report::{self, Run};
-use super::{Settings, Stage, Trial};
+use super::{Settings, Trial, run_all};
 use crate::prelude::*;
 use crate::study::hard::figures::Figures;
 use draw::Draw;
@@ -36,40 +36,42 @@ mod prelude {
     pub(super) use crate::study::hard::kit::*;
 }
 
-named! {
-    /// A kind of scene.
-    #[derive(ValueEnum)]
-    pub enum Family {
-        Floors = "floors",
-        Stacks = "stacks",
-        Piles = "piles",
-        Chains = "chains",
-        Bowls = "bowls",
-        Slopes = "slopes",
-        Gears = "gears",
-        Screws = "screws",
-        Plates = "plates",
-        Overlaps = "overlaps",
-        Rooms = "rooms",
-        Tables = "tables",
-    }
+/// A kind of scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Family {
+    Floors,
+    Stacks,
+    Piles,
+    Chains,
+    Bowls,
+    Slopes,
+    Gears,
+    Screws,
+    Plates,
+    Overlaps,
+    Rooms,
+    Tables,
 }
 
-/// Runs a scene of each family, in the order of [`Family`].
-const RUN: [fn(&mut Draw, &Kit) -> Figures; Family::ALL.len()] = [
-    floors::run,
-    stacks::run,
-    piles::run,
-    chains::run,
-    bowls::run,
-    slopes::run,
-    gears::run,
-    screws::run,
-    plates::run,
-    overlaps::run,
-    rooms::run,
-    tables::run,
-];
+impl Family {
+    /// Draws a scene and runs it.
+    fn run(self, draw: &mut Draw, kit: &Kit) -> Figures {
+        match self {
+            Self::Floors => floors::run(draw, kit),
+            Self::Stacks => stacks::run(draw, kit),
+            Self::Piles => piles::run(draw, kit),
+            Self::Chains => chains::run(draw, kit),
+            Self::Bowls => bowls::run(draw, kit),
+            Self::Slopes => slopes::run(draw, kit),
+            Self::Gears => gears::run(draw, kit),
+            Self::Screws => screws::run(draw, kit),
+            Self::Plates => plates::run(draw, kit),
+            Self::Overlaps => overlaps::run(draw, kit),
+            Self::Rooms => rooms::run(draw, kit),
+            Self::Tables => tables::run(draw, kit),
+        }
+    }
+}
 
 /// Extent of the study.
 #[derive(Clone, Debug)]
@@ -87,7 +89,7 @@ impl RandomPlan {
     /// Scenes of all families.
     pub fn new(numbers: Range<u32>, seed: u64) -> Self {
         let settings = Settings::default();
-        Self { families: Family::ALL.into(), numbers, seed, unit: None, settings }
+        Self { families: Family::value_variants().to_vec(), numbers, seed, unit: None, settings }
     }
 
     fn trial(&self, family: Family, number: u32) -> Trial {
@@ -95,7 +97,7 @@ impl RandomPlan {
         let run = move |kit: &Kit| {
             let mut draw = Draw::new(family, seed, number);
             draw.unit = unit.unwrap_or(draw.size);
-            let figures = RUN[family as usize](&mut draw, kit);
+            let figures = family.run(&mut draw, kit);
             // Some parts have no convex shape.
             let is_run = kit.column != Column::Control || draw.has_control;
             let about = format!("; {}", draw.about.join(", "));
@@ -108,14 +110,14 @@ impl RandomPlan {
 /// Runs all scenes of the plan.
 ///
 /// Errors: the page cannot be written.
-pub fn random(plan: &RandomPlan, progress: &Progress) -> Result<Results, StudyError> {
-    let mut stage = Stage::new(&plan.settings, progress);
+pub fn random(plan: &RandomPlan, progress: &Progress) -> Result<Results, FileError> {
+    let mut runs = Vec::new();
     for &family in &plan.families {
         let trials = plan.numbers.clone().map(|number| plan.trial(family, number));
         let trials: Vec<Trial> = trials.collect();
-        stage.run(&family.to_string(), &trials, plan.settings.threads)?;
+        let (settings, threads) = (&plan.settings, parallel::threads());
+        run_all(&mut runs, &family.to_string(), &trials, settings, threads, progress)?;
     }
-    let runs = stage.runs;
     let rows = plan.families.iter().flat_map(|family| {
         let counts = |&column: &Column| counted(&family.to_string(), column, &runs);
         plan.settings.columns.iter().map(counts).collect::<Vec<Row>>()
