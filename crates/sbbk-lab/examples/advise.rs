@@ -13,6 +13,9 @@ use sbbk_lab::mesh_file;
 use sbbk_lab::progress::Progress;
 use sbbk_lab::study::everyday::{advise, advise_robot};
 
+/// Steps of each run.
+const STEPS: usize = 120;
+
 /// Prints for each mesh or robot the gain as a terrain, as bodies and as sensors, and settings
 #[derive(Parser)]
 struct Arguments {
@@ -27,8 +30,8 @@ fn main() -> Outcome {
     for path in &files {
         let is_robot = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf"));
         let advice = match is_robot {
-            true => advise_robot(path, &progress)?,
-            false => advise(&mesh_file::load(path)?, &progress),
+            true => advise_robot(path, STEPS, &progress)?,
+            false => advise(&mesh_file::load(path)?, STEPS, &progress),
         };
         progress.finish();
         print(advice)?;

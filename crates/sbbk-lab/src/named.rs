@@ -16,6 +16,5 @@ shown_by_name!(
     crate::backend::Backend,
     crate::study::hard::Column,
     crate::study::hard::Group,
-    crate::study::hard::random::Family,
-    crate::study::everyday::Query
+    crate::study::hard::random::Family
 );

@@ -99,7 +99,7 @@ fn everyday_scenes_touch_and_are_judged() {
     assert!(stock > 100 * sbbk.max(1), "{stock} {sbbk}");
     let of = |name: &'static str| results.rows.iter().filter(move |row| row.backend == name);
     assert!(of("stock").zip(of("sbbk")).all(|(a, b)| (a.study, &a.keys) == (b.study, &b.keys)));
-    let is_robot = |row: &&Row| row.keys.values().any(|key| key.to_string().contains("URDF"));
+    let is_robot = |row: &&Row| row.keys.values().any(|key| key.contains("URDF"));
     let touches = |row: &Row| row.count("judged.true_pairs") > 10;
     // Contacts of meshes with the loader's flags are not judged.
     assert_eq!(of("sbbk").filter(is_robot).map(touches).collect::<Vec<_>>(), [false, true]);
@@ -125,7 +125,7 @@ fn the_control_passes_and_sheets_hold_plain_meshes() {
     let passed = |column: Column, scene: &str| -> Vec<bool> {
         let rows = results.rows.iter().filter(|row| row.study == "hard scenes");
         let rows = rows.filter(|row| row.is("backend", column));
-        let rows = rows.filter(|row| row.keys["scene"].to_string().contains(scene));
+        let rows = rows.filter(|row| row.keys["scene"].contains(scene));
         rows.map(|row| row.count("passed") == 1).collect()
     };
     assert_eq!(passed(Column::Control, "slab"), [true; 4]);
@@ -163,7 +163,7 @@ fn advice_fits_the_mesh() {
         (inside_out, SurfaceKind::InsideOut),
     ];
     for (mesh, kind) in &cases {
-        let advice = advise(mesh, &Progress::hidden());
+        let advice = advise(mesh, 30, &Progress::hidden());
         let text = advice.to_string();
         assert_eq!((advice.kind, text.lines().count()), (*kind, 4), "{text}");
         assert!(advice.speeds().iter().all(|speed| *speed > 0.0), "{text}");

@@ -29,9 +29,10 @@ pub struct Results {
 }
 
 impl Results {
-    /// Findings of this machine.
-    pub fn new(study: &'static str, verdict: String, rows: Vec<Row>) -> Self {
-        Self { study, environment: environment(), verdict, rows, notes: Vec::new() }
+    /// Findings of this machine, with the verdict that the documentation describes, if any.
+    pub fn new(study: &'static str, rows: Vec<Row>) -> Self {
+        let (environment, verdict) = (environment(), tables::verdict(study, &rows));
+        Self { study, environment, verdict, rows, notes: Vec::new() }
     }
 }
 

@@ -34,7 +34,8 @@ impl Results {
         );
         for row in &self.rows {
             let [study, scene, backend] = [row.study, &row.scene(), &row.backend].map(quoted);
-            for (quantity, statistic, value) in row.measurements() {
+            for (path, value) in &row.values {
+                let (quantity, statistic) = path.split_once('.').unwrap_or((path, "value"));
                 let value: f64 = format!("{value:.5e}").parse().unwrap_or(f64::NAN);
                 text.push_str(&format!(
                     "{study},{scene},{backend},{},{statistic},{value}\n",

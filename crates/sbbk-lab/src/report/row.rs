@@ -1,7 +1,12 @@
 //! Rows of results.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
-use serde_json::{Map, Value};
+use serde_json::Value;
+
+/// Kinds of wrong contacts, as values of a row.
+pub(super) const WRONG: [&str; 4] = ["missed", "phantom", "wrong_depth", "wrong_normal"];
 
 /// Numbers of one backend about one question.
 #[derive(Clone, Debug)]
@@ -11,94 +16,63 @@ pub struct Row {
     /// Name of the backend.
     pub backend: String,
     /// The question: the mesh, its size, the motion.
-    pub keys: Map<String, Value>,
-    /// Numbers by name, and objects and lists of numbers.
-    pub values: Map<String, Value>,
+    pub keys: BTreeMap<&'static str, String>,
+    /// Numbers by path: a quantity, or one with a statistic, such as `time.min`.
+    pub values: BTreeMap<String, f64>,
 }
 
 impl Row {
     /// Makes a row without keys and values.
     pub fn new(study: &'static str, backend: impl ToString) -> Self {
-        Self { study, backend: backend.to_string(), keys: Map::new(), values: Map::new() }
+        let (keys, values) = Default::default();
+        Self { study, backend: backend.to_string(), keys, values }
     }
 
     /// Adds a key.
-    pub fn key(mut self, name: &str, value: impl Into<Value>) -> Self {
-        self.keys.insert(name.to_owned(), value.into());
+    pub fn key(mut self, name: &'static str, value: impl ToString) -> Self {
+        self.keys.insert(name, value.to_string());
         self
     }
 
-    /// Adds a value. NaN becomes null.
+    /// Adds all numbers of a value that are finite.
     pub fn with(mut self, name: &str, value: impl Serialize) -> Self {
-        self.values.insert(name.to_owned(), serde_json::to_value(value).unwrap_or_default());
+        self.collect(name, &serde_json::to_value(value).unwrap_or_default());
         self
     }
 
-    /// The key or value at a path such as `time.min`.
-    pub fn get(&self, path: &str) -> Option<&Value> {
-        let mut names = path.split('.');
-        let first = names.next()?;
-        let found = self.keys.get(first).or_else(|| self.values.get(first))?;
-        names.try_fold(found, |value, name| value.get(name))
+    fn collect(&mut self, path: &str, value: &Value) {
+        for (key, value) in value.as_object().into_iter().flatten() {
+            self.collect(&format!("{path}.{key}"), value);
+        }
+        for (index, value) in value.as_array().into_iter().flatten().enumerate() {
+            self.collect(&format!("{path}.{index}"), value);
+        }
+        self.values.extend(value.as_f64().map(|number| (path.to_owned(), number)));
     }
 
     /// True if the backend or a key has this name.
     pub fn is(&self, key: &str, name: impl ToString) -> bool {
-        let found = match key {
-            "backend" => Some(&*self.backend),
-            _ => self.get(key).and_then(Value::as_str),
-        };
-        found == Some(&*name.to_string())
+        let found = if key == "backend" { Some(&self.backend) } else { self.keys.get(key) };
+        found == Some(&name.to_string())
     }
 
     /// The number at a path, or NaN.
     pub fn number(&self, path: &str) -> f64 {
-        self.get(path).and_then(Value::as_f64).unwrap_or(f64::NAN)
+        self.values.get(path).copied().unwrap_or(f64::NAN)
     }
 
     pub fn count(&self, path: &str) -> u64 {
-        self.get(path).and_then(Value::as_u64).unwrap_or(0)
+        self.number(path) as u64
     }
 
-    /// Number of wrong contacts in the object at `path`.
+    /// Number of wrong contacts at a path.
     pub fn wrong(&self, path: &str) -> u64 {
-        let kinds = ["missed", "phantom", "wrong_depth", "wrong_normal"];
-        kinds.map(|kind| self.count(&format!("{path}.{kind}"))).into_iter().sum()
+        WRONG.map(|kind| self.count(&format!("{path}.{kind}"))).into_iter().sum()
     }
 
     /// All keys as text: "mesh ball, size 2".
     pub fn scene(&self) -> String {
-        let keys = self.keys.iter().map(|(name, value)| format!("{name} {}", text(value)));
+        let keys = self.keys.iter().map(|(name, value)| format!("{name} {value}"));
         keys.collect::<Vec<_>>().join(", ")
     }
-
-    /// All numbers, each with its quantity and the path below this quantity.
-    pub(super) fn measurements(&self) -> Vec<(&str, String, f64)> {
-        let measurements = self.values.iter().flat_map(|(quantity, value)| {
-            let mut found = Vec::new();
-            collect(value, String::new(), &mut found);
-            found.into_iter().map(|(path, number)| {
-                let statistic = if path.is_empty() { "value".to_owned() } else { path };
-                (&**quantity, statistic, number)
-            })
-        });
-        measurements.collect()
-    }
-}
-
-/// Shows a value without quotation marks.
-fn text(value: &Value) -> String {
-    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
-}
-
-/// Adds the numbers in `value`, each with its path below `path`.
-fn collect(value: &Value, path: String, found: &mut Vec<(String, f64)>) {
-    let below = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
-    for (key, value) in value.as_object().into_iter().flatten() {
-        collect(value, below(key), found);
-    }
-    for (index, value) in value.as_array().into_iter().flatten().enumerate() {
-        collect(value, below(&index.to_string()), found);
-    }
-    found.extend(value.as_f64().map(|number| (path, number)));
 }

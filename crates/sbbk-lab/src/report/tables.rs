@@ -1,6 +1,6 @@
 //! The tables of the documentation, filled with the numbers of a study.
 //!
-//! `docs/data/tables.txt` describes the tables. A placeholder is `{FUNCTION BACKEND: SCENE / PATH}`:
+//! `docs/data/tables.txt` describes tables and verdicts. A placeholder is `{FUNCTION BACKEND: SCENE / PATH}`:
 //!
 //! * FUNCTION, which may be left out, joins the numbers of all rows. `sum` and `max` speak for
 //!   themselves. `ms` is the largest of numbers in microseconds. `wrong` counts wrong contacts.
@@ -13,6 +13,7 @@
 use std::collections::HashMap;
 use std::fmt;
 
+use super::row::{Row, WRONG};
 use crate::metrics::geometric_mean;
 
 const SPECS: &str = include_str!("../../../../docs/data/tables.txt");
@@ -37,6 +38,15 @@ pub fn tables(study: &str, csv: &str) -> Vec<Table> {
         (of == study).then(|| Table { name, lines: lines(body, &data) })
     });
     specs.filter(|table| table.lines.len() > 1).collect()
+}
+
+/// The main finding of a study; empty if it has no description.
+pub(super) fn verdict(study: &str, rows: &[Row]) -> String {
+    let specs = SPECS.split("\n\n").filter_map(|spec| spec.strip_prefix("verdict "));
+    let mut specs = specs.filter_map(|spec| spec.split_once('\n'));
+    let found = specs.find(|(name, _)| *name == study);
+    found
+        .map_or_else(String::new, |(_, text)| Data::of(rows).fill(&text.replace('\n', " "), "sbbk"))
 }
 
 impl Table {
@@ -99,6 +109,17 @@ struct Number {
 }
 
 impl Data {
+    fn of(rows: &[Row]) -> Self {
+        let numbers = rows.iter().flat_map(|row| {
+            let scene = format!("{}, {}", row.study, row.scene());
+            row.values.iter().map(move |(path, &value)| {
+                let (scene, backend, path) = (scene.clone(), row.backend.clone(), path.clone());
+                Number { scene, backend, path, value }
+            })
+        });
+        Self(numbers.collect())
+    }
+
     /// Reads the lines of [`super::Results::csv`].
     fn parse(text: &str) -> Self {
         let lines = text.lines().filter(|line| !line.starts_with('#')).skip(1);
@@ -151,8 +172,7 @@ impl Data {
         let (backend, scene) = scene.split_once(": ").unwrap_or((backend, scene));
         let sum = |path: &str| self.find(backend, scene, path).into_values().sum::<f64>();
         if function == "wrong" {
-            let kinds = ["missed", "phantom", "wrong_depth", "wrong_normal"];
-            let wrong = kinds.map(|kind| sum(&format!("{path}.{kind}"))).into_iter().sum();
+            let wrong = WRONG.map(|kind| sum(&format!("{path}.{kind}"))).into_iter().sum();
             let all = sum(&format!("{path}.true_pairs"));
             return (all > 0.0).then(|| format!("{} of {}", thousands(wrong), thousands(all)));
         }

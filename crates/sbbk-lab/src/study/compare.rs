@@ -1,6 +1,5 @@
 //! Both experiments of the paper on all backends.
 
-use super::pair::Sides;
 use super::runs::{self, RunPlan, pile};
 use crate::prelude::*;
 use crate::scene::HelicopterBallDrop;
@@ -52,22 +51,7 @@ pub fn compare(plan: &ComparePlan, progress: &Progress) -> Results {
         let plan = RunPlan { repeats, ..plan.pile.clone() };
         rows.extend(pile(&MonkeyPile::with_heads(heads), &plan, progress));
     }
-    Results::new("compare", verdict(plan, &rows), rows)
-}
-
-fn verdict(plan: &ComparePlan, rows: &[Row]) -> String {
-    let heads = plan.heads.iter().copied().max().unwrap_or(0);
-    let largest =
-        Sides::of(rows, |row| row.study == runs::RUNS && row.count("heads") == heads as u64);
-    let ([wrong, all], [stocks_wrong, stocks_all]) =
-        (wrong_of(rows, Backend::Sbbk), wrong_of(rows, Backend::Stock));
-    format!(
-        "in a pile of {heads} heads a whole step is {:.1} times as fast as stock's, collision \
-         detection {:.1} times; wrong contacts: SBBK {wrong} of {all}, stock {stocks_wrong} of \
-         {stocks_all}",
-        largest.ratio("step.median"),
-        largest.ratio("collision_detection.median"),
-    )
+    Results::new("compare", rows)
 }
 
 /// Runs the first experiment: the fall, the bounces and the rolling.
@@ -84,14 +68,4 @@ fn drops(plan: &ComparePlan, progress: &Progress) -> Vec<Row> {
     let row = Row::new("helicopter", "").key("ball", "mesh");
     let runs = runs::run(&HelicopterBallDrop, &plan, progress);
     runs.iter().map(|runs| runs::summed_up(&row, runs)).collect()
-}
-
-/// Adds up the wrong contacts of a backend, and those that were judged.
-fn wrong_of(rows: &[Row], backend: Backend) -> [u64; 2] {
-    let rows = rows.iter().filter(|row| row.is("backend", backend));
-    let paths = ["fresh", "updated", "fresh_error"];
-    rows.flat_map(|row| {
-        paths.map(|path| [row.wrong(path), row.count(&format!("{path}.true_pairs"))])
-    })
-    .fold([0, 0], |[wrong, all], [w, a]| [wrong + w, all + a])
 }

@@ -5,10 +5,9 @@
 //! deep inside. Brute force in f64 judges every answer.
 
 use crate::prelude::*;
-use serde_json::Value;
 
 use super::motion::{Approach, Mode, Place, STEP_COUNT};
-use super::pair::{Contest, SIDES, Sides};
+use super::pair::{Contest, SIDES};
 
 const EXACTNESS: &str = "contacts: exactness";
 const QUERIES: &str = "contacts: queries, µs";
@@ -118,20 +117,7 @@ pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Results {
         rows.extend(case.speed(&contest, plan.repeats));
         progress.step();
     }
-    Results::new("contacts", verdict(&rows), rows)
-}
-
-fn verdict(rows: &[Row]) -> String {
-    let exact = Sides::of(rows, |row| row.study == EXACTNESS);
-    let [stock, sbbk] = exact.wrong("errors");
-    let all: u64 = exact.sbbk().iter().map(|row| row.count("errors.true_pairs")).sum();
-    let [fresh, slow, fast] = Mode::ALL.map(|mode| {
-        Sides::of(rows, |row| row.study == QUERIES && row.is("mode", mode)).ratio("time.min")
-    });
-    format!(
-        "of {all} true contacts SBBK has {sbbk} wrong, stock {stock}; SBBK is {fresh:.1} times as \
-         fast in first queries, {slow:.1} and {fast:.1} times in slow and fast motion"
-    )
+    Results::new("contacts", rows)
 }
 
 impl Case<'_> {
@@ -169,15 +155,15 @@ impl Case<'_> {
     }
 
     fn row(&self, study: &'static str, backend: impl ToString) -> Row {
-        let row = Row::new(study, backend).key("mesh", &*self.mesh.mesh.name);
+        let row = Row::new(study, backend).key("mesh", &self.mesh.mesh.name);
         row.key("triangle_count", self.mesh.mesh.triangle_count())
     }
 
     fn exactness(&self) -> Vec<Row> {
         let rows = SIDES.into_iter().zip(&self.errors).map(|(backend, errors)| {
             self.row(EXACTNESS, backend)
-                .key("size", decimal(self.size))
-                .key("prediction", decimal(self.prediction))
+                .key("size", format!("{:?}", self.size))
+                .key("prediction", self.prediction)
                 .with("pose_count", self.places.len())
                 .with("errors", errors)
         });
@@ -198,14 +184,9 @@ impl Case<'_> {
                     contest.errors(&sequences, |step| step == STEP_COUNT / 2 || step == STEP_COUNT)
                 }
             };
-            let row = self.row(QUERIES, "").key("mode", mode.to_string());
+            let row = self.row(QUERIES, "").key("mode", mode);
             rows.extend(contest.rows(&row, repeats, &sequences, &errors));
         }
         rows
     }
-}
-
-/// Converts 0.1 to 0.1, as digits and not as bits.
-fn decimal(value: Real) -> Value {
-    value.to_string().parse::<f64>().unwrap_or(f64::NAN).into()
 }

@@ -6,9 +6,9 @@
 
 use crate::prelude::*;
 
-use super::kinds::{Kind, Upright, kinds};
+use super::kinds::{Kind, kinds};
 use super::motion::{Approach, Mode, Place};
-use super::pair::{Contest, SIDES, Sides};
+use super::pair::{Contest, SIDES};
 
 /// Extent of the comparison.
 #[derive(Clone, Debug)]
@@ -56,7 +56,7 @@ pub fn convex(plan: &ConvexPlan, progress: &Progress) -> Results {
         rows.extend(measure(plan, kind, seed));
         progress.step();
     }
-    Results::new("convex", verdict(&rows), rows)
+    Results::new("convex", rows)
 }
 
 fn measure(plan: &ConvexPlan, kind: &Kind, seed: u64) -> Vec<Row> {
@@ -79,7 +79,7 @@ fn measure(plan: &ConvexPlan, kind: &Kind, seed: u64) -> Vec<Row> {
             let sequences = sequences(plan, kind, &mesh, &places, mode);
             let errors = contest.errors(&sequences, |step| step.is_multiple_of(JUDGED));
             let row = Row::new(study, "").key("shape", kind.name).key("depth", depth);
-            let row = row.key("mode", mode.to_string());
+            let row = row.key("mode", mode);
             rows.extend(contest.rows(&row, plan.repeats, &sequences, &errors));
         }
     }
@@ -88,13 +88,10 @@ fn measure(plan: &ConvexPlan, kind: &Kind, seed: u64) -> Vec<Row> {
 
 fn approach(contest: &Contest, mesh: &SharedShape, kind: &Kind, random: &mut Rand32) -> Approach {
     let shapes = [&kind.shape, mesh];
-    let Some(upright) = kind.floor else {
+    let Some(turn) = kind.floor else {
         return Approach::random(contest.last(), shapes, random);
     };
-    let rotation = match upright {
-        Upright::Yes => Quat::IDENTITY,
-        Upright::No => random::rotation(random),
-    };
+    let rotation = turn(random);
     let [x, z] = [(); 2].map(|()| 20.0 * random.rand_float() - 10.0);
     Approach::along(Vec3::Y, rotation, Vec3::new(x, 0.0, z), contest.last(), shapes)
         .expect("a way from above to a floor touches it")
@@ -117,15 +114,4 @@ fn sequences(
         sequence
     };
     places.iter().enumerate().map(sequence).collect()
-}
-
-fn verdict(rows: &[Row]) -> String {
-    let sides = Sides::of(rows, |_| true);
-    let all: u64 = sides.sbbk().iter().map(|row| row.count("errors.true_pairs")).sum();
-    let [stock, sbbk] = sides.wrong("errors");
-    format!(
-        "SBBK is {:.1} times as fast as stock on the mean over shapes and motions; wrong contacts: \
-         SBBK {sbbk}, stock {stock}, of {all}",
-        sides.ratio("time.min")
-    )
 }

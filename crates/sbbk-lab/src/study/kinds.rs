@@ -9,17 +9,8 @@ pub(super) struct Kind {
     pub name: &'static str,
     /// The shape, about a unit across, or a floor.
     pub shape: SharedShape,
-    /// For floors: orientation of the mesh, which comes from above.
-    pub floor: Option<Upright>,
-}
-
-/// Orientation of a mesh on a floor.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Upright {
-    /// Along the axes of the floor.
-    Yes,
-    /// Any orientation: the box of the floor in the frame of the mesh then contains the mesh.
-    No,
+    /// For floors: draws the orientation of the mesh, which comes from above.
+    pub floor: Option<fn(&mut Rand32) -> Quat>,
 }
 
 /// Every convex kind of Rapier, about `unit` across, floors of 100 units, and compounds: a dumbbell,
@@ -36,7 +27,10 @@ pub(super) fn kinds(unit: f32) -> Vec<Kind> {
     let cuboid = |x, y, z| SharedShape::cuboid(x * unit, y * unit, z * unit);
     let end = |x: f32| (Pose3::translation(x * unit, 0.0, 0.0), cuboid(0.2, 0.25, 0.25));
     let bar = (Pose3::IDENTITY, cuboid(0.5, 0.08, 0.08));
-    let (floor, tilted) = (Some(Upright::Yes), Some(Upright::No));
+    // The box of a floor in the frame of a turned mesh contains the mesh.
+    type Turn = fn(&mut Rand32) -> Quat;
+    let (floor, tilted): (Option<Turn>, Option<Turn>) =
+        (Some(|_| Quat::IDENTITY), Some(random::rotation));
     let kinds = [
         ("ball", SharedShape::ball(0.5 * unit), None),
         ("cuboid", cuboid(0.5, 0.35, 0.25), None),

@@ -79,37 +79,6 @@ fn sweep(dispatcher: &SharedDispatcher, sequences: &[Sequence]) -> Duration {
     sequences.iter().map(time).sum()
 }
 
-/// Rows of stock and of SBBK, in the same order.
-pub(super) struct Sides<'a>(pub [Vec<&'a Row>; 2]);
-
-impl<'a> Sides<'a> {
-    pub fn of(rows: &'a [Row], counts: impl Fn(&Row) -> bool) -> Self {
-        Self(SIDES.map(|backend| {
-            rows.iter().filter(|row| row.is("backend", backend) && counts(row)).collect()
-        }))
-    }
-
-    /// Numbers of stock over those of SBBK at a path.
-    pub fn ratios(&self, path: &str) -> impl Iterator<Item = f64> {
-        let [stock, sbbk] = &self.0;
-        stock.iter().zip(sbbk).map(move |(a, b)| a.number(path) / b.number(path))
-    }
-
-    /// The geometric mean of the ratios.
-    pub fn ratio(&self, path: &str) -> f64 {
-        geometric_mean(self.ratios(path)).unwrap_or(f64::NAN)
-    }
-
-    /// Wrong contacts of both.
-    pub fn wrong(&self, path: &str) -> [u64; 2] {
-        self.0.each_ref().map(|rows| rows.iter().map(|row| row.wrong(path)).sum())
-    }
-
-    pub fn sbbk(&self) -> &[&'a Row] {
-        &self.0[1]
-    }
-}
-
 /// Calls `measure` for each contestant in turn, `repeats` times over, so that a slow spell of the
 /// machine slows all of them. Returns the results by contestant.
 pub(super) fn in_turn<C, T>(

@@ -60,7 +60,8 @@ pub fn one_pile(scene: &MonkeyPile, plan: &RunPlan, progress: &Progress) -> Resu
     let rows = pile(scene, plan, progress);
     let steps = rows.iter().map(|row| format!("{} {:.2}", row.backend, row.number("step.median")));
     let steps = steps.collect::<Vec<_>>().join(", ");
-    Results::new("pile", format!("{}, ms a whole step: {steps}", scene.name()), rows)
+    let verdict = format!("{}, ms a whole step: {steps}", scene.name());
+    Results { verdict, ..Results::new("pile", rows) }
 }
 
 /// Runs a scene on all backends step by step in turns, so that a slow spell of the machine slows all

@@ -12,8 +12,7 @@ use super::measure::{Driven, Everyday};
 use super::robots::Subject;
 use super::scenes::{kinds, put};
 
-/// Steps of each run, and runs of each scene.
-const STEPS: usize = 120;
+/// Runs of each scene.
 const REPEATS: usize = 2;
 /// Convex bodies on a terrain, along each side.
 const TERRAIN_SIDE: usize = 7;
@@ -48,22 +47,24 @@ pub struct Advice {
     wants_trees: bool,
 }
 
-/// Measures whole worlds with this mesh. `length_unit` and gravity have the size of the bodies.
-pub fn advise(mesh: &Mesh, progress: &Progress) -> Advice {
-    advise_on(&Subject::mesh(mesh), progress)
+/// Measures whole worlds with this mesh for so many steps. `length_unit` and gravity have the size of
+/// the bodies.
+pub fn advise(mesh: &Mesh, steps: usize, progress: &Progress) -> Advice {
+    advise_on(&Subject::mesh(mesh), steps, progress)
 }
 
 /// Measures the robot of a URDF file, loaded by Rapier's loader without flags of meshes.
 ///
 /// Errors: the file cannot be loaded, or its robot has no shapes.
-pub fn advise_robot(file: &Path, progress: &Progress) -> Result<Advice, FileError> {
-    Ok(advise_on(&Subject::robot(file)?, progress))
+pub fn advise_robot(file: &Path, steps: usize, progress: &Progress) -> Result<Advice, FileError> {
+    Ok(advise_on(&Subject::robot(file)?, steps, progress))
 }
 
-fn advise_on(subject: &Subject, progress: &Progress) -> Advice {
+fn advise_on(subject: &Subject, steps: usize, progress: &Progress) -> Advice {
     let bounds = subject.bounds(&Pose3::IDENTITY);
     let size = bounds.extents().max_element();
-    let scenes = Scenes { subject, bounds, size, large: subject.larger_than(UNPREPARED) };
+    let large = subject.larger_than(UNPREPARED);
+    let scenes = Scenes { subject, bounds, size, large, steps };
     let rows = [scenes.terrain(), scenes.bodies(), scenes.sensors()]
         .map(|scene| scene.measure(REPEATS, progress));
     Advice {
@@ -83,6 +84,7 @@ struct Scenes<'a> {
     size: f32,
     /// Shapes with a tree only if prepared.
     large: Vec<SharedShape>,
+    steps: usize,
 }
 
 impl Scenes<'_> {
@@ -175,8 +177,8 @@ impl Scenes<'_> {
     }
 
     fn scene<'b>(&self, part: &str, build: impl Fn() -> Driven + 'b) -> Everyday<'b> {
-        let row = Row::new("advice", "").key("mesh", &*self.subject.name).key("as", part);
-        Everyday { prepared: self.large.clone(), ..Everyday::new(row, STEPS, build) }
+        let row = Row::new("advice", "").key("mesh", &self.subject.name).key("as", part);
+        Everyday { prepared: self.large.clone(), ..Everyday::new(row, self.steps, build) }
     }
 }
 

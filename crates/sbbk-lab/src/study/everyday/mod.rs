@@ -16,9 +16,7 @@ mod scenes;
 
 pub use self::advise::{Advice, advise, advise_robot};
 use self::measure::Everyday;
-pub(crate) use self::queries::Query;
 use self::scenes::Ground;
-use super::pair::Sides;
 
 const BODIES: &str = "everyday: bodies on terrains";
 const SINGLE: &str = "everyday: single bodies, and many meshes";
@@ -136,28 +134,35 @@ pub fn everyday(plan: &EverydayPlan, progress: &Progress) -> Result<Results, Fil
     for group in &plan.groups {
         worlds.group(*group)?;
     }
-    Ok(Results::new("everyday", verdict(&worlds.rows), worlds.rows))
+    Ok(Results { verdict: verdict(&worlds.rows), ..Results::new("everyday", worlds.rows) })
 }
 
 /// A median of SBBK is slower above this factor and this many microseconds.
 const NOISE: f64 = 1.05;
 const IGNORED: f64 = 1.0;
 
-/// Main finding: ratios of the medians of worlds, and losses.
+/// Main finding: ratios of the medians of worlds, and losses. Rows are pairs of stock and SBBK.
 fn verdict(rows: &[Row]) -> String {
-    let worlds = Sides::of(rows, |row| row.study != QUERIES);
-    let medians = worlds.0.each_ref().map(|rows| rows.iter().map(|r| r.number("detection.median")));
-    let [stock, sbbk] = medians;
-    let slower = stock.zip(sbbk).filter(|(a, b)| *b > (NOISE * a).max(a + IGNORED)).count();
-    let [stock, sbbk] = worlds.wrong("judged");
+    let rows = rows.iter().filter(|row| row.study != QUERIES).collect::<Vec<&Row>>();
+    let (worlds, _) = rows.as_chunks::<2>();
+    let ratios = |path| worlds.iter().map(move |[a, b]| a.number(path) / b.number(path));
+    let mean = |path| geometric_mean(ratios(path)).unwrap_or(f64::NAN);
+    let is_slower = |[stock, sbbk]: &&[&Row; 2]| {
+        let [stock, sbbk] = [stock, sbbk].map(|row| row.number("detection.median"));
+        sbbk > (NOISE * stock).max(stock + IGNORED)
+    };
+    let wrong = |side: usize| worlds.iter().map(|rows| rows[side].wrong("judged")).sum::<u64>();
     format!(
         "in {} worlds collision detection is {:.2} times as fast as stock's and whole steps {:.2} \
-         times (geometric means of medians; least {:.2}); {slower} worlds are slower than stock; \
-         wrong contacts of those judged: SBBK {sbbk}, stock {stock}",
-        worlds.sbbk().len(),
-        worlds.ratio("detection.median"),
-        worlds.ratio("step.median"),
-        worlds.ratios("detection.median").fold(f64::INFINITY, f64::min),
+         times (geometric means of medians; least {:.2}); {} worlds are slower than stock; wrong \
+         contacts of those judged: SBBK {}, stock {}",
+        worlds.len(),
+        mean("detection.median"),
+        mean("step.median"),
+        ratios("detection.median").fold(f64::INFINITY, f64::min),
+        worlds.iter().filter(is_slower).count(),
+        wrong(1),
+        wrong(0),
     )
 }
 
@@ -199,16 +204,18 @@ impl Worlds<'_> {
             }
             #[cfg(feature = "parallel")]
             Group::Threads => self.threads(),
-            Group::Queries => {
-                self.progress.phase("queries on terrains", plan.query_cells.len());
-                for &cells in &plan.query_cells {
-                    let ground = Ground::new(cells, 0.5, PLAIN);
-                    self.rows.extend(queries::queries(&ground, plan.repeats));
-                    self.progress.step();
-                }
-            }
+            Group::Queries => self.queries(),
         }
         Ok(())
+    }
+
+    fn queries(&mut self) {
+        self.progress.phase("queries on terrains", self.plan.query_cells.len());
+        for &cells in &self.plan.query_cells {
+            let ground = Ground::new(cells, 0.5, PLAIN);
+            self.rows.extend(queries::queries(&ground, self.plan.repeats));
+            self.progress.step();
+        }
     }
 
     #[cfg(feature = "parallel")]

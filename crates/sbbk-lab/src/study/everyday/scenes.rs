@@ -102,7 +102,7 @@ pub(super) fn bodies(ground: &Ground, count: usize, steps: usize) -> Vec<Everyda
     let scene = |(name, shapes): (&str, Vec<SharedShape>)| {
         let row = Row::new(BODIES, "")
             .key("triangles", ground.triangle_count)
-            .key("side", ground.cell.to_string())
+            .key("side", ground.cell)
             .key("edges", if ground.flags == FIXED { "fixed" } else { "plain" })
             .key("shape", name)
             .with("bodies", count);

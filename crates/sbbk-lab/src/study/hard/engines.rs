@@ -162,7 +162,7 @@ impl EnginePile {
                 Row::new(STUDY, engine).key("figure", figure).with("value", value)
             }));
         }
-        Ok(Results::new("engines", verdict(engines, &rows), rows))
+        Ok(Results::new("engines", rows))
     }
 
     fn read_run(&self, path: &Path) -> io::Result<Run> {
@@ -305,13 +305,6 @@ impl Run {
         let count = heads.len() as f64;
         heads.map(of).sum::<f64>() / count
     }
-}
-
-fn verdict(engines: &[(String, Vec<&Path>)], rows: &[Row]) -> String {
-    let is_shown = |row: &&Row| row.is("figure", "step in motion, median, ms");
-    let times = engines.iter().zip(rows.iter().filter(is_shown));
-    let times = times.map(|((engine, _), row)| format!("{engine} {:.1}", row.number("value")));
-    format!("median step of the pile in motion, ms: {}", times.collect::<Vec<_>>().join(", "))
 }
 
 fn bytes(numbers: &[f32]) -> Vec<u8> {

@@ -157,7 +157,7 @@ pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, FileError> 
         run_all(&mut runs, &group.to_string(), &trials, &plan.settings, threads, progress)?;
     }
     let rows = runs.iter().flat_map(|run| {
-        let row = Row::new("hard scenes", run.column).key("scene", &*run.scene);
+        let row = Row::new("hard scenes", run.column).key("scene", &run.scene);
         let row = row.with("passed", usize::from(run.wrong().is_none()));
         [row].into_iter().chain(run.rows("hard scenes: figures"))
     });
@@ -167,8 +167,8 @@ pub fn hard(plan: &HardPlan, progress: &Progress) -> Result<Results, FileError> 
         format!("{column} {} of {}", failed.count(), of.count())
     });
     let verdict = format!("scenes that fail: {}", failed.collect::<Vec<_>>().join(", "));
-    let results = Results::new("hard_scenes", verdict, rows.collect());
-    Ok(Results { notes: report::notes(&plan.settings, &runs), ..results })
+    let notes = report::notes(&plan.settings, &runs);
+    Ok(Results { verdict, notes, ..Results::new("hard_scenes", rows.collect()) })
 }
 
 /// Runs scenes of one kind in all columns. The first scene of all is recorded, if there is to be a

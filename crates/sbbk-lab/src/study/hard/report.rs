@@ -29,7 +29,7 @@ impl Run {
     /// A row for each figure.
     pub fn rows(&self, study: &'static str) -> Vec<Row> {
         let row = |figure: &Figure| {
-            let row = Row::new(study, self.column).key("scene", &*self.scene);
+            let row = Row::new(study, self.column).key("scene", &self.scene);
             let row = row.key("figure", figure.name);
             row.with("worst", figure.value).with("limits", figure.limits)
         };

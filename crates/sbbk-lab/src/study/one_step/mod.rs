@@ -79,7 +79,7 @@ struct Seen {
 pub fn one_step(plan: &OneStepPlan, progress: &Progress) -> Results {
     let scene = MonkeyPile::with_heads(plan.heads);
     let rows = steps(&scene, plan, progress);
-    Results::new("one_step", verdict(plan, &rows), rows)
+    Results::new("one_step", rows)
 }
 
 fn steps(scene: &dyn Scene, plan: &OneStepPlan, progress: &Progress) -> Vec<Row> {
@@ -135,19 +135,4 @@ fn row(scene: &dyn Scene, way: &Way, seen: Seen) -> Row {
         .with("error", Summary::of(seen.errors))
         .with("points", Summary::of(seen.points))
         .with("step", Summary::of(seen.times))
-}
-
-fn verdict(plan: &OneStepPlan, rows: &[Row]) -> String {
-    let substeps = plan.substeps.iter().copied().find(|&count| count >= 4).unwrap_or(1) as u64;
-    let of = |backend: Backend, path| {
-        let is_shown = |row: &&Row| row.is("backend", backend) && row.count("substeps") == substeps;
-        rows.iter().find(is_shown).map_or(f64::NAN, |row| row.number(path))
-    };
-    let [stock, sbbk] =
-        [Backend::Stock, Backend::Sbbk].map(|b| [of(b, "error.median"), of(b, "step.median")]);
-    format!(
-        "at {substeps} substeps the velocities after one step err by {:.2} of the contact impulse \
-         (stock {:.2}); a step takes {:.1} ms (stock {:.1})",
-        sbbk[0], stock[0], sbbk[1], stock[1]
-    )
 }

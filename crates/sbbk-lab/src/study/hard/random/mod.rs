@@ -125,14 +125,13 @@ pub fn random(plan: &RandomPlan, progress: &Progress) -> Result<Results, FileErr
     let broken = runs.iter().filter(|run| run.column == Column::Sbbk && run.wrong().is_some());
     let broken = broken.flat_map(|run| run.rows("random scenes: broken"));
     let rows: Vec<Row> = rows.chain(broken).collect();
-    let results = Results::new("random_scenes", verdict(plan, &rows), rows);
     let mut notes = report::notes(&plan.settings, &runs);
     if !notes.is_empty() {
         let seed = plan.seed;
         let unit = plan.unit.map(|unit| format!(" --unit {unit}")).unwrap_or_default();
         notes.push(format!("again: --family FAMILY --number NUMBER --seed {seed}{unit} --verbose"));
     }
-    Ok(Results { notes, ..results })
+    Ok(Results { verdict: verdict(plan, &rows), notes, ..Results::new("random_scenes", rows) })
 }
 
 /// Scenes of a family that hold in a column, and those that SBBK breaks although stock holds them, with
