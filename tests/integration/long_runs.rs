@@ -9,7 +9,7 @@ use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::math::Vector;
 use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh::{self, Mesh};
-use sbbk_testkit::scene::{BoxStack, HeadOnSlope, HelicopterBallDrop, MonkeyPile, Scene, Solid};
+use sbbk_testkit::scene::{BoxStack, HeadOnSlope, HelicopterBallDrop, MonkeyPile, Scene, collider};
 use sbbk_testkit::world::fingerprint;
 
 use crate::support::with;
@@ -32,8 +32,8 @@ impl Soak {
     /// A mesh floor without bodies.
     fn new() -> Self {
         let mut world = PhysicsWorld::new();
-        let floor = Solid::new(&mesh::terrain(24.0, 24, 0.6));
-        world.insert(RigidBodyBuilder::fixed(), floor.collider());
+        let floor = collider(&mesh::terrain(24.0, 24, 0.6));
+        world.insert(RigidBodyBuilder::fixed(), floor);
         let dispatcher = with(|config| config.idle_tree_bytes = IDLE_BYTES);
         world.narrow_phase.set_query_dispatcher(dispatcher.clone());
         Self { world, dispatcher, random: Rand32::new(1), bodies: VecDeque::new() }
@@ -42,7 +42,7 @@ impl Soak {
     /// Adds a body with a mesh of its own and removes the oldest. Every fourth body exchanges the
     /// mesh of a living one.
     fn spawn(&mut self, count: usize) {
-        let collider = Solid::new(&self.new_mesh()).collider().build();
+        let collider = collider(&self.new_mesh()).build();
         if count % 4 == 1
             && let Some(&body) = self.bodies.back()
         {

@@ -9,9 +9,8 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use sbbk_lab::cli::{Outcome, print};
-use sbbk_lab::mesh_file;
 use sbbk_lab::progress::Progress;
-use sbbk_lab::study::everyday::{advise, advise_robot};
+use sbbk_lab::study::everyday::{Subject, advise};
 
 /// Steps of each run.
 const STEPS: usize = 120;
@@ -28,11 +27,7 @@ fn main() -> Outcome {
     let Arguments { files } = Arguments::parse();
     let progress = Progress::visible();
     for path in &files {
-        let is_robot = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf"));
-        let advice = match is_robot {
-            true => advise_robot(path, STEPS, &progress)?,
-            false => advise(&mesh_file::load(path)?, STEPS, &progress),
-        };
+        let advice = advise(&Subject::load(path)?, STEPS, &progress);
         progress.finish();
         print(advice)?;
     }

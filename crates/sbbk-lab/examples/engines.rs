@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use sbbk_lab::cli::{Outcome, print};
+use sbbk_lab::mesh::monkey_head;
 use sbbk_lab::mesh_file;
 use sbbk_lab::report::write_file;
 use sbbk_lab::scene::MonkeyPile;
@@ -57,11 +58,8 @@ enum Arguments {
 fn main() -> Outcome {
     match Arguments::parse() {
         Arguments::Export { scene, heads, seed, mesh } => {
-            let mut pile = match mesh {
-                Some(path) => MonkeyPile::of(heads, mesh_file::load(&path)?),
-                None => MonkeyPile::with_heads(heads),
-            };
-            pile.seed = seed;
+            let head = mesh.map_or_else(|| Ok(monkey_head()), |path| mesh_file::load(&path))?;
+            let pile = MonkeyPile { seed, ..MonkeyPile::of(heads, head) };
             Ok(EnginePile::new(&pile).write(&scene)?)
         }
         Arguments::Run { column, scene, run } => Ok(EnginePile::read(&scene)?.run(column, &run)?),

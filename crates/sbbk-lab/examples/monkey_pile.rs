@@ -11,6 +11,7 @@ use std::path::PathBuf;
 use clap::Parser;
 use sbbk_lab::backend::Backend;
 use sbbk_lab::cli::{Outcome, print, print_page};
+use sbbk_lab::mesh::monkey_head;
 use sbbk_lab::mesh_file;
 use sbbk_lab::progress::Progress;
 use sbbk_lab::replay;
@@ -41,10 +42,8 @@ struct Arguments {
 fn main() -> Outcome {
     let Arguments { heads, steps, backend, mesh, replay: page } = Arguments::parse();
     page.as_deref().map_or(Ok(()), check_output)?;
-    let scene = match &mesh {
-        Some(path) => MonkeyPile::of(heads.get(), mesh_file::load(path)?),
-        None => MonkeyPile::with_heads(heads.get()),
-    };
+    let head = mesh.map_or_else(|| Ok(monkey_head()), |path| mesh_file::load(&path))?;
+    let scene = MonkeyPile::of(heads.get(), head);
     let steps = steps.get();
     let plan = RunPlan {
         backends: backend,

@@ -12,7 +12,7 @@ pub(crate) use crate::progress::Progress;
 pub(crate) use crate::replay;
 pub(crate) use crate::replay::Recorder;
 pub(crate) use crate::report::{Results, Row};
-pub(crate) use crate::scene::{MonkeyPile, Scene, SceneWorld, Solid, random};
+pub(crate) use crate::scene::{MonkeyPile, Scene, SceneWorld, collider, random};
 pub(crate) use clap::ValueEnum;
 pub(crate) use glamx::{DVec3, Pose3, Quat, Vec3};
 pub(crate) use oorandom::Rand32;

@@ -9,7 +9,7 @@ use sbbk_lab::report::{Results, Row, tables};
 use sbbk_lab::study::compare::{ComparePlan, compare};
 use sbbk_lab::study::contacts::{ApproachedMesh, ContactsPlan, contacts};
 use sbbk_lab::study::convex::{ConvexPlan, convex};
-use sbbk_lab::study::everyday::{EverydayPlan, advise, everyday};
+use sbbk_lab::study::everyday::{EverydayPlan, Subject, advise, everyday};
 use sbbk_lab::study::hard::random::{Family, RandomPlan, random};
 use sbbk_lab::study::hard::{self, Column, HardPlan, Settings};
 use sbbk_lab::study::one_step::{OneStepPlan, one_step};
@@ -163,7 +163,7 @@ fn advice_fits_the_mesh() {
         (inside_out, SurfaceKind::InsideOut),
     ];
     for (mesh, kind) in &cases {
-        let advice = advise(mesh, 30, &Progress::hidden());
+        let advice = advise(&Subject::mesh(mesh), 30, &Progress::hidden());
         let text = advice.to_string();
         assert_eq!((advice.kind, text.lines().count()), (*kind, 4), "{text}");
         assert!(advice.speeds().iter().all(|speed| *speed > 0.0), "{text}");

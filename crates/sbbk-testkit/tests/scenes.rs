@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use rapier3d::parry::query;
 use sbbk_testkit::mesh;
-use sbbk_testkit::scene::{BoxStack, HeadOnSlope, HelicopterBallDrop, MonkeyPile, Scene, Solid};
+use sbbk_testkit::scene::{BoxStack, HeadOnSlope, HelicopterBallDrop, MonkeyPile, Scene, collider};
 
 /// Every scene, with the number of its moving bodies.
 fn scenes() -> Vec<(Box<dyn Scene>, usize)> {
@@ -52,9 +52,9 @@ fn any_mesh_with_triangles_has_a_positive_mass() {
     let inverted = mesh::ball(1.0, 4).mapped(|v| -v);
     for mesh in [mesh::terrain(4.0, 8, 0.2), inverted] {
         let size = mesh.bounds().volume();
-        let mass = Solid::new(&mesh).collider().build().mass();
+        let mass = collider(&mesh).build().mass();
         assert!((mass - size).abs() < 1e-3 * size, "{}: {mass} instead of {size}", mesh.name);
     }
-    let ball = Solid::new(&mesh::ball(1.0, 16)).collider().build();
+    let ball = collider(&mesh::ball(1.0, 16)).build();
     assert!((ball.mass() - 4.0 / 3.0 * std::f32::consts::PI).abs() < 0.1);
 }

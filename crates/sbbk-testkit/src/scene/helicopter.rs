@@ -4,7 +4,7 @@ use glamx::Vec3;
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::pipeline::PhysicsWorld;
 
-use super::{Scene, SceneWorld, Solid};
+use super::{Scene, SceneWorld, collider};
 use crate::mesh;
 
 /// A mesh ball falls, by gravity alone, on the rotor of a fixed helicopter, bounces and rolls off.
@@ -27,10 +27,10 @@ impl Scene for HelicopterBallDrop {
 
     fn build(&self) -> SceneWorld {
         let mut world = PhysicsWorld::new();
-        world.insert(RigidBodyBuilder::fixed(), Solid::new(&mesh::helicopter()).collider());
-        let collider = Solid::new(&mesh::ball(RADIUS, DETAIL)).collider();
+        world.insert(RigidBodyBuilder::fixed(), collider(&mesh::helicopter()));
+        let ball = collider(&mesh::ball(RADIUS, DETAIL));
         let body = RigidBodyBuilder::dynamic().translation(START);
-        let (body, _) = world.insert(body, collider.restitution(0.4));
+        let (body, _) = world.insert(body, ball.restitution(0.4));
         SceneWorld { world, watched: vec![body] }
     }
 }

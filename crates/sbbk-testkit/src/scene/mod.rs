@@ -15,15 +15,16 @@ mod helicopter;
 mod pile;
 pub mod random;
 mod resting;
-mod solid;
 
-use rapier3d::dynamics::RigidBodyHandle;
+use rapier3d::dynamics::{MassProperties, RigidBodyHandle};
+use rapier3d::geometry::ColliderBuilder;
 use rapier3d::pipeline::PhysicsWorld;
+
+use crate::mesh::Mesh;
 
 pub use helicopter::HelicopterBallDrop;
 pub use pile::MonkeyPile;
 pub use resting::{BoxStack, HeadOnSlope};
-pub use solid::Solid;
 
 /// Data from which the same world can be built again and again.
 pub trait Scene {
@@ -39,4 +40,19 @@ pub struct SceneWorld {
     pub world: PhysicsWorld,
     /// The moving bodies, in the order in which the scene lists them.
     pub watched: Vec<RigidBodyHandle>,
+}
+
+/// A collider of a mesh, whose clones share its shape. Its mass is that of the enclosed volume, or of
+/// the bounding box if the mesh is open or inside out.
+pub fn collider(mesh: &Mesh) -> ColliderBuilder {
+    /// A thin bowl encloses about 5 % of its bounding box; a sheet, 0.
+    const LEAST_SOLIDITY: f64 = 0.01;
+    let (shape, bounds) = (mesh.shape(), mesh.bounds());
+    let mass = if mesh.volume() > LEAST_SOLIDITY * f64::from(bounds.volume()) {
+        shape.mass_properties(1.0)
+    } else {
+        let cuboid = MassProperties::from_cuboid(1.0, bounds.half_extents());
+        MassProperties { local_com: bounds.center(), ..cuboid }
+    };
+    ColliderBuilder::new(shape).mass_properties(mass)
 }

@@ -8,15 +8,15 @@ use rapier3d::math::Vector;
 use rapier3d::pipeline::PhysicsWorld;
 
 use super::random::rotation;
-use super::{Scene, SceneWorld, Solid};
+use super::{Scene, SceneWorld, collider};
 use crate::mesh::{self, Mesh};
 
 /// Heads released at once from a loose grid above a floor, so that they fall and collide with it
 /// and with each other.
 ///
 /// The grid has five layers, each about square. Its cells are just larger than the head's sphere,
-/// so that no two heads touch at the start. Orientations are random. The lowest layer is half a cell above the floor, a fixed cuboid wide enough for the pile
-/// to spread. With the default head the pile is in full contact after about 90 steps (1.5 seconds).
+/// so that no two heads touch at the start. Orientations are random. The lowest layer is half a cell
+/// above the floor, a fixed cuboid wide enough for the pile to spread. With the default head the pile is in full contact after about 90 steps (1.5 seconds).
 #[derive(Clone, Debug)]
 pub struct MonkeyPile {
     /// Number of heads; the paper has 2000.
@@ -96,10 +96,10 @@ impl Scene for MonkeyPile {
             RigidBodyBuilder::fixed().translation(Vector::Y * -cell),
             ColliderBuilder::cuboid(side, cell, side),
         );
-        let solid = Solid::new(&self.mesh);
+        let head = collider(&self.mesh);
         let watched = self.poses().into_iter().map(|pose| {
             let body = RigidBodyBuilder::dynamic().pose(pose);
-            world.insert(body, solid.collider()).0
+            world.insert(body, head.clone()).0
         });
         let watched = watched.collect();
         SceneWorld { world, watched }

@@ -47,20 +47,9 @@ pub struct Advice {
     wants_trees: bool,
 }
 
-/// Measures whole worlds with this mesh for so many steps. `length_unit` and gravity have the size of
+/// Measures whole worlds with a subject for so many steps. `length_unit` and gravity have the size of
 /// the bodies.
-pub fn advise(mesh: &Mesh, steps: usize, progress: &Progress) -> Advice {
-    advise_on(&Subject::mesh(mesh), steps, progress)
-}
-
-/// Measures the robot of a URDF file, loaded by Rapier's loader without flags of meshes.
-///
-/// Errors: the file cannot be loaded, or its robot has no shapes.
-pub fn advise_robot(file: &Path, steps: usize, progress: &Progress) -> Result<Advice, FileError> {
-    Ok(advise_on(&Subject::robot(file)?, steps, progress))
-}
-
-fn advise_on(subject: &Subject, steps: usize, progress: &Progress) -> Advice {
+pub fn advise(subject: &Subject, steps: usize, progress: &Progress) -> Advice {
     let bounds = subject.bounds(&Pose3::IDENTITY);
     let size = bounds.extents().max_element();
     let large = subject.larger_than(UNPREPARED);

@@ -102,14 +102,6 @@ impl<'a> Everyday<'a> {
         })
     }
 
-    fn start(&self, dispatcher: Option<&SbbkDispatcher>) -> (Driven, Vec<Option<PreparedTree>>) {
-        let mut driven = (self.build)();
-        let Some(dispatcher) = dispatcher else { return (driven, Vec::new()) };
-        driven.world.narrow_phase.set_query_dispatcher(dispatcher.clone());
-        let trees = self.prepared.iter().filter_map(|shape| dispatcher.prepare_shape(shape).ok());
-        (driven, trees.collect())
-    }
-
     /// Runs both worlds at once, each first in turn.
     fn run(
         &self,
@@ -118,8 +110,10 @@ impl<'a> Everyday<'a> {
         progress: &Progress,
     ) {
         let dispatcher = SbbkDispatcher::default();
-        let ((stock, _), (sbbk, _prepared)) = (self.start(None), self.start(Some(&dispatcher)));
-        let mut worlds = [stock, sbbk];
+        let prepare = |shape| dispatcher.prepare_shape(shape).ok()?;
+        let _trees: Vec<PreparedTree> = self.prepared.iter().filter_map(prepare).collect();
+        let mut worlds = [(self.build)(), (self.build)()];
+        worlds[1].world.narrow_phase.set_query_dispatcher(dispatcher.clone());
         worlds.iter_mut().for_each(|driven| driven.world.physics_pipeline.counters.enable());
         for step in 0..self.steps {
             for i in [step % 2, 1 - step % 2] {

@@ -14,8 +14,9 @@ mod queries;
 mod robots;
 mod scenes;
 
-pub use self::advise::{Advice, advise, advise_robot};
+pub use self::advise::{Advice, advise};
 use self::measure::Everyday;
+pub use self::robots::Subject;
 use self::scenes::Ground;
 
 const BODIES: &str = "everyday: bodies on terrains";

@@ -13,6 +13,7 @@ use rapier3d_urdf::{UrdfLoaderOptions, UrdfRobot};
 use super::DEFORMABLE;
 use super::measure::{Driven, Everyday};
 use super::scenes::{Ground, above, named};
+use crate::mesh_file;
 
 /// A walker of four legs, nine meshes of 320 to 384 triangles, a metre long.
 const WALKER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/walker/walker.urdf");
@@ -120,31 +121,39 @@ impl Leg {
 
 type Insert = dyn Fn(&mut PhysicsWorld, Pose3);
 
-/// Shapes around the origin, and a function that inserts a body of them.
-pub(super) struct Subject {
-    pub name: String,
-    pub is_robot: bool,
+/// A mesh or a robot: shapes around the origin, and a function that inserts a body of them.
+pub struct Subject {
+    pub(super) name: String,
+    pub(super) is_robot: bool,
     /// Poses at rest, and shapes.
     parts: Vec<(Pose3, SharedShape)>,
     /// Inserts a dynamic body.
-    pub insert: Box<Insert>,
+    pub(super) insert: Box<Insert>,
 }
 
 impl Subject {
+    /// Loads a mesh, or the robot of a URDF file.
+    ///
+    /// Errors: the file cannot be loaded, or its robot has no shapes.
+    pub fn load(file: &Path) -> Result<Self, FileError> {
+        match file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("urdf")) {
+            true => Self::robot(file),
+            false => Ok(Self::mesh(&mesh_file::load(file)?)),
+        }
+    }
+
     /// Moves a mesh to the origin.
     pub fn mesh(mesh: &Mesh) -> Self {
-        let solid = Solid::new(&mesh.clone().centred());
-        let parts = vec![(Pose3::IDENTITY, solid.collider().shape)];
+        let collider = collider(&mesh.clone().centred());
+        let parts = vec![(Pose3::IDENTITY, collider.shape.clone())];
         let insert = move |world: &mut PhysicsWorld, pose| {
-            world.insert(RigidBodyBuilder::dynamic().pose(pose), solid.collider());
+            world.insert(RigidBodyBuilder::dynamic().pose(pose), collider.clone());
         };
         Self { name: mesh.name.clone(), is_robot: false, parts, insert: Box::new(insert) }
     }
 
     /// Loads a robot without flags of meshes, upright, with all links free.
-    ///
-    /// Errors: the file cannot be loaded, or its robot has no shapes.
-    pub fn robot(file: &Path) -> Result<Self, FileError> {
+    fn robot(file: &Path) -> Result<Self, FileError> {
         let mut robot = load(file, TriMeshFlags::empty(), Pose3::from_rotation(upright()))?;
         let centre = bounds(&parts(&robot), file)?.center();
         robot.append_transform(&Pose3::from_translation(-centre));
@@ -162,34 +171,34 @@ impl Subject {
     }
 
     /// Colliders of one rigid body.
-    pub fn colliders(&self) -> impl Iterator<Item = ColliderBuilder> {
+    pub(super) fn colliders(&self) -> impl Iterator<Item = ColliderBuilder> {
         self.parts.iter().map(|(pose, shape)| ColliderBuilder::new(shape.clone()).position(*pose))
     }
 
     /// Shapes of the meshes with more triangles than this.
-    pub fn larger_than(&self, triangles: usize) -> Vec<SharedShape> {
+    pub(super) fn larger_than(&self, triangles: usize) -> Vec<SharedShape> {
         let shapes = self.parts.iter().map(|(_, shape)| shape);
         let is_large = |mesh: &TriMesh| mesh.indices().len() > triangles;
         shapes.filter(|shape| shape.as_trimesh().is_some_and(is_large)).cloned().collect()
     }
 
     /// Box around the subject at a pose.
-    pub fn bounds(&self, pose: &Pose3) -> Aabb {
+    pub(super) fn bounds(&self, pose: &Pose3) -> Aabb {
         around(&self.parts, pose).unwrap_or(Aabb::new_invalid())
     }
 
     /// Distance along a ray to the subject.
-    pub fn cast(&self, ray: &Ray, most: Real) -> Option<Real> {
+    pub(super) fn cast(&self, ray: &Ray, most: Real) -> Option<Real> {
         let hit = |(pose, shape): &(Pose3, SharedShape)| shape.cast_ray(pose, ray, most, false);
         self.parts.iter().filter_map(hit).reduce(Real::min)
     }
 
-    pub fn triangle_count(&self) -> usize {
+    pub(super) fn triangle_count(&self) -> usize {
         self.meshes().map(|mesh| mesh.indices().len()).sum()
     }
 
     /// Surface kind; of several meshes inside-out, sheet, solid, in this order.
-    pub fn kind(&self) -> SurfaceKind {
+    pub(super) fn kind(&self) -> SurfaceKind {
         let dispatcher = SbbkDispatcher::default();
         let kind =
             |mesh| dispatcher.prepare(mesh).map_or(SurfaceKind::Sheet, |it| it.surface_kind());

@@ -174,7 +174,7 @@ pub(super) fn rolling_population(ground: &Ground, count: usize) -> Everyday<'_> 
                 let start = above(size, [(); 2].map(|()| between(-8.0, 8.0)), 1.5);
                 let small = mesh::ball(1.0, made as u32 % 5 + 2).mapped(|vertex| stretch * vertex);
                 let body = RigidBodyBuilder::dynamic().translation(start);
-                bodies.push_back(world.insert(body, Solid::new(&small).collider()).0);
+                bodies.push_back(world.insert(body, collider(&small)).0);
                 if bodies.len() > AT_ONCE {
                     bodies.pop_front().map(|oldest| world.remove_body(oldest));
                 }
@@ -300,9 +300,8 @@ pub(super) fn parts(steps: usize) -> Everyday<'static> {
     let head = mesh::monkey_head_with(6).centred();
     let row = Row::new(FINE, "").key("scene", format!("{COUNT} heads of 2 to 5 cm in a bowl"));
     let row = row.key("triangles", head.triangle_count());
-    let parts =
-        (0..COUNT).map(|i| Solid::new(&head.clone().scaled_to(0.02 + 0.01 * (i % 4) as f32)));
-    let parts: Vec<Solid> = parts.collect();
+    let parts = (0..COUNT).map(|i| collider(&head.clone().scaled_to(0.02 + 0.01 * (i % 4) as f32)));
+    let parts: Vec<ColliderBuilder> = parts.collect();
     Everyday::new(row, steps, move || {
         let (mut world, mut random) = (PhysicsWorld::new(), Rand32::new(5));
         world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(bowl.clone()));
@@ -310,7 +309,7 @@ pub(super) fn parts(steps: usize) -> Everyday<'static> {
             let [x, y, z] = [i % 2, i / 4, i / 2 % 2].map(|place| 0.06 * place as f32);
             let pose =
                 Pose3::from_parts(Vec3::new(x - 0.03, y, z - 0.03), random::rotation(&mut random));
-            world.insert(RigidBodyBuilder::dynamic().pose(pose), part.collider());
+            world.insert(RigidBodyBuilder::dynamic().pose(pose), part.clone());
         }
         Driven::alone(world)
     })

@@ -11,10 +11,7 @@ const HEADS: usize = 200;
 const PAIRS: usize = 150;
 
 pub(super) fn piles(mesh: Option<&Mesh>) -> Vec<Trial> {
-    let pile = match mesh {
-        Some(mesh) => MonkeyPile::of(HEADS, mesh.clone()),
-        None => MonkeyPile::with_heads(HEADS),
-    };
+    let pile = MonkeyPile::of(HEADS, mesh.cloned().unwrap_or_else(mesh::monkey_head));
     let name = format!("pile of {HEADS} {}", mesh.map_or("heads", |mesh| &mesh.name));
     let has_limits = mesh.is_none();
     let run = move |kit: &Kit| heap(kit, &pile, has_limits);

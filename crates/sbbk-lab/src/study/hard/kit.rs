@@ -1,6 +1,6 @@
 //! Worlds, bodies and figures of the hard scenes.
 
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 pub(super) use std::f32::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, PI, TAU};
 use std::ops::{Deref, DerefMut};
 use std::rc::Rc;
@@ -65,19 +65,19 @@ pub(super) fn seeded() -> Rand32 {
     Rand32::new(1)
 }
 
-/// A shared recording.
+/// A shared recording, empty before the first step.
 pub(super) type Film = Rc<RefCell<Option<Recorder>>>;
 
 /// Settings of one run of a scene.
 pub(super) struct Kit {
     pub column: Column,
-    /// Taken by the first world, which is recorded.
-    film: Cell<Option<Film>>,
+    /// Records the first world.
+    film: Option<Film>,
 }
 
 impl Kit {
     pub fn new(column: Column, film: Option<Film>) -> Self {
-        Self { column, film: Cell::new(film) }
+        Self { column, film }
     }
 
     /// An empty world with the column's dispatcher.
@@ -100,7 +100,8 @@ impl Kit {
             declared.iter().for_each(|solid| solid.set_surface_kind(SurfaceKind::Solid));
             world.narrow_phase.set_query_dispatcher(sbbk);
         }
-        let (film, column) = (self.film.take(), self.column);
+        let column = self.column;
+        let film = self.film.clone().filter(|film| film.borrow().is_none());
         World { world, film, column, watched: Vec::new(), _declared: declared }
     }
 
