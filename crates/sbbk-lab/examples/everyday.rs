@@ -27,5 +27,5 @@ fn main() -> Outcome {
     if !only.is_empty() {
         plan.groups = only;
     }
-    study.run(|progress| everyday(&plan, progress))
+    study.run(|progress| Ok(everyday(&plan, progress)))
 }

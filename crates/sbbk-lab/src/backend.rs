@@ -71,11 +71,6 @@ impl Backend {
         dispatcher
     }
 
-    /// True if two rigid meshes have the contacts of their surfaces.
-    pub fn has_surfaces(self) -> bool {
-        self != Self::Stock
-    }
-
     fn configured(self, contact_set: ContactSet, detail: ContactDetail) -> Dispatcher {
         let layers = (self == Self::AabbOnly).then_some(LayerPlan::AABB_ONLY);
         let mut config = SbbkConfig::default().with_layers(layers);

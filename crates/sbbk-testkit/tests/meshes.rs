@@ -76,9 +76,9 @@ fn sheets_face_up_and_have_their_size() {
     }
 }
 
-/// Would catch features that got lost (a head without them is nearly its own convex hull), eye
-/// sockets that are not hollow (going up the face, the surface must recede behind both cheek and
-/// brow), and a head that is not the one that all results are about.
+/// Would catch lost features, eye sockets that are not hollow, and another head than that of all
+/// results. A head without features is nearly its own convex hull. Up the face, the surface must
+/// recede behind both cheek and brow.
 #[test]
 fn monkey_head_is_symmetric_concave_and_the_same_to_the_bit() {
     let head = mesh::monkey_head();

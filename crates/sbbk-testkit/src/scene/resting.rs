@@ -38,8 +38,8 @@ impl Scene for BoxStack {
 }
 
 /// A monkey head set down on a fixed mesh floor, 20 units wide and of 800 triangles, that is
-/// inclined about the `z` axis. Rapier's default friction coefficient is 0.5 for each body, so that
-/// the head should rest below an angle of 26 degrees and slide above it, unless it rolls.
+/// inclined about the `z` axis. With Rapier's friction the head should rest below 26 degrees. Above
+/// it should slide, unless it rolls.
 #[derive(Clone, Debug)]
 pub struct HeadOnSlope {
     /// Inclination, in radians.

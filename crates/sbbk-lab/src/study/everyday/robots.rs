@@ -28,33 +28,30 @@ fn upright() -> Quat {
     Quat::from_rotation_x(-FRAC_PI_2)
 }
 
-/// Error for a URDF file.
-fn unusable(path: &Path, cause: impl ToString) -> FileError {
-    FileError::new("load the robot", path, cause)
-}
-
 /// Ten robots that walk on a terrain, with the loader's flags for their meshes and without.
 ///
-/// Errors: the file cannot be loaded.
-pub(super) fn robots(ground: &Ground, steps: usize) -> Result<Vec<Everyday<'_>>, FileError> {
-    let file = Path::new(WALKER);
+/// # Panics
+///
+/// If the file of this crate is missing.
+pub(super) fn robots(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
     let defaults = UrdfLoaderOptions::default().trimesh_flags;
     let flags = [("the loader's flags", defaults), ("no flags", TriMeshFlags::empty())];
     let scene = |(name, flags): (&str, TriMeshFlags)| {
-        let bounds = bounds(&parts(&load(file, flags, Pose3::IDENTITY)?), file)?;
-        let load = |index| load(file, flags, start(ground, bounds, index));
-        let robots = (0..COUNT).map(load).collect::<Result<Vec<UrdfRobot>, _>>()?;
+        let load = |shift| load(Path::new(WALKER), flags, shift).expect("the file of this crate");
+        let bounds = around(&parts(&load(Pose3::IDENTITY)), &Pose3::IDENTITY).expect("has shapes");
+        let robots: Vec<UrdfRobot> =
+            (0..COUNT).map(|index| load(start(ground, bounds, index))).collect();
         let name = format!("{COUNT} robots from URDF, {name}");
-        Ok(named(DEFORMABLE, &name, ground, steps, move || {
+        named(DEFORMABLE, &name, ground, steps, move || {
             let mut world = ground.world();
             let legs = robots.iter().flat_map(|robot| insert(&mut world, robot.clone()));
             let legs: Vec<Leg> = legs.collect();
             Driven::by(world, move |world, step| {
                 legs.iter().for_each(|leg| leg.swing(world, step));
             })
-        }))
+        })
     };
-    flags.into_iter().map(scene).collect()
+    flags.map(scene).into()
 }
 
 /// Poses and shapes of a robot at rest.
@@ -73,11 +70,6 @@ fn around(parts: &[(Pose3, SharedShape)], pose: &Pose3) -> Option<Aabb> {
     boxes.reduce(|one, two| one.merged(&two))
 }
 
-fn bounds(parts: &[(Pose3, SharedShape)], file: &Path) -> Result<Aabb, FileError> {
-    around(parts, &Pose3::IDENTITY)
-        .ok_or_else(|| unusable(file, "no link has a shape that can collide"))
-}
-
 /// Start of a robot, two lengths from the next one, and its lowest point 0.1 over the terrain.
 fn start(ground: &Ground, bounds: Aabb, index: usize) -> Pose3 {
     let Vec3 { x: length, y: width, .. } = bounds.extents();
@@ -89,7 +81,7 @@ fn start(ground: &Ground, bounds: Aabb, index: usize) -> Pose3 {
 fn load(file: &Path, trimesh_flags: TriMeshFlags, shift: Pose3) -> Result<UrdfRobot, FileError> {
     let options = UrdfLoaderOptions { trimesh_flags, shift, ..UrdfLoaderOptions::default() };
     let loaded = UrdfRobot::from_file(file, options, None);
-    loaded.map(|(robot, _)| robot).map_err(|cause| unusable(file, cause))
+    loaded.map(|(robot, _)| robot).map_err(|cause| FileError::new("load the robot", file, cause))
 }
 
 /// Joints of a leg, and its phase in a stride.
@@ -155,8 +147,10 @@ impl Subject {
     /// Loads a robot without flags of meshes, upright, with all links free.
     fn robot(file: &Path) -> Result<Self, FileError> {
         let mut robot = load(file, TriMeshFlags::empty(), Pose3::from_rotation(upright()))?;
-        let centre = bounds(&parts(&robot), file)?.center();
-        robot.append_transform(&Pose3::from_translation(-centre));
+        let bounds = around(&parts(&robot), &Pose3::IDENTITY).ok_or_else(|| {
+            FileError::new("load the robot", file, "no link has a shape that can collide")
+        })?;
+        robot.append_transform(&Pose3::from_translation(-bounds.center()));
         for link in &mut robot.links {
             link.body.set_body_type(RigidBodyType::Dynamic, false);
         }
