@@ -111,7 +111,7 @@ fn worlds_are_equal_to_the_bit_after_hundreds_of_steps() {
         Box::new(MonkeyPile { contact_recycling: false, ..MonkeyPile::with_heads(30) }),
         Box::new(HelicopterBallDrop),
         Box::new(BoxStack),
-        Box::new(HeadOnSlope::default()),
+        Box::new(HeadOnSlope { angle: 0.17 }),
     ];
     let run = |scene: &dyn Scene, forgets: bool| {
         let mut world = scene.build().world;

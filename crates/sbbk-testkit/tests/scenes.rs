@@ -12,7 +12,7 @@ fn scenes() -> Vec<(Box<dyn Scene>, usize)> {
         (Box::new(HelicopterBallDrop), 1),
         (Box::new(MonkeyPile::with_heads(30)), 30),
         (Box::new(BoxStack), 10),
-        (Box::new(HeadOnSlope::default()), 1),
+        (Box::new(HeadOnSlope { angle: 0.17 }), 1),
     ]
 }
 

@@ -208,13 +208,13 @@ fn same_poses(row: &Row, pairs: &[Sequence], repeats: usize) -> Vec<Row> {
 /// Broad phase, narrow phase and solver are Rapier's own timers. The narrow phase holds the
 /// contact queries and what Rapier does with their manifolds (solver contacts, clustering).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct StepTimes {
+pub(super) struct StepTimes {
     /// The whole step, from outside.
-    step: f64,
+    pub step: f64,
     /// Broad phase: before the narrow phase, and the update after the bodies moved.
     broad_phase: f64,
     /// Narrow phase, queries included.
-    narrow_phase: f64,
+    pub narrow_phase: f64,
     /// Constraint solver.
     solver: f64,
 }
@@ -227,7 +227,7 @@ impl StepTimes {
 }
 
 /// Steps `world` once.
-fn timed_step(world: &mut PhysicsWorld) -> StepTimes {
+pub(super) fn timed_step(world: &mut PhysicsWorld) -> StepTimes {
     world.physics_pipeline.counters.enable();
     let start = Instant::now();
     world.step();

@@ -46,13 +46,6 @@ pub struct HeadOnSlope {
     pub angle: Real,
 }
 
-impl Default for HeadOnSlope {
-    /// A slope of 10 degrees.
-    fn default() -> Self {
-        Self { angle: Real::to_radians(10.0) }
-    }
-}
-
 impl Scene for HeadOnSlope {
     fn name(&self) -> String {
         format!("monkey head on a slope of {:.0} degrees", self.angle.to_degrees())

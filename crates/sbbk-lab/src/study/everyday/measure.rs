@@ -5,6 +5,7 @@ use rapier_integration::{PreparedTree, SbbkDispatcher};
 
 use super::judged::Comparison;
 use crate::study::pair::SIDES;
+use crate::study::runs::timed_step;
 
 /// A world that can be built again and again, and its drive.
 pub(super) struct Everyday<'a> {
@@ -114,7 +115,6 @@ impl<'a> Everyday<'a> {
         let _trees: Vec<PreparedTree> = self.prepared.iter().filter_map(prepare).collect();
         let mut worlds = [(self.build)(), (self.build)()];
         worlds[1].world.narrow_phase.set_query_dispatcher(dispatcher.clone());
-        worlds.iter_mut().for_each(|driven| driven.world.physics_pipeline.counters.enable());
         for step in 0..self.steps {
             for i in [step % 2, 1 - step % 2] {
                 sides[i].step(&mut worlds[i], step);
@@ -140,13 +140,11 @@ impl<'a> Everyday<'a> {
 
 impl Side {
     fn step(&mut self, Driven { world, drive }: &mut Driven, step: usize) {
-        let asked = drive(world, step);
-        let start = Instant::now();
-        world.step();
-        let whole = start.elapsed() + asked;
-        let detection = asked + world.physics_pipeline.counters.cd.narrow_phase_time.time();
-        for (times, time) in [(&mut self.detection, detection), (&mut self.step, whole)] {
-            let time = 1e6 * time.as_secs_f64();
+        let asked = 1e3 * drive(world, step).as_secs_f64();
+        let timed = timed_step(world);
+        let timed = [(&mut self.detection, timed.narrow_phase), (&mut self.step, timed.step)];
+        for (times, time) in timed {
+            let time = 1e3 * (asked + time);
             match times.get_mut(step) {
                 Some(least) => *least = least.min(time),
                 None => times.push(time),
