@@ -6,7 +6,7 @@
 //! cargo run --release --example engines -- judge scene sbbk.1 sbbk.2 bullet.1
 //! ```
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Parser;
 use sbbk_lab::cli::{Outcome, print};
@@ -64,17 +64,12 @@ fn main() -> Outcome {
         }
         Arguments::Run { column, scene, run } => Ok(EnginePile::read(&scene)?.run(column, &run)?),
         Arguments::Judge { scene, runs, csv } => {
-            let mut engines: Vec<(String, Vec<&Path>)> = Vec::new();
-            for run in &runs {
-                let name = run.file_stem().unwrap_or_default().to_string_lossy();
-                match engines.iter_mut().find(|engine| engine.0 == name) {
-                    Some((_, paths)) => paths.push(run),
-                    None => engines.push((name.into_owned(), vec![run])),
-                }
-            }
-            let results = EnginePile::read(&scene)?.judge(&engines)?;
+            let results = EnginePile::read(&scene)?.judge(&runs)?;
             print(&results)?;
-            Ok(csv.as_deref().map_or(Ok(()), |path| write_file(path, results.csv()))?)
+            if let Some(path) = csv {
+                write_file(&path, results.csv())?;
+            }
+            Ok(())
         }
     }
 }

@@ -82,7 +82,9 @@ impl RandomArguments {
 
 fn main() -> Outcome {
     let Arguments { study, only, backends, mesh, replay, verbose, random } = Arguments::parse();
-    replay.as_deref().map_or(Ok(()), check_output)?;
+    if let Some(page) = &replay {
+        check_output(page)?;
+    }
     let settings = |settings: Settings| Settings {
         columns: if backends.is_empty() { settings.columns } else { backends.clone() },
         shows_figures: verbose,
@@ -100,5 +102,8 @@ fn main() -> Outcome {
         plan.mesh = mesh.as_deref().map(mesh_file::load).transpose()?;
         study.run(|progress| hard(&plan, progress))?;
     }
-    Ok(replay.as_deref().map_or(Ok(()), print_page)?)
+    if let Some(page) = &replay {
+        print_page(page)?;
+    }
+    Ok(())
 }

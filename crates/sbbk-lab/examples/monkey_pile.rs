@@ -41,7 +41,9 @@ struct Arguments {
 
 fn main() -> Outcome {
     let Arguments { heads, steps, backend, mesh, replay: page } = Arguments::parse();
-    page.as_deref().map_or(Ok(()), check_output)?;
+    if let Some(page) = &page {
+        check_output(page)?;
+    }
     let head = mesh.map_or_else(|| Ok(monkey_head()), |path| mesh_file::load(&path))?;
     let scene = MonkeyPile::of(heads.get(), head);
     let steps = steps.get();
@@ -58,8 +60,10 @@ fn main() -> Outcome {
     let results = one_pile(&scene, &plan, &progress);
     progress.finish();
     print(results)?;
-    let Some(page) = &page else { return Ok(()) };
-    replay::play(page, &scene, &plan.backends, plan.step_count(), &progress)?;
-    progress.finish();
-    Ok(print_page(page)?)
+    if let Some(page) = &page {
+        replay::play(page, &scene, &plan.backends, plan.step_count(), &progress)?;
+        progress.finish();
+        print_page(page)?;
+    }
+    Ok(())
 }

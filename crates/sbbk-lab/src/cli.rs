@@ -30,13 +30,14 @@ impl StudyArguments {
     ///
     /// Errors: those of the study; a file that cannot be written, which is found before the study.
     pub fn run(&self, study: impl FnOnce(&Progress) -> Result<Results, FileError>) -> Outcome {
-        let csv = self.csv.as_deref();
-        csv.map_or(Ok(()), check_output)?;
+        if let Some(path) = &self.csv {
+            check_output(path)?;
+        }
         let progress = Progress::visible();
         let results = study(&progress)?;
         progress.finish();
         print(&results)?;
-        if let Some(path) = csv {
+        if let Some(path) = &self.csv {
             write_file(path, results.csv())?;
             print(format_args!("wrote {}", path.display()))?;
         }

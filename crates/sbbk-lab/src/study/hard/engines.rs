@@ -2,6 +2,7 @@
 //! one file of a run; one judge reads these.
 
 use crate::prelude::*;
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::ops::Range;
@@ -15,7 +16,6 @@ use super::figures::Gain;
 use super::heaps::{FLOOR, above_floor};
 use super::kit::{Form, Kit};
 
-const STUDY: &str = "engines";
 /// Ten seconds, and the steps of them that are timed: in motion, and at rest.
 const STEPS: usize = 600;
 const MOVING: Range<usize> = 60..180;
@@ -143,23 +143,26 @@ impl EnginePile {
         file.flush()
     }
 
-    /// Reads runs of engines, of which all runs of one engine must be equal, and makes a table.
+    /// Reads runs of engines, named by their files, and makes a table.
     ///
     /// Errors: a file cannot be read or does not have all steps, or runs of an engine differ.
-    pub fn judge(&self, engines: &[(String, Vec<&Path>)]) -> io::Result<Results> {
+    pub fn judge(&self, paths: &[PathBuf]) -> io::Result<Results> {
+        let mut engines: BTreeMap<String, Vec<Run>> = BTreeMap::new();
+        for path in paths {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            engines.entry(name).or_default().push(self.read_run(path)?);
+        }
         let mut rows = Vec::new();
         let depths = Depths::new(&self.mesh);
-        for (engine, paths) in engines {
-            let runs = paths.iter().map(|path| self.read_run(path));
-            let runs = runs.collect::<io::Result<Vec<Run>>>()?;
+        for (engine, runs) in &engines {
             let is_alike =
                 |run: &Run| (0..STEPS).all(|step| run.heads(step).eq(runs[0].heads(step)));
             if !runs.iter().all(is_alike) {
                 return Err(invalid(format!("runs of {engine} differ")));
             }
-            let figures = self.figures(&runs, &depths);
+            let figures = self.figures(runs, &depths);
             rows.extend(figures.into_iter().map(|(figure, value)| {
-                Row::new(STUDY, engine).key("figure", figure).with("value", value)
+                Row::new("engines", engine).key("figure", figure).with("value", value)
             }));
         }
         Ok(Results::new("engines", rows))
