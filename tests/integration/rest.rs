@@ -186,3 +186,29 @@ fn boxes_of_many_triangles_come_up_out_of_a_slab() {
         assert!((height - 0.5).abs() < 0.02, "from {depth} to {height}");
     }
 }
+
+/// Would catch points that lose their impulses when they pass from triangle to triangle.
+#[test]
+fn a_light_box_carries_a_heavy_one() {
+    let part =
+        |half: Real, cells| ColliderBuilder::new(mesh::cuboid(Vec3::splat(half), cells).shape());
+    let mut fallen = Vec::new();
+    for (ratio, cells) in
+        [100.0, 150.0, 200.0].into_iter().flat_map(|r| [1, 2, 3, 4].map(|c| (r, c)))
+    {
+        let mut world = PhysicsWorld::new();
+        world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
+        let ground = ColliderBuilder::new(mesh::cuboid(Vec3::new(5.0, 0.5, 5.0), 6).shape());
+        world.insert(RigidBodyBuilder::fixed().translation(-0.5 * Vec3::Y), ground);
+        let body = |height: Real| {
+            RigidBodyBuilder::dynamic().translation(height * Vec3::Y).can_sleep(false)
+        };
+        world.insert(body(0.25), part(0.25, cells).mass(1.0));
+        let (heavy, _) = world.insert(body(0.9), part(0.4, cells + 1).mass(ratio));
+        (0..900).for_each(|_| world.step());
+        if world.bodies[heavy].translation().y < 0.6 {
+            fallen.push((ratio, cells));
+        }
+    }
+    assert!(fallen.is_empty(), "{fallen:?}");
+}

@@ -43,12 +43,8 @@ const EQUAL_DEPTH: Real = 0.02;
 const ONE_NORMAL: Real = 0.99999;
 
 /// [`PatchPlan::size`] in radii of the smaller shape. Higher: legs of a table are left out; lower: a
-/// flat side is many patches.
+/// flat side is many patches, and points that move lose their data.
 const PATCH_SIZE: Real = 0.2;
-
-/// [`PatchPlan::same_point`] as a share of the size of a patch. Higher: a nut locks on its bolt; lower:
-/// stacks of cubes creep.
-const SAME_POINT: Real = 0.02;
 
 /// Distances and cosines by which contacts make patches.
 #[derive(Copy, Clone, Debug)]
@@ -61,12 +57,11 @@ pub(crate) struct PatchPlan {
     hover_distance: Real,
     /// Difference to the deepest contact of a patch up to which another counts as equally deep.
     equal_depth: Real,
-    /// Contacts closer than this to the hull of the chosen ones are dropped.
-    size: Real,
+    /// Contacts closer than this to the hull of the chosen ones are dropped. A point that has moved by no more is
+    /// the same point.
+    pub(super) size: Real,
     /// Least cosine of normals of one manifold of a patch.
     pub(super) one_normal: Real,
-    /// Distance up to which two points are the same point that has moved.
-    pub(super) same_point: Real,
 }
 
 impl PatchPlan {
@@ -79,7 +74,6 @@ impl PatchPlan {
         equal_depth: Real::INFINITY,
         size: Real::INFINITY,
         one_normal: -1.0,
-        same_point: 0.0,
     };
 
     /// Plan for two shapes, from the radius of the smaller one.
@@ -87,14 +81,12 @@ impl PatchPlan {
         let far = FILTERED * radius;
         let unit = if prediction > 0.0 { prediction.min(far) } else { far };
         let hover_distance = if prediction < far { HOVER * prediction } else { Real::INFINITY };
-        let size = PATCH_SIZE * radius;
         Self {
             far,
             hover_distance,
             equal_depth: EQUAL_DEPTH * unit,
-            size,
+            size: PATCH_SIZE * radius,
             one_normal: ONE_NORMAL,
-            same_point: SAME_POINT * size,
         }
     }
 }
@@ -363,7 +355,6 @@ mod tests {
         equal_depth: 0.01,
         size: 1.0,
         one_normal: ONE_NORMAL,
-        same_point: 0.0,
     };
 
     fn summary(x: Real, distance: Real) -> ContactSummary {

@@ -9,6 +9,7 @@ use std::cmp::Ordering;
 use std::ops::Range;
 
 use arrayvec::ArrayVec;
+use glamx::Vec3;
 use parry3d::math::Real;
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::PackedFeatureId;
@@ -21,7 +22,7 @@ use super::state::HighWaterMark;
 /// where pairs lose and gain many contacts at once.
 const MOST_SPARE: usize = 256;
 
-/// Least cosine of the normals of two patches of successive queries that may be one patch. Higher:
+/// Least cosine of the normals of patches and of points of successive queries that may be the same. Higher:
 /// patches that turn lose their data; lower: patches take the data of others.
 const LIKE_NORMAL: Real = 0.9;
 
@@ -55,6 +56,8 @@ impl<M, C> Default for Pool<M, C> {
 struct OldPoint<C> {
     point: TrackedContact<C>,
     part: u32,
+    /// Unit vector across the contact.
+    normal: Vec3,
     /// Place in the host's list.
     place: u32,
     /// True if a new point has its data.
@@ -146,9 +149,10 @@ impl<'m, M: Default + 'static, C: Default + Copy + 'static> Writer<'m, M, C> {
         old_points.clear();
         old_points.extend(self.manifolds.iter().flat_map(|manifold| {
             let (part, subshapes) = (part_of(manifold), subshapes_of(manifold));
+            let normal = manifold.local_n1;
             manifold.points.iter().map(move |&point| {
                 let point = if names_are_raw { named(point, subshapes) } else { point };
-                OldPoint { point, part, place: 0, is_taken: false }
+                OldPoint { point, part, normal, place: 0, is_taken: false }
             })
         }));
         (0..).zip(&mut *old_points).for_each(|(place, old)| old.place = place);
@@ -359,6 +363,8 @@ fn write_patch<M, C>(
     manifold.set_subshape_pos2(pose2);
     (manifold.local_n1, manifold.local_n2) = (normal1, normal2);
     manifold.points.clear();
+    // Far points carry nothing.
+    let within = if plan.far.is_finite() { plan.size } else { 0.0 };
     let one_normal = if distance(&deepest) > plan.far { -1.0 } else { plan.one_normal };
     chosen.retain(|i| {
         let PatchPoint { point, normals, .. } = &points[*i];
@@ -366,7 +372,7 @@ fn write_patch<M, C>(
         let is_of_normal = *i == deepest || normals[0].dot(normal1) >= one_normal;
         if is_of_normal {
             let old_points = &mut writer.pool.old_points;
-            let old = find_old(point, part, old_points, plan.same_point);
+            let old = find_old(point, normal1, part, old_points, within);
             let data = old.map_or_else(C::default, |old| {
                 old_points[old].is_taken = true;
                 old_points[old].point.data
@@ -399,13 +405,15 @@ fn of_part<T>(list: &[T], part: u32, part_of: impl Fn(&T) -> u32) -> Range<usize
     first..first + list[first..].partition_point(|one| part_of(one) == part)
 }
 
-/// Returns the index of the old point with the features of a point, else of the nearest one within
-/// `same_point`, unless its data is taken. (A corner of two triangles has two names.)
+/// Returns the index of the old point with the features of a point, else of the nearest one of its
+/// direction `within` a distance, unless its data is taken. (A point that moves over a mesh passes
+/// from triangle to triangle.)
 fn find_old<C>(
     point: &TrackedContact<()>,
+    normal: Vec3,
     part: u32,
     old_points: &[OldPoint<C>],
-    same_point: Real,
+    within: Real,
 ) -> Option<usize> {
     let of_part = of_part(old_points, part, |old| old.part);
     let free = of_part.filter(|&index| !old_points[index].is_taken);
@@ -414,13 +422,14 @@ fn find_old<C>(
         old.fid1 == point.fid1 && old.fid2 == point.fid2
     };
     let nearest = || {
-        let distances = free
-            .clone()
-            .map(|index| (index, old_points[index].point.local_p1.distance(point.local_p1)));
+        let likes =
+            free.clone().filter(|&index| old_points[index].normal.dot(normal) >= LIKE_NORMAL);
+        let distance = |index: usize| old_points[index].point.local_p1.distance(point.local_p1);
+        let distances = likes.map(|index| (index, distance(index)));
         let (index, distance) = distances.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
-        (distance <= same_point).then_some(index)
+        (distance <= within).then_some(index)
     };
-    free.clone().find(is_same).or_else(|| (same_point > 0.0).then(nearest).flatten())
+    free.clone().find(is_same).or_else(nearest)
 }
 
 /// Returns a point whose features have names of their own among all features of both shapes.
