@@ -11,7 +11,7 @@ use rapier3d::parry::query::{
 use rapier3d::parry::shape::{Cuboid, TriMesh};
 use rapier3d::prelude::*;
 use sbbk_core::truth::TruthPair;
-use sbbk_testkit::mesh;
+use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::support::{direction, reach, rotation, shape};
 use crate::truth::{normalized, of_meshes};
@@ -164,6 +164,43 @@ fn casts_stop_at_the_first_impact() {
         assert!(ours.cast_shapes(&pos12, velocity, &head, &ring, early).unwrap().is_none());
     }
     assert!((10..40).contains(&hits), "{hits} hits");
+}
+
+/// Mesh boxes slide along a wall, a little nearer than the target distance, up to another wall. Would catch casts
+/// that stop at the edges within the first wall: character controllers would climb no stairs.
+#[test]
+fn casts_slide_along_a_wall_up_to_the_next_one() {
+    const TARGET: f32 = 0.014;
+    let mut random = Rand32::new(7);
+    for case in 0..120 {
+        let mut number = |least: f32, most: f32| least + (most - least) * random.rand_float();
+        let side = mesh::slab(Vec3::new(0.5, 2.0, 4.0), [1, case % 7 + 1, case % 5 + 1]);
+        let end = mesh::slab(Vec3::new(2.0, 2.0, 0.5), [3; 3]);
+        let walls =
+            [side.mapped(|at| at - 0.5 * Vec3::X), end.mapped(|at| at + Vec3::new(1.5, 0.0, 4.5))];
+        let walls = shape(&Mesh::merged("walls", &walls));
+        let body = shape(&mesh::cuboid(Vec3::splat(0.25), case % 4 + 1));
+        let nearer = 10.0_f32.powf(number(-5.0, -1.0));
+        let start = Vec3::new(0.25 + TARGET * (1.0 - nearer), number(-1.0, 1.0), number(-3.0, 2.0));
+        let (velocity, pos12) =
+            (Vec3::new(0.0, number(-0.1, 0.1), 1.0), Pose3::from_translation(start));
+        let options = ShapeCastOptions {
+            target_distance: TARGET,
+            stop_at_penetration: false,
+            ..ShapeCastOptions::with_max_time_of_impact(10.0)
+        };
+        let dispatcher = SbbkDispatcher::default();
+        let expected = 4.0 - 0.25 - TARGET - start.z;
+        for prepared in [false, true] {
+            let _prepared = prepared.then(|| [&walls, &body].map(|mesh| dispatcher.prepare(mesh)));
+            let hit = dispatcher.cast_shapes(&pos12, velocity, &walls, &body, options).unwrap();
+            let time = hit.expect("there is a wall").time_of_impact;
+            assert!((time - expected).abs() < 1e-5, "{case}: {time} instead of {expected}");
+            let (inverse, back) = (pos12.inverse(), -velocity);
+            let hit = dispatcher.cast_shapes(&inverse, back, &body, &walls, options).unwrap();
+            assert!((hit.unwrap().time_of_impact - expected).abs() < 1e-5, "{case}, swapped");
+        }
+    }
 }
 
 /// Starts that cross: stock's statuses, and the way out.

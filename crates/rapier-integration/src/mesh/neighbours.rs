@@ -254,6 +254,14 @@ impl<'a> NearTwins<'a> {
     }
 }
 
+/// Returns [`Around::rise`] for a mesh whose surface is not known.
+pub(crate) fn rise(mesh: &TriMesh, triangle: u32, place: DVec3, direction: DVec3) -> f64 {
+    let (mut known, memo) = Default::default();
+    let near = NearTwins::new(mesh, &mut known);
+    let facets = MeshFacets { mesh, twins: Twins::Near(&near), memo: &memo };
+    Around { facets, side: Side::Sheet }.rise(triangle, place, direction)
+}
+
 /// Returns the twins of the edges of a triangle. Vertices at one place are one vertex, as in
 /// [`Surface`](sbbk_core::surface::Surface).
 fn twins_of(mesh: &TriMesh, triangle: u32) -> [Option<u32>; 3] {

@@ -3,8 +3,10 @@
 use parry3d::math::{Pose, Vector};
 use parry3d::query::ShapeCastHit;
 use parry3d::query::details::ShapeCastOptions;
+use sbbk_core::contact::TriangleContact;
 use sbbk_core::query::{
-    CastOptions, MeshBodies, PartPair, SearchScratch, cast, deepest, meeting, nearest,
+    Cast, CastOptions, FoundPair, MeshBodies, PartPair, SearchScratch, cast, deepest, meeting,
+    nearest,
 };
 use sbbk_core::traverse::Placement;
 use sbbk_core::tree::Tree;
@@ -13,7 +15,11 @@ use super::found::{Found, status};
 use super::nonlinear::NonlinearCast;
 use super::trees::Trees;
 use super::walk::Walk;
-use crate::mesh::MeshView;
+use crate::mesh::{MeshView, rise};
+
+/// Greatest slope, as a sine, by which a surface may rise beside the point of an impact. Higher: walls stop bodies that slide
+/// along them. Lower: rounding hides impacts of parallel faces.
+const RISE: f64 = 1.0e-4;
 
 /// Two rigid meshes of a query.
 pub(crate) struct MeshQuery<'a> {
@@ -79,14 +85,37 @@ impl<'a> MeshQuery<'a> {
             target_distance: options.target_distance.max(0.0),
             stop_at_penetration: options.stop_at_penetration,
         };
+        let may_slide = !options.stop_at_penetration && options.target_distance > 0.0;
+        let counts = |cast: &Cast| !may_slide || self.is_minimum(cast, velocity12);
         let cast = self.search(
-            |trees, scratch| cast(trees, placement, velocity12, options, scratch),
-            |walk| walk.cast(placement, velocity12, options),
+            |trees, scratch| cast(trees, placement, velocity12, options, scratch, counts),
+            |walk| walk.cast(placement, velocity12, options, counts),
         )?;
         // The hit wants the point of mesh 2 before the motion.
         let mut pair = cast.pair;
         pair.contact.point2 -= velocity12.as_dvec3() * cast.time;
         Some(Found::of_pair(&pair, &placement).hit(cast.time, status(cast.is_penetrating)))
+    }
+
+    /// Returns false if the surfaces are nearer to each other beside the points of an impact: a body that slides along a
+    /// wall, within the target distance, comes to the next triangles of the wall all the time.
+    fn is_minimum(&self, Cast { time, pair, .. }: &Cast, velocity: Vector) -> bool {
+        let FoundPair { triangle1, triangle2, contact, origin, .. } = pair;
+        let TriangleContact { normal, features, point1, point2, .. } = *contact;
+        let before = point2 - velocity.as_dvec3() * *time;
+        let rises = || {
+            let place1 = origin.as_dvec3() + point1;
+            let place2 = self.placement.to_frame2(before, *origin);
+            let normal2 = self.placement.inverse * -normal;
+            let [mesh1, mesh2] = self.meshes.each_ref().map(|mesh| mesh.mesh);
+            rise(mesh1, *triangle1, place1, normal).max(rise(
+                mesh2,
+                *triangle2,
+                place2,
+                normal2.normalize_or_zero(),
+            ))
+        };
+        features.is_crossing() || rises() <= RISE * RISE
     }
 
     pub(super) fn cast_nonlinear(&self, cast: &NonlinearCast<'_>) -> Option<ShapeCastHit> {

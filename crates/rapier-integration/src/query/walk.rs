@@ -44,12 +44,13 @@ impl<'a> Walk<'a> {
         meeting.or_else(|| self.at(placement).nearest(limit, |_| true))
     }
 
-    /// Returns the first impact of mesh 2, which moves by `velocity` in the frame of mesh 1.
+    /// Returns the first impact that `counts` of mesh 2, which moves by `velocity` in the frame of mesh 1.
     pub(super) fn cast(
         &self,
         placement: Placement,
         velocity: Vector,
         options: CastOptions,
+        counts: impl Fn(&Cast) -> bool,
     ) -> Option<Cast> {
         if !options.is_possible() || !velocity.is_finite() || !placement.is_finite() {
             return None;
@@ -65,7 +66,7 @@ impl<'a> Walk<'a> {
             |triangles, latest| {
                 let [one, two] = [0, 1].map(|i| (triangles[i], self.0[i].corners(triangles[i])));
                 let found = Cast::of_triangles(&placement, one, two, velocity, &options, latest)?;
-                if first.is_some_and(|first| found.time >= first.time) {
+                if first.is_some_and(|first| found.time >= first.time) || !counts(&found) {
                     return None;
                 }
                 first = Some(found);

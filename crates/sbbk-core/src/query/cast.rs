@@ -57,8 +57,8 @@ const ARRIVED: f64 = 1.0e-12;
 /// steps.
 const STEP_LIMIT: usize = 100;
 
-/// Returns the first impact of mesh 2, placed at `placement` in the frame of mesh 1 and moving by
-/// `velocity` there. `None` if there is none until `options.max_time`, or if a number is NaN or
+/// Returns the first impact that `counts`, of mesh 2, placed at `placement` in the frame of mesh 1 and
+/// moving by `velocity` there. `None` if there is none until `options.max_time`, or if a number is NaN or
 /// infinite.
 pub fn cast(
     trees: (&Tree, &Tree),
@@ -66,6 +66,7 @@ pub fn cast(
     velocity: Vec3,
     options: CastOptions,
     scratch: &mut SearchScratch,
+    counts: impl Fn(&Cast) -> bool,
 ) -> Option<Cast> {
     let CastOptions { max_time, target_distance, .. } = options;
     if !options.is_possible() || !velocity.is_finite() || !placement.is_finite() {
@@ -88,12 +89,13 @@ pub fn cast(
         options,
         latest,
         found: None,
+        counts,
     };
     seek(trees, &mut search, scratch);
     search.found
 }
 
-struct CastSearch<'a> {
+struct CastSearch<'a, F> {
     sweep: Sweep<'a>,
     placement: Placement,
     velocity: DVec3,
@@ -101,16 +103,17 @@ struct CastSearch<'a> {
     /// Only earlier impacts matter.
     latest: f64,
     found: Option<Cast>,
+    counts: F,
 }
 
-impl CastSearch<'_> {
+impl<F: Fn(&Cast) -> bool> CastSearch<'_, F> {
     fn triangles(&mut self, one: (u32, [Vec3; 3]), two: (u32, [Vec3; 3])) {
         let Self { placement, velocity, options, latest, .. } = self;
         let Some(cast) = Cast::of_triangles(placement, one, two, *velocity, options, *latest)
         else {
             return;
         };
-        if self.found.is_some_and(|found| cast.time >= found.time) {
+        if self.found.is_some_and(|found| cast.time >= found.time) || !(self.counts)(&cast) {
             return;
         }
         self.found = Some(cast);
@@ -215,7 +218,7 @@ fn first_impact(
     last.map(|contact| (time, contact))
 }
 
-impl<'a> BestFirst for CastSearch<'a> {
+impl<'a, F: Fn(&Cast) -> bool> BestFirst for CastSearch<'a, F> {
     type Compare = Sweep<'a>;
 
     #[inline(always)]

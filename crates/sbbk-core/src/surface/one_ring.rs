@@ -132,6 +132,16 @@ impl<F: Facets> Around<F> {
                 || !self.is_exceeded(triangle, feature, slopes, most, place))
     }
 
+    /// Returns the greatest slope towards a unit direction of all triangles that touch a place on a triangle, as the
+    /// square of a sine.
+    pub fn rise(&self, triangle: u32, place: DVec3, direction: DVec3) -> f64 {
+        let mut slopes = Slopes::default();
+        self.visit_touching(triangle, place, |_, ends| {
+            ends.for_each(|end| slopes.add(end, direction));
+        });
+        slopes.rise
+    }
+
     /// True if a surface ends at an edge or a vertex. A triangle there has an edge without a twin, and
     /// no stray touches `place`.
     pub fn is_border(&self, triangle: u32, feature: Feature, place: DVec3) -> bool {

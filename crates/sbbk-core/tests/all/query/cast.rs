@@ -14,7 +14,7 @@ fn options(max_time: f32, target_distance: f32) -> CastOptions {
 fn cast_at(meshes: [&Soup; 2], pose: &Pose3, velocity: Vec3, options: CastOptions) -> Option<Cast> {
     let [tree1, tree2] = meshes.map(tree);
     let mut scratch = SearchScratch::default();
-    cast((&tree1, &tree2), Placement::new(pose), velocity, options, &mut scratch)
+    cast((&tree1, &tree2), Placement::new(pose), velocity, options, &mut scratch, |_| true)
 }
 
 #[test]

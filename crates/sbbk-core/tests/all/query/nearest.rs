@@ -181,7 +181,8 @@ fn meshes_touch_up_to_rounding() {
             CastOptions { max_time: 1.0, target_distance: 0.0, stop_at_penetration: true };
         let placement = Placement::new(&Pose3::IDENTITY);
         let scratch = &mut SearchScratch::default();
-        assert!(cast((&tree1, &tree2), placement, middle - c, options, scratch).is_some());
+        let first = cast((&tree1, &tree2), placement, middle - c, options, scratch, |_| true);
+        assert!(first.is_some());
     }
 }
 
