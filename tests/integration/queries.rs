@@ -166,7 +166,7 @@ fn casts_stop_at_the_first_impact() {
     assert!((10..40).contains(&hits), "{hits} hits");
 }
 
-/// Mesh boxes slide along a wall, a little nearer than the target distance, up to another wall. Would catch casts
+/// Boxes slide along a wall, a little nearer than the target distance, up to another wall. Would catch casts
 /// that stop at the edges within the first wall: character controllers would climb no stairs.
 #[test]
 fn casts_slide_along_a_wall_up_to_the_next_one() {
@@ -191,14 +191,25 @@ fn casts_slide_along_a_wall_up_to_the_next_one() {
         };
         let dispatcher = SbbkDispatcher::default();
         let expected = 4.0 - 0.25 - TARGET - start.z;
-        for prepared in [false, true] {
-            let _prepared = prepared.then(|| [&walls, &body].map(|mesh| dispatcher.prepare(mesh)));
-            let hit = dispatcher.cast_shapes(&pos12, velocity, &walls, &body, options).unwrap();
-            let time = hit.expect("there is a wall").time_of_impact;
-            assert!((time - expected).abs() < 1e-5, "{case}: {time} instead of {expected}");
-            let (inverse, back) = (pos12.inverse(), -velocity);
-            let hit = dispatcher.cast_shapes(&inverse, back, &body, &walls, options).unwrap();
-            assert!((hit.unwrap().time_of_impact - expected).abs() < 1e-5, "{case}, swapped");
+        for body in [&Cuboid::new(Vec3::splat(0.25)) as &dyn Shape, &body] {
+            for prepared in [false, true] {
+                let mesh = body.as_trimesh().filter(|_| prepared);
+                let _prepared =
+                    mesh.map(|mesh| [&walls, mesh].map(|mesh| dispatcher.prepare(mesh)));
+                let hits = [
+                    dispatcher.cast_shapes(&pos12, velocity, &walls, body, options),
+                    dispatcher.cast_shapes(&pos12.inverse(), -velocity, body, &walls, options),
+                ];
+                for hit in hits {
+                    let time = hit.unwrap().expect("there is a wall").time_of_impact;
+
+                    assert!(
+                        (time - expected).abs() < 1e-5,
+                        "{case}, {:?}: {time}, not {expected}",
+                        body.shape_type()
+                    );
+                }
+            }
         }
     }
 }

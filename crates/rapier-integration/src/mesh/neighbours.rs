@@ -254,6 +254,10 @@ impl<'a> NearTwins<'a> {
     }
 }
 
+/// Greatest slope, as a sine, by which a surface may rise beside the point of an impact. Higher: walls stop bodies that slide
+/// along them. Lower: rounding hides impacts of parallel faces.
+pub(crate) const IMPACT_RISE: f64 = 1.0e-4;
+
 /// Returns [`Around::rise`] for a mesh whose surface is not known.
 pub(crate) fn rise(mesh: &TriMesh, triangle: u32, place: DVec3, direction: DVec3) -> f64 {
     let (mut known, memo) = Default::default();

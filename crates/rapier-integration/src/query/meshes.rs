@@ -15,11 +15,7 @@ use super::found::{Found, status};
 use super::nonlinear::NonlinearCast;
 use super::trees::Trees;
 use super::walk::Walk;
-use crate::mesh::{MeshView, rise};
-
-/// Greatest slope, as a sine, by which a surface may rise beside the point of an impact. Higher: walls stop bodies that slide
-/// along them. Lower: rounding hides impacts of parallel faces.
-const RISE: f64 = 1.0e-4;
+use crate::mesh::{IMPACT_RISE, MeshView, rise};
 
 /// Two rigid meshes of a query.
 pub(crate) struct MeshQuery<'a> {
@@ -115,7 +111,7 @@ impl<'a> MeshQuery<'a> {
                 normal2.normalize_or_zero(),
             ))
         };
-        features.is_crossing() || rises() <= RISE * RISE
+        features.is_crossing() || rises() <= IMPACT_RISE * IMPACT_RISE
     }
 
     pub(super) fn cast_nonlinear(&self, cast: &NonlinearCast<'_>) -> Option<ShapeCastHit> {

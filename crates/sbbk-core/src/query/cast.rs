@@ -49,7 +49,7 @@ pub struct Cast {
 }
 
 /// A triangle pair has come as close as the target if it is this much farther, as a share of edges
-/// and travel. Higher: impacts are early by as much. Lower: rounding keeps them from being noticed
+/// and travel. At this share of the speed it does not approach. Higher: impacts are early by as much. Lower: rounding keeps them from being noticed
 /// before the steps are used up.
 const ARRIVED: f64 = 1.0e-12;
 
@@ -197,7 +197,7 @@ fn first_impact(
         let left = contact.distance - f64::from(options.target_distance);
         if left <= ARRIVED * (edges + travel.abs().element_sum()) {
             let Some(last) = last else {
-                let counts = options.stop_at_penetration || approach > 0.0;
+                let counts = options.stop_at_penetration || approach > ARRIVED * velocity.length();
                 return counts.then_some((0.0, contact));
             };
             // Triangles that touch have no better normal than the last one before.

@@ -15,11 +15,11 @@ use sbbk_core::contact::convex::ConvexContact;
 use super::contact::{core_contact, core_support};
 use super::near::time_of;
 use super::search::{ConvexSearch, FoundTriangle};
-use crate::mesh::box_of;
+use crate::mesh::{IMPACT_RISE, box_of, rise};
 use crate::pair::pose::MeshPlace;
 
-/// Bodies that are this much farther than the target at the start are within it, as a share of size.
-/// Within this, contacts may count as touching.
+/// Bodies that are this much farther than the target at the start are within it, as a share of size, and do not
+/// approach at this share of their speed. Within this, contacts may count as touching.
 const TOUCHING: f64 = 1.0e-10;
 
 /// Bodies that are this much farther than the target have arrived, as a share of size and travel.
@@ -63,6 +63,7 @@ impl ConvexSearch<'_> {
         let around = self.shape.compute_aabb(&self.pose_in_mesh);
         let time = time_of(&self.placed, self.convex, &self.mesh, around, of_shape, target);
         let latest = f64::from(max_time_of_impact);
+        let may_slide = !options.stop_at_penetration && target > 0.0;
         // Parry returns costs below the limit only.
         let first = Cell::new(None);
         self.mesh.mesh.bvh().find_best(
@@ -71,6 +72,9 @@ impl ConvexSearch<'_> {
             |triangle, best| {
                 let latest = latest.min(best.into());
                 let cast = self.cast_triangle(triangle, of_triangle, options, latest)?;
+                if may_slide && !self.is_minimum(&cast.found) {
+                    return None;
+                }
                 let time = cast.time as Real;
                 if time < best {
                     first.set(Some(cast));
@@ -79,6 +83,16 @@ impl ConvexSearch<'_> {
             },
         );
         first.into_inner()
+    }
+
+    /// Returns false if the mesh is nearer to the shape beside the point of an impact.
+    fn is_minimum(&self, found: &FoundTriangle) -> bool {
+        let normal = found.contact.normal;
+        let [place, _] = found.points(&self.placed);
+        let [direction, _] = self.placed.directions(normal);
+        let place = place.as_dvec3();
+        found.contact.distance <= 0.0
+            || rise(self.mesh.mesh, found.triangle, place, direction) <= IMPACT_RISE * IMPACT_RISE
     }
 
     /// The first impact of a triangle that moves in the frame of the shape.
@@ -150,7 +164,8 @@ impl TriangleCast<'_> {
         if left > TOUCHING * self.size {
             return self.advance(Apart { time: 0.0, left, normal: contact.normal });
         }
-        let counts = stop_at_penetration || self.approach(contact.normal) > 0.0;
+        let approach = self.approach(contact.normal);
+        let counts = stop_at_penetration || approach > TOUCHING * self.velocity.length();
         let is_penetrating = contact.distance < self.target;
         counts.then(|| FoundCast { time: 0.0, found: self.found(contact), is_penetrating })
     }
