@@ -18,8 +18,8 @@ use super::search::{ConvexSearch, FoundTriangle};
 use crate::mesh::{IMPACT_RISE, box_of, rise};
 use crate::pair::pose::MeshPlace;
 
-/// Bodies that are this much farther than the target at the start are within it, as a share of size, and do not
-/// approach at this share of their speed. Within this, contacts may count as touching.
+/// Bodies that are this much farther than the target at the start are within it, as a share of size. At this share
+/// of their speed they do not approach. Contacts within this may count as touching.
 const TOUCHING: f64 = 1.0e-10;
 
 /// Bodies that are this much farther than the target have arrived, as a share of size and travel.
