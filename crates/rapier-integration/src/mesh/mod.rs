@@ -10,7 +10,7 @@ mod store;
 mod view;
 
 pub(crate) use data::MeshData;
-pub(crate) use neighbours::{IMPACT_RISE, MeshFacets, box_between, rise};
+pub(crate) use neighbours::{MeshFacets, box_between, is_minimum};
 pub(crate) use pair_mesh::{Change, LazySurface, PairMesh};
 pub(crate) use store::{MeshStore, Registered};
 pub(crate) use view::{

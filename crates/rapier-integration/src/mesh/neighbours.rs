@@ -254,16 +254,17 @@ impl<'a> NearTwins<'a> {
     }
 }
 
-/// Greatest slope, as a sine, by which a surface may rise beside the point of an impact. Higher: walls stop bodies that slide
-/// along them. Lower: rounding hides impacts of parallel faces.
-pub(crate) const IMPACT_RISE: f64 = 1.0e-4;
+/// Greatest slope, as a sine, by which a surface may rise beside the point of an impact. Higher: walls stop bodies that
+/// slide along them. Lower: rounding hides impacts of parallel faces.
+const IMPACT_RISE: f64 = 1.0e-4;
 
-/// Returns [`Around::rise`] for a mesh whose surface is not known.
-pub(crate) fn rise(mesh: &TriMesh, triangle: u32, place: DVec3, direction: DVec3) -> f64 {
+/// Returns true if no triangle at the place of an impact leads towards the other body, which is nearest in a unit
+/// direction.
+pub(crate) fn is_minimum(mesh: &TriMesh, triangle: u32, place: DVec3, direction: DVec3) -> bool {
     let (mut known, memo) = Default::default();
     let near = NearTwins::new(mesh, &mut known);
     let facets = MeshFacets { mesh, twins: Twins::Near(&near), memo: &memo };
-    Around { facets, side: Side::Sheet }.rise(triangle, place, direction)
+    !Around { facets, side: Side::Sheet }.rises(triangle, place, direction, IMPACT_RISE)
 }
 
 /// Returns the twins of the edges of a triangle. Vertices at one place are one vertex, as in

@@ -1,5 +1,6 @@
 //! Two meshes.
 
+use glamx::DVec3;
 use parry3d::math::{Pose, Vector};
 use parry3d::query::ShapeCastHit;
 use parry3d::query::details::ShapeCastOptions;
@@ -15,7 +16,7 @@ use super::found::{Found, status};
 use super::nonlinear::NonlinearCast;
 use super::trees::Trees;
 use super::walk::Walk;
-use crate::mesh::{IMPACT_RISE, MeshView, rise};
+use crate::mesh::{MeshView, is_minimum};
 
 /// Two rigid meshes of a query.
 pub(crate) struct MeshQuery<'a> {
@@ -99,19 +100,15 @@ impl<'a> MeshQuery<'a> {
         let FoundPair { triangle1, triangle2, contact, origin, .. } = pair;
         let TriangleContact { normal, features, point1, point2, .. } = *contact;
         let before = point2 - velocity.as_dvec3() * *time;
-        let rises = || {
-            let place1 = origin.as_dvec3() + point1;
-            let place2 = self.placement.to_frame2(before, *origin);
-            let normal2 = self.placement.inverse * -normal;
-            let [mesh1, mesh2] = self.meshes.each_ref().map(|mesh| mesh.mesh);
-            rise(mesh1, *triangle1, place1, normal).max(rise(
-                mesh2,
-                *triangle2,
-                place2,
-                normal2.normalize_or_zero(),
-            ))
+        let at1 = || (*triangle1, origin.as_dvec3() + point1, normal);
+        let at2 = || {
+            let normal2 = (self.placement.inverse * -normal).normalize_or_zero();
+            (*triangle2, self.placement.to_frame2(before, *origin), normal2)
         };
-        features.is_crossing() || rises() <= IMPACT_RISE * IMPACT_RISE
+        let is_minimum = |i: usize, (triangle, place, direction): (u32, DVec3, DVec3)| {
+            is_minimum(self.meshes[i].mesh, triangle, place, direction)
+        };
+        features.is_crossing() || is_minimum(0, at1()) && is_minimum(1, at2())
     }
 
     pub(super) fn cast_nonlinear(&self, cast: &NonlinearCast<'_>) -> Option<ShapeCastHit> {

@@ -49,8 +49,8 @@ pub struct Cast {
 }
 
 /// A triangle pair has come as close as the target if it is this much farther, as a share of edges
-/// and travel. At this share of the speed it does not approach. Higher: impacts are early by as much. Lower: rounding keeps them from being noticed
-/// before the steps are used up.
+/// and travel. At this share of the speed it does not approach. Higher: impacts are early by as much. Lower:
+/// rounding keeps them from being noticed before the steps are used up.
 const ARRIVED: f64 = 1.0e-12;
 
 /// Steps of Newton's method. Grazing impacts gain a binary digit a step; others take two or three

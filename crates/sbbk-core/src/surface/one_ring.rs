@@ -132,14 +132,16 @@ impl<F: Facets> Around<F> {
                 || !self.is_exceeded(triangle, feature, slopes, most, place))
     }
 
-    /// Returns the greatest slope towards a unit direction of all triangles that touch a place on a triangle, as the
-    /// square of a sine.
-    pub fn rise(&self, triangle: u32, place: DVec3, direction: DVec3) -> f64 {
+    /// Returns true if a triangle that touches a place on a triangle rises towards a unit direction, by a slope whose
+    /// sine is above `most`.
+    pub fn rises(&self, triangle: u32, place: DVec3, direction: DVec3, most: f64) -> bool {
         let mut slopes = Slopes::default();
         self.visit_touching(triangle, place, |_, ends| {
             ends.for_each(|end| slopes.add(end, direction));
+            let rises = slopes.rise > most * most;
+            if rises { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
-        slopes.rise
+        slopes.rise > most * most
     }
 
     /// True if a surface ends at an edge or a vertex. A triangle there has an edge without a twin, and
@@ -179,6 +181,7 @@ impl<F: Facets> Around<F> {
             let has_end = |end: &DVec3| corners.iter().any(|corner| is_at(corner, end));
             has_strays |= !ends.iter().any(has_end);
             count += 1;
+            ControlFlow::Continue(())
         });
         (!has_strays, count)
     }
@@ -281,6 +284,7 @@ impl<F: Facets> Around<F> {
                 ends.for_each(|end| slopes.add(end, direction));
                 all.add(area_vector(corners), direction);
                 count += 1;
+                ControlFlow::Continue(())
             });
             heights = if is_closed { heights } else { all };
         }
@@ -307,7 +311,10 @@ impl<F: Facets> Around<F> {
         });
         if bend.is_exceeded(rise, most) && !self.facets.is_whole(triangle, feature) {
             let place = self.place(triangle, feature, place);
-            self.visit_touching(triangle, place, |_, ends| ends.for_each(|end| bend.add(end)));
+            self.visit_touching(triangle, place, |_, ends| {
+                ends.for_each(|end| bend.add(end));
+                ControlFlow::Continue(())
+            });
         }
         bend.is_exceeded(rise, most)
     }
@@ -323,19 +330,19 @@ impl<F: Facets> Around<F> {
     }
 
     /// Calls `visit` with the triangles that touch a place: their corners from there, and those of
-    /// these that are not at the place.
+    /// these that are not at the place. May end when `visit` breaks.
     fn visit_touching(
         &self,
         triangle: u32,
         place: DVec3,
-        mut visit: impl FnMut(&[DVec3; 3], &mut dyn Iterator<Item = DVec3>),
+        mut visit: impl FnMut(&[DVec3; 3], &mut dyn Iterator<Item = DVec3>) -> ControlFlow<()>,
     ) {
         let seam = seam(&each(|i| self.corner(3 * triangle, i)));
         self.facets.near([place - seam, place + seam], &mut |other| {
             let corners = each(|i| self.corner(3 * other, i) - place);
             if touches(&corners, [DVec3::ZERO; 2], seam) {
                 let is_far = |corner: &DVec3| corner.length_squared() > seam * seam;
-                visit(&corners, &mut corners.into_iter().filter(is_far));
+                return visit(&corners, &mut corners.into_iter().filter(is_far));
             }
             ControlFlow::Continue(())
         });

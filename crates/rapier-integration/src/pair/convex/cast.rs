@@ -15,7 +15,7 @@ use sbbk_core::contact::convex::ConvexContact;
 use super::contact::{core_contact, core_support};
 use super::near::time_of;
 use super::search::{ConvexSearch, FoundTriangle};
-use crate::mesh::{IMPACT_RISE, box_of, rise};
+use crate::mesh::{box_of, is_minimum};
 use crate::pair::pose::MeshPlace;
 
 /// Bodies that are this much farther than the target at the start are within it, as a share of size. At this share
@@ -87,12 +87,10 @@ impl ConvexSearch<'_> {
 
     /// Returns false if the mesh is nearer to the shape beside the point of an impact.
     fn is_minimum(&self, found: &FoundTriangle) -> bool {
-        let normal = found.contact.normal;
-        let [place, _] = found.points(&self.placed);
-        let [direction, _] = self.placed.directions(normal);
-        let place = place.as_dvec3();
+        let [place, _] = found.points(&self.placed).map(|point| point.as_dvec3());
+        let [direction, _] = self.placed.directions(found.contact.normal);
         found.contact.distance <= 0.0
-            || rise(self.mesh.mesh, found.triangle, place, direction) <= IMPACT_RISE * IMPACT_RISE
+            || is_minimum(self.mesh.mesh, found.triangle, place, direction)
     }
 
     /// The first impact of a triangle that moves in the frame of the shape.
