@@ -73,6 +73,10 @@ const RISE: f64 = 0.05;
 /// them. Lower: a body that rocks from point to point gets the next point too late.
 const RISE_TO_FACE: f64 = 0.3;
 
+/// Triangles near the point of an impact that are looked at. Higher: slow casts at the hub of a fan. Lower: casts
+/// along walls stop where many triangles meet.
+const CROWD: usize = 64;
+
 /// Rounding of a corner that was moved to a place and back, as a share of the coordinates.
 const ROUNDING: f64 = 1.0e-14;
 
@@ -133,13 +137,11 @@ impl<F: Facets> Around<F> {
     }
 
     /// Returns true if a triangle that touches a place on a triangle rises towards a unit direction, by a slope whose
-    /// sine is above `most`.
+    /// sine is above `most`. Looks at few triangles where a crowd meets.
     pub fn rises(&self, triangle: u32, place: DVec3, direction: DVec3, most: f64) -> bool {
         let mut slopes = Slopes::default();
-        self.visit_touching(triangle, place, |_, ends| {
+        self.visit_touching(triangle, place, CROWD, |_, ends| {
             ends.for_each(|end| slopes.add(end, direction));
-            let rises = slopes.rise > most * most;
-            if rises { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         slopes.rise > most * most
     }
@@ -173,7 +175,7 @@ impl<F: Facets> Around<F> {
         let first = half_edge(triangle, feature);
         let ends = [0, usize::from(!is_vertex)].map(|i| self.corner(first, i));
         let mut has_strays = false;
-        self.visit_touching(triangle, place, |corners, _| {
+        self.visit_touching(triangle, place, usize::MAX, |corners, _| {
             let is_at = |corner: &DVec3, end: &DVec3| {
                 let off = *corner + place - *end;
                 off.length_squared() <= ROUNDING * ROUNDING * place.length_squared()
@@ -181,7 +183,6 @@ impl<F: Facets> Around<F> {
             let has_end = |end: &DVec3| corners.iter().any(|corner| is_at(corner, end));
             has_strays |= !ends.iter().any(has_end);
             count += 1;
-            ControlFlow::Continue(())
         });
         (!has_strays, count)
     }
@@ -280,11 +281,10 @@ impl<F: Facets> Around<F> {
         }
         if !self.facets.is_whole(triangle, feature) {
             let mut all = Heights::default();
-            self.visit_touching(triangle, place, |corners, ends| {
+            self.visit_touching(triangle, place, usize::MAX, |corners, ends| {
                 ends.for_each(|end| slopes.add(end, direction));
                 all.add(area_vector(corners), direction);
                 count += 1;
-                ControlFlow::Continue(())
             });
             heights = if is_closed { heights } else { all };
         }
@@ -311,9 +311,8 @@ impl<F: Facets> Around<F> {
         });
         if bend.is_exceeded(rise, most) && !self.facets.is_whole(triangle, feature) {
             let place = self.place(triangle, feature, place);
-            self.visit_touching(triangle, place, |_, ends| {
-                ends.for_each(|end| bend.add(end));
-                ControlFlow::Continue(())
+            self.visit_touching(triangle, place, usize::MAX, |_, ends| {
+                ends.for_each(|end| bend.add(end))
             });
         }
         bend.is_exceeded(rise, most)
@@ -330,21 +329,23 @@ impl<F: Facets> Around<F> {
     }
 
     /// Calls `visit` with the triangles that touch a place: their corners from there, and those of
-    /// these that are not at the place. May end when `visit` breaks.
+    /// these that are not at the place. Ends after `most` triangles near the place.
     fn visit_touching(
         &self,
         triangle: u32,
         place: DVec3,
-        mut visit: impl FnMut(&[DVec3; 3], &mut dyn Iterator<Item = DVec3>) -> ControlFlow<()>,
+        mut most: usize,
+        mut visit: impl FnMut(&[DVec3; 3], &mut dyn Iterator<Item = DVec3>),
     ) {
         let seam = seam(&each(|i| self.corner(3 * triangle, i)));
         self.facets.near([place - seam, place + seam], &mut |other| {
             let corners = each(|i| self.corner(3 * other, i) - place);
             if touches(&corners, [DVec3::ZERO; 2], seam) {
                 let is_far = |corner: &DVec3| corner.length_squared() > seam * seam;
-                return visit(&corners, &mut corners.into_iter().filter(is_far));
+                visit(&corners, &mut corners.into_iter().filter(is_far));
             }
-            ControlFlow::Continue(())
+            most -= 1;
+            if most == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
     }
 
