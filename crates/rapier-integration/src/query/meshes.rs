@@ -1,6 +1,5 @@
 //! Two meshes.
 
-use glamx::DVec3;
 use parry3d::math::{Pose, Vector};
 use parry3d::query::ShapeCastHit;
 use parry3d::query::details::ShapeCastOptions;
@@ -100,15 +99,12 @@ impl<'a> MeshQuery<'a> {
         let FoundPair { triangle1, triangle2, contact, origin, .. } = pair;
         let TriangleContact { normal, features, point1, point2, .. } = *contact;
         let before = point2 - velocity.as_dvec3() * *time;
-        let at1 = || (*triangle1, origin.as_dvec3() + point1, normal);
-        let at2 = || {
-            let normal2 = (self.placement.inverse * -normal).normalize_or_zero();
-            (*triangle2, self.placement.to_frame2(before, *origin), normal2)
-        };
-        let is_minimum = |i: usize, (triangle, place, direction): (u32, DVec3, DVec3)| {
-            is_minimum(self.meshes[i].mesh, triangle, place, direction)
-        };
-        features.is_crossing() || is_minimum(0, at1()) && is_minimum(1, at2())
+        let [mesh1, mesh2] = self.meshes.each_ref().map(|mesh| mesh.mesh);
+        let place2 = self.placement.to_frame2(before, *origin);
+        let normal2 = (self.placement.inverse * -normal).normalize_or_zero();
+        features.is_crossing()
+            || is_minimum(mesh1, *triangle1, origin.as_dvec3() + point1, normal)
+                && is_minimum(mesh2, *triangle2, place2, normal2)
     }
 
     pub(super) fn cast_nonlinear(&self, cast: &NonlinearCast<'_>) -> Option<ShapeCastHit> {

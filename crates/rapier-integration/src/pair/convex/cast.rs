@@ -72,13 +72,11 @@ impl ConvexSearch<'_> {
             |triangle, best| {
                 let latest = latest.min(best.into());
                 let cast = self.cast_triangle(triangle, of_triangle, options, latest)?;
-                if may_slide && !self.is_minimum(&cast.found) {
+                let time = cast.time as Real;
+                if time >= best || may_slide && !self.is_minimum(&cast.found) {
                     return None;
                 }
-                let time = cast.time as Real;
-                if time < best {
-                    first.set(Some(cast));
-                }
+                first.set(Some(cast));
                 Some(time)
             },
         );
