@@ -28,7 +28,7 @@ impl StudyArguments {
 
     /// Runs a study, prints the verdict and the tables, and writes the file.
     ///
-    /// Errors: those of the study; a file that cannot be written, which is found before the study.
+    /// Returns the errors of the study. A file that cannot be written is an error before the study starts.
     pub fn run(&self, study: impl FnOnce(&Progress) -> Result<Results, FileError>) -> Outcome {
         if let Some(path) = &self.csv {
             check_output(path)?;

@@ -76,7 +76,7 @@ fn sheets_face_up_and_have_their_size() {
     }
 }
 
-/// Would catch lost features, eye sockets that are not hollow, and another head than that of all
+/// Would catch lost features, filled eye sockets, and a head that differs from the head of all
 /// results. A head without features is nearly its own convex hull. Up the face, the surface must
 /// recede behind both cheek and brow.
 #[test]

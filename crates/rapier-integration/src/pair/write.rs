@@ -405,8 +405,8 @@ fn of_part<T>(list: &[T], part: u32, part_of: impl Fn(&T) -> u32) -> Range<usize
     first..first + list[first..].partition_point(|one| part_of(one) == part)
 }
 
-/// Returns the index of the old point with the features of a point, unless its data is taken. If there is none, returns
-/// the nearest one of its direction `within` a distance, as points that move pass from triangle to triangle.
+/// Returns the index of the old point with the features of `point`, or else of the nearest one with its direction,
+/// `within` a distance. Skips points whose data is taken. Moving points pass from triangle to triangle.
 fn find_old<C>(
     point: &TrackedContact<()>,
     normal: Vec3,

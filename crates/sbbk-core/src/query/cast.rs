@@ -57,9 +57,8 @@ const ARRIVED: f64 = 1.0e-12;
 /// steps.
 const STEP_LIMIT: usize = 100;
 
-/// Returns the first impact that `counts`, of mesh 2, placed at `placement` in the frame of mesh 1 and
-/// moving by `velocity` there. `None` if there is none until `options.max_time`, or if a number is NaN or
-/// infinite.
+/// Returns the first impact that `counts`. Mesh 2 is placed at `placement` in the frame of mesh 1 and moves by
+/// `velocity` there. Returns `None` without an impact until `options.max_time`, and for NaN or infinite numbers.
 pub fn cast(
     trees: (&Tree, &Tree),
     placement: Placement,

@@ -328,8 +328,8 @@ impl<F: Facets> Around<F> {
         }
     }
 
-    /// Calls `visit` with the triangles that touch a place: their corners from there, and those of
-    /// these that are not at the place. Ends after `most` triangles near the place.
+    /// Calls `visit` for each triangle that touches a place. `visit` gets the three corners, seen from the place, and
+    /// the corners that are not at the place. Ends after `most` triangles near the place.
     fn visit_touching(
         &self,
         triangle: u32,

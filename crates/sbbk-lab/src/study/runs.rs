@@ -98,8 +98,7 @@ pub(super) struct Run {
     probe: Probe,
     /// Times of the steps that were not judged, in order.
     times: Vec<StepTimes>,
-    /// Errors of first queries, for all contacts of triangles: pairs sampled from all those of the
-    /// broad phase.
+    /// Errors of first queries for all contacts of triangles. The pairs are sampled from the broad phase.
     fresh: Errors,
     /// Errors of the answers that Rapier got: pairs sampled from those that it did not recycle.
     updated: Errors,

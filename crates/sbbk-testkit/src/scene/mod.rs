@@ -42,8 +42,8 @@ pub struct SceneWorld {
     pub watched: Vec<RigidBodyHandle>,
 }
 
-/// A collider of a mesh, whose clones share its shape. Its mass is that of the enclosed volume, or of
-/// the bounding box if the mesh is open or inside out.
+/// A collider of a mesh, whose clones share its shape. The enclosed volume gives
+/// the mass, or the bounding box if the mesh is open or inside out.
 pub fn collider(mesh: &Mesh) -> ColliderBuilder {
     /// A thin bowl encloses about 5 % of its bounding box; a sheet, 0.
     const LEAST_SOLIDITY: f64 = 0.01;
