@@ -273,6 +273,25 @@ pub(super) fn tori(tube: u32, steps: usize) -> Everyday<'static> {
     Everyday::new(row, steps, move || Driven::alone(pile.build().world))
 }
 
+/// Heads that fall on a floor of two triangles, with so many details.
+pub(super) fn heads_on_floor(detail: u32, steps: usize) -> Everyday<'static> {
+    const COUNT: u32 = 12;
+    let [head, floor] = [mesh::monkey_head_with(detail).scaled_to(1.2), mesh::floor(16.0, 1)];
+    let row = Row::new(FINE, "").key("scene", format!("{COUNT} heads on a floor"));
+    let row = row.key("triangles", head.triangle_count());
+    let [head, floor] = [&head, &floor].map(collider);
+    Everyday::new(row, steps, move || {
+        let (mut world, mut random) = (PhysicsWorld::new(), Rand32::new(5));
+        world.insert(RigidBodyBuilder::fixed(), floor.clone());
+        for i in 0..COUNT {
+            let place = Vec3::new(2.0 * (i % 4) as f32 - 3.0, 1.0, 2.0 * (i / 4) as f32 - 2.0);
+            let pose = Pose3::from_parts(place, random::rotation(&mut random));
+            world.insert(RigidBodyBuilder::dynamic().pose(pose), head.clone());
+        }
+        Driven::alone(world)
+    })
+}
+
 /// A torus that slides along another one, both with so many segments around the tube.
 #[cfg(feature = "parallel")]
 pub(super) fn two_tori(tube: u32, steps: usize) -> Everyday<'static> {

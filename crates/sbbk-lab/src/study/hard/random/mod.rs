@@ -8,6 +8,7 @@ mod chains;
 mod draw;
 mod floors;
 mod gears;
+mod grippers;
 mod overlaps;
 mod piles;
 mod plates;
@@ -51,6 +52,7 @@ pub enum Family {
     Overlaps,
     Rooms,
     Tables,
+    Grippers,
 }
 
 impl Family {
@@ -69,6 +71,7 @@ impl Family {
             Self::Overlaps => overlaps::run(draw, kit),
             Self::Rooms => rooms::run(draw, kit),
             Self::Tables => tables::run(draw, kit),
+            Self::Grippers => grippers::run(draw, kit),
         }
     }
 }
