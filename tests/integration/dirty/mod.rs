@@ -11,6 +11,8 @@ use rapier3d::pipeline::PhysicsWorld;
 
 /// Boxes that are driven over beams with chamfers.
 mod beams;
+/// Meshes that fall on flat grounds.
+mod falls;
 /// Bodies that slide and roll over floors.
 mod floors;
 /// Bodies that ride, and where.

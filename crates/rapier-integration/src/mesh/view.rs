@@ -97,18 +97,23 @@ pub(crate) fn nearest_triangle(mesh: &TriMesh, point: Vec3, within: Real) -> Opt
 const MOST_PARTS: usize = 8;
 
 /// Returns the distance in which a ray from a point inside a shape of triangles leaves it, and the outward normal there.
-/// `None` if the ray first meets the front of a triangle, or nothing. Parts of a mesh may overlap.
-pub(crate) fn exit(shape: &impl RayCast, point: Vec3, direction: Vec3) -> Option<(Real, Vec3)> {
+/// `None` if the ray meets nothing. A ray may leave a sheet through the front of a triangle. Parts of a solid may overlap.
+pub(crate) fn exit(
+    shape: &impl RayCast,
+    point: Vec3,
+    direction: Vec3,
+    is_sheet: bool,
+) -> Option<(Real, Vec3)> {
     const BACK: FeatureId = FeatureId::Face(1);
     let next = |from: Real| {
         let ray = Ray::new(point + from * direction, direction);
         let hit = shape.cast_local_ray_and_get_normal(&ray, Real::MAX, false)?;
         // Parry turns normals against the ray.
-        (hit.feature == BACK).then_some((from + hit.time_of_impact, -hit.normal))
+        (is_sheet || hit.feature == BACK).then_some((from + hit.time_of_impact, -hit.normal))
     };
     let beyond = |from: Real| from + 64.0 * Real::EPSILON * (from + point.abs().max_element());
     let exits = std::iter::successors(next(0.0), |(length, _)| next(beyond(*length)));
-    exits.take(MOST_PARTS).last()
+    exits.take(if is_sheet { 1 } else { MOST_PARTS }).last()
 }
 
 /// True if a box is finite and not empty.

@@ -21,6 +21,10 @@ const COHERENT: f64 = 0.5;
 /// edges are left out. Lower: rays meet the surface where they start.
 const INSET: f64 = 1.0e-3;
 
+/// Greatest distance of a flat contour from its plane, as a share of its length. Higher: contours around edges count as
+/// flat. Lower: rounding makes contours of flat faces uneven.
+const FLAT: f64 = 1.0e-3;
+
 /// Greatest depth behind a contour, as a share of its length. Higher: pins are pushed back all their way. Lower: bodies deep
 /// in others turn and sink.
 const DEPTH_PER_LENGTH: f64 = 0.5;
@@ -44,8 +48,10 @@ impl Segment {
     /// Returns `None` for triangles that do not cross.
     pub(super) fn of(crossing: &Unsupported, local: &TrianglePair) -> Option<Self> {
         let [t1, t2] = &local.corners;
-        let [normal1, normal2] =
-            [t1, t2].map(|[a, b, c]| (*b - *a).cross(*c - *a).normalize_or_zero());
+        let outward =
+            |[a, b, c]: &[DVec3; 3], sign: f64| sign * (*b - *a).cross(*c - *a).normalize_or_zero();
+        let [sign1, sign2] = crossing.outward;
+        let [normal1, normal2] = [outward(t1, sign1), outward(t2, sign2)];
         let along = normal1.cross(normal2);
         let [from1, to1] = cut(t1, normal2, t2[0], along)?;
         let [from2, to2] = cut(t2, normal1, t1[0], along)?;
@@ -98,6 +104,8 @@ pub(super) struct Contour<'s> {
     pub(super) middle: DVec3,
     /// Direction of the area vector: shape 2 leaves shape 1 along it.
     pub(super) normal: DVec3,
+    /// True if the contour is in a plane.
+    pub(super) is_flat: bool,
 }
 
 impl<'s> Contour<'s> {
@@ -116,12 +124,15 @@ impl<'s> Contour<'s> {
         let (area, swept) =
             areas.fold((DVec3::ZERO, 0.0), |(area, swept), one| (area + one, swept + one.length()));
         let is_closed = gap.length() <= GAP * length;
+        let normal = area.normalize_or_zero();
+        let mut ends = segments.iter().flat_map(|one| one.ends);
         (is_closed && area.length() > COHERENT * swept).then(|| Self {
             segments,
             inset,
             most: DEPTH_PER_LENGTH * length,
             middle: middle - inset / length * outward,
-            normal: area.normalize(),
+            normal,
+            is_flat: ends.all(|end| (end - middle).dot(normal).abs() <= FLAT * length),
         })
     }
 

@@ -1,4 +1,4 @@
-//! Contacts of solids that are deep in each other.
+//! Contacts of shapes that are deep in each other. A sheet counts as the border of a solid here.
 //!
 //! Faces that have passed each other by more than a row of triangles no longer cross. Contacts lead the shortest way
 //! out of the overlap behind a [contour](super::contour).
@@ -7,7 +7,7 @@ use arrayvec::ArrayVec;
 use glamx::DVec3;
 
 use super::contour::{Contour, MOST_POINTS, Points, Segment};
-use super::islands::{OverlapIslands, Unsupported};
+use super::islands::{IslandWay, OverlapIslands, Unsupported};
 use super::pose::PairPose;
 use super::query::ContactList;
 use super::triangle_shapes::{TriangleShapes, TriangleSurfaceContact};
@@ -42,44 +42,56 @@ struct Way {
     exits: ArrayVec<Option<[f64; 2]>, MOST_POINTS>,
 }
 
-/// Two shapes that may be deep in each other.
-pub(super) struct DeepSearch<'a, S> {
-    pub(super) shapes: &'a S,
-    pub(super) pose: &'a PairPose,
+/// An island of two shapes that are deep in each other.
+struct DeepIsland<'a, S> {
+    shapes: &'a S,
+    pose: &'a PairPose,
+    /// The shape that is a sheet, if any.
+    sheet: Option<usize>,
 }
 
-impl<S: TriangleShapes> DeepSearch<'_, S> {
-    /// Adds contacts along the area vectors of contours to islands of solids that have too few.
-    pub(super) fn add_contacts(
-        &self,
-        islands: &mut OverlapIslands,
-        ContourMemory { crossings, segments }: &mut ContourMemory,
-        contacts: &mut ContactList<TriangleSurfaceContact>,
-    ) {
-        islands.list_unsupported(crossings);
-        for island in crossings.chunk_by(|a, b| a.island == b.island) {
-            segments.clear();
-            segments.extend(island.iter().filter_map(|crossing| {
-                Segment::of(crossing, &self.shapes.local(self.pose, crossing.pair)?)
-            }));
-            let Some(contour) = Contour::of(segments) else { continue };
-            let points = contour.points();
-            let Some(way) = self.way_across(&contour, &points) else { continue };
-            if way.length > contour.most || !islands.leads_apart(way.normal) {
-                continue;
-            }
-            let across = points.iter().zip(way.exits);
-            contacts.extend(across.filter_map(|((segment, point), exits)| {
-                Some((segment.pair, self.contact_across(segment.pair, *point, way.normal, exits?)?))
-            }));
-            islands.set_way(segments[0].pair, way.normal);
+/// Adds contacts along the ways out of contours to islands that have too few.
+pub(super) fn add_contacts<S: TriangleShapes>(
+    shapes: &S,
+    pose: &PairPose,
+    islands: &mut OverlapIslands,
+    ContourMemory { crossings, segments }: &mut ContourMemory,
+    contacts: &mut ContactList<TriangleSurfaceContact>,
+) {
+    islands.list_unsupported(crossings);
+    for island in crossings.chunk_by(|a, b| a.island == b.island) {
+        segments.clear();
+        segments.extend(
+            island
+                .iter()
+                .filter_map(|crossing| Segment::of(crossing, &shapes.local(pose, crossing.pair)?)),
+        );
+        let Some(contour) = Contour::of(segments) else { continue };
+        let points = contour.points();
+        let deep = DeepIsland { shapes, pose, sheet: island[0].sheet };
+        let Some(Way { normal, length, exits }) = deep.way_across(&contour, &points) else {
+            continue;
+        };
+        if length > contour.most || !islands.leads_apart(normal) {
+            continue;
         }
+        contacts.extend(points.iter().zip(exits).filter_map(|((segment, point), exits)| {
+            Some((segment.pair, deep.contact_across(segment.pair, *point, normal, exits?)?))
+        }));
+        let way = IslandWay { normal, is_exact: contour.is_flat };
+        islands.set_way(segments[0].pair, way);
     }
+}
 
-    /// Returns the shortest way by which shape 2 leaves an overlap. Tries the area vector of the contour and, from its
-    /// middle, the normals where that leads out, and the nearest points of both surfaces.
+impl<S: TriangleShapes> DeepIsland<'_, S> {
+    /// Returns the shortest way by which shape 2 leaves an overlap. For a flat contour that is the area vector. For others,
+    /// tries the area vector and, from the middle, the normals where that leads out, and the nearest points of both
+    /// surfaces.
     fn way_across(&self, contour: &Contour, points: &Points) -> Option<Way> {
-        let Contour { middle, normal, .. } = *contour;
+        let Contour { middle, normal, is_flat, .. } = *contour;
+        if is_flat {
+            return self.way_along(normal, points);
+        }
         let normals = self.exits(middle, normal).map(|[(_, one), (_, two)]| [one, -two]);
         let ways = normals.into_iter().flatten().chain(self.nearest_ways(middle));
         let ways = ways.filter(|way| way.dot(normal) > NEAR_AREA_VECTOR).chain([normal]);
@@ -112,9 +124,11 @@ impl<S: TriangleShapes> DeepSearch<'_, S> {
         let PairPose { pos12, .. } = self.pose;
         let (point, direction) = (point.as_vec3(), direction.as_vec3());
         let rotation = pos12.rotation;
-        let exit1 = self.shapes.exit(0, point, direction)?;
+        let exit =
+            |i, point, direction| self.shapes.exit(i, point, direction, self.sheet == Some(i));
+        let exit1 = exit(0, point, direction)?;
         let at2 = pos12.inverse_transform_point(point);
-        let (length2, normal2) = self.shapes.exit(1, at2, rotation.inverse() * -direction)?;
+        let (length2, normal2) = exit(1, at2, rotation.inverse() * -direction)?;
         let exits = [exit1, (length2, rotation * normal2)];
         Some(exits.map(|(length, normal)| (f64::from(length), normal.as_dvec3())))
     }

@@ -30,8 +30,8 @@ struct Support {
     reliable: u32,
     /// True if a contact on the far side of a thin body was rejected. No others are added.
     is_thin: bool,
-    /// Direction out of the overlap, if the contour has one; else zero.
-    way: DVec3,
+    /// Way out of the overlap, if the contour has one.
+    way: Option<IslandWay>,
     /// Sum of the normals of reliable contacts.
     normals: DVec3,
     /// Direction off a sheet, to the side on which the middle of a solid is; zero without a sheet.
@@ -43,6 +43,21 @@ struct Support {
 /// Pairs of an island that one reliable contact supports. Higher: bodies deep in each other turn about
 /// their only contact and sink; lower: contacts that are no local minima push aside.
 const SUPPORTED: u32 = 8;
+
+/// Direction by which shape 2 leaves an overlap.
+#[derive(Copy, Clone)]
+pub(super) struct IslandWay {
+    pub(super) normal: DVec3,
+    /// True if all of the contour is in a plane across the way.
+    pub(super) is_exact: bool,
+}
+
+impl IslandWay {
+    /// Returns true if a contact of triangles pushes along the way.
+    fn has(self, normal: DVec3) -> bool {
+        self.normal.dot(normal) >= if self.is_exact { SAME_WAY } else { ALONG_WAY }
+    }
+}
 
 impl Support {
     fn is_enough(self) -> bool {
@@ -59,6 +74,10 @@ pub(super) struct Unsupported {
     pub(super) pair: [u32; 2],
     /// True if the pair has a final contact.
     pub(super) has_contact: bool,
+    /// Signs with which the normals of the triangles lead out of the shapes.
+    pub(super) outward: [f64; 2],
+    /// The shape that is a sheet, if any.
+    pub(super) sheet: Option<usize>,
 }
 
 /// Two triangles that cross or have passed each other.
@@ -84,6 +103,8 @@ pub(super) struct Crossing {
 /// Position of a solid relative to a triangle of a sheet.
 #[derive(Copy, Clone)]
 pub(super) struct SheetSide {
+    /// The shape that is the sheet. `None` for two sheets of one size.
+    pub(super) shape: Option<usize>,
     /// Normal of contacts that push the solid off the front of the triangle.
     pub(super) away: DVec3,
     /// Height of the middle of the solid over the front.
@@ -96,11 +117,24 @@ impl Crossing {
         let along = self.sheet.map_or(0.0, |sheet| sheet.away.dot(self.normal));
         if along.abs() > SAME_SIDE { along.signum() } else { 0.0 }
     }
+
+    /// Returns signs with which the normals of the triangles lead out of the shapes, if these are known. Behind a sheet, seen
+    /// from the middle of the other shape, counts as solid.
+    fn outward(&self) -> Option<[f64; 2]> {
+        let Some(sheet) = self.sheet else { return self.is_of_solids.then_some([1.0; 2]) };
+        let mut signs = [1.0; 2];
+        signs[sheet.shape?] = sheet.height.signum();
+        Some(signs)
+    }
 }
 
 /// Least cosine between the way out of an overlap and contacts of triangles there. Higher: heavy loads press
 /// bodies deeper. Lower: grippers spin what they hold.
 const ALONG_WAY: f64 = 0.97;
+
+/// Least cosine between an exact way out of an overlap and contacts along it. Higher: rounding removes contacts.
+/// Lower: round meshes that fall on flat floors are kicked aside.
+const SAME_WAY: f64 = 0.9999;
 
 /// Cosine above which two normals push to one side. Higher: bodies that pierce a solid are held in it;
 /// lower: contacts that do not push against each other are rejected.
@@ -233,24 +267,31 @@ impl OverlapIslands {
         self.support_of(pair).is_some_and(|support| support.reliable == 0)
     }
 
-    /// Replaces `list` by the crossings of solids in islands that have too few contacts, one island after another.
+    /// Replaces `list` by the crossings in islands that have too few contacts, one island after another. Crossings with an
+    /// unknown outer side are left out.
     pub(super) fn list_unsupported(&mut self, list: &mut Vec<Unsupported>) {
         list.clear();
         for index in 0..self.crossings.len() {
             let crossing = self.crossings[index];
-            let Crossing { pair, is_crossing, is_of_solids, .. } = crossing;
-            if is_crossing && is_of_solids && self.needs_support(pair) {
-                let island = self.islands.first((0, pair[0]));
-                list.push(Unsupported { island, pair, has_contact: self.is_fine(&crossing) });
+            let Crossing { pair, is_crossing, sheet, .. } = crossing;
+            let Some(outward) = crossing.outward().filter(|_| is_crossing) else { continue };
+            if self.needs_support(pair) {
+                list.push(Unsupported {
+                    island: self.islands.first((0, pair[0])),
+                    pair,
+                    has_contact: self.is_fine(&crossing),
+                    outward,
+                    sheet: sheet.and_then(|sheet| sheet.shape),
+                });
             }
         }
         list.sort_unstable_by_key(|crossing| (crossing.island, crossing.pair));
     }
 
-    /// Sets the direction out of the overlap of an island.
-    pub(super) fn set_way(&mut self, pair: [u32; 2], way: DVec3) {
+    /// Sets the way out of the overlap of an island.
+    pub(super) fn set_way(&mut self, pair: [u32; 2], way: IslandWay) {
         let first = self.islands.first((0, pair[0]));
-        self.support.entry(first).or_default().way = way;
+        self.support.entry(first).or_default().way = Some(way);
     }
 
     /// Returns true if a contact does not push against the direction in which the bodies separate.
@@ -264,7 +305,7 @@ impl OverlapIslands {
         let agrees = |Support { normals, sheet_side, way, .. }: Support| {
             normals.dot(normal) >= 0.0
                 && sheet_side.dot(normal) >= 0.0
-                && way.dot(normal) >= ALONG_WAY * way.length_squared()
+                && way.is_none_or(|way| way.has(normal))
         };
         self.leads_apart(normal) && self.support_of(pair).is_none_or(agrees)
     }
@@ -486,11 +527,11 @@ mod tests {
         let pushed = |heights: [f64; 2], normals: [DVec3; 2]| {
             let mut islands = OverlapIslands::default();
             for (i, (height, normal)) in (1..).zip(heights.into_iter().zip(normals)) {
-                let sheet = Some(SheetSide { away: DVec3::Y, height });
+                let sheet = Some(SheetSide { shape: Some(0), away: DVec3::Y, height });
                 islands.add(crossing([i, 1], Some(&(normal, 0.1)), sheet));
             }
             // Far from these, all the same way.
-            let sheet = Some(SheetSide { away: DVec3::Y, height: 1.0 });
+            let sheet = Some(SheetSide { shape: Some(0), away: DVec3::Y, height: 1.0 });
             islands.add(crossing([7, 7], Some(&(-DVec3::Y, 0.1)), sheet));
             islands.finish_first_pass(None);
             [[1, 1], [2, 1], [7, 7]].map(|pair| islands.is_final(pair))
@@ -510,7 +551,11 @@ mod tests {
             let mut islands = OverlapIslands::default();
             for i in 0..pairs {
                 let good = Some(&down).filter(|_| i == 0);
-                islands.add(crossing([1, i], good, Some(SheetSide { away: DVec3::Y, height })));
+                islands.add(crossing(
+                    [1, i],
+                    good,
+                    Some(SheetSide { shape: Some(0), away: DVec3::Y, height }),
+                ));
             }
             let needs_more = islands.finish_first_pass(None);
             (needs_more && islands.needs_support([1, 0]), islands.is_final([1, 0]), islands)

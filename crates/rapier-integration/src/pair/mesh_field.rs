@@ -290,11 +290,17 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
         Some((nearest.point, behind))
     }
 
-    fn exit(&self, i: usize, point: Vector, direction: Vector) -> Option<(Real, Vector)> {
+    fn exit(
+        &self,
+        i: usize,
+        point: Vector,
+        direction: Vector,
+        is_sheet: bool,
+    ) -> Option<(Real, Vector)> {
         if self.is_field(i) {
-            return exit(self.field.0, point, direction);
+            return exit(self.field.0, point, direction, is_sheet);
         }
-        exit(self.pair.mesh.mesh, point, direction)
+        exit(self.pair.mesh.mesh, point, direction, is_sheet)
     }
 
     fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32> {

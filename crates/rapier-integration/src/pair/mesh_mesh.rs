@@ -361,8 +361,14 @@ impl<'q> TriangleShapes for Meshes<'q> {
         Some((nearest.point, behind))
     }
 
-    fn exit(&self, i: usize, point: Vector, direction: Vector) -> Option<(Real, Vector)> {
-        exit(self.pair.meshes[i].mesh, point, direction)
+    fn exit(
+        &self,
+        i: usize,
+        point: Vector,
+        direction: Vector,
+        is_sheet: bool,
+    ) -> Option<(Real, Vector)> {
+        exit(self.pair.meshes[i].mesh, point, direction, is_sheet)
     }
 
     fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32> {

@@ -425,7 +425,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
                     let middle2 = self.pose.placement12.to_frame1(middle2, Vec3::ZERO);
                     let between = middle2 - middle1.as_dvec3();
                     let height = between.length();
-                    return Some(SheetSide { away: between.try_normalize()?, height });
+                    return Some(SheetSide { shape: None, away: between.try_normalize()?, height });
                 }
             },
         };
@@ -438,7 +438,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             _ => (normal, self.pose.placement12.inverse * normal),
         };
         let half_height = own.abs().dot(self.shapes.bounds(solid).half_extents().as_dvec3());
-        Some(SheetSide { away, height: height + LEAN * half_height })
+        Some(SheetSide { shape: Some(1 - solid), away, height: height + LEAN * half_height })
     }
 
     /// Returns true if a contact is deep since a point is far inside, not since this triangle is on

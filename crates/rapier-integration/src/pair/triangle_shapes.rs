@@ -82,8 +82,14 @@ pub(crate) trait TriangleShapes: Sync {
     fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)>;
 
     /// Returns the distance in which a ray from a point inside a shape leaves it, and the outward normal there. `None`
-    /// if the ray first meets the front of a triangle, or nothing.
-    fn exit(&self, i: usize, point: Vector, direction: Vector) -> Option<(Real, Vector)>;
+    /// if the ray meets nothing. A ray may leave a sheet through the front of a triangle, but no solid.
+    fn exit(
+        &self,
+        i: usize,
+        point: Vector,
+        direction: Vector,
+        is_sheet: bool,
+    ) -> Option<(Real, Vector)>;
 
     /// Returns the nearest triangle of a shape to a point in its frame, if that is within a distance. The triangle
     /// of a height field may be another that is near.

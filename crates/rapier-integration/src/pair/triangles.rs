@@ -16,7 +16,7 @@ use sbbk_core::traverse::{DescentCounts, SlackLimits};
 
 use super::borders::lead_one_way;
 use super::chunks::{ChunkResult, in_chunks};
-use super::deep::{ContourMemory, DeepSearch};
+use super::deep::{self, ContourMemory};
 use super::far::{Directions, FarSearch};
 use super::inside::InsideTest;
 use super::islands::OverlapIslands;
@@ -362,8 +362,7 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         contacts: &mut ContactList<TriangleSurfaceContact>,
     ) {
         contacts.retain(|(pair, _)| islands.is_final(*pair));
-        let deep = DeepSearch { shapes: &self.shapes, pose: self.pose };
-        deep.add_contacts(islands, contours, contacts);
+        deep::add_contacts(&self.shapes, self.pose, islands, contours, contacts);
         for i in 0..islands.len() {
             let Some(crossing) = islands.open(i) else { continue };
             let Some(local) = self.shapes.local(self.pose, crossing.pair) else { continue };
