@@ -10,7 +10,7 @@ mod pairs;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use pairs::{Kind, Pair, bumpy_spheres};
-use sbbk_core::contact::{ManifoldPoints, contact, contact_from, manifold};
+use sbbk_core::contact::{ManifoldPoints, clip, contact, contact_from, push_closest};
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -42,15 +42,12 @@ fn steady(pair: &Pair) -> f64 {
 }
 
 fn points(pair: &Pair) -> usize {
+    let Pair { t1, t2, margin, contact: last } = pair;
     let mut points = ManifoldPoints::new();
-    manifold(
-        &pair.t1,
-        &pair.t2,
-        pair.margin,
-        pair.margin,
-        Some(pair.contact.features),
-        &mut points,
-    );
+    if let Some(contact) = contact_from(t1, t2, *margin, last.features) {
+        clip(t1, t2, contact.normal, &mut points);
+        push_closest(t1, t2, &contact, &mut points);
+    }
     black_box(&points).len()
 }
 

@@ -8,8 +8,8 @@ use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::{PackedFeatureId, Triangle};
 use sbbk_core::contact::{
-    Feature, FeaturePair, ManifoldPoint, ManifoldPoints, TriangleContact, clip,
-    manifold as manifold_of,
+    Feature, FeaturePair, ManifoldPoint, ManifoldPoints, TriangleContact, clip, contact,
+    contact_from, push_closest,
 };
 use sbbk_core::query::TrianglePair;
 use sbbk_core::traverse::Placement;
@@ -140,12 +140,17 @@ impl<C: Default + Copy> TriangleContacts<C> {
         let mut clipped = ManifoldPoints::new();
         let [t1, t2] = &triangles.corners;
         let within = f64::from(prediction);
-        let contact = manifold_of(t1, t2, within, within, self.features, &mut clipped);
+        let contact = match self.features {
+            Some(features) => contact_from(t1, t2, within, features),
+            None => contact(t1, t2, within),
+        };
         self.features = contact.map(|contact| contact.features);
         let points = std::mem::take(&mut self.points);
         let mut points = ContactPoints { points, ..ContactPoints::default() };
         points.points.clear();
         if let Some(contact) = contact {
+            clip(t1, t2, contact.normal, &mut clipped);
+            push_closest(t1, t2, &contact, &mut clipped);
             let cones = normal_constraints;
             write_points(&pose, &triangles, &contact, &mut clipped, cones, &mut points);
         }

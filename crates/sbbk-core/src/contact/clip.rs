@@ -63,16 +63,8 @@ pub fn push_closest(
     contact: &TriangleContact,
     out: &mut ManifoldPoints,
 ) {
-    push_closest_points(&Triangle::new(t1), &Triangle::new(t2), contact, out);
-}
-
-pub(super) fn push_closest_points(
-    t1: &Triangle,
-    t2: &Triangle,
-    contact: &TriangleContact,
-    out: &mut ManifoldPoints,
-) {
-    let reach = SAME_POINT * if t1.size < t2.size { t1.size } else { t2.size };
+    let [size1, size2] = [t1, t2].map(|t| Triangle::new(t).size);
+    let reach = SAME_POINT * if size1 < size2 { size1 } else { size2 };
     let is_same = |a: DVec3, b: DVec3| (a - b).length_squared() <= reach * reach;
     let TriangleContact { point1, point2, distance, .. } = *contact;
     let features = FeaturePair::new(contact.features.feature1(), contact.features.feature2());

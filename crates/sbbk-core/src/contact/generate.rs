@@ -1,7 +1,6 @@
 //! From two triangles to their contact.
 
 use super::axes::{Axis, FaceAxes, best_axis};
-use super::clip::{ManifoldPoints, clip_triangles, push_closest_points};
 use super::closest::{Closest, TIE, closest, closest_on_lines, is_over, proved, within_edge};
 use super::edges::{closest_edges, proved_edges};
 use super::feature::{Feature, FeaturePair};
@@ -38,29 +37,6 @@ pub fn contact_from(
     last: FeaturePair,
 ) -> Option<TriangleContact> {
     find(&Triangle::new(t1), &Triangle::new(t2), margin, Some(last))
-}
-
-/// Computes [`contact`](fn@contact) or, given `last`, [`contact_from`], then the points of
-/// [`clip`](super::clip) and [`push_closest`](super::push_closest). One call costs less than three.
-///
-/// `out` stays empty if there is no contact or if its distance is more than `reach`. Contacts
-/// between `reach` and `margin` have a distance only.
-pub fn manifold(
-    t1: &[DVec3; 3],
-    t2: &[DVec3; 3],
-    margin: f64,
-    reach: f64,
-    last: Option<FeaturePair>,
-    out: &mut ManifoldPoints,
-) -> Option<TriangleContact> {
-    out.clear();
-    let (t1, t2) = (Triangle::new(t1), Triangle::new(t2));
-    let contact = find(&t1, &t2, margin, last)?;
-    if contact.distance <= reach {
-        clip_triangles(&t1, &t2, contact.normal, out);
-        push_closest_points(&t1, &t2, &contact, out);
-    }
-    Some(contact)
 }
 
 /// Inlined, and with early returns, so that no contact is copied: that took as long as finding it.

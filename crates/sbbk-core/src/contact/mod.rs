@@ -56,6 +56,6 @@ mod triangle_contact;
 
 pub use clip::{ManifoldPoint, ManifoldPoints, clip, push_closest};
 pub use feature::{Feature, FeaturePair};
-pub use generate::{contact, contact_from, manifold};
+pub use generate::{contact, contact_from};
 pub use penetration::penetration_out_of_solid;
 pub use triangle_contact::TriangleContact;

@@ -6,8 +6,7 @@ use super::strategies::{point, triangle};
 use glamx::{DVec2, DVec3};
 use proptest::prelude::*;
 use sbbk_core::contact::{
-    Feature, FeaturePair, ManifoldPoint, ManifoldPoints, clip, contact, contact_from, manifold,
-    push_closest,
+    Feature, FeaturePair, ManifoldPoint, ManifoldPoints, clip, contact, push_closest,
 };
 use sbbk_core::truth;
 use std::collections::HashSet;
@@ -107,25 +106,6 @@ proptest! {
         prop_assert_eq!(points.len(), count, "the closest points were added twice");
         let names: HashSet<_> = points.iter().map(|p| p.features).collect();
         prop_assert_eq!(names.len(), points.len());
-
-        // "contact or contact_from; then clip along the normal and push_closest".
-        for last in [None, Some(found.features)] {
-            let mut at_once = ManifoldPoints::new();
-            let from = last.map_or(Some(found), |last| contact_from(&t1, &t2, 1.0, last));
-            let mut one_by_one = ManifoldPoints::new();
-            clip(&t1, &t2, from.unwrap().normal, &mut one_by_one);
-            push_closest(&t1, &t2, &from.unwrap(), &mut one_by_one);
-            prop_assert_eq!(manifold(&t1, &t2, 1.0, 1.0, last, &mut at_once), from);
-            prop_assert_eq!(at_once, one_by_one);
-        }
-        let below = found.distance.next_down();
-        let mut none = points.clone();
-        prop_assert_eq!(manifold(&t1, &t2, below, below, None, &mut none), None);
-        prop_assert!(none.is_empty());
-        // Within the margin and out of reach: the contact alone.
-        let mut none = points.clone();
-        prop_assert_eq!(manifold(&t1, &t2, 1.0, below, None, &mut none), Some(found));
-        prop_assert!(none.is_empty());
     }
 
     #[test]
@@ -179,8 +159,10 @@ fn closest_points_keep_the_features_of_their_triangles() {
         let features = FeaturePair::new(Feature::Vertex(2), feature2);
         for (t1, t2, features) in [(left, right, features), (right, left, features.swapped())] {
             let mut points = ManifoldPoints::new();
-            let found = manifold(&t1, &t2, 2.0, 2.0, None, &mut points).unwrap();
+            let found = contact(&t1, &t2, 2.0).unwrap();
             assert_eq!(found.features, features);
+            clip(&t1, &t2, found.normal, &mut points);
+            push_closest(&t1, &t2, &found, &mut points);
             assert_eq!(points.len(), 1, "{points:?}");
             assert_eq!((points[0].features, points[0].distance), (features, 1.0));
         }
