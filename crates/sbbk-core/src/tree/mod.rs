@@ -12,7 +12,6 @@
 //! let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 //! let tree = Tree::build(&vertices, &triangles, &BuildOptions::default())?;
 //! assert_eq!(tree.triangle_count(), 4);
-//! assert_eq!(tree.validate(), Ok(()));
 //! # Ok::<(), sbbk_core::tree::BuildError>(())
 //! ```
 
@@ -21,14 +20,12 @@ mod build;
 mod layers;
 mod node;
 mod pack;
-mod validate;
 mod walk;
 
 pub use build::BuildOptions;
 pub use layers::LayerPlan;
 pub use node::{BATCH, LeafBatch};
 pub(crate) use node::{Children, Intervals, Link, Slot};
-pub use validate::Violation;
 pub use walk::Node;
 
 use glamx::Vec3;
@@ -126,9 +123,7 @@ impl Tree {
         check_mesh(vertices, triangles)?;
         Ok(pack::pack(build::build(vertices, triangles, options), vertices, triangles, options))
     }
-}
 
-impl Tree {
     /// Number of triangles of the mesh, degenerate ones included.
     pub fn triangle_count(&self) -> u32 {
         self.triangle_count
@@ -159,13 +154,8 @@ impl Tree {
     }
 
     /// The triangles of a leaf.
-    pub fn leaf(&self, leaf: u32) -> &LeafBatch {
+    pub(crate) fn leaf(&self, leaf: u32) -> &LeafBatch {
         &self.leaves[leaf as usize]
-    }
-
-    /// Number of leaves.
-    pub fn leaf_count(&self) -> u32 {
-        self.leaves.len() as u32
     }
 
     /// The volumes of the two children of an inner node, lane by lane.
@@ -181,11 +171,6 @@ impl Tree {
     #[inline]
     pub(crate) fn link(&self, slot: Slot) -> Link {
         self.children(slot.node()).links[slot.lane()]
-    }
-
-    /// Number of inner nodes, the root's own entry included.
-    pub(crate) fn node_count(&self) -> usize {
-        self.aabb_pairs.len() + self.kdop_pairs.len()
     }
 }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::query::pairs_within;
 use crate::support::{Random, Soup, bumpy_ball, cube, lattice_soup, soup};
+use crate::tree::check as check_tree;
 use glamx::{Pose3, Quat, Vec3};
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::traverse::{DescentCounts, DescentScratch, PairFrame, descend};
@@ -29,9 +30,7 @@ fn survivors(
 }
 
 fn tree(soup: &Soup, layers: impl Into<Option<LayerPlan>>) -> Tree {
-    let tree = soup.tree(layers);
-    assert_eq!(tree.validate(), Ok(()));
-    tree
+    check_tree(soup, &BuildOptions { layers: layers.into(), ..BuildOptions::default() })
 }
 
 fn truth(soup1: &Soup, soup2: &Soup, pos12: &Pose3, margin: f32) -> BTreeSet<(u32, u32)> {

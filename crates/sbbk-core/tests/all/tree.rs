@@ -2,24 +2,55 @@
 
 use crate::support::{Random, Soup, bumpy_ball, cube, lattice_soup, soup};
 use glamx::{Quat, Vec3};
-use sbbk_core::tree::{BATCH, BuildError, BuildOptions, LayerPlan, Node, Tree};
+use sbbk_core::tree::{BATCH, BuildError, BuildOptions, BuildStats, LayerPlan, Node, Tree};
 
 fn options(kdop_from_depth: Option<u32>, leaf_size: usize) -> BuildOptions {
     BuildOptions { layers: Some(LayerPlan { sphere_root: true, kdop_from_depth }), leaf_size }
 }
 
-fn check(soup: &Soup, options: &BuildOptions) -> Tree {
+/// Builds a tree and walks over all its nodes. Would catch a triangle that is lost or in two leaves,
+/// a volume that does not hold all below it, a volume of the wrong layer, and nodes out of reach.
+pub fn check(soup: &Soup, options: &BuildOptions) -> Tree {
     let tree = Tree::build(&soup.vertices, &soup.triangles, options).unwrap();
-    assert_eq!(tree.validate(), Ok(()));
     assert_eq!(tree.triangle_count() as usize, soup.triangles.len());
-    for leaf in 0..tree.leaf_count() {
-        let batch = tree.leaf(leaf);
-        assert!((1..=options.leaf_size.clamp(1, BATCH)).contains(&batch.count()));
-        for (lane, &triangle) in batch.triangles().iter().enumerate() {
+    let BuildStats { depth, layers, bytes, .. } = *tree.stats();
+    assert_eq!(tree.sphere().is_some(), layers.sphere_root);
+    let is_kdop = |depth: u32| layers.kdop_from_depth.is_some_and(|from| depth >= from);
+    let mut is_found = vec![false; soup.triangles.len()];
+    // The box of the root has a pair of its own.
+    let (mut leaves, mut pairs, mut deepest) = (0, [1, 0], 0);
+    let mut stack = vec![vec![tree.root()]];
+    while let Some(path) = stack.pop() {
+        let node = path[path.len() - 1];
+        assert_eq!(node.depth() as usize + 1, path.len());
+        assert_eq!(node.kdop().is_some(), is_kdop(node.depth()));
+        deepest = deepest.max(node.depth());
+        if let Some(children) = node.children() {
+            assert!(node.leaf().is_none());
+            pairs[usize::from(is_kdop(node.depth() + 1))] += 1;
+            stack.extend(children.map(|child| [&path[..], &[child]].concat()));
+            continue;
+        }
+        leaves += 1;
+        let leaf = node.leaf().expect("no children");
+        assert!((1..=options.leaf_size.clamp(1, BATCH)).contains(&leaf.count()));
+        for (lane, &triangle) in leaf.triangles().iter().enumerate() {
+            assert!(!std::mem::replace(&mut is_found[triangle as usize], true), "found twice");
             let corners = soup.triangles[triangle as usize].map(|v| soup.vertices[v as usize]);
-            assert_eq!(batch.corners(lane), corners, "the leaf holds another triangle");
+            assert_eq!(leaf.corners(lane), corners, "the leaf holds another triangle");
+            for corner in corners {
+                let is_around = |node: &Node| {
+                    node.aabb().contains(corner) && node.kdop().is_none_or(|k| k.contains(corner))
+                };
+                assert!(path.iter().all(is_around), "{triangle} is outside");
+                assert!(tree.sphere().is_none_or(|ball| ball.contains(corner)));
+            }
         }
     }
+    assert!(is_found.iter().all(|&is_found| is_found));
+    assert_eq!(deepest, depth);
+    // A pair of boxes has 44 bytes, a pair of k-DOPs 116, a leaf 160.
+    assert_eq!(bytes, 44 * pairs[0] + 116 * pairs[1] + 160 * leaves);
     tree
 }
 
@@ -160,8 +191,8 @@ fn the_ball_around_a_box_holds_its_corners() {
             .collect();
         let triangles = (0..6).map(|i| [i, i + 1, i + 2]).collect();
         let soup = Soup { vertices, triangles };
-        let plan = LayerPlan { sphere_root: false, kdop_from_depth: None };
-        let ball = check(&soup, &BuildOptions { layers: Some(plan), leaf_size: 4 }).bounding_ball();
+        let layers = Some(LayerPlan::AABB_ONLY);
+        let ball = check(&soup, &BuildOptions { layers, leaf_size: 4 }).bounding_ball();
         for vertex in soup.vertices {
             let distance = (vertex.as_dvec3() - ball.centre.as_dvec3()).length();
             assert!(distance <= f64::from(ball.radius), "{vertex} is outside of {ball:?}");
@@ -169,48 +200,12 @@ fn the_ball_around_a_box_holds_its_corners() {
     }
 }
 
-/// Would catch children of another node, a wrong depth, and a volume of the wrong layer.
-#[test]
-fn a_walk_reaches_each_node_once() {
-    let ball = bumpy_ball(12, 0.2);
-    let plan = LayerPlan { sphere_root: true, kdop_from_depth: Some(3) };
-    let tree = check(&ball, &BuildOptions { layers: Some(plan), leaf_size: 3 });
-    let mut seen = vec![0; ball.triangles.len()];
-    let (mut leaf_count, mut deepest) = (0, 0);
-    let mut stack = vec![(tree.root(), Vec::<Node>::new())];
-    while let Some((node, above)) = stack.pop() {
-        assert_eq!(node.depth() as usize, above.len());
-        assert_eq!(node.kdop().is_some(), node.depth() >= 3);
-        deepest = deepest.max(node.depth());
-        let path = [above, vec![node]].concat();
-        let Some(children) = node.children() else {
-            let leaf = node.leaf().expect("no children");
-            leaf_count += 1;
-            for (lane, &triangle) in leaf.triangles().iter().enumerate() {
-                seen[triangle as usize] += 1;
-                for corner in leaf.corners(lane) {
-                    let is_around = |node: &Node| {
-                        let kdop = node.kdop();
-                        node.aabb().contains(corner) && kdop.is_none_or(|k| k.contains(corner))
-                    };
-                    assert!(path.iter().all(is_around));
-                }
-            }
-            continue;
-        };
-        assert!(node.leaf().is_none());
-        stack.extend(children.map(|child| (child, path.clone())));
-    }
-    assert!(seen.iter().all(|&count| count == 1));
-    assert_eq!((leaf_count, deepest), (tree.leaf_count(), tree.stats().depth));
-}
-
 #[test]
 fn leaf_sizes_are_clamped() {
     let ball = bumpy_ball(4, 0.1);
     for (leaf_size, clamped) in [(0, 1), (9, BATCH), (usize::MAX, BATCH)] {
-        let leaf_count = |size| check(&ball, &options(Some(4), size)).leaf_count();
-        assert_eq!(leaf_count(leaf_size), leaf_count(clamped));
+        let bytes = |size| check(&ball, &options(Some(4), size)).stats().bytes;
+        assert_eq!(bytes(leaf_size), bytes(clamped));
     }
 }
 
@@ -260,16 +255,4 @@ fn faults_are_reported_with_their_place() {
     );
     // A bad vertex that no triangle uses does no harm.
     assert_eq!(build(&[[0, 1, 2]], &fine), None);
-}
-
-#[test]
-fn memory_follows_the_plan() {
-    let ball = bumpy_ball(20, 0.1);
-    let tree = check(&ball, &options(Some(4), 4));
-    let boxes = check(&ball, &BuildOptions { layers: Some(LayerPlan::AABB_ONLY), leaf_size: 4 });
-    assert!(boxes.sphere().is_none() && tree.sphere().is_some());
-    // A pair of boxes has 44 bytes, a pair of k-DOPs 116, a leaf 160. Depths 1 to 3 have boxes.
-    let leaves = tree.leaf_count() as usize;
-    assert_eq!(boxes.stats().bytes, 44 * leaves + 160 * leaves);
-    assert_eq!(tree.stats().bytes, 44 * 8 + 116 * (leaves - 8) + 160 * leaves);
 }
