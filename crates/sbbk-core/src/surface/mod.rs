@@ -3,26 +3,6 @@
 //! A triangle alone cannot tell on which side the body is. It cannot tell either if a point on its border is a
 //! corner of the body, or lies within a flat face. A [`Surface`] stores the neighbours across each edge, of
 //! welded vertices, and derives from rays if the triangles bound a solid.
-//!
-//! ```
-//! use glamx::{DVec3, Vec3};
-//! use sbbk_core::contact::Feature;
-//! use sbbk_core::surface::{AllTriangles, Surface, SurfaceKind};
-//!
-//! let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
-//! let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-//! let rays = AllTriangles { vertices: &vertices, triangles: &triangles };
-//! let surface = Surface::new(&vertices, &triangles, &rays);
-//! assert_eq!(surface.kind(), SurfaceKind::Solid);
-//!
-//! let around = surface.around(&vertices, &triangles);
-//! // Down from the origin no other part of the solid is nearer.
-//! assert!(around.is_local_minimum(0, Feature::Vertex(0), -DVec3::ONE, None));
-//! // Along this direction the next vertex on the x axis is nearer.
-//! let along_x = DVec3::new(1.0, -1.0, -1.0);
-//! assert!(!around.is_local_minimum(0, Feature::Vertex(0), along_x, None));
-//! assert!(around.points_inside(0, Feature::Vertex(0), DVec3::ONE));
-//! ```
 
 mod one_ring;
 mod sides;
@@ -31,8 +11,8 @@ pub mod strays;
 mod triangle;
 mod twins;
 
-pub use one_ring::{Around, Facets, PlainFacets};
-pub use sides::{AllTriangles, RayTriangles, Side, SurfaceKind, kind, side};
+pub use one_ring::{Around, Facets};
+pub use sides::{RayTriangles, Side, SurfaceKind, kind, side};
 pub use slopes::PlaceMemo;
 
 use glamx::Vec3;
@@ -97,16 +77,6 @@ impl Surface {
     /// The kind of surface.
     pub fn kind(&self) -> SurfaceKind {
         self.kind
-    }
-
-    /// The surface around any triangle, given the mesh that this surface was made from.
-    pub fn around<'a>(
-        &'a self,
-        vertices: &'a [Vec3],
-        triangles: &'a [[u32; 3]],
-    ) -> Around<PlainFacets<'a>> {
-        let side = if self.kind == SurfaceKind::Solid { Side::Outer } else { Side::Sheet };
-        Around { facets: PlainFacets { surface: self, vertices, triangles }, side }
     }
 
     /// Memory of this value in bytes, without the mesh.

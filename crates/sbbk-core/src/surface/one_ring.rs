@@ -2,9 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use glamx::{DVec3, Vec3};
+use glamx::DVec3;
 
-use super::Surface;
 use super::sides::Side;
 use super::slopes::{Bend, FLAT, Heights, LONG, PlaceMemo, Slopes};
 use super::triangle::{area_vector, seam, touches};
@@ -30,27 +29,6 @@ pub trait Facets {
     /// Memory for places where many triangles meet.
     fn memo(&self) -> Option<&PlaceMemo> {
         None
-    }
-}
-
-/// The triangles of a mesh whose surface has no strays.
-#[derive(Clone, Copy)]
-pub struct PlainFacets<'a> {
-    pub(super) surface: &'a Surface,
-    pub(super) vertices: &'a [Vec3],
-    pub(super) triangles: &'a [[u32; 3]],
-}
-
-impl Facets for PlainFacets<'_> {
-    #[inline(always)]
-    fn twin(&self, half_edge: u32) -> Option<u32> {
-        self.surface.twin(half_edge)
-    }
-
-    #[inline(always)]
-    fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
-        let triangle = self.triangles[half_edge as usize / 3];
-        self.vertices[triangle[(half_edge as usize + i) % 3] as usize].as_dvec3()
     }
 }
 
@@ -493,7 +471,7 @@ mod tests {
     use glamx::Vec3;
 
     use super::*;
-    use crate::surface::{AllTriangles, Surface};
+    use crate::support::Soup;
 
     /// Would catch sums in the order of the triangle that asks first, which threads change.
     #[test]
@@ -505,10 +483,10 @@ mod tests {
         });
         let vertices: Vec<Vec3> = [Vec3::ZERO].into_iter().chain(rim).collect();
         for sides in [COUNT, COUNT - 1] {
-            let triangles: Vec<_> = (0..sides).map(|i| [0, 1 + i, 1 + (i + 1) % COUNT]).collect();
-            let rays = AllTriangles { vertices: &vertices, triangles: &triangles };
-            let surface = Surface::new(&vertices, &triangles, &rays);
-            let ring = surface.around(&vertices, &triangles);
+            let triangles = (0..sides).map(|i| [0, 1 + i, 1 + (i + 1) % COUNT]).collect();
+            let mesh = Soup { vertices: vertices.clone(), triangles };
+            let surface = mesh.surface();
+            let ring = Around { facets: mesh.facets(&surface), side: Side::Sheet };
             let slopes = |triangle| {
                 let vertex = Feature::Vertex(0);
                 let direction = DVec3::new(0.1, 0.2, 0.9);

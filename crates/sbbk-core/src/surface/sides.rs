@@ -11,7 +11,7 @@ use std::cell::OnceCell;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
-use glamx::{DVec3, Vec3};
+use glamx::DVec3;
 
 use super::slopes::PlaceMemo;
 use super::triangle::{area_vector, longest_side};
@@ -26,30 +26,6 @@ pub trait RayTriangles {
 
     /// Calls `visit` with all triangles that the ray from `start` may meet, until it breaks.
     fn along(&self, start: DVec3, direction: DVec3, visit: &mut dyn FnMut(u32) -> ControlFlow<()>);
-}
-
-/// The triangles of an indexed mesh. Each ray tests all of them.
-#[derive(Clone, Copy, Debug)]
-pub struct AllTriangles<'a> {
-    /// Vertices of the mesh.
-    pub vertices: &'a [Vec3],
-    /// Triangles of the mesh.
-    pub triangles: &'a [[u32; 3]],
-}
-
-impl RayTriangles for AllTriangles<'_> {
-    fn count(&self) -> u32 {
-        self.triangles.len() as u32
-    }
-
-    fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        let corners = self.triangles[triangle as usize];
-        corners.map(|corner| self.vertices[corner as usize].as_dvec3())
-    }
-
-    fn along(&self, _: DVec3, _: DVec3, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
-        let _ = (0..self.count()).try_for_each(visit);
-    }
 }
 
 /// The kind of surface that a mesh forms.

@@ -5,16 +5,21 @@ use std::f32::consts::TAU;
 
 use glamx::{DVec3, Vec3};
 use sbbk_core::contact::Feature;
-use sbbk_core::surface::{Around, Facets, PlaceMemo, PlainFacets, Side};
+use sbbk_core::surface::{Around, Facets, PlaceMemo, Side};
 
-use crate::support::Soup;
-use crate::surface::analysed;
+use crate::support::{PlainFacets, Soup};
 
 /// A triangulated surface that counts visited triangles.
 struct Counted<'a> {
     facets: PlainFacets<'a>,
     visits: Cell<usize>,
     memo: PlaceMemo,
+}
+
+impl<'a> Counted<'a> {
+    fn new(facets: PlainFacets<'a>) -> Self {
+        Self { facets, visits: Cell::new(0), memo: PlaceMemo::default() }
+    }
 }
 
 impl Facets for Counted<'_> {
@@ -43,16 +48,14 @@ fn cones_tip_to_tip_do_not_depend_on_which_is_asked_first() {
         });
         [Vec3::ZERO].into_iter().chain(rim)
     };
-    let vertices: Vec<_> = cone(0.02, 1.0).chain(cone(2.0, -1.0)).collect();
-    let triangles: Vec<_> = [0, COUNT + 1]
+    let triangles = [0, COUNT + 1]
         .into_iter()
-        .flat_map(|tip| (0..COUNT).map(move |i| [tip, tip + 1 + (i + 1) % COUNT, tip + 1 + i]))
-        .collect();
-    let surface = analysed(&Soup { vertices: vertices.clone(), triangles: triangles.clone() });
+        .flat_map(|tip| (0..COUNT).map(move |i| [tip, tip + 1 + (i + 1) % COUNT, tip + 1 + i]));
+    let vertices = cone(0.02, 1.0).chain(cone(2.0, -1.0)).collect();
+    let mesh = Soup { vertices, triangles: triangles.collect() };
+    let surface = mesh.surface();
     let answers = |order: [u32; 2]| {
-        let facets = surface.around(&vertices, &triangles).facets;
-        let (visits, memo) = (Cell::new(0), PlaceMemo::default());
-        let ring = Around { facets: Counted { facets, visits, memo }, side: Side::Sheet };
+        let ring = Around { facets: Counted::new(mesh.facets(&surface)), side: Side::Sheet };
         let is_minimum = |tip: u32| {
             // This triangle is far from those that rise.
             let lowest = tip * COUNT + COUNT / 2;
@@ -73,12 +76,11 @@ fn work_at_the_tip_of_a_cone_grows_with_its_triangles() {
             let (sin, cos) = (TAU * i as f32 / count as f32).sin_cos();
             Vec3::new(cos, sin, -1.0)
         };
-        let vertices: Vec<_> = [Vec3::ZERO].into_iter().chain((0..count).map(rim)).collect();
-        let triangles: Vec<_> = (0..count).map(|i| [0, 1 + i, 1 + (i + 1) % count]).collect();
-        let surface = analysed(&Soup { vertices: vertices.clone(), triangles: triangles.clone() });
-        let facets = surface.around(&vertices, &triangles).facets;
-        let (visits, memo) = (Cell::new(0), PlaceMemo::default());
-        let ring = Around { facets: Counted { facets, visits, memo }, side: Side::Outer };
+        let vertices = [Vec3::ZERO].into_iter().chain((0..count).map(rim)).collect();
+        let triangles = (0..count).map(|i| [0, 1 + i, 1 + (i + 1) % count]).collect();
+        let mesh = Soup { vertices, triangles };
+        let surface = mesh.surface();
+        let ring = Around { facets: Counted::new(mesh.facets(&surface)), side: Side::Outer };
         for triangle in 0..count {
             assert!(ring.is_local_minimum(triangle, Feature::Vertex(0), DVec3::Z, None));
             assert!(ring.points_inside(triangle, Feature::Vertex(0), -DVec3::Z));

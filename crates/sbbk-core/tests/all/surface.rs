@@ -5,7 +5,7 @@ use std::f32::consts::{FRAC_PI_2, PI, TAU};
 use crate::support::{Random, Soup, bumpy_ball, lattice_soup, soup};
 use glamx::{DVec3, Quat, Vec3};
 use sbbk_core::contact::Feature;
-use sbbk_core::surface::{AllTriangles, Around, Facets, Side, Surface, SurfaceKind};
+use sbbk_core::surface::{Around, Facets, Side, SurfaceKind};
 
 use SurfaceKind::{InsideOut, Sheet, Solid};
 
@@ -40,7 +40,7 @@ fn brute_twins(mesh: &Soup) -> Vec<Option<u32>> {
 
 /// Panics unless all twins are right; how many half-edges have one.
 fn check_twins(mesh: &Soup) -> usize {
-    let surface = analysed(mesh);
+    let surface = mesh.surface();
     let expected = brute_twins(mesh);
     let found: Vec<Option<u32>> =
         (0..expected.len()).map(|half_edge| surface.twin(half_edge as u32)).collect();
@@ -125,11 +125,6 @@ enum Seen {
     Beside,
 }
 
-/// The surface of a mesh, whose rays test all triangles.
-pub fn analysed(Soup { vertices, triangles }: &Soup) -> Surface {
-    Surface::new(vertices, triangles, &AllTriangles { vertices, triangles })
-}
-
 fn side(around: &Around<impl Facets>, triangle: u32, feature: Feature, direction: DVec3) -> Seen {
     let is_behind = around.points_inside(triangle, feature, direction);
     match around.is_local_minimum(triangle, feature, direction, None) {
@@ -204,14 +199,12 @@ fn directions_agree_with_all_triangles_of_the_one_ring() {
             // Fans with borders.
             mesh.triangles.retain(|_| !random.bits().is_multiple_of(6));
         }
-        let surface = analysed(&mesh);
+        let surface = mesh.surface();
         let twins = brute_twins(&mesh);
         for case in 0..800 {
             let is_solid = case % 2 == 0;
-            let around = Around {
-                side: if is_solid { Side::Outer } else { Side::Sheet },
-                ..surface.around(&mesh.vertices, &mesh.triangles)
-            };
+            let side_of_all = if is_solid { Side::Outer } else { Side::Sheet };
+            let around = Around { facets: mesh.facets(&surface), side: side_of_all };
             let triangle = (random.bits() % mesh.triangles.len() as u64) as u32;
             for feature in features() {
                 let mut own = triangles_around(&mesh, &twins, triangle, feature);
@@ -238,8 +231,8 @@ fn directions_agree_with_all_triangles_of_the_one_ring() {
 #[test]
 fn a_leaning_corner_is_a_minimum_for_faces_first() {
     let cube = cube();
-    let surface = analysed(&cube);
-    let around = surface.around(&cube.vertices, &cube.triangles);
+    let surface = cube.surface();
+    let around = Around { facets: cube.facets(&surface), side: Side::Outer };
     let half_edges = 0..3 * cube.triangles.len();
     let corner = half_edges.into_iter().find(|&half_edge| {
         let [corner, _, _] = corners(&cube, half_edge);
@@ -500,10 +493,10 @@ fn kinds_are_independent_of_size_place_and_order() {
             for triangle in &mut moved.triangles {
                 triangle.rotate_left((random.bits() % 3) as usize);
             }
-            let found = analysed(&moved).kind();
+            let found = moved.surface().kind();
             assert_eq!(found, kind, "{name}, {size} times as large");
             let mirrored = mapped(moved, |v| v * Vec3::new(-1.0, 1.0, 1.0));
-            let found = analysed(&mirrored).kind();
+            let found = mirrored.surface().kind();
             let mirror = match kind {
                 Solid => InsideOut,
                 InsideOut => Solid,
@@ -524,7 +517,7 @@ fn a_solid_with_a_hole_is_solid_far_from_the_origin() {
     };
     for away in Vec3::AXES.into_iter().flat_map(|axis| [100.0 * axis, -100.0 * axis]) {
         let moved = mapped(open.clone(), |v| v + away);
-        assert_eq!(analysed(&moved).kind(), Solid, "at {away}");
+        assert_eq!(moved.surface().kind(), Solid, "at {away}");
     }
 }
 
@@ -541,9 +534,8 @@ fn flat_sides_continue_to_their_end() {
         let [a, b] = [i, i + 1].map(|row| row * (CELLS + 1) + j);
         mesh.triangles.extend([[a, a + 1, b + 1], [a, b + 1, b]]);
     }
-    let surface = analysed(&mesh);
-    let around = surface.around(&mesh.vertices, &mesh.triangles);
-    let around = Around { side: Side::Sheet, ..around };
+    let surface = mesh.surface();
+    let around = Around { facets: mesh.facets(&surface), side: Side::Sheet };
     for triangle in 0..2 * CELLS * (CELLS - 1) {
         let top = 1 + triangle / (2 * CELLS);
         let beyond = |direction, most| around.side_beyond(triangle, direction, most);

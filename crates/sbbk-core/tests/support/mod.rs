@@ -1,8 +1,11 @@
 //! Inputs for the tests of this crate: small meshes, poses, and a seeded random source.
 #![allow(dead_code)] // Each test binary uses a part.
 
-use glamx::{Pose3, Quat, Vec3};
+use std::ops::ControlFlow;
+
+use glamx::{DVec3, Pose3, Quat, Vec3};
 use sbbk_core::field::{FieldFrame, FieldLeaves, FieldTriangle, HeightGrid};
+use sbbk_core::surface::{Facets, RayTriangles, Surface};
 use sbbk_core::traverse::{Counters, DescentCounts, TestedBox};
 use sbbk_core::tree::{BuildOptions, LayerPlan, Tree};
 
@@ -25,6 +28,46 @@ impl Soup {
     pub fn tree(&self, layers: impl Into<Option<LayerPlan>>) -> Tree {
         let options = BuildOptions { layers: layers.into(), ..BuildOptions::default() };
         Tree::build(&self.vertices, &self.triangles, &options).expect("the mesh is valid")
+    }
+
+    pub fn surface(&self) -> Surface {
+        Surface::new(&self.vertices, &self.triangles, self)
+    }
+
+    pub fn facets<'a>(&'a self, surface: &'a Surface) -> PlainFacets<'a> {
+        PlainFacets { mesh: self, surface }
+    }
+}
+
+/// Each ray tests all triangles.
+impl RayTriangles for Soup {
+    fn count(&self) -> u32 {
+        self.triangles.len() as u32
+    }
+
+    fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.triangles[triangle as usize].map(|corner| self.vertices[corner as usize].as_dvec3())
+    }
+
+    fn along(&self, _: DVec3, _: DVec3, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
+        let _ = (0..self.count()).try_for_each(visit);
+    }
+}
+
+/// The triangles of a mesh whose surface has no strays.
+#[derive(Clone, Copy)]
+pub struct PlainFacets<'a> {
+    mesh: &'a Soup,
+    surface: &'a Surface,
+}
+
+impl Facets for PlainFacets<'_> {
+    fn twin(&self, half_edge: u32) -> Option<u32> {
+        self.surface.twin(half_edge)
+    }
+
+    fn corner(&self, half_edge: u32, i: usize) -> DVec3 {
+        self.mesh.corners(half_edge / 3)[(half_edge as usize + i) % 3]
     }
 }
 
