@@ -21,48 +21,36 @@ use super::{ConvexContact, by_search};
 use crate::contact::closest::within_edge;
 use glamx::DVec3;
 
-/// A cylinder around the y axis, its middle at the origin.
+/// A cylinder or a cone around the y axis, its middle at the origin. The base of a cone is below, and
+/// its tip above.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CylinderSupport {
+pub struct TurnedSupport<const IS_CONE: bool> {
     /// Half the length of the axis.
     pub half_height: f64,
-    /// Radius of both discs.
+    /// Radius of each disc.
     pub radius: f64,
 }
 
-impl SupportMap for CylinderSupport {
-    const IS_CURVED: bool = true;
-
-    #[inline(always)]
-    fn support(&self, direction: DVec3) -> DVec3 {
-        rim(direction, radial(direction), self.radius, self.half_height.copysign(direction.y))
-    }
-
-    #[inline(always)]
-    fn contact(&self, triangle: &[DVec3; 3], margin: f64) -> Option<ConvexContact> {
-        turned_contact(triangle, self, margin)
-    }
-}
+/// A cylinder around the y axis, its middle at the origin.
+pub type CylinderSupport = TurnedSupport<false>;
 
 /// A cone around the y axis: its tip at `half_height`, its base at `-half_height`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ConeSupport {
-    /// Half the length of the axis.
-    pub half_height: f64,
-    /// Radius of the base.
-    pub radius: f64,
-}
+pub type ConeSupport = TurnedSupport<true>;
 
-impl SupportMap for ConeSupport {
+impl<const IS_CONE: bool> SupportMap for TurnedSupport<IS_CONE> {
     const IS_CURVED: bool = true;
 
+    /// The centre of a disc where all of it is farthest.
     #[inline(always)]
     fn support(&self, direction: DVec3) -> DVec3 {
+        let Self { half_height, radius } = *self;
         let across = radial(direction);
-        if 2.0 * self.half_height * direction.y > self.radius * across {
-            return DVec3::new(0.0, self.half_height, 0.0);
+        if IS_CONE && 2.0 * half_height * direction.y > radius * across {
+            return DVec3::new(0.0, half_height, 0.0);
         }
-        rim(direction, across, self.radius, -self.half_height)
+        let y = if IS_CONE { -half_height } else { half_height.copysign(direction.y) };
+        let scale = if across > 0.0 { radius / across } else { 0.0 };
+        DVec3::new(direction.x * scale, y, direction.z * scale)
     }
 
     #[inline(always)]
@@ -71,18 +59,10 @@ impl SupportMap for ConeSupport {
     }
 }
 
-/// Length of a direction across the y axis.
+/// Length of a vector across the y axis.
 #[inline(always)]
-fn radial(direction: DVec3) -> f64 {
-    (direction.x * direction.x + direction.z * direction.z).sqrt()
-}
-
-/// The point of a circle around the y axis that is farthest along a direction; the centre of the
-/// disc where all of it is.
-#[inline(always)]
-fn rim(direction: DVec3, across: f64, radius: f64, y: f64) -> DVec3 {
-    let scale = if across > 0.0 { radius / across } else { 0.0 };
-    DVec3::new(direction.x * scale, y, direction.z * scale)
+fn radial(DVec3 { x, z, .. }: DVec3) -> f64 {
+    (x * x + z * z).sqrt()
 }
 
 /// Steps of Newton's method at most; some five are taken.
@@ -117,63 +97,16 @@ impl Best {
     }
 }
 
-/// A solid around the y axis.
-pub(super) trait Turned: Solid {
-    /// Flat ends: the first ones of the rims.
-    const ENDS: usize;
-
-    fn half_height(&self) -> f64;
-
-    fn radius(&self) -> f64;
-
-    /// The height of the slope's normal, which has length 1.
-    fn slope(&self) -> f64;
-
-    /// The rims: the height of each, and the upright sign of the normals of its surfaces with edges.
-    /// That sign also leads out of a flat end.
-    fn rims(&self) -> [(f64, f64); 2];
-}
-
-impl Solid for CylinderSupport {
+impl<const IS_CONE: bool> Solid for TurnedSupport<IS_CONE> {
+    /// In a half plane a cone is a triangle between base, axis and slope.
     #[inline(always)]
-    fn outside(&self, DVec3 { x, y, z }: DVec3) -> DVec3 {
-        let across = (x * x + z * z).sqrt();
-        let scale = if across > self.radius { 1.0 - self.radius / across } else { 0.0 };
-        DVec3::new(x * scale, y - y.clamp(-self.half_height, self.half_height), z * scale)
-    }
-
-    #[inline(always)]
-    fn likely(&self, start: DVec3, edge: DVec3) -> f64 {
-        near_slope(start, edge, 0.0)
-    }
-}
-
-impl Turned for CylinderSupport {
-    const ENDS: usize = 2;
-
-    fn half_height(&self) -> f64 {
-        self.half_height
-    }
-
-    fn radius(&self) -> f64 {
-        self.radius
-    }
-
-    fn slope(&self) -> f64 {
-        0.0
-    }
-
-    fn rims(&self) -> [(f64, f64); 2] {
-        [(self.half_height, 1.0), (-self.half_height, -1.0)]
-    }
-}
-
-impl Solid for ConeSupport {
-    /// In a half plane the cone is a triangle between base, axis and slope.
-    #[inline(always)]
-    fn outside(&self, DVec3 { x, y, z }: DVec3) -> DVec3 {
-        let Self { half_height, radius } = *self;
-        let across = (x * x + z * z).sqrt();
+    fn outside(&self, point: DVec3) -> DVec3 {
+        let (Self { half_height, radius }, DVec3 { x, y, z }) = (*self, point);
+        let across = radial(point);
+        if !IS_CONE {
+            let scale = if across > radius { 1.0 - radius / across } else { 0.0 };
+            return DVec3::new(x * scale, y - y.clamp(-half_height, half_height), z * scale);
+        }
         let (out, up) = if y < -half_height {
             ((across - radius).max(0.0), y + half_height)
         } else {
@@ -196,39 +129,49 @@ impl Solid for ConeSupport {
 
     #[inline(always)]
     fn likely(&self, start: DVec3, edge: DVec3) -> f64 {
-        near_slope(start, edge, self.radius / (2.0 * self.half_height))
+        let lean = if IS_CONE { self.radius / (2.0 * self.half_height) } else { 0.0 };
+        near_slope(start, edge, lean)
     }
 }
 
-impl Turned for ConeSupport {
-    const ENDS: usize = 1;
+/// The normal of a slope, by its length across the axis and its height.
+#[derive(Clone, Copy)]
+struct Slope {
+    run: f64,
+    rise: f64,
+    /// How far the solid reaches along the normal, the same all around.
+    reach: f64,
+}
 
-    fn half_height(&self) -> f64 {
-        self.half_height
-    }
+impl<const IS_CONE: bool> TurnedSupport<IS_CONE> {
+    /// Flat ends: the first ones of the rims.
+    const ENDS: usize = if IS_CONE { 1 } else { 2 };
 
-    fn radius(&self) -> f64 {
-        self.radius
-    }
-
-    fn slope(&self) -> f64 {
+    #[inline(always)]
+    fn slope(&self) -> Slope {
         let Self { half_height, radius } = *self;
         let length = (radius * radius + 4.0 * half_height * half_height).sqrt();
-        if length > 0.0 { radius / length } else { 0.0 }
+        let rise = if IS_CONE && length > 0.0 { radius / length } else { 0.0 };
+        let run = (1.0 - rise * rise).sqrt();
+        let steepest = DVec3::new(run, rise, 0.0);
+        Slope { run, rise, reach: self.support(steepest).dot(steepest) }
     }
 
-    /// Beside the base, normals can point up as far as the normal of the slope.
+    /// The rims: the height of each, and the upright sign of the normals of its surfaces with edges.
+    /// That sign also leads out of a flat end. Beside the base of a cone, normals can point up as far
+    /// as the normal of the slope.
     fn rims(&self) -> [(f64, f64); 2] {
-        [(-self.half_height, -1.0), (-self.half_height, 1.0)]
+        let height = self.half_height;
+        if IS_CONE { [(-height, -1.0), (-height, 1.0)] } else { [(height, 1.0), (-height, -1.0)] }
     }
 }
 
-fn turned_contact<S: Turned>(
+fn turned_contact<const IS_CONE: bool>(
     triangle: &[DVec3; 3],
-    solid: &S,
+    solid: &TurnedSupport<IS_CONE>,
     margin: f64,
 ) -> Option<ConvexContact> {
-    let pair = TriangleAndSolid::new(triangle, solid, solid.half_height() + 2.0 * solid.radius());
+    let pair = TriangleAndSolid::new(triangle, solid, solid.half_height + 2.0 * solid.radius);
     if !pair.size.is_finite() {
         return None;
     }
@@ -238,7 +181,7 @@ fn turned_contact<S: Turned>(
         return None;
     }
     let (low, high) = pair.heights();
-    let end = solid.half_height();
+    let end = solid.half_height;
     if low - end > beyond || -end - high > beyond {
         return None;
     }
@@ -256,7 +199,7 @@ fn turned_contact<S: Turned>(
     contact.or_else(|| by_search(triangle, solid, f64::INFINITY))
 }
 
-impl<S: Turned> TriangleAndSolid<'_, S> {
+impl<const IS_CONE: bool> TriangleAndSolid<'_, TurnedSupport<IS_CONE>> {
     fn heights(&self) -> (f64, f64) {
         let [a, b, c] = self.triangle.map(|corner| corner.y);
         (a.min(b).min(c), a.max(b).max(c))
@@ -284,7 +227,6 @@ impl<S: Turned> TriangleAndSolid<'_, S> {
     /// The contact of bodies that cross. `None` if they hardly cross.
     #[inline(always)]
     fn penetration(&self, of_triangle: Option<Gap>) -> Option<ConvexContact> {
-        let solid = self.solid;
         let nothing = Gap { width: f64::NEG_INFINITY, outward: DVec3::Y };
         let mut best = Best(nothing, Part::Corner);
         if let Some(gap) = of_triangle {
@@ -292,18 +234,28 @@ impl<S: Turned> TriangleAndSolid<'_, S> {
             best.take(self.gap(-gap.outward), Part::Face);
         }
         let (low, high) = self.heights();
-        for &(height, side) in &solid.rims()[..S::ENDS] {
+        for &(height, side) in &self.solid.rims()[..TurnedSupport::<IS_CONE>::ENDS] {
             let width = if side > 0.0 { low - height } else { height - high };
             best.take(Gap { width, outward: DVec3::Y * side }, Part::Corner);
         }
-        let rise = solid.slope();
-        let run = (1.0 - rise * rise).sqrt();
-        let (radius, half_height) = (solid.radius(), solid.half_height());
-        // All of the slope reaches as far along its normal.
-        let steepest = DVec3::new(run, rise, 0.0);
-        let reach = solid.support(steepest).dot(steepest);
+        let slope = self.solid.slope();
+        self.slope_and_corners(&slope, &mut best);
+        for j in 0..3 {
+            self.sides_and_edge(j, &slope, &mut best);
+        }
+        let Best(gap, feature) = best;
+        if gap.width >= -self.doubtful() {
+            return None;
+        }
+        let on_triangle = self.touching(&gap, feature).or_else(|| self.touching_after(&gap))?;
+        Some(ConvexContact::new(on_triangle, -gap.outward, gap.width))
+    }
+
+    /// The gaps of the slope and each corner.
+    #[inline(always)]
+    fn slope_and_corners(&self, &Slope { run, rise, reach }: &Slope, best: &mut Best) {
         for corner in *self.triangle {
-            let across = (corner.x * corner.x + corner.z * corner.z).sqrt();
+            let across = radial(corner);
             if across * run + corner.y * rise - reach <= best.0.width {
                 continue;
             }
@@ -312,65 +264,64 @@ impl<S: Turned> TriangleAndSolid<'_, S> {
                 if across > 0.0 { [corner.x / across, corner.z / across] } else { [1.0, 0.0] };
             best.take(self.gap(DVec3::new(x * run, rise, z * run)), Part::Corner);
         }
-        for (j, edge) in self.edges.into_iter().enumerate() {
-            let [start, end, third] = [0, 1, 2].map(|i| self.triangle[(j + i) % 3]);
-            // An edge that touches after the move is no farther than that now.
-            let depth = -best.0.width;
-            let [most, least] = [half_height + depth, -half_height - depth];
-            if (start.y > most && end.y > most) || (start.y < least && end.y < least) {
-                continue;
-            }
-            // Across the edge: level, and as far up as can be.
-            let level = DVec3::new(-edge.z, 0.0, edge.x);
-            let (level_squared, squared) = (level.length_squared(), edge.length_squared());
-            if level_squared <= PARALLEL * PARALLEL * squared {
-                // Along the axis: level, from the axis to the edge.
-                let outward = DVec3::new(start.x, 0.0, start.z).normalize_or(DVec3::X);
-                best.take(self.gap(outward), Part::Slope(j));
-                continue;
-            }
-            let beside = start.dot(level);
-            if beside * beside > (radius + depth).powi(2) * level_squared {
-                continue;
-            }
-            let level = level / level_squared.sqrt();
-            let up = level.cross(edge) / squared.sqrt();
-            let up = if up.y < 0.0 { -up } else { up };
-            // Both coordinates across the edge, of its position and of the vector to the third
-            // corner. The third corner is not below an edge that touches.
-            let [at_level, at_up] = [start.dot(level), start.dot(up)];
-            let [to_level, to_up] = [(third - start).dot(level), (third - start).dot(up)];
-            let is_lowest = |x: f64, y: f64| x * to_level + y * to_up >= -self.doubtful();
-            let sine = rise / up.y;
-            if sine <= 1.0 {
-                let cosine = (1.0 - sine * sine).sqrt();
-                for x in [cosine, -cosine] {
-                    let bound = at_level * x + at_up * sine - reach;
-                    if bound > best.0.width && is_lowest(x, sine) {
-                        best.take(self.gap(level * x + up * sine), Part::Slope(j));
-                    }
-                }
-            }
-            for (height, side) in solid.rims() {
-                let coordinates = [-at_level, (height * up.y - at_up) * side];
-                // The directions between these two.
-                let x = if coordinates[0] < 0.0 { 1.0 } else { -1.0 };
-                if !(is_lowest(x, 0.0) || is_lowest(0.0, side)) {
-                    continue;
-                }
-                if let Some([x, y]) = rim_and_edge(coordinates, up.y, radius)
-                    && is_lowest(x, y * side)
-                {
-                    best.take(self.gap(level * x + up * (y * side)), Part::Rim(j));
+    }
+
+    /// The gaps of the slope and an edge, and of the rims and that edge.
+    #[inline(always)]
+    fn sides_and_edge(&self, j: usize, &Slope { rise, reach, .. }: &Slope, best: &mut Best) {
+        let TurnedSupport { radius, half_height } = *self.solid;
+        let [start, end, third] = [0, 1, 2].map(|i| self.triangle[(j + i) % 3]);
+        let edge = self.edges[j];
+        // An edge that touches after the move is no farther than that now.
+        let depth = -best.0.width;
+        let [most, least] = [half_height + depth, -half_height - depth];
+        if (start.y > most && end.y > most) || (start.y < least && end.y < least) {
+            return;
+        }
+        // Across the edge: level, and as far up as can be.
+        let level = DVec3::new(-edge.z, 0.0, edge.x);
+        let (level_squared, squared) = (level.length_squared(), edge.length_squared());
+        if level_squared <= PARALLEL * PARALLEL * squared {
+            // Along the axis: level, from the axis to the edge.
+            let outward = DVec3::new(start.x, 0.0, start.z).normalize_or(DVec3::X);
+            best.take(self.gap(outward), Part::Slope(j));
+            return;
+        }
+        let beside = start.dot(level);
+        if beside * beside > (radius + depth).powi(2) * level_squared {
+            return;
+        }
+        let level = level / level_squared.sqrt();
+        let up = level.cross(edge) / squared.sqrt();
+        let up = if up.y < 0.0 { -up } else { up };
+        // Both coordinates across the edge, of its position and of the vector to the third corner.
+        // The third corner is not below an edge that touches.
+        let [at_level, at_up] = [start.dot(level), start.dot(up)];
+        let [to_level, to_up] = [(third - start).dot(level), (third - start).dot(up)];
+        let is_lowest = |x: f64, y: f64| x * to_level + y * to_up >= -self.doubtful();
+        let sine = rise / up.y;
+        if sine <= 1.0 {
+            let cosine = (1.0 - sine * sine).sqrt();
+            for x in [cosine, -cosine] {
+                let bound = at_level * x + at_up * sine - reach;
+                if bound > best.0.width && is_lowest(x, sine) {
+                    best.take(self.gap(level * x + up * sine), Part::Slope(j));
                 }
             }
         }
-        let Best(gap, feature) = best;
-        if gap.width >= -self.doubtful() {
-            return None;
+        for (height, side) in self.solid.rims() {
+            let coordinates = [-at_level, (height * up.y - at_up) * side];
+            // The directions between these two.
+            let x = if coordinates[0] < 0.0 { 1.0 } else { -1.0 };
+            if !(is_lowest(x, 0.0) || is_lowest(0.0, side)) {
+                continue;
+            }
+            if let Some([x, y]) = rim_and_edge(coordinates, up.y, radius)
+                && is_lowest(x, y * side)
+            {
+                best.take(self.gap(level * x + up * (y * side)), Part::Rim(j));
+            }
         }
-        let on_triangle = self.touching(&gap, feature).or_else(|| self.touching_after(&gap))?;
-        Some(ConvexContact::new(on_triangle, -gap.outward, gap.width))
     }
 
     /// The point of the triangle that touches the solid after a move along the gap of a part.

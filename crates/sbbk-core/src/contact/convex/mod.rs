@@ -66,7 +66,7 @@ mod support;
 
 pub use clip::{FeaturePoint, FeaturePoints, clip_feature};
 pub use cuboid::CuboidSupport;
-pub use curved::{ConeSupport, CylinderSupport};
+pub use curved::{ConeSupport, CylinderSupport, TurnedSupport};
 pub use feature::feature_at;
 pub use half_space::half_space_contact;
 pub use hull::HullPoints;
