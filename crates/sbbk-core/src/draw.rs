@@ -21,7 +21,7 @@ use std::f32::consts::TAU;
 use glamx::{DVec3, Pose3, Vec3};
 
 use crate::leaf::LeafTest;
-use crate::traverse::{DescentScratch, PairFrame, descend};
+use crate::traverse::{DescentScratch, PairFrame, Placement, descend};
 use crate::tree::Tree;
 use crate::volumes::{Aabb, Kdop, Sphere, directions};
 
@@ -70,7 +70,8 @@ pub fn candidates(
     margin: f32,
     mut line: impl FnMut(Vec3, Vec3, Colour),
 ) {
-    let mut frame = PairFrame::new(trees.0, trees.1, &poses[0].inv_mul(poses[1]), margin);
+    let placement = Placement::new(&poses[0].inv_mul(poses[1]));
+    let mut frame = PairFrame::new(trees, placement, margin);
     let test = LeafTest::new(&frame);
     let (mut one, mut two) = (BTreeMap::new(), BTreeMap::new());
     descend(trees, &mut frame, &mut DescentScratch::default(), (), |batch1, batch2| {

@@ -193,7 +193,7 @@ impl Meshes<'_> {
         descent: &mut DescentChunk,
     ) {
         let MeshPair { pose, .. } = self.pair;
-        let mut frame = PairFrame::at(trees, pose.placement12, margin);
+        let mut frame = PairFrame::new(trees, pose.placement12, margin);
         let culling = lateral_culling(self, pose, margin);
         let test = LeafTest::new(&frame).with_culling(culling);
         let count = if has_threads() { STARTS } else { 1 };

@@ -18,7 +18,7 @@
 //! ```
 //! use glamx::Pose3;
 //! use sbbk_core::front::Front;
-//! use sbbk_core::traverse::{DescentCounts, PairFrame};
+//! use sbbk_core::traverse::{DescentCounts, PairFrame, Placement};
 //! # use sbbk_core::tree::{BuildOptions, Tree};
 //! # use glamx::Vec3;
 //!
@@ -30,7 +30,7 @@
 //! let mut tests = Vec::new();
 //! for step in 0..3 {
 //!     let pos12 = Pose3::translation(0.0, 0.0, 0.9 + 1e-4 * step as f32);
-//!     let mut frame = PairFrame::new(&tree, &tree, &pos12, 0.02);
+//!     let mut frame = PairFrame::new((&tree, &tree), Placement::new(&pos12), 0.02);
 //!     let mut counts = DescentCounts::default();
 //!     front.visit((&tree, &tree), &mut frame, &mut counts, |_leaf1, _leaf2| {});
 //!     tests.push(counts.aabb_tests);

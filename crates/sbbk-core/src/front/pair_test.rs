@@ -1,8 +1,8 @@
 //! How two trees test pairs of nodes.
 
 use crate::simd::each_bit;
-use crate::traverse::{Counters, Opening, Overlap, PairFrame, Sides, SlotPair};
-use crate::tree::{LeafBatch, Link, Slot, Tree};
+use crate::traverse::{Counters, Opening, Overlap, PairFrame, Sides, SlotPair, leaves_at};
+use crate::tree::{LeafBatch, Slot, Tree};
 
 /// Two trees at a pose, or a stand-in for them in a test.
 pub(super) trait PairTest {
@@ -28,14 +28,10 @@ impl<C, V> TreePair<'_, C, V> {
     fn leaves(&self, opening: &Opening) -> u32 {
         let mut leaves = 0;
         each_bit(opening.lanes, |lane| {
-            let links = self.links(opening.pair(lane));
-            leaves |= u32::from(links.0.is_leaf() && links.1.is_leaf()) << lane;
+            let is_pair = leaves_at(self.trees, opening.pair(lane)).is_some();
+            leaves |= u32::from(is_pair) << lane;
         });
         leaves
-    }
-
-    fn links(&self, (slot1, slot2): SlotPair) -> (Link, Link) {
-        (self.trees.0.link(slot1), self.trees.1.link(slot2))
     }
 }
 
@@ -53,9 +49,9 @@ impl<C: Counters, V: FnMut(&LeafBatch, &LeafBatch)> PairTest for TreePair<'_, C,
 
     fn visit(&mut self, pair: SlotPair) {
         self.counters.count(|counts| counts.leaf_pairs += 1);
-        let links = self.links(pair);
-        let (tree1, tree2) = self.trees;
-        (self.visit)(tree1.leaf(links.0.index()), tree2.leaf(links.1.index()));
+        if let Some((leaf1, leaf2)) = leaves_at(self.trees, pair) {
+            (self.visit)(leaf1, leaf2);
+        }
     }
 
     fn meeting(&mut self, opening: &Opening, lanes: u32) -> u32 {

@@ -71,7 +71,7 @@ pub fn cast(
     if !options.is_possible() || !velocity.is_finite() || !placement.is_finite() {
         return None;
     }
-    let mut frame = PairFrame::at(trees, placement, 0.0);
+    let mut frame = PairFrame::new(trees, placement, 0.0);
     let speed = velocity.as_dvec3().length();
     let sweep = Sweep {
         frame: &mut frame,

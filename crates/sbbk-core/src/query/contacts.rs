@@ -30,7 +30,7 @@ pub fn contacts(
     let margin = margin.min(WIDEST_MARGIN);
     // Rounded up.
     let widened = margin as f32 * (1.0 + gamma(4)) + f32::MIN_POSITIVE;
-    let mut frame = PairFrame::at(trees, placement, widened);
+    let mut frame = PairFrame::new(trees, placement, widened);
     let test = LeafTest::new(&frame);
     descend(trees, &mut frame, &mut scratch.descent, (), |batch1, batch2| {
         test.survivors(batch1, batch2, |lane1, lane2| {

@@ -6,23 +6,22 @@
 use wide::f32x4;
 
 use crate::simd::{Spread, dot};
-use crate::traverse::{Compare, NodeLanes, PairFrame, expand};
+use crate::traverse::{Compare, NodeLanes, PairFrame, expand, leaves_at};
 use crate::tree::{LeafBatch, Slot, Tree};
 
 /// Down both trees from the roots, always to the children whose centres are nearest to each other.
 pub(super) fn near_leaves<'a>(
-    (tree1, tree2): (&'a Tree, &'a Tree),
+    trees: (&'a Tree, &'a Tree),
     frame: &PairFrame,
 ) -> (&'a LeafBatch, &'a LeafBatch) {
     let mut slots = (Slot::ROOT, Slot::ROOT);
     loop {
-        let links = (tree1.link(slots.0), tree2.link(slots.1));
-        if links.0.is_leaf() && links.1.is_leaf() {
-            return (tree1.leaf(links.0.index()), tree2.leaf(links.1.index()));
+        if let Some(leaves) = leaves_at(trees, slots) {
+            return leaves;
         }
         let mut nearest = f32::INFINITY;
         let pair = slots;
-        expand((tree1, tree2), pair, &mut Centres(frame), |children, squared| {
+        expand(trees, pair, &mut Centres(frame), |children, squared| {
             // The first one even if all are NaN.
             if slots == pair || squared < nearest {
                 (slots, nearest) = (children, squared);

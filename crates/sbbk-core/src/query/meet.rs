@@ -24,7 +24,7 @@ pub fn meeting(
     if !placement.is_finite() {
         return None;
     }
-    let mut frame = PairFrame::at(trees, placement, 0.0);
+    let mut frame = PairFrame::new(trees, placement, 0.0);
     let test = LeafTest::new(&frame);
     let overlap = OrderedOverlap(&mut frame);
     let mut search = MeetingSearch { overlap, placement, test, found: None };

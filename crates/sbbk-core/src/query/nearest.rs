@@ -73,7 +73,7 @@ pub(super) fn search_except(
     if !admits || !placement.is_finite() {
         return (None, [0; 2]);
     }
-    let mut frame = PairFrame::at(trees, placement, 0.0);
+    let mut frame = PairFrame::new(trees, placement, 0.0);
     let test = LeafTest::new(&frame);
     // Bounds are f32 too: no bound of a nearer pair is above the limit, rounded to nearest.
     let gaps = SignedGaps { frame: &mut frame, limit: best as f32, toward: None, count: 0 };

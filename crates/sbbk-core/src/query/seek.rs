@@ -4,7 +4,7 @@
 //! value so far. The least of these is next. The first leaves reached are near the answer, so the
 //! bound is tight from then on.
 
-use crate::traverse::{Compare, DescentScratch, expand};
+use crate::traverse::{Compare, DescentScratch, SlotPair, expand, leaves_at};
 use crate::tree::{LeafBatch, Slot, Tree};
 
 /// A best-first search with lower bounds.
@@ -33,7 +33,7 @@ pub struct SearchScratch {
 #[derive(Copy, Clone, Debug)]
 struct BoundedPair {
     key: f32,
-    slots: (Slot, Slot),
+    slots: SlotPair,
 }
 
 /// The limit that ends a search.
@@ -41,7 +41,7 @@ pub(super) const FOUND: f32 = f32::NEG_INFINITY;
 
 /// Goes through all pairs of leaves that may matter.
 pub(super) fn seek<B: BestFirst>(
-    (tree1, tree2): (&Tree, &Tree),
+    trees: (&Tree, &Tree),
     bounds: &mut B,
     scratch: &mut SearchScratch,
 ) {
@@ -56,13 +56,12 @@ pub(super) fn seek<B: BestFirst>(
         if key > bounds.limit() {
             continue;
         }
-        let links = (tree1.link(slots.0), tree2.link(slots.1));
-        if links.0.is_leaf() && links.1.is_leaf() {
-            bounds.leaves(tree1.leaf(links.0.index()), tree2.leaf(links.1.index()));
+        if let Some((leaf1, leaf2)) = leaves_at(trees, slots) {
+            bounds.leaves(leaf1, leaf2);
             continue;
         }
         let first = stack.len();
-        expand((tree1, tree2), slots, bounds.compare(), |slots, key| {
+        expand(trees, slots, bounds.compare(), |slots, key| {
             stack.push(BoundedPair { key, slots });
         });
         nearest_last(&mut stack[first..]);

@@ -1,12 +1,12 @@
 //! Comparisons of nodes in f32 against f64, at places where f32 rounds most. No bound exceeds the
 //! exact value, and rounding uses a fair share of each allowance.
 
-use glamx::{DMat3, DVec3, Pose3, Quat, Vec3};
+use glamx::{DMat3, DVec3, Pose3, Vec3};
 use wide::f32x4;
 
 use super::expand::Compare;
 use super::gaps::Bound;
-use super::{NodeLanes, OrderedOverlap, PairFrame, Toward};
+use super::{NodeLanes, OrderedOverlap, PairFrame, Placement, Toward};
 use crate::simd::{Inner, Outer, each};
 use crate::support::Random;
 use crate::tree::{BuildOptions, Children, Intervals, LayerPlan, Slot, Tree};
@@ -60,7 +60,7 @@ impl Pair {
     }
 
     fn frame(&self, margin: f32) -> PairFrame {
-        PairFrame::new(&self.trees[0], &self.trees[1], &self.pos12, margin)
+        PairFrame::new((&self.trees[0], &self.trees[1]), Placement::new(&self.pos12), margin)
     }
 
     fn children(&self) -> [Children<'_>; 2] {
@@ -160,7 +160,7 @@ fn gaps_of_kdops_are_below_those_in_f64() {
         let pair = Pair::random(random, i);
         let (mut frame, nodes) = (pair.frame(0.7), pair.nodes());
         let rounding = 6.0 * frame.rounding[0];
-        let gaps = frame.correspondence().gaps(&nodes.kdops().unwrap(), 0).to_array();
+        let gaps = frame.correspondence().gaps(&nodes.kdops.unwrap(), 0).to_array();
         for lane in 0..4 {
             let (_, slabs) = pair.exact(lane);
             let exact = slabs.into_iter().fold(f64::NEG_INFINITY, f64::max);
@@ -218,7 +218,7 @@ fn nodes_the_margin_apart_meet() {
             *count += 1;
             let mut frame = pair.frame((gap as f32).next_up());
             assert!(frame.boxes_meet(&nodes) >> lane & 1 != 0, "{gap}");
-            let kdops = nodes.kdops().unwrap();
+            let kdops = nodes.kdops.unwrap();
             let meeting = frame.correspondence().kdops_meet(&kdops, 0b1111);
             assert!(meeting >> lane & 1 != 0, "{gap}");
             let (meeting, _) = OrderedOverlap(&mut frame).compare(&nodes);
@@ -240,7 +240,7 @@ fn bounds_are_below_those_of_corners_and_not_far_below() {
         let (mut frame, nodes) = (pair.frame(0.7), pair.nodes());
         let normal = random.vector(1.0).as_dvec3().normalize();
         let toward = Toward::new(&frame, normal).unwrap();
-        let kdops = nodes.kdops().unwrap();
+        let kdops = nodes.kdops.unwrap();
         let along = toward.gaps(&kdops).to_array();
         let signed = frame.signed_gaps(&nodes).to_array();
         for lane in 0..4 {
@@ -278,6 +278,6 @@ fn bounds_are_below_those_of_corners_and_not_far_below() {
 fn there_is_no_direction_where_projections_may_overflow() {
     let corners = [Vec3::ZERO, Vec3::X, Vec3::Y].map(|corner| 2.0e38 * corner);
     let tree: Tree = Tree::build(&corners, &[[0, 1, 2]], &BuildOptions::default()).unwrap();
-    let frame = PairFrame::new(&tree, &tree, &Pose3::from_rotation(Quat::IDENTITY), 0.0);
+    let frame = PairFrame::new((&tree, &tree), Placement::new(&Pose3::IDENTITY), 0.0);
     assert!(Toward::new(&frame, DVec3::X).is_none());
 }

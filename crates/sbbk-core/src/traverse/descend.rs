@@ -8,7 +8,7 @@
 //! `2^(2n-1) - 1` tests.
 
 use super::counters::Counters;
-use super::expand::expand;
+use super::expand::{SlotPair, expand, leaves_at};
 use super::frame::PairFrame;
 use super::overlap::Overlap;
 use super::side::NodeLanes;
@@ -25,7 +25,7 @@ pub struct DescentScratch {
 
 /// Two nodes whose volumes come within the margin.
 #[derive(Copy, Clone, Debug)]
-pub struct NodePair(Slot, Slot);
+pub struct NodePair(SlotPair);
 
 /// Calls `visit` with all pairs of leaves whose volumes, and those of all their ancestors, come
 /// within the margin.
@@ -62,7 +62,7 @@ pub fn begin_descent(
     {
         let pair = pairs[first];
         first += 1;
-        if are_both_leaves(trees, pair) {
+        if leaves_at(trees, pair.0).is_some() {
             leaves += 1;
             pairs.push(pair);
         } else {
@@ -76,7 +76,7 @@ pub fn begin_descent(
 /// Continues a descent below pairs of nodes; see [`descend`].
 pub fn descend_from(
     pairs: &[NodePair],
-    (tree1, tree2): (&Tree, &Tree),
+    trees: (&Tree, &Tree),
     frame: &mut PairFrame,
     scratch: &mut DescentScratch,
     mut counters: impl Counters,
@@ -85,14 +85,13 @@ pub fn descend_from(
     let stack = &mut scratch.stack;
     stack.clear();
     stack.extend_from_slice(pairs);
-    while let Some(pair @ NodePair(slot1, slot2)) = stack.pop() {
-        let links = (tree1.link(slot1), tree2.link(slot2));
-        if links.0.is_leaf() && links.1.is_leaf() {
+    while let Some(pair) = stack.pop() {
+        if let Some((leaf1, leaf2)) = leaves_at(trees, pair.0) {
             counters.count(|counts| counts.leaf_pairs += 1);
-            visit(tree1.leaf(links.0.index()), tree2.leaf(links.1.index()));
-            continue;
+            visit(leaf1, leaf2);
+        } else {
+            replace(trees, pair, frame, &mut counters, |pair| stack.push(pair));
         }
-        replace((tree1, tree2), pair, frame, &mut counters, |pair| stack.push(pair));
     }
 }
 
@@ -111,24 +110,18 @@ fn roots(
     counters.aabb_tests(1);
     let [root1, root2] = [tree1, tree2].map(|tree| (tree.children(0), Same(0)));
     (frame.boxes_meet(&NodeLanes::new(root1, root2, 1)) != 0)
-        .then_some(NodePair(Slot::ROOT, Slot::ROOT))
-}
-
-fn are_both_leaves((tree1, tree2): (&Tree, &Tree), NodePair(slot1, slot2): NodePair) -> bool {
-    tree1.link(slot1).is_leaf() && tree2.link(slot2).is_leaf()
+        .then_some(NodePair((Slot::ROOT, Slot::ROOT)))
 }
 
 /// Calls `push` with the pairs of children of a pair that come within the margin.
 #[inline(always)]
 fn replace(
     trees: (&Tree, &Tree),
-    NodePair(slot1, slot2): NodePair,
+    NodePair(slots): NodePair,
     frame: &mut PairFrame,
     counters: &mut impl Counters,
     mut push: impl FnMut(NodePair),
 ) {
     let mut compare = Overlap { frame, counters };
-    expand(trees, (slot1, slot2), &mut compare, |(slot1, slot2), ()| {
-        push(NodePair(slot1, slot2));
-    });
+    expand(trees, slots, &mut compare, |slots, ()| push(NodePair(slots)));
 }

@@ -2,10 +2,21 @@
 
 use super::side::NodeLanes;
 use crate::simd::{Inner, Outer, Same, Spread, each_bit};
-use crate::tree::{Slot, Tree};
+use crate::tree::{LeafBatch, Slot, Tree};
 
 /// A pair of nodes.
 pub(crate) type SlotPair = (Slot, Slot);
+
+/// The leaves at a pair of slots, if both are leaves.
+#[inline(always)]
+pub(crate) fn leaves_at<'a>(
+    (tree1, tree2): (&'a Tree, &'a Tree),
+    (slot1, slot2): SlotPair,
+) -> Option<(&'a LeafBatch, &'a LeafBatch)> {
+    let (link1, link2) = (tree1.link(slot1), tree2.link(slot2));
+    let is_pair = link1.is_leaf() && link2.is_leaf();
+    is_pair.then(|| (tree1.leaf(link1.index()), tree2.leaf(link2.index())))
+}
 
 /// The sides of a pair whose children replace them.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]

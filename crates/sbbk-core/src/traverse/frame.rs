@@ -1,9 +1,9 @@
-use glamx::{DMat3, Pose3};
+use glamx::DMat3;
 use wide::f32x4;
 
 use super::correspondence::Correspondence;
 use super::placement::{Placement, longest_row};
-use super::side::NodeLanes;
+use super::side::{BothSides, NodeLanes};
 use crate::simd::{Spread, V3, dot, each};
 use crate::tree::Tree;
 use crate::volumes::rounding::gamma;
@@ -95,14 +95,9 @@ impl Along {
 }
 
 impl PairFrame {
-    /// The frame of two trees at a pose; see [`at`](Self::at).
-    pub fn new(tree1: &Tree, tree2: &Tree, pos12: &Pose3, margin: f32) -> Self {
-        Self::at((tree1, tree2), Placement::new(pos12), margin)
-    }
-
     /// The frame of two trees, tree 2 at `placement` in the frame of tree 1. Descents find
     /// triangles within `margin` of each other.
-    pub fn at((tree1, tree2): (&Tree, &Tree), placement: Placement, margin: f32) -> Self {
+    pub fn new((tree1, tree2): (&Tree, &Tree), placement: Placement, margin: f32) -> Self {
         Self::within([tree1.magnitude(), tree2.magnitude()], placement, margin)
     }
 
@@ -157,12 +152,11 @@ impl PairFrame {
         slack: f32x4,
     ) -> Along {
         let Rows { rows, absolute } = &self.to_frame1;
-        let NodeLanes { one, two, .. } = nodes;
-        let (centre1, extent1) = (one.centre(), one.extent());
-        let (centre2, extent2) = (two.centre(), two.extent());
+        let BothSides { one, two } = &nodes.boxes;
+        let (centre2, extent2) = (each(|i| two.centre(i)), each(|i| two.extent(i)));
         Along {
-            offset: each(|i| self.translation[i] + dot(rows[i], centre2) - centre1[i]),
-            reach: each(|i| extent1[i] + dot(absolute[i], extent2) + slack),
+            offset: each(|i| self.translation[i] + dot(rows[i], centre2) - one.centre(i)),
+            reach: each(|i| one.extent(i) + dot(absolute[i], extent2) + slack),
         }
     }
 
@@ -175,15 +169,14 @@ impl PairFrame {
         slack: f32x4,
     ) -> Along {
         let Rows { rows, absolute } = &self.to_frame2;
-        let (extent1, extent2) = (nodes.one.extent(), nodes.two.extent());
+        let BothSides { one, two } = &nodes.boxes;
+        let extent1 = each(|i| one.extent(i));
         Along {
             offset: each(|i| dot(rows[i], offset)),
-            reach: each(|i| extent2[i] + dot(absolute[i], extent1) + slack),
+            reach: each(|i| two.extent(i) + dot(absolute[i], extent1) + slack),
         }
     }
-}
 
-impl PairFrame {
     /// The correspondence of the slabs, computed once.
     #[inline(always)]
     pub(super) fn correspondence(&mut self) -> &Correspondence {

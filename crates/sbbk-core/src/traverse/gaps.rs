@@ -86,12 +86,9 @@ impl PairFrame {
     #[inline(always)]
     pub(crate) fn signed_gaps(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> f32x4 {
         let bound = self.box_bound(nodes);
-        match nodes.kdops() {
-            Some(kdops) => {
-                bound.or(Bound::of_slabs(self.correspondence().gaps(&kdops, 3))).signed()
-            }
-            None => bound.signed(),
-        }
+        let of_slabs =
+            nodes.kdops.as_ref().map(|kdops| Bound::of_slabs(self.correspondence().gaps(kdops, 3)));
+        of_slabs.map_or(bound, |of_slabs| bound.or(of_slabs)).signed()
     }
 
     /// The bound along the six face axes of boxes.
@@ -110,8 +107,8 @@ impl Compare for SignedGaps<'_> {
 
     #[inline(always)]
     fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [f32; 4]) {
-        let along = match (&self.toward, nodes.kdops()) {
-            (Some(toward), Some(kdops)) => toward.gaps(&kdops),
+        let along = match (&self.toward, &nodes.kdops) {
+            (Some(toward), Some(kdops)) => toward.gaps(kdops),
             _ => f32x4::splat(f32::NEG_INFINITY),
         };
         self.count += nodes.lanes.count_ones();

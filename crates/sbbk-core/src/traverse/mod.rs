@@ -24,7 +24,7 @@ mod toward;
 pub use boxes::{BoxTest, NearBox, TestedBox};
 pub use counters::{Counters, DescentCounts};
 pub use descend::{DescentScratch, NodePair, begin_descent, descend, descend_from};
-pub(crate) use expand::{Compare, Opening, Sides, SlotPair, expand};
+pub(crate) use expand::{Compare, Opening, Sides, SlotPair, expand, leaves_at};
 pub(crate) use frame::Along;
 pub use frame::PairFrame;
 pub(crate) use gaps::{SignedGaps, within};

@@ -36,11 +36,11 @@ impl<C: Counters> Compare for Overlap<'_, C> {
     fn compare(&mut self, nodes: &NodeLanes<'_, impl Spread, impl Spread>) -> (u32, [(); 4]) {
         self.counters.aabb_tests(nodes.lanes.count_ones());
         let meeting = self.frame.boxes_meet(nodes) & nodes.lanes;
-        match nodes.kdops() {
+        match &nodes.kdops {
             Some(kdops) if meeting != 0 => {
                 let tests = u64::from(meeting.count_ones());
                 self.counters.count(|counts| counts.kdop_tests += tests);
-                (self.frame.correspondence().kdops_meet(&kdops, meeting), [(); 4])
+                (self.frame.correspondence().kdops_meet(kdops, meeting), [(); 4])
             }
             _ => (meeting, [(); 4]),
         }
@@ -67,9 +67,9 @@ impl Compare for OrderedOverlap<'_> {
         let in_frame2 = frame.along2(nodes, in_frame1.offset, frame.slack[1]);
         let gap = gap1.fast_max(largest(in_frame2.gaps()));
         let meeting = meeting(gap);
-        match nodes.kdops() {
+        match &nodes.kdops {
             Some(kdops) if meeting != 0 => {
-                (frame.correspondence().kdops_meet(&kdops, meeting), gap.to_array())
+                (frame.correspondence().kdops_meet(kdops, meeting), gap.to_array())
             }
             _ => (meeting, gap.to_array()),
         }

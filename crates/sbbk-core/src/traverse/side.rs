@@ -1,37 +1,34 @@
 use wide::f32x4;
 
-use crate::simd::{Spread, V3, each};
+use crate::simd::Spread;
 use crate::tree::{Children, Intervals};
 use crate::volumes::SLABS;
 
 /// Pairs of nodes of two trees, one in each of up to four lanes.
 #[derive(Copy, Clone)]
 pub(crate) struct NodeLanes<'a, S1, S2> {
-    pub(super) one: Side<'a, S1>,
-    pub(super) two: Side<'a, S2>,
+    pub(super) boxes: BothSides<'a, 3, S1, S2>,
+    /// Present if both trees have k-DOPs here.
+    pub(super) kdops: Option<KdopLanes<'a, S1, S2>>,
     /// Mask of the lanes that hold a pair.
     pub(crate) lanes: u32,
 }
 
-/// The nodes of one tree, spread over the lanes.
+/// Volumes of one kind of both trees.
 #[derive(Copy, Clone)]
-pub(super) struct Side<'a, S> {
-    children: Children<'a>,
-    spread: S,
-}
-
-/// The k-DOPs of one tree.
-#[derive(Copy, Clone)]
-pub(super) struct KdopSide<'a, S> {
-    kdops: Intervals<'a, SLABS>,
-    spread: S,
+pub(super) struct BothSides<'a, const COUNT: usize, S1, S2> {
+    pub(super) one: Side<'a, COUNT, S1>,
+    pub(super) two: Side<'a, COUNT, S2>,
 }
 
 /// The k-DOPs of both trees.
+pub(super) type KdopLanes<'a, S1, S2> = BothSides<'a, SLABS, S1, S2>;
+
+/// Volumes of one tree, spread over the lanes.
 #[derive(Copy, Clone)]
-pub(super) struct KdopLanes<'a, S1, S2> {
-    pub(super) one: KdopSide<'a, S1>,
-    pub(super) two: KdopSide<'a, S2>,
+pub(super) struct Side<'a, const COUNT: usize, S> {
+    intervals: Intervals<'a, COUNT>,
+    spread: S,
 }
 
 impl<'a, S1: Copy, S2: Copy> NodeLanes<'a, S1, S2> {
@@ -42,43 +39,33 @@ impl<'a, S1: Copy, S2: Copy> NodeLanes<'a, S1, S2> {
         (children2, spread2): (Children<'a>, S2),
         lanes: u32,
     ) -> Self {
-        let one = Side { children: children1, spread: spread1 };
-        Self { one, two: Side { children: children2, spread: spread2 }, lanes }
-    }
-
-    /// Returns the k-DOPs if both trees have them.
-    #[inline(always)]
-    pub(super) fn kdops(&self) -> Option<KdopLanes<'a, S1, S2>> {
-        let Self { one, two, .. } = self;
-        Some(KdopLanes {
-            one: KdopSide { kdops: one.children.kdops?, spread: one.spread },
-            two: KdopSide { kdops: two.children.kdops?, spread: two.spread },
-        })
+        let kdops = children1.kdops.zip(children2.kdops);
+        Self {
+            boxes: BothSides::new((children1.boxes, spread1), (children2.boxes, spread2)),
+            kdops: kdops.map(|(one, two)| BothSides::new((one, spread1), (two, spread2))),
+            lanes,
+        }
     }
 }
 
-impl<S: Spread> Side<'_, S> {
-    /// The centres of the boxes.
+impl<'a, const COUNT: usize, S1, S2> BothSides<'a, COUNT, S1, S2> {
     #[inline(always)]
-    pub(super) fn centre(&self) -> V3<f32x4> {
-        each(|axis| self.spread.spread(&self.children.boxes.centre[axis]))
-    }
-
-    /// The half-lengths of the boxes.
-    #[inline(always)]
-    pub(super) fn extent(&self) -> V3<f32x4> {
-        each(|axis| self.spread.spread(&self.children.boxes.extent[axis]))
+    fn new(one: (Intervals<'a, COUNT>, S1), two: (Intervals<'a, COUNT>, S2)) -> Self {
+        let one = Side { intervals: one.0, spread: one.1 };
+        Self { one, two: Side { intervals: two.0, spread: two.1 } }
     }
 }
 
-impl<S: Spread> KdopSide<'_, S> {
+impl<const COUNT: usize, S: Spread> Side<'_, COUNT, S> {
+    /// The centres along an axis or a slab.
     #[inline(always)]
-    pub(super) fn centre(&self, slab: usize) -> f32x4 {
-        self.spread.spread(&self.kdops.centre[slab])
+    pub(super) fn centre(&self, axis: usize) -> f32x4 {
+        self.spread.spread(&self.intervals.centre[axis])
     }
 
+    /// The half-lengths along an axis or a slab.
     #[inline(always)]
-    pub(super) fn extent(&self, slab: usize) -> f32x4 {
-        self.spread.spread(&self.kdops.extent[slab])
+    pub(super) fn extent(&self, axis: usize) -> f32x4 {
+        self.spread.spread(&self.intervals.extent[axis])
     }
 }

@@ -24,8 +24,9 @@ mod walk;
 
 pub use build::BuildOptions;
 pub use layers::LayerPlan;
+use node::Link;
 pub use node::{BATCH, LeafBatch};
-pub(crate) use node::{Children, Intervals, Link, Slot};
+pub(crate) use node::{Children, Intervals, Slot};
 pub use walk::Node;
 
 use glamx::Vec3;

@@ -25,7 +25,7 @@ fn tree(corners: &[Vec3], layers: LayerPlan) -> Tree {
 
 /// The numbers of pairs of leaves and of triangles that are found.
 fn found(tree1: &Tree, tree2: &Tree, pos12: &Pose3, margin: f32) -> (usize, usize) {
-    let mut frame = PairFrame::new(tree1, tree2, pos12, margin);
+    let mut frame = PairFrame::new((tree1, tree2), Placement::new(pos12), margin);
     let test = LeafTest::new(&frame);
     let (mut leaf_pairs, mut survivors) = (0, 0);
     let scratch = &mut DescentScratch::default();

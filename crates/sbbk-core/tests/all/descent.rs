@@ -7,7 +7,7 @@ use crate::support::{Random, Soup, bumpy_ball, cube, lattice_soup, soup};
 use crate::tree::check as check_tree;
 use glamx::{Pose3, Quat, Vec3};
 use sbbk_core::leaf::LeafTest;
-use sbbk_core::traverse::{DescentCounts, DescentScratch, PairFrame, descend};
+use sbbk_core::traverse::{DescentCounts, DescentScratch, PairFrame, Placement, descend};
 use sbbk_core::tree::{BuildOptions, LayerPlan, Node, Tree};
 
 /// The pairs of triangles that descent and leaf test leave.
@@ -16,7 +16,7 @@ fn survivors(
     pos12: &Pose3,
     margin: f32,
 ) -> (BTreeSet<(u32, u32)>, DescentCounts) {
-    let mut frame = PairFrame::new(trees.0, trees.1, pos12, margin);
+    let mut frame = PairFrame::new(trees, Placement::new(pos12), margin);
     let test = LeafTest::new(&frame);
     let mut pairs = BTreeSet::new();
     let (mut counts, mut scratch) = (DescentCounts::default(), DescentScratch::default());

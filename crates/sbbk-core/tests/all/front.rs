@@ -37,7 +37,7 @@ impl Within<'_> {
 }
 
 fn fresh(trees: Trees<'_>, pos12: &Pose3, margin: f32, counters: impl Counters) -> Pairs {
-    let mut frame = PairFrame::new(trees.0, trees.1, pos12, margin);
+    let mut frame = PairFrame::new(trees, Placement::new(pos12), margin);
     let (placement, mut pairs) = (*frame.placement(), Pairs::new());
     let mut within = Within { placement, margin, pairs: &mut pairs };
     let scratch = &mut DescentScratch::default();
@@ -52,7 +52,7 @@ fn from_front(
     margin: f32,
     counters: impl Counters,
 ) -> Pairs {
-    let mut frame = PairFrame::new(trees.0, trees.1, pos12, margin);
+    let mut frame = PairFrame::new(trees, Placement::new(pos12), margin);
     let (placement, mut pairs) = (*frame.placement(), Pairs::new());
     let mut within = Within { placement, margin, pairs: &mut pairs };
     front.visit(trees, &mut frame, counters, |one, two| within.add(one, two));
