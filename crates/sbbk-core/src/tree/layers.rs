@@ -88,9 +88,3 @@ impl LayerPlan {
         (Self { kdop_from_depth, ..Self::CANDIDATE }, kdop_cut)
     }
 }
-
-impl Default for LayerPlan {
-    fn default() -> Self {
-        Self::SBBK
-    }
-}
