@@ -6,7 +6,7 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glamx::DVec3;
 use sbbk_core::contact::convex::{
-    ConeSupport, CuboidSupport, CylinderSupport, HullSupport, SegmentSupport, SupportMap,
+    ConeSupport, CuboidSupport, CylinderSupport, HullPoints, SegmentSupport, SupportMap,
     round_contact,
 };
 use std::hint::black_box;
@@ -56,13 +56,14 @@ fn kind<S: SupportMap>(c: &mut Criterion, name: &str, core: &S, radius: f64) {
 
 fn each_kind(c: &mut Criterion) {
     let mut random = Random(2);
-    let points: Vec<_> = (0..20).map(|_| random.point().normalize() * 0.5).collect();
+    let points = (0..20).map(|_| (random.point().normalize() * 0.5).as_vec3());
+    let hull = HullPoints::new(points);
     let (half_height, radius) = (0.5, 0.3);
     kind(c, "capsule", &SegmentSupport([DVec3::Y * half_height, DVec3::Y * -half_height]), 0.2);
     kind(c, "cuboid", &CuboidSupport(DVec3::new(0.5, 0.3, 0.4)), 0.0);
     kind(c, "cylinder", &CylinderSupport { half_height, radius }, 0.0);
     kind(c, "cone", &ConeSupport { half_height, radius }, 0.0);
-    kind(c, "hull of 20", &HullSupport(&points), 0.0);
+    kind(c, "hull of 20", &hull, 0.0);
 }
 
 criterion_group! {

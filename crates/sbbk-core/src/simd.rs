@@ -38,13 +38,16 @@ pub(crate) fn smallest([a, b, c]: V3<f32x4>) -> f32x4 {
     a.fast_min(b).fast_min(c)
 }
 
-/// Calls `found` with the index of each set bit, from the lowest.
+/// The indices of the set bits, from the lowest.
 #[inline(always)]
-pub(crate) fn each_bit(mut mask: u32, mut found: impl FnMut(usize)) {
-    while mask != 0 {
-        found(mask.trailing_zeros() as usize);
-        mask &= mask - 1;
-    }
+pub(crate) fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        (mask != 0).then(|| {
+            let lowest = mask.trailing_zeros() as usize;
+            mask &= mask - 1;
+            lowest
+        })
+    })
 }
 
 /// A value for each of the two children of a node.

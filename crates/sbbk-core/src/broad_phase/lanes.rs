@@ -1,8 +1,11 @@
 //! Eight boxes or spheres in lanes, and the test of one against all eight.
 
+use glamx::Vec3;
 use wide::f32x8;
 
-use super::{ABSOLUTE_SLACK, Aabb, RELATIVE_SLACK, Reach};
+use super::{ABSOLUTE_SLACK, RELATIVE_SLACK, Reach};
+use crate::simd::each;
+use crate::volumes::Aabb;
 
 /// Number of boxes or spheres tested at once.
 pub(super) const LANE_COUNT: usize = 8;
@@ -12,16 +15,6 @@ pub(super) type Lanes = f32x8;
 
 /// A bit for each lane.
 pub(super) type LaneMask = u8;
-
-/// The lanes whose bit is set, lowest first.
-#[inline]
-pub(super) fn lanes_of(mut mask: LaneMask) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lane = mask.trailing_zeros() as usize;
-        mask &= mask.wrapping_sub(1);
-        (lane < LANE_COUNT).then_some(lane)
-    })
-}
 
 /// Eight boxes, coordinate by coordinate.
 #[derive(Clone, Copy, Debug)]
@@ -47,10 +40,8 @@ impl BoxLanes {
 
     #[inline]
     pub(super) fn lane(&self, lane: usize) -> Aabb {
-        Aabb {
-            min: [0, 1, 2].map(|axis| self.min[axis].as_array()[lane]),
-            max: [0, 1, 2].map(|axis| self.max[axis].as_array()[lane]),
-        }
+        let corner = |ends: &[Lanes; 3]| Vec3::from_array(each(|axis| ends[axis].as_array()[lane]));
+        Aabb { min: corner(&self.min), max: corner(&self.max) }
     }
 
     /// The box around all eight.
@@ -58,10 +49,9 @@ impl BoxLanes {
     pub(super) fn union(&self) -> Aabb {
         let smaller = |a: f32, &b: &f32| if b < a { b } else { a };
         let larger = |a: f32, &b: &f32| if b > a { b } else { a };
-        Aabb {
-            min: self.min.map(|lanes| lanes.as_array().iter().fold(f32::INFINITY, smaller)),
-            max: self.max.map(|lanes| lanes.as_array().iter().fold(f32::NEG_INFINITY, larger)),
-        }
+        let min = self.min.map(|lanes| lanes.as_array().iter().fold(f32::INFINITY, smaller));
+        let max = self.max.map(|lanes| lanes.as_array().iter().fold(f32::NEG_INFINITY, larger));
+        Aabb { min: min.into(), max: max.into() }
     }
 
     /// The lanes that overlap `other`, touching included.

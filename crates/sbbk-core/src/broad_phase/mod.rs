@@ -41,6 +41,7 @@ mod tree;
 
 use glamx::Vec3;
 
+use crate::volumes::Aabb;
 use tree::BlockTree;
 
 /// `K` of the module's derivation, a factor on a squared distance. Lower: pairs are missed by
@@ -78,43 +79,28 @@ impl Bounds {
     }
 }
 
-/// An axis-aligned box.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Aabb {
-    min: [f32; 3],
-    max: [f32; 3],
-}
-
-impl Aabb {
-    fn overlaps(&self, other: &Self) -> bool {
-        (0..3).all(|axis| self.min[axis] <= other.max[axis] && other.min[axis] <= self.max[axis])
-    }
-}
-
 /// Bounds widened by the margin: a pair is an overlap, touching included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Reach {
     aabb: Aabb,
-    centre: [f32; 3],
+    centre: Vec3,
     radius: f32,
 }
 
 impl Reach {
-    fn new(bounds: &Bounds, margin: f32) -> Self {
-        let aabb = Aabb {
-            min: bounds.min.to_array(),
-            max: bounds.max.to_array().map(|upper| upper + margin),
-        };
-        let radius = bounds.radius + 0.5 * margin;
-        Self { aabb, centre: bounds.centre.to_array(), radius }
+    fn new(&Bounds { centre, radius, min, max }: &Bounds, margin: f32) -> Self {
+        Self { aabb: Aabb { min, max: max + margin }, centre, radius: radius + 0.5 * margin }
     }
 
     /// The expressions of [`lanes`] for one pair.
     fn overlaps(&self, other: &Self) -> bool {
-        let [x, y, z] = [0, 1, 2].map(|axis| self.centre[axis] - other.centre[axis]);
+        let Vec3 { x, y, z } = self.centre - other.centre;
         let reach = self.radius + other.radius;
         let limit = reach * reach * RELATIVE_SLACK + ABSOLUTE_SLACK;
-        self.aabb.overlaps(&other.aabb) && x * x + y * y + z * z <= limit
+        let (one, two) = (self.aabb, other.aabb);
+        one.min.cmple(two.max).all()
+            && two.min.cmple(one.max).all()
+            && x * x + y * y + z * z <= limit
     }
 }
 

@@ -11,8 +11,10 @@
 //! The order of objects decides only the speed. So objects move by refit, and are packed afresh
 //! when too many boxes have grown too much.
 
-use super::lanes::{BoxLanes, LANE_COUNT, LaneMask, Lanes, SphereLanes, lanes_of};
-use super::{Aabb, Reach};
+use super::Reach;
+use super::lanes::{BoxLanes, LANE_COUNT, LaneMask, Lanes, SphereLanes};
+use crate::simd::bits;
+use crate::volumes::Aabb;
 
 /// Growth of the sum of a group's sides since packing, above which the group is worn. Lower: more
 /// packing; higher: larger boxes.
@@ -149,7 +151,7 @@ impl BlockTree {
         let nodes = &self.levels[level];
         let [boxes1, boxes2] = groups.map(|group| &nodes.boxes[group]);
         let [changed1, changed2] = groups.map(|group| nodes.changed[group]);
-        for lane1 in lanes_of(self.lanes_to_descend(level, groups)) {
+        for lane1 in bits(self.lanes_to_descend(level, groups).into()) {
             let mut lanes2 = boxes2.overlaps(&boxes1.lane(lane1));
             if changed1 & 1 << lane1 == 0 {
                 lanes2 &= changed2;
@@ -162,7 +164,7 @@ impl BlockTree {
             if level == 0 && lanes2 != 0 {
                 lanes2 &= self.spheres[groups[1]].overlaps(&self.spheres[groups[0]], lane1);
             }
-            for lane2 in lanes_of(lanes2) {
+            for lane2 in bits(lanes2.into()) {
                 let [node1, node2] = [(groups[0], lane1), (groups[1], lane2)]
                     .map(|(group, lane)| group * LANE_COUNT + lane);
                 match level.checked_sub(1) {
@@ -219,21 +221,22 @@ fn sort(objects: &mut [u32], reaches: &[Reach]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glamx::Vec3;
 
     const OBJECT_COUNT: usize = 1000;
 
-    fn cube(centre: [f32; 3], half_extent: f32) -> Reach {
-        let corner = |sign: f32| centre.map(|x| x + sign * half_extent);
-        Reach { aabb: Aabb { min: corner(-1.0), max: corner(1.0) }, centre, radius: half_extent }
+    fn cube(centre: Vec3, half_extent: f32) -> Reach {
+        let aabb = Aabb { min: centre - half_extent, max: centre + half_extent };
+        Reach { aabb, centre, radius: half_extent }
     }
 
     /// A place of a cubic lattice of ten by ten by ten.
-    fn place(i: usize) -> [f32; 3] {
-        [i % 10, i / 10 % 10, i / 100 % 10].map(|x| 2.0 * x as f32)
+    fn place(i: usize) -> Vec3 {
+        Vec3::from_array([i % 10, i / 10 % 10, i / 100 % 10].map(|x| 2.0 * x as f32))
     }
 
     /// Returns true if packing is due once the lattice, with one object of another size, has moved.
-    fn is_due_after(size: f32, moved: &[&dyn Fn(usize) -> [f32; 3]]) -> bool {
+    fn is_due_after(size: f32, moved: &[&dyn Fn(usize) -> Vec3]) -> bool {
         let size = |i: usize| if i == 500 { size } else { 1.0 };
         let reaches: Vec<_> = (0..OBJECT_COUNT).map(|i| cube(place(i), size(i))).collect();
         let mut tree = BlockTree::default();
@@ -248,10 +251,10 @@ mod tests {
     /// that shrinks deceives.
     #[test]
     fn packing_is_due_once_neighbours_part() {
-        let far = |i: usize| place(i).map(|x| x + 1000.0);
-        let jittered = |i: usize| place(i).map(|x| x + 0.2 * (i % 3) as f32);
+        let far = |i: usize| place(i) + 1000.0;
+        let jittered = |i: usize| place(i) + 0.2 * (i % 3) as f32;
         let scattered = |i: usize| place(i * 387);
-        let shrunk = |i: usize| place(i).map(|x| 0.1 * x);
+        let shrunk = |i: usize| 0.1 * place(i);
         let both = |i: usize| shrunk(i * 387);
         assert!(!is_due_after(1.0, &[]) && !is_due_after(1.0, &[&far, &jittered]));
         assert!(is_due_after(1.0, &[&scattered]) && is_due_after(1e6, &[&scattered]));

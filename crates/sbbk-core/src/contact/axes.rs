@@ -15,6 +15,7 @@
 use super::closest::TIE;
 use super::feature::{Feature, FeaturePair};
 use super::triangle::{NEAR_PARALLEL, Triangle, perpendicular};
+use crate::simd::bits;
 use glamx::DVec3;
 
 /// A unit axis from triangle 1 to triangle 2 and the gap between the shadows on it.
@@ -104,11 +105,8 @@ pub(super) fn best_axis(t1: &Triangle, t2: &Triangle, faces: &FaceAxes) -> Axis 
     let slack = TIE * (t1.size + t2.size);
     let [lengths1, lengths2] = [squared_lengths(t1), squared_lengths(t2)];
     let [behind1, behind2] = [behind(t1, faces.normals[1]), behind(t2, faces.normals[0])];
-    let mut pairs = matching(behind1, behind2);
     let (mut widest, mut winner, mut parallel) = (faces.best.gap + slack, None, 0_u32);
-    while pairs != 0 {
-        let pair = pairs.trailing_zeros() as usize;
-        pairs &= pairs - 1;
+    for pair in bits(matching(behind1, behind2)) {
         let (i, j) = (pair / 3, pair % 3);
         let cross = t1.edges[i].cross(t2.edges[j]);
         let area = cross.length_squared();
@@ -123,7 +121,7 @@ pub(super) fn best_axis(t1: &Triangle, t2: &Triangle, faces: &FaceAxes) -> Axis 
         }
     }
     let best = winner.map_or(faces.best, |(i, j)| edge_axis(t1, i, t2, j, behind1 >> i & 1 != 0));
-    (0..9).filter(|pair| parallel >> pair & 1 != 0).fold(best, |best, pair| {
+    bits(parallel).fold(best, |best, pair| {
         let axis = near_parallel(t1, pair / 3, t2, pair % 3);
         if axis.gap > best.gap + slack { axis } else { best }
     })

@@ -9,11 +9,12 @@
 //! neighbours differ, so an edge crosses at most two edges. That makes at most six crossings and
 //! twelve points, for any rounding of the signs. The closest points are the thirteenth.
 
+use super::TriangleContact;
 use super::closest::within_edge;
 use super::feature::{Feature, FeaturePair};
 use super::shadow_signs::{EdgeCrossing, ShadowSigns};
 use super::triangle::{NEAR_PARALLEL, Triangle};
-use super::triangle_contact::TriangleContact;
+use crate::simd::bits;
 use arrayvec::ArrayVec;
 use glamx::DVec3;
 
@@ -88,11 +89,8 @@ pub(super) fn clip_triangles(
     for k in 0..2 {
         push_vertices([t1, t2], k, inside[k], normal, out);
     }
-    let mut crossings = signs.crossings();
-    while crossings != 0 {
-        let crossing = signs.crossing(crossings.trailing_zeros() as usize);
-        out.push(crossing_point(t1, t2, &crossing, normal));
-        crossings &= crossings - 1;
+    for bit in bits(signs.crossings()) {
+        out.push(crossing_point(t1, t2, &signs.crossing(bit), normal));
     }
 }
 
@@ -143,7 +141,7 @@ fn push_vertices(
     }
     let is_thin = other.is_thin(area_squared);
     let slope = face * (1.0 / cosine);
-    for v in (0..3).filter(|v| vertices >> v & 1 != 0) {
+    for v in bits(vertices) {
         let vertex = own.vertices[v];
         let height = (vertex - other.vertices[0]).dot(slope);
         let foot = vertex - normal * height;

@@ -1,12 +1,12 @@
 //! From two triangles to their contact.
 
+use super::TriangleContact;
 use super::axes::{Axis, FaceAxes, best_axis};
 use super::closest::{Closest, TIE, closest, closest_on_lines, is_over, proved, within_edge};
 use super::edges::{closest_edges, proved_edges};
 use super::feature::{Feature, FeaturePair};
 use super::touching::{near_axis, touching_contact};
 use super::triangle::Triangle;
-use super::triangle_contact::TriangleContact;
 use glamx::DVec3;
 
 /// Gap or overlap, in triangle sizes, below which rounding may hide if triangles are apart or

@@ -5,11 +5,11 @@
 //! face normals, and products of edges that point outside of both. The contact is on the axis of
 //! least overlap among these.
 
+use super::TriangleContact;
 use super::clip::{ManifoldPoints, clip_triangles};
 use super::feature::Feature;
 use super::touching::deepest;
 use super::triangle::{NEAR_PARALLEL, NEXT, PREVIOUS, Triangle};
-use super::triangle_contact::TriangleContact;
 use arrayvec::ArrayVec;
 use glamx::DVec3;
 

@@ -6,13 +6,13 @@
 //! move by `d` makes them touch, so two features were at most `d` apart. Triangles whose features
 //! are farther apart than the depth do not cross.
 
+use super::TriangleContact;
 use super::axes::Axis;
 use super::clip::{ManifoldPoint, ManifoldPoints, clip_triangles};
 use super::closest::{Closest, closest};
 use super::edges::closest_edges;
 use super::feature::{Feature, FeaturePair};
 use super::triangle::Triangle;
-use super::triangle_contact::TriangleContact;
 use glamx::DVec3;
 
 /// Effect of rounding on a distance or gap, in triangle sizes. Higher: triangles this close count

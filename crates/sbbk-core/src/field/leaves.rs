@@ -3,7 +3,7 @@ use glamx::{DVec3, Vec3};
 use super::frame::FieldFrame;
 use super::grid::{FieldTriangle, HeightGrid};
 use crate::leaf::PlacedTest;
-use crate::simd::each_bit;
+use crate::simd::bits;
 use crate::traverse::Counters;
 use crate::tree::LeafBatch;
 
@@ -54,9 +54,9 @@ impl<'a, F: HeightGrid> FieldLeaves<'a, F> {
                     let Some(triangle) = triangle.as_ref().filter(is_finite) else {
                         continue;
                     };
-                    each_bit(placed.near(triangle), |lane| {
+                    for lane in bits(placed.near(triangle)) {
                         found(FieldTriangle { cell, side }, batch.triangles()[lane]);
-                    });
+                    }
                 }
             }
         }

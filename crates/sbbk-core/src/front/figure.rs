@@ -6,8 +6,9 @@
 //! child. No descent of real trees has such a pair, so this test uses the figure's tree and states
 //! which nodes meet. The front is the real one.
 
+use super::Front;
 use super::pair_test::PairTest;
-use super::{Front, lanes};
+use crate::simd::bits;
 use crate::traverse::{Opening, Sides, SlotPair};
 use crate::tree::Slot;
 
@@ -38,7 +39,7 @@ impl PairTest for Figure<'_> {
 
     fn meeting(&mut self, opening: &Opening, asked: u32) -> u32 {
         let mut meeting = 0;
-        for lane in lanes(asked) {
+        for lane in bits(asked) {
             let n = number(opening.pair(lane).0);
             self.visited.push(n);
             meeting |= u32::from(self.meeting.contains(&n)) << lane;

@@ -43,6 +43,7 @@
 mod figure;
 mod pair_test;
 
+use crate::simd::bits;
 use crate::traverse::{Counters, Opening, PairFrame};
 use crate::tree::{LeafBatch, Tree};
 use pair_test::{PairTest, TreePair};
@@ -120,19 +121,19 @@ impl Front {
         let Cell { opening, leaves, met: before, below } = self.cells[cell as usize];
         let above = before & !leaves;
         let mut asked = opening.lanes & !above;
-        for lane in lanes(above) {
+        for lane in bits(above) {
             self.test(below[lane], pair);
             let all_parted = self.cells[below[lane] as usize].met == 0;
             asked |= u32::from(all_parted) << lane;
         }
         let meeting = if asked == 0 { 0 } else { pair.meeting(&opening, asked) };
-        for lane in lanes(asked & !meeting & before) {
+        for lane in bits(asked & !meeting & before) {
             self.cells[cell as usize].met &= !(1 << lane);
             if above >> lane & 1 != 0 {
                 self.free.push(below[lane]);
             }
         }
-        for lane in lanes(meeting & !above) {
+        for lane in bits(meeting & !above) {
             self.cells[cell as usize].met |= 1 << lane;
             if leaves >> lane & 1 != 0 {
                 pair.visit(opening.pair(lane));
@@ -154,9 +155,4 @@ impl Front {
         self.cells.push(cell);
         self.cells.len() as u32 - 1
     }
-}
-
-/// The lanes in a mask.
-fn lanes(mask: u32) -> impl Iterator<Item = usize> {
-    (0..4).filter(move |lane| mask >> lane & 1 != 0)
 }

@@ -1,6 +1,6 @@
 //! How two trees test pairs of nodes.
 
-use crate::simd::each_bit;
+use crate::simd::bits;
 use crate::traverse::{Counters, Opening, Overlap, PairFrame, Sides, SlotPair, leaves_at};
 use crate::tree::{LeafBatch, Slot, Tree};
 
@@ -26,12 +26,8 @@ pub(super) struct TreePair<'a, C, V> {
 
 impl<C, V> TreePair<'_, C, V> {
     fn leaves(&self, opening: &Opening) -> u32 {
-        let mut leaves = 0;
-        each_bit(opening.lanes, |lane| {
-            let is_pair = leaves_at(self.trees, opening.pair(lane)).is_some();
-            leaves |= u32::from(is_pair) << lane;
-        });
-        leaves
+        let is_pair = |lane: &usize| leaves_at(self.trees, opening.pair(*lane)).is_some();
+        bits(opening.lanes).filter(is_pair).fold(0, |leaves, lane| leaves | 1 << lane)
     }
 }
 

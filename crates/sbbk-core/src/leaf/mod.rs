@@ -13,7 +13,7 @@ pub(crate) use placed::PlacedTest;
 
 use wide::f32x4;
 
-use crate::simd::{V3, each, each_bit};
+use crate::simd::{V3, bits, each};
 use crate::traverse::PairFrame;
 use crate::tree::LeafBatch;
 use lateral::is_lateral;
@@ -95,7 +95,9 @@ impl LeafTest {
         for lane1 in 0..batch1.count() {
             let one = Corners::new(splat(|corner, axis| batch1.corners[corner][axis][lane1]));
             let near = !test(frame, &one, &two).to_bitmask() & used;
-            each_bit(near, |lane2| found(lane1, lane2));
+            for lane2 in bits(near) {
+                found(lane1, lane2);
+            }
         }
     }
 }

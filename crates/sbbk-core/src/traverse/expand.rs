@@ -1,7 +1,7 @@
 //! Replaces a pair of nodes by the pairs of their children that pass a comparison.
 
 use super::side::NodeLanes;
-use crate::simd::{Inner, Outer, Same, Spread, each_bit};
+use crate::simd::{Inner, Outer, Same, Spread, bits};
 use crate::tree::{LeafBatch, Slot, Tree};
 
 /// A pair of nodes.
@@ -100,5 +100,7 @@ pub(crate) fn expand<C: Compare>(
 ) {
     let opening = Opening::of(trees, slots);
     let (mask, keys) = opening.compare(trees, opening.lanes, compare);
-    each_bit(mask, |lane| push(opening.pair(lane), keys[lane]));
+    for lane in bits(mask) {
+        push(opening.pair(lane), keys[lane]);
+    }
 }

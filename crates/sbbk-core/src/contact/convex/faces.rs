@@ -17,6 +17,7 @@ use super::support::lowest as lowest_corner;
 use super::{ConvexContact, DOUBTFUL};
 use crate::contact::closest::closest_on_lines;
 use crate::contact::triangle::NEXT;
+use crate::simd::bits;
 use arrayvec::ArrayVec;
 use glamx::DVec3;
 use wide::f64x4;
@@ -173,10 +174,8 @@ impl HullFaces {
         let (mut most, mut squared) = (most, most * most);
         for (&[p, q], edge) in self.beside.iter().zip(&self.edges) {
             let [of_p, of_q] = [p, q].map(|face| marks[usize::from(face)]);
-            let mut crossed = (of_p ^ of_q) & (of_p | of_q) >> 3;
-            while crossed != 0 {
-                let j = crossed.trailing_zeros() as usize;
-                crossed &= crossed - 1;
+            let crossed = (of_p ^ of_q) & (of_p | of_q) >> 3;
+            for j in bits(crossed.into()) {
                 let next = NEXT[j];
                 let nearer = |i: usize| {
                     let [p, q] = [p, q]

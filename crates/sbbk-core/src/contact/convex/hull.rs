@@ -2,7 +2,8 @@
 
 use super::ConvexContact;
 use super::faces::HullFaces;
-use super::support::{HullSupport, SupportMap};
+use super::support::SupportMap;
+use crate::simd::bits;
 use crate::volumes::rounding::gamma;
 use glamx::{DVec3, Vec3};
 use std::sync::OnceLock;
@@ -15,8 +16,7 @@ const KEPT: usize = 16;
 /// The convex hull of points in f32, for many support points. The hull of no points is the origin.
 ///
 /// Heights are compared in f32, in lanes; points within rounding of the greatest height are
-/// compared in f64. The result is the first of the farthest points, as for
-/// [`HullSupport`](super::HullSupport).
+/// compared in f64. The result is the first of the farthest points.
 #[derive(Clone, Debug, Default)]
 pub struct HullPoints {
     points: Vec<Vec3>,
@@ -63,6 +63,17 @@ impl HullPoints {
     }
 }
 
+impl HullPoints {
+    /// The first of the points that are farthest along a direction, in f64.
+    #[cold]
+    fn farthest(&self, direction: DVec3) -> DVec3 {
+        let mut points = self.points.iter().map(|point| point.as_dvec3());
+        let first = points.next().unwrap_or_default();
+        let farther = |a: DVec3, b: DVec3| if b.dot(direction) > a.dot(direction) { b } else { a };
+        points.fold(first, farther)
+    }
+}
+
 impl SupportMap for HullPoints {
     #[inline(always)]
     fn support(&self, direction: DVec3) -> DVec3 {
@@ -87,22 +98,19 @@ impl SupportMap for HullPoints {
             + self.greatest.element_sum() * f64::from(f32::MIN_POSITIVE);
         let least = (most - 2.0 * lost) as f32;
         if !least.is_finite() {
-            let points: Vec<DVec3> = self.points.iter().map(|point| point.as_dvec3()).collect();
-            return HullSupport(&points).support(direction);
+            return self.farthest(direction);
         }
         let least = f32x4::splat(least.next_down());
         let (mut farthest, mut most) = (Vec3::ZERO, f64::NEG_INFINITY);
         for (i, lanes) in self.lanes.iter().enumerate() {
             let height = if i < KEPT { kept[i] } else { height(lanes) };
-            let mut mask = height.simd_ge(least).to_bitmask();
-            while mask != 0 {
+            for lane in bits(height.simd_ge(least).to_bitmask()) {
                 // Padding has no index; it is no farther than the first point.
-                let point = self.points.get(4 * i + mask.trailing_zeros() as usize);
+                let point = self.points.get(4 * i + lane);
                 let along = point.map_or(f64::NEG_INFINITY, |p| p.as_dvec3().dot(direction));
                 if along > most {
                     (farthest, most) = (*point.expect("it has a height"), along);
                 }
-                mask &= mask - 1;
             }
         }
         farthest.as_dvec3()

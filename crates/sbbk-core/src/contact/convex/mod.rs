@@ -71,7 +71,7 @@ pub use feature::feature_at;
 pub use half_space::half_space_contact;
 pub use hull::HullPoints;
 pub use segment::{PointSupport, SegmentSupport};
-pub use support::{HullSupport, SupportMap, TriangleSupport};
+pub use support::{SupportMap, TriangleSupport};
 
 use depth::{Depth, depth, touching_depth};
 use difference::{Difference, Vertex};

@@ -78,23 +78,3 @@ pub(super) fn lowest([a, b, c]: &[DVec3; 3], direction: DVec3) -> usize {
     let (i, least) = if b < 0.0 { (1, b) } else { (0, 0.0) };
     if c < least { 2 } else { i }
 }
-
-/// The convex hull of points, by a scan of all points: for hulls of up to some dozens. The hull of
-/// no points is the origin.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HullSupport<'a>(pub &'a [DVec3]);
-
-impl SupportMap for HullSupport<'_> {
-    #[inline(always)]
-    fn support(&self, direction: DVec3) -> DVec3 {
-        let Some((&first, rest)) = self.0.split_first() else { return DVec3::ZERO };
-        let (mut farthest, mut most) = (first, first.dot(direction));
-        for &point in rest {
-            let along = point.dot(direction);
-            if along > most {
-                (farthest, most) = (point, along);
-            }
-        }
-        farthest
-    }
-}

@@ -1,12 +1,12 @@
 //! Shapes and triangles without volume or area, and invalid numbers.
 
-use super::shape::{Core, Kind, Rng, Shape};
+use super::shape::{Core, Kind, Rng, Shape, first_farthest};
 use super::truth::{check, size};
 use crate::support::Random;
 use glamx::{DVec3, Vec3};
 use sbbk_core::contact::convex::{
-    ConeSupport, CuboidSupport, CylinderSupport, HullPoints, HullSupport, PointSupport,
-    SegmentSupport, SupportMap, convex_contact,
+    ConeSupport, CuboidSupport, CylinderSupport, HullPoints, PointSupport, SegmentSupport,
+    SupportMap, convex_contact,
 };
 
 #[test]
@@ -204,7 +204,7 @@ fn support_points_of_hulls_are_the_first_of_the_farthest() {
         };
         let points: Vec<Vec3> = (0..30).map(|_| point()).collect();
         let wide: Vec<DVec3> = points.iter().map(|point| point.as_dvec3()).collect();
-        let expected = HullSupport(&wide).support(direction.as_dvec3());
+        let expected = first_farthest(&wide, direction.as_dvec3());
         let found = HullPoints::new(points).support(direction.as_dvec3());
         assert_eq!(found, expected, "along {direction}");
     }

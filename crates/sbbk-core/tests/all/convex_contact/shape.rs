@@ -2,8 +2,8 @@
 
 use glamx::{DQuat, DVec3, Vec3};
 use sbbk_core::contact::convex::{
-    ConeSupport, ConvexContact, CuboidSupport, CylinderSupport, HullPoints, HullSupport,
-    PointSupport, SegmentSupport, SupportMap, TriangleSupport, convex_contact, round_contact,
+    ConeSupport, ConvexContact, CuboidSupport, CylinderSupport, HullPoints, PointSupport,
+    SegmentSupport, SupportMap, TriangleSupport, convex_contact, round_contact,
 };
 use sbbk_core::truth::ConvexBody;
 
@@ -64,7 +64,7 @@ impl Shape {
             Core::Cuboid(half) => round_contact(triangle, &CuboidSupport(*half), r, margin),
             Core::Hull(points) => match in_f32(points) {
                 Some(points) => round_contact(triangle, &HullPoints::new(points), r, margin),
-                None => round_contact(triangle, &HullSupport(points), r, margin),
+                None => round_contact(triangle, &|d| first_farthest(points, d), r, margin),
             },
             Core::Cylinder(cylinder) => round_contact(triangle, cylinder, r, margin),
             Core::Cone(cone) => round_contact(triangle, cone, r, margin),
@@ -128,6 +128,12 @@ impl Shape {
         };
         Self { core, radius: self.radius * factor }
     }
+}
+
+/// The first of the points that are farthest along a direction.
+pub fn first_farthest(points: &[DVec3], direction: DVec3) -> DVec3 {
+    let farther = |a: DVec3, b: DVec3| if b.dot(direction) > a.dot(direction) { b } else { a };
+    points.iter().copied().reduce(farther).unwrap_or_default()
 }
 
 /// To the nearest numbers in f32.
