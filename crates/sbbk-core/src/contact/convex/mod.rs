@@ -74,9 +74,8 @@ pub use segment::{PointSupport, SegmentSupport};
 pub use support::{SupportMap, TriangleSupport};
 
 use depth::{Depth, depth, touching_depth};
-use difference::{Difference, Vertex};
 use glamx::DVec3;
-use search::{Outcome, search};
+use search::{Outcome, Search};
 
 /// The contact of a triangle and a convex shape, in the frame of the shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -147,9 +146,8 @@ pub fn round_contact<S: SupportMap>(
 pub fn convex_touches<S: SupportMap>(triangle: &[DVec3; 3], shape: &S, reach: f64) -> bool {
     let [a, b, c] = *triangle;
     let is_finite = (a.abs() + b.abs() + c.abs()).element_sum().is_finite();
-    let difference = Difference { triangle, shape };
     is_finite
-        && match Start::new(&difference).search(&difference, reach) {
+        && match Search::new(triangle, shape).run(reach) {
             Outcome::Far => false,
             Outcome::Apart(simplex) => simplex.squared <= reach * reach,
             Outcome::Touching(_) | Outcome::Crossing(_) => true,
@@ -178,70 +176,24 @@ fn by_search<S: SupportMap>(
     shape: &S,
     margin: f64,
 ) -> Option<ConvexContact> {
-    let difference = Difference { triangle, shape };
-    let start = Start::new(&difference);
-    if !start.separates(triangle)
-        && let Some(contact) = shape.penetration(triangle, start.size)
+    let search = Search::new(triangle, shape);
+    let Search { difference, size, .. } = &search;
+    if !search.starts_apart()
+        && let Some(contact) = shape.penetration(triangle, *size)
     {
         return Some(contact);
     }
-    let size = start.size;
-    let depth = match start.search(&difference, margin) {
+    let depth = match search.run(margin) {
         Outcome::Far => return None,
         Outcome::Apart(simplex) => {
             let distance = simplex.squared.sqrt();
             let on_triangle = simplex.on_triangle(triangle);
             return Some(ConvexContact::new(on_triangle, simplex.nearest / distance, distance));
         }
-        Outcome::Crossing(tetrahedron) => depth(&difference, tetrahedron, size),
-        Outcome::Touching(simplex) => touching_depth(&difference, &simplex, size),
+        Outcome::Crossing(tetrahedron) => depth(difference, tetrahedron, *size),
+        Outcome::Touching(simplex) => touching_depth(difference, &simplex, *size),
     };
     depth.map(|Depth { outward, depth, on_triangle }| {
         ConvexContact::new(on_triangle, -outward, -depth)
     })
-}
-
-/// The start of a search.
-struct Start {
-    /// Leads from the triangle to a point in or near the shape.
-    toward: DVec3,
-    /// The support point of the shape opposite to `toward`.
-    point: DVec3,
-    /// Size of both.
-    size: f64,
-}
-
-impl Start {
-    #[inline(always)]
-    fn new<S: SupportMap>(difference: &Difference<S>) -> Self {
-        let [a, b, c] = *difference.triangle;
-        let extent = ((b - a).abs() + (c - a).abs()).element_sum();
-        let toward = toward_origin(difference, difference.triangle);
-        let point = difference.shape.support(-toward);
-        Self { toward, point, size: extent + point.abs().element_sum() }
-    }
-
-    /// True if a plane perpendicular to `toward` separates the bodies.
-    #[inline(always)]
-    fn separates(&self, triangle: &[DVec3; 3]) -> bool {
-        triangle.iter().all(|corner| (self.point - corner).dot(self.toward) > 0.0)
-    }
-
-    #[inline(always)]
-    fn search<S: SupportMap>(&self, difference: &Difference<S>, margin: f64) -> Outcome {
-        search(difference, self.toward, self.point, margin, self.size)
-    }
-}
-
-/// Vector from the nearest point of the triangle to the origin, or the normal of a triangle that
-/// holds the origin.
-#[inline(always)]
-fn toward_origin<S: SupportMap>(difference: &Difference<S>, triangle: &[DVec3; 3]) -> DVec3 {
-    let [a, b, c]: [Vertex; 3] = difference.at(DVec3::ZERO);
-    let nearest = simplex::side(a, b, c).nearest;
-    if nearest != DVec3::ZERO {
-        return nearest;
-    }
-    let normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
-    if normal != DVec3::ZERO { normal } else { DVec3::Y }
 }

@@ -63,87 +63,115 @@ pub(super) enum Outcome {
     Crossing([Vertex; 4]),
 }
 
-/// Searches for the nearest point. `toward` leads from the triangle to a point in or near the
-/// shape; `start` is the support point of the shape opposite to it. `size` is the size of the pair.
-#[inline(always)]
-pub(super) fn search<S: SupportMap>(
-    difference: &Difference<S>,
+/// A search for the nearest point.
+pub(super) struct Search<'a, S> {
+    pub difference: Difference<'a, S>,
+    /// Leads from the triangle to a point in or near the shape.
     toward: DVec3,
+    /// The support point of the shape opposite to `toward`.
     start: DVec3,
-    margin: f64,
-    size: f64,
-) -> Outcome {
-    let [doubtful, nearly, unproved] =
-        [DOUBTFUL, NEARLY, UNPROVED].map(|share| (share * size).powi(2));
-    // Rounding can keep a search from the direction of bodies that nearly touch.
-    let stuck = |simplex: Simplex, new: Vertex| {
-        let (simplex, open) = least_open(difference, simplex, new, size);
+    /// Size of both.
+    pub size: f64,
+}
+
+impl<'a, S: SupportMap> Search<'a, S> {
+    #[inline(always)]
+    pub fn new(triangle: &'a [DVec3; 3], shape: &'a S) -> Self {
+        let [a, b, c] = *triangle;
+        let extent = ((b - a).abs() + (c - a).abs()).element_sum();
+        let difference = Difference { triangle, shape };
+        let toward = difference.toward_origin();
+        let start = shape.support(-toward);
+        Self { difference, toward, start, size: extent + start.abs().element_sum() }
+    }
+
+    /// True if a plane perpendicular to `toward` separates the bodies.
+    #[inline(always)]
+    pub fn starts_apart(&self) -> bool {
+        let Self { difference, toward, start, .. } = self;
+        difference.triangle.iter().all(|corner| (start - corner).dot(*toward) > 0.0)
+    }
+
+    #[inline(always)]
+    pub fn run(&self, margin: f64) -> Outcome {
+        let Self { difference, size, .. } = self;
+        // Wider than the margin by more than rounding, so that the distance decides.
+        let reach = margin.max(0.0) + BOUNDARY * size;
+        let is_far =
+            |bound: f64, squared: f64| bound > 0.0 && bound * bound > reach * reach * squared;
+        let Some(mut simplex) = self.first(is_far) else { return Outcome::Far };
+        let touching = (TOUCHING * size).powi(2);
+        let mut stalls = 0;
+        for _ in 0..ROUNDS {
+            let Simplex { nearest, squared, .. } = simplex;
+            if squared <= touching {
+                return Outcome::Touching(simplex);
+            }
+            let new = difference.farthest(-nearest);
+            let bound = nearest.dot(new.point);
+            if is_far(bound, squared) {
+                return Outcome::Far;
+            }
+            let is_known = simplex.vertices().iter().any(|v| v.point == new.point);
+            if is_proved::<S>(squared, squared - bound, *size) {
+                return Outcome::Apart(simplex);
+            }
+            if is_known {
+                return self.stuck(simplex, new);
+            }
+            match simplex.add(new) {
+                Step::Around(tetrahedron) => return Outcome::Crossing(tetrahedron),
+                Step::Beside(next) if next.squared < squared => simplex = next,
+                // The distance ties up to rounding, as near ties of a vertex and a face do. The
+                // direction may still differ.
+                Step::Beside(next) => {
+                    stalls += 1;
+                    let is_tied = next.squared <= squared * (1.0 + TIE);
+                    if stalls > STALLS || !is_tied {
+                        return self.stuck(simplex, new);
+                    }
+                    simplex = next;
+                }
+            }
+        }
+        Outcome::Apart(simplex)
+    }
+
+    /// The nearer one of two simplices to start with; `None` if a plane proves the bodies far apart.
+    #[inline(always)]
+    fn first(&self, is_far: impl Fn(f64, f64) -> bool) -> Option<Simplex> {
+        let Self { difference, toward, start, .. } = self;
+        // The triangle as seen from the point of the shape that reaches farthest back.
+        let [a, b, c] = difference.at(*start);
+        let bound = a.point.dot(*toward).min(b.point.dot(*toward)).min(c.point.dot(*toward));
+        if is_far(bound, toward.length_squared()) {
+            return None;
+        }
+        let simplex = simplex::side(a, b, c);
+        // A second start along the normal of the triangle. If the shape rests on the triangle, this
+        // is the contact; otherwise the support point saves two rounds.
+        let [corner1, corner2, corner3] = *difference.triangle;
+        let normal = (corner2 - corner1).cross(corner3 - corner1);
+        let normal = if normal.dot(*toward) < 0.0 { -normal } else { normal };
+        let [a, b, c] = difference.at(difference.shape.support(-normal));
+        if is_far(a.point.dot(normal), normal.length_squared()) {
+            return None;
+        }
+        Some(simplex.nearer(simplex::side(a, b, c)))
+    }
+
+    /// The end of a search that comes no nearer. Rounding can keep a search from the direction of
+    /// bodies that nearly touch.
+    #[cold]
+    fn stuck(&self, simplex: Simplex, new: Vertex) -> Outcome {
+        let [doubtful, nearly, unproved] =
+            [DOUBTFUL, NEARLY, UNPROVED].map(|share| (share * self.size).powi(2));
+        let (simplex, open) = least_open(&self.difference, simplex, new, self.size);
         let Simplex { squared, .. } = simplex;
         let is_open = open * open > doubtful * squared && squared <= nearly;
         let is_doubtful = is_open || open >= squared && squared <= unproved;
         if is_doubtful { Outcome::Touching(simplex) } else { Outcome::Apart(simplex) }
-    };
-    // Wider than the margin by more than rounding, so that the distance decides.
-    let reach = margin.max(0.0) + BOUNDARY * size;
-    let reach_squared = reach * reach;
-    let is_far = |bound: f64, squared: f64| bound > 0.0 && bound * bound > reach_squared * squared;
-
-    // The triangle as seen from the point of the shape that reaches farthest back.
-    let [a, b, c] = difference.at(start);
-    let bound = a.point.dot(toward).min(b.point.dot(toward)).min(c.point.dot(toward));
-    if is_far(bound, toward.length_squared()) {
-        return Outcome::Far;
     }
-    let mut simplex = simplex::side(a, b, c);
-    // A second start along the normal of the triangle. If the shape rests on the triangle, this is
-    // the contact; otherwise the support point saves two rounds.
-    let [corner1, corner2, corner3] = *difference.triangle;
-    let normal = (corner2 - corner1).cross(corner3 - corner1);
-    let normal = if normal.dot(toward) < 0.0 { -normal } else { normal };
-    let [a, b, c] = difference.at(difference.shape.support(-normal));
-    if is_far(a.point.dot(normal), normal.length_squared()) {
-        return Outcome::Far;
-    }
-    let flat = simplex::side(a, b, c);
-    if flat.squared < simplex.squared {
-        simplex = flat;
-    }
-    let touching = (TOUCHING * size).powi(2);
-    let mut stalls = 0;
-    for _ in 0..ROUNDS {
-        let Simplex { nearest, squared, .. } = simplex;
-        if squared <= touching {
-            return Outcome::Touching(simplex);
-        }
-        let new = difference.farthest(-nearest);
-        let bound = nearest.dot(new.point);
-        if is_far(bound, squared) {
-            return Outcome::Far;
-        }
-        let open = squared - bound;
-        let is_known = simplex.vertices().iter().any(|v| v.point == new.point);
-        if is_proved::<S>(squared, open, size) {
-            return Outcome::Apart(simplex);
-        }
-        if is_known {
-            return stuck(simplex, new);
-        }
-        match simplex.add(new) {
-            Step::Around(tetrahedron) => return Outcome::Crossing(tetrahedron),
-            Step::Beside(next) if next.squared < squared => simplex = next,
-            // The distance ties up to rounding, as near ties of a vertex and a face do. The
-            // direction may still differ.
-            Step::Beside(next) => {
-                stalls += 1;
-                let is_tied = next.squared <= squared * (1.0 + TIE);
-                if stalls > STALLS || !is_tied {
-                    return stuck(simplex, new);
-                }
-                simplex = next;
-            }
-        }
-    }
-    Outcome::Apart(simplex)
 }
 
 /// Among the segments and vertices that are equally near up to rounding, the one for which a

@@ -69,7 +69,7 @@ impl Simplex {
     }
 
     #[inline(always)]
-    fn nearer(self, other: Self) -> Self {
+    pub fn nearer(self, other: Self) -> Self {
         if other.squared < self.squared { other } else { self }
     }
 }
