@@ -2,7 +2,7 @@
 
 use glamx::{DPose3, DVec3};
 use sbbk_core::contact::{Feature, TriangleContact, contact};
-use sbbk_core::truth::pairs_within;
+use sbbk_truth::pairs_within;
 use std::f64::consts::PI;
 
 /// Two triangles and their contact.

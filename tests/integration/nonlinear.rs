@@ -5,7 +5,7 @@ use rapier3d::parry::query::{
     DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus,
 };
 use rapier3d::parry::shape::TriMesh;
-use sbbk_core::truth::TruthPair;
+use sbbk_truth::TruthPair;
 use sbbk_testkit::mesh;
 
 use crate::support::{direction, reach, rotation, shape};

@@ -10,7 +10,7 @@ use rapier3d::parry::query::{
 };
 use rapier3d::parry::shape::{Cuboid, TriMesh};
 use rapier3d::prelude::*;
-use sbbk_core::truth::TruthPair;
+use sbbk_truth::TruthPair;
 use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::support::{direction, reach, rotation, shape};

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glamx::{DPose3, DVec3, Pose3};
 use rapier3d::parry::query::ContactManifold;
 use rapier3d::parry::shape::TriMesh;
-use sbbk_core::truth::{self, TruthPair};
+use sbbk_truth::{self as truth, TruthPair};
 
 use crate::support::{Question, TrianglePair, by_triangles, distance};
 

@@ -18,7 +18,6 @@
 //! | [`field`] | triangles of a height field near a mesh |
 //! | [`draw`] | lines for a debug renderer |
 //! | [`front`], [`broad_phase`] | the paper's, to reproduce it |
-//! | `truth` (feature `truth`) | brute force in f64, for tests |
 //!
 //! Each module uses only those above it.
 
@@ -40,8 +39,6 @@ mod support;
 pub mod surface;
 pub mod traverse;
 pub mod tree;
-#[cfg(feature = "truth")]
-pub mod truth;
 pub mod volumes;
 
 pub use contact::contact;

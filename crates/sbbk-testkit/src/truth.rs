@@ -3,7 +3,7 @@
 use glamx::{DAffine3, DMat3, DPose3, DVec3, Pose3};
 use rapier3d::math::{Real, Vector};
 use rapier3d::parry::shape::{Shape, SharedShape, TypedShape};
-use sbbk_core::truth::ConvexBody;
+use sbbk_truth::ConvexBody;
 
 /// Converts a convex shape of Parry.
 ///

@@ -8,7 +8,7 @@ use rapier3d::parry::query::{
     DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus,
 };
 use rapier3d::parry::shape::{Shape, SharedShape, TriMesh};
-use sbbk_core::truth::ConvexBody;
+use sbbk_truth::ConvexBody;
 use sbbk_testkit::mesh;
 use sbbk_testkit::truth::convex_body;
 

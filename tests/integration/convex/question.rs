@@ -4,7 +4,7 @@ use glamx::Vec3;
 use rapier3d::math::Real;
 use rapier3d::parry::query::{ContactManifold, DefaultQueryDispatcher, QueryDispatcher};
 use sbbk_core::traverse::Placement;
-use sbbk_core::truth::ConvexBody;
+use sbbk_truth::ConvexBody;
 
 use crate::support::{Manifold, Question, distance};
 

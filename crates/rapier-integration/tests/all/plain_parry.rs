@@ -6,7 +6,7 @@ use glamx::{DPose3, DVec3, Pose3, Vec3};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher, QueryDispatcher};
 use parry3d::shape::{Ball, TriMesh};
 use rapier_integration::{ContactDetail, ContactSet, SbbkConfig, SbbkDispatcher};
-use sbbk_core::truth::{TruthPair, pairs_within};
+use sbbk_truth::{TruthPair, pairs_within};
 
 fn ball(radius: f32) -> TriMesh {
     let (vertices, triangles) = Ball::new(radius).to_trimesh(24, 12);

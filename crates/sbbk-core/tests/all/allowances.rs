@@ -12,7 +12,7 @@ use sbbk_core::traverse::{
     descend,
 };
 use sbbk_core::tree::{BuildOptions, LayerPlan, Tree};
-use sbbk_core::truth;
+use sbbk_truth as truth;
 use sbbk_core::volumes::{SLABS, Sphere, directions};
 
 const KDOPS: LayerPlan = LayerPlan { sphere_root: true, kdop_from_depth: Some(1) };

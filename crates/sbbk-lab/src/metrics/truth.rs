@@ -7,7 +7,7 @@ use std::ops::AddAssign;
 use glamx::DPose3;
 use rapier3d::geometry::TriMesh;
 use rapier3d::parry::bounding_volume::BoundingVolume;
-use sbbk_core::truth::{ConvexTruth, pairs_within};
+use sbbk_truth::{ConvexTruth, pairs_within};
 use sbbk_testkit::truth::{affine, convex_body};
 
 /// Share of the prediction distance within which a pair may be reported or not. Higher: real

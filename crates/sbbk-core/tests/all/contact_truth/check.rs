@@ -2,7 +2,7 @@
 
 use glamx::DVec3;
 use sbbk_core::contact::{Feature, TriangleContact, contact};
-use sbbk_core::truth;
+use sbbk_truth as truth;
 
 /// Distances and depths may be off by this many triangle sizes.
 pub const TOLERANCE: f64 = 1.0e-9;

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use sbbk_core::contact::{
     Feature, FeaturePair, ManifoldPoint, ManifoldPoints, clip, contact, push_closest,
 };
-use sbbk_core::truth;
+use sbbk_truth as truth;
 use std::collections::HashSet;
 
 /// Shadow of a triangle, counter-clockwise.

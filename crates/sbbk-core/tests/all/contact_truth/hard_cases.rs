@@ -5,7 +5,7 @@ use super::strategies::{decades, flat_triangle, point, rotation, triangle};
 use glamx::{DQuat, DVec3};
 use proptest::prelude::*;
 use sbbk_core::contact::{contact, contact_from};
-use sbbk_core::truth;
+use sbbk_truth as truth;
 
 fn moved(t: Triangle, rotation: DQuat, offset: DVec3) -> Triangle {
     t.map(|v| rotation * v + offset)

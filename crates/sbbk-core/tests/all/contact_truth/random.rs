@@ -5,7 +5,7 @@ use super::strategies::{decades, point, triangle};
 use glamx::DVec3;
 use proptest::prelude::*;
 use sbbk_core::contact::contact;
-use sbbk_core::truth;
+use sbbk_truth as truth;
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(20_000))]

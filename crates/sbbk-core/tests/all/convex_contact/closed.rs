@@ -4,7 +4,7 @@ use super::shape::{Core, Kind, Rng};
 use super::truth::size;
 use glamx::DVec3;
 use sbbk_core::contact::convex::{PointSupport, half_space_contact, round_contact};
-use sbbk_core::truth::ConvexBody;
+use sbbk_truth::ConvexBody;
 
 #[test]
 fn closed_forms_are_at_most_as_deep_as_the_search() {

@@ -5,7 +5,7 @@ use sbbk_core::contact::convex::{
     ConeSupport, ConvexContact, CuboidSupport, CylinderSupport, HullPoints, PointSupport,
     SegmentSupport, SupportMap, TriangleSupport, convex_contact, round_contact,
 };
-use sbbk_core::truth::ConvexBody;
+use sbbk_truth::ConvexBody;
 
 #[derive(Clone, Debug)]
 pub enum Core {

@@ -3,7 +3,7 @@
 use super::shape::Shape;
 use glamx::DVec3;
 use sbbk_core::contact::convex::ConvexContact;
-use sbbk_core::truth::ConvexBody;
+use sbbk_truth::ConvexBody;
 
 /// Size of a triangle and a shape.
 pub fn size(triangle: &[DVec3; 3], shape: &Shape) -> f64 {

@@ -9,7 +9,7 @@ use glamx::{DVec3, Pose3, Vec3};
 use sbbk_core::field::{FieldFrame, FieldTriangle};
 use sbbk_core::traverse::{DescentCounts, Placement, TestedBox};
 use sbbk_core::tree::Tree;
-use sbbk_core::truth::contact;
+use sbbk_truth::contact;
 
 use crate::support::{Soup, descend_field};
 use grid::Grid;

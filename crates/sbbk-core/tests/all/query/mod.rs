@@ -7,7 +7,7 @@ mod nearest;
 
 use glamx::{DPose3, DVec3, Pose3, Vec3};
 use sbbk_core::tree::Tree;
-use sbbk_core::truth::{self, TruthPair};
+use sbbk_truth::{self as truth, TruthPair};
 
 use crate::support::Soup;
 

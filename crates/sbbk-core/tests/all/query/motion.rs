@@ -5,7 +5,7 @@ use sbbk_core::query::{
     Advance, AdvanceOptions, FoundPair, MeshBodies, SearchScratch, advance, advance_from_contact,
 };
 use sbbk_core::traverse::Placement;
-use sbbk_core::truth::TruthPair;
+use sbbk_truth::TruthPair;
 
 use super::{all_pairs, exact, least, pairs_within, tree, triangle, triangles_of};
 use crate::support::{Random, Soup, bumpy_ball, soup};
