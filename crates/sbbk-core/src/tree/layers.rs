@@ -1,6 +1,5 @@
 use glamx::Vec3;
 
-use super::BuildError;
 use super::build::BuildNode;
 use crate::volumes::{Kdop, SLABS, directions};
 
@@ -47,13 +46,6 @@ impl LayerPlan {
 
     /// The plan fitted before the choice.
     pub(super) const CANDIDATE: Self = Self { sphere_root: true, kdop_from_depth: Some(1) };
-
-    pub(super) fn check(&self) -> Result<(), BuildError> {
-        match self.kdop_from_depth {
-            Some(depth @ 0) => Err(BuildError::KdopAtRoot { depth }),
-            _ => Ok(()),
-        }
-    }
 
     /// Returns true if nodes at `depth` have k-DOPs.
     pub(super) fn is_kdop(&self, depth: u32) -> bool {

@@ -11,7 +11,14 @@
 //! let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
 //! let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 //! let tree = Tree::build(&vertices, &triangles, &BuildOptions::default())?;
-//! assert_eq!(tree.triangle_count(), 4);
+//!
+//! let mut nodes = vec![tree.root()];
+//! let mut triangle_count = 0;
+//! while let Some(node) = nodes.pop() {
+//!     nodes.extend(node.children().into_iter().flatten());
+//!     triangle_count += node.leaf().map_or(0, |leaf| leaf.count());
+//! }
+//! assert_eq!(triangle_count, 4);
 //! # Ok::<(), sbbk_core::tree::BuildError>(())
 //! ```
 
@@ -101,13 +108,8 @@ pub enum BuildError {
         position: Vec3,
     },
     /// The layer plan has k-DOPs at the root.
-    #[error(
-        "the layer plan starts k-DOPs at depth {depth}, but the root's volume is at depth 0 and the first children at depth 1: use 1 or more"
-    )]
-    KdopAtRoot {
-        /// The depth of the plan.
-        depth: u32,
-    },
+    #[error("the layer plan has k-DOPs at depth 0, where the root is: use 1 or more")]
+    KdopAtRoot,
 }
 
 impl Tree {
@@ -120,7 +122,9 @@ impl Tree {
         triangles: &[[u32; 3]],
         options: &BuildOptions,
     ) -> Result<Self, BuildError> {
-        options.layers.as_ref().map_or(Ok(()), LayerPlan::check)?;
+        if options.layers.is_some_and(|layers| layers.kdop_from_depth == Some(0)) {
+            return Err(BuildError::KdopAtRoot);
+        }
         check_mesh(vertices, triangles)?;
         Ok(pack::pack(build::build(vertices, triangles, options), vertices, triangles, options))
     }

@@ -8,7 +8,7 @@ use glamx::Vec3;
 use super::build::{BuildNode, BuildOptions, BuildTree, Content};
 use super::node::{LeafBatch, Link, Pair};
 use super::{BuildStats, LayerPlan, Tree};
-use crate::volumes::{Kdop, Sphere};
+use crate::volumes::{Kdop, SLABS, Sphere};
 
 pub(super) fn pack(
     built: BuildTree,
@@ -26,35 +26,7 @@ pub(super) fn pack(
             (layers, Some(cut))
         }
     };
-    let numbers = number_nodes(&built.nodes, layers);
-
-    // Entry 0 holds the root itself, in lane 0.
-    let mut aabb_pairs = vec![Pair::EMPTY; 1 + numbers.aabb_count];
-    let mut kdop_pairs = vec![Pair::EMPTY; numbers.kdop_count];
-    let link_of = |place: usize| match built.nodes[place].content {
-        Content::Inner(_) => Link::inner(numbers.of_place[place]),
-        Content::Leaf(_) => leaf_links[place],
-    };
-    let root = &built.nodes[0].aabb;
-    aabb_pairs[0].set(0, link_of(0), root.min.as_ref(), root.max.as_ref());
-    for (place, node) in built.nodes.iter().enumerate() {
-        let Content::Inner(children) = node.content else {
-            continue;
-        };
-        let number = numbers.of_place[place] as usize;
-        for (lane, child) in children.into_iter().enumerate() {
-            let child = child as usize;
-            if layers.is_kdop(node.depth + 1) {
-                let (pair, kdop) = (&mut kdop_pairs[number - aabb_pairs.len()], &kdops[child]);
-                pair.set(lane, link_of(child), &kdop.min, &kdop.max);
-            } else {
-                let aabb = &built.nodes[child].aabb;
-                let pair = &mut aabb_pairs[number];
-                pair.set(lane, link_of(child), aabb.min.as_ref(), aabb.max.as_ref());
-            }
-        }
-    }
-
+    let (aabb_pairs, kdop_pairs) = pairs(&built.nodes, &leaf_links, &kdops, layers);
     let depth = built.nodes.iter().map(|node| node.depth).max().unwrap_or(0);
     let bytes = size_of_val(&*aabb_pairs) + size_of_val(&*kdop_pairs) + size_of_val(&*leaves);
     Tree {
@@ -66,6 +38,43 @@ pub(super) fn pack(
         magnitude: built.nodes[0].aabb.magnitude(),
         stats: BuildStats { depth, layers, kdop_cut, bytes },
     }
+}
+
+/// The children of the upper inner nodes, and of those in the k-DOP layers.
+fn pairs(
+    nodes: &[BuildNode],
+    leaf_links: &[Link],
+    kdops: &[Kdop],
+    layers: LayerPlan,
+) -> (Vec<Pair<3>>, Vec<Pair<SLABS>>) {
+    let numbers = number_nodes(nodes, layers);
+    // Entry 0 holds the root itself, in lane 0.
+    let mut aabb_pairs = vec![Pair::EMPTY; 1 + numbers.aabb_count];
+    let mut kdop_pairs = vec![Pair::EMPTY; numbers.kdop_count];
+    let link_of = |place: usize| match nodes[place].content {
+        Content::Inner(_) => Link::inner(numbers.of_place[place]),
+        Content::Leaf(_) => leaf_links[place],
+    };
+    let root = &nodes[0].aabb;
+    aabb_pairs[0].set(0, link_of(0), root.min.as_ref(), root.max.as_ref());
+    for (place, node) in nodes.iter().enumerate() {
+        let Content::Inner(children) = node.content else {
+            continue;
+        };
+        let number = numbers.of_place[place] as usize;
+        for (lane, child) in children.into_iter().enumerate() {
+            let child = child as usize;
+            if layers.is_kdop(node.depth + 1) {
+                let (pair, kdop) = (&mut kdop_pairs[number - aabb_pairs.len()], &kdops[child]);
+                pair.set(lane, link_of(child), &kdop.min, &kdop.max);
+            } else {
+                let aabb = &nodes[child].aabb;
+                let pair = &mut aabb_pairs[number];
+                pair.set(lane, link_of(child), aabb.min.as_ref(), aabb.max.as_ref());
+            }
+        }
+    }
+    (aabb_pairs, kdop_pairs)
 }
 
 /// The batches of triangles, and for each place of the built tree the link to its batch.

@@ -14,21 +14,6 @@ pub struct Node<'a> {
 
 impl Tree {
     /// The root, from which all nodes can be reached.
-    ///
-    /// ```
-    /// # use glamx::Vec3;
-    /// # use sbbk_core::tree::{BuildOptions, Tree};
-    /// # let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
-    /// # let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-    /// # let options = BuildOptions { leaf_size: 1, ..BuildOptions::default() };
-    /// let tree = Tree::build(&vertices, &triangles, &options)?;
-    /// let mut stack = vec![tree.root()];
-    /// while let Some(node) = stack.pop() {
-    ///     println!("{} {:?}", node.depth(), node.aabb());
-    ///     stack.extend(node.children().into_iter().flatten());
-    /// }
-    /// # Ok::<(), sbbk_core::tree::BuildError>(())
-    /// ```
     pub fn root(&self) -> Node<'_> {
         Node { tree: self, slot: Slot::ROOT, depth: 0 }
     }
