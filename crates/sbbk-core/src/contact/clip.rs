@@ -21,7 +21,7 @@ use glamx::DVec3;
 /// Least sine between the normal and a triangle's plane at which points are projected to that
 /// plane. Lower: points slide far along a triangle that is seen edge-on. Higher: steep triangles
 /// lose points, and only their edges are left.
-const EDGE_ON: f64 = 1.0e-5;
+pub(super) const EDGE_ON: f64 = 1.0e-5;
 
 /// Closest points within this fraction of the smaller triangle's size count as one point. Higher:
 /// points are lost. Lower: points come twice.

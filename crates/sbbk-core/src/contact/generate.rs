@@ -62,7 +62,9 @@ fn find(
     {
         return (contact.distance <= margin).then_some(contact);
     }
-    if let Some(contact) = apart_by_edges(t1, t2) {
+    if let Some((features, closest)) = proved_edges(t1, t2)
+        && let Some(contact) = clearly_apart(t1, t2, features, closest)
+    {
         return (contact.distance <= margin).then_some(contact);
     }
     search(t1, t2, margin)
@@ -72,13 +74,6 @@ fn find(
 #[inline(always)]
 fn still(t1: &Triangle, t2: &Triangle, last: FeaturePair) -> Option<TriangleContact> {
     clearly_apart(t1, t2, last, proved(t1, t2, last)?)
-}
-
-/// The contact of triangles whose closest features are edges or vertices that are found at once.
-#[inline(always)]
-fn apart_by_edges(t1: &Triangle, t2: &Triangle) -> Option<TriangleContact> {
-    let (features, closest) = proved_edges(t1, t2)?;
-    clearly_apart(t1, t2, features, closest)
 }
 
 #[inline(always)]

@@ -4,13 +4,11 @@
 //! at crossings of edges. The distance takes its extremes there.
 
 use crate::contact::Feature;
+use crate::contact::clip::EDGE_ON;
 use crate::contact::closest::has_one_sign;
+use crate::contact::triangle::NEXT;
 use arrayvec::ArrayVec;
 use glamx::{DVec2, DVec3};
-
-/// Least sine between the normal and the plane of a feature at which points are projected to that
-/// plane, as for two triangles.
-const EDGE_ON: f64 = 1.0e-5;
 
 /// Corners of a feature at most.
 const FEATURE_CORNERS: usize = 4;
@@ -46,58 +44,84 @@ pub fn clip_feature(
     out: &mut FeaturePoints,
 ) {
     out.clear();
-    let count = feature.len();
-    if !(2..=FEATURE_CORNERS).contains(&count) {
-        return;
+    if (2..=FEATURE_CORNERS).contains(&feature.len()) {
+        let sides = Sides::new(triangle, feature, normal);
+        sides.push_corners_of_triangle(out);
+        sides.push_corners_of_feature(out);
+        sides.push_crossings(out);
     }
-    // Relative to a point of one of them: what cancels is small then.
-    let origin = triangle[0];
-    let (x, y) = normal.any_orthonormal_pair();
-    let flat = |p: DVec3| DVec2::new((p - origin).dot(x), (p - origin).dot(y));
-    let own = triangle.map(flat);
-    let mut other = [DVec2::ZERO; FEATURE_CORNERS];
-    for (flattened, &corner) in other.iter_mut().zip(feature) {
-        *flattened = flat(corner);
-    }
-    let (next, after) = (|i: usize| (i + 1) % 3, |j: usize| (j + 1) % count);
-    // On which side of edge `i` of the triangle corner `j` of the feature is, and the reverse.
-    let mut beside = [[0.0; FEATURE_CORNERS]; 3];
-    let mut beside_other = [[0.0; 3]; FEATURE_CORNERS];
-    for i in 0..3 {
-        let edge = own[next(i)] - own[i];
-        for j in 0..count {
-            beside[i][j] = edge.perp_dot(other[j] - own[i]);
+}
+
+/// A triangle and a feature, and on which side of each edge of one each corner of the other is, seen
+/// along a normal.
+struct Sides<'a> {
+    triangle: &'a [DVec3; 3],
+    feature: &'a [DVec3],
+    normal: DVec3,
+    /// By edge of the triangle and corner of the feature.
+    beside: [[f64; FEATURE_CORNERS]; 3],
+    /// By edge of the feature and corner of the triangle.
+    beside_other: [[f64; 3]; FEATURE_CORNERS],
+}
+
+impl<'a> Sides<'a> {
+    #[inline(always)]
+    fn new(triangle: &'a [DVec3; 3], feature: &'a [DVec3], normal: DVec3) -> Self {
+        // Relative to a point of one of them: what cancels is small then.
+        let origin = triangle[0];
+        let (x, y) = normal.any_orthonormal_pair();
+        let flat = |p: DVec3| DVec2::new((p - origin).dot(x), (p - origin).dot(y));
+        let own = triangle.map(flat);
+        let mut other = [DVec2::ZERO; FEATURE_CORNERS];
+        for (flattened, &corner) in other.iter_mut().zip(feature) {
+            *flattened = flat(corner);
         }
-    }
-    for j in 0..count {
-        let edge = other[after(j)] - other[j];
+        let mut beside = [[0.0; FEATURE_CORNERS]; 3];
+        let mut beside_other = [[0.0; 3]; FEATURE_CORNERS];
+        let count = feature.len();
         for i in 0..3 {
-            beside_other[j][i] = edge.perp_dot(own[i] - other[j]);
+            let edge = own[NEXT[i]] - own[i];
+            for j in 0..count {
+                beside[i][j] = edge.perp_dot(other[j] - own[i]);
+            }
         }
+        for j in 0..count {
+            let edge = other[(j + 1) % count] - other[j];
+            for i in 0..3 {
+                beside_other[j][i] = edge.perp_dot(own[i] - other[j]);
+            }
+        }
+        Self { triangle, feature, normal, beside, beside_other }
     }
-    if count > 2
-        && let Some(slope) = slope([feature[0], feature[1], feature[2]], normal)
-    {
-        for (i, &corner) in triangle.iter().enumerate() {
-            let sides = [0, 1, 2].map(|j| beside_other[j][i]);
-            let last = if count == 4 { beside_other[3][i] } else { sides[2] };
+
+    #[inline(always)]
+    fn push_corners_of_triangle(&self, out: &mut FeaturePoints) {
+        // An edge holds no corner.
+        let &[a, b, c, ..] = self.feature else { return };
+        let Some(slope) = slope([a, b, c], self.normal) else { return };
+        for (i, &corner) in self.triangle.iter().enumerate() {
+            let sides = [0, 1, 2].map(|j| self.beside_other[j][i]);
+            let last = if self.feature.len() == 4 { self.beside_other[3][i] } else { sides[2] };
             if has_one_sign(sides) && has_one_sign([sides[0], sides[1], last]) {
-                let distance = (feature[0] - corner).dot(slope);
+                let distance = (a - corner).dot(slope);
                 out.push(FeaturePoint {
                     on_triangle: corner,
-                    on_shape: corner + normal * distance,
+                    on_shape: corner + self.normal * distance,
                     distance,
                     features: [Feature::Vertex(i as u8), Feature::Face],
                 });
             }
         }
     }
-    if let Some(slope) = slope(*triangle, normal) {
-        for (j, &corner) in feature.iter().enumerate() {
-            if has_one_sign([0, 1, 2].map(|i| beside[i][j])) {
-                let distance = (corner - triangle[0]).dot(slope);
+
+    #[inline(always)]
+    fn push_corners_of_feature(&self, out: &mut FeaturePoints) {
+        let Some(slope) = slope(*self.triangle, self.normal) else { return };
+        for (j, &corner) in self.feature.iter().enumerate() {
+            if has_one_sign([0, 1, 2].map(|i| self.beside[i][j])) {
+                let distance = (corner - self.triangle[0]).dot(slope);
                 out.push(FeaturePoint {
-                    on_triangle: corner - normal * distance,
+                    on_triangle: corner - self.normal * distance,
                     on_shape: corner,
                     distance,
                     features: [Feature::Face, Feature::Vertex(j as u8)],
@@ -105,20 +129,27 @@ pub fn clip_feature(
             }
         }
     }
-    for i in 0..3 {
-        // An edge is one, not two.
-        for j in 0..if count == 2 { 1 } else { count } {
-            let [from, to] = [beside_other[j][i], beside_other[j][next(i)]];
-            let [start, end] = [beside[i][j], beside[i][after(j)]];
-            if from * to < 0.0 && start * end < 0.0 {
-                let on_triangle = triangle[i].lerp(triangle[next(i)], from / (from - to));
-                let on_shape = feature[j].lerp(feature[after(j)], start / (start - end));
-                out.push(FeaturePoint {
-                    on_triangle,
-                    on_shape,
-                    distance: (on_shape - on_triangle).dot(normal),
-                    features: [Feature::Edge(i as u8), Feature::Edge(j as u8)],
-                });
+
+    #[inline(always)]
+    fn push_crossings(&self, out: &mut FeaturePoints) {
+        let Self { triangle, feature, .. } = self;
+        let count = feature.len();
+        for (i, next) in NEXT.into_iter().enumerate() {
+            // An edge is one, not two.
+            for j in 0..if count == 2 { 1 } else { count } {
+                let after = (j + 1) % count;
+                let [from, to] = [self.beside_other[j][i], self.beside_other[j][next]];
+                let [start, end] = [self.beside[i][j], self.beside[i][after]];
+                if from * to < 0.0 && start * end < 0.0 {
+                    let on_triangle = triangle[i].lerp(triangle[next], from / (from - to));
+                    let on_shape = feature[j].lerp(feature[after], start / (start - end));
+                    out.push(FeaturePoint {
+                        on_triangle,
+                        on_shape,
+                        distance: (on_shape - on_triangle).dot(self.normal),
+                        features: [Feature::Edge(i as u8), Feature::Edge(j as u8)],
+                    });
+                }
             }
         }
     }

@@ -11,7 +11,7 @@
 //! edge must be below one of these planes by less than the least depth so far.
 
 use super::hull_surface::{FACES, HullSurface, POINTS, ROUNDING};
-use super::lanes::{PlaneLanes, PointLanes, splat};
+use super::lanes::{PlaneLanes, PointLanes, first_lane, splat};
 use super::simplex::{squared_distance, thin_normal};
 use super::support::lowest as lowest_corner;
 use super::{ConvexContact, DOUBTFUL};
@@ -135,12 +135,7 @@ impl HullFaces {
             depths.push(below);
         }
         let (least, at) = (least.to_array(), at.to_array());
-        let mut lane = 0;
-        for other in 1..4 {
-            if least[other] < least[lane] {
-                lane = other;
-            }
-        }
+        let lane = first_lane(|one, other| least[other] < least[one]);
         let outward = self.planes[at[lane] as usize].normal(lane);
         Separation { outward, depth: least[lane], facet: HullFacet::Face }
     }
@@ -156,19 +151,7 @@ impl HullFaces {
     ) -> Option<Option<Separation>> {
         let [a, b, c] = *triangle;
         let sides = [b - a, c - b, a - c];
-        // For each face: bits of the sides along which it rises, and three copies of the bit for a
-        // corner that is hardly below.
-        let mut marks = [0_u8; FACES];
-        let bound = f64x4::splat(most);
-        for (mark, [a, b, c]) in marks.chunks_exact_mut(4).zip(depths) {
-            let near = a.fast_min(*b).fast_min(*c).simd_lt(bound).to_bitmask();
-            let [ab, bc, ca] = [a.simd_lt(*b), b.simd_lt(*c), c.simd_lt(*a)];
-            let bits = SPREAD[ab.to_bitmask() as usize & 15]
-                | SPREAD[bc.to_bitmask() as usize & 15] << 1
-                | SPREAD[ca.to_bitmask() as usize & 15] << 2
-                | (SPREAD[near as usize & 15] * (0b111 << 3));
-            mark.copy_from_slice(&bits.to_le_bytes());
-        }
+        let marks = marks(depths, most);
         let mut least: Option<Separation> = None;
         // The least depth, and its square.
         let (mut most, mut squared) = (most, most * most);
@@ -306,6 +289,24 @@ impl HullFaces {
 
 /// Depth of each corner of a triangle below each face.
 type Depths = ArrayVec<[f64x4; 3], { FACES / 4 }>;
+
+/// For each face: bits of the sides along which it rises, and three copies of the bit for a corner
+/// that is less than `most` below.
+#[inline(always)]
+fn marks(depths: &Depths, most: f64) -> [u8; FACES] {
+    let mut marks = [0; FACES];
+    let bound = f64x4::splat(most);
+    for (mark, [a, b, c]) in marks.chunks_exact_mut(4).zip(depths) {
+        let near = a.fast_min(*b).fast_min(*c).simd_lt(bound).to_bitmask();
+        let [ab, bc, ca] = [a.simd_lt(*b), b.simd_lt(*c), c.simd_lt(*a)];
+        let bits = SPREAD[ab.to_bitmask() as usize & 15]
+            | SPREAD[bc.to_bitmask() as usize & 15] << 1
+            | SPREAD[ca.to_bitmask() as usize & 15] << 2
+            | (SPREAD[near as usize & 15] * (0b111 << 3));
+        mark.copy_from_slice(&bits.to_le_bytes());
+    }
+    marks
+}
 
 /// Bit `i` of the index as the lowest bit of byte `i`.
 const SPREAD: [u32; 16] = {

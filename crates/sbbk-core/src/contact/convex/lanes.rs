@@ -64,12 +64,7 @@ impl PointLanes {
             most = most.fast_max(height);
         }
         let (most, at) = (most.to_array(), at.to_array());
-        let mut lane = 0;
-        for other in 1..4 {
-            if most[other] > most[lane] {
-                lane = other;
-            }
-        }
+        let lane = first_lane(|one, other| most[other] > most[one]);
         (most[lane], point_of(&self.0[at[lane] as usize], lane))
     }
 
@@ -89,6 +84,12 @@ impl PointLanes {
         let d = across(along.cross(c - a).try_normalize()?)?;
         Some([a, b, c, d])
     }
+}
+
+/// The first of the best lanes; `is_better` compares a second one with a first.
+#[inline(always)]
+pub(super) fn first_lane(is_better: impl Fn(usize, usize) -> bool) -> usize {
+    (1..4).fold(0, |best, other| if is_better(best, other) { other } else { best })
 }
 
 fn point_of(lanes: &[f64x4; 3], lane: usize) -> DVec3 {
