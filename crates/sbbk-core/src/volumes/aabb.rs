@@ -13,12 +13,6 @@ impl Aabb {
     /// The empty box.
     pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
-    /// The box around `points`.
-    pub fn fit(points: &[Vec3]) -> Self {
-        let grown = |Self { min, max }, &point| Self { min: min.min(point), max: max.max(point) };
-        points.iter().fold(Self::EMPTY, grown)
-    }
-
     /// Returns true if `point` is in the box or on its boundary.
     pub fn contains(&self, point: Vec3) -> bool {
         point.cmpge(self.min).all() && point.cmple(self.max).all()

@@ -12,8 +12,8 @@ use sbbk_core::traverse::{
     descend,
 };
 use sbbk_core::tree::{BuildOptions, LayerPlan, Tree};
-use sbbk_truth as truth;
 use sbbk_core::volumes::{SLABS, Sphere, directions};
+use sbbk_truth as truth;
 
 const KDOPS: LayerPlan = LayerPlan { sphere_root: true, kdop_from_depth: Some(1) };
 
