@@ -12,7 +12,7 @@ use std::ops::Range;
 
 use glamx::{DMat3, DVec3, Vec3};
 
-use super::grid::HeightGrid;
+use super::HeightGrid;
 use crate::traverse::{Counters, Placement, TestedBox};
 use crate::volumes::rounding::gamma;
 

@@ -1,7 +1,6 @@
 use glamx::{DVec3, Vec3};
 
-use super::frame::FieldFrame;
-use super::grid::{FieldTriangle, HeightGrid};
+use super::{FieldFrame, FieldTriangle, HeightGrid};
 use crate::leaf::PlacedTest;
 use crate::simd::bits;
 use crate::traverse::Counters;

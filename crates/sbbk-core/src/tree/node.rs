@@ -168,12 +168,6 @@ pub struct LeafBatch {
 const _: () = assert!(size_of::<LeafBatch>() == 160);
 
 impl LeafBatch {
-    pub(super) fn new(members: &[u32], vertices: &[Vec3], triangles: &[[u32; 3]]) -> Self {
-        Self::gather(members, |triangle| {
-            triangles[triangle as usize].map(|vertex| vertices[vertex as usize])
-        })
-    }
-
     /// A batch of different triangles, given by indices and corners.
     ///
     /// # Panics

@@ -83,13 +83,14 @@ fn leaves(
     vertices: &[Vec3],
     triangles: &[[u32; 3]],
 ) -> (Vec<LeafBatch>, Vec<Link>) {
+    let corners_of = |triangle: u32| triangles[triangle as usize].map(|v| vertices[v as usize]);
     let mut leaves = Vec::with_capacity(built.nodes.len() / 2 + 1);
     let mut links = vec![Link::NONE; built.nodes.len()];
     for (place, node) in built.nodes.iter().enumerate() {
         if let Content::Leaf(range) = &node.content {
             links[place] = Link::leaf(leaves.len() as u32);
             let members = &built.order[range.start as usize..range.end as usize];
-            leaves.push(LeafBatch::new(members, vertices, triangles));
+            leaves.push(LeafBatch::gather(members, corners_of));
         }
     }
     (leaves, links)

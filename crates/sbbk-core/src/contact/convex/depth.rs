@@ -98,7 +98,8 @@ pub(super) fn touching_depth<S: SupportMap>(
     };
     let given = simplex.vertices();
     let a = given[0];
-    let Some(b) = given.get(1).copied().or_else(|| beyond_point(difference, a, size)) else {
+    let beyond_point = || farthest_of(difference, a, DVec3::AXES, size);
+    let Some(b) = given.get(1).copied().or_else(beyond_point) else {
         return flat(DVec3::Z);
     };
     let along = b.point - a.point;
@@ -107,18 +108,14 @@ pub(super) fn touching_depth<S: SupportMap>(
     let Some(c) = third.or_else(|| beyond_line(difference, a, along, size)) else {
         return flat(along.try_normalize()?.any_orthonormal_vector());
     };
-    let Some(normal) = plane(a, b, c) else {
+    let Some((normal, squared)) = thin_normal([a.point, b.point, c.point]) else {
         return flat(along.try_normalize()?.any_orthonormal_vector());
     };
+    let normal = normal / squared.sqrt();
     match across(difference, a, normal) {
         (height, d) if height > FLAT * size => depth(difference, [a, b, c, d], size),
         _ => flat(normal),
     }
-}
-
-fn plane(a: Vertex, b: Vertex, c: Vertex) -> Option<DVec3> {
-    let (normal, squared) = thin_normal([a.point, b.point, c.point])?;
-    Some(normal / squared.sqrt())
 }
 
 /// The farther one of both support points across a plane through `a`, and how far it is.
@@ -128,10 +125,6 @@ fn across<S: SupportMap>(difference: &Difference<S>, a: Vertex, normal: DVec3) -
         ((vertex.point - a.point).dot(u), vertex)
     });
     if down.0 > up.0 { down } else { up }
-}
-
-fn beyond_point<S: SupportMap>(difference: &Difference<S>, a: Vertex, size: f64) -> Option<Vertex> {
-    farthest_of(difference, a, DVec3::AXES, size)
 }
 
 fn beyond_line<S: SupportMap>(

@@ -201,7 +201,8 @@ impl<'a, S: Solid> TriangleAndSolid<'a, S> {
             if ends[0] <= 0.0 && ends[1] <= 0.0 {
                 continue;
             }
-            let other = self.near_edge(j);
+            let (start, edge) = (self.triangle[j], self.edges[j]);
+            let other = self.solid.near_edge(start, edge, self.doubtful());
             if other.squared < nearest.squared {
                 nearest = other;
             }
@@ -220,11 +221,6 @@ impl<'a, S: Solid> TriangleAndSolid<'a, S> {
             let reach = self.solid.support(near.from_shape).dot(near.from_shape);
             is_farther(a.min(b).min(c) - reach)
         }
-    }
-
-    #[inline(always)]
-    pub fn near_edge(&self, j: usize) -> OffsetPoint {
-        self.solid.near_edge(self.triangle[j], self.edges[j], self.doubtful())
     }
 
     /// True if a point of the triangle's plane is inside it.
@@ -258,16 +254,10 @@ impl<'a, S: Solid> TriangleAndSolid<'a, S> {
         is_apart.then(|| ConvexContact::apart(near.point, -near.from_shape))
     }
 
-    /// The triangle moved along a gap until the bodies touch.
-    #[inline(always)]
-    pub fn moved(&self, gap: &Gap) -> [DVec3; 3] {
-        self.triangle.map(|corner| corner - gap.outward * gap.width)
-    }
-
     /// The point of the triangle that touches the solid after it has moved along a gap.
     #[inline(never)]
     pub fn touching_after(&self, gap: &Gap) -> Option<DVec3> {
-        let moved = self.moved(gap);
+        let moved = self.triangle.map(|corner| corner - gap.outward * gap.width);
         let pair = TriangleAndSolid { triangle: &moved, ..*self };
         let near = pair.nearest(pair.triangle_gap().as_ref(), f64::INFINITY)?;
         let is_touching = near.squared <= self.doubtful() * self.doubtful();
