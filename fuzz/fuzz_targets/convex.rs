@@ -10,6 +10,8 @@ mod drawn;
 #[path = "../../crates/sbbk-core/tests/all/convex_contact/shape.rs"]
 #[allow(dead_code)]
 mod shape;
+#[path = "../../crates/sbbk-core/tests/support/mod.rs"]
+mod support;
 #[path = "../../crates/sbbk-core/tests/all/convex_contact/truth.rs"]
 mod truth;
 

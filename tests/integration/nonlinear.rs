@@ -5,8 +5,8 @@ use rapier3d::parry::query::{
     DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus,
 };
 use rapier3d::parry::shape::TriMesh;
-use sbbk_truth::TruthPair;
 use sbbk_testkit::mesh;
+use sbbk_truth::TruthPair;
 
 use crate::support::{direction, reach, rotation, shape};
 use crate::truth::{normalized, of_meshes};

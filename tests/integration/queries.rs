@@ -10,8 +10,8 @@ use rapier3d::parry::query::{
 };
 use rapier3d::parry::shape::{Cuboid, TriMesh};
 use rapier3d::prelude::*;
-use sbbk_truth::TruthPair;
 use sbbk_testkit::mesh::{self, Mesh};
+use sbbk_truth::TruthPair;
 
 use crate::support::{direction, reach, rotation, shape};
 use crate::truth::{normalized, of_meshes};

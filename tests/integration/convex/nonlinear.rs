@@ -8,9 +8,9 @@ use rapier3d::parry::query::{
     DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus,
 };
 use rapier3d::parry::shape::{Shape, SharedShape, TriMesh};
-use sbbk_truth::ConvexBody;
 use sbbk_testkit::mesh;
 use sbbk_testkit::truth::convex_body;
+use sbbk_truth::ConvexBody;
 
 use super::queries::{least, truth_at, truth_of};
 use super::shapes::{lattice_pose, pose, shapes};

@@ -4,9 +4,9 @@ use rapier_integration::SbbkDispatcher;
 use rapier3d::math::Real;
 use rapier3d::parry::query::{ClosestPoints, DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::parry::shape::{Shape, SharedShape, TriMesh, Triangle};
-use sbbk_truth::ConvexBody;
 use sbbk_testkit::mesh;
 use sbbk_testkit::truth::{affine, convex_body};
+use sbbk_truth::ConvexBody;
 
 use super::shapes::{pose, shapes};
 use crate::support::{Question, shape};

@@ -17,23 +17,16 @@ use sbbk_truth as truth;
 
 const KDOPS: LayerPlan = LayerPlan { sphere_root: true, kdop_from_depth: Some(1) };
 
-fn tree(corners: &[Vec3], layers: LayerPlan) -> Tree {
-    let Soup { vertices, triangles } = Soup::apart(corners.iter().copied());
-    let options = BuildOptions { layers: Some(layers), leaf_size: 1 };
-    Tree::build(&vertices, &triangles, &options).unwrap()
-}
-
-/// The numbers of pairs of leaves and of triangles that are found.
-fn found(tree1: &Tree, tree2: &Tree, pos12: &Pose3, margin: f32) -> (usize, usize) {
+/// The number of pairs of triangles that are found.
+fn survivors(tree1: &Tree, tree2: &Tree, pos12: &Pose3, margin: f32) -> usize {
     let mut frame = PairFrame::new((tree1, tree2), Placement::new(pos12), margin);
     let test = LeafTest::new(&frame);
-    let (mut leaf_pairs, mut survivors) = (0, 0);
+    let mut survivors = 0;
     let scratch = &mut DescentScratch::default();
     descend((tree1, tree2), &mut frame, scratch, (), |batch1, batch2| {
-        leaf_pairs += 1;
         test.survivors(batch1, batch2, |_, _| survivors += 1);
     });
-    (leaf_pairs, survivors)
+    survivors
 }
 
 /// Two triangles in frames of their own, near each other, and how far they are apart in truth.
@@ -71,10 +64,10 @@ impl Pair {
     }
 
     /// Corner against face, the face at a right angle to `n`: what triangles can tell.
-    fn corner_and_face(random: &mut Random, n: DVec3, gap: f64, far: f32) -> Self {
+    fn corner_and_face(random: &mut Random, n: DVec3, gap: f64, far: f32, size: f64) -> Self {
         let u = n.any_orthonormal_vector();
         let v = n.cross(u);
-        let face = [2.0 * u, -u + 2.0 * v, -u - 2.0 * v];
+        let face = [2.0 * u, -u + 2.0 * v, -u - 2.0 * v].map(|x| x * size);
         let tip = n * gap;
         let two = [tip, tip + n + 0.3 * u, tip + 0.7 * n - 0.2 * v];
         Self::of(random, [face, two], far)
@@ -91,15 +84,16 @@ impl Pair {
         Self::of(random, [one, [tip + 1.7 * w, tip - 0.3 * w, tip + n + 0.1 * u]], far)
     }
 
+    /// Each triangle is in its tree twice, so that the root has children.
     fn check(&self, layers: LayerPlan) {
-        let [tree1, tree2] = self.corners.each_ref().map(|corners| tree(corners, layers));
+        let options = BuildOptions { layers: Some(layers), leaf_size: 1 };
+        let [tree1, tree2] = self.corners.map(|corners| {
+            let Soup { vertices, triangles } = Soup::apart([corners, corners].concat());
+            Tree::build(&vertices, &triangles, &options).unwrap()
+        });
         let margin = (self.distance as f32).next_up();
-        let (_, survivors) = found(&tree1, &tree2, &self.pos12, margin);
-        assert_eq!(survivors, 1, "{margin}, {:?} at {:?}", self.corners, self.pos12);
-        let margin = 0.99 * margin - 1.0e-5 * (tree1.magnitude() + 4.0 * tree2.magnitude());
-        let leaf_pairs = found(&tree1, &tree2, &self.pos12, margin.max(0.0)).0;
-        // Nearly all of them are told apart otherwise.
-        assert!(leaf_pairs <= 1);
+        let survivors = survivors(&tree1, &tree2, &self.pos12, margin);
+        assert_eq!(survivors, 4, "{margin}, {:?} at {:?}", self.corners, self.pos12);
     }
 }
 
@@ -131,7 +125,7 @@ fn triangles_the_margin_apart_are_found() {
         let n = random.vector(1.0).as_dvec3().normalize();
         let gap = f64::from(random.range(0.01, 1.0));
         let mut pair = match i % 2 {
-            0 => Pair::corner_and_face(random, n, gap, far),
+            0 => Pair::corner_and_face(random, n, gap, far, 1.0),
             _ => Pair::edges(random, n, gap, far, 1.0),
         };
         if i % 3 == 0 {
@@ -167,13 +161,9 @@ fn tiny_triangles_the_margin_apart_are_found() {
     let random = &mut Random(6);
     for _ in 0..2000 {
         let n = random.vector(1.0).as_dvec3().normalize();
-        let u = n.any_orthonormal_vector();
-        let v = n.cross(u);
         let size = f64::from(random.range(1.0e-11, 1.0e-10));
-        let face = [2.0 * u, -u + 2.0 * v, -u - 2.0 * v].map(|x| x * size);
-        let tip = n * f64::from(random.range(0.5, 2.0));
-        let two = [tip, tip + n + 0.3 * u, tip + 0.7 * n - 0.2 * v];
-        Pair::of(random, [face, two], 0.0).check(KDOPS);
+        let gap = f64::from(random.range(0.5, 2.0));
+        Pair::corner_and_face(random, n, gap, 0.0, size).check(KDOPS);
     }
 }
 
@@ -258,7 +248,7 @@ fn fields_the_margin_apart_are_found() {
         let placement = Placement::new(&pose);
         let corners = [tip, tip + n + aside, tip + 0.5 * n - aside];
         let corners = corners.map(|x| placement.to_frame2(x, Vec3::ZERO).as_vec3());
-        let tree = tree(&corners, KDOPS);
+        let tree = Soup::apart(corners).tree(KDOPS);
         let placed = corners.map(|x| placement.to_frame1(x, Vec3::ZERO));
         let distances = field.all_triangles().map(|(_, t)| truth::contact(&t, &placed).distance);
         let distance = distances.fold(f64::INFINITY, f64::min);
@@ -305,7 +295,7 @@ fn any_finite_margin_finds_everything() {
             for margin in [1.0e4, 1.0e15, 2.0e19, 1.0e30, f32::MAX] {
                 for distance in [0.0, 1.0e3, 1.0e-3 * margin, 0.2 * margin] {
                     let pose = Pose3::translation(0.6 * distance, -0.8 * distance, 0.0);
-                    let (_, survivors) = found(&tree, &tree, &pose, margin);
+                    let survivors = survivors(&tree, &tree, &pose, margin);
                     assert_eq!(survivors, count * count, "{margin} at {distance}");
 
                     let placement = Placement::new(&pose);
@@ -340,17 +330,10 @@ fn slack_stays_finite() {
     for prediction in [2.0e19, 3.0e38, f32::MAX] {
         let mut slack = Slack::default();
         for _ in 0..3 {
-            match slack.plan(
-                ball,
-                &placement,
-                prediction,
-                SlackLimits { steps: 16.0, greatest: 8.0 },
-            ) {
-                SlackPlan::Descend { margin, .. } => {
-                    assert!(margin.is_finite() && margin >= prediction)
-                }
-                SlackPlan::Reuse { margin, .. } => assert!(margin.is_finite()),
-            }
+            let limits = SlackLimits { steps: 16.0, greatest: 8.0 };
+            let (SlackPlan::Descend { margin, .. } | SlackPlan::Reuse { margin }) =
+                slack.plan(ball, &placement, prediction, limits);
+            assert!(margin.is_finite() && margin >= prediction);
         }
     }
 }

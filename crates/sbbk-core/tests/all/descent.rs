@@ -34,11 +34,7 @@ fn tree(soup: &Soup, layers: impl Into<Option<LayerPlan>>) -> Tree {
 }
 
 fn truth(soup1: &Soup, soup2: &Soup, pos12: &Pose3, margin: f32) -> BTreeSet<(u32, u32)> {
-    let pose = glamx::DPose3 {
-        rotation: pos12.rotation.as_dquat(),
-        translation: pos12.translation.as_dvec3(),
-    };
-    let pairs = pairs_within([soup1, soup2], pose, f64::from(margin)).into_iter();
+    let pairs = pairs_within([soup1, soup2], (*pos12).into(), margin.into()).into_iter();
     pairs.map(|pair| (pair.triangle1, pair.triangle2)).collect()
 }
 

@@ -28,7 +28,8 @@ fn outside(kdop: &Kdop, point: Vec3) -> f64 {
 }
 
 /// Clouds of points near and far from the origin. Would catch a lost or misplaced edge.
-fn check_clouds() {
+#[test]
+fn kdops_of_clouds_are_drawn_whole() {
     let mut random = Random(5);
     for case in 0..40 {
         let centre = random.vector(if case % 2 == 0 { 1.0 } else { 300.0 });
@@ -53,7 +54,8 @@ fn check_clouds() {
 
 /// Near the regular body with slabs in general position, where three edges meet at each corner. By
 /// Euler's formula, would catch a lost or doubled edge.
-fn check_edges() {
+#[test]
+fn kdops_near_the_regular_one_have_all_edges_once() {
     let mut random = Random(6);
     let slabs = directions::DIRECTIONS;
     for _ in 0..40 {
@@ -70,12 +72,6 @@ fn check_edges() {
         assert_eq!(2 * lines.len(), 3 * corners.len());
         assert_eq!(lines.len() + 2 - corners.len(), 2 * SLABS, "faces");
     }
-}
-
-#[test]
-fn kdops_of_clouds_are_drawn_whole() {
-    check_clouds();
-    check_edges();
 }
 
 /// Bodies whose edges are known, with planes that touch in edges and corners only.

@@ -1,7 +1,7 @@
 //! The motion bound and the map of a placement.
 
 use crate::support::Random;
-use glamx::{DVec3, Pose3};
+use glamx::{DPose3, DVec3, Pose3};
 use sbbk_core::traverse::Placement;
 
 /// Would catch a bound without the lever of the rotation, the motion of the centre in the wrong
@@ -41,10 +41,7 @@ fn the_map_is_that_of_the_quaternion() {
             let mut pose = random.pose(5.0);
             pose.rotation *= scale;
             let (x, origin) = (random.vector(3.0), random.vector(3.0));
-            let exact = glamx::DPose3 {
-                rotation: pose.rotation.as_dquat(),
-                translation: pose.translation.as_dvec3(),
-            };
+            let exact = DPose3::from(pose);
             let placement = Placement::new(&pose);
             let moved = placement.to_frame1(x, origin);
             let expected = exact.transform_point(x.as_dvec3()) - origin.as_dvec3();

@@ -2,8 +2,7 @@
 //! sphere.
 
 use crate::support::Random;
-use glamx::{DVec3, Vec3};
-use nalgebra::{Matrix3, Vector3};
+use glamx::{DMat3, DVec3, Vec3};
 use proptest::prelude::*;
 use sbbk_core::volumes::{Aabb, Kdop, Sphere, directions};
 
@@ -126,15 +125,15 @@ fn sphere_through(support: &[DVec3]) -> (DVec3, f64) {
     let Some((&first, rest)) = support.split_first() else { return (DVec3::ZERO, -1.0) };
     // The centre is first + Σ λ_i e_i with 2 e_j·(centre - first) = e_j².
     let edges: Vec<_> = rest.iter().map(|&p| p - first).collect();
-    let mut gram = Matrix3::identity();
-    let mut right = Vector3::zeros();
+    let mut gram = DMat3::IDENTITY;
+    let mut right = DVec3::ZERO;
     for (i, a) in edges.iter().enumerate() {
         for (j, b) in edges.iter().enumerate() {
-            gram[(i, j)] = 2.0 * a.dot(*b);
+            gram.col_mut(j)[i] = 2.0 * a.dot(*b);
         }
         right[i] = a.length_squared();
     }
-    let weights = gram.lu().solve(&right).unwrap_or_else(Vector3::zeros);
+    let weights = if gram.determinant() == 0.0 { DVec3::ZERO } else { gram.inverse() * right };
     let offset: DVec3 = edges.iter().enumerate().map(|(i, &e)| e * weights[i]).sum();
     (first + offset, offset.length())
 }

@@ -95,14 +95,37 @@ impl Random {
 
     pub fn rotation(&mut self) -> Quat {
         loop {
-            let q = Quat::from_xyzw(
-                self.range(-1.0, 1.0),
-                self.range(-1.0, 1.0),
-                self.range(-1.0, 1.0),
-                self.range(-1.0, 1.0),
-            );
+            let q = Quat::from_array([0; 4].map(|_| self.range(-1.0, 1.0)));
             if q.length_squared() > 0.1 && q.length_squared() < 1.0 {
                 return q.normalize();
+            }
+        }
+    }
+
+    pub fn below(&mut self, n: u64) -> u64 {
+        self.bits() % n
+    }
+
+    /// In `[low, high)`, with all digits of f64.
+    pub fn within(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Evenly over the orders of magnitude.
+    pub fn scale(&mut self, low: f64, high: f64) -> f64 {
+        self.within(low.ln(), high.ln()).exp()
+    }
+
+    /// In the cube from -1 to 1.
+    pub fn point(&mut self) -> DVec3 {
+        DVec3::from_array([0; 3].map(|_| self.within(-1.0, 1.0)))
+    }
+
+    pub fn direction(&mut self) -> DVec3 {
+        loop {
+            let point = self.point();
+            if (0.01..=1.0).contains(&point.length_squared()) {
+                return point.normalize();
             }
         }
     }
@@ -165,14 +188,11 @@ pub fn cube(cells: u32) -> Soup {
 
 /// Triangles with no connection, of edges up to `size`, in a cube of half-length 1.
 pub fn soup(random: &mut Random, count: u32, size: f32) -> Soup {
-    let mut vertices = Vec::new();
-    for _ in 0..count {
+    let mut triangle = || {
         let centre = random.vector(1.0);
-        for _ in 0..3 {
-            vertices.push(centre + random.vector(size));
-        }
-    }
-    Soup::apart(vertices)
+        [0; 3].map(|_| centre + random.vector(size))
+    };
+    Soup::apart((0..count).flat_map(|_| triangle()))
 }
 
 /// Triangles with corners on the integer lattice `0..=side`; some are degenerate.

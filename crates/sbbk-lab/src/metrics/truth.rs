@@ -7,8 +7,8 @@ use std::ops::AddAssign;
 use glamx::DPose3;
 use rapier3d::geometry::TriMesh;
 use rapier3d::parry::bounding_volume::BoundingVolume;
-use sbbk_truth::{ConvexTruth, pairs_within};
 use sbbk_testkit::truth::{affine, convex_body};
+use sbbk_truth::{ConvexTruth, pairs_within};
 
 /// Share of the prediction distance within which a pair may be reported or not. Higher: real
 /// misses pass; lower: rounding to f32 counts as an error.

@@ -1,6 +1,6 @@
 //! The points where a triangle and a feature of a shape overlap, seen along a normal.
 
-use super::shape::Rng;
+use crate::support::Random;
 use glamx::{DQuat, DVec3};
 use sbbk_core::contact::Feature;
 use sbbk_core::contact::convex::{FeaturePoints, clip_feature};
@@ -25,7 +25,7 @@ fn inside(polygon: &[DVec3], p: DVec3) -> f64 {
 
 #[test]
 fn clipped_points_are_the_corners_of_the_overlap() {
-    let mut rng = Rng(11);
+    let mut rng = Random(11);
     let mut total = 0;
     for i in 0..20_000 {
         let triangle = [0; 3].map(|_| rng.point());

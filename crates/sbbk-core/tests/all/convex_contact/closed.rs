@@ -1,7 +1,8 @@
 //! Closed forms against the search by support points, and exact cases.
 
-use super::shape::{Core, Kind, Rng};
+use super::shape::{Core, Kind};
 use super::truth::size;
+use crate::support::Random;
 use glamx::DVec3;
 use sbbk_core::contact::convex::{PointSupport, half_space_contact, round_contact};
 use sbbk_truth::ConvexBody;
@@ -10,7 +11,7 @@ use sbbk_truth::ConvexBody;
 fn closed_forms_are_at_most_as_deep_as_the_search() {
     let (mut apart, mut deep) = (0, 0);
     for kind in Kind::POLYTOPES.into_iter().chain(Kind::CURVED) {
-        let mut rng = Rng(700 + kind as u64);
+        let mut rng = Random(700 + kind as u64);
         for i in 0..30_000 {
             let shape = rng.shape(kind);
             let gap = [rng.within(0.0, 0.1), 0.0, rng.within(-1.0, 0.0)][i % 3];
@@ -38,7 +39,7 @@ fn closed_forms_are_at_most_as_deep_as_the_search() {
 
 #[test]
 fn a_ball_with_its_centre_in_a_triangle_is_pushed_to_the_front() {
-    let mut rng = Rng(1);
+    let mut rng = Random(1);
     for _ in 0..1000 {
         let [a, b, c] = [0; 3].map(|_| DVec3::from_array([0; 3].map(|_| rng.below(9) as f64)));
         let front = (b - a).cross(c - a);
@@ -54,7 +55,7 @@ fn a_ball_with_its_centre_in_a_triangle_is_pushed_to_the_front() {
 
 #[test]
 fn half_spaces_touch_the_lowest_corner_within_the_margin() {
-    let mut rng = Rng(3);
+    let mut rng = Random(3);
     for _ in 0..5000 {
         let (normal, triangle) = (rng.direction(), [0; 3].map(|_| rng.point()));
         let truth = ConvexBody::half_space(normal).distance(&triangle);

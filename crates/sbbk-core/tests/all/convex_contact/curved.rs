@@ -1,13 +1,14 @@
 //! Cylinders and cones against searches over the points of the triangle, over directions, or over
 //! both.
 
-use super::shape::{Kind, Rng, Shape};
+use super::shape::{Kind, Shape};
 use super::truth::{check, gap, size};
+use crate::support::Random;
 use glamx::DVec3;
 
 /// The widest gap in a search over directions: a lower bound, exact for bodies that cross unless the
 /// search ends in a local maximum.
-fn separation(triangle: &[DVec3; 3], shape: &Shape, rng: &mut Rng) -> f64 {
+fn separation(triangle: &[DVec3; 3], shape: &Shape, rng: &mut Random) -> f64 {
     let [a, b, c] = *triangle;
     let face = (b - a).cross(c - a);
     let mut directions = vec![face, DVec3::Y];
@@ -40,7 +41,7 @@ fn separation(triangle: &[DVec3; 3], shape: &Shape, rng: &mut Rng) -> f64 {
 #[test]
 fn contacts_of_cylinders_and_cones_agree_with_searches() {
     for (seed, kind) in Kind::CURVED.into_iter().enumerate() {
-        let mut rng = Rng(100 + seed as u64);
+        let mut rng = Random(100 + seed as u64);
         let (mut clear, mut deep, mut far) = (0, 0, 0);
         for i in 0..20_000 {
             let (shape, triangle, margin) = rng.case(kind, i);

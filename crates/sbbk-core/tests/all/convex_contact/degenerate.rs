@@ -1,6 +1,6 @@
 //! Shapes and triangles without volume or area, and invalid numbers.
 
-use super::shape::{Core, Kind, Rng, Shape, first_farthest};
+use super::shape::{Core, Kind, Shape, first_farthest};
 use super::truth::{check, size};
 use crate::support::Random;
 use glamx::{DVec3, Vec3};
@@ -12,7 +12,7 @@ use sbbk_core::contact::convex::{
 #[test]
 fn triangles_without_area_have_exact_distances() {
     for kind in Kind::POLYTOPES {
-        let mut rng = Rng(40 + kind as u64);
+        let mut rng = Random(40 + kind as u64);
         for i in 0..2000 {
             let shape = rng.shape(kind);
             let [a, b, c] = {
@@ -34,7 +34,7 @@ fn triangles_without_area_have_exact_distances() {
 
 #[test]
 fn flat_round_shapes_on_a_lattice_agree_with_the_search() {
-    let mut rng = Rng(51);
+    let mut rng = Random(51);
     let mut far = 0;
     for i in 0..20_000 {
         let half_height = (i % 2) as f64 * 0.5;
@@ -145,7 +145,7 @@ fn non_finite_input_has_no_contact() {
 #[test]
 fn invalid_support_maps_neither_panic_nor_hang() {
     for seed in 0..5000 {
-        let state = std::cell::RefCell::new(Rng(seed));
+        let state = std::cell::RefCell::new(Random(seed));
         let liar = |_: DVec3| {
             let mut rng = state.borrow_mut();
             match rng.below(40) {

@@ -1,15 +1,16 @@
 //! Changes of the input that leave a contact unchanged.
 
-use super::shape::{Core, Kind, Rng, Shape};
+use super::shape::{Core, Kind, Shape};
 use super::truth::size;
+use crate::support::Random;
 use glamx::DVec3;
 
 fn kinds() -> impl Iterator<Item = Kind> {
     Kind::POLYTOPES.into_iter().chain(Kind::CURVED)
 }
 
-fn poses(kind: Kind, count: u32, mut each: impl FnMut(&mut Rng, Shape, [DVec3; 3])) {
-    let mut rng = Rng(1000 + kind as u64);
+fn poses(kind: Kind, count: u32, mut each: impl FnMut(&mut Random, Shape, [DVec3; 3])) {
+    let mut rng = Random(1000 + kind as u64);
     for i in 0..count {
         let shape = rng.shape(kind);
         let gap = [rng.within(0.0, 0.1), 0.0, rng.within(-0.5, 0.0)][i as usize % 3];

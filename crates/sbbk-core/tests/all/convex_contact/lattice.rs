@@ -1,10 +1,11 @@
 //! Corners on a small lattice: coplanar faces, parallel edges, shared vertices, exact contact.
 
-use super::shape::{Core, Rng, Shape};
+use super::shape::{Core, Shape};
 use super::truth::{check, size};
+use crate::support::Random;
 use glamx::DVec3;
 
-impl Rng {
+impl Random {
     /// A point with whole coordinates from -2 to 2.
     fn lattice_point(&mut self) -> DVec3 {
         DVec3::from_array([0; 3].map(|_| self.below(5) as f64 - 2.0))
@@ -25,7 +26,7 @@ impl Rng {
 
 #[test]
 fn exact_and_near_ties_on_a_lattice_agree_with_brute_force() {
-    let mut rng = Rng(7);
+    let mut rng = Random(7);
     for nudge in [0.0, 1.0e-15, 1.0e-13, 1.0e-11, 1.0e-9, 1.0e-6] {
         let (mut apart, mut touching, mut deep) = (0, 0, 0);
         for _ in 0..20_000 {

@@ -1,14 +1,15 @@
 //! Random poses: apart, touching and deep.
 
 use super::drawn::check_drawn;
-use super::shape::{Kind, Rng};
+use super::shape::Kind;
 use super::truth::{check, size};
+use crate::support::Random;
 use std::convert::Infallible;
 
 #[test]
 fn contacts_of_polytopes_agree_with_brute_force() {
     for (seed, kind) in Kind::POLYTOPES.into_iter().enumerate() {
-        let mut rng = Rng(seed as u64);
+        let mut rng = Random(seed as u64);
         let (mut apart, mut deep, mut far) = (0, 0, 0);
         for i in 0..20_000 {
             let (shape, triangle, margin) = rng.case(kind, i);
@@ -33,7 +34,7 @@ fn contacts_of_polytopes_agree_with_brute_force() {
 
 #[test]
 fn drawn_contacts_agree_with_brute_force_or_search() {
-    let mut rng = Rng(11);
+    let mut rng = Random(11);
     for _ in 0..60_000 {
         let Ok(()) = check_drawn(&mut |n| Ok::<_, Infallible>(rng.below(n)));
     }

@@ -1,5 +1,6 @@
 //! Shapes of all kinds, random numbers, and triangles near shapes.
 
+use crate::support::Random;
 use glamx::{DQuat, DVec3, Vec3};
 use sbbk_core::contact::convex::{
     ConeSupport, ConvexContact, CuboidSupport, CylinderSupport, HullPoints, PointSupport,
@@ -147,43 +148,7 @@ fn in_f32(points: &[DVec3]) -> Option<Vec<Vec3>> {
     is_exact.then(|| points.iter().map(|point| point.as_vec3()).collect())
 }
 
-/// SplitMix64.
-pub struct Rng(pub u64);
-
-impl Rng {
-    pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ z >> 31
-    }
-
-    pub fn below(&mut self, n: u64) -> u64 {
-        self.bits() % n
-    }
-
-    pub fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// Evenly over the orders of magnitude.
-    pub fn scale(&mut self, low: f64, high: f64) -> f64 {
-        self.within(low.ln(), high.ln()).exp()
-    }
-
-    pub fn point(&mut self) -> DVec3 {
-        DVec3::from_array([0; 3].map(|_| self.within(-1.0, 1.0)))
-    }
-
-    pub fn direction(&mut self) -> DVec3 {
-        loop {
-            let point = self.point();
-            if (0.01..=1.0).contains(&point.length_squared()) {
-                return point.normalize();
-            }
-        }
-    }
-
+impl Random {
     /// A shape of size about 1.
     pub fn shape(&mut self, kind: Kind) -> Shape {
         let radius = self.scale(0.01, 1.0);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use glamx::{DPose3, Pose3, Vec3};
+use glamx::{Pose3, Vec3};
 use sbbk_core::query::{FoundPair, SearchScratch, contacts};
 use sbbk_core::traverse::Placement;
 
@@ -20,8 +20,7 @@ fn found(meshes: [&Soup; 2], pose: &Pose3, margin: f64) -> Vec<FoundPair> {
 }
 
 fn truth(meshes: [&Soup; 2], pose: &Pose3, margin: f64) -> Distances {
-    let pose = DPose3::from_parts(pose.translation.as_dvec3(), pose.rotation.as_dquat());
-    let pairs = pairs_within(meshes, pose, margin);
+    let pairs = pairs_within(meshes, (*pose).into(), margin);
     pairs.iter().map(|pair| (triangles_of(pair), pair.distance)).collect()
 }
 
