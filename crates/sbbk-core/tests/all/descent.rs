@@ -1,6 +1,7 @@
 //! The descent against the brute-force reference: never a pair lost, none visited without need.
 
 use std::collections::BTreeSet;
+use std::f32::consts::FRAC_PI_2;
 
 use crate::query::pairs_within;
 use crate::support::{Random, Soup, bumpy_ball, cube, lattice_soup, soup};
@@ -56,103 +57,76 @@ fn check(soup1: &Soup, soup2: &Soup, pos12: &Pose3, margin: f32) -> usize {
     truth.len()
 }
 
+/// Two meshes, a pose and a margin.
+type Case = ([Soup; 2], Pose3, f32);
+
 /// Would catch a test of k-DOPs where one side has none.
-#[test]
-fn finds_every_pair_where_one_tree_chose_boxes() {
-    let mut random = Random(31);
-    let (cube, ball) = (cube(6), bumpy_ball(10, 0.2));
+fn where_one_tree_chose_boxes(random: &mut Random, i: usize) -> Case {
+    let meshes = [cube(6), bumpy_ball(10, 0.2)];
     let has_kdops = |soup: &Soup| tree(soup, None).stats().layers.kdop_from_depth.is_some();
-    assert_eq!([&cube, &ball].map(has_kdops), [false, true]);
-    let mut total = 0;
-    for i in 0..40 {
-        let pose = random.pose(1.5);
-        let margin = [0.0, 0.02][i % 2];
-        total += check(&cube, &ball, &pose, margin);
-        total += check(&ball, &cube, &pose, margin);
-    }
-    assert!(total > 1000, "the poses hardly touch: {total}");
+    assert_eq!(meshes.each_ref().map(has_kdops), [false, true]);
+    (meshes, random.pose(1.5), [0.0, 0.02][i % 2])
 }
 
 /// A hole in a volume, a wrong lane, a margin that is too small: each loses a pair here.
-#[test]
-fn finds_every_pair_on_bumpy_balls() {
-    let mut random = Random(1);
+fn bumpy_balls(random: &mut Random, i: usize) -> Case {
     let ball = bumpy_ball(12, 0.15);
-    let small = bumpy_ball(5, 0.3);
-    let mut total = 0;
-    for i in 0..60 {
-        let pose = random.pose(1.2);
-        let margin = [0.0, 0.001, 0.02, 0.2][i % 4];
-        total += check(&ball, &small, &pose, margin);
-        total += check(&small, &ball, &pose, margin);
-        total += check(&ball, &ball, &pose, margin);
-    }
-    assert!(total > 10_000, "the poses hardly touch: {total}");
+    let other = if i.is_multiple_of(2) { bumpy_ball(5, 0.3) } else { ball.clone() };
+    ([ball, other], random.pose(1.2), [0.0, 0.001, 0.02, 0.2][i / 2 % 4])
 }
 
 /// Trees of very different depth: one side reaches its leaves while the other goes on.
-#[test]
-fn finds_every_pair_of_one_triangle_with_many() {
-    let mut random = Random(2);
-    let ball = bumpy_ball(10, 0.1);
-    let mut total = 0;
-    for _ in 0..100 {
-        let one = soup(&mut random, 1, 1.5);
-        let pose = random.pose(0.7);
-        total += check(&one, &ball, &pose, 0.02);
-        total += check(&ball, &one, &pose, 0.02);
-    }
-    assert!(total > 500, "the poses hardly touch: {total}");
+fn one_triangle_with_many(random: &mut Random, _: usize) -> Case {
+    ([soup(random, 1, 1.5), bumpy_ball(10, 0.1)], random.pose(0.7), 0.02)
 }
 
 /// Integer corners and turns by multiples of 90 degrees: touching is exact, ties are everywhere,
 /// and degenerate triangles occur.
-#[test]
-fn finds_every_pair_on_the_lattice() {
-    let mut random = Random(3);
-    let mut total = 0;
-    for i in 0..60 {
-        let soups = [0, 1].map(|_| lattice_soup(&mut random, 40, 6));
-        let turn = Quat::from_axis_angle(
-            [Vec3::X, Vec3::Y, Vec3::Z][i % 3],
-            std::f32::consts::FRAC_PI_2 * (i % 4) as f32,
-        );
-        let shift = Vec3::from_array([0; 3].map(|_| (random.bits() % 9) as f32 - 4.0));
-        total += check(&soups[0], &soups[1], &Pose3::from_parts(shift, turn), (i % 2) as f32);
-    }
-    assert!(total > 5_000, "the poses hardly touch: {total}");
+fn on_the_lattice(random: &mut Random, i: usize) -> Case {
+    let soups = [0, 1].map(|_| lattice_soup(random, 40, 6));
+    let turn = Quat::from_axis_angle(Vec3::AXES[i % 3], FRAC_PI_2 * (i % 4) as f32);
+    let shift = Vec3::from_array([0; 3].map(|_| random.below(9) as f32 - 4.0));
+    (soups, Pose3::from_parts(shift, turn), (i % 2) as f32)
 }
 
 /// Far from the origin f32 has few digits left: the margins must grow by as much as they lose.
-#[test]
-fn finds_every_pair_far_from_the_origin() {
-    let mut random = Random(4);
-    let mut total = 0;
-    for _ in 0..20 {
-        let mut ball = bumpy_ball(8, 0.2);
-        let offset = Vec3::new(1e5, -3e4, 7e4);
-        ball.vertices.iter_mut().for_each(|v| *v += offset);
-        let rotation = random.rotation();
-        let translation = offset - rotation * offset + random.vector(1.0);
-        total += check(&ball, &ball, &Pose3::from_parts(translation, rotation), 0.02);
-    }
-    assert!(total > 1_000, "the poses hardly touch: {total}");
+fn far_from_the_origin(random: &mut Random, _: usize) -> Case {
+    let mut ball = bumpy_ball(8, 0.2);
+    let offset = Vec3::new(1e5, -3e4, 7e4);
+    ball.vertices.iter_mut().for_each(|v| *v += offset);
+    let rotation = random.rotation();
+    let translation = offset - rotation * offset + random.vector(1.0);
+    ([ball.clone(), ball], Pose3::from_parts(translation, rotation), 0.02)
 }
 
 /// A quaternion a little off unit length scales the second mesh; Parry's points do so too.
-#[test]
-fn finds_every_pair_under_denormalised_rotations() {
-    let mut random = Random(5);
+fn under_denormalised_rotations(random: &mut Random, i: usize) -> Case {
     let ball = bumpy_ball(8, 0.2);
-    let mut total = 0;
-    for scale in [0.999, 1.0001, 1.01] {
-        for _ in 0..10 {
-            let mut pose = random.pose(1.2);
-            pose.rotation *= scale;
-            total += check(&ball, &ball, &pose, 0.01);
+    let mut pose = random.pose(1.2);
+    pose.rotation *= [0.999, 1.0001, 1.01][i % 3];
+    ([ball.clone(), ball], pose, 0.01)
+}
+
+#[test]
+fn descents_find_every_pair_either_way_round() {
+    type Cases = [(fn(&mut Random, usize) -> Case, usize, usize); 6];
+    let cases: Cases = [
+        (where_one_tree_chose_boxes, 40, 1000),
+        (bumpy_balls, 90, 10_000),
+        (one_triangle_with_many, 100, 500),
+        (on_the_lattice, 60, 5000),
+        (far_from_the_origin, 20, 2000),
+        (under_denormalised_rotations, 30, 2000),
+    ];
+    for (seed, (case, count, least)) in (1..).zip(cases) {
+        let mut random = Random(seed);
+        let mut total = 0;
+        for i in 0..count {
+            let ([one, two], pose, margin) = case(&mut random, i);
+            total += check(&one, &two, &pose, margin) + check(&two, &one, &pose, margin);
         }
+        assert!(total > least, "the poses of case {seed} hardly touch: {total}");
     }
-    assert!(total > 1_000, "the poses hardly touch: {total}");
 }
 
 /// The paper's section 3.2: complete trees of n levels in which all nodes meet. Its formula for all

@@ -14,35 +14,32 @@ use sbbk_core::tree::{LayerPlan, LeafBatch, Tree};
 type Pairs = BTreeSet<(u32, u32)>;
 type Trees<'a> = (&'a Tree, &'a Tree);
 
-/// Collects the pairs of triangles of visited leaves within the margin, by the exact contact.
-struct Within<'a> {
-    placement: Placement,
+/// The pairs of triangles within the margin, by the exact contact, of the leaves that `visit` visits.
+fn pairs_of(
+    trees: Trees<'_>,
+    pos12: &Pose3,
     margin: f32,
-    pairs: &'a mut Pairs,
-}
-
-impl Within<'_> {
-    fn add(&mut self, one: &LeafBatch, two: &LeafBatch) {
+    visit: impl FnOnce(&mut PairFrame, &mut dyn FnMut(&LeafBatch, &LeafBatch)),
+) -> Pairs {
+    let placement = Placement::new(pos12);
+    let mut pairs = Pairs::new();
+    visit(&mut PairFrame::new(trees, placement, margin), &mut |one, two| {
         for (lane1, &triangle1) in one.triangles().iter().enumerate() {
             for (lane2, &triangle2) in two.triangles().iter().enumerate() {
-                let corners = (one.corners(lane1), two.corners(lane2));
-                let pair = TrianglePair::new(&self.placement, corners.0, corners.1);
-                let [t1, t2] = &pair.corners;
-                if contact(t1, t2, self.margin.into()).is_some() {
-                    assert!(self.pairs.insert((triangle1, triangle2)), "visited twice");
+                let (corners1, corners2) = (one.corners(lane1), two.corners(lane2));
+                let [t1, t2] = &TrianglePair::new(&placement, corners1, corners2).corners;
+                if contact(t1, t2, margin.into()).is_some() {
+                    assert!(pairs.insert((triangle1, triangle2)), "visited twice");
                 }
             }
         }
-    }
+    });
+    pairs
 }
 
 fn fresh(trees: Trees<'_>, pos12: &Pose3, margin: f32, counters: impl Counters) -> Pairs {
-    let mut frame = PairFrame::new(trees, Placement::new(pos12), margin);
-    let (placement, mut pairs) = (*frame.placement(), Pairs::new());
-    let mut within = Within { placement, margin, pairs: &mut pairs };
     let scratch = &mut DescentScratch::default();
-    descend(trees, &mut frame, scratch, counters, |one, two| within.add(one, two));
-    pairs
+    pairs_of(trees, pos12, margin, |frame, found| descend(trees, frame, scratch, counters, found))
 }
 
 fn from_front(
@@ -52,11 +49,7 @@ fn from_front(
     margin: f32,
     counters: impl Counters,
 ) -> Pairs {
-    let mut frame = PairFrame::new(trees, Placement::new(pos12), margin);
-    let (placement, mut pairs) = (*frame.placement(), Pairs::new());
-    let mut within = Within { placement, margin, pairs: &mut pairs };
-    front.visit(trees, &mut frame, counters, |one, two| within.add(one, two));
-    pairs
+    pairs_of(trees, pos12, margin, |frame, found| front.visit(trees, frame, counters, found))
 }
 
 /// A pose that goes on step by step: slow, jittering, fast, far away, not finite, at rest.

@@ -2,7 +2,7 @@
 
 use glamx::DVec3;
 use sbbk_core::contact::{Feature, TriangleContact, contact};
-use sbbk_truth as truth;
+use sbbk_truth::{self as truth, TruthContact};
 
 /// Distances and depths may be off by this many triangle sizes.
 pub const TOLERANCE: f64 = 1.0e-9;
@@ -27,7 +27,7 @@ pub fn part(t: &Triangle, feature: Feature) -> Triangle {
 }
 
 /// Checks the contact of two triangles against the truth and returns the truth.
-pub fn check(t1: &Triangle, t2: &Triangle) -> truth::TruthContact {
+pub fn check(t1: &Triangle, t2: &Triangle) -> TruthContact {
     let size = size(t1).max(size(t2));
     let reach = t1.iter().chain(t2).map(|v| v.length()).fold(0.0, f64::max);
     let tolerance = TOLERANCE * size + 1.0e-15 * reach;
@@ -41,85 +41,75 @@ pub fn check(t1: &Triangle, t2: &Triangle) -> truth::TruthContact {
 
     let error = (found.distance - expected.distance).abs();
     assert!(error <= tolerance, "distance is off by {error:e}: {}", context());
-    assert!((found.normal.length() - 1.0).abs() < 1.0e-12, "normal: {}", context());
-    check_normal(t1, t2, &found, &expected, tolerance)
-        .unwrap_or_else(|e| panic!("{e}: {}", context()));
-    if expected.normal_is_unique {
-        let degrees = found.normal.angle_between(expected.normal).to_degrees();
-        assert!(degrees <= NORMAL_TOLERANCE, "normal is off by {degrees} degrees: {}", context());
+    let case = Case { triangles: [t1, t2], found, expected, size, tolerance };
+    for fault in [case.normal(), case.points(), case.mirrored()].into_iter().flatten() {
+        panic!("{fault}: {}", context());
     }
-    check_points(t1, t2, &found, tolerance).unwrap_or_else(|e| panic!("{e}: {}", context()));
-    check_mirrored(t1, t2, &found, tolerance, expected.normal_is_unique)
-        .unwrap_or_else(|e| panic!("{e}: {}", context()));
     expected
 }
 
-/// The normal must prove the distance: the shadows of the triangles are that far apart on it.
-fn check_normal(
-    t1: &Triangle,
-    t2: &Triangle,
-    found: &TriangleContact,
-    expected: &truth::TruthContact,
+/// A contact of two triangles.
+struct Case<'a> {
+    triangles: [&'a Triangle; 2],
+    found: TriangleContact,
+    expected: TruthContact,
+    size: f64,
     tolerance: f64,
-) -> Result<(), String> {
-    let size = size(t1).max(size(t2));
-    let gap = truth::separation(t1, t2, found.normal);
-    // The difference of two points is rounded: its direction is off by that over the distance.
-    let is_close = found.distance <= 1.0e-12 * size;
-    let tilt = if is_close { 0.0 } else { 3.0e-14 * size / found.distance };
-    if gap >= found.distance - tolerance - tilt * size {
-        return Ok(());
-    }
-    // Two points whose distances differ by rounding only may lie in directions that differ by the
-    // root of it.
-    let angle = found.normal.angle_between(expected.normal);
-    if !is_close && angle <= (1.0e-15 * size / found.distance).sqrt() {
-        return Ok(());
-    }
-    Err(format!("the normal leaves {gap:e} only"))
 }
 
-fn check_points(
-    t1: &Triangle,
-    t2: &Triangle,
-    found: &TriangleContact,
-    tolerance: f64,
-) -> Result<(), String> {
-    let mismatch = (found.point2 - found.point1 - found.distance * found.normal).length();
-    if mismatch > tolerance {
-        return Err(format!("point2 - point1 is off by {mismatch:e}"));
-    }
-    // The end of a sliver is less certain than the distance. If axes tie at a tiny depth, rounding
-    // may pick one whose point lies beside.
-    let size = size(t1).max(size(t2));
-    let beside = 1.0e-6 * size + (-found.distance).clamp(0.0, 1.0e-6 * size);
-    let sides = [
-        (found.point1, t1, found.features.feature1()),
-        (found.point2, t2, found.features.feature2()),
-    ];
-    for (point, triangle, feature) in sides {
-        let off = truth::contact(&[point; 3], &part(triangle, feature)).distance;
-        if off.abs() > tolerance + beside {
-            return Err(format!("a point is off its {feature:?} by {off:e}"));
+impl Case<'_> {
+    /// The normal must prove the distance: the shadows of the triangles are that far apart on it.
+    fn normal(&self) -> Option<String> {
+        let Self { triangles: [t1, t2], found, expected, size, tolerance } = *self;
+        let off = (found.normal.length() - 1.0).abs();
+        if off >= 1.0e-12 {
+            return Some(format!("the length of the normal is off by {off:e}"));
         }
+        let angle = found.normal.angle_between(expected.normal);
+        if expected.normal_is_unique && angle.to_degrees() > NORMAL_TOLERANCE {
+            return Some(format!("the normal is off by {} degrees", angle.to_degrees()));
+        }
+        let gap = truth::separation(t1, t2, found.normal);
+        // The difference of two points is rounded: its direction is off by that over the distance.
+        let is_close = found.distance <= 1.0e-12 * size;
+        let tilt = if is_close { 0.0 } else { 3.0e-14 * size / found.distance };
+        // Two points whose distances differ by rounding only may lie in directions that differ by
+        // the root of it.
+        let is_proved = gap >= found.distance - tolerance - tilt * size
+            || !is_close && angle <= (1.0e-15 * size / found.distance).sqrt();
+        (!is_proved).then(|| format!("the normal leaves {gap:e} only"))
     }
-    Ok(())
-}
 
-fn check_mirrored(
-    t1: &Triangle,
-    t2: &Triangle,
-    found: &TriangleContact,
-    tolerance: f64,
-    is_unique: bool,
-) -> Result<(), String> {
-    let mirrored = contact(t2, t1, f64::INFINITY).ok_or("none when swapped")?;
-    if (mirrored.distance - found.distance).abs() > tolerance {
-        return Err(format!("distance {:e} when swapped", mirrored.distance));
+    fn points(&self) -> Option<String> {
+        let Self { triangles: [t1, t2], found, size, tolerance, .. } = *self;
+        let mismatch = (found.point2 - found.point1 - found.distance * found.normal).length();
+        if mismatch > tolerance {
+            return Some(format!("point2 - point1 is off by {mismatch:e}"));
+        }
+        // The end of a sliver is less certain than the distance. If axes tie at a tiny depth,
+        // rounding may pick one whose point lies beside.
+        let beside = 1.0e-6 * size + (-found.distance).clamp(0.0, 1.0e-6 * size);
+        let mut sides = [
+            (found.point1, t1, found.features.feature1()),
+            (found.point2, t2, found.features.feature2()),
+        ]
+        .into_iter();
+        sides.find_map(|(point, triangle, feature)| {
+            let off = truth::contact(&[point; 3], &part(triangle, feature)).distance.abs();
+            (off > tolerance + beside).then(|| format!("a point is off its {feature:?} by {off:e}"))
+        })
     }
-    let degrees = mirrored.normal.angle_between(-found.normal).to_degrees();
-    if is_unique && degrees > NORMAL_TOLERANCE {
-        return Err(format!("normal turns by {degrees} degrees when swapped"));
+
+    fn mirrored(&self) -> Option<String> {
+        let Self { triangles: [t1, t2], found, expected, tolerance, .. } = *self;
+        let Some(mirrored) = contact(t2, t1, f64::INFINITY) else {
+            return Some("none when swapped".into());
+        };
+        if (mirrored.distance - found.distance).abs() > tolerance {
+            return Some(format!("distance {:e} when swapped", mirrored.distance));
+        }
+        let degrees = mirrored.normal.angle_between(-found.normal).to_degrees();
+        let has_turned = expected.normal_is_unique && degrees > NORMAL_TOLERANCE;
+        has_turned.then(|| format!("normal turns by {degrees} degrees when swapped"))
     }
-    Ok(())
 }
