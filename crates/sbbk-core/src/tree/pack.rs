@@ -40,7 +40,7 @@ pub(super) fn pack(
     }
 }
 
-/// The children of the upper inner nodes, and of those in the k-DOP layers.
+/// The children of all inner nodes: boxes of the upper layers, then k-DOPs of the lower ones.
 fn pairs(
     nodes: &[BuildNode],
     leaf_links: &[Link],

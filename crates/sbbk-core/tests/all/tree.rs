@@ -9,7 +9,7 @@ fn options(kdop_from_depth: Option<u32>, leaf_size: usize) -> BuildOptions {
 }
 
 /// Builds a tree and walks over all its nodes. Would catch a triangle that is lost or in two leaves,
-/// a volume that does not hold all below it, a volume of the wrong layer, and nodes out of reach.
+/// and a volume of the wrong layer or with something outside. Also catches nodes out of reach.
 pub fn check(soup: &Soup, options: &BuildOptions) -> Tree {
     let tree = Tree::build(&soup.vertices, &soup.triangles, options).unwrap();
     assert_eq!(tree.triangle_count() as usize, soup.triangles.len());

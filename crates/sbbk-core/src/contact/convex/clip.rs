@@ -52,8 +52,8 @@ pub fn clip_feature(
     }
 }
 
-/// A triangle and a feature, and on which side of each edge of one each corner of the other is, seen
-/// along a normal.
+/// A triangle and a feature, seen along a normal. Tables tell on which side of each edge of one body
+/// each corner of the other is.
 struct Sides<'a> {
     triangle: &'a [DVec3; 3],
     feature: &'a [DVec3],

@@ -139,7 +139,7 @@ impl<const IS_CONE: bool> Solid for TurnedSupport<IS_CONE> {
 struct Slope {
     run: f64,
     rise: f64,
-    /// How far the solid reaches along the normal, the same all around.
+    /// The solid reaches this far along the normal, on all sides.
     reach: f64,
 }
 

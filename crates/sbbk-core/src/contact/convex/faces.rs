@@ -290,8 +290,8 @@ impl HullFaces {
 /// Depth of each corner of a triangle below each face.
 type Depths = ArrayVec<[f64x4; 3], { FACES / 4 }>;
 
-/// For each face: bits of the sides along which it rises, and three copies of the bit for a corner
-/// that is less than `most` below.
+/// Marks of each face, as bits. The low three tell along which sides of the triangle the face rises.
+/// The next three are set if a corner is less than `most` below the face.
 #[inline(always)]
 fn marks(depths: &Depths, most: f64) -> [u8; FACES] {
     let mut marks = [0; FACES];
