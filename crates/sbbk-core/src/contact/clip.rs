@@ -6,7 +6,7 @@
 //! corners: the side of each edge of one triangle on which each vertex of the other lies.
 //!
 //! **Capacity.** Each triangle has three vertices. Among three signs around a triangle at most two
-//! neighbours differ, so an edge crosses at most two edges. That makes at most six crossings and
+//! neighbours differ, so an edge crosses at most two edges. So there are at most six crossings and
 //! twelve points, for any rounding of the signs. The closest points are the thirteenth.
 
 use super::TriangleContact;

@@ -1,7 +1,7 @@
 //! The search: depth first, the nearest pair first, with a bound.
 //!
 //! A pair of nodes is replaced by the pairs of its children whose lower bound is at most the best
-//! value so far. The least of these is next. The first leaves reached are near the answer, so the
+//! value so far. The pair with the least bound is next. The first leaves reached are near the answer, so the
 //! bound is tight from then on.
 
 use crate::traverse::{Compare, DescentScratch, SlotPair, expand, leaves_at};

@@ -158,7 +158,7 @@ impl<const IS_CONE: bool> TurnedSupport<IS_CONE> {
     }
 
     /// The rims: the height of each, and the upright sign of the normals of its surfaces with edges.
-    /// That sign also leads out of a flat end. Beside the base of a cone, normals can point up as far
+    /// The sign also leads out of a flat end. Beside the base of a cone, normals can point up as far
     /// as the normal of the slope.
     fn rims(&self) -> [(f64, f64); 2] {
         let height = self.half_height;

@@ -1,14 +1,14 @@
 //! A triangle that crosses the convex hull of some points, by the hull's faces and edges.
 //!
-//! The faces of the difference belong to the faces of the hull, to both sides of the triangle, and
-//! to pairs of edges whose arcs of normals cross. The least translation that separates the bodies
-//! is along one of these. The normals of an edge of the hull form an arc between those of its
-//! faces; for an edge of the triangle they form half of a great circle. So arcs cross if one face
-//! of the hull rises along the edge of the triangle and the other one falls.
+//! The least translation that separates the bodies is along the normal of a face of the difference.
+//! Such faces belong to the faces of the hull, to both sides of the triangle, and to pairs of edges
+//! whose arcs of normals cross. The normals of an edge of the hull form an arc between the normals of
+//! its faces. The normals of an edge of the triangle form half of a great circle. So arcs cross if one
+//! face of the hull rises along the edge of the triangle and the other one falls.
 //!
-//! Few pairs of edges are tried. A plane of the difference between two faces of the hull is no
-//! nearer than the nearer one of the planes above a corner of the triangle. So both ends of the
-//! edge must be below one of these planes by less than the least depth so far.
+//! Few pairs of edges are tried. The plane of a pair is no nearer to a corner of the triangle than the
+//! nearer one of both faces of the hull. So both ends of the edge of the triangle must be below the
+//! nearer face by less than the least depth so far.
 
 use super::hull_surface::{FACES, HullSurface, POINTS, ROUNDING};
 use super::lanes::{PlaneLanes, PointLanes, first_lane, splat};
