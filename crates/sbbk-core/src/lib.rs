@@ -21,6 +21,7 @@
 //!
 //! Each module uses only those above it.
 
+// The inputs of the tests know this crate by its name.
 #[cfg(test)]
 extern crate self as sbbk_core;
 
