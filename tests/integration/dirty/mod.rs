@@ -25,6 +25,8 @@ mod roads;
 mod rooms;
 /// A nut on a bolt, by its closed form.
 mod screw;
+/// Boxes with a contact skin.
+mod skins;
 /// Meshes that roll, and fall, on two triangles.
 mod slopes;
 /// Closed meshes with bodies sunk in, and vessels.

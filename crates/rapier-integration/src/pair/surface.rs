@@ -179,6 +179,15 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         (0..2).all(|i| self.is_minimum(&surfaces, i, &local, contact))
     }
 
+    /// Returns true if the point on the larger shape is a local minimum of the distance. Of two shapes of one size,
+    /// either point will do.
+    pub(super) fn is_minimum_of_larger(&self, contact: &TriangleContact) -> bool {
+        let Some(local) = self.shapes.local(self.pose, self.pair) else { return false };
+        let (surfaces, smaller) = (self.surfaces(&local), self.smaller());
+        let mut larger = (0..2).filter(|i| Some(*i) != smaller);
+        larger.any(|i| self.is_minimum(&surfaces, i, &local, contact))
+    }
+
     /// Returns true if a contact leads into a solid.
     pub(super) fn leads_inside(&self, contact: &TriangleContact) -> bool {
         let Some(local) = self.shapes.local(self.pose, self.pair) else { return false };

@@ -299,8 +299,9 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
     }
 
     /// Removes contacts beyond the filter distance, except those in the direction of a near contact or of a local
-    /// minimum of the distance. Removes none if no contact is near, as bodies turn when they meet. Shapes that cross also
-    /// lose contacts that lead into solids: those would hold them in each other.
+    /// minimum of the distance. Shapes that cross also lose contacts that lead into solids: those would hold them in each
+    /// other. If no contact is near, the smaller shape may turn before it meets the larger one, or rests on a contact
+    /// skin. All local minima of the larger one stay then.
     fn reject_aside(
         &self,
         directions: &mut Directions,
@@ -310,6 +311,11 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
         let limit = self.shapes.filter_distance();
         let is_near = |contact: &TriangleContact| contact.distance <= limit;
         if !contacts.iter().any(|(_, hit)| is_near(&hit.contact)) {
+            let is_minimum =
+                |(pair, hit): &TriangleHit| self.filter(*pair).is_minimum_of_larger(&hit.contact);
+            if contacts.iter().any(is_minimum) {
+                contacts.retain(is_minimum);
+            }
             return;
         }
         directions.clear();
