@@ -136,7 +136,7 @@ fn surfaces_are_those_of_the_terrain_as_a_mesh() {
     assert!(fewer > count, "{fewer} fewer than of triangles");
 }
 
-/// True if two manifolds are equal but for rounding.
+/// Returns true if two manifolds differ by rounding at most.
 fn is_like(one: &Manifold, other: &Manifold) -> bool {
     let turn = one.local_n1.distance(other.local_n1);
     triangles(one) == triangles(other)

@@ -118,8 +118,8 @@ impl Crossing {
         if along.abs() > SAME_SIDE { along.signum() } else { 0.0 }
     }
 
-    /// Returns signs with which the normals of the triangles lead out of the shapes, if these are known. Behind a sheet, seen
-    /// from the middle of the other shape, counts as solid.
+    /// Returns signs with which the normals of the triangles lead out of the shapes, if these are known. The side of a
+    /// sheet on which the middle of the other shape is not counts as solid.
     fn outward(&self) -> Option<[f64; 2]> {
         let Some(sheet) = self.sheet else { return self.is_of_solids.then_some([1.0; 2]) };
         let mut signs = [1.0; 2];

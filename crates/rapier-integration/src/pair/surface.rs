@@ -179,8 +179,8 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         (0..2).all(|i| self.is_minimum(&surfaces, i, &local, contact))
     }
 
-    /// Returns true if the point on the larger shape is a local minimum of the distance. Of two shapes of one size,
-    /// either point will do.
+    /// Returns true if the point on the larger shape, or on one of two equally large ones, is a local minimum of the
+    /// distance.
     pub(super) fn is_minimum_of_larger(&self, contact: &TriangleContact) -> bool {
         let Some(local) = self.shapes.local(self.pose, self.pair) else { return false };
         let (surfaces, smaller) = (self.surfaces(&local), self.smaller());
