@@ -97,7 +97,7 @@ pub(crate) fn nearest_triangle(mesh: &TriMesh, point: Vec3, within: Real) -> Opt
 const MOST_PARTS: usize = 8;
 
 /// Returns the distance in which a ray from a point inside a shape of triangles leaves it, and the outward normal there.
-/// `None` if the ray meets nothing. A ray may leave a sheet through the front of a triangle. Parts of a solid may overlap.
+/// `None` if the ray meets nothing, or first meets the front of a solid's triangle. Parts of a solid may overlap.
 pub(crate) fn exit(
     shape: &impl RayCast,
     point: Vec3,
@@ -112,8 +112,12 @@ pub(crate) fn exit(
         (is_sheet || hit.feature == BACK).then_some((from + hit.time_of_impact, -hit.normal))
     };
     let beyond = |from: Real| from + 64.0 * Real::EPSILON * (from + point.abs().max_element());
-    let exits = std::iter::successors(next(0.0), |(length, _)| next(beyond(*length)));
-    exits.take(if is_sheet { 1 } else { MOST_PARTS }).last()
+    let first = next(0.0)?;
+    if is_sheet {
+        return Some(first);
+    }
+    let exits = std::iter::successors(Some(first), |(length, _)| next(beyond(*length)));
+    exits.take(MOST_PARTS).last()
 }
 
 /// True if a box is finite and not empty.

@@ -1,4 +1,4 @@
-//! Contours, along which the surfaces of two solids cross.
+//! Contours, along which the surfaces of two shapes cross.
 //!
 //! An overlap shrinks fastest along the area vector of its contour. Contacts of [deep](super::deep) overlaps are at
 //! points of the contour and in its middle.
@@ -40,7 +40,7 @@ pub(super) struct Segment {
     has_contact: bool,
     /// Ends, in frame 1, with the overlap on one side for all segments of a contour.
     ends: [DVec3; 2],
-    /// Sum of both unit normals.
+    /// Sum of both outward unit normals.
     outward: DVec3,
 }
 

@@ -46,8 +46,8 @@ struct Way {
 struct DeepIsland<'a, S> {
     shapes: &'a S,
     pose: &'a PairPose,
-    /// The shape that is a sheet, if any.
-    sheet: Option<usize>,
+    /// True for each shape that may be left through both sides of its triangles.
+    is_sheet: [bool; 2],
 }
 
 /// Adds contacts along the ways out of contours to islands that have too few.
@@ -68,7 +68,8 @@ pub(super) fn add_contacts<S: TriangleShapes>(
         );
         let Some(contour) = Contour::of(segments) else { continue };
         let points = contour.points();
-        let deep = DeepIsland { shapes, pose, sheet: island[0].sheet };
+        let is_sheet = [0, 1].map(|i| island.iter().any(|crossing| crossing.is_sheet[i]));
+        let deep = DeepIsland { shapes, pose, is_sheet };
         let Some(Way { normal, length, exits }) = deep.way_across(&contour, &points) else {
             continue;
         };
@@ -125,7 +126,7 @@ impl<S: TriangleShapes> DeepIsland<'_, S> {
         let (point, direction) = (point.as_vec3(), direction.as_vec3());
         let rotation = pos12.rotation;
         let exit =
-            |i, point, direction| self.shapes.exit(i, point, direction, self.sheet == Some(i));
+            |i: usize, point, direction| self.shapes.exit(i, point, direction, self.is_sheet[i]);
         let exit1 = exit(0, point, direction)?;
         let at2 = pos12.inverse_transform_point(point);
         let (length2, normal2) = exit(1, at2, rotation.inverse() * -direction)?;

@@ -76,8 +76,8 @@ pub(super) struct Unsupported {
     pub(super) has_contact: bool,
     /// Signs with which the normals of the triangles lead out of the shapes.
     pub(super) outward: [f64; 2],
-    /// The shape that is a sheet, if any.
-    pub(super) sheet: Option<usize>,
+    /// True for each triangle that may be left through both sides.
+    pub(super) is_sheet: [bool; 2],
 }
 
 /// Two triangles that cross or have passed each other.
@@ -94,8 +94,8 @@ pub(super) struct Crossing {
     pub(super) normal: DVec3,
     /// Depth of the contact of the first pass.
     pub(super) depth: f64,
-    /// True if both triangles are those of solids.
-    pub(super) is_of_solids: bool,
+    /// Signs with which the normals of the triangles lead out of the shapes; `None` for a sheet.
+    pub(super) outward: [Option<f64>; 2],
     /// Set unless both shapes are solids, or the solid is larger than the sheet.
     pub(super) sheet: Option<SheetSide>,
 }
@@ -103,7 +103,7 @@ pub(super) struct Crossing {
 /// Position of a solid relative to a triangle of a sheet.
 #[derive(Copy, Clone)]
 pub(super) struct SheetSide {
-    /// The shape that is the sheet. `None` for two sheets of one size.
+    /// The shape that counts as the sheet: the larger one of two sheets, `None` for two of one size.
     pub(super) shape: Option<usize>,
     /// Normal of contacts that push the solid off the front of the triangle.
     pub(super) away: DVec3,
@@ -118,13 +118,15 @@ impl Crossing {
         if along.abs() > SAME_SIDE { along.signum() } else { 0.0 }
     }
 
-    /// Returns signs with which the normals of the triangles lead out of the shapes, if these are known. The side of a
-    /// sheet on which the middle of the other shape is not counts as solid.
-    fn outward(&self) -> Option<[f64; 2]> {
-        let Some(sheet) = self.sheet else { return self.is_of_solids.then_some([1.0; 2]) };
-        let mut signs = [1.0; 2];
-        signs[sheet.shape?] = sheet.height.signum();
-        Some(signs)
+    /// Returns signs with which the normals of the triangles lead out of the shapes, if these are known. A sheet counts as
+    /// solid on the side away from the middle of the other shape.
+    fn outward_signs(&self) -> Option<[f64; 2]> {
+        let of_sheet = |i: usize| {
+            let SheetSide { shape, height, .. } = self.sheet?;
+            Some(if shape? == i { height.signum() } else { 1.0 })
+        };
+        let sign = |i: usize| self.outward[i].or_else(|| of_sheet(i));
+        Some([sign(0)?, sign(1)?])
     }
 }
 
@@ -273,15 +275,15 @@ impl OverlapIslands {
         list.clear();
         for index in 0..self.crossings.len() {
             let crossing = self.crossings[index];
-            let Crossing { pair, is_crossing, sheet, .. } = crossing;
-            let Some(outward) = crossing.outward().filter(|_| is_crossing) else { continue };
+            let Crossing { pair, is_crossing, .. } = crossing;
+            let Some(outward) = crossing.outward_signs().filter(|_| is_crossing) else { continue };
             if self.needs_support(pair) {
                 list.push(Unsupported {
                     island: self.islands.first((0, pair[0])),
                     pair,
                     has_contact: self.is_fine(&crossing),
                     outward,
-                    sheet: sheet.and_then(|sheet| sheet.shape),
+                    is_sheet: crossing.outward.map(|sign| sign != Some(1.0)),
                 });
             }
         }
@@ -401,7 +403,7 @@ mod tests {
             is_reliable,
             normal,
             depth,
-            is_of_solids: sheet.is_none(),
+            outward: [sheet.is_none().then_some(1.0), Some(1.0)],
             sheet,
         }
     }

@@ -264,7 +264,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             is_reliable: good.is_some(),
             normal,
             depth,
-            is_of_solids: is_solid == [true; 2],
+            outward: surfaces.each_ref().map(|surface| outward(surface.as_ref()?.side)),
             sheet: self.sheet_side(is_solid, local),
         };
         let source = ContactSource::OutwardAxis;
@@ -466,6 +466,15 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
 
 fn solids<S: TriangleShapes>(surfaces: &Surfaces<'_, S>) -> [bool; 2] {
     [0, 1].map(|i| surfaces[i].as_ref().is_some_and(Around::is_solid))
+}
+
+/// Returns the sign with which the normal of a triangle leads out of the body; `None` for a sheet.
+fn outward(side: Side) -> Option<f64> {
+    match side {
+        Side::Outer => Some(1.0),
+        Side::Turned => Some(-1.0),
+        Side::Inner | Side::Sheet => None,
+    }
 }
 
 /// Returns true if a unit direction is far from the normals of a triangle.

@@ -82,7 +82,7 @@ pub(crate) trait TriangleShapes: Sync {
     fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)>;
 
     /// Returns the distance in which a ray from a point inside a shape leaves it, and the outward normal there. `None`
-    /// if the ray meets nothing. A ray may leave a sheet through the front of a triangle, but no solid.
+    /// if the ray meets nothing, or first meets the front of a solid's triangle.
     fn exit(
         &self,
         i: usize,

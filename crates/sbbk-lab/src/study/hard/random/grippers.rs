@@ -2,8 +2,9 @@
 
 use super::prelude::*;
 
-/// Seconds in which the fingers close without gravity, and in which they hold the part.
+/// Seconds in which the fingers close without gravity.
 const CLOSING: f32 = 1.0;
+/// Seconds in which the fingers hold the part.
 const HOLDING: f32 = 2.0;
 /// Damping of the fingers, in 1/s.
 const DAMPING: f32 = 20.0;
@@ -13,7 +14,7 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
     let part = gripped(draw, halves);
     draw.gravity = draw.log(10.0, 150.0);
     draw.dt = draw.dt.min(1.0 / 60.0);
-    // Weights of the part with which the fingers press.
+    // Force of a finger, in weights of the part.
     let press = draw.log(3.0, 30.0);
     let bodies = [finger(draw, &part, -1.0), finger(draw, &part, 1.0), held(part)];
     let mut stage = Stage::new(draw, kit, &bodies);
@@ -61,7 +62,7 @@ fn finger(draw: &mut Draw, part: &Part, side: f32) -> Body {
     finger
 }
 
-/// Presses the fingers against the part with a force per mass of the part, which grows at first.
+/// Presses the fingers against the part. The force grows at first, up to `press` times the mass of the part.
 fn close(stage: &mut Stage, draw: &Draw, press: f32) {
     let [one, other, part] = [0, 1, 2].map(|k| stage.handles[k]);
     let steps = draw.steps(CLOSING);
