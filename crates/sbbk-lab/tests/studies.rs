@@ -137,11 +137,12 @@ fn the_control_passes_and_sheets_hold_plain_meshes() {
 }
 
 /// Would catch scenes that Rapier's own shapes could not pass, and scenes that differ by column. Rings,
-/// gears and bowls are left out: their hulls have seams.
+/// gears and bowls are left out: their hulls have seams. Rapier's shapes drop some parts of grippers.
 #[test]
 fn random_scenes_hold_with_rapiers_own_shapes() {
     let mut plan = RandomPlan { settings: with_control(), ..RandomPlan::new(0..2, 1) };
-    plan.families.retain(|&f| !matches!(f, Family::Chains | Family::Gears | Family::Bowls));
+    let without = [Family::Chains, Family::Gears, Family::Bowls, Family::Grippers];
+    plan.families.retain(|family| !without.contains(family));
     let results = random(&plan, &Progress::hidden()).unwrap();
     check(&results, &[]);
     let all = |column: Column, count: &str| {
