@@ -98,20 +98,16 @@ const MOST_PARTS: usize = 8;
 
 /// Returns the distance in which a ray from a point inside a shape of triangles leaves it, and the outward normal there.
 /// `None` if the ray meets nothing, or first meets the front of a solid's triangle. Parts of a solid may overlap.
-pub(crate) fn exit(
-    shape: &impl RayCast,
-    point: Vec3,
-    direction: Vec3,
-    is_sheet: bool,
-) -> Option<(Real, Vec3)> {
+pub(crate) fn exit(shape: &impl RayCast, ray: &Ray, is_sheet: bool) -> Option<(Real, Vec3)> {
     const BACK: FeatureId = FeatureId::Face(1);
     let next = |from: Real| {
-        let ray = Ray::new(point + from * direction, direction);
-        let hit = shape.cast_local_ray_and_get_normal(&ray, Real::MAX, false)?;
+        let rest = Ray::new(ray.origin + from * ray.dir, ray.dir);
+        let hit = shape.cast_local_ray_and_get_normal(&rest, Real::MAX, false)?;
         // Parry turns normals against the ray.
         (is_sheet || hit.feature == BACK).then_some((from + hit.time_of_impact, -hit.normal))
     };
-    let beyond = |from: Real| from + 64.0 * Real::EPSILON * (from + point.abs().max_element());
+    let size = ray.origin.abs().max_element();
+    let beyond = |from: Real| from + 64.0 * Real::EPSILON * (from + size);
     let first = next(0.0)?;
     if is_sheet {
         return Some(first);

@@ -5,6 +5,7 @@
 
 use arrayvec::ArrayVec;
 use glamx::DVec3;
+use parry3d::query::Ray;
 
 use super::contour::{Contour, MOST_POINTS, Points, Segment};
 use super::islands::{IslandWay, OverlapIslands, Unsupported};
@@ -125,11 +126,11 @@ impl<S: TriangleShapes> DeepIsland<'_, S> {
         let PairPose { pos12, .. } = self.pose;
         let (point, direction) = (point.as_vec3(), direction.as_vec3());
         let rotation = pos12.rotation;
-        let exit =
-            |i: usize, point, direction| self.shapes.exit(i, point, direction, self.is_sheet[i]);
-        let exit1 = exit(0, point, direction)?;
         let at2 = pos12.inverse_transform_point(point);
-        let (length2, normal2) = exit(1, at2, rotation.inverse() * -direction)?;
+        let against2 = rotation.inverse() * -direction;
+        let [is_sheet1, is_sheet2] = self.is_sheet;
+        let exit1 = self.shapes.exit(0, &Ray::new(point, direction), is_sheet1)?;
+        let (length2, normal2) = self.shapes.exit(1, &Ray::new(at2, against2), is_sheet2)?;
         let exits = [exit1, (length2, rotation * normal2)];
         Some(exits.map(|(length, normal)| (f64::from(length), normal.as_dvec3())))
     }

@@ -20,6 +20,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use glamx::DVec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Real, Vector};
+use parry3d::query::Ray;
 use parry3d::query::details::NormalConstraints;
 use parry3d::shape::{HeightField, Triangle, TrianglePseudoNormals};
 use sbbk_core::contact::Feature;
@@ -290,17 +291,11 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
         Some((nearest.point, behind))
     }
 
-    fn exit(
-        &self,
-        i: usize,
-        point: Vector,
-        direction: Vector,
-        is_sheet: bool,
-    ) -> Option<(Real, Vector)> {
+    fn exit(&self, i: usize, ray: &Ray, is_sheet: bool) -> Option<(Real, Vector)> {
         if self.is_field(i) {
-            return exit(self.field.0, point, direction, is_sheet);
+            return exit(self.field.0, ray, is_sheet);
         }
-        exit(self.pair.mesh.mesh, point, direction, is_sheet)
+        exit(self.pair.mesh.mesh, ray, is_sheet)
     }
 
     fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32> {

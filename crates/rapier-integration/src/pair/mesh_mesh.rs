@@ -4,8 +4,8 @@ use std::sync::{Arc, OnceLock};
 use glamx::DVec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Real, Vector};
-use parry3d::query::PointQuery;
 use parry3d::query::details::NormalConstraints;
+use parry3d::query::{PointQuery, Ray};
 use sbbk_core::leaf::LeafTest;
 use sbbk_core::surface::{Around, Side, SurfaceKind};
 use sbbk_core::traverse::{DescentCounts, NodePair, PairFrame, begin_descent, descend_from};
@@ -361,14 +361,8 @@ impl<'q> TriangleShapes for Meshes<'q> {
         Some((nearest.point, behind))
     }
 
-    fn exit(
-        &self,
-        i: usize,
-        point: Vector,
-        direction: Vector,
-        is_sheet: bool,
-    ) -> Option<(Real, Vector)> {
-        exit(self.pair.meshes[i].mesh, point, direction, is_sheet)
+    fn exit(&self, i: usize, ray: &Ray, is_sheet: bool) -> Option<(Real, Vector)> {
+        exit(self.pair.meshes[i].mesh, ray, is_sheet)
     }
 
     fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32> {

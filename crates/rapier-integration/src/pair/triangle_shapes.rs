@@ -3,6 +3,7 @@
 use glamx::DVec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Real, Vector};
+use parry3d::query::Ray;
 use parry3d::query::details::NormalConstraints;
 use sbbk_core::contact::{Feature, FeaturePair, TriangleContact};
 use sbbk_core::query::TrianglePair;
@@ -83,13 +84,7 @@ pub(crate) trait TriangleShapes: Sync {
 
     /// Returns the distance in which a ray from a point inside a shape leaves it, and the outward normal there. `None`
     /// if the ray meets nothing, or first meets the front of a solid's triangle.
-    fn exit(
-        &self,
-        i: usize,
-        point: Vector,
-        direction: Vector,
-        is_sheet: bool,
-    ) -> Option<(Real, Vector)>;
+    fn exit(&self, i: usize, ray: &Ray, is_sheet: bool) -> Option<(Real, Vector)>;
 
     /// Returns the nearest triangle of a shape to a point in its frame, if that is within a distance. The triangle
     /// of a height field may be another that is near.
