@@ -1,7 +1,6 @@
 //! The Minkowski difference of a convex shape and a triangle: all that leads from a point of the
 //! triangle to a point of the shape.
 
-use super::simplex::side;
 use super::support::{SupportMap, lowest};
 use glamx::DVec3;
 
@@ -31,19 +30,5 @@ impl<S: SupportMap> Difference<'_, S> {
     #[inline(always)]
     pub fn at(&self, point: DVec3) -> [Vertex; 3] {
         [0, 1, 2].map(|corner| Vertex { point: point - self.triangle[corner], corner })
-    }
-
-    /// Vector from the nearest point of the triangle to the origin, or the normal of a triangle that
-    /// holds the origin.
-    #[inline(always)]
-    pub fn toward_origin(&self) -> DVec3 {
-        let [a, b, c] = self.at(DVec3::ZERO);
-        let nearest = side(a, b, c).nearest;
-        if nearest != DVec3::ZERO {
-            return nearest;
-        }
-        let [a, b, c] = *self.triangle;
-        let normal = (b - a).cross(c - a);
-        if normal != DVec3::ZERO { normal } else { DVec3::Y }
     }
 }

@@ -80,7 +80,7 @@ impl<'a, S: SupportMap> Search<'a, S> {
         let [a, b, c] = *triangle;
         let extent = ((b - a).abs() + (c - a).abs()).element_sum();
         let difference = Difference { triangle, shape };
-        let toward = difference.toward_origin();
+        let toward = toward_origin(&difference);
         let start = shape.support(-toward);
         Self { difference, toward, start, size: extent + start.abs().element_sum() }
     }
@@ -200,4 +200,18 @@ fn least_open<S: SupportMap>(
         }
     }
     least
+}
+
+/// Vector from the nearest point of the triangle to the origin, or the normal of a triangle that
+/// holds the origin.
+#[inline(always)]
+fn toward_origin<S: SupportMap>(difference: &Difference<'_, S>) -> DVec3 {
+    let [a, b, c] = difference.at(DVec3::ZERO);
+    let nearest = simplex::side(a, b, c).nearest;
+    if nearest != DVec3::ZERO {
+        return nearest;
+    }
+    let [a, b, c] = *difference.triangle;
+    let normal = (b - a).cross(c - a);
+    if normal != DVec3::ZERO { normal } else { DVec3::Y }
 }
