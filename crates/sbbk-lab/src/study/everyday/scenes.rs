@@ -281,15 +281,23 @@ pub(super) fn heads_on_floor(detail: u32, steps: usize) -> Everyday<'static> {
     let row = row.key("triangles", head.triangle_count());
     let [head, floor] = [&head, &floor].map(collider);
     Everyday::new(row, steps, move || {
-        let (mut world, mut random) = (PhysicsWorld::new(), Rand32::new(5));
-        world.insert(RigidBodyBuilder::fixed(), floor.clone());
-        for i in 0..COUNT {
-            let place = Vec3::new(2.0 * (i % 4) as f32 - 3.0, 1.0, 2.0 * (i / 4) as f32 - 2.0);
-            let pose = Pose3::from_parts(place, random::rotation(&mut random));
-            world.insert(RigidBodyBuilder::dynamic().pose(pose), head.clone());
-        }
-        Driven::alone(world)
+        let place = |i| Vec3::new(2.0 * (i % 4) as f32 - 3.0, 1.0, 2.0 * (i / 4) as f32 - 2.0);
+        falling(&floor, (0..COUNT).map(|i| (place(i), &head)))
     })
+}
+
+/// Bodies that fall on a ground, turned by chance.
+fn falling<'a>(
+    ground: &ColliderBuilder,
+    bodies: impl Iterator<Item = (Vec3, &'a ColliderBuilder)>,
+) -> Driven {
+    let (mut world, mut random) = (PhysicsWorld::new(), Rand32::new(5));
+    world.insert(RigidBodyBuilder::fixed(), ground.clone());
+    for (place, body) in bodies {
+        let pose = Pose3::from_parts(place, random::rotation(&mut random));
+        world.insert(RigidBodyBuilder::dynamic().pose(pose), body.clone());
+    }
+    Driven::alone(world)
 }
 
 /// A torus that slides along another one, both with so many segments around the tube.
@@ -315,22 +323,18 @@ pub(super) fn two_tori(tube: u32, steps: usize) -> Everyday<'static> {
 /// Heads of 2 to 5 cm that fall into a bowl at Rapier's default length unit.
 pub(super) fn parts(steps: usize) -> Everyday<'static> {
     const COUNT: u32 = 12;
-    let bowl = mesh::vessel(0.15, 24, 0.3).shape();
+    let bowl = ColliderBuilder::new(mesh::vessel(0.15, 24, 0.3).shape());
     let head = mesh::monkey_head_with(6).centred();
     let row = Row::new(FINE, "").key("scene", format!("{COUNT} heads of 2 to 5 cm in a bowl"));
     let row = row.key("triangles", head.triangle_count());
     let parts = (0..COUNT).map(|i| collider(&head.clone().scaled_to(0.02 + 0.01 * (i % 4) as f32)));
     let parts: Vec<ColliderBuilder> = parts.collect();
     Everyday::new(row, steps, move || {
-        let (mut world, mut random) = (PhysicsWorld::new(), Rand32::new(5));
-        world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(bowl.clone()));
-        for (i, part) in (0..COUNT).zip(&parts) {
+        let place = |i: u32| {
             let [x, y, z] = [i % 2, i / 4, i / 2 % 2].map(|place| 0.06 * place as f32);
-            let pose =
-                Pose3::from_parts(Vec3::new(x - 0.03, y, z - 0.03), random::rotation(&mut random));
-            world.insert(RigidBodyBuilder::dynamic().pose(pose), part.clone());
-        }
-        Driven::alone(world)
+            Vec3::new(x - 0.03, y, z - 0.03)
+        };
+        falling(&bowl, (0..COUNT).map(place).zip(&parts))
     })
 }
 
