@@ -15,8 +15,8 @@ use crate::support::{
 
 type Point = TrackedContact<()>;
 
-/// Would catch a direction left out because a neighbour is nearer, and near contacts that are kept. Beyond a tenth
-/// of the radius, soft CCD needs all directions of contacts that are local minima of the larger shape.
+/// Would catch a direction left out because a neighbour is nearer, and near contacts that are kept. Soft CCD needs
+/// each direction of the larger shape's local minima beyond a tenth of the radius.
 #[test]
 fn far_contacts_have_every_direction() {
     let [head, torus] = [mesh::monkey_head_with(3), mesh::torus(0.7, 0.3, 8, 5)].map(|m| shape(&m));

@@ -4,7 +4,8 @@
 //! Fine meshes only have contacts from their tips to the nearest points of the other shape. Walks add the places
 //! where shapes are nearest to each other. A walk goes from a point of one shape to the nearest point of the other,
 //! and back. It may end at another place. Shapes of few triangles that nearly touch keep all contacts in the
-//! [`Directions`] of local minima. Others keep the local minima of the larger shape, or all if there are none.
+//! [`Directions`] of local minima. Others keep the local minima
+//! of the larger shape; without any, they keep all contacts.
 
 use glamx::{DVec3, Vec3};
 use parry3d::math::Real;

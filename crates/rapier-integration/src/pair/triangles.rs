@@ -301,8 +301,7 @@ impl<S: TriangleShapes> TriangleQuery<'_, S> {
     /// Removes contacts beyond the filter distance, except those in the direction of a near contact or of a local
     /// minimum of the distance. Shapes that cross also lose contacts that lead into solids: those would hold them in each
     /// other. If no contact is near, the smaller shape may turn before it meets the larger one, or rests on a contact
-    /// skin. Only
-    /// local minima of the larger one stay then; without any, all contacts stay.
+    /// skin. Only local minima of the larger one stay then; without any, all contacts stay.
     fn reject_aside(
         &self,
         directions: &mut Directions,
