@@ -18,6 +18,11 @@ pub(crate) fn leaves_at<'a>(
     is_pair.then(|| (tree1.leaf(link1.index()), tree2.leaf(link2.index())))
 }
 
+/// Ratio of lengths above which only the larger node of a pair is replaced. Small nodes lie whole in the boxes of much
+/// larger ones, so a descent of both compares all of the small ones with each. Higher: more tests for meshes of
+/// unlike sizes. Lower: more tests for meshes of one size.
+const LARGER: f32 = 2.0;
+
 /// The sides of a pair whose children replace them.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Sides {
@@ -39,11 +44,15 @@ pub(crate) struct Opening {
 }
 
 impl Opening {
-    /// The pairs below a pair that is not a pair of leaves. A leaf stays.
+    /// Returns the pairs below a pair that is not a pair of leaves. A leaf stays, and so does a node much smaller than
+    /// the other one.
     #[inline(always)]
     pub(crate) fn of((tree1, tree2): (&Tree, &Tree), (slot1, slot2): SlotPair) -> Self {
         let (link1, link2) = (tree1.link(slot1), tree2.link(slot2));
-        let (nodes, sides, same_lane, lanes) = match (link1.is_leaf(), link2.is_leaf()) {
+        let [length1, length2] = [tree1.length(slot1), tree2.length(slot2)];
+        let stays1 = link1.is_leaf() || !link2.is_leaf() && length2 > LARGER * length1;
+        let stays2 = link2.is_leaf() || !link1.is_leaf() && length1 > LARGER * length2;
+        let (nodes, sides, same_lane, lanes) = match (stays1, stays2) {
             (true, _) => ((slot1.node(), link2.index()), Sides::Second, slot1.lane(), 0b0011),
             (_, true) => ((link1.index(), slot2.node()), Sides::First, slot2.lane(), 0b0101),
             _ => ((link1.index(), link2.index()), Sides::Both, 0, 0b1111),

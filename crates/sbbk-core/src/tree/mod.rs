@@ -172,6 +172,14 @@ impl Tree {
         }
     }
 
+    /// Half the longest side of the box of a node.
+    #[inline(always)]
+    pub(crate) fn length(&self, slot: Slot) -> f32 {
+        let extent = self.children(slot.node()).boxes.extent;
+        let [x, y, z] = extent.map(|lanes| f32::from(lanes[slot.lane()]));
+        x.max(y).max(z)
+    }
+
     /// The inner node or leaf at a slot.
     #[inline]
     pub(crate) fn link(&self, slot: Slot) -> Link {

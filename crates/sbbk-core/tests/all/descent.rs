@@ -194,3 +194,24 @@ fn kdops_visit_fewer_leaves() {
     }
     assert!(leaf_pairs[0] > 0 && leaf_pairs[0] * 10 < leaf_pairs[1] * 8, "{leaf_pairs:?}");
 }
+
+/// A ball of 480 triangles sinks into the top of cubes with cells of its size.
+#[test]
+fn a_small_mesh_takes_hardly_more_tests_on_a_larger_one() {
+    let mut random = Random(9);
+    let ball = tree(&bumpy_ball(12, 0.1), None);
+    let poses: Vec<_> = (0..20).map(|_| (random.vector(1.0), random.rotation())).collect();
+    let [coarse, fine] = [8, 64].map(|cells| {
+        let mut ground = cube(cells);
+        let half = 0.5 * cells as f32;
+        ground.vertices.iter_mut().for_each(|vertex| *vertex *= half);
+        let ground = tree(&ground, None);
+        let tests = poses.iter().map(|&(beside, turn)| {
+            let pose = Pose3::from_parts(Vec3::Y * half + beside, turn);
+            survivors((&ground, &ball), &pose, 0.02).1.aabb_tests
+        });
+        tests.sum::<u64>()
+    });
+    // For 64 times as many triangles.
+    assert!(2 * fine < 3 * coarse, "{coarse}, {fine}");
+}
