@@ -124,21 +124,49 @@ impl BvhSearch<'_> {
             if pair.is_touching {
                 return Some(f64::NEG_INFINITY);
             }
-            let normal = pair.contact.normal;
-            normals.set(Some([normal, self.placement.rotation.transpose() * normal]));
+            normals.set(Some(self.normals(&pair)));
             Some(distance)
         });
         nearest
     }
 
+    /// Returns the deepest pair of triangles or, where none cross, the nearest within `limit`.
+    pub(crate) fn deepest(&self, limit: f64) -> Option<FoundPair> {
+        // The deepest pair so far, and its normal in both frames.
+        let mut deepest = None::<(FoundPair, [DVec3; 2])>;
+        self.visit_near(limit, |triangles| {
+            let least = deepest.map_or(f64::INFINITY, |(pair, _)| pair.contact.distance);
+            let is_shallow = |(_, normals)| self.gap_along(normals, triangles) >= least;
+            if !deepest.is_some_and(is_shallow)
+                && let Some(pair) = self.pair(triangles, limit)
+                && pair.contact.distance < least
+            {
+                deepest = Some((pair, self.normals(&pair)));
+            }
+            ControlFlow::Continue(())
+        });
+        Some(deepest?.0)
+    }
+
     /// Calls `found` with all pairs of triangles within `limit`, until it breaks.
     pub(crate) fn all(&self, limit: f64, mut found: impl FnMut(FoundPair) -> ControlFlow<()>) {
+        self.visit_near(limit, |triangles| {
+            self.pair(triangles, limit).map_or(ControlFlow::Continue(()), &mut found)
+        });
+    }
+
+    /// Calls `visit` with all pairs of triangles within `limit`, and with others, until it breaks.
+    fn visit_near(&self, limit: f64, visit: impl FnMut([u32; 2]) -> ControlFlow<()>) {
         let (margin, near) = ((limit.max(0.0) as Real).next_up(), &mut Vec::new());
         let descent = BvhDescent::new(self.meshes, self.placement, margin, None);
         descent.list_near(near, ());
-        let _ = descent.pairs(near, (), |triangles| {
-            self.pair(triangles, limit).map_or(ControlFlow::Continue(()), &mut found)
-        });
+        let _ = descent.pairs(near, (), visit);
+    }
+
+    /// Returns the normal of a contact in the frames of both meshes.
+    fn normals(&self, pair: &FoundPair) -> [DVec3; 2] {
+        let normal = pair.contact.normal;
+        [normal, self.placement.rotation.transpose() * normal]
     }
 
     /// Gap between two triangles along a direction, given in both frames: at most their distance.

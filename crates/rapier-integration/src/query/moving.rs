@@ -46,7 +46,6 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         mesh_place: MeshPlace,
         cast: &'q NonlinearCast<'q>,
     ) -> Self {
-        search.search_depths();
         let options = cast.options(mesh_place.swap(search.balls()));
         let thickness = f64::from(search.thickness());
         Self { search, mesh_place, cast, options, thickness, sunk: None }

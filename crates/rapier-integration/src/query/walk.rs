@@ -9,6 +9,10 @@ use sbbk_core::traverse::Placement;
 use super::bvh_search::BvhSearch;
 use crate::mesh::MeshView;
 
+/// Limit, as a share of the smaller mesh's radius, above which [`Walk::deepest`] first searches for a pair that touches.
+/// Changes time alone. Higher: slower far from the mesh; lower: slower near it.
+const WIDE: f64 = 0.1;
+
 /// Two meshes, searched by their BVHs.
 pub(super) struct Walk<'a>(pub(super) [&'a MeshView<'a>; 2]);
 
@@ -25,17 +29,15 @@ impl<'a> Walk<'a> {
 
     /// Returns the deepest pair of crossing triangles, else the nearest within `limit`.
     pub(super) fn deepest(&self, placement: Placement, limit: f64) -> Option<FoundPair> {
-        if self.meeting(placement).is_none() {
-            return self.at(placement).nearest(limit, |_| true);
+        let size = self.0[0].ball().radius.min(self.0[1].ball().radius);
+        // Within a wide limit there are too many pairs.
+        if limit <= WIDE * f64::from(size) {
+            return self.at(placement).deepest(limit);
         }
-        let mut deepest = None::<FoundPair>;
-        self.at(placement).all(0.0, |pair| {
-            if deepest.is_none_or(|deepest| pair.contact.distance < deepest.contact.distance) {
-                deepest = Some(pair);
-            }
-            ControlFlow::Continue(())
-        });
-        deepest
+        match self.meeting(placement) {
+            Some(_) => self.at(placement).deepest(0.0),
+            None => self.at(placement).nearest(limit, |_| true),
+        }
     }
 
     /// Returns the nearest pair of triangles within `limit`: one that touches, if any does.
@@ -57,6 +59,16 @@ impl<'a> Walk<'a> {
         }
         let pair = self.at(placement);
         let velocity = velocity.as_dvec3();
+        let cast = |triangles: [u32; 2], latest: f64| {
+            let [one, two] = [0, 1].map(|i| (triangles[i], self.0[i].corners(triangles[i])));
+            Cast::of_triangles(&placement, one, two, velocity, &options, latest)
+        };
+        // Bounds of meshes in each other are zero for many pairs, so a search visits many before one that touches.
+        if options.stop_at_penetration
+            && let Some(meeting) = self.meeting(placement)
+        {
+            return cast([meeting.triangle1, meeting.triangle2], 0.0);
+        }
         let target = f64::from(options.target_distance) + pair.rounding();
         let mut first = None::<Cast>;
         let latest = f64::from(options.max_time);
@@ -64,8 +76,7 @@ impl<'a> Walk<'a> {
             latest,
             |one, two| one.time(two, velocity, target),
             |triangles, latest| {
-                let [one, two] = [0, 1].map(|i| (triangles[i], self.0[i].corners(triangles[i])));
-                let found = Cast::of_triangles(&placement, one, two, velocity, &options, latest)?;
+                let found = cast(triangles, latest)?;
                 if first.is_some_and(|first| found.time >= first.time) || !counts(&found) {
                     return None;
                 }

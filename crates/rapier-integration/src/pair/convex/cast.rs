@@ -53,7 +53,6 @@ impl ConvexSearch<'_> {
         if !is_possible || !velocity12.is_finite() || !self.placed.placement.is_finite() {
             return None;
         }
-        self.search_depths();
         // Velocities of a triangle in the frame of the shape, and of the shape in the frame of the mesh.
         let placement = &self.placed.placement;
         let (of_triangle, of_shape) = match mesh_place {

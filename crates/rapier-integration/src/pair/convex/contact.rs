@@ -48,12 +48,35 @@ impl PartContact {
     }
 }
 
+/// Points of a convex polyhedron, read when first used.
+#[derive(Clone, Debug, Default)]
+pub(super) struct KeptHull {
+    points: OnceLock<HullPoints>,
+    /// True if depths are found by faces. Faces take as long as the depths of some fifty triangles.
+    has_faces: bool,
+}
+
+impl KeptHull {
+    /// Keeps a hull for many queries.
+    pub(super) fn with_faces() -> Self {
+        Self { has_faces: true, ..Self::default() }
+    }
+
+    fn of(&self, shape: &ConvexPolyhedron) -> &HullPoints {
+        let points = || shape.points().iter().copied();
+        self.points.get_or_init(|| match self.has_faces {
+            true => HullPoints::with_faces(points(), fans(shape)),
+            false => HullPoints::without_faces(points()),
+        })
+    }
+}
+
 /// Contact of a triangle with a shape without its rounding radius, in the frame of the shape. `hull`
 /// keeps the points of a convex polyhedron from call to call.
 pub(super) fn core_contact(
     triangle: &[DVec3; 3],
     shape: ConvexShape<'_>,
-    hull: &OnceLock<HullPoints>,
+    hull: &KeptHull,
     margin: f64,
 ) -> Option<ConvexContact> {
     if let ConvexShape::HalfSpace(half_space) = shape {
@@ -65,7 +88,7 @@ pub(super) fn core_contact(
 /// Support point of a shape without its rounding radius, in f64; `None` for a half-space.
 pub(super) fn core_support(
     shape: ConvexShape<'_>,
-    hull: &OnceLock<HullPoints>,
+    hull: &KeptHull,
     direction: DVec3,
 ) -> Option<DVec3> {
     with_core(shape, hull, SupportPoint(direction))
@@ -113,31 +136,25 @@ pub(super) fn ball_contact(triangle: &[DVec3; 3], margin: f64) -> Option<ConvexC
 pub(super) fn core_touches(
     triangle: &[DVec3; 3],
     shape: ConvexShape<'_>,
-    hull: &OnceLock<HullPoints>,
+    hull: &KeptHull,
     reach: f64,
 ) -> bool {
     // Faster than a contact: needs neither depths nor faces.
     if let Some(shape) = shape.polyhedron() {
-        let points = hull.get_or_init(|| HullPoints::without_faces(shape.points().iter().copied()));
-        return convex_touches(triangle, points, reach);
+        return convex_touches(triangle, hull.of(shape), reach);
     }
     core_contact(triangle, shape, hull, reach).is_some()
 }
 
 /// Computes with the support map of a shape; `None` for a half-space.
 #[inline(always)]
-fn with_core<C: OfCore>(
-    shape: ConvexShape<'_>,
-    hull: &OnceLock<HullPoints>,
-    compute: C,
-) -> Option<C::Output> {
+fn with_core<C: OfCore>(shape: ConvexShape<'_>, hull: &KeptHull, compute: C) -> Option<C::Output> {
     let shape = match shape {
         ConvexShape::Ball(_) => return Some(compute.of(&PointSupport(DVec3::ZERO))),
         ConvexShape::HalfSpace(_) => return None,
         ConvexShape::Cuboid(cuboid) => return Some(compute.of(&cuboid_support(cuboid))),
         ConvexShape::Features { shape, .. } => shape,
     };
-    let hull_of = |shape: &ConvexPolyhedron| hull.get_or_init(|| hull_points(shape));
     Some(match shape.as_typed_shape() {
         TypedShape::Segment(shape) => compute.of(&segment_support(shape)),
         TypedShape::Capsule(shape) => compute.of(&segment_support(&shape.segment)),
@@ -148,8 +165,8 @@ fn with_core<C: OfCore>(
         TypedShape::Cone(shape) => compute.of(&cone_support(shape)),
         TypedShape::RoundCone(shape) => compute.of(&cone_support(&shape.inner_shape)),
         TypedShape::RoundCuboid(shape) => compute.of(&cuboid_support(&shape.inner_shape)),
-        TypedShape::ConvexPolyhedron(shape) => compute.of(hull_of(shape)),
-        TypedShape::RoundConvexPolyhedron(shape) => compute.of(hull_of(&shape.inner_shape)),
+        TypedShape::ConvexPolyhedron(shape) => compute.of(hull.of(shape)),
+        TypedShape::RoundConvexPolyhedron(shape) => compute.of(hull.of(&shape.inner_shape)),
         _ => return None,
     })
 }
@@ -176,18 +193,13 @@ fn cone_support(cone: &Cone) -> ConeSupport {
     ConeSupport { half_height, radius }
 }
 
-/// Points of a hull whose depth is found by search, where a few triangles cross it.
-pub(super) fn searched_hull(shape: ConvexShape<'_>) -> Option<HullPoints> {
-    shape.polyhedron().map(|shape| HullPoints::without_faces(shape.points().iter().copied()))
-}
-
-fn hull_points(shape: &ConvexPolyhedron) -> HullPoints {
+/// Returns the faces of a polyhedron, cut into triangles.
+fn fans(shape: &ConvexPolyhedron) -> impl Iterator<Item = [u32; 3]> {
     let corners = shape.vertices_adj_to_face();
-    let fans = shape.faces().iter().flat_map(|face| {
+    shape.faces().iter().flat_map(|face| {
         let start = face.first_vertex_or_edge as usize;
         let corners = &corners[start..start + face.num_vertices_or_edges as usize];
         let (first, rest) = corners.split_first().unwrap_or((&0, &[]));
         rest.windows(2).map(|ends| [*first, ends[0], ends[1]])
-    });
-    HullPoints::with_faces(shape.points().iter().copied(), fans)
+    })
 }

@@ -2,12 +2,12 @@
 
 use std::sync::OnceLock;
 
+use super::contact::KeptHull;
 use glamx::Vec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::NormalConstraints;
 use parry3d::shape::{CompositeShape, ConvexPolyhedron, Shape};
-use sbbk_core::contact::convex::HullPoints;
 use sbbk_core::volumes::Sphere;
 
 use super::shape::{ConvexShape, Extent, ball_around};
@@ -121,7 +121,7 @@ impl Token {
 pub(crate) struct PartData {
     token: Option<Token>,
     /// Points of polyhedra, computed at first use.
-    hulls: Vec<OnceLock<HullPoints>>,
+    hulls: Vec<KeptHull>,
     /// Computed at first use: all at once take a fifth of the first query of 24 parts.
     extents: Vec<OnceLock<Extent>>,
     /// A ball around the whole.
@@ -153,12 +153,12 @@ impl PartData {
             Parts::One(shape) => {
                 let extent = Extent::of(shape);
                 (self.ball, self.magnitude) = (extent.ball(), extent.size());
-                self.hulls = vec![OnceLock::new()];
+                self.hulls = vec![KeptHull::with_faces()];
                 self.extents = vec![OnceLock::from(extent)];
             }
             Parts::Many(_, ListToken { count, ends: [min, max], .. }) => {
                 self.ball = ball_around(min, max);
-                self.hulls = vec![OnceLock::new(); count];
+                self.hulls = vec![KeptHull::with_faces(); count];
                 self.extents = vec![OnceLock::new(); count];
                 let offsets = (0..count as u32).filter_map(|part| {
                     parts.with(part, |part| part.pose.map_or(0.0, |pose| pose.translation.length()))
@@ -174,7 +174,7 @@ impl PartData {
     }
 
     /// Returns the points of a polyhedron.
-    pub(super) fn hull(&self, part: u32) -> &OnceLock<HullPoints> {
+    pub(super) fn hull(&self, part: u32) -> &KeptHull {
         &self.hulls[part as usize]
     }
 

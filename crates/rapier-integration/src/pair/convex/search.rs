@@ -1,18 +1,17 @@
 //! Queries of a mesh and one convex shape: nearest, touching and deepest triangles.
 
 use std::ops::ControlFlow;
-use std::sync::OnceLock;
 
 use glamx::DVec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::partitioning::BvhNode;
 use parry3d::shape::Shape;
-use sbbk_core::contact::convex::{ConvexContact, HullPoints};
+use sbbk_core::contact::convex::ConvexContact;
 use sbbk_core::traverse::{Placement, TestedBox};
 use sbbk_core::volumes::Sphere;
 
-use super::contact::{core_contact, core_touches, searched_hull};
+use super::contact::{KeptHull, core_contact, core_support, core_touches};
 use super::near::{gap_of, time_of, triangles_near};
 use super::pair::ConvexPair;
 use super::parts::{Part, Parts};
@@ -37,7 +36,7 @@ pub(crate) struct ConvexSearch<'a> {
     pub(crate) placed: PlacedPart,
     /// The shape in the frame of the mesh.
     pub(super) pose_in_mesh: Pose,
-    pub(super) hull: OnceLock<HullPoints>,
+    pub(super) hull: KeptHull,
 }
 
 /// A triangle of the mesh and its contact.
@@ -68,6 +67,22 @@ impl FoundTriangle {
     }
 }
 
+/// The deepest triangle so far.
+struct Deepest {
+    found: FoundTriangle,
+    /// Least coordinate of the shape along the normal of the contact.
+    lowest: f64,
+}
+
+impl Deepest {
+    /// Returns the gap between a triangle and the shape along the normal of this contact. No distance is less, as the
+    /// distance is the greatest gap of all directions.
+    fn gap(&self, corners: &[DVec3; 3]) -> f64 {
+        let heights = corners.map(|corner| self.found.contact.normal.dot(corner));
+        self.lowest - heights.into_iter().fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
 impl<'a> ConvexSearch<'a> {
     /// Returns `None` if `shape`, the shape of the pair, has parts.
     pub(crate) fn new(pair: &ConvexPair<'a>, shape: &'a dyn Shape) -> Option<Self> {
@@ -75,15 +90,8 @@ impl<'a> ConvexSearch<'a> {
         let part = Part { pose: None, shape: convex, cone: None };
         let placed = PlacedPart::new(0, &part, pair, Extent::of(convex));
         let pose_in_mesh = pair.mesh_place.shape_in_mesh(&pair.pose.pos12);
-        let hull = OnceLock::new();
+        let hull = KeptHull::default();
         Some(Self { mesh: pair.mesh, shape, convex, placed, pose_in_mesh, hull })
-    }
-
-    /// Finds depths of hulls by search from now on, as few triangles are deep at a start.
-    pub(crate) fn search_depths(&self) {
-        if let Some(hull) = searched_hull(self.convex) {
-            self.hull.get_or_init(|| hull);
-        }
     }
 
     /// Moves shape 2 to a placement in the frame of shape 1.
@@ -140,22 +148,42 @@ impl<'a> ConvexSearch<'a> {
             let nearest = self.nearest(limit)?;
             return if nearest.is_touching { self.deepest(0.0) } else { Some(nearest) };
         }
-        let mut deepest = None::<FoundTriangle>;
-        self.within(limit, |found| {
-            if deepest.is_none_or(|deepest| found.contact.distance < deepest.contact.distance) {
-                deepest = Some(found);
+        let mut deepest = None::<Deepest>;
+        self.visit_near(limit, |triangle| {
+            let is_shallow = |deepest: &Deepest| {
+                let corners = self.placed.in_part(self.mesh.corners(triangle));
+                deepest.gap(&corners) >= deepest.found.contact.distance
+            };
+            if deepest.as_ref().is_some_and(is_shallow) {
+                return;
+            }
+            let found = self.triangle(&self.placed, triangle, limit);
+            let least = deepest.as_ref().map_or(f64::INFINITY, |d| d.found.contact.distance);
+            if let Some(found) = found.filter(|found| found.contact.distance < least) {
+                deepest = Some(Deepest { found, lowest: self.lowest(found.contact.normal) });
             }
         });
-        deepest
+        deepest.map(|deepest| deepest.found)
+    }
+
+    /// Returns the least coordinate of the shape along a direction in its frame.
+    fn lowest(&self, direction: DVec3) -> f64 {
+        let support = core_support(self.convex, &self.hull, -direction);
+        let radius = f64::from(self.convex.radius());
+        support.map_or(f64::NEG_INFINITY, |point| direction.dot(point) - radius)
     }
 
     /// Calls `found` with the triangles that touch or are within `limit`.
     pub(crate) fn within(&self, limit: f64, mut found: impl FnMut(FoundTriangle)) {
+        self.visit_near(limit, |triangle| {
+            self.triangle(&self.placed, triangle, limit).into_iter().for_each(&mut found);
+        });
+    }
+
+    fn visit_near(&self, limit: f64, mut visit: impl FnMut(u32)) {
         let margin = (limit.max(0.0) as Real).next_up();
         triangles_near(&self.placed, self.convex, &self.mesh, margin, (), |triangle| {
-            if let Some(triangle) = self.triangle(&self.placed, triangle, limit) {
-                found(triangle);
-            }
+            visit(triangle);
             ControlFlow::Continue(())
         });
     }

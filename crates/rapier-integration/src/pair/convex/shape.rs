@@ -109,6 +109,12 @@ impl Extent {
         let (shape_type, radius) = (ShapeType::Ball, shape.radius());
         let [min, max, skew] = [Vec3::ZERO; 3];
         let point = Self { shape_type, radius, min, max, skew };
+        if let Some(hull) = shape.polyhedron() {
+            let points = || hull.points().iter().copied();
+            let min = points().fold(Vec3::INFINITY, Vec3::min);
+            let max = points().fold(Vec3::NEG_INFINITY, Vec3::max);
+            return Self { shape_type: ShapeType::ConvexPolyhedron, min, max, ..point };
+        }
         match shape {
             ConvexShape::Ball(_) => point,
             ConvexShape::HalfSpace(half_space) => {
