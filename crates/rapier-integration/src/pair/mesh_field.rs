@@ -34,9 +34,9 @@ use super::field::{Field, FieldToken};
 use super::inside::InsideTest;
 use super::pose::{MeshPlace, PairPose};
 use super::query::{Moving, Pair};
+use super::ranges::{filter_distance, reach};
 use super::reduce::PatchPlan;
 use super::state::Candidate;
-use super::surface::{filter_distance, reach};
 use super::triangle_shapes::{Cones, DescentMemory, Hint, TriangleShapes};
 use super::triangles::TriangleQuery;
 use crate::mesh::{

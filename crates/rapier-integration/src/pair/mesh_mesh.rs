@@ -17,9 +17,9 @@ use super::far::are_few;
 use super::inside::InsideTest;
 use super::pose::PairPose;
 use super::query::{Moving, Pair};
+use super::ranges::{filter_distance, filter_unit, lateral_culling, reach};
 use super::reduce::PatchPlan;
 use super::state::Candidate;
-use super::surface::{filter_distance, filter_unit, lateral_culling, reach};
 use super::triangle_contacts::in_local;
 use super::triangle_shapes::{
     Cones, DescentChunk, DescentMemory, Hint, TriangleHit, TriangleShapes, TriangleSurfaceContact,

@@ -8,6 +8,7 @@
 //! | [`triangles`], [`triangle_shapes`] | contacts of these kinds, in one pass or two |
 //! | [`chunks`] | chunks of a heavy pair, on several threads |
 //! | [`bvh_descent`] | candidates from Parry's BVHs |
+//! | [`ranges`] | how far contacts are searched and filtered |
 //! | [`far`] | contacts beyond the reach |
 //! | [`surface`], [`borders`], [`islands`], [`passed`], [`inside`] | contacts of surfaces from contacts of triangles |
 //! | [`deep`], [`contour`] | contacts of solids deep in each other |
@@ -30,6 +31,7 @@ mod mesh_mesh;
 mod passed;
 mod pose;
 mod query;
+mod ranges;
 mod reduce;
 mod state;
 mod surface;

@@ -14,21 +14,15 @@
 use glamx::{DVec3, Vec3};
 use parry3d::math::Real;
 use sbbk_core::contact::{Feature, ManifoldPoints, TriangleContact, penetration_out_of_solid};
-use sbbk_core::leaf::LateralCulling;
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Side};
 
 use super::islands::{Crossing, OverlapIslands, SheetSide};
 use super::pose::PairPose;
-use super::reduce::FILTERED;
+use super::ranges::{DISTANT, NEAR_NORMAL, near};
 use super::triangle_contacts::in_local;
 use super::triangle_shapes::{ContactSource, TriangleShapes, TriangleSurfaceContact};
 use crate::mesh::BEHIND;
-
-/// Greatest [`reach`] of fine meshes in [`TriangleShapes::filter_distance`]s: 0.04 radii. A body of one length unit has a
-/// radius of half a unit, and Rapier predicts 0.02 units by default. Higher: fine meshes cost more;
-/// lower: bodies come deeper into others before they meet.
-const REACH: f64 = 0.4;
 
 /// Greatest depth of a contact of the first pass, in least translations of its triangles or, if
 /// more, in prediction distances. Parry's number for constrained normals. Higher: bodies are pushed
@@ -40,21 +34,12 @@ const SHALLOW: f64 = 5.0;
 /// ground fast fall out below.
 const LEAN: f64 = 0.33;
 
-/// Distance in prediction distances beyond which a contact of edges or vertices needs a normal near
-/// both triangle normals. Higher: gears are braked by edges that pass each other; lower: edges meet
-/// with less warning.
-const DISTANT: f64 = 0.25;
-
-/// Least cosine between the normal of a [`DISTANT`] contact and both triangle normals. Higher:
-/// smooth bodies lose contacts; lower: gears are braked.
-const NEAR_NORMAL: f64 = 0.87;
-
 /// Least cosine between the normals of an upright contact and of its face. Higher: contacts are turned
 /// in vain; lower: slanted contacts keep their normals.
 const UPRIGHT: f64 = 0.999_999;
 
 /// Depth up to which a shape counts as above the plane of a border triangle. In prediction distances,
-/// or in [`filter_distance`]s if these are less. Higher: rims do not carry what overhangs them.
+/// or in [`filter_distance`](TriangleShapes::filter_distance)s if these are less. Higher: rims do not carry what overhangs them.
 /// Lower: bodies stumble where meshes meet.
 pub(super) const LIP: f64 = 0.1;
 
@@ -65,47 +50,6 @@ const THIN: f64 = 0.03;
 /// Distance, in sizes of the triangles, below which rounding decides on which side of each other these
 /// are. Higher: contacts are lost; lower: triangles that touch count as crossing.
 const TOUCHING: f64 = 1.0e-9;
-
-/// Returns [`TriangleShapes::filter_distance`] from the radius of the smaller shape.
-pub(super) fn filter_distance(has_surface: bool, radius: Real) -> f64 {
-    if has_surface { f64::from(FILTERED * radius) } else { f64::INFINITY }
-}
-
-/// Returns the distance up to which all contacts of two meshes are found.
-pub(super) fn reach(
-    prediction: Real,
-    filter_distance: f64,
-    are_few: impl FnOnce() -> bool,
-) -> Real {
-    let most = (REACH * filter_distance) as Real;
-    // A prediction distance that is NaN finds nothing.
-    if most < prediction && !are_few() { most } else { prediction }
-}
-
-/// Returns the unit of the filter: the prediction distance, or less for small shapes.
-pub(super) fn filter_unit(pose: &PairPose, filter_distance: f64) -> f64 {
-    f64::from(pose.prediction).min(filter_distance)
-}
-
-/// Returns the [`filter_unit`] of two shapes.
-fn near(shapes: &impl TriangleShapes, pose: &PairPose) -> f64 {
-    filter_unit(pose, shapes.filter_distance())
-}
-
-/// Returns a test for pairs of triangles that a descent within `margin` finds and that only
-/// [pass by](SurfaceFilter::passes_by) while its candidates serve.
-pub(super) fn lateral_culling(
-    shapes: &impl TriangleShapes,
-    pose: &PairPose,
-    margin: Real,
-) -> Option<LateralCulling> {
-    let reach = shapes.reach();
-    let is_filtered = f64::from(reach) <= shapes.filter_distance();
-    (shapes.has_surface() && is_filtered).then(|| {
-        let (distance, travel) = ((DISTANT * near(shapes, pose)) as Real, margin - reach);
-        LateralCulling::new(distance, NEAR_NORMAL as Real, reach, travel)
-    })
-}
 
 /// Result of the first pass for two triangles.
 pub(super) enum Verdict {

@@ -16,8 +16,9 @@ use super::placed::PlacedPart;
 use super::points::{FACE, PointPair, contact_points, ray_length};
 use super::shape::ConvexShape;
 use crate::pair::query::ContactPoints;
+use crate::pair::ranges::{filter_distance, filter_unit};
 use crate::pair::reduce::ContactSummary;
-use crate::pair::surface::{LIP, filter_distance, filter_unit};
+use crate::pair::surface::LIP;
 
 /// A triangle and a part at the pose of a query.
 pub(super) struct TrianglePartPair<'a> {

@@ -1,0 +1,174 @@
+use super::*;
+
+type Contact = (DVec3, f64);
+
+fn crossing(pair: [u32; 2], contact: Option<&Contact>, sheet: Option<SheetSide>) -> Crossing {
+    let (normal, depth) = contact.copied().unwrap_or_default();
+    let is_reliable = contact.is_some();
+    Crossing {
+        pair,
+        is_crossing: true,
+        greatest: 1.0,
+        is_reliable,
+        normal,
+        depth,
+        outward: [sheet.is_none().then_some(1.0), Some(1.0)],
+        sheet,
+    }
+}
+
+/// Would catch islands that are not joined through common triangles, and pairs that a second
+/// pass changes without need.
+#[test]
+fn islands_without_a_reliable_contact_need_support() {
+    let good = (DVec3::Y, 0.1);
+    let mut islands = OverlapIslands::default();
+    for _ in 0..2 {
+        islands.clear();
+        // One island is held by a contact far along it, one is not.
+        for (pair, contact) in
+            [([1, 1], None), ([1, 2], None), ([3, 2], Some(&good)), ([7, 7], None), ([7, 8], None)]
+        {
+            islands.add(crossing(pair, contact, None));
+        }
+        assert!(islands.finish_first_pass(None));
+        let held = [[1, 1], [1, 2], [3, 2]].map(|pair| islands.needs_support(pair));
+        assert_eq!(held, [false; 3]);
+        assert!(islands.needs_support([7, 7]) && islands.needs_support([7, 8]));
+        assert!(!islands.needs_support([9, 9]), "it does not cross");
+        let settled = [[3, 2], [9, 9], [1, 1], [7, 8]].map(|pair| islands.is_final(pair));
+        assert_eq!(settled, [true, true, false, false]);
+    }
+    islands.clear();
+    islands.add(crossing([1, 1], Some(&good), None));
+    assert!(!islands.finish_first_pass(None), "all is good");
+    islands.clear();
+    islands.add(crossing([1, 1], None, None));
+    islands.add(crossing([1, 2], Some(&good), None));
+    assert!(!islands.finish_first_pass(None), "the island is held");
+}
+
+/// Would catch a thin body that is pushed both ways, whichever of the two meshes it is.
+#[test]
+fn of_two_sides_of_a_thin_body_the_nearer_one_counts() {
+    for pair in [|thin, other| [thin, other], |thin, other| [other, thin]] {
+        let mut islands = OverlapIslands::default();
+        islands.add(crossing(pair(5, 1), Some(&(DVec3::Y, 0.1)), None));
+        islands.add(crossing(pair(5, 2), Some(&(-DVec3::Y, 0.3)), None));
+        assert!(islands.finish_first_pass(None));
+        assert!(islands.is_final(pair(5, 1)) && !islands.is_final(pair(5, 2)));
+    }
+}
+
+/// Would catch a large island that turns about its only contact, and added contacts that push
+/// against reliable ones.
+#[test]
+fn one_contact_does_not_support_a_large_island() {
+    let good = (DVec3::Y, 0.1);
+    let needs_support = |pairs: u32, contacts: u32| {
+        let mut islands = OverlapIslands::default();
+        for i in 0..pairs {
+            islands.add(crossing([1, i], Some(&good).filter(|_| i < contacts), None));
+        }
+        let needs_more = islands.finish_first_pass(None);
+        assert_eq!(
+            needs_more,
+            islands.support.get(&(0, 1)).is_some_and(|support| !support.is_enough())
+        );
+        assert!(!needs_more || islands.is_final([1, 0]));
+        assert!(islands.agrees([1, 0], DVec3::new(1.0, 0.1, 0.0)));
+        assert!(!islands.agrees([1, 0], -DVec3::Y));
+        needs_more && islands.needs_support([1, pairs - 1])
+    };
+    assert_eq!([8, 9].map(|pairs| needs_support(pairs, 1)), [false, true]);
+    assert_eq!([16, 17].map(|pairs| needs_support(pairs, 2)), [false, true]);
+}
+
+/// Would catch a body that pierces a solid and is held there, and contacts along the separation
+/// direction that are dropped.
+#[test]
+fn of_contacts_both_ways_those_along_the_way_stay() {
+    let islands = |normals: &[DVec3]| {
+        let mut islands = OverlapIslands::default();
+        for (i, &normal) in (1..).zip(normals) {
+            islands.add(crossing([i, i], Some(&(normal, 0.1)), None));
+        }
+        islands
+    };
+    let aslant = DVec3::new(0.9, -0.4, 0.0).normalize();
+    assert!(!islands(&[DVec3::Y, DVec3::Y, aslant]).is_undecided());
+    assert!(!islands(&[]).is_undecided());
+    let mut both = islands(&[DVec3::Y, -DVec3::Y, aslant]);
+    assert!(both.is_undecided() && !both.has_separation());
+    assert!(both.finish_first_pass(Some(DVec3::Y)) && both.has_separation());
+    assert_eq!([1, 2, 3].map(|i| both.is_final([i, i])), [true, false, true]);
+    assert!(both.needs_support([2, 2]) && !both.agrees([2, 2], -DVec3::Y));
+    assert!(both.agrees([2, 2], DVec3::X) && both.agrees([2, 2], aslant));
+    let mut none = OverlapIslands::default();
+    none.add(crossing([1, 1], None, None));
+    assert!(none.is_undecided(), "none is good");
+}
+
+/// Would catch a thin body that is pushed both ways, or by its farther side.
+#[test]
+fn of_two_sides_that_push_against_each_other_the_nearer_one_stays() {
+    let both = |up: f64, down: f64, lean: f64| {
+        let mut islands = OverlapIslands::default();
+        let leaning = DVec3::new(lean.sin(), -lean.cos(), 0.0);
+        islands.add(crossing([1, 1], Some(&(DVec3::Y, up)), None));
+        islands.add(crossing([1, 2], Some(&(leaning, down)), None));
+        islands.finish_first_pass(None).then(|| [[1, 1], [1, 2]].map(|pair| islands.is_final(pair)))
+    };
+    assert_eq!(both(0.1, 0.3, 0.0), Some([true, false]));
+    assert_eq!(both(0.3, 0.1, 0.5), Some([false, true]));
+    assert_eq!(both(0.2, 0.2, 0.0), None, "neither is nearer");
+    assert_eq!(both(0.1, 0.3, 1.2), None, "they do not push against each other");
+}
+
+/// Would catch a thin body that is held in a sheet or goes to the wrong side, and contacts lost
+/// though all push to one side.
+#[test]
+fn an_island_pushed_to_both_sides_of_a_sheet_keeps_one() {
+    let pushed = |heights: [f64; 2], normals: [DVec3; 2]| {
+        let mut islands = OverlapIslands::default();
+        for (i, (height, normal)) in (1..).zip(heights.into_iter().zip(normals)) {
+            let sheet = Some(SheetSide { shape: Some(0), away: DVec3::Y, height });
+            islands.add(crossing([i, 1], Some(&(normal, 0.1)), sheet));
+        }
+        // Far from these, all the same way.
+        let sheet = Some(SheetSide { shape: Some(0), away: DVec3::Y, height: 1.0 });
+        islands.add(crossing([7, 7], Some(&(-DVec3::Y, 0.1)), sheet));
+        islands.finish_first_pass(None);
+        [[1, 1], [2, 1], [7, 7]].map(|pair| islands.is_final(pair))
+    };
+    let both = [DVec3::Y, -DVec3::Y];
+    assert_eq!(pushed([0.2, -0.1], both), [true, false, true]);
+    assert_eq!(pushed([0.1, -0.2], both), [false, true, true]);
+    assert_eq!(pushed([-0.1; 2], [DVec3::Y; 2]), [true; 3]);
+}
+
+/// Would catch a thin solid that the few good contacts of a large island push through a sheet, and
+/// others that do so.
+#[test]
+fn few_contacts_do_not_push_through_a_sheet() {
+    let down = (-DVec3::Y, 0.1);
+    let finish = |height: f64, pairs: u32| {
+        let mut islands = OverlapIslands::default();
+        for i in 0..pairs {
+            let good = Some(&down).filter(|_| i == 0);
+            islands.add(crossing(
+                [1, i],
+                good,
+                Some(SheetSide { shape: Some(0), away: DVec3::Y, height }),
+            ));
+        }
+        let needs_more = islands.finish_first_pass(None);
+        (needs_more && islands.needs_support([1, 0]), islands.is_final([1, 0]), islands)
+    };
+    let (is_lost, is_final, mut islands) = finish(0.01, SUPPORTED + 1);
+    assert!(is_lost && !is_final);
+    assert!(islands.agrees([1, 0], DVec3::Y) && !islands.agrees([1, 0], -DVec3::Y));
+    let (is_lost, is_final, mut islands) = finish(-0.01, SUPPORTED + 1);
+    assert!(is_lost && is_final && !islands.agrees([1, 0], DVec3::Y));
+    assert!(!finish(0.01, SUPPORTED).0, "it is held");
+}
