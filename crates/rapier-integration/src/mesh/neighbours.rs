@@ -200,6 +200,11 @@ impl RayTriangles for MeshRays<'_> {
         corners.map(|corner| self.0.vertices()[corner as usize].as_dvec3())
     }
 
+    fn near(&self, triangle: u32, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
+        let bounds = BvhNode::leaf(self.0.triangle(triangle).local_aabb(), 0);
+        let _ = self.0.bvh().leaves(|node| node.intersects(&bounds)).try_for_each(visit);
+    }
+
     fn along(&self, start: DVec3, direction: DVec3, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
         let inverse = direction.recip();
         let is_met = |node: &BvhNode| {

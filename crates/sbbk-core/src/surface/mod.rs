@@ -4,6 +4,7 @@
 //! corner of the body, or lies within a flat face. A [`Surface`] stores the neighbours across each edge, of
 //! welded vertices, and derives from rays if the triangles bound a solid.
 
+mod meeting;
 mod one_ring;
 mod sides;
 mod slopes;

@@ -13,6 +13,7 @@ use std::ops::ControlFlow;
 
 use glamx::DVec3;
 
+use super::meeting::{depth_within, meeting};
 use super::slopes::PlaceMemo;
 use super::triangle::{area_vector, longest_side};
 
@@ -23,6 +24,9 @@ pub trait RayTriangles {
 
     /// The corners of a triangle.
     fn corners(&self, triangle: u32) -> [DVec3; 3];
+
+    /// Calls `visit` with all triangles whose boxes meet the box of a triangle, until it breaks.
+    fn near(&self, triangle: u32, visit: &mut dyn FnMut(u32) -> ControlFlow<()>);
 
     /// Calls `visit` with all triangles that the ray from `start` may meet, until it breaks.
     fn along(&self, start: DVec3, direction: DVec3, visit: &mut dyn FnMut(u32) -> ControlFlow<()>);
@@ -48,7 +52,7 @@ pub enum Side {
     Outer,
     /// The body in front, nothing behind.
     Turned,
-    /// The body on both sides: a wall within, or a part of another component.
+    /// The body on both sides, everywhere: a wall within, or a part of another component.
     Inner,
     /// Nothing on either side.
     Sheet,
@@ -83,6 +87,17 @@ const STEEP: f64 = 0.5;
 /// where rays start.
 const ANY: f64 = 0.02;
 
+/// Distance of tested points from a triangle that meets another, as a share of the longest side. Higher: narrow parts outside
+/// have no contacts. Lower: rays start on that triangle.
+const BESIDE: f64 = 10.0 * OFFSET;
+
+/// Places of tested points along the segment in which two triangles meet. More: slower. Fewer: corners outside are missed.
+const ALONG: [f64; 3] = [0.05, 0.5, 0.95];
+
+/// Triangles that meet another and are tested at most. A triangle that meets more is a face. Higher: slower. Lower: walls that
+/// others meet have contacts.
+const MOST_MEETINGS: usize = 64;
+
 /// Offset in the sequence of ray directions between successive triangles. Fewer: rays of neighbours are
 /// alike.
 const SHIFT: u32 = 17;
@@ -102,7 +117,49 @@ pub fn side(triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> S
     }
     let second = sample(triangles, triangle, 1, STEEP, memo);
     let is_doubted = second != first && second == sample(triangles, triangle, 2, STEEP, memo);
-    if is_doubted { second } else { first }
+    let side = if is_doubted { second } else { first };
+    // Two rays must agree, as many pass where boxes are flush.
+    let is_inner_at = |start| {
+        let rays = (0..2).filter_map(|i| Rays::new(triangles, triangle, start, i, STEEP));
+        rays.map(|rays| side_of_rays(&rays, memo)).any(|side| side == Side::Inner)
+    };
+    let is_face = side == Side::Inner && is_partly_outside(triangles, triangle, is_inner_at);
+    if is_face { Side::Outer } else { side }
+}
+
+/// Returns true if part of a triangle may be outside of the body, though its middle is within. The border of that part runs
+/// along triangles that meet this one, so points on both sides of these are tested. `is_inner_at` tells for a
+/// point.
+fn is_partly_outside(
+    triangles: &impl RayTriangles,
+    triangle: u32,
+    is_inner_at: impl Fn(DVec3) -> bool,
+) -> bool {
+    let corners = triangles.corners(triangle);
+    let Some(normal) = area_vector(&corners).try_normalize() else { return false };
+    let size = longest_side(&corners);
+    let is_outside =
+        |point: DVec3| depth_within(&corners, normal, point) > 0.0 && !is_inner_at(point);
+    let mut tested = 0;
+    let mut meets_outside = |other: u32| {
+        let other = triangles.corners(other);
+        let Some(([start, end], across)) = meeting(&corners, &other, OFFSET * size) else {
+            return false;
+        };
+        tested += 1;
+        let beside = BESIDE * size * across;
+        tested > MOST_MEETINGS
+            || ALONG.into_iter().any(|at| {
+                let point = start.lerp(end, at);
+                is_outside(point + beside) || is_outside(point - beside)
+            })
+    };
+    let mut is_partly_outside = false;
+    triangles.near(triangle, &mut |other| {
+        is_partly_outside = other != triangle && meets_outside(other);
+        if is_partly_outside { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    is_partly_outside
 }
 
 /// Triangles that are considered for samples, evenly spread over the mesh. Higher: a large mesh takes
@@ -170,18 +227,31 @@ fn sample(
     steep: f64,
     memo: &PlaceMemo,
 ) -> Side {
-    let Some(rays) = Rays::new(triangles, triangle, i, steep) else { return Side::Sheet };
+    let start = middle(&triangles.corners(triangle));
+    let rays = Rays::new(triangles, triangle, start, i, steep);
+    rays.map_or(Side::Sheet, |rays| side_of_rays(&rays, memo))
+}
+
+fn middle([a, b, c]: &[DVec3; 3]) -> DVec3 {
+    (*a + *b + *c) / 3.0
+}
+
+/// Returns what rays find. Walls within the body count as nothing, unless the rays find a face with them.
+fn side_of_rays<T: RayTriangles>(rays: &Rays<'_, T>, memo: &PlaceMemo) -> Side {
     let found = rays.side(|_| true);
     if found == Side::Outer {
         return found;
     }
-    // Walls within the body count as nothing.
-    rays.side(|other| {
-        !memo.is_wall(other, || {
-            Rays::new(triangles, other, 0, STEEP)
-                .is_some_and(|rays| rays.side(|_| true) == Side::Inner)
-        })
-    })
+    let triangles = rays.triangles;
+    let is_wall = |other: u32| {
+        let is_inner_at = |start| {
+            let rays = Rays::new(triangles, other, start, 0, STEEP);
+            rays.is_some_and(|rays| rays.side(|_| true) == Side::Inner)
+        };
+        is_inner_at(middle(&triangles.corners(other)))
+            && !is_partly_outside(triangles, other, is_inner_at)
+    };
+    rays.side(|other| !memo.is_wall(other, || is_wall(other)))
 }
 
 /// A triangle that a ray meets.
@@ -204,9 +274,9 @@ struct Rays<'a, T> {
 }
 
 impl<'a, T: RayTriangles> Rays<'a, T> {
-    /// Rays number `i` of a triangle; `None` for one without an area.
-    fn new(triangles: &'a T, triangle: u32, i: u32, steep: f64) -> Option<Self> {
-        let corners @ [a, b, c] = triangles.corners(triangle);
+    /// Rays number `i` from a point of a triangle; `None` for one without an area.
+    fn new(triangles: &'a T, triangle: u32, start: DVec3, i: u32, steep: f64) -> Option<Self> {
+        let corners = triangles.corners(triangle);
         let up = area_vector(&corners).try_normalize()?;
         let key = f64::from(i) + f64::from(SHIFT * (triangle % SHIFTS));
         let [u, v] = [1, 2].map(|dimension| sequence(key, dimension));
@@ -215,7 +285,7 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
         let (sin, cos) = (TAU * u).sin_cos();
         let flat = (1.0 - height * height).max(0.0).sqrt();
         let to_front = height * up + flat * (cos * across + sin * along);
-        let (start, skipped) = ((a + b + c) / 3.0, OFFSET * longest_side(&corners) / height);
+        let skipped = OFFSET * longest_side(&corners) / height;
         Some(Self { triangles, start, to_front, skipped, hits: Default::default() })
     }
 

@@ -13,6 +13,7 @@ mod long_rings;
 mod penetration;
 mod placement;
 mod query;
+mod sides;
 mod slack;
 #[path = "../support/mod.rs"]
 mod support;

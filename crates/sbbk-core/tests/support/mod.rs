@@ -49,6 +49,10 @@ impl RayTriangles for Soup {
         self.triangles[triangle as usize].map(|corner| self.vertices[corner as usize].as_dvec3())
     }
 
+    fn near(&self, _: u32, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
+        let _ = (0..self.count()).try_for_each(visit);
+    }
+
     fn along(&self, _: DVec3, _: DVec3, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
         let _ = (0..self.count()).try_for_each(visit);
     }
