@@ -1,7 +1,7 @@
 //! Meshes from OBJ and STL files.
 
-use std::io;
 use std::path::Path;
+use std::{fs, io};
 
 use glamx::Vec3;
 use mesh_loader::Loader;
@@ -19,16 +19,12 @@ pub fn load(path: &Path) -> Result<Mesh, FileError> {
 }
 
 fn read(path: &Path) -> Result<Mesh, String> {
-    let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-    let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
-    let loader = Loader::default();
-    // The second argument is asked for materials, which are not needed.
-    let scene = match &*extension {
-        "obj" => loader
-            .load_obj_from_slice_with_reader(&bytes, path, |_| Err(io::ErrorKind::NotFound.into())),
-        "stl" => loader.load_stl_from_slice(&bytes, path),
-        _ => return Err("unknown file extension; known are obj and stl".to_owned()),
+    // Materials are not needed.
+    let reader = |file: &Path| match file == path {
+        true => fs::read(file),
+        false => Err(io::ErrorKind::NotFound.into()),
     };
+    let scene = Loader::default().load_with_reader(path, reader);
     let scene = scene.map_err(|error| error.to_string())?;
     let parts = scene.meshes.into_iter().map(|mesh| {
         let vertices = mesh.vertices.into_iter().map(Vec3::from_array).collect();
