@@ -79,8 +79,6 @@ pub struct EverydayPlan {
     pub heads: usize,
     /// Segments around the tubes of tori, each time for a pile of its own.
     pub tubes: Vec<u32>,
-    /// Detail of the heads on a floor.
-    pub head_detail: u32,
     /// Cells of half a unit along a side of the terrains for single queries.
     pub query_cells: Vec<u32>,
 }
@@ -104,7 +102,6 @@ impl EverydayPlan {
             deformable_cells: 256,
             heads: 300,
             tubes: vec![13, 26, 52, 104],
-            head_detail: 60,
             query_cells: vec![23, 100, 400, 1000],
         }
     }
@@ -124,7 +121,6 @@ impl EverydayPlan {
             small_meshes: 1000,
             heads: 100,
             tubes: vec![13, 26],
-            head_detail: 20,
             query_cells: vec![100, 400],
             ..Self::standard()
         }
@@ -203,8 +199,7 @@ impl Worlds<'_> {
             Group::Pile => self.measure(&[scenes::pile(plan.heads, plan.steps)]),
             Group::Fine => {
                 let tori = plan.tubes.iter().map(|&tube| scenes::tori(tube, plan.steps));
-                let heads = scenes::heads_on_floor(plan.head_detail, plan.steps);
-                self.measure(&tori.chain([heads, scenes::parts(plan.steps)]).collect::<Vec<_>>());
+                self.measure(&tori.chain([scenes::parts(plan.steps)]).collect::<Vec<_>>());
             }
             #[cfg(feature = "parallel")]
             Group::Threads => self.threads(),

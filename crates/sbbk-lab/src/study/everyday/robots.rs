@@ -42,7 +42,7 @@ pub(super) fn robots(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
         let robots: Vec<UrdfRobot> =
             (0..COUNT).map(|index| load(start(ground, bounds, index))).collect();
         let name = format!("{COUNT} robots from URDF, {name}");
-        named(DEFORMABLE, &name, ground, steps, move || {
+        named(DEFORMABLE, name, ground.triangle_count, steps, move || {
             let mut world = ground.world();
             let legs = robots.iter().flat_map(|robot| insert(&mut world, robot.clone()));
             let legs: Vec<Leg> = legs.collect();

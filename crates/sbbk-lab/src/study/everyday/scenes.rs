@@ -123,7 +123,7 @@ pub(super) fn bouncing(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
     const GRAVITY: f32 = 4.0;
     const SPEED: f32 = 24.0;
     let scene = |(name, shape): (&str, SharedShape)| {
-        named(SINGLE, &format!("a {name} bounces"), ground, steps, move || {
+        named(SINGLE, format!("a {name} bounces"), ground.triangle_count, steps, move || {
             let mut world = ground.world();
             let start = above(ground.size, [1.0, 1.0], 7.0);
             let body = RigidBodyBuilder::dynamic().translation(start).gravity_scale(GRAVITY);
@@ -143,7 +143,7 @@ pub(super) fn bouncing(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
 /// A ball and meshes that are carried over a terrain from one side to the other, in contact.
 pub(super) fn crossing(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
     let scene = |(name, shape): (&str, SharedShape)| {
-        named(SINGLE, &format!("a {name} crosses once"), ground, steps, move || {
+        named(SINGLE, format!("a {name} crosses once"), ground.triangle_count, steps, move || {
             let mut world = ground.world();
             let collider = ColliderBuilder::new(shape.clone());
             let (body, _) = world.insert(RigidBodyBuilder::dynamic(), collider);
@@ -162,7 +162,7 @@ pub(super) fn rolling_population(ground: &Ground, count: usize) -> Everyday<'_> 
     const AT_ONCE: usize = 150;
     const EACH_STEP: usize = 5;
     let name = format!("{count} small meshes come and go, {AT_ONCE} at once");
-    named(SINGLE, &name, ground, count / EACH_STEP, move || {
+    named(SINGLE, name, ground.triangle_count, count / EACH_STEP, move || {
         let mut random = Rand32::new(5);
         let mut bodies: VecDeque<RigidBodyHandle> = VecDeque::new();
         let (size, mut made) = (ground.size, 0);
@@ -189,7 +189,7 @@ pub(super) fn all_flags(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
     let scenes = [("50 balls", SharedShape::ball(0.5), 50), ("20 heads", head, 20)];
     let scene = |(name, shape, count)| {
         let build = move || ground.scattered(std::slice::from_ref(&shape), count);
-        named(DEFORMABLE, name, ground, steps, build)
+        named(DEFORMABLE, name, ground.triangle_count, steps, build)
     };
     scenes.map(scene).into()
 }
@@ -200,7 +200,7 @@ pub(super) fn sensors(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
     let sensors = |(place, height): (&str, f32)| {
         let sensor = ColliderBuilder::new(head.clone()).sensor(true);
         let sensor = sensor.active_events(ActiveEvents::COLLISION_EVENTS);
-        named(SENSORS, &format!("20 sensors {place} it"), ground, steps, move || {
+        named(SENSORS, format!("20 sensors {place} it"), ground.triangle_count, steps, move || {
             let mut world = ground.world();
             let poses = ground.poses(20, height, &mut Rand32::new(3));
             let bodies = poses.iter().map(|&pose| {
@@ -217,7 +217,8 @@ pub(super) fn sensors(ground: &Ground, steps: usize) -> Vec<Everyday<'_>> {
             })
         })
     };
-    let walk = named(SENSORS, "10 characters walk", ground, steps, || characters(ground));
+    let walk =
+        named(SENSORS, "10 characters walk", ground.triangle_count, steps, || characters(ground));
     let places = [("in", 0.3), ("near", 0.8), ("above", 2.0)];
     places.map(sensors).into_iter().chain([walk]).collect()
 }
@@ -266,48 +267,18 @@ pub(super) fn pile(heads: usize, steps: usize) -> Everyday<'static> {
 
 /// Thirty tori in a pile, with so many segments around the tube and three times as many along it.
 pub(super) fn tori(tube: u32, steps: usize) -> Everyday<'static> {
-    let torus = mesh::torus(1.0, 0.4, 3 * tube, tube);
-    let row = Row::new(FINE, "").key("scene", "30 tori in a pile");
-    let row = row.key("triangles", torus.triangle_count());
-    let pile = MonkeyPile::of(30, torus);
-    Everyday::new(row, steps, move || Driven::alone(pile.build().world))
-}
-
-/// Heads that fall on a floor of two triangles, with so many details.
-pub(super) fn heads_on_floor(detail: u32, steps: usize) -> Everyday<'static> {
-    const COUNT: u32 = 12;
-    let [head, floor] = [mesh::monkey_head_with(detail).scaled_to(1.2), mesh::floor(16.0, 1)];
-    let row = Row::new(FINE, "").key("scene", format!("{COUNT} heads on a floor"));
-    let row = row.key("triangles", head.triangle_count());
-    let [head, floor] = [&head, &floor].map(collider);
-    Everyday::new(row, steps, move || {
-        let place = |i| Vec3::new(2.0 * (i % 4) as f32 - 3.0, 1.0, 2.0 * (i / 4) as f32 - 2.0);
-        falling(&floor, (0..COUNT).map(|i| (place(i), &head)))
-    })
-}
-
-/// Bodies that fall on a ground, turned by chance.
-fn falling<'a>(
-    ground: &ColliderBuilder,
-    bodies: impl Iterator<Item = (Vec3, &'a ColliderBuilder)>,
-) -> Driven {
-    let (mut world, mut random) = (PhysicsWorld::new(), Rand32::new(5));
-    world.insert(RigidBodyBuilder::fixed(), ground.clone());
-    for (place, body) in bodies {
-        let pose = Pose3::from_parts(place, random::rotation(&mut random));
-        world.insert(RigidBodyBuilder::dynamic().pose(pose), body.clone());
-    }
-    Driven::alone(world)
+    let pile = MonkeyPile::of(30, mesh::torus(1.0, 0.4, 3 * tube, tube));
+    let triangles = pile.mesh.triangle_count();
+    let build = move || Driven::alone(pile.build().world);
+    named(FINE, "30 tori in a pile", triangles, steps, build)
 }
 
 /// A torus that slides along another one, both with so many segments around the tube.
 #[cfg(feature = "parallel")]
 pub(super) fn two_tori(tube: u32, steps: usize) -> Everyday<'static> {
     let torus = mesh::torus(1.0, 0.4, 3 * tube, tube);
-    let row = Row::new(FINE, "").key("scene", "a torus that slides along another");
-    let row = row.key("triangles", torus.triangle_count());
-    let torus = torus.shape();
-    Everyday::new(row, steps, move || {
+    let (triangles, torus) = (torus.triangle_count(), torus.shape());
+    named(FINE, "a torus that slides along another", triangles, steps, move || {
         let mut world = PhysicsWorld::new();
         // The body moves less than what Rapier takes for rest.
         world.integration_parameters.contact_recycling = false;
@@ -322,29 +293,34 @@ pub(super) fn two_tori(tube: u32, steps: usize) -> Everyday<'static> {
 
 /// Heads of 2 to 5 cm that fall into a bowl at Rapier's default length unit.
 pub(super) fn parts(steps: usize) -> Everyday<'static> {
-    const COUNT: u32 = 12;
+    const COUNT: usize = 12;
     let bowl = ColliderBuilder::new(mesh::vessel(0.15, 24, 0.3).shape());
     let head = mesh::monkey_head_with(6).centred();
-    let row = Row::new(FINE, "").key("scene", format!("{COUNT} heads of 2 to 5 cm in a bowl"));
-    let row = row.key("triangles", head.triangle_count());
-    let parts = (0..COUNT).map(|i| collider(&head.clone().scaled_to(0.02 + 0.01 * (i % 4) as f32)));
-    let parts: Vec<ColliderBuilder> = parts.collect();
-    Everyday::new(row, steps, move || {
-        let place = |i: u32| {
+    let triangles = head.triangle_count();
+    let part = |i: usize| collider(&head.clone().scaled_to(0.02 + 0.01 * (i % 4) as f32));
+    let parts: Vec<ColliderBuilder> = (0..COUNT).map(part).collect();
+    let name = format!("{COUNT} heads of 2 to 5 cm in a bowl");
+    named(FINE, name, triangles, steps, move || {
+        let (mut world, mut random) = (PhysicsWorld::new(), Rand32::new(5));
+        world.insert(RigidBodyBuilder::fixed(), bowl.clone());
+        for (i, part) in parts.iter().enumerate() {
             let [x, y, z] = [i % 2, i / 4, i / 2 % 2].map(|place| 0.06 * place as f32);
-            Vec3::new(x - 0.03, y, z - 0.03)
-        };
-        falling(&bowl, (0..COUNT).map(place).zip(&parts))
+            let place = Vec3::new(x - 0.03, y, z - 0.03);
+            let pose = Pose3::from_parts(place, random::rotation(&mut random));
+            world.insert(RigidBodyBuilder::dynamic().pose(pose), part.clone());
+        }
+        Driven::alone(world)
     })
 }
 
+/// A scene with a name, and with so many triangles of its terrain or of each body.
 pub(super) fn named<'a>(
     study: &'static str,
-    name: &str,
-    ground: &Ground,
+    name: impl ToString,
+    triangles: impl ToString,
     steps: usize,
     build: impl Fn() -> Driven + 'a,
 ) -> Everyday<'a> {
-    let row = Row::new(study, "").key("scene", name).key("triangles", ground.triangle_count);
+    let row = Row::new(study, "").key("scene", name).key("triangles", triangles);
     Everyday::new(row, steps, build)
 }
