@@ -12,7 +12,7 @@ use flate2::write::GzEncoder;
 
 use super::difference::Difference;
 use super::recorder::STRIDE;
-use super::shapes::levels;
+use super::shapes::{levels, surface};
 
 /// Steps of a quaternion's parts.
 const TURN: f32 = 32767.0;
@@ -51,8 +51,9 @@ struct Run<'a> {
 
 /// Encodes recordings.
 pub fn encode(runs: &[Recorder]) -> String {
-    let mut surfaces: Vec<&Mesh> = Vec::new();
-    let mut place = |surface| {
+    let mut surfaces: Vec<Mesh> = Vec::new();
+    let mut place = |shape: &SharedShape| {
+        let surface = surface(&**shape);
         surfaces.iter().position(|other| *other == surface).unwrap_or_else(|| {
             surfaces.push(surface);
             surfaces.len() - 1
@@ -60,7 +61,7 @@ pub fn encode(runs: &[Recorder]) -> String {
     };
     let quantum = quantum(runs);
     let encoded = runs.iter().map(|run| {
-        let places: Vec<usize> = run.shapes.surfaces.iter().map(&mut place).collect();
+        let places: Vec<usize> = run.shapes.iter().map(&mut place).collect();
         Run::new(run, &places, quantum)
     });
     let replay = Replay {
@@ -105,7 +106,7 @@ impl<'a> Run<'a> {
 fn quantum(runs: &[Recorder]) -> f32 {
     let radii = runs.iter().flat_map(|run| {
         let moving = run.objects.iter().filter(|object| !object.is_fixed);
-        moving.map(|object| run.shapes.surfaces[object.shape].bounds().half_extents().length())
+        moving.map(|object| run.shapes[object.shape].compute_local_aabb().half_extents().length())
     });
     let least = radii.filter(|radius| *radius > 0.0).fold(f32::INFINITY, f32::min);
     1e-3 * if least.is_finite() { least } else { 1.0 }

@@ -3,8 +3,6 @@
 use crate::prelude::*;
 use rapier3d::geometry::Collider;
 
-use super::shapes::Shapes;
-
 /// Steps of the world for one frame of the page, which puts bodies between two frames where they
 /// would be.
 pub(super) const STRIDE: usize = 2;
@@ -18,7 +16,7 @@ pub struct Recorder {
     /// Colliders in the order of insertion.
     pub(super) objects: Vec<Object>,
     places: HashMap<ColliderHandle, usize>,
-    pub(super) shapes: Shapes,
+    pub(super) shapes: Vec<SharedShape>,
     pub(super) frames: Vec<Frame>,
     /// Times of all steps, in milliseconds.
     pub(super) times: Vec<f32>,
@@ -84,7 +82,13 @@ impl Recorder {
         *self.places.entry(handle).or_insert_with(|| {
             let body = it.parent().and_then(|body| world.bodies.get(body));
             let is_fixed = body.is_none_or(|body| body.is_fixed());
-            self.objects.push(Object { shape: self.shapes.add(it.shared_shape()), is_fixed });
+            let shape = it.shared_shape();
+            let is_shape = |known: &SharedShape| shape_address(&**known) == shape_address(&**shape);
+            let shape = self.shapes.iter().position(is_shape).unwrap_or_else(|| {
+                self.shapes.push(shape.clone());
+                self.shapes.len() - 1
+            });
+            self.objects.push(Object { shape, is_fixed });
             self.objects.len() - 1
         })
     }

@@ -1,7 +1,6 @@
 //! Surfaces of shapes, in two resolutions.
 
 use crate::prelude::*;
-use std::fmt;
 
 use rapier3d::geometry::TypedShape;
 use rapier3d::parry::shape::Shape;
@@ -12,38 +11,8 @@ const TRIANGLES: [usize; 2] = [20_000, 160];
 /// Segments of round shapes.
 const SEGMENTS: u32 = 16;
 
-/// The different shapes of a run.
-#[derive(Clone, Default)]
-pub(super) struct Shapes {
-    pub surfaces: Vec<Mesh>,
-    by_address: HashMap<usize, usize>,
-    /// Keeps the addresses in use.
-    kept: Vec<SharedShape>,
-}
-
-impl fmt::Debug for Shapes {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.surfaces.fmt(f)
-    }
-}
-
-impl Shapes {
-    /// The index of a shape's surface.
-    pub fn add(&mut self, shape: &SharedShape) -> usize {
-        let address = shape_address(&**shape);
-        if let Some(&index) = self.by_address.get(&address) {
-            return index;
-        }
-        let index = self.surfaces.len();
-        self.surfaces.push(surface(&**shape));
-        self.by_address.insert(address, index);
-        self.kept.push(shape.clone());
-        index
-    }
-}
-
 /// The surface of a shape; empty if it is of a kind that no scene has.
-fn surface(shape: &dyn Shape) -> Mesh {
+pub(super) fn surface(shape: &dyn Shape) -> Mesh {
     let (vertices, triangles) = match shape.as_typed_shape() {
         TypedShape::TriMesh(mesh) => (mesh.vertices().to_vec(), mesh.indices().to_vec()),
         TypedShape::HeightField(field) => field.to_trimesh(),
