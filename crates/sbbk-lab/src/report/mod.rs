@@ -31,7 +31,8 @@ pub struct Results {
 impl Results {
     /// Findings of this machine, with the verdict that the documentation describes, if any.
     pub fn new(study: &'static str, rows: Vec<Row>) -> Self {
-        let (environment, verdict) = (environment(), tables::verdict(study, &rows));
+        let (environment, verdict) =
+            (environment(), tables::verdict(study, &output::numbers(&rows)));
         Self { study, environment, verdict, rows, notes: Vec::new() }
     }
 }

@@ -3,8 +3,8 @@
 use std::fs::{self, OpenOptions};
 use std::path::Path;
 
-use super::Results;
 use super::environment::said_by;
+use super::{Results, Row};
 use crate::error::FileError;
 
 /// Checks before a measurement that its output can be written after it.
@@ -27,24 +27,25 @@ impl Results {
     pub fn csv(&self) -> String {
         let commit = said_by("git", &["describe", "--always", "--dirty"]);
         let date = said_by("date", &["-u", "+%F"]);
-        let mut text = format!(
-            "# {date}, commit {commit}\n# {}\n# {}\n\
-             study,scene,backend,quantity,statistic,value\n",
-            self.environment, self.verdict
-        );
-        for row in &self.rows {
-            let [study, scene, backend] = [row.study, &row.scene(), &row.backend].map(quoted);
-            for (path, value) in &row.values {
-                let (quantity, statistic) = path.split_once('.').unwrap_or((path, "value"));
-                let value: f64 = format!("{value:.5e}").parse().unwrap_or(f64::NAN);
-                text.push_str(&format!(
-                    "{study},{scene},{backend},{},{statistic},{value}\n",
-                    quoted(quantity)
-                ));
-            }
-        }
-        text
+        let Self { environment, verdict, rows, .. } = self;
+        let numbers = numbers(rows);
+        format!("# {date}, commit {commit}\n# {environment}\n# {verdict}\n{numbers}")
     }
+}
+
+/// All numbers of rows as CSV, one a line, below a header.
+pub(super) fn numbers(rows: &[Row]) -> String {
+    let mut text = "study,scene,backend,quantity,statistic,value\n".to_owned();
+    for row in rows {
+        let [study, scene, backend] = [row.study, &row.scene(), &row.backend].map(quoted);
+        for (path, value) in &row.values {
+            let (quantity, statistic) = path.split_once('.').unwrap_or((path, "value"));
+            let value: f64 = format!("{value:.5e}").parse().unwrap_or(f64::NAN);
+            let quantity = quoted(quantity);
+            text += &format!("{study},{scene},{backend},{quantity},{statistic},{value}\n");
+        }
+    }
+    text
 }
 
 fn quoted(cell: &str) -> String {

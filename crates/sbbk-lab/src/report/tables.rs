@@ -13,7 +13,7 @@
 use std::collections::HashMap;
 use std::fmt;
 
-use super::row::{Row, WRONG};
+use super::row::WRONG;
 use crate::metrics::geometric_mean;
 
 const SPECS: &str = include_str!("../../../../docs/data/tables.txt");
@@ -40,13 +40,14 @@ pub fn tables(study: &str, csv: &str) -> Vec<Table> {
     specs.filter(|table| table.lines.len() > 1).collect()
 }
 
-/// The main finding of a study; empty if it has no description.
-pub(super) fn verdict(study: &str, rows: &[Row]) -> String {
+/// Returns the main finding of a study from its CSV; nothing if it has no description.
+pub(super) fn verdict(study: &str, csv: &str) -> String {
     let specs = SPECS.split("\n\n").filter_map(|spec| spec.strip_prefix("verdict "));
     let mut specs = specs.filter_map(|spec| spec.split_once('\n'));
     let found = specs.find(|(name, _)| *name == study);
-    found
-        .map_or_else(String::new, |(_, text)| Data::of(rows).fill(&text.replace('\n', " "), "sbbk"))
+    found.map_or_else(String::new, |(_, text)| {
+        Data::parse(csv).fill(&text.replace('\n', " "), "sbbk")
+    })
 }
 
 impl Table {
@@ -109,17 +110,6 @@ struct Number {
 }
 
 impl Data {
-    fn of(rows: &[Row]) -> Self {
-        let numbers = rows.iter().flat_map(|row| {
-            let scene = format!("{}, {}", row.study, row.scene());
-            row.values.iter().map(move |(path, &value)| {
-                let (scene, backend, path) = (scene.clone(), row.backend.clone(), path.clone());
-                Number { scene, backend, path, value }
-            })
-        });
-        Self(numbers.collect())
-    }
-
     /// Reads the lines of [`super::Results::csv`].
     fn parse(text: &str) -> Self {
         let lines = text.lines().filter(|line| !line.starts_with('#')).skip(1);
