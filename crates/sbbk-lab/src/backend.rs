@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use rapier_integration::{ContactDetail, ContactSet, PreparedTree, SbbkConfig, SbbkDispatcher};
 use rapier3d::parry::query::{ContactManifoldsWorkspace, DefaultQueryDispatcher};
-use rapier3d::parry::shape::Shape;
 use sbbk_core::tree::LayerPlan;
 use sbbk_testkit::probe::{Probe, Recording, SharedDispatcher};
 
 /// The dispatcher of a backend.
 pub struct Dispatcher {
+    pub backend: Backend,
     /// The dispatcher as Rapier takes it.
     pub shared: SharedDispatcher,
     /// SBBK's dispatcher, unless the backend is stock.
@@ -80,7 +80,7 @@ impl Backend {
             Some(sbbk) => Arc::new(sbbk.clone()),
             None => Arc::new(DefaultQueryDispatcher),
         };
-        Dispatcher { shared, sbbk, trees: Vec::new() }
+        Dispatcher { backend: self, shared, sbbk, trees: Vec::new() }
     }
 
     /// Installs a fresh dispatcher in a world, with the trees of all its meshes. Returns it with a
@@ -99,25 +99,5 @@ impl Backend {
 pub struct Memory {
     /// Result of the last query.
     pub manifolds: Vec<ContactManifold>,
-    workspace: Option<ContactManifoldsWorkspace>,
-}
-
-impl Memory {
-    /// Brings the manifolds up to date.
-    ///
-    /// # Panics
-    ///
-    /// If the dispatcher does not support the shapes.
-    pub fn ask(
-        &mut self,
-        dispatcher: &SharedDispatcher,
-        [shape1, shape2]: [&dyn Shape; 2],
-        pos12: &Pose,
-        prediction: Real,
-    ) {
-        let Self { manifolds, workspace } = self;
-        dispatcher
-            .contact_manifolds(pos12, shape1, shape2, prediction, manifolds, workspace)
-            .expect("every backend supports a mesh and the shapes of the studies");
-    }
+    pub workspace: Option<ContactManifoldsWorkspace>,
 }

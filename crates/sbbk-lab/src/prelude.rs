@@ -5,7 +5,7 @@ pub(crate) use crate::error::FileError;
 pub(crate) use crate::mesh;
 pub(crate) use crate::mesh::Mesh;
 pub(crate) use crate::metrics::{
-    Errors, Sequence, Summary, Truth, geometric_mean, sample_indices, solver_points,
+    Errors, Sequence, Summary, Truth, geometric_mean, sample, solver_points,
 };
 pub(crate) use crate::parallel;
 pub(crate) use crate::progress::Progress;

@@ -7,4 +7,4 @@ mod truth;
 pub use sbbk_testkit::world::solver_points;
 pub use sequence::Sequence;
 pub use statistics::{Summary, geometric_mean};
-pub use truth::{Errors, Truth, sample_indices};
+pub use truth::{Errors, Truth, sample};

@@ -35,10 +35,20 @@ impl Sequence {
         }
     }
 
-    /// Asks `dispatcher` at one pose. Panics when `step` is out of range.
+    /// Brings the manifolds up to date for one pose. Panics when `step` is out of range.
     pub fn ask(&self, memory: &mut Memory, dispatcher: &SharedDispatcher, step: usize) {
-        let shapes = self.shapes.each_ref().map(|shape| &**shape);
-        memory.ask(dispatcher, shapes, &self.poses[step], self.prediction);
+        let [shape1, shape2] = self.shapes.each_ref().map(|shape| &**shape);
+        let (pos12, Memory { manifolds, workspace }) = (&self.poses[step], memory);
+        dispatcher
+            .contact_manifolds(pos12, shape1, shape2, self.prediction, manifolds, workspace)
+            .expect("every backend supports a mesh and the shapes of the studies");
+    }
+
+    /// The answer to a first query at the first pose.
+    pub fn first_answer(&self, dispatcher: &SharedDispatcher) -> Vec<ContactManifold> {
+        let mut memory = Memory::default();
+        self.ask(&mut memory, dispatcher, 0);
+        memory.manifolds
     }
 
     /// The truth about one pose. Panics when `step` is out of range.
@@ -52,19 +62,24 @@ impl Sequence {
         dispatchers: &[Dispatcher],
         is_judged: impl Fn(usize) -> bool + Sync,
     ) -> Vec<Errors> {
-        let errors = parallel::map(sequences, parallel::threads(), |_, sequence| {
+        let found = parallel::map(sequences, parallel::threads(), |_, sequence| {
             let mut errors = vec![Errors::default(); dispatchers.len()];
             let mut memories = dispatchers.iter().map(|_| Memory::default()).collect::<Vec<_>>();
             for step in 0..sequence.poses.len() {
                 let truth = is_judged(step).then(|| sequence.truth(step));
                 for (index, memory) in memories.iter_mut().enumerate() {
                     sequence.ask(memory, &dispatchers[index], step);
-                    errors[index] += truth.iter().map(|t| t.judge(&memory.manifolds)).sum();
+                    if let Some(truth) = &truth {
+                        errors[index] += truth.judge(&memory.manifolds);
+                    }
                 }
             }
             errors
         });
-        let sum = |index: usize| errors.iter().map(|errors| errors[index]).sum();
-        (0..dispatchers.len()).map(sum).collect()
+        let mut sums = vec![Errors::default(); dispatchers.len()];
+        for errors in found {
+            sums.iter_mut().zip(errors).for_each(|(sum, errors)| *sum += errors);
+        }
+        sums
     }
 }

@@ -1,7 +1,6 @@
 //! Wrong contacts of a backend, by comparison with brute force in f64.
 
 use crate::prelude::*;
-use std::iter::Sum;
 use std::ops::AddAssign;
 
 use glamx::DPose3;
@@ -50,15 +49,6 @@ impl AddAssign for Errors {
         self.phantom += other.phantom;
         self.wrong_depth += other.wrong_depth;
         self.wrong_normal += other.wrong_normal;
-    }
-}
-
-impl Sum for Errors {
-    fn sum<I: Iterator<Item = Self>>(counts: I) -> Self {
-        counts.fold(Self::default(), |mut total, count| {
-            total += count;
-            total
-        })
     }
 }
 
@@ -232,10 +222,10 @@ impl Near {
     }
 }
 
-/// At most `limit` indices below `count`, evenly spread.
-pub fn sample_indices(count: usize, limit: usize) -> Vec<usize> {
-    let sample_count = count.min(limit);
-    (0..sample_count).map(|i| i * count / sample_count).collect()
+/// At most `limit` of some items, evenly spread.
+pub fn sample<T>(items: &[T], limit: usize) -> impl ExactSizeIterator<Item = &T> {
+    let (count, sample_count) = (items.len(), items.len().min(limit));
+    (0..sample_count).map(move |i| &items[i * count / sample_count])
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@
 use crate::prelude::*;
 
 use super::motion::{Approach, Mode, Place, STEP_COUNT};
-use super::pair::{Contest, SIDES};
+use super::pair::{self, SIDES};
 
 const EXACTNESS: &str = "contacts: exactness";
 const QUERIES: &str = "contacts: queries, µs";
@@ -104,17 +104,18 @@ pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Results {
             }));
         }
     }
-    let contest = Contest::new(&SIDES, cases.iter().map(|case| &case.shape));
+    let shapes = cases.iter().map(|case| &case.shape);
+    let sides = SIDES.map(|backend| backend.per_triangle(shapes.clone()));
     progress.phase("poses and brute force", cases.len());
     let cases: Vec<Case> = parallel::map(&cases, parallel::threads(), |index, case| {
-        let case = case.clone().judged(index, &contest);
+        let case = case.clone().judged(index, &sides);
         progress.step();
         case
     });
     let mut rows: Vec<Row> = cases.iter().flat_map(Case::exactness).collect();
     progress.phase("speed", plan.meshes.len());
     for case in cases.iter().filter(|case| [case.size, case.prediction] == SPEED_CASE) {
-        rows.extend(case.speed(&contest, plan.repeats));
+        rows.extend(case.speed(&sides, plan.repeats));
         progress.step();
     }
     Results::new("contacts", rows)
@@ -123,22 +124,20 @@ pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Results {
 impl Case<'_> {
     /// Finds the places and judges first queries there. The seeds of a case depend on its index, and
     /// not on the order in which threads take cases.
-    fn judged(mut self, index: usize, contest: &Contest) -> Self {
+    fn judged(mut self, index: usize, sides: &[Dispatcher; 2]) -> Self {
         let seeds = (0..self.mesh.approach_count).map(|approach| (index << 16 | approach) as u64);
-        self.places = seeds.flat_map(|seed| self.places_of(contest, seed)).collect();
-        self.errors = contest.errors(&self.sequences(Mode::Fresh, usize::MAX), |_| true);
+        self.places = seeds.flat_map(|seed| self.places_of(&sides[1], seed)).collect();
+        self.errors = Sequence::errors(&self.sequences(Mode::Fresh, usize::MAX), sides, |_| true);
         self
     }
 
     /// Places of one approach, from apart to deep inside.
-    fn places_of(&self, contest: &Contest, seed: u64) -> [Place; 5] {
-        let Self { size, prediction, shape, .. } = self;
-        let (size, prediction) = (*size, *prediction);
-        let approach = Approach::random(contest.last(), [shape; 2], &mut Rand32::new(seed));
+    fn places_of(&self, dispatcher: &SharedDispatcher, seed: u64) -> [Place; 5] {
+        let Self { size, prediction, ref shape, .. } = *self;
+        let approach = Approach::random(dispatcher, [shape; 2], &mut Rand32::new(seed));
         let is_small = |place: &Place| {
-            let mut memory = Memory::default();
-            memory.ask(contest.last(), [&**shape; 2], &place.pos12, prediction);
-            memory.manifolds.len() <= PAIR_LIMIT
+            let pair = Mode::Fresh.sequence([shape; 2], place, prediction);
+            pair.first_answer(dispatcher).len() <= PAIR_LIMIT
         };
         // Advances beyond the first touch, all within the prediction distance.
         let first = -0.95 * prediction;
@@ -171,21 +170,20 @@ impl Case<'_> {
     }
 
     /// Times of first queries, and of queries in motion.
-    fn speed(&self, contest: &Contest, repeats: usize) -> Vec<Row> {
+    fn speed(&self, sides: &[Dispatcher; 2], repeats: usize) -> Vec<Row> {
         let affordable = REPEATED_TRIANGLES / self.mesh.mesh.triangle_count().max(1);
         let repeats = affordable.min(MOST_REPEATS).max(repeats);
         let mut rows = Vec::new();
         for mode in Mode::ALL {
             let is_fresh = mode == Mode::Fresh;
             let sequences = self.sequences(mode, if is_fresh { usize::MAX } else { MOTION_LIMIT });
+            let is_judged = |step| step == STEP_COUNT / 2 || step == STEP_COUNT;
             let errors = match is_fresh {
                 true => self.errors.clone(),
-                false => {
-                    contest.errors(&sequences, |step| step == STEP_COUNT / 2 || step == STEP_COUNT)
-                }
+                false => Sequence::errors(&sequences, sides, is_judged),
             };
             let row = self.row(QUERIES, "").key("mode", mode);
-            rows.extend(contest.rows(&row, repeats, &sequences, &errors));
+            rows.extend(pair::rows(sides, &row, repeats, &sequences, &errors));
         }
         rows
     }

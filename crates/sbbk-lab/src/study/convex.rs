@@ -8,7 +8,7 @@ use crate::prelude::*;
 
 use super::kinds::{Kind, kinds};
 use super::motion::{Approach, Mode, Place};
-use super::pair::{Contest, SIDES};
+use super::pair::{self, SIDES};
 
 /// Extent of the comparison.
 #[derive(Clone, Debug)]
@@ -61,13 +61,13 @@ pub fn convex(plan: &ConvexPlan, progress: &Progress) -> Results {
 
 fn measure(plan: &ConvexPlan, kind: &Kind, seed: u64) -> Vec<Row> {
     let mesh = plan.mesh.shape();
-    let contest = Contest::new(&SIDES, [&mesh]);
+    let sides = SIDES.map(|backend| backend.per_triangle([&mesh]));
     let length = plan.mesh.bounds().extents().max_element();
     let about = ADVANCES.map(|advance| advance * plan.prediction);
     let deep = DEEP.map(|share| share * length);
     let mut random = Rand32::new(seed);
     let approaches: Vec<_> =
-        (0..plan.approach_count).map(|_| approach(&contest, &mesh, kind, &mut random)).collect();
+        (0..plan.approach_count).map(|_| approach(&sides[1], &mesh, kind, &mut random)).collect();
     let study = if kind.shape.as_compound().is_some() { COMPOUNDS } else { SHAPES };
     let mut rows: Vec<Row> = Vec::new();
     for (depth, advances) in [("touching", &about[..]), ("deep", &deep)] {
@@ -77,23 +77,28 @@ fn measure(plan: &ConvexPlan, kind: &Kind, seed: u64) -> Vec<Row> {
             .collect();
         for mode in MODES {
             let sequences = sequences(plan, kind, &mesh, &places, mode);
-            let errors = contest.errors(&sequences, |step| step.is_multiple_of(JUDGED));
+            let errors = Sequence::errors(&sequences, &sides, |step| step.is_multiple_of(JUDGED));
             let row = Row::new(study, "").key("shape", kind.name).key("depth", depth);
             let row = row.key("mode", mode);
-            rows.extend(contest.rows(&row, plan.repeats, &sequences, &errors));
+            rows.extend(pair::rows(&sides, &row, plan.repeats, &sequences, &errors));
         }
     }
     rows
 }
 
-fn approach(contest: &Contest, mesh: &SharedShape, kind: &Kind, random: &mut Rand32) -> Approach {
+fn approach(
+    dispatcher: &SharedDispatcher,
+    mesh: &SharedShape,
+    kind: &Kind,
+    random: &mut Rand32,
+) -> Approach {
     let shapes = [&kind.shape, mesh];
     let Some(turn) = kind.floor else {
-        return Approach::random(contest.last(), shapes, random);
+        return Approach::random(dispatcher, shapes, random);
     };
     let rotation = turn(random);
     let [x, z] = [(); 2].map(|()| 20.0 * random.rand_float() - 10.0);
-    Approach::along(Vec3::Y, rotation, Vec3::new(x, 0.0, z), contest.last(), shapes)
+    Approach::along(Vec3::Y, rotation, Vec3::new(x, 0.0, z), dispatcher, shapes)
         .expect("a way from above to a floor touches it")
 }
 

@@ -7,58 +7,32 @@ use crate::prelude::*;
 /// Stock and SBBK, which most studies compare.
 pub(super) const SIDES: [Backend; 2] = [Backend::Stock, Backend::Sbbk];
 
-/// Dispatchers of some backends, with the trees of all meshes.
-pub(super) struct Contest {
-    backends: &'static [Backend],
-    dispatchers: Vec<Dispatcher>,
+/// Rows of all dispatchers, with microseconds a query and errors.
+pub(super) fn rows(
+    dispatchers: &[Dispatcher],
+    row: &Row,
+    repeats: usize,
+    sequences: &[Sequence],
+    errors: &[Errors],
+) -> Vec<Row> {
+    let queries = |sequence: &Sequence| (sequence.poses.len() - 1).max(1);
+    let count = sequences.iter().map(queries).sum::<usize>() as f64;
+    let times = times(dispatchers, repeats, sequences);
+    let rows = dispatchers.iter().zip(times).zip(errors).map(|((dispatcher, times), errors)| {
+        let times = times.iter().map(|time| 1e6 / count * time.as_secs_f64());
+        let row = Row { backend: dispatcher.backend.to_string(), ..row.clone() };
+        row.with("time", Summary::of(times)).with("errors", errors)
+    });
+    rows.collect()
 }
 
-impl Contest {
-    pub fn new<'a>(
-        backends: &'static [Backend],
-        shapes: impl IntoIterator<Item = &'a SharedShape> + Clone,
-    ) -> Self {
-        let dispatchers = backends.iter().map(|backend| backend.per_triangle(shapes.clone()));
-        Self { backends, dispatchers: dispatchers.collect() }
-    }
-
-    /// The dispatcher of the last backend.
-    pub fn last(&self) -> &SharedDispatcher {
-        &self.dispatchers[self.backends.len() - 1]
-    }
-
-    /// Rows of all backends, with microseconds a query and errors.
-    pub fn rows(
-        &self,
-        row: &Row,
-        repeats: usize,
-        sequences: &[Sequence],
-        errors: &[Errors],
-    ) -> Vec<Row> {
-        let queries = |sequence: &Sequence| (sequence.poses.len() - 1).max(1);
-        let count = sequences.iter().map(queries).sum::<usize>() as f64;
-        let times = self.times(repeats, sequences);
-        let rows = self.backends.iter().zip(times).zip(errors).map(|((backend, times), errors)| {
-            let times = times.iter().map(|time| 1e6 / count * time.as_secs_f64());
-            let row = Row { backend: backend.to_string(), ..row.clone() };
-            row.with("time", Summary::of(times)).with("errors", errors)
-        });
-        rows.collect()
-    }
-
-    /// Times of all queries, but for the first of each motion, by backend.
-    pub fn times(&self, repeats: usize, sequences: &[Sequence]) -> Vec<Vec<Duration>> {
-        in_turn(&self.dispatchers, repeats, |dispatcher| sweep(dispatcher, sequences))
-    }
-
-    /// Errors in the judged steps of sequences, by backend.
-    pub fn errors(
-        &self,
-        sequences: &[Sequence],
-        is_judged: impl Fn(usize) -> bool + Sync,
-    ) -> Vec<Errors> {
-        Sequence::errors(sequences, &self.dispatchers, is_judged)
-    }
+/// Times of all queries by dispatcher, without the first query of each motion.
+pub(super) fn times(
+    dispatchers: &[Dispatcher],
+    repeats: usize,
+    sequences: &[Sequence],
+) -> Vec<Vec<Duration>> {
+    in_turn(dispatchers, repeats, |dispatcher| sweep(dispatcher, sequences))
 }
 
 /// Time of all queries but the first of each sequence. A single query counts, with the time to free

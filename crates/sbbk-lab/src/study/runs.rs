@@ -3,7 +3,7 @@
 //! Two runs of one scene soon differ, as chaos turns a different last bit into another trajectory.
 //! So first queries of the same pairs at the same poses are timed as well.
 
-use super::pair::Contest;
+use super::pair::times;
 use crate::prelude::*;
 use sbbk_testkit::probe::{Answer, Probe};
 
@@ -119,7 +119,7 @@ impl Run {
     fn judged_step(&mut self, limit: usize) {
         let world = &mut self.built.world;
         self.pairs = Sequence::captured(world);
-        let some = sampled(&self.pairs, limit);
+        let some: Vec<Sequence> = sample(&self.pairs, limit).cloned().collect();
         let dispatcher = self.backend.per_triangle(some.iter().flat_map(|pair| &pair.shapes));
         let fresh = Sequence::errors(&some, &[dispatcher], |_| true);
         self.fresh += fresh[0].without_normals();
@@ -130,8 +130,7 @@ impl Run {
         let shapes = world.colliders.iter().map(|(_, collider)| collider.shared_shape());
         let shapes: HashMap<usize, &SharedShape> =
             shapes.map(|shape| (shape_address(&**shape), shape)).collect();
-        for index in sample_indices(answers.len(), limit) {
-            let Answer { shapes: pair, pos12, prediction, manifolds } = &answers[index];
+        for Answer { shapes: pair, pos12, prediction, manifolds } in sample(&answers, limit) {
             let truth = Truth::of(pair.map(|address| shapes[&address]), pos12, *prediction);
             let errors = match self.backend {
                 Backend::Stock => truth.judge(manifolds),
@@ -147,10 +146,6 @@ impl Run {
     }
 }
 
-fn sampled(pairs: &[Sequence], limit: usize) -> Vec<Sequence> {
-    sample_indices(pairs.len(), limit).into_iter().map(|index| pairs[index].clone()).collect()
-}
-
 /// Sums up the runs of one backend. Times are means over the timed steps of a run, in milliseconds.
 pub(super) fn summed_up(row: &Row, runs: &[Run]) -> Row {
     let first = &runs[0];
@@ -159,7 +154,8 @@ pub(super) fn summed_up(row: &Row, runs: &[Run]) -> Row {
         ("step", |times| times.step),
         ("broad_phase", |times| times.broad_phase),
         ("narrow_phase", |times| times.narrow_phase),
-        ("collision_detection", StepTimes::collision_detection),
+        // The paper's "whole time of CD process".
+        ("collision_detection", |times| times.broad_phase + times.narrow_phase),
         ("solver", |times| times.solver),
     ];
     let row = Row { backend: first.backend.to_string(), ..row.clone() };
@@ -190,9 +186,11 @@ fn with_state(row: Row, SceneWorld { world, watched }: &SceneWorld) -> Row {
 
 /// Times first queries of all pairs: milliseconds for all.
 fn same_poses(row: &Row, pairs: &[Sequence], repeats: usize) -> Vec<Row> {
-    let contest = Contest::new(&Backend::ALL, pairs.iter().flat_map(|pair| &pair.shapes));
-    let errors = contest.errors(&sampled(pairs, JUDGED), |_| true);
-    let times = contest.times(repeats, pairs);
+    let shapes = pairs.iter().flat_map(|pair| &pair.shapes);
+    let dispatchers = Backend::ALL.map(|backend| backend.per_triangle(shapes.clone()));
+    let judged: Vec<Sequence> = sample(pairs, JUDGED).cloned().collect();
+    let errors = Sequence::errors(&judged, &dispatchers, |_| true);
+    let times = times(&dispatchers, repeats, pairs);
     let rows = Backend::ALL.into_iter().zip(times).zip(errors).map(|((backend, times), errors)| {
         let times = times.iter().map(|time| 1e3 * time.as_secs_f64());
         Row { backend: backend.to_string(), ..row.clone() }
@@ -216,13 +214,6 @@ pub(super) struct StepTimes {
     pub narrow_phase: f64,
     /// Constraint solver.
     solver: f64,
-}
-
-impl StepTimes {
-    /// Broad and narrow phase: the paper's "whole time of CD process", in milliseconds.
-    fn collision_detection(&self) -> f64 {
-        self.broad_phase + self.narrow_phase
-    }
 }
 
 /// Steps `world` once.

@@ -33,20 +33,19 @@ impl Comparison {
         let sensors: Vec<Sequence> = sensors.filter_map(|pair| plain_pair(world, pair)).collect();
         let shapes = contacts.iter().chain(&sensors).flat_map(|pair| &pair.shapes);
         self.dispatchers[1].prepare(shapes);
-        let answers = |pair| (pair, self.dispatchers.each_ref().map(|d| found(pair, d)));
-        let touching = contacts.iter().map(answers);
-        let touching: Vec<_> =
-            touching.filter(|(_, answers)| answers.iter().any(|found| !found.is_empty())).collect();
-        for index in sample_indices(touching.len(), limit) {
-            let (pair, answers) = &touching[index];
-            let truth = pair.truth(0);
-            for (errors, manifolds) in self.judged.iter_mut().zip(answers) {
-                *errors += truth.judge(manifolds).without_normals();
-            }
+        let touches = |pair: &Sequence| {
+            self.dispatchers.iter().any(|dispatcher| {
+                let answer = pair.first_answer(dispatcher);
+                answer.iter().any(|manifold| !manifold.points.is_empty())
+            })
+        };
+        let touching: Vec<Sequence> = contacts.into_iter().filter(touches).collect();
+        let touching: Vec<Sequence> = sample(&touching, limit).cloned().collect();
+        let found = Sequence::errors(&touching, &self.dispatchers, |_| true);
+        for (errors, found) in self.judged.iter_mut().zip(found) {
+            *errors += found.without_normals();
         }
-        for index in sample_indices(sensors.len(), limit) {
-            self.judge_sensor(&sensors[index]);
-        }
+        sample(&sensors, limit).for_each(|pair| self.judge_sensor(pair));
     }
 
     /// Judges if the surfaces of two meshes meet; ignores other shapes.
@@ -75,12 +74,4 @@ fn plain_pair(world: &PhysicsWorld, pair: [ColliderHandle; 2]) -> Option<Sequenc
     meshes.peek()?;
     let is_fixed = meshes.any(|mesh| mesh.flags().contains(TriMeshFlags::FIX_INTERNAL_EDGES));
     (!is_fixed).then_some(pair)
-}
-
-/// The manifolds with points.
-fn found(pair: &Sequence, dispatcher: &SharedDispatcher) -> Vec<ContactManifold> {
-    let mut memory = Memory::default();
-    pair.ask(&mut memory, dispatcher, 0);
-    memory.manifolds.retain(|manifold| !manifold.points.is_empty());
-    memory.manifolds
 }

@@ -30,10 +30,11 @@ const ASKS: [(&str, Ask); 6] = [
     ("contact", |dispatcher, [ground, body], pos12| {
         let _ = black_box(dispatcher.contact(pos12, ground, body, PREDICTION));
     }),
-    ("manifolds, no workspace", |dispatcher, shapes, pos12| {
-        let mut memory = Memory::default();
-        memory.ask(dispatcher, shapes, pos12, PREDICTION);
-        black_box(memory.manifolds);
+    ("manifolds, no workspace", |dispatcher, [ground, body], pos12| {
+        let Memory { mut manifolds, mut workspace } = Memory::default();
+        let (answers, kept) = (&mut manifolds, &mut workspace);
+        let _ = dispatcher.contact_manifolds(pos12, ground, body, PREDICTION, answers, kept);
+        black_box(manifolds);
     }),
     ("cast", |dispatcher, [ground, body], pos12| {
         let options = ShapeCastOptions::with_max_time_of_impact(SECONDS);

@@ -70,11 +70,11 @@ pub(super) fn touching_pairs(world: &PhysicsWorld, depths: &Depths, limit: usize
         (moves && touches).then(|| colliders.map(|collider| *collider.position()))
     });
     let pairs: Vec<[Pose3; 2]> = pairs.collect();
-    let sampled = sample_indices(pairs.len(), limit);
-    let (mut mean, mut max) = (0.0, 0.0_f64);
-    for [one, two] in sampled.iter().map(|&index| &pairs[index]) {
+    let sampled = sample(&pairs, limit);
+    let (count, mut mean, mut max) = (sampled.len() as f64, 0.0, 0.0_f64);
+    for [one, two] in sampled {
         let depth = f64::from(depths.between(one, depths, two));
-        mean += depth / sampled.len() as f64;
+        mean += depth / count;
         max = max.max(depth);
     }
     [mean, max]
