@@ -6,6 +6,7 @@
 
 use crate::prelude::*;
 
+use super::PREDICTION;
 use super::motion::{Approach, Mode, Place, STEP_COUNT};
 use super::pair::{self, SIDES};
 
@@ -26,20 +27,19 @@ pub struct ApproachedMesh {
 pub struct ContactsPlan {
     /// The meshes, in the order of the tables.
     pub meshes: Vec<ApproachedMesh>,
-    /// Longest sides, in units.
-    pub sizes: Vec<Real>,
-    /// Prediction distances, in units.
-    pub predictions: Vec<Real>,
     /// Least number of repeats of times.
     pub repeats: usize,
 }
 
+/// Longest sides of meshes, and prediction distances, in units.
+const SIZES: [Real; 3] = [0.1, 2.0, 40.0];
+const PREDICTIONS: [Real; 3] = [0.001, 0.002, 0.02];
 /// Triangles in all repeats of a speed case together. Higher: slower studies; lower: noisier times
 /// of small meshes.
 const REPEATED_TRIANGLES: usize = 25_000;
 const MOST_REPEATS: usize = 25;
 /// Size and prediction distance of the cases whose speed is measured, in units: Rapier's default.
-const SPEED_CASE: [Real; 2] = [2.0, 0.02];
+const SPEED_CASE: [Real; 2] = [2.0, PREDICTION];
 /// Motions of a mesh at most.
 const MOTION_LIMIT: usize = 20;
 /// Contacts of a place at most; a place with more is moved back. Higher: gigabytes for fine meshes
@@ -61,18 +61,15 @@ impl ContactsPlan {
                 approached(mesh::monkey_head_with(50), 2),
                 approached(mesh::monkey_head_with(94), 1),
             ],
-            sizes: vec![0.1, 2.0, 40.0],
-            predictions: vec![0.001, 0.002, 0.02],
             repeats: 5,
         }
     }
 
     /// The four smaller meshes with one approach each, half a minute: for trying, not for quoting.
     pub fn quick() -> Self {
-        let standard = Self::standard();
-        let small = standard.meshes.into_iter().take(4);
+        let small = Self::standard().meshes.into_iter().take(4);
         let meshes = small.map(|mesh| ApproachedMesh { approach_count: 1, ..mesh }).collect();
-        Self { meshes, repeats: 3, ..standard }
+        Self { meshes, repeats: 3 }
     }
 }
 
@@ -92,9 +89,9 @@ struct Case<'a> {
 pub fn contacts(plan: &ContactsPlan, progress: &Progress) -> Results {
     let mut cases = Vec::new();
     for mesh in &plan.meshes {
-        for &size in &plan.sizes {
+        for size in SIZES {
             let shape = mesh.mesh.clone().centred().scaled_to(size).shape();
-            cases.extend(plan.predictions.iter().map(|&prediction| Case {
+            cases.extend(PREDICTIONS.map(|prediction| Case {
                 mesh,
                 size,
                 prediction,

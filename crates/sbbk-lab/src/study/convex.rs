@@ -6,6 +6,7 @@
 
 use crate::prelude::*;
 
+use super::PREDICTION;
 use super::kinds::{Kind, kinds};
 use super::motion::{Approach, Mode, Place};
 use super::pair::{self, SIDES};
@@ -14,8 +15,6 @@ use super::pair::{self, SIDES};
 #[derive(Clone, Debug)]
 pub struct ConvexPlan {
     pub mesh: Mesh,
-    /// The prediction distance, in units.
-    pub prediction: Real,
     /// Approaches to each shape, of five places about the first touch and two deep ones each.
     pub approach_count: usize,
     /// Repeats of each measurement.
@@ -38,7 +37,7 @@ const COMPOUNDS: &str = "compounds: queries, µs";
 impl ConvexPlan {
     /// The head of 968 triangles, two units across, at Rapier's prediction distance; two minutes.
     pub fn standard() -> Self {
-        Self { mesh: mesh::monkey_head(), prediction: 0.02, approach_count: 3, repeats: 9 }
+        Self { mesh: mesh::monkey_head(), approach_count: 3, repeats: 9 }
     }
 
     /// For trying, not for quoting: some seconds.
@@ -51,19 +50,18 @@ impl ConvexPlan {
 pub fn convex(plan: &ConvexPlan, progress: &Progress) -> Results {
     let kinds = kinds(1.0);
     progress.phase("convex shapes and compounds", kinds.len());
-    let mut rows: Vec<Row> = Vec::new();
-    for (seed, kind) in (0..).zip(&kinds) {
-        rows.extend(measure(plan, kind, seed));
+    let rows = (0..).zip(&kinds).flat_map(|(seed, kind)| {
         progress.step();
-    }
-    Results::new("convex", rows)
+        measure(plan, kind, seed)
+    });
+    Results::new("convex", rows.collect())
 }
 
 fn measure(plan: &ConvexPlan, kind: &Kind, seed: u64) -> Vec<Row> {
     let mesh = plan.mesh.shape();
     let sides = SIDES.map(|backend| backend.per_triangle([&mesh]));
     let length = plan.mesh.bounds().extents().max_element();
-    let about = ADVANCES.map(|advance| advance * plan.prediction);
+    let about = ADVANCES.map(|advance| advance * PREDICTION);
     let deep = DEEP.map(|share| share * length);
     let mut random = Rand32::new(seed);
     let approaches: Vec<_> =
@@ -76,7 +74,7 @@ fn measure(plan: &ConvexPlan, kind: &Kind, seed: u64) -> Vec<Row> {
             .flat_map(|&advance| approaches.iter().map(move |way| way.place(advance)))
             .collect();
         for mode in MODES {
-            let sequences = sequences(plan, kind, &mesh, &places, mode);
+            let sequences = sequences([&kind.shape, &mesh], &places, mode);
             let errors = Sequence::errors(&sequences, &sides, |step| step.is_multiple_of(JUDGED));
             let row = Row::new(study, "").key("shape", kind.name).key("depth", depth);
             let row = row.key("mode", mode);
@@ -103,15 +101,9 @@ fn approach(
 }
 
 /// Queries at some places, every other time with the mesh first.
-fn sequences(
-    plan: &ConvexPlan,
-    kind: &Kind,
-    mesh: &SharedShape,
-    places: &[Place],
-    mode: Mode,
-) -> Vec<Sequence> {
+fn sequences(shapes: [&SharedShape; 2], places: &[Place], mode: Mode) -> Vec<Sequence> {
     let sequence = |(index, place): (usize, &Place)| {
-        let mut sequence = mode.sequence([&kind.shape, mesh], place, plan.prediction);
+        let mut sequence = mode.sequence(shapes, place, PREDICTION);
         if index.is_multiple_of(2) {
             sequence.shapes.reverse();
             sequence.poses.iter_mut().for_each(|pose| *pose = pose.inverse());

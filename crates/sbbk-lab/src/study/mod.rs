@@ -15,3 +15,6 @@ mod motion;
 pub mod one_step;
 mod pair;
 pub mod runs;
+
+/// Rapier's prediction distance, in units.
+const PREDICTION: f32 = 0.02;

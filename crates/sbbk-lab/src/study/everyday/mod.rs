@@ -28,8 +28,6 @@ const FINE: &str = "everyday: fine meshes";
 const QUERIES: &str = "everyday: queries";
 #[cfg(feature = "parallel")]
 const THREADS: &str = "everyday: threads";
-/// Rapier's prediction distance, in units.
-const PREDICTION: Real = 0.02;
 /// Flags of terrains.
 const PLAIN: TriMeshFlags = TriMeshFlags::empty();
 const FIXED: TriMeshFlags = TriMeshFlags::FIX_INTERNAL_EDGES;

@@ -7,8 +7,9 @@ use rapier3d::parry::query::NonlinearRigidMotion;
 use rapier3d::parry::query::details::ShapeCastOptions;
 use rapier3d::parry::shape::Shape;
 
+use super::QUERIES;
 use super::scenes::{Ground, above, head};
-use super::{PREDICTION, QUERIES};
+use crate::study::PREDICTION;
 use crate::study::pair::{SIDES, in_turn};
 
 /// Velocity of a body in casts, and angular velocity in nonlinear ones, a second.
