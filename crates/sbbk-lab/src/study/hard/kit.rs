@@ -201,6 +201,17 @@ impl World {
         Watched { gain: gain.most / start, step_time, points }
     }
 
+    /// Runs for some steps. Returns the greatest rise of the energy.
+    pub fn rise(&mut self, steps: usize) -> f64 {
+        let mut gain = Gain::default();
+        gain.see(self.energy());
+        for _ in 0..steps {
+            self.step();
+            gain.see(self.energy());
+        }
+        gain.most
+    }
+
     /// Runs for some steps. Returns the highest speed of a body after any of them.
     pub fn fastest(&mut self, steps: usize) -> f32 {
         let speeds = (0..steps).map(|_| {

@@ -6,7 +6,6 @@
 mod bowls;
 mod chains;
 mod draw;
-mod floors;
 mod gears;
 mod grippers;
 mod overlaps;
@@ -15,7 +14,6 @@ mod plates;
 mod riders;
 mod rooms;
 mod screws;
-mod slopes;
 mod stacks;
 mod stage;
 mod tables;
@@ -59,12 +57,12 @@ impl Family {
     /// Draws a scene and runs it.
     fn run(self, draw: &mut Draw, kit: &Kit) -> Figures {
         match self {
-            Self::Floors => floors::run(draw, kit),
+            Self::Floors => riders::floors(draw, kit),
             Self::Stacks => stacks::run(draw, kit),
             Self::Piles => piles::run(draw, kit),
             Self::Chains => chains::run(draw, kit),
             Self::Bowls => bowls::run(draw, kit),
-            Self::Slopes => slopes::run(draw, kit),
+            Self::Slopes => riders::slopes(draw, kit),
             Self::Gears => gears::run(draw, kit),
             Self::Screws => screws::run(draw, kit),
             Self::Plates => plates::run(draw, kit),

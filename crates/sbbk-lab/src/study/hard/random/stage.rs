@@ -101,13 +101,7 @@ impl Stage {
         let lift = draw.gravity * self.size * self.size;
         let bodies = self.world.watched.iter().map(|&body| &self.world.bodies[body]);
         let unit: f32 = bodies.map(|body| body.mass() * lift + body.kinetic_energy()).sum();
-        let mut gain = Gain::default();
-        gain.see(self.world.energy());
-        for _ in 0..draw.steps(seconds) {
-            self.world.step();
-            gain.see(self.world.energy());
-        }
-        gain.most / f64::from(unit)
+        self.world.rise(draw.steps(seconds)) / f64::from(unit)
     }
 
     /// Runs for the time of 20 falls from half a size. Energy must not grow, and all bodies must come
