@@ -25,7 +25,7 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
     // A ring's tube is thin: with Rapier's defaults a chain of hulls parts as well.
     stage.world.integration_parameters.length_unit *= 0.1;
     stage.world.integration_parameters.num_solver_iterations = 16;
-    let gain = stage.gain(draw, 4.0);
+    let gain = stage.gain(4.0);
     let last = count as usize;
     let apart = (0..last).map(|k| stage.place(k).distance(stage.place(k + 1)));
     Figures::default()

@@ -29,8 +29,8 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
     let joint = RevoluteJointBuilder::new(Vec3::Z);
     stage.hang(0, joint.motor_velocity(speed, 1e4));
     stage.hang(1, joint);
-    let figures = watched(draw, &mut stage, speed, gears);
-    let lifted = (0..2).map(|k| stage.place(k).distance(bodies[k].pose.translation));
+    let figures = watched(&mut stage, speed, gears);
+    let lifted = (0..2).map(|k| stage.moved(k).length());
     figures.at_most("lifted", largest(lifted), 0.01)
 }
 
@@ -48,11 +48,11 @@ fn mesh_up(draw: &mut Draw, gears: [Gear; 2]) -> [Body; 2] {
 }
 
 /// Runs the gears, and compares their turns.
-fn watched(draw: &Draw, stage: &mut Stage, speed: f32, gears: [Gear; 2]) -> Figures {
+fn watched(stage: &mut Stage, speed: f32, gears: [Gear; 2]) -> Figures {
     let axes = [(0, Vec3::Z), (1, -Vec3::Z)];
     let mut turns = axes.map(|(body, axis)| Turn::new(&stage.world, stage.handles[body], axis));
     let (mut away, mut before) = (0.0_f32, 0.0);
-    let [speed_up, steps] = [SPEED_UP, SECONDS].map(|seconds| draw.steps(seconds));
+    let [speed_up, steps] = [SPEED_UP, SECONDS].map(|seconds| stage.draw.steps(seconds));
     for step in 0..steps {
         stage.world.step();
         let [one, other] = [0, 1].map(|k| turns[k].see(&stage.world));
@@ -63,7 +63,7 @@ fn watched(draw: &Draw, stage: &mut Stage, speed: f32, gears: [Gear; 2]) -> Figu
         }
     }
     let reached = turns[0].angle - before;
-    let reached = reached / ((steps - speed_up) as f32 * draw.dt * speed);
+    let reached = reached / ((steps - speed_up) as f32 * stage.draw.dt * speed);
     let backlash = 2.0 * gears[0].thinned / gears[0].pitch_radius();
     let figures = Figures::default().within("driver's speed", reached, [0.98, 1.02]);
     figures.at_most("driven away by", away, f64::from(backlash))

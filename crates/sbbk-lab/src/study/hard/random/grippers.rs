@@ -19,7 +19,7 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
     let bodies = [finger(draw, &part, -1.0), finger(draw, &part, 1.0), held(part)];
     let mut stage = Stage::new(draw, kit, &bodies);
     let gravity = std::mem::take(&mut stage.world.gravity);
-    close(&mut stage, draw, press * gravity.length());
+    close(&mut stage, press * gravity.length());
     stage.world.gravity = gravity;
     // The whole gripper may drift.
     let place = |stage: &Stage| stage.place(2) - 0.5 * (stage.place(0) + stage.place(1));
@@ -27,7 +27,7 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
     stage.world.run(draw.steps(HOLDING));
     let turned = rotation.angle_between(stage.pose(2).rotation);
     let figures = Figures::default().at_most("moved", start.distance(place(&stage)), 0.2);
-    figures.at_most("turned", turned, 0.3).note("deepest", stage.deepest(&bodies, 0))
+    figures.at_most("turned", turned, 0.3).note("deepest", stage.deepest(0))
 }
 
 /// A box, a ball or an upright cylinder.
@@ -63,9 +63,9 @@ fn finger(draw: &mut Draw, part: &Part, side: f32) -> Body {
 }
 
 /// Presses the fingers against the part. The force grows at first, up to `press` times the mass of the part.
-fn close(stage: &mut Stage, draw: &Draw, press: f32) {
+fn close(stage: &mut Stage, press: f32) {
     let [one, other, part] = [0, 1, 2].map(|k| stage.handles[k]);
-    let steps = draw.steps(CLOSING);
+    let steps = stage.draw.steps(CLOSING);
     let force = press * stage.world.bodies[part].mass();
     for step in 0..steps {
         let share = (2.0 * step as f32 / steps as f32).min(1.0);

@@ -25,9 +25,9 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
         }
     }
     let mut stage = Stage::new(draw, kit, &bodies);
-    let start = stage.deepest(&bodies, 0);
+    let start = stage.deepest(0);
     let fastest = stage.world.fastest(draw.steps(3.0)) / draw.size;
-    let figures = Figures::default().at_most("deepest", stage.deepest(&bodies, 0), DEPTH);
+    let figures = Figures::default().at_most("deepest", stage.deepest(0), DEPTH);
     // Rapier parts bodies at three sizes/s.
     figures.at_most("speed", fastest, 9.0).note("deepest at the start", start)
 }

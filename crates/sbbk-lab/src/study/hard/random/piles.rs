@@ -28,7 +28,7 @@ pub(super) fn settled(
     is_kept: impl Fn(Vec3) -> bool,
 ) -> Figures {
     let mut stage = Stage::new(draw, kit, bodies);
-    let figures = stage.settle(draw);
+    let figures = stage.settle();
     let lost = (1..bodies.len()).filter(|&body| !is_kept(stage.place(body)));
-    figures.none("lost", lost.count()).at_most("deepest", stage.deepest(bodies, 1), 0.03)
+    figures.none("lost", lost.count()).at_most("deepest", stage.deepest(1), 0.03)
 }

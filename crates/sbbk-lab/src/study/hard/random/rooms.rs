@@ -17,12 +17,12 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
         bodies.push(body.density(draw.log(1.0, ratio)));
     }
     let mut stage = Stage::new(draw, kit, &bodies);
-    let figures = stage.settle(draw);
+    let figures = stage.settle();
     let beyond = (1..bodies.len()).map(|body| {
         let inside = pose.inverse_transform_point(stage.place(body)).abs() - halves;
         largest(inside.to_array().map(|beyond| beyond.max(-halves.x)))
     });
     let beyond = beyond.reduce(|a, b| largest([a, b])).unwrap_or(f32::NAN);
     let figures = figures.at_most("beyond a wall", beyond, 0.0);
-    figures.at_most("deepest", stage.deepest(&bodies, 1), 0.03)
+    figures.at_most("deepest", stage.deepest(1), 0.03)
 }

@@ -30,12 +30,13 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
     let start = Pose3::translation(0.0, bolt.pitch * (bolt.turns - nut.turns) as f32, 0.0);
     let [fixed, moving] = parts;
     let bodies = [Body::fixed(fixed, Pose3::IDENTITY), Body::moving(moving, start)];
-    let mut stage = Stage::new(draw, kit, &bodies.map(|body| body.friction(friction)));
+    let bodies = bodies.map(|body| body.friction(friction));
+    let mut stage = Stage::new(draw, kit, &bodies);
     // Threads are small beside the bolt.
     stage.world.integration_parameters.length_unit *= bolt.pitch;
     // Lead angles are of a few degrees: contact clustering takes such normals for one.
     stage.world.integration_parameters.contact_clustering = false;
-    watched(draw, &mut stage, bolt.pitch, pull)
+    watched(&mut stage, bolt.pitch, pull)
 }
 
 /// The threads of a bolt, and of a nut with a tenth of a pitch of play, and so much less deep.
@@ -50,7 +51,8 @@ fn threads(draw: &mut Draw) -> [Thread; 2] {
 }
 
 /// Runs the nut, which should run down with the acceleration `pull`, in sizes/s². A pull of 0 locks it.
-fn watched(draw: &Draw, stage: &mut Stage, pitch: f32, pull: f32) -> Figures {
+fn watched(stage: &mut Stage, pitch: f32, pull: f32) -> Figures {
+    let draw = stage.draw;
     let seconds = (2.0 * PITCHES * pitch / pull.max(1e-6)).sqrt().min(SECONDS);
     let mut turn = Turn::new(&stage.world, stage.handles[1], Vec3::Y);
     // It first falls by the play.

@@ -20,9 +20,8 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
     }
     let bodies: Vec<Body> = bodies.into_iter().map(|body| body.friction(friction)).collect();
     let mut stage = Stage::new(draw, kit, &bodies);
-    let figures = stage.settle(draw);
-    let moves = (1..bodies.len()).map(|k| stage.place(k) - bodies[k].pose.translation);
-    let moves: Vec<Vec3> = moves.collect();
+    let figures = stage.settle();
+    let moves: Vec<Vec3> = (1..bodies.len()).map(|k| stage.moved(k)).collect();
     figures
         .at_most("aside", largest(moves.iter().map(|way| way.with_y(0.0).length())), 0.05)
         .at_most("down or up", largest(moves.iter().map(|way| way.y.abs())), 0.05)

@@ -55,14 +55,15 @@ impl Body {
 }
 
 /// A world with the bodies of a scene.
-pub(super) struct Stage {
+pub(super) struct Stage<'a> {
     pub world: World,
-    size: f32,
+    pub draw: &'a Draw,
+    bodies: &'a [Body],
     pub handles: Vec<RigidBodyHandle>,
 }
 
-impl Stage {
-    pub fn new(draw: &Draw, kit: &Kit, bodies: &[Body]) -> Self {
+impl<'a> Stage<'a> {
+    pub fn new(draw: &'a Draw, kit: &Kit, bodies: &'a [Body]) -> Self {
         let size = draw.size;
         let mut world = kit.world();
         world.gravity = -size * draw.gravity * Vec3::Y;
@@ -76,11 +77,16 @@ impl Stage {
         if draw.is_reversed {
             handles.reverse();
         }
-        Self { world, size, handles }
+        Self { world, draw, bodies, handles }
     }
 
     pub fn place(&self, body: usize) -> Vec3 {
-        self.world.bodies[self.handles[body]].translation() / self.size
+        self.world.bodies[self.handles[body]].translation() / self.draw.size
+    }
+
+    /// The way of a body from its start.
+    pub fn moved(&self, body: usize) -> Vec3 {
+        self.place(body) - self.bodies[body].pose.translation
     }
 
     /// The pose in metres.
@@ -97,34 +103,32 @@ impl Stage {
 
     /// Runs for some seconds. Returns the greatest rise of the energy as a share. The whole is the
     /// energy of the motion at the start, and of lifting all bodies by a size.
-    pub fn gain(&mut self, draw: &Draw, seconds: f32) -> f64 {
-        let lift = draw.gravity * self.size * self.size;
+    pub fn gain(&mut self, seconds: f32) -> f64 {
+        let Draw { gravity, size, .. } = *self.draw;
+        let lift = gravity * size * size;
         let bodies = self.world.watched.iter().map(|&body| &self.world.bodies[body]);
         let unit: f32 = bodies.map(|body| body.mass() * lift + body.kinetic_energy()).sum();
-        self.world.rise(draw.steps(seconds)) / f64::from(unit)
+        self.world.rise(self.draw.steps(seconds)) / f64::from(unit)
     }
 
     /// Runs for the time of 20 falls from half a size. Energy must not grow, and all bodies must come
     /// to rest.
-    pub fn settle(&mut self, draw: &Draw) -> Figures {
-        let gain = self.gain(draw, 20.0 / draw.gravity.sqrt());
-        let speed = self.top_speed() / draw.gravity.sqrt();
+    pub fn settle(&mut self) -> Figures {
+        let root = self.draw.gravity.sqrt();
+        let gain = self.gain(20.0 / root);
+        let speed = self.world.top_speed() / self.draw.size / root;
         Figures::default().at_most("energy gained", gain, GAIN).at_most("speed", speed, 0.05)
     }
 
     /// Greatest depth in each other of the bodies from number `first` on.
-    pub fn deepest(&self, bodies: &[Body], first: usize) -> f32 {
-        let meshes = bodies.iter().map(|body| body.part.sound.clone().scaled(self.size));
+    pub fn deepest(&self, first: usize) -> f32 {
+        let size = self.draw.size;
+        let meshes = self.bodies.iter().map(|body| body.part.sound.clone().scaled(size));
         let depths: Vec<Depths> = meshes.map(|mesh| Depths::new(&mesh)).collect();
         let pairs = (first..depths.len()).flat_map(|j| (first..j).map(move |i| [i, j]));
         let between =
             |[i, j]: [usize; 2]| depths[i].between(self.pose(i), &depths[j], self.pose(j));
-        largest(pairs.map(between)) / self.size
-    }
-
-    /// Highest speed, in sizes/s.
-    pub fn top_speed(&self) -> f32 {
-        self.world.top_speed() / self.size
+        largest(pairs.map(between)) / size
     }
 }
 

@@ -19,8 +19,8 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
         bodies.push(Body::moving(part, pose).density(draw.log(1.0, ratio)));
     }
     let mut stage = Stage::new(draw, kit, &bodies);
-    let figures = stage.settle(draw);
+    let figures = stage.settle();
     let up = stage.pose(1).rotation * Vec3::Y;
-    let moves = (1..bodies.len()).map(|k| stage.place(k).distance(bodies[k].pose.translation));
+    let moves = (1..bodies.len()).map(|k| stage.moved(k).length());
     figures.at_most("tilt", 1.0 - up.y, 1e-4).at_most("moved", largest(moves), 0.05)
 }
