@@ -25,10 +25,8 @@ struct Arguments {
 
 fn main() -> Outcome {
     let Arguments { files } = Arguments::parse();
-    let progress = Progress::visible();
     for path in &files {
-        let advice = advise(&Subject::load(path)?, STEPS, &progress);
-        progress.finish();
+        let advice = advise(&Subject::load(path)?, STEPS, &Progress::visible());
         print(advice)?;
     }
     Ok(())

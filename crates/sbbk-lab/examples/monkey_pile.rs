@@ -56,13 +56,10 @@ fn main() -> Outcome {
         judged_pairs: 30,
         same_poses: 0,
     };
-    let progress = Progress::visible();
-    let results = one_pile(&scene, &plan, &progress);
-    progress.finish();
+    let results = one_pile(&scene, &plan, &Progress::visible());
     print(results)?;
     if let Some(page) = &page {
-        replay::play(page, &scene, &plan.backends, plan.step_count(), &progress)?;
-        progress.finish();
+        replay::play(page, &scene, &plan.backends, plan.step_count(), &Progress::visible())?;
         print_page(page)?;
     }
     Ok(())

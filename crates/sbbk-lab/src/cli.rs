@@ -33,9 +33,7 @@ impl StudyArguments {
         if let Some(path) = &self.csv {
             check_output(path)?;
         }
-        let progress = Progress::visible();
-        let results = study(&progress)?;
-        progress.finish();
+        let results = study(&Progress::visible())?;
         print(&results)?;
         if let Some(path) = &self.csv {
             write_file(path, results.csv())?;

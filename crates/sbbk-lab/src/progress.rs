@@ -44,13 +44,6 @@ impl Progress {
         self.change(|phase| phase.done += 1);
     }
 
-    /// Removes the line from a terminal.
-    pub fn finish(&self) {
-        if self.0.is_some() && io::stderr().is_terminal() {
-            eprint!("\r\x1b[K");
-        }
-    }
-
     fn change(&self, change: impl FnOnce(&mut Phase)) {
         let Some(phase) = &self.0 else { return };
         let mut phase = phase.lock().unwrap_or_else(PoisonError::into_inner);
@@ -65,5 +58,14 @@ impl Progress {
         let seconds = start.elapsed().as_secs();
         // A closed error stream is no reason to stop.
         let _ = write!(io::stderr(), "{before}{seconds} s: {message}, {done} of {length}{after}");
+    }
+}
+
+impl Drop for Progress {
+    /// Removes the line from a terminal.
+    fn drop(&mut self) {
+        if self.0.is_some() && io::stderr().is_terminal() {
+            eprint!("\r\x1b[K");
+        }
     }
 }
