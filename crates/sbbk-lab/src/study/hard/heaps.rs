@@ -109,11 +109,7 @@ pub(super) fn open_box([half, outside]: [f32; 2], rim: f32, bottom: f32) -> Mesh
 }
 
 /// Small things on a tray, with Rapier's prediction distance, which is as large as they are.
-pub(super) fn trays() -> Vec<Trial> {
-    vec![Trial::new("100 things of 3 to 8 cm on a tray", tray).without_control()]
-}
-
-fn tray(kit: &Kit) -> Figures {
+pub(super) fn tray(kit: &Kit) -> Figures {
     /// Things along each side of the grid in which they start, and the layers of it.
     const SIDE: usize = 5;
     const LAYERS: usize = 4;

@@ -130,7 +130,7 @@ fn trials(group: Group, mesh: Option<&Mesh>) -> Vec<Trial> {
     match group {
         Group::Pile => heaps::piles(mesh),
         Group::Stacks => resting::stacks(),
-        Group::Bowls => resting::bowls(),
+        Group::Bowls => vec![Trial::new("ten nested bowls", resting::nested)],
         Group::Walls => resting::walls(),
         Group::Chain => resting::chains(),
         Group::Screw => machines::screws(),
@@ -141,7 +141,9 @@ fn trials(group: Group, mesh: Option<&Mesh>) -> Vec<Trial> {
         Group::Ccd => ccd::trials(),
         Group::Pit => heaps::pits(),
         Group::Sheets => inside::sheets(),
-        Group::Tray => heaps::trays(),
+        Group::Tray => {
+            vec![Trial::new("100 things of 3 to 8 cm on a tray", heaps::tray).without_control()]
+        }
     }
 }
 

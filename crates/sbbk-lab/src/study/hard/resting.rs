@@ -109,11 +109,6 @@ fn hung(is_fixed: bool) -> RigidBodyBuilder {
     if is_fixed { RigidBodyBuilder::fixed() } else { RigidBodyBuilder::dynamic() }
 }
 
-/// Thin bowls, each dropped into the one below.
-pub(super) fn bowls() -> Vec<Trial> {
-    vec![Trial::new("ten nested bowls", nested)]
-}
-
 const RADIUS: f32 = 0.5;
 const INNER: f32 = RADIUS - 0.03;
 
@@ -146,7 +141,8 @@ pub(super) fn bowl() -> Form {
     Form::parts(mesh::revolved(&profile, SEGMENTS), patches)
 }
 
-fn nested(kit: &Kit) -> Figures {
+/// Thin bowls, each dropped into the one below.
+pub(super) fn nested(kit: &Kit) -> Figures {
     const BOWLS: usize = 10;
     // A bowl rests on the inner rim of the one below.
     let apart = (RADIUS * RADIUS - INNER * INNER).sqrt();
