@@ -1,6 +1,7 @@
 //! Wrong contacts of a backend, by comparison with brute force in f64.
 
 use crate::prelude::*;
+use std::collections::HashSet;
 use std::ops::AddAssign;
 
 use glamx::DPose3;
@@ -134,13 +135,13 @@ impl Truth {
 
     /// Counts the wrong contacts among those reported within the prediction distance.
     pub fn judge(&self, manifolds: &[ContactManifold]) -> Errors {
-        let mut seen = HashMap::new();
+        let mut seen = HashSet::new();
         let mut errors = Errors { pairs: 1, ..Errors::default() };
         for (manifold, distance) in self.reported(manifolds) {
             let key = (manifold.subshape1, manifold.subshape2);
-            let is_repeated = seen.insert(key, distance).is_some();
+            let is_new = seen.insert(key);
             match self.contacts.get(&key) {
-                Some(truth) if !is_repeated => {
+                Some(truth) if is_new => {
                     let [band, depth_band] = self.bands;
                     let band =
                         (band * f64::from(self.prediction)).max(depth_band * -truth.distance);
@@ -158,7 +159,7 @@ impl Truth {
         for (key, truth) in &self.contacts {
             errors.true_pairs += usize::from(truth.distance <= prediction);
             let is_certain = truth.distance <= (1.0 - SET_BAND) * prediction;
-            errors.missed += usize::from(is_certain && !seen.contains_key(key));
+            errors.missed += usize::from(is_certain && !seen.contains(key));
         }
         errors
     }

@@ -70,15 +70,14 @@ impl<'a> Everyday<'a> {
     /// Makes the scene run on `threads` threads.
     #[cfg(feature = "parallel")]
     pub fn on_threads(self, study: &'static str, threads: usize) -> Self {
-        let Self { row, steps, build, prepared } = self;
         let build = move || {
-            let mut driven = build();
+            let mut driven = (self.build)();
             let pool = driven.world.configure_thread_pool(threads);
             pool.expect("the machine has memory for threads");
             driven
         };
-        let row = Row { study, ..row }.key("threads", threads);
-        Self { row, steps, build: Box::new(build), prepared }
+        let row = Row { study, ..self.row }.key("threads", threads);
+        Self { row, build: Box::new(build), ..self }
     }
 
     /// Runs the scene `repeats` times on both backends, step by step in turns.
