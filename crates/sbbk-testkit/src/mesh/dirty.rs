@@ -14,26 +14,17 @@ use crate::scene::random::direction;
 pub fn strips(size: f32, count: u32, seed: u64) -> Mesh {
     let mut random = Rand32::new(seed);
     let edge = |index: u32| size * (index as f32 / count as f32 - 0.5);
+    // Exact at both ends, so that the rims of neighbours agree.
+    let between =
+        |[low, high]: [u32; 2], share: f32| edge(low) * (1.0 - share) + edge(high) * share;
     let strips = (0..count).map(|index| {
-        let cells = [random.rand_range(3..40), random.rand_range(1..4)];
-        let [low, high] = [index, index + 1].map(edge);
-        rectangle(cells, [Vec2::new(low, edge(0)), Vec2::new(high, edge(count))])
+        let [rows, columns] = [random.rand_range(3..40), random.rand_range(1..4)];
+        quad_grid([rows, columns], |i, j| {
+            let x = between([index, index + 1], j as f32 / columns as f32);
+            Vec3::new(x, 0.0, between([0, count], i as f32 / rows as f32))
+        })
     });
     Mesh::merged("strips", &strips.collect::<Vec<Mesh>>()).welded()
-}
-
-/// A flat grid at height 0 of so many cells along `z` and `x`, from one corner to the other.
-fn rectangle([rows, columns]: [u32; 2], [low, high]: [Vec2; 2]) -> Mesh {
-    // Exact at both ends, so that the rims of neighbours agree.
-    let between = |low: f32, high: f32, k: u32, count: u32| {
-        let share = k as f32 / count as f32;
-        low * (1.0 - share) + high * share
-    };
-    quad_grid([rows, columns], |i, j| {
-        let [x, z] = [(low.x, high.x, j, columns), (low.y, high.y, i, rows)]
-            .map(|(low, high, k, count)| between(low, high, k, count));
-        Vec3::new(x, 0.0, z)
-    })
 }
 
 /// The mesh with corners of its own for each triangle, each moved by up to `most`.
