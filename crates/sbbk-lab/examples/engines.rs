@@ -9,10 +9,9 @@
 use std::path::PathBuf;
 
 use clap::Parser;
-use sbbk_lab::cli::{Outcome, print};
+use sbbk_lab::cli::{Outcome, show};
 use sbbk_lab::mesh::monkey_head;
 use sbbk_lab::mesh_file;
-use sbbk_lab::report::write_file;
 use sbbk_lab::scene::MonkeyPile;
 use sbbk_lab::study::hard::Column;
 use sbbk_lab::study::hard::engines::EnginePile;
@@ -64,12 +63,7 @@ fn main() -> Outcome {
         }
         Arguments::Run { column, scene, run } => Ok(EnginePile::read(&scene)?.run(column, &run)?),
         Arguments::Judge { scene, runs, csv } => {
-            let results = EnginePile::read(&scene)?.judge(&runs)?;
-            print(&results)?;
-            if let Some(path) = csv {
-                write_file(&path, results.csv())?;
-            }
-            Ok(())
+            show(&EnginePile::read(&scene)?.judge(&runs)?, csv.as_deref())
         }
     }
 }

@@ -34,13 +34,20 @@ impl StudyArguments {
             check_output(path)?;
         }
         let results = study(&Progress::visible())?;
-        print(&results)?;
-        if let Some(path) = &self.csv {
-            write_file(path, results.csv())?;
-            print(format_args!("wrote {}", path.display()))?;
-        }
-        Ok(())
+        show(&results, self.csv.as_deref())
     }
+}
+
+/// Prints the verdict and the tables, and writes the file, if any.
+///
+/// Errors: the file or the standard output cannot be written.
+pub fn show(results: &Results, csv: Option<&Path>) -> Outcome {
+    print(results)?;
+    if let Some(path) = csv {
+        write_file(path, results.csv())?;
+        print(format_args!("wrote {}", path.display()))?;
+    }
+    Ok(())
 }
 
 /// Is the `main` of a study without arguments of its own.
