@@ -7,9 +7,6 @@ use super::pair::times;
 use crate::prelude::*;
 use sbbk_testkit::probe::{Answer, Probe};
 
-/// Study of the rows of whole runs of a pile.
-pub const RUNS: &str = "pile, whole runs";
-const SAME_POSES: &str = "pile, same poses";
 /// Pairs at the same poses that are judged at most.
 const JUDGED: usize = 200;
 
@@ -44,12 +41,12 @@ impl RunPlan {
 
 /// Runs a pile, and times its pairs at the same poses.
 pub fn pile(scene: &MonkeyPile, plan: &RunPlan, progress: &Progress) -> Vec<Row> {
-    let row = Row::new(RUNS, "").key("heads", scene.heads).key("scene", scene.name());
+    let row = Row::new("pile, whole runs", "").key("heads", scene.heads).key("scene", scene.name());
     let runs = run(scene, plan, progress);
     let mut rows: Vec<Row> = runs.iter().map(|runs| summed_up(&row, runs)).collect();
     if plan.same_poses > 0 {
         progress.phase(format!("{}, same poses", scene.name()), 1);
-        let row = Row { study: SAME_POSES, ..row };
+        let row = Row { study: "pile, same poses", ..row };
         rows.extend(same_poses(&row, &runs[0][0].pairs, plan.same_poses));
     }
     rows

@@ -62,7 +62,7 @@ impl Gear {
     }
 
     /// Outline of the tooth at the `x` axis, counter-clockwise, with involute flanks.
-    pub fn tooth(&self) -> Vec<Vec2> {
+    fn tooth(&self) -> Vec<Vec2> {
         let involute = |angle: f32| angle.tan() - angle;
         let pitch = self.pitch_radius();
         let base = pitch * Self::PRESSURE_ANGLE.cos();
@@ -83,19 +83,18 @@ impl Gear {
         lower.chain(flank.iter().rev().copied()).collect()
     }
 
-    /// The angles of the middles of the teeth; the first is 0.
-    pub fn angles(&self) -> impl Iterator<Item = f32> + use<> {
-        let teeth = self.teeth;
-        (0..teeth).map(move |tooth| TAU * tooth as f32 / teeth as f32)
+    /// Outlines of all teeth, counter-clockwise. The first is at the `x` axis.
+    pub fn outlines(&self) -> Vec<Vec<Vec2>> {
+        let tooth = self.tooth();
+        let turned = |index: u32| {
+            let turn = Vec2::from_angle(TAU * index as f32 / self.teeth as f32);
+            tooth.iter().map(|&point| turn.rotate(point)).collect()
+        };
+        (0..self.teeth).map(turned).collect()
     }
 
     pub fn mesh(&self) -> Mesh {
-        let tooth = self.tooth();
-        let outline = self.angles().flat_map(|angle| {
-            let turn = Vec2::from_angle(angle);
-            tooth.iter().map(move |&point| turn.rotate(point)).collect::<Vec<Vec2>>()
-        });
-        prism(&outline.collect::<Vec<Vec2>>(), self.half_width).named("gear")
+        prism(&self.outlines().concat(), self.half_width).named("gear")
     }
 }
 

@@ -7,6 +7,7 @@ use std::rc::Rc;
 
 pub(super) use glamx::Vec2;
 use rapier_integration::{PreparedTree, SurfaceKind};
+use rapier3d::dynamics::GenericJoint;
 use rapier3d::geometry::HeightFieldFlags;
 use rapier3d::parry::utils::Array2;
 
@@ -170,6 +171,13 @@ impl World {
     /// Adds a body at rest.
     pub fn put(&mut self, pose: Pose3, collider: &ColliderBuilder) -> RigidBodyHandle {
         self.add(RigidBodyBuilder::dynamic().pose(pose), collider)
+    }
+
+    /// Holds a body where it is by a joint at its middle.
+    pub fn hang(&mut self, body: RigidBodyHandle, joint: impl Into<GenericJoint>) {
+        let place = RigidBodyBuilder::fixed().translation(self.bodies[body].translation());
+        let axle = self.insert_body(place);
+        self.insert_impulse_joint(axle, body, joint);
     }
 
     pub fn run(&mut self, steps: usize) {

@@ -94,15 +94,10 @@ fn pulled(points: &[Vec2], half_width: f32) -> Vec<Vec3> {
 
 /// The teeth, and the disc that they stand on.
 pub(super) fn gear(gear: Gear) -> Form {
-    let tooth = gear.tooth();
-    let turned = |angle: f32, points: &[Vec2]| {
-        let turn = Vec2::from_angle(angle);
-        let points: Vec<Vec2> = points.iter().map(|&point| turn.rotate(point)).collect();
-        pulled(&points, gear.half_width)
-    };
-    let feet = [tooth[0], tooth[tooth.len() - 1]];
-    let disc = gear.angles().flat_map(|angle| turned(angle, &feet)).collect();
-    let teeth = gear.angles().map(|angle| turned(angle, &tooth));
+    let teeth = gear.outlines();
+    let feet = teeth.iter().flat_map(|tooth| [tooth[0], tooth[tooth.len() - 1]]);
+    let disc = pulled(&feet.collect::<Vec<Vec2>>(), gear.half_width);
+    let teeth = teeth.iter().map(|tooth| pulled(tooth, gear.half_width));
     Form::parts(gear.mesh(), teeth.chain([disc]))
 }
 
@@ -131,9 +126,7 @@ impl<'a> Machine<'a> {
     ) -> RigidBodyHandle {
         let collider = self.kit.collider(form).friction(FRICTION);
         let body = self.world.add(body.can_sleep(false), &collider);
-        let place = self.world.bodies[body].translation();
-        let axle = self.world.insert_body(RigidBodyBuilder::fixed().translation(place));
-        self.world.insert_impulse_joint(axle, body, joint);
+        self.world.hang(body, joint);
         body
     }
 

@@ -27,8 +27,8 @@ pub(super) fn run(draw: &mut Draw, kit: &Kit) -> Figures {
     // Teeth are small beside the gear: Rapier's allowed error is a twentieth of a module.
     stage.world.integration_parameters.length_unit *= 10.0 * module;
     let joint = RevoluteJointBuilder::new(Vec3::Z);
-    stage.hang(0, joint.motor_velocity(speed, 1e4));
-    stage.hang(1, joint);
+    stage.world.hang(stage.handles[0], joint.motor_velocity(speed, 1e4));
+    stage.world.hang(stage.handles[1], joint);
     let figures = watched(&mut stage, speed, gears);
     let lifted = (0..2).map(|k| stage.moved(k).length());
     figures.at_most("lifted", largest(lifted), 0.01)

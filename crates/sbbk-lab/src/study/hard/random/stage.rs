@@ -1,6 +1,5 @@
 //! Worlds of random scenes. All lengths are in sizes of the scene.
 
-use rapier3d::dynamics::GenericJoint;
 use rapier3d::parry::mass_properties::MassProperties;
 
 use super::draw::{Draw, Part};
@@ -92,13 +91,6 @@ impl<'a> Stage<'a> {
     /// The pose in metres.
     pub fn pose(&self, body: usize) -> &Pose3 {
         self.world.bodies[self.handles[body]].position()
-    }
-
-    /// Lets a body turn about a joint at its middle.
-    pub fn hang(&mut self, body: usize, joint: impl Into<GenericJoint>) {
-        let place = RigidBodyBuilder::fixed().translation(self.pose(body).translation);
-        let axle = self.world.insert_body(place);
-        self.world.insert_impulse_joint(axle, self.handles[body], joint);
     }
 
     /// Runs for some seconds. Returns the greatest rise of the energy as a share. The whole is the
