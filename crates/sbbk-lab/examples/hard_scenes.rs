@@ -13,7 +13,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser};
+use clap::{Args, Parser, ValueEnum};
 use sbbk_lab::cli::{Outcome, StudyArguments, print_page};
 use sbbk_lab::mesh_file;
 use sbbk_lab::report::check_output;
@@ -28,18 +28,11 @@ struct Arguments {
     /// Runs only these scenes
     #[arg(long, value_name = "SCENES", value_delimiter = ',')]
     only: Vec<Group>,
-    /// Runs only these columns
-    #[arg(long, value_name = "COLUMNS", value_delimiter = ',')]
-    backends: Vec<Column>,
     /// Body of the piles: an OBJ or STL file instead of the built-in monkey
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
-    /// Writes a page that plays the first scene, all columns side by side
-    #[arg(long, value_name = "FILE")]
-    replay: Option<PathBuf>,
-    /// Shows all figures of all scenes
-    #[arg(long)]
-    verbose: bool,
+    #[command(flatten)]
+    settings: Settings,
     #[command(flatten)]
     random: RandomArguments,
 }
@@ -65,44 +58,41 @@ struct RandomArguments {
 }
 
 impl RandomArguments {
-    /// The scenes, if random ones are asked for.
-    fn plan(&self, study: &StudyArguments) -> Option<RandomPlan> {
-        if self.random.is_none() && self.number.is_none() && self.family.is_empty() {
-            return None;
-        }
+    /// True if random scenes are asked for.
+    fn are_given(&self) -> bool {
+        self.random.is_some() || self.number.is_some() || !self.family.is_empty()
+    }
+
+    fn plan(self, study: &StudyArguments, settings: Settings) -> RandomPlan {
         let count = self.random.flatten().unwrap_or_else(|| study.plan(|| 200, || 2));
         let numbers = self.number.map_or(0..count, |number| number..number + 1);
-        let mut plan = RandomPlan { unit: self.unit, ..RandomPlan::new(numbers, self.seed) };
-        if !self.family.is_empty() {
-            plan.families.clone_from(&self.family);
-        }
-        Some(plan)
+        let plan = RandomPlan::new(numbers, self.seed, settings);
+        let families = if self.family.is_empty() { plan.families } else { self.family };
+        RandomPlan { families, unit: self.unit, ..plan }
     }
 }
 
 fn main() -> Outcome {
-    let Arguments { study, only, backends, mesh, replay, verbose, random } = Arguments::parse();
-    if let Some(page) = &replay {
+    let Arguments { study, only, mesh, mut settings, random } = Arguments::parse();
+    let page = settings.replay.clone();
+    if let Some(page) = &page {
         check_output(page)?;
     }
-    let settings = |settings: Settings| Settings {
-        columns: if backends.is_empty() { settings.columns } else { backends.clone() },
-        shows_figures: verbose,
-        replay: replay.clone(),
-    };
-    if let Some(mut plan) = random.plan(&study) {
-        plan.settings = settings(plan.settings);
+    if settings.columns.is_empty() {
+        let all = || Column::value_variants().to_vec();
+        let usual = || Column::USUAL.to_vec();
+        settings.columns = if random.are_given() { usual() } else { study.plan(all, usual) };
+    }
+    if random.are_given() {
+        let plan = random.plan(&study, settings);
         study.run(|progress| run_random(&plan, progress))?;
     } else {
-        let mut plan = study.plan(HardPlan::standard, HardPlan::quick);
-        if !only.is_empty() {
-            plan.groups = only;
-        }
-        plan.settings = settings(plan.settings);
-        plan.mesh = mesh.as_deref().map(mesh_file::load).transpose()?;
+        let groups = if only.is_empty() { Group::value_variants().to_vec() } else { only };
+        let mesh = mesh.as_deref().map(mesh_file::load).transpose()?;
+        let plan = HardPlan { groups, settings, mesh };
         study.run(|progress| hard(&plan, progress))?;
     }
-    if let Some(page) = &replay {
+    if let Some(page) = &page {
         print_page(page)?;
     }
     Ok(())

@@ -106,9 +106,7 @@ fn everyday_scenes_touch_and_are_judged() {
 }
 
 fn with_control() -> Settings {
-    let mut settings = Settings::default();
-    settings.columns.push(Column::Control);
-    settings
+    Settings::of(&[&Column::USUAL[..], &[Column::Control]].concat())
 }
 
 /// Would catch scenes that no backend could pass, flags that are not set, and runs under the name of
@@ -118,7 +116,7 @@ fn the_control_passes_and_sheets_hold_plain_meshes() {
     let plan = HardPlan {
         groups: vec![hard::Group::Sunk, hard::Group::Sheets],
         settings: with_control(),
-        ..HardPlan::quick()
+        mesh: None,
     };
     let results = hard::hard(&plan, &Progress::hidden()).unwrap();
     check(&results, &[]);
@@ -140,7 +138,7 @@ fn the_control_passes_and_sheets_hold_plain_meshes() {
 /// gears and bowls are left out: their hulls have seams. Rapier's shapes drop some parts of grippers.
 #[test]
 fn random_scenes_hold_with_rapiers_own_shapes() {
-    let mut plan = RandomPlan { settings: with_control(), ..RandomPlan::new(0..2, 1) };
+    let mut plan = RandomPlan::new(0..2, 1, with_control());
     let without = [Family::Chains, Family::Gears, Family::Bowls, Family::Grippers];
     plan.families.retain(|family| !without.contains(family));
     let results = random(&plan, &Progress::hidden()).unwrap();

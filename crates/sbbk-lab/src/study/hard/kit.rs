@@ -33,6 +33,11 @@ pub enum Column {
     Control,
 }
 
+impl Column {
+    /// Stock with and without the flag, and SBBK: the columns of tables.
+    pub const USUAL: [Self; 3] = [Self::Stock, Self::StockFlag, Self::Sbbk];
+}
+
 /// A mesh, and the convex shapes that replace it in the control.
 #[derive(Clone)]
 pub(super) struct Form {

@@ -23,6 +23,8 @@ mod road;
 
 pub use self::kit::Column;
 
+use clap::Args;
+
 use self::figures::Figures;
 use self::kit::{Film, Kit};
 use self::report::Run;
@@ -61,21 +63,23 @@ pub enum Group {
 }
 
 /// How scenes run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Args)]
 pub struct Settings {
-    /// Columns of the tables.
+    /// Runs only these columns
+    #[arg(long = "backends", value_name = "COLUMNS", value_delimiter = ',')]
     pub columns: Vec<Column>,
-    /// True to show all figures.
-    pub shows_figures: bool,
-    /// Page that plays the first of the scenes in all columns.
+    /// Shows all figures of all scenes
+    #[arg(long)]
+    pub verbose: bool,
+    /// Writes a page that plays the first scene, all columns side by side
+    #[arg(long, value_name = "FILE")]
     pub replay: Option<PathBuf>,
 }
 
-impl Default for Settings {
-    /// Stock and SBBK on plain meshes, and stock on meshes with the flag.
-    fn default() -> Self {
-        let columns = vec![Column::Stock, Column::StockFlag, Column::Sbbk];
-        Self { columns, shows_figures: false, replay: None }
+impl Settings {
+    /// Settings without a page.
+    pub fn of(columns: &[Column]) -> Self {
+        Self { columns: columns.to_vec(), verbose: false, replay: None }
     }
 }
 
@@ -87,20 +91,6 @@ pub struct HardPlan {
     pub settings: Settings,
     /// Body of the piles, or `None` for heads.
     pub mesh: Option<Mesh>,
-}
-
-impl HardPlan {
-    /// All scenes in all columns.
-    pub fn standard() -> Self {
-        let columns = Column::value_variants().to_vec();
-        Self { settings: Settings { columns, ..Settings::default() }, ..Self::quick() }
-    }
-
-    /// All scenes.
-    pub fn quick() -> Self {
-        let groups = Group::value_variants().to_vec();
-        Self { groups, settings: Settings::default(), mesh: None }
-    }
 }
 
 /// A scene with its figures.

@@ -63,7 +63,7 @@ impl Run {
 
 /// Scenes that SBBK breaks; all that break, and all figures, if the settings say so.
 pub(super) fn notes(settings: &Settings, runs: &[Run]) -> Vec<String> {
-    let shows_all = settings.shows_figures;
+    let shows_all = settings.verbose;
     let broken = runs.iter().filter(|run| shows_all || run.column == Column::Sbbk);
     let figures = runs.iter().filter(|_| shows_all).map(Run::figures);
     broken.filter_map(|run| run.complaint(runs)).chain(figures).collect()

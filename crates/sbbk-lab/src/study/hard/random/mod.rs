@@ -88,8 +88,7 @@ pub struct RandomPlan {
 
 impl RandomPlan {
     /// Scenes of all families.
-    pub fn new(numbers: Range<u32>, seed: u64) -> Self {
-        let settings = Settings::default();
+    pub fn new(numbers: Range<u32>, seed: u64, settings: Settings) -> Self {
         Self { families: Family::value_variants().to_vec(), numbers, seed, unit: None, settings }
     }
 
