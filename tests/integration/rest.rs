@@ -3,13 +3,11 @@ use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::{RigidBody, RigidBodyBuilder};
 use rapier3d::geometry::ColliderBuilder;
 use rapier3d::math::{Real, Vector};
-use rapier3d::parry::shape::TriMeshFlags;
-use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh;
 use sbbk_testkit::scene::{BoxStack, HeadOnSlope, Scene, SceneWorld};
 
 use crate::support::declare_solid;
-use crate::worlds::lowest;
+use crate::worlds::{after, lowest, on_ground};
 
 /// One world under stock Rapier, and again under SBBK.
 struct Both {
@@ -104,85 +102,16 @@ fn a_head_rests_on_a_slope_by_its_surface() {
     }
 }
 
-/// Friction coefficient of floor and box; Rapier takes the mean.
-const FRICTION: Real = 0.1;
-
-/// Start of the box, on the floor.
-const START: Vector = Vector::new(-10.0, 0.5, 0.3);
-
-/// A box, narrower below, that slides over a floor of 800 triangles with `velocity`, in a direction
-/// along no edge.
-fn sliding(floor_flags: TriMeshFlags, velocity: Vector) -> SceneWorld {
-    let tapered = mesh::cuboid(Vec3::splat(0.5), 3).mapped(|v| {
-        let share = if v.y < 0.0 { 0.7 } else { 1.0 };
-        v * Vec3::new(share, 1.0, share)
-    });
-    let [floor, tapered] = [(mesh::floor(40.0, 20), floor_flags), (tapered, TriMeshFlags::empty())]
-        .map(|(mesh, flags)| ColliderBuilder::new(mesh.shape_with(flags)).friction(FRICTION));
-    let mut world = PhysicsWorld::new();
-    world.insert(RigidBodyBuilder::fixed(), floor);
-    let start =
-        RigidBodyBuilder::dynamic().translation(START).rotation(Vector::Y * 0.3).linvel(velocity);
-    let (body, _) = world.insert(start, tapered);
-    SceneWorld { world, watched: vec![body] }
-}
-
-/// Distance after which friction alone stops a body.
-fn ideal(velocity: Vector) -> Real {
-    velocity.length_squared() / (2.0 * FRICTION * 9.81)
-}
-
-/// From 1 to 4.75 units a second, in directions along no edge of the floor.
-fn velocities() -> impl Iterator<Item = Vector> {
-    let share = |index: u8| Real::from(index);
-    (0..16).map(move |index| {
-        let direction = Vector::new(1.0, 0.0, 0.01 + 0.05 * share(index)).normalize();
-        direction * (1.0 + 0.25 * share(index))
-    })
-}
-
-/// Would catch contacts of edges within a surface, over which the box would stumble, and cones that
-/// bring them back.
-#[test]
-fn a_box_slides_over_internal_edges_whatever_the_flags() {
-    let flags = [
-        TriMeshFlags::empty(),
-        TriMeshFlags::FIX_INTERNAL_EDGES,
-        TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED,
-    ];
-    for (velocity, flags) in velocities().flat_map(|velocity| flags.map(|flags| (velocity, flags)))
-    {
-        let mut both = Both::new(|| sliding(flags, velocity));
-        both.step(400);
-        let [stock, sbbk] = both.bodies().next().expect("one body slides");
-        let way = (sbbk.translation() - START).length();
-        let share = way / ideal(velocity);
-        assert!((share - 1.0).abs() < 0.01, "{velocity} takes it {share} of the way, {flags:?}");
-        // One-sided cones let it slide under stock as well.
-        if flags == TriMeshFlags::FIX_INTERNAL_EDGES {
-            // Stock has points in every triangle, so friction acts at other places.
-            let most = 5e-4 * ideal(velocity);
-            assert_at_same_place([stock, sbbk], most, 1e-4);
-        }
-    }
-}
-
 /// Would catch boxes that stay in a declared solid, with the sides of their triangles at its surface.
 #[test]
 fn boxes_of_many_triangles_come_up_out_of_a_slab() {
     let solid = |half_extents: Vec3| ColliderBuilder::new(mesh::cuboid(half_extents, 8).shape());
     for depth in [0.22, 0.83, 0.95] {
-        let mut world = PhysicsWorld::new();
         let (dispatcher, slab) = (SbbkDispatcher::default(), solid(Vec3::new(5.0, 1.0, 5.0)));
         let _solid = declare_solid(&dispatcher, slab.shape.as_trimesh().unwrap());
-        world.narrow_phase.set_query_dispatcher(dispatcher);
-        world.insert(RigidBodyBuilder::fixed().translation(-Vec3::Y), slab);
+        let world = on_ground(slab.translation(-Vec3::Y), dispatcher);
         let body = RigidBodyBuilder::dynamic().translation((0.5 - depth) * Vec3::Y);
-        let (body, _) = world.insert(body, solid(Vec3::splat(0.5)));
-        for _ in 0..180 {
-            world.step();
-        }
-        let height = world.bodies[body].translation().y;
+        let height = after(180, world, body, solid(Vec3::splat(0.5))).translation().y;
         assert!((height - 0.5).abs() < 0.02, "from {depth} to {height}");
     }
 }
@@ -196,17 +125,15 @@ fn a_light_box_carries_a_heavy_one() {
     for (ratio, cells) in
         [100.0, 150.0, 200.0].into_iter().flat_map(|r| [1, 2, 3, 4].map(|c| (r, c)))
     {
-        let mut world = PhysicsWorld::new();
-        world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
         let ground = ColliderBuilder::new(mesh::cuboid(Vec3::new(5.0, 0.5, 5.0), 6).shape());
-        world.insert(RigidBodyBuilder::fixed().translation(-0.5 * Vec3::Y), ground);
+        let ground = ground.translation(-0.5 * Vec3::Y);
+        let mut world = on_ground(ground, SbbkDispatcher::default());
         let body = |height: Real| {
             RigidBodyBuilder::dynamic().translation(height * Vec3::Y).can_sleep(false)
         };
         world.insert(body(0.25), part(0.25, cells).mass(1.0));
-        let (heavy, _) = world.insert(body(0.9), part(0.4, cells + 1).mass(ratio));
-        (0..900).for_each(|_| world.step());
-        if world.bodies[heavy].translation().y < 0.6 {
+        let heavy = after(900, world, body(0.9), part(0.4, cells + 1).mass(ratio));
+        if heavy.translation().y < 0.6 {
             fallen.push((ratio, cells));
         }
     }

@@ -9,7 +9,7 @@ use rapier3d::prelude::RigidBodyBuilder;
 use sbbk_testkit::mesh;
 
 use crate::support::{Manifold, Question, distance, every, shape};
-use crate::worlds::on_ground;
+use crate::worlds::{after, on_ground};
 
 /// Half the thickness of plates that are a unit wide.
 const HALF: Real = 0.015;
@@ -85,14 +85,13 @@ fn fast_plates_do_not_pass_a_floor() {
     for index in 0..16 {
         let phase = index as Real / 16.0;
         let ground = ColliderBuilder::new(floor.clone());
-        let mut world = on_ground(ground, SbbkDispatcher::default());
+        let world = on_ground(ground, SbbkDispatcher::default());
         let turn = Quat::from_rotation_y(6.0 * phase) * Quat::from_rotation_x(0.6 * phase);
         let place = Vec3::new(0.1, 2.0 + phase * SPEED / 60.0, 0.05);
         let body = RigidBodyBuilder::dynamic().pose(Pose3::from_parts(place, turn));
         let body = body.linvel(-SPEED * Vec3::Y).soft_ccd_prediction(0.6);
-        let (body, _) = world.insert(body, ColliderBuilder::new(plate.clone()));
-        (0..60).for_each(|_| world.step());
-        let height = world.bodies[body].translation().y;
+        let end = after(60, world, body, ColliderBuilder::new(plate.clone()));
+        let height = end.translation().y;
         assert!(height > -HALF, "at {height} from phase {phase}");
     }
 }

@@ -6,7 +6,7 @@ use rapier3d::math::{Pose, Real, Vector};
 use rapier3d::parry::shape::{HeightField, HeightFieldCellStatus};
 use rapier3d::parry::utils::Array2;
 use rapier3d::pipeline::PhysicsWorld;
-use rapier3d::prelude::{ColliderBuilder, RigidBodyBuilder, RigidBodyHandle};
+use rapier3d::prelude::{ColliderBuilder, RigidBody, RigidBodyBuilder, RigidBodyHandle};
 use sbbk_testkit::mesh::{self, Mesh};
 
 /// A world with a fixed ground. Stock answers if there is no dispatcher.
@@ -20,6 +20,18 @@ pub fn on_ground(
     }
     world.insert(RigidBodyBuilder::fixed(), ground);
     world
+}
+
+/// Adds a body to a world and steps it. Returns the body at the end.
+pub fn after(
+    steps: usize,
+    mut world: PhysicsWorld,
+    body: RigidBodyBuilder,
+    collider: ColliderBuilder,
+) -> RigidBody {
+    let (body, _) = world.insert(body, collider);
+    (0..steps).for_each(|_| world.step());
+    world.bodies[body].clone()
 }
 
 /// Height of the lowest vertex of a mesh.
@@ -120,4 +132,38 @@ pub fn soft_ball_above(ground: &SharedShape, dispatcher: Option<&SbbkDispatcher>
 
 pub fn particles(world: &PhysicsWorld) -> Vec<Vector> {
     world.soft_bodies().flat_map(|(_, body)| body.particle_positions()).collect()
+}
+
+/// Bodies as meshes and convex bodies of every kind on a mesh ground, all lengths times `unit`.
+pub fn mixed(unit: Real, has_soft_ccd: bool) -> PhysicsWorld {
+    let ground = mesh::terrain(8.0 * unit, 16, 0.3 * unit).shape();
+    let mut world = on_ground(ColliderBuilder::new(ground), None);
+    world.integration_parameters.contact_recycling = false;
+    world.integration_parameters.length_unit = unit;
+    world.gravity *= unit;
+    let head = mesh::monkey_head_with(6).mapped(|vertex| 0.3 * unit * vertex);
+    let cloud: Vec<Vec3> = head.vertices.iter().step_by(7).copied().collect();
+    let [half, thin] = [0.25 * unit, 0.1 * unit];
+    let dumbbell = [-half, half].map(|x| (Pose::translation(x, 0.0, 0.0), SharedShape::ball(half)));
+    let shapes = [
+        head.shape(),
+        SharedShape::ball(half),
+        SharedShape::cuboid(half, thin, half),
+        SharedShape::capsule_y(half, thin),
+        SharedShape::cylinder(thin, half),
+        SharedShape::cone(half, half),
+        SharedShape::convex_hull(&cloud).expect("a head has a hull"),
+        SharedShape::round_cylinder(thin, half, 0.3 * thin),
+        SharedShape::round_cuboid(half, thin, thin, 0.3 * thin),
+        SharedShape::compound(dumbbell.to_vec()),
+    ];
+    for (i, shape) in shapes.into_iter().enumerate() {
+        let (row, column) = ((i / 4) as Real, (i % 4) as Real);
+        let place = unit * Vec3::new(1.1 * column - 1.6, 0.9, 1.1 * row - 1.2);
+        let ccd = if has_soft_ccd { 0.5 * unit } else { 0.0 };
+        let body = RigidBodyBuilder::dynamic().translation(place).soft_ccd_prediction(ccd);
+        let body = body.rotation(Vec3::new(0.2 * i as Real, 0.5, 0.1)).can_sleep(false);
+        world.insert(body, ColliderBuilder::new(shape).density(1.0));
+    }
+    world
 }

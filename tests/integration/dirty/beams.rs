@@ -66,10 +66,9 @@ fn hulls() -> SharedShape {
 /// Drives a box that cannot turn to and fro. Returns the number of its launches and the highest
 /// speed upwards.
 fn drive(ground: &SharedShape, body: &SharedShape, speed: f32) -> (usize, f32) {
-    let mut world = world();
     let [ground, body] =
         [ground, body].map(|shape| ColliderBuilder::new(shape.clone()).friction(0.0));
-    world.insert(RigidBodyBuilder::fixed(), ground);
+    let mut world = world(ground);
     let start = RigidBodyBuilder::dynamic().translation(Vec3::new(-3.0, HALF.y + 0.002, 0.1));
     let (handle, _) = world.insert(start.lock_rotations().can_sleep(false), body);
     let (mut launches, mut highest, mut was_launched) = (0, 0.0_f32, false);

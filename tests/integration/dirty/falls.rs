@@ -41,9 +41,8 @@ fn bodies() -> [Mesh; 4] {
 
 /// Drops a body without friction. Returns its greatest horizontal speed, and its depth at the end.
 fn fall(ground: &SharedShape, body: &Mesh, random: &mut Rand32) -> [Real; 2] {
-    let mut world = world();
     let smooth = |shape: SharedShape| ColliderBuilder::new(shape).friction(0.0);
-    world.insert(RigidBodyBuilder::fixed(), smooth(ground.clone()));
+    let mut world = world(smooth(ground.clone()));
     let [x, z, y] = [(); 3].map(|()| random.rand_float());
     let pose = Pose3::from_parts(Vec3::new(x, 3.0 + y, z), rotation(random));
     let falling = RigidBodyBuilder::dynamic().pose(pose);

@@ -5,6 +5,7 @@ use sbbk_testkit::mesh::{self, Mesh};
 
 use super::rides::Course;
 use super::world;
+use crate::worlds::after;
 
 /// Side of a floor, in units; all paths are shorter than 12.
 const SIZE: f32 = 16.0;
@@ -54,17 +55,14 @@ fn small_cubes_slide_at_the_default_unit_as_on_a_cuboid() {
     let floor = mesh::floor(2.0, 40).shape();
     let cube = mesh::cuboid(Vec3::splat(HALF), 2).shape();
     let path = |ground: &ColliderBuilder, shape: &SharedShape, angle: f32| {
-        let mut world = world();
-        world.insert(RigidBodyBuilder::fixed(), ground.clone().friction(0.1));
         let heading = Quat::from_rotation_y(angle);
         let start = heading * Vec3::new(-0.5, 0.0, 0.0) + (HALF + 1e-4) * Vec3::Y;
         let turn = Quat::from_rotation_y(3.0 * angle);
         let body = RigidBodyBuilder::dynamic().pose(Pose3::from_parts(start, turn));
         let body = body.linvel(heading * Vec3::X).can_sleep(false);
         let collider = ColliderBuilder::new(shape.clone()).friction(0.1).density(1000.0);
-        let (body, _) = world.insert(body, collider);
-        (0..90).for_each(|_| world.step());
-        (world.bodies[body].translation() - start).dot(heading * Vec3::X)
+        let end = after(90, world(ground.clone().friction(0.1)), body, collider).translation();
+        (end - start).dot(heading * Vec3::X)
     };
     for i in 0..8 {
         let angle = 0.7 * i as f32;

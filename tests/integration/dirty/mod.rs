@@ -5,9 +5,11 @@
 //! `cargo test -p sbbk --test integration dirty -- --nocapture`.
 
 use rapier_integration::{PreparedTree, SbbkDispatcher};
-use rapier3d::geometry::SharedShape;
+use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use rapier3d::parry::shape::TriMeshFlags;
 use rapier3d::pipeline::PhysicsWorld;
+
+use crate::worlds::on_ground;
 
 /// Boxes that are driven over beams with chamfers.
 mod beams;
@@ -41,9 +43,9 @@ mod upright;
 /// The flags of all meshes of a run.
 const FLAGS: [TriMeshFlags; 2] = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES];
 
-/// An empty world with the dispatcher of a user.
-fn world() -> PhysicsWorld {
-    prepared_world(&[], false).0
+/// A world with a fixed ground and the dispatcher of a user.
+fn world(ground: ColliderBuilder) -> PhysicsWorld {
+    on_ground(ground, SbbkDispatcher::default())
 }
 
 /// An empty world with the dispatcher of a user, and its registrations of shapes.

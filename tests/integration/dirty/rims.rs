@@ -1,13 +1,12 @@
 use glamx::{Vec2, Vec3};
-use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::{MassProperties, RigidBodyBuilder};
 use rapier3d::geometry::{ColliderBuilder, SharedShape};
 use rapier3d::parry::shape::TriMeshFlags;
 use sbbk_testkit::mesh::{self, Mesh};
 
 use super::table::{Case, judge};
-use super::{FLAGS, row};
-use crate::worlds::on_ground;
+use super::{FLAGS, row, world};
+use crate::worlds::after;
 
 /// Half the side of a vessel of single walls.
 const HALF: f32 = 0.4;
@@ -40,13 +39,11 @@ fn lids(half: f32, flags: TriMeshFlags) -> [(&'static str, SharedShape, f32); 4]
 /// Lays a lid on a vessel. Returns the height of the lid over the rim after two seconds.
 fn height(vessel: &Mesh, flags: TriMeshFlags, lid: SharedShape, bottom: f32) -> f32 {
     let vessel = ColliderBuilder::new(vessel.shape_with(flags));
-    let mut world = on_ground(vessel, SbbkDispatcher::default());
     let at = Vec3::new(0.0, HALF + 0.01 - bottom, 0.0);
     let mass = MassProperties::from_cuboid(100.0, Vec3::new(HALF, 0.1, HALF));
     let lid = ColliderBuilder::new(lid).mass_properties(mass);
-    let lid = world.insert(RigidBodyBuilder::dynamic().translation(at), lid).0;
-    (0..120).for_each(|_| world.step());
-    world.bodies[lid].translation().y + bottom - HALF
+    let lid = after(120, world(vessel), RigidBodyBuilder::dynamic().translation(at), lid);
+    lid.translation().y + bottom - HALF
 }
 
 /// Would catch rims of single walls that do not carry what overhangs them by less than a centimetre.

@@ -5,7 +5,8 @@ use rapier3d::parry::shape::TriMeshFlags;
 use sbbk_testkit::mesh;
 
 use super::table::{Case, judge};
-use super::{FLAGS, prepared_world, row};
+use super::{FLAGS, prepared_world, row, world};
+use crate::worlds::after;
 
 /// Half the side of a room, and of a body in it.
 const ROOM: f32 = 3.0;
@@ -61,13 +62,9 @@ fn bodies_stay_in_long_tubes() {
     for half_width in [2.0, 5.0, 20.0] {
         let tube = mesh::tube(RADIUS, half_width, 48);
         for tube in [mesh::turned_inside_out(tube.clone()), tube] {
-            let (mut world, _) = prepared_world(&[], false);
-            let tube = tube.shape();
-            world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(tube));
-            let ball = mesh::ball(BODY, 12).shape();
-            let (ball, _) = world.insert(RigidBodyBuilder::dynamic(), ColliderBuilder::new(ball));
-            (0..240).for_each(|_| world.step());
-            let height = world.bodies[ball].translation().y;
+            let world = world(ColliderBuilder::new(tube.shape()));
+            let ball = ColliderBuilder::new(mesh::ball(BODY, 12).shape());
+            let height = after(240, world, RigidBodyBuilder::dynamic(), ball).translation().y;
             assert!((height - BODY + RADIUS).abs() < 0.05, "{height} in a tube of {half_width}");
         }
     }

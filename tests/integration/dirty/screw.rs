@@ -40,12 +40,11 @@ struct Run {
 }
 
 fn run(bolt: Thread, nut: Thread, friction: f32, rate: f32) -> Run {
-    let mut world = world();
-    world.integration_parameters.contact_clustering = false;
-    world.integration_parameters.dt = 1.0 / rate;
     let [bolt, nut] = [bolt.bolt(), nut.nut(NUT_RADIUS)]
         .map(|mesh| ColliderBuilder::new(mesh.shape()).friction(friction));
-    world.insert(RigidBodyBuilder::fixed(), bolt);
+    let mut world = world(bolt);
+    world.integration_parameters.contact_clustering = false;
+    world.integration_parameters.dt = 1.0 / rate;
     let start = BOLT.pitch * (BOLT.turns - NUT.turns) as f32;
     let body = RigidBodyBuilder::dynamic().translation(Vec3::Y * start).can_sleep(false);
     let (body, _) = world.insert(body, nut);

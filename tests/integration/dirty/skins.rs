@@ -5,22 +5,20 @@ use rapier3d::math::Real;
 use sbbk_testkit::mesh;
 
 use super::world;
+use crate::worlds::after;
 
 /// Half extents of the boxes.
 const HALVES: Vec3 = Vec3::new(0.3, 0.2, 0.4);
 
 /// Slides a box with a contact skin. Returns its way, and how far its middle and its upright axis are off.
 fn slide(ground: SharedShape, shape: SharedShape, skin: Real, turn: Real) -> [Real; 3] {
-    let mut world = world();
     let collider = |shape| ColliderBuilder::new(shape).friction(0.3);
-    world.insert(RigidBodyBuilder::fixed(), collider(ground));
+    let world = world(collider(ground));
     let height = HALVES.y + skin;
     let start = Vec3::new(-10.0, height + 0.002, 0.0);
     let body = RigidBodyBuilder::dynamic().translation(start).rotation(turn * Vec3::Y);
     let collider = collider(shape).contact_skin(skin).density(1.0);
-    let (body, _) = world.insert(body.linvel(6.0 * Vec3::X), collider);
-    (0..200).for_each(|_| world.step());
-    let body = &world.bodies[body];
+    let body = after(200, world, body.linvel(6.0 * Vec3::X), collider);
     let up = *body.rotation() * Vec3::Y;
     [body.translation().x + 10.0, (body.translation().y - height).abs(), 1.0 - up.y]
 }

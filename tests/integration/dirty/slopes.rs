@@ -9,7 +9,7 @@ use sbbk_testkit::scene::random::rotation;
 
 use super::table::{Case, judge};
 use super::{FLAGS, prepared_world};
-use crate::worlds::lowest;
+use crate::worlds::{after, lowest};
 
 const ANGLE: f32 = 20.0;
 const FRICTION: f32 = 0.8;
@@ -68,10 +68,9 @@ fn roll(roller: &Roller, ground: &SharedShape, body: &SharedShape, is_prepared: 
     };
     let start_body = RigidBodyBuilder::dynamic().translation(start).rotation(turn.to_scaled_axis());
     let collider = ColliderBuilder::new(body.clone()).mass_properties(roller.mass);
-    let (handle, _) = world.insert(start_body.can_sleep(false), collider.friction(FRICTION));
-    (0..STEPS).for_each(|_| world.step());
+    let end = after(STEPS, world, start_body.can_sleep(false), collider.friction(FRICTION));
     drop(prepared);
-    (world.bodies[handle].translation() - start).dot(tilt * Vec3::X)
+    (end.translation() - start).dot(tilt * Vec3::X)
 }
 
 /// Would catch sheets that hold a rolling body at their edges.
@@ -119,11 +118,10 @@ fn drop_depth(ring: &Mesh, height: f32, seed: u64, is_prepared: bool) -> f32 {
     world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(floor));
     let turn = rotation(&mut Rand32::new(seed)) * Quat::from_rotation_x(FRAC_PI_2);
     let start = RigidBodyBuilder::dynamic().translation(Vec3::new(0.7, height + 0.5, 0.4));
-    let (handle, _) =
-        world.insert(start.rotation(turn.to_scaled_axis()), ColliderBuilder::new(body));
-    (0..240).for_each(|_| world.step());
+    let start = start.rotation(turn.to_scaled_axis());
+    let end = after(240, world, start, ColliderBuilder::new(body));
     drop(prepared);
-    -lowest(ring, world.bodies[handle].position())
+    -lowest(ring, end.position())
 }
 
 /// Would catch large meshes that get stuck in a floor, with contacts that push up and down.

@@ -7,7 +7,7 @@ use sbbk_testkit::mesh::{self, Mesh, uneven_box};
 use super::table::{Case, judge};
 use super::{FLAGS, row, world};
 use crate::support::declare_solid;
-use crate::worlds::lowest;
+use crate::worlds::{after, lowest, on_ground};
 
 /// Half the size of a box; its top is at height 1.
 const HALF: Vec3 = Vec3::new(2.0, 1.0, 2.0);
@@ -58,19 +58,16 @@ fn closed_meshes_push_out_what_has_sunk_in() {
     {
         let solid = ColliderBuilder::new(solid.shape_with(flags));
         for (column, body, height) in bodies() {
-            let mut world = world();
             let dispatcher = SbbkDispatcher::default();
             let mesh = solid.shape.as_trimesh().expect("a mesh");
             let declared = column.starts_with("declared").then(|| declare_solid(&dispatcher, mesh));
-            world.narrow_phase.set_query_dispatcher(dispatcher);
-            world.insert(RigidBodyBuilder::fixed(), solid.clone());
+            let world = on_ground(solid.clone(), dispatcher);
             let place = Vec3::new(0.23, height, 0.11);
             let turn = Quat::from_rotation_y(0.4).to_scaled_axis();
             let start = RigidBodyBuilder::dynamic().translation(place).rotation(turn);
-            let (handle, _) = world.insert(start, ColliderBuilder::new(body.shape_with(flags)));
-            (0..240).for_each(|_| world.step());
+            let end = after(240, world, start, ColliderBuilder::new(body.shape_with(flags)));
             drop(declared);
-            let lowest = lowest(&body, world.bodies[handle].position());
+            let lowest = lowest(&body, end.position());
             let is_right = (low..high).contains(&lowest);
             let shown = format!("{lowest:.2}");
             cases.push(Case { row: row(name, flags), column, shown, is_right });
@@ -112,12 +109,9 @@ fn vessels_hold_what_lies_in_them() {
         for (column, body) in
             [("mesh ball", mesh::ball(0.2, 6)), ("mesh cube", mesh::cuboid(Vec3::splat(0.15), 2))]
         {
-            let mut world = world();
-            world.insert(RigidBodyBuilder::fixed(), ground.clone());
             let start = RigidBodyBuilder::dynamic().translation(Vec3::new(0.05, -0.6, 0.02));
-            let (handle, _) = world.insert(start, ColliderBuilder::new(body.shape_with(flags)));
-            (0..180).for_each(|_| world.step());
-            let height = world.bodies[handle].translation().y;
+            let body = ColliderBuilder::new(body.shape_with(flags));
+            let height = after(180, world(ground.clone()), start, body).translation().y;
             let is_right = (-0.9..-0.6).contains(&height);
             let shown = format!("{height:.2}");
             cases.push(Case { row: row(name, flags), column, shown, is_right });
