@@ -90,26 +90,6 @@ fn manifolds_come_in_the_order_of_subshapes_and_none_is_empty() {
     assert!(manifold_count > 1000, "{manifold_count}");
 }
 
-/// Would catch contacts kept over a change of shape: Rapier then takes the workspace away and
-/// leaves the manifolds.
-#[test]
-fn without_a_workspace_no_manifold_survives() {
-    let [one, two] = rings();
-    let query = Question::new(&one, &two, touching(&mut Rand32::new(4), [&one, &two], 0.1));
-    let dispatcher = SbbkDispatcher::default();
-    let mut pair = MarkedPair::default();
-    pair.ask(&dispatcher, &query).mark();
-    pair.workspace = None;
-    pair.ask(&dispatcher, &query);
-    assert_same(&pair.manifolds, &query.fresh(&dispatcher), 0.0);
-    assert_eq!(marks(&pair), [Marker(0)].repeat(marks(&pair).len()));
-}
-
-fn marks(pair: &MarkedPair) -> Vec<Marker> {
-    let of_points = pair.manifolds.iter().flat_map(|m| &m.points).map(|point| point.data);
-    pair.manifolds.iter().map(|manifold| manifold.data).chain(of_points).collect()
-}
-
 /// Would catch impulses lost when a dispatcher takes over a running world or a restored snapshot.
 #[test]
 fn with_a_foreign_workspace_manifolds_keep_their_data() {

@@ -10,8 +10,8 @@ use rapier3d::math::Vector;
 use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh::{self, Mesh};
 use sbbk_testkit::scene::{BoxStack, HeadOnSlope, HelicopterBallDrop, MonkeyPile, Scene, collider};
-use sbbk_testkit::world::fingerprint;
 
+use crate::determinism::run;
 use crate::support::with;
 
 /// Bytes of trees that stay when their meshes are gone: little, so that the bound is soon reached.
@@ -113,20 +113,10 @@ fn worlds_are_equal_to_the_bit_after_hundreds_of_steps() {
         Box::new(BoxStack),
         Box::new(HeadOnSlope { angle: 0.17 }),
     ];
-    let run = |scene: &dyn Scene, forgets: bool| {
-        let mut world = scene.build().world;
-        world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
-        for _ in 0..300 {
-            if forgets {
-                world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
-            }
-            world.step();
-        }
-        fingerprint(&world)
-    };
     for scene in &scenes {
-        let first = run(&**scene, false);
-        assert_eq!(first, run(&**scene, false), "{}, again", scene.name());
-        assert_eq!(first, run(&**scene, true), "{}, without memory", scene.name());
+        let run = |forgets_every| run(&scene.name(), scene.build().world, 300, forgets_every);
+        let first = run(None);
+        assert!(first == run(None), "{}, again", scene.name());
+        assert!(first == run(Some(1)), "{}, without memory", scene.name());
     }
 }

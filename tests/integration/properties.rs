@@ -1,64 +1,96 @@
 //! Promises that hold for a pair of every kind: see [`kinds`].
 
+use std::collections::BTreeMap;
+
 use allocation_counter::measure;
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
-use rapier_integration::{SbbkDispatcher, SbbkStats};
+use rapier_integration::SbbkDispatcher;
 use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::math::{Pose, Real};
-use rapier3d::parry::query::DefaultQueryDispatcher;
+use rapier3d::parry::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
+use rapier3d::parry::shape::{SharedShape, TriMesh, TriMeshFlags};
 
 use crate::kinds::{Kind, kinds, mesh_pairs};
 use crate::support::{
-    Pair, Question, assert_bits, counting, counting_patches, distance, every, nudge,
+    Manifold, Pair, Question, assert_bits, assert_same, counting, counting_patches, distance,
+    every, nudge, per_triangle, triangles,
 };
 
 const PREDICTIONS: [Real; 4] = [0.0, 0.002, 0.02, 0.2];
 /// Lengths of a step in units and radians, from far below any slack to beyond it.
 const STRIDES: [Real; 5] = [0.0, 1e-5, 1e-3, 1e-2, 3e-2];
 
-/// Moves a pair at random, with jumps, lost workspaces, other dispatchers, and poses far away or NaN. Each result must
-/// equal that of a dispatcher without memory, bit for bit.
-fn walk(kind: &Kind, seed: u64, steps: usize) -> (SbbkStats, usize) {
-    let (dispatcher, unaware, another) = (counting(), every(), every());
-    let mut random = Rand32::new(seed);
-    let mut question = kind.question(kind.pose(&mut random, 0.0)).flipped(seed % 2 == 1);
+/// Moves a pair at random, with jumps, ways back, lost workspaces, other dispatchers, poses far away or NaN, and
+/// a host that changes the list. Each result must equal that of a dispatcher without memory, bit for bit.
+fn walk(
+    question: &mut Question,
+    kind: &Kind,
+    random: &mut Rand32,
+    steps: usize,
+    [dispatcher, unaware]: [&SbbkDispatcher; 2],
+) -> usize {
     let mut pair: Pair = Pair::default();
-    let (mut stride, mut contacts) = (1e-3, 0);
+    let (mut stride, mut contacts, mut before) = (1e-3, 0, question.pose);
     for step in 0..steps {
         let pick = random.rand_range(0..5) as usize;
+        let last = question.pose;
         match random.rand_range(0..100) {
-            0..=2 => question.pose = kind.pose(&mut random, -0.02),
+            0..=2 => question.pose = kind.pose(random, -0.02),
             3..=5 => question.prediction = PREDICTIONS[pick % 4],
             6 => pair.workspace = None,
             7..=9 => stride = STRIDES[pick],
             10 => question.pose.translation.y += 50.0,
             11 => question.pose.translation.z = Real::NAN,
-            12 => _ = pair.ask(&another, &question),
-            13 => _ = pair.ask(&DefaultQueryDispatcher, &question),
-            _ => question.pose = nudge(&mut random, stride) * question.pose,
+            12 => _ = pair.ask(&every(), question),
+            13 => _ = pair.ask(&DefaultQueryDispatcher, question),
+            14..=17 => std::mem::swap(&mut question.pose, &mut before),
+            18..=25 => question.pose = meddle(&mut pair.manifolds, pick, random) * last,
+            _ => question.pose = nudge(random, stride) * last,
         }
-        pair.ask(&dispatcher, &question);
-        let expected = question.fresh(&unaware);
+        pair.ask(dispatcher, question);
+        let expected = question.fresh(unaware);
         assert_bits(&pair.manifolds, &expected, &format!("{}, step {step}", kind.name));
         contacts += expected.len();
         let at = question.pose.translation;
         if !(at.is_finite() && at.length() < 20.0) {
-            question.pose = kind.pose(&mut random, -0.01);
+            question.pose = last;
         }
     }
-    (dispatcher.stats(), contacts)
+    contacts
 }
 
-/// Would catch candidates kept too long, anything that outlives its reason, bounds of distance that are too high, and manifolds of
-/// another subshape.
+/// Removes, copies, reorders or empties manifolds, as a host may. Returns how a pair then moves: at an equal pose, a
+/// list of the same length counts as unchanged.
+fn meddle(manifolds: &mut Vec<Manifold>, pick: usize, random: &mut Rand32) -> Pose {
+    match pick {
+        0 => _ = manifolds.pop(),
+        1 => drop(manifolds.drain(..manifolds.len().min(1))),
+        2 => manifolds.extend(manifolds.first().cloned()),
+        3 => manifolds.reverse(),
+        _ => manifolds.iter_mut().for_each(|manifold| {
+            *manifold = Manifold::with_data(manifold.subshape1, manifold.subshape2, ());
+        }),
+    }
+    let may_rest = pick < 3 && random.rand_range(0..2) == 0;
+    if may_rest { Pose::IDENTITY } else { nudge(random, 1e-5) }
+}
+
+/// Would catch candidates kept too long, an old pose taken for the present one, anything that outlives its reason,
+/// bounds of distance that are too high, and manifolds that come twice, out of order, or of another subshape.
 #[test]
 fn the_answer_does_not_depend_on_the_motion_before() {
     let pairs = mesh_pairs();
     let kinds = kinds().iter().map(|kind| (kind, 400)).chain(pairs.iter().map(|pair| (pair, 1200)));
     for (seed, (kind, steps)) in (0..).zip(kinds) {
-        let (stats, contacts) = walk(kind, seed, steps);
-        let name = &kind.name;
+        let (name, dispatcher, patches) = (&kind.name, counting(), counting_patches());
+        let mut random = Rand32::new(seed);
+        let mut question = kind.question(kind.pose(&mut random, 0.0)).flipped(seed % 2 == 1);
+        let contacts = walk(&mut question, kind, &mut random, steps, [&dispatcher, &every()]);
+        question.is_flipped = !question.is_flipped;
+        let unaware = SbbkDispatcher::default();
+        walk(&mut question, kind, &mut random, steps / 4, [&patches, &unaware]);
+        let stats = dispatcher.stats();
         assert_eq!(stats.queries, steps as u64, "{name}");
         assert!(contacts > steps / 2, "{name}: {contacts} contacts");
         assert!(stats.descended_queries > 10, "{name}: {stats:?}");
@@ -69,6 +101,44 @@ fn the_answer_does_not_depend_on_the_motion_before() {
             "{name}: {stats:?}"
         );
     }
+}
+
+/// Soft bodies need each contact's triangle. Would catch patches or surfaces of a mesh that may deform, wrong
+/// cones, and contacts that the flag alone changes.
+#[test]
+fn meshes_that_may_deform_have_every_contact_of_their_triangles() {
+    let all = TriMeshFlags::all() - TriMeshFlags::DEFORMABLE;
+    let dispatchers = [every(), SbbkDispatcher::default()];
+    for (seed, kind) in (0..).zip(kinds().iter().filter(|kind| !kind.is_soft)) {
+        let mut random = Rand32::new(seed);
+        let (mut pose, mut count) = (kind.pose(&mut random, -0.02), 0);
+        for (i, flags) in [TriMeshFlags::empty(), all].repeat(5).into_iter().enumerate() {
+            pose = nudge(&mut random, 0.02) * pose;
+            let ask = |flags: [TriMeshFlags; 2], dispatcher: &SbbkDispatcher| {
+                let [one, two] = [0, 1].map(|side| flagged(&kind.shapes[side], flags[side]));
+                Question::new(&*one, &*two, pose).flipped(i % 4 < 2).fresh(dispatcher)
+            };
+            let expected = ask([flags; 2], &per_triangle());
+            let soft = flags | TriMeshFlags::DEFORMABLE;
+            for of in [[soft, flags], [flags, soft], [soft, soft]] {
+                let is_soft =
+                    [0, 1].map(|i| of[i] == soft && kind.shapes[i].as_trimesh().is_some());
+                if is_soft != [false; 2] {
+                    let found = ask(of, &dispatchers[i % 2]);
+                    assert_bits(&found, &expected, &format!("{}, {of:?}", kind.name));
+                }
+            }
+            count += expected.len();
+        }
+        assert!(count > 10, "{}: {count} contacts", kind.name);
+    }
+}
+
+/// The shape; if it is a mesh, with other flags.
+fn flagged(shape: &SharedShape, flags: TriMeshFlags) -> SharedShape {
+    let Some(mesh) = shape.as_trimesh() else { return shape.clone() };
+    let (vertices, indices) = (mesh.vertices().to_vec(), mesh.indices().to_vec());
+    SharedShape::new(TriMesh::with_flags(vertices, indices, flags).expect("a mesh"))
 }
 
 /// Would catch a panic, and contacts at poses that are not finite.
@@ -93,6 +163,50 @@ fn poses_that_are_not_finite_have_no_contacts() {
             }
         }
     }
+}
+
+/// Would catch data of a host that are lost where a dispatcher takes over a running world, and manifolds kept where a
+/// shape may have changed: Rapier then takes the workspace away.
+#[test]
+fn manifolds_keep_their_data_with_a_foreign_workspace_but_not_without_one() {
+    let dispatcher = per_triangle();
+    let mut kept = 0;
+    for (seed, kind) in (0..).zip(kinds()) {
+        let pose = kind.pose(&mut Rand32::new(seed), -0.02);
+        for flipped in [false, true] {
+            let question = kind.question(pose).flipped(flipped);
+            let expected = question.fresh(&dispatcher);
+            let ask_another = |pair: &mut Pair<u32>, is_stock: bool| {
+                let [g1, g2] = question.host_shapes();
+                let (pos12, Pair { manifolds, workspace }) = (question.pos12(), pair);
+                let stock: &dyn PersistentQueryDispatcher<_, _> = &DefaultQueryDispatcher;
+                let another: &dyn PersistentQueryDispatcher<_, _> = &per_triangle();
+                let another = if is_stock { stock } else { another };
+                another.contact_manifolds(&pos12, g1, g2, 0.02, manifolds, workspace)
+            };
+            for is_stock in [false, true] {
+                let mut pair = Pair::<u32>::default();
+                // Stock has nothing for meshes and height fields.
+                if ask_another(&mut pair, is_stock).is_err() {
+                    continue;
+                }
+                (1..).zip(&mut pair.manifolds).for_each(|(mark, manifold)| manifold.data = mark);
+                let before: BTreeMap<_, _> =
+                    pair.manifolds.iter().map(|m| (triangles(m), m.data)).collect();
+                for manifold in &pair.ask(&dispatcher, &question).manifolds {
+                    let data = before.get(&triangles(manifold)).copied();
+                    assert_eq!(manifold.data, data.unwrap_or(0), "{}, {is_stock}", kind.name);
+                    kept += usize::from(data.is_some());
+                }
+                assert_same(&pair.manifolds, &expected, 0.0);
+                pair.workspace = None;
+                pair.ask(&dispatcher, &question);
+                assert!(pair.manifolds.iter().all(|manifold| manifold.data == 0), "{}", kind.name);
+                assert_same(&pair.manifolds, &expected, 0.0);
+            }
+        }
+    }
+    assert!(kept > 1000, "{kept} manifolds");
 }
 
 /// Would catch candidates of a shape that is no longer there, if a host keeps the workspace.

@@ -1,20 +1,18 @@
-//! Meshes against convex shapes, by brute force in f64 or by Parry, triangle by triangle.
+//! Meshes against convex shapes, by brute force in f64, triangle by triangle.
 
-/// Balls: flags, prediction distances, data.
+/// Balls: prediction distances and data.
 mod balls;
 /// Linear casts, against brute force.
 mod casts;
 /// Shapes that slide, roll and fly under continuous collision detection.
 mod ccd;
-/// Shapes that change between queries, and pairs taken over from stock.
-mod change;
-/// First queries, by brute force and by Parry's distances.
+/// First queries, by brute force.
 mod fresh;
 /// Nonlinear casts, against brute force.
 mod nonlinear;
 /// Queries without manifolds, against brute force.
 mod queries;
-/// Parry's distance of each triangle, and checks against brute force.
+/// Checks against brute force.
 mod question;
 /// A head at rest on a floor.
 mod rest;
