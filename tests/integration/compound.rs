@@ -3,16 +3,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
 use rapier3d::math::{Pose, Real};
-use rapier3d::parry::query::DefaultQueryDispatcher;
-use rapier3d::parry::shape::{
-    Compound, CompoundFlags, HeightField, Polyline, PolylineFlags, Shape, SharedShape,
-};
-use rapier3d::parry::utils::Array2;
+use rapier3d::parry::shape::{Compound, CompoundFlags, Shape, SharedShape};
 use sbbk_testkit::mesh;
 
 use crate::support::{
-    Dispatcher, Manifold, Pair, Question, assert_bits, counting, direction, distance, every,
-    per_triangle, rotation, sequence, shape, touching_shapes,
+    Dispatcher, Manifold, Pair, Question, counting, direction, distance, every, per_triangle,
+    rotation, sequence, shape, touching_shapes,
 };
 use crate::worlds::dumbbells;
 
@@ -110,25 +106,6 @@ fn contacts_are_those_of_each_part_by_itself() {
     }
 }
 
-/// A part of a kind that SBBK does not answer for: the whole pair is stock's, not half of it.
-#[test]
-fn other_parts_leave_the_pair_to_stock() {
-    let head = shape(&mesh::monkey_head());
-    let field = HeightField::new(Array2::repeat(4, 4, 0.0), Vec3::splat(2.0));
-    let parts = vec![
-        (Pose::translation(0.0, -0.9, 0.0), SharedShape::new(field)),
-        (Pose::translation(0.9, 0.0, 0.0), SharedShape::ball(0.6)),
-    ];
-    let compound = Compound::new(parts);
-    let dispatcher = counting();
-    let pose = Pose::IDENTITY;
-    let question = Question::new(&head, &compound, pose);
-    let found = fresh(&question, &dispatcher);
-    assert!(!found.is_empty());
-    assert_bits(&found, &fresh(&question, &DefaultQueryDispatcher), "as stock");
-    assert_eq!(dispatcher.stats().queries, 0);
-}
-
 /// Would catch contacts that flicker, sink in or do not hold a body at rest.
 #[test]
 fn compounds_rest_on_a_mesh_as_with_stock() {
@@ -209,18 +186,4 @@ fn far_parts_keep_their_contacts_while_a_body_turns() {
         }
     }
     assert!(touched > 100, "{touched}");
-}
-
-/// Would catch contacts of a polyline where it was: the vertices of one that deforms may move at any
-/// time.
-#[test]
-fn polylines_that_deform_are_left_to_stock() {
-    let floor = shape(&mesh::floor(8.0, 8));
-    let corners = vec![Vec3::new(-1.0, 0.01, 0.1), Vec3::new(1.0, 0.01, 0.2)];
-    for (flags, queries) in [(PolylineFlags::empty(), 1), (PolylineFlags::DEFORMABLE, 0)] {
-        let line = Polyline::with_flags(corners.clone(), None, flags);
-        let dispatcher = counting();
-        Question::new(&floor, &line, Pose::IDENTITY).fresh(&dispatcher);
-        assert_eq!(dispatcher.stats().queries, queries, "{flags:?}");
-    }
 }

@@ -29,13 +29,16 @@ fn judge(seed: u64, meshes: [&Mesh; 2], least_contacts: usize) {
     tally.check_all_right(least_contacts);
 }
 
-/// Would catch contacts missed, invented, or with wrong depths, as stock has them at small triangles.
+/// Would catch contacts missed, invented, or with wrong depths, as stock has them at small triangles, and contacts of
+/// surfaces where those of triangles were requested.
 #[test]
 fn contacts_are_those_of_brute_force_at_every_size() {
     let head = mesh::monkey_head();
     judge(2, [&head, &head], 1000);
     judge(3, [&mesh::monkey_head_with(7), &mesh::torus(1.0, 0.4, 60, 30)], 1000);
     judge(4, [&mesh::ball(1.0, 32), &mesh::ball(1.0, 20)], 1000);
+    let inside_out = mesh::turned_inside_out(mesh::monkey_head_with(7));
+    judge(5, [&inside_out, &inside_out], 500);
 }
 
 /// Edges and faces that are exactly parallel, and vertices that meet exactly.

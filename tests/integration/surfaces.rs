@@ -5,13 +5,12 @@ use std::collections::BTreeSet;
 use glamx::{Quat, Vec3};
 use oorandom::Rand32;
 use rapier3d::math::{Pose, Real, Vector};
-use rapier3d::parry::query::DefaultQueryDispatcher;
-use rapier3d::parry::shape::{TriMesh, TriMeshFlags};
+use rapier3d::parry::shape::TriMesh;
 use sbbk_testkit::mesh::{self, Mesh};
 
 use crate::support::{
-    Manifold, Pair, Question, assert_same, distance, every, nudge, per_triangle, sequence, shape,
-    shape_with, touching, triangles, turned_inside_out,
+    Manifold, Question, distance, every, nudge, per_triangle, sequence, shape, touching, triangles,
+    turned_inside_out,
 };
 
 fn ask(query: &Question) -> Vec<Manifold> {
@@ -141,9 +140,7 @@ fn small_bodies_are_not_pushed_out_on_their_far_sides() {
         let (one, other) = (&bodies[i % 3], &bodies[i / 3 % 3]);
         let query = Question::new(one, other, touching(&mut random, [one, other], depth));
         let deepest = ask(&query).iter().map(distance).fold(0.0, Real::min);
-        if deepest <= -depth {
-            println!("DBG {} {} {deepest} {}", i % 3, i / 3 % 3, ask(&query).len());
-        }
+        assert!(deepest > -1.1 * depth, "{deepest}");
     }
 }
 
@@ -187,28 +184,6 @@ fn a_cube_is_pushed_to_its_own_side_of_a_sheet() {
             let sideways = lifts.clone().filter(|lift| lift.abs() < 0.9).count();
             assert!(found.iter().all(|m| sign * m.local_n1.y > -1e-6), "{height} {sign}");
             assert!(2 * sideways < found.len(), "{sideways} of {} at {height}", found.len());
-        }
-    }
-}
-
-/// Every bit of manifolds, and their order.
-pub fn bits(manifolds: &[Manifold]) -> String {
-    format!("{manifolds:?}")
-}
-
-/// Would catch contacts of surfaces where those of triangles were requested.
-#[test]
-fn contacts_of_triangles_do_not_depend_on_winding() {
-    let head = mesh::monkey_head_with(7);
-    let [outside, inside] = [head.clone(), turned_inside_out(head)].map(|mesh| shape(&mesh));
-    let mut random = Rand32::new(2);
-    for depth in [-0.01, 0.0, 0.02, 0.3].repeat(5) {
-        let query = Question::new(&outside, &outside, touching(&mut random, [&outside; 2], depth));
-        let expected = query.fresh(&per_triangle());
-        let turned = Question { shapes: [&inside; 2], ..query }.fresh(&per_triangle());
-        assert_eq!(sequence(&expected), sequence(&turned));
-        for (one, other) in expected.iter().zip(&turned) {
-            assert!((distance(one) - distance(other)).abs() < 1e-6);
         }
     }
 }
@@ -382,92 +357,6 @@ fn either_mesh_may_come_first() {
     assert!(count > 500);
 }
 
-/// Small meshes without trees: the budget for these is spent. Would catch a surface that is known with
-/// the tree only.
-#[test]
-fn answers_without_trees_are_those_with_trees() {
-    let prepared = every();
-    let spent = every();
-    // Others that take all that may be spent on trees.
-    for i in 0..6 {
-        let other = shape(&mesh::ball(1.0 + 0.01 * i as Real, 14));
-        _ = Question::new(&other, &other, Pose::translation(1.5, 0.1, 0.2)).fresh(&spent);
-    }
-    let mut count = 0;
-    for_each_pose(19, |[one, two], pose, _| {
-        let walks = spent.stats().internals.walks;
-        let trees = [one, two].map(|mesh| prepared.prepare(mesh).unwrap());
-        let query = Question::new(one, two, pose);
-        let [found, expected] = [&spent, &prepared].map(|dispatcher| query.fresh(dispatcher));
-        drop(trees);
-        if spent.stats().internals.walks > walks {
-            assert_eq!(bits(&found), bits(&expected));
-            count += found.len();
-        }
-    });
-    assert!(count > 100, "{count} contacts without trees");
-}
-
-/// Would catch a kind, a side or a neighbour that depends on a registration.
-#[test]
-fn large_meshes_have_the_contacts_of_registered_ones() {
-    let cube = cube();
-    for cells in [40, 110] {
-        let mut slab = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), cells);
-        slab.triangles.swap_remove(0);
-        let slab = slab.shape();
-        let ground = slab.as_trimesh().unwrap();
-        let is_large = [8192, 1 << 17].map(|limit| ground.num_triangles() > limit);
-        assert_eq!(is_large, [true, cells > 100]);
-        let (unaware, knowing) = (every(), every());
-        let _tree = knowing.prepare_shape(&slab).unwrap().unwrap();
-        assert_eq!(unaware.surface_kind(ground), knowing.surface_kind(ground));
-        // Beside the slab, on it, sunk in, and across its rim.
-        for place in [0.505, 0.49, 0.3]
-            .map(|height| Vec3::new(0.1, 0.5 + height, 0.2))
-            .into_iter()
-            .chain([Vec3::new(2.2, 0.3, 0.2), Vec3::new(0.1, 0.0, 0.2)])
-        {
-            let turn = Quat::from_rotation_y(0.3);
-            let query = Question::new(ground, &cube, Pose::from_parts(place, turn));
-            let [found, expected] = [&unaware, &knowing].map(|of| query.fresh(of));
-            assert_eq!(bits(&found), bits(&expected), "{cells} cells, {place}");
-        }
-    }
-}
-
-/// Would catch unregistered large meshes that lock into each other, and memory in the result.
-#[test]
-fn large_meshes_are_solids_to_each_other() {
-    let slab = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 40).shape();
-    let ground = slab.as_trimesh().unwrap();
-    let (unaware, knowing) = (every(), every());
-    let _tree = knowing.prepare_shape(&slab).unwrap().unwrap();
-    let mut pair = Pair::default();
-    for step in 0..12 {
-        let turn = Quat::from_rotation_y(0.3 + 0.01 * step as Real);
-        let sunk = Vec3::new(0.1, 0.99 - 0.004 * step as Real, 0.2);
-        let query = Question::new(ground, ground, Pose::from_parts(sunk, turn));
-        let expected = query.fresh(&knowing);
-        assert!(!expected.is_empty());
-        assert_eq!(bits(&query.fresh(&unaware)), bits(&expected), "{step}");
-        assert_eq!(bits(&pair.ask(&unaware, &query).manifolds), bits(&expected), "{step}");
-    }
-    assert_eq!((unaware.stats().solids, unaware.stats().trees), (1, 0));
-}
-
-/// Would catch surfaces that are looked for, which takes a hash of the mesh, before triangles touch.
-#[test]
-fn meshes_that_touch_nothing_have_no_surface() {
-    let (ball, dispatcher) = (shape(&mesh::ball(1.0, 12)), every());
-    let corner = Pose::from_translation(1.3 * Vec3::ONE);
-    assert!(Question::new(&ball, &ball, corner).fresh(&dispatcher).is_empty());
-    assert_eq!(dispatcher.stats().solids, 0);
-    let near = Pose::from_translation(1.99 * Vec3::X);
-    assert!(!Question::new(&ball, &ball, near).fresh(&dispatcher).is_empty());
-    assert_eq!(dispatcher.stats().solids, 1);
-}
-
 /// Would catch numbers that have a unit: everything times a power of two, the prediction distance as
 /// well, has the contacts of the same triangles.
 #[test]
@@ -488,22 +377,6 @@ fn contacts_do_not_depend_on_the_unit_of_length() {
         });
     }
     assert!(count > 2000, "{count}");
-}
-
-/// Would catch surfaces of meshes that deform, which have none: stock answers for both alike, and so
-/// does SBBK with every contact of triangles.
-#[test]
-fn deformable_meshes_have_no_surfaces() {
-    let ball = mesh::ball(0.8, 6);
-    let [rigid, soft] =
-        [TriMeshFlags::empty(), TriMeshFlags::DEFORMABLE].map(|flags| shape_with(&ball, flags));
-    let mut random = Rand32::new(21);
-    for depth in [0.0, 0.1].repeat(5) {
-        let query = Question::new(&rigid, &rigid, touching(&mut random, [&rigid; 2], depth));
-        let all = query.fresh(&per_triangle());
-        assert_same(&ask(&Question { shapes: [&soft, &rigid], ..query }), &all, 0.0);
-        assert!(!query.fresh(&DefaultQueryDispatcher).is_empty());
-    }
 }
 
 /// Would catch contacts of one overlap island that another one removes.

@@ -9,8 +9,14 @@ use rapier3d::parry::query::{ClosestPoints, QueryDispatcher};
 use rapier3d::parry::shape::{Shape, SharedShape, TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh;
 
-use crate::support::{Pair, Question, assert_same, every, per_triangle, rotation, shape, touching};
-use crate::surfaces::bits;
+use crate::support::{
+    Manifold, Pair, Question, SETS, every, having, per_triangle, rotation, shape, touching,
+};
+
+/// Every bit of manifolds, and their order.
+fn bits(manifolds: &[Manifold]) -> String {
+    format!("{manifolds:?}")
+}
 
 /// 9600 triangles, four units across.
 fn large(flags: TriMeshFlags) -> SharedShape {
@@ -25,14 +31,15 @@ fn as_mesh(shape: &SharedShape) -> &TriMesh {
     shape.as_trimesh().expect("the shape is a mesh")
 }
 
-/// Would catch pairs lost or in another order, another normal cone, and meshes mixed up.
+/// Would catch pairs lost or in another order, another normal cone, meshes mixed up, and a surface that is known with
+/// the tree only.
 #[test]
 fn contacts_without_trees_are_those_with_trees() {
     let flags = [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES];
     let mut count = 0;
-    for flags in flags {
+    for (flags, set) in flags.into_iter().flat_map(|flags| SETS.map(|set| (flags, set))) {
         let (ring, head) = (large(flags), head(flags));
-        let [walking, prepared] = [(); 2].map(|()| per_triangle());
+        let [walking, prepared] = [(); 2].map(|()| having(set));
         let _trees = [&ring, &head].map(|shape| prepared.prepare_shape(shape).unwrap());
         let mut random = Rand32::new(1);
         for i in 0..24 {
@@ -54,30 +61,6 @@ fn contacts_without_trees_are_those_with_trees() {
         assert_eq!(prepared.stats().internals.tree_builds, 2);
     }
     assert!(count > 2000, "{count} contacts");
-}
-
-/// Loaders of robots set all flags of meshes that never deform. Would catch a tree, or contacts,
-/// that the flag changes.
-#[test]
-fn a_flag_alone_changes_nothing() {
-    let all = TriMeshFlags::all() - TriMeshFlags::DEFORMABLE;
-    let (rigid, soft) = (head(all), head(TriMeshFlags::all()));
-    let dispatcher = per_triangle();
-    let mut random = Rand32::new(2);
-    let [mut pair, mut rigid_pair]: [Pair; 2] = Default::default();
-    for _ in 0..50 {
-        let pose = touching(&mut random, [as_mesh(&rigid); 2], 0.02);
-        let of_rigid = Question::new(as_mesh(&rigid), as_mesh(&rigid), pose);
-        let expected = of_rigid.fresh(&dispatcher);
-        assert!(!expected.is_empty());
-        assert_same(&rigid_pair.ask(&dispatcher, &of_rigid).manifolds, &expected, 0.0);
-        for (one, two) in [(&soft, &rigid), (&rigid, &soft), (&soft, &soft)] {
-            let query = Question::new(as_mesh(one), as_mesh(two), pose);
-            assert_same(&query.fresh(&dispatcher), &expected, 0.0);
-            assert_same(&pair.ask(&dispatcher, &query).manifolds, &expected, 0.0);
-        }
-    }
-    assert_eq!(dispatcher.stats().trees, 1);
 }
 
 /// Would catch a registered mesh whose edit is not seen, one that stays registered, and another
@@ -203,4 +186,64 @@ fn queries_without_trees_are_those_with_trees() {
         .map(|d| d.cast_shapes(&pose, velocity, &*ring, &*head, options).unwrap().unwrap());
     let [found, expected] = casts.map(|hit| hit.time_of_impact);
     assert!((found - expected).abs() < 1e-2, "{found} for {expected}");
+}
+
+/// Would catch a kind, a side or a neighbour that depends on a registration.
+#[test]
+fn large_meshes_have_the_contacts_of_registered_ones() {
+    let cube = shape(&mesh::cuboid(Vec3::splat(0.5), 1));
+    for cells in [40, 110] {
+        let mut slab = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), cells);
+        slab.triangles.swap_remove(0);
+        let slab = slab.shape();
+        let ground = slab.as_trimesh().unwrap();
+        let is_large = [8192, 1 << 17].map(|limit| ground.num_triangles() > limit);
+        assert_eq!(is_large, [true, cells > 100]);
+        let (unaware, knowing) = (every(), every());
+        let _tree = knowing.prepare_shape(&slab).unwrap().unwrap();
+        assert_eq!(unaware.surface_kind(ground), knowing.surface_kind(ground));
+        // Beside the slab, on it, sunk in, and across its rim.
+        for place in [0.505, 0.49, 0.3]
+            .map(|height| Vec3::new(0.1, 0.5 + height, 0.2))
+            .into_iter()
+            .chain([Vec3::new(2.2, 0.3, 0.2), Vec3::new(0.1, 0.0, 0.2)])
+        {
+            let turn = Quat::from_rotation_y(0.3);
+            let query = Question::new(ground, &cube, Pose::from_parts(place, turn));
+            let [found, expected] = [&unaware, &knowing].map(|of| query.fresh(of));
+            assert_eq!(bits(&found), bits(&expected), "{cells} cells, {place}");
+        }
+    }
+}
+
+/// Would catch unregistered large meshes that lock into each other, and memory in the result.
+#[test]
+fn large_meshes_are_solids_to_each_other() {
+    let slab = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 40).shape();
+    let ground = slab.as_trimesh().unwrap();
+    let (unaware, knowing) = (every(), every());
+    let _tree = knowing.prepare_shape(&slab).unwrap().unwrap();
+    let mut pair = Pair::default();
+    for step in 0..12 {
+        let turn = Quat::from_rotation_y(0.3 + 0.01 * step as Real);
+        let sunk = Vec3::new(0.1, 0.99 - 0.004 * step as Real, 0.2);
+        let query = Question::new(ground, ground, Pose::from_parts(sunk, turn));
+        let expected = query.fresh(&knowing);
+        assert!(!expected.is_empty());
+        assert_eq!(bits(&query.fresh(&unaware)), bits(&expected), "{step}");
+        assert_eq!(bits(&pair.ask(&unaware, &query).manifolds), bits(&expected), "{step}");
+    }
+    assert_eq!((unaware.stats().solids, unaware.stats().trees), (1, 0));
+}
+
+/// Would catch surfaces that are looked for, which takes a hash of the mesh, before triangles touch.
+#[test]
+fn meshes_that_touch_nothing_have_no_surface() {
+    let (ball, dispatcher) = (shape(&mesh::ball(1.0, 12)), every());
+    let corner = Pose::from_translation(1.3 * Vec3::ONE);
+    assert!(Question::new(&ball, &ball, corner).fresh(&dispatcher).is_empty());
+    assert_eq!(dispatcher.stats().solids, 0);
+    let near = Pose::from_translation(1.99 * Vec3::X);
+    assert!(!Question::new(&ball, &ball, near).fresh(&dispatcher).is_empty());
+    assert_eq!(dispatcher.stats().solids, 1);
 }

@@ -4,7 +4,9 @@ use rapier3d::control::KinematicCharacterController;
 use rapier3d::math::Pose;
 use rapier3d::parry::query::details::ShapeCastOptions;
 use rapier3d::parry::query::{DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher};
-use rapier3d::parry::shape::{HeightField, Shape, SharedShape, TriMesh, TriMeshFlags};
+use rapier3d::parry::shape::{
+    HeightField, Polyline, PolylineFlags, Shape, SharedShape, TriMesh, TriMeshFlags,
+};
 use rapier3d::parry::utils::Array2;
 use rapier3d::pipeline::QueryFilter;
 use rapier3d::prelude::ColliderBuilder;
@@ -34,7 +36,10 @@ pub fn kinds() -> Vec<(&'static str, SharedShape, Who)> {
     let round_hull = SharedShape::round_convex_hull(&ball.vertices, 0.1).expect("as above");
     let part = |shape: SharedShape| vec![(Pose::translation(0.1, 0.0, 0.0), shape)];
     let soft = shape_with(&ball, TriMeshFlags::DEFORMABLE);
+    // The whole pair is stock's, not half of it.
+    let with_field = [part(field()), part(SharedShape::ball(0.5))].concat();
     let line = vec![-a, a, b];
+    let soft_line = Polyline::with_flags(line.clone(), None, PolylineFlags::DEFORMABLE);
     vec![
         ("mesh", ball.shape(), Sbbk),
         ("deformable mesh", SharedShape::new(soft), Sbbk),
@@ -54,8 +59,9 @@ pub fn kinds() -> Vec<(&'static str, SharedShape, Who)> {
         ("half-space", SharedShape::halfspace(Vec3::Y), Sbbk),
         ("height field", field(), Sbbk),
         ("compound", SharedShape::compound(part(SharedShape::ball(0.5))), Sbbk),
-        ("compound of another kind", SharedShape::compound(part(field())), Parry),
-        ("polyline", SharedShape::polyline(line, None), Sbbk),
+        ("compound with another kind", SharedShape::compound(with_field), Parry),
+        ("polyline", SharedShape::polyline(line.clone(), None), Sbbk),
+        ("deformable polyline", SharedShape::new(soft_line), Parry),
         ("voxels", SharedShape::voxels_from_points(Vec3::splat(0.3), &ball.vertices), Parry),
     ]
 }

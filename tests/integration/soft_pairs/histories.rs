@@ -10,8 +10,9 @@ use rapier3d::parry::query::DefaultQueryDispatcher;
 use rapier3d::parry::shape::{Shape, SharedShape, TriMesh, TriMeshFlags};
 use sbbk_testkit::mesh;
 
-use super::question::{anew, assert_same_set, furniture, hills, steps};
-use crate::support::{Pair, Question, assert_same, rotation, shape_with};
+use super::question::{anew, assert_same_set, furniture};
+use crate::heightfield::terrain::Terrain;
+use crate::support::{Pair, Question, assert_same, counting, rotation, shape_with};
 
 /// Event of a pair between two queries.
 #[derive(Clone, Copy, Debug)]
@@ -53,17 +54,22 @@ fn event() -> impl Strategy<Value = Event> {
 #[derive(Clone, Debug)]
 struct History {
     seed: u64,
-    has_fixed_edges: bool,
+    flags: TriMeshFlags,
     flipped: bool,
     is_lattice: bool,
     events: Vec<Event>,
 }
 
 fn history() -> impl Strategy<Value = History> {
+    let flags = prop_oneof![
+        Just(TriMeshFlags::empty()),
+        Just(TriMeshFlags::FIX_INTERNAL_EDGES),
+        Just(TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED),
+    ];
     let events = prop::collection::vec(event(), 12);
-    (any::<u64>(), any::<[bool; 3]>(), events).prop_map(|(seed, bools, events)| {
-        let [has_fixed_edges, flipped, is_lattice] = bools;
-        History { seed, has_fixed_edges, flipped, is_lattice, events }
+    (any::<u64>(), flags, any::<[bool; 2]>(), events).prop_map(|(seed, flags, bools, events)| {
+        let [flipped, is_lattice] = bools;
+        History { seed, flags, flipped, is_lattice, events }
     })
 }
 
@@ -78,14 +84,10 @@ struct Walk {
 impl Walk {
     fn new(history: &History) -> Self {
         let mut random = Rand32::new(history.seed);
-        let flags = if history.has_fixed_edges {
-            TriMeshFlags::DEFORMABLE | TriMeshFlags::FIX_INTERNAL_EDGES
-        } else {
-            TriMeshFlags::DEFORMABLE
-        };
         let solids = [mesh::ball(0.6, 4), mesh::torus(0.5, 0.2, 10, 6), mesh::monkey_head_with(5)];
         let solid = solids[random.rand_range(0..3) as usize].clone();
-        let mesh = shape_with(&solid.centred().scaled_to(1.2), flags);
+        let solid = solid.centred().scaled_to(1.2);
+        let mesh = shape_with(&solid, history.flags | TriMeshFlags::DEFORMABLE);
         let turn = if history.is_lattice { Quat::IDENTITY } else { rotation(&mut random) };
         let rest = mesh.vertices().to_vec();
         Self { random, mesh, rest, pose: Pose::from_parts(Vec3::Y * 0.5, turn) }
@@ -130,10 +132,10 @@ impl Walk {
     }
 }
 
-/// Runs a history and returns the number of contacts. Panics unless a mesh built anew and a new dispatcher give
-/// the same bits in the same order.
+/// Runs a history and returns the number of contacts. Panics unless a new dispatcher gives the same bits in
+/// the same order, and a rigid mesh built anew in any order.
 fn run(history: &History, other: &dyn Shape) -> usize {
-    let (dispatcher, mut contacts) = (SbbkDispatcher::default(), 0);
+    let (dispatcher, mut contacts) = (counting(), 0);
     let mut walk = Walk::new(history);
     let mut pair: Pair = Pair::default();
     for &event in &history.events {
@@ -147,29 +149,46 @@ fn run(history: &History, other: &dyn Shape) -> usize {
         }
         let found = &pair.ask(&dispatcher, &question).manifolds;
         assert_same(found, &question.fresh(&SbbkDispatcher::default()), 0.0);
-        assert_same_set(found, &anew(&question, &SbbkDispatcher::default()));
+        assert_same_set(found, &anew(&question));
         contacts += found.len();
     }
     let stats = dispatcher.stats();
     assert_eq!((stats.unsupported_queries, stats.trees), (0, 0), "{stats:?}");
+    assert_eq!(stats.internals.reused_queries + stats.internals.unchanged_queries, 0, "{stats:?}");
     contacts
 }
 
-/// Would catch candidates, features or cones of earlier vertices.
+/// A shape of each kind of pair.
+fn others(history: &History) -> [SharedShape; 8] {
+    let random = &mut Rand32::new(history.seed);
+    let terrain = if history.is_lattice {
+        Terrain::lattice(random)
+    } else {
+        Terrain::random(random, [16, 14], Vec3::new(4.0, 0.5, 4.0))
+    };
+    [
+        SharedShape::new(terrain.field),
+        SharedShape::new(furniture(SharedShape::cuboid(0.5, 0.1, 0.1))),
+        mesh::torus(1.0, 0.4, 24, 12).shape(),
+        SharedShape::ball(0.5),
+        SharedShape::cuboid(3.0, 0.2, 3.0),
+        SharedShape::capsule_y(0.5, 0.3),
+        SharedShape::cylinder(0.5, 0.4),
+        SharedShape::halfspace(Vec3::Y),
+    ]
+}
+
+/// Would catch lost or invented contacts, and candidates, features or cones of earlier vertices.
 #[test]
-fn contacts_are_those_of_a_mesh_built_anew_after_any_history() {
-    let furniture = furniture(SharedShape::cuboid(0.5, 0.1, 0.1));
-    for has_field in [true, false] {
+fn contacts_are_those_of_a_rigid_mesh_built_anew_after_any_history() {
+    for kind in 0..8 {
         let contacts = Cell::new(0);
         let case = |history: History| {
-            let random = &mut Rand32::new(history.seed);
-            let field = if history.is_lattice { steps(random) } else { hills(random) };
-            let other: &dyn Shape = if has_field { &field } else { &furniture };
-            contacts.set(contacts.get() + run(&history, other));
+            contacts.set(contacts.get() + run(&history, &*others(&history)[kind]));
             Ok(())
         };
         let config = Config { failure_persistence: None, ..Config::with_cases(150) };
         TestRunner::new(config).run(&history(), case).unwrap();
-        assert!(contacts.get() >= 20_000, "only {} contacts", contacts.get());
+        assert!(contacts.get() >= 20_000, "only {} contacts with shape {kind}", contacts.get());
     }
 }
