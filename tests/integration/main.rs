@@ -11,7 +11,7 @@
 //! | convex shapes | `convex::fresh` | `properties` | `convex::rest` |
 //! | compounds | `compound` | `properties` | `compound` |
 //! | a height field | `heightfield::truth` | `heightfield::change` | `heightfield::rest` |
-//! | a soft mesh and any shape | `soft_pairs::frames` | `soft_pairs::histories` | `soft_pairs::worlds` |
+//! | a soft mesh and any shape | `properties` | `soft_pairs::histories` | `soft_pairs::worlds` |
 //!
 //! Queries without manifolds are in `queries`, `nonlinear` and, of meshes without trees, `walks`.
 //! `features.rs` has the tests that are run again with Rapier's features.
@@ -60,6 +60,8 @@ mod pairs;
 mod patches;
 /// Promises that hold for every kind of pair.
 mod properties;
+/// Queries without manifolds against brute force.
+mod proximity;
 /// Queries without manifolds.
 mod queries;
 /// Bodies at rest, and sliding, beside stock Rapier.

@@ -1,14 +1,13 @@
-use glamx::{Pose3, Quat, Vec3};
+use glamx::{Pose3, Vec3};
 use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::parry::query::{
     DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus,
 };
 use rapier3d::parry::shape::TriMesh;
-use sbbk_testkit::mesh;
 use sbbk_truth::TruthPair;
 
-use crate::support::{direction, reach, rotation, shape};
+use crate::support::{direction, reach, rotation};
 use crate::truth::{normalized, of_meshes};
 
 /// Two meshes on their ways, until the time of one unit.
@@ -171,40 +170,4 @@ fn casts_from_contact_are_like_stock() {
     }
     // The rest is up to EPA's normals.
     assert!(count > 100 && both > 50 && 10 * same >= 9 * count, "{same} of {count}, {both} hit");
-}
-
-/// A wall stops a box that slides along a floor. A floor stops a box that is pressed into it, and
-/// not a box that is lifted.
-#[test]
-fn a_box_slides_along_a_floor_to_a_wall() {
-    let corner = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
-    let vertices = vec![
-        corner(-40.0, 0.0, -20.0),
-        corner(30.0, 0.0, -20.0),
-        corner(-5.0, 0.0, 60.0),
-        corner(2.0, -1.0, -9.0),
-        corner(2.0, -1.0, 9.0),
-        corner(2.0, 9.0, 0.0),
-    ];
-    let room = TriMesh::new(vertices, vec![[0, 2, 1], [3, 4, 5]]).unwrap();
-    let cube = shape(&mesh::cuboid(Vec3::splat(0.5), 1));
-    let dispatcher = SbbkDispatcher::default();
-    for height in [0.5, 0.49] {
-        let cast = |velocity: Vec3| {
-            let start = Pose3::from_parts(Vec3::new(0.0, height, 0.0), Quat::IDENTITY);
-            let moving = NonlinearRigidMotion::new(start, Vec3::ZERO, velocity, Vec3::ZERO);
-            let still = NonlinearRigidMotion::constant_position(Pose3::IDENTITY);
-            let meshes = [&room, &cube];
-            Cast { meshes, motions: [still, moving] }.ask(&dispatcher)
-        };
-        let slid = cast(Vec3::new(2.0, 0.0, 0.0)).expect("meets the wall");
-        assert!((slid.time_of_impact - 0.75).abs() < 1e-4, "{slid:?}");
-        assert_eq!(slid.subshape1, 1);
-        // A sunk box meets the floor from below when it is lifted.
-        let lifted = cast(Vec3::new(-2.0, 0.5, 0.0)).map(|hit| hit.time_of_impact);
-        assert_eq!(lifted.is_some(), height < 0.5, "{lifted:?}");
-        assert!(lifted.is_none_or(|time| (time - 0.02).abs() < 1e-4), "{lifted:?}");
-        let pressed = cast(Vec3::new(0.0, -2.0, 0.0)).expect("the floor is in the way");
-        assert!(pressed.time_of_impact < 1e-4 && pressed.subshape1 == 0, "{pressed:?}");
-    }
 }

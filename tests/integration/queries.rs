@@ -8,12 +8,12 @@ use rapier3d::parry::query::details::ShapeCastOptions;
 use rapier3d::parry::query::{
     ClosestPoints, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastStatus,
 };
-use rapier3d::parry::shape::{Cuboid, TriMesh};
-use rapier3d::prelude::*;
+use rapier3d::parry::shape::{Cuboid, Shape, TriMesh};
 use sbbk_testkit::mesh::{self, Mesh};
 use sbbk_truth::TruthPair;
 
-use crate::support::{direction, reach, rotation, shape};
+use crate::proximity::{LinearCast, Proximity};
+use crate::support::{Question, direction, reach, rotation, shape};
 use crate::truth::{normalized, of_meshes};
 
 /// In sizes of the meshes.
@@ -56,55 +56,28 @@ fn proximity_is_true() {
         let [head, ring] = &meshes;
         let size = reach(head) + reach(ring);
         for pos12 in poses {
-            for (meshes, pos12) in [([head, ring], pos12), ([ring, head], pos12.inverse())] {
-                let [mesh1, mesh2] = meshes;
-                let reported = dispatcher.distance(&pos12, mesh1, mesh2).unwrap().distance;
+            let question = Question::new(head, ring, pos12);
+            for question in [question, question.flipped(true)] {
+                let (meshes, pos12) = (question.meshes(), question.pos12());
+                let reported = dispatcher.distance(&pos12, meshes[0], meshes[1]).unwrap().distance;
                 // Were the distance less than the truth, this would be infinite.
-                let truth = least(meshes, &pos12, 0.21 * size + 1.01 * reported);
-                check_proximity(&dispatcher, meshes, &pos12, truth, size);
-                *(if truth < 0.0 { &mut crossing } else { &mut apart }) += 1;
+                let pairs = truth(meshes, &pos12, 0.21 * size + 1.01 * reported);
+                let near = |pair: &&TruthPair, of| [pair.triangle1, pair.triangle2] == of;
+                let of = |of: [u32; 2]| {
+                    let pair = pairs.iter().find(|pair| near(pair, of));
+                    pair.map_or(f64::INFINITY, |pair| pair.distance)
+                };
+                let least = pairs.iter().map(|pair| pair.distance).fold(f64::INFINITY, f64::min);
+                let tolerance = f64::from(TOLERANCE * size);
+                let proximity = Proximity { question, least, of: &of, tolerance };
+                for margin in [0.2 * size, 2.0 * size] {
+                    proximity.check(&dispatcher, margin, &format!("{pos12:?}"));
+                }
+                *(if least < 0.0 { &mut crossing } else { &mut apart }) += 1;
             }
         }
     }
     assert!(crossing > 20 && apart > 60, "{crossing} crossing, {apart} apart");
-}
-
-fn check_proximity(
-    dispatcher: &SbbkDispatcher,
-    [mesh1, mesh2]: [&TriMesh; 2],
-    pos12: &Pose3,
-    truth: f32,
-    size: f32,
-) {
-    let slack = TOLERANCE * size;
-    let distance = dispatcher.distance(pos12, mesh1, mesh2).unwrap();
-    assert!((distance.distance - truth.max(0.0)).abs() < slack);
-    let meet = dispatcher.intersection_test(pos12, mesh1, mesh2).unwrap();
-    assert!(meet.intersecting == (truth < 0.0) || truth.abs() < slack);
-    if meet.intersecting {
-        let triangles = (meet.subshape1, meet.subshape2);
-        let meeting = self::truth([mesh1, mesh2], pos12, slack);
-        assert!(meeting.iter().any(|pair| (pair.triangle1, pair.triangle2) == triangles));
-    }
-
-    match dispatcher.closest_points(pos12, mesh1, mesh2, 2.0 * size).unwrap() {
-        ClosestPoints::Intersecting => assert!(truth < slack),
-        ClosestPoints::WithinMargin(p1, p2) => {
-            assert!(((pos12 * p2 - p1).length() - truth).abs() < slack);
-            let off = mesh1.triangle(distance.subshape1).distance_to_local_point(p1, true);
-            assert!(off < slack, "the point is {off} beside its triangle");
-            let off = mesh2.triangle(distance.subshape2).distance_to_local_point(p2, true);
-            assert!(off < slack, "the point is {off} beside its triangle");
-        }
-        ClosestPoints::Disjoint => assert!(truth > 1.9 * size),
-    }
-    let contact = dispatcher.contact(pos12, mesh1, mesh2, 0.2 * size).unwrap();
-    assert_eq!(contact.is_some(), truth <= 0.2 * size);
-    let Some(contact) = contact else { return };
-    assert!((contact.dist - truth).abs() < slack);
-    assert!((pos12.rotation * contact.normal2 + contact.normal1).length() < 1e-5);
-    let along = (pos12 * contact.point2 - contact.point1).dot(contact.normal1);
-    assert!((along - truth).abs() < slack, "points {along} apart along the normal, not {truth}");
 }
 
 /// "Surfaces are what counts", as for stock: a small mesh inside a large one does not meet it.
@@ -136,32 +109,23 @@ fn casts_stop_at_the_first_impact() {
         let velocity = -0.5 * from + 0.6 * direction(&mut random);
         let options =
             ShapeCastOptions { target_distance, ..ShapeCastOptions::with_max_time_of_impact(4.0) };
-        let hit = ours.cast_shapes(&pos12, velocity, &head, &ring, options).unwrap();
-        let other = stock.cast_shapes(&pos12, velocity, &head, &ring, options).unwrap();
+        let cast = LinearCast { question: Question::new(&head, &ring, pos12), velocity, options };
+        let left = |time: f32| {
+            let near = least([&head, &ring], &cast.at(time).pose, target_distance + 0.01);
+            f64::from(near - target_distance)
+        };
+        let [hit, other] = [cast.ask(&ours), cast.ask(&stock)];
         assert_eq!(hit.is_some(), other.is_some(), "stock {other:?}, ours {hit:?}");
-        let at = |time: f32| Pose3 { translation: pos12.translation + velocity * time, ..pos12 };
-        let end = hit.map_or(4.0, |hit| hit.time_of_impact);
-        for step in 0..50 {
-            let left = least([&head, &ring], &at(end * step as f32 / 50.0), target_distance);
-            assert!(left > target_distance - 1e-4, "{left} left before the impact");
-        }
-        let Some(hit) = hit else { continue };
+        cast.check(hit, left, 50, 1e-5, &format!("case {case}"));
+        let Some((hit, other)) = hit.zip(other) else { continue };
         hits += 1;
-        let other = other.expect("as many as ours");
         assert!((hit.time_of_impact - other.time_of_impact).abs() < 1e-3);
-        assert_eq!(hit.status, ShapeCastStatus::Converged);
-        let left = least([&head, &ring], &at(end), target_distance + 0.01);
-        assert!((left - target_distance).abs() < 1e-5, "{left} left at the impact");
-        let apart = at(end) * hit.witness2 - hit.witness1;
-        assert!((apart - target_distance * hit.normal1).length() < 1e-4);
-        assert!((pos12.rotation * hit.normal2 + hit.normal1).length() < 1e-5);
-
         // The other order: the same impact.
-        let (inverse, back) = (pos12.inverse(), -(pos12.rotation.inverse() * velocity));
-        let swapped = ours.cast_shapes(&inverse, back, &ring, &head, options).unwrap().unwrap();
+        let swapped = LinearCast { question: cast.question.flipped(true), ..cast };
+        let swapped = swapped.ask(&ours).expect("the other order has an impact");
         assert!((swapped.time_of_impact - hit.time_of_impact).abs() < 1e-5);
-        let early = ShapeCastOptions { max_time_of_impact: 0.99 * end, ..options };
-        assert!(ours.cast_shapes(&pos12, velocity, &head, &ring, early).unwrap().is_none());
+        let early = ShapeCastOptions { max_time_of_impact: 0.99 * hit.time_of_impact, ..options };
+        assert!(LinearCast { options: early, ..cast }.ask(&ours).is_none());
     }
     assert!((10..40).contains(&hits), "{hits} hits");
 }
@@ -266,45 +230,6 @@ fn nonlinear_casts_stop_at_the_first_impact() {
         }
     }
     assert!((3..30).contains(&hits), "{hits} hits");
-}
-
-/// Sensors in worlds: the same pairs intersect at each step as in stock's world.
-#[test]
-fn sensors_see_what_stock_sees() {
-    let worlds = [false, true].map(|is_ours| {
-        let mut world = PhysicsWorld::new();
-        if is_ours {
-            world.narrow_phase.set_query_dispatcher(SbbkDispatcher::default());
-        }
-        let head = mesh::monkey_head_with(6).shape();
-        let ring = mesh::torus(0.7, 0.3, 12, 7).shape();
-        world.insert_collider(ColliderBuilder::new(ring).sensor(true), None);
-        let mut heads = Vec::new();
-        for i in 0..6 {
-            let place = Vec3::new(0.7 * i as f32 - 2.0, 2.0 + 0.3 * i as f32, 0.0);
-            let body = RigidBodyBuilder::dynamic().translation(place).rotation(Vec3::splat(0.4));
-            let (_, collider) = world.insert(body, ColliderBuilder::new(head.clone()).sensor(true));
-            heads.push(collider);
-        }
-        let mut seen = Vec::new();
-        for _ in 0..120 {
-            world.step();
-            let pairs = world.narrow_phase.intersection_pairs();
-            let mut pairs: Vec<_> = pairs
-                .map(|(a, b, meet)| {
-                    let (a, b) = (a.into_raw_parts(), b.into_raw_parts());
-                    (a.min(b), a.max(b), meet)
-                })
-                .collect();
-            pairs.sort_unstable();
-            seen.push(pairs);
-        }
-        seen
-    });
-    let [stock, ours] = worlds;
-    assert_eq!(stock, ours);
-    let met = ours.iter().flatten().filter(|pair| pair.2).count();
-    assert!(met > 20 && met < ours.iter().flatten().count(), "{met} met");
 }
 
 /// A vertex moves within the boxes of all its triangles, forth and back. Nothing else of the mesh

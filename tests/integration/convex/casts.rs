@@ -12,6 +12,7 @@ use sbbk_testkit::truth::convex_body;
 
 use super::queries::{least, truth};
 use super::shapes::{pose, shapes};
+use crate::proximity::LinearCast;
 use crate::support::{Question, direction, rotation, shape};
 
 /// Times before an impact at which brute force looks whether there was an earlier one.
@@ -30,62 +31,31 @@ fn first_impacts_are_those_of_brute_force() {
             let body = convex_body(&other);
             let mut random = Rand32::new(seed);
             for i in 0..4 {
-                let is_mesh_first = i % 2 == 0;
                 let way = direction(&mut random);
                 let mut in_mesh = pose(&mut random, &mesh, 0.3 * size);
                 // The last one passes by, more often than not.
                 let aside = [0.5, 0.5, 0.5, 2.5][i];
                 in_mesh.translation = (1.5 * way + aside * direction(&mut random)) * size;
-                let question = Question::new(&mesh, &*other, in_mesh).flipped(!is_mesh_first);
-                let ([g1, g2], pos12) = (question.host_shapes(), question.pos12());
-                let velocity = -2.0 * size * way;
-                let velocity12 =
-                    if is_mesh_first { velocity } else { -(in_mesh.rotation.inverse() * velocity) };
                 let options = ShapeCastOptions {
                     max_time_of_impact: 1.5,
                     target_distance: [0.0, 0.02][i / 2] * size,
                     ..ShapeCastOptions::default()
                 };
-                let at = |time: Real| {
-                    let mut pose = pos12;
-                    pose.translation += velocity12 * time;
-                    pose
-                };
+                let question = Question::new(&mesh, &*other, in_mesh).flipped(i % 2 > 0);
+                let cast = LinearCast { question, velocity: -2.0 * size * way, options };
                 let left = |time: Real| {
-                    let distance = least(&truth(&mesh, &body, &at(time), is_mesh_first));
+                    let distance = least(&truth(&mesh, &body, &cast.at(time).pose));
                     distance - f64::from(options.target_distance)
                 };
                 if left(0.0) <= 0.0 {
                     continue;
                 }
-                let says = format!("{name}, {size}, {i}");
-                let found = dispatcher.cast_shapes(&pos12, velocity12, g1, g2, options).unwrap();
-                let until = found.map_or(options.max_time_of_impact, |hit| hit.time_of_impact);
-                for look in 0..LOOKS {
-                    let time = until * look as Real / LOOKS as Real;
-                    assert!(left(time) > 0.0, "{says}: earlier, at {time} before {until}");
-                }
-                let stock = DefaultQueryDispatcher;
-                let stock = stock.cast_shapes(&pos12, velocity12, g1, g2, options).unwrap();
-                let is_near = |time: Real| left(time).abs() <= tolerance;
-                stocks_wrong += usize::from(
-                    stock.is_some() != found.is_some()
-                        || stock.is_some_and(|hit| !is_near(hit.time_of_impact)),
-                );
-                let Some(hit) = found else {
-                    misses += 1;
-                    assert!(left(until) > 0.0, "{says}");
-                    continue;
-                };
-                hits += 1;
-                assert!(is_near(hit.time_of_impact), "{says}: {hit:?} {}", left(until));
-                assert_eq!(hit.status, ShapeCastStatus::Converged, "{says}");
-                let between = at(until) * hit.witness2 - hit.witness1;
-                let off = between - hit.normal1 * options.target_distance;
-                assert!(f64::from(off.length()) <= 2.0 * tolerance, "{says} {hit:?}");
-                let opposite = pos12.rotation * hit.normal2 + hit.normal1;
-                assert!(opposite.length() < 1.0e-5, "{says} {hit:?}");
-                assert!(hit.normal1.dot(velocity12) < 0.0, "{says} {hit:?}");
+                let found = cast.ask(&dispatcher);
+                cast.check(found, left, LOOKS, tolerance, &format!("{name}, {size}, {i}"));
+                let stock = cast.ask(&DefaultQueryDispatcher);
+                let off = stock.map_or(0.0, |hit| left(hit.time_of_impact).abs());
+                stocks_wrong += usize::from(stock.is_some() != found.is_some() || off > tolerance);
+                *(if found.is_some() { &mut hits } else { &mut misses }) += 1;
             }
         }
     }

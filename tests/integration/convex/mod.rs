@@ -8,6 +8,8 @@ mod casts;
 mod ccd;
 /// First queries, by brute force.
 mod fresh;
+/// A mesh and a shape on their ways, by brute force.
+mod moving;
 /// Nonlinear casts, against brute force.
 mod nonlinear;
 /// Queries without manifolds, against brute force.

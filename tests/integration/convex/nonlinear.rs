@@ -1,121 +1,21 @@
 use std::f32::consts::FRAC_PI_2;
 
-use glamx::{DAffine3, DQuat, DVec3, Pose3, Quat, Vec3};
+use glamx::{DVec3, Pose3, Quat, Vec3};
 use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::math::Real;
 use rapier3d::parry::query::{
     DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus,
 };
-use rapier3d::parry::shape::{Shape, SharedShape, TriMesh};
+use rapier3d::parry::shape::{SharedShape, TriMesh};
 use sbbk_testkit::mesh;
 use sbbk_testkit::truth::convex_body;
 use sbbk_truth::ConvexBody;
 
-use super::queries::{least, truth_at, truth_of};
+use super::moving::Cast;
+use super::queries::truth_at;
 use super::shapes::{lattice_pose, pose, shapes};
 use crate::support::{direction, reach, rotation, shape};
-
-/// A mesh and a shape on their ways until the time of one unit.
-struct Cast<'a> {
-    mesh: &'a TriMesh,
-    shape: &'a SharedShape,
-    /// First the mesh, then the shape.
-    motions: [NonlinearRigidMotion; 2],
-    is_mesh_first: bool,
-}
-
-impl<'a> Cast<'a> {
-    /// A shape that moves past a mesh, which stays.
-    fn past(mesh: &'a TriMesh, shape: &'a SharedShape, moving: NonlinearRigidMotion) -> Self {
-        Self { mesh, shape, motions: [still(), moving], is_mesh_first: true }
-    }
-
-    fn swap<T>(&self, [one, two]: [T; 2]) -> [T; 2] {
-        if self.is_mesh_first { [one, two] } else { [two, one] }
-    }
-
-    fn ask(&self, dispatcher: &dyn QueryDispatcher, stop: bool) -> Option<ShapeCastHit> {
-        let [g1, g2] = self.swap::<&dyn Shape>([self.mesh, &*self.shape.0]);
-        let [motion1, motion2] = self.swap(self.motions);
-        dispatcher
-            .cast_shapes_nonlinear(&motion1, g1, &motion2, g2, 0.0, 1.0, stop)
-            .expect("supported")
-    }
-
-    /// Places of mesh and shape in f64.
-    fn places(&self, time: f64) -> [DAffine3; 2] {
-        self.motions.map(|motion| {
-            let affine = |pose: Pose3| {
-                let turn = pose.rotation.as_dquat().normalize();
-                DAffine3::from_rotation_translation(turn, pose.translation.as_dvec3())
-            };
-            let start = affine(motion.start);
-            let centre = start.transform_point3(motion.local_center.as_dvec3());
-            let turn = DQuat::from_scaled_axis(motion.angvel.as_dvec3() * time);
-            let there = centre + motion.linvel.as_dvec3() * time;
-            DAffine3::from_translation(there)
-                * DAffine3::from_quat(turn)
-                * DAffine3::from_translation(-centre)
-                * start
-        })
-    }
-
-    /// The least distance, or minus the greatest depth, of a triangle.
-    fn distance(&self, body: &ConvexBody, time: f64) -> f64 {
-        let [mesh, shape] = self.places(time);
-        least(&truth_at(self.mesh, body, shape.inverse() * mesh))
-    }
-
-    /// No point of one moves faster than this against the other: seen from where the shape is, and
-    /// without what both turn alike.
-    fn speed(&self, size: f64) -> f64 {
-        let [mesh, shape] = &self.motions;
-        let arm = |motion: &NonlinearRigidMotion| f64::from(motion.local_center.length()) + size;
-        let turn = |motion: &NonlinearRigidMotion| f64::from(motion.angvel.length());
-        let linear = f64::from((mesh.linvel - shape.linvel).length());
-        let is_endless = self.shape.as_halfspace().is_some();
-        let shape_arm = if is_endless {
-            let between = |time: f64| {
-                let [mesh_place, shape_place] = self.places(time);
-                let centre = |place: DAffine3, motion: &NonlinearRigidMotion| {
-                    place.transform_point3(motion.local_center.as_dvec3())
-                };
-                centre(mesh_place, mesh).distance(centre(shape_place, shape))
-            };
-            between(0.0).max(between(1.0)) + arm(mesh)
-        } else {
-            arm(shape)
-        };
-        linear + turn(mesh) * arm(mesh) + turn(shape) * shape_arm
-    }
-
-    /// The least distance on the way to a time, and whether the march got there: no touch deeper than
-    /// `tolerance` is missed. Triangles are looked at when they may be the nearest.
-    fn march(&self, body: &ConvexBody, speed: f64, tolerance: f64, end: f64) -> (f64, bool) {
-        let (mut time, mut nearest) = (0.0, f64::INFINITY);
-        let mut clear = vec![f64::NEG_INFINITY; self.mesh.indices().len()];
-        for _ in 0..500 {
-            let [mesh, shape] = self.places(time);
-            let in_shape = shape.inverse() * mesh;
-            let mut distance = f64::INFINITY;
-            for (clear, triangle) in clear.iter_mut().zip(self.mesh.triangles()) {
-                if *clear < distance {
-                    *clear = truth_of(&triangle, body, in_shape);
-                    distance = distance.min(*clear);
-                }
-            }
-            nearest = nearest.min(distance);
-            let step = distance.abs().max(tolerance);
-            clear.iter_mut().for_each(|clear| *clear -= step);
-            time += step / speed;
-            if time >= end {
-                return (nearest, true);
-            }
-        }
-        (nearest, false)
-    }
-}
 
 fn motion(
     random: &mut Rand32,
@@ -136,6 +36,51 @@ fn lattice_motion(random: &mut Rand32, start: Pose3, size: Real) -> NonlinearRig
     NonlinearRigidMotion::new(start, 0.5 * size * centre, 2.0 * size * velocity, FRAC_PI_2 * spin)
 }
 
+/// Motions of a mesh and a shape that is at a pose in it, both about a place far away.
+fn motions(
+    random: &mut Rand32,
+    i: usize,
+    in_mesh: Pose3,
+    size: Real,
+    far: Real,
+) -> [NonlinearRigidMotion; 2] {
+    let mut place = Pose3::from_parts(0.5 * size * direction(random), rotation(random));
+    place.translation += far * size * Vec3::X;
+    if i < 3 {
+        let spin = [0.0, 1.0, 3.0][i];
+        let mesh_motion = motion(random, place, size, [[0.0, 0.0], [0.5, 1.0]][i / 2]);
+        let mut shape_motion = motion(random, place * in_mesh, size, [0.5, spin]);
+        shape_motion.linvel -= place.rotation * in_mesh.translation;
+        return [mesh_motion, shape_motion];
+    }
+    let mut start = lattice_pose(random);
+    start.translation *= 2.0 * size;
+    start.translation.x += far * size;
+    let still = Pose3::translation(far * size, 0.0, 0.0);
+    let mesh_motion = lattice_motion(random, still, 0.25 * size);
+    [mesh_motion, lattice_motion(random, start, size)]
+}
+
+/// Panics unless an impact has its witnesses, normals and triangle, up to a distance.
+fn check_hit(cast: &Cast, hit: &ShapeCastHit, body: &ConvexBody, rounded: f64, says: &str) {
+    assert_eq!(hit.status, ShapeCastStatus::Converged, "{says} {hit:?}");
+    let end = f64::from(hit.time_of_impact);
+    let distance = cast.distance(body, end);
+    assert!(distance.abs() <= rounded, "{says}: {hit:?} {distance}");
+    let [pos1, pos2] = cast.swap(cast.places(end));
+    let point1 = pos1.transform_point3(hit.witness1.as_dvec3());
+    let point2 = pos2.transform_point3(hit.witness2.as_dvec3());
+    assert!(point1.distance(point2) <= 2.0 * rounded, "{says} {hit:?}");
+    let normal1: DVec3 = pos1.transform_vector3(hit.normal1.as_dvec3());
+    let normal2: DVec3 = pos2.transform_vector3(hit.normal2.as_dvec3());
+    assert!((normal1 + normal2).length() < 1.0e-5, "{says} {hit:?}");
+    let [of_mesh, of_shape] = cast.swap([hit.subshape1, hit.subshape2]);
+    assert_eq!(of_shape, 0, "{says}");
+    let [mesh_place, shape_place] = cast.places(end);
+    let own = truth_at(cast.mesh, body, shape_place.inverse() * mesh_place);
+    assert!(own[of_mesh as usize].abs() <= rounded, "{says} {hit:?}");
+}
+
 /// Would catch a bound of the speed that is too low, a wrong order of transforms, triangles left
 /// out, and an impact that is not the first.
 #[test]
@@ -147,28 +92,16 @@ fn first_impacts_are_those_of_brute_force() {
         let tolerance = 3.0e-6 * f64::from(size);
         for (seed, (name, other)) in (0..).zip(shapes(0.3 * size)) {
             let body = convex_body(&other);
-            for i in 0..4_u64 {
-                let random = &mut Rand32::new(100 * seed + i);
+            for i in 0..4 {
+                let random = &mut Rand32::new(100 * seed + i as u64);
                 let mut in_mesh = pose(random, &mesh, 0.3 * size);
                 in_mesh.translation += 0.8 * size * direction(random);
-                let mut place = Pose3::from_parts(0.5 * size * direction(random), rotation(random));
-                place.translation += far * size * Vec3::X;
-                let motions = if i < 3 {
-                    let spin = [0.0, 1.0, 3.0][i as usize];
-                    let mesh_speeds = [[0.0, 0.0], [0.5, 1.0]][(i / 2) as usize];
-                    let mesh_motion = motion(random, place, size, mesh_speeds);
-                    let mut shape_motion = motion(random, place * in_mesh, size, [0.5, spin]);
-                    shape_motion.linvel -= place.rotation * in_mesh.translation;
-                    [mesh_motion, shape_motion]
-                } else {
-                    let mut start = lattice_pose(random);
-                    start.translation *= 2.0 * size;
-                    start.translation.x += far * size;
-                    let still = Pose3::translation(far * size, 0.0, 0.0);
-                    let mesh_motion = lattice_motion(random, still, 0.25 * size);
-                    [mesh_motion, lattice_motion(random, start, size)]
+                let motions = motions(random, i, in_mesh, size, far);
+                let cast = Cast {
+                    motions,
+                    is_mesh_first: i % 2 == 0,
+                    ..Cast::past(&mesh, &other, still())
                 };
-                let cast = Cast { mesh: &mesh, shape: &other, motions, is_mesh_first: i % 2 == 0 };
                 if cast.distance(&body, 0.0) <= tolerance {
                     continue;
                 }
@@ -181,37 +114,16 @@ fn first_impacts_are_those_of_brute_force() {
                 let (closest, is_through) = cast.march(&body, speed, tolerance, end);
                 unclear += usize::from(!is_through);
                 assert!(closest > -rounded, "{says}: {closest} on the way to {found:?}");
-                let is_near = |hit: &ShapeCastHit| {
-                    cast.distance(&body, f64::from(hit.time_of_impact)).abs() <= rounded
-                };
                 // Stock has no answer for half-spaces.
                 let stock = cast.ask(&DefaultQueryDispatcher, true);
+                let off = stock.map(|hit| cast.distance(&body, f64::from(hit.time_of_impact)));
                 let is_stock_right =
-                    stock.is_some() == found.is_some() && stock.is_none_or(|hit| is_near(&hit));
+                    off.is_some() == found.is_some() && off.is_none_or(|off| off.abs() <= rounded);
                 stocks_wrong += usize::from(!is_stock_right);
-                let Some(hit) = found else {
-                    misses += 1;
-                    continue;
-                };
-                hits += 1;
-                assert_eq!(hit.status, ShapeCastStatus::Converged, "{says} {hit:?}");
-                assert!(is_near(&hit), "{says}: {hit:?} {}", cast.distance(&body, end));
-                let [pos1, pos2] = cast.swap(cast.places(end));
-                let [point1, point2] = [
-                    pos1.transform_point3(hit.witness1.as_dvec3()),
-                    pos2.transform_point3(hit.witness2.as_dvec3()),
-                ];
-                assert!(point1.distance(point2) <= 2.0 * rounded, "{says} {hit:?}");
-                let [normal1, normal2]: [DVec3; 2] = [
-                    pos1.transform_vector3(hit.normal1.as_dvec3()),
-                    pos2.transform_vector3(hit.normal2.as_dvec3()),
-                ];
-                assert!((normal1 + normal2).length() < 1.0e-5, "{says} {hit:?}");
-                let [of_mesh, of_shape] = cast.swap([hit.subshape1, hit.subshape2]);
-                assert_eq!(of_shape, 0, "{says}");
-                let [mesh_place, shape_place] = cast.places(end);
-                let own = truth_at(&mesh, &body, shape_place.inverse() * mesh_place);
-                assert!(own[of_mesh as usize].abs() <= rounded, "{says} {hit:?}");
+                if let Some(hit) = &found {
+                    check_hit(&cast, hit, &body, rounded, &says);
+                }
+                *(if found.is_some() { &mut hits } else { &mut misses }) += 1;
             }
         }
     }
@@ -243,59 +155,57 @@ fn still() -> NonlinearRigidMotion {
     NonlinearRigidMotion::identity()
 }
 
+fn pushed(place: Vec3, velocity: Vec3) -> NonlinearRigidMotion {
+    let start = Pose3::from_translation(place);
+    NonlinearRigidMotion::new(start, Vec3::ZERO, velocity, Vec3::ZERO)
+}
+
+/// Shapes whose middle is half a unit above what they stand on, times a size.
+fn blocks(size: Real) -> [(&'static str, SharedShape); 4] {
+    let corners = mesh::cuboid(Vec3::splat(0.5 * size), 1).vertices;
+    [
+        ("cylinder", SharedShape::cylinder(0.5 * size, 0.3 * size)),
+        ("cuboid", SharedShape::cuboid(0.3 * size, 0.5 * size, 0.2 * size)),
+        ("ball", SharedShape::ball(0.5 * size)),
+        ("hull", SharedShape::convex_hull(&corners).expect("a cube has a hull")),
+    ]
+}
+
 /// Would catch a disobeyed option, a wrong thickness, velocities of the wrong points, and a
 /// forgotten order. A body that crosses a floor stops if it would come out behind it. A body that
 /// slides stops at the wall.
 #[test]
 fn casts_from_contact_stop_as_their_options_say() {
     let ours = SbbkDispatcher::default();
-    for (size, is_mesh_first) in [0.01, 1.0, 40.0].into_iter().flat_map(|s| [(s, true), (s, false)])
-    {
+    let sizes = [0.01, 1.0, 40.0].into_iter();
+    for (size, is_mesh_first) in sizes.flat_map(|size| [(size, true), (size, false)]) {
         let mesh = room(1).scaled(Vec3::splat(size));
-        for (name, other) in [
-            ("cylinder", SharedShape::cylinder(0.5 * size, 0.3 * size)),
-            ("cuboid", SharedShape::cuboid(0.3 * size, 0.5 * size, 0.2 * size)),
-            ("ball", SharedShape::ball(0.5 * size)),
-            (
-                "hull",
-                SharedShape::convex_hull(&mesh::cuboid(Vec3::splat(0.5 * size), 1).vertices)
-                    .unwrap(),
-            ),
-        ] {
-            let cast =
-                |dispatcher: &dyn QueryDispatcher, height: Real, velocity: Vec3, stop: bool| {
-                    let start = Pose3::translation(0.0, height * size, 0.0);
-                    let moving =
-                        NonlinearRigidMotion::new(start, Vec3::ZERO, velocity * size, Vec3::ZERO);
-                    let cast = Cast { is_mesh_first, ..Cast::past(&mesh, &other, moving) };
-                    cast.ask(dispatcher, stop)
-                };
+        for (name, other) in blocks(size) {
+            let cast = |dispatcher: &dyn QueryDispatcher, velocity: Vec3, stop: bool| {
+                let moving = pushed(0.4 * size * Vec3::Y, velocity * size);
+                Cast { is_mesh_first, ..Cast::past(&mesh, &other, moving) }.ask(dispatcher, stop)
+            };
             let says = format!("{name}, {size}, {is_mesh_first}");
-            let crossing = cast(&ours, 0.4, Vec3::Y, true).expect("crosses");
+            let crossing = cast(&ours, Vec3::Y, true).expect("crosses");
             assert_eq!(crossing.time_of_impact, 0.0, "{says}");
             assert_eq!(crossing.status, ShapeCastStatus::PenetratingOrWithinTargetDist, "{says}");
             let normals = [crossing.normal1, crossing.normal2];
             let [of_mesh, of_shape] =
-                if is_mesh_first { normals } else { [normals[1], normals[0]] };
+                Cast { is_mesh_first, ..Cast::past(&mesh, &other, still()) }.swap(normals);
             assert!((of_mesh - Vec3::Y).length() < 1e-6 && (of_shape + Vec3::Y).length() < 1e-6);
-            for (velocity, is_stopped) in [
-                (Vec3::Y, false),
-                (-0.01 * Vec3::Y, false),
-                (-2.0 * Vec3::Y, true),
-                (Vec3::X, false),
-            ] {
-                let found = cast(&ours, 0.4, velocity, false);
+            let away = [Vec3::Y, -0.01 * Vec3::Y, Vec3::X].map(|velocity| (velocity, false));
+            for (velocity, is_stopped) in away.into_iter().chain([(-2.0 * Vec3::Y, true)]) {
+                let found = cast(&ours, velocity, false);
                 assert_eq!(found.is_some(), is_stopped, "{says} {velocity}: {found:?}");
-                if let Some(hit) = found {
-                    assert_eq!((hit.time_of_impact, hit.status), (0.0, ShapeCastStatus::Converged));
-                }
-                let stock = cast(&DefaultQueryDispatcher, 0.4, velocity, false);
+                let found = found.map(|hit| (hit.time_of_impact, hit.status));
+                assert!(found.is_none_or(|hit| hit == (0.0, ShapeCastStatus::Converged)));
+                let stock = cast(&DefaultQueryDispatcher, velocity, false);
                 assert!(
                     size != 1.0 || stock.is_some() == is_stopped,
                     "{says} {velocity}: {stock:?}"
                 );
             }
-            let slid = cast(&ours, 0.4, 10.0 * Vec3::X, false).expect("meets the wall");
+            let slid = cast(&ours, 10.0 * Vec3::X, false).expect("meets the wall");
             let wide = other.compute_local_aabb().maxs.x / size;
             assert!((slid.time_of_impact - (0.5 - 0.1 * wide)).abs() < 1e-5, "{says} {slid:?}");
             assert_eq!(slid.status, ShapeCastStatus::Converged, "{says}");
@@ -320,8 +230,7 @@ fn a_falling_pole_meets_the_floor_with_its_other_end() {
             let ask = |dispatcher: &dyn QueryDispatcher, spin: Real, sinking: Real| {
                 let (velocity, spin) = (-sinking * Vec3::Y, spin * Vec3::Z);
                 let moving = NonlinearRigidMotion::new(start, Vec3::ZERO, velocity, spin);
-                let cast = Cast { is_mesh_first, ..Cast::past(&mesh, &other, moving) };
-                cast.ask(dispatcher, false)
+                Cast { is_mesh_first, ..Cast::past(&mesh, &other, moving) }.ask(dispatcher, false)
             };
             for (spin, sinking, is_met) in
                 [(6.0, 0.3, true), (-0.5, -0.5, false), (0.0, 0.0, false)]
@@ -374,11 +283,11 @@ fn a_box_that_turns_above_a_floor_does_not_meet_it() {
         let start = Pose3::translation(0.0, height, 0.0);
         let spin = spin * Vec3::new(0.6, 0.0, 0.8);
         let moving = NonlinearRigidMotion::new(start, Vec3::ZERO, velocity, spin);
-        let (m, s) = (still(), moving);
-        let found = dispatcher.cast_shapes_nonlinear(&m, &mesh, &s, &*cube, 0.0, end, true);
-        assert!(found.unwrap().is_none(), "{height} {spin}: {found:?}");
-        let found = dispatcher.cast_shapes_nonlinear(&s, &*cube, &m, &mesh, 0.0, end, true);
-        assert!(found.unwrap().is_none(), "{height} {spin}: {found:?}");
+        for is_mesh_first in [true, false] {
+            let cast = Cast { is_mesh_first, until: end, ..Cast::past(&mesh, &cube, moving) };
+            let found = cast.ask(&dispatcher, true);
+            assert!(found.is_none(), "{height} {spin}: {found:?}");
+        }
     }
 }
 
@@ -410,60 +319,51 @@ fn bodies_that_glide_along_a_floor_meet_the_wall() {
     }
 }
 
-/// Would catch a half-space that turns about its centre like a body, or not at all.
+/// Would catch a half-space that turns about its centre like a body, or not at all, and an impact that is lost as the
+/// time has no end.
 #[test]
 fn turning_half_spaces_meet_the_far_corner() {
     let dispatcher = SbbkDispatcher::default();
     let cube = shape(&mesh::cuboid(Vec3::splat(0.5), 1));
     let ground = SharedShape::halfspace(Vec3::Y);
+    let slab = SharedShape::cuboid(9.0, 0.5, 9.0);
+    let there = pushed(Vec3::new(3.0, 1.5, 0.0), Vec3::ZERO);
+    let high = pushed(8.0 * Vec3::Y, Vec3::ZERO);
+    let rising = NonlinearRigidMotion::new(Pose3::IDENTITY, Vec3::X, Vec3::Y, Vec3::Z);
     for is_mesh_first in [true, false] {
-        let cast = |spin: Real| {
-            let turning =
-                NonlinearRigidMotion::new(Pose3::IDENTITY, Vec3::ZERO, Vec3::ZERO, spin * Vec3::Z);
-            let there = NonlinearRigidMotion::constant_position(Pose3::translation(3.0, 1.5, 0.0));
-            Cast { mesh: &cube, shape: &ground, motions: [there, turning], is_mesh_first }
+        let cast = |spin: Real, until: Real| {
+            let spin = spin * Vec3::Z;
+            let turning = NonlinearRigidMotion::new(Pose3::IDENTITY, Vec3::ZERO, Vec3::ZERO, spin);
+            let motions = [there, turning];
+            Cast { mesh: &cube, shape: &ground, motions, is_mesh_first, until }
                 .ask(&dispatcher, true)
         };
-        let hit = cast(0.5).expect("it comes up");
-        assert!((0.5 * hit.time_of_impact - (1.0_f32 / 3.5).atan()).abs() < 1e-5, "{hit:?}");
-        assert_eq!(hit.status, ShapeCastStatus::Converged);
-        assert!(cast(0.25).is_none());
-        // Endless time has the same impact, as nothing moves along a line.
-        let there = NonlinearRigidMotion::constant_position(Pose3::translation(3.0, 1.5, 0.0));
-        let turning =
-            NonlinearRigidMotion::new(Pose3::IDENTITY, Vec3::ZERO, Vec3::ZERO, 0.5 * Vec3::Z);
-        let endless = dispatcher
-            .cast_shapes_nonlinear(&there, &cube, &turning, &*ground, 0.0, f32::INFINITY, true)
-            .unwrap();
-        let endless = endless.expect("it comes up");
-        assert!((endless.time_of_impact - hit.time_of_impact).abs() < 1e-5, "{endless:?}");
-        assert_eq!(endless.status, ShapeCastStatus::Converged);
-        // Any bodies with no end of the time.
-        let turning = NonlinearRigidMotion::new(Pose3::IDENTITY, Vec3::X, Vec3::Y, Vec3::Z);
-        let slab = SharedShape::cuboid(9.0, 0.5, 9.0);
-        let up = Pose3::translation(0.0, 8.0, 0.0);
-        let rising = NonlinearRigidMotion::new(up, Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
-        let cast = |end| {
-            dispatcher.cast_shapes_nonlinear(&rising, &cube, &turning, &*slab, 0.0, end, true)
-        };
-        let [short, long] = [9.0, f32::INFINITY].map(|end| cast(end).unwrap().expect("meets it"));
-        assert!((short.time_of_impact - long.time_of_impact).abs() < 1e-5, "{short:?} {long:?}");
+        for until in [1.0, Real::INFINITY] {
+            let hit = cast(0.5, until).expect("it comes up");
+            assert!((0.5 * hit.time_of_impact - (1.0_f32 / 3.5).atan()).abs() < 1e-5, "{hit:?}");
+            assert_eq!(hit.status, ShapeCastStatus::Converged);
+        }
+        assert!(cast(0.25, 1.0).is_none());
+        let motions = [high, rising];
+        let [short, long] = [9.0, Real::INFINITY].map(|until| {
+            let cast = Cast { mesh: &cube, shape: &slab, motions, is_mesh_first, until };
+            cast.ask(&dispatcher, true).expect("meets it").time_of_impact
+        });
+        assert!((short - long).abs() < 1e-5, "{short:?} {long:?}");
     }
 }
 
 /// Would catch a tolerance of zero: a mesh that is a point has no size, and takes all steps there are.
 #[test]
 fn a_point_that_falls_is_met() {
-    let dispatcher = SbbkDispatcher::default();
     let point = TriMesh::new(vec![Vec3::ZERO; 3], vec![[0, 1, 2]]).expect("it has a triangle");
     let at = Pose3::translation(0.1, 3.0, 0.2);
     let falling = NonlinearRigidMotion::new(at, Vec3::ZERO, -Vec3::Y, Vec3::new(0.3, 0.1, 0.2));
     let mut hits = 0;
     for (name, other) in shapes(1.0) {
-        let hit = dispatcher
-            .cast_shapes_nonlinear(&falling, &point, &still(), &*other, 0.0, 9.0, true)
-            .unwrap();
-        let Some(hit) = hit else { continue };
+        let motions = [falling, still()];
+        let cast = Cast { motions, until: 9.0, ..Cast::past(&point, &other, still()) };
+        let Some(hit) = cast.ask(&SbbkDispatcher::default(), true) else { continue };
         assert_eq!(hit.status, ShapeCastStatus::Converged, "{name} {hit:?}");
         hits += 1;
     }
@@ -504,14 +404,13 @@ fn non_finite_input_has_no_result() {
                 NonlinearRigidMotion::new(away, Vec3::X, Vec3::X, bad),
             ] {
                 for (motions, stop) in [([still(), motion], true), ([motion, still()], false)] {
-                    let cast = Cast { mesh: &mesh, shape: &other, motions, is_mesh_first: true };
+                    let cast = Cast { motions, ..Cast::past(&mesh, &other, still()) };
                     assert!(cast.ask(&dispatcher, stop).is_none(), "{name} {motion:?}");
                 }
             }
         }
-        let until = |end: Real| {
-            let (m, s) = (still(), still());
-            dispatcher.cast_shapes_nonlinear(&m, &mesh, &s, &*other, 0.0, end, true).unwrap()
+        let until = |until: Real| {
+            Cast { until, ..Cast::past(&mesh, &other, still()) }.ask(&dispatcher, true)
         };
         for end in [-1.0, f32::NAN] {
             assert!(until(end).is_none(), "{name}");

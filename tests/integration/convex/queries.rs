@@ -9,17 +9,12 @@ use sbbk_testkit::truth::{affine, convex_body};
 use sbbk_truth::ConvexBody;
 
 use super::shapes::{pose, shapes};
+use crate::proximity::Proximity;
 use crate::support::{Question, shape};
 
-/// The signed distances of all triangles.
-pub(super) fn truth(
-    mesh: &TriMesh,
-    body: &ConvexBody,
-    pos12: &Pose3,
-    is_mesh_first: bool,
-) -> Vec<f64> {
-    let pose = affine(pos12);
-    truth_at(mesh, body, if is_mesh_first { pose.inverse() } else { pose })
+/// The signed distances of all triangles from a body at a pose.
+pub(super) fn truth(mesh: &TriMesh, body: &ConvexBody, pose: &Pose3) -> Vec<f64> {
+    truth_at(mesh, body, affine(pose).inverse())
 }
 
 /// Signed distances with the mesh at a place in the frame of the body.
@@ -55,56 +50,19 @@ fn as_brute_force_says_at_every_size() {
                 let is_mesh_first = i % 2 == 0;
                 let question = Question::new(&mesh, &*other, in_mesh).flipped(!is_mesh_first);
                 let ([g1, g2], pos12) = (question.host_shapes(), question.pos12());
-                let distances = truth(&mesh, &body, &pos12, is_mesh_first);
+                let distances = truth(&mesh, &body, &in_mesh);
                 let least = least(&distances);
-                let says = format!("{name}, {size}, {i}: {least}");
-                let is_near =
-                    |distance: Real, truth: f64| (f64::from(distance) - truth).abs() <= tolerance;
-                let of_mesh = |one: u32, two: u32| {
+                let of_mesh = |[one, two]: [u32; 2]| {
                     let [triangle, part] = if is_mesh_first { [one, two] } else { [two, one] };
-                    assert_eq!(part, 0, "{says}");
+                    assert_eq!(part, 0, "{name}, {size}, {i}");
                     distances[triangle as usize]
                 };
-
-                let found = dispatcher.distance(&pos12, g1, g2).unwrap();
-                assert!(is_near(found.distance, least.max(0.0)), "{says} {found:?}");
-                let own = of_mesh(found.subshape1, found.subshape2);
-                assert!(is_near(found.distance, own.max(0.0)), "{says} {found:?} {own}");
-                let stock = DefaultQueryDispatcher.distance(&pos12, g1, g2).unwrap();
-                stocks_wrong += usize::from(!is_near(stock.distance, least.max(0.0)));
-
-                let found = dispatcher.intersection_test(&pos12, g1, g2).unwrap();
-                let is_sure = least.abs() > tolerance;
-                assert!(!is_sure || found.intersecting == (least < 0.0), "{says}");
-                if found.intersecting {
-                    assert!(of_mesh(found.subshape1, found.subshape2) <= tolerance, "{says}");
-                }
-
+                let proximity = Proximity { question, least, of: &of_mesh, tolerance };
                 let margin = (least.abs() * [0.9, 1.1][i / 3]) as Real;
-                match dispatcher.closest_points(&pos12, g1, g2, margin).unwrap() {
-                    ClosestPoints::Intersecting => assert!(least <= tolerance, "{says}"),
-                    ClosestPoints::Disjoint => {
-                        assert!(least >= f64::from(margin) - tolerance, "{says}");
-                    }
-                    ClosestPoints::WithinMargin(point1, point2) => {
-                        let between = (point1 - pos12 * point2).length();
-                        assert!(least >= -tolerance && is_near(between, least), "{says}");
-                    }
-                }
-
-                match dispatcher.contact(&pos12, g1, g2, margin).unwrap() {
-                    None => assert!(least >= f64::from(margin) - tolerance, "{says}"),
-                    Some(contact) => {
-                        assert!(is_near(contact.dist, least), "{says} {contact:?}");
-                        let own = of_mesh(contact.subshape1, contact.subshape2);
-                        assert!(is_near(contact.dist, own), "{says} {contact:?} {own}");
-                        let way = pos12 * contact.point2 - contact.point1;
-                        let off = way - contact.normal1 * contact.dist;
-                        assert!(f64::from(off.length()) <= tolerance, "{says} {contact:?}");
-                        let opposite = pos12.rotation * contact.normal2 + contact.normal1;
-                        assert!(opposite.length() < 1.0e-5, "{says} {contact:?}");
-                    }
-                }
+                proximity.check(&dispatcher, margin, &format!("{name}, {size}, {i}"));
+                let stock = DefaultQueryDispatcher.distance(&pos12, g1, g2).unwrap().distance;
+                let is_right = (f64::from(stock) - least.max(0.0)).abs() <= tolerance;
+                stocks_wrong += usize::from(!is_right);
             }
         }
     }
