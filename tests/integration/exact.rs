@@ -29,8 +29,8 @@ fn judge(seed: u64, meshes: [&Mesh; 2], least_contacts: usize) {
     tally.check_all_right(least_contacts);
 }
 
-/// Would catch contacts missed, invented, or with wrong depths, as stock has them at small triangles, and contacts of
-/// surfaces where those of triangles were requested.
+/// Would catch contacts missed, invented, or with wrong depths, as stock has them at small triangles. Would
+/// also catch contacts that depend on the winding.
 #[test]
 fn contacts_are_those_of_brute_force_at_every_size() {
     let head = mesh::monkey_head();

@@ -24,6 +24,11 @@ fn boxes(parts: impl Iterator<Item = (Vec3, Vec3)>) -> Mesh {
     Mesh::merged("boxes", &parts.map(part).collect::<Vec<Mesh>>())
 }
 
+/// Twelve triangles.
+fn slab() -> Mesh {
+    mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1)
+}
+
 /// A square of upright boxes, whose width is a share of their distance.
 fn grid(count: u32, share: f32) -> Mesh {
     let rows = (count as f32 / 12.0).sqrt() as u32;
@@ -58,19 +63,17 @@ const FAMILIES: &[Family] = &[
     ("scan 5 mm deep in a slab of 12", |count| {
         let cells = (count as f32 / 12.0).sqrt() as u32;
         let scan = mesh::cuboid(Vec3::splat(0.5), cells);
-        case(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1), shape(&scan), Vec3::new(0.1, 0.995, 0.2))
+        case(&slab(), shape(&scan), Vec3::new(0.1, 0.995, 0.2))
     }),
     ("terrain that crosses a slab of 12", |count| {
         let terrain = mesh::terrain(3.0, (count as f32 / 2.0).sqrt() as u32, 0.05);
-        case(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1), shape(&terrain), Vec3::new(0.0, 0.5, 0.0))
+        case(&slab(), shape(&terrain), Vec3::new(0.0, 0.5, 0.0))
     }),
     ("tip of a cone on a slab", |count| {
-        let slab = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1);
-        case(&slab, shape(&cone(count / 2)), Vec3::new(0.1, 0.501, 0.2))
+        case(&slab(), shape(&cone(count / 2)), Vec3::new(0.1, 0.501, 0.2))
     }),
     ("tip of a cone in a slab", |count| {
-        let slab = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1);
-        case(&slab, shape(&cone(count / 2)), Vec3::new(0.1, 0.49, 0.2))
+        case(&slab(), shape(&cone(count / 2)), Vec3::new(0.1, 0.49, 0.2))
     }),
     ("flat fan and a mesh cube", |count| {
         case(&fan(count, 0.0), shape(&mesh::cuboid(Vec3::splat(0.3), 1)), 0.301 * Vec3::Y)
@@ -94,37 +97,34 @@ const FAMILIES: &[Family] = &[
     }),
     ("layers on a slab", |count| {
         let cube = layers(&mesh::cuboid(Vec3::splat(0.5), 1), count / 12);
-        case(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1), shape(&cube), Vec3::new(0.1, 1.001, 0.2))
+        case(&slab(), shape(&cube), Vec3::new(0.1, 1.001, 0.2))
     }),
     ("layers in a slab", |count| {
         let cube = layers(&mesh::cuboid(Vec3::splat(0.5), 1), count / 12);
-        case(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1), shape(&cube), Vec3::new(0.1, 0.98, 0.2))
+        case(&slab(), shape(&cube), Vec3::new(0.1, 0.98, 0.2))
     }),
     ("strip of slivers on a slab", |count| {
-        let slab = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1);
-        case(&slab, shape(&strip(count)), Vec3::new(0.1, 0.501, 0.2))
+        case(&slab(), shape(&strip(count)), Vec3::new(0.1, 0.501, 0.2))
     }),
     ("row of thin boxes in a slab", |count| {
         let step = 24.0 / count as f32;
         let at = |i: u32| Vec3::X * (step * i as f32 - 1.0);
         let row = boxes((0..count / 12).map(|i| (at(i), Vec3::new(0.1 * step, 0.5, 0.5))));
-        case(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1), shape(&row), Vec3::new(0.1, 0.98, 0.2))
+        case(&slab(), shape(&row), Vec3::new(0.1, 0.98, 0.2))
     }),
     ("grid of thin boxes in a slab", |count| {
-        let slab = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1);
-        case(&slab, shape(&grid(count, 0.2)), Vec3::new(0.1, 0.98, 0.2))
+        case(&slab(), shape(&grid(count, 0.2)), Vec3::new(0.1, 0.98, 0.2))
     }),
     ("thin pins in a slab", |count| {
-        let slab = mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1);
-        case(&slab, shape(&grid(count, 0.01)), Vec3::new(0.1, 0.98, 0.2))
+        case(&slab(), shape(&grid(count, 0.01)), Vec3::new(0.1, 0.98, 0.2))
     }),
     ("boxes within boxes in a slab", |count| {
         let half = |i: u32| Vec3::splat(6.0 * (i + 1) as f32 / count as f32);
         let nest = boxes((0..count / 12).map(|i| (Vec3::ZERO, half(i))));
-        case(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1), shape(&nest), Vec3::new(0.1, 0.501, 0.2))
+        case(&slab(), shape(&nest), Vec3::new(0.1, 0.501, 0.2))
     }),
     ("layers and a cuboid", |count| {
-        let slab = layers(&mesh::cuboid(Vec3::new(2.0, 0.5, 2.0), 1), count / 12);
+        let slab = layers(&slab(), count / 12);
         case(&slab, Cuboid::new(Vec3::splat(0.5)), Vec3::new(0.1, 0.99, 0.2))
     }),
 ];

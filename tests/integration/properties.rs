@@ -22,7 +22,7 @@ const PREDICTIONS: [Real; 4] = [0.0, 0.002, 0.02, 0.2];
 const STRIDES: [Real; 5] = [0.0, 1e-5, 1e-3, 1e-2, 3e-2];
 
 /// Moves a pair at random, with jumps, ways back, lost workspaces, other dispatchers, poses far away or NaN, and
-/// a host that changes the list. Each result must equal that of a dispatcher without memory, bit for bit.
+/// a host that changes the list. A dispatcher without memory must give the same bits.
 fn walk(
     question: &mut Question,
     kind: &Kind,
@@ -76,8 +76,8 @@ fn meddle(manifolds: &mut Vec<Manifold>, pick: usize, random: &mut Rand32) -> Po
     if may_rest { Pose::IDENTITY } else { nudge(random, 1e-5) }
 }
 
-/// Would catch candidates kept too long, an old pose taken for the present one, anything that outlives its reason,
-/// bounds of distance that are too high, and manifolds that come twice, out of order, or of another subshape.
+/// Would catch candidates kept too long, an old pose taken for the present one, and bounds of distance that are too
+/// high. Would also catch manifolds that come twice, out of order, or of another subshape.
 #[test]
 fn the_answer_does_not_depend_on_the_motion_before() {
     let pairs = mesh_pairs();
@@ -165,8 +165,8 @@ fn poses_that_are_not_finite_have_no_contacts() {
     }
 }
 
-/// Would catch data of a host that are lost where a dispatcher takes over a running world, and manifolds kept where a
-/// shape may have changed: Rapier then takes the workspace away.
+/// Would catch lost data of a host where a dispatcher takes over a running world. Rapier takes the workspace away if a
+/// shape may have changed. Then manifolds must not stay.
 #[test]
 fn manifolds_keep_their_data_with_a_foreign_workspace_but_not_without_one() {
     let dispatcher = per_triangle();

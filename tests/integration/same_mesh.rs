@@ -133,12 +133,9 @@ fn a_cloned_pair_keeps_its_trees() {
     let dispatcher = with_idle_bytes(0);
     let mesh = ball();
     let mut pair = touch(&dispatcher, &mesh, &mesh);
-    let clone =
-        Pair::<(), ()> { manifolds: pair.manifolds.clone(), workspace: pair.workspace.clone() };
-    drop(clone);
+    drop(pair.clone());
     assert_eq!(counts(&dispatcher)[..2], [1, 0]);
-    let clone =
-        Pair::<(), ()> { manifolds: pair.manifolds.clone(), workspace: pair.workspace.clone() };
+    let clone = pair.clone();
     let query = Question::new(&mesh, &mesh, Pose::translation(1.7, 0.2, 0.1));
     pair.ask(&dispatcher, &query);
     drop(pair);

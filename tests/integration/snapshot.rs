@@ -1,10 +1,9 @@
 use rapier_integration::SbbkDispatcher;
-use rapier3d::dynamics::RigidBodyHandle;
 use rapier3d::geometry::SharedShape;
-use rapier3d::math::{Pose, Real};
+use rapier3d::math::Real;
 use rapier3d::pipeline::PhysicsWorld;
 use sbbk_testkit::mesh;
-use sbbk_testkit::scene::{MonkeyPile, Scene, SceneWorld};
+use sbbk_testkit::scene::{MonkeyPile, Scene};
 use sbbk_testkit::world::fingerprint;
 
 use crate::heightfield::terrain::rolling;
@@ -16,19 +15,6 @@ const BEFORE: usize = 60;
 /// Steps that a world and its copy take side by side.
 const AFTER: usize = 40;
 
-/// A small pile in full contact, under SBBK or stock.
-fn pile(dispatcher: Option<&SbbkDispatcher>, contact_recycling: bool) -> SceneWorld {
-    let scene = MonkeyPile { contact_recycling, ..MonkeyPile::with_heads(8) };
-    let mut pile = scene.build();
-    if let Some(dispatcher) = dispatcher {
-        pile.world.narrow_phase.set_query_dispatcher(dispatcher.clone());
-    }
-    for _ in 0..BEFORE {
-        pile.world.step();
-    }
-    pile
-}
-
 /// Saves and loads a world. A snapshot holds no dispatcher.
 fn restored(world: &PhysicsWorld, dispatcher: Option<&SbbkDispatcher>) -> PhysicsWorld {
     let bytes = postcard::to_stdvec(world).expect("a world with SBBK can be saved");
@@ -39,30 +25,15 @@ fn restored(world: &PhysicsWorld, dispatcher: Option<&SbbkDispatcher>) -> Physic
     restored
 }
 
-fn poses(world: &PhysicsWorld, watched: &[RigidBodyHandle]) -> Vec<Pose> {
-    watched.iter().map(|&body| *world.bodies[body].position()).collect()
-}
-
 /// The farthest that a body is from where it is in the other world, in units.
-fn difference(left: &PhysicsWorld, right: &PhysicsWorld, watched: &[RigidBodyHandle]) -> Real {
-    let poses = poses(left, watched).into_iter().zip(poses(right, watched));
-    poses.map(|(l, r)| (l.translation - r.translation).length()).fold(0.0, Real::max)
+fn difference(left: &PhysicsWorld, right: &PhysicsWorld) -> Real {
+    let pairs = left.bodies.iter().zip(right.bodies.iter());
+    let apart = pairs.map(|((_, l), (_, r))| (l.translation() - r.translation()).length());
+    apart.fold(0.0, Real::max)
 }
 
-/// Distances between a world and its copy after a few steps and after all.
-fn apart_after(
-    left: &mut PhysicsWorld,
-    right: &mut PhysicsWorld,
-    watched: &[RigidBodyHandle],
-) -> [Real; 2] {
-    const FEW: usize = 3;
-    [FEW, AFTER - FEW].map(|steps| {
-        for _ in 0..steps {
-            left.step();
-            right.step();
-        }
-        difference(left, right, watched)
-    })
+fn step(worlds: [&mut PhysicsWorld; 2], count: usize) {
+    worlds.into_iter().for_each(|world| (0..count).for_each(|_| world.step()));
 }
 
 /// Worlds of bodies of every kind that come to lie on something.
@@ -110,11 +81,19 @@ fn a_restored_world_goes_on_bit_for_bit() {
 /// dispatcher changes. Another order in the solver takes the worlds a little apart.
 #[test]
 fn a_world_goes_on_without_sbbk_or_begins_with_it() {
+    const FEW: usize = 3;
     for was_sbbk in [true, false] {
         let dispatcher = per_triangle();
-        let SceneWorld { mut world, watched } = pile(was_sbbk.then_some(&dispatcher), true);
+        let mut world = MonkeyPile::with_heads(8).build().world;
+        if was_sbbk {
+            world.narrow_phase.set_query_dispatcher(dispatcher.clone());
+        }
+        (0..BEFORE).for_each(|_| world.step());
         let mut copy = restored(&world, (!was_sbbk).then_some(&dispatcher));
-        let [early, late] = apart_after(&mut world, &mut copy, &watched);
+        let [early, late] = [FEW, AFTER - FEW].map(|count| {
+            step([&mut world, &mut copy], count);
+            difference(&world, &copy)
+        });
         assert!(early < 0.01 && late < 0.5, "{early} units apart, then {late}");
         assert!(late > 0.0, "both worlds have the same dispatcher");
     }

@@ -92,6 +92,7 @@ impl<'a> Question<'a> {
 }
 
 /// Memory of a host about a pair of shapes.
+#[derive(Clone)]
 pub struct Pair<M = (), C = ()> {
     pub manifolds: Vec<ContactManifold<M, C>>,
     pub workspace: Option<ContactManifoldsWorkspace>,

@@ -33,8 +33,8 @@ fn a_box_that_lies_flat_touches_at_its_corners() {
     }
 }
 
-/// Shapes of all kinds and sizes, against brute force in f64. Would catch a pose or a shape that is taken for
-/// another, a missing radius, a tolerance with a unit, and a triangle that is lost or invented.
+/// Shapes of all kinds and sizes, against brute force in f64. Would catch a shape or pose taken for another, a
+/// missing radius, a tolerance with a unit, and a lost or invented triangle.
 #[test]
 fn exact_contacts_are_the_true_ones() {
     let dispatcher = per_triangle();

@@ -319,8 +319,8 @@ fn bodies_that_glide_along_a_floor_meet_the_wall() {
     }
 }
 
-/// Would catch a half-space that turns about its centre like a body, or not at all, and an impact that is lost as the
-/// time has no end.
+/// Would catch a half-space that turns about its centre like a body, or not at all. Impacts are the same if the time has
+/// no end.
 #[test]
 fn turning_half_spaces_meet_the_far_corner() {
     let dispatcher = SbbkDispatcher::default();

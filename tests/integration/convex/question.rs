@@ -16,7 +16,7 @@ pub(super) fn triangle_of<M, C>(question: &Question, manifold: &ContactManifold<
     mesh
 }
 
-/// Panics unless contacts are those of brute force in f64, up to `tolerance`. Returns their number. Triangles beside
+/// Compares contacts with brute force in f64, up to `tolerance`. Returns their number. Triangles beside
 /// the box of the shape are known to be far.
 pub(super) fn check_against_truth(
     question: &Question,

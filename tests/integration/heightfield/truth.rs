@@ -12,11 +12,16 @@ use crate::support::{
 };
 use crate::truth::Tally;
 
+/// Judges the answer to a question with a field by the terrain as a mesh.
+fn add(tally: &mut Tally, terrain: &Terrain, question: Question) {
+    let found = terrain.renumbered(&question, &question.fresh(&per_triangle()));
+    tally.add(&terrain.as_mesh(&question), &found);
+}
+
 /// Would catch cells cut off too early, triangles mixed up, filled holes, the wrong frame, and
 /// rounding.
 #[test]
 fn contacts_are_those_of_brute_force() {
-    let dispatcher = per_triangle();
     let mut random = Rand32::new(2);
     let meshes = [mesh::monkey_head_with(6), mesh::ball(0.7, 6), mesh::cuboid(Vec3::splat(0.6), 1)];
     let meshes = meshes.map(|mesh| shape(&mesh));
@@ -27,9 +32,7 @@ fn contacts_are_those_of_brute_force() {
             let pose = place(&mut random, terrain, mesh, 0.03);
             let prediction = [0.02, 0.002, 0.1, 0.02][i % 4];
             let question = Question::new(&terrain.field, mesh, pose).within(prediction);
-            let question = question.flipped(i % 2 == 1);
-            let found = terrain.renumbered(&question, &question.fresh(&dispatcher));
-            tally.add(&terrain.as_mesh(&question), &found);
+            add(&mut tally, terrain, question.flipped(i % 2 == 1));
         }
         assert!(!terrain.ids.is_empty(), "{index}");
         tally.check_all_right(300);
@@ -39,7 +42,6 @@ fn contacts_are_those_of_brute_force() {
 /// Poses on a lattice against heights on a lattice: faces in one plane, edges on edges.
 #[test]
 fn lattice_contacts_are_those_of_brute_force() {
-    let dispatcher = per_triangle();
     let mut random = Rand32::new(3);
     let terrain = Terrain::lattice(&mut random);
     let cuboid = shape(&mesh::cuboid(Vec3::splat(0.5), 2));
@@ -50,9 +52,7 @@ fn lattice_contacts_are_those_of_brute_force() {
         let at = Vec3::new(coordinate(30), coordinate(4) + 0.75, coordinate(20));
         let turn = Quat::from_rotation_y(std::f32::consts::FRAC_PI_2 * (i % 4) as Real);
         let question = Question::new(&terrain.field, &cuboid, Pose::from_parts(at, turn));
-        let question = question.within(0.021).flipped(i % 2 == 1);
-        let found = terrain.renumbered(&question, &question.fresh(&dispatcher));
-        tally.add(&terrain.as_mesh(&question), &found);
+        add(&mut tally, &terrain, question.within(0.021).flipped(i % 2 == 1));
     }
     tally.check_all_right(1000);
 }
@@ -155,7 +155,6 @@ fn is_under(terrain: &Terrain, point: Vec3) -> bool {
 /// A triangle with a height that is NaN or infinite is a hole; its neighbours are not.
 #[test]
 fn non_finite_heights_make_holes() {
-    let dispatcher = per_triangle();
     let mut random = Rand32::new(5);
     let ball = shape(&mesh::ball(0.7, 6));
     for broken in [Real::NAN, Real::INFINITY, -Real::INFINITY] {
@@ -170,9 +169,7 @@ fn non_finite_heights_make_holes() {
             let [x, z] = [(); 2].map(|()| 3.0 * random.rand_float() - 1.5);
             let pose = Pose::translation(x, 0.8, z);
             let question = Question::new(&terrain.field, &ball, pose);
-            let question = question.flipped(i % 2 == 1);
-            let found = terrain.renumbered(&question, &question.fresh(&dispatcher));
-            tally.add(&terrain.as_mesh(&question), &found);
+            add(&mut tally, &terrain, question.flipped(i % 2 == 1));
         }
         tally.check_all_right(50);
     }

@@ -1,4 +1,4 @@
-//! Meshes that may deform. At every frame the contacts are those of a rigid mesh built anew.
+//! Meshes that may deform. Each frame has the contacts of a rigid mesh built anew.
 
 /// Vertices that are no numbers.
 mod broken;

@@ -31,7 +31,7 @@ fn solids() -> Vec<(&'static str, Soup)> {
     ]
 }
 
-/// Of 912 triangles of a ball.
+/// Numbers of triangles of a ball, which has 912.
 fn every_ninth(count: usize) -> Vec<usize> {
     (0..count).map(|i| 9 * i).collect()
 }
