@@ -11,8 +11,6 @@ use rapier3d::pipeline::PhysicsWorld;
 
 use crate::worlds::on_ground;
 
-/// Boxes that are driven over beams with chamfers.
-mod beams;
 /// Meshes that fall on flat grounds.
 mod falls;
 /// Bodies that slide and roll over floors.
