@@ -139,15 +139,3 @@ fn corners_above_a_face_count_though_others_are_nearer() {
     };
     assert!(at_corners(0.0, 0.002) > 0 && at_corners(0.069, 0.073) > 0, "{found:?}");
 }
-
-/// Would catch several manifolds with points beyond the prediction distance, of which Rapier's
-/// solver drops some.
-#[test]
-fn far_contacts_of_one_direction_are_one_patch() {
-    let floor = shape(&mesh::floor(0.8, 8));
-    let plate = shape(&mesh::slab(Vec3::new(0.5, 0.05, 0.5), [2, 1, 2]));
-    let query = Question::new(&floor, &plate, Pose::translation(0.01, 0.45, 0.02)).within(0.402);
-    let found = query.fresh(&having(ContactSet::Surfaces));
-    let [patch] = &found[..] else { panic!("{} manifolds", found.len()) };
-    assert!(patch.points.len() == 4 && (distance(patch) - 0.4).abs() < 1e-5, "{patch:?}");
-}

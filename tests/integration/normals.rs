@@ -81,17 +81,8 @@ fn check_cone(k: usize, flags: TriMeshFlags) {
 }
 
 #[test]
-fn normals_lie_in_the_cones_of_mesh_1() {
-    check_cone(0, ONE_SIDED);
-}
-
-#[test]
-fn normals_lie_in_the_cones_of_mesh_2() {
-    check_cone(1, ONE_SIDED);
-}
-
-#[test]
-fn two_sided_cones_reject_nothing() {
-    check_cone(0, TWO_SIDED);
-    check_cone(1, TWO_SIDED);
+fn normals_lie_in_the_cones_of_either_mesh() {
+    for (k, flags) in [0, 1].into_iter().flat_map(|k| [(k, ONE_SIDED), (k, TWO_SIDED)]) {
+        check_cone(k, flags);
+    }
 }

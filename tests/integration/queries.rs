@@ -12,6 +12,7 @@ use rapier3d::parry::shape::{Cuboid, Shape, TriMesh};
 use sbbk_testkit::mesh::{self, Mesh};
 use sbbk_truth::TruthPair;
 
+use crate::convex::shapes::shapes;
 use crate::proximity::{LinearCast, Proximity};
 use crate::support::{Question, direction, reach, rotation, shape};
 use crate::truth::{normalized, of_meshes};
@@ -294,24 +295,35 @@ fn a_mesh_in_the_place_of_another_is_not_that_one() {
     }
 }
 
+/// Would catch an answer for a pose or a limit that is no number, and for a limit without end.
 #[test]
 fn non_finite_input_has_no_result() {
-    let head = shape(&mesh::monkey_head_with(6));
-    for bad in [f32::NAN, f32::INFINITY] {
-        let pos12 = Pose3::translation(bad, 0.0, 0.0);
-        let dispatcher = SbbkDispatcher::default();
-        assert!(!dispatcher.intersection_test(&pos12, &head, &head).unwrap().intersecting);
-        assert_eq!(dispatcher.distance(&pos12, &head, &head).unwrap().distance, f32::MAX);
-        let points = dispatcher.closest_points(&pos12, &head, &head, 1.0).unwrap();
-        assert_eq!(points, ClosestPoints::Disjoint);
-        assert!(dispatcher.contact(&pos12, &head, &head, 1.0).unwrap().is_none());
-        let options = ShapeCastOptions::with_max_time_of_impact(1.0);
-        let hit = dispatcher.cast_shapes(&pos12, Vec3::X, &head, &head, options).unwrap();
-        assert!(hit.is_none());
-        let motion = NonlinearRigidMotion::constant_position(pos12);
-        let still = NonlinearRigidMotion::identity();
-        let hit = dispatcher.cast_shapes_nonlinear(&still, &head, &motion, &head, 0.0, 1.0, true);
-        assert!(hit.unwrap().is_none());
+    let dispatcher = SbbkDispatcher::default();
+    let head = mesh::monkey_head_with(6).shape();
+    let others = shapes(1.0).into_iter().filter(|(name, _)| *name != "ball");
+    for (name, other) in others.chain([("mesh", head.clone())]) {
+        let [g1, g2]: [&dyn Shape; 2] = [&*head, &*other];
+        // Half-spaces reach to infinity.
+        for bad in [f32::NAN, f32::INFINITY].into_iter().take(if name == "mesh" { 2 } else { 1 }) {
+            let pos12 = Pose3::translation(bad, 0.0, 0.0);
+            assert!(!dispatcher.intersection_test(&pos12, g1, g2).unwrap().intersecting, "{name}");
+            assert_eq!(dispatcher.distance(&pos12, g1, g2).unwrap().distance, f32::MAX, "{name}");
+            let points = dispatcher.closest_points(&pos12, g1, g2, 1.0).unwrap();
+            assert_eq!(points, ClosestPoints::Disjoint, "{name}");
+            assert!(dispatcher.contact(&pos12, g1, g2, 1.0).unwrap().is_none(), "{name}");
+            let options = ShapeCastOptions::with_max_time_of_impact(1.0);
+            let hit = dispatcher.cast_shapes(&pos12, Vec3::X, g1, g2, options).unwrap();
+            assert!(hit.is_none(), "{name}");
+            let motion = NonlinearRigidMotion::constant_position(pos12);
+            let still = NonlinearRigidMotion::identity();
+            let hit = dispatcher.cast_shapes_nonlinear(&still, g1, &motion, g2, 0.0, 1.0, true);
+            assert!(hit.unwrap().is_none(), "{name}");
+        }
+        let away = Pose3::translation(0.0, -3.0e6, 0.0);
+        assert!(dispatcher.contact(&away, g2, g1, f32::NAN).unwrap().is_none(), "{name}");
+        let high = Pose3::translation(0.0, 30.0, 0.0);
+        let found = dispatcher.contact(&high, g2, g1, f32::MAX).unwrap();
+        assert!(found.is_some_and(|contact| contact.dist > 20.0), "{name}");
     }
 }
 

@@ -7,8 +7,9 @@ use rapier3d::parry::shape::{HeightField, TriMeshFlags, Triangle};
 use sbbk_testkit::mesh;
 
 use super::terrain::{Terrain, heights, place, terrains};
+use crate::soft_pairs::question::assert_same_set;
 use crate::support::{
-    Manifold, Question, assert_same, distance, per_triangle, shape, shape_with, triangles, with,
+    Manifold, Question, distance, per_triangle, shape, shape_with, triangles, with,
 };
 use crate::truth::Tally;
 
@@ -69,12 +70,8 @@ fn contacts_equal_those_of_the_terrain_as_a_mesh() {
             let pose = place(&mut random, terrain, &head, 0.05);
             let question = Question::new(&terrain.field, &head, pose);
             let question = question.flipped(i % 2 == 1);
-            let mut found = terrain.renumbered(&question, &question.fresh(&dispatcher));
-            let mut expected = terrain.as_mesh(&question).fresh(&dispatcher);
-            for manifolds in [&mut found, &mut expected] {
-                manifolds.sort_by_key(|manifold| [manifold.subshape1, manifold.subshape2]);
-            }
-            assert_same(&found, &expected, 0.0);
+            let found = terrain.renumbered(&question, &question.fresh(&dispatcher));
+            assert_same_set(&found, &terrain.as_mesh(&question).fresh(&dispatcher));
             count += found.len();
         }
     }
@@ -122,7 +119,7 @@ fn surfaces_are_those_of_the_terrain_as_a_mesh() {
                 let all = manifolds.len();
                 manifolds.retain(|manifold| distance(manifold) > -5.0 * question.prediction);
                 deep += all - manifolds.len();
-                manifolds.sort_by_key(|manifold| [manifold.subshape1, manifold.subshape2]);
+                manifolds.sort_by_key(triangles);
             }
             asked += 1;
             let is_same = |(found, expected)| is_like(found, expected);
