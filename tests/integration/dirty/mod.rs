@@ -15,6 +15,8 @@ use crate::worlds::on_ground;
 mod falls;
 /// Bodies that slide and roll over floors.
 mod floors;
+/// Levels of boxes that overlap.
+mod levels;
 /// Bodies that ride, and where.
 mod rides;
 /// Lids on the rims of open vessels.

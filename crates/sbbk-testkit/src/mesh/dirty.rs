@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::f32::consts::TAU;
 
-use glamx::{Vec2, Vec3};
+use glamx::Vec3;
 use oorandom::Rand32;
 
 use super::Mesh;
@@ -131,15 +131,6 @@ pub fn tube(radius: f32, half_width: f32, segments: u32) -> Mesh {
         Vec3::new(radius * cos, radius * sin, if j == 0 { -half_width } else { half_width })
     });
     tube.welded().named("tube")
-}
-
-/// A sheet along `z` over a profile of `(x, height)`, which runs to the right if it faces up.
-pub fn furrows(profile: &[Vec2], half_width: f32, cells: u32) -> Mesh {
-    let sheet = quad_grid([cells, profile.len() as u32 - 1], |i, j| {
-        let share = i as f32 / cells as f32;
-        profile[j as usize].extend(half_width * (2.0 * share - 1.0))
-    });
-    sheet.named("furrows")
 }
 
 /// A ball cut off at the height `top`, a share of its radius: a bowl, or a vase.

@@ -19,8 +19,8 @@ mod shapes;
 
 pub use container::Mesh;
 pub use dirty::{
-    cube_ball, doubled, furrows, random_winding, skirted, strips, tiles, tube, turned_inside_out,
-    two_sided, uneven_box, unwelded, vessel, walled_box,
+    cube_ball, doubled, random_winding, skirted, strips, tiles, tube, turned_inside_out, two_sided,
+    uneven_box, unwelded, vessel, walled_box,
 };
 pub use helicopter::helicopter;
 pub use machine::{Gear, Rack, Thread, prism, revolved};

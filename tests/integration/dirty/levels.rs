@@ -1,0 +1,80 @@
+use glamx::Vec3;
+use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
+use rapier3d::geometry::{ColliderBuilder, SharedShape};
+use sbbk_testkit::mesh::{self, Mesh};
+
+use super::table::{Case, judge};
+use super::world;
+
+/// Half the size of a slab of twelve triangles, whose top is at height 0, and of a body.
+const SLAB: Vec3 = Vec3::new(8.0, 0.5, 8.0);
+const BODY: f32 = 0.25;
+
+/// Shares of the height of a part that are in the slab. At the first one the part stands on it.
+const SUNK: [f32; 6] = [0.0, 0.1, 0.25, 0.36, 0.45, 0.6];
+
+/// A mesh of a slab and of parts that are sunk into it by a share of their height.
+fn level(parts: &[(Vec3, Vec3)], sunk: f32) -> Mesh {
+    let slab = mesh::cuboid(SLAB, 1).mapped(|v| v - Vec3::Y * SLAB.y);
+    let part = |&(half, place): &(Vec3, Vec3)| {
+        let up = half.y * (1.0 - 2.0 * sunk);
+        mesh::cuboid(half, 1).mapped(|v| v + place + Vec3::Y * up)
+    };
+    Mesh::merged("level", &[slab].into_iter().chain(parts.iter().map(part)).collect::<Vec<_>>())
+}
+
+/// A grid of places beside the crates of [`crates`].
+fn places() -> impl Iterator<Item = Vec3> {
+    let along = [-6.5, -4.5, -1.0, 1.0, 4.5, 6.5];
+    along.into_iter().flat_map(move |x| along.map(|z| Vec3::new(x, 0.6, z)))
+}
+
+/// Crates on the middles of the triangles at the top of the slab.
+fn crates() -> Vec<(Vec3, Vec3)> {
+    let middle = SLAB.x / 3.0;
+    let half = Vec3::new(0.8, 0.4, 0.8);
+    let at = |x: f32, z: f32| (half, Vec3::new(middle * x, 0.0, middle * z));
+    vec![at(1.0, 1.0), at(1.0, -1.0), at(-1.0, 1.0), at(-1.0, -1.0)]
+}
+
+/// Counts bodies that are lost: they have sunk into the slab, or passed the plane z = 0.
+fn lost(level: &Mesh, body: &SharedShape, starts: impl Iterator<Item = (Vec3, Vec3)>) -> usize {
+    let mut world = world(ColliderBuilder::new(level.shape()));
+    let insert = |(place, velocity)| {
+        let start = RigidBodyBuilder::dynamic().translation(place).linvel(velocity);
+        (world.insert(start, ColliderBuilder::new(body.clone()).friction(0.1)).0, velocity)
+    };
+    let bodies: Vec<_> = starts.map(insert).collect();
+    (0..120).for_each(|_| world.step());
+    let is_lost = |(body, velocity): &(RigidBodyHandle, Vec3)| {
+        let place = world.bodies[*body].translation();
+        place.y < 0.8 * BODY || velocity.z > 0.0 && place.z > 0.0
+    };
+    bodies.iter().filter(|body| is_lost(body)).count()
+}
+
+/// Would catch triangles that have no contacts where another part covers their middles alone.
+#[test]
+fn levels_of_boxes_hold_bodies() {
+    let wall = [(Vec3::new(6.0, 1.25, 0.15), Vec3::ZERO)];
+    let bodies = [
+        ("mesh cube", mesh::cuboid(Vec3::splat(BODY), 2).shape()),
+        ("cuboid", SharedShape::cuboid(BODY, BODY, BODY)),
+    ];
+    let mut cases = Vec::new();
+    for (column, body) in bodies {
+        for sunk in SUNK {
+            let dropped = places().map(|place| (place, Vec3::ZERO));
+            let row = (-4..=4).map(|x| Vec3::new(x as f32, BODY + 0.01, -1.5));
+            let driven = row.map(|place| (place, Vec3::Z * 3.0));
+            for (name, count) in [
+                ("crates", lost(&level(&crates(), sunk), &body, dropped)),
+                ("a wall", lost(&level(&wall, sunk), &body, driven)),
+            ] {
+                let (row, shown) = (format!("{name} {sunk} sunk"), count.to_string());
+                cases.push(Case { row, column, shown, is_right: count == 0 });
+            }
+        }
+    }
+    judge("bodies lost in a slab with parts on it", &cases, &[]);
+}
