@@ -1,4 +1,4 @@
-//! How far contacts of surfaces are searched and filtered.
+//! Distances up to which contacts of surfaces are searched and filtered.
 
 use parry3d::math::Real;
 use sbbk_core::leaf::LateralCulling;

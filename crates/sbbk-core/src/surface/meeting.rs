@@ -1,4 +1,4 @@
-//! Where another triangle meets the plane of a triangle.
+//! Finds where another triangle meets a triangle.
 
 use glamx::DVec3;
 

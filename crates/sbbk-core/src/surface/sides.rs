@@ -127,9 +127,11 @@ pub fn side(triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> S
     if is_face { Side::Outer } else { side }
 }
 
-/// Returns true if part of a triangle may be outside of the body, though its middle is within. The border of that part runs
-/// along triangles that meet this one, so points on both sides of these are tested. `is_inner_at` tells for a
-/// point.
+/// Returns true if part of a triangle may be outside of the body, though its middle is within. `is_inner_at` tells whether a
+/// point is within.
+///
+/// Tests points on both sides of each triangle that meets this one, as the border of the outer part runs along
+/// such triangles.
 fn is_partly_outside(
     triangles: &impl RayTriangles,
     triangle: u32,

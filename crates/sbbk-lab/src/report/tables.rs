@@ -159,7 +159,10 @@ impl Data {
             Some((word, rest)) if FUNCTIONS.contains(&word) => (word, rest),
             _ => ("", scene),
         };
-        let (backend, scene) = scene.split_once(": ").unwrap_or((backend, scene));
+        // Names of studies have colons, too.
+        let is_backend = |name: &str| self.0.iter().any(|number| number.backend == name);
+        let own = scene.split_once(": ").filter(|(name, _)| is_backend(name));
+        let (backend, scene) = own.unwrap_or((backend, scene));
         let sum = |path: &str| self.find(backend, scene, path).into_values().sum::<f64>();
         if function == "wrong" {
             let wrong = WRONG.map(|kind| sum(&format!("{path}.{kind}"))).into_iter().sum();
@@ -221,11 +224,11 @@ fn cells(line: &str) -> Vec<String> {
 #[test]
 fn placeholders_become_numbers() {
     let csv = "# date\nstudy,scene,backend,quantity,statistic,value\n\
-               s,\"mesh a, size 1\",stock,time,min,8\ns,\"mesh a, size 1\",sbbk,time,min,2\n\
-               s,\"mesh a, size 16\",stock,time,min,4\ns,\"mesh a, size 16\",sbbk,time,min,4\n\
+               s: t,\"mesh a, size 1\",stock,time,min,8\ns: t,\"mesh a, size 1\",sbbk,time,min,2\n\
+               s: t,\"mesh a, size 16\",stock,time,min,4\ns: t,\"mesh a, size 16\",sbbk,time,min,4\n\
                s,mesh b,sbbk,wrong,value,2000\n";
     let description = "mesh | stock = stock | SBBK = sbbk\nof 1 | {size 1 / time.min}\n\
-                       both | {ratio all / time.min} | {sum mesh b / wrong}\n\
+                       both | {ratio s: t / time.min} | {sum mesh b / wrong}\n\
                        none | {size 7 / time.min}\n\
                        first | {least sbbk: mesh a & size 1 / time.min}x";
     let table = Table { name: "t", lines: lines(description, &Data::parse(csv)) };

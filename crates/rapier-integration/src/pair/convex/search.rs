@@ -150,15 +150,12 @@ impl<'a> ConvexSearch<'a> {
         }
         let mut deepest = None::<Deepest>;
         self.visit_near(limit, |triangle| {
-            let is_shallow = |deepest: &Deepest| {
-                let corners = self.placed.in_part(self.mesh.corners(triangle));
-                deepest.gap(&corners) >= deepest.found.contact.distance
-            };
-            if deepest.as_ref().is_some_and(is_shallow) {
+            let least = deepest.as_ref().map_or(f64::INFINITY, |d| d.found.contact.distance);
+            let corners = self.placed.in_part(self.mesh.corners(triangle));
+            if deepest.as_ref().is_some_and(|deepest| deepest.gap(&corners) >= least) {
                 return;
             }
             let found = self.triangle(&self.placed, triangle, limit);
-            let least = deepest.as_ref().map_or(f64::INFINITY, |d| d.found.contact.distance);
             if let Some(found) = found.filter(|found| found.contact.distance < least) {
                 deepest = Some(Deepest { found, lowest: self.lowest(found.contact.normal) });
             }

@@ -125,8 +125,8 @@ fn of_two_sides_that_push_against_each_other_the_nearer_one_stays() {
     assert_eq!(both(0.1, 0.3, 1.2), None, "they do not push against each other");
 }
 
-/// Would catch a thin body that is held in a sheet or goes to the wrong side, and contacts lost
-/// though all push to one side.
+/// Would catch a thin body that is held in a sheet or goes to the wrong side. Would also catch lost
+/// contacts where all push to one side.
 #[test]
 fn an_island_pushed_to_both_sides_of_a_sheet_keeps_one() {
     let pushed = |heights: [f64; 2], normals: [DVec3; 2]| {
