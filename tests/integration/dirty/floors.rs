@@ -71,3 +71,24 @@ fn small_cubes_slide_at_the_default_unit_as_on_a_cuboid() {
         assert!((share - 1.0).abs() < 0.03, "{share} of {right}, at {angle}");
     }
 }
+
+/// Hollow cubes, whose walls are thinner than a prediction distance. Would catch contacts with the inner sides of walls.
+#[test]
+fn hollow_cubes_slide_on_sheets_as_cuboids() {
+    const HALF: f32 = 0.4;
+    let cube = mesh::cuboid(Vec3::splat(HALF), 4);
+    let path = |shape: SharedShape| {
+        let start = Vec3::new(-5.0, HALF, -3.0);
+        let body = RigidBodyBuilder::dynamic().translation(start).linvel(5.0 * Vec3::X);
+        let floor = ColliderBuilder::new(mesh::floor(SIZE, 32).shape()).friction(0.2);
+        let collider = ColliderBuilder::new(shape).friction(0.2).mass(1.0);
+        (after(180, world(floor), body, collider).translation() - start).x
+    };
+    let right = path(cube.clone().shape());
+    for share in [0.99, 0.98, 0.95] {
+        let inner = mesh::turned_inside_out(cube.clone().scaled(share));
+        let hollow = Mesh::merged("hollow", &[cube.clone(), inner]);
+        let share = path(hollow.shape()) / right;
+        assert!((share - 1.0).abs() < 0.01, "{share} of {right}");
+    }
+}

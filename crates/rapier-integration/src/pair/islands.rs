@@ -111,6 +111,13 @@ pub(super) struct SheetSide {
     pub(super) height: f64,
 }
 
+impl SheetSide {
+    /// Returns true if a contact pushes the middle of the solid through the sheet.
+    pub(super) fn is_pushed_through(&self, normal: DVec3) -> bool {
+        self.away.dot(normal) * self.height.signum() < -SAME_SIDE
+    }
+}
+
 impl Crossing {
     /// Returns the side of a sheet to which the contact pushes: 1 front, -1 back, 0 neither.
     fn side(&self) -> f64 {

@@ -201,6 +201,11 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         }
         let (normal, depth) =
             good.map_or_else(Default::default, |good| (good.normal, -good.distance));
+        let sheet = self.sheet_side(is_solid, local);
+        // The far side of a thin wall, behind which the sheet is.
+        if !is_crossing && sheet.is_some_and(|sheet| sheet.is_pushed_through(normal)) {
+            return Verdict::None;
+        }
         let crossing = Crossing {
             pair: self.pair,
             is_crossing,
@@ -209,7 +214,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             normal,
             depth,
             outward: surfaces.each_ref().map(|surface| outward(surface.as_ref()?.side)),
-            sheet: self.sheet_side(is_solid, local),
+            sheet,
         };
         let source = ContactSource::OutwardAxis;
         Verdict::Crossing(crossing, good.map(|contact| TriangleSurfaceContact { contact, source }))
