@@ -2,7 +2,7 @@
 
 use glamx::DVec3;
 
-use super::triangle::area_vector;
+use super::triangle::{area_vector, clip};
 
 /// Returns the segment in which another triangle meets a triangle, and the unit vector across it in the plane of the
 /// triangle. Corners within `slack` of the plane lie in it. `None` if the two share no more than a point, a border of the
@@ -23,7 +23,7 @@ pub(super) fn meeting(
     let farthest = |a: DVec3, b: DVec3| if b.distance(first) > a.distance(first) { b } else { a };
     let ends = [first, points.fold(second, farthest)];
     let across = normal.cross(ends[1] - ends[0]).try_normalize()?;
-    let inner = clip(triangle, normal, ends)?;
+    let inner = clip(triangle, ends, slack)?;
     let middle = 0.5 * (inner[0] + inner[1]);
     let is_border = depth_within(triangle, normal, middle) <= slack;
     (!is_border).then_some((inner, across))
@@ -46,23 +46,4 @@ fn in_plane(corners: &[DVec3; 3], heights: &[f64; 3], i: usize, slack: f64) -> O
     }
     let crosses = end.abs() > slack && (start > 0.0) != (end > 0.0);
     crosses.then(|| corners[i].lerp(corners[next], start / (start - end)))
-}
-
-/// Returns the part of a segment within a triangle.
-fn clip(triangle: &[DVec3; 3], normal: DVec3, [start, end]: [DVec3; 2]) -> Option<[DVec3; 2]> {
-    let (mut first, mut last) = (0.0_f64, 1.0_f64);
-    for i in 0..3 {
-        let inward = normal.cross(triangle[(i + 1) % 3] - triangle[i]);
-        let (from, to) = (inward.dot(start - triangle[i]), inward.dot(end - triangle[i]));
-        if from < 0.0 && to < 0.0 {
-            return None;
-        }
-        let crossing = from / (from - to);
-        if from < 0.0 {
-            first = first.max(crossing);
-        } else if to < 0.0 {
-            last = last.min(crossing);
-        }
-    }
-    (first < last).then(|| [start.lerp(end, first), start.lerp(end, last)])
 }

@@ -25,7 +25,7 @@ pub trait RayTriangles {
     /// The corners of a triangle.
     fn corners(&self, triangle: u32) -> [DVec3; 3];
 
-    /// Calls `visit` with all triangles whose boxes meet the box of a triangle, until it breaks.
+    /// Calls `visit` with all triangles that may meet a triangle, until it breaks.
     fn near(&self, triangle: u32, visit: &mut dyn FnMut(u32) -> ControlFlow<()>);
 
     /// Calls `visit` with all triangles that the ray from `start` may meet, until it breaks.

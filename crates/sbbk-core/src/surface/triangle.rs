@@ -29,7 +29,16 @@ pub fn seam(corners: &[DVec3; 3]) -> f64 {
 
 /// True if a triangle with an area comes within `seam` of a segment, or a little farther at its
 /// corners.
-pub fn touches(corners: &[DVec3; 3], [start, end]: [DVec3; 2], seam: f64) -> bool {
+pub fn touches(corners: &[DVec3; 3], segment: [DVec3; 2], seam: f64) -> bool {
+    clip(corners, segment, seam).is_some()
+}
+
+/// Returns the ends of the part of a segment that [touches](touches()) a triangle.
+pub(super) fn clip(
+    corners: &[DVec3; 3],
+    [start, end]: [DVec3; 2],
+    seam: f64,
+) -> Option<[DVec3; 2]> {
     let [a, ..] = *corners;
     let area = area_vector(corners);
     // Most triangles end here, without a root.
@@ -37,9 +46,9 @@ pub fn touches(corners: &[DVec3; 3], [start, end]: [DVec3; 2], seam: f64) -> boo
     let most = seam * seam * area.length_squared();
     let is_beyond = heights.iter().all(|height| height * height > most);
     if is_beyond && heights[0] * heights[1] > 0.0 {
-        return false;
+        return None;
     }
-    let Some(up) = area.try_normalize() else { return false };
+    let up = area.try_normalize()?;
     let sides = each(|i| {
         let along = (corners[(i + 1) % 3] - corners[i]).normalize_or_zero();
         (up.cross(along), corners[i])
@@ -51,10 +60,10 @@ pub fn touches(corners: &[DVec3; 3], [start, end]: [DVec3; 2], seam: f64) -> boo
         let [from, to] = [start, end].map(|place| inwards.dot(place - on) + seam);
         match [from >= 0.0, to >= 0.0] {
             [true, true] => {}
-            [false, false] => return false,
+            [false, false] => return None,
             [true, false] => last = last.min(from / (from - to)),
             [false, true] => first = first.max(from / (from - to)),
         }
     }
-    first <= last
+    (first <= last).then(|| [first, last].map(|share| start.lerp(end, share)))
 }
