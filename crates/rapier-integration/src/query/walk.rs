@@ -66,8 +66,9 @@ impl<'a> Walk<'a> {
         // Bounds of meshes in each other are zero for many pairs, so a search visits many before one that touches.
         if options.stop_at_penetration
             && let Some(meeting) = self.meeting(placement)
+            && let Some(found) = cast([meeting.triangle1, meeting.triangle2], 0.0)
         {
-            return cast([meeting.triangle1, meeting.triangle2], 0.0);
+            return Some(found);
         }
         let target = f64::from(options.target_distance) + pair.rounding();
         let mut first = None::<Cast>;
