@@ -10,8 +10,9 @@ use super::world;
 const SLAB: Vec3 = Vec3::new(8.0, 0.5, 8.0);
 const BODY: f32 = 0.25;
 
-/// Shares of the height of a part that are in the slab. At the first one the part stands on it.
-const SUNK: [f32; 6] = [0.0, 0.1, 0.25, 0.36, 0.45, 0.6];
+/// Shares of the height of a part that are in the slab. At the first one rounding has lifted the part, at the second it
+/// stands on the slab.
+const SUNK: [f32; 7] = [-1.0e-4, 0.0, 0.1, 0.25, 0.36, 0.45, 0.6];
 
 /// A mesh of a slab and of parts that are sunk into it by a share of their height.
 fn level(parts: &[(Vec3, Vec3)], sunk: f32) -> Mesh {

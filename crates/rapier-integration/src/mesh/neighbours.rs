@@ -200,16 +200,16 @@ impl RayTriangles for MeshRays<'_> {
         corners.map(|corner| self.0.vertices()[corner as usize].as_dvec3())
     }
 
-    fn near(&self, triangle: u32, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
-        let bounds = BvhNode::leaf(self.0.triangle(triangle).local_aabb(), 0);
+    fn near(&self, triangle: u32, slack: f64, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
+        let bounds = self.0.triangle(triangle).local_aabb().loosened((slack as Real).next_up());
+        let bounds = BvhNode::leaf(bounds, 0);
         let [a, b, c] = self.corners(triangle);
         let normal = (b - a).cross(c - a).normalize_or_zero();
-        let seam = NEAR_PLANE * (b - a).abs().max((c - a).abs()).max_element();
         // The box of a slanted triangle may hold a whole mesh.
         let is_near = |node: &BvhNode| {
             let [low, high] = [node.mins(), node.maxs()].map(|corner| corner.as_dvec3());
             let height = normal.dot(0.5 * (low + high) - a).abs();
-            node.intersects(&bounds) && height <= normal.abs().dot(0.5 * (high - low)) + seam
+            node.intersects(&bounds) && height <= normal.abs().dot(0.5 * (high - low)) + slack
         };
         let _ = self.0.bvh().leaves(is_near).try_for_each(visit);
     }
@@ -225,9 +225,6 @@ impl RayTriangles for MeshRays<'_> {
         let _ = self.0.bvh().leaves(is_met).try_for_each(visit);
     }
 }
-
-/// Distance from the plane of a triangle, as a share of its size, that counts as near it: more than rays skip.
-const NEAR_PLANE: f64 = 1.0e-3;
 
 /// Rounding of the lengths at which rays meet boxes.
 const ROUNDING: f64 = 1.0e-12;

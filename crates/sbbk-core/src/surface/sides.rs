@@ -25,8 +25,8 @@ pub trait RayTriangles {
     /// The corners of a triangle.
     fn corners(&self, triangle: u32) -> [DVec3; 3];
 
-    /// Calls `visit` with all triangles that may meet a triangle, until it breaks.
-    fn near(&self, triangle: u32, visit: &mut dyn FnMut(u32) -> ControlFlow<()>);
+    /// Calls `visit` with all triangles that may come within `slack` of a triangle, until it breaks.
+    fn near(&self, triangle: u32, slack: f64, visit: &mut dyn FnMut(u32) -> ControlFlow<()>);
 
     /// Calls `visit` with all triangles that the ray from `start` may meet, until it breaks.
     fn along(&self, start: DVec3, direction: DVec3, visit: &mut dyn FnMut(u32) -> ControlFlow<()>);
@@ -140,12 +140,14 @@ fn is_partly_outside(
     let corners = triangles.corners(triangle);
     let Some(normal) = area_vector(&corners).try_normalize() else { return false };
     let size = longest_side(&corners);
+    // Rays skip what is nearer.
+    let slack = OFFSET * size;
     let is_outside =
         |point: DVec3| depth_within(&corners, normal, point) > 0.0 && !is_inner_at(point);
     let mut tested = 0;
     let mut meets_outside = |other: u32| {
         let other = triangles.corners(other);
-        let Some(([start, end], across)) = meeting(&corners, &other, OFFSET * size) else {
+        let Some(([start, end], across)) = meeting(&corners, &other, slack) else {
             return false;
         };
         tested += 1;
@@ -157,7 +159,7 @@ fn is_partly_outside(
             })
     };
     let mut is_partly_outside = false;
-    triangles.near(triangle, &mut |other| {
+    triangles.near(triangle, slack, &mut |other| {
         is_partly_outside = other != triangle && meets_outside(other);
         if is_partly_outside { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });

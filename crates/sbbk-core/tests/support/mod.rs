@@ -49,7 +49,7 @@ impl RayTriangles for Soup {
         self.triangles[triangle as usize].map(|corner| self.vertices[corner as usize].as_dvec3())
     }
 
-    fn near(&self, _: u32, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
+    fn near(&self, _: u32, _: f64, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
         let _ = (0..self.count()).try_for_each(visit);
     }
 
