@@ -46,7 +46,7 @@ fn exact_contacts_are_the_true_ones() {
         for (name, shape) in shapes(size) {
             let body = convex_body(&shape);
             // Brute force over all triangles takes seconds for hulls.
-            let (mut count, poses) = (0, if is_quick(name) { 40 } else { 8 });
+            let (mut count, poses) = (0, if is_quick(name) { 40 } else { 27 });
             if share > 1.0 && !is_quick(name) {
                 continue;
             }

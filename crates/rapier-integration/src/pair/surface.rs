@@ -38,9 +38,8 @@ const LEAN: f64 = 0.33;
 /// in vain; lower: slanted contacts keep their normals.
 const UPRIGHT: f64 = 0.999_999;
 
-/// Depth up to which a shape counts as above the plane of a border triangle. In prediction distances,
-/// or in [`filter_distance`](TriangleShapes::filter_distance)s if these are less. Higher: rims do not carry what overhangs them.
-/// Lower: bodies stumble where meshes meet.
+/// Depth up to which a shape counts as above the plane of a border triangle, in [`filter_unit`](super::ranges::filter_unit)s.
+/// Higher: rims do not carry what overhangs them. Lower: bodies stumble where meshes meet.
 pub(super) const LIP: f64 = 0.1;
 
 /// Greatest half thickness of a thin body, in the units of [`LIP`]. Higher: bodies fall through sheets
@@ -448,71 +447,4 @@ fn size([a, b, c]: &[DVec3; 3]) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::sync::Arc;
-
-    use parry3d::math::{Pose, Vector};
-    use parry3d::shape::{Ball, SharedShape, TriMesh};
-    use sbbk_core::contact::contact;
-    use sbbk_core::traverse::DescentCounts;
-    use sbbk_core::tree::BuildOptions;
-
-    use super::*;
-    use crate::mesh::MeshStore;
-    use crate::pair::mesh_mesh::MeshPair;
-    use crate::pair::query::Pair;
-    use crate::pair::triangle_shapes::DescentMemory;
-
-    /// Rough balls with triangles as large as the prediction distance, apart and crossing. Would
-    /// catch contacts that [`lateral_culling`] loses.
-    #[test]
-    fn triangles_beside_each_other_pass_by() {
-        let store = Arc::new(MeshStore::new(BuildOptions::default(), 1 << 30));
-        let shapes = [20, 30].map(|rows| {
-            let (mut vertices, triangles) = Ball::new(1.0).to_trimesh(2 * rows, rows);
-            for (i, vertex) in (0_u32..).zip(&mut vertices) {
-                *vertex *= 1.0 + 0.002 * (i * i % 31) as Real;
-            }
-            SharedShape::new(TriMesh::new(vertices, triangles).unwrap())
-        });
-        let meshes = shapes.each_ref().map(|shape| shape.as_trimesh().unwrap());
-        let seen = meshes.map(|mesh| store.view(mesh).unwrap());
-        let mut counts = [0; 2];
-        for (i, gap) in [(1, 0.03), (2, 0.0), (3, -0.03), (4, -0.06), (5, 0.0)] {
-            let turn = Vector::new(0.3, 0.1 * i as Real, 0.7);
-            let place = turn.normalize() * (2.06 + gap);
-            let pose = PairPose::new(&Pose::new(place, turn), 0.08);
-            let mesh_pair =
-                MeshPair { pose: &pose, meshes: seen, has_surfaces: true, has_patches: false };
-            for has_trees in [false, true] {
-                let registered = has_trees
-                    .then(|| [0, 1].map(|i| store.register(meshes[i], Some(&shapes[i])).unwrap()));
-                let mut known = Default::default();
-                let shapes = mesh_pair.open(&store, &mut known).1.shapes;
-                let mut found = Vec::new();
-                let scratch = &mut DescentMemory::default();
-                let tests = &mut DescentCounts::default();
-                shapes.descend(pose.prediction, tests, scratch, &mut found);
-                let mut found: Vec<_> = found.iter().map(|of| of.subshapes).collect();
-                found.sort_unstable();
-                let count = meshes.map(|mesh| mesh.indices().len() as u32);
-                for pair in (0..count[0]).flat_map(|i| (0..count[1]).map(move |j| [i, j])) {
-                    let local = shapes.local(&pose, pair).unwrap();
-                    let [t1, t2] = &local.corners;
-                    if t1[0].distance(t2[0]) > 1.0 {
-                        continue;
-                    }
-                    let contact = contact(t1, t2, f64::from(pose.prediction));
-                    let Some(contact) = contact else { continue };
-                    let filter = SurfaceFilter { shapes: &shapes, pose: &pose, pair };
-                    let passes_by = filter.passes_by(&local, &contact);
-                    let is_found = found.binary_search(&pair).is_ok();
-                    assert!(is_found || passes_by, "{pair:?}, {contact:?}");
-                    counts[usize::from(is_found)] += 1;
-                }
-                drop(registered);
-            }
-        }
-        assert!(counts.into_iter().all(|count| count > 500), "{counts:?}");
-    }
-}
+mod tests;

@@ -140,7 +140,7 @@ fn is_partly_outside(
     let corners = triangles.corners(triangle);
     let Some(normal) = area_vector(&corners).try_normalize() else { return false };
     let size = longest_side(&corners);
-    // Rays skip what is nearer.
+    // Rays skip triangles within this distance.
     let slack = OFFSET * size;
     let is_outside =
         |point: DVec3| depth_within(&corners, normal, point) > 0.0 && !is_inner_at(point);

@@ -1,7 +1,7 @@
 //! The simultaneous descent of two trees (section 3.2 of the SBBK paper).
 //!
-//! The pairs of children replace a pair of nodes that meet; one SIMD test compares all four. Where
-//! one node is a leaf, or much smaller than the other, the descent replaces the other one alone.
+//! The pairs of children replace a pair of nodes that meet; one SIMD test compares all four. A leaf is not replaced, nor
+//! is a node much smaller than the other one.
 //!
 //! For complete trees of n levels in which all nodes meet, the paper counts `(2^(2(n-1)) - 1)/3`
 //! tests between inner nodes and `2^(2(n-1))` between leaves. A descent of one side at a time makes

@@ -64,9 +64,12 @@ impl KeptHull {
 
     fn of(&self, shape: &ConvexPolyhedron) -> &HullPoints {
         let points = || shape.points().iter().copied();
-        self.points.get_or_init(|| match self.has_faces {
-            true => HullPoints::with_faces(points(), fans(shape)),
-            false => HullPoints::without_faces(points()),
+        self.points.get_or_init(|| {
+            if self.has_faces {
+                HullPoints::with_faces(points(), fans(shape))
+            } else {
+                HullPoints::without_faces(points())
+            }
         })
     }
 }

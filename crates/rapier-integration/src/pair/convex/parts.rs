@@ -2,7 +2,6 @@
 
 use std::sync::OnceLock;
 
-use super::contact::KeptHull;
 use glamx::Vec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Pose, Real};
@@ -10,6 +9,7 @@ use parry3d::query::details::NormalConstraints;
 use parry3d::shape::{CompositeShape, ConvexPolyhedron, Shape};
 use sbbk_core::volumes::Sphere;
 
+use super::contact::KeptHull;
 use super::shape::{ConvexShape, Extent, ball_around};
 
 /// The convex shapes that a shape is made of.
