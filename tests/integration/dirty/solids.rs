@@ -1,4 +1,5 @@
 use glamx::{Quat, Vec3};
+use oorandom::Rand32;
 use rapier_integration::SbbkDispatcher;
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::ColliderBuilder;
@@ -118,4 +119,37 @@ fn vessels_hold_what_lies_in_them() {
         }
     }
     judge("height of a body in a vessel of radius 1, after 3 s", &cases, &[]);
+}
+
+/// Hollow boxes whose walls are thinner than Rapier lets bodies sink in. Would catch contacts of the inner sides of two
+/// walls, which hold the boxes in each other and shake them.
+#[test]
+fn piles_of_hollow_boxes_come_to_rest() {
+    let hollow = |half: Vec3| {
+        let outer = mesh::cuboid(half, 3);
+        let inner = mesh::turned_inside_out(outer.clone().scaled(0.99));
+        Mesh::merged("hollow", &[outer, inner]).shape()
+    };
+    let shapes = [hollow(Vec3::splat(0.4)), hollow(Vec3::new(0.7, 0.12, 0.3))];
+    let mut awake = 0;
+    for seed in 0..4 {
+        let mut random = Rand32::new(seed);
+        let mut world = world(ColliderBuilder::cuboid(4.0, 1.0, 4.0).translation(-Vec3::Y));
+        for side in [Vec3::X, -Vec3::X, Vec3::Z, -Vec3::Z] {
+            let half = Vec3::new(0.5, 3.0, 0.5) + 3.5 * (Vec3::ONE - side.abs() - Vec3::Y);
+            let wall = ColliderBuilder::cuboid(half.x, half.y, half.z);
+            world.insert(RigidBodyBuilder::fixed().translation(3.5 * side + 3.0 * Vec3::Y), wall);
+        }
+        let bodies = (0..20).map(|i| {
+            let mut within = |most: f32| most * (2.0 * random.rand_float() - 1.0);
+            let place = Vec3::new(within(1.8), 1.0 + 0.45 * i as f32, within(1.8));
+            let turn = Vec3::new(within(1.5), within(1.5), within(1.5));
+            let body = RigidBodyBuilder::dynamic().translation(place).rotation(turn);
+            world.insert(body, ColliderBuilder::new(shapes[i % 2].clone()).mass(1.0)).0
+        });
+        let bodies: Vec<_> = bodies.collect();
+        (0..900).for_each(|_| world.step());
+        awake += bodies.iter().filter(|&&body| !world.bodies[body].is_sleeping()).count();
+    }
+    assert!(awake <= 4, "{awake} of 80 boxes are awake after 15 s");
 }

@@ -97,22 +97,28 @@ pub(crate) fn nearest_triangle(mesh: &TriMesh, point: Vec3, within: Real) -> Opt
 const MOST_PARTS: usize = 8;
 
 /// Returns the distance in which a ray from a point inside a shape of triangles leaves it, and the outward normal there.
-/// `None` if the ray meets nothing, or first meets the front of a solid's triangle. Parts of a solid may overlap.
-pub(crate) fn exit(shape: &impl RayCast, ray: &Ray, is_sheet: bool) -> Option<(Real, Vec3)> {
+/// `None` if the ray meets nothing up to `most`, or first meets the front of a solid's triangle. Parts of a solid may
+/// overlap.
+pub(crate) fn exit(
+    shape: &impl RayCast,
+    ray: &Ray,
+    most: Real,
+    is_sheet: bool,
+) -> Option<(Real, Vec3)> {
     const BACK: FeatureId = FeatureId::Face(1);
-    let next = |from: Real| {
+    let next = |from: Real, most: Real| {
         let rest = Ray::new(ray.origin + from * ray.dir, ray.dir);
-        let hit = shape.cast_local_ray_and_get_normal(&rest, Real::MAX, false)?;
+        let hit = shape.cast_local_ray_and_get_normal(&rest, most, false)?;
         // Parry turns normals against the ray.
         (is_sheet || hit.feature == BACK).then_some((from + hit.time_of_impact, -hit.normal))
     };
     let size = ray.origin.abs().max_element();
     let beyond = |from: Real| from + 64.0 * Real::EPSILON * (from + size);
-    let first = next(0.0)?;
+    let first = next(0.0, most)?;
     if is_sheet {
         return Some(first);
     }
-    let exits = std::iter::successors(Some(first), |(length, _)| next(beyond(*length)));
+    let exits = std::iter::successors(Some(first), |(length, _)| next(beyond(*length), Real::MAX));
     exits.take(MOST_PARTS).last()
 }
 

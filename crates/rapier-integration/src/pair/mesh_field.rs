@@ -291,11 +291,11 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
         Some((nearest.point, behind))
     }
 
-    fn exit(&self, i: usize, ray: &Ray, is_sheet: bool) -> Option<(Real, Vector)> {
+    fn exit(&self, i: usize, ray: &Ray, most: Real, is_sheet: bool) -> Option<(Real, Vector)> {
         if self.is_field(i) {
-            return exit(self.field.0, ray, is_sheet);
+            return exit(self.field.0, ray, most, is_sheet);
         }
-        exit(self.pair.mesh.mesh, ray, is_sheet)
+        exit(self.pair.mesh.mesh, ray, most, is_sheet)
     }
 
     fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32> {

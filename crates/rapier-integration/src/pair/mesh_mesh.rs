@@ -361,8 +361,8 @@ impl<'q> TriangleShapes for Meshes<'q> {
         Some((nearest.point, behind))
     }
 
-    fn exit(&self, i: usize, ray: &Ray, is_sheet: bool) -> Option<(Real, Vector)> {
-        exit(self.pair.meshes[i].mesh, ray, is_sheet)
+    fn exit(&self, i: usize, ray: &Ray, most: Real, is_sheet: bool) -> Option<(Real, Vector)> {
+        exit(self.pair.meshes[i].mesh, ray, most, is_sheet)
     }
 
     fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32> {

@@ -13,6 +13,7 @@
 
 use glamx::{DVec3, Vec3};
 use parry3d::math::Real;
+use parry3d::query::Ray;
 use sbbk_core::contact::{Feature, ManifoldPoints, TriangleContact, penetration_out_of_solid};
 use sbbk_core::query::TrianglePair;
 use sbbk_core::surface::{Around, Side};
@@ -45,6 +46,10 @@ pub(super) const LIP: f64 = 0.1;
 /// Greatest half thickness of a thin body, in the units of [`LIP`]. Higher: bodies fall through sheets
 /// that face away from them. Lower: rods and plates sink through sheets.
 const THIN: f64 = 0.03;
+
+/// Length by which a ray between two triangles that have passed each other starts and ends within them, in their distance.
+/// Higher: thin walls in each other are pushed together. Lower: rounding decides where rays start.
+const WITHIN: f64 = 0.01;
 
 /// Distance, in sizes of the triangles, below which rounding decides on which side of each other these
 /// are. Higher: contacts are lost; lower: triangles that touch count as crossing.
@@ -108,7 +113,8 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             let has_passed = has_solid
                 && !(is_solid[0] && is_first_minimum)
                 && (0..2).all(|i| !is_solid[i] || points_inside(i));
-            if !has_passed {
+            let ends_between = |i: usize| is_solid[i] && self.ends_between(i, local, &contact);
+            if !has_passed || ends_between(0) && ends_between(1) {
                 return Verdict::None;
             }
         }
@@ -287,11 +293,13 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         let middle = self.in_local(1 - i, self.shapes.bounds(1 - i).center(), local);
         let up = if up.dot(middle - a) < 0.0 { -up } else { up };
         let cosine = up.dot(own);
-        let place = match i {
-            0 => local.origin.as_dvec3() + point1,
-            _ => self.pose.placement12.to_frame2(point2, local.origin),
-        };
-        if cosine > UPRIGHT || !surfaces[i].as_ref()?.is_border(self.pair[i], feature, place) {
+        if cosine > UPRIGHT
+            || !surfaces[i].as_ref()?.is_border(
+                self.pair[i],
+                feature,
+                self.place(i, local, contact),
+            )
+        {
             return None;
         }
         let lowest = self.shapes.lowest(1 - i, self.in_frame(1 - i, up).as_vec3())?;
@@ -306,6 +314,25 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             _ => (point2 - distance * normal, point2),
         };
         Some(TriangleContact { normal, distance, point1, point2, ..*contact })
+    }
+
+    /// Returns true if a solid ends between the points of a contact that leads into both. If both solids do, they are thin
+    /// walls, and their outer sides have the contact.
+    fn ends_between(&self, i: usize, local: &TrianglePair, contact: &TriangleContact) -> bool {
+        let TriangleContact { normal, distance, .. } = *contact;
+        let way = self.in_frame(i, [normal, -normal][i]);
+        let start = self.place(i, local, contact) + WITHIN * distance * way;
+        let ray = Ray::new(start.as_vec3(), way.as_vec3());
+        let most = ((1.0 - 2.0 * WITHIN) * distance) as Real;
+        self.shapes.exit(i, &ray, most, false).is_some_and(|(length, _)| length < most)
+    }
+
+    /// Returns the point of a contact on a shape, in the frame of the shape.
+    fn place(&self, i: usize, local: &TrianglePair, contact: &TriangleContact) -> DVec3 {
+        match i {
+            0 => local.origin.as_dvec3() + contact.point1,
+            _ => self.pose.placement12.to_frame2(contact.point2, local.origin),
+        }
     }
 
     /// Returns a point of a shape in frame 1, from the origin of two triangles.
@@ -330,11 +357,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         let TriangleContact { normal, features, .. } = *contact;
         let features = [features.feature1(), features.feature2()];
         let direction = self.in_frame(i, [normal, -normal][i]);
-        let place = match i {
-            0 => local.origin.as_dvec3() + contact.point1,
-            _ => self.pose.placement12.to_frame2(contact.point2, local.origin),
-        };
-        let to = Some((place, features[1 - i]));
+        let to = Some((self.place(i, local, contact), features[1 - i]));
         let is_minimum = |surface: &Around<_>| {
             surface.is_local_minimum(self.pair[i], features[i], direction, to)
         };
