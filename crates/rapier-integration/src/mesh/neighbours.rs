@@ -47,7 +47,11 @@ impl MeshFacets<'_, '_> {
         self.with_flags(triangle, TriangleFlags::side).unwrap_or_else(|| {
             let first = self.first_of_crowd(triangle).filter(|&first| first != triangle);
             let is_face = first.is_some_and(|first| self.side(first) == Side::Outer);
-            let side = || side(&MeshRays(self.mesh), triangle, self.memo);
+            let rays = MeshRays(self.mesh);
+            let side = || match self.twins {
+                Twins::All(surface, _) => surface.side(&rays, triangle, self.memo),
+                Twins::Near(_) => side(&rays, triangle, self.memo),
+            };
             let side = if is_face { Side::Outer } else { side() };
             self.with_flags(triangle, |flags| flags.set_side(side));
             side
@@ -198,6 +202,11 @@ impl RayTriangles for MeshRays<'_> {
     fn corners(&self, triangle: u32) -> [DVec3; 3] {
         let corners = self.0.indices()[triangle as usize];
         corners.map(|corner| self.0.vertices()[corner as usize].as_dvec3())
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        let bounds = self.0.bvh().root_aabb();
+        [bounds.mins, bounds.maxs].map(|corner| corner.as_dvec3())
     }
 
     fn near(&self, triangle: u32, slack: f64, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {

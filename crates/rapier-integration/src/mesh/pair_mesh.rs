@@ -1,6 +1,7 @@
 use std::sync::{Arc, OnceLock};
 
 use glamx::Vec3;
+use parry3d::math::Real;
 use parry3d::shape::{CompositeShape, TriMesh};
 use sbbk_core::surface::{Around, PlaceMemo, Side, SurfaceKind};
 use sbbk_core::tree::Tree;
@@ -9,7 +10,7 @@ use super::data::{MeshData, Tips};
 use super::identity::MeshToken;
 use super::neighbours::{MeshFacets, NearTwins, Neighbours, Twins};
 use super::store::{MeshStore, is_analysed, is_small};
-use super::view::MeshView;
+use super::view::{MeshView, nearest};
 
 /// State of one mesh of a pair of colliders, kept from query to query.
 #[derive(Clone, Default)]
@@ -195,12 +196,21 @@ impl<'m> LazySurface<'m> {
     ) -> Around<MeshFacets<'a, 'm>> {
         let (facets, kind, is_declared) = self.facets(mesh);
         let side = match kind {
-            SurfaceKind::Solid if is_declared => Side::Outer,
             SurfaceKind::Sheet => Side::Sheet,
+            SurfaceKind::Solid if is_declared => match facets.side(triangle) {
+                Side::Inner => Side::Inner,
+                _ => Side::Outer,
+            },
             _ if is_declared => Side::Sheet,
             _ => facets.side(triangle),
         };
         Around { facets, side }
+    }
+
+    /// Returns the triangle of `mesh` nearest to a point, the nearest point, and the cosine between the direction to `point`
+    /// and the inward normal. Leaves out walls within.
+    pub(crate) fn nearest(&self, mesh: &TriMesh, point: Vec3) -> Option<(u32, Vec3, Real)> {
+        nearest(mesh, point, |triangle| self.around(mesh, triangle).side == Side::Inner)
     }
 
     /// Returns true if a user declared that the mesh is a solid.

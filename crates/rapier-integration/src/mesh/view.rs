@@ -11,7 +11,7 @@ use glamx::Vec3;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
 use parry3d::partitioning::BvhNode;
-use parry3d::query::{PointProjection, Ray, RayCast};
+use parry3d::query::{PointQuery, Ray, RayCast};
 use parry3d::shape::{CompositeShape, CompositeShapeRef, FeatureId, Shape, TriMesh};
 use sbbk_core::traverse::TestedBox;
 use sbbk_core::volumes::Sphere;
@@ -78,12 +78,23 @@ pub(crate) fn is_covered(mesh: &TriMesh, point: Vec3) -> bool {
 /// Least cosine that [`nearest`] returns for a point inside a mesh.
 pub(crate) const BEHIND: Real = 0.9;
 
-/// Returns the nearest triangle of a mesh, the nearest point, and the cosine between the direction to
-/// `point` and the inward normal. The cosine is 0 for a point on the mesh.
-pub(crate) fn nearest(mesh: &TriMesh, point: Vec3) -> Option<(u32, PointProjection, Real)> {
-    let (triangle, nearest) =
-        CompositeShapeRef(mesh).project_local_point(point, Real::MAX, false)?;
-    let away = (point - nearest.point).normalize_or_zero();
+/// Returns the nearest triangle of a mesh, the nearest point, and the cosine between the direction to `point` and the inward
+/// normal. The cosine is 0 for a point on the mesh. Walls within are left out.
+pub(super) fn nearest(
+    mesh: &TriMesh,
+    point: Vec3,
+    is_wall: impl Fn(u32) -> bool,
+) -> Option<(u32, Vec3, Real)> {
+    let (triangle, (_, nearest)) = mesh.bvh().find_best(
+        Real::MAX,
+        |node: &BvhNode, _| node.aabb().distance_to_local_point(point, true),
+        |triangle, least| {
+            let nearest = mesh.triangle(triangle).project_local_point(point, false).point;
+            let distance = nearest.distance(point);
+            (distance < least && !is_wall(triangle)).then_some((distance, nearest))
+        },
+    )?;
+    let away = (point - nearest).normalize_or_zero();
     let behind = mesh.triangle(triangle).normal().map_or(0.0, |normal| -away.dot(normal));
     Some((triangle, nearest, behind))
 }

@@ -40,7 +40,7 @@ use super::state::Candidate;
 use super::triangle_shapes::{Cones, DescentMemory, Hint, TriangleShapes};
 use super::triangles::TriangleQuery;
 use crate::mesh::{
-    Change, LazySurface, MeshFacets, MeshStore, MeshView, PairMesh, exit, is_covered, nearest,
+    Change, LazySurface, MeshFacets, MeshStore, MeshView, PairMesh, exit, is_covered,
     nearest_triangle,
 };
 
@@ -287,8 +287,8 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
         if self.is_field(i) {
             return self.field.nearest(point);
         }
-        let (_, nearest, behind) = nearest(self.pair.mesh.mesh, point)?;
-        Some((nearest.point, behind))
+        let (_, nearest, behind) = self.surface.as_ref()?.nearest(self.pair.mesh.mesh, point)?;
+        Some((nearest, behind))
     }
 
     fn exit(&self, i: usize, ray: &Ray, most: Real, is_sheet: bool) -> Option<(Real, Vector)> {

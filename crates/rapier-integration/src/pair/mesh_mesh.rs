@@ -27,7 +27,7 @@ use super::triangle_shapes::{
 use super::triangles::TriangleQuery;
 use crate::mesh::{
     BEHIND, Change, LazySurface, MeshFacets, MeshStore, MeshView, PairMesh, exit, is_covered,
-    nearest, nearest_triangle,
+    nearest_triangle,
 };
 
 /// Two meshes.
@@ -48,6 +48,10 @@ const STICKS_OUT: Real = 0.5;
 /// radius. Higher: thin bodies fall out of rooms. Lower: thin bodies sink into solids.
 const SUNK: f64 = 0.5;
 
+/// Least height of a room, in the second longest side of its mesh. Higher: bodies fall out of low halls. Lower: small fast
+/// bodies fall through floors and walls that are solids.
+const SLAB: Real = 0.1;
+
 impl MeshPair<'_> {
     /// Returns 1 if the box of mesh 2 is larger than that of mesh 1, else 0.
     pub(super) fn larger(&self) -> usize {
@@ -55,29 +59,39 @@ impl MeshPair<'_> {
     }
 
     /// Returns true if the larger mesh is a room for the smaller one: the smaller one is in it, or
-    /// hardly sticks out. A long tube is one although its ends are open. A solid is none for thin bodies that
-    /// have just sunk in.
-    fn is_room(&self, outer_is_solid: impl Fn() -> bool, test: &mut InsideTest) -> bool {
+    /// hardly sticks out. A long tube is a room although its ends are open. Flat solids are no rooms, nor are
+    /// solids that thin bodies have just sunk in.
+    fn is_room(&self, surface: &LazySurface<'_>, test: &mut InsideTest) -> bool {
         let outer = self.larger();
         let [held, holder] = [1 - outer, outer].map(|i| &self.meshes[i]);
         if !held.sorted_extents().cmplt(holder.sorted_extents()).all() {
             return false;
         }
         let middle = self.pose.in_other(1 - outer, held.ball().centre);
-        let Some(exit) = self.exit(middle, outer_is_solid, test) else { return false };
+        let Some(exit) = self.exit(middle, surface, test) else { return false };
         let depth = exit.distance(middle);
         let way = self.pose.in_other(outer, exit) - held.ball().centre;
         let height = held.height(way.normalize_or_zero(), depth / (1.0 - STICKS_OUT));
         let unit = filter_unit(self.pose, filter_distance(true, held.ball().radius));
-        depth >= (1.0 - STICKS_OUT) * height && f64::from(depth + height) >= SUNK * unit
+        depth >= (1.0 - STICKS_OUT) * height
+            && f64::from(depth + height) >= SUNK * unit
+            && !self.is_slab(middle, exit)
+    }
+
+    /// Returns true if the larger mesh is too flat for a room where `point` is in it. `exit` is the nearest point of the surface.
+    fn is_slab(&self, point: Vector, exit: Vector) -> bool {
+        let holder = &self.meshes[self.larger()];
+        let most = SLAB * 2.0 * holder.sorted_extents().y - exit.distance(point);
+        let ray = Ray::new(point, (point - exit).normalize_or_zero());
+        most > 0.0 && self::exit(holder.mesh, &ray, most, false).is_some()
     }
 
     /// Returns the nearest point of the larger mesh, if a point of the smaller one is inside. `point` is
-    /// in the frame of the larger mesh.
+    /// in the frame of the larger mesh, whose surface is `surface`.
     fn exit(
         &self,
         point: Vector,
-        outer_is_solid: impl Fn() -> bool,
+        surface: &LazySurface<'_>,
         test: &mut InsideTest,
     ) -> Option<Vector> {
         let outer = self.larger();
@@ -93,12 +107,13 @@ impl MeshPair<'_> {
             return None;
         }
         let is_covered = is_covered(holder.mesh, point);
-        let (_, near, behind) = nearest(holder.mesh, point)?;
-        let is_inside = behind >= BEHIND && (is_covered || outer_is_solid());
+        let (_, near, behind) = surface.nearest(holder.mesh, point)?;
+        let is_inside =
+            behind >= BEHIND && (is_covered || surface.kind(holder.mesh) == SurfaceKind::Solid);
         if behind < -BEHIND || !is_covered && !is_inside {
-            *test = InsideTest::outside(placement, near.point.distance(point));
+            *test = InsideTest::outside(placement, near.distance(point));
         }
-        is_inside.then_some(near.point)
+        is_inside.then_some(near)
     }
 }
 
@@ -138,8 +153,7 @@ impl<'a> Pair for MeshPair<'a> {
         let outer = self.larger();
         let holder = self.meshes[outer].mesh;
         let is_room = |surface: &LazySurface<'_>| {
-            self.is_room(|| surface.kind(holder) == SurfaceKind::Solid, in_room)
-                && !surface.is_declared_solid(holder)
+            self.is_room(surface, in_room) && !surface.is_declared_solid(holder)
         };
         let room = surfaces[outer].as_ref().is_some_and(is_room).then_some(outer);
         let query = TriangleQuery {
@@ -235,11 +249,12 @@ impl Meshes<'_> {
         let outer = self.pair.larger();
         let [held, holder] = [1 - outer, outer].map(|i| &self.pair.meshes[i]);
         let vertex = self.pair.pose.in_other(1 - outer, held.corners(0)[0]);
+        let surface = self.surfaces[outer].as_ref()?;
         if !is_in_both {
-            if self.surfaces[outer].is_none() || self.room.is_some() {
+            if self.room.is_some() {
                 return None;
             }
-            self.pair.exit(vertex, || self.is_solid(outer), test)?;
+            self.pair.exit(vertex, surface, test)?;
             if !self.is_solid(outer) {
                 *test = InsideTest::NoSolid;
                 return None;
@@ -247,8 +262,8 @@ impl Meshes<'_> {
         }
         let middle = self.pair.pose.in_other(1 - outer, held.ball().centre);
         let (triangle, exit, from) = [middle, vertex].into_iter().find_map(|from| {
-            let (triangle, exit, behind) = nearest(holder.mesh, from)?;
-            (behind >= BEHIND).then_some((triangle, exit.point, from))
+            let (triangle, exit, behind) = surface.nearest(holder.mesh, from)?;
+            (behind >= BEHIND).then_some((triangle, exit, from))
         })?;
         let mut subshapes = [0; 2];
         subshapes[outer] = triangle;
@@ -357,8 +372,9 @@ impl<'q> TriangleShapes for Meshes<'q> {
     }
 
     fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)> {
-        let (_, nearest, behind) = nearest(self.pair.meshes[i].mesh, point)?;
-        Some((nearest.point, behind))
+        let (_, nearest, behind) =
+            self.surfaces[i].as_ref()?.nearest(self.pair.meshes[i].mesh, point)?;
+        Some((nearest, behind))
     }
 
     fn exit(&self, i: usize, ray: &Ray, most: Real, is_sheet: bool) -> Option<(Real, Vector)> {

@@ -95,7 +95,10 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         let has_solid = is_solid[0] || is_solid[1];
         let is_crossing = contact.features.is_crossing();
         if contact.distance > self.shapes.filter_distance() {
-            return Verdict::Contact(of_triangles, None);
+            // The smaller shape may turn before the two meet. A contact from within the larger one would hold it in.
+            let mut larger = self.larger();
+            let leads_inside = larger.any(|i| self.points_inside(&surfaces, i, &contact));
+            return if leads_inside { Verdict::None } else { Verdict::Contact(of_triangles, None) };
         }
         if !is_crossing {
             if self.passes_by(local, &contact) {
@@ -132,9 +135,8 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
     /// distance.
     pub(super) fn is_minimum_of_larger(&self, contact: &TriangleContact) -> bool {
         let Some(local) = self.shapes.local(self.pose, self.pair) else { return false };
-        let (surfaces, smaller) = (self.surfaces(&local), self.smaller());
-        let mut larger = (0..2).filter(|i| Some(*i) != smaller);
-        larger.any(|i| self.is_minimum(&surfaces, i, &local, contact))
+        let surfaces = self.surfaces(&local);
+        self.larger().any(|i| self.is_minimum(&surfaces, i, &local, contact))
     }
 
     /// Returns true if a contact leads into a solid.
@@ -158,6 +160,12 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
             }
         }
         surfaces
+    }
+
+    /// Returns the larger shape, or both if they are equally large.
+    fn larger(&self) -> impl Iterator<Item = usize> {
+        let smaller = self.smaller();
+        (0..2).filter(move |i| Some(*i) != smaller)
     }
 
     /// Returns the smaller shape.

@@ -25,6 +25,15 @@ pub trait RayTriangles {
     /// The corners of a triangle.
     fn corners(&self, triangle: u32) -> [DVec3; 3];
 
+    /// The least and the greatest coordinates.
+    fn bounds(&self) -> [DVec3; 2];
+
+    /// True if the component of a triangle is known to be closed. Rays then count the triangle without a test whether it
+    /// is a wall within.
+    fn is_of_closed(&self, _triangle: u32) -> bool {
+        false
+    }
+
     /// Calls `visit` with all triangles that may come within `slack` of a triangle, until it breaks.
     fn near(&self, triangle: u32, slack: f64, visit: &mut dyn FnMut(u32) -> ControlFlow<()>);
 
@@ -80,16 +89,30 @@ const VOTES: u32 = 16;
 /// of many layers take longer. Lower: walls within such meshes have contacts.
 const MOST_HITS: usize = 100;
 
-/// Least sine of the angle of a triangle's rays. Higher: rays differ less. Lower: these graze walls.
-const STEEP: f64 = 0.5;
+/// How the rays of a triangle are chosen.
+#[derive(Clone, Copy)]
+struct Choice {
+    /// Least sine of the angle with the triangle.
+    steep: f64,
+    /// Number of lines to choose from. The shortest line within the bounds of the mesh is taken.
+    of: u32,
+}
 
-/// [`STEEP`] of samples of a mesh. Higher: fewer rays leave through holes near the triangle. Lower: rounding decides
+/// Higher sine: rays differ less. Lower: these graze walls. More lines: slower choice. Fewer: rays run along wide levels, and
+/// meet all that stands there.
+const STEEP: Choice = Choice { steep: 0.5, of: 8 };
+
+/// [`STEEP`] of samples of a mesh. Higher sine: fewer rays leave through holes near the triangle. Lower: rounding decides
 /// where rays start.
-const ANY: f64 = 0.02;
+const ANY: Choice = Choice { steep: 0.02, of: 1 };
 
 /// Distance of tested points from a triangle that meets another, as a share of the longest side. Higher: narrow parts outside
 /// have no contacts. Lower: rays start on that triangle.
 const BESIDE: f64 = 10.0 * OFFSET;
+
+/// Distance of tested points from a corner, as a share of its distance from the middle. Higher: more searches for triangles
+/// that meet. Lower: rays start on walls that meet at the corner.
+const AT_CORNER: f64 = 0.05;
 
 /// Places of tested points along the segment in which two triangles meet. More: slower. Fewer: corners outside are missed.
 const ALONG: [f64; 3] = [0.05, 0.5, 0.95];
@@ -120,8 +143,8 @@ pub fn side(triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> S
     let side = if is_doubted { second } else { first };
     // Two rays must agree, as many pass where boxes are flush.
     let is_inner_at = |start| {
-        let rays = (0..2).filter_map(|i| Rays::new(triangles, triangle, start, i, STEEP));
-        rays.map(|rays| side_of_rays(&rays, memo)).any(|side| side == Side::Inner)
+        let mut rays = (0..2).filter_map(|i| Rays::new(triangles, triangle, start, i, STEEP));
+        rays.any(|rays| side_of_rays(&rays, memo) == Side::Inner)
     };
     let is_face = side == Side::Inner && is_partly_outside(triangles, triangle, is_inner_at);
     if is_face { Side::Outer } else { side }
@@ -130,8 +153,8 @@ pub fn side(triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> S
 /// Returns true if part of a triangle may be outside of the body, though its middle is within. `is_inner_at` tells whether a
 /// point is within.
 ///
-/// Tests points on both sides of each triangle that meets this one, as the border of the outer part runs along
-/// such triangles.
+/// Tests points near the corners, and on both sides of each triangle that meets this one. The border of the outer part runs
+/// along such triangles.
 fn is_partly_outside(
     triangles: &impl RayTriangles,
     triangle: u32,
@@ -142,8 +165,13 @@ fn is_partly_outside(
     let size = longest_side(&corners);
     // Rays skip triangles within this distance.
     let slack = OFFSET * size;
+    if corners.iter().any(|corner| !is_inner_at(corner.lerp(middle(&corners), AT_CORNER))) {
+        return true;
+    }
+    // Rays that start near the border may skip a face that is flush with it.
+    let least = 0.5 * BESIDE * size;
     let is_outside =
-        |point: DVec3| depth_within(&corners, normal, point) > 0.0 && !is_inner_at(point);
+        |point: DVec3| depth_within(&corners, normal, point) > least && !is_inner_at(point);
     let mut tested = 0;
     let mut meets_outside = |other: u32| {
         let other = triangles.corners(other);
@@ -223,16 +251,15 @@ fn sequence(i: f64, dimension: usize) -> f64 {
 }
 
 /// Sends a ray to the front of a triangle and another to the back, and tells the side between them.
-/// `steep` is the least sine of an angle between a ray and the triangle.
 fn sample(
     triangles: &impl RayTriangles,
     triangle: u32,
     i: u32,
-    steep: f64,
+    choice: Choice,
     memo: &PlaceMemo,
 ) -> Side {
     let start = middle(&triangles.corners(triangle));
-    let rays = Rays::new(triangles, triangle, start, i, steep);
+    let rays = Rays::new(triangles, triangle, start, i, choice);
     rays.map_or(Side::Sheet, |rays| side_of_rays(&rays, memo))
 }
 
@@ -246,16 +273,20 @@ fn side_of_rays<T: RayTriangles>(rays: &Rays<'_, T>, memo: &PlaceMemo) -> Side {
     if found == Side::Outer {
         return found;
     }
-    let triangles = rays.triangles;
-    let is_wall = |other: u32| {
+    rays.side(|other| counts(rays.triangles, other, memo))
+}
+
+/// Returns true if rays count a triangle: it is of a closed component, or no wall within the body.
+fn counts(triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> bool {
+    let is_wall = || {
         let is_inner_at = |start| {
-            let rays = Rays::new(triangles, other, start, 0, STEEP);
-            rays.is_some_and(|rays| rays.side(|_| true) == Side::Inner)
+            let rays = Rays::new(triangles, triangle, start, 0, STEEP);
+            rays.is_some_and(|rays| rays.is_inner(|_| true))
         };
-        is_inner_at(middle(&triangles.corners(other)))
-            && !is_partly_outside(triangles, other, is_inner_at)
+        is_inner_at(middle(&triangles.corners(triangle)))
+            && !is_partly_outside(triangles, triangle, is_inner_at)
     };
-    rays.side(|other| !memo.is_wall(other, || is_wall(other)))
+    triangles.is_of_closed(triangle) || !memo.is_wall(triangle, is_wall)
 }
 
 /// A triangle that a ray meets.
@@ -264,6 +295,8 @@ struct Hit {
     /// 1 if the ray leaves through the front, -1 if it enters.
     sign: i32,
     triangle: u32,
+    /// True within a triangle of a closed component. Rays count all such hits, also where faces are flush.
+    is_exact: bool,
 }
 
 /// A ray to the front of a triangle and one to the back.
@@ -279,43 +312,69 @@ struct Rays<'a, T> {
 
 impl<'a, T: RayTriangles> Rays<'a, T> {
     /// Rays number `i` from a point of a triangle; `None` for one without an area.
-    fn new(triangles: &'a T, triangle: u32, start: DVec3, i: u32, steep: f64) -> Option<Self> {
+    fn new(
+        triangles: &'a T,
+        triangle: u32,
+        start: DVec3,
+        i: u32,
+        Choice { steep, of }: Choice,
+    ) -> Option<Self> {
         let corners = triangles.corners(triangle);
         let up = area_vector(&corners).try_normalize()?;
-        let key = f64::from(i) + f64::from(SHIFT * (triangle % SHIFTS));
-        let [u, v] = [1, 2].map(|dimension| sequence(key, dimension));
-        let height = steep + (1.0 - steep) * v;
         let (across, along) = up.any_orthonormal_pair();
-        let (sin, cos) = (TAU * u).sin_cos();
-        let flat = (1.0 - height * height).max(0.0).sqrt();
-        let to_front = height * up + flat * (cos * across + sin * along);
-        let skipped = OFFSET * longest_side(&corners) / height;
+        let ways = (of * i..of * (i + 1)).map(|i| {
+            let key = f64::from(i) + f64::from(SHIFT * (triangle % SHIFTS));
+            let [u, v] = [1, 2].map(|dimension| sequence(key, dimension));
+            let height = steep + (1.0 - steep) * v;
+            let (sin, cos) = (TAU * u).sin_cos();
+            let flat = (1.0 - height * height).max(0.0).sqrt();
+            height * up + flat * (cos * across + sin * along)
+        });
+        let [low, high] = triangles.bounds().map(|corner| corner - start);
+        let length = |way: DVec3| {
+            let [one, other] = [low, high].map(|corner| corner / way);
+            one.max(other).min_element() - one.min(other).max_element()
+        };
+        let to_front = ways.min_by(|&a, &b| length(a).total_cmp(&length(b)))?;
+        let skipped = OFFSET * longest_side(&corners) / up.dot(to_front);
         Some(Self { triangles, start, to_front, skipped, hits: Default::default() })
     }
 
     /// What the rays find if only triangles count for which `counts` is true.
     fn side(&self, counts: impl Fn(u32) -> bool) -> Side {
-        let winding = |i: usize| {
-            let hits = self.hits[i].get_or_init(|| self.hits([self.to_front, -self.to_front][i]));
-            Some(winding(hits.as_ref()?.iter().filter(|hit| counts(hit.triangle))))
-        };
-        let Some(front) = winding(0) else { return Side::Outer };
+        let Some(front) = self.winding(0, &counts) else { return Side::Outer };
         if front >= 1 {
             return Side::Inner;
         }
-        match winding(1) {
+        match self.winding(1, &counts) {
             None | Some(1..) => Side::Outer,
             _ if front < 0 => Side::Turned,
             _ => Side::Sheet,
         }
     }
 
+    /// True if the body is in front. Takes one ray.
+    fn is_inner(&self, counts: impl Fn(u32) -> bool) -> bool {
+        self.winding(0, counts).is_some_and(|front| front >= 1)
+    }
+
+    /// The winding number that the ray to the front (0) or to the back (1) finds; `None` for too many hits.
+    fn winding(&self, i: usize, counts: impl Fn(u32) -> bool) -> Option<i32> {
+        let hits = self.hits[i].get_or_init(|| self.hits([self.to_front, -self.to_front][i]));
+        Some(winding(hits.as_ref()?.iter().filter(|hit| counts(hit.triangle))))
+    }
+
     fn hits(&self, direction: DVec3) -> Option<Vec<Hit>> {
         let mut hits = Vec::new();
         self.triangles.along(self.start, direction, &mut |triangle| {
             let corners = self.triangles.corners(triangle).map(|corner| corner - self.start);
-            let hit = hit(&corners, direction).filter(|(length, _)| *length > self.skipped);
-            hits.extend(hit.map(|(length, sign)| Hit { length, sign, triangle }));
+            let hit = hit(&corners, direction).filter(|(length, ..)| *length > self.skipped);
+            hits.extend(hit.map(|(length, sign, is_at_border)| Hit {
+                length,
+                sign,
+                triangle,
+                is_exact: !is_at_border && self.triangles.is_of_closed(triangle),
+            }));
             if hits.len() > MOST_HITS { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         hits.sort_unstable_by(|a, b| a.length.total_cmp(&b.length));
@@ -323,29 +382,30 @@ impl<'a, T: RayTriangles> Rays<'a, T> {
     }
 }
 
-/// Times that a ray leaves the surface less times that it enters. Triangles at one place count once:
-/// doubles, and the two at an edge.
+/// Times that a ray leaves the surface less times that it enters. Triangles at one place count once unless the hits are
+/// exact: doubles, and the two at an edge.
 fn winding<'a>(hits: impl Iterator<Item = &'a Hit>) -> i32 {
     let mut sum = 0;
-    let mut last = [f64::NEG_INFINITY; 2];
-    for Hit { length, sign, .. } in hits {
-        let last = &mut last[usize::from(*sign > 0)];
-        if length - *last > TIE * length {
+    let mut last = [(f64::NEG_INFINITY, false); 2];
+    for &Hit { length, sign, is_exact, .. } in hits {
+        let last = &mut last[usize::from(sign > 0)];
+        if length - last.0 > TIE * length || is_exact && last.1 {
             sum += sign;
         }
-        *last = *length;
+        *last = (length, is_exact);
     }
     sum
 }
 
-/// Length at which a ray from the origin meets a triangle, and 1 if it leaves through the front.
-fn hit(corners @ [a, b, c]: &[DVec3; 3], direction: DVec3) -> Option<(f64, i32)> {
+/// Length at which a ray from the origin meets a triangle, 1 if it leaves through the front, and true if it meets the border.
+fn hit(corners @ [a, b, c]: &[DVec3; 3], direction: DVec3) -> Option<(f64, i32, bool)> {
     let normal = area_vector(corners);
     let along = normal.dot(direction);
     let length = normal.dot(*a) / along;
     // Six times the volume between the ray and a side.
     let volume = |(p, q): (&DVec3, &DVec3)| p.cross(*q).dot(direction) * along.signum();
-    let is_inside = |side| volume(side) >= -TIE * along.abs();
-    let is_met = length > 0.0 && [(a, b), (b, c), (c, a)].into_iter().all(is_inside);
-    (is_met && along != 0.0).then_some((length, along.signum() as i32))
+    let least = [(a, b), (b, c), (c, a)].map(volume).into_iter().fold(f64::INFINITY, f64::min);
+    let slack = TIE * along.abs();
+    let is_met = length > 0.0 && least >= -slack;
+    (is_met && along != 0.0).then_some((length, along.signum() as i32, least <= slack))
 }

@@ -24,6 +24,39 @@ pub(super) struct Adjacency {
     pub(super) hubs: FxHashMap<Place, (u32, u32)>,
     /// True if closed components have few triangles on average.
     pub(super) has_small_components: bool,
+    pub(super) open: OpenParts,
+}
+
+/// The triangles of components with an edge that has no twin, as bits. Empty if there are none.
+#[derive(Clone, Debug, Default)]
+pub(super) struct OpenParts(Box<[u64]>);
+
+impl OpenParts {
+    fn new(twins: &[Option<u32>]) -> Self {
+        let mut bits =
+            vec![0; if twins.contains(&None) { twins.len().div_ceil(3 * 64) } else { 0 }];
+        let is_border = |half_edge: &usize| twins[*half_edge].is_none();
+        let mut reached: Vec<usize> = (0..twins.len()).filter(is_border).map(|at| at / 3).collect();
+        while let Some(triangle) = reached.pop() {
+            let (word, bit) = (&mut bits[triangle / 64], 1 << (triangle % 64));
+            if *word & bit == 0 {
+                *word |= bit;
+                let twins = twins[3 * triangle..][..3].iter().flatten();
+                reached.extend(twins.map(|&twin| twin as usize / 3));
+            }
+        }
+        Self(bits.into())
+    }
+
+    pub(super) fn contain(&self, triangle: u32) -> bool {
+        let word = self.0.get(triangle as usize / 64);
+        word.is_some_and(|word| word >> (triangle % 64) & 1 == 1)
+    }
+
+    /// Memory in bytes, without this value.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&*self.0)
+    }
 }
 
 /// A place where vertices are one.
@@ -53,8 +86,9 @@ pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Adjacency {
         }
     }
     let hubs = hubs(vertices, &welded, &valence, triangles);
+    let open = OpenParts::new(&twins);
     let twins = CompactIndices::new(twins.into_iter());
-    Adjacency { twins, is_closed, hubs, has_small_components }
+    Adjacency { twins, is_closed, hubs, has_small_components, open }
 }
 
 /// Number of triangles at each vertex.

@@ -1,8 +1,11 @@
 //! Sides of triangles against points of boxes that overlap.
 
+use std::cell::Cell;
+use std::ops::ControlFlow;
+
 use crate::support::{Random, Soup, cube};
 use glamx::{DVec3, Vec3};
-use sbbk_core::surface::{PlaceMemo, Side, side};
+use sbbk_core::surface::{PlaceMemo, RayTriangles, Side, side};
 
 /// The middle and the half-lengths of a box.
 type Cuboid = [Vec3; 2];
@@ -47,12 +50,15 @@ fn is_covered(boxes: &[Cuboid], place: DVec3, normal: DVec3) -> bool {
 }
 
 /// Counts triangles that are covered in part or not, and wholly, each by whether they are found to be walls within.
-fn walls_within(is_lattice: bool) -> [[u32; 2]; 2] {
+///
+/// `is_analysed`: components are known to be closed.
+fn walls_within(is_lattice: bool, is_analysed: bool) -> [[u32; 2]; 2] {
     let mut random = Random(5);
     let mut counts = [[0; 2]; 2];
     for _ in 0..30 {
         let boxes = boxes(&mut random, 12, 6, is_lattice);
         let (soup, memo) = (soup(&boxes), PlaceMemo::default());
+        let surface = soup.surface();
         for (triangle, corners) in (0..).zip(&soup.triangles) {
             let [a, b, c] = corners.map(|corner| soup.vertices[corner as usize].as_dvec3());
             let normal = (b - a).cross(c - a).normalize();
@@ -61,7 +67,11 @@ fn walls_within(is_lattice: bool) -> [[u32; 2]; 2] {
                 let [u, v] = if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] };
                 is_covered(&boxes, a + u * (b - a) + v * (c - a), normal)
             });
-            let found = side(&soup, triangle, &memo) == Side::Inner;
+            let found = match is_analysed {
+                true => surface.side(&soup, triangle, &memo),
+                false => side(&soup, triangle, &memo),
+            };
+            let found = found == Side::Inner;
             counts[usize::from(is_wall)][usize::from(found)] += 1;
         }
     }
@@ -71,10 +81,108 @@ fn walls_within(is_lattice: bool) -> [[u32; 2]; 2] {
 /// Would catch a floor that is a wall within, as a pillar stands on its middle.
 #[test]
 fn only_triangles_covered_everywhere_are_walls_within() {
-    for (is_lattice, most) in [(false, 0), (true, 1)] {
-        let counts @ [[faces, holes], [missed, walls]] = walls_within(is_lattice);
+    let settings = [(false, 0), (true, 1)];
+    let settings = settings.map(|setting| [false, true].map(|is_analysed| (setting, is_analysed)));
+    for ((is_lattice, most), is_analysed) in settings.into_iter().flatten() {
+        let counts @ [[faces, holes], [missed, walls]] = walls_within(is_lattice, is_analysed);
         println!("{faces} faces, {holes} holes; {walls} walls within, {missed} others");
         assert!(faces > 2000 && 100 * holes <= most * faces, "{counts:?}");
         assert!(walls > 100 && 4 * missed < walls, "{counts:?}");
     }
+}
+
+/// Triangles that count the rays they meet.
+struct Counted {
+    soup: Soup,
+    hits: Cell<usize>,
+}
+
+impl RayTriangles for Counted {
+    fn count(&self) -> u32 {
+        self.soup.count()
+    }
+
+    fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.soup.corners(triangle)
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        self.soup.bounds()
+    }
+
+    fn near(&self, triangle: u32, slack: f64, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
+        self.soup.near(triangle, slack, visit);
+    }
+
+    fn along(&self, start: DVec3, direction: DVec3, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
+        self.soup.along(start, direction, &mut |triangle| {
+            let middle = self.corners(triangle).into_iter().sum::<DVec3>() / 3.0 - start;
+            let off = middle - middle.dot(direction).max(0.0) * direction;
+            if off.length() > 1.0 {
+                return ControlFlow::Continue(());
+            }
+            self.hits.set(self.hits.get() + 1);
+            visit(triangle)
+        });
+    }
+}
+
+/// Would catch rays along a wide level, and searches for walls at all that these rays meet.
+#[test]
+fn a_side_takes_as_long_in_a_wide_level_as_in_a_narrow_one() {
+    let hits = |width: u64, is_analysed: bool| {
+        let mut random = Random(7);
+        let boxes: Vec<Cuboid> = (0..width * width)
+            .map(|i| {
+                let place = [i % width, i / width].map(|at| at as f32);
+                [Vec3::new(place[0], random.range(0.0, 0.2), place[1]), Vec3::new(0.52, 0.5, 0.52)]
+            })
+            .collect();
+        let (soup, memo) = (soup(&boxes), PlaceMemo::default());
+        let surface = soup.surface();
+        let counted = Counted { soup, hits: Cell::default() };
+        // The box in the middle.
+        let first = 12 * (width * (width / 2) + width / 2) as u32;
+        for triangle in first..first + 12 {
+            match is_analysed {
+                true => surface.side(&counted, triangle, &memo),
+                false => side(&counted, triangle, &memo),
+            };
+        }
+        counted.hits.get()
+    };
+    for is_analysed in [true, false] {
+        let [narrow, wide] = [5, 20].map(|width| hits(width, is_analysed));
+        println!("{narrow} hits in a narrow level, {wide} in a wide one");
+        assert!(narrow > 100 && wide < 2 * narrow, "{narrow} {wide}");
+    }
+}
+
+/// Eight slabs with flush tops that overlap by 0.1. Would catch rays that count two flush faces once, and rays that skip a face
+/// near their start.
+#[test]
+fn ends_of_flush_slabs_in_each_other_are_walls_within() {
+    let slab = |k: usize| {
+        let middle = [k % 4, k / 4].map(|at| 5.0 * at as f32);
+        [Vec3::new(middle[0] - 7.5, -0.25, middle[1] - 2.5), Vec3::new(2.55, 0.25, 2.55)]
+    };
+    let slabs: Vec<Cuboid> = (0..8).map(slab).collect();
+    let (soup, memo) = (soup(&slabs), PlaceMemo::default());
+    let surface = soup.surface();
+    let mut ends = 0;
+    for triangle in 0..soup.count() {
+        let corners = soup.corners(triangle);
+        let outward = [DVec3::X, DVec3::Z].map(|axis| {
+            let most = if axis == DVec3::X { 10.0 } else { 5.0 };
+            corners.iter().all(|corner| corner.dot(axis).abs() > most)
+        });
+        let is_end = !outward.contains(&true)
+            && corners.iter().any(|corner| corner.y < 0.0)
+            && corners.iter().any(|corner| corner.y > -0.5);
+        if is_end {
+            ends += 1;
+            assert_eq!(surface.side(&soup, triangle, &memo), Side::Inner, "{corners:?}");
+        }
+    }
+    assert_eq!(ends, 2 * (12 + 8));
 }

@@ -49,6 +49,14 @@ impl RayTriangles for Soup {
         self.triangles[triangle as usize].map(|corner| self.vertices[corner as usize].as_dvec3())
     }
 
+    fn bounds(&self) -> [DVec3; 2] {
+        let vertices = || self.vertices.iter().map(|vertex| vertex.as_dvec3());
+        [
+            vertices().fold(DVec3::INFINITY, DVec3::min),
+            vertices().fold(-DVec3::INFINITY, DVec3::max),
+        ]
+    }
+
     fn near(&self, _: u32, _: f64, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {
         let _ = (0..self.count()).try_for_each(visit);
     }

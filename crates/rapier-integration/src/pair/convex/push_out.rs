@@ -13,7 +13,7 @@ use sbbk_core::surface::SurfaceKind;
 use super::contact::{NormalSource, PartContact};
 use super::pair::ConvexPair;
 use super::query::{ConvexQuery, ConvexScratch};
-use crate::mesh::{BEHIND, LazySurface, is_covered, nearest};
+use crate::mesh::{BEHIND, LazySurface, is_covered};
 use crate::pair::query::ContactList;
 
 /// Depth of a contact, as a share of the part's radius, from which a part whose middle is outside may
@@ -41,7 +41,7 @@ impl<'q> ConvexQuery<'q> {
             if !is_deep && !is_covered(mesh, from) {
                 return None;
             }
-            let (triangle, _, behind) = nearest(mesh, from)?;
+            let (triangle, _, behind) = surface.nearest(mesh, from)?;
             if behind.abs() < BEHIND || surface.kind(mesh) != SurfaceKind::Solid {
                 return None;
             }
