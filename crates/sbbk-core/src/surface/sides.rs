@@ -134,12 +134,12 @@ const TIE: f64 = 1.0e-9;
 
 /// Finds the side of a triangle of a closed surface. Takes two rays if these find a face, else more.
 pub fn side(triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> Side {
-    let first = sample(triangles, triangle, 0, STEEP, memo);
+    let first = sample(triangles, triangle, 0, memo);
     if first == Side::Outer {
         return first;
     }
-    let second = sample(triangles, triangle, 1, STEEP, memo);
-    let is_doubted = second != first && second == sample(triangles, triangle, 2, STEEP, memo);
+    let second = sample(triangles, triangle, 1, memo);
+    let is_doubted = second != first && second == sample(triangles, triangle, 2, memo);
     let side = if is_doubted { second } else { first };
     // Two rays must agree, as many pass where boxes are flush.
     let is_inner_at = |start| {
@@ -223,7 +223,7 @@ pub(super) fn of_samples(triangles: &impl RayTriangles, is_closed: bool) -> Surf
         for i in tested..samples {
             let place = whole * sequence(f64::from(i), 0);
             let triangle = step * areas.partition_point(|&sum| sum < place) as u32;
-            counts[sample(triangles, triangle, i, ANY, &memo) as usize] += 1;
+            counts[sample_of_mesh(triangles, triangle, i, &memo) as usize] += 1;
         }
         tested = samples;
         let open = f64::from(counts[Side::Sheet as usize]) / f64::from(samples);
@@ -251,16 +251,20 @@ fn sequence(i: f64, dimension: usize) -> f64 {
 }
 
 /// Sends a ray to the front of a triangle and another to the back, and tells the side between them.
-fn sample(
-    triangles: &impl RayTriangles,
-    triangle: u32,
-    i: u32,
-    choice: Choice,
-    memo: &PlaceMemo,
-) -> Side {
+fn sample(triangles: &impl RayTriangles, triangle: u32, i: u32, memo: &PlaceMemo) -> Side {
     let start = middle(&triangles.corners(triangle));
-    let rays = Rays::new(triangles, triangle, start, i, choice);
+    let rays = Rays::new(triangles, triangle, start, i, STEEP);
     rays.map_or(Side::Sheet, |rays| side_of_rays(&rays, memo))
+}
+
+/// Like [`sample`], with rays of any slope. A place within the body is no hole, so the rays need not leave out walls there.
+fn sample_of_mesh(triangles: &impl RayTriangles, triangle: u32, i: u32, memo: &PlaceMemo) -> Side {
+    let start = middle(&triangles.corners(triangle));
+    let Some(rays) = Rays::new(triangles, triangle, start, i, ANY) else { return Side::Sheet };
+    match rays.side(|_| true) {
+        Side::Inner => Side::Inner,
+        _ => side_of_rays(&rays, memo),
+    }
 }
 
 fn middle([a, b, c]: &[DVec3; 3]) -> DVec3 {
