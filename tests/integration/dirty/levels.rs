@@ -81,7 +81,7 @@ fn levels_of_boxes_hold_bodies() {
     judge("bodies lost in a slab with parts on it", &cases, &[]);
 }
 
-/// Small pieces that fall by 1 to 4 units move by their own size a step, so some are within the floor at the first query that
+/// Small pieces that fall by 1 to 4 units move by their own size a step. Some are within the floor at the first query that
 /// meets it. Would catch a floor that is a room for them, a push-out to a wall within, and the back of a face as a contact.
 #[test]
 fn debris_stays_on_floors_of_slabs() {

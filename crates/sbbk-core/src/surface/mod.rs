@@ -23,8 +23,8 @@ use rustc_hash::FxHashMap;
 
 use crate::collections::CompactIndices;
 
-/// Greatest number of triangles of a mesh whose kind follows from its edges if these are all paired.
-/// Larger meshes take rays, which need no paired edges.
+/// Greatest number of triangles of a mesh whose kind follows from its edges if these are all paired. Rays also take its closed
+/// components as they are. Larger meshes take rays that need no paired edges.
 pub const PAIRED: usize = 1 << 17;
 
 /// Greatest number of triangles of a small component. Higher: searches for components take longer. Lower:
@@ -39,7 +39,8 @@ pub struct Surface {
     twins: CompactIndices,
     hubs: FxHashMap<twins::Place, (u32, u32)>,
     has_small_components: bool,
-    open: twins::OpenParts,
+    /// `None` for a mesh of more than [`PAIRED`] triangles: it has the sides of a mesh whose adjacency is not known.
+    open: Option<twins::OpenParts>,
     kind: SurfaceKind,
 }
 
@@ -53,14 +54,16 @@ impl Surface {
     pub fn new(vertices: &[Vec3], triangles: &[[u32; 3]], rays: &impl RayTriangles) -> Self {
         let twins::Adjacency { twins, is_closed, hubs, has_small_components, open } =
             twins::find(vertices, triangles);
-        let is_closed = is_closed && triangles.len() <= PAIRED;
-        let kind = sides::of_samples(&Parts { triangles: rays, open: &open }, is_closed);
+        let is_paired = triangles.len() <= PAIRED;
+        let open = is_paired.then_some(open);
+        let parts = Parts { triangles: rays, open: open.as_ref() };
+        let kind = sides::of_samples(&parts, is_closed && is_paired);
         Self { twins, hubs, has_small_components, open, kind }
     }
 
     /// Finds the side of a triangle as [`side`](side()) does. Takes less time, as rays count closed components as they are.
     pub fn side(&self, triangles: &impl RayTriangles, triangle: u32, memo: &PlaceMemo) -> Side {
-        side(&Parts { triangles, open: &self.open }, triangle, memo)
+        side(&Parts { triangles, open: self.open.as_ref() }, triangle, memo)
     }
 
     /// The half-edge that runs back in the neighbour, if there is exactly one.
@@ -92,14 +95,17 @@ impl Surface {
     /// Memory of this value in bytes, without the mesh.
     pub fn bytes(&self) -> usize {
         let hubs = size_of::<(twins::Place, (u32, u32))>() * self.hubs.capacity();
-        size_of::<Self>() + self.twins.bytes() + self.open.bytes() + hubs
+        size_of::<Self>()
+            + self.twins.bytes()
+            + self.open.as_ref().map_or(0, twins::OpenParts::bytes)
+            + hubs
     }
 }
 
-/// Triangles that rays can meet, and those of open components.
+/// The triangles of a mesh for rays, some of open components.
 struct Parts<'a, T> {
     triangles: &'a T,
-    open: &'a twins::OpenParts,
+    open: Option<&'a twins::OpenParts>,
 }
 
 impl<T: RayTriangles> RayTriangles for Parts<'_, T> {
@@ -116,7 +122,7 @@ impl<T: RayTriangles> RayTriangles for Parts<'_, T> {
     }
 
     fn is_of_closed(&self, triangle: u32) -> bool {
-        !self.open.contain(triangle)
+        self.open.is_some_and(|open| !open.contain(triangle))
     }
 
     fn near(&self, triangle: u32, slack: f64, visit: &mut dyn FnMut(u32) -> ControlFlow<()>) {

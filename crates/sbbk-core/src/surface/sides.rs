@@ -89,7 +89,7 @@ const VOTES: u32 = 16;
 /// of many layers take longer. Lower: walls within such meshes have contacts.
 const MOST_HITS: usize = 100;
 
-/// How the rays of a triangle are chosen.
+/// A choice of the rays of a triangle.
 #[derive(Clone, Copy)]
 struct Choice {
     /// Least sine of the angle with the triangle.

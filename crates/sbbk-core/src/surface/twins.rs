@@ -27,7 +27,7 @@ pub(super) struct Adjacency {
     pub(super) open: OpenParts,
 }
 
-/// The triangles of components with an edge that has no twin, as bits. Empty if there are none.
+/// The triangles of components with an edge that has no twin, as bits. A closed mesh has an empty list.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OpenParts(Box<[u64]>);
 
