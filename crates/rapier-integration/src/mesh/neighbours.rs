@@ -380,7 +380,8 @@ mod tests {
             let facets = MeshFacets { mesh: &mesh, twins, memo };
             for triangle in 0..flags.len() as u32 {
                 let found = facets.side(triangle);
-                assert_eq!(found, side(&MeshRays(&mesh), triangle, memo), "{triangle} of {size}");
+                let by_rays = surface.side(&MeshRays(&mesh), triangle, memo);
+                assert_eq!(found, by_rays, "{triangle} of {size}");
                 counts[found as usize] += 1;
             }
         }
