@@ -7,6 +7,7 @@ use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use arrayvec::ArrayVec;
 use glamx::Vec3;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
@@ -104,33 +105,55 @@ pub(crate) fn nearest_triangle(mesh: &TriMesh, point: Vec3, within: Real) -> Opt
     Some(CompositeShapeRef(mesh).project_local_point(point, within, false)?.0)
 }
 
+/// Parry's feature of a ray that meets the back of a triangle.
+const BACK: FeatureId = FeatureId::Face(1);
+
+/// Triangles near a ray at which [`ends_within`] gives up. Higher: slow where many triangles are at one place. Lower: thin
+/// walls of fine meshes are pushed together.
+const CROWD: usize = 64;
+
 /// Greatest number of parts of a mesh that [`exit`] leaves one after another.
 const MOST_PARTS: usize = 8;
 
 /// Returns the distance in which a ray from a point inside a shape of triangles leaves it, and the outward normal there.
-/// `None` if the ray meets nothing up to `most`, or first meets the front of a solid's triangle. Parts of a solid may
-/// overlap.
-pub(crate) fn exit(
-    shape: &impl RayCast,
-    ray: &Ray,
-    most: Real,
-    is_sheet: bool,
-) -> Option<(Real, Vec3)> {
-    const BACK: FeatureId = FeatureId::Face(1);
-    let next = |from: Real, most: Real| {
+/// `None` if the ray meets nothing, or first meets the front of a solid's triangle. Parts of a solid may overlap.
+pub(crate) fn exit(shape: &impl RayCast, ray: &Ray, is_sheet: bool) -> Option<(Real, Vec3)> {
+    let next = |from: Real| {
         let rest = Ray::new(ray.origin + from * ray.dir, ray.dir);
-        let hit = shape.cast_local_ray_and_get_normal(&rest, most, false)?;
+        let hit = shape.cast_local_ray_and_get_normal(&rest, Real::MAX, false)?;
         // Parry turns normals against the ray.
         (is_sheet || hit.feature == BACK).then_some((from + hit.time_of_impact, -hit.normal))
     };
     let size = ray.origin.abs().max_element();
     let beyond = |from: Real| from + 64.0 * Real::EPSILON * (from + size);
-    let first = next(0.0, most)?;
+    let first = next(0.0)?;
     if is_sheet {
         return Some(first);
     }
-    let exits = std::iter::successors(Some(first), |(length, _)| next(beyond(*length), Real::MAX));
+    let exits = std::iter::successors(Some(first), |(length, _)| next(beyond(*length)));
     exits.take(MOST_PARTS).last()
+}
+
+/// Returns true if a solid ends within a length along a ray, which starts in one part of the solid. Returns false where a
+/// crowd of triangles is near the ray.
+pub(crate) fn ends_within(mesh: &TriMesh, ray: &Ray, length: Real) -> bool {
+    let segment = BvhNode::leaf(Aabb::from_points([ray.origin, ray.point_at(length)]), 0);
+    let near = mesh.bvh().leaves(|node| node.intersects(&segment)).take(CROWD);
+    let near: ArrayVec<u32, CROWD> = near.collect();
+    if near.is_full() {
+        return false;
+    }
+    let hits = near.into_iter().filter_map(|triangle| {
+        let hit = mesh.triangle(triangle).cast_local_ray_and_get_normal(ray, length, false)?;
+        Some((hit.time_of_impact, if hit.feature == BACK { -1 } else { 1 }))
+    });
+    let mut hits: ArrayVec<(Real, i32), CROWD> = hits.collect();
+    hits.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let mut parts = 1;
+    hits.into_iter().any(|(_, enters)| {
+        parts += enters;
+        parts <= 0
+    })
 }
 
 /// True if a box is finite and not empty.

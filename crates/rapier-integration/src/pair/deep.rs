@@ -5,7 +5,6 @@
 
 use arrayvec::ArrayVec;
 use glamx::DVec3;
-use parry3d::math::Real;
 use parry3d::query::Ray;
 
 use super::contour::{Contour, MOST_POINTS, Points, Segment};
@@ -130,9 +129,8 @@ impl<S: TriangleShapes> DeepIsland<'_, S> {
         let at2 = pos12.inverse_transform_point(point);
         let against2 = rotation.inverse() * -direction;
         let [is_sheet1, is_sheet2] = self.is_sheet;
-        let exit1 = self.shapes.exit(0, &Ray::new(point, direction), Real::MAX, is_sheet1)?;
-        let (length2, normal2) =
-            self.shapes.exit(1, &Ray::new(at2, against2), Real::MAX, is_sheet2)?;
+        let exit1 = self.shapes.exit(0, &Ray::new(point, direction), is_sheet1)?;
+        let (length2, normal2) = self.shapes.exit(1, &Ray::new(at2, against2), is_sheet2)?;
         let exits = [exit1, (length2, rotation * normal2)];
         Some(exits.map(|(length, normal)| (f64::from(length), normal.as_dvec3())))
     }

@@ -40,7 +40,7 @@ use super::state::Candidate;
 use super::triangle_shapes::{Cones, DescentMemory, Hint, TriangleShapes};
 use super::triangles::TriangleQuery;
 use crate::mesh::{
-    Change, LazySurface, MeshFacets, MeshStore, MeshView, PairMesh, exit, is_covered,
+    Change, LazySurface, MeshFacets, MeshStore, MeshView, PairMesh, ends_within, exit, is_covered,
     nearest_triangle,
 };
 
@@ -291,11 +291,16 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
         Some((nearest, behind))
     }
 
-    fn exit(&self, i: usize, ray: &Ray, most: Real, is_sheet: bool) -> Option<(Real, Vector)> {
+    fn exit(&self, i: usize, ray: &Ray, is_sheet: bool) -> Option<(Real, Vector)> {
         if self.is_field(i) {
-            return exit(self.field.0, ray, most, is_sheet);
+            return exit(self.field.0, ray, is_sheet);
         }
-        exit(self.pair.mesh.mesh, ray, most, is_sheet)
+        exit(self.pair.mesh.mesh, ray, is_sheet)
+    }
+
+    /// The ground below a height field has no end.
+    fn ends_within(&self, i: usize, ray: &Ray, length: Real) -> bool {
+        !self.is_field(i) && ends_within(self.pair.mesh.mesh, ray, length)
     }
 
     fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32> {

@@ -26,8 +26,8 @@ use super::triangle_shapes::{
 };
 use super::triangles::TriangleQuery;
 use crate::mesh::{
-    BEHIND, Change, LazySurface, MeshFacets, MeshStore, MeshView, PairMesh, exit, is_covered,
-    nearest_triangle,
+    BEHIND, Change, LazySurface, MeshFacets, MeshStore, MeshView, PairMesh, ends_within, exit,
+    is_covered, nearest_triangle,
 };
 
 /// Two meshes.
@@ -83,7 +83,7 @@ impl MeshPair<'_> {
         let holder = &self.meshes[self.larger()];
         let most = SLAB * 2.0 * holder.sorted_extents().y - exit.distance(point);
         let ray = Ray::new(point, (point - exit).normalize_or_zero());
-        most > 0.0 && self::exit(holder.mesh, &ray, most, false).is_some()
+        self::exit(holder.mesh, &ray, false).is_some_and(|(length, _)| length < most)
     }
 
     /// Returns the nearest point of the larger mesh, if a point of the smaller one is inside. `point` is
@@ -377,8 +377,12 @@ impl<'q> TriangleShapes for Meshes<'q> {
         Some((nearest, behind))
     }
 
-    fn exit(&self, i: usize, ray: &Ray, most: Real, is_sheet: bool) -> Option<(Real, Vector)> {
-        exit(self.pair.meshes[i].mesh, ray, most, is_sheet)
+    fn exit(&self, i: usize, ray: &Ray, is_sheet: bool) -> Option<(Real, Vector)> {
+        exit(self.pair.meshes[i].mesh, ray, is_sheet)
+    }
+
+    fn ends_within(&self, i: usize, ray: &Ray, length: Real) -> bool {
+        ends_within(self.pair.meshes[i].mesh, ray, length)
     }
 
     fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32> {

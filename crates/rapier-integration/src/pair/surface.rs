@@ -332,7 +332,7 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         let start = self.place(i, local, contact) + WITHIN * distance * way;
         let ray = Ray::new(start.as_vec3(), way.as_vec3());
         let most = ((1.0 - 2.0 * WITHIN) * distance) as Real;
-        self.shapes.exit(i, &ray, most, false).is_some_and(|(length, _)| length < most)
+        self.shapes.ends_within(i, &ray, most)
     }
 
     /// Returns the point of a contact on a shape, in the frame of the shape.

@@ -83,8 +83,11 @@ pub(crate) trait TriangleShapes: Sync {
     fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)>;
 
     /// Returns the distance in which a ray from a point inside a shape leaves it, and the outward normal there. `None`
-    /// if the ray meets nothing up to `most`, or first meets the front of a solid's triangle.
-    fn exit(&self, i: usize, ray: &Ray, most: Real, is_sheet: bool) -> Option<(Real, Vector)>;
+    /// if the ray meets nothing, or first meets the front of a solid's triangle.
+    fn exit(&self, i: usize, ray: &Ray, is_sheet: bool) -> Option<(Real, Vector)>;
+
+    /// Returns true if a solid ends within a length along a ray that starts in it.
+    fn ends_within(&self, i: usize, ray: &Ray, length: Real) -> bool;
 
     /// Returns the nearest triangle of a shape to a point in its frame, if that is within a distance. The triangle
     /// of a height field may be another that is near.
