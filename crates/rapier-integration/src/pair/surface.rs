@@ -301,13 +301,8 @@ impl<S: TriangleShapes> SurfaceFilter<'_, S> {
         let middle = self.in_local(1 - i, self.shapes.bounds(1 - i).center(), local);
         let up = if up.dot(middle - a) < 0.0 { -up } else { up };
         let cosine = up.dot(own);
-        if cosine > UPRIGHT
-            || !surfaces[i].as_ref()?.is_border(
-                self.pair[i],
-                feature,
-                self.place(i, local, contact),
-            )
-        {
+        let place = self.place(i, local, contact);
+        if cosine > UPRIGHT || !surfaces[i].as_ref()?.is_border(self.pair[i], feature, place) {
             return None;
         }
         let lowest = self.shapes.lowest(1 - i, self.in_frame(1 - i, up).as_vec3())?;

@@ -54,10 +54,9 @@ impl Surface {
     pub fn new(vertices: &[Vec3], triangles: &[[u32; 3]], rays: &impl RayTriangles) -> Self {
         let twins::Adjacency { twins, is_closed, hubs, has_small_components, open } =
             twins::find(vertices, triangles);
-        let is_paired = triangles.len() <= PAIRED;
-        let open = is_paired.then_some(open);
+        let is_closed = is_closed && triangles.len() <= PAIRED;
         let parts = Parts { triangles: rays, open: open.as_ref() };
-        let kind = sides::of_samples(&parts, is_closed && is_paired);
+        let kind = sides::of_samples(&parts, is_closed);
         Self { twins, hubs, has_small_components, open, kind }
     }
 

@@ -5,7 +5,7 @@ use std::hash::BuildHasher;
 use glamx::Vec3;
 use rustc_hash::{FxBuildHasher, FxHashMap};
 
-use super::SMALL_COMPONENT;
+use super::{PAIRED, SMALL_COMPONENT};
 use crate::collections::CompactIndices;
 
 const NONE: u32 = u32::MAX;
@@ -24,7 +24,8 @@ pub(super) struct Adjacency {
     pub(super) hubs: FxHashMap<Place, (u32, u32)>,
     /// True if closed components have few triangles on average.
     pub(super) has_small_components: bool,
-    pub(super) open: OpenParts,
+    /// `None` for a mesh of more than [`PAIRED`] triangles.
+    pub(super) open: Option<OpenParts>,
 }
 
 /// The triangles of components with an edge that has no twin, as bits. A closed mesh has an empty list.
@@ -86,7 +87,7 @@ pub(super) fn find(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Adjacency {
         }
     }
     let hubs = hubs(vertices, &welded, &valence, triangles);
-    let open = OpenParts::new(&twins);
+    let open = (triangles.len() <= PAIRED).then(|| OpenParts::new(&twins));
     let twins = CompactIndices::new(twins.into_iter());
     Adjacency { twins, is_closed, hubs, has_small_components, open }
 }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use crate::support::{Random, Soup, cube};
 use glamx::{DVec3, Vec3};
-use sbbk_core::surface::{PlaceMemo, RayTriangles, Side, side};
+use sbbk_core::surface::{PlaceMemo, RayTriangles, Side, Surface, side};
 
 /// The middle and the half-lengths of a box.
 type Cuboid = [Vec3; 2];
@@ -49,6 +49,19 @@ fn is_covered(boxes: &[Cuboid], place: DVec3, normal: DVec3) -> bool {
     })
 }
 
+/// Returns the side of a triangle, by the closed components of the surface if these are known.
+fn found_side(
+    surface: Option<&Surface>,
+    triangles: &impl RayTriangles,
+    triangle: u32,
+    memo: &PlaceMemo,
+) -> Side {
+    match surface {
+        Some(surface) => surface.side(triangles, triangle, memo),
+        None => side(triangles, triangle, memo),
+    }
+}
+
 /// Counts triangles that are covered in part or not, and wholly, each by whether they are found to be walls within.
 ///
 /// `is_analysed`: components are known to be closed.
@@ -67,11 +80,8 @@ fn walls_within(is_lattice: bool, is_analysed: bool) -> [[u32; 2]; 2] {
                 let [u, v] = if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] };
                 is_covered(&boxes, a + u * (b - a) + v * (c - a), normal)
             });
-            let found = match is_analysed {
-                true => surface.side(&soup, triangle, &memo),
-                false => side(&soup, triangle, &memo),
-            };
-            let found = found == Side::Inner;
+            let surface = is_analysed.then_some(&surface);
+            let found = found_side(surface, &soup, triangle, &memo) == Side::Inner;
             counts[usize::from(is_wall)][usize::from(found)] += 1;
         }
     }
@@ -144,10 +154,7 @@ fn a_side_takes_as_long_in_a_wide_level_as_in_a_narrow_one() {
         // The box in the middle.
         let first = 12 * (width * (width / 2) + width / 2) as u32;
         for triangle in first..first + 12 {
-            match is_analysed {
-                true => surface.side(&counted, triangle, &memo),
-                false => side(&counted, triangle, &memo),
-            };
+            found_side(is_analysed.then_some(&surface), &counted, triangle, &memo);
         }
         counted.hits.get()
     };
