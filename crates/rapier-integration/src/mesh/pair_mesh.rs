@@ -50,10 +50,6 @@ pub(crate) enum Change {
 }
 
 impl PairMesh {
-    pub(crate) fn is_unknown(&self) -> bool {
-        matches!(self, Self::Unknown)
-    }
-
     /// Compares with the mesh of the last query, and stores the one of this query.
     pub(crate) fn update(&mut self, view: &MeshView<'_>) -> Change {
         if view.mesh.is_deformable() {

@@ -82,10 +82,6 @@ impl<'a> Pair for FieldPair<'a> {
     where
         Self: 'q;
 
-    fn is_new((mesh, ..): &Self::State) -> bool {
-        mesh.is_unknown()
-    }
-
     fn open<'q>(
         &'q self,
         _: &'q Arc<MeshStore>,

@@ -126,10 +126,6 @@ impl<'a> Pair for MeshPair<'a> {
     where
         Self: 'q;
 
-    fn is_new((known, _): &Self::State) -> bool {
-        known.iter().any(PairMesh::is_unknown)
-    }
-
     fn open<'q>(
         &'q self,
         store: &'q Arc<MeshStore>,

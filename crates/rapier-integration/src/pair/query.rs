@@ -25,9 +25,6 @@ pub(crate) trait Pair: Copy {
     where
         Self: 'q;
 
-    /// Returns true for a new pair.
-    fn is_new(state: &Self::State) -> bool;
-
     /// Returns the change since the last query, and begins a query.
     fn open<'q>(
         &'q self,

@@ -180,7 +180,7 @@ impl HighWaterMark {
     }
 }
 
-/// Returns the state in `workspace`, or a new one.
+/// Returns the state in `workspace`, or a new one after a call of `new_pair`.
 ///
 /// Drops the manifolds of a pair *without* a workspace: a host removes it when a shape changes, and
 /// triangles may have other numbers now. Manifolds of another dispatcher (a restored snapshot,
@@ -188,6 +188,7 @@ impl HighWaterMark {
 pub(super) fn state_in<'a, M, C, S, H>(
     workspace: &'a mut Option<ContactManifoldsWorkspace>,
     manifolds: &mut Vec<ContactManifold<M, C>>,
+    new_pair: impl FnOnce(),
 ) -> &'a mut PairState<S, H>
 where
     PairState<S, H>: Clone + Default + Send + Sync + 'static,
@@ -198,6 +199,7 @@ where
     let is_ours =
         |workspace: &ContactManifoldsWorkspace| workspace.0.is::<Stored<PairState<S, H>>>();
     if !workspace.as_ref().is_some_and(is_ours) {
+        new_pair();
         *workspace = Some(Stored(PairState::<S, H>::default()).into());
     }
     let state = workspace.as_mut().and_then(|workspace| workspace.0.downcast_mut());

@@ -48,10 +48,9 @@ where
     M: Default + 'static,
     C: Default + Copy + 'static,
 {
-    let PairState::<P::State, P::Hint> { shapes, memory } = state_in(workspace, manifolds);
-    if P::is_new(shapes) {
-        store.count_pair();
-    }
+    let new_pair = || store.count_pair();
+    let state: &mut PairState<P::State, P::Hint> = state_in(workspace, manifolds, new_pair);
+    let PairState { shapes, memory } = state;
     let (change, mut query) = pair.open(store, shapes);
     memory.apply_change(change, manifolds);
     if memory.is_unchanged(query.pose(), manifolds.len()) {

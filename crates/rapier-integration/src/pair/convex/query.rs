@@ -36,10 +36,6 @@ impl<'a> Pair for ConvexPair<'a> {
     where
         Self: 'q;
 
-    fn is_new((mesh, _): &Self::State) -> bool {
-        mesh.is_unknown()
-    }
-
     fn open<'q>(
         &'q self,
         _: &'q Arc<MeshStore>,
