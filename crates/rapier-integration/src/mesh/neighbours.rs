@@ -16,29 +16,29 @@ use sbbk_core::surface::{
 
 /// The triangles of a mesh with their adjacency and [strays](sbbk_core::surface::strays).
 #[derive(Copy, Clone)]
-pub(crate) struct MeshFacets<'a, 'm> {
+pub(crate) struct MeshFacets<'a> {
     pub(super) mesh: &'a TriMesh,
-    pub(super) twins: Twins<'a, 'm>,
+    pub(super) twins: Twins<'a>,
     pub(super) memo: &'a PlaceMemo,
 }
 
 /// Twins and flags of the triangles of a mesh.
 #[derive(Copy, Clone)]
-pub(super) enum Twins<'a, 'm> {
+pub(super) enum Twins<'a> {
     All(&'a Surface, &'a [TriangleFlags]),
-    Near(&'a NearTwins<'m>),
+    Near(&'a Neighbours),
 }
 
 /// Distance to other parts, in radii of a part, that leaves it alone. Higher: parts near each other take
 /// more rays. Lower: walls between parts have contacts, though rays pass these.
 const ALONE: Real = 2.0e-4;
 
-impl MeshFacets<'_, '_> {
+impl MeshFacets<'_> {
     /// Reads or changes the flags of a triangle.
     fn with_flags<T>(self, triangle: u32, then: impl FnOnce(&TriangleFlags) -> T) -> T {
         match self.twins {
             Twins::All(_, flags) => then(&flags[triangle as usize]),
-            Twins::Near(twins) => twins.with_known(triangle, |known| then(&known.flags)),
+            Twins::Near(known) => known.with(self.mesh, triangle, |one| then(&one.flags)),
         }
     }
 
@@ -109,13 +109,13 @@ impl MeshFacets<'_, '_> {
     }
 }
 
-impl Facets for MeshFacets<'_, '_> {
+impl Facets for MeshFacets<'_> {
     #[inline]
     fn twin(&self, half_edge: u32) -> Option<u32> {
         match self.twins {
             Twins::All(surface, _) => surface.twin(half_edge),
-            Twins::Near(twins) => {
-                twins.with_known(half_edge / 3, |known| known.twins[half_edge as usize % 3])
+            Twins::Near(known) => {
+                known.with(self.mesh, half_edge / 3, |one| one.twins[half_edge as usize % 3])
             }
         }
     }
@@ -238,42 +238,43 @@ impl RayTriangles for MeshRays<'_> {
 /// Rounding of the lengths at which rays meet boxes.
 const ROUNDING: f64 = 1.0e-12;
 
-/// Neighbours of the triangles that a pair has touched.
-pub(crate) type Neighbours = FxHashMap<u32, Neighbour>;
-
 /// The twins of the edges of a triangle, and its flags.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Neighbour {
+struct Neighbour {
     twins: [Option<u32>; 3],
     flags: TriangleFlags,
 }
 
-/// Adjacency of a mesh that is too large to analyse as a whole. Finds the neighbours of a triangle by
-/// the BVH, in about 1 µs.
-pub(crate) struct NearTwins<'a> {
-    mesh: &'a TriMesh,
-    known: Mutex<&'a mut Neighbours>,
-}
+/// Neighbours of the triangles that a pair has touched, for a mesh that is too large to analyse as a whole.
+#[derive(Debug, Default)]
+pub(crate) struct Neighbours(Mutex<FxHashMap<u32, Neighbour>>);
 
-impl<'a> NearTwins<'a> {
+impl Neighbours {
     /// Triangles whose neighbours a pair keeps. Higher: more memory for a body that crosses a large
     /// mesh; lower: bodies that touch many triangles search for the same neighbours again.
     const MOST: usize = 4096;
 
-    pub(crate) fn new(mesh: &'a TriMesh, known: &'a mut Neighbours) -> Self {
+    /// Forgets all neighbours if there are too many.
+    pub(super) fn limit(&mut self) {
+        let known = self.0.get_mut().unwrap_or_else(PoisonError::into_inner);
         if known.len() > Self::MOST {
             known.clear();
         }
-        Self { mesh, known: Mutex::new(known) }
     }
 
-    /// Calls `then` with the neighbours of a triangle.
-    fn with_known<T>(&self, triangle: u32, then: impl FnOnce(&Neighbour) -> T) -> T {
-        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+    /// Calls `then` with the neighbours of a triangle, which the BVH finds in about 1 µs.
+    fn with<T>(&self, mesh: &TriMesh, triangle: u32, then: impl FnOnce(&Neighbour) -> T) -> T {
+        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         then(known.entry(triangle).or_insert_with(|| Neighbour {
-            twins: twins_of(self.mesh, triangle),
+            twins: twins_of(mesh, triangle),
             flags: TriangleFlags::default(),
         }))
+    }
+}
+
+impl Clone for Neighbours {
+    fn clone(&self) -> Self {
+        Self(Mutex::new(self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()))
     }
 }
 
@@ -284,9 +285,8 @@ const IMPACT_RISE: f64 = 1.0e-4;
 /// Returns true if no triangle at the place of an impact leads towards the other body, which is nearest in a unit
 /// direction.
 pub(crate) fn is_minimum(mesh: &TriMesh, triangle: u32, place: DVec3, direction: DVec3) -> bool {
-    let (mut known, memo) = Default::default();
-    let near = NearTwins::new(mesh, &mut known);
-    let facets = MeshFacets { mesh, twins: Twins::Near(&near), memo: &memo };
+    let (known, memo) = Default::default();
+    let facets = MeshFacets { mesh, twins: Twins::Near(&known), memo: &memo };
     !Around { facets, side: Side::Sheet }.rises(triangle, place, direction, IMPACT_RISE)
 }
 
@@ -342,9 +342,8 @@ mod tests {
             let triangles = (0..1 + round % 20).map(|_| [corner(), corner(), corner()]).collect();
             let mesh = TriMesh::new(vertices, triangles).expect("there are triangles");
             let whole = Surface::new(mesh.vertices(), mesh.indices(), &MeshRays(&mesh));
-            let mut known = Neighbours::default();
-            let near = NearTwins::new(&mesh, &mut known);
-            let (twins, memo) = (Twins::Near(&near), &PlaceMemo::default());
+            let known = Neighbours::default();
+            let (twins, memo) = (Twins::Near(&known), &PlaceMemo::default());
             for half_edge in 0..3 * mesh.indices().len() as u32 {
                 let twin = whole.twin(half_edge);
                 let facets = MeshFacets { mesh: &mesh, twins, memo };
@@ -390,14 +389,11 @@ mod tests {
 
     #[test]
     fn neighbours_are_forgotten_beyond_the_limit() {
-        let triangle = vec![[0, 1, 2]];
-        let mesh = TriMesh::new(vec![Vector::ZERO, Vector::X, Vector::Y], triangle).unwrap();
-        let most = NearTwins::MOST as u32;
-        let mut known: Neighbours = (0..most).map(|index| (index, Neighbour::default())).collect();
-        NearTwins::new(&mesh, &mut known);
-        assert_eq!(known.len(), most as usize);
-        known.insert(most, Neighbour::default());
-        NearTwins::new(&mesh, &mut known);
-        assert!(known.is_empty());
+        for (count, kept) in [(Neighbours::MOST, Neighbours::MOST), (Neighbours::MOST + 1, 0)] {
+            let all = (0..count as u32).map(|triangle| (triangle, Neighbour::default()));
+            let mut known = Neighbours(Mutex::new(all.collect()));
+            known.limit();
+            assert_eq!(known.0.into_inner().unwrap().len(), kept);
+        }
     }
 }

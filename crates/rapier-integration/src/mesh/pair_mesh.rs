@@ -2,14 +2,13 @@ use std::sync::{Arc, OnceLock};
 
 use glamx::Vec3;
 use parry3d::math::Real;
-use parry3d::shape::{CompositeShape, TriMesh};
 use sbbk_core::surface::{Around, PlaceMemo, Side, SurfaceKind};
 use sbbk_core::tree::Tree;
 
 use super::data::{MeshData, Tips};
 use super::identity::MeshToken;
-use super::neighbours::{MeshFacets, NearTwins, Neighbours, Twins};
-use super::store::{MeshStore, is_analysed, is_small};
+use super::neighbours::{MeshFacets, Neighbours, Twins};
+use super::store::{is_analysed, is_small};
 use super::view::{MeshView, nearest};
 
 /// State of one mesh of a pair of colliders, kept from query to query.
@@ -28,7 +27,7 @@ pub(crate) enum PairMesh {
 pub(crate) struct RigidMesh {
     token: MeshToken,
     store_id: u64,
-    /// [`MeshStore::registrations`] when the registered meshes were last searched for this one.
+    /// Registrations of the store when the registered meshes were last searched for this one.
     searched_at: Option<u64>,
     is_registered: bool,
     declared_kind: Option<SurfaceKind>,
@@ -52,7 +51,7 @@ pub(crate) enum Change {
 impl PairMesh {
     /// Compares with the mesh of the last query, and stores the one of this query.
     pub(crate) fn update(&mut self, view: &MeshView<'_>) -> Change {
-        if view.mesh.is_deformable() {
+        if !view.is_rigid() {
             let is_other = matches!(self, Self::Rigid { .. });
             *self = Self::Deformable;
             return if is_other { Change::Replaced } else { Change::Deformed };
@@ -76,7 +75,7 @@ impl PairMesh {
     /// many pairs never touch.
     pub(crate) fn acquire<'a>(
         &'a mut self,
-        view: &MeshView<'a>,
+        view: &'a MeshView<'a>,
     ) -> Option<(Option<&'a Tree>, LazySurface<'a>)> {
         let Self::Rigid(known) = self else { return None };
         let (mesh, store) = (view.mesh, view.store);
@@ -91,7 +90,7 @@ impl PairMesh {
     /// Returns the surface of a mesh that touches no other mesh and needs no tree.
     pub(crate) fn acquire_surface<'a>(
         &'a mut self,
-        view: &MeshView<'a>,
+        view: &'a MeshView<'a>,
     ) -> Option<LazySurface<'a>> {
         let Self::Rigid(known) = self else { return None };
         known.search_registered(view);
@@ -146,51 +145,46 @@ impl RigidMesh {
         self.data = data.map(OnceLock::from).unwrap_or_default();
     }
 
-    fn surface<'a>(&'a mut self, view: &MeshView<'a>) -> LazySurface<'a> {
-        let Self { data, is_registered, neighbours, .. } = self;
-        let is_whole = *is_registered || is_analysed(view.mesh.indices().len());
-        let near = (!is_whole).then(|| NearTwins::new(view.mesh, neighbours));
-        LazySurface { data, store: view.store, near, memo: PlaceMemo::default() }
+    fn surface<'a>(&'a mut self, view: &'a MeshView<'a>) -> LazySurface<'a> {
+        self.neighbours.limit();
+        let is_whole = self.is_registered || is_analysed(view.mesh.indices().len());
+        let near = (!is_whole).then_some(&self.neighbours);
+        LazySurface { data: &self.data, view, near, memo: PlaceMemo::default() }
     }
 }
 
 /// The surface of a mesh, whose adjacency and kind are computed at the first contact.
 pub(crate) struct LazySurface<'a> {
     data: &'a OnceLock<Arc<MeshData>>,
-    store: &'a MeshStore,
+    view: &'a MeshView<'a>,
     /// Adjacency near contacts, if the mesh is too large to analyse as a whole.
-    near: Option<NearTwins<'a>>,
+    near: Option<&'a Neighbours>,
     memo: PlaceMemo,
 }
 
-impl<'m> LazySurface<'m> {
+impl LazySurface<'_> {
     #[inline]
-    fn data(&self, mesh: &TriMesh) -> &Arc<MeshData> {
-        self.data.get_or_init(|| self.store.entry(mesh))
+    fn data(&self) -> &Arc<MeshData> {
+        self.data.get_or_init(|| self.view.store.entry(self.view.mesh))
     }
 
-    /// Returns the triangles of `mesh`, whose surface this must be, its kind, and true if a user declared
-    /// the kind.
+    /// Returns the triangles of the mesh, its kind, and true if a user declared the kind.
     #[inline]
-    fn facets<'a>(&'a self, mesh: &'a TriMesh) -> (MeshFacets<'a, 'm>, SurfaceKind, bool) {
-        let data = self.data(mesh);
-        let twins = match &self.near {
-            Some(twins) => Twins::Near(twins),
+    fn facets(&self) -> (MeshFacets<'_>, SurfaceKind, bool) {
+        let (data, MeshView { mesh, store, .. }) = (self.data(), self.view);
+        let twins = match self.near {
+            Some(known) => Twins::Near(known),
             // Computes the flags as well.
-            None => Twins::All(self.store.surface(mesh, data), data.flags()),
+            None => Twins::All(store.surface(mesh, data), data.flags()),
         };
         let facets = MeshFacets { mesh, twins, memo: &self.memo };
         (facets, data.kind_of(mesh), data.declared_kind().is_some())
     }
 
-    /// Returns the surface around a triangle of `mesh`.
+    /// Returns the surface around a triangle.
     #[inline]
-    pub(crate) fn around<'a>(
-        &'a self,
-        mesh: &'a TriMesh,
-        triangle: u32,
-    ) -> Around<MeshFacets<'a, 'm>> {
-        let (facets, kind, is_declared) = self.facets(mesh);
+    pub(crate) fn around(&self, triangle: u32) -> Around<MeshFacets<'_>> {
+        let (facets, kind, is_declared) = self.facets();
         let side = match kind {
             SurfaceKind::Sheet => Side::Sheet,
             SurfaceKind::Solid if is_declared => match facets.side(triangle) {
@@ -203,36 +197,37 @@ impl<'m> LazySurface<'m> {
         Around { facets, side }
     }
 
-    /// Returns the triangle of `mesh` nearest to a point, the nearest point, and the cosine between the direction to `point`
+    /// Returns the triangle nearest to a point, the nearest point, and the cosine between the direction to `point`
     /// and the inward normal. Leaves out walls within.
-    pub(crate) fn nearest(&self, mesh: &TriMesh, point: Vec3) -> Option<(u32, Vec3, Real)> {
-        nearest(mesh, point, |triangle| self.around(mesh, triangle).side == Side::Inner)
+    pub(crate) fn nearest(&self, point: Vec3) -> Option<(u32, Vec3, Real)> {
+        nearest(self.view.mesh, point, |triangle| self.around(triangle).side == Side::Inner)
     }
 
     /// Returns true if a user declared that the mesh is a solid.
-    pub(crate) fn is_declared_solid(&self, mesh: &TriMesh) -> bool {
-        let (_, kind, is_declared) = self.facets(mesh);
+    pub(crate) fn is_declared_solid(&self) -> bool {
+        let (_, kind, is_declared) = self.facets();
         is_declared && kind == SurfaceKind::Solid
     }
 
-    /// Returns the tips of `view`, whose surface this must be, and the half-edges that start there.
-    pub(crate) fn tips<'a>(&'a self, view: &'a MeshView<'_>) -> impl Iterator<Item = (u32, Vec3)> {
-        let tips: &Tips = self.data(view.mesh).tips.get_or_init(|| view.tips());
-        tips.iter().map(|&tip| (tip, view.corner(tip)))
+    /// Returns the tips of the mesh, and the half-edges that start there.
+    pub(crate) fn tips(&self) -> impl Iterator<Item = (u32, Vec3)> {
+        let tips: &Tips = self.data().tips.get_or_init(|| self.view.tips());
+        tips.iter().map(|&tip| (tip, self.view.corner(tip)))
     }
 
-    /// Returns the kind of `mesh`, whose surface this must be.
-    pub(crate) fn kind(&self, mesh: &TriMesh) -> SurfaceKind {
-        self.facets(mesh).1
+    /// Returns the kind of the mesh.
+    pub(crate) fn kind(&self) -> SurfaceKind {
+        self.facets().1
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use parry3d::shape::{Ball, SharedShape, TriMeshFlags};
+    use parry3d::shape::{Ball, SharedShape, TriMesh, TriMeshFlags};
     use sbbk_core::tree::BuildOptions;
 
     use super::*;
+    use crate::mesh::MeshStore;
 
     /// A ball of so many rows of triangles.
     fn mesh(rows: u32, flags: TriMeshFlags) -> TriMesh {
@@ -269,7 +264,7 @@ mod tests {
         let view = store.view(mesh).unwrap();
         known.update(&view);
         let (_, surface) = known.acquire(&view).unwrap();
-        [surface.near.is_none(), surface.kind(mesh) == SurfaceKind::Solid]
+        [surface.near.is_none(), surface.kind() == SurfaceKind::Solid]
     }
 
     #[test]

@@ -130,12 +130,12 @@ pub(crate) struct MeshAndField<'q> {
 }
 
 /// The triangles of either.
-pub(crate) enum MeshOrField<'a, 'm> {
-    Mesh(MeshFacets<'a, 'm>),
+pub(crate) enum MeshOrField<'a> {
+    Mesh(MeshFacets<'a>),
     Field(Field<'a>),
 }
 
-impl Facets for MeshOrField<'_, '_> {
+impl Facets for MeshOrField<'_> {
     fn twin(&self, half_edge: u32) -> Option<u32> {
         match self {
             Self::Mesh(mesh) => mesh.twin(half_edge),
@@ -178,9 +178,9 @@ impl MeshAndField<'_> {
     }
 }
 
-impl<'q> TriangleShapes for MeshAndField<'q> {
+impl TriangleShapes for MeshAndField<'_> {
     type Facets<'f>
-        = MeshOrField<'f, 'q>
+        = MeshOrField<'f>
     where
         Self: 'f;
 
@@ -241,13 +241,13 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
         then(place.swap(cones).map(|cone| cone.map(|cone| cone as &dyn NormalConstraints)));
     }
 
-    fn surface(&self, i: usize, triangle: u32) -> Option<Around<MeshOrField<'_, 'q>>> {
+    fn surface(&self, i: usize, triangle: u32) -> Option<Around<MeshOrField<'_>>> {
         let surface = self.surface.as_ref()?;
         if self.is_field(i) {
             let side = if self.is_solid(i) { Side::Outer } else { Side::Sheet };
             return Some(Around { facets: MeshOrField::Field(self.field), side });
         }
-        let Around { facets, side } = surface.around(self.pair.mesh.mesh, triangle);
+        let Around { facets, side } = surface.around(triangle);
         Some(Around { facets: MeshOrField::Mesh(facets), side })
     }
 
@@ -255,8 +255,7 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
         if self.is_field(i) {
             return self.pair.has_ground && self.field.points_up();
         }
-        let kind = self.surface.as_ref().map(|surface| surface.kind(self.pair.mesh.mesh));
-        kind == Some(SurfaceKind::Solid)
+        self.surface.as_ref().is_some_and(|surface| surface.kind() == SurfaceKind::Solid)
     }
 
     fn filter_distance(&self) -> f64 {
@@ -283,7 +282,7 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
         if self.is_field(i) {
             return self.field.nearest(point);
         }
-        let (_, nearest, behind) = self.surface.as_ref()?.nearest(self.pair.mesh.mesh, point)?;
+        let (_, nearest, behind) = self.surface.as_ref()?.nearest(point)?;
         Some((nearest, behind))
     }
 
@@ -308,6 +307,6 @@ impl<'q> TriangleShapes for MeshAndField<'q> {
 
     fn tips(&self, i: usize) -> impl Iterator<Item = (u32, Vector)> {
         let of_mesh = self.surface.iter().filter(move |_| !self.is_field(i));
-        of_mesh.flat_map(|surface| surface.tips(&self.pair.mesh))
+        of_mesh.flat_map(LazySurface::tips)
     }
 }

@@ -107,9 +107,8 @@ impl MeshPair<'_> {
             return None;
         }
         let is_covered = is_covered(holder.mesh, point);
-        let (_, near, behind) = surface.nearest(holder.mesh, point)?;
-        let is_inside =
-            behind >= BEHIND && (is_covered || surface.kind(holder.mesh) == SurfaceKind::Solid);
+        let (_, near, behind) = surface.nearest(point)?;
+        let is_inside = behind >= BEHIND && (is_covered || surface.kind() == SurfaceKind::Solid);
         if behind < -BEHIND || !is_covered && !is_inside {
             *test = InsideTest::outside(placement, near.distance(point));
         }
@@ -147,9 +146,8 @@ impl<'a> Pair for MeshPair<'a> {
         let has_surface = surfaces.iter().any(Option::is_some);
         let filter_distance = filter_distance(has_surface, radius);
         let outer = self.larger();
-        let holder = self.meshes[outer].mesh;
         let is_room = |surface: &LazySurface<'_>| {
-            self.is_room(surface, in_room) && !surface.is_declared_solid(holder)
+            self.is_room(surface, in_room) && !surface.is_declared_solid()
         };
         let room = surfaces[outer].as_ref().is_some_and(is_room).then_some(outer);
         let query = TriangleQuery {
@@ -243,7 +241,7 @@ impl Meshes<'_> {
     /// has contacts.
     fn find_push_out(&self, is_in_both: bool, test: &mut InsideTest) -> Option<TriangleHit> {
         let outer = self.pair.larger();
-        let [held, holder] = [1 - outer, outer].map(|i| &self.pair.meshes[i]);
+        let held = &self.pair.meshes[1 - outer];
         let vertex = self.pair.pose.in_other(1 - outer, held.corners(0)[0]);
         let surface = self.surfaces[outer].as_ref()?;
         if !is_in_both {
@@ -258,7 +256,7 @@ impl Meshes<'_> {
         }
         let middle = self.pair.pose.in_other(1 - outer, held.ball().centre);
         let (triangle, exit, from) = [middle, vertex].into_iter().find_map(|from| {
-            let (triangle, exit, behind) = surface.nearest(holder.mesh, from)?;
+            let (triangle, exit, behind) = surface.nearest(from)?;
             (behind >= BEHIND).then_some((triangle, exit, from))
         })?;
         let mut subshapes = [0; 2];
@@ -276,9 +274,9 @@ impl Meshes<'_> {
     }
 }
 
-impl<'q> TriangleShapes for Meshes<'q> {
+impl TriangleShapes for Meshes<'_> {
     type Facets<'f>
-        = MeshFacets<'f, 'q>
+        = MeshFacets<'f>
     where
         Self: 'f;
 
@@ -335,14 +333,14 @@ impl<'q> TriangleShapes for Meshes<'q> {
     }
 
     #[inline]
-    fn surface(&self, i: usize, triangle: u32) -> Option<Around<MeshFacets<'_, 'q>>> {
-        let surface = self.surfaces[i].as_ref()?.around(self.pair.meshes[i].mesh, triangle);
+    fn surface(&self, i: usize, triangle: u32) -> Option<Around<MeshFacets<'_>>> {
+        let surface = self.surfaces[i].as_ref()?.around(triangle);
         Some(if self.room == Some(i) { Around { side: Side::Sheet, ..surface } } else { surface })
     }
 
     fn is_solid(&self, i: usize) -> bool {
-        let kind = self.surfaces[i].as_ref().map(|surface| surface.kind(self.pair.meshes[i].mesh));
-        self.room != Some(i) && kind == Some(SurfaceKind::Solid)
+        let is_solid = |surface: &LazySurface<'_>| surface.kind() == SurfaceKind::Solid;
+        self.room != Some(i) && self.surfaces[i].as_ref().is_some_and(is_solid)
     }
 
     fn filter_distance(&self) -> f64 {
@@ -368,8 +366,7 @@ impl<'q> TriangleShapes for Meshes<'q> {
     }
 
     fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)> {
-        let (_, nearest, behind) =
-            self.surfaces[i].as_ref()?.nearest(self.pair.meshes[i].mesh, point)?;
+        let (_, nearest, behind) = self.surfaces[i].as_ref()?.nearest(point)?;
         Some((nearest, behind))
     }
 
@@ -386,6 +383,6 @@ impl<'q> TriangleShapes for Meshes<'q> {
     }
 
     fn tips(&self, i: usize) -> impl Iterator<Item = (u32, Vector)> {
-        self.surfaces[i].iter().flat_map(move |surface| surface.tips(&self.pair.meshes[i]))
+        self.surfaces[i].iter().flat_map(LazySurface::tips)
     }
 }

@@ -41,8 +41,8 @@ impl<'q> ConvexQuery<'q> {
             if !is_deep && !is_covered(mesh, from) {
                 return None;
             }
-            let (triangle, _, behind) = surface.nearest(mesh, from)?;
-            if behind.abs() < BEHIND || surface.kind(mesh) != SurfaceKind::Solid {
+            let (triangle, _, behind) = surface.nearest(from)?;
+            if behind.abs() < BEHIND || surface.kind() != SurfaceKind::Solid {
                 return None;
             }
             let [a, b, c] = placed.in_part(self.pair.mesh.corners(triangle));

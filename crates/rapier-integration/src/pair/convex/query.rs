@@ -274,10 +274,10 @@ impl ConvexQuery<'_> {
         let normal = |(_, contact): &([u32; 2], PartContact)| contact.contact.normal;
         let first = contacts.first().map(normal);
         let differs = |hit: &_| first.is_some_and(|first| first.dot(normal(hit)) < SAME_WAY);
-        if contacts.iter().any(differs) && surface.kind(self.pair.mesh.mesh) != SurfaceKind::Sheet {
+        if contacts.iter().any(differs) && surface.kind() != SurfaceKind::Sheet {
             contacts.retain(|(of, _)| {
                 let [triangle, _] = self.pair.mesh_place.swap(*of);
-                surface.around(self.pair.mesh.mesh, triangle).side != Side::Inner
+                surface.around(triangle).side != Side::Inner
             });
         }
     }
