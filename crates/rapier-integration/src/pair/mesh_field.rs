@@ -18,9 +18,7 @@ use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glamx::DVec3;
-use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Real, Vector};
-use parry3d::query::Ray;
 use parry3d::query::details::NormalConstraints;
 use parry3d::shape::{HeightField, Triangle, TrianglePseudoNormals};
 use sbbk_core::contact::Feature;
@@ -37,12 +35,9 @@ use super::query::{Moving, Pair};
 use super::ranges::{filter_distance, reach};
 use super::reduce::PatchPlan;
 use super::state::Candidate;
-use super::triangle_shapes::{Cones, DescentMemory, Hint, TriangleShapes};
+use super::triangle_shapes::{Cones, DescentMemory, Hint, TriangleShape, TriangleShapes};
 use super::triangles::TriangleQuery;
-use crate::mesh::{
-    Change, LazySurface, MeshFacets, MeshStore, MeshView, PairMesh, ends_within, exit, is_covered,
-    nearest_triangle,
-};
+use crate::mesh::{Change, LazySurface, MeshFacets, MeshStore, MeshView, PairMesh};
 
 /// A mesh and a height field.
 #[derive(Copy, Clone)]
@@ -251,6 +246,14 @@ impl TriangleShapes for MeshAndField<'_> {
         Some(Around { facets: MeshOrField::Mesh(facets), side })
     }
 
+    fn shape(&self, i: usize) -> TriangleShape<'_> {
+        if self.is_field(i) {
+            TriangleShape::Field(self.field)
+        } else {
+            TriangleShape::Mesh(&self.pair.mesh, self.surface.as_ref())
+        }
+    }
+
     fn is_solid(&self, i: usize) -> bool {
         if self.is_field(i) {
             return self.pair.has_ground && self.field.points_up();
@@ -264,49 +267,5 @@ impl TriangleShapes for MeshAndField<'_> {
 
     fn reach(&self) -> Real {
         self.reach
-    }
-
-    fn bounds(&self, i: usize) -> Aabb {
-        if self.is_field(i) { *self.pair.field.root_aabb() } else { *self.pair.mesh.root() }
-    }
-
-    fn lowest(&self, i: usize, direction: Vector) -> Option<Real> {
-        (!self.is_field(i)).then(|| self.pair.mesh.lowest(direction))
-    }
-
-    fn is_covered(&self, i: usize, point: Vector) -> bool {
-        self.is_field(i) || is_covered(self.pair.mesh.mesh, point)
-    }
-
-    fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)> {
-        if self.is_field(i) {
-            return self.field.nearest(point);
-        }
-        let (_, nearest, behind) = self.surface.as_ref()?.nearest(point)?;
-        Some((nearest, behind))
-    }
-
-    fn exit(&self, i: usize, ray: &Ray, is_sheet: bool) -> Option<(Real, Vector)> {
-        if self.is_field(i) {
-            return exit(self.field.0, ray, is_sheet);
-        }
-        exit(self.pair.mesh.mesh, ray, is_sheet)
-    }
-
-    /// The ground below a height field has no end.
-    fn ends_within(&self, i: usize, ray: &Ray, length: Real) -> bool {
-        !self.is_field(i) && ends_within(self.pair.mesh.mesh, ray, length)
-    }
-
-    fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32> {
-        if self.is_field(i) {
-            return self.field.nearest_triangle(point, within);
-        }
-        nearest_triangle(self.pair.mesh.mesh, point, within)
-    }
-
-    fn tips(&self, i: usize) -> impl Iterator<Item = (u32, Vector)> {
-        let of_mesh = self.surface.iter().filter(move |_| !self.is_field(i));
-        of_mesh.flat_map(LazySurface::tips)
     }
 }

@@ -2,7 +2,6 @@ use std::ops::ControlFlow;
 use std::sync::{Arc, OnceLock};
 
 use glamx::DVec3;
-use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Real, Vector};
 use parry3d::query::details::NormalConstraints;
 use parry3d::query::{PointQuery, Ray};
@@ -22,12 +21,12 @@ use super::reduce::PatchPlan;
 use super::state::Candidate;
 use super::triangle_contacts::in_local;
 use super::triangle_shapes::{
-    Cones, DescentChunk, DescentMemory, Hint, TriangleHit, TriangleShapes, TriangleSurfaceContact,
+    Cones, DescentChunk, DescentMemory, Hint, TriangleHit, TriangleShape, TriangleShapes,
+    TriangleSurfaceContact,
 };
 use super::triangles::TriangleQuery;
 use crate::mesh::{
-    BEHIND, Change, LazySurface, MeshFacets, MeshStore, MeshView, PairMesh, ends_within, exit,
-    is_covered, nearest_triangle,
+    BEHIND, Change, LazySurface, MeshFacets, MeshStore, MeshView, PairMesh, exit, is_covered,
 };
 
 /// Two meshes.
@@ -338,6 +337,10 @@ impl TriangleShapes for Meshes<'_> {
         Some(if self.room == Some(i) { Around { side: Side::Sheet, ..surface } } else { surface })
     }
 
+    fn shape(&self, i: usize) -> TriangleShape<'_> {
+        TriangleShape::Mesh(&self.pair.meshes[i], self.surfaces[i].as_ref())
+    }
+
     fn is_solid(&self, i: usize) -> bool {
         let is_solid = |surface: &LazySurface<'_>| surface.kind() == SurfaceKind::Solid;
         self.room != Some(i) && self.surfaces[i].as_ref().is_some_and(is_solid)
@@ -351,38 +354,5 @@ impl TriangleShapes for Meshes<'_> {
         let MeshPair { pose, meshes, .. } = self.pair;
         let few = || are_few(meshes.each_ref(), pose);
         *self.reach.get_or_init(|| reach(pose.prediction, self.filter_distance, few))
-    }
-
-    fn bounds(&self, i: usize) -> Aabb {
-        *self.pair.meshes[i].root()
-    }
-
-    fn lowest(&self, i: usize, direction: Vector) -> Option<Real> {
-        Some(self.pair.meshes[i].lowest(direction))
-    }
-
-    fn is_covered(&self, i: usize, point: Vector) -> bool {
-        is_covered(self.pair.meshes[i].mesh, point)
-    }
-
-    fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)> {
-        let (_, nearest, behind) = self.surfaces[i].as_ref()?.nearest(point)?;
-        Some((nearest, behind))
-    }
-
-    fn exit(&self, i: usize, ray: &Ray, is_sheet: bool) -> Option<(Real, Vector)> {
-        exit(self.pair.meshes[i].mesh, ray, is_sheet)
-    }
-
-    fn ends_within(&self, i: usize, ray: &Ray, length: Real) -> bool {
-        ends_within(self.pair.meshes[i].mesh, ray, length)
-    }
-
-    fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32> {
-        nearest_triangle(self.pair.meshes[i].mesh, point, within)
-    }
-
-    fn tips(&self, i: usize) -> impl Iterator<Item = (u32, Vector)> {
-        self.surfaces[i].iter().flat_map(LazySurface::tips)
     }
 }

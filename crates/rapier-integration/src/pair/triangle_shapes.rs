@@ -11,17 +11,25 @@ use sbbk_core::surface::{Around, Facets};
 use sbbk_core::traverse::{DescentCounts, DescentScratch, NodePair};
 
 use super::chunks::ChunkResult;
+use super::field::Field;
 use super::inside::InsideTest;
 use super::pose::PairPose;
 use super::query::Moving;
 use super::state::Candidate;
-use crate::mesh::BEHIND;
+use crate::mesh::{BEHIND, LazySurface, MeshView, ends_within, exit, is_covered, nearest_triangle};
 
 /// Normal cones of both triangles.
 pub(super) type Cones<'a> = [Option<&'a dyn NormalConstraints>; 2];
 
 /// Features that were closest at the last query, to be tried first.
 pub(super) type Hint = Option<FeaturePair>;
+
+/// A shape made of triangles.
+pub(crate) enum TriangleShape<'s> {
+    /// A mesh and, for contacts of surfaces, its surface.
+    Mesh(&'s MeshView<'s>, Option<&'s LazySurface<'s>>),
+    Field(Field<'s>),
+}
 
 /// Two shapes made of triangles, and their surfaces.
 pub(crate) trait TriangleShapes: Sync {
@@ -57,6 +65,9 @@ pub(crate) trait TriangleShapes: Sync {
     /// Returns the surface around a triangle of shape 1 (0) or 2 (1), for contacts of surfaces.
     fn surface(&self, i: usize, triangle: u32) -> Option<Around<Self::Facets<'_>>>;
 
+    /// Returns shape 1 (0) or 2 (1).
+    fn shape(&self, i: usize) -> TriangleShape<'_>;
+
     /// Returns true if a shape has an inside.
     fn is_solid(&self, i: usize) -> bool;
 
@@ -70,31 +81,74 @@ pub(crate) trait TriangleShapes: Sync {
     fn reach(&self) -> Real;
 
     /// Returns the box around a shape, in its frame.
-    fn bounds(&self, i: usize) -> Aabb;
+    fn bounds(&self, i: usize) -> Aabb {
+        match self.shape(i) {
+            TriangleShape::Mesh(mesh, _) => *mesh.root(),
+            TriangleShape::Field(field) => *field.0.root_aabb(),
+        }
+    }
 
     /// Returns the least coordinate of a shape along a direction, in its frame; `None` if not known.
-    fn lowest(&self, i: usize, direction: Vector) -> Option<Real>;
+    fn lowest(&self, i: usize, direction: Vector) -> Option<Real> {
+        let TriangleShape::Mesh(mesh, _) = self.shape(i) else { return None };
+        Some(mesh.lowest(direction))
+    }
 
     /// Returns true if a point in the frame of a shape may be inside it.
-    fn is_covered(&self, i: usize, point: Vector) -> bool;
+    fn is_covered(&self, i: usize, point: Vector) -> bool {
+        match self.shape(i) {
+            TriangleShape::Mesh(mesh, _) => is_covered(mesh.mesh, point),
+            TriangleShape::Field(_) => true,
+        }
+    }
 
     /// Returns the nearest point of a surface, and the cosine between the direction to the point
     /// and the inward normal.
-    fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)>;
+    fn nearest(&self, i: usize, point: Vector) -> Option<(Vector, Real)> {
+        match self.shape(i) {
+            TriangleShape::Mesh(_, surface) => {
+                let (_, nearest, behind) = surface?.nearest(point)?;
+                Some((nearest, behind))
+            }
+            TriangleShape::Field(field) => field.nearest(point),
+        }
+    }
 
     /// Returns the distance in which a ray from a point inside a shape leaves it, and the outward normal there. `None`
     /// if the ray meets nothing, or first meets the front of a solid's triangle.
-    fn exit(&self, i: usize, ray: &Ray, is_sheet: bool) -> Option<(Real, Vector)>;
+    fn exit(&self, i: usize, ray: &Ray, is_sheet: bool) -> Option<(Real, Vector)> {
+        match self.shape(i) {
+            TriangleShape::Mesh(mesh, _) => exit(mesh.mesh, ray, is_sheet),
+            TriangleShape::Field(field) => exit(field.0, ray, is_sheet),
+        }
+    }
 
-    /// Returns true if a solid ends within a length along a ray that starts in it.
-    fn ends_within(&self, i: usize, ray: &Ray, length: Real) -> bool;
+    /// Returns true if a solid ends within a length along a ray that starts in it. The ground below a height field
+    /// has no end.
+    fn ends_within(&self, i: usize, ray: &Ray, length: Real) -> bool {
+        match self.shape(i) {
+            TriangleShape::Mesh(mesh, _) => ends_within(mesh.mesh, ray, length),
+            TriangleShape::Field(_) => false,
+        }
+    }
 
     /// Returns the nearest triangle of a shape to a point in its frame, if that is within a distance. The triangle
     /// of a height field may be another that is near.
-    fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32>;
+    fn nearest_triangle(&self, i: usize, point: Vector, within: Real) -> Option<u32> {
+        match self.shape(i) {
+            TriangleShape::Mesh(mesh, _) => nearest_triangle(mesh.mesh, point, within),
+            TriangleShape::Field(field) => field.nearest_triangle(point, within),
+        }
+    }
 
     /// Returns the tips of a shape and half-edges that start there, for [far](super::far) contacts.
-    fn tips(&self, i: usize) -> impl Iterator<Item = (u32, Vector)>;
+    fn tips(&self, i: usize) -> impl Iterator<Item = (u32, Vector)> {
+        let surface = match self.shape(i) {
+            TriangleShape::Mesh(_, surface) => surface,
+            TriangleShape::Field(_) => None,
+        };
+        surface.into_iter().flat_map(LazySurface::tips)
+    }
 
     /// Returns the direction in which shape 2 separates from shape 1, if one is deep in the other.
     fn separation(&self) -> Option<DVec3>;
