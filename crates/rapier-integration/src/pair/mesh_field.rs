@@ -29,7 +29,6 @@ use sbbk_core::tree::{BATCH, LeafBatch};
 
 use super::far::MOST_PAIRS;
 use super::field::{Field, FieldToken};
-use super::inside::InsideTest;
 use super::pose::{MeshPlace, PairPose};
 use super::query::{Moving, Pair};
 use super::ranges::{filter_distance, reach};
@@ -70,7 +69,7 @@ impl FieldPair<'_> {
 
 impl<'a> Pair for FieldPair<'a> {
     /// The mesh, and the field that the candidates are for.
-    type State = (PairMesh, Option<FieldToken>, InsideTest);
+    type State = (PairMesh, Option<FieldToken>);
     type Hint = Hint;
     type Query<'q>
         = TriangleQuery<'q, MeshAndField<'q>>
@@ -80,7 +79,7 @@ impl<'a> Pair for FieldPair<'a> {
     fn open<'q>(
         &'q self,
         _: &'q Arc<MeshStore>,
-        (known_mesh, known_field, inside): &'q mut Self::State,
+        (known_mesh, known_field): &'q mut Self::State,
     ) -> (Change, Self::Query<'q>) {
         let mut change = known_mesh.update(&self.mesh);
         let field = FieldToken::of(self.field);
@@ -105,7 +104,6 @@ impl<'a> Pair for FieldPair<'a> {
             pose: self.pose,
             patches: (self.has_patches && self.mesh.is_rigid())
                 .then(|| PatchPlan::new(prediction, radius)),
-            inside,
         };
         (change, query)
     }

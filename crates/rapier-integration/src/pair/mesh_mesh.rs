@@ -157,12 +157,12 @@ impl<'a> Pair for MeshPair<'a> {
                 room,
                 filter_distance,
                 reach: OnceLock::new(),
+                inside,
                 store,
             },
             pose: self.pose,
             patches: (self.has_patches && are_rigid)
                 .then(|| PatchPlan::new(self.pose.prediction, radius)),
-            inside,
         };
         (change, query)
     }
@@ -178,6 +178,7 @@ pub(crate) struct Meshes<'q> {
     room: Option<usize>,
     filter_distance: f64,
     reach: OnceLock<Real>,
+    inside: &'q mut InsideTest,
     store: &'q MeshStore,
 }
 
@@ -238,7 +239,7 @@ impl Meshes<'_> {
     ///
     /// Tests one vertex, unless the middle of the smaller mesh is known to be in both: a mesh that pierces the surface
     /// has contacts.
-    fn find_push_out(&self, is_in_both: bool, test: &mut InsideTest) -> Option<TriangleHit> {
+    fn find_push_out(&mut self, is_in_both: bool) -> Option<TriangleHit> {
         let outer = self.pair.larger();
         let held = &self.pair.meshes[1 - outer];
         let vertex = self.pair.pose.in_other(1 - outer, held.corners(0)[0]);
@@ -247,9 +248,9 @@ impl Meshes<'_> {
             if self.room.is_some() {
                 return None;
             }
-            self.pair.exit(vertex, surface, test)?;
+            self.pair.exit(vertex, surface, self.inside)?;
             if !self.is_solid(outer) {
-                *test = InsideTest::NoSolid;
+                *self.inside = InsideTest::NoSolid;
                 return None;
             }
         }
@@ -321,8 +322,8 @@ impl TriangleShapes for Meshes<'_> {
         ways.min_by(|a, b| a.length().total_cmp(&b.length()))?.try_normalize()
     }
 
-    fn push_out(&self, is_in_both: bool, test: &mut InsideTest) -> Option<TriangleHit> {
-        self.find_push_out(is_in_both, test).inspect(|_| self.store.count_push_out())
+    fn push_out(&mut self, is_in_both: bool) -> Option<TriangleHit> {
+        self.find_push_out(is_in_both).inspect(|_| self.store.count_push_out())
     }
 
     fn with_cones(&self, triangles: [u32; 2], then: impl FnOnce(Cones<'_>)) {

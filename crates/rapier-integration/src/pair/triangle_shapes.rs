@@ -12,7 +12,6 @@ use sbbk_core::traverse::{DescentCounts, DescentScratch, NodePair};
 
 use super::chunks::ChunkResult;
 use super::field::Field;
-use super::inside::InsideTest;
 use super::pose::PairPose;
 use super::query::Moving;
 use super::state::Candidate;
@@ -155,7 +154,7 @@ pub(crate) trait TriangleShapes: Sync {
 
     /// Returns the push-out if one shape is wholly inside the other. `is_in_both`: the shapes cross, and the middle of
     /// the smaller one is known to be in both.
-    fn push_out(&self, _is_in_both: bool, _test: &mut InsideTest) -> Option<TriangleHit> {
+    fn push_out(&mut self, _is_in_both: bool) -> Option<TriangleHit> {
         None
     }
 

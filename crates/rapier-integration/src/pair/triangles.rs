@@ -18,7 +18,6 @@ use super::borders::lead_one_way;
 use super::chunks::{ChunkResult, in_chunks};
 use super::deep::{self, ContourMemory};
 use super::far::{Directions, FarSearch};
-use super::inside::InsideTest;
 use super::islands::OverlapIslands;
 use super::passed::PassedTriangles;
 use super::pose::PairPose;
@@ -44,7 +43,6 @@ pub(crate) struct TriangleQuery<'q, S> {
     pub(super) shapes: S,
     pub(super) pose: &'q PairPose,
     pub(super) patches: Option<PatchPlan>,
-    pub(super) inside: &'q mut InsideTest,
 }
 
 /// Memory for queries.
@@ -163,7 +161,7 @@ impl<S: TriangleShapes> PairQuery for TriangleQuery<'_, S> {
         self.reject_passed(islands, passed, contacts);
         if contacts.is_empty() {
             let is_in_both = islands.has_separation();
-            contacts.extend(self.shapes.push_out(is_in_both, self.inside));
+            contacts.extend(self.shapes.push_out(is_in_both));
         }
         if contacts.is_empty() {
             contacts.extend(islands.overlaps().filter_map(|pair| self.contact_of_triangles(pair)));
