@@ -10,30 +10,14 @@ use parry3d::shape::Shape;
 
 use super::{SbbkDispatcher, rigid_mesh};
 use crate::mesh::{are_near, is_near};
-use crate::pair::{ConvexPair, ConvexSearch, MeshPlace, PairPose, Parts};
+use crate::pair::{ConvexSearch, ConvexShape, MeshPlace};
 use crate::query::{ConvexQuery, MeshQuery, NonlinearCast, Query};
 
 impl SbbkDispatcher {
-    /// Returns what [`find`](Self::find) does, and counts it.
-    fn search<T>(
-        &self,
-        pos12: &Pose,
-        shapes: [&dyn Shape; 2],
-        balls: Balls,
-        apart: Option<(Real, T)>,
-        then: impl FnOnce(Query<'_>) -> T,
-    ) -> Option<T> {
-        let found = self.find(pos12, shapes, balls, apart, then);
-        if found.is_some() {
-            self.counters.add_search();
-        }
-        found
-    }
-
-    /// Calls `then` for two rigid meshes, or a mesh and a convex shape. Returns `None` if Parry must
-    /// answer. `apart` holds a distance, and the result for shapes whose boxes are farther apart.
+    /// Calls `then` for two rigid meshes, or a mesh and a convex shape, and counts the search. Returns `None` if Parry
+    /// must answer. `apart` holds a distance, and the result for shapes whose boxes are farther apart.
     /// `balls` selects who handles balls.
-    fn find<T>(
+    fn search<T>(
         &self,
         pos12: &Pose,
         [g1, g2]: [&dyn Shape; 2],
@@ -41,6 +25,10 @@ impl SbbkDispatcher {
         apart: Option<(Real, T)>,
         then: impl FnOnce(Query<'_>) -> T,
     ) -> Option<T> {
+        let answer = |answer| {
+            self.counters.add_search();
+            Some(answer)
+        };
         let (mesh, other, mesh_place) = match [g1, g2].map(rigid_mesh) {
             [Some(mesh1), Some(mesh2)] => {
                 let meshes = [mesh1, mesh2];
@@ -49,8 +37,8 @@ impl SbbkDispatcher {
                 }
                 // Before all else: most pairs that a host asks about are apart.
                 return match apart {
-                    Some((distance, apart)) if !are_near(meshes, pos12, distance) => Some(apart),
-                    _ => Some(then(Query::Meshes(MeshQuery::new(self.view(meshes)?, pos12)))),
+                    Some((distance, apart)) if !are_near(meshes, pos12, distance) => answer(apart),
+                    _ => answer(then(Query::Meshes(MeshQuery::new(self.view(meshes)?, pos12)))),
                 };
             }
             [Some(mesh), None] => (mesh, g2, MeshPlace::First),
@@ -64,23 +52,13 @@ impl SbbkDispatcher {
         if let Some((distance, apart)) = apart {
             let in_mesh = mesh_place.shape_in_mesh(pos12);
             if !is_near(mesh, other, &in_mesh, distance) {
-                return Some(apart);
+                return answer(apart);
             }
         }
-        let parts = Parts::of(other).filter(|parts| matches!(parts, Parts::One(_)))?;
+        let convex = ConvexShape::of(other)?;
         let [mesh] = self.view([mesh])?;
-        let pose = &PairPose::new(pos12, 0.0);
-        let pair = ConvexPair {
-            pose,
-            mesh,
-            parts,
-            mesh_place,
-            has_surfaces: false,
-            leave_solids: false,
-            has_patches: false,
-        };
-        let search = ConvexSearch::new(&pair, other)?;
-        Some(then(Query::Convex(ConvexQuery { search, mesh_place })))
+        let search = ConvexSearch::new(mesh, other, convex, mesh_place, pos12);
+        answer(then(Query::Convex(ConvexQuery { search, mesh_place })))
     }
 }
 

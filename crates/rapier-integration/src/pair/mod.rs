@@ -42,7 +42,9 @@ mod update;
 mod write;
 
 pub(crate) use bvh_descent::BvhDescent;
-pub(crate) use convex::{ConvexPair, ConvexSearch, FoundCast, FoundTriangle, Parts, PlacedPart};
+pub(crate) use convex::{
+    ConvexPair, ConvexSearch, ConvexShape, FoundCast, FoundTriangle, Parts, PlacedPart,
+};
 pub(crate) use mesh_field::FieldPair;
 pub(crate) use mesh_mesh::MeshPair;
 pub(crate) use pose::{MeshPlace, PairPose};

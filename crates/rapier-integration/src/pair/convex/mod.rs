@@ -28,3 +28,4 @@ pub(crate) use pair::ConvexPair;
 pub(crate) use parts::Parts;
 pub(crate) use placed::PlacedPart;
 pub(crate) use search::{ConvexSearch, FoundTriangle};
+pub(crate) use shape::ConvexShape;

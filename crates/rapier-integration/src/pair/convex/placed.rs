@@ -2,7 +2,6 @@ use glamx::{DQuat, DVec3, Vec3};
 use parry3d::math::Pose;
 use sbbk_core::traverse::Placement;
 
-use super::pair::ConvexPair;
 use super::parts::Part;
 use super::shape::{ConvexShape, Extent};
 use crate::pair::pose::MeshPlace;
@@ -22,8 +21,14 @@ pub(crate) struct PlacedPart {
 }
 
 impl PlacedPart {
-    pub(super) fn new(index: u32, part: &Part<'_>, pair: &ConvexPair<'_>, extent: Extent) -> Self {
-        let [placement, inverse] = pair.mesh_place.placements(pair.pose).map(|pose| *pose);
+    /// `placements`: the mesh in the frame of the whole, and the whole in the frame of the mesh.
+    pub(super) fn new(
+        index: u32,
+        part: &Part<'_>,
+        placements: [&Placement; 2],
+        extent: Extent,
+    ) -> Self {
+        let [placement, inverse] = placements.map(|placement| *placement);
         let placed = Self { index, extent, placement, inverse, centre_in_mesh: None };
         // In f64: a product of poses in f32 is off by 1e-7 of the distance.
         part.pose.map_or(placed, |part| {

@@ -124,7 +124,8 @@ impl ConvexQuery<'_> {
             parts[slot] = None;
         }
         parts[slot].get_or_insert_with(|| {
-            PlacedPart::new(index, part, self.pair, self.part_data.extent(index, part))
+            let placements = self.pair.mesh_place.placements(self.pair.pose);
+            PlacedPart::new(index, part, placements, self.part_data.extent(index, part))
                 .in_mesh_axes(part.shape)
         })
     }

@@ -13,12 +13,11 @@ use sbbk_core::volumes::Sphere;
 
 use super::contact::{KeptHull, core_contact, core_support, core_touches};
 use super::near::{gap_of, time_of, triangles_near};
-use super::pair::ConvexPair;
-use super::parts::{Part, Parts};
+use super::parts::Part;
 use super::placed::PlacedPart;
 use super::shape::{ConvexShape, Extent};
 use crate::mesh::{MeshView, box_of};
-use crate::pair::pose::MeshPlace;
+use crate::pair::pose::{MeshPlace, PairPose};
 
 /// Distance up to which bodies touch, as a share of their coordinates in the frame of the shape: the
 /// rounding of a distance of zero. Higher: bodies touch early; lower: rounding separates bodies.
@@ -84,14 +83,19 @@ impl Deepest {
 }
 
 impl<'a> ConvexSearch<'a> {
-    /// Returns `None` if `shape`, the shape of the pair, has parts.
-    pub(crate) fn new(pair: &ConvexPair<'a>, shape: &'a dyn Shape) -> Option<Self> {
-        let Parts::One(convex) = pair.parts else { return None };
+    /// `convex` is `shape`. `pos12` is the pose of shape 2 in the frame of shape 1.
+    pub(crate) fn new(
+        mesh: MeshView<'a>,
+        shape: &'a dyn Shape,
+        convex: ConvexShape<'a>,
+        mesh_place: MeshPlace,
+        pos12: &Pose,
+    ) -> Self {
         let part = Part { pose: None, shape: convex, cone: None };
-        let placed = PlacedPart::new(0, &part, pair, Extent::of(convex));
-        let pose_in_mesh = pair.mesh_place.shape_in_mesh(&pair.pose.pos12);
-        let hull = KeptHull::default();
-        Some(Self { mesh: pair.mesh, shape, convex, placed, pose_in_mesh, hull })
+        let pose = PairPose::new(pos12, 0.0);
+        let placed = PlacedPart::new(0, &part, mesh_place.placements(&pose), Extent::of(convex));
+        let pose_in_mesh = mesh_place.shape_in_mesh(pos12);
+        Self { mesh, shape, convex, placed, pose_in_mesh, hull: KeptHull::default() }
     }
 
     /// Moves shape 2 to a placement in the frame of shape 1.

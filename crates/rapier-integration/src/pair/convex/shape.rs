@@ -25,7 +25,7 @@ pub(crate) enum ConvexShape<'a> {
 
 impl<'a> ConvexShape<'a> {
     /// Returns `None` for all other kinds of shapes.
-    pub(super) fn of(shape: &'a dyn Shape) -> Option<Self> {
+    pub(crate) fn of(shape: &'a dyn Shape) -> Option<Self> {
         Some(match shape.shape_type() {
             ShapeType::Ball => Self::Ball(shape.as_ball()?),
             ShapeType::HalfSpace => Self::HalfSpace(shape.as_halfspace()?),
