@@ -132,6 +132,19 @@ impl SbbkConfig {
         with_count_queries: count_queries: bool,
     }
 
+    pub(crate) fn has_surfaces(&self) -> bool {
+        self.contact_set == ContactSet::Surfaces
+    }
+
+    pub(crate) fn has_patches(&self) -> bool {
+        self.detail == ContactDetail::Patches
+    }
+
+    /// Returns true if convex shapes are pushed out of solids.
+    pub(crate) fn leave_solids(&self) -> bool {
+        self.has_surfaces() && self.convex_leave_solids
+    }
+
     pub(crate) fn build_options(&self) -> BuildOptions {
         BuildOptions { layers: self.layers, ..BuildOptions::default() }
     }

@@ -79,16 +79,13 @@ impl QueryCounters {
     }
 
     pub(crate) fn add(&self, answer: QueryOutcome, counts: DescentCounts) {
-        if answer == QueryOutcome::Unsupported {
-            return;
-        }
         let stats = &mut *self.contacts();
         stats.queries += 1;
         match answer {
             QueryOutcome::Unchanged => stats.internals.unchanged_queries += 1,
             QueryOutcome::Reused => stats.internals.reused_queries += 1,
             QueryOutcome::Descended => stats.descended_queries += 1,
-            QueryOutcome::Apart | QueryOutcome::Unsupported => return,
+            QueryOutcome::Apart => return,
         }
         stats.internals.descent += counts;
     }

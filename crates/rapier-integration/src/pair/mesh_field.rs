@@ -36,6 +36,7 @@ use super::reduce::PatchPlan;
 use super::state::Candidate;
 use super::triangle_shapes::{Cones, DescentMemory, Hint, TriangleShape, TriangleShapes};
 use super::triangles::TriangleQuery;
+use crate::SbbkConfig;
 use crate::mesh::{Change, LazySurface, MeshFacets, MeshStore, MeshView, PairMesh};
 
 /// A mesh and a height field.
@@ -45,11 +46,7 @@ pub(crate) struct FieldPair<'a> {
     pub(crate) mesh: MeshView<'a>,
     pub(crate) field: &'a HeightField,
     pub(crate) mesh_place: MeshPlace,
-    /// True for contacts of surfaces, false for contacts of each two triangles.
-    pub(crate) has_surfaces: bool,
-    /// True if the ground below the field is solid.
-    pub(crate) has_ground: bool,
-    pub(crate) has_patches: bool,
+    pub(crate) config: &'a SbbkConfig,
 }
 
 impl FieldPair<'_> {
@@ -88,7 +85,7 @@ impl<'a> Pair for FieldPair<'a> {
         }
         let radius = self.mesh.ball().radius;
         let prediction = self.pose.prediction;
-        let surface = self.has_surfaces.then(|| known_mesh.acquire_surface(&self.mesh));
+        let surface = self.config.has_surfaces().then(|| known_mesh.acquire_surface(&self.mesh));
         let surface = surface.flatten();
         let filter_distance = filter_distance(surface.is_some(), radius);
         let shapes = MeshAndField {
@@ -102,7 +99,7 @@ impl<'a> Pair for FieldPair<'a> {
         let query = TriangleQuery {
             shapes,
             pose: self.pose,
-            patches: (self.has_patches && self.mesh.is_rigid())
+            patches: (self.config.has_patches() && self.mesh.is_rigid())
                 .then(|| PatchPlan::new(prediction, radius)),
         };
         (change, query)
@@ -254,7 +251,7 @@ impl TriangleShapes for MeshAndField<'_> {
 
     fn is_solid(&self, i: usize) -> bool {
         if self.is_field(i) {
-            return self.pair.has_ground && self.field.points_up();
+            return self.pair.config.solid_height_fields && self.field.points_up();
         }
         self.surface.as_ref().is_some_and(|surface| surface.kind() == SurfaceKind::Solid)
     }

@@ -25,6 +25,7 @@ use super::triangle_shapes::{
     TriangleSurfaceContact,
 };
 use super::triangles::TriangleQuery;
+use crate::SbbkConfig;
 use crate::mesh::{
     BEHIND, Change, LazySurface, MeshFacets, MeshStore, MeshView, PairMesh, exit, is_covered,
 };
@@ -34,9 +35,7 @@ use crate::mesh::{
 pub(crate) struct MeshPair<'a> {
     pub(crate) pose: &'a PairPose,
     pub(crate) meshes: [MeshView<'a>; 2],
-    /// True for contacts of surfaces, false for contacts of each two triangles.
-    pub(crate) has_surfaces: bool,
-    pub(crate) has_patches: bool,
+    pub(crate) config: &'a SbbkConfig,
 }
 
 /// Part of a body that may stick out of a room that holds it, in half heights of the body. Higher:
@@ -139,7 +138,7 @@ impl<'a> Pair for MeshPair<'a> {
             if are_rigid { [known1.acquire(mesh1), known2.acquire(mesh2)] } else { [None, None] };
         let [tree1, tree2] = known.each_ref().map(|known| known.as_ref()?.0);
         let trees = tree1.zip(tree2).map(<[_; 2]>::from);
-        let surfaces = known.map(|known| Some(known?.1).filter(|_| self.has_surfaces));
+        let surfaces = known.map(|known| Some(known?.1).filter(|_| self.config.has_surfaces()));
         let [radius1, radius2] = [mesh1, mesh2].map(|mesh| mesh.ball().radius);
         let radius = radius1.min(radius2);
         let has_surface = surfaces.iter().any(Option::is_some);
@@ -161,7 +160,7 @@ impl<'a> Pair for MeshPair<'a> {
                 store,
             },
             pose: self.pose,
-            patches: (self.has_patches && are_rigid)
+            patches: (self.config.has_patches() && are_rigid)
                 .then(|| PatchPlan::new(self.pose.prediction, radius)),
         };
         (change, query)

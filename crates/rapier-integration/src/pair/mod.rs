@@ -48,6 +48,5 @@ pub(crate) use convex::{
 pub(crate) use mesh_field::FieldPair;
 pub(crate) use mesh_mesh::MeshPair;
 pub(crate) use pose::{MeshPlace, PairPose};
-pub(crate) use query::Pair;
 pub use triangle_contacts::TriangleContacts;
 pub(crate) use update::{QueryOutcome, update_manifolds};

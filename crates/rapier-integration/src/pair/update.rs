@@ -18,7 +18,6 @@ use super::write::{Writer, write_every, write_patches};
 use crate::mesh::MeshStore;
 
 /// Way in which a query was answered.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub(crate) enum QueryOutcome {
     /// By Parry's hierarchy and a box.
     Apart,
@@ -28,8 +27,6 @@ pub(crate) enum QueryOutcome {
     Reused,
     /// By a descent.
     Descended,
-    /// Parry must answer.
-    Unsupported,
 }
 
 /// Number of contacts for which a thread always keeps memory. Higher: more memory; lower: more allocations.

@@ -5,6 +5,7 @@ use parry3d::math::Real;
 
 use super::parts::Parts;
 use super::shape::ConvexShape;
+use crate::SbbkConfig;
 use crate::mesh::MeshView;
 use crate::pair::pose::{MeshPlace, PairPose};
 
@@ -15,11 +16,7 @@ pub(crate) struct ConvexPair<'a> {
     pub(crate) mesh: MeshView<'a>,
     pub(crate) parts: Parts<'a>,
     pub(crate) mesh_place: MeshPlace,
-    /// True: contacts of the surface. False: contacts of each triangle.
-    pub(crate) has_surfaces: bool,
-    /// True if parts are pushed out of the mesh where it is a solid.
-    pub(crate) leave_solids: bool,
-    pub(crate) has_patches: bool,
+    pub(crate) config: &'a SbbkConfig,
 }
 
 impl ConvexPair<'_> {
@@ -30,12 +27,12 @@ impl ConvexPair<'_> {
 
     /// Returns true for contacts of the surface. Soft bodies need contacts of each triangle.
     pub(super) fn has_surface(&self) -> bool {
-        self.has_surfaces && self.mesh.is_rigid()
+        self.config.has_surfaces() && self.mesh.is_rigid()
     }
 
     /// Returns true if contacts are reduced to patches. A ball has few contacts, with one point each.
     pub(super) fn has_patches(&self) -> bool {
-        self.has_patches && self.mesh.is_rigid() && !self.is_ball()
+        self.config.has_patches() && self.mesh.is_rigid() && !self.is_ball()
     }
 
     pub(super) fn is_ball(&self) -> bool {

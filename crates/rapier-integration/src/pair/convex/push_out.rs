@@ -64,7 +64,7 @@ impl<'q> ConvexQuery<'q> {
 
     /// Returns the surface of the mesh if parts are to leave solids.
     fn left_surface(&self) -> Option<&LazySurface<'q>> {
-        self.surface.as_ref().filter(|_| self.pair.leave_solids)
+        self.surface.as_ref().filter(|_| self.pair.config.leave_solids())
     }
 
     /// Replaces the contacts of each part that has a push-out.

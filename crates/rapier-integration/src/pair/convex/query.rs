@@ -46,7 +46,7 @@ impl<'a> Pair for ConvexPair<'a> {
             change = Change::Replaced;
         }
         // A ball has one point, and rolls over walls within a mesh.
-        let needs_surface = self.leave_solids || self.has_surface() && !self.is_ball();
+        let needs_surface = self.config.leave_solids() || self.has_surface() && !self.is_ball();
         let surface = needs_surface.then(|| known_mesh.acquire_surface(&self.mesh)).flatten();
         (change, ConvexQuery { pair: self, part_data, surface })
     }

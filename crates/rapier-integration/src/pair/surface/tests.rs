@@ -7,6 +7,7 @@ use sbbk_core::traverse::DescentCounts;
 use sbbk_core::tree::BuildOptions;
 
 use super::*;
+use crate::SbbkConfig;
 use crate::mesh::MeshStore;
 use crate::pair::mesh_mesh::MeshPair;
 use crate::pair::query::Pair;
@@ -26,13 +27,12 @@ fn triangles_beside_each_other_pass_by() {
     });
     let meshes = shapes.each_ref().map(|shape| shape.as_trimesh().unwrap());
     let seen = meshes.map(|mesh| store.view(mesh).unwrap());
-    let mut counts = [0; 2];
+    let (config, mut counts) = (&SbbkConfig::default(), [0; 2]);
     for (i, gap) in [(1, 0.03), (2, 0.0), (3, -0.03), (4, -0.06), (5, 0.0)] {
         let turn = Vector::new(0.3, 0.1 * i as Real, 0.7);
         let place = turn.normalize() * (2.06 + gap);
         let pose = PairPose::new(&Pose::new(place, turn), 0.08);
-        let mesh_pair =
-            MeshPair { pose: &pose, meshes: seen, has_surfaces: true, has_patches: false };
+        let mesh_pair = MeshPair { pose: &pose, meshes: seen, config };
         for has_trees in [false, true] {
             let registered = has_trees
                 .then(|| [0, 1].map(|i| store.register(meshes[i], Some(&shapes[i])).unwrap()));
