@@ -24,15 +24,6 @@ pub(super) struct ContourMemory {
     segments: Vec<Segment>,
 }
 
-impl ContourMemory {
-    /// Gives back memory beyond that for `limit` crossings.
-    pub(super) fn shrink_to(&mut self, limit: usize) {
-        if self.crossings.capacity() > limit {
-            *self = Self::default();
-        }
-    }
-}
-
 /// A way by which shape 2 leaves an overlap.
 struct Way {
     /// Direction, in frame 1.

@@ -168,13 +168,6 @@ impl OverlapIslands {
         self.touching.extend(next.touching);
     }
 
-    /// Gives back memory beyond that for `limit` pairs.
-    pub(super) fn shrink_to(&mut self, limit: usize) {
-        if self.crossings.capacity().max(self.touching.capacity()) > limit {
-            *self = Self::default();
-        }
-    }
-
     /// Adds a pair in the first pass.
     pub(super) fn add(&mut self, crossing: Crossing) {
         self.crossings.push(crossing);

@@ -80,13 +80,6 @@ impl PassedTriangles {
         let mut own = self.apart[first..].iter().take_while(|&&(other, _)| other == triangle);
         own.any(|&(_, normal)| opposes(normal, away))
     }
-
-    /// Gives back memory beyond that for `limit` contacts.
-    pub(super) fn shrink_to(&mut self, limit: usize) {
-        if self.apart.capacity().max(self.found.capacity()) > limit {
-            *self = Self::default();
-        }
-    }
 }
 
 fn is_apart(contact: &TriangleSurfaceContact) -> bool {

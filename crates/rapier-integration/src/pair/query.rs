@@ -39,7 +39,7 @@ pub(crate) trait PairQuery {
     /// A contact before its points are made.
     type Contact: Copy + 'static;
     /// Memory of a thread for queries of this kind.
-    type Scratch: Scratch;
+    type Scratch: Default + 'static;
 
     /// Slack of descents beyond [`reach`](Self::reach).
     const SLACK: SlackLimits;
@@ -143,12 +143,6 @@ pub(crate) struct ContactPoints {
     /// Poses of subshapes in whose frames the points are, instead of the frames of the shapes.
     pub(super) poses: [Option<Pose>; 2],
     pub(super) points: Vec<TrackedContact<()>>,
-}
-
-/// Memory that queries use again.
-pub(crate) trait Scratch: Default + 'static {
-    /// Gives back memory beyond that for `limit` contacts.
-    fn shrink_to(&mut self, limit: usize);
 }
 
 /// Memory of a thread for one kind of pair. Empty during a query: a query inside another one makes its

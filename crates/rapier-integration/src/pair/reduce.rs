@@ -148,13 +148,6 @@ fn by_depth(a: &Member, b: &Member) -> Ordering {
 }
 
 impl Reduction {
-    pub(super) fn shrink_to(&mut self, limit: usize) {
-        self.members.shrink_to(limit);
-        self.seeds.shrink_to(limit);
-        self.places.shrink_to(limit);
-        self.points.shrink_to(limit);
-    }
-
     /// Assigns contacts to patches and removes those that no patch needs. The members of a patch
     /// follow each other, the deepest first.
     pub(super) fn reduce(&mut self, plan: PatchPlan) {

@@ -234,16 +234,6 @@ pub(crate) struct DescentMemory {
     pub(super) descent: DescentChunk,
 }
 
-impl DescentMemory {
-    /// Gives back memory beyond that for `limit` triangles.
-    pub(super) fn shrink_to(&mut self, limit: usize) {
-        self.near.clear();
-        self.near.shrink_to(limit);
-        self.start.clear();
-        self.start.shrink_to(limit);
-    }
-}
-
 /// Result of a chunk of a descent, and memory for it.
 #[derive(Default)]
 pub(super) struct DescentChunk {

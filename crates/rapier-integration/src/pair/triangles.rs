@@ -21,7 +21,7 @@ use super::far::{Directions, FarSearch};
 use super::islands::OverlapIslands;
 use super::passed::PassedTriangles;
 use super::pose::PairPose;
-use super::query::{ContactList, ContactPoints, Limits, Memory, Moving, PairQuery, Scratch};
+use super::query::{ContactList, ContactPoints, Limits, Memory, Moving, PairQuery};
 use super::reduce::{ContactSummary, PatchPlan};
 use super::state::Candidate;
 use super::surface::{NEARLY_TOUCHING, SurfaceFilter, Verdict, is_touching};
@@ -81,16 +81,6 @@ impl ChunkResult for FirstPass {
         self.upright.extend(next.upright);
         self.islands.append(next.islands);
         self.is_near |= next.is_near;
-    }
-}
-
-impl Scratch for TriangleScratch {
-    fn shrink_to(&mut self, limit: usize) {
-        self.descent.shrink_to(limit);
-        self.first.upright.shrink_to(limit);
-        self.first.islands.shrink_to(limit);
-        self.contours.shrink_to(limit);
-        self.passed.shrink_to(limit);
     }
 }
 

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use parry3d::query::{ContactManifold, ContactManifoldsWorkspace};
 use sbbk_core::traverse::{DescentCounts, SlackPlan};
 
-use super::query::{Limits, Pair, PairQuery, QueryMemory, Running, Scratch};
+use super::query::{Limits, Pair, PairQuery, QueryMemory, Running};
 use super::state::{PairState, state_in};
 use super::write::{Writer, write_every, write_patches};
 use crate::mesh::MeshStore;
@@ -29,7 +29,7 @@ pub(crate) enum QueryOutcome {
     Descended,
 }
 
-/// Number of contacts for which a thread always keeps memory. Higher: more memory; lower: more allocations.
+/// Number of contacts for which a thread always keeps its memory. Higher: more memory; lower: more allocations.
 const LEAST_KEPT: usize = 1024;
 
 /// Brings the manifolds of a pair up to date.
@@ -87,14 +87,8 @@ where
         write_every(running, contacts, &mut writer);
     }
     writer.end();
-    if let Some(limit) = demand.update(contacts.len()) {
-        let limit = limit.max(LEAST_KEPT);
-        contacts.clear();
-        contacts.shrink_to(limit);
-        scratch.shrink_to(limit);
-        reduction.shrink_to(limit);
-    }
-    P::Query::memory().set(Some(lent));
+    let is_too_large = demand.update(contacts.len()).is_some_and(|limit| limit >= LEAST_KEPT);
+    P::Query::memory().set((!is_too_large).then_some(lent));
     memory.end(query.pose(), manifolds.len());
     outcome
 }

@@ -289,18 +289,6 @@ impl GhostContacts {
         nearby.dedup();
         self.nearby = nearby;
     }
-
-    pub(super) fn shrink_to(&mut self, limit: usize) {
-        self.entries.shrink_to(limit);
-        self.corners.shrink_to(limit);
-        self.triangles.shrink_to(limit);
-        self.sources.shrink_to(limit);
-        self.on_faces.shrink_to(limit);
-        self.borders.shrink_to(limit);
-        self.upright.shrink_to(limit);
-        self.nearby.shrink_to(limit);
-        self.strays.shrink_to(limit);
-    }
 }
 
 #[cfg(test)]

@@ -22,7 +22,7 @@ use super::triangle_part::TrianglePartPair;
 use crate::mesh::{Change, LazySurface, MeshStore, PairMesh};
 use crate::pair::pose::PairPose;
 use crate::pair::query::{
-    ContactList, ContactPoints, Limits, Memory, Moving, Pair, PairQuery, QueryMemory, Scratch,
+    ContactList, ContactPoints, Limits, Memory, Moving, Pair, PairQuery, QueryMemory,
 };
 use crate::pair::reduce::{ContactSummary, PatchPlan};
 use crate::pair::state::Candidate;
@@ -70,12 +70,6 @@ pub(crate) struct ConvexScratch {
     /// Parts at the pose of the query.
     parts: Vec<Option<PlacedPart>>,
     pub(super) ghosts: GhostContacts,
-}
-
-impl Scratch for ConvexScratch {
-    fn shrink_to(&mut self, limit: usize) {
-        self.ghosts.shrink_to(limit);
-    }
 }
 
 thread_local! {
