@@ -60,24 +60,35 @@ pub struct SbbkInternals {
     pub descent: DescentCounts,
 }
 
-/// Counts of queries.
+/// A count that any thread may raise.
 #[derive(Default)]
-pub(crate) struct QueryCounters {
-    searches: AtomicU64,
-    unsupported: AtomicU64,
+pub(crate) struct Counter(AtomicU64);
+
+impl Counter {
+    pub(crate) fn raise(&self) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+    }
+
+    fn get(&self) -> u64 {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// Counts of a dispatcher, see [`SbbkStats`].
+#[derive(Default)]
+pub(crate) struct Counters {
+    pub(crate) pairs: Counter,
+    pub(crate) searches: Counter,
+    pub(crate) unsupported: Counter,
+    pub(crate) push_outs: Counter,
+    pub(crate) tree_builds: Counter,
+    pub(crate) tree_hits: Counter,
+    pub(crate) walks: Counter,
     /// Counts of contact queries alone.
     contacts: Mutex<SbbkStats>,
 }
 
-impl QueryCounters {
-    pub(crate) fn add_search(&self) {
-        self.searches.fetch_add(1, Ordering::Relaxed);
-    }
-
-    pub(crate) fn add_unsupported(&self) {
-        self.unsupported.fetch_add(1, Ordering::Relaxed);
-    }
-
+impl Counters {
     pub(crate) fn add(&self, answer: QueryOutcome, counts: DescentCounts) {
         let stats = &mut *self.contacts();
         stats.queries += 1;
@@ -92,10 +103,19 @@ impl QueryCounters {
 
     /// The counts, 0 for those of meshes.
     pub(crate) fn stats(&self) -> SbbkStats {
+        let contacts = *self.contacts();
         SbbkStats {
-            searches: self.searches.load(Ordering::Relaxed),
-            unsupported_queries: self.unsupported.load(Ordering::Relaxed),
-            ..*self.contacts()
+            pairs: self.pairs.get(),
+            searches: self.searches.get(),
+            unsupported_queries: self.unsupported.get(),
+            push_outs: self.push_outs.get(),
+            internals: SbbkInternals {
+                tree_builds: self.tree_builds.get(),
+                tree_hits: self.tree_hits.get(),
+                walks: self.walks.get(),
+                ..contacts.internals
+            },
+            ..contacts
         }
     }
 

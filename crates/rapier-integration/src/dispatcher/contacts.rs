@@ -93,7 +93,7 @@ where
                 .contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
         };
         if self.config.count_queries {
-            self.counters.add(outcome, counts);
+            self.store.counters.add(outcome, counts);
         }
         Ok(())
     }

@@ -15,7 +15,6 @@ use sbbk_core::tree::Tree;
 pub use error::PrepareError;
 
 use crate::mesh::{MeshStore, MeshView, Registered};
-use crate::stats::QueryCounters;
 use crate::{SbbkConfig, SbbkStats};
 
 /// A query dispatcher for Rapier, and for other hosts of Parry.
@@ -27,14 +26,13 @@ use crate::{SbbkConfig, SbbkStats};
 pub struct SbbkDispatcher {
     config: SbbkConfig,
     store: Arc<MeshStore>,
-    counters: Arc<QueryCounters>,
 }
 
 impl SbbkDispatcher {
     /// Returns a dispatcher without trees.
     pub fn new(config: SbbkConfig) -> Self {
         let store = MeshStore::new(config.build_options(), config.idle_tree_bytes);
-        Self { config, store: Arc::new(store), counters: Arc::default() }
+        Self { config, store: Arc::new(store) }
     }
 
     /// The configuration of this dispatcher.
@@ -114,7 +112,7 @@ impl SbbkDispatcher {
 
     /// Counts of meshes and queries so far. Takes time in proportion to the number of meshes.
     pub fn stats(&self) -> SbbkStats {
-        self.store.stats(self.counters.stats())
+        self.store.stats()
     }
 
     /// Drops the trees that no pair of colliders uses, see [`SbbkConfig::idle_tree_bytes`].
@@ -129,7 +127,7 @@ impl SbbkDispatcher {
     ) -> Option<[MeshView<'a>; COUNT]> {
         let views = meshes.map(|mesh| self.store.view(mesh));
         if views.iter().any(Option::is_none) {
-            self.counters.add_unsupported();
+            self.store.counters.unsupported.raise();
             return None;
         }
         Some(views.map(|view| view.expect("all are there")))

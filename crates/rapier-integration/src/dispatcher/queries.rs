@@ -26,7 +26,7 @@ impl SbbkDispatcher {
         then: impl FnOnce(Query<'_>) -> T,
     ) -> Option<T> {
         let answer = |answer| {
-            self.counters.add_search();
+            self.store.counters.searches.raise();
             Some(answer)
         };
         let (mesh, other, mesh_place) = match [g1, g2].map(rigid_mesh) {

@@ -16,6 +16,7 @@ use sbbk_core::tree::{BuildError, BuildOptions};
 use super::budget::BuildBudget;
 use super::data::MeshData;
 use super::identity::ContentHash;
+use crate::stats::Counters;
 use crate::{SbbkInternals, SbbkStats};
 
 /// The meshes of a dispatcher and its clones.
@@ -30,11 +31,7 @@ pub(crate) struct MeshStore {
     /// Number of registrations that have begun or ended.
     registrations: Arc<AtomicU64>,
     budget: BuildBudget,
-    builds: AtomicU64,
-    hits: AtomicU64,
-    pairs: AtomicU64,
-    walks: AtomicU64,
-    push_outs: AtomicU64,
+    pub(crate) counters: Counters,
 }
 
 #[derive(Default)]
@@ -80,11 +77,7 @@ impl MeshStore {
             registered: RwLock::default(),
             registrations: Arc::default(),
             budget: BuildBudget::default(),
-            builds: AtomicU64::new(0),
-            hits: AtomicU64::new(0),
-            pairs: AtomicU64::new(0),
-            walks: AtomicU64::new(0),
-            push_outs: AtomicU64::new(0),
+            counters: Counters::default(),
         }
     }
 
@@ -171,7 +164,9 @@ impl MeshStore {
             contents.meshes.insert(content, Arc::downgrade(&data));
             data
         });
-        self.hits.fetch_add(data.tree().is_some().into(), Ordering::Relaxed);
+        if data.tree().is_some() {
+            self.counters.tree_hits.raise();
+        }
         contents.keep_recent(&data, self.recent_limit);
         data
     }
@@ -194,7 +189,7 @@ impl MeshStore {
 
     fn build(&self, mesh: &TriMesh, data: &Arc<MeshData>) -> Result<(), BuildError> {
         if data.build(mesh, &self.options)? {
-            self.builds.fetch_add(1, Ordering::Relaxed);
+            self.counters.tree_builds.raise();
             self.contents().keep_recent(data, self.recent_limit);
         }
         Ok(())
@@ -228,18 +223,8 @@ impl MeshStore {
 
     /// Counts a descent without trees.
     pub(crate) fn count_walk(&self) {
-        self.walks.fetch_add(1, Ordering::Relaxed);
+        self.counters.walks.raise();
         self.budget.earn();
-    }
-
-    /// Counts a query with a push-out.
-    pub(crate) fn count_push_out(&self) {
-        self.push_outs.fetch_add(1, Ordering::Relaxed);
-    }
-
-    /// Counts a new pair.
-    pub(crate) fn count_pair(&self) {
-        self.pairs.fetch_add(1, Ordering::Relaxed);
     }
 
     /// Drops the data of meshes that no pair uses.
@@ -253,30 +238,25 @@ impl MeshStore {
         meshes.retain(|_, data| data.strong_count() > 0);
     }
 
-    /// Adds counts of meshes.
-    pub(crate) fn stats(&self, queries: SbbkStats) -> SbbkStats {
+    /// Returns all counts.
+    pub(crate) fn stats(&self) -> SbbkStats {
+        let counted = self.counters.stats();
         let contents = self.contents();
         let meshes: Vec<_> = contents.meshes.values().filter_map(Weak::upgrade).collect();
         let of_kind = |kind| meshes.iter().filter(|data| data.kind() == Some(kind)).count();
         // Besides the recent list, `meshes` holds each one.
         let is_idle = |data: &&Arc<MeshData>| data.tree().is_some() && Arc::strong_count(data) == 2;
-        let load = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
         SbbkStats {
-            pairs: load(&self.pairs),
             solids: of_kind(SurfaceKind::Solid),
             sheets: of_kind(SurfaceKind::Sheet),
             inside_out: of_kind(SurfaceKind::InsideOut),
-            push_outs: load(&self.push_outs),
             trees: meshes.iter().filter(|data| data.tree().is_some()).count(),
             tree_bytes: meshes.iter().map(|data| data.bytes()).sum(),
             internals: SbbkInternals {
                 idle_trees: contents.recent.iter().filter(is_idle).count(),
-                tree_builds: load(&self.builds),
-                tree_hits: load(&self.hits),
-                walks: load(&self.walks),
-                ..queries.internals
+                ..counted.internals
             },
-            ..queries
+            ..counted
         }
     }
 
@@ -355,19 +335,15 @@ mod tests {
         MeshStore::new(BuildOptions::default(), recent_limit)
     }
 
-    fn stats(store: &MeshStore) -> SbbkStats {
-        store.stats(SbbkStats::default())
-    }
-
     #[test]
     fn recent_meshes_keep_to_the_limit_in_bytes() {
         let wide = store(usize::MAX);
         drop(wide.register(&ball(1.0), None).unwrap());
-        let bytes = stats(&wide).tree_bytes;
+        let bytes = wide.stats().tree_bytes;
         for (limit, stay) in [(bytes, 1), (bytes - 1, 0)] {
             let store = store(limit);
             drop(store.register(&ball(1.0), None).unwrap());
-            let SbbkStats { trees, internals, .. } = stats(&store);
+            let SbbkStats { trees, internals, .. } = store.stats();
             assert_eq!((trees, internals.idle_trees), (stay, stay), "{limit}");
         }
     }
@@ -377,7 +353,7 @@ mod tests {
         let bytes = {
             let store = store(usize::MAX);
             let _data = store.entry(&ball(1.0));
-            stats(&store).tree_bytes
+            store.stats().tree_bytes
         };
         let store = store(5 * bytes / 2);
         let is_there = |radius| {
@@ -393,7 +369,7 @@ mod tests {
         let store = store(0);
         (1..1000).for_each(|i| drop(store.entry(&ball(i as f32))));
         assert!(store.contents().meshes.len() < 20);
-        assert_eq!(stats(&store).tree_bytes, 0);
+        assert_eq!(store.stats().tree_bytes, 0);
     }
 
     #[test]
@@ -455,7 +431,7 @@ mod tests {
         for mesh in &meshes {
             store.build_within_budget(mesh, &store.entry(mesh));
         }
-        assert_eq!(stats(&store).internals.tree_builds, 0);
+        assert_eq!(store.stats().internals.tree_builds, 0);
     }
 
     #[test]

@@ -322,7 +322,7 @@ impl TriangleShapes for Meshes<'_> {
     }
 
     fn push_out(&mut self, is_in_both: bool) -> Option<TriangleHit> {
-        self.find_push_out(is_in_both).inspect(|_| self.store.count_push_out())
+        self.find_push_out(is_in_both).inspect(|_| self.store.counters.push_outs.raise())
     }
 
     fn with_cones(&self, triangles: [u32; 2], then: impl FnOnce(Cones<'_>)) {

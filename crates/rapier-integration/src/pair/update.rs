@@ -45,7 +45,7 @@ where
     M: Default + 'static,
     C: Default + Copy + 'static,
 {
-    let new_pair = || store.count_pair();
+    let new_pair = || store.counters.pairs.raise();
     let state: &mut PairState<P::State, P::Hint> = state_in(workspace, manifolds, new_pair);
     let PairState { shapes, memory } = state;
     let (change, mut query) = pair.open(store, shapes);
