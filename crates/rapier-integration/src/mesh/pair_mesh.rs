@@ -39,11 +39,9 @@ pub(crate) struct RigidMesh {
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Change {
     Unchanged,
-    /// First query, another store, or a registration that changes what the mesh is taken for. The
-    /// triangles are the same.
+    /// First query, another store, a registration that changes what the mesh is taken for, or vertices that may
+    /// have moved. The triangles are the same.
     Unknown,
-    /// The vertices may have moved.
-    Deformed,
     /// The mesh is another one. Old manifolds refer to triangles that it does not have.
     Replaced,
 }
@@ -54,7 +52,7 @@ impl PairMesh {
         if !view.is_rigid() {
             let is_other = matches!(self, Self::Rigid { .. });
             *self = Self::Deformable;
-            return if is_other { Change::Replaced } else { Change::Deformed };
+            return if is_other { Change::Replaced } else { Change::Unknown };
         }
         let change = match self {
             Self::Rigid(mesh) if mesh.token == view.token && mesh.store_id == view.store.id => {
@@ -252,7 +250,7 @@ mod tests {
             (&one, 1, Change::Unchanged),
             (&other, 1, Change::Replaced),
             (&soft, 1, Change::Replaced),
-            (&soft, 1, Change::Deformed),
+            (&soft, 1, Change::Unknown),
             (&one, 1, Change::Replaced),
         ] {
             assert_eq!(known.update(&stores[owner].view(mesh).unwrap()), change);

@@ -98,7 +98,7 @@ impl<H> CandidateMemory<H> {
     ) {
         match change {
             Change::Unchanged => return,
-            Change::Unknown | Change::Deformed => {}
+            Change::Unknown => {}
             Change::Replaced => manifolds.clear(),
         }
         self.forget();
