@@ -14,7 +14,7 @@ use sbbk_core::tree::Tree;
 
 pub use error::PrepareError;
 
-use crate::mesh::{MeshStore, MeshView, Registered};
+use crate::mesh::{MeshStore, MeshView, PairMesh, Registered};
 use crate::{SbbkConfig, SbbkStats};
 
 /// A query dispatcher for Rapier, and for other hosts of Parry.
@@ -106,8 +106,10 @@ impl SbbkDispatcher {
     /// Returns what this mesh is taken for. A deformable mesh is a sheet. Analyses the mesh if no
     /// query has done so, in up to 10 ms.
     pub fn surface_kind(&self, mesh: &TriMesh) -> SurfaceKind {
-        let is_analysed = !mesh.is_deformable() && self.store.view(mesh).is_some();
-        if is_analysed { self.store.surface_kind(mesh) } else { SurfaceKind::Sheet }
+        let Some(view) = self.store.view(mesh) else { return SurfaceKind::Sheet };
+        let mut known = PairMesh::default();
+        known.update(&view);
+        known.acquire_surface(&view).map_or(SurfaceKind::Sheet, |surface| surface.kind())
     }
 
     /// Counts of meshes and queries so far. Takes time in proportion to the number of meshes.

@@ -201,18 +201,6 @@ impl MeshStore {
         data.surface().unwrap_or_else(|| self.analyse(mesh, data))
     }
 
-    /// Returns the kind of a rigid mesh.
-    pub(crate) fn surface_kind(&self, mesh: &TriMesh) -> SurfaceKind {
-        let registered = self.registered(mesh);
-        let count = mesh.indices().len();
-        let is_whole = registered.is_some() || is_analysed(count);
-        let data = registered.unwrap_or_else(|| self.entry(mesh));
-        if is_whole {
-            self.surface(mesh, &data);
-        }
-        data.kind_of(mesh)
-    }
-
     #[cold]
     fn analyse<'a>(&self, mesh: &TriMesh, data: &'a Arc<MeshData>) -> &'a Surface {
         self.budget.charge_surface(mesh.indices().len());
@@ -410,10 +398,10 @@ mod tests {
         let (store, mesh) = (store(usize::MAX), ball(1.0));
         let data = store.entry(&mesh);
         assert_eq!(data.kind(), None);
-        assert_eq!(store.surface_kind(&mesh), SurfaceKind::Solid);
+        assert_eq!(data.kind_of(&mesh), SurfaceKind::Solid);
         for kind in [SurfaceKind::Sheet, SurfaceKind::InsideOut, SurfaceKind::Solid] {
             data.declare_kind(kind);
-            assert_eq!((store.surface_kind(&mesh), data.kind()), (kind, Some(kind)));
+            assert_eq!((data.kind_of(&mesh), data.kind()), (kind, Some(kind)));
         }
     }
 
