@@ -11,7 +11,7 @@ use parry3d::shape::Shape;
 use super::{SbbkDispatcher, rigid_mesh};
 use crate::mesh::{are_near, is_near};
 use crate::pair::{ConvexSearch, ConvexShape, MeshPlace};
-use crate::query::{ConvexQuery, MeshQuery, NonlinearCast, Query};
+use crate::query::{MeshQuery, NonlinearCast, Query};
 
 impl SbbkDispatcher {
     /// Calls `then` for two rigid meshes, or a mesh and a convex shape, and counts the search. Returns `None` if Parry
@@ -58,7 +58,7 @@ impl SbbkDispatcher {
         let convex = ConvexShape::of(other)?;
         let [mesh] = self.view([mesh])?;
         let search = ConvexSearch::new(mesh, other, convex, mesh_place, pos12);
-        answer(then(Query::Convex(ConvexQuery { search, mesh_place })))
+        answer(then(Query::Convex(search)))
     }
 }
 

@@ -3,7 +3,7 @@ use parry3d::query::{ShapeCastHit, ShapeCastStatus};
 use sbbk_core::query::{FoundPair, PartPair};
 use sbbk_core::traverse::Placement;
 
-use crate::pair::{FoundTriangle, MeshPlace, PlacedPart};
+use crate::pair::{ConvexSearch, FoundTriangle, MeshPlace, PlacedPart};
 
 /// Two subshapes that a query found.
 #[derive(Copy, Clone)]
@@ -31,10 +31,15 @@ impl Found {
     }
 
     /// A triangle and a convex shape.
-    pub(super) fn of_triangle(
+    pub(super) fn of_triangle(found: &FoundTriangle, search: &ConvexSearch<'_>) -> Self {
+        Self::of_placed(found, search.mesh_place, &search.placed)
+    }
+
+    /// A triangle and a convex shape at another place.
+    pub(super) fn of_placed(
         found: &FoundTriangle,
-        placed: &PlacedPart,
         mesh_place: MeshPlace,
+        placed: &PlacedPart,
     ) -> Self {
         Self {
             subshapes: mesh_place.swap([found.triangle, 0]),

@@ -1,11 +1,10 @@
 //! Queries without manifolds, for a pair of meshes or a mesh and a convex shape.
 //!
 //! Registered and small meshes are searched by their trees ([`trees`]), all others by Parry's BVHs
-//! ([`walk`]). A mesh and a convex shape ([`convex`]) use the BVH of the mesh. [`nonlinear`]
+//! ([`walk`]). A mesh and a convex shape use the BVH of the mesh. [`nonlinear`]
 //! and [`moving`] cast along the curves of rigid motions.
 
 mod bvh_search;
-mod convex;
 mod found;
 mod meshes;
 mod moving;
@@ -14,20 +13,22 @@ mod nonlinear;
 mod trees;
 mod walk;
 
-pub(crate) use convex::ConvexQuery;
 pub(crate) use meshes::MeshQuery;
 pub(crate) use nonlinear::NonlinearCast;
 
-use found::Found;
+use found::{Found, status};
+use moving::MovingConvex;
 use parry3d::math::{Real, Vector};
 use parry3d::query::details::ShapeCastOptions;
 use parry3d::query::{ClosestPoints, Contact, ShapeCastHit, ShapeDistance, ShapeIntersection};
+
+use crate::pair::{ConvexSearch, FoundCast};
 
 /// Two shapes at a pose.
 #[allow(clippy::large_enum_variant, reason = "there is one at a time, on the stack")]
 pub(crate) enum Query<'a> {
     Meshes(MeshQuery<'a>),
-    Convex(ConvexQuery<'a>),
+    Convex(ConvexSearch<'a>),
 }
 
 impl Query<'_> {
@@ -35,7 +36,9 @@ impl Query<'_> {
     pub(crate) fn intersection(self) -> ShapeIntersection {
         let touching = match self {
             Self::Meshes(query) => query.touching(),
-            Self::Convex(query) => query.touching(),
+            Self::Convex(search) => {
+                search.touching().map(|triangle| search.mesh_place.swap([triangle, 0]))
+            }
         };
         let none = ShapeIntersection::new(false);
         touching.map_or(none, |[one, two]| ShapeIntersection::new(true).with_subshapes(one, two))
@@ -64,7 +67,9 @@ impl Query<'_> {
         let limit = limit_of(prediction);
         let Found { subshapes, distance, points, normals, .. } = match self {
             Self::Meshes(query) => query.deepest(limit),
-            Self::Convex(query) => query.deepest(limit),
+            Self::Convex(search) => {
+                search.deepest(limit).map(|found| Found::of_triangle(&found, &search))
+            }
         }?;
         let dist = distance as Real;
         let contact = Contact::new(points[0], points[1], normals[0], normals[1], dist);
@@ -79,7 +84,11 @@ impl Query<'_> {
     ) -> Option<ShapeCastHit> {
         match self {
             Self::Meshes(query) => query.cast(velocity12, options),
-            Self::Convex(query) => query.cast(velocity12, options),
+            Self::Convex(search) => {
+                let FoundCast { time, found, is_penetrating } =
+                    search.cast(velocity12.as_dvec3(), options)?;
+                Some(Found::of_triangle(&found, &search).hit(time, status(is_penetrating)))
+            }
         }
     }
 
@@ -87,14 +96,21 @@ impl Query<'_> {
     pub(crate) fn cast_nonlinear(self, cast: &NonlinearCast<'_>) -> Option<ShapeCastHit> {
         match self {
             Self::Meshes(query) => query.cast_nonlinear(cast),
-            Self::Convex(query) => query.cast_nonlinear(cast),
+            Self::Convex(search) => {
+                let found = MovingConvex::new(search, cast).first_impact()?;
+                Some(cast.hit(found.time, &found.pair, found.has_converged))
+            }
         }
     }
 
+    /// Returns the nearest subshapes. Their distance is not negative.
     fn nearest(&self, limit: f64) -> Option<Found> {
         match self {
             Self::Meshes(query) => query.nearest(limit),
-            Self::Convex(query) => query.nearest(limit),
+            Self::Convex(search) => {
+                let found = Found::of_triangle(&search.nearest(limit)?, search);
+                Some(if found.is_touching { Found { distance: 0.0, ..found } } else { found })
+            }
         }
     }
 }

@@ -8,12 +8,13 @@ use std::cell::Cell;
 use glamx::{DVec3, Vec3};
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Real;
+use parry3d::query::NonlinearRigidMotion;
 use sbbk_core::query::{Advance, AdvanceOptions, Bodies, advance};
 use sbbk_core::traverse::Placement;
 
 use super::found::Found;
-use super::nonlinear::{NonlinearCast, place, turned};
-use crate::pair::{ConvexSearch, MeshPlace};
+use super::nonlinear::{NonlinearCast, approach_bound, place, reach, turned};
+use crate::pair::ConvexSearch;
 
 /// Duration of the first window, as a multiple of the time in which the nearest triangle may be met.
 /// Higher: more triangles that are not met are advanced; lower: more windows.
@@ -31,7 +32,6 @@ const SINK: f64 = 0.1;
 /// A mesh and a convex shape in motion.
 pub(super) struct MovingConvex<'a, 'q> {
     search: ConvexSearch<'a>,
-    mesh_place: MeshPlace,
     cast: &'q NonlinearCast<'q>,
     options: AdvanceOptions,
     /// Depth that the shape must gain to come out behind a triangle, as in Parry.
@@ -41,14 +41,15 @@ pub(super) struct MovingConvex<'a, 'q> {
 }
 
 impl<'a, 'q> MovingConvex<'a, 'q> {
-    pub(super) fn new(
-        search: ConvexSearch<'a>,
-        mesh_place: MeshPlace,
-        cast: &'q NonlinearCast<'q>,
-    ) -> Self {
-        let options = cast.options(mesh_place.swap(search.balls()));
+    pub(super) fn new(search: ConvexSearch<'a>, cast: &'q NonlinearCast<'q>) -> Self {
+        let options = cast.options(search.mesh_place.swap(search.balls()));
         let thickness = f64::from(search.thickness());
-        Self { search, mesh_place, cast, options, thickness, sunk: None }
+        Self { search, cast, options, thickness, sunk: None }
+    }
+
+    /// Returns the motions of the mesh and of the shape.
+    fn motions(&self) -> [&'q NonlinearRigidMotion; 2] {
+        self.search.mesh_place.swap(self.cast.motions)
     }
 
     /// Returns the first impact. A cast that does not stop at contacts of the start only counts
@@ -62,7 +63,7 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         }
         let (mut from, mut window) = (start, 0.0);
         loop {
-            self.search.place(self.mesh_place, &self.cast.placement_at(from));
+            self.search.place(&self.cast.placement_at(from));
             if from == start && !self.cast.stop_at_penetration {
                 let contact = self.search.deepest(tolerance.max(SINK * self.thickness));
                 self.sunk = contact.map(|contact| -contact.contact.distance);
@@ -96,8 +97,8 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
     /// A box of the mesh's frame that holds the shape at the start, however it turns, and its velocity.
     /// `None` if the mesh turns, or a half-space.
     fn sweep(&self) -> Option<(Aabb, DVec3)> {
-        let Self { search, mesh_place, cast, .. } = self;
-        let [mesh, shape] = mesh_place.swap(cast.motions);
+        let search = &self.search;
+        let [mesh, shape] = self.motions();
         let [_, ball] = search.balls();
         let turns = shape.angvel != Vec3::ZERO;
         if mesh.angvel != Vec3::ZERO || turns && !ball.radius.is_finite() {
@@ -108,9 +109,8 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         if !turns {
             return Some((search.aabb_in_mesh(), velocity));
         }
-        let [_, shape_body] = mesh_place.swap([0, 1]);
         let centre = search.placed.point_in_mesh(shape.local_center);
-        let reach = (cast.reach(shape_body, &ball) * (1.0 + 1.0e-6)) as Real;
+        let reach = (reach(shape, &ball) * (1.0 + 1.0e-6)) as Real;
         Some((Aabb::from_half_extents(centre, Vec3::splat(reach)), velocity))
     }
 
@@ -123,12 +123,7 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
             }
             Some(found.time - from)
         };
-        match self.sweep() {
-            Some((around, velocity)) => {
-                self.search.soonest_swept(around, velocity, until - from, time)
-            }
-            None => self.search.soonest(until - from, self.options.speed_bound, time),
-        };
+        self.search.soonest(until - from, self.options.speed_bound, self.sweep(), time);
         first.into_inner()
     }
 
@@ -203,7 +198,7 @@ impl<'a, 'q> MovingConvex<'a, 'q> {
         let AdvanceOptions { start, tolerance, .. } = self.options;
         let mut deepest = None::<Found>;
         self.search.within(tolerance, |found| {
-            let pair = Found::of_triangle(&found, &self.search.placed, self.mesh_place);
+            let pair = Found::of_triangle(&found, &self.search);
             let length = self.thickness + tolerance;
             let counts =
                 self.cast.stop_at_penetration || self.cast.approaches(&pair, start, length);
@@ -229,14 +224,13 @@ struct MovingTriangle<'a> {
 
 impl<'a> MovingTriangle<'a> {
     fn new(moving: &'a MovingConvex<'a, 'a>, triangle: u32) -> Self {
-        let MovingConvex { search, mesh_place, cast, .. } = moving;
-        let motions = mesh_place.swap(cast.motions);
+        let MovingConvex { search, .. } = moving;
+        let motions = moving.motions();
         let corners = search.mesh.corners(triangle).map(Vec3::as_dvec3);
         let centre = motions[0].local_center.as_dvec3();
-        let reach = corners.map(|corner| corner.distance(centre)).into_iter().fold(0.0, f64::max);
-        let [_, shape_body] = mesh_place.swap([0, 1]);
+        let farthest = corners.iter().map(|corner| corner.distance(centre)).fold(0.0, f64::max);
         let [_, ball] = search.balls();
-        let reaches = [reach, cast.reach(shape_body, &ball)];
+        let reaches = [farthest, reach(motions[1], &ball)];
         let turns = motions.map(|motion| motion.angvel.as_dvec3());
         let acceleration = (0..2).map(|i| turns[i].length() * turned(turns[i], reaches[i])).sum();
         Self { moving, triangle, corners, reaches, acceleration }
@@ -245,9 +239,9 @@ impl<'a> MovingTriangle<'a> {
     /// Returns the time for which a plane `depth` below the triangle separates it from the shape. It is
     /// infinite if that holds until `end`.
     fn clear_of_own_plane(&self, depth: f64, from: f64, end: f64) -> f64 {
-        let MovingConvex { search, mesh_place, cast, .. } = self.moving;
+        let MovingConvex { search, .. } = self.moving;
         let [a, b, c] = self.corners;
-        let mesh = place(mesh_place.swap(cast.motions)[0], from);
+        let mesh = place(self.moving.motions()[0], from);
         let Some(normal) = (mesh.rotation * (b - a).cross(c - a)).try_normalize() else {
             return 0.0;
         };
@@ -298,10 +292,9 @@ impl<'a> MovingTriangle<'a> {
     /// Returns a lower bound of [`clear_along`](Self::clear_along), from the greatest speed of all points.
     /// A second bound replaces the shape by a ball that does not turn.
     fn clear_by_speed(&self, axis: DVec3, from: f64) -> f64 {
-        let MovingConvex { mesh_place, cast, .. } = self.moving;
-        let [mesh, shape] = mesh_place.swap(cast.motions);
+        let [mesh, shape] = self.moving.motions();
         let clear = |gap: f64, reaches: [f64; 2]| {
-            let speed = cast.approach_bound([shape, mesh], axis, [reaches[1], reaches[0]]);
+            let speed = approach_bound([shape, mesh], axis, [reaches[1], reaches[0]]);
             // The maximum of a number and a NaN is the number: 0 may be divided by 0.
             ((gap - self.moving.options.tolerance).max(0.0) / speed).max(0.0)
         };
@@ -319,8 +312,8 @@ impl<'a> MovingTriangle<'a> {
 
     /// Least coordinate of the triangle along an axis of space, and greatest of the shape.
     fn heights(&self, axis: DVec3, time: f64) -> [f64; 2] {
-        let MovingConvex { search, mesh_place, cast, .. } = self.moving;
-        let [mesh, shape] = mesh_place.swap(cast.motions).map(|motion| place(motion, time));
+        let MovingConvex { search, .. } = self.moving;
+        let [mesh, shape] = self.moving.motions().map(|motion| place(motion, time));
         let in_mesh: DVec3 = mesh.rotation.transpose() * axis;
         let [a, b, c] = self.corners.map(|corner| in_mesh.dot(corner));
         let lowest = a.min(b).min(c) + axis.dot(mesh.translation);
@@ -333,10 +326,10 @@ impl Bodies for MovingTriangle<'_> {
     type Pair = Found;
 
     fn nearest(&mut self, placement: &Placement, reach: f64, _: &[[u32; 2]]) -> Option<Found> {
-        let MovingConvex { search, mesh_place, .. } = self.moving;
-        let placed = search.placed.moved(*mesh_place, placement);
+        let MovingConvex { search, .. } = self.moving;
+        let placed = search.placed_at(placement);
         let found = search.triangle(&placed, self.triangle, reach)?;
-        Some(Found::of_triangle(&found, &placed, *mesh_place))
+        Some(Found::of_placed(&found, search.mesh_place, &placed))
     }
 
     fn within(&mut self, placement: &Placement, reach: f64, found: impl FnMut(Found)) {
@@ -344,10 +337,10 @@ impl Bodies for MovingTriangle<'_> {
     }
 
     fn clear_time(&mut self, nearest: &Found, time: f64, _: &[[u32; 2]]) -> f64 {
-        let MovingConvex { mesh_place, cast, options, .. } = self.moving;
-        let [_, shape_body] = mesh_place.swap([0, 1]);
-        let normal = nearest.normals[shape_body].as_dvec3();
-        let axis: DVec3 = place(cast.motions[shape_body], time).rotation * normal;
+        let MovingConvex { search, options, .. } = self.moving;
+        let [_, shape] = self.moving.motions();
+        let [_, normal] = search.mesh_place.swap(nearest.normals);
+        let axis: DVec3 = place(shape, time).rotation * normal.as_dvec3();
         self.clear_along(axis.normalize(), 0.0, time, options.end)
     }
 }

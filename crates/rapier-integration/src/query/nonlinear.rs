@@ -100,7 +100,7 @@ impl NonlinearCast<'_> {
     /// body 1, so it is finite for a half-space that turns. A third bound swaps the bodies.
     fn speed_bound(&self, balls: [Sphere; 2]) -> f64 {
         let [motion1, motion2] = self.motions;
-        let [reach1, reach2] = [0, 1].map(|i| self.reach(i, &balls[i]));
+        let [reach1, reach2] = [0, 1].map(|i| reach(self.motions[i], &balls[i]));
         let [turn1, turn2] = self.motions.map(|motion| motion.angvel.as_dvec3());
         let [from1, from2] = self.motions.map(centre);
         let velocity = motion2.linvel.as_dvec3() - motion1.linvel.as_dvec3();
@@ -118,29 +118,6 @@ impl NonlinearCast<'_> {
         let in_space = velocity.length() + turned(turn1, reach1) + turned(turn2, reach2);
         let least = in_space.min(seen(turn1, reach2)).min(seen(turn2, reach1));
         least * (1.0 + STRETCH)
-    }
-
-    /// Returns the greatest distance of a ball around a body from the centre of its motion.
-    pub(super) fn reach(&self, body: usize, ball: &Sphere) -> f64 {
-        let centre = self.motions[body].local_center - ball.centre;
-        centre.as_dvec3().length() + f64::from(ball.radius)
-    }
-
-    /// Bound on the speed at which points of two bodies approach along a unit vector of space that
-    /// points from the first to the second.
-    ///
-    /// A point at `r` from the centre of its motion has the velocity `w × r` against the centre. The
-    /// part along `a` is `a·(w × r) = r·(a × w)`, and `r` keeps its length.
-    pub(super) fn approach_bound(
-        &self,
-        [one, two]: [&NonlinearRigidMotion; 2],
-        axis: DVec3,
-        reaches: [f64; 2],
-    ) -> f64 {
-        let linear = (one.linvel.as_dvec3() - two.linvel.as_dvec3()).dot(axis);
-        let turns = [one, two].map(|motion| axis.cross(motion.angvel.as_dvec3()));
-        let least = linear + turned(turns[0], reaches[0]) + turned(turns[1], reaches[1]);
-        least.max(0.0) * (1.0 + STRETCH)
     }
 
     /// True if the points of a contact, at their velocities of a time, approach by more than a length
@@ -169,6 +146,27 @@ impl NonlinearCast<'_> {
         let count = if is_needed { count as u32 } else { 0 };
         (1..count).map(move |look| start + span * f64::from(look) / f64::from(count))
     }
+}
+
+/// Returns the greatest distance of a ball around a body from the centre of its motion.
+pub(super) fn reach(motion: &NonlinearRigidMotion, ball: &Sphere) -> f64 {
+    (motion.local_center - ball.centre).as_dvec3().length() + f64::from(ball.radius)
+}
+
+/// Bound on the speed at which points of two bodies approach along a unit vector of space that
+/// points from the first to the second.
+///
+/// A point at `r` from the centre of its motion has the velocity `w × r` against the centre. The
+/// part along `a` is `a·(w × r) = r·(a × w)`, and `r` keeps its length.
+pub(super) fn approach_bound(
+    [one, two]: [&NonlinearRigidMotion; 2],
+    axis: DVec3,
+    reaches: [f64; 2],
+) -> f64 {
+    let linear = (one.linvel.as_dvec3() - two.linvel.as_dvec3()).dot(axis);
+    let turns = [one, two].map(|motion| axis.cross(motion.angvel.as_dvec3()));
+    let least = linear + turned(turns[0], reaches[0]) + turned(turns[1], reaches[1]);
+    least.max(0.0) * (1.0 + STRETCH)
 }
 
 /// Returns `|turn| * reach`, which is 0 for no turn even if the reach is infinite.

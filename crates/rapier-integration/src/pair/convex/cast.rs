@@ -41,12 +41,7 @@ pub(crate) struct FoundCast {
 
 impl ConvexSearch<'_> {
     /// The first impact of shape 2 of the pair, which moves by `velocity12` in the frame of shape 1.
-    pub(crate) fn cast(
-        &self,
-        mesh_place: MeshPlace,
-        velocity12: DVec3,
-        options: ShapeCastOptions,
-    ) -> Option<FoundCast> {
+    pub(crate) fn cast(&self, velocity12: DVec3, options: ShapeCastOptions) -> Option<FoundCast> {
         let ShapeCastOptions { max_time_of_impact, target_distance, .. } = options;
         let target = target_distance.max(0.0);
         let is_possible = max_time_of_impact >= 0.0 && target.is_finite();
@@ -55,7 +50,7 @@ impl ConvexSearch<'_> {
         }
         // Velocities of a triangle in the frame of the shape, and of the shape in the frame of the mesh.
         let placement = &self.placed.placement;
-        let (of_triangle, of_shape) = match mesh_place {
+        let (of_triangle, of_shape) = match self.mesh_place {
             MeshPlace::First => (-(placement.rotation * velocity12), velocity12),
             MeshPlace::Second => (velocity12, -(placement.inverse * velocity12)),
         };

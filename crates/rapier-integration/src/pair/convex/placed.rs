@@ -38,7 +38,7 @@ impl PlacedPart {
     }
 
     /// Returns this part, a whole shape, at another pose of shape 2 in the frame of shape 1.
-    pub(crate) fn moved(&self, mesh_place: MeshPlace, placement: &Placement) -> Self {
+    pub(super) fn moved(&self, mesh_place: MeshPlace, placement: &Placement) -> Self {
         let [inverse, placement] = mesh_place.swap([*placement, placement.inverted()]);
         Self { placement, inverse, centre_in_mesh: None, ..*self }
     }

@@ -30,6 +30,7 @@ const WIDE: f64 = 0.1;
 /// A mesh and one convex shape at a pose.
 pub(crate) struct ConvexSearch<'a> {
     pub(crate) mesh: MeshView<'a>,
+    pub(crate) mesh_place: MeshPlace,
     pub(super) shape: &'a dyn Shape,
     pub(super) convex: ConvexShape<'a>,
     pub(crate) placed: PlacedPart,
@@ -95,13 +96,18 @@ impl<'a> ConvexSearch<'a> {
         let pose = PairPose::new(pos12, 0.0);
         let placed = PlacedPart::new(0, &part, mesh_place.placements(&pose), Extent::of(convex));
         let pose_in_mesh = mesh_place.shape_in_mesh(pos12);
-        Self { mesh, shape, convex, placed, pose_in_mesh, hull: KeptHull::default() }
+        Self { mesh, mesh_place, shape, convex, placed, pose_in_mesh, hull: KeptHull::default() }
     }
 
     /// Moves shape 2 to a placement in the frame of shape 1.
-    pub(crate) fn place(&mut self, mesh_place: MeshPlace, placement: &Placement) {
-        self.placed = self.placed.moved(mesh_place, placement);
+    pub(crate) fn place(&mut self, placement: &Placement) {
+        self.placed = self.placed_at(placement);
         self.pose_in_mesh = self.placed.pose_in_mesh();
+    }
+
+    /// Returns the shape where shape 2 is at a placement in the frame of shape 1.
+    pub(crate) fn placed_at(&self, placement: &Placement) -> PlacedPart {
+        self.placed.moved(self.mesh_place, placement)
     }
 
     /// Returns balls around the mesh and the shape.
@@ -191,63 +197,34 @@ impl<'a> ConvexSearch<'a> {
 
     /// Returns the nearest triangle within `limit`: one that touches, if any does.
     pub(crate) fn nearest(&self, limit: f64) -> Option<FoundTriangle> {
-        self.nearest_where(limit, |_| true)
-    }
-
-    /// Returns the nearest triangle within `limit` for which `counts` is true.
-    pub(crate) fn nearest_where(
-        &self,
-        limit: f64,
-        counts: impl Fn(u32) -> bool,
-    ) -> Option<FoundTriangle> {
-        self.best(limit, 1.0, |triangle, limit| {
-            let found =
-                counts(triangle).then(|| self.triangle(&self.placed, triangle, limit))??;
+        self.least(limit, self.gap(), |triangle, limit| {
+            let found = self.triangle(&self.placed, triangle, limit)?;
             Some((found.distance().max(0.0), found))
         })
     }
 
-    /// Returns the least time of a triangle up to a limit. No time is less than the distance divided
-    /// by `speed`.
+    /// Calls `time` with triangles that may have the least time up to a limit. No time is less than the distance
+    /// divided by `speed`. A `sweep` is a box around the shape, and its velocity in the frame of the mesh.
     pub(crate) fn soonest(
         &self,
         limit: f64,
         speed: f64,
+        sweep: Option<(Aabb, DVec3)>,
         time: impl Fn(u32, f64) -> Option<f64>,
-    ) -> Option<f64> {
-        self.best(limit, 1.0 / speed, |triangle, limit| {
-            let time = time(triangle, limit)?;
-            Some((time as Real, time))
-        })
+    ) {
+        let time = |triangle, limit| Some((time(triangle, limit)? as Real, ()));
+        let _ = if let Some((around, velocity)) = sweep {
+            let bound = time_of(&self.placed, self.convex, &self.mesh, around, velocity, 0.0);
+            self.least(limit, bound, time)
+        } else {
+            let (gap, unit) = (self.gap(), (1.0 / speed) as Real);
+            self.least(limit, |node| gap(node) * unit, time)
+        };
     }
 
-    /// Returns the least time of a triangle up to a limit, for a shape in the box `around`, which moves
-    /// by `velocity` in the frame of the mesh.
-    pub(crate) fn soonest_swept(
-        &self,
-        around: Aabb,
-        velocity: DVec3,
-        limit: f64,
-        time: impl Fn(u32, f64) -> Option<f64>,
-    ) -> Option<f64> {
-        let bound = time_of(&self.placed, self.convex, &self.mesh, around, velocity, 0.0);
-        self.least(limit, bound, |triangle, limit| {
-            let time = time(triangle, limit)?;
-            Some((time as Real, time))
-        })
-    }
-
-    /// Returns the triangle with the least cost up to a limit. No cost is less than the distance times
-    /// `unit`.
-    fn best<T>(
-        &self,
-        limit: f64,
-        unit: f64,
-        cost: impl Fn(u32, f64) -> Option<(Real, T)>,
-    ) -> Option<T> {
-        let gap = gap_of(&self.placed, self.convex, &self.mesh, self.aabb_in_mesh());
-        let unit = unit as Real;
-        self.least(limit, |node| gap(node) * unit, cost)
+    /// Returns a lower bound of the distance of the shape from boxes of the mesh.
+    fn gap(&self) -> impl Fn(TestedBox) -> Real {
+        gap_of(&self.placed, self.convex, &self.mesh, self.aabb_in_mesh())
     }
 
     /// Returns the triangle with the least cost up to a limit. `bound` is a lower bound of the costs in
