@@ -96,32 +96,10 @@ impl ConvexSearch<'_> {
         let start = self.placed.in_part(self.mesh.corners(triangle));
         let (size, target) = (self.size(&start), f64::from(options.target_distance.max(0.0)));
         let cast = TriangleCast { search: self, triangle, start, size, velocity, target, latest };
-        let gap = self.plane_gap(&start).filter(|gap| gap.left(target) > TOUCHING * size);
-        let Some(gap) = gap else { return cast.at_start(options.stop_at_penetration) };
-        cast.advance(Apart { time: 0.0, left: gap.left(target), normal: gap.normal })
-    }
-
-    /// Distance between the plane of a triangle and the shape, if the shape is on one side of it.
-    fn plane_gap(&self, [a, b, c]: &[DVec3; 3]) -> Option<Gap> {
-        let normal = (*b - *a).cross(*c - *a).try_normalize()?;
-        let centre = self.placed.extent.ball().centre.as_dvec3();
-        let normal = if normal.dot(centre - *a) < 0.0 { -normal } else { normal };
-        let lowest = core_support(self.convex, &self.hull, -normal)?;
-        let width = normal.dot(lowest - *a) - f64::from(self.convex.radius());
-        Some(Gap { width, normal })
-    }
-}
-
-/// Two planes that separate a triangle and a shape.
-struct Gap {
-    width: f64,
-    /// Unit vector from the triangle to the shape.
-    normal: DVec3,
-}
-
-impl Gap {
-    fn left(&self, target: f64) -> f64 {
-        self.width - target
+        match cast.plane_at_start().filter(|apart| apart.left > TOUCHING * size) {
+            Some(apart) => cast.advance(apart),
+            None => cast.at_start(options.stop_at_penetration),
+        }
     }
 }
 
@@ -148,6 +126,17 @@ struct TriangleCast<'a> {
 }
 
 impl TriangleCast<'_> {
+    /// Returns by how much the plane of the triangle is farther from the shape than the target at the start.
+    fn plane_at_start(&self) -> Option<Apart> {
+        let ([a, b, c], ConvexSearch { placed, convex, hull, .. }) = (self.start, self.search);
+        let normal = (b - a).cross(c - a).try_normalize()?;
+        let centre = placed.extent.ball().centre.as_dvec3();
+        let normal = if normal.dot(centre - a) < 0.0 { -normal } else { normal };
+        let lowest = core_support(*convex, hull, -normal)?;
+        let width = normal.dot(lowest - a) - f64::from(convex.radius());
+        Some(Apart { time: 0.0, left: width - self.target, normal })
+    }
+
     fn at_start(&self, stop_at_penetration: bool) -> Option<FoundCast> {
         let contact = self.contact(0.0)?;
         let left = contact.distance - self.target;
