@@ -1,4 +1,4 @@
-//! Best-first search for a pair of triangles, down the BVHs of two meshes at once.
+//! Queries of two meshes over Parry's BVHs: best-first search for a pair of triangles, down both at once.
 
 use std::cell::Cell;
 use std::cmp::Ordering;
@@ -6,9 +6,9 @@ use std::ops::ControlFlow;
 
 use arrayvec::ArrayVec;
 use glamx::{DMat3, DVec3, Vec3};
-use parry3d::math::Real;
+use parry3d::math::{Real, Vector};
 use parry3d::partitioning::{Bvh, BvhNode, BvhNodeIndex, TraversalAction};
-use sbbk_core::query::FoundPair;
+use sbbk_core::query::{Bodies, Cast, CastOptions, FoundPair};
 use sbbk_core::traverse::Placement;
 
 use crate::mesh::MeshView;
@@ -21,16 +21,20 @@ const ROUNDING: f64 = 1.0e-14;
 /// length.
 const STRETCH: f64 = 1.0e-6;
 
+/// Limit, as a share of the smaller mesh's radius, above which [`BvhSearch::deepest`] first searches for a pair that
+/// touches. Changes time alone. Higher: slower far from the mesh; lower: slower near it.
+const WIDE: f64 = 0.1;
+
 /// Two meshes, mesh 2 at a placement in the frame of mesh 1.
 #[derive(Copy, Clone)]
-pub(crate) struct BvhSearch<'a> {
-    pub(crate) meshes: [&'a MeshView<'a>; 2],
-    pub(crate) placement: Placement,
+pub(super) struct BvhSearch<'a> {
+    pub(super) meshes: [&'a MeshView<'a>; 2],
+    pub(super) placement: Placement,
 }
 
 /// The middle and the half-lengths of a box, in the frames of both meshes.
 #[derive(Copy, Clone)]
-pub(crate) struct PlacedBox {
+struct PlacedBox {
     centres: [DVec3; 2],
     extents: [DVec3; 2],
 }
@@ -44,9 +48,79 @@ struct Node {
 }
 
 impl BvhSearch<'_> {
+    /// Returns the first pair of touching triangles that the descent finds.
+    pub(super) fn meeting(&self) -> Option<FoundPair> {
+        let mut meeting = None;
+        self.all(0.0, |pair| {
+            meeting = Some(pair).filter(|pair| pair.is_touching);
+            if meeting.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        meeting
+    }
+
+    /// Returns the nearest pair of triangles within `limit`: one that touches, if any does.
+    pub(super) fn nearest(&self, limit: f64) -> Option<FoundPair> {
+        let meeting = self.meeting().filter(|_| limit >= 0.0);
+        meeting.or_else(|| self.nearest_where(limit, |_| true))
+    }
+
+    /// Returns the deepest pair of crossing triangles, else the nearest within `limit`.
+    pub(super) fn deepest(&self, limit: f64) -> Option<FoundPair> {
+        let [radius1, radius2] = self.meshes.map(|mesh| mesh.ball().radius);
+        // Within a wide limit there are too many pairs.
+        if limit <= WIDE * f64::from(radius1.min(radius2)) {
+            return self.deepest_near(limit);
+        }
+        match self.meeting() {
+            Some(_) => self.deepest_near(0.0),
+            None => self.nearest_where(limit, |_| true),
+        }
+    }
+
+    /// Returns the first impact that `counts` of mesh 2, which moves by `velocity` in the frame of mesh 1.
+    pub(super) fn cast(
+        &self,
+        velocity: Vector,
+        options: CastOptions,
+        counts: impl Fn(&Cast) -> bool,
+    ) -> Option<Cast> {
+        let Self { meshes, placement } = self;
+        if !options.is_possible() || !velocity.is_finite() || !placement.is_finite() {
+            return None;
+        }
+        let velocity = velocity.as_dvec3();
+        let cast = |triangles: [u32; 2], latest: f64| {
+            let [one, two] = [0, 1].map(|i| (triangles[i], meshes[i].corners(triangles[i])));
+            Cast::of_triangles(placement, one, two, velocity, &options, latest)
+        };
+        // Bounds of meshes in each other are zero for many pairs, so a search visits many before one that touches.
+        if options.stop_at_penetration
+            && let Some(meeting) = self.meeting()
+            && let Some(found) = cast([meeting.triangle1, meeting.triangle2], 0.0)
+        {
+            return Some(found);
+        }
+        let target = f64::from(options.target_distance) + self.rounding();
+        let mut first = None::<Cast>;
+        let latest = f64::from(options.max_time);
+        self.search(
+            latest,
+            |one, two| one.time(two, velocity, target),
+            |triangles, latest| {
+                let found = cast(triangles, latest)?;
+                if first.is_some_and(|first| found.time >= first.time) || !counts(&found) {
+                    return None;
+                }
+                first = Some(found);
+                Some(if found.time > 0.0 { found.time } else { f64::NEG_INFINITY })
+            },
+        );
+        first
+    }
+
     /// Visits pairs of triangles, the least bound first, while bounds are at most the limit. `visit`
     /// gets the limit and may return a lower one.
-    pub(crate) fn search(
+    fn search(
         &self,
         mut limit: f64,
         bound: impl Fn(&PlacedBox, &PlacedBox) -> f64,
@@ -88,11 +162,7 @@ impl BvhSearch<'_> {
 
     /// Returns the pair of triangles with the least signed distance within `limit`, or one that
     /// touches if any does. Skips pairs that do not count.
-    pub(crate) fn nearest(
-        &self,
-        limit: f64,
-        counts: impl Fn([u32; 2]) -> bool,
-    ) -> Option<FoundPair> {
+    fn nearest_where(&self, limit: f64, counts: impl Fn([u32; 2]) -> bool) -> Option<FoundPair> {
         let is_possible = self.placement.is_finite() && limit >= 0.0;
         if !is_possible {
             return None;
@@ -131,7 +201,7 @@ impl BvhSearch<'_> {
     }
 
     /// Returns the deepest pair of triangles or, where none cross, the nearest within `limit`.
-    pub(crate) fn deepest(&self, limit: f64) -> Option<FoundPair> {
+    fn deepest_near(&self, limit: f64) -> Option<FoundPair> {
         // The deepest pair so far, and its normal in both frames.
         let mut deepest = None::<(FoundPair, [DVec3; 2])>;
         self.visit_near(limit, |triangles| {
@@ -149,7 +219,7 @@ impl BvhSearch<'_> {
     }
 
     /// Calls `found` with all pairs of triangles within `limit`, until it breaks.
-    pub(crate) fn all(&self, limit: f64, mut found: impl FnMut(FoundPair) -> ControlFlow<()>) {
+    fn all(&self, limit: f64, mut found: impl FnMut(FoundPair) -> ControlFlow<()>) {
         self.visit_near(limit, |triangles| {
             self.pair(triangles, limit).map_or(ControlFlow::Continue(()), &mut found)
         });
@@ -179,13 +249,13 @@ impl BvhSearch<'_> {
     }
 
     /// Contact of two triangles that touch or are at most `margin` apart.
-    pub(crate) fn pair(&self, triangles: [u32; 2], margin: f64) -> Option<FoundPair> {
+    fn pair(&self, triangles: [u32; 2], margin: f64) -> Option<FoundPair> {
         let [one, two] = [0, 1].map(|i| (triangles[i], self.meshes[i].corners(triangles[i])));
         FoundPair::of(&self.placement, one, two, margin)
     }
 
     /// Returns a bound on the rounding of a gap of boxes.
-    pub(crate) fn rounding(&self) -> f64 {
+    fn rounding(&self) -> f64 {
         let [size1, size2] = self.meshes.map(|mesh| f64::from(mesh.magnitude()));
         ROUNDING * (size1 + size2 + self.placement.translation.length())
     }
@@ -220,13 +290,35 @@ impl BvhSearch<'_> {
     }
 }
 
+impl Bodies for BvhSearch<'_> {
+    type Pair = FoundPair;
+
+    fn nearest(
+        &mut self,
+        placement: &Placement,
+        reach: f64,
+        excluded: &[[u32; 2]],
+    ) -> Option<FoundPair> {
+        self.placement = *placement;
+        self.nearest_where(reach, |pair| excluded.binary_search(&pair).is_err())
+    }
+
+    fn within(&mut self, placement: &Placement, reach: f64, mut found: impl FnMut(FoundPair)) {
+        self.placement = *placement;
+        self.all(reach, |pair| {
+            found(pair);
+            ControlFlow::Continue(())
+        });
+    }
+}
+
 impl PlacedBox {
     fn size(&self) -> f64 {
         self.extents[0].length_squared()
     }
 
     /// Distance along the axes of one of the meshes.
-    pub(crate) fn gap(&self, other: &Self) -> f64 {
+    fn gap(&self, other: &Self) -> f64 {
         let [in_frame1, in_frame2] = [0, 1].map(|i| {
             let offset = (self.centres[i] - other.centres[i]).abs();
             (offset - (self.extents[i] + other.extents[i])).max(DVec3::ZERO).length()
@@ -236,7 +328,7 @@ impl PlacedBox {
 
     /// Earliest time at which the boxes are within `target` of each other, where the other one moves;
     /// infinite if they pass each other.
-    pub(crate) fn time(&self, other: &Self, velocity: DVec3, target: f64) -> f64 {
+    fn time(&self, other: &Self, velocity: DVec3, target: f64) -> f64 {
         let offset = other.centres[0] - self.centres[0];
         let reach = self.extents[0] + other.extents[0] + target;
         let mut start = ((self.gap(other) - target) / velocity.length()).max(0.0);

@@ -1,5 +1,8 @@
 //! Two meshes.
 
+use std::cell::RefCell;
+use std::sync::Arc;
+
 use parry3d::math::{Pose, Vector};
 use parry3d::query::ShapeCastHit;
 use parry3d::query::details::ShapeCastOptions;
@@ -11,11 +14,25 @@ use sbbk_core::query::{
 use sbbk_core::traverse::Placement;
 use sbbk_core::tree::Tree;
 
+use super::bvh_search::BvhSearch;
 use super::found::{Found, status};
 use super::nonlinear::NonlinearCast;
-use super::trees::Trees;
-use super::walk::Walk;
-use crate::mesh::{MeshView, is_minimum};
+use crate::mesh::{MeshData, MeshView, is_minimum};
+
+thread_local! {
+    static SCRATCH: RefCell<SearchScratch> = RefCell::default();
+}
+
+/// Data of two meshes that have trees.
+type Trees = [Arc<MeshData>; 2];
+
+fn search_trees<T>(
+    trees: Trees,
+    search: impl FnOnce((&Tree, &Tree), &mut SearchScratch) -> T,
+) -> T {
+    let [tree1, tree2] = trees.each_ref().map(|mesh| mesh.tree().expect("built"));
+    SCRATCH.with_borrow_mut(|scratch| search((tree1, tree2), scratch))
+}
 
 /// Two rigid meshes of a query.
 pub(crate) struct MeshQuery<'a> {
@@ -32,19 +49,40 @@ impl<'a> MeshQuery<'a> {
     fn search<T>(
         &self,
         by_trees: impl FnOnce((&Tree, &Tree), &mut SearchScratch) -> T,
-        by_walk: impl FnOnce(Walk<'_>) -> T,
+        by_bvhs: impl FnOnce(BvhSearch<'_>) -> T,
     ) -> T {
-        let meshes = self.meshes.each_ref();
-        Trees::of(meshes).map_or_else(|| by_walk(Walk(meshes)), |trees| trees.search(by_trees))
+        match self.trees() {
+            Some(trees) => search_trees(trees, by_trees),
+            None => by_bvhs(self.bvhs()),
+        }
+    }
+
+    fn bvhs(&self) -> BvhSearch<'_> {
+        BvhSearch { meshes: self.meshes.each_ref(), placement: self.placement }
+    }
+
+    /// Returns the trees of meshes that are registered or small.
+    fn trees(&self) -> Option<Trees> {
+        let [mesh1, mesh2] = &self.meshes;
+        // A large mesh without a tree costs no hash, so the larger one comes first.
+        if mesh1.mesh.indices().len() < mesh2.mesh.indices().len() {
+            let tree2 = mesh2.with_tree()?;
+            return Some([mesh1.with_tree()?, tree2]);
+        }
+        let tree1 = mesh1.with_tree()?;
+        let is_same = std::ptr::eq(mesh1.mesh, mesh2.mesh);
+        let tree2 = if is_same { Arc::clone(&tree1) } else { mesh2.with_tree()? };
+        Some([tree1, tree2])
     }
 
     /// Returns triangles that touch, if any do.
     pub(super) fn touching(&self) -> Option<[u32; 2]> {
-        let (meshes, placement) = (self.meshes.each_ref(), self.placement);
         // Hashes of small meshes would take longer than most of these queries.
-        let pair = match Trees::of_registered(meshes) {
-            Some(trees) => trees.search(|trees, scratch| meeting(trees, placement, scratch)),
-            None => Walk(meshes).meeting(placement),
+        let [mesh1, mesh2] = self.meshes.each_ref().map(MeshView::registered);
+        let pair = if let (Some(tree1), Some(tree2)) = (mesh1, mesh2) {
+            search_trees([tree1, tree2], |trees, scratch| meeting(trees, self.placement, scratch))
+        } else {
+            self.bvhs().meeting()
         };
         Some(pair?.name())
     }
@@ -54,7 +92,7 @@ impl<'a> MeshQuery<'a> {
         let placement = self.placement;
         let pair = self.search(
             |trees, scratch| nearest(trees, placement, limit, scratch),
-            |walk| walk.nearest(placement, limit),
+            |bvhs| bvhs.nearest(limit),
         )?;
         let found = Found::of_pair(&pair, &placement);
         Some(Found { distance: found.distance.max(0.0), ..found })
@@ -65,7 +103,7 @@ impl<'a> MeshQuery<'a> {
         let placement = self.placement;
         let pair = self.search(
             |trees, scratch| deepest(trees, placement, limit, scratch),
-            |walk| walk.deepest(placement, limit),
+            |bvhs| bvhs.deepest(limit),
         )?;
         Some(Found::of_pair(&pair, &placement))
     }
@@ -85,7 +123,7 @@ impl<'a> MeshQuery<'a> {
         let counts = |cast: &Cast| !may_slide || self.is_minimum(cast, velocity12);
         let cast = self.search(
             |trees, scratch| cast(trees, placement, velocity12, options, scratch, counts),
-            |walk| walk.cast(placement, velocity12, options, counts),
+            |bvhs| bvhs.cast(velocity12, options, counts),
         )?;
         // The hit wants the point of mesh 2 before the motion.
         let mut pair = cast.pair;
@@ -113,9 +151,9 @@ impl<'a> MeshQuery<'a> {
                 let balls = [trees.0, trees.1].map(Tree::bounding_ball);
                 cast.first_impact(&mut MeshBodies { trees, scratch }, balls)
             },
-            |mut walk| {
+            |mut bvhs| {
                 let balls = self.meshes.each_ref().map(|mesh| mesh.ball());
-                cast.first_impact(&mut walk, balls)
+                cast.first_impact(&mut bvhs, balls)
             },
         )?;
         let pair = Found::of_pair(&found.pair, &found.placement);

@@ -1,7 +1,7 @@
 //! Queries without manifolds, for a pair of meshes or a mesh and a convex shape.
 //!
-//! Registered and small meshes are searched by their trees ([`trees`]), all others by Parry's BVHs
-//! ([`walk`]). A mesh and a convex shape use the BVH of the mesh. [`nonlinear`]
+//! Registered and small meshes are searched by their trees ([`meshes`]), all others by Parry's BVHs
+//! ([`bvh_search`]). A mesh and a convex shape use the BVH of the mesh. [`nonlinear`]
 //! and [`moving`] cast along the curves of rigid motions.
 
 mod bvh_search;
@@ -9,9 +9,6 @@ mod found;
 mod meshes;
 mod moving;
 mod nonlinear;
-
-mod trees;
-mod walk;
 
 pub(crate) use meshes::MeshQuery;
 pub(crate) use nonlinear::NonlinearCast;
